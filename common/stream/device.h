@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// What crosses a process border, as plain structs: proto/footing/v1 says what each field means.
+namespace footing::stream {
+
+enum class DeviceKind { kUnspecified = 0, kWiimote = 1, kBalanceBoard = 2 };
+
+enum class DeviceRole {
+  kUnspecified = 0,
+  kLeftHand = 1,
+  kRightHand = 2,
+  kLeftLeg = 3,
+  kRightLeg = 4,
+  kHead = 5,
+  kLeftBoard = 6,
+  kRightBoard = 7,
+  kEditor = 8,
+};
+
+enum class DeviceState { kUnspecified = 0, kConnecting = 1, kLive = 2, kStale = 3, kLost = 4 };
+
+enum class CalibrationOrigin { kUnspecified = 0, kDevice = 1, kDeviceCopy = 2, kDefaults = 3 };
+
+/// Short names, as config files, command lines and screens use them: "left_hand", "live", ...
+const char* Name(DeviceKind kind);
+const char* Name(DeviceRole role);
+const char* Name(DeviceState state);
+const char* Name(CalibrationOrigin origin);
+/// The role of that name; kUnspecified when there is none.
+DeviceRole RoleNamed(const std::string& name);
+
+struct DeviceStatus {
+  std::uint32_t device = 0;
+  std::string serial;
+  DeviceKind kind = DeviceKind::kUnspecified;
+  DeviceState state = DeviceState::kUnspecified;
+  std::string rig;
+  DeviceRole role = DeviceRole::kUnspecified;
+  bool simulated = false;
+  CalibrationOrigin calibration = CalibrationOrigin::kUnspecified;
+  double report_rate_hz = 0;
+  double jitter_ms = 0;
+  std::uint64_t reports = 0;
+  std::uint64_t gaps = 0;
+  std::uint64_t repeats = 0;
+  std::uint64_t clipped = 0;
+  std::uint64_t undecodable = 0;
+  double battery_fraction = -1;
+  bool battery_low = false;
+  std::uint32_t leds = 0;
+  bool rumble = false;
+  std::string note;
+  std::string name;
+  std::int64_t last_report_ns = 0;
+};
+
+struct RawReport {
+  std::uint32_t device = 0;
+  std::int64_t received_ns = 0;
+  std::vector<std::uint8_t> report;
+  bool to_device = false;
+  bool simulated = false;
+  std::int64_t true_ns = 0;
+};
+
+}  // namespace footing::stream

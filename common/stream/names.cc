@@ -1,0 +1,41 @@
+#include <array>
+#include <cstddef>
+
+#include "common/stream/character.h"
+#include "common/stream/device.h"
+
+namespace footing::stream {
+namespace {
+
+constexpr std::array kKinds = {"unknown", "wiimote", "balance_board"};
+constexpr std::array kRoles = {"none",      "left_hand",  "right_hand",  "left_leg", "right_leg",
+                               "head",      "left_board", "right_board", "editor"};
+constexpr std::array kStates = {"unknown", "connecting", "live", "stale", "lost"};
+constexpr std::array kOrigins = {"unknown", "device", "device_copy", "defaults"};
+constexpr std::array kGaits = {"unknown", "step", "walk", "run", "jump"};
+
+template <std::size_t N, typename E>
+const char* At(const std::array<const char*, N>& names, E value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < N ? names[index] : names[0];
+}
+
+template <typename E, std::size_t N>
+E Named(const std::array<const char*, N>& names, const std::string& name) {
+  for (std::size_t i = 1; i < N; ++i) {
+    if (name == names[i]) return static_cast<E>(i);
+  }
+  return E::kUnspecified;
+}
+
+}  // namespace
+
+const char* Name(DeviceKind kind) { return At(kKinds, kind); }
+const char* Name(DeviceRole role) { return At(kRoles, role); }
+const char* Name(DeviceState state) { return At(kStates, state); }
+const char* Name(CalibrationOrigin origin) { return At(kOrigins, origin); }
+const char* Name(Gait gait) { return At(kGaits, gait); }
+DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
+Gait GaitNamed(const std::string& name) { return Named<Gait>(kGaits, name); }
+
+}  // namespace footing::stream

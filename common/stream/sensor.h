@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace footing::stream {
+
+/// One accelerometer sample in the sensor frame S (x left, y front, z down).
+struct MotionSample {
+  std::uint32_t device = 0;
+  std::uint64_t report_count = 0;
+  std::int64_t received_ns = 0;
+  std::int64_t sampled_ns = 0;
+  /// Raw, calibrated. Held still face up it is (0, 0, -9.81) m/s².
+  Eigen::Vector3d specific_force_mps2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d filtered_mps2 = Eigen::Vector3d::Zero();
+  std::uint32_t clipped_axes = 0;  ///< Bits 0, 1, 2: x, y, z at the end of the sensor's range.
+  bool repeated = false;
+  bool uncalibrated = false;
+  bool simulated = false;
+  std::uint32_t buttons = 0;
+};
+
+/// Features of one controller (gait paper, section 6).
+struct DeviceFeatures {
+  std::uint32_t device = 0;
+  bool moving = false;
+  bool frequency_valid = false;
+  double frequency_hz = 0;
+  bool amplitude_valid = false;
+  double amplitude_mps2 = 0;  ///< Half peak to peak of the raw samples over one cycle.
+  bool inclination_valid = false;
+  double roll_rad = 0;   ///< Left side higher is positive.
+  double pitch_rad = 0;  ///< Front higher is positive.
+  bool held = false;     ///< Held from before, because samples clip.
+  bool simulated = false;
+};
+
+/// Right minus left, in (-pi, pi].
+struct PairFeatures {
+  std::uint32_t left_device = 0;
+  std::uint32_t right_device = 0;
+  bool phase_valid = false;
+  double phase_rad = 0;
+};
+
+struct RigFeatures {
+  std::string rig;
+  std::vector<DeviceFeatures> devices;
+  std::vector<PairFeatures> pairs;
+  std::int64_t newest_received_ns = 0;
+  std::int64_t decoded_ns = 0;
+  std::int64_t computed_ns = 0;
+};
+
+/// One board sample in the plate frame P (x right, y front, origin in the middle).
+struct BoardSample {
+  std::uint32_t device = 0;
+  std::uint64_t report_count = 0;
+  std::int64_t received_ns = 0;
+  std::int64_t sampled_ns = 0;
+  double top_left_n = 0;
+  double top_right_n = 0;
+  double bottom_left_n = 0;
+  double bottom_right_n = 0;
+  double total_n = 0;
+  bool cop_valid = false;
+  double cop_x_m = 0;
+  double cop_y_m = 0;
+  bool contact = false;
+  bool repeated = false;
+  bool uncalibrated = false;
+  bool simulated = false;
+};
+
+}  // namespace footing::stream
