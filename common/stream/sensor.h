@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/stream/device.h"
+
 namespace footing::stream {
 
 /// One accelerometer sample in the sensor frame S (x left, y front, z down).
@@ -26,6 +28,7 @@ struct MotionSample {
 /// Features of one controller (gait paper, section 6).
 struct DeviceFeatures {
   std::uint32_t device = 0;
+  DeviceRole role = DeviceRole::kUnspecified;
   bool moving = false;
   bool frequency_valid = false;
   double frequency_hz = 0;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "common/result/result.h"
+
+/// What every program's command line has in common.
+namespace footing::cli {
+
+/// A new parser with --version and the house's exit codes in its footer. `examples` is a few lines
+/// of commands to copy.
+std::unique_ptr<CLI::App> NewApp(const std::string& name, const std::string& what,
+                                 const std::string& examples);
+
+/// Parses; returns the exit code when the program should end now (0 after --help or --version, 2
+/// for a wrong command line, whose reason is printed to standard error).
+std::optional<int> Parse(CLI::App& app, int argc, char** argv);
+
+/// Prints "error: ..." to standard error and returns the error's exit code.
+int Report(const Error& error);
+
+/// Program version, e.g. "0.1.0".
+const char* Version();
+
+}  // namespace footing::cli

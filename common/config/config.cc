@@ -1,0 +1,173 @@
+#include "common/config/config.h"
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "common/config/data_file.h"
+
+namespace footing::config {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string Range(const std::string& min, const std::string& max) {
+  return "from " + min + " to " + max;
+}
+
+std::string NumberText(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+void Binder::Number(const std::string& key, double& value, double min, double max,
+                    const std::string& documentation) {
+  auto assign = [&value, min, max](const Json& json) {
+    if (!json.is_number()) return false;
+    const double number = json.get<double>();
+    if (!(number >= min && number <= max)) return false;
+    value = number;
+    return true;
+  };
+  entries_.push_back({key, "a number " + Range(NumberText(min), NumberText(max)), documentation,
+                      assign, [&value] { return Json(value); }});
+}
+
+void Binder::Integer(const std::string& key, std::int64_t& value, std::int64_t min,
+                     std::int64_t max, const std::string& documentation) {
+  auto assign = [&value, min, max](const Json& json) {
+    if (!json.is_number_integer()) return false;
+    const auto number = json.get<std::int64_t>();
+    if (number < min || number > max) return false;
+    value = number;
+    return true;
+  };
+  entries_.push_back({key, "a whole number " + Range(std::to_string(min), std::to_string(max)),
+                      documentation, assign, [&value] { return Json(value); }});
+}
+
+void Binder::Flag(const std::string& key, bool& value, const std::string& documentation) {
+  auto assign = [&value](const Json& json) {
+    if (!json.is_boolean()) return false;
+    value = json.get<bool>();
+    return true;
+  };
+  entries_.push_back(
+      {key, "true or false", documentation, assign, [&value] { return Json(value); }});
+}
+
+void Binder::Text(const std::string& key, std::string& value, const std::string& documentation) {
+  auto assign = [&value](const Json& json) {
+    if (!json.is_string()) return false;
+    value = json.get<std::string>();
+    return true;
+  };
+  entries_.push_back(
+      {key, "a text", documentation, assign, [&value] { return Json(value); }, true});
+}
+
+void Binder::TextList(const std::string& key, std::vector<std::string>& value,
+                      const std::string& documentation) {
+  auto assign = [&value](const Json& json) {
+    if (!json.is_array()) return false;
+    std::vector<std::string> list;
+    for (const Json& item : json) {
+      if (!item.is_string()) return false;
+      list.push_back(item.get<std::string>());
+    }
+    value = std::move(list);
+    return true;
+  };
+  entries_.push_back(
+      {key, "a list of texts", documentation, assign, [&value] { return Json(value); }});
+}
+
+void Binder::TextMap(const std::string& key, std::map<std::string, std::string>& value,
+                     const std::string& documentation,
+                     std::function<std::string(const std::string&)> check) {
+  auto assign = [&value, check = std::move(check)](const Json& json) {
+    if (!json.is_object()) return false;
+    std::map<std::string, std::string> map;
+    for (const auto& [name, item] : json.items()) {
+      if (!item.is_string() || !check(item.get<std::string>()).empty()) return false;
+      map[name] = item.get<std::string>();
+    }
+    value = std::move(map);
+    return true;
+  };
+  entries_.push_back({key, "an object of texts (" + documentation + ")", documentation, assign,
+                      [&value] { return Json(value); }});
+}
+
+const Binder::Entry* Binder::Find(const std::string& key) const {
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) return &entry;
+  }
+  return nullptr;
+}
+
+Result<void> Binder::Assign(const std::string& key, const Json& value, const std::string& origin) {
+  const Entry* entry = Find(key);
+  if (entry == nullptr) {
+    return UsageError("config: unknown key \"" + key + "\" in " + origin +
+                      "; --print-config lists the keys");
+  }
+  if (!entry->assign(value)) {
+    return UsageError("config: " + key + " = " + value.dump() + " in " + origin + "; it must be " +
+                      entry->allowed);
+  }
+  return {};
+}
+
+Result<void> Binder::ApplyText(const std::string& text, const std::string& origin) {
+  Json json;
+  try {
+    json = Json::parse(text, nullptr, true, true);
+  } catch (const Json::parse_error& error) {
+    return UsageError("config: " + origin + " is not JSON: " + error.what());
+  }
+  if (!json.is_object()) return UsageError("config: " + origin + " must hold one JSON object");
+  for (const auto& [key, value] : json.items()) {
+    if (const Result<void> result = Assign(key, value, origin); !result) return result;
+  }
+  return {};
+}
+
+Result<void> Binder::ApplyFile(const std::string& path) {
+  const Result<std::string> text = ReadTextFile(path, 1u << 20);
+  if (!text) return UsageError("config: " + text.error().message);
+  return ApplyText(*text, path);
+}
+
+Result<void> Binder::ApplySetting(const std::string& setting) {
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    return UsageError("--set " + setting + ": write it as key=value");
+  }
+  const std::string key = setting.substr(0, equals);
+  const std::string text = setting.substr(equals + 1);
+  const Entry* entry = Find(key);
+  Json value = Json::parse(text, nullptr, false);
+  if (value.is_discarded() || (entry != nullptr && entry->text && !value.is_string())) value = text;
+  return Assign(key, value, "--set");
+}
+
+std::string Binder::Print() const {
+  Json json = Json::object();
+  for (const Entry& entry : entries_) json[entry.key] = entry.read();
+  return json.dump(2);
+}
+
+std::string Binder::Describe() const {
+  std::string text;
+  for (const Entry& entry : entries_) {
+    text += entry.key + ": " + entry.documentation + " (" + entry.allowed + "; " +
+            entry.read().dump() + ")\n";
+  }
+  return text;
+}
+
+}  // namespace footing::config

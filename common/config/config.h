@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+
+namespace footing::config {
+
+/// Binds keys to the fields of config structs: defaults < file < --set key=value.
+///
+/// A struct's owner binds each field once, with its allowed range and one line of documentation;
+/// the field's value at that time is the default. Every error is one line: key, value, allowed
+/// range, file.
+class Binder {
+ public:
+  void Number(const std::string& key, double& value, double min, double max,
+              const std::string& documentation);
+  void Integer(const std::string& key, std::int64_t& value, std::int64_t min, std::int64_t max,
+               const std::string& documentation);
+  void Flag(const std::string& key, bool& value, const std::string& documentation);
+  void Text(const std::string& key, std::string& value, const std::string& documentation);
+  void TextList(const std::string& key, std::vector<std::string>& value,
+                const std::string& documentation);
+  /// An object of text values, e.g. serial to role. `check` returns what is wrong, or nothing.
+  void TextMap(const std::string& key, std::map<std::string, std::string>& value,
+               const std::string& documentation,
+               std::function<std::string(const std::string&)> check);
+
+  /// Applies a JSON object (comments allowed) whose unknown keys and wrong values are errors.
+  Result<void> ApplyFile(const std::string& path);
+  Result<void> ApplyText(const std::string& text, const std::string& origin);
+  /// Applies one "key=value"; the value is JSON, or plain text for a text key.
+  Result<void> ApplySetting(const std::string& setting);
+
+  /// The effective config as a JSON object, in the order bound.
+  std::string Print() const;
+  /// One line a key: key, range, default, documentation.
+  std::string Describe() const;
+
+ private:
+  struct Entry {
+    std::string key;
+    std::string allowed;
+    std::string documentation;
+    std::function<bool(const nlohmann::ordered_json&)> assign;
+    std::function<nlohmann::ordered_json()> read;
+    bool text = false;
+  };
+
+  Result<void> Assign(const std::string& key, const nlohmann::ordered_json& value,
+                      const std::string& origin);
+  const Entry* Find(const std::string& key) const;
+
+  std::vector<Entry> entries_;
+};
+
+}  // namespace footing::config

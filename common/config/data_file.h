@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "common/result/result.h"
+
+namespace footing::config {
+
+/// Where a file that the product carries is: `folder` if given, then the install folder
+/// (PREFIX/share/footing), then the source tree (daemon/simulation/data). An error names all
+/// places.
+Result<std::string> FindDataFile(const std::string& name, const std::string& folder = "");
+
+/// The whole text of a file of at most `max_bytes`.
+Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes = 4u << 20);
+
+/// FindDataFile, then ReadTextFile.
+Result<std::string> ReadDataFile(const std::string& name, const std::string& folder = "");
+
+}  // namespace footing::config

@@ -1,0 +1,16 @@
+#include "common/cli/cli.h"
+#include "daemon/offline/eval/command.h"
+
+int main(int argc, char** argv) {
+  auto app = footing::cli::NewApp(
+      "footing-eval", "Runs the pure code of the daemons offline, faster than real time.",
+      "  footing-eval features --left left.csv --right right.csv --rate-hz 100 --json\n"
+      "  footing-eval board --corners corners.csv --json\n"
+      "  footing-eval gait --gait walk --speed 1 --seconds 60 --trials 1 --seed 1 --json");
+  footing::eval::Shared shared;
+  app->add_flag("--json", shared.json, "One JSON object on standard output");
+  app->require_subcommand(1);
+  app->fallthrough();
+  if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
+  return shared.exit_code;
+}
