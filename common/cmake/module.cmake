@@ -73,9 +73,9 @@ function(add_module name)
   target_link_libraries(${name} ${scope} ${public_links})
   if(arg_SOURCES)
     target_link_libraries(${name} PRIVATE ${private_links} footing_warnings)
-    set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
   endif()
-  set_target_properties(${name} PROPERTIES MODULE_FOLDER "${folder}" MODULE_PURE "${arg_PURE}")
+  set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON
+                        MODULE_FOLDER "${folder}" MODULE_PURE "${arg_PURE}")
 
   string(REPLACE ";" " " public "${arg_DEPS}")
   string(REPLACE ";" " " private "${arg_PRIVATE_DEPS}")

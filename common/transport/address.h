@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/result/result.h"
+
+namespace footing::transport {
+
+/// Where a listener listens and a client dials: "unix:PATH" or "tcp:HOST:PORT".
+struct Address {
+  enum class Kind { kUnix, kTcp };
+  Kind kind = Kind::kUnix;
+  std::string path;  ///< Unix socket.
+  std::string host;  ///< TCP: a numeric address or "localhost".
+  std::uint16_t port = 0;
+
+  std::string Text() const;
+};
+
+/// Usage error with the right form when the text is none.
+Result<Address> ParseAddress(const std::string& text);
+
+/// Where a program listens when nothing is said: unix:$XDG_RUNTIME_DIR/footing/NAME.sock, or
+/// unix:/tmp/footing-UID/NAME.sock where there is no runtime directory. NAME is "sensor", "devices"
+/// or "simulation". Creates the folder with mode 0700 if `create` is set.
+Address DefaultAddress(const std::string& name, bool create = false);
+
+}  // namespace footing::transport

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/transport/address.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::transport {
+
+/// A channel is one top-level field of v1::Tick; its name is the field's name.
+struct Channel {
+  std::string name;
+  std::uint32_t field = 0;
+  bool retained = false;  ///< Its last value is part of every snapshot.
+};
+
+struct ServerOptions {
+  std::string server_id;  ///< "footingd" or "footing-sim".
+  std::string version;
+  std::vector<Channel> channels;
+  double tick_rate_hz = 100;
+  double ring_s = 30;
+  std::size_t ring_max_bytes = 64u << 20;
+  std::uint32_t max_message_in_bytes = 64u << 10;
+  std::uint32_t max_message_out_bytes = 1u << 20;
+  std::uint32_t max_queue_ticks = 1024;
+  std::size_t max_sessions = 256;
+  double hello_deadline_s = 3;
+  double ping_interval_s = 1;
+  double dead_after_s = 10;
+  std::vector<std::string> capabilities;
+};
+
+/// One field of a tick, serialised once for all sessions: the bytes of the channel's message,
+/// without tag and length.
+struct ChannelBytes {
+  std::uint32_t field = 0;
+  std::string bytes;
+};
+
+/// Who asks.
+struct SessionInfo {
+  std::uint64_t session = 0;
+  std::string client_name;
+  v1::Role role = v1::ROLE_VIEW;
+};
+
+struct ServerHandlers {
+  /// A command of a session with role control or admin. Roles below are refused before this is
+  /// called.
+  std::function<v1::CommandResult(const SessionInfo&, const v1::Command&)> on_command;
+  /// A session is gone: end its leases.
+  std::function<void(const SessionInfo&)> on_session_end;
+};
+
+struct ServerStatistics {
+  std::size_t sessions = 0;
+  std::uint64_t accepted = 0;
+  std::uint64_t refused = 0;
+  std::uint64_t ticks_dropped = 0;
+  std::uint64_t ring_bytes = 0;
+};
+
+/// Publishes ticks to any number of sessions. Everything runs on the io_context's one thread.
+///
+/// A tick is serialised once; each session gets a gather-write of a small head of its own and the
+/// shared bytes of its channels. A slow session loses ticks of its own queue (and is told by a Gap)
+/// or is ended, by the policy it chose; it never slows another. See docs/protocol.md.
+class Server {
+ public:
+  Server(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// Opens one more listener. A Unix socket left over by a dead server is replaced; one in use, or
+  /// a TCP port in use, is an error that says so. TCP beyond loopback is refused.
+  Result<void> Listen(const Address& address);
+
+  /// The bound address of the i-th listener (the real port where 0 was asked for).
+  Address ListeningOn(std::size_t index) const;
+
+  /// Publishes one tick of the given channels; returns its sequence, from 1.
+  std::uint64_t Publish(std::int64_t host_ns, std::vector<ChannelBytes> channels);
+
+  std::uint64_t epoch() const;
+  ServerStatistics statistics() const;
+
+  /// Says goodbye to every session and closes.
+  void Stop(const std::string& reason);
+
+ private:
+  class Implementation;
+  std::shared_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::transport

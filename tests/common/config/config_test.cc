@@ -1,0 +1,108 @@
+#include "common/config/config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/config/data_file.h"
+
+namespace footing::config {
+namespace {
+
+using testing::HasSubstr;
+
+struct Example {
+  double rate_hz = 100;
+  std::int64_t sessions = 16;
+  bool quiet = false;
+  std::string rig = "one";
+  std::vector<std::string> listen;
+
+  void Bind(Binder& binder) {
+    binder.Number("rate_hz", rate_hz, 1, 1000, "Ticks a second");
+    binder.Integer("sessions", sessions, 1, 256, "Most sessions at a time");
+    binder.Flag("quiet", quiet, "Only warnings");
+    binder.Text("rig", rig, "Name of the rig");
+    binder.TextList("listen", listen, "Addresses");
+  }
+};
+
+TEST(Config, DefaultsYieldToTheFileAndTheFileToSettings) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  ASSERT_TRUE(binder.ApplyText(R"({"rate_hz": 50, "rig": "two"} // comment)", "file"));
+  ASSERT_TRUE(binder.ApplySetting("rate_hz=60"));
+  ASSERT_TRUE(binder.ApplySetting(R"(listen=["unix:a"])"));
+  EXPECT_EQ(example.rate_hz, 60);
+  EXPECT_EQ(example.rig, "two");
+  EXPECT_EQ(example.sessions, 16);
+  EXPECT_THAT(example.listen, testing::ElementsAre("unix:a"));
+}
+
+TEST(Config, AnUnknownKeyIsNamedWithItsFile) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  const auto result = binder.ApplyText(R"({"rate": 50})", "footing.json");
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(result.error().message, HasSubstr("unknown key \"rate\" in footing.json"));
+}
+
+TEST(Config, AWrongTypeOrRangeSaysWhatIsAllowed) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  for (const char* text : {R"({"rate_hz": 0})", R"({"rate_hz": "x"})", R"({"rate_hz": 1e9})"}) {
+    const auto result = binder.ApplyText(text, "f");
+    ASSERT_FALSE(result) << text;
+    EXPECT_THAT(result.error().message, HasSubstr("a number from 1 to 1000"));
+  }
+  EXPECT_FALSE(binder.ApplyText(R"({"sessions": 1.5})", "f"));
+  EXPECT_FALSE(binder.ApplyText(R"({"quiet": 1})", "f"));
+  EXPECT_FALSE(binder.ApplyText(R"({"listen": [1]})", "f"));
+  EXPECT_EQ(example.rate_hz, 100);
+}
+
+TEST(Config, TextThatIsNoObjectIsRefusedInOneLine) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  for (const char* text : {"", "[]", "{", "nonsense", "{\"rate_hz\": }"}) {
+    const auto result = binder.ApplyText(text, "f");
+    ASSERT_FALSE(result) << text;
+    EXPECT_THAT(result.error().message, testing::Not(HasSubstr("\n"))) << text;
+  }
+}
+
+TEST(Config, ATextKeyTakesPlainWordsFromTheCommandLine) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  ASSERT_TRUE(binder.ApplySetting("rig=7"));
+  EXPECT_EQ(example.rig, "7");
+  EXPECT_FALSE(binder.ApplySetting("rig"));
+  EXPECT_FALSE(binder.ApplySetting("=7"));
+}
+
+TEST(Config, WhatIsPrintedCanBeReadBack) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  ASSERT_TRUE(binder.ApplySetting("rate_hz=12.5"));
+  const std::string printed = binder.Print();
+  Example other;
+  Binder again;
+  other.Bind(again);
+  ASSERT_TRUE(again.ApplyText(printed, "printed"));
+  EXPECT_EQ(other.rate_hz, 12.5);
+}
+
+TEST(DataFile, ThatIsNowhereNamesThePlaces) {
+  const auto result = FindDataFile("none.json", "/nonexistent");
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().message, HasSubstr("/nonexistent"));
+}
+
+}  // namespace
+}  // namespace footing::config
