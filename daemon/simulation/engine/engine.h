@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -71,6 +72,10 @@ struct EngineOutput {
   std::array<stream::Contact, kContactCount> contacts;
   Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_WC_mps = Eigen::Vector3d::Zero();
+  /// Generalised forces of this step: yaw, roll, pitch (N m) and length (N) of the left leg, then
+  /// of the right one; and the push on the body.
+  std::array<double, 8> joint_efforts{};
+  Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
   stream::GaitState gait;
   bool simulated_input = false;
   double root_force_max_n = 0;   ///< Largest hidden force on the root so far; must stay 0.
@@ -84,7 +89,6 @@ struct EngineOutput {
   int event_count = 0;
 };
 
-/// Everything that changes with time, as a value.
 struct EngineState;
 
 /// Physics, gait controllers, wrist mapping, and what happens at a fall.
@@ -106,7 +110,8 @@ class GaitEngine {
   const stream::Skeleton& skeleton() const;
   const stream::Track& track() const;
 
-  /// A copy of everything that changes with time; Restore brings the engine back to that step.
+  /// Everything that changes with time, as a value (state.h); Restore brings the engine back to
+  /// that step.
   EngineState Save() const;
   void Restore(const EngineState& state);
 

@@ -34,6 +34,12 @@ bool IsLevel(const stream::Track& track) {
   });
 }
 
+double RibbonHeight(const stream::Track& track, double x_m, double y_m) {
+  const TrackPlace place = Locate(track, {x_m, y_m});
+  const stream::TrackSegment& segment = track.segments[static_cast<std::size_t>(place.segment)];
+  return segment.start_m.z() + place.along_m * std::sin(segment.slope_rad);
+}
+
 double GroundHeight(const stream::Track& track, double x_m, double y_m) {
   const TrackPlace place = Locate(track, {x_m, y_m});
   const stream::TrackSegment& segment = track.segments[static_cast<std::size_t>(place.segment)];
