@@ -19,9 +19,7 @@ class Latest {
 
   /// Writer's side: a slot to fill in place, then Publish().
   T& Back() { return slots_[back_]; }
-  void Publish() {
-    back_ = between_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;
-  }
+  void Publish() { back_ = between_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex; }
   void Write(const T& value) {
     Back() = value;
     Publish();

@@ -8,8 +8,8 @@ namespace footing::stream {
 namespace {
 
 constexpr std::array kKinds = {"unknown", "wiimote", "balance_board"};
-constexpr std::array kRoles = {"none",      "left_hand",  "right_hand",  "left_leg", "right_leg",
-                               "head",      "left_board", "right_board", "editor"};
+constexpr std::array kRoles = {"none", "left_hand",  "right_hand",  "left_leg", "right_leg",
+                               "head", "left_board", "right_board", "editor"};
 constexpr std::array kStates = {"unknown", "connecting", "live", "stale", "lost"};
 constexpr std::array kOrigins = {"unknown", "device", "device_copy", "defaults"};
 constexpr std::array kGaits = {"unknown", "step", "walk", "run", "jump"};

@@ -1,0 +1,78 @@
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <iostream>
+
+#include "common/cli/cli.h"
+#include "common/log/log.h"
+#include "daemon/simulation/service/service.h"
+
+namespace {
+
+using namespace footing;  // NOLINT: main is wiring
+
+/// Defaults < file < settings < flags of their own.
+Result<void> Configure(config::Binder& binder, const std::string& file,
+                       const std::vector<std::string>& settings) {
+  if (!file.empty()) {
+    if (const auto applied = binder.ApplyFile(file); !applied) return applied;
+  }
+  for (const std::string& setting : settings) {
+    if (const auto applied = binder.ApplySetting(setting); !applied) return applied;
+  }
+  return {};
+}
+
+int Run(const simulation::Config& config) {
+  boost::asio::io_context io(1);
+  auto service = simulation::Service::Start(io, config, cli::Version());
+  if (!service) return cli::Report(service.error());
+  boost::asio::steady_timer farewell(io);  // Time for the goodbyes to leave.
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  signals.async_wait([&](boost::system::error_code, int) {
+    (*service)->Stop("footing-sim ends");
+    farewell.expires_after(std::chrono::milliseconds(200));
+    farewell.async_wait([&io](boost::system::error_code) { io.stop(); });
+  });
+  io.run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  simulation::Config config;
+  config::Binder binder;
+  config.Bind(binder);
+  std::string file;
+  std::vector<std::string> settings, listen;
+  std::string engine, sensor, interface, track;
+  bool print = false, check = false, quiet = false;
+  auto app =
+      cli::NewApp("footing-sim", "Simulation server: features in, a walking biped out.",
+                  "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n");
+  app->add_option("--config", file, "JSON file of settings");
+  app->add_option("--set", settings, "One setting, key=value; may be repeated");
+  app->add_option("--listen", listen, "unix:PATH or tcp:HOST:PORT; may be repeated");
+  app->add_option("--engine", engine, "gait");
+  app->add_option("--sensor", sensor, "Address of footingd");
+  app->add_option("--interface", interface, "wrist");
+  app->add_option("--track", track, "Name of a carried track, or a JSON file");
+  app->add_flag("--print-config", print, "Write the effective config and end");
+  app->add_flag("--check-config", check, "Check the config and end");
+  app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
+  if (const auto code = cli::Parse(*app, argc, argv)) return *code;
+  log::Start("footing-sim", quiet);
+
+  if (const auto done = Configure(binder, file, settings); !done) return cli::Report(done.error());
+  if (!listen.empty()) config.listen = listen;
+  if (!engine.empty()) config.engine = engine;
+  if (!sensor.empty()) config.sensor = sensor;
+  if (!interface.empty()) config.interface = interface;
+  if (!track.empty()) config.track = track;
+  if (const auto built = simulation::CheckBuilt(config); !built) return cli::Report(built.error());
+  if (print) std::cout << binder.Print() << std::endl;
+  if (print || check) return 0;
+  return Run(config);
+}

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "common/exchange/latest.h"
+#include "daemon/simulation/service/frame.h"
+#include "daemon/simulation/service/responses.h"
+#include "footing/v1/command.pb.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::simulation {
+
+/// Turns sensor ticks and commands into engine inputs, on the io thread.
+class SensorInput {
+ public:
+  /// `rig` empty: the first rig with a left or right hand.
+  SensorInput(std::string rig, exchange::Latest<Inputs>& out, Responses& responses);
+
+  void OnTick(const v1::Tick& tick, std::int64_t now_ns);
+  /// DirectGait, Push and PutBack; anything else is answered with what there is.
+  v1::CommandResult OnCommand(const v1::Command& command);
+
+  const std::string& rig() const { return followed_rig_; }
+
+ private:
+  void Publish() { out_.Write(inputs_); }
+
+  const std::string wanted_rig_;
+  std::string followed_rig_;
+  exchange::Latest<Inputs>& out_;
+  Responses& responses_;
+  Inputs inputs_;
+};
+
+}  // namespace footing::simulation
