@@ -9,7 +9,8 @@
 
 /// Between the plain structs of common/stream and the messages of the protocol. Enums have the same
 /// numbers on both sides; an unknown number becomes kUnspecified. A number that is not finite
-/// becomes 0 on the way out, so nothing published is ever NaN.
+/// becomes 0 on the way out, so nothing published is ever NaN, and on the way in, where a server
+/// may not be ours; a rotation becomes the identity. Text is made valid UTF-8.
 namespace footing::wire {
 
 v1::Vector3 ToProto(const Eigen::Vector3d& value);

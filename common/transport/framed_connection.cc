@@ -1,0 +1,220 @@
+#include "common/transport/framed_connection.h"
+
+#include <array>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <deque>
+#include <utility>
+
+#include "common/transport/framing.h"
+
+namespace footing::transport {
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+constexpr std::size_t kReadBytes = 16 << 10;
+/// Batches written in one go before other connections get their turn.
+constexpr int kBatchesInARow = 8;
+
+std::string CloseReason(const error_code& error, bool inside_frame) {
+  if (error != asio::error::eof) return "the connection broke: " + Words(error);
+  return inside_frame ? "the other side closed in the middle of a message"
+                      : "the other side closed the connection";
+}
+
+}  // namespace
+
+class FramedConnection::Implementation : public std::enable_shared_from_this<Implementation> {
+ public:
+  Implementation(Socket socket, const FramedLimits& limits, FramedHandlers handlers)
+      : socket_(std::move(socket)),
+        linger_(socket_.get_executor()),
+        limits_(limits),
+        handlers_(std::move(handlers)),
+        splitter_(limits.max_in_bytes) {
+    Prepare(socket_);
+  }
+
+  void Start() { Read(); }
+
+  bool Send(std::string_view payload) {
+    if (state_ != State::kOpen || payload.size() > limits_.max_out_bytes) return false;
+    if (queue_.size() >= limits_.max_queued_frames) return false;
+    if (queued_bytes_ + payload.size() > limits_.max_queued_bytes) return false;
+    Queue(payload);
+    Write();
+    return true;
+  }
+
+  void Wake() {
+    if (state_ == State::kOpen) Write();
+  }
+
+  void Finish(std::string_view last_payload, const std::string& reason) {
+    if (state_ != State::kOpen) return;
+    state_ = State::kFinishing;
+    reason_ = reason;
+    if (!last_payload.empty()) Queue(last_payload);
+    linger_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+        std::chrono::duration<double>(limits_.linger_s)));
+    linger_.async_wait([self = shared_from_this()](const error_code& error) {
+      if (!error) self->End(self->reason_);
+    });
+    Write();
+  }
+
+  void Close() {
+    silent_ = true;
+    End("closed");
+  }
+
+  bool open() const { return state_ == State::kOpen; }
+  std::size_t queued_bytes() const { return queued_bytes_; }
+  int native_handle() { return socket_.native_handle(); }
+
+ private:
+  enum class State { kOpen, kFinishing, kOver };
+
+  void Read() {
+    socket_.async_read_some(asio::buffer(input_),
+                            [self = shared_from_this()](const error_code& error, std::size_t size) {
+                              self->OnRead(error, size);
+                            });
+  }
+
+  void OnRead(const error_code& error, std::size_t size) {
+    if (state_ == State::kOver) return;
+    if (error) {
+      End(state_ == State::kFinishing ? reason_
+                                      : CloseReason(error, splitter_.pending_bytes() > 0));
+      return;
+    }
+    // While finishing, what still comes is read and thrown away: closing over unread bytes would
+    // reset the connection and lose the last word.
+    if (state_ == State::kOpen) Split(std::string_view(input_.data(), size));
+    if (state_ != State::kOver) Read();
+  }
+
+  void Split(std::string_view bytes) {
+    const auto fed = splitter_.Feed(bytes, [this](std::string_view payload) {
+      handlers_.on_frame(payload);
+      return state_ == State::kOpen;
+    });
+    if (fed) return;
+    if (handlers_.on_oversized) handlers_.on_oversized(fed.error().message);
+    if (state_ == State::kOpen) End(fed.error().message);
+  }
+
+  void Queue(std::string_view payload) {
+    queued_bytes_ += payload.size();
+    queue_.push_back(Frame(payload));
+  }
+
+  void Write() {
+    if (waiting_ || writing_) return;
+    writing_ = true;  // on_writable may call Wake() or Send().
+    for (int batches = 0; state_ != State::kOver; ++batches) {
+      if (batch_.empty()) Fill();
+      if (batch_.empty()) break;
+      if (batches == kBatchesInARow) {
+        WriteLater();
+        break;
+      }
+      error_code error;
+      const std::size_t written = socket_.write_some(batch_.buffers(), error);
+      if (error == asio::error::would_block) {
+        WaitUntilWritable();
+        break;
+      }
+      if (error) {
+        End(state_ == State::kFinishing ? reason_ : CloseReason(error, false));
+        break;
+      }
+      batch_.Consume(written);
+    }
+    writing_ = false;
+    if (state_ == State::kFinishing && batch_.empty()) SayNoMore();
+  }
+
+  void Fill() {
+    while (!queue_.empty() && batch_.room() > 0) {
+      queued_bytes_ -= queue_.front().size() - kLengthBytes;
+      batch_.AddOwned(std::move(queue_.front()));
+      queue_.pop_front();
+    }
+    if (state_ == State::kOpen && batch_.room() > 0 && handlers_.on_writable) {
+      handlers_.on_writable(batch_);
+    }
+  }
+
+  void WriteLater() {
+    waiting_ = true;
+    asio::post(socket_.get_executor(), [self = shared_from_this()] {
+      self->waiting_ = false;
+      if (self->state_ != State::kOver) self->Write();
+    });
+  }
+
+  void WaitUntilWritable() {
+    waiting_ = true;
+    socket_.async_wait(Socket::wait_write, [self = shared_from_this()](const error_code& error) {
+      self->waiting_ = false;
+      if (!error && self->state_ != State::kOver) self->Write();
+    });
+  }
+
+  void SayNoMore() {
+    error_code ignored;  // It may be gone already.
+    socket_.shutdown(Socket::shutdown_send, ignored);
+  }
+
+  void End(const std::string& reason) {
+    if (state_ == State::kOver) return;
+    state_ = State::kOver;
+    linger_.cancel();
+    error_code ignored;
+    socket_.close(ignored);
+    asio::post(socket_.get_executor(), [self = shared_from_this(), reason] {
+      // The handlers go too: they often hold the owner of this connection.
+      FramedHandlers handlers = std::move(self->handlers_);
+      self->handlers_ = {};
+      if (!self->silent_ && handlers.on_close) handlers.on_close(reason);
+    });
+  }
+
+  Socket socket_;
+  asio::steady_timer linger_;
+  const FramedLimits limits_;
+  FramedHandlers handlers_;
+  FrameSplitter splitter_;
+  std::array<char, kReadBytes> input_;
+  std::deque<std::string> queue_;
+  std::size_t queued_bytes_ = 0;
+  WriteBatch batch_;
+  State state_ = State::kOpen;
+  bool waiting_ = false;
+  bool writing_ = false;
+  bool silent_ = false;
+  std::string reason_;
+};
+
+FramedConnection::FramedConnection(Socket socket, const FramedLimits& limits,
+                                   FramedHandlers handlers)
+    : implementation_(
+          std::make_shared<Implementation>(std::move(socket), limits, std::move(handlers))) {}
+FramedConnection::~FramedConnection() { Close(); }
+void FramedConnection::Start() { implementation_->Start(); }
+bool FramedConnection::Send(std::string_view payload) { return implementation_->Send(payload); }
+void FramedConnection::Wake() { implementation_->Wake(); }
+void FramedConnection::Finish(std::string_view last_payload, const std::string& reason) {
+  implementation_->Finish(last_payload, reason);
+}
+void FramedConnection::Close() { implementation_->Close(); }
+bool FramedConnection::open() const { return implementation_->open(); }
+std::size_t FramedConnection::queued_bytes() const { return implementation_->queued_bytes(); }
+int FramedConnection::native_handle() { return implementation_->native_handle(); }
+
+}  // namespace footing::transport

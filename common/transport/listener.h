@@ -1,0 +1,38 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+
+#include "common/result/result.h"
+#include "common/transport/address.h"
+#include "common/transport/socket.h"
+
+namespace footing::transport {
+
+/// Accepts connections on one address and hands over their sockets, already prepared.
+///
+/// Unix: mode 0660. A socket file left over by a dead server is replaced; one with a living server
+/// behind it is never touched. The own file is removed at the end. TCP beyond loopback is refused.
+class Listener {
+ public:
+  /// Begins to listen. Errors say which address, why, and what to do.
+  static Result<std::unique_ptr<Listener>> Open(boost::asio::io_context& io, const Address& address,
+                                                std::function<void(Socket)> on_accept);
+  ~Listener();
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  /// The bound address: with the real port where 0 was asked for.
+  const Address& address() const;
+
+  /// No further connection is accepted; the Unix socket's file goes away. May be called twice.
+  void Close();
+
+ private:
+  class Implementation;
+  explicit Listener(std::shared_ptr<Implementation> implementation);
+  std::shared_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::transport
