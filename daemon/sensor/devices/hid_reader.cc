@@ -30,6 +30,7 @@ void HidReader::Run() {
     incoming_.Push(item);
     wake_();
   }
+  WriteWaiting();  // The last word may be "rumble off".
   ended_.Raise();
   wake_();
 }
