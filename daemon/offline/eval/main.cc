@@ -1,5 +1,6 @@
 #include "common/cli/cli.h"
 #include "daemon/offline/eval/command.h"
+#include "daemon/offline/eval/features_command.h"
 
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   app->add_flag("--json", shared.json, "One JSON object on standard output");
   app->require_subcommand(1);
   app->fallthrough();
+  footing::eval::AddFeaturesCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }
