@@ -7,6 +7,10 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(mujoco REQUIRED)
+# Debian's mujocoConfig names include folders of its own build that do not exist.
+find_path(MUJOCO_INCLUDE mujoco/mujoco.h REQUIRED)
+set_target_properties(mujoco::mujoco PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${MUJOCO_INCLUDE}
+                      INTERFACE_LINK_LIBRARIES "")
 find_package(ZLIB REQUIRED)
 find_package(glfw3 3.3 REQUIRED)
 find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)

@@ -1,6 +1,8 @@
 #include "common/cli/cli.h"
 #include "daemon/offline/eval/command.h"
 #include "daemon/offline/eval/features_command.h"
+#include "daemon/offline/eval/gait_command.h"
+#include "daemon/offline/eval/transitions_command.h"
 
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
@@ -13,6 +15,8 @@ int main(int argc, char** argv) {
   app->require_subcommand(1);
   app->fallthrough();
   footing::eval::AddFeaturesCommand(*app, shared);
+  footing::eval::AddGaitCommand(*app, shared);
+  footing::eval::AddTransitionsCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

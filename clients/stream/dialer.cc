@@ -1,0 +1,202 @@
+#include "clients/stream/dialer.h"
+
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/log/log.h"
+#include "common/transport/framed_connection.h"
+#include "common/transport/socket.h"
+#include "common/units/units.h"
+#include "footing/v1/device.pb.h"
+
+namespace footing::stream_client {
+namespace {
+
+constexpr auto kRedial = std::chrono::milliseconds(250);
+constexpr std::uint32_t kMaxEnvelopeBytes = 1024;
+
+}  // namespace
+
+class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Implementation> {
+ public:
+  Implementation(boost::asio::io_context& io, DialerOptions options, std::vector<StandIn> devices,
+                 std::function<void()> on_end)
+      : io_(io),
+        options_(std::move(options)),
+        on_end_(std::move(on_end)),
+        redial_(io),
+        devices_(std::move(devices)) {
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+      clocks_.push_back(std::make_unique<boost::asio::steady_timer>(io));
+      due_.emplace_back();
+      sequences_.push_back(0);
+    }
+  }
+
+  void Dial() {
+    transport::Dial(io_, options_.to, [weak = weak_from_this()](Result<transport::Socket> socket) {
+      const auto self = weak.lock();
+      if (!self || self->stopped_) return;
+      if (socket) {
+        self->Attach(std::move(socket).value());
+      } else {
+        self->WaitFor(socket.error().message);
+      }
+    });
+  }
+
+  void Stop(const std::string& reason) {
+    stopped_ = true;
+    redial_.cancel();
+    StopClocks();
+    if (!connection_) return;
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
+      v1::DeviceEnvelope envelope;
+      envelope.mutable_detach()->set_slot(static_cast<std::uint32_t>(slot));
+      envelope.mutable_detach()->set_reason(reason);
+      Send(envelope);
+    }
+    connection_->Finish({}, reason);
+  }
+
+ private:
+  void WaitFor(const std::string& why) {
+    if (why != waits_for_) {
+      log::Info("waiting for footingd: " + why +
+                "; start it with: footingd --source stream:" + options_.to.Text());
+    }
+    waits_for_ = why;
+    redial_.expires_after(kRedial);
+    redial_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
+      const auto self = weak.lock();
+      if (self && !error && !self->stopped_) self->Dial();
+    });
+  }
+
+  void Attach(transport::Socket socket) {
+    waits_for_.clear();
+    transport::FramedLimits limits;
+    limits.max_in_bytes = kMaxEnvelopeBytes;
+    limits.max_out_bytes = kMaxEnvelopeBytes;
+    transport::FramedHandlers handlers;
+    handlers.on_frame = [this](std::string_view payload) { OnFrame(payload); };
+    handlers.on_close = [this](const std::string& reason) { OnClose(reason); };
+    connection_ = std::make_unique<transport::FramedConnection>(std::move(socket), limits,
+                                                                std::move(handlers));
+    connection_->Start();
+    log::Info("attached " + std::to_string(devices_.size()) + " simulated devices to " +
+              options_.to.Text());
+    start_ns_ = clock::MonotonicNs();
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
+      SendAttach(slot);
+      due_[slot] = std::chrono::steady_clock::now();
+      Schedule(slot);
+    }
+  }
+
+  void OnClose(const std::string& reason) {
+    connection_.reset();
+    StopClocks();
+    if (!stopped_) WaitFor(reason);
+  }
+
+  void StopClocks() {
+    for (auto& timer : clocks_) timer->cancel();
+  }
+
+  void SendAttach(std::size_t slot) {
+    const device_models::Identity& identity = devices_[slot].identity();
+    v1::DeviceEnvelope envelope;
+    v1::DeviceAttach& attach = *envelope.mutable_attach();
+    attach.set_slot(static_cast<std::uint32_t>(slot));
+    attach.set_bus(identity.bus);
+    attach.set_vendor(identity.vendor);
+    attach.set_product(identity.product);
+    attach.set_name(identity.name);
+    attach.set_serial(identity.serial);
+    attach.set_role(static_cast<v1::DeviceRole>(devices_[slot].role()));
+    Send(envelope);
+  }
+
+  void OnFrame(std::string_view payload) {
+    v1::DeviceEnvelope envelope;
+    if (!envelope.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) return;
+    if (!envelope.has_output() || envelope.output().slot() >= devices_.size()) return;
+    const std::string& bytes = envelope.output().report();
+    const std::size_t slot = envelope.output().slot();
+    const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    const std::int64_t now_ns = clock::MonotonicNs();
+    for (const auto& report : devices_[slot].HandleOutput({first, bytes.size()}, now_ns)) {
+      SendReport(slot, report, now_ns);
+    }
+    if (const std::string changes = devices_[slot].Changes(); !changes.empty()) log::Info(changes);
+  }
+
+  void Schedule(std::size_t slot) {
+    const double interval_ns = static_cast<double>(devices_[slot].NextIntervalNs());
+    due_[slot] +=
+        std::chrono::nanoseconds(static_cast<std::int64_t>(interval_ns / options_.rate_scale));
+    clocks_[slot]->expires_at(due_[slot]);
+    clocks_[slot]->async_wait([weak = weak_from_this(), slot](boost::system::error_code error) {
+      const auto self = weak.lock();
+      if (self && !error && self->connection_ && !self->stopped_) self->Deliver(slot);
+    });
+  }
+
+  void Deliver(std::size_t slot) {
+    const std::int64_t now_ns = clock::MonotonicNs();
+    const double t_s = NanosecondsToSeconds(now_ns - start_ns_);
+    if (options_.duration_s > 0 && t_s >= options_.duration_s) {
+      if (!ended_) on_end_();
+      ended_ = true;
+      return;
+    }
+    const StandIn::Delivery delivery = devices_[slot].Deliver(t_s, now_ns);
+    if (delivery.report) {
+      SendReport(slot, *delivery.report, start_ns_ + SecondsToNanoseconds(delivery.sampled_s));
+    }
+    Schedule(slot);
+  }
+
+  void SendReport(std::size_t slot, const device_models::Report& report, std::int64_t true_ns) {
+    v1::DeviceEnvelope envelope;
+    v1::DeviceInputReport& input = *envelope.mutable_input_report();
+    input.set_slot(static_cast<std::uint32_t>(slot));
+    input.set_sequence(++sequences_[slot]);
+    input.set_report(report.data(), report.size());
+    input.set_true_ns(true_ns);
+    Send(envelope);
+  }
+
+  void Send(const v1::DeviceEnvelope& envelope) {
+    if (connection_) connection_->Send(envelope.SerializeAsString());
+  }
+
+  boost::asio::io_context& io_;
+  const DialerOptions options_;
+  const std::function<void()> on_end_;
+  boost::asio::steady_timer redial_;
+  std::vector<StandIn> devices_;
+  std::vector<std::unique_ptr<boost::asio::steady_timer>> clocks_;
+  std::vector<std::chrono::steady_clock::time_point> due_;
+  std::vector<std::uint64_t> sequences_;
+  std::unique_ptr<transport::FramedConnection> connection_;
+  std::string waits_for_;
+  std::int64_t start_ns_ = 0;
+  bool stopped_ = false;
+  bool ended_ = false;
+};
+
+Dialer::Dialer(boost::asio::io_context& io, DialerOptions options, std::vector<StandIn> devices,
+               std::function<void()> on_end)
+    : implementation_(std::make_shared<Implementation>(io, std::move(options), std::move(devices),
+                                                       std::move(on_end))) {}
+
+Dialer::~Dialer() = default;
+
+void Dialer::Start() { implementation_->Dial(); }
+void Dialer::Stop(const std::string& reason) { implementation_->Stop(reason); }
+
+}  // namespace footing::stream_client

@@ -1,0 +1,79 @@
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+
+#include "clients/stream/dialer.h"
+#include "clients/stream/plan.h"
+#include "common/cli/cli.h"
+#include "common/log/log.h"
+
+namespace {
+
+using namespace footing;  // NOLINT: main is wiring
+
+int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
+  if (!plan) return cli::Report(plan.error());
+  if (plan->devices.empty())
+    return cli::Report(UsageError("name --left FILE, --right FILE or both"));
+  auto to = common.to.empty() ? Result<transport::Address>(transport::DefaultAddress("devices"))
+                              : transport::ParseAddress(common.to);
+  if (!to) return cli::Report(to.error());
+  boost::asio::io_context io(1);
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  std::unique_ptr<stream_client::Dialer> dialer;
+  const auto end = [&](const std::string& why) {
+    log::Info(why);
+    dialer->Stop(why);
+    signals.cancel();
+  };
+  dialer = std::make_unique<stream_client::Dialer>(
+      io, stream_client::DialerOptions{*to, common.rate_scale, plan->duration_s},
+      std::move(plan->devices), [&] { end("the motion has ended"); });
+  signals.async_wait([&](boost::system::error_code error, int) {
+    if (!error) end("stopped");
+  });
+  dialer->Start();
+  io.run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  auto app =
+      cli::NewApp("footing-stream",
+                  "Stands in for the devices, over a socket, at the level of raw HID reports.",
+                  "  footing-stream user --script demo --interface wrist\n"
+                  "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
+                  "  footing-stream corners --left board.csv --link poor --seconds 60\n");
+  stream_client::Common common;
+  bool quiet = false;
+  app->add_option("--to", common.to, "footingd's device socket: unix:PATH or tcp:HOST:PORT");
+  app->add_option("--seed", common.seed, "Of calibrations, noise and link");
+  app->add_option("--link", common.link, "ideal, good (default) or poor");
+  app->add_option("--rate-scale", common.rate_scale, "Devices' clocks against nominal")
+      ->check(CLI::Range(0.1, 10.0));
+  app->add_option("--seconds", common.seconds, "Ends after so long")->check(CLI::Range(0.0, 1e6));
+  app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
+  app->require_subcommand(1);
+  app->fallthrough();
+
+  std::string script = "demo", interface = "wrist", left, right;
+  double rate_hz = 100;
+  auto* user = app->add_subcommand("user", "A made user who swings two Wiimotes");
+  user->add_option("--script", script, "A carried script's name, or a JSON file");
+  user->add_option("--interface", interface, "wrist");
+  auto* accel = app->add_subcommand("accel", "Recorded accelerations, CSV ax,ay,az in m/s2");
+  auto* corners =
+      app->add_subcommand("corners", "Recorded corners, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg");
+  for (auto* recorded : {accel, corners}) {
+    recorded->add_option("--left", left, "File of the left device");
+    recorded->add_option("--right", right, "File of the right device");
+  }
+  accel->add_option("--rate-hz", rate_hz, "Rows a second")->required();
+  if (const auto code = cli::Parse(*app, argc, argv)) return *code;
+  log::Start("footing-stream", quiet);
+
+  if (*user) return Run(stream_client::PlanUser(script, interface, common), common);
+  if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
+  return Run(stream_client::PlanCorners(left, right, common), common);
+}

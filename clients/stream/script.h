@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/synthetic/hand_motion.h"
+
+namespace footing::stream_client {
+
+/// Names of the scripts that footing-stream carries.
+std::vector<std::string> ScriptNames();
+
+/// The carried script of that name; a usage error that lists the names when there is none.
+Result<std::vector<synthetic::Segment>> ScriptNamed(const std::string& name);
+
+/// A script from JSON: a list of objects {duration_s, frequency_hz, phase_deg, amplitude_mps2,
+/// roll_deg, pitch_deg}, all but duration_s optional. `origin` names it in errors, which say which
+/// stretch and what its values may be.
+Result<std::vector<synthetic::Segment>> ParseScript(const std::string& text,
+                                                    const std::string& origin);
+
+}  // namespace footing::stream_client

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/simulation/biped/parameters.h"
+#include "daemon/simulation/physics/world.h"
+
+namespace footing::biped {
+
+/// The whole world as MJCF text: options, `ground` (geoms of the world body), the biped.
+/// Contact: the feet's friction holds whatever ground they touch; solref 6 ms, critically damped.
+std::string WriteMjcf(const BipedParameters& parameters, const std::string& ground,
+                      double step_s);
+
+/// The names WriteMjcf gives.
+physics::WorldNames Names();
+
+}  // namespace footing::biped

@@ -1,0 +1,100 @@
+#include "daemon/simulation/engine/engine.h"
+
+#include <cmath>
+
+#include "daemon/simulation/biped/mjcf.h"
+#include "daemon/simulation/biped/skeleton.h"
+#include "daemon/simulation/engine/parts.h"
+#include "daemon/simulation/gait/controller.h"
+#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/terrain/track.h"
+
+namespace footing::engine {
+
+GaitEngine::GaitEngine(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+GaitEngine::GaitEngine(GaitEngine&&) noexcept = default;
+GaitEngine& GaitEngine::operator=(GaitEngine&&) noexcept = default;
+GaitEngine::~GaitEngine() = default;
+
+Result<GaitEngine> GaitEngine::Create(const EngineTexts& texts, const EngineConfig& config) {
+  if (!(config.step_s > 0 && config.step_s <= 0.002)) {
+    return UsageError("step_s is " + std::to_string(config.step_s) +
+                      ", allowed is more than 0 and up to 0.002");
+  }
+  Result<biped::BipedParameters> biped = biped::ParseBiped(texts.biped, kBipedFile);
+  if (!biped) return biped.error();
+  Result<stream::Track> track = terrain::ParseTrack(texts.track, "the track");
+  if (!track) return track.error();
+  Result<mapping::WristMapping> mapping =
+      mapping::ParseWristMapping(texts.wrist_mapping, kWristMappingFile);
+  if (!mapping) return mapping.error();
+  Result<physics::World> world = physics::World::FromMjcf(
+      biped::WriteMjcf(*biped, terrain::GroundMjcf(*track), config.step_s), biped::Names());
+  if (!world) return world.error();
+
+  auto parts = std::make_unique<Parts>(Parts{.config = config,
+                                             .biped = *biped,
+                                             .gains = {},
+                                             .track = std::move(*track),
+                                             .skeleton = biped::DescribeSkeleton(*biped),
+                                             .sees_ground = false,
+                                             .world = std::move(*world),
+                                             .state = {.world = {},
+                                                       .gait = {},
+                                                       .wrist = mapping::WristInterface(*mapping),
+                                                       .command = {},
+                                                       .inputs = {},
+                                                       .response = {}},
+                                             .body = {},
+                                             .output = {}});
+  parts->sees_ground = !terrain::IsLevel(parts->track);
+  const stream::TrackSegment& start = parts->track.segments.front();
+  parts->Stand(start.start_m, start.heading_rad);
+  return GaitEngine(std::move(parts));
+}
+
+void GaitEngine::Advance(const EngineInputs& inputs) {
+  Parts& p = *parts_;
+  p.output.event_count = 0;
+  p.output_stale = true;
+  const stream::Gait gait_before = p.state.gait.gait;
+  p.TakeFeatures(inputs);
+  p.TakePush(inputs);
+  p.Command(inputs);
+  if (p.state.inputs.put_back_number != inputs.put_back_number) {
+    p.state.inputs.put_back_number = inputs.put_back_number;
+    if (!p.state.fallen) ++p.state.falls;
+    p.PutBack("asked for");
+  } else if (p.state.fallen && p.TimeS() - p.state.fallen_time_s >= p.config.fall_shown_s) {
+    p.PutBack("after a fall");
+  }
+  p.StepWorld();
+  p.NoteGait(gait_before);
+  p.NoteFall();
+}
+
+const EngineOutput& GaitEngine::Output() {
+  if (parts_->output_stale) parts_->FillOutput();
+  parts_->output_stale = false;
+  return parts_->output;
+}
+
+const stream::Skeleton& GaitEngine::skeleton() const { return parts_->skeleton; }
+const stream::Track& GaitEngine::track() const { return parts_->track; }
+
+EngineState GaitEngine::Save() const {
+  EngineState state = parts_->state;
+  state.world = parts_->world.Save();
+  return state;
+}
+
+void GaitEngine::Restore(const EngineState& state) {
+  Parts& p = *parts_;
+  p.state = state;
+  p.world.Restore(state.world);
+  p.body = biped::Read(p.biped, p.world.Observe(), p.TimeS());
+  p.output.event_count = 0;
+  p.output_stale = true;
+}
+
+}  // namespace footing::engine

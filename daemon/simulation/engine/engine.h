@@ -1,0 +1,124 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/result/result.h"
+#include "common/stream/character.h"
+#include "daemon/simulation/biped/command.h"
+#include "daemon/simulation/mapping/wrist_features.h"
+
+/// The gait engine: received features in, a walking biped out, one fixed step at a time.
+namespace footing::engine {
+
+/// Texts of the data files; the constants name them under daemon/simulation/data.
+struct EngineTexts {
+  std::string biped;          ///< kBipedFile
+  std::string track;          ///< "tracks/NAME.json"
+  std::string wrist_mapping;  ///< kWristMappingFile
+};
+inline constexpr const char* kBipedFile = "biped.json";
+inline constexpr const char* kStraightTrackFile = "tracks/straight.json";
+inline constexpr const char* kWristMappingFile = "wrist_mapping.json";
+
+struct EngineConfig {
+  double step_s = 0.001;            ///< Of physics and control, (0, 0.002].
+  double fall_shown_s = 0.7;        ///< From a fall to the put-back.
+  double put_back_distance_m = 3;   ///< Along the track's centre line, backwards.
+  double features_timeout_s = 0.5;  ///< Without new features: stepping in place.
+};
+
+/// What the world outside wants, as of one step. Fixed size. Numbers count up: a push, a put-back
+/// or features are new when their number differs from the last step's, so the same inputs may be
+/// given again and again, and nothing is carried out twice.
+struct EngineInputs {
+  std::uint64_t features_number = 0;  ///< 0: none received so far.
+  mapping::WristFeatures features;
+  bool direct = false;  ///< Follow direct_command in place of the features.
+  biped::GaitCommand direct_command;
+  std::uint64_t push_number = 0;
+  Eigen::Vector2d push_impulse_W_ns = Eigen::Vector2d::Zero();  ///< On the body's COM, over 0.1 s.
+  std::uint64_t put_back_number = 0;
+};
+
+enum class EventKind {
+  kFall,
+  kPutBack,
+  kGaitCommanded,  ///< Another gait is commanded than before.
+  kGaitChanged,    ///< Another gait's controller runs than before.
+  kGaitTakenOver,  ///< The commanded gait's controller runs: the command's wait for contact is over.
+  kStreamLost,     ///< No new features for longer than the timeout.
+  kStreamBack,
+};
+
+struct EngineEvent {
+  EventKind kind = EventKind::kFall;
+  stream::Gait from = stream::Gait::kUnspecified;
+  stream::Gait to = stream::Gait::kUnspecified;
+  const char* text = "";  ///< Of static storage; why it fell or was put back.
+};
+
+inline constexpr int kLinkCount = 5;  ///< body, left hip, left knee, right hip, right knee.
+inline constexpr int kContactCount = 2;
+inline constexpr int kMaxEvents = 8;
+
+struct EngineOutput {
+  std::uint64_t step = 0;
+  double time_s = 0;  ///< step * step_s.
+  std::array<stream::LinkPose, kLinkCount> links;
+  std::array<stream::Contact, kContactCount> contacts;
+  Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_WC_mps = Eigen::Vector3d::Zero();
+  /// Generalised forces of this step: yaw, roll, pitch (N m) and length (N) of the left leg, then
+  /// of the right one; and the push on the body.
+  std::array<double, 8> joint_efforts{};
+  Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
+  stream::GaitState gait;
+  bool simulated_input = false;
+  double root_force_max_n = 0;   ///< Largest hidden force on the root so far; must stay 0.
+  std::uint64_t state_hash = 0;  ///< FNV-1a of the physics state: the same binary and machine only.
+  /// For the stages of the response: the step in which the commanded gait last changed, the
+  /// features it came from, and the step in which its controller took over (0: not yet).
+  std::uint64_t commanded_step = 0;
+  std::uint64_t commanded_features_number = 0;
+  std::uint64_t taken_over_step = 0;
+  std::array<EngineEvent, kMaxEvents> events;  ///< Of this step alone.
+  int event_count = 0;
+};
+
+struct EngineState;
+
+/// Physics, gait controllers, wrist mapping, and what happens at a fall.
+///
+/// One thread at a time. After Create nothing allocates, locks or logs.
+class GaitEngine {
+ public:
+  /// Fails with one line that names the file and key when a text does not parse.
+  static Result<GaitEngine> Create(const EngineTexts& texts, const EngineConfig& config = {});
+  GaitEngine(GaitEngine&&) noexcept;
+  GaitEngine& operator=(GaitEngine&&) noexcept;
+  ~GaitEngine();
+
+  /// One step of config.step_s.
+  void Advance(const EngineInputs& inputs);
+  /// As of the last step; valid until the next Advance or Restore.
+  const EngineOutput& Output();
+
+  const stream::Skeleton& skeleton() const;
+  const stream::Track& track() const;
+
+  /// Everything that changes with time, as a value (state.h); Restore brings the engine back to
+  /// that step.
+  EngineState Save() const;
+  void Restore(const EngineState& state);
+
+ private:
+  struct Parts;
+  explicit GaitEngine(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace footing::engine

@@ -1,0 +1,153 @@
+#include "daemon/simulation/engine/parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/simulation/engine/failure.h"
+#include "daemon/simulation/gait/controller.h"
+#include "daemon/simulation/gait/limits.h"
+#include "daemon/simulation/terrain/track.h"
+
+namespace footing::engine {
+namespace {
+
+constexpr double kPushDurationS = 0.1;
+constexpr double kLargestPushNs = 1000;
+
+}  // namespace
+
+void GaitEngine::Parts::AddEvent(const EngineEvent& event) {
+  FOOTING_CHECK(output.event_count < kMaxEvents);
+  output.events[static_cast<std::size_t>(output.event_count++)] = event;
+}
+
+void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) {
+  const double leg_m = gait::StandingLength(biped, gains);
+  const double height_m = biped.foot_radius_m + leg_m + biped.hip_below_body_com_m;
+  std::array<double, physics::kJoints> joints{};
+  joints[3] = joints[7] = leg_m - biped.leg_length_m;
+  world.Reset(p_W_m + Eigen::Vector3d(0, 0, height_m), heading_rad, joints);
+  const std::uint64_t steps = state.gait.steps;
+  state.gait = gait::Standing(heading_rad, TimeS());
+  state.gait.steps = steps;
+  body = biped::Read(biped, world.Observe(), TimeS());
+}
+
+void GaitEngine::Parts::PutBack(const char* why) {
+  const terrain::TrackPlace place = terrain::Locate(track, body.p_WB.head<2>());
+  const terrain::CentrePoint point =
+      terrain::CentreBehind(track, place, config.put_back_distance_m);
+  state.fallen = false;
+  state.inputs.push_steps_left = 0;
+  Stand(point.p_W_m, point.heading_rad);
+  AddEvent({.kind = EventKind::kPutBack, .text = why});
+}
+
+void GaitEngine::Parts::TakeFeatures(const EngineInputs& inputs) {
+  InputMemory& taken = state.inputs;
+  const bool fresh = taken.features_number != inputs.features_number;
+  if (fresh) {
+    taken.features_number = inputs.features_number;
+    taken.features_time_s = TimeS();
+    if (!taken.fed) AddEvent({.kind = EventKind::kStreamBack});
+    taken.fed = true;
+    state.simulated_input = inputs.features.simulated;
+  } else if (taken.fed && TimeS() - taken.features_time_s > config.features_timeout_s) {
+    taken.fed = false;
+    AddEvent({.kind = EventKind::kStreamLost});
+  }
+}
+
+void GaitEngine::Parts::TakePush(const EngineInputs& inputs) {
+  InputMemory& taken = state.inputs;
+  if (taken.push_number == inputs.push_number) return;
+  taken.push_number = inputs.push_number;
+  const Eigen::Vector2d& impulse_ns = inputs.push_impulse_W_ns;
+  if (!impulse_ns.allFinite() || impulse_ns.norm() > kLargestPushNs) return;
+  taken.push_steps_left = static_cast<int>(std::lround(kPushDurationS / config.step_s));
+  const double duration_s = taken.push_steps_left * config.step_s;
+  taken.push_W_n << impulse_ns / duration_s, 0;
+}
+
+void GaitEngine::Parts::Command(const EngineInputs& inputs) {
+  const stream::Gait before = state.command.gait;
+  biped::GaitCommand command =
+      state.inputs.fed ? state.wrist.Advance(TimeS(), inputs.features) : state.wrist.Rest();
+  if (inputs.direct) command = inputs.direct_command;
+  state.command = gait::Limited(command);
+  if (state.command.gait == before) return;
+  state.response = {.waiting = true,
+                    .commanded_step = state.step + 1,
+                    .commanded_features_number = inputs.features_number};
+  AddEvent({.kind = EventKind::kGaitCommanded, .from = before, .to = state.command.gait});
+}
+
+void GaitEngine::Parts::StepWorld() {
+  output.joint_efforts = {};
+  if (!state.fallen) {  // A fallen character is limp.
+    output.joint_efforts =
+        gait::Advance(body, biped, gains, state.command, sees_ground ? &track : nullptr,
+                      config.step_s, state.gait);
+  }
+  output.push_W_n.setZero();
+  if (state.inputs.push_steps_left > 0) {
+    --state.inputs.push_steps_left;
+    output.push_W_n = state.inputs.push_W_n;
+  }
+  const Eigen::Vector3d p_WC = body.p_WC;
+  world.Step(output.joint_efforts, output.push_W_n);
+  ++state.step;
+  body = biped::Read(biped, world.Observe(), TimeS());
+  const double c = std::cos(state.gait.heading_rad), s = std::sin(state.gait.heading_rad);
+  const Eigen::Vector3d moved = body.p_WC - p_WC;
+  state.distance_m += c * moved.x() + s * moved.y();
+}
+
+void GaitEngine::Parts::NoteGait(stream::Gait before) {
+  const stream::Gait now = state.gait.gait;
+  if (now != before) AddEvent({.kind = EventKind::kGaitChanged, .from = before, .to = now});
+  if (state.response.waiting && now == state.command.gait) {
+    state.response.waiting = false;
+    state.response.taken_over_step = state.step;
+    AddEvent({.kind = EventKind::kGaitTakenOver, .from = before, .to = now});
+  }
+}
+
+void GaitEngine::Parts::NoteFall() {
+  if (state.fallen) return;
+  const char* why = WhyFallen(track, body, world.Observe().other_contact);
+  if (why == nullptr) return;
+  state.fallen = true;
+  state.fallen_time_s = TimeS();
+  ++state.falls;
+  AddEvent({.kind = EventKind::kFall, .from = state.gait.gait, .text = why});
+}
+
+void GaitEngine::Parts::FillOutput() {
+  output.step = state.step;
+  output.time_s = TimeS();
+  for (int i = 0; i < kLinkCount; ++i) {
+    stream::LinkPose& pose = output.links[static_cast<std::size_t>(i)];
+    world.LinkPose(i, pose.position_m, pose.orientation);
+  }
+  for (std::size_t i = 0; i < kContactCount; ++i) {
+    const biped::LegState& leg = body.legs[i];
+    output.contacts[i] = {.touching = leg.touching,
+                          .position_m = leg.p_WF - Eigen::Vector3d(0, 0, biped.foot_radius_m),
+                          .normal_force_n = leg.normal_force_n};
+  }
+  output.p_WC_m = body.p_WC;
+  output.v_WC_mps = body.v_WC;
+  output.gait = gait::Describe(body, state.command, state.gait);
+  output.gait.falls = state.falls;
+  output.gait.distance_m = state.distance_m;
+  output.gait.commanded_by_stream = state.inputs.fed;
+  output.simulated_input = state.simulated_input;
+  output.root_force_max_n = world.root_force_max_n();
+  output.state_hash = world.StateHash();
+  output.commanded_step = state.response.commanded_step;
+  output.commanded_features_number = state.response.commanded_features_number;
+  output.taken_over_step = state.response.taken_over_step;
+}
+
+}  // namespace footing::engine

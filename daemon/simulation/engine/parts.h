@@ -1,0 +1,40 @@
+#pragma once
+
+#include "daemon/simulation/biped/body_state.h"
+#include "daemon/simulation/engine/state.h"
+#include "daemon/simulation/gait/gains.h"
+
+namespace footing::engine {
+
+/// What a GaitEngine owns; its methods are the parts of one step, in their order.
+struct GaitEngine::Parts {
+  EngineConfig config;
+  biped::BipedParameters biped;
+  gait::Gains gains;
+  stream::Track track;
+  stream::Skeleton skeleton;
+  bool sees_ground = false;  ///< The track has slopes, steps or pits.
+  physics::World world;
+
+  EngineState state;
+  biped::BodyState body;
+  EngineOutput output;
+  bool output_stale = true;
+
+  double TimeS() const { return static_cast<double>(state.step) * config.step_s; }
+  void AddEvent(const EngineEvent& event);
+
+  /// Stands the character on a point of the track, feet under the hips.
+  void Stand(const Eigen::Vector3d& p_W_m, double heading_rad);
+  void PutBack(const char* why);
+
+  void TakeFeatures(const EngineInputs& inputs);
+  void TakePush(const EngineInputs& inputs);
+  void Command(const EngineInputs& inputs);
+  void StepWorld();
+  void NoteGait(stream::Gait before);
+  void NoteFall();
+  void FillOutput();
+};
+
+}  // namespace footing::engine

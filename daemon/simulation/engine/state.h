@@ -1,0 +1,45 @@
+#pragma once
+
+#include "daemon/simulation/engine/engine.h"
+#include "daemon/simulation/gait/memory.h"
+#include "daemon/simulation/mapping/wrist.h"
+#include "daemon/simulation/physics/world.h"
+
+namespace footing::engine {
+
+/// What the engine has taken of its inputs so far.
+struct InputMemory {
+  std::uint64_t features_number = 0;
+  std::uint64_t push_number = 0;
+  std::uint64_t put_back_number = 0;
+  double features_time_s = 0;  ///< When features last were new.
+  bool fed = false;            ///< New features arrived within the timeout.
+  Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
+  int push_steps_left = 0;
+};
+
+/// From a command to its controller.
+struct ResponseMemory {
+  bool waiting = false;
+  std::uint64_t commanded_step = 0;
+  std::uint64_t commanded_features_number = 0;
+  std::uint64_t taken_over_step = 0;
+};
+
+/// Everything in a GaitEngine that changes with time.
+struct EngineState {
+  physics::WorldState world;
+  gait::GaitMemory gait;
+  mapping::WristInterface wrist;
+  biped::GaitCommand command;
+  InputMemory inputs;
+  ResponseMemory response;
+  std::uint64_t step = 0;
+  std::uint64_t falls = 0;
+  double distance_m = 0;
+  bool fallen = false;
+  double fallen_time_s = 0;
+  bool simulated_input = false;
+};
+
+}  // namespace footing::engine

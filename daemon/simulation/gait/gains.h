@@ -1,0 +1,112 @@
+#pragma once
+
+/// Every number of the controllers, with its unit in its name. One set serves a gait's whole range
+/// of speeds; where the paper interpolates between a slow and a fast set, equation (2) here carries
+/// a term in the desired speed. How they were found and what they reach: docs/gait.md.
+namespace footing::gait {
+
+/// PD servos of the joints, section 5: torque = kp (desired - actual) - kd rate.
+struct ServoGains {
+  double hip_stiffness_nm_per_rad = 350;
+  double hip_damping_nms_per_rad = 22;
+  double hip_yaw_stiffness_nm_per_rad = 20;
+  double hip_yaw_damping_nms_per_rad = 0.8;
+  double leg_stiffness_n_per_m = 4000;
+  double leg_damping_ns_per_m = 80;
+  double hip_limit_nm = 200;
+  double leg_limit_n = 1500;
+  double free_hip_damping_nms_per_rad = 2;  ///< Stance leg while its foot is off the ground.
+};
+
+/// PD servo of the body's attitude, by the hips of the supporting legs. Overdamped: the rate left
+/// at lift-off, not the angle, is what a flight makes worse.
+struct AttitudeGains {
+  double roll_stiffness_nm_per_rad = 150;
+  double roll_damping_nms_per_rad = 60;
+  double pitch_stiffness_nm_per_rad = 400;
+  double pitch_damping_nms_per_rad = 80;
+  double hop_yaw_stiffness_nm_per_rad = 40;
+  double hop_yaw_damping_nms_per_rad = 45;
+  double walk_yaw_stiffness_nm_per_rad = 100;
+  double walk_yaw_damping_nms_per_rad = 15;
+  double jump_lean_rad_per_mps = -0.14;  ///< Pitch set-point: both legs swinging forward
+                                         ///< together pitch the body forward.
+  double friction_share = 0.7;           ///< Of the friction cone, for hip torque.
+  double turning_friction_share = 0.8;   ///< Of the torsional friction, for torque along the leg.
+  double turning_limit_nm = 8;           ///< By fore-aft forces of both feet.
+};
+
+struct WalkingGains {
+  double swing_time_s = 0.32;  ///< Rise and Fall.
+  double double_support_time_s = 0.05;
+  double hip_height_m = 0.93;  ///< Over the supporting foot.
+  double leg_stiffness_n_per_m = 8000;
+  double leg_damping_ns_per_m = 250;
+  double carried_mass_kg = 11.5;  ///< Feed-forward weight on the supporting leg.
+  double leg_length_min_m = 0.62;
+  double leg_length_max_m = 1.08;
+  double step_width_m = 0.20;
+  double feet_cross_m = 0.10;  ///< At most, to catch a push.
+  double step_length_limit_m = 0.80;
+  double clearance_m = 0.09;
+  double speed_integral_s = 0.03;  ///< m of foothold a step for each m/s of error.
+  double integral_min_m = -0.12;
+  double integral_max_m = 0.15;
+  double hurry_rate = 0.5;         ///< Fraction by which the swing clock may gain.
+  double hurry_beyond_m = 0.75;    ///< Foothold fore and aft needed beyond this hurries.
+  double support_rise_mps = 0.35;  ///< The hip follows a change of ground at this rate.
+  double acceleration_mps2 = 1.5;
+};
+
+/// Running, and in brackets jumping.
+struct HoppingGains {
+  double run_leg_stiffness_n_per_m = 3500;
+  double run_leg_damping_ns_per_m = 25;
+  double jump_leg_stiffness_n_per_m = 2000;  ///< Each leg.
+  double jump_leg_damping_ns_per_m = 15;
+  double touchdown_length_m = 0.95;
+  double run_flight_length_m = 0.82;
+  double jump_flight_length_m = 0.62;
+  double idle_length_m = 0.72;
+  double lengthening_time_s = 0.12;  ///< Jump: from the flight length to the touchdown length.
+  double run_lift_off_mps = 1.3;     ///< Vertical.
+  double velocity_gain_s = 0.06;     ///< k_R of equation (2).
+  double faster_limit_mps = 1.5;     ///< v - v_d is clamped to [-slower, faster] fore and aft.
+  double slower_limit_mps = 0.6;
+  double speed_gain_s = -0.012;  ///< Foothold by desired speed: the slow and the fast set in one.
+  double run_foot_spacing_m = 0.03;  ///< Half.
+  double foothold_limit_m = 0.71;
+  double foothold_side_limit_m = 0.4;
+  double run_speed_integral_s = 0.015;
+  double run_integral_limit_m = 0.08;
+  double jump_integral_limit_m = 0.12;
+  double first_support_time_s = 0.2;  ///< T of equation (2) before one was measured.
+  double braking_mps2 = 4;
+};
+
+/// Figure 9: how energy is added and taken out between the gaits.
+struct TransitionGains {
+  double thrust_from_swing = 0.55;     ///< Of the swing: from here Fall may become a thrust.
+  double thrust_to_run_mps = 1.17;     ///< Vertical lift-off speed out of walking.
+  double thrust_to_jump_mps = 1.0;
+  double run_to_walk_mps = 1.4;        ///< Run slows to this, ...
+  double run_to_walk_margin_mps = 0.35;  ///< ... and lands into walking up to this above it.
+  double run_landing_stiffness_n_per_m = 1800;
+  double run_landing_damping_ns_per_m = 420;
+  double run_to_jump_mps = 3.2;        ///< Up to this the preparatory step may be taken.
+  double preparation_gain_s = 0.14;    ///< Sideways k_R of the preparatory step.
+  double jump_speed_before_landing_mps = 1.0;
+  double jump_to_step_mps = 1.3;       ///< Up to this a jump may land into stepping.
+  double jump_landing_stiffness_n_per_m = 900;
+  double jump_landing_damping_ns_per_m = 260;
+};
+
+struct Gains {
+  ServoGains servo;
+  AttitudeGains attitude;
+  WalkingGains walking;
+  HoppingGains hopping;
+  TransitionGains transition;
+};
+
+}  // namespace footing::gait

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "daemon/simulation/gait/phase.h"
+
+namespace footing::gait {
+
+/// What the servos remember of the last step, for the rates of their targets.
+struct ServoMemory {
+  std::array<bool, 2> placed{};  ///< The leg's hips were servoed in the last step.
+  std::array<std::array<double, 4>, 2> joint_target{};
+  std::array<bool, 2> followed{};
+  std::array<double, 2> length_target_m{};
+};
+
+/// Foothold corrections learned a step at a time, m; only at settled speed.
+struct SpeedIntegrators {
+  double walk_m = 0;
+  double run_m = 0;
+  double jump_m = 0;
+};
+
+/// The last touchdown, for the speed over one step.
+struct LastStep {
+  bool known = false;
+  double time_s = 0;
+  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();
+  stream::Gait gait = stream::Gait::kUnspecified;
+  int steps_in_gait = 0;
+};
+
+/// All that the controllers remember between steps: a plain value.
+struct GaitMemory {
+  stream::Gait gait = stream::Gait::kStep;
+  WalkingPhase walking = WalkingPhase::kDoubleSupport;
+  RunningPhase running = RunningPhase::kUpwardFlight;
+  int support_leg = 0;  ///< The one that carries, or in flight the one to land on.
+  double phase_start_s = 0;
+
+  double heading_rad = 0;
+  double desired_speed_mps = 0;  ///< v_d, slewed towards target_speed_mps.
+  double target_speed_mps = 0;
+
+  bool thrusting = false;       ///< In Fall: the supporting leg extends for a flight phase.
+  bool absorbing = false;       ///< In Compression: landing into walking or stepping.
+  bool preparing_jump = false;  ///< Running's last step before a jump.
+  bool after_jump = false;      ///< Stepping that came from a jump.
+
+  Eigen::Vector3d swing_start_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d foothold_W_m = Eigen::Vector3d::Zero();
+  double support_height_m = 0;  ///< Ground's height that the hip goes by, foot ball's centre.
+
+  double support_time_s = 0.2;  ///< T of equation (2), low-passed.
+  double touchdown_time_s = 0;
+  double energy_loss_j = 15;    ///< A hop loses this; learned from the lift-off speed.
+  double thrust_length_m = 0.95;
+  int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
+
+  SpeedIntegrators integrators;
+  LastStep last_step;
+  std::uint64_t steps = 0;
+  ServoMemory servo;
+};
+
+}  // namespace footing::gait

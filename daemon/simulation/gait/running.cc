@@ -1,0 +1,152 @@
+#include "daemon/simulation/gait/running.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/touchdown.h"
+#include "daemon/simulation/gait/transition.h"
+
+namespace footing::gait {
+namespace {
+
+using stream::Gait;
+
+/// Times below which a cue is not believed, s: feet chatter at lift-off and touchdown.
+constexpr double kEarliestLandingS = 0.08;
+constexpr double kShortestCompressionS = 0.03;
+constexpr double kShortestExtensionS = 0.02;
+constexpr double kShortestLandingS = 0.04;
+constexpr double kShortestJumpLandingS = 0.05;
+constexpr int kLiftOffSteps = 2;
+/// Rate of the leg's length, m/s, at which it counts as at its shortest, or as landed.
+constexpr double kShortestRateMps = -0.02;
+constexpr double kLandedRateMps = -0.15;
+/// An extension that stalls (too long, too slow) is given more length.
+constexpr double kStalledAfterS = 0.10;
+constexpr double kStalledRateMps = 0.25;
+constexpr double kStalledGrowthMps = 0.8;
+constexpr double kLowestJumpM = 0.02;
+
+/// The stance leg, or both as one.
+struct VirtualLeg {
+  double length_m, rate_mps;
+  bool touching;
+};
+
+VirtualLeg StanceLeg(const Context& context, const GaitMemory& memory) {
+  const auto& legs = context.body.legs;
+  if (memory.gait == Gait::kJump) {
+    return {(legs[0].length_m + legs[1].length_m) / 2,
+            (legs[0].length_rate_mps + legs[1].length_rate_mps) / 2,
+            legs[0].touching || legs[1].touching};
+  }
+  const biped::LegState& leg = legs[memory.support_leg];
+  return {leg.length_m, leg.length_rate_mps, leg.touching};
+}
+
+double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
+  if (memory.gait != Gait::kJump) return context.gains.hopping.run_lift_off_mps;
+  return std::sqrt(2 * kGravityMps2 * std::max(kLowestJumpM, context.goal.height_m));
+}
+
+/// The length the stance leg's spring is set to at the bottom, so that it stores what lift-off
+/// needs: speed, height up to the touchdown length, and what the last hops lost.
+double ThrustLength(const Context& context, const GaitMemory& memory) {
+  const HoppingGains& gains = context.gains.hopping;
+  const double length_m = StanceLeg(context, memory).length_m;
+  const double mass_kg = context.biped.mass_kg();
+  const double speed_mps = LiftOffSpeed(context, memory);
+  const double rise_m = std::max(0.0, gains.touchdown_length_m - length_m) * 0.95;
+  const double energy_j = std::max(0.0, mass_kg * speed_mps * speed_mps / 2 +
+                                            mass_kg * kGravityMps2 * rise_m +
+                                            memory.energy_loss_j);
+  const double stiffness = memory.gait == Gait::kJump ? 2 * gains.jump_leg_stiffness_n_per_m
+                                                      : gains.run_leg_stiffness_n_per_m;
+  return std::clamp(length_m + std::sqrt(2 * energy_j / stiffness),
+                    gains.touchdown_length_m - 0.05, gains.touchdown_length_m + 0.25);
+}
+
+void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
+  const double wanted_mps = LiftOffSpeed(context, memory);
+  const double reached_mps = context.body.v_WC.z();
+  const double missing_j = context.biped.mass_kg() / 2 *
+                           (wanted_mps * wanted_mps - reached_mps * std::fabs(reached_mps));
+  memory.energy_loss_j = std::clamp(memory.energy_loss_j + 0.3 * missing_j, -40.0, 120.0);
+}
+
+/// Counts steps that look like lift-off: the leg at its rest length (a light foot may well stay on
+/// the ground then) or off the ground.
+void WatchExtension(const Context& context, GaitMemory& memory) {
+  const VirtualLeg leg = StanceLeg(context, memory);
+  const double time_s = context.TimeIn(memory);
+  const bool off = leg.length_m >= memory.thrust_length_m || !leg.touching;
+  if (!off && time_s > kStalledAfterS && leg.rate_mps < kStalledRateMps) {
+    memory.thrust_length_m = std::min(memory.thrust_length_m + kStalledGrowthMps * context.step_s,
+                                      context.gains.hopping.touchdown_length_m + 0.2);
+  }
+  memory.off_steps = off && time_s > kShortestExtensionS ? memory.off_steps + 1 : 0;
+}
+
+bool LandingDone(const Context& context, const GaitMemory& memory) {
+  const double shortest_s =
+      memory.gait == Gait::kJump ? kShortestJumpLandingS : kShortestLandingS;
+  return memory.absorbing && memory.running == RunningPhase::kCompression &&
+         context.TimeIn(memory) > shortest_s &&
+         StanceLeg(context, memory).rate_mps > kLandedRateMps;
+}
+
+void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
+  switch (phase) {
+    case RunningPhase::kCompression:
+      memory.touchdown_time_s = context.body.time_s;
+      CountStep(context, memory);
+      memory.absorbing = MayAbsorb(context, memory);
+      break;
+    case RunningPhase::kExtension:
+      memory.thrust_length_m = ThrustLength(context, memory);
+      memory.off_steps = 0;
+      break;
+    case RunningPhase::kUpwardFlight:
+      LearnEnergyLoss(context, memory);
+      LiftOff(context, memory);
+      break;
+    case RunningPhase::kDownwardFlight:
+      break;
+  }
+  memory.running = phase;
+  memory.phase_start_s = context.body.time_s;
+}
+
+}  // namespace
+
+RunningCues SenseRunning(const Context& context, const GaitMemory& memory) {
+  const VirtualLeg leg = StanceLeg(context, memory);
+  const double time_s = context.TimeIn(memory);
+  return {.falling = context.body.v_WC.z() < 0,
+          .landed_early = leg.touching && time_s > kEarliestLandingS,
+          .landed = leg.touching,
+          .leg_shortest = !memory.absorbing && time_s > kShortestCompressionS &&
+                          leg.rate_mps > kShortestRateMps,
+          .lifted_off = memory.off_steps >= kLiftOffSteps};
+}
+
+Targets AdvanceRunning(const Context& context, GaitMemory& memory) {
+  if (!memory.thrusting && context.goal.gait != Gait::kJump) memory.preparing_jump = false;
+  if (memory.running == RunningPhase::kExtension) WatchExtension(context, memory);
+  const RunningPhase next = Next(memory.running, SenseRunning(context, memory));
+  if (next != memory.running) Enter(next, context, memory);
+  if (LandingDone(context, memory)) {
+    LandIntoWalking(context, memory);
+    return {};
+  }
+  const bool flying = memory.running == RunningPhase::kUpwardFlight ||
+                      memory.running == RunningPhase::kDownwardFlight;
+  if (flying) {
+    memory.foothold_W_m =
+        context.body.p_WC + HoppingFoothold(context, memory, memory.support_leg);
+  }
+  return RunningTargets(context, memory);
+}
+
+}  // namespace footing::gait

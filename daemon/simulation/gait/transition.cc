@@ -1,0 +1,140 @@
+#include "daemon/simulation/gait/transition.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/simulation/gait/frames.h"
+
+namespace footing::gait {
+namespace {
+
+using stream::Gait;
+
+/// Thrust out of walking: the energy that the first, unmeasured lift-off is expected to lose.
+constexpr double kThrustLossJ = 8;
+constexpr double kFirstLossJ = 10;
+/// A thrust out of walking counts as a support that began this long ago.
+constexpr double kThrustSupportS = 0.1;
+
+bool Flies(Gait gait) { return IsHopping(gait); }
+
+double SpeedAlongHeading(const Context& context, const GaitMemory& memory) {
+  return ToHeading(memory.heading_rad, context.body.v_WC).x();
+}
+
+/// Smoothed duration of the supports: T of equation (2).
+void MeasureSupport(double duration_s, GaitMemory& memory) {
+  memory.support_time_s =
+      0.7 * memory.support_time_s + 0.3 * std::clamp(duration_s, 0.1, 0.45);
+}
+
+}  // namespace
+
+bool IsDirect(Gait from, Gait to) { return !(from == Gait::kJump && to == Gait::kRun); }
+
+biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,
+                        const TransitionGains& gains) {
+  biped::GaitCommand goal = command;
+  if (goal.gait == Gait::kUnspecified) goal.gait = Gait::kStep;
+  if (goal.gait == Gait::kStep) goal.speed_mps = 0;
+  if (!IsDirect(memory.gait, goal.gait)) {
+    goal.gait = Gait::kWalk;
+    goal.speed_mps = std::min(goal.speed_mps, gains.jump_speed_before_landing_mps);
+  }
+  return goal;
+}
+
+void SlewSpeed(const Context& context, GaitMemory& memory) {
+  const TransitionGains& limits = context.gains.transition;
+  const bool to_ground = !Flies(context.goal.gait);
+  const bool flying = Flies(memory.gait) || memory.thrusting;
+  double target_mps = context.goal.speed_mps;
+  if (to_ground && memory.gait == Gait::kJump) {
+    target_mps = std::min(target_mps, limits.jump_speed_before_landing_mps);
+  } else if (to_ground && flying) {
+    target_mps = std::min(target_mps, limits.run_to_walk_mps);
+  }
+  memory.target_speed_mps = target_mps;
+  const double faster = context.gains.walking.acceleration_mps2 * context.step_s;
+  const bool brakes = flying && memory.desired_speed_mps > 0;
+  const double slower = brakes ? context.gains.hopping.braking_mps2 * context.step_s : faster;
+  memory.desired_speed_mps +=
+      std::clamp(target_mps - memory.desired_speed_mps, -slower, faster);
+}
+
+bool BeginThrust(const Context& context, GaitMemory& memory) {
+  const TransitionGains& gains = context.gains.transition;
+  const double swing = context.TimeIn(memory) / context.gains.walking.swing_time_s;
+  if (!Flies(context.goal.gait) || memory.walking != WalkingPhase::kFall ||
+      swing <= gains.thrust_from_swing) {
+    return false;
+  }
+  const bool jump = context.goal.gait == Gait::kJump;
+  const double lift_off_mps = jump ? gains.thrust_to_jump_mps : gains.thrust_to_run_mps;
+  const double energy_j =
+      context.biped.mass_kg() * lift_off_mps * lift_off_mps / 2 + kThrustLossJ;
+  const double extension_m =
+      std::sqrt(2 * energy_j / context.gains.hopping.run_leg_stiffness_n_per_m);
+  memory.thrust_length_m =
+      std::clamp(context.body.legs[memory.support_leg].length_m + extension_m, 0.9,
+                 context.biped.leg_length_max_m - 0.02);
+  memory.thrusting = true;
+  memory.preparing_jump = jump;
+  memory.absorbing = false;
+  memory.running = RunningPhase::kExtension;
+  memory.phase_start_s = context.body.time_s;
+  memory.touchdown_time_s = context.body.time_s - kThrustSupportS;
+  memory.off_steps = 0;
+  memory.support_time_s = context.gains.hopping.first_support_time_s;
+  memory.energy_loss_j = kFirstLossJ;
+  return true;
+}
+
+void LiftOff(const Context& context, GaitMemory& memory) {
+  MeasureSupport(context.body.time_s - memory.touchdown_time_s, memory);
+  const bool was_jumping = memory.gait == Gait::kJump;
+  const bool jump = context.goal.gait == Gait::kJump;
+  if (jump && (was_jumping || memory.preparing_jump)) {
+    memory.gait = Gait::kJump;
+    memory.preparing_jump = false;
+  } else {
+    memory.preparing_jump =
+        jump && SpeedAlongHeading(context, memory) < context.gains.transition.run_to_jump_mps;
+    if (!was_jumping) memory.gait = Gait::kRun;
+  }
+  if (!was_jumping) memory.support_leg = 1 - memory.support_leg;
+  memory.thrusting = false;
+  memory.after_jump = false;
+  memory.running = RunningPhase::kUpwardFlight;
+  memory.phase_start_s = context.body.time_s;
+}
+
+bool MayAbsorb(const Context& context, const GaitMemory& memory) {
+  if (Flies(context.goal.gait)) return false;
+  const TransitionGains& gains = context.gains.transition;
+  const double speed_mps = SpeedAlongHeading(context, memory);
+  if (memory.gait == Gait::kJump) return std::fabs(speed_mps) < gains.jump_to_step_mps;
+  return speed_mps < gains.run_to_walk_mps + gains.run_to_walk_margin_mps;
+}
+
+void LandIntoWalking(const Context& context, GaitMemory& memory) {
+  const Eigen::Vector3d v_H = ToHeading(memory.heading_rad, context.body.v_WC);
+  if (memory.gait == Gait::kJump) {
+    memory.gait = Gait::kStep;
+    memory.after_jump = true;
+    memory.walking = WalkingPhase::kDoubleSupport;
+    memory.support_leg = v_H.y() >= 0 ? biped::kLeft : biped::kRight;
+    memory.desired_speed_mps = std::clamp(v_H.x(), -0.5, 1.2);
+  } else {
+    memory.gait = context.goal.gait == Gait::kStep ? Gait::kStep : Gait::kWalk;
+    memory.walking = WalkingPhase::kRise;
+    const TransitionGains& gains = context.gains.transition;
+    memory.desired_speed_mps = std::clamp(v_H.x(), 0.0, gains.run_to_walk_mps + 0.3);
+  }
+  memory.absorbing = false;
+  memory.phase_start_s = context.body.time_s;
+  memory.swing_start_W_m = context.body.legs[1 - memory.support_leg].p_WF;
+  memory.servo.followed = {};
+}
+
+}  // namespace footing::gait

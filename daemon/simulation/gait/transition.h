@@ -1,0 +1,37 @@
+#pragma once
+
+#include "daemon/simulation/gait/context.h"
+
+/// Changes of gait: Figure 9 and "Gait Transitions" in section 5 of the paper.
+///
+/// | from, to            | energy                                   | the controller changes        |
+/// |---------------------|------------------------------------------|-------------------------------|
+/// | step <-> walk       | none                                     | at once                       |
+/// | step, walk -> run   | Fall extends the supporting leg          | when it leaves the ground     |
+/// | step, walk -> jump  | the same                                 | the same                      |
+/// | run -> jump         | one preparatory step, foot under the COM | when its leg leaves the ground|
+/// | run -> walk, step   | run slows down; Compression then absorbs | in Compression, to Rise       |
+/// | jump -> step, walk  | jump slows down; both legs absorb        | to Double Support of stepping |
+/// | jump -> run         | not in the paper: by stepping, walking   |                               |
+namespace footing::gait {
+
+/// True where the figure has an arrow (and for staying).
+bool IsDirect(stream::Gait from, stream::Gait to);
+
+/// The command, or where there is no arrow the next gait on the way to it.
+biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,
+                        const TransitionGains& gains);
+
+/// Moves v_d towards the goal's speed; a gait that is to be left for a slower one brakes first.
+void SlewSpeed(const Context& context, GaitMemory& memory);
+
+/// In Fall, late enough, with a goal that flies: begins the thrust.
+bool BeginThrust(const Context& context, GaitMemory& memory);
+/// At lift-off: to the flight of the gait that follows.
+void LiftOff(const Context& context, GaitMemory& memory);
+/// At touchdown: whether this Compression is to absorb, for walking or stepping to follow.
+bool MayAbsorb(const Context& context, const GaitMemory& memory);
+/// At the end of an absorbing Compression: running goes on with Rise, jumping with Double Support.
+void LandIntoWalking(const Context& context, GaitMemory& memory);
+
+}  // namespace footing::gait

@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+#include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/walking.h"
+#include "daemon/simulation/terrain/ground.h"
+
+namespace footing::gait {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The foot is over its place after this part of the swing; late, it comes down at this rate.
+constexpr double kSwingArrives = 0.9;
+constexpr double kLateDescentMps = 0.7;
+/// Over seen ground: clearance over all that lies from 10 cm behind to 20 cm ahead of the foot.
+constexpr double kSeenClearanceM = 0.06;
+constexpr double kProbeSpacingM = 0.05;
+constexpr int kProbesBehind = 2;
+constexpr int kProbesAhead = 4;
+constexpr double kProbeUntil = 0.93;
+constexpr double kFullClearanceUntil = 0.85;
+
+/// Length that keeps the hip at its height over the ground: touchdown length in Rise, and by the
+/// same law the extension in Fall and of the rear leg in Double Support that the paper describes.
+double SupportLength(const Context& context, const GaitMemory& memory, int leg) {
+  const WalkingGains& gains = context.gains.walking;
+  const biped::LegState& state = context.body.legs[leg];
+  const double height_m = gains.hip_height_m + memory.support_height_m - state.p_WF.z();
+  return std::clamp(height_m / std::max(0.5, -state.u_HF_W.z()), gains.leg_length_min_m,
+                    gains.leg_length_max_m);
+}
+
+LegTarget Supporting(const Context& context, const GaitMemory& memory, int leg, double share) {
+  const WalkingGains& gains = context.gains.walking;
+  LegTarget target;
+  target.task = LegTask::kSupport;
+  target.axial.length_m = SupportLength(context, memory, leg);
+  target.axial.follow_rate = true;
+  target.axial.stiffness_n_per_m = gains.leg_stiffness_n_per_m;
+  target.axial.damping_ns_per_m = gains.leg_damping_ns_per_m;
+  target.axial.feed_forward_n = gains.carried_mass_kg * kGravityMps2 *
+                                std::max(0.3, -context.body.legs[leg].u_HF_W.z());
+  target.axial.min_n = 0;
+  target.axial.share = share;
+  return target;
+}
+
+/// Double Support: the load goes over from the rear leg to the front one.
+Targets DoubleSupport(const Context& context, const GaitMemory& memory) {
+  const int front = memory.support_leg, rear = 1 - front;
+  const double passed = std::clamp(
+      context.TimeIn(memory) / context.gains.walking.double_support_time_s, 0.0, 1.0);
+  const bool front_touches = context.body.legs[front].touching;
+  const double front_share = !front_touches || passed > 0.5 ? 1 : 0.5 + passed;
+  Targets targets;
+  targets.legs[front] = Supporting(context, memory, front, front_share);
+  if (context.body.legs[rear].touching) {
+    targets.legs[rear] = Supporting(context, memory, rear, 1 - passed);
+  }
+  return targets;
+}
+
+/// Height above which the swing foot must stay over seen ground.
+double ClearHeight(const Context& context, const GaitMemory& memory, int leg, double swing) {
+  const Vector3d ahead_W = ToWorld(memory.heading_rad, {1, 0, 0});
+  double highest_m = -INFINITY;
+  for (int i = -kProbesBehind; i <= kProbesAhead; ++i) {
+    const Vector3d p = context.body.legs[leg].p_WF + i * kProbeSpacingM * ahead_W;
+    highest_m = std::max(highest_m, terrain::GroundHeight(*context.seen_ground, p.x(), p.y()));
+  }
+  const double fade = swing < kFullClearanceUntil ? 1 : (1 - swing) / (1 - kFullClearanceUntil);
+  return highest_m + context.biped.foot_radius_m + kSeenClearanceM * std::max(0.0, fade);
+}
+
+/// The swing foot's path: smooth from where it left to the foothold, held short to clear the ground.
+Vector3d SwingFoot(const Context& context, const GaitMemory& memory, int leg) {
+  const WalkingGains& gains = context.gains.walking;
+  const double time_s = context.TimeIn(memory);
+  const double swing = std::clamp(time_s / gains.swing_time_s, 0.0, 1.0);
+  const double way = std::clamp(time_s / (kSwingArrives * gains.swing_time_s), 0.0, 1.0);
+  const double smooth = way * way * (3 - 2 * way);
+  Vector3d p = memory.swing_start_W_m + smooth * (memory.foothold_W_m - memory.swing_start_W_m);
+  p.z() += gains.clearance_m * std::sin(kPi * swing);
+  if (time_s > gains.swing_time_s) {
+    p.z() = memory.foothold_W_m.z() - kLateDescentMps * (time_s - gains.swing_time_s);
+  }
+  if (context.seen_ground != nullptr && swing < kProbeUntil) {
+    p.z() = std::max(p.z(), ClearHeight(context, memory, leg, swing));
+  }
+  return p;
+}
+
+}  // namespace
+
+Targets WalkingTargets(const Context& context, const GaitMemory& memory) {
+  if (memory.walking == WalkingPhase::kDoubleSupport) return DoubleSupport(context, memory);
+  const int swing_leg = 1 - memory.support_leg;
+  Targets targets;
+  targets.legs[memory.support_leg] = Supporting(context, memory, memory.support_leg, 1);
+  targets.legs[swing_leg].task = LegTask::kPlace;
+  targets.legs[swing_leg].r_HF_W_m =
+      SwingFoot(context, memory, swing_leg) - context.body.legs[swing_leg].p_WH;
+  return targets;
+}
+
+}  // namespace footing::gait

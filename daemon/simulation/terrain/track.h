@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include "common/result/result.h"
+#include "common/stream/character.h"
+
+/// Tracks as data: a ribbon of segments, 4 m wide in the paper (section 8.2).
+namespace footing::terrain {
+
+/// Reads a track. The file is one object:
+///   version   1
+///   name      text
+///   width_m   (0, 100], 4 by default
+///   segments  1 to 1000 objects {length_m (0, 10000], slope_deg [-30, 30], curve_deg [-90, 90],
+///             step_m [-0.5, 0.5], pit true or false}; all but the length default to nothing.
+/// The track starts at the origin along x. curve_deg turns the heading and step_m raises the
+/// ground at the segment's start; positive is left and up. `origin` names the file in errors.
+Result<stream::Track> ParseTrack(const std::string& text, const std::string& origin);
+
+/// Where a point is relative to the track's centre line.
+struct TrackPlace {
+  int segment = 0;
+  double along_m = 0;     ///< From the segment's start, clamped to its length.
+  double sideways_m = 0;  ///< From the centre line, left positive.
+};
+
+/// The nearest segment's place; of two equally near the earlier one.
+TrackPlace Locate(const stream::Track& track, const Eigen::Vector2d& p_W_m);
+
+/// A point of the centre line with its heading.
+struct CentrePoint {
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  double heading_rad = 0;
+};
+
+/// The centre line `back_m` before a place: never in a pit (then before it), never before the
+/// start.
+CentrePoint CentreBehind(const stream::Track& track, const TrackPlace& place, double back_m);
+
+}  // namespace footing::terrain

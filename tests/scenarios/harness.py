@@ -1,0 +1,82 @@
+"""Starts whole programs for a scenario on sockets of its own and ends every one of them.
+
+Usage in a scenario: `with Stage(binary_folder) as stage: stage.start("footingd", ...)`.
+"""
+import json
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+
+
+class Stage:
+    def __init__(self, binaries):
+        self.binaries = pathlib.Path(binaries)
+        self.processes = {}
+        self._folder = tempfile.TemporaryDirectory(prefix="footing-scenario.")
+        self.folder = pathlib.Path(self._folder.name)
+        self.sensor = f"unix:{self.folder}/sensor.sock"
+        self.devices = f"unix:{self.folder}/devices.sock"
+        self.simulation = f"unix:{self.folder}/simulation.sock"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, value, traceback):
+        for process in self.processes.values():
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+        if kind is not None:
+            for log in sorted(self.folder.glob("*.log")):
+                print(f"--- {log.name}\n{log.read_text()[-2000:]}")
+        self._folder.cleanup()
+
+    def start(self, program, *words, name=None):
+        name = name or program
+        with open(self.folder / f"{name}.log", "w") as log:
+            process = subprocess.Popen([self.binaries / program, *map(str, words)], stdout=log,
+                                       stderr=log, stdin=subprocess.DEVNULL)
+        self.processes[name] = process
+        return process
+
+    def stop(self, name, how=signal.SIGTERM, timeout_s=10):
+        """Ends a program and returns its exit code."""
+        process = self.processes.pop(name)
+        process.send_signal(how)
+        return process.wait(timeout_s)
+
+    def run(self, program, *words, timeout_s=60):
+        return subprocess.run([self.binaries / program, *map(str, words)], capture_output=True,
+                              text=True, timeout=timeout_s, stdin=subprocess.DEVNULL, check=False)
+
+    def run_json(self, program, *words, timeout_s=60):
+        done = self.run(program, *words, "--json", timeout_s=timeout_s)
+        assert done.returncode == 0, f"{program} {words}: {done.returncode}\n{done.stderr}"
+        return json.loads(done.stdout)
+
+    def wait_for(self, condition, what, timeout_s=10.0):
+        """Polls until the condition holds; the one place where a scenario waits for a state."""
+        deadline = time.monotonic() + timeout_s
+        while time.monotonic() < deadline:
+            value = condition()
+            if value:
+                return value
+            time.sleep(0.02)
+        raise AssertionError(f"waited {timeout_s} s for {what}")
+
+    def wait_for_socket(self, address, timeout_s=10.0):
+        path = pathlib.Path(address.removeprefix("unix:"))
+        self.wait_for(path.is_socket, f"{address} to open", timeout_s)
+
+    def start_servers(self):
+        self.start("footingd", "--listen", self.sensor, "--source", f"stream:{self.devices}")
+        self.wait_for_socket(self.sensor)
+        self.wait_for_socket(self.devices)
+        self.start("footing-sim", "--sensor", self.sensor, "--listen", self.simulation)
+        self.wait_for_socket(self.simulation)
+
+    def start_user(self, script, *words, seed=1):
+        return self.start("footing-stream", "user", "--script", script, "--interface", "wrist",
+                          "--to", self.devices, "--seed", seed, *words)
