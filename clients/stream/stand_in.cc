@@ -1,60 +1,91 @@
 #include "clients/stream/stand_in.h"
 
-#include <cmath>
+#include <array>
+#include <cstdio>
 #include <utility>
+
+#include "common/units/units.h"
 
 namespace footing::stream_client {
 namespace {
 
-// facts of the devices: an accelerometer read 100 times a second; a board whose values change about
-// 60 times a second.
-constexpr double kWiimoteSensorHz = 100;
-constexpr double kBoardSensorHz = 60;
+using device_models::BalanceBoard;
+using device_models::Wiimote;
+
+/// Two of a run must not share it: it tells devices apart.
+std::string SerialOf(std::uint64_t seed) {
+  std::array<char, 24> text{};
+  std::snprintf(text.data(), text.size(), "02:%02x:%02x:%02x:%02x:%02x",
+                static_cast<unsigned>((seed >> 32) & 0xff),
+                static_cast<unsigned>((seed >> 24) & 0xff),
+                static_cast<unsigned>((seed >> 16) & 0xff),
+                static_cast<unsigned>((seed >> 8) & 0xff), static_cast<unsigned>(seed & 0xff));
+  return text.data();
+}
 
 }  // namespace
 
-StandIn::StandIn(device_models::Wiimote wiimote, SpecificForce force, stream::DeviceRole role,
-                 device_models::LinkModel link)
-    : wiimote_(std::move(wiimote)),
+StandIn::StandIn(std::uint64_t seed, device_models::LinkQuality link, stream::DeviceRole role,
+                 SpecificForce force)
+    : seed_(seed),
+      link_config_(device_models::WiimoteLink(link, seed)),
+      role_(role),
       force_(std::move(force)),
-      role_(role),
-      link_(std::move(link)),
-      sensor_rate_hz_(kWiimoteSensorHz) {}
+      identity_{5, Wiimote::kVendor, Wiimote::kProduct, Wiimote::kName, SerialOf(seed)} {
+  Begin();
+}
 
-StandIn::StandIn(device_models::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
-                 device_models::LinkModel link)
-    : board_(std::move(board)),
+StandIn::StandIn(std::uint64_t seed, device_models::LinkQuality link, stream::DeviceRole role,
+                 CornerForces forces)
+    : seed_(seed),
+      link_config_(device_models::BoardLink(link, seed)),
+      role_(role),
       forces_(std::move(forces)),
-      role_(role),
-      link_(std::move(link)),
-      sensor_rate_hz_(kBoardSensorHz) {}
-
-const device_models::Identity& StandIn::identity() const {
-  return wiimote_ ? wiimote_->identity() : board_->identity();
+      identity_{5, BalanceBoard::kVendor, BalanceBoard::kProduct, BalanceBoard::kName,
+                SerialOf(seed)} {
+  Begin();
 }
 
-std::vector<device_models::Report> StandIn::HandleOutput(std::span<const std::uint8_t> output,
-                                                         std::int64_t now_ns) {
-  return wiimote_ ? wiimote_->HandleOutput(output, now_ns) : board_->HandleOutput(output, now_ns);
+void StandIn::Begin() {
+  if (force_) {
+    wiimote_.emplace(seed_);
+  } else {
+    board_.emplace(seed_);
+  }
+  link_.emplace(link_config_, 0);
+  next_ = link_->Next();
+  leds_ = 0;
+  rumble_ = false;
 }
 
-StandIn::Delivery StandIn::Deliver(double t_s, std::int64_t now_ns) {
+device_models::Controller& StandIn::controller() {
+  return wiimote_ ? wiimote_->controller() : board_->controller();
+}
+
+std::vector<device_models::Report> StandIn::HandleOutput(std::span<const std::uint8_t> output) {
+  return controller().HandleOutput(output);
+}
+
+double StandIn::NextArrivalSeconds() const { return NanosecondsToSeconds(next_.arrives_ns); }
+
+StandIn::Delivery StandIn::Deliver() {
   Delivery delivery;
-  delivery.sampled_s = std::floor(t_s * sensor_rate_hz_ + 1e-6) / sensor_rate_hz_;
-  delivery.report = wiimote_ ? wiimote_->Sample(force_(delivery.sampled_s), now_ns)
-                             : board_->Sample(forces_(delivery.sampled_s), now_ns);
+  delivery.arrives_s = NanosecondsToSeconds(next_.arrives_ns);
+  delivery.sampled_s = NanosecondsToSeconds(next_.sampled_ns);
+  delivery.report = wiimote_ ? wiimote_->Sample(force_(delivery.sampled_s))
+                             : board_->Sample(forces_(delivery.sampled_s));
+  next_ = link_->Next();
   return delivery;
 }
 
 std::string StandIn::Changes() {
-  const std::uint32_t leds = wiimote_ ? wiimote_->leds() : board_->leds();
-  const bool rumble = wiimote_ && wiimote_->rumble();
   std::string line;
-  if (leds != leds_) line += " LEDs " + std::to_string(leds);
-  if (rumble != rumble_) line += rumble ? " rumble on" : " rumble off";
-  leds_ = leds;
-  rumble_ = rumble;
-  return line.empty() ? line : identity().serial + line;
+  if (controller().leds() != leds_) line += " LEDs " + std::to_string(controller().leds());
+  if (controller().rumble() != rumble_)
+    line += controller().rumble() ? " rumble on" : " rumble off";
+  leds_ = controller().leds();
+  rumble_ = controller().rumble();
+  return line.empty() ? line : identity_.serial + line;
 }
 
 }  // namespace footing::stream_client

@@ -1,5 +1,8 @@
 #include "common/cli/cli.h"
 #include "daemon/offline/eval/command.h"
+#include "daemon/offline/eval/features_command.h"
+#include "daemon/offline/eval/gait_command.h"
+#include "daemon/offline/eval/transitions_command.h"
 
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
@@ -11,6 +14,9 @@ int main(int argc, char** argv) {
   app->add_flag("--json", shared.json, "One JSON object on standard output");
   app->require_subcommand(1);
   app->fallthrough();
+  footing::eval::AddFeaturesCommand(*app, shared);
+  footing::eval::AddGaitCommand(*app, shared);
+  footing::eval::AddTransitionsCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

@@ -19,6 +19,8 @@ struct World::Parts {
   std::array<int, kLegs> feet{};
   double mass_kg = 0;
   std::uint64_t steps = 0;
+  /// As integrated: mj_step1 normalises qpos in place, and doing so twice may change the last bit.
+  std::array<double, 4> root_quaternion{1, 0, 0, 0};
   double root_force_max_n = 0;
   Observation observation;
 };

@@ -15,6 +15,10 @@ void ApplyForces(mjData& state, int root, const JointEfforts& efforts,
   std::copy(push_W_n.data(), push_W_n.data() + 3, state.xfrc_applied + 6 * root);
 }
 
+void KeepQuaternion(const mjData& state, std::array<double, 4>& quaternion) {
+  std::copy(state.qpos + 3, state.qpos + 7, quaternion.begin());
+}
+
 std::uint64_t HashWords(std::uint64_t hash, const mjtNum* words, int count) {
   for (int i = 0; i < count; ++i) {
     hash = (hash ^ std::bit_cast<std::uint64_t>(words[i])) * 1099511628211u;
@@ -47,9 +51,9 @@ Result<World> World::FromMjcf(const std::string& mjcf, const WorldNames& names) 
     }
     return {};
   };
-  for (const auto& found : {find(mjOBJ_BODY, names.links, parts->links),
-                            find(mjOBJ_BODY, names.hips, parts->hips),
-                            find(mjOBJ_GEOM, names.feet, parts->feet)}) {
+  for (const auto& found :
+       {find(mjOBJ_BODY, names.links, parts->links), find(mjOBJ_BODY, names.hips, parts->hips),
+        find(mjOBJ_GEOM, names.feet, parts->feet)}) {
     if (!found) return found.error();
   }
   for (const int link : parts->links) parts->mass_kg += m.body_mass[link];
@@ -75,6 +79,7 @@ void World::Reset(const Eigen::Vector3d& p_WB_m, double heading_rad,
   d.qpos[4] = d.qpos[5] = 0;
   d.qpos[6] = std::sin(heading_rad / 2);
   std::copy(joint_position.begin(), joint_position.end(), d.qpos + 7);
+  KeepQuaternion(d, p.root_quaternion);
   mj_forward(p.model.get(), &d);
   ReadContacts(*p.model, d, p.feet, p.observation);
   ReadMotion(*p.model, d, p.links, p.hips, p.feet, p.mass_kg, p.observation);
@@ -90,6 +95,7 @@ void World::Step(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n) {
   p.root_force_max_n = std::max(p.root_force_max_n, hidden_n);
   FOOTING_CHECK(hidden_n == 0);
   mj_step2(p.model.get(), &d);
+  KeepQuaternion(d, p.root_quaternion);
   ReadContacts(*p.model, d, p.feet, p.observation);
   mj_step1(p.model.get(), &d);
   ReadMotion(*p.model, d, p.links, p.hips, p.feet, p.mass_kg, p.observation);
@@ -99,6 +105,7 @@ void World::Step(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n) {
 void World::StepBare(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n) {
   ApplyForces(*parts_->state, parts_->links[0], efforts, push_W_n);
   mj_step(parts_->model.get(), parts_->state.get());
+  KeepQuaternion(*parts_->state, parts_->root_quaternion);
 }
 
 void World::LinkPose(int index, Eigen::Vector3d& position_m,
@@ -114,7 +121,9 @@ std::uint64_t World::StateHash() const {
   const mjModel& m = *parts_->model;
   const mjData& d = *parts_->state;
   std::uint64_t hash = 14695981039346656037u;
-  hash = HashWords(hash, d.qpos, m.nq);
+  hash = HashWords(hash, d.qpos, 3);
+  hash = HashWords(hash, parts_->root_quaternion.data(), 4);
+  hash = HashWords(hash, d.qpos + 7, m.nq - 7);
   hash = HashWords(hash, d.qvel, m.nv);
   hash = HashWords(hash, d.act, m.na);
   return HashWords(hash, d.qacc_warmstart, m.nv);
@@ -125,6 +134,7 @@ WorldState World::Save() const {
   WorldState state;
   state.steps = parts_->steps;
   std::copy(d.qpos, d.qpos + state.qpos.size(), state.qpos.begin());
+  std::copy(parts_->root_quaternion.begin(), parts_->root_quaternion.end(), state.qpos.begin() + 3);
   std::copy(d.qvel, d.qvel + state.qvel.size(), state.qvel.begin());
   std::copy(d.qacc_warmstart, d.qacc_warmstart + state.qacc_warmstart.size(),
             state.qacc_warmstart.begin());
@@ -142,6 +152,7 @@ void World::Restore(const WorldState& state) {
   std::copy(state.qpos.begin(), state.qpos.end(), d.qpos);
   std::copy(state.qvel.begin(), state.qvel.end(), d.qvel);
   std::copy(state.qacc_warmstart.begin(), state.qacc_warmstart.end(), d.qacc_warmstart);
+  KeepQuaternion(d, p.root_quaternion);
   p.steps = state.steps;
   p.root_force_max_n = state.root_force_max_n;
   p.observation.normal_force_n = state.normal_force_n;

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+
+#include "common/result/result.h"
+#include "daemon/simulation/engine/engine.h"
+#include "daemon/simulation/physics/world.h"
+
+namespace footing::eval {
+
+/// Random numbers that are the same with every standard library.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double Uniform(double min, double max) {
+    constexpr double kSteps = 9007199254740992.0;  // 2^53
+    return min + (max - min) * static_cast<double>(engine_() >> 11) / kSteps;
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// A number for the seed of one trial.
+std::uint64_t TrialSeed(std::uint64_t seed, int trial);
+
+/// "random" or a number; a random one is drawn from the system and printed to standard error.
+Result<std::uint64_t> ParseSeed(const std::string& text);
+
+/// An engine on the straight track, from the product's data files.
+Result<engine::GaitEngine> NewEngine();
+/// The world of that engine alone.
+Result<physics::World> NewWorld();
+
+/// An engine driven by direct commands, with what one wants to know of it.
+class Walker {
+ public:
+  explicit Walker(engine::GaitEngine& engine) : engine_(engine) {}
+
+  void Command(const biped::GaitCommand& command);
+  /// Pushes the body over the 0.1 s that follow.
+  void Push(double impulse_ns, double direction_rad);
+  /// One step; reads the output every step.
+  const engine::EngineOutput& Advance();
+  bool fell() const { return output_ != nullptr && output_->gait.falls > 0; }
+  const engine::EngineInputs& inputs() const { return inputs_; }
+
+ private:
+  engine::GaitEngine& engine_;
+  engine::EngineInputs inputs_;
+  const engine::EngineOutput* output_ = nullptr;
+};
+
+}  // namespace footing::eval

@@ -1,0 +1,97 @@
+#include "daemon/sensor/features/device_features.h"
+
+#include <algorithm>
+
+#include "common/units/units.h"
+#include "daemon/sensor/features/cycle.h"
+
+namespace footing::features {
+
+DeviceFeatureExtractor::DeviceFeatureExtractor(std::uint32_t device, stream::DeviceRole role,
+                                               const Config& config)
+    : config_(config), grid_(config) {
+  features_.device = device;
+  features_.role = role;
+}
+
+void DeviceFeatureExtractor::AddSample(const stream::MotionSample& sample) {
+  grid_.Add(sample);
+  newest_received_ns_ = std::max(newest_received_ns_, sample.received_ns);
+  features_.simulated = sample.simulated;
+}
+
+void DeviceFeatureExtractor::Forget() {
+  moving_ = {};
+  cadence_ = {};
+  features_.moving = features_.frequency_valid = features_.amplitude_valid = false;
+  features_.inclination_valid = features_.held = false;
+  features_.frequency_hz = features_.amplitude_mps2 = 0;
+  features_.roll_rad = features_.pitch_rad = 0;
+}
+
+void DeviceFeatureExtractor::MeasureRest() {
+  features_.held = features_.amplitude_valid = false;
+  features_.amplitude_mps2 = 0;
+  const int count = std::min(grid_.size(), static_cast<int>(config_.rest_window_s * kGridHz + 0.5));
+  const Eigen::Vector3d gravity = grid_.Filtered(count).colwise().mean().transpose();
+  const Inclination inclination = InclinationOf(gravity);
+  features_.inclination_valid = true;
+  features_.roll_rad = inclination.roll_rad;
+  features_.pitch_rad = inclination.pitch_rad;
+}
+
+void DeviceFeatureExtractor::MeasureCycle() {
+  if (!cadence_.valid) {
+    features_.held = features_.amplitude_valid = false;
+    features_.amplitude_mps2 = 0;
+    return;  // The inclination from before motion stays: nothing better is known yet.
+  }
+  const Cycle cycle = NewestCycle(grid_, cadence_.period_s, config_.cycle);
+  features_.held = cycle.clipped;
+  if (!cycle.valid || cycle.clipped) return;
+  features_.amplitude_valid = true;
+  features_.amplitude_mps2 = cycle.amplitude_mps2;
+  const Inclination inclination = InclinationOf(cycle.mean_mps2);
+  features_.inclination_valid = true;
+  features_.roll_rad = inclination.roll_rad;
+  features_.pitch_rad = inclination.pitch_rad;
+}
+
+void DeviceFeatureExtractor::Advance(double elapsed_s) {
+  moving_ = Next(moving_, grid_, cadence_.valid ? cadence_.period_s : 0.0, config_.moving);
+  if (moving_.moving) {
+    const double known_s = cadence_.valid ? cadence_.period_s : 0.0;
+    const auto points = static_cast<int>(
+        std::min<std::int64_t>(grid_.size(), grid_.newest_index() - moving_.since_index + 1));
+    cadence_ = Next(cadence_, FindPeriod(grid_, points, known_s, config_.cadence), elapsed_s,
+                    config_.cadence);
+  } else {
+    cadence_ = {};
+  }
+  features_.moving = moving_.moving;
+  features_.frequency_valid = cadence_.valid;
+  features_.frequency_hz = cadence_.valid ? 1 / cadence_.period_s : 0.0;
+  if (moving_.moving) {
+    MeasureCycle();
+  } else {
+    MeasureRest();
+  }
+}
+
+stream::DeviceFeatures DeviceFeatureExtractor::Compute(std::int64_t now_ns) {
+  const double age_s = NanosecondsToSeconds(now_ns - grid_.newest_ns());
+  if (grid_.size() == 0 || age_s > config_.stale_s) {
+    Forget();
+    return features_;
+  }
+  const std::int64_t steps = grid_.newest_index() - computed_index_;
+  if (steps != 0) {
+    const bool plausible = steps > 0 && steps < kGridLength;
+    if (!plausible) Forget();  // The device's clock began anew.
+    Advance(kGridStepS * static_cast<double>(plausible ? steps : 1));
+    computed_index_ = grid_.newest_index();
+  }
+  return features_;
+}
+
+}  // namespace footing::features
