@@ -1,4 +1,5 @@
 #include "common/cli/cli.h"
+#include "daemon/offline/eval/board_command.h"
 #include "daemon/offline/eval/command.h"
 #include "daemon/offline/eval/features_command.h"
 #include "daemon/offline/eval/gait_command.h"
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
   app->add_flag("--json", shared.json, "One JSON object on standard output");
   app->require_subcommand(1);
   app->fallthrough();
+  footing::eval::AddBoardCommand(*app, shared);
   footing::eval::AddFeaturesCommand(*app, shared);
   footing::eval::AddGaitCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);

@@ -32,8 +32,7 @@ CopSample CentreOfPressure(const CornerSample& sample, const BoardShape& shape) 
 
 /// Appends to the last stretch, or begins one after a gap.
 void Append(const CopSample& sample, double longest_s, bool begin, Stretches& stretches) {
-  if (begin || stretches.empty() ||
-      sample.time_s - stretches.back().back().time_s > longest_s) {
+  if (begin || stretches.empty() || sample.time_s - stretches.back().back().time_s > longest_s) {
     stretches.emplace_back();
   }
   stretches.back().push_back(sample);

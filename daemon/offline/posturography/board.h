@@ -27,9 +27,9 @@ struct BoardShape {
 
 /// What stood on the board.
 struct Standing {
-  double weight_n = 0;       ///< Median of the totals while anybody stood on it; 0: nobody did.
-  std::size_t samples = 0;   ///< With a COP.
-  Stretches stretches;       ///< Ended by stepping off and by gaps in the recording.
+  double weight_n = 0;      ///< Median of the totals while anybody stood on it; 0: nobody did.
+  std::size_t samples = 0;  ///< With a COP.
+  Stretches stretches;      ///< Ended by stepping off and by gaps in the recording.
 };
 
 /// Longest interval of samples that is no gap.

@@ -11,7 +11,7 @@ namespace {
 
 /// 95 % quantile of chi-square with 2 degrees of freedom: -2 ln 0.05.
 const double kChiSquare95 = -2.0 * std::log(0.05);
-constexpr double kPrietoF = 3.00;         // F(0.95; 2, infinity), as printed in the paper.
+constexpr double kPrietoF = 3.00;          // F(0.95; 2, infinity), as printed in the paper.
 constexpr double kOneSidedNormal = 1.645;  // 95 % of the normal distribution, as printed there.
 
 template <typename Visit>
@@ -116,9 +116,7 @@ void MeasureEllipse(const Squares& sums, Sway& sway) {
 
 }  // namespace
 
-double FQuantile95(double degrees) {
-  return degrees / 2 * (std::pow(0.05, -2 / degrees) - 1);
-}
+double FQuantile95(double degrees) { return degrees / 2 * (std::pow(0.05, -2 / degrees) - 1); }
 
 Sway Measure(const Stretches& stretches) {
   Sway sway;

@@ -29,9 +29,9 @@ using Stretches = std::vector<std::vector<CopSample>>;
 /// | 95 % circle | pi (mean distance + 1.645 SD of the distances)^2 (eqs. 11, 12) |
 /// | 95 % ellipse | three definitions below; S is the covariance with divisor n - 1 |
 ///
-/// Prieto TE et al., Measures of postural steadiness, IEEE Trans Biomed Eng 43(9), 1996. Schubert P,
-/// Kirchner M, Ellipse area calculations and their applicability in posturography, Gait & Posture
-/// 39(1), 2014.
+/// Prieto TE et al., Measures of postural steadiness, IEEE Trans Biomed Eng 43(9), 1996. Schubert
+/// P, Kirchner M, Ellipse area calculations and their applicability in posturography, Gait &
+/// Posture 39(1), 2014.
 struct Sway {
   std::size_t samples = 0;
   double duration_s = 0;
