@@ -9,6 +9,8 @@ namespace {
 
 namespace pb = google::protobuf;
 
+constexpr std::size_t kMostMessageBytes = 64u << 20;
+
 void AddWithImports(const pb::FileDescriptor& file, std::set<std::string>& seen,
                     pb::FileDescriptorSet& files) {
   if (!seen.insert(file.name()).second) return;
@@ -70,11 +72,12 @@ Result<void> SchemaPool::Add(const mcap::Schema& schema) {
   return {};
 }
 
-pb::Message* SchemaPool::MessageOf(std::uint16_t schema_id) {
+const pb::Message* SchemaPool::Parse(std::uint16_t schema_id, std::string_view bytes) {
   const auto found = entries_.find(schema_id);
-  if (found == entries_.end()) return nullptr;
-  found->second->message->Clear();
-  return found->second->message.get();
+  if (found == entries_.end() || bytes.size() > kMostMessageBytes) return nullptr;
+  pb::Message* message = found->second->message.get();
+  const bool fits = message->ParsePartialFromArray(bytes.data(), static_cast<int>(bytes.size()));
+  return fits ? message : nullptr;
 }
 
 }  // namespace footing::recording

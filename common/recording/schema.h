@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "common/mcap/records.h"
 #include "common/result/result.h"
@@ -28,9 +29,9 @@ class SchemaPool {
   /// InvalidData when the schema is no protobuf one or makes no sense.
   Result<void> Add(const mcap::Schema& schema);
 
-  /// An empty message of the schema; null when there is none of that id. Owned by the pool and
-  /// shared between calls.
-  google::protobuf::Message* MessageOf(std::uint16_t schema_id);
+  /// The message of these bytes; null when there is no schema of that id or they do not fit it.
+  /// Owned by the pool and valid until the next call.
+  const google::protobuf::Message* Parse(std::uint16_t schema_id, std::string_view bytes);
 
  private:
   struct Entry;

@@ -68,8 +68,9 @@ class Recording : public testing::Test {
     visitor.schema = [&](const mcap::Schema& schema) { EXPECT_TRUE(pool.Add(schema).ok()); };
     visitor.channel = [&](const mcap::Channel& c) { schema_of[c.id] = c.schema_id; };
     visitor.message = [&](const mcap::Message& message) {
-      google::protobuf::Message* any = pool.MessageOf(schema_of[message.channel_id]);
-      ASSERT_TRUE(any->ParseFromString(std::string(message.data)));
+      const google::protobuf::Message* any =
+          pool.Parse(schema_of[message.channel_id], message.data);
+      ASSERT_NE(any, nullptr);
       v1::MotionSamples motion;
       ASSERT_TRUE(motion.ParseFromString(any->SerializeAsString()));
       values.push_back(motion.samples(0).specific_force_mps2().x());
@@ -178,7 +179,7 @@ TEST_F(Recording, SchemasThatMakeNoSenseAreRefused) {
   EXPECT_THAT(encoding.error().message, HasSubstr("ros2msg"));
   EXPECT_FALSE(pool.Add({1, "a.B", "protobuf", "\xFF\xFF garbage"}).ok());
   EXPECT_FALSE(pool.Add({1, "a.B", "protobuf", ""}).ok());
-  EXPECT_EQ(pool.MessageOf(1), nullptr);
+  EXPECT_EQ(pool.Parse(1, ""), nullptr);
 }
 
 }  // namespace
