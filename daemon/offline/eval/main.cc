@@ -1,6 +1,7 @@
 #include "common/cli/cli.h"
 #include "daemon/offline/eval/command.h"
 #include "daemon/offline/eval/gait_command.h"
+#include "daemon/offline/eval/monkey_command.h"
 #include "daemon/offline/eval/transitions_command.h"
 
 int main(int argc, char** argv) {
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
   app->require_subcommand(1);
   app->fallthrough();
   footing::eval::AddGaitCommand(*app, shared);
+  footing::eval::AddMonkeyCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
