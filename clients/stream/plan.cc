@@ -44,8 +44,9 @@ StandIn MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device
 StandIn::SpecificForce WithNoise(std::uint64_t seed, StandIn::SpecificForce force) {
   return [random = synthetic::Random(seed), force](double t_s) mutable {
     const double sd_mps2 = synthetic::SensorModel().noise_mps2;
-    const Eigen::Vector3d noise(random.Normal(), random.Normal(), random.Normal());
-    return Eigen::Vector3d(force(t_s) + sd_mps2 * noise);
+    Eigen::Vector3d felt = force(t_s);
+    for (int axis = 0; axis < 3; ++axis) felt[axis] += sd_mps2 * random.Normal();
+    return felt;
   };
 }
 

@@ -11,7 +11,8 @@ using device_models::Wiimote;
 
 StandIn::StandIn(Wiimote wiimote, SpecificForce force, stream::DeviceRole role,
                  const device_models::LinkConfig& link)
-    : device_(std::move(wiimote)),
+    : fresh_(std::move(wiimote)),
+      device_(fresh_),
       force_(std::move(force)),
       role_(role),
       link_config_(link),
@@ -19,7 +20,8 @@ StandIn::StandIn(Wiimote wiimote, SpecificForce force, stream::DeviceRole role,
 
 StandIn::StandIn(BalanceBoard board, CornerForces forces, stream::DeviceRole role,
                  const device_models::LinkConfig& link)
-    : device_(std::move(board)),
+    : fresh_(std::move(board)),
+      device_(fresh_),
       forces_(std::move(forces)),
       role_(role),
       link_config_(link),
@@ -53,7 +55,13 @@ std::optional<device_models::Report> StandIn::Deliver(double sampled_s) {
   return std::get<BalanceBoard>(device_).Sample(held_corners_);
 }
 
-void StandIn::Restart() { link_ = device_models::LinkModel(link_config_, 0); }
+void StandIn::Restart() {
+  device_ = fresh_;
+  link_ = device_models::LinkModel(link_config_, 0);
+  held_s_ = -1;
+  leds_ = 0;
+  rumble_ = false;
+}
 
 std::string StandIn::Changes() {
   const auto [leds, rumble] = std::visit(

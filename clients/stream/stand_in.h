@@ -42,14 +42,18 @@ class StandIn {
   Arrival Next();
   /// The report with the value of `sampled_s`; none while the host has set no mode.
   std::optional<device_models::Report> Deliver(double sampled_s);
-  /// The motion begins anew at time 0, as after a new connection.
+  /// The motion begins anew at time 0, with the device fresh from its box, as after a new
+  /// connection.
   void Restart();
 
   /// A line for the log when LEDs or rumble changed since the last call; empty otherwise.
   std::string Changes();
 
  private:
-  std::variant<device_models::Wiimote, device_models::BalanceBoard> device_;
+  using Device = std::variant<device_models::Wiimote, device_models::BalanceBoard>;
+
+  Device fresh_;
+  Device device_;
   SpecificForce force_;
   CornerForces forces_;
   stream::DeviceRole role_;

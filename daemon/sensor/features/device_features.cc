@@ -86,8 +86,8 @@ stream::DeviceFeatures DeviceFeatureExtractor::Compute(std::int64_t now_ns) {
   }
   const std::int64_t steps = grid_.newest_index() - computed_index_;
   if (steps != 0) {
-    // A restarted grid or clock counts as one step.
     const bool plausible = steps > 0 && steps < kGridLength;
+    if (!plausible) Forget();  // The device's clock began anew.
     Advance(kGridStepS * static_cast<double>(plausible ? steps : 1));
     computed_index_ = grid_.newest_index();
   }
