@@ -62,7 +62,8 @@ struct PhaseConfig {
 /// 4) Amplitude and 5) inclination in motion.
 struct CycleConfig {
   /// Clipped samples are filled in from a fit to the others, unless more than this share is
-  /// clipped; then amplitude and inclination are held.
+  /// clipped; then inclination is held, and amplitude
+  /// as well unless even the clipped samples show more.
   double most_clipped = 0.6;
   /// Weight of the prior that the second harmonic of the fit is small, in samples.
   double harmonic_prior = 1.0;

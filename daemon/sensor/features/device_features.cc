@@ -48,9 +48,13 @@ void DeviceFeatureExtractor::MeasureCycle() {
   }
   const Cycle cycle = NewestCycle(grid_, cadence_.period_s, config_.cycle);
   features_.held = cycle.clipped;
-  if (!cycle.valid || cycle.clipped) return;
+  if (!cycle.valid) return;
+  // Held, but never below what even the clipped samples show.
+  features_.amplitude_mps2 = cycle.clipped && features_.amplitude_valid
+                                 ? std::max(features_.amplitude_mps2, cycle.amplitude_mps2)
+                                 : cycle.amplitude_mps2;
   features_.amplitude_valid = true;
-  features_.amplitude_mps2 = cycle.amplitude_mps2;
+  if (cycle.clipped) return;
   const Inclination inclination = InclinationOf(cycle.mean_mps2);
   features_.inclination_valid = true;
   features_.roll_rad = inclination.roll_rad;
