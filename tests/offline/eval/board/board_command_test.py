@@ -1,0 +1,78 @@
+"""footing-eval board: its JSON, its exit codes, and the whole real recording.
+
+Usage: board_command_test.py FOOTING_EVAL CORKINE_TO_CORNERS [TEST_DATA]
+With TEST_DATA left out the part on the real recording is left out too; with "--real" as a fourth
+word only that part runs, and without data it ends with 77 (skipped).
+"""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+
+def made(program, folder):
+    def run(text, *words, kind="--cop"):
+        path = folder / "made.csv"
+        path.write_text(text)
+        return subprocess.run([program, "board", kind, path, *words, "--json"], timeout=60,
+                              capture_output=True, text=True, check=False)
+
+    turn = 2 * math.pi / 100
+    circle = "time_s,x_mm,y_mm\n" + "".join(
+        f"{k / 100},{10 * math.cos(turn * k)!r},{10 * math.sin(turn * k)!r}\n" for k in range(3000))
+    out = json.loads(run(circle).stdout)
+    # 2999 chords of 2 r sin(pi / 100); r / sqrt 2; the covariance is r^2/2 n/(n-1).
+    assert math.isclose(out["path_length_mm"], 2999 * 20 * math.sin(turn / 2), rel_tol=1e-9), out
+    assert math.isclose(out["rms_ml_mm"], 10 / math.sqrt(2), rel_tol=1e-9), out
+    assert math.isclose(out["ellipse95_area_chi2_mm2"],
+                        -2 * math.pi * math.log(0.05) * 50 * 3000 / 2999, rel_tol=1e-9), out
+    assert "Schubert" in out["ellipse95_definition"] and out["filter"] == "none", out
+    even = json.loads(run(circle, "--rate-hz", "50").stdout)
+    assert even["rate_hz"] == 50 and "SWARII" in even["filter"], even
+    assert math.isclose(even["rms_ml_mm"], 10 / math.sqrt(2), rel_tol=5e-3), even
+
+    corners = "time_s,tl_kg,tr_kg,bl_kg,br_kg\n" + "".join(
+        f"{k / 100},15,20,15,20\n" for k in range(100))
+    out = json.loads(run(corners, kind="--corners").stdout)
+    assert math.isclose(out["mass_kg"], 70, rel_tol=1e-12) and out["path_length_mm"] == 0, out
+
+    for text, said in (("", "empty"), ("t,x\n", "line 1"), ("time_s,x_mm,y_mm\n0,0\n", "line 2"),
+                       ("time_s,x_mm,y_mm\n0,0,0\n1,nan,0\n", "line 3"),
+                       ("time_s,x_mm,y_mm\n0,0,0\n1,1e400,0\n", "line 3"),
+                       ("time_s,x_mm,y_mm\n1,0,0\n0,0,0\n", "goes back"),
+                       ("time_s,x_mm,y_mm\n0,0,0\n", "3 samples")):
+        done = run(text)
+        assert done.returncode == 4 and said in done.stderr and not done.stdout, (text, done)
+    nobody = run("time_s,tl_kg,tr_kg,bl_kg,br_kg\n0,0,0,0,0\n", kind="--corners")
+    assert nobody.returncode == 4 and "nobody" in nobody.stderr, nobody
+    long = run("time_s,x_mm,y_mm\n0,0,0\n1e9,0,0\n1e9,1,1\n", "--rate-hz", "1000")
+    assert long.returncode == 4 and "seconds" in long.stderr, long
+
+
+def real(program, converter, folder, data):
+    log = pathlib.Path(data or "/nonexistent") / "devices/wbb_corkine/subject01_scr.log"
+    if not log.exists():
+        print("skipped: no recording; set FOOTING_TEST_DATA")
+        sys.exit(77)
+    csv = folder / "corners.csv"
+    subprocess.run([sys.executable, converter, log, csv], check=True)
+    for words in ((), ("--rate-hz", "25")):
+        done = subprocess.run([program, "board", "--corners", csv, *words, "--json"], timeout=60,
+                              capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        out = json.loads(done.stdout)
+        assert out["samples_read"] == 63559, out
+        # One standing adult, and a COP that stays on the board (433 x 238 mm between the cells).
+        assert 35 < out["mass_kg"] < 120, out
+        assert out["range_ml_mm"] <= 433 and out["range_ap_mm"] <= 238, out
+        assert all(math.isfinite(v) for v in out.values() if isinstance(v, (int, float))), out
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory(prefix="footing-board.") as name:
+        if "--real" in sys.argv:
+            real(sys.argv[1], sys.argv[2], pathlib.Path(name), sys.argv[3])
+        else:
+            made(sys.argv[1], pathlib.Path(name))
