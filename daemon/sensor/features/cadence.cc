@@ -10,17 +10,22 @@ namespace {
 constexpr int kMostLags = kGridLength / 2;
 using Curve = std::array<double, kMostLags + 2>;
 
+/// 1, 2, 3, ...: W(t) up to its scale, oldest first.
+constexpr std::array<double, kGridLength> kRamp = [] {
+  std::array<double, kGridLength> ramp{};
+  for (int i = 0; i < kGridLength; ++i) ramp[i] = i + 1;
+  return ramp;
+}();
+
 /// Mean of W |a(t) - a(t - lag)|² over the newest `overlap` points, in (m/s²)².
 double Difference(const SampleGrid& grid, int lag, int overlap) {
   const auto all = grid.Filtered(lag + overlap);
-  const auto weight = Eigen::ArrayXd::LinSpaced(overlap, 1.0 / overlap, 1.0);
-  double sum = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto now = all.col(axis).tail(overlap).array();
-    const auto then = all.col(axis).head(overlap).array();
-    sum += (weight * (now - then).square()).sum();
-  }
-  return sum / (0.5 * (overlap + 1));
+  const auto squares = [&](int axis) {
+    return (all.col(axis).tail(overlap) - all.col(axis).head(overlap)).array().square();
+  };
+  const Eigen::Map<const Eigen::ArrayXd> weight(kRamp.data(), overlap);
+  const double sum = (weight * (squares(0) + squares(1) + squares(2))).sum();
+  return sum / (0.5 * overlap * (overlap + 1));
 }
 
 /// Variance of the newest n points, summed over the axes, for every n up to `size`.
