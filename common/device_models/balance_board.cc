@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/device_models/random.h"
+#include "common/synthetic/random.h"
 #include "common/units/units.h"
 
 namespace footing::device_models {
@@ -17,10 +17,10 @@ constexpr std::uint8_t kBattery = 0x83;  // Four bars.
 
 std::array<BalanceBoard::Points, BalanceBoard::kCorners> DrawPoints(std::uint64_t seed) {
   // Real boards: 2800 to 8300 counts empty, 9.8 to 11.5 g a count, another slope above 17 kg.
-  Random random(seed);
+  synthetic::Random random(seed);
   std::array<BalanceBoard::Points, BalanceBoard::kCorners> points;
   for (BalanceBoard::Points& corner : points) {
-    corner[0] = random.Integer(2800, 8300);
+    corner[0] = static_cast<int>(random.Uniform(2800, 8300));
     corner[1] = corner[0] + static_cast<int>(kStepKg / random.Uniform(0.0098, 0.0108));
     corner[2] = corner[1] + static_cast<int>(kStepKg / random.Uniform(0.0100, 0.0115));
   }
@@ -61,9 +61,12 @@ std::uint16_t Counts(const BalanceBoard::Points& points, double force_n) {
 }  // namespace
 
 BalanceBoard::BalanceBoard(std::uint64_t seed)
-    : points_(DrawPoints(seed)), controller_(MakeMemory(points_)) {}
+    : points_(DrawPoints(seed)), controller_(MakeMemory(points_)) {
+  identity_.name = "Nintendo RVL-WBC-01";
+  identity_.serial = MakeSerial(seed);
+}
 
-std::optional<Report> BalanceBoard::Sample(const BoardForces& forces, bool button) {
+std::optional<Report> BalanceBoard::Sample(const CornerForces& forces, bool button) {
   Readings readings;
   readings.buttons = button ? 0x0008 : 0;
   readings.extension.fill(0xff);

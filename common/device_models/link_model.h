@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "common/device_models/random.h"
+#include "common/synthetic/random.h"
 
 namespace footing::device_models {
 
@@ -49,7 +49,7 @@ class LinkModel {
   double DrawOutage(double interval_s);
 
   LinkConfig config_;
-  Random random_;
+  synthetic::Random random_;
   std::int64_t start_ns_;
   std::int64_t last_ns_;
   std::uint64_t ideal_count_ = 0;

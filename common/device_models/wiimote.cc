@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/device_models/random.h"
+#include "common/synthetic/random.h"
 #include "common/units/units.h"
 
 namespace footing::device_models {
@@ -12,13 +12,18 @@ namespace {
 /// Raw axes point left, rear and up; S has left, front and down.
 constexpr std::array<double, 3> kRawSigns = {+1, -1, -1};
 
+/// In low..high, both included.
+int Integer(synthetic::Random& random, int low, int high) {
+  return low + static_cast<int>(random.Uniform() * (high - low + 1));
+}
+
 std::array<Wiimote::Axis, 3> DrawAxes(std::uint64_t seed) {
   // Around what real units have: zero near 521 and 532, 1 g 105 to 111 above it.
-  Random random(seed);
+  synthetic::Random random(seed);
   std::array<Wiimote::Axis, 3> axes;
   for (Wiimote::Axis& axis : axes) {
-    axis.zero_counts = random.Integer(505, 535);
-    axis.one_g_counts = axis.zero_counts + random.Integer(103, 112);
+    axis.zero_counts = Integer(random, 505, 535);
+    axis.one_g_counts = axis.zero_counts + Integer(random, 103, 112);
   }
   return axes;
 }
@@ -61,7 +66,10 @@ Memory MakeMemory(const std::array<Wiimote::Axis, 3>& axes) {
 
 }  // namespace
 
-Wiimote::Wiimote(std::uint64_t seed) : axes_(DrawAxes(seed)), controller_(MakeMemory(axes_)) {}
+Wiimote::Wiimote(std::uint64_t seed) : axes_(DrawAxes(seed)), controller_(MakeMemory(axes_)) {
+  identity_.name = "Nintendo RVL-CNT-01";
+  identity_.serial = MakeSerial(seed);
+}
 
 std::optional<Report> Wiimote::Sample(const Eigen::Vector3d& specific_force_S_mps2,
                                       std::uint16_t buttons) {

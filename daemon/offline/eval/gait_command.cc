@@ -176,8 +176,9 @@ void AddGaitCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 1000.0));
   command->add_option("--push-direction", options->push_direction_deg,
                       "Degrees, 0 from behind, 90 to the left; drawn by default");
-  command->add_option("--push-phase", options->push_phase,
-                      "Moment of the kick, 0 to 1 of a cycle; drawn by default")
+  command
+      ->add_option("--push-phase", options->push_phase,
+                   "Moment of the kick, 0 to 1 of a cycle; drawn by default")
       ->check(CLI::Range(0.0, 1.0));
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }

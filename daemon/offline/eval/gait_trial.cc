@@ -14,9 +14,9 @@ namespace {
 
 Result<engine::EngineTexts> ReadTexts() {
   engine::EngineTexts texts;
-  for (const auto& [name, text] :
-       {std::pair{engine::kBipedFile, &texts.biped}, {engine::kStraightTrackFile, &texts.track},
-        {engine::kWristMappingFile, &texts.wrist_mapping}}) {
+  for (const auto& [name, text] : {std::pair{engine::kBipedFile, &texts.biped},
+                                   {engine::kStraightTrackFile, &texts.track},
+                                   {engine::kWristMappingFile, &texts.wrist_mapping}}) {
     Result<std::string> read = config::ReadDataFile(name);
     if (!read) return read.error();
     *text = std::move(*read);

@@ -2,6 +2,7 @@
 #include "daemon/offline/eval/command.h"
 #include "daemon/offline/eval/features_command.h"
 #include "daemon/offline/eval/gait_command.h"
+#include "daemon/offline/eval/monkey_command.h"
 #include "daemon/offline/eval/transitions_command.h"
 
 int main(int argc, char** argv) {
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   app->fallthrough();
   footing::eval::AddFeaturesCommand(*app, shared);
   footing::eval::AddGaitCommand(*app, shared);
+  footing::eval::AddMonkeyCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;

@@ -21,7 +21,7 @@ struct Forces {
 };
 
 std::int64_t TimeEngine(engine::GaitEngine& engine, const engine::EngineState& start,
-                  const engine::EngineInputs& inputs) {
+                        const engine::EngineInputs& inputs) {
   engine.Restore(start);
   const std::int64_t begin_ns = clock::ThreadCpuNs();
   for (int i = 0; i < kSteps; ++i) {
@@ -32,7 +32,7 @@ std::int64_t TimeEngine(engine::GaitEngine& engine, const engine::EngineState& s
 }
 
 std::int64_t TimeBare(physics::World& world, const physics::WorldState& start,
-                const std::vector<Forces>& forces) {
+                      const std::vector<Forces>& forces) {
   world.Restore(start);
   const std::int64_t begin_ns = clock::ThreadCpuNs();
   for (const Forces& force : forces) world.StepBare(force.joints, force.push_W_n);

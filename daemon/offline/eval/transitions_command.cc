@@ -46,12 +46,14 @@ int Run(const Options& options, bool json) {
     latencies_s.push_back(trial.value().latency_s);
   }
   std::sort(latencies_s.begin(), latencies_s.end());
-  const nlohmann::ordered_json report{
-      {"from", options.from},     {"to", options.to},
-      {"seed", *seed},            {"trials", options.trials},
-      {"succeeded", succeeded},   {"falls", falls},
-      {"median_latency_s", Quantile(latencies_s, 0.5)},
-      {"p95_latency_s", Quantile(latencies_s, 0.95)}};
+  const nlohmann::ordered_json report{{"from", options.from},
+                                      {"to", options.to},
+                                      {"seed", *seed},
+                                      {"trials", options.trials},
+                                      {"succeeded", succeeded},
+                                      {"falls", falls},
+                                      {"median_latency_s", Quantile(latencies_s, 0.5)},
+                                      {"p95_latency_s", Quantile(latencies_s, 0.95)}};
   if (json) {
     std::printf("%s\n", report.dump().c_str());
   } else {

@@ -11,10 +11,14 @@ struct MovingConfig {
   /// the one below which it ends. 8-bit counts that toggle on all three axes reach 0.32.
   double start_mps2 = 0.6;
   double stop_mps2 = 0.33;
-  /// The window while still.
+  /// A still controller feels 1 g within this (rounding and calibration errors). One that feels
+  /// more or less is at the turning point of a swing, and still only when the longest window is,
+  /// too.
+  double gravity_tolerance_mps2 = 1.5;
+  /// The window while still; it never reaches back into a motion that was seen to end.
   double still_window_s = 0.25;
   /// The window in motion, in cycles, and its limits. While no frequency is known the window is the
-  /// time since motion began, within the still window and the longest.
+  /// time since motion began and a still window before it, up to the longest.
   double window_cycles = 0.35;
   double shortest_window_s = 0.22;
   double longest_window_s = 0.8;
@@ -58,7 +62,8 @@ struct PhaseConfig {
 /// 4) Amplitude and 5) inclination in motion.
 struct CycleConfig {
   /// Clipped samples are filled in from a fit to the others, unless more than this share is
-  /// clipped; then amplitude and inclination are held.
+  /// clipped; then inclination is held, and amplitude
+  /// as well unless even the clipped samples show more.
   double most_clipped = 0.6;
   /// Weight of the prior that the second harmonic of the fit is small, in samples.
   double harmonic_prior = 1.0;

@@ -48,9 +48,13 @@ void DeviceFeatureExtractor::MeasureCycle() {
   }
   const Cycle cycle = NewestCycle(grid_, cadence_.period_s, config_.cycle);
   features_.held = cycle.clipped;
-  if (!cycle.valid || cycle.clipped) return;
+  if (!cycle.valid) return;
+  // Held, but never below what even the clipped samples show.
+  features_.amplitude_mps2 = cycle.clipped && features_.amplitude_valid
+                                 ? std::max(features_.amplitude_mps2, cycle.amplitude_mps2)
+                                 : cycle.amplitude_mps2;
   features_.amplitude_valid = true;
-  features_.amplitude_mps2 = cycle.amplitude_mps2;
+  if (cycle.clipped) return;
   const Inclination inclination = InclinationOf(cycle.mean_mps2);
   features_.inclination_valid = true;
   features_.roll_rad = inclination.roll_rad;
@@ -86,8 +90,8 @@ stream::DeviceFeatures DeviceFeatureExtractor::Compute(std::int64_t now_ns) {
   }
   const std::int64_t steps = grid_.newest_index() - computed_index_;
   if (steps != 0) {
-    // A restarted grid or clock counts as one step.
     const bool plausible = steps > 0 && steps < kGridLength;
+    if (!plausible) Forget();  // The device's clock began anew.
     Advance(kGridStepS * static_cast<double>(plausible ? steps : 1));
     computed_index_ = grid_.newest_index();
   }

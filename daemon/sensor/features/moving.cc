@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
+
 namespace footing::features {
 namespace {
 
 int Points(double seconds) { return std::max(2, static_cast<int>(seconds * kGridHz + 0.5)); }
 
 double WindowSeconds(const Moving& before, const SampleGrid& grid, const MovingConfig& config) {
-  if (!before.moving) return config.still_window_s;
+  const double since_s =
+      kGridStepS * static_cast<double>(grid.newest_index() - before.since_index + 1);
+  if (!before.moving) return std::min(config.still_window_s, since_s);
   if (before.period_s > 0) {
     return std::clamp(config.window_cycles * before.period_s, config.shortest_window_s,
                       config.longest_window_s);
   }
-  const double since_s = kGridStepS * static_cast<double>(grid.newest_index() - before.since_index);
-  return std::clamp(since_s, config.still_window_s, config.longest_window_s);
+  // Some of the rest before it as well: a swing that began with a jerk may hardly change after it.
+  return std::min(since_s + config.still_window_s, config.longest_window_s);
 }
 
 /// The first of the newest `count` points that left the place where their oldest third rested.
@@ -26,6 +30,13 @@ std::int64_t Onset(const SampleGrid& grid, int count, double distance_mps2) {
   int row = 0;
   while (row + 1 < count && (samples.row(row) - rest).norm() < distance_mps2) ++row;
   return grid.newest_index() - (count - 1 - row);
+}
+
+bool CanBeStill(const SampleGrid& grid, int count, const MovingConfig& config) {
+  const double force_mps2 = grid.Filtered(count).colwise().mean().norm();
+  if (std::abs(force_mps2 - kStandardGravityMps2) < config.gravity_tolerance_mps2) return true;
+  const int longest = std::min(grid.size(), Points(config.longest_window_s));
+  return Deviation(grid, longest) < config.stop_mps2;
 }
 
 void FollowPeriod(double period_s, std::int64_t index, const MovingConfig& config, Moving& moving) {
@@ -55,7 +66,11 @@ Moving Next(const Moving& before, const SampleGrid& grid, double period_s,
   const double window_s = WindowSeconds(next, grid, config);
   const int count = std::min(grid.size(), Points(window_s));
   const double deviation = Deviation(grid, count);
-  if (before.moving) return deviation < config.stop_mps2 ? Moving{} : next;
+  if (before.moving) {
+    // The points of this window are the first still ones: what was before them starts nothing.
+    const Moving still{false, grid.newest_index() - count + 1, 0, 0};
+    return deviation < config.stop_mps2 && CanBeStill(grid, count, config) ? still : next;
+  }
   if (deviation < config.start_mps2) return before;
   return {true, Onset(grid, count, config.start_mps2), 0, 0};
 }

@@ -8,7 +8,7 @@ namespace footing::features {
 /// Whether a controller moves (section 6, feature 1).
 struct Moving {
   bool moving = false;
-  /// Grid index of the first point that belongs to the motion.
+  /// Grid index of the first point that belongs to the motion, or of the first still one after it.
   std::int64_t since_index = 0;
   /// The period that the window is cut to, 0 while none was known since then. It follows a shorter
   /// one at once, a longer one only once that has lasted: a stop looks like a longer period at

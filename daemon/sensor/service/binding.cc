@@ -21,12 +21,12 @@ constexpr DeviceRole kBoardRoles[] = {DeviceRole::kLeftBoard, DeviceRole::kRight
 Result<Binding> ParseBinding(const std::string& text) {
   const std::size_t slash = text.find('/');
   if (slash == std::string::npos || slash == 0 || slash > kMaxRigBytes) {
-    return UsageError("\"" + text + "\" is not of the form rig/role, e.g. main/left_hand");
+    return UsageError("role \"" + text + "\" is not of the form rig/role, e.g. main/left_hand");
   }
   const DeviceRole role = stream::RoleNamed(text.substr(slash + 1));
   if (role == DeviceRole::kUnspecified) {
-    return UsageError("\"" + text.substr(slash + 1) +
-                      "\" is no role; there are left_hand, right_hand, left_leg, right_leg, head, "
+    return UsageError("role \"" + text.substr(slash + 1) +
+                      "\" does not exist; there are left_hand, right_hand, left_leg, right_leg, head, "
                       "left_board, right_board, editor");
   }
   return Binding{text.substr(0, slash), role};

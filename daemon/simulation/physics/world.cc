@@ -51,9 +51,9 @@ Result<World> World::FromMjcf(const std::string& mjcf, const WorldNames& names) 
     }
     return {};
   };
-  for (const auto& found : {find(mjOBJ_BODY, names.links, parts->links),
-                            find(mjOBJ_BODY, names.hips, parts->hips),
-                            find(mjOBJ_GEOM, names.feet, parts->feet)}) {
+  for (const auto& found :
+       {find(mjOBJ_BODY, names.links, parts->links), find(mjOBJ_BODY, names.hips, parts->hips),
+        find(mjOBJ_GEOM, names.feet, parts->feet)}) {
     if (!found) return found.error();
   }
   for (const int link : parts->links) parts->mass_kg += m.body_mass[link];
@@ -104,6 +104,8 @@ void World::Step(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n) {
 
 void World::StepBare(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n) {
   ApplyForces(*parts_->state, parts_->links[0], efforts, push_W_n);
+  std::copy(parts_->root_quaternion.begin(), parts_->root_quaternion.end(),
+            parts_->state->qpos + 3);
   mj_step(parts_->model.get(), parts_->state.get());
   KeepQuaternion(*parts_->state, parts_->root_quaternion);
 }
@@ -134,8 +136,7 @@ WorldState World::Save() const {
   WorldState state;
   state.steps = parts_->steps;
   std::copy(d.qpos, d.qpos + state.qpos.size(), state.qpos.begin());
-  std::copy(parts_->root_quaternion.begin(), parts_->root_quaternion.end(),
-            state.qpos.begin() + 3);
+  std::copy(parts_->root_quaternion.begin(), parts_->root_quaternion.end(), state.qpos.begin() + 3);
   std::copy(d.qvel, d.qvel + state.qvel.size(), state.qvel.begin());
   std::copy(d.qacc_warmstart, d.qacc_warmstart + state.qacc_warmstart.size(),
             state.qacc_warmstart.begin());

@@ -1,0 +1,146 @@
+#include <cmath>
+#include <limits>
+
+#include "daemon/simulation/engine/failure.h"
+#include "daemon/simulation/engine/state.h"
+#include "tests/simulation/engine/engine_fixture.h"
+
+namespace footing::engine {
+namespace {
+
+using stream::Gait;
+
+std::vector<EngineEvent> EventsOf(const EngineOutput& output) {
+  return {output.events.begin(), output.events.begin() + output.event_count};
+}
+
+TEST(Engine, TheSameInputsGiveTheSameHashAfterSixtySeconds) {
+  const auto hash = [] {
+    GaitEngine engine = NewEngine();
+    for (const Gait gait : {Gait::kWalk, Gait::kRun, Gait::kJump, Gait::kStep}) {
+      EngineInputs inputs = Direct(Command(gait, 1));
+      Push(inputs, 1, 2);
+      Simulate(engine, inputs, 15);
+    }
+    return engine.Output().state_hash;
+  };
+  EXPECT_EQ(hash(), hash());
+}
+
+TEST(Engine, ARestoredStateGoesOnBitForBitInAnotherEngine) {
+  GaitEngine first = NewEngine(), second = NewEngine();
+  const EngineInputs inputs = Direct(Command(Gait::kRun, 2.2, 0.2, 0.05));
+  Simulate(first, inputs, 4.321);
+  second.Restore(first.Save());
+  Simulate(first, inputs, 5);
+  Simulate(second, inputs, 5);
+  EXPECT_EQ(second.Output().state_hash, first.Output().state_hash);
+  EXPECT_EQ(second.Output().gait.steps, first.Output().gait.steps);
+}
+
+TEST(Engine, SimulationTimeIsTheStepTimesH) {
+  GaitEngine engine = NewEngine();
+  Simulate(engine, {}, 1.234);
+  EXPECT_EQ(engine.Output().step, 1234u);
+  EXPECT_EQ(engine.Output().time_s, 1234 * 0.001);
+}
+
+TEST(Engine, AFallIsShownThenPutBackThreeMetresBehind) {
+  GaitEngine engine = NewEngine();
+  EngineInputs inputs = Direct(Command(Gait::kWalk, 1));
+  Simulate(engine, inputs, 9);
+  Push(inputs, 10, 90);
+  double fallen_s = 0, back_s = 0, fallen_x_m = 0;
+  Simulate(engine, inputs, 8, [&](const EngineOutput& output) {
+    for (const EngineEvent& event : EventsOf(output)) {
+      if (event.kind == EventKind::kFall) fallen_s = output.time_s;
+      if (event.kind == EventKind::kPutBack) {
+        back_s = output.time_s;
+        EXPECT_NEAR(output.links[0].position_m.x(), fallen_x_m - 3, 0.02);
+        EXPECT_NEAR(output.links[0].position_m.y(), 0, 1e-3);
+        EXPECT_EQ(output.gait.gait, Gait::kWalk);  // From its first step it obeys again.
+      }
+    }
+    fallen_x_m = output.links[0].position_m.x();
+  });
+  ASSERT_GT(fallen_s, 9);
+  EXPECT_NEAR(back_s - fallen_s, 0.7, 0.0025);
+  EXPECT_EQ(engine.Output().gait.falls, 1u);
+  EXPECT_GT(engine.Output().links[0].position_m.z(), kLowestBodyM);
+  EXPECT_EQ(engine.Output().root_force_max_n, 0);
+}
+
+TEST(Engine, APutBackOnRequestIsCountedAndDoneOnce) {
+  GaitEngine engine = NewEngine();
+  EngineInputs inputs = Direct(Command(Gait::kWalk, 1));
+  Simulate(engine, inputs, 8);
+  const double x_m = engine.Output().links[0].position_m.x();
+  inputs.put_back_number = 1;
+  Simulate(engine, inputs, 0.05);
+  EXPECT_NEAR(engine.Output().links[0].position_m.x(), x_m - 3, 0.1);
+  Simulate(engine, inputs, 3);
+  EXPECT_EQ(engine.Output().gait.falls, 1u);
+}
+
+TEST(Engine, NonsenseCommandsMeanSteppingAndPublishNothingThatIsNotFinite) {
+  GaitEngine engine = NewEngine();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EngineInputs inputs = Direct({Gait::kRun, nan, nan, nan});
+  Push(inputs, nan, 1e300);
+  Simulate(engine, inputs, 2);
+  const EngineOutput& output = engine.Output();
+  EXPECT_EQ(output.gait.commanded_gait, Gait::kStep);
+  EXPECT_EQ(output.gait.falls, 0u);
+  for (const auto& link : output.links) {
+    EXPECT_TRUE(link.position_m.allFinite() && link.orientation.coeffs().allFinite());
+  }
+}
+
+TEST(Engine, TurnsFiveDegreesAStep) {
+  GaitEngine engine = NewEngine();
+  const double turn_rad = 5 * M_PI / 180;
+  const EngineInputs inputs = Direct(Command(Gait::kWalk, 0.8, 0.2, turn_rad));
+  Simulate(engine, inputs, 3);
+  const auto steps = engine.Output().gait.steps;
+  const double heading_rad = engine.Output().gait.heading_rad;
+  Simulate(engine, inputs, 3);
+  const EngineOutput& output = engine.Output();
+  const double expected_rad = turn_rad * static_cast<double>(output.gait.steps - steps);
+  EXPECT_NEAR(std::remainder(output.gait.heading_rad - heading_rad - expected_rad, 2 * M_PI), 0,
+              1e-9);
+  EXPECT_GT(output.gait.steps - steps, 6u);
+  const Eigen::Vector3d ahead = output.links[0].orientation * Eigen::Vector3d::UnitX();
+  EXPECT_NEAR(std::remainder(std::atan2(ahead.y(), ahead.x()) - output.gait.heading_rad, 2 * M_PI),
+              0, 0.15);
+  EXPECT_EQ(output.gait.falls, 0u);
+}
+
+TEST(Engine, SaysWhenACommandWasGivenAndWhenTakenOver) {
+  GaitEngine engine = NewEngine();
+  Simulate(engine, {}, 2);
+  EngineInputs inputs = Direct(Command(Gait::kRun, 2));
+  inputs.features_number = 0;
+  std::vector<EventKind> kinds;
+  std::uint64_t taken_over = 0;
+  Simulate(engine, inputs, 2, [&](const EngineOutput& output) {
+    for (const EngineEvent& event : EventsOf(output)) {
+      kinds.push_back(event.kind);
+      if (event.kind == EventKind::kGaitTakenOver) taken_over = output.step;
+    }
+  });
+  EXPECT_EQ(kinds, (std::vector{EventKind::kGaitCommanded, EventKind::kGaitChanged,
+                                EventKind::kGaitTakenOver}));
+  EXPECT_EQ(engine.Output().commanded_step, 2001u);
+  EXPECT_EQ(engine.Output().taken_over_step, taken_over);
+}
+
+TEST(Engine, RefusesAWrongFileByName) {
+  EngineTexts texts = Texts();
+  texts.biped = "{}";
+  const auto engine = GaitEngine::Create(texts);
+  ASSERT_FALSE(engine.ok());
+  EXPECT_NE(engine.error().message.find("biped.json"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace footing::engine

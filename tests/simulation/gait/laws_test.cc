@@ -1,0 +1,126 @@
+#include <cmath>
+
+#include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/servo.h"
+#include "tests/simulation/test_world.h"
+
+namespace footing::gait {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A body over its support foot, for laws that ask for little more.
+struct Scene {
+  biped::BipedParameters biped = test::Biped();
+  Gains gains;
+  biped::BodyState body;
+  biped::GaitCommand goal;
+  GaitMemory memory;
+
+  Scene() {
+    body.p_WC = {0, 0, 0.92};
+    for (int i = 0; i < 2; ++i) {
+      const double y = biped::Side(i) * biped.hip_half_spacing_m;
+      body.legs[i].p_WH = {0, y, 0.92};
+      body.legs[i].p_WF = {0, y, 0.02};
+    }
+  }
+  Context context() const { return {body, biped, gains, goal, nullptr, 0.001}; }
+};
+
+/// The pendulum of equation (1): height 0.9 m, walked by the law until it repeats.
+TEST(Equation1, MakesAnInvertedPendulumWalkAtTheDesiredSpeed) {
+  for (const double speed_mps : {0.0, 0.5, 1.2}) {
+    Scene scene;
+    scene.memory.desired_speed_mps = speed_mps;
+    const double w = std::sqrt(kGravityMps2 / 0.9);
+    const double step_s =
+        scene.gains.walking.swing_time_s + scene.gains.walking.double_support_time_s;
+    // The law looks half a double support ahead of the touchdown; so does this pendulum.
+    const double ahead_s = 0.5 * scene.gains.walking.double_support_time_s;
+    Vector3d x(0, 0, 0.92), v(0.8, 0.1, 0), foot(0, 0.1, 0.02), start_of_step;
+    const auto fly = [&](double time_s) {
+      const double c = std::cosh(w * time_s), s = std::sinh(w * time_s);
+      const Vector3d r = x - foot;
+      x.head<2>() = (foot + r * c + v * s / w).head<2>();
+      v.head<2>() = (r * w * s + v * c).head<2>();
+    };
+    for (int step = 0; step < 40; ++step) {
+      start_of_step = x;
+      fly(step_s - ahead_s);
+      scene.body.p_WC = x;
+      scene.body.v_WC = v;
+      scene.memory.support_leg = step % 2;
+      scene.body.legs[scene.memory.support_leg].p_WF = foot;
+      const Vector3d next = PlanWalkingFoothold(scene.context(), scene.memory).p_WF_m;
+      fly(ahead_s);
+      foot = next;
+    }
+    EXPECT_NEAR((x - start_of_step).x() / step_s, speed_mps, 1e-6);
+    const double width_m = std::fabs(foot.y() - scene.body.legs[scene.memory.support_leg].p_WF.y());
+    EXPECT_NEAR(width_m, scene.gains.walking.step_width_m, 1e-6);
+  }
+}
+
+TEST(Equation1, AStepThatWouldCrossTooFarHurries) {
+  Scene scene;
+  EXPECT_EQ(PlanWalkingFoothold(scene.context(), scene.memory).hurry, 0);
+  scene.body.v_WC.y() = 0.9;  // Over the left, supporting foot: the right one must cross.
+  EXPECT_GT(PlanWalkingFoothold(scene.context(), scene.memory).hurry, 0);
+}
+
+TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {
+  Scene scene;
+  scene.memory.gait = stream::Gait::kRun;
+  scene.memory.support_time_s = 0.2;
+  scene.memory.desired_speed_mps = 3;
+  scene.body.v_WC = {3, 0, 1};
+  const double neutral_m = 3 * 0.2 / 2 + scene.gains.hopping.speed_gain_s * 3;
+  EXPECT_NEAR(HoppingFoothold(scene.context(), scene.memory, 0).x(), neutral_m, 1e-12);
+  scene.body.v_WC.x() = 3.5;  // Faster: the foot goes further forward, by T / 2 + |k_R|.
+  EXPECT_NEAR(HoppingFoothold(scene.context(), scene.memory, 0).x(),
+              neutral_m + 0.5 * (0.1 + scene.gains.hopping.velocity_gain_s), 1e-12);
+}
+
+TEST(Equation2, TurnsWithTheHeading) {
+  Scene scene;
+  scene.memory.gait = stream::Gait::kRun;
+  scene.body.v_WC = {2, 0, 0};
+  scene.memory.desired_speed_mps = 2;
+  const Vector3d straight = HoppingFoothold(scene.context(), scene.memory, 1);
+  scene.memory.heading_rad = 0.7;
+  scene.body.v_WC = ToWorld(0.7, {2, 0, 0});
+  const Vector3d turned = HoppingFoothold(scene.context(), scene.memory, 1);
+  EXPECT_LT((turned - ToWorld(0.7, straight)).norm(), 1e-12);
+}
+
+TEST(Mirrored, SwingsTheIdleLegAgainstTheOther) {
+  const Vector3d mirrored = Mirrored(0, {0.3, 0.1, -0.9}, 0.7);
+  EXPECT_NEAR(mirrored.x(), -0.7 * std::sin(std::atan2(0.3, 0.9)), 1e-12);
+  EXPECT_NEAR(mirrored.y(), -0.7 * std::sin(std::atan2(0.1, 0.9)), 1e-12);
+  EXPECT_LT(mirrored.z(), 0);
+}
+
+TEST(LegInverseKinematics, BringsTheFootWhereItIsWanted) {
+  const biped::BipedParameters biped = test::Biped();
+  const Vector3d wanted(0.25, -0.12, -0.85);
+  const auto joints = LegInverseKinematics(biped, wanted);
+  // Roll about x, then pitch about y, then along -z.
+  const Vector3d foot = Eigen::AngleAxisd(joints[1], Vector3d::UnitX()) *
+                        (Eigen::AngleAxisd(joints[2], Vector3d::UnitY()) *
+                         Vector3d(0, 0, -(biped.leg_length_m + joints[3])));
+  EXPECT_LT((foot - wanted).norm(), 1e-12);
+}
+
+TEST(LegInverseKinematics, StaysWithinTheLegsStroke) {
+  const biped::BipedParameters biped = test::Biped();
+  EXPECT_EQ(LegInverseKinematics(biped, {0, 0, -9})[3], biped.leg_length_max_m - 1);
+  EXPECT_EQ(LegInverseKinematics(biped, {0, 0, -0.01})[3], biped.leg_length_min_m - 1);
+  for (const double joint : LegInverseKinematics(biped, Vector3d::Zero())) {
+    EXPECT_TRUE(std::isfinite(joint));
+  }
+}
+
+}  // namespace
+}  // namespace footing::gait

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "common/config/data_file.h"
+#include "daemon/simulation/biped/mjcf.h"
+#include "daemon/simulation/biped/parameters.h"
+
+/// The product's own data, for tests of the simulation.
+namespace footing::test {
+
+inline std::string DataFile(const std::string& name) {
+  const Result<std::string> text = config::ReadDataFile(name);
+  EXPECT_TRUE(text.ok()) << (text.ok() ? "" : text.error().message);
+  return text.ok() ? text.value() : "";
+}
+
+inline biped::BipedParameters Biped() {
+  return biped::ParseBiped(DataFile("biped.json"), "biped.json").value();
+}
+
+/// The biped over a plane at z = 0.
+inline physics::World LevelWorld(double step_s = 0.001) {
+  const char* plane = "<geom type='plane' contype='1' conaffinity='2' size='0 0 1'/>";
+  return std::move(
+             physics::World::FromMjcf(biped::WriteMjcf(Biped(), plane, step_s), biped::Names()))
+      .value();
+}
+
+}  // namespace footing::test
