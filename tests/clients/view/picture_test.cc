@@ -14,9 +14,9 @@ namespace {
 TEST(Picture, Try) {
   auto context = OffScreen::Create();
   ASSERT_TRUE(context) << context.error().message;
-  auto target = Target::Create(1280, 720, 4);
+  auto target = Target::Create(getenv("BIG") ? 2560 : 1280, getenv("BIG") ? 1440 : 720, 4);
   ASSERT_TRUE(target);
-  auto screen = Screen::Create(1);
+  auto screen = Screen::Create(getenv("BIG") ? 2 : 1);
   ASSERT_TRUE(screen) << screen.error().message;
   const char* gait = std::getenv("T");
   const double t = gait ? atof(gait) : 6.13;
@@ -32,7 +32,8 @@ TEST(Picture, Try) {
   target->Bind();
   HudOptions options;
   options.hidden = getenv("SUBJECT") != nullptr;
-  (*screen)->Draw(picture, model, frame, scene::made::ClockAt(t), options, 1280, 720);
+  (*screen)->Draw(picture, model, frame, scene::made::ClockAt(t), options,
+                  getenv("BIG") ? 2560 : 1280, getenv("BIG") ? 1440 : 720);
   ASSERT_TRUE(WritePng(target->Read(), "/tmp/view/try.png"));
 }
 

@@ -40,7 +40,7 @@ void DrawWaiting(const Paint& p, const scene::Model& model, ImVec2 size) {
 }
 
 void DrawWaitingLines(const Paint& p, const scene::Model& model, ImVec2 at) {
-  float y = at.y;
+  float y = at.y - 22 * p.scale;
   for (const scene::LinkReport& link : model.links) {
     const auto lines = scene::WaitingLines(link);
     if (lines.empty()) continue;
@@ -48,7 +48,7 @@ void DrawWaitingLines(const Paint& p, const scene::Model& model, ImVec2 at) {
     const float s = p.scale, width = p.WidthOf(p.fonts.small, text) + 20 * s;
     p.list->AddRectFilled({at.x, y}, {at.x + width, y + 22 * s}, colour::kPanel, 8 * s);
     p.Write(p.fonts.small, {at.x + 10 * s, y + 4 * s}, colour::kWarning, text);
-    y += 26 * s;
+    y -= 26 * s;
   }
 }
 
