@@ -110,7 +110,8 @@ Plumage PlumageOf(std::uint32_t character) {
       {Rgb(0x6a994e), Rgb(0xf2eecb), Rgb(0x386641), Rgb(0x4d7c43), Rgb(0xbc4749), Rgb(0xe0a458),
        Rgb(0xf4a259)},
   }};
-  return kPlumages[character % kPlumages.size()];
+  // Characters count from 1.
+  return kPlumages[(character + kPlumages.size() - 1) % kPlumages.size()];
 }
 
 void AddBird(const BirdSkeleton& skeleton, const CharacterPose& pose, const BirdMotion& motion,
