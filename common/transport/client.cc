@@ -1,5 +1,7 @@
 #include "common/transport/client.h"
 
+#include <google/protobuf/arena.h>
+
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <map>
@@ -19,6 +21,8 @@ namespace {
 
 constexpr std::uint32_t kDefaultDeadlineMs = 1000;
 constexpr std::size_t kMaxWaitingCommands = 64;
+/// Enough for a tick of eight devices; a longer message takes more from the heap.
+constexpr std::size_t kArenaBytes = 32 << 10;
 
 v1::CommandResult Failed(std::uint64_t id, const std::string& why) {
   v1::CommandResult result;
@@ -38,7 +42,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
         retry_(io),
         pulse_(io),
         backoff_(options_.backoff_min_s, options_.backoff_max_s),
-        random_(std::random_device()()) {}
+        random_(std::random_device()()),
+        arena_(block_.data(), block_.size()) {}
 
   void Start() {
     if (started_) return;
@@ -139,33 +144,34 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnFrame(std::string_view payload) {
-    // The same message each time: protobuf then reuses its memory.
-    if (!message_.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+    arena_.Reset();
+    auto& message = *google::protobuf::Arena::CreateMessage<v1::Envelope>(&arena_);
+    if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
       return Break("the server sent what is no message of Footing's protocol");
     }
     if (state_ == LinkState::kStale) SetState(LinkState::kLive, live_text_);
     if (!connection_) return;  // The handler stopped us.
-    switch (message_.body_case()) {
+    switch (message.body_case()) {
       case v1::Envelope::kTick:
-        return OnTick(message_.tick());
+        return OnTick(message.tick());
       case v1::Envelope::kGap:
-        return Call(handlers_.on_gap, message_.gap());
+        return Call(handlers_.on_gap, message.gap());
       case v1::Envelope::kPing:
-        return OnPing(message_.ping());
+        return OnPing(message.ping());
       case v1::Envelope::kPong:
-        return OnPong(message_.pong());
+        return OnPong(message.pong());
       case v1::Envelope::kCommandResult:
-        return OnAnswer(message_.command_result());
+        return OnAnswer(message.command_result());
       case v1::Envelope::kWelcome:
-        return OnWelcome(message_.welcome());
+        return OnWelcome(message.welcome());
       case v1::Envelope::kSubscribed:
         return OnSubscribed();
       case v1::Envelope::kRefused:
         refused_ = true;
-        goodbye_ = message_.refused().message();
+        goodbye_ = message.refused().message();
         return;
       case v1::Envelope::kGoodbye:
-        goodbye_ = message_.goodbye().reason();
+        goodbye_ = message.goodbye().reason();
         return;
       default:  // Of a later minor version.
         return;
@@ -184,6 +190,9 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     if (last_sequence_ != 0 && options_.policy != v1::QUEUE_POLICY_LATEST) {
       wish.set_from_sequence(last_sequence_ + 1);
       wish.set_from_epoch(epoch_);
+    } else if (options_.from_ring_start) {
+      wish.set_from_sequence(1);
+      wish.set_from_epoch(welcome.epoch());
     }
     if (welcome.epoch() != epoch_) last_sequence_ = 0;
     epoch_ = welcome.epoch();
@@ -349,7 +358,10 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   std::uint64_t last_command_ = 0;
   std::map<std::uint64_t, Waiting> commands_;
   ClockOffsetEstimator offset_;
-  v1::Envelope message_;
+  /// Every message is parsed into one block, again and again: a tick has dozens of small parts, and
+  /// fetching them from all over the heap takes longer than parsing them.
+  std::vector<char> block_ = std::vector<char>(kArenaBytes);
+  google::protobuf::Arena arena_;
 };
 
 Client::Client(boost::asio::io_context& io, ClientOptions options, ClientHandlers handlers)

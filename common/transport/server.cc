@@ -47,6 +47,7 @@ class Server::Implementation {
   std::uint64_t Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
     const SharedTick tick = shared_.publication.Publish(host_ns, channels);
     for (const auto& session : sessions_) session->Offer(tick);
+    shared_.publication.Trim();
     return tick->sequence;
   }
 

@@ -17,6 +17,9 @@ class TickRing {
 
   /// The tick's sequence follows the last one's.
   void Push(SharedTick tick);
+  /// Lets go what is over the bounds. Apart from Push, so that it can wait until the new tick is on
+  /// its way.
+  void Trim();
 
   /// Null when it is not held (any more, or yet).
   const SharedTick* Find(std::uint64_t sequence) const;

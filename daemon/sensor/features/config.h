@@ -50,6 +50,11 @@ struct CadenceConfig {
   double jump_persistence = 0.25;
   /// How long the last period is kept when none is found, in cycles.
   double hold_cycles = 1.0;
+  /// While the other hand still shows the last period within this share, this one keeps it as well,
+  /// for so many cycles: one hand whose phase jumps looks faster or slower until the jump is two
+  /// cycles old.
+  double partner_share = 0.08;
+  double partner_cycles = 2.0;
 };
 
 /// 3) Phase: eq. (4).

@@ -66,7 +66,10 @@ std::string StatusBytes(const std::string& serial) {
 
 TEST(Publication, TheRingHoldsItsSecondsAndNoMore) {
   Publication publication(Options());
-  for (int i = 0; i < 12; ++i) publication.Publish(i, {});
+  for (int i = 0; i < 12; ++i) {
+    publication.Publish(i, {});
+    publication.Trim();
+  }
   // 0.5 s at 10 Hz are 5 ticks.
   EXPECT_EQ(publication.ring().first(), 8u);
   EXPECT_EQ(publication.ring().last(), 12u);
@@ -80,7 +83,10 @@ TEST(Publication, TheRingIsBoundedInBytesToo) {
   options.ring_s = 1000;
   options.ring_max_bytes = 100'000;
   Publication publication(options);
-  for (int i = 0; i < 50; ++i) publication.Publish(i, {{17, std::string(10'000, '\0')}});
+  for (int i = 0; i < 50; ++i) {
+    publication.Publish(i, {{17, std::string(10'000, '\0')}});
+    publication.Trim();
+  }
   EXPECT_LE(publication.ring().bytes(), 100'000u);
   EXPECT_EQ(publication.ring().last(), 50u);
   EXPECT_GE(publication.ring().first(), 41u);

@@ -74,21 +74,31 @@ TEST(FindPeriod, FindsNoneInALine) {
 
 TEST(Cadence, AJumpMustPersistForAQuarterOfTheOldPeriod) {
   const CadenceConfig config;
-  Cadence cadence = Next({}, {true, 1.0, 1}, 0.01, config);
+  Cadence cadence = Next({}, {true, 1.0, 1}, {}, 0.01, config);
   for (int i = 0; i < 25; ++i) {
-    cadence = Next(cadence, {true, 0.5, 1}, 0.01, config);
+    cadence = Next(cadence, {true, 0.5, 1}, {}, 0.01, config);
     EXPECT_EQ(cadence.period_s, 1.0) << i;
   }
-  for (int i = 0; i < 2; ++i) cadence = Next(cadence, {true, 0.5, 1}, 0.01, config);
+  for (int i = 0; i < 2; ++i) cadence = Next(cadence, {true, 0.5, 1}, {}, 0.01, config);
   EXPECT_EQ(cadence.period_s, 0.5);
+}
+
+TEST(Cadence, AJumpOfOneHandAloneIsNotOne) {
+  const CadenceConfig config;
+  const PeriodEstimate partner{true, 1.0, 1};
+  Cadence cadence = Next({}, {true, 1.0, 1}, partner, 0.01, config);
+  for (int i = 0; i < 190; ++i) cadence = Next(cadence, {true, 0.5, 1}, partner, 0.01, config);
+  EXPECT_EQ(cadence.period_s, 1.0);
+  for (int i = 0; i < 20; ++i) cadence = Next(cadence, {true, 0.5, 1}, partner, 0.01, config);
+  EXPECT_EQ(cadence.period_s, 0.5);  // Two cycles later it is.
 }
 
 TEST(Cadence, ALossIsBridgedForOneCycle) {
   const CadenceConfig config;
-  Cadence cadence = Next({}, {true, 0.5, 1}, 0.01, config);
-  for (int i = 0; i < 49; ++i) cadence = Next(cadence, {}, 0.01, config);
+  Cadence cadence = Next({}, {true, 0.5, 1}, {}, 0.01, config);
+  for (int i = 0; i < 49; ++i) cadence = Next(cadence, {}, {}, 0.01, config);
   EXPECT_TRUE(cadence.valid);
-  for (int i = 0; i < 2; ++i) cadence = Next(cadence, {}, 0.01, config);
+  for (int i = 0; i < 2; ++i) cadence = Next(cadence, {}, {}, 0.01, config);
   EXPECT_FALSE(cadence.valid);
 }
 
