@@ -30,6 +30,13 @@ CopSample Circle(double t) {
 /// 5 mm ML, 12 mm AP, 0.5 Hz.
 CopSample Ellipse(double t) { return {t, 0.005 * std::sin(kPi * t), 0.012 * std::cos(kPi * t)}; }
 
+/// Two tones each way: 4 and 1.5 mm ML, 7 and 2 mm AP.
+CopSample TwoTone(double t) {
+  const double x = 4 * std::sin(2 * kPi * 0.3 * t) + 1.5 * std::sin(2 * kPi * 1.1 * t + 0.4);
+  const double y = 7 * std::sin(2 * kPi * 0.2 * t + 0.9) + 2 * std::sin(2 * kPi * 0.9 * t);
+  return {t, x / 1000, y / 1000};
+}
+
 TEST(Sway, CircleHasItsClosedForms) {
   const Sway sway = MeasureSignal(Circle);
   // 2999 chords of a polygon of 100 corners, radius 10 mm: each 2 r sin(pi / 100).
@@ -147,6 +154,7 @@ TEST(Sway, AgreesWithTheReferenceTableInAllItsColumns) {
   ASSERT_EQ(reference.size(), 3u);
   ExpectEqual(MeasureSignal(Circle), reference.at("circle_r10mm_1Hz"));
   ExpectEqual(MeasureSignal(Ellipse), reference.at("ellipse_ap12_ml5_0.5Hz"));
+  ExpectEqual(MeasureSignal(TwoTone), reference.at("two_tone"));
 }
 
 }  // namespace
