@@ -87,11 +87,11 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     connection_->Start();
     log::Info("attached " + std::to_string(devices_.size()) + " simulated devices to " +
               options_.to.Text());
-    start_ = std::chrono::steady_clock::now();
     start_ns_ = clock::MonotonicNs();
+    start_ = std::chrono::steady_clock::now();
     for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
-      devices_[slot].Begin();
       SendAttach(slot);
+      devices_[slot].Restart();
       Schedule(slot);
     }
   }
@@ -107,7 +107,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   }
 
   void SendAttach(std::size_t slot) {
-    const Identity& identity = devices_[slot].identity();
+    const device_models::Identity& identity = devices_[slot].identity();
     v1::DeviceEnvelope envelope;
     v1::DeviceAttach& attach = *envelope.mutable_attach();
     attach.set_slot(static_cast<std::uint32_t>(slot));
@@ -127,32 +127,34 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     const std::string& bytes = envelope.output().report();
     const std::size_t slot = envelope.output().slot();
     const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    const std::int64_t now_ns = clock::MonotonicNs();
     for (const auto& report : devices_[slot].HandleOutput({first, bytes.size()})) {
-      SendReport(slot, report, clock::MonotonicNs());
+      SendReport(slot, report, now_ns);
     }
     if (const std::string changes = devices_[slot].Changes(); !changes.empty()) log::Info(changes);
   }
 
   void Schedule(std::size_t slot) {
-    const double due_s = devices_[slot].NextArrivalSeconds() / options_.rate_scale;
-    clocks_[slot]->expires_at(start_ + std::chrono::nanoseconds(SecondsToNanoseconds(due_s)));
-    clocks_[slot]->async_wait([weak = weak_from_this(), slot](boost::system::error_code error) {
-      const auto self = weak.lock();
-      if (self && !error && self->connection_ && !self->stopped_) self->Deliver(slot);
-    });
+    StandIn::Arrival next = devices_[slot].Next();
+    next.arrives_s /= options_.rate_scale;
+    next.sampled_s /= options_.rate_scale;
+    clocks_[slot]->expires_at(start_ +
+                              std::chrono::nanoseconds(SecondsToNanoseconds(next.arrives_s)));
+    clocks_[slot]->async_wait(
+        [weak = weak_from_this(), slot, next](boost::system::error_code error) {
+          const auto self = weak.lock();
+          if (self && !error && self->connection_ && !self->stopped_) self->Deliver(slot, next);
+        });
   }
 
-  void Deliver(std::size_t slot) {
-    if (options_.duration_s > 0 &&
-        devices_[slot].NextArrivalSeconds() / options_.rate_scale >= options_.duration_s) {
+  void Deliver(std::size_t slot, const StandIn::Arrival& arrival) {
+    if (options_.duration_s > 0 && arrival.arrives_s >= options_.duration_s) {
       if (!ended_) on_end_();
       ended_ = true;
       return;
     }
-    const StandIn::Delivery delivery = devices_[slot].Deliver();
-    if (delivery.report) {
-      const double sampled_s = delivery.sampled_s / options_.rate_scale;
-      SendReport(slot, *delivery.report, start_ns_ + SecondsToNanoseconds(sampled_s));
+    if (const auto report = devices_[slot].Deliver(arrival.sampled_s)) {
+      SendReport(slot, *report, start_ns_ + SecondsToNanoseconds(arrival.sampled_s));
     }
     Schedule(slot);
   }
@@ -177,10 +179,10 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   boost::asio::steady_timer redial_;
   std::vector<StandIn> devices_;
   std::vector<std::unique_ptr<boost::asio::steady_timer>> clocks_;
+  std::chrono::steady_clock::time_point start_;
   std::vector<std::uint64_t> sequences_;
   std::unique_ptr<transport::FramedConnection> connection_;
   std::string waits_for_;
-  std::chrono::steady_clock::time_point start_;
   std::int64_t start_ns_ = 0;
   bool stopped_ = false;
   bool ended_ = false;

@@ -10,6 +10,7 @@
 #include "common/config/data_file.h"
 #include "common/synthetic/hand_motion.h"
 #include "common/synthetic/random.h"
+#include "common/synthetic/sensor.h"
 #include "common/units/units.h"
 
 namespace footing::stream_client {
@@ -22,27 +23,30 @@ constexpr std::size_t kMaxRecordingBytes = 256u << 20;
 /// How fast a person changes from one motion to the next.
 constexpr double kBlendS = 0.15;
 
-/// Noise of the real accelerometer: 3.1 mg rms an axis (ADXL330, 50 Hz band).
-constexpr double kNoiseMps2 = 0.0304;
-
 Result<LinkQuality> ParseLink(const std::string& name) {
-  const auto link = device_models::LinkNamed(name);
-  if (!link) return UsageError("--link " + name + ": there are ideal, good and poor");
-  return *link;
+  if (const auto quality = device_models::LinkNamed(name)) return *quality;
+  return UsageError("--link " + name + ": there are ideal, good and poor");
 }
 
 /// Seeds of one device, so that no two devices of a run share their random numbers.
-std::uint64_t DeviceSeed(const Common& common, std::size_t device) {
+std::uint64_t DeviceSeed(const Common& common, std::uint64_t device) {
   return common.seed * 1000 + device;
 }
 
-/// A made motion as the sensor feels it: with its noise.
-StandIn::SpecificForce WithNoise(StandIn::SpecificForce motion, std::uint64_t seed) {
-  auto random = std::make_shared<synthetic::Random>(seed);
-  return [motion = std::move(motion), random](double t_s) {
-    Eigen::Vector3d force = motion(t_s);
-    for (int axis = 0; axis < 3; ++axis) force[axis] += kNoiseMps2 * random->Normal();
-    return force;
+StandIn MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device, DeviceRole role,
+                    StandIn::SpecificForce force) {
+  const std::uint64_t seed = DeviceSeed(common, device);
+  return {device_models::Wiimote(seed), std::move(force), role,
+          device_models::WiimoteLink(link, seed + 500)};
+}
+
+/// What a real accelerometer adds to a made motion.
+StandIn::SpecificForce WithNoise(std::uint64_t seed, StandIn::SpecificForce force) {
+  return [random = synthetic::Random(seed), force](double t_s) mutable {
+    const double sd_mps2 = synthetic::SensorModel().noise_mps2;
+    Eigen::Vector3d felt = force(t_s);
+    for (int axis = 0; axis < 3; ++axis) felt[axis] += sd_mps2 * random.Normal();
+    return felt;
   };
 }
 
@@ -63,8 +67,8 @@ StandIn::CornerForces PlayCorners(std::shared_ptr<const Table> table) {
     auto next = std::upper_bound(table->rows.begin(), table->rows.end(), time_s,
                                  [](double time, const auto& row) { return time < row[0]; });
     const auto& row = next == table->rows.begin() ? *next : *std::prev(next);
-    return device_models::BoardForces{KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
-                                      KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])};
+    return device_models::CornerForces{KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
+                                       KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])};
   };
 }
 
@@ -113,14 +117,14 @@ Result<Plan> PlanUser(const std::string& script, const std::string& interface,
   auto time = [motion](double t_s) { return std::fmod(t_s, motion->DurationSeconds()); };
   Plan plan;
   plan.duration_s = Duration(common, 0);
-  const std::uint64_t left = DeviceSeed(common, 1);
-  const std::uint64_t right = DeviceSeed(common, 2);
-  plan.devices.emplace_back(
-      left, *link, DeviceRole::kLeftHand,
-      WithNoise([motion, time](double t_s) { return motion->At(time(t_s)).left_mps2; }, left));
-  plan.devices.emplace_back(
-      right, *link, DeviceRole::kRightHand,
-      WithNoise([motion, time](double t_s) { return motion->At(time(t_s)).right_mps2; }, right));
+  plan.devices.push_back(MakeWiimote(common, *link, 1, DeviceRole::kLeftHand,
+                                     WithNoise(DeviceSeed(common, 1), [motion, time](double t_s) {
+                                       return motion->At(time(t_s)).left_mps2;
+                                     })));
+  plan.devices.push_back(MakeWiimote(common, *link, 2, DeviceRole::kRightHand,
+                                     WithNoise(DeviceSeed(common, 2), [motion, time](double t_s) {
+                                       return motion->At(time(t_s)).right_mps2;
+                                     })));
   return plan;
 }
 
@@ -138,8 +142,8 @@ Result<Plan> PlanAccelerations(const std::string& left, const std::string& right
     const auto table = ReadTable(path, 3);
     if (!table) return table.error();
     longest_s = std::max(longest_s, static_cast<double>((*table)->rows.size()) / rate_hz);
-    plan.devices.emplace_back(DeviceSeed(common, plan.devices.size() + 1), *link, role,
-                              PlayAccelerations(*table, rate_hz));
+    plan.devices.push_back(MakeWiimote(common, *link, plan.devices.size() + 1, role,
+                                       PlayAccelerations(*table, rate_hz)));
   }
   plan.duration_s = Duration(common, longest_s);
   return plan;
@@ -158,8 +162,9 @@ Result<Plan> PlanCorners(const std::string& left, const std::string& right, cons
     if (!table) return table.error();
     if (const auto times = CheckTimes(**table, path); !times) return times.error();
     longest_s = std::max(longest_s, (*table)->rows.back()[0] - (*table)->rows.front()[0]);
-    plan.devices.emplace_back(DeviceSeed(common, plan.devices.size() + 1), *link, role,
-                              PlayCorners(*table));
+    const std::uint64_t seed = DeviceSeed(common, plan.devices.size() + 1);
+    plan.devices.emplace_back(device_models::BalanceBoard(seed), PlayCorners(*table), role,
+                              device_models::BoardLink(*link, seed + 500));
   }
   plan.duration_s = Duration(common, longest_s);
   return plan;

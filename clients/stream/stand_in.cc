@@ -1,91 +1,77 @@
 #include "clients/stream/stand_in.h"
 
-#include <array>
-#include <cstdio>
 #include <utility>
 
 #include "common/units/units.h"
 
 namespace footing::stream_client {
-namespace {
 
 using device_models::BalanceBoard;
 using device_models::Wiimote;
 
-/// Two of a run must not share it: it tells devices apart.
-std::string SerialOf(std::uint64_t seed) {
-  std::array<char, 24> text{};
-  std::snprintf(text.data(), text.size(), "02:%02x:%02x:%02x:%02x:%02x",
-                static_cast<unsigned>((seed >> 32) & 0xff),
-                static_cast<unsigned>((seed >> 24) & 0xff),
-                static_cast<unsigned>((seed >> 16) & 0xff),
-                static_cast<unsigned>((seed >> 8) & 0xff), static_cast<unsigned>(seed & 0xff));
-  return text.data();
-}
-
-}  // namespace
-
-StandIn::StandIn(std::uint64_t seed, device_models::LinkQuality link, stream::DeviceRole role,
-                 SpecificForce force)
-    : seed_(seed),
-      link_config_(device_models::WiimoteLink(link, seed)),
-      role_(role),
+StandIn::StandIn(Wiimote wiimote, SpecificForce force, stream::DeviceRole role,
+                 const device_models::LinkConfig& link)
+    : fresh_(std::move(wiimote)),
+      device_(fresh_),
       force_(std::move(force)),
-      identity_{5, Wiimote::kVendor, Wiimote::kProduct, Wiimote::kName, SerialOf(seed)} {
-  Begin();
-}
-
-StandIn::StandIn(std::uint64_t seed, device_models::LinkQuality link, stream::DeviceRole role,
-                 CornerForces forces)
-    : seed_(seed),
-      link_config_(device_models::BoardLink(link, seed)),
       role_(role),
+      link_config_(link),
+      link_(link, 0) {}
+
+StandIn::StandIn(BalanceBoard board, CornerForces forces, stream::DeviceRole role,
+                 const device_models::LinkConfig& link)
+    : fresh_(std::move(board)),
+      device_(fresh_),
       forces_(std::move(forces)),
-      identity_{5, BalanceBoard::kVendor, BalanceBoard::kProduct, BalanceBoard::kName,
-                SerialOf(seed)} {
-  Begin();
+      role_(role),
+      link_config_(link),
+      link_(link, 0) {}
+
+const device_models::Identity& StandIn::identity() const {
+  return std::visit(
+      [](const auto& device) -> const auto& { return device.identity(); }, device_);
 }
 
-void StandIn::Begin() {
-  if (force_) {
-    wiimote_.emplace(seed_);
-  } else {
-    board_.emplace(seed_);
+std::vector<device_models::Report> StandIn::HandleOutput(std::span<const std::uint8_t> output) {
+  return std::visit([output](auto& device) { return device.HandleOutput(output); }, device_);
+}
+
+StandIn::Arrival StandIn::Next() {
+  const device_models::LinkModel::Arrival arrival = link_.Next();
+  return {NanosecondsToSeconds(arrival.arrives_ns), NanosecondsToSeconds(arrival.sampled_ns)};
+}
+
+std::optional<device_models::Report> StandIn::Deliver(double sampled_s) {
+  auto* wiimote = std::get_if<Wiimote>(&device_);
+  if (sampled_s != held_s_) {
+    held_s_ = sampled_s;
+    if (wiimote != nullptr) {
+      held_force_ = force_(sampled_s);
+    } else {
+      held_corners_ = forces_(sampled_s);
+    }
   }
-  link_.emplace(link_config_, 0);
-  next_ = link_->Next();
+  if (wiimote != nullptr) return wiimote->Sample(held_force_);
+  return std::get<BalanceBoard>(device_).Sample(held_corners_);
+}
+
+void StandIn::Restart() {
+  device_ = fresh_;
+  link_ = device_models::LinkModel(link_config_, 0);
+  held_s_ = -1;
   leds_ = 0;
   rumble_ = false;
 }
 
-device_models::Controller& StandIn::controller() {
-  return wiimote_ ? wiimote_->controller() : board_->controller();
-}
-
-std::vector<device_models::Report> StandIn::HandleOutput(std::span<const std::uint8_t> output) {
-  return controller().HandleOutput(output);
-}
-
-double StandIn::NextArrivalSeconds() const { return NanosecondsToSeconds(next_.arrives_ns); }
-
-StandIn::Delivery StandIn::Deliver() {
-  Delivery delivery;
-  delivery.arrives_s = NanosecondsToSeconds(next_.arrives_ns);
-  delivery.sampled_s = NanosecondsToSeconds(next_.sampled_ns);
-  delivery.report = wiimote_ ? wiimote_->Sample(force_(delivery.sampled_s))
-                             : board_->Sample(forces_(delivery.sampled_s));
-  next_ = link_->Next();
-  return delivery;
-}
-
 std::string StandIn::Changes() {
+  const auto [leds, rumble] = std::visit(
+      [](const auto& device) { return std::pair(device.leds(), device.rumble()); }, device_);
   std::string line;
-  if (controller().leds() != leds_) line += " LEDs " + std::to_string(controller().leds());
-  if (controller().rumble() != rumble_)
-    line += controller().rumble() ? " rumble on" : " rumble off";
-  leds_ = controller().leds();
-  rumble_ = controller().rumble();
-  return line.empty() ? line : identity_.serial + line;
+  if (leds != leds_) line += " LEDs " + std::to_string(leds);
+  if (rumble != rumble_) line += rumble ? " rumble on" : " rumble off";
+  leds_ = leds;
+  rumble_ = rumble;
+  return line.empty() ? line : identity().serial + line;
 }
 
 }  // namespace footing::stream_client

@@ -61,9 +61,12 @@ std::uint16_t Counts(const BalanceBoard::Points& points, double force_n) {
 }  // namespace
 
 BalanceBoard::BalanceBoard(std::uint64_t seed)
-    : points_(DrawPoints(seed)), controller_(MakeMemory(points_)) {}
+    : points_(DrawPoints(seed)), controller_(MakeMemory(points_)) {
+  identity_.name = "Nintendo RVL-WBC-01";
+  identity_.serial = MakeSerial(seed);
+}
 
-std::optional<Report> BalanceBoard::Sample(const BoardForces& forces, bool button) {
+std::optional<Report> BalanceBoard::Sample(const CornerForces& forces, bool button) {
   Readings readings;
   readings.buttons = button ? 0x0008 : 0;
   readings.extension.fill(0xff);

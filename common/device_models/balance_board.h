@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "common/device_models/controller.h"
+#include "common/device_models/identity.h"
 
 namespace footing::device_models {
 
 /// N on each sensor.
-struct BoardForces {
+struct CornerForces {
   double top_left_n = 0;
   double top_right_n = 0;
   double bottom_left_n = 0;
@@ -24,10 +25,9 @@ class BalanceBoard {
  public:
   explicit BalanceBoard(std::uint64_t seed);
 
-  static constexpr std::uint16_t kVendor = 0x057e;
-  static constexpr std::uint16_t kProduct = 0x0306;
-  static constexpr const char* kName = "Nintendo RVL-WBC-01";
   static constexpr std::size_t kCorners = 4;  ///< Top right, bottom right, top left, bottom left.
+
+  const Identity& identity() const { return identity_; }
 
   std::vector<Report> HandleOutput(std::span<const std::uint8_t> report) {
     return controller_.HandleOutput(report);
@@ -35,9 +35,11 @@ class BalanceBoard {
 
   /// The report of one sample, when the mode calls for one; before the extension is switched to
   /// plain bytes they are of no use (FF).
-  std::optional<Report> Sample(const BoardForces& forces, bool button = false);
+  std::optional<Report> Sample(const CornerForces& forces, bool button = false);
 
   Controller& controller() { return controller_; }
+  std::uint8_t leds() const { return controller_.leds(); }  ///< Bits 0 to 3.
+  bool rumble() const { return controller_.rumble(); }
 
   /// Counts at 0, 17 and 34 kg.
   using Points = std::array<int, 3>;
@@ -45,6 +47,7 @@ class BalanceBoard {
 
  private:
   std::array<Points, kCorners> points_;
+  Identity identity_;
   Controller controller_;
 };
 

@@ -66,7 +66,10 @@ Memory MakeMemory(const std::array<Wiimote::Axis, 3>& axes) {
 
 }  // namespace
 
-Wiimote::Wiimote(std::uint64_t seed) : axes_(DrawAxes(seed)), controller_(MakeMemory(axes_)) {}
+Wiimote::Wiimote(std::uint64_t seed) : axes_(DrawAxes(seed)), controller_(MakeMemory(axes_)) {
+  identity_.name = "Nintendo RVL-CNT-01";
+  identity_.serial = MakeSerial(seed);
+}
 
 std::optional<Report> Wiimote::Sample(const Eigen::Vector3d& specific_force_S_mps2,
                                       std::uint16_t buttons) {

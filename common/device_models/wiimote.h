@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/device_models/controller.h"
+#include "common/device_models/identity.h"
 
 namespace footing::device_models {
 
@@ -16,9 +17,7 @@ class Wiimote {
  public:
   explicit Wiimote(std::uint64_t seed);
 
-  static constexpr std::uint16_t kVendor = 0x057e;
-  static constexpr std::uint16_t kProduct = 0x0306;
-  static constexpr const char* kName = "Nintendo RVL-CNT-01";
+  const Identity& identity() const { return identity_; }
 
   std::vector<Report> HandleOutput(std::span<const std::uint8_t> report) {
     return controller_.HandleOutput(report);
@@ -31,6 +30,8 @@ class Wiimote {
                                std::uint16_t buttons = 0);
 
   Controller& controller() { return controller_; }
+  std::uint8_t leds() const { return controller_.leds(); }  ///< Bits 0 to 3.
+  bool rumble() const { return controller_.rumble(); }
 
   struct Axis {
     int zero_counts = 0x200;
@@ -41,6 +42,7 @@ class Wiimote {
 
  private:
   std::array<Axis, 3> axes_;
+  Identity identity_;
   Controller controller_;
 };
 

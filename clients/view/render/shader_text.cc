@@ -8,21 +8,21 @@ uniform mat4 u_clip_from_world;
 uniform vec3 u_eye;
 const vec3 kSun = vec3(-0.40, 0.52, 0.755);
 const vec3 kSunLight = vec3(1.75, 1.55, 1.25);
-const vec3 kHorizon = vec3(0.86, 0.80, 0.70);
-const vec3 kZenith = vec3(0.16, 0.38, 0.66);
+const vec3 kHorizon = vec3(0.74, 0.84, 0.90);
+const vec3 kZenith = vec3(0.09, 0.30, 0.66);
 
 vec3 SkyLight(vec3 direction) {
   float up = clamp(direction.z, 0.0, 1.0);
-  vec3 sky = mix(kHorizon, kZenith, pow(up, 0.52));
+  vec3 sky = mix(kHorizon, kZenith, 1.0 - exp(-4.2 * up));
   float sun = max(dot(direction, normalize(kSun)), 0.0);
   return sky + vec3(0.55, 0.36, 0.16) * pow(sun, 12.0) * 0.5;
 }
 vec3 InFog(vec3 colour, float distance_m) {
-  float clear = exp(-distance_m * distance_m * 0.00030);
+  float clear = exp(-distance_m * distance_m * 0.00016);
   return mix(kHorizon, colour, clear);
 }
 vec4 ToScreen(vec3 colour) {
-  vec3 mapped = colour / (1.0 + 0.18 * colour);
+  vec3 mapped = colour / (1.0 + 0.10 * colour);
   return vec4(pow(clamp(mapped, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
 }
 )";
@@ -86,7 +86,7 @@ void main() {
   vec3 sun = normalize(kSun);
   float lit = max((dot(n, sun) + 0.28) / 1.28, 0.0);
   float near_floor = clamp((v_position.z - u_floor) * 1.2 + 0.45, 0.45, 1.0);
-  vec3 above = vec3(0.52, 0.62, 0.74), below = vec3(0.40, 0.29, 0.21);
+  vec3 above = vec3(0.44, 0.56, 0.70), below = vec3(0.34, 0.22, 0.15);
   vec3 ambient = mix(below, above, 0.5 + 0.5 * n.z) * near_floor;
   vec3 colour = v_colour * (ambient + kSunLight * lit * lit * 0.75);
   float rim = pow(1.0 - max(dot(n, to_eye), 0.0), 3.0);
@@ -151,11 +151,11 @@ void main() {
   vec3 colour = SkyLight(direction);
   if (direction.z < 0.2) {
     float azimuth = atan(direction.y, direction.x);
-    float far = 0.085 * Ridge(azimuth, 1.0), near = 0.052 * Ridge(azimuth, 4.0);
+    float far = 0.100 * Ridge(azimuth, 1.0), near = 0.055 * Ridge(azimuth, 4.0);
     float edge = fwidth(direction.z) + 1e-5;
-    vec3 far_hill = mix(kHorizon, vec3(0.42, 0.56, 0.68), 0.45);
-    vec3 near_hill = mix(kHorizon, vec3(0.36, 0.50, 0.50), 0.62);
-    float haze = smoothstep(0.0, 0.05, direction.z);
+    vec3 far_hill = mix(kHorizon, vec3(0.24, 0.42, 0.58), 0.55);
+    vec3 near_hill = mix(kHorizon, vec3(0.16, 0.34, 0.30), 0.62);
+    float haze = smoothstep(-0.01, 0.045, direction.z);
     colour = mix(mix(kHorizon, far_hill, haze), colour,
                  smoothstep(far - edge, far + edge, direction.z));
     colour = mix(mix(kHorizon, near_hill, haze), colour,

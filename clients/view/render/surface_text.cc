@@ -109,10 +109,10 @@ void main() {
   vec2 p = v_position.xy;
   vec2 pixel = fwidth(p) + 1e-5;
   float patch_ = Noise(p * 0.35) * 0.6 + Noise(p * 1.7) * 0.4 * clamp(2.0 - distance_m * 0.05, 0.0, 1.0);
-  vec3 colour = mix(vec3(0.245, 0.330, 0.160), vec3(0.335, 0.405, 0.205), patch_);
+  vec3 colour = mix(vec3(0.150, 0.275, 0.075), vec3(0.225, 0.350, 0.105), patch_);
   float grid = max(Lines(p.x, 1.0, 0.02, pixel.x), Lines(p.y, 1.0, 0.02, pixel.y)) * 0.30;
   grid = max(grid, max(Lines(p.x, 5.0, 0.05, pixel.x), Lines(p.y, 5.0, 0.05, pixel.y)) * 0.45);
-  colour = mix(colour, vec3(0.62, 0.68, 0.46), grid * exp(-distance_m * 0.03));
+  colour = mix(colour, vec3(0.52, 0.64, 0.36), grid * exp(-distance_m * 0.03));
   o_colour = ToScreen(Lit(colour, distance_m));
 }
 )";

@@ -10,11 +10,11 @@ using Eigen::Matrix4f;
 using Eigen::Vector3f;
 
 // Metres, chosen by eye.
-const Vector3f kNeckBase(0.23f, 0, 0.15f);
+const Vector3f kNeckBase(0.20f, 0, 0.13f);
 constexpr float kHeadAheadM = 0.40f;
 constexpr float kHeadAboveM = 0.60f;
 constexpr float kHeadRadiusM = 0.098f;
-constexpr int kNeckPieces = 7;
+constexpr int kNeckPieces = 16;
 
 /// Yaw about z, then pitch; positive pitch looks up.
 Matrix3f HeadAxes(const BirdMotion& motion) {
@@ -31,12 +31,12 @@ void AddNeck(const Vector3f& base, const Vector3f& base_forward, const Vector3f&
   const Vector3f bend = base + 0.22f * base_forward + Vector3f(0, 0, 0.04f);
   const Vector3f nape = head - axes * Vector3f(0.07f, 0, 0.24f);
   Vector3f before = base;
-  float radius_before = 0.135f;
+  float radius_before = 0.14f;
   for (int piece = 1; piece <= kNeckPieces; ++piece) {
     const float t = static_cast<float>(piece) / kNeckPieces, s = 1 - t;
     const Vector3f at =
         s * s * s * base + 3 * s * s * t * bend + 3 * s * t * t * nape + t * t * t * head;
-    const float radius = 0.058f + 0.077f * s * s;
+    const float radius = 0.056f + 0.084f * s * s;
     parts.AddLimb(before, at, radius_before, radius, plumage.back, 0.12f);
     before = at;
     radius_before = radius;

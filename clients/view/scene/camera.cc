@@ -10,8 +10,9 @@ namespace {
 
 constexpr double kBehindM = 4.5;
 constexpr double kAboveM = 1.5;     // Over the subject's position, which is its hips.
-constexpr double kSidewaysM = 1.1;  // A little to the side, so the legs show against the ground.
-constexpr double kTargetAboveM = -0.1;  // The bird stands in the middle of the picture.
+constexpr double kSidewaysM = 1.5;  // A little to the side, so that the legs' bend shows.
+constexpr double kTargetAboveM = 0.18;
+constexpr double kTargetAheadM = 1.2;  // Besides the look-ahead.
 constexpr double kLookAheadS = 0.35;
 constexpr double kLongestStepS = 0.1;
 constexpr double kJumpM = 2.0;
@@ -87,8 +88,10 @@ Camera ChaseCamera::Look() const {
   const Eigen::Vector3d at_m(x_.value, y_.value, height_.value);
   Camera camera;
   camera.eye_m = at_m - kBehindM * forward + kSidewaysM * left + Eigen::Vector3d(0, 0, kAboveM);
-  camera.target_m =
-      at_m + (look_ahead_.value + 0.6) * forward + Eigen::Vector3d(0, 0, kTargetAboveM);
+  // The middle between straight ahead and past the bird: it stays near the picture's middle.
+  const Eigen::Vector3d past = (kBehindM * forward - kSidewaysM * left).normalized();
+  camera.target_m = at_m + kTargetAheadM * past + look_ahead_.value * (forward + past) / 2 +
+                    Eigen::Vector3d(0, 0, kTargetAboveM);
   return camera;
 }
 

@@ -70,6 +70,7 @@ struct LinkReport {
 /// One tick. Fields that the tick did not carry stay empty.
 struct Update {
   int source = 0;                ///< Which connection.
+  bool live = true;              ///< Neither a snapshot nor a refill: its age is a latency.
   std::int64_t host_ns = 0;      ///< The server's stamp, on the viewer's own clock.
   std::int64_t received_ns = 0;  ///< When the viewer's socket gave it, on the viewer's own clock.
   std::optional<std::vector<stream::DeviceStatus>> devices;

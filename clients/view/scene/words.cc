@@ -110,7 +110,7 @@ std::vector<std::string> WaitingLines(const LinkReport& link) {
           "Start one with:  footing-sim --listen " + link.address + "   (or footingd)"};
 }
 
-std::vector<Stage> ResponseTimes(const ResponseStages& r) {
+std::vector<ResponseStage> ResponseTimes(const ResponseStages& r) {
   const std::array<std::pair<const char*, std::int64_t>, 7> stamps{
       {{"", r.report_received_ns},
        {"decode", r.decoded_ns},
@@ -119,7 +119,7 @@ std::vector<Stage> ResponseTimes(const ResponseStages& r) {
        {"command", r.command_ns},
        {"contact", r.contact_ns},
        {"frame", r.first_frame_ns}}};
-  std::vector<Stage> stages;
+  std::vector<ResponseStage> stages;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     const std::int64_t from_ns = stamps[i - 1].second, to_ns = stamps[i].second;
     if (from_ns == 0 || to_ns < from_ns) return {};
@@ -158,7 +158,7 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
   }
   if (model.last_response) {
     std::string line = "Response   ";
-    for (const Stage& stage : ResponseTimes(model.last_response->response)) {
+    for (const ResponseStage& stage : ResponseTimes(model.last_response->response)) {
       line += std::string(" ") + stage.name + " " + Fixed(stage.ms, 1);
     }
     lines.push_back(line + " ms");

@@ -18,12 +18,12 @@ std::string GaitTitle(stream::Gait gait);
 std::vector<std::string> WaitingLines(const LinkReport& link);
 
 /// Where a response's time went, first to last.
-struct Stage {
+struct ResponseStage {
   const char* name;
   double ms;
 };
 /// Empty when the stamps do not say.
-std::vector<Stage> ResponseTimes(const ResponseStages& response);
+std::vector<ResponseStage> ResponseTimes(const ResponseStages& response);
 
 /// The whole state in one screen of plain text, for a terminal.
 std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns);

@@ -29,6 +29,7 @@ struct Options {
   std::string right;
   std::string grt;
   double rate_hz = 0;
+  double range_mps2 = 0;
   bool synthetic = false;
   bool delays = false;
   int trials = 200;
@@ -79,6 +80,9 @@ Result<nlohmann::json> EvaluateCsv(const Options& options) {
     if (!rows) return rows.error();
     right = std::move(rows).value();
   }
+  const auto left_clipped = ClippedAxes(*left, options.range_mps2);
+  const auto right_clipped =
+      right ? ClippedAxes(*right, options.range_mps2) : std::vector<std::uint32_t>{};
   const std::size_t count = right ? std::min(left->size(), right->size()) : left->size();
   Chain chain(right.has_value());
   RowClock clock;
@@ -86,8 +90,8 @@ Result<nlohmann::json> EvaluateCsv(const Options& options) {
   for (std::size_t i = 0; i < count; ++i) {
     const double t_s = static_cast<double>(i) / options.rate_hz;
     const auto now_ns = static_cast<std::int64_t>(std::llround(t_s * 1e9));
-    chain.Add(kLeftDevice, now_ns, (*left)[i]);
-    if (right) chain.Add(kRightDevice, now_ns, (*right)[i]);
+    chain.Add(kLeftDevice, now_ns, (*left)[i], left_clipped[i]);
+    if (right) chain.Add(kRightDevice, now_ns, (*right)[i], right_clipped[i]);
     const auto features = chain.Compute(now_ns);
     if (clock.Due(t_s)) rows.push_back(Row(t_s, features));
   }
@@ -149,6 +153,10 @@ void AddFeaturesCommand(CLI::App& app, Shared& shared) {
   command->add_option("--right", options->right, "The right hand's, row by row beside --left");
   command->add_option("--rate-hz", options->rate_hz, "Rows a second")
       ->check(CLI::Range(10.0, 1000.0));
+  command
+      ->add_option("--range-mps2", options->range_mps2,
+                   "End of the sensor's range; found in the file when not given")
+      ->check(CLI::Range(1.0, 200.0));
   command->add_option("--grt", options->grt, "A recording of the Gesture Recognition Toolkit");
   command->add_flag("--synthetic", options->synthetic, "Errors on made motion, beside the bars");
   command->add_flag("--delays", options->delays, "Delays after made changes, beside the bars");

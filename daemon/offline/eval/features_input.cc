@@ -16,6 +16,8 @@ constexpr std::size_t kMostBytes = 256u << 20;
 /// No controller measures more than this (about 20 g); a larger number is in another unit.
 constexpr double kMostMps2 = 200;
 constexpr double kGrtZero = 0.5;
+/// Values that differ by less are the same count, written with three decimals.
+constexpr double kSameMps2 = 1e-3;
 
 /// All fields of a line as numbers, or nothing.
 std::optional<std::vector<double>> Numbers(std::string line) {
@@ -36,6 +38,18 @@ bool IsBlank(const std::string& line) {
 
 std::string At(const std::string& path, std::size_t line) {
   return path + ", line " + std::to_string(line);
+}
+
+/// The end of the range on one side (sign +1 or -1) of an axis; infinite when nothing shows it.
+double EndOfRange(const std::vector<Eigen::Vector3d>& rows, int axis, double sign) {
+  double most = 0;
+  for (const auto& row : rows) most = std::max(most, sign * row(axis));
+  int run = 0;
+  for (const auto& row : rows) {
+    run = sign * row(axis) >= most - kSameMps2 ? run + 1 : 0;
+    if (run == 3 && most > 2.9 * kStandardGravityMps2) return most - kSameMps2;
+  }
+  return INFINITY;
 }
 
 double FitScale(const GrtRecording& recording) {
@@ -83,6 +97,20 @@ Result<std::vector<Eigen::Vector3d>> ReadAccelerationCsv(const std::string& path
   }
   if (rows.empty()) return InvalidData(path + ": no rows ax,ay,az in it");
   return rows;
+}
+
+std::vector<std::uint32_t> ClippedAxes(const std::vector<Eigen::Vector3d>& rows,
+                                       double range_mps2) {
+  std::vector<std::uint32_t> clipped(rows.size(), 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      const double end = range_mps2 > 0 ? range_mps2 : EndOfRange(rows, axis, sign);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (sign * rows[i](axis) >= end) clipped[i] |= 1u << axis;
+      }
+    }
+  }
+  return clipped;
 }
 
 Result<GrtRecording> ReadGrt(const std::string& path) {

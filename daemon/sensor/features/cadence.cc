@@ -10,17 +10,22 @@ namespace {
 constexpr int kMostLags = kGridLength / 2;
 using Curve = std::array<double, kMostLags + 2>;
 
+/// 1, 2, 3, ...: W(t) up to its scale, oldest first.
+constexpr std::array<double, kGridLength> kRamp = [] {
+  std::array<double, kGridLength> ramp{};
+  for (int i = 0; i < kGridLength; ++i) ramp[i] = i + 1;
+  return ramp;
+}();
+
 /// Mean of W |a(t) - a(t - lag)|² over the newest `overlap` points, in (m/s²)².
 double Difference(const SampleGrid& grid, int lag, int overlap) {
   const auto all = grid.Filtered(lag + overlap);
-  const auto weight = Eigen::ArrayXd::LinSpaced(overlap, 1.0 / overlap, 1.0);
-  double sum = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto now = all.col(axis).tail(overlap).array();
-    const auto then = all.col(axis).head(overlap).array();
-    sum += (weight * (now - then).square()).sum();
-  }
-  return sum / (0.5 * (overlap + 1));
+  const auto squares = [&](int axis) {
+    return (all.col(axis).tail(overlap) - all.col(axis).head(overlap)).array().square();
+  };
+  const Eigen::Map<const Eigen::ArrayXd> weight(kRamp.data(), overlap);
+  const double sum = (weight * (squares(0) + squares(1) + squares(2))).sum();
+  return sum / (0.5 * overlap * (overlap + 1));
 }
 
 /// Variance of the newest n points, summed over the axes, for every n up to `size`.
@@ -139,23 +144,29 @@ PeriodEstimate FindPeriod(const SampleGrid& grid, int points, double known_s,
   return {true, steps * kGridStepS, std::min(1.0, peak.correlation)};
 }
 
-Cadence Next(const Cadence& before, const PeriodEstimate& estimate, double elapsed_s,
-             const CadenceConfig& config) {
+Cadence Next(const Cadence& before, const PeriodEstimate& estimate, const PeriodEstimate& partner,
+             double elapsed_s, const CadenceConfig& config) {
+  const auto differ = [](double one_s, double other_s, double share) {
+    return std::abs(one_s - other_s) > share * other_s;
+  };
+  const bool partner_keeps = before.valid && partner.found &&
+                             !differ(partner.period_s, before.period_s, config.partner_share);
   Cadence next = before;
   if (!estimate.found) {
+    const double cycles = partner_keeps ? config.partner_cycles : config.hold_cycles;
     next.candidate_s = 0;
     next.lost_s += elapsed_s;
-    return next.lost_s > config.hold_cycles * next.period_s ? Cadence{} : next;
+    return next.lost_s > cycles * next.period_s ? Cadence{} : next;
   }
   next.lost_s = 0;
-  const auto differs = [&](double from_s) {
-    return std::abs(estimate.period_s - from_s) > config.jump_share * from_s;
-  };
-  if (before.valid && differs(before.period_s)) {
-    const bool same_candidate = before.candidate_s > 0 && !differs(before.candidate_s);
+  const double share = partner_keeps ? config.partner_share : config.jump_share;
+  if (before.valid && differ(estimate.period_s, before.period_s, share)) {
+    const bool same_candidate =
+        before.candidate_s > 0 && !differ(estimate.period_s, before.candidate_s, config.jump_share);
+    const double persistence = partner_keeps ? config.partner_cycles : config.jump_persistence;
     next.candidate_age_s = same_candidate ? before.candidate_age_s + elapsed_s : 0;
     next.candidate_s = estimate.period_s;
-    if (next.candidate_age_s < config.jump_persistence * before.period_s) return next;
+    if (next.candidate_age_s < persistence * before.period_s) return next;
   }
   return {true, estimate.period_s, 0, 0, 0};
 }

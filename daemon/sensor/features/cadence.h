@@ -40,8 +40,9 @@ struct Cadence {
   double candidate_age_s = 0;  ///< For how long it was seen.
 };
 
-/// The cadence `elapsed_s` later, with a new estimate.
-Cadence Next(const Cadence& before, const PeriodEstimate& estimate, double elapsed_s,
-             const CadenceConfig& config);
+/// The cadence `elapsed_s` later, with a new estimate and that of the other hand or leg of the pair
+/// (not found if there is none).
+Cadence Next(const Cadence& before, const PeriodEstimate& estimate, const PeriodEstimate& partner,
+             double elapsed_s, const CadenceConfig& config);
 
 }  // namespace footing::features

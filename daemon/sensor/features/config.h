@@ -50,6 +50,11 @@ struct CadenceConfig {
   double jump_persistence = 0.25;
   /// How long the last period is kept when none is found, in cycles.
   double hold_cycles = 1.0;
+  /// While the other hand still shows the last period within this share, this one keeps it as well,
+  /// for so many cycles: one hand whose phase jumps looks faster or slower until the jump is two
+  /// cycles old.
+  double partner_share = 0.08;
+  double partner_cycles = 2.0;
 };
 
 /// 3) Phase: eq. (4).
@@ -62,7 +67,8 @@ struct PhaseConfig {
 /// 4) Amplitude and 5) inclination in motion.
 struct CycleConfig {
   /// Clipped samples are filled in from a fit to the others, unless more than this share is
-  /// clipped; then amplitude and inclination are held.
+  /// clipped; then inclination is held, and amplitude
+  /// as well unless even the clipped samples show more.
   double most_clipped = 0.6;
   /// Weight of the prior that the second harmonic of the fit is small, in samples.
   double harmonic_prior = 1.0;

@@ -97,14 +97,13 @@ Cycle NewestCycle(const SampleGrid& grid, double period_s, const CycleConfig& co
   for (int axis = 0; axis < 3; ++axis) {
     const double share = ClippedShare(grid, axis, count);
     if (share == 0) continue;
-    if (share > config.most_clipped) {
-      cycle.clipped = true;
-      return cycle;
-    }
-    FillClipped(grid, axis, 2 * kPi / (period_s * kGridHz), config, samples);
+    cycle.clipped = cycle.clipped || share > config.most_clipped;
+    if (share <= config.most_clipped)
+      FillClipped(grid, axis, 2 * kPi / (period_s * kGridHz), config, samples);
   }
-  cycle.mean_mps2 = samples.transpose() * (weights / weights.sum()).matrix();
-  cycle.amplitude_mps2 = HalfPeakToPeak(samples, cycle.mean_mps2);
+  const Eigen::Vector3d mean = samples.transpose() * (weights / weights.sum()).matrix();
+  cycle.amplitude_mps2 = HalfPeakToPeak(samples, mean);
+  if (!cycle.clipped) cycle.mean_mps2 = mean;
   return cycle;
 }
 

@@ -9,8 +9,9 @@ namespace footing::features {
 
 /// What the newest whole cycle of raw samples says (section 6, features 4 and 5).
 struct Cycle {
-  bool valid = false;    ///< There is a whole cycle.
-  bool clipped = false;  ///< Too much of it is clipped: the rest is not filled in.
+  bool valid = false;  ///< There is a whole cycle.
+  /// Too much of it is clipped to fill it in: the amplitude is a lower bound, there is no mean.
+  bool clipped = false;
   /// Half peak to peak along the dominant axis of the cycle's motion, m/s². Raw samples: the filter
   /// would smooth the spikes of rapid motion.
   double amplitude_mps2 = 0;

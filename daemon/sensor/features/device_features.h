@@ -16,9 +16,13 @@ class DeviceFeatureExtractor {
   DeviceFeatureExtractor(std::uint32_t device, stream::DeviceRole role, const Config& config);
 
   void AddSample(const stream::MotionSample& sample);
-  /// The features as of the newest sample; none when that is older than Config::stale_s at
-  /// `now_ns`.
-  stream::DeviceFeatures Compute(std::int64_t now_ns);
+  /// Takes the newest samples in: first Observe of all controllers, then Compute of each. Forgets
+  /// all when the newest sample is older than Config::stale_s at `now_ns`.
+  void Observe(std::int64_t now_ns);
+  /// The period as the newest samples alone show it; not found while still.
+  const PeriodEstimate& estimate() const { return estimate_; }
+  /// The features as of the newest sample. `partner` is the estimate of the other hand or leg.
+  const stream::DeviceFeatures& Compute(const PeriodEstimate& partner);
 
   std::uint32_t device() const { return features_.device; }
   stream::DeviceRole role() const { return features_.role; }
@@ -27,7 +31,6 @@ class DeviceFeatureExtractor {
   std::int64_t newest_received_ns() const { return newest_received_ns_; }
 
  private:
-  void Advance(double elapsed_s);
   void MeasureCycle();
   void MeasureRest();
   void Forget();
@@ -36,7 +39,9 @@ class DeviceFeatureExtractor {
   SampleGrid grid_;
   stream::DeviceFeatures features_;
   Moving moving_;
+  PeriodEstimate estimate_;
   Cadence cadence_;
+  double elapsed_s_ = 0;  ///< Between the newest points of the last two Observe; 0 nothing new.
   std::int64_t newest_received_ns_ = 0;
   std::int64_t computed_index_ = 0;  ///< Grid index of the newest point already taken in.
 };

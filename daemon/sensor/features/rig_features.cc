@@ -87,8 +87,15 @@ stream::RigFeatures RigFeatureExtractor::Compute(std::int64_t now_ns) {
   stream::RigFeatures features;
   features.rig = rig_;
   features.computed_ns = now_ns;
-  for (auto& device : devices_) {
-    features.devices.push_back(device.Compute(now_ns));
+  std::vector<PeriodEstimate> partners(devices_.size());
+  for (auto& device : devices_) device.Observe(now_ns);
+  for (const auto& pair : pairs_) {
+    partners[pair.left] = devices_[pair.right].estimate();
+    partners[pair.right] = devices_[pair.left].estimate();
+  }
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    DeviceFeatureExtractor& device = devices_[i];
+    features.devices.push_back(device.Compute(partners[i]));
     features.newest_received_ns =
         std::max(features.newest_received_ns, device.newest_received_ns());
   }

@@ -10,9 +10,9 @@ struct DeviceClockConfig {
   /// report cannot come before its sample, so early ones say more.
   double early_gain = 0.3;
   double late_gain = 0.05;
-  double period_gain = 0.002;  ///< Share of the error that the period takes on.
-  double max_lag_s = 0.025;    ///< No sample is stamped further back than this.
-  double restart_s = 0.25;     ///< A longer pause starts anew.
+  double period_gain = 0.01;  ///< Share of each correction that the period takes on.
+  double max_lag_s = 0.025;   ///< No sample is stamped further back than this.
+  double restart_s = 0.25;    ///< A longer pause starts anew.
 };
 
 /// Estimates when a sample was taken from when its report arrived.

@@ -55,7 +55,7 @@ std::string WriteMjcf(const BipedParameters& p, const std::string& ground, doubl
   return "<mujoco>\n<compiler angle='radian' inertiafromgeom='false'/>\n"
          "<option timestep='" +
          Text(step_s) +
-         "' integrator='Euler' cone='pyramidal' gravity='0 0 -9.81' iterations='50'/>\n"
+         "' integrator='Euler' cone='elliptic' gravity='0 0 -9.81' iterations='50'/>\n"
          "<default>\n<geom solref='0.006 1'/>\n"
          "<default class='shell'><geom contype='2' conaffinity='1'/></default>\n"
          "<default class='foot'><geom contype='2' conaffinity='1' priority='1' condim='4' "

@@ -104,6 +104,8 @@ void World::Step(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n) {
 
 void World::StepBare(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n) {
   ApplyForces(*parts_->state, parts_->links[0], efforts, push_W_n);
+  std::copy(parts_->root_quaternion.begin(), parts_->root_quaternion.end(),
+            parts_->state->qpos + 3);
   mj_step(parts_->model.get(), parts_->state.get());
   KeepQuaternion(*parts_->state, parts_->root_quaternion);
 }

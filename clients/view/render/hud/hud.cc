@@ -10,8 +10,9 @@ namespace footing::render {
 namespace {
 
 constexpr float kEdge = 18;
-constexpr float kLowerHeight = 196;
-constexpr float kBoardWidth = 236;
+constexpr float kColumnWidth = 300;
+constexpr float kBoardWidth = 292;
+constexpr float kBoardHeight = 236;
 
 }  // namespace
 
@@ -30,13 +31,13 @@ void DrawHud(const Paint& p, const scene::Model& model, const scene::WorldFrame&
                              now_ns) +
           8 * s;
     }
-    DrawWaitingLines(p, model, {edge, y});
+    DrawStripPanel(p, {{edge, y}, {edge + kColumnWidth * s, size.y - edge}}, model.strips, now_ns);
     DrawDevicePanel(p, {size.x - edge, edge}, model, now_ns);
-    const float top = size.y - edge - kLowerHeight * s;
-    const float right = size.x - edge - (model.boards.empty() ? 0 : (kBoardWidth + 10) * s);
-    DrawStripPanel(p, {{edge, top}, {right, size.y - edge}}, model.strips, now_ns);
-    DrawBoardPanel(p, {{size.x - edge - kBoardWidth * s, top}, {size.x - edge, size.y - edge}},
+    DrawBoardPanel(p,
+                   {{size.x - edge - kBoardWidth * s, size.y - edge - kBoardHeight * s},
+                    {size.x - edge, size.y - edge}},
                    model, now_ns);
+    DrawWaitingLines(p, model, {edge + (kColumnWidth + 12) * s, size.y - edge});
     DrawNote(p, model, now_ns, size);
   }
   if (options.frozen) {

@@ -6,7 +6,7 @@ namespace footing::render {
 
 /// What the viewer waits for and how to start it; shown until something comes.
 void DrawWaiting(const Paint& paint, const scene::Model& model, ImVec2 size);
-/// One small line for each further connection that is not live.
+/// One small line for each connection that is not live; `at` is the lower left corner.
 void DrawWaitingLines(const Paint& paint, const scene::Model& model, ImVec2 at);
 /// The list of keys.
 void DrawKeys(const Paint& paint, ImVec2 size);

@@ -10,7 +10,10 @@
 namespace footing::render {
 namespace {
 
-constexpr std::size_t kMaxColumns = 4;
+constexpr std::size_t kMaxDevices = 4;
+constexpr float kDeviceHeight = 180;
+constexpr float kPhaseHeight = 30;
+constexpr float kLeastRowHeight = 24;
 
 /// A row of curves over the same range.
 struct Curve {
@@ -79,13 +82,27 @@ std::string NewestOf(const scene::Strip& strip, std::int64_t now_ns, int decimal
   return scene::Fixed(factor * static_cast<double>(newest.value), decimals) + unit;
 }
 
+/// The least of a few ranges that shows the strip whole; the last is the Wiimote's 3.6 g on all
+/// three axes at once, 9.81 * 3.6 * sqrt(3) m/s2.
+float ReachOf(const scene::Strip& magnitude) {
+  float largest = 0;
+  for (const scene::Strip::Point& point : magnitude.points()) {
+    largest = std::max(largest, point.value);
+  }
+  for (const float reach : {22.0f, 40.0f}) {
+    if (largest <= reach) return reach;
+  }
+  return 62;
+}
+
 std::vector<Row> RowsOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
   const double degrees = RadiansToDegrees(1);
+  const float reach_mps2 = ReachOf(d.magnitude_mps2);
   return {
       {"acceleration",
        NewestOf(d.magnitude_mps2, now_ns, 1, 1, " m/s\xc2\xb2"),
-       -35,
-       35,
+       -reach_mps2,
+       reach_mps2,
        {{&d.filtered_x_mps2, Faded(colour::kAccent, 0.85f)},
         {&d.filtered_y_mps2, Faded(colour::kGood, 0.85f)},
         {&d.filtered_z_mps2, Faded(colour::kThird, 0.85f)},
@@ -120,8 +137,14 @@ void DrawRow(const Paint& p, const Box& box, const Row& row, std::int64_t now_ns
   p.list->PushClipRect(box.low, box.high, true);
   for (const Curve& curve : row.curves) DrawCurve(p, box, row, curve, now_ns);
   p.list->PopClipRect();
-  p.Write(p.fonts.small, {box.low.x + 5 * s, box.low.y + 1 * s}, colour::kFaint, row.name);
-  p.WriteRight(p.fonts.small, {box.high.x - 5 * s, box.low.y + 1 * s}, colour::kText, row.value);
+  // Words stay readable over a curve.
+  const float line = box.low.y + 15 * s;
+  const float name_end = box.low.x + 10 * s + p.WidthOf(p.fonts.small, row.name);
+  const float value_start = box.high.x - 10 * s - p.WidthOf(p.fonts.small, row.value);
+  p.list->AddRectFilled(box.low, {name_end, line}, colour::kBehindText, 3 * s);
+  p.list->AddRectFilled({value_start, box.low.y}, {box.high.x, line}, colour::kBehindText, 3 * s);
+  p.Write(p.fonts.small, {box.low.x + 5 * s, box.low.y}, colour::kFaint, row.name);
+  p.WriteRight(p.fonts.small, {box.high.x - 5 * s, box.low.y}, colour::kText, row.value);
 }
 
 void DrawRows(const Paint& p, const Box& box, const std::vector<Row>& rows, std::int64_t now_ns) {
@@ -137,7 +160,7 @@ void DrawRows(const Paint& p, const Box& box, const std::vector<Row>& rows, std:
   }
 }
 
-void DrawColumn(const Paint& p, const Box& box, const scene::DeviceStrips& device,
+void DrawDevice(const Paint& p, const Box& box, const scene::DeviceStrips& device,
                 std::int64_t now_ns) {
   const float s = p.scale;
   std::string role = stream::Name(device.role);
@@ -149,38 +172,48 @@ void DrawColumn(const Paint& p, const Box& box, const scene::DeviceStrips& devic
   if (device.simulated) {
     p.WriteRight(p.fonts.small, {box.high.x, box.low.y + 2 * s}, colour::kSecond, "SIMULATED");
   }
-  const Box rows{{box.low.x, box.low.y + 23 * s}, box.high};
-  ShadeMoving(p, rows, device.moving, now_ns);
-  DrawRows(p, rows, RowsOf(device, now_ns), now_ns);
+  const Box rows_box{{box.low.x, box.low.y + 23 * s}, box.high};
+  ShadeMoving(p, rows_box, device.moving, now_ns);
+  std::vector<Row> rows = RowsOf(device, now_ns);
+  // Where there is little room, the first rows say most.
+  while (rows.size() > 1 &&
+         rows_box.height() < kLeastRowHeight * s * (1 + static_cast<float>(rows.size()))) {
+    rows.pop_back();
+  }
+  DrawRows(p, rows_box, rows, now_ns);
+}
+
+void DrawPhase(const Paint& p, const Box& box, const scene::Strip& phase, std::int64_t now_ns) {
+  const Row row{"phase, right minus left",
+                NewestOf(phase, now_ns, 0, RadiansToDegrees(1), "\xc2\xb0"),
+                static_cast<float>(-kPi),
+                static_cast<float>(kPi),
+                {{&phase, colour::kSecond, 2.0f}}};
+  DrawRow(p, box, row, now_ns);
 }
 
 }  // namespace
 
 void DrawStripPanel(const Paint& p, const Box& box, const scene::StripSet& strips,
                     std::int64_t now_ns) {
-  const std::size_t columns = std::min(strips.devices.size(), kMaxColumns);
-  if (columns == 0) return;
-  const float s = p.scale, gap = 14 * s;
-  const Box in = p.Panel(box);
-  const float phase_width = strips.phases_rad.empty() ? 0 : 0.22f * in.width();
-  const float width = (in.width() - phase_width - gap * static_cast<float>(columns - 1)) /
-                      static_cast<float>(columns);
-  float x = in.low.x;
+  const std::size_t devices = std::min(strips.devices.size(), kMaxDevices);
+  if (devices == 0) return;
+  const auto count = static_cast<float>(devices);
+  const float s = p.scale, gap = 10 * s;
+  const float phase_height = strips.phases_rad.empty() ? 0 : kPhaseHeight * s + gap;
+  const float room = box.height() - 28 * s - phase_height;
+  const float height = std::min(kDeviceHeight * s, (room - gap * (count - 1)) / count);
+  const float used = count * (height + gap) - gap + phase_height + 28 * s;
+  const Box in = p.Panel({box.low, {box.high.x, box.low.y + used}});
+  float y = in.low.y;
   std::size_t drawn = 0;
   for (const auto& [key, device] : strips.devices) {
-    if (drawn++ == columns) break;
-    DrawColumn(p, {{x, in.low.y}, {x + width, in.high.y}}, device, now_ns);
-    x += width + gap;
+    if (drawn++ == devices) break;
+    DrawDevice(p, {{in.low.x, y}, {in.high.x, y + height}}, device, now_ns);
+    y += height + gap;
   }
   if (strips.phases_rad.empty()) return;
-  const scene::Strip& phase = strips.phases_rad.begin()->second;
-  p.Write(p.fonts.strong, {x, in.low.y}, colour::kText, "left and right");
-  const Row row{"phase, right minus left",
-                NewestOf(phase, now_ns, 0, RadiansToDegrees(1), "\xc2\xb0"),
-                static_cast<float>(-kPi),
-                static_cast<float>(kPi),
-                {{&phase, colour::kSecond, 2.0f}}};
-  DrawRow(p, {{x, in.low.y + 23 * s}, in.high}, row, now_ns);
+  DrawPhase(p, {{in.low.x, y}, in.high}, strips.phases_rad.begin()->second, now_ns);
 }
 
 }  // namespace footing::render

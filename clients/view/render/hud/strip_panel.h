@@ -7,7 +7,8 @@
 
 namespace footing::render {
 
-/// The sensor features of the last 10 s, a column a controller. Draws nothing without any.
+/// The sensor features of the last 10 s, one controller under the other, at most four. Draws
+/// nothing without any.
 void DrawStripPanel(const Paint& paint, const Box& box, const scene::StripSet& strips,
                     std::int64_t now_ns);
 

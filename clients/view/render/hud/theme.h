@@ -12,6 +12,7 @@ struct Fonts {
   ImFont* small = nullptr;
   ImFont* text = nullptr;
   ImFont* strong = nullptr;
+  ImFont* heading = nullptr;
   ImFont* title = nullptr;
 };
 
@@ -21,6 +22,7 @@ Fonts LoadFonts(float scale);
 /// Colours of the panels.
 namespace colour {
 inline constexpr ImU32 kPanel = IM_COL32(16, 22, 30, 178);
+inline constexpr ImU32 kBehindText = IM_COL32(24, 32, 38, 150);
 inline constexpr ImU32 kPanelEdge = IM_COL32(255, 255, 255, 26);
 inline constexpr ImU32 kText = IM_COL32(244, 246, 248, 255);
 inline constexpr ImU32 kFaint = IM_COL32(170, 182, 194, 255);
