@@ -29,12 +29,14 @@ std::string CloseReason(const error_code& error, bool inside_frame) {
 
 class FramedConnection::Implementation : public std::enable_shared_from_this<Implementation> {
  public:
-  Implementation(Socket socket, const FramedLimits& limits, FramedHandlers handlers)
+  Implementation(Socket socket, const FramedLimits& limits, FramedHandlers handlers,
+                 std::shared_ptr<BatchPool> pool)
       : socket_(std::move(socket)),
         linger_(socket_.get_executor()),
         limits_(limits),
         handlers_(std::move(handlers)),
-        splitter_(limits.max_in_bytes) {
+        splitter_(limits.max_in_bytes),
+        pool_(std::move(pool)) {
     Prepare(socket_);
   }
 
@@ -119,14 +121,15 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     if (waiting_ || writing_) return;
     writing_ = true;  // on_writable may call Wake() or Send().
     for (int batches = 0; state_ != State::kOver; ++batches) {
-      if (batch_.empty()) Fill();
-      if (batch_.empty()) break;
+      if (!batch_) batch_ = pool_->Take();
+      if (batch_->empty()) Fill();
+      if (batch_->empty()) break;
       if (batches == kBatchesInARow) {
         WriteLater();
         break;
       }
       error_code error;
-      const std::size_t written = socket_.write_some(batch_.buffers(), error);
+      const std::size_t written = socket_.write_some(batch_->buffers(), error);
       if (error == asio::error::would_block) {
         WaitUntilWritable();
         break;
@@ -135,20 +138,21 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
         End(state_ == State::kFinishing ? reason_ : CloseReason(error, false));
         break;
       }
-      batch_.Consume(written);
+      batch_->Consume(written);
     }
     writing_ = false;
-    if (state_ == State::kFinishing && batch_.empty() && queue_.empty()) SayNoMore();
+    if (batch_ && batch_->empty()) pool_->Give(std::move(batch_));
+    if (state_ == State::kFinishing && !batch_ && queue_.empty()) SayNoMore();
   }
 
   void Fill() {
-    while (!queue_.empty() && batch_.room() > 0) {
+    while (!queue_.empty() && batch_->room() > 0) {
       queued_bytes_ -= queue_.front().size() - kLengthBytes;
-      batch_.AddOwned(std::move(queue_.front()));
+      batch_->AddOwned(std::move(queue_.front()));
       queue_.pop_front();
     }
-    if (state_ == State::kOpen && batch_.room() > 0 && handlers_.on_writable) {
-      handlers_.on_writable(batch_);
+    if (state_ == State::kOpen && batch_->room() > 0 && handlers_.on_writable) {
+      handlers_.on_writable(*batch_);
     }
   }
 
@@ -192,21 +196,22 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   const FramedLimits limits_;
   FramedHandlers handlers_;
   FrameSplitter splitter_;
-  std::array<char, kReadBytes> input_;
   std::deque<std::string> queue_;
   std::size_t queued_bytes_ = 0;
-  WriteBatch batch_;
+  const std::shared_ptr<BatchPool> pool_;
+  std::unique_ptr<WriteBatch> batch_;  ///< While something waits to be written.
   State state_ = State::kOpen;
   bool waiting_ = false;
   bool writing_ = false;
   bool silent_ = false;
   std::string reason_;
+  std::array<char, kReadBytes> input_;
 };
 
 FramedConnection::FramedConnection(Socket socket, const FramedLimits& limits,
-                                   FramedHandlers handlers)
-    : implementation_(
-          std::make_shared<Implementation>(std::move(socket), limits, std::move(handlers))) {}
+                                   FramedHandlers handlers, std::shared_ptr<BatchPool> pool)
+    : implementation_(std::make_shared<Implementation>(std::move(socket), limits,
+                                                       std::move(handlers), std::move(pool))) {}
 FramedConnection::~FramedConnection() { Close(); }
 void FramedConnection::Start() { implementation_->Start(); }
 bool FramedConnection::Send(std::string_view payload) { return implementation_->Send(payload); }

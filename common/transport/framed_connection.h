@@ -42,7 +42,9 @@ struct FramedHandlers {
 class FramedConnection {
  public:
   /// A socket of Listener or Dial; it is made ready here (see Prepare).
-  FramedConnection(Socket socket, const FramedLimits& limits, FramedHandlers handlers);
+  /// Connections of one thread may share a pool; without one it has its own.
+  FramedConnection(Socket socket, const FramedLimits& limits, FramedHandlers handlers,
+                   std::shared_ptr<BatchPool> pool = std::make_shared<BatchPool>());
   ~FramedConnection();
   FramedConnection(const FramedConnection&) = delete;
   FramedConnection& operator=(const FramedConnection&) = delete;

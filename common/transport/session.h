@@ -29,6 +29,7 @@ struct Shared {
   Publication publication;
   ServerStatistics statistics;
   std::uint64_t epoch = 0;
+  std::shared_ptr<BatchPool> pool = std::make_shared<BatchPool>();
   std::int64_t NowNs() const;
 };
 

@@ -46,4 +46,17 @@ void WriteBatch::Consume(std::size_t bytes) {
   shared_.clear();
 }
 
+std::unique_ptr<WriteBatch> BatchPool::Take() {
+  if (free_.empty()) return std::make_unique<WriteBatch>();
+  std::unique_ptr<WriteBatch> batch = std::move(free_.back());
+  free_.pop_back();
+  return batch;
+}
+
+void BatchPool::Give(std::unique_ptr<WriteBatch> batch) {
+  constexpr std::size_t kMaxFree = 16;
+  FOOTING_CHECK(batch->empty());
+  if (free_.size() < kMaxFree) free_.push_back(std::move(batch));
+}
+
 }  // namespace footing::transport

@@ -47,4 +47,16 @@ class WriteBatch {
   std::vector<std::shared_ptr<const void>> shared_;
 };
 
+/// Empty batches for the connections of one thread. The one given back last is taken first: with
+/// many sessions served one after the other it is still in the processor's cache, which a batch of
+/// each session's own would not be.
+class BatchPool {
+ public:
+  std::unique_ptr<WriteBatch> Take();
+  void Give(std::unique_ptr<WriteBatch> batch);
+
+ private:
+  std::vector<std::unique_ptr<WriteBatch>> free_;
+};
+
 }  // namespace footing::transport

@@ -12,6 +12,7 @@
 #include "daemon/offline/bench/example_tick.h"
 #include "daemon/offline/bench/loop_thread.h"
 #include "daemon/offline/bench/pairs.h"
+#include "daemon/offline/bench/viewer.h"
 #include "daemon/offline/bench/waiting.h"
 
 namespace footing::bench {
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int kPairs = 9;
 constexpr int kTicks = 200;
+constexpr std::size_t kShortestTick = 400;
 constexpr std::int64_t kIntervalNs = 2'000'000;
 
 /// A frame as long as ours, whose first eight bytes are the instant it was published.
@@ -33,6 +35,27 @@ std::int64_t StampOf(std::string_view payload) {
   std::int64_t stamp_ns = 0;
   std::memcpy(&stamp_ns, payload.data(), sizeof(stamp_ns));
   return stamp_ns;
+}
+
+/// Skips one varint.
+std::size_t After(std::string_view payload, std::size_t at) {
+  while ((static_cast<unsigned char>(payload.at(at)) & 0x80u) != 0) ++at;
+  return at + 1;
+}
+
+/// host_ns of a tick without parsing it: tag and length of Envelope.tick, then epoch, sequence and
+/// host_ns, each a tag of one byte and a varint (docs/protocol.md).
+std::int64_t HostNsOf(std::string_view payload) {
+  std::size_t at = After(payload, 2);
+  at = After(payload, at + 1);
+  at = After(payload, at + 1) + 1;
+  std::uint64_t value = 0;
+  for (int shift = 0; shift < 64; shift += 7, ++at) {
+    const auto byte = static_cast<unsigned char>(payload.at(at));
+    value |= std::uint64_t{byte & 0x7fu} << shift;
+    if (byte < 0x80) break;
+  }
+  return static_cast<std::int64_t>(value);
 }
 
 std::size_t PayloadBytes(const std::vector<transport::ChannelBytes>& channels) {
@@ -89,32 +112,41 @@ Result<Rows> PublishToClient() {
   LoopThread client_thread;
 
   transport::Server server(server_thread.io(), ServerOptionsFor(500, 1), {});
+  transport::Server to_handler(server_thread.io(), ServerOptionsFor(500, 1), {});
   BareFanOut bare(server_thread.io());
   Result<void> listening;
   server_thread.Do([&] {
     listening = server.Listen(UnixAddress("ours"));
+    if (listening) listening = to_handler.Listen(UnixAddress("handler"));
     if (listening) listening = bare.Listen(UnixAddress("bare"));
   });
   if (!listening) return listening.error();
 
   transport::ClientOptions options;
-  options.address = UnixAddress("ours");
+  options.address = UnixAddress("handler");
   transport::ClientHandlers handlers;
   handlers.on_tick = [&](const v1::Tick& tick) {
     if (!tick.snapshot()) delays_us.push_back(MicrosecondsSince(tick.host_ns()));
   };
   std::optional<transport::Client> client;
+  std::optional<Viewer> viewer;
   std::optional<BareReader> reader;
   client_thread.Do([&] {
     client.emplace(client_thread.io(), options, handlers);
     client->Start();
+    viewer.emplace(client_thread.io(), UnixAddress("ours"), Viewer::Greeting::kSubscribe, true,
+                   [&](std::string_view payload) {
+                     if (payload.size() < kShortestTick) return;  // Welcome, Subscribed, snapshot.
+                     delays_us.push_back(MicrosecondsSince(HostNsOf(payload)));
+                   });
     reader.emplace(client_thread.io(), UnixAddress("bare"), payload_bytes + transport::kLengthBytes,
                    [&](std::string_view payload) {
                      delays_us.push_back(MicrosecondsSince(StampOf(payload)));
                    });
   });
   const bool connected = WaitUntil(client_thread, [&] {
-    return client->state() == transport::LinkState::kLive && reader->connected();
+    return client->state() == transport::LinkState::kLive && viewer->connected() &&
+           reader->connected();
   });
   if (!connected) return Failure("publish_to_client_p50: the clients did not connect");
 
@@ -125,21 +157,27 @@ Result<Rows> PublishToClient() {
     client_thread.Do([&] { p50_us = Quantile(delays_us, 0.5); });
     return p50_us;
   };
-  const Row row = RunPairs(
-      "publish_to_client_p50", "us", kPairs,
-      [&] {
-        return run([&] {
-          auto serialised = channels;  // footingd serialises them anew and hands them over.
-          server.Publish(clock::MonotonicNs(), std::move(serialised));
-        });
-      },
-      [&] { return run([&] { bare.Publish(StampedFrame(payload_bytes)); }); });
+  const auto publish_on = [&](transport::Server& one) {
+    return run([&] {
+      auto serialised = channels;  // footingd serialises them anew and hands them over.
+      one.Publish(clock::MonotonicNs(), std::move(serialised));
+    });
+  };
+  const auto publish_bare = [&] { return run([&] { bare.Publish(StampedFrame(payload_bytes)); }); };
+  const Row bytes = RunPairs(
+      "publish_to_client_p50", "us", kPairs, [&] { return publish_on(server); }, publish_bare);
+  const Row parsed = RunPairs(
+      "publish_to_handler_p50", "us", kPairs, [&] { return publish_on(to_handler); }, publish_bare);
   client_thread.Do([&] {
     client.reset();
+    viewer.reset();
     reader.reset();
   });
-  server_thread.Do([&] { server.Stop("done"); });
-  return Rows{row};
+  server_thread.Do([&] {
+    server.Stop("done");
+    to_handler.Stop("done");
+  });
+  return Rows{bytes, parsed};
 }
 
 }  // namespace footing::bench
