@@ -62,6 +62,10 @@ struct PhaseConfig {
   /// Below this normalised cross-correlation the two hands do not swing alike: no new phase.
   double least_correlation = 0.4;
   double hold_cycles = 1.0;
+  /// A phase that differs by more than this from the last is a jump; it must persist for this part
+  /// of a cycle, which outlasts what a change of frequency fakes.
+  double jump_rad = 1.5;
+  double jump_persistence = 0.3;
 };
 
 /// 4) Amplitude and 5) inclination in motion.
@@ -71,7 +75,7 @@ struct CycleConfig {
   /// as well unless even the clipped samples show more.
   double most_clipped = 0.6;
   /// Weight of the prior that the second harmonic of the fit is small, in samples.
-  double harmonic_prior = 1.0;
+  double harmonic_prior = 0.1;
   int fit_rounds = 3;
 };
 
