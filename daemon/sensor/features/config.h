@@ -74,8 +74,10 @@ struct CycleConfig {
   /// clipped; then inclination is held, and amplitude
   /// as well unless even the clipped samples show more.
   double most_clipped = 0.6;
-  /// Weight of the prior that the second harmonic of the fit is small, in samples.
-  double harmonic_prior = 0.1;
+  /// Weight, in samples, of the prior that the fit's second and third harmonic are zero: weak
+  /// enough to leave a swing its shape, strong enough where most of its peak is missing.
+  double second_prior = 0.03;
+  double third_prior = 0.3;
   int fit_rounds = 3;
 };
 
