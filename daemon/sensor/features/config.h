@@ -62,6 +62,10 @@ struct PhaseConfig {
   /// Below this normalised cross-correlation the two hands do not swing alike: no new phase.
   double least_correlation = 0.4;
   double hold_cycles = 1.0;
+  /// A phase that differs by more than this from the last is a jump; it must persist for this part
+  /// of a cycle, which outlasts what a change of frequency fakes.
+  double jump_rad = 1.5;
+  double jump_persistence = 0.3;
 };
 
 /// 4) Amplitude and 5) inclination in motion.
@@ -70,8 +74,10 @@ struct CycleConfig {
   /// clipped; then inclination is held, and amplitude
   /// as well unless even the clipped samples show more.
   double most_clipped = 0.6;
-  /// Weight of the prior that the second harmonic of the fit is small, in samples.
-  double harmonic_prior = 1.0;
+  /// Weight, in samples, of the prior that the fit's second and third harmonic are zero: weak
+  /// enough to leave a swing its shape, strong enough where most of its peak is missing.
+  double second_prior = 0.03;
+  double third_prior = 0.3;
   int fit_rounds = 3;
 };
 

@@ -10,14 +10,14 @@
 namespace footing::features {
 namespace {
 
-constexpr int kTerms = 5;  // Mean, fundamental and second harmonic.
+constexpr int kTerms = 7;  // Mean, fundamental, second and third harmonic.
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 using Block = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 Terms TermsAt(double angle_rad) {
   Terms terms;
   terms << 1, std::cos(angle_rad), std::sin(angle_rad), std::cos(2 * angle_rad),
-      std::sin(2 * angle_rad);
+      std::sin(2 * angle_rad), std::cos(3 * angle_rad), std::sin(3 * angle_rad);
   return terms;
 }
 
@@ -35,7 +35,8 @@ void FillClipped(const SampleGrid& grid, int axis, double radians_per_step,
   for (int round = 0; round < config.fit_rounds; ++round) {
     Eigen::Matrix<double, kTerms, kTerms> normal = Eigen::Matrix<double, kTerms, kTerms>::Zero();
     Terms right = Terms::Zero();
-    normal(3, 3) = normal(4, 4) = config.harmonic_prior;
+    normal(3, 3) = normal(4, 4) = config.second_prior;
+    normal(5, 5) = normal(6, 6) = config.third_prior;
     normal(0, 0) = normal(1, 1) = normal(2, 2) = 1e-9;
     for (int row = 0; row < count; ++row) {
       const Terms terms = TermsAt(radians_per_step * (row - count + 1));

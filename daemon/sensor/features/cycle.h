@@ -19,7 +19,7 @@ struct Cycle {
   Eigen::Vector3d mean_mps2 = Eigen::Vector3d::Zero();
 };
 
-/// `period_s` > 0. Clipped samples are replaced by a fit of mean, fundamental and second harmonic
+/// `period_s` > 0. Clipped samples are replaced by a fit of mean, fundamental and two harmonics
 /// to the others, never nearer to zero than the end of the range.
 Cycle NewestCycle(const SampleGrid& grid, double period_s, const CycleConfig& config);
 

@@ -96,10 +96,24 @@ PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double 
 
 Phase Next(const Phase& before, const PhaseEstimate& estimate, double period_s, double elapsed_s,
            const PhaseConfig& config) {
-  if (estimate.found) return {true, estimate.phase_rad, 0};
+  const auto differs = [&](double from_rad) {
+    return std::abs(WrapAngle(estimate.phase_rad - from_rad)) > config.jump_rad;
+  };
   Phase next = before;
-  next.lost_s += elapsed_s;
-  return next.lost_s > config.hold_cycles * period_s ? Phase{} : next;
+  if (!estimate.found) {
+    next.jumping = false;
+    next.lost_s += elapsed_s;
+    return next.lost_s > config.hold_cycles * period_s ? Phase{} : next;
+  }
+  next.lost_s = 0;
+  if (before.valid && differs(before.phase_rad)) {
+    const bool same_candidate = before.jumping && !differs(before.candidate_rad);
+    next.candidate_age_s = same_candidate ? before.candidate_age_s + elapsed_s : 0;
+    next.candidate_rad = estimate.phase_rad;
+    next.jumping = true;
+    if (next.candidate_age_s < config.jump_persistence * period_s) return next;
+  }
+  return {true, estimate.phase_rad, 0, false, 0, 0};
 }
 
 }  // namespace footing::features

@@ -28,11 +28,14 @@ struct PhaseEstimate {
 PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double period_s,
                         const PhaseConfig& config);
 
-/// The phase that is published: bridged for a while when none is found.
+/// The phase that is published: jumps must persist, a loss is bridged for a while.
 struct Phase {
   bool valid = false;
   double phase_rad = 0;
-  double lost_s = 0;
+  double lost_s = 0;           ///< How long nothing was found.
+  bool jumping = false;        ///< A jump is seen that has not persisted yet;
+  double candidate_rad = 0;    ///< it leads here,
+  double candidate_age_s = 0;  ///< and was seen for so long.
 };
 
 Phase Next(const Phase& before, const PhaseEstimate& estimate, double period_s, double elapsed_s,
