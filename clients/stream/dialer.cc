@@ -30,7 +30,6 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
         devices_(std::move(devices)) {
     for (std::size_t i = 0; i < devices_.size(); ++i) {
       clocks_.push_back(std::make_unique<boost::asio::steady_timer>(io));
-      due_.emplace_back();
       sequences_.push_back(0);
     }
   }
@@ -89,9 +88,10 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     log::Info("attached " + std::to_string(devices_.size()) + " simulated devices to " +
               options_.to.Text());
     start_ns_ = clock::MonotonicNs();
+    start_ = std::chrono::steady_clock::now();
     for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
       SendAttach(slot);
-      due_[slot] = std::chrono::steady_clock::now();
+      devices_[slot].Restart();
       Schedule(slot);
     }
   }
@@ -128,34 +128,33 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     const std::size_t slot = envelope.output().slot();
     const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
     const std::int64_t now_ns = clock::MonotonicNs();
-    for (const auto& report : devices_[slot].HandleOutput({first, bytes.size()}, now_ns)) {
+    for (const auto& report : devices_[slot].HandleOutput({first, bytes.size()})) {
       SendReport(slot, report, now_ns);
     }
     if (const std::string changes = devices_[slot].Changes(); !changes.empty()) log::Info(changes);
   }
 
   void Schedule(std::size_t slot) {
-    const double interval_ns = static_cast<double>(devices_[slot].NextIntervalNs());
-    due_[slot] +=
-        std::chrono::nanoseconds(static_cast<std::int64_t>(interval_ns / options_.rate_scale));
-    clocks_[slot]->expires_at(due_[slot]);
-    clocks_[slot]->async_wait([weak = weak_from_this(), slot](boost::system::error_code error) {
-      const auto self = weak.lock();
-      if (self && !error && self->connection_ && !self->stopped_) self->Deliver(slot);
-    });
+    StandIn::Arrival next = devices_[slot].Next();
+    next.arrives_s /= options_.rate_scale;
+    next.sampled_s /= options_.rate_scale;
+    clocks_[slot]->expires_at(start_ +
+                              std::chrono::nanoseconds(SecondsToNanoseconds(next.arrives_s)));
+    clocks_[slot]->async_wait(
+        [weak = weak_from_this(), slot, next](boost::system::error_code error) {
+          const auto self = weak.lock();
+          if (self && !error && self->connection_ && !self->stopped_) self->Deliver(slot, next);
+        });
   }
 
-  void Deliver(std::size_t slot) {
-    const std::int64_t now_ns = clock::MonotonicNs();
-    const double t_s = NanosecondsToSeconds(now_ns - start_ns_);
-    if (options_.duration_s > 0 && t_s >= options_.duration_s) {
+  void Deliver(std::size_t slot, const StandIn::Arrival& arrival) {
+    if (options_.duration_s > 0 && arrival.arrives_s >= options_.duration_s) {
       if (!ended_) on_end_();
       ended_ = true;
       return;
     }
-    const StandIn::Delivery delivery = devices_[slot].Deliver(t_s, now_ns);
-    if (delivery.report) {
-      SendReport(slot, *delivery.report, start_ns_ + SecondsToNanoseconds(delivery.sampled_s));
+    if (const auto report = devices_[slot].Deliver(arrival.sampled_s)) {
+      SendReport(slot, *report, start_ns_ + SecondsToNanoseconds(arrival.sampled_s));
     }
     Schedule(slot);
   }
@@ -180,7 +179,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   boost::asio::steady_timer redial_;
   std::vector<StandIn> devices_;
   std::vector<std::unique_ptr<boost::asio::steady_timer>> clocks_;
-  std::vector<std::chrono::steady_clock::time_point> due_;
+  std::chrono::steady_clock::time_point start_;
   std::vector<std::uint64_t> sequences_;
   std::unique_ptr<transport::FramedConnection> connection_;
   std::string waits_for_;

@@ -9,25 +9,22 @@
 #include "clients/stream/table.h"
 #include "common/config/data_file.h"
 #include "common/synthetic/hand_motion.h"
+#include "common/synthetic/random.h"
+#include "common/synthetic/sensor.h"
 #include "common/units/units.h"
 
 namespace footing::stream_client {
 namespace {
 
-using device_models::LinkModel;
 using device_models::LinkQuality;
 using stream::DeviceRole;
 
 constexpr std::size_t kMaxRecordingBytes = 256u << 20;
-constexpr double kWiimoteReportsHz = 100;
-constexpr double kBoardReportsHz = 83.6;  // Measured on a good link.
 /// How fast a person changes from one motion to the next.
 constexpr double kBlendS = 0.15;
 
 Result<LinkQuality> ParseLink(const std::string& name) {
-  if (name == "ideal") return LinkQuality::kIdeal;
-  if (name == "good") return LinkQuality::kGood;
-  if (name == "poor") return LinkQuality::kPoor;
+  if (const auto quality = device_models::LinkNamed(name)) return *quality;
   return UsageError("--link " + name + ": there are ideal, good and poor");
 }
 
@@ -40,7 +37,17 @@ StandIn MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device
                     StandIn::SpecificForce force) {
   const std::uint64_t seed = DeviceSeed(common, device);
   return {device_models::Wiimote(seed), std::move(force), role,
-          LinkModel(link, kWiimoteReportsHz, seed + 500)};
+          device_models::WiimoteLink(link, seed + 500)};
+}
+
+/// What a real accelerometer adds to a made motion.
+StandIn::SpecificForce WithNoise(std::uint64_t seed, StandIn::SpecificForce force) {
+  return [random = synthetic::Random(seed), force](double t_s) mutable {
+    const double sd_mps2 = synthetic::SensorModel().noise_mps2;
+    Eigen::Vector3d felt = force(t_s);
+    for (int axis = 0; axis < 3; ++axis) felt[axis] += sd_mps2 * random.Normal();
+    return felt;
+  };
 }
 
 /// Row i of a recording holds from i / rate to (i + 1) / rate.
@@ -110,12 +117,14 @@ Result<Plan> PlanUser(const std::string& script, const std::string& interface,
   auto time = [motion](double t_s) { return std::fmod(t_s, motion->DurationSeconds()); };
   Plan plan;
   plan.duration_s = Duration(common, 0);
-  plan.devices.push_back(
-      MakeWiimote(common, *link, 1, DeviceRole::kLeftHand,
-                  [motion, time](double t_s) { return motion->At(time(t_s)).left_mps2; }));
-  plan.devices.push_back(
-      MakeWiimote(common, *link, 2, DeviceRole::kRightHand,
-                  [motion, time](double t_s) { return motion->At(time(t_s)).right_mps2; }));
+  plan.devices.push_back(MakeWiimote(common, *link, 1, DeviceRole::kLeftHand,
+                                     WithNoise(DeviceSeed(common, 1), [motion, time](double t_s) {
+                                       return motion->At(time(t_s)).left_mps2;
+                                     })));
+  plan.devices.push_back(MakeWiimote(common, *link, 2, DeviceRole::kRightHand,
+                                     WithNoise(DeviceSeed(common, 2), [motion, time](double t_s) {
+                                       return motion->At(time(t_s)).right_mps2;
+                                     })));
   return plan;
 }
 
@@ -155,7 +164,7 @@ Result<Plan> PlanCorners(const std::string& left, const std::string& right, cons
     longest_s = std::max(longest_s, (*table)->rows.back()[0] - (*table)->rows.front()[0]);
     const std::uint64_t seed = DeviceSeed(common, plan.devices.size() + 1);
     plan.devices.emplace_back(device_models::BalanceBoard(seed), PlayCorners(*table), role,
-                              LinkModel(*link, kBoardReportsHz, seed + 500));
+                              device_models::BoardLink(*link, seed + 500));
   }
   plan.duration_s = Duration(common, longest_s);
   return plan;

@@ -1,54 +1,71 @@
 #include "clients/stream/stand_in.h"
 
-#include <cmath>
 #include <utility>
 
+#include "common/units/units.h"
+
 namespace footing::stream_client {
-namespace {
 
-// facts of the devices: an accelerometer read 100 times a second; a board whose values change about
-// 60 times a second.
-constexpr double kWiimoteSensorHz = 100;
-constexpr double kBoardSensorHz = 60;
+using device_models::BalanceBoard;
+using device_models::Wiimote;
 
-}  // namespace
-
-StandIn::StandIn(device_models::Wiimote wiimote, SpecificForce force, stream::DeviceRole role,
-                 device_models::LinkModel link)
-    : wiimote_(std::move(wiimote)),
+StandIn::StandIn(Wiimote wiimote, SpecificForce force, stream::DeviceRole role,
+                 const device_models::LinkConfig& link)
+    : fresh_(std::move(wiimote)),
+      device_(fresh_),
       force_(std::move(force)),
       role_(role),
-      link_(std::move(link)),
-      sensor_rate_hz_(kWiimoteSensorHz) {}
+      link_config_(link),
+      link_(link, 0) {}
 
-StandIn::StandIn(device_models::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
-                 device_models::LinkModel link)
-    : board_(std::move(board)),
+StandIn::StandIn(BalanceBoard board, CornerForces forces, stream::DeviceRole role,
+                 const device_models::LinkConfig& link)
+    : fresh_(std::move(board)),
+      device_(fresh_),
       forces_(std::move(forces)),
       role_(role),
-      link_(std::move(link)),
-      sensor_rate_hz_(kBoardSensorHz) {}
+      link_config_(link),
+      link_(link, 0) {}
 
 const device_models::Identity& StandIn::identity() const {
-  return wiimote_ ? wiimote_->identity() : board_->identity();
+  return std::visit(
+      [](const auto& device) -> const auto& { return device.identity(); }, device_);
 }
 
-std::vector<device_models::Report> StandIn::HandleOutput(std::span<const std::uint8_t> output,
-                                                         std::int64_t now_ns) {
-  return wiimote_ ? wiimote_->HandleOutput(output, now_ns) : board_->HandleOutput(output, now_ns);
+std::vector<device_models::Report> StandIn::HandleOutput(std::span<const std::uint8_t> output) {
+  return std::visit([output](auto& device) { return device.HandleOutput(output); }, device_);
 }
 
-StandIn::Delivery StandIn::Deliver(double t_s, std::int64_t now_ns) {
-  Delivery delivery;
-  delivery.sampled_s = std::floor(t_s * sensor_rate_hz_ + 1e-6) / sensor_rate_hz_;
-  delivery.report = wiimote_ ? wiimote_->Sample(force_(delivery.sampled_s), now_ns)
-                             : board_->Sample(forces_(delivery.sampled_s), now_ns);
-  return delivery;
+StandIn::Arrival StandIn::Next() {
+  const device_models::LinkModel::Arrival arrival = link_.Next();
+  return {NanosecondsToSeconds(arrival.arrives_ns), NanosecondsToSeconds(arrival.sampled_ns)};
+}
+
+std::optional<device_models::Report> StandIn::Deliver(double sampled_s) {
+  auto* wiimote = std::get_if<Wiimote>(&device_);
+  if (sampled_s != held_s_) {
+    held_s_ = sampled_s;
+    if (wiimote != nullptr) {
+      held_force_ = force_(sampled_s);
+    } else {
+      held_corners_ = forces_(sampled_s);
+    }
+  }
+  if (wiimote != nullptr) return wiimote->Sample(held_force_);
+  return std::get<BalanceBoard>(device_).Sample(held_corners_);
+}
+
+void StandIn::Restart() {
+  device_ = fresh_;
+  link_ = device_models::LinkModel(link_config_, 0);
+  held_s_ = -1;
+  leds_ = 0;
+  rumble_ = false;
 }
 
 std::string StandIn::Changes() {
-  const std::uint32_t leds = wiimote_ ? wiimote_->leds() : board_->leds();
-  const bool rumble = wiimote_ && wiimote_->rumble();
+  const auto [leds, rumble] = std::visit(
+      [](const auto& device) { return std::pair(device.leds(), device.rumble()); }, device_);
   std::string line;
   if (leds != leds_) line += " LEDs " + std::to_string(leds);
   if (rumble != rumble_) line += rumble ? " rumble on" : " rumble off";

@@ -21,11 +21,15 @@ struct ClientOptions {
   double max_hz = 0;                  ///< 0: every tick.
   v1::QueuePolicy policy = v1::QUEUE_POLICY_DROP_OLDEST;
   std::uint32_t queue_ticks = 256;
+  bool from_ring_start = false;  ///< First everything that the server's ring still holds.
   std::uint32_t max_message_bytes = 1u << 20;
   double backoff_min_s = 0.1;
   double backoff_max_s = 5;
   double stale_after_s = 3;
   double dead_after_s = 10;
+  double ping_interval_s = 0.25;  ///< For the clock offset, and to notice that nothing comes.
+  /// The clock of all stamps; CLOCK_MONOTONIC when none is given.
+  std::function<std::int64_t()> now_ns;
 };
 
 /// Shown to the user as they are.
@@ -52,7 +56,9 @@ struct ClientHandlers {
 };
 
 /// Connects, keeps connected (0.1 s to 5 s between tries, with jitter) and resumes by sequence.
-/// Everything runs on the io_context's one thread; handlers are called there.
+/// A resume asks for the ticks since the last one received; with the policy latest there is none.
+/// Everything runs on the io_context's one thread; handlers are called there, never from within a
+/// call to this class, but for `done` of Send() when the link is down.
 class Client {
  public:
   Client(boost::asio::io_context& io, ClientOptions options, ClientHandlers handlers);

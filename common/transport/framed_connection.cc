@@ -74,6 +74,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   bool open() const { return state_ == State::kOpen; }
   std::size_t queued_bytes() const { return queued_bytes_; }
   int native_handle() { return socket_.native_handle(); }
+  Socket::executor_type executor() { return socket_.get_executor(); }
 
  private:
   enum class State { kOpen, kFinishing, kOver };
@@ -94,6 +95,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     }
     // While finishing, what still comes is read and thrown away: closing over unread bytes would
     // reset the connection and lose the last word.
+    if (state_ == State::kOpen && handlers_.on_bytes) handlers_.on_bytes();
     if (state_ == State::kOpen) Split(std::string_view(input_.data(), size));
     if (state_ != State::kOver) Read();
   }
@@ -136,7 +138,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
       batch_.Consume(written);
     }
     writing_ = false;
-    if (state_ == State::kFinishing && batch_.empty()) SayNoMore();
+    if (state_ == State::kFinishing && batch_.empty() && queue_.empty()) SayNoMore();
   }
 
   void Fill() {
@@ -216,5 +218,6 @@ void FramedConnection::Close() { implementation_->Close(); }
 bool FramedConnection::open() const { return implementation_->open(); }
 std::size_t FramedConnection::queued_bytes() const { return implementation_->queued_bytes(); }
 int FramedConnection::native_handle() { return implementation_->native_handle(); }
+Socket::executor_type FramedConnection::executor() { return implementation_->executor(); }
 
 }  // namespace footing::transport

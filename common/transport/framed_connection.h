@@ -29,6 +29,8 @@ struct FramedHandlers {
   /// Optional: called when nothing of Send() waits and the socket takes more; may add whole frames
   /// to the batch. Adding none means there is nothing to send.
   std::function<void(WriteBatch& batch)> on_writable;
+  /// Optional: bytes have just arrived; the frames that they complete follow.
+  std::function<void()> on_bytes;
   /// Optional: a frame over the limit was announced. May Finish() with a last word.
   std::function<void(const std::string& why)> on_oversized;
 };
@@ -39,7 +41,7 @@ struct FramedHandlers {
 /// Writes go to the socket at once when it takes them; only what it does not take is queued.
 class FramedConnection {
  public:
-  /// `socket` is prepared (see Prepare); Listener's and Dial's sockets become so here.
+  /// A socket of Listener or Dial; it is made ready here (see Prepare).
   FramedConnection(Socket socket, const FramedLimits& limits, FramedHandlers handlers);
   ~FramedConnection();
   FramedConnection(const FramedConnection&) = delete;
@@ -66,6 +68,7 @@ class FramedConnection {
   std::size_t queued_bytes() const;
   /// For SO_PEERCRED and the like.
   int native_handle();
+  Socket::executor_type executor();
 
  private:
   class Implementation;

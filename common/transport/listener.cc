@@ -58,7 +58,6 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
         self->AcceptLater();  // For example too many open files: it passes.
         return;
       }
-      Prepare(socket);
       self->on_accept_(std::move(socket));
       if (!self->closed_) self->Accept();
     });

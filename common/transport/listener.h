@@ -10,7 +10,7 @@
 
 namespace footing::transport {
 
-/// Accepts connections on one address and hands over their sockets, already prepared.
+/// Accepts connections on one address and hands over their sockets.
 ///
 /// Unix: mode 0660. A socket file left over by a dead server is replaced; one with a living server
 /// behind it is never touched. The own file is removed at the end. TCP beyond loopback is refused.

@@ -35,6 +35,8 @@ struct ServerOptions {
   double ping_interval_s = 1;
   double dead_after_s = 10;
   std::vector<std::string> capabilities;
+  /// The clock of all stamps; CLOCK_MONOTONIC when none is given.
+  std::function<std::int64_t()> now_ns;
 };
 
 /// One field of a tick, serialised once for all sessions: the bytes of the channel's message,
@@ -63,7 +65,8 @@ struct ServerStatistics {
   std::size_t sessions = 0;
   std::uint64_t accepted = 0;
   std::uint64_t refused = 0;
-  std::uint64_t ticks_dropped = 0;
+  std::uint64_t ticks_dropped = 0;      ///< Of full session queues, all sessions together.
+  std::uint64_t channels_left_out = 0;  ///< Did not fit into a tick, or are no channel.
   std::uint64_t ring_bytes = 0;
 };
 

@@ -1,7 +1,10 @@
 #include "common/cli/cli.h"
+#include "daemon/offline/eval/board_command.h"
 #include "daemon/offline/eval/command.h"
+#include "daemon/offline/eval/features_command.h"
 #include "daemon/offline/eval/gait_command.h"
 #include "daemon/offline/eval/monkey_command.h"
+#include "daemon/offline/eval/replay_command.h"
 #include "daemon/offline/eval/transitions_command.h"
 
 int main(int argc, char** argv) {
@@ -14,8 +17,11 @@ int main(int argc, char** argv) {
   app->add_flag("--json", shared.json, "One JSON object on standard output");
   app->require_subcommand(1);
   app->fallthrough();
+  footing::eval::AddBoardCommand(*app, shared);
+  footing::eval::AddFeaturesCommand(*app, shared);
   footing::eval::AddGaitCommand(*app, shared);
   footing::eval::AddMonkeyCommand(*app, shared);
+  footing::eval::AddReplayCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;

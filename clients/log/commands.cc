@@ -1,0 +1,146 @@
+#include "clients/log/commands.h"
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clients/log/export_csv.h"
+#include "clients/log/record.h"
+#include "common/cli/cli.h"
+#include "common/recording/repair.h"
+#include "common/transport/address.h"
+
+namespace footing::log_client {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// One JSON object, or one "name: value" line each.
+void Print(const ordered_json& out, bool json) {
+  if (json) {
+    std::cout << out.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << std::endl;
+    return;
+  }
+  for (const auto& [name, value] : out.items()) {
+    std::cout << name << ": " << (value.is_string() ? value.get<std::string>() : value.dump())
+              << std::endl;
+  }
+}
+
+Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::string>& addresses) {
+  for (const std::string& text : addresses) {
+    const Result<transport::Address> address = transport::ParseAddress(text);
+    if (!address) return address.error();
+    options.addresses.push_back(*address);
+  }
+  options.version = cli::Version();
+  const Result<RecordReport> report = Record(options);
+  if (!report) return report.error();
+  return ordered_json{{"file", options.out},
+                      {"messages", report->messages},
+                      {"ticks", report->ticks},
+                      {"missing_ticks", report->missing_ticks},
+                      {"duration_s", report->duration_s}};
+}
+
+Result<ordered_json> RunExport(const std::string& file, const std::string& format,
+                               const std::string& folder, bool replace) {
+  if (format != "csv") {
+    return UsageError("the format " + format + " is not built; built are: csv");
+  }
+  const auto files = ExportCsv(file, folder, replace);
+  if (!files) return files.error();
+  ordered_json out{{"file", file}, {"format", format}, {"files", ordered_json::array()}};
+  for (const ExportedFile& exported : *files) {
+    out["files"].push_back(
+        {{"topic", exported.topic}, {"path", exported.path}, {"rows", exported.rows}});
+  }
+  return out;
+}
+
+Result<ordered_json> RunRepair(const std::string& in, const std::string& out, bool replace) {
+  const auto report =
+      recording::Repair(in, out, std::string("footing-log ") + cli::Version(), replace);
+  if (!report) return report.error();
+  const mcap::WalkEnd& found = report->found;
+  return ordered_json{
+      {"input", in},
+      {"output", out},
+      {"was_complete", found.complete},
+      {"problem", found.problem},
+      {"problem_byte", found.problem_offset},
+      {"messages_kept", report->messages},
+      {"attachments_kept", report->attachments},
+      {"metadata_kept", report->metadata},
+      {"damaged_chunks_lost", found.damaged_chunks},
+      {"damaged_records_lost", found.damaged_records},
+      {"bytes_behind_last_complete_record", report->input_bytes - found.end_offset}};
+}
+
+void Finish(const Result<ordered_json>& result, Shared& shared) {
+  if (result) {
+    Print(*result, shared.json);
+  } else {
+    shared.exit_code = cli::Report(result.error());
+  }
+}
+
+}  // namespace
+
+void AddRecordCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("record", "Record what servers send to an MCAP file");
+  const auto options = std::make_shared<RecordOptions>();
+  const auto addresses = std::make_shared<std::vector<std::string>>();
+  command
+      ->add_option("--connect", *addresses, "A server: unix:PATH or tcp:HOST:PORT; may be repeated")
+      ->required();
+  command->add_option("--out", options->out, "The new file")->required();
+  command->add_option("--seconds", options->seconds, "End by itself; left out: until SIGINT")
+      ->check(CLI::Range(0.1, 1e6));
+  command->add_option("--attach", options->attachments,
+                      "A file to keep inside: config, calibration, track; may be repeated");
+  command->add_flag("--force", options->replace, "Overwrite an existing file");
+  command->callback(
+      [options, addresses, &shared] { Finish(RunRecord(*options, *addresses), shared); });
+}
+
+void AddExportCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("export", "Write a recording's messages in other formats");
+  const auto file = std::make_shared<std::string>();
+  const auto format = std::make_shared<std::string>();
+  const auto folder = std::make_shared<std::string>();
+  const auto replace = std::make_shared<bool>(false);
+  command->add_option("FILE", *file, "The recording")->required();
+  command->add_option("--format", *format, "csv")->required();
+  command->add_option("--out", *folder, "The folder for one file a topic")->required();
+  command->add_flag("--force", *replace, "Overwrite existing files");
+  command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *replace), shared); });
+}
+
+void AddRepairCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command =
+      app.add_subcommand("repair", "Make a complete recording of one cut short or damaged");
+  const auto in = std::make_shared<std::string>();
+  const auto out = std::make_shared<std::string>();
+  const auto replace = std::make_shared<bool>(false);
+  command->add_option("IN", *in, "The recording cut short")->required();
+  command->add_option("--out", *out, "The new file")->required();
+  command->add_flag("--force", *replace, "Overwrite an existing file");
+  command->callback([=, &shared] { Finish(RunRepair(*in, *out, *replace), shared); });
+}
+
+void AddServeCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("serve", "Stand in for footingd with a recording");
+  const auto file = std::make_shared<std::string>();
+  const auto addresses = std::make_shared<std::vector<std::string>>();
+  command->add_option("FILE", *file, "The recording");
+  command->add_option("--listen", *addresses, "unix:PATH or tcp:HOST:PORT");
+  command->callback([&shared] {
+    shared.exit_code =
+        cli::Report(UsageError("serve is not built; built are: record, info, export, repair"));
+  });
+}
+
+}  // namespace footing::log_client

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace footing::log_client {
+
+/// What all subcommands share.
+struct Shared {
+  bool json = false;
+  int exit_code = 0;  ///< Set by the subcommand that ran.
+};
+
+/// Each adds one subcommand to footing-log; its callback does the work.
+void AddRecordCommand(CLI::App& app, Shared& shared);
+void AddInfoCommand(CLI::App& app, Shared& shared);
+void AddExportCommand(CLI::App& app, Shared& shared);
+void AddRepairCommand(CLI::App& app, Shared& shared);
+void AddServeCommand(CLI::App& app, Shared& shared);
+
+}  // namespace footing::log_client

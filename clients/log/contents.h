@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/mcap/walk.h"
+#include "common/result/result.h"
+
+namespace footing::log_client {
+
+struct Topic {
+  std::string name;
+  std::string schema;
+  std::uint64_t messages = 0;
+  std::uint64_t first_ns = 0;
+  std::uint64_t last_ns = 0;
+
+  /// Between the first and the last message; 0 for fewer than two.
+  double RateHz() const;
+};
+
+struct AttachmentNote {
+  std::string name;
+  std::string media_type;
+  std::uint64_t bytes = 0;
+};
+
+/// What a recording holds.
+struct Contents {
+  std::string path;
+  std::uint64_t bytes = 0;
+  std::string library;
+  std::vector<Topic> topics;  ///< By name.
+  std::vector<AttachmentNote> attachments;
+  std::vector<mcap::Metadata> metadata;
+  std::uint64_t messages = 0;
+  std::uint64_t start_ns = 0;
+  std::uint64_t end_ns = 0;
+  /// Some device or input of a character was a stand-in; nothing when no message says.
+  std::optional<bool> simulated;
+  std::uint64_t gaps = 0;
+  std::uint64_t missing_ticks = 0;
+  mcap::WalkEnd end;
+};
+
+/// Reads a whole recording, cut ones as far as they go. InvalidData only when it is none at all.
+Result<Contents> ReadContents(const std::string& path);
+
+/// What to tell about a recording that is not complete; nothing when it is.
+std::optional<Error> Incomplete(const std::string& path, const mcap::WalkEnd& end);
+
+}  // namespace footing::log_client

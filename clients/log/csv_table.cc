@@ -1,0 +1,237 @@
+#include "clients/log/csv_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace footing::log_client {
+namespace {
+
+namespace pb = google::protobuf;
+
+template <typename T>
+void AppendNumber(T value, std::string& out) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof(text), value).ptr;
+  out.append(text, end);
+}
+
+template <typename T>
+void AppendFloating(T value, std::string& out) {
+  if (std::isfinite(value)) AppendNumber(value, out);
+}
+
+void AppendText(const std::string& text, std::string& out) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) {
+    out += text;
+    return;
+  }
+  out += '"';
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  out += '"';
+}
+
+void AppendHex(const std::string& bytes, std::string& out) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  for (const char byte : bytes) {
+    const auto value = static_cast<unsigned char>(byte);
+    out += kDigits[value >> 4];
+    out += kDigits[value & 0xF];
+  }
+}
+
+void AppendEnum(const pb::EnumDescriptor& type, int number, std::string& out) {
+  const pb::EnumValueDescriptor* value = type.FindValueByNumber(number);
+  if (value != nullptr) {
+    out += value->name();
+  } else {
+    AppendNumber(number, out);
+  }
+}
+
+/// The value of a field that is no message; `index` counts in a list and is -1 elsewhere.
+void AppendValue(const pb::Message& message, const pb::FieldDescriptor& field, int index,
+                 std::string& out) {
+  const pb::Reflection& r = *message.GetReflection();
+  const bool in_list = index >= 0;
+  switch (field.cpp_type()) {
+    case pb::FieldDescriptor::CPPTYPE_INT32:
+      return AppendNumber(
+          in_list ? r.GetRepeatedInt32(message, &field, index) : r.GetInt32(message, &field), out);
+    case pb::FieldDescriptor::CPPTYPE_INT64:
+      return AppendNumber(
+          in_list ? r.GetRepeatedInt64(message, &field, index) : r.GetInt64(message, &field), out);
+    case pb::FieldDescriptor::CPPTYPE_UINT32:
+      return AppendNumber(
+          in_list ? r.GetRepeatedUInt32(message, &field, index) : r.GetUInt32(message, &field),
+          out);
+    case pb::FieldDescriptor::CPPTYPE_UINT64:
+      return AppendNumber(
+          in_list ? r.GetRepeatedUInt64(message, &field, index) : r.GetUInt64(message, &field),
+          out);
+    case pb::FieldDescriptor::CPPTYPE_DOUBLE:
+      return AppendFloating(
+          in_list ? r.GetRepeatedDouble(message, &field, index) : r.GetDouble(message, &field),
+          out);
+    case pb::FieldDescriptor::CPPTYPE_FLOAT:
+      return AppendFloating(
+          in_list ? r.GetRepeatedFloat(message, &field, index) : r.GetFloat(message, &field), out);
+    case pb::FieldDescriptor::CPPTYPE_BOOL:
+      out += (in_list ? r.GetRepeatedBool(message, &field, index) : r.GetBool(message, &field))
+                 ? '1'
+                 : '0';
+      return;
+    case pb::FieldDescriptor::CPPTYPE_ENUM:
+      return AppendEnum(*field.enum_type(),
+                        in_list ? r.GetRepeatedEnumValue(message, &field, index)
+                                : r.GetEnumValue(message, &field),
+                        out);
+    case pb::FieldDescriptor::CPPTYPE_STRING: {
+      const std::string text =
+          in_list ? r.GetRepeatedString(message, &field, index) : r.GetString(message, &field);
+      return field.type() == pb::FieldDescriptor::TYPE_BYTES ? AppendHex(text, out)
+                                                             : AppendText(text, out);
+    }
+    case pb::FieldDescriptor::CPPTYPE_MESSAGE:
+      return;
+  }
+}
+
+/// How many entries of the field the message has: of a list its length, else 1 or 0.
+std::size_t Entries(const pb::Message& message, const pb::FieldDescriptor& field) {
+  const pb::Reflection& r = *message.GetReflection();
+  if (field.is_repeated()) return static_cast<std::size_t>(r.FieldSize(message, &field));
+  return field.message_type() == nullptr || r.HasField(message, &field) ? 1 : 0;
+}
+
+const pb::Message& Entry(const pb::Message& message, const pb::FieldDescriptor& field,
+                         std::size_t index) {
+  const pb::Reflection& r = *message.GetReflection();
+  return field.is_repeated() ? r.GetRepeatedMessage(message, &field, static_cast<int>(index))
+                             : r.GetMessage(message, &field);
+}
+
+const pb::FieldDescriptor* FirstList(const pb::Descriptor& type) {
+  for (int i = 0; i < type.field_count(); ++i) {
+    if (type.field(i)->is_repeated() && type.field(i)->message_type() != nullptr) {
+      return type.field(i);
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+CsvTable::CsvTable(const pb::Descriptor& type)
+    : rows_(FirstList(type)), outer_(NodesOf(type, rows_)) {
+  if (rows_ != nullptr) inner_ = NodesOf(*rows_->message_type(), nullptr);
+}
+
+std::vector<CsvTable::Node> CsvTable::NodesOf(const pb::Descriptor& type,
+                                              const pb::FieldDescriptor* without) {
+  std::vector<Node> nodes;
+  for (int i = 0; i < type.field_count(); ++i) {
+    if (type.field(i) != without) nodes.push_back({type.field(i), 0, {}});
+  }
+  return nodes;
+}
+
+void CsvTable::LearnFields(const pb::Message& message, std::vector<Node>& nodes) {
+  for (Node& node : nodes) {
+    const std::size_t entries = Entries(message, *node.field);
+    node.entries = std::max(node.entries, entries);
+    if (node.field->message_type() == nullptr || entries == 0) continue;
+    if (node.children.empty()) node.children = NodesOf(*node.field->message_type(), nullptr);
+    for (std::size_t k = 0; k < entries; ++k) {
+      LearnFields(Entry(message, *node.field, k), node.children);
+    }
+  }
+}
+
+Result<void> CsvTable::Learn(const pb::Message& message) {
+  LearnFields(message, outer_);
+  if (rows_ != nullptr) {
+    for (std::size_t k = 0; k < Entries(message, *rows_); ++k) {
+      LearnFields(Entry(message, *rows_, k), inner_);
+    }
+  }
+  if (Columns(outer_) + Columns(inner_) <= kMostColumns) return {};
+  return InvalidData("a message of type " + message.GetDescriptor()->full_name() +
+                     " would need more than " + std::to_string(kMostColumns) + " columns");
+}
+
+std::size_t CsvTable::Columns(const std::vector<Node>& nodes) {
+  std::size_t columns = 0;
+  for (const Node& node : nodes) {
+    const std::size_t each = node.field->message_type() == nullptr ? 1 : Columns(node.children);
+    columns = std::min(columns + std::min(node.entries, kMostColumns + 1) * each, kMostColumns + 1);
+  }
+  return columns;
+}
+
+void CsvTable::Names(const std::vector<Node>& nodes, const std::string& prefix,
+                     std::vector<std::string>& names) {
+  for (const Node& node : nodes) {
+    for (std::size_t k = 0; k < node.entries; ++k) {
+      std::string name = prefix + node.field->name();
+      if (node.field->is_repeated()) name.append(1, '_').append(std::to_string(k));
+      if (node.field->message_type() == nullptr) {
+        names.push_back(name);
+      } else {
+        Names(node.children, name + "_", names);
+      }
+    }
+  }
+}
+
+std::string CsvTable::Header() const {
+  std::vector<std::string> names;
+  Names(outer_, "", names);
+  std::vector<std::string> inner;
+  Names(inner_, "", inner);
+  for (const std::string& name : inner) {
+    const bool taken = std::find(names.begin(), names.end(), name) != names.end();
+    names.push_back(taken ? rows_->name() + "_" + name : name);
+  }
+  std::string header;
+  for (const std::string& name : names) {
+    if (!header.empty()) header += ',';
+    header += name;
+  }
+  return header;
+}
+
+void CsvTable::Cells(const pb::Message* message, const std::vector<Node>& nodes, std::string& out) {
+  for (const Node& node : nodes) {
+    const std::size_t here = message == nullptr ? 0 : Entries(*message, *node.field);
+    for (std::size_t k = 0; k < node.entries; ++k) {
+      if (node.field->message_type() != nullptr) {
+        Cells(k < here ? &Entry(*message, *node.field, k) : nullptr, node.children, out);
+        continue;
+      }
+      if (k < here) {
+        AppendValue(*message, *node.field, node.field->is_repeated() ? static_cast<int>(k) : -1,
+                    out);
+      }
+      out += ',';
+    }
+  }
+}
+
+void CsvTable::AppendRows(const pb::Message& message, const std::string& prefix,
+                          std::string& out) const {
+  const auto append = [&](const pb::Message* entry) {
+    out += prefix;
+    Cells(&message, outer_, out);
+    Cells(entry, inner_, out);
+    if (out.back() == ',') out.pop_back();  // Each cell ends in a comma; the last one needs none.
+    out += '\n';
+  };
+  if (rows_ == nullptr) return append(nullptr);
+  for (std::size_t k = 0; k < Entries(message, *rows_); ++k) append(&Entry(message, *rows_, k));
+}
+
+}  // namespace footing::log_client

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+
+namespace footing::log_client {
+
+/// Any protobuf message as rows of a CSV table (RFC 4180).
+///
+/// The message's first list of messages gives the rows: one an entry, beside the message's own
+/// fields; a message type without such a list gives one row. A field inside a message is named
+/// OUTER_FIELD, an entry of any other list LIST_INDEX or LIST_INDEX_FIELD, from 0. Units stand in
+/// the fields' own names. Enums are their names, flags 0 or 1, bytes hexadecimal; what a message
+/// does not have is an empty cell.
+///
+/// The columns are those that any message shown to Learn() has, so a table takes two passes.
+class CsvTable {
+ public:
+  explicit CsvTable(const google::protobuf::Descriptor& type);
+
+  /// InvalidData when a list is so long that the table would have more than kMostColumns.
+  Result<void> Learn(const google::protobuf::Message& message);
+
+  /// Column names, separated by commas, without a line's end.
+  std::string Header() const;
+
+  /// Appends a line for each row: `prefix` (itself ending in a comma, or empty) and the cells.
+  void AppendRows(const google::protobuf::Message& message, const std::string& prefix,
+                  std::string& out) const;
+
+  static constexpr std::size_t kMostColumns = 4096;
+
+ private:
+  /// A field, and as many entries of it as any message has.
+  struct Node {
+    const google::protobuf::FieldDescriptor* field = nullptr;
+    std::size_t entries = 0;
+    std::vector<Node> children;  ///< Of a field that is a message.
+  };
+
+  static std::vector<Node> NodesOf(const google::protobuf::Descriptor& type,
+                                   const google::protobuf::FieldDescriptor* without);
+  static void LearnFields(const google::protobuf::Message& message, std::vector<Node>& nodes);
+  static std::size_t Columns(const std::vector<Node>& nodes);
+  static void Names(const std::vector<Node>& nodes, const std::string& prefix,
+                    std::vector<std::string>& names);
+  /// A null message: its cells are empty.
+  static void Cells(const google::protobuf::Message* message, const std::vector<Node>& nodes,
+                    std::string& out);
+
+  const google::protobuf::FieldDescriptor* rows_ = nullptr;
+  std::vector<Node> outer_;
+  std::vector<Node> inner_;
+};
+
+}  // namespace footing::log_client

@@ -1,0 +1,108 @@
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "clients/log/commands.h"
+#include "clients/log/contents.h"
+#include "common/cli/cli.h"
+
+namespace footing::log_client {
+namespace {
+
+using nlohmann::ordered_json;
+
+double SecondsBetween(std::uint64_t from_ns, std::uint64_t to_ns) {
+  return to_ns <= from_ns ? 0 : 1e-9 * static_cast<double>(to_ns - from_ns);
+}
+
+ordered_json ToJson(const Contents& contents) {
+  ordered_json out{
+      {"file", contents.path},
+      {"bytes", contents.bytes},
+      {"complete", contents.end.complete},
+      {"library", contents.library},
+      {"messages", contents.messages},
+      {"start_ns", contents.start_ns},
+      {"end_ns", contents.end_ns},
+      {"duration_s", SecondsBetween(contents.start_ns, contents.end_ns)},
+      {"simulated", contents.simulated ? ordered_json(*contents.simulated) : ordered_json(nullptr)},
+      {"gaps", contents.gaps},
+      {"missing_ticks", contents.missing_ticks}};
+  if (!contents.end.complete) {
+    out["problem"] = contents.end.problem;
+    out["problem_byte"] = contents.end.problem_offset;
+  }
+  out["topics"] = ordered_json::array();
+  for (const Topic& topic : contents.topics) {
+    out["topics"].push_back({{"topic", topic.name},
+                             {"schema", topic.schema},
+                             {"messages", topic.messages},
+                             {"rate_hz", topic.RateHz()},
+                             {"start_s", SecondsBetween(contents.start_ns, topic.first_ns)},
+                             {"end_s", SecondsBetween(contents.start_ns, topic.last_ns)}});
+  }
+  out["attachments"] = ordered_json::array();
+  for (const AttachmentNote& attachment : contents.attachments) {
+    out["attachments"].push_back({{"name", attachment.name},
+                                  {"media_type", attachment.media_type},
+                                  {"bytes", attachment.bytes}});
+  }
+  out["metadata"] = ordered_json::array();
+  for (const mcap::Metadata& metadata : contents.metadata) {
+    out["metadata"].push_back({{"name", metadata.name}, {"values", metadata.values}});
+  }
+  return out;
+}
+
+void PrintText(const Contents& contents) {
+  std::cout << contents.path << ": " << contents.bytes << " bytes, written by " << contents.library
+            << "\n"
+            << (contents.end.complete ? "complete" : "NOT COMPLETE: " + contents.end.problem)
+            << ", " << SecondsBetween(contents.start_ns, contents.end_ns) << " s, "
+            << contents.messages << " messages, "
+            << (!contents.simulated   ? "not said whether simulated"
+                : *contents.simulated ? "SIMULATED"
+                                      : "real devices")
+            << "\n"
+            << contents.gaps << " gaps, " << contents.missing_ticks << " ticks missing\n";
+  for (const Topic& topic : contents.topics) {
+    std::cout << "  " << topic.name << "  " << topic.messages << " messages  " << topic.RateHz()
+              << " Hz  " << topic.schema << "\n";
+  }
+  for (const AttachmentNote& attachment : contents.attachments) {
+    std::cout << "  attached: " << attachment.name << " (" << attachment.bytes << " bytes)\n";
+  }
+  for (const mcap::Metadata& metadata : contents.metadata) {
+    std::cout << "  " << metadata.name << ":";
+    for (const auto& [key, value] : metadata.values) std::cout << " " << key << "=" << value;
+    std::cout << "\n";
+  }
+  std::cout.flush();
+}
+
+}  // namespace
+
+void AddInfoCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("info", "What a recording holds");
+  const auto file = std::make_shared<std::string>();
+  command->add_option("FILE", *file, "The recording")->required();
+  command->callback([file, &shared] {
+    const Result<Contents> contents = ReadContents(*file);
+    if (!contents) {
+      shared.exit_code = cli::Report(contents.error());
+      return;
+    }
+    if (shared.json) {
+      std::cout << ToJson(*contents).dump(-1, ' ', false, ordered_json::error_handler_t::replace)
+                << std::endl;
+    } else {
+      PrintText(*contents);
+    }
+    if (const auto incomplete = Incomplete(*file, contents->end)) {
+      shared.exit_code = cli::Report(*incomplete);
+    }
+  });
+}
+
+}  // namespace footing::log_client

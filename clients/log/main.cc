@@ -1,0 +1,22 @@
+#include "clients/log/commands.h"
+#include "common/cli/cli.h"
+
+int main(int argc, char** argv) {
+  auto app = footing::cli::NewApp(
+      "footing-log", "Records what the servers send, and reads, exports and repairs recordings.",
+      "  footing-log record --connect unix:/run/user/1000/footing/sensor.sock --out a.mcap\n"
+      "  footing-log info a.mcap --json\n"
+      "  footing-log export a.mcap --format csv --out a/\n"
+      "  footing-log repair cut.mcap --out whole.mcap");
+  footing::log_client::Shared shared;
+  app->add_flag("--json", shared.json, "One JSON object on standard output");
+  app->require_subcommand(1);
+  app->fallthrough();
+  footing::log_client::AddRecordCommand(*app, shared);
+  footing::log_client::AddInfoCommand(*app, shared);
+  footing::log_client::AddExportCommand(*app, shared);
+  footing::log_client::AddRepairCommand(*app, shared);
+  footing::log_client::AddServeCommand(*app, shared);
+  if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
+  return shared.exit_code;
+}

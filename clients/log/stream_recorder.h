@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "common/recording/recording_writer.h"
+#include "common/result/result.h"
+#include "common/transport/client.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::log_client {
+
+/// The latest that a message waits in memory before it is written down.
+inline constexpr std::int64_t kLongestUnwritten_ns = 800'000'000;
+
+/// Writes what one server sends to a recording that several may share: every channel of a tick on
+/// the topic /SERVER/CHANNEL, gaps on /SERVER/gaps, sessions and the link as metadata. Calls of one
+/// recording come from one thread; the local time is an argument.
+class StreamRecorder {
+ public:
+  /// `number` tells servers of the same id apart: the second is /SERVER_2, as numbered by the
+  /// owner.
+  StreamRecorder(recording::RecordingWriter& writer, std::string address,
+                 std::function<std::string(const std::string& server_id)> name_of);
+
+  Result<void> OnWelcome(const v1::Welcome& welcome, std::int64_t now_ns);
+  Result<void> OnTick(const v1::Tick& tick, std::int64_t now_ns);
+  Result<void> OnGap(const v1::Gap& gap, std::int64_t now_ns);
+  Result<void> OnState(transport::LinkState state, const std::string& why, std::int64_t now_ns);
+  /// Last: how the server's clock stood to ours.
+  Result<void> OnEnd(const transport::ClockOffset& clock, std::int64_t now_ns);
+
+  std::uint64_t ticks() const { return ticks_; }
+  std::uint64_t missing_ticks() const { return missing_ticks_; }
+  /// The last state of the link, for a person.
+  const std::string& link() const { return link_; }
+  const std::string& address() const { return address_; }
+
+ private:
+  recording::RecordingWriter& writer_;
+  std::string address_;
+  std::function<std::string(const std::string&)> name_of_;
+  std::string server_;
+  std::string link_ = "not connected yet";
+  std::int64_t last_host_ns_ = 0;
+  std::uint64_t last_sequence_ = 0;
+  std::uint64_t ticks_ = 0;
+  std::uint64_t missing_ticks_ = 0;
+};
+
+}  // namespace footing::log_client

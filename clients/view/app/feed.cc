@@ -1,0 +1,84 @@
+#include "clients/view/app/feed.h"
+
+#include "clients/view/app/translate.h"
+#include "common/clock/clock.h"
+
+namespace footing::view {
+namespace {
+
+scene::LinkState StateOf(transport::LinkState state) {
+  switch (state) {
+    case transport::LinkState::kConnecting:
+      return scene::LinkState::kConnecting;
+    case transport::LinkState::kLive:
+      return scene::LinkState::kLive;
+    case transport::LinkState::kStale:
+      return scene::LinkState::kStale;
+    case transport::LinkState::kRefused:
+      return scene::LinkState::kRefused;
+  }
+  return scene::LinkState::kConnecting;
+}
+
+}  // namespace
+
+std::vector<scene::LinkReport> Feed::InitialReports(
+    const std::vector<transport::Address>& addresses) {
+  std::vector<scene::LinkReport> reports;
+  for (const transport::Address& address : addresses) {
+    reports.push_back({address.Text(), "", scene::LinkState::kConnecting, ""});
+  }
+  return reports;
+}
+
+Feed::Feed(boost::asio::io_context& io, const std::vector<transport::Address>& addresses,
+           Handlers handlers)
+    : handlers_(std::move(handlers)) {
+  const auto reports = InitialReports(addresses);
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    const bool same_host = addresses[i].kind == transport::Address::Kind::kUnix;
+    sources_.push_back({reports[i], same_host, Connect(io, static_cast<int>(i), addresses[i])});
+  }
+}
+
+std::unique_ptr<transport::Client> Feed::Connect(boost::asio::io_context& io, int source,
+                                                 const transport::Address& address) {
+  const auto index = static_cast<std::size_t>(source);
+  transport::ClientOptions options;
+  options.address = address;
+  options.client_name = "footing-view";
+  options.channels = {"status",    "motion", "features",   "boards",
+                      "skeletons", "track",  "characters", "events"};
+  transport::ClientHandlers handlers;
+  handlers.on_welcome = [this, source, index](const v1::Welcome& welcome) {
+    sources_[index].report.server_id = welcome.server_id();
+    handlers_.on_link(source, sources_[index].report);
+  };
+  handlers.on_tick = [this, source, index](const v1::Tick& tick) {
+    handlers_.on_update(Translate(tick, source, clock::MonotonicNs(), OffsetOf(sources_[index])));
+  };
+  handlers.on_gap = [](const v1::Gap&) {};  // The picture goes on with what there is.
+  handlers.on_state = [this, source, index](transport::LinkState state, const std::string& why) {
+    sources_[index].report.state = StateOf(state);
+    sources_[index].report.why = why;
+    handlers_.on_link(source, sources_[index].report);
+  };
+  return std::make_unique<transport::Client>(io, options, std::move(handlers));
+}
+
+// On one host both read the same clock: an estimate could only add its own error.
+std::int64_t Feed::OffsetOf(const Source& source) const {
+  if (source.same_host) return 0;
+  const transport::ClockOffset offset = source.client->clock();
+  return offset.valid ? offset.offset_ns : 0;
+}
+
+void Feed::Start() {
+  for (Source& source : sources_) source.client->Start();
+}
+
+void Feed::Stop() {
+  for (Source& source : sources_) source.client->Stop();
+}
+
+}  // namespace footing::view

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "clients/view/scene/update.h"
+#include "common/transport/address.h"
+#include "common/transport/client.h"
+
+namespace footing::view {
+
+/// Listens to any number of servers. Everything runs on the io_context's one thread.
+class Feed {
+ public:
+  struct Handlers {
+    std::function<void(scene::Update)> on_update;
+    std::function<void(int source, const scene::LinkReport&)> on_link;
+  };
+
+  Feed(boost::asio::io_context& io, const std::vector<transport::Address>& addresses,
+       Handlers handlers);
+
+  void Start();
+  void Stop();
+
+  /// As they stand before the first word of any server.
+  static std::vector<scene::LinkReport> InitialReports(
+      const std::vector<transport::Address>& addresses);
+
+ private:
+  struct Source {
+    scene::LinkReport report;
+    bool same_host = true;
+    std::unique_ptr<transport::Client> client;
+  };
+  std::unique_ptr<transport::Client> Connect(boost::asio::io_context& io, int source,
+                                             const transport::Address& address);
+  std::int64_t OffsetOf(const Source& source) const;
+
+  Handlers handlers_;
+  std::vector<Source> sources_;
+};
+
+}  // namespace footing::view

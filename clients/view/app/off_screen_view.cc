@@ -1,0 +1,118 @@
+#include "clients/view/app/off_screen_view.h"
+
+#include <filesystem>
+#include <iostream>
+#include <system_error>
+
+#include "clients/view/app/background.h"
+#include "clients/view/app/summary.h"
+#include "clients/view/render/off_screen.h"
+#include "clients/view/render/screen.h"
+#include "clients/view/render/target.h"
+#include "common/clock/clock.h"
+#include "common/log/log.h"
+#include "common/units/units.h"
+
+namespace footing::view {
+namespace {
+
+constexpr double kStepS = 1.0 / 60;
+constexpr double kRecordS = 10;  // Without --seconds.
+
+/// The chain of one off-screen run; its members' order is their order of making.
+struct Studio {
+  const Options& options;
+  render::Target& target;
+  render::Screen& screen;
+  Background& background;
+  scene::Show show;
+  std::int64_t started_ns = clock::MonotonicNs();
+
+  double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns); }
+
+  /// Lets the camera and the head follow until that instant of the viewer's clock.
+  scene::Show::Shot FollowUntil(std::int64_t until_ns) {
+    for (;;) {
+      background.Drain(show);
+      const std::int64_t now_ns = clock::MonotonicNs();
+      scene::Show::Shot shot = show.At(now_ns, false, {options.forces});
+      if (now_ns >= until_ns || background.stop_asked()) return shot;
+      clock::SleepUntil(std::min(until_ns, now_ns + SecondsToNanoseconds(kStepS)));
+    }
+  }
+
+  Result<void> Shoot(const scene::Show::Shot& shot, const std::string& path) {
+    target.Bind();
+    render::HudOptions hud;
+    hud.hidden = options.subject;
+    screen.Draw(shot.picture, show.model(), shot.frame, clock::MonotonicNs(), hud, target.width(),
+                target.height());
+    return render::WritePng(target.Read(), path);
+  }
+
+  /// Until the first tick, or until the time is over without one.
+  std::int64_t WaitForData() {
+    const std::int64_t given_up_ns = started_ns + SecondsToNanoseconds(options.at_s);
+    while (scene::IsWaiting(show.model()) && clock::MonotonicNs() < given_up_ns &&
+           !background.stop_asked()) {
+      FollowUntil(clock::MonotonicNs() + SecondsToNanoseconds(kStepS));
+    }
+    return scene::IsWaiting(show.model()) ? started_ns : clock::MonotonicNs();
+  }
+};
+
+Result<void> TakeScreenshot(Studio& studio) {
+  const std::int64_t from_ns = studio.WaitForData();
+  const auto shot = studio.FollowUntil(from_ns + SecondsToNanoseconds(studio.options.at_s));
+  const auto written = studio.Shoot(shot, studio.options.screenshot);
+  if (written) log::Info("wrote " + studio.options.screenshot);
+  return written;
+}
+
+Result<void> Record(Studio& studio) {
+  const Options& options = studio.options;
+  std::error_code error;
+  std::filesystem::create_directories(options.record_folder, error);
+  if (error) {
+    return Failure("cannot make the folder " + options.record_folder + ": " + error.message());
+  }
+  const double seconds = options.seconds > 0 ? options.seconds : kRecordS;
+  const auto count = static_cast<int>(seconds * options.record_hz);
+  int late = 0;
+  for (int i = 0; i < count && !studio.background.stop_asked(); ++i) {
+    const std::int64_t due_ns =
+        studio.started_ns + SecondsToNanoseconds((i + 1) / options.record_hz);
+    if (clock::MonotonicNs() > due_ns + SecondsToNanoseconds(1 / options.record_hz)) ++late;
+    std::string number = std::to_string(i);
+    number.insert(0, 6 - std::min<std::size_t>(6, number.size()), '0');
+    const auto written =
+        studio.Shoot(studio.FollowUntil(due_ns), options.record_folder + "/" + number + ".png");
+    if (!written) return written;
+  }
+  log::Info("wrote pictures to " + options.record_folder);
+  if (late > 0) {
+    log::Warning(std::to_string(late) + " of " + std::to_string(count) +
+                 " pictures are late: this machine needs a lower --record-hz");
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> RunOffScreen(const Options& options) {
+  auto context = render::OffScreen::Create();
+  if (!context) return context.error();
+  auto target = render::Target::Create(options.width, options.height, options.samples);
+  if (!target) return target.error();
+  auto screen = render::Screen::Create(options.scale());
+  if (!screen) return screen.error();
+  Background background(options.addresses);
+  Studio studio{options, *target, **screen, background, {}};
+  auto done = options.screenshot.empty() ? Record(studio) : TakeScreenshot(studio);
+  if (done && options.json) {
+    std::cout << Summary(studio.show.model(), studio.PassedS()) << std::endl;
+  }
+  return done;
+}
+
+}  // namespace footing::view

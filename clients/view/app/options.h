@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/transport/address.h"
+
+namespace footing::view {
+
+/// What the command line asks for.
+struct Options {
+  std::vector<transport::Address> addresses;
+  std::string screenshot;     ///< A PNG file; empty for none.
+  double at_s = 1;            ///< When to take it, after connecting.
+  std::string record_folder;  ///< For numbered PNG files; empty for none.
+  double record_hz = 10;      ///< Pictures a second.
+  double seconds = 0;         ///< Ends by itself; 0 runs on.
+  bool subject = false;       ///< The world without the panels.
+  bool text = false;          ///< In the terminal.
+  bool json = false;          ///< A summary at the end.
+  bool forces = false;        ///< Force arrows from the start.
+  int samples = 0;            ///< Multisampling: 0, 2, 4, 8.
+  int width = 1280;
+  int height = 720;
+
+  float scale() const { return static_cast<float>(height) / 720; }
+  bool off_screen() const { return !screenshot.empty() || !record_folder.empty(); }
+};
+
+}  // namespace footing::view

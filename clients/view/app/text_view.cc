@@ -1,0 +1,103 @@
+#include "clients/view/app/text_view.h"
+
+#include <unistd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <csignal>
+#include <iostream>
+
+#include "clients/view/app/feed.h"
+#include "clients/view/app/summary.h"
+#include "clients/view/scene/show.h"
+#include "clients/view/scene/words.h"
+#include "common/clock/clock.h"
+#include "common/units/units.h"
+
+namespace footing::view {
+namespace {
+
+constexpr double kScreenEveryS = 0.25;
+constexpr double kLineEveryS = 1;
+constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
+
+/// Everything on one thread: a tick counts as seen when its handler runs.
+class TextView {
+ public:
+  explicit TextView(const Options& options)
+      : options_(options),
+        started_ns_(clock::MonotonicNs()),
+        screen_(!options.json && isatty(STDOUT_FILENO) == 1),
+        timer_(io_),
+        signals_(io_, SIGINT, SIGTERM),
+        feed_(io_, options.addresses,
+              {[this](const scene::Update& update) { show_.Take(update, clock::MonotonicNs()); },
+               [this](int source, const scene::LinkReport& report) {
+                 show_.model().links[static_cast<std::size_t>(source)] = report;
+               }}) {
+    show_.model().links = Feed::InitialReports(options.addresses);
+  }
+
+  void Run() {
+    signals_.async_wait([this](const boost::system::error_code& error, int) {
+      if (!error) Stop();
+    });
+    feed_.Start();
+    WaitToDraw();
+    io_.run();
+    if (options_.json) std::cout << Summary(show_.model(), PassedS()) << std::endl;
+  }
+
+ private:
+  double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns_); }
+
+  void WaitToDraw() {
+    double wait_s = screen_ ? kScreenEveryS : kLineEveryS;
+    if (options_.seconds > 0) wait_s = std::min(wait_s, options_.seconds - PassedS());
+    timer_.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(std::max(wait_s, 0.0))));
+    timer_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      Draw();
+      if (options_.seconds > 0 && PassedS() >= options_.seconds) return Stop();
+      WaitToDraw();
+    });
+  }
+
+  void Draw() {
+    ++show_.model().tally.frames_drawn;
+    const std::int64_t now_ns = clock::MonotonicNs();
+    if (!screen_) {
+      // With --json standard output is for the summary alone.
+      std::ostream& out = options_.json ? std::cerr : std::cout;
+      out << scene::StatusLine(show_.model(), now_ns) << std::endl;
+      return;
+    }
+    std::string text = kHomeAndClear;
+    for (const std::string& line : scene::StatusScreen(show_.model(), now_ns)) text += line + "\n";
+    std::cout << text << "Ctrl-C leaves." << std::endl;
+  }
+
+  void Stop() {
+    feed_.Stop();
+    io_.stop();
+  }
+
+  const Options& options_;
+  std::int64_t started_ns_;
+  bool screen_;
+  boost::asio::io_context io_;
+  boost::asio::steady_timer timer_;
+  boost::asio::signal_set signals_;
+  scene::Show show_;
+  Feed feed_;
+};
+
+}  // namespace
+
+Result<void> RunTextView(const Options& options) {
+  TextView(options).Run();
+  return {};
+}
+
+}  // namespace footing::view

@@ -1,0 +1,143 @@
+#include "clients/view/app/translate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/wire/wire.h"
+
+namespace footing::view {
+namespace {
+
+constexpr int kMaxCharacters = 8;
+constexpr int kMaxParts = 256;
+
+double Finite(double value) { return std::isfinite(value) ? value : 0; }
+
+stream::Gait GaitOf(v1::Gait gait) {
+  const int number = static_cast<int>(gait);
+  return number >= 0 && number <= 4 ? static_cast<stream::Gait>(number)
+                                    : stream::Gait::kUnspecified;
+}
+
+stream::GaitState GaitOf(const v1::GaitState& from) {
+  stream::GaitState gait;
+  gait.gait = GaitOf(from.gait());
+  gait.commanded_gait = GaitOf(from.commanded_gait());
+  gait.pending = from.pending();
+  gait.commanded_speed_mps = Finite(from.commanded_speed_mps());
+  gait.commanded_height_m = Finite(from.commanded_height_m());
+  gait.commanded_turn_rad = Finite(from.commanded_turn_rad());
+  gait.speed_mps = Finite(from.speed_mps());
+  gait.heading_rad = Finite(from.heading_rad());
+  gait.steps = from.steps();
+  gait.falls = from.falls();
+  gait.distance_m = Finite(from.distance_m());
+  gait.commanded_by_stream = from.commanded_by_stream();
+  gait.next_foothold_m = {Finite(from.next_foothold_x_m()), Finite(from.next_foothold_y_m())};
+  return gait;
+}
+
+scene::CharacterPose CharacterOf(const v1::Character& from) {
+  scene::CharacterPose pose;
+  pose.character = from.character();
+  pose.rig = from.rig();
+  pose.valid = from.valid();
+  for (int i = 0; i < std::min(from.links_size(), kMaxParts); ++i) {
+    pose.links.push_back(wire::FromProto(from.links(i)));
+  }
+  for (int i = 0; i < std::min(from.contacts_size(), kMaxParts); ++i) {
+    const v1::Contact& contact = from.contacts(i);
+    pose.contacts.push_back({contact.touching(), wire::FromProto(contact.position_m()),
+                             Finite(contact.normal_force_n())});
+  }
+  pose.com_m = wire::FromProto(from.com_m());
+  pose.com_velocity_mps = wire::FromProto(from.com_velocity_mps());
+  pose.gait = GaitOf(from.gait());
+  pose.phase = from.gait().phase();
+  pose.simulated_input = from.simulated_input();
+  return pose;
+}
+
+scene::WorldFrame FrameOf(const v1::CharacterFrame& from) {
+  scene::WorldFrame frame;
+  frame.step = from.step();
+  frame.time_s = Finite(from.time_s());
+  frame.overruns = from.overruns();
+  for (int i = 0; i < std::min(from.characters_size(), kMaxCharacters); ++i) {
+    frame.characters.push_back(CharacterOf(from.characters(i)));
+  }
+  return frame;
+}
+
+scene::ResponseStages StagesOf(const v1::ResponseStages& from) {
+  return {GaitOf(from.from()), GaitOf(from.to()),           from.report_received_ns(),
+          from.decoded_ns(),   from.features_computed_ns(), from.features_received_ns(),
+          from.command_ns(),   from.contact_ns(),           from.first_frame_ns()};
+}
+
+scene::NoteKind KindOf(v1::Event::Kind kind) {
+  switch (kind) {
+    case v1::Event::KIND_FALL:
+      return scene::NoteKind::kFall;
+    case v1::Event::KIND_PUT_BACK:
+      return scene::NoteKind::kPutBack;
+    case v1::Event::KIND_GAIT_CHANGED:
+      return scene::NoteKind::kGaitChanged;
+    case v1::Event::KIND_RESPONSE:
+      return scene::NoteKind::kResponse;
+    case v1::Event::KIND_STREAM_LOST:
+      return scene::NoteKind::kStreamLost;
+    case v1::Event::KIND_STREAM_BACK:
+      return scene::NoteKind::kStreamBack;
+    default:  // Kinds that a newer server adds are shown by their text.
+      return scene::NoteKind::kOther;
+  }
+}
+
+void AddSensors(const v1::Tick& tick, std::int64_t offset_ns, scene::Update& update) {
+  if (tick.has_status()) {
+    update.devices.emplace();
+    for (const auto& device : tick.status().devices()) {
+      update.devices->push_back(wire::FromProto(device));
+    }
+  }
+  for (const auto& sample : tick.motion().samples()) {
+    update.motion.push_back(wire::FromProto(sample));
+    update.motion.back().received_ns -= offset_ns;
+  }
+  for (const auto& rig : tick.features().rigs()) update.features.push_back(wire::FromProto(rig));
+  for (const auto& sample : tick.boards().samples()) {
+    update.boards.push_back(wire::FromProto(sample));
+  }
+}
+
+void AddSimulation(const v1::Tick& tick, scene::Update& update) {
+  if (tick.has_skeletons()) {
+    update.skeletons.emplace();
+    for (const auto& skeleton : tick.skeletons().skeletons()) {
+      update.skeletons->push_back(wire::FromProto(skeleton));
+    }
+  }
+  if (tick.has_track()) update.track = wire::FromProto(tick.track());
+  if (tick.has_characters()) update.frame = FrameOf(tick.characters());
+  for (const auto& event : tick.events().events()) {
+    update.notes.push_back(
+        {KindOf(event.kind()), event.host_ns(), event.text(), StagesOf(event.response())});
+  }
+}
+
+}  // namespace
+
+scene::Update Translate(const v1::Tick& tick, int source, std::int64_t received_ns,
+                        std::int64_t offset_ns) {
+  scene::Update update;
+  update.source = source;
+  update.live = !tick.snapshot() && !tick.refilled();
+  update.host_ns = tick.host_ns() - offset_ns;
+  update.received_ns = received_ns;
+  AddSensors(tick, offset_ns, update);
+  AddSimulation(tick, update);
+  return update;
+}
+
+}  // namespace footing::view

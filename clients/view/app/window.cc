@@ -1,0 +1,114 @@
+#include "clients/view/app/window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+
+#include "clients/view/app/background.h"
+#include "clients/view/app/summary.h"
+#include "clients/view/render/gl.h"
+#include "clients/view/render/screen.h"
+#include "common/clock/clock.h"
+#include "common/units/units.h"
+
+namespace footing::view {
+namespace {
+
+/// GLFW's process-wide state.
+struct Library {
+  Library() : ready(glfwInit() == GLFW_TRUE) {}
+  ~Library() { glfwTerminate(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+  bool ready;
+};
+
+struct CloseWindow {
+  void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+};
+using Window = std::unique_ptr<GLFWwindow, CloseWindow>;
+
+Error NoWindow(const std::string& what) {
+  const char* words = nullptr;
+  glfwGetError(&words);
+  return Failure(what + ": " + (words != nullptr ? words : "GLFW gives no reason") +
+                 "; --text shows the state in the terminal, --screenshot draws without a display");
+}
+
+Window Open(const Options& options) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_SAMPLES, options.samples);
+  return Window(glfwCreateWindow(options.width, options.height, "Footing", nullptr, nullptr));
+}
+
+void OnKey(GLFWwindow* window, int key, int, int action, int) {
+  if (action != GLFW_PRESS) return;
+  auto& hud = *static_cast<render::HudOptions*>(glfwGetWindowUserPointer(window));
+  if (key == GLFW_KEY_F) hud.forces = !hud.forces;
+  if (key == GLFW_KEY_P) hud.phases = !hud.phases;
+  if (key == GLFW_KEY_SPACE) hud.frozen = !hud.frozen;
+  if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
+}
+
+// The question mark is a letter, on whichever key the layout has it.
+void OnLetter(GLFWwindow* window, unsigned int letter) {
+  auto& hud = *static_cast<render::HudOptions*>(glfwGetWindowUserPointer(window));
+  if (letter == '?') hud.keys = !hud.keys;
+}
+
+void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
+          render::HudOptions& hud) {
+  Background background(options.addresses);
+  scene::Show show;
+  const std::int64_t started_ns = clock::MonotonicNs();
+  double passed_s = 0;
+  while (glfwWindowShouldClose(window) == GLFW_FALSE && !background.stop_asked() &&
+         (options.seconds <= 0 || passed_s < options.seconds)) {
+    glfwPollEvents();
+    background.Drain(show);
+    const std::int64_t now_ns = clock::MonotonicNs();
+    const auto shot = show.At(now_ns, hud.frozen, {hud.forces});
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window, &width, &height);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    screen.Draw(shot.picture, show.model(), shot.frame, now_ns, hud, width, height);
+    glfwSwapBuffers(window);
+    // Minimised, or on a display without vertical sync, the loop must not spin.
+    clock::SleepUntil(now_ns + SecondsToNanoseconds(1.0 / 125));
+    passed_s = NanosecondsToSeconds(clock::MonotonicNs() - started_ns);
+  }
+  if (options.json) std::cout << Summary(show.model(), passed_s) << std::endl;
+}
+
+}  // namespace
+
+bool HasDisplay() {
+  const char* display = std::getenv("DISPLAY");
+  return display != nullptr && *display != '\0';
+}
+
+Result<void> RunWindow(const Options& options) {
+  Library library;
+  if (!library.ready) return NoWindow("no display can be opened");
+  const Window window = Open(options);
+  if (window == nullptr) return NoWindow("no window with OpenGL 3.3 can be opened");
+  glfwMakeContextCurrent(window.get());
+  glfwSwapInterval(1);
+  auto screen = render::Screen::Create(options.scale());
+  if (!screen) return screen.error();
+  render::HudOptions hud;
+  hud.hidden = options.subject;
+  hud.forces = options.forces;
+  glfwSetWindowUserPointer(window.get(), &hud);
+  glfwSetKeyCallback(window.get(), OnKey);
+  glfwSetCharCallback(window.get(), OnLetter);
+  Loop(window.get(), options, **screen, hud);
+  return {};
+}
+
+}  // namespace footing::view

@@ -1,0 +1,169 @@
+#include "clients/view/render/shader_text.h"
+
+namespace footing::render {
+
+std::string SharedText() {
+  return R"(#version 330 core
+uniform mat4 u_clip_from_world;
+uniform vec3 u_eye;
+const vec3 kSun = vec3(-0.40, 0.52, 0.755);
+const vec3 kSunLight = vec3(1.75, 1.55, 1.25);
+const vec3 kHorizon = vec3(0.74, 0.84, 0.90);
+const vec3 kZenith = vec3(0.09, 0.30, 0.66);
+
+vec3 SkyLight(vec3 direction) {
+  float up = clamp(direction.z, 0.0, 1.0);
+  vec3 sky = mix(kHorizon, kZenith, 1.0 - exp(-4.2 * up));
+  float sun = max(dot(direction, normalize(kSun)), 0.0);
+  return sky + vec3(0.55, 0.36, 0.16) * pow(sun, 12.0) * 0.5;
+}
+vec3 InFog(vec3 colour, float distance_m) {
+  float clear = exp(-distance_m * distance_m * 0.00016);
+  return mix(kHorizon, colour, clear);
+}
+vec4 ToScreen(vec3 colour) {
+  vec3 mapped = colour / (1.0 + 0.10 * colour);
+  return vec4(pow(clamp(mapped, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
+}
+)";
+}
+
+namespace {
+
+std::string InstanceText() {
+  return R"(
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_normal;
+layout(location = 2) in vec4 a_x;
+layout(location = 3) in vec4 a_y;
+layout(location = 4) in vec4 a_z;
+layout(location = 5) in vec4 a_place;
+layout(location = 6) in vec4 a_colour_taper;
+layout(location = 7) in vec4 a_under_gloss;
+vec3 WorldPosition() {
+  float narrower = mix(1.0, a_colour_taper.w, a_position.z);
+  vec3 p = u_is_rod != 0 ? vec3(a_position.xy * narrower, a_position.z) : a_position;
+  return (mat4(a_x, a_y, a_z, a_place) * vec4(p, 1.0)).xyz;
+}
+)";
+}
+
+}  // namespace
+
+std::string PartVertexText() {
+  return SharedText() + "uniform int u_is_rod;\n" + InstanceText() + R"(
+out vec3 v_position;
+out vec3 v_normal;
+out vec3 v_colour;
+out float v_gloss;
+void main() {
+  vec3 n = a_normal;
+  if (u_is_rod != 0 && n.z > -0.5) n.z = 1.0 - a_colour_taper.w;
+  // The columns are square to each other, so the inverse transpose is each over its square.
+  v_normal = a_x.xyz * (n.x / dot(a_x.xyz, a_x.xyz)) + a_y.xyz * (n.y / dot(a_y.xyz, a_y.xyz)) +
+             a_z.xyz * (n.z / dot(a_z.xyz, a_z.xyz));
+  v_position = WorldPosition();
+  v_colour = mix(a_under_gloss.rgb, a_colour_taper.rgb, smoothstep(-0.75, -0.05, a_normal.z));
+  v_gloss = a_under_gloss.w;
+  gl_Position = u_clip_from_world * vec4(v_position, 1.0);
+}
+)";
+}
+
+std::string PartFragmentText() {
+  return SharedText() + R"(
+uniform float u_floor;
+in vec3 v_position;
+in vec3 v_normal;
+in vec3 v_colour;
+in float v_gloss;
+out vec4 o_colour;
+void main() {
+  vec3 n = normalize(v_normal);
+  vec3 to_eye = u_eye - v_position;
+  float distance_m = length(to_eye);
+  to_eye /= distance_m;
+  vec3 sun = normalize(kSun);
+  float lit = max((dot(n, sun) + 0.28) / 1.28, 0.0);
+  float near_floor = clamp((v_position.z - u_floor) * 1.2 + 0.45, 0.45, 1.0);
+  vec3 above = vec3(0.44, 0.56, 0.70), below = vec3(0.34, 0.22, 0.15);
+  vec3 ambient = mix(below, above, 0.5 + 0.5 * n.z) * near_floor;
+  vec3 colour = v_colour * (ambient + kSunLight * lit * lit * 0.75);
+  float rim = pow(1.0 - max(dot(n, to_eye), 0.0), 3.0);
+  colour += SkyLight(reflect(-to_eye, n)) * rim * 0.20;
+  vec3 half_way = normalize(sun + to_eye);
+  colour += kSunLight * v_gloss * pow(max(dot(n, half_way), 0.0), 48.0) * 0.55;
+  o_colour = ToScreen(InFog(colour, distance_m));
+}
+)";
+}
+
+std::string PartIdFragmentText() {
+  return SharedText() + R"(
+uniform int u_id;
+out vec4 o_colour;
+void main() { o_colour = vec4(float(u_id) / 255.0, 0.0, 0.0, 1.0); }
+)";
+}
+
+std::string ShadowVertexText() {
+  return SharedText() + "uniform int u_is_rod;\n" + InstanceText() + R"(
+uniform vec3 u_focus;
+uniform float u_floor;
+uniform float u_span;
+void main() {
+  vec3 p = WorldPosition();
+  vec3 sun = normalize(kSun);
+  vec2 on_floor = p.xy - sun.xy * ((p.z - u_floor) / sun.z);
+  gl_Position = vec4((on_floor - u_focus.xy) / (0.5 * u_span), 0.0, 1.0);
+}
+)";
+}
+
+std::string ShadowFragmentText() {
+  return SharedText() + "out vec4 o_colour;\nvoid main() { o_colour = vec4(1.0); }\n";
+}
+
+std::string SkyVertexText() {
+  return SharedText() + R"(
+uniform mat4 u_world_from_clip;
+out vec3 v_far;
+void main() {
+  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  vec4 far = u_world_from_clip * vec4(corner, 1.0, 1.0);
+  v_far = far.xyz / far.w;
+  gl_Position = vec4(corner, 1.0, 1.0);
+}
+)";
+}
+
+std::string SkyFragmentText() {
+  return SharedText() + R"(
+in vec3 v_far;
+out vec4 o_colour;
+// Height of a far ridge over the horizon by azimuth; whole numbers, so it closes on itself.
+float Ridge(float a, float seed) {
+  return 0.5 + 0.26 * sin(3.0 * a + seed) + 0.15 * sin(7.0 * a + 2.1 * seed) +
+         0.07 * sin(17.0 * a + 3.7 * seed) + 0.02 * sin(41.0 * a + 1.3 * seed);
+}
+void main() {
+  vec3 direction = normalize(v_far - u_eye);
+  vec3 colour = SkyLight(direction);
+  if (direction.z < 0.2) {
+    float azimuth = atan(direction.y, direction.x);
+    float far = 0.100 * Ridge(azimuth, 1.0), near = 0.055 * Ridge(azimuth, 4.0);
+    float edge = fwidth(direction.z) + 1e-5;
+    vec3 far_hill = mix(kHorizon, vec3(0.24, 0.42, 0.58), 0.55);
+    vec3 near_hill = mix(kHorizon, vec3(0.16, 0.34, 0.30), 0.62);
+    float haze = smoothstep(-0.01, 0.045, direction.z);
+    colour = mix(mix(kHorizon, far_hill, haze), colour,
+                 smoothstep(far - edge, far + edge, direction.z));
+    colour = mix(mix(kHorizon, near_hill, haze), colour,
+                 smoothstep(near - edge, near + edge, direction.z));
+  }
+  o_colour = ToScreen(colour);
+}
+)";
+}
+
+}  // namespace footing::render

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+/// The shaders' texts. World frame W; light and colours are linear until the last line.
+namespace footing::render {
+
+inline constexpr int kMaxBlobs = 16;
+inline constexpr int kMaxFootholds = 4;
+inline constexpr float kShadowSpanM = 6;  ///< Side of the square of ground that the shadow covers.
+
+std::string PartVertexText();
+std::string PartFragmentText();
+std::string PartIdFragmentText();
+/// Parts projected along the sun onto the floor: the bird's shadow.
+std::string ShadowVertexText();
+std::string ShadowFragmentText();
+std::string GroundVertexText();
+std::string RibbonVertexText();
+/// Ground and track alike; `ribbon` chooses.
+std::string SurfaceFragmentText(bool ribbon);
+std::string SkyVertexText();
+std::string SkyFragmentText();
+
+/// Shared by the texts above: version, frame uniforms, sky, fog, output.
+std::string SharedText();
+
+}  // namespace footing::render

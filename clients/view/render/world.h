@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "clients/view/render/handles.h"
+#include "clients/view/render/program.h"
+#include "clients/view/scene/stage.h"
+#include "common/result/result.h"
+
+namespace footing::render {
+
+/// Draws the world of a picture: birds, track, ground, sky. Needs its OpenGL context current in
+/// every call.
+class World {
+ public:
+  static Result<World> Create();
+
+  /// Draws into the bound framebuffer. `track_version` tells when the track is a new one.
+  void Draw(const scene::Picture& picture, const stream::Track& track, std::uint64_t track_version,
+            int width, int height);
+  /// Draws only ids (scene::PartId in the red channel) on black: for tests.
+  void DrawIds(const scene::Picture& picture, int width, int height);
+
+ private:
+  struct Programs {
+    Program part, part_id, shadow, ground, ribbon, sky;
+  };
+  /// A unit shape and the instances of it that a picture has.
+  struct Shape {
+    VertexArray array;
+    Buffer vertices, indices, instances;
+    GLsizei index_count = 0;
+    bool rod = false;
+  };
+  struct Ribbon {
+    VertexArray array;
+    Buffer vertices, indices;
+    GLsizei index_count = 0;
+    std::uint64_t version = 0;
+  };
+
+  explicit World(Programs programs);
+  void LoadTrack(const stream::Track& track, std::uint64_t version);
+  void DrawParts(const Program& program, const scene::PartList& parts);
+  void DrawShadow(const scene::Picture& picture);
+  void DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
+  void SetSurface(const Program& program, const scene::Picture& picture) const;
+
+  Programs programs_;
+  Shape ball_, rod_;
+  Ribbon ribbon_;
+  VertexArray nothing_;  // For shapes that the vertex shader makes up.
+  Framebuffer shadow_;
+  Texture shadow_map_;
+};
+
+}  // namespace footing::render

@@ -1,0 +1,98 @@
+#include "clients/view/scene/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::scene {
+namespace {
+
+constexpr double kBehindM = 4.5;
+constexpr double kAboveM = 1.5;     // Over the subject's position, which is its hips.
+constexpr double kSidewaysM = 1.5;  // A little to the side, so that the legs' bend shows.
+constexpr double kTargetAboveM = 0.18;
+constexpr double kTargetAheadM = 1.2;  // Besides the look-ahead.
+constexpr double kLookAheadS = 0.35;
+constexpr double kLongestStepS = 0.1;
+constexpr double kJumpM = 2.0;
+constexpr double kHeadingRadps = 2.5;
+constexpr double kPlaceRadps = 9.0;
+constexpr double kHeightRadps = 2.5;  // Slow: the picture must not bounce with every step.
+constexpr double kLookAheadRadps = 1.5;
+
+}  // namespace
+
+Eigen::Matrix4f Camera::View() const {
+  const Eigen::Vector3d backward = (eye_m - target_m).normalized();
+  const Eigen::Vector3d right = Eigen::Vector3d::UnitZ().cross(backward).normalized();
+  const Eigen::Vector3d up = backward.cross(right);
+  Eigen::Matrix4d X = Eigen::Matrix4d::Identity();
+  X.block<1, 3>(0, 0) = right.transpose();
+  X.block<1, 3>(1, 0) = up.transpose();
+  X.block<1, 3>(2, 0) = backward.transpose();
+  X.topRightCorner<3, 1>() = -X.topLeftCorner<3, 3>() * eye_m;
+  return X.cast<float>();
+}
+
+Eigen::Matrix4f Camera::Projection(double aspect) const {
+  const double scale = 1 / std::tan(vertical_field_rad / 2);
+  Eigen::Matrix4d P = Eigen::Matrix4d::Zero();
+  P(0, 0) = scale / aspect;
+  P(1, 1) = scale;
+  P(2, 2) = -(kFarM + kNearM) / (kFarM - kNearM);
+  P(2, 3) = -2 * kFarM * kNearM / (kFarM - kNearM);
+  P(3, 2) = -1;
+  return P.cast<float>();
+}
+
+void ChaseCamera::Spring::Advance(double goal, double frequency_radps, double dt_s) {
+  // Critically damped: with e = x - goal, e(t) = (e0 + (v0 + w e0) t) exp(-w t).
+  const double error = value - goal;
+  const double slope = rate + frequency_radps * error;
+  const double decay = std::exp(-frequency_radps * dt_s);
+  value = goal + (error + slope * dt_s) * decay;
+  rate = (slope - frequency_radps * (error + slope * dt_s)) * decay;
+}
+
+void ChaseCamera::Place(const Subject& subject) {
+  placed_ = true;
+  heading_ = {subject.heading_rad, 0};
+  look_ahead_ = {kLookAheadS * subject.speed_mps, 0};
+  height_ = {subject.position_m.z(), 0};
+  x_ = {subject.position_m.x(), 0};
+  y_ = {subject.position_m.y(), 0};
+}
+
+void ChaseCamera::Advance(const Subject& subject, double dt_s) {
+  const bool jumped = (subject.position_m - subject_.position_m).norm() > kJumpM;
+  const Eigen::Vector3d before_m = subject_.position_m;
+  subject_ = subject;
+  if (!placed_ || jumped) return Place(subject);
+  const double step_s = std::clamp(dt_s, 0.0, kLongestStepS);
+  if (step_s <= 0) return;
+  // The goal is ahead by what a spring lags behind a steady mover (2 v / w), so a steady speed
+  // leaves no offset.
+  const Eigen::Vector3d lead_m = (subject.position_m - before_m) / step_s * (2 / kPlaceRadps);
+  x_.Advance(subject.position_m.x() + lead_m.x(), kPlaceRadps, step_s);
+  y_.Advance(subject.position_m.y() + lead_m.y(), kPlaceRadps, step_s);
+  height_.Advance(subject.position_m.z(), kHeightRadps, step_s);
+  const double turn_rad = WrapAngle(subject.heading_rad - heading_.value);
+  heading_.Advance(heading_.value + turn_rad, kHeadingRadps, step_s);
+  look_ahead_.Advance(kLookAheadS * subject.speed_mps, kLookAheadRadps, step_s);
+}
+
+Camera ChaseCamera::Look() const {
+  const Eigen::Vector3d forward(std::cos(heading_.value), std::sin(heading_.value), 0);
+  const Eigen::Vector3d left(-forward.y(), forward.x(), 0);
+  const Eigen::Vector3d at_m(x_.value, y_.value, height_.value);
+  Camera camera;
+  camera.eye_m = at_m - kBehindM * forward + kSidewaysM * left + Eigen::Vector3d(0, 0, kAboveM);
+  // The middle between straight ahead and past the bird: it stays near the picture's middle.
+  const Eigen::Vector3d past = (kBehindM * forward - kSidewaysM * left).normalized();
+  camera.target_m = at_m + kTargetAheadM * past + look_ahead_.value * (forward + past) / 2 +
+                    Eigen::Vector3d(0, 0, kTargetAboveM);
+  return camera;
+}
+
+}  // namespace footing::scene

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace footing::scene {
+
+/// Where the picture is taken from. World frame W; OpenGL's clip space.
+struct Camera {
+  Eigen::Vector3d eye_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d target_m = Eigen::Vector3d(1, 0, 0);
+  double vertical_field_rad = 0.80;
+
+  /// World to camera: x right, y up, looking along -z. The horizon stays level: up is W's z.
+  Eigen::Matrix4f View() const;
+  /// `aspect` is width over height.
+  Eigen::Matrix4f Projection(double aspect) const;
+};
+
+inline constexpr double kNearM = 0.1;
+inline constexpr double kFarM = 300;
+
+/// What the camera follows.
+struct Subject {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  double heading_rad = 0;
+  double speed_mps = 0;
+};
+
+/// A chase camera: 4.5 m behind and 1.5 m above, on critically damped springs, never rolling. Its
+/// look-ahead grows with speed.
+class ChaseCamera {
+ public:
+  /// Moves on by dt_s in [0, 0.1] (longer is cut). The first call, and a subject that jumped by
+  /// more than 2 m, place the camera at once.
+  void Advance(const Subject& subject, double dt_s);
+  Camera Look() const;
+
+ private:
+  /// x'' = w^2 (goal - x) - 2 w x', stepped exactly.
+  struct Spring {
+    double value = 0;
+    double rate = 0;
+    void Advance(double goal, double frequency_radps, double dt_s);
+  };
+
+  void Place(const Subject& subject);
+
+  bool placed_ = false;
+  Subject subject_;
+  Spring heading_;
+  Spring look_ahead_;
+  Spring height_;
+  Spring x_, y_;
+};
+
+}  // namespace footing::scene

@@ -1,0 +1,61 @@
+#include "clients/view/scene/mesh.h"
+
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::scene {
+namespace {
+
+Eigen::Vector3f OnCircle(int slice, int slices, float radius, float z) {
+  const float angle = static_cast<float>(2 * kPi) * static_cast<float>(slice) / slices;
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+/// Joins two rings of slices + 1 vertices each into triangles.
+void JoinRings(int lower, int upper, int slices, std::vector<std::uint32_t>& indices) {
+  for (int i = 0; i < slices; ++i) {
+    const auto a = static_cast<std::uint32_t>(lower + i), b = a + 1;
+    const auto c = static_cast<std::uint32_t>(upper + i), d = c + 1;
+    indices.insert(indices.end(), {a, b, d, a, d, c});
+  }
+}
+
+}  // namespace
+
+Mesh UnitBall(int slices, int stacks) {
+  Mesh mesh;
+  for (int stack = 0; stack <= stacks; ++stack) {
+    const float angle = static_cast<float>(kPi) * static_cast<float>(stack) / stacks;
+    for (int slice = 0; slice <= slices; ++slice) {
+      const Eigen::Vector3f p = OnCircle(slice, slices, std::sin(angle), -std::cos(angle));
+      mesh.vertices.push_back({p, p});
+    }
+    if (stack > 0)
+      JoinRings((stack - 1) * (slices + 1), stack * (slices + 1), slices, mesh.indices);
+  }
+  return mesh;
+}
+
+Mesh UnitRod(int slices) {
+  Mesh mesh;
+  for (const float z : {0.0f, 1.0f}) {
+    for (int slice = 0; slice <= slices; ++slice) {
+      mesh.vertices.push_back({OnCircle(slice, slices, 1, z), OnCircle(slice, slices, 1, 0)});
+    }
+  }
+  JoinRings(0, slices + 1, slices, mesh.indices);
+  const auto centre = static_cast<std::uint32_t>(mesh.vertices.size());
+  const Eigen::Vector3f down(0, 0, -1);
+  mesh.vertices.push_back({Eigen::Vector3f::Zero(), down});
+  for (int slice = 0; slice <= slices; ++slice) {
+    mesh.vertices.push_back({OnCircle(slice, slices, 1, 0), down});
+  }
+  for (int slice = 0; slice < slices; ++slice) {
+    const auto rim = centre + 1 + static_cast<std::uint32_t>(slice);
+    mesh.indices.insert(mesh.indices.end(), {centre, rim + 1, rim});
+  }
+  return mesh;
+}
+
+}  // namespace footing::scene

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace footing::scene {
+
+struct MeshVertex {
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;
+};
+
+/// Triangles, counter-clockwise from outside.
+struct Mesh {
+  std::vector<MeshVertex> vertices;
+  std::vector<std::uint32_t> indices;
+};
+
+/// Sphere of radius 1. `slices` around z, `stacks` from pole to pole; both at least 3.
+Mesh UnitBall(int slices, int stacks);
+
+/// Radius 1 about z from z = 0 to 1, open at the ends that its neighbours hide; the bottom is
+/// closed. The renderer tapers its top.
+Mesh UnitRod(int slices);
+
+}  // namespace footing::scene

@@ -1,0 +1,150 @@
+#include "clients/view/scene/model.h"
+
+#include <algorithm>
+
+namespace footing::scene {
+namespace {
+
+constexpr std::size_t kMaxBoards = 8;
+constexpr std::size_t kMaxTracePoints = 1500;
+constexpr std::size_t kMaxSpans = 512;
+constexpr std::size_t kMaxPhases = 8;
+constexpr double kStandingN = 50;  // Five kilograms: less is not a person.
+
+void Replace(std::vector<Device>& devices, int source,
+             const std::vector<stream::DeviceStatus>& statuses) {
+  std::erase_if(devices, [source](const Device& device) { return device.source == source; });
+  for (const stream::DeviceStatus& status : statuses) devices.push_back({source, status});
+}
+
+void AddBoard(Model& model, int source, std::int64_t received_ns,
+              const stream::BoardSample& sample) {
+  const std::pair key(source, sample.device);
+  if (model.boards.count(key) == 0 && model.boards.size() >= kMaxBoards) return;
+  BoardTrace& board = model.boards[key];
+  const bool joined = board.newest.cop_valid;
+  board.newest = sample;
+  board.newest_ns = received_ns;
+  if (sample.cop_valid) {
+    board.points.push_back({received_ns, static_cast<float>(sample.cop_x_m),
+                            static_cast<float>(sample.cop_y_m), joined});
+  }
+  while (board.points.size() > kMaxTracePoints ||
+         (!board.points.empty() && board.points.front().time_ns < received_ns - kStripNs)) {
+    board.points.pop_front();
+  }
+}
+
+void AddNote(Model& model, const Note& note, std::int64_t received_ns) {
+  if (note.kind == NoteKind::kResponse) {
+    model.last_response = note;
+    return;
+  }
+  if (note.text.empty()) return;
+  model.last_note = note;
+  model.last_note_ns = received_ns;
+}
+
+void AddPhase(Model& model, const CharacterPose& pose, std::int64_t received_ns) {
+  std::deque<PhaseSpan>& spans = model.phase_spans;
+  const bool same_gait = !spans.empty() && spans.back().gait == pose.gait.gait;
+  if (!same_gait) model.phases.clear();
+  if (same_gait && spans.back().phase == pose.phase) return;
+  spans.push_back({pose.phase, pose.gait.gait, received_ns});
+  while (spans.size() > kMaxSpans ||
+         (spans.size() > 1 && spans[1].start_ns < received_ns - kStripNs)) {
+    spans.pop_front();
+  }
+  const bool known =
+      std::find(model.phases.begin(), model.phases.end(), pose.phase) != model.phases.end();
+  if (!known && model.phases.size() < kMaxPhases) model.phases.push_back(pose.phase);
+}
+
+stream::DeviceRole RoleOf(const Model& model, const std::pair<int, std::uint32_t>& key) {
+  for (const Device& device : model.devices) {
+    if (device.source == key.first && device.status.device == key.second) {
+      return device.status.role;
+    }
+  }
+  return stream::DeviceRole::kUnspecified;
+}
+
+}  // namespace
+
+void Apply(Model& model, const Update& update) {
+  model.newest_host_ns = std::max(model.newest_host_ns, update.host_ns);
+  if (update.devices) Replace(model.devices, update.source, *update.devices);
+  if (update.skeletons) model.skeletons = *update.skeletons;
+  if (update.track) {
+    model.track = *update.track;
+    ++model.track_version;
+  }
+  model.strips.Add(update);
+  for (const stream::BoardSample& sample : update.boards) {
+    AddBoard(model, update.source, update.received_ns, sample);
+  }
+  for (const Note& note : update.notes) AddNote(model, note, update.received_ns);
+  if (update.frame) {
+    if (!update.frame->characters.empty()) {
+      AddPhase(model, update.frame->characters.front(), update.received_ns);
+    }
+    model.tally.Add(*update.frame);
+    model.playout.Push(*update.frame, update.received_ns);
+  }
+}
+
+bool IsSimulated(const Model& model) {
+  const bool device = std::any_of(model.devices.begin(), model.devices.end(),
+                                  [](const Device& d) { return d.status.simulated; });
+  if (device || model.playout.empty()) return device;
+  const auto& characters = model.playout.Newest().characters;
+  return std::any_of(characters.begin(), characters.end(),
+                     [](const CharacterPose& pose) { return pose.simulated_input; });
+}
+
+double AgeMs(const Model& model, std::int64_t now_ns) {
+  return std::max(0.0, static_cast<double>(now_ns - model.newest_host_ns) * 1e-6);
+}
+
+bool HasPicture(const Model& model) { return !model.playout.empty(); }
+
+bool IsWaiting(const Model& model) { return model.newest_host_ns == 0; }
+
+Stance StanceOf(const Model& model) {
+  Stance stance;
+  double left_n = 0, right_n = 0;
+  for (const auto& [key, board] : model.boards) {
+    const stream::BoardSample& sample = board.newest;
+    const double left_cells_n = sample.top_left_n + sample.bottom_left_n;
+    const double right_cells_n = sample.top_right_n + sample.bottom_right_n;
+    switch (RoleOf(model, key)) {
+      case stream::DeviceRole::kLeftBoard:
+        left_n += sample.total_n;
+        break;
+      case stream::DeviceRole::kRightBoard:
+        right_n += sample.total_n;
+        break;
+      case stream::DeviceRole::kUnspecified:
+      case stream::DeviceRole::kLeftHand:
+      case stream::DeviceRole::kRightHand:
+      case stream::DeviceRole::kLeftLeg:
+      case stream::DeviceRole::kRightLeg:
+      case stream::DeviceRole::kHead:
+      case stream::DeviceRole::kEditor:
+        left_n += left_cells_n;
+        right_n += right_cells_n;
+    }
+  }
+  // A lone board carries both feet, whatever its role is called.
+  if (model.boards.size() == 1) {
+    const stream::BoardSample& only = model.boards.begin()->second.newest;
+    left_n = only.top_left_n + only.bottom_left_n;
+    right_n = only.top_right_n + only.bottom_right_n;
+  }
+  stance.total_n = left_n + right_n;
+  stance.valid = stance.total_n > kStandingN;
+  if (stance.valid) stance.left_share = std::clamp(left_n / stance.total_n, 0.0, 1.0);
+  return stance;
+}
+
+}  // namespace footing::scene

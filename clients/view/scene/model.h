@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clients/view/scene/playout.h"
+#include "clients/view/scene/strip.h"
+#include "clients/view/scene/tally.h"
+#include "clients/view/scene/update.h"
+
+namespace footing::scene {
+
+/// One board's last 10 s.
+struct BoardTrace {
+  struct Point {
+    std::int64_t time_ns = 0;
+    float x_m = 0;  ///< Plate frame P: to the right.
+    float y_m = 0;  ///< To the front.
+    bool joined = true;
+  };
+  stream::BoardSample newest;
+  std::int64_t newest_ns = 0;  ///< When it came, on the viewer's clock.
+  std::deque<Point> points;
+};
+
+/// A stretch of time in one state of a gait controller.
+struct PhaseSpan {
+  std::string phase;
+  stream::Gait gait = stream::Gait::kUnspecified;
+  std::int64_t start_ns = 0;  ///< On the viewer's clock; it ends where the next one starts.
+};
+
+/// A device as its server last described it.
+struct Device {
+  int source = 0;
+  stream::DeviceStatus status;
+};
+
+/// Everything that the picture and the words are made from.
+struct Model {
+  std::vector<LinkReport> links;  ///< By source.
+  std::vector<Device> devices;
+  std::vector<stream::Skeleton> skeletons;
+  stream::Track track;
+  std::uint64_t track_version = 0;  ///< Counts the tracks received.
+  Playout playout;
+  StripSet strips;
+  std::map<std::pair<int, std::uint32_t>, BoardTrace> boards;  ///< By {source, device}.
+  std::optional<Note> last_response;
+  std::optional<Note> last_note;  ///< The last one that a person should read.
+  std::int64_t last_note_ns = 0;
+  std::int64_t newest_host_ns = 0;  ///< Newest tick's stamp, on the viewer's clock.
+  std::vector<std::string> phases;  ///< Of the first character's present gait, in order of coming.
+  std::deque<PhaseSpan> phase_spans;  ///< The last 10 s, oldest first.
+  Tally tally;
+};
+
+/// Takes one tick in. Plain data in, plain data out: no clock is read.
+void Apply(Model& model, const Update& update);
+
+/// True when any character or device is fed by a stand-in, which every screen must show.
+bool IsSimulated(const Model& model);
+
+/// Age of the newest data, ms.
+double AgeMs(const Model& model, std::int64_t now_ns);
+
+/// True once any server has sent something to look at.
+bool HasPicture(const Model& model);
+/// True while no connection has ever been live and nothing has come.
+bool IsWaiting(const Model& model);
+
+/// Both feet of a person on one or two boards.
+struct Stance {
+  bool valid = false;  ///< Someone stands on them.
+  double total_n = 0;
+  double left_share = 0.5;  ///< 0 to 1.
+};
+Stance StanceOf(const Model& model);
+
+}  // namespace footing::scene

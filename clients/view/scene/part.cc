@@ -1,0 +1,59 @@
+#include "clients/view/scene/part.h"
+
+#include <cmath>
+
+namespace footing::scene {
+namespace {
+
+constexpr float kShortestM = 1e-5f;
+
+/// Three axes of length 1 with z along `direction`.
+Eigen::Matrix3f AxesAlong(const Eigen::Vector3f& direction) {
+  Eigen::Matrix3f axes;
+  axes.col(2) = direction.normalized();
+  axes.col(0) = axes.col(2).unitOrthogonal();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+float Linear(std::uint32_t byte) {
+  const float value = static_cast<float>(byte) / 255;
+  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+}
+
+}  // namespace
+
+Eigen::Matrix4f Ellipsoid(const Eigen::Vector3f& centre, const Eigen::Matrix3f& axes,
+                          const Eigen::Vector3f& half_axes) {
+  Eigen::Matrix4f X = Eigen::Matrix4f::Identity();
+  X.topLeftCorner<3, 3>() = axes * half_axes.asDiagonal();
+  X.topRightCorner<3, 1>() = centre;
+  return X;
+}
+
+void PartList::AddBall(const Eigen::Matrix4f& X_WP, const Colour& colour, const Colour& under,
+                       float gloss) {
+  balls.push_back({X_WP, colour, 1, under, gloss});
+}
+
+void PartList::AddRod(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a,
+                      float radius_b, const Colour& colour, float gloss) {
+  const float length = (b - a).norm();
+  if (length < kShortestM) return;
+  const Eigen::Matrix4f X = Ellipsoid(a, AxesAlong(b - a), {radius_a, radius_a, length});
+  rods.push_back({X, colour, radius_b / radius_a, colour, gloss});
+}
+
+void PartList::AddLimb(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a,
+                       float radius_b, const Colour& colour, float gloss) {
+  AddRod(a, b, radius_a, radius_b, colour, gloss);
+  const Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();
+  AddBall(Ellipsoid(a, axes, Eigen::Vector3f::Constant(radius_a)), colour, colour, gloss);
+  AddBall(Ellipsoid(b, axes, Eigen::Vector3f::Constant(radius_b)), colour, colour, gloss);
+}
+
+Colour Rgb(std::uint32_t hex) {
+  return {Linear((hex >> 16) & 0xff), Linear((hex >> 8) & 0xff), Linear(hex & 0xff)};
+}
+
+}  // namespace footing::scene

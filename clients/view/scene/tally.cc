@@ -1,0 +1,65 @@
+#include "clients/view/scene/tally.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footing::scene {
+namespace {
+
+constexpr std::size_t kMaxLatencies = 100'000;
+constexpr double kSeenS = 2.0;
+constexpr std::uint64_t kSeenSteps = 6;
+constexpr std::uint64_t kSeenJumps = 3;
+
+}  // namespace
+
+void Latencies::Add(std::int64_t latency_ns) {
+  last_ns_ = latency_ns;
+  if (values_ns_.size() < kMaxLatencies) {
+    values_ns_.push_back(latency_ns);
+    return;
+  }
+  values_ns_[next_] = latency_ns;
+  next_ = (next_ + 1) % kMaxLatencies;
+}
+
+double Latencies::QuantileMs(double share) const {
+  if (values_ns_.empty()) return 0;
+  std::vector<std::int64_t> sorted = values_ns_;
+  const auto rank = static_cast<std::size_t>(std::llround(share * (sorted.size() - 1.0)));
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return static_cast<double>(*at) * 1e-6;
+}
+
+double Latencies::LastMs() const { return static_cast<double>(last_ns_) * 1e-6; }
+
+void Tally::Add(const WorldFrame& frame) {
+  ++frames_;
+  if (frame.characters.empty()) return;
+  const stream::GaitState& now = frame.characters.front().gait;
+  const bool restarted = frame.time_s < last_time_s_;
+  if (frames_ > 1 && !restarted) {
+    falls_ += now.falls > last_.falls ? now.falls - last_.falls : 0;
+    distance_m_ += std::max(0.0, now.distance_m - last_.distance_m);
+  }
+  if (frames_ == 1 || restarted || now.gait != stretch_.gait || now.falls != last_.falls) {
+    stretch_ = {now.gait, frame.time_s, now.steps};
+  }
+  last_ = now;
+  last_time_s_ = frame.time_s;
+
+  const std::uint64_t needed = now.gait == stream::Gait::kJump ? kSeenJumps : kSeenSteps;
+  const bool long_enough =
+      frame.time_s - stretch_.start_s >= kSeenS && now.steps >= stretch_.start_steps + needed;
+  if (!long_enough || now.gait == stream::Gait::kUnspecified) return;
+  if (std::find(seen_.begin(), seen_.end(), now.gait) == seen_.end()) seen_.push_back(now.gait);
+}
+
+std::vector<stream::Gait> Tally::GaitsSeen() const {
+  std::vector<stream::Gait> gaits = seen_;
+  std::sort(gaits.begin(), gaits.end());
+  return gaits;
+}
+
+}  // namespace footing::scene

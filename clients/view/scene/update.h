@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/stream/character.h"
+#include "common/stream/device.h"
+#include "common/stream/sensor.h"
+
+/// What one tick of a server brings, as plain structs. World frame W: x forward, y left, z up; SI.
+namespace footing::scene {
+
+/// One character of one frame.
+struct CharacterPose {
+  std::uint32_t character = 0;
+  std::string rig;
+  bool valid = false;
+  std::vector<stream::LinkPose> links;  ///< In the order of the skeleton's links.
+  std::vector<stream::Contact> contacts;
+  Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d com_velocity_mps = Eigen::Vector3d::Zero();
+  stream::GaitState gait;  ///< Its phase stays empty: the name travels as a text of its own.
+  std::string phase;
+  bool simulated_input = false;
+};
+
+struct WorldFrame {
+  std::uint64_t step = 0;
+  double time_s = 0;  ///< Simulation time.
+  std::uint64_t overruns = 0;
+  std::vector<CharacterPose> characters;
+};
+
+/// Stamps of one response, CLOCK_MONOTONIC of one host, in nanoseconds; 0 where unknown.
+struct ResponseStages {
+  stream::Gait from = stream::Gait::kUnspecified;
+  stream::Gait to = stream::Gait::kUnspecified;
+  std::int64_t report_received_ns = 0;
+  std::int64_t decoded_ns = 0;
+  std::int64_t features_computed_ns = 0;
+  std::int64_t features_received_ns = 0;
+  std::int64_t command_ns = 0;
+  std::int64_t contact_ns = 0;
+  std::int64_t first_frame_ns = 0;
+};
+
+enum class NoteKind { kOther, kFall, kPutBack, kGaitChanged, kResponse, kStreamLost, kStreamBack };
+
+/// An event, for a person to read.
+struct Note {
+  NoteKind kind = NoteKind::kOther;
+  std::int64_t host_ns = 0;
+  std::string text;
+  ResponseStages response;  ///< Of kResponse.
+};
+
+/// How one connection fares.
+enum class LinkState { kConnecting, kLive, kStale, kRefused };
+
+struct LinkReport {
+  std::string address;    ///< As the user typed it.
+  std::string server_id;  ///< "footingd", "footing-sim"; empty before the first Welcome.
+  LinkState state = LinkState::kConnecting;
+  std::string why;  ///< A line for a person.
+};
+
+/// One tick. Fields that the tick did not carry stay empty.
+struct Update {
+  int source = 0;                ///< Which connection.
+  bool live = true;              ///< Neither a snapshot nor a refill: its age is a latency.
+  std::int64_t host_ns = 0;      ///< The server's stamp, on the viewer's own clock.
+  std::int64_t received_ns = 0;  ///< When the viewer's socket gave it, on the viewer's own clock.
+  std::optional<std::vector<stream::DeviceStatus>> devices;
+  std::vector<stream::MotionSample> motion;
+  std::vector<stream::RigFeatures> features;
+  std::vector<stream::BoardSample> boards;
+  std::optional<std::vector<stream::Skeleton>> skeletons;
+  std::optional<stream::Track> track;
+  std::optional<WorldFrame> frame;
+  std::vector<Note> notes;
+};
+
+}  // namespace footing::scene

@@ -1,0 +1,191 @@
+#include "clients/view/scene/words.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::scene {
+namespace {
+
+bool Names(const std::string& address, const char* word) {
+  return address.find(word) != std::string::npos;
+}
+
+std::string Padded(std::string text, std::size_t width) {
+  if (text.size() < width) text.append(width - text.size(), ' ');
+  return text;
+}
+
+const char* StateName(LinkState state) {
+  switch (state) {
+    case LinkState::kConnecting:
+      return "connecting";
+    case LinkState::kLive:
+      return "live";
+    case LinkState::kStale:
+      return "stale";
+    case LinkState::kRefused:
+      return "refused";
+  }
+  return "";
+}
+
+std::string DeviceLine(const stream::DeviceStatus& device) {
+  std::string line = "  " + Padded(device.rig + "/" + stream::Name(device.role), 20) +
+                     Padded(device.serial, 20) + Padded(stream::Name(device.state), 12) +
+                     Padded(Fixed(device.report_rate_hz, 1) + " Hz", 10);
+  line += device.battery_fraction < 0
+              ? Padded("battery ?", 14)
+              : Padded("battery " + Fixed(100 * device.battery_fraction, 0) + " %", 14);
+  if (device.simulated) line += "SIMULATED";
+  if (!device.note.empty()) line += "  " + device.note;
+  return line;
+}
+
+std::vector<std::string> CharacterLines(const CharacterPose& pose) {
+  const stream::GaitState& gait = pose.gait;
+  std::string first = "  " + Padded(GaitTitle(gait.gait), 6) + Padded(pose.phase, 18) +
+                      Fixed(gait.speed_mps, 2) + " m/s of " + Fixed(gait.commanded_speed_mps, 2) +
+                      "   turn " + Fixed(RadiansToDegrees(gait.commanded_turn_rad), 1) +
+                      " deg/step";
+  if (gait.pending) first += "   next: " + GaitTitle(gait.commanded_gait);
+  std::string second = "  distance " + Fixed(gait.distance_m, 1) + " m   falls " +
+                       std::to_string(gait.falls) + "   steps " + std::to_string(gait.steps);
+  if (!gait.commanded_by_stream) second += "   no features arrive: stepping in place";
+  if (pose.simulated_input) second += "   SIMULATED input";
+  return {first, second};
+}
+
+}  // namespace
+
+std::string Fixed(double value, int decimals) {
+  std::array<char, 64> buffer{};
+  const double shown = std::isfinite(value) ? std::clamp(value, -1e12, 1e12) : 0;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), shown,
+                                 std::chars_format::fixed, std::clamp(decimals, 0, 9));
+  const std::string text(buffer.data(), end.ptr);
+  const bool zero = text.find_first_not_of("-0.") == std::string::npos;
+  return zero && text.front() == '-' ? text.substr(1) : text;
+}
+
+std::string GaitTitle(stream::Gait gait) {
+  switch (gait) {
+    case stream::Gait::kUnspecified:
+      return "-";
+    case stream::Gait::kStep:
+      return "STEP";
+    case stream::Gait::kWalk:
+      return "WALK";
+    case stream::Gait::kRun:
+      return "RUN";
+    case stream::Gait::kJump:
+      return "JUMP";
+  }
+  return "-";
+}
+
+std::vector<std::string> WaitingLines(const LinkReport& link) {
+  switch (link.state) {
+    case LinkState::kLive:
+      return {};
+    case LinkState::kStale:
+      return {"Nothing from " + link.address + " for 3 s.", link.why};
+    case LinkState::kRefused:
+      return {link.address + " refuses this viewer:", link.why};
+    case LinkState::kConnecting:
+      break;
+  }
+  if (Names(link.address, "simulation")) {
+    return {"Waiting for a simulation server on " + link.address,
+            "Start one with:  footing-sim --engine gait --listen " + link.address};
+  }
+  if (Names(link.address, "sensor")) {
+    return {"Waiting for a sensor daemon on " + link.address,
+            "Start one with:  footingd --listen " + link.address};
+  }
+  return {"Waiting for a server on " + link.address,
+          "Start one with:  footing-sim --listen " + link.address + "   (or footingd)"};
+}
+
+std::vector<ResponseStage> ResponseTimes(const ResponseStages& r) {
+  const std::array<std::pair<const char*, std::int64_t>, 7> stamps{
+      {{"", r.report_received_ns},
+       {"decode", r.decoded_ns},
+       {"features", r.features_computed_ns},
+       {"transport", r.features_received_ns},
+       {"command", r.command_ns},
+       {"contact", r.contact_ns},
+       {"frame", r.first_frame_ns}}};
+  std::vector<ResponseStage> stages;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    const std::int64_t from_ns = stamps[i - 1].second, to_ns = stamps[i].second;
+    if (from_ns == 0 || to_ns < from_ns) return {};
+    stages.push_back({stamps[i].first, static_cast<double>(to_ns - from_ns) * 1e-6});
+  }
+  return stages;
+}
+
+std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
+  std::vector<std::string> lines{std::string("Footing") +
+                                 (IsSimulated(model) ? "   [SIMULATED input]" : "")};
+  for (const LinkReport& link : model.links) {
+    const std::string server = link.server_id.empty() ? "server" : link.server_id;
+    lines.push_back(Padded(server, 14) + Padded(StateName(link.state), 12) + link.address);
+    for (const std::string& line : WaitingLines(link)) lines.push_back("  " + line);
+  }
+  if (HasPicture(model)) {
+    lines.push_back("Character");
+    for (const CharacterPose& pose : model.playout.Newest().characters) {
+      for (std::string& line : CharacterLines(pose)) lines.push_back(std::move(line));
+    }
+  }
+  if (!model.devices.empty()) lines.push_back("Devices");
+  for (const Device& device : model.devices) lines.push_back(DeviceLine(device.status));
+  const Stance stance = StanceOf(model);
+  if (stance.valid) {
+    lines.push_back("Boards      " + Fixed(NewtonsToKilograms(stance.total_n), 1) + " kg   left " +
+                    Fixed(100 * stance.left_share, 0) + " %   right " +
+                    Fixed(100 - 100 * stance.left_share, 0) + " %");
+  }
+  if (!IsWaiting(model)) {
+    const Latencies& latency = model.tally.publish_to_view;
+    lines.push_back("Latency     age " + Fixed(AgeMs(model, now_ns), 0) +
+                    " ms   publish to view p50 " + Fixed(latency.QuantileMs(0.5), 2) + " ms  p99 " +
+                    Fixed(latency.QuantileMs(0.99), 2) + " ms");
+  }
+  if (model.last_response) {
+    std::string line = "Response   ";
+    for (const ResponseStage& stage : ResponseTimes(model.last_response->response)) {
+      line += std::string(" ") + stage.name + " " + Fixed(stage.ms, 1);
+    }
+    lines.push_back(line + " ms");
+  }
+  if (model.last_note) lines.push_back("Last event  " + model.last_note->text);
+  return lines;
+}
+
+std::string StatusLine(const Model& model, std::int64_t now_ns) {
+  if (!HasPicture(model)) {
+    for (const LinkReport& link : model.links) {
+      const auto lines = WaitingLines(link);
+      if (!lines.empty()) return lines[0] + ". " + lines[1];
+    }
+    return "devices " + std::to_string(model.devices.size()) + "  age " +
+           Fixed(AgeMs(model, now_ns), 0) + " ms" + (IsSimulated(model) ? "  SIMULATED" : "");
+  }
+  const WorldFrame& frame = model.playout.Newest();
+  std::string line = "t " + Fixed(frame.time_s, 1) + " s";
+  for (const CharacterPose& pose : frame.characters) {
+    line += "  " + GaitTitle(pose.gait.gait) + "  " + Fixed(pose.gait.speed_mps, 2) + "/" +
+            Fixed(pose.gait.commanded_speed_mps, 2) + " m/s  " + Fixed(pose.gait.distance_m, 1) +
+            " m  falls " + std::to_string(pose.gait.falls);
+  }
+  line += "  devices " + std::to_string(model.devices.size()) + "  age " +
+          Fixed(AgeMs(model, now_ns), 0) + " ms";
+  return line + (IsSimulated(model) ? "  SIMULATED" : "");
+}
+
+}  // namespace footing::scene

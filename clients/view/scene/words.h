@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clients/view/scene/model.h"
+
+namespace footing::scene {
+
+/// A number with that many decimals (0 to 9), as screens show it: "1.5". No locale.
+std::string Fixed(double value, int decimals);
+
+/// "WALK"; "-" for kUnspecified.
+std::string GaitTitle(stream::Gait gait);
+
+/// What one connection waits for and how to start it, in two lines; empty once it is live.
+std::vector<std::string> WaitingLines(const LinkReport& link);
+
+/// Where a response's time went, first to last.
+struct ResponseStage {
+  const char* name;
+  double ms;
+};
+/// Empty when the stamps do not say.
+std::vector<ResponseStage> ResponseTimes(const ResponseStages& response);
+
+/// The whole state in one screen of plain text, for a terminal.
+std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns);
+/// The same in one line, for a log.
+std::string StatusLine(const Model& model, std::int64_t now_ns);
+
+}  // namespace footing::scene

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The records of an MCAP file (https://mcap.dev/spec, version 0), as plain values.
+///
+/// Bytes are std::string and std::string_view, as protobuf holds them. Times are nanoseconds; in a
+/// Footing recording they are CLOCK_MONOTONIC of the server's host. Offsets count from the start of
+/// the file unless a comment says otherwise.
+namespace footing::mcap {
+
+/// The eight bytes at both ends of a file.
+inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
+
+/// Opcode (u8) and length (u64) before every record's body.
+inline constexpr std::size_t kRecordHeadBytes = 9;
+
+enum class Opcode : std::uint8_t {
+  kHeader = 0x01,
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kMessageIndex = 0x07,
+  kChunkIndex = 0x08,
+  kAttachment = 0x09,
+  kAttachmentIndex = 0x0A,
+  kStatistics = 0x0B,
+  kMetadata = 0x0C,
+  kMetadataIndex = 0x0D,
+  kSummaryOffset = 0x0E,
+  kDataEnd = 0x0F,
+};
+
+using TextMap = std::map<std::string, std::string>;
+
+struct Header {
+  std::string profile;
+  std::string library;  ///< Name and version of the writer.
+};
+
+struct Schema {
+  std::uint16_t id = 0;  ///< From 1.
+  std::string name;      ///< Full name of the message, e.g. "footing.v1.MotionSamples".
+  std::string encoding;  ///< "protobuf".
+  std::string data;      ///< A serialised FileDescriptorSet with all imports.
+  bool operator==(const Schema&) const = default;
+};
+
+struct Channel {
+  std::uint16_t id = 0;
+  std::uint16_t schema_id = 0;
+  std::string topic;
+  std::string message_encoding;  ///< "protobuf".
+  TextMap metadata;
+  bool operator==(const Channel&) const = default;
+};
+
+struct Message {
+  std::uint16_t channel_id = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time_ns = 0;
+  std::uint64_t publish_time_ns = 0;
+  std::string_view data;  ///< Borrowed.
+};
+
+struct Attachment {
+  std::uint64_t log_time_ns = 0;
+  std::uint64_t create_time_ns = 0;
+  std::string name;
+  std::string media_type;
+  std::string_view data;  ///< Borrowed.
+};
+
+struct Metadata {
+  std::string name;
+  TextMap values;
+};
+
+struct Chunk {
+  std::uint64_t start_time_ns = 0;
+  std::uint64_t end_time_ns = 0;
+  std::uint64_t uncompressed_size = 0;
+  std::uint32_t uncompressed_crc = 0;  ///< 0: not given.
+  std::string compression;             ///< Empty: none, the only one written and read here.
+  std::string_view records;            ///< Borrowed.
+};
+
+/// Where the messages of one channel lie within the records of the chunk before it.
+struct MessageIndex {
+  struct Entry {
+    std::uint64_t log_time_ns = 0;
+    std::uint64_t offset = 0;
+  };
+  std::uint16_t channel_id = 0;
+  std::vector<Entry> entries;
+};
+
+struct ChunkIndex {
+  std::uint64_t start_time_ns = 0;
+  std::uint64_t end_time_ns = 0;
+  std::uint64_t chunk_offset = 0;
+  std::uint64_t chunk_length = 0;  ///< With its head.
+  std::map<std::uint16_t, std::uint64_t> message_index_offsets;
+  std::uint64_t message_index_length = 0;
+  std::string compression;
+  std::uint64_t compressed_size = 0;
+  std::uint64_t uncompressed_size = 0;
+};
+
+struct AttachmentIndex {
+  std::uint64_t offset = 0;
+  std::uint64_t length = 0;
+  std::uint64_t log_time_ns = 0;
+  std::uint64_t create_time_ns = 0;
+  std::uint64_t data_size = 0;
+  std::string name;
+  std::string media_type;
+};
+
+struct MetadataIndex {
+  std::uint64_t offset = 0;
+  std::uint64_t length = 0;
+  std::string name;
+};
+
+struct Statistics {
+  std::uint64_t message_count = 0;
+  std::uint16_t schema_count = 0;
+  std::uint32_t channel_count = 0;
+  std::uint32_t attachment_count = 0;
+  std::uint32_t metadata_count = 0;
+  std::uint32_t chunk_count = 0;
+  std::uint64_t message_start_time_ns = 0;
+  std::uint64_t message_end_time_ns = 0;
+  std::map<std::uint16_t, std::uint64_t> channel_message_counts;
+};
+
+/// Where the summary's records of one kind lie.
+struct SummaryOffset {
+  std::uint8_t group_opcode = 0;
+  std::uint64_t group_start = 0;
+  std::uint64_t group_length = 0;
+};
+
+struct Footer {
+  std::uint64_t summary_start = 0;         ///< 0: there is no summary.
+  std::uint64_t summary_offset_start = 0;  ///< 0: there are no summary offsets.
+  std::uint32_t summary_crc = 0;           ///< 0: not given.
+};
+
+}  // namespace footing::mcap

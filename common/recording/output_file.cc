@@ -1,0 +1,51 @@
+#include "common/recording/output_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace footing::recording {
+
+Result<OutputFile> OutputFile::Create(const std::string& path, bool replace) {
+  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (replace ? O_TRUNC : O_EXCL);
+  const int descriptor = ::open(path.c_str(), flags, 0600);
+  if (descriptor >= 0) return OutputFile(path, descriptor);
+  if (errno == EEXIST) {
+    return UsageError(path + " exists and is not overwritten; choose another name, or say --force");
+  }
+  return Failure("cannot create " + path + ": " + std::strerror(errno));
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<void> OutputFile::Write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return Failure("cannot write " + path_ + ": " + std::strerror(errno));
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return {};
+}
+
+Result<void> OutputFile::Sync() {
+  // EINVAL: a pipe or a device, which has nothing to sync.
+  if (::fdatasync(descriptor_) == 0 || errno == EINVAL) return {};
+  return Failure("cannot write " + path_ + " to the disk: " + std::strerror(errno));
+}
+
+}  // namespace footing::recording

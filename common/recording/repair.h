@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/mcap/walk.h"
+#include "common/result/result.h"
+
+namespace footing::recording {
+
+/// What a repair kept and what it found.
+struct RepairReport {
+  std::uint64_t messages = 0;
+  std::uint64_t attachments = 0;
+  std::uint64_t metadata = 0;
+  std::uint64_t input_bytes = 0;
+  mcap::WalkEnd found;  ///< Complete when nothing was wrong with the input.
+};
+
+/// Writes a complete file with every complete record of `input`: of a file cut at any byte, all
+/// before the cut; of a damaged one, all but the chunks and records whose CRC or form is wrong.
+/// InvalidData when the input is no MCAP file; a usage error when `output` exists, unless
+/// `replace`, or is the input.
+Result<RepairReport> Repair(const std::string& input, const std::string& output,
+                            const std::string& library, bool replace);
+
+}  // namespace footing::recording

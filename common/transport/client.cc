@@ -1,0 +1,382 @@
+#include "common/transport/client.h"
+
+#include <google/protobuf/arena.h>
+
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <map>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/transport/backoff.h"
+#include "common/transport/clock_offset.h"
+#include "common/transport/framed_connection.h"
+#include "common/transport/handshake.h"
+#include "common/units/units.h"
+
+namespace footing::transport {
+namespace {
+
+constexpr std::uint32_t kDefaultDeadlineMs = 1000;
+constexpr std::size_t kMaxWaitingCommands = 64;
+/// Enough for a tick of eight devices; a longer message takes more from the heap.
+constexpr std::size_t kArenaBytes = 32 << 10;
+
+v1::CommandResult Failed(std::uint64_t id, const std::string& why) {
+  v1::CommandResult result;
+  result.set_id(id);
+  result.set_message(why);
+  return result;
+}
+
+}  // namespace
+
+class Client::Implementation : public std::enable_shared_from_this<Implementation> {
+ public:
+  Implementation(boost::asio::io_context& io, ClientOptions options, ClientHandlers handlers)
+      : io_(io),
+        options_(std::move(options)),
+        handlers_(std::move(handlers)),
+        retry_(io),
+        pulse_(io),
+        backoff_(options_.backoff_min_s, options_.backoff_max_s),
+        random_(std::random_device()()),
+        arena_(block_.data(), block_.size()) {}
+
+  void Start() {
+    if (started_) return;
+    started_ = true;
+    Connect();
+  }
+
+  void Stop() {
+    started_ = false;
+    ++attempt_;  // A dial under way is forgotten.
+    retry_.cancel();
+    pulse_.cancel();
+    connection_.reset();
+    FailCommands("the client was stopped");
+  }
+
+  void Send(v1::Command command, std::function<void(const v1::CommandResult&)> done) {
+    command.set_id(++last_command_);
+    if (!subscribed_) return done(Failed(command.id(), "not connected: " + why_));
+    if (commands_.size() >= kMaxWaitingCommands) {
+      return done(Failed(command.id(), "too many commands wait for their answers"));
+    }
+    const std::uint32_t deadline_ms =
+        command.deadline_ms() == 0 ? kDefaultDeadlineMs : command.deadline_ms();
+    commands_[command.id()] = {std::move(done), NowNs() + std::int64_t{deadline_ms} * 1'000'000};
+    v1::Envelope message;
+    *message.mutable_command() = std::move(command);
+    SendMessage(message);
+  }
+
+  void Refill(std::uint64_t from_sequence, std::uint64_t to_sequence) {
+    if (!subscribed_) return;
+    v1::Envelope message;
+    message.mutable_refill()->set_from_sequence(from_sequence);
+    message.mutable_refill()->set_to_sequence(to_sequence);
+    SendMessage(message);
+  }
+
+  LinkState state() const { return state_; }
+
+  ClockOffset clock() const {
+    const OffsetEstimate estimate = offset_.estimate();
+    return {estimate.valid, estimate.offset_ns, estimate.uncertainty_ns};
+  }
+
+ private:
+  struct Waiting {
+    std::function<void(const v1::CommandResult&)> done;
+    std::int64_t deadline_ns = 0;
+  };
+
+  std::int64_t NowNs() const { return options_.now_ns ? options_.now_ns() : clock::MonotonicNs(); }
+
+  static std::chrono::nanoseconds Duration(double seconds) {
+    return std::chrono::nanoseconds(SecondsToNanoseconds(seconds));
+  }
+
+  void Connect() {
+    Dial(io_, options_.address,
+         [weak = weak_from_this(), attempt = ++attempt_](Result<Socket> socket) {
+           const auto self = weak.lock();
+           if (!self || attempt != self->attempt_) return;
+           if (!socket) {
+             self->ConnectLater("waiting for a server on " + socket.error().message);
+             return;
+           }
+           self->OnConnected(std::move(*socket));
+         });
+  }
+
+  void OnConnected(Socket socket) {
+    FramedLimits limits;
+    limits.max_in_bytes = options_.max_message_bytes;
+    FramedHandlers handlers;
+    // Each keeps this alive while it is called: a handler may destroy the client.
+    handlers.on_frame = [weak = weak_from_this()](std::string_view payload) {
+      if (const auto self = weak.lock()) self->OnFrame(payload);
+    };
+    handlers.on_bytes = [weak = weak_from_this()] {
+      if (const auto self = weak.lock()) self->heard_ns_ = self->NowNs();
+    };
+    handlers.on_close = [weak = weak_from_this()](const std::string& reason) {
+      if (const auto self = weak.lock()) self->OnClose(reason);
+    };
+    connection_.emplace(std::move(socket), limits, std::move(handlers));
+    connection_->Start();
+    heard_ns_ = NowNs();
+    goodbye_.clear();
+    v1::Envelope message;
+    v1::Hello& hello = *message.mutable_hello();
+    hello.set_protocol_major(kProtocolMajor);
+    hello.set_protocol_minor(kProtocolMinor);
+    hello.set_role(options_.role);
+    hello.set_token(options_.token);
+    hello.set_client_name(options_.client_name);
+    SendMessage(message);
+    ArmPulse();
+  }
+
+  void OnFrame(std::string_view payload) {
+    arena_.Reset();
+    auto& message = *google::protobuf::Arena::CreateMessage<v1::Envelope>(&arena_);
+    if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+      return Break("the server sent what is no message of Footing's protocol");
+    }
+    if (state_ == LinkState::kStale) SetState(LinkState::kLive, live_text_);
+    if (!connection_) return;  // The handler stopped us.
+    switch (message.body_case()) {
+      case v1::Envelope::kTick:
+        return OnTick(message.tick());
+      case v1::Envelope::kGap:
+        return Call(handlers_.on_gap, message.gap());
+      case v1::Envelope::kPing:
+        return OnPing(message.ping());
+      case v1::Envelope::kPong:
+        return OnPong(message.pong());
+      case v1::Envelope::kCommandResult:
+        return OnAnswer(message.command_result());
+      case v1::Envelope::kWelcome:
+        return OnWelcome(message.welcome());
+      case v1::Envelope::kSubscribed:
+        return OnSubscribed();
+      case v1::Envelope::kRefused:
+        refused_ = true;
+        goodbye_ = message.refused().message();
+        return;
+      case v1::Envelope::kGoodbye:
+        goodbye_ = message.goodbye().reason();
+        return;
+      default:  // Of a later minor version.
+        return;
+    }
+  }
+
+  void OnWelcome(const v1::Welcome& welcome) {
+    if (welcome.epoch() != epoch_) offset_ = {};  // Perhaps another host.
+    server_ = welcome.server_id() + " " + welcome.version();
+    v1::Envelope message;
+    v1::Subscribe& wish = *message.mutable_subscribe();
+    for (const auto& channel : options_.channels) wish.add_channels(channel);
+    wish.set_max_hz(options_.max_hz);
+    wish.set_policy(options_.policy);
+    wish.set_queue_ticks(options_.queue_ticks);
+    if (last_sequence_ != 0 && options_.policy != v1::QUEUE_POLICY_LATEST) {
+      wish.set_from_sequence(last_sequence_ + 1);
+      wish.set_from_epoch(epoch_);
+    } else if (options_.from_ring_start) {
+      wish.set_from_sequence(1);
+      wish.set_from_epoch(welcome.epoch());
+    }
+    if (welcome.epoch() != epoch_) last_sequence_ = 0;
+    epoch_ = welcome.epoch();
+    SendMessage(message);
+    SendPing();
+    Call(handlers_.on_welcome, welcome);
+  }
+
+  void OnSubscribed() {
+    subscribed_ = true;
+    backoff_.Reset();
+    live_text_ = "connected to " + server_ + " on " + options_.address.Text();
+    SetState(LinkState::kLive, live_text_);
+  }
+
+  void OnTick(const v1::Tick& tick) {
+    if (!tick.snapshot() && tick.sequence() > last_sequence_) last_sequence_ = tick.sequence();
+    Call(handlers_.on_tick, tick);
+  }
+
+  void OnPing(const v1::Ping& ping) {
+    v1::Envelope message;
+    v1::Pong& pong = *message.mutable_pong();
+    pong.set_id(ping.id());
+    pong.set_t0_ns(ping.t0_ns());
+    pong.set_t1_ns(heard_ns_);
+    pong.set_t2_ns(NowNs());
+    SendMessage(message);
+  }
+
+  void OnPong(const v1::Pong& pong) {
+    if (pong.id() > ping_id_) return;  // Never asked.
+    offset_.Add({pong.t0_ns(), pong.t1_ns(), pong.t2_ns(), heard_ns_});
+  }
+
+  void OnAnswer(const v1::CommandResult& answer) {
+    const auto found = commands_.find(answer.id());
+    if (found == commands_.end()) return;
+    const auto done = std::move(found->second.done);
+    commands_.erase(found);
+    done(answer);
+  }
+
+  void SendPing() {
+    v1::Envelope message;
+    message.mutable_ping()->set_id(++ping_id_);
+    message.mutable_ping()->set_t0_ns(NowNs());
+    SendMessage(message);
+  }
+
+  void SendMessage(const v1::Envelope& message) {
+    if (connection_) connection_->Send(message.SerializeAsString());
+  }
+
+  void ArmPulse() {
+    pulse_.expires_after(Duration(options_.ping_interval_s));
+    pulse_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+      const auto self = weak.lock();
+      if (!error && self && self->connection_) self->OnPulse();
+    });
+  }
+
+  void OnPulse() {
+    const std::int64_t now_ns = NowNs();
+    const double silent_s = NanosecondsToSeconds(now_ns - heard_ns_);
+    ExpireCommands(now_ns);
+    if (!connection_) return;  // A handler stopped us.
+    const double patience_s = subscribed_ ? options_.dead_after_s : options_.stale_after_s;
+    if (silent_s > patience_s) {
+      return Break(options_.address.Text() + " does not answer any more");
+    }
+    if (subscribed_ && silent_s > options_.stale_after_s && state_ == LinkState::kLive) {
+      SetState(LinkState::kStale,
+               "nothing comes from " + server_ + " on " + options_.address.Text() + "; waiting");
+    }
+    if (subscribed_) SendPing();
+    ArmPulse();
+  }
+
+  void ExpireCommands(std::int64_t now_ns) {
+    for (auto next = commands_.begin(); next != commands_.end();) {
+      const auto one = next++;
+      if (now_ns < one->second.deadline_ns) continue;
+      const auto done = std::move(one->second.done);
+      const std::uint64_t id = one->first;
+      commands_.erase(one);
+      done(Failed(id, "no answer within its deadline; it may still be carried out"));
+    }
+  }
+
+  void FailCommands(const std::string& why) {
+    const auto commands = std::exchange(commands_, {});
+    for (const auto& [id, waiting] : commands) waiting.done(Failed(id, why));
+  }
+
+  /// Ends this connection from our side; the next one is dialled later.
+  void Break(const std::string& why) {
+    if (connection_) connection_->Finish("", why);
+  }
+
+  void OnClose(const std::string& reason) {
+    const bool refused = std::exchange(refused_, false);
+    const std::string words = goodbye_.empty() ? reason : goodbye_;
+    connection_.reset();
+    subscribed_ = false;
+    pulse_.cancel();
+    FailCommands("the connection was lost before the answer; it may still be carried out");
+    if (refused) {
+      backoff_.Slowest();
+      Retry(LinkState::kRefused, options_.address.Text() + " refused: " + words);
+    } else {
+      ConnectLater("waiting for " + options_.address.Text() + ": " + words);
+    }
+  }
+
+  void ConnectLater(const std::string& why) { Retry(LinkState::kConnecting, why); }
+
+  void Retry(LinkState state, const std::string& why) {
+    if (!started_) return;
+    const double wait_s = backoff_.Next(std::uniform_real_distribution<double>(0, 1)(random_));
+    retry_.expires_after(Duration(wait_s));
+    retry_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+      const auto self = weak.lock();
+      if (error || !self || !self->started_) return;
+      self->Connect();
+    });
+    SetState(state, why);
+  }
+
+  void SetState(LinkState state, const std::string& why) {
+    if (state_ == state && why_ == why) return;
+    state_ = state;
+    why_ = why;
+    if (const auto handler = handlers_.on_state) handler(state, why);
+  }
+
+  template <typename Message>
+  void Call(const std::function<void(const Message&)>& handler, const Message& message) {
+    if (handler) handler(message);
+  }
+
+  boost::asio::io_context& io_;
+  const ClientOptions options_;
+  ClientHandlers handlers_;
+  std::optional<FramedConnection> connection_;
+  boost::asio::steady_timer retry_;
+  boost::asio::steady_timer pulse_;
+  Backoff backoff_;
+  std::mt19937_64 random_;
+  bool started_ = false;
+  bool subscribed_ = false;
+  bool refused_ = false;
+  std::uint64_t attempt_ = 0;
+  LinkState state_ = LinkState::kConnecting;
+  std::string why_ = "not started";
+  std::string live_text_;
+  std::string server_;
+  std::string goodbye_;
+  std::int64_t heard_ns_ = 0;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t last_sequence_ = 0;
+  std::uint64_t ping_id_ = 0;
+  std::uint64_t last_command_ = 0;
+  std::map<std::uint64_t, Waiting> commands_;
+  ClockOffsetEstimator offset_;
+  /// Every message is parsed into one block, again and again: a tick has dozens of small parts, and
+  /// fetching them from all over the heap takes longer than parsing them.
+  std::vector<char> block_ = std::vector<char>(kArenaBytes);
+  google::protobuf::Arena arena_;
+};
+
+Client::Client(boost::asio::io_context& io, ClientOptions options, ClientHandlers handlers)
+    : implementation_(
+          std::make_shared<Implementation>(io, std::move(options), std::move(handlers))) {}
+Client::~Client() { implementation_->Stop(); }
+void Client::Start() { implementation_->Start(); }
+void Client::Stop() { implementation_->Stop(); }
+void Client::Send(v1::Command command, std::function<void(const v1::CommandResult&)> done) {
+  implementation_->Send(std::move(command), std::move(done));
+}
+void Client::Refill(std::uint64_t from_sequence, std::uint64_t to_sequence) {
+  implementation_->Refill(from_sequence, to_sequence);
+}
+LinkState Client::state() const { return implementation_->state(); }
+ClockOffset Client::clock() const { return implementation_->clock(); }
+
+}  // namespace footing::transport

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "common/transport/server.h"
+#include "common/transport/tick.h"
+#include "common/transport/tick_ring.h"
+
+namespace footing::transport {
+
+/// What has been published: the ring of the last ticks and the last value of every retained
+/// channel. All sessions read it.
+class Publication {
+ public:
+  explicit Publication(const ServerOptions& options);
+
+  /// Serialises the next tick once. Channels that would make it longer than max_message_out_bytes
+  /// are left out, and so are fields that are no channel. Trim() once it is on its way.
+  SharedTick Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels);
+
+  void Trim() { ring_.Trim(); }
+
+  /// The last values of the retained channels, as one tick with the given sequence.
+  SharedTick Snapshot(std::uint64_t sequence, std::int64_t host_ns) const;
+
+  const TickRing& ring() const { return ring_; }
+  const std::set<std::uint32_t>& retained() const { return retained_; }
+  std::uint64_t last_sequence() const { return last_sequence_; }
+  std::uint64_t channels_left_out() const { return channels_left_out_; }
+
+ private:
+  std::set<std::uint32_t> fields_;
+  std::set<std::uint32_t> retained_;
+  std::size_t max_tick_bytes_;
+  TickRing ring_;
+  std::map<std::uint32_t, SharedTick> last_values_;
+  std::uint64_t last_sequence_ = 0;
+  std::uint64_t channels_left_out_ = 0;
+};
+
+}  // namespace footing::transport

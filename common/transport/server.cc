@@ -1,0 +1,118 @@
+#include "common/transport/server.h"
+
+#include <google/protobuf/stubs/logging.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <random>
+#include <utility>
+
+#include "common/transport/listener.h"
+#include "common/transport/session.h"
+
+namespace footing::transport {
+namespace {
+
+std::uint64_t NewEpoch() {
+  std::random_device random;
+  const std::uint64_t high = random();
+  const std::uint64_t epoch = (high << 32) | random();
+  return epoch == 0 ? 1 : epoch;
+}
+
+}  // namespace
+
+class Server::Implementation {
+ public:
+  Implementation(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
+      : io_(io), shared_(std::move(options), std::move(handlers)) {
+    shared_.epoch = NewEpoch();
+    // Protobuf would write a line to standard error for every message that a client got wrong.
+    google::protobuf::SetLogHandler(nullptr);
+  }
+
+  Result<void> Listen(const Address& address) {
+    auto listener =
+        Listener::Open(io_, address, [this](Socket socket) { OnAccept(std::move(socket)); });
+    if (!listener) return listener.error();
+    listeners_.push_back(std::move(*listener));
+    return {};
+  }
+
+  Address ListeningOn(std::size_t index) const {
+    FOOTING_CHECK(index < listeners_.size());
+    return listeners_[index]->address();
+  }
+
+  std::uint64_t Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
+    const SharedTick tick = shared_.publication.Publish(host_ns, channels);
+    for (const auto& session : sessions_) session->Offer(tick);
+    shared_.publication.Trim();
+    return tick->sequence;
+  }
+
+  std::uint64_t epoch() const { return shared_.epoch; }
+
+  ServerStatistics statistics() const {
+    ServerStatistics statistics = shared_.statistics;
+    statistics.sessions = static_cast<std::size_t>(
+        std::count_if(sessions_.begin(), sessions_.end(),
+                      [](const auto& session) { return session->welcomed(); }));
+    statistics.ring_bytes = shared_.publication.ring().bytes();
+    statistics.channels_left_out = shared_.publication.channels_left_out();
+    return statistics;
+  }
+
+  void Stop(const std::string& reason) {
+    listeners_.clear();
+    for (const auto& session : sessions_) session->End(reason);
+  }
+
+ private:
+  void OnAccept(Socket socket) {
+    // Those that are being refused linger for a moment; there is an end to them too.
+    if (sessions_.size() >= 2 * shared_.options.max_sessions) return;
+    const bool full = sessions_.size() >= shared_.options.max_sessions;
+    ++shared_.statistics.accepted;
+    sessions_.push_back(std::make_shared<Session>(std::move(socket), ++last_number_, shared_,
+                                                  [this](Session& ended) { OnEnd(ended); }));
+    if (!full) return sessions_.back()->Start();
+    sessions_.back()->StartRefused(v1::Refused::REASON_TOO_MANY_SESSIONS,
+                                   shared_.options.server_id + " serves " +
+                                       std::to_string(shared_.options.max_sessions) +
+                                       " sessions already; end one or try again later");
+  }
+
+  void OnEnd(Session& ended) {
+    const auto found = std::find_if(sessions_.begin(), sessions_.end(),
+                                    [&](const auto& session) { return session.get() == &ended; });
+    const std::shared_ptr<Session> session = *found;
+    sessions_.erase(found);
+    boost::asio::post(io_, [session] {});  // It is still being called: let it go later.
+    if (session->welcomed() && shared_.handlers.on_session_end) {
+      shared_.handlers.on_session_end(session->info());
+    }
+  }
+
+  boost::asio::io_context& io_;
+  Shared shared_;
+  std::vector<std::unique_ptr<Listener>> listeners_;
+  std::vector<std::shared_ptr<Session>> sessions_;
+  std::uint64_t last_number_ = 0;
+};
+
+Server::Server(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
+    : implementation_(
+          std::make_shared<Implementation>(io, std::move(options), std::move(handlers))) {}
+Server::~Server() = default;
+
+Result<void> Server::Listen(const Address& address) { return implementation_->Listen(address); }
+Address Server::ListeningOn(std::size_t index) const { return implementation_->ListeningOn(index); }
+std::uint64_t Server::Publish(std::int64_t host_ns, std::vector<ChannelBytes> channels) {
+  return implementation_->Publish(host_ns, channels);
+}
+std::uint64_t Server::epoch() const { return implementation_->epoch(); }
+ServerStatistics Server::statistics() const { return implementation_->statistics(); }
+void Server::Stop(const std::string& reason) { implementation_->Stop(reason); }
+
+}  // namespace footing::transport

@@ -1,0 +1,232 @@
+#include "common/transport/session.h"
+
+#include <unistd.h>
+
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/units/units.h"
+
+namespace footing::transport {
+namespace {
+
+constexpr std::size_t kMaxQueuedAnswers = 64;
+constexpr std::size_t kRememberedAnswers = 256;
+constexpr std::uint32_t kDefaultDeadlineMs = 1000;
+
+FramedLimits LimitsOf(const ServerOptions& options) {
+  FramedLimits limits;
+  limits.max_in_bytes = options.max_message_in_bytes;
+  limits.max_out_bytes = options.max_message_out_bytes;
+  limits.max_queued_bytes = 2 * options.max_message_out_bytes;  // A snapshot, and answers.
+  limits.max_queued_frames = kMaxQueuedAnswers;
+  return limits;
+}
+
+boost::asio::steady_timer::duration Duration(double seconds) {
+  return std::chrono::nanoseconds(SecondsToNanoseconds(seconds));
+}
+
+std::string Seconds(double seconds) {
+  std::string text = std::to_string(seconds);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text + " s";
+}
+
+}  // namespace
+
+std::int64_t Shared::NowNs() const {
+  return options.now_ns ? options.now_ns() : clock::MonotonicNs();
+}
+
+Session::Session(Socket socket, std::uint64_t number, Shared& shared,
+                 std::function<void(Session&)> on_end)
+    : shared_(shared),
+      on_end_(std::move(on_end)),
+      connection_(
+          std::move(socket), LimitsOf(shared.options),
+          {[this](std::string_view payload) { OnFrame(payload); },
+           [this](const std::string&) { on_end_(*this); },
+           [this](WriteBatch& batch) { Fill(batch); }, [this] { heard_ns_ = shared_.NowNs(); },
+           [this](const std::string& why) { BadMessage(why); }}),
+      timer_(connection_.executor()),
+      heard_ns_(shared.NowNs()),
+      answers_(kRememberedAnswers) {
+  info_.session = number;
+  highest_role_ = HighestRole(PeerOf(connection_.native_handle()), geteuid(), getegid());
+}
+
+void Session::Start() {
+  connection_.Start();
+  ArmTimer(shared_.options.hello_deadline_s);
+}
+
+void Session::StartRefused(v1::Refused::Reason reason, const std::string& message) {
+  connection_.Start();
+  Refused(reason, message);
+}
+
+void Session::ArmTimer(double seconds) {
+  timer_.expires_after(Duration(seconds));
+  timer_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+    const auto self = weak.lock();
+    if (!error && self) self->OnTimer();
+  });
+}
+
+void Session::OnTimer() {
+  if (!connection_.open()) return;
+  const ServerOptions& options = shared_.options;
+  if (phase_ == Phase::kHello) {
+    Refused(v1::Refused::REASON_HELLO_TIMEOUT,
+            "no Hello within " + Seconds(options.hello_deadline_s));
+    return;
+  }
+  if (shared_.NowNs() - heard_ns_ > SecondsToNanoseconds(options.dead_after_s)) {
+    End("nothing was heard from this client for " + Seconds(options.dead_after_s) +
+        "; connect again");
+    return;
+  }
+  if (!ping_unanswered_) {
+    v1::Envelope message;
+    message.mutable_ping()->set_id(++ping_id_);
+    message.mutable_ping()->set_t0_ns(shared_.NowNs());
+    ping_unanswered_ = true;
+    Send(message);
+  }
+  if (connection_.open()) ArmTimer(options.ping_interval_s);
+}
+
+void Session::OnFrame(std::string_view payload) {
+  v1::Envelope message;
+  if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+    BadMessage("this is no message of Footing's protocol");
+    return;
+  }
+  if (phase_ != Phase::kHello) {
+    Dispatch(message, heard_ns_);
+  } else if (message.has_hello()) {
+    OnHello(message.hello());
+  } else {
+    BadMessage("the first message must be Hello");
+  }
+}
+
+void Session::OnHello(const v1::Hello& hello) {
+  const auto judgement = Judge(hello, highest_role_, shared_.options.server_id);
+  if (const auto* refused = std::get_if<v1::Refused>(&judgement)) {
+    Refused(refused->reason(), refused->message());
+    return;
+  }
+  info_.client_name = hello.client_name();
+  info_.role = std::get<v1::Role>(judgement);
+  phase_ = Phase::kWelcomed;
+  v1::Envelope message;
+  *message.mutable_welcome() = MakeWelcome(shared_.options, shared_.epoch, info_.role);
+  message.mutable_welcome()->set_host_ns(shared_.NowNs());
+  message.mutable_welcome()->set_wall_time_ns(clock::WallNs());
+  Send(message);
+  ArmTimer(shared_.options.ping_interval_s);
+}
+
+void Session::Dispatch(const v1::Envelope& message, std::int64_t arrived_ns) {
+  switch (message.body_case()) {
+    case v1::Envelope::kSubscribe:
+      return OnSubscribe(message.subscribe());
+    case v1::Envelope::kRefill:
+      return OnRefill(message.refill());
+    case v1::Envelope::kPing:
+      return OnPing(message.ping(), arrived_ns);
+    case v1::Envelope::kPong:
+      ping_unanswered_ = false;
+      return;
+    case v1::Envelope::kCommand:
+      return OnCommand(message.command(), arrived_ns);
+    case v1::Envelope::BODY_NOT_SET:
+      return;  // Of a later minor version.
+    case v1::Envelope::kHello:
+      return BadMessage("Hello came twice");
+    case v1::Envelope::kGoodbye:
+      return End("goodbye");
+    case v1::Envelope::kWelcome:
+    case v1::Envelope::kRefused:
+    case v1::Envelope::kSubscribed:
+    case v1::Envelope::kCommandResult:
+    case v1::Envelope::kTick:
+    case v1::Envelope::kGap:
+      return BadMessage("this message is the server's to send");
+  }
+}
+
+void Session::OnPing(const v1::Ping& ping, std::int64_t arrived_ns) {
+  v1::Envelope message;
+  v1::Pong& pong = *message.mutable_pong();
+  pong.set_id(ping.id());
+  pong.set_t0_ns(ping.t0_ns());
+  pong.set_t1_ns(arrived_ns);
+  pong.set_t2_ns(shared_.NowNs());
+  Send(message);
+}
+
+void Session::OnCommand(const v1::Command& command, std::int64_t arrived_ns) {
+  v1::Envelope message;
+  if (const v1::CommandResult* first = answers_.Find(command.id())) {
+    *message.mutable_command_result() = *first;
+  } else {
+    *message.mutable_command_result() = Carry(command, arrived_ns);
+    message.mutable_command_result()->set_id(command.id());
+    answers_.Remember(message.command_result());
+  }
+  Send(message);
+}
+
+v1::CommandResult Session::Carry(const v1::Command& command, std::int64_t arrived_ns) {
+  v1::CommandResult failed;
+  const std::uint32_t deadline_ms =
+      command.deadline_ms() == 0 ? kDefaultDeadlineMs : command.deadline_ms();
+  if (info_.role < v1::ROLE_CONTROL) {
+    failed.set_message("this session may only look; ask for the role control in Hello");
+  } else if (shared_.NowNs() - arrived_ns > std::int64_t{deadline_ms} * 1'000'000) {
+    failed.set_message("not carried out: its deadline of " + std::to_string(deadline_ms) +
+                       " ms had passed");
+  } else if (!shared_.handlers.on_command) {
+    failed.set_message(shared_.options.server_id + " takes no commands");
+  } else {
+    return shared_.handlers.on_command(info_, command);
+  }
+  return failed;
+}
+
+void Session::Send(const v1::Envelope& message) {
+  if (connection_.Send(message.SerializeAsString()) || !connection_.open()) return;
+  End("this client does not read the answers it asked for: " + std::to_string(kMaxQueuedAnswers) +
+      " wait");
+}
+
+void Session::Refused(v1::Refused::Reason reason, const std::string& message) {
+  ++shared_.statistics.refused;
+  timer_.cancel();
+  v1::Envelope envelope;
+  *envelope.mutable_refused() = Refuse(reason, message);
+  connection_.Finish(envelope.SerializeAsString(), message);
+}
+
+void Session::BadMessage(const std::string& why) {
+  if (phase_ == Phase::kHello) {
+    Refused(v1::Refused::REASON_BAD_MESSAGE, why);
+  } else {
+    End(why);
+  }
+}
+
+void Session::End(const std::string& reason) {
+  timer_.cancel();
+  v1::Envelope message;
+  message.mutable_goodbye()->set_reason(reason);
+  connection_.Finish(message.SerializeAsString(), reason);
+}
+
+}  // namespace footing::transport

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <boost/asio/steady_timer.hpp>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/transport/answers.h"
+#include "common/transport/decimator.h"
+#include "common/transport/framed_connection.h"
+#include "common/transport/handshake.h"
+#include "common/transport/peer.h"
+#include "common/transport/publication.h"
+#include "common/transport/server.h"
+#include "common/transport/tick_queue.h"
+
+namespace footing::transport {
+
+/// What all sessions of one server share.
+struct Shared {
+  explicit Shared(ServerOptions with, ServerHandlers and_with)
+      : options(std::move(with)), handlers(std::move(and_with)), publication(options) {}
+  ServerOptions options;
+  ServerHandlers handlers;
+  Publication publication;
+  ServerStatistics statistics;
+  std::uint64_t epoch = 0;
+  std::int64_t NowNs() const;
+};
+
+/// One client's connection on the server's side, from Hello to Goodbye.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  /// `on_end` is called once, from the io loop. Held by a shared_ptr, which its timer asks about.
+  Session(Socket socket, std::uint64_t number, Shared& shared,
+          std::function<void(Session&)> on_end);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  void Start();
+  /// Answers with Refused and ends, whatever the client says.
+  void StartRefused(v1::Refused::Reason reason, const std::string& message);
+
+  /// A tick has just been published.
+  void Offer(const SharedTick& tick);
+
+  /// Says goodbye and ends.
+  void End(const std::string& reason);
+
+  const SessionInfo& info() const { return info_; }
+  bool welcomed() const { return phase_ == Phase::kWelcomed || phase_ == Phase::kSubscribed; }
+
+ private:
+  enum class Phase { kHello, kWelcomed, kSubscribed };
+  struct Range {
+    std::uint64_t next = 0;
+    std::uint64_t last = 0;
+  };
+
+  void OnFrame(std::string_view payload);
+  void OnHello(const v1::Hello& hello);
+  void Dispatch(const v1::Envelope& message, std::int64_t arrived_ns);
+  void OnSubscribe(const v1::Subscribe& wish);
+  void OnRefill(const v1::Refill& wish);
+  void OnPing(const v1::Ping& ping, std::int64_t arrived_ns);
+  void OnCommand(const v1::Command& command, std::int64_t arrived_ns);
+  v1::CommandResult Carry(const v1::Command& command, std::int64_t arrived_ns);
+
+  std::uint64_t FirstSequence(const v1::Subscribe& wish) const;
+  void SendSnapshot(std::uint64_t sequence);
+  void SendGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason);
+  /// A full queue of answers ends the session: it takes nothing that it asked for.
+  void Send(const v1::Envelope& message);
+
+  void Fill(WriteBatch& batch);
+  bool FillLive(WriteBatch& batch);
+  bool FillCatchUp(WriteBatch& batch);
+  bool FillRefill(WriteBatch& batch);
+  void AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason, WriteBatch& batch);
+  TickHead Head(bool refilled) const;
+
+  void Refused(v1::Refused::Reason reason, const std::string& message);
+  void BadMessage(const std::string& why);
+  void ArmTimer(double seconds);
+  void OnTimer();
+
+  Shared& shared_;
+  SessionInfo info_;
+  Phase phase_ = Phase::kHello;
+  v1::Role highest_role_ = v1::ROLE_UNSPECIFIED;
+  std::function<void(Session&)> on_end_;
+  FramedConnection connection_;
+  boost::asio::steady_timer timer_;
+  std::int64_t heard_ns_ = 0;
+  std::uint64_t ping_id_ = 0;
+  bool ping_unanswered_ = false;
+  Answers answers_;
+
+  Subscription subscription_;
+  TickQueue queue_;
+  std::optional<Decimator> decimator_;
+  /// While not 0 live ticks come out of the ring, from this sequence on, until it is caught up.
+  std::uint64_t catch_up_ = 0;
+  std::deque<Range> refills_;
+};
+
+}  // namespace footing::transport

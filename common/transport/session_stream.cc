@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <limits>
+
+#include "common/transport/framing.h"
+#include "common/transport/session.h"
+#include "common/transport/tick_writer.h"
+#include "common/units/units.h"
+
+/// The half of Session that streams: subscription, live ticks, resume and refill.
+namespace footing::transport {
+namespace {
+
+/// Unanswered requests to refill; each is a few bytes, but there must be an end.
+constexpr std::size_t kMaxRefills = 16;
+
+}  // namespace
+
+std::uint64_t Session::FirstSequence(const v1::Subscribe& wish) const {
+  const std::uint64_t next = shared_.publication.last_sequence() + 1;
+  const bool resumes = wish.has_from_sequence() && wish.from_epoch() == shared_.epoch;
+  if (!resumes || wish.from_sequence() >= next) return next;
+  const TickRing& ring = shared_.publication.ring();
+  const std::uint64_t oldest = ring.empty() ? next : ring.first();
+  return std::max(wish.from_sequence(), oldest);
+}
+
+void Session::OnSubscribe(const v1::Subscribe& wish) {
+  EffectiveSubscription settled = Settle(wish, shared_.options);
+  const std::uint64_t first = FirstSequence(wish);
+  const std::uint64_t next = shared_.publication.last_sequence() + 1;
+  settled.answer.set_first_sequence(first);
+  v1::Envelope message;
+  *message.mutable_subscribed() = settled.answer;
+  Send(message);
+
+  subscription_ = std::move(settled.subscription);
+  queue_ = TickQueue(subscription_.rule, subscription_.queue_ticks, shared_.publication.retained());
+  decimator_.emplace(subscription_.max_hz, SecondsToNanoseconds(1 / shared_.options.tick_rate_hz));
+  refills_.clear();
+  catch_up_ = first < next ? first : 0;
+  SendSnapshot(first - 1);
+  if (wish.has_from_sequence()) {
+    if (wish.from_epoch() != shared_.epoch) {
+      SendGap(wish.from_sequence(), 0, v1::Gap::REASON_NEW_EPOCH);
+    } else if (wish.from_sequence() < first) {
+      SendGap(wish.from_sequence(), first - 1, v1::Gap::REASON_RING_PASSED);
+    }
+  }
+  phase_ = Phase::kSubscribed;
+  connection_.Wake();
+}
+
+void Session::SendSnapshot(std::uint64_t sequence) {
+  const SharedTick tick = shared_.publication.Snapshot(sequence, shared_.NowNs());
+  v1::Envelope message;
+  v1::Tick& snapshot = *message.mutable_tick();
+  for (const Slice& slice : tick->slices) {
+    if (subscription_.fields.count(slice.field) == 0) continue;
+    snapshot.MergeFromString(tick->bytes.substr(slice.begin, slice.size));
+  }
+  snapshot.set_epoch(shared_.epoch);
+  snapshot.set_sequence(tick->sequence);
+  snapshot.set_host_ns(tick->host_ns);
+  snapshot.set_snapshot(true);
+  Send(message);
+}
+
+void Session::SendGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason) {
+  v1::Envelope message;
+  message.mutable_gap()->set_from_sequence(from);
+  message.mutable_gap()->set_to_sequence(to);
+  message.mutable_gap()->set_reason(reason);
+  Send(message);
+}
+
+void Session::OnRefill(const v1::Refill& wish) {
+  if (phase_ != Phase::kSubscribed) return BadMessage("Refill came before Subscribe");
+  const std::uint64_t last = std::min(wish.to_sequence(), shared_.publication.last_sequence());
+  const std::uint64_t first = std::max<std::uint64_t>(wish.from_sequence(), 1);
+  if (first > last) return;
+  if (refills_.size() >= kMaxRefills) {
+    return End("this client asks for missing ticks faster than it reads them");
+  }
+  refills_.push_back({first, last});
+  connection_.Wake();
+}
+
+void Session::Offer(const SharedTick& tick) {
+  if (phase_ != Phase::kSubscribed || !connection_.open()) return;
+  if (catch_up_ != 0) {  // It will come out of the ring.
+    connection_.Wake();
+    return;
+  }
+  if (!decimator_->Take(tick->host_ns)) {
+    queue_.Skip(tick);
+    return;
+  }
+  const std::uint64_t dropped_before = queue_.dropped_ticks();
+  if (!queue_.Push(tick)) {
+    return End("this client reads too slowly for the policy reliable: " +
+               std::to_string(subscription_.queue_ticks) +
+               " ticks wait; resume from the last sequence received, or use drop_oldest");
+  }
+  shared_.statistics.ticks_dropped += queue_.dropped_ticks() - dropped_before;
+  connection_.Wake();
+}
+
+TickHead Session::Head(bool refilled) const {
+  TickHead head;
+  head.epoch = shared_.epoch;
+  head.refilled = refilled;
+  return head;
+}
+
+void Session::AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason,
+                     WriteBatch& batch) {
+  v1::Envelope message;
+  message.mutable_gap()->set_from_sequence(from);
+  message.mutable_gap()->set_to_sequence(to);
+  message.mutable_gap()->set_reason(reason);
+  batch.AddOwned(Frame(message.SerializeAsString()));
+}
+
+void Session::Fill(WriteBatch& batch) {
+  // A tick and a Gap in front of it.
+  while (batch.room() > kBuffersPerTick) {
+    if (!FillLive(batch) && !FillCatchUp(batch) && !FillRefill(batch)) return;
+  }
+}
+
+bool Session::FillLive(WriteBatch& batch) {
+  TickQueue::Entry entry;
+  if (!queue_.Pop(entry)) return false;
+  if (const auto dropped = queue_.TakeDropped()) {
+    AddGap(dropped->from, dropped->to, v1::Gap::REASON_QUEUE_FULL, batch);
+  }
+  AddTick(entry, subscription_, Head(false), batch);
+  return true;
+}
+
+bool Session::FillCatchUp(WriteBatch& batch) {
+  if (catch_up_ == 0) return false;
+  const TickRing& ring = shared_.publication.ring();
+  if (catch_up_ > ring.last()) {
+    catch_up_ = 0;
+    return false;
+  }
+  if (catch_up_ < ring.first()) {  // It read so slowly that the ring went past it.
+    AddGap(catch_up_, ring.first() - 1, v1::Gap::REASON_RING_PASSED, batch);
+    catch_up_ = ring.first();
+    return true;
+  }
+  const SharedTick& tick = *ring.Find(catch_up_++);
+  if (decimator_->Take(tick->host_ns)) {
+    AddTick({tick, {}}, subscription_, Head(true), batch);
+  } else {
+    queue_.Skip(tick);
+  }
+  return true;
+}
+
+bool Session::FillRefill(WriteBatch& batch) {
+  if (refills_.empty()) return false;
+  Range& range = refills_.front();
+  const TickRing& ring = shared_.publication.ring();
+  if (range.next < ring.first()) {
+    const std::uint64_t gone = std::min(range.last, ring.first() - 1);
+    AddGap(range.next, gone, v1::Gap::REASON_RING_PASSED, batch);
+    range.next = gone + 1;
+  } else if (const SharedTick* tick = ring.Find(range.next)) {
+    AddTick({*tick, {}}, subscription_, Head(true), batch);
+    ++range.next;
+  } else {
+    range.next = range.last + 1;
+  }
+  if (range.next > range.last) refills_.pop_front();
+  return true;
+}
+
+}  // namespace footing::transport

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// One tick, serialised once and shared by the ring and by every session's queue.
+namespace footing::transport {
+
+/// Where one channel's field (tag, length and message) stands in the tick's bytes.
+struct Slice {
+  std::uint32_t field = 0;
+  std::size_t begin = 0;
+  std::size_t size = 0;
+};
+
+/// Immutable once it is made.
+struct Tick {
+  std::uint64_t sequence = 0;
+  std::int64_t host_ns = 0;
+  std::string bytes;  ///< The channels' fields, one after the other, as they stand in v1::Tick.
+  std::vector<Slice> slices;
+
+  /// Null when this tick has nothing of that channel.
+  const Slice* Find(std::uint32_t field) const;
+};
+using SharedTick = std::shared_ptr<const Tick>;
+
+/// Appends one length-delimited protobuf field.
+void AppendField(std::uint32_t field, const std::string& message, Tick& tick);
+
+/// What differs from session to session in front of the shared bytes.
+struct TickHead {
+  std::uint64_t epoch = 0;
+  std::uint64_t sequence = 0;
+  std::int64_t host_ns = 0;
+  bool snapshot = false;
+  bool refilled = false;
+};
+
+/// Longest head: frame length 4, tag 2 and length 5 of the tick, three varints of 11, two flags
+/// of 2.
+inline constexpr std::size_t kMaxTickHeadBytes = 4 + 2 + 5 + 3 * 11 + 2 * 2;
+
+/// Writes the head of a frame whose channels have `channel_bytes` bytes in all: the frame's length,
+/// the tag and length of Envelope.tick, and the tick's own fields. Returns how many bytes it took
+/// of the kMaxTickHeadBytes at `out`.
+std::size_t EncodeTickHead(const TickHead& head, std::size_t channel_bytes, char* out);
+
+/// Bytes of a frame's payload with such a head and such channels.
+std::size_t TickPayloadBytes(const TickHead& head, std::size_t channel_bytes);
+
+}  // namespace footing::transport

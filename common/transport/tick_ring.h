@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+#include "common/transport/tick.h"
+
+namespace footing::transport {
+
+/// The last ticks, without holes in their sequence, bounded in number and in bytes. The
+/// newest is always held.
+class TickRing {
+ public:
+  TickRing(std::size_t max_ticks, std::size_t max_bytes)
+      : max_ticks_(max_ticks), max_bytes_(max_bytes) {}
+
+  /// The tick's sequence follows the last one's.
+  void Push(SharedTick tick);
+  /// Lets go what is over the bounds. Apart from Push, so that it can wait until the new tick is on
+  /// its way.
+  void Trim();
+
+  /// Null when it is not held (any more, or yet).
+  const SharedTick* Find(std::uint64_t sequence) const;
+
+  bool empty() const { return ticks_.empty(); }
+  /// Of the oldest and the newest tick held; 0 when there is none.
+  std::uint64_t first() const { return empty() ? 0 : ticks_.front()->sequence; }
+  std::uint64_t last() const { return empty() ? 0 : ticks_.back()->sequence; }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  std::size_t max_ticks_;
+  std::size_t max_bytes_;
+  std::size_t bytes_ = 0;
+  std::deque<SharedTick> ticks_;
+};
+
+}  // namespace footing::transport

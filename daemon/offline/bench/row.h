@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+
+namespace footing::bench {
+
+/// One line of footing-bench: ours against the baseline of the same run.
+struct Row {
+  std::string name;
+  double ours = 0;      ///< Median over the runs of ours, in `unit`.
+  double baseline = 0;  ///< Median over the runs of the baseline.
+  double ratio = 0;     ///< Median of the pairs' ratios: not the ratio of the medians.
+  std::string unit;
+};
+
+using Rows = std::vector<Row>;
+
+/// From Server::Publish to the client's handler with the parsed tick, over a Unix socket, against a
+/// bare Asio exchange of the same bytes.
+Result<Rows> PublishToClient();
+
+/// CPU time of the server's thread for 100 viewers over loopback TCP at 100 Hz with 4 devices,
+/// against a bare Asio fan-out of the same bytes.
+Result<Rows> FanOutCpu();
+
+/// Delay of 20 healthy readers beside 20 stalled ones, against 20 healthy ones alone; and how far
+/// the memory grows once ring and queues are full, against 2 MB.
+Result<Rows> StalledReaders();
+
+}  // namespace footing::bench

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/stream/sensor.h"
+#include "common/synthetic/sensor.h"
+#include "daemon/sensor/features/rig_features.h"
+#include "daemon/sensor/signal/kalman_filter.h"
+
+namespace footing::eval {
+
+inline constexpr std::uint32_t kLeftDevice = 1;
+inline constexpr std::uint32_t kRightDevice = 2;
+
+/// The pure chain of footingd behind calibration: filter, then features, of one rig with two hands.
+class Chain {
+ public:
+  /// Without a right hand the rig has the left one alone.
+  explicit Chain(bool with_right);
+  void Add(std::uint32_t device, std::int64_t sampled_ns,
+           const Eigen::Vector3d& specific_force_mps2, std::uint32_t clipped_axes = 0);
+  stream::RigFeatures Compute(std::int64_t now_ns) { return rig_.Compute(now_ns); }
+
+ private:
+  struct Last {
+    bool any = false;
+    Eigen::Vector3d specific_force_mps2 = Eigen::Vector3d::Zero();
+    signal::KalmanFilter filter;
+  };
+  std::array<Last, 2> last_;
+  features::RigFeatureExtractor rig_;
+};
+
+struct Tick {
+  double t_s = 0;
+  stream::RigFeatures features;
+};
+
+/// Runs made motion through the chain: one tick a reading.
+std::vector<Tick> Run(const std::vector<synthetic::TimedReading>& readings);
+
+}  // namespace footing::eval

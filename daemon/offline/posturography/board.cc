@@ -1,0 +1,75 @@
+#include "daemon/offline/posturography/board.h"
+
+#include <algorithm>
+
+namespace footing::posturography {
+namespace {
+
+double Total(const CornerSample& sample) {
+  return sample.top_left_n + sample.top_right_n + sample.bottom_left_n + sample.bottom_right_n;
+}
+
+double MedianWeight(const std::vector<CornerSample>& samples, double least_n) {
+  std::vector<double> totals;
+  for (const CornerSample& sample : samples) {
+    if (Total(sample) >= least_n) totals.push_back(Total(sample));
+  }
+  if (totals.empty()) return 0;
+  const auto middle = totals.begin() + static_cast<std::ptrdiff_t>(totals.size() / 2);
+  std::nth_element(totals.begin(), middle, totals.end());
+  return *middle;
+}
+
+CopSample CentreOfPressure(const CornerSample& sample, const BoardShape& shape) {
+  const double total = Total(sample);
+  const double right = sample.top_right_n + sample.bottom_right_n;
+  const double left = sample.top_left_n + sample.bottom_left_n;
+  const double top = sample.top_left_n + sample.top_right_n;
+  const double bottom = sample.bottom_left_n + sample.bottom_right_n;
+  return {sample.time_s, shape.sensor_spacing_x_m / 2 * (right - left) / total,
+          shape.sensor_spacing_y_m / 2 * (top - bottom) / total};
+}
+
+/// Appends to the last stretch, or begins one after a gap.
+void Append(const CopSample& sample, double longest_s, bool begin, Stretches& stretches) {
+  if (begin || stretches.empty() || sample.time_s - stretches.back().back().time_s > longest_s) {
+    stretches.emplace_back();
+  }
+  stretches.back().push_back(sample);
+}
+
+template <typename Sample>
+double LongestInterval(const std::vector<Sample>& samples) {
+  std::vector<CopSample> times(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) times[i].time_s = samples[i].time_s;
+  return std::max(kLongestInterval_s, 5 * MedianInterval({times}));
+}
+
+}  // namespace
+
+Standing FindStanding(const std::vector<CornerSample>& samples, const BoardShape& shape) {
+  Standing standing;
+  standing.weight_n = MedianWeight(samples, shape.least_body_weight_n);
+  if (standing.weight_n <= 0) return standing;
+  const double least_n = shape.least_share_of_weight * standing.weight_n;
+  const double longest_s = LongestInterval(samples);
+  bool stood = false;
+  for (const CornerSample& sample : samples) {
+    const bool stands = Total(sample) >= least_n;
+    if (stands) {
+      Append(CentreOfPressure(sample, shape), longest_s, !stood, standing.stretches);
+      ++standing.samples;
+    }
+    stood = stands;
+  }
+  return standing;
+}
+
+Stretches SplitAtGaps(const std::vector<CopSample>& samples) {
+  Stretches stretches;
+  const double longest_s = LongestInterval(samples);
+  for (const CopSample& sample : samples) Append(sample, longest_s, false, stretches);
+  return stretches;
+}
+
+}  // namespace footing::posturography

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "daemon/offline/posturography/sway.h"
+
+namespace footing::posturography {
+
+/// Forces under the four corners of a board.
+struct CornerSample {
+  double time_s = 0;
+  double top_left_n = 0;
+  double top_right_n = 0;
+  double bottom_left_n = 0;
+  double bottom_right_n = 0;
+};
+
+struct BoardShape {
+  double sensor_spacing_x_m = 0.433;  ///< Between the cells' centres, along the long axis.
+  double sensor_spacing_y_m = 0.238;
+  /// Less than this is nobody: the board and a step on or off it.
+  double least_body_weight_n = 49;
+  /// A COP is undefined below this share of the body weight.
+  double least_share_of_weight = 0.1;
+};
+
+/// What stood on the board.
+struct Standing {
+  double weight_n = 0;      ///< Median of the totals while anybody stood on it; 0: nobody did.
+  std::size_t samples = 0;  ///< With a COP.
+  Stretches stretches;      ///< Ended by stepping off and by gaps in the recording.
+};
+
+/// Longest interval of samples that is no gap.
+inline constexpr double kLongestInterval_s = 0.5;
+
+/// Centre of pressure in the plate frame: x = dx/2 ((TR + BR) - (TL + BL)) / F and
+/// y = dy/2 ((TL + TR) - (BL + BR)) / F, F the sum of all. Times must not decrease.
+Standing FindStanding(const std::vector<CornerSample>& samples, const BoardShape& shape);
+
+/// Cuts samples into stretches at gaps: intervals above kLongestInterval_s and 5 median ones.
+Stretches SplitAtGaps(const std::vector<CopSample>& samples);
+
+}  // namespace footing::posturography

@@ -1,0 +1,230 @@
+#include "daemon/sensor/devices/socket_source.h"
+
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/transport/framed_connection.h"
+#include "common/transport/listener.h"
+#include "footing/v1/device.pb.h"
+
+namespace footing::devices {
+namespace {
+
+constexpr std::size_t kMaxTextBytes = 64;
+
+/// Names and serials go to screens and files: short, and of printable ASCII.
+bool IsPlainText(const std::string& text) {
+  if (text.size() > kMaxTextBytes) return false;
+  for (const char c : text) {
+    if (c < ' ' || c > '~') return false;
+  }
+  return true;
+}
+
+stream::DeviceRole RoleOf(v1::DeviceRole role) {
+  return v1::DeviceRole_IsValid(role) ? static_cast<stream::DeviceRole>(role)
+                                      : stream::DeviceRole::kUnspecified;
+}
+
+/// What is wrong with an attachment, or nothing.
+std::string Check(const v1::DeviceAttach& attach) {
+  if (!IsKnownDevice(attach.vendor(), attach.product())) return "vendor and product are unknown";
+  if (attach.serial().empty()) return "serial is empty";
+  if (!IsPlainText(attach.serial()) || !IsPlainText(attach.name()) || !IsPlainText(attach.rig())) {
+    return "serial, name or rig is not short printable text";
+  }
+  return "";
+}
+
+}  // namespace
+
+class SocketSource::Implementation {
+ public:
+  Implementation(boost::asio::io_context& io, const transport::Address& address,
+                 std::function<DeviceHandle()> new_handle, SourceHandlers handlers)
+      : io_(io),
+        address_(address),
+        new_handle_(std::move(new_handle)),
+        handlers_(std::move(handlers)) {}
+
+  Result<void> Start() {
+    auto listener = transport::Listener::Open(
+        io_, address_, [this](transport::Socket socket) { Accept(std::move(socket)); });
+    if (!listener) return listener.error();
+    listener_ = std::move(listener).value();
+    return {};
+  }
+
+  void Send(DeviceHandle device, const reports::OutputReport& report) {
+    const auto place = places_.find(device);
+    if (place == places_.end()) return;
+    v1::DeviceEnvelope envelope;
+    v1::DeviceOutput& output = *envelope.mutable_output();
+    output.set_slot(place->second.slot);
+    output.set_channel(v1::DeviceOutput::CHANNEL_INTERRUPT);
+    output.set_report(report.data(), report.size());
+    // A stand-in that does not read loses its outputs, as a device out of range does.
+    connections_.at(place->second.connection).link->Send(envelope.SerializeAsString());
+  }
+
+  void Stop() {
+    listener_.reset();
+    connections_.clear();
+    places_.clear();
+  }
+
+ private:
+  struct Connection {
+    std::unique_ptr<transport::FramedConnection> link;
+    std::map<std::uint32_t, DeviceHandle> slots;
+    bool closing = false;
+  };
+  struct Place {
+    std::uint64_t connection;
+    std::uint32_t slot;
+  };
+
+  void Accept(transport::Socket socket) {
+    if (connections_.size() >= kMaxConnections) {
+      handlers_.on_trouble("device socket: more than " + std::to_string(kMaxConnections) +
+                           " connections; one was refused");
+      return;
+    }
+    const std::uint64_t id = ++last_connection_;
+    transport::FramedLimits limits;
+    limits.max_in_bytes = kMaxEnvelopeBytes;
+    limits.max_out_bytes = kMaxEnvelopeBytes;
+    limits.max_queued_bytes = 64 * kMaxEnvelopeBytes;
+    transport::FramedHandlers handlers;
+    handlers.on_frame = [this, id](std::string_view payload) { OnFrame(id, payload); };
+    handlers.on_close = [this, id](const std::string& reason) { OnClose(id, reason); };
+    Connection& connection = connections_[id];
+    connection.link = std::make_unique<transport::FramedConnection>(std::move(socket), limits,
+                                                                    std::move(handlers));
+    connection.link->Start();
+  }
+
+  void OnFrame(std::uint64_t id, std::string_view payload) {
+    const std::int64_t received_ns = clock::MonotonicNs();
+    Connection& connection = connections_.at(id);
+    if (connection.closing) return;
+    if (!envelope_.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+      Refuse(connection, "a message is not a DeviceEnvelope");
+      return;
+    }
+    switch (envelope_.body_case()) {
+      case v1::DeviceEnvelope::kAttach:
+        Attach(id, connection, envelope_.attach());
+        return;
+      case v1::DeviceEnvelope::kInputReport:
+        TakeReport(connection, received_ns, envelope_.input_report());
+        return;
+      case v1::DeviceEnvelope::kFault:
+        Detach(connection, envelope_.fault().slot(),
+               "read failed with error " + std::to_string(envelope_.fault().error_number()));
+        return;
+      case v1::DeviceEnvelope::kDetach:
+        Detach(connection, envelope_.detach().slot(), "detached");
+        return;
+      case v1::DeviceEnvelope::kOutput:
+        Refuse(connection, "outputs go the other way");
+        return;
+      case v1::DeviceEnvelope::BODY_NOT_SET:
+        Refuse(connection, "a message is empty");
+        return;
+    }
+  }
+
+  void Attach(std::uint64_t id, Connection& connection, const v1::DeviceAttach& attach) {
+    if (const std::string wrong = Check(attach); !wrong.empty()) {
+      Refuse(connection, "cannot attach a device: " + wrong);
+      return;
+    }
+    if (connection.slots.size() >= kMaxSlots || connection.slots.contains(attach.slot())) {
+      Refuse(connection, "cannot attach a device: slot taken, or more than " +
+                             std::to_string(kMaxSlots) + " devices");
+      return;
+    }
+    const DeviceHandle device = new_handle_();
+    connection.slots[attach.slot()] = device;
+    places_[device] = {id, attach.slot()};
+    DeviceIdentity identity;
+    identity.vendor = attach.vendor();
+    identity.product = attach.product();
+    identity.name = attach.name();
+    identity.serial = attach.serial();
+    identity.place = "device socket, slot " + std::to_string(attach.slot());
+    identity.simulated = true;
+    identity.wished_rig = attach.rig();
+    identity.wished_role = RoleOf(attach.role());
+    handlers_.on_attach(device, identity);
+  }
+
+  void TakeReport(Connection& connection, std::int64_t received_ns,
+                  const v1::DeviceInputReport& input) {
+    const auto slot = connection.slots.find(input.slot());
+    if (slot == connection.slots.end()) {
+      Refuse(connection, "a report of a slot with no device");
+      return;
+    }
+    const std::string& report = input.report();
+    handlers_.on_report(slot->second,
+                        {received_ns,
+                         {reinterpret_cast<const std::uint8_t*>(report.data()), report.size()},
+                         input.true_ns()});
+  }
+
+  void Detach(Connection& connection, std::uint32_t slot, const std::string& reason) {
+    const auto found = connection.slots.find(slot);
+    if (found == connection.slots.end()) return;
+    const DeviceHandle device = found->second;
+    connection.slots.erase(found);
+    places_.erase(device);
+    handlers_.on_detach(device, reason);
+  }
+
+  /// Ends a connection that does not keep to the protocol.
+  void Refuse(Connection& connection, const std::string& why) {
+    handlers_.on_trouble("device socket: " + why + "; connection closed");
+    connection.closing = true;
+    while (!connection.slots.empty()) Detach(connection, connection.slots.begin()->first, why);
+    connection.link->Finish({}, why);
+  }
+
+  void OnClose(std::uint64_t id, const std::string& reason) {
+    Connection& connection = connections_.at(id);
+    while (!connection.slots.empty()) {
+      Detach(connection, connection.slots.begin()->first, "stand-in is gone: " + reason);
+    }
+    connections_.erase(id);
+  }
+
+  boost::asio::io_context& io_;
+  transport::Address address_;
+  std::function<DeviceHandle()> new_handle_;
+  SourceHandlers handlers_;
+  std::unique_ptr<transport::Listener> listener_;
+  std::map<std::uint64_t, Connection> connections_;
+  std::map<DeviceHandle, Place> places_;
+  std::uint64_t last_connection_ = 0;
+  v1::DeviceEnvelope envelope_;
+};
+
+SocketSource::SocketSource(boost::asio::io_context& io, const transport::Address& address,
+                           std::function<DeviceHandle()> new_handle, SourceHandlers handlers)
+    : implementation_(std::make_unique<Implementation>(io, address, std::move(new_handle),
+                                                       std::move(handlers))) {}
+
+SocketSource::~SocketSource() = default;
+
+Result<void> SocketSource::Start() { return implementation_->Start(); }
+
+void SocketSource::Send(DeviceHandle device, const reports::OutputReport& report) {
+  implementation_->Send(device, report);
+}
+
+void SocketSource::Stop() { implementation_->Stop(); }
+
+}  // namespace footing::devices

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+
+#include "common/transport/address.h"
+#include "daemon/sensor/devices/source.h"
+
+namespace footing::devices {
+
+/// The device socket: stand-ins dial it and speak DeviceEnvelopes, at most 1 KiB each, many devices
+/// a connection. A connection that says something senseless is closed with one line; no other
+/// connection notices.
+class SocketSource : public DeviceSource {
+ public:
+  static constexpr std::uint32_t kMaxEnvelopeBytes = 1024;
+  static constexpr std::size_t kMaxConnections = 64;
+  static constexpr std::size_t kMaxSlots = 16;  ///< Devices of one connection.
+
+  /// `new_handle` gives numbers that no other source has given.
+  SocketSource(boost::asio::io_context& io, const transport::Address& address,
+               std::function<DeviceHandle()> new_handle, SourceHandlers handlers);
+  ~SocketSource() override;
+
+  Result<void> Start() override;
+  void Send(DeviceHandle device, const reports::OutputReport& report) override;
+  void Stop() override;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::devices

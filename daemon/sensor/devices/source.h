@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "common/result/result.h"
+#include "common/stream/device.h"
+#include "daemon/sensor/reports/output_report.h"
+
+/// Where devices come from. Above this line nothing knows whether a device is real.
+namespace footing::devices {
+
+/// A device of one source, from its attachment to its detachment; never used twice.
+using DeviceHandle = std::uint64_t;
+
+inline constexpr std::uint32_t kVendorNintendo = 0x057e;
+inline constexpr std::uint32_t kProductFirst = 0x0306;  ///< Wiimote, and every Balance Board.
+inline constexpr std::uint32_t kProductTr = 0x0330;     ///< Wiimote with MotionPlus inside.
+
+inline bool IsKnownDevice(std::uint32_t vendor, std::uint32_t product) {
+  return vendor == kVendorNintendo && (product == kProductFirst || product == kProductTr);
+}
+
+struct DeviceIdentity {
+  std::uint32_t vendor = 0;
+  std::uint32_t product = 0;
+  std::string name;    ///< As the device gives it.
+  std::string serial;  ///< Bluetooth address; devices are told apart by it alone.
+  std::string place;   ///< "/dev/hidraw3 (driver wiimote)" or "device socket, slot 2".
+  bool simulated = false;
+  std::string wished_rig;
+  stream::DeviceRole wished_role = stream::DeviceRole::kUnspecified;
+};
+
+struct IncomingReport {
+  std::int64_t received_ns = 0;
+  std::span<const std::uint8_t> bytes;  ///< Valid during the call.
+  std::int64_t true_ns = 0;             ///< A stand-in's own; for recordings only.
+};
+
+/// Called on the io thread.
+struct SourceHandlers {
+  std::function<void(DeviceHandle, const DeviceIdentity&)> on_attach;
+  std::function<void(DeviceHandle, const IncomingReport&)> on_report;
+  std::function<void(DeviceHandle, const std::string& reason)> on_detach;
+  /// One line for a person: something is wrong with this source, and what to do.
+  std::function<void(const std::string& line)> on_trouble;
+};
+
+class DeviceSource {
+ public:
+  virtual ~DeviceSource() = default;
+
+  virtual Result<void> Start() = 0;
+  /// Writes one output report; the caller keeps to one per 10 ms and device. Unknown handles are
+  /// ignored: the device may be gone already.
+  virtual void Send(DeviceHandle device, const reports::OutputReport& report) = 0;
+  /// Detaches everything without calling the handlers. May be called twice.
+  virtual void Stop() = 0;
+};
+
+}  // namespace footing::devices

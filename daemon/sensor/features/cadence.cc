@@ -1,0 +1,174 @@
+#include "daemon/sensor/features/cadence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace footing::features {
+namespace {
+
+constexpr int kMostLags = kGridLength / 2;
+using Curve = std::array<double, kMostLags + 2>;
+
+/// 1, 2, 3, ...: W(t) up to its scale, oldest first.
+constexpr std::array<double, kGridLength> kRamp = [] {
+  std::array<double, kGridLength> ramp{};
+  for (int i = 0; i < kGridLength; ++i) ramp[i] = i + 1;
+  return ramp;
+}();
+
+/// Mean of W |a(t) - a(t - lag)|² over the newest `overlap` points, in (m/s²)².
+double Difference(const SampleGrid& grid, int lag, int overlap) {
+  const auto all = grid.Filtered(lag + overlap);
+  const auto squares = [&](int axis) {
+    return (all.col(axis).tail(overlap) - all.col(axis).head(overlap)).array().square();
+  };
+  const Eigen::Map<const Eigen::ArrayXd> weight(kRamp.data(), overlap);
+  const double sum = (weight * (squares(0) + squares(1) + squares(2))).sum();
+  return sum / (0.5 * overlap * (overlap + 1));
+}
+
+/// Variance of the newest n points, summed over the axes, for every n up to `size`.
+std::array<double, kGridLength + 1> Variances(const SampleGrid& grid, int size) {
+  std::array<double, kGridLength + 1> variances{};
+  const auto samples = grid.Filtered(size);
+  const Eigen::RowVector3d newest = samples.row(size - 1);
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  double squares = 0;
+  for (int n = 1; n <= size; ++n) {
+    const Eigen::RowVector3d value = samples.row(size - n) - newest;
+    sum += value;
+    squares += value.squaredNorm();
+    variances[n] = std::max(0.0, squares / n - sum.squaredNorm() / (n * n));
+  }
+  return variances;
+}
+
+int Overlap(int lag, double share) { return std::max(4, static_cast<int>(std::ceil(share * lag))); }
+
+struct Peak {
+  int lag = 0;  ///< 0: none.
+  double correlation = 0;
+};
+
+/// The first peak of the normalised autocorrelation that is nearly as high as the highest.
+Peak FirstPeak(const SampleGrid& grid, int points,
+               const std::array<double, kGridLength + 1>& variances, double overlap_share,
+               double least, const CadenceConfig& config) {
+  const int first = std::max(2, static_cast<int>(kGridHz / config.highest_hz));
+  int last = std::min(kMostLags, static_cast<int>(kGridHz / config.lowest_hz) + 1);
+  while (last > first && last + Overlap(last, overlap_share) > points) --last;
+  Curve correlation{};
+  double highest = least;
+  for (int lag = first; lag <= last; ++lag) {
+    const int overlap = Overlap(lag, overlap_share);
+    const double variance = variances[lag + overlap];
+    correlation[lag] = variance > 0 ? 1 - Difference(grid, lag, overlap) / (2 * variance) : 0.0;
+  }
+  const auto is_peak = [&](int lag) {
+    return correlation[lag] >= least && correlation[lag] >= correlation[lag - 1] &&
+           correlation[lag] > correlation[lag + 1];
+  };
+  for (int lag = first + 1; lag < last; ++lag) {
+    if (is_peak(lag)) highest = std::max(highest, correlation[lag]);
+  }
+  for (int lag = first + 1; lag < last; ++lag) {
+    if (is_peak(lag) && correlation[lag] >= config.first_peak_share * highest) {
+      return {lag, correlation[lag]};
+    }
+  }
+  return {};
+}
+
+/// Where the parabola through three equally spaced values has its minimum, in steps from the
+/// middle.
+double ParabolaMinimum(double before, double middle, double after) {
+  const double bend = before - 2 * middle + after;
+  return bend > 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+}
+
+/// The minimum of the difference near `lag`, between grid points.
+double RefinedLag(const SampleGrid& grid, int points, int lag, int overlap) {
+  double here = Difference(grid, lag, overlap);
+  for (int step = 0; step < 3; ++step) {
+    const double before = Difference(grid, lag - 1, overlap);
+    const double after = Difference(grid, lag + 1, overlap);
+    if (here <= before && here <= after) return lag + ParabolaMinimum(before, here, after);
+    lag += before < after ? -1 : 1;
+    here = std::min(before, after);
+    if (lag < 2 || lag + 1 + overlap > points) break;
+  }
+  return lag;
+}
+
+/// Sharpens the period over as many cycles as still look the same.
+double RefinedPeriodSteps(const SampleGrid& grid, int points, int lag, int overlap,
+                          const std::array<double, kGridLength + 1>& variances,
+                          const CadenceConfig& config) {
+  double period = RefinedLag(grid, points, lag, overlap);
+  const int longest = std::min(points, static_cast<int>(config.refine_window_s * kGridHz));
+  for (int cycles = 2; (cycles + 1) * period + 2 <= longest; ++cycles) {
+    const int far = static_cast<int>(std::lround(cycles * period));
+    const double variance = variances[std::min(points, far + overlap)];
+    if (variance <= 0) break;
+    if (1 - Difference(grid, far, overlap) / (2 * variance) < config.refine_correlation) break;
+    period = RefinedLag(grid, points, far, overlap) / cycles;
+  }
+  return period;
+}
+
+}  // namespace
+
+PeriodEstimate FindPeriod(const SampleGrid& grid, int points, double known_s,
+                          const CadenceConfig& config) {
+  if (points < 8) return {};
+  const auto is_known = [&](int lag) {
+    return std::abs(lag * kGridStepS - known_s) <= config.jump_share * known_s;
+  };
+  const auto variances = Variances(grid, points);
+  double share = config.sure_overlap;
+  Peak peak = FirstPeak(grid, points, variances, share, config.sure_correlation, config);
+  if (peak.lag == 0 || !is_known(peak.lag) || peak.correlation < config.quick_correlation) {
+    const Peak quick =
+        FirstPeak(grid, points, variances, config.quick_overlap, config.quick_correlation, config);
+    const bool same = std::abs(quick.lag - peak.lag) <= config.jump_share * peak.lag;
+    if (quick.lag != 0 && (peak.lag == 0 || same || is_known(quick.lag))) {
+      share = config.quick_overlap;
+      peak = quick;
+    }
+  }
+  if (peak.lag == 0) return {};
+  int overlap = Overlap(peak.lag, share);
+  while (peak.lag + 1 + overlap > points) --overlap;
+  const double steps = RefinedPeriodSteps(grid, points, peak.lag, overlap, variances, config);
+  return {true, steps * kGridStepS, std::min(1.0, peak.correlation)};
+}
+
+Cadence Next(const Cadence& before, const PeriodEstimate& estimate, const PeriodEstimate& partner,
+             double elapsed_s, const CadenceConfig& config) {
+  const auto differ = [](double one_s, double other_s, double share) {
+    return std::abs(one_s - other_s) > share * other_s;
+  };
+  const bool partner_keeps = before.valid && partner.found &&
+                             !differ(partner.period_s, before.period_s, config.partner_share);
+  Cadence next = before;
+  if (!estimate.found) {
+    const double cycles = partner_keeps ? config.partner_cycles : config.hold_cycles;
+    next.candidate_s = 0;
+    next.lost_s += elapsed_s;
+    return next.lost_s > cycles * next.period_s ? Cadence{} : next;
+  }
+  next.lost_s = 0;
+  const double share = partner_keeps ? config.partner_share : config.jump_share;
+  if (before.valid && differ(estimate.period_s, before.period_s, share)) {
+    const bool same_candidate =
+        before.candidate_s > 0 && !differ(estimate.period_s, before.candidate_s, config.jump_share);
+    const double persistence = partner_keeps ? config.partner_cycles : config.jump_persistence;
+    next.candidate_age_s = same_candidate ? before.candidate_age_s + elapsed_s : 0;
+    next.candidate_s = estimate.period_s;
+    if (next.candidate_age_s < persistence * before.period_s) return next;
+  }
+  return {true, estimate.period_s, 0, 0, 0};
+}
+
+}  // namespace footing::features

@@ -1,0 +1,94 @@
+#pragma once
+
+/// Every number of the feature extraction; sections and equations are those of the gait paper
+/// ("Accelerometer-based User Interfaces for the Control of a Physically Simulated Character"), the
+/// reasons are in docs/features.md. SI units.
+namespace footing::features {
+
+/// 1) Moving or not: "thresholding the variance of the recent acceleration measurements".
+struct MovingConfig {
+  /// Standard deviation (root of the three axes' variances) over the window that starts motion, and
+  /// the one below which it ends. 8-bit counts that toggle on all three axes reach 0.32.
+  double start_mps2 = 0.6;
+  double stop_mps2 = 0.33;
+  /// A still controller feels 1 g within this (rounding and calibration errors). One that feels
+  /// more or less is at the turning point of a swing, and still only when the longest window is,
+  /// too.
+  double gravity_tolerance_mps2 = 1.5;
+  /// The window while still; it never reaches back into a motion that was seen to end.
+  double still_window_s = 0.25;
+  /// The window in motion, in cycles, and its limits. While no frequency is known the window is the
+  /// time since motion began and a still window before it, up to the longest.
+  double window_cycles = 0.35;
+  double shortest_window_s = 0.22;
+  double longest_window_s = 0.8;
+  /// A period that is longer by more than this share widens the window only once it has lasted.
+  double growth_share = 0.1;
+  double growth_delay_s = 0.3;
+};
+
+/// 2) Frequency: eq. (3).
+struct CadenceConfig {
+  double lowest_hz = 0.4;
+  double highest_hz = 6.0;
+  /// tp in multiples of the lag: of the sure search, and of the quick one that bridges the first
+  /// two cycles after a change.
+  double sure_overlap = 1.0;
+  double quick_overlap = 0.25;
+  /// Least normalised autocorrelation of a peak.
+  double sure_correlation = 0.7;
+  double quick_correlation = 0.95;
+  /// The first peak within this share of the highest one is the period, so that two periods are not
+  /// taken for one.
+  double first_peak_share = 0.85;
+  /// Refinement over several cycles: as long as they correlate this well, within this time.
+  double refine_correlation = 0.9;
+  double refine_window_s = 1.5;
+  /// A period that differs by more than this share from the one before is a jump; it must persist
+  /// for this part of the one before, which outlasts the half period that a reversal fakes.
+  double jump_share = 0.25;
+  double jump_persistence = 0.25;
+  /// How long the last period is kept when none is found, in cycles.
+  double hold_cycles = 1.0;
+  /// While the other hand still shows the last period within this share, this one keeps it as well,
+  /// for so many cycles: one hand whose phase jumps looks faster or slower until the jump is two
+  /// cycles old.
+  double partner_share = 0.08;
+  double partner_cycles = 2.0;
+};
+
+/// 3) Phase: eq. (4).
+struct PhaseConfig {
+  /// Below this normalised cross-correlation the two hands do not swing alike: no new phase.
+  double least_correlation = 0.4;
+  double hold_cycles = 1.0;
+};
+
+/// 4) Amplitude and 5) inclination in motion.
+struct CycleConfig {
+  /// Clipped samples are filled in from a fit to the others, unless more than this share is
+  /// clipped; then inclination is held, and amplitude
+  /// as well unless even the clipped samples show more.
+  double most_clipped = 0.6;
+  /// Weight of the prior that the second harmonic of the fit is small, in samples.
+  double harmonic_prior = 1.0;
+  int fit_rounds = 3;
+};
+
+struct Config {
+  MovingConfig moving;
+  CadenceConfig cadence;
+  PhaseConfig phase;
+  CycleConfig cycle;
+  /// Inclination at rest is the mean over this time.
+  double rest_window_s = 0.15;
+  /// A pause in the samples longer than this starts anew; shorter ones are bridged by a line.
+  double longest_pause_s = 0.25;
+  /// A repeated report says nothing new about a moving hand, but after this long it says that the
+  /// hand is still.
+  double longest_repeat_s = 0.025;
+  /// Without a sample for this long there are no features.
+  double stale_s = 0.5;
+};
+
+}  // namespace footing::features

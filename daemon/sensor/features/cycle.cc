@@ -1,0 +1,117 @@
+#include "daemon/sensor/features/cycle.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::features {
+namespace {
+
+constexpr int kTerms = 5;  // Mean, fundamental and second harmonic.
+using Terms = Eigen::Matrix<double, kTerms, 1>;
+using Block = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+Terms TermsAt(double angle_rad) {
+  Terms terms;
+  terms << 1, std::cos(angle_rad), std::sin(angle_rad), std::cos(2 * angle_rad),
+      std::sin(2 * angle_rad);
+  return terms;
+}
+
+/// Fills the clipped points of one axis in. Round by round, a point at which the fit stays inside
+/// the range counts as lying at its end (it lies there or beyond), the others do not count.
+void FillClipped(const SampleGrid& grid, int axis, double radians_per_step,
+                 const CycleConfig& config, Block& samples) {
+  const int count = static_cast<int>(samples.rows());
+  const Eigen::VectorXd seen = samples.col(axis);
+  Eigen::VectorXd filled = seen;
+  const auto clipped = [&](int row) {
+    return (grid.ClippedAxes(count - 1 - row) & (1u << axis)) != 0;
+  };
+  Terms solution = Terms::Zero();
+  for (int round = 0; round < config.fit_rounds; ++round) {
+    Eigen::Matrix<double, kTerms, kTerms> normal = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+    Terms right = Terms::Zero();
+    normal(3, 3) = normal(4, 4) = config.harmonic_prior;
+    normal(0, 0) = normal(1, 1) = normal(2, 2) = 1e-9;
+    for (int row = 0; row < count; ++row) {
+      const Terms terms = TermsAt(radians_per_step * (row - count + 1));
+      const bool inside = round > 0 && std::abs(terms.dot(solution)) < std::abs(seen(row));
+      if (clipped(row) && !inside) continue;
+      normal += terms * terms.transpose();
+      right += terms * seen(row);
+    }
+    solution = normal.ldlt().solve(right);
+    if (!solution.allFinite()) return;
+  }
+  for (int row = 0; row < count; ++row) {
+    if (!clipped(row)) continue;
+    const double value = TermsAt(radians_per_step * (row - count + 1)).dot(solution);
+    const double sign = seen(row) < 0 ? -1.0 : 1.0;
+    filled(row) = sign * std::max(sign * value, std::abs(seen(row)));
+  }
+  samples.col(axis) = filled;
+}
+
+double ClippedShare(const SampleGrid& grid, int axis, int count) {
+  int clipped = 0;
+  for (int back = 0; back < count; ++back) {
+    if (grid.ClippedAxes(back) & (1u << axis)) ++clipped;
+  }
+  return static_cast<double>(clipped) / count;
+}
+
+double HalfPeakToPeak(const Block& samples, const Eigen::Vector3d& mean) {
+  const Block centred = samples.rowwise() - mean.transpose();
+  const Eigen::Matrix3d covariance = centred.transpose() * centred;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  const Eigen::VectorXd along = centred * solver.eigenvectors().col(2);
+  return 0.5 * (along.maxCoeff() - along.minCoeff());
+}
+
+}  // namespace
+
+Eigen::ArrayXd CycleWeights(double steps) {
+  const int whole = static_cast<int>(std::floor(steps));
+  const double part = steps - whole;
+  // Points 0 .. whole + 1 back from the newest; the oldest interval is cut to `part`, its value at
+  // the cut lies on the line between its ends.
+  Eigen::ArrayXd weights = Eigen::ArrayXd::Ones(whole + 2);
+  weights(whole + 1) = 0.5;
+  weights(1) = 0.5 + part * (1 - 0.5 * part);
+  weights(0) = 0.5 * part * part;
+  if (whole == 0) weights(1) = part * (1 - 0.5 * part);
+  return weights;
+}
+
+Cycle NewestCycle(const SampleGrid& grid, double period_s, const CycleConfig& config) {
+  Cycle cycle;
+  const Eigen::ArrayXd weights = CycleWeights(period_s * kGridHz);
+  const int count = static_cast<int>(weights.size());
+  if (count > grid.size()) return cycle;
+  cycle.valid = true;
+  Block samples = grid.Raw(count);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = ClippedShare(grid, axis, count);
+    if (share == 0) continue;
+    cycle.clipped = cycle.clipped || share > config.most_clipped;
+    if (share <= config.most_clipped)
+      FillClipped(grid, axis, 2 * kPi / (period_s * kGridHz), config, samples);
+  }
+  const Eigen::Vector3d mean = samples.transpose() * (weights / weights.sum()).matrix();
+  cycle.amplitude_mps2 = HalfPeakToPeak(samples, mean);
+  if (!cycle.clipped) cycle.mean_mps2 = mean;
+  return cycle;
+}
+
+Inclination InclinationOf(const Eigen::Vector3d& gravity_mps2) {
+  const auto angle = [](double along_mps2) {
+    return std::asin(std::clamp(along_mps2 / kStandardGravityMps2, -1.0, 1.0));
+  };
+  return {angle(gravity_mps2.x()), angle(gravity_mps2.y())};
+}
+
+}  // namespace footing::features

@@ -1,0 +1,102 @@
+#include "daemon/sensor/features/device_features.h"
+
+#include <algorithm>
+
+#include "common/units/units.h"
+#include "daemon/sensor/features/cycle.h"
+
+namespace footing::features {
+
+DeviceFeatureExtractor::DeviceFeatureExtractor(std::uint32_t device, stream::DeviceRole role,
+                                               const Config& config)
+    : config_(config), grid_(config) {
+  features_.device = device;
+  features_.role = role;
+}
+
+void DeviceFeatureExtractor::AddSample(const stream::MotionSample& sample) {
+  grid_.Add(sample);
+  newest_received_ns_ = std::max(newest_received_ns_, sample.received_ns);
+  features_.simulated = sample.simulated;
+}
+
+void DeviceFeatureExtractor::Forget() {
+  moving_ = {};
+  cadence_ = {};
+  estimate_ = {};
+  features_.moving = features_.frequency_valid = features_.amplitude_valid = false;
+  features_.inclination_valid = features_.held = false;
+  features_.frequency_hz = features_.amplitude_mps2 = 0;
+  features_.roll_rad = features_.pitch_rad = 0;
+}
+
+void DeviceFeatureExtractor::MeasureRest() {
+  features_.held = features_.amplitude_valid = false;
+  features_.amplitude_mps2 = 0;
+  const int count = std::min(grid_.size(), static_cast<int>(config_.rest_window_s * kGridHz + 0.5));
+  const Eigen::Vector3d gravity = grid_.Filtered(count).colwise().mean().transpose();
+  const Inclination inclination = InclinationOf(gravity);
+  features_.inclination_valid = true;
+  features_.roll_rad = inclination.roll_rad;
+  features_.pitch_rad = inclination.pitch_rad;
+}
+
+void DeviceFeatureExtractor::MeasureCycle() {
+  if (!cadence_.valid) {
+    features_.held = features_.amplitude_valid = false;
+    features_.amplitude_mps2 = 0;
+    return;  // The inclination from before motion stays: nothing better is known yet.
+  }
+  const Cycle cycle = NewestCycle(grid_, cadence_.period_s, config_.cycle);
+  features_.held = cycle.clipped;
+  if (!cycle.valid) return;
+  // Held, but never below what even the clipped samples show.
+  features_.amplitude_mps2 = cycle.clipped && features_.amplitude_valid
+                                 ? std::max(features_.amplitude_mps2, cycle.amplitude_mps2)
+                                 : cycle.amplitude_mps2;
+  features_.amplitude_valid = true;
+  if (cycle.clipped) return;
+  const Inclination inclination = InclinationOf(cycle.mean_mps2);
+  features_.inclination_valid = true;
+  features_.roll_rad = inclination.roll_rad;
+  features_.pitch_rad = inclination.pitch_rad;
+}
+
+void DeviceFeatureExtractor::Observe(std::int64_t now_ns) {
+  elapsed_s_ = 0;
+  const double age_s = NanosecondsToSeconds(now_ns - grid_.newest_ns());
+  if (grid_.size() == 0 || age_s > config_.stale_s) {
+    Forget();
+    return;
+  }
+  const std::int64_t steps = grid_.newest_index() - computed_index_;
+  if (steps == 0) return;
+  const bool plausible = steps > 0 && steps < kGridLength;
+  if (!plausible) Forget();  // The device's clock began anew.
+  elapsed_s_ = kGridStepS * static_cast<double>(plausible ? steps : 1);
+  computed_index_ = grid_.newest_index();
+  const double known_s = cadence_.valid ? cadence_.period_s : 0.0;
+  moving_ = Next(moving_, grid_, known_s, config_.moving);
+  estimate_ = {};
+  if (!moving_.moving) return;
+  const auto points = static_cast<int>(
+      std::min<std::int64_t>(grid_.size(), grid_.newest_index() - moving_.since_index + 1));
+  estimate_ = FindPeriod(grid_, points, known_s, config_.cadence);
+}
+
+const stream::DeviceFeatures& DeviceFeatureExtractor::Compute(const PeriodEstimate& partner) {
+  if (elapsed_s_ == 0) return features_;
+  cadence_ =
+      moving_.moving ? Next(cadence_, estimate_, partner, elapsed_s_, config_.cadence) : Cadence{};
+  features_.moving = moving_.moving;
+  features_.frequency_valid = cadence_.valid;
+  features_.frequency_hz = cadence_.valid ? 1 / cadence_.period_s : 0.0;
+  if (moving_.moving) {
+    MeasureCycle();
+  } else {
+    MeasureRest();
+  }
+  return features_;
+}
+
+}  // namespace footing::features

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/stream/sensor.h"
+#include "daemon/sensor/features/cadence.h"
+#include "daemon/sensor/features/config.h"
+#include "daemon/sensor/features/moving.h"
+#include "daemon/sensor/features/sample_grid.h"
+
+namespace footing::features {
+
+/// The features of one controller. A plain value; copy it to try something out.
+class DeviceFeatureExtractor {
+ public:
+  DeviceFeatureExtractor(std::uint32_t device, stream::DeviceRole role, const Config& config);
+
+  void AddSample(const stream::MotionSample& sample);
+  /// Takes the newest samples in: first Observe of all controllers, then Compute of each. Forgets
+  /// all when the newest sample is older than Config::stale_s at `now_ns`.
+  void Observe(std::int64_t now_ns);
+  /// The period as the newest samples alone show it; not found while still.
+  const PeriodEstimate& estimate() const { return estimate_; }
+  /// The features as of the newest sample. `partner` is the estimate of the other hand or leg.
+  const stream::DeviceFeatures& Compute(const PeriodEstimate& partner);
+
+  std::uint32_t device() const { return features_.device; }
+  stream::DeviceRole role() const { return features_.role; }
+  const SampleGrid& grid() const { return grid_; }
+  /// Of the newest sample; 0 before the first.
+  std::int64_t newest_received_ns() const { return newest_received_ns_; }
+
+ private:
+  void MeasureCycle();
+  void MeasureRest();
+  void Forget();
+
+  Config config_;
+  SampleGrid grid_;
+  stream::DeviceFeatures features_;
+  Moving moving_;
+  PeriodEstimate estimate_;
+  Cadence cadence_;
+  double elapsed_s_ = 0;  ///< Between the newest points of the last two Observe; 0 nothing new.
+  std::int64_t newest_received_ns_ = 0;
+  std::int64_t computed_index_ = 0;  ///< Grid index of the newest point already taken in.
+};
+
+}  // namespace footing::features

@@ -1,0 +1,42 @@
+#include "daemon/sensor/link/device_clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footing::link {
+namespace {
+
+std::int64_t Nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+
+/// The period may differ this much from its nominal value, by a factor either way.
+constexpr double kPeriodRange = 2;
+
+}  // namespace
+
+DeviceClock::DeviceClock(const DeviceClockConfig& config)
+    : config_(config), period_s_(config.nominal_period_s) {}
+
+std::int64_t DeviceClock::Advance(std::int64_t received_ns) {
+  const std::int64_t pause_ns = received_ns - received_ns_;
+  received_ns_ = received_ns;
+  if (!started_ || pause_ns > Nanoseconds(config_.restart_s)) {
+    started_ = true;
+    sampled_ns_ = std::max(sampled_ns_, received_ns);
+    return sampled_ns_;
+  }
+  const std::int64_t predicted_ns = sampled_ns_ + Nanoseconds(period_s_);
+  const double error_s = static_cast<double>(received_ns - predicted_ns) * 1e-9;
+  const double gain = error_s < 0 ? config_.early_gain : config_.late_gain;
+  std::int64_t estimate_ns = predicted_ns + Nanoseconds(gain * error_s);
+  estimate_ns = std::clamp(estimate_ns, received_ns - Nanoseconds(config_.max_lag_s), received_ns);
+  sampled_ns_ = std::max(estimate_ns, sampled_ns_);
+  // What the estimate is moved by, all bounds included, is zero on average once the period is
+  // right.
+  const double moved_s = static_cast<double>(sampled_ns_ - predicted_ns) * 1e-9;
+  period_s_ =
+      std::clamp(period_s_ + config_.period_gain * moved_s, config_.nominal_period_s / kPeriodRange,
+                 config_.nominal_period_s * kPeriodRange);
+  return sampled_ns_;
+}
+
+}  // namespace footing::link

@@ -1,0 +1,36 @@
+#include "daemon/sensor/link/outbox.h"
+
+#include <utility>
+
+namespace footing::link {
+
+bool Outbox::Push(reports::OutputReport report) {
+  if (waiting_.size() >= kCapacity) {
+    ++refused_;
+    return false;
+  }
+  waiting_.push_back(std::move(report));
+  return true;
+}
+
+void Outbox::SetRumble(bool on) { rumble_ = on; }
+
+std::optional<reports::OutputReport> Outbox::Next(std::int64_t now_ns) {
+  if (written_ && now_ns - written_ns_ < kIntervalNs) return std::nullopt;
+  reports::OutputReport report;
+  if (!waiting_.empty()) {
+    report = std::move(waiting_.front());
+    waiting_.pop_front();
+  } else if (rumble_ != rumble_sent_) {
+    report = reports::RumbleOnly();
+  } else {
+    return std::nullopt;
+  }
+  reports::SetRumbleBit(report, rumble_);
+  rumble_sent_ = rumble_;
+  written_ = true;
+  written_ns_ = now_ns;
+  return report;
+}
+
+}  // namespace footing::link

@@ -1,0 +1,51 @@
+#include "daemon/sensor/service/binding.h"
+
+#include <algorithm>
+#include <span>
+
+namespace footing::sensor {
+namespace {
+
+using stream::DeviceKind;
+using stream::DeviceRole;
+
+constexpr std::size_t kMaxRigBytes = 64;
+
+constexpr DeviceRole kWornRoles[] = {DeviceRole::kLeftHand, DeviceRole::kRightHand,
+                                     DeviceRole::kLeftLeg, DeviceRole::kRightLeg,
+                                     DeviceRole::kHead};
+constexpr DeviceRole kBoardRoles[] = {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
+
+}  // namespace
+
+Result<Binding> ParseBinding(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos || slash == 0 || slash > kMaxRigBytes) {
+    return UsageError("role \"" + text + "\" is not of the form rig/role, e.g. main/left_hand");
+  }
+  const DeviceRole role = stream::RoleNamed(text.substr(slash + 1));
+  if (role == DeviceRole::kUnspecified) {
+    return UsageError("role \"" + text.substr(slash + 1) +
+                      "\" does not exist; there are left_hand, right_hand, left_leg, right_leg, head, "
+                      "left_board, right_board, editor");
+  }
+  return Binding{text.substr(0, slash), role};
+}
+
+DeviceRole FirstFreeRole(DeviceKind kind, const std::string& rig,
+                         const std::vector<Binding>& taken) {
+  const auto roles = kind == DeviceKind::kBalanceBoard ? std::span<const DeviceRole>(kBoardRoles)
+                                                       : std::span<const DeviceRole>(kWornRoles);
+  for (const DeviceRole role : roles) {
+    if (std::find(taken.begin(), taken.end(), Binding{rig, role}) == taken.end()) return role;
+  }
+  return DeviceRole::kUnspecified;
+}
+
+bool RoleFits(DeviceKind kind, DeviceRole role) {
+  if (role == DeviceRole::kUnspecified) return true;
+  const bool of_board = role == DeviceRole::kLeftBoard || role == DeviceRole::kRightBoard;
+  return of_board == (kind == DeviceKind::kBalanceBoard);
+}
+
+}  // namespace footing::sensor

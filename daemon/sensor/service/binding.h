@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/stream/device.h"
+
+namespace footing::sensor {
+
+/// What a device is: its role on a rig (what one person wears or stands on).
+struct Binding {
+  std::string rig;
+  stream::DeviceRole role = stream::DeviceRole::kUnspecified;
+
+  bool operator==(const Binding&) const = default;
+};
+
+/// From "rig/role", e.g. "main/left_hand".
+Result<Binding> ParseBinding(const std::string& text);
+
+/// The first role for a device of this kind that is free on the rig: hands, legs and head for
+/// Wiimotes, left then right for boards; kUnspecified when all are taken.
+stream::DeviceRole FirstFreeRole(stream::DeviceKind kind, const std::string& rig,
+                                 const std::vector<Binding>& taken);
+
+/// A board cannot be a hand, nor a Wiimote a board.
+bool RoleFits(stream::DeviceKind kind, stream::DeviceRole role);
+
+}  // namespace footing::sensor

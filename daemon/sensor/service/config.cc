@@ -1,0 +1,28 @@
+#include "daemon/sensor/service/config.h"
+
+#include "daemon/sensor/service/binding.h"
+
+namespace footing::sensor {
+
+void Config::Bind(config::Binder& binder) {
+  binder.TextList("listen", listen, "Addresses for clients");
+  binder.TextList("sources", sources, "hid, or stream:ADDRESS for device stand-ins");
+  binder.TextMap("roles", roles,
+                 "Serial to rig/role, e.g. {\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}",
+                 [](const std::string& text) {
+                   const auto binding = ParseBinding(text);
+                   return binding ? std::string() : binding.error().message;
+                 });
+  binder.Text("default_rig", default_rig, "Rig of devices that nobody assigned");
+  binder.Number("tick_rate_hz", tick_rate_hz, 10, 200, "Ticks a second");
+  binder.Number("stale_after_s", stale_after_s, 0.1, 10, "Without data for so long: stale");
+  binder.Number("board_sensor_distance_x_m", plate.sensor_distance_x_m, 0.1, 1,
+                "Between a board's left and right sensors");
+  binder.Number("board_sensor_distance_y_m", plate.sensor_distance_y_m, 0.1, 1,
+                "Between a board's front and rear sensors");
+  binder.Number("board_contact_on_n", plate.contact_on_n, 1, 500, "Over it there is contact");
+  binder.Number("board_contact_off_n", plate.contact_off_n, 1, 500,
+                "Under it there is none, and the COP is undefined");
+}
+
+}  // namespace footing::sensor

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "daemon/sensor/devices/source.h"
+#include "daemon/sensor/features/rig_features.h"
+#include "daemon/sensor/service/config.h"
+#include "daemon/sensor/service/device.h"
+#include "daemon/sensor/service/tick_content.h"
+
+namespace footing::sensor {
+
+/// All devices of footingd: who is there, on which rig, and what a tick says. It has no socket and
+/// no thread; its clock is given, so that a test can run it faster than time.
+class Hub {
+ public:
+  struct Ports {
+    std::function<void(devices::DeviceHandle, const reports::OutputReport&)> send;
+    std::function<void(const std::string& line)> log;
+    std::function<std::int64_t()> now_ns;
+  };
+
+  /// Devices known at once, lost ones included; the longest lost makes room.
+  static constexpr std::size_t kMaxDevices = 64;
+
+  Hub(const Config& config, Ports ports);
+
+  /// As SourceHandlers.
+  void OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity);
+  void OnReport(devices::DeviceHandle handle, const devices::IncomingReport& report);
+  void OnDetach(devices::DeviceHandle handle, const std::string& reason);
+
+  /// Once a tick: everything since the last one, and the features as of `now_ns`. The same reports
+  /// and the same ticks give the same features bit for bit.
+  TickContent Tick(std::int64_t now_ns);
+
+  /// Commands. The motor stops when the lease runs out or the session ends.
+  Result<void> SetRumble(std::uint64_t session, std::uint32_t device, bool on, double lease_s);
+  Result<void> SetLeds(std::uint32_t device, std::uint8_t leds);
+  /// The device that had this role gets the one that this device had.
+  Result<void> AssignRole(const std::string& serial, const Binding& binding);
+  void EndSession(std::uint64_t session);
+  /// Every motor off, at once.
+  void StopMotors();
+
+ private:
+  struct Rig {
+    std::vector<features::Member> members;
+    std::unique_ptr<features::RigFeatureExtractor> extractor;
+    std::int64_t decoded_ns = 0;
+  };
+  struct Lease {
+    std::uint64_t session = 0;
+    std::int64_t until_ns = 0;
+  };
+
+  Device* Find(devices::DeviceHandle handle);
+  Device* Numbered(std::uint32_t number);
+  Device* MakeRoom();
+  void Bind(Device& device);
+  Binding ChooseBinding(const Device& device) const;
+  void Rebind(Device& device, const Binding& binding);
+  void RebuildRigs();
+  void AddToRig(const Device& device, const stream::MotionSample& sample);
+  void TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
+               bool to_device, std::int64_t true_ns);
+  void Flush(Device& device);
+  void EndLeases(std::int64_t now_ns);
+  void PublishStatus(std::int64_t now_ns);
+
+  Config config_;
+  Ports ports_;
+  std::vector<std::unique_ptr<Device>> devices_;
+  std::uint32_t last_number_ = 0;
+  std::map<std::string, Binding> assigned_;  // By serial; config first, then commands.
+  std::map<std::string, Rig> rigs_;
+  std::map<std::uint32_t, Lease> leases_;  // By device.
+  TickContent content_;
+  std::vector<stream::DeviceState> last_states_;
+  std::int64_t status_ns_ = 0;
+  bool status_due_ = true;
+};
+
+}  // namespace footing::sensor

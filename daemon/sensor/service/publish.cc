@@ -1,0 +1,58 @@
+#include "daemon/sensor/service/publish.h"
+
+#include <utility>
+
+#include "common/wire/wire.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::sensor {
+namespace {
+
+using v1::Tick;
+
+template <typename List>
+void Append(std::vector<transport::ChannelBytes>& channels, int field, const List& list) {
+  channels.push_back({static_cast<std::uint32_t>(field), list.SerializeAsString()});
+}
+
+}  // namespace
+
+std::vector<transport::Channel> Channels() {
+  return {{"status", Tick::kStatusFieldNumber, true},
+          {"motion", Tick::kMotionFieldNumber, false},
+          {"features", Tick::kFeaturesFieldNumber, false},
+          {"boards", Tick::kBoardsFieldNumber, false},
+          {"raw", Tick::kRawFieldNumber, false}};
+}
+
+std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
+  std::vector<transport::ChannelBytes> channels;
+  if (content.has_status) {
+    v1::DeviceStatusList list;
+    for (const auto& status : content.status) *list.add_devices() = wire::ToProto(status);
+    Append(channels, Tick::kStatusFieldNumber, list);
+  }
+  if (!content.motion.empty()) {
+    v1::MotionSamples list;
+    for (const auto& sample : content.motion) *list.add_samples() = wire::ToProto(sample);
+    Append(channels, Tick::kMotionFieldNumber, list);
+  }
+  if (!content.features.empty()) {
+    v1::FeatureFrame frame;
+    for (const auto& rig : content.features) *frame.add_rigs() = wire::ToProto(rig);
+    Append(channels, Tick::kFeaturesFieldNumber, frame);
+  }
+  if (!content.boards.empty()) {
+    v1::BoardSamples list;
+    for (const auto& sample : content.boards) *list.add_samples() = wire::ToProto(sample);
+    Append(channels, Tick::kBoardsFieldNumber, list);
+  }
+  if (!content.raw.empty()) {
+    v1::RawReports list;
+    for (const auto& raw : content.raw) *list.add_reports() = wire::ToProto(raw);
+    Append(channels, Tick::kRawFieldNumber, list);
+  }
+  return channels;
+}
+
+}  // namespace footing::sensor

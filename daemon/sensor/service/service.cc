@@ -1,0 +1,213 @@
+#include "daemon/sensor/service/service.h"
+
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <map>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/log/log.h"
+#include "common/transport/address.h"
+#include "common/transport/server.h"
+#include "daemon/sensor/devices/hid_source.h"
+#include "daemon/sensor/devices/socket_source.h"
+#include "daemon/sensor/service/hub.h"
+#include "daemon/sensor/service/publish.h"
+
+namespace footing::sensor {
+namespace {
+
+using devices::DeviceHandle;
+
+constexpr const char* kStreamPrefix = "stream:";
+
+transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version) {
+  transport::ServerOptions options;
+  options.server_id = "footingd";
+  options.version = version;
+  options.channels = Channels();
+  options.tick_rate_hz = config.tick_rate_hz;
+  options.capabilities = {"features", "boards", "raw", "rumble", "leds", "assign"};
+  return options;
+}
+
+v1::CommandResult Answer(const v1::Command& command, const Result<void>& done) {
+  v1::CommandResult result;
+  result.set_id(command.id());
+  result.set_ok(done.ok());
+  if (!done) result.set_message(done.error().message);
+  return result;
+}
+
+}  // namespace
+
+class Service::Implementation : public std::enable_shared_from_this<Service::Implementation> {
+ public:
+  Implementation(boost::asio::io_context& io, const Config& config, const std::string& version)
+      : io_(io),
+        config_(config),
+        timer_(io),
+        hub_(config, {[this](DeviceHandle device, const reports::OutputReport& report) {
+                        Send(device, report);
+                      },
+                      [](const std::string& line) { log::Info(line); },
+                      [] { return clock::MonotonicNs(); }}),
+        server_(
+            io, MakeServerOptions(config, version),
+            {[this](const transport::SessionInfo& session, const v1::Command& command) {
+               return OnCommand(session, command);
+             },
+             [this](const transport::SessionInfo& session) { hub_.EndSession(session.session); }}) {
+  }
+
+  Result<void> Open() {
+    auto listen = config_.listen;
+    if (listen.empty()) listen = {transport::DefaultAddress("sensor", true).Text()};
+    for (const std::string& text : listen) {
+      const auto address = transport::ParseAddress(text);
+      if (!address) return address.error();
+      if (const auto listening = server_.Listen(*address); !listening) return listening;
+      listening_on_.push_back(server_.ListeningOn(listening_on_.size()).Text());
+      log::Info("listening on " + listening_on_.back());
+    }
+    auto sources = config_.sources;
+    if (sources.empty()) {
+      sources = {"hid", kStreamPrefix + transport::DefaultAddress("devices", true).Text()};
+    }
+    for (const std::string& text : sources) {
+      if (const auto opened = OpenSource(text); !opened) return opened;
+    }
+    return {};
+  }
+
+  void Start() {
+    next_tick_ = std::chrono::steady_clock::now();
+    WaitForTick();
+  }
+
+  void Stop(const std::string& reason) {
+    hub_.StopMotors();
+    timer_.cancel();
+    for (const auto& source : sources_) source->Stop();
+    server_.Stop(reason);
+  }
+
+  const std::vector<std::string>& listening_on() const { return listening_on_; }
+
+ private:
+  Result<void> OpenSource(const std::string& text) {
+    const std::size_t index = sources_.size();
+    devices::SourceHandlers handlers;
+    handlers.on_attach = [this, index](DeviceHandle device, const devices::DeviceIdentity& who) {
+      source_of_[device] = index;
+      hub_.OnAttach(device, who);
+    };
+    handlers.on_report = [this](DeviceHandle device, const devices::IncomingReport& report) {
+      hub_.OnReport(device, report);
+    };
+    handlers.on_detach = [this](DeviceHandle device, const std::string& reason) {
+      hub_.OnDetach(device, reason);
+      source_of_.erase(device);
+    };
+    handlers.on_trouble = [](const std::string& line) { log::Warning(line); };
+    const auto new_handle = [this] { return ++last_handle_; };
+    if (text == "hid") {
+      sources_.push_back(std::make_unique<devices::HidSource>(io_, new_handle, handlers));
+      // Without rights to any device stand-ins still work.
+      if (const auto started = sources_.back()->Start(); !started) {
+        log::Warning(started.error().message);
+      }
+      return {};
+    }
+    if (!text.starts_with(kStreamPrefix)) {
+      return UsageError("source \"" + text + "\": there are hid and stream:ADDRESS");
+    }
+    const auto address = transport::ParseAddress(text.substr(std::string(kStreamPrefix).size()));
+    if (!address) return address.error();
+    sources_.push_back(
+        std::make_unique<devices::SocketSource>(io_, *address, new_handle, handlers));
+    if (const auto started = sources_.back()->Start(); !started) return started;
+    log::Info("device stand-ins on " + address->Text());
+    return {};
+  }
+
+  void Send(DeviceHandle device, const reports::OutputReport& report) {
+    const auto source = source_of_.find(device);
+    if (source != source_of_.end()) sources_[source->second]->Send(device, report);
+  }
+
+  void WaitForTick() {
+    const auto period =
+        std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / config_.tick_rate_hz));
+    const auto now = std::chrono::steady_clock::now();
+    next_tick_ += period;
+    if (now - next_tick_ > 10 * period) next_tick_ = now;  // After a pause of the machine.
+    timer_.expires_at(next_tick_);
+    timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
+      const auto self = weak.lock();
+      if (error || !self) return;
+      const std::int64_t now_ns = clock::MonotonicNs();
+      self->server_.Publish(now_ns, ToChannels(self->hub_.Tick(now_ns)));
+      self->WaitForTick();
+    });
+  }
+
+  v1::CommandResult OnCommand(const transport::SessionInfo& session, const v1::Command& command) {
+    switch (command.action_case()) {
+      case v1::Command::kSetRumble: {
+        const v1::SetRumble& rumble = command.set_rumble();
+        return Answer(command, hub_.SetRumble(session.session, rumble.device(), rumble.on(),
+                                              rumble.lease_ms() * 1e-3));
+      }
+      case v1::Command::kSetLeds:
+        return Answer(command, hub_.SetLeds(command.set_leds().device(),
+                                            static_cast<std::uint8_t>(command.set_leds().leds())));
+      case v1::Command::kAssignRole: {
+        const v1::AssignRole& assign = command.assign_role();
+        Binding binding = {assign.rig().empty() ? config_.default_rig : assign.rig(),
+                           stream::DeviceRole::kUnspecified};
+        if (v1::DeviceRole_IsValid(assign.role())) {
+          binding.role = static_cast<stream::DeviceRole>(assign.role());
+        }
+        return Answer(command, hub_.AssignRole(assign.serial(), binding));
+      }
+      case v1::Command::kPutBack:
+      case v1::Command::kPush:
+      case v1::Command::kDirectGait:
+        return Answer(command, UsageError("that is a command for footing-sim"));
+      case v1::Command::ACTION_NOT_SET:
+        return Answer(command, UsageError("the command has no action that footingd knows"));
+    }
+    return Answer(command, UsageError("the command has no action that footingd knows"));
+  }
+
+  boost::asio::io_context& io_;
+  const Config config_;
+  boost::asio::steady_timer timer_;
+  std::chrono::steady_clock::time_point next_tick_;
+  std::vector<std::unique_ptr<devices::DeviceSource>> sources_;
+  std::map<DeviceHandle, std::size_t> source_of_;
+  DeviceHandle last_handle_ = 0;
+  Hub hub_;
+  transport::Server server_;
+  std::vector<std::string> listening_on_;
+};
+
+Service::Service(std::shared_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+
+Service::~Service() = default;
+
+Result<std::unique_ptr<Service>> Service::Start(boost::asio::io_context& io, const Config& config,
+                                                const std::string& version) {
+  auto implementation = std::make_shared<Implementation>(io, config, version);
+  if (const auto opened = implementation->Open(); !opened) return opened.error();
+  implementation->Start();
+  return std::unique_ptr<Service>(new Service(std::move(implementation)));
+}
+
+void Service::Stop(const std::string& reason) { implementation_->Stop(reason); }
+
+std::vector<std::string> Service::listening_on() const { return implementation_->listening_on(); }
+
+}  // namespace footing::sensor

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "common/stream/device.h"
+#include "common/stream/sensor.h"
+
+namespace footing::sensor {
+
+/// Everything that one tick publishes.
+struct TickContent {
+  std::vector<stream::MotionSample> motion;
+  std::vector<stream::BoardSample> boards;
+  std::vector<stream::RawReport> raw;
+  std::vector<stream::RigFeatures> features;
+  bool has_status = false;
+  std::vector<stream::DeviceStatus> status;
+};
+
+/// Bounds a tick against a device that floods; a tick of eight devices has some ten of each.
+inline constexpr std::size_t kMaxSamplesPerTick = 1024;
+
+}  // namespace footing::sensor

@@ -1,0 +1,108 @@
+#include "clients/view/scene/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::scene {
+namespace {
+
+constexpr double kStepS = 1.0 / 60;
+
+Subject At(double x_m, double heading_rad, double speed_mps) {
+  Subject subject;
+  subject.position_m = {x_m, 0, 1};
+  subject.heading_rad = heading_rad;
+  subject.speed_mps = speed_mps;
+  return subject;
+}
+
+ChaseCamera Settled(double heading_rad, double speed_mps) {
+  ChaseCamera camera;
+  for (int i = 0; i < 600; ++i) {
+    camera.Advance(At(speed_mps * kStepS * i, heading_rad, speed_mps), kStepS);
+  }
+  return camera;
+}
+
+Eigen::Vector4f Clip(const Camera& camera, const Eigen::Vector3d& p_m) {
+  const Eigen::Vector4f p(static_cast<float>(p_m.x()), static_cast<float>(p_m.y()),
+                          static_cast<float>(p_m.z()), 1);
+  return camera.Projection(16.0 / 9) * camera.View() * p;
+}
+
+TEST(Camera, WhatItLooksAtIsInTheMiddleOfThePicture) {
+  Camera camera;
+  camera.eye_m = {-4, 1, 2};
+  camera.target_m = {3, -1, 0.5};
+  const Eigen::Vector4f clip = Clip(camera, camera.target_m);
+  EXPECT_NEAR(clip.x() / clip.w(), 0, 1e-5);
+  EXPECT_NEAR(clip.y() / clip.w(), 0, 1e-5);
+  EXPECT_GT(clip.w(), 0);
+}
+
+TEST(Camera, NeverRolls) {
+  for (const double heading_rad : {-3.0, -1.0, 0.0, 0.5, 2.0}) {
+    const Eigen::Matrix4f view = Settled(heading_rad, 2).Look().View();
+    // The camera's right axis is level.
+    EXPECT_NEAR(view(0, 2), 0, 1e-6);
+    EXPECT_GT(view(1, 2), 0);
+  }
+}
+
+TEST(ChaseCamera, StandsFourAndAHalfMetresBehindAndOneAndAHalfAbove) {
+  const Camera camera = Settled(0, 0).Look();
+  EXPECT_NEAR(camera.eye_m.x(), -4.5, 1e-6);
+  EXPECT_NEAR(camera.eye_m.z(), 1 + 1.5, 1e-6);
+}
+
+TEST(ChaseCamera, KeepsItsDistanceAtASteadySpeed) {
+  const double last_x_m = 3 * kStepS * 599;
+  EXPECT_NEAR(Settled(0, 3).Look().eye_m.x(), last_x_m - 4.5, 0.1);
+}
+
+TEST(ChaseCamera, LooksFurtherAheadTheFasterItsSubject) {
+  const Camera slow = Settled(0, 0).Look();
+  const Camera fast = Settled(0, 3).Look();
+  const double slow_ahead_m = slow.target_m.x() - slow.eye_m.x();
+  const double fast_ahead_m = fast.target_m.x() - fast.eye_m.x();
+  EXPECT_GT(fast_ahead_m, slow_ahead_m + 0.5);
+}
+
+TEST(ChaseCamera, TurnsTheShortWayAndWithoutOvershoot) {
+  ChaseCamera camera = Settled(DegreesToRadians(170), 0);
+  double before_rad = DegreesToRadians(170);
+  for (int i = 0; i < 300; ++i) {
+    camera.Advance(At(0, DegreesToRadians(-170), 0), kStepS);
+    const Camera look = camera.Look();
+    const Eigen::Vector3d behind = look.eye_m - Eigen::Vector3d(0, 0, look.eye_m.z());
+    // The eye is behind by 4.5 m and aside by a fixed angle: its bearing turns with the heading.
+    const double bearing_rad = std::atan2(-behind.y(), -behind.x());
+    const double turned_rad = WrapAngle(bearing_rad - before_rad);
+    if (i > 0) {
+      EXPECT_GE(turned_rad, -1e-9);
+    }
+    EXPECT_LT(std::abs(turned_rad), DegreesToRadians(i == 0 ? 30 : 5));
+    before_rad = bearing_rad;
+  }
+}
+
+TEST(ChaseCamera, JumpsWithASubjectThatWasPutBack) {
+  ChaseCamera camera = Settled(0, 0);
+  camera.Advance(At(-10, 0, 0), kStepS);
+  EXPECT_NEAR(camera.Look().eye_m.x(), -14.5, 1e-6);
+}
+
+TEST(ChaseCamera, ALongPauseDoesNotThrowItOff) {
+  ChaseCamera camera = Settled(0, 0);
+  camera.Advance(At(0.5, 0, 0), 30);
+  camera.Advance(At(0.5, 0, 0), 0);
+  for (int i = 0; i < 300; ++i) camera.Advance(At(0.5, 0, 0), kStepS);
+  EXPECT_NEAR(camera.Look().eye_m.x(), 0.5 - 4.5, 1e-3);
+}
+
+}  // namespace
+}  // namespace footing::scene

@@ -1,0 +1,84 @@
+#include "clients/view/scene/words.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/clients/view/made_stream.h"
+
+namespace footing::scene {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(Fixed, RoundsAndNeverWritesMinusZeroOrNan) {
+  EXPECT_EQ(Fixed(1.25, 1), "1.2");  // 1.25 is exact; ties go to even.
+  EXPECT_EQ(Fixed(-0.001, 2), "0.00");
+  EXPECT_EQ(Fixed(-1.5, 1), "-1.5");
+  EXPECT_EQ(Fixed(std::numeric_limits<double>::quiet_NaN(), 1), "0.0");
+}
+
+TEST(WaitingLines, SayWhatIsMissingAndHowToStartIt) {
+  LinkReport link;
+  link.address = "unix:/run/user/1000/footing/simulation.sock";
+  const auto lines = WaitingLines(link);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0],
+            "Waiting for a simulation server on unix:/run/user/1000/footing/simulation.sock");
+  EXPECT_THAT(lines[1], HasSubstr("footing-sim"));
+  EXPECT_THAT(lines[1], HasSubstr(link.address));
+  link.address = "unix:/run/user/1000/footing/sensor.sock";
+  EXPECT_THAT(WaitingLines(link)[1], HasSubstr("footingd"));
+  link.state = LinkState::kLive;
+  EXPECT_TRUE(WaitingLines(link).empty());
+}
+
+TEST(WaitingLines, ARefusalIsShownInTheServersOwnWords) {
+  LinkReport link{"tcp:127.0.0.1:1", "", LinkState::kRefused, "update the viewer"};
+  EXPECT_EQ(WaitingLines(link)[1], "update the viewer");
+}
+
+TEST(ResponseTimes, AreTheDifferencesOfTheStamps) {
+  const ResponseStages stamps{stream::Gait::kWalk, stream::Gait::kRun, 1'000'000,
+                              1'500'000,           3'500'000,          4'000'000,
+                              5'000'000,           105'000'000,        112'000'000};
+  const auto stages = ResponseTimes(stamps);
+  ASSERT_EQ(stages.size(), 6u);
+  EXPECT_STREQ(stages[0].name, "decode");
+  EXPECT_DOUBLE_EQ(stages[0].ms, 0.5);
+  EXPECT_STREQ(stages[4].name, "contact");
+  EXPECT_DOUBLE_EQ(stages[4].ms, 100);
+  EXPECT_TRUE(ResponseTimes({}).empty());
+}
+
+TEST(StatusScreen, NamesGaitSpeedDevicesAndThatTheInputIsSimulated) {
+  const Model model = made::ModelAfter(3, {});
+  const auto lines = StatusScreen(model, made::ClockAt(3));
+  EXPECT_THAT(lines[0], HasSubstr("SIMULATED"));
+  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("RUN"), HasSubstr("of 2.00"))));
+  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("left_hand"), HasSubstr("98.7 Hz"),
+                                    HasSubstr("battery 83 %"), HasSubstr("SIMULATED"))));
+  EXPECT_THAT(lines, Contains(HasSubstr("72.4 kg")));
+  EXPECT_THAT(lines, Contains(HasSubstr("age 1 ms")));
+}
+
+TEST(StatusScreen, RealDevicesCarryNoStamp) {
+  made::Wish real;
+  real.simulated = false;
+  for (const std::string& line : StatusScreen(made::ModelAfter(3, real), made::ClockAt(3))) {
+    EXPECT_THAT(line, Not(HasSubstr("SIMULATED")));
+  }
+}
+
+TEST(StatusLine, SaysWhatItWaitsForBeforeAnythingCame) {
+  Model model;
+  model.links = {{"unix:/tmp/simulation.sock", "", LinkState::kConnecting, ""}};
+  EXPECT_THAT(StatusLine(model, 0), HasSubstr("Waiting for a simulation server on unix:/tmp"));
+}
+
+}  // namespace
+}  // namespace footing::scene

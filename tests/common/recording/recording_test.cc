@@ -1,0 +1,186 @@
+#include <gmock/gmock.h>
+#include <google/protobuf/descriptor.pb.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "common/mcap/summary.h"
+#include "common/mcap/walk.h"
+#include "common/recording/mapped_file.h"
+#include "common/recording/recording_writer.h"
+#include "common/recording/repair.h"
+#include "common/recording/schema.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::recording {
+namespace {
+
+using testing::HasSubstr;
+
+class Recording : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = std::filesystem::path(testing::TempDir()) / ("footing_recording_" + name);
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Sample k of device 3, received at k * 10 ms, on /footingd/motion, one a tick.
+  void WriteMotion(const std::string& path, int ticks) {
+    Result<RecordingWriter> writer = RecordingWriter::Create(path, {"test", false, {}});
+    ASSERT_TRUE(writer.ok()) << writer.error().message;
+    for (int k = 0; k < ticks; ++k) {
+      const std::int64_t time_ns = std::int64_t{10'000'000} * k;
+      v1::MotionSamples motion;
+      v1::MotionSample& sample = *motion.add_samples();
+      sample.set_device(3);
+      sample.set_received_ns(time_ns);
+      sample.mutable_specific_force_mps2()->set_x(k * 0.25);
+      ASSERT_TRUE(writer
+                      ->Write("/footingd/motion", motion,
+                              {time_ns, time_ns + 1, static_cast<std::uint32_t>(k)})
+                      .ok());
+    }
+    ASSERT_TRUE(writer->Finish().ok());
+  }
+
+  static std::string Bytes(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  static void Save(const std::string& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+  }
+
+  /// specific_force x of every message, read by the schema inside the file.
+  static std::vector<double> Read(const std::string& bytes) {
+    std::vector<double> values;
+    SchemaPool pool;
+    std::map<std::uint16_t, std::uint16_t> schema_of;
+    mcap::Visitor visitor;
+    visitor.schema = [&](const mcap::Schema& schema) { EXPECT_TRUE(pool.Add(schema).ok()); };
+    visitor.channel = [&](const mcap::Channel& c) { schema_of[c.id] = c.schema_id; };
+    visitor.message = [&](const mcap::Message& message) {
+      const google::protobuf::Message* any =
+          pool.Parse(schema_of[message.channel_id], message.data);
+      ASSERT_NE(any, nullptr);
+      v1::MotionSamples motion;
+      ASSERT_TRUE(motion.ParseFromString(any->SerializeAsString()));
+      values.push_back(motion.samples(0).specific_force_mps2().x());
+    };
+    EXPECT_TRUE(mcap::Walk(bytes, visitor, mcap::WalkMode::kStrict).complete);
+    return values;
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(Recording, MessagesComeBackThroughTheSchemaInside) {
+  WriteMotion(Path("a.mcap"), 5);
+  EXPECT_THAT(Read(Bytes(Path("a.mcap"))), testing::ElementsAre(0, 0.25, 0.5, 0.75, 1));
+}
+
+TEST_F(Recording, SchemaHoldsItsImportsBeforeItself) {
+  google::protobuf::FileDescriptorSet files;
+  ASSERT_TRUE(files.ParseFromString(DescribeWithImports(*v1::Tick::descriptor())));
+  std::vector<std::string> names;
+  for (const auto& file : files.file()) {
+    for (const std::string& import : file.dependency()) {
+      EXPECT_THAT(names, testing::Contains(import)) << "imported by " << file.name();
+    }
+    names.push_back(file.name());
+  }
+  EXPECT_EQ(names.back(), "footing/v1/session.proto");
+}
+
+TEST_F(Recording, NeverOverwritesUnlessTold) {
+  WriteMotion(Path("a.mcap"), 1);
+  const Result<RecordingWriter> again =
+      RecordingWriter::Create(Path("a.mcap"), {"test", false, {}});
+  ASSERT_FALSE(again.ok());
+  EXPECT_EQ(again.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(again.error().message, HasSubstr("--force"));
+  EXPECT_TRUE(RecordingWriter::Create(Path("a.mcap"), {"test", true, {}}).ok());
+}
+
+TEST_F(Recording, IsReadableByItsOwnerAlone) {
+  WriteMotion(Path("a.mcap"), 1);
+  EXPECT_EQ(std::filesystem::status(Path("a.mcap")).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST_F(Recording, AnUnfinishedOneIsOnDiskUpToItsLastFlush) {
+  Result<RecordingWriter> writer = RecordingWriter::Create(Path("a.mcap"), {"test", false, {}});
+  ASSERT_TRUE(writer.ok());
+  // A message every 10 ms: the chunk that spans 1 s closes at the 101st.
+  for (int k = 0; k <= 100; ++k) {
+    ASSERT_TRUE(writer->Write("/t", v1::Gap(), {std::int64_t{10'000'000} * k, 0, 0}).ok());
+    EXPECT_EQ(writer->pending(), k < 100);
+  }
+  int on_disk = 0;
+  mcap::Visitor visitor;
+  visitor.message = [&](const mcap::Message&) { ++on_disk; };
+  const mcap::WalkEnd end = mcap::Walk(Bytes(Path("a.mcap")), visitor, mcap::WalkMode::kSalvage);
+  EXPECT_TRUE(end.cut);
+  EXPECT_EQ(on_disk, 101);
+}
+
+TEST_F(Recording, RepairOfACutFileKeepsEveryCompleteMessageAndIsComplete) {
+  WriteMotion(Path("whole.mcap"), 250);
+  const std::string whole = Bytes(Path("whole.mcap"));
+  std::size_t kept_before = 0;
+  for (std::size_t cut = 8; cut < whole.size();
+       cut += 331) {  // 331 is prime: any place in a record.
+    Save(Path("cut.mcap"), whole.substr(0, cut));
+    const auto report = Repair(Path("cut.mcap"), Path("repaired.mcap"), "test", true);
+    ASSERT_TRUE(report.ok()) << report.error().message;
+    const std::vector<double> values = Read(Bytes(Path("repaired.mcap")));
+    ASSERT_EQ(values.size(), report->messages);
+    ASSERT_GE(values.size(), kept_before);
+    for (std::size_t k = 0; k < values.size(); ++k) ASSERT_EQ(values[k], 0.25 * double(k));
+    kept_before = values.size();
+    EXPECT_TRUE(mcap::ReadSummary(Bytes(Path("repaired.mcap"))).ok());
+  }
+  EXPECT_EQ(kept_before, 250u);
+}
+
+TEST_F(Recording, RepairOfAWholeFileSaysThatNothingWasWrong) {
+  WriteMotion(Path("whole.mcap"), 30);
+  const auto report = Repair(Path("whole.mcap"), Path("copy.mcap"), "test", false);
+  ASSERT_TRUE(report.ok());
+  EXPECT_TRUE(report->found.complete);
+  EXPECT_EQ(report->messages, 30u);
+  EXPECT_EQ(Bytes(Path("copy.mcap")), Bytes(Path("whole.mcap")));
+}
+
+TEST_F(Recording, RepairRefusesWhatIsNoRecordingAndItsOwnInput) {
+  Save(Path("text.mcap"), "time_s,x_mm\n");
+  const auto no_mcap = Repair(Path("text.mcap"), Path("out.mcap"), "test", false);
+  ASSERT_FALSE(no_mcap.ok());
+  EXPECT_EQ(no_mcap.error().kind, ErrorKind::kInvalidData);
+  EXPECT_FALSE(std::filesystem::exists(Path("out.mcap")));
+  WriteMotion(Path("a.mcap"), 1);
+  const auto same = Repair(Path("a.mcap"), Path("a.mcap"), "test", true);
+  ASSERT_FALSE(same.ok());
+  EXPECT_EQ(same.error().kind, ErrorKind::kUsage);
+}
+
+TEST_F(Recording, SchemasThatMakeNoSenseAreRefused) {
+  SchemaPool pool;
+  const auto encoding = pool.Add({1, "a.B", "ros2msg", ""});
+  ASSERT_FALSE(encoding.ok());
+  EXPECT_THAT(encoding.error().message, HasSubstr("ros2msg"));
+  EXPECT_FALSE(pool.Add({1, "a.B", "protobuf", "\xFF\xFF garbage"}).ok());
+  EXPECT_FALSE(pool.Add({1, "a.B", "protobuf", ""}).ok());
+  EXPECT_EQ(pool.Parse(1, ""), nullptr);
+}
+
+}  // namespace
+}  // namespace footing::recording

@@ -1,0 +1,226 @@
+#include "common/transport/client.h"
+
+#include <numeric>
+
+#include "common/clock/clock.h"
+#include "tests/common/transport/server_fixture.h"
+
+namespace footing::transport {
+namespace {
+
+class ClientTest : public ServerFixture {
+ protected:
+  ClientOptions ClientOn(const Address& address) {
+    ClientOptions options;
+    options.address = address;
+    options.client_name = "client under test";
+    options.backoff_min_s = 0.001;
+    options.backoff_max_s = 0.01;
+    options.ping_interval_s = 0.01;
+    options.now_ns = [this] { return client_now_ns_ ? client_now_ns_() : clock::MonotonicNs(); };
+    return options;
+  }
+  void StartClient(ClientOptions options) {
+    ClientHandlers handlers;
+    handlers.on_welcome = [this](const v1::Welcome&) { ++welcomes_; };
+    handlers.on_tick = [this](const v1::Tick& tick) {
+      (tick.snapshot() ? snapshots_ : sequences_).push_back(tick.sequence());
+    };
+    handlers.on_gap = [this](const v1::Gap& gap) { gaps_.push_back(gap); };
+    handlers.on_state = [this](LinkState state, const std::string& why) {
+      states_.emplace_back(state, why);
+    };
+    client_ = std::make_unique<Client>(io_, std::move(options), std::move(handlers));
+    client_->Start();
+  }
+  bool RunUntilState(LinkState state) {
+    return RunUntil([&] { return client_->state() == state; });
+  }
+
+  std::function<std::int64_t()> client_now_ns_;
+  std::unique_ptr<Client> client_;
+  int welcomes_ = 0;
+  std::vector<std::uint64_t> snapshots_;
+  std::vector<std::uint64_t> sequences_;
+  std::vector<v1::Gap> gaps_;
+  std::vector<std::pair<LinkState, std::string>> states_;
+};
+
+TEST_F(ClientTest, BeforeItsServerItSaysWhatItWaitsForAndThenConnects) {
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntil([&] { return !states_.empty(); }));
+  EXPECT_EQ(states_[0].first, LinkState::kConnecting);
+  EXPECT_EQ(states_[0].second,
+            "waiting for a server on " + UnixAddress().Text() + ": no such file");
+  StartServer();
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  PublishMotion();
+  EXPECT_TRUE(RunUntil([&] { return sequences_.size() == 1; }));
+  EXPECT_EQ(snapshots_.size(), 1u);
+}
+
+TEST_F(ClientTest, AfterALostConnectionItResumesWithoutAHole) {
+  ServerOptions options = Options();
+  options.ping_interval_s = 0.01;
+  StartServer(options);
+  StartClient(ClientOn(server_->ListeningOn(1)));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  for (int round = 0; round < 3; ++round) {
+    for (int i = 0; i < 10; ++i) PublishMotion();
+    const int before = welcomes_;
+    ASSERT_TRUE(RunUntil([&] {
+      if (welcomes_ == before) {
+        now_ns_ += 11'000'000'000;  // The server believes the client dead and ends the session.
+        PublishMotion();
+      }
+      return welcomes_ > before && client_->state() == LinkState::kLive;
+    }));
+  }
+  const std::uint64_t last = PublishMotion();
+  ASSERT_TRUE(RunUntil([&] { return !sequences_.empty() && sequences_.back() == last; }));
+  std::vector<std::uint64_t> all(last);
+  std::iota(all.begin(), all.end(), 1);
+  EXPECT_EQ(sequences_, all);
+  EXPECT_TRUE(gaps_.empty());
+}
+
+TEST_F(ClientTest, AServerStartedAnewIsToldByAGap) {
+  StartServer();
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  PublishMotion();
+  ASSERT_TRUE(RunUntil([&] { return sequences_.size() == 1; }));
+  server_->Stop("restart");
+  server_.reset();
+  ASSERT_TRUE(RunUntilState(LinkState::kConnecting));
+  StartServer();
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  ASSERT_TRUE(RunUntil([&] { return gaps_.size() == 1; }));
+  EXPECT_EQ(gaps_[0].reason(), v1::Gap::REASON_NEW_EPOCH);
+  EXPECT_EQ(welcomes_, 2);
+}
+
+TEST_F(ClientTest, TheServersGoodbyeIsPassedOn) {
+  StartServer();
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  server_->Stop("out of coffee");
+  ASSERT_TRUE(RunUntilState(LinkState::kConnecting));
+  EXPECT_NE(states_.back().second.find("out of coffee"), std::string::npos);
+}
+
+TEST_F(ClientTest, ARefusalIsAStateOfItsOwnWithTheServersWords) {
+  StartServer();
+  ClientOptions options = ClientOn(server_->ListeningOn(1));
+  options.role = v1::ROLE_ADMIN;
+  StartClient(options);
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused));
+  EXPECT_NE(states_.back().second.find("Unix socket"), std::string::npos);
+}
+
+TEST_F(ClientTest, SilenceIsStaleThenDead) {
+  // Accepts and welcomes, then never says anything more.
+  std::vector<std::unique_ptr<TestClient>> silent;
+  auto listener = Listener::Open(io_, UnixAddress(), [&](Socket socket) {
+    silent.push_back(std::make_unique<TestClient>(std::move(socket)));
+    v1::Envelope welcome;
+    welcome.mutable_welcome()->set_server_id("silent");
+    silent.back()->Send(welcome);
+    v1::Envelope subscribed;
+    subscribed.mutable_subscribed();
+    silent.back()->Send(subscribed);
+    silent.back()->Read();
+  });
+  ASSERT_TRUE(listener.ok());
+  std::int64_t now_ns = 0;
+  client_now_ns_ = [&] { return now_ns; };
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  now_ns += 3'100'000'000;
+  ASSERT_TRUE(RunUntilState(LinkState::kStale));
+  now_ns += 7'000'000'000;
+  ASSERT_TRUE(RunUntil([&] { return silent.size() == 2; }));  // It dials again.
+}
+
+TEST_F(ClientTest, ACommandComesBackWithItsAnswer) {
+  StartServer();
+  ClientOptions options = ClientOn(UnixAddress());
+  options.role = v1::ROLE_CONTROL;
+  StartClient(options);
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  std::optional<v1::CommandResult> answer;
+  v1::Command command;
+  command.mutable_set_leds()->set_leds(3);
+  client_->Send(command, [&](const v1::CommandResult& result) { answer = result; });
+  ASSERT_TRUE(RunUntil([&] { return answer.has_value(); }));
+  EXPECT_TRUE(answer->ok());
+  EXPECT_EQ(commands_[0].second.set_leds().leds(), 3u);
+}
+
+TEST_F(ClientTest, ACommandWithoutAConnectionFailsAtOnceWithTheReason) {
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntil([&] { return !states_.empty(); }));
+  std::optional<v1::CommandResult> answer;
+  client_->Send({}, [&](const v1::CommandResult& result) { answer = result; });
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_FALSE(answer->ok());
+  EXPECT_NE(answer->message().find("no such file"), std::string::npos);
+}
+
+TEST_F(ClientTest, MissingTicksCanBeAskedFor) {
+  StartServer();
+  for (int i = 0; i < 5; ++i) PublishMotion();
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  client_->Refill(2, 4);
+  ASSERT_TRUE(RunUntil([&] { return sequences_.size() == 3; }));
+  EXPECT_EQ(sequences_, (std::vector<std::uint64_t>{2, 3, 4}));
+}
+
+TEST_F(ClientTest, TheServersClockIsFoundWithinTheStatedUncertainty) {
+  // The server's clock is the client's, 1 h ahead.
+  constexpr std::int64_t kAhead = 3'600'000'000'000;
+  ServerOptions options = Options();
+  StartServer(options);
+  server_.reset();
+  options.now_ns = [] { return clock::MonotonicNs() + kAhead; };
+  server_ = std::make_unique<Server>(io_, options, ServerHandlers());
+  ASSERT_TRUE(server_->Listen(UnixAddress()).ok());
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntil([&] { return client_->clock().valid; }));
+  const ClockOffset offset = client_->clock();
+  EXPECT_GT(offset.uncertainty_ns, 0);
+  EXPECT_LE(std::llabs(offset.offset_ns - kAhead), offset.uncertainty_ns);
+}
+
+TEST_F(ClientTest, AServerThatTalksNonsenseIsLeftAndTriedAgain) {
+  std::vector<std::unique_ptr<TestClient>> accepted;
+  auto listener = Listener::Open(io_, UnixAddress(), [&](Socket socket) {
+    accepted.push_back(std::make_unique<TestClient>(std::move(socket)));
+    accepted.back()->connection->Send("\xff\xff\xff");
+    accepted.back()->Read();
+  });
+  ASSERT_TRUE(listener.ok());
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntil([&] { return accepted.size() == 3; }));
+  EXPECT_NE(states_.back().second.find("no message of Footing's protocol"), std::string::npos);
+}
+
+TEST_F(ClientTest, StoppedInsideItsOwnHandlerItIsQuiet) {
+  StartServer();
+  ClientHandlers handlers;
+  int ticks = 0;
+  handlers.on_tick = [&](const v1::Tick&) {
+    ++ticks;
+    client_.reset();
+  };
+  client_ = std::make_unique<Client>(io_, ClientOn(UnixAddress()), handlers);
+  client_->Start();
+  ASSERT_TRUE(RunUntil([&] { return client_ == nullptr; }));
+  PublishMotion();
+  Settle();
+  EXPECT_EQ(ticks, 1);
+}
+
+}  // namespace
+}  // namespace footing::transport

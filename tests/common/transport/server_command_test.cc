@@ -1,0 +1,112 @@
+#include "tests/common/transport/server_fixture.h"
+
+namespace footing::transport {
+namespace {
+
+class ServerCommandTest : public ServerFixture {
+ protected:
+  std::unique_ptr<TestClient> WithRole(v1::Role role, std::size_t listener = 0) {
+    auto client = Connect(listener);
+    client->Read();
+    client->Send(Hello(role));
+    EXPECT_TRUE(WaitFor(*client, v1::Envelope::kWelcome));
+    return client;
+  }
+  v1::CommandResult Ask(TestClient& client, std::uint64_t id, std::uint32_t deadline_ms = 0) {
+    v1::Envelope message;
+    message.mutable_command()->set_id(id);
+    message.mutable_command()->set_deadline_ms(deadline_ms);
+    message.mutable_command()->mutable_set_rumble()->set_on(true);
+    const std::size_t before = client.Count(v1::Envelope::kCommandResult);
+    client.Send(message);
+    EXPECT_TRUE(RunUntil([&] { return client.Count(v1::Envelope::kCommandResult) == before + 1; }));
+    return client.messages.back().command_result();
+  }
+};
+
+TEST_F(ServerCommandTest, ControlAndAdminAreCarriedOutViewAndLogAreNot) {
+  StartServer();
+  for (const v1::Role role : {v1::ROLE_CONTROL, v1::ROLE_ADMIN}) {
+    const v1::CommandResult result = Ask(*WithRole(role), 7);
+    EXPECT_TRUE(result.ok());
+    EXPECT_EQ(result.id(), 7u);
+  }
+  EXPECT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[0].first.role, v1::ROLE_CONTROL);
+  for (const v1::Role role : {v1::ROLE_VIEW, v1::ROLE_LOG}) {
+    const v1::CommandResult result = Ask(*WithRole(role, 1), 7);
+    EXPECT_FALSE(result.ok());
+    EXPECT_NE(result.message().find("may only look"), std::string::npos);
+  }
+  EXPECT_EQ(commands_.size(), 2u);
+}
+
+TEST_F(ServerCommandTest, ARepeatedIdGetsItsFirstAnswerAndIsCarriedOutOnce) {
+  StartServer();
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  EXPECT_EQ(Ask(*client, 1).message(), "done 1");
+  EXPECT_EQ(Ask(*client, 2).message(), "done 2");
+  EXPECT_EQ(Ask(*client, 1).message(), "done 1");
+  EXPECT_EQ(commands_.size(), 2u);
+}
+
+TEST_F(ServerCommandTest, ACommandPastItsDeadlineIsNotCarriedOut) {
+  StartServer();
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  // Two commands arrive in one read; carrying out the first takes 50 ms.
+  on_command_ = [this] { now_ns_ += 50'000'000; };
+  for (const std::uint64_t id : {1u, 2u}) {
+    v1::Envelope message;
+    message.mutable_command()->set_id(id);
+    message.mutable_command()->set_deadline_ms(40);
+    client->Send(message);
+  }
+  ASSERT_TRUE(RunUntil([&] { return client->Count(v1::Envelope::kCommandResult) == 2; }));
+  EXPECT_EQ(commands_.size(), 1u);
+  EXPECT_NE(client->messages.back().command_result().message().find("40 ms"), std::string::npos);
+}
+
+TEST_F(ServerCommandTest, PingIsAnsweredWithFourStamps) {
+  StartServer();
+  const auto client = WithRole(v1::ROLE_VIEW, 1);
+  v1::Envelope message;
+  message.mutable_ping()->set_id(5);
+  message.mutable_ping()->set_t0_ns(77);
+  client->Send(message);
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kPong));
+  const v1::Pong& pong = client->Find(v1::Envelope::kPong)->pong();
+  EXPECT_EQ(pong.id(), 5u);
+  EXPECT_EQ(pong.t0_ns(), 77);
+  EXPECT_EQ(pong.t1_ns(), now_ns_);
+  EXPECT_EQ(pong.t2_ns(), now_ns_);
+}
+
+TEST_F(ServerCommandTest, AClientThatIsNotHeardOfIsPingedThenEnded) {
+  ServerOptions options = Options();
+  options.ping_interval_s = 0.01;
+  StartServer(options);
+  const auto client = WithRole(v1::ROLE_VIEW);
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kPing));  // Which it does not answer.
+  now_ns_ += 10'000'000'001;
+  ASSERT_TRUE(RunUntil([&] { return client->closed.has_value(); }));
+  EXPECT_EQ(client->Count(v1::Envelope::kPing), 1u);
+  ASSERT_TRUE(client->messages.back().has_goodbye());
+  EXPECT_NE(client->messages.back().goodbye().reason().find("10 s"), std::string::npos);
+}
+
+TEST_F(ServerCommandTest, AClientThatAsksAndNeverReadsIsEnded) {
+  StartServer();
+  const auto client = Connect();
+  client->Send(Hello());
+  v1::Envelope ping;
+  ping.mutable_ping()->set_id(1);
+  // Each Ping is answered; nobody reads the answers, so sooner or later they do not fit any more.
+  const std::string payload = ping.SerializeAsString();
+  ASSERT_TRUE(RunUntil([&] {
+    for (int i = 0; i < 100; ++i) client->connection->Send(payload);
+    return ended_.size() == 1;
+  }));
+}
+
+}  // namespace
+}  // namespace footing::transport

@@ -1,0 +1,119 @@
+#include "tests/common/transport/server_fixture.h"
+
+namespace footing::transport {
+namespace {
+
+class ServerHandshakeTest : public ServerFixture {
+ protected:
+  /// The Refused that the server answers to this Hello.
+  v1::Refused RefusalOf(const v1::Envelope& hello, std::size_t listener = 0) {
+    const auto client = Connect(listener);
+    client->Read();
+    client->Send(hello);
+    EXPECT_TRUE(RunUntil([&] { return client->closed.has_value(); }));
+    const v1::Envelope* refused = client->Find(v1::Envelope::kRefused);
+    return refused == nullptr ? v1::Refused() : refused->refused();
+  }
+};
+
+TEST_F(ServerHandshakeTest, WelcomeSaysWhoServesWhatUnderWhichLimits) {
+  StartServer();
+  for (const std::size_t listener : {0u, 1u}) {
+    const auto client = Connect(listener);
+    client->Read();
+    client->Send(Hello());
+    ASSERT_TRUE(WaitFor(*client, v1::Envelope::kWelcome));
+    const v1::Welcome& welcome = client->Find(v1::Envelope::kWelcome)->welcome();
+    EXPECT_EQ(welcome.server_id(), "test-server");
+    EXPECT_EQ(welcome.version(), "1.2.3");
+    EXPECT_EQ(welcome.epoch(), server_->epoch());
+    EXPECT_EQ(welcome.protocol_major(), 1u);
+    EXPECT_EQ(welcome.granted_role(), v1::ROLE_VIEW);
+    EXPECT_EQ(welcome.channels_size(), 3);
+    EXPECT_EQ(welcome.host_ns(), now_ns_);
+    EXPECT_EQ(welcome.limits().max_message_in_bytes(), 64u << 10);
+    EXPECT_EQ(welcome.limits().max_message_out_bytes(), 1u << 20);
+    EXPECT_EQ(welcome.limits().ring_s(), 30);
+  }
+  EXPECT_EQ(server_->statistics().accepted, 2u);
+}
+
+TEST_F(ServerHandshakeTest, AnotherMajorVersionIsRefusedWithBothVersions) {
+  StartServer();
+  v1::Envelope hello = Hello();
+  hello.mutable_hello()->set_protocol_major(2);
+  hello.mutable_hello()->set_protocol_minor(7);
+  const v1::Refused refused = RefusalOf(hello);
+  EXPECT_EQ(refused.reason(), v1::Refused::REASON_PROTOCOL_VERSION);
+  EXPECT_EQ(refused.message(),
+            "test-server speaks protocol 1.0, this client 2.7; update the server");
+}
+
+TEST_F(ServerHandshakeTest, AnotherMinorVersionIsWelcome) {
+  StartServer();
+  const auto client = Connect();
+  client->Read();
+  v1::Envelope hello = Hello();
+  hello.mutable_hello()->set_protocol_minor(42);
+  hello.mutable_hello()->add_wanted_capabilities("telepathy");
+  client->Send(hello);
+  EXPECT_TRUE(WaitFor(*client, v1::Envelope::kWelcome));
+}
+
+TEST_F(ServerHandshakeTest, ControlOverTcpIsRefusedWithTheWayToGetIt) {
+  StartServer();
+  const v1::Refused refused = RefusalOf(Hello(v1::ROLE_CONTROL), 1);
+  EXPECT_EQ(refused.reason(), v1::Refused::REASON_ROLE);
+  EXPECT_NE(refused.message().find("Unix socket"), std::string::npos) << refused.message();
+}
+
+TEST_F(ServerHandshakeTest, TheSameUserIsAdminOnTheUnixSocket) {
+  StartServer();
+  const auto client = Connect();
+  client->Read();
+  client->Send(Hello(v1::ROLE_ADMIN));
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kWelcome));
+  EXPECT_EQ(client->Find(v1::Envelope::kWelcome)->welcome().granted_role(), v1::ROLE_ADMIN);
+}
+
+TEST_F(ServerHandshakeTest, ASilentConnectionIsEndedAtTheHelloDeadline) {
+  ServerOptions options = Options();
+  options.hello_deadline_s = 0.02;
+  StartServer(options);
+  for (const std::size_t listener : {0u, 1u}) {
+    const auto client = Connect(listener);
+    client->Read();
+    ASSERT_TRUE(RunUntil([&] { return client->closed.has_value(); }));
+    const v1::Envelope* refused = client->Find(v1::Envelope::kRefused);
+    ASSERT_NE(refused, nullptr);
+    EXPECT_EQ(refused->refused().reason(), v1::Refused::REASON_HELLO_TIMEOUT);
+  }
+}
+
+TEST_F(ServerHandshakeTest, OneSessionTooManyIsRefusedAndTheOthersStay) {
+  ServerOptions options = Options();
+  options.max_sessions = 2;
+  StartServer(options);
+  const auto first = Subscribed(Subscribe());
+  const auto second = Subscribed(Subscribe());
+  const v1::Refused refused = RefusalOf(Hello());
+  EXPECT_EQ(refused.reason(), v1::Refused::REASON_TOO_MANY_SESSIONS);
+  PublishMotion();
+  EXPECT_TRUE(RunUntil([&] { return first->Sequences().size() == 1; }));
+  EXPECT_TRUE(RunUntil([&] { return second->Sequences().size() == 1; }));
+  EXPECT_EQ(server_->statistics().refused, 1u);
+}
+
+TEST_F(ServerHandshakeTest, StoppingSaysGoodbyeWithTheReason) {
+  StartServer();
+  const auto client = Subscribed(Subscribe());
+  server_->Stop("restarting after an update");
+  ASSERT_TRUE(RunUntil([&] { return client->closed.has_value(); }));
+  ASSERT_NE(client->Find(v1::Envelope::kGoodbye), nullptr);
+  EXPECT_EQ(client->messages.back().goodbye().reason(), "restarting after an update");
+  EXPECT_TRUE(RunUntil([&] { return ended_.size() == 1; }));
+  EXPECT_EQ(ended_[0].client_name, "test");
+}
+
+}  // namespace
+}  // namespace footing::transport

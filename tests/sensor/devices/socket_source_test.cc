@@ -1,0 +1,202 @@
+#include "daemon/sensor/devices/socket_source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/transport/framed_connection.h"
+#include "common/transport/framing.h"
+#include "common/transport/socket.h"
+#include "footing/v1/device.pb.h"
+#include "tests/common/transport/io_fixture.h"
+
+namespace footing::devices {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using transport::FramedConnection;
+
+/// A stand-in that sends what the test says.
+class Peer {
+ public:
+  explicit Peer(transport::Socket socket) {
+    transport::FramedHandlers handlers;
+    handlers.on_frame = [this](std::string_view payload) {
+      v1::DeviceEnvelope envelope;
+      ASSERT_TRUE(envelope.ParseFromArray(payload.data(), static_cast<int>(payload.size())));
+      received.push_back(envelope);
+    };
+    handlers.on_close = [this](const std::string&) { closed = true; };
+    connection = std::make_unique<FramedConnection>(std::move(socket), transport::FramedLimits(),
+                                                    std::move(handlers));
+    connection->Start();
+  }
+
+  void Send(const v1::DeviceEnvelope& envelope) { connection->Send(envelope.SerializeAsString()); }
+  void Attach(std::uint32_t slot, const std::string& serial, std::uint32_t product = 0x0306) {
+    v1::DeviceEnvelope envelope;
+    v1::DeviceAttach& attach = *envelope.mutable_attach();
+    attach.set_slot(slot);
+    attach.set_vendor(0x057e);
+    attach.set_product(product);
+    attach.set_name("Nintendo RVL-CNT-01");
+    attach.set_serial(serial);
+    attach.set_role(v1::DEVICE_ROLE_RIGHT_HAND);
+    Send(envelope);
+  }
+  void Report(std::uint32_t slot, const std::string& bytes) {
+    v1::DeviceEnvelope envelope;
+    envelope.mutable_input_report()->set_slot(slot);
+    envelope.mutable_input_report()->set_report(bytes);
+    Send(envelope);
+  }
+
+  std::unique_ptr<FramedConnection> connection;
+  std::vector<v1::DeviceEnvelope> received;
+  bool closed = false;
+};
+
+class SocketSourceTest : public transport::IoFixture {
+ protected:
+  SocketSourceTest()
+      : source_(
+            io_, AddressHere(), [this] { return ++last_handle_; }, Handlers()) {
+    const auto started = source_.Start();
+    EXPECT_TRUE(started) << started.error().message;
+  }
+
+  transport::Address AddressHere() const { return UnixAddress("devices.sock"); }
+  std::unique_ptr<Peer> Connect() {
+    std::unique_ptr<Peer> peer;
+    transport::Dial(io_, AddressHere(), [&peer](Result<transport::Socket> socket) {
+      ASSERT_TRUE(socket);
+      peer = std::make_unique<Peer>(std::move(socket).value());
+    });
+    EXPECT_TRUE(RunUntil([&peer] { return peer != nullptr; }));
+    return peer;
+  }
+
+  SourceHandlers Handlers() {
+    SourceHandlers handlers;
+    handlers.on_attach = [this](DeviceHandle device, const DeviceIdentity& identity) {
+      attached_.push_back(device);
+      identities_.push_back(identity);
+    };
+    handlers.on_report = [this](DeviceHandle device, const IncomingReport& report) {
+      reported_.push_back(device);
+      sizes_.push_back(report.bytes.size());
+    };
+    handlers.on_detach = [this](DeviceHandle device, const std::string&) {
+      detached_.push_back(device);
+    };
+    handlers.on_trouble = [this](const std::string& line) { trouble_.push_back(line); };
+    return handlers;
+  }
+
+  DeviceHandle last_handle_ = 0;
+  std::vector<DeviceHandle> attached_, reported_, detached_;
+  std::vector<DeviceIdentity> identities_;
+  std::vector<std::size_t> sizes_;
+  std::vector<std::string> trouble_;
+  SocketSource source_;
+};
+
+TEST_F(SocketSourceTest, AStandInAttachesReportsIsWrittenToAndGoes) {
+  auto peer = Connect();
+  peer->Attach(3, "52:00");
+  peer->Report(3, std::string(6, '\x31'));
+  EXPECT_TRUE(RunUntil([this] { return !reported_.empty(); }));
+  ASSERT_THAT(attached_, ElementsAre(1));
+  EXPECT_EQ(identities_[0].serial, "52:00");
+  EXPECT_TRUE(identities_[0].simulated);
+  EXPECT_EQ(identities_[0].wished_role, stream::DeviceRole::kRightHand);
+  EXPECT_THAT(sizes_, ElementsAre(6));
+
+  source_.Send(1, {0x15, 0x00});
+  EXPECT_TRUE(RunUntil([&peer] { return !peer->received.empty(); }));
+  EXPECT_EQ(peer->received[0].output().slot(), 3u);
+  EXPECT_EQ(peer->received[0].output().report(), std::string("\x15\x00", 2));
+
+  peer->connection.reset();
+  EXPECT_TRUE(RunUntil([this] { return !detached_.empty(); }));
+  EXPECT_THAT(detached_, ElementsAre(1));
+  source_.Send(1, {0x15, 0x00});  // To a device that is gone: nothing happens.
+}
+
+TEST_F(SocketSourceTest, AFaultAndADetachEndTheirDeviceAlone) {
+  auto peer = Connect();
+  peer->Attach(0, "a");
+  peer->Attach(1, "b");
+  peer->Attach(2, "c");
+  v1::DeviceEnvelope fault;
+  fault.mutable_fault()->set_slot(0);
+  fault.mutable_fault()->set_error_number(5);
+  peer->Send(fault);
+  v1::DeviceEnvelope detach;
+  detach.mutable_detach()->set_slot(1);
+  peer->Send(detach);
+  peer->Report(2, "x");
+  EXPECT_TRUE(RunUntil([this] { return !reported_.empty(); }));
+  EXPECT_THAT(detached_, ElementsAre(1, 2));
+  EXPECT_THAT(reported_, ElementsAre(3));
+}
+
+TEST_F(SocketSourceTest, WhatMakesNoSenseClosesItsConnectionWithOneLine) {
+  const std::pair<const char*, std::function<void(Peer&)>> kRubbish[] = {
+      {"not a DeviceEnvelope", [](Peer& peer) { peer.connection->Send(std::string(300, '\xff')); }},
+      {"message is empty", [](Peer& peer) { peer.Send({}); }},
+      {"slot with no device", [](Peer& peer) { peer.Report(9, "x"); }},
+      {"unknown", [](Peer& peer) { peer.Attach(0, "a", 0x1234); }},
+      {"serial is empty", [](Peer& peer) { peer.Attach(0, ""); }},
+      {"printable", [](Peer& peer) { peer.Attach(0, "a\nb"); }},
+      {"slot taken",
+       [](Peer& peer) {
+         peer.Attach(0, "a");
+         peer.Attach(0, "b");
+       }},
+      {"other way",
+       [](Peer& peer) {
+         v1::DeviceEnvelope envelope;
+         envelope.mutable_output()->set_slot(0);
+         peer.Send(envelope);
+       }},
+  };
+  auto healthy = Connect();
+  healthy->Attach(0, "healthy");
+  for (const auto& [line, send] : kRubbish) {
+    trouble_.clear();
+    auto peer = Connect();
+    send(*peer);
+    EXPECT_TRUE(RunUntil([&peer] { return peer->closed; }));
+    ASSERT_EQ(trouble_.size(), 1u) << line;
+    EXPECT_THAT(trouble_[0], HasSubstr(line));
+  }
+  healthy->Report(0, "x");
+  EXPECT_TRUE(RunUntil([this] { return !reported_.empty(); }));
+  EXPECT_FALSE(healthy->closed);
+  EXPECT_EQ(attached_.size(), detached_.size() + 1);
+}
+
+TEST_F(SocketSourceTest, AnOversizedMessageEndsTheConnection) {
+  auto peer = Connect();
+  peer->Attach(0, "a");
+  peer->Report(0, std::string(2000, 'x'));
+  EXPECT_TRUE(RunUntil([&peer] { return peer->closed; }));
+  EXPECT_EQ(attached_.size(), 1u);
+  EXPECT_EQ(detached_.size(), 1u);
+  EXPECT_TRUE(reported_.empty());
+}
+
+TEST_F(SocketSourceTest, ASecondListenerOnTheSameAddressIsAnError) {
+  SocketSource second(io_, AddressHere(), [] { return 1; }, {});
+  const auto started = second.Start();
+  ASSERT_FALSE(started);
+  EXPECT_THAT(started.error().message, HasSubstr("devices.sock"));
+}
+
+}  // namespace
+}  // namespace footing::devices

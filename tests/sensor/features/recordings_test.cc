@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "daemon/offline/eval/features_chain.h"
+#include "daemon/offline/eval/features_input.h"
+
+/// Real recordings: shaken stretches move, still and slowly tilted ones do not.
+namespace footing::eval {
+namespace {
+
+/// The files name no rate; footing-eval assumes the same (see features_command.cc).
+constexpr double kRateHz = 50;
+constexpr double kLongestFalseMotionS = 0.3;
+
+struct Stretch {
+  std::string file;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  std::string kind;
+};
+
+std::vector<Stretch> Labels() {
+  std::ifstream file(std::string(FOOTING_SOURCE_DIR) + "/tests/recordings/wiimote_grt.labels");
+  std::vector<Stretch> stretches;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream fields(line);
+    Stretch stretch;
+    fields >> stretch.file >> stretch.first >> stretch.last >> stretch.kind;
+    EXPECT_TRUE(fields) << line;
+    stretches.push_back(stretch);
+  }
+  return stretches;
+}
+
+/// Moving or not at every row; each class of the file is a recording of its own.
+std::vector<bool> MovingRows(const GrtRecording& recording) {
+  std::vector<bool> moving;
+  Chain chain(false);
+  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+    const auto& row = recording.rows[i];
+    if (i > 0 && row.stretch != recording.rows[i - 1].stretch) chain = Chain(false);
+    const auto now_ns = static_cast<std::int64_t>(1e9 / kRateHz) * static_cast<std::int64_t>(i);
+    chain.Add(kLeftDevice, now_ns, row.specific_force_mps2);
+    moving.push_back(chain.Compute(now_ns).devices[0].moving);
+  }
+  return moving;
+}
+
+double LongestMotionSeconds(const std::vector<bool>& moving, const Stretch& stretch) {
+  std::size_t longest = 0;
+  std::size_t run = 0;
+  for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
+    run = moving[i] ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  return static_cast<double>(longest) / kRateHz;
+}
+
+class Recordings : public testing::TestWithParam<const char*> {};
+
+TEST_P(Recordings, ShakenStretchesMoveAndStillOrTiltedOnesDoNot) {
+  const char* data = std::getenv("FOOTING_TEST_DATA");
+  if (data == nullptr || *data == '\0') GTEST_SKIP() << "FOOTING_TEST_DATA names no folder";
+  const auto recording =
+      ReadGrt(std::string(data) + "/devices/wiimote_grt/" + std::string(GetParam()));
+  ASSERT_TRUE(recording) << recording.error().message;
+  const auto moving = MovingRows(*recording);
+  int checked = 0;
+  for (const Stretch& stretch : Labels()) {
+    if (stretch.file != GetParam()) continue;
+    ASSERT_LT(stretch.last, moving.size());
+    ++checked;
+    if (stretch.kind == "shaken") {
+      const auto count =
+          std::count(moving.begin() + static_cast<std::ptrdiff_t>(stretch.first),
+                     moving.begin() + static_cast<std::ptrdiff_t>(stretch.last) + 1, true);
+      EXPECT_GE(static_cast<double>(count),
+                0.98 * static_cast<double>(stretch.last - stretch.first + 1))
+          << stretch.first;
+    } else {
+      EXPECT_LE(LongestMotionSeconds(moving, stretch), kLongestFalseMotionS) << stretch.first;
+    }
+  }
+  EXPECT_GE(checked, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(WiimoteGrt, Recordings,
+                         testing::Values("WiiAccShakeData.grt", "acc-orientation.grt"));
+
+}  // namespace
+}  // namespace footing::eval

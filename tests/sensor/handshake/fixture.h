@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/device_models/controller.h"
+#include "daemon/sensor/handshake/handshake.h"
+
+namespace footing::handshake {
+
+/// A handshake with a device model at the other end, 5 ms a step; faults are put in between.
+template <typename Device>
+class Conversation {
+ public:
+  Conversation(Device device, const std::string& name)
+      : device_(std::move(device)), handshake_({}, name) {}
+
+  /// What the host sends and what arrives from the device may be changed or dropped (false).
+  std::function<bool(reports::OutputReport&)> on_output;
+  std::function<bool(device_models::Report&)> on_input;
+  /// The device's data report of a step, if any.
+  std::function<std::optional<device_models::Report>(Device&)> sample;
+
+  void Advance(double seconds) {
+    for (int step = 0; step < static_cast<int>(seconds / kStepS); ++step) {
+      now_ns_ += static_cast<std::int64_t>(kStepS * 1e9);
+      Handshake::Outputs outputs;
+      handshake_.Advance(now_ns_, outputs);
+      for (auto& output : outputs) Send(output);
+      if (!sample) continue;
+      if (auto report = sample(device_)) Receive(*report);
+    }
+  }
+
+  void Receive(device_models::Report report) {
+    if (on_input && !on_input(report)) return;
+    Handshake::Outputs outputs;
+    handshake_.Take(now_ns_, reports::Decode(report), outputs);
+    for (auto& output : outputs) Send(output);
+  }
+
+  Handshake& handshake() { return handshake_; }
+  Device& device() { return device_; }
+  std::int64_t now_ns() const { return now_ns_; }
+  /// Everything sent to the device, by id.
+  int Sent(std::uint8_t id) const {
+    int count = 0;
+    for (const auto& output : sent_) count += output[0] == id ? 1 : 0;
+    return count;
+  }
+
+ private:
+  static constexpr double kStepS = 0.005;
+
+  void Send(reports::OutputReport output) {
+    sent_.push_back(output);
+    if (on_output && !on_output(output)) return;
+    for (auto& answer : device_.HandleOutput(output)) Receive(std::move(answer));
+  }
+
+  Device device_;
+  Handshake handshake_;
+  std::vector<reports::OutputReport> sent_;
+  std::int64_t now_ns_ = 0;
+};
+
+}  // namespace footing::handshake

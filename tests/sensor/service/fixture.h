@@ -1,0 +1,126 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "common/device_models/balance_board.h"
+#include "common/device_models/wiimote.h"
+#include "daemon/sensor/service/hub.h"
+
+namespace footing::sensor {
+
+/// A hub with device models at its ports and a clock that the test moves: ticks every 10 ms, a
+/// report of every attached model a tick.
+class Bench {
+ public:
+  using Model = std::variant<device_models::Wiimote, device_models::BalanceBoard>;
+
+  explicit Bench(const Config& config = {})
+      : hub_(config, {[this](devices::DeviceHandle handle, const reports::OutputReport& report) {
+                        Answer(handle, report);
+                      },
+                      [this](const std::string& line) { log.push_back(line); },
+                      [this] { return now_ns_; }}) {}
+
+  devices::DeviceHandle Attach(Model model, const std::string& serial = "", bool simulated = true) {
+    const auto& own = std::visit(
+        [](const auto& one) -> const auto& { return one.identity(); }, model);
+    devices::DeviceIdentity identity;
+    identity.vendor = own.vendor;
+    identity.product = own.product;
+    identity.name = own.name;
+    identity.serial = serial.empty() ? own.serial : serial;
+    identity.place = "bench";
+    identity.simulated = simulated;
+    identity.wished_role = wish;
+    const devices::DeviceHandle handle = ++last_handle_;
+    models_.emplace(handle, std::move(model));
+    hub_.OnAttach(handle, identity);
+    return handle;
+  }
+  void Detach(devices::DeviceHandle handle) {
+    models_.erase(handle);
+    hub_.OnDetach(handle, "pulled");
+  }
+  void Receive(devices::DeviceHandle handle, const std::vector<std::uint8_t>& report) {
+    hub_.OnReport(handle, {now_ns_, report, 0});
+  }
+
+  /// Runs ticks; what they publish adds up in `content`.
+  void Advance(double seconds) {
+    for (int tick = 0; tick < static_cast<int>(seconds / 0.01 + 0.5); ++tick) {
+      now_ns_ += 10'000'000;
+      for (auto answers = std::exchange(answers_, {}); const auto& [handle, report] : answers) {
+        Receive(handle, report);
+      }
+      for (auto& [handle, model] : models_) {
+        if (silent) continue;
+        if (const auto report = Sample(model)) Receive(handle, *report);
+      }
+      Append(hub_.Tick());
+    }
+  }
+
+  const stream::DeviceStatus& StatusOf(const std::string& serial) const {
+    for (const auto& status : content.status) {
+      if (status.serial == serial) return status;
+    }
+    ADD_FAILURE() << "no status of " << serial;
+    static const stream::DeviceStatus kNone;
+    return kNone;
+  }
+  template <typename Device>
+  Device& ModelOf(devices::DeviceHandle handle) {
+    return std::get<Device>(models_.at(handle));
+  }
+  Hub& hub() { return hub_; }
+  std::int64_t now_ns() const { return now_ns_; }
+
+  TickContent content;
+  std::vector<std::string> log;
+  std::function<Eigen::Vector3d(double t_s)> force = [](double) {
+    return Eigen::Vector3d(0, 0, -9.80665);
+  };
+  device_models::CornerForces corners{150, 150, 150, 150};
+  stream::DeviceRole wish = stream::DeviceRole::kUnspecified;
+  bool silent = false;
+
+ private:
+  std::optional<device_models::Report> Sample(Model& model) {
+    if (auto* wiimote = std::get_if<device_models::Wiimote>(&model)) {
+      return wiimote->Sample(force(static_cast<double>(now_ns_) * 1e-9));
+    }
+    return std::get<device_models::BalanceBoard>(model).Sample(corners);
+  }
+  void Answer(devices::DeviceHandle handle, const reports::OutputReport& report) {
+    const auto model = models_.find(handle);
+    if (model == models_.end()) return;
+    auto answers =
+        std::visit([&report](auto& one) { return one.HandleOutput(report); }, model->second);
+    for (auto& answer : answers) answers_.emplace_back(handle, std::move(answer));
+  }
+  void Append(TickContent tick) {
+    const auto add = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    add(content.motion, tick.motion);
+    add(content.boards, tick.boards);
+    add(content.raw, tick.raw);
+    content.features = std::move(tick.features);
+    if (tick.has_status) content.status = std::move(tick.status);
+  }
+
+  std::int64_t now_ns_ = 1'000'000'000;
+  devices::DeviceHandle last_handle_ = 0;
+  std::map<devices::DeviceHandle, Model> models_;
+  std::deque<std::pair<devices::DeviceHandle, device_models::Report>> answers_;
+  Hub hub_;
+};
+
+}  // namespace footing::sensor

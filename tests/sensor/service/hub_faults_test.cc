@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/sensor/service/fixture.h"
+
+namespace footing::sensor {
+namespace {
+
+using device_models::Wiimote;
+using stream::CalibrationOrigin;
+using stream::DeviceState;
+
+std::string Serial(std::size_t number) {
+  std::string serial = "serial ";
+  serial += std::to_string(number);
+  return serial;
+}
+
+TEST(HubFaults, RubbishFromOneDeviceIsCountedAndDisturbsNoOther) {
+  Bench bench;
+  const auto bad = bench.Attach(Wiimote(1), "bad");
+  bench.Attach(Wiimote(2), "good");
+  bench.Advance(0.5);
+  std::mt19937 random(4);
+  const std::uint64_t good_before = bench.StatusOf("good").reports;
+  for (int tick = 0; tick < 500; ++tick) {
+    for (int i = 0; i < 5; ++i) {
+      std::vector<std::uint8_t> report(random() % 80);
+      for (auto& byte : report) byte = static_cast<std::uint8_t>(random());
+      bench.Receive(bad, report);
+    }
+    bench.Advance(0.01);
+  }
+  EXPECT_GT(bench.StatusOf("bad").undecodable, 1000u);
+  EXPECT_NEAR(static_cast<double>(bench.StatusOf("good").reports - good_before), 500, 25);
+  EXPECT_EQ(bench.StatusOf("good").undecodable, 0u);
+  EXPECT_EQ(bench.StatusOf("good").state, DeviceState::kLive);
+  for (const auto& sample : bench.content.motion) {
+    ASSERT_TRUE(sample.specific_force_mps2.allFinite());
+    ASSERT_TRUE(sample.filtered_mps2.allFinite());
+  }
+  for (const auto& sample : bench.content.boards) ASSERT_TRUE(std::isfinite(sample.cop_x_m));
+}
+
+TEST(HubFaults, AFloodIsBoundedWithinATickAndSaidSo) {
+  Bench bench;
+  const auto handle = bench.Attach(Wiimote(1), "a");
+  bench.Advance(0.5);
+  bench.content = {};
+  for (int i = 0; i < 100'000; ++i) bench.Receive(handle, {0x31, 0, 0, 0x80, 0x80, 0x9a});
+  bench.Advance(0.3);
+  EXPECT_LE(bench.content.motion.size(), kMaxSamplesPerTick + 100);
+  EXPECT_LE(bench.content.raw.size(), kMaxSamplesPerTick + 100);
+  EXPECT_NE(bench.StatusOf("a").note, "");
+}
+
+TEST(HubFaults, TheSameSerialAgainTakesTheOldOnesPlace) {
+  Bench bench;
+  const auto old_handle = bench.Attach(Wiimote(1), "a");
+  bench.Advance(0.5);
+  bench.Attach(Wiimote(1), "a");
+  bench.Detach(old_handle);
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.content.status.size(), 1u);
+  EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kLive);
+}
+
+TEST(HubFaults, AStandInCannotTakeARealDevicesPlace) {
+  Bench bench;
+  bench.Attach(Wiimote(1), "a", false);
+  bench.Advance(0.5);
+  bench.Attach(Wiimote(2), "a", true);
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.content.status.size(), 1u);
+  EXPECT_FALSE(bench.StatusOf("a").simulated);
+  EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kLive);
+}
+
+TEST(HubFaults, EndlesslyManySerialsAreForgottenAgain) {
+  Bench bench;
+  bench.Attach(Wiimote(1), "stays");
+  for (std::size_t i = 0; i < 300; ++i) bench.Detach(bench.Attach(Wiimote(1), Serial(i)));
+  bench.Advance(0.5);
+  EXPECT_LE(bench.content.status.size(), Hub::kMaxDevices);
+  EXPECT_EQ(bench.StatusOf("stays").state, DeviceState::kLive);
+}
+
+TEST(HubFaults, TooManyDevicesAtOnceAreRefusedWithALine) {
+  Bench bench;
+  for (std::size_t i = 0; i < Hub::kMaxDevices + 3; ++i) {
+    bench.Attach(Wiimote(i), Serial(i));
+  }
+  bench.Advance(0.2);
+  EXPECT_EQ(bench.content.status.size(), Hub::kMaxDevices);
+  EXPECT_NE(bench.log.back().find("ignored"), std::string::npos);
+}
+
+TEST(HubFaults, AnUncalibratedDeviceIsLiveAndEverySampleSaysSo) {
+  Bench bench;
+  Wiimote wiimote(1);
+  const auto blocks = wiimote.controller().memory().eeprom().subspan(0x16, 20);
+  std::fill(blocks.begin(), blocks.end(), std::uint8_t{0xff});
+  bench.Attach(wiimote, "a");
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("a").calibration, CalibrationOrigin::kDefaults);
+  EXPECT_NE(bench.StatusOf("a").note, "");
+  ASSERT_FALSE(bench.content.motion.empty());
+  for (const auto& sample : bench.content.motion) EXPECT_TRUE(sample.uncalibrated);
+}
+
+TEST(HubFaults, UnpluggedInTheHandshakeNothingRemains) {
+  for (int ticks = 1; ticks < 12; ++ticks) {
+    Bench bench;
+    const auto handle = bench.Attach(Wiimote(1), "a");
+    bench.Advance(0.01 * ticks);
+    bench.Detach(handle);
+    bench.Advance(0.3);
+    EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kLost);
+    bench.Attach(Wiimote(1), "a");
+    bench.Advance(0.5);
+    EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kLive);
+  }
+}
+
+}  // namespace
+}  // namespace footing::sensor

@@ -1,0 +1,219 @@
+#include "daemon/sensor/service/hub.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/units/units.h"
+#include "tests/sensor/service/fixture.h"
+
+namespace footing::sensor {
+namespace {
+
+using device_models::BalanceBoard;
+using device_models::Wiimote;
+using stream::CalibrationOrigin;
+using stream::DeviceRole;
+using stream::DeviceState;
+
+/// One count of y and z is 9 bits: about 19 mg.
+constexpr double kCountMps2 = 2 * kStandardGravityMps2 / 103;
+
+TEST(Hub, AStillWiimoteReadsGravityInTheSensorFrame) {
+  Bench bench;
+  bench.Attach(Wiimote(1));
+  bench.Advance(1);
+  ASSERT_GT(bench.content.motion.size(), 80u);
+  std::uint64_t count = 0;
+  std::int64_t sampled_ns = 0;
+  for (const auto& sample : bench.content.motion) {
+    EXPECT_NEAR(sample.specific_force_mps2.x(), 0, kCountMps2);
+    EXPECT_NEAR(sample.specific_force_mps2.y(), 0, kCountMps2);
+    EXPECT_NEAR(sample.specific_force_mps2.z(), -kStandardGravityMps2, kCountMps2);
+    EXPECT_TRUE(sample.simulated);
+    EXPECT_FALSE(sample.uncalibrated);
+    EXPECT_EQ(sample.clipped_axes, 0u);
+    EXPECT_EQ(sample.report_count, ++count);
+    EXPECT_LE(sample.sampled_ns, sample.received_ns);
+    EXPECT_GT(sample.sampled_ns, sampled_ns);
+    sampled_ns = sample.sampled_ns;
+  }
+}
+
+TEST(Hub, NoSampleIsLostAndEachIsPublishedOnce) {
+  Bench bench;
+  const auto handle = bench.Attach(Wiimote(1));
+  bench.Advance(0.5);
+  const std::size_t before = bench.content.motion.size();
+  // Seven reports within one tick, as after a stall.
+  for (int i = 0; i < 7; ++i) bench.Receive(handle, {0x31, 0, 0, 0x80, 0x80, 0x9a});
+  bench.Advance(0.01);
+  EXPECT_EQ(bench.content.motion.size(), before + 8);
+}
+
+TEST(Hub, SwingingHandsHaveFrequencyPhaseAndAmplitude) {
+  Bench bench;
+  bench.Attach(Wiimote(1));
+  bench.Attach(Wiimote(2));
+  bench.force = [](double t_s) {
+    return Eigen::Vector3d(0, 6 * std::sin(2 * kPi * 1.5 * t_s), -kStandardGravityMps2);
+  };
+  bench.Advance(5);
+  ASSERT_EQ(bench.content.features.size(), 1u);
+  const stream::RigFeatures& rig = bench.content.features[0];
+  EXPECT_EQ(rig.rig, "main");
+  ASSERT_EQ(rig.devices.size(), 2u);
+  for (const auto& hand : rig.devices) {
+    EXPECT_TRUE(hand.moving);
+    ASSERT_TRUE(hand.frequency_valid);
+    EXPECT_NEAR(hand.frequency_hz, 1.5, 0.03);
+    EXPECT_NEAR(hand.amplitude_mps2, 6, 0.3);
+    EXPECT_TRUE(hand.simulated);
+  }
+  ASSERT_EQ(rig.pairs.size(), 1u);
+  EXPECT_TRUE(rig.pairs[0].phase_valid);
+  EXPECT_NEAR(rig.pairs[0].phase_rad, 0, DegreesToRadians(5));
+  EXPECT_EQ(rig.newest_received_ns, bench.now_ns());
+  EXPECT_GE(rig.decoded_ns, rig.newest_received_ns);
+  EXPECT_GE(rig.computed_ns, rig.decoded_ns);
+}
+
+TEST(Hub, ABoardReadsItsCornersAndTheCentreOfPressure) {
+  Bench bench;
+  bench.corners = {50, 250, 50, 250};  // Top left, top right, bottom left, bottom right.
+  bench.Attach(BalanceBoard(1));
+  bench.Advance(1);
+  ASSERT_GT(bench.content.boards.size(), 50u);
+  const stream::BoardSample& sample = bench.content.boards.back();
+  const double count_n = KilogramsToNewtons(0.0115);  // The coarsest count of a corner.
+  EXPECT_NEAR(sample.top_left_n, 50, count_n);
+  EXPECT_NEAR(sample.top_right_n, 250, count_n);
+  EXPECT_NEAR(sample.bottom_left_n, 50, count_n);
+  EXPECT_NEAR(sample.bottom_right_n, 250, count_n);
+  EXPECT_NEAR(sample.total_n, 600, 4 * count_n);
+  EXPECT_TRUE(sample.cop_valid);
+  EXPECT_NEAR(sample.cop_x_m, 0.433 / 2 * (500.0 - 100.0) / 600.0, 1e-3);
+  EXPECT_NEAR(sample.cop_y_m, 0, 1e-3);
+  EXPECT_TRUE(sample.contact);
+  EXPECT_TRUE(sample.repeated);
+  EXPECT_TRUE(sample.simulated);
+  const auto& status = bench.StatusOf(BalanceBoard(1).identity().serial);
+  EXPECT_EQ(status.role, DeviceRole::kLeftBoard);
+  EXPECT_GT(status.battery_fraction, 0.9);
+}
+
+TEST(Hub, RolesComeFromTheConfigThenTheWishThenTheOrder) {
+  Config config;
+  config.roles["bound"] = "second/right_leg";
+  Bench bench(config);
+  bench.Attach(Wiimote(1), "first");
+  bench.wish = DeviceRole::kRightHand;
+  bench.Attach(Wiimote(2), "wishes");
+  bench.Attach(Wiimote(3), "bound");
+  bench.Attach(Wiimote(4), "too late");
+  bench.Advance(0.3);
+  EXPECT_EQ(bench.StatusOf("first").role, DeviceRole::kLeftHand);
+  EXPECT_EQ(bench.StatusOf("wishes").role, DeviceRole::kRightHand);
+  EXPECT_EQ(bench.StatusOf("bound").rig, "second");
+  EXPECT_EQ(bench.StatusOf("bound").role, DeviceRole::kRightLeg);
+  EXPECT_EQ(bench.StatusOf("too late").role, DeviceRole::kLeftLeg);
+  EXPECT_EQ(bench.content.features.size(), 2u);
+}
+
+TEST(Hub, ADeviceThatComesBackKeepsItsNumberAndRole) {
+  Bench bench;
+  const auto handle = bench.Attach(Wiimote(1), "a");
+  bench.Attach(Wiimote(2), "b");
+  bench.Advance(0.5);
+  bench.Detach(handle);
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kLost);
+  EXPECT_EQ(bench.StatusOf("a").note, "pulled");
+  EXPECT_EQ(bench.StatusOf("b").state, DeviceState::kLive);
+  bench.Attach(Wiimote(1), "a");
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kLive);
+  EXPECT_EQ(bench.StatusOf("a").device, 1u);
+  EXPECT_EQ(bench.StatusOf("a").role, DeviceRole::kLeftHand);
+}
+
+TEST(Hub, ADeviceWithoutDataIsStale) {
+  Bench bench;
+  bench.Attach(Wiimote(1), "a");
+  bench.Advance(0.5);
+  bench.silent = true;
+  bench.Advance(2);
+  EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kStale);
+  EXPECT_NE(bench.StatusOf("a").note, "");
+  EXPECT_EQ(bench.StatusOf("a").report_rate_hz, 0);
+}
+
+TEST(Hub, AssigningATakenRoleSwapsTheTwo) {
+  Bench bench;
+  bench.Attach(Wiimote(1), "a");
+  bench.Attach(Wiimote(2), "b");
+  bench.Advance(0.3);
+  ASSERT_TRUE(bench.hub().AssignRole("a", {"main", DeviceRole::kRightHand}));
+  bench.Advance(0.3);
+  EXPECT_EQ(bench.StatusOf("a").role, DeviceRole::kRightHand);
+  EXPECT_EQ(bench.StatusOf("b").role, DeviceRole::kLeftHand);
+  EXPECT_FALSE(bench.hub().AssignRole("a", {"main", DeviceRole::kLeftBoard}));
+  EXPECT_FALSE(bench.hub().AssignRole("nobody", {"main", DeviceRole::kLeftHand}));
+}
+
+TEST(Hub, TheMotorStopsWithItsLeaseItsSessionAndTheDaemon) {
+  Bench bench;
+  const auto handle = bench.Attach(Wiimote(1), "a");
+  bench.Advance(0.5);
+  auto& wiimote = bench.ModelOf<Wiimote>(handle);
+  ASSERT_TRUE(bench.hub().SetRumble(7, 1, true, 0.3));
+  bench.Advance(0.1);
+  EXPECT_TRUE(wiimote.rumble());
+  ASSERT_TRUE(bench.hub().SetLeds(1, 0x9));
+  bench.Advance(0.1);
+  EXPECT_TRUE(wiimote.rumble());  // Kept across another report.
+  EXPECT_EQ(wiimote.leds(), 0x9);
+  bench.Advance(0.2);
+  EXPECT_FALSE(wiimote.rumble());
+
+  ASSERT_TRUE(bench.hub().SetRumble(7, 1, true, 5));
+  bench.Advance(0.1);
+  bench.hub().EndSession(8);
+  bench.Advance(0.1);
+  EXPECT_TRUE(wiimote.rumble());
+  bench.hub().EndSession(7);
+  bench.Advance(0.1);
+  EXPECT_FALSE(wiimote.rumble());
+
+  ASSERT_TRUE(bench.hub().SetRumble(7, 1, true, 5));
+  bench.Advance(0.1);
+  bench.hub().StopMotors();
+  EXPECT_FALSE(wiimote.rumble());
+  EXPECT_FALSE(bench.hub().SetRumble(7, 99, true, 1));
+}
+
+TEST(Hub, RawReportsOfBothDirectionsAreKept) {
+  Bench bench;
+  bench.Attach(Wiimote(1));
+  bench.Advance(0.5);
+  std::size_t in = 0, out = 0;
+  for (const auto& raw : bench.content.raw) {
+    (raw.to_device ? out : in) += 1;
+    EXPECT_TRUE(raw.simulated);
+  }
+  EXPECT_GT(in, 40u);
+  EXPECT_GE(out, 4u);  // Status, calibration, mode, LEDs.
+}
+
+TEST(Hub, ClippedSamplesAreFlaggedAndCounted) {
+  Bench bench;
+  bench.Attach(Wiimote(1), "a");
+  bench.force = [](double) { return Eigen::Vector3d(200, 0, -9.81); };
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.content.motion.back().clipped_axes, 1u);
+  EXPECT_GT(bench.StatusOf("a").clipped, 30u);
+}
+
+}  // namespace
+}  // namespace footing::sensor

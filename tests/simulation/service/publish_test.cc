@@ -1,0 +1,51 @@
+#include "daemon/simulation/service/publish.h"
+
+#include <gtest/gtest.h>
+
+namespace footing::simulation {
+namespace {
+
+TEST(Publish, AppliedInputsComeBackBitForBit) {
+  Applied applied;
+  applied.step = 1234;
+  applied.inputs.sensor_epoch = 5;
+  applied.inputs.sensor_sequence = 6;
+  engine::EngineInputs& inputs = applied.inputs.engine;
+  inputs.features_number = 7;
+  inputs.features.left = {true, true, true, 1.0 / 3, true, 7.7, true, -0.1};
+  inputs.features.right = {true, false, false, 0, false, 0, true, 0.2};
+  inputs.features.phase_valid = true;
+  inputs.features.phase_rad = 3.14159;
+  inputs.features.simulated = true;
+  inputs.direct = true;
+  inputs.direct_command = {stream::Gait::kJump, 0.7, 0.3, -0.087};
+  inputs.push_number = 2;
+  inputs.push_impulse_W_ns = {1.5, -2.5};
+  inputs.put_back_number = 3;
+
+  const std::string bytes = ToAppliedInput(applied).SerializeAsString();
+  v1::AppliedInput message;
+  ASSERT_TRUE(message.ParseFromString(bytes));
+  const Applied back = FromAppliedInput(message);
+  EXPECT_EQ(ToAppliedInput(back).SerializeAsString(), bytes);
+  EXPECT_EQ(back.inputs.engine.features.left.frequency_hz, 1.0 / 3);
+  EXPECT_EQ(back.inputs.engine.direct_command, inputs.direct_command);
+}
+
+TEST(Publish, AFrameCarriesEveryLinkAndContact) {
+  Frame frame;
+  frame.output.step = 10;
+  frame.output.state_hash = 99;
+  frame.output.gait.phase = "rise";
+  frame.overruns = 4;
+  const v1::CharacterFrame message = ToCharacterFrame(frame, "straight", "one");
+  ASSERT_EQ(message.characters_size(), 1);
+  EXPECT_EQ(message.characters(0).links_size(), engine::kLinkCount);
+  EXPECT_EQ(message.characters(0).contacts_size(), engine::kContactCount);
+  EXPECT_EQ(message.characters(0).gait().phase(), "rise");
+  EXPECT_EQ(message.state_hash(), 99u);
+  EXPECT_EQ(message.overruns(), 4u);
+}
+
+}  // namespace
+}  // namespace footing::simulation
