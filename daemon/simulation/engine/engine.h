@@ -49,7 +49,8 @@ enum class EventKind {
   kPutBack,
   kGaitCommanded,  ///< Another gait is commanded than before.
   kGaitChanged,    ///< Another gait's controller runs than before.
-  kGaitTakenOver,  ///< The commanded gait's controller runs: the command's wait for contact is over.
+  kGaitTakenOver,  ///< The commanded gait's controller runs: the command's wait for contact is
+                   ///< over.
   kStreamLost,     ///< No new features for longer than the timeout.
   kStreamBack,
 };

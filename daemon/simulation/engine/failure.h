@@ -2,6 +2,7 @@
 
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/body_state.h"
+#include "daemon/simulation/physics/world.h"
 
 namespace footing::engine {
 
@@ -11,6 +12,6 @@ inline constexpr double kLargestTiltRad = 1.0471975511965976;  ///< 60 degrees.
 
 /// Why this state is a fall, as text of static storage; null when it is none.
 const char* WhyFallen(const stream::Track& track, const biped::BodyState& body,
-                      bool other_contact);
+                      const physics::Observation& seen);
 
 }  // namespace footing::engine

@@ -85,9 +85,8 @@ void GaitEngine::Parts::Command(const EngineInputs& inputs) {
 void GaitEngine::Parts::StepWorld() {
   output.joint_efforts = {};
   if (!state.fallen) {  // A fallen character is limp.
-    output.joint_efforts =
-        gait::Advance(body, biped, gains, state.command, sees_ground ? &track : nullptr,
-                      config.step_s, state.gait);
+    output.joint_efforts = gait::Advance(body, biped, gains, state.command,
+                                         sees_ground ? &track : nullptr, config.step_s, state.gait);
   }
   output.push_W_n.setZero();
   if (state.inputs.push_steps_left > 0) {
@@ -115,7 +114,7 @@ void GaitEngine::Parts::NoteGait(stream::Gait before) {
 
 void GaitEngine::Parts::NoteFall() {
   if (state.fallen) return;
-  const char* why = WhyFallen(track, body, world.Observe().other_contact);
+  const char* why = WhyFallen(track, body, world.Observe());
   if (why == nullptr) return;
   state.fallen = true;
   state.fallen_time_s = TimeS();

@@ -72,7 +72,7 @@ struct HoppingGains {
   double run_lift_off_mps = 1.3;     ///< Vertical.
   double velocity_gain_s = 0.06;     ///< k_R of equation (2).
   double faster_limit_mps = 1.5;     ///< v - v_d is clamped to [-slower, faster] fore and aft.
-  double slower_limit_mps = 0.6;
+  double slower_limit_mps = 1.2;
   double speed_gain_s = -0.012;  ///< Foothold by desired speed: the slow and the fast set in one.
   double run_foot_spacing_m = 0.03;  ///< Half.
   double foothold_limit_m = 0.71;

@@ -28,8 +28,7 @@ Result<ModelPointer> Compile(const std::string& mjcf) {
   std::memcpy(files->filedata[0], mjcf.data(), mjcf.size());
 
   std::array<char, 1000> reason{};
-  ModelPointer model(
-      mj_loadXML(name, files.get(), reason.data(), static_cast<int>(reason.size())));
+  ModelPointer model(mj_loadXML(name, files.get(), reason.data(), static_cast<int>(reason.size())));
   if (!model) {
     return InvalidData(std::string("the world does not compile: ") + reason.data() +
                        "; check the numbers of the biped's and the track's file");

@@ -36,6 +36,9 @@ void ReadMotion(const mjModel& model, const mjData& state, const std::array<int,
                 const std::array<int, kLegs>& hips, const std::array<int, kLegs>& feet,
                 double mass_kg, Observation& observation) {
   const int root = links[0];
+  observation.diverged = state.warning[mjWARN_BADQPOS].number > 0 ||
+                         state.warning[mjWARN_BADQVEL].number > 0 ||
+                         state.warning[mjWARN_BADQACC].number > 0;
   observation.p_WB = Vector(state.qpos);
   observation.v_WB = Vector(state.qvel);
   observation.R_WB =

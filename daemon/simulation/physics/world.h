@@ -33,15 +33,16 @@ struct Observation {
   Eigen::Vector3d v_WB = Eigen::Vector3d::Zero();  ///< m/s.
   Eigen::Vector3d w_WB = Eigen::Vector3d::Zero();  ///< rad/s.
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
-  std::array<double, kJoints> joint_position{};        ///< rad or m.
-  std::array<double, kJoints> joint_velocity{};        ///< rad/s or m/s.
-  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();      ///< Whole mechanism's COM, m.
-  Eigen::Vector3d v_WC = Eigen::Vector3d::Zero();      ///< m/s.
-  std::array<Eigen::Vector3d, kLegs> p_WH{};           ///< Hips, m.
-  std::array<Eigen::Vector3d, kLegs> p_WF{};           ///< Feet, m.
-  std::array<double, kLegs> normal_force_n{};          ///< Ground on foot.
+  std::array<double, kJoints> joint_position{};                 ///< rad or m.
+  std::array<double, kJoints> joint_velocity{};                 ///< rad/s or m/s.
+  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();               ///< Whole mechanism's COM, m.
+  Eigen::Vector3d v_WC = Eigen::Vector3d::Zero();               ///< m/s.
+  std::array<Eigen::Vector3d, kLegs> p_WH{};                    ///< Hips, m.
+  std::array<Eigen::Vector3d, kLegs> p_WF{};                    ///< Feet, m.
+  std::array<double, kLegs> normal_force_n{};                   ///< Ground on foot.
   Eigen::Vector3d contact_force_W_n = Eigen::Vector3d::Zero();  ///< All contacts together.
   bool other_contact = false;  ///< Something that is not a foot touches.
+  bool diverged = false;       ///< A number left its range; MuJoCo has started over by itself.
 };
 
 /// All that decides the future, as a plain value; see MuJoCo's remark that qacc_warmstart belongs

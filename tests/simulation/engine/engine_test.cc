@@ -38,6 +38,20 @@ TEST(Engine, ARestoredStateGoesOnBitForBitInAnotherEngine) {
   EXPECT_EQ(second.Output().gait.steps, first.Output().gait.steps);
 }
 
+TEST(Engine, ReplayedForcesLeadBareStepsToTheSameHash) {
+  GaitEngine engine = NewEngine();
+  physics::World bare = test::LevelWorld();
+  for (const Gait gait : {Gait::kWalk, Gait::kRun, Gait::kJump}) {
+    const EngineInputs inputs = Direct(Command(gait, 0.75));
+    Simulate(engine, inputs, 3.333);
+    bare.Restore(engine.Save().world);
+    Simulate(engine, inputs, 1, [&](const EngineOutput& output) {
+      bare.StepBare(output.joint_efforts, output.push_W_n);
+    });
+    EXPECT_EQ(bare.StateHash(), engine.Output().state_hash) << Name(gait);
+  }
+}
+
 TEST(Engine, SimulationTimeIsTheStepTimesH) {
   GaitEngine engine = NewEngine();
   Simulate(engine, {}, 1.234);

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
+#include <sstream>
 #include <utility>
 
+#include "common/config/data_file.h"
 #include "daemon/simulation/gait/limits.h"
 #include "daemon/simulation/gait/phase.h"
 #include "daemon/simulation/gait/transition.h"
@@ -13,35 +16,71 @@ namespace {
 using stream::Gait;
 constexpr Gait kGaits[] = {Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
 
-TEST(WalkingMachine, HasTheArrowsOfFigure5AndNoOther) {
-  using P = WalkingPhase;
-  std::set<std::pair<P, P>> arrows;
-  for (const P phase : {P::kDoubleSupport, P::kRise, P::kFall}) {
-    for (int cues = 0; cues < 8; ++cues) {
-      const P next = Next(phase, {(cues & 1) != 0, (cues & 2) != 0, (cues & 4) != 0});
+/// Every arrow from `phases` that some combination of the cues takes.
+template <typename Cues, typename Phase>
+std::set<std::pair<Phase, Phase>> Arrows(std::initializer_list<Phase> phases) {
+  std::set<std::pair<Phase, Phase>> arrows;
+  static_assert(sizeof(Cues) <= 5, "all cues are flags");
+  for (const Phase phase : phases) {
+    for (int bits = 0; bits < 1 << sizeof(Cues); ++bits) {
+      Cues cues;
+      auto* flags = reinterpret_cast<bool*>(&cues);
+      for (std::size_t i = 0; i < sizeof(Cues); ++i) flags[i] = (bits >> i & 1) != 0;
+      const Phase next = Next(phase, cues);
       if (next != phase) arrows.insert({phase, next});
     }
   }
-  EXPECT_EQ(arrows, (std::set<std::pair<P, P>>{{P::kDoubleSupport, P::kRise},
-                                               {P::kRise, P::kFall},
-                                               {P::kFall, P::kDoubleSupport}}));
+  return arrows;
+}
+
+auto WalkingArrows() {
+  using P = WalkingPhase;
+  return Arrows<WalkingCues>({P::kDoubleSupport, P::kRise, P::kFall});
+}
+
+auto RunningArrows() {
+  using P = RunningPhase;
+  return Arrows<RunningCues>(
+      {P::kUpwardFlight, P::kDownwardFlight, P::kCompression, P::kExtension});
+}
+
+TEST(WalkingMachine, HasTheArrowsOfFigure5AndNoOther) {
+  using P = WalkingPhase;
+  EXPECT_EQ(WalkingArrows(), (std::set<std::pair<P, P>>{{P::kDoubleSupport, P::kRise},
+                                                        {P::kRise, P::kFall},
+                                                        {P::kFall, P::kDoubleSupport}}));
 }
 
 TEST(RunningMachine, HasTheArrowsOfFigure6AndTheEarlyLanding) {
   using P = RunningPhase;
-  std::set<std::pair<P, P>> arrows;
-  for (const P phase : {P::kUpwardFlight, P::kDownwardFlight, P::kCompression, P::kExtension}) {
-    for (int cues = 0; cues < 32; ++cues) {
-      const P next = Next(phase, {(cues & 1) != 0, (cues & 2) != 0, (cues & 4) != 0,
-                                  (cues & 8) != 0, (cues & 16) != 0});
-      if (next != phase) arrows.insert({phase, next});
-    }
+  EXPECT_EQ(RunningArrows(), (std::set<std::pair<P, P>>{{P::kUpwardFlight, P::kDownwardFlight},
+                                                        {P::kUpwardFlight, P::kCompression},
+                                                        {P::kDownwardFlight, P::kCompression},
+                                                        {P::kCompression, P::kExtension},
+                                                        {P::kExtension, P::kUpwardFlight}}));
+}
+
+TEST(Machines, AreDrawnInTheirDocumentAsTheyAre) {
+  using Drawn = std::set<std::pair<std::string, std::string>>;
+  const auto word = [](std::string name) {
+    std::replace(name.begin(), name.end(), ' ', '_');
+    return name;
+  };
+  Drawn expected, drawn;
+  for (const auto& [from, to] : WalkingArrows())
+    expected.insert({word(Name(from)), word(Name(to))});
+  for (const auto& [from, to] : RunningArrows())
+    expected.insert({word(Name(from)), word(Name(to))});
+  const auto text = config::ReadTextFile(FOOTING_SOURCE_DIR "/docs/gait.md");
+  ASSERT_TRUE(text.ok());
+  std::istringstream lines(text.value());
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string from, arrow, to;
+    if (words >> from >> arrow >> to && arrow == "-->")
+      drawn.insert({from, to.substr(0, to.find(':'))});
   }
-  EXPECT_EQ(arrows, (std::set<std::pair<P, P>>{{P::kUpwardFlight, P::kDownwardFlight},
-                                               {P::kUpwardFlight, P::kCompression},
-                                               {P::kDownwardFlight, P::kCompression},
-                                               {P::kCompression, P::kExtension},
-                                               {P::kExtension, P::kUpwardFlight}}));
+  EXPECT_EQ(drawn, expected);
 }
 
 TEST(GaitChanges, OnlyJumpingToRunningHasNoArrow) {

@@ -101,6 +101,19 @@ TEST(World, ALyingBodyTouchesWithMoreThanItsFeet) {
   EXPECT_TRUE(other);
 }
 
+TEST(World, EffortsThatAreNoNumbersAreSeenAndNothingGoesOnWithThem) {
+  World world = test::LevelWorld();
+  world.Reset({0, 0, 1}, 0, {});
+  EXPECT_FALSE(world.Observe().diverged);
+  JointEfforts efforts{};
+  efforts[3] = std::nan("");
+  world.Step(efforts, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(world.Observe().diverged);
+  EXPECT_TRUE(world.Observe().p_WC.allFinite() && world.Observe().v_WC.allFinite());
+  world.Reset({0, 0, 1}, 0, {});
+  EXPECT_FALSE(world.Observe().diverged);
+}
+
 TEST(World, RefusesTextThatIsNoModel) {
   const auto world = World::FromMjcf("<mujoco><worldbody>", biped::Names());
   ASSERT_FALSE(world.ok());
