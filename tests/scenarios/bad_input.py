@@ -32,7 +32,7 @@ def wrong_starts(stage):
         assert stage.run(program, "--print-config").returncode == 0
         assert stage.run(program, "--version").stdout.startswith(program)
         assert "Examples:" in stage.run(program, "--help").stdout
-    expect(stage, FAILURE, "loopback", "footingd", "--listen", "tcp:0.0.0.0:0")
+    expect(stage, USAGE, "beyond this host", "footingd", "--listen", "tcp:0.0.0.0:0")
     expect(stage, USAGE, "there is: gait", "footing-sim", "--engine", "pose")
     expect(stage, USAGE, "there is: wrist", "footing-sim", "--interface", "boards")
     expect(stage, USAGE, "demo", "footing-stream", "user", "--script", "dance")
