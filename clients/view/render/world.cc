@@ -1,17 +1,19 @@
 #include "clients/view/render/world.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cstddef>
 
 #include "clients/view/render/shader_text.h"
 #include "clients/view/scene/mesh.h"
 #include "clients/view/scene/ribbon.h"
+#include "clients/view/scene/sky.h"
 
 namespace footing::render {
 namespace {
 
 constexpr int kShadowPixels = 512;
+constexpr int kShadowTaps = 9;
+constexpr float kMarkReachM = 1.2f;  // Beyond it a blob is too pale to be seen.
 
 template <typename T>
 void Fill(GLenum target, const Buffer& buffer, const std::vector<T>& items, GLenum usage) {
@@ -68,6 +70,7 @@ World::World(Programs programs) : programs_(std::move(programs)) {
   };
   load(ball_, scene::UnitBall(28, 18), false);
   load(rod_, scene::UnitRod(18), true);
+  LoadSky();
 
   glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
   glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowPixels, kShadowPixels, 0, GL_RED, GL_UNSIGNED_BYTE,
@@ -82,6 +85,25 @@ World::World(Programs programs) : programs_(std::move(programs)) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shadow_map_.name(),
                          0);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+}
+
+void World::LoadSky() {
+  static_assert(sizeof(scene::SkyVertex) == 24);
+  const scene::SkyMesh mesh = scene::BuildSky();
+  sky_.index_count = static_cast<GLsizei>(mesh.indices.size());
+  glBindVertexArray(sky_.array.name());
+  Fill(GL_ARRAY_BUFFER, sky_.vertices, mesh.vertices, GL_STATIC_DRAW);
+  Attribute(0, 3, sizeof(scene::SkyVertex), 0);
+  Attribute(1, 3, sizeof(scene::SkyVertex), 12);
+  Fill(GL_ELEMENT_ARRAY_BUFFER, sky_.indices, mesh.indices, GL_STATIC_DRAW);
+}
+
+void World::DrawSky(const Eigen::Vector3f& eye, const Eigen::Matrix4f& clip_from_world) {
+  programs_.sky.Use();
+  programs_.sky.Set("u_eye", eye);
+  programs_.sky.Set("u_clip_from_world", clip_from_world);
+  glBindVertexArray(sky_.array.name());
+  glDrawElements(GL_TRIANGLES, sky_.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
 void World::LoadTrack(const stream::Track& track, std::uint64_t version) {
@@ -140,6 +162,18 @@ void World::SetSurface(const Program& program, const scene::Picture& picture) co
   for (const Eigen::Vector3f& p : picture.footholds) {
     if (rings.size() < kMaxFootholds) rings.emplace_back(p.x(), p.y(), p.z(), 0);
   }
+  // A circle around everything that marks the ground.
+  Eigen::Vector2f low = picture.focus_m.head<2>(), high = low;
+  for (const std::vector<Eigen::Vector4f>* marks : {&blobs, &rings}) {
+    for (const Eigen::Vector4f& mark : *marks) {
+      low = low.cwiseMin(mark.head<2>());
+      high = high.cwiseMax(mark.head<2>());
+    }
+  }
+  const Eigen::Vector2f middle = (low + high) / 2;
+  const float radius = (high - low).norm() / 2 + kMarkReachM;
+  program.Set("u_near", std::vector{Eigen::Vector4f(middle.x(), middle.y(), radius, 0)});
+  program.Set("u_shadow_taps", kShadowTaps);
   program.Set("u_shadow", 0);
   program.Set("u_focus", picture.focus_m);
   program.Set("u_floor", picture.floor_m);
@@ -193,11 +227,7 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   DrawParts(programs_.part, picture.birds);
   DrawParts(programs_.part, picture.forces);
   DrawSurfaces(picture, clip_from_world);
-  programs_.sky.Use();
-  programs_.sky.Set("u_eye", eye);
-  programs_.sky.Set("u_world_from_clip", Eigen::Matrix4f(clip_from_world.inverse()));
-  glBindVertexArray(nothing_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  DrawSky(eye, clip_from_world);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
 }
