@@ -68,8 +68,9 @@ World::World(Programs programs) : programs_(std::move(programs)) {
       glVertexAttribDivisor(2 + i, 1);
     }
   };
-  load(ball_, scene::UnitBall(28, 18), false);
-  load(rod_, scene::UnitRod(18), true);
+  load(ball_, scene::UnitBall(24, 14), false);
+  load(bead_, scene::UnitBall(12, 6), false);
+  load(rod_, scene::UnitRod(12), true);
   LoadSky();
 
   glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
@@ -120,7 +121,7 @@ void World::LoadTrack(const stream::Track& track, std::uint64_t version) {
   Fill(GL_ELEMENT_ARRAY_BUFFER, ribbon_.indices, mesh.indices, GL_STATIC_DRAW);
 }
 
-void World::DrawParts(const Program& program, const scene::PartList& parts) {
+void World::DrawParts(const Program& program, const scene::PartList& parts, bool coarse) {
   const auto draw = [&program](Shape& shape, const std::vector<scene::Part>& instances) {
     if (instances.empty()) return;
     glBindVertexArray(shape.array.name());
@@ -129,7 +130,8 @@ void World::DrawParts(const Program& program, const scene::PartList& parts) {
     glDrawElementsInstanced(GL_TRIANGLES, shape.index_count, GL_UNSIGNED_INT, nullptr,
                             static_cast<GLsizei>(instances.size()));
   };
-  draw(ball_, parts.balls);
+  draw(coarse ? bead_ : ball_, parts.balls);
+  draw(bead_, parts.beads);
   draw(rod_, parts.rods);
 }
 
@@ -147,7 +149,7 @@ void World::DrawShadow(const scene::Picture& picture) {
   programs_.shadow.Set("u_focus", picture.focus_m);
   programs_.shadow.Set("u_floor", picture.floor_m);
   programs_.shadow.Set("u_span", kShadowSpanM);
-  DrawParts(programs_.shadow, picture.birds);
+  DrawParts(programs_.shadow, picture.birds, true);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
   glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
 }
@@ -224,8 +226,8 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   programs_.part.Set("u_clip_from_world", clip_from_world);
   programs_.part.Set("u_eye", eye);
   programs_.part.Set("u_floor", picture.floor_m);
-  DrawParts(programs_.part, picture.birds);
-  DrawParts(programs_.part, picture.forces);
+  DrawParts(programs_.part, picture.birds, false);
+  DrawParts(programs_.part, picture.forces, true);
   DrawSurfaces(picture, clip_from_world);
   DrawSky(eye, clip_from_world);
   glDisable(GL_DEPTH_TEST);
@@ -241,9 +243,9 @@ void World::DrawIds(const scene::Picture& picture, int width, int height) {
   programs_.part_id.Use();
   programs_.part_id.Set("u_clip_from_world", ClipFromWorld(picture, width, height));
   programs_.part_id.Set("u_id", static_cast<int>(scene::PartId::kBird));
-  DrawParts(programs_.part_id, picture.birds);
+  DrawParts(programs_.part_id, picture.birds, true);
   programs_.part_id.Set("u_id", static_cast<int>(scene::PartId::kForce));
-  DrawParts(programs_.part_id, picture.forces);
+  DrawParts(programs_.part_id, picture.forces, true);
   glDisable(GL_DEPTH_TEST);
 }
 

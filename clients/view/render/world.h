@@ -43,14 +43,15 @@ class World {
   explicit World(Programs programs);
   void LoadSky();
   void LoadTrack(const stream::Track& track, std::uint64_t version);
-  void DrawParts(const Program& program, const scene::PartList& parts);
+  /// `coarse` draws big balls with few triangles, too.
+  void DrawParts(const Program& program, const scene::PartList& parts, bool coarse);
   void DrawShadow(const scene::Picture& picture);
   void DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
   void SetSurface(const Program& program, const scene::Picture& picture) const;
   void DrawSky(const Eigen::Vector3f& eye, const Eigen::Matrix4f& clip_from_world);
 
   Programs programs_;
-  Shape ball_, rod_;
+  Shape ball_, bead_, rod_;
   Loaded ribbon_, sky_;
   VertexArray nothing_;  // For shapes that the vertex shader makes up.
   Framebuffer shadow_;

@@ -8,7 +8,7 @@
 namespace footing::scene {
 namespace {
 
-constexpr int kColumns = 240;
+constexpr int kColumns = 144;
 
 /// Height of a ridge over the horizon, 0 to 1, by azimuth. Whole numbers of waves, so it closes.
 float Ridge(float azimuth_rad, float seed) {
