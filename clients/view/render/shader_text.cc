@@ -114,14 +114,13 @@ void main() { o_colour = vec4(float(u_id) / 255.0, 0.0, 0.0, 1.0); }
 
 std::string ShadowVertexText() {
   return SharedText() + "uniform int u_is_rod;\n" + InstanceText() + R"(
-uniform vec3 u_focus;
-uniform float u_floor;
+uniform vec3 u_centre;
 uniform float u_span;
 void main() {
   vec3 p = WorldPosition();
   vec3 sun = kSun;
-  vec2 on_floor = p.xy - sun.xy * ((p.z - u_floor) / sun.z);
-  gl_Position = vec4((on_floor - u_focus.xy) / (0.5 * u_span), 0.0, 1.0);
+  vec2 on_floor = p.xy - sun.xy * ((p.z - u_centre.z) / sun.z);
+  gl_Position = vec4((on_floor - u_centre.xy) / (0.5 * u_span), 0.0, 1.0);
 }
 )";
 }

@@ -3,24 +3,9 @@
 namespace footing::render {
 namespace {
 
-/// Light on the ground: the bird's shadow, soft spots under it, the ring of the next foothold.
-///
-/// A software renderer runs both sides of every `if` but leaves a loop when no pixel of a group
-/// needs it: hence loops whose count is 0 far from the birds.
+/// Plain light on the ground; what the birds cast on it is drawn over it, where they are.
 std::string SurfaceSharedText() {
   return SharedText() + R"(
-uniform sampler2D u_shadow;
-uniform vec3 u_focus;
-uniform float u_floor;
-uniform float u_span;
-uniform int u_shadow_taps;
-uniform vec4 u_near;  // x, y, radius: where blobs and rings are
-uniform vec4 u_blobs[)" +
-         std::to_string(kMaxBlobs) + R"(];  // x, y, radius, darkness
-uniform int u_blob_count;
-uniform vec4 u_rings[)" +
-         std::to_string(kMaxFootholds) + R"(];  // x, y, z
-uniform int u_ring_count;
 in vec3 v_position;
 in float v_sun;
 out vec4 o_colour;
@@ -31,37 +16,9 @@ float Line(float away, float half_width, float pixel) {
 }
 vec2 AwayFromLines(vec2 at, float period) { return abs(fract(at / period + 0.5) - 0.5) * period; }
 float AwayFromLines(float at, float period) { return abs(fract(at / period + 0.5) - 0.5) * period; }
-float Shadow() {
-  vec2 at = (v_position.xy - u_focus.xy) / u_span + 0.5;
-  vec2 inside = min(at, 1.0 - at);
-  float edge = clamp(min(inside.x, inside.y) * 12.0, 0.0, 1.0);
-  edge *= clamp(4.0 - 10.0 * abs(v_position.z - u_floor), 0.0, 1.0);
-  int taps = edge > 0.0 ? u_shadow_taps : 0;
-  float sum = 0.0;
-  for (int i = 0; i < taps; ++i) {
-    vec2 step_ = vec2(i % 3, i / 3) - 1.0;
-    sum += textureLod(u_shadow, at + 0.0055 * step_, 0.0).r;
-  }
-  return sum / 9.0 * edge;
-}
 vec3 Lit(vec3 colour) {
   vec3 from_eye = v_position - u_eye;
-  vec2 from_near = v_position.xy - u_near.xy;
-  bool near = dot(from_near, from_near) < u_near.z * u_near.z;
-  float open = 1.0;
-  for (int i = 0; i < (near ? u_blob_count : 0); ++i) {
-    vec2 away = (v_position.xy - u_blobs[i].xy) / u_blobs[i].z;
-    open *= 1.0 - u_blobs[i].w * exp(-2.2 * dot(away, away));
-  }
-  float sun = v_sun * (1.0 - 0.85 * Shadow());
-  vec3 lit = colour * (vec3(0.36, 0.43, 0.52) + kSunLight * sun * 0.62) * open;
-  for (int i = 0; i < (near ? u_ring_count : 0); ++i) {
-    float away = distance(v_position.xy, u_rings[i].xy);
-    float level = 1.0 - smoothstep(0.3, 0.6, abs(v_position.z - u_rings[i].z));
-    float rim = (away - 0.13) / 0.016;
-    float ring = exp(-rim * rim) + 0.30 * exp(-100.0 * away * away);
-    lit = mix(lit, vec3(1.0, 0.93, 0.55), min(ring, 1.0) * 0.75 * level);
-  }
+  vec3 lit = colour * (vec3(0.36, 0.43, 0.52) + kSunLight * v_sun * 0.62);
   return InFog(lit, dot(from_eye, from_eye));
 }
 )";
@@ -141,6 +98,63 @@ void main() {
   colour = kind > 1.5 ? vec3(0.210, 0.068, 0.035) : colour;
   colour = kind > 2.5 ? vec3(0.86, 0.84, 0.80) : colour;
   o_colour = ToScreen(Lit(colour));
+}
+)";
+}
+
+std::string MarkVertexText() {
+  return SharedText() + R"(
+uniform vec3 u_centre;
+uniform vec3 u_slope;  // Rise a metre along x and y.
+uniform float u_span;
+out vec3 v_position;
+out vec2 v_at;
+void main() {
+  vec2 corner = vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID >> 1) * 2 - 1);
+  v_at = 0.5 + 0.5 * corner;
+  vec2 away = 0.5 * u_span * corner;
+  v_position = u_centre + vec3(away, dot(away, u_slope.xy) + 0.004);
+  gl_Position = u_clip_from_world * vec4(v_position, 1.0);
+}
+)";
+}
+
+std::string MarkFragmentText() {
+  return SharedText() + R"(
+uniform sampler2D u_shadow;
+uniform vec4 u_blobs[)" +
+         std::to_string(kMaxBlobs) + R"(];  // x, y, radius, darkness
+uniform int u_blob_count;
+uniform vec4 u_rings[)" +
+         std::to_string(kMaxFootholds) + R"(];  // x, y, z
+uniform int u_ring_count;
+in vec3 v_position;
+in vec2 v_at;
+out vec4 o_colour;
+void main() {
+  vec2 inside = min(v_at, 1.0 - v_at);
+  float edge = clamp(min(inside.x, inside.y) * 12.0, 0.0, 1.0);
+  float shadow = 0.0;
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      shadow += textureLod(u_shadow, v_at + 0.0095 * vec2(x, y), 0.0).r;
+    }
+  }
+  float light = 1.0 - 0.56 * shadow / 9.0;
+  for (int i = 0; i < u_blob_count; ++i) {
+    vec2 away = (v_position.xy - u_blobs[i].xy) / u_blobs[i].z;
+    light *= 1.0 - u_blobs[i].w * exp(-2.2 * dot(away, away));
+  }
+  float ring = 0.0;
+  for (int i = 0; i < u_ring_count; ++i) {
+    float away = distance(v_position.xy, u_rings[i].xy);
+    float rim = (away - 0.13) / 0.016;
+    ring += exp(-rim * rim) + 0.30 * exp(-100.0 * away * away);
+  }
+  // The picture holds square roots of light; what lies over it takes a share of it away.
+  ring = min(ring, 1.0) * 0.75 * edge;
+  float dark = (1.0 - sqrt(light)) * edge;
+  o_colour = vec4(vec3(1.0, 0.96, 0.74) * ring, 1.0 - (1.0 - dark) * (1.0 - ring));
 }
 )";
 }

@@ -12,8 +12,8 @@ namespace footing::render {
 namespace {
 
 constexpr int kShadowPixels = 512;
-constexpr int kShadowTaps = 9;
-constexpr float kMarkReachM = 1.2f;  // Beyond it a blob is too pale to be seen.
+// The shadow of a bird falls this far beside it: its middle is 0.9 m high.
+const Eigen::Vector3f kToShadowM(0.45f, -0.60f, 0);
 
 template <typename T>
 void Fill(GLenum target, const Buffer& buffer, const std::vector<T>& items, GLenum usage) {
@@ -46,10 +46,12 @@ Result<World> World::Create() {
   if (!ground) return ground.error();
   auto ribbon = Program::Create("ribbon", RibbonVertexText(), SurfaceFragmentText(true));
   if (!ribbon) return ribbon.error();
+  auto mark = Program::Create("mark", MarkVertexText(), MarkFragmentText());
+  if (!mark) return mark.error();
   auto sky = Program::Create("sky", SkyVertexText(), SkyFragmentText());
   if (!sky) return sky.error();
   return World({std::move(*part), std::move(*part_id), std::move(*shadow), std::move(*ground),
-                std::move(*ribbon), std::move(*sky)});
+                std::move(*ribbon), std::move(*mark), std::move(*sky)});
 }
 
 World::World(Programs programs) : programs_(std::move(programs)) {
@@ -135,7 +137,7 @@ void World::DrawParts(const Program& program, const scene::PartList& parts, bool
   draw(rod_, parts.rods);
 }
 
-void World::DrawShadow(const scene::Picture& picture) {
+void World::DrawShadow(const scene::Picture& picture, const Eigen::Vector3f& centre) {
   GLint before = 0;
   std::array<GLint, 4> viewport{};
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
@@ -146,15 +148,16 @@ void World::DrawShadow(const scene::Picture& picture) {
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT);
   programs_.shadow.Use();
-  programs_.shadow.Set("u_focus", picture.focus_m);
-  programs_.shadow.Set("u_floor", picture.floor_m);
-  programs_.shadow.Set("u_span", kShadowSpanM);
+  programs_.shadow.Set("u_centre", centre);
+  programs_.shadow.Set("u_span", kMarkSpanM);
   DrawParts(programs_.shadow, picture.birds, true);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
   glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
 }
 
-void World::SetSurface(const Program& program, const scene::Picture& picture) const {
+// Over the finished ground, where the birds are: a software renderer pays for every pixel.
+void World::DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
+                      const Eigen::Matrix4f& clip_from_world) {
   std::vector<Eigen::Vector4f> blobs, rings;
   for (const scene::Blob& blob : picture.blobs) {
     if (blobs.size() < kMaxBlobs) {
@@ -164,37 +167,42 @@ void World::SetSurface(const Program& program, const scene::Picture& picture) co
   for (const Eigen::Vector3f& p : picture.footholds) {
     if (rings.size() < kMaxFootholds) rings.emplace_back(p.x(), p.y(), p.z(), 0);
   }
-  // A circle around everything that marks the ground.
-  Eigen::Vector2f low = picture.focus_m.head<2>(), high = low;
-  for (const std::vector<Eigen::Vector4f>* marks : {&blobs, &rings}) {
-    for (const Eigen::Vector4f& mark : *marks) {
-      low = low.cwiseMin(mark.head<2>());
-      high = high.cwiseMax(mark.head<2>());
-    }
+  for (const scene::Spot& spot : picture.spots) {
+    const Eigen::Vector3f beside(kToShadowM.x(), kToShadowM.y(),
+                                 kToShadowM.head<2>().dot(spot.slope));
+    const Eigen::Vector3f centre = spot.centre_m + beside;
+    DrawShadow(picture, centre);
+    const Program& program = programs_.mark;
+    program.Use();
+    program.Set("u_clip_from_world", clip_from_world);
+    program.Set("u_eye", eye);
+    program.Set("u_centre", centre);
+    program.Set("u_slope", Eigen::Vector3f(spot.slope.x(), spot.slope.y(), 0));
+    program.Set("u_span", kMarkSpanM);
+    program.Set("u_shadow", 0);
+    program.Set("u_blobs", blobs);
+    program.Set("u_blob_count", static_cast<int>(blobs.size()));
+    program.Set("u_rings", rings);
+    program.Set("u_ring_count", static_cast<int>(rings.size()));
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    glBindVertexArray(nothing_.name());
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
   }
-  const Eigen::Vector2f middle = (low + high) / 2;
-  const float radius = (high - low).norm() / 2 + kMarkReachM;
-  program.Set("u_near", std::vector{Eigen::Vector4f(middle.x(), middle.y(), radius, 0)});
-  program.Set("u_shadow_taps", kShadowTaps);
-  program.Set("u_shadow", 0);
-  program.Set("u_focus", picture.focus_m);
-  program.Set("u_floor", picture.floor_m);
-  program.Set("u_span", kShadowSpanM);
-  program.Set("u_blobs", blobs);
-  program.Set("u_blob_count", static_cast<int>(blobs.size()));
-  program.Set("u_rings", rings);
-  program.Set("u_ring_count", static_cast<int>(rings.size()));
 }
 
 void World::DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world) {
   const Eigen::Vector3f eye = picture.camera.eye_m.cast<float>();
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
   for (const Program* program : {&programs_.ribbon, &programs_.ground}) {
     program->Use();
     program->Set("u_clip_from_world", clip_from_world);
     program->Set("u_eye", eye);
-    SetSurface(*program, picture);
     if (program == &programs_.ribbon) {
       if (ribbon_.index_count == 0) continue;
       glBindVertexArray(ribbon_.array.name());
@@ -213,7 +221,6 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
-  DrawShadow(picture);
   glViewport(0, 0, width, height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
@@ -230,6 +237,7 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   DrawParts(programs_.part, picture.forces, true);
   DrawSurfaces(picture, clip_from_world);
   DrawSky(eye, clip_from_world);
+  DrawMarks(picture, eye, clip_from_world);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
 }

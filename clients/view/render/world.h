@@ -24,7 +24,7 @@ class World {
 
  private:
   struct Programs {
-    Program part, part_id, shadow, ground, ribbon, sky;
+    Program part, part_id, shadow, ground, ribbon, mark, sky;
   };
   /// A unit shape and the instances of it that a picture has.
   struct Shape {
@@ -45,9 +45,10 @@ class World {
   void LoadTrack(const stream::Track& track, std::uint64_t version);
   /// `coarse` draws big balls with few triangles, too.
   void DrawParts(const Program& program, const scene::PartList& parts, bool coarse);
-  void DrawShadow(const scene::Picture& picture);
+  void DrawShadow(const scene::Picture& picture, const Eigen::Vector3f& centre);
+  void DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
+                 const Eigen::Matrix4f& clip_from_world);
   void DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
-  void SetSurface(const Program& program, const scene::Picture& picture) const;
   void DrawSky(const Eigen::Vector3f& eye, const Eigen::Matrix4f& clip_from_world);
 
   Programs programs_;
