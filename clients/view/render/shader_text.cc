@@ -1,30 +1,36 @@
 #include "clients/view/render/shader_text.h"
 
+#include "clients/view/scene/sky.h"
+
 namespace footing::render {
 
+namespace {
+
+std::string Vec3(const scene::Colour& c) {
+  return "vec3(" + std::to_string(c.x()) + ", " + std::to_string(c.y()) + ", " +
+         std::to_string(c.z()) + ")";
+}
+
+}  // namespace
+
+// Software renderers run these for every pixel: no pow and exp where a root or a quotient will do.
 std::string SharedText() {
-  return R"(#version 330 core
+  return "#version 330 core\nconst vec3 kHorizon = " + Vec3(scene::kHorizonLight) +
+         ";\nconst vec3 kZenith = " + Vec3(scene::kZenithLight) + R"(;
 uniform mat4 u_clip_from_world;
 uniform vec3 u_eye;
-const vec3 kSun = vec3(-0.40, 0.52, 0.755);
+const vec3 kSun = vec3(-0.40, 0.52, 0.755);  // Of length 1 within 0.1 %.
 const vec3 kSunLight = vec3(1.75, 1.55, 1.25);
-const vec3 kHorizon = vec3(0.74, 0.84, 0.90);
-const vec3 kZenith = vec3(0.09, 0.30, 0.66);
 
 vec3 SkyLight(vec3 direction) {
   float up = clamp(direction.z, 0.0, 1.0);
-  vec3 sky = mix(kHorizon, kZenith, 1.0 - exp(-4.2 * up));
-  float sun = max(dot(direction, normalize(kSun)), 0.0);
-  return sky + vec3(0.55, 0.36, 0.16) * pow(sun, 12.0) * 0.5;
+  return mix(kHorizon, kZenith, up * (2.0 - up));
 }
-vec3 InFog(vec3 colour, float distance_m) {
-  float clear = exp(-distance_m * distance_m * 0.00016);
-  return mix(kHorizon, colour, clear);
+vec3 InFog(vec3 colour, float distance_squared) {
+  float clear = 1.0 / (1.0 + distance_squared * 0.00009);
+  return mix(kHorizon, colour, clear * clear);
 }
-vec4 ToScreen(vec3 colour) {
-  vec3 mapped = colour / (1.0 + 0.10 * colour);
-  return vec4(pow(clamp(mapped, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
-}
+vec4 ToScreen(vec3 colour) { return vec4(sqrt(colour / (1.0 + 0.10 * colour)), 1.0); }
 )";
 }
 
@@ -81,9 +87,9 @@ out vec4 o_colour;
 void main() {
   vec3 n = normalize(v_normal);
   vec3 to_eye = u_eye - v_position;
-  float distance_m = length(to_eye);
-  to_eye /= distance_m;
-  vec3 sun = normalize(kSun);
+  float distance_squared = dot(to_eye, to_eye);
+  to_eye *= inversesqrt(distance_squared);
+  vec3 sun = kSun;
   float lit = max((dot(n, sun) + 0.28) / 1.28, 0.0);
   float near_floor = clamp((v_position.z - u_floor) * 1.2 + 0.45, 0.45, 1.0);
   vec3 above = vec3(0.44, 0.56, 0.70), below = vec3(0.34, 0.22, 0.15);
@@ -93,7 +99,7 @@ void main() {
   colour += SkyLight(reflect(-to_eye, n)) * rim * 0.20;
   vec3 half_way = normalize(sun + to_eye);
   colour += kSunLight * v_gloss * pow(max(dot(n, half_way), 0.0), 48.0) * 0.55;
-  o_colour = ToScreen(InFog(colour, distance_m));
+  o_colour = ToScreen(InFog(colour, distance_squared));
 }
 )";
 }
@@ -108,14 +114,13 @@ void main() { o_colour = vec4(float(u_id) / 255.0, 0.0, 0.0, 1.0); }
 
 std::string ShadowVertexText() {
   return SharedText() + "uniform int u_is_rod;\n" + InstanceText() + R"(
-uniform vec3 u_focus;
-uniform float u_floor;
+uniform vec3 u_centre;
 uniform float u_span;
 void main() {
   vec3 p = WorldPosition();
-  vec3 sun = normalize(kSun);
-  vec2 on_floor = p.xy - sun.xy * ((p.z - u_floor) / sun.z);
-  gl_Position = vec4((on_floor - u_focus.xy) / (0.5 * u_span), 0.0, 1.0);
+  vec3 sun = kSun;
+  vec2 on_floor = p.xy - sun.xy * ((p.z - u_centre.z) / sun.z);
+  gl_Position = vec4((on_floor - u_centre.xy) / (0.5 * u_span), 0.0, 1.0);
 }
 )";
 }
@@ -126,43 +131,21 @@ std::string ShadowFragmentText() {
 
 std::string SkyVertexText() {
   return SharedText() + R"(
-uniform mat4 u_world_from_clip;
-out vec3 v_far;
+layout(location = 0) in vec3 a_direction;
+layout(location = 1) in vec3 a_colour;
+out vec3 v_screen;
 void main() {
-  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  vec4 far = u_world_from_clip * vec4(corner, 1.0, 1.0);
-  v_far = far.xyz / far.w;
-  gl_Position = vec4(corner, 1.0, 1.0);
+  v_screen = ToScreen(a_colour).rgb;
+  gl_Position = (u_clip_from_world * vec4(u_eye + a_direction, 1.0)).xyww;  // As far as can be.
 }
 )";
 }
 
 std::string SkyFragmentText() {
   return SharedText() + R"(
-in vec3 v_far;
+in vec3 v_screen;
 out vec4 o_colour;
-// Height of a far ridge over the horizon by azimuth; whole numbers, so it closes on itself.
-float Ridge(float a, float seed) {
-  return 0.5 + 0.26 * sin(3.0 * a + seed) + 0.15 * sin(7.0 * a + 2.1 * seed) +
-         0.07 * sin(17.0 * a + 3.7 * seed) + 0.02 * sin(41.0 * a + 1.3 * seed);
-}
-void main() {
-  vec3 direction = normalize(v_far - u_eye);
-  vec3 colour = SkyLight(direction);
-  if (direction.z < 0.2) {
-    float azimuth = atan(direction.y, direction.x);
-    float far = 0.100 * Ridge(azimuth, 1.0), near = 0.055 * Ridge(azimuth, 4.0);
-    float edge = fwidth(direction.z) + 1e-5;
-    vec3 far_hill = mix(kHorizon, vec3(0.24, 0.42, 0.58), 0.55);
-    vec3 near_hill = mix(kHorizon, vec3(0.16, 0.34, 0.30), 0.62);
-    float haze = smoothstep(-0.01, 0.045, direction.z);
-    colour = mix(mix(kHorizon, far_hill, haze), colour,
-                 smoothstep(far - edge, far + edge, direction.z));
-    colour = mix(mix(kHorizon, near_hill, haze), colour,
-                 smoothstep(near - edge, near + edge, direction.z));
-  }
-  o_colour = ToScreen(colour);
-}
+void main() { o_colour = vec4(v_screen, 1.0); }
 )";
 }
 

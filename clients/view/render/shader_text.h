@@ -7,7 +7,7 @@ namespace footing::render {
 
 inline constexpr int kMaxBlobs = 16;
 inline constexpr int kMaxFootholds = 4;
-inline constexpr float kShadowSpanM = 6;  ///< Side of the square of ground that the shadow covers.
+inline constexpr float kMarkSpanM = 3.6f;  ///< Side of the square of ground that a bird marks.
 
 std::string PartVertexText();
 std::string PartFragmentText();
@@ -19,6 +19,9 @@ std::string GroundVertexText();
 std::string RibbonVertexText();
 /// Ground and track alike; `ribbon` chooses.
 std::string SurfaceFragmentText(bool ribbon);
+/// Shadow, soft spots and rings: a square laid over the ground, with alpha.
+std::string MarkVertexText();
+std::string MarkFragmentText();
 std::string SkyVertexText();
 std::string SkyFragmentText();
 

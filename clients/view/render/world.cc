@@ -1,17 +1,19 @@
 #include "clients/view/render/world.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cstddef>
 
 #include "clients/view/render/shader_text.h"
 #include "clients/view/scene/mesh.h"
 #include "clients/view/scene/ribbon.h"
+#include "clients/view/scene/sky.h"
 
 namespace footing::render {
 namespace {
 
 constexpr int kShadowPixels = 512;
+// The shadow of a bird falls this far beside it: its middle is 0.9 m high.
+const Eigen::Vector3f kToShadowM(0.45f, -0.60f, 0);
 
 template <typename T>
 void Fill(GLenum target, const Buffer& buffer, const std::vector<T>& items, GLenum usage) {
@@ -44,10 +46,12 @@ Result<World> World::Create() {
   if (!ground) return ground.error();
   auto ribbon = Program::Create("ribbon", RibbonVertexText(), SurfaceFragmentText(true));
   if (!ribbon) return ribbon.error();
+  auto mark = Program::Create("mark", MarkVertexText(), MarkFragmentText());
+  if (!mark) return mark.error();
   auto sky = Program::Create("sky", SkyVertexText(), SkyFragmentText());
   if (!sky) return sky.error();
   return World({std::move(*part), std::move(*part_id), std::move(*shadow), std::move(*ground),
-                std::move(*ribbon), std::move(*sky)});
+                std::move(*ribbon), std::move(*mark), std::move(*sky)});
 }
 
 World::World(Programs programs) : programs_(std::move(programs)) {
@@ -66,8 +70,10 @@ World::World(Programs programs) : programs_(std::move(programs)) {
       glVertexAttribDivisor(2 + i, 1);
     }
   };
-  load(ball_, scene::UnitBall(28, 18), false);
-  load(rod_, scene::UnitRod(18), true);
+  load(ball_, scene::UnitBall(24, 14), false);
+  load(bead_, scene::UnitBall(12, 6), false);
+  load(rod_, scene::UnitRod(12), true);
+  LoadSky();
 
   glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
   glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowPixels, kShadowPixels, 0, GL_RED, GL_UNSIGNED_BYTE,
@@ -84,6 +90,25 @@ World::World(Programs programs) : programs_(std::move(programs)) {
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
 }
 
+void World::LoadSky() {
+  static_assert(sizeof(scene::SkyVertex) == 24);
+  const scene::SkyMesh mesh = scene::BuildSky();
+  sky_.index_count = static_cast<GLsizei>(mesh.indices.size());
+  glBindVertexArray(sky_.array.name());
+  Fill(GL_ARRAY_BUFFER, sky_.vertices, mesh.vertices, GL_STATIC_DRAW);
+  Attribute(0, 3, sizeof(scene::SkyVertex), 0);
+  Attribute(1, 3, sizeof(scene::SkyVertex), 12);
+  Fill(GL_ELEMENT_ARRAY_BUFFER, sky_.indices, mesh.indices, GL_STATIC_DRAW);
+}
+
+void World::DrawSky(const Eigen::Vector3f& eye, const Eigen::Matrix4f& clip_from_world) {
+  programs_.sky.Use();
+  programs_.sky.Set("u_eye", eye);
+  programs_.sky.Set("u_clip_from_world", clip_from_world);
+  glBindVertexArray(sky_.array.name());
+  glDrawElements(GL_TRIANGLES, sky_.index_count, GL_UNSIGNED_INT, nullptr);
+}
+
 void World::LoadTrack(const stream::Track& track, std::uint64_t version) {
   if (version == ribbon_.version) return;
   static_assert(sizeof(scene::RibbonVertex) == 40);
@@ -98,7 +123,7 @@ void World::LoadTrack(const stream::Track& track, std::uint64_t version) {
   Fill(GL_ELEMENT_ARRAY_BUFFER, ribbon_.indices, mesh.indices, GL_STATIC_DRAW);
 }
 
-void World::DrawParts(const Program& program, const scene::PartList& parts) {
+void World::DrawParts(const Program& program, const scene::PartList& parts, bool coarse) {
   const auto draw = [&program](Shape& shape, const std::vector<scene::Part>& instances) {
     if (instances.empty()) return;
     glBindVertexArray(shape.array.name());
@@ -107,11 +132,12 @@ void World::DrawParts(const Program& program, const scene::PartList& parts) {
     glDrawElementsInstanced(GL_TRIANGLES, shape.index_count, GL_UNSIGNED_INT, nullptr,
                             static_cast<GLsizei>(instances.size()));
   };
-  draw(ball_, parts.balls);
+  draw(coarse ? bead_ : ball_, parts.balls);
+  draw(bead_, parts.beads);
   draw(rod_, parts.rods);
 }
 
-void World::DrawShadow(const scene::Picture& picture) {
+void World::DrawShadow(const scene::Picture& picture, const Eigen::Vector3f& centre) {
   GLint before = 0;
   std::array<GLint, 4> viewport{};
   glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
@@ -122,15 +148,16 @@ void World::DrawShadow(const scene::Picture& picture) {
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT);
   programs_.shadow.Use();
-  programs_.shadow.Set("u_focus", picture.focus_m);
-  programs_.shadow.Set("u_floor", picture.floor_m);
-  programs_.shadow.Set("u_span", kShadowSpanM);
-  DrawParts(programs_.shadow, picture.birds);
+  programs_.shadow.Set("u_centre", centre);
+  programs_.shadow.Set("u_span", kMarkSpanM);
+  DrawParts(programs_.shadow, picture.birds, true);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
   glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
 }
 
-void World::SetSurface(const Program& program, const scene::Picture& picture) const {
+// Over the finished ground, where the birds are: a software renderer pays for every pixel.
+void World::DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
+                      const Eigen::Matrix4f& clip_from_world) {
   std::vector<Eigen::Vector4f> blobs, rings;
   for (const scene::Blob& blob : picture.blobs) {
     if (blobs.size() < kMaxBlobs) {
@@ -140,25 +167,42 @@ void World::SetSurface(const Program& program, const scene::Picture& picture) co
   for (const Eigen::Vector3f& p : picture.footholds) {
     if (rings.size() < kMaxFootholds) rings.emplace_back(p.x(), p.y(), p.z(), 0);
   }
-  program.Set("u_shadow", 0);
-  program.Set("u_focus", picture.focus_m);
-  program.Set("u_floor", picture.floor_m);
-  program.Set("u_span", kShadowSpanM);
-  program.Set("u_blobs", blobs);
-  program.Set("u_blob_count", static_cast<int>(blobs.size()));
-  program.Set("u_rings", rings);
-  program.Set("u_ring_count", static_cast<int>(rings.size()));
+  for (const scene::Spot& spot : picture.spots) {
+    const Eigen::Vector3f beside(kToShadowM.x(), kToShadowM.y(),
+                                 kToShadowM.head<2>().dot(spot.slope));
+    const Eigen::Vector3f centre = spot.centre_m + beside;
+    DrawShadow(picture, centre);
+    const Program& program = programs_.mark;
+    program.Use();
+    program.Set("u_clip_from_world", clip_from_world);
+    program.Set("u_eye", eye);
+    program.Set("u_centre", centre);
+    program.Set("u_slope", Eigen::Vector3f(spot.slope.x(), spot.slope.y(), 0));
+    program.Set("u_span", kMarkSpanM);
+    program.Set("u_shadow", 0);
+    program.Set("u_blobs", blobs);
+    program.Set("u_blob_count", static_cast<int>(blobs.size()));
+    program.Set("u_rings", rings);
+    program.Set("u_ring_count", static_cast<int>(rings.size()));
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    glBindVertexArray(nothing_.name());
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+  }
 }
 
 void World::DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world) {
   const Eigen::Vector3f eye = picture.camera.eye_m.cast<float>();
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
   for (const Program* program : {&programs_.ribbon, &programs_.ground}) {
     program->Use();
     program->Set("u_clip_from_world", clip_from_world);
     program->Set("u_eye", eye);
-    SetSurface(*program, picture);
     if (program == &programs_.ribbon) {
       if (ribbon_.index_count == 0) continue;
       glBindVertexArray(ribbon_.array.name());
@@ -177,7 +221,6 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
-  DrawShadow(picture);
   glViewport(0, 0, width, height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
@@ -190,14 +233,11 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   programs_.part.Set("u_clip_from_world", clip_from_world);
   programs_.part.Set("u_eye", eye);
   programs_.part.Set("u_floor", picture.floor_m);
-  DrawParts(programs_.part, picture.birds);
-  DrawParts(programs_.part, picture.forces);
+  DrawParts(programs_.part, picture.birds, false);
+  DrawParts(programs_.part, picture.forces, true);
   DrawSurfaces(picture, clip_from_world);
-  programs_.sky.Use();
-  programs_.sky.Set("u_eye", eye);
-  programs_.sky.Set("u_world_from_clip", Eigen::Matrix4f(clip_from_world.inverse()));
-  glBindVertexArray(nothing_.name());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  DrawSky(eye, clip_from_world);
+  DrawMarks(picture, eye, clip_from_world);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
 }
@@ -211,9 +251,9 @@ void World::DrawIds(const scene::Picture& picture, int width, int height) {
   programs_.part_id.Use();
   programs_.part_id.Set("u_clip_from_world", ClipFromWorld(picture, width, height));
   programs_.part_id.Set("u_id", static_cast<int>(scene::PartId::kBird));
-  DrawParts(programs_.part_id, picture.birds);
+  DrawParts(programs_.part_id, picture.birds, true);
   programs_.part_id.Set("u_id", static_cast<int>(scene::PartId::kForce));
-  DrawParts(programs_.part_id, picture.forces);
+  DrawParts(programs_.part_id, picture.forces, true);
   glDisable(GL_DEPTH_TEST);
 }
 

@@ -24,7 +24,7 @@ class World {
 
  private:
   struct Programs {
-    Program part, part_id, shadow, ground, ribbon, sky;
+    Program part, part_id, shadow, ground, ribbon, mark, sky;
   };
   /// A unit shape and the instances of it that a picture has.
   struct Shape {
@@ -33,7 +33,7 @@ class World {
     GLsizei index_count = 0;
     bool rod = false;
   };
-  struct Ribbon {
+  struct Loaded {
     VertexArray array;
     Buffer vertices, indices;
     GLsizei index_count = 0;
@@ -41,15 +41,19 @@ class World {
   };
 
   explicit World(Programs programs);
+  void LoadSky();
   void LoadTrack(const stream::Track& track, std::uint64_t version);
-  void DrawParts(const Program& program, const scene::PartList& parts);
-  void DrawShadow(const scene::Picture& picture);
+  /// `coarse` draws big balls with few triangles, too.
+  void DrawParts(const Program& program, const scene::PartList& parts, bool coarse);
+  void DrawShadow(const scene::Picture& picture, const Eigen::Vector3f& centre);
+  void DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
+                 const Eigen::Matrix4f& clip_from_world);
   void DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
-  void SetSurface(const Program& program, const scene::Picture& picture) const;
+  void DrawSky(const Eigen::Vector3f& eye, const Eigen::Matrix4f& clip_from_world);
 
   Programs programs_;
-  Shape ball_, rod_;
-  Ribbon ribbon_;
+  Shape ball_, bead_, rod_;
+  Loaded ribbon_, sky_;
   VertexArray nothing_;  // For shapes that the vertex shader makes up.
   Framebuffer shadow_;
   Texture shadow_map_;

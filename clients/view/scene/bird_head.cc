@@ -14,7 +14,7 @@ const Vector3f kNeckBase(0.20f, 0, 0.13f);
 constexpr float kHeadAheadM = 0.40f;
 constexpr float kHeadAboveM = 0.60f;
 constexpr float kHeadRadiusM = 0.098f;
-constexpr int kNeckPieces = 16;
+constexpr int kNeckPieces = 12;
 
 /// Yaw about z, then pitch; positive pitch looks up.
 Matrix3f HeadAxes(const BirdMotion& motion) {
@@ -37,7 +37,7 @@ void AddNeck(const Vector3f& base, const Vector3f& base_forward, const Vector3f&
     const Vector3f at =
         s * s * s * base + 3 * s * s * t * bend + 3 * s * t * t * nape + t * t * t * head;
     const float radius = 0.056f + 0.084f * s * s;
-    parts.AddLimb(before, at, radius_before, radius, plumage.back, 0.12f);
+    parts.AddLimb(before, at, radius_before, radius, plumage.back, 0.12f, piece == 1);
     before = at;
     radius_before = radius;
   }

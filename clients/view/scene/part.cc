@@ -45,11 +45,15 @@ void PartList::AddRod(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float 
 }
 
 void PartList::AddLimb(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a,
-                       float radius_b, const Colour& colour, float gloss) {
+                       float radius_b, const Colour& colour, float gloss, bool round_start) {
   AddRod(a, b, radius_a, radius_b, colour, gloss);
   const Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();
-  AddBall(Ellipsoid(a, axes, Eigen::Vector3f::Constant(radius_a)), colour, colour, gloss);
-  AddBall(Ellipsoid(b, axes, Eigen::Vector3f::Constant(radius_b)), colour, colour, gloss);
+  const auto bead = [&](const Eigen::Vector3f& at, float radius) {
+    beads.push_back(
+        {Ellipsoid(at, axes, Eigen::Vector3f::Constant(radius)), colour, 1, colour, gloss});
+  };
+  if (round_start) bead(a, radius_a);
+  bead(b, radius_b);
 }
 
 Colour Rgb(std::uint32_t hex) {

@@ -29,12 +29,13 @@ struct Part {
 /// Everything of one id, by shape.
 struct PartList {
   std::vector<Part> balls;
+  std::vector<Part> beads;  ///< Small balls, drawn with fewer triangles.
   std::vector<Part> rods;
 
   void AddBall(const Eigen::Matrix4f& X_WP, const Colour& colour, const Colour& under, float gloss);
-  /// A rod from a to b with rounded ends.
+  /// A rod from a to b with a rounded end at b; `round_start` rounds the one at a, too.
   void AddLimb(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a, float radius_b,
-               const Colour& colour, float gloss = 0.1f);
+               const Colour& colour, float gloss = 0.1f, bool round_start = false);
   /// A rod from a to b with flat ends; radius_b = 0 makes a cone.
   void AddRod(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a, float radius_b,
               const Colour& colour, float gloss = 0.1f);

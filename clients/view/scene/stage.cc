@@ -11,6 +11,8 @@ namespace footing::scene {
 namespace {
 
 constexpr double kEmptyHipHeightM = 1.0;
+constexpr double kSlopeHalfM = 0.3;
+constexpr double kSteepest = 0.6;
 
 /// The higher a thing, the wider and paler its spot.
 Blob BlobUnder(const Eigen::Vector3d& p_m, double floor_m, double radius_m, double darkness) {
@@ -18,6 +20,18 @@ Blob BlobUnder(const Eigen::Vector3d& p_m, double floor_m, double radius_m, doub
   const double wider = 1 + 0.35 * height_m;
   return {Eigen::Vector3d(p_m.x(), p_m.y(), floor_m).cast<float>(),
           static_cast<float>(radius_m * wider), static_cast<float>(darkness / (wider * wider))};
+}
+
+/// The rise is measured over 0.6 m; where that meets a step or an edge the ground counts as level.
+Spot SpotUnder(const stream::Track& track, const Eigen::Vector2d& p_m, double floor_m) {
+  const auto rise = [&](const Eigen::Vector2d& half_m) {
+    const double difference_m =
+        HeightAt(track, p_m + half_m, floor_m) - HeightAt(track, p_m - half_m, floor_m);
+    const double slope = difference_m / (2 * half_m.norm());
+    return std::abs(slope) < kSteepest ? static_cast<float>(slope) : 0.0f;
+  };
+  return {Eigen::Vector3d(p_m.x(), p_m.y(), floor_m).cast<float>(),
+          {rise({kSlopeHalfM, 0}), rise({0, kSlopeHalfM})}};
 }
 
 BirdSkeleton SkeletonOf(const Model& model, std::uint32_t character) {
@@ -52,6 +66,7 @@ void Stage::AddCharacter(const Model& model, const CharacterPose& pose, double d
 
   const double floor_m = HeightAt(model.track, pose.com_m.head<2>(), ground_m);
   AddBird(skeleton, pose, motion, floor_m, picture.birds);
+  picture.spots.push_back(SpotUnder(model.track, pose.com_m.head<2>(), floor_m));
   picture.blobs.push_back(BlobUnder(pose.com_m, floor_m, 0.42, 0.75));
   for (const stream::Contact& foot : pose.contacts) {
     picture.blobs.push_back(BlobUnder(foot.position_m, floor_m, 0.15, 0.5));
@@ -78,7 +93,7 @@ Picture Stage::Advance(const Model& model, const WorldFrame& frame, double dt_s,
   }
   camera_.Advance(subject, dt_s);
   picture.camera = camera_.Look();
-  picture.focus_m = subject.position_m.cast<float>();
+
   picture.floor_m = static_cast<float>(
       HeightAt(model.track, subject.position_m.head<2>(), static_cast<double>(picture.ground_m)));
   return picture;

@@ -19,17 +19,23 @@ struct Blob {
   float darkness = 0;  ///< 0 to 1.
 };
 
+/// Where a bird marks the ground: the point under it and the ground's rise along x and y.
+struct Spot {
+  Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
+  Eigen::Vector2f slope = Eigen::Vector2f::Zero();
+};
+
 /// One picture, ready to be drawn.
 struct Picture {
   Camera camera;
   PartList birds;
   PartList forces;
+  std::vector<Spot> spots;  ///< One a bird.
   std::vector<Blob> blobs;
   std::vector<Eigen::Vector3f> footholds;  ///< Where the next feet are meant to land.
-  Eigen::Vector3f focus_m =
-      Eigen::Vector3f::Zero();  ///< The first character; shadows are around it.
-  float floor_m = 0;            ///< Height of the ground that the first character is over.
-  float ground_m = 0;           ///< Height of the ground around the track.
+
+  float floor_m = 0;   ///< Height of the ground that the first character is over.
+  float ground_m = 0;  ///< Height of the ground around the track.
 };
 
 struct StageOptions {
