@@ -7,8 +7,13 @@ namespace footing::view {
 std::string Summary(const scene::Model& model, double seconds) {
   nlohmann::ordered_json gaits = nlohmann::ordered_json::array();
   for (const stream::Gait gait : model.tally.GaitsSeen()) gaits.push_back(stream::Name(gait));
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const auto& [name, latencies] : model.tally.response_stages) {
+    stages[name] = latencies.QuantileMs(0.95);
+  }
   const nlohmann::ordered_json summary{
       {"seconds", seconds},
+      {"frames_published", model.tally.frames_published()},
       {"frames_received", model.tally.frames()},
       {"frames_drawn", model.tally.frames_drawn},
       {"publish_to_view_p50_ms", model.tally.publish_to_view.QuantileMs(0.5)},
@@ -16,6 +21,9 @@ std::string Summary(const scene::Model& model, double seconds) {
       {"gaits_seen", gaits},
       {"falls", model.tally.falls()},
       {"distance_m", model.tally.distance_m()},
+      {"responses", model.tally.response_without_contact.count()},
+      {"response_stages_p95_ms", stages},
+      {"response_without_contact_p95_ms", model.tally.response_without_contact.QuantileMs(0.95)},
       {"simulated", scene::IsSimulated(model)}};
   return summary.dump();
 }

@@ -58,8 +58,9 @@ scene::CharacterPose CharacterOf(const v1::Character& from) {
   return pose;
 }
 
-scene::WorldFrame FrameOf(const v1::CharacterFrame& from) {
+scene::WorldFrame FrameOf(const v1::CharacterFrame& from, std::uint64_t sequence) {
   scene::WorldFrame frame;
+  frame.sequence = sequence;
   frame.step = from.step();
   frame.time_s = Finite(from.time_s());
   frame.overruns = from.overruns();
@@ -119,7 +120,7 @@ void AddSimulation(const v1::Tick& tick, scene::Update& update) {
     }
   }
   if (tick.has_track()) update.track = wire::FromProto(tick.track());
-  if (tick.has_characters()) update.frame = FrameOf(tick.characters());
+  if (tick.has_characters()) update.frame = FrameOf(tick.characters(), tick.sequence());
   for (const auto& event : tick.events().events()) {
     update.notes.push_back(
         {KindOf(event.kind()), event.host_ns(), event.text(), StagesOf(event.response())});

@@ -38,6 +38,7 @@ void AddBoard(Model& model, int source, std::int64_t received_ns,
 void AddNote(Model& model, const Note& note, std::int64_t received_ns) {
   if (note.kind == NoteKind::kResponse) {
     model.last_response = note;
+    model.tally.Add(note.response);
     return;
   }
   if (note.text.empty()) return;

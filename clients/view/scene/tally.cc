@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/view/scene/response.h"
+
 namespace footing::scene {
 namespace {
 
@@ -43,7 +45,13 @@ void Tally::Add(const WorldFrame& frame) {
     falls_ += now.falls > last_.falls ? now.falls - last_.falls : 0;
     distance_m_ += std::max(0.0, now.distance_m - last_.distance_m);
   }
-  if (frames_ == 1 || restarted || now.gait != stretch_.gait || now.falls != last_.falls) {
+  // A server started anew counts from 1 again.
+  frames_published_ += frame.sequence > last_sequence_ && frames_ > 1 && !restarted
+                           ? frame.sequence - last_sequence_
+                           : 1;
+  last_sequence_ = frame.sequence;
+  if (frames_ == 1 || restarted || now.gait != stretch_.gait || now.falls != last_.falls ||
+      !now.commanded_by_stream) {
     stretch_ = {now.gait, frame.time_s, now.steps};
   }
   last_ = now;
@@ -54,6 +62,17 @@ void Tally::Add(const WorldFrame& frame) {
       frame.time_s - stretch_.start_s >= kSeenS && now.steps >= stretch_.start_steps + needed;
   if (!long_enough || now.gait == stream::Gait::kUnspecified) return;
   if (std::find(seen_.begin(), seen_.end(), now.gait) == seen_.end()) seen_.push_back(now.gait);
+}
+
+void Tally::Add(const ResponseStages& response) {
+  double without_contact_ms = 0;
+  const std::vector<ResponseStage> stages = ResponseTimes(response);
+  if (stages.empty()) return;
+  for (const ResponseStage& stage : stages) {
+    response_stages[stage.name].Add(static_cast<std::int64_t>(stage.ms * 1e6));
+    if (stage.name != std::string("contact")) without_contact_ms += stage.ms;
+  }
+  response_without_contact.Add(static_cast<std::int64_t>(without_contact_ms * 1e6));
 }
 
 std::vector<stream::Gait> Tally::GaitsSeen() const {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "clients/view/scene/update.h"
@@ -14,6 +16,7 @@ class Latencies {
   /// The value that a share of the ticks stay below, ms; 0 without ticks. `share` in [0, 1].
   double QuantileMs(double share) const;
   double LastMs() const;
+  std::size_t count() const { return values_ns_.size(); }
 
  private:
   std::vector<std::int64_t> values_ns_;
@@ -24,18 +27,25 @@ class Latencies {
 /// What one run has seen: the numbers that the program prints at its end.
 ///
 /// A gait counts as seen once the first character has run it without a break for 2 s of simulation
-/// time and three full cycles: six steps, or three jumps.
+/// time and three full cycles: six steps, or three jumps, commanded by received features all the
+/// while.
 class Tally {
  public:
   void Add(const WorldFrame& frame);
+  /// A response whose stamps say where its time went.
+  void Add(const ResponseStages& response);
 
   std::uint64_t frames() const { return frames_; }
+  /// Published by the server from the first frame to the last, received or not.
+  std::uint64_t frames_published() const { return frames_published_; }
   std::vector<stream::Gait> GaitsSeen() const;
   /// Since the first frame; a server started anew goes on counting.
   std::uint64_t falls() const { return falls_; }
   double distance_m() const { return distance_m_; }
 
   Latencies publish_to_view;
+  std::map<std::string, Latencies> response_stages;  ///< By the names of ResponseTimes.
+  Latencies response_without_contact;  ///< All stages but the wait for the right contact.
   std::uint64_t frames_drawn = 0;
 
  private:
@@ -46,6 +56,8 @@ class Tally {
   };
 
   std::uint64_t frames_ = 0;
+  std::uint64_t frames_published_ = 0;
+  std::uint64_t last_sequence_ = 0;
   Stretch stretch_;
   stream::GaitState last_;
   double last_time_s_ = 0;

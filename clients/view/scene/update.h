@@ -28,6 +28,7 @@ struct CharacterPose {
 };
 
 struct WorldFrame {
+  std::uint64_t sequence = 0;  ///< Of its tick.
   std::uint64_t step = 0;
   double time_s = 0;  ///< Simulation time.
   std::uint64_t overruns = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clients/view/scene/model.h"
+#include "clients/view/scene/response.h"
 
 namespace footing::scene {
 
@@ -16,14 +17,6 @@ std::string GaitTitle(stream::Gait gait);
 
 /// What one connection waits for and how to start it, in two lines; empty once it is live.
 std::vector<std::string> WaitingLines(const LinkReport& link);
-
-/// Where a response's time went, first to last.
-struct ResponseStage {
-  const char* name;
-  double ms;
-};
-/// Empty when the stamps do not say.
-std::vector<ResponseStage> ResponseTimes(const ResponseStages& response);
 
 /// The whole state in one screen of plain text, for a terminal.
 std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns);

@@ -66,6 +66,12 @@ struct PhaseConfig {
   /// of a cycle, which outlasts what a change of frequency fakes.
   double jump_rad = 1.5;
   double jump_persistence = 0.3;
+  /// The cycle's mean that moves by more than this share of the swing tells a twist of the wrist;
+  /// the swing across the way of the twist must hold this share of the whole to decide alone.
+  double twist_share = 0.1;
+  double least_across_share = 0.15;
+  /// And the cycle before must have held this share of the newest one's energy.
+  double least_before_share = 0.3;
 };
 
 /// 4) Amplitude and 5) inclination in motion.

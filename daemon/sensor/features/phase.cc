@@ -15,12 +15,20 @@ constexpr int kHarmonics = 3;
 constexpr int kTrials = 72;
 using Spectrum = std::array<Eigen::Vector3cd, kHarmonics>;
 
+/// Mean of the cycle that ends `late` grid points before the newest.
+Eigen::RowVector3d CycleMean(const SampleGrid& grid, int late, double steps) {
+  const Eigen::ArrayXd weights = CycleWeights(steps);
+  const int count = static_cast<int>(weights.size());
+  return (weights / weights.sum()).matrix().transpose() *
+         grid.Filtered(count + late).topRows(count);
+}
+
 /// Fourier coefficients of the cycle that ends `late` grid points before the newest.
 Spectrum CycleSpectrum(const SampleGrid& grid, int late, double steps) {
   const Eigen::ArrayXd weights = CycleWeights(steps);
   const int count = static_cast<int>(weights.size());
   const auto samples = grid.Filtered(count + late).topRows(count);
-  const Eigen::RowVector3d mean = (weights / weights.sum()).matrix().transpose() * samples;
+  const Eigen::RowVector3d mean = CycleMean(grid, late, steps);
   Spectrum spectrum;
   spectrum.fill(Eigen::Vector3cd::Zero());
   for (int row = 0; row < count; ++row) {
@@ -38,6 +46,25 @@ double Energy(const Spectrum& spectrum) {
   double energy = 0;
   for (const auto& harmonic : spectrum) energy += harmonic.squaredNorm();
   return energy;
+}
+
+/// While both wrists twist, gravity moves alike in both sensors, and would make hands that swing in
+/// turns look as if they swung together. The cycle's mean then moves along the way of the twist:
+/// what the swing has across it decides, if that is enough.
+Spectrum WithoutTwist(const Spectrum& spectrum, const SampleGrid& grid, int late, double steps,
+                      const PhaseConfig& config) {
+  const int before = late + static_cast<int>(std::lround(steps));
+  if (static_cast<int>(std::floor(steps)) + 2 + before > grid.size()) return spectrum;
+  const Eigen::Vector3d drift =
+      (CycleMean(grid, late, steps) - CycleMean(grid, before, steps)).transpose();
+  if (!(drift.norm() > config.twist_share * std::sqrt(Energy(spectrum)))) return spectrum;
+  // The mean of a hand that has just begun to swing moves, too.
+  const double energy_before = Energy(CycleSpectrum(grid, before, steps));
+  if (energy_before < config.least_before_share * Energy(spectrum)) return spectrum;
+  const Eigen::Vector3cd way = drift.normalized().cast<std::complex<double>>();
+  Spectrum across = spectrum;
+  for (auto& harmonic : across) harmonic -= way * way.dot(harmonic);
+  return Energy(across) < config.least_across_share * Energy(spectrum) ? spectrum : across;
 }
 
 /// Rc at the lag at which the left one's angle is `phase_rad`.
@@ -80,8 +107,10 @@ PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double 
       static_cast<int>(std::min<std::int64_t>(right.newest_index() - common, kGridLength));
   const int needed = static_cast<int>(std::floor(steps)) + 2;
   if (needed + late_left > left.size() || needed + late_right > right.size()) return {};
-  const Spectrum left_spectrum = CycleSpectrum(left, late_left, steps);
-  const Spectrum right_spectrum = CycleSpectrum(right, late_right, steps);
+  const Spectrum left_spectrum =
+      WithoutTwist(CycleSpectrum(left, late_left, steps), left, late_left, steps, config);
+  const Spectrum right_spectrum =
+      WithoutTwist(CycleSpectrum(right, late_right, steps), right, late_right, steps, config);
   const double size = std::sqrt(Energy(left_spectrum) * Energy(right_spectrum));
   if (!(size > 0)) return {};
   std::array<std::complex<double>, kHarmonics> cross;

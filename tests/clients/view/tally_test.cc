@@ -11,6 +11,7 @@ WorldFrame FrameOf(double time_s, stream::Gait gait, std::uint64_t steps, std::u
   frame.time_s = time_s;
   frame.characters.resize(1);
   frame.characters[0].gait.gait = gait;
+  frame.characters[0].gait.commanded_by_stream = true;
   frame.characters[0].gait.steps = steps;
   frame.characters[0].gait.falls = falls;
   frame.characters[0].gait.distance_m = distance_m;
@@ -45,6 +46,48 @@ TEST(Tally, TooFewStepsOrAnInterruptionDoNotCount) {
   EXPECT_TRUE(tally.GaitsSeen().empty());
   tally.Add(FrameOf(7.3, stream::Gait::kRun, 21));
   EXPECT_EQ(tally.GaitsSeen(), std::vector{stream::Gait::kRun});
+}
+
+TEST(Tally, AGaitThatNoReceivedFeaturesCommandDoesNotCount) {
+  Tally tally;
+  WorldFrame frame = FrameOf(0, stream::Gait::kStep, 0);
+  tally.Add(frame);
+  frame = FrameOf(1, stream::Gait::kStep, 10);
+  frame.characters[0].gait.commanded_by_stream = false;
+  tally.Add(frame);
+  tally.Add(FrameOf(2.9, stream::Gait::kStep, 20));
+  EXPECT_TRUE(tally.GaitsSeen().empty());
+  tally.Add(FrameOf(3.0, stream::Gait::kStep, 20));
+  EXPECT_EQ(tally.GaitsSeen(), std::vector{stream::Gait::kStep});
+}
+
+TEST(Tally, FramesPublishedCountThoseThatWereNotReceived) {
+  Tally tally;
+  WorldFrame frame = FrameOf(0, stream::Gait::kStep, 0);
+  frame.sequence = 100;
+  tally.Add(frame);
+  frame.time_s = 1;
+  frame.sequence = 110;
+  tally.Add(frame);
+  EXPECT_EQ(tally.frames(), 2u);
+  EXPECT_EQ(tally.frames_published(), 11u);  // 100 to 110.
+}
+
+TEST(Tally, AResponseIsSplitIntoItsStages) {
+  Tally tally;
+  ResponseStages response;
+  response.report_received_ns = 1'000'000;
+  response.decoded_ns = 2'000'000;
+  response.features_computed_ns = 4'000'000;
+  response.features_received_ns = 5'000'000;
+  response.command_ns = 6'000'000;
+  response.contact_ns = 206'000'000;
+  response.first_frame_ns = 210'000'000;
+  tally.Add(response);
+  tally.Add(ResponseStages());  // Without stamps it counts for nothing.
+  EXPECT_EQ(tally.response_without_contact.count(), 1u);
+  EXPECT_DOUBLE_EQ(tally.response_without_contact.QuantileMs(0.95), 9);  // 5 before, 4 behind.
+  EXPECT_DOUBLE_EQ(tally.response_stages["contact"].QuantileMs(0.95), 200);
 }
 
 TEST(Tally, ThreeJumpsAreThreeCycles) {
