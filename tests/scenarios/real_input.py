@@ -3,8 +3,9 @@
 Usage: real_input.py BINARY_FOLDER accelerations|short|board [SECONDS]
 
 Needs the recordings (FOOTING_TEST_DATA); without them it says so and is skipped (exit code 77). The
-recorded accelerations have neither unit nor rate: each file is scaled so that rest is 1 g, and 100
-samples a second are assumed (wiimote_grt) or values in g (wiimote_moocow).
+recorded accelerations have no rate, and wiimote_grt no unit: its files are scaled so that rest is
+1 g, at 50 samples a second (at 100 its shakes would be 7 to 9 Hz, faster than a wrist swings);
+wiimote_moocow is in g, at 100.
 """
 import math
 import os
@@ -24,7 +25,7 @@ def grt_rows(path, rest):
     raw = [[float(cell) - 0.5 for cell in line.split()[1:4]] for line in lines if line.strip()]
     middle = [statistics.median(row[axis] for row in raw[rest]) for axis in range(3)]
     scale = G / math.hypot(*middle)
-    print(f"{path.name}: scaled by {scale:.2f} m/s2 so that rest is 1 g; 100 Hz assumed")
+    print(f"{path.name}: scaled by {scale:.2f} m/s2 so that rest is 1 g; 50 Hz assumed")
     return [(x * scale, y * scale, -z * scale) for x, y, z in raw]
 
 
@@ -44,9 +45,9 @@ def accelerations(stage, seconds):
     csv = stage.folder / "left.csv"
     write_csv(csv, "ax,ay,az", rows)
     stage.start_servers()
-    stage.start("footing-stream", "accel", "--left", csv, "--rate-hz", 100, "--to", stage.devices,
+    stage.start("footing-stream", "accel", "--left", csv, "--rate-hz", 50, "--to", stage.devices,
                 "--link", "ideal")
-    devices = list(features_of(stage, seconds or len(rows) / 100 + 1))
+    devices = list(features_of(stage, seconds or len(rows) / 50 + 1))
     moving = [device for device in devices if device["moving"]]
     print(f"{len(moving)} of {len(devices)} features moving")
     assert len(devices) > 500 and 0.1 < len(moving) / len(devices) < 0.9

@@ -18,11 +18,11 @@ constexpr double Side(int leg) { return leg == kLeft ? 1.0 : -1.0; }
 struct LegState {
   std::array<double, 4> joint_position{};  ///< yaw, roll, pitch (rad), length - leg_length_m (m).
   std::array<double, 4> joint_velocity{};
-  double length_m = 0;                             ///< Hip to foot.
+  double length_m = 0;  ///< Hip to foot.
   double length_rate_mps = 0;
-  Eigen::Vector3d p_WH = Eigen::Vector3d::Zero();  ///< Hip.
-  Eigen::Vector3d p_WF = Eigen::Vector3d::Zero();  ///< Foot ball's centre.
-  Eigen::Vector3d u_HF_W = -Eigen::Vector3d::UnitZ();  ///< Unit vector from hip to foot.
+  Eigen::Vector3d p_WH = Eigen::Vector3d::Zero();              ///< Hip.
+  Eigen::Vector3d p_WF = Eigen::Vector3d::Zero();              ///< Foot ball's centre.
+  Eigen::Vector3d u_HF_W = -Eigen::Vector3d::UnitZ();          ///< Unit vector from hip to foot.
   Eigen::Matrix3d hinge_axes_W = Eigen::Matrix3d::Identity();  ///< Columns: yaw, roll, pitch.
   double normal_force_n = 0;
   bool touching = false;  ///< Loaded by more than kTouchForceN.

@@ -9,8 +9,7 @@ namespace footing::biped {
 
 /// The whole world as MJCF text: options, `ground` (geoms of the world body), the biped.
 /// Contact: the feet's friction holds whatever ground they touch; solref 6 ms, critically damped.
-std::string WriteMjcf(const BipedParameters& parameters, const std::string& ground,
-                      double step_s);
+std::string WriteMjcf(const BipedParameters& parameters, const std::string& ground, double step_s);
 
 /// The names WriteMjcf gives.
 physics::WorldNames Names();

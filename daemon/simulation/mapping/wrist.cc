@@ -29,9 +29,9 @@ Gait WristInterface::GaitOf(double phase_rad, double frequency_hz) const {
   const bool jumped = command_.gait == Gait::kJump;
   const double border_rad =
       jumped ? mapping_.out_of_phase_above_rad
-             : command_.gait == Gait::kStep
-                   ? (mapping_.in_phase_below_rad + mapping_.out_of_phase_above_rad) / 2
-                   : mapping_.in_phase_below_rad;
+      : command_.gait == Gait::kStep
+          ? (mapping_.in_phase_below_rad + mapping_.out_of_phase_above_rad) / 2
+          : mapping_.in_phase_below_rad;
   if (std::fabs(phase_rad) < border_rad) return Gait::kJump;
   const double slack_hz = command_.gait == Gait::kRun    ? -mapping_.walk_run_hysteresis_hz
                           : command_.gait == Gait::kWalk ? mapping_.walk_run_hysteresis_hz

@@ -12,10 +12,9 @@ constexpr double kHalfThicknessM = 1.0;
 
 std::string Box(const stream::TrackSegment& segment) {
   const double half_m = segment.length_m / 2;
-  const Eigen::Matrix3d R_WS =
-      (Eigen::AngleAxisd(segment.heading_rad, Eigen::Vector3d::UnitZ()) *
-       Eigen::AngleAxisd(-segment.slope_rad, Eigen::Vector3d::UnitY()))
-          .toRotationMatrix();
+  const Eigen::Matrix3d R_WS = (Eigen::AngleAxisd(segment.heading_rad, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(-segment.slope_rad, Eigen::Vector3d::UnitY()))
+                                   .toRotationMatrix();
   const Eigen::Vector3d centre =
       segment.start_m + R_WS * Eigen::Vector3d(half_m, 0, -kHalfThicknessM);
   const Eigen::Quaterniond q(R_WS);
