@@ -107,8 +107,9 @@ double RefinedPeriodSteps(const SampleGrid& grid, int points, int lag, int overl
                           const CadenceConfig& config) {
   double period = RefinedLag(grid, points, lag, overlap);
   const int longest = std::min(points, static_cast<int>(config.refine_window_s * kGridHz));
-  for (int cycles = 2; (cycles + 1) * period + 2 <= longest; ++cycles) {
+  for (int cycles = 2;; ++cycles) {
     const int far = static_cast<int>(std::lround(cycles * period));
+    if (far + 1 + overlap > longest) break;
     const double variance = variances[std::min(points, far + overlap)];
     if (variance <= 0) break;
     if (1 - Difference(grid, far, overlap) / (2 * variance) < config.refine_correlation) break;

@@ -69,11 +69,12 @@ void DeviceFeatureExtractor::Observe(std::int64_t now_ns) {
     Forget();
     return;
   }
-  const std::int64_t steps = grid_.newest_index() - computed_index_;
+  const bool begun_anew = grid_.beginnings() != beginnings_;
+  if (begun_anew) Forget();
+  beginnings_ = grid_.beginnings();
+  const std::int64_t steps = begun_anew ? 1 : grid_.newest_index() - computed_index_;
   if (steps == 0) return;
-  const bool plausible = steps > 0 && steps < kGridLength;
-  if (!plausible) Forget();  // The device's clock began anew.
-  elapsed_s_ = kGridStepS * static_cast<double>(plausible ? steps : 1);
+  elapsed_s_ = kGridStepS * static_cast<double>(steps);
   computed_index_ = grid_.newest_index();
   const double known_s = cadence_.valid ? cadence_.period_s : 0.0;
   moving_ = Next(moving_, grid_, known_s, config_.moving);

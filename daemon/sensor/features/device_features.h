@@ -43,6 +43,7 @@ class DeviceFeatureExtractor {
   Cadence cadence_;
   double elapsed_s_ = 0;  ///< Between the newest points of the last two Observe; 0 nothing new.
   std::int64_t newest_received_ns_ = 0;
+  std::uint32_t beginnings_ = 0;     ///< Of the grid, when last observed.
   std::int64_t computed_index_ = 0;  ///< Grid index of the newest point already taken in.
 };
 

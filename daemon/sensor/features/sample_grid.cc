@@ -18,6 +18,7 @@ std::int64_t IndexAtOrAfter(std::int64_t time_ns) {
 
 void SampleGrid::Start(const Knot& knot) {
   started_ = true;
+  ++beginnings_;
   begin_ = end_ = 0;
   knot_ = knot;
   last_ns_ = knot.time_ns;

@@ -33,6 +33,8 @@ class SampleGrid {
 
   /// How many grid points there are, at most kGridLength.
   int size() const { return end_ - begin_; }
+  /// How often the grid has begun anew.
+  std::uint32_t beginnings() const { return beginnings_; }
   /// Instant of the newest sample taken; meaningless while empty.
   std::int64_t newest_ns() const { return last_ns_; }
   /// Index on the grid of the host's clock of the newest point.
@@ -63,6 +65,7 @@ class SampleGrid {
   Samples raw_ = Samples::Zero();
   Samples filtered_ = Samples::Zero();
   std::array<std::uint32_t, 2 * kGridLength> clipped_{};
+  std::uint32_t beginnings_ = 0;
   int begin_ = 0;
   int end_ = 0;
 };
