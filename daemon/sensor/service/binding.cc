@@ -25,9 +25,10 @@ Result<Binding> ParseBinding(const std::string& text) {
   }
   const DeviceRole role = stream::RoleNamed(text.substr(slash + 1));
   if (role == DeviceRole::kUnspecified) {
-    return UsageError("role \"" + text.substr(slash + 1) +
-                      "\" does not exist; there are left_hand, right_hand, left_leg, right_leg, head, "
-                      "left_board, right_board, editor");
+    return UsageError(
+        "role \"" + text.substr(slash + 1) +
+        "\" does not exist; there are left_hand, right_hand, left_leg, right_leg, head, "
+        "left_board, right_board, editor");
   }
   return Binding{text.substr(0, slash), role};
 }
