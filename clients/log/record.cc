@@ -106,6 +106,7 @@ class Recording {
     // Reliable: when the queue is full the session ends, and resumes out of the server's ring.
     client.policy = v1::QUEUE_POLICY_RELIABLE;
     client.queue_ticks = kQueueTicks;
+    client.from_ring_start = true;  // So that what began just before can be run again.
     transport::ClientHandlers handlers;
     handlers.on_welcome = [&](const v1::Welcome& welcome) {
       Keep(recorder.OnWelcome(welcome, clock::MonotonicNs()));

@@ -190,6 +190,9 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     if (last_sequence_ != 0 && options_.policy != v1::QUEUE_POLICY_LATEST) {
       wish.set_from_sequence(last_sequence_ + 1);
       wish.set_from_epoch(epoch_);
+    } else if (options_.from_ring_start) {
+      wish.set_from_sequence(1);
+      wish.set_from_epoch(welcome.epoch());
     }
     if (welcome.epoch() != epoch_) last_sequence_ = 0;
     epoch_ = welcome.epoch();

@@ -21,6 +21,7 @@ struct ClientOptions {
   double max_hz = 0;                  ///< 0: every tick.
   v1::QueuePolicy policy = v1::QUEUE_POLICY_DROP_OLDEST;
   std::uint32_t queue_ticks = 256;
+  bool from_ring_start = false;  ///< First everything that the server's ring still holds.
   std::uint32_t max_message_bytes = 1u << 20;
   double backoff_min_s = 0.1;
   double backoff_max_s = 5;

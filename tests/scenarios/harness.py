@@ -9,6 +9,26 @@ import subprocess
 import tempfile
 import time
 
+import decode_stream
+
+
+def read_ticks(address, seconds, channels=()):
+    """The ticks of a server for so long, with the project's independent decoder."""
+    stream = decode_stream.Stream(address, seconds + 5)
+    stream.send(1, decode_stream.number_field(1, 1) + decode_stream.number_field(3, 1))
+    wish = b"".join(decode_stream.bytes_field(1, name.encode()) for name in channels)
+    stream.send(4, wish + decode_stream.number_field(3, 2) + decode_stream.number_field(4, 1024))
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        message = stream.receive()
+        if "ping" in message:
+            now_ns, ping = time.monotonic_ns(), message["ping"]
+            stream.send(7, b"".join(decode_stream.number_field(i + 1, value) for i, value in
+                                    enumerate((ping["id"], ping["t0_ns"], now_ns, now_ns))))
+        assert "refused" not in message and "goodbye" not in message, message
+        if "tick" in message:
+            yield message["tick"]
+
 
 class Stage:
     def __init__(self, binaries):

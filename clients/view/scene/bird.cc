@@ -1,5 +1,6 @@
 #include "clients/view/scene/bird.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -62,27 +63,31 @@ void AddWings(const Matrix4f& X_WB, double spread, const Plumage& plumage, PartL
   }
 }
 
-/// Toes lie on the ground and spread while the foot touches; they fold and hang in flight.
-void AddToes(const Vector3f& foot, const Vector3f& forward, double spread, const Colour& skin,
-             PartList& parts) {
+/// Toes lie on the ground and spread while the foot touches; they fold and hang in flight, as far
+/// as the floor lets them.
+void AddToes(const Vector3f& foot, const Vector3f& forward, double spread, float floor_m,
+             const Colour& skin, PartList& parts) {
   const auto open = static_cast<float>(spread);
   const Vector3f level = Vector3f(forward.x(), forward.y(), 0).normalized();
+  const auto on_floor = [floor_m](Vector3f p, float radius) {
+    p.z() = std::max(p.z(), floor_m + radius);
+    return p;
+  };
   for (int toe = -1; toe <= 1; ++toe) {
     const float angle = static_cast<float>(toe) * (0.14f + 0.42f * open);
     const Vector3f ahead = TurnAbout(Vector3f::UnitZ(), angle) * level;
-    const Vector3f knuckle =
-        foot + 0.5f * kToeM * (ahead + Vector3f(0, 0, 0.12f - 0.55f * (1 - open)));
-    const Vector3f tip =
-        knuckle + 0.5f * kToeM * (ahead + Vector3f(0, 0, -0.14f - 1.1f * (1 - open)));
+    const Vector3f bent(0, 0, 0.12f - 0.55f * (1 - open)), hung(0, 0, -0.14f - 1.1f * (1 - open));
+    const Vector3f knuckle = on_floor(foot + 0.5f * kToeM * (ahead + bent), 0.017f);
+    const Vector3f tip = on_floor(knuckle + 0.5f * kToeM * (ahead + hung), 0.008f);
     parts.AddLimb(foot, knuckle, 0.021f, 0.017f, skin);
     parts.AddLimb(knuckle, tip, 0.017f, 0.008f, skin);
   }
-  parts.AddLimb(foot, foot + kBackToeM * (-level + Vector3f(0, 0, -0.05f - 0.8f * (1 - open))),
-                0.017f, 0.008f, skin);
+  const Vector3f back = -level + Vector3f(0, 0, -0.05f - 0.8f * (1 - open));
+  parts.AddLimb(foot, on_floor(foot + kBackToeM * back, 0.008f), 0.017f, 0.008f, skin);
 }
 
 void AddLeg(const CharacterPose& pose, int hip_link, int foot_contact, double toe_spread,
-            const Plumage& plumage, PartList& parts) {
+            float floor_m, const Plumage& plumage, PartList& parts) {
   const stream::LinkPose& hip = pose.links[static_cast<std::size_t>(hip_link)];
   const Eigen::Vector3d& foot_m = pose.contacts[static_cast<std::size_t>(foot_contact)].position_m;
   const Eigen::Vector3d forward = hip.orientation * Eigen::Vector3d::UnitX();
@@ -96,7 +101,7 @@ void AddLeg(const CharacterPose& pose, int hip_link, int foot_contact, double to
   parts.AddLimb(calf, hock, 0.098f, 0.040f, plumage.tail, 0.12f);
   parts.AddLimb(hock, b, 0.034f, 0.036f, plumage.skin, 0.25f);
   parts.AddLimb(b, c, 0.034f, 0.024f, plumage.skin, 0.25f);
-  AddToes(c, forward.cast<float>(), toe_spread, plumage.skin, parts);
+  AddToes(c, forward.cast<float>(), toe_spread, floor_m, plumage.skin, parts);
 }
 
 }  // namespace
@@ -110,11 +115,12 @@ Plumage PlumageOf(std::uint32_t character) {
       {Rgb(0x6a994e), Rgb(0xf2eecb), Rgb(0x386641), Rgb(0x4d7c43), Rgb(0xbc4749), Rgb(0xe0a458),
        Rgb(0xf4a259)},
   }};
-  return kPlumages[character % kPlumages.size()];
+  // Characters count from 1.
+  return kPlumages[(character + kPlumages.size() - 1) % kPlumages.size()];
 }
 
 void AddBird(const BirdSkeleton& skeleton, const CharacterPose& pose, const BirdMotion& motion,
-             PartList& parts) {
+             double floor_m, PartList& parts) {
   const auto links = static_cast<int>(pose.links.size());
   const auto contacts = static_cast<int>(pose.contacts.size());
   for (std::size_t leg = 0; leg < 2; ++leg) {
@@ -131,7 +137,8 @@ void AddBird(const BirdSkeleton& skeleton, const CharacterPose& pose, const Bird
   AddWings(X_WB, motion.wing_spread, plumage, parts);
   AddHead(X_WB, motion, plumage, parts);
   for (std::size_t leg = 0; leg < 2; ++leg) {
-    AddLeg(pose, skeleton.hips[leg], skeleton.feet[leg], motion.toe_spread[leg], plumage, parts);
+    AddLeg(pose, skeleton.hips[leg], skeleton.feet[leg], motion.toe_spread[leg],
+           static_cast<float>(floor_m), plumage, parts);
   }
 }
 

@@ -47,10 +47,11 @@ void Stage::AddCharacter(const Model& model, const CharacterPose& pose, double d
   const BirdSkeleton skeleton = SkeletonOf(model, pose.character);
   BirdMotion& motion = motions_[pose.character];
   motion = scene::Advance(motion, skeleton, pose, dt_s);
-  AddBird(skeleton, pose, motion, picture.birds);
+
   if (options.forces) AddForceArrows(pose, picture.forces);
 
   const double floor_m = HeightAt(model.track, pose.com_m.head<2>(), ground_m);
+  AddBird(skeleton, pose, motion, floor_m, picture.birds);
   picture.blobs.push_back(BlobUnder(pose.com_m, floor_m, 0.42, 0.75));
   for (const stream::Contact& foot : pose.contacts) {
     picture.blobs.push_back(BlobUnder(foot.position_m, floor_m, 0.15, 0.5));

@@ -4,6 +4,7 @@
 #include "daemon/offline/eval/features_command.h"
 #include "daemon/offline/eval/gait_command.h"
 #include "daemon/offline/eval/monkey_command.h"
+#include "daemon/offline/eval/replay_command.h"
 #include "daemon/offline/eval/transitions_command.h"
 
 int main(int argc, char** argv) {
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
   footing::eval::AddFeaturesCommand(*app, shared);
   footing::eval::AddGaitCommand(*app, shared);
   footing::eval::AddMonkeyCommand(*app, shared);
+  footing::eval::AddReplayCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;

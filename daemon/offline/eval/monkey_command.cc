@@ -59,8 +59,8 @@ Result<void> RunTrial(const Options& options, std::uint64_t seed, Outcome& outco
     if (time_s >= next_s) {
       const stream::GaitState& state = engine->Output().gait;
       ++outcome.commands;
-      const bool tracked = !state.pending &&
-                           std::fabs(state.speed_mps - state.commanded_speed_mps) < kTrackedMps;
+      const bool tracked =
+          !state.pending && std::fabs(state.speed_mps - state.commanded_speed_mps) < kTrackedMps;
       outcome.tracked += tracked ? 1 : 0;
       next_s = time_s + random.Uniform(0.5, 4);
       walker.Command(DrawCommand(options.gentle, random));

@@ -220,8 +220,7 @@ void Hub::PublishStatus(std::int64_t now_ns) {
   content_.status = std::move(status);
 }
 
-TickContent Hub::Tick() {
-  const std::int64_t now_ns = ports_.now_ns();
+TickContent Hub::Tick(std::int64_t now_ns) {
   EndLeases(now_ns);
   for (const auto& device : devices_) {
     device->Advance(now_ns);

@@ -36,8 +36,9 @@ class Hub {
   void OnReport(devices::DeviceHandle handle, const devices::IncomingReport& report);
   void OnDetach(devices::DeviceHandle handle, const std::string& reason);
 
-  /// Once a tick: everything since the last one, and the features as of now.
-  TickContent Tick();
+  /// Once a tick: everything since the last one, and the features as of `now_ns`. The same reports
+  /// and the same ticks give the same features bit for bit.
+  TickContent Tick(std::int64_t now_ns);
 
   /// Commands. The motor stops when the lease runs out or the session ends.
   Result<void> SetRumble(std::uint64_t session, std::uint32_t device, bool on, double lease_s);

@@ -141,8 +141,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
       const auto self = weak.lock();
       if (error || !self) return;
-      const TickContent content = self->hub_.Tick();
-      self->server_.Publish(clock::MonotonicNs(), ToChannels(content));
+      const std::int64_t now_ns = clock::MonotonicNs();
+      self->server_.Publish(now_ns, ToChannels(self->hub_.Tick(now_ns)));
       self->WaitForTick();
     });
   }

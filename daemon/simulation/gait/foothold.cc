@@ -28,10 +28,9 @@ Pendulum SupportPendulum(const Context& context, const GaitMemory& memory) {
   const Vector3d r_FC_W = body.p_WC - body.legs[memory.support_leg].p_WF;
   const double rate = std::sqrt(kGravityMps2 / std::clamp(r_FC_W.z(), 0.6, 1.1));
   // Half the double support still passes before the new foot carries.
-  const double growth =
-      std::exp(rate * 0.5 * context.gains.walking.double_support_time_s);
-  const Vector3d capture_H = ToHeading(memory.heading_rad, r_FC_W) +
-                             ToHeading(memory.heading_rad, body.v_WC) / rate;
+  const double growth = std::exp(rate * 0.5 * context.gains.walking.double_support_time_s);
+  const Vector3d capture_H =
+      ToHeading(memory.heading_rad, r_FC_W) + ToHeading(memory.heading_rad, body.v_WC) / rate;
   return {rate, growth * capture_H};
 }
 
@@ -47,8 +46,7 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const double back_m = memory.desired_speed_mps * step_time_s / (growth - 1);
   const double aside_m = side * gains.step_width_m / (1 + growth);
   // The offset belongs to the coming step, which goes along the turned heading.
-  const Vector3d offset_H =
-      ToWorld(context.goal.turn_per_step_rad, Vector3d(-back_m, aside_m, 0));
+  const Vector3d offset_H = ToWorld(context.goal.turn_per_step_rad, Vector3d(-back_m, aside_m, 0));
   const double ahead_m = std::clamp(capture_H.x() + offset_H.x() + memory.integrators.walk_m,
                                     -kBackwardLimitM, gains.step_length_limit_m);
   const double outward_m = side * (capture_H.y() + offset_H.y());
@@ -63,9 +61,9 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const Vector3d& p_WF = context.body.legs[memory.support_leg].p_WF;
   foothold.p_WF_m = p_WF + ToWorld(memory.heading_rad, {ahead_m, y_m, 0});
   if (context.seen_ground != nullptr) {
-    foothold.p_WF_m.z() = context.biped.foot_radius_m +
-                          terrain::GroundHeight(*context.seen_ground, foothold.p_WF_m.x(),
-                                                foothold.p_WF_m.y());
+    foothold.p_WF_m.z() =
+        context.biped.foot_radius_m +
+        terrain::GroundHeight(*context.seen_ground, foothold.p_WF_m.x(), foothold.p_WF_m.y());
   }
   return foothold;
 }
@@ -74,26 +72,28 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
   const HoppingGains& gains = context.gains.hopping;
   const bool jumping = memory.gait == stream::Gait::kJump;
   const Vector3d v_H = ToHeading(memory.heading_rad, context.body.v_WC);
-  const double faster_mps = std::clamp(v_H.x() - memory.desired_speed_mps,
-                                       -gains.slower_limit_mps, gains.faster_limit_mps);
+  const double faster_mps = std::clamp(v_H.x() - memory.desired_speed_mps, -gains.slower_limit_mps,
+                                       gains.faster_limit_mps);
   const double learned_m =
       jumping ? memory.integrators.jump_m
               : memory.integrators.run_m + gains.speed_gain_s * memory.desired_speed_mps;
-  const double ahead_m =
+  double ahead_m =
       v_H.x() * memory.support_time_s / 2 + gains.velocity_gain_s * faster_mps + learned_m;
 
+  const bool landing = memory.preparing_landing && !jumping;
+  if (landing) ahead_m += context.gains.transition.landing_reach_m;
   const bool preparing = memory.preparing_jump && !jumping;
   const double side_gain_s =
       preparing ? context.gains.transition.preparation_gain_s : gains.velocity_gain_s;
   const double spacing_m = jumping     ? context.biped.hip_half_spacing_m
                            : preparing ? 0
                                        : gains.run_foot_spacing_m;
-  const double left_m = v_H.y() * memory.support_time_s / 2 + side_gain_s * v_H.y() +
-                        biped::Side(leg) * spacing_m;
-  return ToWorld(memory.heading_rad,
-                 {std::clamp(ahead_m, -gains.foothold_limit_m, gains.foothold_limit_m),
-                  std::clamp(left_m, -gains.foothold_side_limit_m, gains.foothold_side_limit_m),
-                  0});
+  const double left_m =
+      v_H.y() * memory.support_time_s / 2 + side_gain_s * v_H.y() + biped::Side(leg) * spacing_m;
+  return ToWorld(
+      memory.heading_rad,
+      {std::clamp(ahead_m, -gains.foothold_limit_m, gains.foothold_limit_m),
+       std::clamp(left_m, -gains.foothold_side_limit_m, gains.foothold_side_limit_m), 0});
 }
 
 Vector3d HipToFoot(const biped::BodyState& body, int leg, const Vector3d& offset_from_com_W_m,
@@ -111,9 +111,8 @@ Vector3d Mirrored(double heading_rad, const Vector3d& other_r_HF_W_m, double len
   const Vector3d other_H = ToHeading(heading_rad, other_r_HF_W_m);
   const double pitch_rad = std::atan2(other_H.x(), -other_H.z());
   const double roll_rad = std::atan2(other_H.y(), -other_H.z());
-  return ToWorld(heading_rad,
-                 length_m * Vector3d(-std::sin(pitch_rad), -std::sin(roll_rad),
-                                     -std::cos(pitch_rad) * std::cos(roll_rad)));
+  return ToWorld(heading_rad, length_m * Vector3d(-std::sin(pitch_rad), -std::sin(roll_rad),
+                                                  -std::cos(pitch_rad) * std::cos(roll_rad)));
 }
 
 }  // namespace footing::gait

@@ -23,8 +23,8 @@ struct WalkingFoothold {
 
 /// Equation (1), phi_W_d = phi_o + k_W (v_d - v), as a foothold relative to the supporting foot.
 /// For an inverted pendulum of height h, w = sqrt(g / h) and step time T, a foot put at
-/// v / w - v_d T / (e^(w T) - 1) ahead of the COM makes the next step end with v_d: so k_W is -1 / w
-/// and phi_o follows from v_d and T. Sideways the same with the step width in v_d's place.
+/// v / w - v_d T / (e^(w T) - 1) ahead of the COM makes the next step end with v_d: so k_W is -1 /
+/// w and phi_o follows from v_d and T. Sideways the same with the step width in v_d's place.
 WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& memory);
 
 /// Equation (2), phi_R_d = v T / 2 + k_R (v_d - v) with k_R < 0 for an offset ahead of the COM:

@@ -86,17 +86,18 @@ struct HoppingGains {
 
 /// Figure 9: how energy is added and taken out between the gaits.
 struct TransitionGains {
-  double thrust_from_swing = 0.55;     ///< Of the swing: from here Fall may become a thrust.
-  double thrust_to_run_mps = 1.17;     ///< Vertical lift-off speed out of walking.
+  double thrust_from_swing = 0.55;  ///< Of the swing: from here Fall may become a thrust.
+  double thrust_to_run_mps = 1.17;  ///< Vertical lift-off speed out of walking.
   double thrust_to_jump_mps = 1.0;
-  double run_to_walk_mps = 1.4;        ///< Run slows to this, ...
+  double run_to_walk_mps = 1.4;          ///< Run slows to this, ...
   double run_to_walk_margin_mps = 0.35;  ///< ... and lands into walking up to this above it.
+  double landing_reach_m = 0.08;         ///< The last step's foot is put this much further ahead.
   double run_landing_stiffness_n_per_m = 1800;
   double run_landing_damping_ns_per_m = 420;
-  double run_to_jump_mps = 3.2;        ///< Up to this the preparatory step may be taken.
-  double preparation_gain_s = 0.14;    ///< Sideways k_R of the preparatory step.
+  double run_to_jump_mps = 3.2;      ///< Up to this the preparatory step may be taken.
+  double preparation_gain_s = 0.14;  ///< Sideways k_R of the preparatory step.
   double jump_speed_before_landing_mps = 1.0;
-  double jump_to_step_mps = 1.3;       ///< Up to this a jump may land into stepping.
+  double jump_to_step_mps = 1.3;  ///< Up to this a jump may land into stepping.
   double jump_landing_stiffness_n_per_m = 900;
   double jump_landing_damping_ns_per_m = 260;
 };

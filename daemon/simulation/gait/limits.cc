@@ -30,8 +30,7 @@ biped::GaitCommand Limited(const biped::GaitCommand& command) {
     return {.gait = command.gait,
             .speed_mps = std::clamp(command.speed_mps, 0.0, range.speed_max_mps),
             .height_m = std::clamp(command.height_m, kHeightMinM, kHeightMaxM),
-            .turn_per_step_rad =
-                std::clamp(command.turn_per_step_rad, -kTurnMaxRad, kTurnMaxRad)};
+            .turn_per_step_rad = std::clamp(command.turn_per_step_rad, -kTurnMaxRad, kTurnMaxRad)};
   }
   return {};
 }

@@ -44,10 +44,11 @@ struct GaitMemory {
   double desired_speed_mps = 0;  ///< v_d, slewed towards target_speed_mps.
   double target_speed_mps = 0;
 
-  bool thrusting = false;       ///< In Fall: the supporting leg extends for a flight phase.
-  bool absorbing = false;       ///< In Compression: landing into walking or stepping.
-  bool preparing_jump = false;  ///< Running's last step before a jump.
-  bool after_jump = false;      ///< Stepping that came from a jump.
+  bool thrusting = false;          ///< In Fall: the supporting leg extends for a flight phase.
+  bool absorbing = false;          ///< In Compression: landing into walking or stepping.
+  bool preparing_landing = false;  ///< Running's last step before walking or stepping.
+  bool preparing_jump = false;     ///< Running's last step before a jump.
+  bool after_jump = false;         ///< Stepping that came from a jump.
 
   Eigen::Vector3d swing_start_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d foothold_W_m = Eigen::Vector3d::Zero();
@@ -55,7 +56,7 @@ struct GaitMemory {
 
   double support_time_s = 0.2;  ///< T of equation (2), low-passed.
   double touchdown_time_s = 0;
-  double energy_loss_j = 15;    ///< A hop loses this; learned from the lift-off speed.
+  double energy_loss_j = 15;  ///< A hop loses this; learned from the lift-off speed.
   double thrust_length_m = 0.95;
   int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
 

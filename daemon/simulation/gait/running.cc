@@ -59,12 +59,11 @@ double ThrustLength(const Context& context, const GaitMemory& memory) {
   const double speed_mps = LiftOffSpeed(context, memory);
   const double rise_m = std::max(0.0, gains.touchdown_length_m - length_m) * 0.95;
   const double energy_j = std::max(0.0, mass_kg * speed_mps * speed_mps / 2 +
-                                            mass_kg * kGravityMps2 * rise_m +
-                                            memory.energy_loss_j);
+                                            mass_kg * kGravityMps2 * rise_m + memory.energy_loss_j);
   const double stiffness = memory.gait == Gait::kJump ? 2 * gains.jump_leg_stiffness_n_per_m
                                                       : gains.run_leg_stiffness_n_per_m;
-  return std::clamp(length_m + std::sqrt(2 * energy_j / stiffness),
-                    gains.touchdown_length_m - 0.05, gains.touchdown_length_m + 0.25);
+  return std::clamp(length_m + std::sqrt(2 * energy_j / stiffness), gains.touchdown_length_m - 0.05,
+                    gains.touchdown_length_m + 0.25);
 }
 
 void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
@@ -89,8 +88,7 @@ void WatchExtension(const Context& context, GaitMemory& memory) {
 }
 
 bool LandingDone(const Context& context, const GaitMemory& memory) {
-  const double shortest_s =
-      memory.gait == Gait::kJump ? kShortestJumpLandingS : kShortestLandingS;
+  const double shortest_s = memory.gait == Gait::kJump ? kShortestJumpLandingS : kShortestLandingS;
   return memory.absorbing && memory.running == RunningPhase::kCompression &&
          context.TimeIn(memory) > shortest_s &&
          StanceLeg(context, memory).rate_mps > kLandedRateMps;
@@ -101,7 +99,8 @@ void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
     case RunningPhase::kCompression:
       memory.touchdown_time_s = context.body.time_s;
       CountStep(context, memory);
-      memory.absorbing = MayAbsorb(context, memory);
+      memory.absorbing = memory.preparing_landing && MayLand(context, memory);
+      memory.preparing_landing = false;
       break;
     case RunningPhase::kExtension:
       memory.thrust_length_m = ThrustLength(context, memory);
@@ -112,6 +111,7 @@ void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
       LiftOff(context, memory);
       break;
     case RunningPhase::kDownwardFlight:
+      memory.preparing_landing = MayLand(context, memory);
       break;
   }
   memory.running = phase;
@@ -143,8 +143,7 @@ Targets AdvanceRunning(const Context& context, GaitMemory& memory) {
   const bool flying = memory.running == RunningPhase::kUpwardFlight ||
                       memory.running == RunningPhase::kDownwardFlight;
   if (flying) {
-    memory.foothold_W_m =
-        context.body.p_WC + HoppingFoothold(context, memory, memory.support_leg);
+    memory.foothold_W_m = context.body.p_WC + HoppingFoothold(context, memory, memory.support_leg);
   }
   return RunningTargets(context, memory);
 }

@@ -28,8 +28,7 @@ double FlightLength(const Context& context, const GaitMemory& memory) {
   }
   const double way =
       up ? 0 : std::clamp(context.TimeIn(memory) / gains.lengthening_time_s, 0.0, 1.0);
-  return gains.jump_flight_length_m +
-         way * (gains.touchdown_length_m - gains.jump_flight_length_m);
+  return gains.jump_flight_length_m + way * (gains.touchdown_length_m - gains.jump_flight_length_m);
 }
 
 Eigen::Vector3d TowardsFoothold(const Context& context, const GaitMemory& memory, int leg,
@@ -42,11 +41,10 @@ Targets Flight(const Context& context, const GaitMemory& memory) {
   Targets targets;
   const int front = memory.support_leg, rear = 1 - front;
   targets.legs[front] = Placed(TowardsFoothold(context, memory, front, length_m));
-  targets.legs[rear] =
-      memory.gait == stream::Gait::kJump
-          ? Placed(TowardsFoothold(context, memory, rear, length_m))
-          : Placed(Mirrored(memory.heading_rad, targets.legs[front].r_HF_W_m,
-                            context.gains.hopping.idle_length_m));
+  targets.legs[rear] = memory.gait == stream::Gait::kJump
+                           ? Placed(TowardsFoothold(context, memory, rear, length_m))
+                           : Placed(Mirrored(memory.heading_rad, targets.legs[front].r_HF_W_m,
+                                             context.gains.hopping.idle_length_m));
   return targets;
 }
 
@@ -58,8 +56,8 @@ AxialTarget RunSpring(const Context& context, const GaitMemory& memory) {
   spring.min_n = 0;
   spring.length_m = memory.running == RunningPhase::kCompression ? gains.touchdown_length_m
                                                                  : memory.thrust_length_m;
-  spring.stiffness_n_per_m = memory.absorbing ? landing.run_landing_stiffness_n_per_m
-                                              : gains.run_leg_stiffness_n_per_m;
+  spring.stiffness_n_per_m =
+      memory.absorbing ? landing.run_landing_stiffness_n_per_m : gains.run_leg_stiffness_n_per_m;
   spring.damping_ns_per_m =
       memory.absorbing ? landing.run_landing_damping_ns_per_m : gains.run_leg_damping_ns_per_m;
   return spring;
@@ -72,8 +70,8 @@ Targets RunningStance(const Context& context, const GaitMemory& memory) {
   targets.legs[stance].task = leg.touching ? LegTask::kSupport : LegTask::kFree;
   targets.legs[stance].axial = RunSpring(context, memory);
   targets.legs[stance].hip_damping_nms_per_rad = context.gains.servo.free_hip_damping_nms_per_rad;
-  targets.legs[idle] = Placed(Mirrored(memory.heading_rad, leg.p_WF - leg.p_WH,
-                                       context.gains.hopping.idle_length_m));
+  targets.legs[idle] = Placed(
+      Mirrored(memory.heading_rad, leg.p_WF - leg.p_WH, context.gains.hopping.idle_length_m));
   return targets;
 }
 
@@ -89,8 +87,8 @@ AxialTarget JumpSpring(const Context& context, const GaitMemory& memory,
   } else {
     spring.length_m = gains.touchdown_length_m - (memory.absorbing ? kLandingShorterM : 0);
   }
-  spring.stiffness_n_per_m = memory.absorbing ? landing.jump_landing_stiffness_n_per_m
-                                              : gains.jump_leg_stiffness_n_per_m;
+  spring.stiffness_n_per_m =
+      memory.absorbing ? landing.jump_landing_stiffness_n_per_m : gains.jump_leg_stiffness_n_per_m;
   spring.damping_ns_per_m =
       memory.absorbing ? landing.jump_landing_damping_ns_per_m : gains.jump_leg_damping_ns_per_m;
   return spring;

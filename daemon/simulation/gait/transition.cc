@@ -24,8 +24,7 @@ double SpeedAlongHeading(const Context& context, const GaitMemory& memory) {
 
 /// Smoothed duration of the supports: T of equation (2).
 void MeasureSupport(double duration_s, GaitMemory& memory) {
-  memory.support_time_s =
-      0.7 * memory.support_time_s + 0.3 * std::clamp(duration_s, 0.1, 0.45);
+  memory.support_time_s = 0.7 * memory.support_time_s + 0.3 * std::clamp(duration_s, 0.1, 0.45);
 }
 
 }  // namespace
@@ -55,11 +54,18 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
     target_mps = std::min(target_mps, limits.run_to_walk_mps);
   }
   memory.target_speed_mps = target_mps;
+  // Slowing down starts from the speed there is, not from one that was not reached yet.
+  const bool in_flight =
+      IsHopping(memory.gait) && (memory.running == RunningPhase::kUpwardFlight ||
+                                 memory.running == RunningPhase::kDownwardFlight);
+  if (in_flight) {
+    const double reached_mps = std::max(target_mps, SpeedAlongHeading(context, memory));
+    memory.desired_speed_mps = std::min(memory.desired_speed_mps, reached_mps);
+  }
   const double faster = context.gains.walking.acceleration_mps2 * context.step_s;
   const bool brakes = flying && memory.desired_speed_mps > 0;
   const double slower = brakes ? context.gains.hopping.braking_mps2 * context.step_s : faster;
-  memory.desired_speed_mps +=
-      std::clamp(target_mps - memory.desired_speed_mps, -slower, faster);
+  memory.desired_speed_mps += std::clamp(target_mps - memory.desired_speed_mps, -slower, faster);
 }
 
 bool BeginThrust(const Context& context, GaitMemory& memory) {
@@ -71,13 +77,11 @@ bool BeginThrust(const Context& context, GaitMemory& memory) {
   }
   const bool jump = context.goal.gait == Gait::kJump;
   const double lift_off_mps = jump ? gains.thrust_to_jump_mps : gains.thrust_to_run_mps;
-  const double energy_j =
-      context.biped.mass_kg() * lift_off_mps * lift_off_mps / 2 + kThrustLossJ;
+  const double energy_j = context.biped.mass_kg() * lift_off_mps * lift_off_mps / 2 + kThrustLossJ;
   const double extension_m =
       std::sqrt(2 * energy_j / context.gains.hopping.run_leg_stiffness_n_per_m);
-  memory.thrust_length_m =
-      std::clamp(context.body.legs[memory.support_leg].length_m + extension_m, 0.9,
-                 context.biped.leg_length_max_m - 0.02);
+  memory.thrust_length_m = std::clamp(context.body.legs[memory.support_leg].length_m + extension_m,
+                                      0.9, context.biped.leg_length_max_m - 0.02);
   memory.thrusting = true;
   memory.preparing_jump = jump;
   memory.absorbing = false;
@@ -109,7 +113,7 @@ void LiftOff(const Context& context, GaitMemory& memory) {
   memory.phase_start_s = context.body.time_s;
 }
 
-bool MayAbsorb(const Context& context, const GaitMemory& memory) {
+bool MayLand(const Context& context, const GaitMemory& memory) {
   if (Flies(context.goal.gait)) return false;
   const TransitionGains& gains = context.gains.transition;
   const double speed_mps = SpeedAlongHeading(context, memory);

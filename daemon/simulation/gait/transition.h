@@ -4,15 +4,15 @@
 
 /// Changes of gait: Figure 9 and "Gait Transitions" in section 5 of the paper.
 ///
-/// | from, to            | energy                                   | the controller changes        |
+/// | from, to            | energy                                   | the controller changes |
 /// |---------------------|------------------------------------------|-------------------------------|
-/// | step <-> walk       | none                                     | at once                       |
-/// | step, walk -> run   | Fall extends the supporting leg          | when it leaves the ground     |
-/// | step, walk -> jump  | the same                                 | the same                      |
-/// | run -> jump         | one preparatory step, foot under the COM | when its leg leaves the ground|
-/// | run -> walk, step   | run slows down; Compression then absorbs | in Compression, to Rise       |
-/// | jump -> step, walk  | jump slows down; both legs absorb        | to Double Support of stepping |
-/// | jump -> run         | not in the paper: by stepping, walking   |                               |
+/// | step <-> walk       | none                                     | at once | | step, walk -> run
+/// | Fall extends the supporting leg          | when it leaves the ground     | | step, walk ->
+/// jump  | the same                                 | the same                      | | run -> jump
+/// | one preparatory step, foot under the COM | when its leg leaves the ground| | run -> walk, step
+/// | run slows down; a foot far ahead absorbs  | in Compression, to Rise       | | jump -> step,
+/// walk  | jump slows down; both legs absorb        | to Double Support of stepping | | jump -> run
+/// | not in the paper: by stepping, walking   |                               |
 namespace footing::gait {
 
 /// True where the figure has an arrow (and for staying).
@@ -29,8 +29,9 @@ void SlewSpeed(const Context& context, GaitMemory& memory);
 bool BeginThrust(const Context& context, GaitMemory& memory);
 /// At lift-off: to the flight of the gait that follows.
 void LiftOff(const Context& context, GaitMemory& memory);
-/// At touchdown: whether this Compression is to absorb, for walking or stepping to follow.
-bool MayAbsorb(const Context& context, const GaitMemory& memory);
+/// At the apex, and again at touchdown: whether the Compression to come is to absorb, for walking
+/// or stepping to follow. Asked at the apex first, so that the foot is placed for it.
+bool MayLand(const Context& context, const GaitMemory& memory);
 /// At the end of an absorbing Compression: running goes on with Rise, jumping with Double Support.
 void LandIntoWalking(const Context& context, GaitMemory& memory);
 

@@ -68,11 +68,11 @@ void FollowGround(const Context& context, GaitMemory& memory) {
 
 WalkingCues SenseWalking(const Context& context, const GaitMemory& memory) {
   const double swing = SwingProgress(context, memory);
-  return {.double_support_over =
-              context.TimeIn(memory) >= context.gains.walking.double_support_time_s,
-          .half_swing_over = swing > 0.5,
-          .swing_foot_landed =
-              swing > kLandsAfter && context.body.legs[1 - memory.support_leg].touching};
+  return {
+      .double_support_over = context.TimeIn(memory) >= context.gains.walking.double_support_time_s,
+      .half_swing_over = swing > 0.5,
+      .swing_foot_landed =
+          swing > kLandsAfter && context.body.legs[1 - memory.support_leg].touching};
 }
 
 Targets AdvanceWalking(const Context& context, GaitMemory& memory) {

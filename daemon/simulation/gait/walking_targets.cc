@@ -40,8 +40,8 @@ LegTarget Supporting(const Context& context, const GaitMemory& memory, int leg, 
   target.axial.follow_rate = true;
   target.axial.stiffness_n_per_m = gains.leg_stiffness_n_per_m;
   target.axial.damping_ns_per_m = gains.leg_damping_ns_per_m;
-  target.axial.feed_forward_n = gains.carried_mass_kg * kGravityMps2 *
-                                std::max(0.3, -context.body.legs[leg].u_HF_W.z());
+  target.axial.feed_forward_n =
+      gains.carried_mass_kg * kGravityMps2 * std::max(0.3, -context.body.legs[leg].u_HF_W.z());
   target.axial.min_n = 0;
   target.axial.share = share;
   return target;
@@ -50,8 +50,8 @@ LegTarget Supporting(const Context& context, const GaitMemory& memory, int leg, 
 /// Double Support: the load goes over from the rear leg to the front one.
 Targets DoubleSupport(const Context& context, const GaitMemory& memory) {
   const int front = memory.support_leg, rear = 1 - front;
-  const double passed = std::clamp(
-      context.TimeIn(memory) / context.gains.walking.double_support_time_s, 0.0, 1.0);
+  const double passed =
+      std::clamp(context.TimeIn(memory) / context.gains.walking.double_support_time_s, 0.0, 1.0);
   const bool front_touches = context.body.legs[front].touching;
   const double front_share = !front_touches || passed > 0.5 ? 1 : 0.5 + passed;
   Targets targets;
@@ -74,7 +74,8 @@ double ClearHeight(const Context& context, const GaitMemory& memory, int leg, do
   return highest_m + context.biped.foot_radius_m + kSeenClearanceM * std::max(0.0, fade);
 }
 
-/// The swing foot's path: smooth from where it left to the foothold, held short to clear the ground.
+/// The swing foot's path: smooth from where it left to the foothold, held short to clear the
+/// ground.
 Vector3d SwingFoot(const Context& context, const GaitMemory& memory, int leg) {
   const WalkingGains& gains = context.gains.walking;
   const double time_s = context.TimeIn(memory);

@@ -27,6 +27,7 @@ Leg FootAt(double cycles, double stride_m) {
 
 CharacterPose PoseAt(double time_s, const Wish& wish) {
   CharacterPose pose;
+  pose.character = 1;
   pose.valid = true;
   pose.simulated_input = wish.simulated;
   const double cycles = kCadenceHz * time_s;
@@ -158,6 +159,7 @@ stream::Track StraightTrack(double length_m) {
 
 stream::Skeleton Biped() {
   stream::Skeleton skeleton;
+  skeleton.character = 1;
   skeleton.name = "bird";
   skeleton.links = {{"body", -1, {}},
                     {"left_hip", 0, {}},

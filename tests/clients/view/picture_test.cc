@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <functional>
 
 #include "clients/view/render/off_screen.h"
 #include "clients/view/render/screen.h"
@@ -8,33 +11,196 @@
 #include "clients/view/scene/stage.h"
 #include "tests/clients/view/made_stream.h"
 
+// Pictures of the made stream, judged by facts and not by bytes: drivers differ in every pixel.
+// FOOTING_PICTURES=FOLDER keeps them as PNG files, to look at.
 namespace footing::render {
 namespace {
 
-TEST(Picture, Try) {
-  auto context = OffScreen::Create();
-  ASSERT_TRUE(context) << context.error().message;
-  auto target = Target::Create(getenv("BIG") ? 2560 : 1280, getenv("BIG") ? 1440 : 720, 4);
-  ASSERT_TRUE(target);
-  auto screen = Screen::Create(getenv("BIG") ? 2 : 1);
-  ASSERT_TRUE(screen) << screen.error().message;
-  const char* gait = std::getenv("T");
-  const double t = gait ? atof(gait) : 6.13;
-  scene::made::Wish wish;
-  scene::Model model = scene::made::ModelAfter(t, wish);
-  scene::Stage stage;
-  scene::Picture picture;
-  scene::WorldFrame frame;
-  for (int i = 100; i >= 0; --i) {
-    frame = scene::made::TickAt(t - 0.01 * i, wish).frame.value();
-    picture = stage.Advance(model, frame, 0.01, {getenv("FORCES") != nullptr});
+constexpr int kWidth = 640;
+constexpr int kHeight = 360;
+
+using Is = std::function<bool(int red, int green, int blue)>;
+
+bool IsSky(int r, int g, int b) { return b > 150 && b > g && g > r; }
+bool IsGrass(int r, int g, int b) { return g > r + 12 && g > b + 25; }
+bool IsClay(int r, int g, int b) { return r > g + 30 && r > b + 30; }
+bool IsFeather(int r, int g, int b) { return b > r + 40 && b > 60 && g > r; }
+
+/// The share of a part of the picture that is of a colour. Rows from `top` to `bottom`, in shares.
+double ShareOf(const Image& image, const Is& is, double top = 0, double bottom = 1) {
+  const auto from = static_cast<std::size_t>(top * image.height * image.width);
+  const auto to = static_cast<std::size_t>(bottom * image.height * image.width);
+  std::size_t count = 0;
+  for (std::size_t i = from; i < to; ++i) {
+    if (is(image.rgb[3 * i], image.rgb[3 * i + 1], image.rgb[3 * i + 2])) ++count;
   }
-  target->Bind();
-  HudOptions options;
-  options.hidden = getenv("SUBJECT") != nullptr;
-  (*screen)->Draw(picture, model, frame, scene::made::ClockAt(t), options,
-                  getenv("BIG") ? 2560 : 1280, getenv("BIG") ? 1440 : 720);
-  ASSERT_TRUE(WritePng(target->Read(), "/tmp/view/try.png"));
+  return static_cast<double>(count) / static_cast<double>(to - from);
+}
+
+double MeanDifference(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) sum += std::abs(a.rgb[i] - b.rgb[i]);
+  return sum / static_cast<double>(a.rgb.size());
+}
+
+/// One context for all cases, as one process has one screen.
+class PictureTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    auto context = OffScreen::Create();
+    if (!context) {
+      why_ = context.error().message;
+      return;
+    }
+    context_ = std::make_unique<OffScreen>(std::move(*context));
+    auto target = Target::Create(kWidth, kHeight, 0);
+    auto screen = Screen::Create(0.5f);
+    if (!target || !screen) {
+      why_ = target ? screen.error().message : target.error().message;
+      return;
+    }
+    target_ = std::make_unique<Target>(std::move(*target));
+    screen_ = std::move(*screen);
+  }
+  static void TearDownTestSuite() {
+    screen_.reset();
+    target_.reset();
+    context_.reset();
+  }
+  void SetUp() override { ASSERT_NE(screen_, nullptr) << why_; }
+
+  /// The picture of a model at a time of the made stream, after its camera has settled.
+  Image Draw(const scene::Model& model, double time_s, const scene::made::Wish& wish,
+             const HudOptions& hud, const std::string& name) {
+    Follow(model, time_s, wish);
+    target_->Bind();
+    screen_->Draw(picture_, model, frame_, scene::made::ClockAt(time_s), hud, kWidth, kHeight);
+    Image image = target_->Read();
+    if (const char* folder = std::getenv("FOOTING_PICTURES")) {
+      EXPECT_TRUE(WritePng(image, std::string(folder) + "/" + name + ".png"));
+    }
+    return image;
+  }
+  void Follow(const scene::Model& model, double time_s, const scene::made::Wish& wish) {
+    scene::Stage stage;
+    frame_ = {};
+    picture_ = stage.Advance(model, frame_, 0, {});
+    if (model.playout.empty()) return;
+    for (int i = 50; i >= 0; --i) {
+      frame_ = scene::made::TickAt(time_s - 0.01 * i, wish).frame.value();
+      picture_ = stage.Advance(model, frame_, 0.01, {});
+    }
+  }
+
+  static std::string why_;
+  static std::unique_ptr<OffScreen> context_;
+  static std::unique_ptr<Target> target_;
+  static std::unique_ptr<Screen> screen_;
+  scene::WorldFrame frame_;
+  scene::Picture picture_;
+};
+
+std::string PictureTest::why_;
+std::unique_ptr<OffScreen> PictureTest::context_;
+std::unique_ptr<Target> PictureTest::target_;
+std::unique_ptr<Screen> PictureTest::screen_;
+
+TEST_F(PictureTest, SkyIsAboveGrassAndTrackAndTheBirdIsBetween) {
+  const scene::made::Wish wish;
+  HudOptions subject;
+  subject.hidden = true;
+  const Image image = Draw(scene::made::ModelAfter(3, wish), 3, wish, subject, "subject");
+  EXPECT_GT(ShareOf(image, IsSky, 0, 0.2), 0.5);
+  EXPECT_LT(ShareOf(image, IsSky, 0.6, 1), 0.02);
+  EXPECT_GT(ShareOf(image, IsGrass, 0.5, 1), 0.15);
+  EXPECT_GT(ShareOf(image, IsClay, 0.5, 1), 0.25);
+  EXPECT_GT(ShareOf(image, IsFeather, 0.4, 0.9), 0.01);
+}
+
+TEST_F(PictureTest, TheWholeBirdStandsInTheMiddleOfThePicture) {
+  const scene::made::Wish wish;
+  Follow(scene::made::ModelAfter(3, wish), 3, wish);
+  target_->Bind();
+  screen_->world().DrawIds(picture_, kWidth, kHeight);
+  const Image ids = target_->Read();
+  int left = kWidth, right = -1, top = kHeight, bottom = -1, pixels = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const auto i = static_cast<std::size_t>(3 * (y * kWidth + x));
+      if (ids.rgb[i] != static_cast<std::uint8_t>(scene::PartId::kBird)) continue;
+      left = std::min(left, x), right = std::max(right, x);
+      top = std::min(top, y), bottom = std::max(bottom, y);
+      ++pixels;
+    }
+  }
+  ASSERT_GT(pixels, 0);
+  // A bird 1.8 m high, 4.7 m away, in a picture that shows 2 tan(0.4) = 0.85 of its distance: near
+  // 0.45 of the height.
+  EXPECT_NEAR(static_cast<double>(bottom - top) / kHeight, 0.45, 0.10);
+  EXPECT_GT(top, 0);
+  EXPECT_LT(bottom, kHeight - 1);
+  EXPECT_NEAR((left + right) / 2.0, kWidth / 2.0, 0.1 * kWidth);
+  EXPECT_GT(pixels, 0.008 * kWidth * kHeight);
+}
+
+TEST_F(PictureTest, PanelsCoverOnlyTheirColumns) {
+  const scene::made::Wish wish;
+  const scene::Model model = scene::made::ModelAfter(3, wish);
+  HudOptions subject;
+  subject.hidden = true;
+  const Image with = Draw(model, 3, wish, {}, "panels");
+  const Image without = Draw(model, 3, wish, subject, "no_panels");
+  EXPECT_GT(MeanDifference(with, without), 5);
+  int changed = 0;
+  for (int y = kHeight / 3; y < kHeight; ++y) {
+    for (int x = kWidth * 3 / 10; x < kWidth * 7 / 10; ++x) {
+      const auto i = static_cast<std::size_t>(3 * (y * kWidth + x));
+      if (std::abs(with.rgb[i] - without.rgb[i]) > 2) ++changed;
+    }
+  }
+  EXPECT_EQ(changed, 0);
+}
+
+TEST_F(PictureTest, TheStampOfSimulatedInputShowsInSubjectModeToo) {
+  scene::made::Wish wish;
+  HudOptions subject;
+  subject.hidden = true;
+  const auto amber = [](int r, int g, int b) { return r > 230 && g > 160 && g < 200 && b < 90; };
+  const Image stamped = Draw(scene::made::ModelAfter(3, wish), 3, wish, subject, "stamped");
+  EXPECT_GT(ShareOf(stamped, amber, 0, 0.08), 0.03);
+  wish.simulated = false;
+  const Image real = Draw(scene::made::ModelAfter(3, wish), 3, wish, subject, "real");
+  EXPECT_EQ(ShareOf(real, amber, 0, 0.08), 0);
+}
+
+TEST_F(PictureTest, BeforeAnyServerTheGroundAndAWaitingPanelAreThere) {
+  scene::Model model;
+  model.links = {{"unix:/tmp/simulation.sock", "", scene::LinkState::kConnecting, ""}};
+  const Image waiting = Draw(model, 0, {}, {}, "waiting");
+  HudOptions subject;
+  subject.hidden = true;
+  const Image bare = Draw(model, 0, {}, subject, "empty_ground");
+  EXPECT_GT(ShareOf(bare, IsGrass, 0.6, 1), 0.6);
+  const auto letters = [](int r, int g, int b) { return r > 140 && g > 140 && b > 140; };
+  EXPECT_GT(ShareOf(waiting, letters, 0.36, 0.52), ShareOf(bare, letters, 0.36, 0.52) + 0.002);
+  EXPECT_GT(MeanDifference(waiting, bare), 3);
+}
+
+TEST_F(PictureTest, TheSameMomentGivesTheSamePicture) {
+  const scene::made::Wish wish;
+  const scene::Model model = scene::made::ModelAfter(3, wish);
+  EXPECT_EQ(Draw(model, 3, wish, {}, "once").rgb, Draw(model, 3, wish, {}, "twice").rgb);
+}
+
+TEST(Target, RefusesSizesThatNoPictureHas) {
+  EXPECT_EQ(Target::Create(0, 10, 0).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(Target::Create(10, 100'000, 0).error().kind, ErrorKind::kUsage);
+}
+
+TEST(WritePng, NamesTheFileThatItCannotWrite) {
+  const auto written = WritePng({1, 1, {0, 0, 0}}, "/nowhere/picture.png");
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().message.find("/nowhere/picture.png"), std::string::npos);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kWidth = 300;
 constexpr float kHeight = 196;
-constexpr float kPhaseHeight = 50;
+constexpr float kPhaseHeight = 70;
 constexpr double kFullSpeedMps = 4;
 constexpr double kFullTurnRad = DegreesToRadians(15);
 constexpr std::int64_t kPhaseStripNs = 4'000'000'000;
@@ -80,15 +80,19 @@ void DrawPhases(const Paint& p, const Box& box, const scene::Model& model,
     const auto at = std::find(model.phases.begin(), model.phases.end(), phase);
     return kInks[static_cast<std::size_t>(at - model.phases.begin()) % kInks.size()];
   };
-  float x = box.low.x;
+  float x = box.low.x, y = box.low.y;
   for (const std::string& phase : model.phases) {
     const bool now = phase == pose.phase;
     const ImU32 ink = now ? IM_COL32(14, 20, 26, 255) : colour::kFaint;
     const std::string name = phase.empty() ? "-" : phase;
-    if (x + p.WidthOf(p.fonts.small, name) + 14 * s > box.high.x) break;
-    x += p.Label({x, box.low.y}, now ? ink_of(phase) : colour::kGroove, ink, name) + 5 * s;
+    if (x + p.WidthOf(p.fonts.small, name) + 14 * s > box.high.x) {
+      x = box.low.x;
+      y += 22 * s;
+    }
+    if (y > box.low.y + 22 * s) break;  // Two rows hold every gait's states.
+    x += p.Label({x, y}, now ? ink_of(phase) : colour::kGroove, ink, name) + 5 * s;
   }
-  const float top = box.low.y + 26 * s, bottom = box.low.y + 34 * s;
+  const float top = box.low.y + 47 * s, bottom = box.low.y + 55 * s;
   const auto x_at = [&](std::int64_t time_ns) {
     const double age = static_cast<double>(now_ns - time_ns) / static_cast<double>(kPhaseStripNs);
     return box.high.x - static_cast<float>(std::clamp(age, 0.0, 1.0)) * box.width();

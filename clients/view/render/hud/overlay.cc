@@ -24,12 +24,12 @@ void DrawWaiting(const Paint& p, const scene::Model& model, ImVec2 size) {
       width = std::max(width, p.WidthOf(p.fonts.text, line) + 60 * s);
     }
   }
-  const float height = (72 + 58 * static_cast<float>(texts.size())) * s;
+  const float height = (84 + 58 * static_cast<float>(texts.size())) * s;
   const ImVec2 low((size.x - width) / 2, size.y * 0.40f - height / 2);
   const Box in = p.Panel({low, {low.x + width, low.y + height}});
   const float left = in.low.x + 12 * s;
-  p.Write(p.fonts.strong, {left, in.low.y + 4 * s}, colour::kText, "Nothing to show yet");
-  float y = in.low.y + 40 * s;
+  p.Write(p.fonts.heading, {left, in.low.y + 6 * s}, colour::kText, "Nothing to show yet");
+  float y = in.low.y + 48 * s;
   for (const auto& lines : texts) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       p.Write(p.fonts.text, {left, y}, i == 0 ? colour::kText : colour::kAccent, lines[i]);

@@ -82,13 +82,17 @@ std::string NewestOf(const scene::Strip& strip, std::int64_t now_ns, int decimal
   return scene::Fixed(factor * static_cast<double>(newest.value), decimals) + unit;
 }
 
-/// The range that shows the strip whole: 2 g, or the Wiimote's 3.5 g on every axis at once.
+/// The least of a few ranges that shows the strip whole; the last is the Wiimote's 3.6 g on all
+/// three axes at once, 9.81 * 3.6 * sqrt(3) m/s2.
 float ReachOf(const scene::Strip& magnitude) {
   float largest = 0;
   for (const scene::Strip::Point& point : magnitude.points()) {
     largest = std::max(largest, point.value);
   }
-  return largest > 22 ? 60.0f : 22.0f;
+  for (const float reach : {22.0f, 40.0f}) {
+    if (largest <= reach) return reach;
+  }
+  return 62;
 }
 
 std::vector<Row> RowsOf(const scene::DeviceStrips& d, std::int64_t now_ns) {

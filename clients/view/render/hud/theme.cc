@@ -28,7 +28,7 @@ ImFont* Load(const char* path, float pixels) {
 
 Fonts LoadFonts(float scale) {
   return {Load(kPlain, 12.5f * scale), Load(kPlain, 15 * scale), Load(kBold, 15 * scale),
-          Load(kBold, 40 * scale)};
+          Load(kBold, 21 * scale), Load(kBold, 40 * scale)};
 }
 
 ImU32 ColourOf(stream::Gait gait) {

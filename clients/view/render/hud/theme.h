@@ -12,6 +12,7 @@ struct Fonts {
   ImFont* small = nullptr;
   ImFont* text = nullptr;
   ImFont* strong = nullptr;
+  ImFont* heading = nullptr;
   ImFont* title = nullptr;
 };
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/result/result.h"
+#include "daemon/simulation/engine/engine.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::eval {
+
+/// How far a second run agrees with the recording. Nothing is rounded before the comparison.
+struct FeaturesReplay {
+  std::uint64_t ticks = 0;
+  std::uint64_t compared = 0;  ///< Rigs' features.
+  std::uint64_t equal = 0;
+  std::uint64_t first_difference_sequence = 0;  ///< 0: none.
+};
+
+struct BipedReplay {
+  std::uint64_t frames = 0;
+  std::uint64_t equal = 0;
+  std::uint64_t first_difference_step = 0;  ///< 0: none.
+  std::uint64_t last_step = 0;
+  std::uint64_t state_hash = 0;  ///< Of the second run after its last step.
+};
+
+/// Feeds the raw reports of footingd's ticks to the same code that published them.
+FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks);
+
+/// Feeds the applied inputs of footing-sim's ticks to a new engine. InvalidData when the recording
+/// does not begin with the simulation's first step.
+Result<BipedReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::GaitEngine engine);
+
+}  // namespace footing::eval

@@ -1,0 +1,56 @@
+"""The command line of footing-log: exit codes and what is said.
+
+Usage: command_line_test.py FOOTING_LOG WRITE_SAMPLE_RECORDING
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+
+def main(program, writer):
+    def run(*words):
+        return subprocess.run([program, *map(str, words)], capture_output=True, text=True,
+                              timeout=30, check=False, stdin=subprocess.DEVNULL)
+
+    with tempfile.TemporaryDirectory(prefix="footing-log.") as name:
+        folder = pathlib.Path(name)
+        whole, cut, repaired = (folder / f"{n}.mcap" for n in ("whole", "cut", "repaired"))
+        subprocess.run([writer, whole], check=True)
+        cut.write_bytes(whole.read_bytes()[:-20])
+
+        info = run("info", whole, "--json")
+        assert info.returncode == 0, info
+        assert json.loads(info.stdout)["simulated"] is True, info.stdout
+        info = run("info", cut, "--json")
+        assert info.returncode == 4 and "footing-log repair" in info.stderr, info
+        assert json.loads(info.stdout)["complete"] is False, info.stdout
+        export = run("export", cut, "--format", "csv", "--out", folder / "csv")
+        assert export.returncode == 4 and "footing-log repair" in export.stderr, export
+
+        repair = run("repair", cut, "--out", repaired, "--json")
+        assert repair.returncode == 0, repair
+        report = json.loads(repair.stdout)
+        assert report["messages_kept"] == 307 and not report["was_complete"], report
+        assert run("repair", cut, "--out", repaired).returncode == 2
+        assert run("info", repaired).returncode == 0
+        export = run("export", repaired, "--format", "csv", "--out", folder / "csv", "--json")
+        assert export.returncode == 0 and len(json.loads(export.stdout)["files"]) == 3, export
+
+        for words, said in ((("export", whole, "--format", "bvh", "--out", folder), "csv"),
+                            (("serve", whole), "record, info, export, repair"),
+                            (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),
+                            (("record", "--connect", "unix:/x", "--out", whole), "--force"),
+                            (("shred", whole), "")):
+            done = run(*words)
+            assert done.returncode == 2 and said in done.stderr, (words, done)
+        assert run("info", folder / "none.mcap").returncode == 1
+        nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", folder / "n.mcap",
+                     "--seconds", "0.2")
+        assert nobody.returncode == 1 and "none.sock" in nobody.stderr, nobody
+        assert run("info", folder / "n.mcap").returncode == 0
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

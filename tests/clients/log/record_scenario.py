@@ -1,0 +1,54 @@
+"""Records both servers live: ended by SIGINT the file is complete; killed it lacks a second at most.
+
+Usage: record_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
+"""
+import json
+import signal
+import sys
+import time
+
+sys.path.insert(0, sys.argv[1])
+from harness import Stage  # noqa: E402
+
+
+def messages_of(done):
+    return json.loads(done.stdout)
+
+
+def main():
+    with Stage(sys.argv[2]) as stage:
+        stage.start_servers()
+        stage.start("footing-stream", "user", "--script", "demo", "--interface", "wrist", "--to",
+                    stage.devices)
+        connect = ("--connect", stage.sensor, "--connect", stage.simulation)
+        whole, killed, repaired = (stage.folder / f"{n}.mcap" for n in ("whole", "killed", "fixed"))
+        started_s = {}
+        for name, path in (("ended", whole), ("killed", killed)):
+            stage.start("footing-log", "record", *connect, "--out", path, name=name)
+            started_s[name] = time.monotonic()
+        stage.wait_for(lambda: killed.exists() and killed.stat().st_size > 200_000,
+                       "a recording of some size", 30)
+        killed_after_s = time.monotonic() - started_s["killed"]
+        stage.stop("killed", signal.SIGKILL)
+        assert stage.stop("ended", signal.SIGINT) == 0
+
+        info = stage.run_json("footing-log", "info", whole)
+        topics = {topic["topic"]: topic["messages"] for topic in info["topics"]}
+        for topic in ("/footingd/status", "/footingd/motion", "/footingd/features",
+                      "/footingd/raw", "/footing-sim/characters", "/footing-sim/skeletons",
+                      "/footing-sim/track"):
+            assert topics.get(topic, 0) > 0, (topic, topics)
+        assert info["complete"] and info["simulated"] is True, info
+        assert info["missing_ticks"] == 0, info
+
+        cut = stage.run("footing-log", "info", killed, "--json")
+        assert cut.returncode == 4 and "repair" in cut.stderr, cut
+        stage.run_json("footing-log", "repair", killed, "--out", repaired)
+        kept_s = stage.run_json("footing-log", "info", repaired)["duration_s"]
+        # Start-up of the process and connecting are within the first 0.5 s.
+        assert kept_s > killed_after_s - 1.5, (kept_s, killed_after_s)
+        print(f"killed after {killed_after_s:.2f} s, kept {kept_s:.2f} s")
+
+
+if __name__ == "__main__":
+    main()

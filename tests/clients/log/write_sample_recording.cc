@@ -1,0 +1,8 @@
+#include "tests/clients/log/sample_recording.h"
+
+/// write_sample_recording FILE.mcap
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  footing::log_client::WriteSampleRecording(argv[1], true);
+  return 0;
+}

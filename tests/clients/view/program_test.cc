@@ -1,0 +1,130 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+// The program itself, run as a user runs it; no server is there.
+namespace footing::view {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Outcome {
+  int code = -1;
+  std::string output;
+};
+
+/// Runs a command line; `output` holds standard output.
+Outcome RunCommand(const std::string& command) {
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  std::array<char, 4096> buffer{};
+  for (std::size_t got; (got = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    outcome.output.append(buffer.data(), got);
+  }
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+  return outcome;
+}
+
+class ProgramTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("view_test." + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string View(const std::string& words) const {
+    return std::string(FOOTING_BINARY_DIR) +
+           "/bin/footing-view --connect unix:" + (folder_ / "simulation.sock").string() + " " +
+           words;
+  }
+  std::string File(const char* name) const { return (folder_ / name).string(); }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(ProgramTest, WithoutAServerTheTextSaysWhatItWaitsForAndHowToStartIt) {
+  const Outcome outcome = RunCommand("env -u DISPLAY " + View("--seconds 0.2") + " 2>&1");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("no display"));
+  EXPECT_THAT(outcome.output, HasSubstr("Waiting for a simulation server on unix:"));
+  EXPECT_THAT(outcome.output, HasSubstr("footing-sim"));
+}
+
+TEST_F(ProgramTest, WithJsonStandardOutputIsOneObject) {
+  const Outcome outcome = RunCommand(View("--text --seconds 0.2 --json") + " 2>/dev/null");
+  EXPECT_EQ(outcome.code, 0);
+  const auto summary = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(summary.at("frames_received"), 0);
+  EXPECT_GE(summary.at("frames_drawn"), 1);
+  EXPECT_EQ(summary.at("gaits_seen").size(), 0u);
+  EXPECT_EQ(summary.at("falls"), 0);
+  EXPECT_TRUE(summary.contains("publish_to_view_p50_ms"));
+  EXPECT_TRUE(summary.contains("publish_to_view_p99_ms"));
+  EXPECT_TRUE(summary.contains("distance_m"));
+}
+
+TEST_F(ProgramTest, AScreenshotNeedsNoDisplayAndNoServer) {
+  const std::string png = File("waiting.png");
+  const Outcome outcome =
+      RunCommand("env -u DISPLAY " +
+                 View("--screenshot " + png + " --at 0.1 --width 320 --height 180") + " 2>&1");
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_GT(std::filesystem::file_size(png), 1000u);
+}
+
+TEST_F(ProgramTest, ARecordingIsNumberedPictures) {
+  const std::string to = File("frames");
+  const Outcome outcome = RunCommand(
+      View("--record " + to + " --seconds 0.5 --record-hz 4 --width 320 --height 180") + " 2>&1");
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_TRUE(std::filesystem::exists(to + "/000000.png"));
+  EXPECT_TRUE(std::filesystem::exists(to + "/000001.png"));
+  EXPECT_FALSE(std::filesystem::exists(to + "/000002.png"));
+}
+
+TEST_F(ProgramTest, WrongWordsEndWithTwoAndOneLine) {
+  for (const char* words : {"--recording walk.mcap", "--connect nonsense", "--msaa 3", "--at x"}) {
+    const Outcome outcome = RunCommand(View(words) + " 2>&1");
+    EXPECT_EQ(outcome.code, 2) << words << ": " << outcome.output;
+    EXPECT_FALSE(outcome.output.empty());
+  }
+}
+
+TEST_F(ProgramTest, APictureThatCannotBeWrittenEndsWithOneAndNamesTheFile) {
+  const Outcome outcome =
+      RunCommand(View("--screenshot /nowhere/a.png --at 0 --width 320 --height 180") + " 2>&1");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("/nowhere/a.png"));
+}
+
+TEST_F(ProgramTest, TheWindowOpensOnADisplayAndDraws) {
+  if (std::system("command -v Xvfb >/dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "Xvfb is not installed: the window is not tried (apt install xvfb)";
+  }
+  // Xvfb picks a free display and writes its number; it ends when its only client leaves.
+  const std::string script = "exec 3>" + File("number") + "; Xvfb -displayfd 3 -screen 0 " +
+                             "800x600x24 -nolisten tcp 2>/dev/null & server=$!; " +
+                             "for i in $(seq 100); do [ -s " + File("number") +
+                             " ] && break; sleep 0.1; done; DISPLAY=:$(cat " + File("number") +
+                             ") " + View("--seconds 1.5 --json --width 640 --height 360") +
+                             " 2>&1; code=$?; kill $server; exit $code";
+  const Outcome outcome = RunCommand("sh -c '" + script + "'");
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  const auto summary = nlohmann::json::parse(outcome.output);
+  // llvmpipe on a busy machine; a window that hangs draws one picture or none.
+  EXPECT_GE(summary.at("frames_drawn"), 5);
+}
+
+}  // namespace
+}  // namespace footing::view

@@ -1,0 +1,66 @@
+#include "clients/view/app/translate.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace footing::view {
+namespace {
+
+TEST(Translate, StampsMoveOntoTheViewersClock) {
+  v1::Tick tick;
+  tick.set_host_ns(5'000);
+  tick.mutable_motion()->add_samples()->set_received_ns(4'900);
+  const scene::Update update = Translate(tick, 3, 1'200, 4'000);
+  EXPECT_EQ(update.source, 3);
+  EXPECT_EQ(update.host_ns, 1'000);
+  EXPECT_EQ(update.received_ns, 1'200);
+  EXPECT_EQ(update.motion.at(0).received_ns, 900);
+  EXPECT_TRUE(update.live);
+}
+
+TEST(Translate, SnapshotsAndRefilledTicksAreNotLive) {
+  v1::Tick snapshot, refilled;
+  snapshot.set_snapshot(true);
+  refilled.set_refilled(true);
+  EXPECT_FALSE(Translate(snapshot, 0, 0, 0).live);
+  EXPECT_FALSE(Translate(refilled, 0, 0, 0).live);
+}
+
+TEST(Translate, WhatATickDoesNotCarryStaysEmpty) {
+  const scene::Update update = Translate({}, 0, 0, 0);
+  EXPECT_FALSE(update.devices || update.skeletons || update.track || update.frame);
+  EXPECT_TRUE(update.motion.empty() && update.boards.empty() && update.notes.empty());
+}
+
+TEST(Translate, NumbersThatAreNotFiniteDoNotReachThePicture) {
+  v1::Tick tick;
+  v1::Character& character = *tick.mutable_characters()->add_characters();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  character.mutable_com_m()->set_x(nan);
+  character.add_links()->mutable_orientation()->set_w(nan);
+  character.add_contacts()->set_normal_force_n(nan);
+  character.mutable_gait()->set_speed_mps(nan);
+  character.mutable_gait()->set_next_foothold_x_m(nan);
+  const scene::CharacterPose pose = Translate(tick, 0, 0, 0).frame->characters.at(0);
+  EXPECT_TRUE(pose.com_m.allFinite());
+  EXPECT_NEAR(pose.links.at(0).orientation.norm(), 1, 1e-12);
+  EXPECT_EQ(pose.contacts.at(0).normal_force_n, 0);
+  EXPECT_EQ(pose.gait.speed_mps, 0);
+  EXPECT_TRUE(pose.gait.next_foothold_m.allFinite());
+}
+
+TEST(Translate, AGaitOfANewerServerIsUnspecified) {
+  v1::Tick tick;
+  tick.mutable_characters()->add_characters()->mutable_gait()->set_gait(static_cast<v1::Gait>(77));
+  EXPECT_EQ(Translate(tick, 0, 0, 0).frame->characters[0].gait.gait, stream::Gait::kUnspecified);
+}
+
+TEST(Translate, MoreCharactersThanASceneHoldsAreLeftOut) {
+  v1::Tick tick;
+  for (int i = 0; i < 1000; ++i) tick.mutable_characters()->add_characters();
+  EXPECT_EQ(Translate(tick, 0, 0, 0).frame->characters.size(), 8u);
+}
+
+}  // namespace
+}  // namespace footing::view

@@ -1,0 +1,91 @@
+"""Bad input ends in one clear line and the right exit code, and disturbs no other client.
+
+Usage: bad_input.py BINARY_FOLDER
+"""
+import socket
+import struct
+import sys
+
+from harness import Stage, read_ticks
+
+USAGE, FAILURE = 2, 1
+
+
+def expect(stage, exit_code, words, program, *arguments):
+    done = stage.run(program, *arguments)
+    lines = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
+    assert done.returncode == exit_code, (program, arguments, done)
+    assert len(lines) == 1 and words in lines[0], (program, arguments, done.stderr)
+
+
+def wrong_starts(stage):
+    config = stage.folder / "config.json"
+    for program in ("footingd", "footing-sim"):
+        config.write_text('{"no_such_key": 1}')
+        expect(stage, USAGE, "no_such_key", program, "--config", config)
+        config.write_text("{")
+        expect(stage, USAGE, "is not JSON", program, "--config", config)
+        expect(stage, USAGE, "cannot open", program, "--config", "/nonexistent.json")
+        expect(stage, USAGE, "key=value", program, "--set", "nonsense")
+        expect(stage, USAGE, "address", program, "--listen", "nonsense")
+        assert stage.run(program, "--no-such-flag").returncode == USAGE
+        assert stage.run(program, "--print-config").returncode == 0
+        assert stage.run(program, "--version").stdout.startswith(program)
+        assert "Examples:" in stage.run(program, "--help").stdout
+    expect(stage, FAILURE, "loopback", "footingd", "--listen", "tcp:0.0.0.0:0")
+    expect(stage, USAGE, "there is: gait", "footing-sim", "--engine", "pose")
+    expect(stage, USAGE, "there is: wrist", "footing-sim", "--interface", "boards")
+    expect(stage, USAGE, "demo", "footing-stream", "user", "--script", "dance")
+    expect(stage, FAILURE, "/nonexistent.csv", "footing-stream", "accel", "--left",
+           "/nonexistent.csv", "--rate-hz", 100)
+    expect(stage, FAILURE, "tracks/no_such_track.json", "footing-sim", "--track", "no_such_track",
+           "--listen", f"unix:{stage.folder}/unused.sock")
+
+
+def garbage(address):
+    """Connections that make no sense, on one socket."""
+    path = address.removeprefix("unix:")
+    half_open = []
+    for data in (b"GET / HTTP/1.1\r\n\r\n", b"\xff" * 4096, struct.pack("<I", 1 << 28),
+                 struct.pack("<I", 5) + b"\x00" * 5, struct.pack("<I", 100) + b"abc", b"", b"\x05"):
+        one = socket.socket(socket.AF_UNIX)
+        one.connect(path)
+        try:
+            one.sendall(data)
+        except BrokenPipeError:
+            pass  # The server was faster to close.
+        half_open.append(one)
+    return half_open
+
+
+def disturb_nobody(stage):
+    stage.start_servers()
+    stage.start_user("walk", "--link", "ideal")
+    for ticks in (read_ticks(stage.sensor, 10, ["motion"]),):
+        next(ticks)
+        open_sockets = [one for address in (stage.sensor, stage.devices, stage.simulation)
+                        for one in garbage(address)]
+        last, samples = 0, 0
+        for tick in ticks:
+            assert last in (0, tick["sequence"] - 1), "a tick is missing"
+            last = tick["sequence"]
+            samples += len(tick.get("motion", {}).get("samples", []))
+            if samples > 400:
+                break
+        assert samples > 400, samples
+        for one in open_sockets:
+            one.close()
+    for name, address in (("footingd", stage.sensor), ("footing-sim", stage.simulation)):
+        expect(stage, FAILURE, "in use", name, "--listen", address)
+    for name in ("footing-stream", "footing-sim", "footingd"):
+        assert stage.stop(name) == 0, name
+
+
+def main(binaries):
+    with Stage(binaries) as stage:
+        wrong_starts(stage)
+        disturb_nobody(stage)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
