@@ -65,7 +65,7 @@ class Bench {
         if (silent) continue;
         if (const auto report = Sample(model)) Receive(handle, *report);
       }
-      Append(hub_.Tick());
+      Append(hub_.Tick(now_ns_));
     }
   }
 
