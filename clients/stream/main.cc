@@ -70,9 +70,18 @@ int main(int argc, char** argv) {
     recorded->add_option("--right", right, "File of the right device");
   }
   accel->add_option("--rate-hz", rate_hz, "Rows a second")->required();
+  auto* boards = app->add_subcommand("boards", "Not built yet")->group("");
+  auto* replay = app->add_subcommand("replay", "Not built yet")->group("");
+  for (auto* absent : {boards, replay}) absent->fallthrough(false)->prefix_command();
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   log::Start("footing-stream", quiet);
 
+  for (auto* absent : {boards, replay}) {
+    if (*absent) {
+      return cli::Report(
+          UsageError(absent->get_name() + " is not built; there are: user, accel, corners"));
+    }
+  }
   if (*user) return Run(stream_client::PlanUser(script, interface, common), common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
   return Run(stream_client::PlanCorners(left, right, common), common);

@@ -25,4 +25,28 @@ void Config::Bind(config::Binder& binder) {
                 "Under it there is none, and the COP is undefined");
 }
 
+Result<std::optional<transport::Address>> ParseSource(const std::string& text) {
+  static const std::string kPrefix = "stream:";
+  if (text == "hid") return std::optional<transport::Address>();
+  if (!text.starts_with(kPrefix)) {
+    return UsageError("source \"" + text + "\": there are hid and stream:ADDRESS");
+  }
+  const auto address = transport::ParseAddress(text.substr(kPrefix.size()));
+  if (!address) return address.error();
+  return std::optional(*address);
+}
+
+Result<void> Check(const Config& config) {
+  for (const std::string& text : config.listen) {
+    if (const auto address = transport::ParseAddress(text); !address) return address.error();
+  }
+  for (const std::string& text : config.sources) {
+    if (const auto source = ParseSource(text); !source) return source.error();
+  }
+  if (config.plate.contact_on_n < config.plate.contact_off_n) {
+    return UsageError("config: board_contact_on_n must not be below board_contact_off_n");
+  }
+  return {};
+}
+
 }  // namespace footing::sensor

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/config/config.h"
+#include "common/result/result.h"
+#include "common/transport/address.h"
 #include "daemon/sensor/board/plate.h"
 
 namespace footing::sensor {
@@ -22,5 +25,12 @@ struct Config {
 
   void Bind(config::Binder& binder);
 };
+
+/// Usage error for what no single key can show: an address or source of the wrong form, a border of
+/// contact below the one that ends it.
+Result<void> Check(const Config& config);
+
+/// The address of a source "stream:ADDRESS"; none for "hid".
+Result<std::optional<transport::Address>> ParseSource(const std::string& text);
 
 }  // namespace footing::sensor

@@ -3,33 +3,25 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
-#include "common/log/log.h"
+#include "daemon/sensor/service/command_line.h"
 #include "daemon/sensor/service/service.h"
 
 namespace {
 
 using namespace footing;  // NOLINT: main is wiring
 
-/// Defaults < file < settings < flags of their own.
-Result<void> Configure(config::Binder& binder, const std::string& file,
-                       const std::vector<std::string>& settings) {
-  if (!file.empty()) {
-    if (const auto applied = binder.ApplyFile(file); !applied) return applied;
-  }
-  for (const std::string& setting : settings) {
-    if (const auto applied = binder.ApplySetting(setting); !applied) return applied;
-  }
-  return {};
-}
-
-int Run(const sensor::Config& config) {
+int Run(const sensor::CommandLine& line) {
   boost::asio::io_context io(1);
-  auto service = sensor::Service::Start(io, config, cli::Version());
-  if (!service) return cli::Report(service.error());
-  boost::asio::steady_timer farewell(io);  // Time for the goodbyes to leave.
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  auto service = sensor::Service::Start(io, line.config, cli::Version());
+  if (!service) return cli::Report(service.error());
+  if (line.json) {
+    std::cout << nlohmann::json{{"listening_on", (*service)->listening_on()}} << std::endl;
+  }
+  boost::asio::steady_timer farewell(io);  // Time for the goodbyes to leave.
   signals.async_wait([&](boost::system::error_code, int) {
     (*service)->Stop("footingd ends");
     farewell.expires_after(std::chrono::milliseconds(200));
@@ -42,30 +34,7 @@ int Run(const sensor::Config& config) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  sensor::Config config;
-  config::Binder binder;
-  config.Bind(binder);
-  std::string file;
-  std::vector<std::string> settings, listen, sources;
-  bool print = false, check = false, quiet = false;
-  auto app = cli::NewApp("footingd", "Sensor daemon: device reports in, samples and features out.",
-                         "  footingd\n"
-                         "  footingd --source stream:unix:/tmp/devices.sock\n"
-                         "  footingd --set 'roles={\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}'\n");
-  app->add_option("--config", file, "JSON file of settings");
-  app->add_option("--set", settings, "One setting, key=value; may be repeated");
-  app->add_option("--listen", listen, "unix:PATH or tcp:HOST:PORT; may be repeated");
-  app->add_option("--source", sources, "hid or stream:ADDRESS; may be repeated");
-  app->add_flag("--print-config", print, "Write the effective config and end");
-  app->add_flag("--check-config", check, "Check the config and end");
-  app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
-  if (const auto code = cli::Parse(*app, argc, argv)) return *code;
-  log::Start("footingd", quiet);
-
-  if (const auto done = Configure(binder, file, settings); !done) return cli::Report(done.error());
-  if (!listen.empty()) config.listen = listen;
-  if (!sources.empty()) config.sources = sources;
-  if (print) std::cout << binder.Print() << std::endl;
-  if (print || check) return 0;
-  return Run(config);
+  int exit_code = 0;
+  const auto line = sensor::ParseCommandLine(argc, argv, exit_code);
+  return line ? Run(*line) : exit_code;
 }

@@ -19,8 +19,6 @@ namespace {
 
 using devices::DeviceHandle;
 
-constexpr const char* kStreamPrefix = "stream:";
-
 transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version) {
   transport::ServerOptions options;
   options.server_id = "footingd";
@@ -72,7 +70,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     }
     auto sources = config_.sources;
     if (sources.empty()) {
-      sources = {"hid", kStreamPrefix + transport::DefaultAddress("devices", true).Text()};
+      sources = {"hid", "stream:" + transport::DefaultAddress("devices", true).Text()};
     }
     for (const std::string& text : sources) {
       if (const auto opened = OpenSource(text); !opened) return opened;
@@ -96,6 +94,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
 
  private:
   Result<void> OpenSource(const std::string& text) {
+    const auto address = ParseSource(text);
+    if (!address) return address.error();
     const std::size_t index = sources_.size();
     devices::SourceHandlers handlers;
     handlers.on_attach = [this, index](DeviceHandle device, const devices::DeviceIdentity& who) {
@@ -111,7 +111,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     };
     handlers.on_trouble = [](const std::string& line) { log::Warning(line); };
     const auto new_handle = [this] { return ++last_handle_; };
-    if (text == "hid") {
+    if (!*address) {
       sources_.push_back(std::make_unique<devices::HidSource>(io_, new_handle, handlers));
       // Without rights to any device stand-ins still work.
       if (const auto started = sources_.back()->Start(); !started) {
@@ -119,15 +119,10 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       }
       return {};
     }
-    if (!text.starts_with(kStreamPrefix)) {
-      return UsageError("source \"" + text + "\": there are hid and stream:ADDRESS");
-    }
-    const auto address = transport::ParseAddress(text.substr(std::string(kStreamPrefix).size()));
-    if (!address) return address.error();
     sources_.push_back(
-        std::make_unique<devices::SocketSource>(io_, *address, new_handle, handlers));
+        std::make_unique<devices::SocketSource>(io_, **address, new_handle, handlers));
     if (const auto started = sources_.back()->Start(); !started) return started;
-    log::Info("device stand-ins on " + address->Text());
+    log::Info("device stand-ins on " + (*address)->Text());
     return {};
   }
 
