@@ -12,6 +12,8 @@ function(add_module_test name)
   endforeach()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${links} footing_warnings GTest::gmock GTest::gtest_main)
+  # Test code is compiled far more often than it runs.
+  target_compile_options(${name} PRIVATE -O0)
   target_compile_definitions(${name} PRIVATE FOOTING_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              FOOTING_BINARY_DIR="${PROJECT_BINARY_DIR}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
