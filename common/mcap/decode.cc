@@ -6,9 +6,9 @@ namespace footing::mcap {
 namespace {
 
 template <typename T>
-std::optional<T> IfOk(const Cursor& cursor, T&& record) {
+std::optional<T> IfOk(const Cursor& cursor, T record) {
   if (!cursor.ok()) return std::nullopt;
-  return std::forward<T>(record);
+  return record;
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ std::optional<Message> DecodeMessage(std::string_view body) {
   Cursor in(body);
   Message message{in.U16(), in.U32(), in.U64(), in.U64(), {}};
   message.data = in.rest();
-  return IfOk(in, std::move(message));
+  return IfOk(in, message);
 }
 
 std::optional<Chunk> DecodeChunk(std::string_view body, bool cut) {

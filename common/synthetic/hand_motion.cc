@@ -64,7 +64,7 @@ HandMotion::HandMotion(std::vector<Segment> segments, const Shape& shape, double
     piece.blend_s = i == 0 ? 0.0 : std::min(blend_s, piece.to.duration_s);
     angle_rad += AngleIn(piece, piece.to.duration_s);
     duration_s_ += piece.to.duration_s;
-    pieces_.push_back(std::move(piece));
+    pieces_.push_back(piece);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "daemon/sensor/features/device_features.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/units/units.h"
 #include "daemon/sensor/features/cycle.h"
@@ -33,7 +34,8 @@ void DeviceFeatureExtractor::Forget() {
 void DeviceFeatureExtractor::MeasureRest() {
   features_.held = features_.amplitude_valid = false;
   features_.amplitude_mps2 = 0;
-  const int count = std::min(grid_.size(), static_cast<int>(config_.rest_window_s * kGridHz + 0.5));
+  const int count =
+      std::min(grid_.size(), static_cast<int>(std::lround(config_.rest_window_s * kGridHz)));
   const Eigen::Vector3d gravity = grid_.Filtered(count).colwise().mean().transpose();
   const Inclination inclination = InclinationOf(gravity);
   features_.inclination_valid = true;

@@ -8,7 +8,7 @@
 namespace footing::features {
 namespace {
 
-int Points(double seconds) { return std::max(2, static_cast<int>(seconds * kGridHz + 0.5)); }
+int Points(double seconds) { return std::max(2, static_cast<int>(std::lround(seconds * kGridHz))); }
 
 double WindowSeconds(const Moving& before, const SampleGrid& grid, const MovingConfig& config) {
   const double since_s =

@@ -80,7 +80,8 @@ Result<WristMapping> ParseWristMapping(const std::string& text, const std::strin
   }
   WristMapping mapping;
   const auto fields = Fields(mapping);
-  for (const auto& [key, value] : root.items()) {
+  for (const auto& item : root.items()) {
+    const std::string& key = item.key();
     const bool known =
         key == "version" || key == "how_found" ||
         std::any_of(fields.begin(), fields.end(), [&](const Field& f) { return f.key == key; });
