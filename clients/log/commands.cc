@@ -137,7 +137,7 @@ void AddServeCommand(CLI::App& app, Shared& shared) {
   const auto addresses = std::make_shared<std::vector<std::string>>();
   command->add_option("FILE", *file, "The recording");
   command->add_option("--listen", *addresses, "unix:PATH or tcp:HOST:PORT");
-  command->callback([&shared] {
+  command->callback([file, addresses, &shared] {  // The options live as long as their command.
     shared.exit_code =
         cli::Report(UsageError("serve is not built; built are: record, info, export, repair"));
   });

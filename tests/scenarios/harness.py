@@ -73,7 +73,7 @@ class Stage:
 
     def run_json(self, program, *words, timeout_s=60):
         done = self.run(program, *words, "--json", timeout_s=timeout_s)
-        assert done.returncode == 0, f"{program} {words}: {done.returncode}\n{done.stderr}"
+        assert done.returncode == 0, f"{program} {words}: {done.returncode}\n{done.stdout}\n{done.stderr}"
         return json.loads(done.stdout)
 
     def wait_for(self, condition, what, timeout_s=10.0):

@@ -29,9 +29,12 @@ class HubReplay {
   sensor::TickContent Run(const v1::Tick& tick) {
     raw_ = &tick.raw();
     next_ = 0;
-    // A tick's status names what was attached or lost since the tick before.
+    // A tick's status names what was attached or lost since the tick before. The first report goes
+    // out at the attachment: a status without reports is a snapshot of later devices, or of no
+    // news.
     for (const v1::DeviceStatus& status : tick.status().devices()) {
-      if (status.state() != v1::DEVICE_STATE_LOST) AttachIfNew(status.device());
+      const bool attached = status.state() != v1::DEVICE_STATE_LOST && next_ < raw_->reports_size();
+      if (attached) AttachIfNew(status.device());
     }
     while (next_ < raw_->reports_size()) {
       const v1::RawReport& report = raw_->reports(next_++);
