@@ -7,7 +7,18 @@
 /// What crosses a process border, as plain structs: proto/footing/v1 says what each field means.
 namespace footing::stream {
 
-enum class DeviceKind { kUnspecified = 0, kWiimote = 1, kBalanceBoard = 2 };
+enum class DeviceKind { kUnspecified = 0, kWiimote = 1, kBalanceBoard = 2, kPsMove = 3 };
+
+enum class Extension {
+  kUnspecified = 0,
+  kNone = 1,
+  kNunchuk = 2,
+  kClassic = 3,
+  kMotionPlus = 4,
+  kMotionPlusNunchuk = 5,
+  kMotionPlusClassic = 6,
+  kUnknown = 7,
+};
 
 enum class DeviceRole {
   kUnspecified = 0,
@@ -23,13 +34,20 @@ enum class DeviceRole {
 
 enum class DeviceState { kUnspecified = 0, kConnecting = 1, kLive = 2, kStale = 3, kLost = 4 };
 
-enum class CalibrationOrigin { kUnspecified = 0, kDevice = 1, kDeviceCopy = 2, kDefaults = 3 };
+enum class CalibrationOrigin {
+  kUnspecified = 0,
+  kDevice = 1,
+  kDeviceCopy = 2,
+  kDefaults = 3,
+  kStored = 4
+};
 
 /// Short names, as config files, command lines and screens use them: "left_hand", "live", ...
 const char* Name(DeviceKind kind);
 const char* Name(DeviceRole role);
 const char* Name(DeviceState state);
 const char* Name(CalibrationOrigin origin);
+const char* Name(Extension extension);
 /// The role of that name; kUnspecified when there is none.
 DeviceRole RoleNamed(const std::string& name);
 
@@ -56,6 +74,21 @@ struct DeviceStatus {
   std::string note;
   std::string name;
   std::int64_t last_report_ns = 0;
+  Extension extension = Extension::kUnspecified;
+  CalibrationOrigin extension_calibration = CalibrationOrigin::kUnspecified;
+  CalibrationOrigin gyroscope_calibration = CalibrationOrigin::kUnspecified;
+  std::string driver;
+  std::string place;
+  std::uint64_t mode_reasserts = 0;
+  std::uint64_t queue_drops = 0;
+  std::uint64_t writes_failed = 0;
+  std::uint64_t extension_changes = 0;
+  bool tared = false;
+  bool mounted = false;
+  bool slipped = false;
+  bool moved = false;
+  double clock_offset_sd_ms = -1;
+  std::uint32_t sphere_rgb = 0;
 };
 
 struct RawReport {
@@ -64,6 +97,7 @@ struct RawReport {
   std::vector<std::uint8_t> report;
   bool to_device = false;
   bool simulated = false;
+  bool feature = false;
   std::int64_t true_ns = 0;
 };
 

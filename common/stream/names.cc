@@ -7,11 +7,19 @@
 namespace footing::stream {
 namespace {
 
-constexpr std::array kKinds = {"unknown", "wiimote", "balance_board"};
+constexpr std::array kKinds = {"unknown", "wiimote", "balance_board", "ps_move"};
 constexpr std::array kRoles = {"none", "left_hand",  "right_hand",  "left_leg", "right_leg",
                                "head", "left_board", "right_board", "editor"};
 constexpr std::array kStates = {"unknown", "connecting", "live", "stale", "lost"};
-constexpr std::array kOrigins = {"unknown", "device", "device_copy", "defaults"};
+constexpr std::array kOrigins = {"unknown", "device", "device_copy", "defaults", "stored"};
+constexpr std::array kExtensions = {"unknown",
+                                    "none",
+                                    "nunchuk",
+                                    "classic",
+                                    "motion_plus",
+                                    "motion_plus_nunchuk",
+                                    "motion_plus_classic",
+                                    "other"};
 constexpr std::array kGaits = {"unknown", "step", "walk", "run", "jump"};
 
 template <std::size_t N, typename E>
@@ -34,6 +42,7 @@ const char* Name(DeviceKind kind) { return At(kKinds, kind); }
 const char* Name(DeviceRole role) { return At(kRoles, role); }
 const char* Name(DeviceState state) { return At(kStates, state); }
 const char* Name(CalibrationOrigin origin) { return At(kOrigins, origin); }
+const char* Name(Extension extension) { return At(kExtensions, extension); }
 const char* Name(Gait gait) { return At(kGaits, gait); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
 Gait GaitNamed(const std::string& name) { return Named<Gait>(kGaits, name); }

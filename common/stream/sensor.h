@@ -23,6 +23,46 @@ struct MotionSample {
   bool uncalibrated = false;
   bool simulated = false;
   std::uint32_t buttons = 0;
+  bool has_angular_velocity = false;
+  Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();  ///< In S, bias removed.
+  bool angular_velocity_clipped = false;
+  bool gyroscope_uncalibrated = false;
+  bool has_magnetic_field = false;
+  Eigen::Vector3d magnetic_field = Eigen::Vector3d::Zero();  ///< Counts in S.
+  double trigger = 0;                                        ///< 0 to 1, of a PS Move.
+  double temperature_c = 0;
+};
+
+/// One sample of a Nunchuk, in its own sensor frame (x left, y front, z down).
+struct NunchukSample {
+  std::uint32_t device = 0;
+  std::uint64_t report_count = 0;
+  std::int64_t received_ns = 0;
+  std::int64_t sampled_ns = 0;
+  double stick_x = 0;  ///< -1 left to 1 right.
+  double stick_y = 0;  ///< -1 back to 1 front.
+  bool c = false;
+  bool z = false;
+  Eigen::Vector3d specific_force_mps2 = Eigen::Vector3d::Zero();
+  std::uint32_t clipped_axes = 0;
+  bool repeated = false;
+  bool uncalibrated = false;
+  bool simulated = false;
+};
+
+/// A bright point as a Wiimote's camera counts: x 0 to 1023, y 0 to 767.
+struct CameraPoint {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t size = 0;
+};
+
+struct CameraSample {
+  std::uint32_t device = 0;
+  std::int64_t received_ns = 0;
+  std::int64_t sampled_ns = 0;
+  std::vector<CameraPoint> points;
+  bool simulated = false;
 };
 
 /// Features of one controller (gait paper, section 6).
@@ -75,6 +115,24 @@ struct BoardSample {
   bool contact = false;
   bool repeated = false;
   bool uncalibrated = false;
+  bool simulated = false;
+  bool tared = false;
+};
+
+/// Board forces at a uniform rate.
+struct UniformBoardSample {
+  std::uint32_t device = 0;
+  std::int64_t sampled_ns = 0;
+  double top_left_n = 0;
+  double top_right_n = 0;
+  double bottom_left_n = 0;
+  double bottom_right_n = 0;
+  double total_n = 0;
+  bool cop_valid = false;
+  double cop_x_m = 0;
+  double cop_y_m = 0;
+  std::uint32_t samples = 0;  ///< Raw samples in the window.
+  bool gap = false;           ///< The window is empty: held, not valid.
   bool simulated = false;
 };
 

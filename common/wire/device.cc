@@ -36,6 +36,23 @@ v1::DeviceStatus ToProto(const stream::DeviceStatus& value) {
   message.set_note(Utf8(value.note));
   message.set_name(Utf8(value.name));
   message.set_last_report_ns(value.last_report_ns);
+  message.set_extension(static_cast<v1::Extension>(value.extension));
+  message.set_extension_calibration(
+      static_cast<v1::CalibrationOrigin>(value.extension_calibration));
+  message.set_gyroscope_calibration(
+      static_cast<v1::CalibrationOrigin>(value.gyroscope_calibration));
+  message.set_driver(Utf8(value.driver));
+  message.set_place(Utf8(value.place));
+  message.set_mode_reasserts(value.mode_reasserts);
+  message.set_queue_drops(value.queue_drops);
+  message.set_writes_failed(value.writes_failed);
+  message.set_extension_changes(value.extension_changes);
+  message.set_tared(value.tared);
+  message.set_mounted(value.mounted);
+  message.set_slipped(value.slipped);
+  message.set_moved(value.moved);
+  message.set_clock_offset_sd_ms(Finite(value.clock_offset_sd_ms));
+  message.set_sphere_rgb(value.sphere_rgb);
   return message;
 }
 
@@ -65,6 +82,26 @@ stream::DeviceStatus FromProto(const v1::DeviceStatus& message) {
   value.note = message.note();
   value.name = message.name();
   value.last_report_ns = message.last_report_ns();
+  value.extension =
+      Known<stream::Extension>(message.extension(), v1::Extension_IsValid(message.extension()));
+  value.extension_calibration = Known<stream::CalibrationOrigin>(
+      message.extension_calibration(),
+      v1::CalibrationOrigin_IsValid(message.extension_calibration()));
+  value.gyroscope_calibration = Known<stream::CalibrationOrigin>(
+      message.gyroscope_calibration(),
+      v1::CalibrationOrigin_IsValid(message.gyroscope_calibration()));
+  value.driver = message.driver();
+  value.place = message.place();
+  value.mode_reasserts = message.mode_reasserts();
+  value.queue_drops = message.queue_drops();
+  value.writes_failed = message.writes_failed();
+  value.extension_changes = message.extension_changes();
+  value.tared = message.tared();
+  value.mounted = message.mounted();
+  value.slipped = message.slipped();
+  value.moved = message.moved();
+  value.clock_offset_sd_ms = Finite(message.clock_offset_sd_ms());
+  value.sphere_rgb = message.sphere_rgb();
   return value;
 }
 
@@ -76,6 +113,7 @@ v1::RawReport ToProto(const stream::RawReport& value) {
   message.set_to_device(value.to_device);
   message.set_simulated(value.simulated);
   message.set_true_ns(value.true_ns);
+  message.set_feature(value.feature);
   return message;
 }
 
@@ -87,6 +125,7 @@ stream::RawReport FromProto(const v1::RawReport& message) {
   value.to_device = message.to_device();
   value.simulated = message.simulated();
   value.true_ns = message.true_ns();
+  value.feature = message.feature();
   return value;
 }
 

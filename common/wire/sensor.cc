@@ -83,6 +83,16 @@ v1::MotionSample ToProto(const stream::MotionSample& value) {
   message.set_uncalibrated(value.uncalibrated);
   message.set_simulated(value.simulated);
   message.set_buttons(value.buttons);
+  if (value.has_angular_velocity) {
+    *message.mutable_angular_velocity_radps() = ToProto(value.angular_velocity_radps);
+  }
+  message.set_angular_velocity_clipped(value.angular_velocity_clipped);
+  message.set_gyroscope_uncalibrated(value.gyroscope_uncalibrated);
+  if (value.has_magnetic_field) {
+    *message.mutable_magnetic_field() = ToProto(value.magnetic_field);
+  }
+  message.set_trigger(Finite(value.trigger));
+  message.set_temperature_c(Finite(value.temperature_c));
   return message;
 }
 
@@ -99,6 +109,14 @@ stream::MotionSample FromProto(const v1::MotionSample& message) {
   value.uncalibrated = message.uncalibrated();
   value.simulated = message.simulated();
   value.buttons = message.buttons();
+  value.has_angular_velocity = message.has_angular_velocity_radps();
+  value.angular_velocity_radps = FromProto(message.angular_velocity_radps());
+  value.angular_velocity_clipped = message.angular_velocity_clipped();
+  value.gyroscope_uncalibrated = message.gyroscope_uncalibrated();
+  value.has_magnetic_field = message.has_magnetic_field();
+  value.magnetic_field = FromProto(message.magnetic_field());
+  value.trigger = Finite(message.trigger());
+  value.temperature_c = Finite(message.temperature_c());
   return value;
 }
 
@@ -151,6 +169,7 @@ v1::BoardSample ToProto(const stream::BoardSample& value) {
   message.set_repeated(value.repeated);
   message.set_uncalibrated(value.uncalibrated);
   message.set_simulated(value.simulated);
+  message.set_tared(value.tared);
   return message;
 }
 
@@ -172,6 +191,7 @@ stream::BoardSample FromProto(const v1::BoardSample& message) {
   value.repeated = message.repeated();
   value.uncalibrated = message.uncalibrated();
   value.simulated = message.simulated();
+  value.tared = message.tared();
   return value;
 }
 

@@ -3,6 +3,7 @@
 #include "common/stream/character.h"
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
+#include "common/stream/setup.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/device.pb.h"
 #include "footing/v1/sensor.pb.h"
@@ -20,6 +21,14 @@ v1::RawReport ToProto(const stream::RawReport& value);
 v1::MotionSample ToProto(const stream::MotionSample& value);
 v1::RigFeatures ToProto(const stream::RigFeatures& value);
 v1::BoardSample ToProto(const stream::BoardSample& value);
+v1::NunchukSample ToProto(const stream::NunchukSample& value);
+v1::CameraPoint ToProto(const stream::CameraPoint& value);
+v1::CameraSample ToProto(const stream::CameraSample& value);
+v1::UniformBoardSample ToProto(const stream::UniformBoardSample& value);
+v1::BoardPose ToProto(const stream::BoardPose& value);
+v1::BoardLayout ToProto(const stream::BoardLayout& value);
+v1::SetupItem ToProto(const stream::SetupItem& value);
+v1::RigSetup ToProto(const stream::RigSetup& value);
 v1::Skeleton ToProto(const stream::Skeleton& value);
 v1::Track ToProto(const stream::Track& value);
 v1::LinkPose ToProto(const stream::LinkPose& value);
@@ -33,6 +42,14 @@ stream::RawReport FromProto(const v1::RawReport& value);
 stream::MotionSample FromProto(const v1::MotionSample& value);
 stream::RigFeatures FromProto(const v1::RigFeatures& value);
 stream::BoardSample FromProto(const v1::BoardSample& value);
+stream::NunchukSample FromProto(const v1::NunchukSample& value);
+stream::CameraPoint FromProto(const v1::CameraPoint& value);
+stream::CameraSample FromProto(const v1::CameraSample& value);
+stream::UniformBoardSample FromProto(const v1::UniformBoardSample& value);
+stream::BoardPose FromProto(const v1::BoardPose& value);
+stream::BoardLayout FromProto(const v1::BoardLayout& value);
+stream::SetupItem FromProto(const v1::SetupItem& value);
+stream::RigSetup FromProto(const v1::RigSetup& value);
 stream::Skeleton FromProto(const v1::Skeleton& value);
 stream::Track FromProto(const v1::Track& value);
 stream::LinkPose FromProto(const v1::LinkPose& value);

@@ -26,6 +26,7 @@ class HidReader {
  public:
   struct Item {
     std::int64_t received_ns = 0;
+    bool feature = false;  ///< The answer to RequestFeature; empty when the device refuses.
     std::size_t size = 0;
     std::array<std::uint8_t, 64> bytes;
   };
@@ -40,17 +41,26 @@ class HidReader {
   bool Pop(Item& item) { return incoming_.Pop(item); }
   /// io thread: false when 64 reports wait already.
   bool Push(std::vector<std::uint8_t> report) { return outgoing_.Push(std::move(report)); }
+  /// io thread: false when eight requests wait already.
+  bool RequestFeature(std::uint8_t id, std::size_t size) { return requests_.Push({id, size}); }
   /// The device is gone; what was read before can still be popped.
   bool ended() const { return ended_.raised(); }
 
  private:
+  struct FeatureRequest {
+    std::uint8_t id = 0;
+    std::size_t size = 0;
+  };
+
   void Run();
   void WriteWaiting();
+  void ReadFeatures();
 
   HidHandle device_;
   std::function<void()> wake_;
   exchange::BoundedQueue<Item> incoming_{256};
   exchange::BoundedQueue<std::vector<std::uint8_t>> outgoing_{64};
+  exchange::BoundedQueue<FeatureRequest> requests_{8};
   exchange::Flag stop_;
   exchange::Flag ended_;
   std::thread thread_;

@@ -91,6 +91,11 @@ class HidSource::Implementation : public std::enable_shared_from_this<Implementa
     if (found != readers_.end()) found->second.reader->Push(report);
   }
 
+  void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
+    const auto found = readers_.find(device);
+    if (found != readers_.end()) found->second.reader->RequestFeature(id, size);
+  }
+
   void Stop() {
     if (!enumerator_.joinable()) return;
     stop_.Raise();
@@ -138,7 +143,11 @@ class HidSource::Implementation : public std::enable_shared_from_this<Implementa
       HidReader& reader = *it->second.reader;
       const bool ended = reader.ended();
       while (reader.Pop(item)) {
-        handlers_.on_report(device, {item.received_ns, {item.bytes.data(), item.size}, 0});
+        IncomingReport report;
+        report.received_ns = item.received_ns;
+        report.bytes = {item.bytes.data(), item.size};
+        report.feature = item.feature;
+        handlers_.on_report(device, report);
       }
       if (!ended) {
         ++it;
@@ -181,7 +190,8 @@ class HidSource::Implementation : public std::enable_shared_from_this<Implementa
     found.identity.name = Narrow(info.product_string);
     found.identity.serial = Narrow(info.serial_number);
     if (found.identity.serial.empty()) found.identity.serial = found.path;
-    found.identity.place = found.path + " (driver " + DriverOf(found.path) + ")";
+    found.identity.place = found.path;
+    found.identity.driver = DriverOf(found.path);
     found.device.reset(hid_open_path(info.path));
     if (!found.device) {
       if (said_.insert(found.path).second) SayWhyNot(info.path, found.identity.name);
@@ -234,6 +244,10 @@ Result<void> HidSource::Start() { return implementation_->Start(); }
 
 void HidSource::Send(DeviceHandle device, const reports::OutputReport& report) {
   implementation_->Send(device, report);
+}
+
+void HidSource::RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
+  implementation_->RequestFeature(device, id, size);
 }
 
 void HidSource::Stop() { implementation_->Stop(); }

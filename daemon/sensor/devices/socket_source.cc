@@ -69,6 +69,18 @@ class SocketSource::Implementation {
     connections_.at(place->second.connection).link->Send(envelope.SerializeAsString());
   }
 
+  void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
+    const auto place = places_.find(device);
+    if (place == places_.end()) return;
+    v1::DeviceEnvelope envelope;
+    v1::DeviceOutput& output = *envelope.mutable_output();
+    output.set_slot(place->second.slot);
+    output.set_channel(v1::DeviceOutput::CHANNEL_FEATURE_GET);
+    output.set_report(&id, 1);
+    output.set_size(static_cast<std::uint32_t>(size));
+    connections_.at(place->second.connection).link->Send(envelope.SerializeAsString());
+  }
+
   void Stop() {
     listener_.reset();
     connections_.clear();
@@ -151,6 +163,8 @@ class SocketSource::Implementation {
     connection.slots[attach.slot()] = device;
     places_[device] = {id, attach.slot()};
     DeviceIdentity identity;
+    identity.bus =
+        attach.bus() == static_cast<std::uint32_t>(Bus::kUsb) ? Bus::kUsb : Bus::kBluetooth;
     identity.vendor = attach.vendor();
     identity.product = attach.product();
     identity.name = attach.name();
@@ -170,10 +184,12 @@ class SocketSource::Implementation {
       return;
     }
     const std::string& report = input.report();
-    handlers_.on_report(slot->second,
-                        {received_ns,
-                         {reinterpret_cast<const std::uint8_t*>(report.data()), report.size()},
-                         input.true_ns()});
+    IncomingReport incoming;
+    incoming.received_ns = received_ns;
+    incoming.bytes = {reinterpret_cast<const std::uint8_t*>(report.data()), report.size()};
+    incoming.true_ns = input.true_ns();
+    incoming.feature = input.feature();
+    handlers_.on_report(slot->second, incoming);
   }
 
   void Detach(Connection& connection, std::uint32_t slot, const std::string& reason) {
@@ -223,6 +239,10 @@ Result<void> SocketSource::Start() { return implementation_->Start(); }
 
 void SocketSource::Send(DeviceHandle device, const reports::OutputReport& report) {
   implementation_->Send(device, report);
+}
+
+void SocketSource::RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
+  implementation_->RequestFeature(device, id, size);
 }
 
 void SocketSource::Stop() { implementation_->Stop(); }

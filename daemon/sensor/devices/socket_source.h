@@ -25,6 +25,7 @@ class SocketSource : public DeviceSource {
 
   Result<void> Start() override;
   void Send(DeviceHandle device, const reports::OutputReport& report) override;
+  void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) override;
   void Stop() override;
 
  private:

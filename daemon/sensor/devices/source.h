@@ -19,16 +19,26 @@ inline constexpr std::uint32_t kVendorNintendo = 0x057e;
 inline constexpr std::uint32_t kProductFirst = 0x0306;  ///< Wiimote, and every Balance Board.
 inline constexpr std::uint32_t kProductTr = 0x0330;     ///< Wiimote with MotionPlus inside.
 
+inline constexpr std::uint32_t kVendorSony = 0x054c;
+inline constexpr std::uint32_t kProductZcm1 = 0x03d5;  ///< PS Move, over USB and over Bluetooth.
+inline constexpr std::uint32_t kProductZcm2 = 0x0c5e;
+
 inline bool IsKnownDevice(std::uint32_t vendor, std::uint32_t product) {
-  return vendor == kVendorNintendo && (product == kProductFirst || product == kProductTr);
+  return (vendor == kVendorNintendo && (product == kProductFirst || product == kProductTr)) ||
+         (vendor == kVendorSony && (product == kProductZcm1 || product == kProductZcm2));
 }
 
+/// As the kernel's input.h numbers them.
+enum class Bus : std::uint32_t { kUnknown = 0, kUsb = 3, kBluetooth = 5 };
+
 struct DeviceIdentity {
+  Bus bus = Bus::kUnknown;
   std::uint32_t vendor = 0;
   std::uint32_t product = 0;
   std::string name;    ///< As the device gives it.
   std::string serial;  ///< Bluetooth address; devices are told apart by it alone.
-  std::string place;   ///< "/dev/hidraw3 (driver wiimote)" or "device socket, slot 2".
+  std::string place;   ///< "/dev/hidraw3" or "device socket, slot 2".
+  std::string driver;  ///< Of the kernel, "wiimote"; empty when unknown.
   bool simulated = false;
   std::string wished_rig;
   stream::DeviceRole wished_role = stream::DeviceRole::kUnspecified;
@@ -38,6 +48,9 @@ struct IncomingReport {
   std::int64_t received_ns = 0;
   std::span<const std::uint8_t> bytes;  ///< Valid during the call.
   std::int64_t true_ns = 0;             ///< A stand-in's own; for recordings only.
+  bool feature = false;                 ///< The answer to RequestFeature.
+  std::uint64_t dropped = 0;            ///< Lost so far between the device's reader and here.
+  std::uint64_t writes_failed = 0;      ///< So far.
 };
 
 /// Called on the io thread.
@@ -57,6 +70,9 @@ class DeviceSource {
   /// Writes one output report; the caller keeps to one per 10 ms and device. Unknown handles are
   /// ignored: the device may be gone already.
   virtual void Send(DeviceHandle device, const reports::OutputReport& report) = 0;
+  /// Asks for a feature report of `size` bytes, id included. The answer comes through on_report
+  /// with `feature` set; a device that refuses gives an empty one.
+  virtual void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) = 0;
   /// Detaches everything without calling the handlers. May be called twice.
   virtual void Stop() = 0;
 };

@@ -170,6 +170,13 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       case v1::Command::kPush:
       case v1::Command::kDirectGait:
         return Answer(command, UsageError("that is a command for footing-sim"));
+      case v1::Command::kTare:
+      case v1::Command::kSolveMounting:
+      case v1::Command::kSetBoardLayout:
+      case v1::Command::kRecordSetup:
+      case v1::Command::kSetSphere:
+      case v1::Command::kSetCamera:
+      case v1::Command::kRequestDeviceStatus:
       case v1::Command::ACTION_NOT_SET:
         return Answer(command, UsageError("the command has no action that footingd knows"));
     }

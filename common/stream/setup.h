@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace footing::stream {
+
+/// Where a board lies in the world frame W (x forward, y left, z up).
+struct BoardPose {
+  double x_m = 0;
+  double y_m = 0;
+  double yaw_rad = 0;  ///< Of the plate's front edge against W's x, about z.
+};
+
+struct BoardLayout {
+  std::string rig;
+  BoardPose left;
+  BoardPose right;
+  double gap_mm = 0;
+  std::string preset;  ///< "one_foot_each", "side_by_side", "single", "custom"; empty: none set.
+};
+
+/// One step of the guided set-up: when it was done and how well.
+struct SetupItem {
+  std::string name;
+  std::string serial;
+  bool passed = false;
+  std::int64_t wall_time_ns = 0;
+  double residual = 0;
+  std::string unit;
+  std::string note;
+  bool stale = false;
+};
+
+struct RigSetup {
+  std::string rig;
+  BoardLayout layout;
+  std::vector<SetupItem> items;
+};
+
+}  // namespace footing::stream

@@ -1,0 +1,114 @@
+#include "common/wire/scalar.h"
+#include "common/wire/wire.h"
+
+namespace footing::wire {
+
+v1::NunchukSample ToProto(const stream::NunchukSample& value) {
+  v1::NunchukSample message;
+  message.set_device(value.device);
+  message.set_report_count(value.report_count);
+  message.set_received_ns(value.received_ns);
+  message.set_sampled_ns(value.sampled_ns);
+  message.set_stick_x(Finite(value.stick_x));
+  message.set_stick_y(Finite(value.stick_y));
+  message.set_c(value.c);
+  message.set_z(value.z);
+  *message.mutable_specific_force_mps2() = ToProto(value.specific_force_mps2);
+  message.set_clipped_axes(value.clipped_axes);
+  message.set_repeated(value.repeated);
+  message.set_uncalibrated(value.uncalibrated);
+  message.set_simulated(value.simulated);
+  return message;
+}
+
+stream::NunchukSample FromProto(const v1::NunchukSample& message) {
+  stream::NunchukSample value;
+  value.device = message.device();
+  value.report_count = message.report_count();
+  value.received_ns = message.received_ns();
+  value.sampled_ns = message.sampled_ns();
+  value.stick_x = Finite(message.stick_x());
+  value.stick_y = Finite(message.stick_y());
+  value.c = message.c();
+  value.z = message.z();
+  value.specific_force_mps2 = FromProto(message.specific_force_mps2());
+  value.clipped_axes = message.clipped_axes();
+  value.repeated = message.repeated();
+  value.uncalibrated = message.uncalibrated();
+  value.simulated = message.simulated();
+  return value;
+}
+
+v1::CameraPoint ToProto(const stream::CameraPoint& value) {
+  v1::CameraPoint message;
+  message.set_x(value.x);
+  message.set_y(value.y);
+  message.set_size(value.size);
+  return message;
+}
+
+stream::CameraPoint FromProto(const v1::CameraPoint& message) {
+  stream::CameraPoint value;
+  value.x = message.x();
+  value.y = message.y();
+  value.size = message.size();
+  return value;
+}
+
+v1::CameraSample ToProto(const stream::CameraSample& value) {
+  v1::CameraSample message;
+  message.set_device(value.device);
+  message.set_received_ns(value.received_ns);
+  message.set_sampled_ns(value.sampled_ns);
+  for (const auto& one : value.points) *message.add_points() = ToProto(one);
+  message.set_simulated(value.simulated);
+  return message;
+}
+
+stream::CameraSample FromProto(const v1::CameraSample& message) {
+  stream::CameraSample value;
+  value.device = message.device();
+  value.received_ns = message.received_ns();
+  value.sampled_ns = message.sampled_ns();
+  for (const auto& one : message.points()) value.points.push_back(FromProto(one));
+  value.simulated = message.simulated();
+  return value;
+}
+
+v1::UniformBoardSample ToProto(const stream::UniformBoardSample& value) {
+  v1::UniformBoardSample message;
+  message.set_device(value.device);
+  message.set_sampled_ns(value.sampled_ns);
+  message.set_top_left_n(Finite(value.top_left_n));
+  message.set_top_right_n(Finite(value.top_right_n));
+  message.set_bottom_left_n(Finite(value.bottom_left_n));
+  message.set_bottom_right_n(Finite(value.bottom_right_n));
+  message.set_total_n(Finite(value.total_n));
+  message.set_cop_valid(value.cop_valid);
+  message.set_cop_x_m(Finite(value.cop_x_m));
+  message.set_cop_y_m(Finite(value.cop_y_m));
+  message.set_samples(value.samples);
+  message.set_gap(value.gap);
+  message.set_simulated(value.simulated);
+  return message;
+}
+
+stream::UniformBoardSample FromProto(const v1::UniformBoardSample& message) {
+  stream::UniformBoardSample value;
+  value.device = message.device();
+  value.sampled_ns = message.sampled_ns();
+  value.top_left_n = Finite(message.top_left_n());
+  value.top_right_n = Finite(message.top_right_n());
+  value.bottom_left_n = Finite(message.bottom_left_n());
+  value.bottom_right_n = Finite(message.bottom_right_n());
+  value.total_n = Finite(message.total_n());
+  value.cop_valid = message.cop_valid();
+  value.cop_x_m = Finite(message.cop_x_m());
+  value.cop_y_m = Finite(message.cop_y_m());
+  value.samples = message.samples();
+  value.gap = message.gap();
+  value.simulated = message.simulated();
+  return value;
+}
+
+}  // namespace footing::wire
