@@ -155,6 +155,16 @@ Result<void> Binder::ApplySetting(const std::string& setting) {
   return Assign(key, value, "--set");
 }
 
+Result<void> Binder::Apply(const std::string& file, const std::vector<std::string>& settings) {
+  if (!file.empty()) {
+    if (const auto applied = ApplyFile(file); !applied) return applied;
+  }
+  for (const std::string& setting : settings) {
+    if (const auto applied = ApplySetting(setting); !applied) return applied;
+  }
+  return {};
+}
+
 std::string Binder::Print() const {
   Json json = Json::object();
   for (const Entry& entry : entries_) json[entry.key] = entry.read();

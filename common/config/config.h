@@ -37,6 +37,9 @@ class Binder {
   /// Applies one "key=value"; the value is JSON, or plain text for a text key.
   Result<void> ApplySetting(const std::string& setting);
 
+  /// Both in their order: `file` where it is not empty, then each of `settings`.
+  Result<void> Apply(const std::string& file, const std::vector<std::string>& settings);
+
   /// The effective config as a JSON object, in the order bound.
   std::string Print() const;
   /// One line a key: key, range, default, documentation.

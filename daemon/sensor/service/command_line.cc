@@ -8,21 +8,6 @@
 #include "common/log/log.h"
 
 namespace footing::sensor {
-namespace {
-
-Result<void> Configure(config::Binder& binder, const std::string& file,
-                       const std::vector<std::string>& settings) {
-  if (!file.empty()) {
-    if (const auto applied = binder.ApplyFile(file); !applied) return applied;
-  }
-  for (const std::string& setting : settings) {
-    if (const auto applied = binder.ApplySetting(setting); !applied) return applied;
-  }
-  return {};
-}
-
-}  // namespace
-
 std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_code) {
   CommandLine line;
   Config& config = line.config;
@@ -49,7 +34,7 @@ std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_cod
     return std::nullopt;
   }
   log::Start("footingd", quiet);
-  auto done = Configure(binder, file, settings);
+  auto done = binder.Apply(file, settings);
   if (!listen.empty()) config.listen = listen;
   if (!sources.empty()) config.sources = sources;
   if (done) done = Check(config);

@@ -12,18 +12,6 @@ namespace {
 
 using namespace footing;  // NOLINT: main is wiring
 
-/// Defaults < file < settings < flags of their own.
-Result<void> Configure(config::Binder& binder, const std::string& file,
-                       const std::vector<std::string>& settings) {
-  if (!file.empty()) {
-    if (const auto applied = binder.ApplyFile(file); !applied) return applied;
-  }
-  for (const std::string& setting : settings) {
-    if (const auto applied = binder.ApplySetting(setting); !applied) return applied;
-  }
-  return {};
-}
-
 int Run(const simulation::Config& config) {
   boost::asio::io_context io(1);
   auto service = simulation::Service::Start(io, config, cli::Version());
@@ -65,7 +53,7 @@ int main(int argc, char** argv) {
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   log::Start("footing-sim", quiet);
 
-  if (const auto done = Configure(binder, file, settings); !done) return cli::Report(done.error());
+  if (const auto done = binder.Apply(file, settings); !done) return cli::Report(done.error());
   if (!listen.empty()) config.listen = listen;
   if (!engine.empty()) config.engine = engine;
   if (!sensor.empty()) config.sensor = sensor;
