@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <signal.h>
+
 #include <cmath>
+#include <iostream>
 #include <memory>
+#include <set>
 
 #include "tests/bench/bench.h"
 
