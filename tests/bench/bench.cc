@@ -54,6 +54,8 @@ Device& Bench::Plug(std::shared_ptr<Model> model, const PlugOptions& options) {
   const device_models::Identity identity = model->identity();
   devices_.push_back(std::make_unique<Device>(io_, testbed_, folder_, number, std::move(model)));
   devices_.back()->node().page().open_errno = options.open_errno;
+  devices_.back()->node().page().write_errno = options.write_errno;
+  devices_.back()->node().page().write_faults = options.write_errno != 0 ? 1 << 30 : 0;
   testbed_.Add(number, identity, options.driver, options.identified);
   return *devices_.back();
 }
@@ -73,12 +75,10 @@ bool Bench::Restart(const std::vector<std::string>& arguments) {
   command.insert(command.end(), arguments.begin(), arguments.end());
   client_.reset();
   footingd_ = std::make_unique<Program>(command, Environment(), folder_ + "/footingd.log");
-  Connect();
-  return Until([this] { return link_ == transport::LinkState::kLive || footingd_->Ended(); }, 10) &&
-         !footingd_->Ended();
+  return Connect();
 }
 
-void Bench::Connect() {
+bool Bench::Connect() {
   transport::ClientOptions options;
   options.address.path = folder_ + "/sensor.sock";
   options.client_name = "bench";
@@ -93,6 +93,8 @@ void Bench::Connect() {
   link_ = transport::LinkState::kConnecting;
   client_ = std::make_unique<transport::Client>(io_, std::move(options), std::move(handlers));
   client_->Start();
+  return Until([this] { return link_ == transport::LinkState::kLive || footingd_->Ended(); }, 10) &&
+         !footingd_->Ended();
 }
 
 int Bench::Stop() {

@@ -68,7 +68,8 @@ struct PlugOptions {
   int number = -1;  ///< Of the hidraw node; -1: the next free one.
   std::string driver = "wiimote";
   bool identified = true;       ///< False: udev has neither name nor serial yet.
-  std::int32_t open_errno = 0;  ///< Not 0: opening fails with it.
+  std::int32_t open_errno = 0;   ///< Not 0: opening fails with it.
+  std::int32_t write_errno = 0;  ///< Not 0: every write fails with it.
 };
 
 /// One machine: its devices, the shipped footingd and a client, all on one thread and in a folder
@@ -92,6 +93,9 @@ class Bench {
   /// Starts footingd anew with other arguments after Stop() or its death.
   bool Restart(const std::vector<std::string>& arguments = {});
   Program& footingd() { return *footingd_; }
+  /// The client's connection alone.
+  bool Connect();
+  void Disconnect() { client_.reset(); }
   /// Another program with the same devices.
   std::unique_ptr<Program> Run(const std::vector<std::string>& command, const std::string& name);
   std::map<std::string, std::string> Environment() const;
@@ -119,8 +123,6 @@ class Bench {
   std::size_t Samples(const Device& device) const;
 
  private:
-  void Connect();
-
   std::string folder_;
   boost::asio::io_context io_;
   Testbed testbed_;

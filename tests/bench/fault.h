@@ -10,6 +10,7 @@
 #include <memory>
 #include <set>
 
+#include "common/clock/clock.h"
 #include "tests/bench/bench.h"
 
 namespace footing::bench {

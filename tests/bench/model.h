@@ -44,6 +44,18 @@ class WiimoteModel : public Model {
   std::uint16_t buttons = 0;
 };
 
+/// A Wiimote in a slot of a USB adapter, which has no serial.
+class SlotModel : public WiimoteModel {
+ public:
+  explicit SlotModel(std::uint64_t seed) : WiimoteModel(seed), identity_(wiimote.identity()) {
+    identity_.bus = 3;
+  }
+  const device_models::Identity& identity() const override { return identity_; }
+
+ private:
+  device_models::Identity identity_;
+};
+
 class BoardModel : public Model {
  public:
   explicit BoardModel(std::uint64_t seed) : board(seed) {}

@@ -27,23 +27,10 @@ std::string Narrow(const wchar_t* text) {
   return narrow;
 }
 
-Bus BusOf(const hid_device_info& info) {
-  switch (info.bus_type) {
-    case HID_API_BUS_USB:
-      return Bus::kUsb;
-    case HID_API_BUS_BLUETOOTH:
-      return Bus::kBluetooth;
-    case HID_API_BUS_UNKNOWN:
-    case HID_API_BUS_I2C:
-    case HID_API_BUS_SPI:
-      break;
-  }
-  return Bus::kUnknown;
-}
-
-DeviceIdentity Describe(const hid_device_info& info) {
+DeviceIdentity Describe(const hid_device_info& info, const NodeMonitor::Facts& facts) {
   DeviceIdentity identity;
-  identity.bus = BusOf(info);
+  identity.bus = facts.bus;
+  identity.driver = facts.driver;
   identity.vendor = info.vendor_id;
   identity.product = info.product_id;
   identity.name = Narrow(info.product_string);
@@ -77,9 +64,9 @@ void HidClose::operator()(hid_device* device) const {
   if (lock >= 0) close(lock);
 }
 
-HidOpening OpenHid(const hid_device_info& info) {
+HidOpening OpenHid(const hid_device_info& info, const NodeMonitor::Facts& facts) {
   HidOpening opening;
-  opening.identity = Describe(info);
+  opening.identity = Describe(info, facts);
   // Over Bluetooth every device has an address; udev may still have to read it.
   if (opening.identity.bus == Bus::kBluetooth && opening.identity.serial.empty()) {
     opening.outcome = Outcome::kUnidentified;

@@ -76,11 +76,13 @@ void HidSearch::Run() {
     poll(events, 2, pause_ms);
     eventfd_t ignored = 0;
     eventfd_read(event_, &ignored);
-    monitor_.Clear();
+    if (monitor_.Clear()) changed_ns_ = clock::MonotonicNs();
   }
 }
 
 int HidSearch::PauseMs(std::int64_t now_ns) const {
+  // hidapi does not list a node whose attributes are not all there yet.
+  if (changed_ns_ != 0 && now_ns - changed_ns_ < kNewNs) return kSoonMs;
   int pause_ms = kWithMonitorMs;
   for (const auto& [path, waiting] : waiting_) {
     pause_ms = kSlowlyMs;
@@ -105,7 +107,7 @@ void HidSearch::Look(std::int64_t now_ns) {
 }
 
 void HidSearch::Open(const hid_device_info& info, std::int64_t now_ns) {
-  HidOpening opening = OpenHid(info);
+  HidOpening opening = OpenHid(info, monitor_.FactsOf(info.path));
   if (opening.outcome != Outcome::kOpen) {
     const bool is_new = waiting_.try_emplace(info.path, Waiting{now_ns, false}).second;
     Waiting& waiting = waiting_[info.path];
@@ -114,7 +116,6 @@ void HidSearch::Open(const hid_device_info& info, std::int64_t now_ns) {
     if (const std::string line = Trouble(opening); !line.empty()) Say(line);
     return;
   }
-  opening.identity.driver = monitor_.DriverOf(info.path);
   Found found;
   found.identity = std::move(opening.identity);
   found.device = std::move(opening.device);

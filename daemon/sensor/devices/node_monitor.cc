@@ -2,6 +2,8 @@
 
 #include <libudev.h>
 
+#include <cstdlib>
+
 namespace footing::devices {
 
 void UdevRelease::operator()(udev* context) const { udev_unref(context); }
@@ -31,18 +33,25 @@ bool NodeMonitor::Clear() {
   return any;
 }
 
-std::string NodeMonitor::DriverOf(const std::string& path) const {
-  if (!udev_) return "";
+NodeMonitor::Facts NodeMonitor::FactsOf(const std::string& path) const {
+  Facts facts;
+  if (!udev_) return facts;
   const std::string name = path.substr(path.rfind('/') + 1);
   udev_device* const node =
       udev_device_new_from_subsystem_sysname(udev_.get(), "hidraw", name.c_str());
-  if (node == nullptr) return "";
-  udev_device* const hid = udev_device_get_parent_with_subsystem_devtype(node, "hid", nullptr);
-  const char* driver = hid == nullptr ? nullptr : udev_device_get_driver(hid);
-  if (driver == nullptr && hid != nullptr) driver = udev_device_get_property_value(hid, "DRIVER");
-  const std::string found = driver == nullptr ? "" : driver;
+  if (node == nullptr) return facts;
+  if (udev_device* hid = udev_device_get_parent_with_subsystem_devtype(node, "hid", nullptr)) {
+    const char* driver = udev_device_get_driver(hid);
+    if (driver == nullptr) driver = udev_device_get_property_value(hid, "DRIVER");
+    if (driver != nullptr) facts.driver = driver;
+    // "0003:0000057E:00000306": bus, vendor, product. hidapi knows no bus of a virtual device.
+    const char* id = udev_device_get_property_value(hid, "HID_ID");
+    const unsigned long bus = id == nullptr ? 0 : std::strtoul(id, nullptr, 16);
+    if (bus == static_cast<unsigned long>(Bus::kUsb)) facts.bus = Bus::kUsb;
+    if (bus == static_cast<unsigned long>(Bus::kBluetooth)) facts.bus = Bus::kBluetooth;
+  }
   udev_device_unref(node);
-  return found;
+  return facts;
 }
 
 }  // namespace footing::devices

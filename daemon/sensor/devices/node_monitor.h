@@ -3,6 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "daemon/sensor/devices/source.h"
+
 struct udev;
 struct udev_monitor;
 
@@ -24,8 +26,12 @@ class NodeMonitor {
   int descriptor() const;
   /// Takes everything that was reported; true when there was something.
   bool Clear();
-  /// The kernel's driver of "/dev/hidrawN", e.g. "wiimote"; empty when unknown.
-  std::string DriverOf(const std::string& path) const;
+  struct Facts {
+    std::string driver;  ///< The kernel's, e.g. "wiimote"; empty when unknown.
+    Bus bus = Bus::kUnknown;
+  };
+  /// Of "/dev/hidrawN".
+  Facts FactsOf(const std::string& path) const;
 
  private:
   std::unique_ptr<udev, UdevRelease> udev_;
