@@ -46,9 +46,8 @@ std::optional<NunchukCounts> DecodePassedNunchuk(Bytes extension) {
   counts.stick_x = b[0];
   counts.stick_y = b[1];
   // Byte 4 has bits 9 to 3 of z above the flag of the port.
-  counts.acceleration = {
-      WithLow(b[2], (low >> 4 & 1) << 1), WithLow(b[3], (low >> 5 & 1) << 1),
-      static_cast<std::uint16_t>((b[4] & 0xfe) << 2 | (low >> 6 & 3) << 1)};
+  counts.acceleration = {WithLow(b[2], (low >> 4 & 1) << 1), WithLow(b[3], (low >> 5 & 1) << 1),
+                         static_cast<std::uint16_t>((b[4] & 0xfe) << 2 | (low >> 6 & 3) << 1)};
   counts.c = (low & 0x08) == 0;
   counts.z = (low & 0x04) == 0;
   return counts;
