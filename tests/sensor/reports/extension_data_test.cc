@@ -57,9 +57,11 @@ TEST(Nunchuk, NoneFromTooFewBytesOrASilentPort) {
 /// WiiBrew's table, forwards: what a Classic sends for these counts.
 Six EncodeClassic(const ClassicCounts& c) {
   const auto byte = [](int value) { return static_cast<std::uint8_t>(value); };
-  return {byte((c.right_x >> 3) << 6 | c.left_x), byte((c.right_x >> 1 & 3) << 6 | c.left_y),
+  return {byte((c.right_x >> 3) << 6 | c.left_x),
+          byte((c.right_x >> 1 & 3) << 6 | c.left_y),
           byte((c.right_x & 1) << 7 | (c.left_trigger >> 3) << 5 | c.right_y),
-          byte((c.left_trigger & 7) << 5 | c.right_trigger), byte(~(c.buttons >> 8)),
+          byte((c.left_trigger & 7) << 5 | c.right_trigger),
+          byte(~(c.buttons >> 8)),
           byte(~c.buttons)};
 }
 
@@ -127,8 +129,8 @@ TEST(MotionPlus, TellsItsPacketsFromItsChildsAndFromRubbish) {
   EXPECT_EQ(PacketOf(Six{0x80, 0x80, 0x80, 0x80, 0xb3, 0x0c}), PassedPacket::kExtension);
   EXPECT_FALSE(DecodeMotionPlus(Six{0x80, 0x80, 0x80, 0x80, 0xb3, 0x0c}));
   EXPECT_EQ(ChildConnected(Six{0x80, 0x80, 0x80, 0x80, 0xb2, 0x0c}), false);
-  for (const Six& rubbish : {Six(6, 0xff), Six(6, 0x00), Six(5, 0x82), Six{},
-                             Six{0x80, 0x80, 0x80, 0x80, 0x80, 0x83}}) {
+  for (const Six& rubbish :
+       {Six(6, 0xff), Six(6, 0x00), Six(5, 0x82), Six{}, Six{0x80, 0x80, 0x80, 0x80, 0x80, 0x83}}) {
     EXPECT_EQ(PacketOf(rubbish), PassedPacket::kRubbish);
     EXPECT_FALSE(DecodeMotionPlus(rubbish));
     EXPECT_FALSE(ChildConnected(rubbish));

@@ -13,7 +13,7 @@ using Report = std::vector<std::uint8_t>;
 
 /// A half with buttons b0 b1, an acceleration byte and 18 camera bytes that count up.
 Report HalfReport(std::uint8_t id, std::uint8_t b0, std::uint8_t b1, std::uint8_t axis,
-            std::uint8_t first_camera_byte) {
+                  std::uint8_t first_camera_byte) {
   Report report = {id, b0, b1, axis};
   report.resize(22);
   std::iota(report.begin() + 4, report.end(), first_camera_byte);
@@ -24,7 +24,8 @@ Data DataOf(const Report& report) { return std::get<Data>(Decode(report).body); 
 
 TEST(Interleaver, JoinsAPair) {
   Interleaver interleaver;
-  // z = 0x9c = 1001'1100: bits 7,6 = 2 in 3e b1; 5,4 = 1 in 3e b0; 3,2 = 3 in 3f b1; 1,0 = 0 in 3f b0.
+  // z = 0x9c = 1001'1100: bits 7,6 = 2 in 3e b1; 5,4 = 1 in 3e b0; 3,2 = 3 in 3f b1; 1,0 = 0 in 3f
+  // b0.
   const Data first = DataOf(HalfReport(0x3e, 1 << 5, 2 << 5, 0x81, 0));
   EXPECT_EQ(first.half, Half::kFirst);
   EXPECT_FALSE(first.has_acceleration);
@@ -33,7 +34,8 @@ TEST(Interleaver, JoinsAPair) {
   ASSERT_TRUE(pair);
   EXPECT_EQ(pair->half, Half::kNone);
   EXPECT_TRUE(pair->has_acceleration);
-  EXPECT_EQ(pair->acceleration_counts, (std::array<std::uint16_t, 3>{0x81 << 2, 0x7d << 2, 0x9c << 2}));
+  EXPECT_EQ(pair->acceleration_counts,
+            (std::array<std::uint16_t, 3>{0x81 << 2, 0x7d << 2, 0x9c << 2}));
   ASSERT_EQ(pair->camera().size(), 36u);
   for (std::uint8_t i = 0; i < 36; ++i) EXPECT_EQ(pair->camera()[i], i);
 }
