@@ -8,6 +8,7 @@ namespace footing::devices {
 namespace {
 
 constexpr int kReadTimeoutMs = 10;
+constexpr std::int64_t kWriteIntervalNs = 10'000'000;
 
 }  // namespace
 
@@ -22,7 +23,7 @@ HidReader::~HidReader() {
 void HidReader::Run() {
   Item item;
   while (!stop_.raised()) {
-    WriteWaiting();
+    WriteOne();
     ReadFeatures();
     const int size =
         hid_read_timeout(device_.get(), item.bytes.data(), item.bytes.size(), kReadTimeoutMs);
@@ -30,19 +31,36 @@ void HidReader::Run() {
     if (size == 0) continue;
     item.received_ns = clock::MonotonicNs();
     item.feature = false;
+    item.writes_failed = writes_failed_;
     item.size = static_cast<std::size_t>(size);
     incoming_.Push(item);
     wake_();
   }
-  WriteWaiting();  // The last word may be "rumble off".
+  if (stop_.raised()) WriteLast();
   ended_.Raise();
   wake_();
 }
 
-/// A write that fails is no end: the read says when the device is gone.
-void HidReader::WriteWaiting() {
+/// A device chokes on more than a report per 10 ms.
+void HidReader::WriteOne() {
+  if (clock::MonotonicNs() - written_ns_ < kWriteIntervalNs) return;
   std::vector<std::uint8_t> report;
-  while (outgoing_.Pop(report)) hid_write(device_.get(), report.data(), report.size());
+  if (outgoing_.Pop(report)) Write(report);
+}
+
+/// The last word may be "rumble off"; nobody waits for what comes before it.
+void HidReader::WriteLast() {
+  std::vector<std::uint8_t> report, last;
+  while (outgoing_.Pop(report)) last = report;
+  if (last.empty()) return;
+  clock::SleepUntil(written_ns_ + kWriteIntervalNs);
+  Write(last);
+}
+
+/// A write that fails is no end: the read says when the device is gone.
+void HidReader::Write(const std::vector<std::uint8_t>& report) {
+  if (hid_write(device_.get(), report.data(), report.size()) < 0) ++writes_failed_;
+  written_ns_ = clock::MonotonicNs();
 }
 
 void HidReader::ReadFeatures() {
@@ -54,6 +72,7 @@ void HidReader::ReadFeatures() {
                                             std::min(request.size, item.bytes.size()));
     item.received_ns = clock::MonotonicNs();
     item.feature = true;
+    item.writes_failed = writes_failed_;
     item.size = size < 0 ? 0 : static_cast<std::size_t>(size);
     incoming_.Push(item);
     wake_();

@@ -1,39 +1,33 @@
 #pragma once
 
-#include <hidapi/hidapi.h>
-
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <string>
 #include <thread>
 #include <vector>
 
 #include "common/exchange/bounded_queue.h"
 #include "common/exchange/flag.h"
+#include "daemon/sensor/devices/hid_opening.h"
 
 namespace footing::devices {
 
-struct HidClose {
-  void operator()(hid_device* device) const { hid_close(device); }
-};
-using HidHandle = std::unique_ptr<hid_device, HidClose>;
-
 /// One open device and the one thread that reads it, stamps what it reads and writes what is to be
-/// written. hidapi's handle is never shared by two threads.
+/// written, at most one report per 10 ms. hidapi's handle is never shared by two threads.
 class HidReader {
  public:
   struct Item {
     std::int64_t received_ns = 0;
     bool feature = false;  ///< The answer to RequestFeature; empty when the device refuses.
+    std::uint64_t writes_failed = 0;  ///< So far.
     std::size_t size = 0;
     std::array<std::uint8_t, 64> bytes;
   };
 
   /// `wake` is called on the reader's thread when there is something to pop, or when it ended.
   HidReader(HidHandle device, std::function<void()> wake);
-  ~HidReader();  ///< Ends the thread: at most 10 ms.
+  /// Ends the thread, at most 20 ms; the newest report that waits is still written.
+  ~HidReader();
   HidReader(const HidReader&) = delete;
   HidReader& operator=(const HidReader&) = delete;
 
@@ -43,6 +37,8 @@ class HidReader {
   bool Push(std::vector<std::uint8_t> report) { return outgoing_.Push(std::move(report)); }
   /// io thread: false when eight requests wait already.
   bool RequestFeature(std::uint8_t id, std::size_t size) { return requests_.Push({id, size}); }
+  /// io thread: reports lost because they were not popped in time.
+  std::uint64_t dropped() const { return incoming_.refused(); }
   /// The device is gone; what was read before can still be popped.
   bool ended() const { return ended_.raised(); }
 
@@ -53,10 +49,14 @@ class HidReader {
   };
 
   void Run();
-  void WriteWaiting();
+  void WriteOne();
+  void WriteLast();
+  void Write(const std::vector<std::uint8_t>& report);
   void ReadFeatures();
 
   HidHandle device_;
+  std::int64_t written_ns_ = 0;
+  std::uint64_t writes_failed_ = 0;
   std::function<void()> wake_;
   exchange::BoundedQueue<Item> incoming_{256};
   exchange::BoundedQueue<std::vector<std::uint8_t>> outgoing_{64};

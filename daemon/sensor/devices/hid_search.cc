@@ -1,0 +1,135 @@
+#include "daemon/sensor/devices/hid_search.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <utility>
+
+#include "common/clock/clock.h"
+
+namespace footing::devices {
+namespace {
+
+using Outcome = HidOpening::Outcome;
+
+constexpr int kSoonMs = 50;
+constexpr int kSlowlyMs = 1000;
+constexpr int kWithMonitorMs = 5000;
+constexpr std::int64_t kNewNs = 1'000'000'000;
+
+// As systemd/70-footing.rules.
+constexpr const char* kUdevRule =
+    "KERNEL==\"hidraw*\", KERNELS==\"0005:057E:0306.*|0005:057E:0330.*|0005:054C:03D5.*|"
+    "0005:054C:0C5E.*\", GROUP=\"footing\", MODE=\"0660\"";
+
+/// What to say of a node that stays shut; empty when there is nothing to say.
+std::string Trouble(const HidOpening& opening) {
+  const std::string node = opening.identity.place + " (" + opening.identity.name + ")";
+  switch (opening.outcome) {
+    case Outcome::kDenied:
+      return "cannot open " + node + ": " + opening.reason +
+             "; put this line into /etc/udev/rules.d/70-footing.rules, join the group footing and "
+             "reconnect the device: " +
+             kUdevRule;
+    case Outcome::kInUse:
+      return node +
+             " belongs to another footingd; stop that one, or run this one with --source "
+             "stream:ADDRESS only";
+    case Outcome::kUnidentified:
+      return node + " has no serial; reconnect the device";
+    case Outcome::kFailed:
+      return "cannot open " + node + ": " + opening.reason + "; reconnect the device";
+    case Outcome::kOpen:
+    case Outcome::kNobodyThere:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+HidSearch::HidSearch(std::function<void()> wake)
+    : wake_(std::move(wake)),
+      event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      thread_([this] { Run(); }) {}
+
+HidSearch::~HidSearch() {
+  stop_.Raise();
+  eventfd_write(event_, 1);
+  thread_.join();
+  close(event_);
+}
+
+void HidSearch::Forget(const std::string& path) {
+  closed_.Push(path);
+  eventfd_write(event_, 1);
+}
+
+void HidSearch::Run() {
+  while (!stop_.raised()) {
+    const std::int64_t now_ns = clock::MonotonicNs();
+    Look(now_ns);
+    int pause_ms = PauseMs(now_ns);
+    if (pause_ms == kWithMonitorMs && monitor_.descriptor() < 0) pause_ms = kSlowlyMs;
+    pollfd events[] = {{event_, POLLIN, 0}, {monitor_.descriptor(), POLLIN, 0}};
+    poll(events, 2, pause_ms);
+    eventfd_t ignored = 0;
+    eventfd_read(event_, &ignored);
+    if (monitor_.Clear()) changed_ns_ = clock::MonotonicNs();
+  }
+}
+
+int HidSearch::PauseMs(std::int64_t now_ns) const {
+  // hidapi does not list a node whose attributes are not all there yet.
+  if (changed_ns_ != 0 && now_ns - changed_ns_ < kNewNs) return kSoonMs;
+  int pause_ms = kWithMonitorMs;
+  for (const auto& [path, waiting] : waiting_) {
+    pause_ms = kSlowlyMs;
+    if (now_ns - waiting.since_ns < kNewNs) return kSoonMs;
+  }
+  return pause_ms;
+}
+
+void HidSearch::Look(std::int64_t now_ns) {
+  std::string closed;
+  while (closed_.Pop(closed)) open_paths_.erase(closed);
+  std::set<std::string> seen;
+  hid_device_info* const list = hid_enumerate(0, 0);
+  for (const hid_device_info* info = list; info != nullptr; info = info->next) {
+    if (!IsKnownDevice(info->vendor_id, info->product_id) || info->path == nullptr) continue;
+    // A device with several collections is listed once for each.
+    if (!seen.insert(info->path).second || open_paths_.contains(info->path)) continue;
+    Open(*info, now_ns);
+  }
+  hid_free_enumeration(list);
+  std::erase_if(waiting_, [&seen](const auto& one) { return !seen.contains(one.first); });
+}
+
+void HidSearch::Open(const hid_device_info& info, std::int64_t now_ns) {
+  HidOpening opening = OpenHid(info, monitor_.FactsOf(info.path));
+  if (opening.outcome != Outcome::kOpen) {
+    const bool is_new = waiting_.try_emplace(info.path, Waiting{now_ns, false}).second;
+    Waiting& waiting = waiting_[info.path];
+    if (is_new || waiting.said || now_ns - waiting.since_ns < kNewNs) return;
+    waiting.said = true;
+    if (const std::string line = Trouble(opening); !line.empty()) Say(line);
+    return;
+  }
+  Found found;
+  found.identity = std::move(opening.identity);
+  found.device = std::move(opening.device);
+  if (!found_.Push(std::move(found))) return;
+  waiting_.erase(info.path);
+  open_paths_.insert(info.path);
+  wake_();
+}
+
+void HidSearch::Say(const std::string& line) {
+  Found found;
+  found.trouble = line;
+  found_.Push(std::move(found));
+  wake_();
+}
+
+}  // namespace footing::devices

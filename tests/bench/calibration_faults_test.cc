@@ -1,0 +1,133 @@
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "tests/bench/fault.h"
+
+namespace footing::bench {
+namespace {
+
+constexpr std::size_t kFirstBlock = 0x16;
+constexpr std::size_t kSecondBlock = 0x20;
+
+void Checksum(std::span<std::uint8_t> block) {
+  std::uint8_t sum = 0x55;
+  for (const std::uint8_t byte : block.first(9)) sum = static_cast<std::uint8_t>(sum + byte);
+  block[9] = sum;
+}
+
+/// The board's corners: 0 kg, 17 kg, 34 kg from register 24 on.
+void Corners(BoardModel& board, const std::function<void(std::span<std::uint8_t>)>& change) {
+  change(board.board.controller().memory().extension().subspan(0x24, 24));
+}
+
+/// CRC-32 over the corners, the battery's reference and the temperature's.
+void Seal(std::span<std::uint8_t> page) {
+  uLong crc = crc32(0, page.data() + 0x24, 24);
+  crc = crc32(crc, page.data() + 0x20, 2);
+  crc = crc32(crc, page.data() + 0x60, 2);
+  for (std::size_t i = 0; i < 4; ++i) {
+    page[0x3c + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
+  }
+}
+
+FOOTING_FAULT(Fault19BlocksOfOnesOrZeros) {
+  auto ones = std::make_shared<WiimoteModel>(19);
+  auto zeros = std::make_shared<WiimoteModel>(1900);
+  auto board = std::make_shared<BoardModel>(1901);
+  auto blocks = ones->wiimote.controller().memory().eeprom().subspan(kFirstBlock, 20);
+  std::fill(blocks.begin(), blocks.end(), 0xff);
+  blocks = zeros->wiimote.controller().memory().eeprom().subspan(kFirstBlock, 20);
+  std::fill(blocks.begin(), blocks.end(), 0x00);
+  Corners(*board, [](auto bytes) { std::fill(bytes.begin(), bytes.end(), 0x00); });
+  Device* devices[] = {&bench.Plug(ones), &bench.Plug(zeros), &bench.Plug(board)};
+  ASSERT_TRUE(bench.Start());
+  for (Device* device : devices) {
+    ASSERT_TRUE(bench.UntilLive(*device));
+    ASSERT_TRUE(bench.UntilSamples(*device, 10));
+    EXPECT_EQ(Status(*device).calibration(), v1::CALIBRATION_ORIGIN_DEFAULTS);
+    EXPECT_FALSE(Status(*device).note().empty());
+    for (const auto& sample : Motion(*device)) {
+      EXPECT_TRUE(sample.uncalibrated());
+      EXPECT_NEAR(sample.specific_force_mps2().z(), -9.8, 3);  // Typical values fit roughly.
+    }
+    for (const auto& sample : Boards(*device)) EXPECT_TRUE(sample.uncalibrated());
+  }
+}
+
+FOOTING_FAULT(Fault20ChecksumWrongInTheFirstBlock) {
+  auto model = std::make_shared<WiimoteModel>(20);
+  auto eeprom = model->wiimote.controller().memory().eeprom();
+  eeprom[kFirstBlock] = static_cast<std::uint8_t>(eeprom[kFirstBlock] + 9);
+  Device& device = bench.Plug(model);
+  ASSERT_TRUE(bench.Start());
+  ASSERT_TRUE(bench.UntilLive(device));
+  ASSERT_TRUE(bench.UntilSamples(device, 20));
+  EXPECT_EQ(Status(device).calibration(), v1::CALIBRATION_ORIGIN_DEVICE_COPY);
+  ExpectAllAtRest(device, 20);
+  for (const auto& sample : Motion(device)) EXPECT_FALSE(sample.uncalibrated());
+}
+
+FOOTING_FAULT(Fault21OneGEqualToZeroG) {
+  auto model = std::make_shared<WiimoteModel>(21);
+  auto eeprom = model->wiimote.controller().memory().eeprom();
+  for (const std::size_t at : {kFirstBlock, kSecondBlock}) {
+    auto block = eeprom.subspan(at, 10);
+    std::copy_n(block.begin(), 4, block.begin() + 4);
+    Checksum(block);  // Right, and senseless all the same.
+  }
+  Device& device = bench.Plug(model);
+  ASSERT_TRUE(bench.Start());
+  ASSERT_TRUE(bench.UntilLive(device));
+  ASSERT_TRUE(bench.UntilSamples(device, 20));
+  EXPECT_EQ(Status(device).calibration(), v1::CALIBRATION_ORIGIN_DEFAULTS);
+  for (const auto& sample : Motion(device)) {
+    EXPECT_TRUE(sample.uncalibrated());
+    EXPECT_NEAR(sample.specific_force_mps2().z(), -9.8, 3);
+  }
+}
+
+FOOTING_FAULT(Fault22BoardPointsThatDoNotRise) {
+  std::vector<Device*> devices;
+  for (int kind = 0; kind < 3; ++kind) {
+    auto board = std::make_shared<BoardModel>(22 + 100 * kind);
+    Corners(*board, [kind](auto bytes) {
+      if (kind == 0) std::copy_n(bytes.begin(), 8, bytes.begin() + 8);  // 17 kg is 0 kg.
+      if (kind == 1) std::swap_ranges(bytes.begin(), bytes.begin() + 8, bytes.begin() + 16);
+      if (kind == 2) std::copy_n(bytes.begin() + 8, 8, bytes.begin() + 16);  // 34 kg is 17 kg.
+    });
+    // The checksum is right in all of them.
+    auto page = board->board.controller().memory().extension();
+    Seal(page);
+    devices.push_back(&bench.Plug(board));
+  }
+  ASSERT_TRUE(bench.Start());
+  for (Device* device : devices) {
+    ASSERT_TRUE(bench.UntilLive(*device));
+    ASSERT_TRUE(bench.UntilSamples(*device, 10));
+    EXPECT_EQ(Status(*device).calibration(), v1::CALIBRATION_ORIGIN_DEFAULTS);
+    EXPECT_FALSE(Status(*device).note().empty());
+    for (const auto& sample : Boards(*device)) EXPECT_TRUE(sample.uncalibrated());
+  }
+}
+
+FOOTING_FAULT(Fault23ReferenceTemperatureZeroOrFF) {
+  std::vector<Device*> devices;
+  for (const std::uint8_t reference : {0x00, 0xff}) {
+    auto board = std::make_shared<BoardModel>(23 + reference);
+    auto page = board->board.controller().memory().extension();
+    page[0x60] = reference;
+    Seal(page);
+    devices.push_back(&bench.Plug(board));
+  }
+  ASSERT_TRUE(bench.Start());
+  for (Device* device : devices) {
+    ASSERT_TRUE(bench.UntilLive(*device));
+    ASSERT_TRUE(bench.UntilSamples(*device, 10));
+    // 0xff against 0x19 would be 16 % of every force.
+    for (const auto& sample : Boards(*device)) EXPECT_NEAR(sample.total_n(), 660, 10);
+  }
+}
+
+}  // namespace
+}  // namespace footing::bench

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/device_models/balance_board.h"
+#include "common/device_models/identity.h"
+#include "common/device_models/wiimote.h"
+
+namespace footing::bench {
+
+using device_models::Report;
+
+/// A device on the bench: its side of the protocol, and what its sensors measure now. Time is
+/// CLOCK_MONOTONIC.
+class Model {
+ public:
+  virtual ~Model() = default;
+  virtual const device_models::Identity& identity() const = 0;
+  virtual std::vector<Report> HandleOutput(std::int64_t now_ns,
+                                           std::span<const std::uint8_t> report) = 0;
+  virtual std::vector<Report> Sample(std::int64_t now_ns) = 0;
+  virtual std::optional<Report> Feature(std::uint8_t, std::size_t) { return std::nullopt; }
+  double period_s = 0.01;
+};
+
+class WiimoteModel : public Model {
+ public:
+  explicit WiimoteModel(std::uint64_t seed) : wiimote(seed) {}
+  const device_models::Identity& identity() const override { return wiimote.identity(); }
+  std::vector<Report> HandleOutput(std::int64_t, std::span<const std::uint8_t> report) override {
+    return wiimote.HandleOutput(report);
+  }
+  std::vector<Report> Sample(std::int64_t) override {
+    auto report = wiimote.Sample(specific_force_S_mps2, buttons);
+    return report ? std::vector<Report>{*report} : std::vector<Report>{};
+  }
+
+  device_models::Wiimote wiimote;
+  Eigen::Vector3d specific_force_S_mps2{0, 0, -9.80665};
+  std::uint16_t buttons = 0;
+};
+
+/// A Wiimote in a slot of a USB adapter, which has no serial.
+class SlotModel : public WiimoteModel {
+ public:
+  explicit SlotModel(std::uint64_t seed) : WiimoteModel(seed), identity_(wiimote.identity()) {
+    identity_.bus = 3;
+  }
+  const device_models::Identity& identity() const override { return identity_; }
+
+ private:
+  device_models::Identity identity_;
+};
+
+class BoardModel : public Model {
+ public:
+  explicit BoardModel(std::uint64_t seed) : board(seed) {}
+  const device_models::Identity& identity() const override { return board.identity(); }
+  std::vector<Report> HandleOutput(std::int64_t, std::span<const std::uint8_t> report) override {
+    return board.HandleOutput(report);
+  }
+  std::vector<Report> Sample(std::int64_t) override {
+    auto report = board.Sample(forces);
+    return report ? std::vector<Report>{*report} : std::vector<Report>{};
+  }
+
+  device_models::BalanceBoard board;
+  device_models::CornerForces forces{150, 160, 170, 180};
+};
+
+}  // namespace footing::bench

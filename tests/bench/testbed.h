@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/device_models/identity.h"
+
+typedef struct _UMockdevTestbed UMockdevTestbed;
+
+namespace footing::bench {
+
+/// The sysfs tree and udev of a machine that exists only for the programs started from here: each
+/// gets it through LD_PRELOAD.
+class Testbed {
+ public:
+  Testbed();
+  ~Testbed();
+  Testbed(const Testbed&) = delete;
+  Testbed& operator=(const Testbed&) = delete;
+
+  /// Adds a HID device and its hidraw child, with a uevent for each. `with_identity` false leaves
+  /// out name and serial, as for a moment at a real plug.
+  void Add(int number, const device_models::Identity& identity, const std::string& driver,
+           bool with_identity = true);
+  /// Name and serial of a device that was added without, and the uevent that says so.
+  void Identify(int number, const device_models::Identity& identity);
+  void Remove(int number, const device_models::Identity& identity);
+  /// A uevent of the hidraw node.
+  void Announce(int number, const device_models::Identity& identity, const std::string& action);
+
+ private:
+  UMockdevTestbed* testbed_;
+};
+
+}  // namespace footing::bench
