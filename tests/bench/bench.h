@@ -67,7 +67,7 @@ class Device {
 struct PlugOptions {
   int number = -1;  ///< Of the hidraw node; -1: the next free one.
   std::string driver = "wiimote";
-  bool identified = true;       ///< False: udev has neither name nor serial yet.
+  bool identified = true;        ///< False: udev has neither name nor serial yet.
   std::int32_t open_errno = 0;   ///< Not 0: opening fails with it.
   std::int32_t write_errno = 0;  ///< Not 0: every write fails with it.
 };
