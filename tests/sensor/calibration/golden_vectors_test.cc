@@ -19,10 +19,9 @@ using Bytes = std::vector<std::uint8_t>;
 
 TEST(GoldenVectors, AccelerationBlocksOfThreeRemotesEndInTheirChecksum) {
   // Dolphin's old default (a real remote), the idealised one, rnconrad/WiimoteEmulator.
-  for (const Bytes& block :
-       {Bytes{0x82, 0x82, 0x82, 0x15, 0x9c, 0x9c, 0x9e, 0x38, 0x40, 0x3e},
-        Bytes{0x80, 0x80, 0x80, 0x00, 0x9a, 0x9a, 0x9a, 0x00, 0x40, 0xe3},
-        Bytes{0x85, 0x85, 0x85, 0x00, 0xa0, 0xa0, 0xa0, 0x00, 0x40, 0x04}}) {
+  for (const Bytes& block : {Bytes{0x82, 0x82, 0x82, 0x15, 0x9c, 0x9c, 0x9e, 0x38, 0x40, 0x3e},
+                             Bytes{0x80, 0x80, 0x80, 0x00, 0x9a, 0x9a, 0x9a, 0x00, 0x40, 0xe3},
+                             Bytes{0x85, 0x85, 0x85, 0x00, 0xa0, 0xa0, 0xa0, 0x00, 0x40, 0x04}}) {
     EXPECT_TRUE(EndsInSumChecksum(block));
     EXPECT_EQ(ParseAcceleration(block).origin, stream::CalibrationOrigin::kDevice);
   }
@@ -76,7 +75,8 @@ TEST(GoldenVectors, ACorruptBoardBlockIsRefused) {
 }
 
 TEST(GoldenVectors, AnEmptyBoardsOffsetsAreReadFarApart) {
-  // wiiuse issue 104: offsets of an empty board; not clamped, whatever the typical values make of it.
+  // wiiuse issue 104: offsets of an empty board; not clamped, whatever the typical values make of
+  // it.
   reports::BoardCounts counts;
   counts.corners = {2779, 4163, 8300, 7056};
   const auto forces = CornerForces(DefaultBoard(), counts);

@@ -88,7 +88,8 @@ reports::MotionPlusCounts CountsOf16(int yaw, int roll, int pitch, bool slow) {
 
 TEST(MotionPlus, ReadsDegreesOfTheBlockAtItsScale) {
   const auto calibration = ParseMotionPlus(kA);
-  // A quarter of a count is lost by the packet's 14 bits: 3 of 14000 counts are 0.06 degrees/s slow.
+  // A quarter of a count is lost by the packet's 14 bits: 3 of 14000 counts are 0.06 degrees/s
+  // slow.
   const auto slow = Calibrate(calibration, CountsOf16(0x3943, 0xcaa8, 0x31c8, true));
   EXPECT_NEAR(slow.angular_velocity_S_radps.z(), DegreesToRadians(270), 2e-3) << "yaw right";
   EXPECT_NEAR(slow.angular_velocity_S_radps.y(), -DegreesToRadians(270), 2e-3) << "roll";
@@ -105,8 +106,7 @@ TEST(MotionPlus, EachAxisHasItsOwnRange) {
   const auto reading = Calibrate(calibration, counts);
   EXPECT_NEAR(reading.angular_velocity_S_radps.x(), 0, 2e-3);
   EXPECT_NEAR(reading.angular_velocity_S_radps.y(), 0, 2e-3);
-  const double yaw =
-      DegreesToRadians(1200.0 * (0x760f / 4 * 4 - 0x7bec) / (0x32dc - 0x7bec));
+  const double yaw = DegreesToRadians(1200.0 * (0x760f / 4 * 4 - 0x7bec) / (0x32dc - 0x7bec));
   EXPECT_NEAR(reading.angular_velocity_S_radps.z(), yaw, 1e-9);
 }
 

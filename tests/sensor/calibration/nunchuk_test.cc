@@ -74,9 +74,8 @@ TEST(NunchukCalibration, EitherChecksumCounts) {
 TEST(NunchukCalibration, UnusableBlocksGiveTypicalValues) {
   Block equal = kReal;
   for (std::size_t i = 0; i < 4; ++i) equal[4 + i] = equal[i];  // 1 g == 0 g.
-  for (const Block& bad :
-       {Block(32, 0x00), Block(32, 0xff), Block{}, Block(15, 0x80),
-        Two(WithChecksums(equal), WithChecksums(equal))}) {
+  for (const Block& bad : {Block(32, 0x00), Block(32, 0xff), Block{}, Block(15, 0x80),
+                           Two(WithChecksums(equal), WithChecksums(equal))}) {
     const auto calibration = ParseNunchuk(bad);
     EXPECT_EQ(calibration.origin, CalibrationOrigin::kDefaults);
     EXPECT_NE(calibration.problem, "");
