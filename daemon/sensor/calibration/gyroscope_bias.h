@@ -10,7 +10,8 @@ namespace footing::calibration {
 ///
 /// Still: for a whole window the specific force is near 1 g and the angular velocity hardly varies
 /// and is no larger than a bias can be. The window's mean is the bias then; otherwise the last one
-/// stays. A turn at a slow constant rate about the vertical looks the same; nobody's hand does that.
+/// stays. A turn at a slow constant rate about the vertical looks the same; nobody's hand does
+/// that.
 class GyroscopeBias {
  public:
   static constexpr double kWindowS = 1;

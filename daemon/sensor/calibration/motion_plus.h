@@ -14,7 +14,8 @@
 ///            ^ y_S
 ///            |                       S: x = - c pitch   about left:  positive tips the front down
 ///      +-----------+                    y = - c roll    about front: positive tips the left up
-///  x_S |           | seen from above    z = + c yaw     about down:  positive turns the front right
+///  x_S |           | seen from above    z = + c yaw     about down:  positive turns the front
+///  right
 ///  <---|    (x)    | z_S into the
 ///      |           | table           All by the right-hand rule.
 ///      +-----------+

@@ -22,8 +22,8 @@
 /// Held still with the buttons up raw z reads +1 g, and in S it is (0, 0, -9.81). The gyroscope
 /// follows the right-hand rule about the same raw axes. Sources: the moveonpc wiki ("Input report":
 /// buttons up and ball away from you, x right, y up, z away, sent in the order x z y), Monado
-/// (ball on Y+, buttons on Z+, start on X+) and psmoveapi (gravity is +y when it stands upright; the
-/// magnetometer's y is flipped) agree. No unit was at hand to check it.
+/// (ball on Y+, buttons on Z+, start on X+) and psmoveapi (gravity is +y when it stands upright;
+/// the magnetometer's y is flipped) agree. No unit was at hand to check it.
 namespace footing::calibration {
 
 /// Puts a calibration together from the feature reports that bring it in pieces.
@@ -70,8 +70,8 @@ MoveCalibration DefaultMove(reports::MoveModel model);
 /// revolutions a minute and its bias, which is only for these values (its reports come without it),
 /// times a factor near 1 when that is a possible number; a ZCM2 has -90 and +90 and a bias to take
 /// off. A blob that is short, empty, of the other model (its id and pieces) or has spans that no
-/// working sensor has gives DefaultMove and the problem by name. A blob read from a file is kStored:
-/// the caller says so.
+/// working sensor has gives DefaultMove and the problem by name. A blob read from a file is
+/// kStored: the caller says so.
 MoveCalibration ParseMove(reports::MoveModel model, reports::Bytes blob);
 
 struct MoveReading {

@@ -15,7 +15,8 @@
 ///         .-----.                            at the front)       z = - raw z   (down)
 ///        /       \                   raw +z: up, out of the stick
 ///  x_S  |   (o)   | seen from above,
-///  <--- |  stick  | stick up         Held still with the stick up: raw z reads +1 g, and in S it is
+///  <--- |  stick  | stick up         Held still with the stick up: raw z reads +1 g, and in S it
+///  is
 ///        \       /                   (0, 0, -9.81).
 ///         `-----'
 ///

@@ -22,7 +22,8 @@ std::array<std::int16_t, 3> Vector(MoveModel model, Bytes report, std::size_t at
   const int zero = model == MoveModel::kZcm1 ? 0x8000 : 0;
   std::array<std::int16_t, 3> vector{};
   for (std::size_t i = 0; i < 3; ++i) {
-    vector[i] = static_cast<std::int16_t>((report[at + 2 * i] | report[at + 2 * i + 1] << 8) - zero);
+    vector[i] =
+        static_cast<std::int16_t>((report[at + 2 * i] | report[at + 2 * i + 1] << 8) - zero);
   }
   return vector;
 }
@@ -43,8 +44,7 @@ std::optional<MoveReport> DecodeMove(MoveModel model, Bytes report) {
   MoveReport out;
   out.buttons = Buttons(report.subspan(kButtonsAt, 4));
   out.sequence = report[kButtonsAt + 3] & 0x0f;
-  out.timestamp =
-      static_cast<std::uint16_t>(report[kTimeHighAt] << 8 | report[TimeLowAt(model)]);
+  out.timestamp = static_cast<std::uint16_t>(report[kTimeHighAt] << 8 | report[TimeLowAt(model)]);
   out.battery = report[kBatteryAt];
   out.sample_count = model == MoveModel::kZcm1 ? 2 : 1;
   for (std::size_t i = 0; i < out.sample_count; ++i) {
@@ -82,8 +82,7 @@ double MoveTemperature(std::uint16_t raw) {
     const Point& low = kPoints[i - 1];
     const Point& high = kPoints[i];
     if (raw <= high.raw) {
-      return low.celsius +
-             (high.celsius - low.celsius) * (raw - low.raw) / (high.raw - low.raw);
+      return low.celsius + (high.celsius - low.celsius) * (raw - low.raw) / (high.raw - low.raw);
     }
   }
   return std::rbegin(kPoints)->celsius;

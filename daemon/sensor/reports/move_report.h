@@ -49,12 +49,13 @@ struct MoveReport {
   std::uint32_t buttons = 0;  ///< Bits of MoveButton.
   std::uint8_t sequence = 0;  ///< 4 bits; rises by one a report.
   std::uint16_t timestamp = 0;
-  std::uint8_t battery = 0;        ///< Raw; see MoveBatteryFraction.
+  std::uint8_t battery = 0;             ///< Raw; see MoveBatteryFraction.
   std::array<MoveSample, 2> samples{};  ///< Older first.
-  std::size_t sample_count = 0;    ///< 2 of a ZCM1, 1 of a ZCM2.
-  std::uint16_t temperature = 0;   ///< 12 bits; see MoveTemperature.
+  std::size_t sample_count = 0;         ///< 2 of a ZCM1, 1 of a ZCM2.
+  std::uint16_t temperature = 0;        ///< 12 bits; see MoveTemperature.
   bool has_magnetic_field = false;
-  std::array<std::int16_t, 3> magnetic_field{};  ///< 12 bits signed; its y points away from the ball.
+  std::array<std::int16_t, 3>
+      magnetic_field{};  ///< 12 bits signed; its y points away from the ball.
 };
 
 /// None when the id is another or the bytes end too early; longer ones are taken.
