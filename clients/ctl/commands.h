@@ -29,7 +29,6 @@ void Print(const nlohmann::ordered_json& out, const std::string& text, const Sha
 void WithSession(Shared& shared, const std::vector<std::string>& channels,
                  const std::function<Result<void>(Session&)>& body);
 
-
 void AddControlCommands(CLI::App& app, Shared& shared);  ///< rumble, led
 
 }  // namespace footing::ctl

@@ -105,7 +105,8 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
   CLI::App* led = app.add_subcommand("led", "Set a device's lamps, or a PS Move's colour");
   led->add_option("DEVICE", words->device, "Serial, number, RIG/ROLE or ROLE")->required();
   led->add_option("LIGHT", words->light, "Four lamps, 1010, or a colour, #00ff40")->required();
-  led->footer("Examples:\n  footing-ctl led 00:1f:32:aa:bb:cc 1010\n  footing-ctl led head #00ff40");
+  led->footer(
+      "Examples:\n  footing-ctl led 00:1f:32:aa:bb:cc 1010\n  footing-ctl led head #00ff40");
   led->callback([words, &shared] {
     WithSession(shared, {"status"}, [&](Session& session) {
       return Led(session, words->device, words->light, shared);
