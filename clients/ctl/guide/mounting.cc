@@ -7,9 +7,9 @@
 namespace footing::guide {
 namespace {
 
-constexpr double kStill_mps2 = 0.8;       // A standing person's hands and shins stay under half.
-constexpr double kStepping_mps2 = 1.5;    // The slowest step shakes a shin or wrist more.
-constexpr std::int64_t kWindow_ns = 500'000'000;  // Of the shake that Advance is given.
+constexpr double kStill_mps2 = 0.8;     // A standing person's hands and shins stay under half.
+constexpr double kStepping_mps2 = 1.5;  // The slowest step shakes a shin or wrist more.
+constexpr std::int64_t kWindow_ns = 500'000'000;        // Of the shake that Advance is given.
 constexpr std::int64_t kStepsLeast_ns = 1'000'000'000;  // Three steps take longer.
 constexpr std::int64_t kStepsMost_ns = 12'000'000'000;
 constexpr std::int64_t kStandAgain_ns = 700'000'000;

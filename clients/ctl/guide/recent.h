@@ -9,8 +9,8 @@
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
 
-/// The guided set-up and acceptance of a rig: what is asked of the person, and what the sensors say.
-/// Everything is a plain value; the time is footingd's (host_ns of its ticks).
+/// The guided set-up and acceptance of a rig: what is asked of the person, and what the sensors
+/// say. Everything is a plain value; the time is footingd's (host_ns of its ticks).
 namespace footing::guide {
 
 /// What stood on a board during a stretch of time.

@@ -48,8 +48,8 @@ Weight Weigh(const std::vector<Load>& boards, std::optional<double> given_kg) {
   }
   weight.passed = true;
   weight.note = Kilograms(weight.mass_kg);
-  if (given_kg && std::abs(weight.mass_kg - *given_kg) >
-                      std::max(kAgreeLeast_kg, kAgree * *given_kg)) {
+  if (given_kg &&
+      std::abs(weight.mass_kg - *given_kg) > std::max(kAgreeLeast_kg, kAgree * *given_kg)) {
     weight.passed = false;
     weight.note += " measured, " + Kilograms(*given_kg) +
                    " given: tare the empty boards again, stand with both feet on them";

@@ -35,7 +35,8 @@ TEST(StillThenSteps, FindsTheStillnessAndTheStepsAfterIt) {
 }
 
 TEST(StillThenSteps, WaitsForTwoWholeSecondsOfStillness) {
-  const StillThenSteps found = Watch(12, [](double t) { return std::fmod(t, 1.5) < 0.2 ? 3 : 0.2; });
+  const StillThenSteps found =
+      Watch(12, [](double t) { return std::fmod(t, 1.5) < 0.2 ? 3 : 0.2; });
   EXPECT_EQ(found.phase(), StillThenSteps::Phase::kStill);
 }
 
@@ -45,9 +46,9 @@ TEST(StillThenSteps, BeginsAnewAfterATwitch) {
 }
 
 TEST(Mounting, EveryWornRoleHasAPicture) {
-  for (const auto role : {stream::DeviceRole::kLeftHand, stream::DeviceRole::kRightHand,
-                          stream::DeviceRole::kLeftLeg, stream::DeviceRole::kRightLeg,
-                          stream::DeviceRole::kHead}) {
+  for (const auto role :
+       {stream::DeviceRole::kLeftHand, stream::DeviceRole::kRightHand, stream::DeviceRole::kLeftLeg,
+        stream::DeviceRole::kRightLeg, stream::DeviceRole::kHead}) {
     EXPECT_GT(Picture(role).size(), 100u) << stream::Name(role);
     EXPECT_FALSE(Wearing(role).empty()) << stream::Name(role);
   }

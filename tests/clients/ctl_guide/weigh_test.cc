@@ -40,9 +40,9 @@ TEST(Weigh, RefusesAWeightThatNoPersonHas) {
 }
 
 TEST(Weigh, ComparesWithTheGivenMass) {
-  EXPECT_TRUE(Weigh({Force(686.4655, 2)}, 71.5).passed);   // Within 3 % of 71.5 kg.
-  EXPECT_FALSE(Weigh({Force(686.4655, 2)}, 75).passed);    // 5 kg of 75 kg is 6.7 %.
-  EXPECT_TRUE(Weigh({Force(196.133, 1)}, 21.5).passed);    // 20 kg: 2 kg are allowed.
+  EXPECT_TRUE(Weigh({Force(686.4655, 2)}, 71.5).passed);  // Within 3 % of 71.5 kg.
+  EXPECT_FALSE(Weigh({Force(686.4655, 2)}, 75).passed);   // 5 kg of 75 kg is 6.7 %.
+  EXPECT_TRUE(Weigh({Force(196.133, 1)}, 21.5).passed);   // 20 kg: 2 kg are allowed.
 }
 
 }  // namespace
