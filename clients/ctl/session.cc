@@ -67,8 +67,8 @@ class Session::Implementation {
   }
 
   Waited RunUntil(const std::function<bool()>& condition, double within_s) {
-    const auto end = std::chrono::steady_clock::now() +
-                     std::chrono::nanoseconds(SecondsToNanoseconds(within_s));
+    const auto end =
+        std::chrono::steady_clock::now() + std::chrono::nanoseconds(SecondsToNanoseconds(within_s));
     for (;;) {
       if (interrupted_) return Waited::kInterrupted;
       if (condition && condition()) return Waited::kDone;
@@ -120,7 +120,9 @@ Result<std::unique_ptr<Session>> Session::Open(SessionOptions options) {
   return std::unique_ptr<Session>(new Session(std::move(implementation)));
 }
 
-const std::vector<stream::DeviceStatus>& Session::status() const { return implementation_->status_; }
+const std::vector<stream::DeviceStatus>& Session::status() const {
+  return implementation_->status_;
+}
 const std::vector<stream::RigSetup>& Session::setup() const { return implementation_->setup_; }
 const v1::Welcome& Session::welcome() const { return implementation_->welcome_; }
 std::int64_t Session::server_ns() const { return implementation_->server_ns_; }
