@@ -29,6 +29,12 @@ void Print(const nlohmann::ordered_json& out, const std::string& text, const Sha
 void WithSession(Shared& shared, const std::vector<std::string>& channels,
                  const std::function<Result<void>(Session&)>& body);
 
-void AddControlCommands(CLI::App& app, Shared& shared);  ///< rumble, led
+/// Gives a device a role by hand, waits until the devices show it, and prints it.
+Result<void> Assign(Session& session, const std::string& device, const std::string& rig_role,
+                    const Shared& shared);
+
+void AddDeviceCommands(CLI::App& app, Shared& shared);   ///< devices, status, watch
+void AddControlCommands(CLI::App& app, Shared& shared);  ///< rumble, led, tare, trust
+void AddAssignCommand(CLI::App& app, Shared& shared);    ///< assign
 
 }  // namespace footing::ctl

@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <optional>
 
 #include "clients/ctl/commands.h"
+#include "clients/ctl/words/device_words.h"
+#include "clients/ctl/words/find_device.h"
 #include "common/cli/cli.h"
 
 namespace footing::ctl {
@@ -12,6 +15,8 @@ using nlohmann::ordered_json;
 using stream::DeviceStatus;
 
 constexpr std::uint32_t kLeaseMs = 500;  // Renewed at half its time; so long it runs on after us.
+constexpr double kTareWithinS = 10;  // It looks at the last seconds only; generous for a busy host.
+constexpr double kShownWithinS = 2;
 
 /// Four digits 0 and 1, first lamp first, into bits 0 to 3.
 std::optional<std::uint32_t> ParseLeds(const std::string& text) {
@@ -83,7 +88,86 @@ Result<void> Led(Session& session, const std::string& name, const std::string& l
   return {};
 }
 
+Result<ordered_json> TareOne(Session& session, const DeviceStatus& device, bool clear) {
+  v1::Command command;
+  command.mutable_tare()->set_serial(device.serial);
+  command.mutable_tare()->set_clear(clear);
+  const auto done = session.Call(std::move(command), kTareWithinS);
+  if (!done) return Failure(device.serial + ": " + done.error().message);
+  return ordered_json{{"device", device.device},
+                      {"serial", device.serial},
+                      {"cleared", clear},
+                      {"residual", done->residual()},
+                      {"unit", done->unit()}};
+}
+
+Result<void> Tare(Session& session, const std::string& name, bool clear, const Shared& shared) {
+  std::vector<DeviceStatus> boards;
+  if (name == "all") {
+    for (const DeviceStatus& device : session.status()) {
+      const bool there = device.state != stream::DeviceState::kLost;
+      if (there && device.kind == stream::DeviceKind::kBalanceBoard) boards.push_back(device);
+    }
+    if (boards.empty()) return NoDevice("footingd has no board");
+  } else {
+    const auto device = session.Find(name);
+    if (!device) return device.error();
+    if (device->kind != stream::DeviceKind::kBalanceBoard) {
+      return UsageError(device->serial + " is no Balance Board but a " +
+                        stream::Name(device->kind));
+    }
+    boards.push_back(*device);
+  }
+  ordered_json tared = ordered_json::array();
+  std::string text;
+  for (const DeviceStatus& board : boards) {
+    const auto one = TareOne(session, board, clear);
+    if (!one) return one.error();
+    text += (text.empty() ? "" : "\n") + board.serial + (clear ? ": tare forgotten" : ": tared");
+    if (!clear)
+      text += ", residual " + (*one)["residual"].dump() + " " + std::string((*one)["unit"]);
+    tared.push_back(*one);
+  }
+  Print({{"boards", tared}}, text, shared);
+  return {};
+}
+
 }  // namespace
+
+Result<void> Assign(Session& session, const std::string& name, const std::string& rig_role,
+                    const Shared& shared) {
+  const auto binding = words::ParseRigRole(rig_role);
+  if (!binding) return binding.error();
+  const auto device = session.Find(name);
+  if (!device) return device.error();
+  v1::Command command;
+  command.mutable_assign_role()->set_serial(device->serial);
+  command.mutable_assign_role()->set_rig(binding->first);
+  command.mutable_assign_role()->set_role(static_cast<v1::DeviceRole>(binding->second));
+  if (const auto done = session.Call(std::move(command)); !done) return done.error();
+  const auto now_is = [&]() -> const DeviceStatus* {
+    for (const DeviceStatus& one : session.status()) {
+      if (one.serial == device->serial && one.state != stream::DeviceState::kLost) return &one;
+    }
+    return nullptr;
+  };
+  // The list that shows it comes with one of the next ticks.
+  session.RunUntil(
+      [&] {
+        const DeviceStatus* one = now_is();
+        return one != nullptr && one->role == binding->second &&
+               (binding->first.empty() || one->rig == binding->first);
+      },
+      kShownWithinS);
+  const DeviceStatus* one = now_is();
+  if (one == nullptr) return NoDevice(device->serial + " went away");
+  Print({{"device", one->device},
+         {"serial", one->serial},
+         {"rig", one->rig},
+         {"role", stream::Name(one->role)}},
+        one->serial + " is now " + words::RigRole(*one), shared);
+  return {};
+}
 
 void AddControlCommands(CLI::App& app, Shared& shared) {
   struct Words {
@@ -111,6 +195,23 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
     WithSession(shared, {"status"}, [&](Session& session) {
       return Led(session, words->device, words->light, shared);
     });
+  });
+
+  const auto clear = std::make_shared<bool>(false);
+  CLI::App* tare = app.add_subcommand("tare", "Take a board's empty weight as its zero");
+  tare->add_option("BOARD", words->device, "Serial, number, RIG/ROLE or ROLE; or all")->required();
+  tare->add_flag("--clear", *clear, "Forget it instead");
+  tare->footer("Examples:\n  footing-ctl tare all\n  footing-ctl tare left_board --clear");
+  tare->callback([words, clear, &shared] {
+    WithSession(shared, {"status"},
+                [&](Session& session) { return Tare(session, words->device, *clear, shared); });
+  });
+
+  CLI::App* trust = app.add_subcommand("trust", "Certificates for other hosts");
+  trust->allow_extras();
+  trust->callback([&shared] {
+    shared.exit_code = cli::Report(
+        UsageError("trust is not built yet; reach other hosts through an SSH tunnel until then"));
   });
 }
 

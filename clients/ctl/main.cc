@@ -11,7 +11,9 @@ int main(int argc, char** argv) {
   app->add_flag("--json", shared.json, "One JSON object on standard output");
   app->require_subcommand(1);
   app->fallthrough();
+  footing::ctl::AddDeviceCommands(*app, shared);
   footing::ctl::AddControlCommands(*app, shared);
+  footing::ctl::AddAssignCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }
