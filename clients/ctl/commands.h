@@ -36,5 +36,7 @@ Result<void> Assign(Session& session, const std::string& device, const std::stri
 void AddDeviceCommands(CLI::App& app, Shared& shared);   ///< devices, status, watch
 void AddControlCommands(CLI::App& app, Shared& shared);  ///< rumble, led, tare, trust
 void AddAssignCommand(CLI::App& app, Shared& shared);    ///< assign
+void AddSetupCommand(CLI::App& app, Shared& shared);     ///< setup
+void AddLayoutCommand(CLI::App& app, Shared& shared);    ///< layout
 
 }  // namespace footing::ctl

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kStandFor_s = 1.0;
 constexpr double kLeanFor_s = 0.8;
-constexpr double kSteady = 0.05;          // Standard deviation of a steady load, share of its mean.
+constexpr double kSteady = 0.05;  // Standard deviation of a steady load, share of its mean.
 constexpr double kSteadyLeast_n = 10;
 constexpr double kSteadyCop_m = 0.012;
-constexpr double kEmptyFor_s = 2.5;       // Half a second more than the tare takes.
+constexpr double kEmptyFor_s = 2.5;  // Half a second more than the tare takes.
 constexpr double kTareWindow_s = 2;
-constexpr double kEmptyMost_n = 60;       // An untared board shows up to some kilograms.
+constexpr double kEmptyMost_n = 60;  // An untared board shows up to some kilograms.
 constexpr double kEmptyQuiet_n = 5;
 
 bool Steady(const Load& load) {
@@ -26,7 +26,9 @@ bool Steady(const Load& load) {
 
 bool StoodOn(const Load& load) { return Steady(load) && load.mean_n > kStoodOn_n; }
 
-bool Upright(const Load& load) { return StoodOn(load) && load.cop_valid && load.cop_sd_m < kSteadyCop_m; }
+bool Upright(const Load& load) {
+  return StoodOn(load) && load.cop_valid && load.cop_sd_m < kSteadyCop_m;
+}
 
 double Moved_m(const Load& from, const Load& to) {
   return std::hypot(to.cop_x_m - from.cop_x_m, to.cop_y_m - from.cop_y_m);
@@ -203,8 +205,8 @@ Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
 Progress WeighStep::Advance(const Situation& now, const Wishes& wishes) {
   Progress progress;
   const auto boards = now.recent->Boards(wishes.rig);
-  progress.prompt = boards.size() > 1 ? "Stand still, one foot on each board."
-                                      : "Stand still on the board.";
+  progress.prompt =
+      boards.size() > 1 ? "Stand still, one foot on each board." : "Stand still on the board.";
   progress.finished = boards.empty();
   if (boards.empty()) return progress;
   const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kWeighFor_s);

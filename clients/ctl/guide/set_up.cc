@@ -51,8 +51,8 @@ Progress SetUp::Advance(const Situation& now) {
     progress_ns_ = now.now_ns;
     asked_ = progress.prompt;
   }
-  const bool given_up = !progress.finished && now.now_ns - progress_ns_ >
-                                                  SecondsToNanoseconds(wishes_.patience_s);
+  const bool given_up =
+      !progress.finished && now.now_ns - progress_ns_ > SecondsToNanoseconds(wishes_.patience_s);
   if (given_up) {
     progress.results = {Outcome(items_[index_], "", false, 0, "",
                                 "given up waiting: " + asked_ + " " + progress.feedback)};

@@ -18,8 +18,8 @@ class SetUp {
  public:
   SetUp(Wishes wishes, std::vector<Item> items);
 
-  /// Call some twenty times a second with what is known. `results` of the answer are final and to be
-  /// recorded; finished means that all items are through.
+  /// Call some twenty times a second with what is known. `results` of the answer are final and to
+  /// be recorded; finished means that all items are through.
   Progress Advance(const Situation& now);
 
   /// The item that is under way.

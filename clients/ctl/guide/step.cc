@@ -25,8 +25,8 @@ const char* Name(Item item) {
 }
 
 const std::vector<Item>& AllItems() {
-  static const std::vector<Item> items{Item::kAdapter, Item::kPairing,  Item::kRoles,
-                                       Item::kLayout,  Item::kTare,     Item::kMounting,
+  static const std::vector<Item> items{Item::kAdapter, Item::kPairing, Item::kRoles,
+                                       Item::kLayout,  Item::kTare,    Item::kMounting,
                                        Item::kWeigh,   Item::kChecks};
   return items;
 }

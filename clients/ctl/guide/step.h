@@ -79,8 +79,8 @@ struct Progress {
 stream::SetupItem Outcome(Item item, const std::string& serial, bool passed, double residual,
                           const std::string& unit, const std::string& note);
 
-/// The lamps of a role: 1 left hand, 2 right hand, 3 left leg, 4 right leg, 1 and 4 the head; boards
-/// have one lamp only, lit on the left one, and on the right one too.
+/// The lamps of a role: 1 left hand, 2 right hand, 3 left leg, 4 right leg, 1 and 4 the head;
+/// boards have one lamp only, lit on the left one, and on the right one too.
 std::uint32_t LedsOf(stream::DeviceRole role);
 
 }  // namespace footing::guide

@@ -63,9 +63,9 @@ class Person {
   std::vector<stream::DeviceStatus> devices;
   double left_yaw_rad = -kPi / 2;  ///< How board 1 lies in truth.
   double right_yaw_rad = kPi / 2;
-  bool deaf = false;            ///< Never does anything.
-  bool clumsy = false;          ///< Shakes both shins at once.
-  double mounting_deg = 4;      ///< What footingd finds.
+  bool deaf = false;        ///< Never does anything.
+  bool clumsy = false;      ///< Shakes both shins at once.
+  double mounting_deg = 4;  ///< What footingd finds.
   std::set<std::string> prompts;
 
  private:
@@ -218,7 +218,8 @@ TEST(SetUp, FindsATurnedBoardAndTriesAgainFirst) {
   EXPECT_FALSE(results[0].passed);
   EXPECT_NE(results[0].note.find("right board is turned"), std::string::npos) << results[0].note;
   bool again = false;
-  for (const std::string& prompt : person.prompts) again = again || prompt.find("(Again, because") != prompt.npos;
+  for (const std::string& prompt : person.prompts)
+    again = again || prompt.find("(Again, because") != prompt.npos;
   EXPECT_TRUE(again);
 }
 
