@@ -33,10 +33,11 @@ void WithSession(Shared& shared, const std::vector<std::string>& channels,
 Result<void> Assign(Session& session, const std::string& device, const std::string& rig_role,
                     const Shared& shared);
 
-void AddDeviceCommands(CLI::App& app, Shared& shared);   ///< devices, status, watch
-void AddControlCommands(CLI::App& app, Shared& shared);  ///< rumble, led, tare, trust
-void AddAssignCommand(CLI::App& app, Shared& shared);    ///< assign
-void AddSetupCommand(CLI::App& app, Shared& shared);     ///< setup
-void AddLayoutCommand(CLI::App& app, Shared& shared);    ///< layout
+void AddDeviceCommands(CLI::App& app, Shared& shared);     ///< devices, status, watch
+void AddControlCommands(CLI::App& app, Shared& shared);    ///< rumble, led, tare, trust
+void AddAssignCommand(CLI::App& app, Shared& shared);      ///< assign
+void AddSetupCommand(CLI::App& app, Shared& shared);       ///< setup
+void AddLayoutCommand(CLI::App& app, Shared& shared);      ///< layout
+void AddAcceptanceCommand(CLI::App& app, Shared& shared);  ///< acceptance
 
 }  // namespace footing::ctl

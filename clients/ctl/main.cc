@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddAssignCommand(*app, shared);
   footing::ctl::AddSetupCommand(*app, shared);
   footing::ctl::AddLayoutCommand(*app, shared);
+  footing::ctl::AddAcceptanceCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

@@ -94,8 +94,8 @@ CombinedCop Combine(const stream::BoardLayout& layout, const Load* left, const L
 
 LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserved& observed) {
   LayoutVerdict verdict;
-  verdict.degraded = !observed.left_alone || !observed.right_alone;
-  if (!verdict.degraded) {
+  verdict.degraded = observed.forward.left.samples == 0 || observed.forward.right.samples == 0;
+  if (observed.left_alone && observed.right_alone) {
     const Stance& left = *observed.left_alone;
     const Stance& right = *observed.right_alone;
     verdict.rest_n = std::max(std::min(left.left.mean_n, left.right.mean_n),

@@ -44,7 +44,7 @@ struct Stance {
 };
 
 struct LayoutObserved {
-  std::optional<Stance> left_alone;  ///< Nothing with a single board.
+  std::optional<Stance> left_alone;  ///< Both are needed to find swapped boards.
   std::optional<Stance> right_alone;
   Stance upright;
   Stance forward;
