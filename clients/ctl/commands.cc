@@ -1,0 +1,41 @@
+#include "clients/ctl/commands.h"
+
+#include <iostream>
+#include <utility>
+
+#include "common/cli/cli.h"
+
+namespace footing::ctl {
+
+Result<std::unique_ptr<Session>> Open(const Shared& shared, std::vector<std::string> channels) {
+  SessionOptions options;
+  options.channels = std::move(channels);
+  options.address = transport::DefaultAddress("sensor");
+  if (!shared.connect.empty()) {
+    const auto address = transport::ParseAddress(shared.connect);
+    if (!address) return address.error();
+    options.address = *address;
+  }
+  return Session::Open(std::move(options));
+}
+
+void Print(const nlohmann::ordered_json& out, const std::string& text, const Shared& shared) {
+  using nlohmann::ordered_json;
+  std::cout << (shared.json ? out.dump(-1, ' ', false, ordered_json::error_handler_t::replace)
+                            : text)
+            << std::endl;
+}
+
+void WithSession(Shared& shared, const std::vector<std::string>& channels,
+                 const std::function<Result<void>(Session&)>& body) {
+  const auto session = Open(shared, channels);
+  if (!session) {
+    shared.exit_code = cli::Report(session.error());
+    return;
+  }
+  if (const Result<void> done = body(**session); !done) {
+    shared.exit_code = cli::Report(done.error());
+  }
+}
+
+}  // namespace footing::ctl

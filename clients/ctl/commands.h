@@ -1,0 +1,43 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clients/ctl/session.h"
+
+namespace footing::ctl {
+
+/// What all commands of footing-ctl share.
+struct Shared {
+  std::string connect;  ///< footingd's address; empty: its default.
+  bool json = false;
+  int exit_code = 0;
+};
+
+/// A session with the address and defaults of the command line.
+Result<std::unique_ptr<Session>> Open(const Shared& shared,
+                                      std::vector<std::string> channels = {"status", "setup"});
+
+/// With --json the object, else the text; always ends the line. Bad UTF-8 is replaced.
+void Print(const nlohmann::ordered_json& out, const std::string& text, const Shared& shared);
+
+/// Runs a command's body with an open session and keeps the exit code of what it returns.
+void WithSession(Shared& shared, const std::vector<std::string>& channels,
+                 const std::function<Result<void>(Session&)>& body);
+
+/// Gives a device a role by hand, waits until the devices show it, and prints it.
+Result<void> Assign(Session& session, const std::string& device, const std::string& rig_role,
+                    const Shared& shared);
+
+void AddDeviceCommands(CLI::App& app, Shared& shared);     ///< devices, status, watch
+void AddControlCommands(CLI::App& app, Shared& shared);    ///< rumble, led, tare, trust
+void AddAssignCommand(CLI::App& app, Shared& shared);      ///< assign
+void AddSetupCommand(CLI::App& app, Shared& shared);       ///< setup
+void AddLayoutCommand(CLI::App& app, Shared& shared);      ///< layout
+void AddAcceptanceCommand(CLI::App& app, Shared& shared);  ///< acceptance
+
+}  // namespace footing::ctl

@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <optional>
+
+#include "clients/ctl/commands.h"
+#include "clients/ctl/words/device_words.h"
+#include "clients/ctl/words/find_device.h"
+#include "common/cli/cli.h"
+
+namespace footing::ctl {
+namespace {
+
+using nlohmann::ordered_json;
+using stream::DeviceStatus;
+
+constexpr std::uint32_t kLeaseMs = 500;  // Renewed at half its time; so long it runs on after us.
+constexpr double kTareWithinS = 10;  // It looks at the last seconds only; generous for a busy host.
+constexpr double kShownWithinS = 2;
+
+/// Four digits 0 and 1, first lamp first, into bits 0 to 3.
+std::optional<std::uint32_t> ParseLeds(const std::string& text) {
+  if (text.size() != 4) return std::nullopt;
+  std::uint32_t leds = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (text[i] != '0' && text[i] != '1') return std::nullopt;
+    if (text[i] == '1') leds |= 1u << i;
+  }
+  return leds;
+}
+
+std::optional<std::uint32_t> ParseColour(const std::string& text) {
+  if (text.size() != 7 || text[0] != '#') return std::nullopt;
+  std::uint32_t rgb = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data() + 1, end, rgb, 16);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return rgb;
+}
+
+Result<void> Rumble(Session& session, const std::string& name, double seconds,
+                    const Shared& shared) {
+  const auto device = session.Find(name);
+  if (!device) return device.error();
+  const auto set = [&](bool on) {
+    v1::Command command;
+    command.mutable_set_rumble()->set_device(device->device);
+    command.mutable_set_rumble()->set_on(on);
+    command.mutable_set_rumble()->set_lease_ms(kLeaseMs);
+    return session.Call(std::move(command));
+  };
+  constexpr double kRenewS = kLeaseMs * 1e-3 / 2;
+  for (double left_s = seconds; left_s > 0; left_s -= kRenewS) {
+    if (const auto done = set(true); !done) return done.error();
+    if (session.RunFor(std::min(left_s, kRenewS)) == Waited::kInterrupted) break;
+  }
+  if (const auto done = set(false); !done) return done.error();
+  Print({{"device", device->device}, {"serial", device->serial}, {"seconds", seconds}},
+        device->serial + " rumbled for " + ordered_json(seconds).dump() + " s", shared);
+  return {};
+}
+
+Result<void> Led(Session& session, const std::string& name, const std::string& light,
+                 const Shared& shared) {
+  const auto leds = ParseLeds(light);
+  const auto colour = ParseColour(light);
+  if (!leds && !colour) {
+    return UsageError(light + " is neither four lamps such as 1010 nor a colour such as #00ff40");
+  }
+  const auto device = session.Find(name);
+  if (!device) return device.error();
+  const bool move = device->kind == stream::DeviceKind::kPsMove;
+  if (colour.has_value() != move) {
+    return UsageError(device->serial + (move ? " is a PS Move: give a colour such as #00ff40"
+                                             : " has lamps, no colour: give them such as 1010"));
+  }
+  v1::Command command;
+  if (move) {
+    command.mutable_set_sphere()->set_device(device->device);
+    command.mutable_set_sphere()->set_rgb(*colour);
+  } else {
+    command.mutable_set_leds()->set_device(device->device);
+    command.mutable_set_leds()->set_leds(*leds);
+  }
+  if (const auto done = session.Call(std::move(command)); !done) return done.error();
+  Print({{"device", device->device}, {"serial", device->serial}, {"light", light}},
+        device->serial + " shows " + light, shared);
+  return {};
+}
+
+Result<ordered_json> TareOne(Session& session, const DeviceStatus& device, bool clear) {
+  v1::Command command;
+  command.mutable_tare()->set_serial(device.serial);
+  command.mutable_tare()->set_clear(clear);
+  const auto done = session.Call(std::move(command), kTareWithinS);
+  if (!done) return Failure(device.serial + ": " + done.error().message);
+  return ordered_json{{"device", device.device},
+                      {"serial", device.serial},
+                      {"cleared", clear},
+                      {"residual", done->residual()},
+                      {"unit", done->unit()}};
+}
+
+Result<void> Tare(Session& session, const std::string& name, bool clear, const Shared& shared) {
+  std::vector<DeviceStatus> boards;
+  if (name == "all") {
+    for (const DeviceStatus& device : session.status()) {
+      const bool there = device.state != stream::DeviceState::kLost;
+      if (there && device.kind == stream::DeviceKind::kBalanceBoard) boards.push_back(device);
+    }
+    if (boards.empty()) return NoDevice("footingd has no board");
+  } else {
+    const auto device = session.Find(name);
+    if (!device) return device.error();
+    if (device->kind != stream::DeviceKind::kBalanceBoard) {
+      return UsageError(device->serial + " is no Balance Board but a " +
+                        stream::Name(device->kind));
+    }
+    boards.push_back(*device);
+  }
+  ordered_json tared = ordered_json::array();
+  std::string text;
+  for (const DeviceStatus& board : boards) {
+    const auto one = TareOne(session, board, clear);
+    if (!one) return one.error();
+    text += (text.empty() ? "" : "\n") + board.serial + (clear ? ": tare forgotten" : ": tared");
+    if (!clear)
+      text += ", residual " + (*one)["residual"].dump() + " " + std::string((*one)["unit"]);
+    tared.push_back(*one);
+  }
+  Print({{"boards", tared}}, text, shared);
+  return {};
+}
+
+}  // namespace
+
+Result<void> Assign(Session& session, const std::string& name, const std::string& rig_role,
+                    const Shared& shared) {
+  const auto binding = words::ParseRigRole(rig_role);
+  if (!binding) return binding.error();
+  const auto device = session.Find(name);
+  if (!device) return device.error();
+  v1::Command command;
+  command.mutable_assign_role()->set_serial(device->serial);
+  command.mutable_assign_role()->set_rig(binding->first);
+  command.mutable_assign_role()->set_role(static_cast<v1::DeviceRole>(binding->second));
+  if (const auto done = session.Call(std::move(command)); !done) return done.error();
+  const auto now_is = [&]() -> const DeviceStatus* {
+    for (const DeviceStatus& one : session.status()) {
+      if (one.serial == device->serial && one.state != stream::DeviceState::kLost) return &one;
+    }
+    return nullptr;
+  };
+  // The list that shows it comes with one of the next ticks.
+  session.RunUntil(
+      [&] {
+        const DeviceStatus* one = now_is();
+        return one != nullptr && one->role == binding->second &&
+               (binding->first.empty() || one->rig == binding->first);
+      },
+      kShownWithinS);
+  const DeviceStatus* one = now_is();
+  if (one == nullptr) return NoDevice(device->serial + " went away");
+  Print({{"device", one->device},
+         {"serial", one->serial},
+         {"rig", one->rig},
+         {"role", stream::Name(one->role)}},
+        one->serial + " is now " + words::RigRole(*one), shared);
+  return {};
+}
+
+void AddControlCommands(CLI::App& app, Shared& shared) {
+  struct Words {
+    std::string device, light;
+    double seconds = 1;
+  };
+  const auto words = std::make_shared<Words>();
+  CLI::App* rumble = app.add_subcommand("rumble", "Let a device's motor run");
+  rumble->add_option("DEVICE", words->device, "Serial, number, RIG/ROLE or ROLE")->required();
+  rumble->add_option("--seconds", words->seconds, "So long; 1 when left out")
+      ->check(CLI::Range(0.05, 30.0));
+  rumble->footer("Example:\n  footing-ctl rumble left_hand --seconds 2");
+  rumble->callback([words, &shared] {
+    WithSession(shared, {"status"}, [&](Session& session) {
+      return Rumble(session, words->device, words->seconds, shared);
+    });
+  });
+
+  CLI::App* led = app.add_subcommand("led", "Set a device's lamps, or a PS Move's colour");
+  led->add_option("DEVICE", words->device, "Serial, number, RIG/ROLE or ROLE")->required();
+  led->add_option("LIGHT", words->light, "Four lamps, 1010, or a colour, #00ff40")->required();
+  led->footer(
+      "Examples:\n  footing-ctl led 00:1f:32:aa:bb:cc 1010\n  footing-ctl led head #00ff40");
+  led->callback([words, &shared] {
+    WithSession(shared, {"status"}, [&](Session& session) {
+      return Led(session, words->device, words->light, shared);
+    });
+  });
+
+  const auto clear = std::make_shared<bool>(false);
+  CLI::App* tare = app.add_subcommand("tare", "Take a board's empty weight as its zero");
+  tare->add_option("BOARD", words->device, "Serial, number, RIG/ROLE or ROLE; or all")->required();
+  tare->add_flag("--clear", *clear, "Forget it instead");
+  tare->footer("Examples:\n  footing-ctl tare all\n  footing-ctl tare left_board --clear");
+  tare->callback([words, clear, &shared] {
+    WithSession(shared, {"status"},
+                [&](Session& session) { return Tare(session, words->device, *clear, shared); });
+  });
+
+  CLI::App* trust = app.add_subcommand("trust", "Certificates for other hosts");
+  trust->allow_extras();
+  trust->callback([&shared] {
+    shared.exit_code = cli::Report(
+        UsageError("trust is not built yet; reach other hosts through an SSH tunnel until then"));
+  });
+}
+
+}  // namespace footing::ctl

@@ -1,0 +1,122 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "clients/ctl/commands.h"
+#include "clients/ctl/words/device_words.h"
+#include "clients/ctl/words/live.h"
+#include "common/cli/cli.h"
+#include "common/wire/wire.h"
+
+namespace footing::ctl {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kScreenEveryS = 0.25;
+constexpr double kLineEveryS = 1;
+constexpr double kForeverS = 1e6;
+constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
+
+Result<void> Devices(Session& session, const Shared& shared) {
+  const auto& devices = session.status();
+  Print({{"devices", words::DevicesToJson(devices)}}, words::DeviceTable(devices), shared);
+  if (devices.empty()) return NoDevice("footingd has no device: footing-ctl pair, or doctor");
+  return {};
+}
+
+Result<void> Status(Session& session, const Shared& shared) {
+  const v1::Welcome& welcome = session.welcome();
+  const v1::Limits& limits = welcome.limits();
+  ordered_json devices = ordered_json::array();
+  for (const stream::DeviceStatus& device : session.status()) {
+    devices.push_back({{"device", device.device},
+                       {"serial", device.serial},
+                       {"kind", stream::Name(device.kind)},
+                       {"rig", device.rig},
+                       {"role", stream::Name(device.role)},
+                       {"state", stream::Name(device.state)},
+                       {"simulated", device.simulated},
+                       {"note", device.note}});
+  }
+  const ordered_json out{
+      {"server", welcome.server_id()},
+      {"version", welcome.version()},
+      {"epoch", welcome.epoch()},
+      {"protocol", std::to_string(welcome.protocol_major()) + "." +
+                       std::to_string(welcome.protocol_minor())},
+      {"granted_role", v1::Role_Name(welcome.granted_role())},
+      {"limits",
+       {{"tick_rate_hz", limits.tick_rate_hz()},
+        {"ring_s", limits.ring_s()},
+        {"max_queue_ticks", limits.max_queue_ticks()},
+        {"max_message_in_bytes", limits.max_message_in_bytes()},
+        {"max_message_out_bytes", limits.max_message_out_bytes()}}},
+      {"setup", words::SetupToJson(session.setup())},
+      {"devices", std::move(devices)}};
+  Print(out,
+        session.link() + ", " + ordered_json(limits.tick_rate_hz()).dump() + " ticks a second\n\n" +
+            words::DeviceTable(session.status()) + "\n" + words::SetupTable(session.setup()),
+        shared);
+  return {};
+}
+
+Result<void> Watch(Session& session, double seconds, const Shared& shared) {
+  words::Live live;
+  session.set_on_tick([&](const v1::Tick& tick) {
+    for (const auto& sample : tick.motion().samples()) live.Take(wire::FromProto(sample));
+    for (const auto& sample : tick.nunchuk().samples()) live.Take(wire::FromProto(sample));
+    for (const auto& sample : tick.boards().samples()) live.Take(wire::FromProto(sample));
+  });
+  const bool screen = !shared.json && isatty(STDOUT_FILENO) == 1;
+  const double every_s = screen ? kScreenEveryS : kLineEveryS;
+  const double whole_s = seconds > 0 ? seconds : kForeverS;
+  double passed_s = 0;
+  Waited waited = Waited::kTimeUp;
+  while (waited != Waited::kInterrupted && passed_s < whole_s) {
+    const double step_s = std::min(every_s, whole_s - passed_s);
+    waited = session.RunFor(step_s);
+    passed_s += step_s;
+    live.devices = session.status();
+    live.link = session.link();
+    if (screen) {
+      std::cout << kHomeAndClear << words::LiveScreen(live) << "\nCtrl-C leaves." << std::endl;
+    } else if (!shared.json) {
+      std::cout << words::LiveLine(live) << std::endl;
+    }
+  }
+  session.set_on_tick({});
+  if (shared.json) Print(words::LiveToJson(live, passed_s), "", shared);
+  return {};
+}
+
+}  // namespace
+
+void AddDeviceCommands(CLI::App& app, Shared& shared) {
+  CLI::App* devices = app.add_subcommand("devices", "Every device that footingd has");
+  devices->footer("Examples:\n  footing-ctl devices\n  footing-ctl devices --json");
+  devices->callback([&shared] {
+    WithSession(shared, {"status"}, [&](Session& session) { return Devices(session, shared); });
+  });
+
+  CLI::App* status = app.add_subcommand("status", "footingd, its devices and their set-up");
+  status->footer("Example:\n  footing-ctl status --json");
+  status->callback([&shared] {
+    WithSession(shared, {"status", "setup"},
+                [&](Session& session) { return Status(session, shared); });
+  });
+
+  const auto seconds = std::make_shared<double>(0);
+  CLI::App* watch = app.add_subcommand("watch", "Live: rates, batteries, forces");
+  watch->add_option("--seconds", *seconds, "Ends after so long; left out: with Ctrl-C")
+      ->check(CLI::Range(0.1, 1e5));
+  watch->footer("Examples:\n  footing-ctl watch\n  footing-ctl watch --seconds 5 --json");
+  watch->callback([seconds, &shared] {
+    WithSession(shared, {"status", "motion", "nunchuk", "boards"},
+                [&](Session& session) { return Watch(session, *seconds, shared); });
+  });
+}
+
+}  // namespace footing::ctl

@@ -1,0 +1,22 @@
+#include "clients/ctl/commands.h"
+#include "common/cli/cli.h"
+
+int main(int argc, char** argv) {
+  auto app = footing::cli::NewApp(
+      "footing-ctl", "The person at the console: devices, their set-up and their faults.",
+      "  footing-ctl led left_hand 1010\n"
+      "  footing-ctl rumble 2 --seconds 2");
+  footing::ctl::Shared shared;
+  app->add_option("--connect", shared.connect, "footingd: unix:PATH or tcp:HOST:PORT");
+  app->add_flag("--json", shared.json, "One JSON object on standard output");
+  app->require_subcommand(1);
+  app->fallthrough();
+  footing::ctl::AddDeviceCommands(*app, shared);
+  footing::ctl::AddControlCommands(*app, shared);
+  footing::ctl::AddAssignCommand(*app, shared);
+  footing::ctl::AddSetupCommand(*app, shared);
+  footing::ctl::AddLayoutCommand(*app, shared);
+  footing::ctl::AddAcceptanceCommand(*app, shared);
+  if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
+  return shared.exit_code;
+}

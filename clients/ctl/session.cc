@@ -1,0 +1,151 @@
+#include "clients/ctl/session.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <utility>
+
+#include "clients/ctl/words/find_device.h"
+#include "common/clock/clock.h"
+#include "common/transport/client.h"
+#include "common/units/units.h"
+#include "common/wire/wire.h"
+
+namespace footing::ctl {
+namespace {
+
+constexpr std::uint32_t kQueueTicks = 512;
+
+}  // namespace
+
+class Session::Implementation {
+ public:
+  explicit Implementation(SessionOptions options)
+      : address_(options.address.Text()), signals_(io_, SIGINT, SIGTERM) {
+    transport::ClientOptions client;
+    client.address = options.address;
+    client.client_name = "footing-ctl";
+    client.role = v1::ROLE_CONTROL;
+    client.channels = std::move(options.channels);
+    client.max_hz = options.max_hz;
+    client.queue_ticks = kQueueTicks;
+    transport::ClientHandlers handlers;
+    handlers.on_welcome = [this](const v1::Welcome& welcome) { welcome_ = welcome; };
+    handlers.on_tick = [this](const v1::Tick& tick) { OnTick(tick); };
+    handlers.on_state = [this](transport::LinkState state, const std::string& why) {
+      live_ = state == transport::LinkState::kLive;
+      refused_ = state == transport::LinkState::kRefused;
+      link_ = why;
+    };
+    client_.emplace(io_, std::move(client), std::move(handlers));
+    signals_.async_wait([this](const boost::system::error_code& error, int) {
+      if (!error) interrupted_ = true;
+    });
+    client_->Start();
+  }
+
+  Result<void> WaitForSnapshot(double within_s) {
+    const Waited waited = RunUntil([this] { return ticks_ > 0 || refused_; }, within_s);
+    if (waited == Waited::kInterrupted) return Failure("stopped");
+    if (waited == Waited::kDone && !refused_) return {};
+    return NoDevice("no footingd: " + link_ +
+                    "; start it (systemctl start footing, or footingd), or name its address with "
+                    "--connect");
+  }
+
+  Result<v1::CommandResult> Call(v1::Command command, double within_s) {
+    std::optional<v1::CommandResult> answer;
+    command.set_deadline_ms(static_cast<std::uint32_t>(within_s * 1e3));
+    client_->Send(std::move(command), [&](const v1::CommandResult& result) { answer = result; });
+    // The client answers by its own deadline; what comes later must not find `answer` gone.
+    while (!answer && !io_.stopped()) io_.run_one();
+    if (!answer) return Failure("the connection has ended");
+    if (!answer->ok()) return Failure(answer->message());
+    return *answer;
+  }
+
+  Waited RunUntil(const std::function<bool()>& condition, double within_s) {
+    const auto end =
+        std::chrono::steady_clock::now() + std::chrono::nanoseconds(SecondsToNanoseconds(within_s));
+    for (;;) {
+      if (interrupted_) return Waited::kInterrupted;
+      if (condition && condition()) return Waited::kDone;
+      if (std::chrono::steady_clock::now() >= end) return Waited::kTimeUp;
+      io_.run_one_until(end);
+    }
+  }
+
+  void OnTick(const v1::Tick& tick) {
+    ++ticks_;
+    server_ns_ = tick.host_ns();
+    if (tick.has_status()) {
+      status_.clear();
+      for (const v1::DeviceStatus& one : tick.status().devices()) {
+        status_.push_back(wire::FromProto(one));
+      }
+    }
+    if (tick.has_setup()) {
+      setup_.clear();
+      for (const v1::RigSetup& one : tick.setup().rigs()) setup_.push_back(wire::FromProto(one));
+    }
+    if (on_tick_) on_tick_(tick);
+  }
+
+  std::string address_;
+  boost::asio::io_context io_{1};
+  boost::asio::signal_set signals_;
+  std::optional<transport::Client> client_;
+  v1::Welcome welcome_;
+  std::vector<stream::DeviceStatus> status_;
+  std::vector<stream::RigSetup> setup_;
+  std::function<void(const v1::Tick&)> on_tick_;
+  std::string link_ = "not connected";
+  std::uint64_t ticks_ = 0;
+  std::int64_t server_ns_ = 0;
+  bool live_ = false;
+  bool refused_ = false;
+  bool interrupted_ = false;
+};
+
+Session::Session(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+Session::~Session() = default;
+
+Result<std::unique_ptr<Session>> Session::Open(SessionOptions options) {
+  const double within_s = options.connect_within_s;
+  auto implementation = std::make_unique<Implementation>(std::move(options));
+  if (const auto there = implementation->WaitForSnapshot(within_s); !there) return there.error();
+  return std::unique_ptr<Session>(new Session(std::move(implementation)));
+}
+
+const std::vector<stream::DeviceStatus>& Session::status() const {
+  return implementation_->status_;
+}
+const std::vector<stream::RigSetup>& Session::setup() const { return implementation_->setup_; }
+const v1::Welcome& Session::welcome() const { return implementation_->welcome_; }
+std::int64_t Session::server_ns() const { return implementation_->server_ns_; }
+bool Session::live() const { return implementation_->live_; }
+const std::string& Session::link() const { return implementation_->link_; }
+bool Session::interrupted() const { return implementation_->interrupted_; }
+
+void Session::set_on_tick(std::function<void(const v1::Tick&)> on_tick) {
+  implementation_->on_tick_ = std::move(on_tick);
+}
+
+Result<v1::CommandResult> Session::Call(v1::Command command, double within_s) {
+  return implementation_->Call(std::move(command), within_s);
+}
+
+Waited Session::RunFor(double duration_s) { return implementation_->RunUntil({}, duration_s); }
+
+Waited Session::RunUntil(const std::function<bool()>& condition, double within_s) {
+  return implementation_->RunUntil(condition, within_s);
+}
+
+Result<stream::DeviceStatus> Session::Find(const std::string& name) const {
+  return words::FindDevice(status(), name);
+}
+
+}  // namespace footing::ctl

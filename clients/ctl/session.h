@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/stream/device.h"
+#include "common/stream/setup.h"
+#include "common/transport/address.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::ctl {
+
+struct SessionOptions {
+  transport::Address address;
+  std::vector<std::string> channels = {"status", "setup"};  ///< "motion", "boards", ... as needed.
+  double max_hz = 0;                                        ///< 0: every tick.
+  double connect_within_s = 3;
+};
+
+/// How a wait ended.
+enum class Waited {
+  kDone,         ///< The condition holds.
+  kTimeUp,       ///< The time is over.
+  kInterrupted,  ///< SIGINT or SIGTERM; every later wait ends at once, too.
+};
+
+/// A connection to footingd as a console program wants it: every call waits, and ticks are handled
+/// while it waits. One thread. While it exists SIGINT and SIGTERM end waits, not the program.
+class Session {
+ public:
+  /// Connects with the role control and takes the first snapshot. NoDevice (exit 3) when footingd
+  /// is not there within the time.
+  static Result<std::unique_ptr<Session>> Open(SessionOptions options);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// The newest list, in the order of footingd; empty before the first device.
+  const std::vector<stream::DeviceStatus>& status() const;
+  /// The newest set-up of every rig.
+  const std::vector<stream::RigSetup>& setup() const;
+  const v1::Welcome& welcome() const;
+  /// Newest host_ns of footingd's ticks: its CLOCK_MONOTONIC; 0 before the first one.
+  std::int64_t server_ns() const;
+  bool live() const;
+  /// A line for a person on how the connection stands.
+  const std::string& link() const;
+
+  /// Called for every tick while a call waits; the tick holds the channels asked for.
+  void set_on_tick(std::function<void(const v1::Tick&)> on_tick);
+
+  /// Sends a command and waits for the answer. A refusal is an error with footingd's words.
+  Result<v1::CommandResult> Call(v1::Command command, double within_s = 3);
+
+  /// Handles ticks for so long. `condition` is asked after every tick.
+  Waited RunFor(double duration_s);
+  Waited RunUntil(const std::function<bool()>& condition, double within_s);
+  bool interrupted() const;
+
+  /// The device of a serial, a number within the epoch, or RIG/ROLE or ROLE ("left_hand").
+  /// NoDevice with a list of what there is otherwise.
+  Result<stream::DeviceStatus> Find(const std::string& name) const;
+
+ private:
+  class Implementation;
+  explicit Session(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::ctl

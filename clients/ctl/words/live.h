@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/stream/device.h"
+#include "common/stream/sensor.h"
+
+namespace footing::ctl::words {
+
+/// What watch shows: the newest status and samples of every device. A plain value.
+struct Live {
+  struct Newest {
+    std::optional<stream::MotionSample> motion;
+    std::optional<stream::NunchukSample> nunchuk;
+    std::optional<stream::BoardSample> board;
+    std::uint64_t samples = 0;  ///< Of motion and boards, since the watch began.
+  };
+  std::vector<stream::DeviceStatus> devices;
+  std::map<std::uint32_t, Newest> newest;  ///< By device number.
+  std::string link;                        ///< How the connection stands.
+
+  void Take(const stream::MotionSample& sample);
+  void Take(const stream::NunchukSample& sample);
+  void Take(const stream::BoardSample& sample);
+};
+
+/// One screen: a table of the devices and below it what each measures, boards as bars in kg.
+std::string LiveScreen(const Live& live);
+/// One line, for a log.
+std::string LiveLine(const Live& live);
+/// {seconds, devices: [...]}, each with its newest sample as "motion", "nunchuk" or "board".
+nlohmann::ordered_json LiveToJson(const Live& live, double seconds);
+
+}  // namespace footing::ctl::words
