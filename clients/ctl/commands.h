@@ -36,5 +36,6 @@ Result<void> Assign(Session& session, const std::string& device, const std::stri
 void AddDeviceCommands(CLI::App& app, Shared& shared);   ///< devices, status, watch
 void AddControlCommands(CLI::App& app, Shared& shared);  ///< rumble, led, tare, trust
 void AddAssignCommand(CLI::App& app, Shared& shared);    ///< assign
+void AddDoctorCommand(CLI::App& app, Shared& shared);    ///< doctor
 
 }  // namespace footing::ctl

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddDeviceCommands(*app, shared);
   footing::ctl::AddControlCommands(*app, shared);
   footing::ctl::AddAssignCommand(*app, shared);
+  footing::ctl::AddDoctorCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

@@ -32,12 +32,12 @@ int VersionNumber(const std::string& text) {
 std::vector<Symptom> NoAdapter(const Facts& facts) {
   if (!facts.adapters.empty()) return {};
   const bool any = std::any_of(facts.devices.begin(), facts.devices.end(), IsThere);
-  return {{any ? Severity::kNote : Severity::kError,
-           any ? "no Bluetooth adapter; the devices that are there do without" :
-                 "no Bluetooth adapter",
-           "/sys/class/bluetooth",
-           "plug one in (Bluetooth 2.1 or later), and look for it with: lsusb; sudo dmesg | grep -i "
-           "bluetooth"}};
+  return {
+      {any ? Severity::kNote : Severity::kError,
+       any ? "no Bluetooth adapter; the devices that are there do without" : "no Bluetooth adapter",
+       "/sys/class/bluetooth",
+       "plug one in (Bluetooth 2.1 or later), and look for it with: lsusb; sudo dmesg | grep -i "
+       "bluetooth"}};
 }
 
 std::vector<Symptom> Blocked(const Facts& facts) {
@@ -56,16 +56,16 @@ std::vector<Symptom> Off(const Facts& facts) {
   std::vector<Symptom> found;
   for (const Adapter& adapter : facts.adapters) {
     if (adapter.powered.value_or(true)) continue;
-    found.push_back({Severity::kError, "the Bluetooth adapter is off", adapter.name,
-                     "bluetoothctl power on"});
+    found.push_back(
+        {Severity::kError, "the Bluetooth adapter is off", adapter.name, "bluetoothctl power on"});
   }
   return found;
 }
 
 std::vector<Symptom> NoBluetoothd(const Facts& facts) {
   if (facts.bluetoothd_running || facts.adapters.empty()) return {};
-  return {{Severity::kError, "bluetoothd is not running, so nothing can pair or connect", "bluetoothd",
-           "sudo apt install bluez && sudo systemctl enable --now bluetooth"}};
+  return {{Severity::kError, "bluetoothd is not running, so nothing can pair or connect",
+           "bluetoothd", "sudo apt install bluez && sudo systemctl enable --now bluetooth"}};
 }
 
 std::vector<Symptom> BondedOnly(const Facts& facts) {
@@ -87,11 +87,12 @@ std::vector<Symptom> BondedOnly(const Facts& facts) {
 
 std::vector<Symptom> UnbondedAllowed(const Facts& facts) {
   if (Value(facts, "ClassicBondedOnly") != "false") return {};
-  return {{Severity::kNote,
-           "ClassicBondedOnly=false: any input device nearby may connect (CVE-2023-45866)",
-           "/etc/bluetooth/input.conf",
-           "leave it only for devices that can't be bonded; else remove the line and sudo systemctl "
-           "restart bluetooth"}};
+  return {
+      {Severity::kNote,
+       "ClassicBondedOnly=false: any input device nearby may connect (CVE-2023-45866)",
+       "/etc/bluetooth/input.conf",
+       "leave it only for devices that can't be bonded; else remove the line and sudo systemctl "
+       "restart bluetooth"}};
 }
 
 std::vector<Symptom> Persisting(const Facts& facts) {
@@ -105,13 +106,14 @@ std::vector<Symptom> Persisting(const Facts& facts) {
 std::vector<Symptom> Regression(const Facts& facts) {
   const int version = VersionNumber(facts.bluez_version);
   if (version < 573 || facts.adapters.empty()) return {};
-  return {{WithoutLiveDevice(facts, Severity::kWarning),
-           "BlueZ " + facts.bluez_version +
-               " may fail to pair Wiimotes and boards (from 5.73 on, "
-               "https://github.com/bluez/bluez/issues/911)",
-           "bluetoothd",
-           "if the device goes off while it pairs: press its red button once more at that moment, or "
-           "use BlueZ 5.66 of Debian 12"}};
+  return {
+      {WithoutLiveDevice(facts, Severity::kWarning),
+       "BlueZ " + facts.bluez_version +
+           " may fail to pair Wiimotes and boards (from 5.73 on, "
+           "https://github.com/bluez/bluez/issues/911)",
+       "bluetoothd",
+       "if the device goes off while it pairs: press its red button once more at that moment, or "
+       "use BlueZ 5.66 of Debian 12"}};
 }
 
 std::vector<Symptom> NotConnected(const Facts& facts) {
@@ -121,7 +123,8 @@ std::vector<Symptom> NotConnected(const Facts& facts) {
     found.push_back({Severity::kWarning, device.name + " is paired but not connected: it sleeps",
                      device.address,
                      "press a button on it (a board: the power button at its front); if it stays "
-                     "away: bluetoothctl connect " + device.address});
+                     "away: bluetoothctl connect " +
+                         device.address});
   }
   return found;
 }
@@ -140,12 +143,11 @@ std::vector<Symptom> NotTrusted(const Facts& facts) {
 std::vector<Symptom> ConnectedWithoutNode(const Facts& facts) {
   std::vector<Symptom> found;
   for (const KnownDevice& device : facts.known) {
-    const bool listed =
-        std::any_of(facts.hid.begin(), facts.hid.end(), [&](const HidDevice& hid) {
-          return std::equal(hid.serial.begin(), hid.serial.end(), device.address.begin(),
-                            device.address.end(),
-                            [](char a, char b) { return (a | 0x20) == (b | 0x20); });
-        });
+    const bool listed = std::any_of(facts.hid.begin(), facts.hid.end(), [&](const HidDevice& hid) {
+      return std::equal(hid.serial.begin(), hid.serial.end(), device.address.begin(),
+                        device.address.end(),
+                        [](char a, char b) { return (a | 0x20) == (b | 0x20); });
+    });
     if (!device.connected || listed) continue;
     found.push_back({Severity::kError,
                      device.name + " is connected, but the kernel has no HID device of it",
@@ -166,12 +168,13 @@ std::vector<Symptom> TooMany(const Facts& facts) {
     const bool full = adapter.links >= kMostLinks;
     const bool crowded = adapter.links > kComfortableLinks && jitter_ms > kCrowdedJitterMs;
     if (!full && !crowded) continue;
-    found.push_back({adapter.links > kMostLinks ? Severity::kError : Severity::kWarning,
-                     std::to_string(adapter.links) +
-                         " devices on one adapter, which carries 7 at most and 4 well",
-                     adapter.name,
-                     "plug in a second adapter and pair half of the devices there: bluetoothctl list, "
-                     "then bluetoothctl select ADDRESS"});
+    found.push_back(
+        {adapter.links > kMostLinks ? Severity::kError : Severity::kWarning,
+         std::to_string(adapter.links) +
+             " devices on one adapter, which carries 7 at most and 4 well",
+         adapter.name,
+         "plug in a second adapter and pair half of the devices there: bluetoothctl list, "
+         "then bluetoothctl select ADDRESS"});
   }
   return found;
 }

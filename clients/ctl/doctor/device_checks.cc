@@ -19,7 +19,8 @@ constexpr double kPoorClockMs = 5;
 constexpr std::uint64_t kManyPlugs = 20;
 
 double Share(std::uint64_t part, const DeviceStatus& device) {
-  return static_cast<double>(part) / static_cast<double>(std::max<std::uint64_t>(device.reports, 1));
+  return static_cast<double>(part) /
+         static_cast<double>(std::max<std::uint64_t>(device.reports, 1));
 }
 
 bool IsBoard(const DeviceStatus& device) { return device.kind == DeviceKind::kBalanceBoard; }
@@ -49,14 +50,14 @@ std::vector<Symptom> Silent(const Facts& facts) {
   return Each(
       facts, [](const DeviceStatus& device) { return device.state == DeviceState::kStale; },
       [](const DeviceStatus& device) {
-        return Symptom{Severity::kError,
-                       "it is connected, but sends no data" +
-                           (device.note.empty() ? "" : ": " + device.note),
-                       "",
-                       IsBoard(device)
-                           ? "a board goes silent on weak batteries: change all four, then press its "
-                             "power button"
-                           : "press a button on it; if it stays silent take out a battery for 5 s"};
+        return Symptom{
+            Severity::kError,
+            "it is connected, but sends no data" + (device.note.empty() ? "" : ": " + device.note),
+            "",
+            IsBoard(device)
+                ? "a board goes silent on weak batteries: change all four, then press its "
+                  "power button"
+                : "press a button on it; if it stays silent take out a battery for 5 s"};
       });
 }
 
@@ -92,12 +93,12 @@ std::vector<Symptom> Uncalibrated(const Facts& facts) {
       },
       [](const DeviceStatus& device) {
         const bool move = device.kind == DeviceKind::kPsMove;
-        return Symptom{Severity::kWarning,
-                       "its calibration could not be read or makes no sense; typical values are used",
-                       "",
-                       move ? "connect it by USB once while footingd runs: its calibration is kept"
-                            : "switch it off and on to read it again; if it stays, its numbers are "
-                              "only approximate"};
+        return Symptom{
+            Severity::kWarning,
+            "its calibration could not be read or makes no sense; typical values are used", "",
+            move ? "connect it by USB once while footingd runs: its calibration is kept"
+                 : "switch it off and on to read it again; if it stays, its numbers are "
+                   "only approximate"};
       });
 }
 
@@ -110,14 +111,14 @@ std::vector<Symptom> PoorLink(const Facts& facts) {
                 Share(device.gaps, device) > kPoorGapsShare);
       },
       [](const DeviceStatus& device) {
-        return Symptom{Severity::kWarning,
-                       "its link is poor: " + std::to_string(static_cast<int>(device.report_rate_hz)) +
-                           " reports/s, jitter " +
-                           std::to_string(static_cast<int>(device.jitter_ms)) + " ms, " +
-                           std::to_string(device.gaps) + " gaps",
-                       "",
-                       "bring the adapter nearer (a USB extension, away from Wi-Fi and USB 3 plugs), "
-                       "or move Wi-Fi to 5 GHz"};
+        return Symptom{
+            Severity::kWarning,
+            "its link is poor: " + std::to_string(static_cast<int>(device.report_rate_hz)) +
+                " reports/s, jitter " + std::to_string(static_cast<int>(device.jitter_ms)) +
+                " ms, " + std::to_string(device.gaps) + " gaps",
+            "",
+            "bring the adapter nearer (a USB extension, away from Wi-Fi and USB 3 plugs), "
+            "or move Wi-Fi to 5 GHz"};
       });
 }
 
@@ -145,17 +146,16 @@ std::vector<Symptom> Dropped(const Facts& facts) {
   return Each(
       facts, [](const DeviceStatus& device) { return device.queue_drops > 0; },
       [](const DeviceStatus& device) {
-        return Symptom{Severity::kWarning,
-                       std::to_string(device.queue_drops) +
-                           " reports were lost because the host was busy",
-                       "", "end what takes the processor (top), or give footingd a core of its own"};
+        return Symptom{
+            Severity::kWarning,
+            std::to_string(device.queue_drops) + " reports were lost because the host was busy", "",
+            "end what takes the processor (top), or give footingd a core of its own"};
       });
 }
 
 std::vector<Symptom> WritesFailed(const Facts& facts) {
   return Each(
-      facts,
-      [](const DeviceStatus& device) { return IsThere(device) && device.writes_failed > 0; },
+      facts, [](const DeviceStatus& device) { return IsThere(device) && device.writes_failed > 0; },
       [](const DeviceStatus& device) {
         return Symptom{Severity::kWarning,
                        std::to_string(device.writes_failed) + " writes to it failed", "",
@@ -173,7 +173,8 @@ std::vector<Symptom> Undecodable(const Facts& facts) {
         return Symptom{Severity::kWarning,
                        std::to_string(device.undecodable) +
                            " of its reports make no sense: perhaps a copy of the real thing",
-                       "", "record it for a report: footing-log record --seconds 10 --out odd.mcap"};
+                       "",
+                       "record it for a report: footing-log record --seconds 10 --out odd.mcap"};
       });
 }
 
@@ -186,7 +187,8 @@ std::vector<Symptom> LoosePlug(const Facts& facts) {
       [](const DeviceStatus& device) {
         return Symptom{Severity::kWarning,
                        "its extension was plugged or pulled " +
-                           std::to_string(device.extension_changes) + " times: a loose plug or a clone",
+                           std::to_string(device.extension_changes) +
+                           " times: a loose plug or a clone",
                        "", "press the plug in, clean its contacts, or try another one"};
       });
 }

@@ -54,7 +54,7 @@ struct Facts {
   /// Of each running footingd: process number and whose it is.
   std::map<int, User> daemons;
   std::optional<std::uint32_t> footing_gid;  ///< Group "footing", where there is one.
-  bool user_listed_in_group = false;         ///< In the group's file, perhaps not yet in the session.
+  bool user_listed_in_group = false;  ///< In the group's file, perhaps not yet in the session.
 
   std::vector<HidDevice> hid;
   std::vector<std::string> udev_rules;  ///< Files with a rule for the hidraw nodes of our devices.

@@ -16,8 +16,7 @@ constexpr const char* kKeepDriver =
 bool MayOpen(const User& who, const HidDevice& hid) {
   if (who.uid == 0) return true;
   constexpr std::uint32_t kReadWrite = 6;
-  const bool in_group =
-      std::find(who.gids.begin(), who.gids.end(), hid.node_gid) != who.gids.end();
+  const bool in_group = std::find(who.gids.begin(), who.gids.end(), hid.node_gid) != who.gids.end();
   const unsigned shift = who.uid == hid.node_uid ? 6 : in_group ? 3 : 0;
   return (hid.node_mode >> shift & kReadWrite) == kReadWrite;
 }
@@ -31,9 +30,10 @@ std::vector<Symptom> NotRunning(const Facts& facts) {
            elsewhere ? "a footingd runs, but not at this address: " + facts.footingd_trouble
                      : "footingd is not running: " + facts.footingd_trouble,
            facts.footingd_address,
-           elsewhere ? "footing-ctl --connect ADDRESS doctor, with an address that footingd listens "
-                       "on"
-                     : "sudo systemctl start footingd.service, or run footingd in a terminal"}};
+           elsewhere
+               ? "footing-ctl --connect ADDRESS doctor, with an address that footingd listens "
+                 "on"
+               : "sudo systemctl start footingd.service, or run footingd in a terminal"}};
 }
 
 std::vector<Symptom> SecondDaemon(const Facts& facts) {
@@ -153,11 +153,11 @@ std::vector<Symptom> DriverInTheWay(const Facts& facts) {
 }  // namespace
 
 std::vector<Check> HostChecks() {
-  return {{"footingd_not_running", NotRunning},    {"second_daemon", SecondDaemon},
-          {"other_version", OtherVersion},         {"node_without_permission", NoPermission},
-          {"udev_rule_missing", RuleMissing},      {"user_not_in_group", NotInGroup},
-          {"hidraw_missing", NodeMissing},         {"driver_blacklisted", Blacklisted},
-          {"wrong_driver", WrongDriver},           {"driver_in_the_way", DriverInTheWay}};
+  return {{"footingd_not_running", NotRunning}, {"second_daemon", SecondDaemon},
+          {"other_version", OtherVersion},      {"node_without_permission", NoPermission},
+          {"udev_rule_missing", RuleMissing},   {"user_not_in_group", NotInGroup},
+          {"hidraw_missing", NodeMissing},      {"driver_blacklisted", Blacklisted},
+          {"wrong_driver", WrongDriver},        {"driver_in_the_way", DriverInTheWay}};
 }
 
 }  // namespace footing::ctl::doctor

@@ -19,11 +19,10 @@ std::vector<Symptom> Items(const Facts& facts, Bad bad, const char* words) {
   for (const stream::RigSetup& rig : facts.setup) {
     for (const stream::SetupItem& item : rig.items) {
       if (!bad(item)) continue;
-      found.push_back({Severity::kWarning,
-                       "set-up: " + item.name + " " + words +
-                           (item.note.empty() ? "" : ": " + item.note),
-                       item.serial.empty() ? rig.rig : rig.rig + " " + item.serial,
-                       Redo(rig, item)});
+      found.push_back(
+          {Severity::kWarning,
+           "set-up: " + item.name + " " + words + (item.note.empty() ? "" : ": " + item.note),
+           item.serial.empty() ? rig.rig : rig.rig + " " + item.serial, Redo(rig, item)});
     }
   }
   return found;
@@ -101,8 +100,8 @@ std::vector<Symptom> NotMounted(const Facts& facts) {
 }  // namespace
 
 std::vector<Check> SetupChecks() {
-  return {{"setup_stale", Stale},    {"setup_failed", Failed},      {"board_not_tared", NotTared},
-          {"layout_missing", NoLayout}, {"board_moved", Moved},     {"mounting_slipped", Slipped},
+  return {{"setup_stale", Stale},          {"setup_failed", Failed}, {"board_not_tared", NotTared},
+          {"layout_missing", NoLayout},    {"board_moved", Moved},   {"mounting_slipped", Slipped},
           {"mounting_missing", NotMounted}};
 }
 
