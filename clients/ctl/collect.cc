@@ -61,7 +61,8 @@ std::string UserName(const fs::path& root, std::uint32_t uid) {
   for (std::string line; std::getline(in, line);) {
     const std::size_t name = line.find(':'), password = line.find(':', name + 1);
     if (name == std::string::npos || password == std::string::npos) continue;
-    if (line.compare(password + 1, std::to_string(uid).size() + 1, std::to_string(uid) + ":") == 0) {
+    if (line.compare(password + 1, std::to_string(uid).size() + 1, std::to_string(uid) + ":") ==
+        0) {
       return line.substr(0, name);
     }
   }
@@ -162,8 +163,8 @@ void CollectAdapters(const fs::path& root, Facts& facts) {
       adapter.blocked_soft = adapter.blocked_soft || FirstLine(inside / "soft") == "1";
       adapter.blocked_hard = adapter.blocked_hard || FirstLine(inside / "hard") == "1";
     }
-    adapter.links = static_cast<int>(
-        std::count_if(entries.begin(), entries.end(), [&](const fs::path& other) {
+    adapter.links =
+        static_cast<int>(std::count_if(entries.begin(), entries.end(), [&](const fs::path& other) {
           return other.filename().string().rfind(adapter.name + ":", 0) == 0;
         }));
     facts.adapters.push_back(adapter);
@@ -191,7 +192,8 @@ std::string AskBluetoothctl(const std::string& words) {
   std::string text;
   if (!pipe) return text;
   char part[512];
-  while (const std::size_t count = fread(part, 1, sizeof part, pipe.get())) text.append(part, count);
+  while (const std::size_t count = fread(part, 1, sizeof part, pipe.get()))
+    text.append(part, count);
   return text;
 }
 

@@ -37,5 +37,6 @@ void AddDeviceCommands(CLI::App& app, Shared& shared);   ///< devices, status, w
 void AddControlCommands(CLI::App& app, Shared& shared);  ///< rumble, led, tare, trust
 void AddAssignCommand(CLI::App& app, Shared& shared);    ///< assign
 void AddDoctorCommand(CLI::App& app, Shared& shared);    ///< doctor
+void AddPairCommand(CLI::App& app, Shared& shared);      ///< pair
 
 }  // namespace footing::ctl

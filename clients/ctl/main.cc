@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddControlCommands(*app, shared);
   footing::ctl::AddAssignCommand(*app, shared);
   footing::ctl::AddDoctorCommand(*app, shared);
+  footing::ctl::AddPairCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

@@ -55,7 +55,8 @@ std::uint32_t Number(const std::string& text) {
 bool IsAddress(const std::string& text) {
   if (text.size() != 17) return false;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool good = i % 3 == 2 ? text[i] == ':' : std::isxdigit(static_cast<unsigned char>(text[i])) != 0;
+    const bool good =
+        i % 3 == 2 ? text[i] == ':' : std::isxdigit(static_cast<unsigned char>(text[i])) != 0;
     if (!good) return false;
   }
   return true;
@@ -137,9 +138,8 @@ bool HasRule(const std::string& text) {
 
 bool IsOurs(const std::string& sysfs_id) {
   static constexpr std::array kKinds = {":057E:0306.", ":057E:0330.", ":054C:03D5.", ":054C:0C5E."};
-  return std::any_of(kKinds.begin(), kKinds.end(), [&](const char* kind) {
-    return sysfs_id.find(kind) != std::string::npos;
-  });
+  return std::any_of(kKinds.begin(), kKinds.end(),
+                     [&](const char* kind) { return sysfs_id.find(kind) != std::string::npos; });
 }
 
 User ParseProcess(const std::string& status) {
