@@ -1,21 +1,43 @@
 #include <memory>
 
 #include "clients/ctl/commands.h"
+#include "clients/ctl/gesture_command.h"
+#include "clients/ctl/guided.h"
+#include "common/cli/cli.h"
 
 namespace footing::ctl {
 
 void AddAssignCommand(CLI::App& app, Shared& shared) {
   struct Words {
     std::string device, rig_role;
+    std::string rig = "main";
+    bool gesture = false;
+    bool script = false;
   };
   const auto words = std::make_shared<Words>();
   CLI::App* command = app.add_subcommand("assign", "Say what a device is: its rig and role");
-  command->add_option("DEVICE", words->device, "Serial, number, RIG/ROLE or ROLE")->required();
-  command->add_option("ROLE", words->rig_role, "RIG/ROLE, or ROLE in the default rig")->required();
+  command->add_option("DEVICE", words->device, "Serial, number, RIG/ROLE or ROLE");
+  command->add_option("ROLE", words->rig_role, "RIG/ROLE, or ROLE in the default rig");
+  command->add_flag("--gesture", words->gesture,
+                    "Find out by stepping on boards and shaking devices");
+  command->add_option("--rig", words->rig, "The rig of --gesture");
+  command->add_flag("--script", words->script, "Prompts of --gesture as lines PROMPT: ...");
   command->footer(
       "A role that is taken is swapped with the device's own.\n"
-      "Example:\n  footing-ctl assign 00:1f:32:aa:bb:cc main/left_hand");
+      "Example:\n  footing-ctl assign 00:1f:32:aa:bb:cc main/left_hand\n"
+      "  footing-ctl assign --gesture");
   command->callback([words, &shared] {
+    if (words->gesture) {
+      WithSession(shared, GuidedChannels(), [&](Session& session) {
+        return AssignByGesture(session, words->rig, words->script, shared);
+      });
+      return;
+    }
+    if (words->device.empty() || words->rig_role.empty()) {
+      shared.exit_code = cli::Report(
+          UsageError("assign takes DEVICE and ROLE, or --gesture; see footing-ctl assign --help"));
+      return;
+    }
     WithSession(shared, {"status"}, [&](Session& session) {
       return Assign(session, words->device, words->rig_role, shared);
     });

@@ -38,5 +38,7 @@ void AddControlCommands(CLI::App& app, Shared& shared);  ///< rumble, led, tare,
 void AddAssignCommand(CLI::App& app, Shared& shared);    ///< assign
 void AddDoctorCommand(CLI::App& app, Shared& shared);    ///< doctor
 void AddPairCommand(CLI::App& app, Shared& shared);      ///< pair
+void AddSetupCommand(CLI::App& app, Shared& shared);     ///< setup
+void AddLayoutCommand(CLI::App& app, Shared& shared);    ///< layout
 
 }  // namespace footing::ctl

@@ -33,11 +33,12 @@ void AddHost(const Host& host, std::vector<Step>& steps) {
                      "Controller ... [default]"});
   }
   if (host.may_fail) {
-    steps.push_back({"BlueZ " + host.bluez_version +
-                         " may switch the device off while it pairs "
-                         "(https://github.com/bluez/bluez/issues/911). If that happens press the red "
-                         "button once more at that moment, or use BlueZ 5.66 of Debian 12.",
-                     "", ""});
+    steps.push_back(
+        {"BlueZ " + host.bluez_version +
+             " may switch the device off while it pairs "
+             "(https://github.com/bluez/bluez/issues/911). If that happens press the red "
+             "button once more at that moment, or use BlueZ 5.66 of Debian 12.",
+         "", ""});
   }
 }
 
@@ -49,17 +50,20 @@ std::vector<Step> NintendoSteps(Kind kind, const Host& host) {
                    "bluetoothctl", "Agent registered"});
   steps.push_back({"Power on, with an agent, and look for devices.",
                    "power on\nagent on\ndefault-agent\nscan on", "Discovery started"});
-  steps.push_back({std::string(words.button) +
-                       ". Press it once; four lamps blink for 20 s. Only this button makes a bond, so "
-                       "that the device comes back by itself; with 1+2 held it is lost again at the "
-                       "next switch-off.",
-                   "", std::string("[NEW] Device ADDRESS ") + words.name});
-  steps.push_back({"Pair while it blinks. No PIN is to be typed: BlueZ gives it (the adapter's own "
-                   "address, backwards). If it asks for one press the red button again and repeat.",
-                   "pair ADDRESS", "Pairing successful"});
-  steps.push_back({"Connect at once: only then the device keeps the bond. And trust it, so that it may "
-                   "come back.",
-                   "connect ADDRESS\ntrust ADDRESS", "Connection successful"});
+  steps.push_back(
+      {std::string(words.button) +
+           ". Press it once; four lamps blink for 20 s. Only this button makes a bond, so "
+           "that the device comes back by itself; with 1+2 held it is lost again at the "
+           "next switch-off.",
+       "", std::string("[NEW] Device ADDRESS ") + words.name});
+  steps.push_back(
+      {"Pair while it blinks. No PIN is to be typed: BlueZ gives it (the adapter's own "
+       "address, backwards). If it asks for one press the red button again and repeat.",
+       "pair ADDRESS", "Pairing successful"});
+  steps.push_back(
+      {"Connect at once: only then the device keeps the bond. And trust it, so that it may "
+       "come back.",
+       "connect ADDRESS\ntrust ADDRESS", "Connection successful"});
   steps.push_back({"Leave bluetoothctl. Later " + std::string(words.asleep) + " wakes it.",
                    "scan off\nquit", ""});
   return steps;
@@ -68,21 +72,25 @@ std::vector<Step> NintendoSteps(Kind kind, const Host& host) {
 std::vector<Step> MoveSteps(const Host& host) {
   std::vector<Step> steps;
   if (host.bluez_version.empty() || host.adapter.empty()) AddHost(host, steps);
-  steps.push_back({"Connect the Move by its USB cable while footingd runs: its calibration is read and "
-                   "kept by its serial; over Bluetooth that often fails.",
-                   "footing-ctl devices", "a device of kind ps_move"});
-  steps.push_back({"Write the adapter's address into the Move, over the same cable. BlueZ has no way to "
-                   "do that for a Move (https://github.com/thp/psmoveapi/issues/489); the program psmove "
-                   "of the PS Move API has: it writes feature report 5 and tells BlueZ of the Move.",
-                   "sudo psmove pair", "the address of the Move"});
+  steps.push_back(
+      {"Connect the Move by its USB cable while footingd runs: its calibration is read and "
+       "kept by its serial; over Bluetooth that often fails.",
+       "footing-ctl devices", "a device of kind ps_move"});
+  steps.push_back(
+      {"Write the adapter's address into the Move, over the same cable. BlueZ has no way to "
+       "do that for a Move (https://github.com/thp/psmoveapi/issues/489); the program psmove "
+       "of the PS Move API has: it writes feature report 5 and tells BlueZ of the Move.",
+       "sudo psmove pair", "the address of the Move"});
   steps.push_back({"Start bluetoothctl in a second terminal, and let the Move in.",
-                   "bluetoothctl\npower on\nagent on\ndefault-agent\ntrust ADDRESS", "trust succeeded"});
+                   "bluetoothctl\npower on\nagent on\ndefault-agent\ntrust ADDRESS",
+                   "trust succeeded"});
   steps.push_back({"Pull the cable and press the PS button. The red lamp blinks, then stays on.",
                    "connect ADDRESS", "Device ADDRESS Connected: yes"});
-  steps.push_back({"If it goes off again BlueZ refuses it without a bond: set this in "
-                   "/etc/bluetooth/input.conf (any input device nearby may connect then), and press PS "
-                   "again.",
-                   "ClassicBondedOnly=false\nsudo systemctl restart bluetooth", ""});
+  steps.push_back(
+      {"If it goes off again BlueZ refuses it without a bond: set this in "
+       "/etc/bluetooth/input.conf (any input device nearby may connect then), and press PS "
+       "again.",
+       "ClassicBondedOnly=false\nsudo systemctl restart bluetooth", ""});
   return steps;
 }
 
@@ -100,10 +108,9 @@ const char* Name(Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }
 std::vector<Step> Steps(Kind kind, const Host& host) {
   std::vector<Step> steps = kind == Kind::kMove ? MoveSteps(host) : NintendoSteps(kind, host);
   steps.push_back({"footingd has it as soon as it is connected.", "footing-ctl devices",
-                   std::string("a live device of kind ") +
-                       (kind == Kind::kWiimote ? "wiimote"
-                        : kind == Kind::kBoard ? "balance_board"
-                                               : "ps_move")});
+                   std::string("a live device of kind ") + (kind == Kind::kWiimote ? "wiimote"
+                                                            : kind == Kind::kBoard ? "balance_board"
+                                                                                   : "ps_move")});
   return steps;
 }
 

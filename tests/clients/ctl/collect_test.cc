@@ -77,7 +77,8 @@ TEST_F(Collect, CountsTheLinksOfAnAdapter) {
 }
 
 TEST_F(Collect, CountsDaemonsThatTakeRealDevices) {
-  const auto run = [&](const std::string& number, const std::string& name, const std::string& words) {
+  const auto run = [&](const std::string& number, const std::string& name,
+                       const std::string& words) {
     Write("proc/" + number + "/comm", name + "\n");
     Write("proc/" + number + "/cmdline", words);
     Write("proc/" + number + "/status", "Uid:\t995\t995\t995\t995\nGid:\t990\t990\t990\t990\n");

@@ -22,7 +22,8 @@ TEST(Pairing, ConnectsDirectlyAfterPairingANintendo) {
   for (const Kind kind : {Kind::kWiimote, Kind::kBoard}) {
     const std::string text = ToText(kind, kReady);
     const std::size_t scan = text.find("scan on"), red = text.find("red button"),
-                      pair = text.find("     pair ADDRESS"), connect = text.find("     connect ADDRESS"),
+                      pair = text.find("     pair ADDRESS"),
+                      connect = text.find("     connect ADDRESS"),
                       trust = text.find("     trust ADDRESS");
     EXPECT_LT(scan, red);
     EXPECT_LT(red, pair);
@@ -45,7 +46,8 @@ TEST(Pairing, PutsTheCableBeforeTheRadioForAMove) {
 
 TEST(Pairing, SaysFirstWhatTheHostLacks) {
   EXPECT_THAT(Steps(Kind::kWiimote, {}).front().run, HasSubstr("apt install bluez"));
-  EXPECT_THAT(Steps(Kind::kWiimote, {"", "5.66", false}).front().say, HasSubstr("no Bluetooth adapter"));
+  EXPECT_THAT(Steps(Kind::kWiimote, {"", "5.66", false}).front().say,
+              HasSubstr("no Bluetooth adapter"));
   EXPECT_THAT(Steps(Kind::kWiimote, {"hci0", "5.79", true}).front().say, HasSubstr("5.79"));
   EXPECT_EQ(Steps(Kind::kWiimote, kReady).front().run, "bluetoothctl");
 }

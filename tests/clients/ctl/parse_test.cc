@@ -28,7 +28,8 @@ TEST(DoctorParse, KeepsOnlyDevicesLikeOurs) {
 
 TEST(DoctorParse, ReadsWhatBluetoothctlSaysOfADevice) {
   KnownDevice device;
-  AddInfo("Device X (public)\n\tPaired: yes\n\tBonded: no\n\tTrusted: no\n\tConnected: yes\n", device);
+  AddInfo("Device X (public)\n\tPaired: yes\n\tBonded: no\n\tTrusted: no\n\tConnected: yes\n",
+          device);
   EXPECT_TRUE(device.paired);
   EXPECT_FALSE(device.bonded);
   EXPECT_FALSE(device.trusted);
@@ -64,8 +65,8 @@ TEST(DoctorParse, KnowsOurDevicesByTheirSysfsNames) {
 }
 
 TEST(DoctorParse, ReadsWhoRunsAProcess) {
-  const User user =
-      ParseProcess("Name:\tfootingd\nUid:\t995\t996\t996\t996\nGid:\t990\t991\t991\t991\nGroups:\t4 24 \n");
+  const User user = ParseProcess(
+      "Name:\tfootingd\nUid:\t995\t996\t996\t996\nGid:\t990\t991\t991\t991\nGroups:\t4 24 \n");
   EXPECT_EQ(user.uid, 996u);  // The effective one.
   EXPECT_THAT(user.gids, ElementsAre(991u, 4u, 24u));
 }

@@ -91,15 +91,17 @@ TEST(Text, AlignsNumbersToTheRight) {
 }
 
 TEST(DeviceTable, ShowsALineADeviceAndNotesBelow) {
-  EXPECT_EQ(
-      DeviceTable({Wiimote(), Board()}),
-      "nr  serial             kind           role             state  extension  rate Hz  jitter ms  "
-      "battery   leds  marks\n"
-      " 1  00:1f:32:aa:bb:cc  wiimote        main/right_hand  stale  nunchuk        0.0        0.0  "
-      "-         0101  simulated,UNCALIBRATED\n"
-      " 2  00:22:4c:11:22:33  balance_board  main/left_board  live   -             61.2        5.0  "
-      "12 % LOW  1000  tared\n"
-      "00:1f:32:aa:bb:cc: no data for 3 s: asked again\n");
+  EXPECT_EQ(DeviceTable({Wiimote(), Board()}),
+            "nr  serial             kind           role             state  extension  rate Hz  "
+            "jitter ms  "
+            "battery   leds  marks\n"
+            " 1  00:1f:32:aa:bb:cc  wiimote        main/right_hand  stale  nunchuk        0.0      "
+            "  0.0  "
+            "-         0101  simulated,UNCALIBRATED\n"
+            " 2  00:22:4c:11:22:33  balance_board  main/left_board  live   -             61.2      "
+            "  5.0  "
+            "12 % LOW  1000  tared\n"
+            "00:1f:32:aa:bb:cc: no data for 3 s: asked again\n");
 }
 
 TEST(DeviceJson, SaysNullForWhatIsUnknown) {
@@ -114,11 +116,32 @@ TEST(DeviceJson, SaysNullForWhatIsUnknown) {
 
 TEST(DeviceJson, HasEveryFieldOfTheContract) {
   const auto out = DeviceToJson(Board());
-  for (const char* field :
-       {"device", "serial", "kind", "name", "rig", "role", "state", "simulated", "extension",
-        "calibration", "extension_calibration", "gyroscope_calibration", "rate_hz", "jitter_ms",
-        "gaps", "repeats", "battery_fraction", "battery_low", "leds", "driver", "place", "tared",
-        "mounted", "slipped", "moved", "note"}) {
+  for (const char* field : {"device",
+                            "serial",
+                            "kind",
+                            "name",
+                            "rig",
+                            "role",
+                            "state",
+                            "simulated",
+                            "extension",
+                            "calibration",
+                            "extension_calibration",
+                            "gyroscope_calibration",
+                            "rate_hz",
+                            "jitter_ms",
+                            "gaps",
+                            "repeats",
+                            "battery_fraction",
+                            "battery_low",
+                            "leds",
+                            "driver",
+                            "place",
+                            "tared",
+                            "mounted",
+                            "slipped",
+                            "moved",
+                            "note"}) {
     EXPECT_TRUE(out.contains(field)) << field;
   }
 }
@@ -132,14 +155,16 @@ TEST(DeviceJson, WritesASpheresColour) {
 TEST(SetupTable, TellsWhatIsStaleAndWhatFailed) {
   stream::RigSetup rig;
   rig.rig = "main";
-  rig.items = {{"tare", "00:22:4c:11:22:33", true, 1'700'000'000'000'000'000, 0.315, "N", "", false},
-               {"layout", "", true, 1'700'000'000'000'000'000, 0, "", "boards moved", true},
-               {"weigh", "", false, 1'700'000'000'000'000'000, 7, "N", "", false}};
-  EXPECT_EQ(SetupTable({rig}),
-            "rig   set-up  device             result  date                  residual  note\n"
-            "main  tare    00:22:4c:11:22:33  ok      2023-11-14 22:13 UTC  0.32 N\n"
-            "main  layout  -                  STALE   2023-11-14 22:13 UTC  -         boards moved\n"
-            "main  weigh   -                  FAILED  2023-11-14 22:13 UTC  7.00 N\n");
+  rig.items = {
+      {"tare", "00:22:4c:11:22:33", true, 1'700'000'000'000'000'000, 0.315, "N", "", false},
+      {"layout", "", true, 1'700'000'000'000'000'000, 0, "", "boards moved", true},
+      {"weigh", "", false, 1'700'000'000'000'000'000, 7, "N", "", false}};
+  EXPECT_EQ(
+      SetupTable({rig}),
+      "rig   set-up  device             result  date                  residual  note\n"
+      "main  tare    00:22:4c:11:22:33  ok      2023-11-14 22:13 UTC  0.32 N\n"
+      "main  layout  -                  STALE   2023-11-14 22:13 UTC  -         boards moved\n"
+      "main  weigh   -                  FAILED  2023-11-14 22:13 UTC  7.00 N\n");
   EXPECT_EQ(SetupTable({}), "nothing is set up yet: footing-ctl setup\n");
 }
 

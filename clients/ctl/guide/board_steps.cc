@@ -1,0 +1,226 @@
+#include "clients/ctl/guide/board_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clients/ctl/guide/pick.h"
+#include "clients/ctl/guide/weigh.h"
+#include "common/units/units.h"
+
+namespace footing::guide {
+namespace {
+
+constexpr double kStandFor_s = 1.0;
+constexpr double kLeanFor_s = 0.8;
+constexpr double kSteady = 0.05;  // Standard deviation of a steady load, share of its mean.
+constexpr double kSteadyLeast_n = 10;
+constexpr double kSteadyCop_m = 0.012;
+constexpr double kEmptyFor_s = 2.5;  // Half a second more than the tare takes.
+constexpr double kTareWindow_s = 2;
+constexpr double kEmptyMost_n = 60;  // An untared board shows up to some kilograms.
+constexpr double kEmptyQuiet_n = 5;
+
+bool Steady(const Load& load) {
+  return load.samples > 0 && load.sd_n < std::max(kSteadyLeast_n, kSteady * load.mean_n);
+}
+
+bool StoodOn(const Load& load) { return Steady(load) && load.mean_n > kStoodOn_n; }
+
+bool Upright(const Load& load) {
+  return StoodOn(load) && load.cop_valid && load.cop_sd_m < kSteadyCop_m;
+}
+
+double Moved_m(const Load& from, const Load& to) {
+  return std::hypot(to.cop_x_m - from.cop_x_m, to.cop_y_m - from.cop_y_m);
+}
+
+std::string Newtons(const Load& load) {
+  return load.samples == 0 ? "no samples" : std::to_string(std::lround(load.mean_n)) + " N";
+}
+
+std::string Loads(const Stance& stance, bool two) {
+  return two ? "left " + Newtons(stance.left) + ", right " + Newtons(stance.right)
+             : Newtons(stance.left);
+}
+
+}  // namespace
+
+Stance LayoutStep::Stand(const Situation& now, const Wishes& wishes, double window_s) const {
+  const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(window_s);
+  const auto boards = now.recent->Boards(wishes.rig);
+  Stance stance;
+  // In the order of their roles: left before right. A lone board stands in the left one's place.
+  if (!boards.empty()) {
+    stance.left = now.recent->BoardLoad(boards.front().device, from_ns, now.now_ns);
+  }
+  if (boards.size() > 1) {
+    stance.right = now.recent->BoardLoad(boards[1].device, from_ns, now.now_ns);
+  }
+  return stance;
+}
+
+void LayoutStep::Begin(const Situation& now, const Wishes& wishes) {
+  const auto boards = now.recent->Boards(wishes.rig);
+  if (boards.empty()) {
+    phase_ = Phase::kEnd;
+    return;
+  }
+  two_ = boards.size() > 1;
+  const double gap_mm = wishes.gap_mm == Wishes::kNoGap_mm ? kUsualGap_mm : wishes.gap_mm;
+  const auto usual = LayoutNamed(two_ ? "one_foot_each" : "single", gap_mm);
+  layout_ = *usual;
+  if (!wishes.preset.empty()) {
+    layout_ = LayoutNamed(wishes.preset, gap_mm).value_or(*usual);
+  } else if (two_) {
+    for (const auto& rig : *now.setup) {
+      const std::string& preset = rig.layout.preset;
+      if (rig.rig == wishes.rig && !preset.empty() && preset != "single") layout_ = rig.layout;
+    }
+  }
+  layout_.rig = wishes.rig;
+  phase_ = Phase::kSetting;
+}
+
+Progress LayoutStep::Set() {
+  Progress progress;
+  Action set;
+  set.kind = Action::Kind::kLayout;
+  set.key = "layout";
+  set.layout = layout_;
+  progress.actions = {set};
+  return progress;
+}
+
+Progress LayoutStep::One(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  const bool left = phase_ == Phase::kLeft;
+  progress.prompt = std::string("Stand on the ") + (left ? "left" : "right") +
+                    " board alone, with both feet, and keep still.";
+  const Stance stance = Stand(now, wishes, kStandFor_s);
+  progress.feedback = Loads(stance, true);
+  const bool on_left = StoodOn(stance.left) && stance.right.samples > 0 &&
+                       stance.right.mean_n < kFree_n && Steady(stance.right);
+  const bool on_right = StoodOn(stance.right) && stance.left.samples > 0 &&
+                        stance.left.mean_n < kFree_n && Steady(stance.left);
+  if (!on_left && !on_right) return progress;
+  if (left) {
+    observed_.left_alone = stance;
+    phase_ = Phase::kRight;
+    return progress;
+  }
+  // The person has not changed boards yet.
+  const bool was_left = observed_.left_alone->left.mean_n > observed_.left_alone->right.mean_n;
+  if (was_left == on_left) return progress;
+  observed_.right_alone = stance;
+  phase_ = Phase::kUpright;
+  return progress;
+}
+
+Progress LayoutStep::Both(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  const bool upright = phase_ == Phase::kUpright;
+  const Stance stance = Stand(now, wishes, upright ? kStandFor_s : kLeanFor_s);
+  progress.feedback = Loads(stance, two_);
+  const bool steady = Upright(stance.left) && (!two_ || Upright(stance.right));
+  if (upright) {
+    progress.prompt = two_ ? "Stand upright, one foot on each board, and keep still."
+                           : "Stand upright in the middle of the board and keep still.";
+    if (!steady) return progress;
+    observed_.upright = stance;
+    phase_ = Phase::kForward;
+    return progress;
+  }
+  progress.prompt = "Lean forward from the ankles, heels down, and hold it.";
+  const double left_m = Moved_m(observed_.upright.left, stance.left);
+  const double right_m = two_ ? Moved_m(observed_.upright.right, stance.right) : left_m;
+  progress.feedback += ", moved by " + std::to_string(std::lround(left_m * 1e3)) + " mm";
+  if (two_) progress.feedback += " and " + std::to_string(std::lround(right_m * 1e3)) + " mm";
+  if (!steady || std::min(left_m, right_m) < kLeastLean_m) return progress;
+  observed_.forward = stance;
+  const LayoutVerdict verdict = JudgeLayout(layout_, observed_);
+  results_ = {Outcome(Item::kLayout, "", verdict.passed(), verdict.residual_mm, "mm",
+                      layout_.preset + ": " + verdict.note)};
+  phase_ = Phase::kEnd;
+  return progress;
+}
+
+Progress LayoutStep::Advance(const Situation& now, const Wishes& wishes) {
+  if (phase_ == Phase::kBegin) {
+    Begin(now, wishes);
+    if (phase_ == Phase::kSetting) return Set();
+  }
+  if (phase_ == Phase::kSetting) {
+    for (const Answer& answer : now.answers) {
+      if (answer.key != "layout") continue;
+      phase_ = answer.ok ? (two_ ? Phase::kLeft : Phase::kUpright) : Phase::kEnd;
+      if (!answer.ok) results_ = {Outcome(Item::kLayout, "", false, 0, "mm", answer.message)};
+    }
+    if (phase_ == Phase::kSetting) return {};
+  }
+  if (phase_ == Phase::kLeft || phase_ == Phase::kRight) return One(now, wishes);
+  if (phase_ != Phase::kEnd) return Both(now, wishes);
+  Progress progress;
+  progress.results = results_;
+  progress.finished = true;
+  return progress;
+}
+
+Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  progress.prompt = "Step off the boards and leave them empty.";
+  const auto boards = now.recent->Boards(wishes.rig);
+  for (const Answer& answer : now.answers) {
+    if (!asked_ || !answer.key.starts_with("tare ")) continue;
+    results_.push_back(Outcome(Item::kTare, answer.key.substr(5), answer.ok, answer.residual,
+                               answer.unit.empty() ? "N" : answer.unit, answer.message));
+    if (--waiting_ == 0) {
+      progress.results = results_;
+      progress.finished = true;
+      return progress;
+    }
+  }
+  progress.finished = boards.empty();
+  if (asked_) return progress;
+  const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kEmptyFor_s);
+  for (const auto& board : boards) {
+    const Load load = now.recent->BoardLoad(board.device, from_ns, now.now_ns);
+    progress.feedback += (progress.feedback.empty() ? "" : ", ") + Newtons(load);
+    if (load.samples == 0 || load.mean_n > kEmptyMost_n || load.sd_n > kEmptyQuiet_n) {
+      return progress;
+    }
+  }
+  for (const auto& board : boards) {
+    Action tare;
+    tare.kind = Action::Kind::kTare;
+    tare.key = "tare " + board.serial;
+    tare.serial = board.serial;
+    tare.window_s = kTareWindow_s;
+    progress.actions.push_back(tare);
+  }
+  asked_ = !boards.empty();
+  waiting_ = boards.size();
+  return progress;
+}
+
+Progress WeighStep::Advance(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  const auto boards = now.recent->Boards(wishes.rig);
+  progress.prompt =
+      boards.size() > 1 ? "Stand still, one foot on each board." : "Stand still on the board.";
+  progress.finished = boards.empty();
+  if (boards.empty()) return progress;
+  const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kWeighFor_s);
+  std::vector<Load> loads;
+  for (const auto& board : boards) {
+    loads.push_back(now.recent->BoardLoad(board.device, from_ns, now.now_ns));
+  }
+  const Weight weight = Weigh(loads, wishes.mass_kg);
+  progress.feedback = weight.note;
+  if (!weight.done) return progress;
+  const std::string note = boards.size() > 1 ? weight.note : weight.note + " on one board alone";
+  progress.results = {Outcome(Item::kWeigh, "", weight.passed, weight.sd_kg, "kg", note)};
+  progress.finished = true;
+  return progress;
+}
+
+}  // namespace footing::guide

@@ -1,0 +1,242 @@
+#include "clients/ctl/guide/device_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clients/ctl/guide/pick.h"
+#include "common/units/units.h"
+
+namespace footing::guide {
+namespace {
+
+constexpr double kLeastBoardRate_hz = 30;
+constexpr double kLeastControllerRate_hz = 60;
+constexpr double kCheckFor_s = 2;
+constexpr std::int64_t kGesture_ns = 1'000'000'000;  // Looked at for a gesture.
+constexpr std::int64_t kRest_ns = 500'000'000;       // Between two gestures.
+
+std::vector<stream::DeviceStatus> Everything(const Situation& now, const Wishes& wishes) {
+  std::vector<stream::DeviceStatus> all = now.recent->Boards(wishes.rig);
+  for (const auto& device : now.recent->Worn(wishes.rig)) all.push_back(device);
+  return all;
+}
+
+bool IsBoard(stream::DeviceRole role) {
+  return role == stream::DeviceRole::kLeftBoard || role == stream::DeviceRole::kRightBoard;
+}
+
+}  // namespace
+
+std::string Spoken(stream::DeviceRole role) {
+  switch (role) {
+    case stream::DeviceRole::kLeftHand:
+      return "the left wrist one";
+    case stream::DeviceRole::kRightHand:
+      return "the right wrist one";
+    case stream::DeviceRole::kLeftLeg:
+      return "the left shin one";
+    case stream::DeviceRole::kRightLeg:
+      return "the right shin one";
+    case stream::DeviceRole::kHead:
+      return "the head one";
+    case stream::DeviceRole::kLeftBoard:
+      return "the left board";
+    case stream::DeviceRole::kRightBoard:
+      return "the right board";
+    case stream::DeviceRole::kEditor:
+      return "the editor's one";
+    case stream::DeviceRole::kUnspecified:
+      return "a device without a role";
+  }
+  return "";
+}
+
+std::string WrongWith(const stream::DeviceStatus& device) {
+  const bool board = device.kind == stream::DeviceKind::kBalanceBoard;
+  if (device.state != stream::DeviceState::kLive) {
+    return std::string("is ") + stream::Name(device.state) + ": press its button, or replug it";
+  }
+  if (device.battery_low) return "battery low: change the batteries now";
+  if (device.calibration == stream::CalibrationOrigin::kDefaults) {
+    return "uncalibrated: its own calibration makes no sense; use another device";
+  }
+  const double least_hz = board ? kLeastBoardRate_hz : kLeastControllerRate_hz;
+  if (device.report_rate_hz < least_hz) {
+    return "only " + std::to_string(std::lround(device.report_rate_hz)) +
+           " reports a second: go nearer, or take devices off this adapter";
+  }
+  if (device.slipped) return "its mounting slipped: footing-ctl setup --only mounting";
+  if (device.moved) return "the board was moved: footing-ctl setup --only layout --only tare";
+  return "";
+}
+
+Progress AdapterStep::Advance(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  const auto devices = Everything(now, wishes);
+  const bool stand_ins = std::any_of(devices.begin(), devices.end(),
+                                     [](const auto& device) { return device.simulated; });
+  if (!now.adapters.empty() || !devices.empty()) {
+    const auto count = static_cast<double>(now.adapters.size());
+    std::string note = stand_ins ? "stand-ins need no adapter" : "devices are attached";
+    if (!now.adapters.empty()) note = "Bluetooth adapter " + now.adapters.front();
+    progress.results = {Outcome(Item::kAdapter, "", true, count, "adapters", note)};
+    progress.finished = true;
+    return progress;
+  }
+  progress.prompt = "Plug in a Bluetooth adapter, or switch it on (rfkill unblock bluetooth).";
+  progress.feedback = "no adapter in /sys/class/bluetooth";
+  return progress;
+}
+
+Progress PairingStep::Advance(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  progress.prompt =
+      "Switch on every device of this rig (pair new ones in another terminal: footing-ctl pair). "
+      "Enter when all are there.";
+  const auto devices = Everything(now, wishes);
+  std::size_t live = 0;
+  for (const auto& device : devices) live += device.state == stream::DeviceState::kLive;
+  if (live != seen_ || since_ns_ == 0) {
+    seen_ = live;
+    since_ns_ = now.now_ns;
+  }
+  progress.feedback =
+      std::to_string(live) + " of " + std::to_string(devices.size()) + " attached devices live";
+  const bool settled = now.now_ns - since_ns_ >= SecondsToNanoseconds(wishes.settle_s);
+  if (live == 0 || live < devices.size() || (!settled && !now.enter)) return progress;
+  for (const auto& device : devices) {
+    progress.results.push_back(
+        Outcome(Item::kPairing, device.serial, true, device.report_rate_hz, "Hz",
+                std::string(stream::Name(device.kind)) + (device.simulated ? ", stand-in" : "")));
+  }
+  progress.finished = true;
+  return progress;
+}
+
+void RolesStep::Begin(const Situation& now, const Wishes& wishes) {
+  const auto boards = now.recent->Boards(wishes.rig);
+  const auto worn = now.recent->Worn(wishes.rig);
+  // A lone device is what its role says: there is nothing to tell it from.
+  const auto ask = [this](const std::vector<stream::DeviceStatus>& devices) {
+    for (const auto& device : devices) {
+      if (devices.size() > 1) {
+        wanted_.push_back(device.role);
+      } else {
+        results_.push_back(Outcome(Item::kRoles, device.serial, true, 0, "",
+                                   Spoken(device.role) + ", the only one of its kind"));
+      }
+    }
+  };
+  ask(boards);
+  ask(worn);
+  phase_ = wanted_.empty() ? Phase::kEnd : Phase::kRest;
+}
+
+bool RolesStep::Resting(const Situation& now, const Wishes& wishes) const {
+  const std::int64_t from_ns = now.now_ns - kRest_ns;
+  for (const auto& device : now.recent->Boards(wishes.rig)) {
+    const Load load = now.recent->BoardLoad(device.device, from_ns, now.now_ns);
+    if (load.samples == 0 || load.mean_n > kFree_n) return false;
+  }
+  for (const auto& device : now.recent->Worn(wishes.rig)) {
+    const Motion motion = now.recent->DeviceMotion(device.device, from_ns, now.now_ns);
+    if (motion.samples == 0 || motion.shake_mps2 > kShaken_mps2 / 2) return false;
+  }
+  return true;
+}
+
+Progress RolesStep::Ask(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  const stream::DeviceRole role = wanted_.front();
+  const std::int64_t from_ns = std::max(now.now_ns - kGesture_ns, rest_since_ns_);
+  if (now.now_ns - from_ns < kGesture_ns) return progress;
+  Pick pick;
+  if (IsBoard(role)) {
+    std::vector<BoardLoad> loads;
+    for (const auto& device : now.recent->Boards(wishes.rig)) {
+      loads.push_back({device.device, now.recent->BoardLoad(device.device, from_ns, now.now_ns)});
+    }
+    pick = WhichBoard(loads);
+  } else {
+    std::vector<DeviceMotion> motions;
+    for (const auto& device : now.recent->Worn(wishes.rig)) {
+      motions.push_back(
+          {device.device, now.recent->DeviceMotion(device.device, from_ns, now.now_ns)});
+    }
+    pick = WhichShaken(motions);
+  }
+  progress.feedback = pick.note;
+  if (pick.kind != Pick::Kind::kOne) return progress;
+  for (const auto& device : now.recent->devices()) {
+    if (device.device != pick.device) continue;
+    if (named_.count(device.serial) > 0) {
+      progress.feedback = "this one is named already: take another";
+      return progress;
+    }
+    Action assign;
+    assign.kind = Action::Kind::kAssign;
+    assign.key = "assign";
+    assign.serial = device.serial;
+    assign.role = role;
+    Action leds;
+    leds.kind = Action::Kind::kLeds;
+    leds.key = "leds";
+    leds.device = device.device;
+    leds.leds = LedsOf(role);
+    progress.actions = {assign, leds};
+    named_.insert(device.serial);
+    lead_ = pick.lead;
+    results_.push_back(Outcome(Item::kRoles, device.serial, true, pick.lead, "ratio",
+                               Spoken(role) + " " + pick.note));
+    phase_ = Phase::kAssigning;
+  }
+  return progress;
+}
+
+Progress RolesStep::Advance(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  if (phase_ == Phase::kBegin) Begin(now, wishes);
+  for (const Answer& answer : now.answers) {
+    if (answer.key != "assign" || phase_ != Phase::kAssigning) continue;
+    if (!answer.ok) {
+      results_.back().passed = false;
+      results_.back().note = answer.message;
+    }
+    wanted_.erase(wanted_.begin());
+    phase_ = wanted_.empty() ? Phase::kEnd : Phase::kRest;
+  }
+  if (phase_ == Phase::kRest) {
+    progress.prompt = "Step off the boards and hold everything still.";
+    if (Resting(now, wishes)) {
+      phase_ = Phase::kAsk;
+      rest_since_ns_ = now.now_ns - kRest_ns;
+    }
+  }
+  if (phase_ == Phase::kAsk) {
+    progress = Ask(now, wishes);
+    const stream::DeviceRole role = wanted_.front();
+    progress.prompt = (IsBoard(role) ? "Step on " : "Shake ") + Spoken(role) + " now.";
+  }
+  if (phase_ == Phase::kEnd) {
+    progress.results = results_;
+    progress.finished = true;
+  }
+  return progress;
+}
+
+Progress ChecksStep::Advance(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  progress.prompt = "The devices are looked over; nothing to do.";
+  if (since_ns_ == 0) since_ns_ = now.now_ns;
+  if (now.now_ns - since_ns_ < SecondsToNanoseconds(kCheckFor_s)) return progress;
+  for (const auto& device : Everything(now, wishes)) {
+    const std::string wrong = WrongWith(device);
+    progress.results.push_back(Outcome(Item::kChecks, device.serial, wrong.empty(),
+                                       device.report_rate_hz, "Hz",
+                                       wrong.empty() ? Spoken(device.role) : wrong));
+  }
+  progress.finished = !progress.results.empty();
+  return progress;
+}
+
+}  // namespace footing::guide

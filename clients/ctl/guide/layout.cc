@@ -1,0 +1,146 @@
+#include "clients/ctl/guide/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clients/ctl/guide/pick.h"
+#include "common/units/units.h"
+
+namespace footing::guide {
+namespace {
+
+/// Movement of a board's COP in W between two stances; nothing when it was not stood on.
+std::optional<WorldPoint> Moved(const stream::BoardPose& pose, const Load& from, const Load& to) {
+  if (!from.cop_valid || !to.cop_valid) return std::nullopt;
+  stream::BoardPose turned;  // A difference: the place drops out.
+  turned.yaw_rad = pose.yaw_rad;
+  return InWorld(turned, to.cop_x_m - from.cop_x_m, to.cop_y_m - from.cop_y_m);
+}
+
+/// Stood the wrong way: the other board carried the load that this one should have had.
+bool Swapped(const LayoutObserved& observed) {
+  if (!observed.left_alone || !observed.right_alone) return false;
+  return observed.left_alone->right.mean_n > observed.left_alone->left.mean_n &&
+         observed.right_alone->left.mean_n > observed.right_alone->right.mean_n;
+}
+
+std::string Text(double value) { return std::to_string(std::lround(value)); }
+
+std::string Turn(const WorldPoint& moved) {
+  const bool about = moved.x_m < 0 && std::abs(moved.x_m) >= std::abs(moved.y_m);
+  return about ? "by half a turn" : "by a quarter turn";
+}
+
+LayoutVerdict NoContact(const std::string& note) {
+  LayoutVerdict verdict;
+  verdict.fault = LayoutFault::kNoContact;
+  verdict.note = note;
+  return verdict;
+}
+
+}  // namespace
+
+std::optional<stream::BoardLayout> LayoutNamed(const std::string& preset, double gap_mm) {
+  stream::BoardLayout layout;
+  layout.preset = preset;
+  layout.gap_mm = gap_mm;
+  const double gap_m = gap_mm * 1e-3;
+  if (preset == "one_foot_each") {
+    layout.left = {0, (kBoardShort_m + gap_m) / 2, -kPi / 2};
+    layout.right = {0, -(kBoardShort_m + gap_m) / 2, kPi / 2};
+  } else if (preset == "side_by_side") {
+    layout.left = {0, (kBoardLong_m + gap_m) / 2, 0};
+    layout.right = {0, -(kBoardLong_m + gap_m) / 2, 0};
+  } else if (preset == "single") {
+    layout.gap_mm = 0;
+  } else {
+    return std::nullopt;
+  }
+  return layout;
+}
+
+WorldPoint InWorld(const stream::BoardPose& pose, double x_P_m, double y_P_m) {
+  // With yaw 0 the plate's front (y_P) is forward (x_W) and its right (x_P) is -y_W.
+  const double forward_m = y_P_m;
+  const double left_m = -x_P_m;
+  const double cosine = std::cos(pose.yaw_rad);
+  const double sine = std::sin(pose.yaw_rad);
+  return {pose.x_m + cosine * forward_m - sine * left_m,
+          pose.y_m + sine * forward_m + cosine * left_m};
+}
+
+CombinedCop Combine(const stream::BoardLayout& layout, const Load* left, const Load* right) {
+  CombinedCop combined;
+  combined.degraded = left == nullptr || right == nullptr;
+  double moment_x_nm = 0;
+  double moment_y_nm = 0;
+  const auto add = [&](const stream::BoardPose& pose, const Load* load) {
+    if (load == nullptr || !load->cop_valid) return;
+    const WorldPoint at = InWorld(pose, load->cop_x_m, load->cop_y_m);
+    combined.total_n += load->mean_n;
+    moment_x_nm += load->mean_n * at.x_m;
+    moment_y_nm += load->mean_n * at.y_m;
+  };
+  add(layout.left, left);
+  add(layout.right, right);
+  combined.valid = combined.total_n > kFree_n;
+  if (combined.valid) {
+    combined.at = {moment_x_nm / combined.total_n, moment_y_nm / combined.total_n};
+  } else {
+    combined.total_n = 0;
+  }
+  return combined;
+}
+
+LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserved& observed) {
+  LayoutVerdict verdict;
+  verdict.degraded = !observed.left_alone || !observed.right_alone;
+  if (!verdict.degraded) {
+    const Stance& left = *observed.left_alone;
+    const Stance& right = *observed.right_alone;
+    verdict.rest_n = std::max(std::min(left.left.mean_n, left.right.mean_n),
+                              std::min(right.left.mean_n, right.right.mean_n));
+    if (Swapped(observed)) {
+      verdict.fault = LayoutFault::kSwapped;
+      verdict.note =
+          "the boards are swapped: standing left loads the right one; exchange them, or do the "
+          "roles again: footing-ctl setup --only roles";
+      return verdict;
+    }
+    if (left.left.mean_n < kStoodOn_n || right.right.mean_n < kStoodOn_n) {
+      return NoContact("a board felt nobody: stand on it alone, then on the other");
+    }
+  }
+  const auto left = Moved(layout.left, observed.upright.left, observed.forward.left);
+  const auto right = Moved(layout.right, observed.upright.right, observed.forward.right);
+  if ((!left && !right) || (!verdict.degraded && (!left || !right))) {
+    return NoContact("a board had no centre of pressure while leaning: stand on all boards");
+  }
+  const auto wrong = [](const std::optional<WorldPoint>& moved) {
+    return moved && moved->x_m < std::max(kLeastLean_m, std::abs(moved->y_m));
+  };
+  for (const auto& moved : {left, right}) {
+    if (moved && std::hypot(moved->x_m, moved->y_m) < kLeastLean_m) {
+      return NoContact("the centre of pressure moved by less than " + Text(kLeastLean_m * 1e3) +
+                       " mm: lean further forward, heels down");
+    }
+    if (moved) verdict.residual_mm = std::max(verdict.residual_mm, std::abs(moved->y_m) * 1e3);
+  }
+  if (wrong(left) && wrong(right)) {
+    verdict.fault = LayoutFault::kBothTurned;
+    verdict.note = "both boards are turned " + Turn(*left) + ": check the power buttons' side";
+  } else if (wrong(left)) {
+    verdict.fault = LayoutFault::kLeftTurned;
+    verdict.note = "the left board is turned " + Turn(*left) + ": check its power button's side";
+  } else if (wrong(right)) {
+    verdict.fault = LayoutFault::kRightTurned;
+    verdict.note = "the right board is turned " + Turn(*right) + ": check its power button's side";
+  } else {
+    verdict.note = "sideways while leaning forward " + Text(verdict.residual_mm) +
+                   " mm, on the free board " + Text(verdict.rest_n) + " N";
+    if (verdict.degraded) verdict.note += "; one board alone: weight beside it is not seen";
+  }
+  return verdict;
+}
+
+}  // namespace footing::guide

@@ -1,0 +1,137 @@
+#include "clients/ctl/guide/mounting.h"
+
+#include <algorithm>
+
+#include "common/units/units.h"
+
+namespace footing::guide {
+namespace {
+
+constexpr double kStill_mps2 = 0.8;     // A standing person's hands and shins stay under half.
+constexpr double kStepping_mps2 = 1.5;  // The slowest step shakes a shin or wrist more.
+constexpr std::int64_t kWindow_ns = 500'000'000;        // Of the shake that Advance is given.
+constexpr std::int64_t kStepsLeast_ns = 1'000'000'000;  // Three steps take longer.
+constexpr std::int64_t kStepsMost_ns = 12'000'000'000;
+constexpr std::int64_t kStandAgain_ns = 700'000'000;
+
+constexpr const char* kShin = R"(
+      front view              the strap
+         ___                 goes round
+        (   ) knee           the shin
+        |   |
+     ___|   |               [===]  the remote lies on the
+    |===|   |   <- strap     | |   OUTSIDE of the shin,
+    |[+]|   |   buttons      | |   buttons away from the leg,
+    |(A)|===|   outwards     | |   its front (camera) UP,
+    |___|   |               [===]  half way from knee to ankle
+        |   |
+       _|   |
+      (_____) foot
+)";
+
+constexpr const char* kHead = R"(
+        _______
+      /         \
+     |===========|   <- the band, level, over the forehead
+     |  o     o  |
+     |     >     |      the remote lies flat on top of the
+      \   ---   /       head under the band:
+        -------         buttons up, its front (camera)
+       [ (A) + >]       pointing where you look
+)";
+
+constexpr const char* kWrist = R"(
+         front (camera) -> where the fingers point
+      ______________________
+     |  [+]   (A)   o o o   |   held in the hand, or strapped
+     |______________________|   on the back of the wrist:
+         \__ thumb                buttons up, the front along
+      =====[ forearm ]=====       the fingers
+)";
+
+}  // namespace
+
+std::string Picture(stream::DeviceRole role) {
+  switch (role) {
+    case stream::DeviceRole::kLeftLeg:
+    case stream::DeviceRole::kRightLeg:
+      return kShin;
+    case stream::DeviceRole::kHead:
+      return kHead;
+    case stream::DeviceRole::kLeftHand:
+    case stream::DeviceRole::kRightHand:
+      return kWrist;
+    case stream::DeviceRole::kLeftBoard:
+    case stream::DeviceRole::kRightBoard:
+    case stream::DeviceRole::kEditor:
+    case stream::DeviceRole::kUnspecified:
+      return "";
+  }
+  return "";
+}
+
+std::string Wearing(stream::DeviceRole role) {
+  switch (role) {
+    case stream::DeviceRole::kLeftLeg:
+      return "left leg: outside of the shin, buttons outwards, front up";
+    case stream::DeviceRole::kRightLeg:
+      return "right leg: outside of the shin, buttons outwards, front up";
+    case stream::DeviceRole::kHead:
+      return "head: on top under the band, buttons up, front where you look";
+    case stream::DeviceRole::kLeftHand:
+      return "left wrist: buttons up, front along the fingers";
+    case stream::DeviceRole::kRightHand:
+      return "right wrist: buttons up, front along the fingers";
+    case stream::DeviceRole::kLeftBoard:
+    case stream::DeviceRole::kRightBoard:
+    case stream::DeviceRole::kEditor:
+    case stream::DeviceRole::kUnspecified:
+      return "";
+  }
+  return "";
+}
+
+double StillThenSteps::still_s(std::int64_t now_ns) const {
+  if (still_from_ns_ == 0) return 0;
+  return std::min(kStillFor_s, NanosecondsToSeconds(now_ns - still_from_ns_));
+}
+
+void StillThenSteps::Advance(std::int64_t now_ns, double moving_mps2) {
+  if (phase_ == Phase::kStill) {
+    if (moving_mps2 > kStill_mps2) {
+      still_from_ns_ = 0;
+      return;
+    }
+    // The whole window that the shake is taken over was still.
+    if (still_from_ns_ == 0) still_from_ns_ = now_ns - kWindow_ns;
+    if (NanosecondsToSeconds(now_ns - still_from_ns_) < kStillFor_s) return;
+    still_to_ns_ = now_ns;
+    moved_first_ns_ = 0;
+    phase_ = Phase::kSteps;
+    return;
+  }
+  if (phase_ == Phase::kDone) return;
+  if (moving_mps2 > kStepping_mps2) {
+    if (moved_first_ns_ == 0) moved_first_ns_ = now_ns;
+    moved_last_ns_ = now_ns;
+  } else if (moved_first_ns_ == 0) {
+    // Still standing: the newest stillness is the one that counts, up to the first movement.
+    if (moving_mps2 <= kStill_mps2) {
+      still_to_ns_ = now_ns;
+      still_from_ns_ = std::max(still_from_ns_, now_ns - SecondsToNanoseconds(2 * kStillFor_s));
+    }
+    return;
+  }
+  const bool stands_again = now_ns - moved_last_ns_ > kStandAgain_ns;
+  const bool took_steps = moved_last_ns_ - moved_first_ns_ > kStepsLeast_ns;
+  if (stands_again && !took_steps) {  // A twitch.
+    *this = StillThenSteps();
+    return;
+  }
+  if (stands_again || now_ns - moved_first_ns_ > kStepsMost_ns) {
+    steps_to_ns_ = now_ns;
+    phase_ = Phase::kDone;
+  }
+}
+
+}  // namespace footing::guide

@@ -1,0 +1,78 @@
+#include "clients/ctl/guide/mounting_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footing::guide {
+namespace {
+
+constexpr std::int64_t kMoving_ns = 500'000'000;
+constexpr double kNotKnown_mps2 = 99;
+
+}  // namespace
+
+Progress MountingStep::Solve(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  for (const auto& device : now.recent->Worn(wishes.rig)) {
+    Action solve;
+    solve.kind = Action::Kind::kSolveMounting;
+    solve.key = "mounting " + device.serial;
+    solve.serial = device.serial;
+    solve.still_from_ns = stretches_.still_from_ns();
+    solve.still_to_ns = stretches_.still_to_ns();
+    solve.steps_from_ns = stretches_.steps_from_ns();
+    solve.steps_to_ns = stretches_.steps_to_ns();
+    progress.actions.push_back(solve);
+  }
+  asked_ = true;
+  waiting_ = progress.actions.size();
+  return progress;
+}
+
+Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
+  Progress progress;
+  const auto worn = now.recent->Worn(wishes.rig);
+  progress.finished = worn.empty();
+  if (worn.empty()) return progress;
+  for (const Answer& answer : now.answers) {
+    if (!asked_ || !answer.key.starts_with("mounting ")) continue;
+    const bool passed = answer.ok && answer.residual <= kMountingBar_deg;
+    std::string note = answer.message;
+    if (answer.ok && !passed) note = "does not fit: fasten it tighter and take the steps again";
+    results_.push_back(
+        Outcome(Item::kMounting, answer.key.substr(9), passed, answer.residual, "deg", note));
+    if (--waiting_ > 0) continue;
+    progress.results = results_;
+    progress.finished = true;
+    return progress;
+  }
+  if (asked_) return progress;
+  double moving_mps2 = 0;
+  for (const auto& device : worn) {
+    const Motion motion =
+        now.recent->DeviceMotion(device.device, now.now_ns - kMoving_ns, now.now_ns);
+    moving_mps2 = std::max(moving_mps2, motion.samples == 0 ? kNotKnown_mps2 : motion.shake_mps2);
+  }
+  stretches_.Advance(now.now_ns, moving_mps2);
+  progress.feedback = "moves by " + std::to_string(std::lround(moving_mps2 * 10) / 10) + " m/s2";
+  switch (stretches_.phase()) {
+    case StillThenSteps::Phase::kStill:
+      progress.prompt = "Put the devices on as shown, then stand still for two seconds.";
+      for (const auto& device : worn) {
+        if (progress.picture.find(Picture(device.role)) == std::string::npos) {
+          progress.picture += Picture(device.role);
+        }
+        progress.picture += "  " + Wearing(device.role) + "\n";
+      }
+      break;
+    case StillThenSteps::Phase::kSteps:
+      progress.prompt =
+          "Now take three steps forward, starting with the left foot, and stand again.";
+      break;
+    case StillThenSteps::Phase::kDone:
+      return Solve(now, wishes);
+  }
+  return progress;
+}
+
+}  // namespace footing::guide

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/stream/device.h"
+#include "common/stream/sensor.h"
+
+/// The guided set-up and acceptance of a rig: what is asked of the person, and what the sensors
+/// say. Everything is a plain value; the time is footingd's (host_ns of its ticks).
+namespace footing::guide {
+
+/// What stood on a board during a stretch of time.
+struct Load {
+  int samples = 0;
+  double mean_n = 0;
+  double sd_n = 0;
+  bool cop_valid = false;  ///< In every sample that counts.
+  double cop_x_m = 0;      ///< Mean, plate frame P.
+  double cop_y_m = 0;
+  double cop_sd_m = 0;  ///< Of both axes together.
+};
+
+/// How much a hand device moved during a stretch of time.
+struct Motion {
+  int samples = 0;
+  double mean_mps2 = 0;   ///< Of the specific force's magnitude.
+  double shake_mps2 = 0;  ///< Root mean square distance of the specific force from its mean.
+};
+
+Load LoadOf(const std::vector<stream::BoardSample>& samples);
+Motion MotionOf(const std::vector<stream::MotionSample>& samples);
+
+/// The newest 30 s of the stream.
+class Recent {
+ public:
+  void SetDevices(std::vector<stream::DeviceStatus> devices) { devices_ = std::move(devices); }
+  void Add(const stream::MotionSample& sample);
+  void Add(const stream::BoardSample& sample);
+
+  const std::vector<stream::DeviceStatus>& devices() const { return devices_; }
+  /// Attached devices of a rig: boards, or those worn and held. In the order of their roles.
+  std::vector<stream::DeviceStatus> Boards(const std::string& rig) const;
+  std::vector<stream::DeviceStatus> Worn(const std::string& rig) const;
+  std::optional<stream::DeviceStatus> Holding(const std::string& rig,
+                                              stream::DeviceRole role) const;
+
+  /// Received in [from, to); none when the stretch is not covered by samples up to a tenth of it.
+  Load BoardLoad(std::uint32_t device, std::int64_t from_ns, std::int64_t to_ns) const;
+  Motion DeviceMotion(std::uint32_t device, std::int64_t from_ns, std::int64_t to_ns) const;
+
+ private:
+  std::vector<stream::DeviceStatus> devices_;
+  std::map<std::uint32_t, std::vector<stream::MotionSample>> motion_;
+  std::map<std::uint32_t, std::vector<stream::BoardSample>> boards_;
+};
+
+}  // namespace footing::guide

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clients/ctl/guide/recent.h"
+#include "common/stream/setup.h"
+
+namespace footing::guide {
+
+/// The items of a set-up, in their order.
+enum class Item { kAdapter, kPairing, kRoles, kLayout, kTare, kMounting, kWeigh, kChecks };
+
+const char* Name(Item item);
+std::optional<Item> ItemNamed(const std::string& name);
+const std::vector<Item>& AllItems();
+
+/// What the person chose on the command line.
+struct Wishes {
+  std::string rig = "main";
+  std::string preset;  ///< Empty: the rig's own layout, else one_foot_each (or single).
+  double gap_mm = kNoGap_mm;
+  std::optional<double> mass_kg;
+  double patience_s = 60;  ///< An item that gets nowhere for so long has failed.
+  double settle_s = 4;     ///< No new device for so long: all are there.
+  int tries = 2;
+
+  static constexpr double kNoGap_mm = -1;  ///< The usual one.
+};
+
+/// Something that footingd is asked to do. Its answer comes back under the same key.
+struct Action {
+  enum class Kind { kAssign, kLeds, kTare, kSolveMounting, kLayout };
+  Kind kind = Kind::kAssign;
+  std::string key;
+  std::string serial;
+  std::uint32_t device = 0;
+  stream::DeviceRole role = stream::DeviceRole::kUnspecified;
+  std::uint32_t leds = 0;
+  stream::BoardLayout layout;
+  double window_s = 0;
+  std::int64_t still_from_ns = 0;
+  std::int64_t still_to_ns = 0;
+  std::int64_t steps_from_ns = 0;
+  std::int64_t steps_to_ns = 0;
+};
+
+struct Answer {
+  std::string key;
+  bool ok = false;
+  std::string message;  ///< Of a refusal, or a remark.
+  double residual = 0;
+  std::string unit;
+};
+
+/// All that an item sees in one instant.
+struct Situation {
+  std::int64_t now_ns = 0;  ///< footingd's clock.
+  const Recent* recent = nullptr;
+  const std::vector<stream::RigSetup>* setup = nullptr;
+  std::vector<std::string> adapters;  ///< Bluetooth adapters of the host.
+  std::vector<Answer> answers;        ///< To earlier actions, each once.
+  bool enter = false;                 ///< The person pressed Enter since the last instant.
+};
+
+/// What an item says in that instant.
+struct Progress {
+  std::string prompt;    ///< To the person; the same until something else is asked.
+  std::string picture;   ///< Goes with the prompt; may be empty.
+  std::string feedback;  ///< What is seen at the moment; changes all the time.
+  std::vector<Action> actions;
+  std::vector<stream::SetupItem> results;  ///< Without rig, date and staleness.
+  bool finished = false;
+};
+
+/// A result of an item, short to write.
+stream::SetupItem Outcome(Item item, const std::string& serial, bool passed, double residual,
+                          const std::string& unit, const std::string& note);
+
+/// The lamps of a role: 1 left hand, 2 right hand, 3 left leg, 4 right leg, 1 and 4 the head;
+/// boards have one lamp only, lit on the left one, and on the right one too.
+std::uint32_t LedsOf(stream::DeviceRole role);
+
+}  // namespace footing::guide

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clients/ctl/commands.h"
+#include "clients/ctl/guide/recent.h"
+#include "clients/ctl/guide/step.h"
+#include "common/stream/setup.h"
+
+namespace footing::ctl {
+
+/// How prompts reach the person, or the script that drives devices in a person's place.
+struct Talk {
+  bool script = false;  ///< Lines "PROMPT: ..." and "DONE: ..." only, and nobody presses Enter.
+};
+
+/// The channels that a guided command needs.
+const std::vector<std::string>& GuidedChannels();
+
+/// Puts what a tick holds into the window that the guide looks at.
+void TakeTick(const v1::Tick& tick, guide::Recent& recent);
+
+/// Attached devices of a rig.
+std::vector<stream::DeviceStatus> DevicesOf(const Session& session, const std::string& rig);
+
+/// Runs items of the set-up with footingd and the person, and records each result there. What was
+/// found is returned with its date; Failure when it was interrupted or footingd went away.
+Result<std::vector<stream::SetupItem>> RunGuided(Session& session, const guide::Wishes& wishes,
+                                                 const std::vector<guide::Item>& items,
+                                                 const Talk& talk);
+
+/// The rig's items as footingd keeps them, with `results` on top.
+std::vector<stream::SetupItem> ItemsOf(const Session& session, const std::string& rig,
+                                       const std::vector<stream::SetupItem>& results);
+
+/// {name, serial, passed, residual, unit, date, stale, note}
+nlohmann::ordered_json ToJson(const stream::SetupItem& item);
+/// One line a person.
+std::string ToText(const stream::SetupItem& item);
+
+/// Prints {rig, items, ready, missing}; a failure when the set-up is not ready.
+Result<void> PrintItems(const Session& session, const std::string& rig,
+                        const std::vector<stream::SetupItem>& items, bool need_ready,
+                        const Shared& shared);
+
+}  // namespace footing::ctl

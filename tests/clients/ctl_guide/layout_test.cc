@@ -1,0 +1,148 @@
+#include "clients/ctl/guide/layout.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::guide {
+namespace {
+
+Load Standing(double force_n, double cop_x_m, double cop_y_m) {
+  Load load;
+  load.samples = 60;
+  load.mean_n = force_n;
+  load.cop_valid = force_n > 49;
+  load.cop_x_m = cop_x_m;
+  load.cop_y_m = cop_y_m;
+  return load;
+}
+
+/// In the plate frame of a board of this yaw: a point given by its distance forward and to the left
+/// of the plate's middle. The inverse of InWorld, written out by hand for each quarter turn.
+Load At(double force_n, double yaw_rad, double forward_m, double left_m) {
+  if (yaw_rad == 0) return Standing(force_n, -left_m, forward_m);
+  if (yaw_rad < 0) return Standing(force_n, -forward_m, -left_m);  // Front to the right.
+  if (yaw_rad < 2) return Standing(force_n, forward_m, left_m);    // Front to the left.
+  return Standing(force_n, left_m, -forward_m);                    // Front to the rear.
+}
+
+/// Somebody does as asked on two boards that lie at these yaws in truth.
+LayoutObserved Person(double left_yaw_rad, double right_yaw_rad, double lean_m = 0.05) {
+  LayoutObserved observed;
+  observed.left_alone = Stance{At(700, left_yaw_rad, 0, 0), Standing(2, 0, 0)};
+  observed.right_alone = Stance{Standing(3, 0, 0), At(700, right_yaw_rad, 0, 0)};
+  observed.upright = {At(350, left_yaw_rad, 0.01, 0), At(350, right_yaw_rad, 0.01, 0)};
+  observed.forward = {At(350, left_yaw_rad, 0.01 + lean_m, 0.002),
+                      At(350, right_yaw_rad, 0.01 + lean_m, -0.004)};
+  return observed;
+}
+
+const stream::BoardLayout kOneFootEach = *LayoutNamed("one_foot_each", 20);
+constexpr double kOut = kPi / 2;
+
+TEST(Layout, OneFootEachHasItsCentres168MillimetresFromTheMiddle) {
+  EXPECT_NEAR(kOneFootEach.left.y_m, (0.316 + 0.02) / 2, 1e-12);
+  EXPECT_NEAR(kOneFootEach.right.y_m, -0.168, 1e-12);
+  EXPECT_FALSE(LayoutNamed("in_a_row", 20));
+}
+
+TEST(Layout, PowerButtonsPointOutwardsWithOneFootEach) {
+  // The button is on the plate's rear edge: -y_P.
+  const WorldPoint left = InWorld(kOneFootEach.left, 0, -0.158);
+  const WorldPoint right = InWorld(kOneFootEach.right, 0, -0.158);
+  EXPECT_NEAR(left.y_m, 0.168 + 0.158, 1e-12);
+  EXPECT_NEAR(right.y_m, -0.168 - 0.158, 1e-12);
+  EXPECT_NEAR(left.x_m, 0, 1e-12);
+}
+
+TEST(Layout, SideBySideHasTheFrontEdgeForward) {
+  const auto layout = LayoutNamed("side_by_side", 20);
+  EXPECT_NEAR(InWorld(layout->left, 0, 0.1).x_m, 0.1, 1e-12);
+  EXPECT_NEAR(InWorld(layout->left, 0.1, 0).y_m, 0.2655 - 0.1, 1e-12);
+}
+
+TEST(Layout, CombinesBoardsByTheirMoments) {
+  // 300 N in the left board's middle and 100 N in the right one's: y = 0.168 (300 - 100) / 400.
+  const Load left = Standing(300, 0, 0);
+  const Load right = Standing(100, 0, 0);
+  const CombinedCop both = Combine(kOneFootEach, &left, &right);
+  ASSERT_TRUE(both.valid);
+  EXPECT_FALSE(both.degraded);
+  EXPECT_NEAR(both.at.y_m, 0.168 * 200 / 400, 1e-12);
+  EXPECT_NEAR(both.at.x_m, 0, 1e-12);
+}
+
+TEST(Layout, OneBoardAloneWorksAndIsSaidToBeDegraded) {
+  const Load left = Standing(300, 0.1, 0);
+  const CombinedCop alone = Combine(*LayoutNamed("single", 20), &left, nullptr);
+  ASSERT_TRUE(alone.valid);
+  EXPECT_TRUE(alone.degraded);
+  EXPECT_NEAR(alone.at.y_m, -0.1, 1e-12);
+}
+
+TEST(Layout, HasNoCombinedCopWithNobodyOnIt) {
+  const Load empty = Standing(4, 0, 0);
+  const CombinedCop none = Combine(kOneFootEach, &empty, &empty);
+  EXPECT_FALSE(none.valid);
+  EXPECT_EQ(none.at.y_m, 0);
+}
+
+TEST(Layout, PassesWhenTheBoardsLieAsTheyShould) {
+  const LayoutVerdict verdict = JudgeLayout(kOneFootEach, Person(-kOut, kOut));
+  EXPECT_TRUE(verdict.passed()) << verdict.note;
+  EXPECT_NEAR(verdict.residual_mm, 4, 1e-6);
+  EXPECT_NEAR(verdict.rest_n, 3, 1e-9);
+  EXPECT_TRUE(JudgeLayout(*LayoutNamed("side_by_side", 20), Person(0, 0)).passed());
+}
+
+TEST(Layout, TellsATurnedBoardAndWhichOne) {
+  EXPECT_EQ(JudgeLayout(kOneFootEach, Person(kOut, kOut)).fault, LayoutFault::kLeftTurned);
+  EXPECT_EQ(JudgeLayout(kOneFootEach, Person(-kOut, -kOut)).fault, LayoutFault::kRightTurned);
+  EXPECT_EQ(JudgeLayout(kOneFootEach, Person(kOut, -kOut)).fault, LayoutFault::kBothTurned);
+  EXPECT_NE(JudgeLayout(kOneFootEach, Person(kOut, kOut)).note.find("half a turn"),
+            std::string::npos);
+}
+
+TEST(Layout, TellsAQuarterTurn) {
+  const LayoutVerdict verdict = JudgeLayout(kOneFootEach, Person(0, kOut));
+  EXPECT_EQ(verdict.fault, LayoutFault::kLeftTurned);
+  EXPECT_NE(verdict.note.find("quarter"), std::string::npos) << verdict.note;
+}
+
+TEST(Layout, TellsSwappedBoards) {
+  LayoutObserved observed = Person(-kOut, kOut);
+  std::swap(observed.left_alone->left, observed.left_alone->right);
+  std::swap(observed.right_alone->left, observed.right_alone->right);
+  EXPECT_EQ(JudgeLayout(kOneFootEach, observed).fault, LayoutFault::kSwapped);
+}
+
+TEST(Layout, TakesNoLeanForNoVerdict) {
+  EXPECT_EQ(JudgeLayout(kOneFootEach, Person(-kOut, kOut, 0.005)).fault, LayoutFault::kNoContact);
+}
+
+TEST(Layout, TellsABoardThatFeelsNobody) {
+  LayoutObserved observed = Person(-kOut, kOut);
+  observed.right_alone->right = Standing(10, 0, 0);
+  observed.right_alone->left = Standing(5, 0, 0);
+  EXPECT_EQ(JudgeLayout(kOneFootEach, observed).fault, LayoutFault::kNoContact);
+  observed = Person(-kOut, kOut);
+  observed.forward.right = Standing(20, 0, 0);
+  EXPECT_EQ(JudgeLayout(kOneFootEach, observed).fault, LayoutFault::kNoContact);
+}
+
+TEST(Layout, ChecksASingleBoardByTheLeanAlone) {
+  LayoutObserved observed;
+  observed.upright.left = At(700, 0, 0, 0);
+  observed.forward.left = At(700, 0, 0.06, 0.001);
+  const auto single = *LayoutNamed("single", 0);
+  const LayoutVerdict right_way = JudgeLayout(single, observed);
+  EXPECT_TRUE(right_way.passed()) << right_way.note;
+  EXPECT_TRUE(right_way.degraded);
+  observed.forward.left = At(700, 0, -0.06, 0);
+  EXPECT_EQ(JudgeLayout(single, observed).fault, LayoutFault::kLeftTurned);
+}
+
+}  // namespace
+}  // namespace footing::guide
