@@ -41,21 +41,20 @@ Result<void> Status(Session& session, const Shared& shared) {
                        {"simulated", device.simulated},
                        {"note", device.note}});
   }
-  const ordered_json out{
-      {"server", welcome.server_id()},
-      {"version", welcome.version()},
-      {"epoch", welcome.epoch()},
-      {"protocol", std::to_string(welcome.protocol_major()) + "." +
-                       std::to_string(welcome.protocol_minor())},
-      {"granted_role", v1::Role_Name(welcome.granted_role())},
-      {"limits",
-       {{"tick_rate_hz", limits.tick_rate_hz()},
-        {"ring_s", limits.ring_s()},
-        {"max_queue_ticks", limits.max_queue_ticks()},
-        {"max_message_in_bytes", limits.max_message_in_bytes()},
-        {"max_message_out_bytes", limits.max_message_out_bytes()}}},
-      {"setup", words::SetupToJson(session.setup())},
-      {"devices", std::move(devices)}};
+  const ordered_json out{{"server", welcome.server_id()},
+                         {"version", welcome.version()},
+                         {"epoch", welcome.epoch()},
+                         {"protocol", std::to_string(welcome.protocol_major()) + "." +
+                                          std::to_string(welcome.protocol_minor())},
+                         {"granted_role", v1::Role_Name(welcome.granted_role())},
+                         {"limits",
+                          {{"tick_rate_hz", limits.tick_rate_hz()},
+                           {"ring_s", limits.ring_s()},
+                           {"max_queue_ticks", limits.max_queue_ticks()},
+                           {"max_message_in_bytes", limits.max_message_in_bytes()},
+                           {"max_message_out_bytes", limits.max_message_out_bytes()}}},
+                         {"setup", words::SetupToJson(session.setup())},
+                         {"devices", std::move(devices)}};
   Print(out,
         session.link() + ", " + ordered_json(limits.tick_rate_hz()).dump() + " ticks a second\n\n" +
             words::DeviceTable(session.status()) + "\n" + words::SetupTable(session.setup()),

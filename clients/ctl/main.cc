@@ -4,8 +4,10 @@
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
       "footing-ctl", "The person at the console: devices, their set-up and their faults.",
-      "  footing-ctl led left_hand 1010\n"
-      "  footing-ctl rumble 2 --seconds 2");
+      "  footing-ctl setup               # the guided path, from the box to a ready rig\n"
+      "  footing-ctl doctor              # what is wrong, and what helps\n"
+      "  footing-ctl watch               # live\n"
+      "  footing-ctl led left_hand 1010");
   footing::ctl::Shared shared;
   app->add_option("--connect", shared.connect, "footingd: unix:PATH or tcp:HOST:PORT");
   app->add_flag("--json", shared.json, "One JSON object on standard output");
@@ -14,6 +16,8 @@ int main(int argc, char** argv) {
   footing::ctl::AddDeviceCommands(*app, shared);
   footing::ctl::AddControlCommands(*app, shared);
   footing::ctl::AddAssignCommand(*app, shared);
+  footing::ctl::AddDoctorCommand(*app, shared);
+  footing::ctl::AddPairCommand(*app, shared);
   footing::ctl::AddSetupCommand(*app, shared);
   footing::ctl::AddLayoutCommand(*app, shared);
   footing::ctl::AddAcceptanceCommand(*app, shared);

@@ -96,9 +96,9 @@ std::string Battery(const DeviceStatus& device) {
 }
 
 std::string DeviceTable(const std::vector<DeviceStatus>& devices) {
-  std::vector<std::vector<std::string>> rows = {{"nr", "serial", "kind", "role", "state", "extension",
-                                                 "rate Hz", "jitter ms", "battery", "leds",
-                                                 "marks"}};
+  std::vector<std::vector<std::string>> rows = {{"nr", "serial", "kind", "role", "state",
+                                                 "extension", "rate Hz", "jitter ms", "battery",
+                                                 "leds", "marks"}};
   std::string notes;
   for (const DeviceStatus& device : devices) {
     rows.push_back({std::to_string(device.device), device.serial, stream::Name(device.kind),

@@ -12,7 +12,7 @@ namespace {
 using nlohmann::ordered_json;
 using stream::DeviceStatus;
 
-constexpr double kFullCornerKg = 40;  // Of 150 kg a board, evenly on four cells.
+constexpr double kFullCornerKg = 40;   // Of 150 kg a board, evenly on four cells.
 constexpr double kFullForceMps2 = 40;  // A Wiimote's range ends there.
 constexpr int kBarCells = 20;
 
@@ -128,12 +128,11 @@ std::string LiveScreen(const Live& live) {
                                                  "extension"}};
   std::string below;
   for (const DeviceStatus& device : live.devices) {
-    rows.push_back({std::to_string(device.device), RigRole(device), device.serial,
-                    stream::Name(device.state), Fixed(device.report_rate_hz, 1),
-                    Fixed(device.jitter_ms, 1), std::to_string(device.gaps),
-                    Percent(device.repeats, device.reports), Battery(device),
-                    device.kind == stream::DeviceKind::kWiimote ? stream::Name(device.extension)
-                                                                : "-"});
+    rows.push_back(
+        {std::to_string(device.device), RigRole(device), device.serial, stream::Name(device.state),
+         Fixed(device.report_rate_hz, 1), Fixed(device.jitter_ms, 1), std::to_string(device.gaps),
+         Percent(device.repeats, device.reports), Battery(device),
+         device.kind == stream::DeviceKind::kWiimote ? stream::Name(device.extension) : "-"});
     const auto found = live.newest.find(device.device);
     const bool measures = found != live.newest.end() && device.state == stream::DeviceState::kLive;
     if (!measures && device.note.empty()) continue;

@@ -14,7 +14,8 @@ std::string TwoDigits(unsigned value) {
 }
 
 bool IsNumber(const std::string& cell) {
-  return !cell.empty() && cell.find_first_not_of("0123456789.-% ") == std::string::npos;
+  return cell.find_first_of("0123456789") != std::string::npos &&
+         cell.find_first_not_of("0123456789.-% ") == std::string::npos;
 }
 
 }  // namespace

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// How each kind of device is paired, as steps for a person. Pure: what is known of the host comes
+/// in.
+namespace footing::ctl::pairing {
+
+enum class Kind { kWiimote, kBoard, kMove };
+
+std::optional<Kind> KindNamed(const std::string& name);
+const char* Name(Kind kind);
+
+struct Host {
+  std::string adapter;        ///< "hci0"; empty when there is none.
+  std::string bluez_version;  ///< "5.66"; empty when bluetoothctl is not there.
+  bool may_fail = false;      ///< Of the versions that fail to pair Nintendo's devices.
+};
+
+struct Step {
+  std::string say;       ///< What the person is to do or to know.
+  std::string run;       ///< What is typed into bluetoothctl or a shell; empty when nothing is.
+  std::string wait_for;  ///< What shows that it worked; empty when nothing is to be awaited.
+};
+
+/// The whole way from the box to the device in footingd. ADDRESS stands for the device's own, as
+/// bluetoothctl shows it.
+std::vector<Step> Steps(Kind kind, const Host& host);
+
+/// {device, adapter, bluez_version, steps: [{say, run, wait_for}]}
+nlohmann::ordered_json ToJson(Kind kind, const Host& host);
+std::string ToText(Kind kind, const Host& host);
+
+}  // namespace footing::ctl::pairing
