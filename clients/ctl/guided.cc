@@ -188,11 +188,15 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session, const guide::
     for (const auto& action : progress.actions) {
       answers.push_back(Do(session, action, wishes.rig));
     }
-    for (; found.size() < set_up.results().size() && outcome;) {
+    while (found.size() < set_up.results().size()) {
       stream::SetupItem item = set_up.results()[found.size()];
       item.wall_time_ns = clock::WallNs();
       voice.Tell(item);
-      outcome = Record(session, wishes.rig, item);
+      // A set-up that cannot be kept is still gone through; the person is told at once.
+      if (const auto kept = Record(session, wishes.rig, item); !kept) {
+        std::cerr << "warning: " << kept.error().message << std::endl;
+        item.note += (item.note.empty() ? "" : "; ") + std::string("not kept by footingd");
+      }
       found.push_back(std::move(item));
     }
     finished = progress.finished;
