@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "common/units/units.h"
+#include "daemon/sensor/calibration/checksum.h"
 
 namespace footing::calibration {
 namespace {
@@ -28,11 +29,7 @@ std::array<int, 3> TenBits(reports::Bytes block, std::size_t at) {
 
 /// What is wrong with a block, or nothing; fills `calibration` from it.
 std::string ReadBlock(reports::Bytes block, AccelerationCalibration& calibration) {
-  std::uint8_t sum = 0x55;
-  for (std::size_t i = 0; i + 1 < kAccelerationBlockBytes; ++i) {
-    sum = static_cast<std::uint8_t>(sum + block[i]);
-  }
-  if (sum != block[kAccelerationBlockBytes - 1]) return "checksum is wrong";
+  if (!EndsInSumChecksum(block)) return "checksum is wrong";
   const std::array<int, 3> zero = TenBits(block, 0);
   const std::array<int, 3> one_g = TenBits(block, 4);
   for (std::size_t i = 0; i < 3; ++i) {

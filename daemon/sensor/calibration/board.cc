@@ -1,10 +1,6 @@
 #include "daemon/sensor/calibration/board.h"
 
-#include <zlib.h>
-
-#include <algorithm>
-
-#include "common/units/units.h"
+#include "daemon/sensor/calibration/checksum.h"
 
 namespace footing::calibration {
 namespace {
@@ -15,19 +11,8 @@ constexpr double kStepKg = 17;
 constexpr std::size_t kFirstCount = 4;   // In the block.
 constexpr std::size_t kCountBytes = 24;  // Three points of four corners.
 constexpr std::size_t kChecksumAt = kFirstCount + kCountBytes;
-constexpr double kTemperatureSlope = 0.0007;  // Relative, a degree.
-
-bool AllEqual(reports::Bytes bytes, std::uint8_t value) {
-  return std::all_of(bytes.begin(), bytes.end(), [value](std::uint8_t b) { return b == value; });
-}
-
-std::uint32_t Checksum(reports::Bytes block, reports::Bytes temperature) {
-  uLong crc = crc32(0, nullptr, 0);
-  crc = crc32(crc, block.data() + kFirstCount, kCountBytes);
-  crc = crc32(crc, block.data(), 2);
-  crc = crc32(crc, temperature.data(), static_cast<uInt>(temperature.size()));
-  return static_cast<std::uint32_t>(crc);
-}
+constexpr double kFactor = 0.99908;
+constexpr double kTemperatureSlope = 0.007 / 10;  // Relative, a degree.
 
 std::uint32_t BigEndian32(reports::Bytes bytes) {
   return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 |
@@ -76,7 +61,7 @@ BoardCalibration ParseBoard(reports::Bytes block, reports::Bytes temperature) {
     if (zero == middle || middle == full) return Refused("two points of a corner are equal");
     if (zero > middle || middle > full) return Refused("points of a corner do not rise");
   }
-  if (Checksum(block, temperature.first(kBoardTemperatureBytes)) !=
+  if (Crc32({points, block.first(2), temperature.first(kBoardTemperatureBytes)}) !=
       BigEndian32(block.subspan(kChecksumAt, 4))) {
     return Refused("checksum is wrong");
   }
@@ -87,10 +72,11 @@ BoardCalibration ParseBoard(reports::Bytes block, reports::Bytes temperature) {
 }
 
 std::array<double, kCorners> CornerForces(const BoardCalibration& calibration,
-                                          const reports::BoardCounts& counts) {
-  double correction = 1;
+                                          const reports::BoardCounts& counts,
+                                          double local_gravity_mps2) {
+  double correction = kFactor * kStandardGravityMps2 / local_gravity_mps2;
   if (counts.has_temperature && calibration.has_reference_temperature) {
-    correction -= kTemperatureSlope * (counts.temperature - calibration.reference_temperature);
+    correction *= 1 - kTemperatureSlope * (counts.temperature - calibration.reference_temperature);
   }
   std::array<double, kCorners> forces{};
   for (std::size_t i = 0; i < kCorners; ++i) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/stream/device.h"
+#include "common/units/units.h"
 #include "daemon/sensor/reports/extension.h"
 
 namespace footing::calibration {
@@ -34,9 +35,16 @@ BoardCalibration DefaultBoard();
 BoardCalibration ParseBoard(reports::Bytes block, reports::Bytes temperature);
 
 /// Forces in N, in the order of reports::Corner: piecewise linear through 0, 17 and 34 kg, with
-/// the outer slopes going on below 0 and above 34 kg. 0.07 % a degree from the reference is taken
-/// off (WiiBrew).
-std::array<double, reports::kCorners> CornerForces(const BoardCalibration& calibration,
-                                                   const reports::BoardCounts& counts);
+/// the outer slopes going on below 0 and above 34 kg, never clamped. As WiiBrew and
+/// hid-wiimote-plus have it, kg * 0.99908 * (1 - 0.007 * (T - T_reference) / 10); without a
+/// temperature or a reference only the first factor.
+///
+/// The cells feel weight, which differs by 0.5 % between equator and pole. `local_gravity_mps2`, of
+/// the place where the board stands, is divided out: what comes back is the force that the same
+/// mass has under standard gravity, under which the points are taken to be made. So force /
+/// standard gravity is the mass everywhere. Left at standard gravity nothing is changed.
+std::array<double, reports::kCorners> CornerForces(
+    const BoardCalibration& calibration, const reports::BoardCounts& counts,
+    double local_gravity_mps2 = kStandardGravityMps2);
 
 }  // namespace footing::calibration

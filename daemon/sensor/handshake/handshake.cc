@@ -5,69 +5,50 @@
 namespace footing::handshake {
 namespace {
 
+using reports::Extension;
 using reports::MemoryRead;
 using reports::Space;
+using stream::CalibrationOrigin;
 using stream::DeviceKind;
 
-constexpr std::uint32_t kExtensionKeyRegister = 0xa400f0;
-constexpr std::uint32_t kExtensionPlainRegister = 0xa400fb;
-constexpr std::uint32_t kIdentityAddress = 0xa400fa;
-constexpr std::uint16_t kIdentityBytes = 6;
+constexpr double kJumpS = 1;             // Time that passes unseen for longer is a suspension.
+constexpr double kNoAckTimeoutS = 0.05;  // Of a device that never acknowledged.
+constexpr std::int64_t kStatusSpacingNs = 1'000'000'000;
 
 std::int64_t Nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
-
-/// What a step reads from memory, if it does.
-std::optional<MemoryRead> ReadOf(Step step) {
-  switch (step) {
-    case Step::kExtensionIdentity:
-      return MemoryRead(Space::kRegisters, kIdentityAddress, kIdentityBytes);
-    case Step::kAccelerationBlocks:
-      return MemoryRead(Space::kEeprom, calibration::kAccelerationBlockAddress,
-                        2 * calibration::kAccelerationBlockBytes);
-    case Step::kBoardBlock:
-      return MemoryRead(Space::kRegisters, calibration::kBoardBlockAddress,
-                        calibration::kBoardBlockBytes);
-    case Step::kBoardTemperature:
-      return MemoryRead(Space::kRegisters, calibration::kBoardTemperatureAddress,
-                        calibration::kBoardTemperatureBytes);
-    case Step::kStatus:
-    case Step::kExtensionKey:
-    case Step::kExtensionPlain:
-    case Step::kMode:
-    case Step::kLive:
-      break;
-  }
-  return std::nullopt;
-}
-
-/// Steps that end with an acknowledgement, and go on without one.
-bool EndsWithAcknowledgement(Step step) {
-  return step == Step::kExtensionKey || step == Step::kExtensionPlain || step == Step::kMode;
-}
 
 }  // namespace
 
 Handshake::Handshake(const HandshakeConfig& config, const std::string& product_name)
     : config_(config),
       named_board_(product_name.find("RVL-WBC") != std::string::npos),
-      kind_(named_board_ ? DeviceKind::kBalanceBoard : DeviceKind::kWiimote) {}
+      kind_(named_board_ ? DeviceKind::kBalanceBoard : DeviceKind::kWiimote),
+      mode_(named_board_ ? 0x34 : 0x31),
+      keep_alive_(config.keep_alive) {}
 
-std::uint8_t Handshake::mode() const {
-  if (kind_ == DeviceKind::kBalanceBoard) return 0x34;
-  return extension_ ? 0x35 : 0x31;
+std::uint8_t Handshake::mode() const { return mode_; }
+
+std::uint8_t Handshake::WantedMode() const {
+  if (is_board()) return 0x34;
+  const bool extension = has_child() || motion_plus_active_;
+  if (config_.camera) return extension ? 0x37 : 0x33;
+  return extension ? 0x35 : 0x31;
 }
 
-stream::CalibrationOrigin Handshake::calibration_origin() const {
-  if (!live()) return stream::CalibrationOrigin::kUnspecified;
-  return kind_ == DeviceKind::kBalanceBoard ? board_.origin : acceleration_.origin;
+/// Basic, 10 bytes, fits report 0x37; extended, 12 bytes, report 0x33.
+std::uint8_t Handshake::CameraFormat() const { return WantedMode() == 0x37 ? 1 : 3; }
+
+bool Handshake::RequestStatus(std::int64_t now_ns) {
+  if (status_asked_ns_ != 0 && now_ns - status_asked_ns_ < kStatusSpacingNs) return false;
+  status_due_ = true;
+  status_asked_ns_ = now_ns;
+  return true;
 }
 
-std::string Handshake::Note(std::int64_t now_ns) const {
-  if (!live()) return step_ == Step::kStatus && tries_ > 1 ? "does not answer; wake it up" : "";
-  if (now_ns - data_ns_ > Nanoseconds(1)) {
-    return "sends no data; press its power button, or change its batteries";
-  }
-  return kind_ == DeviceKind::kBalanceBoard ? board_.problem : acceleration_.problem;
+void Handshake::SetCamera(bool on) {
+  if (on == config_.camera || is_board()) return;
+  config_.camera = on;
+  camera_due_ = true;
 }
 
 void Handshake::Enter(Step step) {
@@ -75,58 +56,80 @@ void Handshake::Enter(Step step) {
   asked_ = false;
   tries_ = 0;
   read_ = ReadOf(step);
-}
-
-Step Handshake::AfterExtension() const {
-  if (kind_ == DeviceKind::kBalanceBoard) return Step::kBoardBlock;
-  return has_acceleration_ ? Step::kMode : Step::kAccelerationBlocks;
+  read_again_ = false;
 }
 
 void Handshake::Advance(std::int64_t now_ns, Outputs& outputs) {
-  if (live()) {
-    KeepAlive(now_ns, outputs);
-    return;
+  if (now_ns_ != 0 && now_ns - now_ns_ > Nanoseconds(kJumpS)) {
+    keep_alive_.Shift(now_ns);
+    extension_data_ns_ = now_ns;
   }
-  if (settle_) {
-    not_before_ns_ = now_ns + Nanoseconds(config_.settle_s);
-    settle_ = false;
-  }
-  if (now_ns < not_before_ns_) return;
+  now_ns_ = now_ns;
+  if (live_) Watch(now_ns, outputs);
+  if (step_ == Step::kLive) return;
   if (asked_) {
-    const bool acknowledged = EndsWithAcknowledgement(step_);
-    const double timeout_s = acknowledged ? config_.ack_timeout_s : config_.reply_timeout_s;
+    const bool by_ack = EndsWithAcknowledgement(step_);
+    const double timeout_s = !by_ack         ? config_.reply_timeout_s
+                             : acknowledges_ ? config_.ack_timeout_s
+                                             : kNoAckTimeoutS;
     if (now_ns - asked_ns_ < Nanoseconds(timeout_s)) return;
-    if (tries_ >= config_.tries) GiveUp();
+    if (tries_ >= (by_ack && !acknowledges_ ? 1 : config_.tries)) {
+      if (by_ack && !acknowledged_) acknowledges_ = false;
+      Proceed();
+    }
   }
-  if (!live()) Ask(now_ns, outputs);
-  if (live()) data_ns_ = now_ns;
+  if (pause_s_ > 0) {
+    not_before_ns_ = now_ns + Nanoseconds(pause_s_);
+    pause_s_ = 0;
+  }
+  if (step_ != Step::kLive && now_ns >= not_before_ns_) Ask(now_ns, outputs);
+}
+
+reports::OutputReport Handshake::Output() const {
+  constexpr std::uint32_t kMotionPlusModeRegister = 0xa600fe;
+  constexpr std::uint32_t kCameraFormatRegister = 0xb00033;
+  if (step_ == Step::kMode) return reports::SetMode(mode_, true);
+  if (step_ == Step::kMotionPlusActivate) {
+    // Alone, with a Nunchuk or with a Classic passed through.
+    const std::uint8_t mode = child_ == Extension::kNunchuk   ? 0x05
+                              : child_ == Extension::kClassic ? 0x07
+                                                              : 0x04;
+    return reports::WriteMemory(Space::kRegisters, kMotionPlusModeRegister, {&mode, 1});
+  }
+  if (step_ == Step::kCameraFormat) {
+    const std::uint8_t format = CameraFormat();
+    return reports::WriteMemory(Space::kRegisters, kCameraFormatRegister, {&format, 1});
+  }
+  return FixedOutput(step_);
 }
 
 void Handshake::Ask(std::int64_t now_ns, Outputs& outputs) {
-  constexpr std::uint8_t kKey[] = {0x55};
-  constexpr std::uint8_t kPlain[] = {0x00};
+  if (!writes_.Take(now_ns)) return;
   asked_ = true;
   asked_ns_ = now_ns;
   ++tries_;
   if (read_) {
     read_->Restart();
     outputs.push_back(read_->Request());
-  } else if (step_ == Step::kStatus) {
-    outputs.push_back(reports::RequestStatus());
-  } else if (step_ == Step::kExtensionKey) {
-    outputs.push_back(reports::WriteMemory(Space::kRegisters, kExtensionKeyRegister, kKey));
-  } else if (step_ == Step::kExtensionPlain) {
-    outputs.push_back(reports::WriteMemory(Space::kRegisters, kExtensionPlainRegister, kPlain));
-  } else if (step_ == Step::kMode) {
-    outputs.push_back(reports::SetMode(mode(), true));
+    return;
   }
+  if (step_ == Step::kStatus) {
+    status_asked_ns_ = now_ns;
+    // Mute, then off; nobody waits for these.
+    outputs.push_back({0x19, 0x04});
+    outputs.push_back({0x14, 0x00});
+  }
+  if (step_ == Step::kExtensionKey || step_ == Step::kMotionPlusActivate) {
+    dead_until_ns_ = now_ns + Nanoseconds(config_.dead_window_s);
+    extension_ready_ = false;
+  }
+  outputs.push_back(Output());
 }
 
-/// No answer to the last question: on to the next step without it.
-void Handshake::GiveUp() {
+void Handshake::Proceed() {
   switch (step_) {
     case Step::kStatus:
-      Enter(named_board_ ? Step::kExtensionKey : Step::kAccelerationBlocks);
+      Enter(has_acceleration_ || named_board_ ? AfterAcceleration() : Step::kAccelerationBlocks);
       return;
     case Step::kExtensionKey:
       Enter(Step::kExtensionPlain);
@@ -134,16 +137,48 @@ void Handshake::GiveUp() {
     case Step::kExtensionPlain:
       Enter(Step::kExtensionIdentity);
       return;
-    case Step::kExtensionIdentity:
-      Enter(AfterExtension());
+    case Step::kMotionPlusKey:
+      Enter(Step::kMotionPlusIdentity);
       return;
-    case Step::kAccelerationBlocks:
-    case Step::kBoardBlock:
-    case Step::kBoardTemperature:
-      FinishRead({});
+    case Step::kMotionPlusActivate:
+      Enter(Step::kMotionPlusVerify);
+      pause_s_ = config_.dead_window_s;
+      return;
+    case Step::kCameraPower:
+      Enter(Step::kCameraLogic);
+      return;
+    case Step::kCameraLogic:
+      Enter(Step::kCameraStart);
+      return;
+    case Step::kCameraStart:
+      Enter(Step::kCameraGain);
+      return;
+    case Step::kCameraGain:
+      Enter(Step::kCameraLimits);
+      return;
+    case Step::kCameraLimits:
+      Enter(Step::kCameraFormat);
+      return;
+    case Step::kCameraFormat:
+      camera_format_ = CameraFormat();
+      Enter(Step::kCameraGo);
+      return;
+    case Step::kCameraGo:
+      EnterMode();
       return;
     case Step::kMode:
-      Enter(Step::kLive);
+      BecomeLive();
+      return;
+    case Step::kAccelerationBlocks:
+    case Step::kExtensionIdentity:
+    case Step::kNunchukBlock:
+    case Step::kBoardBlock:
+    case Step::kBoardTemperature:
+    case Step::kMotionPlusIdentity:
+    case Step::kMotionPlusBlock:
+    case Step::kMotionPlusVerify:
+      identity_tries_ = config_.tries;
+      FinishRead({});
       return;
     case Step::kLive:
       return;
@@ -151,41 +186,19 @@ void Handshake::GiveUp() {
 }
 
 void Handshake::Take(std::int64_t now_ns, const reports::InputReport& report, Outputs& outputs) {
-  const bool was_live = live();
   if (const auto* status = std::get_if<reports::Status>(&report.body)) {
+    answered_ = true;
     TakeStatus(now_ns, *status);
   } else if (const auto* memory = std::get_if<reports::MemoryData>(&report.body)) {
+    answered_ = true;
     TakeMemory(*memory);
   } else if (const auto* acknowledgement = std::get_if<reports::Acknowledgement>(&report.body)) {
+    answered_ = true;
     TakeAcknowledgement(*acknowledgement);
   } else if (const auto* data = std::get_if<reports::Data>(&report.body)) {
     TakeData(now_ns, *data);
   }
-  if (live() && !was_live) data_ns_ = now_ns;
-  if (!live() && !asked_) Advance(now_ns, outputs);
-}
-
-void Handshake::TakeStatus(std::int64_t now_ns, const reports::Status& status) {
-  const bool changed = status_ && status.extension != status_->extension;
-  status_ = status;
-  if (step_ == Step::kStatus) {
-    Enter(status.extension || named_board_ ? Step::kExtensionKey : Step::kAccelerationBlocks);
-    if (!status.extension) extension_ = false;
-    return;
-  }
-  if (!live()) return;
-  if (changed && status.extension) {
-    identity_tries_ = 0;
-    Enter(Step::kExtensionKey);
-    settle_ = true;
-  } else if (changed && kind_ == DeviceKind::kWiimote) {
-    extension_ = false;
-    Enter(Step::kMode);
-  } else {
-    // The device is silent after it, or the kernel's driver sets its own mode now.
-    reassert_ns_ = now_ns + Nanoseconds(config_.after_status_s);
-    data_ns_ = std::min(data_ns_, now_ns - Nanoseconds(config_.silence_s));
-  }
+  if (step_ != Step::kLive && !asked_) Advance(now_ns, outputs);
 }
 
 void Handshake::TakeMemory(const reports::MemoryData& memory) {
@@ -198,69 +211,128 @@ void Handshake::TakeMemory(const reports::MemoryData& memory) {
       FinishRead(std::vector<std::uint8_t>(read_->bytes()));
       return;
     case MemoryRead::Progress::kRefused:
-      if (tries_ >= config_.tries) {
-        GiveUp();
+      if (step_ == Step::kMotionPlusIdentity || tries_ >= config_.tries) {
+        Proceed();
       } else {
         asked_ = false;
-        settle_ = true;
+        pause_s_ = config_.settle_s;
       }
       return;
   }
 }
 
+void Handshake::TakeAcknowledgement(const reports::Acknowledgement& acknowledgement) {
+  acknowledged_ = acknowledges_ = true;
+  if (!asked_ || !EndsWithAcknowledgement(step_) ||
+      acknowledgement.report != AcknowledgedReport(step_)) {
+    return;
+  }
+  // 7 and 8: nothing there; the identity that is read next tells. Any other error means busy, and
+  // the time-out asks again.
+  if (acknowledgement.error == 0 || acknowledgement.error >= 7) Proceed();
+}
+
+bool Handshake::ReadAgain(CalibrationOrigin origin) {
+  if (origin != CalibrationOrigin::kDefaults || read_again_ || tries_ >= config_.tries) {
+    return false;
+  }
+  read_again_ = true;
+  asked_ = false;
+  return true;
+}
+
 void Handshake::FinishRead(const std::vector<std::uint8_t>& bytes) {
   if (step_ == Step::kExtensionIdentity) {
-    IdentifyExtension(bytes);
+    TakeIdentity(bytes);
+  } else if (step_ == Step::kMotionPlusIdentity) {
+    TakeMotionPlusIdentity(bytes);
+  } else if (step_ == Step::kMotionPlusVerify) {
+    TakeVerification(bytes);
   } else if (step_ == Step::kAccelerationBlocks) {
     acceleration_ = calibration::ParseAcceleration(bytes);
+    if (ReadAgain(acceleration_.origin)) return;
     has_acceleration_ = true;
-    Enter(Step::kMode);
+    Enter(AfterAcceleration());
+  } else if (step_ == Step::kNunchukBlock) {
+    nunchuk_ = calibration::ParseNunchuk(bytes);
+    if (ReadAgain(nunchuk_.origin)) return;
+    Enter(AfterChild());
+  } else if (step_ == Step::kMotionPlusBlock) {
+    motion_plus_ = calibration::ParseMotionPlus(bytes);
+    if (ReadAgain(motion_plus_.origin)) return;
+    Enter(Step::kMotionPlusActivate);
   } else if (step_ == Step::kBoardBlock) {
     board_block_ = bytes;
     Enter(Step::kBoardTemperature);
   } else if (step_ == Step::kBoardTemperature) {
     board_ = calibration::ParseBoard(board_block_, bytes);
+    has_board_ = board_.origin == CalibrationOrigin::kDevice;
+    EnterMode();
+  }
+}
+
+void Handshake::EnterMode() {
+  const std::uint8_t before = mode_;
+  mode_ = WantedMode();
+  const bool flowing = live_ && keep_alive_.SilenceS(now_ns_) < config_.keep_alive.silence_s;
+  if (flowing && mode_ == before) {
+    BecomeLive();
+  } else {
     Enter(Step::kMode);
   }
 }
 
-void Handshake::IdentifyExtension(const std::vector<std::uint8_t>& bytes) {
-  const reports::Extension extension = reports::IdentifyExtension(bytes);
-  if (extension == reports::Extension::kNotReady && ++identity_tries_ < config_.tries) {
-    Enter(Step::kExtensionKey);
-    settle_ = true;
+void Handshake::BecomeLive() {
+  Enter(Step::kLive);
+  const bool first = !live_;
+  if (first) keep_alive_.TakeData(now_ns_);
+  live_ = true;
+  if (!extension_ready_) {
+    extension_ready_ = true;
+    ++extension_epoch_;
+    child_bit_differs_ = 0;
+    extension_data_ns_ = now_ns_;
+  }
+  if (first && answered_ && config_.motion_plus && !is_board()) {
+    Enter(Step::kMotionPlusKey);  // Data need not wait for it.
     return;
   }
-  if (extension == reports::Extension::kBalanceBoard) kind_ = DeviceKind::kBalanceBoard;
-  extension_ = kind_ == DeviceKind::kWiimote;
-  Enter(AfterExtension());
-}
-
-void Handshake::TakeAcknowledgement(const reports::Acknowledgement& acknowledgement) {
-  // An error means busy or refused: the time-out asks again.
-  if (!asked_ || acknowledgement.error != 0) return;
-  if (acknowledgement.report == 0x16 && step_ == Step::kExtensionKey) {
-    Enter(Step::kExtensionPlain);
-  } else if (acknowledgement.report == 0x16 && step_ == Step::kExtensionPlain) {
-    Enter(Step::kExtensionIdentity);
-  } else if (acknowledgement.report == 0x12 && step_ == Step::kMode) {
-    Enter(Step::kLive);
+  if (published_ != stream::Extension::kUnspecified && extension() != published_) {
+    ++extension_changes_;
   }
+  published_ = extension();
+  poll_ns_ = now_ns_ + Nanoseconds(config_.motion_plus_poll_s);
+  redone_ns_ = now_ns_;
+  // Not ready is not none: what the status shows is looked at again.
+  const bool shown = status_ && status_->extension;
+  const bool found = has_child() || motion_plus_active_;
+  if (!is_board() && (redo_after_ || (status_ && shown != found))) WantRedo(now_ns_);
+  redo_after_ = false;
 }
 
-void Handshake::TakeData(std::int64_t now_ns, const reports::Data& data) {
-  if (step_ == Step::kMode && asked_ && data.id == mode()) Enter(Step::kLive);
-  if (!live() || data.id != mode()) return;
-  data_ns_ = now_ns;
-  reassert_s_ = config_.reassert_min_s;
+stream::CalibrationOrigin Handshake::calibration_origin() const {
+  if (!live_) return CalibrationOrigin::kUnspecified;
+  return is_board() ? board_.origin : acceleration_.origin;
 }
 
-void Handshake::KeepAlive(std::int64_t now_ns, Outputs& outputs) {
-  if (now_ns - data_ns_ < Nanoseconds(config_.silence_s) || now_ns < reassert_ns_) return;
-  outputs.push_back(reports::SetMode(mode(), true));
-  reassert_s_ = std::clamp(reassert_s_, config_.reassert_min_s, config_.reassert_max_s);
-  reassert_ns_ = now_ns + Nanoseconds(reassert_s_);
-  reassert_s_ *= 2;
+stream::CalibrationOrigin Handshake::extension_origin() const {
+  return live_ && child_ == Extension::kNunchuk ? nunchuk_.origin : CalibrationOrigin::kUnspecified;
+}
+
+stream::CalibrationOrigin Handshake::gyroscope_origin() const {
+  return live_ && motion_plus_active_ ? motion_plus_.origin : CalibrationOrigin::kUnspecified;
+}
+
+std::string Handshake::Note(std::int64_t now_ns) const {
+  if (!live_) return step_ == Step::kStatus && tries_ > 1 ? "does not answer; wake it up" : "";
+  if (keep_alive_.SilenceS(now_ns) > 1) {
+    return "sends no data; press its power button, or change its batteries";
+  }
+  if (is_board()) return board_.problem;
+  if (!acceleration_.problem.empty()) return acceleration_.problem;
+  if (motion_plus_active_ && !motion_plus_.problem.empty()) return motion_plus_.problem;
+  if (child_ == Extension::kNunchuk) return nunchuk_.problem;
+  return "";
 }
 
 }  // namespace footing::handshake

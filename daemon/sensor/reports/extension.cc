@@ -4,10 +4,35 @@
 
 namespace footing::reports {
 
+namespace {
+
+struct Identity {
+  std::uint8_t bus;  ///< Byte 2: a4 answers data reports, a6 is a MotionPlus that is not active.
+  std::uint8_t mode;
+  std::uint8_t type;
+  Extension extension;
+};
+
+constexpr Identity kIdentities[] = {
+    // byte 2, 4, 5
+    {0xa4, 0x00, 0x00, Extension::kNunchuk},
+    {0xa4, 0x01, 0x01, Extension::kClassic},
+    {0xa4, 0x04, 0x02, Extension::kBalanceBoard},
+    {0xa4, 0x04, 0x05, Extension::kMotionPlus},
+    {0xa4, 0x05, 0x05, Extension::kMotionPlusNunchuk},
+    {0xa4, 0x07, 0x05, Extension::kMotionPlusClassic},
+};
+
+}  // namespace
+
 Extension IdentifyExtension(Bytes id) {
-  if (id.size() < 6 || id[2] != 0xa4 || id[3] != 0x20) return Extension::kNotReady;
-  if (id[4] == 0x00 && id[5] == 0x00) return Extension::kNunchuk;
-  if (id[4] == 0x04 && id[5] == 0x02) return Extension::kBalanceBoard;
+  if (id.size() < 6 || id[3] != 0x20) return Extension::kNotReady;
+  // One that was active before keeps its old mode in byte 4.
+  if (id[2] == 0xa6 && id[5] == 0x05) return Extension::kMotionPlusInactive;
+  if (id[2] != 0xa4) return Extension::kNotReady;
+  for (const Identity& known : kIdentities) {
+    if (id[4] == known.mode && id[5] == known.type) return known.extension;
+  }
   return Extension::kOther;
 }
 

@@ -1,6 +1,7 @@
 #include "daemon/sensor/reports/input_report.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace footing::reports {
 namespace {
@@ -10,15 +11,26 @@ struct Layout {
   std::uint8_t id;
   bool buttons;
   std::uint8_t acceleration;
+  std::uint8_t camera;
+  std::uint8_t camera_size;
   std::uint8_t extension;
   std::uint8_t extension_size;
+  Half half = Half::kNone;
 };
 
 constexpr Layout kLayouts[] = {
-    // id   buttons accel ext size
-    {0x30, true, 0, 0, 0},   {0x31, true, 3, 0, 0},  {0x32, true, 0, 3, 8},  {0x33, true, 3, 0, 0},
-    {0x34, true, 0, 3, 19},  {0x35, true, 3, 6, 16}, {0x36, true, 0, 13, 9}, {0x37, true, 3, 16, 6},
-    {0x3d, false, 0, 1, 21}, {0x3e, true, 0, 0, 0},  {0x3f, true, 0, 0, 0},
+    // id  buttons accel camera size ext size
+    {0x30, true, 0, 0, 0, 0, 0},
+    {0x31, true, 3, 0, 0, 0, 0},
+    {0x32, true, 0, 0, 0, 3, 8},
+    {0x33, true, 3, 6, 12, 0, 0},
+    {0x34, true, 0, 0, 0, 3, 19},
+    {0x35, true, 3, 0, 0, 6, 16},
+    {0x36, true, 0, 3, 10, 13, 9},
+    {0x37, true, 3, 6, 10, 16, 6},
+    {0x3d, false, 0, 0, 0, 1, 21},
+    {0x3e, true, 0, 4, 18, 0, 0, Half::kFirst},
+    {0x3f, true, 0, 4, 18, 0, 0, Half::kSecond},
 };
 
 const Layout* FindLayout(std::uint8_t id) {
@@ -39,9 +51,21 @@ std::array<std::uint16_t, 3> AccelerationCounts(Bytes report, std::size_t at) {
           static_cast<std::uint16_t>(report[at + 2] << 2 | (second >> 5 & 2))};
 }
 
+/// Bits 5 and 6 of both button bytes are four bits of z.
+void DecodeHalf(Bytes report, Data& data) {
+  data.half_axis = report[3];
+  data.half_z = static_cast<std::uint8_t>((report[1] >> 5 & 3) | (report[2] >> 5 & 3) << 2);
+}
+
 void DecodeData(Bytes report, const Layout& layout, InputReport& out) {
   Data data;
   data.id = report[0];
+  data.half = layout.half;
+  if (layout.half != Half::kNone && report.size() > 3) DecodeHalf(report, data);
+  if (layout.camera != 0 && report.size() >= std::size_t{layout.camera} + layout.camera_size) {
+    data.camera_size = layout.camera_size;
+    std::copy_n(report.begin() + layout.camera, layout.camera_size, data.camera_bytes.begin());
+  }
   if (layout.acceleration != 0 && report.size() >= layout.acceleration + 3u) {
     data.has_acceleration = true;
     data.acceleration_counts = AccelerationCounts(report, layout.acceleration);
@@ -130,6 +154,31 @@ InputReport Decode(Bytes report) {
   if (id == 0x21) DecodeMemoryData(report, out);
   if (id == 0x22) DecodeAcknowledgement(report, out);
   return out;
+}
+
+std::optional<Data> Interleaver::Take(const Data& data) {
+  if (data.half == Half::kNone) {
+    first_.reset();
+    return data;
+  }
+  const std::optional<Data> first = std::exchange(first_, std::nullopt);
+  if (data.half == Half::kFirst) {
+    if (data.camera_size != 0) first_ = data;
+    return std::nullopt;
+  }
+  if (!first || data.camera_size == 0) return std::nullopt;
+  Data pair = *first;
+  pair.id = data.id;
+  pair.half = Half::kNone;
+  pair.has_acceleration = true;
+  const int z = first->half_z << 4 | data.half_z;
+  pair.acceleration_counts = {static_cast<std::uint16_t>(first->half_axis << 2),
+                              static_cast<std::uint16_t>(data.half_axis << 2),
+                              static_cast<std::uint16_t>(z << 2)};
+  std::copy_n(data.camera_bytes.begin(), data.camera_size,
+              pair.camera_bytes.begin() + first->camera_size);
+  pair.camera_size = static_cast<std::uint8_t>(first->camera_size + data.camera_size);
+  return pair;
 }
 
 double BatteryFraction(std::uint8_t raw) { return std::min(1.0, raw / double{0x7c}); }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -60,16 +61,32 @@ struct Acknowledgement {
   std::uint8_t error = 0;  ///< 0 ok; 2 busy or refused; 3, 7, 8 seen too.
 };
 
+/// Which part of an interleaved pair a report is.
+enum class Half {
+  kNone,    ///< A report that stands for itself, or a joined pair.
+  kFirst,   ///< 0x3e: x, half of z, camera points 1 and 2.
+  kSecond,  ///< 0x3f: y, the other half of z, camera points 3 and 4.
+};
+
 /// Ids 0x30 to 0x3f. Short forms, as the kernel accepts them, lack what their bytes do not reach.
 struct Data {
   std::uint8_t id = 0;
-  bool has_acceleration = false;
-  /// x, y, z in counts of 10 bits; y and z carry 9 real bits, their lowest is 0.
+  Half half = Half::kNone;
+  bool has_acceleration = false;  ///< Never of a half: see Interleaver.
+  /// x, y, z in counts of 10 bits; y and z carry 9 real bits, their lowest is 0. Of a joined pair
+  /// 8 real bits, their lowest two are 0.
   std::array<std::uint16_t, 3> acceleration_counts{};
+  std::uint8_t half_axis = 0;  ///< Of a half: its byte of x or y, 8 bits.
+  std::uint8_t half_z = 0;     ///< Of a half: its four bits of z, the first's are the upper ones.
   std::array<std::uint8_t, 21> extension_bytes{};
   std::uint8_t extension_size = 0;
+  std::array<std::uint8_t, 36> camera_bytes{};
+  /// 10 basic, 12 extended, 18 half of full, 36 full (a joined pair); 0 when the report has none or
+  /// was cut short in them.
+  std::uint8_t camera_size = 0;
 
   Bytes extension() const { return Bytes(extension_bytes.data(), extension_size); }
+  Bytes camera() const { return Bytes(camera_bytes.data(), camera_size); }
 };
 
 struct InputReport {
@@ -78,9 +95,20 @@ struct InputReport {
   std::variant<Undecodable, Status, MemoryData, Acknowledgement, Data> body;
 };
 
-/// Never reads past the bytes. The interleaved pair 0x3e and 0x3f is known, but only its buttons
-/// are decoded.
+/// Never reads past the bytes. The ids 0x3e and 0x3f give halves, which an Interleaver joins.
 InputReport Decode(Bytes report);
+
+/// Joins the halves that come in turn: 0x3e, then 0x3f.
+class Interleaver {
+ public:
+  /// A report that is no half comes back as it is. A second half right after a first one gives the
+  /// pair: acceleration, 36 bytes of camera, id 0x3f, Half::kNone. Anything else gives nothing:
+  /// the first half, a half whose partner was lost, halves cut short.
+  std::optional<Data> Take(const Data& data);
+
+ private:
+  std::optional<Data> first_;
+};
 
 /// Of a Wiimote's status, 0 to 1: bars at 0x33, 0x44, 0x55, full at 0x7c (hid-wiimote).
 double BatteryFraction(std::uint8_t raw);

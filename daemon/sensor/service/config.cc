@@ -23,6 +23,10 @@ void Config::Bind(config::Binder& binder) {
   binder.Number("board_contact_on_n", plate.contact_on_n, 1, 500, "Over it there is contact");
   binder.Number("board_contact_off_n", plate.contact_off_n, 1, 500,
                 "Under it there is none, and the COP is undefined");
+  binder.Flag("motion_plus", motion_plus, "Look for MotionPlus and use it");
+  binder.Flag("camera", camera, "Switch the infrared cameras of Wiimotes on");
+  binder.Number("status_interval_s", status_interval_s, 0, 3600,
+                "Ask devices for their status so often; 0 never");
 }
 
 Result<std::optional<transport::Address>> ParseSource(const std::string& text) {

@@ -22,6 +22,9 @@ struct Config {
   double tick_rate_hz = 100;
   double stale_after_s = 0.5;  ///< A live device without data for so long is stale.
   board::PlateConfig plate;
+  bool motion_plus = true;        ///< Look for MotionPlus and use it.
+  bool camera = false;            ///< Switch the infrared cameras of Wiimotes on.
+  double status_interval_s = 60;  ///< Ask devices for their status so often; 0 never.
 
   void Bind(config::Binder& binder);
 };

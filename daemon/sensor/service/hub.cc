@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/sensor/reports/move_report.h"
+
 namespace footing::sensor {
 namespace {
 
@@ -24,7 +26,7 @@ Hub::Hub(const Config& config, Ports ports) : config_(config), ports_(std::move(
 
 Device* Hub::Find(devices::DeviceHandle handle) {
   for (const auto& device : devices_) {
-    if (device->attached() && device->handle() == handle) return device.get();
+    if (device->Owns(handle)) return device.get();
   }
   return nullptr;
 }
@@ -44,7 +46,12 @@ Device* Hub::MakeRoom() {
     if (lost == devices_.end()) return nullptr;
     devices_.erase(lost);
   }
-  devices_.push_back(std::make_unique<Device>(++last_number_, config_.plate));
+  DeviceOptions options;
+  options.plate = config_.plate;
+  options.handshake.motion_plus = config_.motion_plus;
+  options.handshake.camera = config_.camera;
+  options.handshake.status_interval_s = config_.status_interval_s;
+  devices_.push_back(std::make_unique<Device>(++last_number_, options));
   return devices_.back().get();
 }
 
@@ -57,13 +64,24 @@ void Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& 
     ports_.log("a stand-in with the serial of the real device " + identity.serial + " is ignored");
     return;
   }
+  if (device != nullptr && device->attached() && device->kind() == DeviceKind::kPsMove &&
+      device->identity().bus != identity.bus) {
+    device->AttachSecond(handle, identity);
+    status_due_ = true;
+    ports_.log("device " + std::to_string(device->number()) + " (" + identity.serial +
+               ") is on a second link: " + identity.place);
+    Flush(*device);
+    return;
+  }
   if (device == nullptr) device = MakeRoom();
   if (device == nullptr) {
     ports_.log("more than " + std::to_string(kMaxDevices) + " devices: " + identity.serial +
                " is ignored");
     return;
   }
-  device->Attach(handle, identity);
+  Device::Stored stored;
+  if (ports_.load_calibration) stored = ports_.load_calibration(identity.serial);
+  device->Attach(handle, identity, stored);
   Bind(*device);
   ports_.log(std::string(identity.simulated ? "simulated " : "") + stream::Name(device->kind()) +
              " " + identity.serial + " attached as device " + std::to_string(device->number()) +
@@ -76,9 +94,10 @@ void Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& 
 void Hub::OnDetach(devices::DeviceHandle handle, const std::string& reason) {
   Device* device = Find(handle);
   if (device == nullptr) return;
-  device->Detach(reason);
-  leases_.erase(device->number());
+  device->Detach(handle, reason);
   status_due_ = true;
+  if (device->attached()) return;  // Its other link is still there.
+  leases_.erase(device->number());
   ports_.log("device " + std::to_string(device->number()) + " (" + device->identity().serial +
              ") lost: " + reason);
 }
@@ -176,7 +195,10 @@ void Hub::OnReport(devices::DeviceHandle handle, const devices::IncomingReport& 
   TakeRaw(*device, report.received_ns, report.bytes, false, report.true_ns);
   const DeviceKind kind = device->kind();
   const std::size_t before = content_.motion.size();
-  device->Take(report, content_);
+  device->Take(handle, report, content_);
+  if (const auto fresh = device->TakeFreshCalibration(); fresh && ports_.save_calibration) {
+    ports_.save_calibration(device->identity().serial, *fresh);
+  }
   if (device->kind() != kind) Bind(*device);
   for (std::size_t i = before; i < content_.motion.size(); ++i) {
     AddToRig(*device, content_.motion[i]);
@@ -188,7 +210,12 @@ void Hub::OnReport(devices::DeviceHandle handle, const devices::IncomingReport& 
 void Hub::Flush(Device& device) {
   if (!device.attached()) return;
   const std::int64_t now_ns = ports_.now_ns();
-  const auto report = device.outbox().Next(now_ns);
+  if (ports_.request_feature) {
+    if (const auto feature = device.NextFeature(now_ns)) {
+      ports_.request_feature(feature->handle, feature->id, feature->size);
+    }
+  }
+  const auto report = device.NextOutput(now_ns);
   if (!report) return;
   ports_.send(device.handle(), *report);
   TakeRaw(device, now_ns, *report, true, 0);
@@ -240,11 +267,18 @@ TickContent Hub::Tick(std::int64_t now_ns) {
   return std::exchange(content_, {});
 }
 
-Result<void> Hub::SetRumble(std::uint64_t session, std::uint32_t device, bool on, double lease_s) {
-  Device* found = Numbered(device);
+Result<Device*> Hub::Attached(std::uint32_t number) {
+  Device* found = Numbered(number);
   if (found == nullptr || !found->attached()) {
-    return NoDevice("device " + std::to_string(device) + " is not attached");
+    return NoDevice("device " + std::to_string(number) + " is not attached");
   }
+  return found;
+}
+
+Result<void> Hub::SetRumble(std::uint64_t session, std::uint32_t device, bool on, double lease_s) {
+  const auto attached = Attached(device);
+  if (!attached) return attached.error();
+  Device* const found = *attached;
   found->outbox().SetRumble(on);
   status_due_ = true;
   if (!on) {
@@ -258,13 +292,41 @@ Result<void> Hub::SetRumble(std::uint64_t session, std::uint32_t device, bool on
 }
 
 Result<void> Hub::SetLeds(std::uint32_t device, std::uint8_t leds) {
-  Device* found = Numbered(device);
-  if (found == nullptr || !found->attached()) {
-    return NoDevice("device " + std::to_string(device) + " is not attached");
-  }
-  found->SetLeds(leds);
+  const auto found = Attached(device);
+  if (!found) return found.error();
+  (*found)->SetLeds(leds);
   status_due_ = true;
-  Flush(*found);
+  Flush(**found);
+  return {};
+}
+
+Result<void> Hub::SetSphere(std::uint32_t device, std::uint32_t rgb) {
+  const auto found = Attached(device);
+  if (!found) return found.error();
+  if (!(*found)->SetSphere(rgb)) {
+    return UsageError("device " + std::to_string(device) + " has no sphere: it is no PS Move");
+  }
+  status_due_ = true;
+  Flush(**found);
+  return {};
+}
+
+Result<void> Hub::SetCamera(std::uint32_t device, bool on) {
+  const auto found = Attached(device);
+  if (!found) return found.error();
+  if (!(*found)->SetCamera(on)) {
+    return UsageError("device " + std::to_string(device) + " has no camera: it is no Wiimote");
+  }
+  return {};
+}
+
+Result<void> Hub::RequestDeviceStatus(std::uint32_t device) {
+  const auto found = Attached(device);
+  if (!found) return found.error();
+  if (!(*found)->RequestStatus(ports_.now_ns())) {
+    return UsageError("device " + std::to_string(device) +
+                      " was asked less than a second ago, or has no status report");
+  }
   return {};
 }
 
@@ -304,7 +366,8 @@ void Hub::StopMotors() {
   for (const auto& device : devices_) {
     if (!device->attached() || !device->outbox().rumble()) continue;
     device->outbox().SetRumble(false);
-    ports_.send(device->handle(), reports::RumbleOnly());
+    ports_.send(device->handle(), device->kind() == DeviceKind::kPsMove ? reports::MoveLights(0, 0)
+                                                                        : reports::RumbleOnly());
   }
 }
 

@@ -23,7 +23,14 @@ class Hub {
   struct Ports {
     std::function<void(devices::DeviceHandle, const reports::OutputReport&)> send;
     std::function<void(const std::string& line)> log;
-    std::function<std::int64_t()> now_ns;
+    std::function<std::int64_t()> now_ns = {};
+    /// Asks for a feature report; null: devices are never asked.
+    std::function<void(devices::DeviceHandle, std::uint8_t id, std::size_t size)> request_feature =
+        {};
+    /// Calibrations that can't always be read, by serial; null: none are kept.
+    std::function<Device::Stored(const std::string& serial)> load_calibration = {};
+    std::function<void(const std::string& serial, const std::vector<std::uint8_t>&)>
+        save_calibration = {};
   };
 
   /// Devices known at once, lost ones included; the longest lost makes room.
@@ -43,6 +50,10 @@ class Hub {
   /// Commands. The motor stops when the lease runs out or the session ends.
   Result<void> SetRumble(std::uint64_t session, std::uint32_t device, bool on, double lease_s);
   Result<void> SetLeds(std::uint32_t device, std::uint8_t leds);
+  Result<void> SetSphere(std::uint32_t device, std::uint32_t rgb);
+  Result<void> SetCamera(std::uint32_t device, bool on);
+  /// At most once a second.
+  Result<void> RequestDeviceStatus(std::uint32_t device);
   /// The device that had this role gets the one that this device had.
   Result<void> AssignRole(const std::string& serial, const Binding& binding);
   void EndSession(std::uint64_t session);
@@ -62,6 +73,7 @@ class Hub {
 
   Device* Find(devices::DeviceHandle handle);
   Device* Numbered(std::uint32_t number);
+  Result<Device*> Attached(std::uint32_t number);
   Device* MakeRoom();
   void Bind(Device& device);
   Binding ChooseBinding(const Device& device) const;

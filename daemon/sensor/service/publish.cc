@@ -22,7 +22,9 @@ std::vector<transport::Channel> Channels() {
           {"motion", Tick::kMotionFieldNumber, false},
           {"features", Tick::kFeaturesFieldNumber, false},
           {"boards", Tick::kBoardsFieldNumber, false},
-          {"raw", Tick::kRawFieldNumber, false}};
+          {"raw", Tick::kRawFieldNumber, false},
+          {"nunchuk", Tick::kNunchukFieldNumber, false},
+          {"camera", Tick::kCameraFieldNumber, false}};
 }
 
 std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
@@ -46,6 +48,16 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
     v1::BoardSamples list;
     for (const auto& sample : content.boards) *list.add_samples() = wire::ToProto(sample);
     Append(channels, Tick::kBoardsFieldNumber, list);
+  }
+  if (!content.nunchuks.empty()) {
+    v1::NunchukSamples list;
+    for (const auto& sample : content.nunchuks) *list.add_samples() = wire::ToProto(sample);
+    Append(channels, Tick::kNunchukFieldNumber, list);
+  }
+  if (!content.cameras.empty()) {
+    v1::CameraSamples list;
+    for (const auto& sample : content.cameras) *list.add_samples() = wire::ToProto(sample);
+    Append(channels, Tick::kCameraFieldNumber, list);
   }
   if (!content.raw.empty()) {
     v1::RawReports list;

@@ -25,7 +25,8 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   options.version = version;
   options.channels = Channels();
   options.tick_rate_hz = config.tick_rate_hz;
-  options.capabilities = {"features", "boards", "raw", "rumble", "leds", "assign"};
+  options.capabilities = {"features", "boards",  "raw",    "rumble", "leds",
+                          "assign",   "nunchuk", "camera", "sphere"};
   return options;
 }
 
@@ -45,11 +46,15 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       : io_(io),
         config_(config),
         timer_(io),
-        hub_(config, {[this](DeviceHandle device, const reports::OutputReport& report) {
-                        Send(device, report);
-                      },
-                      [](const std::string& line) { log::Info(line); },
-                      [] { return clock::MonotonicNs(); }}),
+        hub_(config,
+             {[this](DeviceHandle device, const reports::OutputReport& report) {
+                Send(device, report);
+              },
+              [](const std::string& line) { log::Info(line); }, [] { return clock::MonotonicNs(); },
+              [this](DeviceHandle device, std::uint8_t id, std::size_t size) {
+                RequestFeature(device, id, size);
+              },
+              nullptr, nullptr}),
         server_(
             io, MakeServerOptions(config, version),
             {[this](const transport::SessionInfo& session, const v1::Command& command) {
@@ -131,6 +136,11 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     if (source != source_of_.end()) sources_[source->second]->Send(device, report);
   }
 
+  void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
+    const auto source = source_of_.find(device);
+    if (source != source_of_.end()) sources_[source->second]->RequestFeature(device, id, size);
+  }
+
   void WaitForTick() {
     const auto period =
         std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / config_.tick_rate_hz));
@@ -166,6 +176,14 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
         }
         return Answer(command, hub_.AssignRole(assign.serial(), binding));
       }
+      case v1::Command::kSetSphere:
+        return Answer(command,
+                      hub_.SetSphere(command.set_sphere().device(), command.set_sphere().rgb()));
+      case v1::Command::kSetCamera:
+        return Answer(command,
+                      hub_.SetCamera(command.set_camera().device(), command.set_camera().on()));
+      case v1::Command::kRequestDeviceStatus:
+        return Answer(command, hub_.RequestDeviceStatus(command.request_device_status().device()));
       case v1::Command::kPutBack:
       case v1::Command::kPush:
       case v1::Command::kDirectGait:
@@ -174,9 +192,6 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       case v1::Command::kSolveMounting:
       case v1::Command::kSetBoardLayout:
       case v1::Command::kRecordSetup:
-      case v1::Command::kSetSphere:
-      case v1::Command::kSetCamera:
-      case v1::Command::kRequestDeviceStatus:
       case v1::Command::ACTION_NOT_SET:
         return Answer(command, UsageError("the command has no action that footingd knows"));
     }

@@ -11,6 +11,8 @@ namespace footing::sensor {
 struct TickContent {
   std::vector<stream::MotionSample> motion;
   std::vector<stream::BoardSample> boards;
+  std::vector<stream::NunchukSample> nunchuks;
+  std::vector<stream::CameraSample> cameras;
   std::vector<stream::RawReport> raw;
   std::vector<stream::RigFeatures> features;
   bool has_status = false;

@@ -113,7 +113,7 @@ TEST(CornerForces, AreExactAtTheCalibrationPoints) {
   for (int point = 0; point < 3; ++point) {
     const auto& row = kPoints[static_cast<std::size_t>(point)];
     for (const double force : CornerForces(calibration, CountsOf(row[0], row[1], row[2], row[3]))) {
-      EXPECT_NEAR(force, KilogramsToNewtons(17.0 * point), 1e-9);
+      EXPECT_NEAR(force, KilogramsToNewtons(17.0 * point * 0.99908), 1e-9);
     }
   }
 }
@@ -122,9 +122,9 @@ TEST(CornerForces, GoOnAlongTheOuterSlopes) {
   const auto calibration = ParseBoard(MakeBlock(kPoints), kTemperature);
   // Top right: 1600 counts from 0 to 17 kg, 1700 from 17 to 34 kg.
   const auto below = CornerForces(calibration, CountsOf(2779 - 160, 4163, 8300, 7056));
-  EXPECT_NEAR(below[reports::kTopRight], -KilogramsToNewtons(1.7), 1e-9);
+  EXPECT_NEAR(below[reports::kTopRight], -KilogramsToNewtons(1.7 * 0.99908), 1e-9);
   const auto above = CornerForces(calibration, CountsOf(6079 + 1700, 4163, 8300, 7056));
-  EXPECT_NEAR(above[reports::kTopRight], KilogramsToNewtons(51), 1e-9);
+  EXPECT_NEAR(above[reports::kTopRight], KilogramsToNewtons(51 * 0.99908), 1e-9);
 }
 
 TEST(CornerForces, AWarmerBoardReadsSevenInTenThousandMoreADegree) {
@@ -132,7 +132,20 @@ TEST(CornerForces, AWarmerBoardReadsSevenInTenThousandMoreADegree) {
   BoardCounts counts = CountsOf(4379, 5863, 9900, 8656);
   counts.has_temperature = true;
   counts.temperature = 0x19 + 10;
-  EXPECT_NEAR(CornerForces(calibration, counts)[0], KilogramsToNewtons(17) * (1 - 0.007), 1e-9);
+  EXPECT_NEAR(CornerForces(calibration, counts)[0], KilogramsToNewtons(17) * 0.99908 * (1 - 0.007),
+              1e-9);
+}
+
+TEST(CornerForces, WeighTheSameMassWhereGravityIsWeaker) {
+  const auto calibration = ParseBoard(MakeBlock(kPoints), kTemperature);
+  // At the equator (9.780 m/s²) 17 kg press as 17 kg * 9.780 / 9.80665 do under standard gravity.
+  const double equator_mps2 = 9.780;
+  const double counts = 2779 + 1600 * equator_mps2 / kStandardGravityMps2;
+  const auto rounded = static_cast<std::uint16_t>(std::lround(counts));
+  const double force =
+      CornerForces(calibration, CountsOf(rounded, 4163, 8300, 7056), equator_mps2)[0];
+  // Half a count is 17 kg / 1600 / 2.
+  EXPECT_NEAR(NewtonsToKilograms(force) / 0.99908, 17, 17.0 / 1600);
 }
 
 }  // namespace

@@ -41,6 +41,9 @@ class Conversation {
     for (auto& output : outputs) Send(output);
   }
 
+  /// Time passes unseen, as in a suspension.
+  void Jump(double seconds) { now_ns_ += static_cast<std::int64_t>(seconds * 1e9); }
+
   Handshake& handshake() { return handshake_; }
   Device& device() { return device_; }
   std::int64_t now_ns() const { return now_ns_; }

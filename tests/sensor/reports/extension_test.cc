@@ -14,7 +14,7 @@ TEST(Extension, IsKnownByItsIdentityWhateverTheFirstByte) {
   EXPECT_EQ(IdentifyExtension(Bytes6{0xff, 0x00, 0xa4, 0x20, 0x00, 0x00}), Extension::kNunchuk);
   EXPECT_EQ(IdentifyExtension(Bytes6{0x00, 0x00, 0xa4, 0x20, 0x04, 0x02}),
             Extension::kBalanceBoard);
-  EXPECT_EQ(IdentifyExtension(Bytes6{0x00, 0x00, 0xa4, 0x20, 0x01, 0x01}), Extension::kOther);
+  EXPECT_EQ(IdentifyExtension(Bytes6{0x00, 0x00, 0xa4, 0x20, 0x01, 0x01}), Extension::kClassic);
 }
 
 TEST(Extension, RubbishMeansNotReadyRatherThanNone) {

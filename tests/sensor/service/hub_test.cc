@@ -86,7 +86,8 @@ TEST(Hub, ABoardReadsItsCornersAndTheCentreOfPressure) {
   bench.Advance(1);
   ASSERT_GT(bench.content.boards.size(), 50u);
   const stream::BoardSample& sample = bench.content.boards.back();
-  const double count_n = KilogramsToNewtons(0.0115);  // The coarsest count of a corner.
+  // The coarsest count of a corner, and 0.1 % for the gravity at the factory.
+  const double count_n = KilogramsToNewtons(0.0115) + 0.00105 * 250;
   EXPECT_NEAR(sample.top_left_n, 50, count_n);
   EXPECT_NEAR(sample.top_right_n, 250, count_n);
   EXPECT_NEAR(sample.bottom_left_n, 50, count_n);

@@ -1,0 +1,62 @@
+#include "daemon/sensor/decode/balance_board.h"
+
+#include <algorithm>
+
+#include "common/units/units.h"
+
+namespace footing::decode {
+namespace {
+
+constexpr const char* kCornerNames[] = {"top right", "bottom right", "top left", "bottom left"};
+/// The first of four bars; under it the board falls silent soon.
+constexpr std::uint8_t kLowBattery = 0x6a;
+
+}  // namespace
+
+std::optional<BoardReading> BalanceBoard::Take(const calibration::BoardCalibration& calibration,
+                                               reports::Bytes extension) {
+  const auto counts = reports::DecodeBoard(extension);
+  if (!counts) return std::nullopt;
+  const auto corners = calibration::CornerForces(calibration, *counts);
+  BoardReading reading;
+  reading.forces = {corners[reports::kTopLeft], corners[reports::kTopRight],
+                    corners[reports::kBottomLeft], corners[reports::kBottomRight]};
+  reading.changed = !started_ || counts->corners != last_;
+  Watch(*counts);
+  double total_n = 0;
+  bool cell_over = false;
+  for (const double corner_n : corners) {
+    total_n += corner_n;
+    cell_over = cell_over || corner_n > KilogramsToNewtons(kCellRangeKg);
+  }
+  over_range_ = cell_over || total_n > KilogramsToNewtons(kTotalRangeKg);
+  if (counts->has_battery) {
+    battery_fraction_ = reports::BoardBatteryFraction(counts->battery);
+    battery_low_ = counts->battery < kLowBattery;
+  }
+  return reading;
+}
+
+void BalanceBoard::Watch(const reports::BoardCounts& counts) {
+  if (started_ && counts.corners != last_) {
+    for (std::size_t i = 0; i < reports::kCorners; ++i) {
+      still_[i] = counts.corners[i] == last_[i] ? std::min(still_[i] + 1, kStuckChanges) : 0;
+    }
+  }
+  started_ = true;
+  last_ = counts.corners;
+}
+
+std::string BalanceBoard::Note() const {
+  for (std::size_t i = 0; i < reports::kCorners; ++i) {
+    if (still_[i] < kStuckChanges) continue;
+    return std::string("the ") + kCornerNames[i] +
+           " sensor never changes: it is stuck or broken; do not trust this board";
+  }
+  if (over_range_) {
+    return "load over its range (34 kg a corner, 150 kg in all): forces are less exact";
+  }
+  return "";
+}
+
+}  // namespace footing::decode

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "common/stream/device.h"
+#include "daemon/sensor/calibration/acceleration.h"
+#include "daemon/sensor/calibration/motion_plus.h"
+#include "daemon/sensor/calibration/nunchuk.h"
+#include "daemon/sensor/decode/decoded.h"
+#include "daemon/sensor/reports/extension.h"
+#include "daemon/sensor/reports/input_report.h"
+
+namespace footing::decode {
+
+/// What a handshake found out about a Wiimote.
+struct WiimoteSetup {
+  const calibration::AccelerationCalibration& acceleration;
+  const calibration::NunchukCalibration& nunchuk;
+  const calibration::MotionPlusCalibration& motion_plus;
+  /// What the extension bytes are; kUnspecified while nobody knows.
+  stream::Extension extension = stream::Extension::kUnspecified;
+  std::uint64_t extension_epoch = 0;  ///< Changes when the extension starts anew.
+};
+
+/// Wiimote with Nunchuk, MotionPlus (packets in turn with its child's, so each at half the rate)
+/// and camera. A plain value.
+class Wiimote {
+ public:
+  /// Any input report. Those without acceleration give a sample only when they show other buttons,
+  /// so that no edge is lost in a status or memory reply.
+  Decoded Take(const WiimoteSetup& setup, const reports::InputReport& report);
+
+ private:
+  void TakeExtension(const WiimoteSetup& setup, reports::Bytes bytes, Decoded& decoded);
+  void TakeNunchuk(const WiimoteSetup& setup, const reports::NunchukCounts& counts,
+                   Decoded& decoded);
+  Decoded TakeButtons(std::uint16_t buttons);
+
+  reports::Interleaver interleaver_;
+  std::uint64_t extension_epoch_ = 0;
+  int packets_to_drop_ = 0;  // The first after a MotionPlus was switched on are rubbish.
+  bool has_last_ = false;
+  std::array<std::uint16_t, 3> last_counts_{};
+  stream::MotionSample last_;
+  std::optional<reports::MotionPlusCounts> last_gyroscope_;
+  std::optional<reports::NunchukCounts> last_nunchuk_;
+};
+
+}  // namespace footing::decode

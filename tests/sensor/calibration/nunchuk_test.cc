@@ -1,0 +1,129 @@
+#include "daemon/sensor/calibration/nunchuk.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "common/units/units.h"
+
+namespace footing::calibration {
+namespace {
+
+using stream::CalibrationOrigin;
+using testing::HasSubstr;
+using Block = std::vector<std::uint8_t>;
+
+constexpr double kG = kStandardGravityMps2;
+
+// A real Nunchuk's (Adafruit_CircuitPython_Nunchuk issue 12).
+const Block kReal = {0x7d, 0x7a, 0x7e, 0x0a, 0xb0, 0xaf, 0xb1, 0x12,
+                     0xe5, 0x21, 0x7c, 0xe7, 0x23, 0x7a, 0xfc, 0x51};
+
+Block Two(const Block& first, const Block& second) {
+  Block both = first;
+  both.insert(both.end(), second.begin(), second.end());
+  return both;
+}
+
+Block WithChecksums(Block block) {
+  std::uint8_t sum = 0x55;
+  for (std::size_t i = 0; i < 14; ++i) sum = static_cast<std::uint8_t>(sum + block[i]);
+  block[14] = sum;
+  block[15] = static_cast<std::uint8_t>(sum + 0x55);
+  return block;
+}
+
+reports::NunchukCounts Counts(std::uint16_t x, std::uint16_t y, std::uint16_t z) {
+  reports::NunchukCounts counts;
+  counts.stick_x = 0x7c;
+  counts.stick_y = 0x7a;
+  counts.acceleration = {x, y, z};
+  return counts;
+}
+
+TEST(NunchukCalibration, ReadsARealBlock) {
+  const auto calibration = ParseNunchuk(Two(kReal, kReal));
+  EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
+  EXPECT_EQ(calibration.problem, "");
+  // 0x0a = 00'10'10: x 0, y 2, z 2; 0x12 = 01'00'10: x 1, y 0, z 2.
+  EXPECT_EQ(calibration.zero_counts, (std::array<int, 3>{500, 490, 506}));
+  EXPECT_EQ(calibration.one_g_counts, (std::array<int, 3>{705, 700, 710}));
+  EXPECT_EQ(calibration.stick_x.low, 0x21);
+  EXPECT_EQ(calibration.stick_x.middle, 0x7c);
+  EXPECT_EQ(calibration.stick_x.high, 0xe5);
+  EXPECT_EQ(calibration.stick_y.low, 0x23);
+  EXPECT_EQ(calibration.stick_y.middle, 0x7a);
+  EXPECT_EQ(calibration.stick_y.high, 0xe7);
+}
+
+TEST(NunchukCalibration, TheMotionPlusCopyHasOneBlock) {
+  EXPECT_EQ(ParseNunchuk(kReal).origin, CalibrationOrigin::kDevice);
+}
+
+TEST(NunchukCalibration, EitherChecksumCounts) {
+  for (const std::size_t at : {14u, 15u}) {
+    Block bad = kReal;
+    bad[at] ^= 1;
+    const auto calibration = ParseNunchuk(Two(bad, kReal));
+    EXPECT_EQ(calibration.origin, CalibrationOrigin::kDeviceCopy);
+    EXPECT_THAT(calibration.problem, HasSubstr("checksum"));
+  }
+}
+
+TEST(NunchukCalibration, UnusableBlocksGiveTypicalValues) {
+  Block equal = kReal;
+  for (std::size_t i = 0; i < 4; ++i) equal[4 + i] = equal[i];  // 1 g == 0 g.
+  for (const Block& bad : {Block(32, 0x00), Block(32, 0xff), Block{}, Block(15, 0x80),
+                           Two(WithChecksums(equal), WithChecksums(equal))}) {
+    const auto calibration = ParseNunchuk(bad);
+    EXPECT_EQ(calibration.origin, CalibrationOrigin::kDefaults);
+    EXPECT_NE(calibration.problem, "");
+    EXPECT_EQ(calibration.zero_counts[0], 0x200);
+    EXPECT_EQ(calibration.one_g_counts[0], 0x2cc);
+    EXPECT_EQ(calibration.stick_x.middle, 128);
+  }
+}
+
+TEST(NunchukCalibration, AnImpossibleStickLeavesTheAccelerometer) {
+  Block bad = kReal;
+  bad[8] = bad[10];  // Upper end at the middle.
+  const auto calibration = ParseNunchuk(WithChecksums(bad));
+  EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
+  EXPECT_THAT(calibration.problem, HasSubstr("stick"));
+  EXPECT_EQ(calibration.zero_counts[0], 500);
+  EXPECT_EQ(calibration.stick_x.high, 224);
+}
+
+TEST(Nunchuk, AccelerationIsInTheSensorFrame) {
+  const auto calibration = ParseNunchuk(kReal);
+  // Held still, stick up; then left side up; then rear up.
+  EXPECT_TRUE(Calibrate(calibration, Counts(500, 490, 710))
+                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(0, 0, -kG)));
+  EXPECT_TRUE(Calibrate(calibration, Counts(705, 490, 506))
+                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(kG, 0, 0)));
+  EXPECT_TRUE(Calibrate(calibration, Counts(500, 700, 506))
+                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(0, -kG, 0)));
+}
+
+TEST(Nunchuk, StickReachesOneAtItsEndsAndNotBeyond) {
+  const auto calibration = ParseNunchuk(kReal);
+  auto counts = Counts(500, 490, 506);
+  EXPECT_DOUBLE_EQ(Calibrate(calibration, counts).stick_x, 0);
+  EXPECT_DOUBLE_EQ(Calibrate(calibration, counts).stick_y, 0);
+  counts.stick_x = 0xe5;
+  counts.stick_y = 0x23;
+  EXPECT_DOUBLE_EQ(Calibrate(calibration, counts).stick_x, 1);
+  EXPECT_DOUBLE_EQ(Calibrate(calibration, counts).stick_y, -1);
+  counts.stick_x = 0xff;
+  counts.stick_y = 0x00;
+  EXPECT_DOUBLE_EQ(Calibrate(calibration, counts).stick_x, 1);
+  EXPECT_DOUBLE_EQ(Calibrate(calibration, counts).stick_y, -1);
+}
+
+TEST(Nunchuk, TellsClippedAxes) {
+  EXPECT_EQ(Calibrate(ParseNunchuk(kReal), Counts(1023, 490, 2)).clipped_axes, 0b101u);
+}
+
+}  // namespace
+}  // namespace footing::calibration
