@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "common/stream/device.h"
+#include "common/stream/sensor.h"
+
+/// Where a worn sensor's axes point, found from standing still and three steps.
+///
+/// A perfect mounting is the same for every role: while its wearer stands upright with the arms
+/// hanging, the sensor's axes x, y, z point to the wearer's left, front, and down. M is the frame
+/// of such a sensor, S that of the real one, fixed to the same limb: f_M = R_MS f_S.
+///
+/// Two of the three degrees of freedom come from gravity at rest, which is (0, 0, -g) in M. The
+/// third, about the vertical, comes from the swing: a walking limb swings in the plane of front
+/// and down, so the horizontal direction that holds most of the swing is M's y axis. Its sign comes
+/// from the first movement, since the steps start with the left foot:
+///
+/// | role | first movement | why |
+/// |---|---|---|
+/// | left leg, right leg | front | a shin that starts from rest swings forward, the left one first |
+/// | right hand | front | the arm goes with the other side's leg |
+/// | left hand | back | and against its own |
+/// | head | front | the body gains speed |
+///
+/// Right sign matters: turned half about, a limb's phase would be off by half a cycle.
+namespace footing::mounting {
+
+struct MountingConfig {
+  double least_still_s = 1.8;
+  double least_steps_s = 1.0;
+  double least_rate_hz = 40;
+  double longest_gap_s = 0.2;
+  /// Standard deviation (root of three axes' variances) that standing still stays under. Counts of
+  /// 8 bits that toggle on all axes reach 0.32.
+  double still_sd_mps2 = 0.6;
+  double gravity_tolerance_mps2 = 1.5;  ///< Of the mean's length at rest.
+  /// rms of the steps' horizontal swing that is enough to see its direction.
+  double least_swing_mps2 = 0.5;
+  /// The swing's variance along its direction against across it.
+  double least_ratio = 2.5;
+  /// Movement begins where the swing exceeds this share of its peak; the sign there and at the
+  /// second share must agree.
+  double onset_share = 0.25;
+  double sure_share = 0.5;
+  double most_residual_rad = 0.2;  ///< 11.5 degrees.
+};
+
+struct Mounting {
+  bool ok = false;
+  std::string problem;                                             ///< Why it was refused.
+  Eigen::Quaterniond rotation_MS = Eigen::Quaterniond::Identity();  ///< f_M = rotation_MS * f_S.
+  /// How well the parts agree: the larger of gravity's change over the still stretch and the
+  /// swing direction's change between the halves of the steps.
+  double residual_rad = 0;
+};
+
+/// `still` and `steps` are samples of one device as measured (frame S), oldest first. Refused: moved
+/// while still, no or too round a swing, an unclear first movement, gaps, too short.
+Mounting SolveMounting(stream::DeviceRole role, std::span<const stream::MotionSample> still,
+                       std::span<const stream::MotionSample> steps,
+                       const MountingConfig& config = {});
+
+/// The sample in M. An axis of M counts as clipped when most of it is an axis of S that is: what
+/// lies beyond the end of the range spreads over all axes, but only that one is led by it.
+stream::MotionSample Rotated(const Eigen::Quaterniond& rotation_MS,
+                             const stream::MotionSample& sample);
+
+}  // namespace footing::mounting

@@ -1,0 +1,144 @@
+#include "daemon/sensor/setup/state_directory.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "common/config/data_file.h"
+
+namespace footing::setup {
+namespace {
+
+constexpr int kVersion = 1;
+constexpr std::size_t kMostBytes = 1u << 20;
+
+std::uint32_t Checksum(const std::string& content) {
+  return static_cast<std::uint32_t>(crc32(crc32(0, nullptr, 0),
+                                          reinterpret_cast<const Bytef*>(content.data()),
+                                          static_cast<uInt>(content.size())));
+}
+
+/// What went wrong; empty when all bytes are on the disk under their final name.
+std::string WriteDurably(const std::string& path, const std::string& text) {
+  const std::string beside = path + ".new";
+  const int file = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (file < 0) return std::strerror(errno);
+  std::size_t done = 0;
+  int error = 0;
+  while (done < text.size() && error == 0) {
+    const ssize_t wrote = write(file, text.data() + done, text.size() - done);
+    if (wrote >= 0) {
+      done += static_cast<std::size_t>(wrote);
+    } else if (errno != EINTR) {
+      error = errno;
+    }
+  }
+  if (error == 0 && fsync(file) != 0) error = errno;
+  if (close(file) != 0 && error == 0) error = errno;
+  if (error == 0 && std::rename(beside.c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) {
+    unlink(beside.c_str());
+    return std::strerror(error);
+  }
+  const std::string folder = std::filesystem::path(path).parent_path();
+  const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory >= 0) {
+    fsync(directory);  // The rename itself; some file systems cannot, and the file is whole anyway.
+    close(directory);
+  }
+  return "";
+}
+
+std::string Variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+}  // namespace
+
+std::string StatePath(const std::string& configured) {
+  if (!configured.empty()) return configured;
+  const std::string systemd = Variable("STATE_DIRECTORY");
+  if (!systemd.empty()) return systemd.substr(0, systemd.find(':'));  // The first of several.
+  const std::string xdg = Variable("XDG_STATE_HOME");
+  if (!xdg.empty()) return xdg + "/footing";
+  const std::string home = Variable("HOME");
+  return home.empty() ? "" : home + "/.local/state/footing";
+}
+
+/// Serials are part of names; what is neither a letter nor a digit becomes '-'.
+std::string StateDirectory::FileOf(const std::string& name) const {
+  std::string file;
+  for (const char c : name.substr(0, 100)) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    file += plain ? c : '-';
+  }
+  return path_ + "/" + file + ".json";
+}
+
+std::optional<std::string> StateDirectory::Load(const std::string& name) {
+  const std::string path = FileOf(name);
+  std::error_code ignored;
+  if (path_.empty() || !std::filesystem::exists(path, ignored)) return std::nullopt;
+  const auto text = config::ReadTextFile(path, kMostBytes);
+  if (!text) {
+    say_("saved " + name + " is not used: " + text.error().message);
+    return std::nullopt;
+  }
+  const auto file = nlohmann::json::parse(*text, nullptr, false);
+  std::string why;
+  if (!file.is_object() || !file.contains("version") || !file.contains("name") ||
+      !file.contains("content") || !file.contains("crc32")) {
+    why = "truncated or no state of footingd";
+  } else if (file["version"] != kVersion) {
+    why = "unknown version " + file["version"].dump();
+  } else if (file["name"] != name) {
+    why = "it is of " + file["name"].dump();
+  } else if (file["crc32"] != Checksum(file["content"].dump())) {
+    why = "its checksum is wrong";
+  }
+  if (why.empty()) return file["content"].dump();
+  Refuse(name, why);
+  return std::nullopt;
+}
+
+void StateDirectory::Refuse(const std::string& name, const std::string& why) {
+  const std::string path = FileOf(name);
+  std::error_code error;
+  std::filesystem::rename(path, path + ".damaged", error);
+  say_("saved " + name + " is not used: " + path + ": " + why +
+       (error ? "; it cannot be moved aside" : "; moved aside to " + path + ".damaged") +
+       "; redo that part of the set-up");
+}
+
+void StateDirectory::Save(const std::string& name, const std::string& content) {
+  std::string why = "no directory is known; set state_directory";
+  if (!path_.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(path_, error);
+    const auto json = nlohmann::json::parse(content, nullptr, false);
+    const nlohmann::json file = {{"version", kVersion},
+                                 {"name", name},
+                                 {"crc32", Checksum(json.dump())},
+                                 {"content", json}};
+    why = error ? error.message() : WriteDurably(FileOf(name), file.dump(2) + "\n");
+  }
+  if (why.empty()) {
+    unwritable_said_ = false;
+    return;
+  }
+  if (unwritable_said_) return;
+  unwritable_said_ = true;
+  say_("cannot save to " + (path_.empty() ? std::string("disk") : path_) + ": " + why +
+       "; the set-up lasts until footingd ends");
+}
+
+}  // namespace footing::setup

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace footing::setup {
+
+/// What footingd remembers between its runs: one small JSON file per concern ("roles", "tares", ...)
+/// with its version, its own name or serial, and a CRC-32 of its content. A file that is truncated,
+/// damaged, of another version, or of another name is named in one line and moved aside to
+/// *.damaged; a directory that cannot be written is said once, and footingd goes on in memory.
+/// Nothing here is ever fatal.
+class StateDirectory {
+ public:
+  using Say = std::function<void(const std::string& line)>;
+
+  StateDirectory(std::string path, Say say) : path_(std::move(path)), say_(std::move(say)) {}
+
+  /// The content last saved under this name; none if there is none, or it is refused.
+  std::optional<std::string> Load(const std::string& name);
+  /// Written beside, synced, then renamed: the old content or the new one, never half of it.
+  void Save(const std::string& name, const std::string& content);
+  /// For content whose form its reader does not understand.
+  void Refuse(const std::string& name, const std::string& why);
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string FileOf(const std::string& name) const;
+
+  std::string path_;
+  Say say_;
+  bool unwritable_said_ = false;
+};
+
+/// Where the state lies: `configured` if not empty, else $STATE_DIRECTORY (set by systemd), else
+/// $XDG_STATE_HOME/footing, else ~/.local/state/footing. Empty if there is no home either.
+std::string StatePath(const std::string& configured);
+
+}  // namespace footing::setup
