@@ -205,9 +205,10 @@ Facts CollectHost(const std::string& root) {
   CollectHid(base, facts);
   CollectModules(base, facts);
   CollectAdapters(base, facts);
-  facts.udev_rules =
-      FilesWith(base, {"etc/udev/rules.d", "run/udev/rules.d", "usr/lib/udev/rules.d"}, ".rules",
-                doctor::HasRule);
+  facts.udev_rules = FilesWith(base,
+                               {"etc/udev/rules.d", "run/udev/rules.d", "usr/lib/udev/rules.d",
+                                "usr/local/lib/udev/rules.d"},
+                               ".rules", doctor::HasRule);
   facts.input_config = doctor::ParseIni(ReadFile(base / "etc/bluetooth/input.conf"));
   if (root == "/") AskBlueZ(facts);
   return facts;

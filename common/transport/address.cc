@@ -53,6 +53,7 @@ Result<Address> ParseTcp(const std::string& text, const std::string& rest) {
 
 std::string Address::Text() const {
   if (kind == Kind::kUnix) return "unix:" + path;
+  if (kind == Kind::kPassed) return "fd:" + path;
   const bool version6 = host.find(':') != std::string::npos;
   return "tcp:" + (version6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
 }
@@ -60,6 +61,13 @@ std::string Address::Text() const {
 Result<Address> ParseAddress(const std::string& text) {
   if (text.rfind("unix:", 0) == 0) return ParseUnix(text, text.substr(5));
   if (text.rfind("tcp:", 0) == 0) return ParseTcp(text, text.substr(4));
+  if (text.rfind("fd:", 0) == 0) {
+    Address address;
+    address.kind = Address::Kind::kPassed;
+    address.path = text.substr(3);
+    if (address.path.empty()) return NotAnAddress(text, "the name of the passed socket is missing");
+    return address;
+  }
   return NotAnAddress(text, "it begins with neither unix: nor tcp:");
 }
 
@@ -75,6 +83,10 @@ Address DefaultAddress(const std::string& name, bool create) {
   if (create) mkdir(folder.c_str(), S_IRWXU);
   Address address;
   address.path = folder + "/" + name + ".sock";
+  const std::string of_service = "/run/footing/" + name + ".sock";
+  if (!create && access(address.path.c_str(), F_OK) != 0 && access(of_service.c_str(), F_OK) == 0) {
+    address.path = of_service;
+  }
   return address;
 }
 

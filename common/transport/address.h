@@ -7,11 +7,12 @@
 
 namespace footing::transport {
 
-/// Where a listener listens and a client dials: "unix:PATH" or "tcp:HOST:PORT".
+/// Where a listener listens and a client dials: "unix:PATH" or "tcp:HOST:PORT". A listener may also
+/// take the socket that the service manager passed under a name: "fd:NAME".
 struct Address {
-  enum class Kind { kUnix, kTcp };
+  enum class Kind { kUnix, kTcp, kPassed };
   Kind kind = Kind::kUnix;
-  std::string path;  ///< Unix socket.
+  std::string path;  ///< Unix socket; of a passed one its name.
   std::string host;  ///< TCP: a numeric address or "localhost".
   std::uint16_t port = 0;
 
@@ -23,7 +24,8 @@ Result<Address> ParseAddress(const std::string& text);
 
 /// Where a program listens when nothing is said: unix:$XDG_RUNTIME_DIR/footing/NAME.sock, or
 /// unix:/tmp/footing-UID/NAME.sock where there is no runtime directory. NAME is "sensor", "devices"
-/// or "simulation". Creates the folder with mode 0700 if `create` is set.
+/// or "simulation". A client (`create` not set) finds the service's /run/footing/NAME.sock where
+/// the user has none of that name. Creates the folder with mode 0700 if `create` is set.
 Address DefaultAddress(const std::string& name, bool create = false);
 
 }  // namespace footing::transport

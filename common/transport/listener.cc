@@ -1,5 +1,7 @@
 #include "common/transport/listener.h"
 
+#include <fcntl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 
 #include <boost/asio/basic_socket_acceptor.hpp>
@@ -10,6 +12,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/service_manager/service_manager.h"
 #include "common/transport/unix_socket_file.h"
 
 namespace footing::transport {
@@ -43,6 +46,7 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
                         ": beyond this host a connection must be encrypted, and this version "
                         "cannot do that; use tcp:127.0.0.1:PORT and carry it with ssh -L");
     }
+    if (address_.kind == Address::Kind::kPassed) return TakePassed();
     const Result<Endpoint> endpoint = EndpointOf(address_);
     if (!endpoint) return endpoint.error();
     if (address_.kind == Address::Kind::kTcp) return OpenTcp(*endpoint);
@@ -75,6 +79,27 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
   const Address& address() const { return address_; }
 
  private:
+  /// The service manager opened it, and keeps it while this program restarts.
+  Result<void> TakePassed() {
+    const int passed = service_manager::PassedSocket(address_.path);
+    sockaddr_storage name{};
+    socklen_t size = sizeof(name);
+    if (passed < 0 || getsockname(passed, reinterpret_cast<sockaddr*>(&name), &size) != 0) {
+      return UsageError("no socket was passed under the name " + address_.path +
+                        "; start by the socket unit, or listen on unix:PATH");
+    }
+    if (name.ss_family != AF_UNIX) {
+      return UsageError("the socket passed as " + address_.path +
+                        " is no Unix socket; beyond this host nothing is encrypted yet");
+    }
+    // A copy: closing it must not close what the manager passed.
+    const int own = fcntl(passed, F_DUPFD_CLOEXEC, 0);
+    error_code error;
+    acceptor_.assign(asio::generic::stream_protocol(AF_UNIX, 0), own, error);
+    if (own < 0 || error) return ListenError(address_, error);
+    return {};
+  }
+
   Result<void> OpenTcp(const Endpoint& endpoint) {
     error_code error;
     acceptor_.open(endpoint.protocol(), error);

@@ -22,6 +22,10 @@ Result<Endpoint> EndpointOf(const Address& address) {
   if (address.kind == Address::Kind::kUnix) {
     return Endpoint(asio::local::stream_protocol::endpoint(address.path));
   }
+  if (address.kind == Address::Kind::kPassed) {
+    return UsageError(address.Text() +
+                      " is for listening; a client dials unix:PATH or tcp:HOST:PORT");
+  }
   boost::system::error_code error;
   const asio::ip::address host = NumericHost(address, error);
   if (error) {
@@ -33,7 +37,7 @@ Result<Endpoint> EndpointOf(const Address& address) {
 }
 
 bool StaysOnThisHost(const Address& address) {
-  if (address.kind == Address::Kind::kUnix) return true;
+  if (address.kind != Address::Kind::kTcp) return true;
   boost::system::error_code error;
   const asio::ip::address host = NumericHost(address, error);
   return !error && host.is_loopback();

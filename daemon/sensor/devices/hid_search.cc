@@ -20,8 +20,8 @@ constexpr std::int64_t kNewNs = 1'000'000'000;
 
 // As systemd/70-footing.rules.
 constexpr const char* kUdevRule =
-    "KERNEL==\"hidraw*\", KERNELS==\"0005:057E:0306.*|0005:057E:0330.*|0005:054C:03D5.*|"
-    "0005:054C:0C5E.*\", GROUP=\"footing\", MODE=\"0660\"";
+    "KERNEL==\"hidraw*\", KERNELS==\"0005:057E:*|000[35]:054C:03D5.*|000[35]:054C:0C5E.*\", "
+    "GROUP=\"footing\", MODE=\"0660\"";
 
 /// What to say of a node that stays shut; empty when there is nothing to say.
 std::string Trouble(const HidOpening& opening) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "common/service_manager/service_manager.h"
 #include "daemon/sensor/service/command_line.h"
 #include "daemon/sensor/service/service.h"
 
@@ -21,8 +22,11 @@ int Run(const sensor::CommandLine& line) {
   if (line.json) {
     std::cout << nlohmann::json{{"listening_on", (*service)->listening_on()}} << std::endl;
   }
+  service_manager::Notifier notifier(io);
+  notifier.Ready("listening on " + (*service)->listening_on().front());
   boost::asio::steady_timer farewell(io);  // Time for the goodbyes to leave.
   signals.async_wait([&](boost::system::error_code, int) {
+    notifier.Stopping();
     (*service)->Stop("footingd ends");
     farewell.expires_after(std::chrono::milliseconds(200));
     farewell.async_wait([&io](boost::system::error_code) { io.stop(); });

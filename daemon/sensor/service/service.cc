@@ -7,6 +7,7 @@
 
 #include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/service_manager/service_manager.h"
 #include "common/transport/address.h"
 #include "common/transport/server.h"
 #include "daemon/sensor/devices/hid_source.h"
@@ -18,6 +19,12 @@ namespace footing::sensor {
 namespace {
 
 using devices::DeviceHandle;
+
+/// The socket that the service manager passed under this name, or the user's own.
+std::string OwnAddress(const std::string& name) {
+  if (service_manager::PassedSocket(name) >= 0) return "fd:" + name;
+  return transport::DefaultAddress(name, true).Text();
+}
 
 transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version) {
   transport::ServerOptions options;
@@ -65,7 +72,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
 
   Result<void> Open() {
     auto listen = config_.listen;
-    if (listen.empty()) listen = {transport::DefaultAddress("sensor", true).Text()};
+    if (listen.empty()) listen = {OwnAddress("sensor")};
     for (const std::string& text : listen) {
       const auto address = transport::ParseAddress(text);
       if (!address) return address.error();
@@ -75,7 +82,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     }
     auto sources = config_.sources;
     if (sources.empty()) {
-      sources = {"hid", "stream:" + transport::DefaultAddress("devices", true).Text()};
+      sources = {"hid", "stream:" + OwnAddress("devices")};
     }
     for (const std::string& text : sources) {
       if (const auto opened = OpenSource(text); !opened) return opened;
