@@ -17,7 +17,13 @@ HidReader::HidReader(HidHandle device, std::function<void()> wake)
 
 HidReader::~HidReader() {
   stop_.Raise();
+  if (thread_.joinable()) thread_.join();
+}
+
+HidHandle HidReader::Release() {
+  stop_.Raise();
   thread_.join();
+  return std::move(device_);
 }
 
 void HidReader::Run() {

@@ -41,6 +41,8 @@ class HidReader {
   std::uint64_t dropped() const { return incoming_.refused(); }
   /// The device is gone; what was read before can still be popped.
   bool ended() const { return ended_.raised(); }
+  /// io thread, after it ended: the device, to be closed where it was opened.
+  HidHandle Release();
 
  private:
   struct FeatureRequest {
