@@ -11,6 +11,7 @@ void AddAssignCommand(CLI::App& app, Shared& shared) {
   struct Words {
     std::string device, rig_role;
     std::string rig = "main";
+    std::vector<std::string> worn;
     bool gesture = false;
     bool script = false;
   };
@@ -21,15 +22,23 @@ void AddAssignCommand(CLI::App& app, Shared& shared) {
   command->add_flag("--gesture", words->gesture,
                     "Find out by stepping on boards and shaking devices");
   command->add_option("--rig", words->rig, "The rig of --gesture");
+  command
+      ->add_option("--worn", words->worn, "What the remotes of --gesture are: left_leg,right_leg")
+      ->delimiter(',');
   command->add_flag("--script", words->script, "Prompts of --gesture as lines PROMPT: ...");
   command->footer(
       "A role that is taken is swapped with the device's own.\n"
       "Example:\n  footing-ctl assign 00:1f:32:aa:bb:cc main/left_hand\n"
-      "  footing-ctl assign --gesture");
+      "  footing-ctl assign --gesture --worn left_leg,right_leg");
   command->callback([words, &shared] {
     if (words->gesture) {
+      const auto worn = WornRoles(words->worn);
+      if (!worn) {
+        shared.exit_code = cli::Report(worn.error());
+        return;
+      }
       WithSession(shared, GuidedChannels(), [&](Session& session) {
-        return AssignByGesture(session, words->rig, words->script, shared);
+        return AssignByGesture(session, words->rig, *worn, words->script, shared);
       });
       return;
     }
