@@ -71,11 +71,14 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       "Guides from the box to a ready rig: adapter, pairing, roles, layout, tare, "
       "mounting, weigh, checks");
   command->add_option("--rig", words->wishes.rig, "What one person wears or stands on");
-  command->add_option("--only", words->only, "Do this item alone; may be repeated");
+  command->add_option("--only", words->only, "Do this item alone; may be repeated")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command
       ->add_option("--worn", words->worn,
                    "What the remotes are worn as, e.g. left_leg,right_leg; left out: as they are")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_option("--preset", words->wishes.preset,
                       "Layout of the boards: one_foot_each, side_by_side or single");
   command->add_option("--gap-mm", words->wishes.gap_mm, "Between the boards")
