@@ -173,6 +173,12 @@ std::size_t Bench::LogLines(const std::string& containing) const {
   return count;
 }
 
+std::size_t Bench::Descriptors() const {
+  const std::filesystem::directory_iterator list("/proc/" + std::to_string(footingd_->pid()) +
+                                                 "/fd");
+  return static_cast<std::size_t>(std::distance(begin(list), end(list)));
+}
+
 std::int64_t Bench::MemoryBytes() const {
   std::ifstream file("/proc/" + std::to_string(footingd_->pid()) + "/statm");
   std::int64_t total = 0, resident = 0;

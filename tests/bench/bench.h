@@ -120,6 +120,8 @@ class Bench {
   const std::vector<v1::Gap>& gaps() const { return gaps_; }
   /// The resident memory of footingd.
   std::int64_t MemoryBytes() const;
+  /// How many descriptors footingd has open.
+  std::size_t Descriptors() const;
   std::size_t Samples(const Device& device) const;
 
  private:

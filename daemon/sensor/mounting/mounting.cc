@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,10 +25,11 @@ Mounting Refused(std::string problem) {
   return mounting;
 }
 
+/// With one decimal.
 std::string Number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
+  const long tenths = std::lround(std::abs(value) * 10);
+  return (value < 0 && tenths > 0 ? "-" : "") + std::to_string(tenths / 10) + "." +
+         std::to_string(tenths % 10);
 }
 
 double Seconds(const stream::MotionSample& sample) {

@@ -57,12 +57,11 @@ void Device::Restart() {
   RestartClock();
   outbox_ = link::Outbox();
   wiimote_ = decode::Wiimote();
-  board_ = decode::BalanceBoard();
+  board_ = decode::BalanceBoard(options_.local_gravity_mps2);
   filter_ = signal::KalmanFilter();
   gyroscope_bias_ = calibration::GyroscopeBias();
-  plate_ = board::Plate(options_.plate);
-  recent_motion_.Clear();
-  recent_boards_.Clear();
+  chain_.Restart();
+  worn_.Restart();
 }
 
 void Device::AttachSecond(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
@@ -242,7 +241,6 @@ void Device::TakeMotion(stream::MotionSample& sample, bool measured, TickContent
   }
   repeats_ += sample.repeated && measured ? 1 : 0;
   clipped_ += sample.clipped_axes != 0 ? 1 : 0;
-  recent_motion_.Add(sample);
   content.motion.push_back(sample);
 }
 
@@ -251,28 +249,26 @@ void Device::TakeBoard(const devices::IncomingReport& report, const decode::Boar
   if (!HasRoom(content)) return;
   statistics_.Advance(report.received_ns);
   sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns));
-  const board::CornerForces& forces = measured.forces;
-  const board::PlateReading reading = plate_.Advance(forces);
   stream::BoardSample sample;
   sample.device = number_;
   sample.report_count = statistics_.reports();
   sample.received_ns = report.received_ns;
   sample.sampled_ns = sampled_ns_;
-  sample.top_left_n = forces.top_left_n;
-  sample.top_right_n = forces.top_right_n;
-  sample.bottom_left_n = forces.bottom_left_n;
-  sample.bottom_right_n = forces.bottom_right_n;
-  sample.total_n = reading.total_n;
-  sample.cop_valid = reading.cop_valid;
-  sample.cop_x_m = reading.cop_x_m;
-  sample.cop_y_m = reading.cop_y_m;
-  sample.contact = reading.contact;
-  sample.repeated = reading.repeated;
   sample.uncalibrated = handshake_.board().origin == stream::CalibrationOrigin::kDefaults;
   sample.simulated = simulated();
+  chain_.Take(measured.forces, sample);
   repeats_ += sample.repeated ? 1 : 0;
-  recent_boards_.Add(sample);
   content.boards.push_back(sample);
+}
+
+void Device::TakeUniform(std::int64_t now_ns, TickContent& content) {
+  while (content.uniform_boards.size() < kMaxSamplesPerTick) {
+    auto sample = chain_.NextUniform(now_ns);
+    if (!sample) return;
+    sample->device = number_;
+    sample->simulated = simulated();
+    content.uniform_boards.push_back(*sample);
+  }
 }
 
 std::string Device::Note(std::int64_t now_ns) const {
@@ -302,6 +298,8 @@ stream::DeviceStatus Device::Status(std::int64_t now_ns, double stale_after_s) c
   status.writes_failed = writes_failed_;
   status.rumble = outbox_.rumble();
   status.last_report_ns = statistics_.last_ns();
+  status.tared = chain_.tared() && kind() == DeviceKind::kBalanceBoard;
+  status.mounted = worn_.rotation_MS().has_value();
   if (move_) {
     status.calibration = status.gyroscope_calibration = move_->handshake.calibration().origin;
     status.battery_fraction = move_->decoder.battery_fraction();
