@@ -67,6 +67,13 @@ void Bench::Unplug(Device& device) {
   testbed_.Remove(number, identity);
 }
 
+void Bench::EndFaults() {
+  for (const auto& device : devices_) {
+    device->incoming = nullptr;
+    device->outgoing = nullptr;
+  }
+}
+
 bool Bench::Start(const std::vector<std::string>& arguments) { return Restart(arguments); }
 
 bool Bench::Restart(const std::vector<std::string>& arguments) {

@@ -84,6 +84,8 @@ class Bench {
   Device& Plug(std::shared_ptr<Model> model, const PlugOptions& options = {});
   /// The node ends, udev says so.
   void Unplug(Device& device);
+  /// Ends what a test does between models and sockets: it may be about its own variables.
+  void EndFaults();
   Testbed& testbed() { return testbed_; }
 
   /// Starts footingd and the client, and waits until the two are connected.
