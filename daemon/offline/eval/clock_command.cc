@@ -129,7 +129,7 @@ void AddClockCommand(CLI::App& app, Shared& shared) {
   command
       ->add_option("--clock-error-ppm", options->clock_error_ppm,
                    "How much too fast the device's clock is")
-      ->check(CLI::Range(-20000.0, 20000.0))
+      ->check(CLI::Range(-50000.0, 50000.0))
       ->capture_default_str();
   command->add_option("--loss", options->loss, "Share of reports lost besides, 0 to 0.9")
       ->check(CLI::Range(0.0, 0.9))

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -56,7 +57,11 @@ class LongRun {
         Deliver(handle, std::exchange(device.answers, {}));
         while (device.next.arrives_ns <= tick_ns) {
           now_ns_ = std::max(now_ns_, device.next.arrives_ns);
-          if (const auto report = Sample(device)) {
+          const bool lost = loses && loses(handle, device.next.arrives_ns);
+          if (const auto report = lost ? std::nullopt : Sample(device)) {
+            if (keeps_truth)
+              true_ns[{static_cast<std::uint32_t>(handle), device.next.arrives_ns}] =
+                  device.next.sampled_ns;
             hub_.OnReport(handle, {device.next.arrives_ns, *report, 0});
           }
           device.next = device.link.Next();
@@ -78,6 +83,11 @@ class LongRun {
   std::int64_t now_ns() const { return now_ns_; }
   /// Hands swing with 1.5 Hz and 6 m/s² until then.
   double moves_until_s = 1e9;
+  /// Reports that get lost on their way; null: none.
+  std::function<bool(devices::DeviceHandle, std::int64_t arrives_ns)> loses = {};
+  /// When the sample of a report was taken, by device and arrival; kept while `keeps_truth`.
+  std::map<std::pair<std::uint32_t, std::int64_t>, std::int64_t> true_ns;
+  bool keeps_truth = false;
 
  private:
   struct Simulated {

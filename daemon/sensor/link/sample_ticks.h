@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+namespace footing::link {
+
+struct SampleTicksConfig {
+  double nominal_period_s = 0.01;  ///< Of the sensor, not of its reports.
+  double window_s = 8;             ///< What the fit looks back on.
+  double refit_s = 1;     ///< Between fits once the ticks are known over a whole window ...
+  double search_s = 0.5;  ///< ... and until then.
+  /// How far the sensor's period may be from its nominal value (1 = the same).
+  double period_range = 0.05;
+  /// Without anything to fit to for so long, the ticks are no longer known: a period good to 10 ppm
+  /// then is 1 ms off.
+  double coast_s = 100;
+};
+
+/// Finds when a device's sensor takes its samples, from which reports brought something new.
+///
+/// A sensor measures at even ticks and holds each value until the next; the radio sends what is
+/// held, whenever its turn comes. So a report that differs from the one before says that a tick
+/// lies between the two arrivals, and one that repeats it, that most likely none does (a device at
+/// rest repeats too; that is as likely at any phase, and so changes no choice). Intervals shorter
+/// than a period bound the ticks' phase, and many of them leave little room: each fit takes, of a
+/// range of periods and all phases, the pair that the reports of the window speak for most. Devices
+/// that do not hold their samples speak for none, and get none.
+///
+/// Times are arrivals at the radio's end; a constant delay before them can't be seen.
+class SampleTicks {
+ public:
+  explicit SampleTicks(const SampleTicksConfig& config = {});
+
+  /// One report. `received_ns` must not go down. `changed`: it differs from the one before.
+  void Add(std::int64_t received_ns, bool changed);
+
+  bool known() const { return known_; }
+  /// The last tick at or before `at_ns`. Asked only when known.
+  std::int64_t TickBefore(std::int64_t at_ns) const;
+  double period_s() const { return period_s_; }
+
+ private:
+  static constexpr int kBins = 256;
+
+  /// A pair of arrivals nearer to each other than a period.
+  struct Pair {
+    std::int64_t from_ns = 0;
+    std::int64_t to_ns = 0;
+    bool changed = false;
+  };
+  struct Fit {
+    double period_s = 0;
+    double phase = 0;         ///< Of the ticks after the newest arrival, in periods.
+    double score = 0;         ///< Pairs that speak for it, less those against.
+    double significance = 0;  ///< Standard deviations above the score of any phase.
+    int changes = 0;
+  };
+
+  void Refit();
+  /// The best phase at this period.
+  Fit At(double period_s, double window_s) const;
+  Fit Search(std::size_t first_stage, double period_s) const;
+  bool IsGood(const Fit& fit) const;
+
+  SampleTicksConfig config_;
+  std::deque<Pair> pairs_;  // Oldest first.
+  bool started_ = false;
+  std::int64_t begun_ns_ = 0;
+  std::int64_t last_ns_ = 0;
+  std::int64_t fitted_ns_ = 0;
+  bool known_ = false;
+  double period_s_;
+  std::int64_t tick_ns_ = 0;    // One of the ticks.
+  std::int64_t proved_ns_ = 0;  // When the last good fit was.
+};
+
+}  // namespace footing::link
