@@ -12,8 +12,9 @@ namespace footing::device_models {
 namespace {
 
 constexpr double kStepKg = 17;
-constexpr std::uint8_t kTemperature = 0x19;
-constexpr std::uint8_t kBattery = 0x83;  // Four bars.
+/// What is off between a load and its reading (WiiBrew, "Wii Balance Board").
+constexpr double kReadingFactor = 0.99908;
+constexpr double kDriftOfTenSteps = 0.007;
 
 std::array<BalanceBoard::Points, BalanceBoard::kCorners> DrawPoints(std::uint64_t seed) {
   // Real boards: 2800 to 8300 counts empty, 9.8 to 11.5 g a count, another slope above 17 kg.
@@ -37,7 +38,7 @@ Memory MakeMemory(const std::array<BalanceBoard::Points, BalanceBoard::kCorners>
     page[0x24 + 2 * i] = static_cast<std::uint8_t>(count >> 8);
     page[0x25 + 2 * i] = static_cast<std::uint8_t>(count);
   }
-  page[0x60] = kTemperature;
+  page[0x60] = BalanceBoard::kReferenceTemperature;
   page[0x61] = 0x01;
   uLong crc = crc32(0, page.data() + 0x24, 24);
   crc = crc32(crc, page.data() + 0x20, 2);
@@ -50,8 +51,8 @@ Memory MakeMemory(const std::array<BalanceBoard::Points, BalanceBoard::kCorners>
   return memory;
 }
 
-std::uint16_t Counts(const BalanceBoard::Points& points, double force_n) {
-  const double kg = std::isfinite(force_n) ? NewtonsToKilograms(force_n) : 0;
+std::uint16_t Counts(const BalanceBoard::Points& points, double force_n, double excess) {
+  const double kg = std::isfinite(force_n) ? NewtonsToKilograms(force_n) * excess : 0;
   const std::size_t low = kg < kStepKg ? 0 : 1;
   const double counts = points[low] + (kg - kStepKg * static_cast<double>(low)) / kStepKg *
                                           (points[low + 1] - points[low]);
@@ -74,13 +75,16 @@ std::optional<Report> BalanceBoard::Sample(const CornerForces& forces, bool butt
     const double corners[kCorners] = {forces.top_right_n, forces.bottom_right_n, forces.top_left_n,
                                       forces.bottom_left_n};
     readings.extension.fill(0);
+    const double warmer = int{temperature_} - int{kReferenceTemperature};
+    const double excess = gravity_mps2_ / kStandardGravityMps2 /
+                          (kReadingFactor * (1 - kDriftOfTenSteps * warmer / 10));
     for (std::size_t i = 0; i < kCorners; ++i) {
-      const std::uint16_t counts = Counts(points_[i], corners[i]);
+      const std::uint16_t counts = Counts(points_[i], corners[i], excess);
       readings.extension[2 * i] = static_cast<std::uint8_t>(counts >> 8);
       readings.extension[2 * i + 1] = static_cast<std::uint8_t>(counts);
     }
-    readings.extension[8] = kTemperature;
-    readings.extension[10] = kBattery;
+    readings.extension[8] = temperature_;
+    readings.extension[10] = battery_;
   }
   return controller_.DataReport(readings);
 }

@@ -67,6 +67,13 @@ void Bench::Unplug(Device& device) {
   testbed_.Remove(number, identity);
 }
 
+void Bench::EndFaults() {
+  for (const auto& device : devices_) {
+    device->incoming = nullptr;
+    device->outgoing = nullptr;
+  }
+}
+
 bool Bench::Start(const std::vector<std::string>& arguments) { return Restart(arguments); }
 
 bool Bench::Restart(const std::vector<std::string>& arguments) {
@@ -171,6 +178,12 @@ std::size_t Bench::LogLines(const std::string& containing) const {
     if (line.find(containing) != std::string::npos) ++count;
   }
   return count;
+}
+
+std::size_t Bench::Descriptors() const {
+  const std::filesystem::directory_iterator list("/proc/" + std::to_string(footingd_->pid()) +
+                                                 "/fd");
+  return static_cast<std::size_t>(std::distance(begin(list), end(list)));
 }
 
 std::int64_t Bench::MemoryBytes() const {

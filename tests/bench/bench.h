@@ -84,6 +84,8 @@ class Bench {
   Device& Plug(std::shared_ptr<Model> model, const PlugOptions& options = {});
   /// The node ends, udev says so.
   void Unplug(Device& device);
+  /// Ends what a test does between models and sockets: it may be about its own variables.
+  void EndFaults();
   Testbed& testbed() { return testbed_; }
 
   /// Starts footingd and the client, and waits until the two are connected.
@@ -120,6 +122,8 @@ class Bench {
   const std::vector<v1::Gap>& gaps() const { return gaps_; }
   /// The resident memory of footingd.
   std::int64_t MemoryBytes() const;
+  /// How many descriptors footingd has open.
+  std::size_t Descriptors() const;
   std::size_t Samples(const Device& device) const;
 
  private:

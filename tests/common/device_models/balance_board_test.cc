@@ -7,6 +7,8 @@ namespace footing::device_models {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;
+/// The load that reads as 1 kg of calibration at the reference temperature (WiiBrew).
+constexpr double kKilogram = 0.99908 * kStandardGravity;
 
 Report Write(std::uint32_t address, std::uint8_t byte) {
   Report report(22, 0);
@@ -63,7 +65,7 @@ TEST(BalanceBoard, ReportsItsOwnCountsAtTheCalibrationPoints) {
   BalanceBoard board(4);
   Initialise(board);
   for (std::size_t point = 0; point < 3; ++point) {
-    const double force_n = 17 * kStandardGravity * static_cast<double>(point);
+    const double force_n = 17 * kKilogram * static_cast<double>(point);
     const Report report = board.Sample({force_n, force_n, force_n, force_n}).value();
     ASSERT_EQ(report[0], 0x34);
     for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -75,7 +77,7 @@ TEST(BalanceBoard, ReportsItsOwnCountsAtTheCalibrationPoints) {
 TEST(BalanceBoard, EachCornerHasItsPlaceInTheReport) {
   BalanceBoard board(4);
   Initialise(board);
-  const double force_n = 17 * kStandardGravity;
+  const double force_n = 17 * kKilogram;
   const CornerForces kOne[] = {{0, force_n, 0, 0},
                                {0, 0, 0, force_n},
                                {force_n, 0, 0, 0},
@@ -91,12 +93,36 @@ TEST(BalanceBoard, EachCornerHasItsPlaceInTheReport) {
 TEST(BalanceBoard, GoesOnBelowZeroAndAboveItsLastPoint) {
   BalanceBoard board(4);
   Initialise(board);
-  const double force_n = 51 * kStandardGravity;
+  const double force_n = 51 * kKilogram;
   const Report above = board.Sample({0, force_n, 0, 0}).value();
   const auto& points = board.points()[0];
   EXPECT_EQ(CountsOf(above, 0), 2 * points[2] - points[1]);
-  const Report below = board.Sample({0, -17 * kStandardGravity, 0, 0}).value();
+  const Report below = board.Sample({0, -17 * kKilogram, 0, 0}).value();
   EXPECT_EQ(CountsOf(below, 0), 2 * points[0] - points[1]);
+}
+
+TEST(BalanceBoard, AWarmBoardReadsTooMuchAndSaysItsTemperature) {
+  BalanceBoard board(4);
+  Initialise(board);
+  const double force_n = 17 * kKilogram;
+  const int cold = CountsOf(board.Sample({0, force_n, 0, 0}).value(), 0) - board.points()[0][0];
+  board.set_temperature(BalanceBoard::kReferenceTemperature + 10);
+  board.set_battery(0x70);
+  const Report report = board.Sample({0, force_n, 0, 0}).value();
+  const int warm = CountsOf(report, 0) - board.points()[0][0];
+  EXPECT_NEAR(warm, cold / (1 - 0.007), 2);
+  EXPECT_EQ(report[11], BalanceBoard::kReferenceTemperature + 10);
+  EXPECT_EQ(report[13], 0x70);
+}
+
+TEST(BalanceBoard, AtThePoleItReadsMoreThanAtTheEquator) {
+  BalanceBoard board(4);
+  Initialise(board);
+  const auto count_at = [&board](double gravity_mps2) {
+    board.set_gravity(gravity_mps2);
+    return CountsOf(board.Sample({0, 30 * kKilogram, 0, 0}).value(), 0) - board.points()[0][0];
+  };
+  EXPECT_NEAR(count_at(9.832) - count_at(9.780), 0.0053 * count_at(9.80665), 4);
 }
 
 }  // namespace
