@@ -249,7 +249,6 @@ TEST(AnHourThatPassesUnseen, IsOneGapAndTheDevicesAreLiveAgain) {
   run.Advance(30, take);
   const auto before = status;
   EXPECT_EQ(before[0].note, "");
-  EXPECT_EQ(before[1].note.find("one board alone"), 0u);
   run.Jump(3600);
   run.Advance(1, take);
   ASSERT_EQ(status.size(), 2u);
