@@ -36,7 +36,7 @@ Result<void> Assign(Session& session, const std::string& device, const std::stri
 void AddDeviceCommands(CLI::App& app, Shared& shared);     ///< devices, status, watch
 void AddControlCommands(CLI::App& app, Shared& shared);    ///< rumble, led, tare, trust
 void AddAssignCommand(CLI::App& app, Shared& shared);      ///< assign
-void AddDoctorCommand(CLI::App& app, Shared& shared);    ///< doctor
+void AddDoctorCommand(CLI::App& app, Shared& shared);      ///< doctor
 void AddPairCommand(CLI::App& app, Shared& shared);        ///< pair
 void AddSetupCommand(CLI::App& app, Shared& shared);       ///< setup
 void AddLayoutCommand(CLI::App& app, Shared& shared);      ///< layout

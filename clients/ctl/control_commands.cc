@@ -60,13 +60,15 @@ Result<void> Rumble(Session& session, const std::string& name, double seconds,
   return {};
 }
 
+Result<void> CheckLight(const std::string& light) {
+  if (ParseLeds(light) || ParseColour(light)) return {};
+  return UsageError(light + " is neither four lamps such as 1010 nor a colour such as #00ff40");
+}
+
 Result<void> Led(Session& session, const std::string& name, const std::string& light,
                  const Shared& shared) {
   const auto leds = ParseLeds(light);
   const auto colour = ParseColour(light);
-  if (!leds && !colour) {
-    return UsageError(light + " is neither four lamps such as 1010 nor a colour such as #00ff40");
-  }
   const auto device = session.Find(name);
   if (!device) return device.error();
   const bool move = device->kind == stream::DeviceKind::kPsMove;
@@ -192,6 +194,10 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
   led->footer(
       "Examples:\n  footing-ctl led 00:1f:32:aa:bb:cc 1010\n  footing-ctl led head #00ff40");
   led->callback([words, &shared] {
+    if (const auto light = CheckLight(words->light); !light) {
+      shared.exit_code = cli::Report(light.error());
+      return;
+    }
     WithSession(shared, {"status"}, [&](Session& session) {
       return Led(session, words->device, words->light, shared);
     });

@@ -1,13 +1,35 @@
 #include "clients/ctl/gesture_command.h"
 
+#include <algorithm>
+
 #include "clients/ctl/guided.h"
 
 namespace footing::ctl {
 
-Result<void> AssignByGesture(Session& session, const std::string& rig, bool script,
+Result<std::vector<stream::DeviceRole>> WornRoles(const std::vector<std::string>& names) {
+  std::vector<stream::DeviceRole> roles;
+  for (const std::string& name : names) {
+    const stream::DeviceRole role = stream::RoleNamed(name);
+    if (role == stream::DeviceRole::kLeftBoard || role == stream::DeviceRole::kRightBoard ||
+        role == stream::DeviceRole::kUnspecified) {
+      return UsageError("--worn " + name +
+                        ": nothing is worn so; there are: left_hand right_hand left_leg "
+                        "right_leg head editor");
+    }
+    if (std::find(roles.begin(), roles.end(), role) != roles.end()) {
+      return UsageError("--worn names " + name + " twice");
+    }
+    roles.push_back(role);
+  }
+  return roles;
+}
+
+Result<void> AssignByGesture(Session& session, const std::string& rig,
+                             const std::vector<stream::DeviceRole>& worn, bool script,
                              const Shared& shared) {
   guide::Wishes wishes;
   wishes.rig = rig;
+  wishes.worn = worn;
   const auto results = RunGuided(session, wishes, {guide::Item::kRoles}, Talk{script});
   if (!results) return results.error();
   if (results->empty()) return NoDevice("rig " + rig + " has no device: footing-ctl devices");

@@ -1,14 +1,19 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "clients/ctl/commands.h"
 
 namespace footing::ctl {
 
+/// Roles of --worn. UsageError when one is none, is a board's, or comes twice.
+Result<std::vector<stream::DeviceRole>> WornRoles(const std::vector<std::string>& names);
+
 /// `assign --gesture`: "step on the left board now", "shake the left wrist one". The session needs
 /// GuidedChannels().
-Result<void> AssignByGesture(Session& session, const std::string& rig, bool script,
+Result<void> AssignByGesture(Session& session, const std::string& rig,
+                             const std::vector<stream::DeviceRole>& worn, bool script,
                              const Shared& shared);
 
 }  // namespace footing::ctl

@@ -4,6 +4,7 @@
 #include "clients/ctl/commands.h"
 #include "clients/ctl/guide/layout.h"
 #include "clients/ctl/guided.h"
+#include "common/cli/cli.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 
@@ -37,12 +38,7 @@ Result<void> Layout(Session& session, const Words& words, const Shared& shared) 
     if (rig.rig == words.rig) layout = rig.layout;
   }
   if (!words.preset.empty()) {
-    const auto named = guide::LayoutNamed(words.preset, words.gap_mm);
-    if (!named) {
-      return UsageError("--preset " + words.preset +
-                        ": no such layout; there are: one_foot_each side_by_side single");
-    }
-    layout = *named;
+    layout = *guide::LayoutNamed(words.preset, words.gap_mm);
     layout.rig = words.rig;
     v1::Command command;
     *command.mutable_set_board_layout()->mutable_layout() = wire::ToProto(layout);
@@ -92,6 +88,12 @@ void AddLayoutCommand(CLI::App& app, Shared& shared) {
       "Examples:\n  footing-ctl layout\n"
       "  footing-ctl layout --preset one_foot_each --gap-mm 20 --check");
   command->callback([words, &shared] {
+    if (!words->preset.empty() && !guide::LayoutNamed(words->preset, 0)) {
+      shared.exit_code =
+          cli::Report(UsageError("--preset " + words->preset +
+                                 ": no such layout; there are: one_foot_each side_by_side single"));
+      return;
+    }
     WithSession(shared, GuidedChannels(),
                 [&](Session& session) { return Layout(session, *words, shared); });
   });

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   footing::ctl::Shared shared;
   app->add_option("--connect", shared.connect, "footingd: unix:PATH or tcp:HOST:PORT");
   app->add_flag("--json", shared.json, "One JSON object on standard output");
-  app->require_subcommand(1);
+  app->require_subcommand(0, 1);  // A word that is no command is then told by its name.
   app->fallthrough();
   footing::ctl::AddDeviceCommands(*app, shared);
   footing::ctl::AddControlCommands(*app, shared);
@@ -21,6 +21,14 @@ int main(int argc, char** argv) {
   footing::ctl::AddSetupCommand(*app, shared);
   footing::ctl::AddLayoutCommand(*app, shared);
   footing::ctl::AddAcceptanceCommand(*app, shared);
+  for (CLI::App* command : app->get_subcommands({})) {
+    command->footer(command->get_footer() +
+                    "\nAlso: --json and --connect, as in footing-ctl --help.");
+  }
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
+  if (app->get_subcommands().empty()) {
+    return footing::cli::Report(
+        footing::UsageError("no command given; footing-ctl --help lists them"));
+  }
   return shared.exit_code;
 }

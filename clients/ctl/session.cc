@@ -1,5 +1,7 @@
 #include "clients/ctl/session.h"
 
+#include <unistd.h>
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <chrono>
@@ -17,6 +19,18 @@ namespace footing::ctl {
 namespace {
 
 constexpr std::uint32_t kQueueTicks = 512;
+constexpr const char* kFolderOfService = "/run/footing";
+
+/// What to do when no footingd answers.
+std::string Remedy() {
+  const bool closed = access(kFolderOfService, F_OK) == 0 && access(kFolderOfService, X_OK) != 0;
+  if (closed) {
+    return "the service's socket is for the group footing: sudo usermod -aG footing $USER, then "
+           "log in again";
+  }
+  return "start it (sudo systemctl start footingd, or footingd in a terminal), or name its address "
+         "with --connect";
+}
 
 }  // namespace
 
@@ -50,9 +64,7 @@ class Session::Implementation {
     const Waited waited = RunUntil([this] { return ticks_ > 0 || refused_; }, within_s);
     if (waited == Waited::kInterrupted) return Failure("stopped");
     if (waited == Waited::kDone && !refused_) return {};
-    return NoDevice("no footingd: " + link_ +
-                    "; start it (systemctl start footing, or footingd), or name its address with "
-                    "--connect");
+    return NoDevice("no footingd: " + link_ + "; " + Remedy());
   }
 
   Result<v1::CommandResult> Call(v1::Command command, double within_s) {

@@ -58,7 +58,8 @@ class PsMove {
   /// 0 to 5, 0xee while charging, 0xef when charged.
   void set_battery(std::uint8_t raw) { battery_ = raw; }
   MoveModel model() const { return model_; }
-  const std::vector<std::uint8_t>& blob() const { return blob_; }
+  /// What the feature reports bring; to be damaged by tests of damage.
+  std::vector<std::uint8_t>& blob() { return blob_; }
 
  private:
   bool Kept(std::int64_t now_ns) const { return lights_ && now_ns - lights_ns_ < kKeepAliveNs; }

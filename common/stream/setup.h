@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -33,10 +34,19 @@ struct SetupItem {
   bool stale = false;
 };
 
+/// How a worn device sits: f_M = rotation_MS f_S, where M is the frame of a perfect mounting (x
+/// left, y front, z down while its wearer stands upright with the arms hanging). Features are of M.
+struct DeviceMounting {
+  std::string serial;
+  Eigen::Quaterniond rotation_MS = Eigen::Quaterniond::Identity();
+  double residual_rad = 0;
+};
+
 struct RigSetup {
   std::string rig;
   BoardLayout layout;
   std::vector<SetupItem> items;
+  std::vector<DeviceMounting> mountings;
 };
 
 }  // namespace footing::stream

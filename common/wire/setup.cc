@@ -70,6 +70,12 @@ v1::RigSetup ToProto(const stream::RigSetup& value) {
   message.set_rig(Utf8(value.rig));
   *message.mutable_layout() = ToProto(value.layout);
   for (const auto& one : value.items) *message.add_items() = ToProto(one);
+  for (const auto& one : value.mountings) {
+    v1::DeviceMounting& mounting = *message.add_mountings();
+    mounting.set_serial(Utf8(one.serial));
+    *mounting.mutable_rotation() = ToProto(one.rotation_MS);
+    mounting.set_residual_rad(Finite(one.residual_rad));
+  }
   return message;
 }
 
@@ -78,6 +84,10 @@ stream::RigSetup FromProto(const v1::RigSetup& message) {
   value.rig = message.rig();
   value.layout = FromProto(message.layout());
   for (const auto& one : message.items()) value.items.push_back(FromProto(one));
+  for (const auto& one : message.mountings()) {
+    value.mountings.push_back(
+        {one.serial(), FromProto(one.rotation()), Finite(one.residual_rad())});
+  }
   return value;
 }
 

@@ -3,6 +3,7 @@
 Usage in a scenario: `with Stage(binary_folder) as stage: stage.start("footingd", ...)`.
 """
 import json
+import os
 import pathlib
 import signal
 import subprocess
@@ -55,9 +56,11 @@ class Stage:
 
     def start(self, program, *words, name=None):
         name = name or program
+        environment = dict(os.environ, XDG_STATE_HOME=f"{self.folder}/state")
         with open(self.folder / f"{name}.log", "w") as log:
             process = subprocess.Popen([self.binaries / program, *map(str, words)], stdout=log,
-                                       stderr=log, stdin=subprocess.DEVNULL)
+                                       stderr=log, stdin=subprocess.DEVNULL,
+                                       env=environment)
         self.processes[name] = process
         return process
 

@@ -23,9 +23,22 @@ bool MayOpen(const User& who, const HidDevice& hid) {
 
 bool IsNintendo(const HidDevice& hid) { return hid.sysfs_id.find(":057E:") != std::string::npos; }
 
+/// Or needs no group.
+bool InGroup(const Facts& facts) {
+  const auto& gids = facts.user.gids;
+  return !facts.footing_gid || facts.user.uid == 0 ||
+         std::find(gids.begin(), gids.end(), *facts.footing_gid) != gids.end();
+}
+
 std::vector<Symptom> NotRunning(const Facts& facts) {
   if (facts.footingd_reached) return {};
   const bool elsewhere = !facts.daemons.empty();
+  if (elsewhere && !InGroup(facts)) {
+    return {{Severity::kError,
+             "a footingd runs, but " + facts.user.name + " may not reach its socket",
+             facts.footingd_address,
+             "sudo usermod -aG footing " + facts.user.name + ", then log in again"}};
+  }
   return {{Severity::kError,
            elsewhere ? "a footingd runs, but not at this address: " + facts.footingd_trouble
                      : "footingd is not running: " + facts.footingd_trouble,
@@ -39,14 +52,17 @@ std::vector<Symptom> NotRunning(const Facts& facts) {
 std::vector<Symptom> SecondDaemon(const Facts& facts) {
   if (facts.daemons.size() < 2) return {};
   std::string numbers, kill;
+  bool foreign = false;
   for (const auto& [number, user] : facts.daemons) {
     numbers += (numbers.empty() ? "" : ", ") + std::to_string(number) + " of " + user.name;
-    if (number != facts.daemons.begin()->first) kill += " " + std::to_string(number);
+    if (number == facts.daemons.begin()->first) continue;
+    kill += " " + std::to_string(number);
+    foreign = foreign || user.uid != facts.user.uid;
   }
   return {{Severity::kError,
            std::to_string(facts.daemons.size()) +
                " footingd run; both write to the same devices and undo each other's settings",
-           "processes " + numbers, "kill" + kill}};
+           "processes " + numbers, std::string(foreign ? "sudo " : "") + "kill" + kill}};
 }
 
 std::vector<Symptom> OtherVersion(const Facts& facts) {
@@ -81,9 +97,7 @@ std::vector<Symptom> RuleMissing(const Facts& facts) {
 }
 
 std::vector<Symptom> NotInGroup(const Facts& facts) {
-  if (!facts.footing_gid || facts.user.uid == 0) return {};
-  const auto& gids = facts.user.gids;
-  if (std::find(gids.begin(), gids.end(), *facts.footing_gid) != gids.end()) return {};
+  if (InGroup(facts)) return {};
   if (facts.user_listed_in_group) {
     return {{Severity::kWarning,
              facts.user.name + " is in the group footing, but this login is older", "groups",

@@ -113,22 +113,31 @@ Progress PairingStep::Advance(const Situation& now, const Wishes& wishes) {
   return progress;
 }
 
+void RolesStep::BeginWith(const std::vector<stream::DeviceStatus>& devices,
+                          const std::vector<stream::DeviceRole>& roles) {
+  if (roles.size() > devices.size()) {
+    results_.push_back(Outcome(Item::kRoles, "", false, 0, "",
+                               std::to_string(roles.size()) + " roles are asked for, but only " +
+                                   std::to_string(devices.size()) +
+                                   " devices are there: footing-ctl pair brings more"));
+    return;
+  }
+  wanted_.insert(wanted_.end(), roles.begin(), roles.end());
+  if (devices.size() == 1 && roles.size() == 1) alone_.insert(roles.front());
+}
+
 void RolesStep::Begin(const Situation& now, const Wishes& wishes) {
+  const auto own = [](const std::vector<stream::DeviceStatus>& devices) {
+    std::vector<stream::DeviceRole> roles;
+    for (const auto& device : devices) {
+      if (device.role != stream::DeviceRole::kUnspecified) roles.push_back(device.role);
+    }
+    return roles;
+  };
   const auto boards = now.recent->Boards(wishes.rig);
   const auto worn = now.recent->Worn(wishes.rig);
-  // A lone device is what its role says: there is nothing to tell it from.
-  const auto ask = [this](const std::vector<stream::DeviceStatus>& devices) {
-    for (const auto& device : devices) {
-      if (devices.size() > 1) {
-        wanted_.push_back(device.role);
-      } else {
-        results_.push_back(Outcome(Item::kRoles, device.serial, true, 0, "",
-                                   Spoken(device.role) + ", the only one of its kind"));
-      }
-    }
-  };
-  ask(boards);
-  ask(worn);
+  BeginWith(boards, own(boards));
+  BeginWith(worn, wishes.worn.empty() ? own(worn) : wishes.worn);
   phase_ = wanted_.empty() ? Phase::kEnd : Phase::kRest;
 }
 
@@ -145,21 +154,49 @@ bool RolesStep::Resting(const Situation& now, const Wishes& wishes) const {
   return true;
 }
 
+Progress RolesStep::Assign(const stream::DeviceStatus& device, const Pick& pick) {
+  const stream::DeviceRole role = wanted_.front();
+  Progress progress;
+  Action assign;
+  assign.kind = Action::Kind::kAssign;
+  assign.key = "assign";
+  assign.serial = device.serial;
+  assign.role = role;
+  Action leds;
+  leds.kind = Action::Kind::kLeds;
+  leds.key = "leds";
+  leds.device = device.device;
+  leds.leds = LedsOf(role);
+  progress.actions = {assign, leds};
+  named_.insert(device.serial);
+  results_.push_back(Outcome(Item::kRoles, device.serial, true, pick.lead,
+                             pick.lead > 0 ? "ratio" : "", Spoken(role) + pick.note));
+  phase_ = Phase::kAssigning;
+  return progress;
+}
+
 Progress RolesStep::Ask(const Situation& now, const Wishes& wishes) {
   Progress progress;
   const stream::DeviceRole role = wanted_.front();
+  const auto devices =
+      IsBoard(role) ? now.recent->Boards(wishes.rig) : now.recent->Worn(wishes.rig);
+  if (alone_.count(role) > 0 && devices.size() == 1) {
+    Pick only;
+    only.note = ", the only one of its kind";
+    return Assign(devices.front(), only);
+  }
   const std::int64_t from_ns = std::max(now.now_ns - kGesture_ns, rest_since_ns_);
   if (now.now_ns - from_ns < kGesture_ns) return progress;
   Pick pick;
   if (IsBoard(role)) {
     std::vector<BoardLoad> loads;
-    for (const auto& device : now.recent->Boards(wishes.rig)) {
+    for (const auto& device : devices) {
       loads.push_back({device.device, now.recent->BoardLoad(device.device, from_ns, now.now_ns)});
     }
     pick = WhichBoard(loads);
   } else {
     std::vector<DeviceMotion> motions;
-    for (const auto& device : now.recent->Worn(wishes.rig)) {
+    for (const auto& device : devices) {
       motions.push_back(
           {device.device, now.recent->DeviceMotion(device.device, from_ns, now.now_ns)});
     }
@@ -167,28 +204,13 @@ Progress RolesStep::Ask(const Situation& now, const Wishes& wishes) {
   }
   progress.feedback = pick.note;
   if (pick.kind != Pick::Kind::kOne) return progress;
-  for (const auto& device : now.recent->devices()) {
+  for (const auto& device : devices) {
     if (device.device != pick.device) continue;
-    if (named_.count(device.serial) > 0) {
-      progress.feedback = "this one is named already: take another";
-      return progress;
+    if (named_.count(device.serial) == 0) {
+      pick.note = " " + pick.note;
+      return Assign(device, pick);
     }
-    Action assign;
-    assign.kind = Action::Kind::kAssign;
-    assign.key = "assign";
-    assign.serial = device.serial;
-    assign.role = role;
-    Action leds;
-    leds.kind = Action::Kind::kLeds;
-    leds.key = "leds";
-    leds.device = device.device;
-    leds.leds = LedsOf(role);
-    progress.actions = {assign, leds};
-    named_.insert(device.serial);
-    lead_ = pick.lead;
-    results_.push_back(Outcome(Item::kRoles, device.serial, true, pick.lead, "ratio",
-                               Spoken(role) + " " + pick.note));
-    phase_ = Phase::kAssigning;
+    progress.feedback = "this one is named already: take another";
   }
   return progress;
 }
@@ -206,22 +228,44 @@ Progress RolesStep::Advance(const Situation& now, const Wishes& wishes) {
     phase_ = wanted_.empty() ? Phase::kEnd : Phase::kRest;
   }
   if (phase_ == Phase::kRest) {
-    progress.prompt = "Step off the boards and hold everything still.";
-    if (Resting(now, wishes)) {
+    const bool boards = !now.recent->Boards(wishes.rig).empty();
+    const bool one = alone_.count(wanted_.front()) > 0;  // Nothing to tell it from.
+    progress.prompt =
+        boards ? "Step off the boards and hold everything still." : "Hold everything still.";
+    if (one) progress.prompt.clear();
+    if (one || Resting(now, wishes)) {
       phase_ = Phase::kAsk;
       rest_since_ns_ = now.now_ns - kRest_ns;
     }
   }
   if (phase_ == Phase::kAsk) {
-    progress = Ask(now, wishes);
     const stream::DeviceRole role = wanted_.front();
-    progress.prompt = (IsBoard(role) ? "Step on " : "Shake ") + Spoken(role) + " now.";
+    progress = Ask(now, wishes);
+    if (alone_.count(role) == 0) {
+      progress.prompt = (IsBoard(role) ? "Step on " : "Shake ") + Spoken(role) + " now.";
+    }
   }
   if (phase_ == Phase::kEnd) {
+    AddTheRest(now, wishes);
     progress.results = results_;
     progress.finished = true;
   }
   return progress;
+}
+
+/// Devices that nobody was asked about keep what they are.
+void RolesStep::AddTheRest(const Situation& now, const Wishes& wishes) {
+  for (const auto& device : Everything(now, wishes)) {
+    const bool told = std::any_of(results_.begin(), results_.end(), [&](const auto& result) {
+      return result.serial == device.serial;
+    });
+    if (told) continue;
+    const bool has_one = device.role != stream::DeviceRole::kUnspecified;
+    results_.push_back(
+        Outcome(Item::kRoles, device.serial, has_one, 0, "",
+                has_one ? Spoken(device.role) + ", not asked for"
+                        : "has no role: footing-ctl assign " + device.serial + " left_leg"));
+  }
 }
 
 Progress ChecksStep::Advance(const Situation& now, const Wishes& wishes) {

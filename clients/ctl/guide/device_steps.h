@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "clients/ctl/guide/pick.h"
 #include "clients/ctl/guide/step.h"
 
 /// The items about devices. Each is a plain value; Advance() is called some twenty times a second.
@@ -33,14 +34,18 @@ class RolesStep {
  private:
   enum class Phase { kBegin, kAsk, kAssigning, kRest, kEnd };
   void Begin(const Situation& now, const Wishes& wishes);
+  void BeginWith(const std::vector<stream::DeviceStatus>& devices,
+                 const std::vector<stream::DeviceRole>& roles);
   Progress Ask(const Situation& now, const Wishes& wishes);
+  void AddTheRest(const Situation& now, const Wishes& wishes);
+  Progress Assign(const stream::DeviceStatus& device, const Pick& pick);
   bool Resting(const Situation& now, const Wishes& wishes) const;
 
   Phase phase_ = Phase::kBegin;
   std::vector<stream::DeviceRole> wanted_;  ///< Still to be asked for, in order.
   std::set<std::string> named_;             ///< Serials that have been picked.
+  std::set<stream::DeviceRole> alone_;      ///< Of a device that there is nothing to tell from.
   std::int64_t rest_since_ns_ = 0;
-  double lead_ = 0;
   std::vector<stream::SetupItem> results_;
 };
 

@@ -51,6 +51,8 @@ constexpr const char* kWrist = R"(
 
 }  // namespace
 
+bool NeedsMounting(stream::DeviceRole role) { return !Wearing(role).empty(); }
+
 std::string Picture(stream::DeviceRole role) {
   switch (role) {
     case stream::DeviceRole::kLeftLeg:
@@ -93,7 +95,7 @@ std::string Wearing(stream::DeviceRole role) {
 
 double StillThenSteps::still_s(std::int64_t now_ns) const {
   if (still_from_ns_ == 0) return 0;
-  return std::min(kStillFor_s, NanosecondsToSeconds(now_ns - still_from_ns_));
+  return std::clamp(NanosecondsToSeconds(now_ns - kWindow_ns - still_from_ns_), 0.0, kStillFor_s);
 }
 
 void StillThenSteps::Advance(std::int64_t now_ns, double moving_mps2) {
@@ -104,8 +106,9 @@ void StillThenSteps::Advance(std::int64_t now_ns, double moving_mps2) {
     }
     // The whole window that the shake is taken over was still.
     if (still_from_ns_ == 0) still_from_ns_ = now_ns - kWindow_ns;
-    if (NanosecondsToSeconds(now_ns - still_from_ns_) < kStillFor_s) return;
-    still_to_ns_ = now_ns;
+    // The newest window may hold the beginning of a movement: it belongs to the steps.
+    still_to_ns_ = now_ns - kWindow_ns;
+    if (NanosecondsToSeconds(still_to_ns_ - still_from_ns_) < kStillFor_s) return;
     moved_first_ns_ = 0;
     phase_ = Phase::kSteps;
     return;
@@ -117,8 +120,9 @@ void StillThenSteps::Advance(std::int64_t now_ns, double moving_mps2) {
   } else if (moved_first_ns_ == 0) {
     // Still standing: the newest stillness is the one that counts, up to the first movement.
     if (moving_mps2 <= kStill_mps2) {
-      still_to_ns_ = now_ns;
-      still_from_ns_ = std::max(still_from_ns_, now_ns - SecondsToNanoseconds(2 * kStillFor_s));
+      still_to_ns_ = now_ns - kWindow_ns;
+      still_from_ns_ =
+          std::max(still_from_ns_, still_to_ns_ - SecondsToNanoseconds(2 * kStillFor_s));
     }
     return;
   }

@@ -8,6 +8,8 @@
 
 namespace footing::guide {
 
+/// It is fastened to a limb, so its directions have to be found.
+bool NeedsMounting(stream::DeviceRole role);
 /// How a device is worn, drawn for a terminal: shin outside, head band, wrist. Empty for boards.
 std::string Picture(stream::DeviceRole role);
 /// The same in a sentence.
@@ -15,8 +17,9 @@ std::string Wearing(stream::DeviceRole role);
 
 inline constexpr double kStillFor_s = 2;
 
-/// What the worn devices show of "two seconds still, then three steps": where each stretch lies. A
-/// plain value that is asked again and again.
+/// What the worn devices show of "two seconds still, then three steps": where each stretch lies.
+/// The steps begin half a second before a movement shows, so that its very first way is among them.
+/// A plain value that is asked again and again.
 class StillThenSteps {
  public:
   enum class Phase { kStill, kSteps, kDone };

@@ -9,11 +9,25 @@ namespace {
 constexpr std::int64_t kMoving_ns = 500'000'000;
 constexpr double kNotKnown_mps2 = 99;
 
+std::string Tenths(double value) {
+  const long tenths = std::lround(value * 10);
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
+}
+
+/// Devices that are fastened to somebody; an editor's lies on the table.
+std::vector<stream::DeviceStatus> Fastened(const Situation& now, const Wishes& wishes) {
+  std::vector<stream::DeviceStatus> fastened;
+  for (const auto& device : now.recent->Worn(wishes.rig)) {
+    if (NeedsMounting(device.role)) fastened.push_back(device);
+  }
+  return fastened;
+}
+
 }  // namespace
 
 Progress MountingStep::Solve(const Situation& now, const Wishes& wishes) {
   Progress progress;
-  for (const auto& device : now.recent->Worn(wishes.rig)) {
+  for (const auto& device : Fastened(now, wishes)) {
     Action solve;
     solve.kind = Action::Kind::kSolveMounting;
     solve.key = "mounting " + device.serial;
@@ -31,7 +45,7 @@ Progress MountingStep::Solve(const Situation& now, const Wishes& wishes) {
 
 Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
   Progress progress;
-  const auto worn = now.recent->Worn(wishes.rig);
+  const auto worn = Fastened(now, wishes);
   progress.finished = worn.empty();
   if (worn.empty()) return progress;
   for (const Answer& answer : now.answers) {
@@ -54,10 +68,11 @@ Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
     moving_mps2 = std::max(moving_mps2, motion.samples == 0 ? kNotKnown_mps2 : motion.shake_mps2);
   }
   stretches_.Advance(now.now_ns, moving_mps2);
-  progress.feedback = "moves by " + std::to_string(std::lround(moving_mps2 * 10) / 10) + " m/s2";
+  progress.feedback = "moves by " + Tenths(moving_mps2) + " m/s2";
   switch (stretches_.phase()) {
     case StillThenSteps::Phase::kStill:
       progress.prompt = "Put the devices on as shown, then stand still for two seconds.";
+      progress.feedback += ", still for " + Tenths(stretches_.still_s(now.now_ns)) + " s";
       for (const auto& device : worn) {
         if (progress.picture.find(Picture(device.role)) == std::string::npos) {
           progress.picture += Picture(device.role);

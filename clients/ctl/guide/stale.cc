@@ -103,7 +103,8 @@ bool Ready(const std::vector<stream::SetupItem>& items,
     boards = boards || IsBoard(device);
     need(Item::kPairing, device.serial);
     need(Item::kRoles, device.serial);
-    need(IsBoard(device) ? Item::kTare : Item::kMounting, device.serial);
+    if (IsBoard(device)) need(Item::kTare, device.serial);
+    if (NeedsMounting(device.role)) need(Item::kMounting, device.serial);
     need(Item::kChecks, device.serial);
   }
   if (boards) {

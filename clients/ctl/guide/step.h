@@ -22,6 +22,8 @@ struct Wishes {
   std::string rig = "main";
   std::string preset;  ///< Empty: the rig's own layout, else one_foot_each (or single).
   double gap_mm = kNoGap_mm;
+  /// What the hand devices are worn as, each once; empty: as their roles are now.
+  std::vector<stream::DeviceRole> worn;
   std::optional<double> mass_kg;
   double patience_s = 60;  ///< An item that gets nowhere for so long has failed.
   double settle_s = 4;     ///< No new device for so long: all are there.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace footing::board {
@@ -14,10 +13,11 @@ Tare Refused(std::string problem) {
   return tare;
 }
 
+/// With one decimal.
 std::string Number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
+  const long tenths = std::lround(std::abs(value) * 10);
+  return (value < 0 && tenths > 0 ? "-" : "") + std::to_string(tenths / 10) + "." +
+         std::to_string(tenths % 10);
 }
 
 double MeanTotal(std::span<const TareSample> samples) {
@@ -42,6 +42,12 @@ Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareC
   if (count < 3 || static_cast<double>(count) < config.least_rate_hz * window_s) {
     return Refused("only " + std::to_string(count) + " samples in " + Number(window_s) +
                    " s; is the board awake, near enough, and its battery full?");
+  }
+  const double span_s =
+      static_cast<double>(samples.back().sampled_ns - samples.front().sampled_ns) * 1e-9;
+  if (span_s < window_s - config.longest_gap_s) {
+    return Refused("only " + Number(span_s) + " s of samples, " + Number(window_s) +
+                   " are needed; wait and try again");
   }
   double longest_gap_s = 0;
   for (std::size_t i = 1; i < count; ++i) {

@@ -17,7 +17,7 @@ std::optional<BoardReading> BalanceBoard::Take(const calibration::BoardCalibrati
                                                reports::Bytes extension) {
   const auto counts = reports::DecodeBoard(extension);
   if (!counts) return std::nullopt;
-  const auto corners = calibration::CornerForces(calibration, *counts);
+  const auto corners = calibration::CornerForces(calibration, *counts, local_gravity_mps2_);
   BoardReading reading;
   reading.forces = {corners[reports::kTopLeft], corners[reports::kTopRight],
                     corners[reports::kBottomLeft], corners[reports::kBottomRight]};

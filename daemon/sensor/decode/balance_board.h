@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "common/units/units.h"
 #include "daemon/sensor/board/plate.h"
 #include "daemon/sensor/calibration/board.h"
 #include "daemon/sensor/reports/extension.h"
@@ -26,6 +27,9 @@ class BalanceBoard {
   /// A corner that stays on one count while another changes so often is stuck.
   static constexpr int kStuckChanges = 500;
 
+  explicit BalanceBoard(double local_gravity_mps2 = kStandardGravityMps2)
+      : local_gravity_mps2_(local_gravity_mps2) {}
+
   /// None for reports that are too short for four corners.
   std::optional<BoardReading> Take(const calibration::BoardCalibration& calibration,
                                    reports::Bytes extension);
@@ -39,6 +43,7 @@ class BalanceBoard {
  private:
   void Watch(const reports::BoardCounts& counts);
 
+  double local_gravity_mps2_;
   bool started_ = false;
   std::array<std::uint16_t, reports::kCorners> last_{};
   std::array<int, reports::kCorners> still_{};  // Changes of other corners since this one changed.

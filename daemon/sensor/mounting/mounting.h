@@ -20,12 +20,10 @@
 /// and down, so the horizontal direction that holds most of the swing is M's y axis. Its sign comes
 /// from the first movement, since the steps start with the left foot:
 ///
-/// | role | first movement | why |
-/// |---|---|---|
-/// | left leg, right leg | front | a shin that starts from rest swings forward, the left one first |
-/// | right hand | front | the arm goes with the other side's leg |
-/// | left hand | back | and against its own |
-/// | head | front | the body gains speed |
+///   left leg, right leg   front   a shin that starts from rest swings forward, the left one first
+///   right hand            front   the arm goes with the other side's leg
+///   left hand             back    and against its own
+///   head                  front   the body gains speed
 ///
 /// Right sign matters: turned half about, a limb's phase would be off by half a cycle.
 namespace footing::mounting {
@@ -52,15 +50,15 @@ struct MountingConfig {
 
 struct Mounting {
   bool ok = false;
-  std::string problem;                                             ///< Why it was refused.
+  std::string problem;                                              ///< Why it was refused.
   Eigen::Quaterniond rotation_MS = Eigen::Quaterniond::Identity();  ///< f_M = rotation_MS * f_S.
   /// How well the parts agree: the larger of gravity's change over the still stretch and the
   /// swing direction's change between the halves of the steps.
   double residual_rad = 0;
 };
 
-/// `still` and `steps` are samples of one device as measured (frame S), oldest first. Refused: moved
-/// while still, no or too round a swing, an unclear first movement, gaps, too short.
+/// `still` and `steps` are samples of one device as measured (frame S), oldest first. Refused:
+/// moved while still, no or too round a swing, an unclear first movement, gaps, too short.
 Mounting SolveMounting(stream::DeviceRole role, std::span<const stream::MotionSample> still,
                        std::span<const stream::MotionSample> steps,
                        const MountingConfig& config = {});

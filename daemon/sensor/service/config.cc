@@ -23,6 +23,16 @@ void Config::Bind(config::Binder& binder) {
   binder.Number("board_contact_on_n", plate.contact_on_n, 1, 500, "Over it there is contact");
   binder.Number("board_contact_off_n", plate.contact_off_n, 1, 500,
                 "Under it there is none, and the COP is undefined");
+  binder.Number("board_uniform_rate_hz", board_uniform.rate_hz, 10, 1000,
+                "Of the channel boards_uniform");
+  binder.Number("board_uniform_window_s", board_uniform.window_s, 0.01, 0.5,
+                "Each of its samples is the mean over so long");
+  binder.Number("local_gravity_mps2", local_gravity_mps2, 9.76, 9.84,
+                "Where the boards stand; divided out of their forces");
+  binder.Text(
+      "state_directory", state_directory,
+      "Where the set-up is kept; empty: $STATE_DIRECTORY, else $XDG_STATE_HOME/footing, else "
+      "~/.local/state/footing; none: nowhere");
   binder.Flag("motion_plus", motion_plus, "Look for MotionPlus and use it");
   binder.Flag("camera", camera, "Switch the infrared cameras of Wiimotes on");
   binder.Number("status_interval_s", status_interval_s, 0, 3600,

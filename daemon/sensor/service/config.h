@@ -8,7 +8,9 @@
 #include "common/config/config.h"
 #include "common/result/result.h"
 #include "common/transport/address.h"
+#include "common/units/units.h"
 #include "daemon/sensor/board/plate.h"
+#include "daemon/sensor/board/uniform_stream.h"
 
 namespace footing::sensor {
 
@@ -22,6 +24,10 @@ struct Config {
   double tick_rate_hz = 100;
   double stale_after_s = 0.5;  ///< A live device without data for so long is stale.
   board::PlateConfig plate;
+  board::UniformConfig board_uniform;
+  double local_gravity_mps2 = kStandardGravityMps2;  ///< Where the boards stand.
+  /// Empty: see setup::StatePath. "none": nothing is kept between runs.
+  std::string state_directory;
   bool motion_plus = true;        ///< Look for MotionPlus and use it.
   bool camera = false;            ///< Switch the infrared cameras of Wiimotes on.
   double status_interval_s = 60;  ///< Ask devices for their status so often; 0 never.

@@ -10,8 +10,9 @@ using stream::DeviceKind;
 
 constexpr double kWiimotePeriodS = 0.01;
 constexpr double kBoardPeriodS = 1 / 83.6;  // As recorded on a good link.
-constexpr double kMovePeriodS = 1 / 88.0;   // psmoveapi.
-constexpr double kMoveLowBattery = 0.21;    // One bar of five.
+constexpr double kBoardSensorPeriodS = 1 / 60.0;
+constexpr double kMovePeriodS = 1 / 88.0;  // psmoveapi.
+constexpr double kMoveLowBattery = 0.21;   // One bar of five.
 
 bool IsMove(const devices::DeviceIdentity& identity) {
   return identity.vendor == devices::kVendorSony;
@@ -48,6 +49,8 @@ void Device::RestartClock() {
                                                     : kWiimotePeriodS;
   link::DeviceClockConfig clock_config;
   clock_config.nominal_period_s = period_s_;
+  clock_config.sensor_period_s =
+      kind() == DeviceKind::kBalanceBoard ? kBoardSensorPeriodS : period_s_;
   clock_ = link::DeviceClock(clock_config);
   statistics_ = link::LinkStatistics(period_s_);
 }
@@ -57,12 +60,11 @@ void Device::Restart() {
   RestartClock();
   outbox_ = link::Outbox();
   wiimote_ = decode::Wiimote();
-  board_ = decode::BalanceBoard();
+  board_ = decode::BalanceBoard(options_.local_gravity_mps2);
   filter_ = signal::KalmanFilter();
   gyroscope_bias_ = calibration::GyroscopeBias();
-  plate_ = board::Plate(options_.plate);
-  recent_motion_.Clear();
-  recent_boards_.Clear();
+  chain_.Restart();
+  worn_.Restart();
 }
 
 void Device::AttachSecond(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
@@ -201,7 +203,7 @@ void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded&
   const std::int64_t before_ns = sampled_ns_;
   if (!decoded.buttons_only) {
     statistics_.Advance(report.received_ns);
-    sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns));
+    sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns, decoded.changed));
   }
   const auto half_ns = static_cast<std::int64_t>(period_s_ * 0.5e9);
   for (std::size_t i = 0; i < decoded.motion_count; ++i) {
@@ -242,7 +244,6 @@ void Device::TakeMotion(stream::MotionSample& sample, bool measured, TickContent
   }
   repeats_ += sample.repeated && measured ? 1 : 0;
   clipped_ += sample.clipped_axes != 0 ? 1 : 0;
-  recent_motion_.Add(sample);
   content.motion.push_back(sample);
 }
 
@@ -250,29 +251,27 @@ void Device::TakeBoard(const devices::IncomingReport& report, const decode::Boar
                        TickContent& content) {
   if (!HasRoom(content)) return;
   statistics_.Advance(report.received_ns);
-  sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns));
-  const board::CornerForces& forces = measured.forces;
-  const board::PlateReading reading = plate_.Advance(forces);
+  sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns, measured.changed));
   stream::BoardSample sample;
   sample.device = number_;
   sample.report_count = statistics_.reports();
   sample.received_ns = report.received_ns;
   sample.sampled_ns = sampled_ns_;
-  sample.top_left_n = forces.top_left_n;
-  sample.top_right_n = forces.top_right_n;
-  sample.bottom_left_n = forces.bottom_left_n;
-  sample.bottom_right_n = forces.bottom_right_n;
-  sample.total_n = reading.total_n;
-  sample.cop_valid = reading.cop_valid;
-  sample.cop_x_m = reading.cop_x_m;
-  sample.cop_y_m = reading.cop_y_m;
-  sample.contact = reading.contact;
-  sample.repeated = reading.repeated;
   sample.uncalibrated = handshake_.board().origin == stream::CalibrationOrigin::kDefaults;
   sample.simulated = simulated();
+  chain_.Take(measured.forces, sample);
   repeats_ += sample.repeated ? 1 : 0;
-  recent_boards_.Add(sample);
   content.boards.push_back(sample);
+}
+
+void Device::TakeUniform(std::int64_t now_ns, TickContent& content) {
+  while (content.uniform_boards.size() < kMaxSamplesPerTick) {
+    auto sample = chain_.NextUniform(now_ns);
+    if (!sample) return;
+    sample->device = number_;
+    sample->simulated = simulated();
+    content.uniform_boards.push_back(*sample);
+  }
 }
 
 std::string Device::Note(std::int64_t now_ns) const {
@@ -302,6 +301,8 @@ stream::DeviceStatus Device::Status(std::int64_t now_ns, double stale_after_s) c
   status.writes_failed = writes_failed_;
   status.rumble = outbox_.rumble();
   status.last_report_ns = statistics_.last_ns();
+  status.tared = chain_.tared() && kind() == DeviceKind::kBalanceBoard;
+  status.mounted = worn_.rotation_MS().has_value();
   if (move_) {
     status.calibration = status.gyroscope_calibration = move_->handshake.calibration().origin;
     status.battery_fraction = move_->decoder.battery_fraction();

@@ -7,7 +7,6 @@
 
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
-#include "daemon/sensor/board/plate.h"
 #include "daemon/sensor/calibration/gyroscope_bias.h"
 #include "daemon/sensor/decode/balance_board.h"
 #include "daemon/sensor/decode/ps_move.h"
@@ -19,14 +18,16 @@
 #include "daemon/sensor/link/link_statistics.h"
 #include "daemon/sensor/link/outbox.h"
 #include "daemon/sensor/service/binding.h"
-#include "daemon/sensor/service/recent.h"
+#include "daemon/sensor/service/board_chain.h"
 #include "daemon/sensor/service/tick_content.h"
+#include "daemon/sensor/service/worn.h"
 #include "daemon/sensor/signal/kalman_filter.h"
 
 namespace footing::sensor {
 
 struct DeviceOptions {
-  board::PlateConfig plate;
+  BoardOptions board;
+  double local_gravity_mps2 = kStandardGravityMps2;
   handshake::HandshakeConfig handshake;
 };
 
@@ -37,7 +38,8 @@ class Device {
   /// A calibration read at an earlier time.
   using Stored = std::optional<std::vector<std::uint8_t>>;
 
-  Device(std::uint32_t number, const DeviceOptions& options) : number_(number), options_(options) {}
+  Device(std::uint32_t number, const DeviceOptions& options)
+      : number_(number), options_(options), chain_(options.board) {}
 
   void Attach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity,
               const Stored& stored = {});
@@ -87,9 +89,13 @@ class Device {
   const Binding& binding() const { return binding_; }
   void set_binding(Binding binding) { binding_ = std::move(binding); }
 
-  /// The newest 60 s as measured: before tare and mounting.
-  const Recent<stream::MotionSample>& recent_motion() const { return recent_motion_; }
-  const Recent<stream::BoardSample>& recent_boards() const { return recent_boards_; }
+  /// Of a worn device.
+  Worn& worn() { return worn_; }
+  /// Of a board.
+  BoardChain& chain() { return chain_; }
+  const BoardChain& chain() const { return chain_; }
+  /// The board's samples at the uniform rate that are complete by now go to `content`.
+  void TakeUniform(std::int64_t now_ns, TickContent& content);
 
  private:
   struct Move {
@@ -133,10 +139,9 @@ class Device {
   signal::KalmanFilter filter_;
   calibration::GyroscopeBias gyroscope_bias_;
   Eigen::Vector3d filtered_mps2_ = Eigen::Vector3d::Zero();
-  board::Plate plate_;
   std::int64_t sampled_ns_ = 0;  ///< Of the newest sample; never goes back.
-  Recent<stream::MotionSample> recent_motion_;
-  Recent<stream::BoardSample> recent_boards_;
+  BoardChain chain_;
+  Worn worn_;
 
   bool leds_set_ = false;
   std::uint8_t leds_ = 0;

@@ -18,15 +18,33 @@ constexpr std::size_t kMaxRigMembers = 8;  // Of RigFeatureExtractor.
 
 }  // namespace
 
-Hub::Hub(const Config& config, Ports ports) : config_(config), ports_(std::move(ports)) {
+Hub::Hub(const Config& config, Ports ports)
+    : config_(config), ports_(std::move(ports)), book_(ports_.shelf) {
   for (const auto& [serial, text] : config_.roles) {
     if (auto binding = ParseBinding(text)) assigned_[serial] = std::move(binding).value();
+  }
+  for (const auto& [serial, text] : book_.roles()) {
+    auto binding = ParseBinding(text);
+    if (!binding) continue;
+    const auto configured = assigned_.find(serial);
+    if (configured != assigned_.end() && configured->second != *binding) {
+      ports_.log(serial + " is " + text + " by the last command, no longer " +
+                 config_.roles.at(serial) + " as in the config");
+    }
+    assigned_[serial] = std::move(binding).value();
   }
 }
 
 Device* Hub::Find(devices::DeviceHandle handle) {
   for (const auto& device : devices_) {
     if (device->Owns(handle)) return device.get();
+  }
+  return nullptr;
+}
+
+Device* Hub::WithSerial(const std::string& serial) {
+  for (const auto& device : devices_) {
+    if (device->identity().serial == serial) return device.get();
   }
   return nullptr;
 }
@@ -47,7 +65,8 @@ Device* Hub::MakeRoom() {
     devices_.erase(lost);
   }
   DeviceOptions options;
-  options.plate = config_.plate;
+  options.board = {config_.plate, config_.board_uniform};
+  options.local_gravity_mps2 = config_.local_gravity_mps2;
   options.handshake.motion_plus = config_.motion_plus;
   options.handshake.camera = config_.camera;
   options.handshake.status_interval_s = config_.status_interval_s;
@@ -56,10 +75,7 @@ Device* Hub::MakeRoom() {
 }
 
 void Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
-  const auto known = std::find_if(
-      devices_.begin(), devices_.end(),
-      [&identity](const auto& device) { return device->identity().serial == identity.serial; });
-  Device* device = known == devices_.end() ? nullptr : known->get();
+  Device* device = WithSerial(identity.serial);
   if (device != nullptr && device->attached() && !device->simulated() && identity.simulated) {
     ports_.log("a stand-in with the serial of the real device " + identity.serial + " is ignored");
     return;
@@ -135,6 +151,7 @@ void Hub::Bind(Device& device) { Rebind(device, ChooseBinding(device)); }
 void Hub::Rebind(Device& device, const Binding& binding) {
   device.set_binding(binding);
   status_due_ = true;
+  ApplySetup(device);
   RebuildRigs();
 }
 
@@ -201,7 +218,7 @@ void Hub::OnReport(devices::DeviceHandle handle, const devices::IncomingReport& 
   }
   if (device->kind() != kind) Bind(*device);
   for (std::size_t i = before; i < content_.motion.size(); ++i) {
-    AddToRig(*device, content_.motion[i]);
+    AddToRig(*device, device->worn().Take(content_.motion[i]));
   }
   Flush(*device);
 }
@@ -237,6 +254,7 @@ void Hub::PublishStatus(std::int64_t now_ns) {
   std::vector<stream::DeviceStatus> status;
   for (const auto& device : devices_) {
     status.push_back(device->Status(now_ns, config_.stale_after_s));
+    AddSetupTo(status.back());
     states.push_back(status.back().state);
   }
   if (!status_due_ && states == last_states_ && now_ns - status_ns_ < kStatusIntervalNs) return;
@@ -251,6 +269,7 @@ TickContent Hub::Tick(std::int64_t now_ns) {
   EndLeases(now_ns);
   for (const auto& device : devices_) {
     device->Advance(now_ns);
+    device->TakeUniform(now_ns, content_);
     Flush(*device);
   }
   for (auto& [name, rig] : rigs_) {
@@ -263,6 +282,13 @@ TickContent Hub::Tick(std::int64_t now_ns) {
     features.computed_ns = ports_.now_ns();
     content_.features.push_back(std::move(features));
   }
+  if (book_.revision() != published_revision_) {
+    published_revision_ = book_.revision();
+    content_.has_setup = true;
+    content_.setup = book_.Rigs();
+    ApplySetupToAll();
+  }
+  WatchSetup();
   PublishStatus(now_ns);
   return std::exchange(content_, {});
 }
@@ -331,11 +357,9 @@ Result<void> Hub::RequestDeviceStatus(std::uint32_t device) {
 }
 
 Result<void> Hub::AssignRole(const std::string& serial, const Binding& binding) {
-  const auto found = std::find_if(devices_.begin(), devices_.end(), [&serial](const auto& device) {
-    return device->identity().serial == serial;
-  });
-  if (found == devices_.end()) return NoDevice("no device with serial " + serial + " was seen");
-  Device& device = **found;
+  Device* const found = WithSerial(serial);
+  if (found == nullptr) return NoDevice("no device with serial " + serial + " was seen");
+  Device& device = *found;
   if (!RoleFits(device.kind(), binding.role)) {
     return UsageError(std::string("a ") + stream::Name(device.kind()) + " cannot be " +
                       stream::Name(binding.role));
@@ -343,10 +367,10 @@ Result<void> Hub::AssignRole(const std::string& serial, const Binding& binding) 
   const Binding before = device.binding();
   for (const auto& other : devices_) {
     if (other.get() == &device || other->binding() != binding) continue;
-    assigned_[other->identity().serial] = before;
+    KeepRole(other->identity().serial, before);
     Rebind(*other, before);
   }
-  assigned_[serial] = binding;
+  KeepRole(serial, binding);
   Rebind(device, binding);
   return {};
 }

@@ -13,6 +13,7 @@
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/device.h"
 #include "daemon/sensor/service/tick_content.h"
+#include "daemon/sensor/setup/book.h"
 
 namespace footing::sensor {
 
@@ -31,6 +32,15 @@ class Hub {
     std::function<Device::Stored(const std::string& serial)> load_calibration = {};
     std::function<void(const std::string& serial, const std::vector<std::uint8_t>&)>
         save_calibration = {};
+    /// Where the set-up is kept between runs; none: in memory.
+    setup::Shelf shelf = {};
+  };
+
+  /// What a command measured.
+  struct Measured {
+    double residual = 0;
+    std::string unit;
+    std::string message;
   };
 
   /// Devices known at once, lost ones included; the longest lost makes room.
@@ -56,6 +66,18 @@ class Hub {
   Result<void> RequestDeviceStatus(std::uint32_t device);
   /// The device that had this role gets the one that this device had.
   Result<void> AssignRole(const std::string& serial, const Binding& binding);
+  /// Commands of the set-up (hub_setup.cc). What they change is saved at once and holds from the
+  /// end of the next tick on, so that a recording's reports and set-up give the same features
+  /// again.
+  ///
+  /// The mean of the board's newest `window_s` (0: 2 s) becomes its zero; or it is forgotten.
+  Result<Measured> Tare(const std::string& serial, double window_s, bool clear);
+  Result<Measured> SolveMounting(const std::string& serial, const MountingStretches& stretches);
+  Result<Measured> ClearMounting(const std::string& serial);
+  Result<Measured> SetBoardLayout(stream::BoardLayout layout);
+  Result<void> RecordSetup(const std::string& rig, const stream::SetupItem& item, bool forget);
+  /// A mounting of a recording, found for this role.
+  void TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting);
   void EndSession(std::uint64_t session);
   /// Every motor off, at once.
   void StopMotors();
@@ -73,12 +95,21 @@ class Hub {
 
   Device* Find(devices::DeviceHandle handle);
   Device* Numbered(std::uint32_t number);
+  Device* WithSerial(const std::string& serial);
   Result<Device*> Attached(std::uint32_t number);
+  Result<Device*> Attached(const std::string& serial);
+  Result<Device*> AttachedWorn(const std::string& serial);
   Device* MakeRoom();
   void Bind(Device& device);
   Binding ChooseBinding(const Device& device) const;
   void Rebind(Device& device, const Binding& binding);
   void RebuildRigs();
+  void KeepRole(const std::string& serial, const Binding& binding);
+  void ApplySetup(Device& device);
+  void ApplySetupToAll();
+  void WatchSetup();
+  void AddSetupTo(stream::DeviceStatus& status) const;
+  std::string BoardNote(const stream::DeviceStatus& status) const;
   void AddToRig(const Device& device, const stream::MotionSample& sample);
   void TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
                bool to_device, std::int64_t true_ns);
@@ -93,6 +124,8 @@ class Hub {
   std::map<std::string, Binding> assigned_;  // By serial; config first, then commands.
   std::map<std::string, Rig> rigs_;
   std::map<std::uint32_t, Lease> leases_;  // By device.
+  setup::Book book_;
+  std::uint64_t published_revision_ = 0;
   TickContent content_;
   std::vector<stream::DeviceState> last_states_;
   std::int64_t status_ns_ = 0;

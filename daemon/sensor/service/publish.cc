@@ -24,7 +24,9 @@ std::vector<transport::Channel> Channels() {
           {"boards", Tick::kBoardsFieldNumber, false},
           {"raw", Tick::kRawFieldNumber, false},
           {"nunchuk", Tick::kNunchukFieldNumber, false},
-          {"camera", Tick::kCameraFieldNumber, false}};
+          {"camera", Tick::kCameraFieldNumber, false},
+          {"boards_uniform", Tick::kBoardsUniformFieldNumber, false},
+          {"setup", Tick::kSetupFieldNumber, true}};
 }
 
 std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
@@ -48,6 +50,16 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
     v1::BoardSamples list;
     for (const auto& sample : content.boards) *list.add_samples() = wire::ToProto(sample);
     Append(channels, Tick::kBoardsFieldNumber, list);
+  }
+  if (!content.uniform_boards.empty()) {
+    v1::UniformBoardSamples list;
+    for (const auto& sample : content.uniform_boards) *list.add_samples() = wire::ToProto(sample);
+    Append(channels, Tick::kBoardsUniformFieldNumber, list);
+  }
+  if (content.has_setup) {
+    v1::SetupState state;
+    for (const auto& rig : content.setup) *state.add_rigs() = wire::ToProto(rig);
+    Append(channels, Tick::kSetupFieldNumber, state);
   }
   if (!content.nunchuks.empty()) {
     v1::NunchukSamples list;

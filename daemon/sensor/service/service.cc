@@ -10,10 +10,12 @@
 #include "common/service_manager/service_manager.h"
 #include "common/transport/address.h"
 #include "common/transport/server.h"
+#include "common/wire/wire.h"
 #include "daemon/sensor/devices/hid_source.h"
 #include "daemon/sensor/devices/socket_source.h"
 #include "daemon/sensor/service/hub.h"
 #include "daemon/sensor/service/publish.h"
+#include "daemon/sensor/setup/state_directory.h"
 
 namespace footing::sensor {
 namespace {
@@ -32,8 +34,8 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   options.version = version;
   options.channels = Channels();
   options.tick_rate_hz = config.tick_rate_hz;
-  options.capabilities = {"features", "boards",  "raw",    "rumble", "leds",
-                          "assign",   "nunchuk", "camera", "sphere"};
+  options.capabilities = {"features", "boards", "raw",   "rumble", "leds",     "assign", "nunchuk",
+                          "camera",   "sphere", "setup", "tare",   "mounting", "layout"};
   return options;
 }
 
@@ -45,6 +47,28 @@ v1::CommandResult Answer(const v1::Command& command, const Result<void>& done) {
   return result;
 }
 
+v1::CommandResult AnswerMeasured(const v1::Command& command,
+                                 const Result<Hub::Measured>& measured) {
+  if (!measured) return Answer(command, Result<void>(measured.error()));
+  v1::CommandResult result = Answer(command, Result<void>());
+  result.set_message(measured->message);
+  result.set_residual(measured->residual);
+  result.set_unit(measured->unit);
+  return result;
+}
+
+/// The directory as the book's shelf; none when nothing is to be kept.
+setup::Shelf ShelfOf(setup::StateDirectory& directory, const Config& config) {
+  if (config.state_directory == "none") return {};
+  return {[&directory](const std::string& name) { return directory.Load(name); },
+          [&directory](const std::string& name, const std::string& content) {
+            directory.Save(name, content);
+          },
+          [&directory](const std::string& name, const std::string& why) {
+            directory.Refuse(name, why);
+          }};
+}
+
 }  // namespace
 
 class Service::Implementation : public std::enable_shared_from_this<Service::Implementation> {
@@ -53,6 +77,9 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       : io_(io),
         config_(config),
         timer_(io),
+        state_(setup::StatePath(config.state_directory),
+               [](const std::string& line) { log::Warning(line); }),
+        calibrations_(ShelfOf(state_, config)),
         hub_(config,
              {[this](DeviceHandle device, const reports::OutputReport& report) {
                 Send(device, report);
@@ -61,7 +88,11 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
               [this](DeviceHandle device, std::uint8_t id, std::size_t size) {
                 RequestFeature(device, id, size);
               },
-              nullptr, nullptr}),
+              [this](const std::string& serial) { return calibrations_.Load(serial); },
+              [this](const std::string& serial, const std::vector<std::uint8_t>& bytes) {
+                calibrations_.Save(serial, bytes);
+              },
+              ShelfOf(state_, config)}),
         server_(
             io, MakeServerOptions(config, version),
             {[this](const transport::SessionInfo& session, const v1::Command& command) {
@@ -195,10 +226,26 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       case v1::Command::kPush:
       case v1::Command::kDirectGait:
         return Answer(command, UsageError("that is a command for footing-sim"));
-      case v1::Command::kTare:
-      case v1::Command::kSolveMounting:
+      case v1::Command::kTare: {
+        const v1::Tare& tare = command.tare();
+        return AnswerMeasured(command, hub_.Tare(tare.serial(), tare.window_s(), tare.clear()));
+      }
+      case v1::Command::kSolveMounting: {
+        const v1::SolveMounting& solve = command.solve_mounting();
+        if (solve.clear()) return AnswerMeasured(command, hub_.ClearMounting(solve.serial()));
+        return AnswerMeasured(
+            command,
+            hub_.SolveMounting(solve.serial(), {solve.still_from_ns(), solve.still_to_ns(),
+                                                solve.steps_from_ns(), solve.steps_to_ns()}));
+      }
       case v1::Command::kSetBoardLayout:
-      case v1::Command::kRecordSetup:
+        return AnswerMeasured(
+            command, hub_.SetBoardLayout(wire::FromProto(command.set_board_layout().layout())));
+      case v1::Command::kRecordSetup: {
+        const v1::RecordSetup& record = command.record_setup();
+        return Answer(command, hub_.RecordSetup(record.rig(), wire::FromProto(record.item()),
+                                                record.forget()));
+      }
       case v1::Command::ACTION_NOT_SET:
         return Answer(command, UsageError("the command has no action that footingd knows"));
     }
@@ -212,6 +259,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   std::vector<std::unique_ptr<devices::DeviceSource>> sources_;
   std::map<DeviceHandle, std::size_t> source_of_;
   DeviceHandle last_handle_ = 0;
+  setup::StateDirectory state_;
+  setup::CalibrationShelf calibrations_;
   Hub hub_;
   transport::Server server_;
   std::vector<std::string> listening_on_;

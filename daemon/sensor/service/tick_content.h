@@ -4,6 +4,7 @@
 
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
+#include "common/stream/setup.h"
 
 namespace footing::sensor {
 
@@ -11,12 +12,15 @@ namespace footing::sensor {
 struct TickContent {
   std::vector<stream::MotionSample> motion;
   std::vector<stream::BoardSample> boards;
+  std::vector<stream::UniformBoardSample> uniform_boards;
   std::vector<stream::NunchukSample> nunchuks;
   std::vector<stream::CameraSample> cameras;
   std::vector<stream::RawReport> raw;
   std::vector<stream::RigFeatures> features;
   bool has_status = false;
   std::vector<stream::DeviceStatus> status;
+  bool has_setup = false;
+  std::vector<stream::RigSetup> setup;
 };
 
 /// Bounds a tick against a device that floods; a tick of eight devices has some ten of each.

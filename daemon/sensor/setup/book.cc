@@ -10,6 +10,11 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Text may come from a client or a device: what is no UTF-8 is replaced, not thrown.
+std::string Text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 double Finite(const Json& json, const char* key) {
   const double value = json.at(key).get<double>();
   return std::isfinite(value) ? value : 0;
@@ -76,9 +81,8 @@ void Open(const Shelf& shelf, const char* name, Read read) {
 }  // namespace
 
 Book::Book(Shelf shelf) : shelf_(std::move(shelf)) {
-  Open(shelf_, "roles", [this](const Json& json) {
-    roles_ = json.get<std::map<std::string, std::string>>();
-  });
+  Open(shelf_, "roles",
+       [this](const Json& json) { roles_ = json.get<std::map<std::string, std::string>>(); });
   Open(shelf_, "tares", [this](const Json& json) {
     std::map<std::string, StoredTare> tares;
     for (const auto& [serial, one] : json.items()) {
@@ -94,7 +98,8 @@ Book::Book(Shelf shelf) : shelf_(std::move(shelf)) {
       Eigen::Quaterniond rotation(Finite(one, "w"), Finite(one, "x"), Finite(one, "y"),
                                   Finite(one, "z"));
       if (std::abs(rotation.norm() - 1) > 0.01) continue;  // No rotation: not mounted.
-      mountings[serial] = {one.at("role"), rotation.normalized(), Finite(one, "residual_rad")};
+      mountings[serial] = {one.at("role"), rotation.normalized(), Finite(one, "residual_rad"),
+                           one.at("slipped")};
     }
     mountings_ = std::move(mountings);
   });
@@ -110,9 +115,8 @@ Book::Book(Shelf shelf) : shelf_(std::move(shelf)) {
     }
     items_ = std::move(items);
   });
-  Open(shelf_, "moved", [this](const Json& json) {
-    moved_ = json.get<std::map<std::string, bool>>();
-  });
+  Open(shelf_, "moved",
+       [this](const Json& json) { moved_ = json.get<std::map<std::string, bool>>(); });
 }
 
 void Book::Save(const std::string& name, const std::string& content) {
@@ -121,11 +125,14 @@ void Book::Save(const std::string& name, const std::string& content) {
 }
 
 void Book::SetRole(const std::string& serial, const std::string& role) {
-  if (roles_.size() >= kMostSerials && !roles_.contains(serial)) return;
-  roles_[serial] = role;
+  if (role.empty()) {
+    if (roles_.erase(serial) == 0) return;
+  } else if (roles_.size() < kMostSerials || roles_.contains(serial)) {
+    roles_[serial] = role;
+  }
   SaveRoles();
 }
-void Book::SaveRoles() { Save("roles", Json(roles_).dump()); }
+void Book::SaveRoles() { Save("roles", Text(Json(roles_))); }
 
 std::optional<StoredTare> Book::TareOf(const std::string& serial) const {
   const auto found = tares_.find(serial);
@@ -150,7 +157,7 @@ void Book::SaveTares() {
                     {"bottom_right_n", one.offset.bottom_right_n},
                     {"residual_n", one.residual_n}};
   }
-  Save("tares", json.dump());
+  Save("tares", Text(json));
 }
 
 std::optional<StoredMounting> Book::MountingOf(const std::string& serial,
@@ -172,25 +179,42 @@ void Book::SetMounting(const std::string& serial, const std::optional<StoredMoun
 void Book::SaveMountings() {
   Json json = Json::object();
   for (const auto& [serial, one] : mountings_) {
-    json[serial] = {{"role", one.role},          {"w", one.rotation_MS.w()},
-                    {"x", one.rotation_MS.x()},  {"y", one.rotation_MS.y()},
-                    {"z", one.rotation_MS.z()},  {"residual_rad", one.residual_rad}};
+    json[serial] = {{"role", one.role},         {"w", one.rotation_MS.w()},
+                    {"x", one.rotation_MS.x()}, {"y", one.rotation_MS.y()},
+                    {"z", one.rotation_MS.z()}, {"residual_rad", one.residual_rad},
+                    {"slipped", one.slipped}};
   }
-  Save("mountings", json.dump());
+  Save("mountings", Text(json));
 }
 
-void Book::SetLayout(const stream::BoardLayout& layout) {
+bool Book::SetLayout(const stream::BoardLayout& layout) {
+  if (layouts_.size() >= kMostRigs && !layouts_.contains(layout.rig)) return false;
   layouts_[layout.rig] = layout;
   SaveLayouts();
+  return true;
+}
+
+stream::BoardLayout Book::LayoutOf(const std::string& rig) const {
+  const auto found = layouts_.find(rig);
+  return found == layouts_.end() ? stream::BoardLayout{} : found->second;
+}
+
+bool Book::LayoutChecked(const std::string& rig) const {
+  const auto found = items_.find(rig);
+  return found != items_.end() &&
+         std::any_of(found->second.begin(), found->second.end(), [](const auto& one) {
+           return one.name == "layout" && one.passed && !one.stale;
+         });
 }
 
 void Book::SaveLayouts() {
   Json json = Json::object();
   for (const auto& [rig, one] : layouts_) json[rig] = ToJson(one);
-  Save("layouts", json.dump());
+  Save("layouts", Text(json));
 }
 
-void Book::Record(const std::string& rig, const stream::SetupItem& item) {
+bool Book::Record(const std::string& rig, const stream::SetupItem& item) {
+  if (items_.size() >= kMostRigs && !items_.contains(rig)) return false;
   auto& items = items_[rig];
   const auto same = std::find_if(items.begin(), items.end(), [&item](const auto& one) {
     return one.name == item.name && one.serial == item.serial;
@@ -199,8 +223,11 @@ void Book::Record(const std::string& rig, const stream::SetupItem& item) {
     *same = item;
   } else if (items.size() < kMostItems) {
     items.push_back(item);
+  } else {
+    return false;
   }
   SaveItems();
+  return true;
 }
 
 void Book::Forget(const std::string& rig, const std::string& name, const std::string& serial) {
@@ -234,8 +261,7 @@ void Book::SaveItems() {
     json[rig] = Json::array();
     for (const auto& one : list) json[rig].push_back(ToJson(one));
   }
-  // Text may come from a client: what is no UTF-8 is replaced, not thrown.
-  Save("items", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  Save("items", Text(json));
 }
 
 void Book::SetMoved(const std::string& serial, bool moved) {
@@ -247,12 +273,16 @@ void Book::SetMoved(const std::string& serial, bool moved) {
   }
   SaveMoved();
 }
-void Book::SaveMoved() { Save("moved", Json(moved_).dump()); }
+void Book::SaveMoved() { Save("moved", Text(Json(moved_))); }
 
 std::vector<stream::RigSetup> Book::Rigs() const {
   std::map<std::string, stream::RigSetup> rigs;
   for (const auto& [rig, layout] : layouts_) rigs[rig].layout = layout;
   for (const auto& [rig, items] : items_) rigs[rig].items = items;
+  for (const auto& [serial, one] : mountings_) {
+    rigs[one.role.substr(0, one.role.find('/'))].mountings.push_back(
+        {serial, one.rotation_MS, one.residual_rad});
+  }
   std::vector<stream::RigSetup> list;
   for (auto& [rig, setup] : rigs) {
     setup.rig = rig;
@@ -266,8 +296,8 @@ std::optional<std::vector<std::uint8_t>> CalibrationShelf::Load(const std::strin
   const std::string name = "calibration-" + serial;
   Open(shelf_, name.c_str(), [&](const Json& json) {
     const std::string hex = json.at("hex");
-    const bool whole = hex.size() % 2 == 0 &&
-                       hex.find_first_not_of("0123456789abcdef") == std::string::npos;
+    const bool whole =
+        hex.size() % 2 == 0 && hex.find_first_not_of("0123456789abcdef") == std::string::npos;
     if (json.at("serial") != serial || !whole || hex.empty()) {
       if (shelf_.refuse) shelf_.refuse(name, "it is of another device, or no calibration");
       return;
@@ -288,7 +318,9 @@ void CalibrationShelf::Save(const std::string& serial,
     hex += kDigits[byte >> 4];
     hex += kDigits[byte & 15];
   }
-  if (shelf_.save) shelf_.save("calibration-" + serial, Json{{"serial", serial}, {"hex", hex}}.dump());
+  if (shelf_.save) {
+    shelf_.save("calibration-" + serial, Text(Json{{"serial", serial}, {"hex", hex}}));
+  }
 }
 
 }  // namespace footing::setup

@@ -18,6 +18,7 @@ struct StoredMounting {
   std::string role;  ///< "rig/role" that it was found for; stale on another.
   Eigen::Quaterniond rotation_MS = Eigen::Quaterniond::Identity();
   double residual_rad = 0;
+  bool slipped = false;  ///< Since it was found.
 };
 
 struct StoredTare {
@@ -32,14 +33,15 @@ struct Shelf {
   std::function<void(const std::string& name, const std::string& why)> refuse;
 };
 
-/// The set-up of all rigs: who was assigned what, tares, mountings, layouts, what was done when, and
-/// what is stale since. Every change is saved at once. Content is JSON, one piece per concern.
+/// The set-up of all rigs: who was assigned what, tares, mountings, layouts, what was done when,
+/// and what is stale since. Every change is saved at once. Content is JSON, one piece per concern.
 class Book {
  public:
   explicit Book(Shelf shelf);
 
   /// Roles assigned by command, serial to "rig/role".
   const std::map<std::string, std::string>& roles() const { return roles_; }
+  /// An empty role forgets it.
   void SetRole(const std::string& serial, const std::string& role);
 
   std::optional<StoredTare> TareOf(const std::string& serial) const;
@@ -50,14 +52,18 @@ class Book {
                                            const std::string& role) const;
   void SetMounting(const std::string& serial, const std::optional<StoredMounting>& mounting);
 
-  /// The layout of its rig is checked from now on.
-  void SetLayout(const stream::BoardLayout& layout);
-  /// Replaces the item of that name and serial.
-  void Record(const std::string& rig, const stream::SetupItem& item);
+  /// False when there are too many rigs already.
+  bool SetLayout(const stream::BoardLayout& layout);
+  /// Replaces the item of that name and serial. False when there are too many already.
+  bool Record(const std::string& rig, const stream::SetupItem& item);
   void Forget(const std::string& rig, const std::string& name, const std::string& serial);
   /// Marks items of that name (of all serials if `serial` is empty) as to be redone.
   void MarkStale(const std::string& rig, const std::string& name, const std::string& serial,
                  const std::string& why);
+  /// The layout was checked, passed, and is not stale.
+  bool LayoutChecked(const std::string& rig) const;
+  /// The rig's layout; its preset is empty while none is set.
+  stream::BoardLayout LayoutOf(const std::string& rig) const;
   /// A board that was moved since its layout was checked; kept over restarts.
   bool Moved(const std::string& serial) const { return moved_.contains(serial); }
   void SetMoved(const std::string& serial, bool moved);
@@ -68,6 +74,7 @@ class Book {
 
  private:
   static constexpr std::size_t kMostItems = 256;
+  static constexpr std::size_t kMostRigs = 64;
   static constexpr std::size_t kMostSerials = 256;
 
   void SaveRoles();
@@ -82,9 +89,9 @@ class Book {
   std::map<std::string, std::string> roles_;
   std::map<std::string, StoredTare> tares_;
   std::map<std::string, StoredMounting> mountings_;
-  std::map<std::string, stream::BoardLayout> layouts_;            // By rig.
+  std::map<std::string, stream::BoardLayout> layouts_;           // By rig.
   std::map<std::string, std::vector<stream::SetupItem>> items_;  // By rig.
-  std::map<std::string, bool> moved_;                             // Serials.
+  std::map<std::string, bool> moved_;                            // Serials.
   std::uint64_t revision_ = 1;
 };
 

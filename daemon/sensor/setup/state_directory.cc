@@ -125,10 +125,8 @@ void StateDirectory::Save(const std::string& name, const std::string& content) {
     std::error_code error;
     std::filesystem::create_directories(path_, error);
     const auto json = nlohmann::json::parse(content, nullptr, false);
-    const nlohmann::json file = {{"version", kVersion},
-                                 {"name", name},
-                                 {"crc32", Checksum(json.dump())},
-                                 {"content", json}};
+    const nlohmann::json file = {
+        {"version", kVersion}, {"name", name}, {"crc32", Checksum(json.dump())}, {"content", json}};
     why = error ? error.message() : WriteDurably(FileOf(name), file.dump(2) + "\n");
   }
   if (why.empty()) {

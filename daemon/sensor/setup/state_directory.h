@@ -6,9 +6,10 @@
 
 namespace footing::setup {
 
-/// What footingd remembers between its runs: one small JSON file per concern ("roles", "tares", ...)
-/// with its version, its own name or serial, and a CRC-32 of its content. A file that is truncated,
-/// damaged, of another version, or of another name is named in one line and moved aside to
+/// What footingd remembers between its runs: one small JSON file per concern ("roles", "tares",
+/// ...) with its version, its own name or serial, and a CRC-32 of its content. A file that is
+/// truncated, damaged, of another version, or of another name is named in one line and moved aside
+/// to
 /// *.damaged; a directory that cannot be written is said once, and footingd goes on in memory.
 /// Nothing here is ever fatal.
 class StateDirectory {

@@ -227,6 +227,16 @@ TEST(Doctor, AsksForAGroupWhereTheRuleWasApplied) {
   EXPECT_THAT(finding->remedy, HasSubstr("usermod -aG footing ann"));
 }
 
+TEST(Doctor, SendsWhoMayNotReachTheServiceToItsGroup) {
+  Facts facts = HealthyHost();
+  facts.footingd_reached = false;
+  facts.footingd_trouble = "nothing answers";
+  EXPECT_THAT(Find(Examine(facts), "footingd_not_running")->remedy, HasSubstr("--connect"));
+  facts.user.gids = {1000};
+  EXPECT_THAT(Find(Examine(facts), "footingd_not_running")->remedy,
+              HasSubstr("usermod -aG footing ann"));
+}
+
 TEST(Doctor, TakesFiveDevicesForTooManyOnlyWithJitter) {
   Facts facts = HealthyHost();
   facts.adapters[0].links = 5;

@@ -27,9 +27,11 @@ TEST(StillThenSteps, FindsTheStillnessAndTheStepsAfterIt) {
   ASSERT_EQ(found.phase(), StillThenSteps::Phase::kDone);
   const auto at = [](double s) { return 10 * kSecond_ns + static_cast<std::int64_t>(s * 1e9); };
   EXPECT_GE(found.still_to_ns() - found.still_from_ns(), 2 * kSecond_ns);
-  EXPECT_LE(found.still_to_ns(), at(8));
+  EXPECT_LE(found.still_to_ns(), at(7.5));
   EXPECT_GE(found.still_from_ns(), at(2.5));
-  EXPECT_GE(found.steps_from_ns(), at(7.9));
+  // The shake of half a second: movement may have begun so long before it shows.
+  EXPECT_LE(found.steps_from_ns(), at(7.5));
+  EXPECT_GE(found.steps_from_ns(), at(7.4));
   EXPECT_GT(found.steps_to_ns(), at(10.5));
   EXPECT_LT(found.steps_to_ns(), at(11.5));
 }

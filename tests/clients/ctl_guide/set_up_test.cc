@@ -38,9 +38,11 @@ class Person {
   }
 
   /// Runs a set-up to its end, at most two minutes of its own time.
-  std::vector<stream::SetupItem> Do(std::vector<Item> items) {
+  std::vector<stream::SetupItem> Do(std::vector<Item> items,
+                                    std::vector<stream::DeviceRole> worn = {}) {
     Wishes wishes;
     wishes.patience_s = 20;
+    wishes.worn = std::move(worn);
     SetUp set_up(wishes, std::move(items));
     for (int i = 0; i < 20 * 120; ++i) {
       Live();
@@ -190,6 +192,51 @@ TEST(SetUp, GivesEachDeviceTheRoleOfTheGesture) {
   EXPECT_EQ(person.devices[1].role, stream::DeviceRole::kRightBoard);
   EXPECT_EQ(person.devices[2].role, stream::DeviceRole::kLeftLeg);
   EXPECT_EQ(person.devices[3].role, stream::DeviceRole::kRightLeg);
+}
+
+TEST(SetUp, AsksForWhatTheRemotesAreToBeWornAs) {
+  Person person;  // Footingd took them for wrist remotes.
+  person.SetRoles({stream::DeviceRole::kLeftBoard, stream::DeviceRole::kRightBoard,
+                   stream::DeviceRole::kRightHand, stream::DeviceRole::kLeftHand});
+  const auto results =
+      person.Do({Item::kRoles}, {stream::DeviceRole::kLeftLeg, stream::DeviceRole::kRightLeg});
+  EXPECT_EQ(person.devices[2].role, stream::DeviceRole::kLeftLeg);
+  EXPECT_EQ(person.devices[3].role, stream::DeviceRole::kRightLeg);
+  EXPECT_TRUE(Find(results, "roles", "serial-3")->passed);
+}
+
+TEST(SetUp, GivesALoneRemoteItsRoleWithoutAGesture) {
+  Person person;
+  person.devices = {person.devices[2]};
+  person.Do({Item::kRoles}, {stream::DeviceRole::kHead});
+  EXPECT_EQ(person.devices[0].role, stream::DeviceRole::kHead);
+  for (const std::string& prompt : person.prompts) EXPECT_EQ(prompt, "");
+}
+
+TEST(SetUp, SaysThatThereAreFewerRemotesThanRoles) {
+  Person person;
+  const auto results = person.Do(
+      {Item::kRoles},
+      {stream::DeviceRole::kLeftLeg, stream::DeviceRole::kRightLeg, stream::DeviceRole::kHead});
+  const auto* bad = Find(results, "roles", "");
+  ASSERT_NE(bad, nullptr);
+  EXPECT_FALSE(bad->passed);
+  EXPECT_NE(bad->note.find("3 roles are asked for, but only 2"), std::string::npos) << bad->note;
+}
+
+TEST(SetUp, LeavesTheRoleOfARemoteThatIsNotAskedFor) {
+  Person person;
+  const auto results = person.Do({Item::kRoles}, {stream::DeviceRole::kLeftLeg});
+  EXPECT_TRUE(Find(results, "roles", "serial-4")->passed);
+  EXPECT_EQ(person.devices[3].role, stream::DeviceRole::kRightLeg);
+}
+
+TEST(SetUp, DoesNotMountWhatLiesOnTheTable) {
+  Person person;
+  person.devices[3].role = stream::DeviceRole::kEditor;
+  const auto results = person.Do({Item::kMounting});
+  EXPECT_NE(Find(results, "mounting", "serial-3"), nullptr);
+  EXPECT_EQ(Find(results, "mounting", "serial-4"), nullptr);
 }
 
 TEST(SetUp, NeverGuessesARoleWhenTwoAreShaken) {

@@ -18,7 +18,16 @@ constexpr double kHalfY_m = 0.238 / 2;
 constexpr double kYaw_rad[2] = {-kPi / 2, kPi / 2};
 constexpr double kTremor_mps2 = 0.05;
 constexpr double kSway_m = 0.002;
-const Eigen::Vector3d kSwing_S = Eigen::Vector3d(0, 0.6, 0.8);
+constexpr double kOvertone = 0.25;   // Without it half a period would look like a whole one.
+constexpr double kRattle_rad = 0.9;  // How far a loose strap turns about the limb, to and fro.
+constexpr double kRattle_hz = 0.35;  // Slow, so that two parts of three steps differ.
+const Eigen::Vector3d kSwing_M = Eigen::Vector3d(0, 0.6, 0.8);
+
+/// How the straps sit in truth: f_S = this * f_M.
+Eigen::Quaterniond Askew(int limb) {
+  return limb == 0 ? Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2).normalized()
+                   : Eigen::Quaterniond(0.5, -0.6, 0.2, 0.5).normalized();
+}
 
 double Follow(double value, double target, double elapsed_s) {
   return target + (value - target) * std::exp(-elapsed_s / kFollow_s);
@@ -26,20 +35,22 @@ double Follow(double value, double target, double elapsed_s) {
 
 }  // namespace
 
+stream::DeviceRole Body::Role(int limb) const {
+  using stream::DeviceRole;
+  if (worn_ == Worn::kShins) return limb == 0 ? DeviceRole::kLeftLeg : DeviceRole::kRightLeg;
+  return limb == 0 ? DeviceRole::kLeftHand : DeviceRole::kRightHand;
+}
+
 bool Body::Tell(const std::string& line) {
   std::istringstream words(line);
   std::string verb;
   std::string which;
-  words >> verb;
-  if (verb == "slip") {
-    double degrees = 0;
-    if (!(words >> degrees)) return false;
-    slip_rad_ = DegreesToRadians(degrees);
-    return true;
-  }
-  words >> which;
-  const int side = which == "right" ? 1 : 0;
-  const auto both = [this](const Swing& swing) { swing_ = {swing, swing}; };
+  words >> verb >> which;
+  const auto side = static_cast<std::size_t>(which == "right" ? 1 : 0);
+  const auto both = [this](const Swing& swing) {
+    swing_ = {swing, swing};
+    swinging_s_ = {};
+  };
   if (verb == "off" || verb == "left" || verb == "right" || verb == "both") {
     stance_ = verb;
     lean_m_ = 0;
@@ -49,17 +60,23 @@ bool Body::Tell(const std::string& line) {
     both({});
   } else if (verb == "shake") {
     both({});
-    swing_[side] = {4, 0, 20};
-  } else if (verb == "walk" || verb == "steps") {
-    both({1.3, kPi, 8});
+    swing_[side] = {4, 20, false};
+  } else if (verb == "walk") {
+    both({1.3, 8, true});
   } else if (verb == "run") {
-    both({2.6, kPi, 14});
+    both({2.6, 14, true});
   } else if (verb == "jump") {
-    both({1.3, 0, 14});
+    both({1.3, 14, false});
   } else if (verb == "swap") {
     swapped_ = !swapped_;
   } else if (verb == "turn") {
     turned_[side] = !turned_[side];
+  } else if (verb == "slip") {
+    double degrees = 0;
+    if (!(words >> degrees)) return false;
+    strap_[side].slip_rad = DegreesToRadians(degrees);
+  } else if (verb == "loose") {
+    strap_[side].loose = !strap_[side].loose;
   } else {
     return false;
   }
@@ -89,20 +106,31 @@ device_models::CornerForces Body::Board(int board, double t_s) {
           quarter_n * (1 - x) * (1 - y), quarter_n * (1 + x) * (1 - y)};
 }
 
-Eigen::Vector3d Body::Hand(int hand, double t_s) {
-  const auto i = static_cast<std::size_t>(hand);
-  const double elapsed_s = std::max(0.0, t_s - hand_s_[i]);
-  hand_s_[i] = t_s;
+/// Along kSwing_M, from rest, in units of the amplitude.
+double Body::Wave(int limb) const {
+  const auto i = static_cast<std::size_t>(limb);
   const Swing& swing = swing_[i];
-  // Both angles advance alike; their difference follows the phase that is asked for.
-  angle_rad_[i] += 2 * kPi * swing.frequency_hz * elapsed_s;
-  const double phase_rad = angle_rad_[i] + (i == 1 ? swing.phase_rad : 0);
-  const double wave = std::sin(phase_rad) + 0.3 * std::sin(2 * phase_rad + 0.6);
-  Eigen::Vector3d force =
-      Eigen::Vector3d(0, 0, -kStandardGravityMps2) + swing.amplitude_mps2 * wave * kSwing_S;
-  for (int axis = 0; axis < 3; ++axis) force[axis] += kTremor_mps2 * random_.Normal();
-  if (i != 1) return force;
-  return Eigen::AngleAxisd(slip_rad_, Eigen::Vector3d::UnitX()) * force;
+  double cycles = swing.frequency_hz * swinging_s_[i];
+  if (swing.in_turns && worn_ == Worn::kShins && limb == 1) cycles -= 0.5;
+  if (cycles <= 0) return 0;
+  const bool back = swing.in_turns && worn_ == Worn::kWrists && limb == 0;
+  const double angle_rad = 2 * kPi * cycles + (back ? kPi : 0);
+  return std::sin(angle_rad) + kOvertone * std::sin(2 * angle_rad);
+}
+
+Eigen::Vector3d Body::Limb(int limb, double t_s) {
+  const auto i = static_cast<std::size_t>(limb);
+  const double elapsed_s = std::max(0.0, t_s - limb_s_[i]);
+  limb_s_[i] = t_s;
+  swinging_s_[i] += elapsed_s;
+  Eigen::Vector3d force_M = Eigen::Vector3d(0, 0, -kStandardGravityMps2) +
+                            swing_[i].amplitude_mps2 * Wave(limb) * kSwing_M;
+  for (int axis = 0; axis < 3; ++axis) force_M[axis] += kTremor_mps2 * random_.Normal();
+  double about_limb_rad = strap_[i].slip_rad;
+  if (strap_[i].loose && swing_[i].amplitude_mps2 > 0) {
+    about_limb_rad += kRattle_rad * std::sin(2 * kPi * kRattle_hz * swinging_s_[i]);
+  }
+  return Askew(limb) * (Eigen::AngleAxisd(about_limb_rad, Eigen::Vector3d::UnitZ()) * force_M);
 }
 
 }  // namespace footing::scenario

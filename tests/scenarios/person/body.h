@@ -6,41 +6,61 @@
 #include <string>
 
 #include "common/device_models/balance_board.h"
+#include "common/stream/device.h"
 #include "common/synthetic/random.h"
 
 namespace footing::scenario {
 
-/// A made person on two boards with a remote on each wrist, told in words what to do. Boards and
-/// hands are numbered 0 (left) and 1 (right) by what the person calls them.
+/// A made person on two boards with a remote on each wrist or each shin, told in words what to do.
+/// Boards and limbs are numbered 0 (left) and 1 (right) by what the person calls them.
+///
+/// A limb that hangs feels (0, 0, -g) in its frame M (x left, y front, z down) and swings in the
+/// plane of front and down, from rest: left leg and right hand to the front first, the left hand to
+/// the back, the right leg half a cycle later. The remotes are strapped on askew, each in its own
+/// way, so that nothing is right before the mounting is found.
 class Body {
  public:
+  enum class Worn { kWrists, kShins };
+  explicit Body(Worn worn) : worn_(worn) {}
+
+  stream::DeviceRole Role(int limb) const;
+
   /// One line: off | left | right | both | lean | shake left | shake right | still | walk | run |
-  /// jump | steps | swap | turn left | turn right | slip DEGREES. False when it is not known.
+  /// jump | swap (the boards) | turn left | turn right (a board, by half) | slip left DEGREES |
+  /// slip right DEGREES (a strap, about the limb) | loose left | loose right (a strap; again:
+  /// tight). False when it is not known.
   bool Tell(const std::string& line);
 
   /// What the board feels that lies in this place in the beginning. Times never go back.
   device_models::CornerForces Board(int board, double t_s);
-  Eigen::Vector3d Hand(int hand, double t_s);
+  /// What the limb's remote feels, in the remote's own axes.
+  Eigen::Vector3d Limb(int limb, double t_s);
 
  private:
   struct Swing {
     double frequency_hz = 0;
-    double phase_rad = 0;  // Right minus left.
     double amplitude_mps2 = 0;
+    bool in_turns = false;
+  };
+  struct Strap {
+    double slip_rad = 0;  // About the limb.
+    bool loose = false;
   };
   double Share(int place) const;
+  double Wave(int limb) const;
 
+  Worn worn_;
   std::string stance_ = "off";
   double lean_m_ = 0;
   std::array<Swing, 2> swing_;
+  std::array<Strap, 2> strap_;
   std::array<bool, 2> turned_{};
   bool swapped_ = false;
-  double slip_rad_ = 0;
   std::array<double, 2> share_{};  // As it is now; follows Share() within a third of a second.
   std::array<double, 2> leaning_m_{};
   std::array<double, 2> board_s_{};
-  std::array<double, 2> hand_s_{};
-  std::array<double, 2> angle_rad_{};
+  std::array<double, 2> limb_s_{};
+  std::array<double, 2> swinging_s_{};  // Since the swing began.
   synthetic::Random random_{7};
 };
 

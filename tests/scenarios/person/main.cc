@@ -1,6 +1,9 @@
-// scenario_person DEVICE_SOCKET [--low-battery]: two boards and two wrist remotes under a person
-// who does what the lines of standard input say (see body.h), and "replug": the left remote goes
-// away for a second.
+// scenario_person DEVICE_SOCKET [--shins] [--jumbled] [--low-battery]: two boards and two remotes,
+// on the wrists or the shins, under a person who does what the lines of standard input say: those
+// of body.h, "on" (switches all devices on) and "replug" (the left remote goes away for a second).
+// Jumbled devices ask for the other side's roles, as if they had been switched on in the wrong
+// order.
+#include <array>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/read_until.hpp>
@@ -8,6 +11,8 @@
 #include <boost/asio/streambuf.hpp>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "clients/stream/dialer.h"
 #include "common/log/log.h"
@@ -18,73 +23,95 @@ namespace {
 
 using namespace footing;  // NOLINT: a program of one file
 namespace asio = boost::asio;
+using device_models::LinkQuality;
+using stream::DeviceRole;
 using stream_client::Dialer;
 using stream_client::StandIn;
 
 constexpr std::uint8_t kExhausted = 0x08;  // Of a Wiimote's battery; full is 0xc8.
+constexpr std::size_t kLeftRemote = 2;     // Slots: left board, right board, left and right remote.
+
+struct Options {
+  transport::Address to;
+  scenario::Body::Worn worn = scenario::Body::Worn::kWrists;
+  bool jumbled = false;
+  bool low_battery = false;
+};
 
 class Person {
  public:
-  Person(asio::io_context& io, transport::Address to, bool low_battery)
-      : io_(io), to_(std::move(to)), low_battery_(low_battery), in_(io, 0), away_(io) {
-    for (int slot = 0; slot < 4; ++slot) Attach(slot);
+  Person(asio::io_context& io, Options options)
+      : io_(io), options_(std::move(options)), body_(options_.worn), in_(io, 0), away_(io) {
     Listen();
   }
 
  private:
-  void Attach(int slot) {
-    using device_models::LinkQuality;
-    const bool board = slot < 2;
-    const int side = slot % 2;
+  StandIn Board(int side, std::uint64_t seed) {
+    const bool left = (side == 0) != options_.jumbled;
+    return {device_models::BalanceBoard(seed),
+            [this, side](double t_s) { return body_.Board(side, t_s); },
+            left ? DeviceRole::kLeftBoard : DeviceRole::kRightBoard,
+            device_models::BoardLink(LinkQuality::kGood, seed)};
+  }
+
+  StandIn Remote(int side, std::uint64_t seed) {
+    device_models::Wiimote wiimote(seed);
+    if (options_.low_battery && side == 1) wiimote.controller().set_battery(kExhausted);
+    const auto feels = [this, side](double t_s) {
+      device_models::WiimoteSensors sensors;
+      sensors.specific_force_S_mps2 = body_.Limb(side, t_s);
+      return sensors;
+    };
+    return {std::move(wiimote), feels, body_.Role(options_.jumbled ? 1 - side : side),
+            device_models::WiimoteLink(LinkQuality::kGood, seed)};
+  }
+
+  void SwitchOn(std::size_t slot) {
+    if (dialers_[slot]) return;
     const auto seed = static_cast<std::uint64_t>(100 + slot);
+    const int side = static_cast<int>(slot % 2);
     std::vector<StandIn> one;
-    if (board) {
-      one.emplace_back(
-          device_models::BalanceBoard(seed),
-          [this, side](double t_s) { return body_.Board(side, t_s); },
-          side == 0 ? stream::DeviceRole::kLeftBoard : stream::DeviceRole::kRightBoard,
-          device_models::BoardLink(LinkQuality::kGood, seed));
-    } else {
-      device_models::Wiimote wiimote(seed);
-      if (low_battery_ && side == 1) wiimote.controller().set_battery(kExhausted);
-      one.emplace_back(
-          std::move(wiimote), [this, side](double t_s) { return body_.Hand(side, t_s); },
-          side == 0 ? stream::DeviceRole::kLeftHand : stream::DeviceRole::kRightHand,
-          device_models::WiimoteLink(LinkQuality::kGood, seed));
-    }
-    dialers_[static_cast<std::size_t>(slot)] = std::make_unique<Dialer>(
-        io_, stream_client::DialerOptions{to_, 1, 0}, std::move(one), [] {});
-    dialers_[static_cast<std::size_t>(slot)]->Start();
+    one.push_back(slot < kLeftRemote ? Board(side, seed) : Remote(side, seed));
+    dialers_[slot] = std::make_unique<Dialer>(io_, stream_client::DialerOptions{options_.to, 1, 0},
+                                              std::move(one), [] {});
+    dialers_[slot]->Start();
   }
 
   void Replug() {
-    constexpr int kLeftRemote = 2;
+    if (!dialers_[kLeftRemote]) return;
     dialers_[kLeftRemote]->Stop("switched off");
     away_.expires_after(std::chrono::seconds(1));
     away_.async_wait([this](const boost::system::error_code& error) {
-      if (!error) Attach(kLeftRemote);
+      if (error) return;
+      dialers_[kLeftRemote].reset();
+      SwitchOn(kLeftRemote);
     });
   }
 
   void Listen() {
-    asio::async_read_until(
-        in_, text_, '\n', [this](const boost::system::error_code& error, std::size_t) {
-          if (error) return io_.stop();
-          std::istream stream(&text_);
-          std::string line;
-          std::getline(stream, line);
-          if (line == "replug") {
-            Replug();
-          } else if (!body_.Tell(line)) {
-            std::cerr << "error: the person does not know: " << line << std::endl;
-          }
-          Listen();
-        });
+    asio::async_read_until(in_, text_, '\n',
+                           [this](const boost::system::error_code& error, std::size_t) {
+                             if (error) return io_.stop();
+                             std::istream stream(&text_);
+                             std::string line;
+                             std::getline(stream, line);
+                             Obey(line);
+                             Listen();
+                           });
+  }
+
+  void Obey(const std::string& line) {
+    if (line == "on") {
+      for (std::size_t slot = 0; slot < dialers_.size(); ++slot) SwitchOn(slot);
+    } else if (line == "replug") {
+      Replug();
+    } else if (!body_.Tell(line)) {
+      std::cerr << "error: the person does not know: " << line << std::endl;
+    }
   }
 
   asio::io_context& io_;
-  transport::Address to_;
-  bool low_battery_;
+  Options options_;
   scenario::Body body_;
   asio::posix::stream_descriptor in_;
   asio::streambuf text_;
@@ -95,15 +122,22 @@ class Person {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) return 2;
-  const auto to = transport::ParseAddress(argv[1]);
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  const auto to = transport::ParseAddress(words.empty() ? "" : words.front());
   if (!to) {
     std::cerr << "error: " << to.error().message << std::endl;
     return 2;
   }
+  Options options;
+  options.to = *to;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == "--shins") options.worn = scenario::Body::Worn::kShins;
+    if (words[i] == "--jumbled") options.jumbled = true;
+    if (words[i] == "--low-battery") options.low_battery = true;
+  }
   log::Start("scenario_person", false);
   asio::io_context io(1);
-  Person person(io, *to, argc > 2 && std::string(argv[2]) == "--low-battery");
+  Person person(io, std::move(options));
   io.run();
   return 0;
 }

@@ -30,8 +30,7 @@ std::vector<stream::MotionSample> Record(const std::function<Vector3d(double)>& 
   sensor.quantum_mps2 = 0.092;
   std::vector<stream::MotionSample> samples;
   for (int i = 0; i < static_cast<int>(seconds * 100); ++i) {
-    const auto reading =
-        Read(sensor, rotation_MS.conjugate() * force_M(0.01 * i), random);
+    const auto reading = Read(sensor, rotation_MS.conjugate() * force_M(0.01 * i), random);
     stream::MotionSample sample;
     sample.sampled_ns = i * 10'000'000ll;
     sample.specific_force_mps2 = reading.specific_force_mps2;

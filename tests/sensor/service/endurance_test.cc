@@ -248,6 +248,8 @@ TEST(AnHourThatPassesUnseen, IsOneGapAndTheDevicesAreLiveAgain) {
   };
   run.Advance(30, take);
   const auto before = status;
+  EXPECT_EQ(before[0].note, "");
+  EXPECT_EQ(before[1].note.find("one board alone"), 0u);
   run.Jump(3600);
   run.Advance(1, take);
   ASSERT_EQ(status.size(), 2u);
@@ -255,7 +257,7 @@ TEST(AnHourThatPassesUnseen, IsOneGapAndTheDevicesAreLiveAgain) {
     EXPECT_EQ(status[i].state, stream::DeviceState::kLive);
     EXPECT_EQ(status[i].gaps, before[i].gaps + 1);
     EXPECT_EQ(status[i].gaps, streams.at(status[i].device).gaps());
-    EXPECT_EQ(status[i].note, "");
+    EXPECT_EQ(status[i].note, before[i].note);
   }
   EXPECT_EQ(status[0].extension, stream::Extension::kNunchuk);
 }

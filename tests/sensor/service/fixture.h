@@ -23,12 +23,12 @@ class Bench {
  public:
   using Model = std::variant<device_models::Wiimote, device_models::BalanceBoard>;
 
-  explicit Bench(const Config& config = {})
+  explicit Bench(const Config& config = {}, const setup::Shelf& shelf = {})
       : hub_(config, {[this](devices::DeviceHandle handle, const reports::OutputReport& report) {
                         Answer(handle, report);
                       },
                       [this](const std::string& line) { log.push_back(line); },
-                      [this] { return now_ns_; }}) {}
+                      [this] { return now_ns_; }, nullptr, nullptr, nullptr, shelf}) {}
 
   devices::DeviceHandle Attach(Model model, const std::string& serial = "", bool simulated = true) {
     const auto& own = std::visit(
@@ -112,6 +112,8 @@ class Bench {
     add(content.motion, tick.motion);
     add(content.boards, tick.boards);
     add(content.raw, tick.raw);
+    add(content.uniform_boards, tick.uniform_boards);
+    if (tick.has_setup) content.setup = std::move(tick.setup);
     content.features = std::move(tick.features);
     if (tick.has_status) content.status = std::move(tick.status);
   }

@@ -25,9 +25,8 @@ class SetupTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   StateDirectory Directory() {
-    return StateDirectory(folder_ / "state", [this](const std::string& line) {
-      said_.push_back(line);
-    });
+    return StateDirectory(folder_ / "state",
+                          [this](const std::string& line) { said_.push_back(line); });
   }
   static Shelf ShelfOf(StateDirectory& directory) {
     return {[&directory](const std::string& name) { return directory.Load(name); },
@@ -118,7 +117,8 @@ TEST_F(SetupTest, ACalibrationOfAnotherDeviceIsRefused) {
 TEST_F(SetupTest, AChangedByteAndAnUnknownVersionAreRefused) {
   auto directory = Directory();
   const fs::path file = folder_ / "state" / "roles.json";
-  for (const auto& [from, to] : {std::pair{"left_leg", "left_log"}, {"\"version\": 1", "\"version\": 9"}}) {
+  for (const auto& [from, to] :
+       {std::pair{"left_leg", "left_log"}, {"\"version\": 1", "\"version\": 9"}}) {
     Book(ShelfOf(directory)).SetRole("aa:01", "main/left_leg");
     std::string text = Read(file);
     const auto at = text.find(from);

@@ -1,0 +1,71 @@
+#include "daemon/sensor/board/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footing::board {
+namespace {
+
+constexpr double kFarthestM = 5;
+constexpr double kLargestYawRad = 6.3;
+constexpr double kGapToleranceMm = 2;  // The gap is measured with a ruler, poses are worked out.
+
+std::string Number(double value) { return std::to_string(std::lround(value)); }
+
+bool Sound(const stream::BoardPose& pose) {
+  return std::abs(pose.x_m) <= kFarthestM && std::abs(pose.y_m) <= kFarthestM &&
+         std::abs(pose.yaw_rad) <= kLargestYawRad;  // False for NaN, too.
+}
+
+/// Half the extent of a board along the direction (cos a, sin a) of W.
+double HalfExtentM(const stream::BoardPose& pose, double direction_rad) {
+  const double off_front_rad = direction_rad - pose.yaw_rad;
+  return 0.5 * (kBoardWidthM * std::abs(std::cos(off_front_rad)) +
+                kBoardLengthM * std::abs(std::sin(off_front_rad)));
+}
+
+}  // namespace
+
+double GapM(const stream::BoardPose& left, const stream::BoardPose& right) {
+  constexpr double kQuarterRad = 1.5707963267948966;
+  double widest_m = -kFarthestM;
+  for (const double direction_rad :
+       {left.yaw_rad, left.yaw_rad + kQuarterRad, right.yaw_rad, right.yaw_rad + kQuarterRad}) {
+    const double centres_m = std::abs((right.x_m - left.x_m) * std::cos(direction_rad) +
+                                      (right.y_m - left.y_m) * std::sin(direction_rad));
+    widest_m = std::max(
+        widest_m, centres_m - HalfExtentM(left, direction_rad) - HalfExtentM(right, direction_rad));
+  }
+  return widest_m;
+}
+
+std::string Problem(const stream::BoardLayout& layout) {
+  static constexpr const char* kPresets[] = {"one_foot_each", "side_by_side", "single", "custom"};
+  if (std::find(std::begin(kPresets), std::end(kPresets), layout.preset) == std::end(kPresets)) {
+    return "layout \"" + layout.preset.substr(0, 32) +
+           "\" does not exist; there are one_foot_each, side_by_side, single, custom";
+  }
+  const bool single = layout.preset == "single";
+  if (!Sound(layout.left) || (!single && !Sound(layout.right))) {
+    return "a board's pose is not a place within 5 m and a turn within +-6.28 rad";
+  }
+  if (single) return "";
+  if (!(layout.gap_mm >= 0 && layout.gap_mm <= 2 * kFarthestM * 1e3)) {
+    return "gap_mm must be 0 or more: the distance between the boards' facing edges";
+  }
+  if (layout.left.y_m <= layout.right.y_m) {
+    return "the left board lies right of the right one (y is to the left); exchange the poses";
+  }
+  const double gap_mm = GapM(layout.left, layout.right) * 1e3;
+  if (gap_mm < -kGapToleranceMm) {
+    return "the boards overlap by " + Number(-gap_mm) +
+           " mm (each is 511 x 316 mm); move their poses apart";
+  }
+  if (std::abs(gap_mm - layout.gap_mm) > kGapToleranceMm) {
+    return "gap_mm is " + Number(layout.gap_mm) + ", but the poses leave " + Number(gap_mm) +
+           " mm; measure between the facing edges and make them agree";
+  }
+  return "";
+}
+
+}  // namespace footing::board

@@ -1,0 +1,251 @@
+// The set-up's commands, and what of the book holds for which device.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/units/units.h"
+#include "daemon/sensor/board/layout.h"
+#include "daemon/sensor/service/hub.h"
+
+namespace footing::sensor {
+namespace {
+
+using stream::DeviceKind;
+using stream::DeviceRole;
+
+constexpr double kTareWindowS = 2;
+constexpr double kLeastTareWindowS = 0.5;
+constexpr double kMostTareWindowS = 30;
+constexpr std::size_t kMostNameBytes = 64;
+constexpr std::size_t kMostNoteBytes = 1024;
+
+std::string Text(const Binding& binding) { return binding.rig + "/" + stream::Name(binding.role); }
+
+std::string Number(const char* format, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+bool IsWorn(DeviceRole role) {
+  switch (role) {
+    case DeviceRole::kLeftHand:
+    case DeviceRole::kRightHand:
+    case DeviceRole::kLeftLeg:
+    case DeviceRole::kRightLeg:
+    case DeviceRole::kHead:
+      return true;
+    case DeviceRole::kUnspecified:
+    case DeviceRole::kLeftBoard:
+    case DeviceRole::kRightBoard:
+    case DeviceRole::kEditor:
+      return false;
+  }
+  return false;
+}
+
+bool Same(const std::optional<Eigen::Quaterniond>& a, const std::optional<Eigen::Quaterniond>& b) {
+  return a.has_value() == b.has_value() && (!a || a->coeffs() == b->coeffs());
+}
+
+}  // namespace
+
+/// Roles that a command gave outlive a restart.
+void Hub::KeepRole(const std::string& serial, const Binding& binding) {
+  assigned_[serial] = binding;
+  book_.SetRole(serial, binding.role == DeviceRole::kUnspecified ? "" : Text(binding));
+  if (!book_.MountingOf(serial, Text(binding))) {
+    book_.MarkStale(binding.rig, "mounting", serial, "its role is new");
+  }
+}
+
+void Hub::ApplySetup(Device& device) {
+  const std::string& serial = device.identity().serial;
+  const Binding& binding = device.binding();
+  const auto tare = book_.TareOf(serial);
+  device.chain().SetTare(tare ? std::optional(tare->offset) : std::nullopt);
+  const auto stored = book_.MountingOf(serial, Text(binding));
+  const auto rotation_MS =
+      stored ? std::optional(stored->rotation_MS) : std::optional<Eigen::Quaterniond>();
+  const bool anew = stored && !stored->slipped && device.worn().slipped();
+  if (Same(rotation_MS, device.worn().rotation_MS()) && !anew) return;
+  device.worn().SetMounting(rotation_MS, binding.role);
+  // What was felt before lies in another frame.
+  if (const auto rig = rigs_.find(binding.rig); rig != rigs_.end()) {
+    rig->second.extractor =
+        std::make_unique<features::RigFeatureExtractor>(binding.rig, rig->second.members);
+  }
+}
+
+void Hub::ApplySetupToAll() {
+  for (const auto& device : devices_) ApplySetup(*device);
+  status_due_ = true;
+}
+
+/// Alarms that the devices' own watches raise; the book keeps them until that part is done again.
+void Hub::WatchSetup() {
+  for (const auto& device : devices_) {
+    const std::string& serial = device->identity().serial;
+    const Binding& binding = device->binding();
+    if (device->chain().moved() && !book_.Moved(serial) && book_.LayoutChecked(binding.rig)) {
+      book_.SetMoved(serial, true);
+      book_.MarkStale(binding.rig, "layout", "", "board " + serial + " was moved");
+      book_.MarkStale(binding.rig, "tare", serial, "the board was moved");
+      status_due_ = true;
+      ports_.log("board " + serial + " was moved: footing-ctl setup --only tare --only layout");
+    }
+    auto stored = book_.MountingOf(serial, Text(binding));
+    if (stored && device->worn().slipped() && !stored->slipped) {
+      stored->slipped = true;
+      book_.SetMounting(serial, stored);
+      book_.MarkStale(binding.rig, "mounting", serial, "it slipped");
+      status_due_ = true;
+      ports_.log(serial + " has slipped on the " + stream::Name(binding.role) +
+                 ": footing-ctl setup --only mounting");
+    }
+  }
+}
+
+void Hub::AddSetupTo(stream::DeviceStatus& status) const {
+  if (status.kind == DeviceKind::kBalanceBoard) {
+    status.moved = book_.Moved(status.serial);
+    if (status.note.empty()) status.note = BoardNote(status);
+    return;
+  }
+  const auto stored = book_.MountingOf(status.serial, Text({status.rig, status.role}));
+  status.slipped = stored && stored->slipped;
+}
+
+/// A board that should be one of two is alone; empty when all is well.
+std::string Hub::BoardNote(const stream::DeviceStatus& status) const {
+  if (status.state == stream::DeviceState::kLost) return "";
+  if (book_.LayoutOf(status.rig).preset == "single") return "";
+  const bool alone = std::none_of(devices_.begin(), devices_.end(), [&status](const auto& other) {
+    return other->number() != status.device && other->attached() &&
+           other->kind() == DeviceKind::kBalanceBoard && other->binding().rig == status.rig;
+  });
+  return alone ? "one board alone: weight beside it is not measured; switch the other on, or say "
+                 "that there is none: footing-ctl layout --preset single"
+               : "";
+}
+
+Result<Device*> Hub::Attached(const std::string& serial) {
+  Device* found = WithSerial(serial);
+  if (found == nullptr) return NoDevice("no device with serial " + serial + " was seen");
+  if (!found->attached()) return NoDevice("device " + serial + " is not attached; switch it on");
+  return found;
+}
+
+Result<Hub::Measured> Hub::Tare(const std::string& serial, double window_s, bool clear) {
+  if (clear) {
+    book_.SetTare(serial, std::nullopt);
+    return Measured{0, "N", "the tare of " + serial + " is forgotten"};
+  }
+  const auto found = Attached(serial);
+  if (!found) return found.error();
+  if ((*found)->kind() != DeviceKind::kBalanceBoard) {
+    return UsageError(serial + " is a " + stream::Name((*found)->kind()) +
+                      "; only boards are tared");
+  }
+  if (window_s == 0) window_s = kTareWindowS;
+  if (!(window_s >= kLeastTareWindowS && window_s <= kMostTareWindowS)) {
+    return UsageError("tare: window_s must be from 0.5 to 30");
+  }
+  const board::Tare tare = (*found)->chain().SolveTare(ports_.now_ns(), window_s);
+  if (!tare.ok) return Failure("tare of " + serial + ": " + tare.problem);
+  book_.SetTare(serial, setup::StoredTare{tare.offset, tare.residual_n});
+  return Measured{tare.residual_n, "N",
+                  "empty it shows " + Number("%.1f", board::Total(tare.offset)) + " N"};
+}
+
+Result<Device*> Hub::AttachedWorn(const std::string& serial) {
+  auto found = Attached(serial);
+  if (!found) return found;
+  const Device& device = **found;
+  if (device.kind() == DeviceKind::kBalanceBoard || !IsWorn(device.binding().role)) {
+    return UsageError(
+        serial + " is " + Text(device.binding()) +
+        "; only devices on hands, legs and head have a mounting (footing-ctl assign)");
+  }
+  return found;
+}
+
+Result<Hub::Measured> Hub::SolveMounting(const std::string& serial,
+                                         const MountingStretches& stretches) {
+  const auto found = AttachedWorn(serial);
+  if (!found) return found.error();
+  if (stretches.still_to_ns <= stretches.still_from_ns ||
+      stretches.steps_to_ns <= stretches.steps_from_ns ||
+      stretches.steps_from_ns < stretches.still_from_ns) {
+    return UsageError("mounting: standing still must come before the steps, and each must last");
+  }
+  const Binding& binding = (*found)->binding();
+  const mounting::Mounting solved = (*found)->worn().Solve(binding.role, stretches);
+  if (!solved.ok) return Failure("mounting of " + serial + ": " + solved.problem);
+  setup::StoredMounting stored;
+  stored.role = Text(binding);
+  stored.rotation_MS = solved.rotation_MS;
+  stored.residual_rad = solved.residual_rad;
+  book_.SetMounting(serial, stored);
+  const double turn_rad = solved.rotation_MS.angularDistance(Eigen::Quaterniond::Identity());
+  return Measured{RadiansToDegrees(solved.residual_rad), "deg",
+                  "turned by " + Number("%.0f", RadiansToDegrees(turn_rad)) +
+                      " degrees against a perfect mounting"};
+}
+
+Result<Hub::Measured> Hub::ClearMounting(const std::string& serial) {
+  book_.SetMounting(serial, std::nullopt);
+  return Measured{0, "deg", "the mounting of " + serial + " is forgotten"};
+}
+
+Result<Hub::Measured> Hub::SetBoardLayout(stream::BoardLayout layout) {
+  if (layout.rig.empty()) layout.rig = config_.default_rig;
+  if (layout.rig.size() > kMostNameBytes) return UsageError("layout: the rig's name is too long");
+  if (auto problem = board::Problem(layout); !problem.empty()) return UsageError(problem);
+  const stream::BoardLayout before = book_.LayoutOf(layout.rig);
+  const auto same = [](const stream::BoardPose& a, const stream::BoardPose& b) {
+    return a.x_m == b.x_m && a.y_m == b.y_m && a.yaw_rad == b.yaw_rad;
+  };
+  const bool changed = before.preset != layout.preset || before.gap_mm != layout.gap_mm ||
+                       !same(before.left, layout.left) || !same(before.right, layout.right);
+  if (!book_.SetLayout(layout)) return Failure("layout: there are too many rigs already");
+  if (changed) {
+    book_.MarkStale(layout.rig, "layout", "", "the layout was set anew and not checked since");
+  }
+  return Measured{
+      0, "",
+      layout.preset == "single" ? "one board alone: left and right foot are not told apart" : ""};
+}
+
+Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& item, bool forget) {
+  const std::string& name = rig.empty() ? config_.default_rig : rig;
+  if (name.size() > kMostNameBytes || item.name.size() > kMostNameBytes ||
+      item.serial.size() > kMostNameBytes || item.unit.size() > kMostNameBytes ||
+      item.note.size() > kMostNoteBytes) {
+    return UsageError("record: a name is longer than 64 bytes, or the note than 1024");
+  }
+  if (forget) {
+    book_.Forget(name, item.name, item.serial);
+    return {};
+  }
+  if (item.name.empty()) return UsageError("record: the item has no name");
+  if (!book_.Record(name, item)) return Failure("record: there are too many items already");
+  if (item.name != "layout" || !item.passed || item.stale) return {};
+  // Checked where they lie now.
+  for (const auto& device : devices_) {
+    if (device->kind() != DeviceKind::kBalanceBoard || device->binding().rig != name) continue;
+    book_.SetMoved(device->identity().serial, false);
+    device->chain().WatchAnew();
+  }
+  return {};
+}
+
+void Hub::TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting) {
+  setup::StoredMounting stored;
+  stored.role = Text(binding);
+  stored.rotation_MS = mounting.rotation_MS;
+  stored.residual_rad = mounting.residual_rad;
+  book_.SetMounting(mounting.serial, stored);
+}
+
+}  // namespace footing::sensor
