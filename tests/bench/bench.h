@@ -84,11 +84,13 @@ class Bench {
   Device& Plug(std::shared_ptr<Model> model, const PlugOptions& options = {});
   /// The node ends, udev says so.
   void Unplug(Device& device);
+  /// Ends what a test does between models and sockets: it may be about its own variables.
+  void EndFaults();
   Testbed& testbed() { return testbed_; }
 
   /// Starts footingd and the client, and waits until the two are connected.
   bool Start(const std::vector<std::string>& arguments = {});
-  /// SIGTERM, then the exit status of waitpid(2); -1 when it does not end within 3 s.
+  /// SIGTERM, then the exit status of waitpid(2); -1 when it does not end within 10 s.
   int Stop();
   /// Starts footingd anew with other arguments after Stop() or its death.
   bool Restart(const std::vector<std::string>& arguments = {});
@@ -120,6 +122,8 @@ class Bench {
   const std::vector<v1::Gap>& gaps() const { return gaps_; }
   /// The resident memory of footingd.
   std::int64_t MemoryBytes() const;
+  /// How many descriptors footingd has open.
+  std::size_t Descriptors() const;
   std::size_t Samples(const Device& device) const;
 
  private:

@@ -129,5 +129,56 @@ FOOTING_FAULT(Fault23ReferenceTemperatureZeroOrFF) {
   }
 }
 
+/// Its CRC-32 over bytes 0 to 13 and 16 to 29, upper half at 14, lower half at 30.
+void Seal(device_models::MotionPlusBlock& block) {
+  uLong crc = crc32(0, block.data(), 14);
+  crc = crc32(crc, block.data() + 16, 14);
+  block[14] = static_cast<std::uint8_t>(crc >> 24);
+  block[15] = static_cast<std::uint8_t>(crc >> 16);
+  block[30] = static_cast<std::uint8_t>(crc >> 8);
+  block[31] = static_cast<std::uint8_t>(crc);
+}
+
+FOOTING_FAULT(Fault24MotionPlusBlocksWithoutSense) {
+  std::vector<Device*> devices;
+  for (int kind = 0; kind < 4; ++kind) {
+    auto model =
+        std::make_shared<WiimoteModel>(24 + 100 * kind, device_models::WiimoteOptions{false, true});
+    model->turning = [](std::int64_t) { return Eigen::Vector3d(0, 0, 2); };
+    auto block = device_models::DrawMotionPlusBlock(24);
+    if (kind == 1) block[3] ^= 0x10;           // One bit of a zero point.
+    if (kind == 2) block[12] = block[28] = 0;  // Degrees.
+    if (kind == 3) {                           // Scales that equal their zeros.
+      std::copy_n(block.begin(), 6, block.begin() + 6);
+      std::copy_n(block.begin() + 16, 6, block.begin() + 22);
+    }
+    if (kind > 1) Seal(block);  // Right, and senseless all the same.
+    model->wiimote.controller().memory().SetMotionPlus(device_models::MotionPlusPage(block, true));
+    devices.push_back(&bench.Plug(model));
+  }
+  ASSERT_TRUE(bench.Start());
+  const auto turns = [this](const Device& device) {
+    std::size_t count = 0;
+    for (const auto& sample : Motion(device)) count += sample.has_angular_velocity_radps() ? 1 : 0;
+    return count;
+  };
+  for (std::size_t kind = 0; kind < devices.size(); ++kind) {
+    Device& device = *devices[kind];
+    ASSERT_TRUE(bench.Until([&] { return turns(device) >= 30; })) << kind;
+    ASSERT_TRUE(
+        bench.Until([&] { return Status(device).extension() == v1::EXTENSION_MOTION_PLUS; }));
+    EXPECT_EQ(Status(device).gyroscope_calibration(),
+              kind == 0 ? v1::CALIBRATION_ORIGIN_DEVICE : v1::CALIBRATION_ORIGIN_DEFAULTS);
+    EXPECT_EQ(Status(device).note().find("MotionPlus") != std::string::npos, kind != 0)
+        << Status(device).note();
+    for (const auto& sample : Motion(device)) {
+      if (!sample.has_angular_velocity_radps()) continue;
+      EXPECT_EQ(sample.gyroscope_uncalibrated(), kind != 0);
+      EXPECT_NEAR(sample.angular_velocity_radps().z(), 2, 0.8);  // Typical values fit roughly.
+    }
+    ExpectAllAtRest(device, 30);  // The accelerometer has its own block.
+  }
+}
+
 }  // namespace
 }  // namespace footing::bench

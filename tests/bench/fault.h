@@ -21,6 +21,7 @@ namespace footing::bench {
 class Fault : public testing::Test {
  protected:
   void TearDown() override {
+    bench.EndFaults();
     for (const std::string& wrong : bench.seen().wrongs()) ADD_FAILURE() << wrong;
     EXPECT_EQ(bench.Stop(), 0) << "footingd's end";
     EXPECT_EQ(bench.LogLines("ERROR: "), 0u);  // Of a sanitizer.

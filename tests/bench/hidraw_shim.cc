@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 #include "tests/bench/node_page.h"
 
@@ -128,6 +129,24 @@ bool TakeFault(std::atomic<std::int32_t>& faults) {
   return false;
 }
 
+void Count(const OpenNode& node) {
+  const std::uint32_t reads = node.page->reads[node.index].fetch_add(1) + 1;
+  if (reads % footing::bench::kCpuEveryReports != 0) return;
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  node.page->cpu_ns[node.index].store(time.tv_sec * 1'000'000'000LL + time.tv_nsec);
+  node.page->cpu_reads[node.index].store(reads);
+}
+
+/// Here and not where it arrives: the bench may be late to look.
+void StampWrite(const OpenNode& node) {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  const std::int64_t now_ns = time.tv_sec * 1'000'000'000LL + time.tv_nsec;
+  const std::int64_t since_ns = now_ns - node.page->written_ns[node.index].exchange(now_ns);
+  if (since_ns < node.page->closest_writes_ns) node.page->closest_writes_ns = since_ns;
+}
+
 /// Request and answer are each one packet: number and argument; result and argument.
 int Ioctl(const OpenNode& node, unsigned long request, void* argument) {
   static const auto next_close = Next<CloseCall>("close");
@@ -201,7 +220,7 @@ ssize_t read(int descriptor, void* bytes, size_t size) {
     errno = EIO;  // As hidraw after an unplug.
     return -1;
   }
-  node->page->reads[node->index].fetch_add(1);
+  Count(*node);
   if (TakeFault(node->page->read_faults)) {
     errno = node->page->read_errno.load();
     return -1;
@@ -227,6 +246,7 @@ ssize_t write(int descriptor, const void* bytes, size_t size) {
     errno = node->page->write_errno.load();
     return -1;
   }
+  StampWrite(*node);
   const ssize_t sent = send(descriptor, bytes, size, MSG_NOSIGNAL);
   if (sent < 0 && (errno == EPIPE || errno == ECONNRESET)) errno = ENODEV;
   return sent;

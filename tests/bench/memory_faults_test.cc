@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tests/bench/fault.h"
 
 namespace footing::bench {
@@ -16,8 +18,10 @@ auto InsteadOfReplies(int times, std::function<std::vector<Report>(Report)> inst
 
 FOOTING_FAULT(Fault12MemoryErrors7And8) {
   Device& device = bench.Plug(std::make_shared<WiimoteModel>(12));
-  // Not ready at first: no such register, then no such memory; then the truth.
-  device.outgoing = InsteadOfReplies(2, [error = 7](Report report) mutable {
+  // Not ready at first: no such register, then no such memory; then the truth. An error ends the
+  // reply: of 20 bytes the second piece does not come.
+  device.outgoing = InsteadOfReplies(4, [error = 7](Report report) mutable {
+    if (report[5] != 0x16) return std::vector<Report>{};
     report[3] = static_cast<std::uint8_t>(0xf0 | error++);
     std::fill(report.begin() + 6, report.end(), 0);
     return std::vector<Report>{report};
@@ -32,7 +36,7 @@ FOOTING_FAULT(Fault12MemoryErrors7And8) {
 FOOTING_FAULT(Fault13RepliesToSomebodyElsesRead) {
   Device& device = bench.Plug(std::make_shared<WiimoteModel>(13));
   // Before each true reply one of the driver's reads: the extension's identity, full of FF.
-  device.outgoing = InsteadOfReplies(4, [](Report report) {
+  device.outgoing = InsteadOfReplies(1000, [](Report report) {
     Report foreign = {kReadReply, 0, 0, 0x50, 0x00, 0xfa};
     foreign.resize(22, 0xff);
     return std::vector<Report>{foreign, report};
@@ -76,7 +80,10 @@ FOOTING_FAULT(Fault15ShortLastPiece) {
   ASSERT_TRUE(bench.Start());
   ASSERT_TRUE(bench.UntilLive(device));
   ASSERT_TRUE(bench.UntilSamples(device, 20));
-  EXPECT_GE(device.Outputs(0x17), 2u);
+  const auto reads = std::count_if(
+      device.outputs().begin(), device.outputs().end(),
+      [](const auto& output) { return output.report[0] == 0x17 && output.report[4] == 0x16; });
+  EXPECT_EQ(reads, 2);
   ExpectAllAtRest(device, 20);
   EXPECT_EQ(Status(device).calibration(), v1::CALIBRATION_ORIGIN_DEVICE);
 }
@@ -92,6 +99,7 @@ FOOTING_FAULT(Fault16AcknowledgementWithError2) {
   ASSERT_TRUE(bench.Start());
   ASSERT_TRUE(bench.UntilLive(device));
   EXPECT_GE(device.Outputs(0x12), 2u);
+  EXPECT_EQ(Status(device).mode_reasserts(), 0u);  // It was not taken for set until silence told.
   ASSERT_TRUE(bench.UntilSamples(device, 20));
   ExpectAllAtRest(device, 20);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,19 +30,28 @@ class Model {
 
 class WiimoteModel : public Model {
  public:
-  explicit WiimoteModel(std::uint64_t seed) : wiimote(seed) {}
+  explicit WiimoteModel(std::uint64_t seed, const device_models::WiimoteOptions& options = {})
+      : wiimote(seed, options) {}
   const device_models::Identity& identity() const override { return wiimote.identity(); }
-  std::vector<Report> HandleOutput(std::int64_t, std::span<const std::uint8_t> report) override {
-    return wiimote.HandleOutput(report);
+  std::vector<Report> HandleOutput(std::int64_t now_ns,
+                                   std::span<const std::uint8_t> report) override {
+    return wiimote.HandleOutput(now_ns, report);
   }
-  std::vector<Report> Sample(std::int64_t) override {
-    auto report = wiimote.Sample(specific_force_S_mps2, buttons);
-    return report ? std::vector<Report>{*report} : std::vector<Report>{};
+  std::vector<Report> Sample(std::int64_t now_ns) override {
+    device_models::WiimoteSensors sensors;
+    sensors.specific_force_S_mps2 = specific_force_S_mps2;
+    sensors.buttons = buttons;
+    sensors.nunchuk = nunchuk;
+    sensors.angular_velocity_S_radps = turning ? turning(now_ns) : Eigen::Vector3d(0, 0, 0);
+    return wiimote.Sample(now_ns, sensors);
   }
 
   device_models::Wiimote wiimote;
   Eigen::Vector3d specific_force_S_mps2{0, 0, -9.80665};
   std::uint16_t buttons = 0;
+  device_models::NunchukSensors nunchuk;
+  /// Angular velocity in S, rad/s, over CLOCK_MONOTONIC; null: none.
+  std::function<Eigen::Vector3d(std::int64_t now_ns)> turning;
 };
 
 /// A Wiimote in a slot of a USB adapter, which has no serial.

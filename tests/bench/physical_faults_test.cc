@@ -72,7 +72,7 @@ FOOTING_FAULT(Fault52MoreThanTheCalibrationCovers) {
 FOOTING_FAULT(Fault53NegativeForces) {
   auto board = std::make_shared<BoardModel>(53);
   Device& device = bench.Plug(board);
-  board->forces = {-20, 100, 120, -15};  // A corner that hangs in the air, or after a tare.
+  board->forces = {-20, 100, 120, -15};  // A corner that hangs in the air.
   ASSERT_TRUE(bench.Start());
   ASSERT_TRUE(bench.UntilLive(device));
   ASSERT_TRUE(bench.UntilSamples(device, 20));
@@ -86,6 +86,66 @@ FOOTING_FAULT(Fault53NegativeForces) {
   ASSERT_TRUE(bench.UntilSamples(device, 5));
   EXPECT_NEAR(Boards(device).back().total_n(), -80, 2);
   EXPECT_FALSE(Boards(device).back().cop_valid());
+  // Tared with something on it that is taken away afterwards.
+  board->forces = {10, 10, 10, 10};
+  bench.Run(1.2);
+  v1::Command command;
+  command.mutable_tare()->set_serial(device.serial());
+  command.mutable_tare()->set_window_s(1);
+  ASSERT_TRUE(bench.Send(command).ok());
+  board->forces = {0, 0, 0, 0};
+  bench.Run(0.1);
+  bench.seen().Forget();
+  ASSERT_TRUE(bench.UntilSamples(device, 5));
+  EXPECT_NEAR(Boards(device).back().total_n(), -40, 1);
+  EXPECT_NEAR(Boards(device).back().top_left_n(), -10, 0.3);
+  EXPECT_FALSE(Boards(device).back().cop_valid());
+}
+
+FOOTING_FAULT(Fault54PersonStepsOnDuringTheTare) {
+  auto board = std::make_shared<BoardModel>(54);
+  board->forces = {6, 5, -4, 8};  // What it shows when empty.
+  Device& device = bench.Plug(board);
+  ASSERT_TRUE(bench.Start());
+  ASSERT_TRUE(bench.UntilLive(device));
+  const auto tare = [&] {
+    v1::Command command;
+    command.mutable_tare()->set_serial(device.serial());
+    command.mutable_tare()->set_window_s(1);
+    return bench.Send(command);
+  };
+  const auto total_n = [&] {
+    bench.Run(0.1);
+    bench.seen().Forget();
+    EXPECT_TRUE(bench.UntilSamples(device, 5));
+    return Boards(device).back().total_n();
+  };
+  bench.Run(0.9);
+  // A foot comes down; then both stand still, which is no empty board either.
+  for (int i = 0; i < 20; ++i) {
+    board->forces.top_left_n += 8;
+    board->forces.bottom_left_n += 8;
+    bench.Run(0.02);
+  }
+  v1::CommandResult result = tare();
+  EXPECT_FALSE(result.ok());
+  EXPECT_NE(result.message().find("step off"), std::string::npos) << result.message();
+  board->forces = {150, 160, 170, 180};
+  bench.Run(1.1);
+  result = tare();
+  EXPECT_FALSE(result.ok());
+  EXPECT_NE(result.message().find("too much for an empty board"), std::string::npos);
+  EXPECT_NEAR(total_n(), 660, 7);  // Neither was taken off.
+  EXPECT_FALSE(Status(device).tared());
+  // Empty and left alone it is tared.
+  board->forces = {6, 5, -4, 8};
+  bench.Run(1.2);
+  result = tare();
+  EXPECT_TRUE(result.ok()) << result.message();
+  EXPECT_NEAR(total_n(), 0, 0.5);
+  EXPECT_TRUE(bench.Until([&] { return Status(device).tared(); }));
+  board->forces = {156, 165, 166, 188};
+  EXPECT_NEAR(total_n(), 660, 7);
 }
 
 FOOTING_FAULT(Fault55ClippedAcceleration) {

@@ -11,7 +11,8 @@ FOOTING_FAULT(Fault01EmptyOneByteAndTruncatedReports) {
   bench.seen().Forget();
   const std::uint64_t undecodable = Status(device).undecodable();
   const Report at_rest = *model->wiimote.Sample(model->specific_force_S_mps2);
-  // Each kind of report cut at each length: what is there is right, what is cut off was.
+  // Each kind of report cut at each length: what is there is right, what is cut off was. What the
+  // buffer still holds behind its end is of another report.
   std::uint64_t hopeless = 0;
   for (const std::uint8_t id : {0x20, 0x21, 0x22, 0x31, 0x33, 0x35, 0x37, 0x3d}) {
     const std::size_t whole = id == 0x20 ? 7 : id == 0x22 ? 5 : id == 0x31 ? 6 : 22;
@@ -19,8 +20,9 @@ FOOTING_FAULT(Fault01EmptyOneByteAndTruncatedReports) {
       Report report = at_rest;
       report.resize(size, 0x00);
       if (size > 0) report[0] = id;
+      device.SendRaw(Report(22, 0xee));
       device.SendRaw(report);
-      if (size == 1) ++hopeless;
+      hopeless += size == 1 ? 2 : 1;
     }
     bench.Run(0.02);
   }
@@ -71,7 +73,9 @@ FOOTING_FAULT(Fault04ButtonsOnlyModeSetByAnother) {
   ASSERT_TRUE(bench.UntilLive(device));
   // As hid-wiimote does after every status report: 12 00 30, and no more acceleration.
   for (int round = 0; round < 2; ++round) {
-    const std::uint8_t foreign[] = {0x12, 0x00, 0x30};
+    // A clone goes on to send, but buttons only.
+    const std::uint8_t flags = round == 0 ? 0x00 : 0x04;
+    const std::uint8_t foreign[] = {0x12, flags, 0x30};
     model->wiimote.HandleOutput(foreign);
     ASSERT_EQ(model->wiimote.controller().mode(), 0x30);
     ASSERT_TRUE(bench.UntilSamples(device, 20, 2)) << "the mode was not set again";

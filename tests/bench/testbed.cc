@@ -1,5 +1,6 @@
 #include "tests/bench/testbed.h"
 
+#include <sys/stat.h>
 #include <umockdev.h>
 
 #include <cstdio>
@@ -60,6 +61,15 @@ void Testbed::Identify(int number, const device_models::Identity& identity) {
   const std::string path = "/sys" + HidPath(number, identity);
   umockdev_testbed_set_property(testbed_, path.c_str(), "HID_NAME", identity.name.c_str());
   umockdev_testbed_set_property(testbed_, path.c_str(), "HID_UNIQ", identity.serial.c_str());
+}
+
+void Testbed::HalfRemove(int number, const device_models::Identity& identity) {
+  char* const folder = umockdev_testbed_get_root_dir(testbed_);
+  const std::string root = folder;
+  g_free(folder);
+  if (chmod((root + "/sys" + HidPath(number, identity) + "/uevent").c_str(), 0) != 0) {
+    throw std::runtime_error("bench: the device has no uevent file");
+  }
 }
 
 void Testbed::Remove(int number, const device_models::Identity& identity) {

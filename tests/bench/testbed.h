@@ -24,6 +24,8 @@ class Testbed {
            bool with_identity = true);
   /// Name and serial of a device that was added without, and the uevent that says so.
   void Identify(int number, const device_models::Identity& identity);
+  /// The kernel is taking the HID device away: its description is listed, and cannot be read.
+  void HalfRemove(int number, const device_models::Identity& identity);
   void Remove(int number, const device_models::Identity& identity);
   /// A uevent of the hidraw node.
   void Announce(int number, const device_models::Identity& identity, const std::string& action);

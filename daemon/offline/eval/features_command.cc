@@ -15,6 +15,7 @@
 #include "daemon/offline/eval/features_chain.h"
 #include "daemon/offline/eval/features_delays.h"
 #include "daemon/offline/eval/features_input.h"
+#include "daemon/offline/eval/mounting_trials.h"
 
 namespace footing::eval {
 namespace {
@@ -32,6 +33,9 @@ struct Options {
   double range_mps2 = 0;
   bool synthetic = false;
   bool delays = false;
+  int mounting_trials = 0;
+  std::string standing;
+  std::string walking;
   int trials = 200;
   std::uint64_t seed = 1;
 };
@@ -132,12 +136,28 @@ Result<nlohmann::json> EvaluateGrt(const Options& options) {
       {"rows", rows}};
 }
 
+Result<nlohmann::json> EvaluateMounting(const Options& options) {
+  if (options.standing.empty() != options.walking.empty()) {
+    return UsageError("--standing and --walking belong together");
+  }
+  if (options.standing.empty()) {
+    return MeasureMounting(MadeWalk(), options.mounting_trials, options.seed);
+  }
+  const auto walk = RecordedWalk(options.standing, options.walking);
+  if (!walk) return walk.error();
+  return MeasureMounting(*walk, options.mounting_trials, options.seed);
+}
+
 Result<nlohmann::json> Evaluate(const Options& options) {
   const int inputs = (options.left.empty() ? 0 : 1) + (options.grt.empty() ? 0 : 1) +
-                     (options.synthetic ? 1 : 0) + (options.delays ? 1 : 0);
+                     (options.synthetic ? 1 : 0) + (options.delays ? 1 : 0) +
+                     (options.mounting_trials > 0 ? 1 : 0);
   if (inputs != 1) {
-    return UsageError("features needs exactly one of --left, --grt, --synthetic and --delays");
+    return UsageError(
+        "features needs exactly one of --left, --grt, --synthetic, --delays and "
+        "--mounting-trials");
   }
+  if (options.mounting_trials > 0) return EvaluateMounting(options);
   if (options.synthetic) return MeasureAccuracy(options.trials, options.seed);
   if (options.delays) return MeasureDelays(options.trials, options.seed);
   return options.grt.empty() ? EvaluateCsv(options) : EvaluateGrt(options);
@@ -160,6 +180,13 @@ void AddFeaturesCommand(CLI::App& app, Shared& shared) {
   command->add_option("--grt", options->grt, "A recording of the Gesture Recognition Toolkit");
   command->add_flag("--synthetic", options->synthetic, "Errors on made motion, beside the bars");
   command->add_flag("--delays", options->delays, "Delays after made changes, beside the bars");
+  command
+      ->add_option("--mounting-trials", options->mounting_trials,
+                   "Walk so often with sensors turned at random, beside a perfect mounting")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--standing", options->standing,
+                      "TRC of the person standing: with --walking in place of the made walk");
+  command->add_option("--walking", options->walking, "TRC of the same markers, a stride or more");
   command->add_option("--trials", options->trials, "Made motions a row")
       ->check(CLI::Range(1, 100000));
   command->add_option("--seed", options->seed, "Of the made motions");

@@ -18,24 +18,15 @@ constexpr int kAnswerMs = 200;
 constexpr std::uint8_t kMoveAddressFeature = 0x04;
 constexpr std::size_t kMoveAddressBytes = 16;  // psmoveapi's PSMOVE_BTADDR_GET_SIZE.
 
-/// hidapi's texts are ASCII in practice; what is not becomes '?'.
-std::string Narrow(const wchar_t* text) {
-  std::string narrow;
-  for (; text != nullptr && *text != 0; ++text) {
-    narrow += *text >= ' ' && *text <= '~' ? static_cast<char>(*text) : '?';
-  }
-  return narrow;
-}
-
-DeviceIdentity Describe(const hid_device_info& info, const NodeMonitor::Facts& facts) {
+DeviceIdentity Describe(const HidNode& node) {
   DeviceIdentity identity;
-  identity.bus = facts.bus;
-  identity.driver = facts.driver;
-  identity.vendor = info.vendor_id;
-  identity.product = info.product_id;
-  identity.name = Narrow(info.product_string);
-  identity.serial = Narrow(info.serial_number);
-  identity.place = info.path;
+  identity.bus = node.bus;
+  identity.driver = node.driver;
+  identity.vendor = node.vendor;
+  identity.product = node.product;
+  identity.name = node.name;
+  identity.serial = node.serial;
+  identity.place = node.path;
   return identity;
 }
 
@@ -64,9 +55,9 @@ void HidClose::operator()(hid_device* device) const {
   if (lock >= 0) close(lock);
 }
 
-HidOpening OpenHid(const hid_device_info& info, const NodeMonitor::Facts& facts) {
+HidOpening OpenHid(const HidNode& node) {
   HidOpening opening;
-  opening.identity = Describe(info, facts);
+  opening.identity = Describe(node);
   // Over Bluetooth every device has an address; udev may still have to read it.
   if (opening.identity.bus == Bus::kBluetooth && opening.identity.serial.empty()) {
     opening.outcome = Outcome::kUnidentified;
@@ -74,7 +65,7 @@ HidOpening OpenHid(const hid_device_info& info, const NodeMonitor::Facts& facts)
   }
   // hidapi hides its descriptor, so the lock has its own. Nobody reads it: the kernel stops filling
   // its queue after 64 reports.
-  const int lock = open(info.path, O_RDWR | O_CLOEXEC);
+  const int lock = open(node.path.c_str(), O_RDWR | O_CLOEXEC);
   if (lock < 0) {
     opening.outcome = errno == EACCES || errno == EPERM ? Outcome::kDenied : Outcome::kFailed;
     opening.reason = std::strerror(errno);
@@ -86,23 +77,23 @@ HidOpening OpenHid(const hid_device_info& info, const NodeMonitor::Facts& facts)
     opening.outcome = Outcome::kInUse;
     return opening;
   }
-  opening.device.reset(hid_open_path(info.path));
+  opening.device.reset(hid_open_path(node.path.c_str()));
   if (!opening.device) {
-    opening.reason = Narrow(hid_error(nullptr));
+    opening.reason = std::strerror(errno);
     close(lock);
     return opening;
   }
   const bool usb = opening.identity.bus == Bus::kUsb;
-  if (usb && info.vendor_id == kVendorNintendo && !Answers(opening.device.get())) {
+  if (usb && node.vendor == kVendorNintendo && !Answers(opening.device.get())) {
     opening.device.reset();
     opening.outcome = Outcome::kNobodyThere;
     return opening;
   }
-  if (usb && info.vendor_id == kVendorSony) {
+  if (usb && node.vendor == kVendorSony) {
     const std::string serial = MoveSerial(opening.device.get());
     if (!serial.empty()) opening.identity.serial = serial;
   }
-  if (opening.identity.serial.empty()) opening.identity.serial = info.path;
+  if (opening.identity.serial.empty()) opening.identity.serial = node.path;
   opening.outcome = Outcome::kOpen;
   return opening;
 }

@@ -37,6 +37,6 @@ struct HidOpening {
 /// and for as long as the handle lives. Blocks up to 0.2 s on a USB adapter's slot, which has to
 /// answer first: the Mayflash DolphinBar shows four whether a Wiimote is there or not. A PS Move on
 /// USB has the serial that it has over Bluetooth.
-HidOpening OpenHid(const hid_device_info& info, const NodeMonitor::Facts& facts);
+HidOpening OpenHid(const HidNode& node);
 
 }  // namespace footing::devices

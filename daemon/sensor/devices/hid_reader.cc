@@ -8,7 +8,10 @@ namespace footing::devices {
 namespace {
 
 constexpr int kReadTimeoutMs = 10;
-constexpr std::int64_t kWriteIntervalNs = 10'000'000;
+// A device chokes on more than a write per 10 ms, which the outbox keeps to. Here what two threads
+// bunched up is spread again; were this the slower of the two, a flood would fill the queue between
+// them and its newest, the one that counts, would be refused.
+constexpr std::int64_t kWriteIntervalNs = 9'000'000;
 
 }  // namespace
 
@@ -17,7 +20,13 @@ HidReader::HidReader(HidHandle device, std::function<void()> wake)
 
 HidReader::~HidReader() {
   stop_.Raise();
+  if (thread_.joinable()) thread_.join();
+}
+
+HidHandle HidReader::Release() {
+  stop_.Raise();
   thread_.join();
+  return std::move(device_);
 }
 
 void HidReader::Run() {
@@ -26,7 +35,7 @@ void HidReader::Run() {
     WriteOne();
     ReadFeatures();
     const int size =
-        hid_read_timeout(device_.get(), item.bytes.data(), item.bytes.size(), kReadTimeoutMs);
+        hid_read_timeout(device_.get(), item.bytes.data(), item.bytes.size(), TimeoutMs());
     if (size < 0) break;
     if (size == 0) continue;
     item.received_ns = clock::MonotonicNs();
@@ -41,16 +50,23 @@ void HidReader::Run() {
   wake_();
 }
 
-/// A device chokes on more than a report per 10 ms.
 void HidReader::WriteOne() {
+  if (next_.empty() && !outgoing_.Pop(next_)) return;
   if (clock::MonotonicNs() - written_ns_ < kWriteIntervalNs) return;
-  std::vector<std::uint8_t> report;
-  if (outgoing_.Pop(report)) Write(report);
+  Write(next_);
+  next_.clear();
+}
+
+/// Until a report comes, or the next one may be written.
+int HidReader::TimeoutMs() const {
+  if (next_.empty()) return kReadTimeoutMs;
+  const std::int64_t left_ns = written_ns_ + kWriteIntervalNs - clock::MonotonicNs();
+  return static_cast<int>(std::clamp<std::int64_t>(left_ns / 1'000'000 + 1, 0, kReadTimeoutMs));
 }
 
 /// The last word may be "rumble off"; nobody waits for what comes before it.
 void HidReader::WriteLast() {
-  std::vector<std::uint8_t> report, last;
+  std::vector<std::uint8_t> report, last = std::move(next_);
   while (outgoing_.Pop(report)) last = report;
   if (last.empty()) return;
   clock::SleepUntil(written_ns_ + kWriteIntervalNs);

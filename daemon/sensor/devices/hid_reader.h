@@ -13,7 +13,7 @@
 namespace footing::devices {
 
 /// One open device and the one thread that reads it, stamps what it reads and writes what is to be
-/// written, at most one report per 10 ms. hidapi's handle is never shared by two threads.
+/// written, at most one report per 9 ms. hidapi's handle is never shared by two threads.
 class HidReader {
  public:
   struct Item {
@@ -41,6 +41,8 @@ class HidReader {
   std::uint64_t dropped() const { return incoming_.refused(); }
   /// The device is gone; what was read before can still be popped.
   bool ended() const { return ended_.raised(); }
+  /// io thread, after it ended: the device, to be closed where it was opened.
+  HidHandle Release();
 
  private:
   struct FeatureRequest {
@@ -51,10 +53,12 @@ class HidReader {
   void Run();
   void WriteOne();
   void WriteLast();
+  int TimeoutMs() const;
   void Write(const std::vector<std::uint8_t>& report);
   void ReadFeatures();
 
   HidHandle device_;
+  std::vector<std::uint8_t> next_;  ///< Taken from outgoing_ and not due yet; empty: none.
   std::int64_t written_ns_ = 0;
   std::uint64_t writes_failed_ = 0;
   std::function<void()> wake_;

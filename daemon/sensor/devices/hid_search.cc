@@ -61,8 +61,8 @@ HidSearch::~HidSearch() {
   close(event_);
 }
 
-void HidSearch::Forget(const std::string& path) {
-  closed_.Push(path);
+void HidSearch::Close(std::string path, HidHandle device) {
+  closed_.Push({std::move(path), std::move(device)});
   eventfd_write(event_, 1);
 }
 
@@ -81,7 +81,7 @@ void HidSearch::Run() {
 }
 
 int HidSearch::PauseMs(std::int64_t now_ns) const {
-  // hidapi does not list a node whose attributes are not all there yet.
+  // A node whose attributes are not all there yet is not listed.
   if (changed_ns_ != 0 && now_ns - changed_ns_ < kNewNs) return kSoonMs;
   int pause_ms = kWithMonitorMs;
   for (const auto& [path, waiting] : waiting_) {
@@ -92,25 +92,25 @@ int HidSearch::PauseMs(std::int64_t now_ns) const {
 }
 
 void HidSearch::Look(std::int64_t now_ns) {
-  std::string closed;
-  while (closed_.Pop(closed)) open_paths_.erase(closed);
-  std::set<std::string> seen;
-  hid_device_info* const list = hid_enumerate(0, 0);
-  for (const hid_device_info* info = list; info != nullptr; info = info->next) {
-    if (!IsKnownDevice(info->vendor_id, info->product_id) || info->path == nullptr) continue;
-    // A device with several collections is listed once for each.
-    if (!seen.insert(info->path).second || open_paths_.contains(info->path)) continue;
-    Open(*info, now_ns);
+  Closed closed;
+  while (closed_.Pop(closed)) {
+    closed.device.reset();
+    open_paths_.erase(closed.path);
   }
-  hid_free_enumeration(list);
+  std::set<std::string> seen;
+  for (const HidNode& node : monitor_.Nodes()) {
+    if (!IsKnownDevice(node.vendor, node.product) || open_paths_.contains(node.path)) continue;
+    seen.insert(node.path);
+    Open(node, now_ns);
+  }
   std::erase_if(waiting_, [&seen](const auto& one) { return !seen.contains(one.first); });
 }
 
-void HidSearch::Open(const hid_device_info& info, std::int64_t now_ns) {
-  HidOpening opening = OpenHid(info, monitor_.FactsOf(info.path));
+void HidSearch::Open(const HidNode& node, std::int64_t now_ns) {
+  HidOpening opening = OpenHid(node);
   if (opening.outcome != Outcome::kOpen) {
-    const bool is_new = waiting_.try_emplace(info.path, Waiting{now_ns, false}).second;
-    Waiting& waiting = waiting_[info.path];
+    const bool is_new = waiting_.try_emplace(node.path, Waiting{now_ns, false}).second;
+    Waiting& waiting = waiting_[node.path];
     if (is_new || waiting.said || now_ns - waiting.since_ns < kNewNs) return;
     waiting.said = true;
     if (const std::string line = Trouble(opening); !line.empty()) Say(line);
@@ -120,8 +120,8 @@ void HidSearch::Open(const hid_device_info& info, std::int64_t now_ns) {
   found.identity = std::move(opening.identity);
   found.device = std::move(opening.device);
   if (!found_.Push(std::move(found))) return;
-  waiting_.erase(info.path);
-  open_paths_.insert(info.path);
+  waiting_.erase(node.path);
+  open_paths_.insert(node.path);
   wake_();
 }
 

@@ -35,10 +35,15 @@ class HidSearch {
 
   /// io thread.
   bool Take(Found& found) { return found_.Pop(found); }
-  /// io thread: the device of this path was closed and may be opened again.
-  void Forget(const std::string& path);
+  /// io thread: closes the device of this path, which may then be opened again. hidapi keeps its
+  /// newest error in one place for the whole process, so one thread opens and closes.
+  void Close(std::string path, HidHandle device);
 
  private:
+  struct Closed {
+    std::string path;
+    HidHandle device;
+  };
   struct Waiting {
     std::int64_t since_ns = 0;
     bool said = false;
@@ -47,13 +52,13 @@ class HidSearch {
   void Run();
   int PauseMs(std::int64_t now_ns) const;
   void Look(std::int64_t now_ns);
-  void Open(const hid_device_info& info, std::int64_t now_ns);
+  void Open(const HidNode& node, std::int64_t now_ns);
   void Say(const std::string& line);
 
   std::function<void()> wake_;
   NodeMonitor monitor_;
   exchange::BoundedQueue<Found> found_{64};
-  exchange::BoundedQueue<std::string> closed_{64};
+  exchange::BoundedQueue<Closed> closed_{64};
   exchange::Flag stop_;
   std::int64_t changed_ns_ = 0;  ///< Of udev's newest report.
   int event_;                    ///< eventfd: stop, or a path was closed.

@@ -120,9 +120,8 @@ class HidSource::Implementation : public std::enable_shared_from_this<Implementa
         ++it;
         continue;
       }
-      const std::string path = it->second.path;
+      search_->Close(it->second.path, reader.Release());
       it = readers_.erase(it);
-      search_->Forget(path);
       handlers_.on_detach(device, "device is gone");
     }
   }

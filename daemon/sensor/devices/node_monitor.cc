@@ -2,9 +2,48 @@
 
 #include <libudev.h>
 
-#include <cstdlib>
+#include <cstdio>
+#include <optional>
+#include <utility>
 
 namespace footing::devices {
+namespace {
+
+/// The kernel's texts are ASCII in practice; what is not becomes '?'.
+std::string Text(const char* text) {
+  std::string plain = text == nullptr ? "" : text;
+  for (char& c : plain) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return plain;
+}
+
+/// None while the kernel is still setting it up, or taking it down: any part may be missing.
+std::optional<HidNode> Describe(udev_device* device) {
+  const char* const path = device == nullptr ? nullptr : udev_device_get_devnode(device);
+  if (path == nullptr) return std::nullopt;
+  udev_device* const hid = udev_device_get_parent_with_subsystem_devtype(device, "hid", nullptr);
+  // "0005:0000057E:00000306": bus, vendor, product.
+  const char* const id = hid == nullptr ? nullptr : udev_device_get_property_value(hid, "HID_ID");
+  unsigned bus = 0, vendor = 0, product = 0;
+  if (id == nullptr || std::sscanf(id, "%x:%x:%x", &bus, &vendor, &product) != 3) {
+    return std::nullopt;
+  }
+  HidNode node;
+  node.path = path;
+  if (bus == static_cast<unsigned>(Bus::kUsb)) node.bus = Bus::kUsb;
+  if (bus == static_cast<unsigned>(Bus::kBluetooth)) node.bus = Bus::kBluetooth;
+  node.vendor = vendor;
+  node.product = product;
+  node.name = Text(udev_device_get_property_value(hid, "HID_NAME"));
+  node.serial = Text(udev_device_get_property_value(hid, "HID_UNIQ"));
+  const char* driver = udev_device_get_driver(hid);
+  if (driver == nullptr) driver = udev_device_get_property_value(hid, "DRIVER");
+  node.driver = Text(driver);
+  return node;
+}
+
+}  // namespace
 
 void UdevRelease::operator()(udev* context) const { udev_unref(context); }
 void UdevRelease::operator()(udev_monitor* monitor) const { udev_monitor_unref(monitor); }
@@ -33,25 +72,21 @@ bool NodeMonitor::Clear() {
   return any;
 }
 
-NodeMonitor::Facts NodeMonitor::FactsOf(const std::string& path) const {
-  Facts facts;
-  if (!udev_) return facts;
-  const std::string name = path.substr(path.rfind('/') + 1);
-  udev_device* const node =
-      udev_device_new_from_subsystem_sysname(udev_.get(), "hidraw", name.c_str());
-  if (node == nullptr) return facts;
-  if (udev_device* hid = udev_device_get_parent_with_subsystem_devtype(node, "hid", nullptr)) {
-    const char* driver = udev_device_get_driver(hid);
-    if (driver == nullptr) driver = udev_device_get_property_value(hid, "DRIVER");
-    if (driver != nullptr) facts.driver = driver;
-    // "0003:0000057E:00000306": bus, vendor, product. hidapi knows no bus of a virtual device.
-    const char* id = udev_device_get_property_value(hid, "HID_ID");
-    const unsigned long bus = id == nullptr ? 0 : std::strtoul(id, nullptr, 16);
-    if (bus == static_cast<unsigned long>(Bus::kUsb)) facts.bus = Bus::kUsb;
-    if (bus == static_cast<unsigned long>(Bus::kBluetooth)) facts.bus = Bus::kBluetooth;
+std::vector<HidNode> NodeMonitor::Nodes() const {
+  std::vector<HidNode> nodes;
+  udev_enumerate* const enumeration = udev_ ? udev_enumerate_new(udev_.get()) : nullptr;
+  if (enumeration == nullptr) return nodes;
+  udev_enumerate_add_match_subsystem(enumeration, "hidraw");
+  udev_enumerate_scan_devices(enumeration);
+  for (udev_list_entry* entry = udev_enumerate_get_list_entry(enumeration); entry != nullptr;
+       entry = udev_list_entry_get_next(entry)) {
+    udev_device* const device =
+        udev_device_new_from_syspath(udev_.get(), udev_list_entry_get_name(entry));
+    if (auto node = Describe(device)) nodes.push_back(std::move(*node));
+    udev_device_unref(device);
   }
-  udev_device_unref(node);
-  return facts;
+  udev_enumerate_unref(enumeration);
+  return nodes;
 }
 
 }  // namespace footing::devices

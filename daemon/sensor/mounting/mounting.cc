@@ -118,6 +118,16 @@ int FirstWay(std::span<const Vector2d> swing, const Vector2d& axis, double share
   return 1;
 }
 
+/// Where the first half of the swing's energy ends: halves by time could be one of standing.
+std::size_t HalfOfTheSwing(std::span<const Vector2d> swing) {
+  double whole = 0;
+  for (const Vector2d& one : swing) whole += one.squaredNorm();
+  double sum = 0;
+  std::size_t i = 0;
+  while (i + 2 < swing.size() && sum < whole / 2) sum += swing[i++].squaredNorm();
+  return std::max<std::size_t>(i, 2);
+}
+
 /// The change of an axis without sign.
 double TurnBetween(const Vector2d& a, const Vector2d& b) {
   return std::acos(std::min(1.0, std::abs(a.dot(b))));
@@ -166,8 +176,9 @@ Mounting SolveMounting(stream::DeviceRole role, Samples still, Samples steps,
   const std::size_t half = still.size() / 2;
   const double drift_rad = AngleBetween(Mean(still.first(half)), Mean(still.last(half)));
   const auto parts = std::span<const Vector2d>(swing);
-  const double turn_rad = TurnBetween(PrincipalAxis(parts.first(parts.size() / 2)).direction,
-                                      PrincipalAxis(parts.last(parts.size() / 2)).direction);
+  const std::size_t middle = HalfOfTheSwing(parts);
+  const double turn_rad = TurnBetween(PrincipalAxis(parts.first(middle)).direction,
+                                      PrincipalAxis(parts.subspan(middle)).direction);
   mounting.residual_rad = std::max(drift_rad, turn_rad);
   if (mounting.residual_rad > config.most_residual_rad) {
     return Refused("its parts disagree by " + Number(RadiansToDegrees(mounting.residual_rad)) +

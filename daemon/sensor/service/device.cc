@@ -10,8 +10,9 @@ using stream::DeviceKind;
 
 constexpr double kWiimotePeriodS = 0.01;
 constexpr double kBoardPeriodS = 1 / 83.6;  // As recorded on a good link.
-constexpr double kMovePeriodS = 1 / 88.0;   // psmoveapi.
-constexpr double kMoveLowBattery = 0.21;    // One bar of five.
+constexpr double kBoardSensorPeriodS = 1 / 60.0;
+constexpr double kMovePeriodS = 1 / 88.0;  // psmoveapi.
+constexpr double kMoveLowBattery = 0.21;   // One bar of five.
 
 bool IsMove(const devices::DeviceIdentity& identity) {
   return identity.vendor == devices::kVendorSony;
@@ -60,6 +61,8 @@ void Device::RestartClock() {
                                                     : kWiimotePeriodS;
   link::DeviceClockConfig clock_config;
   clock_config.nominal_period_s = period_s_;
+  clock_config.sensor_period_s =
+      kind() == DeviceKind::kBalanceBoard ? kBoardSensorPeriodS : period_s_;
   clock_ = link::DeviceClock(clock_config);
   statistics_ = link::LinkStatistics(period_s_);
 }
@@ -212,7 +215,7 @@ void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded&
   const std::int64_t before_ns = sampled_ns_;
   if (!decoded.buttons_only) {
     statistics_.Advance(report.received_ns);
-    sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns));
+    sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns, decoded.changed));
   }
   const auto half_ns = static_cast<std::int64_t>(period_s_ * 0.5e9);
   for (std::size_t i = 0; i < decoded.motion_count; ++i) {
@@ -260,7 +263,7 @@ void Device::TakeBoard(const devices::IncomingReport& report, const decode::Boar
                        TickContent& content) {
   if (!HasRoom(content)) return;
   statistics_.Advance(report.received_ns);
-  sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns));
+  sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns, measured.changed));
   stream::BoardSample sample;
   sample.device = number_;
   sample.report_count = statistics_.reports();

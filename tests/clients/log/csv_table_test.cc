@@ -37,8 +37,8 @@ TEST(CsvTable, TheFirstListGivesARowEach) {
   reports.add_reports()->set_to_device(true);
   CsvTable table(*reports.GetDescriptor());
   ASSERT_TRUE(table.Learn(reports).ok());
-  EXPECT_EQ(table.Header(), "device,received_ns,report,to_device,simulated,true_ns");
-  EXPECT_EQ(Rows(table, reports), "1,0,310a,0,0,0\n0,0,,1,0,0\n");
+  EXPECT_EQ(table.Header(), "device,received_ns,report,to_device,simulated,feature,true_ns");
+  EXPECT_EQ(Rows(table, reports), "1,0,310a,0,0,0,0\n0,0,,1,0,0,0\n");
 }
 
 TEST(CsvTable, ListsWithinARowAreNumberedAndPaddedToTheLongest) {
@@ -66,7 +66,8 @@ TEST(CsvTable, WhatAMessageDoesNotHaveIsAnEmptyCell) {
   CsvTable table(*samples.GetDescriptor());
   ASSERT_TRUE(table.Learn(samples).ok());
   EXPECT_THAT(table.Header(), testing::HasSubstr("specific_force_mps2_x,specific_force_mps2_y"));
-  EXPECT_EQ(Rows(table, samples), "0,0,0,0,0.1,0,0,0,0,0,0,0\n0,0,0,0,,,,0,0,0,0,0\n");
+  EXPECT_EQ(Rows(table, samples),
+            "0,0,0,0,0.1,0,0,0,0,0,0,0,0,0,0,0\n0,0,0,0,,,,0,0,0,0,0,0,0,0,0\n");
 }
 
 TEST(CsvTable, TextIsQuotedWhereItMustBeAndNumbersThatAreNoneAreEmpty) {

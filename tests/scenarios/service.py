@@ -1,0 +1,202 @@
+"""footingd under a service manager: passed sockets, readiness, watchdog, farewell, restart.
+
+Usage: service.py BINARY_FOLDER
+
+The scenario plays systemd's part: it opens the listening sockets, passes them by LISTEN_FDS, and
+reads what comes to NOTIFY_SOCKET.
+"""
+import fcntl
+import os
+import pathlib
+import signal
+import socket
+import sys
+import time
+
+import decode_stream
+import harness
+
+SOCKETS = ("sensor", "devices")
+WATCHDOG_S = 1.0
+FIRST_DESCRIPTOR = 3  # SD_LISTEN_FDS_START
+
+
+class Manager:
+    def __init__(self, binaries, folder):
+        self.program = pathlib.Path(binaries) / "footingd"
+        self.folder = folder
+        self.log = folder / "footingd.log"
+        self.sockets = {}
+        for name in SOCKETS:
+            listening = socket.socket(socket.AF_UNIX)
+            listening.bind(str(folder / f"{name}.sock"))
+            listening.listen(16)
+            self.sockets[name] = listening
+        self.notices = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.notices.bind(str(folder / "notify"))
+        self.process = None
+
+    def start(self, *words, watchdog_s=0.0, names=SOCKETS):
+        """As systemd does: the child's own process id must stand in its environment."""
+        process = os.fork()
+        if process != 0:
+            self.process = process
+            return
+        try:
+            environment = {**os.environ, "LISTEN_FDS": str(len(names)),
+                           "LISTEN_FDNAMES": ":".join(names), "LISTEN_PID": str(os.getpid()),
+                           "NOTIFY_SOCKET": str(self.folder / "notify")}
+            if watchdog_s:
+                environment.update(WATCHDOG_USEC=str(int(watchdog_s * 1e6)),
+                                   WATCHDOG_PID=str(os.getpid()))
+            log = os.open(self.log, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+            os.dup2(log, 1)
+            os.dup2(log, 2)
+            # Out of the way first: one of them may stand where another one goes.
+            copies = [fcntl.fcntl(self.sockets[name], fcntl.F_DUPFD, 100) for name in names]
+            for i, copy in enumerate(copies):
+                os.dup2(copy, FIRST_DESCRIPTOR + i)
+            os.closerange(FIRST_DESCRIPTOR + len(names), 256)
+            os.execve(self.program, [str(self.program), *words], environment)
+        finally:
+            os._exit(127)
+
+    def notice(self, timeout_s):
+        """The lines of the next notice; none when it does not come in time."""
+        self.notices.settimeout(timeout_s)
+        try:
+            return self.notices.recv(4096).decode().split("\n")
+        except socket.timeout:
+            return []
+
+    def wait_for(self, line, timeout_s):
+        deadline = time.monotonic() + timeout_s
+        while (left_s := deadline - time.monotonic()) > 0:
+            notice = self.notice(left_s)
+            if line in notice:
+                return notice
+        raise AssertionError(f"{line} did not come within {timeout_s} s")
+
+    def wait_for_exit(self, timeout_s=20):
+        deadline = time.monotonic() + timeout_s
+        while time.monotonic() < deadline:
+            ended, status = os.waitpid(self.process, os.WNOHANG)
+            if ended:
+                self.process = None
+                return os.waitstatus_to_exitcode(status)
+            time.sleep(0.02)
+        raise AssertionError(f"footingd did not end within {timeout_s} s")
+
+    def close(self):
+        if self.process:
+            os.kill(self.process, signal.SIGKILL)
+            os.waitpid(self.process, 0)
+
+
+class Caller:
+    """A client that says hello at once, whether or not somebody listens yet."""
+
+    def __init__(self, address):
+        self.stream = decode_stream.Stream(address, 10)
+        self.stream.send(1, decode_stream.number_field(1, 1) + decode_stream.number_field(3, 1))
+
+    def welcome(self):
+        while True:
+            message = self.stream.receive()
+            assert "refused" not in message and "goodbye" not in message, message
+            if "welcome" in message:
+                return message["welcome"]
+
+
+def check_start(manager, address):
+    early = Caller(address)  # Before the service is there: the manager's socket takes it.
+    manager.start(watchdog_s=WATCHDOG_S)
+    notice = manager.wait_for("READY=1", 20)
+    assert "STATUS=listening on fd:sensor" in notice, notice
+    # Ready means that it serves: who waited, and who comes now.
+    epoch = early.welcome()["epoch"]
+    assert Caller(address).welcome()["epoch"] == epoch
+    return epoch
+
+
+def check_watchdog(manager):
+    """Twice in each interval; never an interval without."""
+    beats, last = [], time.monotonic()
+    while len(beats) < 5:
+        if "WATCHDOG=1" in manager.notice(2 * WATCHDOG_S):
+            beats.append(time.monotonic() - last)
+            last = time.monotonic()
+        assert time.monotonic() - last < WATCHDOG_S, f"no beat for {WATCHDOG_S} s: {beats}"
+    assert min(beats[1:]) > 0.1 * WATCHDOG_S, f"too many beats: {beats}"
+
+
+def check_hangs_show(manager):
+    """A daemon that stands still does not beat."""
+    os.kill(manager.process, signal.SIGSTOP)
+    while manager.notice(0.1):
+        pass  # Sent before it stopped.
+    assert not manager.notice(1.5 * WATCHDOG_S), "it beats while it stands still"
+    os.kill(manager.process, signal.SIGCONT)
+    manager.wait_for("WATCHDOG=1", 5)
+
+
+def check_devices(stage, sensor):
+    """A stand-in on the passed socket for devices reaches a client on the other one."""
+    stage.start_user("walk", "--seconds", 30)
+    for tick in harness.read_ticks(sensor, 10, ["motion"]):
+        if tick.get("motion", {}).get("samples"):
+            break
+    else:
+        raise AssertionError("no sample of the stand-in within 10 s")
+    stage.stop("footing-stream")
+
+
+def check_farewell(manager):
+    os.kill(manager.process, signal.SIGTERM)
+    manager.wait_for("STOPPING=1", 5)
+    code = manager.wait_for_exit()
+    assert code == 0, f"exit code {code}"
+
+
+def check_wrong_sockets(manager):
+    """A socket that is not passed ends the start, with its name, and nobody is told it is ready."""
+    manager.start("--listen", "fd:sensor", "--source", "stream:fd:tracker", names=("sensor",))
+    code = manager.wait_for_exit()
+    assert code == 2, f"exit code {code}"
+    assert not manager.notice(0.2), "it said it was ready"
+    assert "no socket was passed under the name tracker" in manager.log.read_text()
+
+
+def main(binaries):
+    with harness.Stage(binaries) as stage:
+        manager = Manager(binaries, stage.folder)
+        try:
+            check_start_to_end(stage, manager)
+        finally:
+            manager.close()
+
+
+def check_start_to_end(stage, manager):
+    address = stage.sensor
+    files = {name: os.stat(stage.folder / f"{name}.sock").st_ino for name in SOCKETS}
+    first = check_start(manager, address)
+    check_watchdog(manager)
+    check_hangs_show(manager)
+    check_devices(stage, address)
+    check_farewell(manager)
+    for name, number in files.items():
+        assert os.stat(stage.folder / f"{name}.sock").st_ino == number, f"{name}.sock was replaced"
+
+    between = Caller(address)  # Nobody is there, and yet it is not refused.
+    manager.start()
+    manager.wait_for("READY=1", 20)
+    second = between.welcome()["epoch"]
+    assert second != first, "a restart is a new epoch"
+    assert not manager.notice(1.5 * WATCHDOG_S), "beats that no manager asked for"
+    check_farewell(manager)
+    check_wrong_sockets(manager)
+    print("sockets passed, ready, alive, standing still seen, stopped, restarted on the same sockets")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

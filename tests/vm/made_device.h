@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/device_models/controller.h"
+#include "common/device_models/identity.h"
+
+namespace footing::vm {
+
+/// A device fresh from power-on, whatever its kind: its side of the protocol, and the ramp that it
+/// measures. Time is an argument.
+class MadeDevice {
+ public:
+  using Reports = std::vector<device_models::Report>;
+
+  virtual ~MadeDevice() = default;
+  virtual const device_models::Identity& identity() const = 0;
+  virtual Reports HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report) = 0;
+  virtual Reports Sample(std::int64_t now_ns, std::uint64_t sample) = 0;
+  /// The status report that a device sends of itself.
+  virtual Reports Status() = 0;
+};
+
+/// "wiimote" or "board"; null for another name. The same seed is the same device, serial and all.
+std::unique_ptr<MadeDevice> MakeDevice(const std::string& kind, std::uint64_t seed);
+
+}  // namespace footing::vm
