@@ -1,7 +1,10 @@
-# add_module_test(<name> SOURCES ... [DEPS ...]): one GoogleTest program; every case becomes one
+# add_module_test(<name> SOURCES ... [DEPS ...] [LABELS ...] [TIMEOUT seconds]): one GoogleTest program; every case becomes one
 # CTest test. Cases that call GTEST_SKIP show as skipped.
 function(add_module_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
   set(links "")
   foreach(dep IN LISTS arg_DEPS)
     if(DEFINED EXTERNAL_${dep})
@@ -17,7 +20,7 @@ function(add_module_test name)
   target_compile_definitions(${name} PRIVATE FOOTING_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              FOOTING_BINARY_DIR="${PROJECT_BINARY_DIR}")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  set(properties ENVIRONMENT "FOOTING_TEST_DATA=${FOOTING_TEST_DATA}" TIMEOUT 300)
+  set(properties ENVIRONMENT "FOOTING_TEST_DATA=${FOOTING_TEST_DATA}" TIMEOUT ${arg_TIMEOUT})
   if(arg_LABELS)
     list(APPEND properties LABELS "${arg_LABELS}")
   endif()

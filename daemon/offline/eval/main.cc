@@ -1,5 +1,6 @@
 #include "common/cli/cli.h"
 #include "daemon/offline/eval/board_command.h"
+#include "daemon/offline/eval/clock_command.h"
 #include "daemon/offline/eval/command.h"
 #include "daemon/offline/eval/features_command.h"
 #include "daemon/offline/eval/gait_command.h"
@@ -18,6 +19,7 @@ int main(int argc, char** argv) {
   app->require_subcommand(1);
   app->fallthrough();
   footing::eval::AddBoardCommand(*app, shared);
+  footing::eval::AddClockCommand(*app, shared);
   footing::eval::AddFeaturesCommand(*app, shared);
   footing::eval::AddGaitCommand(*app, shared);
   footing::eval::AddMonkeyCommand(*app, shared);
