@@ -11,10 +11,13 @@ double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 /// The period of the loop may differ this much from its nominal value, by a factor either way.
 constexpr double kPeriodRange = 2;
-/// Share of new values, over some fifty reports: under the first reports sample a held value, over
-/// the second they do not; under the third the sensor is at rest.
-constexpr double kHeldBelow = 0.93;
-constexpr double kQueuedAbove = 0.985;
+/// Share of new values among reports that follow the one before by less than kShort periods of the
+/// sensor, over some fifty of them. Of held values it is below kShort on average, as a tick seldom
+/// comes between; of queued ones nearly 1. Longer intervals, as behind lost reports, tell nothing.
+constexpr double kShort = 0.75;
+constexpr double kHeldBelow = 0.85;
+constexpr double kQueuedAbove = 0.97;
+/// Share of new values among all reports: below, the sensor is at rest.
 constexpr double kRestsBelow = 0.4;
 constexpr double kShareGain = 0.02;
 constexpr int kLearnReports = 50;
@@ -36,9 +39,11 @@ std::int64_t DeviceClock::Advance(std::int64_t received_ns, bool changed) {
     return sampled_ns_;
   }
   changed_share_ += kShareGain * ((changed ? 1 : 0) - changed_share_);
+  if (Seconds(received_ns - before_ns) < kShort * config_.sensor_period_s) {
+    short_share_ += kShareGain * ((changed ? 1 : 0) - short_share_);
+  }
   ++reports_;
-  if (held_ ? changed_share_ > kQueuedAbove
-            : reports_ > kLearnReports && changed_share_ < kHeldBelow) {
+  if (held_ ? short_share_ > kQueuedAbove : reports_ > kLearnReports && short_share_ < kHeldBelow) {
     held_ = !held_;
   }
   const std::int64_t loop_ns = AdvanceLoop(received_ns);

@@ -31,7 +31,7 @@ struct DeviceClockConfig {
 /// last tick before its report. A sensor at rest repeats itself without meaning it, so repeats
 /// count only while most reports are new.
 ///
-/// Where hardly any report repeats, each carries a sample of its own through a queue, and a
+/// Where even reports that follow each other closely are new, each carries a sample of its own through a queue, and a
 /// phase-locked loop on the report count follows the device's rate instead: Bluetooth delivers in
 /// bursts, 2 ms and then 18 ms apart.
 ///
@@ -62,6 +62,7 @@ class DeviceClock {
 
   bool held_ = false;
   double changed_share_ = 1;
+  double short_share_ = 1;
   int reports_ = 0;
   double tick_period_s_;
   std::int64_t tick_ns_ = 0;  ///< A tick of the sensor, the last one up to the newest report.

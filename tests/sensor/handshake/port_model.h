@@ -18,8 +18,10 @@ class PortModel {
   using Report = device_models::Report;
   enum class Child { kNone, kNunchuk, kClassic, kUnknown };
 
-  explicit PortModel(Child child = Child::kNone, bool motion_plus = false)
-      : wiimote_(5), child_(child), motion_plus_(motion_plus) {}
+  explicit PortModel(Child child = Child::kNone, bool motion_plus = false, std::uint64_t seed = 5)
+      : wiimote_(seed), child_(child), motion_plus_(motion_plus) {}
+
+  const device_models::Identity& identity() const { return wiimote_.identity(); }
 
   static constexpr std::array<std::uint8_t, 16> kNunchukBlock = {
       0x7d, 0x7a, 0x7e, 0x0a, 0xb0, 0xaf, 0xb1, 0x12, 0xe5, 0x21, 0x7c, 0xe7, 0x23, 0x7a, 0xfc, 0x51};
@@ -47,8 +49,8 @@ class PortModel {
     return answers;
   }
 
-  std::optional<Report> Sample() {
-    auto report = wiimote_.Sample({0, 0, -9.81});
+  std::optional<Report> Sample(const Eigen::Vector3d& specific_force_S_mps2 = {0, 0, -9.81}) {
+    auto report = wiimote_.Sample(specific_force_S_mps2);
     if (!report) return report;
     const std::size_t at = (*report)[0] == 0x35 ? 6 : (*report)[0] == 0x37 ? 16 : 0;
     if (at == 0) return report;

@@ -106,7 +106,8 @@ class LongRun {
     if (auto* wiimote = std::get_if<PortModel>(&device.model)) {
       return wiimote->Sample({0, swing, -kStandardGravityMps2});
     }
-    return std::get<BalanceBoard>(device.model).Sample({150 + swing, 150, 150 - swing, 150});
+    return std::get<BalanceBoard>(device.model)
+        .Sample({150 + swing, 150 + 0.5 * swing, 150 - swing, 150 - 0.5 * swing});
   }
 
   void Answer(devices::DeviceHandle handle, const reports::OutputReport& report) {
@@ -232,7 +233,8 @@ TEST(Fault64EightDevicesForAnHour, DoNotGrow) {
   RecordProperty("allocated_bytes_after_2_min", static_cast<int>(before));
   RecordProperty("allocated_bytes_after_60_min", static_cast<int>(after));
   EXPECT_LE(after, before + 200'000);  // Less than 1 byte in ten reports.
-  EXPECT_GT(samples, 2'700'000u);
+  // 6 Wiimotes with 100 a second and 2 boards with 60, less the handshakes.
+  EXPECT_GT(samples, 0.999 * 3600 * (6 * 100 + 2 * 60));
 }
 
 TEST(AnHourThatPassesUnseen, IsOneGapAndTheDevicesAreLiveAgain) {
@@ -249,7 +251,6 @@ TEST(AnHourThatPassesUnseen, IsOneGapAndTheDevicesAreLiveAgain) {
   run.Advance(30, take);
   const auto before = status;
   EXPECT_EQ(before[0].note, "");
-  EXPECT_EQ(before[1].note.find("one board alone"), 0u);
   run.Jump(3600);
   run.Advance(1, take);
   ASSERT_EQ(status.size(), 2u);
