@@ -150,7 +150,8 @@ FOOTING_MOVE_FAULT(Fault40OneMoveOnUsbAndBluetooth) {
   ASSERT_TRUE(bench.UntilLive(first));
   EXPECT_EQ(Status(first).calibration(), v1::CALIBRATION_ORIGIN_DEFAULTS);
   // On the cable it is the same one, and its calibration can be read. It sends there too.
-  auto cable = std::make_shared<MoveOnLink>(radio->move, true);
+  auto cable = std::make_shared<MoveOnLink>(
+      std::make_shared<device_models::PsMove>(40, MoveModel::kZcm1), true);  // Two views of one.
   cable->sensors = radio->sensors;
   cable->sensors.angular_velocity_S_radps = {0, 0, -5};  // Not to be heard.
   Device* second = &bench.Plug(cable);
