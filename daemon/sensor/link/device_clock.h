@@ -31,9 +31,9 @@ struct DeviceClockConfig {
 /// last tick before its report. A sensor at rest repeats itself without meaning it, so repeats
 /// count only while most reports are new.
 ///
-/// Where even reports that follow each other closely are new, each carries a sample of its own through a queue, and a
-/// phase-locked loop on the report count follows the device's rate instead: Bluetooth delivers in
-/// bursts, 2 ms and then 18 ms apart.
+/// Where even reports that follow each other closely are new, each carries a sample of its own
+/// through a queue, and a phase-locked loop on the report count follows the device's rate instead:
+/// Bluetooth delivers in bursts, 2 ms and then 18 ms apart.
 ///
 /// Either way the estimate stays within [received - max_lag, received] and never runs backwards.
 class DeviceClock {
