@@ -53,7 +53,7 @@ class Actuators {
     for (const auto& device : DevicesOf(session, rig)) {
       v1::Command command;
       command.mutable_set_leds()->set_device(device.device);
-      command.mutable_set_leds()->set_leds(guide::LedsOf(device.role));
+      command.mutable_set_leds()->set_leds(stream::LedsOf(device.role));
       (void)session.Call(std::move(command)).ok();
     }
   }

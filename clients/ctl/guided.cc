@@ -45,10 +45,6 @@ v1::Command CommandOf(const guide::Action& action, const std::string& rig) {
       assign.set_role(static_cast<v1::DeviceRole>(action.role));
       break;
     }
-    case guide::Action::Kind::kLeds:
-      command.mutable_set_leds()->set_device(action.device);
-      command.mutable_set_leds()->set_leds(action.leds);
-      break;
     case guide::Action::Kind::kTare:
       command.mutable_tare()->set_serial(action.serial);
       command.mutable_tare()->set_window_s(action.window_s);

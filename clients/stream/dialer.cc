@@ -126,12 +126,20 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     if (!envelope.has_output() || envelope.output().slot() >= devices_.size()) return;
     const std::string& bytes = envelope.output().report();
     const std::size_t slot = envelope.output().slot();
-    const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
     const std::int64_t now_ns = clock::MonotonicNs();
-    for (const auto& report : devices_[slot].HandleOutput({first, bytes.size()})) {
+    StandIn& device = devices_[slot];
+    if (envelope.output().channel() == v1::DeviceOutput::CHANNEL_FEATURE_GET) {
+      if (bytes.empty()) return;
+      const auto id = static_cast<std::uint8_t>(bytes[0]);
+      SendReport(slot, device.Feature(id, envelope.output().size()), now_ns, true);
+      return;
+    }
+    const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    const double now_s = NanosecondsToSeconds(now_ns - start_ns_);
+    for (const auto& report : device.HandleOutput(now_s, {first, bytes.size()})) {
       SendReport(slot, report, now_ns);
     }
-    if (const std::string changes = devices_[slot].Changes(); !changes.empty()) log::Info(changes);
+    if (const std::string changes = device.Changes(now_s); !changes.empty()) log::Info(changes);
   }
 
   void Schedule(std::size_t slot) {
@@ -153,19 +161,21 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
       ended_ = true;
       return;
     }
-    if (const auto report = devices_[slot].Deliver(arrival.sampled_s)) {
-      SendReport(slot, *report, start_ns_ + SecondsToNanoseconds(arrival.sampled_s));
+    for (const auto& report : devices_[slot].Deliver(arrival.sampled_s)) {
+      SendReport(slot, report, start_ns_ + SecondsToNanoseconds(arrival.sampled_s));
     }
     Schedule(slot);
   }
 
-  void SendReport(std::size_t slot, const device_models::Report& report, std::int64_t true_ns) {
+  void SendReport(std::size_t slot, const device_models::Report& report, std::int64_t true_ns,
+                  bool feature = false) {
     v1::DeviceEnvelope envelope;
     v1::DeviceInputReport& input = *envelope.mutable_input_report();
     input.set_slot(static_cast<std::uint32_t>(slot));
     input.set_sequence(++sequences_[slot]);
     input.set_report(report.data(), report.size());
     input.set_true_ns(true_ns);
+    input.set_feature(feature);
     Send(envelope);
   }
 

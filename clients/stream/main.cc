@@ -59,9 +59,12 @@ int main(int argc, char** argv) {
 
   std::string script = "demo", interface = "wrist", left, right;
   double rate_hz = 100;
-  auto* user = app->add_subcommand("user", "A made user who swings two Wiimotes");
+  auto* user = app->add_subcommand("user", "A made user of Wiimotes");
   user->add_option("--script", script, "A carried script's name, or a JSON file");
-  user->add_option("--interface", interface, "wrist");
+  user->add_option("--interface", interface, "wrist or joystick");
+  stream_client::Ports ports;
+  user->add_flag("--motion-plus", ports.motion_plus, "A MotionPlus in every Wiimote");
+  user->add_flag("--nunchuk", ports.nunchuk, "A Nunchuk in every Wiimote");
   auto* accel = app->add_subcommand("accel", "Recorded accelerations, CSV ax,ay,az in m/s2");
   auto* corners =
       app->add_subcommand("corners", "Recorded corners, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg");
@@ -82,7 +85,7 @@ int main(int argc, char** argv) {
           UsageError(absent->get_name() + " is not built; there are: user, accel, corners"));
     }
   }
-  if (*user) return Run(stream_client::PlanUser(script, interface, common), common);
+  if (*user) return Run(stream_client::PlanUser(script, interface, common, ports), common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
   return Run(stream_client::PlanCorners(left, right, common), common);
 }

@@ -1,11 +1,13 @@
 #include "clients/stream/plan.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "clients/stream/script.h"
+#include "clients/stream/stick.h"
 #include "clients/stream/table.h"
 #include "common/config/data_file.h"
 #include "common/synthetic/hand_motion.h"
@@ -34,14 +36,19 @@ std::uint64_t DeviceSeed(const Common& common, std::uint64_t device) {
 }
 
 StandIn MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device, DeviceRole role,
-                    StandIn::SpecificForce force) {
+                    StandIn::WiimoteMotion motion, const Ports& ports = {}) {
   const std::uint64_t seed = DeviceSeed(common, device);
-  return {device_models::Wiimote(seed), std::move(force), role,
+  device_models::Wiimote wiimote(seed);
+  if (ports.motion_plus) wiimote.Plug(device_models::Accessory::kMotionPlus, 0);
+  if (ports.nunchuk) wiimote.Plug(device_models::Accessory::kNunchuk, 0);
+  return {std::move(wiimote), std::move(motion), role,
           device_models::WiimoteLink(link, seed + 500)};
 }
 
+using Force = std::function<Eigen::Vector3d(double t_s)>;
+
 /// What a real accelerometer adds to a made motion.
-StandIn::SpecificForce WithNoise(std::uint64_t seed, StandIn::SpecificForce force) {
+Force WithNoise(std::uint64_t seed, Force force) {
   return [random = synthetic::Random(seed), force](double t_s) mutable {
     const double sd_mps2 = synthetic::SensorModel().noise_mps2;
     Eigen::Vector3d felt = force(t_s);
@@ -50,8 +57,33 @@ StandIn::SpecificForce WithNoise(std::uint64_t seed, StandIn::SpecificForce forc
   };
 }
 
+/// Angular velocity of a hand whose gravity in S is `gravity`, without any turn about the vertical:
+/// a vector that stands still in the world changes in S as dg/dt = g x w.
+Force TurnOf(Force gravity) {
+  return [gravity](double t_s) -> Eigen::Vector3d {
+    constexpr double kStepS = 0.002;
+    const Eigen::Vector3d g = gravity(t_s);
+    const Eigen::Vector3d rate = (gravity(t_s + kStepS) - gravity(t_s - kStepS)) / (2 * kStepS);
+    return rate.cross(g) / g.squaredNorm();
+  };
+}
+
+/// Again and again.
+Force Repeated(Force force, double duration_s) {
+  return [force, duration_s](double t_s) { return force(std::fmod(t_s, duration_s)); };
+}
+
+StandIn::WiimoteMotion Felt(Force force, Force turn = nullptr) {
+  return [force, turn](double t_s) {
+    device_models::WiimoteSensors sensors;
+    sensors.specific_force_S_mps2 = force(t_s);
+    if (turn) sensors.angular_velocity_S_radps = turn(t_s);
+    return sensors;
+  };
+}
+
 /// Row i of a recording holds from i / rate to (i + 1) / rate.
-StandIn::SpecificForce PlayAccelerations(std::shared_ptr<const Table> table, double rate_hz) {
+Force PlayAccelerations(std::shared_ptr<const Table> table, double rate_hz) {
   return [table, rate_hz](double t_s) {
     const double last = static_cast<double>(table->rows.size() - 1);
     const double index = std::clamp(std::floor(t_s * rate_hz + 1e-6), 0.0, last);
@@ -101,30 +133,70 @@ Result<std::vector<synthetic::Segment>> ReadScript(const std::string& script) {
   return ParseScript(*text, script);
 }
 
+Plan PlanWrists(const std::vector<synthetic::Segment>& segments, LinkQuality link,
+                const Common& common, const Ports& ports) {
+  using synthetic::HandMotion;
+  const auto make = [](std::vector<synthetic::Segment> script) {
+    return std::make_shared<const HandMotion>(std::move(script), synthetic::WristShape(), kBlendS);
+  };
+  const auto motion = make(segments);
+  // The same without the swing is gravity alone.
+  std::vector<synthetic::Segment> inclined = segments;
+  for (synthetic::Segment& segment : inclined) segment.amplitude_mps2 = 0;
+  const auto gravity = make(inclined);
+  const auto of = [](std::shared_ptr<const HandMotion> hands, bool left) -> Force {
+    return [hands, left](double t_s) -> Eigen::Vector3d {
+      const synthetic::Hands felt = hands->At(t_s);
+      return left ? felt.left_mps2 : felt.right_mps2;
+    };
+  };
+  Plan plan;
+  for (const bool left : {true, false}) {
+    const std::uint64_t device = left ? 1 : 2;
+    const double duration_s = motion->DurationSeconds();
+    const Force force =
+        WithNoise(DeviceSeed(common, device), Repeated(of(motion, left), duration_s));
+    const Force turn = Repeated(TurnOf(of(gravity, left)), duration_s);
+    const DeviceRole role = left ? DeviceRole::kLeftHand : DeviceRole::kRightHand;
+    plan.devices.push_back(MakeWiimote(common, link, device, role, Felt(force, turn), ports));
+  }
+  return plan;
+}
+
+Plan PlanJoystick(const std::vector<synthetic::Segment>& segments, LinkQuality link,
+                  const Common& common, const Ports& ports) {
+  const auto stick = std::make_shared<const StickMotion>(segments, kBlendS);
+  const auto still = [](double) { return Eigen::Vector3d(0, 0, -kStandardGravityMps2); };
+  const auto motion = [stick, force = WithNoise(DeviceSeed(common, 1), still)](double t_s) mutable {
+    const StickState state = stick->At(std::fmod(t_s, stick->DurationSeconds()));
+    constexpr std::uint16_t kA = 0x0008;
+    device_models::WiimoteSensors sensors;
+    sensors.specific_force_S_mps2 = force(t_s);
+    sensors.buttons = state.jump ? kA : 0;
+    sensors.nunchuk.stick_x = state.x;
+    sensors.nunchuk.stick_y = state.y;
+    return sensors;
+  };
+  Plan plan;
+  plan.devices.push_back(
+      MakeWiimote(common, link, 1, DeviceRole::kRightHand, motion, {ports.motion_plus, true}));
+  return plan;
+}
+
 }  // namespace
 
-Result<Plan> PlanUser(const std::string& script, const std::string& interface,
-                      const Common& common) {
-  if (interface != "wrist") {
-    return UsageError("--interface " + interface + " is not built; there is: wrist");
+Result<Plan> PlanUser(const std::string& script, const std::string& interface, const Common& common,
+                      const Ports& ports) {
+  if (interface != "wrist" && interface != "joystick") {
+    return UsageError("--interface " + interface + " is not built; there are: wrist, joystick");
   }
   const auto link = ParseLink(common.link);
   if (!link) return link.error();
-  auto segments = ReadScript(script);
+  const auto segments = ReadScript(script);
   if (!segments) return segments.error();
-  auto motion = std::make_shared<const synthetic::HandMotion>(std::move(segments).value(),
-                                                              synthetic::WristShape(), kBlendS);
-  auto time = [motion](double t_s) { return std::fmod(t_s, motion->DurationSeconds()); };
-  Plan plan;
+  Plan plan = interface == "wrist" ? PlanWrists(*segments, *link, common, ports)
+                                   : PlanJoystick(*segments, *link, common, ports);
   plan.duration_s = Duration(common, 0);
-  plan.devices.push_back(MakeWiimote(common, *link, 1, DeviceRole::kLeftHand,
-                                     WithNoise(DeviceSeed(common, 1), [motion, time](double t_s) {
-                                       return motion->At(time(t_s)).left_mps2;
-                                     })));
-  plan.devices.push_back(MakeWiimote(common, *link, 2, DeviceRole::kRightHand,
-                                     WithNoise(DeviceSeed(common, 2), [motion, time](double t_s) {
-                                       return motion->At(time(t_s)).right_mps2;
-                                     })));
   return plan;
 }
 
@@ -143,7 +215,7 @@ Result<Plan> PlanAccelerations(const std::string& left, const std::string& right
     if (!table) return table.error();
     longest_s = std::max(longest_s, static_cast<double>((*table)->rows.size()) / rate_hz);
     plan.devices.push_back(MakeWiimote(common, *link, plan.devices.size() + 1, role,
-                                       PlayAccelerations(*table, rate_hz)));
+                                       Felt(PlayAccelerations(*table, rate_hz))));
   }
   plan.duration_s = Duration(common, longest_s);
   return plan;

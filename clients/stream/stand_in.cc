@@ -1,39 +1,75 @@
 #include "clients/stream/stand_in.h"
 
+#include <cstdio>
 #include <utility>
 
 #include "common/units/units.h"
 
 namespace footing::stream_client {
 
-using device_models::BalanceBoard;
-using device_models::Wiimote;
+using device_models::Report;
 
-StandIn::StandIn(Wiimote wiimote, SpecificForce force, stream::DeviceRole role,
-                 const device_models::LinkConfig& link)
-    : fresh_(std::move(wiimote)),
-      device_(fresh_),
-      force_(std::move(force)),
-      role_(role),
-      link_config_(link),
-      link_(link, 0) {}
+namespace {
 
-StandIn::StandIn(BalanceBoard board, CornerForces forces, stream::DeviceRole role,
+template <typename Remote>
+StandIn::Shown Show(const Remote& remote, std::int64_t) {
+  return {" LEDs " + std::to_string(remote.leds()), remote.rumble()};
+}
+
+StandIn::Shown Show(const device_models::PsMove& move, std::int64_t now_ns) {
+  char sphere[32];
+  std::snprintf(sphere, sizeof sphere, " sphere #%06x", move.sphere_rgb(now_ns));
+  return {sphere, move.rumble(now_ns) != 0};
+}
+
+std::vector<Report> Sample(device_models::Wiimote& wiimote, std::int64_t now_ns,
+                           const device_models::WiimoteSensors& sensors) {
+  return wiimote.Sample(now_ns, sensors);
+}
+
+std::vector<Report> Sample(device_models::BalanceBoard& board, std::int64_t,
+                           const device_models::CornerForces& forces) {
+  const auto report = board.Sample(forces);
+  return report ? std::vector<Report>{*report} : std::vector<Report>{};
+}
+
+std::vector<Report> Sample(device_models::PsMove& move, std::int64_t now_ns,
+                           const device_models::MoveSensors& sensors) {
+  return move.Sample(now_ns, sensors);
+}
+
+}  // namespace
+
+StandIn::StandIn(Device device, stream::DeviceRole role, const device_models::LinkConfig& link)
+    : fresh_(std::move(device)), device_(fresh_), role_(role), link_config_(link), link_(link, 0) {
+  Restart();
+}
+
+StandIn::StandIn(device_models::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
                  const device_models::LinkConfig& link)
-    : fresh_(std::move(board)),
-      device_(fresh_),
-      forces_(std::move(forces)),
-      role_(role),
-      link_config_(link),
-      link_(link, 0) {}
+    : StandIn(Device(Wiimote{std::move(wiimote), std::move(motion)}), role, link) {}
+
+StandIn::StandIn(device_models::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
+                 const device_models::LinkConfig& link)
+    : StandIn(Device(Board{std::move(board), std::move(forces)}), role, link) {}
+
+StandIn::StandIn(device_models::PsMove move, MoveMotion motion, stream::DeviceRole role,
+                 const device_models::LinkConfig& link)
+    : StandIn(Device(Move{std::move(move), std::move(motion)}), role, link) {}
 
 const device_models::Identity& StandIn::identity() const {
   return std::visit(
-      [](const auto& device) -> const auto& { return device.identity(); }, device_);
+      [](const auto& felt) -> const auto& { return felt.device.identity(); }, device_);
 }
 
-std::vector<device_models::Report> StandIn::HandleOutput(std::span<const std::uint8_t> output) {
-  return std::visit([output](auto& device) { return device.HandleOutput(output); }, device_);
+std::vector<Report> StandIn::HandleOutput(double now_s, std::span<const std::uint8_t> output) {
+  const std::int64_t now_ns = SecondsToNanoseconds(now_s);
+  return std::visit([=](auto& felt) { return felt.device.HandleOutput(now_ns, output); }, device_);
+}
+
+Report StandIn::Feature(std::uint8_t id, std::size_t size) {
+  auto* move = std::get_if<Move>(&device_);
+  return move == nullptr ? Report() : move->device.Feature(id, size).value_or(Report());
 }
 
 StandIn::Arrival StandIn::Next() {
@@ -41,36 +77,36 @@ StandIn::Arrival StandIn::Next() {
   return {NanosecondsToSeconds(arrival.arrives_ns), NanosecondsToSeconds(arrival.sampled_ns)};
 }
 
-std::optional<device_models::Report> StandIn::Deliver(double sampled_s) {
-  auto* wiimote = std::get_if<Wiimote>(&device_);
-  if (sampled_s != held_s_) {
-    held_s_ = sampled_s;
-    if (wiimote != nullptr) {
-      held_force_ = force_(sampled_s);
-    } else {
-      held_corners_ = forces_(sampled_s);
-    }
-  }
-  if (wiimote != nullptr) return wiimote->Sample(held_force_);
-  return std::get<BalanceBoard>(device_).Sample(held_corners_);
+std::vector<Report> StandIn::Deliver(double sampled_s) {
+  const bool fresh = sampled_s != held_s_;
+  held_s_ = sampled_s;
+  return std::visit(
+      [=](auto& felt) {
+        if (fresh) felt.held = felt.motion(sampled_s);
+        return Sample(felt.device, SecondsToNanoseconds(sampled_s), felt.held);
+      },
+      device_);
 }
 
 void StandIn::Restart() {
   device_ = fresh_;
   link_ = device_models::LinkModel(link_config_, 0);
   held_s_ = -1;
-  leds_ = 0;
-  rumble_ = false;
+  shown_ = Show(0);
 }
 
-std::string StandIn::Changes() {
-  const auto [leds, rumble] = std::visit(
-      [](const auto& device) { return std::pair(device.leds(), device.rumble()); }, device_);
+StandIn::Shown StandIn::Show(double now_s) const {
+  const std::int64_t now_ns = SecondsToNanoseconds(now_s);
+  return std::visit([=](const auto& felt) { return stream_client::Show(felt.device, now_ns); },
+                    device_);
+}
+
+std::string StandIn::Changes(double now_s) {
+  const Shown shown = Show(now_s);
   std::string line;
-  if (leds != leds_) line += " LEDs " + std::to_string(leds);
-  if (rumble != rumble_) line += rumble ? " rumble on" : " rumble off";
-  leds_ = leds;
-  rumble_ = rumble;
+  if (shown.lights != shown_.lights) line += shown.lights;
+  if (shown.rumble != shown_.rumble) line += shown.rumble ? " rumble on" : " rumble off";
+  shown_ = shown;
   return line.empty() ? line : identity().serial + line;
 }
 

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -11,6 +9,7 @@
 
 #include "common/device_models/balance_board.h"
 #include "common/device_models/link_model.h"
+#include "common/device_models/ps_move.h"
 #include "common/device_models/wiimote.h"
 #include "common/stream/device.h"
 
@@ -20,19 +19,25 @@ namespace footing::stream_client {
 /// knows no clock; times are seconds since its motion began.
 class StandIn {
  public:
-  using SpecificForce = std::function<Eigen::Vector3d(double t_s)>;
+  using WiimoteMotion = std::function<device_models::WiimoteSensors(double t_s)>;
   using CornerForces = std::function<device_models::CornerForces(double t_s)>;
+  using MoveMotion = std::function<device_models::MoveSensors(double t_s)>;
 
-  StandIn(device_models::Wiimote wiimote, SpecificForce force, stream::DeviceRole role,
+  StandIn(device_models::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
           const device_models::LinkConfig& link);
   StandIn(device_models::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
+          const device_models::LinkConfig& link);
+  StandIn(device_models::PsMove move, MoveMotion motion, stream::DeviceRole role,
           const device_models::LinkConfig& link);
 
   const device_models::Identity& identity() const;
   stream::DeviceRole role() const { return role_; }
 
   /// What the device answers to an output report.
-  std::vector<device_models::Report> HandleOutput(std::span<const std::uint8_t> output);
+  std::vector<device_models::Report> HandleOutput(double now_s,
+                                                  std::span<const std::uint8_t> output);
+  /// A feature report of `size` bytes; empty when the device refuses.
+  device_models::Report Feature(std::uint8_t id, std::size_t size);
 
   struct Arrival {
     double arrives_s = 0;
@@ -40,30 +45,46 @@ class StandIn {
   };
   /// The next delivery; later than the one before.
   Arrival Next();
-  /// The report with the value of `sampled_s`; none while the host has set no mode.
-  std::optional<device_models::Report> Deliver(double sampled_s);
+  /// The reports with the value of `sampled_s`; none while a mode is wanted and the host has set
+  /// none.
+  std::vector<device_models::Report> Deliver(double sampled_s);
   /// The motion begins anew at time 0, with the device fresh from its box, as after a new
   /// connection.
   void Restart();
 
-  /// A line for the log when LEDs or rumble changed since the last call; empty otherwise.
-  std::string Changes();
+  /// A line for the log when lights or rumble changed since the last call; empty otherwise.
+  std::string Changes(double now_s);
+
+  /// What a person would see and feel of it.
+  struct Shown {
+    std::string lights;
+    bool rumble = false;
+  };
 
  private:
-  using Device = std::variant<device_models::Wiimote, device_models::BalanceBoard>;
+  /// The device itself and what it feels.
+  template <typename Device, typename Sensors>
+  struct Felt {
+    Device device;
+    std::function<Sensors(double)> motion;
+    Sensors held{};  ///< The sensor holds one value until it takes the next.
+  };
+  using Wiimote = Felt<device_models::Wiimote, device_models::WiimoteSensors>;
+  using Board = Felt<device_models::BalanceBoard, device_models::CornerForces>;
+  using Move = Felt<device_models::PsMove, device_models::MoveSensors>;
+  using Device = std::variant<Wiimote, Board, Move>;
+
+  StandIn(Device device, stream::DeviceRole role, const device_models::LinkConfig& link);
+
+  Shown Show(double now_s) const;
 
   Device fresh_;
   Device device_;
-  SpecificForce force_;
-  CornerForces forces_;
   stream::DeviceRole role_;
   device_models::LinkConfig link_config_;
   device_models::LinkModel link_;
-  double held_s_ = -1;  ///< The sensor holds one value until it takes the next.
-  Eigen::Vector3d held_force_ = Eigen::Vector3d::Zero();
-  device_models::CornerForces held_corners_;
-  std::uint8_t leds_ = 0;
-  bool rumble_ = false;
+  double held_s_ = -1;
+  Shown shown_;  ///< As told last.
 };
 
 }  // namespace footing::stream_client

@@ -12,9 +12,8 @@ namespace footing::device_models {
 namespace {
 
 constexpr double kStepKg = 17;
-/// What is off between a load and its reading (WiiBrew, "Wii Balance Board").
-constexpr double kReadingFactor = 0.99908;
-constexpr double kDriftOfTenSteps = 0.007;
+constexpr double kFactor = 0.99908;
+constexpr double kTemperatureSlope = 0.007 / 10;  // Relative, a step of the thermometer.
 
 std::array<BalanceBoard::Points, BalanceBoard::kCorners> DrawPoints(std::uint64_t seed) {
   // Real boards: 2800 to 8300 counts empty, 9.8 to 11.5 g a count, another slope above 17 kg.
@@ -51,8 +50,8 @@ Memory MakeMemory(const std::array<BalanceBoard::Points, BalanceBoard::kCorners>
   return memory;
 }
 
-std::uint16_t Counts(const BalanceBoard::Points& points, double force_n, double excess) {
-  const double kg = std::isfinite(force_n) ? NewtonsToKilograms(force_n) * excess : 0;
+/// `kg` as the cell has it, before the host's correction.
+std::uint16_t Counts(const BalanceBoard::Points& points, double kg) {
   const std::size_t low = kg < kStepKg ? 0 : 1;
   const double counts = points[low] + (kg - kStepKg * static_cast<double>(low)) / kStepKg *
                                           (points[low + 1] - points[low]);
@@ -61,8 +60,10 @@ std::uint16_t Counts(const BalanceBoard::Points& points, double force_n, double 
 
 }  // namespace
 
-BalanceBoard::BalanceBoard(std::uint64_t seed)
-    : points_(DrawPoints(seed)), controller_(MakeMemory(points_)) {
+BalanceBoard::BalanceBoard(std::uint64_t seed) : BalanceBoard(seed, DrawPoints(seed)) {}
+
+BalanceBoard::BalanceBoard(std::uint64_t seed, const std::array<Points, kCorners>& points)
+    : points_(points), controller_(MakeMemory(points_)) {
   identity_.name = "Nintendo RVL-WBC-01";
   identity_.serial = MakeSerial(seed);
 }
@@ -75,11 +76,11 @@ std::optional<Report> BalanceBoard::Sample(const CornerForces& forces, bool butt
     const double corners[kCorners] = {forces.top_right_n, forces.bottom_right_n, forces.top_left_n,
                                       forces.bottom_left_n};
     readings.extension.fill(0);
-    const double warmer = int{temperature_} - int{kReferenceTemperature};
-    const double excess = gravity_mps2_ / kStandardGravityMps2 /
-                          (kReadingFactor * (1 - kDriftOfTenSteps * warmer / 10));
+    const double correction =
+        kFactor * (1 - kTemperatureSlope * (temperature_ - kReferenceTemperature));
     for (std::size_t i = 0; i < kCorners; ++i) {
-      const std::uint16_t counts = Counts(points_[i], corners[i], excess);
+      const double kg = std::isfinite(corners[i]) ? NewtonsToKilograms(corners[i]) : 0;
+      const std::uint16_t counts = Counts(points_[i], kg / correction);
       readings.extension[2 * i] = static_cast<std::uint8_t>(counts >> 8);
       readings.extension[2 * i + 1] = static_cast<std::uint8_t>(counts);
     }

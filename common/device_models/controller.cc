@@ -74,6 +74,11 @@ std::uint32_t Address(std::span<const std::uint8_t> report) {
 
 }  // namespace
 
+bool CarriesExtension(std::uint8_t mode) {
+  const Layout* layout = FindLayout(mode);
+  return layout != nullptr && layout->extension > 0;
+}
+
 std::vector<Report> Controller::HandleOutput(std::span<const std::uint8_t> report) {
   std::vector<Report> answers;
   if (report.empty() || report[0] < 0x10 || report[0] > 0x1a) return answers;

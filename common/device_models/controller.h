@@ -29,6 +29,9 @@ struct Readings {
   std::array<std::optional<CameraPoint>, 4> camera;
 };
 
+/// Whether data reports of that mode have bytes of the extension.
+bool CarriesExtension(std::uint8_t mode);
+
 /// What a Wiimote and a Balance Board have in common: the device's end of the HID protocol. Bytes
 /// in, reports out; it knows no clock.
 class Controller {
@@ -46,6 +49,7 @@ class Controller {
   Report UnaskedStatus();
 
   Memory& memory() { return memory_; }
+  const Memory& memory() const { return memory_; }
   void set_battery(std::uint8_t raw) { battery_ = raw; }
   std::uint8_t mode() const { return mode_; }
   bool continuous() const { return continuous_; }

@@ -99,11 +99,15 @@ MotionPlusBlock DrawMotionPlusBlock(std::uint64_t seed) {
     block[half + 12] = half == 0 ? 0xc8 : 0x2d;
     block[half + 13] = static_cast<std::uint8_t>(Integer(random, 0, 255));
   }
+  PutMotionPlusChecksum(block);
+  return block;
+}
+
+void PutMotionPlusChecksum(MotionPlusBlock& block) {
   uLong crc = crc32(0, block.data(), 14);
   crc = crc32(crc, block.data() + 16, 14);
   PutWord(block, 14, static_cast<int>(crc >> 16 & 0xffff));
   PutWord(block, 30, static_cast<int>(crc & 0xffff));
-  return block;
 }
 
 std::vector<std::uint8_t> NunchukPage(const NunchukBlock& block) {

@@ -29,6 +29,9 @@ using MotionPlusBlock = std::array<std::uint8_t, 32>;
 NunchukBlock DrawNunchukBlock(std::uint64_t seed);
 MotionPlusBlock DrawMotionPlusBlock(std::uint64_t seed);
 
+/// CRC-32 of bytes 0 to 13 and 16 to 29; upper half at 14, lower half at 30.
+void PutMotionPlusChecksum(MotionPlusBlock& block);
+
 /// Register pages of 256 bytes. `inside`: built into the Wiimote.
 std::vector<std::uint8_t> NunchukPage(const NunchukBlock& block);
 std::vector<std::uint8_t> ClassicPage();

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/synthetic/random.h"
+#include "common/units/units.h"
 
 namespace footing::device_models {
 namespace {
-
-constexpr std::int64_t kDeadWindowNs = 20'000'000;
-constexpr std::uint16_t kProductTr = 0x0330;
 
 /// Raw axes point left, rear and up; S has left, front and down.
 constexpr std::array<double, 3> kRawSigns = {+1, -1, -1};
@@ -47,9 +46,29 @@ void PutChecksum(std::span<std::uint8_t> block) {
   block.back() = sum;
 }
 
-Memory MakeMemory(const std::array<Wiimote::Axis, 3>& axes) {
+AccelerationBlock DrawAcceleration(std::uint64_t seed) {
+  const auto axes = DrawAxes(seed);
+  AccelerationBlock block{};
+  PutTenBits(block, axes[0].zero_counts, axes[1].zero_counts, axes[2].zero_counts);
+  PutTenBits(std::span(block).subspan(4), axes[0].one_g_counts, axes[1].one_g_counts,
+             axes[2].one_g_counts);
+  block[8] = 0x40;  // Speaker volume.
+  PutChecksum(block);
+  return block;
+}
+
+std::array<Wiimote::Axis, 3> AxesOf(const AccelerationBlock& block) {
+  std::array<Wiimote::Axis, 3> axes;
+  for (std::size_t i = 0; i < 3; ++i) {
+    axes[i].zero_counts = block[i] << 2 | (block[3] >> (4 - 2 * i) & 3);
+    axes[i].one_g_counts = block[4 + i] << 2 | (block[7] >> (4 - 2 * i) & 3);
+  }
+  return axes;
+}
+
+Memory MakeMemory(const AccelerationBlock& acceleration) {
   Memory memory(false);
-  // Camera calibration: plausible positions; two copies.
+  // Camera calibration of a real unit; two copies.
   constexpr std::uint8_t kCamera[] = {0xa1, 0xaa, 0x8b, 0x99, 0xae, 0x9e, 0x78, 0x30, 0xa7, 0x74};
   for (const std::size_t at : {0x00u, 0x0bu}) {
     const auto block = memory.eeprom().subspan(at, 11);
@@ -57,48 +76,47 @@ Memory MakeMemory(const std::array<Wiimote::Axis, 3>& axes) {
     PutChecksum(block);
   }
   for (const std::size_t at : {0x16u, 0x20u}) {
-    const auto block = memory.eeprom().subspan(at, 10);
-    PutTenBits(block, axes[0].zero_counts, axes[1].zero_counts, axes[2].zero_counts);
-    PutTenBits(block.subspan(4), axes[0].one_g_counts, axes[1].one_g_counts, axes[2].one_g_counts);
-    block[8] = 0x40;  // Speaker volume.
-    PutChecksum(block);
+    std::copy(acceleration.begin(), acceleration.end(), memory.eeprom().subspan(at).begin());
   }
   return memory;
 }
 
+constexpr int kRubbishPackets = 2;
+constexpr std::uint8_t kErrorBusy = 2;
+constexpr ExtensionBytes kNoAnswer = {0xff, 0xff, 0xff, 0xff, 0xff, 0xff};
+
 }  // namespace
 
 Wiimote::Wiimote(std::uint64_t seed, const WiimoteOptions& options)
-    : axes_(DrawAxes(seed)),
-      nunchuk_block_(DrawNunchukBlock(seed + 1)),
-      motion_plus_block_(DrawMotionPlusBlock(seed + 2)),
-      options_(options),
-      controller_(MakeMemory(axes_)) {
+    : nunchuk_(options.nunchuk.value_or(DrawNunchukBlock(seed + 1))),
+      motion_plus_(options.motion_plus.value_or(DrawMotionPlusBlock(seed + 2))),
+      motion_plus_inside_(options.tr || options.motion_plus_inside),
+      controller_(Memory(false)) {
+  const AccelerationBlock acceleration = options.acceleration.value_or(DrawAcceleration(seed));
+  axes_ = AxesOf(acceleration);
+  controller_ = Controller(MakeMemory(acceleration));
+  if (motion_plus_inside_) {
+    controller_.memory().SetMotionPlus(MotionPlusPage(motion_plus_, true));
+  }
   identity_.name = options.tr ? "Nintendo RVL-CNT-01-TR" : "Nintendo RVL-CNT-01";
-  if (options.tr) {
-    identity_.product = kProductTr;
-    options_.motion_plus_inside = true;
-  }
+  if (options.tr) identity_.product = 0x0330;
   identity_.serial = MakeSerial(seed);
-  if (options_.motion_plus_inside) {
-    controller_.memory().SetMotionPlus(MotionPlusPage(motion_plus_block_, true));
-  }
 }
 
 std::vector<Report> Wiimote::Plug(Accessory accessory, std::int64_t now_ns) {
-  std::vector<Report> out = Due(now_ns);
+  std::vector<Report> reports;
+  Advance(now_ns, reports);
   Memory& memory = controller_.memory();
-  const bool said = memory.has_extension();
+  if (accessory == Accessory::kMotionPlus) {
+    // Inactive, it does not show: the port goes on to what is behind it.
+    if (!has_motion_plus()) memory.SetMotionPlus(MotionPlusPage(motion_plus_, false));
+    return reports;
+  }
+  child_ = accessory;
+  const bool shows = !motion_plus_active();
   switch (accessory) {
-    case Accessory::kNone:
-      return out;
-    case Accessory::kMotionPlus:
-      if (memory.has_motion_plus()) return out;
-      memory.SetMotionPlus(MotionPlusPage(motion_plus_block_, false));
-      if (said) out.push_back(controller_.UnaskedStatus());  // The child was out for a moment.
-      return out;
     case Accessory::kNunchuk:
-      memory.SetExtension(NunchukPage(nunchuk_block_));
+      memory.SetExtension(NunchukPage(nunchuk_));
       break;
     case Accessory::kClassic:
       memory.SetExtension(ClassicPage());
@@ -106,70 +124,75 @@ std::vector<Report> Wiimote::Plug(Accessory accessory, std::int64_t now_ns) {
     case Accessory::kUnknown:
       memory.SetExtension(UnknownPage());
       break;
+    case Accessory::kNone:
+    case Accessory::kMotionPlus:
+      memory.SetExtension({});
+      break;
   }
-  child_ = accessory;
-  if (!motion_plus_active()) out.push_back(controller_.UnaskedStatus());
-  return out;
+  if (shows) reports.push_back(controller_.UnaskedStatus());
+  return reports;
 }
 
 std::vector<Report> Wiimote::Pull(std::int64_t now_ns) {
-  std::vector<Report> out = Due(now_ns);
-  Memory& memory = controller_.memory();
-  if (!memory.has_motion_plus() || options_.motion_plus_inside) return PullBehind(now_ns);
-  const bool said = memory.has_extension() || port_ready_ns_.has_value();
-  memory.SetMotionPlus({});
-  memory.SetExtension({});
-  memory.set_port_ready(true);
-  port_ready_ns_.reset();
-  child_ = Accessory::kNone;
-  if (said) out.push_back(controller_.UnaskedStatus());
-  return out;
+  if (child_ != Accessory::kNone) return Plug(Accessory::kNone, now_ns);
+  return motion_plus_inside_ ? std::vector<Report>{} : PullMotionPlus(now_ns);
 }
 
-std::vector<Report> Wiimote::PullBehind(std::int64_t now_ns) {
-  std::vector<Report> out = Due(now_ns);
-  const bool said = child_ != Accessory::kNone && !motion_plus_active();
-  child_ = Accessory::kNone;
+std::vector<Report> Wiimote::PullMotionPlus(std::int64_t now_ns) {
+  std::vector<Report> reports;
+  Advance(now_ns, reports);
+  if (!has_motion_plus()) return reports;
+  const bool showed = controller_.memory().has_extension();
+  controller_.memory().SetMotionPlus({});
   controller_.memory().SetExtension({});
-  if (said) out.push_back(controller_.UnaskedStatus());
-  return out;
+  child_ = Accessory::kNone;
+  dead_until_ns_.reset();
+  controller_.memory().set_port_ready(true);
+  if (showed) reports.push_back(controller_.UnaskedStatus());
+  return reports;
 }
 
-std::vector<Report> Wiimote::Due(std::int64_t now_ns) {
-  now_ns_ = std::max(now_ns_, now_ns);
-  if (!port_ready_ns_ || now_ns_ < *port_ready_ns_) return {};
-  port_ready_ns_.reset();
+void Wiimote::TakePortAway(std::int64_t now_ns, std::vector<Report>& reports) {
+  controller_.memory().set_port_ready(false);
+  dead_until_ns_ = now_ns + kDeadNs;
+  rubbish_packets_ = kRubbishPackets;
+  child_turn_ = false;
+  reports.push_back(controller_.UnaskedStatus());
+}
+
+void Wiimote::Advance(std::int64_t now_ns, std::vector<Report>& reports) {
+  if (!dead_until_ns_ || now_ns < *dead_until_ns_) return;
+  dead_until_ns_.reset();
   controller_.memory().set_port_ready(true);
-  if (!controller_.memory().has_extension()) return {};
-  return {controller_.UnaskedStatus()};
+  if (controller_.memory().has_extension()) reports.push_back(controller_.UnaskedStatus());
 }
 
 std::vector<Report> Wiimote::HandleOutput(std::int64_t now_ns,
                                           std::span<const std::uint8_t> report) {
-  std::vector<Report> out = Due(now_ns);
-  Memory& memory = controller_.memory();
-  const std::uint8_t before = memory.motion_plus_mode();
-  std::vector<Report> answers = controller_.HandleOutput(report);
-  out.insert(out.end(), answers.begin(), answers.end());
-  if (memory.motion_plus_mode() == before) return out;
-  memory.set_port_ready(false);
-  port_ready_ns_ = now_ns_ + kDeadWindowNs;
-  rubbish_ = memory.motion_plus_mode() != 0 ? 2 : 0;
-  childs_turn_ = false;
-  out.push_back(controller_.UnaskedStatus());
-  return out;
+  std::vector<Report> reports;
+  Advance(now_ns, reports);
+  if (refusals_ > 0 && !report.empty() && (report[0] == 0x15 || report[0] == 0x17)) {
+    --refusals_;
+    reports.push_back({0x22, 0x00, 0x00, report[0], kErrorBusy});
+    return reports;
+  }
+  const bool was_active = motion_plus_active();
+  for (Report& answer : controller_.HandleOutput(report)) reports.push_back(std::move(answer));
+  if (motion_plus_active() != was_active) TakePortAway(now_ns, reports);
+  return reports;
 }
 
 std::vector<Report> Wiimote::Sample(std::int64_t now_ns, const WiimoteSensors& sensors) {
-  std::vector<Report> out = Due(now_ns);
-  if (controller_.mode() == 0) return out;
-  Readings readings = Read(sensors);
-  const ExtensionBytes packet = NextPacket(sensors);
-  const bool nothing = std::all_of(packet.begin(), packet.end(), [](auto b) { return b == 0xff; });
-  readings.extension.fill(nothing ? 0xff : 0);  // What is beyond the six bytes.
-  std::copy(packet.begin(), packet.end(), readings.extension.begin());
-  if (const auto report = controller_.DataReport(readings)) out.push_back(*report);
-  return out;
+  std::vector<Report> reports;
+  Advance(now_ns, reports);
+  if (auto data = controller_.DataReport(Read(sensors))) reports.push_back(std::move(*data));
+  return reports;
+}
+
+std::vector<Report> Wiimote::HandleOutput(std::span<const std::uint8_t> report) {
+  auto reports = HandleOutput(0, report);
+  Advance(kDeadNs, reports);
+  return reports;
 }
 
 std::optional<Report> Wiimote::Sample(const Eigen::Vector3d& specific_force_S_mps2,
@@ -177,12 +200,10 @@ std::optional<Report> Wiimote::Sample(const Eigen::Vector3d& specific_force_S_mp
   WiimoteSensors sensors;
   sensors.specific_force_S_mps2 = specific_force_S_mps2;
   sensors.buttons = buttons;
-  const auto reports = Sample(now_ns_, sensors);
-  if (reports.empty()) return std::nullopt;
-  return reports.back();
+  return controller_.DataReport(Read(sensors));
 }
 
-Readings Wiimote::Read(const WiimoteSensors& sensors) const {
+Readings Wiimote::Read(const WiimoteSensors& sensors) {
   Readings readings;
   readings.buttons = sensors.buttons;
   readings.camera = sensors.camera;
@@ -196,35 +217,37 @@ Readings Wiimote::Read(const WiimoteSensors& sensors) const {
     readings.acceleration_counts[i] =
         static_cast<std::uint16_t>(std::clamp(rounded, 0.0, i == 0 ? 1023.0 : 1022.0));
   }
+  readings.extension.fill(controller_.memory().has_extension() ? 0x00 : 0xff);
+  // Only modes that carry it take a packet.
+  const ExtensionBytes packet =
+      CarriesExtension(controller_.mode()) ? ExtensionPacket(sensors) : kNoAnswer;
+  std::copy(packet.begin(), packet.end(), readings.extension.begin());
   return readings;
 }
 
-ExtensionBytes Wiimote::NextPacket(const WiimoteSensors& sensors) {
-  constexpr ExtensionBytes kNothing = {0xff, 0xff, 0xff, 0xff, 0xff, 0xff};
+ExtensionBytes Wiimote::ExtensionPacket(const WiimoteSensors& sensors) {
   const Memory& memory = controller_.memory();
-  if (!memory.port_ready()) return kNothing;
-  const std::uint8_t mode = memory.motion_plus_mode();
-  if (mode == 0) return memory.extension_plain() ? ChildPacket(sensors) : kNothing;
-  if (rubbish_ > 0) {
-    --rubbish_;
-    return rubbish_ == 1 ? kNothing : ExtensionBytes{};
-  }
-  const bool passes =
-      (mode == 5 && child_ == Accessory::kNunchuk) || (mode == 7 && child_ == Accessory::kClassic);
-  childs_turn_ = passes && !childs_turn_;
-  if (!childs_turn_) {
-    return MotionPlusBytes(motion_plus_block_, sensors.angular_velocity_S_radps,
-                           child_ != Accessory::kNone);
-  }
-  const ExtensionBytes plain = ChildPacket(sensors);
-  return mode == 5 ? PassedNunchuk(plain) : PassedClassic(plain);
+  if (!memory.has_extension()) return kNoAnswer;
+  if (memory.motion_plus_mode() != 0) return PassedPacket(sensors);
+  if (!memory.extension_plain()) return kNoAnswer;
+  if (child_ == Accessory::kNunchuk) return NunchukBytes(nunchuk_, sensors.nunchuk);
+  if (child_ == Accessory::kClassic) return ClassicBytes();
+  return {};
 }
 
-ExtensionBytes Wiimote::ChildPacket(const WiimoteSensors& sensors) {
-  if (child_ == Accessory::kNunchuk) return NunchukBytes(nunchuk_block_, sensors.nunchuk);
-  if (child_ == Accessory::kClassic) return ClassicBytes();
-  if (child_ == Accessory::kUnknown) return {0x12, 0x34, 0x56, 0x78, 0x9a, 0xbc};
-  return {0xff, 0xff, 0xff, 0xff, 0xff, 0xff};
+/// Of an active MotionPlus: its own and the child's in turn.
+ExtensionBytes Wiimote::PassedPacket(const WiimoteSensors& sensors) {
+  if (rubbish_packets_ > 0) return --rubbish_packets_ > 0 ? kNoAnswer : ExtensionBytes{};
+  const std::uint8_t mode = controller_.memory().motion_plus_mode();
+  const bool passes =
+      (mode == 5 && child_ == Accessory::kNunchuk) || (mode == 7 && child_ == Accessory::kClassic);
+  child_turn_ = passes && !child_turn_;
+  if (!child_turn_) {
+    return MotionPlusBytes(motion_plus_, sensors.angular_velocity_S_radps,
+                           child_ != Accessory::kNone);
+  }
+  return mode == 5 ? PassedNunchuk(NunchukBytes(nunchuk_, sensors.nunchuk))
+                   : PassedClassic(ClassicBytes());
 }
 
 }  // namespace footing::device_models

@@ -10,58 +10,75 @@
 #include "common/device_models/controller.h"
 #include "common/device_models/extensions.h"
 #include "common/device_models/identity.h"
-#include "common/units/units.h"
 
 namespace footing::device_models {
 
+/// Ten bytes of EEPROM: zero, 1 g, volume, sum.
+using AccelerationBlock = std::array<std::uint8_t, 10>;
+
 struct WiimoteOptions {
-  bool tr = false;                  ///< RVL-CNT-01-TR, product 0330.
-  bool motion_plus_inside = false;  ///< As every -TR has it.
+  /// A 057e:0330, which always has a MotionPlus inside.
+  bool tr = false;
+  bool motion_plus_inside = false;
+  /// Of units that are known; else drawn from the seed.
+  std::optional<AccelerationBlock> acceleration = std::nullopt;
+  std::optional<NunchukBlock> nunchuk = std::nullopt;
+  std::optional<MotionPlusBlock> motion_plus = std::nullopt;
 };
 
-/// What a Wiimote and what is plugged into it feel. Sensor frame S: x left, y front, z down.
+/// What a Wiimote and what is plugged into it feel. S of the Wiimote: x left, y front, z down.
 struct WiimoteSensors {
-  Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
+  Eigen::Vector3d specific_force_S_mps2{0, 0, -9.80665};
   std::uint16_t buttons = 0;  ///< First button byte in bits 8 to 15.
   std::array<std::optional<CameraPoint>, 4> camera;
   NunchukSensors nunchuk;
-  Eigen::Vector3d angular_velocity_S_radps{0, 0, 0};  ///< For a MotionPlus.
+  Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();  ///< Right-handed.
 };
 
-/// A Wiimote with its extension port: its calibration is drawn from the seed, as units differ. A
-/// plain value; time is that of the calls and must not run backwards.
+/// A Wiimote and what is in its port: nothing, a Nunchuk, a Classic, a MotionPlus with or without
+/// one of them behind it. Calibrations are drawn from the seed, as units differ.
+///
+/// When something comes or goes, a status report comes unasked and data stop until the mode is set
+/// again; behind an active MotionPlus it shows in a bit of the packets only. A MotionPlus that is
+/// switched on or off takes the port away for 20 ms (Dolphin's MotionPlus.cpp): a status report
+/// without extension, then one of what is there. Its first two packets make no sense.
 class Wiimote {
  public:
+  static constexpr std::int64_t kDeadNs = 20'000'000;
+
   explicit Wiimote(std::uint64_t seed, const WiimoteOptions& options = {});
 
   const Identity& identity() const { return identity_; }
 
-  /// What is plugged in, and what that makes the device say: the unasked status 0x20, after which
-  /// no data come until a mode is set. A MotionPlus adapter goes between the Wiimote and what is in
-  /// the port; behind an active one a change shows in its packets alone.
+  /// Puts it into the port, or into the MotionPlus' own when there is one; what was there goes.
+  /// Gives the reports that the Wiimote sends of it.
   std::vector<Report> Plug(Accessory accessory, std::int64_t now_ns);
-  /// Pulls the adapter with all behind it, or what is in the port. A MotionPlus inside stays.
+  /// Pulls what is outermost: the Nunchuk or Classic, else the MotionPlus unless it is inside.
   std::vector<Report> Pull(std::int64_t now_ns);
-  /// Pulls what is in the MotionPlus' own port.
-  std::vector<Report> PullBehind(std::int64_t now_ns);
+  /// Pulls the MotionPlus with all that is in it.
+  std::vector<Report> PullMotionPlus(std::int64_t now_ns);
 
-  /// The answers to one output report, in order. Switching a MotionPlus on or off moves the detect
-  /// pin: 20 ms without anything in the port, and status reports that say so.
+  /// The answers to an output report.
   std::vector<Report> HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report);
-  /// What is due at this time: status reports, then the data report when the mode calls for one.
+  /// The reports of one sample: what is due of the port, and the data report when the mode calls
+  /// for one. Vectors are turned into counts by the device's own calibrations and end at the range.
   std::vector<Report> Sample(std::int64_t now_ns, const WiimoteSensors& sensors);
 
-  /// The same without a clock, for a Wiimote with nothing plugged in.
-  std::vector<Report> HandleOutput(std::span<const std::uint8_t> report) {
-    return HandleOutput(now_ns_, report);
-  }
+  /// The same without a clock: the port is never away.
+  std::vector<Report> HandleOutput(std::span<const std::uint8_t> report);
   std::optional<Report> Sample(const Eigen::Vector3d& specific_force_S_mps2,
                                std::uint16_t buttons = 0);
+
+  /// The next so many requests for status or memory are refused with error 2, as a -TR does that is
+  /// busy.
+  void RefuseNext(int requests) { refusals_ = requests; }
 
   Controller& controller() { return controller_; }
   std::uint8_t leds() const { return controller_.leds(); }  ///< Bits 0 to 3.
   bool rumble() const { return controller_.rumble(); }
-  bool motion_plus_active() { return controller_.memory().motion_plus_mode() != 0; }
+  Accessory accessory() const { return child_; }  ///< Not the MotionPlus.
+  bool has_motion_plus() const { return controller_.memory().has_motion_plus(); }
+  bool motion_plus_active() const { return controller_.memory().motion_plus_mode() != 0; }
 
   struct Axis {
     int zero_counts = 0x200;
@@ -69,26 +86,27 @@ class Wiimote {
   };
   /// Raw axes x, y, z; what the EEPROM holds.
   const std::array<Axis, 3>& axes() const { return axes_; }
-  const NunchukBlock& nunchuk_block() const { return nunchuk_block_; }
-  const MotionPlusBlock& motion_plus_block() const { return motion_plus_block_; }
+  const NunchukBlock& nunchuk_block() const { return nunchuk_; }
+  const MotionPlusBlock& motion_plus_block() const { return motion_plus_; }
 
  private:
-  std::vector<Report> Due(std::int64_t now_ns);
-  Readings Read(const WiimoteSensors& sensors) const;
-  ExtensionBytes NextPacket(const WiimoteSensors& sensors);
-  ExtensionBytes ChildPacket(const WiimoteSensors& sensors);
+  void TakePortAway(std::int64_t now_ns, std::vector<Report>& reports);
+  void Advance(std::int64_t now_ns, std::vector<Report>& reports);
+  ExtensionBytes ExtensionPacket(const WiimoteSensors& sensors);
+  ExtensionBytes PassedPacket(const WiimoteSensors& sensors);
+  Readings Read(const WiimoteSensors& sensors);
 
   std::array<Axis, 3> axes_;
-  NunchukBlock nunchuk_block_;
-  MotionPlusBlock motion_plus_block_;
-  WiimoteOptions options_;
+  NunchukBlock nunchuk_;
+  MotionPlusBlock motion_plus_;
+  bool motion_plus_inside_;
   Identity identity_;
   Controller controller_;
   Accessory child_ = Accessory::kNone;
-  std::int64_t now_ns_ = 0;
-  std::optional<std::int64_t> port_ready_ns_;  ///< The end of the dead window.
-  int rubbish_ = 0;                            ///< Packets after activation that mean nothing.
-  bool childs_turn_ = false;
+  std::optional<std::int64_t> dead_until_ns_;
+  int rubbish_packets_ = 0;
+  bool child_turn_ = false;  ///< The next packet is the child's.
+  int refusals_ = 0;
 };
 
 }  // namespace footing::device_models

@@ -51,6 +51,11 @@ const char* Name(Extension extension);
 /// The role of that name; kUnspecified when there is none.
 DeviceRole RoleNamed(const std::string& name);
 
+/// The lamps that show a role, bits 0 to 3: left hand 1, right hand 2, left leg 3, right leg 4,
+/// head 1 and 4, editor 2 and 3. A board has the first lamp alone: lit on the left one, dark on the
+/// right one. 0 without a role.
+std::uint32_t LedsOf(DeviceRole role);
+
 struct DeviceStatus {
   std::uint32_t device = 0;
   std::string serial;

@@ -47,4 +47,27 @@ const char* Name(Gait gait) { return At(kGaits, gait); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
 Gait GaitNamed(const std::string& name) { return Named<Gait>(kGaits, name); }
 
+std::uint32_t LedsOf(DeviceRole role) {
+  switch (role) {
+    case DeviceRole::kLeftHand:
+      return 0b0001;
+    case DeviceRole::kRightHand:
+      return 0b0010;
+    case DeviceRole::kLeftLeg:
+      return 0b0100;
+    case DeviceRole::kRightLeg:
+      return 0b1000;
+    case DeviceRole::kHead:
+      return 0b1001;
+    case DeviceRole::kLeftBoard:
+      return 0b0001;
+    case DeviceRole::kEditor:
+      return 0b0110;
+    case DeviceRole::kRightBoard:
+    case DeviceRole::kUnspecified:
+      return 0;
+  }
+  return 0;
+}
+
 }  // namespace footing::stream

@@ -90,7 +90,7 @@ class Bench {
 
   /// Starts footingd and the client, and waits until the two are connected.
   bool Start(const std::vector<std::string>& arguments = {});
-  /// SIGTERM, then the exit status of waitpid(2); -1 when it does not end within 3 s.
+  /// SIGTERM, then the exit status of waitpid(2); -1 when it does not end within 10 s.
   int Stop();
   /// Starts footingd anew with other arguments after Stop() or its death.
   bool Restart(const std::vector<std::string>& arguments = {});

@@ -18,6 +18,8 @@ struct NodePage {
   std::atomic<std::int32_t> gone;    ///< Unplugged: reads give EIO, writes ENODEV.
   std::atomic<std::uint32_t> opens;  ///< How often it was opened; the index of the newest.
   std::atomic<std::uint32_t> reads[kMaxOpens];  ///< Reports read by each opening: hidraw's queue.
+  std::atomic<std::int64_t> written_ns[kMaxOpens];  ///< The newest write began.
+  std::atomic<std::int64_t> closest_writes_ns;      ///< Shortest time between two of one opening.
   /// CPU time of the thread that reads the opening, as of its last report of a count of 32: the
   /// clock is a system call, which would be part of what it measures.
   std::atomic<std::int64_t> cpu_ns[kMaxOpens];

@@ -188,6 +188,20 @@ FOOTING_FAULT(Fault56StuckSensor) {
     EXPECT_LT(sample.total_n(), -500);
   }
   EXPECT_TRUE(bench.Until([&] { return Status(device).repeats() >= 30; }));
+  // One corner says 0017 while the others move: that is a broken sensor, and is said.
+  device.outgoing = [](const Report& report) {
+    Report stuck = report;
+    if (report[0] == 0x34) stuck[3] = 0, stuck[4] = 0x17;
+    return std::vector<Report>{stuck};
+  };
+  // After 500 changes of the others.
+  EXPECT_TRUE(bench.Until(
+      [&] {
+        board->forces.top_left_n = board->forces.bottom_left_n = board->forces.bottom_right_n =
+            100 + static_cast<double>(clock::MonotonicNs() / 1'000'000 % 400);
+        return Status(device).note().find("top right sensor never changes") != std::string::npos;
+      },
+      10));
 }
 
 }  // namespace

@@ -71,6 +71,7 @@ FOOTING_FAULT(Fault04ButtonsOnlyModeSetByAnother) {
   Device& device = bench.Plug(model);
   ASSERT_TRUE(bench.Start());
   ASSERT_TRUE(bench.UntilLive(device));
+  bench.Run(1);  // A MotionPlus was looked for, after which the mode is set once more.
   // As hid-wiimote does after every status report: 12 00 30, and no more acceleration.
   for (int round = 0; round < 2; ++round) {
     // A clone goes on to send, but buttons only.

@@ -64,7 +64,9 @@ void Testbed::Identify(int number, const device_models::Identity& identity) {
 }
 
 void Testbed::HalfRemove(int number, const device_models::Identity& identity) {
-  const std::string root = umockdev_testbed_get_root_dir(testbed_);
+  char* const folder = umockdev_testbed_get_root_dir(testbed_);
+  const std::string root = folder;
+  g_free(folder);
   if (chmod((root + "/sys" + HidPath(number, identity) + "/uevent").c_str(), 0) != 0) {
     throw std::runtime_error("bench: the device has no uevent file");
   }

@@ -156,7 +156,7 @@ def ready_rig(program):
         assert heard.count("PROMPT: Shake ") == 2 and heard.count("PROMPT: Step on ") == 2, heard
         lamps = {device["role"]: device["leds"] for device in rig.list()}
         assert lamps["left_hand"] == "1000" and lamps["right_hand"] == "0100", lamps
-        assert lamps["left_board"][0] == "1" and lamps["right_board"][0] == "1", lamps
+        assert lamps["left_board"] == "1000" and lamps["right_board"] == "0000", lamps
 
         recording = rig.folder / "acceptance.mcap"
         code, verdict, heard = rig.control("acceptance", "--minutes", 0.6, "--out", recording)

@@ -13,7 +13,6 @@
 #include "common/clock/clock.h"
 #include "tests/vm/made_device.h"
 #include "tests/vm/ramp.h"
-#include "tests/vm/report_descriptor.h"
 #include "tests/vm/uhid_node.h"
 
 namespace footing::vm {
@@ -22,11 +21,12 @@ namespace {
 struct Options {
   std::string kind = "wiimote";
   std::uint64_t seed = 1;
-  double seconds = 0;        ///< 0: until SIGTERM.
-  double status_every_s = 0; ///< 0: never unasked.
-  double unplug_at_s = 0;    ///< 0: never.
-  double away_s = 0;         ///< 0: it never comes back.
+  double seconds = 0;         ///< 0: until SIGTERM.
+  double status_every_s = 0;  ///< 0: never unasked.
+  double unplug_at_s = 0;     ///< 0: never.
+  double away_s = 0;          ///< 0: it never comes back.
   int times = 1;
+  bool trace = false;
 };
 
 constexpr double kLateMs = 5;
@@ -41,7 +41,10 @@ class Life {
       : options_(options),
         node_({[this] { starts_ns_.push_back(clock::MonotonicNs()); },
                [this](std::span<const std::uint8_t> report) { Answer(report); },
-               [](std::uint8_t) { return std::optional<device_models::Report>(); }}),
+               [this](std::uint8_t id) {
+                 ++features_;
+                 return device_ ? device_->Feature(id) : std::nullopt;
+               }}),
         begin_ns_(clock::MonotonicNs()),
         next_sample_ns_(begin_ns_),
         next_status_ns_(begin_ns_ + Nanoseconds(options.status_every_s)),
@@ -64,11 +67,12 @@ class Life {
   }
 
   nlohmann::json Summary() const {
-    return {{"kind", options_.kind},         {"serial", serial_},
-            {"samples", samples_},           {"inputs", Counts(inputs_)},
-            {"outputs", Counts(outputs_)},   {"foreign_modes", foreign_modes_},
-            {"starts_ns", starts_ns_},       {"unplugs_ns", unplugs_ns_},
-            {"late_worst_ms", late_worst_ms_}, {"late_samples", late_samples_}};
+    return {{"kind", options_.kind},        {"serial", serial_},
+            {"samples", samples_},          {"inputs", Counts(inputs_)},
+            {"outputs", Counts(outputs_)},  {"foreign_modes", foreign_modes_},
+            {"features", features_},        {"starts_ns", starts_ns_},
+            {"unplugs_ns", unplugs_ns_},    {"late_worst_ms", late_worst_ms_},
+            {"late_samples", late_samples_}};
   }
 
  private:
@@ -87,18 +91,30 @@ class Life {
   void Plug() {
     device_ = MakeDevice(options_.kind, options_.seed);
     serial_ = device_->identity().serial;
-    node_.Plug(device_->identity(), kReportDescriptor);
+    node_.Plug(device_->identity(), device_->descriptor());
   }
 
   void Send(const MadeDevice::Reports& reports) {
     for (const device_models::Report& report : reports) {
       ++inputs_[report[0]];
+      Trace("->", report);
       node_.Send(report);
     }
   }
 
+  /// Every report but data.
+  void Trace(const char* way, std::span<const std::uint8_t> report) const {
+    if (!options_.trace || (report[0] >= 0x30 && report[0] <= 0x3f)) return;
+    std::fprintf(stderr, "%10.4f %s", static_cast<double>(clock::MonotonicNs()) * 1e-9, way);
+    for (const std::uint8_t byte : report.first(std::min<std::size_t>(report.size(), 12))) {
+      std::fprintf(stderr, " %02x", byte);
+    }
+    std::fprintf(stderr, "\n");
+  }
+
   void Answer(std::span<const std::uint8_t> report) {
     if (report.empty() || !device_) return;
+    Trace("<-", report);
     ++outputs_[report[0]];
     // footingd asks for continuous reports only; it is the kernel's driver that does not.
     if (report[0] == 0x12 && report.size() > 1 && (report[1] & 0x04) == 0) ++foreign_modes_;
@@ -143,6 +159,7 @@ class Life {
   CountById inputs_;   ///< To the kernel.
   CountById outputs_;  ///< From footingd and from the kernel's driver.
   std::uint64_t foreign_modes_ = 0;
+  std::uint64_t features_ = 0;  ///< Feature reports asked for.
   std::vector<std::int64_t> starts_ns_;
   std::vector<std::int64_t> unplugs_ns_;
   double late_worst_ms_ = 0;
@@ -156,16 +173,16 @@ int Run(int argc, char** argv) {
   auto app = cli::NewApp("kernel_device", "A made device in the kernel, through /dev/uhid.",
                          "  kernel_device --kind board --seed 2 --seconds 30\n"
                          "  kernel_device --unplug-at 3 --replug-after 1 --times 5");
-  app->add_option("--kind", options.kind, "wiimote or board")
-      ->check(CLI::IsMember({"wiimote", "board"}));
+  app->add_option("--kind", options.kind, "Which device")->check(CLI::IsMember(Kinds()));
   app->add_option("--seed", options.seed, "Which device of its kind; its serial too");
   app->add_option("--seconds", options.seconds, "Its life; 0: until SIGTERM");
   app->add_option("--status-every", options.status_every_s, "Status reports that nobody asked for");
   app->add_option("--unplug-at", options.unplug_at_s, "Goes after so many seconds");
   app->add_option("--replug-after", options.away_s, "Comes back after so many seconds");
+  app->add_flag("--trace", options.trace, "Every report but data on standard error");
   app->add_option("--times", options.times, "Goes so often");
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = [](int) { stop_asked = 1; };
   sigaction(SIGTERM, &action, nullptr);
   Life life(options);

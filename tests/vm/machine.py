@@ -11,6 +11,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 MODULES = ("uhid", "hid-wiimote", "hid-generic", "hid-sony", "hid-playstation", "evdev")
+KEPT_DRIVERS = ("hid", "input", "leds", "usb")  # What those depend on, too.
 TOOLS = ("qemu-system-x86_64", "busybox", "cpio", "depmod", "dpkg-deb", "apt-get", "ldd")
 BEGIN, END = "footing-vm: results begin", "footing-vm: results end"
 
@@ -43,8 +44,8 @@ def fetch_packages(folder):
     """Unpacks Debian's kernel and udev below the folder; installs nothing."""
     root = folder / "root"
     packages = (kernel_package(), "udev", "libsystemd-shared", "libkmod2")
-    done = folder / "unpacked"
-    if done.exists() and done.read_text().split() == list(packages):
+    done, content = folder / "unpacked", [*packages, *KEPT_DRIVERS]
+    if done.exists() and done.read_text().split() == content:
         return root
     shutil.rmtree(folder, ignore_errors=True)
     root.mkdir(parents=True)
@@ -55,7 +56,14 @@ def fetch_packages(folder):
     for package in folder.glob("*.deb"):
         run("dpkg-deb", "-x", package, root)
         package.unlink()
-    done.write_text("\n".join(packages))
+    # Of the kernel's 400 MB only these are ever needed.
+    for folder_of_modules in root.glob("lib/modules/*/kernel/*"):
+        if folder_of_modules.name != "drivers":
+            shutil.rmtree(folder_of_modules)
+    for drivers in root.glob("lib/modules/*/kernel/drivers/*"):
+        if drivers.name not in KEPT_DRIVERS:
+            shutil.rmtree(drivers)
+    done.write_text("\n".join(content))
     return root
 
 
@@ -67,6 +75,8 @@ class Image:
         shutil.rmtree(folder, ignore_errors=True)
         for name in ("bin", "dev", "etc", "lib64", "proc", "run", "sys", "tmp", "var/lib"):
             (folder / name).mkdir(parents=True)
+        (folder / "usr").mkdir()
+        (folder / "usr/lib").symlink_to("../lib")  # As Debian has it.
         self.libraries = [packages / "usr/lib/x86_64-linux-gnu", packages / "lib/x86_64-linux-gnu",
                           packages / "usr/lib/x86_64-linux-gnu/systemd"]
 
@@ -103,7 +113,7 @@ class Image:
             depends[pathlib.Path(module).name.removesuffix(".ko").replace("_", "-")] = \
                 [module, *others.split()]
         for name in names:
-            for module in depends[name]:
+            for module in depends[name]:  # Itself, then what it needs.
                 self.add(base / module, f"lib/modules/{version}/{module}")
         for name in ("modules.order", "modules.builtin", "modules.builtin.modinfo"):
             self.add(base / name, f"lib/modules/{version}/{name}")
@@ -142,13 +152,13 @@ def make_image(build, source, packages, folder):
     return target
 
 
-def boot(kernel, initramfs, accelerator, first_word_s, all_s):
+def boot(kernel, initramfs, accelerator, only, first_word_s, all_s):
     """Runs the machine to its end. Its console's text; None when it never came up."""
     processor = {"kvm": "max,-arch-capabilities", "tcg": "max"}[accelerator]
     command = [find_tool("qemu-system-x86_64"), "-M", "pc", "-accel", accelerator, "-cpu", processor,
                "-smp", "2", "-m", "768", "-nodefaults", "-display", "none", "-serial", "stdio",
                "-no-reboot", "-kernel", str(kernel), "-initrd", str(initramfs),
-               "-append", "console=ttyS0 quiet panic=-1 rdinit=/init"]
+               "-append", f"console=ttyS0 quiet panic=-1 rdinit=/init only={only}"]
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT)
     console, begin = b"", time.monotonic()
@@ -169,8 +179,8 @@ def boot(kernel, initramfs, accelerator, first_word_s, all_s):
     return text if "footing-vm: up" in text else None
 
 
-def run_machine(build, source):
-    """Console text and the accelerator that ran it."""
+def run_machine(build, source, only=""):
+    """Console text and the accelerator that ran it. `only`: scenarios, between commas."""
     for tool in TOOLS:
         find_tool(tool)
     folder = build / "vm"
@@ -179,10 +189,10 @@ def run_machine(build, source):
     initramfs = make_image(build, source, packages, folder)
     # The hardware's own virtualisation where it works; TCG translates every instruction.
     if os.access("/dev/kvm", os.R_OK | os.W_OK) and os.environ.get("FOOTING_VM") != "tcg":
-        text = boot(kernel, initramfs, "kvm", 20, 600)
+        text = boot(kernel, initramfs, "kvm", only, 20, 850)
         if text:
             return text, "kvm"
-    text = boot(kernel, initramfs, "tcg", 180, 900)
+    text = boot(kernel, initramfs, "tcg", only, 180, 1000)
     if not text:
         raise RuntimeError("the machine did not come up within 180 s")
     return text, "tcg"

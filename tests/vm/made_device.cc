@@ -1,12 +1,18 @@
 #include "tests/vm/made_device.h"
 
 #include "common/device_models/balance_board.h"
+#include "common/device_models/ps_move.h"
 #include "common/device_models/wiimote.h"
 #include "common/units/units.h"
 #include "tests/vm/ramp.h"
+#include "tests/vm/report_descriptor.h"
 
 namespace footing::vm {
 namespace {
+
+using device_models::MoveModel;
+
+constexpr std::size_t kMoveFeatureBytes = 49;
 
 MadeDevice::Reports List(std::optional<device_models::Report> report) {
   if (!report) return {};
@@ -15,18 +21,26 @@ MadeDevice::Reports List(std::optional<device_models::Report> report) {
 
 class MadeWiimote : public MadeDevice {
  public:
-  explicit MadeWiimote(std::uint64_t seed) : wiimote_(seed) {}
-  const device_models::Identity& identity() const override { return wiimote_.identity(); }
-  Reports HandleOutput(std::int64_t, std::span<const std::uint8_t> report) override {
-    return wiimote_.HandleOutput(report);
+  MadeWiimote(std::uint64_t seed, bool plus)
+      : wiimote_(seed, {.tr = plus, .motion_plus_inside = plus}) {
+    if (plus) wiimote_.Plug(device_models::Accessory::kNunchuk, 0);
+    sensors_.angular_velocity_S_radps = {0.5, -0.4, 0.3};
+    sensors_.nunchuk.stick_x = 0.5;
   }
-  Reports Sample(std::int64_t, std::uint64_t sample) override {
-    return List(wiimote_.Sample({kForceRampMps2.At(sample), 0, -kStandardGravityMps2}));
+  const device_models::Identity& identity() const override { return wiimote_.identity(); }
+  Reports HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report) override {
+    return wiimote_.HandleOutput(now_ns, report);
+  }
+  Reports Sample(std::int64_t now_ns, std::uint64_t sample) override {
+    sensors_.specific_force_S_mps2.x() = kForceRampMps2.At(sample);
+    return wiimote_.Sample(now_ns, sensors_);
   }
   Reports Status() override { return {wiimote_.controller().UnaskedStatus()}; }
+  std::span<const std::uint8_t> descriptor() const override { return kReportDescriptor; }
 
  private:
   device_models::Wiimote wiimote_;
+  device_models::WiimoteSensors sensors_;
 };
 
 class MadeBoard : public MadeDevice {
@@ -40,16 +54,50 @@ class MadeBoard : public MadeDevice {
     return List(board_.Sample({kCornerRampN.At(sample), 150, 160, 170}));
   }
   Reports Status() override { return {board_.controller().UnaskedStatus()}; }
+  std::span<const std::uint8_t> descriptor() const override { return kReportDescriptor; }
 
  private:
   device_models::BalanceBoard board_;
 };
 
+class MadeMove : public MadeDevice {
+ public:
+  MadeMove(std::uint64_t seed, MoveModel model)
+      : move_(seed, model), samples_a_report_(model == MoveModel::kZcm1 ? 2 : 1) {}
+  const device_models::Identity& identity() const override { return move_.identity(); }
+  Reports HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report) override {
+    return move_.HandleOutput(now_ns, report);
+  }
+  Reports Sample(std::int64_t now_ns, std::uint64_t sample) override {
+    device_models::MoveSensors sensors;
+    sensors.specific_force_S_mps2.x() = kMoveRampMps2.At(samples_a_report_ * sample);
+    return move_.Sample(now_ns, sensors);
+  }
+  std::optional<device_models::Report> Feature(std::uint8_t id) override {
+    return move_.Feature(id, kMoveFeatureBytes);
+  }
+  std::span<const std::uint8_t> descriptor() const override {
+    if (samples_a_report_ == 2) return kZcm1Descriptor;
+    return kZcm2Descriptor;
+  }
+
+ private:
+  device_models::PsMove move_;
+  std::uint64_t samples_a_report_;
+};
+
 }  // namespace
 
+std::vector<std::string> Kinds() {
+  return {"wiimote", "wiimote_plus", "board", "move_zcm1", "move_zcm2"};
+}
+
 std::unique_ptr<MadeDevice> MakeDevice(const std::string& kind, std::uint64_t seed) {
-  if (kind == "wiimote") return std::make_unique<MadeWiimote>(seed);
+  if (kind == "wiimote") return std::make_unique<MadeWiimote>(seed, false);
+  if (kind == "wiimote_plus") return std::make_unique<MadeWiimote>(seed, true);
   if (kind == "board") return std::make_unique<MadeBoard>(seed);
+  if (kind == "move_zcm1") return std::make_unique<MadeMove>(seed, MoveModel::kZcm1);
+  if (kind == "move_zcm2") return std::make_unique<MadeMove>(seed, MoveModel::kZcm2);
   return nullptr;
 }
 

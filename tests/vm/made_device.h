@@ -22,11 +22,16 @@ class MadeDevice {
   virtual const device_models::Identity& identity() const = 0;
   virtual Reports HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report) = 0;
   virtual Reports Sample(std::int64_t now_ns, std::uint64_t sample) = 0;
-  /// The status report that a device sends of itself.
-  virtual Reports Status() = 0;
+  /// The status report that a device sends of itself, if its kind does.
+  virtual Reports Status() { return {}; }
+  virtual std::optional<device_models::Report> Feature(std::uint8_t) { return std::nullopt; }
+  virtual std::span<const std::uint8_t> descriptor() const = 0;
 };
 
-/// "wiimote" or "board"; null for another name. The same seed is the same device, serial and all.
+/// wiimote; wiimote_plus: of the type -TR, MotionPlus inside, a Nunchuk behind it; board;
+/// move_zcm1, which measures two steps of the ramp a report; move_zcm2.
+std::vector<std::string> Kinds();
+/// Null for another name. The same seed is the same device, serial and all.
 std::unique_ptr<MadeDevice> MakeDevice(const std::string& kind, std::uint64_t seed);
 
 }  // namespace footing::vm

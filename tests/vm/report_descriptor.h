@@ -3,16 +3,16 @@
 #include <array>
 #include <cstdint>
 
-/// What a Wiimote and a Balance Board say of themselves over HID: 217 bytes, reports 10 to 1a out and
-/// 20 to 3f in, all of opaque bytes on a vendor's page.
+/// What a Wiimote and a Balance Board say of themselves over HID: 217 bytes, reports 10 to 1a out
+/// and 20 to 3f in, all of opaque bytes on a vendor's page.
 namespace footing::vm {
 
 struct ReportLength {
   std::uint8_t id;
   std::uint8_t bytes;  ///< Without the id.
 };
-inline constexpr ReportLength kOutputReports[] = {{0x10, 1}, {0x11, 1},  {0x12, 2}, {0x13, 1},
-                                                  {0x14, 1}, {0x15, 1},  {0x16, 21}, {0x17, 6},
+inline constexpr ReportLength kOutputReports[] = {{0x10, 1},  {0x11, 1}, {0x12, 2},  {0x13, 1},
+                                                  {0x14, 1},  {0x15, 1}, {0x16, 21}, {0x17, 6},
                                                   {0x18, 21}, {0x19, 1}, {0x1a, 1}};
 inline constexpr ReportLength kInputReports[] = {
     {0x20, 6},  {0x21, 21}, {0x22, 4},  {0x30, 2},  {0x31, 5},  {0x32, 10}, {0x33, 17},
@@ -45,5 +45,22 @@ constexpr std::array<std::uint8_t, kDescriptorBytes> MakeReportDescriptor() {
 }
 inline constexpr auto kReportDescriptor = MakeReportDescriptor();
 static_assert(kReportDescriptor.back() == 0xc0);
+
+/// A PS Move's reports: 01 in, 02 and 06 out, features 04, 05 and 10. `input_bytes`: of report 01
+/// without its id; the kernel drops what is shorter. hid-sony puts a descriptor of its own in the
+/// place of whatever the first type says.
+constexpr auto MakeMoveDescriptor(std::uint8_t input_bytes) {
+  return std::to_array<std::uint8_t>({0x05, 0x01,        0x09, 0x04, 0xa1, 0x01,  //
+                                      0x85, 0x01,        0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08,
+                                      0x95, input_bytes, 0x06, 0x00,                          //
+                                      0xff, 0x09,        0x01, 0x81, 0x02,                    //
+                                      0x85, 0x02,        0x95, 0x30, 0x09, 0x01, 0x91, 0x02,  //
+                                      0x85, 0x06,        0x95, 0x08, 0x09, 0x01, 0x91, 0x02,  //
+                                      0x85, 0x04,        0x95, 0x0f, 0x09, 0x01, 0xb1, 0x02,  //
+                                      0x85, 0x05,        0x95, 0x16, 0x09, 0x01, 0xb1, 0x02,  //
+                                      0x85, 0x10,        0x95, 0x30, 0x09, 0x01, 0xb1, 0x02, 0xc0});
+}
+inline constexpr auto kZcm1Descriptor = MakeMoveDescriptor(48);
+inline constexpr auto kZcm2Descriptor = MakeMoveDescriptor(43);
 
 }  // namespace footing::vm

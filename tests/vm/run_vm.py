@@ -3,6 +3,7 @@
 
   run_vm.py run --build build/release --results FILE    boots it, measures, shows every bar
   run_vm.py judge BAR --results FILE                    one bar of the results that are there
+      --only steady,boards                              these scenarios; the other bars fail
   run_vm.py list                                        the bars
 
 Exit codes: 0 it ran to its end, or the bar holds; 1 not; 77 it cannot be made here (and why).
@@ -38,10 +39,10 @@ def judge(name, results):
     return True
 
 
-def run(build, results_file):
+def run(build, results_file, only):
     results_file.unlink(missing_ok=True)
     try:
-        text, accelerator = machine.run_machine(build, SOURCE)
+        text, accelerator = machine.run_machine(build, SOURCE, only)
     except machine.Missing as missing:
         print(f"skipped: {missing}")
         return SKIPPED
@@ -64,12 +65,13 @@ def main():
     parser.add_argument("bar", nargs="?", choices=list(bars.BARS))
     parser.add_argument("--build", type=pathlib.Path)
     parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--only", default="")
     arguments = parser.parse_args()
     if arguments.what == "list":
         print("\n".join(bars.BARS))
         return 0
     if arguments.what == "run":
-        code = run(arguments.build.resolve(), arguments.results.resolve())
+        code = run(arguments.build.resolve(), arguments.results.resolve(), arguments.only)
         if code != 0:
             return code
     if not arguments.results.exists():

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "footing/v1/session.pb.h"
+#include "tests/vm/ramp.h"
 
 namespace footing::vm {
 
@@ -31,6 +32,7 @@ class Tally {
     std::uint64_t nunchuk_samples = 0;
     std::uint64_t turning_samples = 0;  ///< With an angular velocity.
     int last_step = -1;
+    std::uint64_t last_report_count = 0;  ///< Of this device since it attached.
     std::int64_t last_received_ns = 0;
     std::int64_t longest_silence_ns = 0;
     /// When this client had the first sample, and the first after each silence.
@@ -38,7 +40,8 @@ class Tally {
     std::vector<std::string> places;  ///< Nodes, in the order of their use.
   };
 
-  void TakeSample(One& one, int step, std::int64_t received_ns, std::int64_t now_ns);
+  void TakeSample(One& one, const Ramp& ramp, double value, std::uint64_t report_count,
+                  std::int64_t received_ns, std::int64_t now_ns);
 
   std::map<std::uint32_t, One> devices_;
   std::uint64_t gaps_ = 0;

@@ -152,7 +152,7 @@ std::vector<Symptom> ConnectedWithoutNode(const Facts& facts) {
     found.push_back({Severity::kError,
                      device.name + " is connected, but the kernel has no HID device of it",
                      device.address,
-                     "sudo modprobe uhid hidp; bluetoothctl disconnect " + device.address +
+                     "sudo modprobe -a uhid hidp; bluetoothctl disconnect " + device.address +
                          ", then press a button on it"});
   }
   return found;

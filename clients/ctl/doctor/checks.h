@@ -7,6 +7,11 @@
 
 namespace footing::ctl::doctor {
 
+/// hid is loaded from Debian's initramfs, which has a copy of the options.
+inline constexpr const char* kIgnoreSpecialDrivers =
+    "echo 'options hid ignore_special_drivers=1' | sudo tee /etc/modprobe.d/footing.conf && sudo "
+    "update-initramfs -u, then reboot";
+
 /// What a check found at one place.
 struct Symptom {
   Severity severity = Severity::kError;

@@ -130,15 +130,14 @@ std::vector<Symptom> ModeStolen(const Facts& facts) {
                Share(device.mode_reasserts, device) > kManyReassertsShare;
       },
       [](const DeviceStatus& device) {
-        return Symptom{
-            Severity::kWarning,
-            "its report mode had to be set again " + std::to_string(device.mode_reasserts) +
-                " times: another program or driver changes it",
-            "",
-            "end other programs that use it (sudo fuser -v " +
-                (device.place.empty() ? "/dev/hidraw*" : device.place) +
-                "); against hid_wiimote: echo 'options hid ignore_special_drivers=1' | sudo tee "
-                "/etc/modprobe.d/footing.conf, then reboot"};
+        return Symptom{Severity::kWarning,
+                       "its report mode had to be set again " +
+                           std::to_string(device.mode_reasserts) +
+                           " times: another program or driver changes it",
+                       "",
+                       "end other programs that use it (sudo fuser -v " +
+                           (device.place.empty() ? "/dev/hidraw*" : device.place) +
+                           "); against hid_wiimote: " + kIgnoreSpecialDrivers};
       });
 }
 
@@ -169,12 +168,13 @@ std::vector<Symptom> Undecodable(const Facts& facts) {
       [](const DeviceStatus& device) {
         return device.reports >= kEnoughReports && Share(device.undecodable, device) > 0.01;
       },
-      [](const DeviceStatus& device) {
+      [&facts](const DeviceStatus& device) {
         return Symptom{Severity::kWarning,
                        std::to_string(device.undecodable) +
                            " of its reports make no sense: perhaps a copy of the real thing",
                        "",
-                       "record it for a report: footing-log record --seconds 10 --out odd.mcap"};
+                       "record it for a report: footing-log record --connect " +
+                           facts.footingd_address + " --seconds 10 --out odd.mcap"};
       });
 }
 

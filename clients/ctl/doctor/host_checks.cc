@@ -5,13 +5,19 @@
 namespace footing::ctl::doctor {
 namespace {
 
-constexpr const char* kInstallRule =
-    "sudo cp systemd/70-footing.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo "
-    "udevadm trigger --subsystem-match=hidraw (then press a button on the device)";
-constexpr const char* kKeepDriver =
-    "never blacklist or unbind hid_wiimote: without it there is no hidraw at all; to keep it away: "
-    "echo 'options hid ignore_special_drivers=1' | sudo tee /etc/modprobe.d/footing.conf, then "
-    "reboot";
+/// In Footing's folder. A rule that names a group that does not exist is ignored by udev.
+std::string InstallRule(const Facts& facts) {
+  return std::string(facts.footing_gid ? "" : "sudo groupadd --system footing && ") +
+         "sudo cp systemd/70-footing.rules /etc/udev/rules.d/ && sudo udevadm control --reload && "
+         "sudo udevadm trigger --subsystem-match=hidraw";
+}
+
+std::string NeverBlacklist() {
+  return std::string(
+             "never blacklist or unbind hid_wiimote: without it there is no hidraw at "
+             "all; to keep it away: ") +
+         kIgnoreSpecialDrivers;
+}
 
 bool MayOpen(const User& who, const HidDevice& hid) {
   if (who.uid == 0) return true;
@@ -84,7 +90,7 @@ std::vector<Symptom> NoPermission(const Facts& facts) {
                      group  ? "sudo usermod -aG footing " + opener.name + ", then log in again"
                      : rule ? "sudo udevadm trigger --subsystem-match=hidraw (the rule " +
                                   facts.udev_rules.front() + " was not applied to it)"
-                            : kInstallRule});
+                            : InstallRule(facts)});
   }
   return found;
 }
@@ -93,7 +99,7 @@ std::vector<Symptom> RuleMissing(const Facts& facts) {
   if (!facts.udev_rules.empty() || OpenerOfNodes(facts).uid == 0) return {};
   return {{facts.hid.empty() ? Severity::kNote : Severity::kWarning,
            "no udev rule gives the devices' nodes to the group footing", "/etc/udev/rules.d",
-           kInstallRule}};
+           InstallRule(facts)}};
 }
 
 std::vector<Symptom> NotInGroup(const Facts& facts) {
@@ -120,7 +126,7 @@ std::vector<Symptom> NodeMissing(const Facts& facts) {
          "/sys/bus/hid/devices/" + hid.sysfs_id,
          IsNintendo(hid) ? std::string("sudo modprobe hid_wiimote, then switch the device off and "
                                        "on; ") +
-                               kKeepDriver
+                               NeverBlacklist()
                          : "sudo modprobe hid_sony, then switch the device off and on"});
   }
   return found;
@@ -132,7 +138,9 @@ std::vector<Symptom> Blacklisted(const Facts& facts) {
   for (const std::string& file : facts.blacklists) {
     found.push_back({Severity::kError,
                      "hid_wiimote is blacklisted, so Wiimotes and boards get no hidraw node", file,
-                     "sudo sed -i '/hid.wiimote/d' " + file + "; " + kKeepDriver});
+                     "sudo sed -i '/hid.wiimote/d' " + file +
+                         " && sudo modprobe hid_wiimote, then switch the device off and on; " +
+                         NeverBlacklist()});
   }
   return found;
 }
@@ -145,7 +153,7 @@ std::vector<Symptom> WrongDriver(const Facts& facts) {
     if (std::find(right.begin(), right.end(), hid.driver) != right.end()) continue;
     found.push_back({Severity::kWarning, hid.name + " is bound to the driver " + hid.driver,
                      "/sys/bus/hid/devices/" + hid.sysfs_id,
-                     "end the program that brought that driver; " + std::string(kKeepDriver)});
+                     "end the program that brought that driver; " + NeverBlacklist()});
   }
   return found;
 }
@@ -158,7 +166,7 @@ std::vector<Symptom> DriverInTheWay(const Facts& facts) {
                      "hid_wiimote is bound beside footingd; it changes the report mode after every "
                      "status report, and footingd sets it again",
                      hid.name + " " + hid.serial,
-                     "nothing, as long as rates are good; else " + std::string(kKeepDriver) +
+                     "nothing, as long as rates are good; else " + NeverBlacklist() +
                          " (it keeps other special drivers away, too)"});
   }
   return found;

@@ -96,6 +96,7 @@ Progress LayoutStep::One(const Situation& now, const Wishes& wishes) {
   const bool left = phase_ == Phase::kLeft;
   progress.prompt = std::string("Stand on the ") + (left ? "left" : "right") +
                     " board alone, with both feet, and keep still.";
+  if (left) progress.picture = LayoutPicture(layout_.preset);
   const Stance stance = Stand(now, wishes, kStandFor_s);
   progress.feedback = Loads(stance, true);
   const bool on_left = StoodOn(stance.left) && stance.right.samples > 0 &&
@@ -125,6 +126,7 @@ Progress LayoutStep::Both(const Situation& now, const Wishes& wishes) {
   if (upright) {
     progress.prompt = two_ ? "Stand upright, one foot on each board, and keep still."
                            : "Stand upright in the middle of the board and keep still.";
+    if (!two_) progress.picture = LayoutPicture(layout_.preset);
     if (!steady) return progress;
     observed_.upright = stance;
     phase_ = Phase::kForward;

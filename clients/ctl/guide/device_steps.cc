@@ -162,12 +162,7 @@ Progress RolesStep::Assign(const stream::DeviceStatus& device, const Pick& pick)
   assign.key = "assign";
   assign.serial = device.serial;
   assign.role = role;
-  Action leds;
-  leds.kind = Action::Kind::kLeds;
-  leds.key = "leds";
-  leds.device = device.device;
-  leds.leds = LedsOf(role);
-  progress.actions = {assign, leds};
+  progress.actions = {assign};
   named_.insert(device.serial);
   results_.push_back(Outcome(Item::kRoles, device.serial, true, pick.lead,
                              pick.lead > 0 ? "ratio" : "", Spoken(role) + pick.note));

@@ -9,6 +9,29 @@
 namespace footing::guide {
 namespace {
 
+constexpr const char* kOneFootEach = R"(
+          == screen ==
+        .------. .------.     long sides along the walk,
+        |      | |      |     power buttons [] outwards
+       [| left | | right|]
+        |      | |      |
+        '------' '------'
+)";
+
+constexpr const char* kSideBySide = R"(
+               == screen ==
+        .----------. .----------.     long sides across the walk,
+        |   left   | |   right  |     power buttons [] towards you
+        '----[]----' '----[]----'
+)";
+
+constexpr const char* kSingle = R"(
+        == screen ==
+        .----------.     both feet on it,
+        |          |     power button [] towards you
+        '----[]----'
+)";
+
 /// Movement of a board's COP in W between two stances; nothing when it was not stood on.
 std::optional<WorldPoint> Moved(const stream::BoardPose& pose, const Load& from, const Load& to) {
   if (!from.cop_valid || !to.cop_valid) return std::nullopt;
@@ -57,6 +80,12 @@ std::optional<stream::BoardLayout> LayoutNamed(const std::string& preset, double
     return std::nullopt;
   }
   return layout;
+}
+
+std::string LayoutPicture(const std::string& preset) {
+  if (preset == "one_foot_each") return kOneFootEach;
+  if (preset == "side_by_side") return kSideBySide;
+  return preset == "single" ? kSingle : "";
 }
 
 WorldPoint InWorld(const stream::BoardPose& pose, double x_P_m, double y_P_m) {

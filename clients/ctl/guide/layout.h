@@ -19,6 +19,9 @@ inline constexpr double kUsualGap_mm = 20;
 /// Nothing when there is no preset of that name.
 std::optional<stream::BoardLayout> LayoutNamed(const std::string& preset, double gap_mm);
 
+/// The boards from above, drawn for a terminal; empty when there is no preset of that name.
+std::string LayoutPicture(const std::string& preset);
+
 struct WorldPoint {
   double x_m = 0;  ///< Forward.
   double y_m = 0;  ///< Left.

@@ -15,38 +15,43 @@ constexpr std::int64_t kStepsMost_ns = 12'000'000'000;
 constexpr std::int64_t kStandAgain_ns = 700'000'000;
 
 constexpr const char* kShin = R"(
-      front view              the strap
-         ___                 goes round
-        (   ) knee           the shin
-        |   |
-     ___|   |               [===]  the remote lies on the
-    |===|   |   <- strap     | |   OUTSIDE of the shin,
-    |[+]|   |   buttons      | |   buttons away from the leg,
-    |(A)|===|   outwards     | |   its front (camera) UP,
-    |___|   |               [===]  half way from knee to ankle
-        |   |
-       _|   |
-      (_____) foot
+        the leg from its outside
+          |       |
+          (       ) knee
+          | .---. |
+         =|=|[_]|=|=  <- strap    ^
+          | | + | |               |  front (camera) up
+          | |(A)| |
+          | |ooo| |     buttons away from the leg
+         =|=|   |=|=  <- strap
+          | '---' |
+          |       '----.
+          '------------'  toes ->
 )";
 
 constexpr const char* kHead = R"(
-        _______
-      /         \
-     |===========|   <- the band, level, over the forehead
-     |  o     o  |
-     |     >     |      the remote lies flat on top of the
-      \   ---   /       head under the band:
-        -------         buttons up, its front (camera)
-       [ (A) + >]       pointing where you look
+             _^__^___^___
+            |_________[_]|==>  front (camera)
+           .-'----------'-.      where you look
+          /                \     buttons up
+         |==================|  <- head band
+         |     c         o  |
+         |                  >
+          \            .____|
+           |          |
 )";
 
 constexpr const char* kWrist = R"(
-         front (camera) -> where the fingers point
-      ______________________
-     |  [+]   (A)   o o o   |   held in the hand, or strapped
-     |______________________|   on the back of the wrist:
-         \__ thumb                buttons up, the front along
-      =====[ forearm ]=====       the fingers
+        front (camera) to the fingers  ==>
+                                 ___
+      ______________________.---'  /.______
+              ||       ||          '-------)
+         .----||-------||----.      -------)
+         |::: ||o ooo  ||( + [|     -------)
+         '----||-------||----'      ------)
+      ________||_______||_______.________)
+              ^ straps ^
+        buttons up, on the back of the wrist; or held in the hand
 )";
 
 }  // namespace

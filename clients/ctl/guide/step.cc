@@ -50,27 +50,4 @@ stream::SetupItem Outcome(Item item, const std::string& serial, bool passed, dou
   return outcome;
 }
 
-std::uint32_t LedsOf(stream::DeviceRole role) {
-  switch (role) {
-    case stream::DeviceRole::kLeftHand:
-      return 0b0001;
-    case stream::DeviceRole::kRightHand:
-      return 0b0010;
-    case stream::DeviceRole::kLeftLeg:
-      return 0b0100;
-    case stream::DeviceRole::kRightLeg:
-      return 0b1000;
-    case stream::DeviceRole::kHead:
-      return 0b1001;
-    case stream::DeviceRole::kLeftBoard:
-    case stream::DeviceRole::kRightBoard:
-      return 0b0001;
-    case stream::DeviceRole::kEditor:
-      return 0b0110;
-    case stream::DeviceRole::kUnspecified:
-      return 0;
-  }
-  return 0;
-}
-
 }  // namespace footing::guide

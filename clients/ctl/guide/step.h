@@ -34,13 +34,11 @@ struct Wishes {
 
 /// Something that footingd is asked to do. Its answer comes back under the same key.
 struct Action {
-  enum class Kind { kAssign, kLeds, kTare, kSolveMounting, kLayout };
+  enum class Kind { kAssign, kTare, kSolveMounting, kLayout };
   Kind kind = Kind::kAssign;
   std::string key;
   std::string serial;
-  std::uint32_t device = 0;
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
-  std::uint32_t leds = 0;
   stream::BoardLayout layout;
   double window_s = 0;
   std::int64_t still_from_ns = 0;
@@ -80,9 +78,5 @@ struct Progress {
 /// A result of an item, short to write.
 stream::SetupItem Outcome(Item item, const std::string& serial, bool passed, double residual,
                           const std::string& unit, const std::string& note);
-
-/// The lamps of a role: 1 left hand, 2 right hand, 3 left leg, 4 right leg, 1 and 4 the head;
-/// boards have one lamp only, lit on the left one, and on the right one too.
-std::uint32_t LedsOf(stream::DeviceRole role);
 
 }  // namespace footing::guide

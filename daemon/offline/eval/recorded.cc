@@ -19,6 +19,7 @@ bool ParseInto(v1::Tick& tick, const std::string& channel, std::string_view data
   if (channel == "raw") return parse(*tick.mutable_raw());
   if (channel == "features") return parse(*tick.mutable_features());
   if (channel == "characters") return parse(*tick.mutable_characters());
+  if (channel == "setup") return parse(*tick.mutable_setup());
   if (channel == "inputs") return parse(*tick.mutable_inputs());
   return true;
 }

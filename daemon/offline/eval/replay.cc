@@ -50,6 +50,8 @@ class HubReplay {
         continue;
       hub_.OnDetach(status.device(), "lost in the recording");
     }
+    // What changed since the tick before holds from the end of this one on, as in the daemon.
+    if (tick.has_setup()) TakeSetup(tick.setup());
     return hub_.Tick(now_ns_);
   }
 
@@ -58,6 +60,22 @@ class HubReplay {
     const bool writes_next =
         raw_ != nullptr && next_ < raw_->reports_size() && raw_->reports(next_).to_device();
     return writes_next ? raw_->reports(next_).received_ns() : now_ns_;
+  }
+
+  void TakeSetup(const v1::SetupState& setup) {
+    std::map<std::string, stream::DeviceMounting> mountings;
+    for (const v1::RigSetup& rig : setup.rigs()) {
+      for (auto& one : wire::FromProto(rig).mountings) mountings[one.serial] = one;
+    }
+    for (const auto& [device, status] : statuses_) {
+      const auto found = mountings.find(status.serial());
+      if (found == mountings.end()) {
+        (void)hub_.ClearMounting(status.serial());
+        continue;
+      }
+      hub_.TakeMounting({status.rig(), static_cast<stream::DeviceRole>(status.role())},
+                        found->second);
+    }
   }
 
   void AttachIfNew(std::uint32_t device) {

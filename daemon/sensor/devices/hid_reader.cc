@@ -7,7 +7,8 @@
 namespace footing::devices {
 namespace {
 
-constexpr int kReadTimeoutMs = 10;
+// Longer than the time between two reports, or many reads would time out first, for nothing.
+constexpr int kReadTimeoutMs = 15;
 // A device chokes on more than a write per 10 ms, which the outbox keeps to. Here what two threads
 // bunched up is spread again; were this the slower of the two, a flood would fill the queue between
 // them and its newest, the one that counts, would be refused.

@@ -26,7 +26,7 @@ class HidReader {
 
   /// `wake` is called on the reader's thread when there is something to pop, or when it ended.
   HidReader(HidHandle device, std::function<void()> wake);
-  /// Ends the thread, at most 20 ms; the newest report that waits is still written.
+  /// Ends the thread, at most 25 ms; the newest report that waits is still written.
   ~HidReader();
   HidReader(const HidReader&) = delete;
   HidReader& operator=(const HidReader&) = delete;

@@ -38,9 +38,21 @@ void Device::Attach(devices::DeviceHandle handle, const devices::DeviceIdentity&
   fresh_calibration_.reset();
   handshake_ = handshake::Handshake(options_.handshake, identity.name);
   outputs_.clear();
-  leds_set_ = false;
-  leds_ = static_cast<std::uint8_t>(1u << ((number_ - 1) % 4));  // As a player's number.
+  ShowBinding();
   Restart();
+}
+
+void Device::set_binding(Binding binding) {
+  const bool other = binding.role != binding_.role;
+  binding_ = std::move(binding);
+  if (other) ShowBinding();
+}
+
+void Device::ShowBinding() {
+  leds_set_ = false;
+  const bool has_role = binding_.role != stream::DeviceRole::kUnspecified;
+  leds_ = static_cast<std::uint8_t>(has_role ? stream::LedsOf(binding_.role)
+                                             : 1u << ((number_ - 1) % 4));  // As a player's number.
 }
 
 void Device::RestartClock() {

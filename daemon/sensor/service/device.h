@@ -87,7 +87,8 @@ class Device {
   bool RequestStatus(std::int64_t now_ns);
 
   const Binding& binding() const { return binding_; }
-  void set_binding(Binding binding) { binding_ = std::move(binding); }
+  /// The lamps show the role from now on; without one, the device's number.
+  void set_binding(Binding binding);
 
   /// Of a worn device.
   Worn& worn() { return worn_; }
@@ -103,6 +104,7 @@ class Device {
     decode::PsMove decoder;
   };
 
+  void ShowBinding();
   void Restart();
   void RestartClock();
   void TakeMove(const devices::IncomingReport& report, TickContent& content);

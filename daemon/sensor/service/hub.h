@@ -76,8 +76,8 @@ class Hub {
   Result<Measured> ClearMounting(const std::string& serial);
   Result<Measured> SetBoardLayout(stream::BoardLayout layout);
   Result<void> RecordSetup(const std::string& rig, const stream::SetupItem& item, bool forget);
-  /// Mountings of a recording in place of those known.
-  void TakeMountings(const std::vector<stream::DeviceMounting>& mountings);
+  /// A mounting of a recording, found for this role.
+  void TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting);
   void EndSession(std::uint64_t session);
   /// Every motor off, at once.
   void StopMotors();

@@ -240,16 +240,12 @@ Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& i
   return {};
 }
 
-void Hub::TakeMountings(const std::vector<stream::DeviceMounting>& mountings) {
-  for (const stream::DeviceMounting& mounting : mountings) {
-    const Device* device = WithSerial(mounting.serial);
-    if (device == nullptr) continue;
-    setup::StoredMounting stored;
-    stored.role = Text(device->binding());
-    stored.rotation_MS = mounting.rotation_MS;
-    stored.residual_rad = mounting.residual_rad;
-    book_.SetMounting(mounting.serial, stored);
-  }
+void Hub::TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting) {
+  setup::StoredMounting stored;
+  stored.role = Text(binding);
+  stored.rotation_MS = mounting.rotation_MS;
+  stored.residual_rad = mounting.residual_rad;
+  book_.SetMounting(mounting.serial, stored);
 }
 
 }  // namespace footing::sensor

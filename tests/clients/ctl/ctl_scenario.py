@@ -5,6 +5,7 @@ Usage: ctl_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
 import json
 import pathlib
 import signal
+import subprocess
 import sys
 import time
 
@@ -48,9 +49,25 @@ def check_without_footingd(stage):
 
 
 def check_help(stage):
-    for command in ("devices", "status", "watch", "rumble", "led", "tare", "assign", "doctor", "pair"):
+    for command in ("devices", "status", "watch", "rumble", "led", "tare", "assign", "doctor", "pair",
+                    "setup", "layout", "acceptance"):
         done = stage.run("footing-ctl", command, "--help")
         assert done.returncode == 0 and "Example" in done.stdout, (command, done)
+
+
+def check_page(stage):
+    """Every command of docs/setup.md is one: without footingd it ends, and not as a usage error."""
+    page = pathlib.Path(sys.argv[1]).parent.parent / "docs" / "setup.md"
+    commands = [line.split("#", 1)[0].split() if "#00" not in line else line.split()[:4]
+                for line in page.read_text().splitlines() if line.startswith("    footing-ctl ")]
+    assert len(commands) > 15, commands
+    running = [(words, subprocess.Popen(
+        [stage.binaries / "footing-ctl", "--connect", f"unix:{stage.folder}/none.sock", *words[1:]],
+        cwd=stage.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE, text=True)) for words in commands]
+    for words, process in running:
+        said = process.communicate(timeout=60)[1]
+        assert process.returncode in (0, 1, 3), (words, process.returncode, said)
 
 
 def check_devices(stage, console):
@@ -200,6 +217,7 @@ def main():
     with Stage(sys.argv[2]) as stage:
         check_without_footingd(stage)
         check_help(stage)
+        check_page(stage)
         stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
         stage.wait_for_socket(stage.sensor)
         stage.wait_for_socket(stage.devices)

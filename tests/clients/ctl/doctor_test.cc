@@ -94,10 +94,11 @@ std::vector<Case> Cases() {
          f.hid[0].node.clear();
          f.hid[0].driver.clear();
        }},
-      {"driver_blacklisted", S::kError, "/etc/modprobe.d/no-wii.conf",
+      {"driver_blacklisted", S::kError,
+       "sed -i '/hid.wiimote/d' /etc/modprobe.d/no-wii.conf && sudo modprobe hid_wiimote",
        [](Facts& f) { f.blacklists = {"/etc/modprobe.d/no-wii.conf"}; }},
       {"wrong_driver", S::kWarning, "end the program", [](Facts& f) { f.hid[0].driver = "steam"; }},
-      {"driver_in_the_way", S::kNote, "ignore_special_drivers=1",
+      {"driver_in_the_way", S::kNote, "update-initramfs",
        [](Facts& f) { f.hid[0].driver = "wiimote"; }},
       {"no_adapter", S::kError, "lsusb",
        [](Facts& f) {
@@ -124,7 +125,8 @@ std::vector<Case> Cases() {
        [](Facts& f) { f.known[0].connected = false; }},
       {"paired_not_trusted", S::kWarning, "trust 00:1F:32:AA:BB:CC",
        [](Facts& f) { f.known[0].trusted = false; }},
-      {"connected_without_hid", S::kError, "modprobe uhid", [](Facts& f) { f.hid.clear(); }},
+      {"connected_without_hid", S::kError, "modprobe -a uhid hidp",
+       [](Facts& f) { f.hid.clear(); }},
       {"too_many_devices", S::kError, "second adapter", [](Facts& f) { f.adapters[0].links = 8; }},
       {"no_device", S::kWarning, "pair wiimote", [](Facts& f) { f.devices.clear(); }},
       {"device_silent", S::kError, "all four",
@@ -138,7 +140,8 @@ std::vector<Case> Cases() {
       {"mode_stolen", S::kWarning, "fuser", [](Facts& f) { Wiimote(f).mode_reasserts = 100; }},
       {"reports_dropped", S::kWarning, "top", [](Facts& f) { Wiimote(f).queue_drops = 3; }},
       {"writes_failed", S::kWarning, "off and on", [](Facts& f) { Wiimote(f).writes_failed = 2; }},
-      {"undecodable", S::kWarning, "footing-log", [](Facts& f) { Wiimote(f).undecodable = 500; }},
+      {"undecodable", S::kWarning, "--connect unix:/run/footing/sensor.sock",
+       [](Facts& f) { Wiimote(f).undecodable = 500; }},
       {"loose_plug", S::kWarning, "plug", [](Facts& f) { Wiimote(f).extension_changes = 40; }},
       {"unknown_extension", S::kNote, "pull",
        [](Facts& f) { Wiimote(f).extension = stream::Extension::kUnknown; }},
@@ -235,6 +238,14 @@ TEST(Doctor, SendsWhoMayNotReachTheServiceToItsGroup) {
   facts.user.gids = {1000};
   EXPECT_THAT(Find(Examine(facts), "footingd_not_running")->remedy,
               HasSubstr("usermod -aG footing ann"));
+}
+
+TEST(Doctor, MakesTheGroupBeforeTheRuleThatNamesIt) {
+  Facts facts = HealthyHost();
+  facts.udev_rules.clear();
+  EXPECT_EQ(Find(Examine(facts), "udev_rule_missing")->remedy.find("groupadd"), std::string::npos);
+  facts.footing_gid.reset();
+  EXPECT_THAT(Find(Examine(facts), "udev_rule_missing")->remedy, HasSubstr("groupadd"));
 }
 
 TEST(Doctor, TakesFiveDevicesForTooManyOnlyWithJitter) {

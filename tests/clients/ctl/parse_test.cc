@@ -54,6 +54,9 @@ TEST(DoctorParse, SeesThatSpecialDriversAreIgnored) {
 
 TEST(DoctorParse, SeesTheUdevRule) {
   EXPECT_TRUE(HasRule("KERNEL==\"hidraw*\", KERNELS==\"0005:057E:0306.*\", GROUP=\"footing\"\n"));
+  EXPECT_TRUE(  // The one that is shipped.
+      HasRule("KERNEL==\"hidraw*\", KERNELS==\"0005:057E:*|000[35]:054C:03D5.*|"
+              "000[35]:054C:0C5E.*\", GROUP=\"footing\", MODE=\"0660\"\n"));
   EXPECT_FALSE(HasRule("# KERNEL==\"hidraw*\", KERNELS==\"0005:057E:0306.*\"\n"));
   EXPECT_FALSE(HasRule("KERNEL==\"hidraw*\", KERNELS==\"0005:046D:*\"\n"));
 }

@@ -144,5 +144,12 @@ TEST(Layout, ChecksASingleBoardByTheLeanAlone) {
   EXPECT_EQ(JudgeLayout(single, observed).fault, LayoutFault::kLeftTurned);
 }
 
+TEST(Layout, EveryPresetHasAPicture) {
+  for (const char* preset : {"one_foot_each", "side_by_side", "single"}) {
+    EXPECT_NE(LayoutPicture(preset).find("screen"), std::string::npos) << preset;
+  }
+  EXPECT_EQ(LayoutPicture("heap"), "");
+}
+
 }  // namespace
 }  // namespace footing::guide

@@ -21,7 +21,7 @@ TEST(Plan, AnInterfaceNotBuiltIsAUsageErrorThatListsWhatIs) {
   const auto plan = PlanUser("demo", "leg", {});
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().kind, ErrorKind::kUsage);
-  EXPECT_THAT(plan.error().message, HasSubstr("there is: wrist"));
+  EXPECT_THAT(plan.error().message, HasSubstr("there are: wrist, joystick"));
 }
 
 TEST(Plan, AnUnknownLinkIsRefused) {

@@ -7,8 +7,8 @@ namespace footing::device_models {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;
-/// The load that reads as 1 kg of calibration at the reference temperature (WiiBrew).
-constexpr double kKilogram = 0.99908 * kStandardGravity;
+/// A cell's own kilogram: the host multiplies by 0.99908.
+constexpr double kCellKilogramN = kStandardGravity * 0.99908;
 
 Report Write(std::uint32_t address, std::uint8_t byte) {
   Report report(22, 0);
@@ -65,7 +65,7 @@ TEST(BalanceBoard, ReportsItsOwnCountsAtTheCalibrationPoints) {
   BalanceBoard board(4);
   Initialise(board);
   for (std::size_t point = 0; point < 3; ++point) {
-    const double force_n = 17 * kKilogram * static_cast<double>(point);
+    const double force_n = 17 * kCellKilogramN * static_cast<double>(point);
     const Report report = board.Sample({force_n, force_n, force_n, force_n}).value();
     ASSERT_EQ(report[0], 0x34);
     for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -77,7 +77,7 @@ TEST(BalanceBoard, ReportsItsOwnCountsAtTheCalibrationPoints) {
 TEST(BalanceBoard, EachCornerHasItsPlaceInTheReport) {
   BalanceBoard board(4);
   Initialise(board);
-  const double force_n = 17 * kKilogram;
+  const double force_n = 17 * kCellKilogramN;
   const CornerForces kOne[] = {{0, force_n, 0, 0},
                                {0, 0, 0, force_n},
                                {force_n, 0, 0, 0},
@@ -93,36 +93,50 @@ TEST(BalanceBoard, EachCornerHasItsPlaceInTheReport) {
 TEST(BalanceBoard, GoesOnBelowZeroAndAboveItsLastPoint) {
   BalanceBoard board(4);
   Initialise(board);
-  const double force_n = 51 * kKilogram;
+  const double force_n = 51 * kCellKilogramN;
   const Report above = board.Sample({0, force_n, 0, 0}).value();
   const auto& points = board.points()[0];
   EXPECT_EQ(CountsOf(above, 0), 2 * points[2] - points[1]);
-  const Report below = board.Sample({0, -17 * kKilogram, 0, 0}).value();
+  const Report below = board.Sample({0, -17 * kCellKilogramN, 0, 0}).value();
   EXPECT_EQ(CountsOf(below, 0), 2 * points[0] - points[1]);
 }
 
-TEST(BalanceBoard, AWarmBoardReadsTooMuchAndSaysItsTemperature) {
-  BalanceBoard board(4);
+TEST(BalanceBoard, ARealPacketIsReproduced) {
+  // wiiuse issue 42; the loads are those that a calibration of 0x1000, 0x1600, 0x1c00 gives.
+  constexpr BalanceBoard::Points kPoints = {0x1000, 0x1600, 0x1c00};
+  BalanceBoard board(1, {kPoints, kPoints, kPoints, kPoints});
   Initialise(board);
-  const double force_n = 17 * kKilogram;
-  const int cold = CountsOf(board.Sample({0, force_n, 0, 0}).value(), 0) - board.points()[0][0];
-  board.set_temperature(BalanceBoard::kReferenceTemperature + 10);
-  board.set_battery(0x70);
-  const Report report = board.Sample({0, force_n, 0, 0}).value();
-  const int warm = CountsOf(report, 0) - board.points()[0][0];
-  EXPECT_NEAR(warm, cold / (1 - 0.007), 2);
-  EXPECT_EQ(report[11], BalanceBoard::kReferenceTemperature + 10);
-  EXPECT_EQ(report[13], 0x70);
+  board.set_temperature(0x19);
+  board.set_battery(0x6e);
+  const auto force_n = [](int counts) { return (counts - 0x1000) * 17.0 / 0x600 * kCellKilogramN; };
+  CornerForces forces;
+  forces.top_right_n = force_n(0x03d0);
+  forces.bottom_right_n = force_n(0x191a);
+  forces.top_left_n = force_n(0x0017);
+  forces.bottom_left_n = force_n(0x1523);
+  Report real = {0x34, 0x00, 0x00, 0x03, 0xd0, 0x19, 0x1a, 0x00,
+                 0x17, 0x15, 0x23, 0x19, 0x00, 0x6e, 0x00};
+  real.resize(22, 0);
+  EXPECT_EQ(board.Sample(forces).value(), real);
 }
 
-TEST(BalanceBoard, AtThePoleItReadsMoreThanAtTheEquator) {
+TEST(BalanceBoard, ARealStatusReportIsReproduced) {
+  BalanceBoard board(1);  // takeru/Wiimote issue 2.
+  board.controller().set_battery(0xd5);
+  EXPECT_EQ(board.HandleOutput(Report{0x15, 0x00}).at(0),
+            (Report{0x20, 0x00, 0x00, 0x02, 0x00, 0x00, 0xd5}));
+}
+
+TEST(BalanceBoard, AWarmBoardReadsMore) {
   BalanceBoard board(4);
   Initialise(board);
-  const auto count_at = [&board](double gravity_mps2) {
-    board.set_gravity(gravity_mps2);
-    return CountsOf(board.Sample({0, 30 * kKilogram, 0, 0}).value(), 0) - board.points()[0][0];
+  const double force_n = 10 * kCellKilogramN;
+  const auto above_zero = [&] {
+    return CountsOf(board.Sample({0, force_n, 0, 0}).value(), 0) - board.points()[0][0];
   };
-  EXPECT_NEAR(count_at(9.832) - count_at(9.780), 0.0053 * count_at(9.80665), 4);
+  const int cool = above_zero();
+  board.set_temperature(0x19 + 20);
+  EXPECT_NEAR(above_zero(), cool / (1 - 0.007 * 20 / 10), 1);
 }
 
 }  // namespace

@@ -5,30 +5,12 @@
 #include <algorithm>
 #include <random>
 
+#include "tests/common/device_models/requests.h"
+
 namespace footing::device_models {
 namespace {
 
 Controller Plain() { return Controller(Memory(false)); }
-
-Report ReadRequest(bool registers, std::uint32_t address, std::uint16_t size) {
-  return {0x17,
-          static_cast<std::uint8_t>(registers ? 4 : 0),
-          static_cast<std::uint8_t>(address >> 16),
-          static_cast<std::uint8_t>(address >> 8),
-          static_cast<std::uint8_t>(address),
-          static_cast<std::uint8_t>(size >> 8),
-          static_cast<std::uint8_t>(size)};
-}
-
-Report WriteRequest(bool registers, std::uint32_t address, std::vector<std::uint8_t> data) {
-  Report report = ReadRequest(registers, address, 0);
-  report[0] = 0x16;
-  report[5] = static_cast<std::uint8_t>(data.size());
-  report.resize(6);
-  report.insert(report.end(), data.begin(), data.end());
-  report.resize(22, 0);
-  return report;
-}
 
 TEST(Controller, AnyReadWithinTheEepromComesInPiecesOfSixteen) {
   Controller device = Plain();
@@ -144,9 +126,9 @@ TEST(Controller, AnAcknowledgementIsSentWhenAskedFor) {
 }
 
 TEST(Controller, EveryModeHasItsLength) {
-  const std::pair<std::uint8_t, std::size_t> kSizes[] = {{0x30, 3},  {0x31, 6},  {0x32, 11},
-                                                         {0x33, 18}, {0x34, 22}, {0x35, 22},
-                                                         {0x36, 22}, {0x37, 22}, {0x3d, 22}};
+  const std::pair<std::uint8_t, std::size_t> kSizes[] = {
+      {0x30, 3},  {0x31, 6},  {0x32, 11}, {0x33, 18}, {0x34, 22},
+      {0x35, 22}, {0x36, 22}, {0x37, 22}, {0x3d, 22}, {0x3e, 22}};
   Controller device = Plain();
   for (const auto& [mode, size] : kSizes) {
     device.HandleOutput(Report{0x12, 0x04, mode});
@@ -172,6 +154,72 @@ TEST(Controller, RubbishIsNotAnsweredAndBreaksNothing) {
       ASSERT_LE(answer.size(), 22u);
     }
   }
+}
+
+/// Switches the camera on, in the format that belongs to the mode.
+void StartCamera(Controller& device, std::uint8_t format) {
+  device.HandleOutput(Report{0x13, 0x04});
+  device.HandleOutput(Report{0x1a, 0x04});
+  device.HandleOutput(WriteRequest(true, 0xb00030, {0x08}));
+  device.HandleOutput(WriteRequest(true, 0xb00033, {format}));
+}
+
+TEST(Controller, ACameraThatIsOffOrOfAnotherFormatSeesNothing) {
+  Controller device = Plain();
+  Readings readings;
+  readings.camera[0] = CameraPoint{100, 200, 3};
+  device.HandleOutput(Report{0x12, 0x04, 0x33});
+  const auto all_ff = [](const Report& report) {
+    return std::all_of(report.begin() + 6, report.end(), [](std::uint8_t b) { return b == 0xff; });
+  };
+  EXPECT_TRUE(all_ff(device.DataReport(readings).value()));
+  StartCamera(device, 1);
+  EXPECT_TRUE(all_ff(device.DataReport(readings).value()));
+  StartCamera(device, 3);
+  EXPECT_FALSE(all_ff(device.DataReport(readings).value()));
+  device.HandleOutput(Report{0x13, 0x00});
+  EXPECT_TRUE(all_ff(device.DataReport(readings).value()));
+}
+
+TEST(Controller, TheStatusShowsCameraAndSpeaker) {
+  Controller device = Plain();
+  EXPECT_EQ(device.HandleOutput(Report{0x15, 0x00}).at(0)[3], 0x00);
+  StartCamera(device, 1);
+  device.HandleOutput(Report{0x14, 0x04});
+  EXPECT_EQ(device.HandleOutput(Report{0x15, 0x00}).at(0)[3], 0x0c);
+}
+
+TEST(Controller, CameraPointsAreLaidOutByTheirFormat) {
+  Controller device = Plain();
+  Readings readings;
+  readings.camera[0] = CameraPoint{0x3a5, 0x2c7, 4};
+  readings.camera[1] = CameraPoint{0x112, 0x1f0, 9};
+  // Extended: x, y, then y bits 9 and 8, x bits 9 and 8, size.
+  device.HandleOutput(Report{0x12, 0x04, 0x33});
+  StartCamera(device, 3);
+  const Report extended = device.DataReport(readings).value();
+  EXPECT_EQ(Report(extended.begin() + 6, extended.begin() + 12),
+            (Report{0xa5, 0xc7, 0xb4, 0x12, 0xf0, 0x59}));
+  // Basic: x1, y1, then y1 x1 y2 x2 bits 9 and 8, x2, y2.
+  device.HandleOutput(Report{0x12, 0x04, 0x37});
+  StartCamera(device, 1);
+  const Report basic = device.DataReport(readings).value();
+  EXPECT_EQ(Report(basic.begin() + 6, basic.begin() + 11), (Report{0xa5, 0xc7, 0xb5, 0x12, 0xf0}));
+}
+
+TEST(Controller, InterleavedReportsCarryOneMomentInTwoHalves) {
+  Controller device = Plain();
+  Readings first;
+  first.buttons = 0x0808;
+  first.acceleration_counts = {0xa5 << 2, 0x5a << 2, 0xc6 << 2};
+  device.HandleOutput(Report{0x12, 0x04, 0x3e});
+  const Report x = device.DataReport(first).value();
+  const Report y = device.DataReport({}).value();
+  // z = 0xc6: bits 5 and 4 in 3e's first button byte, 7 and 6 in its second; 1 and 0, 3 and 2 in
+  // 3f.
+  EXPECT_EQ(Report(x.begin(), x.begin() + 4), (Report{0x3e, 0x08 | 0 << 5, 0x08 | 3 << 5, 0xa5}));
+  EXPECT_EQ(Report(y.begin(), y.begin() + 4), (Report{0x3f, 2 << 5, 1 << 5, 0x5a}));
+  EXPECT_EQ(device.DataReport(first).value()[0], 0x3e);
 }
 
 }  // namespace

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <utility>
 
-#include "common/device_models/balance_board.h"
-#include "common/device_models/wiimote.h"
 #include "daemon/sensor/service/hub.h"
+#include "tests/recordings/devices/peers.h"
 #include "tests/recordings/devices/replay.h"
 
 /// Writes the captures that are made with device models, or what is expected of all there are:
@@ -19,15 +19,6 @@
 /// Captures of real devices are put into the folder by hand and have only the second done to them.
 namespace footing::recordings {
 namespace {
-
-using device_models::Report;
-
-/// A device model at the other end of the link.
-struct Peer {
-  devices::DeviceIdentity identity;
-  std::function<std::vector<Report>(std::span<const std::uint8_t>)> answer;
-  std::function<std::vector<Report>(double t_s)> sample;
-};
 
 struct Plan {
   std::string file;
@@ -49,27 +40,40 @@ Capture Record(const Plan& plan) {
   config.camera = plan.camera;
   constexpr std::int64_t kStartNs = 1'000'000'000;
   std::int64_t now_ns = kStartNs;
-  std::deque<Report> answers;
-  const auto note = [&](bool to_device, const Report& bytes) {
-    capture.reports.push_back({now_ns - kStartNs, to_device, false, bytes});
+  struct Answer {
+    Report report;
+    bool feature = false;
+  };
+  std::deque<Answer> answers;
+  const auto seconds = [&now_ns] { return static_cast<double>(now_ns - kStartNs) * 1e-9; };
+  const auto note = [&](bool to_device, const Report& bytes, bool feature = false) {
+    capture.reports.push_back({now_ns - kStartNs, to_device, feature, bytes});
   };
   sensor::Hub hub(config, {[&](devices::DeviceHandle, const reports::OutputReport& report) {
                              note(true, report);
-                             for (auto& one : peer.answer(report)) answers.push_back(one);
+                             for (auto& one : peer.answer(seconds(), report)) {
+                               answers.push_back({one});
+                             }
                            },
-                           [](const std::string&) {}, [&now_ns] { return now_ns; }});
+                           [](const std::string&) {}, [&now_ns] { return now_ns; },
+                           [&](devices::DeviceHandle, std::uint8_t id, std::size_t size) {
+                             answers.push_back({peer.feature(id, size), true});
+                           }});
   constexpr devices::DeviceHandle kHandle = 1;
-  const auto send = [&](const Report& report) {
-    note(false, report);
-    hub.OnReport(kHandle, {now_ns, report});
+  const auto send = [&](const Report& report, bool feature = false) {
+    note(false, report, feature);
+    devices::IncomingReport incoming;
+    incoming.received_ns = now_ns;
+    incoming.bytes = report;
+    incoming.feature = feature;
+    hub.OnReport(kHandle, incoming);
   };
   hub.OnAttach(kHandle, peer.identity);
   const auto ticks = static_cast<int>(std::lround(plan.seconds * 1e9 / kTickNs));
   for (int tick = 0; tick < ticks; ++tick) {
     now_ns += kTickNs;
-    for (const Report& report : std::exchange(answers, {})) send(report);
-    const double t_s = static_cast<double>(now_ns - kStartNs) * 1e-9;
-    for (const Report& report : peer.sample(t_s)) send(report);
+    for (const Answer& one : std::exchange(answers, {})) send(one.report, one.feature);
+    for (const Report& report : peer.sample(seconds())) send(report);
     (void)hub.Tick(now_ns);
   }
   for (const Report& report : plan.at_the_end) {
@@ -90,47 +94,11 @@ Capture Record(const Plan& plan) {
   return capture;
 }
 
-devices::DeviceIdentity IdentityOf(const device_models::Identity& own) {
-  devices::DeviceIdentity identity;
-  identity.bus = devices::Bus::kBluetooth;
-  identity.vendor = own.vendor;
-  identity.product = own.product;
-  identity.name = own.name;
-  identity.serial = own.serial;
-  return identity;
-}
-
-/// Swung forwards and backwards at 2 Hz, +-3 m/s², face up.
-Eigen::Vector3d Swing(double t_s) {
-  return {0, 3 * std::sin(2 * 3.14159265358979 * 2 * t_s), -9.80665};
-}
-
-Peer MakeWiimote() {
-  auto model = std::make_shared<device_models::Wiimote>(11);
-  const auto sample = [model](double t_s) {
-    const std::uint16_t buttons = std::fmod(t_s, 0.5) < 0.1 ? reports::kA | reports::kUp : 0;
-    const auto report = model->Sample(Swing(t_s), buttons);
-    return report ? std::vector<Report>{*report} : std::vector<Report>{};
-  };
-  return {IdentityOf(model->identity()),
-          [model](std::span<const std::uint8_t> report) { return model->HandleOutput(report); },
-          sample};
-}
-
-Peer MakeBoard() {
-  auto model = std::make_shared<device_models::BalanceBoard>(12);
-  const auto sample = [model](double t_s) {
-    // Nobody for the first half second, then 60 kg that lean to the left and back.
-    const double kg = t_s < 0.8 ? 0 : 60;
-    const double lean = 0.3 * std::sin(2 * 3.14159265358979 * t_s);
-    const double left_n = kg * 9.80665 / 4 * (1 + lean);
-    const double right_n = kg * 9.80665 / 4 * (1 - lean);
-    const auto report = model->Sample({left_n, right_n, left_n, right_n});
-    return report ? std::vector<Report>{*report} : std::vector<Report>{};
-  };
-  return {IdentityOf(model->identity()),
-          [model](std::span<const std::uint8_t> report) { return model->HandleOutput(report); },
-          sample};
+/// A Nunchuk behind a MotionPlus.
+Peer MakeBoth() {
+  device_models::Wiimote wiimote(15);
+  wiimote.Plug(device_models::Accessory::kMotionPlus, 0);
+  return MakeExtended(device_models::Accessory::kNunchuk, wiimote, 1.5);
 }
 
 /// wiiuse issue 42: a cell that is stuck.
@@ -142,18 +110,81 @@ Report RealBoardReport() {
 }
 
 std::vector<Plan> Plans() {
-  return {
+  using device_models::Accessory;
+  using device_models::MoveModel;
+  const std::string kSwung = "swung to and fro at 2 Hz";
+  const std::string kStick = "stick in circles, C and Z pressed in turn, tilted to and fro";
+  const std::string kTurned = "turned about all axes, past the slow range";
+  const std::string kMade = "write_device_recordings, ";
+  std::vector<Plan> plans = {
       {"wiimote",
-       "swung to and fro at 2 Hz, A and up pressed for 0.1 s each 0.5 s",
-       "write_device_recordings, Wiimote of seed 11",
+       kSwung + ", A and up pressed for 0.1 s each 0.5 s",
+       kMade + "Wiimote of seed 11",
        false,
        1.6,
        {},
-       MakeWiimote},
+       MakePlainWiimote},
       {"balance_board", "empty, then 60 kg leaning left and right; at the end a real report",
-       "write_device_recordings, board of seed 12; the last report is from wiiuse issue 42", false,
-       2, std::vector<Report>(3, RealBoardReport()), MakeBoard},
+       kMade + "board of seed 12, warm; the last report is from wiiuse issue 42", false, 2,
+       std::vector<Report>(3, RealBoardReport()), MakeBoard},
+      {"nunchuk",
+       kStick + "; pulled at 1.5 s",
+       kMade + "Wiimote of seed 13 with a Nunchuk",
+       false,
+       2,
+       {},
+       [] { return MakeExtended(Accessory::kNunchuk, device_models::Wiimote(13), 1.5); }},
+      {"classic",
+       kSwung + "; pulled at 1 s",
+       kMade + "Wiimote of seed 14 with a Classic Controller",
+       false,
+       1.6,
+       {},
+       [] { return MakeExtended(Accessory::kClassic, device_models::Wiimote(14), 1); }},
+      {"motion_plus",
+       kTurned,
+       kMade + "Wiimote of seed 16 with a MotionPlus plugged in",
+       false,
+       2,
+       {},
+       [] { return MakeExtended(Accessory::kMotionPlus, device_models::Wiimote(16)); }},
+      {"motion_plus_nunchuk",
+       kTurned + "; " + kStick + "; the Nunchuk is pulled at 1.5 s",
+       kMade + "Wiimote of seed 15 with a Nunchuk behind a MotionPlus",
+       false,
+       2.5,
+       {},
+       MakeBoth},
+      {"wiimote_tr",
+       kTurned,
+       kMade + "Wiimote -TR of seed 17",
+       false,
+       2,
+       {},
+       [] { return MakeExtended(Accessory::kNone, device_models::Wiimote(17, {.tr = true})); }},
+      {"wiimote_camera",
+       "two points that move to and fro, one of them gone after 1.2 s",
+       kMade + "Wiimote of seed 20",
+       true,
+       1.6,
+       {},
+       MakeCamera},
+      {"ps_move_zcm1",
+       kTurned + ", trigger pulled, Move pressed",
+       kMade + "PS Move ZCM1 of seed 18",
+       false,
+       1.5,
+       {},
+       [] { return MakeMove(18, MoveModel::kZcm1); }},
+      {"ps_move_zcm2",
+       kTurned + ", trigger pulled, Move pressed",
+       kMade + "PS Move ZCM2 of seed 19",
+       false,
+       1.5,
+       {},
+       [] { return MakeMove(19, MoveModel::kZcm2); }},
   };
+  return plans;
 }
 
 int Run(const std::filesystem::path& folder, bool expected) {

@@ -19,7 +19,7 @@ constexpr double kYaw_rad[2] = {-kPi / 2, kPi / 2};
 constexpr double kTremor_mps2 = 0.05;
 constexpr double kSway_m = 0.002;
 constexpr double kOvertone = 0.25;   // Without it half a period would look like a whole one.
-constexpr double kRattle_rad = 0.9;  // How far a loose strap turns about the limb, to and fro.
+constexpr double kRattle_rad = 0.5;  // How far a loose strap turns about the limb, to and fro.
 constexpr double kRattle_hz = 0.35;  // Slow, so that two parts of three steps differ.
 const Eigen::Vector3d kSwing_M = Eigen::Vector3d(0, 0.6, 0.8);
 

@@ -57,8 +57,12 @@ class Person {
   StandIn Remote(int side, std::uint64_t seed) {
     device_models::Wiimote wiimote(seed);
     if (options_.low_battery && side == 1) wiimote.controller().set_battery(kExhausted);
-    return {std::move(wiimote), [this, side](double t_s) { return body_.Limb(side, t_s); },
-            body_.Role(options_.jumbled ? 1 - side : side),
+    const auto feels = [this, side](double t_s) {
+      device_models::WiimoteSensors sensors;
+      sensors.specific_force_S_mps2 = body_.Limb(side, t_s);
+      return sensors;
+    };
+    return {std::move(wiimote), feels, body_.Role(options_.jumbled ? 1 - side : side),
             device_models::WiimoteLink(LinkQuality::kGood, seed)};
   }
 

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
@@ -103,6 +104,7 @@ class SensorLine : public testing::Test {
     for (const auto& status : tick.status().devices()) status_[status.serial()] = status;
     for (const auto& sample : tick.motion().samples()) motion_.push_back(sample);
     for (const auto& sample : tick.boards().samples()) boards_.push_back(sample);
+    for (const auto& sample : tick.nunchuk().samples()) nunchuks_.push_back(sample);
     if (tick.has_features()) features_ = tick.features();
   }
 
@@ -134,6 +136,7 @@ class SensorLine : public testing::Test {
   std::map<std::string, v1::DeviceStatus> status_;
   std::vector<v1::MotionSample> motion_;
   std::vector<v1::BoardSample> boards_;
+  std::vector<v1::NunchukSample> nunchuks_;
   v1::FeatureFrame features_;
 };
 
@@ -171,6 +174,38 @@ TEST_F(SensorLine, ARunningUserIsHeardAsRunning) {
   };
   EXPECT_TRUE(RunUntil(runs));
   EXPECT_EQ(stream->End(SIGTERM), 0);
+}
+
+TEST_F(SensorLine, TheJoystickUsersStickAndButtonArrive) {
+  const auto stream = StartStream({"user", "--script", "jump", "--interface", "joystick"});
+  const auto pressed = [this] {
+    return std::any_of(motion_.begin(), motion_.end(),
+                       [](const auto& sample) { return (sample.buttons() & 0x0008) != 0; });
+  };
+  ASSERT_TRUE(RunUntil(
+      [&] { return pressed() && !nunchuks_.empty() && nunchuks_.back().stick_y() > 0.4; }));
+  for (const auto& sample : nunchuks_) {
+    ASSERT_FALSE(sample.uncalibrated());
+    ASSERT_NEAR(sample.stick_x(), 0, 0.02);
+    ASSERT_NEAR(sample.specific_force_mps2().z(), -kG, 0.2);
+  }
+}
+
+TEST_F(SensorLine, AMotionPlusWithANunchukBehindItTellsHowTheHandsIncline) {
+  const auto stream = StartStream({"user", "--script", "turn", "--motion-plus", "--nunchuk"});
+  double fastest_radps = 0;
+  ASSERT_TRUE(RunUntil([&] {
+    for (const auto& sample : motion_) {
+      if (!sample.has_angular_velocity_radps()) continue;
+      const auto& turn = sample.angular_velocity_radps();
+      fastest_radps = std::max(fastest_radps, std::abs(turn.y()));
+    }
+    return fastest_radps > 2 && nunchuks_.size() > 50;  // 20 degrees within 0.15 s.
+  }));
+  for (const auto& [serial, status] : status_) {
+    EXPECT_EQ(status.extension(), v1::EXTENSION_MOTION_PLUS_NUNCHUK) << serial;
+    EXPECT_EQ(status.gyroscope_calibration(), v1::CALIBRATION_ORIGIN_DEVICE) << serial;
+  }
 }
 
 TEST_F(SensorLine, RecordedCornersArriveAsForces) {

@@ -163,6 +163,20 @@ TEST(Hub, AssigningATakenRoleSwapsTheTwo) {
   EXPECT_FALSE(bench.hub().AssignRole("nobody", {"main", DeviceRole::kLeftHand}));
 }
 
+TEST(Hub, TheLampsShowTheRoleAlsoAfterAReturn) {
+  Bench bench;
+  const auto first = bench.Attach(Wiimote(1), "a");
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.ModelOf<Wiimote>(first).leds(), stream::LedsOf(DeviceRole::kLeftHand));
+  ASSERT_TRUE(bench.hub().AssignRole("a", {"main", DeviceRole::kRightLeg}));
+  bench.Advance(0.1);
+  EXPECT_EQ(bench.ModelOf<Wiimote>(first).leds(), stream::LedsOf(DeviceRole::kRightLeg));
+  bench.Detach(first);
+  const auto again = bench.Attach(Wiimote(1), "a");
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.ModelOf<Wiimote>(again).leds(), stream::LedsOf(DeviceRole::kRightLeg));
+}
+
 TEST(Hub, TheMotorStopsWithItsLeaseItsSessionAndTheDaemon) {
   Bench bench;
   const auto handle = bench.Attach(Wiimote(1), "a");

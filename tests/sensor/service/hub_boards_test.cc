@@ -1,0 +1,283 @@
+// A board at the hub: tare, uniform stream, corrections, alarms.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/units/units.h"
+#include "tests/sensor/service/kept.h"
+
+namespace footing::sensor {
+namespace {
+
+using device_models::BalanceBoard;
+using device_models::Wiimote;
+using testing::HasSubstr;
+
+TEST(HubTare, TakesTheEmptyWeightOffWithoutClampingAndIsKept) {
+  Kept kept;
+  {
+    Bench bench({}, kept.shelf());
+    bench.Attach(BalanceBoard(1), "a");
+    bench.corners = {5, -4, 3, -2};
+    bench.Advance(3);
+    EXPECT_FALSE(bench.StatusOf("a").tared);
+    const auto tare = bench.hub().Tare("a", 0, false);
+    ASSERT_TRUE(tare) << tare.error().message;
+    EXPECT_EQ(tare->unit, "N");
+    EXPECT_LT(tare->residual, 1);
+    bench.Advance(0.1);
+    EXPECT_TRUE(bench.StatusOf("a").tared);
+    EXPECT_TRUE(bench.content.boards.back().tared);
+    EXPECT_NEAR(bench.content.boards.back().total_n, 0, 0.01);
+    // Less than empty by 8 N: below zero, and published so.
+    bench.corners = {3, -6, 1, -4};
+    bench.Advance(0.1);
+    EXPECT_NEAR(bench.content.boards.back().total_n, -8, 0.5);
+  }
+  Bench again({}, kept.shelf());
+  again.Attach(BalanceBoard(1), "a");
+  again.corners = {5, -4, 3, -2};
+  again.Advance(0.5);
+  EXPECT_TRUE(again.StatusOf("a").tared);
+  EXPECT_NEAR(again.content.boards.back().top_left_n, 0, 0.2);
+  ASSERT_TRUE(again.hub().Tare("a", 0, true));
+  again.Advance(0.1);
+  EXPECT_FALSE(again.StatusOf("a").tared);
+  EXPECT_NEAR(again.content.boards.back().top_left_n, 5, 0.2);
+}
+
+TEST(HubTare, RefusesAMovingLoadAPersonAnotherDeviceAndNobody) {
+  Bench bench;
+  bench.Attach(BalanceBoard(1), "a");
+  bench.Attach(Wiimote(2), "b");
+  bench.corners = {10, 10, 10, 10};
+  bench.Advance(1);
+  const auto early = bench.hub().Tare("a", 0, false);
+  EXPECT_THAT(early.ok() ? "" : early.error().message, HasSubstr("2.0 are needed"));
+  bench.Advance(1.5);
+  bench.corners = {20, 20, 20, 20};  // Somebody puts a foot on it.
+  bench.Advance(0.5);
+  const auto moving = bench.hub().Tare("a", 0, false);
+  EXPECT_THAT(moving.ok() ? "" : moving.error().message, HasSubstr("moves"));
+  bench.corners = {170, 170, 170, 170};
+  bench.Advance(3);
+  const auto heavy = bench.hub().Tare("a", 0, false);
+  EXPECT_THAT(heavy.ok() ? "" : heavy.error().message, HasSubstr("step off"));
+  EXPECT_FALSE(bench.hub().Tare("b", 0, false));
+  EXPECT_FALSE(bench.hub().Tare("nobody", 0, false));
+  EXPECT_FALSE(bench.hub().Tare("a", std::nan(""), false));
+  EXPECT_FALSE(bench.StatusOf("a").tared);
+}
+
+TEST(HubBoards, AUniformStreamRunsBesideTheRawOneAtItsOwnRate) {
+  Config config;
+  config.board_uniform.rate_hz = 50;
+  Bench bench(config);
+  bench.Attach(BalanceBoard(1), "a");
+  bench.corners = {100, 200, 100, 200};
+  bench.Advance(3);
+  ASSERT_GT(bench.content.uniform_boards.size(), 120u);
+  std::int64_t before_ns = 0;
+  for (const auto& sample : bench.content.uniform_boards) {
+    if (before_ns != 0) {
+      EXPECT_EQ(sample.sampled_ns - before_ns, 20'000'000);
+    }
+    before_ns = sample.sampled_ns;
+    EXPECT_NEAR(sample.total_n, 600, 2);
+    EXPECT_TRUE(sample.cop_valid);
+    EXPECT_NEAR(sample.cop_x_m, 0.433 / 2 / 3, 1e-3);  // (400 - 200) / 600 of half the distance.
+    EXPECT_FALSE(sample.gap);
+    EXPECT_TRUE(sample.simulated);
+  }
+  EXPECT_GT(bench.content.boards.size(), 250u);  // The raw one is as before.
+}
+
+TEST(HubBoards, LocalGravityIsDividedOut) {
+  constexpr double kEquatorMps2 = 9.78;
+  Config told;
+  told.local_gravity_mps2 = kEquatorMps2;
+  Bench untold;
+  Bench corrected(told);
+  for (Bench* bench : {&untold, &corrected}) {
+    // What weighs 600 N under standard gravity weighs less there.
+    const double corner_n = 150 * kEquatorMps2 / kStandardGravityMps2;
+    bench->corners = {corner_n, corner_n, corner_n, corner_n};
+    bench->Attach(BalanceBoard(1), "a");
+    bench->Advance(0.5);
+  }
+  // A count is 0.11 N a corner.
+  EXPECT_NEAR(untold.content.boards.back().total_n, 600 * kEquatorMps2 / kStandardGravityMps2, 0.3);
+  EXPECT_NEAR(corrected.content.boards.back().total_n, 600, 0.3);
+}
+
+TEST(HubBoards, ForcesGoOnBeyondTheCalibrationPointsBothWays) {
+  Bench bench;
+  bench.Attach(BalanceBoard(1), "a");
+  bench.corners = {600, -50, 600, -50};  // 61 kg a cell, and an edge that hangs.
+  bench.Advance(0.5);
+  // 0.1 % of the factory's gravity, and a count.
+  EXPECT_NEAR(bench.content.boards.back().top_left_n, 600, 0.7);
+  EXPECT_NEAR(bench.content.boards.back().top_right_n, -50, 0.2);
+  EXPECT_THAT(bench.StatusOf("a").note, HasSubstr("over its range"));
+}
+
+TEST(HubBoards, AnotherTemperatureIsTakenOff) {
+  Bench bench;
+  const auto handle = bench.Attach(BalanceBoard(1), "a");
+  for (const int degrees : {-15, 0, 20}) {
+    bench.ModelOf<BalanceBoard>(handle).set_temperature(
+        static_cast<std::uint8_t>(BalanceBoard::kReferenceTemperature + degrees));
+    bench.Advance(0.5);
+    // Untreated, 20 degrees more would be 1.4 %, 8.4 N. What is left is counts, and the correction
+    // as a factor of 1 - x where the cells gain 1 + x: x squared is 0.02 %.
+    EXPECT_NEAR(bench.content.boards.back().total_n, 600, 0.35) << degrees;
+  }
+}
+
+TEST(HubBoards, TheBatteryIsByteTenOfTheDataAndNotTheStatusReports) {
+  Bench bench;
+  const auto handle = bench.Attach(BalanceBoard(1), "a");
+  auto& board = bench.ModelOf<BalanceBoard>(handle);
+  bench.Advance(1.5);
+  EXPECT_GT(bench.StatusOf("a").battery_fraction, 0.8);
+  EXPECT_FALSE(bench.StatusOf("a").battery_low);
+  board.controller().set_battery(0);  // Of the status report: nobody may believe it.
+  ASSERT_TRUE(bench.hub().RequestDeviceStatus(1));
+  bench.Advance(0.5);
+  EXPECT_GT(bench.StatusOf("a").battery_fraction, 0.8);
+  EXPECT_FALSE(bench.StatusOf("a").battery_low);
+  board.set_battery(0x69);  // Just below the first bar.
+  bench.Advance(0.5);
+  EXPECT_TRUE(bench.StatusOf("a").battery_low);
+  EXPECT_LT(bench.StatusOf("a").battery_fraction, 0.3);
+}
+
+TEST(HubBoards, ACalibrationWithAWrongChecksumIsNotUsedAndEverySampleSaysSo) {
+  Bench bench;
+  BalanceBoard board(1);
+  board.controller().memory().extension()[0x24] ^= 1;
+  bench.Attach(board, "a");
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("a").calibration, stream::CalibrationOrigin::kDefaults);
+  EXPECT_THAT(bench.StatusOf("a").note, HasSubstr("checksum is wrong"));
+  ASSERT_FALSE(bench.content.boards.empty());
+  for (const auto& sample : bench.content.boards) {
+    EXPECT_TRUE(sample.uncalibrated);
+    EXPECT_TRUE(std::isfinite(sample.total_n));
+  }
+}
+
+TEST(HubBoards, RepeatsAreFlaggedAndCountedAndNewsAreNot) {
+  Bench bench;
+  bench.Attach(BalanceBoard(1), "a");
+  bench.Advance(0.5);
+  const std::uint64_t before = bench.StatusOf("a").repeats;
+  bench.content.boards.clear();
+  for (int i = 1; i <= 20; ++i) {  // A new value every other report.
+    bench.corners.top_left_n = 150 + i;
+    bench.Advance(0.02);
+  }
+  ASSERT_EQ(bench.content.boards.size(), 40u);
+  for (std::size_t i = 0; i < 40; ++i) {
+    EXPECT_EQ(bench.content.boards[i].repeated, i % 2 == 1) << i;
+  }
+  bench.Advance(0.3);  // The status is 0.2 s old at most.
+  EXPECT_GE(bench.StatusOf("a").repeats, before + 20);
+}
+
+TEST(HubBoards, UnderTheThresholdThereIsNoCentreOfPressure) {
+  Bench bench;
+  bench.Attach(BalanceBoard(1), "a");
+  bench.corners = {12, 0, 12, 20};  // 44 N: less than 5 kg.
+  bench.Advance(1);
+  for (const auto& sample : bench.content.boards) {
+    EXPECT_FALSE(sample.cop_valid || sample.contact);
+    EXPECT_EQ(sample.cop_x_m, 0);
+  }
+  ASSERT_FALSE(bench.content.uniform_boards.empty());
+  for (const auto& sample : bench.content.uniform_boards) {
+    EXPECT_FALSE(sample.cop_valid);
+    EXPECT_EQ(sample.cop_y_m, 0);
+  }
+}
+
+TEST(HubBoards, OneAloneWorksAndSaysThatItIs) {
+  Bench bench;
+  bench.Attach(BalanceBoard(1), "a");
+  bench.Advance(0.5);
+  EXPECT_THAT(bench.StatusOf("a").note, HasSubstr("one board alone"));
+  EXPECT_TRUE(bench.content.boards.back().cop_valid);
+  const auto second = bench.Attach(BalanceBoard(2), "b");
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("a").note, "");
+  EXPECT_EQ(bench.StatusOf("b").note, "");
+  bench.Detach(second);
+  bench.Advance(0.5);
+  EXPECT_THAT(bench.StatusOf("a").note, HasSubstr("one board alone"));
+  stream::BoardLayout single;
+  single.preset = "single";
+  const auto set = bench.hub().SetBoardLayout(single);
+  ASSERT_TRUE(set);
+  EXPECT_THAT(set->message, HasSubstr("not told apart"));
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("a").note, "") << "it is meant to be alone";
+}
+
+class MovedBoard : public testing::Test {
+ protected:
+  void SetUp() override {
+    bench_.Attach(BalanceBoard(1), "a");
+    bench_.Attach(BalanceBoard(2), "b");
+    bench_.corners = {0, 0, 0, 0};
+    bench_.Advance(3);
+    ASSERT_TRUE(bench_.hub().Tare("a", 0, false) && bench_.hub().Tare("b", 0, false));
+  }
+  void Check() {
+    ASSERT_TRUE(bench_.hub().SetBoardLayout(OneFootEach()));
+    ASSERT_TRUE(bench_.hub().RecordSetup("main", Passed("layout"), false));
+    ASSERT_TRUE(bench_.hub().RecordSetup("main", Passed("tare", "a"), false));
+  }
+  void Lift() {
+    bench_.corners = {-8, -8, -8, -8};  // Its feet hang: some 3 kg less than standing.
+    bench_.Advance(1);
+    bench_.corners = {0, 0, 0, 0};
+    bench_.Advance(0.5);
+  }
+  Kept kept_;
+  Bench bench_{{}, kept_.shelf()};
+};
+
+TEST_F(MovedBoard, IsToldOverARestartUntilTheLayoutIsCheckedAgain) {
+  Check();
+  bench_.Advance(1);
+  EXPECT_FALSE(bench_.StatusOf("a").moved);
+  Lift();
+  EXPECT_TRUE(bench_.StatusOf("a").moved);
+  EXPECT_TRUE(ItemOf(bench_, "layout").stale);
+  EXPECT_THAT(ItemOf(bench_, "layout").note, HasSubstr("moved"));
+  EXPECT_TRUE(ItemOf(bench_, "tare").stale);
+  EXPECT_THAT(bench_.log, testing::Contains(HasSubstr("was moved")));
+
+  Bench again({}, kept_.shelf());
+  again.Attach(BalanceBoard(1), "a");
+  again.corners = {0, 0, 0, 0};
+  again.Advance(1);
+  EXPECT_TRUE(again.StatusOf("a").moved);
+  EXPECT_TRUE(ItemOf(again, "layout").stale);
+  ASSERT_TRUE(again.hub().RecordSetup("main", Passed("layout"), false));
+  again.Advance(1);
+  EXPECT_FALSE(again.StatusOf("a").moved);
+  EXPECT_FALSE(ItemOf(again, "layout").stale);
+}
+
+TEST_F(MovedBoard, BeforeItsLayoutWasCheckedIsNoAlarm) {
+  Lift();
+  EXPECT_FALSE(bench_.StatusOf("a").moved);
+  Check();
+  bench_.Advance(1);
+  EXPECT_FALSE(bench_.StatusOf("a").moved) << "what was before the check does not count";
+}
+
+}  // namespace
+}  // namespace footing::sensor
