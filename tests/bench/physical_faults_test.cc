@@ -201,7 +201,7 @@ FOOTING_FAULT(Fault56StuckSensor) {
             100 + static_cast<double>(clock::MonotonicNs() / 1'000'000 % 400);
         return Status(device).note().find("top right sensor never changes") != std::string::npos;
       },
-      10));
+      30));
 }
 
 }  // namespace
