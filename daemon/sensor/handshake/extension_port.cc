@@ -9,8 +9,11 @@ namespace {
 
 using reports::Extension;
 
-constexpr double kSenselessS = 1;    // Extension bytes without sense for so long: look again.
-constexpr double kQuietS = 10;       // An extension settled for so long is looked at at once.
+constexpr double kSenselessS = 1;  // Extension bytes without sense for so long: look again.
+constexpr double kQuietS = 10;     // An extension settled for so long is looked at at once.
+constexpr double kUndoneSoonS =
+    10;                         // A MotionPlus that was on for longer was switched off by chance.
+constexpr int kUndoneMost = 5;  // Switched off by somebody else so often in a row: theirs.
 constexpr int kChildBitPackets = 4;  // In a row: rubbish packets have the bit at random.
 
 std::int64_t Nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
@@ -49,9 +52,13 @@ Step Handshake::AfterIdentity() const {
 }
 
 Step Handshake::AfterChild() const {
-  if (live_ && config_.motion_plus && !is_board()) return Step::kMotionPlusKey;
+  if (live_ && config_.motion_plus && !is_board() && !motion_plus_given_up()) {
+    return Step::kMotionPlusKey;
+  }
   return config_.camera && camera_format_ != CameraFormat() ? Step::kCameraPower : Step::kMode;
 }
+
+bool Handshake::motion_plus_given_up() const { return motion_plus_undone_ >= kUndoneMost; }
 
 void Handshake::EnterAfterMotionPlus() {
   if (config_.camera && camera_format_ != CameraFormat()) {
@@ -97,11 +104,15 @@ void Handshake::TakeMotionPlusIdentity(const std::vector<std::uint8_t>& bytes) {
     asked_ = false;
     return;
   }
+  if (std::exchange(motion_plus_lost_, false) && found) {
+    const bool soon = now_ns_ - activated_ns_ < Nanoseconds(kUndoneSoonS);
+    motion_plus_undone_ = soon ? motion_plus_undone_ + 1 : 1;
+  }
   if (polling_) {
     polling_ = false;
     Enter(Step::kLive);
     if (found) WantRedo(now_ns_);
-  } else if (found) {
+  } else if (found && !motion_plus_given_up()) {
     Enter(Step::kMotionPlusBlock);
   } else {
     EnterAfterMotionPlus();
@@ -115,6 +126,7 @@ void Handshake::TakeVerification(const std::vector<std::uint8_t>& bytes) {
     return;
   }
   redo_after_ = !motion_plus_active_;
+  if (motion_plus_active_) activated_ns_ = now_ns_;
   EnterAfterMotionPlus();
 }
 
@@ -172,7 +184,8 @@ void Handshake::Watch(std::int64_t now_ns, Outputs& outputs) {
       outputs.push_back({0x1a, 0x00});
       EnterMode();
     }
-  } else if (config_.motion_plus && !motion_plus_active_ && now_ns >= poll_ns_) {
+  } else if (config_.motion_plus && !motion_plus_active_ && !motion_plus_given_up() &&
+             now_ns >= poll_ns_) {
     poll_ns_ = now_ns + Nanoseconds(config_.motion_plus_poll_s);
     polling_ = true;
     Enter(Step::kMotionPlusIdentity);
@@ -192,7 +205,9 @@ void Handshake::TakeStatus(std::int64_t now_ns, const reports::Status& status) {
   const bool found = has_child() || motion_plus_active_;
   if (!status.extension) extension_ready_ = extension_ready_ && !found;
   if (step_ != Step::kLive && !polling_) return;  // Compared when it is live again.
-  if (status.extension != found || !wanted) WantRedo(now_ns);
+  if (status.extension == found && wanted) return;
+  motion_plus_lost_ = motion_plus_lost_ || motion_plus_active_;
+  WantRedo(now_ns);
 }
 
 void Handshake::TakeData(std::int64_t now_ns, const reports::Data& data) {
@@ -220,6 +235,7 @@ void Handshake::WatchExtension(std::int64_t now_ns, const reports::Data& data) {
   }
   if (now_ns - extension_data_ns_ > Nanoseconds(kSenselessS)) {
     extension_data_ns_ = now_ns;
+    motion_plus_lost_ = motion_plus_lost_ || motion_plus_active_;
     WantRedo(now_ns);
   }
 }

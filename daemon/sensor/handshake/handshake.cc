@@ -331,7 +331,12 @@ std::string Handshake::Note(std::int64_t now_ns) const {
   if (is_board()) return board_.problem;
   if (!acceleration_.problem.empty()) return acceleration_.problem;
   if (motion_plus_active_ && !motion_plus_.problem.empty()) return motion_plus_.problem;
-  if (child_ == Extension::kNunchuk) return nunchuk_.problem;
+  if (child_ == Extension::kNunchuk && !nunchuk_.problem.empty()) return nunchuk_.problem;
+  if (motion_plus_given_up()) {
+    return "MotionPlus left off: another program or hid_wiimote keeps switching it off; put "
+           "'options "
+           "hid ignore_special_drivers=1' into /etc/modprobe.d/footing.conf, reboot and reconnect";
+  }
   return "";
 }
 

@@ -120,6 +120,8 @@ class Handshake {
   Step AfterAcceleration() const;
   Step AfterIdentity() const;
   Step AfterChild() const;
+  /// Something else, as the kernel's driver, keeps switching the MotionPlus off.
+  bool motion_plus_given_up() const;
   void EnterAfterMotionPlus();
   std::uint8_t WantedMode() const;
   std::uint8_t CameraFormat() const;
@@ -150,6 +152,9 @@ class Handshake {
   int activations_ = 0;
   reports::Extension child_ = reports::Extension::kNotReady;  // kNotReady: none.
   bool motion_plus_active_ = false;
+  std::int64_t activated_ns_ = 0;
+  bool motion_plus_lost_ = false;  // It was active and is no longer, by nothing we did.
+  int motion_plus_undone_ = 0;     // So often in a row, soon after it was switched on.
   bool extension_ready_ = false;
   stream::Extension published_ = stream::Extension::kUnspecified;
   std::uint64_t extension_epoch_ = 0;

@@ -64,6 +64,44 @@ TEST(ExtensionPort, TheNunchuksCalibrationIsReadBeforeTheMotionPlusHidesIt) {
   EXPECT_EQ(talk.device().active_mode(), 0x05);
 }
 
+/// As hid_wiimote does when it looks for a MotionPlus: the key, which switches an active one off.
+void SwitchOffByAnother(Talk& talk) {
+  device_models::Report key(22, 0);
+  key[0] = 0x16;
+  key[1] = 0x04;
+  key[2] = 0xa4;
+  key[4] = 0xf0;
+  key[5] = 1;
+  key[6] = 0x55;
+  Say(talk, talk.device().HandleOutput(key));
+}
+
+TEST(ExtensionPort, AMotionPlusThatAnotherKeepsSwitchingOffIsLeftAlone) {
+  Talk talk = With(Child::kNone, true);
+  talk.Advance(1);
+  for (int i = 0; i < 60; ++i) {
+    if (talk.device().active()) SwitchOffByAnother(talk);
+    talk.Advance(0.5);
+  }
+  EXPECT_FALSE(talk.device().active());
+  EXPECT_NE(talk.handshake().Note(talk.now_ns()).find("ignore_special_drivers"), std::string::npos);
+  const int activations = talk.device().activations();
+  EXPECT_LE(activations, 6);
+  EXPECT_GE(CoreReports(talk, 20), 3990);  // 200 a second here.
+  EXPECT_EQ(talk.device().activations(), activations);
+}
+
+TEST(ExtensionPort, AMotionPlusThatIsSwitchedOffNowAndThenComesBack) {
+  Talk talk = With(Child::kNone, true);
+  talk.Advance(1);
+  for (int i = 0; i < 20; ++i) {
+    SwitchOffByAnother(talk);
+    talk.Advance(15);
+    ASSERT_TRUE(talk.device().active()) << i;
+  }
+  EXPECT_EQ(talk.handshake().Note(talk.now_ns()), "");
+}
+
 TEST(ExtensionPort, WithoutTheConfigAMotionPlusIsLeftAlone) {
   HandshakeConfig config;
   config.motion_plus = false;
