@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/transition.h"
 #include "daemon/simulation/terrain/ground.h"
 
 namespace footing::gait {
@@ -77,8 +78,10 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
   const double learned_m =
       jumping ? memory.integrators.jump_m
               : memory.integrators.run_m + gains.speed_gain_s * memory.desired_speed_mps;
-  double ahead_m =
-      v_H.x() * memory.support_time_s / 2 + gains.velocity_gain_s * faster_mps + learned_m;
+  const bool brakes = LeavesRun(context.goal, memory) && faster_mps > 0;
+  const double gain_s =
+      brakes ? context.gains.transition.leaving_run_gain_s : gains.velocity_gain_s;
+  double ahead_m = v_H.x() * memory.support_time_s / 2 + gain_s * faster_mps + learned_m;
 
   const bool landing = memory.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
