@@ -78,16 +78,16 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
   const double learned_m =
       jumping ? memory.integrators.jump_m
               : memory.integrators.run_m + gains.speed_gain_s * memory.desired_speed_mps;
+  const double velocity_gain_s = jumping ? gains.jump_velocity_gain_s : gains.run_velocity_gain_s;
   const bool brakes = LeavesRun(context.goal, memory) && faster_mps > 0;
-  const double gain_s =
-      brakes ? context.gains.transition.leaving_run_gain_s : gains.velocity_gain_s;
+  const double gain_s = brakes ? context.gains.transition.leaving_run_gain_s : velocity_gain_s;
   double ahead_m = v_H.x() * memory.support_time_s / 2 + gain_s * faster_mps + learned_m;
 
   const bool landing = memory.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
   const bool preparing = memory.preparing_jump && !jumping;
   const double side_gain_s =
-      preparing ? context.gains.transition.preparation_gain_s : gains.velocity_gain_s;
+      preparing ? context.gains.transition.preparation_gain_s : velocity_gain_s;
   const double spacing_m = jumping     ? context.biped.hip_half_spacing_m
                            : preparing ? 0
                                        : gains.run_foot_spacing_m;
