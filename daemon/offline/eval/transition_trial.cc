@@ -55,12 +55,15 @@ biped::GaitCommand DrawCommand(Gait gait, Random& random) {
   return command;
 }
 
-Result<TransitionResult> RunTransition(Gait from, Gait to, std::uint64_t seed) {
+Result<TransitionResult> RunTransition(Gait from, Gait to, std::uint64_t seed,
+                                       const TransitionSpeeds& speeds) {
   Result<engine::GaitEngine> engine = NewEngine();
   if (!engine) return engine.error();
   Random random(seed);
-  const biped::GaitCommand before = DrawCommand(from, random);
-  const biped::GaitCommand after = DrawCommand(to, random);
+  biped::GaitCommand before = DrawCommand(from, random);
+  biped::GaitCommand after = DrawCommand(to, random);
+  before.speed_mps = speeds.from_mps.value_or(before.speed_mps);
+  after.speed_mps = speeds.to_mps.value_or(after.speed_mps);
   const double change_s = random.Uniform(7, 8.5);
   const double kick_rad = random.Uniform(-kPi, kPi);
   const double step_s = engine::EngineConfig{}.step_s;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "daemon/offline/eval/gait_trial.h"
 
 namespace footing::eval {
@@ -14,9 +16,16 @@ struct TransitionResult {
 /// 1.5 to 4.5, jump 0 to 1, jump height 0.1 to 0.35 m.
 biped::GaitCommand DrawCommand(stream::Gait gait, Random& random);
 
+/// Speeds given in place of the drawn ones, m/s.
+struct TransitionSpeeds {
+  std::optional<double> from_mps;
+  std::optional<double> to_mps;
+};
+
 /// `from` for 7 to 8.5 s with a kick of 2 N s, then `to`. It succeeded when the new gait's states
 /// are reached and then 5 s go by upright in it, at whose end the mean speed of the last second is
 /// within 0.1 m/s of the command.
-Result<TransitionResult> RunTransition(stream::Gait from, stream::Gait to, std::uint64_t seed);
+Result<TransitionResult> RunTransition(stream::Gait from, stream::Gait to, std::uint64_t seed,
+                                       const TransitionSpeeds& speeds = {});
 
 }  // namespace footing::eval

@@ -17,6 +17,7 @@ struct Options {
   std::string to;
   int trials = 10;
   std::string seed = "1";
+  TransitionSpeeds speeds;
 };
 
 /// The value below which this part of the sorted values lies; 0 of none.
@@ -38,7 +39,8 @@ int Run(const Options& options, bool json) {
   int succeeded = 0, falls = 0;
   std::vector<double> latencies_s;
   for (int i = 0; i < options.trials; ++i) {
-    const Result<TransitionResult> trial = RunTransition(from, to, TrialSeed(*seed, i));
+    const Result<TransitionResult> trial =
+        RunTransition(from, to, TrialSeed(*seed, i), options.speeds);
     if (!trial) return cli::Report(trial.error());
     falls += trial.value().fell ? 1 : 0;
     if (!trial.value().succeeded) continue;
@@ -73,6 +75,10 @@ void AddTransitionsCommand(CLI::App& app, Shared& shared) {
   command->add_option("--to", options->to, "step, walk, run or jump")->required();
   command->add_option("--trials", options->trials, "How many")->check(CLI::Range(1, 100000));
   command->add_option("--seed", options->seed, "A number, or random");
+  command->add_option("--from-speed", options->speeds.from_mps, "m/s; drawn by default")
+      ->check(CLI::Range(0.0, 6.0));
+  command->add_option("--to-speed", options->speeds.to_mps, "m/s; drawn by default")
+      ->check(CLI::Range(0.0, 6.0));
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/transition.h"
 #include "daemon/simulation/terrain/ground.h"
 
 namespace footing::gait {
@@ -68,6 +69,14 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   return foothold;
 }
 
+/// The slow set's and the fast set's, interpolated in between.
+double RunVelocityGain(const HoppingGains& gains, double desired_mps) {
+  const double share =
+      (desired_mps - gains.slow_run_mps) / (gains.fast_run_mps - gains.slow_run_mps);
+  return std::lerp(gains.run_velocity_gain_s, gains.fast_run_velocity_gain_s,
+                   std::clamp(share, 0.0, 1.0));
+}
+
 Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int leg) {
   const HoppingGains& gains = context.gains.hopping;
   const bool jumping = memory.gait == stream::Gait::kJump;
@@ -77,14 +86,17 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
   const double learned_m =
       jumping ? memory.integrators.jump_m
               : memory.integrators.run_m + gains.speed_gain_s * memory.desired_speed_mps;
-  double ahead_m =
-      v_H.x() * memory.support_time_s / 2 + gains.velocity_gain_s * faster_mps + learned_m;
+  const double velocity_gain_s =
+      jumping ? gains.jump_velocity_gain_s : RunVelocityGain(gains, memory.desired_speed_mps);
+  const bool brakes = LeavesRun(context.goal, memory) && faster_mps > 0;
+  const double gain_s = brakes ? context.gains.transition.leaving_run_gain_s : velocity_gain_s;
+  double ahead_m = v_H.x() * memory.support_time_s / 2 + gain_s * faster_mps + learned_m;
 
   const bool landing = memory.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
   const bool preparing = memory.preparing_jump && !jumping;
   const double side_gain_s =
-      preparing ? context.gains.transition.preparation_gain_s : gains.velocity_gain_s;
+      preparing ? context.gains.transition.preparation_gain_s : velocity_gain_s;
   const double spacing_m = jumping     ? context.biped.hip_half_spacing_m
                            : preparing ? 0
                                        : gains.run_foot_spacing_m;

@@ -68,10 +68,14 @@ struct HoppingGains {
   double run_flight_length_m = 0.82;
   double jump_flight_length_m = 0.62;
   double idle_length_m = 0.72;
-  double lengthening_time_s = 0.12;  ///< Jump: from the flight length to the touchdown length.
-  double run_lift_off_mps = 1.3;     ///< Vertical.
-  double velocity_gain_s = 0.06;     ///< k_R of equation (2).
-  double faster_limit_mps = 1.5;     ///< v - v_d is clamped to [-slower, faster] fore and aft.
+  double lengthening_time_s = 0.12;   ///< Jump: from the flight length to the touchdown length.
+  double run_lift_off_mps = 1.3;      ///< Vertical.
+  double run_velocity_gain_s = 0.09;  ///< -k_R of equation (2).
+  double fast_run_velocity_gain_s = 0.06;
+  double slow_run_mps = 3.5;           ///< Up to this the first, ...
+  double fast_run_mps = 4.75;          ///< ... from this the second.
+  double jump_velocity_gain_s = 0.06;  ///< With running's, jumps of 0.5 m in place fall.
+  double faster_limit_mps = 1.5;       ///< v - v_d is clamped to [-slower, faster] fore and aft.
   double slower_limit_mps = 1.2;
   double speed_gain_s = -0.012;  ///< Foothold by desired speed: the slow and the fast set in one.
   double run_foot_spacing_m = 0.03;  ///< Half.
@@ -81,6 +85,7 @@ struct HoppingGains {
   double run_integral_limit_m = 0.08;
   double jump_integral_limit_m = 0.12;
   double first_support_time_s = 0.2;  ///< T of equation (2) before one was measured.
+  double acceleration_mps2 = 2.5;
   double braking_mps2 = 4;
 };
 
@@ -89,9 +94,12 @@ struct TransitionGains {
   double thrust_from_swing = 0.55;  ///< Of the swing: from here Fall may become a thrust.
   double thrust_to_run_mps = 1.17;  ///< Vertical lift-off speed out of walking.
   double thrust_to_jump_mps = 1.0;
-  double run_to_walk_mps = 1.4;          ///< Run slows to this, ...
-  double run_to_walk_margin_mps = 0.35;  ///< ... and lands into walking up to this above it.
-  double landing_reach_m = 0.08;         ///< The last step's foot is put this much further ahead.
+  double run_to_walk_mps = 1.4;           ///< Run slows to this, ...
+  double run_to_walk_margin_mps = 0.35;   ///< ... and lands into walking up to this above it.
+  double leaving_run_mps2 = 8;            ///< Braking of v_d in a run that is to end.
+  double leaving_run_gain_s = 0.12;       ///< k_R then, while faster than v_d.
+  double leaving_run_lift_off_mps = 1.0;  ///< Lower hops then: sooner down, less to absorb.
+  double landing_reach_m = 0.08;          ///< The last step's foot is put this much further ahead.
   double run_landing_stiffness_n_per_m = 1800;
   double run_landing_damping_ns_per_m = 420;
   double run_to_jump_mps = 3.2;      ///< Up to this the preparatory step may be taken.

@@ -27,6 +27,8 @@ constexpr double kStalledAfterS = 0.10;
 constexpr double kStalledRateMps = 0.25;
 constexpr double kStalledGrowthMps = 0.8;
 constexpr double kLowestJumpM = 0.02;
+/// A jump may still be prepared this long after the apex: then its foothold can be reached, s.
+constexpr double kPreparesUntilS = 0.05;
 
 /// The stance leg, or both as one.
 struct VirtualLeg {
@@ -46,6 +48,7 @@ VirtualLeg StanceLeg(const Context& context, const GaitMemory& memory) {
 }
 
 double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
+  if (LeavesRun(context.goal, memory)) return context.gains.transition.leaving_run_lift_off_mps;
   if (memory.gait != Gait::kJump) return context.gains.hopping.run_lift_off_mps;
   return std::sqrt(2 * kGravityMps2 * std::max(kLowestJumpM, context.goal.height_m));
 }
@@ -143,6 +146,9 @@ Targets AdvanceRunning(const Context& context, GaitMemory& memory) {
   const bool flying = memory.running == RunningPhase::kUpwardFlight ||
                       memory.running == RunningPhase::kDownwardFlight;
   if (flying) {
+    const bool early =
+        memory.running == RunningPhase::kUpwardFlight || context.TimeIn(memory) < kPreparesUntilS;
+    memory.preparing_jump = memory.preparing_jump || (early && MayPrepareJump(context, memory));
     memory.foothold_W_m = context.body.p_WC + HoppingFoothold(context, memory, memory.support_leg);
   }
   return RunningTargets(context, memory);

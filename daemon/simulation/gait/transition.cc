@@ -43,6 +43,10 @@ biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& comm
   return goal;
 }
 
+bool LeavesRun(const biped::GaitCommand& goal, const GaitMemory& memory) {
+  return memory.gait == Gait::kRun && goal.gait != Gait::kRun && !memory.preparing_jump;
+}
+
 void SlewSpeed(const Context& context, GaitMemory& memory) {
   const TransitionGains& limits = context.gains.transition;
   const bool to_ground = !Flies(context.goal.gait);
@@ -62,9 +66,13 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
     const double reached_mps = std::max(target_mps, SpeedAlongHeading(context, memory));
     memory.desired_speed_mps = std::min(memory.desired_speed_mps, reached_mps);
   }
-  const double faster = context.gains.walking.acceleration_mps2 * context.step_s;
+  const double faster =
+      (flying ? context.gains.hopping.acceleration_mps2 : context.gains.walking.acceleration_mps2) *
+      context.step_s;
   const bool brakes = flying && memory.desired_speed_mps > 0;
-  const double slower = brakes ? context.gains.hopping.braking_mps2 * context.step_s : faster;
+  const double braking_mps2 = LeavesRun(context.goal, memory) ? limits.leaving_run_mps2
+                                                              : context.gains.hopping.braking_mps2;
+  const double slower = brakes ? braking_mps2 * context.step_s : faster;
   memory.desired_speed_mps += std::clamp(target_mps - memory.desired_speed_mps, -slower, faster);
 }
 
@@ -102,8 +110,7 @@ void LiftOff(const Context& context, GaitMemory& memory) {
     memory.gait = Gait::kJump;
     memory.preparing_jump = false;
   } else {
-    memory.preparing_jump =
-        jump && SpeedAlongHeading(context, memory) < context.gains.transition.run_to_jump_mps;
+    memory.preparing_jump = MayPrepareJump(context, memory);
     if (!was_jumping) memory.gait = Gait::kRun;
   }
   if (!was_jumping) memory.support_leg = 1 - memory.support_leg;
@@ -111,6 +118,11 @@ void LiftOff(const Context& context, GaitMemory& memory) {
   memory.after_jump = false;
   memory.running = RunningPhase::kUpwardFlight;
   memory.phase_start_s = context.body.time_s;
+}
+
+bool MayPrepareJump(const Context& context, const GaitMemory& memory) {
+  return context.goal.gait == Gait::kJump && memory.gait != Gait::kJump &&
+         SpeedAlongHeading(context, memory) < context.gains.transition.run_to_jump_mps;
 }
 
 bool MayLand(const Context& context, const GaitMemory& memory) {

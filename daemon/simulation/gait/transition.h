@@ -22,6 +22,9 @@ bool IsDirect(stream::Gait from, stream::Gait to);
 biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,
                         const TransitionGains& gains);
 
+/// True in a run that is to end, before a jump's preparatory step: it brakes harder, in lower hops.
+bool LeavesRun(const biped::GaitCommand& goal, const GaitMemory& memory);
+
 /// Moves v_d towards the goal's speed; a gait that is to be left for a slower one brakes first.
 void SlewSpeed(const Context& context, GaitMemory& memory);
 
@@ -29,6 +32,8 @@ void SlewSpeed(const Context& context, GaitMemory& memory);
 bool BeginThrust(const Context& context, GaitMemory& memory);
 /// At lift-off: to the flight of the gait that follows.
 void LiftOff(const Context& context, GaitMemory& memory);
+/// Asked in flight: whether running's next step prepares a jump.
+bool MayPrepareJump(const Context& context, const GaitMemory& memory);
 /// At the apex, and again at touchdown: whether the Compression to come is to absorb, for walking
 /// or stepping to follow. Asked at the apex first, so that the foot is placed for it.
 bool MayLand(const Context& context, const GaitMemory& memory);

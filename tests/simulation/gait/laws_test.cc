@@ -72,6 +72,7 @@ TEST(Equation1, AStepThatWouldCrossTooFarHurries) {
 
 TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {
   Scene scene;
+  scene.goal.gait = stream::Gait::kRun;
   scene.memory.gait = stream::Gait::kRun;
   scene.memory.support_time_s = 0.2;
   scene.memory.desired_speed_mps = 3;
@@ -80,7 +81,24 @@ TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {
   EXPECT_NEAR(HoppingFoothold(scene.context(), scene.memory, 0).x(), neutral_m, 1e-12);
   scene.body.v_WC.x() = 3.5;  // Faster: the foot goes further forward, by T / 2 + |k_R|.
   EXPECT_NEAR(HoppingFoothold(scene.context(), scene.memory, 0).x(),
-              neutral_m + 0.5 * (0.1 + scene.gains.hopping.velocity_gain_s), 1e-12);
+              neutral_m + 0.5 * (0.1 + scene.gains.hopping.run_velocity_gain_s), 1e-12);
+}
+
+TEST(Equation2, BrakesHarderInARunThatIsToEnd) {
+  Scene scene;
+  scene.memory.gait = stream::Gait::kRun;
+  scene.memory.desired_speed_mps = 2;
+  scene.body.v_WC = {3, 0, 1};
+  scene.goal.gait = stream::Gait::kRun;
+  const double running_m = HoppingFoothold(scene.context(), scene.memory, 0).x();
+  scene.goal.gait = stream::Gait::kWalk;
+  EXPECT_NEAR(HoppingFoothold(scene.context(), scene.memory, 0).x() - running_m,
+              scene.gains.transition.leaving_run_gain_s - scene.gains.hopping.run_velocity_gain_s,
+              1e-12);
+  scene.body.v_WC.x() = 1.5;  // Slower than wanted: nothing to brake.
+  const double slow_m = HoppingFoothold(scene.context(), scene.memory, 0).x();
+  scene.goal.gait = stream::Gait::kRun;
+  EXPECT_EQ(HoppingFoothold(scene.context(), scene.memory, 0).x(), slow_m);
 }
 
 TEST(Equation2, TurnsWithTheHeading) {
