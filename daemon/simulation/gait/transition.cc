@@ -31,6 +31,18 @@ void MeasureSupport(double duration_s, GaitMemory& memory) {
 
 bool IsDirect(Gait from, Gait to) { return !(from == Gait::kJump && to == Gait::kRun); }
 
+std::string DrawGaitChanges() {
+  constexpr Gait kGaits[] = {Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
+  std::string text = "stateDiagram-v2\n";
+  for (const Gait from : kGaits) {
+    for (const Gait to : kGaits) {
+      if (from == to || !IsDirect(from, to)) continue;
+      text += std::string("  ") + stream::Name(from) + " --> " + stream::Name(to) + "\n";
+    }
+  }
+  return text;
+}
+
 biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,
                         const TransitionGains& gains) {
   biped::GaitCommand goal = command;
