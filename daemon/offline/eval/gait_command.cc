@@ -12,6 +12,7 @@
 #include "common/units/units.h"
 #include "daemon/offline/eval/gait_statistics.h"
 #include "daemon/offline/eval/gait_trial.h"
+#include "daemon/offline/eval/ground_course.h"
 #include "daemon/offline/eval/pit_course.h"
 #include "daemon/offline/eval/step_cost.h"
 #include "daemon/simulation/gait/limits.h"
@@ -30,13 +31,15 @@ struct Options {
   double push_ns = 2;
   std::optional<double> push_direction_deg;
   double push_phase = -1;
+  double slope_deg = 0;
+  double step_m = 0;
   std::optional<double> pit_m;
   double jump_lead_s = 0.8;
 };
 
 struct Trials {
   int falls = 0;
-  int pits = 0, crossed = 0;
+  int pits = 0, steps = 0, crossed = 0;
   double survived_s_min = 0;
   double speed_sum_mps = 0;
   double apex_sum_m = 0;
@@ -67,12 +70,23 @@ double PushTime(const Options& options, Random& random) {
   return std::min(0.3 * options.seconds, 3 + options.speed_mps) + phase * kCycleS;
 }
 
+std::optional<GroundCourse> GroundCourseOf(const Options& options, double length_m,
+                                           Random& random) {
+  if (options.step_m != 0) return MakeStepCourse(options.step_m, length_m, random);
+  if (options.slope_deg == 0) return std::nullopt;
+  return MakeSlopeCourse(options.slope_deg, options.speed_mps, length_m, random);
+}
+
 Result<void> RunTrial(const Options& options, std::uint64_t seed, Trials& trials) {
   Random random(seed);
   const double length_m = options.speed_mps * options.seconds;
   const PitCourse course =
       options.pit_m ? MakePitCourse(*options.pit_m, length_m, random) : PitCourse{};
-  Result<engine::GaitEngine> engine = options.pit_m ? NewEngineOn(course.track) : NewEngine();
+  const std::optional<GroundCourse> ground =
+      options.pit_m ? std::nullopt : GroundCourseOf(options, length_m, random);
+  Result<engine::GaitEngine> engine = options.pit_m ? NewEngineOn(course.track)
+                                      : ground      ? NewEngineOn(ground->track)
+                                                    : NewEngine();
   if (!engine) return engine.error();
   const double push_s = PushTime(options, random);
   const double drawn_deg = random.Uniform(0, 360);
@@ -84,24 +98,31 @@ Result<void> RunTrial(const Options& options, std::uint64_t seed, Trials& trials
   Walker walker(*engine);
   walker.Command(command);
   PitPilot pilot(course, command, command.height_m, options.jump_lead_s);
+  std::optional<GroundPilot> ground_pilot;
+  if (ground) ground_pilot.emplace(*ground, command, random);
   GaitStatistics statistics(command.speed_mps);
   double survived_s = 0;
   bool pushed = false;
   while (survived_s < options.seconds) {
-    if (!pushed && survived_s >= push_s) {
+    if (!pushed && (ground_pilot ? ground_pilot->kick_due() : survived_s >= push_s)) {
       walker.Push(options.push_ns, direction_rad);
       pushed = true;
     }
     const engine::EngineOutput& output = walker.Advance();
     survived_s = output.time_s;
     if (options.pit_m) walker.Command(pilot.Command(output));
+    if (ground_pilot) walker.Command(ground_pilot->Command(output));
     if (walker.fell() || output.step >= steps) break;
-    if (survived_s > 0.4 * options.seconds) statistics.Add(output, step_s);
+    const bool settled =
+        survived_s > 0.4 * options.seconds && (!ground_pilot || ground_pilot->settled());
+    if (settled) statistics.Add(output, step_s);
   }
   const engine::EngineOutput& last = engine->Output();
   trials.falls += walker.fell() ? 1 : 0;
   trials.pits += pilot.met(walker.fell());
   trials.crossed += pilot.crossed();
+  if (ground_pilot) trials.steps += ground_pilot->met(walker.fell());
+  if (ground_pilot) trials.crossed += ground_pilot->crossed();
   trials.survived_s_min = std::min(trials.survived_s_min, survived_s);
   trials.simulated_s += survived_s;
   trials.speed_sum_mps += statistics.speed_mean_mps();
@@ -154,6 +175,12 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
     report["pits"] = trials.pits;
     report["crossed"] = trials.crossed;
   }
+  if (options.slope_deg != 0) report["slope_deg"] = options.slope_deg;
+  if (options.step_m != 0) {
+    report["step_m"] = options.step_m;
+    report["steps"] = trials.steps;
+    report["crossed"] = trials.crossed;
+  }
   return report;
 }
 
@@ -163,6 +190,13 @@ int Run(const Options& options, bool json) {
   }
   if (options.trials < 1 || !(options.seconds > 0)) {
     return cli::Report(UsageError("--trials and --seconds must be positive"));
+  }
+  if (options.pit_m.has_value() + (options.slope_deg != 0) + (options.step_m != 0) > 1) {
+    return cli::Report(UsageError("--slope, --step and --pit: one of them at a time"));
+  }
+  if (options.step_m != 0 && CommandOf(options).speed_mps == 0) {
+    return cli::Report(
+        UsageError("--step: none is met in place; give --speed and a gait that moves"));
   }
   const Result<std::uint64_t> seed = ParseSeed(options.seed);
   if (!seed) return cli::Report(seed.error());
@@ -204,6 +238,12 @@ void AddGaitCommand(CLI::App& app, Shared& shared) {
       ->add_option("--push-phase", options->push_phase,
                    "Moment of the kick, 0 to 1 of a cycle; drawn by default")
       ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--slope", options->slope_deg, "Of the ground, degrees; uphill positive")
+      ->check(CLI::Range(-20.0, 20.0));
+  command
+      ->add_option("--step", options->step_m,
+                   "Height of steps of the ground, up and down, m; negative: the first is down")
+      ->check(CLI::Range(-0.3, 0.3));
   command->add_option("--pit", options->pit_m, "Width of pits across the track, m")
       ->check(CLI::Range(0.05, 5.0));
   command
