@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kHalfThicknessM = 1.0;
 /// Ground before the start, where a character stands with its feet on the line.
-constexpr double kBeforeStartM = 2.0;
+constexpr double kBeforeStartM = 3.0;
 
 /// How far back the near edge must reach for its outer corner to meet the previous box's: half the
 /// width times the sine of the turn, beyond a right angle half the width.
