@@ -56,6 +56,11 @@ Result<engine::EngineTexts> ReadTexts(const Config& config) {
       is_path ? config::ReadTextFile(config.track)
               : config::ReadDataFile("tracks/" + config.track + ".json", config.data_folder);
   if (!track) return track.error();
+  for (const char* name : engine::kGainFiles) {
+    const auto gains = config::ReadDataFile(name, config.data_folder);
+    if (!gains) return gains.error();
+    texts.gains.push_back({name, *gains});
+  }
   texts.biped = *biped;
   texts.wrist_mapping = *mapping;
   texts.track = *track;
