@@ -5,24 +5,35 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/result/result.h"
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/command.h"
+#include "daemon/simulation/gait/gain_table.h"
 #include "daemon/simulation/mapping/wrist_features.h"
 
 /// The gait engine: received features in, a walking biped out, one fixed step at a time.
 namespace footing::engine {
 
 /// Texts of the data files; the constants name them under daemon/simulation/data.
+struct GainText {
+  std::string origin;  ///< Names the file in errors.
+  std::string text;
+};
 struct EngineTexts {
   std::string biped;          ///< kBipedFile
   std::string track;          ///< "tracks/NAME.json"
   std::string wrist_mapping;  ///< kWristMappingFile
+  /// kGainFiles, and more: a later one replaces what an earlier one had for its gaits. None: the
+  /// defaults of gains.h.
+  std::vector<GainText> gains;
 };
 inline constexpr const char* kBipedFile = "biped.json";
 inline constexpr const char* kStraightTrackFile = "tracks/straight.json";
 inline constexpr const char* kWristMappingFile = "wrist_mapping.json";
+inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gaits/run.csv",
+                                       "gaits/jump.csv"};
 
 struct EngineConfig {
   double step_s = 0.001;            ///< Of physics and control, (0, 0.002].
@@ -121,6 +132,9 @@ class GaitEngine {
 
   const stream::Skeleton& skeleton() const;
   const stream::Track& track() const;
+
+  /// Other gains from the next step on; not part of the state. Allocates.
+  void UseGains(const gait::GainTable& table);
 
   /// Everything that changes with time, as a value (state.h); Restore brings the engine back to
   /// that step.

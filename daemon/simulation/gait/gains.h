@@ -1,8 +1,9 @@
 #pragma once
 
-/// Every number of the controllers, with its unit in its name. One set serves a gait's whole range
-/// of speeds; where the paper interpolates between a slow and a fast set, equation (2) here carries
-/// a term in the desired speed. How they were found and what they reach: docs/gait.md.
+/// Every number of the controllers, with its unit in its name, and its default. What differs from
+/// gait to gait, or between slow and fast, is in the tables of daemon/simulation/data/gaits
+/// (gain_table.h); a new number here needs a line in gain_fields.cc. How they were found and what
+/// they reach: docs/gait.md and docs/tuning.md.
 namespace footing::gait {
 
 /// PD servos of the joints, section 5: torque = kp (desired - actual) - kd rate.
@@ -68,12 +69,9 @@ struct HoppingGains {
   double run_flight_length_m = 0.82;
   double jump_flight_length_m = 0.62;
   double idle_length_m = 0.72;
-  double lengthening_time_s = 0.12;   ///< Jump: from the flight length to the touchdown length.
-  double run_lift_off_mps = 1.3;      ///< Vertical.
-  double run_velocity_gain_s = 0.09;  ///< -k_R of equation (2).
-  double fast_run_velocity_gain_s = 0.06;
-  double slow_run_mps = 3.5;           ///< Up to this the first, ...
-  double fast_run_mps = 4.75;          ///< ... from this the second.
+  double lengthening_time_s = 0.12;    ///< Jump: from the flight length to the touchdown length.
+  double run_lift_off_mps = 1.3;       ///< Vertical.
+  double run_velocity_gain_s = 0.09;   ///< -k_R of equation (2).
   double jump_velocity_gain_s = 0.06;  ///< With running's, jumps of 0.5 m in place fall.
   double faster_limit_mps = 1.5;       ///< v - v_d is clamped to [-slower, faster] fore and aft.
   double slower_limit_mps = 1.2;

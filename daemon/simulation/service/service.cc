@@ -52,6 +52,11 @@ Result<engine::EngineTexts> ReadTexts(const Config& config) {
   if (!mapping) return mapping.error();
   const auto track = config::ReadNamedOrPath(config.track, "tracks", config.data_folder);
   if (!track) return track.error();
+  for (const char* name : engine::kGainFiles) {
+    const auto gains = config::ReadDataFile(name, config.data_folder);
+    if (!gains) return gains.error();
+    texts.gains.push_back({name, *gains});
+  }
   texts.biped = *biped;
   texts.wrist_mapping = *mapping;
   texts.track = *track;
