@@ -18,9 +18,9 @@ struct PitCourse {
   std::vector<Pit> pits;
 };
 
-/// Pits of one width after run-ups of 16 to 20 m, which is what a run of 3 m/s needs to be one again
-/// after a jump, for as long as `length_m`; then level ground. Which step comes before an edge is
-/// thus random.
+/// Pits of one width after run-ups of 16 to 20 m, which is what a run of 3 m/s needs to be one
+/// again after a jump, for as long as `length_m`; then level ground. Which step comes before an
+/// edge is thus random.
 PitCourse MakePitCourse(double width_m, double length_m, Random& random);
 
 /// Commands a gait along a course. A run is told to jump when the edge is `lead_s` away, and to run
