@@ -32,6 +32,22 @@ struct LastStep {
   int steps_in_gait = 0;
 };
 
+/// A step of the ground that feet in flight keep clear of.
+struct EdgeMemory {
+  bool there = false;
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where the character's path crosses it.
+  double height_m = 0;                              ///< Of the higher side.
+};
+
+/// What running and jumping plan by the ground they see (ground_plan.h).
+struct GroundMemory {
+  double climb_mps = 0;      ///< Of this lift-off, beyond the gait's own.
+  double slope = 0;          ///< Rise over run along the heading, under this support's foot.
+  double shift_m = 0;        ///< Of the foothold in flight, off an edge, along the heading.
+  double towards = 0;        ///< Side of the edge that this flight has decided for: shift_m's sign.
+  EdgeMemory behind, ahead;  ///< Of the foothold.
+};
+
 /// All that the controllers remember between steps: a plain value.
 struct GaitMemory {
   stream::Gait gait = stream::Gait::kStep;
@@ -60,6 +76,7 @@ struct GaitMemory {
   double thrust_length_m = 0.95;
   int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
 
+  GroundMemory ground;
   SpeedIntegrators integrators;
   LastStep last_step;
   std::uint64_t steps = 0;
