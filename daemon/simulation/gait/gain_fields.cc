@@ -99,6 +99,16 @@ constexpr std::array kFields{
     GAIN(transition, jump_landing_stiffness_n_per_m, "N/m", 100, 5000),
     GAIN(transition, jump_landing_damping_ns_per_m, "N s/m", 0, 2000),
 
+    GAIN(stepping, low_margin_m, "m", 0, 0.5),
+    GAIN(stepping, high_margin_m, "m", 0, 0.5),
+    GAIN(stepping, clearance_m, "m", 0, 0.5),
+    GAIN(stepping, shortest_leg_m, "m", 0.3, 1.5),
+    GAIN(stepping, shift_limit_m, "m", 0, 1),
+    GAIN(stepping, shift_limit_mps, "m/s", 0, 2),
+    GAIN(stepping, slowest_mps, "m/s", 0, 5),
+    GAIN(stepping, slower_limit_mps, "m/s", 0, 2),
+    GAIN(stepping, faster_limit_mps, "m/s", 0, 5),
+
     GAIN(pit, limits.edge_margin_m, "m", 0, 0.5),
     GAIN(pit, limits.landing_margin_m, "m", 0, 0.5),
     GAIN(pit, limits.aim_margin_m, "m", 0, 0.5),

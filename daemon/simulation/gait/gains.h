@@ -89,6 +89,19 @@ struct HoppingGains {
   double braking_mps2 = 4;
 };
 
+/// Running and jumping over steps of the ground that are seen.
+struct SteppingGains {
+  double low_margin_m = 0.06;   ///< Foot's centre from an edge, below it.
+  double high_margin_m = 0.04;  ///< Above it.
+  double clearance_m = 0.02;    ///< Of a foot in flight.
+  double shortest_leg_m = 0.56;
+  double shift_limit_m = 0.12;    ///< Of a foothold.
+  double shift_limit_mps = 0.25;  ///< Of the lift-off speed, for the same end.
+  double slowest_mps = 0.8;       ///< Below, flight time moves no foothold.
+  double slower_limit_mps = 0.5;  ///< Of the lift-off speed, going down.
+  double faster_limit_mps = 1.2;  ///< Going up.
+};
+
 /// Figure 9: how energy is added and taken out between the gaits.
 struct TransitionGains {
   double thrust_from_swing = 0.55;  ///< Of the swing: from here Fall may become a thrust.
@@ -124,6 +137,7 @@ struct Gains {
   AttitudeGains attitude;
   WalkingGains walking;
   HoppingGains hopping;
+  SteppingGains stepping;
   TransitionGains transition;
   PitGains pit;
 };

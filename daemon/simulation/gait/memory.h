@@ -57,6 +57,22 @@ struct PitMemory {
   double loss_share = 0.25;  ///< Of the spring's energy.
 };
 
+/// A step of the ground that feet in flight keep clear of.
+struct EdgeMemory {
+  bool there = false;
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where the character's path crosses it.
+  double height_m = 0;                              ///< Of the higher side.
+};
+
+/// What running and jumping plan by the ground they see (ground_plan.h).
+struct GroundMemory {
+  double climb_mps = 0;      ///< Of this lift-off, beyond the gait's own.
+  double slope = 0;          ///< Rise over run along the heading, under this support's foot.
+  double shift_m = 0;        ///< Of the foothold in flight, off an edge, along the heading.
+  double towards = 0;        ///< Side of the edge that this flight has decided for: shift_m's sign.
+  EdgeMemory behind, ahead;  ///< Of the foothold.
+};
+
 /// All that the controllers remember between steps: a plain value.
 struct GaitMemory {
   stream::Gait gait = stream::Gait::kStep;
@@ -86,6 +102,7 @@ struct GaitMemory {
   int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
 
   PitMemory pit;
+  GroundMemory ground;
   SpeedIntegrators integrators;
   LastStep last_step;
   std::uint64_t steps = 0;

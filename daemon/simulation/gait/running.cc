@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/ground_plan.h"
 #include "daemon/simulation/gait/pit_sight.h"
 #include "daemon/simulation/gait/touchdown.h"
 #include "daemon/simulation/gait/transition.h"
@@ -31,7 +32,7 @@ constexpr double kLowestJumpM = 0.02;
 /// A jump may still be prepared this long after the apex: then its foothold can be reached, s.
 constexpr double kPreparesUntilS = 0.05;
 
-/// The stance leg, or both as one.
+/// The stance leg, or both as one, relative to the slope.
 struct VirtualLeg {
   double length_m, rate_mps;
   bool touching;
@@ -40,18 +41,24 @@ struct VirtualLeg {
 VirtualLeg StanceLeg(const Context& context, const GaitMemory& memory) {
   const auto& legs = context.body.legs;
   if (memory.gait == Gait::kJump) {
-    return {(legs[0].length_m + legs[1].length_m) / 2,
-            (legs[0].length_rate_mps + legs[1].length_rate_mps) / 2,
+    const SlopeLeg left = RelativeToSlope(context, memory, 0);
+    const SlopeLeg right = RelativeToSlope(context, memory, 1);
+    return {(left.length_m + right.length_m) / 2, (left.rate_mps + right.rate_mps) / 2,
             legs[0].touching || legs[1].touching};
   }
-  const biped::LegState& leg = legs[memory.support_leg];
-  return {leg.length_m, leg.length_rate_mps, leg.touching};
+  const SlopeLeg leg = RelativeToSlope(context, memory, memory.support_leg);
+  return {leg.length_m, leg.rate_mps, legs[memory.support_leg].touching};
 }
 
-double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
+/// The gait's own; what the ground asks for comes on top.
+double LevelLiftOffSpeed(const Context& context, const GaitMemory& memory) {
   if (LeavesRun(context.goal, memory)) return context.gains.transition.leaving_run_lift_off_mps;
   if (memory.gait != Gait::kJump) return context.gains.hopping.run_lift_off_mps;
   return std::sqrt(2 * kGravityMps2 * std::max(kLowestJumpM, context.goal.height_m));
+}
+
+double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
+  return LevelLiftOffSpeed(context, memory) + memory.ground.climb_mps;
 }
 
 /// The length the stance leg's spring is set to at the bottom, so that it stores what lift-off
@@ -76,7 +83,7 @@ double ThrustLength(const Context& context, const GaitMemory& memory) {
 void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
   const double wanted_mps = LiftOffSpeed(context, memory);
   if (memory.pit.lift_off_mps != 0) return;
-  const double reached_mps = context.body.v_WC.z();
+  const double reached_mps = RisingSpeed(context, memory);
   const double missing_j = context.biped.mass_kg() / 2 *
                            (wanted_mps * wanted_mps - reached_mps * std::fabs(reached_mps));
   memory.energy_loss_j = std::clamp(memory.energy_loss_j + 0.3 * missing_j, -40.0, 120.0);
@@ -112,6 +119,7 @@ void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
       memory.preparing_landing = false;
       break;
     case RunningPhase::kExtension:
+      PlanClimb(context, LevelLiftOffSpeed(context, memory), memory);
       PlanLiftOff(context, LiftOffSpeed(context, memory), memory);
       memory.thrust_length_m = ThrustLength(context, memory);
       memory.pit.extension_m = memory.thrust_length_m - StanceLeg(context, memory).length_m;
@@ -159,6 +167,7 @@ Targets AdvanceRunning(const Context& context, GaitMemory& memory) {
     const bool early = memory.running == RunningPhase::kUpwardFlight ||
                        context.TimeIn(memory) < kPreparesUntilS || memory.pit.last_foothold;
     memory.preparing_jump = memory.preparing_jump || (early && MayPrepareJump(context, memory));
+    PlanLanding(context, memory);
     memory.pit.shift_m = FootholdShift(context, memory);
     memory.foothold_W_m = context.body.p_WC + HoppingFoothold(context, memory, memory.support_leg);
   }

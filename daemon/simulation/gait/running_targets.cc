@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/ground_plan.h"
 #include "daemon/simulation/gait/running.h"
 
 namespace footing::gait {
@@ -19,33 +21,52 @@ LegTarget Placed(const Eigen::Vector3d& r_HF_W_m) {
   return target;
 }
 
-/// Length the landing leg (both, in a jump) has in flight.
-double FlightLength(const Context& context, const GaitMemory& memory) {
+/// Length the landing leg (both, in a jump) has in flight, its foot `ahead_m` from the COM.
+double FlightLength(const Context& context, const GaitMemory& memory, double ahead_m) {
   const HoppingGains& gains = context.gains.hopping;
+  const double touchdown_m = TouchdownLength(context, memory, ahead_m);
   const bool up = memory.running == RunningPhase::kUpwardFlight;
   if (memory.gait != stream::Gait::kJump) {
-    return up ? gains.run_flight_length_m : gains.touchdown_length_m;
+    return up ? gains.run_flight_length_m : touchdown_m;
   }
   const double way =
       up ? 0 : std::clamp(context.TimeIn(memory) / gains.lengthening_time_s, 0.0, 1.0);
-  return gains.jump_flight_length_m + way * (gains.touchdown_length_m - gains.jump_flight_length_m);
+  return gains.jump_flight_length_m + way * (touchdown_m - gains.jump_flight_length_m);
 }
 
-Eigen::Vector3d TowardsFoothold(const Context& context, const GaitMemory& memory, int leg,
-                                double length_m) {
-  return HipToFoot(context.body, leg, HoppingFoothold(context, memory, leg), length_m);
+double AheadOfCom(const GaitMemory& memory, const Eigen::Vector3d& offset_W_m) {
+  return ToHeading(memory.heading_rad, offset_W_m).x();
+}
+
+/// A landing leg in flight.
+LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
+  const Eigen::Vector3d offset_W = HoppingFoothold(context, memory, leg);
+  const double length_m = FlightLength(context, memory, AheadOfCom(memory, offset_W));
+  return Placed(Cleared(context, memory, leg, HipToFoot(context.body, leg, offset_W, length_m)));
+}
+
+LegTarget Idle(const Context& context, const GaitMemory& memory, int leg,
+               const Eigen::Vector3d& other_r_HF_W_m) {
+  return Placed(
+      Cleared(context, memory, leg,
+              Mirrored(memory.heading_rad, other_r_HF_W_m, context.gains.hopping.idle_length_m)));
 }
 
 Targets Flight(const Context& context, const GaitMemory& memory) {
-  const double length_m = FlightLength(context, memory);
   Targets targets;
   const int front = memory.support_leg, rear = 1 - front;
-  targets.legs[front] = Placed(TowardsFoothold(context, memory, front, length_m));
+  targets.legs[front] = Landing(context, memory, front);
   targets.legs[rear] = memory.gait == stream::Gait::kJump
-                           ? Placed(TowardsFoothold(context, memory, rear, length_m))
-                           : Placed(Mirrored(memory.heading_rad, targets.legs[front].r_HF_W_m,
-                                             context.gains.hopping.idle_length_m));
+                           ? Landing(context, memory, rear)
+                           : Idle(context, memory, rear, targets.legs[front].r_HF_W_m);
   return targets;
+}
+
+/// A spring that goes by the leg's length relative to the slope.
+AxialTarget OnSlope(const Context& context, const GaitMemory& memory, int leg, AxialTarget spring) {
+  const double relative_m = RelativeToSlope(context, memory, leg).length_m;
+  spring.length_m += context.body.legs[leg].length_m - relative_m;
+  return spring;
 }
 
 /// The stance leg's spring, which only pushes.
@@ -68,10 +89,9 @@ Targets RunningStance(const Context& context, const GaitMemory& memory) {
   const biped::LegState& leg = context.body.legs[stance];
   Targets targets;
   targets.legs[stance].task = leg.touching ? LegTask::kSupport : LegTask::kFree;
-  targets.legs[stance].axial = RunSpring(context, memory);
+  targets.legs[stance].axial = OnSlope(context, memory, stance, RunSpring(context, memory));
   targets.legs[stance].hip_damping_nms_per_rad = context.gains.servo.free_hip_damping_nms_per_rad;
-  targets.legs[idle] = Placed(
-      Mirrored(memory.heading_rad, leg.p_WF - leg.p_WH, context.gains.hopping.idle_length_m));
+  targets.legs[idle] = Idle(context, memory, idle, leg.p_WF - leg.p_WH);
   return targets;
 }
 
@@ -98,7 +118,8 @@ AxialTarget JumpSpring(const Context& context, const GaitMemory& memory,
 LegTarget Reaching(const Context& context, const GaitMemory& memory, int leg) {
   LegTarget target;
   target.task = LegTask::kPlaceHips;
-  target.r_HF_W_m = TowardsFoothold(context, memory, leg, context.body.legs[leg].length_m);
+  target.r_HF_W_m = HipToFoot(context.body, leg, HoppingFoothold(context, memory, leg),
+                              context.body.legs[leg].length_m);
   target.axial.length_m = context.gains.hopping.touchdown_length_m + kReachM;
   target.axial.stiffness_n_per_m = context.gains.servo.leg_stiffness_n_per_m / 2;
   target.axial.damping_ns_per_m = context.gains.servo.leg_damping_ns_per_m;
@@ -111,7 +132,7 @@ Targets JumpingStance(const Context& context, const GaitMemory& memory) {
     const biped::LegState& leg = context.body.legs[i];
     if (leg.touching) {
       targets.legs[i].task = LegTask::kSupport;
-      targets.legs[i].axial = JumpSpring(context, memory, leg);
+      targets.legs[i].axial = OnSlope(context, memory, i, JumpSpring(context, memory, leg));
     } else {
       targets.legs[i] = Reaching(context, memory, i);
     }

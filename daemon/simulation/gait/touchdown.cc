@@ -12,6 +12,8 @@ constexpr double kShortestStepS = 0.12;
 constexpr int kStepsToSettle = 2;
 constexpr double kSettledMps = 0.05;
 constexpr double kLargestErrorMps = 0.8;
+/// On a slope speeding up takes longer than v_d does: that is no error to learn from.
+constexpr double kLargestErrorOnSlopeMps = 0.3;
 
 double StepGain(stream::Gait gait, const Gains& gains) {
   return IsHopping(gait) ? gains.hopping.run_speed_integral_s : gains.walking.speed_integral_s;
@@ -55,7 +57,9 @@ void CountStep(const Context& context, GaitMemory& memory) {
     const double error_mps = v_H.x() - memory.desired_speed_mps;
     const bool settled =
         std::fabs(memory.target_speed_mps - memory.desired_speed_mps) < kSettledMps;
-    if (settled && std::fabs(error_mps) < kLargestErrorMps) {
+    const double largest_mps =
+        memory.ground.slope != 0 ? kLargestErrorOnSlopeMps : kLargestErrorMps;
+    if (settled && std::fabs(error_mps) < largest_mps) {
       Learn(error_mps, context.gains, memory);
     }
   }
