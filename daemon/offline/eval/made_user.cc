@@ -135,8 +135,8 @@ void MadeUser::ChooseGait(const Sight& now, biped::GaitCommand& command) {
     return;
   }
   command.gait = Gait::kWalk;
-  command.speed_mps = std::clamp(turn_rad * kWalkStepsPerS / curvature, skill_.walk_min_mps,
-                                 skill_.walk_max_mps);
+  command.speed_mps =
+      std::clamp(turn_rad * kWalkStepsPerS / curvature, skill_.walk_min_mps, skill_.walk_max_mps);
 }
 
 biped::GaitCommand MadeUser::Want(const Sight& sight) {

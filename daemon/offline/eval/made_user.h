@@ -58,8 +58,8 @@ class MadeUser {
   Skill skill_;
   double reaction_s_;
   double favourite_mps_;
-  std::deque<Sight> seen_;      ///< The last second, newest last.
-  std::deque<Wanted> wanted_;   ///< The same of the own commands.
+  std::deque<Sight> seen_;     ///< The last second, newest last.
+  std::deque<Wanted> wanted_;  ///< The same of the own commands.
   biped::GaitCommand command_;
   bool steering_ = false;
   double jump_until_m_ = -1;  ///< Along the track; negative: not jumping.

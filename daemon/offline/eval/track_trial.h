@@ -15,8 +15,8 @@ enum class Interface {
 };
 
 struct TrackResult {
-  bool completed = false;  ///< Reached the finish, 3 m before the end and at most 100 m on.
-  double time_s = 0;       ///< From the start to there.
+  bool completed = false;         ///< Reached the finish, 3 m before the end and at most 100 m on.
+  double time_s = 0;              ///< From the start to there.
   std::array<int, 3> failures{};  ///< By engine::FailureCause.
   RootMeanSquare heading_error;   ///< Body's yaw against the heading, rad, but for falls.
   RootMeanSquare off_centre;      ///< COM's distance from the centre line, m.
