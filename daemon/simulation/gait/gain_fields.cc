@@ -6,11 +6,10 @@ namespace footing::gait {
 namespace {
 
 // The column's name is the field's, and its accessor too, so that they cannot differ.
-#define GAIN(section, field, unit, min, max)                           \
-  GainField {                                                          \
-    #section "." #field, unit, min, max, [](Gains& gains) -> double& { \
-      return gains.section.field;                                      \
-    }                                                                  \
+#define GAIN(section, field, unit, min, max)                         \
+  GainField {                                                        \
+#section "." #field, unit, min, max,                             \
+        [](Gains & gains) -> double& { return gains.section.field; } \
   }
 
 constexpr std::array kFields{

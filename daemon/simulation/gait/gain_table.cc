@@ -167,14 +167,13 @@ class Reader {
 
 Gains Interpolated(const std::vector<GainSet>& sets, double speed_mps) {
   if (sets.empty()) return {};
-  const auto faster =
-      std::find_if(sets.begin(), sets.end(),
-                   [speed_mps](const GainSet& set) { return set.speed_mps >= speed_mps; });
+  const auto faster = std::find_if(sets.begin(), sets.end(), [speed_mps](const GainSet& set) {
+    return set.speed_mps >= speed_mps;
+  });
   if (faster == sets.begin()) return sets.front().gains;
   if (faster == sets.end()) return sets.back().gains;
   const GainSet& slower = *std::prev(faster);
-  const double share =
-      (speed_mps - slower.speed_mps) / (faster->speed_mps - slower.speed_mps);
+  const double share = (speed_mps - slower.speed_mps) / (faster->speed_mps - slower.speed_mps);
   Gains gains = slower.gains;
   for (const GainField& field : GainFields()) {
     field.of(gains) = std::lerp(field.Of(slower.gains), field.Of(faster->gains), share);

@@ -156,8 +156,8 @@ TEST(ShippedGains, SayOnlyWhatDiffersFromTheHeader) {
           differs = differs || field.Of(set.gains) != field.Of(Gains{});
         }
       }
-      const bool named = (columns + ",").find("," + std::string(field.name) + ",") !=
-                         std::string::npos;
+      const bool named =
+          (columns + ",").find("," + std::string(field.name) + ",") != std::string::npos;
       EXPECT_EQ(named, differs) << name << ": " << field.name;
     }
   }
