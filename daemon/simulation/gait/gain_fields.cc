@@ -98,6 +98,17 @@ constexpr std::array kFields{
     GAIN(transition, jump_to_step_mps, "m/s", 0, 10),
     GAIN(transition, jump_landing_stiffness_n_per_m, "N/m", 100, 5000),
     GAIN(transition, jump_landing_damping_ns_per_m, "N s/m", 0, 2000),
+
+    GAIN(pit, limits.edge_margin_m, "m", 0, 0.5),
+    GAIN(pit, limits.landing_margin_m, "m", 0, 0.5),
+    GAIN(pit, limits.aim_margin_m, "m", 0, 0.5),
+    GAIN(pit, limits.lift_off_min_mps, "m/s", 0, 5),
+    GAIN(pit, limits.lift_off_max_mps, "m/s", 0, 5),
+    GAIN(pit, limits.leap_max_mps, "m/s", 0, 10),
+    GAIN(pit, run_width_max_m, "m", 0, 2),
+    GAIN(pit, sight_m, "m", 0, 20),
+    GAIN(pit, shift_back_m, "m", 0, 0.5),
+    GAIN(pit, shift_ahead_m, "m", 0, 1),
 };
 
 #undef GAIN

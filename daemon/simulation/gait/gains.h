@@ -1,5 +1,7 @@
 #pragma once
 
+#include "daemon/simulation/gait/pit_plan.h"
+
 /// Every number of the controllers, with its unit in its name, and its default. What differs from
 /// gait to gait, or between slow and fast, is in the tables of daemon/simulation/data/gaits
 /// (gain_table.h); a new number here needs a line in gain_fields.cc. How they were found and what
@@ -108,12 +110,22 @@ struct TransitionGains {
   double jump_landing_damping_ns_per_m = 260;
 };
 
+/// Crossing pits (pit_plan.h).
+struct PitGains {
+  PitLimits limits;
+  double run_width_max_m = 0.4;  ///< A run crosses this by itself; wider ones want a jump.
+  double sight_m = 3;            ///< Nearer pits are planned for even when out of reach.
+  double shift_back_m = 0.12;    ///< Of a foothold that would come to lie in the pit.
+  double shift_ahead_m = 0.25;
+};
+
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;
   WalkingGains walking;
   HoppingGains hopping;
   TransitionGains transition;
+  PitGains pit;
 };
 
 }  // namespace footing::gait
