@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/running.h"
 
 namespace footing::gait {
@@ -36,15 +38,26 @@ Eigen::Vector3d TowardsFoothold(const Context& context, const GaitMemory& memory
   return HipToFoot(context.body, leg, HoppingFoothold(context, memory, leg), length_m);
 }
 
+/// A push on the body acts above the whole COM and leaves angular momentum for the whole flight.
+/// The idle leg rolls on with the body, further than it, and so takes up most of that.
+double IdleYield(const Context& context, const GaitMemory& memory) {
+  const RecoveryGains& gains = context.gains.recovery;
+  const Eigen::Vector3d up_H = ToHeading(memory.heading_rad, context.body.R_WB.col(2));
+  const double roll_rad = -std::atan2(up_H.y(), up_H.z());
+  return std::clamp(gains.idle_yield * roll_rad, -gains.idle_yield_limit_rad,
+                    gains.idle_yield_limit_rad);
+}
+
 Targets Flight(const Context& context, const GaitMemory& memory) {
   const double length_m = FlightLength(context, memory);
   Targets targets;
   const int front = memory.support_leg, rear = 1 - front;
   targets.legs[front] = Placed(TowardsFoothold(context, memory, front, length_m));
-  targets.legs[rear] = memory.gait == stream::Gait::kJump
-                           ? Placed(TowardsFoothold(context, memory, rear, length_m))
-                           : Placed(Mirrored(memory.heading_rad, targets.legs[front].r_HF_W_m,
-                                             context.gains.hopping.idle_length_m));
+  targets.legs[rear] =
+      memory.gait == stream::Gait::kJump
+          ? Placed(TowardsFoothold(context, memory, rear, length_m))
+          : Placed(Mirrored(memory.heading_rad, targets.legs[front].r_HF_W_m,
+                            context.gains.hopping.idle_length_m, IdleYield(context, memory)));
   return targets;
 }
 
@@ -70,8 +83,9 @@ Targets RunningStance(const Context& context, const GaitMemory& memory) {
   targets.legs[stance].task = leg.touching ? LegTask::kSupport : LegTask::kFree;
   targets.legs[stance].axial = RunSpring(context, memory);
   targets.legs[stance].hip_damping_nms_per_rad = context.gains.servo.free_hip_damping_nms_per_rad;
-  targets.legs[idle] = Placed(
-      Mirrored(memory.heading_rad, leg.p_WF - leg.p_WH, context.gains.hopping.idle_length_m));
+  targets.legs[idle] =
+      Placed(Mirrored(memory.heading_rad, leg.p_WF - leg.p_WH, context.gains.hopping.idle_length_m,
+                      IdleYield(context, memory)));
   return targets;
 }
 
