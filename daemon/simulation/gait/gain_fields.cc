@@ -46,6 +46,7 @@ constexpr std::array kFields{
     GAIN(walking, leg_length_max_m, "m", 0.3, 1.5),
     GAIN(walking, step_width_m, "m", 0, 1),
     GAIN(walking, feet_cross_m, "m", 0, 0.5),
+    GAIN(walking, side_step_limit_m, "m", 0, 2),
     GAIN(walking, step_length_limit_m, "m", 0, 1.5),
     GAIN(walking, clearance_m, "m", 0, 0.5),
     GAIN(walking, speed_integral_s, "s", 0, 0.2),
@@ -114,11 +115,16 @@ constexpr std::array kFields{
     GAIN(pit, limits.aim_margin_m, "m", 0, 0.5),
     GAIN(pit, limits.lift_off_min_mps, "m/s", 0, 5),
     GAIN(pit, limits.lift_off_max_mps, "m/s", 0, 5),
-    GAIN(pit, limits.leap_max_mps, "m/s", 0, 5),
+    GAIN(pit, limits.leap_max_mps, "m/s", 0, 10),
     GAIN(pit, run_width_max_m, "m", 0, 2),
     GAIN(pit, sight_m, "m", 0, 20),
-    GAIN(pit, shift_back_m, "m", 0, 1),
+    GAIN(pit, shift_back_m, "m", 0, 0.5),
     GAIN(pit, shift_ahead_m, "m", 0, 1),
+
+    GAIN(recovery, outrun_mps, "m/s", 0, 10),
+    GAIN(recovery, idle_yield, "1", 0, 5),
+    GAIN(recovery, idle_yield_limit_rad, "rad", 0, 2),
+    GAIN(recovery, spread_mps, "m/s", 0.01, 5),
 };
 
 #undef GAIN

@@ -24,7 +24,7 @@ struct ServoGains {
 /// PD servo of the body's attitude, by the hips of the supporting legs. Overdamped: the rate left
 /// at lift-off, not the angle, is what a flight makes worse.
 struct AttitudeGains {
-  double roll_stiffness_nm_per_rad = 150;
+  double roll_stiffness_nm_per_rad = 250;
   double roll_damping_nms_per_rad = 60;
   double pitch_stiffness_nm_per_rad = 400;
   double pitch_damping_nms_per_rad = 80;
@@ -55,8 +55,9 @@ struct WalkingGains {
   double speed_integral_s = 0.03;  ///< m of foothold a step for each m/s of error.
   double integral_min_m = -0.12;
   double integral_max_m = 0.15;
-  double hurry_rate = 0.5;         ///< Fraction by which the swing clock may gain.
+  double hurry_rate = 1.0;         ///< Fraction by which the swing clock may gain.
   double hurry_beyond_m = 0.75;    ///< Foothold fore and aft needed beyond this hurries.
+  double side_step_limit_m = 1.0;  ///< Between the feet, to catch a push.
   double support_rise_mps = 0.35;  ///< The hip follows a change of ground at this rate.
   double acceleration_mps2 = 1.5;
 };
@@ -132,6 +133,14 @@ struct PitGains {
   double shift_ahead_m = 0.25;
 };
 
+/// What a push needs, beyond what the gaits need.
+struct RecoveryGains {
+  double outrun_mps = 2.2;            ///< A walk pushed beyond this goes on by running steps.
+  double idle_yield = 1.25;           ///< Roll of running's idle leg for the body's roll, ...
+  double idle_yield_limit_rad = 0.9;  ///< ... up to this.
+  double spread_mps = 0.5;            ///< At this speed aside a jump's legs are spread in full.
+};
+
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;
@@ -140,6 +149,7 @@ struct Gains {
   SteppingGains stepping;
   TransitionGains transition;
   PitGains pit;
+  RecoveryGains recovery;
 };
 
 }  // namespace footing::gait

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
@@ -45,11 +46,21 @@ LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
   return Placed(Cleared(context, memory, leg, HipToFoot(context.body, leg, offset_W, length_m)));
 }
 
+/// A push on the body acts above the whole COM and leaves angular momentum for the whole flight.
+/// The idle leg rolls on with the body, further than it, and so takes up most of that.
+double IdleYield(const Context& context, const GaitMemory& memory) {
+  const RecoveryGains& gains = context.gains.recovery;
+  const Eigen::Vector3d up_H = ToHeading(memory.heading_rad, context.body.R_WB.col(2));
+  const double roll_rad = -std::atan2(up_H.y(), up_H.z());
+  return std::clamp(gains.idle_yield * roll_rad, -gains.idle_yield_limit_rad,
+                    gains.idle_yield_limit_rad);
+}
+
 LegTarget Idle(const Context& context, const GaitMemory& memory, int leg,
                const Eigen::Vector3d& other_r_HF_W_m) {
-  return Placed(
-      Cleared(context, memory, leg,
-              Mirrored(memory.heading_rad, other_r_HF_W_m, context.gains.hopping.idle_length_m)));
+  return Placed(Cleared(context, memory, leg,
+                        Mirrored(memory.heading_rad, other_r_HF_W_m,
+                                 context.gains.hopping.idle_length_m, IdleYield(context, memory))));
 }
 
 Targets Flight(const Context& context, const GaitMemory& memory) {

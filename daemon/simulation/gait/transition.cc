@@ -94,7 +94,8 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
 bool BeginThrust(const Context& context, GaitMemory& memory) {
   const TransitionGains& gains = context.gains.transition;
   const double swing = context.TimeIn(memory) / context.gains.walking.swing_time_s;
-  if (!Flies(context.goal.gait) || memory.walking != WalkingPhase::kFall ||
+  const bool outrun = SpeedAlongHeading(context, memory) > context.gains.recovery.outrun_mps;
+  if (!(outrun || Flies(context.goal.gait)) || memory.walking != WalkingPhase::kFall ||
       swing <= gains.thrust_from_swing) {
     return false;
   }

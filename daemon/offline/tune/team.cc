@@ -1,0 +1,97 @@
+#include "daemon/offline/tune/team.h"
+
+#include <cmath>
+#include <thread>
+
+#include "daemon/offline/tune/texts.h"
+
+namespace footing::tune {
+namespace {
+
+constexpr int kStarts = 12;
+constexpr double k95Percent = 1.96;
+
+template <typename Value>
+Difference MeanOf(std::size_t count, const Value& value) {
+  double sum = 0, squares = 0;
+  for (std::size_t i = 0; i < count; ++i) sum += value(i);
+  const auto n = static_cast<double>(count);
+  const double mean = sum / n;
+  for (std::size_t i = 0; i < count; ++i) squares += (value(i) - mean) * (value(i) - mean);
+  return {mean, count > 1 ? k95Percent * std::sqrt(squares / (n - 1) / n) : 0};
+}
+
+}  // namespace
+
+Result<Team> Team::Create(int threads) {
+  const Result<engine::EngineTexts> texts = ReadTexts();
+  if (!texts) return texts.error();
+  Team team;
+  for (int i = 0; i < threads; ++i) {
+    Result<engine::GaitEngine> engine = engine::GaitEngine::Create(*texts);
+    if (!engine) return engine.error();
+    team.engines_.push_back(std::move(engine).value());
+  }
+  return team;
+}
+
+Result<void> Team::Prepare(const Task& task, const gait::GainTable& table, std::uint64_t seed) {
+  const Result<engine::EngineTexts> texts = ReadTexts();
+  if (!texts) return texts.error();
+  Result<engine::GaitEngine> engine = engine::GaitEngine::Create(*texts);
+  if (!engine) return engine.error();
+  engine->UseGains(table);
+  Result<std::vector<engine::EngineState>> starts = SettledStates(*engine, task, kStarts, seed);
+  if (!starts) return starts.error();
+  task_ = task;
+  table_ = table;
+  starts_ = std::move(*starts);
+  return {};
+}
+
+std::vector<std::vector<Cost>> Team::Try(const std::vector<gait::Gains>& gains, int trials,
+                                         std::uint64_t seed) {
+  const auto per_gains = static_cast<std::size_t>(trials);
+  std::vector<std::vector<Cost>> costs(gains.size(), std::vector<Cost>(per_gains));
+  const std::size_t jobs = gains.size() * per_gains;
+  const auto work = [&](std::size_t worker) {
+    engine::GaitEngine& engine = engines_[worker];
+    for (std::size_t job = worker; job < jobs; job += engines_.size()) {
+      const std::size_t which = job / per_gains, trial = job % per_gains;
+      gait::GainTable table = table_;
+      table.Set(task_.gait, {{"tried", 0, gains[which]}});
+      engine.UseGains(table);
+      const engine::EngineState& start = starts_[trial % starts_.size()];
+      const TrialResult result = RunTrial(engine, start, task_, MixSeeds(seed, trial));
+      costs[which][trial] = CostOf(task_, result);
+    }
+  };
+  std::vector<std::thread> others;
+  for (std::size_t i = 1; i < engines_.size(); ++i) others.emplace_back(work, i);
+  work(0);
+  for (std::thread& other : others) other.join();
+  return costs;
+}
+
+Score ScoreOf(const std::vector<Cost>& costs) {
+  Score score;
+  score.trials = static_cast<int>(costs.size());
+  const auto n = static_cast<double>(costs.size());
+  for (const Cost& cost : costs) {
+    score.mean.failure += cost.failure / n;
+    score.mean.speed += cost.speed / n;
+    score.mean.flight += cost.flight / n;
+    score.mean.stance += cost.stance / n;
+    score.mean.stride += cost.stride / n;
+    score.survival += (cost.failure == 0 ? 1 : 0) / n;
+  }
+  score.total_half_width =
+      MeanOf(costs.size(), [&costs](std::size_t i) { return costs[i].total(); }).half_width;
+  return score;
+}
+
+Difference Compare(const std::vector<Cost>& now, const std::vector<Cost>& before) {
+  return MeanOf(now.size(), [&](std::size_t i) { return now[i].total() - before[i].total(); });
+}
+
+}  // namespace footing::tune

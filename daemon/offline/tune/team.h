@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "daemon/offline/tune/objective.h"
+#include "daemon/offline/tune/search.h"
+#include "daemon/offline/tune/search_space.h"
+
+namespace footing::tune {
+
+/// Means with the half width of their 95 % confidence interval.
+struct Score {
+  Cost mean;
+  double total_half_width = 0;
+  double survival = 0;  ///< Fraction of trials without a fall.
+  int trials = 0;
+};
+
+/// Threads with a world each, that try gains out. What comes out does not depend on how many.
+class Team {
+ public:
+  /// Reads the product's data; one engine a thread.
+  static Result<Team> Create(int threads);
+
+  /// Makes the states in which the trials of `task` begin, under `table`.
+  Result<void> Prepare(const Task& task, const gait::GainTable& table, std::uint64_t seed);
+
+  /// Costs of `trials` trials for each of the gains, gains by gains, all on the same trials, which
+  /// `seed` draws.
+  std::vector<std::vector<Cost>> Try(const std::vector<gait::Gains>& gains, int trials,
+                                     std::uint64_t seed);
+
+ private:
+  Team() = default;
+
+  std::vector<engine::GaitEngine> engines_;
+  Task task_;
+  gait::GainTable table_;
+  std::vector<engine::EngineState> starts_;
+};
+
+Score ScoreOf(const std::vector<Cost>& costs);
+
+/// Mean difference of the totals, trial by trial, and the half width of its 95 % interval.
+struct Difference {
+  double mean = 0;
+  double half_width = 0;
+};
+Difference Compare(const std::vector<Cost>& now, const std::vector<Cost>& before);
+
+}  // namespace footing::tune

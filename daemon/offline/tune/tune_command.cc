@@ -1,0 +1,305 @@
+#include "daemon/offline/tune/tune_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "common/cli/cli.h"
+#include "common/clock/clock.h"
+#include "common/config/data_file.h"
+#include "common/units/units.h"
+#include "daemon/offline/tune/kept_run.h"
+#include "daemon/offline/tune/plot.h"
+#include "daemon/offline/tune/team.h"
+#include "daemon/offline/tune/texts.h"
+
+namespace footing::tune {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Batches of trials that no iteration has.
+constexpr std::uint64_t kJudgingBatch = 1u << 30;
+constexpr int kJudgingTimes = 8;  // Trials for judging, of those a search has.
+
+struct TunedSet {
+  gait::GainSet set;
+  Score before, after;
+  Difference difference;
+  bool better = false;
+};
+
+std::string SetName(std::size_t index, std::size_t count) {
+  if (count == 1) return "all";
+  if (index == 0) return "slow";
+  if (index + 1 == count) return "fast";
+  return count == 3 ? "medium" : "medium" + std::to_string(index);
+}
+
+std::string Short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g", value);
+  return text;
+}
+
+/// One run of the program, from its options.
+class Tuning {
+ public:
+  Tuning(const Options& options, Team team, gait::GainTable table)
+      : options_(options),
+        gait_(stream::GaitNamed(options.gait)),
+        team_(std::move(team)),
+        table_(std::move(table)),
+        dimensions_(DimensionsOf(gait_)) {}
+
+  Result<void> Resume() {
+    searches_.assign(options_.speeds_mps.size(), StartSearch(static_cast<int>(dimensions_.size())));
+    if (options_.iterations == 0 || !std::filesystem::exists(StatePath())) return {};
+    const Result<std::string> text = config::ReadTextFile(StatePath());
+    if (!text) return text.error();
+    auto searches = ResumeRun(*text, Key(), StatePath());
+    if (!searches) return searches.error();
+    const auto sized = [this](const SearchState& search) {
+      return search.point.size() == static_cast<Eigen::Index>(dimensions_.size());
+    };
+    if (searches->size() != searches_.size() ||
+        !std::all_of(searches->begin(), searches->end(), sized)) {
+      return InvalidData(StatePath() + " is of another version; remove it to begin anew");
+    }
+    searches_ = std::move(*searches);
+    std::fprintf(stderr, "goes on from %s\n", StatePath().c_str());
+    return {};
+  }
+
+  Result<void> Tune() {
+    for (std::size_t i = 0; i < searches_.size(); ++i) {
+      if (const auto tuned = TuneSet(i); !tuned) return tuned;
+    }
+    return {};
+  }
+
+  Result<void> Write() const {
+    if (options_.iterations == 0) return {};
+    if (const auto done = ReplaceFile(options_.out, TableText()); !done) return done;
+    return ReplaceFile(PlotPath(), Plot());
+  }
+
+  ordered_json Report() const {
+    ordered_json sets = ordered_json::array();
+    for (const TunedSet& tuned : tuned_) {
+      ordered_json gains;
+      for (const Dimension& dimension : dimensions_) {
+        gains[std::string(dimension.gain->name)] = dimension.gain->Of(tuned.set.gains);
+      }
+      sets.push_back({{"set", tuned.set.name},
+                      {"speed_mps", tuned.set.speed_mps},
+                      {"before", ToJson(tuned.before)},
+                      {"after", ToJson(tuned.after)},
+                      {"difference", tuned.difference.mean},
+                      {"difference_half_width", tuned.difference.half_width},
+                      {"better", tuned.better},
+                      {"gains", gains}});
+    }
+    return {{"gait", options_.gait},     {"method", options_.method},
+            {"seed", options_.seed},     {"iterations", options_.iterations},
+            {"trials", options_.trials}, {"sets", sets}};
+  }
+
+ private:
+  static ordered_json ToJson(const Score& score) {
+    return {{"objective", score.mean.total()}, {"half_width", score.total_half_width},
+            {"trials", score.trials},          {"survival", score.survival},
+            {"failure", score.mean.failure},   {"speed", score.mean.speed},
+            {"flight", score.mean.flight},     {"stance", score.mean.stance},
+            {"stride", score.mean.stride}};
+  }
+
+  std::string StatePath() const { return options_.out + ".state.json"; }
+  std::string PlotPath() const {
+    return std::filesystem::path(options_.out).replace_extension(".svg").string();
+  }
+
+  RunKey Key() const {
+    std::vector<const gait::GainField*> columns;
+    for (const gait::GainField& field : gait::GainFields()) columns.push_back(&field);
+    RunKey key{options_.gait,   options_.speeds_mps, options_.seed,
+               options_.method, options_.trials,     ""};
+    for (const stream::Gait gait :
+         {stream::Gait::kStep, stream::Gait::kWalk, stream::Gait::kRun, stream::Gait::kJump}) {
+      key.from += gait::WriteGains(gait, table_.SetsOf(gait), columns, "");
+    }
+    return key;
+  }
+
+  Result<void> TuneSet(std::size_t index) {
+    const Task task{gait_, options_.speeds_mps[index]};
+    const std::uint64_t seed = MixSeeds(options_.seed, index);
+    if (const auto prepared = team_.Prepare(task, table_, seed); !prepared) return prepared;
+    SearchState& search = searches_[index];
+    const gait::Gains start = StartOf(task);
+    const Evaluate evaluate = [&](const std::vector<Eigen::VectorXd>& points, std::uint64_t batch) {
+      std::vector<gait::Gains> gains;
+      for (const Eigen::VectorXd& point : points) {
+        gains.push_back(GainsAt(start, dimensions_, point));
+      }
+      std::vector<double> values;
+      for (const auto& costs : team_.Try(gains, options_.trials, MixSeeds(seed, batch))) {
+        values.push_back(ScoreOf(costs).mean.total());
+      }
+      return values;
+    };
+    while (search.iteration < options_.iterations) {
+      const std::int64_t begin_ns = clock::MonotonicNs();
+      if (options_.method == "descent") {
+        Descend(search, evaluate);
+      } else {
+        Evolve(search, evaluate, seed);
+      }
+      if (const auto kept = ReplaceFile(StatePath(), KeepRun(Key(), searches_)); !kept) return kept;
+      ShowProgress(index, NanosecondsToSeconds(clock::MonotonicNs() - begin_ns));
+    }
+    Judge(index, task, start, seed);
+    return {};
+  }
+
+  /// The start's gains for this speed, which are all of the gait's own: what they take from other
+  /// gaits stays theirs.
+  gait::Gains StartOf(const Task& task) const {
+    gait::Gains gains = table_.At(task.gait, task.speed_mps);
+    const gait::Gains defaults;
+    const bool hops = task.gait == stream::Gait::kRun || task.gait == stream::Gait::kJump;
+    if (hops) {
+      gains.walking = defaults.walking;
+    } else {
+      gains.hopping = defaults.hopping;
+    }
+    return gains;
+  }
+
+  void ShowProgress(std::size_t index, double seconds) const {
+    int left = 0;
+    for (std::size_t i = index; i < searches_.size(); ++i) {
+      left += std::max(0, options_.iterations - searches_[i].iteration);
+    }
+    const HistoryPoint& last = searches_[index].history.back();
+    std::fprintf(stderr,
+                 "%s %.3g m/s: iteration %d of %d, objective %.3f, best tried %.3f, about %.0f s "
+                 "left\n",
+                 options_.gait.c_str(), options_.speeds_mps[index], searches_[index].iteration,
+                 options_.iterations, last.objective, last.best, left * seconds);
+  }
+
+  /// On trials that no iteration saw; what is not better there is not taken.
+  void Judge(std::size_t index, const Task& task, const gait::Gains& start, std::uint64_t seed) {
+    const bool scores_only = options_.iterations == 0;
+    const gait::Gains found = GainsAt(start, dimensions_, searches_[index].point);
+    const int trials = options_.trials * (scores_only ? 1 : kJudgingTimes);
+    std::vector<gait::Gains> judged{start};
+    if (!scores_only) judged.push_back(found);
+    const auto costs = team_.Try(judged, trials, MixSeeds(seed, kJudgingBatch));
+    TunedSet tuned;
+    tuned.before = ScoreOf(costs.front());
+    tuned.after = ScoreOf(costs.back());
+    tuned.difference = Compare(costs.back(), costs.front());
+    tuned.better = tuned.difference.mean + tuned.difference.half_width < 0;
+    tuned.set = {SetName(index, searches_.size()), task.speed_mps, tuned.better ? found : start};
+    std::fprintf(stderr, "%s %.3g m/s: %.3f +- %.3f before, %.3f +- %.3f after%s\n",
+                 options_.gait.c_str(), task.speed_mps, tuned.before.mean.total(),
+                 tuned.before.total_half_width, tuned.after.mean.total(),
+                 tuned.after.total_half_width,
+                 scores_only || tuned.better ? "" : ": not better, the start is kept");
+    tuned_.push_back(std::move(tuned));
+  }
+
+  std::string TableText() const {
+    std::string comment = "Made by footing-tune " + std::string(cli::Version()) + ", seed " +
+                          std::to_string(options_.seed) + ":\n" + options_.command_line +
+                          "\nObjective on trials of its own, 95 % intervals:\n";
+    std::vector<gait::GainSet> sets;
+    for (const TunedSet& tuned : tuned_) {
+      comment += tuned.set.name + " " + Short(tuned.before.mean.total()) + " +- " +
+                 Short(tuned.before.total_half_width) + " before, " +
+                 Short(tuned.after.mean.total()) + " +- " + Short(tuned.after.total_half_width) +
+                 " after" + (tuned.better ? "" : ", not better: the start is kept") + "\n";
+      sets.push_back(tuned.set);
+    }
+    std::vector<const gait::GainField*> columns;
+    for (const gait::GainField& field : gait::GainFields()) {
+      const auto differs = [&field](const gait::GainSet& set) {
+        return field.Of(set.gains) != field.Of(gait::Gains{});
+      };
+      if (std::any_of(sets.begin(), sets.end(), differs)) columns.push_back(&field);
+    }
+    return gait::WriteGains(gait_, sets, columns, comment);
+  }
+
+  std::string Plot() const {
+    std::vector<Curve> curves;
+    for (std::size_t i = 0; i < searches_.size(); ++i) {
+      Curve at_point{Short(options_.speeds_mps[i]) + " m/s", {}};
+      Curve best{Short(options_.speeds_mps[i]) + " m/s, best tried", {}};
+      for (const HistoryPoint& point : searches_[i].history) {
+        at_point.points.emplace_back(point.iteration, point.objective);
+        best.points.emplace_back(point.iteration, point.best);
+      }
+      curves.push_back(std::move(at_point));
+      curves.push_back(std::move(best));
+    }
+    return LinePlot(options_.gait + ", " + options_.method + ", seed " +
+                        std::to_string(options_.seed) + ", each iteration on trials of its own",
+                    "iteration", "objective", curves);
+  }
+
+  const Options& options_;
+  stream::Gait gait_;
+  Team team_;
+  gait::GainTable table_;
+  std::vector<Dimension> dimensions_;
+  std::vector<SearchState> searches_;
+  std::vector<TunedSet> tuned_;
+};
+
+Result<void> Check(const Options& options) {
+  if (stream::GaitNamed(options.gait) == stream::Gait::kUnspecified) {
+    return UsageError("--gait " + options.gait + ": must be step, walk, run or jump");
+  }
+  if (options.out.empty() && options.iterations > 0) {
+    return UsageError("--out is missing; only --iterations 0 does without");
+  }
+  for (std::size_t i = 1; i < options.speeds_mps.size(); ++i) {
+    if (options.speeds_mps[i] <= options.speeds_mps[i - 1]) {
+      return UsageError("--speeds: must rise");
+    }
+  }
+  return {};
+}
+
+Result<ordered_json> RunChecked(const Options& options) {
+  if (const auto good = Check(options); !good) return good.error();
+  const auto texts = ReadTexts();
+  if (!texts) return texts.error();
+  auto table = TableOf(*texts, options.from);
+  if (!table) return table.error();
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  auto team = Team::Create(options.threads > 0 ? options.threads : cores);
+  if (!team) return team.error();
+  Tuning tuning(options, std::move(*team), std::move(*table));
+  if (const auto resumed = tuning.Resume(); !resumed) return resumed.error();
+  if (const auto tuned = tuning.Tune(); !tuned) return tuned.error();
+  if (const auto written = tuning.Write(); !written) return written.error();
+  return tuning.Report();
+}
+
+}  // namespace
+
+int Run(const Options& options) {
+  const Result<ordered_json> report = RunChecked(options);
+  if (!report) return cli::Report(report.error());
+  if (options.json) std::printf("%s\n", report->dump().c_str());
+  return 0;
+}
+
+}  // namespace footing::tune

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace footing::tune {
+
+struct Options {
+  std::string gait;
+  std::vector<double> speeds_mps;
+  std::string out;
+  std::vector<std::string> from;
+  std::uint64_t seed = 1;
+  std::string method = "descent";
+  int iterations = 6;
+  int trials = 24;
+  int threads = 0;  ///< 0: one a core.
+  bool json = false;
+  std::string command_line;  ///< As typed, for the table's comment.
+};
+
+/// Tunes; returns the exit code.
+int Run(const Options& options);
+
+}  // namespace footing::tune

@@ -1,0 +1,53 @@
+#include "daemon/offline/tune/objective.h"
+
+#include <gtest/gtest.h>
+
+namespace footing::tune {
+namespace {
+
+constexpr Task kWalk{stream::Gait::kWalk, 1.0};
+
+TrialResult AsWanted(const Task& task) {
+  const Wanted wanted = WantedOf(task, 0.2);
+  return {.survived = 1,
+          .speed_error_mps = 0,
+          .flight_s = wanted.flight_s,
+          .stance_s = wanted.stance_s,
+          .stride_m = wanted.stride_m};
+}
+
+TEST(Objective, IsNothingWhenAllIsAsWanted) {
+  for (const Task& task : {kWalk, Task{stream::Gait::kStep, 0}, Task{stream::Gait::kRun, 3},
+                           Task{stream::Gait::kJump, 0.5}}) {
+    EXPECT_NEAR(CostOf(task, AsWanted(task)).total(), 0, 1e-12);
+  }
+}
+
+TEST(Objective, ChargesTenForAFallAtOnceAndLessForALaterOne) {
+  TrialResult result = AsWanted(kWalk);
+  result.survived = 0;
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).total(), 10);
+  result.survived = 0.75;
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).failure, 2.5);
+}
+
+TEST(Objective, ChargesEachTermByItself) {
+  TrialResult result = AsWanted(kWalk);
+  result.speed_error_mps = 0.15;
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).speed, 1);
+  result.speed_error_mps = 5;
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).speed, 2);
+  result.flight_s *= 1.1;
+  EXPECT_NEAR(CostOf(kWalk, result).flight, 0.25, 1e-12);
+  result.stance_s *= 0.5;
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).stance, 1);
+  result.stride_m *= 1.2;
+  EXPECT_NEAR(CostOf(kWalk, result).stride, 1, 1e-12);
+}
+
+TEST(Objective, DoesNotChargeWhatWasNeverSeen) {
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, TrialResult{}).total(), 0);
+}
+
+}  // namespace
+}  // namespace footing::tune

@@ -1,0 +1,88 @@
+#include "daemon/offline/tune/trial.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "daemon/offline/tune/team.h"
+#include "daemon/offline/tune/texts.h"
+
+namespace footing::tune {
+namespace {
+
+const Task kWalk{stream::Gait::kWalk, 0.8};
+
+Team NewTeam(int threads) {
+  auto team = Team::Create(threads);
+  EXPECT_TRUE(team.ok());
+  EXPECT_TRUE(team->Prepare(kWalk, *TableOf(*ReadTexts(), {}), 3).ok());
+  return std::move(team).value();
+}
+
+std::vector<double> Totals(Team team) {
+  std::vector<gait::Gains> gains(2);
+  gains[1].attitude.roll_damping_nms_per_rad = 20;
+  std::vector<double> totals;
+  for (const auto& costs : team.Try(gains, 6, 99)) {
+    for (const Cost& cost : costs) totals.push_back(cost.total());
+  }
+  return totals;
+}
+
+TEST(Trials, DoNotDependOnTheNumberOfThreads) { EXPECT_EQ(Totals(NewTeam(1)), Totals(NewTeam(3))); }
+
+TEST(Trials, SeeTheGainsThatAreTried) {
+  const auto totals = Totals(NewTeam(1));
+  EXPECT_NE(std::vector(totals.begin(), totals.begin() + 6),
+            std::vector(totals.begin() + 6, totals.end()));
+}
+
+TEST(Trials, LegsThatCannotCarryFailInEveryTrial) {
+  Team team = NewTeam(2);
+  gait::Gains weak;
+  weak.walking.leg_stiffness_n_per_m = 100;
+  weak.walking.carried_mass_kg = 1;
+  const Score score = ScoreOf(team.Try({weak}, 4, 1).front());
+  EXPECT_EQ(score.survival, 0);
+  EXPECT_GT(score.mean.failure, 5);
+}
+
+TEST(Trials, BeginWalkingAtTheirSpeed) {
+  auto texts = ReadTexts();
+  auto engine = engine::GaitEngine::Create(*texts);
+  ASSERT_TRUE(engine.ok());
+  const auto states = SettledStates(*engine, kWalk, 3, 5);
+  ASSERT_TRUE(states.ok());
+  std::set<std::uint64_t> moments;
+  for (const auto& state : *states) {
+    EXPECT_EQ(state.gait.gait, stream::Gait::kWalk);
+    EXPECT_NEAR(state.gait.desired_speed_mps, 0.8, 1e-6);
+    EXPECT_EQ(state.falls, 0u);
+    moments.insert(state.step);
+  }
+  EXPECT_EQ(moments.size(), 3u);
+}
+
+TEST(Score, HasTheMeanAndItsInterval) {
+  // 0 and 2 in equal parts of 100: standard deviation 1.005, half width 1.96 of a tenth of it.
+  std::vector<Cost> costs(100);
+  for (std::size_t i = 0; i < costs.size(); i += 2) costs[i].speed = 2;
+  const Score score = ScoreOf(costs);
+  EXPECT_NEAR(score.mean.total(), 1, 1e-12);
+  EXPECT_NEAR(score.total_half_width, 0.196 * 1.005, 1e-3);
+  std::vector<Cost> better = costs;
+  for (Cost& cost : better) cost.speed -= 0.5;
+  EXPECT_NEAR(Compare(better, costs).mean, -0.5, 1e-12);
+  EXPECT_NEAR(Compare(better, costs).half_width, 0, 1e-12);
+}
+
+TEST(Seeds, AreMixed) {
+  std::set<std::uint64_t> seen;
+  for (std::uint64_t a = 0; a < 30; ++a) {
+    for (std::uint64_t b = 0; b < 30; ++b) seen.insert(MixSeeds(a, b));
+  }
+  EXPECT_EQ(seen.size(), 900u);
+}
+
+}  // namespace
+}  // namespace footing::tune

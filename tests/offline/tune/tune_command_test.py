@@ -1,0 +1,45 @@
+"""footing-tune stopped after one iteration goes on to what an unbroken run writes; its table is
+read by footing-eval; a state of another run is refused by name."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+TUNE, EVAL = sys.argv[1:3]
+
+
+def run(program, *arguments):
+    return subprocess.run([program, *arguments], capture_output=True, text=True)
+
+
+def tune(out, iterations, *more):
+    return run(TUNE, "--gait", "step", "--speeds", "0", "--trials", "1", "--seed", "5", "--out",
+               str(out), "--iterations", str(iterations), "--json", *more)
+
+
+def without_comment(path):
+    return [line for line in path.read_text().splitlines() if not line.startswith("#")]
+
+
+with tempfile.TemporaryDirectory() as folder:
+    broken, unbroken = pathlib.Path(folder, "a.csv"), pathlib.Path(folder, "b.csv")
+    first, second = tune(broken, 1), tune(broken, 2)
+    for done in (first, second, tune(unbroken, 2, "--threads", "1")):
+        assert done.returncode == 0, done.stderr
+    assert "goes on from" not in first.stderr and "goes on from" in second.stderr
+    assert without_comment(broken) == without_comment(unbroken)
+    assert "--seed 5" in broken.read_text() and "seed 5" in broken.read_text().splitlines()[0]
+    assert broken.with_suffix(".svg").read_text().count("<polyline") == 2
+    assert json.loads(second.stdout)["sets"][0]["before"]["trials"] == 8
+
+    refused = run(TUNE, "--gait", "step", "--speeds", "0", "--trials", "1", "--seed", "6", "--out",
+                  str(broken))
+    assert refused.returncode == 4 and "another seed" in refused.stderr, refused.stderr
+    assert run(TUNE, "--gait", "step", "--speeds", "0").returncode == 2
+    assert run(TUNE, "--gait", "walk", "--speeds", "1,1", "--out", "x").returncode == 2
+    assert run(TUNE, "--gait", "hop", "--speeds", "1", "--out", "x").returncode == 2
+
+    evaluated = run(EVAL, "gait", "--gait", "step", "--seconds", "2", "--gains", str(broken),
+                    "--json")
+    assert evaluated.returncode == 0, evaluated.stderr
