@@ -169,13 +169,13 @@ void PlanLanding(const Context& context, GaitMemory& memory) {
   Vector3d foothold_W;
   terrain::Spot spot;
   for (int round = 0; round < kRounds; ++round) {
-    const double com_m = height_m + context.biped.foot_radius_m +
-                         TouchdownHeight(context, memory, ahead_m);
+    const double com_m =
+        height_m + context.biped.foot_radius_m + TouchdownHeight(context, memory, ahead_m);
     const double time_s = FallTime(body.v_WC.z(), body.p_WC.z() - com_m);
     foothold_W = body.p_WC + offset_W + time_s * body.v_WC;
-    ground.shift_m = std::clamp(
-        ShiftOffEdge(context, memory.heading_rad, foothold_W, ground.towards), -gains.shift_limit_m,
-        gains.shift_limit_m);
+    ground.shift_m =
+        std::clamp(ShiftOffEdge(context, memory.heading_rad, foothold_W, ground.towards),
+                   -gains.shift_limit_m, gains.shift_limit_m);
     foothold_W += ground.shift_m * ahead_W;
     spot = SpotAt(context, foothold_W);
     if (spot.pit) return;
@@ -190,14 +190,19 @@ Vector3d Cleared(const Context& context, const GaitMemory& memory, int leg,
                  const Vector3d& r_HF_W_m) {
   const SteppingGains& gains = context.gains.stepping;
   const biped::LegState& state = context.body.legs[leg];
+  const Vector3d ahead_W = Ahead(memory.heading_rad);
   Vector3d r_W = r_HF_W_m;
   const bool lands = leg == memory.support_leg || memory.gait == stream::Gait::kJump;
   for (const EdgeMemory* edge : {&memory.ground.behind, &memory.ground.ahead}) {
     if (!edge->there || (lands && edge == &memory.ground.ahead)) continue;
-    const double past_m = (state.p_WF - edge->p_W_m).dot(Ahead(memory.heading_rad));
+    const double past_m = (state.p_WF - edge->p_W_m).dot(ahead_W);
     if (past_m > context.biped.foot_radius_m) continue;
     const double lowest_m = edge->height_m + context.biped.foot_radius_m + gains.clearance_m;
     r_W.z() = std::max(r_W.z(), lowest_m - state.p_WH.z());
+    if (past_m > 0 || state.p_WF.z() > edge->height_m + context.biped.foot_radius_m) continue;
+    // Still lower than the riser's top: up first, then over it.
+    const double room_m = (edge->p_W_m - state.p_WH).dot(ahead_W) - gains.riser_margin_m;
+    r_W -= std::max(0.0, r_W.dot(ahead_W) - room_m) * ahead_W;
   }
   r_W.z() = std::min(r_W.z(), std::max(r_HF_W_m.z(), -gains.shortest_leg_m));
   return r_W;

@@ -36,8 +36,8 @@ struct SlopeLeg {
 SlopeLeg RelativeToSlope(const Context& context, const GaitMemory& memory, int leg);
 double RisingSpeed(const Context& context, const GaitMemory& memory);
 
-/// From hip to foot of a leg in flight, shortened where its foot must clear an edge: the landing leg
-/// those before its foothold, the idle leg the next one too.
+/// From hip to foot of a leg in flight, shortened where its foot must clear an edge: the landing
+/// leg those before its foothold, the idle leg the next one too.
 Eigen::Vector3d Cleared(const Context& context, const GaitMemory& memory, int leg,
                         const Eigen::Vector3d& r_HF_W_m);
 
