@@ -92,9 +92,10 @@ struct HoppingGains {
 
 /// Running and jumping over steps of the ground that are seen.
 struct SteppingGains {
-  double low_margin_m = 0.06;   ///< Foot's centre from an edge, below it.
-  double high_margin_m = 0.04;  ///< Above it.
-  double clearance_m = 0.02;    ///< Of a foot in flight.
+  double low_margin_m = 0.06;    ///< Foot's centre from an edge, below it.
+  double high_margin_m = 0.04;   ///< Above it.
+  double clearance_m = 0.02;     ///< Of a foot in flight, over the edge, ...
+  double riser_margin_m = 0.04;  ///< ... and of its centre before it, while it is lower.
   double shortest_leg_m = 0.56;
   double shift_limit_m = 0.12;    ///< Of a foothold.
   double shift_limit_mps = 0.25;  ///< Of the lift-off speed, for the same end.

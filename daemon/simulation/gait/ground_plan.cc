@@ -190,14 +190,19 @@ Vector3d Cleared(const Context& context, const GaitMemory& memory, int leg,
                  const Vector3d& r_HF_W_m) {
   const SteppingGains& gains = context.gains.stepping;
   const biped::LegState& state = context.body.legs[leg];
+  const Vector3d ahead_W = Ahead(memory.heading_rad);
   Vector3d r_W = r_HF_W_m;
   const bool lands = leg == memory.support_leg || memory.gait == stream::Gait::kJump;
   for (const EdgeMemory* edge : {&memory.ground.behind, &memory.ground.ahead}) {
     if (!edge->there || (lands && edge == &memory.ground.ahead)) continue;
-    const double past_m = (state.p_WF - edge->p_W_m).dot(Ahead(memory.heading_rad));
+    const double past_m = (state.p_WF - edge->p_W_m).dot(ahead_W);
     if (past_m > context.biped.foot_radius_m) continue;
     const double lowest_m = edge->height_m + context.biped.foot_radius_m + gains.clearance_m;
     r_W.z() = std::max(r_W.z(), lowest_m - state.p_WH.z());
+    if (past_m > 0 || state.p_WF.z() > edge->height_m + context.biped.foot_radius_m) continue;
+    // Still lower than the riser's top: up first, then over it.
+    const double room_m = (edge->p_W_m - state.p_WH).dot(ahead_W) - gains.riser_margin_m;
+    r_W -= std::max(0.0, r_W.dot(ahead_W) - room_m) * ahead_W;
   }
   r_W.z() = std::min(r_W.z(), std::max(r_HF_W_m.z(), -gains.shortest_leg_m));
   return r_W;

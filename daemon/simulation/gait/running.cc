@@ -144,7 +144,7 @@ void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
 RunningCues SenseRunning(const Context& context, const GaitMemory& memory) {
   const VirtualLeg leg = StanceLeg(context, memory);
   const double time_s = context.TimeIn(memory);
-  return {.falling = context.body.v_WC.z() < 0,
+  return {.falling = RisingSpeed(context, memory) < 0,
           .landed_early = leg.touching && time_s > kEarliestLandingS,
           .landed = leg.touching,
           .leg_shortest = !memory.absorbing && time_s > kShortestCompressionS &&
