@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -35,6 +36,7 @@ struct Options {
   double step_m = 0;
   std::optional<double> pit_m;
   double jump_lead_s = 0.8;
+  bool no_jump = false;
 };
 
 struct Trials {
@@ -97,7 +99,8 @@ Result<void> RunTrial(const Options& options, std::uint64_t seed, Trials& trials
 
   Walker walker(*engine);
   walker.Command(command);
-  PitPilot pilot(course, command, command.height_m, options.jump_lead_s);
+  PitPilot pilot(course, command, command.height_m,
+                 options.no_jump ? -INFINITY : options.jump_lead_s);
   std::optional<GroundPilot> ground_pilot;
   if (ground) ground_pilot.emplace(*ground, command, random);
   GaitStatistics statistics(command.speed_mps);
@@ -250,6 +253,7 @@ void AddGaitCommand(CLI::App& app, Shared& shared) {
       ->add_option("--jump-lead", options->jump_lead_s,
                    "A run is told to jump this long before it reaches a pit, s")
       ->check(CLI::Range(0.0, 5.0));
+  command->add_flag("--no-jump", options->no_jump, "A run is not told to jump");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

@@ -17,11 +17,8 @@ Vector3d LinkMomentum(const biped::BodyState& body, const biped::BipedParameters
 
 }  // namespace
 
-Vector3d AngularMomentum(const biped::BodyState& body, const biped::BipedParameters& biped) {
-  const Vector3d inertia_B(biped.body_inertia_roll_kgm2, biped.body_inertia_pitch_kgm2,
-                           biped.body_inertia_yaw_kgm2);
-  Vector3d momentum = body.R_WB * inertia_B.asDiagonal() * body.R_WB.transpose() * body.w_WB +
-                      biped.body_mass_kg * (body.p_WB - body.p_WC).cross(body.v_WB - body.v_WC);
+Vector3d LegsMomentum(const biped::BodyState& body, const biped::BipedParameters& biped) {
+  Vector3d momentum = Vector3d::Zero();
   for (const biped::LegState& leg : body.legs) {
     const Vector3d rates(leg.joint_velocity[0], leg.joint_velocity[1], leg.joint_velocity[2]);
     const Vector3d w = body.w_WB + leg.hinge_axes_W * rates;
@@ -34,6 +31,14 @@ Vector3d AngularMomentum(const biped::BodyState& body, const biped::BipedParamet
                              v_WH + w.cross(knee_link) + leg.length_rate_mps * u, w, u);
   }
   return momentum;
+}
+
+Vector3d AngularMomentum(const biped::BodyState& body, const biped::BipedParameters& biped) {
+  const Vector3d inertia_B(biped.body_inertia_roll_kgm2, biped.body_inertia_pitch_kgm2,
+                           biped.body_inertia_yaw_kgm2);
+  return body.R_WB * inertia_B.asDiagonal() * body.R_WB.transpose() * body.w_WB +
+         biped.body_mass_kg * (body.p_WB - body.p_WC).cross(body.v_WB - body.v_WC) +
+         LegsMomentum(body, biped);
 }
 
 }  // namespace footing::gait

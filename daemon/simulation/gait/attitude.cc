@@ -10,7 +10,8 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
                            const Targets& targets, const biped::BipedParameters& biped,
                            const AttitudeGains& gains) {
   const double lean_rad =
-      targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0;
+      targets.lean_rad +
+      (targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0);
   const Eigen::Matrix3d desired_R_WB =
       (Eigen::AngleAxisd(memory.heading_rad, Eigen::Vector3d::UnitZ()) *
        Eigen::AngleAxisd(lean_rad, Eigen::Vector3d::UnitY()))
@@ -23,6 +24,7 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
     const Eigen::Vector3d momentum_B = body.R_WB.transpose() * AngularMomentum(body, biped);
     late_w_B.x() = -momentum_B.x() / biped.body_inertia_roll_kgm2;
   }
+  late_w_B += body.R_WB.transpose() * targets.rate_W_radps;
   const Eigen::Array3d stiffness(
       gains.roll_stiffness_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
       targets.hopping ? gains.hop_yaw_stiffness_nm_per_rad : gains.walk_yaw_stiffness_nm_per_rad);

@@ -120,6 +120,9 @@ constexpr std::array kFields{
     GAIN(pit, sight_m, "m", 0, 20),
     GAIN(pit, shift_back_m, "m", 0, 0.5),
     GAIN(pit, shift_ahead_m, "m", 0, 1),
+    GAIN(pit, jump_speed_max_mps, "m/s", 0, 10),
+    GAIN(pit, leap_roll_share, "1", -1, 5),
+    GAIN(pit, leap_lean_rad_per_mps, "rad s/m", -1, 1),
 
     GAIN(recovery, outrun_mps, "m/s", 0, 10),
     GAIN(recovery, idle_yield, "1", 0, 5),

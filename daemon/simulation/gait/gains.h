@@ -132,6 +132,9 @@ struct PitGains {
   double sight_m = 3;            ///< Nearer pits are planned for even when out of reach.
   double shift_back_m = 0.12;    ///< Of a foothold that would come to lie in the pit.
   double shift_ahead_m = 0.25;
+  double jump_speed_max_mps = 3.6;  ///< A faster run crosses as it is, its jump pending.
+  double leap_roll_share = 0.5;     ///< Of the legs' roll momentum, taken out besides.
+  double leap_lean_rad_per_mps = -0.02;
 };
 
 /// What a push needs, beyond what the gaits need.

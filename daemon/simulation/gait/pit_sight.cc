@@ -161,7 +161,7 @@ void ForeseeLeap(const Context& context, double nominal_mps, GaitMemory& memory)
   const PitPlan plan = PlanPit(*pit, hop, hop, gains.limits);
   seen.planned = Plans(*pit, plan, gains.sight_m);
   seen.last_foothold = seen.planned && plan.leaps;
-  if (JumpsPit(context.goal, memory)) memory.preparing_jump = seen.last_foothold;
+  if (JumpsPit(context.goal, memory)) memory.preparing_jump = JumpsFromNext(context, memory);
 }
 
 void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory) {
@@ -185,7 +185,9 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
                         pit->far_m - pit->near_m <= gains.run_width_max_m;
   seen.planned = Plans(*pit, plan, gains.sight_m);
   seen.leaping = seen.planned && plan.leaps && may_leap;
-  if (JumpsPit(context.goal, memory)) memory.preparing_jump = seen.leaping;
+  if (JumpsPit(context.goal, memory)) {
+    memory.preparing_jump = seen.leaping && seen.flight_mps < gains.jump_speed_max_mps;
+  }
   if (seen.planned && (!plan.leaps || seen.leaping)) seen.lift_off_mps = plan.lift_off_mps;
 }
 
@@ -196,6 +198,11 @@ double PlannedExtension(const Context& context, const GaitMemory& memory) {
 bool JumpsPit(const biped::GaitCommand& goal, const GaitMemory& memory) {
   return goal.gait == stream::Gait::kJump && memory.gait == stream::Gait::kRun &&
          memory.pit.ahead && memory.pit.planned;
+}
+
+bool JumpsFromNext(const Context& context, const GaitMemory& memory) {
+  const double speed_mps = ToHeading(memory.heading_rad, context.body.v_WC).x();
+  return memory.pit.last_foothold && speed_mps < context.gains.pit.jump_speed_max_mps;
 }
 
 double FootholdShift(const Context& context, const GaitMemory& memory) {

@@ -33,6 +33,10 @@ double PlannedExtension(const Context& context, const GaitMemory& memory);
 /// True in a run whose commanded jump waits for the pit ahead.
 bool JumpsPit(const biped::GaitCommand& goal, const GaitMemory& memory);
 
+/// In the flight of such a run: whether the coming foothold is the one to jump from. A run that is
+/// too fast to jump crosses the pit in its stride.
+bool JumpsFromNext(const Context& context, const GaitMemory& memory);
+
 /// In flight: how far to move the foothold off the pit; m along the heading.
 double FootholdShift(const Context& context, const GaitMemory& memory);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/gait/angular_momentum.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/ground_plan.h"
@@ -151,6 +152,18 @@ Targets JumpingStance(const Context& context, const GaitMemory& memory) {
   return targets;
 }
 
+/// A long flight would turn what one leg's support leaves in roll into a tilt: the body is to take
+/// out more than all of the legs' swing before, since both legs then spread.
+void PrepareLongFlight(const Context& context, const GaitMemory& memory, Targets& targets) {
+  const PitGains& gains = context.gains.pit;
+  const Eigen::Vector3d legs_H =
+      ToHeading(memory.heading_rad, LegsMomentum(context.body, context.biped));
+  const double roll_radps =
+      -gains.leap_roll_share * legs_H.x() / context.biped.body_inertia_roll_kgm2;
+  targets.rate_W_radps = ToWorld(memory.heading_rad, {roll_radps, 0, 0});
+  targets.lean_rad = gains.leap_lean_rad_per_mps * memory.desired_speed_mps;
+}
+
 }  // namespace
 
 Targets RunningTargets(const Context& context, const GaitMemory& memory) {
@@ -161,6 +174,8 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
                     : jumping ? JumpingStance(context, memory)
                               : RunningStance(context, memory);
   targets.hopping = true;
+  const bool leaps = memory.pit.leaping && memory.preparing_jump;
+  if (leaps && !flying && !jumping) PrepareLongFlight(context, memory, targets);
   targets.jumping = jumping;
   return targets;
 }

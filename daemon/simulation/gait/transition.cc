@@ -138,7 +138,7 @@ void LiftOff(const Context& context, GaitMemory& memory) {
 }
 
 bool MayPrepareJump(const Context& context, const GaitMemory& memory) {
-  if (JumpsPit(context.goal, memory)) return memory.pit.last_foothold;
+  if (JumpsPit(context.goal, memory)) return JumpsFromNext(context, memory);
   return context.goal.gait == Gait::kJump && memory.gait != Gait::kJump &&
          SpeedAlongHeading(context, memory) < context.gains.transition.run_to_jump_mps;
 }
