@@ -51,6 +51,13 @@ Result<engine::GaitEngine> NewEngine() {
   return engine::GaitEngine::Create(*texts);
 }
 
+Result<engine::GaitEngine> NewEngineOn(const std::string& track) {
+  Result<engine::EngineTexts> texts = ReadTexts();
+  if (!texts) return texts.error();
+  texts->track = track;
+  return engine::GaitEngine::Create(*texts);
+}
+
 Result<physics::World> NewWorld() {
   Result<engine::EngineTexts> texts = ReadTexts();
   if (!texts) return texts.error();

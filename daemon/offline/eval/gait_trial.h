@@ -31,7 +31,9 @@ Result<std::uint64_t> ParseSeed(const std::string& text);
 
 /// An engine on the straight track, from the product's data files.
 Result<engine::GaitEngine> NewEngine();
-/// The world of that engine alone.
+/// An engine on a track given as text.
+Result<engine::GaitEngine> NewEngineOn(const std::string& track);
+/// The world of NewEngine's engine alone.
 Result<physics::World> NewWorld();
 
 /// An engine driven by direct commands, with what one wants to know of it.

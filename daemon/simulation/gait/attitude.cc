@@ -2,26 +2,20 @@
 
 #include <Eigen/Geometry>
 
-#include "daemon/simulation/gait/angular_momentum.h"
-
 namespace footing::gait {
 
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,
-                           const Targets& targets, const biped::BipedParameters& biped,
-                           const AttitudeGains& gains) {
+                           const Targets& targets, const AttitudeGains& gains) {
   const double lean_rad =
-      targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0;
+      targets.lean_rad +
+      (targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0);
   const Eigen::Matrix3d desired_R_WB =
       (Eigen::AngleAxisd(memory.heading_rad, Eigen::Vector3d::UnitZ()) *
        Eigen::AngleAxisd(lean_rad, Eigen::Vector3d::UnitY()))
           .toRotationMatrix();
   const Eigen::AngleAxisd error_W(desired_R_WB * body.R_WB.transpose());
   const Eigen::Vector3d error_B = body.R_WB.transpose() * (error_W.angle() * error_W.axis());
-  Eigen::Vector3d w_B = body.R_WB.transpose() * body.w_WB;
-  if (targets.hopping) {  // What a flight turns by is all the momentum there is, not the body's.
-    const Eigen::Vector3d momentum_B = body.R_WB.transpose() * AngularMomentum(body, biped);
-    w_B.x() = momentum_B.x() / biped.body_inertia_roll_kgm2;
-  }
+  const Eigen::Vector3d w_B = body.R_WB.transpose() * (body.w_WB - targets.rate_W_radps);
   const Eigen::Array3d stiffness(
       gains.roll_stiffness_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
       targets.hopping ? gains.hop_yaw_stiffness_nm_per_rad : gains.walk_yaw_stiffness_nm_per_rad);

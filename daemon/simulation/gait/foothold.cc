@@ -100,6 +100,7 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
 
   const bool landing = memory.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
+  ahead_m += memory.pit.shift_m;
   const bool preparing = memory.preparing_jump && !jumping;
   const double side_gain_s =
       preparing ? context.gains.transition.preparation_gain_s : velocity_gain_s;

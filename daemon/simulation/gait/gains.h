@@ -1,5 +1,7 @@
 #pragma once
 
+#include "daemon/simulation/gait/pit_plan.h"
+
 /// Every number of the controllers, with its unit in its name. One set serves a gait's whole range
 /// of speeds; where the paper interpolates between a slow and a fast set, equation (2) here carries
 /// a term in the desired speed. How they were found and what they reach: docs/gait.md.
@@ -119,12 +121,25 @@ struct RecoveryGains {
   double spread_mps = 0.5;            ///< At this speed aside a jump's legs are spread in full.
 };
 
+/// Crossing pits (pit_plan.h).
+struct PitGains {
+  PitLimits limits;
+  double run_width_max_m = 0.4;  ///< A run crosses this by itself; wider ones want a jump.
+  double sight_m = 3;            ///< Nearer pits are planned for even when out of reach.
+  double shift_back_m = 0.12;    ///< Of a foothold that would come to lie in the pit.
+  double shift_ahead_m = 0.25;
+  double jump_speed_max_mps = 3.6;  ///< A faster run crosses as it is, its jump pending.
+  double leap_roll_share = 1.5;     ///< Of the legs' roll momentum, against which the body turns.
+  double leap_lean_rad_per_mps = -0.02;
+};
+
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;
   WalkingGains walking;
   HoppingGains hopping;
   TransitionGains transition;
+  PitGains pit;
   RecoveryGains recovery;
 };
 

@@ -9,14 +9,17 @@ namespace footing::terrain {
 namespace {
 
 constexpr double kHalfThicknessM = 1.0;
+/// The first segment's ground begins this much before its start, where the character stands.
+constexpr double kBeforeStartM = 3.0;
 
-std::string Box(const stream::TrackSegment& segment) {
-  const double half_m = segment.length_m / 2;
+/// `before_m` lengthens it backwards.
+std::string Box(const stream::TrackSegment& segment, double before_m) {
+  const double half_m = (segment.length_m + before_m) / 2;
   const Eigen::Matrix3d R_WS = (Eigen::AngleAxisd(segment.heading_rad, Eigen::Vector3d::UnitZ()) *
                                 Eigen::AngleAxisd(-segment.slope_rad, Eigen::Vector3d::UnitY()))
                                    .toRotationMatrix();
   const Eigen::Vector3d centre =
-      segment.start_m + R_WS * Eigen::Vector3d(half_m, 0, -kHalfThicknessM);
+      segment.start_m + R_WS * Eigen::Vector3d(half_m - before_m, 0, -kHalfThicknessM);
   const Eigen::Quaterniond q(R_WS);
   const auto text = [](double value) { return std::to_string(value) + " "; };
   return "<geom type='box' contype='1' conaffinity='2' size='" + text(half_m) +
@@ -52,7 +55,8 @@ std::string GroundMjcf(const stream::Track& track) {
   }
   std::string text;
   for (const stream::TrackSegment& segment : track.segments) {
-    if (!segment.pit) text += Box(segment);
+    const bool first = &segment == &track.segments.front();
+    if (!segment.pit) text += Box(segment, first ? kBeforeStartM : 0);
   }
   return text;
 }

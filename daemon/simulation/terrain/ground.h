@@ -19,7 +19,8 @@ double RibbonHeight(const stream::Track& track, double x_m, double y_m);
 /// Height of the ground under a point, m. Beside the ribbon the height of the nearest place.
 double GroundHeight(const stream::Track& track, double x_m, double y_m);
 
-/// The ground as MJCF geoms of the world body: one plane, or a box a segment that is no pit.
+/// The ground as MJCF geoms of the world body: one plane, or a box a segment that is no pit; the
+/// first one begins 3 m before its start.
 std::string GroundMjcf(const stream::Track& track);
 
 }  // namespace footing::terrain
