@@ -120,10 +120,10 @@ Result<void> RunPushSweep(const PushSweep& sweep, std::uint64_t seed, PushSweepR
     }
   }
   result.pushes += sweep.directions * sweep.phases;
-  const double largest_ns =
-      falls == 0 ? LargestSurvived(cycle, sweep.directions, sweep.impulse_ns,
-                                   std::max(kLargestNs, sweep.impulse_ns))
-                 : LargestSurvived(cycle, sweep.directions, 0, sweep.impulse_ns);
+  const double largest_ns = falls == 0
+                                ? LargestSurvived(cycle, sweep.directions, sweep.impulse_ns,
+                                                  std::max(kLargestNs, sweep.impulse_ns))
+                                : LargestSurvived(cycle, sweep.directions, 0, sweep.impulse_ns);
   result.largest_survived_ns =
       first ? largest_ns : std::min(result.largest_survived_ns, largest_ns);
   return {};

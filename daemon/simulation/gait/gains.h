@@ -105,7 +105,7 @@ struct TransitionGains {
   double landing_reach_m = 0.08;          ///< The last step's foot is put this much further ahead.
   double run_landing_stiffness_n_per_m = 1800;
   double run_landing_damping_ns_per_m = 420;
-  double run_to_jump_mps = 3.2;      ///< Up to this the preparatory step may be taken.
+  double run_to_jump_mps = 4.0;      ///< Up to this the preparatory step may be taken.
   double preparation_gain_s = 0.14;  ///< Sideways k_R of the preparatory step.
   double jump_speed_before_landing_mps = 1.0;
   double jump_to_step_mps = 1.3;  ///< Up to this a jump may land into stepping.
@@ -133,6 +133,13 @@ struct PitGains {
   double leap_lean_rad_per_mps = -0.02;
 };
 
+/// What shows of a command at once.
+struct AnticipationGains {
+  double lean_rad_per_mps = 0.05;  ///< Of speed still to be gained.
+  double lean_limit_rad = 0.08;
+  double crouch_m = 0.03;
+};
+
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;
@@ -141,6 +148,7 @@ struct Gains {
   TransitionGains transition;
   PitGains pit;
   RecoveryGains recovery;
+  AnticipationGains anticipation;
 };
 
 }  // namespace footing::gait
