@@ -2,13 +2,10 @@
 
 #include <Eigen/Geometry>
 
-#include "daemon/simulation/gait/angular_momentum.h"
-
 namespace footing::gait {
 
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,
-                           const Targets& targets, const biped::BipedParameters& biped,
-                           const AttitudeGains& gains) {
+                           const Targets& targets, const AttitudeGains& gains) {
   const double lean_rad =
       targets.lean_rad +
       (targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0);
@@ -18,13 +15,9 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
           .toRotationMatrix();
   const Eigen::AngleAxisd error_W(desired_R_WB * body.R_WB.transpose());
   const Eigen::Vector3d error_B = body.R_WB.transpose() * (error_W.angle() * error_W.axis());
-  Eigen::Vector3d late_w_B =
-      body.R_WB.transpose() * (memory.turning_radps * Eigen::Vector3d::UnitZ() - body.w_WB);
-  if (targets.hopping) {  // What a flight turns by is all the momentum there is, not the body's.
-    const Eigen::Vector3d momentum_B = body.R_WB.transpose() * AngularMomentum(body, biped);
-    late_w_B.x() = -momentum_B.x() / biped.body_inertia_roll_kgm2;
-  }
-  late_w_B += body.R_WB.transpose() * targets.rate_W_radps;
+  const Eigen::Vector3d desired_w_W =
+      memory.turning_radps * Eigen::Vector3d::UnitZ() + targets.rate_W_radps;
+  const Eigen::Vector3d late_w_B = body.R_WB.transpose() * (desired_w_W - body.w_WB);
   const Eigen::Array3d stiffness(
       gains.roll_stiffness_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
       targets.hopping ? gains.hop_yaw_stiffness_nm_per_rad : gains.walk_yaw_stiffness_nm_per_rad);

@@ -10,11 +10,8 @@
 namespace footing::gait {
 
 /// The moment (world frame, N m) that a PD servo on roll, pitch and yaw wants on the body: level,
-/// along the heading and turning as it does; jumping leans back with speed. Running and jumping
-/// damp the roll of body and legs together: their angular momentum over the body's inertia stands
-/// in the rate's place.
+/// along the heading and turning as it does; jumping leans back with speed.
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,
-                           const Targets& targets, const biped::BipedParameters& biped,
-                           const AttitudeGains& gains);
+                           const Targets& targets, const AttitudeGains& gains);
 
 }  // namespace footing::gait

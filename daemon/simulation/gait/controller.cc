@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/units/units.h"
+#include "daemon/simulation/gait/anticipation.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/gait/servo.h"
@@ -42,7 +43,8 @@ physics::JointEfforts Advance(const biped::BodyState& body, const biped::BipedPa
   const biped::GaitCommand goal = Goal(memory, command, gains.transition);
   const Context context{body, biped, gains, goal, seen_ground, step_s};
   SlewSpeed(context, memory);
-  const Targets targets = AdvanceMachines(context, memory);
+  Targets targets = AdvanceMachines(context, memory);
+  targets.lean_rad += AnticipatedLean(context, memory);
   return Servo(targets, body, biped, gains, step_s, memory);
 }
 

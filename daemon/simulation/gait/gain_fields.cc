@@ -128,6 +128,10 @@ constexpr std::array kFields{
     GAIN(recovery, idle_yield, "1", 0, 5),
     GAIN(recovery, idle_yield_limit_rad, "rad", 0, 2),
     GAIN(recovery, spread_mps, "m/s", 0.01, 5),
+
+    GAIN(anticipation, lean_rad_per_mps, "rad s/m", 0, 1),
+    GAIN(anticipation, lean_limit_rad, "rad", 0, 1),
+    GAIN(anticipation, crouch_m, "m", 0, 0.3),
 };
 
 #undef GAIN

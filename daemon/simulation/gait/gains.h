@@ -117,7 +117,7 @@ struct TransitionGains {
   double landing_reach_m = 0.08;          ///< The last step's foot is put this much further ahead.
   double run_landing_stiffness_n_per_m = 1800;
   double run_landing_damping_ns_per_m = 420;
-  double run_to_jump_mps = 3.2;      ///< Up to this the preparatory step may be taken.
+  double run_to_jump_mps = 4.0;      ///< Up to this the preparatory step may be taken.
   double preparation_gain_s = 0.14;  ///< Sideways k_R of the preparatory step.
   double jump_speed_before_landing_mps = 1.0;
   double jump_to_step_mps = 1.3;  ///< Up to this a jump may land into stepping.
@@ -133,7 +133,7 @@ struct PitGains {
   double shift_back_m = 0.12;    ///< Of a foothold that would come to lie in the pit.
   double shift_ahead_m = 0.25;
   double jump_speed_max_mps = 3.6;  ///< A faster run crosses as it is, its jump pending.
-  double leap_roll_share = 0.5;     ///< Of the legs' roll momentum, taken out besides.
+  double leap_roll_share = 1.5;     ///< Of the legs' roll momentum, against which the body turns.
   double leap_lean_rad_per_mps = -0.02;
 };
 
@@ -145,6 +145,13 @@ struct RecoveryGains {
   double spread_mps = 0.5;            ///< At this speed aside a jump's legs are spread in full.
 };
 
+/// What shows of a command at once.
+struct AnticipationGains {
+  double lean_rad_per_mps = 0.05;  ///< Of speed still to be gained.
+  double lean_limit_rad = 0.08;
+  double crouch_m = 0.03;
+};
+
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;
@@ -154,6 +161,7 @@ struct Gains {
   TransitionGains transition;
   PitGains pit;
   RecoveryGains recovery;
+  AnticipationGains anticipation;
 };
 
 }  // namespace footing::gait

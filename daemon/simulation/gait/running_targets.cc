@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/simulation/gait/angular_momentum.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/ground_plan.h"
+#include "daemon/simulation/gait/momentum.h"
 #include "daemon/simulation/gait/running.h"
 
 namespace footing::gait {
@@ -152,8 +152,8 @@ Targets JumpingStance(const Context& context, const GaitMemory& memory) {
   return targets;
 }
 
-/// A long flight would turn what one leg's support leaves in roll into a tilt: the body is to take
-/// out more than all of the legs' swing before, since both legs then spread.
+/// A long flight would turn what one leg's support leaves in roll into a tilt: the legs' swing is
+/// what the body is to take out before, and more, since both legs then spread.
 void PrepareLongFlight(const Context& context, const GaitMemory& memory, Targets& targets) {
   const PitGains& gains = context.gains.pit;
   const Eigen::Vector3d legs_H =
@@ -162,6 +162,16 @@ void PrepareLongFlight(const Context& context, const GaitMemory& memory, Targets
       -gains.leap_roll_share * legs_H.x() / context.biped.body_inertia_roll_kgm2;
   targets.rate_W_radps = ToWorld(memory.heading_rad, {roll_radps, 0, 0});
   targets.lean_rad = gains.leap_lean_rad_per_mps * memory.desired_speed_mps;
+}
+
+/// What a flight turns by is the momentum of body and legs together, so that is what support damps
+/// in roll, as if it were the body's own rate.
+void DampWholeRoll(const Context& context, const GaitMemory& memory, Targets& targets) {
+  const Eigen::Vector3d momentum_H =
+      ToHeading(memory.heading_rad, AngularMomentum(context.body, context.biped));
+  const double roll_radps = ToHeading(memory.heading_rad, context.body.w_WB).x() -
+                            momentum_H.x() / context.biped.body_inertia_roll_kgm2;
+  targets.rate_W_radps = ToWorld(memory.heading_rad, {roll_radps, 0, 0});
 }
 
 }  // namespace
@@ -175,7 +185,11 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
                               : RunningStance(context, memory);
   targets.hopping = true;
   const bool leaps = memory.pit.leaping && memory.preparing_jump;
-  if (leaps && !flying && !jumping) PrepareLongFlight(context, memory, targets);
+  if (leaps && !flying && !jumping) {
+    PrepareLongFlight(context, memory, targets);
+  } else if (!flying) {
+    DampWholeRoll(context, memory, targets);
+  }
   targets.jumping = jumping;
   return targets;
 }

@@ -108,7 +108,7 @@ physics::JointEfforts Servo(const Targets& targets, const biped::BodyState& body
   }
   if (supported) {
     CarryBody(body, biped, gains.attitude, targets, memory.heading_rad,
-              BodyMoment(body, memory, targets, biped, gains.attitude), support_n, efforts);
+              BodyMoment(body, memory, targets, gains.attitude), support_n, efforts);
   }
   return efforts;
 }

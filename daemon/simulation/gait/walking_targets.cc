@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "common/units/units.h"
+#include "daemon/simulation/gait/anticipation.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/walking.h"
 #include "daemon/simulation/terrain/ground.h"
@@ -29,7 +30,8 @@ constexpr double kFullClearanceUntil = 0.85;
 double SupportLength(const Context& context, const GaitMemory& memory, int leg) {
   const WalkingGains& gains = context.gains.walking;
   const biped::LegState& state = context.body.legs[leg];
-  const double height_m = gains.hip_height_m + memory.support_height_m - state.p_WF.z();
+  const double height_m = gains.hip_height_m - AnticipatedCrouch(context, memory) +
+                          memory.support_height_m - state.p_WF.z();
   return std::clamp(height_m / std::max(0.5, -state.u_HF_W.z()), gains.leg_length_min_m,
                     gains.leg_length_max_m);
 }

@@ -1,4 +1,4 @@
-#include "daemon/simulation/gait/angular_momentum.h"
+#include "daemon/simulation/gait/momentum.h"
 
 #include <cmath>
 
