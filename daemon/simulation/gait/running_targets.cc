@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 
+#include "daemon/simulation/gait/attitude.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/running.h"
 
@@ -36,6 +38,17 @@ Eigen::Vector3d TowardsFoothold(const Context& context, const GaitMemory& memory
   return HipToFoot(context.body, leg, HoppingFoothold(context, memory, leg), length_m);
 }
 
+/// The idle leg opposite the other one. A leg has as much inertia about the hip as the body has in
+/// roll: swung towards the side to which the body rolls, it holds the body back, in flight too.
+LegTarget Opposite(const Context& context, const GaitMemory& memory,
+                   const Eigen::Vector3d& other_r_HF_W_m) {
+  const HoppingGains& gains = context.gains.hopping;
+  const double left_rises = std::clamp(context.body.R_WB(2, 1), -1.0, 1.0);
+  const double roll_rad = std::asin(left_rises) - BankAngle(memory, context.gains.attitude);
+  return Placed(Mirrored(memory.heading_rad, other_r_HF_W_m, gains.idle_length_m,
+                         gains.idle_roll_share * roll_rad));
+}
+
 Targets Flight(const Context& context, const GaitMemory& memory) {
   const double length_m = FlightLength(context, memory);
   Targets targets;
@@ -43,8 +56,7 @@ Targets Flight(const Context& context, const GaitMemory& memory) {
   targets.legs[front] = Placed(TowardsFoothold(context, memory, front, length_m));
   targets.legs[rear] = memory.gait == stream::Gait::kJump
                            ? Placed(TowardsFoothold(context, memory, rear, length_m))
-                           : Placed(Mirrored(memory.heading_rad, targets.legs[front].r_HF_W_m,
-                                             context.gains.hopping.idle_length_m));
+                           : Opposite(context, memory, targets.legs[front].r_HF_W_m);
   return targets;
 }
 
@@ -70,8 +82,7 @@ Targets RunningStance(const Context& context, const GaitMemory& memory) {
   targets.legs[stance].task = leg.touching ? LegTask::kSupport : LegTask::kFree;
   targets.legs[stance].axial = RunSpring(context, memory);
   targets.legs[stance].hip_damping_nms_per_rad = context.gains.servo.free_hip_damping_nms_per_rad;
-  targets.legs[idle] = Placed(
-      Mirrored(memory.heading_rad, leg.p_WF - leg.p_WH, context.gains.hopping.idle_length_m));
+  targets.legs[idle] = Opposite(context, memory, leg.p_WF - leg.p_WH);
   return targets;
 }
 

@@ -99,6 +99,7 @@ bool BeginThrust(const Context& context, GaitMemory& memory) {
   memory.off_steps = 0;
   memory.support_time_s = context.gains.hopping.first_support_time_s;
   memory.energy_loss_j = kFirstLossJ;
+  memory.leg_loss_j = {};
   return true;
 }
 
