@@ -2,15 +2,24 @@
 
 #include <Eigen/Geometry>
 
+#include "daemon/simulation/gait/context.h"
+
 namespace footing::gait {
+
+double BankAngle(const GaitMemory& memory, const AttitudeGains& gains) {
+  return -gains.bank_share * memory.desired_speed_mps * memory.turning_radps / kGravityMps2;
+}
 
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,
                            const Targets& targets, const AttitudeGains& gains) {
   const double lean_rad =
       targets.lean_rad +
       (targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0);
+  const bool running = targets.hopping && !targets.jumping;
+  const double bank_rad = running ? BankAngle(memory, gains) : 0;
   const Eigen::Matrix3d desired_R_WB =
       (Eigen::AngleAxisd(memory.heading_rad, Eigen::Vector3d::UnitZ()) *
+       Eigen::AngleAxisd(bank_rad, Eigen::Vector3d::UnitX()) *
        Eigen::AngleAxisd(lean_rad, Eigen::Vector3d::UnitY()))
           .toRotationMatrix();
   const Eigen::AngleAxisd error_W(desired_R_WB * body.R_WB.transpose());
@@ -18,12 +27,14 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
   const Eigen::Vector3d desired_w_W =
       memory.turning_radps * Eigen::Vector3d::UnitZ() + targets.rate_W_radps;
   const Eigen::Vector3d late_w_B = body.R_WB.transpose() * (desired_w_W - body.w_WB);
-  const Eigen::Array3d stiffness(
-      gains.roll_stiffness_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
-      targets.hopping ? gains.hop_yaw_stiffness_nm_per_rad : gains.walk_yaw_stiffness_nm_per_rad);
-  const Eigen::Array3d damping(
-      gains.roll_damping_nms_per_rad, gains.pitch_damping_nms_per_rad,
-      targets.hopping ? gains.hop_yaw_damping_nms_per_rad : gains.walk_yaw_damping_nms_per_rad);
+  const Eigen::Array3d stiffness(gains.roll_stiffness_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
+                                 running           ? gains.run_yaw_stiffness_nm_per_rad
+                                 : targets.jumping ? gains.jump_yaw_stiffness_nm_per_rad
+                                                   : gains.walk_yaw_stiffness_nm_per_rad);
+  const Eigen::Array3d damping(gains.roll_damping_nms_per_rad, gains.pitch_damping_nms_per_rad,
+                               running           ? gains.run_yaw_damping_nms_per_rad
+                               : targets.jumping ? gains.jump_yaw_damping_nms_per_rad
+                                                 : gains.walk_yaw_damping_nms_per_rad);
   return body.R_WB * (stiffness * error_B.array() + damping * late_w_B.array()).matrix();
 }
 

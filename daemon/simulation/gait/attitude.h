@@ -10,8 +10,12 @@
 namespace footing::gait {
 
 /// The moment (world frame, N m) that a PD servo on roll, pitch and yaw wants on the body: level,
-/// along the heading and turning as it does; jumping leans back with speed.
+/// along the heading and turning as it does; jumping leans back with speed, running banks in
+/// curves.
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,
                            const Targets& targets, const AttitudeGains& gains);
+
+/// Roll, rad, at which a run goes through the present curve: to the left negative.
+double BankAngle(const GaitMemory& memory, const AttitudeGains& gains);
 
 }  // namespace footing::gait

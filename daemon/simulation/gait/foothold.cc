@@ -131,10 +131,10 @@ Vector3d HipToFoot(const biped::BodyState& body, int leg, const Vector3d& offset
 }
 
 Vector3d Mirrored(double heading_rad, const Vector3d& other_r_HF_W_m, double length_m,
-                  double more_roll_rad) {
+                  double aside_rad) {
   const Vector3d other_H = ToHeading(heading_rad, other_r_HF_W_m);
   const double pitch_rad = std::atan2(other_H.x(), -other_H.z());
-  const double roll_rad = std::atan2(other_H.y(), -other_H.z()) - more_roll_rad;
+  const double roll_rad = std::atan2(other_H.y(), -other_H.z()) - aside_rad;
   return ToWorld(heading_rad, length_m * Vector3d(-std::sin(pitch_rad), -std::sin(roll_rad),
                                                   -std::cos(pitch_rad) * std::cos(roll_rad)));
 }

@@ -28,10 +28,14 @@ struct AttitudeGains {
   double roll_damping_nms_per_rad = 60;
   double pitch_stiffness_nm_per_rad = 400;
   double pitch_damping_nms_per_rad = 80;
-  double hop_yaw_stiffness_nm_per_rad = 40;
-  double hop_yaw_damping_nms_per_rad = 45;
+  double run_yaw_stiffness_nm_per_rad = 60;
+  double run_yaw_damping_nms_per_rad = 30;
+  double jump_yaw_stiffness_nm_per_rad = 40;
+  double jump_yaw_damping_nms_per_rad = 45;
   double walk_yaw_stiffness_nm_per_rad = 100;
   double walk_yaw_damping_nms_per_rad = 15;
+  double bank_share = 0.8;  ///< Running in a curve, of the angle at which gravity and the turn's
+                            ///< acceleration together point along the body.
   double jump_lean_rad_per_mps = -0.14;  ///< Pitch set-point: both legs swinging forward
                                          ///< together pitch the body forward.
   double friction_share = 0.7;           ///< Of the friction cone, for hip torque.

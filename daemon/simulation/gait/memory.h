@@ -100,7 +100,8 @@ struct GaitMemory {
 
   double support_time_s = 0.2;  ///< T of equation (2), low-passed.
   double touchdown_time_s = 0;
-  double energy_loss_j = 15;  ///< A hop loses this; learned from the lift-off speed.
+  double energy_loss_j = 15;           ///< A hop loses this; learned from the lift-off speed.
+  std::array<double, 2> leg_loss_j{};  ///< Running, a step on this leg loses so much besides.
   double thrust_length_m = 0.95;
   int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
 

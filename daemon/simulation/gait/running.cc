@@ -61,6 +61,13 @@ double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
   return LevelLiftOffSpeed(context, memory) + memory.ground.climb_mps;
 }
 
+/// Running, each leg has a share of its own: in a curve the inner and the outer one lose
+/// differently, and one figure for both ends in high hops off the one and low hops off the other.
+double EnergyLoss(const GaitMemory& memory) {
+  if (memory.gait == Gait::kJump) return memory.energy_loss_j;
+  return memory.energy_loss_j + memory.leg_loss_j[static_cast<std::size_t>(memory.support_leg)];
+}
+
 /// The length the stance leg's spring is set to at the bottom, so that it stores what lift-off
 /// needs: speed, height up to the touchdown length, and what the last hops lost. A pit may want
 /// another speed than the gait does, for one hop.
@@ -71,7 +78,7 @@ double ThrustLength(const Context& context, const GaitMemory& memory) {
   const double speed_mps = LiftOffSpeed(context, memory);
   const double rise_m = std::max(0.0, gains.touchdown_length_m - length_m) * 0.95;
   const double energy_j = std::max(0.0, mass_kg * speed_mps * speed_mps / 2 +
-                                            mass_kg * kGravityMps2 * rise_m + memory.energy_loss_j);
+                                            mass_kg * kGravityMps2 * rise_m + EnergyLoss(memory));
   const double stiffness = memory.gait == Gait::kJump ? 2 * gains.jump_leg_stiffness_n_per_m
                                                       : gains.run_leg_stiffness_n_per_m;
   const double extension_m = memory.pit.lift_off_mps > 0 ? PlannedExtension(context, memory)
@@ -87,6 +94,9 @@ void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
   const double missing_j = context.biped.mass_kg() / 2 *
                            (wanted_mps * wanted_mps - reached_mps * std::fabs(reached_mps));
   memory.energy_loss_j = std::clamp(memory.energy_loss_j + 0.3 * missing_j, -40.0, 120.0);
+  if (memory.gait == Gait::kJump) return;
+  double& loss_j = memory.leg_loss_j[static_cast<std::size_t>(memory.support_leg)];
+  loss_j = std::clamp(loss_j + 0.5 * missing_j, -60.0, 60.0);
 }
 
 /// Counts steps that look like lift-off: the leg at its rest length (a light foot may well stay on

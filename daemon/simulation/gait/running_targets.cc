@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/gait/attitude.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/ground_plan.h"
@@ -52,7 +53,8 @@ LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
 double IdleYield(const Context& context, const GaitMemory& memory) {
   const RecoveryGains& gains = context.gains.recovery;
   const Eigen::Vector3d up_H = ToHeading(memory.heading_rad, context.body.R_WB.col(2));
-  const double roll_rad = -std::atan2(up_H.y(), up_H.z());
+  const double roll_rad =
+      -std::atan2(up_H.y(), up_H.z()) - BankAngle(memory, context.gains.attitude);
   return std::clamp(gains.idle_yield * roll_rad, -gains.idle_yield_limit_rad,
                     gains.idle_yield_limit_rad);
 }

@@ -116,6 +116,7 @@ bool BeginThrust(const Context& context, GaitMemory& memory) {
   memory.support_time_s = context.gains.hopping.first_support_time_s;
   memory.energy_loss_j = kFirstLossJ;
   memory.ground = {};
+  memory.leg_loss_j = {};
   return true;
 }
 

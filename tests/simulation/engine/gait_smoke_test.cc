@@ -1,3 +1,4 @@
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -42,6 +43,34 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{Command(Gait::kRun, 2), 0, 2}, Case{Command(Gait::kRun, 3), 1.4, -1.4},
                     Case{Command(Gait::kJump, 0, 0.3), -2, 0},
                     Case{Command(Gait::kJump, 0.5, 0.15), 0, 2}));
+
+class Turning : public testing::TestWithParam<biped::GaitCommand> {};
+
+TEST_P(Turning, FiveDegreesAStepKeepsSpeedAndBodyWithTheHeading) {
+  GaitEngine engine = NewEngine();
+  EngineInputs inputs = Direct(GetParam());
+  Simulate(engine, inputs, 5);
+  Push(inputs, 1.4, 1.4);
+  double squares = 0, speed_mps = 0;
+  constexpr double kSeconds = 8;
+  Simulate(engine, inputs, kSeconds, [&](const EngineOutput& output) {
+    const Eigen::Vector3d ahead = output.links[0].orientation * Eigen::Vector3d::UnitX();
+    const double error_rad =
+        std::remainder(std::atan2(ahead.y(), ahead.x()) - output.gait.heading_rad, 2 * M_PI);
+    squares += error_rad * error_rad / (1000 * kSeconds);
+    speed_mps += output.gait.speed_mps / (1000 * kSeconds);
+  });
+  EXPECT_EQ(engine.Output().gait.falls, 0u);
+  EXPECT_LE(std::sqrt(squares), 5 * M_PI / 180);
+  EXPECT_NEAR(speed_mps, GetParam().speed_mps, 0.1);
+}
+
+constexpr double kFiveDegreesRad = 5 * M_PI / 180;
+INSTANTIATE_TEST_SUITE_P(LeftAndRight, Turning,
+                         testing::Values(Command(Gait::kWalk, 1.75, 0.2, kFiveDegreesRad),
+                                         Command(Gait::kRun, 3, 0.2, -kFiveDegreesRad),
+                                         Command(Gait::kRun, 5, 0.2, kFiveDegreesRad),
+                                         Command(Gait::kJump, 2, 0.2, -kFiveDegreesRad)));
 
 class EveryChange : public testing::TestWithParam<std::pair<Gait, Gait>> {};
 

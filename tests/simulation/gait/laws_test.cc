@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "daemon/simulation/gait/attitude.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/servo.h"
@@ -114,10 +115,45 @@ TEST(Equation2, TurnsWithTheHeading) {
 }
 
 TEST(Mirrored, SwingsTheIdleLegAgainstTheOther) {
-  const Vector3d mirrored = Mirrored(0, {0.3, 0.1, -0.9}, 0.7);
+  const Vector3d mirrored = Mirrored(0, {0.3, 0.1, -0.9}, 0.7, 0);
   EXPECT_NEAR(mirrored.x(), -0.7 * std::sin(std::atan2(0.3, 0.9)), 1e-12);
   EXPECT_NEAR(mirrored.y(), -0.7 * std::sin(std::atan2(0.1, 0.9)), 1e-12);
   EXPECT_LT(mirrored.z(), 0);
+}
+
+TEST(Mirrored, SwingsAsideBesides) {
+  const Vector3d mirrored = Mirrored(0, {0.3, 0, -0.9}, 0.7, 0.2);
+  EXPECT_NEAR(mirrored.y(), 0.7 * std::sin(0.2), 1e-12);
+}
+
+TEST(Turning, PutsTheFootSoThatItsForceTurnsTheVelocity) {
+  Scene scene;
+  scene.memory.gait = stream::Gait::kRun;
+  scene.body.v_WC = {3, 0, 0};
+  scene.memory.desired_speed_mps = 3;
+  scene.memory.step_time_s = 0.5;
+  scene.memory.support_time_s = 0.2;
+  const double straight_m = HoppingFoothold(scene.context(), scene.memory, 0).y();
+  scene.goal.turn_per_step_rad = 0.08;
+  const double turned_m = HoppingFoothold(scene.context(), scene.memory, 0).y();
+  // The leg leans by (v turn / T) / g to the outer side; the COM moves 3 m/s * 0.1 s on half
+  // turned.
+  const double length_m = scene.gains.hopping.touchdown_length_m;
+  EXPECT_NEAR(turned_m - straight_m,
+              -length_m * (3 * 0.08 / 0.5) / kGravityMps2 + 3 * 0.1 * 0.08 / 2, 1e-12);
+}
+
+TEST(Turning, HoldsARunBankedAndTurningAsItsHeadingDoes) {
+  Scene scene;
+  scene.memory.desired_speed_mps = 4;
+  scene.memory.turning_radps = 0.2;
+  Targets targets;
+  targets.hopping = true;
+  const double bank_rad = BankAngle(scene.memory, scene.gains.attitude);
+  EXPECT_NEAR(bank_rad, -scene.gains.attitude.bank_share * 4 * 0.2 / kGravityMps2, 1e-12);
+  scene.body.R_WB = Eigen::AngleAxisd(bank_rad, Vector3d::UnitX()).toRotationMatrix();
+  scene.body.w_WB = {0, 0, 0.2};
+  EXPECT_LT(BodyMoment(scene.body, scene.memory, targets, scene.gains.attitude).norm(), 1e-9);
 }
 
 TEST(LegInverseKinematics, BringsTheFootWhereItIsWanted) {
