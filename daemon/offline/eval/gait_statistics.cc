@@ -10,12 +10,12 @@ namespace {
 
 constexpr double kWindowS = 1.0;
 
+}  // namespace
+
 double YawOf(const Eigen::Quaterniond& q) {
   const Eigen::Vector3d ahead = q * Eigen::Vector3d::UnitX();
   return std::atan2(ahead.y(), ahead.x());
 }
-
-}  // namespace
 
 void RootMeanSquare::Add(double value) {
   sum += value * value;

@@ -13,6 +13,9 @@ struct RootMeanSquare {
   double value() const;
 };
 
+/// Heading of a body's x axis, rad.
+double YawOf(const Eigen::Quaterniond& q);
+
 /// What is measured of settled locomotion.
 ///
 /// Speed errors are those of the mean speed over successive seconds, since the speed within one

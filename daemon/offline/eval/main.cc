@@ -6,6 +6,7 @@
 #include "daemon/offline/eval/gait_command.h"
 #include "daemon/offline/eval/monkey_command.h"
 #include "daemon/offline/eval/replay_command.h"
+#include "daemon/offline/eval/tracks_command.h"
 #include "daemon/offline/eval/transitions_command.h"
 
 int main(int argc, char** argv) {
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
   footing::eval::AddGaitCommand(*app, shared);
   footing::eval::AddMonkeyCommand(*app, shared);
   footing::eval::AddReplayCommand(*app, shared);
+  footing::eval::AddTracksCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;

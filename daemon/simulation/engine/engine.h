@@ -55,11 +55,22 @@ enum class EventKind {
   kStreamBack,
 };
 
+/// What a failure is put down to, as the gait paper counts them (section 8.2).
+enum class FailureCause {
+  kSimulation,  ///< The character fell.
+  kCurve,       ///< It left the ribbon.
+  kJump,        ///< A foot went into a pit.
+};
+
+/// "simulation", "curve", "jump".
+const char* Name(FailureCause cause);
+
 struct EngineEvent {
   EventKind kind = EventKind::kFall;
   stream::Gait from = stream::Gait::kUnspecified;
   stream::Gait to = stream::Gait::kUnspecified;
   const char* text = "";  ///< Of static storage; why it fell or was put back.
+  FailureCause cause = FailureCause::kSimulation;  ///< Of a fall.
 };
 
 inline constexpr int kLinkCount = 5;  ///< body, left hip, left knee, right hip, right knee.

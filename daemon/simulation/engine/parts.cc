@@ -114,12 +114,16 @@ void GaitEngine::Parts::NoteGait(stream::Gait before) {
 
 void GaitEngine::Parts::NoteFall() {
   if (state.fallen) return;
-  const char* why = WhyFallen(track, body, world.Observe());
-  if (why == nullptr) return;
+  const Failure failure = JudgeFailure(track, body, world.Observe());
+  if (failure.why == nullptr) return;
   state.fallen = true;
   state.fallen_time_s = TimeS();
   ++state.falls;
-  AddEvent({.kind = EventKind::kFall, .from = state.gait.gait, .text = why});
+  AddEvent({.kind = EventKind::kFall,
+            .from = state.gait.gait,
+            .to = stream::Gait::kUnspecified,
+            .text = failure.why,
+            .cause = failure.cause});
 }
 
 void GaitEngine::Parts::FillOutput() {

@@ -14,14 +14,15 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
           .toRotationMatrix();
   const Eigen::AngleAxisd error_W(desired_R_WB * body.R_WB.transpose());
   const Eigen::Vector3d error_B = body.R_WB.transpose() * (error_W.angle() * error_W.axis());
-  const Eigen::Vector3d w_B = body.R_WB.transpose() * body.w_WB;
+  const Eigen::Vector3d late_w_B =
+      body.R_WB.transpose() * (memory.turning_radps * Eigen::Vector3d::UnitZ() - body.w_WB);
   const Eigen::Array3d stiffness(
       gains.roll_stiffness_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
       targets.hopping ? gains.hop_yaw_stiffness_nm_per_rad : gains.walk_yaw_stiffness_nm_per_rad);
   const Eigen::Array3d damping(
       gains.roll_damping_nms_per_rad, gains.pitch_damping_nms_per_rad,
       targets.hopping ? gains.hop_yaw_damping_nms_per_rad : gains.walk_yaw_damping_nms_per_rad);
-  return body.R_WB * (stiffness * error_B.array() - damping * w_B.array()).matrix();
+  return body.R_WB * (stiffness * error_B.array() + damping * late_w_B.array()).matrix();
 }
 
 }  // namespace footing::gait

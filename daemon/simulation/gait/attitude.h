@@ -10,7 +10,7 @@
 namespace footing::gait {
 
 /// The moment (world frame, N m) that a PD servo on roll, pitch and yaw wants on the body: level,
-/// along the heading; jumping leans back with speed.
+/// along the heading and turning as it does; jumping leans back with speed.
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,
                            const Targets& targets, const AttitudeGains& gains);
 

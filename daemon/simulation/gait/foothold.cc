@@ -77,6 +77,17 @@ double RunVelocityGain(const HoppingGains& gains, double desired_mps) {
                    std::clamp(share, 0.0, 1.0));
 }
 
+/// How far to the left the foot of a support goes that is to turn the velocity by a step's turn.
+/// The leg's force points from the foot to the COM: for the mean sideways acceleration v turn /
+/// T_step it must come from h v turn / (g T_step) on the curve's outer side. While the foot is down
+/// the COM moves on along the mean of the old and the new direction, and so does the neutral point.
+double TurningOffset(const Context& context, const GaitMemory& memory, double ahead_mps) {
+  const double turn_rad = context.goal.turn_per_step_rad;
+  const double lean_m = context.gains.hopping.touchdown_length_m * ahead_mps * turn_rad /
+                        (kGravityMps2 * memory.step_time_s);
+  return ahead_mps * memory.support_time_s / 2 * turn_rad / 2 - lean_m;
+}
+
 Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int leg) {
   const HoppingGains& gains = context.gains.hopping;
   const bool jumping = memory.gait == stream::Gait::kJump;
@@ -101,8 +112,8 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
   const double spacing_m = jumping     ? context.biped.hip_half_spacing_m
                            : preparing ? 0
                                        : gains.run_foot_spacing_m;
-  const double left_m =
-      v_H.y() * memory.support_time_s / 2 + side_gain_s * v_H.y() + biped::Side(leg) * spacing_m;
+  const double left_m = v_H.y() * memory.support_time_s / 2 + side_gain_s * v_H.y() +
+                        biped::Side(leg) * spacing_m + TurningOffset(context, memory, v_H.x());
   return ToWorld(
       memory.heading_rad,
       {std::clamp(ahead_m, -gains.foothold_limit_m, gains.foothold_limit_m),

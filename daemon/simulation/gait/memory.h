@@ -57,6 +57,8 @@ struct GaitMemory {
   double phase_start_s = 0;
 
   double heading_rad = 0;
+  double step_time_s = 0.4;      ///< From touchdown to touchdown, low-passed.
+  double turning_radps = 0;      ///< Mean rate at which the heading turns in this step.
   double desired_speed_mps = 0;  ///< v_d, slewed towards target_speed_mps.
   double target_speed_mps = 0;
 

@@ -9,6 +9,7 @@ namespace footing::gait {
 namespace {
 
 constexpr double kShortestStepS = 0.12;
+constexpr double kLongestStepS = 1.2;
 constexpr int kStepsToSettle = 2;
 constexpr double kSettledMps = 0.05;
 constexpr double kLargestErrorMps = 0.8;
@@ -44,6 +45,7 @@ void Learn(double error_mps, const Gains& gains, GaitMemory& memory) {
 }  // namespace
 
 void CountStep(const Context& context, GaitMemory& memory) {
+  const double made_heading_rad = memory.heading_rad;  // Of the step that ends here.
   memory.heading_rad += context.goal.turn_per_step_rad;
   ++memory.steps;
   LastStep& last = memory.last_step;
@@ -51,9 +53,14 @@ void CountStep(const Context& context, GaitMemory& memory) {
   last.gait = memory.gait;
   ++last.steps_in_gait;
   const double duration_s = context.body.time_s - last.time_s;
+  if (last.known && duration_s > kShortestStepS && duration_s < kLongestStepS) {
+    memory.step_time_s =
+        last.steps_in_gait > 1 ? (memory.step_time_s + duration_s) / 2 : duration_s;
+  }
+  memory.turning_radps = context.goal.turn_per_step_rad / memory.step_time_s;
   if (last.known && duration_s > kShortestStepS && last.steps_in_gait > kStepsToSettle) {
     const Eigen::Vector3d v_H =
-        ToHeading(memory.heading_rad, context.body.p_WC - last.p_WC) / duration_s;
+        ToHeading(made_heading_rad, context.body.p_WC - last.p_WC) / duration_s;
     const double error_mps = v_H.x() - memory.desired_speed_mps;
     const bool settled =
         std::fabs(memory.target_speed_mps - memory.desired_speed_mps) < kSettledMps;
