@@ -57,14 +57,19 @@ double TouchdownHeight(const Context& context, const GaitMemory& memory, double 
   return upright * (length_m - ComBelowHips(context.biped, length_m, other_m));
 }
 
+/// An edge at p_WE, of ground at `height_m` on the foothold's side and `rise_m` more beyond.
+EdgeMemory Kept(const terrain::Edge& edge, const Vector3d& p_WE, double height_m, double rise_m) {
+  if (!IsStep(edge)) return {};
+  return {.there = true, .p_W_m = p_WE, .height_m = height_m + std::max(0.0, rise_m)};
+}
+
 void KeepEdges(const Vector3d& foothold_W, const terrain::Spot& spot, const Vector3d& ahead_W,
                GroundMemory& ground) {
-  ground.behind.there = IsStep(spot.behind);
-  ground.behind.p_W_m = foothold_W - spot.behind.distance_m * ahead_W;
-  ground.behind.height_m = spot.height_m + std::max(0.0, -spot.behind.rise_m);
-  ground.ahead.there = IsStep(spot.ahead);
-  ground.ahead.p_W_m = foothold_W + spot.ahead.distance_m * ahead_W;
-  ground.ahead.height_m = spot.height_m + std::max(0.0, spot.ahead.rise_m);
+  const terrain::Edge& behind = spot.behind;
+  const terrain::Edge& ahead = spot.ahead;
+  ground.behind =
+      Kept(behind, foothold_W - behind.distance_m * ahead_W, spot.height_m, -behind.rise_m);
+  ground.ahead = Kept(ahead, foothold_W + ahead.distance_m * ahead_W, spot.height_m, ahead.rise_m);
 }
 
 /// Until a body that now rises at `v_mps` has come to be `down_m` lower, s.
