@@ -29,8 +29,8 @@ Vector3d LegsMomentum(const biped::BodyState& body, const biped::BipedParameters
     const Vector3d& u_W = leg.u_HF_W;
     const Vector3d r_hip_link = biped.hip_link_com_below_hip_m * u_W;
     const Vector3d r_knee_link = (leg.length_m - biped.foot_below_knee_link_com_m) * u_W;
-    momentum += LinkMomentum(body, biped, leg.p_WH + r_hip_link, v_WH + w_W.cross(r_hip_link), u_W,
-                             w_W);
+    momentum +=
+        LinkMomentum(body, biped, leg.p_WH + r_hip_link, v_WH + w_W.cross(r_hip_link), u_W, w_W);
     momentum += LinkMomentum(body, biped, leg.p_WH + r_knee_link,
                              v_WH + w_W.cross(r_knee_link) + leg.length_rate_mps * u_W, u_W, w_W);
   }
