@@ -29,14 +29,16 @@ const std::vector<Row> kOnTheGround{{"attitude.walk_yaw_stiffness_nm_per_rad", k
                                     {"walking.leg_damping_ns_per_m", kCoefficient},
                                     {"walking.hip_height_m", kLength},
                                     {"walking.step_width_m", 0.15}};
-const std::vector<Row> kInHops{{"attitude.hop_yaw_stiffness_nm_per_rad", kCoefficient},
-                               {"attitude.hop_yaw_damping_nms_per_rad", kCoefficient},
-                               {"hopping.touchdown_length_m", kLength}};
-const std::vector<Row> kRunning{{"hopping.run_leg_stiffness_n_per_m", kCoefficient},
+const std::vector<Row> kInHops{{"hopping.touchdown_length_m", kLength}};
+const std::vector<Row> kRunning{{"attitude.run_yaw_stiffness_nm_per_rad", kCoefficient},
+                                {"attitude.run_yaw_damping_nms_per_rad", kCoefficient},
+                                {"hopping.run_leg_stiffness_n_per_m", kCoefficient},
                                 {"hopping.run_leg_damping_ns_per_m", kCoefficient},
                                 {"hopping.run_velocity_gain_s", 0.15},
                                 {"hopping.speed_gain_s", 0.003, false}};
-const std::vector<Row> kJumping{{"hopping.jump_leg_stiffness_n_per_m", kCoefficient},
+const std::vector<Row> kJumping{{"attitude.jump_yaw_stiffness_nm_per_rad", kCoefficient},
+                                {"attitude.jump_yaw_damping_nms_per_rad", kCoefficient},
+                                {"hopping.jump_leg_stiffness_n_per_m", kCoefficient},
                                 {"hopping.jump_leg_damping_ns_per_m", kCoefficient},
                                 {"hopping.jump_velocity_gain_s", 0.15},
                                 {"attitude.jump_lean_rad_per_mps", 0.03, false}};

@@ -132,10 +132,12 @@ struct TransitionGains {
 /// Crossing pits (pit_plan.h).
 struct PitGains {
   PitLimits limits;
-  double run_width_max_m = 0.4;  ///< A run crosses this by itself; wider ones want a jump.
-  double sight_m = 3;            ///< Nearer pits are planned for even when out of reach.
-  double shift_back_m = 0.12;    ///< Of a foothold that would come to lie in the pit.
+  double jump_lift_off_min_mps = 1.1;
+  double run_width_max_m = 0.45;  ///< A run crosses this by itself; wider ones want a jump.
+  double sight_m = 3;             ///< Nearer pits are planned for even when out of reach.
+  double shift_back_m = 0.12;     ///< Of a foothold that would come to lie in the pit.
   double shift_ahead_m = 0.25;
+  double shift_ahead_s = 0.1;  ///< At most this times the speed: 0.1 s ahead brakes by half of it.
   double jump_speed_max_mps = 3.6;  ///< A faster run crosses as it is, its jump pending.
   double leap_roll_share = 1.5;     ///< Of the legs' roll momentum, against which the body turns.
   double leap_lean_rad_per_mps = -0.02;

@@ -55,6 +55,9 @@ struct PitMemory {
   double drop_m = 0.01;      ///< COM's height over its foot at lift-off above that at touchdown.
   double extension_m = 0;    ///< Of the spring in this support; 0 when not known.
   double loss_share = 0.25;  ///< Of the spring's energy.
+  double extension_time_s = 0.09;
+  double bottom_height_m = 0;    ///< COM over the foot where the extension began.
+  double rise_offset_m = -0.04;  ///< What it rises until lift-off, less a share of the extension.
 };
 
 /// A step of the ground that feet in flight keep clear of.

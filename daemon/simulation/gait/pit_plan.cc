@@ -11,6 +11,8 @@ constexpr double kGravityMps2 = 9.81;
 constexpr double kStrideCostMps = 0.3;
 constexpr double kLeapCost = 1.5;
 constexpr double kBeyondCost = 20;
+/// A foothold so far over the edge counts as much as 1 m/s of lift-off too much.
+constexpr double kSlightM = 0.05;
 constexpr double kSlowestMps = 0.05;
 
 struct Costed {
@@ -35,19 +37,23 @@ Costed Leap(const PitAhead& pit, const Hop& hop, const PitLimits& limits) {
           kLeapCost * (leap_mps - hop.nominal_mps) + kBeyondCost * beyond_mps};
 }
 
-/// `strides` alike before the last foothold, which is to lie just before the edge.
+/// `strides` alike before the last foothold, which is to lie before the edge, but no further than
+/// the nominal hop from it carries over the pit.
 Costed Approach(const PitAhead& pit, int strides, const Hop& first, const Hop& next,
                 const PitLimits& limits) {
+  const auto last_foothold = [&](double lift_off_mps) {
+    return first.Stride(lift_off_mps) + (strides - 1) * next.Stride(lift_off_mps);
+  };
   const double latest_m = pit.near_m - limits.edge_margin_m;
-  const double others = strides - 1;
+  const double best_m = latest_m - limits.aim_margin_m;
+  const double reach_m = next.Stride(next.nominal_mps, pit.rise_m) - limits.landing_margin_m;
+  const double earliest_m = std::min(best_m, pit.far_m - reach_m + limits.aim_margin_m);
+  const double target_m = std::clamp(last_foothold(first.nominal_mps), earliest_m, best_m);
   // One lift-off speed for all: the strides' sum is monotonous in it.
   double low_mps = limits.lift_off_min_mps, high_mps = limits.lift_off_max_mps;
-  const auto last_foothold = [&](double lift_off_mps) {
-    return first.Stride(lift_off_mps) + others * next.Stride(lift_off_mps);
-  };
   for (int i = 0; i < 30; ++i) {
     const double middle_mps = (low_mps + high_mps) / 2;
-    (last_foothold(middle_mps) < latest_m - limits.aim_margin_m ? low_mps : high_mps) = middle_mps;
+    (last_foothold(middle_mps) < target_m ? low_mps : high_mps) = middle_mps;
   }
   const double reached_m = last_foothold(low_mps);
   const double leap_mps = LeapSpeed(pit, pit.near_m - reached_m, next, limits);
@@ -59,7 +65,7 @@ Costed Approach(const PitAhead& pit, int strides, const Hop& first, const Hop& n
            .lift_off_mps = low_mps},
           kLeapCost * (leap_mps - next.nominal_mps) +
               strides * std::fabs(low_mps - first.nominal_mps) + strides * kStrideCostMps +
-              kBeyondCost * (beyond_mps + over_m)};
+              kBeyondCost * (beyond_mps + over_m / kSlightM)};
 }
 
 }  // namespace

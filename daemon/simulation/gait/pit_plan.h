@@ -48,8 +48,8 @@ inline constexpr int kStridesMax = 4;  ///< Planned before the last foothold.
 struct PitLimits {
   double edge_margin_m = 0.06;     ///< From the foothold to the near edge.
   double landing_margin_m = 0.14;  ///< From the far edge to the foothold.
-  double aim_margin_m = 0.06;      ///< Aimed at besides, before the near edge.
-  double lift_off_min_mps = 1.0;
+  double aim_margin_m = 0.06;      ///< Aimed at besides, at both.
+  double lift_off_min_mps = 0.8;
   double lift_off_max_mps = 1.7;  ///< Of the strides before.
   double leap_max_mps = 3.2;      ///< Of the hop over the pit.
 };

@@ -22,11 +22,10 @@ double GroundAtEnd(const stream::TrackSegment& segment) {
   return segment.start_m.z() + segment.length_m * std::sin(segment.slope_rad);
 }
 
-/// From the extension's beginning to lift-off: a quarter of the spring's period.
-constexpr double kExtensionS = 0.09;
-/// Measured: what the COM rises until lift-off, by the spring's extension.
+/// What the COM rises until lift-off grows with the spring's extension; the rest is learned.
 constexpr double kRiseShare = 0.87;
-constexpr double kRiseOffsetM = -0.04;
+/// A plan this near to the nominal lift-off leaves it as it is.
+constexpr double kAsEverMps = 0.03;
 /// Of a new measure in the remembered one.
 constexpr double kSmoothing = 0.3;
 
@@ -72,6 +71,13 @@ Thrust ThrustOf(const Context& context, const GaitMemory& memory) {
           .mass_kg = context.biped.mass_kg(),
           .feet_kg = (jumping ? 2 : 1) * context.biped.link_mass_kg,
           .loss_share = memory.pit.loss_share};
+}
+
+/// Jumping's legs, drawn in, need time to come down again.
+PitLimits LimitsOf(const PitGains& gains, const GaitMemory& memory) {
+  PitLimits limits = gains.limits;
+  if (memory.gait == stream::Gait::kJump) limits.lift_off_min_mps = gains.jump_lift_off_min_mps;
+  return limits;
 }
 
 bool Plans(const PitAhead& pit, const PitPlan& plan, double sight_m) {
@@ -140,6 +146,10 @@ void NoteLiftOff(const Context& context, GaitMemory& memory) {
   const double drop_m = r_FC_H.z() - seen.touchdown_height_m;
   if (seen.lift_off_mps == 0) seen.drop_m += kSmoothing * (drop_m - seen.drop_m);
   if (seen.extension_m > 0) {
+    const double time_s = std::clamp(context.TimeIn(memory), 0.05, 0.15);
+    seen.extension_time_s += kSmoothing * (time_s - seen.extension_time_s);
+    const double rise_m = r_FC_H.z() - seen.bottom_height_m - kRiseShare * seen.extension_m;
+    seen.rise_offset_m += kSmoothing * (std::clamp(rise_m, -0.1, 0.05) - seen.rise_offset_m);
     const double share =
         ThrustOf(context, memory).LossShare(seen.extension_m, context.body.v_WC.z());
     seen.loss_share += kSmoothing * (std::clamp(share, 0.1, 0.4) - seen.loss_share);
@@ -158,7 +168,7 @@ void ForeseeLeap(const Context& context, double nominal_mps, GaitMemory& memory)
   const std::optional<PitAhead> pit = PitFrom(memory, p_WF);
   const Hop hop = SteadyHop(memory, nominal_mps);
   const PitGains& gains = context.gains.pit;
-  const PitPlan plan = PlanPit(*pit, hop, hop, gains.limits);
+  const PitPlan plan = PlanPit(*pit, hop, hop, LimitsOf(gains, memory));
   seen.planned = Plans(*pit, plan, gains.sight_m);
   seen.last_foothold = seen.planned && plan.leaps;
   if (JumpsPit(context.goal, memory)) memory.preparing_jump = JumpsFromNext(context, memory);
@@ -168,6 +178,7 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
   PitMemory& seen = memory.pit;
   seen.lift_off_mps = 0;
   seen.leaping = seen.planned = false;
+  seen.bottom_height_m = FromFoot(context, memory).z();
   LookForPit(context, memory);
   if (!seen.ahead) return;
   const PitGains& gains = context.gains.pit;
@@ -175,11 +186,11 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
   const Hop next = SteadyHop(memory, nominal_mps);
   Hop first = next;
   first.support_m =
-      FromFoot(context, memory).x() + seen.flight_mps * kExtensionS + seen.foot_ahead_m;
+      FromFoot(context, memory).x() + seen.flight_mps * seen.extension_time_s + seen.foot_ahead_m;
   first.drop_m = FromFoot(context, memory).z() +
-                 kRiseShare * ThrustOf(context, memory).ExtensionFor(nominal_mps) + kRiseOffsetM -
-                 seen.touchdown_height_m;
-  const PitPlan plan = PlanPit(*pit, first, next, gains.limits);
+                 kRiseShare * ThrustOf(context, memory).ExtensionFor(nominal_mps) +
+                 seen.rise_offset_m - seen.touchdown_height_m;
+  const PitPlan plan = PlanPit(*pit, first, next, LimitsOf(gains, memory));
   const bool may_leap = context.goal.gait == stream::Gait::kJump ||
                         memory.gait == stream::Gait::kJump ||
                         pit->far_m - pit->near_m <= gains.run_width_max_m;
@@ -188,7 +199,9 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
   if (JumpsPit(context.goal, memory)) {
     memory.preparing_jump = seen.leaping && seen.flight_mps < gains.jump_speed_max_mps;
   }
-  if (seen.planned && (!plan.leaps || seen.leaping)) seen.lift_off_mps = plan.lift_off_mps;
+  const bool as_ever = std::fabs(plan.lift_off_mps - nominal_mps) < kAsEverMps;
+  if (seen.planned && !as_ever && (!plan.leaps || seen.leaping))
+    seen.lift_off_mps = plan.lift_off_mps;
 }
 
 double PlannedExtension(const Context& context, const GaitMemory& memory) {
@@ -212,8 +225,9 @@ double FootholdShift(const Context& context, const GaitMemory& memory) {
   const Vector3d shift_W = ToWorld(memory.heading_rad, Vector3d(memory.pit.shift_m, 0, 0));
   const std::optional<PitAhead> pit =
       PitFrom(memory, PlaceAtTouchdown(context, memory) + shifted_W - shift_W);
-  return ShiftOffPit(*pit, gains.limits, gains.shift_back_m, gains.shift_ahead_m,
-                     memory.pit.leaping);
+  const double speed_mps = std::max(0.0, ToHeading(memory.heading_rad, context.body.v_WC).x());
+  const double ahead_m = std::min(gains.shift_ahead_m, gains.shift_ahead_s * speed_mps);
+  return ShiftOffPit(*pit, gains.limits, gains.shift_back_m, ahead_m, memory.pit.leaping);
 }
 
 }  // namespace footing::gait

@@ -16,6 +16,8 @@ constexpr double kReachM = 0.03;
 /// Landing out of a jump, the springs rest this much shorter.
 constexpr double kLandingShorterM = 0.06;
 constexpr double kOverLengthM = 0.02;
+/// A run's hop over a pit with a faster lift-off than this is prepared like a jump's.
+constexpr double kLongFlightMps = 1.7;
 
 LegTarget Placed(const Eigen::Vector3d& r_HF_W_m) {
   LegTarget target;
@@ -186,7 +188,8 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
                     : jumping ? JumpingStance(context, memory)
                               : RunningStance(context, memory);
   targets.hopping = true;
-  const bool leaps = memory.pit.leaping && memory.preparing_jump;
+  const bool leaps =
+      memory.pit.leaping && (memory.preparing_jump || memory.pit.lift_off_mps > kLongFlightMps);
   if (leaps && !flying && !jumping) {
     PrepareLongFlight(context, memory, targets);
   } else if (!flying) {

@@ -1,3 +1,5 @@
+#include "daemon/simulation/gait/momentum.h"
+
 #include "daemon/simulation/gait/controller.h"
 #include "tests/simulation/test_world.h"
 
@@ -43,6 +45,25 @@ TEST(Momentum, RunningIsMovedByContactAndGravityAlone) {
 
 TEST(Momentum, JumpingIsMovedByContactAndGravityAlone) {
   ExpectOnlyContactAndGravity({.gait = stream::Gait::kJump, .speed_mps = 0.5, .height_m = 0.3});
+}
+
+/// Efforts between links and gravity leave the angular momentum about the COM alone.
+TEST(Momentum, AngularMomentumStaysInFreeFlightWhateverTheJointsDo) {
+  const biped::BipedParameters biped = test::Biped();
+  physics::World world = test::LevelWorld();
+  world.Reset({0, 0, 5}, 0.3, {0.1, -0.2, 0.4, -0.1, 0, 0.1, -0.5, 0.05});
+  const physics::JointEfforts efforts{0, 8, -12, 20, 0, -5, 15, -20};
+  const auto seen = [&] { return biped::Read(biped, world.Observe(), 0); };
+  world.Step(efforts, {300, 200, 0});
+  const Eigen::Vector3d before = AngularMomentum(seen(), biped);
+  double swing = 0;
+  for (int i = 0; i < 100; ++i) {
+    world.Step(efforts, Eigen::Vector3d::Zero());
+    swing = std::max(swing, LegsMomentum(seen(), biped).norm());
+  }
+  EXPECT_GT(swing, 0.5);
+  // Not 0: the hips' rotors (0.01 kg m2 at up to 10 rad/s) are seen by their joints alone.
+  EXPECT_LT((AngularMomentum(seen(), biped) - before).norm(), 0.15 * swing);
 }
 
 }  // namespace
