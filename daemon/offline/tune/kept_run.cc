@@ -32,8 +32,8 @@ json ToJson(const SearchState& search) {
 
 Eigen::MatrixXd Matrix(const json& numbers, Eigen::Index rows, Eigen::Index columns) {
   const auto values = numbers.get<std::vector<double>>();
-  if (static_cast<Eigen::Index>(values.size()) != rows * columns) throw json::other_error::create(
-      501, "wrong size", nullptr);
+  if (static_cast<Eigen::Index>(values.size()) != rows * columns)
+    throw json::other_error::create(501, "wrong size", nullptr);
   return Eigen::Map<const Eigen::MatrixXd>(values.data(), rows, columns);
 }
 

@@ -96,7 +96,8 @@ std::string LinePlot(const std::string& title, const std::string& x_label,
     const std::string colour = kColours[i % kColours.size()];
     std::string points;
     for (const auto& point : curves[i].points) {
-      if (shown(point)) points += Number(at_x(point.first)) + "," + Number(at_y(point.second)) + " ";
+      if (shown(point))
+        points += Number(at_x(point.first)) + "," + Number(at_y(point.second)) + " ";
     }
     svg += "<polyline fill='none' stroke='" + colour + "' stroke-width='2' points='" + points +
            "'/>\n";

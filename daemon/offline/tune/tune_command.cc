@@ -49,12 +49,14 @@ std::string Short(double value) {
 class Tuning {
  public:
   Tuning(const Options& options, Team team, gait::GainTable table)
-      : options_(options), gait_(stream::GaitNamed(options.gait)), team_(std::move(team)),
-        table_(std::move(table)), dimensions_(DimensionsOf(gait_)) {}
+      : options_(options),
+        gait_(stream::GaitNamed(options.gait)),
+        team_(std::move(team)),
+        table_(std::move(table)),
+        dimensions_(DimensionsOf(gait_)) {}
 
   Result<void> Resume() {
-    searches_.assign(options_.speeds_mps.size(),
-                     StartSearch(static_cast<int>(dimensions_.size())));
+    searches_.assign(options_.speeds_mps.size(), StartSearch(static_cast<int>(dimensions_.size())));
     if (options_.iterations == 0 || !std::filesystem::exists(StatePath())) return {};
     const Result<std::string> text = config::ReadTextFile(StatePath());
     if (!text) return text.error();
@@ -101,20 +103,17 @@ class Tuning {
                       {"better", tuned.better},
                       {"gains", gains}});
     }
-    return {{"gait", options_.gait},       {"method", options_.method}, {"seed", options_.seed},
-            {"iterations", options_.iterations}, {"trials", options_.trials}, {"sets", sets}};
+    return {{"gait", options_.gait},     {"method", options_.method},
+            {"seed", options_.seed},     {"iterations", options_.iterations},
+            {"trials", options_.trials}, {"sets", sets}};
   }
 
  private:
   static ordered_json ToJson(const Score& score) {
-    return {{"objective", score.mean.total()},
-            {"half_width", score.total_half_width},
-            {"trials", score.trials},
-            {"survival", score.survival},
-            {"failure", score.mean.failure},
-            {"speed", score.mean.speed},
-            {"flight", score.mean.flight},
-            {"stance", score.mean.stance},
+    return {{"objective", score.mean.total()}, {"half_width", score.total_half_width},
+            {"trials", score.trials},          {"survival", score.survival},
+            {"failure", score.mean.failure},   {"speed", score.mean.speed},
+            {"flight", score.mean.flight},     {"stance", score.mean.stance},
             {"stride", score.mean.stride}};
   }
 
@@ -126,10 +125,10 @@ class Tuning {
   RunKey Key() const {
     std::vector<const gait::GainField*> columns;
     for (const gait::GainField& field : gait::GainFields()) columns.push_back(&field);
-    RunKey key{options_.gait, options_.speeds_mps, options_.seed, options_.method, options_.trials,
-               ""};
-    for (const stream::Gait gait : {stream::Gait::kStep, stream::Gait::kWalk, stream::Gait::kRun,
-                                    stream::Gait::kJump}) {
+    RunKey key{options_.gait,   options_.speeds_mps, options_.seed,
+               options_.method, options_.trials,     ""};
+    for (const stream::Gait gait :
+         {stream::Gait::kStep, stream::Gait::kWalk, stream::Gait::kRun, stream::Gait::kJump}) {
       key.from += gait::WriteGains(gait, table_.SetsOf(gait), columns, "");
     }
     return key;

@@ -21,8 +21,7 @@ struct Costed {
 /// The hop over the pit from a foothold `near_m` before the edge.
 double LeapSpeed(const PitAhead& pit, double near_m, const Hop& hop, const PitLimits& limits) {
   const double width_m = pit.far_m - pit.near_m;
-  const double needed_mps =
-      hop.LiftOffFor(near_m + width_m + limits.landing_margin_m, pit.rise_m);
+  const double needed_mps = hop.LiftOffFor(near_m + width_m + limits.landing_margin_m, pit.rise_m);
   return std::max(needed_mps, hop.nominal_mps);
 }
 
@@ -58,8 +57,9 @@ Costed Approach(const PitAhead& pit, int strides, const Hop& first, const Hop& n
            .reaches = beyond_mps == 0 && over_m == 0,
            .strides = strides,
            .lift_off_mps = low_mps},
-          kLeapCost * (leap_mps - next.nominal_mps) + strides * std::fabs(low_mps - first.nominal_mps) +
-              strides * kStrideCostMps + kBeyondCost * (beyond_mps + over_m)};
+          kLeapCost * (leap_mps - next.nominal_mps) +
+              strides * std::fabs(low_mps - first.nominal_mps) + strides * kStrideCostMps +
+              kBeyondCost * (beyond_mps + over_m)};
 }
 
 }  // namespace
@@ -75,12 +75,11 @@ double Hop::Stride(double lift_off_mps, double rise_m) const {
 }
 
 double Hop::LiftOffFor(double stride_m, double rise_m) const {
-  const double flight_s =
-      std::max(0.0, stride_m - support_m) / std::max(speed_mps, kSlowestMps);
+  const double flight_s = std::max(0.0, stride_m - support_m) / std::max(speed_mps, kSlowestMps);
   if (flight_s == 0) return 0;
   // -drop = v t - g t^2 / 2, with drop linear in v.
-  const double level_m = kGravityMps2 * flight_s * flight_s / 2 - drop_m +
-                         drop_per_mps * nominal_mps + rise_m;
+  const double level_m =
+      kGravityMps2 * flight_s * flight_s / 2 - drop_m + drop_per_mps * nominal_mps + rise_m;
   return std::max(0.0, level_m / (flight_s + drop_per_mps));
 }
 

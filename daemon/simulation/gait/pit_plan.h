@@ -54,9 +54,9 @@ struct PitLimits {
 };
 
 struct PitPlan {
-  bool leaps = false;      ///< The hop from this foothold crosses the pit.
-  bool reaches = false;    ///< The plan stays within its limits.
-  int strides = 0;         ///< Before the last foothold.
+  bool leaps = false;       ///< The hop from this foothold crosses the pit.
+  bool reaches = false;     ///< The plan stays within its limits.
+  int strides = 0;          ///< Before the last foothold.
   double lift_off_mps = 0;  ///< Vertical, from this foothold.
 };
 

@@ -153,8 +153,8 @@ void ForeseeLeap(const Context& context, double nominal_mps, GaitMemory& memory)
   seen.planned = seen.last_foothold = false;
   LookForPit(context, memory);
   if (!seen.ahead) return;
-  const Vector3d p_WF = PlaceAtTouchdown(context, memory) +
-                        HoppingFoothold(context, memory, memory.support_leg);
+  const Vector3d p_WF =
+      PlaceAtTouchdown(context, memory) + HoppingFoothold(context, memory, memory.support_leg);
   const std::optional<PitAhead> pit = PitFrom(memory, p_WF);
   const Hop hop = SteadyHop(memory, nominal_mps);
   const PitGains& gains = context.gains.pit;
@@ -174,8 +174,8 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
   const std::optional<PitAhead> pit = PitFrom(memory, StanceFoot(context, memory));
   const Hop next = SteadyHop(memory, nominal_mps);
   Hop first = next;
-  first.support_m = FromFoot(context, memory).x() + seen.flight_mps * kExtensionS +
-                    seen.foot_ahead_m;
+  first.support_m =
+      FromFoot(context, memory).x() + seen.flight_mps * kExtensionS + seen.foot_ahead_m;
   first.drop_m = FromFoot(context, memory).z() +
                  kRiseShare * ThrustOf(context, memory).ExtensionFor(nominal_mps) + kRiseOffsetM -
                  seen.touchdown_height_m;

@@ -18,7 +18,8 @@ std::vector<double> Roughly(const std::vector<Eigen::VectorXd>& points) {
 std::vector<SearchState> Searched() {
   std::vector<SearchState> searches{StartSearch(3), StartSearch(3)};
   for (int i = 0; i < 4; ++i) {
-    Evolve(searches[0], [](const auto& points, std::uint64_t) { return Roughly(points); }, 5);
+    Evolve(
+        searches[0], [](const auto& points, std::uint64_t) { return Roughly(points); }, 5);
   }
   return searches;
 }

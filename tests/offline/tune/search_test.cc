@@ -98,8 +98,8 @@ TEST(Evolution, IsTheSameForTheSameSeedAndAnotherForAnother) {
 
 TEST(SearchSpace, TheStartIsZeroAndStepsAreOfTheGainsSize) {
   const gait::Gains start;
-  for (const stream::Gait gait : {stream::Gait::kStep, stream::Gait::kWalk, stream::Gait::kRun,
-                                  stream::Gait::kJump}) {
+  for (const stream::Gait gait :
+       {stream::Gait::kStep, stream::Gait::kWalk, stream::Gait::kRun, stream::Gait::kJump}) {
     const auto dimensions = DimensionsOf(gait);
     const auto n = static_cast<Eigen::Index>(dimensions.size());
     EXPECT_GE(n, 12);
