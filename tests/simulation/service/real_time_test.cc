@@ -124,8 +124,8 @@ TEST(SimulationThread, AllocatesLocksAndSoLogsNothingOnceItRuns) {
   Inputs inputs;
   inputs.engine.direct = true;
   std::uint64_t step = 0;
-  for (const stream::Gait gait : {stream::Gait::kWalk, stream::Gait::kRun, stream::Gait::kJump,
-                                  stream::Gait::kStep}) {
+  for (const stream::Gait gait :
+       {stream::Gait::kWalk, stream::Gait::kRun, stream::Gait::kJump, stream::Gait::kStep}) {
     inputs.engine.direct_command = {.gait = gait, .speed_mps = 1};
     ++inputs.engine.push_number;
     inputs.engine.push_impulse_W_ns = {0, gait == stream::Gait::kStep ? 90 : 2};  // A fall too.
