@@ -12,7 +12,7 @@
 #include "common/config/data_file.h"
 #include "common/units/units.h"
 #include "daemon/offline/tune/kept_run.h"
-#include "daemon/offline/tune/plot.h"
+#include "daemon/offline/tune/report.h"
 #include "daemon/offline/tune/team.h"
 #include "daemon/offline/tune/texts.h"
 
@@ -25,24 +25,11 @@ using nlohmann::ordered_json;
 constexpr std::uint64_t kJudgingBatch = 1u << 30;
 constexpr int kJudgingTimes = 8;  // Trials for judging, of those a search has.
 
-struct TunedSet {
-  gait::GainSet set;
-  Score before, after;
-  Difference difference;
-  bool better = false;
-};
-
 std::string SetName(std::size_t index, std::size_t count) {
   if (count == 1) return "all";
   if (index == 0) return "slow";
   if (index + 1 == count) return "fast";
   return count == 3 ? "medium" : "medium" + std::to_string(index);
-}
-
-std::string Short(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", value);
-  return text;
 }
 
 /// One run of the program, from its options.
@@ -83,40 +70,14 @@ class Tuning {
 
   Result<void> Write() const {
     if (options_.iterations == 0) return {};
-    if (const auto done = ReplaceFile(options_.out, TableText()); !done) return done;
-    return ReplaceFile(PlotPath(), Plot());
+    if (const auto done = ReplaceFile(options_.out, TableText(options_, tuned_)); !done)
+      return done;
+    return ReplaceFile(PlotPath(), Plot(options_, searches_));
   }
 
-  ordered_json Report() const {
-    ordered_json sets = ordered_json::array();
-    for (const TunedSet& tuned : tuned_) {
-      ordered_json gains;
-      for (const Dimension& dimension : dimensions_) {
-        gains[std::string(dimension.gain->name)] = dimension.gain->Of(tuned.set.gains);
-      }
-      sets.push_back({{"set", tuned.set.name},
-                      {"speed_mps", tuned.set.speed_mps},
-                      {"before", ToJson(tuned.before)},
-                      {"after", ToJson(tuned.after)},
-                      {"difference", tuned.difference.mean},
-                      {"difference_half_width", tuned.difference.half_width},
-                      {"better", tuned.better},
-                      {"gains", gains}});
-    }
-    return {{"gait", options_.gait},     {"method", options_.method},
-            {"seed", options_.seed},     {"iterations", options_.iterations},
-            {"trials", options_.trials}, {"sets", sets}};
-  }
+  ordered_json Report() const { return ReportOf(options_, dimensions_, tuned_); }
 
  private:
-  static ordered_json ToJson(const Score& score) {
-    return {{"objective", score.mean.total()}, {"half_width", score.total_half_width},
-            {"trials", score.trials},          {"survival", score.survival},
-            {"failure", score.mean.failure},   {"speed", score.mean.speed},
-            {"flight", score.mean.flight},     {"stance", score.mean.stance},
-            {"stride", score.mean.stride}};
-  }
-
   std::string StatePath() const { return options_.out + ".state.json"; }
   std::string PlotPath() const {
     return std::filesystem::path(options_.out).replace_extension(".svg").string();
@@ -212,45 +173,6 @@ class Tuning {
                  tuned.after.total_half_width,
                  scores_only || tuned.better ? "" : ": not better, the start is kept");
     tuned_.push_back(std::move(tuned));
-  }
-
-  std::string TableText() const {
-    std::string comment = "Made by footing-tune " + std::string(cli::Version()) + ", seed " +
-                          std::to_string(options_.seed) + ":\n" + options_.command_line +
-                          "\nObjective on trials of its own, 95 % intervals:\n";
-    std::vector<gait::GainSet> sets;
-    for (const TunedSet& tuned : tuned_) {
-      comment += tuned.set.name + " " + Short(tuned.before.mean.total()) + " +- " +
-                 Short(tuned.before.total_half_width) + " before, " +
-                 Short(tuned.after.mean.total()) + " +- " + Short(tuned.after.total_half_width) +
-                 " after" + (tuned.better ? "" : ", not better: the start is kept") + "\n";
-      sets.push_back(tuned.set);
-    }
-    std::vector<const gait::GainField*> columns;
-    for (const gait::GainField& field : gait::GainFields()) {
-      const auto differs = [&field](const gait::GainSet& set) {
-        return field.Of(set.gains) != field.Of(gait::Gains{});
-      };
-      if (std::any_of(sets.begin(), sets.end(), differs)) columns.push_back(&field);
-    }
-    return gait::WriteGains(gait_, sets, columns, comment);
-  }
-
-  std::string Plot() const {
-    std::vector<Curve> curves;
-    for (std::size_t i = 0; i < searches_.size(); ++i) {
-      Curve at_point{Short(options_.speeds_mps[i]) + " m/s", {}};
-      Curve best{Short(options_.speeds_mps[i]) + " m/s, best tried", {}};
-      for (const HistoryPoint& point : searches_[i].history) {
-        at_point.points.emplace_back(point.iteration, point.objective);
-        best.points.emplace_back(point.iteration, point.best);
-      }
-      curves.push_back(std::move(at_point));
-      curves.push_back(std::move(best));
-    }
-    return LinePlot(options_.gait + ", " + options_.method + ", seed " +
-                        std::to_string(options_.seed) + ", each iteration on trials of its own",
-                    "iteration", "objective", curves);
   }
 
   const Options& options_;

@@ -164,6 +164,12 @@ TEST(ShippedGains, SayOnlyWhatDiffersFromTheHeader) {
   }
 }
 
+TEST(PrototypeGains, AreStillATableToCompareWith) {
+  const auto text = config::ReadTextFile(FOOTING_SOURCE_DIR "/tests/simulation/gait/prototype.csv");
+  ASSERT_TRUE(text.ok());
+  EXPECT_EQ(Read(*text).At(Gait::kRun, 5).hopping.run_velocity_gain_s, 0.06);
+}
+
 TEST(ShippedGains, HaveSetsForEveryGait) {
   for (const Gait gait : {Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump}) {
     EXPECT_FALSE(Shipped().SetsOf(gait).empty()) << stream::Name(gait);

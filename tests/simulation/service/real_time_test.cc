@@ -1,0 +1,161 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+
+#include "common/config/data_file.h"
+#include "daemon/simulation/service/publish.h"
+#include "daemon/simulation/service/simulation_thread.h"
+
+// Counts what every thread but the test's own takes from the C library: memory, and mutexes, which
+// is also what a log would need. A sanitizer brings its own; there the test is skipped.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define FOOTING_COUNTS_CALLS 1
+namespace {
+std::atomic<long> allocations{0}, locks{0};
+thread_local bool is_test_thread = false;
+void Count(std::atomic<long>& calls) {
+  if (!is_test_thread) calls.fetch_add(1, std::memory_order_relaxed);
+}
+}  // namespace
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+void* malloc(std::size_t size) {
+  Count(allocations);
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  Count(allocations);
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) {
+  Count(allocations);
+  return __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  Count(allocations);
+  return __libc_memalign(alignment, size);
+}
+int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
+  using Lock = int (*)(pthread_mutex_t*);
+  static const Lock real = reinterpret_cast<Lock>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
+  Count(locks);
+  return real(mutex);
+}
+}
+#endif
+
+namespace footing::simulation {
+namespace {
+
+/// A thread whose clock's step is a microsecond: it never sleeps, and is late at every step.
+class HastyThread {
+ public:
+  HastyThread() : wake_(eventfd(0, EFD_CLOEXEC)), thread_(MakeEngine(), 1e-6, 10, wake_) {
+    thread_.Start();
+  }
+  ~HastyThread() {
+    thread_.Stop();
+    close(wake_);
+  }
+
+  /// The first frame from this step on; bounded.
+  bool WaitForStep(std::uint64_t step, Frame& frame) {
+    while (true) {
+      while (thread_.frames().Pop(frame)) {
+        if (frame.output.step >= step) return true;
+      }
+      pollfd ready{wake_, POLLIN, 0};
+      if (poll(&ready, 1, 20000) <= 0) return false;
+      std::uint64_t count = 0;
+      if (read(wake_, &count, sizeof(count)) < 0) return false;
+    }
+  }
+  SimulationThread& thread() { return thread_; }
+
+ private:
+  static engine::GaitEngine MakeEngine() {
+    engine::EngineTexts texts;
+    texts.biped = *config::ReadDataFile(engine::kBipedFile);
+    texts.track = *config::ReadDataFile(engine::kStraightTrackFile);
+    texts.wrist_mapping = *config::ReadDataFile(engine::kWristMappingFile);
+    for (const char* name : engine::kGainFiles) {
+      texts.gains.push_back({name, *config::ReadDataFile(name)});
+    }
+    auto engine = engine::GaitEngine::Create(texts);
+    FOOTING_CHECK(engine.ok());
+    return std::move(engine).value();
+  }
+
+  int wake_;
+  SimulationThread thread_;
+};
+
+TEST(SimulationThread, AllocatesLocksAndSoLogsNothingOnceItRuns) {
+#ifndef FOOTING_COUNTS_CALLS
+  GTEST_SKIP() << "the sanitizer owns malloc and mutexes";
+#else
+  const long allocations_before = allocations, locks_before = locks;
+  {
+    std::mutex mutex;
+    const std::lock_guard<std::mutex> guard(mutex);
+    auto probe = std::make_unique<int>(1);
+    ASSERT_NE(probe, nullptr);
+  }
+  ASSERT_GT(allocations, allocations_before) << "the counter does not count";
+  ASSERT_GT(locks, locks_before) << "the counter does not count";
+  is_test_thread = true;
+
+  HastyThread hasty;
+  Frame frame;
+  ASSERT_TRUE(hasty.WaitForStep(1, frame));
+  const long allocations_start = allocations, locks_start = locks;
+  Inputs inputs;
+  inputs.engine.direct = true;
+  std::uint64_t step = 0;
+  for (const stream::Gait gait :
+       {stream::Gait::kWalk, stream::Gait::kRun, stream::Gait::kJump, stream::Gait::kStep}) {
+    inputs.engine.direct_command = {.gait = gait, .speed_mps = 1};
+    ++inputs.engine.push_number;
+    inputs.engine.push_impulse_W_ns = {0, gait == stream::Gait::kStep ? 90 : 2};  // A fall too.
+    hasty.thread().inputs().Write(inputs);
+    step += 4000;
+    ASSERT_TRUE(hasty.WaitForStep(step, frame));
+  }
+  EXPECT_EQ(allocations, allocations_start);
+  EXPECT_EQ(locks, locks_start);
+  EXPECT_GE(frame.output.gait.falls, 1u);
+#endif
+}
+
+TEST(SimulationThread, CountsEveryStepThatBeganLateAndPublishesTheCount) {
+  HastyThread hasty;
+  Frame first, later;
+  ASSERT_TRUE(hasty.WaitForStep(1, first));
+  ASSERT_TRUE(hasty.WaitForStep(500, later));
+  const std::uint64_t steps = later.output.step - first.output.step;
+  EXPECT_GT(later.overruns - first.overruns, steps * 9 / 10);
+  EXPECT_LE(later.overruns - first.overruns, steps);
+  EXPECT_EQ(ToCharacterFrame(later, "straight", "rig").overruns(), later.overruns);
+}
+
+TEST(SimulationThread, SimulatesAMillisecondAStepHoweverLateItIs) {
+  HastyThread hasty;
+  Frame frame;
+  ASSERT_TRUE(hasty.WaitForStep(300, frame));
+  EXPECT_EQ(frame.output.time_s, static_cast<double>(frame.output.step) * 0.001);
+}
+
+}  // namespace
+}  // namespace footing::simulation
