@@ -3,6 +3,7 @@
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/engine/state.h"
 #include "daemon/simulation/gait/gains.h"
+#include "daemon/simulation/terrain/ground.h"
 
 namespace footing::engine {
 
@@ -13,6 +14,8 @@ struct GaitEngine::Parts {
   gait::Gains gains;
   stream::Track track;
   stream::Skeleton skeleton;
+  std::vector<stream::TrackSegment> first_segments;              ///< The file's.
+  std::array<std::uint64_t, terrain::kGroundBoxes> box_holds{};  ///< Segment's number + 1; 0 none.
   bool sees_ground = false;  ///< The track has slopes, steps or pits.
   physics::World world;
 
@@ -31,6 +34,11 @@ struct GaitEngine::Parts {
   void TakeFeatures(const EngineInputs& inputs);
   void TakePush(const EngineInputs& inputs);
   void Command(const EngineInputs& inputs);
+  void TakeAppend(const EngineInputs& inputs);
+  /// Puts the world's boxes under the segments around the character.
+  void PlaceGround();
+  void SaveTrack(TrackMemory& memory) const;
+  void RestoreTrack();
   void StepWorld();
   void NoteGait(stream::Gait before);
   void NoteFall();
