@@ -43,6 +43,7 @@ struct Track {
   std::vector<TrackSegment> segments;
   std::uint64_t revision = 0;  ///< Counts up with every change.
   bool open = false;           ///< One may leave the ribbon; otherwise that is a failure.
+  bool extendable = false;     ///< Segments may be added at the end while a character is on it.
 };
 
 struct LinkPose {

@@ -69,10 +69,11 @@ std::string WriteMjcf(const BipedParameters& p, const std::string& ground, doubl
          Leg(p, kLeft) + Leg(p, kRight) + "</body>\n</worldbody>\n</mujoco>\n";
 }
 
-physics::WorldNames Names() {
+physics::WorldNames Names(const std::vector<std::string>& ground) {
   return {.links = {"body", "left_hip", "left_knee", "right_hip", "right_knee"},
           .hips = {"left_hip", "right_hip"},
-          .feet = {"left_foot", "right_foot"}};
+          .feet = {"left_foot", "right_foot"},
+          .ground = ground};
 }
 
 }  // namespace footing::biped

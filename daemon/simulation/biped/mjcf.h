@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "daemon/simulation/biped/parameters.h"
 #include "daemon/simulation/physics/world.h"
@@ -11,7 +12,7 @@ namespace footing::biped {
 /// Contact: the feet's friction holds whatever ground they touch; solref 6 ms, critically damped.
 std::string WriteMjcf(const BipedParameters& parameters, const std::string& ground, double step_s);
 
-/// The names WriteMjcf gives.
-physics::WorldNames Names();
+/// The names WriteMjcf gives, and those of the ground's boxes that may be moved.
+physics::WorldNames Names(const std::vector<std::string>& ground = {});
 
 }  // namespace footing::biped

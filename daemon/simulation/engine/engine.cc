@@ -32,8 +32,12 @@ Result<GaitEngine> GaitEngine::Create(const EngineTexts& texts, const EngineConf
   for (const GainText& gains : texts.gains) {
     if (const auto added = gain_table.Add(gains.text, gains.origin); !added) return added.error();
   }
+  std::vector<std::string> boxes;
+  for (int i = 0; track->extendable && i < terrain::kGroundBoxes; ++i) {
+    boxes.push_back(terrain::GroundBoxName(i));
+  }
   Result<physics::World> world = physics::World::FromMjcf(
-      biped::WriteMjcf(*biped, terrain::GroundMjcf(*track), config.step_s), biped::Names());
+      biped::WriteMjcf(*biped, terrain::GroundMjcf(*track), config.step_s), biped::Names(boxes));
   if (!world) return world.error();
 
   auto parts = std::make_unique<Parts>(Parts{.config = config,
@@ -42,6 +46,7 @@ Result<GaitEngine> GaitEngine::Create(const EngineTexts& texts, const EngineConf
                                              .gains = {},
                                              .track = std::move(*track),
                                              .skeleton = biped::DescribeSkeleton(*biped),
+                                             .first_segments = {},
                                              .sees_ground = false,
                                              .world = std::move(*world),
                                              .state = {.world = {},
@@ -49,11 +54,17 @@ Result<GaitEngine> GaitEngine::Create(const EngineTexts& texts, const EngineConf
                                                        .wrist = mapping::WristInterface(*mapping),
                                                        .command = {},
                                                        .inputs = {},
-                                                       .response = {}},
+                                                       .response = {},
+                                                       .track = {}},
                                              .body = {},
                                              .output = {}});
   parts->sees_ground = !terrain::IsLevel(parts->track);
-  const stream::TrackSegment& start = parts->track.segments.front();
+  if (parts->track.extendable) {
+    parts->first_segments = parts->track.segments;
+    parts->track.segments.reserve(terrain::kMostSegments);
+    parts->PlaceGround();
+  }
+  const stream::TrackSegment start = parts->track.segments.front();
   parts->Stand(start.start_m, start.heading_rad);
   return GaitEngine(std::move(parts));
 }
@@ -61,6 +72,7 @@ Result<GaitEngine> GaitEngine::Create(const EngineTexts& texts, const EngineConf
 void GaitEngine::Advance(const EngineInputs& inputs) {
   Parts& p = *parts_;
   p.output.event_count = 0;
+  p.output.appended = false;
   p.output_stale = true;
   const stream::Gait gait_before = p.state.gait.gait;
   p.TakeFeatures(inputs);
@@ -73,6 +85,8 @@ void GaitEngine::Advance(const EngineInputs& inputs) {
   } else if (p.state.fallen && p.TimeS() - p.state.fallen_time_s >= p.config.fall_shown_s) {
     p.PutBack("after a fall");
   }
+  p.TakeAppend(inputs);
+  p.PlaceGround();
   p.StepWorld();
   p.NoteGait(gait_before);
   p.NoteFall();
@@ -95,15 +109,20 @@ void GaitEngine::UseGains(const gait::GainTable& table) {
 EngineState GaitEngine::Save() const {
   EngineState state = parts_->state;
   state.world = parts_->world.Save();
+  parts_->SaveTrack(state.track);
   return state;
 }
 
 void GaitEngine::Restore(const EngineState& state) {
   Parts& p = *parts_;
   p.state = state;
+  p.RestoreTrack();
+  p.body.p_WB = Eigen::Vector3d(state.world.qpos[0], state.world.qpos[1], state.world.qpos[2]);
+  p.PlaceGround();
   p.world.Restore(state.world);
   p.body = biped::Read(p.biped, p.world.Observe(), p.TimeS());
   p.output.event_count = 0;
+  p.output.appended = false;
   p.output_stale = true;
 }
 

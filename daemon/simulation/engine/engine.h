@@ -12,6 +12,7 @@
 #include "daemon/simulation/biped/command.h"
 #include "daemon/simulation/gait/gain_table.h"
 #include "daemon/simulation/mapping/wrist_features.h"
+#include "daemon/simulation/terrain/append.h"
 
 /// The gait engine: received features in, a walking biped out, one fixed step at a time.
 namespace footing::engine {
@@ -42,6 +43,8 @@ struct EngineConfig {
   double features_timeout_s = 0.5;  ///< Without new features: stepping in place.
 };
 
+inline constexpr int kMaxAppends = 16;
+
 /// What the world outside wants, as of one step. Fixed size. Numbers count up: a push, a put-back
 /// or features are new when their number differs from the last step's, so the same inputs may be
 /// given again and again, and nothing is carried out twice.
@@ -53,6 +56,11 @@ struct EngineInputs {
   std::uint64_t push_number = 0;
   Eigen::Vector2d push_impulse_W_ns = Eigen::Vector2d::Zero();  ///< On the body's COM, over 0.1 s.
   std::uint64_t put_back_number = 0;
+  /// Segments to add to the track's end: the newest append_count ones of append_number in all,
+  /// oldest first. One is taken a step; keep each here until EngineOutput::append_number says so.
+  std::uint64_t append_number = 0;
+  int append_count = 0;
+  std::array<terrain::NewSegment, kMaxAppends> appends;
 };
 
 enum class EventKind {
@@ -64,6 +72,7 @@ enum class EventKind {
                    ///< over.
   kStreamLost,     ///< No new features for longer than the timeout.
   kStreamBack,
+  kAppendRefused,  ///< A segment was not added; why is in the text.
 };
 
 /// What a failure is put down to, as the gait paper counts them (section 8.2).
@@ -108,6 +117,8 @@ struct EngineOutput {
   std::uint64_t commanded_step = 0;
   std::uint64_t commanded_features_number = 0;
   std::uint64_t taken_over_step = 0;
+  std::uint64_t append_number = 0;             ///< Of the appends, so many were taken or refused.
+  bool appended = false;                       ///< In this step: the track's last segment is new.
   std::array<EngineEvent, kMaxEvents> events;  ///< Of this step alone.
   int event_count = 0;
 };

@@ -160,6 +160,7 @@ void GaitEngine::Parts::FillOutput() {
   output.state_hash = world.StateHash();
   output.commanded_step = state.response.commanded_step;
   output.commanded_features_number = state.response.commanded_features_number;
+  output.append_number = state.track.append_number;
   output.taken_over_step = state.response.taken_over_step;
 }
 

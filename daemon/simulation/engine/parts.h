@@ -3,6 +3,7 @@
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/engine/state.h"
 #include "daemon/simulation/gait/gain_table.h"
+#include "daemon/simulation/terrain/ground.h"
 
 namespace footing::engine {
 
@@ -16,6 +17,8 @@ struct GaitEngine::Parts {
   double gains_speed_mps = 0;
   stream::Track track;
   stream::Skeleton skeleton;
+  std::vector<stream::TrackSegment> first_segments;              ///< The file's.
+  std::array<std::uint64_t, terrain::kGroundBoxes> box_holds{};  ///< Segment's number + 1; 0 none.
   bool sees_ground = false;  ///< The track has slopes, steps or pits.
   physics::World world;
 
@@ -36,6 +39,11 @@ struct GaitEngine::Parts {
   void Command(const EngineInputs& inputs);
   /// Follows the gait that runs and its desired speed; the table is looked up when they change.
   void ChooseGains();
+  void TakeAppend(const EngineInputs& inputs);
+  /// Puts the world's boxes under the segments around the character.
+  void PlaceGround();
+  void SaveTrack(TrackMemory& memory) const;
+  void RestoreTrack();
   void StepWorld();
   void NoteGait(stream::Gait before);
   void NoteFall();

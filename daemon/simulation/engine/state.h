@@ -26,6 +26,15 @@ struct ResponseMemory {
   std::uint64_t taken_over_step = 0;
 };
 
+/// The track as far as it was added to; of a track that never was, nothing.
+struct TrackMemory {
+  std::uint64_t append_number = 0;  ///< Taken or refused.
+  std::uint64_t first_segment = 0;  ///< Dropped so far.
+  std::uint64_t revision = 0;       ///< 0: the track is still the file's.
+  std::size_t count = 0;
+  std::array<stream::TrackSegment, terrain::kMostSegments> segments;
+};
+
 /// Everything in a GaitEngine that changes with time.
 struct EngineState {
   physics::WorldState world;
@@ -34,6 +43,7 @@ struct EngineState {
   biped::GaitCommand command;
   InputMemory inputs;
   ResponseMemory response;
+  TrackMemory track;
   std::uint64_t step = 0;
   std::uint64_t falls = 0;
   double distance_m = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "daemon/simulation/physics/compile.h"
 #include "daemon/simulation/physics/world.h"
@@ -17,6 +18,7 @@ struct World::Parts {
   std::array<int, kLinks> links{};
   std::array<int, kLegs> hips{};
   std::array<int, kLegs> feet{};
+  std::vector<int> ground;
   double mass_kg = 0;
   std::uint64_t steps = 0;
   /// As integrated: mj_step1 normalises qpos in place, and doing so twice may change the last bit.

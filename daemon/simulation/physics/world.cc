@@ -51,9 +51,10 @@ Result<World> World::FromMjcf(const std::string& mjcf, const WorldNames& names) 
     }
     return {};
   };
+  parts->ground.resize(names.ground.size());
   for (const auto& found :
        {find(mjOBJ_BODY, names.links, parts->links), find(mjOBJ_BODY, names.hips, parts->hips),
-        find(mjOBJ_GEOM, names.feet, parts->feet)}) {
+        find(mjOBJ_GEOM, names.feet, parts->feet), find(mjOBJ_GEOM, names.ground, parts->ground)}) {
     if (!found) return found.error();
   }
   for (const int link : parts->links) parts->mass_kg += m.body_mass[link];
@@ -83,6 +84,17 @@ void World::Reset(const Eigen::Vector3d& p_WB_m, double heading_rad,
   mj_forward(p.model.get(), &d);
   ReadContacts(*p.model, d, p.feet, p.observation);
   ReadMotion(*p.model, d, p.links, p.hips, p.feet, p.mass_kg, p.observation);
+}
+
+void World::PlaceBox(int index, const Eigen::Vector3d& centre_W_m, const Eigen::Quaterniond& q_WS,
+                     const Eigen::Vector3d& half_size_m) {
+  mjModel& m = *parts_->model;
+  const int geom = parts_->ground[static_cast<std::size_t>(index)];
+  std::copy(centre_W_m.data(), centre_W_m.data() + 3, m.geom_pos + 3 * geom);
+  std::copy(half_size_m.data(), half_size_m.data() + 3, m.geom_size + 3 * geom);
+  const std::array<double, 4> quaternion{q_WS.w(), q_WS.x(), q_WS.y(), q_WS.z()};
+  std::copy(quaternion.begin(), quaternion.end(), m.geom_quat + 4 * geom);
+  m.geom_rbound[geom] = half_size_m.norm();
 }
 
 // mj_step is mj_step1 then mj_step2. Cut between them, a step leaves positions and velocities of

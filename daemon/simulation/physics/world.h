@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/result/result.h"
 
@@ -24,6 +25,7 @@ struct WorldNames {
   std::array<std::string, kLinks> links;  ///< Bodies; the first one is the root.
   std::array<std::string, kLegs> hips;    ///< Bodies whose origin is a hip's centre.
   std::array<std::string, kLegs> feet;    ///< Geoms; the only ones that should touch the ground.
+  std::vector<std::string> ground;        ///< Boxes of the world body that may be moved.
 };
 
 /// What is seen of the state. Positions and velocities are of the present state; contact forces
@@ -73,6 +75,10 @@ class World {
   /// Places the root (quaternion from its heading alone), at rest, joints as given.
   void Reset(const Eigen::Vector3d& p_WB_m, double heading_rad,
              const std::array<double, kJoints>& joint_position);
+  /// Moves a box of WorldNames::ground and gives it another size. It acts from the next step on.
+  void PlaceBox(int index, const Eigen::Vector3d& centre_W_m, const Eigen::Quaterniond& q_WS,
+                const Eigen::Vector3d& half_size_m);
+
   /// One step under joint efforts and a push on the root's COM. No other force is applied to the
   /// root: aborts should one be.
   void Step(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n);

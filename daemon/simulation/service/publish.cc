@@ -13,6 +13,7 @@ v1::Event::Kind ToKind(engine::EventKind kind) {
       return v1::Event::KIND_PUT_BACK;
     case engine::EventKind::kGaitCommanded:
     case engine::EventKind::kGaitTakenOver:
+    case engine::EventKind::kAppendRefused:
       return v1::Event::KIND_COMMAND;
     case engine::EventKind::kGaitChanged:
       return v1::Event::KIND_GAIT_CHANGED;
@@ -37,6 +38,7 @@ std::string ToText(const engine::EngineEvent& event) {
     case engine::EventKind::kPutBack:
     case engine::EventKind::kStreamLost:
     case engine::EventKind::kStreamBack:
+    case engine::EventKind::kAppendRefused:
       return event.text;
   }
   return event.text;

@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/simulation/terrain/box.h"
-
 namespace footing::terrain {
 namespace {
 
-std::string Geom(const GroundBox& box) {
+std::string Geom(const GroundBox& box, const std::string& name = "") {
   const auto text = [](double value) { return std::to_string(value) + " "; };
   const Eigen::Vector3d& p = box.centre_W_m;
   const Eigen::Vector3d& half = box.half_size_m;
   const Eigen::Quaterniond& q = box.q_WS;
-  return "<geom type='box' contype='1' conaffinity='2' size='" + text(half.x()) + text(half.y()) +
+  return "<geom" + (name.empty() ? "" : " name='" + name + "'") +
+         " type='box' contype='1' conaffinity='2' size='" + text(half.x()) + text(half.y()) +
          text(half.z()) + "' pos='" + text(p.x()) + text(p.y()) + text(p.z()) + "' quat='" +
          text(q.w()) + text(q.x()) + text(q.y()) + text(q.z()) + "'/>\n";
 }
@@ -21,9 +20,10 @@ std::string Geom(const GroundBox& box) {
 }  // namespace
 
 bool IsLevel(const stream::Track& track) {
-  return std::all_of(track.segments.begin(), track.segments.end(), [](const auto& segment) {
-    return !segment.pit && segment.slope_rad == 0 && segment.start_m.z() == 0;
-  });
+  return !track.extendable &&
+         std::all_of(track.segments.begin(), track.segments.end(), [](const auto& segment) {
+           return !segment.pit && segment.slope_rad == 0 && segment.start_m.z() == 0;
+         });
 }
 
 double RibbonHeight(const stream::TrackSegment& segment, const TrackPlace& place) {
@@ -42,7 +42,19 @@ double GroundHeight(const stream::Track& track, double x_m, double y_m) {
   return segment.pit ? height_m - kPitDepthM : height_m;
 }
 
+GroundBox WaitingBox(int index) {
+  constexpr double kDepthM = 100, kApartM = 10;
+  return {{kApartM * index, 0, -kDepthM}, Eigen::Quaterniond::Identity(), {1, 1, 1}};
+}
+
+std::string GroundBoxName(int index) { return "ground_" + std::to_string(index); }
+
 std::string GroundMjcf(const stream::Track& track) {
+  if (track.extendable) {
+    std::string boxes;
+    for (int i = 0; i < kGroundBoxes; ++i) boxes += Geom(WaitingBox(i), GroundBoxName(i));
+    return boxes;
+  }
   if (IsLevel(track)) {
     return "<geom type='plane' contype='1' conaffinity='2' size='0 0 1'/>\n";
   }

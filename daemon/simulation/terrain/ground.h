@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/stream/character.h"
+#include "daemon/simulation/terrain/box.h"
 #include "daemon/simulation/terrain/track.h"
 
 namespace footing::terrain {
@@ -22,8 +23,14 @@ double RibbonHeight(const stream::Track& track, double x_m, double y_m);
 /// Height of the ground under a point, m. Beside the ribbon the height of the nearest place.
 double GroundHeight(const stream::Track& track, double x_m, double y_m);
 
-/// The ground as MJCF geoms of the world body: one plane, or a box a segment that is no pit; the
-/// first one begins 3 m before its start.
+/// Boxes that an extendable track's world has; each stands for one segment near the character.
+inline constexpr int kGroundBoxes = 32;
+/// Far below everything: where a box waits that no segment needs.
+GroundBox WaitingBox(int index);
+std::string GroundBoxName(int index);
+
+/// The ground as MJCF geoms of the world body: kGroundBoxes waiting ones for an extendable track,
+/// else one plane, or a box a segment that is no pit; the first one begins 3 m before its start.
 std::string GroundMjcf(const stream::Track& track);
 
 }  // namespace footing::terrain

@@ -40,18 +40,8 @@ class Fields {
   std::string error_;
 };
 
-stream::TrackSegment Following(const stream::TrackSegment& last) {
-  stream::TrackSegment next;
-  const double level_m = last.length_m * std::cos(last.slope_rad);
-  next.start_m = last.start_m + Eigen::Vector3d(level_m * std::cos(last.heading_rad),
-                                                level_m * std::sin(last.heading_rad),
-                                                last.length_m * std::sin(last.slope_rad));
-  next.heading_rad = last.heading_rad;
-  return next;
-}
-
-Result<void> Append(const json& object, const std::string& where, double width_m,
-                    stream::Track& track) {
+Result<void> AppendFrom(const json& object, const std::string& where, double width_m,
+                        stream::Track& track) {
   if (!object.is_object()) return InvalidData(where + ": a segment is an object {length_m, ...}");
   Fields fields(object, where);
   stream::TrackSegment segment =
@@ -68,7 +58,29 @@ Result<void> Append(const json& object, const std::string& where, double width_m
   return {};
 }
 
+/// What an extendable track's file must keep to.
+Result<void> CheckExtendable(const stream::Track& track, const std::string& origin) {
+  constexpr std::size_t kMost = 32;
+  constexpr double kShortestM = 2;
+  bool fits = track.segments.size() <= kMost;
+  for (const stream::TrackSegment& segment : track.segments) {
+    fits = fits && segment.length_m >= kShortestM;
+  }
+  if (fits) return {};
+  return InvalidData(origin + ": an extendable track starts with 1 to 32 segments of at least 2 m");
+}
+
 }  // namespace
+
+stream::TrackSegment Following(const stream::TrackSegment& last) {
+  stream::TrackSegment next;
+  const double level_m = last.length_m * std::cos(last.slope_rad);
+  next.start_m = last.start_m + Eigen::Vector3d(level_m * std::cos(last.heading_rad),
+                                                level_m * std::sin(last.heading_rad),
+                                                last.length_m * std::sin(last.slope_rad));
+  next.heading_rad = last.heading_rad;
+  return next;
+}
 
 Result<stream::Track> ParseTrack(const std::string& text, const std::string& origin) {
   const json root = json::parse(text, nullptr, false, true);
@@ -79,6 +91,7 @@ Result<stream::Track> ParseTrack(const std::string& text, const std::string& ori
   }
   stream::Track track;
   track.revision = 1;
+  track.extendable = root.contains("extendable") && root["extendable"] == true;
   track.open = root.contains("open") && root["open"] == true;
   track.name = root.contains("name") && root["name"].is_string() ? root["name"] : json("unnamed");
   const double width_m = fields.Number("width_m", 4, 0.1, 100);
@@ -90,9 +103,12 @@ Result<stream::Track> ParseTrack(const std::string& text, const std::string& ori
   }
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const std::string where = origin + ", segment " + std::to_string(i);
-    if (auto appended = Append(segments[i], where, width_m, track); !appended) {
+    if (auto appended = AppendFrom(segments[i], where, width_m, track); !appended) {
       return appended.error();
     }
+  }
+  if (track.extendable) {
+    if (auto checked = CheckExtendable(track, origin); !checked) return checked.error();
   }
   return track;
 }

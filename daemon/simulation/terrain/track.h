@@ -13,11 +13,16 @@ namespace footing::terrain {
 ///   name      text
 ///   width_m   (0, 100], 4 by default
 ///   open      true: a character may leave the ribbon; otherwise that is a failure
+///   extendable  true: segments may be added later (append.h); those of the file are then 1 to 32
+///             of at least 2 m
 ///   segments  1 to 1000 objects {length_m (0, 10000], slope_deg [-30, 30], curve_deg [-90, 90],
 ///             step_m [-0.5, 0.5], pit true or false}; all but the length default to nothing.
 /// The track starts at the origin along x. curve_deg turns the heading and step_m raises the
 /// ground at the segment's start; positive is left and up. `origin` names the file in errors.
 Result<stream::Track> ParseTrack(const std::string& text, const std::string& origin);
+
+/// A segment without length that begins where another ends and goes on as it does, level.
+stream::TrackSegment Following(const stream::TrackSegment& last);
 
 /// Where a point is relative to the track's centre line.
 struct TrackPlace {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+
+#include "common/stream/character.h"
+
+/// Ground that is added to a track's end while a character is on it, as in the gait paper's terrain
+/// editor (section 8). Nothing here allocates while the track's capacity suffices.
+namespace footing::terrain {
+
+/// A segment to add. It begins where the track ends.
+struct NewSegment {
+  double length_m = 3;   ///< 2 to 4; of a pit 0.3 to 1.5.
+  double slope_rad = 0;  ///< Within 5 degrees, up positive.
+  double curve_rad = 0;  ///< Within 15 degrees, left positive, at the segment's start.
+  double step_m = 0;     ///< Within 0.10, up positive, at the segment's start.
+  bool pit = false;      ///< Without slope, curve and step.
+};
+
+/// More segments than this are not kept: the oldest one goes for each that is added.
+inline constexpr std::size_t kMostSegments = 256;
+/// The oldest segment only goes when the character is at least so many segments further.
+inline constexpr int kKeptBehind = 12;
+
+/// Why a segment may not be added, as text of static storage that names the limit; null when it
+/// may. `here` is the index of the segment on which the character is.
+const char* WhyNotAppended(const stream::Track& track, const NewSegment& segment, int here);
+
+/// Adds a segment that may be added, counts the revision up, and drops the oldest segment beyond
+/// kMostSegments.
+void Append(const NewSegment& segment, stream::Track& track);
+
+}  // namespace footing::terrain
