@@ -1,6 +1,7 @@
 #include "daemon/simulation/gait/attitude.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace footing::gait {
 
@@ -16,8 +17,13 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
   const Eigen::AngleAxisd error_W(desired_R_WB * body.R_WB.transpose());
   const Eigen::Vector3d error_B = body.R_WB.transpose() * (error_W.angle() * error_W.axis());
   const Eigen::Vector3d w_B = body.R_WB.transpose() * (body.w_WB - targets.rate_W_radps);
+  // Servos leave the rate -kp / kd times the tilt at lift-off, which a long flight overshoots.
+  const double roll_nm_per_rad = targets.flight_s > 0
+                                     ? std::min(gains.roll_stiffness_nm_per_rad,
+                                                gains.roll_damping_nms_per_rad / targets.flight_s)
+                                     : gains.roll_stiffness_nm_per_rad;
   const Eigen::Array3d stiffness(
-      gains.roll_stiffness_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
+      roll_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
       targets.hopping ? gains.hop_yaw_stiffness_nm_per_rad : gains.walk_yaw_stiffness_nm_per_rad);
   const Eigen::Array3d damping(
       gains.roll_damping_nms_per_rad, gains.pitch_damping_nms_per_rad,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
@@ -149,6 +150,7 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
       memory.pit.leaping && (memory.preparing_jump || memory.pit.lift_off_mps > kLongFlightMps);
   if (leaps && !flying && !jumping) PrepareLongFlight(context, memory, targets);
   targets.jumping = jumping;
+  if (jumping) targets.flight_s = 2 * std::sqrt(2 * context.goal.height_m / kGravityMps2);
   return targets;
 }
 

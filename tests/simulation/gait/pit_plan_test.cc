@@ -110,7 +110,7 @@ TEST(FootholdShift, MovesOffThePitToTheNearerSide) {
   EXPECT_EQ(shift(0.7, false), 0);   // Well behind.
   EXPECT_NEAR(shift(0.03, false), -0.03 - limits.edge_margin_m, 1e-12);
   EXPECT_NEAR(shift(0.35, false), 0.05 + limits.landing_margin_m, 1e-12);
-  EXPECT_EQ(shift(0.2, false), 0);    // Neither side can be reached.
+  EXPECT_EQ(shift(0.2, false), 0);     // Neither side can be reached.
   EXPECT_EQ(shift(0.03, true), 0.25);  // A leap lands behind, as far as it can.
 }
 
