@@ -257,7 +257,7 @@ void AddGaitCommand(CLI::App& app, Shared& shared) {
   command->add_option("--gait", options->gait, "step, walk, run or jump")->required();
   command->add_option("--speed", options->speed_mps, "m/s")->check(CLI::Range(0.0, 6.0));
   command->add_option("--height", options->height_m, "Of jumps, m; 0.2, or what a pit needs")
-      ->check(CLI::Range(0.05, 0.5));
+      ->check(CLI::Range(0.05, 0.7));
   command->add_option("--turn", options->turn_deg, "Degrees a step, left positive")
       ->check(CLI::Range(-8.0, 8.0));
   command->add_option("--seconds", options->seconds, "Of each trial")

@@ -16,8 +16,16 @@ struct StableRange {
 constexpr StableRange kStableRanges[] = {
     {Gait::kStep, 0}, {Gait::kWalk, 1.75}, {Gait::kRun, 6.0}, {Gait::kJump, 2.0}};
 constexpr double kHeightMinM = 0.05;
-constexpr double kHeightMaxM = 0.5;
+constexpr double kHeightMaxM = 0.7;
+/// Forward faster than the first, jumps are lower: down to the second height at 2 m/s.
+constexpr double kHighestUpToMps = 1.0;
+constexpr double kFastHeightMaxM = 0.5;
 constexpr double kTurnMaxRad = 0.14;  // 8 degrees a step.
+
+double HeightMax(double speed_mps, double speed_max_mps) {
+  const double share = (speed_mps - kHighestUpToMps) / (speed_max_mps - kHighestUpToMps);
+  return std::lerp(kHeightMaxM, kFastHeightMaxM, std::clamp(share, 0.0, 1.0));
+}
 
 }  // namespace
 
@@ -27,9 +35,12 @@ biped::GaitCommand Limited(const biped::GaitCommand& command) {
   if (!finite) return {};
   for (const StableRange& range : kStableRanges) {
     if (range.gait != command.gait) continue;
+    const double speed_mps = std::clamp(command.speed_mps, 0.0, range.speed_max_mps);
+    const bool jumps = command.gait == Gait::kJump;
+    const double height_max_m = jumps ? HeightMax(speed_mps, range.speed_max_mps) : kHeightMaxM;
     return {.gait = command.gait,
-            .speed_mps = std::clamp(command.speed_mps, 0.0, range.speed_max_mps),
-            .height_m = std::clamp(command.height_m, kHeightMinM, kHeightMaxM),
+            .speed_mps = speed_mps,
+            .height_m = std::clamp(command.height_m, kHeightMinM, height_max_m),
             .turn_per_step_rad = std::clamp(command.turn_per_step_rad, -kTurnMaxRad, kTurnMaxRad)};
   }
   return {};

@@ -196,6 +196,7 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
     DampWholeRoll(context, memory, targets);
   }
   targets.jumping = jumping;
+  if (jumping) targets.flight_s = 2 * std::sqrt(2 * context.goal.height_m / kGravityMps2);
   return targets;
 }
 

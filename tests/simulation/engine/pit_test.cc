@@ -1,0 +1,51 @@
+#include "tests/simulation/engine/engine_fixture.h"
+
+namespace footing::engine {
+namespace {
+
+using stream::Gait;
+
+constexpr double kNearM = 17;
+
+GaitEngine NewEngineBeforeAPit(double width_m) {
+  EngineTexts texts = Texts();
+  texts.track = R"({"version": 1, "segments": [{"length_m": )" + std::to_string(kNearM) +
+                R"(}, {"length_m": )" + std::to_string(width_m) +
+                R"(, "pit": true}, {"length_m": 100}]})";
+  return std::move(GaitEngine::Create(texts)).value();
+}
+
+TEST(Pit, IsCrossedByARunToldToJumpAtAnyMomentOfItsStride) {
+  for (const double lead_m : {1.2, 2.0, 2.8, 3.6}) {
+    GaitEngine engine = NewEngineBeforeAPit(1.5);
+    const EngineInputs run = Direct(Command(Gait::kRun, 3));
+    const EngineInputs jump = Direct(Command(Gait::kJump, 3));
+    bool jumped_across = false;
+    for (int i = 0; i < 11000; ++i) {
+      const EngineOutput& output = engine.Output();
+      const double to_edge_m = kNearM - output.p_WC_m.x();
+      const bool over = to_edge_m < -0.2 && to_edge_m > -1.3;
+      jumped_across = jumped_across || (over && output.gait.gait == Gait::kJump);
+      engine.Advance(to_edge_m < lead_m && to_edge_m > -2 ? jump : run);
+    }
+    EXPECT_EQ(engine.Output().gait.falls, 0u) << lead_m;
+    EXPECT_GT(engine.Output().p_WC_m.x(), kNearM + 1.5) << lead_m;
+    EXPECT_TRUE(jumped_across) << lead_m;
+  }
+}
+
+TEST(Pit, NarrowIsCrossedByARunAlone) {
+  GaitEngine engine = NewEngineBeforeAPit(0.4);
+  Simulate(engine, Direct(Command(Gait::kRun, 3)), 10);
+  EXPECT_EQ(engine.Output().gait.falls, 0u);
+  EXPECT_GT(engine.Output().p_WC_m.x(), kNearM + 2);
+}
+
+TEST(Pit, WideEndsARunThatIsNotToldToJump) {
+  GaitEngine engine = NewEngineBeforeAPit(2.5);
+  Simulate(engine, Direct(Command(Gait::kRun, 3)), 10);
+  EXPECT_GT(engine.Output().gait.falls, 0u);
+}
+
+}  // namespace
+}  // namespace footing::engine
