@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include "daemon/offline/eval/gait_trial.h"
 #include "daemon/offline/eval/ground_course.h"
 #include "daemon/offline/eval/pit_course.h"
+#include "daemon/offline/eval/push_sweep.h"
 #include "daemon/offline/eval/step_cost.h"
 #include "daemon/simulation/gait/limits.h"
 
@@ -33,8 +35,11 @@ struct Options {
   double push_phase = -1;
   double slope_deg = 0;
   double step_m = 0;
+  int push_directions = 0;
+  int push_phases = 12;
   std::optional<double> pit_m;
   double jump_lead_s = 0.8;
+  bool no_jump = false;
 };
 
 struct Trials {
@@ -97,7 +102,8 @@ Result<void> RunTrial(const Options& options, std::uint64_t seed, Trials& trials
 
   Walker walker(*engine);
   walker.Command(command);
-  PitPilot pilot(course, command, command.height_m, options.jump_lead_s);
+  PitPilot pilot(course, command, command.height_m,
+                 options.no_jump ? -INFINITY : options.jump_lead_s);
   std::optional<GroundPilot> ground_pilot;
   if (ground) ground_pilot.emplace(*ground, command, random);
   GaitStatistics statistics(command.speed_mps);
@@ -184,6 +190,40 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
   return report;
 }
 
+void Print(const nlohmann::ordered_json& report, bool json) {
+  if (json) {
+    std::printf("%s\n", report.dump().c_str());
+    return;
+  }
+  for (const auto& [key, value] : report.items()) {
+    std::printf("%-24s %s\n", key.c_str(), value.dump().c_str());
+  }
+}
+
+int RunSweep(const Options& options, std::uint64_t seed, bool json) {
+  const PushSweep sweep{.command = CommandOf(options),
+                        .directions = options.push_directions,
+                        .phases = options.push_phases,
+                        .impulse_ns = options.push_ns};
+  PushSweepResult result;
+  for (int i = 0; i < options.trials; ++i) {
+    const auto run = RunPushSweep(sweep, TrialSeed(seed, i), result);
+    if (!run) return cli::Report(run.error());
+  }
+  Print({{"gait", options.gait},
+         {"speed_mps", options.speed_mps},
+         {"height_m", sweep.command.height_m},
+         {"seed", seed},
+         {"trials", options.trials},
+         {"push_ns", options.push_ns},
+         {"pushes", result.pushes},
+         {"falls", result.all_falls()},
+         {"falls_by_direction", result.falls},
+         {"largest_survived_ns", result.largest_survived_ns}},
+        json);
+  return 0;
+}
+
 int Run(const Options& options, bool json) {
   if (stream::GaitNamed(options.gait) == stream::Gait::kUnspecified) {
     return cli::Report(UsageError("--gait " + options.gait + ": must be step, walk, run or jump"));
@@ -200,18 +240,12 @@ int Run(const Options& options, bool json) {
   }
   const Result<std::uint64_t> seed = ParseSeed(options.seed);
   if (!seed) return cli::Report(seed.error());
+  if (options.push_directions > 0) return RunSweep(options, *seed, json);
   const Result<Trials> trials = RunTrials(options, *seed);
   if (!trials) return cli::Report(trials.error());
   const Result<double> ratio = MeasureStepCostRatio(CommandOf(options));
   if (!ratio) return cli::Report(ratio.error());
-  const nlohmann::ordered_json report = Report(options, *seed, *trials, *ratio);
-  if (json) {
-    std::printf("%s\n", report.dump().c_str());
-  } else {
-    for (const auto& [key, value] : report.items()) {
-      std::printf("%-24s %s\n", key.c_str(), value.dump().c_str());
-    }
-  }
+  Print(Report(options, *seed, *trials, *ratio), json);
   return 0;
 }
 
@@ -244,12 +278,19 @@ void AddGaitCommand(CLI::App& app, Shared& shared) {
       ->add_option("--step", options->step_m,
                    "Height of steps of the ground, up and down, m; negative: the first is down")
       ->check(CLI::Range(-0.3, 0.3));
+  command
+      ->add_option("--push-directions", options->push_directions,
+                   "Sweep: push in this many directions, at --push-phases moments of a cycle each")
+      ->check(CLI::Range(1, 360));
+  command->add_option("--push-phases", options->push_phases, "Of the sweep; 12 by default")
+      ->check(CLI::Range(1, 1000));
   command->add_option("--pit", options->pit_m, "Width of pits across the track, m")
       ->check(CLI::Range(0.05, 5.0));
   command
       ->add_option("--jump-lead", options->jump_lead_s,
                    "A run is told to jump this long before it reaches a pit, s")
       ->check(CLI::Range(0.0, 5.0));
+  command->add_flag("--no-jump", options->no_jump, "A run is not told to jump");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

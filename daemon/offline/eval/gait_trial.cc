@@ -76,7 +76,11 @@ void Walker::Command(const biped::GaitCommand& command) {
 }
 
 void Walker::Push(double impulse_ns, double direction_rad) {
-  ++inputs_.push_number;
+  Push(impulse_ns, direction_rad, inputs_.push_number + 1);
+}
+
+void Walker::Push(double impulse_ns, double direction_rad, std::uint64_t number) {
+  inputs_.push_number = number;
   inputs_.push_impulse_W_ns =
       impulse_ns * Eigen::Vector2d(std::cos(direction_rad), std::sin(direction_rad));
 }

@@ -42,8 +42,10 @@ class Walker {
   explicit Walker(engine::GaitEngine& engine) : engine_(engine) {}
 
   void Command(const biped::GaitCommand& command);
-  /// Pushes the body over the 0.1 s that follow.
+  /// Pushes the body over the 0.1 s that follow; in an engine restored to an earlier step a push
+  /// needs a number that its state has not seen.
   void Push(double impulse_ns, double direction_rad);
+  void Push(double impulse_ns, double direction_rad, std::uint64_t number);
   /// One step; reads the output every step.
   const engine::EngineOutput& Advance();
   bool fell() const { return output_ != nullptr && output_->gait.falls > 0; }

@@ -10,6 +10,16 @@ constexpr double kRunUpMinM = 16;
 constexpr double kRunUpMaxM = 20;
 constexpr double kBehindM = 2000;
 constexpr double kUprightS = 2;
+/// The pilot keeps to the middle: heading by sideways distance, turned a little a step.
+constexpr double kSteeringRadPerM = 0.1;
+constexpr double kHeadingLimitRad = 0.1;
+constexpr double kTurnLimitRad = 0.02;
+
+double Steer(const engine::EngineOutput& output) {
+  const double wanted_rad =
+      std::clamp(-kSteeringRadPerM * output.p_WC_m.y(), -kHeadingLimitRad, kHeadingLimitRad);
+  return std::clamp(wanted_rad - output.gait.heading_rad, -kTurnLimitRad, kTurnLimitRad);
+}
 
 }  // namespace
 
@@ -30,7 +40,9 @@ PitCourse MakePitCourse(double width_m, double length_m, Random& random) {
 }
 
 biped::GaitCommand PitPilot::Command(const engine::EngineOutput& output) {
-  if (next_ == course_.pits.size()) return command_;
+  biped::GaitCommand command = command_;
+  command.turn_per_step_rad = Steer(output);
+  if (next_ == course_.pits.size()) return command;
   const Pit& pit = course_.pits[next_];
   const double x_m = output.p_WC_m.x();
   over_ = over_ || x_m > pit.near_m;
@@ -46,7 +58,6 @@ biped::GaitCommand PitPilot::Command(const engine::EngineOutput& output) {
     over_ = false;
     passed_s_ = -1;
   }
-  biped::GaitCommand command = command_;
   if (jumping_) {
     command.gait = stream::Gait::kJump;
     command.height_m = height_m_;

@@ -7,15 +7,17 @@ namespace footing::gait {
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,
                            const Targets& targets, const AttitudeGains& gains) {
   const double lean_rad =
-      targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0;
+      targets.lean_rad +
+      (targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0);
   const Eigen::Matrix3d desired_R_WB =
       (Eigen::AngleAxisd(memory.heading_rad, Eigen::Vector3d::UnitZ()) *
        Eigen::AngleAxisd(lean_rad, Eigen::Vector3d::UnitY()))
           .toRotationMatrix();
   const Eigen::AngleAxisd error_W(desired_R_WB * body.R_WB.transpose());
   const Eigen::Vector3d error_B = body.R_WB.transpose() * (error_W.angle() * error_W.axis());
-  const Eigen::Vector3d late_w_B =
-      body.R_WB.transpose() * (memory.turning_radps * Eigen::Vector3d::UnitZ() - body.w_WB);
+  const Eigen::Vector3d desired_w_W =
+      memory.turning_radps * Eigen::Vector3d::UnitZ() + targets.rate_W_radps;
+  const Eigen::Vector3d late_w_B = body.R_WB.transpose() * (desired_w_W - body.w_WB);
   const Eigen::Array3d stiffness(
       gains.roll_stiffness_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
       targets.hopping ? gains.hop_yaw_stiffness_nm_per_rad : gains.walk_yaw_stiffness_nm_per_rad);

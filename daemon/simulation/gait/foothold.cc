@@ -15,7 +15,6 @@ using Eigen::Vector3d;
 /// A foot that would land nearer than this to the other's line, or wider than this, hurries.
 constexpr double kSidewaysNearM = 0.05;
 constexpr double kSidewaysWideM = 0.45;
-constexpr double kSidewaysLimitM = 0.6;
 constexpr double kBackwardLimitM = 0.7;
 constexpr double kHurryPerMetre = 6;
 
@@ -58,7 +57,7 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
                           std::max(0.0, outward_m - kSidewaysWideM);
   foothold.hurry = std::min(gains.hurry_rate, kHurryPerMetre * excess_m);
 
-  const double y_m = side * std::clamp(outward_m, -gains.feet_cross_m, kSidewaysLimitM);
+  const double y_m = side * std::clamp(outward_m, -gains.feet_cross_m, gains.side_step_limit_m);
   const Vector3d& p_WF = context.body.legs[memory.support_leg].p_WF;
   foothold.p_WF_m = p_WF + ToWorld(memory.heading_rad, {ahead_m, y_m, 0});
   if (context.seen_ground != nullptr) {
@@ -88,6 +87,13 @@ double TurningOffset(const Context& context, const GaitMemory& memory, double ah
   return ahead_mps * memory.support_time_s / 2 * turn_rad / 2 - lean_m;
 }
 
+/// Pushed aside, a jump lands with spread legs: the leg on that side goes out, the other stays.
+/// Both swinging out would turn the body over against them.
+double SpreadShare(const RecoveryGains& gains, double aside_mps, int leg) {
+  if (aside_mps * biped::Side(leg) > 0) return 1;
+  return 1 - std::min(1.0, std::fabs(aside_mps) / gains.spread_mps);
+}
+
 Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int leg) {
   const HoppingGains& gains = context.gains.hopping;
   const bool jumping = memory.gait == stream::Gait::kJump;
@@ -105,15 +111,17 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
 
   const bool landing = memory.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
-  ahead_m += memory.ground.shift_m;
+  ahead_m += memory.pit.shift_m + memory.ground.shift_m;
   const bool preparing = memory.preparing_jump && !jumping;
   const double side_gain_s =
       preparing ? context.gains.transition.preparation_gain_s : velocity_gain_s;
   const double spacing_m = jumping     ? context.biped.hip_half_spacing_m
                            : preparing ? 0
                                        : gains.run_foot_spacing_m;
-  const double left_m = v_H.y() * memory.support_time_s / 2 + side_gain_s * v_H.y() +
-                        biped::Side(leg) * spacing_m + TurningOffset(context, memory, v_H.x());
+  double aside_m = v_H.y() * memory.support_time_s / 2 + side_gain_s * v_H.y();
+  if (jumping) aside_m *= SpreadShare(context.gains.recovery, v_H.y(), leg);
+  const double left_m =
+      aside_m + biped::Side(leg) * spacing_m + TurningOffset(context, memory, v_H.x());
   return ToWorld(
       memory.heading_rad,
       {std::clamp(ahead_m, -gains.foothold_limit_m, gains.foothold_limit_m),
@@ -131,10 +139,11 @@ Vector3d HipToFoot(const biped::BodyState& body, int leg, const Vector3d& offset
   return r;
 }
 
-Vector3d Mirrored(double heading_rad, const Vector3d& other_r_HF_W_m, double length_m) {
+Vector3d Mirrored(double heading_rad, const Vector3d& other_r_HF_W_m, double length_m,
+                  double more_roll_rad) {
   const Vector3d other_H = ToHeading(heading_rad, other_r_HF_W_m);
   const double pitch_rad = std::atan2(other_H.x(), -other_H.z());
-  const double roll_rad = std::atan2(other_H.y(), -other_H.z());
+  const double roll_rad = std::atan2(other_H.y(), -other_H.z()) - more_roll_rad;
   return ToWorld(heading_rad, length_m * Vector3d(-std::sin(pitch_rad), -std::sin(roll_rad),
                                                   -std::cos(pitch_rad) * std::cos(roll_rad)));
 }

@@ -36,8 +36,8 @@ Eigen::Vector3d HipToFoot(const biped::BodyState& body, int leg,
                           const Eigen::Vector3d& offset_from_com_W_m, double length_m);
 
 /// The idle leg's mirror image of the other leg, in pitch and roll, so that the two legs' swings
-/// cancel: vector from hip to foot of `length_m`, given the other's.
-Eigen::Vector3d Mirrored(double heading_rad, const Eigen::Vector3d& other_r_HF_W_m,
-                         double length_m);
+/// cancel: vector from hip to foot of `length_m`, given the other's, and rolled further.
+Eigen::Vector3d Mirrored(double heading_rad, const Eigen::Vector3d& other_r_HF_W_m, double length_m,
+                         double more_roll_rad = 0);
 
 }  // namespace footing::gait

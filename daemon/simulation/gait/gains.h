@@ -1,5 +1,7 @@
 #pragma once
 
+#include "daemon/simulation/gait/pit_plan.h"
+
 /// Every number of the controllers, with its unit in its name. One set serves a gait's whole range
 /// of speeds; where the paper interpolates between a slow and a fast set, equation (2) here carries
 /// a term in the desired speed. How they were found and what they reach: docs/gait.md.
@@ -21,7 +23,7 @@ struct ServoGains {
 /// PD servo of the body's attitude, by the hips of the supporting legs. Overdamped: the rate left
 /// at lift-off, not the angle, is what a flight makes worse.
 struct AttitudeGains {
-  double roll_stiffness_nm_per_rad = 150;
+  double roll_stiffness_nm_per_rad = 250;
   double roll_damping_nms_per_rad = 60;
   double pitch_stiffness_nm_per_rad = 400;
   double pitch_damping_nms_per_rad = 80;
@@ -52,8 +54,9 @@ struct WalkingGains {
   double speed_integral_s = 0.03;  ///< m of foothold a step for each m/s of error.
   double integral_min_m = -0.12;
   double integral_max_m = 0.15;
-  double hurry_rate = 0.5;         ///< Fraction by which the swing clock may gain.
+  double hurry_rate = 1.0;         ///< Fraction by which the swing clock may gain.
   double hurry_beyond_m = 0.75;    ///< Foothold fore and aft needed beyond this hurries.
+  double side_step_limit_m = 1.0;  ///< Between the feet, to catch a push.
   double support_rise_mps = 0.35;  ///< The hip follows a change of ground at this rate.
   double acceleration_mps2 = 1.5;
 };
@@ -124,6 +127,26 @@ struct TransitionGains {
   double jump_landing_damping_ns_per_m = 260;
 };
 
+/// What a push needs, beyond what the gaits need.
+struct RecoveryGains {
+  double outrun_mps = 2.2;            ///< A walk pushed beyond this goes on by running steps.
+  double idle_yield = 1.25;           ///< Roll of running's idle leg for the body's roll, ...
+  double idle_yield_limit_rad = 0.9;  ///< ... up to this.
+  double spread_mps = 0.5;            ///< At this speed aside a jump's legs are spread in full.
+};
+
+/// Crossing pits (pit_plan.h).
+struct PitGains {
+  PitLimits limits;
+  double run_width_max_m = 0.4;  ///< A run crosses this by itself; wider ones want a jump.
+  double sight_m = 3;            ///< Nearer pits are planned for even when out of reach.
+  double shift_back_m = 0.12;    ///< Of a foothold that would come to lie in the pit.
+  double shift_ahead_m = 0.25;
+  double jump_speed_max_mps = 3.6;  ///< A faster run crosses as it is, its jump pending.
+  double leap_roll_share = 1.5;     ///< Of the legs' roll momentum, against which the body turns.
+  double leap_lean_rad_per_mps = -0.02;
+};
+
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;
@@ -131,6 +154,8 @@ struct Gains {
   HoppingGains hopping;
   SteppingGains stepping;
   TransitionGains transition;
+  PitGains pit;
+  RecoveryGains recovery;
 };
 
 }  // namespace footing::gait

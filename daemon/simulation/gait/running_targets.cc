@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/ground_plan.h"
+#include "daemon/simulation/gait/momentum.h"
 #include "daemon/simulation/gait/running.h"
 
 namespace footing::gait {
@@ -45,11 +47,21 @@ LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
   return Placed(Cleared(context, memory, leg, HipToFoot(context.body, leg, offset_W, length_m)));
 }
 
+/// A push on the body acts above the whole COM and leaves angular momentum for the whole flight.
+/// The idle leg rolls on with the body, further than it, and so takes up most of that.
+double IdleYield(const Context& context, const GaitMemory& memory) {
+  const RecoveryGains& gains = context.gains.recovery;
+  const Eigen::Vector3d up_H = ToHeading(memory.heading_rad, context.body.R_WB.col(2));
+  const double roll_rad = -std::atan2(up_H.y(), up_H.z());
+  return std::clamp(gains.idle_yield * roll_rad, -gains.idle_yield_limit_rad,
+                    gains.idle_yield_limit_rad);
+}
+
 LegTarget Idle(const Context& context, const GaitMemory& memory, int leg,
                const Eigen::Vector3d& other_r_HF_W_m) {
-  return Placed(
-      Cleared(context, memory, leg,
-              Mirrored(memory.heading_rad, other_r_HF_W_m, context.gains.hopping.idle_length_m)));
+  return Placed(Cleared(context, memory, leg,
+                        Mirrored(memory.heading_rad, other_r_HF_W_m,
+                                 context.gains.hopping.idle_length_m, IdleYield(context, memory))));
 }
 
 Targets Flight(const Context& context, const GaitMemory& memory) {
@@ -140,6 +152,28 @@ Targets JumpingStance(const Context& context, const GaitMemory& memory) {
   return targets;
 }
 
+/// A long flight would turn what one leg's support leaves in roll into a tilt: the legs' swing is
+/// what the body is to take out before, and more, since both legs then spread.
+void PrepareLongFlight(const Context& context, const GaitMemory& memory, Targets& targets) {
+  const PitGains& gains = context.gains.pit;
+  const Eigen::Vector3d legs_H =
+      ToHeading(memory.heading_rad, LegsMomentum(context.body, context.biped));
+  const double roll_radps =
+      -gains.leap_roll_share * legs_H.x() / context.biped.body_inertia_roll_kgm2;
+  targets.rate_W_radps = ToWorld(memory.heading_rad, {roll_radps, 0, 0});
+  targets.lean_rad = gains.leap_lean_rad_per_mps * memory.desired_speed_mps;
+}
+
+/// What a flight turns by is the momentum of body and legs together, so that is what support damps
+/// in roll, as if it were the body's own rate.
+void DampWholeRoll(const Context& context, const GaitMemory& memory, Targets& targets) {
+  const Eigen::Vector3d momentum_H =
+      ToHeading(memory.heading_rad, AngularMomentum(context.body, context.biped));
+  const double roll_radps = ToHeading(memory.heading_rad, context.body.w_WB).x() -
+                            momentum_H.x() / context.biped.body_inertia_roll_kgm2;
+  targets.rate_W_radps = ToWorld(memory.heading_rad, {roll_radps, 0, 0});
+}
+
 }  // namespace
 
 Targets RunningTargets(const Context& context, const GaitMemory& memory) {
@@ -150,6 +184,12 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
                     : jumping ? JumpingStance(context, memory)
                               : RunningStance(context, memory);
   targets.hopping = true;
+  const bool leaps = memory.pit.leaping && memory.preparing_jump;
+  if (leaps && !flying && !jumping) {
+    PrepareLongFlight(context, memory, targets);
+  } else if (!flying) {
+    DampWholeRoll(context, memory, targets);
+  }
   targets.jumping = jumping;
   return targets;
 }

@@ -37,6 +37,8 @@ struct Targets {
   std::array<LegTarget, 2> legs;
   bool hopping = false;  ///< Yaw servo of running and jumping.
   bool jumping = false;  ///< Both legs as one virtual leg; lean by speed.
+  double lean_rad = 0;   ///< Desired pitch besides.
+  Eigen::Vector3d rate_W_radps = Eigen::Vector3d::Zero();  ///< Desired of the body.
 };
 
 }  // namespace footing::gait

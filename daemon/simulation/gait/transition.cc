@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/pit_sight.h"
 
 namespace footing::gait {
 namespace {
@@ -44,7 +45,8 @@ biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& comm
 }
 
 bool LeavesRun(const biped::GaitCommand& goal, const GaitMemory& memory) {
-  return memory.gait == Gait::kRun && goal.gait != Gait::kRun && !memory.preparing_jump;
+  return memory.gait == Gait::kRun && goal.gait != Gait::kRun && !memory.preparing_jump &&
+         !JumpsPit(goal, memory);
 }
 
 void SlewSpeed(const Context& context, GaitMemory& memory) {
@@ -57,6 +59,7 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
   } else if (to_ground && flying) {
     target_mps = std::min(target_mps, limits.run_to_walk_mps);
   }
+  if (JumpsPit(context.goal, memory)) target_mps = std::max(target_mps, memory.desired_speed_mps);
   memory.target_speed_mps = target_mps;
   // Slowing down starts from the speed there is, not from one that was not reached yet.
   const bool in_flight =
@@ -79,7 +82,8 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
 bool BeginThrust(const Context& context, GaitMemory& memory) {
   const TransitionGains& gains = context.gains.transition;
   const double swing = context.TimeIn(memory) / context.gains.walking.swing_time_s;
-  if (!Flies(context.goal.gait) || memory.walking != WalkingPhase::kFall ||
+  const bool outrun = SpeedAlongHeading(context, memory) > context.gains.recovery.outrun_mps;
+  if (!(outrun || Flies(context.goal.gait)) || memory.walking != WalkingPhase::kFall ||
       swing <= gains.thrust_from_swing) {
     return false;
   }
@@ -122,6 +126,7 @@ void LiftOff(const Context& context, GaitMemory& memory) {
 }
 
 bool MayPrepareJump(const Context& context, const GaitMemory& memory) {
+  if (JumpsPit(context.goal, memory)) return JumpsFromNext(context, memory);
   return context.goal.gait == Gait::kJump && memory.gait != Gait::kJump &&
          SpeedAlongHeading(context, memory) < context.gains.transition.run_to_jump_mps;
 }

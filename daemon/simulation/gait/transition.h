@@ -28,7 +28,8 @@ bool LeavesRun(const biped::GaitCommand& goal, const GaitMemory& memory);
 /// Moves v_d towards the goal's speed; a gait that is to be left for a slower one brakes first.
 void SlewSpeed(const Context& context, GaitMemory& memory);
 
-/// In Fall, late enough, with a goal that flies: begins the thrust.
+/// In Fall, late enough, with a goal that flies or faster than walking can be: begins the thrust.
+/// After a push such a walk goes on as a run, which brakes and lands into walking again.
 bool BeginThrust(const Context& context, GaitMemory& memory);
 /// At lift-off: to the flight of the gait that follows.
 void LiftOff(const Context& context, GaitMemory& memory);

@@ -13,6 +13,8 @@ namespace {
 
 /// A swing foot counts as landed only after this part of its swing: before, it drags.
 constexpr double kLandsAfter = 0.6;
+/// A foot that bounced off is waited for this long beyond the double support.
+constexpr double kBounceS = 0.1;
 /// The hip is led to a new ground height; a larger jump than this is taken as it is.
 constexpr double kGroundJumpM = 0.4;
 
@@ -26,6 +28,7 @@ void Enter(WalkingPhase phase, const Context& context, GaitMemory& memory) {
     case WalkingPhase::kDoubleSupport:
       memory.support_leg = swing_leg;
       memory.phase_start_s = context.body.time_s;
+      memory.landed_W_m = context.body.legs[swing_leg].p_WF;
       CountStep(context, memory);
       break;
     case WalkingPhase::kRise:
@@ -68,11 +71,12 @@ void FollowGround(const Context& context, GaitMemory& memory) {
 
 WalkingCues SenseWalking(const Context& context, const GaitMemory& memory) {
   const double swing = SwingProgress(context, memory);
-  return {
-      .double_support_over = context.TimeIn(memory) >= context.gains.walking.double_support_time_s,
-      .half_swing_over = swing > 0.5,
-      .swing_foot_landed =
-          swing > kLandsAfter && context.body.legs[1 - memory.support_leg].touching};
+  const double loading_s = context.TimeIn(memory) - context.gains.walking.double_support_time_s;
+  const bool loaded = context.body.legs[memory.support_leg].touching || loading_s > kBounceS;
+  return {.double_support_over = loading_s >= 0 && loaded,
+          .half_swing_over = swing > 0.5,
+          .swing_foot_landed =
+              swing > kLandsAfter && context.body.legs[1 - memory.support_leg].touching};
 }
 
 Targets AdvanceWalking(const Context& context, GaitMemory& memory) {

@@ -14,6 +14,8 @@ using Eigen::Vector3d;
 /// The foot is over its place after this part of the swing; late, it comes down at this rate.
 constexpr double kSwingArrives = 0.9;
 constexpr double kLateDescentMps = 0.7;
+/// A foot that bounced off is pressed down this far below where it touched.
+constexpr double kLandingDepthM = 0.03;
 /// Over seen ground: clearance over all that lies from 10 cm behind to 20 cm ahead of the foot.
 constexpr double kSeenClearanceM = 0.06;
 constexpr double kProbeSpacingM = 0.05;
@@ -47,6 +49,15 @@ LegTarget Supporting(const Context& context, const GaitMemory& memory, int leg, 
   return target;
 }
 
+/// A foot that bounced off is held where it touched, and pressed down there.
+LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
+  LegTarget target;
+  target.task = LegTask::kPlace;
+  target.r_HF_W_m = memory.landed_W_m - context.body.legs[leg].p_WH;
+  target.r_HF_W_m.z() -= kLandingDepthM;
+  return target;
+}
+
 /// Double Support: the load goes over from the rear leg to the front one.
 Targets DoubleSupport(const Context& context, const GaitMemory& memory) {
   const int front = memory.support_leg, rear = 1 - front;
@@ -55,7 +66,8 @@ Targets DoubleSupport(const Context& context, const GaitMemory& memory) {
   const bool front_touches = context.body.legs[front].touching;
   const double front_share = !front_touches || passed > 0.5 ? 1 : 0.5 + passed;
   Targets targets;
-  targets.legs[front] = Supporting(context, memory, front, front_share);
+  targets.legs[front] = front_touches ? Supporting(context, memory, front, front_share)
+                                      : Landing(context, memory, front);
   if (context.body.legs[rear].touching) {
     targets.legs[rear] = Supporting(context, memory, rear, 1 - passed);
   }

@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector3d;
 
 stream::Track TrackOf(const std::string& segments) {
-  Result<stream::Track> track = terrain::ParseTrack(
-      R"({"version":1,"name":"test","segments":[)" + segments + "]}", "test");
+  Result<stream::Track> track =
+      terrain::ParseTrack(R"({"version":1,"name":"test","segments":[)" + segments + "]}", "test");
   EXPECT_TRUE(track.ok());
   return std::move(track).value();
 }
