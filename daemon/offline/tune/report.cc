@@ -23,14 +23,10 @@ std::string Words(const Score& score) {
 }
 
 ordered_json ToJson(const Score& score) {
-  return {{"objective", score.mean.total()},
-          {"half_width", score.total_half_width},
-          {"trials", score.trials},
-          {"survival", score.survival},
-          {"failure", score.mean.failure},
-          {"speed", score.mean.speed},
-          {"flight", score.mean.flight},
-          {"stance", score.mean.stance},
+  return {{"objective", score.mean.total()}, {"half_width", score.total_half_width},
+          {"trials", score.trials},          {"survival", score.survival},
+          {"failure", score.mean.failure},   {"speed", score.mean.speed},
+          {"flight", score.mean.flight},     {"stance", score.mean.stance},
           {"stride", score.mean.stride}};
 }
 
@@ -90,12 +86,9 @@ ordered_json ReportOf(const Options& options, const std::vector<Dimension>& dime
                     {"better", one.better},
                     {"gains", gains}});
   }
-  return {{"gait", options.gait},
-          {"method", options.method},
-          {"seed", options.seed},
-          {"iterations", options.iterations},
-          {"trials", options.trials},
-          {"sets", sets}};
+  return {{"gait", options.gait},     {"method", options.method},
+          {"seed", options.seed},     {"iterations", options.iterations},
+          {"trials", options.trials}, {"sets", sets}};
 }
 
 }  // namespace footing::tune
