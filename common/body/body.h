@@ -30,10 +30,10 @@ struct Body {
 struct PersonParameters {
   double mass_kg = 75;
   /// Standing height; without it, it follows from the lengths of legs and trunk.
-  std::optional<double> height_m;
+  std::optional<double> height_m = std::nullopt;
   Sex sex = Sex::kMean;
   /// A pose in which trunk and head are upright in line, where the rest pose is not (some rigs).
-  std::optional<Eigen::VectorXd> upright_pose;
+  std::optional<Eigen::VectorXd> upright_pose = std::nullopt;
 };
 
 /// Standing height by the lengths of thighs, shanks and trunk (segments.h).

@@ -30,6 +30,10 @@ enum class FileAxes {
   kYUpZAhead,  ///< Animation: z ahead, y up, x left.
 };
 
+/// Which way is up in tracks that do not say: the axis along which the markers of a person, who
+/// mostly stands, spread furthest. Between y and z; y is taken for OpenSim's.
+FileAxes GuessAxes(const MarkerTracks& tracks);
+
 /// p_W of a place in the file's axes, and of a whole set of tracks.
 Eigen::Vector3d ToWorld(FileAxes axes, const Eigen::Vector3d& p);
 MarkerTracks ToWorld(FileAxes axes, MarkerTracks tracks);
