@@ -95,7 +95,9 @@ Result<FittedSkeleton> FitLengths(const MarkerTracks& tracks, const MarkerSet& s
     for (int i = (*landmarks)[to]; i != from; i = fitted.skeleton.joint(i).parent) {
       standard_m += offset(i).norm();
     }
-    const double ratio = measured_m / standard_m;
+    double ratio = measured_m / standard_m;
+    // A toe's marker is anywhere from the ball of the foot to the tip of the shoe.
+    if (to == Landmark::kLeftToe || to == Landmark::kRightToe) ratio = std::clamp(ratio, 0.8, 1.4);
     if (measured_m == 0) return;  // Never seen: the standard one.
     if (!(ratio > kLeastRatio && ratio < kMostRatio)) {
       bad += (bad.empty() ? "" : ", ") + std::string(LandmarkName(of)) + " to " +
