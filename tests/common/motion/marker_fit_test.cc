@@ -246,7 +246,9 @@ TEST(MarkerFit, ThePaperLaboratorysMarkersAreFitted) {
   auto c3d = ParseC3d({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "squat");
   ASSERT_TRUE(c3d.ok()) << c3d.error().message;
   EXPECT_EQ(GuessAxes(c3d->points), FileAxes::kYUp);
-  for (auto& track : c3d->points.p) track = track.leftCols(300).eval();
+  for (auto& track : c3d->points.p) {  // Every eighth frame: the pelvis is hidden in many.
+    track = Eigen::Matrix3Xd(track(Eigen::all, Eigen::seq(0, track.cols() - 1, 8)));
+  }
   const auto fit = FitMarkers(ToWorld(FileAxes::kYUp, std::move(c3d->points)));
   ASSERT_TRUE(fit.ok()) << fit.error().message;
   EXPECT_EQ(fit->set, "vicon53");
