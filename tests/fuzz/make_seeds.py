@@ -5,6 +5,7 @@ The bytes are those of the tests of daemon/sensor/reports and calibration, which
 A seed has the form that the target of its folder reads (see its .cc file).
 """
 import pathlib
+import struct
 import sys
 
 ACCELERATION = "82 82 82 15 9C 9C 9E 38 40 3E"
@@ -72,9 +73,36 @@ def seeds() -> dict[str, bytes]:
                      + string(raw(MOVE_REPORT)),
         "move/zcm2": b"\x05" + b"".join(string(raw(p)) for p in MOVE2_PIECES) + string(b"")
                      + string(raw(MOVE_REPORT)[:44]),
+        **motion_files(),
         "handshake/wiimote": b"\x00" + steps(wiimote),
         "handshake/board": b"\x01" + steps(board),
     }
+
+
+def motion_files() -> dict[str, bytes]:
+    bvh = ("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation "
+           "Xrotation Yrotation\nJOINT b\n{\nOFFSET 1 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
+           "End Site\n{\nOFFSET 1 0 0\n}\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.01\n"
+           "0 1 0 0 0 0 10 20 30\n")
+    asf = (":units\nlength 0.45\nangle deg\n:root\norder TX TY TZ RX RY RZ\naxis XYZ\n:bonedata\nbegin\n"
+           "name a\ndirection 0 1 0\nlength 1\naxis 0 90 0 XYZ\ndof rx ry\nlimits (-1 2)\n(-3 4)\nend\n"
+           ":hierarchy\nbegin\nroot a\nend\n")
+    amc = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 1 2 3 4 5\na 6 7\n2\nroot 0 1 2 3 4 5\na 6 7\n"
+    trc = ("PathFileType\t4\t(X/Y/Z)\tx\nDataRate\tUnits\n100\tmm\nFrame#\tTime\ta\t\t\n\t\tX1\tY1\tZ1\n\n"
+           "1\t0\t1\t2\t3\n2\t0.01\t\t\t\n")
+    mot = ("x\nversion=1\nnRows=2\nnColumns=7\ninDegrees=no\nendheader\ntime\tavx\tavy\tavz\tapx\tapy\tapz\n"
+           "0\t1\t2\t3\t4\t5\t6\n0.01\t1\t2\t3\t4\t5\t6\n")
+    labels = b"\x06\x01LABELS" + struct.pack("<H", 9) + b"\xff\x02\x02\x01ab\x00"
+    parameters = b"\x01\x50\x01\x54" + b"\x05\xffPOINT\x03\x00\x00" + labels + b"\x00\x00"
+    header = struct.pack("<BBHHHHHfHHf", 2, 0x50, 1, 1, 1, 2, 0, -1.0, 3, 1, 100.0)
+    data = struct.pack("<5f", 1, 2, 3, 0, 7) * 2
+    c3d = header.ljust(512, b"\0") + parameters.ljust(512, b"\0") + data
+    texts = [bvh, asf, amc, trc, mot]
+    names = ["bvh", "asf", "amc", "trc", "mot"]
+    seeds = {f"motion/{name}": bytes([i]) + text.encode() for i, (name, text) in
+             enumerate(zip(names, texts))}
+    seeds["motion/c3d"] = b"\x05" + c3d
+    return seeds
 
 
 def main() -> None:

@@ -16,6 +16,7 @@ constexpr Benchmark kBenchmarks[] = {
     {"publish_to_client_p50", footing::bench::PublishToClient},
     {"fan_out_cpu", footing::bench::FanOutCpu},
     {"stalled_readers", footing::bench::StalledReaders},
+    {"body_kinematics", footing::bench::BodyKinematics},
 };
 
 std::vector<std::string> Names() {

@@ -30,4 +30,8 @@ Result<Rows> FanOutCpu();
 /// the memory grows once ring and queues are full, against 2 MB.
 Result<Rows> StalledReaders();
 
+/// Forward kinematics, centre of mass and momentum of the standard person (56 degrees of freedom),
+/// and the same with the centroidal momentum matrix, against the sines and cosines of its angles.
+Result<Rows> BodyKinematics();
+
 }  // namespace footing::bench

@@ -1,15 +1,18 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "common/config/data_file.h"
+#include "common/motion/markers.h"
+#include "common/motion/trc.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/features_chain.h"
 #include "daemon/offline/eval/mounting_walk.h"
-#include "daemon/offline/eval/trc.h"
 
 namespace footing::eval {
 namespace {
@@ -48,13 +51,33 @@ struct Shin {
   Track force_mps2;              // Specific force in the marker frame.
 };
 
-Result<Track> Marker(const MarkerTracks& tracks, const std::string& name) {
-  const auto found = tracks.markers.find(name);
-  if (found == tracks.markers.end()) return InvalidData("no marker " + name);
-  return Smoothed(Smoothed(found->second));
+std::size_t Frames(const motion::MarkerTracks& tracks) {
+  return static_cast<std::size_t>(tracks.frames());
 }
 
-Result<Shin> ShinOf(const MarkerTracks& tracks, const std::string& side) {
+/// The markers in the file's own axes.
+Result<motion::MarkerTracks> ReadTrc(const std::string& path) {
+  constexpr std::size_t kMostBytes = 256u << 20;
+  const auto text = config::ReadTextFile(path, kMostBytes);
+  if (!text) return text.error();
+  return motion::ParseTrc(*text, path);
+}
+
+Result<Track> Marker(const motion::MarkerTracks& tracks, const std::string& name) {
+  const int index = motion::FindMarker(tracks, name);
+  if (index < 0) return InvalidData("no marker " + name);
+  const Eigen::Matrix3Xd& places = tracks.p[static_cast<std::size_t>(index)];
+  Track track;
+  for (Eigen::Index i = 0; i < places.cols(); ++i) {
+    track.push_back(places.col(i));
+    if (!motion::Seen(track.back())) {
+      return InvalidData("marker " + name + " is not seen in frame " + std::to_string(i + 1));
+    }
+  }
+  return Smoothed(Smoothed(track));
+}
+
+Result<Shin> ShinOf(const motion::MarkerTracks& tracks, const std::string& side) {
   const auto knee = Marker(tracks, side + "_knee");
   const auto ankle = Marker(tracks, side + "_ankle");
   const auto front = Marker(tracks, side + "_shank_antsup");
@@ -62,7 +85,7 @@ Result<Shin> ShinOf(const MarkerTracks& tracks, const std::string& side) {
     if (!*one) return one->error();
   }
   Shin shin;
-  for (std::size_t i = 0; i < tracks.frames; ++i) {
+  for (std::size_t i = 0; i < Frames(tracks); ++i) {
     const Vector3d down = ((*ankle)[i] - (*knee)[i]).normalized();
     const Vector3d side_W = down.cross((*front)[i] - (*knee)[i]).normalized();
     Matrix3d axes;
@@ -72,7 +95,7 @@ Result<Shin> ShinOf(const MarkerTracks& tracks, const std::string& side) {
   }
   // At its ends smoothing is one-sided, which looks like acceleration.
   constexpr std::size_t kEdge = 2 * kSmooth + 1;
-  for (std::size_t i = kEdge; i + kEdge < tracks.frames; ++i) {
+  for (std::size_t i = kEdge; i + kEdge < Frames(tracks); ++i) {
     const Vector3d acceleration =
         (shin.place_W[i + 1] - 2 * shin.place_W[i] + shin.place_W[i - 1]) * tracks.rate_hz *
         tracks.rate_hz;
@@ -83,7 +106,7 @@ Result<Shin> ShinOf(const MarkerTracks& tracks, const std::string& side) {
 }
 
 /// The wearer's front while standing: from the middle of the rear pelvis markers to the front ones.
-Result<Vector3d> FrontOf(const MarkerTracks& tracks) {
+Result<Vector3d> FrontOf(const motion::MarkerTracks& tracks) {
   Vector3d front = Vector3d::Zero();
   for (const auto& [name, sign] :
        {std::pair{"L.ASIS", 1}, {"r.ASIS", 1}, {"L.PSIS", -1}, {"r.PSIS", -1}}) {

@@ -1,0 +1,103 @@
+#include "common/body/fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/result/result.h"
+
+namespace footing::body {
+namespace {
+
+constexpr double kFirstDamping = 1e-4, kLeastDamping = 1e-9, kMostDamping = 1e6;
+constexpr double kLeastDiagonal = 1e-6;
+constexpr double kHold = 0.01;  // m/rad.
+
+}  // namespace
+
+PoseFit::PoseFit(const Skeleton& skeleton)
+    : skeleton_(skeleton),
+      at_(skeleton),
+      H_(skeleton.dof, skeleton.dof),
+      damped_(skeleton.dof, skeleton.dof),
+      gradient_(skeleton.dof),
+      hold_(skeleton.dof),
+      neutral_(skeleton.dof),
+      trial_(skeleton.dof),
+      step_(skeleton.dof),
+      solver_(skeleton.dof) {}
+
+double PoseFit::Cost(const std::vector<PointTarget>& targets, const Eigen::VectorXd& q) {
+  ComputeKinematics(skeleton_, q, at_);
+  double cost = 0;
+  for (const PointTarget& target : targets) {
+    const auto joint = static_cast<std::size_t>(target.joint);
+    const Eigen::Vector3d p_W = at_.p_WJ[joint] + at_.R_WJ[joint] * target.p_J;
+    cost += target.weight * (target.p_W - p_W).squaredNorm();
+  }
+  return cost;
+}
+
+double PoseFit::Fit(const std::vector<PointTarget>& targets, const FitOptions& options,
+                    Eigen::Ref<Eigen::VectorXd> q) {
+  FOOTING_CHECK(q.size() == skeleton_.dof);
+  double weights = 0, damping = kFirstDamping;
+  for (const PointTarget& target : targets) weights += target.weight;
+  if (!(weights > 0)) return 0;
+  neutral_ = q;
+  if (options.neutral != nullptr) neutral_ = *options.neutral;
+  hold_.setConstant(kHold * kHold);
+  if (options.hold != nullptr) hold_ = options.hold->cwiseAbs2();
+  if (options.neutral == nullptr) hold_.head<3>().setZero();
+  const auto rows = 3 * static_cast<Eigen::Index>(targets.size());
+  if (J_.rows() < rows) {
+    J_.resize(rows, skeleton_.dof);
+    residuals_.resize(rows);
+  }
+  const auto held = [&](const Eigen::VectorXd& pose) {
+    return (pose - neutral_).cwiseAbs2().dot(hold_);
+  };
+  trial_ = q;
+  double points = Cost(targets, trial_);
+  double cost = points + held(trial_);
+  for (int i = 0; i < options.iterations; ++i) {
+    ComputeKinematics(skeleton_, q, at_);
+    Eigen::Index row = 0;
+    for (const PointTarget& target : targets) {
+      const auto joint = static_cast<std::size_t>(target.joint);
+      const double root = std::sqrt(target.weight);
+      const Eigen::Vector3d p_W = at_.p_WJ[joint] + at_.R_WJ[joint] * target.p_J;
+      PointJacobian(skeleton_, at_, target.joint, p_W, J_.middleRows<3>(row));
+      J_.middleRows<3>(row) *= root;
+      residuals_.segment<3>(row) = root * (target.p_W - p_W);
+      row += 3;
+    }
+    H_.setZero();
+    H_.selfadjointView<Eigen::Lower>().rankUpdate(J_.topRows(rows).transpose());
+    H_.diagonal() += hold_;
+    gradient_.noalias() = J_.topRows(rows).transpose() * residuals_.head(rows);
+    gradient_ -= hold_.cwiseProduct(q - neutral_);
+    bool better = false;
+    double gain = 0;
+    while (!better && damping < kMostDamping) {
+      damped_ = H_;
+      damped_.diagonal().array() += damping * (H_.diagonal().array() + kLeastDiagonal);
+      solver_.compute(damped_);
+      step_ = gradient_;
+      solver_.solveInPlace(step_);
+      trial_ = q + step_;
+      const double now = Cost(targets, trial_);
+      gain = cost - now - held(trial_);
+      better = solver_.info() == Eigen::Success && gain >= 0;
+      if (better) {
+        points = now;
+        cost -= gain;
+        q = trial_;
+      }
+      damping = better ? std::max(damping / 10, kLeastDamping) : damping * 10;
+    }
+    if (!better || gain <= options.still * cost) break;
+  }
+  return std::sqrt(points / weights);
+}
+
+}  // namespace footing::body
