@@ -146,8 +146,8 @@ void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
 void BestEstimator::AdvanceAngular() {
   const Eigen::Vector3d now(horizontal_[0].Position(0).mean, horizontal_[1].Position(0).mean,
                             subject_.com_height_m + vertical_.Height(0).mean);
-  const Eigen::Vector3d rate = AngularMomentumRate(
-      pressures_, now, estimate_.a_WC_mps2.head<2>(), pose_.mass_kg);
+  const Eigen::Vector3d rate =
+      AngularMomentumRate(pressures_, now, estimate_.a_WC_mps2.head<2>(), pose_.mass_kg);
   const double load = pressures_[0].total_n + pressures_[1].total_n;
   const double keep = std::exp(-step_s_ / config_.angular_memory_s);
   estimate_.angular_momentum_rate_nm = rate;

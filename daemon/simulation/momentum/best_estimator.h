@@ -23,7 +23,7 @@ struct BestConfig {
   HorizontalPrior lateral = LateralPrior();
   FootContactConfig contact;
   FootPlaceConfig place;
-  double lag_s = 0;  ///< 0 to 0.2: positions of C are told so much later, and better.
+  double lag_s = 0;               ///< 0 to 0.2: positions of C are told so much later, and better.
   double angular_memory_s = 1.0;  ///< The angular momentum leaks away in this time.
 };
 
@@ -32,8 +32,7 @@ struct BestConfig {
 /// nothing.
 class BestEstimator {
  public:
-  BestEstimator(const BestConfig& config, const Subject& subject, const TPose& pose,
-                double step_s);
+  BestEstimator(const BestConfig& config, const Subject& subject, const TPose& pose, double step_s);
 
   /// One frame, `step_s` after the one before. A source that is not valid, or values that are not
   /// finite, make the frame a gap: the estimate coasts, its covariance grows, and after a second

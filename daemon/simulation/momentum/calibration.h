@@ -13,7 +13,7 @@ namespace footing::momentum {
 struct TPose {
   double mass_kg = 0;
   std::array<double, kFeet> load_n{};
-  std::array<Eigen::Vector3d, kFeet> p_WP_m{};  ///< Mean centre of pressure of each foot.
+  std::array<Eigen::Vector3d, kFeet> p_WP_m{};      ///< Mean centre of pressure of each foot.
   Eigen::Vector3d cop_m = Eigen::Vector3d::Zero();  ///< Of both feet: the COM stands over it.
   VerticalInput mean_loads;
   double cell_noise_n = 0;  ///< Standard deviation of one cell from frame to frame.

@@ -28,8 +28,9 @@ void FootPlace::Start(const Eigen::Vector3d& p_WF_m) {
   const std::array<double, 2> wander{config_.along_spread_m, config_.across_spread_m};
   const std::array<double, 2> at{along_.dot(p_WF_m.head<2>()), across_.dot(p_WF_m.head<2>())};
   for (std::size_t i = 0; i < 2; ++i) {
-    axes_[i].Start({at[i], 0}, Eigen::Vector2d(kStartSpreadM * kStartSpreadM, wander[i] * wander[i])
-                                   .asDiagonal());
+    axes_[i].Start(
+        {at[i], 0},
+        Eigen::Vector2d(kStartSpreadM * kStartSpreadM, wander[i] * wander[i]).asDiagonal());
   }
 }
 
@@ -76,8 +77,8 @@ Eigen::Vector3d FootPlace::position_m() const {
 }
 
 Eigen::Vector3d FootPlace::variance_m2() const {
-  const Eigen::Vector2d v = axes_[0].p()(0, 0) * along_.cwiseAbs2() +
-                            axes_[1].p()(0, 0) * across_.cwiseAbs2();
+  const Eigen::Vector2d v =
+      axes_[0].p()(0, 0) * along_.cwiseAbs2() + axes_[1].p()(0, 0) * across_.cwiseAbs2();
   return {v.x(), v.y(), 1e-6};
 }
 

@@ -12,11 +12,11 @@ namespace footing::momentum {
 struct FootPlaceConfig {
   double along_spread_m = 0.045;  ///< Along the foot, one standard deviation.
   double across_spread_m = 0.012;
-  double wander_time_s = 0.4;     ///< Correlation time.
-  double slip_mps = 0.002;        ///< Growth of the place's deviation in contact, per root second.
-  double step_spread_m = 0.12;    ///< A new place against the old one.
-  double lift_growth_mps = 0.4;   ///< Growth of the deviation in the air.
-  double cop_noise_n_m = 1.5;     ///< Noise of the COP times the load.
+  double wander_time_s = 0.4;    ///< Correlation time.
+  double slip_mps = 0.002;       ///< Growth of the place's deviation in contact, per root second.
+  double step_spread_m = 0.12;   ///< A new place against the old one.
+  double lift_growth_mps = 0.4;  ///< Growth of the deviation in the air.
+  double cop_noise_n_m = 1.5;    ///< Noise of the COP times the load.
 };
 
 /// Best mode's place of one foot: for each of its two axes a filter of the place and of the COP's

@@ -134,8 +134,7 @@ std::vector<Filter::Scalar> SmoothHorizontal(const HorizontalPrior& prior, doubl
       Filter::Vector ahead = a * steps[i].x;
       ahead(0) += steps[i].centre_m - steps[i + 1].centre_m;
       const Filter::Matrix p_ahead = a * steps[i].p * a.transpose() + com.noise();
-      const Filter::Matrix gain =
-          p_ahead.partialPivLu().solve(a * steps[i].p).transpose();
+      const Filter::Matrix gain = p_ahead.partialPivLu().solve(a * steps[i].p).transpose();
       x = steps[i].x + gain * (x - ahead);
       p = steps[i].p + gain * (p - p_ahead) * gain.transpose();
     }

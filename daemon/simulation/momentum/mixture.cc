@@ -24,10 +24,10 @@ MixtureMoments TimesMixture(const Moments& prior, const std::array<Component, 2>
   first /= sum;
   second /= sum;
   const double apart = product[0].mean - product[1].mean;
-  return {{first * product[0].mean + second * product[1].mean,
-           first * product[0].variance + second * product[1].variance +
-               first * second * apart * apart},
-          greater + std::log(sum)};
+  return {
+      {first * product[0].mean + second * product[1].mean,
+       first * product[0].variance + second * product[1].variance + first * second * apart * apart},
+      greater + std::log(sum)};
 }
 
 Moments Below(const Moments& prior, double limit) {

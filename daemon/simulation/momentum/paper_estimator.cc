@@ -11,8 +11,8 @@ constexpr double kLeastCopN = 20;
 
 }  // namespace
 
-PaperEstimator::PaperEstimator(const PaperConfig& config, const Subject& subject,
-                               const TPose& pose, double step_s)
+PaperEstimator::PaperEstimator(const PaperConfig& config, const Subject& subject, const TPose& pose,
+                               double step_s)
     : config_(config),
       subject_(subject),
       pose_(pose),
@@ -44,15 +44,16 @@ const Estimate& PaperEstimator::Advance(const ContactLoads& loads,
   com_m_ = {frames_ > 0 ? com_m_[1] : com, frames_ > 0 ? com_m_[2] : com, com};
   ++frames_;
   const Eigen::Vector2d velocity = (com_m_[2] - com_m_[1]) / step_s_;
-  const Eigen::Vector2d acceleration = (com_m_[2] - 2 * com_m_[1] + com_m_[0]) / (step_s_ * step_s_);
+  const Eigen::Vector2d acceleration =
+      (com_m_[2] - 2 * com_m_[1] + com_m_[0]) / (step_s_ * step_s_);
 
   estimate_.p_WC_m << com.x(), com.y(), vertical_.height_m();
   estimate_.v_WC_mps << velocity.x(), velocity.y(), vertical_.velocity_mps();
   estimate_.a_WC_mps2 << acceleration.x(), acceleration.y(), vertical_.acceleration_mps2();
   const double spread2 = kPredictedSpreadM * kPredictedSpreadM;
   estimate_.position_variance_m2 << spread2, spread2, vertical_.height_variance_m2();
-  estimate_.velocity_variance_m2ps2 << spread2 / (step_s_ * step_s_),
-      spread2 / (step_s_ * step_s_), vertical_.velocity_variance_m2ps2();
+  estimate_.velocity_variance_m2ps2 << spread2 / (step_s_ * step_s_), spread2 / (step_s_ * step_s_),
+      vertical_.velocity_variance_m2ps2();
 
   std::array<Pressure, kFeet> pressures;
   for (std::size_t f = 0; f < kFeet; ++f) {

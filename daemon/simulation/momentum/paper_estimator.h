@@ -32,7 +32,6 @@ class PaperEstimator {
   const Estimate& estimate() const { return estimate_; }
 
  private:
-
   PaperConfig config_;
   Subject subject_;
   TPose pose_;

@@ -6,9 +6,9 @@ namespace footing::momentum {
 
 /// When the paper's rule takes velocity or momentum away: the rate has been near zero for so long.
 struct DecayRule {
-  bool enabled = true;  ///< Off: the ablation that shows what one outlier does.
-  double near_zero = 0.35;    ///< Limit of the rate's size: m/s² or N m.
-  double after_s = 0.05;      ///< "a short period of time" (section 4.1).
+  bool enabled = true;      ///< Off: the ablation that shows what one outlier does.
+  double near_zero = 0.35;  ///< Limit of the rate's size: m/s² or N m.
+  double after_s = 0.05;    ///< "a short period of time" (section 4.1).
   double keep_per_frame = 0.9;
 };
 

@@ -16,8 +16,8 @@ constexpr int kGroups = VerticalInput::kGroups;
 constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
 constexpr double kCopTimeS = 0.1;            // Smoothing of the COP, and again of its speed.
 constexpr double kStillAfterS = 0.2;
-constexpr double kStillLookS = 0.1;    // Time between zero-velocity measurements.
-constexpr double kLoadedShare = 0.5;   // Of the weight: with less, the body may fly.
+constexpr double kStillLookS = 0.1;   // Time between zero-velocity measurements.
+constexpr double kLoadedShare = 0.5;  // Of the weight: with less, the body may fly.
 constexpr double kScoreTimeS = 30;
 constexpr double kLeastLogDensity = -20;  // One event alone condemns nothing.
 constexpr double kCoastMps2 = 20;         // Of a velocity that nobody watches, per root frame.
@@ -114,9 +114,9 @@ void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
   const double share = step_s_ / (kAccelerationTimeS + step_s_);
   mean_acceleration_mps2_ += share * (std::abs(raw_mps2) - mean_acceleration_mps2_);
   const double cop_share = step_s_ / (kCopTimeS + step_s_);
-  const Eigen::Vector2d move =
-      input.cop_valid ? Eigen::Vector2d(cop_share * (input.cop_m - mean_cop_m_))
-                      : Eigen::Vector2d::Zero();
+  const Eigen::Vector2d move = input.cop_valid
+                                   ? Eigen::Vector2d(cop_share * (input.cop_m - mean_cop_m_))
+                                   : Eigen::Vector2d::Zero();
   mean_cop_m_ += move;
   const double speed = input.cop_valid ? move.norm() / step_s_ : config_.still_cop_mps * 2;
   cop_speed_mps_ += cop_share * (speed - cop_speed_mps_);
@@ -132,17 +132,14 @@ void VerticalCom::Anchor(bool loaded) {
   const Filter::Scalar now = filter_.Of(row);
   const double upright = config_.upright_share;
   MixtureMoments product = TimesMixture(
-      {now.mean, now.variance},
-      {{{upright, -config_.upright_below_m, config_.upright_spread_m},
-        {1 - upright, -config_.low_below_m, config_.low_spread_m}}});
+      {now.mean, now.variance}, {{{upright, -config_.upright_below_m, config_.upright_spread_m},
+                                  {1 - upright, -config_.low_below_m, config_.low_spread_m}}});
   Score(product.log_evidence);
   const Moments posterior = Below(product.moments, config_.highest_m);
   filter_.SetMoments(row, {posterior.mean, posterior.variance});
 }
 
-void VerticalCom::Score(double log_density) {
-  score_ += std::max(log_density, kLeastLogDensity);
-}
+void VerticalCom::Score(double log_density) { score_ += std::max(log_density, kLeastLogDensity); }
 
 void VerticalCom::Adopt(const VerticalCom& other) {
   filter_ = other.filter_;

@@ -11,23 +11,23 @@ namespace footing::momentum {
 /// What is assumed of a body's height, of its stillness and of the load cells.
 struct VerticalConfig {
   // The cells.
-  double cell_noise_n = 0.5;        ///< White, of each cell and frame.
-  double gain_spread = 0.005;       ///< Standard deviation of a cell group's gain.
-  double slow_force_n = 1.0;        ///< Standard deviation of the boards' slow error.
-  double slow_force_time_s = 5;     ///< Its correlation time.
-  double mass_error_kg = 0.05;      ///< Of the calibration.
+  double cell_noise_n = 0.5;     ///< White, of each cell and frame.
+  double gain_spread = 0.005;    ///< Standard deviation of a cell group's gain.
+  double slow_force_n = 1.0;     ///< Standard deviation of the boards' slow error.
+  double slow_force_time_s = 5;  ///< Its correlation time.
+  double mass_error_kg = 0.05;   ///< Of the calibration.
   // Zero-velocity events.
   double still_acceleration_mps2 = 0.12;  ///< Limit of the smoothed |acceleration|.
   double still_cop_mps = 0.06;            ///< Limit of the smoothed speed of the COP.
   double still_velocity_mps = 0.01;       ///< Standard deviation of the velocity then.
   // The anchor: at one look a body stands upright with some probability, or is anywhere.
-  double look_s = 0.5;              ///< Time between independent looks.
+  double look_s = 0.5;  ///< Time between independent looks.
   double upright_share = 0.85;
-  double upright_below_m = 0.02;    ///< Arms hang: lower than in the T-pose.
+  double upright_below_m = 0.02;  ///< Arms hang: lower than in the T-pose.
   double upright_spread_m = 0.03;
-  double low_below_m = 0.12;        ///< Mean and spread of all other heights.
+  double low_below_m = 0.12;  ///< Mean and spread of all other heights.
   double low_spread_m = 0.15;
-  double highest_m = 0.12;          ///< Over the T-pose, with load on the feet: tiptoe, arms up.
+  double highest_m = 0.12;  ///< Over the T-pose, with load on the feet: tiptoe, arms up.
 };
 
 /// One frame: the load of each group of cells, and where the COP is.

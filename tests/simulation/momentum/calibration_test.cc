@@ -31,7 +31,8 @@ TEST(TPoseCalibration, BeginsAnewWhenTheBodyMoves) {
     return Eigen::Vector3d(0, 0, kMadeHeightM + 0.1 * std::sin(6 * t) * Ramp(t - 3));
   };
   TPoseCalibration calibration;
-  for (int i = 0; i < 360; ++i) EXPECT_FALSE(calibration.Advance(body.At(i * kMadeStepS), kMadeStepS));
+  for (int i = 0; i < 360; ++i)
+    EXPECT_FALSE(calibration.Advance(body.At(i * kMadeStepS), kMadeStepS));
   EXPECT_GE(calibration.restarts(), 1u);
 }
 

@@ -138,7 +138,8 @@ TEST(BestEstimator, FollowsAFootThatIsPutElsewhere) {
       for (Cell& cell : right.cells) {
         const double front = cell.p_WS_m.x() > 0 ? 1 : -1;
         const double side = cell.p_WS_m.y() > -kBoardYM ? 1 : -1;
-        cell.load_n *= (1 + front * moved.x() / kHalfLengthM) * (1 + side * moved.y() / kHalfWidthM);
+        cell.load_n *=
+            (1 + front * moved.x() / kHalfLengthM) * (1 + side * moved.y() / kHalfWidthM);
       }
     best.Advance(loads);
     if (i == 140) {

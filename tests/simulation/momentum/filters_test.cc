@@ -1,5 +1,5 @@
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <vector>
@@ -19,7 +19,7 @@ TEST(LinearFilter, FindsTheMeanOfAConstantWithOneOverNOfTheVariance) {
   using F = LinearFilter<1, 1>;
   filter.Start(F::Vector(0), F::Matrix(1e6));
   for (const double z : {1.0, 2.0, 3.0, 6.0}) filter.Update(F::Row(1), z, 4);
-  EXPECT_NEAR(filter.x()(0), 3, 1e-4);      // (1 + 2 + 3 + 6) / 4
+  EXPECT_NEAR(filter.x()(0), 3, 1e-4);     // (1 + 2 + 3 + 6) / 4
   EXPECT_NEAR(filter.p()(0, 0), 1, 1e-4);  // 4 / 4
 }
 

@@ -35,8 +35,7 @@ struct MadeBody {
   ContactLoads At(double t) {
     const Eigen::Vector3d c = com_m(t), a = Acceleration(t);
     const double load = kMadeMassKg * (a.z() + kStandardGravityMps2);
-    const Eigen::Vector2d cop =
-        c.head<2>() - a.head<2>() * c.z() / (a.z() + kStandardGravityMps2);
+    const Eigen::Vector2d cop = c.head<2>() - a.head<2>() * c.z() / (a.z() + kStandardGravityMps2);
     const double left = 0.5 + 0.5 * cop.y() / kBoardYM;
     ContactLoads loads;
     loads.time_s = t;
@@ -49,8 +48,8 @@ struct MadeBody {
       for (std::size_t i = 0; i < 4; ++i) {
         const double front = i < 2 ? 1 : -1, side = i % 2 == 0 ? 1 : -1;
         foot.cells[i].p_WS_m = {front * kHalfLengthM, y + side * kHalfWidthM, 0};
-        foot.cells[i].load_n = load * share * 0.25 * (1 + front * cop.x() / kHalfLengthM) +
-                               noise_n * random.Normal();
+        foot.cells[i].load_n =
+            load * share * 0.25 * (1 + front * cop.x() / kHalfLengthM) + noise_n * random.Normal();
       }
     }
     return loads;
