@@ -48,7 +48,7 @@ BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, c
                             HorizontalCom::kSlots - 1)),
       horizontal_{HorizontalCom(config.forward, pose.mass_kg, step_s),
                   HorizontalCom(config.lateral, pose.mass_kg, step_s)},
-      vertical_(pose.mass_kg, step_s, pose.cell_noise_n),
+      vertical_(pose.mass_kg, step_s, subject.arms_hang_m, pose.cell_noise_n),
       contacts_{FootContact(config.contact), FootContact(config.contact)},
       places_{FootPlace(subject.feet[0], config.place), FootPlace(subject.feet[1], config.place)} {
   for (std::size_t f = 0; f < kFeet; ++f) places_[f].Start(pose.p_WP_m[f]);

@@ -20,6 +20,9 @@ struct FootShape {
 /// Who stands on the cells.
 struct Subject {
   double com_height_m = 1.0;  ///< Of the centre of mass over the ground, in the T-pose.
+  /// How much lower it is when the body stands upright with its arms hanging: what the heights'
+  /// anchor means by upright. 0 where the calibration was made so instead of in a T-pose.
+  double arms_hang_m = 0.028;
   std::array<FootShape, kFeet> feet{};
 };
 

@@ -14,15 +14,12 @@ constexpr double kTrustAbove = 2;
 constexpr double kDoubtBelow = -4;
 constexpr double kAdoptEveryS = 5;
 
-VerticalConfig WithNoise(VerticalConfig config, double cell_noise_n) {
-  config.cell_noise_n = std::max(cell_noise_n, kLeastCellNoiseN);
-  return config;
-}
-
 }  // namespace
 
-VerticalConfig TrustingVertical() {
+VerticalConfig TrustingVertical(double arms_hang_m, double cell_noise_n) {
   VerticalConfig config;
+  config.cell_noise_n = std::max(cell_noise_n, kLeastCellNoiseN);
+  config.upright_below_m = arms_hang_m;
   config.slow_force_n = 0.004;
   config.slow_force_time_s = 0.8;
   config.still_acceleration_mps2 = 0.033;
@@ -30,14 +27,15 @@ VerticalConfig TrustingVertical() {
   config.still_velocity_mps = 0.001;
   config.look_s = 0.3;
   config.upright_share = 0.81;
-  config.upright_below_m = 0.026;
   config.upright_spread_m = 0.012;
   config.highest_m = 0.042;
   return config;
 }
 
-VerticalConfig DoubtfulVertical() {
+VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n) {
   VerticalConfig config;
+  config.cell_noise_n = std::max(cell_noise_n, kLeastCellNoiseN);
+  config.upright_below_m = arms_hang_m;
   config.slow_force_n = 1.0;
   config.slow_force_time_s = 6;
   config.still_acceleration_mps2 = 0.14;
@@ -45,15 +43,14 @@ VerticalConfig DoubtfulVertical() {
   config.still_velocity_mps = 0.006;
   config.look_s = 0.3;
   config.upright_share = 0.87;
-  config.upright_below_m = 0.032;
   config.upright_spread_m = 0.033;
   config.highest_m = 0.013;
   return config;
 }
 
-VerticalBank::VerticalBank(double mass_kg, double step_s, double cell_noise_n)
-    : trusting_(WithNoise(TrustingVertical(), cell_noise_n), mass_kg, step_s),
-      doubtful_(WithNoise(DoubtfulVertical(), cell_noise_n), mass_kg, step_s),
+VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n)
+    : trusting_(TrustingVertical(arms_hang_m, cell_noise_n), mass_kg, step_s),
+      doubtful_(DoubtfulVertical(arms_hang_m, cell_noise_n), mass_kg, step_s),
       step_s_(step_s) {}
 
 void VerticalBank::Start(const VerticalInput& mean) {

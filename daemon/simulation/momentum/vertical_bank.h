@@ -5,16 +5,16 @@
 namespace footing::momentum {
 
 /// For cells whose only error is white noise: the loads are trusted for many seconds.
-VerticalConfig TrustingVertical();
+VerticalConfig TrustingVertical(double arms_hang_m, double cell_noise_n);
 /// For cells with gains and slow errors as real boards have them.
-VerticalConfig DoubtfulVertical();
+VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n);
 
 /// Two filters of the height side by side, one that trusts the cells and one that doubts them. The
 /// one that foresaw the last minute's events better speaks; a trusting filter that lost its way is
 /// set right by the doubtful one. A plain value.
 class VerticalBank {
  public:
-  VerticalBank(double mass_kg, double step_s, double cell_noise_n);
+  VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n);
 
   void Start(const VerticalInput& mean);
   void Advance(const VerticalInput& input);
