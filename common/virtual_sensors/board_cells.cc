@@ -38,13 +38,17 @@ std::array<Eigen::Vector2d, 4> SensorPlaces(const BoardPlace& board) {
   return places;
 }
 
-BoardLoad LoadBoard(const BoardPlace& board, const FootForce& foot) {
+BoardLoad LoadBoard(const BoardPlace& board, const FootForce& foot, bool limited) {
   const Eigen::Vector2d p = foot.cop_m - board.middle_m;
   const double x = p.dot(Right(board)) / (0.5 * kSensorsAcrossM);
   const double y = p.dot(Front(board)) / (0.5 * kSensorsAlongM);
-  const double inside_x = std::clamp(x, -1.0, 1.0), inside_y = std::clamp(y, -1.0, 1.0);
+  double inside_x = std::clamp(x, -1.0, 1.0), inside_y = std::clamp(y, -1.0, 1.0);
   BoardLoad load;
   load.outside = inside_x != x || inside_y != y;
+  if (!limited) {
+    inside_x = x;
+    inside_y = y;
+  }
   for (std::size_t i = 0; i < load.corners_n.size(); ++i) {
     load.corners_n[i] =
         0.25 * foot.load_n * (1 + kRight[i] * inside_x) * (1 + kFront[i] * inside_y);
@@ -60,17 +64,16 @@ CellErrors::CellErrors(const CellErrorConfig& config) : config_(config), random_
 Corners CellErrors::Advance(const Corners& true_n, double step_s) {
   const double total = true_n[0] + true_n[1] + true_n[2] + true_n[3];
   const double keep = std::exp(-step_s / config_.slow_time_s);
-  slow_n_ = keep * slow_n_ +
-            std::sqrt(1 - keep * keep) * config_.slow_force_n * random_.Normal();
+  slow_n_ = keep * slow_n_ + std::sqrt(1 - keep * keep) * config_.slow_force_n * random_.Normal();
   const double slow = 0.25 * slow_n_ * std::clamp(total / kFullLoadN, 0.0, 1.5);
   Corners read;
   for (std::size_t i = 0; i < read.size(); ++i) {
     // The play operator: the reading follows once the force has crossed the play.
     if (!started_) play_n_[i] = true_n[i];
-    play_n_[i] = std::clamp(play_n_[i], true_n[i] - config_.hysteresis_n,
-                            true_n[i] + config_.hysteresis_n);
-    read[i] = gains_[i] * play_n_[i] + slow +
-              KilogramsToNewtons(config_.noise_kg) * random_.Normal();
+    play_n_[i] =
+        std::clamp(play_n_[i], true_n[i] - config_.hysteresis_n, true_n[i] + config_.hysteresis_n);
+    read[i] =
+        gains_[i] * play_n_[i] + slow + KilogramsToNewtons(config_.noise_kg) * random_.Normal();
   }
   started_ = true;
   return read;

@@ -36,16 +36,17 @@ struct BoardLoad {
   Corners corners_n{};
   bool outside = false;  ///< The COP was outside the rectangle.
 };
-BoardLoad LoadBoard(const BoardPlace& board, const FootForce& foot);
+/// Not `limited`: cells that pull, too, as if the plate had no edge.
+BoardLoad LoadBoard(const BoardPlace& board, const FootForce& foot, bool limited = true);
 
 /// Errors of a board's cells (Bartlett, Ting & Bingham 2014: absolute within 9.1 N, repeatable
 /// within 4.5 N).
 struct CellErrorConfig {
-  double gain_spread = 0;        ///< Standard deviation of each cell's gain.
-  double hysteresis_n = 0;       ///< Half the width of each cell's play.
-  double slow_force_n = 0;       ///< Standard deviation of the slow error of a loaded board.
-  double slow_time_s = 3;        ///< Its correlation time.
-  double noise_kg = 0;           ///< White, of each cell and sample.
+  double gain_spread = 0;   ///< Standard deviation of each cell's gain.
+  double hysteresis_n = 0;  ///< Half the width of each cell's play.
+  double slow_force_n = 0;  ///< Standard deviation of the slow error of a loaded board.
+  double slow_time_s = 3;   ///< Its correlation time.
+  double noise_kg = 0;      ///< White, of each cell and sample.
   std::uint64_t seed = 1;
 };
 

@@ -5,7 +5,8 @@
 
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
-#include "common/virtual_sensors/low_pass.h"
+#include "common/motion/signal.h"
+#include "common/virtual_sensors/derivative.h"
 
 namespace footing::virtual_sensors {
 namespace {
@@ -60,7 +61,7 @@ BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double c
     for (auto& point : foot) point.resize(3, n);
   if (n == 0) return course;
 
-  const Eigen::MatrixXd q = LowPass(motion.q, cutoff_hz, motion.rate_hz);
+  const Eigen::MatrixXd q = motion::LowPass(motion.q, motion.rate_hz, cutoff_hz);
   const Eigen::MatrixXd q_dot = Derivative(q, motion.rate_hz);
   body::Kinematics at(body.skeleton);
   body::JointVelocities velocities(body.skeleton);
@@ -76,8 +77,8 @@ BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double c
   for (auto& foot : course.sole_m) {
     for (auto& point : foot) {
       std::vector<double> heights(point.row(2).begin(), point.row(2).end());
-      const auto low = heights.begin() + static_cast<std::ptrdiff_t>(
-                                             kLowShare * static_cast<double>(heights.size()));
+      const auto low = heights.begin() +
+                       static_cast<std::ptrdiff_t>(kLowShare * static_cast<double>(heights.size()));
       std::nth_element(heights.begin(), low, heights.end());
       point.row(2).array() -= *low;
     }

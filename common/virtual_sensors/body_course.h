@@ -28,6 +28,6 @@ struct BodyCourse {
 
 /// Kinematics of every frame. Angles and position of the root are low-passed first (measured
 /// positions are not fit to be differentiated twice). The motion's skeleton is the body's.
-BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double cutoff_hz = 8);
+BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double cutoff_hz = 6);
 
 }  // namespace footing::virtual_sensors

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/motion/signal.h"
 #include "common/units/units.h"
-#include "common/virtual_sensors/low_pass.h"
+#include "common/virtual_sensors/derivative.h"
 
 namespace footing::virtual_sensors {
 namespace {
@@ -63,14 +64,15 @@ GroundReaction React(const BodyCourse& course, double cutoff_hz) {
   Eigen::MatrixXd both(6, n);
   both.topRows<3>() = Derivative(Derivative(course.com_m, rate), rate);
   both.bottomRows<3>() = Derivative(course.angular_momentum, rate);
-  both = LowPass(both, cutoff_hz, rate);
+  both = motion::LowPass(both, rate, cutoff_hz);
   GroundReaction out;
   out.force_n = m * both.topRows<3>();
   out.force_n.row(2).array() += m * kStandardGravityMps2;
   out.cop_m = course.com_m.topRows<2>();
   out.carried.assign(static_cast<std::size_t>(n), false);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Vector3d f = out.force_n.col(i), c = course.com_m.col(i), l = both.col(i).tail<3>();
+    const Eigen::Vector3d f = out.force_n.col(i), c = course.com_m.col(i),
+                          l = both.col(i).tail<3>();
     if (f.z() < kFlightShare * m * kStandardGravityMps2) continue;
     out.carried[static_cast<std::size_t>(i)] = true;
     // L'_x = (p - c)_y F_z + c_z F_y,  L'_y = -c_z F_x - (p - c)_x F_z, with p_z = 0.

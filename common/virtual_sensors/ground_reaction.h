@@ -20,7 +20,7 @@ struct GroundReaction {
 /// F = m (c'' + g), and the COP from L' = (p - c) x F (equation (1) of Ha, Bai & Liu 2011). In
 /// flight the force of recorded motion is a little above or below zero; it is left so, since a
 /// clipped one would give the body momentum that it never had.
-GroundReaction React(const BodyCourse& course, double cutoff_hz = 12);
+GroundReaction React(const BodyCourse& course, double cutoff_hz = 10);
 
 /// Vertical force and COP under one foot at one time.
 struct FootForce {

@@ -4,6 +4,7 @@
 #include "daemon/offline/eval/command.h"
 #include "daemon/offline/eval/features_command.h"
 #include "daemon/offline/eval/gait_command.h"
+#include "daemon/offline/eval/momentum_command.h"
 #include "daemon/offline/eval/monkey_command.h"
 #include "daemon/offline/eval/replay_command.h"
 #include "daemon/offline/eval/transitions_command.h"
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   footing::eval::AddClockCommand(*app, shared);
   footing::eval::AddFeaturesCommand(*app, shared);
   footing::eval::AddGaitCommand(*app, shared);
+  footing::eval::AddMomentumCommand(*app, shared);
   footing::eval::AddMonkeyCommand(*app, shared);
   footing::eval::AddReplayCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/units/units.h"
-#include "common/virtual_sensors/low_pass.h"
 
 namespace footing::virtual_sensors {
 namespace {
@@ -23,19 +22,11 @@ BodyCourse Standing() {
   course.angular_momentum.setZero(3, kFrames);
   for (std::size_t f = 0; f < kFeet; ++f)
     for (std::size_t i = 0; i < kFootPoints; ++i)
-      course.sole_m[f][i] = Eigen::Vector3d(i < 2 ? -0.05 : 0.17,
-                                            (f == 0 ? 0.16 : -0.16) + (i % 2 == 0 ? 0.03 : -0.03), 0)
-                                .replicate(1, kFrames);
+      course.sole_m[f][i] =
+          Eigen::Vector3d(i < 2 ? -0.05 : 0.17,
+                          (f == 0 ? 0.16 : -0.16) + (i % 2 == 0 ? 0.03 : -0.03), 0)
+              .replicate(1, kFrames);
   return course;
-}
-
-TEST(LowPass, HasNoDelayAndHalvesAtItsTwoPassCorner) {
-  Eigen::MatrixXd wave(1, 1200);
-  for (Eigen::Index i = 0; i < wave.cols(); ++i)
-    wave(0, i) = std::sin(2 * kPi * 8 * static_cast<double>(i) / kRateHz);
-  const Eigen::MatrixXd out = LowPass(wave, 8, kRateHz);
-  // At the cutoff each of the two passes gives 1 / sqrt 2.
-  for (Eigen::Index i = 400; i < 800; ++i) EXPECT_NEAR(out(0, i), 0.5 * wave(0, i), 0.005);
 }
 
 TEST(React, GivesTheWeightUnderTheCentreOfMassAtRest) {
