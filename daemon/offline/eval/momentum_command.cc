@@ -14,8 +14,8 @@
 namespace footing::eval {
 namespace {
 
-using nlohmann::ordered_json;
 using momentum::kFeet;
+using nlohmann::ordered_json;
 
 constexpr double kContactN = 20;
 constexpr double kSettledContactS = 0.3;  // A foot's place is judged so long after its landing.
@@ -69,8 +69,8 @@ ordered_json OfflineJson(const MomentumScene& scene, const momentum::TPose& pose
   for (std::size_t i = start; i < scene.frames.size(); ++i)
     vertical.push_back(momentum::ToVerticalInput(scene.frames[i].loads, kContactN));
   const auto height = momentum::SmoothVertical(
-      momentum::DoubtfulVertical(scene.subject.arms_hang_m, pose.cell_noise_n), pose.mass_kg, step_s,
-      pose.mean_loads, vertical);
+      momentum::DoubtfulVertical(scene.subject.arms_hang_m, pose.cell_noise_n), pose.mass_kg,
+      step_s, pose.mean_loads, vertical);
   const std::array<momentum::HorizontalPrior, 2> priors{momentum::ForwardPrior(),
                                                         momentum::LateralPrior()};
   ordered_json out;
@@ -105,8 +105,7 @@ Result<ordered_json> Evaluate(const MomentumOptions& options, bool offline) {
   const double step_s = 1 / scene->rate_hz;
   momentum::TPoseCalibration calibration;
   std::size_t start = 0;
-  while (start < scene->frames.size() &&
-         !calibration.Advance(scene->frames[start].loads, step_s))
+  while (start < scene->frames.size() && !calibration.Advance(scene->frames[start].loads, step_s))
     ++start;
   if (!calibration.complete())
     return InvalidData(options.motion + ": its T-pose never stood still on both boards");
@@ -117,7 +116,8 @@ Result<ordered_json> Evaluate(const MomentumOptions& options, bool offline) {
   momentum::BestEstimator best(config, scene->subject, pose, step_s);
   momentum::PaperEstimator paper({}, scene->subject, pose, step_s);
 
-  std::array<Eigen::Vector3d, kFeet> rest;  // From the place of the COP at rest to the sole's middle.
+  std::array<Eigen::Vector3d, kFeet>
+      rest;  // From the place of the COP at rest to the sole's middle.
   for (std::size_t f = 0; f < kFeet; ++f)
     rest[f] = scene->frames[0].feet[f].middle_m - pose.p_WP_m[f];
   Rms forward, lateral, vertical, first_minute, last_minute, cop_forward, cop_lateral, place;

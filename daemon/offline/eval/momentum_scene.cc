@@ -42,15 +42,45 @@ double FloorOf(const motion::Motion& motion) {
     for (const Eigen::Vector3d& p : at.p_WJ) low = std::min(low, p.z());
     lowest.push_back(low);
   }
-  const auto place = lowest.begin() + static_cast<std::ptrdiff_t>(
-                                          kFloorShare * static_cast<double>(lowest.size()));
+  const auto place = lowest.begin() +
+                     static_cast<std::ptrdiff_t>(kFloorShare * static_cast<double>(lowest.size()));
   std::nth_element(lowest.begin(), place, lowest.end());
   return *place;
 }
 
+// A T-pose of straight lines has its weight over the heels. A person leans ahead until it is over
+// the rest point of the soles: all but the feet turn about the ankles.
+void Lean(const body::Body& body, double rest_share, Eigen::VectorXd& pose) {
+  motion::Motion still;
+  still.skeleton = body.skeleton;
+  still.rate_hz = 100;
+  still.q = pose.replicate(1, 2);
+  const sensors::BodyCourse course = sensors::Follow(body, still);
+  double rest_x = 0;
+  for (const auto& sole : course.sole_m)
+    rest_x += (1 - rest_share) * 0.25 * (sole[0](0, 0) + sole[1](0, 0)) +
+              rest_share * 0.25 * (sole[2](0, 0) + sole[3](0, 0));
+  const double angle = (rest_x - course.com_m(0, 0)) / course.com_m(2, 0);
+  const body::Skeleton& skeleton = body.skeleton;
+  const Eigen::Matrix3d turn = body::AxisRotation(body::Axis::kY, angle);
+  body::SetJointRotation(skeleton.joint(0), turn * body::JointRotation(skeleton.joint(0), pose),
+                         pose);
+  pose(0) += angle * pose(2);
+  body::Kinematics at(skeleton);
+  for (const Landmark landmark : {Landmark::kLeftAnkle, Landmark::kRightAnkle}) {
+    const int ankle = body.landmarks[landmark];
+    const body::Joint& joint = skeleton.joint(ankle);
+    body::ComputeKinematics(skeleton, pose, at);
+    const Eigen::Matrix3d& R_WP = at.R_WJ[static_cast<std::size_t>(joint.parent)];
+    const Eigen::Matrix3d& R_WJ = at.R_WJ[static_cast<std::size_t>(ankle)];
+    body::SetJointRotation(joint, R_WP.transpose() * turn.transpose() * R_WJ, pose);
+  }
+}
+
 // The T-pose where the clip begins, held, then the clip.
-motion::Motion WithTPose(const motion::Motion& clip, const body::Landmarks& landmarks) {
-  Eigen::VectorXd pose = body::TPose(clip.skeleton, landmarks);
+motion::Motion WithTPose(const motion::Motion& clip, const body::Body& body) {
+  Eigen::VectorXd pose = body::TPose(clip.skeleton, body.landmarks);
+  Lean(body, momentum::FootShape{}.rest_share, pose);
   pose.head<2>() = clip.q.col(0).head<2>();
   const auto hold = static_cast<Eigen::Index>(std::lround(kCalibrationS * clip.rate_hz));
   const auto leave = static_cast<Eigen::Index>(std::lround(kLeaveS * clip.rate_hz));
@@ -66,9 +96,8 @@ motion::Motion WithTPose(const motion::Motion& clip, const body::Landmarks& land
 }
 
 double YawOf(const sensors::BodyCourse& course, std::size_t foot) {
-  const Eigen::Vector3d ahead =
-      course.sole_m[foot][2].col(0) + course.sole_m[foot][3].col(0) -
-      course.sole_m[foot][0].col(0) - course.sole_m[foot][1].col(0);
+  const Eigen::Vector3d ahead = course.sole_m[foot][2].col(0) + course.sole_m[foot][3].col(0) -
+                                course.sole_m[foot][0].col(0) - course.sole_m[foot][1].col(0);
   return std::atan2(ahead.y(), ahead.x());
 }
 
@@ -88,7 +117,7 @@ Result<MomentumScene> MakeMomentumScene(const MomentumOptions& options) {
   if (clip.frames() < 2) return InvalidData(options.motion + ": a motion needs two frames");
   clip.q.row(2).array() -= FloorOf(clip);
   if (options.loop_minutes > 0) clip = motion::Looped(clip, options.loop_minutes * 60);
-  const motion::Motion motion = motion::Continuous(WithTPose(clip, *landmarks));
+  const motion::Motion motion = motion::Continuous(WithTPose(clip, *made));
   const sensors::BodyCourse course = sensors::Follow(*made, motion);
   const sensors::GroundReaction reaction = sensors::React(course);
 

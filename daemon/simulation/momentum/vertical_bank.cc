@@ -20,15 +20,19 @@ VerticalConfig TrustingVertical(double arms_hang_m, double cell_noise_n) {
   VerticalConfig config;
   config.cell_noise_n = std::max(cell_noise_n, kLeastCellNoiseN);
   config.upright_below_m = arms_hang_m;
-  config.slow_force_n = 0.004;
-  config.slow_force_time_s = 0.8;
-  config.still_acceleration_mps2 = 0.033;
-  config.still_cop_mps = 0.053;
-  config.still_velocity_mps = 0.001;
-  config.look_s = 0.3;
-  config.upright_share = 0.81;
-  config.upright_spread_m = 0.012;
-  config.highest_m = 0.042;
+  config.slow_force_n = 0.0015;
+  config.slow_force_time_s = 0.16;
+  config.gain_spread = 0.002;
+  config.mass_error_kg = 0.13;
+  config.still_acceleration_mps2 = 0.018;
+  config.still_cop_mps = 0.025;
+  config.still_velocity_mps = 0.0004;
+  config.look_s = 0.35;
+  config.upright_share = 0.18;
+  config.upright_spread_m = 0.013;
+  config.low_below_m = 0.053;
+  config.low_spread_m = 0.42;
+  config.highest_m = 0.049;
   return config;
 }
 
