@@ -5,6 +5,7 @@
 #include "daemon/offline/eval/features_command.h"
 #include "daemon/offline/eval/gait_command.h"
 #include "daemon/offline/eval/gait_trial.h"
+#include "daemon/offline/eval/momentum_command.h"
 #include "daemon/offline/eval/monkey_command.h"
 #include "daemon/offline/eval/replay_command.h"
 #include "daemon/offline/eval/tracks_command.h"
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
   footing::eval::AddClockCommand(*app, shared);
   footing::eval::AddFeaturesCommand(*app, shared);
   footing::eval::AddGaitCommand(*app, shared);
+  footing::eval::AddMomentumCommand(*app, shared);
   footing::eval::AddMonkeyCommand(*app, shared);
   footing::eval::AddReplayCommand(*app, shared);
   footing::eval::AddTracksCommand(*app, shared);

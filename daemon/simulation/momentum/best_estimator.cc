@@ -1,0 +1,166 @@
+#include "daemon/simulation/momentum/best_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::momentum {
+namespace {
+
+constexpr double kLeastCopN = 20;
+constexpr double kFootCopShare = 0.04;  // Of the weight, for a foot's own COP.
+constexpr double kAwayS = 1.0;          // Longer than any jump.
+constexpr double kAwayShare = 0.3;      // Of the weight: nobody stands on the cells.
+constexpr double kMostSpread = 1.0;     // m, m/s: what is unknown is told as such.
+
+}  // namespace
+
+HorizontalPrior ForwardPrior() {
+  HorizontalPrior prior;
+  prior.slow = {0.18, 0.87, 0.38, 0.093};
+  prior.rhythmic = {5.2, 5.6, 0.72, 0.030};
+  prior.beta = 0.75;
+  prior.moment_spread_m = 0.0029;
+  prior.moment_time_s = 0.024;
+  prior.cop_noise_m = 0.0005;
+  return prior;
+}
+
+HorizontalPrior LateralPrior() {
+  HorizontalPrior prior;
+  prior.slow = {0.37, 2.9, 0.23, 0.35};
+  prior.rhythmic = {8.7, 8.2, 0.081, 0.044};
+  prior.beta = 1.08;
+  prior.moment_spread_m = 0.0079;
+  prior.moment_time_s = 0.064;
+  prior.cop_noise_m = 0.0006;
+  return prior;
+}
+
+BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, const TPose& pose,
+                             double step_s)
+    : config_(config),
+      subject_(subject),
+      pose_(pose),
+      step_s_(step_s),
+      lag_steps_(std::clamp(static_cast<int>(std::lround(config.lag_s / step_s)), 0,
+                            HorizontalCom::kSlots - 1)),
+      horizontal_{HorizontalCom(config.forward, pose.mass_kg, step_s),
+                  HorizontalCom(config.lateral, pose.mass_kg, step_s)},
+      vertical_(pose.mass_kg, step_s, subject.arms_hang_m, pose.cell_noise_n),
+      contacts_{FootContact(config.contact), FootContact(config.contact)},
+      places_{FootPlace(subject.feet[0], config.place), FootPlace(subject.feet[1], config.place)} {
+  for (std::size_t f = 0; f < kFeet; ++f) places_[f].Start(pose.p_WP_m[f]);
+  Begin();
+  estimate_.p_WC_m << pose.cop_m.x(), pose.cop_m.y(), subject.com_height_m;
+}
+
+void BestEstimator::Begin() {
+  const Eigen::Vector2d centre = Centre();
+  horizontal_[0].Start(pose_.cop_m.x(), centre.x());
+  horizontal_[1].Start(pose_.cop_m.y(), centre.y());
+  vertical_.Start(pose_.mean_loads);
+  estimate_.angular_momentum_kgm2ps.setZero();
+  estimate_.angular_momentum_variance.setZero();
+}
+
+Eigen::Vector2d BestEstimator::Centre() const {
+  return 0.5 * (places_[0].position_m() + places_[1].position_m()).head<2>();
+}
+
+const Estimate& BestEstimator::Advance(const ContactLoads& loads) {
+  estimate_.lag_s = lag_steps_ * step_s_;
+  const bool gap = !IsFinite(loads) || !loads.feet[0].valid || !loads.feet[1].valid;
+  if (std::isfinite(loads.time_s)) estimate_.time_s = loads.time_s;
+  if (!gap) AdvanceFeet(loads);
+  const double total = pressures_[0].total_n + pressures_[1].total_n;
+  const bool away = gap || total < kAwayShare * pose_.mass_kg * kStandardGravityMps2;
+  if (!away && away_s_ >= kAwayS) {
+    Begin();
+    ++estimate_.resets;
+  }
+  away_s_ = away ? away_s_ + step_s_ : 0;
+  estimate_.valid = !gap && away_s_ < kAwayS;
+  AdvanceCom(loads, gap || away_s_ >= kAwayS);
+  if (!gap) AdvanceAngular();
+  return estimate_;
+}
+
+void BestEstimator::AdvanceFeet(const ContactLoads& loads) {
+  const double least = kFootCopShare * pose_.mass_kg * kStandardGravityMps2;
+  for (std::size_t f = 0; f < kFeet; ++f) {
+    pressures_[f] = PressureOf(loads.feet[f], least);
+    const bool before = contacts_[f].contact();
+    const double aloft = contacts_[f].since_s();
+    const bool contact = contacts_[f].Advance(pressures_[f].total_n, step_s_);
+    places_[f].Advance(pressures_[f], contact, contact && !before && aloft > 0, step_s_);
+    FootEstimate& foot = estimate_.feet[f];
+    foot.contact = contact;
+    foot.valid = true;
+    foot.load_n = pressures_[f].total_n - contacts_[f].tare_n();
+    foot.cop_valid = pressures_[f].cop_valid;
+    foot.p_WP_m = pressures_[f].p_WP_m;
+    foot.p_WF_m = places_[f].position_m();
+    foot.variance_m2 = places_[f].variance_m2();
+    foot.airborne_s = contact ? 0 : contacts_[f].since_s();
+    PlaceHeelAndToe(subject_.feet[f], foot);
+  }
+}
+
+void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
+  const Pressure both = PressureOf(loads, kLeastCopN);
+  if (gap) {
+    vertical_.Coast();
+  } else {
+    vertical_.Advance(ToVerticalInput(loads, kLeastCopN));
+  }
+  const double height = subject_.com_height_m + vertical_.Height(0).mean;
+  const Eigen::Vector2d centre = Centre();
+  for (int i = 0; i < 2; ++i) {
+    HorizontalInput input;
+    input.cop_valid = !gap && both.cop_valid;
+    input.cop_m = both.p_WP_m(i);
+    // Without a measurement the prior alone goes on: no flight is meant.
+    input.load_n = gap ? pose_.mass_kg * kStandardGravityMps2 : both.total_n;
+    input.com_height_m = height;
+    input.centre_m = centre(i);
+    HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
+    axis.Advance(input);
+    const auto position = axis.Position(lag_steps_);
+    estimate_.p_WC_m(i) = position.mean;
+    estimate_.position_variance_m2(i) = std::min(position.variance, kMostSpread);
+    estimate_.v_WC_mps(i) = axis.Velocity().mean;
+    estimate_.velocity_variance_m2ps2(i) = std::min(axis.Velocity().variance, kMostSpread);
+    estimate_.a_WC_mps2(i) = axis.Acceleration().mean;
+  }
+  const auto lagged = vertical_.Height(lag_steps_);
+  estimate_.p_WC_m.z() = subject_.com_height_m + std::clamp(lagged.mean, -2.0, 2.0);
+  estimate_.position_variance_m2.z() = std::min(lagged.variance, kMostSpread);
+  const auto velocity = vertical_.chosen().Velocity();
+  estimate_.v_WC_mps.z() = velocity.mean;
+  estimate_.velocity_variance_m2ps2.z() = std::min(velocity.variance, kMostSpread);
+  estimate_.a_WC_mps2.z() = vertical_.chosen().acceleration_mps2();
+}
+
+void BestEstimator::AdvanceAngular() {
+  const Eigen::Vector3d now(horizontal_[0].Position(0).mean, horizontal_[1].Position(0).mean,
+                            subject_.com_height_m + vertical_.Height(0).mean);
+  const Eigen::Vector3d rate =
+      AngularMomentumRate(pressures_, now, estimate_.a_WC_mps2.head<2>(), pose_.mass_kg);
+  const double load = pressures_[0].total_n + pressures_[1].total_n;
+  const double keep = std::exp(-step_s_ / config_.angular_memory_s);
+  estimate_.angular_momentum_rate_nm = rate;
+  estimate_.angular_momentum_kgm2ps = keep * estimate_.angular_momentum_kgm2ps + rate * step_s_;
+  for (int i = 0; i < 3; ++i) {
+    // About x the lateral place of C counts, about y the forward one; about z nothing is seen.
+    const double arm2 = i == 0   ? horizontal_[1].Position(0).variance
+                        : i == 1 ? horizontal_[0].Position(0).variance
+                                 : kMostSpread;
+    estimate_.angular_momentum_variance(i) =
+        keep * keep * estimate_.angular_momentum_variance(i) +
+        load * load * arm2 * step_s_ * config_.angular_memory_s;
+  }
+}
+
+}  // namespace footing::momentum

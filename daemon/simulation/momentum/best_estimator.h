@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "daemon/simulation/momentum/angular_momentum.h"
+#include "daemon/simulation/momentum/calibration.h"
+#include "daemon/simulation/momentum/estimate.h"
+#include "daemon/simulation/momentum/foot_contact.h"
+#include "daemon/simulation/momentum/foot_place.h"
+#include "daemon/simulation/momentum/horizontal_com.h"
+#include "daemon/simulation/momentum/vertical_bank.h"
+
+namespace footing::momentum {
+
+/// Priors of the two horizontal axes, from recorded motion (docs/momentum.md, "Constants").
+HorizontalPrior ForwardPrior();
+HorizontalPrior LateralPrior();
+
+struct BestConfig {
+  HorizontalPrior forward = ForwardPrior();
+  HorizontalPrior lateral = LateralPrior();
+  FootContactConfig contact;
+  FootPlaceConfig place;
+  double lag_s = 0;               ///< 0 to 0.2: positions of C are told so much later, and better.
+  double angular_memory_s = 1.0;  ///< The angular momentum leaks away in this time.
+};
+
+/// Our momentum: inverted-pendulum filters for the horizontal centre of mass, a self-calibrating
+/// filter bank for the vertical one, feet as places with covariance. A plain value that allocates
+/// nothing.
+class BestEstimator {
+ public:
+  BestEstimator(const BestConfig& config, const Subject& subject, const TPose& pose, double step_s);
+
+  /// One frame, `step_s` after the one before. A source that is not valid, or values that are not
+  /// finite, make the frame a gap: the estimate coasts, its covariance grows, and after a second
+  /// it begins anew when loads come again (`resets`).
+  const Estimate& Advance(const ContactLoads& loads);
+  const Estimate& estimate() const { return estimate_; }
+  const VerticalBank& vertical() const { return vertical_; }
+
+ private:
+  void Begin();
+  void AdvanceFeet(const ContactLoads& loads);
+  void AdvanceCom(const ContactLoads& loads, bool gap);
+  void AdvanceAngular();
+  Eigen::Vector2d Centre() const;
+
+  BestConfig config_;
+  Subject subject_;
+  TPose pose_;
+  double step_s_;
+  int lag_steps_;
+  std::array<HorizontalCom, 2> horizontal_;
+  VerticalBank vertical_;
+  std::array<FootContact, kFeet> contacts_;
+  std::array<FootPlace, kFeet> places_;
+  std::array<Pressure, kFeet> pressures_{};
+  double away_s_ = 0;  // Since the feet had load, or the sources were valid.
+  Estimate estimate_;
+};
+
+}  // namespace footing::momentum

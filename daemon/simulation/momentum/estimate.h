@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "daemon/simulation/momentum/contact_loads.h"
+
+namespace footing::momentum {
+
+/// A foot's size and direction, from the subject file or taken in the T-pose.
+struct FootShape {
+  double length_m = 0.26;
+  double width_m = 0.10;
+  double yaw_rad = 0;  ///< Of the toes from W's x axis, to the left positive.
+  /// Where the centre of pressure of a standing body is, from the heel as a share of the length.
+  double rest_share = 0.42;
+};
+
+/// Who stands on the cells.
+struct Subject {
+  double com_height_m = 1.0;  ///< Of the centre of mass over the ground, in the T-pose.
+  /// How much lower it is when the body stands upright with its arms hanging: what the heights'
+  /// anchor means by upright. 0 where the calibration was made so instead of in a T-pose.
+  double arms_hang_m = 0.028;
+  std::array<FootShape, kFeet> feet{};
+};
+
+/// Where one foot is. The reference point F is where the centre of pressure is at rest.
+struct FootEstimate {
+  bool contact = false;
+  bool valid = false;  ///< False until its place has been seen.
+  double load_n = 0;
+  bool cop_valid = false;
+  Eigen::Vector3d p_WP_m = Eigen::Vector3d::Zero();  ///< Centre of pressure; 0 while not valid.
+  Eigen::Vector3d p_WF_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_WHeel_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_WToe_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();  ///< Of p_WF.
+  double airborne_s = 0;                                  ///< Since the foot left the cells.
+};
+
+/// One frame of either mode. Everything is finite at all times; `valid` says whether it means
+/// something. Positions are as they were `lag_s` before `time_s`, velocity, acceleration, momentum
+/// and feet as they are at `time_s`.
+struct Estimate {
+  double time_s = 0;
+  double lag_s = 0;
+  bool valid = false;
+  Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_WC_mps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d a_WC_mps2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d position_variance_m2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity_variance_m2ps2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum_kgm2ps = Eigen::Vector3d::Zero();  ///< About C.
+  Eigen::Vector3d angular_momentum_rate_nm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum_variance = Eigen::Vector3d::Zero();
+  std::array<FootEstimate, kFeet> feet{};
+  std::uint32_t resets = 0;  ///< How often the filters began anew.
+};
+
+/// Heel and toe of a foot whose reference point is there.
+void PlaceHeelAndToe(const FootShape& shape, FootEstimate& foot);
+
+}  // namespace footing::momentum

@@ -1,0 +1,146 @@
+#include "daemon/simulation/momentum/horizontal_com.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::momentum {
+namespace {
+
+using Filter = HorizontalCom::Filter;
+using Matrix3 = Eigen::Matrix3d;
+
+// Below these shares of the weight there is no centre of pressure to speak of, and no shear force.
+constexpr double kLeastLoadShare = 0.3;
+constexpr double kFlightShare = 0.05;
+constexpr double kFlightAcceleration = 0.3;  // m/s², standard deviation around 0.
+constexpr double kLeastRatio = 2.0;          // 1/s², of load / mass / height.
+constexpr double kLeastHeight = 0.4;         // m
+
+Matrix3 Companion(const HorizontalPrior::Part& part) {
+  const double p = part.pole_radps, w = part.frequency_radps, zeta = part.damping;
+  Matrix3 a = Matrix3::Zero();
+  a(0, 1) = a(1, 2) = 1;
+  a.row(2) << -p * w * w, -(2 * zeta * w * p + w * w), -(p + 2 * zeta * w);
+  return a;
+}
+
+// P of A P + P A' + b b' = 0, as 9 linear equations.
+Matrix3 Stationary(const Matrix3& a) {
+  Eigen::Matrix<double, 9, 9> system = Eigen::Matrix<double, 9, 9>::Zero();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) {
+        system(3 * i + j, 3 * k + j) += a(i, k);
+        system(3 * i + j, 3 * i + k) += a(j, k);
+      }
+  Eigen::Matrix<double, 9, 1> right = Eigen::Matrix<double, 9, 1>::Zero();
+  right(8) = -1;
+  const Eigen::Matrix<double, 9, 1> p = system.partialPivLu().solve(right);
+  return Eigen::Map<const Matrix3>(p.data());
+}
+
+// exp(a h) by scaling and a Taylor series.
+Matrix3 Exponential(const Matrix3& a, double h) {
+  constexpr int kHalvings = 6;
+  const Matrix3 x = a * (h / (1 << kHalvings));
+  Matrix3 term = Matrix3::Identity(), sum = term;
+  for (int i = 1; i < 10; ++i) {
+    term = (term * x / i).eval();
+    sum += term;
+  }
+  for (int i = 0; i < kHalvings; ++i) sum = (sum * sum).eval();
+  return sum;
+}
+
+}  // namespace
+
+HorizontalCom::HorizontalCom(const HorizontalPrior& prior, double mass_kg, double step_s)
+    : prior_(prior), mass_kg_(mass_kg) {
+  a_.setZero();
+  stationary_.setZero();
+  int at = 0;
+  for (const HorizontalPrior::Part& part : {prior.slow, prior.rhythmic}) {
+    const Matrix3 companion = Companion(part);
+    Matrix3 p = Stationary(companion);
+    p *= part.spread_m * part.spread_m / p(0, 0);
+    a_.block<3, 3>(at, at) = Exponential(companion, step_s);
+    stationary_.block<3, 3>(at, at) = p;
+    at += 3;
+  }
+  a_(6, 6) = std::exp(-step_s / prior.moment_time_s);
+  stationary_(6, 6) = prior.moment_spread_m * prior.moment_spread_m;
+  q_ = stationary_ - a_ * stationary_ * a_.transpose();
+  position_ << 1, 0, 0, 1, 0, 0, 0;
+  velocity_ << 0, 1, 0, 0, 1, 0, 0;
+  acceleration_ << 0, 0, 1, 0, 0, 1, 0;
+  filter_.Start(Filter::Vector::Zero(), stationary_);
+}
+
+void HorizontalCom::Start(double c_m, double centre_m) {
+  centre_m_ = centre_m;
+  filter_.Start(Filter::Vector::Zero(), stationary_);
+  filter_.Update(position_, c_m - centre_m, 1e-4);
+  filter_.Update(velocity_, 0, 1e-4);
+  filter_.Update(acceleration_, 0, 1e-2);
+  filter_.Remember(position_, centre_m_);
+}
+
+void HorizontalCom::Advance(const HorizontalInput& input) {
+  const double weight_n = mass_kg_ * kStandardGravityMps2;
+  Filter::Vector shift = Filter::Vector::Zero();
+  shift(0) = centre_m_ - input.centre_m;  // c stays where it is when the centre moves.
+  centre_m_ = input.centre_m;
+  filter_.Predict(a_, shift, q_);
+  if (input.cop_valid && input.load_n > kLeastLoadShare * weight_n) {
+    const double height = std::max(input.com_height_m, kLeastHeight);
+    const double ratio = std::max(input.load_n / mass_kg_ / height, kLeastRatio);
+    Filter::Row h = position_ - prior_.beta / ratio * acceleration_;
+    h(6) = weight_n / input.load_n;  // e is a moment: its arm grows as the load falls.
+    const double noise = prior_.cop_noise_m * weight_n / input.load_n;
+    filter_.Update(h, input.cop_m - centre_m_, noise * noise);
+  } else if (input.load_n < kFlightShare * weight_n) {
+    filter_.Update(acceleration_, 0, kFlightAcceleration * kFlightAcceleration);
+  }
+  filter_.Remember(position_, centre_m_);
+}
+
+std::vector<Filter::Scalar> SmoothHorizontal(const HorizontalPrior& prior, double mass_kg,
+                                             double step_s, double start_m,
+                                             const std::vector<HorizontalInput>& inputs) {
+  if (inputs.empty()) return {};
+  struct Step {
+    Filter::Vector x;
+    Filter::Matrix p;
+    double centre_m;
+  };
+  HorizontalCom com(prior, mass_kg, step_s);
+  com.Start(start_m, inputs.front().centre_m);
+  std::vector<Step> steps;
+  steps.reserve(inputs.size());
+  for (const HorizontalInput& input : inputs) {
+    com.Advance(input);
+    steps.push_back({com.filter().x(), com.filter().p(), com.centre_m()});
+  }
+  const Filter::Matrix& a = com.transition();
+  const Filter::Row& row = com.position_row();
+  std::vector<Filter::Scalar> out(steps.size());
+  Filter::Vector x = steps.back().x;
+  Filter::Matrix p = steps.back().p;
+  for (std::size_t i = steps.size(); i-- > 0;) {
+    if (i + 1 < steps.size()) {
+      Filter::Vector ahead = a * steps[i].x;
+      ahead(0) += steps[i].centre_m - steps[i + 1].centre_m;
+      const Filter::Matrix p_ahead = a * steps[i].p * a.transpose() + com.noise();
+      const Filter::Matrix gain = p_ahead.partialPivLu().solve(a * steps[i].p).transpose();
+      x = steps[i].x + gain * (x - ahead);
+      p = steps[i].p + gain * (p - p_ahead) * gain.transpose();
+    }
+    out[i] = {row * x + steps[i].centre_m, std::max(0.0, (row * p * row.transpose())(0))};
+  }
+  return out;
+}
+
+}  // namespace footing::momentum

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "daemon/simulation/momentum/linear_filter.h"
+
+namespace footing::momentum {
+
+/// What the horizontal motion of a body is like before anything is measured, for one axis. c is the
+/// sum of a slow part and a rhythmic part, both stationary, each the output of a third-order linear
+/// system driven by white noise, so that its acceleration is a state:
+///   c''' + (p + 2 zeta w) c'' + (2 zeta w p + w^2) c' + p w^2 c = noise.
+/// The centre of pressure is c - beta (z / (z'' + g)) c'' + e: beta takes the mean part of the
+/// rate of angular momentum that goes along with c'' (1 for a point mass), e the rest of it, a
+/// first-order process.
+struct HorizontalPrior {
+  struct Part {
+    double pole_radps = 1;       ///< p
+    double frequency_radps = 3;  ///< w
+    double damping = 0.7;        ///< zeta
+    double spread_m = 0.05;      ///< Standard deviation of the part.
+  };
+  Part slow{0.4, 1.5, 0.9, 0.04};
+  Part rhythmic{3, 8, 0.5, 0.04};
+  double beta = 1.0;
+  double moment_spread_m = 0.015;  ///< Standard deviation of e.
+  double moment_time_s = 0.1;      ///< Correlation time of e.
+  double cop_noise_m = 0.002;      ///< White, at full weight; grows with the inverse of the load.
+};
+
+/// One frame of what the horizontal estimator needs.
+struct HorizontalInput {
+  double cop_m = 0;         ///< Along this axis, W.
+  bool cop_valid = false;   ///< False: too little load for a centre of pressure.
+  double load_n = 0;        ///< Total vertical load.
+  double com_height_m = 1;  ///< Over the ground.
+  double centre_m = 0;      ///< Where c tends to: the middle between the feet.
+};
+
+/// The inverted-pendulum Kalman filter with a stationary prior, for one axis (facts: equation (1)
+/// of the paper with the shear forces eliminated). A plain value.
+class HorizontalCom {
+ public:
+  static constexpr int kStates = 7;
+  /// Steps that are remembered: 200 ms at 120 Hz.
+  static constexpr int kSlots = 25;
+  using Filter = LinearFilter<kStates, kSlots>;
+
+  /// `step_s` is the time between frames, > 0.
+  HorizontalCom(const HorizontalPrior& prior, double mass_kg, double step_s);
+
+  /// The body is at rest at c_m.
+  void Start(double c_m, double centre_m);
+  void Advance(const HorizontalInput& input);
+
+  /// In W, as it was `lag_steps` ago (at most kSlots - 1).
+  Filter::Scalar Position(int lag_steps) const { return filter_.Delayed(lag_steps); }
+  Filter::Scalar Velocity() const { return filter_.Of(velocity_); }
+  Filter::Scalar Acceleration() const { return filter_.Of(acceleration_); }
+
+  const Filter& filter() const { return filter_; }
+  const Filter::Matrix& transition() const { return a_; }
+  const Filter::Matrix& noise() const { return q_; }
+  double centre_m() const { return centre_m_; }
+  const Filter::Row& position_row() const { return position_; }
+
+ private:
+  HorizontalPrior prior_;
+  double mass_kg_;
+  Filter filter_;
+  Filter::Matrix a_;
+  Filter::Matrix q_;
+  Filter::Matrix stationary_;
+  Filter::Row position_;
+  Filter::Row velocity_;
+  Filter::Row acceleration_;
+  double centre_m_ = 0;
+};
+
+/// Offline: the whole recording at once, by the Rauch-Tung-Striebel recursion. Allocates.
+std::vector<HorizontalCom::Filter::Scalar> SmoothHorizontal(
+    const HorizontalPrior& prior, double mass_kg, double step_s, double start_m,
+    const std::vector<HorizontalInput>& inputs);
+
+}  // namespace footing::momentum

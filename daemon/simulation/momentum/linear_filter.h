@@ -1,0 +1,114 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace footing::momentum {
+
+/// A Kalman filter of N states that takes scalar measurements one after another, and remembers one
+/// scalar of the state (a row `h`) as it was at the last kSlots steps: the fixed-lag smoother by
+/// augmentation (Anderson & Moore 1979, "Optimal Filtering", section 7.3). A delayed scalar needs
+/// its mean, its variance and its covariance with the present state only, so a lag costs
+/// N² per slot and step, and no history of matrices. A plain value; nothing is allocated.
+template <int N, int kSlots>
+class LinearFilter {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Row = Eigen::Matrix<double, 1, N>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  struct Scalar {
+    double mean = 0;
+    double variance = 0;
+  };
+
+  void Start(const Vector& x, const Matrix& p) {
+    x_ = x;
+    p_ = p;
+    count_ = 0;
+  }
+
+  /// x <- a x + u, P <- a P a' + q.
+  void Predict(const Matrix& a, const Vector& u, const Matrix& q) {
+    x_ = a * x_ + u;
+    p_ = a * p_ * a.transpose() + q;
+    Symmetrise();
+    for (std::size_t i = 0; i < Used(); ++i) slots_[i].cross = slots_[i].cross * a.transpose();
+  }
+
+  /// Takes the measurement z = h x + noise of that variance (> 0). Returns the innovation's square
+  /// over its variance.
+  double Update(const Row& h, double z, double variance) {
+    const double innovation = z - h * x_;
+    const double s = (h * p_ * h.transpose())(0) + variance;
+    Correct(h, innovation / s, 1 / s);
+    return innovation * innovation / s;
+  }
+
+  /// Gives h x the new mean and variance by a density that is not a Gaussian's but is matched in
+  /// its first two moments; the other states follow by their covariance.
+  void SetMoments(const Row& h, const Scalar& posterior) {
+    const double s = (h * p_ * h.transpose())(0);
+    if (s <= 0) return;
+    const double mean = h * x_;
+    Correct(h, (posterior.mean - mean) / s, (s - posterior.variance) / (s * s));
+  }
+
+  /// Remembers h x + offset of this step as the newest slot.
+  void Remember(const Row& h, double offset = 0) {
+    Slot& slot = slots_[count_ % kSlots];
+    slot.mean = h * x_ + offset;
+    slot.cross = h * p_;
+    slot.variance = slot.cross * h.transpose();
+    ++count_;
+  }
+
+  /// The remembered scalar of `steps` ago, given all measurements since (0: the newest one; more
+  /// than there are: the oldest there is). At least one must have been remembered.
+  Scalar Delayed(int steps) const {
+    const std::size_t back = std::min<std::size_t>(static_cast<std::size_t>(steps), Used() - 1);
+    const Slot& slot = slots_[(count_ - 1 - back) % kSlots];
+    return {slot.mean, slot.variance};
+  }
+
+  const Vector& x() const { return x_; }
+  const Matrix& p() const { return p_; }
+  Scalar Of(const Row& h) const { return {h * x_, (h * p_ * h.transpose())(0)}; }
+
+ private:
+  struct Slot {
+    double mean = 0;
+    double variance = 0;
+    Row cross = Row::Zero();
+  };
+
+  std::size_t Used() const { return std::min<std::size_t>(count_, kSlots); }
+
+  // x += P h' dx, P -= P h' h P dp, and the same for the slots.
+  void Correct(const Row& h, double dx, double dp) {
+    const Vector ph = p_ * h.transpose();
+    for (std::size_t i = 0; i < Used(); ++i) {
+      Slot& slot = slots_[i];
+      const double ch = slot.cross * h.transpose();
+      slot.mean += ch * dx;
+      slot.variance = std::max(0.0, slot.variance - ch * ch * dp);
+      slot.cross -= ch * dp * ph.transpose();
+    }
+    x_ += ph * dx;
+    p_ -= dp * ph * ph.transpose();
+    Symmetrise();
+  }
+
+  void Symmetrise() {
+    p_ = (0.5 * (p_ + p_.transpose())).eval();
+    for (int i = 0; i < N; ++i) p_(i, i) = std::max(p_(i, i), 1e-15);
+  }
+
+  Vector x_ = Vector::Zero();
+  Matrix p_ = Matrix::Identity();
+  std::size_t count_ = 0;
+  std::array<Slot, kSlots> slots_{};
+};
+
+}  // namespace footing::momentum

@@ -1,0 +1,90 @@
+#include "daemon/simulation/momentum/vertical_bank.h"
+
+#include <algorithm>
+
+namespace footing::momentum {
+namespace {
+
+// Of the height of an upright body: raised arms, bent knees. It stays while the posture does, so
+// no number of looks makes it smaller.
+constexpr double kPostureSpreadM = 0.02;
+constexpr double kLeastCellNoiseN = 0.1;
+// Log densities: the trusting filter must have foreseen more, or much less, to change who speaks.
+constexpr double kTrustAbove = 2;
+constexpr double kDoubtBelow = -4;
+constexpr double kAdoptEveryS = 5;
+
+}  // namespace
+
+VerticalConfig TrustingVertical(double arms_hang_m, double cell_noise_n) {
+  VerticalConfig config;
+  config.cell_noise_n = std::max(cell_noise_n, kLeastCellNoiseN);
+  config.upright_below_m = arms_hang_m;
+  config.slow_force_n = 0.0015;
+  config.slow_force_time_s = 0.16;
+  config.gain_spread = 0.002;
+  config.mass_error_kg = 0.13;
+  config.still_acceleration_mps2 = 0.018;
+  config.still_cop_mps = 0.025;
+  config.still_velocity_mps = 0.0004;
+  config.look_s = 0.35;
+  config.upright_share = 0.18;
+  config.upright_spread_m = 0.013;
+  config.low_below_m = 0.053;
+  config.low_spread_m = 0.42;
+  config.highest_m = 0.049;
+  return config;
+}
+
+VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n) {
+  VerticalConfig config;
+  config.cell_noise_n = std::max(cell_noise_n, kLeastCellNoiseN);
+  config.upright_below_m = arms_hang_m;
+  config.slow_force_n = 1.0;
+  config.slow_force_time_s = 6;
+  config.still_acceleration_mps2 = 0.14;
+  config.still_cop_mps = 0.055;
+  config.still_velocity_mps = 0.006;
+  config.look_s = 0.3;
+  config.upright_share = 0.87;
+  config.upright_spread_m = 0.033;
+  config.highest_m = 0.013;
+  return config;
+}
+
+VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n)
+    : trusting_(TrustingVertical(arms_hang_m, cell_noise_n), mass_kg, step_s),
+      doubtful_(DoubtfulVertical(arms_hang_m, cell_noise_n), mass_kg, step_s),
+      step_s_(step_s) {}
+
+void VerticalBank::Start(const VerticalInput& mean) {
+  trusting_.Start(mean);
+  doubtful_.Start(mean);
+  trusts_ = false;
+  adopted_s_ = 0;
+}
+
+void VerticalBank::Advance(const VerticalInput& input) {
+  trusting_.Advance(input);
+  doubtful_.Advance(input);
+  adopted_s_ += step_s_;
+  const double lead = trusting_.score() - doubtful_.score();
+  if (trusts_ ? lead < kDoubtBelow : lead > kTrustAbove) trusts_ = !trusts_;
+  if (!trusts_ && lead < kDoubtBelow && adopted_s_ >= kAdoptEveryS) {
+    trusting_.Adopt(doubtful_);
+    adopted_s_ = 0;
+  }
+}
+
+void VerticalBank::Coast() {
+  trusting_.Coast();
+  doubtful_.Coast();
+}
+
+VerticalCom::Filter::Scalar VerticalBank::Height(int lag_steps) const {
+  VerticalCom::Filter::Scalar height = chosen().Height(lag_steps);
+  height.variance += kPostureSpreadM * kPostureSpreadM;
+  return height;
+}
+
+}  // namespace footing::momentum

@@ -1,0 +1,194 @@
+#include "daemon/simulation/momentum/vertical_com.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+#include "daemon/simulation/momentum/mixture.h"
+
+namespace footing::momentum {
+namespace {
+
+using Filter = VerticalCom::Filter;
+
+constexpr int kGroups = VerticalInput::kGroups;
+constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
+constexpr double kCopTimeS = 0.1;            // Smoothing of the COP, and again of its speed.
+constexpr double kStillAfterS = 0.2;
+constexpr double kStillLookS = 0.1;   // Time between zero-velocity measurements.
+constexpr double kLoadedShare = 0.5;  // Of the weight: with less, the body may fly.
+constexpr double kScoreTimeS = 30;
+constexpr double kLeastLogDensity = -20;  // One event alone condemns nothing.
+constexpr double kCoastMps2 = 20;         // Of a velocity that nobody watches, per root frame.
+constexpr double kStartHeightM = 0.005;
+constexpr double kStartVelocityMps = 0.005;
+
+double Total(const VerticalInput& input) {
+  double total = 0;
+  for (const double load : input.load_n) total += load;
+  return total;
+}
+
+}  // namespace
+
+VerticalCom::VerticalCom(const VerticalConfig& config, double mass_kg, double step_s)
+    : config_(config), mass_kg_(mass_kg), step_s_(step_s) {
+  const double keep = std::exp(-step_s / config.slow_force_time_s);
+  const double slow = config.slow_force_n / mass_kg;
+  const double white = config.cell_noise_n * std::sqrt(double{kGroups}) / mass_kg;
+  a_.setIdentity();
+  a_(0, 1) = step_s;
+  a_(2, 2) = keep;
+  q_.setZero();
+  q_(0, 0) = 1e-9;
+  q_(1, 1) = white * white * step_s * step_s;
+  q_(2, 2) = slow * slow * (1 - keep * keep);
+  u_.setZero();
+}
+
+void VerticalCom::Start(const VerticalInput& mean) {
+  Filter::Matrix p = Filter::Matrix::Zero();
+  p(0, 0) = kStartHeightM * kStartHeightM;
+  p(1, 1) = kStartVelocityMps * kStartVelocityMps;
+  p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
+  for (int i = 0; i < kGroups; ++i) p(3 + i, 3 + i) = config_.gain_spread * config_.gain_spread;
+  filter_.Start(Filter::Vector::Zero(), p);
+  // In the T-pose all gains together give the weight, but for what the mass is wrong by.
+  Filter::Row h = Filter::Row::Zero();
+  for (int i = 0; i < kGroups; ++i) h(3 + i) = mean.load_n[static_cast<std::size_t>(i)] / mass_kg_;
+  h(2) = 1;
+  const double error = config_.mass_error_kg * kStandardGravityMps2 / mass_kg_;
+  filter_.Update(h, 0, error * error);
+  filter_.Remember(Filter::Row::Unit(0));
+  started_ = false;
+}
+
+void VerticalCom::Advance(const VerticalInput& input) {
+  const double raw = Total(input) / mass_kg_ - kStandardGravityMps2;
+  if (!started_) {
+    started_ = true;
+    last_ = input;
+    last_raw_mps2_ = raw;
+    mean_cop_m_ = input.cop_m;
+    mean_acceleration_mps2_ = std::abs(raw);
+  }
+  // Trapezoid over the step; the errors enter with the loads of the same time.
+  const double h = step_s_, mean = 0.5 * (raw + last_raw_mps2_);
+  u_.setZero();
+  u_(0) = 0.5 * mean * h * h;
+  u_(1) = mean * h;
+  a_(0, 2) = -0.5 * h * h;
+  a_(1, 2) = -h;
+  acceleration_mps2_ = raw - filter_.x()(2);
+  for (int i = 0; i < kGroups; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double share = 0.5 * (input.load_n[k] + last_.load_n[k]) / mass_kg_;
+    a_(0, 3 + i) = -0.5 * h * h * share;
+    a_(1, 3 + i) = -h * share;
+    acceleration_mps2_ -= filter_.x()(3 + i) * input.load_n[k] / mass_kg_;
+  }
+  filter_.Predict(a_, u_, q_);
+  Watch(input, raw);
+  if (still_) {
+    since_still_look_s_ += h;
+    if (since_still_look_s_ >= kStillLookS) {
+      since_still_look_s_ = 0;
+      const double variance = config_.still_velocity_mps * config_.still_velocity_mps;
+      const double s = filter_.p()(1, 1) + variance;
+      Score(-0.5 * (filter_.Update(Filter::Row::Unit(1), 0, variance) + std::log(s)));
+    }
+  }
+  score_ *= std::exp(-h / kScoreTimeS);
+  since_look_s_ += h;
+  if (since_look_s_ >= config_.look_s) {
+    since_look_s_ = 0;
+    Anchor(raw > (kLoadedShare - 1) * kStandardGravityMps2);
+  }
+  last_ = input;
+  last_raw_mps2_ = raw;
+  filter_.Remember(Filter::Row::Unit(0));
+}
+
+void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
+  const double share = step_s_ / (kAccelerationTimeS + step_s_);
+  mean_acceleration_mps2_ += share * (std::abs(raw_mps2) - mean_acceleration_mps2_);
+  const double cop_share = step_s_ / (kCopTimeS + step_s_);
+  const Eigen::Vector2d move = input.cop_valid
+                                   ? Eigen::Vector2d(cop_share * (input.cop_m - mean_cop_m_))
+                                   : Eigen::Vector2d::Zero();
+  mean_cop_m_ += move;
+  const double speed = input.cop_valid ? move.norm() / step_s_ : config_.still_cop_mps * 2;
+  cop_speed_mps_ += cop_share * (speed - cop_speed_mps_);
+  const bool calm = mean_acceleration_mps2_ < config_.still_acceleration_mps2 &&
+                    cop_speed_mps_ < config_.still_cop_mps;
+  still_s_ = calm ? still_s_ + step_s_ : 0;
+  still_ = still_s_ >= kStillAfterS;
+}
+
+void VerticalCom::Anchor(bool loaded) {
+  if (!loaded) return;
+  const Filter::Row row = Filter::Row::Unit(0);
+  const Filter::Scalar now = filter_.Of(row);
+  const double upright = config_.upright_share;
+  MixtureMoments product = TimesMixture(
+      {now.mean, now.variance}, {{{upright, -config_.upright_below_m, config_.upright_spread_m},
+                                  {1 - upright, -config_.low_below_m, config_.low_spread_m}}});
+  Score(product.log_evidence);
+  const Moments posterior = Below(product.moments, config_.highest_m);
+  filter_.SetMoments(row, {posterior.mean, posterior.variance});
+}
+
+void VerticalCom::Score(double log_density) { score_ += std::max(log_density, kLeastLogDensity); }
+
+void VerticalCom::Adopt(const VerticalCom& other) {
+  filter_ = other.filter_;
+  score_ = other.score_;
+}
+
+void VerticalCom::Coast() {
+  Filter::Matrix a = Filter::Matrix::Identity();
+  a(0, 1) = step_s_;
+  Filter::Matrix q = q_;
+  q(1, 1) += kCoastMps2 * kCoastMps2 * step_s_ * step_s_;
+  u_.setZero();
+  filter_.Predict(a, u_, q);
+  started_ = false;
+  still_s_ = 0;
+  still_ = false;
+  filter_.Remember(Filter::Row::Unit(0));
+}
+
+std::vector<Filter::Scalar> SmoothVertical(const VerticalConfig& config, double mass_kg,
+                                           double step_s, const VerticalInput& mean,
+                                           const std::vector<VerticalInput>& inputs) {
+  if (inputs.empty()) return {};
+  struct Step {
+    Filter::Vector x, u;
+    Filter::Matrix p, a;
+  };
+  VerticalCom com(config, mass_kg, step_s);
+  com.Start(mean);
+  std::vector<Step> steps;
+  steps.reserve(inputs.size());
+  for (const VerticalInput& input : inputs) {
+    com.Advance(input);
+    steps.push_back({com.filter().x(), com.input_shift(), com.filter().p(), com.transition()});
+  }
+  std::vector<Filter::Scalar> out(steps.size());
+  Filter::Vector x = steps.back().x;
+  Filter::Matrix p = steps.back().p;
+  for (std::size_t i = steps.size(); i-- > 0;) {
+    if (i + 1 < steps.size()) {
+      const Step& next = steps[i + 1];
+      const Filter::Matrix p_ahead = next.a * steps[i].p * next.a.transpose() + com.noise();
+      const Filter::Matrix gain = p_ahead.ldlt().solve(next.a * steps[i].p).transpose();
+      x = steps[i].x + gain * (x - (next.a * steps[i].x + next.u));
+      p = steps[i].p + gain * (p - p_ahead) * gain.transpose();
+    }
+    out[i] = {x(0), std::max(0.0, p(0, 0))};
+  }
+  return out;
+}
+
+}  // namespace footing::momentum

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "daemon/simulation/momentum/linear_filter.h"
+
+namespace footing::momentum {
+
+/// What is assumed of a body's height, of its stillness and of the load cells.
+struct VerticalConfig {
+  // The cells.
+  double cell_noise_n = 0.5;     ///< White, of each cell and frame.
+  double gain_spread = 0.005;    ///< Standard deviation of a cell group's gain.
+  double slow_force_n = 1.0;     ///< Standard deviation of the boards' slow error.
+  double slow_force_time_s = 5;  ///< Its correlation time.
+  double mass_error_kg = 0.05;   ///< Of the calibration.
+  // Zero-velocity events.
+  double still_acceleration_mps2 = 0.12;  ///< Limit of the smoothed |acceleration|.
+  double still_cop_mps = 0.06;            ///< Limit of the smoothed speed of the COP.
+  double still_velocity_mps = 0.01;       ///< Standard deviation of the velocity then.
+  // The anchor: at one look a body stands upright with some probability, or is anywhere.
+  double look_s = 0.5;  ///< Time between independent looks.
+  double upright_share = 0.85;
+  double upright_below_m = 0.02;  ///< Arms hang: lower than in the T-pose.
+  double upright_spread_m = 0.03;
+  double low_below_m = 0.12;  ///< Mean and spread of all other heights.
+  double low_spread_m = 0.15;
+  double highest_m = 0.12;  ///< Over the T-pose, with load on the feet: tiptoe, arms up.
+};
+
+/// One frame: the load of each group of cells, and where the COP is.
+struct VerticalInput {
+  static constexpr int kGroups = 8;
+  std::array<double, kGroups> load_n{};
+  bool cop_valid = false;
+  Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
+};
+
+/// Height of the centre of mass over its height in the T-pose, by a Kalman filter of the loads.
+///
+/// States: height, velocity, slow error of the acceleration, one gain error per group of cells. The
+/// loads enter as an input; the cells' gains, the mass and the slow error are found by what the
+/// filter learns when the body is still (zero velocity) and upright (a mixture of densities,
+/// matched in its moments): the more doubtful the height, the wider the reach of the anchor. A
+/// plain value.
+class VerticalCom {
+ public:
+  static constexpr int kStates = 3 + VerticalInput::kGroups;
+  static constexpr int kSlots = 25;
+  using Filter = LinearFilter<kStates, kSlots>;
+
+  VerticalCom(const VerticalConfig& config, double mass_kg, double step_s);
+
+  /// The body stands still in its T-pose; `mean` is the calibration's mean load of each group.
+  void Start(const VerticalInput& mean);
+  void Advance(const VerticalInput& input);
+
+  Filter::Scalar Height(int lag_steps) const { return filter_.Delayed(lag_steps); }
+  Filter::Scalar Velocity() const { return filter_.Of(Filter::Row::Unit(1)); }
+  double acceleration_mps2() const { return acceleration_mps2_; }  ///< Corrected, of this frame.
+  bool still() const { return still_; }
+
+  /// How well the last minute's events were foreseen: the sum of the log densities of what was
+  /// found at them, older ones forgotten.
+  double score() const { return score_; }
+  /// Takes over the state of another filter, with its doubts; its own configuration stays.
+  void Adopt(const VerticalCom& other);
+  /// Nothing was measured in this step.
+  void Coast();
+
+  const Filter& filter() const { return filter_; }
+  const Filter::Matrix& transition() const { return a_; }
+  const Filter::Matrix& noise() const { return q_; }
+  const Filter::Vector& input_shift() const { return u_; }
+
+ private:
+  void Watch(const VerticalInput& input, double raw_mps2);
+  void Anchor(bool loaded);
+  void Score(double log_density);
+
+  VerticalConfig config_;
+  double mass_kg_;
+  double step_s_;
+  Filter filter_;
+  Filter::Matrix a_;
+  Filter::Matrix q_;
+  Filter::Vector u_;
+  bool started_ = false;
+  VerticalInput last_;
+  double last_raw_mps2_ = 0;
+  double acceleration_mps2_ = 0;
+  double mean_acceleration_mps2_ = 0;  // Smoothed, absolute.
+  Eigen::Vector2d mean_cop_m_ = Eigen::Vector2d::Zero();
+  double cop_speed_mps_ = 0;
+  double still_s_ = 0;
+  bool still_ = false;
+  double since_still_look_s_ = 0;
+  double since_look_s_ = 0;
+  double score_ = 0;
+};
+
+/// Offline: forward, then Rauch-Tung-Striebel backwards. Allocates.
+std::vector<VerticalCom::Filter::Scalar> SmoothVertical(const VerticalConfig& config,
+                                                        double mass_kg, double step_s,
+                                                        const VerticalInput& mean,
+                                                        const std::vector<VerticalInput>& inputs);
+
+}  // namespace footing::momentum
