@@ -14,9 +14,9 @@ Eigen::ArrayXXd Sigmoid(const Eigen::ArrayXXd& x);
 struct CandidateOptions {
   int pool = 8;
   int epochs_max = 200;
-  int patience = 8;              ///< Epochs without a change of the best score, then it stops.
-  double change = 0.03;          ///< Part of the score that counts as a change.
-  double weight_range = 1;       ///< First weights are uniform within +-this.
+  int patience = 8;         ///< Epochs without a change of the best score, then it stops.
+  double change = 0.03;     ///< Part of the score that counts as a change.
+  double weight_range = 1;  ///< First weights are uniform within +-this.
   QuickpropOptions quickprop = {.epsilon = 2, .growth = 2, .decay = 0};
 };
 

@@ -125,9 +125,9 @@ CascadeResult TrainCascade(const Examples& train, const Examples& validation,
   }
   const Eigen::Index columns_max = 1 + train.inputs.cols() + options.hidden_max;
   Units units(in.Apply(train.inputs), columns_max);
-  Units held_out(validation.rows() > 0 ? in.Apply(validation.inputs)
-                                       : Eigen::MatrixXd(0, train.inputs.cols()),
-                 columns_max);
+  Units held_out(
+      validation.rows() > 0 ? in.Apply(validation.inputs) : Eigen::MatrixXd(0, train.inputs.cols()),
+      columns_max);
   OutputLayer layer(out.Apply(train.targets), units, options);
   layer.Draw(units.columns, random);
 
@@ -141,8 +141,8 @@ CascadeResult TrainCascade(const Examples& train, const Examples& validation,
     epochs += layer.Train(units);
     const Eigen::MatrixXd weights = layer.Weights();
     const double train_mse = Mse(units, weights, out, train.targets, options.outputs);
-    const double judged =
-        validation.rows() > 0 ? Mse(held_out, weights, out, validation.targets, options.outputs)
+    const double judged = validation.rows() > 0
+                              ? Mse(held_out, weights, out, validation.targets, options.outputs)
                               : train_mse;
     goal_reached = layer.AllNear() || train_mse <= options.mse_goal;
     if (judged < best_mse || goal_reached) {

@@ -8,7 +8,8 @@
 namespace footing::training {
 
 Split SplitInTime(const Examples& all, double fraction) {
-  const auto last = static_cast<Eigen::Index>(std::floor(fraction * static_cast<double>(all.rows())));
+  const auto last =
+      static_cast<Eigen::Index>(std::floor(fraction * static_cast<double>(all.rows())));
   const Eigen::Index first = all.rows() - last;
   return {.train = {all.inputs.topRows(first), all.targets.topRows(first)},
           .validation = {all.inputs.bottomRows(last), all.targets.bottomRows(last)}};

@@ -41,9 +41,9 @@ Eigen::MatrixXd LeastSquares::Weights() const {
   for (Eigen::Index row = columns_ - 1; row >= 0; --row) {
     if (triangle_(row, row) == 0) continue;
     const Eigen::Index later = columns_ - 1 - row;
-    weights.row(row) = (along_.row(row) - triangle_.row(row).segment(row + 1, later) *
-                                              weights.bottomRows(later)) /
-                       triangle_(row, row);
+    weights.row(row) =
+        (along_.row(row) - triangle_.row(row).segment(row + 1, later) * weights.bottomRows(later)) /
+        triangle_(row, row);
   }
   return weights;
 }

@@ -24,9 +24,9 @@ class LeastSquares {
   Eigen::MatrixXd Weights() const;
 
  private:
-  Eigen::MatrixXd basis_;      ///< Orthonormal, Q.
-  Eigen::MatrixXd triangle_;   ///< R: columns = Q R; a 0 on the diagonal marks a column left out.
-  Eigen::MatrixXd along_;      ///< Q' targets.
+  Eigen::MatrixXd basis_;     ///< Orthonormal, Q.
+  Eigen::MatrixXd triangle_;  ///< R: columns = Q R; a 0 on the diagonal marks a column left out.
+  Eigen::MatrixXd along_;     ///< Q' targets.
   Eigen::MatrixXd errors_;
   Eigen::Index columns_ = 0;
 };

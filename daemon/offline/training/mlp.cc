@@ -27,7 +27,8 @@ Eigen::MatrixXd Drawn(Eigen::Index rows, Eigen::Index columns, synthetic::Random
 /// Fisher-Yates: std::shuffle's draws are not fixed by the standard.
 void Shuffle(std::vector<Eigen::Index>& order, synthetic::Random& random) {
   for (std::size_t i = order.size(); i > 1; --i) {
-    std::swap(order[i - 1], order[static_cast<std::size_t>(random.Uniform() * static_cast<double>(i))]);
+    std::swap(order[i - 1],
+              order[static_cast<std::size_t>(random.Uniform() * static_cast<double>(i))]);
   }
 }
 
@@ -73,9 +74,8 @@ MlpGradient Gradient(const Mlp& network, const Eigen::MatrixXd& scaled_inputs,
   const auto count = static_cast<double>(scaled_targets.size());
   const Eigen::MatrixXd errors =
       (hidden * network.output_weights.transpose() - scaled_targets) / count;
-  const Eigen::MatrixXd back =
-      (errors * network.output_weights.rightCols(values.cols())).array() *
-      (0.25 - values.array().square());
+  const Eigen::MatrixXd back = (errors * network.output_weights.rightCols(values.cols())).array() *
+                               (0.25 - values.array().square());
   return {.error = 0.5 * errors.squaredNorm() * count,
           .hidden_weights = back.transpose() * units,
           .output_weights = errors.transpose() * hidden};
@@ -97,17 +97,19 @@ MlpResult TrainMlp(const Examples& train, const Examples& validation, const MlpO
 
   std::vector<Eigen::Index> order(static_cast<std::size_t>(train.rows()));
   std::iota(order.begin(), order.end(), 0);
-  Eigen::MatrixXd hidden_step = Eigen::MatrixXd::Zero(network.hidden_weights.rows(),
-                                                      network.hidden_weights.cols());
-  Eigen::MatrixXd output_step = Eigen::MatrixXd::Zero(network.output_weights.rows(),
-                                                      network.output_weights.cols());
+  Eigen::MatrixXd hidden_step =
+      Eigen::MatrixXd::Zero(network.hidden_weights.rows(), network.hidden_weights.cols());
+  Eigen::MatrixXd output_step =
+      Eigen::MatrixXd::Zero(network.output_weights.rows(), network.output_weights.cols());
   MlpResult result{.network = network};
   double best_mse = std::numeric_limits<double>::infinity();
   for (int last_better = 0; result.epochs < options.epochs_max && !result.goal_reached &&
                             result.epochs - last_better < options.patience;) {
     Shuffle(order, random);
-    for (std::size_t first = 0; first < order.size(); first += static_cast<std::size_t>(options.batch)) {
-      const std::size_t end = std::min(order.size(), first + static_cast<std::size_t>(options.batch));
+    for (std::size_t first = 0; first < order.size();
+         first += static_cast<std::size_t>(options.batch)) {
+      const std::size_t end =
+          std::min(order.size(), first + static_cast<std::size_t>(options.batch));
       const std::vector<Eigen::Index> rows(order.begin() + static_cast<std::ptrdiff_t>(first),
                                            order.begin() + static_cast<std::ptrdiff_t>(end));
       const MlpGradient gradient =

@@ -36,8 +36,8 @@ MlpGradient Gradient(const Mlp& network, const Eigen::MatrixXd& scaled_inputs,
 
 struct MlpOptions {
   int hidden = 20;
-  double rate = 0.05;      ///< Step along the mean gradient of a batch of scaled rows.
-  double momentum = 0.9;   ///< Part of the last step that goes on.
+  double rate = 0.05;     ///< Step along the mean gradient of a batch of scaled rows.
+  double momentum = 0.9;  ///< Part of the last step that goes on.
   int batch = 16;
   int epochs_max = 500;
   /// Stops at a mean squared error of validation (of training without validation rows) at or below

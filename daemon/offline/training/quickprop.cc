@@ -8,7 +8,8 @@ namespace {
 
 /// The next step of one weight. Where the slope still points the way of the last step, the parabola
 /// is followed only while it is steep enough; else the step grows by `growth`.
-double NextStep(double slope, double last_slope, double last_step, const QuickpropOptions& options) {
+double NextStep(double slope, double last_slope, double last_step,
+                const QuickpropOptions& options) {
   const double shrink = options.growth / (1 + options.growth);
   const bool downhill_still = slope * last_step < 0;
   double step = 0;
@@ -33,8 +34,7 @@ void Quickprop::Step(const Eigen::MatrixXd& slopes, Eigen::MatrixXd& weights) {
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     double& weight = weights.data()[i];
     const double slope = slopes.data()[i] + options_.decay * weight;
-    const double step =
-        NextStep(slope, last_slopes_.data()[i], last_steps_.data()[i], options_);
+    const double step = NextStep(slope, last_slopes_.data()[i], last_steps_.data()[i], options_);
     weight += step;
     last_steps_.data()[i] = step;
     last_slopes_.data()[i] = slope;

@@ -70,8 +70,7 @@ TEST(Candidates, ErrorReductionIsWhatOutputsSolvedAnewLose) {
   const Eigen::MatrixXd units = Drawn(200, 4, 4);
   LeastSquares solver(Drawn(200, 2, 5), 5);
   for (Eigen::Index i = 0; i < 4; ++i) solver.Add(units.col(i));
-  const CandidateTask task =
-      CandidateTask::ErrorReduction(units, solver.errors(), solver.basis());
+  const CandidateTask task = CandidateTask::ErrorReduction(units, solver.errors(), solver.basis());
   const Scores scores = Score(task, 4 * Drawn(4, 1, 6));
   const double before = solver.errors().squaredNorm();
   solver.Add(scores.values.col(0));
@@ -100,10 +99,9 @@ TEST(Candidates, CovarianceChangesNeitherWithTheErrorsSizeNorWithRowsRepeated) {
   const Eigen::MatrixXd units = Drawn(64, 3, 9), twice = units.replicate(2, 1);
   const Eigen::MatrixXd error = Drawn(64, 1, 10);
   synthetic::Random first(11), second(11);
-  const NewUnit once =
-      TrainCandidates(CandidateTask::Covariance(units, error), {}, first);
-  const NewUnit scaled = TrainCandidates(
-      CandidateTask::Covariance(twice, 1024 * error.replicate(2, 1)), {}, second);
+  const NewUnit once = TrainCandidates(CandidateTask::Covariance(units, error), {}, first);
+  const NewUnit scaled =
+      TrainCandidates(CandidateTask::Covariance(twice, 1024 * error.replicate(2, 1)), {}, second);
   EXPECT_EQ(once.epochs, scaled.epochs);
   EXPECT_TRUE(once.weights.isApprox(scaled.weights, 1e-6));
 }
