@@ -1,0 +1,40 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/model/model.h"
+#include "common/result/result.h"
+#include "daemon/offline/training/examples.h"
+
+namespace footing::train {
+
+/// What the subcommands that train on a table share on the command line.
+struct DataOptions {
+  std::string data;
+  int inputs = 0;
+  double validation = 0.2;
+  std::vector<std::string> feedback;  ///< Names of columns, comma between; a group an option.
+  double noise_sd = 0;
+  int copies = 1;
+  std::uint64_t seed = 1;
+  std::vector<std::string> subjects;
+  std::string out;
+  bool force = false;
+};
+
+void AddDataOptions(CLI::App& command, DataOptions& options);
+
+struct TrainingData {
+  training::Split split;
+  std::uint64_t seed = 0;
+  model::DataFile file;
+};
+
+/// Reads, checks and splits the table and puts noise on what is fed back, in validation too.
+/// Refuses an `out` that exists before anything is trained.
+Result<TrainingData> Load(const DataOptions& options);
+
+}  // namespace footing::train
