@@ -45,4 +45,12 @@ Result<std::string> ReadDataFile(const std::string& name, const std::string& fol
   return ReadTextFile(*path);
 }
 
+Result<std::string> ReadNamedOrPath(const std::string& name_or_path, const std::string& folder,
+                                    const std::string& data_folder) {
+  const bool is_path = name_or_path.find('/') != std::string::npos ||
+                       name_or_path.find(".json") != std::string::npos;
+  return is_path ? ReadTextFile(name_or_path)
+                 : ReadDataFile(folder + "/" + name_or_path + ".json", data_folder);
+}
+
 }  // namespace footing::config

@@ -14,6 +14,10 @@ Result<std::string> FindDataFile(const std::string& name, const std::string& fol
 /// The whole text of a file of at most `max_bytes`.
 Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes = 4u << 20);
 
+/// The file at a path (it has a / or ends in .json), else the carried file "FOLDER/NAME.json".
+Result<std::string> ReadNamedOrPath(const std::string& name_or_path, const std::string& folder,
+                                    const std::string& data_folder = "");
+
 /// FindDataFile, then ReadTextFile.
 Result<std::string> ReadDataFile(const std::string& name, const std::string& folder = "");
 

@@ -41,7 +41,8 @@ struct TrackSegment {
 struct Track {
   std::string name;
   std::vector<TrackSegment> segments;
-  std::uint64_t revision = 0;
+  std::uint64_t revision = 0;  ///< Counts up with every change.
+  bool open = false;           ///< One may leave the ribbon; otherwise that is a failure.
 };
 
 struct LinkPose {

@@ -60,6 +60,8 @@ int main(int argc, char** argv) {
   app->add_option("--height", options.height, "Pixels")->check(CLI::Range(180, 8192));
   app->add_flag("--subject", options.subject, "The world alone, without panels");
   app->add_flag("--forces", options.forces, "Force arrows at the feet");
+  app->add_flag("--replay-falls", options.replay_falls,
+                "Show every fall's last 5 s again in slow motion");
   app->add_flag("--text", options.text, "Show the state in the terminal");
   app->add_flag("--json", options.json, "At the end one JSON object on standard output");
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;

@@ -108,6 +108,7 @@ Result<void> RunOffScreen(const Options& options) {
   if (!screen) return screen.error();
   Background background(options.addresses);
   Studio studio{options, *target, **screen, background, {}};
+  if (options.replay_falls) studio.show.ReplayFalls();
   auto done = options.screenshot.empty() ? Record(studio) : TakeScreenshot(studio);
   if (done && options.json) {
     std::cout << Summary(studio.show.model(), studio.PassedS()) << std::endl;

@@ -18,6 +18,7 @@ struct Options {
   bool subject = false;       ///< The world without the panels.
   bool text = false;          ///< In the terminal.
   bool json = false;          ///< A summary at the end.
+  bool replay_falls = false;  ///< Each fall again in slow motion.
   bool forces = false;        ///< Force arrows from the start.
   int samples = 0;            ///< Multisampling: 0, 2, 4, 8.
   int width = 1280;

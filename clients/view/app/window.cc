@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "clients/view/app/background.h"
 #include "clients/view/app/summary.h"
@@ -51,6 +52,7 @@ void OnKey(GLFWwindow* window, int key, int, int action, int) {
   auto& hud = *static_cast<render::HudOptions*>(glfwGetWindowUserPointer(window));
   if (key == GLFW_KEY_F) hud.forces = !hud.forces;
   if (key == GLFW_KEY_P) hud.phases = !hud.phases;
+  if (key == GLFW_KEY_R) hud.replay_asked = true;
   if (key == GLFW_KEY_SPACE) hud.frozen = !hud.frozen;
   if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
 }
@@ -65,6 +67,7 @@ void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
           render::HudOptions& hud) {
   Background background(options.addresses);
   scene::Show show;
+  if (options.replay_falls) show.ReplayFalls();
   const std::int64_t started_ns = clock::MonotonicNs();
   double passed_s = 0;
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !background.stop_asked() &&
@@ -72,6 +75,7 @@ void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
     glfwPollEvents();
     background.Drain(show);
     const std::int64_t now_ns = clock::MonotonicNs();
+    if (std::exchange(hud.replay_asked, false)) show.ToggleReplay(now_ns);
     const auto shot = show.At(now_ns, hud.frozen, {hud.forces});
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);

@@ -90,6 +90,7 @@ void Apply(Model& model, const Update& update) {
       AddPhase(model, update.frame->characters.front(), update.received_ns);
     }
     model.tally.Add(*update.frame);
+    model.replay.Push(*update.frame);
     model.playout.Push(*update.frame, update.received_ns);
   }
 }

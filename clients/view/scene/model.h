@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "clients/view/scene/fall_replay.h"
 #include "clients/view/scene/playout.h"
 #include "clients/view/scene/strip.h"
 #include "clients/view/scene/tally.h"
@@ -49,6 +50,7 @@ struct Model {
   stream::Track track;
   std::uint64_t track_version = 0;  ///< Counts the tracks received.
   Playout playout;
+  FallReplay replay;
   StripSet strips;
   std::map<std::pair<int, std::uint32_t>, BoardTrace> boards;  ///< By {source, device}.
   std::optional<Note> last_response;

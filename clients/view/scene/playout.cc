@@ -9,7 +9,6 @@ namespace {
 
 constexpr std::int64_t kKeptNs = 3 * kNanosecondsPerSecond / 2;
 constexpr std::size_t kMaxFrames = 512;
-constexpr double kPutBackM = 0.5;
 
 Eigen::Vector3d Mix(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double share) {
   return a + share * (b - a);

@@ -7,6 +7,9 @@
 
 namespace footing::scene {
 
+/// A character whose COM moved further than this between two frames was put back, m.
+inline constexpr double kPutBackM = 0.5;
+
 /// The frame between two others: `share` 0 gives a, 1 gives b. Positions on the line, orientations
 /// on the arc between; what is not a number (gait, phase, touching) is that of a until b is
 /// reached. A character that moved more than 0.5 m between them was put back: it stays at a.

@@ -9,10 +9,26 @@ void Show::Take(const Update& update, std::int64_t now_ns) {
   Apply(model_, update);
 }
 
+WorldFrame Show::FrameAt(std::int64_t now_ns) {
+  if (replays_falls_ && model_.replay.clips() > replayed_) model_.replay.Start(now_ns);
+  replayed_ = model_.replay.clips();
+  if (auto again = model_.replay.At(now_ns)) return *again;
+  model_.replay.Stop();
+  return model_.playout.empty() ? frame_ : model_.playout.At(now_ns);
+}
+
+void Show::ToggleReplay(std::int64_t now_ns) {
+  if (model_.replay.At(now_ns)) {
+    model_.replay.Stop();
+  } else {
+    model_.replay.Start(now_ns);
+  }
+}
+
 Show::Shot Show::At(std::int64_t now_ns, bool frozen, const StageOptions& options) {
   const double passed_s = last_ns_ == 0 ? 0 : NanosecondsToSeconds(now_ns - last_ns_);
   last_ns_ = now_ns;
-  if (!frozen && !model_.playout.empty()) frame_ = model_.playout.At(now_ns);
+  if (!frozen) frame_ = FrameAt(now_ns);
   ++model_.tally.frames_drawn;
   return {frame_, stage_.Advance(model_, frame_, frozen ? 0 : passed_s, options)};
 }

@@ -21,14 +21,23 @@ class Show {
   /// Takes a tick in for display; `now_ns` is when, for its latency.
   void Take(const Update& update, std::int64_t now_ns);
 
+  /// From now on every fall is shown again in slow motion as soon as it is over.
+  void ReplayFalls() { replays_falls_ = true; }
+  /// Shows the last fall again in slow motion, or ends that.
+  void ToggleReplay(std::int64_t now_ns);
+
   /// What to draw at `now_ns`, which never runs back. Frozen, the world stands still.
   Shot At(std::int64_t now_ns, bool frozen, const StageOptions& options);
 
  private:
+  WorldFrame FrameAt(std::int64_t now_ns);
+
   Model model_;
   Stage stage_;
   WorldFrame frame_;
   std::int64_t last_ns_ = 0;
+  bool replays_falls_ = false;
+  std::uint64_t replayed_ = 0;  ///< Clips that were there at the last look.
 };
 
 }  // namespace footing::scene

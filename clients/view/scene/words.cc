@@ -87,6 +87,11 @@ std::string GaitTitle(stream::Gait gait) {
   return "-";
 }
 
+std::string ReplayLine(double from_fall_s) {
+  return "slow motion: " + Fixed(std::abs(from_fall_s), 1) +
+         (from_fall_s < 0 ? " s before the fall" : " s after the fall");
+}
+
 std::vector<std::string> WaitingLines(const LinkReport& link) {
   switch (link.state) {
     case LinkState::kLive:

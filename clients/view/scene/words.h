@@ -18,6 +18,9 @@ std::string GaitTitle(stream::Gait gait);
 /// What one connection waits for and how to start it, in two lines; empty once it is live.
 std::vector<std::string> WaitingLines(const LinkReport& link);
 
+/// "slow motion: 1.2 s before the fall", at so many seconds from it, negative before.
+std::string ReplayLine(double from_fall_s);
+
 /// The whole state in one screen of plain text, for a terminal.
 std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns);
 /// The same in one line, for a log.

@@ -12,6 +12,8 @@
 #include "common/units/units.h"
 #include "daemon/offline/eval/gait_statistics.h"
 #include "daemon/offline/eval/gait_trial.h"
+#include "daemon/offline/eval/ground_course.h"
+#include "daemon/offline/eval/pit_course.h"
 #include "daemon/offline/eval/step_cost.h"
 #include "daemon/simulation/gait/limits.h"
 
@@ -21,7 +23,7 @@ namespace {
 struct Options {
   std::string gait = "walk";
   double speed_mps = 0;
-  double height_m = 0.2;
+  std::optional<double> height_m;
   double turn_deg = 0;
   double seconds = 60;
   int trials = 1;
@@ -29,10 +31,15 @@ struct Options {
   double push_ns = 2;
   std::optional<double> push_direction_deg;
   double push_phase = -1;
+  double slope_deg = 0;
+  double step_m = 0;
+  std::optional<double> pit_m;
+  double jump_lead_s = 0.8;
 };
 
 struct Trials {
   int falls = 0;
+  int pits = 0, steps = 0, crossed = 0;
   double survived_s_min = 0;
   double speed_sum_mps = 0;
   double apex_sum_m = 0;
@@ -42,10 +49,17 @@ struct Trials {
   std::uint64_t state_hash = 0;
 };
 
+double HeightOf(const Options& options) {
+  constexpr double kHeightM = 0.2;
+  const double fallback_m =
+      options.pit_m ? SensibleHeight(*options.pit_m, options.speed_mps) : kHeightM;
+  return options.height_m.value_or(fallback_m);
+}
+
 biped::GaitCommand CommandOf(const Options& options) {
   return gait::Limited({.gait = stream::GaitNamed(options.gait),
                         .speed_mps = options.speed_mps,
-                        .height_m = options.height_m,
+                        .height_m = HeightOf(options),
                         .turn_per_step_rad = DegreesToRadians(options.turn_deg)});
 }
 
@@ -56,10 +70,24 @@ double PushTime(const Options& options, Random& random) {
   return std::min(0.3 * options.seconds, 3 + options.speed_mps) + phase * kCycleS;
 }
 
+std::optional<GroundCourse> GroundCourseOf(const Options& options, double length_m,
+                                           Random& random) {
+  if (options.step_m != 0) return MakeStepCourse(options.step_m, length_m, random);
+  if (options.slope_deg == 0) return std::nullopt;
+  return MakeSlopeCourse(options.slope_deg, options.speed_mps, length_m, random);
+}
+
 Result<void> RunTrial(const Options& options, std::uint64_t seed, Trials& trials) {
-  Result<engine::GaitEngine> engine = NewEngine();
-  if (!engine) return engine.error();
   Random random(seed);
+  const double length_m = options.speed_mps * options.seconds;
+  const PitCourse course =
+      options.pit_m ? MakePitCourse(*options.pit_m, length_m, random) : PitCourse{};
+  const std::optional<GroundCourse> ground =
+      options.pit_m ? std::nullopt : GroundCourseOf(options, length_m, random);
+  Result<engine::GaitEngine> engine = options.pit_m ? NewEngineOn(course.track)
+                                      : ground      ? NewEngineOn(ground->track)
+                                                    : NewEngine();
+  if (!engine) return engine.error();
   const double push_s = PushTime(options, random);
   const double drawn_deg = random.Uniform(0, 360);
   const double direction_rad = DegreesToRadians(options.push_direction_deg.value_or(drawn_deg));
@@ -69,21 +97,32 @@ Result<void> RunTrial(const Options& options, std::uint64_t seed, Trials& trials
 
   Walker walker(*engine);
   walker.Command(command);
+  PitPilot pilot(course, command, command.height_m, options.jump_lead_s);
+  std::optional<GroundPilot> ground_pilot;
+  if (ground) ground_pilot.emplace(*ground, command, random);
   GaitStatistics statistics(command.speed_mps);
   double survived_s = 0;
   bool pushed = false;
   while (survived_s < options.seconds) {
-    if (!pushed && survived_s >= push_s) {
+    if (!pushed && (ground_pilot ? ground_pilot->kick_due() : survived_s >= push_s)) {
       walker.Push(options.push_ns, direction_rad);
       pushed = true;
     }
     const engine::EngineOutput& output = walker.Advance();
     survived_s = output.time_s;
+    if (options.pit_m) walker.Command(pilot.Command(output));
+    if (ground_pilot) walker.Command(ground_pilot->Command(output));
     if (walker.fell() || output.step >= steps) break;
-    if (survived_s > 0.4 * options.seconds) statistics.Add(output, step_s);
+    const bool settled =
+        survived_s > 0.4 * options.seconds && (!ground_pilot || ground_pilot->settled());
+    if (settled) statistics.Add(output, step_s);
   }
   const engine::EngineOutput& last = engine->Output();
   trials.falls += walker.fell() ? 1 : 0;
+  trials.pits += pilot.met(walker.fell());
+  trials.crossed += pilot.crossed();
+  if (ground_pilot) trials.steps += ground_pilot->met(walker.fell());
+  if (ground_pilot) trials.crossed += ground_pilot->crossed();
   trials.survived_s_min = std::min(trials.survived_s_min, survived_s);
   trials.simulated_s += survived_s;
   trials.speed_sum_mps += statistics.speed_mean_mps();
@@ -116,22 +155,33 @@ std::string Hex(std::uint64_t value) {
 
 nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const Trials& trials,
                               double step_cost_ratio) {
-  return {{"gait", options.gait},
-          {"speed_mps", options.speed_mps},
-          {"seconds", options.seconds},
-          {"seed", seed},
-          {"trials", options.trials},
-          {"falls", trials.falls},
-          {"survived_s_min", trials.survived_s_min},
-          {"speed_mean_mps", trials.speed_sum_mps / options.trials},
-          {"speed_error_rms_mps", trials.speed_error.value()},
-          {"heading_error_rms_rad", trials.heading_error.value()},
-          {"apex_height_m", trials.apex_sum_m / options.trials},
-          {"real_time_factor", trials.simulated_s / trials.cpu_s},
-          {"real_time_factor_wall", trials.simulated_s / trials.wall_s},
-          {"step_cost_ratio", step_cost_ratio},
-          {"root_force_max_n", trials.root_force_max_n},
-          {"state_hash", Hex(trials.state_hash)}};
+  nlohmann::ordered_json report{{"gait", options.gait},
+                                {"speed_mps", options.speed_mps},
+                                {"seconds", options.seconds},
+                                {"seed", seed},
+                                {"trials", options.trials},
+                                {"falls", trials.falls},
+                                {"survived_s_min", trials.survived_s_min},
+                                {"speed_mean_mps", trials.speed_sum_mps / options.trials},
+                                {"speed_error_rms_mps", trials.speed_error.value()},
+                                {"heading_error_rms_rad", trials.heading_error.value()},
+                                {"apex_height_m", trials.apex_sum_m / options.trials},
+                                {"real_time_factor", trials.simulated_s / trials.cpu_s},
+                                {"real_time_factor_wall", trials.simulated_s / trials.wall_s},
+                                {"step_cost_ratio", step_cost_ratio},
+                                {"root_force_max_n", trials.root_force_max_n},
+                                {"state_hash", Hex(trials.state_hash)}};
+  if (options.pit_m) {
+    report["pits"] = trials.pits;
+    report["crossed"] = trials.crossed;
+  }
+  if (options.slope_deg != 0) report["slope_deg"] = options.slope_deg;
+  if (options.step_m != 0) {
+    report["step_m"] = options.step_m;
+    report["steps"] = trials.steps;
+    report["crossed"] = trials.crossed;
+  }
+  return report;
 }
 
 int Run(const Options& options, bool json) {
@@ -140,6 +190,13 @@ int Run(const Options& options, bool json) {
   }
   if (options.trials < 1 || !(options.seconds > 0)) {
     return cli::Report(UsageError("--trials and --seconds must be positive"));
+  }
+  if (options.pit_m.has_value() + (options.slope_deg != 0) + (options.step_m != 0) > 1) {
+    return cli::Report(UsageError("--slope, --step and --pit: one of them at a time"));
+  }
+  if (options.step_m != 0 && CommandOf(options).speed_mps == 0) {
+    return cli::Report(
+        UsageError("--step: none is met in place; give --speed and a gait that moves"));
   }
   const Result<std::uint64_t> seed = ParseSeed(options.seed);
   if (!seed) return cli::Report(seed.error());
@@ -165,7 +222,8 @@ void AddGaitCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
   command->add_option("--gait", options->gait, "step, walk, run or jump")->required();
   command->add_option("--speed", options->speed_mps, "m/s")->check(CLI::Range(0.0, 6.0));
-  command->add_option("--height", options->height_m, "Of jumps, m")->check(CLI::Range(0.05, 0.5));
+  command->add_option("--height", options->height_m, "Of jumps, m; 0.2, or what a pit needs")
+      ->check(CLI::Range(0.05, 0.5));
   command->add_option("--turn", options->turn_deg, "Degrees a step, left positive")
       ->check(CLI::Range(-8.0, 8.0));
   command->add_option("--seconds", options->seconds, "Of each trial")
@@ -180,6 +238,18 @@ void AddGaitCommand(CLI::App& app, Shared& shared) {
       ->add_option("--push-phase", options->push_phase,
                    "Moment of the kick, 0 to 1 of a cycle; drawn by default")
       ->check(CLI::Range(0.0, 1.0));
+  command->add_option("--slope", options->slope_deg, "Of the ground, degrees; uphill positive")
+      ->check(CLI::Range(-20.0, 20.0));
+  command
+      ->add_option("--step", options->step_m,
+                   "Height of steps of the ground, up and down, m; negative: the first is down")
+      ->check(CLI::Range(-0.3, 0.3));
+  command->add_option("--pit", options->pit_m, "Width of pits across the track, m")
+      ->check(CLI::Range(0.05, 5.0));
+  command
+      ->add_option("--jump-lead", options->jump_lead_s,
+                   "A run is told to jump this long before it reaches a pit, s")
+      ->check(CLI::Range(0.0, 5.0));
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

@@ -12,6 +12,11 @@
 namespace footing::eval {
 namespace {
 
+std::vector<std::string>& MoreGains() {
+  static std::vector<std::string> paths;
+  return paths;
+}
+
 Result<engine::EngineTexts> ReadTexts() {
   engine::EngineTexts texts;
   for (const auto& [name, text] : {std::pair{engine::kBipedFile, &texts.biped},
@@ -21,10 +26,22 @@ Result<engine::EngineTexts> ReadTexts() {
     if (!read) return read.error();
     *text = std::move(*read);
   }
+  for (const char* name : engine::kGainFiles) {
+    Result<std::string> read = config::ReadDataFile(name);
+    if (!read) return read.error();
+    texts.gains.push_back({name, std::move(*read)});
+  }
+  for (const std::string& path : MoreGains()) {
+    Result<std::string> read = config::ReadTextFile(path);
+    if (!read) return read.error();
+    texts.gains.push_back({path, std::move(*read)});
+  }
   return texts;
 }
 
 }  // namespace
+
+void ReadGainsToo(std::vector<std::string> paths) { MoreGains() = std::move(paths); }
 
 std::uint64_t TrialSeed(std::uint64_t seed, int trial) {
   return seed * 1000003u + static_cast<std::uint64_t>(trial);
@@ -48,6 +65,13 @@ Result<std::uint64_t> ParseSeed(const std::string& text) {
 Result<engine::GaitEngine> NewEngine() {
   Result<engine::EngineTexts> texts = ReadTexts();
   if (!texts) return texts.error();
+  return engine::GaitEngine::Create(*texts);
+}
+
+Result<engine::GaitEngine> NewEngineOn(const std::string& track) {
+  Result<engine::EngineTexts> texts = ReadTexts();
+  if (!texts) return texts.error();
+  texts->track = track;
   return engine::GaitEngine::Create(*texts);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "common/result/result.h"
 #include "daemon/simulation/engine/engine.h"
@@ -29,9 +30,15 @@ std::uint64_t TrialSeed(std::uint64_t seed, int trial);
 /// "random" or a number; a random one is drawn from the system and printed to standard error.
 Result<std::uint64_t> ParseSeed(const std::string& text);
 
+/// Gait tables (gain_table.h) that every engine made after this reads after the product's own. The
+/// command line's, said once for the whole process.
+void ReadGainsToo(std::vector<std::string> paths);
+
 /// An engine on the straight track, from the product's data files.
 Result<engine::GaitEngine> NewEngine();
-/// The world of that engine alone.
+/// An engine on a track given as text.
+Result<engine::GaitEngine> NewEngineOn(const std::string& track);
+/// The world of NewEngine's engine alone.
 Result<physics::World> NewWorld();
 
 /// An engine driven by direct commands, with what one wants to know of it.

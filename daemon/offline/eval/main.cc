@@ -4,6 +4,7 @@
 #include "daemon/offline/eval/command.h"
 #include "daemon/offline/eval/features_command.h"
 #include "daemon/offline/eval/gait_command.h"
+#include "daemon/offline/eval/gait_trial.h"
 #include "daemon/offline/eval/monkey_command.h"
 #include "daemon/offline/eval/replay_command.h"
 #include "daemon/offline/eval/transitions_command.h"
@@ -16,6 +17,9 @@ int main(int argc, char** argv) {
       "  footing-eval gait --gait walk --speed 1 --seconds 60 --trials 1 --seed 1 --json");
   footing::eval::Shared shared;
   app->add_flag("--json", shared.json, "One JSON object on standard output");
+  app->add_option_function<std::vector<std::string>>(
+      "--gains", footing::eval::ReadGainsToo,
+      "Gait tables in place of the product's, for the gaits they name");
   app->require_subcommand(1);
   app->fallthrough();
   footing::eval::AddBoardCommand(*app, shared);

@@ -23,6 +23,11 @@ Result<engine::GaitEngine> MakeEngine(const std::string& track) {
     if (!read) return read.error();
     *text = std::move(read).value();
   }
+  for (const char* name : engine::kGainFiles) {
+    auto gains = config::ReadDataFile(name);
+    if (!gains) return gains.error();
+    texts.gains.push_back({name, std::move(gains).value()});
+  }
   return engine::GaitEngine::Create(texts);
 }
 

@@ -28,12 +28,17 @@ Result<GaitEngine> GaitEngine::Create(const EngineTexts& texts, const EngineConf
   Result<mapping::WristMapping> mapping =
       mapping::ParseWristMapping(texts.wrist_mapping, kWristMappingFile);
   if (!mapping) return mapping.error();
+  gait::GainTable gain_table;
+  for (const GainText& gains : texts.gains) {
+    if (const auto added = gain_table.Add(gains.text, gains.origin); !added) return added.error();
+  }
   Result<physics::World> world = physics::World::FromMjcf(
       biped::WriteMjcf(*biped, terrain::GroundMjcf(*track), config.step_s), biped::Names());
   if (!world) return world.error();
 
   auto parts = std::make_unique<Parts>(Parts{.config = config,
                                              .biped = *biped,
+                                             .gain_table = std::move(gain_table),
                                              .gains = {},
                                              .track = std::move(*track),
                                              .skeleton = biped::DescribeSkeleton(*biped),
@@ -81,6 +86,11 @@ const EngineOutput& GaitEngine::Output() {
 
 const stream::Skeleton& GaitEngine::skeleton() const { return parts_->skeleton; }
 const stream::Track& GaitEngine::track() const { return parts_->track; }
+
+void GaitEngine::UseGains(const gait::GainTable& table) {
+  parts_->gain_table = table;
+  parts_->gains_gait = stream::Gait::kUnspecified;
+}
 
 EngineState GaitEngine::Save() const {
   EngineState state = parts_->state;

@@ -5,24 +5,35 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/result/result.h"
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/command.h"
+#include "daemon/simulation/gait/gain_table.h"
 #include "daemon/simulation/mapping/wrist_features.h"
 
 /// The gait engine: received features in, a walking biped out, one fixed step at a time.
 namespace footing::engine {
 
 /// Texts of the data files; the constants name them under daemon/simulation/data.
+struct GainText {
+  std::string origin;  ///< Names the file in errors.
+  std::string text;
+};
 struct EngineTexts {
   std::string biped;          ///< kBipedFile
   std::string track;          ///< "tracks/NAME.json"
   std::string wrist_mapping;  ///< kWristMappingFile
+  /// kGainFiles, and more: a later one replaces what an earlier one had for its gaits. None: the
+  /// defaults of gains.h.
+  std::vector<GainText> gains;
 };
 inline constexpr const char* kBipedFile = "biped.json";
 inline constexpr const char* kStraightTrackFile = "tracks/straight.json";
 inline constexpr const char* kWristMappingFile = "wrist_mapping.json";
+inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gaits/run.csv",
+                                       "gaits/jump.csv"};
 
 struct EngineConfig {
   double step_s = 0.001;            ///< Of physics and control, (0, 0.002].
@@ -55,11 +66,22 @@ enum class EventKind {
   kStreamBack,
 };
 
+/// What a failure is put down to, as the gait paper counts them (section 8.2).
+enum class FailureCause {
+  kSimulation,  ///< The character fell.
+  kCurve,       ///< It left the ribbon.
+  kJump,        ///< A foot went into a pit.
+};
+
+/// "simulation", "curve", "jump".
+const char* Name(FailureCause cause);
+
 struct EngineEvent {
   EventKind kind = EventKind::kFall;
   stream::Gait from = stream::Gait::kUnspecified;
   stream::Gait to = stream::Gait::kUnspecified;
   const char* text = "";  ///< Of static storage; why it fell or was put back.
+  FailureCause cause = FailureCause::kSimulation;  ///< Of a fall.
 };
 
 inline constexpr int kLinkCount = 5;  ///< body, left hip, left knee, right hip, right knee.
@@ -110,6 +132,9 @@ class GaitEngine {
 
   const stream::Skeleton& skeleton() const;
   const stream::Track& track() const;
+
+  /// Other gains from the next step on; not part of the state. Allocates.
+  void UseGains(const gait::GainTable& table);
 
   /// Everything that changes with time, as a value (state.h); Restore brings the engine back to
   /// that step.

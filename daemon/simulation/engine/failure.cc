@@ -1,19 +1,81 @@
 #include "daemon/simulation/engine/failure.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/terrain/track.h"
 
 namespace footing::engine {
+namespace {
 
-const char* WhyFallen(const stream::Track& track, const biped::BodyState& body,
+/// A fall is put down to what a foot is over when the foot is lower than this over the ribbon, m:
+/// legs shorten in a fall, and a foot in the air is higher.
+constexpr double kLowFootM = 0.1;
+/// Only with a foot this far under the ribbon is what it is over looked up without a fall, m.
+constexpr double kSunkM = 0.05;
+
+/// What of the ground a foot has missed.
+struct MissedGround {
+  bool pit = false, pit_deep = false, edge = false;
+};
+
+MissedGround Missed(const stream::Track& track, const biped::BodyState& body) {
+  MissedGround missed;
+  for (const biped::LegState& leg : body.legs) {
+    const Eigen::Vector2d p_W = leg.p_WF.head<2>();
+    const terrain::TrackPlace place = terrain::Locate(track, p_W);
+    const stream::TrackSegment& segment = track.segments[static_cast<std::size_t>(place.segment)];
+    const double depth_m = terrain::RibbonHeight(segment, place) - leg.p_WF.z();
+    const bool beside = terrain::IsOffRibbon(track, place);
+    missed.edge = missed.edge || (beside && depth_m > -kLowFootM);
+    missed.pit = missed.pit || (segment.pit && !beside && depth_m > -kLowFootM);
+    missed.pit_deep = missed.pit_deep || (segment.pit && !beside && depth_m > kFootInPitM);
+  }
+  return missed;
+}
+
+const char* WhyFallen(double ground_m, const biped::BodyState& body,
                       const physics::Observation& seen) {
   if (seen.diverged) return "the simulation diverged";
-  const double ground_m = terrain::RibbonHeight(track, body.p_WB.x(), body.p_WB.y());
   if (body.p_WB.z() - ground_m < kLowestBodyM) return "the body is below 0.55 m";
   if (body.R_WB(2, 2) < std::cos(kLargestTiltRad)) return "the body tilts over 60 degrees";
   if (seen.other_contact) return "something else than a foot touches";
   return nullptr;
+}
+
+}  // namespace
+
+const char* Name(FailureCause cause) {
+  switch (cause) {
+    case FailureCause::kSimulation:
+      return "simulation";
+    case FailureCause::kCurve:
+      return "curve";
+    case FailureCause::kJump:
+      return "jump";
+  }
+  return "";
+}
+
+Failure JudgeFailure(const stream::Track& track, const biped::BodyState& body,
+                     const physics::Observation& seen) {
+  const terrain::TrackPlace place = terrain::Locate(track, body.p_WB.head<2>());
+  const stream::TrackSegment& segment = track.segments[static_cast<std::size_t>(place.segment)];
+  const char* why = WhyFallen(terrain::RibbonHeight(segment, place), body, seen);
+  const bool beside = !track.open && terrain::IsOffRibbon(track, place);
+  if (terrain::IsLevel(track)) {
+    if (beside) return {FailureCause::kCurve, "the body is beside the track"};
+    return {FailureCause::kSimulation, why};
+  }
+  // Both feet high and nothing wrong: no need to look what is under them.
+  const double lowest_foot_m = std::min(body.legs[0].p_WF.z(), body.legs[1].p_WF.z());
+  const bool sunk = lowest_foot_m < terrain::RibbonHeight(segment, place) - kSunkM;
+  const MissedGround missed = sunk || why != nullptr ? Missed(track, body) : MissedGround{};
+  if (missed.pit_deep) return {FailureCause::kJump, "a foot is in a pit"};
+  if (beside) return {FailureCause::kCurve, "the body is beside the track"};
+  if (missed.pit) return {FailureCause::kJump, why};
+  return {missed.edge ? FailureCause::kCurve : FailureCause::kSimulation, why};
 }
 
 }  // namespace footing::engine

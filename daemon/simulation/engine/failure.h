@@ -2,6 +2,7 @@
 
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/body_state.h"
+#include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/physics/world.h"
 
 namespace footing::engine {
@@ -10,8 +11,18 @@ namespace footing::engine {
 inline constexpr double kLowestBodyM = 0.55;
 inline constexpr double kLargestTiltRad = 1.0471975511965976;  ///< 60 degrees.
 
-/// Why this state is a fall, as text of static storage; null when it is none.
-const char* WhyFallen(const stream::Track& track, const biped::BodyState& body,
-                      const physics::Observation& seen);
+/// A foot lower than this under the ribbon, in a pit, has missed the ground.
+inline constexpr double kFootInPitM = 0.3;
+
+/// A failure and why, as text of static storage; null when there is none.
+struct Failure {
+  FailureCause cause = FailureCause::kSimulation;
+  const char* why = nullptr;
+};
+
+/// Judges a state. What touches or drops beside the ribbon is the curve's failure, with a foot in a
+/// pit the jump's, whatever else is wrong besides.
+Failure JudgeFailure(const stream::Track& track, const biped::BodyState& body,
+                     const physics::Observation& seen);
 
 }  // namespace footing::engine

@@ -22,7 +22,7 @@ void GaitEngine::Parts::AddEvent(const EngineEvent& event) {
 }
 
 void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) {
-  const double leg_m = gait::StandingLength(biped, gains);
+  const double leg_m = gait::StandingLength(biped, gain_table.At(stream::Gait::kStep, 0));
   const double height_m = biped.foot_radius_m + leg_m + biped.hip_below_body_com_m;
   std::array<double, physics::kJoints> joints{};
   joints[3] = joints[7] = leg_m - biped.leg_length_m;
@@ -82,7 +82,17 @@ void GaitEngine::Parts::Command(const EngineInputs& inputs) {
   AddEvent({.kind = EventKind::kGaitCommanded, .from = before, .to = state.command.gait});
 }
 
+void GaitEngine::Parts::ChooseGains() {
+  const stream::Gait gait = state.gait.thrusting ? stream::Gait::kRun : state.gait.gait;
+  const double speed_mps = state.gait.desired_speed_mps;
+  if (gait == gains_gait && speed_mps == gains_speed_mps) return;
+  gains = gain_table.At(gait, speed_mps);
+  gains_gait = gait;
+  gains_speed_mps = speed_mps;
+}
+
 void GaitEngine::Parts::StepWorld() {
+  ChooseGains();
   output.joint_efforts = {};
   if (!state.fallen) {  // A fallen character is limp.
     output.joint_efforts = gait::Advance(body, biped, gains, state.command,
@@ -114,12 +124,16 @@ void GaitEngine::Parts::NoteGait(stream::Gait before) {
 
 void GaitEngine::Parts::NoteFall() {
   if (state.fallen) return;
-  const char* why = WhyFallen(track, body, world.Observe());
-  if (why == nullptr) return;
+  const Failure failure = JudgeFailure(track, body, world.Observe());
+  if (failure.why == nullptr) return;
   state.fallen = true;
   state.fallen_time_s = TimeS();
   ++state.falls;
-  AddEvent({.kind = EventKind::kFall, .from = state.gait.gait, .text = why});
+  AddEvent({.kind = EventKind::kFall,
+            .from = state.gait.gait,
+            .to = stream::Gait::kUnspecified,
+            .text = failure.why,
+            .cause = failure.cause});
 }
 
 void GaitEngine::Parts::FillOutput() {

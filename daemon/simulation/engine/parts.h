@@ -2,7 +2,7 @@
 
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/engine/state.h"
-#include "daemon/simulation/gait/gains.h"
+#include "daemon/simulation/gait/gain_table.h"
 
 namespace footing::engine {
 
@@ -10,7 +10,10 @@ namespace footing::engine {
 struct GaitEngine::Parts {
   EngineConfig config;
   biped::BipedParameters biped;
-  gait::Gains gains;
+  gait::GainTable gain_table;
+  gait::Gains gains;  ///< Of gains_gait at gains_speed_mps.
+  stream::Gait gains_gait = stream::Gait::kUnspecified;
+  double gains_speed_mps = 0;
   stream::Track track;
   stream::Skeleton skeleton;
   bool sees_ground = false;  ///< The track has slopes, steps or pits.
@@ -31,6 +34,8 @@ struct GaitEngine::Parts {
   void TakeFeatures(const EngineInputs& inputs);
   void TakePush(const EngineInputs& inputs);
   void Command(const EngineInputs& inputs);
+  /// Follows the gait that runs and its desired speed; the table is looked up when they change.
+  void ChooseGains();
   void StepWorld();
   void NoteGait(stream::Gait before);
   void NoteFall();

@@ -69,14 +69,6 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   return foothold;
 }
 
-/// The slow set's and the fast set's, interpolated in between.
-double RunVelocityGain(const HoppingGains& gains, double desired_mps) {
-  const double share =
-      (desired_mps - gains.slow_run_mps) / (gains.fast_run_mps - gains.slow_run_mps);
-  return std::lerp(gains.run_velocity_gain_s, gains.fast_run_velocity_gain_s,
-                   std::clamp(share, 0.0, 1.0));
-}
-
 Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int leg) {
   const HoppingGains& gains = context.gains.hopping;
   const bool jumping = memory.gait == stream::Gait::kJump;
@@ -86,14 +78,14 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
   const double learned_m =
       jumping ? memory.integrators.jump_m
               : memory.integrators.run_m + gains.speed_gain_s * memory.desired_speed_mps;
-  const double velocity_gain_s =
-      jumping ? gains.jump_velocity_gain_s : RunVelocityGain(gains, memory.desired_speed_mps);
+  const double velocity_gain_s = jumping ? gains.jump_velocity_gain_s : gains.run_velocity_gain_s;
   const bool brakes = LeavesRun(context.goal, memory) && faster_mps > 0;
   const double gain_s = brakes ? context.gains.transition.leaving_run_gain_s : velocity_gain_s;
   double ahead_m = v_H.x() * memory.support_time_s / 2 + gain_s * faster_mps + learned_m;
 
   const bool landing = memory.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
+  ahead_m += memory.pit.shift_m;
   const bool preparing = memory.preparing_jump && !jumping;
   const double side_gain_s =
       preparing ? context.gains.transition.preparation_gain_s : velocity_gain_s;

@@ -1,8 +1,11 @@
 #pragma once
 
-/// Every number of the controllers, with its unit in its name. One set serves a gait's whole range
-/// of speeds; where the paper interpolates between a slow and a fast set, equation (2) here carries
-/// a term in the desired speed. How they were found and what they reach: docs/gait.md.
+#include "daemon/simulation/gait/pit_plan.h"
+
+/// Every number of the controllers, with its unit in its name, and its default. What differs from
+/// gait to gait, or between slow and fast, is in the tables of daemon/simulation/data/gaits
+/// (gain_table.h); a new number here needs a line in gain_fields.cc. How they were found and what
+/// they reach: docs/gait.md and docs/tuning.md.
 namespace footing::gait {
 
 /// PD servos of the joints, section 5: torque = kp (desired - actual) - kd rate.
@@ -68,12 +71,9 @@ struct HoppingGains {
   double run_flight_length_m = 0.82;
   double jump_flight_length_m = 0.62;
   double idle_length_m = 0.72;
-  double lengthening_time_s = 0.12;   ///< Jump: from the flight length to the touchdown length.
-  double run_lift_off_mps = 1.3;      ///< Vertical.
-  double run_velocity_gain_s = 0.09;  ///< -k_R of equation (2).
-  double fast_run_velocity_gain_s = 0.06;
-  double slow_run_mps = 3.5;           ///< Up to this the first, ...
-  double fast_run_mps = 4.75;          ///< ... from this the second.
+  double lengthening_time_s = 0.12;    ///< Jump: from the flight length to the touchdown length.
+  double run_lift_off_mps = 1.3;       ///< Vertical.
+  double run_velocity_gain_s = 0.09;   ///< -k_R of equation (2).
   double jump_velocity_gain_s = 0.06;  ///< With running's, jumps of 0.5 m in place fall.
   double faster_limit_mps = 1.5;       ///< v - v_d is clamped to [-slower, faster] fore and aft.
   double slower_limit_mps = 1.2;
@@ -110,12 +110,22 @@ struct TransitionGains {
   double jump_landing_damping_ns_per_m = 260;
 };
 
+/// Crossing pits (pit_plan.h).
+struct PitGains {
+  PitLimits limits;
+  double run_width_max_m = 0.4;  ///< A run crosses this by itself; wider ones want a jump.
+  double sight_m = 3;            ///< Nearer pits are planned for even when out of reach.
+  double shift_back_m = 0.12;    ///< Of a foothold that would come to lie in the pit.
+  double shift_ahead_m = 0.25;
+};
+
 struct Gains {
   ServoGains servo;
   AttitudeGains attitude;
   WalkingGains walking;
   HoppingGains hopping;
   TransitionGains transition;
+  PitGains pit;
 };
 
 }  // namespace footing::gait

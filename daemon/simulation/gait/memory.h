@@ -32,6 +32,31 @@ struct LastStep {
   int steps_in_gait = 0;
 };
 
+/// The pit ahead and the last hop's measures, from which the hops up to it are planned
+/// (pit_sight.h). Lengths along the heading.
+struct PitMemory {
+  bool ahead = false;
+  Eigen::Vector2d near_W_m = Eigen::Vector2d::Zero();  ///< A point of the near edge.
+  Eigen::Vector2d along_W = Eigen::Vector2d::UnitX();  ///< Across the edges.
+  double length_m = 0;                                 ///< From edge to edge.
+  double rise_m = 0;                                   ///< Of the ground behind it.
+
+  bool planned = false;        ///< The pit is near enough to plan for.
+  bool last_foothold = false;  ///< The coming foothold is the last one before it.
+  bool leaping = false;        ///< This hop crosses it.
+  double lift_off_mps = 0;  ///< Vertical, of this support when the pit wants another than the gait.
+  double shift_m = 0;       ///< By which the foothold in flight is moved.
+
+  double flight_mps = 0;
+  double foot_ahead_m = 0;  ///< Of the COM at touchdown.
+  double com_ahead_m = 0;   ///< Of the foot at lift-off.
+  double touchdown_height_m = 0.80;
+  double foothold_z_m = 0;
+  double drop_m = 0.01;      ///< COM's height over its foot at lift-off above that at touchdown.
+  double extension_m = 0;    ///< Of the spring in this support; 0 when not known.
+  double loss_share = 0.25;  ///< Of the spring's energy.
+};
+
 /// All that the controllers remember between steps: a plain value.
 struct GaitMemory {
   stream::Gait gait = stream::Gait::kStep;
@@ -60,6 +85,7 @@ struct GaitMemory {
   double thrust_length_m = 0.95;
   int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
 
+  PitMemory pit;
   SpeedIntegrators integrators;
   LastStep last_step;
   std::uint64_t steps = 0;

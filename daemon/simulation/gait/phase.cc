@@ -1,8 +1,38 @@
 #include "daemon/simulation/gait/phase.h"
 
+#include <algorithm>
+
 #include "common/result/result.h"
 
 namespace footing::gait {
+namespace {
+
+template <typename Arrows, typename Phase, typename Cues>
+Phase Follow(const Arrows& arrows, Phase phase, const Cues& cues) {
+  for (const auto& arrow : arrows) {
+    if (arrow.from == phase && cues.*arrow.cue) return arrow.to;
+  }
+  return phase;
+}
+
+/// A phase's name as one word of a diagram.
+template <typename Phase>
+std::string Word(Phase phase) {
+  std::string word = Name(phase);
+  std::replace(word.begin(), word.end(), ' ', '_');
+  return word;
+}
+
+template <typename Arrows>
+std::string Draw(const Arrows& arrows) {
+  std::string text = "stateDiagram-v2\n";
+  for (const auto& arrow : arrows) {
+    text += "  " + Word(arrow.from) + " --> " + Word(arrow.to) + ": " + arrow.when + "\n";
+  }
+  return text;
+}
+
+}  // namespace
 
 const char* Name(WalkingPhase phase) {
   switch (phase) {
@@ -31,30 +61,14 @@ const char* Name(RunningPhase phase) {
 }
 
 WalkingPhase Next(WalkingPhase phase, const WalkingCues& cues) {
-  switch (phase) {
-    case WalkingPhase::kDoubleSupport:
-      return cues.double_support_over ? WalkingPhase::kRise : phase;
-    case WalkingPhase::kRise:
-      return cues.half_swing_over ? WalkingPhase::kFall : phase;
-    case WalkingPhase::kFall:
-      return cues.swing_foot_landed ? WalkingPhase::kDoubleSupport : phase;
-  }
-  FOOTING_CHECK(false);
+  return Follow(kWalkingArrows, phase, cues);
 }
 
 RunningPhase Next(RunningPhase phase, const RunningCues& cues) {
-  switch (phase) {
-    case RunningPhase::kUpwardFlight:
-      if (cues.landed_early) return RunningPhase::kCompression;
-      return cues.falling ? RunningPhase::kDownwardFlight : phase;
-    case RunningPhase::kDownwardFlight:
-      return cues.landed ? RunningPhase::kCompression : phase;
-    case RunningPhase::kCompression:
-      return cues.leg_shortest ? RunningPhase::kExtension : phase;
-    case RunningPhase::kExtension:
-      return cues.lifted_off ? RunningPhase::kUpwardFlight : phase;
-  }
-  FOOTING_CHECK(false);
+  return Follow(kRunningArrows, phase, cues);
 }
+
+std::string DrawWalkingMachine() { return Draw(kWalkingArrows); }
+std::string DrawRunningMachine() { return Draw(kRunningArrows); }
 
 }  // namespace footing::gait

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <string>
+
 #include "common/stream/character.h"
 
 namespace footing::gait {
@@ -30,10 +33,44 @@ struct RunningCues {
   bool lifted_off = false;    ///< The thrust is over or the feet have left the ground.
 };
 
-/// The arrows of Figure 5.
+/// One arrow of a figure: in `from`, when the cue holds, to `to`.
+template <typename Phase, typename Cues>
+struct Arrow {
+  Phase from;
+  bool Cues::*cue;
+  Phase to;
+  const char* when;  ///< The cue in words, for the figure.
+};
+
+/// The arrows of Figure 5. Of one phase's arrows the first one whose cue holds is taken.
+inline constexpr std::array<Arrow<WalkingPhase, WalkingCues>, 3> kWalkingArrows{{
+    {WalkingPhase::kDoubleSupport, &WalkingCues::double_support_over, WalkingPhase::kRise,
+     "rear leg unloaded"},
+    {WalkingPhase::kRise, &WalkingCues::half_swing_over, WalkingPhase::kFall,
+     "half the swing is over"},
+    {WalkingPhase::kFall, &WalkingCues::swing_foot_landed, WalkingPhase::kDoubleSupport,
+     "swing foot lands"},
+}};
+/// The arrows of Figure 6, and one for a foot that touches while the COM still rises.
+inline constexpr std::array<Arrow<RunningPhase, RunningCues>, 5> kRunningArrows{{
+    {RunningPhase::kUpwardFlight, &RunningCues::landed_early, RunningPhase::kCompression,
+     "a foot touches early"},
+    {RunningPhase::kUpwardFlight, &RunningCues::falling, RunningPhase::kDownwardFlight,
+     "COM moves down"},
+    {RunningPhase::kDownwardFlight, &RunningCues::landed, RunningPhase::kCompression,
+     "foot touches"},
+    {RunningPhase::kCompression, &RunningCues::leg_shortest, RunningPhase::kExtension,
+     "leg at its shortest"},
+    {RunningPhase::kExtension, &RunningCues::lifted_off, RunningPhase::kUpwardFlight,
+     "leg at its thrust length, or off the ground"},
+}};
+
 WalkingPhase Next(WalkingPhase phase, const WalkingCues& cues);
-/// The arrows of Figure 6.
 RunningPhase Next(RunningPhase phase, const RunningCues& cues);
+
+/// The figures as Mermaid state diagrams, drawn from the tables above.
+std::string DrawWalkingMachine();
+std::string DrawRunningMachine();
 
 constexpr bool IsHopping(stream::Gait gait) {
   return gait == stream::Gait::kRun || gait == stream::Gait::kJump;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/pit_sight.h"
 #include "daemon/simulation/gait/touchdown.h"
 #include "daemon/simulation/gait/transition.h"
 
@@ -54,7 +55,8 @@ double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
 }
 
 /// The length the stance leg's spring is set to at the bottom, so that it stores what lift-off
-/// needs: speed, height up to the touchdown length, and what the last hops lost.
+/// needs: speed, height up to the touchdown length, and what the last hops lost. A pit may want
+/// another speed than the gait does, for one hop.
 double ThrustLength(const Context& context, const GaitMemory& memory) {
   const HoppingGains& gains = context.gains.hopping;
   const double length_m = StanceLeg(context, memory).length_m;
@@ -65,12 +67,15 @@ double ThrustLength(const Context& context, const GaitMemory& memory) {
                                             mass_kg * kGravityMps2 * rise_m + memory.energy_loss_j);
   const double stiffness = memory.gait == Gait::kJump ? 2 * gains.jump_leg_stiffness_n_per_m
                                                       : gains.run_leg_stiffness_n_per_m;
-  return std::clamp(length_m + std::sqrt(2 * energy_j / stiffness), gains.touchdown_length_m - 0.05,
+  const double extension_m = memory.pit.lift_off_mps > 0 ? PlannedExtension(context, memory)
+                                                         : std::sqrt(2 * energy_j / stiffness);
+  return std::clamp(length_m + extension_m, gains.touchdown_length_m - 0.05,
                     gains.touchdown_length_m + 0.25);
 }
 
 void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
   const double wanted_mps = LiftOffSpeed(context, memory);
+  if (memory.pit.lift_off_mps != 0) return;
   const double reached_mps = context.body.v_WC.z();
   const double missing_j = context.biped.mass_kg() / 2 *
                            (wanted_mps * wanted_mps - reached_mps * std::fabs(reached_mps));
@@ -101,17 +106,22 @@ void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
   switch (phase) {
     case RunningPhase::kCompression:
       memory.touchdown_time_s = context.body.time_s;
+      NoteTouchdown(context, memory);
       CountStep(context, memory);
       memory.absorbing = memory.preparing_landing && MayLand(context, memory);
       memory.preparing_landing = false;
       break;
     case RunningPhase::kExtension:
+      PlanLiftOff(context, LiftOffSpeed(context, memory), memory);
       memory.thrust_length_m = ThrustLength(context, memory);
+      memory.pit.extension_m = memory.thrust_length_m - StanceLeg(context, memory).length_m;
       memory.off_steps = 0;
       break;
     case RunningPhase::kUpwardFlight:
       LearnEnergyLoss(context, memory);
+      NoteLiftOff(context, memory);
       LiftOff(context, memory);
+      ForeseeLeap(context, LiftOffSpeed(context, memory), memory);
       break;
     case RunningPhase::kDownwardFlight:
       memory.preparing_landing = MayLand(context, memory);
@@ -146,9 +156,10 @@ Targets AdvanceRunning(const Context& context, GaitMemory& memory) {
   const bool flying = memory.running == RunningPhase::kUpwardFlight ||
                       memory.running == RunningPhase::kDownwardFlight;
   if (flying) {
-    const bool early =
-        memory.running == RunningPhase::kUpwardFlight || context.TimeIn(memory) < kPreparesUntilS;
+    const bool early = memory.running == RunningPhase::kUpwardFlight ||
+                       context.TimeIn(memory) < kPreparesUntilS || memory.pit.last_foothold;
     memory.preparing_jump = memory.preparing_jump || (early && MayPrepareJump(context, memory));
+    memory.pit.shift_m = FootholdShift(context, memory);
     memory.foothold_W_m = context.body.p_WC + HoppingFoothold(context, memory, memory.support_leg);
   }
   return RunningTargets(context, memory);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/pit_sight.h"
 
 namespace footing::gait {
 namespace {
@@ -31,6 +32,18 @@ void MeasureSupport(double duration_s, GaitMemory& memory) {
 
 bool IsDirect(Gait from, Gait to) { return !(from == Gait::kJump && to == Gait::kRun); }
 
+std::string DrawGaitChanges() {
+  constexpr Gait kGaits[] = {Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
+  std::string text = "stateDiagram-v2\n";
+  for (const Gait from : kGaits) {
+    for (const Gait to : kGaits) {
+      if (from == to || !IsDirect(from, to)) continue;
+      text += std::string("  ") + stream::Name(from) + " --> " + stream::Name(to) + "\n";
+    }
+  }
+  return text;
+}
+
 biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,
                         const TransitionGains& gains) {
   biped::GaitCommand goal = command;
@@ -44,7 +57,8 @@ biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& comm
 }
 
 bool LeavesRun(const biped::GaitCommand& goal, const GaitMemory& memory) {
-  return memory.gait == Gait::kRun && goal.gait != Gait::kRun && !memory.preparing_jump;
+  return memory.gait == Gait::kRun && goal.gait != Gait::kRun && !memory.preparing_jump &&
+         !JumpsPit(goal, memory);
 }
 
 void SlewSpeed(const Context& context, GaitMemory& memory) {
@@ -57,6 +71,7 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
   } else if (to_ground && flying) {
     target_mps = std::min(target_mps, limits.run_to_walk_mps);
   }
+  if (JumpsPit(context.goal, memory)) target_mps = std::max(target_mps, memory.desired_speed_mps);
   memory.target_speed_mps = target_mps;
   // Slowing down starts from the speed there is, not from one that was not reached yet.
   const bool in_flight =
@@ -121,6 +136,7 @@ void LiftOff(const Context& context, GaitMemory& memory) {
 }
 
 bool MayPrepareJump(const Context& context, const GaitMemory& memory) {
+  if (JumpsPit(context.goal, memory)) return memory.pit.last_foothold;
   return context.goal.gait == Gait::kJump && memory.gait != Gait::kJump &&
          SpeedAlongHeading(context, memory) < context.gains.transition.run_to_jump_mps;
 }

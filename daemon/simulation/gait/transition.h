@@ -1,22 +1,26 @@
 #pragma once
 
+#include <string>
+
 #include "daemon/simulation/gait/context.h"
 
 /// Changes of gait: Figure 9 and "Gait Transitions" in section 5 of the paper.
 ///
-/// | from, to            | energy                                   | the controller changes |
-/// |---------------------|------------------------------------------|-------------------------------|
-/// | step <-> walk       | none                                     | at once | | step, walk -> run
-/// | Fall extends the supporting leg          | when it leaves the ground     | | step, walk ->
-/// jump  | the same                                 | the same                      | | run -> jump
-/// | one preparatory step, foot under the COM | when its leg leaves the ground| | run -> walk, step
-/// | run slows down; a foot far ahead absorbs  | in Compression, to Rise       | | jump -> step,
-/// walk  | jump slows down; both legs absorb        | to Double Support of stepping | | jump -> run
-/// | not in the paper: by stepping, walking   |                               |
+/// | from, to           | energy                                   | the controller changes     |
+/// |--------------------|------------------------------------------|----------------------------|
+/// | step <-> walk      | none                                     | at once                    |
+/// | step, walk -> run  | Fall extends the supporting leg          | when it leaves the ground  |
+/// | step, walk -> jump | the same                                 | the same                   |
+/// | run -> jump        | a preparatory step, foot under the COM   | when its leg lifts off     |
+/// | run -> walk, step  | run slows down; a foot far ahead absorbs | in Compression, to Rise    |
+/// | jump -> step, walk | jump slows down; both legs absorb        | to Double Support, by step |
+/// | jump -> run        | not in the paper: by stepping, walking   |                            |
 namespace footing::gait {
 
 /// True where the figure has an arrow (and for staying).
 bool IsDirect(stream::Gait from, stream::Gait to);
+/// Figure 9 as a Mermaid state diagram, drawn from IsDirect.
+std::string DrawGaitChanges();
 
 /// The command, or where there is no arrow the next gait on the way to it.
 biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,

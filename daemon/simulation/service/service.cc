@@ -46,16 +46,17 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
 
 Result<engine::EngineTexts> ReadTexts(const Config& config) {
   engine::EngineTexts texts;
-  const bool is_path = config.track.find('/') != std::string::npos ||
-                       config.track.find(".json") != std::string::npos;
   const auto biped = config::ReadDataFile(engine::kBipedFile, config.data_folder);
   if (!biped) return biped.error();
   const auto mapping = config::ReadDataFile(engine::kWristMappingFile, config.data_folder);
   if (!mapping) return mapping.error();
-  const auto track =
-      is_path ? config::ReadTextFile(config.track)
-              : config::ReadDataFile("tracks/" + config.track + ".json", config.data_folder);
+  const auto track = config::ReadNamedOrPath(config.track, "tracks", config.data_folder);
   if (!track) return track.error();
+  for (const char* name : engine::kGainFiles) {
+    const auto gains = config::ReadDataFile(name, config.data_folder);
+    if (!gains) return gains.error();
+    texts.gains.push_back({name, *gains});
+  }
   texts.biped = *biped;
   texts.wrist_mapping = *mapping;
   texts.track = *track;

@@ -3,26 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/terrain/box.h"
 
 namespace footing::terrain {
 namespace {
 
-constexpr double kHalfThicknessM = 1.0;
-
-std::string Box(const stream::TrackSegment& segment) {
-  const double half_m = segment.length_m / 2;
-  const Eigen::Matrix3d R_WS = (Eigen::AngleAxisd(segment.heading_rad, Eigen::Vector3d::UnitZ()) *
-                                Eigen::AngleAxisd(-segment.slope_rad, Eigen::Vector3d::UnitY()))
-                                   .toRotationMatrix();
-  const Eigen::Vector3d centre =
-      segment.start_m + R_WS * Eigen::Vector3d(half_m, 0, -kHalfThicknessM);
-  const Eigen::Quaterniond q(R_WS);
+std::string Geom(const GroundBox& box) {
   const auto text = [](double value) { return std::to_string(value) + " "; };
-  return "<geom type='box' contype='1' conaffinity='2' size='" + text(half_m) +
-         text(segment.width_m / 2) + text(kHalfThicknessM) + "' pos='" + text(centre.x()) +
-         text(centre.y()) + text(centre.z()) + "' quat='" + text(q.w()) + text(q.x()) +
-         text(q.y()) + text(q.z()) + "'/>\n";
+  const Eigen::Vector3d& p = box.centre_W_m;
+  const Eigen::Vector3d& half = box.half_size_m;
+  const Eigen::Quaterniond& q = box.q_WS;
+  return "<geom type='box' contype='1' conaffinity='2' size='" + text(half.x()) + text(half.y()) +
+         text(half.z()) + "' pos='" + text(p.x()) + text(p.y()) + text(p.z()) + "' quat='" +
+         text(q.w()) + text(q.x()) + text(q.y()) + text(q.z()) + "'/>\n";
 }
 
 }  // namespace
@@ -33,16 +26,19 @@ bool IsLevel(const stream::Track& track) {
   });
 }
 
+double RibbonHeight(const stream::TrackSegment& segment, const TrackPlace& place) {
+  return segment.start_m.z() + place.along_m * std::sin(segment.slope_rad);
+}
+
 double RibbonHeight(const stream::Track& track, double x_m, double y_m) {
   const TrackPlace place = Locate(track, {x_m, y_m});
-  const stream::TrackSegment& segment = track.segments[static_cast<std::size_t>(place.segment)];
-  return segment.start_m.z() + place.along_m * std::sin(segment.slope_rad);
+  return RibbonHeight(track.segments[static_cast<std::size_t>(place.segment)], place);
 }
 
 double GroundHeight(const stream::Track& track, double x_m, double y_m) {
   const TrackPlace place = Locate(track, {x_m, y_m});
   const stream::TrackSegment& segment = track.segments[static_cast<std::size_t>(place.segment)];
-  const double height_m = segment.start_m.z() + place.along_m * std::sin(segment.slope_rad);
+  const double height_m = RibbonHeight(segment, place);
   return segment.pit ? height_m - kPitDepthM : height_m;
 }
 
@@ -51,8 +47,10 @@ std::string GroundMjcf(const stream::Track& track) {
     return "<geom type='plane' contype='1' conaffinity='2' size='0 0 1'/>\n";
   }
   std::string text;
+  const stream::TrackSegment* previous = nullptr;
   for (const stream::TrackSegment& segment : track.segments) {
-    if (!segment.pit) text += Box(segment);
+    if (!segment.pit) text += Geom(BoxOf(previous, segment));
+    previous = &segment;
   }
   return text;
 }

@@ -79,6 +79,7 @@ Result<stream::Track> ParseTrack(const std::string& text, const std::string& ori
   }
   stream::Track track;
   track.revision = 1;
+  track.open = root.contains("open") && root["open"] == true;
   track.name = root.contains("name") && root["name"].is_string() ? root["name"] : json("unnamed");
   const double width_m = fields.Number("width_m", 4, 0.1, 100);
   if (!fields.error().empty()) return InvalidData(fields.error());
@@ -98,21 +99,52 @@ Result<stream::Track> ParseTrack(const std::string& text, const std::string& ori
 
 TrackPlace Locate(const stream::Track& track, const Eigen::Vector2d& p_W_m) {
   TrackPlace nearest;
-  double nearest_m2 = INFINITY;
+  nearest.distance_m = INFINITY;
   for (std::size_t i = 0; i < track.segments.size(); ++i) {
     const stream::TrackSegment& segment = track.segments[i];
+    const Eigen::Vector2d offset = p_W_m - segment.start_m.head<2>();
+    const double reach_m = segment.length_m + nearest.distance_m;
+    if (offset.squaredNorm() > reach_m * reach_m) continue;  // Saves the sines of far segments.
     const Eigen::Vector2d ahead(std::cos(segment.heading_rad), std::sin(segment.heading_rad));
     const Eigen::Vector2d left(-ahead.y(), ahead.x());
-    const Eigen::Vector2d offset = p_W_m - segment.start_m.head<2>();
     const double level_m = segment.length_m * std::cos(segment.slope_rad);
     const double along_m = std::clamp(offset.dot(ahead), 0.0, level_m);
-    const double distance_m2 = (offset - along_m * ahead).squaredNorm();
-    if (distance_m2 >= nearest_m2) continue;
-    nearest_m2 = distance_m2;
-    nearest = {static_cast<int>(i), along_m / std::cos(segment.slope_rad), offset.dot(left)};
+    const double distance_m = (offset - along_m * ahead).norm();
+    if (distance_m >= nearest.distance_m) continue;
+    nearest = {static_cast<int>(i), along_m / std::cos(segment.slope_rad), offset.dot(left),
+               distance_m};
   }
   return nearest;
 }
+
+bool IsOffRibbon(const stream::Track& track, const TrackPlace& place) {
+  return place.distance_m > track.segments[static_cast<std::size_t>(place.segment)].width_m / 2;
+}
+
+double LengthTo(const stream::Track& track, const TrackPlace& place) {
+  double length_m = place.along_m;
+  for (int i = 0; i < place.segment; ++i) {
+    length_m += track.segments[static_cast<std::size_t>(i)].length_m;
+  }
+  return length_m;
+}
+
+double LengthOf(const stream::Track& track) {
+  const int last = static_cast<int>(track.segments.size()) - 1;
+  return LengthTo(track, {last, track.segments.back().length_m, 0, 0});
+}
+
+namespace {
+
+CentrePoint On(const stream::TrackSegment& segment, double along_m) {
+  const double level_m = along_m * std::cos(segment.slope_rad);
+  return {segment.start_m + Eigen::Vector3d(level_m * std::cos(segment.heading_rad),
+                                            level_m * std::sin(segment.heading_rad),
+                                            along_m * std::sin(segment.slope_rad)),
+          segment.heading_rad};
+}
+
+}  // namespace
 
 CentrePoint CentreBehind(const stream::Track& track, const TrackPlace& place, double back_m) {
   int index = place.segment;
@@ -122,13 +154,17 @@ CentrePoint CentreBehind(const stream::Track& track, const TrackPlace& place, do
     --index;
     along_m += track.segments[index].length_m;
   }
-  const stream::TrackSegment& segment = track.segments[index];
-  along_m = std::max(along_m, 0.0);
-  const double level_m = along_m * std::cos(segment.slope_rad);
-  return {segment.start_m + Eigen::Vector3d(level_m * std::cos(segment.heading_rad),
-                                            level_m * std::sin(segment.heading_rad),
-                                            along_m * std::sin(segment.slope_rad)),
-          segment.heading_rad};
+  return On(track.segments[index], std::max(along_m, 0.0));
+}
+
+CentrePoint CentreAhead(const stream::Track& track, const TrackPlace& place, double ahead_m) {
+  auto index = static_cast<std::size_t>(place.segment);
+  double along_m = place.along_m + ahead_m;
+  while (along_m > track.segments[index].length_m && index + 1 < track.segments.size()) {
+    along_m -= track.segments[index].length_m;
+    ++index;
+  }
+  return On(track.segments[index], std::min(along_m, track.segments[index].length_m));
 }
 
 }  // namespace footing::terrain

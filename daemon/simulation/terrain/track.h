@@ -12,6 +12,7 @@ namespace footing::terrain {
 ///   version   1
 ///   name      text
 ///   width_m   (0, 100], 4 by default
+///   open      true: a character may leave the ribbon; otherwise that is a failure
 ///   segments  1 to 1000 objects {length_m (0, 10000], slope_deg [-30, 30], curve_deg [-90, 90],
 ///             step_m [-0.5, 0.5], pit true or false}; all but the length default to nothing.
 /// The track starts at the origin along x. curve_deg turns the heading and step_m raises the
@@ -23,10 +24,18 @@ struct TrackPlace {
   int segment = 0;
   double along_m = 0;     ///< From the segment's start, clamped to its length.
   double sideways_m = 0;  ///< From the centre line, left positive.
+  double distance_m = 0;  ///< From the nearest point of the centre line.
 };
 
 /// The nearest segment's place; of two equally near the earlier one.
 TrackPlace Locate(const stream::Track& track, const Eigen::Vector2d& p_W_m);
+
+/// True beside the ribbon, or beyond its ends.
+bool IsOffRibbon(const stream::Track& track, const TrackPlace& place);
+
+/// Length of the centre line from its start to a place, and of all of it, m.
+double LengthTo(const stream::Track& track, const TrackPlace& place);
+double LengthOf(const stream::Track& track);
 
 /// A point of the centre line with its heading.
 struct CentrePoint {
@@ -37,5 +46,8 @@ struct CentrePoint {
 /// The centre line `back_m` before a place: never in a pit (then before it), never before the
 /// start.
 CentrePoint CentreBehind(const stream::Track& track, const TrackPlace& place, double back_m);
+
+/// The centre line `ahead_m` after a place, pits included, at most its end.
+CentrePoint CentreAhead(const stream::Track& track, const TrackPlace& place, double ahead_m);
 
 }  // namespace footing::terrain

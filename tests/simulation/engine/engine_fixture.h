@@ -8,9 +8,12 @@
 namespace footing::engine {
 
 inline EngineTexts Texts() {
-  return {.biped = test::DataFile(kBipedFile),
-          .track = test::DataFile(kStraightTrackFile),
-          .wrist_mapping = test::DataFile(kWristMappingFile)};
+  EngineTexts texts{.biped = test::DataFile(kBipedFile),
+                    .track = test::DataFile(kStraightTrackFile),
+                    .wrist_mapping = test::DataFile(kWristMappingFile),
+                    .gains = {}};
+  for (const char* name : kGainFiles) texts.gains.push_back({name, test::DataFile(name)});
+  return texts;
 }
 
 inline GaitEngine NewEngine() {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cstdlib>
+#include <fstream>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "common/config/data_file.h"
@@ -60,27 +60,24 @@ TEST(RunningMachine, HasTheArrowsOfFigure6AndTheEarlyLanding) {
                                                         {P::kExtension, P::kUpwardFlight}}));
 }
 
-TEST(Machines, AreDrawnInTheirDocumentAsTheyAre) {
-  using Drawn = std::set<std::pair<std::string, std::string>>;
-  const auto word = [](std::string name) {
-    std::replace(name.begin(), name.end(), ' ', '_');
-    return name;
-  };
-  Drawn expected, drawn;
-  for (const auto& [from, to] : WalkingArrows())
-    expected.insert({word(Name(from)), word(Name(to))});
-  for (const auto& [from, to] : RunningArrows())
-    expected.insert({word(Name(from)), word(Name(to))});
-  const auto text = config::ReadTextFile(FOOTING_SOURCE_DIR "/docs/gait.md");
-  ASSERT_TRUE(text.ok());
-  std::istringstream lines(text.value());
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string from, arrow, to;
-    if (words >> from >> arrow >> to && arrow == "-->")
-      drawn.insert({from, to.substr(0, to.find(':'))});
+// After a change of the tables: FOOTING_WRITE_FIGURES=1 tests/test_simulation_gait writes them
+// anew.
+TEST(Machines, AreDrawnInTheirDocumentFromTheirTables) {
+  const std::string path = FOOTING_SOURCE_DIR "/docs/gait.md";
+  const auto document = config::ReadTextFile(path);
+  ASSERT_TRUE(document.ok());
+  std::string text = document.value();
+  const std::string fence = "```mermaid\n";
+  std::size_t at = 0;
+  for (const std::string& figure :
+       {DrawWalkingMachine(), DrawRunningMachine(), DrawGaitChanges()}) {
+    at = text.find(fence, at);
+    ASSERT_NE(at, std::string::npos) << "docs/gait.md must hold three figures";
+    at += fence.size();
+    text.replace(at, text.find("```", at) - at, figure);
   }
-  EXPECT_EQ(drawn, expected);
+  if (std::getenv("FOOTING_WRITE_FIGURES") != nullptr) std::ofstream(path) << text;
+  EXPECT_EQ(text, document.value()) << "docs/gait.md draws the machines otherwise than they are";
 }
 
 TEST(GaitChanges, OnlyJumpingToRunningHasNoArrow) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "daemon/simulation/terrain/box.h"
 #include "daemon/simulation/terrain/ground.h"
 #include "tests/simulation/test_world.h"
 
@@ -53,6 +54,84 @@ TEST(Track, PutsBackOnTheCentreLineAndNeverIntoAPit) {
   const CentrePoint before_pit = CentreBehind(track, {3, 2.5, 0}, 3);
   EXPECT_LE(before_pit.p_W_m.x(), track.segments[2].start_m.x() + 1e-9);
   EXPECT_LT(before_pit.p_W_m.x(), last.start_m.x());
+}
+
+TEST(Track, PlacesAheadAndLengthsFollowTheCentreLine) {
+  const auto track = ParseTrack(kHills, "hills").value();
+  EXPECT_NEAR(LengthOf(track), 27, 1e-12);
+  const TrackPlace place = Locate(track, {4, 1});
+  EXPECT_NEAR(LengthTo(track, place), 4, 1e-12);
+  EXPECT_NEAR(place.distance_m, 1, 1e-12);
+  // 19 m further: 23 m from the start, 1 m into the last segment, which runs along y.
+  const CentrePoint ahead = CentreAhead(track, place, 19);
+  EXPECT_NEAR(ahead.p_W_m.y(), 1, 1e-12);
+  EXPECT_NEAR(ahead.heading_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(CentreAhead(track, place, 1000).p_W_m.y(), 5, 1e-12);
+}
+
+TEST(Track, IsLeftAtItsSidesAndBeyondItsEnds) {
+  const auto track = ParseTrack(kHills, "hills").value();
+  EXPECT_FALSE(IsOffRibbon(track, Locate(track, {5, 1.9})));
+  EXPECT_TRUE(IsOffRibbon(track, Locate(track, {5, -2.1})));
+  EXPECT_TRUE(IsOffRibbon(track, Locate(track, {-2.1, 0})));
+}
+
+class CarriedTrack : public testing::TestWithParam<const char*> {};
+
+TEST_P(CarriedTrack, IsARibbonOfFourMetresAndEightyToAHundredAndTwenty) {
+  const std::string name = std::string("tracks/") + GetParam() + ".json";
+  const auto track = ParseTrack(test::DataFile(name), name);
+  ASSERT_TRUE(track.ok()) << track.error().message;
+  EXPECT_FALSE(track.value().open);
+  EXPECT_GE(LengthOf(track.value()), 80);
+  EXPECT_LE(LengthOf(track.value()), 120);
+  for (const auto& segment : track.value().segments) EXPECT_EQ(segment.width_m, 4);
+}
+
+TEST_P(CarriedTrack, NeverComesNearItselfAgain) {
+  const auto track =
+      ParseTrack(test::DataFile(std::string("tracks/") + GetParam() + ".json"), "").value();
+  for (double s_m = 0; s_m < LengthOf(track); s_m += 0.5) {
+    const CentrePoint here = CentreAhead(track, {}, s_m);
+    // The nearest place is where one is: no other pass of the track is nearer.
+    EXPECT_NEAR(LengthTo(track, Locate(track, here.p_W_m.head<2>())), s_m, 1e-6);
+    for (double ahead_m = 12; s_m + ahead_m < LengthOf(track); ahead_m += 0.5) {
+      const CentrePoint there = CentreAhead(track, {}, s_m + ahead_m);
+      EXPECT_GT((there.p_W_m - here.p_W_m).head<2>().norm(), 5) << s_m << " m and " << ahead_m;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OneToFour, CarriedTrack, testing::Values("1", "2", "3", "4"));
+
+bool IsIn(const GroundBox& box, const Eigen::Vector3d& p_W_m) {
+  const Eigen::Array3d p_S = (box.q_WS.inverse() * (p_W_m - box.centre_W_m)).array();
+  return (p_S.abs() <= box.half_size_m.array() + 1e-9).all();
+}
+
+TEST(GroundBox, LeavesNoWedgeOpenWhereTheTrackTurns) {
+  for (const double turn_deg : {-30.0, -15.0, 5.0, 15.0, 90.0}) {
+    const std::string text =
+        R"({"version": 1, "segments": [{"length_m": 5}, {"length_m": 5, "curve_deg": )" +
+        std::to_string(turn_deg) + "}]}";
+    const auto track = ParseTrack(text, "bend").value();
+    const GroundBox first = BoxOf(nullptr, track.segments[0]);
+    const GroundBox second = BoxOf(&track.segments[0], track.segments[1]);
+    // All around the corner, up to the smaller of both half widths there: on one of the two.
+    for (double angle_rad = 0; angle_rad < 2 * std::numbers::pi; angle_rad += 0.05) {
+      const double turn_rad = std::fabs(turn_deg) * std::numbers::pi / 180;
+      const double radius_m = 2 * std::cos(turn_rad / 2);
+      const Eigen::Vector3d p(5 + radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad),
+                              -0.1);
+      EXPECT_TRUE(IsIn(first, p) || IsIn(second, p)) << turn_deg << " degrees, " << angle_rad;
+    }
+  }
+}
+
+TEST(GroundBox, KeepsAPitsEdges) {
+  const auto track = ParseTrack(kHills, "hills").value();
+  const GroundBox after_pit = BoxOf(&track.segments[2], track.segments[3]);
+  EXPECT_NEAR(after_pit.half_size_m.x(), 2.5, 1e-12);
 }
 
 TEST(Track, RefusesNumbersOutOfRangeByName) {

@@ -20,6 +20,7 @@ void DrawHud(const Paint& p, const scene::Model& model, const scene::WorldFrame&
              std::int64_t now_ns, const HudOptions& options, ImVec2 size) {
   // A stand-in's data is never shown unstamped, in subject mode either.
   if (scene::IsSimulated(model)) DrawSimulated(p, size);
+  DrawReplay(p, model, now_ns, size);
   if (options.hidden) return;
   const float s = p.scale, edge = kEdge * s;
   if (scene::IsWaiting(model)) {
@@ -41,7 +42,7 @@ void DrawHud(const Paint& p, const scene::Model& model, const scene::WorldFrame&
     DrawNote(p, model, now_ns, size);
   }
   if (options.frozen) {
-    p.Label({size.x / 2 - 30 * s, 92 * s}, colour::kText, IM_COL32(20, 20, 20, 255), "frozen");
+    p.Label({size.x / 2 - 30 * s, 128 * s}, colour::kText, IM_COL32(20, 20, 20, 255), "frozen");
   }
   if (options.keys) DrawKeys(p, size);
 }

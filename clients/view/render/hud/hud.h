@@ -14,6 +14,7 @@ struct HudOptions {
   bool phases = true;
   bool forces = false;
   bool frozen = false;
+  bool replay_asked = false;  ///< A key press not yet carried out.
 };
 
 /// All panels over the picture.

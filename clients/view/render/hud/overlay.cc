@@ -53,10 +53,11 @@ void DrawWaitingLines(const Paint& p, const scene::Model& model, ImVec2 at) {
 }
 
 void DrawKeys(const Paint& p, ImVec2 size) {
-  static constexpr std::array<std::array<const char*, 2>, 5> kKeys{{
+  static constexpr std::array<std::array<const char*, 2>, 6> kKeys{{
       {"?", "show or hide this list"},
       {"F", "force arrows at the feet"},
       {"P", "states of the gait controller"},
+      {"R", "the last fall again, in slow motion"},
       {"space", "freeze the picture"},
       {"Esc, Q", "leave"},
   }};
@@ -80,6 +81,16 @@ void DrawSimulated(const Paint& p, ImVec2 size) {
   const ImVec2 low((size.x - width) / 2, 20 * s), high((size.x + width) / 2, 48 * s);
   p.list->AddRectFilled(low, high, colour::kSecond, 14 * s);
   p.WriteCentred(p.fonts.strong, {size.x / 2, low.y + 5 * s}, IM_COL32(40, 26, 0, 255), text);
+}
+
+void DrawReplay(const Paint& p, const scene::Model& model, std::int64_t now_ns, ImVec2 size) {
+  if (!model.replay.At(now_ns)) return;
+  const float s = p.scale;
+  const std::string text = scene::ReplayLine(model.replay.FromFallS(now_ns));
+  const float width = p.WidthOf(p.fonts.strong, text) + 32 * s;
+  const ImVec2 low((size.x - width) / 2, 92 * s), high((size.x + width) / 2, 120 * s);
+  p.list->AddRectFilled(low, high, colour::kAccent, 14 * s);
+  p.WriteCentred(p.fonts.strong, {size.x / 2, low.y + 5 * s}, IM_COL32(20, 20, 20, 255), text);
 }
 
 void DrawNote(const Paint& p, const scene::Model& model, std::int64_t now_ns, ImVec2 size) {

@@ -12,6 +12,8 @@ void DrawWaitingLines(const Paint& paint, const scene::Model& model, ImVec2 at);
 void DrawKeys(const Paint& paint, ImVec2 size);
 /// "SIMULATED" in the top middle.
 void DrawSimulated(const Paint& paint, ImVec2 size);
+/// Which moment of the last fall is shown again; nothing while none is.
+void DrawReplay(const Paint& paint, const scene::Model& model, std::int64_t now_ns, ImVec2 size);
 /// The last event, fading after 3 s.
 void DrawNote(const Paint& paint, const scene::Model& model, std::int64_t now_ns, ImVec2 size);
 

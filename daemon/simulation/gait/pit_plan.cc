@@ -1,0 +1,123 @@
+#include "daemon/simulation/gait/pit_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footing::gait {
+namespace {
+
+constexpr double kGravityMps2 = 9.81;
+/// Costs of a plan in m/s of lift-off speed: a stride more, and a plan beyond its limits.
+constexpr double kStrideCostMps = 0.3;
+constexpr double kLeapCost = 1.5;
+constexpr double kBeyondCost = 20;
+constexpr double kSlowestMps = 0.05;
+
+struct Costed {
+  PitPlan plan;
+  double cost = 0;
+};
+
+/// The hop over the pit from a foothold `near_m` before the edge.
+double LeapSpeed(const PitAhead& pit, double near_m, const Hop& hop, const PitLimits& limits) {
+  const double width_m = pit.far_m - pit.near_m;
+  const double needed_mps = hop.LiftOffFor(near_m + width_m + limits.landing_margin_m, pit.rise_m);
+  return std::max(needed_mps, hop.nominal_mps);
+}
+
+Costed Leap(const PitAhead& pit, const Hop& hop, const PitLimits& limits) {
+  const double leap_mps = LeapSpeed(pit, pit.near_m, hop, limits);
+  const double beyond_mps = std::max(0.0, leap_mps - limits.leap_max_mps);
+  return {{.leaps = true,
+           .reaches = beyond_mps == 0,
+           .strides = 0,
+           .lift_off_mps = std::min(leap_mps, limits.leap_max_mps)},
+          kLeapCost * (leap_mps - hop.nominal_mps) + kBeyondCost * beyond_mps};
+}
+
+/// `strides` alike before the last foothold, which is to lie just before the edge.
+Costed Approach(const PitAhead& pit, int strides, const Hop& first, const Hop& next,
+                const PitLimits& limits) {
+  const double latest_m = pit.near_m - limits.edge_margin_m;
+  const double others = strides - 1;
+  // One lift-off speed for all: the strides' sum is monotonous in it.
+  double low_mps = limits.lift_off_min_mps, high_mps = limits.lift_off_max_mps;
+  const auto last_foothold = [&](double lift_off_mps) {
+    return first.Stride(lift_off_mps) + others * next.Stride(lift_off_mps);
+  };
+  for (int i = 0; i < 30; ++i) {
+    const double middle_mps = (low_mps + high_mps) / 2;
+    (last_foothold(middle_mps) < latest_m - limits.aim_margin_m ? low_mps : high_mps) = middle_mps;
+  }
+  const double reached_m = last_foothold(low_mps);
+  const double leap_mps = LeapSpeed(pit, pit.near_m - reached_m, next, limits);
+  const double beyond_mps = std::max(0.0, leap_mps - limits.leap_max_mps);
+  const double over_m = std::max(0.0, reached_m - latest_m);
+  return {{.leaps = false,
+           .reaches = beyond_mps == 0 && over_m == 0,
+           .strides = strides,
+           .lift_off_mps = low_mps},
+          kLeapCost * (leap_mps - next.nominal_mps) +
+              strides * std::fabs(low_mps - first.nominal_mps) + strides * kStrideCostMps +
+              kBeyondCost * (beyond_mps + over_m)};
+}
+
+}  // namespace
+
+double Hop::FlightTime(double lift_off_mps, double rise_m) const {
+  const double drop = drop_m + drop_per_mps * (lift_off_mps - nominal_mps) - rise_m;
+  const double landing_mps2 = lift_off_mps * lift_off_mps + 2 * kGravityMps2 * drop;
+  return std::max(0.0, (lift_off_mps + std::sqrt(std::max(0.0, landing_mps2))) / kGravityMps2);
+}
+
+double Hop::Stride(double lift_off_mps, double rise_m) const {
+  return support_m + speed_mps * FlightTime(lift_off_mps, rise_m);
+}
+
+double Hop::LiftOffFor(double stride_m, double rise_m) const {
+  const double flight_s = std::max(0.0, stride_m - support_m) / std::max(speed_mps, kSlowestMps);
+  if (flight_s == 0) return 0;
+  // -drop = v t - g t^2 / 2, with drop linear in v.
+  const double level_m =
+      kGravityMps2 * flight_s * flight_s / 2 - drop_m + drop_per_mps * nominal_mps + rise_m;
+  return std::max(0.0, level_m / (flight_s + drop_per_mps));
+}
+
+double Thrust::ExtensionFor(double lift_off_mps) const {
+  const double carried_kg = mass_kg - feet_kg;
+  const double weight_n = carried_kg * kGravityMps2;
+  const double useful_n_per_m = (1 - loss_share) * stiffness_n_per_m;
+  const double motion_j = mass_kg * mass_kg / carried_kg * lift_off_mps * lift_off_mps / 2;
+  return (weight_n + std::sqrt(weight_n * weight_n + 2 * useful_n_per_m * motion_j)) /
+         useful_n_per_m;
+}
+
+double Thrust::LossShare(double extension_m, double lift_off_mps) const {
+  const double carried_kg = mass_kg - feet_kg;
+  const double stored_j = stiffness_n_per_m * extension_m * extension_m / 2;
+  const double motion_j = mass_kg * mass_kg / carried_kg * lift_off_mps * lift_off_mps / 2;
+  return (stored_j - carried_kg * kGravityMps2 * extension_m - motion_j) / stored_j;
+}
+
+PitPlan PlanPit(const PitAhead& pit, const Hop& first, const Hop& next, const PitLimits& limits) {
+  Costed best = Leap(pit, first, limits);
+  for (int strides = 1; strides <= kStridesMax; ++strides) {
+    const Costed plan = Approach(pit, strides, first, next, limits);
+    if (plan.cost < best.cost) best = plan;
+  }
+  return best.plan;
+}
+
+double ShiftOffPit(const PitAhead& pit, const PitLimits& limits, double back_m, double ahead_m,
+                   bool leaping) {
+  const double to_near_m = pit.near_m - limits.edge_margin_m;
+  const double to_far_m = pit.far_m + limits.landing_margin_m;
+  if (to_near_m >= 0 || to_far_m <= 0) return 0;
+  const bool can_back = !leaping && -to_near_m <= back_m;
+  const bool can_ahead = to_far_m <= ahead_m;
+  if (can_back && (!can_ahead || -to_near_m < to_far_m)) return to_near_m;
+  if (can_ahead) return to_far_m;
+  return leaping ? ahead_m : 0;
+}
+
+}  // namespace footing::gait

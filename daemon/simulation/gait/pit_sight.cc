@@ -1,0 +1,212 @@
+#include "daemon/simulation/gait/pit_sight.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/frames.h"
+
+namespace footing::gait {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kSightM = 8;
+/// Pits that are crossed at a steeper angle than this are not planned for.
+constexpr double kLeastCosine = 0.5;
+
+Vector2d Ahead(double heading_rad) { return {std::cos(heading_rad), std::sin(heading_rad)}; }
+
+double GroundAtEnd(const stream::TrackSegment& segment) {
+  return segment.start_m.z() + segment.length_m * std::sin(segment.slope_rad);
+}
+
+/// From the extension's beginning to lift-off: a quarter of the spring's period.
+constexpr double kExtensionS = 0.09;
+/// Measured: what the COM rises until lift-off, by the spring's extension.
+constexpr double kRiseShare = 0.87;
+constexpr double kRiseOffsetM = -0.04;
+/// Of a new measure in the remembered one.
+constexpr double kSmoothing = 0.3;
+
+/// The foot that carries or will carry; between both in jumping.
+Vector3d StanceFoot(const Context& context, const GaitMemory& memory) {
+  const auto& legs = context.body.legs;
+  if (memory.gait == stream::Gait::kJump) return (legs[0].p_WF + legs[1].p_WF) / 2;
+  return legs[memory.support_leg].p_WF;
+}
+
+/// COM relative to the stance foot, in the heading frame.
+Vector3d FromFoot(const Context& context, const GaitMemory& memory) {
+  return ToHeading(memory.heading_rad, context.body.p_WC - StanceFoot(context, memory));
+}
+
+/// Where the COM will touch down, if no foot shifts: on ground as high as the last foothold's, and
+/// behind a pit as much higher.
+Vector3d PlaceAtTouchdown(const Context& context, const GaitMemory& memory) {
+  const PitMemory& seen = memory.pit;
+  const double height_m =
+      seen.foothold_z_m + seen.touchdown_height_m + (seen.leaping ? seen.rise_m : 0);
+  const double vz = context.body.v_WC.z();
+  const double over_m = context.body.p_WC.z() - height_m;
+  const double flight_s =
+      (vz + std::sqrt(std::max(0.0, vz * vz + 2 * kGravityMps2 * over_m))) / kGravityMps2;
+  return context.body.p_WC + std::max(0.0, flight_s) * context.body.v_WC;
+}
+
+/// A hop as the last one was.
+Hop SteadyHop(const GaitMemory& memory, double nominal_mps) {
+  const PitMemory& seen = memory.pit;
+  return {.speed_mps = seen.flight_mps,
+          .support_m = seen.com_ahead_m + seen.foot_ahead_m,
+          .drop_m = seen.drop_m,
+          .nominal_mps = nominal_mps};
+}
+
+Thrust ThrustOf(const Context& context, const GaitMemory& memory) {
+  const HoppingGains& gains = context.gains.hopping;
+  const bool jumping = memory.gait == stream::Gait::kJump;
+  return {.stiffness_n_per_m =
+              jumping ? 2 * gains.jump_leg_stiffness_n_per_m : gains.run_leg_stiffness_n_per_m,
+          .mass_kg = context.biped.mass_kg(),
+          .feet_kg = (jumping ? 2 : 1) * context.biped.link_mass_kg,
+          .loss_share = memory.pit.loss_share};
+}
+
+bool Plans(const PitAhead& pit, const PitPlan& plan, double sight_m) {
+  return plan.reaches || pit.near_m < sight_m;
+}
+
+}  // namespace
+
+void LookForPit(const Context& context, GaitMemory& memory) {
+  PitMemory& seen = memory.pit;
+  seen.ahead = false;
+  if (context.seen_ground == nullptr) return;
+  const auto& segments = context.seen_ground->segments;
+  const Vector2d p_W = context.body.p_WC.head<2>();
+  const Vector2d ahead = Ahead(memory.heading_rad);
+  double nearest_m = kSightM;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (!segments[i].pit || (i > 0 && segments[i - 1].pit)) continue;
+    const stream::TrackSegment& first = segments[i];
+    const Vector2d along = Ahead(first.heading_rad);
+    const Vector2d offset = p_W - first.start_m.head<2>();
+    const double sideways_m = along.x() * offset.y() - along.y() * offset.x();
+    if (std::fabs(sideways_m) > first.width_m || along.dot(ahead) < kLeastCosine) continue;
+    double length_m = 0;
+    std::size_t end = i;
+    while (end < segments.size() && segments[end].pit) {
+      length_m += segments[end].length_m * std::cos(segments[end].slope_rad);
+      ++end;
+    }
+    const double to_near_m = -offset.dot(along);
+    if (to_near_m + length_m < 0 || to_near_m > nearest_m) continue;
+    nearest_m = to_near_m;
+    const double before_m = i > 0 ? GroundAtEnd(segments[i - 1]) : first.start_m.z();
+    const double behind_m = end < segments.size() ? segments[end].start_m.z() : before_m;
+    seen.ahead = true;
+    seen.near_W_m = first.start_m.head<2>();
+    seen.along_W = along;
+    seen.length_m = length_m;
+    seen.rise_m = behind_m - before_m;
+  }
+}
+
+std::optional<PitAhead> PitFrom(const GaitMemory& memory, const Vector3d& p_W_m) {
+  const PitMemory& seen = memory.pit;
+  if (!seen.ahead) return std::nullopt;
+  const double cosine = std::max(kLeastCosine, seen.along_W.dot(Ahead(memory.heading_rad)));
+  const double near_m = (seen.near_W_m - p_W_m.head<2>()).dot(seen.along_W) / cosine;
+  return PitAhead{near_m, near_m + seen.length_m / cosine, seen.rise_m};
+}
+
+void NoteTouchdown(const Context& context, GaitMemory& memory) {
+  PitMemory& seen = memory.pit;
+  const Vector3d r_FC_H = FromFoot(context, memory);
+  seen.foothold_z_m = StanceFoot(context, memory).z();
+  seen.touchdown_height_m += kSmoothing * (r_FC_H.z() - seen.touchdown_height_m);
+  seen.foot_ahead_m = -r_FC_H.x() - seen.shift_m;
+  seen.flight_mps = ToHeading(memory.heading_rad, context.body.v_WC).x();
+  seen.leaping = false;
+  seen.shift_m = 0;
+}
+
+void NoteLiftOff(const Context& context, GaitMemory& memory) {
+  PitMemory& seen = memory.pit;
+  const Vector3d r_FC_H = FromFoot(context, memory);
+  seen.com_ahead_m = r_FC_H.x();
+  const double drop_m = r_FC_H.z() - seen.touchdown_height_m;
+  if (seen.lift_off_mps == 0) seen.drop_m += kSmoothing * (drop_m - seen.drop_m);
+  if (seen.extension_m > 0) {
+    const double share =
+        ThrustOf(context, memory).LossShare(seen.extension_m, context.body.v_WC.z());
+    seen.loss_share += kSmoothing * (std::clamp(share, 0.1, 0.4) - seen.loss_share);
+  }
+  seen.extension_m = 0;
+  seen.lift_off_mps = 0;
+}
+
+void ForeseeLeap(const Context& context, double nominal_mps, GaitMemory& memory) {
+  PitMemory& seen = memory.pit;
+  seen.planned = seen.last_foothold = false;
+  LookForPit(context, memory);
+  if (!seen.ahead) return;
+  const Vector3d p_WF =
+      PlaceAtTouchdown(context, memory) + HoppingFoothold(context, memory, memory.support_leg);
+  const std::optional<PitAhead> pit = PitFrom(memory, p_WF);
+  const Hop hop = SteadyHop(memory, nominal_mps);
+  const PitGains& gains = context.gains.pit;
+  const PitPlan plan = PlanPit(*pit, hop, hop, gains.limits);
+  seen.planned = Plans(*pit, plan, gains.sight_m);
+  seen.last_foothold = seen.planned && plan.leaps;
+  if (JumpsPit(context.goal, memory)) memory.preparing_jump = seen.last_foothold;
+}
+
+void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory) {
+  PitMemory& seen = memory.pit;
+  seen.lift_off_mps = 0;
+  seen.leaping = seen.planned = false;
+  LookForPit(context, memory);
+  if (!seen.ahead) return;
+  const PitGains& gains = context.gains.pit;
+  const std::optional<PitAhead> pit = PitFrom(memory, StanceFoot(context, memory));
+  const Hop next = SteadyHop(memory, nominal_mps);
+  Hop first = next;
+  first.support_m =
+      FromFoot(context, memory).x() + seen.flight_mps * kExtensionS + seen.foot_ahead_m;
+  first.drop_m = FromFoot(context, memory).z() +
+                 kRiseShare * ThrustOf(context, memory).ExtensionFor(nominal_mps) + kRiseOffsetM -
+                 seen.touchdown_height_m;
+  const PitPlan plan = PlanPit(*pit, first, next, gains.limits);
+  const bool may_leap = context.goal.gait == stream::Gait::kJump ||
+                        memory.gait == stream::Gait::kJump ||
+                        pit->far_m - pit->near_m <= gains.run_width_max_m;
+  seen.planned = Plans(*pit, plan, gains.sight_m);
+  seen.leaping = seen.planned && plan.leaps && may_leap;
+  if (JumpsPit(context.goal, memory)) memory.preparing_jump = seen.leaping;
+  if (seen.planned && (!plan.leaps || seen.leaping)) seen.lift_off_mps = plan.lift_off_mps;
+}
+
+double PlannedExtension(const Context& context, const GaitMemory& memory) {
+  return ThrustOf(context, memory).ExtensionFor(memory.pit.lift_off_mps);
+}
+
+bool JumpsPit(const biped::GaitCommand& goal, const GaitMemory& memory) {
+  return goal.gait == stream::Gait::kJump && memory.gait == stream::Gait::kRun &&
+         memory.pit.ahead && memory.pit.planned;
+}
+
+double FootholdShift(const Context& context, const GaitMemory& memory) {
+  if (!memory.pit.ahead) return 0;
+  const PitGains& gains = context.gains.pit;
+  const Vector3d shifted_W = HoppingFoothold(context, memory, memory.support_leg);
+  const Vector3d shift_W = ToWorld(memory.heading_rad, Vector3d(memory.pit.shift_m, 0, 0));
+  const std::optional<PitAhead> pit =
+      PitFrom(memory, PlaceAtTouchdown(context, memory) + shifted_W - shift_W);
+  return ShiftOffPit(*pit, gains.limits, gains.shift_back_m, gains.shift_ahead_m,
+                     memory.pit.leaping);
+}
+
+}  // namespace footing::gait

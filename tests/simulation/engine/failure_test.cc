@@ -1,0 +1,70 @@
+#include "daemon/simulation/engine/failure.h"
+
+#include "daemon/simulation/terrain/track.h"
+#include "tests/simulation/engine/engine_fixture.h"
+
+namespace footing::engine {
+namespace {
+
+using stream::Gait;
+
+GaitEngine EngineOn(const std::string& track) {
+  EngineTexts texts = Texts();
+  texts.track = track;
+  Result<GaitEngine> engine = GaitEngine::Create(texts);
+  EXPECT_TRUE(engine.ok()) << (engine.ok() ? "" : engine.error().message);
+  return std::move(engine).value();
+}
+
+/// The first failure within so many seconds; an event without a text when there is none.
+EngineEvent FirstFailure(GaitEngine& engine, const EngineInputs& inputs, double seconds) {
+  EngineEvent first;
+  Simulate(engine, inputs, seconds, [&first](const EngineOutput& output) {
+    for (int i = 0; i < output.event_count; ++i) {
+      const EngineEvent& event = output.events[static_cast<std::size_t>(i)];
+      if (event.kind == EventKind::kFall && first.text[0] == 0) first = event;
+    }
+  });
+  return first;
+}
+
+TEST(Failure, WalkingOverTheEdgeOfALevelTrackIsTheCurves) {
+  GaitEngine engine = EngineOn(R"({"version": 1, "segments": [{"length_m": 50}]})");
+  EngineInputs inputs = Direct(Command(Gait::kWalk, 1, 0.2, 0.08));
+  const EngineEvent failure = FirstFailure(engine, inputs, 12);
+  EXPECT_EQ(failure.cause, FailureCause::kCurve) << failure.text;
+  EXPECT_STREQ(failure.text, "the body is beside the track");
+}
+
+TEST(Failure, AnOpenTrackMayBeLeft) {
+  GaitEngine engine = EngineOn(R"({"version": 1, "open": true, "segments": [{"length_m": 50}]})");
+  EngineInputs inputs = Direct(Command(Gait::kWalk, 1, 0.2, 0.08));
+  EXPECT_STREQ(FirstFailure(engine, inputs, 12).text, "");
+}
+
+TEST(Failure, SteppingOverTheEdgeOfAHillIsTheCurves) {
+  GaitEngine engine = EngineOn(R"({"version": 1, "segments": [{"length_m": 50, "slope_deg": 1}]})");
+  EngineInputs inputs = Direct(Command(Gait::kWalk, 1, 0.2, 0.08));
+  EXPECT_EQ(FirstFailure(engine, inputs, 12).cause, FailureCause::kCurve);
+}
+
+TEST(Failure, WalkingIntoAPitIsTheJumps) {
+  GaitEngine engine = EngineOn(
+      R"({"version": 1, "segments": [{"length_m": 5}, {"length_m": 3, "pit": true},
+                                     {"length_m": 5}]})");
+  const EngineInputs inputs = Direct(Command(Gait::kWalk, 1));
+  EXPECT_EQ(FirstFailure(engine, inputs, 10).cause, FailureCause::kJump);
+}
+
+TEST(Failure, APushOverIsTheSimulations) {
+  GaitEngine engine = EngineOn(test::DataFile("tracks/3.json"));
+  EngineInputs inputs = Direct(Command(Gait::kWalk, 1));
+  Simulate(engine, inputs, 3);
+  Push(inputs, 40, 60);
+  const EngineEvent failure = FirstFailure(engine, inputs, 2);
+  EXPECT_NE(failure.text[0], 0);
+  EXPECT_EQ(failure.cause, FailureCause::kSimulation) << failure.text;
+}
+
+}  // namespace
+}  // namespace footing::engine
