@@ -16,6 +16,9 @@ constexpr Benchmark kBenchmarks[] = {
     {"publish_to_client_p50", footing::bench::PublishToClient},
     {"fan_out_cpu", footing::bench::FanOutCpu},
     {"stalled_readers", footing::bench::StalledReaders},
+#ifdef FOOTING_HAS_FANN
+    {"cascade_training", footing::bench::CascadeTraining},
+#endif
 };
 
 std::vector<std::string> Names() {

@@ -30,4 +30,10 @@ Result<Rows> FanOutCpu();
 /// the memory grows once ring and queues are full, against 2 MB.
 Result<Rows> StalledReaders();
 
+/// Training the networks of the horizontal COM, both axes of 84 s at 60 Hz, against Cascade2 of
+/// FANN and against back-propagation to the same error: CPU seconds, and the root mean square error
+/// on a recording that none has seen. One run of each, for FANN takes minutes. Only where libfann
+/// is installed.
+Result<Rows> CascadeTraining();
+
 }  // namespace footing::bench
