@@ -41,6 +41,10 @@ Result<void> Check(const Model& model, const std::string& origin) {
       return InvalidData(where + std::to_string(tensor.values.size()) +
                          " values do not fit shape " + ShapeText(tensor.shape));
     }
+    if (!tensor.labels.empty() && tensor.labels.size() != tensor.shape.back()) {
+      return InvalidData(where + std::to_string(tensor.labels.size()) +
+                         " labels do not fit shape " + ShapeText(tensor.shape));
+    }
     if (!std::all_of(tensor.values.begin(), tensor.values.end(),
                      [](float value) { return std::isfinite(value); })) {
       return InvalidData(where + "holds a value that is not finite");

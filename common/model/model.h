@@ -20,6 +20,8 @@ struct Tensor {
   std::string name;
   std::vector<std::uint32_t> shape;
   std::vector<float> values;  ///< As many as the product of `shape`.
+  /// What the last index counts, such as degrees of freedom; none where the name says it all.
+  std::vector<std::string> labels = {};
 };
 
 struct DataFile {

@@ -71,6 +71,7 @@ Result<std::string> ToModelFile(const model::Model& model) {
     written->set_name(Utf8(tensor.name));
     written->mutable_shape()->Add(tensor.shape.begin(), tensor.shape.end());
     written->mutable_values()->Add(tensor.values.begin(), tensor.values.end());
+    for (const std::string& label : tensor.labels) written->add_labels(Utf8(label));
   }
   std::string bytes = out.SerializeAsString();
   const std::string digest = Bytes(model::Sha256(bytes));
@@ -103,7 +104,8 @@ Result<model::Model> FromModelFile(std::string_view bytes, const std::string& or
   for (const v1::Tensor& tensor : in.tensors()) {
     model.tensors.push_back({.name = tensor.name(),
                              .shape = {tensor.shape().begin(), tensor.shape().end()},
-                             .values = {tensor.values().begin(), tensor.values().end()}});
+                             .values = {tensor.values().begin(), tensor.values().end()},
+                             .labels = {tensor.labels().begin(), tensor.labels().end()}});
   }
   if (auto good = model::Check(model, origin); !good) return good.error();
   return model;

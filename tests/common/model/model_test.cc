@@ -38,6 +38,14 @@ TEST(Model, WithAShapeThatDoesNotFitIsRefusedByTheTensorsName) {
   EXPECT_THAT(Refusal(model), HasSubstr("tensor a"));
 }
 
+TEST(Model, WithLabelsThatDoNotFitTheLastIndexIsRefused) {
+  Model model = Good();
+  model.tensors[0].labels = {"x", "y", "z"};
+  EXPECT_EQ(Refusal(model), "");
+  model.tensors[0].labels.pop_back();
+  EXPECT_THAT(Refusal(model), HasSubstr("tensor a: 2 labels do not fit shape [2 x 3]"));
+}
+
 TEST(Model, WithANumberThatIsNotFiniteIsRefused) {
   Model model = Good();
   model.tensors[1].values[0] = std::numeric_limits<float>::quiet_NaN();

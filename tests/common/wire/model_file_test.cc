@@ -14,13 +14,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 model::Model Example() {
-  return {.kind = "cascade",
-          .provenance = {.program_version = "1.2.3",
-                         .command = "footing-train cascade --data a.csv",
-                         .seed = 18446744073709551615u,
-                         .data = {{.name = "a.csv", .sha256 = model::Sha256("abc")}},
-                         .subjects = {"13"}},
-          .tensors = {{.name = "w", .shape = {2, 1}, .values = {0.1f, -2.5e-30f}}}};
+  return {
+      .kind = "cascade",
+      .provenance = {.program_version = "1.2.3",
+                     .command = "footing-train cascade --data a.csv",
+                     .seed = 18446744073709551615u,
+                     .data = {{.name = "a.csv", .sha256 = model::Sha256("abc")}},
+                     .subjects = {"13"}},
+      .tensors = {{.name = "w", .shape = {2, 1}, .values = {0.1f, -2.5e-30f}, .labels = {"x"}}}};
 }
 
 std::string Bytes() { return ToModelFile(Example()).value(); }
@@ -54,6 +55,7 @@ TEST(ModelFile, GivesBackEveryFieldAndBit) {
   EXPECT_EQ(read->tensors[0].name, "w");
   EXPECT_THAT(read->tensors[0].shape, ElementsAre(2u, 1u));
   EXPECT_THAT(read->tensors[0].values, ElementsAre(0.1f, -2.5e-30f));
+  EXPECT_THAT(read->tensors[0].labels, ElementsAre("x"));
 }
 
 TEST(ModelFile, IsOneMessageThatEndsInItsChecksum) {
@@ -105,6 +107,7 @@ TEST(ModelFile, WithContentThatMakesNoSenseIsRefusedThoughTheChecksumFits) {
 TEST(ModelFile, OfMoreThanFourMegabytesIsRefused) {
   model::Model model = Example();
   model.tensors[0].shape = {1u << 20};
+  model.tensors[0].labels.clear();
   model.tensors[0].values.assign(1u << 20, 1.f);
   EXPECT_THAT(ToModelFile(model).error().message, HasSubstr("train a smaller one"));
   EXPECT_THAT(Refusal(std::string(model::kMostFileBytes + 1, 'x')), HasSubstr("at most 4194304"));
