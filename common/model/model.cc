@@ -59,10 +59,20 @@ Result<void> CheckKind(const Model& model, const std::string& kind, const std::s
                      " belongs; train it with footing-train " + kind);
 }
 
+std::string SubjectName(const std::string& subject) {
+  const bool number =
+      !subject.empty() && subject.find_first_not_of("0123456789") == std::string::npos;
+  const std::size_t first = subject.find_first_not_of('0');
+  return number && first != std::string::npos ? subject.substr(first) : subject;
+}
+
 Result<void> CheckNotTrainedOn(const Model& model, const std::string& subject,
                                const std::string& origin) {
   const auto& subjects = model.provenance.subjects;
-  if (std::find(subjects.begin(), subjects.end(), subject) == subjects.end()) return {};
+  const bool trained = std::any_of(subjects.begin(), subjects.end(), [&](const std::string& other) {
+    return SubjectName(other) == SubjectName(subject);
+  });
+  if (!trained) return {};
   return InvalidData(origin + ": was trained on subject " + subject +
                      ", so it cannot be judged on them; train one with --exclude " + subject);
 }

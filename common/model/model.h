@@ -51,6 +51,10 @@ Result<void> Check(const Model& model, const std::string& origin);
 /// Refuses a model of another kind, by name.
 Result<void> CheckKind(const Model& model, const std::string& kind, const std::string& origin);
 
+/// A subject as they are written everywhere: a number without leading zeros, else as it is, so that
+/// "013" and "13" are one person.
+std::string SubjectName(const std::string& subject);
+
 /// Refuses to judge a model on a person it was trained with: no score would be cross-subject.
 Result<void> CheckNotTrainedOn(const Model& model, const std::string& subject,
                                const std::string& origin);

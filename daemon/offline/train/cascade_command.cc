@@ -34,18 +34,18 @@ int Run(const Options& options, const Shared& shared) {
   }
   const std::int64_t start_ns = clock::MonotonicNs();
   const training::CascadeResult result =
-      training::TrainCascade(split.train, split.validation, cascade, data->seed);
+      training::TrainCascade(split.train, split.validation, cascade, options.data.model.seed);
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
   model::Model model{.kind = "cascade",
                      .provenance = {.program_version = cli::Version(),
                                     .command = shared.command_line,
-                                    .seed = data->seed,
+                                    .seed = options.data.model.seed,
                                     .data = {data->file},
                                     .subjects = options.data.subjects},
                      .tensors = {}};
   cascade::AppendTensors(result.network, "", model);
-  if (auto written = WriteModel(model, options.data.out, options.data.force); !written) {
+  if (auto written = WriteModel(model, options.data.model); !written) {
     return cli::Report(written.error());
   }
   const nlohmann::ordered_json report = {{"hidden_units", result.hidden_units},
@@ -56,7 +56,7 @@ int Run(const Options& options, const Shared& shared) {
   if (shared.json) {
     std::cout << report.dump() << std::endl;
   } else {
-    std::cout << options.data.out << ": " << result.hidden_units << " hidden units after "
+    std::cout << options.data.model.out << ": " << result.hidden_units << " hidden units after "
               << result.epochs << " epochs, mean squared error " << result.train_mse
               << " in training, " << result.validation_mse << " in validation, " << seconds << " s"
               << std::endl;

@@ -14,7 +14,9 @@ struct Shared {
 
 /// Each adds one subcommand to footing-train; its callback does the work and sets
 /// `shared.exit_code`.
+void AddBasisCommand(CLI::App& app, Shared& shared);
 void AddCascadeCommand(CLI::App& app, Shared& shared);
+void AddComCommand(CLI::App& app, Shared& shared);
 void AddMlpCommand(CLI::App& app, Shared& shared);
 
 }  // namespace footing::train

@@ -22,19 +22,19 @@ int Run(const Options& options, const Shared& shared) {
   const Result<TrainingData> data = Load(options.data);
   if (!data) return cli::Report(data.error());
   const std::int64_t start_ns = clock::MonotonicNs();
-  const training::MlpResult result =
-      training::TrainMlp(data->split.train, data->split.validation, options.mlp, data->seed);
+  const training::MlpResult result = training::TrainMlp(data->split.train, data->split.validation,
+                                                        options.mlp, options.data.model.seed);
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
   model::Model model{.kind = "mlp",
                      .provenance = {.program_version = cli::Version(),
                                     .command = shared.command_line,
-                                    .seed = data->seed,
+                                    .seed = options.data.model.seed,
                                     .data = {data->file},
                                     .subjects = options.data.subjects},
                      .tensors = {}};
   training::AppendTensors(result.network, model);
-  if (auto written = WriteModel(model, options.data.out, options.data.force); !written) {
+  if (auto written = WriteModel(model, options.data.model); !written) {
     return cli::Report(written.error());
   }
   const nlohmann::ordered_json report = {{"hidden_units", options.mlp.hidden},
@@ -46,7 +46,7 @@ int Run(const Options& options, const Shared& shared) {
   if (shared.json) {
     std::cout << report.dump() << std::endl;
   } else {
-    std::cout << options.data.out << ": " << options.mlp.hidden << " hidden units after "
+    std::cout << options.data.model.out << ": " << options.mlp.hidden << " hidden units after "
               << result.epochs << " epochs, mean squared error " << result.train_mse
               << " in training, " << result.validation_mse << " in validation, " << seconds << " s"
               << (result.goal_reached ? ", goal reached" : "") << std::endl;

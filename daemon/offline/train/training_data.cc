@@ -40,8 +40,6 @@ void AddDataOptions(CLI::App& command, DataOptions& options) {
   command.add_option("--inputs", options.inputs, "The first so many columns; the rest are outputs")
       ->required()
       ->check(CLI::Range(1, 256));
-  command.add_option("--out", options.out, "Model file to write, NAME.fmodel")->required();
-  command.add_option("--seed", options.seed, "Of first weights and noise; the same gives the same");
   command.add_option("--validation", options.validation, "Part of the rows, the last ones")
       ->check(CLI::Range(0.0, 0.9));
   command.add_option("--feedback", options.feedback,
@@ -54,15 +52,11 @@ void AddDataOptions(CLI::App& command, DataOptions& options) {
       ->check(CLI::Range(1, 100));
   command.add_option("--subject", options.subjects,
                      "Whose motion the data is; the model is never judged on them");
-  command.add_flag("--force", options.force, "Overwrite an existing model");
+  AddModelOptions(command, options.model);
 }
 
 Result<TrainingData> Load(const DataOptions& options) {
-  std::error_code error;
-  if (!options.force && std::filesystem::exists(options.out, error)) {
-    return UsageError(options.out +
-                      " exists and is not overwritten; choose another name, or say --force");
-  }
+  if (auto free = CheckFree(options.model); !free) return free.error();
   const Result<std::string> text = config::ReadTextFile(options.data, kMostBytes);
   if (!text) return text.error();
   const Result<Table> table = ParseTable(*text, options.data);
@@ -77,7 +71,6 @@ Result<TrainingData> Load(const DataOptions& options) {
   if (!groups) return groups.error();
 
   TrainingData data;
-  data.seed = options.seed;
   data.file = {.name = std::filesystem::path(options.data).filename().string(),
                .sha256 = model::Sha256(*text)};
   data.split = training::SplitInTime({.inputs = table->values.leftCols(options.inputs),
@@ -93,10 +86,10 @@ Result<TrainingData> Load(const DataOptions& options) {
                                 .own_sd = options.noise_sd / 10,
                                 .copies = options.copies};
   if (options.noise_sd > 0) {
-    data.split.train = training::WithFeedbackNoise(data.split.train, noise, options.seed);
+    data.split.train = training::WithFeedbackNoise(data.split.train, noise, options.model.seed);
     noise.copies = 1;
     data.split.validation =
-        training::WithFeedbackNoise(data.split.validation, noise, options.seed + 1);
+        training::WithFeedbackNoise(data.split.validation, noise, options.model.seed + 1);
   }
   return data;
 }

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "common/model/model.h"
 #include "common/result/result.h"
+#include "daemon/offline/train/model_output.h"
 #include "daemon/offline/training/examples.h"
 
 namespace footing::train {
@@ -19,22 +19,19 @@ struct DataOptions {
   std::vector<std::string> feedback;  ///< Names of columns, comma between; a group an option.
   double noise_sd = 0;
   int copies = 1;
-  std::uint64_t seed = 1;
   std::vector<std::string> subjects;
-  std::string out;
-  bool force = false;
+  ModelOptions model;
 };
 
 void AddDataOptions(CLI::App& command, DataOptions& options);
 
 struct TrainingData {
   training::Split split;
-  std::uint64_t seed = 0;
   model::DataFile file;
 };
 
 /// Reads, checks and splits the table and puts noise on what is fed back, in validation too.
-/// Refuses an `out` that exists before anything is trained.
+/// Refuses an existing model before anything is trained.
 Result<TrainingData> Load(const DataOptions& options);
 
 }  // namespace footing::train

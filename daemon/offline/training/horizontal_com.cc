@@ -64,7 +64,8 @@ constexpr double kBoardOffsetM = 0.16;  // Of each board's middle to the side.
 constexpr double kHalfLengthM = 0.119;  // From a cell to the board's middle, forward.
 constexpr double kHalfWidthM = 0.1075;
 
-/// Four cells: front left, front right, rear left, rear right.
+}  // namespace
+
 void ShareOut(double load, const Eigen::Vector2d& cop_P_m, double* cells) {
   const double forward = cop_P_m.x() / kHalfLengthM, left = cop_P_m.y() / kHalfWidthM;
   for (const int f : {1, -1}) {
@@ -72,7 +73,18 @@ void ShareOut(double load, const Eigen::Vector2d& cop_P_m, double* cells) {
   }
 }
 
-}  // namespace
+std::optional<Eigen::Vector2d> Cop(const LoadFrame& frame) {
+  double total = 0;
+  Eigen::Vector2d moment_m = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < kBoardCells; ++k) {
+    const Eigen::Vector2d cell_P_m(k % 4 < 2 ? kHalfLengthM : -kHalfLengthM,
+                                   k % 2 == 0 ? kHalfWidthM : -kHalfWidthM);
+    total += frame.load[k];
+    moment_m += frame.load[k] * (frame.board_W_m[k / 4] + cell_P_m);
+  }
+  if (total < 0.1) return std::nullopt;
+  return moment_m / total;
+}
 
 std::vector<std::vector<Eigen::Index>> FeedbackColumns() {
   constexpr Eigen::Index kFirst = 2 * kBoardCells;
@@ -118,6 +130,17 @@ Eigen::Vector2d ClosedLoopError(const cascade::CascadeNetwork& x, const cascade:
     c0_m = next_m;
   }
   return (squares / static_cast<double>(clip.size() - 3)).cwiseSqrt();
+}
+
+Eigen::Vector2d CopError(const LoadClip& clip) {
+  if (clip.empty()) return Eigen::Vector2d::Zero();
+  Eigen::Vector2d squares = Eigen::Vector2d::Zero();
+  Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
+  for (const LoadFrame& frame : clip) {
+    cop_m = Cop(frame).value_or(cop_m);
+    squares += (cop_m - frame.c_W_m).cwiseAbs2();
+  }
+  return (squares / static_cast<double>(clip.size())).cwiseSqrt();
 }
 
 LoadClip MakeSway(const SwaySettings& settings, std::uint64_t seed) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,17 @@ constexpr std::size_t kBoardCells = 8;
 /// One frame, 60 to 120 a second.
 struct LoadFrame {
   std::array<double, kBoardCells> load{};  ///< Of each cell, as part of the body's weight.
-  Eigen::Vector2d c_W_m{0, 0};             ///< COM, x forward and y left of the boards' middle.
+  Eigen::Vector2d c_W_m{0, 0};             ///< COM, x forward and y left of the feet's middle.
+  /// Middle of the left and of the right board.
+  std::array<Eigen::Vector2d, 2> board_W_m = {Eigen::Vector2d(0, 0.16), Eigen::Vector2d(0, -0.16)};
 };
+
+/// The loads of a board's cells (front left, front right, rear left, rear right) under a load whose
+/// COP is at `cop_P_m` from the board's middle.
+void ShareOut(double load, const Eigen::Vector2d& cop_P_m, double* cells);
+
+/// Where the sum of all cells acts; nothing under 10 % of the weight, where noise decides.
+std::optional<Eigen::Vector2d> Cop(const LoadFrame& frame);
 
 /// A recording without a gap.
 using LoadClip = std::vector<LoadFrame>;
@@ -36,6 +46,9 @@ Examples HorizontalExamples(std::span<const LoadClip> clips, int axis);
 /// from the third frame on. A COM more than `border_m` away is held there.
 Eigen::Vector2d ClosedLoopError(const cascade::CascadeNetwork& x, const cascade::CascadeNetwork& y,
                                 const LoadClip& clip, double border_m = 1);
+
+/// The same of the COP, held where there is none: what a network that knows nothing else would say.
+Eigen::Vector2d CopError(const LoadClip& clip);
 
 /// A made recording: a body that leans and bends its knees as an inverted pendulum of 1 m over two
 /// boards, all sums of sines with random phases, white noise on the cells.

@@ -68,6 +68,9 @@ TEST(Model, IsNotJudgedOnAPersonItWasTrainedWith) {
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().kind, ErrorKind::kInvalidData);
   EXPECT_THAT(refused.error().message, HasSubstr("was trained on subject 14"));
+  EXPECT_FALSE(CheckNotTrainedOn(Good(), "014", "m.fmodel").ok());
+  EXPECT_TRUE(CheckNotTrainedOn(Good(), "14b", "m.fmodel").ok());
+  EXPECT_EQ(SubjectName("000"), "000");
 }
 
 TEST(Model, OfAnotherKindIsRefused) {
