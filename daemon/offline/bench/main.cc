@@ -17,6 +17,9 @@ constexpr Benchmark kBenchmarks[] = {
     {"fan_out_cpu", footing::bench::FanOutCpu},
     {"stalled_readers", footing::bench::StalledReaders},
     {"body_kinematics", footing::bench::BodyKinematics},
+#ifdef FOOTING_HAS_FANN
+    {"cascade_training", footing::bench::CascadeTraining},
+#endif
 };
 
 std::vector<std::string> Names() {

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "footing/v1/model.pb.h"
 #include "footing/v1/session.pb.h"
 
 /// Within footing.v1 only additions: every line of the committed baseline still holds. A line is
@@ -63,6 +64,7 @@ void Describe(const FileDescriptor* file, Lines& lines) {
 Lines Current() {
   Lines lines;
   Describe(v1::Envelope::descriptor()->file(), lines);
+  Describe(v1::Model::descriptor()->file(), lines);
   return lines;
 }
 

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/model/sha256.h"
+#include "common/result/result.h"
+
+/// What footing-train makes and the pose engine runs: named float32 tensors with their provenance,
+/// one *.fmodel file each (docs/models.md).
+namespace footing::model {
+
+constexpr std::size_t kMostFileBytes = 4u << 20;
+constexpr std::uint32_t kVersion = 1;  ///< Of the container; a reader refuses any other.
+
+/// Row by row, last index fastest.
+struct Tensor {
+  std::string name;
+  std::vector<std::uint32_t> shape;
+  std::vector<float> values;  ///< As many as the product of `shape`.
+  /// What the last index counts, such as degrees of freedom; none where the name says it all.
+  std::vector<std::string> labels = {};
+};
+
+struct DataFile {
+  std::string name;  ///< Without its folder.
+  Digest sha256{};
+};
+
+/// Where a model comes from: enough to train it again.
+struct Provenance {
+  std::string program_version;
+  std::string command;  ///< The whole command line.
+  std::uint64_t seed = 0;
+  std::vector<DataFile> data;
+  std::vector<std::string> subjects;  ///< Everyone whose motion was used, validation included.
+};
+
+struct Model {
+  std::string kind;  ///< "cascade", "mlp", "com", "basis", ...
+  Provenance provenance;
+  std::vector<Tensor> tensors;
+};
+
+/// Every tensor has a name of its own, a shape that its number of values fits, and finite values.
+/// `origin` names the file.
+Result<void> Check(const Model& model, const std::string& origin);
+
+/// Refuses a model of another kind, by name.
+Result<void> CheckKind(const Model& model, const std::string& kind, const std::string& origin);
+
+/// A subject as they are written everywhere: a number without leading zeros, else as it is, so that
+/// "013" and "13" are one person.
+std::string SubjectName(const std::string& subject);
+
+/// Refuses to judge a model on a person it was trained with: no score would be cross-subject.
+Result<void> CheckNotTrainedOn(const Model& model, const std::string& subject,
+                               const std::string& origin);
+
+/// The tensor of this name and exactly this shape.
+Result<const Tensor*> Find(const Model& model, const std::string& name,
+                           const std::vector<std::uint32_t>& shape, const std::string& origin);
+
+/// The tensor of this name, of any shape; null when there is none.
+const Tensor* FindAny(const Model& model, const std::string& name);
+
+}  // namespace footing::model

@@ -1,0 +1,142 @@
+#include <fann.h>
+
+#include <cmath>
+#include <memory>
+
+#include "common/clock/clock.h"
+#include "common/units/units.h"
+#include "daemon/offline/bench/row.h"
+#include "daemon/offline/training/cascade.h"
+#include "daemon/offline/training/horizontal_com.h"
+#include "daemon/offline/training/mlp.h"
+#include "daemon/offline/training/scaling.h"
+
+namespace footing::bench {
+namespace {
+
+using training::Examples;
+
+constexpr int kAxes = 2;
+constexpr int kHidden = 20;       // Of FANN's network, and at most of ours.
+constexpr double kNoiseM = 0.01;  // On the fed-back COM, without which the closed loop diverges.
+
+/// One axis: 84 s at 60 Hz to train on, as much to choose by, as much to judge by.
+struct Axis {
+  Examples train, validation, fresh;
+};
+
+Axis MakeAxis(int axis) {
+  const training::FeedbackNoise noise{.groups = training::FeedbackColumns(),
+                                      .common_sd = kNoiseM,
+                                      .own_sd = kNoiseM / 10,
+                                      .copies = 1};
+  const auto examples = [&](std::uint64_t seed) {
+    const training::LoadClip clip = training::MakeSway({}, seed);
+    return training::WithFeedbackNoise(training::HorizontalExamples({&clip, 1}, axis), noise, seed);
+  };
+  return {.train = examples(1), .validation = examples(2), .fresh = examples(3)};
+}
+
+/// CPU seconds, and the mean squared error on the fresh rows.
+struct Measured {
+  double seconds = 0;
+  double mse = 0;
+};
+
+double SecondsSince(std::int64_t start_ns) {
+  return NanosecondsToSeconds(clock::ThreadCpuNs() - start_ns);
+}
+
+Measured Ours(const Axis& axis, int patience, double* validation_mse) {
+  training::CascadeOptions options;
+  options.hidden_max = kHidden;
+  options.patience = patience;
+  const std::int64_t start_ns = clock::ThreadCpuNs();
+  const auto result = training::TrainCascade(axis.train, axis.validation, options, 1);
+  *validation_mse = result.validation_mse;
+  return {SecondsSince(start_ns), MeanSquaredError(result.network, axis.fresh)};
+}
+
+/// Back-propagation until its error of validation equals the cascade's; at most 1000 epochs.
+Measured Perceptron(const Axis& axis, double validation_mse) {
+  training::MlpOptions options;
+  options.hidden = kHidden;
+  options.epochs_max = options.patience = 1000;
+  options.mse_goal = validation_mse;
+  const std::int64_t start_ns = clock::ThreadCpuNs();
+  const auto result = training::TrainMlp(axis.train, axis.validation, options, 1);
+  return {SecondsSince(start_ns), MeanSquaredError(result.network, axis.fresh)};
+}
+
+using FannData = std::unique_ptr<fann_train_data, decltype(&fann_destroy_train)>;
+using FannNetwork = std::unique_ptr<fann, decltype(&fann_destroy)>;
+
+FannData ToFann(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
+  FannData data(
+      fann_create_train(static_cast<unsigned>(inputs.rows()), static_cast<unsigned>(inputs.cols()),
+                        static_cast<unsigned>(targets.cols())),
+      &fann_destroy_train);
+  for (Eigen::Index row = 0; row < inputs.rows(); ++row) {
+    Eigen::RowVectorXf::Map(data->input[row], inputs.cols()) = inputs.row(row).cast<float>();
+    Eigen::RowVectorXf::Map(data->output[row], targets.cols()) = targets.row(row).cast<float>();
+  }
+  return data;
+}
+
+/// FANN's Cascade2 as it comes, with linear outputs, on inputs and targets scaled as ours are.
+Measured Fann(const Axis& axis) {
+  const auto in = training::Scaling::Of(axis.train.inputs);
+  const auto out = training::Scaling::Of(axis.train.targets);
+  const FannData train = ToFann(in.Apply(axis.train.inputs), out.Apply(axis.train.targets));
+  const FannNetwork network(
+      fann_create_shortcut(2, static_cast<unsigned>(axis.train.inputs.cols()), 1), &fann_destroy);
+  fann_set_activation_function_hidden(network.get(), FANN_SIGMOID_SYMMETRIC);
+  fann_set_activation_function_output(network.get(), FANN_LINEAR);
+  fann_set_train_error_function(network.get(), FANN_ERRORFUNC_LINEAR);
+  fann_set_training_algorithm(network.get(), FANN_TRAIN_RPROP);
+  const std::int64_t start_ns = clock::ThreadCpuNs();
+  fann_cascadetrain_on_data(network.get(), train.get(), kHidden, 0, 1e-7f);
+  Measured measured{SecondsSince(start_ns), 0};
+
+  const FannData fresh = ToFann(in.Apply(axis.fresh.inputs), out.Apply(axis.fresh.targets));
+  for (Eigen::Index row = 0; row < axis.fresh.rows(); ++row) {
+    const double error = *fann_run(network.get(), fresh->input[row]) - *fresh->output[row];
+    measured.mse += error * error / (out.scale(0) * out.scale(0));
+  }
+  measured.mse /= static_cast<double>(axis.fresh.rows());
+  return measured;
+}
+
+Row MakeRow(const std::string& name, double ours, double baseline, const std::string& unit) {
+  return {.name = name, .ours = ours, .baseline = baseline, .ratio = ours / baseline, .unit = unit};
+}
+
+double Rms(double mse_sum_m2) { return 1e3 * std::sqrt(mse_sum_m2 / kAxes); }
+
+}  // namespace
+
+Result<Rows> CascadeTraining() {
+  Measured ours, all_units, perceptron, baseline;
+  const auto add = [](Measured& sum, const Measured& one) {
+    sum.seconds += one.seconds;
+    sum.mse += one.mse;
+  };
+  for (int axis = 0; axis < kAxes; ++axis) {
+    const Axis data = MakeAxis(axis);
+    double validation_mse = 0;
+    add(all_units, Ours(data, kHidden + 1, &validation_mse));
+    add(ours, Ours(data, training::CascadeOptions{}.patience, &validation_mse));
+    add(perceptron, Perceptron(data, validation_mse));
+    add(baseline, Fann(data));
+  }
+  return Rows{
+      MakeRow("cascade_training", ours.seconds, baseline.seconds, "s"),
+      MakeRow("cascade_training_20_units", all_units.seconds, baseline.seconds, "s"),
+      MakeRow("cascade_error", Rms(ours.mse), Rms(baseline.mse), "mm"),
+      MakeRow("cascade_error_20_units", Rms(all_units.mse), Rms(baseline.mse), "mm"),
+      MakeRow("cascade_training_and_perceptron", ours.seconds, perceptron.seconds, "s"),
+      MakeRow("cascade_error_and_perceptron", Rms(ours.mse), Rms(perceptron.mse), "mm"),
+  };
+}
+
+}  // namespace footing::bench

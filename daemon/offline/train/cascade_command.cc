@@ -1,0 +1,91 @@
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/cli/cli.h"
+#include "common/clock/clock.h"
+#include "common/units/units.h"
+#include "daemon/offline/train/command.h"
+#include "daemon/offline/train/model_output.h"
+#include "daemon/offline/train/training_data.h"
+#include "daemon/offline/training/cascade.h"
+#include "daemon/simulation/cascade/model.h"
+
+namespace footing::train {
+namespace {
+
+struct Options {
+  DataOptions data;
+  training::CascadeOptions cascade;
+  bool sigmoid = false;
+  bool covariance = false;
+};
+
+int Run(const Options& options, const Shared& shared) {
+  const Result<TrainingData> data = Load(options.data);
+  if (!data) return cli::Report(data.error());
+  training::CascadeOptions cascade = options.cascade;
+  if (options.sigmoid) cascade.outputs = training::Outputs::kSigmoid;
+  if (options.covariance) cascade.objective = training::Objective::kCovariance;
+
+  const training::Split& split = data->split;
+  if (options.sigmoid && split.train.targets.cwiseAbs().maxCoeff() > 0.5) {
+    return cli::Report(InvalidData(options.data.data + ": --sigmoid outputs lie within +-0.5"));
+  }
+  const std::int64_t start_ns = clock::MonotonicNs();
+  const training::CascadeResult result =
+      training::TrainCascade(split.train, split.validation, cascade, options.data.model.seed);
+  const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
+
+  model::Model model{.kind = "cascade",
+                     .provenance = {.program_version = cli::Version(),
+                                    .command = shared.command_line,
+                                    .seed = options.data.model.seed,
+                                    .data = {data->file},
+                                    .subjects = options.data.subjects},
+                     .tensors = {}};
+  cascade::AppendTensors(result.network, "", model);
+  if (auto written = WriteModel(model, options.data.model); !written) {
+    return cli::Report(written.error());
+  }
+  const nlohmann::ordered_json report = {{"hidden_units", result.hidden_units},
+                                         {"epochs", result.epochs},
+                                         {"train_mse", result.train_mse},
+                                         {"validation_mse", result.validation_mse},
+                                         {"seconds", seconds}};
+  if (shared.json) {
+    std::cout << report.dump() << std::endl;
+  } else {
+    std::cout << options.data.model.out << ": " << result.hidden_units << " hidden units after "
+              << result.epochs << " epochs, mean squared error " << result.train_mse
+              << " in training, " << result.validation_mse << " in validation, " << seconds << " s"
+              << std::endl;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddCascadeCommand(CLI::App& app, Shared& shared) {
+  auto options = std::make_shared<Options>();
+  training::CascadeOptions& cascade = options->cascade;
+  CLI::App* command =
+      app.add_subcommand("cascade", "A cascade-correlation network on any table of numbers");
+  AddDataOptions(*command, options->data);
+  command->add_option("--hidden-max", cascade.hidden_max, "Hidden units at most")
+      ->check(CLI::Range(0, 256));
+  command->add_option("--patience", cascade.patience, "Hidden units without a better validation")
+      ->check(CLI::Range(1, 256));
+  command->add_option("--mse-goal", cascade.mse_goal, "Stop at this error of training")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--pool", cascade.candidates.pool, "Candidates for each hidden unit")
+      ->check(CLI::Range(1, 256));
+  command->add_option("--epochs-max", cascade.candidates.epochs_max, "Of a pool of candidates")
+      ->check(CLI::Range(1, 100000));
+  command->add_flag("--sigmoid", options->sigmoid, "Outputs of +-0.5, by Quickprop");
+  command->add_flag("--covariance", options->covariance,
+                    "Train candidates by covariance as in 1990, not by the error they take away");
+  command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
+}
+
+}  // namespace footing::train

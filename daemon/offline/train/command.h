@@ -1,0 +1,22 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace footing::train {
+
+/// What all subcommands share.
+struct Shared {
+  bool json = false;
+  std::string command_line;  ///< For the model's provenance.
+  int exit_code = 0;         ///< Set by the subcommand that ran.
+};
+
+/// Each adds one subcommand to footing-train; its callback does the work and sets
+/// `shared.exit_code`.
+void AddBasisCommand(CLI::App& app, Shared& shared);
+void AddCascadeCommand(CLI::App& app, Shared& shared);
+void AddComCommand(CLI::App& app, Shared& shared);
+void AddMlpCommand(CLI::App& app, Shared& shared);
+
+}  // namespace footing::train

@@ -1,0 +1,79 @@
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/cli/cli.h"
+#include "common/clock/clock.h"
+#include "common/units/units.h"
+#include "daemon/offline/train/command.h"
+#include "daemon/offline/train/model_output.h"
+#include "daemon/offline/train/training_data.h"
+#include "daemon/offline/training/mlp.h"
+
+namespace footing::train {
+namespace {
+
+struct Options {
+  DataOptions data;
+  training::MlpOptions mlp;
+};
+
+int Run(const Options& options, const Shared& shared) {
+  const Result<TrainingData> data = Load(options.data);
+  if (!data) return cli::Report(data.error());
+  const std::int64_t start_ns = clock::MonotonicNs();
+  const training::MlpResult result = training::TrainMlp(data->split.train, data->split.validation,
+                                                        options.mlp, options.data.model.seed);
+  const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
+
+  model::Model model{.kind = "mlp",
+                     .provenance = {.program_version = cli::Version(),
+                                    .command = shared.command_line,
+                                    .seed = options.data.model.seed,
+                                    .data = {data->file},
+                                    .subjects = options.data.subjects},
+                     .tensors = {}};
+  training::AppendTensors(result.network, model);
+  if (auto written = WriteModel(model, options.data.model); !written) {
+    return cli::Report(written.error());
+  }
+  const nlohmann::ordered_json report = {{"hidden_units", options.mlp.hidden},
+                                         {"epochs", result.epochs},
+                                         {"train_mse", result.train_mse},
+                                         {"validation_mse", result.validation_mse},
+                                         {"seconds", seconds},
+                                         {"goal_reached", result.goal_reached}};
+  if (shared.json) {
+    std::cout << report.dump() << std::endl;
+  } else {
+    std::cout << options.data.model.out << ": " << options.mlp.hidden << " hidden units after "
+              << result.epochs << " epochs, mean squared error " << result.train_mse
+              << " in training, " << result.validation_mse << " in validation, " << seconds << " s"
+              << (result.goal_reached ? ", goal reached" : "") << std::endl;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddMlpCommand(CLI::App& app, Shared& shared) {
+  auto options = std::make_shared<Options>();
+  training::MlpOptions& mlp = options->mlp;
+  CLI::App* command = app.add_subcommand(
+      "mlp", "A perceptron by back-propagation on the same table, to compare with");
+  AddDataOptions(*command, options->data);
+  command->add_option("--hidden", mlp.hidden, "Hidden units")->check(CLI::Range(1, 256));
+  command->add_option("--rate", mlp.rate, "Learning rate")->check(CLI::Range(1e-6, 10.0));
+  command->add_option("--momentum", mlp.momentum, "Part of the last step that goes on")
+      ->check(CLI::Range(0.0, 0.999));
+  command->add_option("--batch", mlp.batch, "Rows a step")->check(CLI::Range(1, 100000));
+  command->add_option("--epochs-max", mlp.epochs_max, "Passes over the data at most")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--patience", mlp.patience, "Epochs without a better error")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--mse-goal", mlp.mse_goal, "Stop at this error of validation: equal error")
+      ->check(CLI::NonNegativeNumber);
+  command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
+}
+
+}  // namespace footing::train

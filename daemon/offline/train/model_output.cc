@@ -1,0 +1,32 @@
+#include "daemon/offline/train/model_output.h"
+
+#include <filesystem>
+
+#include "common/recording/output_file.h"
+#include "common/wire/model_file.h"
+
+namespace footing::train {
+
+void AddModelOptions(CLI::App& command, ModelOptions& options) {
+  command.add_option("--out", options.out, "Model file to write, NAME.fmodel")->required();
+  command.add_option("--seed", options.seed, "Of first weights and noise; the same gives the same");
+  command.add_flag("--force", options.force, "Overwrite an existing model");
+}
+
+Result<void> CheckFree(const ModelOptions& options) {
+  std::error_code error;
+  if (options.force || !std::filesystem::exists(options.out, error)) return {};
+  return UsageError(options.out +
+                    " exists and is not overwritten; choose another name, or say --force");
+}
+
+Result<void> WriteModel(const model::Model& model, const ModelOptions& options) {
+  const Result<std::string> bytes = wire::ToModelFile(model);
+  if (!bytes) return bytes.error();
+  Result<recording::OutputFile> file = recording::OutputFile::Create(options.out, options.force);
+  if (!file) return file.error();
+  if (auto written = file->Write(*bytes); !written) return written;
+  return file->Sync();
+}
+
+}  // namespace footing::train

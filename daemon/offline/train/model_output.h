@@ -1,0 +1,26 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+#include "common/model/model.h"
+#include "common/result/result.h"
+
+namespace footing::train {
+
+/// What every subcommand that writes a model takes.
+struct ModelOptions {
+  std::string out;
+  bool force = false;
+  std::uint64_t seed = 1;
+};
+
+void AddModelOptions(CLI::App& command, ModelOptions& options);
+
+/// Refuses an `out` that exists, before anything is trained.
+Result<void> CheckFree(const ModelOptions& options);
+
+Result<void> WriteModel(const model::Model& model, const ModelOptions& options);
+
+}  // namespace footing::train

@@ -1,0 +1,116 @@
+#include "daemon/offline/train/motions.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "common/config/data_file.h"
+#include "common/motion/asf.h"
+#include "common/motion/bvh.h"
+#include "daemon/offline/training/alignment.h"
+
+namespace footing::train {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostBytes = 256u << 20;
+constexpr Eigen::Index kFewestFrames = 30;
+
+std::string SubjectOf(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  return model::SubjectName(stem.substr(0, stem.find('_')));
+}
+
+/// The files of one ending, by name.
+Result<std::vector<fs::path>> FilesOf(const std::string& folder, const std::string& ending) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == ending) files.push_back(it->path());
+  }
+  if (error) return Failure("cannot list " + folder + ": " + error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Result<motion::Motion> ReadAmc(const fs::path& path, const std::string& text) {
+  const Result<std::vector<fs::path>> skeletons = FilesOf(path.parent_path().string(), ".asf");
+  if (!skeletons) return skeletons.error();
+  const auto found = std::find_if(skeletons->begin(), skeletons->end(), [&](const fs::path& asf) {
+    return SubjectOf(asf) == SubjectOf(path);
+  });
+  if (found == skeletons->end()) {
+    return InvalidData(path.string() + ": no skeleton " + SubjectOf(path) + ".asf beside it");
+  }
+  const Result<std::string> asf = config::ReadTextFile(found->string(), kMostBytes);
+  if (!asf) return asf.error();
+  const Result<motion::AsfSkeleton> skeleton = motion::ParseAsf(*asf, found->string());
+  if (!skeleton) return skeleton.error();
+  return motion::ParseAmc(text, path.string(), *skeleton);
+}
+
+Result<Clip> ReadClip(const fs::path& path) {
+  const Result<std::string> text = config::ReadTextFile(path.string(), kMostBytes);
+  if (!text) return text.error();
+  const Result<motion::Motion> motion =
+      path.extension() == ".amc" ? ReadAmc(path, *text) : motion::ParseBvh(*text, path.string());
+  if (!motion) return motion.error();
+  if (motion->frames() < kFewestFrames) {
+    return InvalidData(path.string() + ": only " + std::to_string(motion->frames()) + " frames");
+  }
+  const Result<body::Body> body = body::MakeBody(motion->skeleton, {});
+  if (!body) return InvalidData(path.string() + ": " + body.error().message);
+  const std::string name = path.filename().string();
+  return Clip{.name = name,
+              .subject = SubjectOf(path),
+              .file = {.name = name, .sha256 = model::Sha256(*text)},
+              .motion = training::Aligned(*motion, body->landmarks),
+              .body = *body};
+}
+
+}  // namespace
+
+void AddMotionOptions(CLI::App& command, MotionOptions& options) {
+  command
+      .add_option("--motions", options.folders, "Folders of *.bvh, and of *.amc with their *.asf")
+      ->required();
+  command.add_option("--exclude", options.exclude,
+                     "Subjects to leave out: the model may be judged on them");
+}
+
+Result<Clips> ReadClips(const MotionOptions& options) {
+  std::set<std::string> exclude;
+  for (const std::string& subject : options.exclude) exclude.insert(model::SubjectName(subject));
+  Clips clips;
+  std::set<std::string> subjects, left_out;
+  for (const std::string& folder : options.folders) {
+    for (const char* ending : {".amc", ".bvh"}) {
+      const Result<std::vector<fs::path>> files = FilesOf(folder, ending);
+      if (!files) return files.error();
+      for (const fs::path& path : *files) {
+        Result<Clip> clip = ReadClip(path);
+        if (!clip) return clip.error();
+        const bool out = exclude.count(clip->subject) != 0;
+        (out ? left_out : subjects).insert(clip->subject);
+        (out ? clips.excluded : clips.train).push_back(std::move(*clip));
+      }
+    }
+  }
+  for (const std::string& subject : exclude) {
+    if (left_out.count(subject) == 0) {
+      return UsageError("--exclude " + subject + ": no file of that subject is there");
+    }
+  }
+  if (clips.train.empty()) return InvalidData("no *.amc or *.bvh to train on in the folders named");
+  clips.subjects = {subjects.begin(), subjects.end()};
+  return clips;
+}
+
+std::vector<model::DataFile> DataFiles(const std::vector<Clip>& clips) {
+  std::vector<model::DataFile> files;
+  for (const Clip& clip : clips) files.push_back(clip.file);
+  return files;
+}
+
+}  // namespace footing::train

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "common/body/body.h"
+#include "common/model/model.h"
+#include "common/motion/motion.h"
+#include "common/result/result.h"
+
+namespace footing::train {
+
+/// A motion file, aligned, and whose it is.
+struct Clip {
+  std::string name;     ///< Of the file, without its folder.
+  std::string subject;  ///< The name up to the first '_': "13" of 13_29.amc.
+  model::DataFile file;
+  motion::Motion motion;
+  body::Body body;
+};
+
+struct MotionOptions {
+  std::vector<std::string> folders;
+  std::vector<std::string> exclude;  ///< Subjects.
+};
+
+void AddMotionOptions(CLI::App& command, MotionOptions& options);
+
+struct Clips {
+  std::vector<Clip> train;
+  std::vector<Clip> excluded;         ///< Of the excluded subjects: to judge on, never to train on.
+  std::vector<std::string> subjects;  ///< Of `train`.
+};
+
+/// Every *.bvh and *.amc of the folders, by name. An AMC file's skeleton is SUBJECT.asf beside it,
+/// or else the first SUBJECT_*.asf. An error names the file; no file to train on is one too.
+Result<Clips> ReadClips(const MotionOptions& options);
+
+/// The data files of a model: those of the training.
+std::vector<model::DataFile> DataFiles(const std::vector<Clip>& clips);
+
+}  // namespace footing::train

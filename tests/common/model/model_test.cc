@@ -1,0 +1,91 @@
+#include "common/model/model.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace footing::model {
+namespace {
+
+using testing::HasSubstr;
+
+Model Good() {
+  Model model{.kind = "cascade",
+              .provenance = {},
+              .tensors = {{.name = "a", .shape = {2, 3}, .values = {1, 2, 3, 4, 5, 6}},
+                          {.name = "b", .shape = {1}, .values = {7}}}};
+  model.provenance.subjects = {"13", "14"};
+  return model;
+}
+
+std::string Refusal(const Model& model) {
+  const Result<void> checked = Check(model, "m.fmodel");
+  return checked.ok() ? "" : checked.error().message;
+}
+
+TEST(Model, IsGoodWhenEveryShapeFitsItsValues) { EXPECT_EQ(Refusal(Good()), ""); }
+
+TEST(Model, WithAShapeThatDoesNotFitIsRefusedByTheTensorsName) {
+  Model model = Good();
+  model.tensors[0].shape = {3, 3};
+  EXPECT_THAT(Refusal(model), HasSubstr("m.fmodel: tensor a: 6 values do not fit shape [3 x 3]"));
+  model.tensors[0].shape = {};
+  EXPECT_THAT(Refusal(model), HasSubstr("tensor a"));
+  // The product is 0 modulo 2^64.
+  model.tensors[0].values.clear();
+  model.tensors[0].shape = {1u << 31, 1u << 31, 4};
+  EXPECT_THAT(Refusal(model), HasSubstr("tensor a"));
+}
+
+TEST(Model, WithLabelsThatDoNotFitTheLastIndexIsRefused) {
+  Model model = Good();
+  model.tensors[0].labels = {"x", "y", "z"};
+  EXPECT_EQ(Refusal(model), "");
+  model.tensors[0].labels.pop_back();
+  EXPECT_THAT(Refusal(model), HasSubstr("tensor a: 2 labels do not fit shape [2 x 3]"));
+}
+
+TEST(Model, WithANumberThatIsNotFiniteIsRefused) {
+  Model model = Good();
+  model.tensors[1].values[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THAT(Refusal(model), HasSubstr("tensor b: holds a value that is not finite"));
+}
+
+TEST(Model, WithATensorTwiceOrWithoutANameOrWithoutAnyIsRefused) {
+  Model model = Good();
+  model.tensors[1].name = "a";
+  EXPECT_THAT(Refusal(model), HasSubstr("tensor a: is there twice"));
+  model.tensors[1].name = "";
+  EXPECT_THAT(Refusal(model), HasSubstr("has no name"));
+  model.tensors.clear();
+  EXPECT_THAT(Refusal(model), HasSubstr("no tensors"));
+}
+
+TEST(Model, IsNotJudgedOnAPersonItWasTrainedWith) {
+  EXPECT_TRUE(CheckNotTrainedOn(Good(), "15", "m.fmodel").ok());
+  const Result<void> refused = CheckNotTrainedOn(Good(), "14", "m.fmodel");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kInvalidData);
+  EXPECT_THAT(refused.error().message, HasSubstr("was trained on subject 14"));
+  EXPECT_FALSE(CheckNotTrainedOn(Good(), "014", "m.fmodel").ok());
+  EXPECT_TRUE(CheckNotTrainedOn(Good(), "14b", "m.fmodel").ok());
+  EXPECT_EQ(SubjectName("000"), "000");
+}
+
+TEST(Model, OfAnotherKindIsRefused) {
+  EXPECT_TRUE(CheckKind(Good(), "cascade", "m.fmodel").ok());
+  const Result<void> refused = CheckKind(Good(), "basis", "m.fmodel");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("kind cascade where kind basis belongs"));
+}
+
+TEST(Model, FindsATensorByNameAndShapeOnly) {
+  const Model model = Good();
+  ASSERT_TRUE(Find(model, "a", {2, 3}, "m.fmodel").ok());
+  EXPECT_FALSE(Find(model, "a", {3, 2}, "m.fmodel").ok());
+  EXPECT_THAT(Find(model, "c", {1}, "m.fmodel").error().message, HasSubstr("c is missing"));
+}
+
+}  // namespace
+}  // namespace footing::model
