@@ -26,10 +26,10 @@ double ReachBack(const stream::TrackSegment* previous, const stream::TrackSegmen
 GroundBox BoxOf(const stream::TrackSegment* previous, const stream::TrackSegment& segment) {
   const double back_m = ReachBack(previous, segment);
   const double half_m = (segment.length_m + back_m) / 2;
-  const Eigen::Quaterniond q_WS(
-      Eigen::AngleAxisd(segment.heading_rad, Eigen::Vector3d::UnitZ()) *
-      Eigen::AngleAxisd(-segment.slope_rad, Eigen::Vector3d::UnitY()));
-  return {segment.start_m + q_WS * Eigen::Vector3d(half_m - back_m, 0, -kHalfThicknessM), q_WS,
+  const Eigen::Quaterniond q_WS(Eigen::AngleAxisd(segment.heading_rad, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(-segment.slope_rad, Eigen::Vector3d::UnitY()));
+  return {segment.start_m + q_WS * Eigen::Vector3d(half_m - back_m, 0, -kHalfThicknessM),
+          q_WS,
           {half_m, segment.width_m / 2, kHalfThicknessM}};
 }
 

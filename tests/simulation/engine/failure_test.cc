@@ -43,8 +43,7 @@ TEST(Failure, AnOpenTrackMayBeLeft) {
 }
 
 TEST(Failure, SteppingOverTheEdgeOfAHillIsTheCurves) {
-  GaitEngine engine = EngineOn(
-      R"({"version": 1, "segments": [{"length_m": 50, "slope_deg": 1}]})");
+  GaitEngine engine = EngineOn(R"({"version": 1, "segments": [{"length_m": 50, "slope_deg": 1}]})");
   EngineInputs inputs = Direct(Command(Gait::kWalk, 1, 0.2, 0.08));
   EXPECT_EQ(FirstFailure(engine, inputs, 12).cause, FailureCause::kCurve);
 }
