@@ -1,0 +1,53 @@
+#include "daemon/simulation/pose/basis.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "common/result/result.h"
+
+namespace footing::pose {
+namespace {
+
+constexpr double kLeastVariance = 1e-9;
+constexpr double kMargin = 0.1;
+
+int Count(const Eigen::VectorXd& falling_variances, double share) {
+  const double total = falling_variances.sum();
+  double sum = 0;
+  int count = 0;
+  for (const double variance : falling_variances) {
+    if (variance < kLeastVariance || (count > 0 && sum >= share * total)) break;
+    sum += variance;
+    ++count;
+  }
+  return std::max(1, count);
+}
+
+}  // namespace
+
+PoseBasis FitBasis(const Eigen::Ref<const Eigen::MatrixXd>& poses, const BasisOptions& options) {
+  FOOTING_CHECK(poses.cols() >= 2 && poses.rows() > 3);
+  PoseBasis basis;
+  basis.mean = poses.rowwise().mean();
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(poses.rows());
+  scale.head<3>().setConstant(options.translation_weight);
+  const Eigen::MatrixXd centred = scale.asDiagonal() * (poses.colwise() - basis.mean);
+  const Eigen::MatrixXd covariance =
+      centred * centred.transpose() / static_cast<double>(poses.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+  const Eigen::VectorXd variances = solver.eigenvalues().reverse();
+  const int count = Count(variances, options.variance_share);
+  const Eigen::MatrixXd vectors = solver.eigenvectors().rowwise().reverse().leftCols(count);
+  basis.modes = scale.cwiseInverse().asDiagonal() * vectors;
+  basis.inverse = vectors.transpose() * scale.asDiagonal();
+  basis.sd = variances.head(count).cwiseSqrt();
+  const Eigen::MatrixXd coefficients = vectors.transpose() * centred;
+  basis.lower = coefficients.rowwise().minCoeff();
+  basis.upper = coefficients.rowwise().maxCoeff();
+  const Eigen::VectorXd margin = kMargin * (basis.upper - basis.lower);
+  basis.lower -= margin;
+  basis.upper += margin;
+  return basis;
+}
+
+}  // namespace footing::pose

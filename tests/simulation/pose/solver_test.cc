@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "common/body/landmarks.h"
+#include "daemon/simulation/pose/fibonacci.h"
+#include "daemon/simulation/pose/gauss_newton.h"
+#include "daemon/simulation/pose/leg_ik.h"
+
+namespace footing::pose {
+namespace {
+
+using body::Landmark;
+
+body::Body Person() {
+  body::PersonParameters parameters;
+  parameters.mass_kg = 70;
+  parameters.height_m = 1.75;
+  return body::MakeBody(body::StandardPerson(1.75), parameters).value();
+}
+
+/// Poses about the T-pose: a few correlated ways to move, like a person's.
+Eigen::MatrixXd Poses(const body::Body& person, int count, int ways, std::uint32_t seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  const int dof = person.skeleton.dof;
+  Eigen::MatrixXd directions(dof, ways);
+  for (int i = 0; i < directions.size(); ++i) directions(i) = 0.08 * normal(engine);
+  directions.topRows<3>() *= 0.3;
+  Eigen::MatrixXd poses(dof, count);
+  const Eigen::VectorXd rest = body::TPose(person.skeleton, person.landmarks);
+  for (int i = 0; i < count; ++i) {
+    poses.col(i) = rest;
+    for (int way = 0; way < ways; ++way) {
+      poses.col(i) += normal(engine) / (1 + 0.2 * way) * directions.col(way);
+    }
+  }
+  return poses;
+}
+
+struct World {
+  body::Body person = Person();
+  Eigen::MatrixXd poses = Poses(person, 400, 12, 1);
+  PoseBasis basis = FitBasis(poses, {});
+  body::Kinematics at{person.skeleton};
+
+  Eigen::Vector3d At(const Eigen::VectorXd& q, Landmark landmark) {
+    body::ComputeKinematics(person.skeleton, q, at);
+    return at.p_WJ[static_cast<std::size_t>(person.landmarks[landmark])];
+  }
+
+  /// Hands, feet and COM of a pose, as if measured exactly.
+  PoseTargets Targets(const Eigen::VectorXd& q, double sd_m) {
+    PoseTargets targets;
+    for (const Landmark landmark :
+         {Landmark::kLeftWrist, Landmark::kRightWrist, Landmark::kLeftAnkle, Landmark::kRightAnkle,
+          Landmark::kLeftToe, Landmark::kRightToe}) {
+      PointTarget point;
+      point.joint = person.landmarks[landmark];
+      point.p_W_m = At(q, landmark);
+      point.sd_m.setConstant(sd_m);
+      targets.Add(point);
+    }
+    targets.has_com = true;
+    targets.com_W_m = body::CentreOfMass(person, at);
+    targets.com_sd_m.setConstant(sd_m);
+    return targets;
+  }
+
+  double WorstM(const Eigen::VectorXd& q, const PoseTargets& targets) {
+    body::ComputeKinematics(person.skeleton, q, at);
+    double worst_m = targets.has_com ? (targets.com_W_m - body::CentreOfMass(person, at)).norm() : 0;
+    for (int i = 0; i < targets.count; ++i) {
+      const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
+      const auto joint = static_cast<std::size_t>(point.joint);
+      worst_m = std::max(worst_m, (point.p_W_m - at.p_WJ[joint] - at.R_WJ[joint] * point.p_J_m).norm());
+    }
+    return worst_m;
+  }
+};
+
+TEST(Basis, HoldsThePosesItWasMadeFrom) {
+  World world;
+  EXPECT_EQ(world.basis.size(), 12);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::VectorXd q = world.poses.col(i);
+    const Eigen::VectorXd a = world.basis.inverse * (q - world.basis.mean);
+    EXPECT_LT((world.basis.mean + world.basis.modes * a - q).norm(), 1e-9);
+    EXPECT_TRUE((a.array() >= world.basis.lower.array()).all());
+    EXPECT_TRUE((a.array() <= world.basis.upper.array()).all());
+  }
+}
+
+TEST(Basis, ItsComponentsFallInVarianceAndAShareOfItTakesFewer) {
+  World world;
+  for (int i = 1; i < world.basis.size(); ++i) {
+    EXPECT_LE(world.basis.sd(i), world.basis.sd(i - 1));
+  }
+  const PoseBasis fewer = FitBasis(world.poses, {.variance_share = 0.5});
+  EXPECT_LT(fewer.size(), world.basis.size());
+  EXPECT_GE(fewer.sd.squaredNorm(), 0.5 * world.basis.sd.squaredNorm());
+}
+
+TEST(GaussNewton, FindsAPoseOfTheSpaceFromHandsFeetAndCentreOfMass) {
+  World world;
+  for (int i = 0; i < 20; ++i) {
+    GaussNewton solver(world.person, world.basis, {});
+    const PoseTargets targets = world.Targets(world.poses.col(i), 1e-5);
+    solver.Solve(targets);
+    EXPECT_LT(world.WorstM(solver.q(), targets), 1e-3) << i;
+    EXPECT_LT((solver.q() - world.poses.col(i)).tail(53).cwiseAbs().mean(), 0.01) << i;
+  }
+}
+
+TEST(GaussNewton, WithNothingMeasuredStaysAtThePriorsMean) {
+  World world;
+  GaussNewton solver(world.person, world.basis, {});
+  const Eigen::VectorXd mean = 0.5 * world.basis.sd;
+  solver.Solve({}, mean);
+  EXPECT_LT((solver.coefficients() - mean).norm(), 1e-12);
+}
+
+TEST(GaussNewton, AngularMomentumMovesWhatHandsAndFeetDoNotShow) {
+  World world;
+  const double frame_s = 1.0 / 60;
+  GaussNewton solver(world.person, world.basis, {.iterations = 8, .smooth_weight = 0});
+  const Eigen::VectorXd before = world.poses.col(3), direction = world.basis.modes.col(2);
+  const Eigen::VectorXd after = before + 0.1 * world.basis.sd(2) * direction;
+  solver.Solve(world.Targets(before, 1e-5));
+  PoseTargets targets;
+  targets.has_angular = true;
+  targets.angular_sd.setConstant(1e-4);
+  body::JointVelocities velocities(world.person.skeleton);
+  body::ComputeKinematics(world.person.skeleton, after, world.at);
+  body::ComputeVelocities(world.person.skeleton, world.at, (after - solver.q()) / frame_s, velocities);
+  targets.angular_W = body::ComputeMomentum(world.person, world.at, velocities).angular_W;
+  const Eigen::VectorXd was = solver.q();
+  solver.Solve(targets);
+  body::ComputeKinematics(world.person.skeleton, solver.q(), world.at);
+  body::ComputeVelocities(world.person.skeleton, world.at, (solver.q() - was) / frame_s, velocities);
+  const Eigen::Vector3d reached =
+      body::ComputeMomentum(world.person, world.at, velocities).angular_W;
+  EXPECT_LT((reached - targets.angular_W).norm(), 0.02 * targets.angular_W.norm());
+}
+
+TEST(FibonacciSearch, LowersEquation6FrameByFrame) {
+  World world;
+  FibonacciSearch solver(world.person, world.basis, {});
+  const PoseTargets targets = world.Targets(world.poses.col(7), 0.02);
+  const double at_mean_m = world.WorstM(world.basis.mean, targets);
+  solver.Solve(targets);
+  double cost = solver.cost();
+  for (int frame = 0; frame < 30; ++frame) {
+    solver.Solve(targets);
+    EXPECT_LE(solver.cost(), cost * 1.01 + 1e-6);
+    cost = solver.cost();
+  }
+  EXPECT_LT(world.WorstM(solver.q(), targets), 0.25 * at_mean_m);
+}
+
+TEST(FibonacciSearch, KeepsEveryCoefficientWithinItsRange) {
+  World world;
+  FibonacciSearch solver(world.person, world.basis, {});
+  PoseTargets targets = world.Targets(world.poses.col(7), 0.02);
+  for (auto& point : targets.points) point.p_W_m *= 3;
+  for (int frame = 0; frame < 10; ++frame) solver.Solve(targets);
+  EXPECT_TRUE((solver.coefficients().array() <= world.basis.upper.array()).all());
+  EXPECT_TRUE((solver.coefficients().array() >= world.basis.lower.array()).all());
+}
+
+TEST(LegIk, BringsTheFootToItsPlaceAndMovesNothingElse) {
+  World world;
+  const body::Landmarks& at = world.person.landmarks;
+  LegIk leg(world.person, at[Landmark::kLeftHip], at[Landmark::kLeftToe]);
+  Eigen::VectorXd q = world.poses.col(5);
+  PoseTargets targets = world.Targets(q, 0.02);
+  targets.has_com = false;
+  for (int i = 0; i < targets.count; ++i) {
+    targets.points[static_cast<std::size_t>(i)].p_W_m += Eigen::Vector3d(0.03, -0.02, 0.04);
+  }
+  const Eigen::Vector3d right_before = world.At(q, Landmark::kRightAnkle);
+  const Eigen::Vector3d hips_before = world.At(q, Landmark::kHips);
+  leg.Solve(targets, 20, q);
+  EXPECT_LT((world.At(q, Landmark::kLeftAnkle) - targets.points[2].p_W_m).norm(), 0.01);
+  EXPECT_EQ(world.At(q, Landmark::kRightAnkle), right_before);
+  EXPECT_EQ(world.At(q, Landmark::kHips), hips_before);
+}
+
+}  // namespace
+}  // namespace footing::pose
