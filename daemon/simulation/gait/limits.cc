@@ -23,14 +23,15 @@ constexpr double kTurnMaxRad = 0.14;  // 8 degrees a step.
 
 biped::GaitCommand Limited(const biped::GaitCommand& command) {
   const bool finite = std::isfinite(command.speed_mps) && std::isfinite(command.height_m) &&
-                      std::isfinite(command.turn_per_step_rad);
+                      std::isfinite(command.turn_per_step_rad) && std::isfinite(command.cadence_hz);
   if (!finite) return {};
   for (const StableRange& range : kStableRanges) {
     if (range.gait != command.gait) continue;
     return {.gait = command.gait,
             .speed_mps = std::clamp(command.speed_mps, 0.0, range.speed_max_mps),
             .height_m = std::clamp(command.height_m, kHeightMinM, kHeightMaxM),
-            .turn_per_step_rad = std::clamp(command.turn_per_step_rad, -kTurnMaxRad, kTurnMaxRad)};
+            .turn_per_step_rad = std::clamp(command.turn_per_step_rad, -kTurnMaxRad, kTurnMaxRad),
+            .cadence_hz = std::max(0.0, command.cadence_hz)};
   }
   return {};
 }
