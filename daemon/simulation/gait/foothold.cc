@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/transition.h"
 #include "daemon/simulation/terrain/ground.h"
@@ -40,7 +41,7 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const WalkingGains& gains = context.gains.walking;
   const double side = -biped::Side(memory.support_leg);  // Of the swing leg.
   const auto [rate, capture_H] = SupportPendulum(context, memory);
-  const double step_time_s = gains.swing_time_s + gains.double_support_time_s;
+  const double step_time_s = SwingTime(context, memory) + gains.double_support_time_s;
   const double growth = std::exp(rate * step_time_s);
 
   const double back_m = memory.desired_speed_mps * step_time_s / (growth - 1);

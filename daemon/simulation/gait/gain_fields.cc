@@ -132,6 +132,11 @@ constexpr std::array kFields{
     GAIN(recovery, idle_yield_limit_rad, "rad", 0, 2),
     GAIN(recovery, spread_mps, "m/s", 0.01, 5),
 
+    GAIN(cadence, swing_time_min_s, "s", 0.1, 1),
+    GAIN(cadence, swing_time_max_s, "s", 0.1, 1),
+    GAIN(cadence, run_lift_off_min_mps, "m/s", 0, 5),
+    GAIN(cadence, run_lift_off_max_mps, "m/s", 0, 5),
+
     GAIN(anticipation, lean_rad_per_mps, "rad s/m", 0, 1),
     GAIN(anticipation, lean_limit_rad, "rad", 0, 1),
     GAIN(anticipation, crouch_m, "m", 0, 0.3),

@@ -151,6 +151,14 @@ struct RecoveryGains {
   double spread_mps = 0.5;            ///< At this speed aside a jump's legs are spread in full.
 };
 
+/// How far a command's cadence is followed.
+struct CadenceGains {
+  double swing_time_min_s = 0.28;  ///< 3.0 steps a second.
+  double swing_time_max_s = 0.40;  ///< 2.2.
+  double run_lift_off_min_mps = 1.0;
+  double run_lift_off_max_mps = 1.7;
+};
+
 /// What shows of a command at once.
 struct AnticipationGains {
   double lean_rad_per_mps = 0.05;  ///< Of speed still to be gained.
@@ -167,6 +175,7 @@ struct Gains {
   TransitionGains transition;
   PitGains pit;
   RecoveryGains recovery;
+  CadenceGains cadence;
   AnticipationGains anticipation;
 };
 

@@ -31,7 +31,7 @@ double HeightMax(double speed_mps, double speed_max_mps) {
 
 biped::GaitCommand Limited(const biped::GaitCommand& command) {
   const bool finite = std::isfinite(command.speed_mps) && std::isfinite(command.height_m) &&
-                      std::isfinite(command.turn_per_step_rad);
+                      std::isfinite(command.turn_per_step_rad) && std::isfinite(command.cadence_hz);
   if (!finite) return {};
   for (const StableRange& range : kStableRanges) {
     if (range.gait != command.gait) continue;
@@ -41,7 +41,8 @@ biped::GaitCommand Limited(const biped::GaitCommand& command) {
     return {.gait = command.gait,
             .speed_mps = speed_mps,
             .height_m = std::clamp(command.height_m, kHeightMinM, height_max_m),
-            .turn_per_step_rad = std::clamp(command.turn_per_step_rad, -kTurnMaxRad, kTurnMaxRad)};
+            .turn_per_step_rad = std::clamp(command.turn_per_step_rad, -kTurnMaxRad, kTurnMaxRad),
+            .cadence_hz = std::max(0.0, command.cadence_hz)};
   }
   return {};
 }

@@ -99,6 +99,7 @@ struct GaitMemory {
   Eigen::Vector3d swing_start_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d foothold_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d landed_W_m = Eigen::Vector3d::Zero();  ///< Where the supporting foot touched.
+  double swing_time_s = 0;                               ///< Of this step; 0: the gait's own.
   double support_height_m = 0;  ///< Ground's height that the hip goes by, foot ball's centre.
 
   double support_time_s = 0.2;  ///< T of equation (2), low-passed.

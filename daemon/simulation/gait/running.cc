@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/ground_plan.h"
 #include "daemon/simulation/gait/pit_sight.h"
@@ -53,7 +54,7 @@ VirtualLeg StanceLeg(const Context& context, const GaitMemory& memory) {
 /// The gait's own; what the ground asks for comes on top.
 double LevelLiftOffSpeed(const Context& context, const GaitMemory& memory) {
   if (LeavesRun(context.goal, memory)) return context.gains.transition.leaving_run_lift_off_mps;
-  if (memory.gait != Gait::kJump) return context.gains.hopping.run_lift_off_mps;
+  if (memory.gait != Gait::kJump) return RunLiftOffSpeed(context, memory);
   return std::sqrt(2 * kGravityMps2 * std::max(kLowestJumpM, context.goal.height_m));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/pit_sight.h"
 
@@ -93,7 +94,7 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
 
 bool BeginThrust(const Context& context, GaitMemory& memory) {
   const TransitionGains& gains = context.gains.transition;
-  const double swing = context.TimeIn(memory) / context.gains.walking.swing_time_s;
+  const double swing = context.TimeIn(memory) / SwingTime(context, memory);
   const bool outrun = SpeedAlongHeading(context, memory) > context.gains.recovery.outrun_mps;
   if (!(outrun || Flies(context.goal.gait)) || memory.walking != WalkingPhase::kFall ||
       swing <= gains.thrust_from_swing) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/touchdown.h"
 #include "daemon/simulation/gait/transition.h"
@@ -19,7 +20,7 @@ constexpr double kBounceS = 0.1;
 constexpr double kGroundJumpM = 0.4;
 
 double SwingProgress(const Context& context, const GaitMemory& memory) {
-  return std::clamp(context.TimeIn(memory) / context.gains.walking.swing_time_s, 0.0, 1.0);
+  return std::clamp(context.TimeIn(memory) / SwingTime(context, memory), 0.0, 1.0);
 }
 
 void Enter(WalkingPhase phase, const Context& context, GaitMemory& memory) {
@@ -28,6 +29,7 @@ void Enter(WalkingPhase phase, const Context& context, GaitMemory& memory) {
     case WalkingPhase::kDoubleSupport:
       memory.support_leg = swing_leg;
       memory.phase_start_s = context.body.time_s;
+      memory.swing_time_s = CommandedSwingTime(context);
       memory.landed_W_m = context.body.legs[swing_leg].p_WF;
       CountStep(context, memory);
       break;
@@ -88,7 +90,7 @@ Targets AdvanceWalking(const Context& context, GaitMemory& memory) {
 
   const WalkingFoothold foothold = PlanWalkingFoothold(context, memory);
   memory.foothold_W_m = foothold.p_WF_m;
-  const bool swinging = context.TimeIn(memory) < context.gains.walking.swing_time_s;
+  const bool swinging = context.TimeIn(memory) < SwingTime(context, memory);
   if (swinging) memory.phase_start_s -= foothold.hurry * context.step_s;
   if (BeginThrust(context, memory)) return {};
   return WalkingTargets(context, memory);

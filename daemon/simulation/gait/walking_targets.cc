@@ -3,6 +3,7 @@
 
 #include "common/units/units.h"
 #include "daemon/simulation/gait/anticipation.h"
+#include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/walking.h"
 #include "daemon/simulation/terrain/ground.h"
@@ -93,13 +94,14 @@ double ClearHeight(const Context& context, const GaitMemory& memory, int leg, do
 Vector3d SwingFoot(const Context& context, const GaitMemory& memory, int leg) {
   const WalkingGains& gains = context.gains.walking;
   const double time_s = context.TimeIn(memory);
-  const double swing = std::clamp(time_s / gains.swing_time_s, 0.0, 1.0);
-  const double way = std::clamp(time_s / (kSwingArrives * gains.swing_time_s), 0.0, 1.0);
+  const double swing_time_s = SwingTime(context, memory);
+  const double swing = std::clamp(time_s / swing_time_s, 0.0, 1.0);
+  const double way = std::clamp(time_s / (kSwingArrives * swing_time_s), 0.0, 1.0);
   const double smooth = way * way * (3 - 2 * way);
   Vector3d p = memory.swing_start_W_m + smooth * (memory.foothold_W_m - memory.swing_start_W_m);
   p.z() += gains.clearance_m * std::sin(kPi * swing);
-  if (time_s > gains.swing_time_s) {
-    p.z() = memory.foothold_W_m.z() - kLateDescentMps * (time_s - gains.swing_time_s);
+  if (time_s > swing_time_s) {
+    p.z() = memory.foothold_W_m.z() - kLateDescentMps * (time_s - swing_time_s);
   }
   if (context.seen_ground != nullptr && swing < kProbeUntil) {
     p.z() = std::max(p.z(), ClearHeight(context, memory, leg, swing));

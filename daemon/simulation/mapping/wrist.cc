@@ -8,6 +8,10 @@ namespace {
 
 using stream::Gait;
 
+/// Steps in a period of the hands: walking's own two; users who run swing too fast for two.
+constexpr double kWalkStepsPerSwing = 2;
+constexpr double kRunStepsPerSwing = 1;
+
 /// Mean over the hands for which it is valid.
 std::optional<double> Mean(const WristFeatures& features, bool HandFeatures::*valid,
                            double HandFeatures::*value) {
@@ -71,9 +75,11 @@ biped::GaitCommand WristInterface::Advance(double time_s, const WristFeatures& f
   switch (command_.gait) {
     case Gait::kWalk:
       command_.speed_mps = mapping_.walk_mps_from_hz(*frequency_hz);
+      command_.cadence_hz = kWalkStepsPerSwing * *frequency_hz;
       break;
     case Gait::kRun:
       command_.speed_mps = mapping_.run_mps_from_hz(*frequency_hz);
+      command_.cadence_hz = kRunStepsPerSwing * *frequency_hz;
       break;
     case Gait::kJump:
       command_.speed_mps = mapping_.jump_mps_from_hz(*frequency_hz);

@@ -56,8 +56,7 @@ void GaussNewton::Linearise(const PoseTargets& targets) {
   }
   const bool angular = targets.has_angular && started_;
   if (!targets.has_com && !angular) return;
-  const Eigen::Vector3d com_W_m =
-      body::ComputeCentroidalMatrix(body_, at_, room_, centroidal_);
+  const Eigen::Vector3d com_W_m = body::ComputeCentroidalMatrix(body_, at_, room_, centroidal_);
   if (targets.has_com) {
     jacobian_ = centroidal_.topRows<3>() / body_.mass_kg;
     AddRows(targets.com_W_m - com_W_m, targets.com_sd_m);

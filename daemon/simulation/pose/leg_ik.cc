@@ -65,7 +65,8 @@ void LegIk::Solve(const PoseTargets& targets, int iterations, Eigen::Ref<Eigen::
     }
     cholesky_.compute(normal_);
     cholesky_.solveInPlace(gradient_);
-    for (std::size_t i = 0; i < dofs_.size(); ++i) q(dofs_[i]) += gradient_(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < dofs_.size(); ++i)
+      q(dofs_[i]) += gradient_(static_cast<Eigen::Index>(i));
   }
 }
 

@@ -7,10 +7,10 @@ namespace footing::pose {
 
 /// A point of the body that is known to be somewhere.
 struct PointTarget {
-  int joint = 0;                                        ///< Whose frame it is fixed to.
-  Eigen::Vector3d p_J_m = Eigen::Vector3d::Zero();      ///< In that frame.
-  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();      ///< Where it should be.
-  Eigen::Vector3d sd_m = Eigen::Vector3d::Ones();       ///< Along W's axes, positive.
+  int joint = 0;                                    ///< Whose frame it is fixed to.
+  Eigen::Vector3d p_J_m = Eigen::Vector3d::Zero();  ///< In that frame.
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where it should be.
+  Eigen::Vector3d sd_m = Eigen::Vector3d::Ones();   ///< Along W's axes, positive.
 };
 
 inline constexpr int kMaxPoints = 16;
@@ -25,7 +25,7 @@ struct PoseTargets {
   Eigen::Vector3d com_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d com_sd_m = Eigen::Vector3d::Ones();
 
-  bool has_angular = false;  ///< Needs a pose before.
+  bool has_angular = false;                             ///< Needs a pose before.
   Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();  ///< kg m^2/s.
   Eigen::Vector3d angular_sd = Eigen::Vector3d::Ones();
 

@@ -69,11 +69,13 @@ struct World {
 
   double WorstM(const Eigen::VectorXd& q, const PoseTargets& targets) {
     body::ComputeKinematics(person.skeleton, q, at);
-    double worst_m = targets.has_com ? (targets.com_W_m - body::CentreOfMass(person, at)).norm() : 0;
+    double worst_m =
+        targets.has_com ? (targets.com_W_m - body::CentreOfMass(person, at)).norm() : 0;
     for (int i = 0; i < targets.count; ++i) {
       const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
       const auto joint = static_cast<std::size_t>(point.joint);
-      worst_m = std::max(worst_m, (point.p_W_m - at.p_WJ[joint] - at.R_WJ[joint] * point.p_J_m).norm());
+      worst_m =
+          std::max(worst_m, (point.p_W_m - at.p_WJ[joint] - at.R_WJ[joint] * point.p_J_m).norm());
     }
     return worst_m;
   }
@@ -132,12 +134,14 @@ TEST(GaussNewton, AngularMomentumMovesWhatHandsAndFeetDoNotShow) {
   targets.angular_sd.setConstant(1e-4);
   body::JointVelocities velocities(world.person.skeleton);
   body::ComputeKinematics(world.person.skeleton, after, world.at);
-  body::ComputeVelocities(world.person.skeleton, world.at, (after - solver.q()) / frame_s, velocities);
+  body::ComputeVelocities(world.person.skeleton, world.at, (after - solver.q()) / frame_s,
+                          velocities);
   targets.angular_W = body::ComputeMomentum(world.person, world.at, velocities).angular_W;
   const Eigen::VectorXd was = solver.q();
   solver.Solve(targets);
   body::ComputeKinematics(world.person.skeleton, solver.q(), world.at);
-  body::ComputeVelocities(world.person.skeleton, world.at, (solver.q() - was) / frame_s, velocities);
+  body::ComputeVelocities(world.person.skeleton, world.at, (solver.q() - was) / frame_s,
+                          velocities);
   const Eigen::Vector3d reached =
       body::ComputeMomentum(world.person, world.at, velocities).angular_W;
   EXPECT_LT((reached - targets.angular_W).norm(), 0.02 * targets.angular_W.norm());
