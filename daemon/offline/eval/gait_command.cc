@@ -163,6 +163,7 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
                               double step_cost_ratio) {
   nlohmann::ordered_json report{{"gait", options.gait},
                                 {"speed_mps", options.speed_mps},
+                                {"height_m", CommandOf(options).height_m},
                                 {"seconds", options.seconds},
                                 {"seed", seed},
                                 {"trials", options.trials},

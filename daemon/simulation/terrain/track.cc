@@ -162,6 +162,23 @@ CentrePoint On(const stream::TrackSegment& segment, double along_m) {
 
 }  // namespace
 
+namespace {
+
+/// A place along a segment, moved off the edges of pits before and behind it; between two pits
+/// nearer than both margins its middle.
+double OffPits(const stream::Track& track, int index, double along_m) {
+  constexpr double kMarginM = 0.5;
+  const auto i = static_cast<std::size_t>(index);
+  const double length_m = track.segments[i].length_m;
+  const bool pit_behind = i > 0 && track.segments[i - 1].pit;
+  const bool pit_ahead = i + 1 < track.segments.size() && track.segments[i + 1].pit;
+  const double least_m = pit_behind ? kMarginM : 0;
+  const double most_m = pit_ahead ? length_m - kMarginM : length_m;
+  return least_m < most_m ? std::clamp(along_m, least_m, most_m) : length_m / 2;
+}
+
+}  // namespace
+
 CentrePoint CentreBehind(const stream::Track& track, const TrackPlace& place, double back_m) {
   int index = place.segment;
   double along_m = place.along_m - back_m;
@@ -170,7 +187,7 @@ CentrePoint CentreBehind(const stream::Track& track, const TrackPlace& place, do
     --index;
     along_m += track.segments[index].length_m;
   }
-  return On(track.segments[index], std::max(along_m, 0.0));
+  return On(track.segments[index], OffPits(track, index, std::max(along_m, 0.0)));
 }
 
 CentrePoint CentreAhead(const stream::Track& track, const TrackPlace& place, double ahead_m) {

@@ -48,8 +48,8 @@ struct CentrePoint {
   double heading_rad = 0;
 };
 
-/// The centre line `back_m` before a place: never in a pit (then before it), never before the
-/// start.
+/// The centre line `back_m` before a place: never in a pit nor within 0.5 m of its edge (then
+/// before it), never before the start.
 CentrePoint CentreBehind(const stream::Track& track, const TrackPlace& place, double back_m);
 
 /// The centre line `ahead_m` after a place, pits included, at most its end.

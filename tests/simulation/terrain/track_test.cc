@@ -52,7 +52,10 @@ TEST(Track, PutsBackOnTheCentreLineAndNeverIntoAPit) {
   // 1 m into the last segment, 3 m back would be in the pit: its near edge instead, or before.
   const auto& last = track.segments[3];
   const CentrePoint before_pit = CentreBehind(track, {3, 2.5, 0}, 3);
-  EXPECT_LE(before_pit.p_W_m.x(), track.segments[2].start_m.x() + 1e-9);
+  EXPECT_LE(before_pit.p_W_m.x(), track.segments[2].start_m.x() - 0.49);
+  // On the far side there is room behind the edge too.
+  const CentrePoint behind_pit = CentreBehind(track, {3, 0.2, 0}, 0);
+  EXPECT_GE(behind_pit.p_W_m.y(), last.start_m.y() + 0.49);
   EXPECT_LT(before_pit.p_W_m.x(), last.start_m.x());
 }
 
