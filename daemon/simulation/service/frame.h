@@ -22,6 +22,7 @@ struct Applied {
 
 inline constexpr int kMaxApplied = 16;
 inline constexpr int kMaxFrameEvents = 32;
+inline constexpr int kMaxAdded = 64;
 
 /// What the simulation thread hands over some hundred times a second. Fixed size: filling and
 /// moving it allocates nothing.
@@ -32,6 +33,8 @@ struct Frame {
   int event_count = 0;
   std::array<Applied, kMaxApplied> applied;  ///< Since the last frame.
   int applied_count = 0;
+  std::array<stream::TrackSegment, kMaxAdded> added;  ///< To the track's end, since the last frame.
+  int added_count = 0;
   std::int64_t command_ns = 0;  ///< When the gait command last changed.
   std::int64_t contact_ns = 0;  ///< When its controller took over.
 };

@@ -1,5 +1,7 @@
 #include "daemon/simulation/service/publish.h"
 
+#include <algorithm>
+
 #include "common/wire/wire.h"
 
 namespace footing::simulation {
@@ -123,6 +125,16 @@ v1::AppliedInput ToAppliedInput(const Applied& applied) {
   message.set_push_x_ns(inputs.push_impulse_W_ns.x());
   message.set_push_y_ns(inputs.push_impulse_W_ns.y());
   message.set_put_back_number(inputs.put_back_number);
+  message.set_append_number(inputs.append_number);
+  for (int i = 0; i < inputs.append_count; ++i) {
+    const terrain::NewSegment& segment = inputs.appends[static_cast<std::size_t>(i)];
+    v1::AppendedSegment& append = *message.add_appends();
+    append.set_length_m(segment.length_m);
+    append.set_slope_rad(segment.slope_rad);
+    append.set_curve_rad(segment.curve_rad);
+    append.set_step_m(segment.step_m);
+    append.set_pit(segment.pit);
+  }
   return message;
 }
 
@@ -146,6 +158,13 @@ Applied FromAppliedInput(const v1::AppliedInput& message) {
   inputs.push_number = message.push_number();
   inputs.push_impulse_W_ns = {message.push_x_ns(), message.push_y_ns()};
   inputs.put_back_number = message.put_back_number();
+  inputs.append_number = message.append_number();
+  inputs.append_count = std::min(message.appends_size(), engine::kMaxAppends);
+  for (int i = 0; i < inputs.append_count; ++i) {
+    const v1::AppendedSegment& append = message.appends(i);
+    inputs.appends[static_cast<std::size_t>(i)] = {
+        append.length_m(), append.slope_rad(), append.curve_rad(), append.step_m(), append.pit()};
+  }
   return applied;
 }
 

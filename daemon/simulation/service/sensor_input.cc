@@ -1,5 +1,6 @@
 #include "daemon/simulation/service/sensor_input.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -51,6 +52,30 @@ void SensorInput::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   }
 }
 
+/// The engine takes one segment a step, so those not yet taken wait in the inputs.
+v1::CommandResult SensorInput::Append(const v1::AppendSegment& message) {
+  const terrain::NewSegment segment{message.length_m(), message.slope_rad(), message.curve_rad(),
+                                    message.step_m(), message.pit()};
+  for (const double number :
+       {segment.length_m, segment.slope_rad, segment.curve_rad, segment.step_m}) {
+    if (!std::isfinite(number)) {
+      return Answer(false, "append_segment: every number must be finite");
+    }
+  }
+  engine::EngineInputs& engine = inputs_.engine;
+  const auto waiting = static_cast<int>(engine.append_number - appends_taken_);
+  if (waiting >= engine::kMaxAppends) {
+    return Answer(false, "append_segment: 16 segments wait to be taken; try again in a moment");
+  }
+  std::move(engine.appends.begin() + engine.append_count - waiting,
+            engine.appends.begin() + engine.append_count, engine.appends.begin());
+  engine.append_count = waiting;
+  engine.appends[static_cast<std::size_t>(engine.append_count++)] = segment;
+  ++engine.append_number;
+  Publish();
+  return Answer(true, "");
+}
+
 v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
   engine::EngineInputs& engine = inputs_.engine;
   switch (command.action_case()) {
@@ -81,8 +106,10 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
     case v1::Command::kPutBack:
       ++engine.put_back_number;
       break;
+    case v1::Command::kAppendSegment:
+      return Append(command.append_segment());
     default:
-      return Answer(false, "footing-sim takes direct_gait, push and put_back");
+      return Answer(false, "footing-sim takes direct_gait, push, put_back and append_segment");
   }
   Publish();
   return Answer(true, "");

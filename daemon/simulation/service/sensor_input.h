@@ -17,12 +17,15 @@ class SensorInput {
   SensorInput(std::string rig, exchange::Latest<Inputs>& out, Responses& responses);
 
   void OnTick(const v1::Tick& tick, std::int64_t now_ns);
-  /// DirectGait, Push and PutBack; anything else is answered with what there is.
+  /// What the engine has done with the inputs so far.
+  void OnFrame(const Frame& frame) { appends_taken_ = frame.output.append_number; }
+  /// DirectGait, Push, PutBack and AppendSegment; anything else is answered with what there is.
   v1::CommandResult OnCommand(const v1::Command& command);
 
   const std::string& rig() const { return followed_rig_; }
 
  private:
+  v1::CommandResult Append(const v1::AppendSegment& message);
   void Publish() { out_.Write(inputs_); }
 
   const std::string wanted_rig_;
@@ -30,6 +33,7 @@ class SensorInput {
   exchange::Latest<Inputs>& out_;
   Responses& responses_;
   Inputs inputs_;
+  std::uint64_t appends_taken_ = 0;  ///< Or refused, by the engine.
 };
 
 }  // namespace footing::simulation

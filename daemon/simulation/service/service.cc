@@ -18,6 +18,7 @@
 #include "daemon/simulation/service/publish.h"
 #include "daemon/simulation/service/sensor_input.h"
 #include "daemon/simulation/service/simulation_thread.h"
+#include "daemon/simulation/terrain/append.h"
 
 namespace footing::simulation {
 namespace {
@@ -75,6 +76,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
         thread_(std::move(engine), engine_config.step_s,
                 static_cast<int>(std::lround(1.0 / (engine_config.step_s * config.frame_rate_hz))),
                 wake_descriptor),
+        track_(thread_.engine().track()),
         input_(config.rig, thread_.inputs(), responses_),
         server_(io, MakeServerOptions(config, version),
                 {[this](const transport::SessionInfo&, const v1::Command& command) {
@@ -136,7 +138,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     v1::Skeletons skeletons;
     skeletons.set_world(world_);
     *skeletons.add_skeletons() = wire::ToProto(thread_.engine().skeleton());
-    const v1::Track track = wire::ToProto(thread_.engine().track());
+    const v1::Track track = wire::ToProto(track_);
     server_.Publish(clock::MonotonicNs(), {Bytes(kSkeletons, skeletons), Bytes(kTrack, track)});
   }
 
@@ -156,7 +158,12 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
 
   void PublishFrame(const Frame& frame) {
     const std::int64_t now_ns = clock::MonotonicNs();
+    input_.OnFrame(frame);
     std::vector<transport::ChannelBytes> channels;
+    for (int i = 0; i < frame.added_count; ++i) {
+      terrain::Add(frame.added[static_cast<std::size_t>(i)], track_);
+    }
+    if (frame.added_count > 0) channels.push_back(Bytes(kTrack, wire::ToProto(track_)));
     channels.push_back(Bytes(kCharacters, ToCharacterFrame(frame, world_, input_.rig())));
     v1::Events events;
     for (int i = 0; i < frame.event_count; ++i) {
@@ -186,6 +193,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   Frame frame_;
   Responses responses_;
   SimulationThread thread_;
+  stream::Track track_;  ///< The engine's, as of the last frame: the engine is its thread's alone.
   SensorInput input_;
   transport::Server server_;
   std::unique_ptr<transport::Client> client_;

@@ -54,7 +54,9 @@ void SimulationThread::RunOnSimThread() {
 }
 
 void SimulationThread::StepOnSimThread() {
-  const bool room = frame_.applied_count < kMaxApplied;
+  // One input adds at most kMaxAppends segments, of which each has its place in the frame.
+  const bool room =
+      frame_.applied_count < kMaxApplied && frame_.added_count + engine::kMaxAppends <= kMaxAdded;
   if (room && inputs_.Refresh()) {
     Applied& applied = frame_.applied[static_cast<std::size_t>(frame_.applied_count++)];
     applied.step = engine_.Output().step + 1;
@@ -62,6 +64,9 @@ void SimulationThread::StepOnSimThread() {
   }
   engine_.Advance(inputs_.Front().engine);
   const engine::EngineOutput& output = engine_.Output();
+  if (output.appended && frame_.added_count < kMaxAdded) {
+    frame_.added[static_cast<std::size_t>(frame_.added_count++)] = engine_.track().segments.back();
+  }
   if (output.commanded_step == output.step) frame_.command_ns = clock::MonotonicNs();
   if (output.taken_over_step == output.step) frame_.contact_ns = clock::MonotonicNs();
   for (int i = 0; i < output.event_count && frame_.event_count < kMaxFrameEvents; ++i) {
@@ -76,6 +81,7 @@ void SimulationThread::HandOverOnSimThread() {
   if (!frames_.Push(frame_)) return;
   frame_.event_count = 0;
   frame_.applied_count = 0;
+  frame_.added_count = 0;
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = write(wake_descriptor_, &one, sizeof(one));
 }

@@ -98,7 +98,10 @@ const char* WhyNotAppended(const stream::Track& track, const NewSegment& segment
 }
 
 void Append(const NewSegment& segment, stream::Track& track) {
-  const stream::TrackSegment placed = Placed(segment, track.segments.back());
+  Add(Placed(segment, track.segments.back()), track);
+}
+
+void Add(const stream::TrackSegment& placed, stream::Track& track) {
   if (track.segments.size() >= kMostSegments) track.segments.erase(track.segments.begin());
   track.segments.push_back(placed);
   ++track.revision;

@@ -29,5 +29,7 @@ const char* WhyNotAppended(const stream::Track& track, const NewSegment& segment
 /// Adds a segment that may be added, counts the revision up, and drops the oldest segment beyond
 /// kMostSegments.
 void Append(const NewSegment& segment, stream::Track& track);
+/// The same with a segment that Append has placed on another copy of the track.
+void Add(const stream::TrackSegment& placed, stream::Track& track);
 
 }  // namespace footing::terrain

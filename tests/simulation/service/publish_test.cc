@@ -22,6 +22,10 @@ TEST(Publish, AppliedInputsComeBackBitForBit) {
   inputs.push_number = 2;
   inputs.push_impulse_W_ns = {1.5, -2.5};
   inputs.put_back_number = 3;
+  inputs.append_number = 9;
+  inputs.append_count = 2;
+  inputs.appends[0] = {2.5, 0.05, -0.2, 0.1, false};
+  inputs.appends[1] = {1.5, 0, 0, 0, true};
 
   const std::string bytes = ToAppliedInput(applied).SerializeAsString();
   v1::AppliedInput message;
@@ -30,6 +34,9 @@ TEST(Publish, AppliedInputsComeBackBitForBit) {
   EXPECT_EQ(ToAppliedInput(back).SerializeAsString(), bytes);
   EXPECT_EQ(back.inputs.engine.features.left.frequency_hz, 1.0 / 3);
   EXPECT_EQ(back.inputs.engine.direct_command, inputs.direct_command);
+  ASSERT_EQ(back.inputs.engine.append_count, 2);
+  EXPECT_EQ(back.inputs.engine.appends[0].step_m, 0.1);
+  EXPECT_TRUE(back.inputs.engine.appends[1].pit);
 }
 
 TEST(Publish, AFrameCarriesEveryLinkAndContact) {

@@ -109,5 +109,38 @@ TEST_F(SensorInputTest, EachPushHasItsOwnNumber) {
   EXPECT_DOUBLE_EQ(inputs.Front().engine.push_impulse_W_ns.y(), 5);
 }
 
+v1::Command AppendOf(double length_m) {
+  v1::Command command;
+  command.mutable_append_segment()->set_length_m(length_m);
+  return command;
+}
+
+TEST_F(SensorInputTest, SegmentsWaitInOrderUntilTheEngineHasTakenThem) {
+  SensorInput input("", inputs, responses);
+  for (int i = 0; i < engine::kMaxAppends; ++i) {
+    EXPECT_TRUE(input.OnCommand(AppendOf(2 + 0.1 * i)).ok());
+  }
+  const v1::CommandResult full = input.OnCommand(AppendOf(3));
+  EXPECT_FALSE(full.ok());
+  EXPECT_THAT(full.message(), HasSubstr("try again"));
+
+  Frame frame;
+  frame.output.append_number = 5;
+  input.OnFrame(frame);
+  EXPECT_TRUE(input.OnCommand(AppendOf(4)).ok());
+  ASSERT_TRUE(inputs.Refresh());
+  const engine::EngineInputs& engine = inputs.Front().engine;
+  EXPECT_EQ(engine.append_number, 17u);
+  ASSERT_EQ(engine.append_count, 12);
+  EXPECT_DOUBLE_EQ(engine.appends[0].length_m, 2.5);  // The sixth.
+  EXPECT_DOUBLE_EQ(engine.appends[11].length_m, 4);
+}
+
+TEST_F(SensorInputTest, ASegmentMustBeFinite) {
+  SensorInput input("", inputs, responses);
+  EXPECT_FALSE(input.OnCommand(AppendOf(std::numeric_limits<double>::quiet_NaN())).ok());
+  EXPECT_FALSE(inputs.Refresh());
+}
+
 }  // namespace
 }  // namespace footing::simulation
