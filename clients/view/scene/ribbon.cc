@@ -39,6 +39,25 @@ struct SegmentFrame {
   }
 };
 
+/// How far a segment's edges run back or on, per metre to the left of the centre line: where the
+/// track turns, both segments end on the line that halves the turn.
+struct Mitre {
+  double start = 0;  ///< Along offset of the start, over sideways.
+  double end = 0;    ///< The same of the end, which runs on.
+};
+
+Mitre MitreOf(const stream::Track& track, std::size_t i) {
+  const auto half_turn = [&](std::size_t before, std::size_t after) {
+    const double turn_rad = std::remainder(
+        track.segments[after].heading_rad - track.segments[before].heading_rad, 2 * M_PI);
+    return std::tan(turn_rad / 2);
+  };
+  Mitre mitre;
+  if (i > 0) mitre.start = half_turn(i - 1, i);
+  if (i + 1 < track.segments.size()) mitre.end = -half_turn(i, i + 1);
+  return mitre;
+}
+
 class Painter {
  public:
   explicit Painter(RibbonMesh& mesh) : mesh_(mesh) {}
@@ -55,6 +74,29 @@ class Painter {
     Face(first);
   }
 
+  /// The whole face of a segment, with mitred ends.
+  void Face(const SegmentFrame& frame, float from_m, const Mitre& mitre, float up_m, Kind kind) {
+    const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+    const float w = frame.half_width;
+    for (const Eigen::Vector2f& p :
+         {StartAt(mitre, -w), EndAt(frame, mitre, -w), EndAt(frame, mitre, w), StartAt(mitre, w)}) {
+      mesh_.vertices.push_back({frame.At(p.x(), p.y(), up_m), frame.up, from_m + p.x(), p.y(), w,
+                                static_cast<float>(kind)});
+    }
+    Face(first);
+  }
+
+  void Walls(const SegmentFrame& frame, const Mitre& mitre, float ground) {
+    const float w = frame.half_width;
+    const auto at = [&frame](const Eigen::Vector2f& p) { return frame.At(p.x(), p.y(), 0); };
+    const Eigen::Vector3f a = at(StartAt(mitre, -w)), b = at(EndAt(frame, mitre, -w));
+    const Eigen::Vector3f c = at(EndAt(frame, mitre, w)), d = at(StartAt(mitre, w));
+    Wall(a, b, ground);
+    Wall(c, d, ground);
+    Wall(d, a, ground);
+    Wall(b, c, ground);
+  }
+
   /// From an upper edge a-b straight down to height `ground`.
   void Wall(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float ground) {
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
@@ -65,6 +107,12 @@ class Painter {
   }
 
  private:
+  static Eigen::Vector2f StartAt(const Mitre& mitre, float left_m) {
+    return {left_m * static_cast<float>(mitre.start), left_m};
+  }
+  static Eigen::Vector2f EndAt(const SegmentFrame& frame, const Mitre& mitre, float left_m) {
+    return {frame.length + left_m * static_cast<float>(mitre.end), left_m};
+  }
   void Corner(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) {
     mesh_.vertices.push_back({p, normal, 0, 0, 1, static_cast<float>(kSide)});
   }
@@ -105,14 +153,11 @@ RibbonMesh BuildRibbon(const stream::Track& track) {
   for (std::size_t i = 0; i < count; ++i) {
     const stream::TrackSegment& segment = track.segments[i];
     const SegmentFrame frame(segment);
-    const float w = frame.half_width;
-    painter.Quad(frame, static_cast<float>(from_m), {0, -w}, {frame.length, w},
-                 segment.pit ? -kPitDepthM : 0, segment.pit ? kPit : kSurface);
+    const Mitre mitre = MitreOf(track, i);
+    painter.Face(frame, static_cast<float>(from_m), mitre, segment.pit ? -kPitDepthM : 0,
+                 segment.pit ? kPit : kSurface);
     if (!segment.pit) {
-      painter.Wall(frame.At(0, -w, 0), frame.At(frame.length, -w, 0), ground);
-      painter.Wall(frame.At(frame.length, w, 0), frame.At(0, w, 0), ground);
-      painter.Wall(frame.At(0, w, 0), frame.At(0, -w, 0), ground);
-      painter.Wall(frame.At(frame.length, -w, 0), frame.At(frame.length, w, 0), ground);
+      painter.Walls(frame, mitre, ground);
       PaintNumbers(painter, frame, from_m);
     }
     from_m += segment.length_m;
@@ -121,12 +166,15 @@ RibbonMesh BuildRibbon(const stream::Track& track) {
 }
 
 double HeightAt(const stream::Track& track, const Eigen::Vector2d& p_m, double ground_m) {
-  for (const stream::TrackSegment& segment : track.segments) {
+  for (std::size_t i = 0; i < track.segments.size(); ++i) {
+    const stream::TrackSegment& segment = track.segments[i];
+    const Mitre mitre = MitreOf(track, i);
     const Eigen::Vector2d forward(std::cos(segment.heading_rad), std::sin(segment.heading_rad));
     const Eigen::Vector2d from_start = p_m - segment.start_m.head<2>();
     const double along_m = from_start.dot(forward);
     const double sideways_m = forward.x() * from_start.y() - forward.y() * from_start.x();
-    if (along_m < 0 || along_m > segment.length_m * std::cos(segment.slope_rad)) continue;
+    const double length_m = segment.length_m * std::cos(segment.slope_rad);
+    if (along_m < mitre.start * sideways_m || along_m > length_m + mitre.end * sideways_m) continue;
     if (std::abs(sideways_m) > segment.width_m / 2 || segment.pit) continue;
     return segment.start_m.z() + along_m * std::tan(segment.slope_rad);
   }

@@ -45,6 +45,33 @@ TEST(Ribbon, NormalsOfTheSurfacePointUp) {
   }
 }
 
+TEST(Ribbon, SegmentsMeetWithoutAGapWhereTheTrackTurns) {
+  stream::Track track = made::StraightTrack(10);
+  stream::TrackSegment& first = track.segments.front();
+  stream::TrackSegment turned = first;
+  turned.start_m = first.start_m + Eigen::Vector3d(10, 0, 0);
+  turned.heading_rad = 0.5;
+  track.segments.push_back(turned);
+  const RibbonMesh mesh = BuildRibbon(track);
+  // The first four vertices of a segment are its face: start right, end right, end left, start
+  // left.
+  const auto face = [&mesh](float from_m) {
+    std::vector<Eigen::Vector3f> corners;
+    for (const RibbonVertex& v : mesh.vertices) {
+      if (v.kind == 0 && v.along_m > from_m - 1.2f && v.along_m < from_m + 1.2f) {
+        corners.push_back(v.position);
+      }
+    }
+    return corners;
+  };
+  const auto joint = face(10);
+  ASSERT_EQ(joint.size(), 4u);
+  EXPECT_LT((joint[0] - joint[2]).norm(), 1e-5f);  // Right: end of the first, start of the second.
+  EXPECT_LT((joint[1] - joint[3]).norm(), 1e-5f);  // Left.
+  // Just outside the bend, where the gap was.
+  EXPECT_EQ(HeightAt(track, {8.2, -1.5}, -1), 0);
+}
+
 TEST(HeightAt, FollowsTheSlopeAndLeavesPitsAndTheGroundAlone) {
   stream::Track track = made::StraightTrack(10);
   track.segments[0].slope_rad = DegreesToRadians(5);
