@@ -82,7 +82,8 @@ TEST(CellErrors, NoiseGainAndSlowErrorHaveTheirSpread) {
   double square = 0;
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     config.seed = seed;
-    for (const double gain : CellErrors(config).gains()) square += std::pow(gain - 1, 2);
+    const CellErrors spread(config);
+    for (const double gain : spread.gains()) square += std::pow(gain - 1, 2);
   }
   EXPECT_NEAR(std::sqrt(square / 2000), 0.01, 0.001);
 }
