@@ -300,7 +300,7 @@ class Assembly {
       if (parent_name != of) continue;
       any = true;
       const Bone& bone = *std::find_if(parsed_.bones.begin(), parsed_.bones.end(),
-                                       [&](const Bone& b) { return b.name == child; });
+                                       [&name = child](const Bone& b) { return b.name == name; });
       body::Joint joint;
       joint.name = child;
       joint.parent = parent;
