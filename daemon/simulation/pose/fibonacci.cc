@@ -16,8 +16,8 @@ double Squared(const Eigen::Vector3d& error, const Eigen::Vector3d& sd) {
 
 FibonacciSearch::FibonacciSearch(const body::Body& body, const PoseBasis& basis,
                                  const FibonacciOptions& options)
-    : body_(body),
-      basis_(basis),
+    : body_(&body),
+      basis_(&basis),
       options_(options),
       a_(Eigen::VectorXd::Zero(basis.size())),
       q_(basis.mean),
@@ -30,7 +30,7 @@ FibonacciSearch::FibonacciSearch(const body::Body& body, const PoseBasis& basis,
 }
 
 double FibonacciSearch::Cost(const PoseTargets& targets) {
-  body::ComputeKinematics(body_.skeleton, q_, at_);
+  body::ComputeKinematics(body_->skeleton, q_, at_);
   double cost = 0;
   for (int i = 0; i < targets.count; ++i) {
     const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
@@ -38,12 +38,12 @@ double FibonacciSearch::Cost(const PoseTargets& targets) {
     cost += Squared(point.p_W_m - at_.p_WJ[joint] - at_.R_WJ[joint] * point.p_J_m, point.sd_m);
   }
   if (targets.has_com) {
-    cost += Squared(targets.com_W_m - body::CentreOfMass(body_, at_), targets.com_sd_m);
+    cost += Squared(targets.com_W_m - body::CentreOfMass(*body_, at_), targets.com_sd_m);
   }
   if (targets.has_angular && started_) {
     rate_ = (q_ - q_before_) / options_.frame_s;
-    body::ComputeVelocities(body_.skeleton, at_, rate_, velocities_);
-    const body::Momentum momentum = body::ComputeMomentum(body_, at_, velocities_);
+    body::ComputeVelocities(body_->skeleton, at_, rate_, velocities_);
+    const body::Momentum momentum = body::ComputeMomentum(*body_, at_, velocities_);
     cost += Squared(targets.angular_W - momentum.angular_W, targets.angular_sd);
   }
   return cost;
@@ -51,7 +51,7 @@ double FibonacciSearch::Cost(const PoseTargets& targets) {
 
 double FibonacciSearch::CostAt(const PoseTargets& targets, int component, double value) {
   q_ = without_;
-  q_.noalias() += value * basis_.modes.col(component);
+  q_.noalias() += value * basis_->modes.col(component);
   return Cost(targets);
 }
 
@@ -59,9 +59,9 @@ double FibonacciSearch::CostAt(const PoseTargets& targets, int component, double
 /// minimum of a function with a single one.
 void FibonacciSearch::Search(const PoseTargets& targets, int component, double lower,
                              double upper) {
-  without_ = basis_.mean;
-  without_.noalias() += basis_.modes * a_;
-  without_.noalias() -= a_(component) * basis_.modes.col(component);
+  without_ = basis_->mean;
+  without_.noalias() += basis_->modes * a_;
+  without_.noalias() -= a_(component) * basis_->modes.col(component);
   double shorter = 1, longer = 1;
   for (int i = 0; i < options_.evaluations - 1; ++i) {
     shorter = std::exchange(longer, longer + shorter);
@@ -88,20 +88,20 @@ void FibonacciSearch::Search(const PoseTargets& targets, int component, double l
 
 void FibonacciSearch::Solve(const PoseTargets& targets) {
   if (!started_) a_.setZero();
-  q_before_ = basis_.mean;
-  q_before_.noalias() += basis_.modes * a_;
+  q_before_ = basis_->mean;
+  q_before_.noalias() += basis_->modes * a_;
   const int sweeps = started_ ? options_.sweeps : options_.first_sweeps;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (int i = 0; i < basis_.size(); ++i) {
+    for (int i = 0; i < basis_->size(); ++i) {
       const double reach =
-          started_ ? options_.span * basis_.sd(i) : (basis_.upper(i) - basis_.lower(i)) / 2;
-      const double lower = std::max(basis_.lower(i), a_(i) - reach);
-      const double upper = std::min(basis_.upper(i), a_(i) + reach);
+          started_ ? options_.span * basis_->sd(i) : (basis_->upper(i) - basis_->lower(i)) / 2;
+      const double lower = std::max(basis_->lower(i), a_(i) - reach);
+      const double upper = std::min(basis_->upper(i), a_(i) + reach);
       if (lower < upper) Search(targets, i, lower, upper);
     }
   }
-  q_ = basis_.mean;
-  q_.noalias() += basis_.modes * a_;
+  q_ = basis_->mean;
+  q_.noalias() += basis_->modes * a_;
   cost_ = Cost(targets);
   started_ = true;
 }

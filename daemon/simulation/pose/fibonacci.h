@@ -44,8 +44,8 @@ class FibonacciSearch {
   double CostAt(const PoseTargets& targets, int component, double value);
   void Search(const PoseTargets& targets, int component, double lower, double upper);
 
-  const body::Body& body_;
-  const PoseBasis& basis_;
+  const body::Body* body_;
+  const PoseBasis* basis_;
   FibonacciOptions options_;
   bool started_ = false;
   double cost_ = 0;

@@ -1,6 +1,7 @@
 #include "daemon/simulation/pose/gauss_newton.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/result/result.h"
 
@@ -13,8 +14,8 @@ constexpr int kMaxRows = 3 * kMaxPoints + 6;
 
 GaussNewton::GaussNewton(const body::Body& body, const PoseBasis& basis,
                          const GaussNewtonOptions& options)
-    : body_(body),
-      basis_(basis),
+    : body_(&body),
+      basis_(&basis),
       options_(options),
       no_mean_(Eigen::VectorXd::Zero(basis.size())),
       a_(no_mean_),
@@ -28,6 +29,7 @@ GaussNewton::GaussNewton(const body::Body& body, const PoseBasis& basis,
       jacobian_(3, basis.dof()),
       rows_(kMaxRows, basis.size()),
       residuals_(kMaxRows),
+      spread_(basis.size(), 3),
       at_(body.skeleton),
       room_(body.skeleton),
       centroidal_(6, basis.dof()),
@@ -39,26 +41,26 @@ GaussNewton::GaussNewton(const body::Body& body, const PoseBasis& basis,
 void GaussNewton::AddRows(const Eigen::Vector3d& residual, const Eigen::Vector3d& sd) {
   const Eigen::Vector3d weight = sd.cwiseInverse();
   jacobian_ = weight.asDiagonal() * jacobian_;
-  rows_.middleRows<3>(row_count_).noalias() = jacobian_ * basis_.modes;
+  rows_.middleRows<3>(row_count_).noalias() = jacobian_ * basis_->modes;
   residuals_.segment<3>(row_count_) = weight.cwiseProduct(residual);
   row_count_ += 3;
 }
 
 void GaussNewton::Linearise(const PoseTargets& targets) {
-  body::ComputeKinematics(body_.skeleton, q_, at_);
+  body::ComputeKinematics(body_->skeleton, q_, at_);
   row_count_ = 0;
   for (int i = 0; i < targets.count; ++i) {
     const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
     const auto joint = static_cast<std::size_t>(point.joint);
     const Eigen::Vector3d p_W_m = at_.p_WJ[joint] + at_.R_WJ[joint] * point.p_J_m;
-    body::PointJacobian(body_.skeleton, at_, point.joint, p_W_m, jacobian_);
+    body::PointJacobian(body_->skeleton, at_, point.joint, p_W_m, jacobian_);
     AddRows(point.p_W_m - p_W_m, point.sd_m);
   }
   const bool angular = targets.has_angular && started_;
   if (!targets.has_com && !angular) return;
-  const Eigen::Vector3d com_W_m = body::ComputeCentroidalMatrix(body_, at_, room_, centroidal_);
+  const Eigen::Vector3d com_W_m = body::ComputeCentroidalMatrix(*body_, at_, room_, centroidal_);
   if (targets.has_com) {
-    jacobian_ = centroidal_.topRows<3>() / body_.mass_kg;
+    jacobian_ = centroidal_.topRows<3>() / body_->mass_kg;
     AddRows(targets.com_W_m - com_W_m, targets.com_sd_m);
   }
   if (angular) {
@@ -71,9 +73,9 @@ void GaussNewton::Linearise(const PoseTargets& targets) {
 
 double GaussNewton::Cost(const Eigen::Ref<const Eigen::VectorXd>& prior_mean) const {
   double cost = residuals_.head(row_count_).squaredNorm();
-  for (int i = 0; i < basis_.size(); ++i) {
+  for (int i = 0; i < basis_->size(); ++i) {
     const double off = a_(i) - prior_mean(i), moved = a_(i) - a_before_(i);
-    cost += (prior_ * off * off + smooth_ * moved * moved) / (basis_.sd(i) * basis_.sd(i));
+    cost += (prior_ * off * off + smooth_ * moved * moved) / (basis_->sd(i) * basis_->sd(i));
   }
   return cost;
 }
@@ -83,8 +85,8 @@ void GaussNewton::TakeStep(const Eigen::Ref<const Eigen::VectorXd>& prior_mean, 
   information_.setZero();
   information_.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   step_.noalias() = rows.transpose() * residuals_.head(row_count_);
-  for (int i = 0; i < basis_.size(); ++i) {
-    const double variance = basis_.sd(i) * basis_.sd(i);
+  for (int i = 0; i < basis_->size(); ++i) {
+    const double variance = basis_->sd(i) * basis_->sd(i);
     step_(i) += (prior_ * (prior_mean(i) - a_(i)) + smooth_ * (a_before_(i) - a_(i))) / variance;
     information_(i, i) += (prior_ + smooth_ + damping) / variance;
   }
@@ -94,14 +96,22 @@ void GaussNewton::TakeStep(const Eigen::Ref<const Eigen::VectorXd>& prior_mean, 
   PlaceAt(a_);
 }
 
+double GaussNewton::JointSd(int joint) {
+  const auto index = static_cast<std::size_t>(joint);
+  body::PointJacobian(body_->skeleton, at_, joint, at_.p_WJ[index], jacobian_);
+  spread_.noalias() = basis_->modes.transpose() * jacobian_.transpose();
+  cholesky_.matrixL().solveInPlace(spread_);
+  return std::sqrt(spread_.squaredNorm() / 3);
+}
+
 void GaussNewton::PlaceAt(const Eigen::VectorXd& coefficients) {
-  q_ = basis_.mean;
-  q_.noalias() += basis_.modes * coefficients;
+  q_ = basis_->mean;
+  q_.noalias() += basis_->modes * coefficients;
 }
 
 void GaussNewton::Solve(const PoseTargets& targets,
                         const Eigen::Ref<const Eigen::VectorXd>& prior_mean) {
-  FOOTING_CHECK(prior_mean.size() == basis_.size());
+  FOOTING_CHECK(prior_mean.size() == basis_->size());
   if (!started_) {
     a_ = prior_mean;
     PlaceAt(a_);

@@ -42,6 +42,9 @@ class GaussNewton {
   const Eigen::VectorXd& coefficients() const { return a_; }
   /// Inverse of the coefficients' covariance at the solution; lower triangle.
   const Eigen::MatrixXd& information() const { return information_; }
+  /// Standard deviation of a joint's place at the last solution, along one axis (root mean square
+  /// of the three), m.
+  double JointSd(int joint);
 
  private:
   void Linearise(const PoseTargets& targets);
@@ -51,8 +54,8 @@ class GaussNewton {
   void PlaceAt(const Eigen::VectorXd& coefficients);
   void AddRows(const Eigen::Vector3d& residual, const Eigen::Vector3d& sd);
 
-  const body::Body& body_;
-  const PoseBasis& basis_;
+  const body::Body* body_;
+  const PoseBasis* basis_;
   GaussNewtonOptions options_;
   bool started_ = false;
   double prior_ = 0, smooth_ = 0;  ///< Weights of this frame, squared.
@@ -61,6 +64,7 @@ class GaussNewton {
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian_;
   Eigen::MatrixXd rows_;  ///< Weighted rows in the coefficients, `row_count_` of them.
   Eigen::VectorXd residuals_;
+  Eigen::MatrixXd spread_;  ///< Room for JointSd.
   int row_count_ = 0;
   body::Kinematics at_;
   body::CompositeMasses room_;

@@ -21,7 +21,7 @@ int Dofs(const body::Skeleton& skeleton, int hip, int end) {
 }  // namespace
 
 LegIk::LegIk(const body::Body& body, int hip, int end)
-    : body_(body),
+    : body_(&body),
       at_(body.skeleton),
       jacobian_(3, body.skeleton.dof),
       normal_(Dofs(body.skeleton, hip, end), Dofs(body.skeleton, hip, end)),
@@ -43,7 +43,7 @@ bool LegIk::Has(int joint) const {
 
 void LegIk::Solve(const PoseTargets& targets, int iterations, Eigen::Ref<Eigen::VectorXd> q) {
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    body::ComputeKinematics(body_.skeleton, q, at_);
+    body::ComputeKinematics(body_->skeleton, q, at_);
     normal_.setIdentity();
     normal_ *= kDamping;
     gradient_.setZero();
@@ -52,7 +52,7 @@ void LegIk::Solve(const PoseTargets& targets, int iterations, Eigen::Ref<Eigen::
       if (!Has(point.joint)) continue;
       const auto joint = static_cast<std::size_t>(point.joint);
       const Eigen::Vector3d p_W_m = at_.p_WJ[joint] + at_.R_WJ[joint] * point.p_J_m;
-      body::PointJacobian(body_.skeleton, at_, point.joint, p_W_m, jacobian_);
+      body::PointJacobian(body_->skeleton, at_, point.joint, p_W_m, jacobian_);
       const Eigen::Vector3d error_m = point.p_W_m - p_W_m;
       for (std::size_t r = 0; r < dofs_.size(); ++r) {
         const auto row = static_cast<Eigen::Index>(r);

@@ -25,7 +25,7 @@ class LegIk {
  private:
   bool Has(int joint) const;
 
-  const body::Body& body_;
+  const body::Body* body_;
   std::vector<int> joints_;
   std::vector<int> dofs_;
   body::Kinematics at_;

@@ -1,0 +1,93 @@
+#include "daemon/simulation/reconstruction/feet.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/body/kinematics.h"
+#include "common/body/momentum.h"
+
+namespace footing::reconstruction {
+namespace {
+
+constexpr double kHeelBehindM = 0.045;  // Of the ankle, as the soles of common/virtual_sensors.
+constexpr double kMostSpreadM = 0.6;
+
+Eigen::Vector3d At(const body::Kinematics& at, const body::Point& point) {
+  const auto joint = static_cast<std::size_t>(point.joint);
+  return body::Place(point, at.R_WJ[joint], at.p_WJ[joint]);
+}
+
+body::Kinematics InTPose(const body::Body& body) {
+  body::Kinematics at(body.skeleton);
+  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), at);
+  return at;
+}
+
+pose::PointTarget Target(const body::Point& point, const Eigen::Vector3d& p_W_m,
+                         const Eigen::Vector3d& sd_m) {
+  return {point.joint, point.p_J_m, p_W_m, sd_m};
+}
+
+}  // namespace
+
+std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body) {
+  const body::Kinematics at = InTPose(body);
+  std::array<FootGeometry, momentum::kFeet> feet;
+  for (int side = 0; side < 2; ++side) {
+    FootGeometry& foot = feet[static_cast<std::size_t>(side)];
+    foot.ankle = body::Ankle(body, side);
+    foot.toe = body::Toe(body, side);
+    const Eigen::Vector3d ankle = At(at, foot.ankle), toe = At(at, foot.toe);
+    const Eigen::Vector3d tip = At(at, body::ToeEnd(body, side));
+    const Eigen::Vector2d along = (tip - ankle).head<2>();
+    momentum::FootShape& shape = foot.shape;
+    if (along.norm() > 0.02) {
+      shape.yaw_rad = std::atan2(along.y(), along.x());
+      shape.length_m = along.norm() + kHeelBehindM;
+    }
+    foot.R_WF = body::AxisRotation(body::Axis::kZ, shape.yaw_rad);
+    const double to_rest_m = shape.rest_share * shape.length_m - kHeelBehindM;
+    foot.ankle_F_m = {-to_rest_m, 0, ankle.z()};
+    foot.toe_F_m = foot.ankle_F_m + foot.R_WF.transpose() * (toe - ankle);
+  }
+  return feet;
+}
+
+momentum::Subject SubjectOf(const body::Body& body) {
+  momentum::Subject subject;
+  subject.com_height_m = body::CentreOfMass(body, InTPose(body)).z();
+  const auto feet = StandingFeet(body);
+  for (std::size_t f = 0; f < feet.size(); ++f) subject.feet[f] = feet[f].shape;
+  return subject;
+}
+
+void AddFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& foot,
+                    const FootSpread& spread, pose::PoseTargets& targets) {
+  if (!foot.valid) return;
+  const double aloft_s = foot.contact ? 0 : foot.airborne_s;
+  const double lift_m = spread.lift * (1 - std::exp(-aloft_s / spread.lift_time_s));
+  const double more_m = spread.air_mps * aloft_s;
+  const Eigen::Vector3d place =
+      foot.p_WF_m + Eigen::Vector3d(0, 0, lift_m);
+  // W's axes stand in for the foot's: a foot points ahead, more or less.
+  const auto sd = [&](double up_m) {
+    const Eigen::Vector3d own(spread.along, spread.across, up_m);
+    const Eigen::Vector3d all =
+        (foot.variance_m2.array() * Eigen::Array3d(1, 1, 0) + (own.array() + more_m).square())
+            .sqrt();
+    return Eigen::Vector3d(all.cwiseMin(kMostSpreadM));
+  };
+  targets.Add(Target(geometry.ankle, place + geometry.R_WF * geometry.ankle_F_m,
+                     sd(spread.ankle_up)));
+  targets.Add(Target(geometry.toe, place + geometry.R_WF * geometry.toe_F_m, sd(spread.toe_up)));
+}
+
+void AddPaperFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& foot,
+                         double sd_m, pose::PoseTargets& targets) {
+  if (!foot.valid) return;
+  const Eigen::Vector3d sd = Eigen::Vector3d::Constant(sd_m);
+  targets.Add(Target(geometry.ankle, foot.p_WF_m + geometry.R_WF * geometry.ankle_F_m, sd));
+  targets.Add(Target(geometry.toe, foot.p_WF_m + geometry.R_WF * geometry.toe_F_m, sd));
+}
+
+}  // namespace footing::reconstruction

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/model/model.h"
+#include "common/result/result.h"
+#include "daemon/simulation/cascade/network.h"
+#include "daemon/simulation/pose/basis.h"
+
+namespace footing::reconstruction {
+
+/// A model with the name of the file that it comes from.
+struct NamedModel {
+  std::string origin;
+  model::Model model;
+};
+
+/// What has been learned of how people move (docs/models.md).
+struct Models {
+  pose::PoseBasis basis;
+  std::vector<std::string> dofs;  ///< Of the basis: the layout of the bodies that it fits.
+  std::string origin;             ///< File of the basis.
+  /// Next C_x and C_y (section 4.2), where there are such networks.
+  std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
+};
+
+/// At most one model of each kind: "basis" is necessary, "com" is not. Errors name the file.
+Result<Models> MakeModels(const std::vector<NamedModel>& models);
+
+}  // namespace footing::reconstruction

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "common/result/result.h"
+#include "daemon/simulation/momentum/best_estimator.h"
+#include "daemon/simulation/momentum/calibration.h"
+#include "daemon/simulation/momentum/contact_loads.h"
+#include "daemon/simulation/momentum/paper_estimator.h"
+#include "daemon/simulation/pose/fibonacci.h"
+#include "daemon/simulation/pose/gauss_newton.h"
+#include "daemon/simulation/pose/leg_ik.h"
+#include "daemon/simulation/reconstruction/feet.h"
+#include "daemon/simulation/reconstruction/models.h"
+
+/// From the cells under two feet and the places of two hands to the pose of the whole body (Ha, Bai
+/// & Liu 2011, section 6, and what goes beyond it: docs/pose.md).
+namespace footing::reconstruction {
+
+enum class Mode { kBest, kPaper };
+
+inline constexpr std::size_t kHands = 2;  ///< 0 is the left one.
+
+/// Middle of the fist (body::Fist), W.
+struct HandInput {
+  bool valid = false;
+  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sd_m = Eigen::Vector3d::Constant(0.01);
+};
+
+struct Inputs {
+  momentum::ContactLoads loads;
+  std::array<HandInput, kHands> hands;
+};
+
+/// Standard deviations and weights of the best mode's terms.
+struct BestConstants {
+  double hand_sd_m = 0.008;  ///< Of the fist on the hand, beside what the input says.
+  FootSpread foot;
+  double com_sd_m = 0.015;  ///< Of the masses, beside what the filters say.
+  double angular_sd = 3;    ///< kg m^2/s.
+  double prior_weight = 1;
+  double smooth_weight = 2;  ///< At 60 Hz.
+};
+
+struct Options {
+  Mode mode = Mode::kBest;
+  double rate_hz = 120;  ///< Frames a second.
+  double lag_s = 0;      ///< 0 to 0.2: poses are told so much later, and better.
+  bool use_momentum = true;
+  bool use_angular_momentum = true;
+  bool clean_up = true;
+  bool use_basis = true;
+  BestConstants best;
+};
+
+/// One frame. All of it is finite at all times; `valid` says whether the pose means something.
+struct Output {
+  double time_s = 0;  ///< Of the inputs; the pose is of `lag_s` before.
+  bool calibrated = false;
+  double calibration_progress = 0;  ///< 0 to 1.
+  std::uint32_t calibration_restarts = 0;
+  bool valid = false;
+  double lag_s = 0;
+  std::uint32_t resets = 0;
+  double mass_kg = 0;
+  momentum::Estimate momentum;
+  Eigen::VectorXd q;  ///< Pose of body().skeleton; a T-pose until calibrated.
+  std::vector<Eigen::Matrix3d> R_WJ;
+  std::vector<Eigen::Vector3d> p_WJ_m;
+  std::vector<double> joint_sd_m;  ///< Of each joint's position, along one axis.
+};
+
+/// A person on the cells: calibrates in a T-pose, then reconstructs. A value that can be copied; no
+/// allocation in Advance. The body's layout must be that of the basis
+/// (motion::WithLandmarksOnly, body::StandardPerson).
+class Reconstruction {
+ public:
+  static Result<Reconstruction> Create(const body::Body& body, const Models& models,
+                                       const Options& options);
+
+  /// One frame, 1 / rate_hz after the one before.
+  const Output& Advance(const Inputs& inputs);
+  /// Forgets the T-pose.
+  void Recalibrate();
+
+  const body::Body& body() const { return parts_->body; }
+  const Output& output() const { return output_; }
+
+ private:
+  /// What never changes; copies share it, and the solvers point into it.
+  struct Parts {
+    body::Body body;
+    pose::PoseBasis basis;
+    momentum::Subject subject;
+    std::array<FootGeometry, momentum::kFeet> feet;
+    std::array<body::Point, kHands> fists;
+    Eigen::VectorXd t_pose;
+    std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
+  };
+  /// What is measured at one time.
+  struct Moment {
+    std::array<HandInput, kHands> hands;
+    std::array<momentum::FootEstimate, momentum::kFeet> feet;
+  };
+  static constexpr std::size_t kMostLag = momentum::HorizontalCom::kSlots;
+
+  Reconstruction(std::shared_ptr<const Parts> parts, const Options& options);
+  void Begin(const momentum::TPose& pose);
+  void Remember(const Inputs& inputs);
+  const Moment& Lagged() const;
+  void PlaceTargets(const Moment& moment);
+  void AddMomentumTargets();
+  void Solve();
+  void CleanUp();
+  void Tell(const Eigen::VectorXd& q);
+  void TellSpreads();
+
+  std::shared_ptr<const Parts> parts_;
+  Options options_;
+  double step_s_;
+  int lag_steps_;
+  momentum::TPoseCalibration calibration_;
+  std::optional<momentum::BestEstimator> best_;
+  std::optional<momentum::PaperEstimator> paper_;
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< Of the basis' poses, in W.
+  std::array<Moment, kMostLag> past_;
+  std::size_t frames_ = 0;  ///< Since the T-pose.
+  pose::PoseTargets targets_;
+  pose::GaussNewton gauss_newton_;
+  pose::FibonacciSearch fibonacci_;
+  std::array<pose::LegIk, momentum::kFeet> legs_;
+  Eigen::VectorXd q_;
+  body::Kinematics at_;
+  std::size_t next_spread_ = 0;
+  std::uint32_t solver_resets_ = 0;
+  Output output_;
+};
+
+}  // namespace footing::reconstruction

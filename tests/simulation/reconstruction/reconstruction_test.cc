@@ -1,0 +1,193 @@
+#include "daemon/simulation/reconstruction/reconstruction.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+
+#include "tests/simulation/reconstruction/allocations.h"
+#include "tests/simulation/reconstruction/made_person.h"
+
+namespace footing::reconstruction {
+namespace {
+
+/// One person's movement, what is measured of it, and a reconstruction whose basis has seen it.
+struct World {
+  body::Body person = MadePerson();
+  motion::Motion motion = MadeMotion(person, 18);
+  std::vector<Inputs> inputs = Measured(person, motion);
+  Models models = MakeModels({BasisOf(person, motion)}).value();
+  body::Kinematics at{person.skeleton};
+
+  Options AtRate(Mode mode = Mode::kBest, double lag_s = 0) const {
+    Options options;
+    options.mode = mode;
+    options.rate_hz = kMadeRateHz;
+    options.lag_s = lag_s;
+    return options;
+  }
+  Reconstruction Made(const Options& options) const {
+    return Reconstruction::Create(person, models, options).value();
+  }
+  /// Mean distance of the joints from where they were `back` frames before frame i.
+  double ErrorM(const Output& output, std::size_t i, std::size_t back) {
+    body::ComputeKinematics(person.skeleton, motion.q.col(static_cast<Eigen::Index>(i - back)), at);
+    double sum = 0;
+    for (std::size_t k = 0; k < at.p_WJ.size(); ++k) sum += (output.p_WJ_m[k] - at.p_WJ[k]).norm();
+    return sum / static_cast<double>(at.p_WJ.size());
+  }
+  double MeanErrorM(Reconstruction& reconstruction, std::size_t back) {
+    double sum = 0, frames = 0;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const Output& output = reconstruction.Advance(inputs[i]);
+      if (!output.calibrated || i < 400) continue;
+      sum += ErrorM(output, i, back);
+      ++frames;
+    }
+    return frames > 0 ? sum / frames : std::numeric_limits<double>::infinity();
+  }
+};
+
+bool Finite(const Output& output) {
+  bool finite = output.q.allFinite();
+  for (const Eigen::Vector3d& p : output.p_WJ_m) finite = finite && p.allFinite();
+  for (const Eigen::Matrix3d& R : output.R_WJ) finite = finite && R.allFinite();
+  for (const double sd : output.joint_sd_m) finite = finite && std::isfinite(sd) && sd >= 0;
+  return finite;
+}
+
+TEST(Reconstruction, StandsInATPoseUntilItIsCalibrated) {
+  World world;
+  Reconstruction reconstruction = world.Made(world.AtRate());
+  for (std::size_t i = 0; i < 299; ++i) {
+    const Output& output = reconstruction.Advance(world.inputs[i]);
+    ASSERT_FALSE(output.calibrated);
+    ASSERT_FALSE(output.valid);
+    ASSERT_NEAR(output.calibration_progress, static_cast<double>(i + 1) / 300, 0.01);
+  }
+  EXPECT_EQ(reconstruction.output().q,
+            body::TPose(world.person.skeleton, world.person.landmarks));
+  for (std::size_t i = 299; i < 310; ++i) reconstruction.Advance(world.inputs[i]);
+  EXPECT_TRUE(reconstruction.output().calibrated);
+  EXPECT_TRUE(reconstruction.output().valid);
+  EXPECT_NEAR(reconstruction.output().mass_kg, 70, 0.1);
+}
+
+TEST(Reconstruction, FollowsAPersonWhoseMovementItKnows) {
+  World world;
+  Reconstruction reconstruction = world.Made(world.AtRate());
+  EXPECT_LT(world.MeanErrorM(reconstruction, 0), 0.05);
+}
+
+TEST(Reconstruction, WithALagTellsThePoseOfBefore) {
+  World world;
+  Reconstruction reconstruction = world.Made(world.AtRate(Mode::kBest, 0.2));
+  const double then_m = world.MeanErrorM(reconstruction, 12);
+  reconstruction = world.Made(world.AtRate(Mode::kBest, 0.2));
+  const double now_m = world.MeanErrorM(reconstruction, 0);
+  EXPECT_LT(then_m, 0.05);
+  EXPECT_GT(now_m, 1.25 * then_m);
+  EXPECT_NEAR(reconstruction.output().lag_s, 0.2, 1e-9);
+}
+
+TEST(Reconstruction, PaperModeFollowsToo) {
+  World world;
+  Reconstruction reconstruction = world.Made(world.AtRate(Mode::kPaper));
+  EXPECT_LT(world.MeanErrorM(reconstruction, 0), 0.15);
+}
+
+TEST(Reconstruction, HasNoModeOrOptionThatIsNotFinite) {
+  World world;
+  for (const Mode mode : {Mode::kBest, Mode::kPaper}) {
+    for (int bits = 0; bits < 16; ++bits) {
+      Options options = world.AtRate(mode);
+      options.use_momentum = (bits & 1) != 0;
+      options.use_angular_momentum = (bits & 2) != 0;
+      options.clean_up = (bits & 4) != 0;
+      options.use_basis = (bits & 8) != 0;
+      Reconstruction reconstruction = world.Made(options);
+      for (std::size_t i = 0; i < 380; ++i) reconstruction.Advance(world.inputs[i]);
+      EXPECT_TRUE(reconstruction.output().valid) << bits;
+      EXPECT_TRUE(Finite(reconstruction.output())) << bits;
+    }
+  }
+}
+
+TEST(Reconstruction, StaysFiniteWithInputsThatAreNot) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  World world;
+  for (const Mode mode : {Mode::kBest, Mode::kPaper}) {
+    Reconstruction reconstruction = world.Made(world.AtRate(mode));
+    for (std::size_t i = 0; i < 600; ++i) {
+      Inputs inputs = world.inputs[i];
+      if (i >= 400 && i < 500) {
+        if (i % 3 == 0) inputs.hands[0].p_W_m.x() = kNaN;
+        if (i % 5 == 0) inputs.loads.feet[1].cells[2].load_n = kNaN;
+        if (i % 7 == 0) inputs.loads.feet[0].valid = false;
+        if (i % 11 == 0) inputs.loads.time_s = kNaN;
+        inputs.hands[1].valid = false;
+      }
+      const Output& output = reconstruction.Advance(inputs);
+      ASSERT_TRUE(Finite(output)) << i;
+      ASSERT_TRUE(std::isfinite(output.time_s));
+      if (i >= 400 && i < 500 && i % 7 == 0) {
+        ASSERT_FALSE(output.valid);
+      }
+    }
+    EXPECT_TRUE(reconstruction.output().valid);
+  }
+}
+
+TEST(Reconstruction, ACopyGoesOnAsTheOriginalAndApartFromIt) {
+  World world;
+  Reconstruction original = world.Made(world.AtRate());
+  for (std::size_t i = 0; i < 500; ++i) original.Advance(world.inputs[i]);
+  Reconstruction copy = original;
+  for (std::size_t i = 500; i < 520; ++i) copy.Advance(world.inputs[i]);
+  const Eigen::VectorXd q = copy.output().q;
+  EXPECT_NE(original.output().q, q);
+  for (std::size_t i = 500; i < 520; ++i) original.Advance(world.inputs[i]);
+  EXPECT_EQ(original.output().q, q);
+}
+
+TEST(Reconstruction, ForgetsItsTPose) {
+  World world;
+  Reconstruction reconstruction = world.Made(world.AtRate());
+  for (std::size_t i = 0; i < 400; ++i) reconstruction.Advance(world.inputs[i]);
+  reconstruction.Recalibrate();
+  EXPECT_FALSE(reconstruction.output().calibrated);
+  EXPECT_EQ(reconstruction.output().q,
+            body::TPose(world.person.skeleton, world.person.landmarks));
+  for (std::size_t i = 0; i < 310; ++i) reconstruction.Advance(world.inputs[i]);
+  EXPECT_TRUE(reconstruction.output().calibrated);
+}
+
+TEST(Reconstruction, AdvancesWithoutAllocating) {
+  if (!test::CountsAllocations()) GTEST_SKIP() << "the sanitizer owns malloc";
+  World world;
+  for (const Mode mode : {Mode::kBest, Mode::kPaper}) {
+    Reconstruction reconstruction = world.Made(world.AtRate(mode, 0));
+    long before = test::Allocations();
+    const auto probe = std::make_unique<int>(1);
+    ASSERT_GT(test::Allocations(), before) << "the counter does not count";
+    before = test::Allocations();
+    for (const Inputs& inputs : world.inputs) reconstruction.Advance(inputs);
+    EXPECT_EQ(test::Allocations(), before);
+  }
+}
+
+TEST(Reconstruction, RefusesOptionsThatMakeNoSense) {
+  World world;
+  Options options = world.AtRate();
+  options.lag_s = 0.3;
+  EXPECT_FALSE(Reconstruction::Create(world.person, world.models, options).ok());
+  options.lag_s = 0.1;
+  options.mode = Mode::kPaper;
+  EXPECT_FALSE(Reconstruction::Create(world.person, world.models, options).ok());
+  options = world.AtRate();
+  options.rate_hz = 0;
+  EXPECT_FALSE(Reconstruction::Create(world.person, world.models, options).ok());
+}
+
+}  // namespace
+}  // namespace footing::reconstruction
