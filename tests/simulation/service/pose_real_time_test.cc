@@ -79,7 +79,7 @@ TEST(PoseThread, AllocatesFreesLocksAndSoLogsNothingOnceItRunsThroughTPoseMotion
   std::thread other([] {
     static std::mutex mutex;
     const std::lock_guard<std::mutex> guard(mutex);
-    const auto probe = std::make_unique<std::vector<int>>(100);
+    const auto probe = std::make_unique<std::vector<int> >(100);
     ASSERT_NE(probe, nullptr);
   });
   other.join();

@@ -56,10 +56,9 @@ struct Line {
 
 void ExpectFinite(const v1::CharacterFrame& message) {
   for (const v1::LinkPose& link : message.characters(0).links()) {
-    for (const double number :
-         {link.position_m().x(), link.position_m().y(), link.position_m().z(),
-          link.orientation().w(), link.orientation().x(), link.orientation().y(),
-          link.orientation().z()}) {
+    for (const double number : {link.position_m().x(), link.position_m().y(), link.position_m().z(),
+                                link.orientation().w(), link.orientation().x(),
+                                link.orientation().y(), link.orientation().z()}) {
       ASSERT_TRUE(std::isfinite(number));
     }
   }
@@ -152,8 +151,8 @@ TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
     line.inputs.Write(line.told);
     line.run.StepOnSimThread(line.inputs, line.frame);
     for (int k = 0; k < line.frame.applied_count; ++k) {
-      const auto message = ToAppliedInput(line.frame.applied[static_cast<std::size_t>(k)],
-                                          {"p1", 1.75, 70, 0});
+      const auto message =
+          ToAppliedInput(line.frame.applied[static_cast<std::size_t>(k)], {"p1", 1.75, 70, 0});
       EXPECT_EQ(SubjectFrom(message).code, "p1");
       applied.push_back(PoseAppliedFrom(message));
     }

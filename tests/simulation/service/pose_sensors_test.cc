@@ -19,7 +19,8 @@ struct PoseSensorsTest : testing::Test {
     inputs.Refresh();
     return inputs.Front();
   }
-  static v1::Tick Boards(const std::array<double, 4>& left_n, const std::array<double, 4>& right_n) {
+  static v1::Tick Boards(const std::array<double, 4>& left_n,
+                         const std::array<double, 4>& right_n) {
     v1::Tick tick;
     AddBoard(tick, kLeftDevice, left_n);
     AddBoard(tick, kRightDevice, right_n);
