@@ -226,6 +226,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       case v1::Command::kPush:
       case v1::Command::kDirectGait:
       case v1::Command::kAppendSegment:
+      case v1::Command::kCalibrateTPose:
+      case v1::Command::kSetSubject:
         return Answer(command, UsageError("that is a command for footing-sim"));
       case v1::Command::kTare: {
         const v1::Tare& tare = command.tare();
