@@ -7,6 +7,7 @@
 #include "common/clock/clock.h"
 #include "common/transport/framed_connection.h"
 #include "common/transport/listener.h"
+#include "common/wire/wire.h"
 #include "footing/v1/device.pb.h"
 
 namespace footing::devices {
@@ -139,6 +140,14 @@ class SocketSource::Implementation {
         return;
       case v1::DeviceEnvelope::kDetach:
         Detach(connection, envelope_.detach().slot(), "detached");
+        return;
+      case v1::DeviceEnvelope::kHandFrame:
+        if (handlers_.on_hands)
+          handlers_.on_hands(received_ns, wire::FromProto(envelope_.hand_frame()));
+        return;
+      case v1::DeviceEnvelope::kReferenceFrame:
+        if (handlers_.on_reference)
+          handlers_.on_reference(received_ns, wire::FromProto(envelope_.reference_frame()));
         return;
       case v1::DeviceEnvelope::kOutput:
         Refuse(connection, "outputs go the other way");
