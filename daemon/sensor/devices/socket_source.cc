@@ -152,10 +152,6 @@ class SocketSource::Implementation {
       case v1::DeviceEnvelope::kOutput:
         Refuse(connection, "outputs go the other way");
         return;
-      case v1::DeviceEnvelope::kHandFrame:
-      case v1::DeviceEnvelope::kReferenceFrame:
-        Refuse(connection, "hand and reference frames are not taken");
-        return;
       case v1::DeviceEnvelope::BODY_NOT_SET:
         Refuse(connection, "a message is empty");
         return;
