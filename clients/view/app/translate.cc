@@ -76,9 +76,11 @@ scene::BodyState BodyOf(const v1::BodyState& from) {
   return body;
 }
 
-scene::ReferencePose ReferenceOf(const v1::ReferencePose& from, std::int64_t received_ns) {
+scene::ReferencePose ReferenceOf(const v1::ReferencePose& from, std::int64_t received_ns,
+                                 std::int64_t offset_ns) {
   scene::ReferencePose reference;
   reference.received_ns = received_ns;
+  reference.sampled_ns = from.sampled_ns() - offset_ns;
   for (int i = 0; i < std::min(from.positions_m_size(), kMaxParts); ++i) {
     reference.positions_m.push_back(wire::FromProto(from.positions_m(i)));
     reference.parents.push_back(i < from.parents_size() ? from.parents(i) : -1);
@@ -165,7 +167,8 @@ void AddSensors(const v1::Tick& tick, std::int64_t offset_ns, scene::Update& upd
     for (const auto& rig : tick.setup().rigs()) update.setup->push_back(wire::FromProto(rig));
   }
   if (tick.reference().poses_size() > 0) {
-    update.reference = ReferenceOf(*tick.reference().poses().rbegin(), update.received_ns);
+    update.reference =
+        ReferenceOf(*tick.reference().poses().rbegin(), update.received_ns, offset_ns);
   }
 }
 

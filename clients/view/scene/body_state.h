@@ -43,7 +43,8 @@ struct BodyState {
 
 /// What a stand-in's body really does.
 struct ReferencePose {
-  std::int64_t received_ns = 0;  ///< On the viewer's clock.
+  std::int64_t received_ns = 0;  ///< On the viewer's clock, like the next.
+  std::int64_t sampled_ns = 0;
   std::vector<int> parents;
   std::vector<Eigen::Vector3d> positions_m;  ///< Of each joint, W.
 };

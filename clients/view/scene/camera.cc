@@ -25,7 +25,7 @@ constexpr double kDistanceM = 4.1;
 constexpr double kDistanceBesideM = 4.7;
 constexpr double kSideRad = 0.42;
 constexpr double kEyeHeightM = 1.70;
-constexpr double kTargetHeightM = 0.79;
+constexpr double kTargetHeightM = 0.75;
 constexpr double kFollowS = 1.0;
 constexpr double kNearBoardsM = 0.6;  // So far the camera does not move.
 

@@ -84,7 +84,10 @@ stream::DeviceRole RoleOf(const Model& model, const std::pair<int, std::uint32_t
 void Apply(Model& model, const Update& update) {
   model.newest_host_ns = std::max(model.newest_host_ns, update.host_ns);
   if (update.devices) Replace(model.devices, update.source, *update.devices);
-  if (update.skeletons) model.skeletons = *update.skeletons;
+  if (update.skeletons) {
+    model.skeletons = *update.skeletons;
+    model.anatomy = model.skeletons.empty() ? Anatomy{} : FindAnatomy(model.skeletons.front());
+  }
   if (update.track) {
     model.track = *update.track;
     ++model.track_version;
@@ -99,6 +102,10 @@ void Apply(Model& model, const Update& update) {
   if (update.frame) {
     if (!update.frame->characters.empty() && !update.frame->characters.front().body) {
       AddPhase(model, update.frame->characters.front(), update.received_ns);
+    }
+    if (!update.frame->characters.empty()) {
+      model.pose_tally.Add(update.frame->characters.front(), model.anatomy, update.host_ns,
+                           model.references);
     }
     model.tally.Add(*update.frame);
     model.replay.Push(*update.frame);

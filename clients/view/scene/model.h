@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "clients/view/scene/anatomy.h"
 #include "clients/view/scene/fall_replay.h"
 #include "clients/view/scene/playout.h"
+#include "clients/view/scene/pose_tally.h"
 #include "clients/view/scene/strip.h"
 #include "clients/view/scene/tally.h"
 #include "clients/view/scene/update.h"
@@ -60,6 +62,8 @@ struct Model {
   std::vector<std::string> phases;  ///< Of the first character's present gait, in order of coming.
   std::deque<PhaseSpan> phase_spans;  ///< The last 10 s, oldest first.
   Tally tally;
+  PoseTally pose_tally;
+  Anatomy anatomy;                       ///< Of the first skeleton.
   std::vector<stream::RigSetup> setup;   ///< Of the server that has one.
   std::deque<ReferencePose> references;  ///< The last half second, oldest first.
 };

@@ -75,8 +75,7 @@ body::Kinematics KinematicsAt(double time_s, const PersonWish& wish) {
   body::Kinematics at(Person().skeleton);
   Eigen::VectorXd q = PoseAt(time_s, wish);
   body::ComputeKinematics(Person().skeleton, q, at);
-  const auto ankle =
-      static_cast<std::size_t>(Person().landmarks[body::Landmark::kRightAnkle]);
+  const auto ankle = static_cast<std::size_t>(Person().landmarks[body::Landmark::kRightAnkle]);
   const double height_m = 0.040 * kHeightM;
   q.head<3>() += Eigen::Vector3d(-0.02, -0.165, height_m) - at.p_WJ[ankle];
   body::ComputeKinematics(Person().skeleton, q, at);
@@ -174,7 +173,8 @@ stream::BoardSample SampleOf(const BodyFoot& foot, const stream::BoardPose& pose
   sample.cop_valid = foot.cop_valid;
   sample.cop_x_m = cop.dot(right);
   sample.cop_y_m = cop.dot(front);
-  const double x = sample.cop_x_m / (kSensorsAcrossM / 2), y = sample.cop_y_m / (kSensorsAlongM / 2);
+  const double x = sample.cop_x_m / (kSensorsAcrossM / 2),
+               y = sample.cop_y_m / (kSensorsAlongM / 2);
   sample.top_left_n = foot.load_n / 4 * (1 - x) * (1 + y);
   sample.top_right_n = foot.load_n / 4 * (1 + x) * (1 + y);
   sample.bottom_left_n = foot.load_n / 4 * (1 - x) * (1 - y);
@@ -211,6 +211,7 @@ Update PersonTickAt(double time_s, const PersonWish& wish) {
   if (wish.reference) {
     ReferencePose reference;
     reference.received_ns = update.received_ns;
+    reference.sampled_ns = update.host_ns;
     for (const body::Joint& joint : Person().skeleton.joints) {
       reference.parents.push_back(joint.parent);
     }

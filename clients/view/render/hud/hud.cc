@@ -36,7 +36,7 @@ void DrawHud(const Paint& p, const scene::Picture& picture, const scene::Model& 
     if (person) {
       DrawLabels(p, picture, size);
       y = DrawBodyPanel(p, {edge, edge}, frame.characters.front(), picture) + 8 * s;
-      DrawTPosePanel(p, frame.characters.front(), size);
+      DrawTPosePanel(p, model, frame.characters.front(), size);
     } else if (!frame.characters.empty()) {
       y = DrawCharacterPanel(p, {edge, edge}, model, frame.characters.front(), options.phases,
                              now_ns) +

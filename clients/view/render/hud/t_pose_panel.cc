@@ -25,7 +25,8 @@ void DrawRing(const Paint& p, ImVec2 centre, float radius, double progress) {
   p.WriteCentred(p.fonts.heading, {centre.x, centre.y - 13 * s}, colour::kText, left);
 }
 
-void DrawWizard(const Paint& p, const scene::BodyState& body, ImVec2 size) {
+void DrawWizard(const Paint& p, const scene::Model& model, const scene::BodyState& body,
+                ImVec2 size) {
   const float s = p.scale;
   const float width = std::max(420 * s, p.WidthOf(p.fonts.heading, body.note) + 132 * s);
   const ImVec2 low((size.x - width) / 2, size.y - (kBottom + 96) * s);
@@ -35,6 +36,11 @@ void DrawWizard(const Paint& p, const scene::BodyState& body, ImVec2 size) {
   p.Write(p.fonts.small, {x, in.low.y + 2 * s}, colour::kFaint,
           "T-pose   " + (body.subject.empty() ? std::string("of whoever stands there")
                                               : "of " + body.subject));
+  const scene::Stance stance = scene::StanceOf(model);
+  if (stance.valid) {
+    p.WriteRight(p.fonts.strong, {in.high.x, in.low.y}, colour::kGood,
+                 scene::Fixed(NewtonsToKilograms(stance.total_n), 1) + " kg");
+  }
   p.Write(p.fonts.heading, {x, in.low.y + 20 * s}, colour::kText, body.note);
   p.Write(p.fonts.small, {x, in.low.y + 50 * s}, colour::kFaint,
           "Stand as the blue figure does, for five seconds.");
@@ -42,9 +48,10 @@ void DrawWizard(const Paint& p, const scene::BodyState& body, ImVec2 size) {
 
 }  // namespace
 
-void DrawTPosePanel(const Paint& p, const scene::CharacterPose& pose, ImVec2 size) {
+void DrawTPosePanel(const Paint& p, const scene::Model& model, const scene::CharacterPose& pose,
+                    ImVec2 size) {
   const scene::BodyState& body = *pose.body;
-  if (!body.calibrated) return DrawWizard(p, body, size);
+  if (!body.calibrated) return DrawWizard(p, model, body, size);
   if (body.note.empty()) return;
   const float s = p.scale;
   const float room = size.x - 2 * 330 * s;
