@@ -27,7 +27,7 @@ Result<reconstruction::NamedModel> Load(const char* name, const Config& config) 
 
 Result<reconstruction::Models> LoadPoseModels(const Config& config) {
   std::vector<reconstruction::NamedModel> models;
-  std::vector<const char*> names{kBasisFile};
+  std::vector<const char*> names{kPoseFile};
   if (config.mode == "paper") names.push_back(kComFile);
   for (const char* name : names) {
     auto model = Load(name, config);

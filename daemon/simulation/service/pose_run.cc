@@ -78,7 +78,7 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
   frame.calibration_restarts = output.calibration_restarts;
   frame.lag_s = output.lag_s;
   frame.resets = output.resets;
-  frame.mass_kg = output.mass_kg;
+  frame.mass_kg = output.calibrated ? output.mass_kg : 0;  // As weighed, or nothing.
   frame.momentum = output.momentum;
   frame.link_count = std::min(output.p_WJ_m.size(), kMaxLinks);
   for (std::size_t i = 0; i < frame.link_count; ++i) {
