@@ -16,11 +16,11 @@ namespace footing::virtual_sensors {
 
 /// How a clip becomes something that boards can be calibrated under.
 struct SceneOptions {
-  bool t_pose = true;      ///< Prepend a T-pose; false: the clip begins with one.
-  double hold_s = 6;       ///< So long it is held,
-  double leave_s = 1.5;    ///< then left for the clip's first frame.
+  bool t_pose = true;        ///< Prepend a T-pose; false: the clip begins with one.
+  double hold_s = 6;         ///< So long it is held,
+  double leave_s = 1.5;      ///< then left for the clip's first frame.
   double rest_share = 0.42;  ///< Where the weight is in a standing foot: of heel to toe.
-  double loop_s = 0;       ///< Forwards and backwards until so long; 0: once.
+  double loop_s = 0;         ///< Forwards and backwards until so long; 0: once.
 };
 
 /// A body in motion over the ground and what the ground feels of it.
@@ -31,7 +31,12 @@ struct Scene {
   GroundReaction reaction;
 };
 
-/// Turns the clip forward, puts it on the floor (the height that 2 % of the frames are below),
+/// How high the lowest foot is over where it stands in the T-pose, by ankles and balls: tips of
+/// toes point into the ground in much recorded motion. In a quarter of the frames some foot is
+/// lower. The motion has frames.
+double FloorHeight(const motion::Motion& motion, const body::Landmarks& landmarks);
+
+/// Turns the clip forward, puts it on the floor (its feet as high as in the T-pose),
 /// prepends the T-pose, leaning so that the centre of mass is over the soles, and computes the
 /// forces. InvalidData when a landmark is missing, the person cannot be, or the clip has fewer
 /// than two frames; `origin` names the clip.
