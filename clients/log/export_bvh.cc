@@ -123,8 +123,9 @@ class Walker {
     if (damaged_) return InvalidData(path + ": a message of the pose engine cannot be read");
     std::erase_if(gatherers_, [](const MotionGatherer& gatherer) { return gatherer.empty(); });
     if (gatherers_.empty()) {
-      return InvalidData(path + " has no reconstructed body after its T-pose: record footing-sim "
-                                "--engine pose");
+      return InvalidData(path +
+                         " has no reconstructed body after its T-pose: record footing-sim "
+                         "--engine pose");
     }
     return std::move(gatherers_);
   }
@@ -197,8 +198,8 @@ Result<std::vector<ExportedMotion>> ExportBvh(const std::string& recording,
     if (const auto written = out->Write(motion::WriteBvh(*motion)); !written) {
       return written.error();
     }
-    exported.push_back({path, gatherer.subject(), static_cast<std::uint64_t>(motion->frames()),
-                        motion->rate_hz});
+    exported.push_back(
+        {path, gatherer.subject(), static_cast<std::uint64_t>(motion->frames()), motion->rate_hz});
   }
   return exported;
 }

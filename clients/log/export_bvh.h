@@ -20,8 +20,8 @@ struct ExportedMotion {
 
 /// Gathers frames of one reconstructed body into a motion.
 ///
-/// Lengths are those of the first frame taken (links are rigid); every joint turns about three axes.
-/// Frames before the T-pose are left out; where a frame is missing the one before stands.
+/// Lengths are those of the first frame taken (links are rigid); every joint turns about three
+/// axes. Frames before the T-pose are left out; where a frame is missing the one before stands.
 class MotionGatherer {
  public:
   explicit MotionGatherer(const v1::Skeleton& skeleton) : skeleton_(skeleton) {}

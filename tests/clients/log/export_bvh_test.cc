@@ -55,8 +55,7 @@ TEST(MotionGatherer, TheMotionHasEveryLinkWhereItWas) {
     body::ComputeKinematics(read->skeleton, read->q.col(i), at);
     const v1::CharacterFrame frame = FrameAt(i / 120.0, 0.02 * i);
     for (int link = 0; link < 3; ++link) {
-      const Eigen::Vector3d true_m =
-          wire::FromProto(frame.characters(0).links(link).position_m());
+      const Eigen::Vector3d true_m = wire::FromProto(frame.characters(0).links(link).position_m());
       EXPECT_NEAR((at.p_WJ[static_cast<std::size_t>(link)] - true_m).norm(), 0, 1e-4);
     }
   }
