@@ -127,19 +127,36 @@ def check_lost_and_back(stage, watcher):
     watcher.wait(lambda body: "boards" not in body["note"], "the boards", 15)
 
 
-def check_next_subject(watcher):
+def check_next_subject(stage, watcher):
     before = next(watcher.bodies(1))
     assert before["subject"] == "p07" and before["calibrated"], before
     watcher.set_subject("", 1.75, 1)  # Refused: nobody is called so.
     for body in watcher.bodies(0.5):
         assert body["subject"] == "p07", body
-    watcher.set_subject("p08", 1.75, 2)
+    file = stage.folder / "p08.json"
+    file.write_text(json.dumps({"code": "p08", "height_m": 1.75}))
+    done = stage.run("footing-ctl", "subject", file, "--connect", stage.simulation)
+    assert done.returncode == 0, done.stderr
     first = watcher.wait(lambda body: body["subject"] == "p08", "the next subject", TOLD_WITHIN_S)
     assert not first["calibrated"] and first["calibration_progress"] < 0.1, first
     assert first["mass_kg"] == 0, "nothing is left of the last person"
     # The stand-in began with a T-pose when it came back.
     taken = watcher.wait(lambda body: body["calibrated"], "the T-pose", 20)
     assert taken["subject"] == "p08" and abs(taken["mass_kg"] - 75) < 1, taken
+
+
+def check_recording(stage):
+    """Both people stand in the recording, each with a movement of their own."""
+    assert stage.stop("footing-log") == 0
+    out = stage.folder / "motions"
+    exported = stage.run_json("footing-log", "export", stage.folder / "line.mcap", "--format", "bvh",
+                              "--out", out)
+    print(exported)
+    assert [motion["subject"] for motion in exported["files"]] == ["p07", "p08"], exported
+    assert exported["files"][0]["frames"] > 500, exported
+    for motion in exported["files"]:
+        text = pathlib.Path(motion["path"]).read_text()
+        assert text.startswith("HIERARCHY") and "nan" not in text, motion
 
 
 def main(binaries):
@@ -156,11 +173,15 @@ def main(binaries):
         stage.start("footing-sim", "--engine", "pose", "--subject", subject, "--sensor",
                     stage.sensor, "--listen", stage.simulation, "--set", f"data_folder={folder}")
         stage.wait_for_socket(stage.simulation)
+        stage.start("footing-log", "record", "--connect", stage.simulation, "--out",
+                    stage.folder / "line.mcap")
         start_boards(stage)
         check_the_body(stage)
         watcher = Watcher(stage.simulation)
         check_lost_and_back(stage, watcher)
-        check_next_subject(watcher)
+        check_next_subject(stage, watcher)
+        time.sleep(1)  # A second of the next person's movement.
+        check_recording(stage)
         for name in ("footing-stream", "footing-sim", "footingd"):
             assert stage.stop(name) == 0, name
     return 0
