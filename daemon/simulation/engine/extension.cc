@@ -49,8 +49,8 @@ void GaitEngine::Parts::PlaceGround() {
     box_holds[slot] = number + 1;
     const int index = static_cast<int>(slot);
     const auto place = static_cast<std::size_t>(i);
-    const terrain::GroundBox box = track.segments[place].pit ? terrain::WaitingBox(index)
-                                                             : terrain::BoxOf(track, place);
+    const terrain::GroundBox box =
+        track.segments[place].pit ? terrain::WaitingBox(index) : terrain::BoxOf(track, place);
     world.PlaceBox(index, box.centre_W_m, box.q_WS, box.half_size_m);
   }
 }
