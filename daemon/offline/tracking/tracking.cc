@@ -21,7 +21,7 @@ Tracking Judge(const GivenCommand& given, double time_s, const stream::GaitState
   if (state.falls != given.falls_before) return Tracking::kFell;
   if (state.pending) return Tracking::kOtherGait;
   return std::fabs(mean_mps - given.speed_mps) < kTrackedMps ? Tracking::kTracked
-                                                              : Tracking::kOffSpeed;
+                                                             : Tracking::kOffSpeed;
 }
 
 }  // namespace footing::tracking
