@@ -20,7 +20,7 @@ struct AsfText {
     double length = 0;
     Eigen::Vector3d axis = Eigen::Vector3d::Zero();
     std::string axis_order = "XYZ";
-    std::vector<body::Axis> dofs;  ///< In the file's axes and order.
+    std::vector<body::Axis> dofs;                   ///< In the file's axes and order.
     std::vector<std::pair<double, double>> limits;  ///< rad.
   };
   struct Units {
