@@ -70,9 +70,9 @@ class Person {
     if (dialers_[slot]) return;
     const auto seed = static_cast<std::uint64_t>(100 + slot);
     const int side = static_cast<int>(slot % 2);
-    std::vector<StandIn> one;
-    one.push_back(slot < kLeftRemote ? Board(side, seed) : Remote(side, seed));
-    dialers_[slot] = std::make_unique<Dialer>(io_, stream_client::DialerOptions{options_.to, 1, 0},
+    stream_client::Plan one;
+    one.devices.push_back(slot < kLeftRemote ? Board(side, seed) : Remote(side, seed));
+    dialers_[slot] = std::make_unique<Dialer>(io_, stream_client::DialerOptions{options_.to, 1},
                                               std::move(one), [] {});
     dialers_[slot]->Start();
   }
