@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "common/result/result.h"
 
@@ -48,6 +49,37 @@ PoseBasis FitBasis(const Eigen::Ref<const Eigen::MatrixXd>& poses, const BasisOp
   basis.lower -= margin;
   basis.upper += margin;
   return basis;
+}
+
+PoseBasis Resized(PoseBasis basis, double scale) {
+  basis.mean.head<3>() *= scale;
+  basis.modes.topRows<3>() *= scale;
+  basis.inverse.leftCols<3>() /= scale;
+  return basis;
+}
+
+PoseBasis Leading(PoseBasis basis, double share) {
+  const double total = basis.sd.squaredNorm();
+  Eigen::Index count = 0;
+  double sum = 0;
+  while (count < basis.sd.size() && sum < share * total) sum += std::pow(basis.sd(count++), 2);
+  basis.modes = basis.modes.leftCols(count).eval();
+  basis.inverse = basis.inverse.topRows(count).eval();
+  basis.sd = basis.sd.head(count).eval();
+  basis.lower = basis.lower.head(count).eval();
+  basis.upper = basis.upper.head(count).eval();
+  return basis;
+}
+
+PoseBasis Unconnected(const PoseBasis& basis) {
+  PoseBasis single;
+  single.mean = basis.mean;
+  single.modes = Eigen::MatrixXd::Identity(basis.dof(), basis.dof());
+  single.inverse = single.modes;
+  single.sd = (basis.modes * basis.sd.asDiagonal()).rowwise().norm().cwiseMax(1e-4);
+  single.lower = -4 * single.sd;
+  single.upper = 4 * single.sd;
+  return single;
 }
 
 }  // namespace footing::pose

@@ -37,4 +37,11 @@ struct BasisOptions {
 /// Principal component analysis of poses, a column each. At least two poses.
 PoseBasis FitBasis(const Eigen::Ref<const Eigen::MatrixXd>& poses, const BasisOptions& options);
 
+/// The same poses of a person whose root is so many times as high: angles stay.
+PoseBasis Resized(PoseBasis basis, double scale);
+/// The components that hold this share of the variance.
+PoseBasis Leading(PoseBasis basis, double share);
+/// No basis: every degree of freedom for itself, with its own spread.
+PoseBasis Unconnected(const PoseBasis& basis);
+
 }  // namespace footing::pose

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <vector>
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
@@ -15,7 +15,7 @@ struct GaussNewtonOptions {
   int iterations = 3;
   int first_iterations = 30;  ///< Of the first frame, which begins at the prior's mean.
   /// Weight of the prior over the coefficients, and of staying near the last frame's: the term's
-  /// standard deviation is that of the coefficient over the weight.
+  /// standard deviation is that of the coefficient over the weight. Not both 0.
   double prior_weight = 1;
   double smooth_weight = 2;
   double frame_s = 1.0 / 60;
@@ -23,7 +23,8 @@ struct GaussNewtonOptions {
 
 /// Minimises equation (6) over all coefficients of a basis at once, each term divided by its
 /// standard deviation, with a Gaussian prior over the coefficients: the most likely pose. A step
-/// that makes it worse is taken back and tried again shorter (Levenberg 1944).
+/// that makes it worse is taken back and tried again shorter (Levenberg 1944). There are fewer
+/// measurements than coefficients, so steps are solved for among the measurements (Woodbury 1950).
 ///
 /// Nothing allocates after the constructor.
 class GaussNewton {
@@ -43,37 +44,47 @@ class GaussNewton {
 
   const Eigen::VectorXd& q() const { return q_; }
   const Eigen::VectorXd& coefficients() const { return a_; }
-  /// Inverse of the coefficients' covariance at the solution; lower triangle.
-  const Eigen::MatrixXd& information() const { return information_; }
   /// Standard deviation of a joint's place at the last solution, along one axis (root mean square
-  /// of the three), m.
+  /// of the three), m: what the linearised terms leave open.
   double JointSd(int joint);
 
  private:
-  void Linearise(const PoseTargets& targets);
-  /// Equation (6) with the prior at a_, where Linearise was called last.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  void Begin(const Eigen::Ref<const Eigen::VectorXd>& prior_mean);
+  /// Kinematics and residuals of q_.
+  void Measure(const PoseTargets& targets);
+  /// Rows of the residuals that were measured.
+  void Differentiate(const PoseTargets& targets);
+  void PointRows(const PointTarget& point, int row);
+  /// Equation (6) with the prior at a_, where Measure was called last.
   double Cost(const Eigen::Ref<const Eigen::VectorXd>& prior_mean) const;
   void TakeStep(const Eigen::Ref<const Eigen::VectorXd>& prior_mean, double damping);
+  void Factorise(double damping);
   void PlaceAt(const Eigen::VectorXd& coefficients);
-  void AddRows(const Eigen::Vector3d& residual, const Eigen::Vector3d& sd);
+  bool Angular(const PoseTargets& targets) const { return targets.has_angular && started_; }
 
   const body::Body* body_;
   const PoseBasis* basis_;
   GaussNewtonOptions options_;
   bool started_ = false;
   bool mean_known_ = false;
-  double prior_ = 0, smooth_ = 0;  ///< Weights of this frame, squared.
-  Eigen::VectorXd no_mean_, mean_before_, a_, a_before_, a_best_, q_, q_before_, step_q_, step_;
-  Eigen::MatrixXd information_;
+  double prior_ = 0, smooth_ = 0;           ///< Weights of this frame, squared.
+  Rows modes_;                              ///< Of the basis, a row a degree of freedom together.
+  std::vector<std::vector<int>> moved_by_;  ///< Degrees of freedom that move each joint.
+  Eigen::VectorXd no_mean_, mean_before_, a_, a_before_, a_best_, q_, q_before_, step_q_;
+  Eigen::VectorXd variances_, free_sd_, pull_;  ///< Of the coefficients.
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian_;
-  Eigen::MatrixXd rows_;  ///< Weighted rows in the coefficients, `row_count_` of them.
-  Eigen::VectorXd residuals_;
-  Eigen::MatrixXd spread_;  ///< Room for JointSd.
+  Rows rows_;    ///< Weighted, in the coefficients, `row_count_` of them; then times free_sd_.
+  Rows square_;  ///< 1 + rows rows'; its lower triangle becomes its Cholesky factor.
+  Eigen::VectorXd residuals_, across_;
+  Rows joint_rows_;
+  Eigen::MatrixXd joint_across_;
   int row_count_ = 0;
+  Eigen::Vector3d com_W_m_;
   body::Kinematics at_;
   body::CompositeMasses room_;
   body::CentroidalMatrix centroidal_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 
 }  // namespace footing::pose

@@ -17,7 +17,6 @@
 #include "daemon/simulation/pose/fibonacci.h"
 #include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/pose/leg_ik.h"
-#include "daemon/simulation/pose/motion_filter.h"
 #include "daemon/simulation/reconstruction/features.h"
 #include "daemon/simulation/reconstruction/feet.h"
 #include "daemon/simulation/reconstruction/models.h"
@@ -54,35 +53,21 @@ struct Inputs {
   Known known = {};
 };
 
-/// Of the filter over the whole motion (pose::MotionFilter). What errs for many frames alike is
-/// taken as so much less certain in each of them.
-struct FilterConstants {
-  double on = 0;     ///< 0: each frame is solved for by itself.
-  double share = 1;  ///< Of the variance, in the components that it has.
-  FootSpread foot{0.12, 0.06, 0.08, 0.04, -0.025, 0.015, 0.012, 0.22, 0.05, 0.12, 0.4, 0.6};
-  double still_mps = 0.06;   ///< Ball of a standing foot.
-  double ankle_mps = 0.3;    ///< Ankle of a standing foot.
-  double hand_sd_m = 0.003;  ///< Of the fist on the hand, beside what the input says.
-  double force_sd_n = 10;
-  double moment_sd_nm = 6;
-  double jerk = 1;
-  double spread = 1;
-  double clean_up = 0;  ///< 1: legs are moved to the feet's targets.
-  /// Of the momentum's centre of mass: its deviation is so many times as large in each frame.
-  double com_doubt = 4, height_doubt = 4;
-};
-
 /// Standard deviations and weights of the best mode's terms.
 struct BestConstants {
   double hand_sd_m = 0.008;  ///< Of the fist on the hand, beside what the input says.
   FootSpread foot;
-  double com_sd_m = 0.015;  ///< Of the masses, beside what the filters say.
-  double angular_sd = 3;    ///< kg m^2/s.
-  double prior_weight = 1;
-  double smooth_weight = 2;  ///< At 60 Hz.
-  double regressed_prior_weight = 1;  ///< The same about the regression's pose.
-  double regressed_smooth_weight = 2;
-  FilterConstants filter;
+  double com_sd_m = 0.005;  ///< Of the masses, beside what the filters say.
+  /// kg m^2/s, beside what the estimate says; 0: the angular momentum is left out, since as it is
+  /// estimated it helps no pose (docs/pose.md).
+  double angular_sd = 0;
+  double prior_weight = 0.6;
+  double smooth_weight = 1;             ///< At 60 Hz.
+  double regressed_prior_weight = 0.6;  ///< The same about the regression's pose.
+  double regressed_smooth_weight = 1;
+  /// The told deviations are so many times those of the linearised terms, whose errors are alike
+  /// for many frames.
+  double spread = 1.5;
 };
 
 struct Options {
@@ -143,8 +128,6 @@ class Reconstruction {
     std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
     PoseRegression regression;
     pose::PoseBasis rest;
-    pose::PoseBasis filter_basis;
-    std::optional<pose::BasisRates> rates;
   };
   /// What is measured at one time.
   struct Moment {
@@ -166,7 +149,6 @@ class Reconstruction {
   void Solve();
   void SolveBest();
   bool Regressed() const;
-  void Filter(const Inputs& inputs);
   void CleanUp();
   void Tell(const Eigen::VectorXd& q);
   void TellSpreads();
@@ -190,7 +172,6 @@ class Reconstruction {
   std::optional<pose::GaussNewton> regressed_;  ///< Over the errors of the regression.
   bool was_regressed_ = false;
   Eigen::VectorXd room_, likely_q_, likely_a_;
-  std::optional<pose::MotionFilter> filter_;
   std::array<pose::LegIk, momentum::kFeet> legs_;
   Eigen::VectorXd q_;
   body::Kinematics at_;

@@ -177,7 +177,7 @@ class Train(unittest.TestCase):
         report = json.loads(result.stdout)
         self.assertEqual(report["subjects"], ["1", "2"])
         self.assertEqual(report["components_9999"], 3)
-        self.assertEqual(report["poses"], 1200)
+        self.assertEqual(report["poses"], 2400)  # And their mirror images.
 
     def test_bad_motions_are_refused_by_name(self):
         folder = self.motions()
@@ -189,7 +189,7 @@ class Train(unittest.TestCase):
         self.assertFalse(self.out.exists())
 
     def test_what_is_not_built_is_said_with_what_is(self):
-        self.refused(2, "there are basis, cascade, com and mlp", "arm", "--motions", ".", "--out", "x")
+        self.refused(2, "there are basis, cascade, com, mlp and pose", "arm", "--motions", ".", "--out", "x")
 
 
 if __name__ == "__main__":

@@ -114,6 +114,42 @@ TEST(GaussNewton, FindsAPoseOfTheSpaceFromHandsFeetAndCentreOfMass) {
   }
 }
 
+TEST(GaussNewton, KnowsBestWhatIsMeasured) {
+  World world;
+  GaussNewton solver(world.person, world.basis, {});
+  PoseTargets targets = world.Targets(world.poses.col(3), 0.01);
+  targets.has_com = false;
+  solver.Solve(targets);
+  const int wrist = world.person.landmarks[Landmark::kLeftWrist];
+  const double measured_m = solver.JointSd(wrist);
+  solver.Reset();
+  solver.Solve({});
+  const double free_m = solver.JointSd(wrist);
+  EXPECT_LT(measured_m, 0.012);  // Not much worse than its own measurement.
+  EXPECT_GT(free_m, 3 * measured_m);
+}
+
+TEST(GaussNewton, GoesOnFromAPoseThatItIsGiven) {
+  World world;
+  GaussNewtonOptions options;
+  options.smooth_weight = 100;  // Stays where it was.
+  GaussNewton solver(world.person, world.basis, options);
+  solver.ContinueFrom(world.poses.col(5));
+  solver.Solve({});
+  EXPECT_LT((solver.q() - world.poses.col(5)).norm(), 1e-2);
+}
+
+TEST(GaussNewton, MovesAsItsPriorsMeanMoves) {
+  World world;
+  GaussNewtonOptions options;
+  options.prior_weight = 0;
+  GaussNewton solver(world.person, world.basis, options);
+  const Eigen::VectorXd mean = 0.5 * world.basis.sd;
+  solver.Solve({}, Eigen::VectorXd::Zero(mean.size()));
+  solver.Solve({}, mean);
+  EXPECT_LT((solver.coefficients() - mean).norm(), 1e-6);
+}
+
 TEST(GaussNewton, WithNothingMeasuredStaysAtThePriorsMean) {
   World world;
   GaussNewton solver(world.person, world.basis, {});

@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/simulation/reconstruction/reconstruction.h"
+
+/// What a frame's pose is solved for.
+namespace footing::reconstruction {
+namespace {
+
+constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;
+constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 2;
+constexpr double kKnownComSdM = 0.01, kKnownAngularSd = 1, kKnownFootSdM = 0.015;
+constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
+
+}  // namespace
+
+void Reconstruction::Remember(const Inputs& inputs) {
+  Moment& now = past_[frames_ % kMostLag];
+  now.hands = inputs.hands;
+  for (HandInput& hand : now.hands) {
+    hand.valid = hand.valid && hand.p_W_m.allFinite() && hand.sd_m.allFinite() &&
+                 hand.sd_m.minCoeff() > 0 && (hand.p_W_m - origin_m_).norm() < kMostHandM;
+  }
+  now.momentum = output_.momentum;
+  now.known = inputs.known;
+  ++frames_;
+}
+
+void Reconstruction::TakeLagged() {
+  const std::size_t back = std::min(frames_, static_cast<std::size_t>(lag_steps_) + 1);
+  then_ = past_[(frames_ - back) % kMostLag];
+  // The estimator tells places as they were, the rest as it is.
+  then_.momentum.p_WC_m = output_.momentum.p_WC_m;
+  then_.momentum.position_variance_m2 = output_.momentum.position_variance_m2;
+}
+
+void Reconstruction::AdvanceFeatures() {
+  for (std::size_t side = 0; side < kHands; ++side) {
+    if (then_.hands[side].valid) last_hands_m_[side] = then_.hands[side].p_W_m;
+  }
+  features_.Advance(last_hands_m_, then_.momentum);
+}
+
+void Reconstruction::PlaceTargets() {
+  targets_.count = 0;
+  targets_.has_com = targets_.has_angular = false;
+  const bool paper = options_.mode == Mode::kPaper;
+  for (std::size_t side = 0; side < kHands; ++side) {
+    const HandInput& hand = then_.hands[side];
+    if (!hand.valid) continue;
+    const body::Point& fist = parts_->fists[side];
+    pose::PointTarget target{fist.joint, fist.p_J_m, hand.p_W_m, hand.sd_m};
+    if (paper) {
+      target.sd_m.setConstant(kPaperHandSdM);
+    } else {
+      target.sd_m = (hand.sd_m.array().square() + std::pow(options_.best.hand_sd_m, 2)).sqrt();
+    }
+    targets_.Add(target);
+  }
+  AddFeet();
+  AddMomentumTargets();
+  for (int i = 0; i < targets_.count; ++i) {
+    targets_.points[static_cast<std::size_t>(i)].p_W_m -= origin_m_;
+  }
+  targets_.com_W_m -= origin_m_;
+}
+
+void Reconstruction::AddFeet() {
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    const FootGeometry& geometry = parts_->feet[f];
+    if (then_.known.feet) {
+      const Known::Foot& foot = (*then_.known.feet)[f];
+      const Eigen::Vector3d sd = Eigen::Vector3d::Constant(kKnownFootSdM);
+      targets_.Add({geometry.ankle.joint, geometry.ankle.p_J_m, foot.ankle_W_m, sd});
+      targets_.Add({geometry.toe.joint, geometry.toe.p_J_m, foot.toe_W_m, sd});
+    } else if (options_.mode == Mode::kPaper) {
+      AddPaperFootTargets(geometry, then_.momentum.feet[f], kPaperFootSdM, targets_);
+    } else {
+      AddFootTargets(geometry, then_.momentum.feet[f], options_.best.foot, targets_);
+    }
+  }
+}
+
+void Reconstruction::AddMomentumTargets() {
+  const momentum::Estimate& told = then_.momentum;
+  const Known& known = then_.known;
+  const bool paper = options_.mode == Mode::kPaper;
+  targets_.has_com = options_.use_momentum;
+  targets_.com_W_m = told.p_WC_m;
+  targets_.has_angular =
+      options_.use_angular_momentum && (paper || known.angular_W || options_.best.angular_sd > 0);
+  // The solver's masses are the body's, which the cells have weighed anew.
+  targets_.angular_W = told.angular_momentum_kgm2ps * (parts_->body.mass_kg / output_.mass_kg);
+  if (paper) {
+    targets_.com_sd_m << kPaperComSdM, kPaperComSdM, kPaperHeightSdM;
+    targets_.angular_sd.setConstant(kPaperAngularSd);
+  } else {
+    targets_.com_sd_m =
+        (told.position_variance_m2.array() + std::pow(options_.best.com_sd_m, 2)).sqrt();
+    targets_.angular_sd =
+        (told.angular_momentum_variance.array() + std::pow(options_.best.angular_sd, 2)).sqrt();
+  }
+  if (known.com_W_m) {
+    targets_.com_W_m = *known.com_W_m;
+    targets_.com_sd_m.setConstant(kKnownComSdM);
+  }
+  if (known.angular_W) {
+    targets_.angular_W = *known.angular_W;
+    targets_.angular_sd.setConstant(kKnownAngularSd);
+  }
+}
+
+}  // namespace footing::reconstruction

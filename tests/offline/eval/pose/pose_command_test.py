@@ -1,0 +1,110 @@
+"""footing-eval pose on recorded people: what it reports, what it refuses, and that models help.
+
+Usage: pose_command_test.py FOOTING_EVAL FOOTING_TRAIN
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+EVAL, TRAIN = sys.argv.pop(1), sys.argv.pop(1)
+DATA = pathlib.Path(os.environ.get("FOOTING_TEST_DATA") or "/nowhere") / "mocap" / "cmu_amc"
+if not DATA.is_dir():
+    print("skipped: FOOTING_TEST_DATA has no mocap/cmu_amc")
+    sys.exit(77)
+
+FIELDS = ("frames rate_hz mpjpe_cm mpjpe_p95_cm mpjpe_root_relative_cm mpjpe_legs_cm mpjpe_torso_cm "
+          "mpjpe_arms_cm joint_angle_error_deg com_vertical_rms_cm com_horizontal_rms_cm "
+          "com_vertical_drift_cm_per_min com_horizontal_drift_cm_per_min foot_skate_cm_per_s "
+          "foot_position_rms_cm contact_f1 landing_delay_ms solve_us_p50 solve_us_p99 baselines").split()
+
+
+def run(*arguments):
+    return subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=120)
+
+
+class Pose(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.models = {}
+        # One clip to learn from, of another person than the one that is judged.
+        clips = pathlib.Path(cls.folder.name) / "clips"
+        clips.mkdir()
+        for name in ("13_31.amc", "13_reconstructed.asf"):
+            shutil.copy(DATA / name, clips)
+        for kind in ("basis", "pose"):
+            cls.models[kind] = pathlib.Path(cls.folder.name) / f"{kind}.fmodel"
+            done = run(TRAIN, kind, "--motions", clips, "--out", cls.models[kind])
+            assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def judge(self, kind, *flags, motion="11_01", skeleton="11"):
+        done = run(EVAL, "pose", "--motion", DATA / f"{motion}.amc", "--skeleton",
+                   DATA / f"{skeleton}.asf", "--model", self.models[kind], "--json", *flags)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_reports_every_field_as_a_finite_number(self):
+        for mode in ("best", "paper"):
+            report = self.judge("pose", "--mode", mode)
+            for field in FIELDS:
+                self.assertIn(field, report)
+            self.assertTrue(report["finite"])
+            self.assertNotIn("NaN", json.dumps(report))
+            self.assertNotIn("null", json.dumps(report))
+            self.assertEqual(report["invalid_frames"], 0)
+
+    def test_boards_and_hands_tell_more_than_hands_and_feet_and_those_more_than_a_mean(self):
+        report = self.judge("pose")
+        ik = report["baselines"]["hands_feet_ik"]["mpjpe_cm"]
+        self.assertLess(report["mpjpe_cm"], ik)
+        self.assertLess(ik, report["baselines"]["mean_pose"]["mpjpe_cm"])
+
+    def test_the_truth_in_place_of_an_estimate_makes_the_pose_better(self):
+        without = self.judge("pose", "--no-baselines")["mpjpe_cm"]
+        known = self.judge("pose", "--no-baselines", "--oracle", "com", "--oracle", "feet")["mpjpe_cm"]
+        self.assertLess(known, 0.8 * without)
+
+    def test_wrong_boards_make_it_worse(self):
+        right = self.judge("pose", "--no-baselines")
+        wrong = self.judge("pose", "--no-baselines", "--gap-error-m", "0.1", "--yaw-error-deg", "20")
+        self.assertGreater(wrong["mpjpe_cm"], right["mpjpe_cm"])
+        self.assertGreater(wrong["foot_position_rms_cm"], right["foot_position_rms_cm"] + 2)
+        heavy = self.judge("pose", "--no-baselines", "--mass-error", "0.02")
+        self.assertAlmostEqual(heavy["mass_kg"], 1.02 * right["mass_kg"], delta=0.1)
+
+    def test_the_same_seed_gives_the_same_and_another_does_not(self):
+        first, again = (self.judge("pose", "--no-baselines", "--seed", "3")["mpjpe_cm"] for _ in "ab")
+        self.assertEqual(first, again)
+        self.assertNotEqual(first, self.judge("pose", "--no-baselines", "--seed", "4")["mpjpe_cm"])
+
+    def test_refuses_a_model_of_the_same_person(self):
+        done = run(EVAL, "pose", "--motion", DATA / "13_29.amc", "--skeleton",
+                   DATA / "13_reconstructed.asf", "--model", self.models["pose"], "--json")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual(done.stdout, "")
+        self.assertIn("13", done.stderr)
+
+    def test_says_what_is_not_there(self):
+        base = (EVAL, "pose", "--motion", DATA / "11_01.amc", "--skeleton", DATA / "11.asf")
+        for flags, said in ((("--hands", "kinect"), "kinect"), (("--boards", "forces"), "forces"),
+                            (("--constant", "width=3"), "prior_weight"),
+                            (("--mode", "paper", "--lag-ms", "100"), "lag"),
+                            (("--model", self.models["basis"], "--model", self.models["pose"]),
+                             "give one of the two")):
+            more = () if "--model" in map(str, flags) else ("--model", self.models["pose"])
+            done = run(*base, *more, *flags)
+            self.assertNotEqual(done.returncode, 0, flags)
+            self.assertIn(said, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
