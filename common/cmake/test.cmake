@@ -1,3 +1,19 @@
+# What nearly every test includes, parsed once for all of them. A compiler takes it only where the options are the same, so
+# those of add_module_test stand here too.
+function(add_test_headers)
+  file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cc CONTENT "int main() {}\n")
+  add_executable(test_headers ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cc)
+  target_link_libraries(test_headers PRIVATE footing_warnings GTest::gmock Eigen3::Eigen)
+  target_compile_options(test_headers PRIVATE -O0 ${TEST_HEADER_OPTIONS})
+  target_compile_definitions(test_headers PRIVATE FOOTING_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                             FOOTING_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_precompile_headers(test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath>
+                            <functional> <map> <memory> <optional> <string> <vector>)
+endfunction()
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  set(TEST_HEADER_OPTIONS -fpch-preprocess)  # Lets ccache see what was parsed.
+endif()
+
 # add_module_test(<name> SOURCES ... [DEPS ...] [LABELS ...] [TIMEOUT seconds]): one GoogleTest program; every case becomes one
 # CTest test. Cases that call GTEST_SKIP show as skipped.
 function(add_module_test name)
@@ -16,9 +32,10 @@ function(add_module_test name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${links} footing_warnings GTest::gmock GTest::gtest_main)
   # Test code is compiled far more often than it runs.
-  target_compile_options(${name} PRIVATE -O0)
+  target_compile_options(${name} PRIVATE -O0 ${TEST_HEADER_OPTIONS})
   target_compile_definitions(${name} PRIVATE FOOTING_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              FOOTING_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_precompile_headers(${name} REUSE_FROM test_headers)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
   set(properties ENVIRONMENT "FOOTING_TEST_DATA=${FOOTING_TEST_DATA}" TIMEOUT ${arg_TIMEOUT})
   if(arg_LABELS)
