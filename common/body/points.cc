@@ -37,7 +37,9 @@ Point Fist(const Body& body, int side) {
   return fist;
 }
 
-Point Ankle(const Body& body, int side) { return {Of(body, side, Landmark::kLeftAnkle), {0, 0, 0}}; }
+Point Ankle(const Body& body, int side) {
+  return {Of(body, side, Landmark::kLeftAnkle), {0, 0, 0}};
+}
 
 Point Toe(const Body& body, int side) {
   for (const Landmark landmark : {Landmark::kLeftToe, Landmark::kLeftToeEnd}) {

@@ -7,6 +7,7 @@
 #include "daemon/offline/eval/gait_trial.h"
 #include "daemon/offline/eval/momentum_command.h"
 #include "daemon/offline/eval/monkey_command.h"
+#include "daemon/offline/eval/pose_command.h"
 #include "daemon/offline/eval/replay_command.h"
 #include "daemon/offline/eval/tracks_command.h"
 #include "daemon/offline/eval/transitions_command.h"
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
   footing::eval::AddGaitCommand(*app, shared);
   footing::eval::AddMomentumCommand(*app, shared);
   footing::eval::AddMonkeyCommand(*app, shared);
+  footing::eval::AddPoseCommand(*app, shared);
   footing::eval::AddReplayCommand(*app, shared);
   footing::eval::AddTracksCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);

@@ -7,6 +7,7 @@
 #include "common/config/data_file.h"
 #include "common/motion/asf.h"
 #include "common/motion/bvh.h"
+#include "common/motion/edit.h"
 #include "daemon/offline/training/alignment.h"
 
 namespace footing::train {
@@ -53,9 +54,11 @@ Result<motion::Motion> ReadAmc(const fs::path& path, const std::string& text) {
 Result<Clip> ReadClip(const fs::path& path) {
   const Result<std::string> text = config::ReadTextFile(path.string(), kMostBytes);
   if (!text) return text.error();
-  const Result<motion::Motion> motion =
+  const Result<motion::Motion> read =
       path.extension() == ".amc" ? ReadAmc(path, *text) : motion::ParseBvh(*text, path.string());
-  if (!motion) return motion.error();
+  if (!read) return read.error();
+  const Result<motion::Motion> motion = motion::WithLandmarksOnly(*read);
+  if (!motion) return InvalidData(path.string() + ": " + motion.error().message);
   if (motion->frames() < kFewestFrames) {
     return InvalidData(path.string() + ": only " + std::to_string(motion->frames()) + " frames");
   }

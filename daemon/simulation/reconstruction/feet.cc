@@ -67,8 +67,7 @@ void AddFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& 
   const double aloft_s = foot.contact ? 0 : foot.airborne_s;
   const double lift_m = spread.lift * (1 - std::exp(-aloft_s / spread.lift_time_s));
   const double more_m = spread.air_mps * aloft_s;
-  const Eigen::Vector3d place =
-      foot.p_WF_m + Eigen::Vector3d(0, 0, lift_m);
+  const Eigen::Vector3d place = foot.p_WF_m + Eigen::Vector3d(0, 0, lift_m);
   // W's axes stand in for the foot's: a foot points ahead, more or less.
   const auto sd = [&](double up_m) {
     const Eigen::Vector3d own(spread.along, spread.across, up_m);
@@ -77,8 +76,8 @@ void AddFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& 
             .sqrt();
     return Eigen::Vector3d(all.cwiseMin(kMostSpreadM));
   };
-  targets.Add(Target(geometry.ankle, place + geometry.R_WF * geometry.ankle_F_m,
-                     sd(spread.ankle_up)));
+  targets.Add(
+      Target(geometry.ankle, place + geometry.R_WF * geometry.ankle_F_m, sd(spread.ankle_up)));
   targets.Add(Target(geometry.toe, place + geometry.R_WF * geometry.toe_F_m, sd(spread.toe_up)));
 }
 

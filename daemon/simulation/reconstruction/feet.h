@@ -30,11 +30,11 @@ momentum::Subject SubjectOf(const body::Body& body);
 
 /// How well a foot's estimate tells where its joints are, one standard deviation, m.
 struct FootSpread {
-  double along = 0.03;   ///< In contact, beside the variance of F itself.
+  double along = 0.03;  ///< In contact, beside the variance of F itself.
   double across = 0.02;
   double ankle_up = 0.02;
   double toe_up = 0.012;
-  double lift = 0.10;    ///< In the air: how high it is taken to be,
+  double lift = 0.10;         ///< In the air: how high it is taken to be,
   double lift_time_s = 0.15;  ///< after so long,
   double air_mps = 0.4;       ///< and how fast all spreads grow.
 };

@@ -6,13 +6,15 @@
 namespace footing::reconstruction {
 namespace {
 
-constexpr double kPaperShare = 0.99;  // Of the variance, in the components that paper mode searches.
+constexpr double kPaperShare =
+    0.99;  // Of the variance, in the components that paper mode searches.
 constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;
 constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 2;
 constexpr int kCleanUpIterations = 4;
 constexpr int kSpreadsAFrame = 3;    // Joints whose covariance is told anew in each frame.
 constexpr double kUnknownSdM = 1.0;  // Before anything is measured.
-constexpr double kMostHandM = 10;    // Nobody's hand is further from the cells.
+constexpr double kKnownComSdM = 0.01, kKnownAngularSd = 1, kKnownFootSdM = 0.015;
+constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
 
 /// The components that hold this share of the variance.
 pose::PoseBasis Leading(pose::PoseBasis basis, double share) {
@@ -172,8 +174,8 @@ const Output& Reconstruction::Advance(const Inputs& inputs) {
     if (done) Begin(calibration_.result());
     return output_;
   }
-  output_.momentum = best_ ? best_->Advance(inputs.loads)
-                           : paper_->Advance(inputs.loads, std::nullopt);
+  output_.momentum =
+      best_ ? best_->Advance(inputs.loads) : paper_->Advance(inputs.loads, std::nullopt);
   output_.resets = output_.momentum.resets + solver_resets_;
   output_.valid = output_.momentum.valid;
   Remember(inputs);
@@ -190,6 +192,7 @@ void Reconstruction::Remember(const Inputs& inputs) {
                  hand.sd_m.minCoeff() > 0 && (hand.p_W_m - origin_m_).norm() < kMostHandM;
   }
   now.feet = output_.momentum.feet;
+  now.known = inputs.known;
   ++frames_;
 }
 
@@ -214,21 +217,31 @@ void Reconstruction::PlaceTargets(const Moment& moment) {
     }
     targets_.Add(target);
   }
-  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
-    if (paper) {
-      AddPaperFootTargets(parts_->feet[f], moment.feet[f], kPaperFootSdM, targets_);
-    } else {
-      AddFootTargets(parts_->feet[f], moment.feet[f], options_.best.foot, targets_);
-    }
-  }
-  AddMomentumTargets();
+  AddFeet(moment);
+  AddMomentumTargets(moment.known);
   for (int i = 0; i < targets_.count; ++i) {
     targets_.points[static_cast<std::size_t>(i)].p_W_m -= origin_m_;
   }
   targets_.com_W_m -= origin_m_;
 }
 
-void Reconstruction::AddMomentumTargets() {
+void Reconstruction::AddFeet(const Moment& moment) {
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    const FootGeometry& geometry = parts_->feet[f];
+    if (moment.known.feet) {
+      const Known::Foot& foot = (*moment.known.feet)[f];
+      const Eigen::Vector3d sd = Eigen::Vector3d::Constant(kKnownFootSdM);
+      targets_.Add({geometry.ankle.joint, geometry.ankle.p_J_m, foot.ankle_W_m, sd});
+      targets_.Add({geometry.toe.joint, geometry.toe.p_J_m, foot.toe_W_m, sd});
+    } else if (options_.mode == Mode::kPaper) {
+      AddPaperFootTargets(geometry, moment.feet[f], kPaperFootSdM, targets_);
+    } else {
+      AddFootTargets(geometry, moment.feet[f], options_.best.foot, targets_);
+    }
+  }
+}
+
+void Reconstruction::AddMomentumTargets(const Known& known) {
   const momentum::Estimate& told = output_.momentum;
   const bool paper = options_.mode == Mode::kPaper;
   targets_.has_com = options_.use_momentum;
@@ -244,6 +257,14 @@ void Reconstruction::AddMomentumTargets() {
         (told.position_variance_m2.array() + std::pow(options_.best.com_sd_m, 2)).sqrt();
     targets_.angular_sd =
         (told.angular_momentum_variance.array() + std::pow(options_.best.angular_sd, 2)).sqrt();
+  }
+  if (known.com_W_m) {
+    targets_.com_W_m = *known.com_W_m;
+    targets_.com_sd_m.setConstant(kKnownComSdM);
+  }
+  if (known.angular_W) {
+    targets_.angular_W = *known.angular_W;
+    targets_.angular_sd.setConstant(kKnownAngularSd);
   }
 }
 
@@ -272,7 +293,7 @@ void Reconstruction::Solve() {
 void Reconstruction::CleanUp() {
   const Moment& moment = Lagged();
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
-    if (moment.feet[f].contact || options_.mode == Mode::kPaper) {
+    if (moment.feet[f].contact || moment.known.feet || options_.mode == Mode::kPaper) {
       legs_[f].Solve(targets_, kCleanUpIterations, q_);
     }
   }

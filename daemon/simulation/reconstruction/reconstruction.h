@@ -35,9 +35,21 @@ struct HandInput {
   Eigen::Vector3d sd_m = Eigen::Vector3d::Constant(0.01);
 };
 
+/// What is known from elsewhere and takes the place of the estimate: to see how much a better one
+/// would help. Empty in use. Of the same instant as the loads.
+struct Known {
+  std::optional<Eigen::Vector3d> com_W_m;
+  std::optional<Eigen::Vector3d> angular_W;  ///< kg m^2/s, of the body's own mass.
+  struct Foot {
+    Eigen::Vector3d ankle_W_m, toe_W_m;
+  };
+  std::optional<std::array<Foot, momentum::kFeet>> feet;
+};
+
 struct Inputs {
   momentum::ContactLoads loads;
   std::array<HandInput, kHands> hands;
+  Known known = {};
 };
 
 /// Standard deviations and weights of the best mode's terms.
@@ -109,6 +121,7 @@ class Reconstruction {
   struct Moment {
     std::array<HandInput, kHands> hands;
     std::array<momentum::FootEstimate, momentum::kFeet> feet;
+    Known known;
   };
   static constexpr std::size_t kMostLag = momentum::HorizontalCom::kSlots;
 
@@ -117,7 +130,8 @@ class Reconstruction {
   void Remember(const Inputs& inputs);
   const Moment& Lagged() const;
   void PlaceTargets(const Moment& moment);
-  void AddMomentumTargets();
+  void AddFeet(const Moment& moment);
+  void AddMomentumTargets(const Known& known);
   void Solve();
   void CleanUp();
   void Tell(const Eigen::VectorXd& q);

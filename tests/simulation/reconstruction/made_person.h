@@ -50,8 +50,8 @@ inline Eigen::VectorXd Crouch(const body::Body& person, double bend_rad, double 
   turn(body::Landmark::kLeftKnee, 2 * bend_rad);
   turn(body::Landmark::kLeftAnkle, -bend_rad);
   for (const double side : {1.0, -1.0}) {
-    const body::Landmark shoulder = side > 0 ? body::Landmark::kLeftShoulder
-                                             : body::Mirrored(body::Landmark::kLeftShoulder);
+    const body::Landmark shoulder =
+        side > 0 ? body::Landmark::kLeftShoulder : body::Mirrored(body::Landmark::kLeftShoulder);
     body::ComputeKinematics(skeleton, q, at);
     const int index = person.landmarks[shoulder];
     const body::Joint& joint = skeleton.joint(index);
@@ -75,8 +75,7 @@ inline motion::Motion MadeMotion(const body::Body& person, double seconds) {
   motion.q.resize(person.skeleton.dof, frames);
   for (Eigen::Index i = 0; i < frames; ++i) {
     const double t = std::max(0.0, static_cast<double>(i) / kMadeRateHz - kMadeStandS);
-    motion.q.col(i) =
-        Crouch(person, 0.35 * (1 - std::cos(2.1 * t)), 0.6 * (1 - std::cos(1.3 * t)));
+    motion.q.col(i) = Crouch(person, 0.35 * (1 - std::cos(2.1 * t)), 0.6 * (1 - std::cos(1.3 * t)));
   }
   return motion;
 }

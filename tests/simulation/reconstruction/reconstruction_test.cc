@@ -65,8 +65,7 @@ TEST(Reconstruction, StandsInATPoseUntilItIsCalibrated) {
     ASSERT_FALSE(output.valid);
     ASSERT_NEAR(output.calibration_progress, static_cast<double>(i + 1) / 300, 0.01);
   }
-  EXPECT_EQ(reconstruction.output().q,
-            body::TPose(world.person.skeleton, world.person.landmarks));
+  EXPECT_EQ(reconstruction.output().q, body::TPose(world.person.skeleton, world.person.landmarks));
   for (std::size_t i = 299; i < 310; ++i) reconstruction.Advance(world.inputs[i]);
   EXPECT_TRUE(reconstruction.output().calibrated);
   EXPECT_TRUE(reconstruction.output().valid);
@@ -156,8 +155,7 @@ TEST(Reconstruction, ForgetsItsTPose) {
   for (std::size_t i = 0; i < 400; ++i) reconstruction.Advance(world.inputs[i]);
   reconstruction.Recalibrate();
   EXPECT_FALSE(reconstruction.output().calibrated);
-  EXPECT_EQ(reconstruction.output().q,
-            body::TPose(world.person.skeleton, world.person.landmarks));
+  EXPECT_EQ(reconstruction.output().q, body::TPose(world.person.skeleton, world.person.landmarks));
   for (std::size_t i = 0; i < 310; ++i) reconstruction.Advance(world.inputs[i]);
   EXPECT_TRUE(reconstruction.output().calibrated);
 }

@@ -1,0 +1,48 @@
+#include "daemon/offline/eval/pose_baselines.h"
+
+#include <cmath>
+
+#include "daemon/offline/eval/pose_metrics.h"
+
+namespace footing::eval {
+namespace {
+
+using nlohmann::ordered_json;
+
+double Still(const rehearsal::Rehearsal& rehearsal, const Eigen::VectorXd& q, std::size_t start) {
+  PoseScore score(rehearsal.body);
+  for (std::size_t i = start; i < rehearsal.frames.size(); ++i) {
+    score.Add(q, rehearsal.frames[i].q);
+  }
+  return score.mpjpe_cm();
+}
+
+}  // namespace
+
+Result<ordered_json> JudgeBaselines(const rehearsal::Rehearsal& rehearsal,
+                                    const reconstruction::Models& models,
+                                    const reconstruction::Options& options, std::size_t start) {
+  ordered_json json;
+  const Eigen::VectorXd& t_pose = rehearsal.frames.front().q;
+  json["t_pose"]["mpjpe_cm"] = Still(rehearsal, t_pose, start);
+  Eigen::VectorXd mean = models.basis.mean;
+  for (const auto& foot : rehearsal.frames.front().feet) {
+    mean.head<2>() += 0.25 * (foot.ankle_m + foot.toe_m).head<2>();
+  }
+  json["mean_pose"]["mpjpe_cm"] = Still(rehearsal, mean, start);
+
+  reconstruction::Options without = options;
+  without.use_momentum = without.use_angular_momentum = false;
+  auto made = reconstruction::Reconstruction::Create(rehearsal.body, models, without);
+  if (!made) return made.error();
+  PoseScore score(rehearsal.body);
+  const auto lag = static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz));
+  for (std::size_t i = 0; i < rehearsal.frames.size(); ++i) {
+    const auto& output = made->Advance(rehearsal.frames[i].inputs);
+    if (i >= start) score.Add(output.q, rehearsal.frames[i - lag].q);
+  }
+  json["hands_feet_ik"] = score.Json();
+  return json;
+}
+
+}  // namespace footing::eval

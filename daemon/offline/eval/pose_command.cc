@@ -1,0 +1,141 @@
+#include "daemon/offline/eval/pose_command.h"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/cli/cli.h"
+#include "common/units/units.h"
+#include "daemon/offline/eval/pose_baselines.h"
+#include "daemon/offline/eval/pose_constants.h"
+#include "daemon/offline/eval/pose_scene.h"
+#include "daemon/offline/eval/pose_trial.h"
+
+namespace footing::eval {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Flags {
+  PoseSceneOptions scene;
+  reconstruction::Options options;
+  std::vector<std::string> models, ablate, oracle, constants;
+  std::string hands = "move", mode = "best", boards = "simulated";
+  double lag_ms = 0, loop_minutes = 0, yaw_error_deg = 0, height_m = 0;
+  bool baselines = true;
+};
+
+bool Has(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// What the strings say, into the options.
+Result<void> Translate(Flags& flags) {
+  rehearsal::Settings& settings = flags.scene.settings;
+  settings.hands = flags.hands != "none";
+  if (flags.hands == "wiimote" || flags.hands == "kinect") {
+    return UsageError("--hands " + flags.hands + " is not built yet; there are move and none");
+  }
+  if (flags.boards == "forces") {
+    return UsageError("--boards forces is not built yet; there is simulated");
+  }
+  settings.loop_s = 60 * flags.loop_minutes;
+  settings.yaw_error_rad = DegreesToRadians(flags.yaw_error_deg);
+  if (flags.height_m > 0) settings.height_m = flags.height_m;
+  settings.seed = settings.errors.seed;
+  flags.options.rate_hz = settings.rate_hz;
+  flags.options.lag_s = flags.lag_ms / 1000;
+  flags.options.mode =
+      flags.mode == "paper" ? reconstruction::Mode::kPaper : reconstruction::Mode::kBest;
+  flags.options.use_momentum = !Has(flags.ablate, "momentum");
+  flags.options.use_angular_momentum = !Has(flags.ablate, "angular_momentum");
+  flags.options.clean_up = !Has(flags.ablate, "cleanup");
+  flags.options.use_basis = !Has(flags.ablate, "basis");
+  return SetConstants(flags.constants, flags.options.best);
+}
+
+Result<ordered_json> Evaluate(Flags flags) {
+  if (const auto translated = Translate(flags); !translated) return translated.error();
+  const auto models = ReadPoseModels(flags.models, flags.scene.motion);
+  if (!models) return models.error();
+  const auto rehearsal = MakePoseScene(flags.scene);
+  if (!rehearsal) return rehearsal.error();
+  const Oracle oracle{Has(flags.oracle, "com"), Has(flags.oracle, "momentum"),
+                      Has(flags.oracle, "feet")};
+  auto json = RunPoseTrial(*rehearsal, *models, flags.options, oracle);
+  if (!json) return Error{json.error().kind, flags.scene.motion + ": " + json.error().message};
+  (*json)["mode"] = flags.mode;
+  (*json)["hands"] = flags.hands;
+  (*json)["boards"] = flags.boards;
+  (*json)["boards_limited"] = flags.scene.settings.limited;
+  (*json)["cop_outside_sensors_share"] = rehearsal->outside_share;
+  if (!flags.baselines) return json;
+  const auto baselines =
+      JudgeBaselines(*rehearsal, *models, flags.options, FirstJudged(*rehearsal));
+  if (!baselines) return baselines.error();
+  (*json)["baselines"] = *baselines;
+  return json;
+}
+
+void AddFlags(CLI::App& command, Flags& flags) {
+  rehearsal::Settings& settings = flags.scene.settings;
+  command.add_option("--motion", flags.scene.motion, "BVH, AMC, TRC or C3D")->required();
+  command.add_option("--skeleton", flags.scene.skeleton, "ASF of an AMC");
+  command.add_option("--still", flags.scene.still, "Markers of the person standing still");
+  command.add_option("--mass-kg", settings.mass_kg)->check(CLI::Range(20.0, 250.0));
+  command.add_option("--height-m", flags.height_m)->check(CLI::Range(0.5, 2.6));
+  command.add_option("--hands", flags.hands, "move: 1 cm of noise")
+      ->check(CLI::IsMember({"move", "wiimote", "kinect", "none"}));
+  command.add_option("--boards", flags.boards)->check(CLI::IsMember({"simulated", "forces"}));
+  command.add_option("--model", flags.models, "*.fmodel, several; without: the product's");
+  command.add_option("--mode", flags.mode)->check(CLI::IsMember({"paper", "best"}));
+  command.add_option("--rate-hz", settings.rate_hz)->check(CLI::Range(30.0, 120.0));
+  command.add_option("--lag-ms", flags.lag_ms, "0 to 200")->check(CLI::Range(0.0, 200.0));
+  command.add_option("--cell-noise-kg", settings.errors.noise_kg)->check(CLI::Range(0.0, 5.0));
+  command.add_option("--gain-error", settings.errors.gain_spread, "0.01: one percent a cell")
+      ->check(CLI::Range(0.0, 0.2));
+  command.add_option("--slow-force-n", settings.errors.slow_force_n, "Slow error of a board")
+      ->check(CLI::Range(0.0, 50.0));
+  command.add_option("--hysteresis-n", settings.errors.hysteresis_n)->check(CLI::Range(0.0, 50.0));
+  command.add_option("--seed", settings.errors.seed, "Of the errors of cells and hands");
+  command.add_option("--gap-error-m", settings.gap_error_m, "Boards told too far apart")
+      ->check(CLI::Range(-0.2, 0.2));
+  command.add_option("--yaw-error-deg", flags.yaw_error_deg, "Of the right board")
+      ->check(CLI::Range(-45.0, 45.0));
+  command.add_option("--mass-error", settings.mass_error, "Of the T-pose's weight: 0.02")
+      ->check(CLI::Range(-0.2, 0.2));
+  command.add_flag("--limited", settings.limited, "Boards that end at their sensors");
+  command.add_option("--loop-minutes", flags.loop_minutes, "Forwards and backwards so long")
+      ->check(CLI::Range(0.0, 60.0));
+  command.add_option("--ablate", flags.ablate, "Parts left out")
+      ->check(CLI::IsMember({"angular_momentum", "momentum", "cleanup", "basis"}));
+  command.add_option("--oracle", flags.oracle, "Parts told the truth")
+      ->check(CLI::IsMember({"com", "momentum", "feet"}));
+  command.add_option("--constant", flags.constants, "NAME=VALUE of the best mode");
+  command.add_flag("--baselines,!--no-baselines", flags.baselines, "Compare with knowing less");
+}
+
+}  // namespace
+
+void AddPoseCommand(CLI::App& app, Shared& shared) {
+  auto* command = app.add_subcommand(
+      "pose", "The whole body from two boards and two hands under a motion, against the truth");
+  const auto flags = std::make_shared<Flags>();
+  flags->scene.settings.errors.noise_kg = 0.05;
+  AddFlags(*command, *flags);
+  command->callback([flags, &shared] {
+    const auto out = Evaluate(*flags);
+    if (!out) {
+      shared.exit_code = cli::Report(out.error());
+    } else if (shared.json) {
+      std::cout << out->dump() << "\n";
+    } else {
+      for (const auto& [name, value] : out->items()) {
+        std::cout << name << ": " << value.dump() << "\n";
+      }
+    }
+  });
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,42 @@
+#include "daemon/offline/eval/pose_constants.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <map>
+
+namespace footing::eval {
+
+Result<void> SetConstants(const std::vector<std::string>& assignments,
+                          reconstruction::BestConstants& c) {
+  const std::map<std::string, double*> names = {
+      {"hand_sd_m", &c.hand_sd_m},
+      {"foot_along", &c.foot.along},
+      {"foot_across", &c.foot.across},
+      {"ankle_up", &c.foot.ankle_up},
+      {"toe_up", &c.foot.toe_up},
+      {"lift", &c.foot.lift},
+      {"lift_time_s", &c.foot.lift_time_s},
+      {"air_mps", &c.foot.air_mps},
+      {"com_sd_m", &c.com_sd_m},
+      {"angular_sd", &c.angular_sd},
+      {"prior_weight", &c.prior_weight},
+      {"smooth_weight", &c.smooth_weight},
+  };
+  for (const std::string& assignment : assignments) {
+    const auto equal = assignment.find('=');
+    const auto found = names.find(assignment.substr(0, equal));
+    char* end = nullptr;
+    const double value =
+        equal == std::string::npos ? NAN : std::strtod(assignment.c_str() + equal + 1, &end);
+    if (found == names.end() || !std::isfinite(value) || *end != '\0') {
+      std::string list;
+      for (const auto& [name, place] : names) list += (list.empty() ? "" : ", ") + name;
+      return UsageError("--constant " + assignment + ": say NAME=VALUE with one of " + list);
+    }
+    *found->second = value;
+  }
+  return {};
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,150 @@
+#include "daemon/offline/eval/pose_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::eval {
+namespace {
+
+using body::Landmark;
+using nlohmann::ordered_json;
+
+constexpr const char* kAngles[] = {"hip", "knee", "shoulder", "elbow", "chest"};
+
+void AddSides(const body::Body& body, Landmark left, std::vector<int>& joints) {
+  for (const Landmark landmark : {left, body::Mirrored(left)}) {
+    if (body.landmarks[landmark] >= 0) joints.push_back(body.landmarks[landmark]);
+  }
+}
+
+/// The joint between elbow and wrist, if there is one: the forearm's own.
+void AddForearms(const body::Body& body, std::vector<int>& joints) {
+  for (const Landmark left : {Landmark::kLeftWrist, body::Mirrored(Landmark::kLeftWrist)}) {
+    const Landmark elbow =
+        left == Landmark::kLeftWrist ? Landmark::kLeftElbow : body::Mirrored(Landmark::kLeftElbow);
+    const int parent = body.skeleton.joint(body.landmarks[left]).parent;
+    if (parent != body.landmarks[elbow]) joints.push_back(parent);
+  }
+}
+
+/// Base of the skull: a CMU skeleton's own "head", else its landmark.
+int SkullBase(const body::Body& body) {
+  const int head = body::FindJoint(body.skeleton, "head");
+  return head >= 0 ? head : body.landmarks[Landmark::kHead];
+}
+
+double AngleDeg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  const double cosine = ((a.transpose() * b).trace() - 1) / 2;
+  return RadiansToDegrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
+}
+
+}  // namespace
+
+JudgedJoints::JudgedJoints(const body::Body& body) {
+  for (const Landmark left :
+       {Landmark::kLeftHip, Landmark::kLeftKnee, Landmark::kLeftAnkle, Landmark::kLeftToe}) {
+    AddSides(body, left, legs);
+  }
+  for (const int joint : {0, body.landmarks[Landmark::kChest], body.landmarks[Landmark::kNeck],
+                          SkullBase(body), body.landmarks[Landmark::kVertex]}) {
+    if (joint >= 0) torso.push_back(joint);
+  }
+  for (const Landmark left : {Landmark::kLeftShoulder, Landmark::kLeftElbow, Landmark::kLeftWrist}) {
+    AddSides(body, left, arms);
+  }
+  AddForearms(body, arms);
+}
+
+double Spread::mean() const {
+  double sum = 0;
+  for (const double value : values_) sum += value;
+  return values_.empty() ? 0 : sum / static_cast<double>(values_.size());
+}
+
+double Spread::rms() const {
+  double sum = 0;
+  for (const double value : values_) sum += value * value;
+  return values_.empty() ? 0 : std::sqrt(sum / static_cast<double>(values_.size()));
+}
+
+double Spread::Quantile(double share) const {
+  if (values_.empty()) return 0;
+  std::vector<double> values = values_;
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(
+                                          share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+PoseScore::PoseScore(const body::Body& body)
+    : body_(body),
+      joints_(body),
+      at_(body.skeleton),
+      truth_(body.skeleton),
+      errors_m_(static_cast<std::size_t>(body.skeleton.size())) {}
+
+double PoseScore::Mean(const std::vector<int>& joints, const Eigen::Vector3d& shift) const {
+  double sum = 0;
+  for (const int joint : joints) {
+    sum += (errors_m_[static_cast<std::size_t>(joint)] - shift).norm();
+  }
+  return joints.empty() ? 0 : 100 * sum / static_cast<double>(joints.size());
+}
+
+void PoseScore::Add(const Eigen::VectorXd& q, const Eigen::VectorXd& true_q) {
+  body::ComputeKinematics(body_.skeleton, q, at_);
+  body::ComputeKinematics(body_.skeleton, true_q, truth_);
+  for (std::size_t i = 0; i < errors_m_.size(); ++i) errors_m_[i] = at_.p_WJ[i] - truth_.p_WJ[i];
+  const auto all = [this](const Eigen::Vector3d& shift) {
+    const auto n = [](const std::vector<int>& joints) { return static_cast<double>(joints.size()); };
+    return (n(joints_.legs) * Mean(joints_.legs, shift) +
+            n(joints_.torso) * Mean(joints_.torso, shift) +
+            n(joints_.arms) * Mean(joints_.arms, shift)) /
+           (n(joints_.legs) + n(joints_.torso) + n(joints_.arms));
+  };
+  frames_.Add(all(Eigen::Vector3d::Zero()));
+  relative_.Add(all(errors_m_[0]));
+  legs_.Add(Mean(joints_.legs, Eigen::Vector3d::Zero()));
+  torso_.Add(Mean(joints_.torso, Eigen::Vector3d::Zero()));
+  arms_.Add(Mean(joints_.arms, Eigen::Vector3d::Zero()));
+  AddAngles();
+}
+
+void PoseScore::AddAngles() {
+  const auto local = [this](const body::Kinematics& at, int joint) -> Eigen::Matrix3d {
+    const int parent = body_.skeleton.joint(joint).parent;
+    return at.R_WJ[static_cast<std::size_t>(parent)].transpose() *
+           at.R_WJ[static_cast<std::size_t>(joint)];
+  };
+  constexpr Landmark kLeft[] = {Landmark::kLeftHip, Landmark::kLeftKnee, Landmark::kLeftShoulder,
+                                Landmark::kLeftElbow};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (const Landmark landmark : {kLeft[i], body::Mirrored(kLeft[i])}) {
+      const int joint = body_.landmarks[landmark];
+      angles_[i].Add(AngleDeg(local(at_, joint), local(truth_, joint)));
+    }
+  }
+  const int chest = body_.landmarks[Landmark::kChest];
+  if (chest < 0) return;
+  const auto index = static_cast<std::size_t>(chest);
+  angles_[4].Add(AngleDeg(at_.R_WJ[index], truth_.R_WJ[index]));  // Against the world.
+}
+
+ordered_json PoseScore::Json() const {
+  ordered_json json = {{"mpjpe_cm", frames_.mean()},
+                       {"mpjpe_p50_cm", frames_.Quantile(0.5)},
+                       {"mpjpe_p95_cm", frames_.Quantile(0.95)},
+                       {"mpjpe_root_relative_cm", relative_.mean()},
+                       {"mpjpe_root_relative_p95_cm", relative_.Quantile(0.95)},
+                       {"mpjpe_legs_cm", legs_.mean()},
+                       {"mpjpe_torso_cm", torso_.mean()},
+                       {"mpjpe_arms_cm", arms_.mean()}};
+  for (std::size_t i = 0; i < angles_.size(); ++i) {
+    json["joint_angle_error_deg"][kAngles[i]] = angles_[i].mean();
+  }
+  return json;
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "daemon/offline/rehearsal/rehearsal.h"
+
+namespace footing::eval {
+
+/// Which joints a pose is judged by: hips, knees, ankles, balls of the feet; root, chest, neck,
+/// base and top of the head; shoulders, elbows, end of the forearm's upper two thirds where there
+/// is one (CMU), wrists. Those that the skeleton has, at most 21.
+struct JudgedJoints {
+  std::vector<int> legs, torso, arms;
+  explicit JudgedJoints(const body::Body& body);
+};
+
+/// Numbers whose distribution is asked for.
+class Spread {
+ public:
+  void Add(double value) { values_.push_back(value); }
+  double mean() const;
+  double rms() const;
+  /// 0.5: the median. 0 where there is nothing.
+  double Quantile(double share) const;
+  std::size_t size() const { return values_.size(); }
+
+ private:
+  std::vector<double> values_;
+};
+
+/// Poses against the truth, frame by frame.
+class PoseScore {
+ public:
+  /// `body` must outlive it.
+  explicit PoseScore(const body::Body& body);
+
+  void Add(const Eigen::VectorXd& q, const Eigen::VectorXd& true_q);
+  /// The last frame's errors by joint, of all joints, m.
+  const std::vector<Eigen::Vector3d>& errors_m() const { return errors_m_; }
+  const body::Kinematics& at() const { return at_; }
+  const body::Kinematics& truth() const { return truth_; }
+
+  double mpjpe_cm() const { return frames_.mean(); }
+  nlohmann::ordered_json Json() const;
+
+ private:
+  double Mean(const std::vector<int>& joints, const Eigen::Vector3d& shift) const;
+  void AddAngles();
+
+  const body::Body& body_;
+  JudgedJoints joints_;
+  body::Kinematics at_, truth_;
+  std::vector<Eigen::Vector3d> errors_m_;
+  Spread frames_, relative_, legs_, torso_, arms_;  ///< cm.
+  std::array<Spread, 5> angles_;                    ///< Degrees: hip, knee, shoulder, elbow, chest.
+};
+
+}  // namespace footing::eval

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "daemon/offline/rehearsal/rehearsal.h"
+#include "daemon/simulation/reconstruction/models.h"
+
+namespace footing::eval {
+
+/// A motion file, and what the boards and hands tell of it.
+struct PoseSceneOptions {
+  std::string motion;    ///< BVH, AMC, TRC or C3D.
+  std::string skeleton;  ///< ASF, of an AMC.
+  std::string still;     ///< TRC or C3D of the same person standing, of markers.
+  rehearsal::Settings settings;
+};
+
+Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options);
+
+/// Reads the models and refuses those that were trained on the motion's subject (the file's name up
+/// to the first '_'). No file: those that the product carries.
+Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& files,
+                                              const std::string& motion);
+
+}  // namespace footing::eval

@@ -1,0 +1,240 @@
+#include "daemon/offline/eval/pose_trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/body/momentum.h"
+#include "common/clock/clock.h"
+#include "daemon/offline/eval/pose_metrics.h"
+
+namespace footing::eval {
+namespace {
+
+using momentum::kFeet;
+using nlohmann::ordered_json;
+
+constexpr double kContactN = 20;
+constexpr double kSettledContactS = 0.3;  // A foot's place is judged so long after its landing.
+constexpr int kCostRuns = 2000;
+
+/// Contact of both feet against the truth.
+struct Contacts {
+  double both = 0, only_told = 0, only_true = 0, landings = 0, delay_s = 0;
+  std::array<double, kFeet> since_s{};  ///< True contact.
+  std::array<bool, kFeet> was{true, true}, seen{true, true};
+
+  void Add(std::size_t f, bool truth, bool told, double step_s) {
+    both += truth && told ? 1 : 0;
+    only_told += !truth && told ? 1 : 0;
+    only_true += truth && !told ? 1 : 0;
+    since_s[f] = truth ? (was[f] ? since_s[f] + step_s : 0) : 0;
+    if (truth && !was[f]) seen[f] = false;
+    if (truth && told && !seen[f]) {
+      seen[f] = true;
+      ++landings;
+      delay_s += since_s[f];
+    }
+    was[f] = truth;
+  }
+};
+
+/// Slope of |error| over time, by least squares.
+class Drift {
+ public:
+  void Add(double t_s, double error) {
+    ++n_;
+    t_ += t_s;
+    e_ += error;
+    tt_ += t_s * t_s;
+    te_ += t_s * error;
+  }
+  double PerMinute() const {
+    const double spread = n_ * tt_ - t_ * t_;
+    return spread > 0 ? 60 * (n_ * te_ - t_ * e_) / spread : 0;
+  }
+
+ private:
+  double n_ = 0, t_ = 0, e_ = 0, tt_ = 0, te_ = 0;
+};
+
+/// Microseconds of forward kinematics, centre of mass and momentum: the unit of the solver's cost.
+double MomentumCostUs(const body::Body& body, const Eigen::VectorXd& q) {
+  body::Kinematics at(body.skeleton);
+  body::JointVelocities velocities(body.skeleton);
+  const Eigen::VectorXd rate = Eigen::VectorXd::Constant(q.size(), 0.1);
+  volatile double kept = 0;  // So that nothing is left out.
+  const std::int64_t begin_ns = clock::ThreadCpuNs();
+  for (int i = 0; i < kCostRuns; ++i) {
+    body::ComputeKinematics(body.skeleton, q, at);
+    body::ComputeVelocities(body.skeleton, at, rate, velocities);
+    kept = body::ComputeMomentum(body, at, velocities).angular_W.x();
+    static_cast<void>(kept);
+  }
+  return static_cast<double>(clock::ThreadCpuNs() - begin_ns) / 1e3 / kCostRuns;
+}
+
+reconstruction::Known KnownOf(const rehearsal::Frame& frame, const Oracle& oracle) {
+  reconstruction::Known known;
+  if (oracle.com) known.com_W_m = frame.com_m;
+  if (oracle.momentum) known.angular_W = frame.angular_momentum;
+  if (oracle.feet) {
+    known.feet = std::array{
+        reconstruction::Known::Foot{frame.feet[0].ankle_m, frame.feet[0].toe_m},
+        reconstruction::Known::Foot{frame.feet[1].ankle_m, frame.feet[1].toe_m}};
+  }
+  return known;
+}
+
+/// Everything that is judged beside the pose itself.
+class Judge {
+ public:
+  Judge(const rehearsal::Rehearsal& rehearsal, std::size_t lag)
+      : rehearsal_(rehearsal), lag_(lag), score_(rehearsal.body) {
+    for (int side = 0; side < 2; ++side) {
+      const auto f = static_cast<std::size_t>(side);
+      ankle_[f] = body::Ankle(rehearsal.body, side).joint;
+      toe_[f] = body::Toe(rehearsal.body, side).joint;
+    }
+  }
+
+  void Add(const reconstruction::Output& output, std::size_t i) {
+    const rehearsal::Frame& then = rehearsal_.frames[i - lag_];
+    score_.Add(output.q, then.q);
+    AddCom(output, then);
+    AddFeet(output, i);
+    for (std::size_t k = 0; k < output.joint_sd_m.size(); ++k) {
+      nees_ += score_.errors_m()[k].squaredNorm() / (3 * std::pow(output.joint_sd_m[k], 2));
+      ++nees_count_;
+    }
+    invalid_ += output.valid ? 0 : 1;
+    finite_ = finite_ && output.q.allFinite();
+  }
+
+  ordered_json Json() const;
+
+ private:
+  void AddCom(const reconstruction::Output& output, const rehearsal::Frame& then) {
+    const Eigen::Vector3d told = output.momentum.p_WC_m - then.com_m;
+    vertical_.Add(100 * told.z());
+    horizontal_.Add(100 * told.head<2>().norm());
+    const double t_s = then.inputs.loads.time_s;
+    vertical_drift_.Add(t_s, 100 * std::abs(told.z()));
+    horizontal_drift_.Add(t_s, 100 * told.head<2>().norm());
+    const Eigen::Vector3d com = body::CentreOfMass(rehearsal_.body, score_.at());
+    pose_vertical_.Add(100 * (com.z() - then.com_m.z()));
+    pose_horizontal_.Add(100 * (com - then.com_m).head<2>().norm());
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const double error =
+          output.momentum.angular_momentum_kgm2ps(axis) - rehearsal_.frames[0].angular_momentum(axis) -
+          (then.angular_momentum - rehearsal_.frames[0].angular_momentum)(axis);
+      angular_[static_cast<std::size_t>(axis)].Add(error);
+    }
+  }
+
+  void AddFeet(const reconstruction::Output& output, std::size_t i) {
+    const double step_s = 1 / rehearsal_.rate_hz;
+    for (std::size_t f = 0; f < kFeet; ++f) {
+      const bool told = output.momentum.feet[f].contact;
+      contacts_.Add(f, rehearsal_.frames[i].feet[f].load_n > kContactN, told, step_s);
+      const auto at = [&](const body::Kinematics& k, int joint) {
+        return k.p_WJ[static_cast<std::size_t>(joint)];
+      };
+      if (contacts_.since_s[f] > kSettledContactS) {
+        const Eigen::Vector3d error =
+            0.5 * (at(score_.at(), ankle_[f]) + at(score_.at(), toe_[f]) -
+                   at(score_.truth(), ankle_[f]) - at(score_.truth(), toe_[f]));
+        place_.Add(100 * error.head<2>().norm());
+      }
+      const Eigen::Vector3d toe = at(score_.at(), toe_[f]), true_toe = at(score_.truth(), toe_[f]);
+      if (told && told_before_[f]) {
+        skate_.Add(100 * (toe - toe_before_[f]).head<2>().norm() / step_s);
+        true_skate_.Add(100 * (true_toe - true_toe_before_[f]).head<2>().norm() / step_s);
+      }
+      toe_before_[f] = toe;
+      true_toe_before_[f] = true_toe;
+      told_before_[f] = told;
+    }
+  }
+
+  const rehearsal::Rehearsal& rehearsal_;
+  std::size_t lag_;
+  PoseScore score_;
+  Spread vertical_, horizontal_, pose_vertical_, pose_horizontal_, place_, skate_, true_skate_;
+  std::array<Spread, 3> angular_;
+  Drift vertical_drift_, horizontal_drift_;
+  Contacts contacts_;
+  std::array<int, kFeet> ankle_{}, toe_{};
+  std::array<Eigen::Vector3d, kFeet> toe_before_{}, true_toe_before_{};
+  std::array<bool, kFeet> told_before_{};
+  double nees_ = 0, nees_count_ = 0;
+  std::size_t invalid_ = 0;
+  bool finite_ = true;
+};
+
+ordered_json Judge::Json() const {
+  ordered_json json = score_.Json();
+  json["com_vertical_rms_cm"] = vertical_.rms();
+  json["com_horizontal_rms_cm"] = horizontal_.rms();
+  json["com_vertical_drift_cm_per_min"] = vertical_drift_.PerMinute();
+  json["com_horizontal_drift_cm_per_min"] = horizontal_drift_.PerMinute();
+  json["pose_com_vertical_rms_cm"] = pose_vertical_.rms();
+  json["pose_com_horizontal_rms_cm"] = pose_horizontal_.rms();
+  for (const Spread& axis : angular_) json["angular_momentum_error_kgm2ps"].push_back(axis.rms());
+  json["foot_skate_cm_per_s"] = skate_.mean();
+  json["foot_skate_true_cm_per_s"] = true_skate_.mean();
+  json["foot_position_rms_cm"] = place_.rms();
+  const double twice = 2 * contacts_.both;
+  json["contact_f1"] =
+      twice > 0 ? twice / (twice + contacts_.only_told + contacts_.only_true) : 0;
+  json["landings"] = contacts_.landings;
+  json["landing_delay_ms"] =
+      contacts_.landings > 0 ? 1000 * contacts_.delay_s / contacts_.landings : 0;
+  json["nees"] = nees_count_ > 0 ? nees_ / nees_count_ : 0;
+  json["invalid_frames"] = invalid_;
+  json["finite"] = finite_;
+  return json;
+}
+
+}  // namespace
+
+std::size_t FirstJudged(const rehearsal::Rehearsal& rehearsal) {
+  return static_cast<std::size_t>(std::lround(rehearsal::kStandS * rehearsal.rate_hz));
+}
+
+Result<ordered_json> RunPoseTrial(const rehearsal::Rehearsal& rehearsal,
+                                  const reconstruction::Models& models,
+                                  const reconstruction::Options& options, const Oracle& oracle) {
+  auto made = reconstruction::Reconstruction::Create(rehearsal.body, models, options);
+  if (!made) return made.error();
+  const std::size_t start = FirstJudged(rehearsal);
+  Judge judge(rehearsal, static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz)));
+  Spread solve_us;
+  for (std::size_t i = 0; i < rehearsal.frames.size(); ++i) {
+    reconstruction::Inputs inputs = rehearsal.frames[i].inputs;
+    inputs.known = KnownOf(rehearsal.frames[i], oracle);
+    const std::int64_t begin_ns = clock::ThreadCpuNs();
+    const reconstruction::Output& output = made->Advance(inputs);
+    const auto spent_ns = static_cast<double>(clock::ThreadCpuNs() - begin_ns);
+    if (i < start) continue;
+    if (!output.calibrated) {
+      return InvalidData("the T-pose never stood still on both boards: no calibration");
+    }
+    solve_us.Add(spent_ns / 1e3);
+    judge.Add(output, i);
+  }
+  ordered_json json = {{"frames", rehearsal.frames.size() - start},
+                       {"rate_hz", rehearsal.rate_hz},
+                       {"mass_kg", made->output().mass_kg},
+                       {"lag_ms", 1000 * made->output().lag_s},
+                       {"resets", made->output().resets}};
+  json.update(judge.Json());
+  const double unit_us = MomentumCostUs(rehearsal.body, rehearsal.frames.front().q);
+  json["solve_us_p50"] = solve_us.Quantile(0.5);
+  json["solve_us_p99"] = solve_us.Quantile(0.99);
+  json["kinematics_us"] = unit_us;
+  json["solve_ratio_p50"] = solve_us.Quantile(0.5) / unit_us;
+  json["solve_ratio_p99"] = solve_us.Quantile(0.99) / unit_us;
+  return json;
+}
+
+}  // namespace footing::eval

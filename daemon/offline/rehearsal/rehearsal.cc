@@ -1,0 +1,131 @@
+#include "daemon/offline/rehearsal/rehearsal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/body/kinematics.h"
+#include "common/body/momentum.h"
+#include "common/body/points.h"
+#include "common/motion/edit.h"
+#include "common/synthetic/random.h"
+#include "common/virtual_sensors/scene.h"
+#include "daemon/simulation/momentum/estimate.h"
+
+namespace footing::rehearsal {
+namespace {
+
+namespace sensors = virtual_sensors;
+
+constexpr double kLoadedN = 20;
+/// The calibration is over before the T-pose is.
+constexpr double kWeighedS = momentum::TPoseCalibration::kSeconds + 0.2;
+
+Eigen::Vector3d At(const body::Kinematics& at, const body::Point& point) {
+  const auto joint = static_cast<std::size_t>(point.joint);
+  return body::Place(point, at.R_WJ[joint], at.p_WJ[joint]);
+}
+
+/// The boards, where they are and where they are told to be.
+struct Boards {
+  std::array<sensors::BoardPlace, sensors::kFeet> real = sensors::SideBySide();
+  std::array<sensors::BoardPlace, sensors::kFeet> told;
+  std::vector<sensors::CellErrors> cells;
+
+  Boards(const sensors::Scene& scene, const Settings& settings) {
+    for (std::size_t f = 0; f < sensors::kFeet; ++f) {
+      // Each foot begins in its board's middle.
+      real[f].middle_m = sensors::SoleMiddle(scene.course, f, 0).head<2>();
+      told[f] = real[f];
+      told[f].middle_m.y() += (f == 0 ? 0.5 : -0.5) * settings.gap_error_m;
+      if (f == 1) told[f].yaw_rad -= settings.yaw_error_rad;
+      sensors::CellErrorConfig errors = settings.errors;
+      errors.seed = 2 * settings.errors.seed + f;
+      cells.emplace_back(errors);
+    }
+  }
+
+  momentum::FootLoads Read(std::size_t f, const sensors::BoardLoad& load, double scale,
+                           double step_s) {
+    const auto read_n = cells[f].Advance(load.corners_n, step_s);
+    const auto places = sensors::SensorPlaces(told[f]);
+    momentum::FootLoads foot;
+    foot.valid = true;
+    foot.count = places.size();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      foot.cells[k] = {{places[k].x(), places[k].y(), 0}, scale * read_n[k]};
+    }
+    return foot;
+  }
+};
+
+void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,
+                  synthetic::Random& random, Frame& frame) {
+  for (int side = 0; side < 2; ++side) {
+    reconstruction::HandInput& hand = frame.inputs.hands[static_cast<std::size_t>(side)];
+    hand.valid = true;
+    hand.p_W_m = At(at, body::Fist(body, side));
+    for (double& value : hand.p_W_m) value += noise_m * random.Normal();
+    hand.sd_m.setConstant(std::max(noise_m, 0.001));
+  }
+}
+
+}  // namespace
+
+Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
+                           const std::string& origin) {
+  auto kept = motion::WithLandmarksOnly(clip);
+  if (!kept) return InvalidData(origin + ": " + kept.error().message);
+  body::PersonParameters person;
+  person.mass_kg = settings.mass_kg;
+  person.height_m = settings.height_m;
+  sensors::SceneOptions stage;
+  stage.hold_s = kStandS;
+  stage.rest_share = momentum::FootShape{}.rest_share;
+  stage.loop_s = settings.loop_s;
+  const auto scene = sensors::MakeScene(std::move(kept).value(), person, stage, origin);
+  if (!scene) return scene.error();
+
+  Rehearsal rehearsal;
+  rehearsal.body = scene->body;
+  rehearsal.rate_hz = settings.rate_hz;
+  Boards boards(*scene, settings);
+  synthetic::Random random(settings.seed);
+  body::Kinematics at(scene->body.skeleton);
+  const double step_s = 1 / settings.rate_hz;
+  const auto count = static_cast<std::size_t>(scene->motion.duration_s() * settings.rate_hz);
+  std::size_t loaded = 0, outside = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double time_s = static_cast<double>(i) * step_s;
+    const auto column =
+        std::min<Eigen::Index>(static_cast<Eigen::Index>(std::lround(time_s * scene->motion.rate_hz)),
+                               scene->motion.frames() - 1);
+    const auto forces = sensors::ShareBetweenFeet(scene->course, scene->reaction, column);
+    Frame frame;
+    frame.inputs.loads.time_s = time_s;
+    frame.q = scene->motion.q.col(column);
+    frame.angular_momentum = scene->course.angular_momentum.col(column);
+    body::ComputeKinematics(scene->body.skeleton, frame.q, at);
+    frame.com_m = body::CentreOfMass(scene->body, at);
+    const double scale = time_s < kWeighedS ? 1 + settings.mass_error : 1;
+    for (std::size_t f = 0; f < sensors::kFeet; ++f) {
+      const auto load = sensors::LoadBoard(boards.real[f], forces[f], settings.limited);
+      frame.inputs.loads.feet[f] = boards.Read(f, load, scale, step_s);
+      frame.feet[f] = {forces[f].load_n, At(at, body::Ankle(scene->body, static_cast<int>(f))),
+                       At(at, body::Toe(scene->body, static_cast<int>(f)))};
+      if (forces[f].load_n > kLoadedN) {
+        ++loaded;
+        outside += load.outside ? 1 : 0;
+      }
+    }
+    if (settings.hands) {
+      MeasureHands(scene->body, at, settings.hand_noise_m, random, frame);
+    }
+    rehearsal.frames.push_back(std::move(frame));
+  }
+  rehearsal.outside_share =
+      loaded > 0 ? static_cast<double>(outside) / static_cast<double>(loaded) : 0;
+  return rehearsal;
+}
+
+}  // namespace footing::rehearsal

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/body/body.h"
+#include "common/motion/motion.h"
+#include "common/result/result.h"
+#include "common/virtual_sensors/board_cells.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
+
+/// What a recorded motion would have told two boards and two hand trackers, frame by frame, beside
+/// the truth: to judge the reconstruction on, and to train its models with.
+namespace footing::rehearsal {
+
+struct Settings {
+  double mass_kg = 75;
+  std::optional<double> height_m = std::nullopt;
+  double rate_hz = 60;      ///< Of the inputs.
+  double loop_s = 0;        ///< Forwards and backwards so long; 0: once.
+  bool limited = false;     ///< Boards end at their sensors; else as if they had no edge.
+  bool hands = true;
+  double hand_noise_m = 0.01;  ///< White, of each axis.
+  virtual_sensors::CellErrorConfig errors;
+  // The boards are not quite where they are told to be.
+  double gap_error_m = 0;   ///< Told further apart by so much.
+  double yaw_error_rad = 0;  ///< The right one turned to the left.
+  double mass_error = 0;    ///< What the T-pose weighs too much, as a part.
+  std::uint64_t seed = 1;   ///< Of the hands.
+};
+
+struct TrueFoot {
+  double load_n = 0;
+  Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d toe_m = Eigen::Vector3d::Zero();
+};
+
+struct Frame {
+  reconstruction::Inputs inputs;
+  Eigen::VectorXd q;
+  Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< About C, kg m^2/s.
+  std::array<TrueFoot, momentum::kFeet> feet;
+};
+
+struct Rehearsal {
+  body::Body body;
+  double rate_hz = 60;
+  std::vector<Frame> frames;  ///< Begins with kStandS in the T-pose.
+  double outside_share = 0;   ///< Of loaded feet whose COP is beyond the sensors.
+};
+
+/// The T-pose is held so long, then left within a second and a half.
+inline constexpr double kStandS = 6;
+
+/// Only the joints of the landmarks are kept (motion::WithLandmarksOnly). `origin` names the clip
+/// in errors.
+Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
+                           const std::string& origin);
+
+}  // namespace footing::rehearsal
