@@ -51,7 +51,8 @@ JudgedJoints::JudgedJoints(const body::Body& body) {
                           SkullBase(body), body.landmarks[Landmark::kVertex]}) {
     if (joint >= 0) torso.push_back(joint);
   }
-  for (const Landmark left : {Landmark::kLeftShoulder, Landmark::kLeftElbow, Landmark::kLeftWrist}) {
+  for (const Landmark left :
+       {Landmark::kLeftShoulder, Landmark::kLeftElbow, Landmark::kLeftWrist}) {
     AddSides(body, left, arms);
   }
   AddForearms(body, arms);
@@ -72,8 +73,8 @@ double Spread::rms() const {
 double Spread::Quantile(double share) const {
   if (values_.empty()) return 0;
   std::vector<double> values = values_;
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(
-                                          share * static_cast<double>(values.size() - 1));
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
@@ -98,7 +99,9 @@ void PoseScore::Add(const Eigen::VectorXd& q, const Eigen::VectorXd& true_q) {
   body::ComputeKinematics(body_.skeleton, true_q, truth_);
   for (std::size_t i = 0; i < errors_m_.size(); ++i) errors_m_[i] = at_.p_WJ[i] - truth_.p_WJ[i];
   const auto all = [this](const Eigen::Vector3d& shift) {
-    const auto n = [](const std::vector<int>& joints) { return static_cast<double>(joints.size()); };
+    const auto n = [](const std::vector<int>& joints) {
+      return static_cast<double>(joints.size());
+    };
     return (n(joints_.legs) * Mean(joints_.legs, shift) +
             n(joints_.torso) * Mean(joints_.torso, shift) +
             n(joints_.arms) * Mean(joints_.arms, shift)) /

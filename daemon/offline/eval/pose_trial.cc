@@ -78,9 +78,9 @@ reconstruction::Known KnownOf(const rehearsal::Frame& frame, const Oracle& oracl
   if (oracle.com) known.com_W_m = frame.com_m;
   if (oracle.momentum) known.angular_W = frame.angular_momentum;
   if (oracle.feet) {
-    known.feet = std::array{
-        reconstruction::Known::Foot{frame.feet[0].ankle_m, frame.feet[0].toe_m},
-        reconstruction::Known::Foot{frame.feet[1].ankle_m, frame.feet[1].toe_m}};
+    known.feet =
+        std::array{reconstruction::Known::Foot{frame.feet[0].ankle_m, frame.feet[0].toe_m},
+                   reconstruction::Known::Foot{frame.feet[1].ankle_m, frame.feet[1].toe_m}};
   }
   return known;
 }
@@ -124,9 +124,9 @@ class Judge {
     pose_vertical_.Add(100 * (com.z() - then.com_m.z()));
     pose_horizontal_.Add(100 * (com - then.com_m).head<2>().norm());
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const double error =
-          output.momentum.angular_momentum_kgm2ps(axis) - rehearsal_.frames[0].angular_momentum(axis) -
-          (then.angular_momentum - rehearsal_.frames[0].angular_momentum)(axis);
+      const double error = output.momentum.angular_momentum_kgm2ps(axis) -
+                           rehearsal_.frames[0].angular_momentum(axis) -
+                           (then.angular_momentum - rehearsal_.frames[0].angular_momentum)(axis);
       angular_[static_cast<std::size_t>(axis)].Add(error);
     }
   }
@@ -184,8 +184,7 @@ ordered_json Judge::Json() const {
   json["foot_skate_true_cm_per_s"] = true_skate_.mean();
   json["foot_position_rms_cm"] = place_.rms();
   const double twice = 2 * contacts_.both;
-  json["contact_f1"] =
-      twice > 0 ? twice / (twice + contacts_.only_told + contacts_.only_true) : 0;
+  json["contact_f1"] = twice > 0 ? twice / (twice + contacts_.only_told + contacts_.only_true) : 0;
   json["landings"] = contacts_.landings;
   json["landing_delay_ms"] =
       contacts_.landings > 0 ? 1000 * contacts_.delay_s / contacts_.landings : 0;

@@ -97,9 +97,9 @@ Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
   std::size_t loaded = 0, outside = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double time_s = static_cast<double>(i) * step_s;
-    const auto column =
-        std::min<Eigen::Index>(static_cast<Eigen::Index>(std::lround(time_s * scene->motion.rate_hz)),
-                               scene->motion.frames() - 1);
+    const auto column = std::min<Eigen::Index>(
+        static_cast<Eigen::Index>(std::lround(time_s * scene->motion.rate_hz)),
+        scene->motion.frames() - 1);
     const auto forces = sensors::ShareBetweenFeet(scene->course, scene->reaction, column);
     Frame frame;
     frame.inputs.loads.time_s = time_s;

@@ -19,17 +19,17 @@ namespace footing::rehearsal {
 struct Settings {
   double mass_kg = 75;
   std::optional<double> height_m = std::nullopt;
-  double rate_hz = 60;      ///< Of the inputs.
-  double loop_s = 0;        ///< Forwards and backwards so long; 0: once.
-  bool limited = false;     ///< Boards end at their sensors; else as if they had no edge.
+  double rate_hz = 60;   ///< Of the inputs.
+  double loop_s = 0;     ///< Forwards and backwards so long; 0: once.
+  bool limited = false;  ///< Boards end at their sensors; else as if they had no edge.
   bool hands = true;
   double hand_noise_m = 0.01;  ///< White, of each axis.
   virtual_sensors::CellErrorConfig errors;
   // The boards are not quite where they are told to be.
-  double gap_error_m = 0;   ///< Told further apart by so much.
+  double gap_error_m = 0;    ///< Told further apart by so much.
   double yaw_error_rad = 0;  ///< The right one turned to the left.
-  double mass_error = 0;    ///< What the T-pose weighs too much, as a part.
-  std::uint64_t seed = 1;   ///< Of the hands.
+  double mass_error = 0;     ///< What the T-pose weighs too much, as a part.
+  std::uint64_t seed = 1;    ///< Of the hands.
 };
 
 struct TrueFoot {

@@ -13,6 +13,7 @@
 #include "daemon/simulation/momentum/best_estimator.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contact_loads.h"
+#include "daemon/simulation/momentum/horizontal_network.h"
 #include "daemon/simulation/momentum/paper_estimator.h"
 #include "daemon/simulation/pose/fibonacci.h"
 #include "daemon/simulation/pose/gauss_newton.h"
@@ -127,6 +128,7 @@ class Reconstruction {
 
   Reconstruction(std::shared_ptr<const Parts> parts, const Options& options);
   void Begin(const momentum::TPose& pose);
+  std::optional<Eigen::Vector2d> PredictHorizontal(const momentum::ContactLoads& loads);
   void Remember(const Inputs& inputs);
   const Moment& Lagged() const;
   void PlaceTargets(const Moment& moment);
@@ -144,7 +146,8 @@ class Reconstruction {
   momentum::TPoseCalibration calibration_;
   std::optional<momentum::BestEstimator> best_;
   std::optional<momentum::PaperEstimator> paper_;
-  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< Of the basis' poses, in W.
+  std::optional<momentum::HorizontalNetwork> horizontal_;  ///< Of paper mode, where there is one.
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();     ///< Of the basis' poses, in W.
   std::array<Moment, kMostLag> past_;
   std::size_t frames_ = 0;  ///< Since the T-pose.
   pose::PoseTargets targets_;
