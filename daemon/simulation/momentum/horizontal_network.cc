@@ -58,9 +58,9 @@ NetworkLoads ToNetworkLoads(const ContactLoads& loads, const Eigen::Vector2d& or
       moment += cell.load_n * Eigen::Vector2d(place.x(), place.y() - BoardLeftM(f));
     }
     for (std::size_t i = 0; i < 4; ++i)
-      out[4 * f + i] = (total + kFront[i] * moment.x() / kHalfLengthM +
-                        kLeft[i] * moment.y() / kHalfWidthM) /
-                       (4 * weight_n);
+      out[4 * f + i] =
+          (total + kFront[i] * moment.x() / kHalfLengthM + kLeft[i] * moment.y() / kHalfWidthM) /
+          (4 * weight_n);
   }
   return out;
 }
