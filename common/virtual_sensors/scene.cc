@@ -13,24 +13,8 @@ namespace {
 
 using body::Landmark;
 
-constexpr double kFloorShare = 0.02;  // Of the frames have something lower than the floor.
+constexpr double kStandShare = 0.25;  // Of the frames have a foot lower than it stands.
 constexpr Eigen::Index kFramesPerProgress = 2000;
-
-// Lowest joint of each frame; the floor is the height that few frames are below.
-double FloorOf(const motion::Motion& motion) {
-  body::Kinematics at(motion.skeleton);
-  std::vector<double> lowest;
-  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
-    body::ComputeKinematics(motion.skeleton, motion.q.col(i), at);
-    double low = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector3d& p : at.p_WJ) low = std::min(low, p.z());
-    lowest.push_back(low);
-  }
-  const auto place = lowest.begin() +
-                     static_cast<std::ptrdiff_t>(kFloorShare * static_cast<double>(lowest.size()));
-  std::nth_element(lowest.begin(), place, lowest.end());
-  return *place;
-}
 
 // A T-pose of straight lines has its weight over the heels. A person leans ahead until it is over
 // the rest point of the soles: all but the feet turn about the ankles.
@@ -82,6 +66,31 @@ motion::Motion WithTPose(const motion::Motion& clip, const body::Body& body,
 
 }  // namespace
 
+double FloorHeight(const motion::Motion& motion, const body::Landmarks& landmarks) {
+  std::vector<int> joints;
+  for (const Landmark left : {Landmark::kLeftAnkle, Landmark::kLeftToe}) {
+    for (const Landmark landmark : {left, body::Mirrored(left)}) {
+      if (landmarks[landmark] >= 0) joints.push_back(landmarks[landmark]);
+    }
+  }
+  body::Kinematics standing(motion.skeleton), at(motion.skeleton);
+  body::ComputeKinematics(motion.skeleton, body::TPose(motion.skeleton, landmarks), standing);
+  std::vector<double> lowest;
+  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
+    body::ComputeKinematics(motion.skeleton, motion.q.col(i), at);
+    double low = std::numeric_limits<double>::infinity();
+    for (const int joint : joints) {
+      const auto index = static_cast<std::size_t>(joint);
+      low = std::min(low, at.p_WJ[index].z() - standing.p_WJ[index].z());
+    }
+    lowest.push_back(low);
+  }
+  const auto place = lowest.begin() +
+                     static_cast<std::ptrdiff_t>(kStandShare * static_cast<double>(lowest.size()));
+  std::nth_element(lowest.begin(), place, lowest.end());
+  return *place;
+}
+
 Result<Scene> MakeScene(motion::Motion clip, const body::PersonParameters& person,
                         const SceneOptions& options, const std::string& origin) {
   const auto named = [&origin](const Error& error) {
@@ -95,7 +104,7 @@ Result<Scene> MakeScene(motion::Motion clip, const body::PersonParameters& perso
 
   if (options.t_pose) {
     clip = motion::FacingForward(motion::Continuous(std::move(clip)), *landmarks);
-    clip.q.row(2).array() -= FloorOf(clip);
+    clip.q.row(2).array() -= FloorHeight(clip, *landmarks);
     if (options.loop_s > 0) clip = motion::Looped(clip, options.loop_s);
     clip = WithTPose(clip, *made, options);
   }

@@ -26,6 +26,10 @@ Result<ordered_json> JudgeBaselines(const rehearsal::Rehearsal& rehearsal,
   const Eigen::VectorXd& t_pose = rehearsal.frames.front().q;
   json["t_pose"]["mpjpe_cm"] = Still(rehearsal, t_pose, start);
   Eigen::VectorXd mean = models.basis.mean;
+  if (models.root_height_m > 0) {
+    const body::Body& body = rehearsal.body;
+    mean.head<3>() *= body::TPose(body.skeleton, body.landmarks)(2) / models.root_height_m;
+  }
   for (const auto& foot : rehearsal.frames.front().feet) {
     mean.head<2>() += 0.25 * (foot.ankle_m + foot.toe_m).head<2>();
   }

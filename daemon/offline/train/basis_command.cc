@@ -3,21 +3,46 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "common/motion/edit.h"
+#include "common/virtual_sensors/scene.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
+#include "daemon/offline/training/alignment.h"
 #include "daemon/offline/training/basis.h"
 
 namespace footing::train {
 namespace {
+
+constexpr double kRootHeightM = 1;
 
 struct Options {
   MotionOptions motions;
   ModelOptions model;
 };
 
+/// On the ground, and as large as a person whose root is 1 m high in the T-pose.
+motion::Motion Standing(motion::Motion motion, const body::Landmarks& landmarks) {
+  motion.q.row(2).array() -= virtual_sensors::FloorHeight(motion, landmarks);
+  motion.q.topRows<3>() *= kRootHeightM / body::TPose(motion.skeleton, landmarks)(2);
+  return motion;
+}
+
+/// The motions and their mirror images: people are as often left as right.
+std::vector<motion::Motion> WithMirrors(const std::vector<Clip>& clips) {
+  std::vector<motion::Motion> motions;
+  for (const Clip& clip : clips) {
+    const body::Landmarks& landmarks = clip.body.landmarks;
+    motions.push_back(Standing(clip.motion, landmarks));
+    motions.push_back(
+        Standing(training::Aligned(motion::Mirrored(clip.motion), landmarks), landmarks));
+  }
+  return motions;
+}
+
 /// Poses 60 times a second, a column each; all clips must have one layout.
-Result<Eigen::MatrixXd> Poses(const std::vector<Clip>& clips) {
+Result<Eigen::MatrixXd> Poses(const std::vector<Clip>& clips,
+                              const std::vector<motion::Motion>& motions) {
   constexpr double kRateHz = 60;
   const std::vector<std::string> dofs = DofNames(clips.front().motion.skeleton);
   std::vector<Eigen::VectorXd> columns;
@@ -26,9 +51,11 @@ Result<Eigen::MatrixXd> Poses(const std::vector<Clip>& clips) {
       return InvalidData(clip.name + ": another skeleton layout than " + clips.front().name +
                          "; train a basis of one layout at a time");
     }
-    const double step = std::max(1.0, clip.motion.rate_hz / kRateHz);
-    for (double at = 0; at < static_cast<double>(clip.motion.frames()); at += step) {
-      columns.emplace_back(clip.motion.q.col(static_cast<Eigen::Index>(at)));
+  }
+  for (const motion::Motion& motion : motions) {
+    const double step = std::max(1.0, motion.rate_hz / kRateHz);
+    for (double at = 0; at < static_cast<double>(motion.frames()); at += step) {
+      columns.emplace_back(motion.q.col(static_cast<Eigen::Index>(at)));
     }
   }
   Eigen::MatrixXd poses(columns.front().size(), static_cast<Eigen::Index>(columns.size()));
@@ -42,10 +69,14 @@ int Run(const Options& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
   const Result<Clips> clips = ReadClips(options.motions);
   if (!clips) return cli::Report(clips.error());
-  const Result<Eigen::MatrixXd> poses = Poses(clips->train);
+  const std::vector<motion::Motion> motions = WithMirrors(clips->train);
+  const Result<Eigen::MatrixXd> poses = Poses(clips->train, motions);
   if (!poses) return cli::Report(poses.error());
-  const training::PoseBasis basis =
+  training::PoseBasis basis =
       training::MakeBasis(*poses, DofNames(clips->train.front().motion.skeleton));
+  std::vector<const motion::Motion*> all;
+  for (const motion::Motion& motion : motions) all.push_back(&motion);
+  training::AddRates(all, basis);
 
   model::Model model{.kind = "basis",
                      .provenance = {.program_version = cli::Version(),
@@ -55,6 +86,7 @@ int Run(const Options& options, const Shared& shared) {
                                     .subjects = clips->subjects},
                      .tensors = {}};
   training::AppendTensors(basis, model);
+  model.tensors.push_back({.name = "root_height_m", .shape = {1}, .values = {kRootHeightM}});
   if (auto written = WriteModel(model, options.model); !written) {
     return cli::Report(written.error());
   }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "common/motion/edit.h"
 #include "common/result/result.h"
 #include "daemon/offline/training/scaling.h"
 
@@ -9,6 +10,7 @@ namespace footing::training {
 namespace {
 
 constexpr double kRadiansOfMetre = 2.5;
+constexpr double kSmoothHz = 6;
 
 }  // namespace
 
@@ -28,7 +30,9 @@ PoseBasis MakeBasis(const Eigen::MatrixXd& poses, std::vector<std::string> dofs)
                   .mean = poses.rowwise().mean(),
                   .scale = Eigen::VectorXd::Ones(poses.rows()),
                   .components = {},
-                  .variances = {}};
+                  .variances = {},
+                  .first_sd = {},
+                  .second_sd = {}};
   basis.scale.head(3).setConstant(kRadiansOfMetre);  // The root's position.
   const Eigen::MatrixXd scaled =
       ((poses.colwise() - basis.mean).array().colwise() * basis.scale.array()).matrix();
@@ -46,6 +50,23 @@ PoseBasis MakeBasis(const Eigen::MatrixXd& poses, std::vector<std::string> dofs)
   return basis;
 }
 
+void AddRates(const std::vector<const motion::Motion*>& motions, PoseBasis& basis) {
+  const Eigen::MatrixXd inverse = basis.components * basis.scale.asDiagonal();
+  Eigen::VectorXd first = Eigen::VectorXd::Zero(basis.mean.size()), second = first;
+  double frames = 0;
+  for (const motion::Motion* motion : motions) {
+    const motion::MotionRates rates = motion::Rates(motion::Smoothed(*motion, kSmoothHz));
+    // Frames count by the time that they stand for.
+    const double weight = 1 / motion->rate_hz;
+    first += weight * (inverse * rates.q_dot).rowwise().squaredNorm();
+    second += weight * (inverse * rates.q_ddot).rowwise().squaredNorm();
+    frames += weight * static_cast<double>(motion->frames());
+  }
+  FOOTING_CHECK(frames > 0);
+  basis.first_sd = (first / frames).cwiseSqrt();
+  basis.second_sd = (second / frames).cwiseSqrt();
+}
+
 void AppendTensors(const PoseBasis& basis, model::Model& model) {
   const auto dof = static_cast<std::uint32_t>(basis.mean.size());
   const auto add = [&](const char* name, std::vector<std::uint32_t> shape,
@@ -59,6 +80,9 @@ void AppendTensors(const PoseBasis& basis, model::Model& model) {
   add("scale", {dof}, basis.scale, basis.dofs);
   add("components", {dof, dof}, basis.components.transpose(), basis.dofs);
   add("variances", {dof}, basis.variances, {});
+  if (basis.first_sd.size() == 0) return;
+  add("first_sd", {dof}, basis.first_sd, {});
+  add("second_sd", {dof}, basis.second_sd, {});
 }
 
 }  // namespace footing::training

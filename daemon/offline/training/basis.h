@@ -19,6 +19,8 @@ struct PoseBasis {
   Eigen::VectorXd scale;          ///< By which an entry counts; a metre is as much as 2.5 rad.
   Eigen::MatrixXd components;     ///< Rows of length 1, at right angles.
   Eigen::VectorXd variances;      ///< Of each component's a, divided by the number of poses.
+  Eigen::VectorXd first_sd;       ///< Root mean square of each component's a', 1/s,
+  Eigen::VectorXd second_sd;      ///< and of its a'', 1/s^2. Empty where nobody asked.
 
   /// Components that hold the part `fraction` of the variance.
   int ComponentsFor(double fraction) const;
@@ -28,7 +30,11 @@ struct PoseBasis {
 /// component is such that its greatest entry is positive.
 PoseBasis MakeBasis(const Eigen::MatrixXd& poses, std::vector<std::string> dofs);
 
-/// Appends mean, scale, components and variances, labelled with the dofs.
+/// Sets the rates of the basis from motions of its layout, low-passed at 6 Hz.
+void AddRates(const std::vector<const motion::Motion*>& motions, PoseBasis& basis);
+
+/// Appends mean, scale, components, variances and the rates that there are, labelled
+/// with the dofs.
 void AppendTensors(const PoseBasis& basis, model::Model& model);
 
 }  // namespace footing::training

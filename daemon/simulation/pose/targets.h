@@ -11,6 +11,7 @@ struct PointTarget {
   Eigen::Vector3d p_J_m = Eigen::Vector3d::Zero();  ///< In that frame.
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where it should be.
   Eigen::Vector3d sd_m = Eigen::Vector3d::Ones();   ///< Along W's axes, positive.
+  double still_mps = 0;  ///< Positive: it does not move, one standard deviation of its velocity.
 };
 
 inline constexpr int kMaxPoints = 16;

@@ -61,6 +61,21 @@ Result<void> ReadBasis(const NamedModel& named, Models& models) {
   basis.lower = -kReach * basis.sd;
   basis.upper = kReach * basis.sd;
   models.dofs = mean->labels;
+  if (model::FindAny(named.model, "root_height_m") != nullptr) {
+    const auto height = read("root_height_m", 1, 1);
+    if (!height) return height.error();
+    models.root_height_m = (*height)(0, 0);
+    if (!(models.root_height_m > 0.1)) {
+      return InvalidData(named.origin + ": its tensor root_height_m is not a height");
+    }
+  }
+  if (model::FindAny(named.model, "first_sd") != nullptr) {
+    const auto first = read("first_sd", dof, 1);
+    if (!first) return first.error();
+    const auto second = read("second_sd", dof, 1);
+    if (!second) return second.error();
+    models.rates = {first->col(0).head(count), second->col(0).head(count)};
+  }
   models.origin = named.origin;
   return {};
 }

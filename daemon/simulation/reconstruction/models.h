@@ -9,6 +9,7 @@
 #include "common/result/result.h"
 #include "daemon/simulation/cascade/network.h"
 #include "daemon/simulation/pose/basis.h"
+#include "daemon/simulation/pose/motion_filter.h"
 
 namespace footing::reconstruction {
 
@@ -21,8 +22,10 @@ struct NamedModel {
 /// What has been learned of how people move (docs/models.md).
 struct Models {
   pose::PoseBasis basis;
-  std::vector<std::string> dofs;  ///< Of the basis: the layout of the bodies that it fits.
-  std::string origin;             ///< File of the basis.
+  double root_height_m = 0;               ///< Of the basis' people, in the T-pose; 0: unknown.
+  std::optional<pose::BasisRates> rates;  ///< Where the basis tells them.
+  std::vector<std::string> dofs;          ///< Of the basis: the layout of the bodies that it fits.
+  std::string origin;                     ///< File of the basis.
   /// Next C_x and C_y (section 4.2), where there are such networks.
   std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
 };

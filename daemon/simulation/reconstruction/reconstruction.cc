@@ -10,11 +10,20 @@ constexpr double kPaperShare =
     0.99;  // Of the variance, in the components that paper mode searches.
 constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;
 constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 2;
+constexpr double kStartSd = 0.1;  // Of the T-pose's coordinates: nobody stands quite like it.
 constexpr int kCleanUpIterations = 4;
 constexpr int kSpreadsAFrame = 3;    // Joints whose covariance is told anew in each frame.
 constexpr double kUnknownSdM = 1.0;  // Before anything is measured.
 constexpr double kKnownComSdM = 0.01, kKnownAngularSd = 1, kKnownFootSdM = 0.015;
 constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
+
+/// The same poses of a person whose root is so many times as high: angles stay.
+pose::PoseBasis Resized(pose::PoseBasis basis, double scale) {
+  basis.mean.head<3>() *= scale;
+  basis.modes.topRows<3>() *= scale;
+  basis.inverse.leftCols<3>() /= scale;
+  return basis;
+}
 
 /// The components that hold this share of the variance.
 pose::PoseBasis Leading(pose::PoseBasis basis, double share) {
@@ -97,16 +106,27 @@ Result<Reconstruction> Reconstruction::Create(const body::Body& body, const Mode
   }
   auto parts = std::make_shared<Parts>();
   parts->body = body;
-  parts->basis = models.basis;
+  parts->t_pose = body::TPose(body.skeleton, body.landmarks);
+  parts->basis = models.root_height_m > 0
+                     ? Resized(models.basis, parts->t_pose(2) / models.root_height_m)
+                     : models.basis;
+  const pose::PoseBasis full = parts->basis;
   if (options.mode == Mode::kPaper) parts->basis = Leading(parts->basis, kPaperShare);
-  if (!options.use_basis) parts->basis = Unconnected(models.basis);
+  if (!options.use_basis) parts->basis = Unconnected(full);
   parts->subject = SubjectOf(body);
   parts->feet = StandingFeet(body);
   for (int side = 0; side < 2; ++side) {
     parts->fists[static_cast<std::size_t>(side)] = body::Fist(body, side);
   }
-  parts->t_pose = body::TPose(body.skeleton, body.landmarks);
   parts->horizontal = models.horizontal;
+  if (options.mode == Mode::kBest && models.rates && options.use_basis &&
+      options.best.filter.on > 0) {
+    parts->filter_basis = Leading(full, options.best.filter.share);
+    parts->rates = models.rates;
+    const Eigen::Index count = parts->filter_basis.size();
+    parts->rates->first_sd = parts->rates->first_sd.head(count).eval();
+    parts->rates->second_sd = parts->rates->second_sd.head(count).eval();
+  }
   return Reconstruction(std::move(parts), options);
 }
 
@@ -120,6 +140,13 @@ Reconstruction::Reconstruction(std::shared_ptr<const Parts> parts, const Options
       legs_{Leg(parts_->body, parts_->feet[0], 0), Leg(parts_->body, parts_->feet[1], 1)},
       q_(parts_->t_pose),
       at_(parts_->body.skeleton) {
+  if (parts_->rates) {
+    pose::MotionFilterOptions filter;
+    filter.frame_s = step_s_;
+    filter.jerk = options.best.filter.jerk;
+    filter.spread = options.best.filter.spread;
+    filter_.emplace(parts_->body, parts_->filter_basis, *parts_->rates, filter);
+  }
   const auto joints = static_cast<std::size_t>(parts_->body.skeleton.size());
   output_.q = q_;
   output_.R_WJ.resize(joints);
@@ -165,6 +192,18 @@ void Reconstruction::Begin(const momentum::TPose& pose) {
   }
   output_.mass_kg = pose.mass_kg;
   output_.calibrated = true;
+  if (filter_) {
+    // In W the feet stand where the T-pose found them; here, about the origin.
+    Eigen::VectorXd q = parts_->t_pose;
+    body::ComputeKinematics(parts_->body.skeleton, q, at_);
+    for (const FootGeometry& foot : parts_->feet) {
+      const auto place = [&](const body::Point& point) {
+        return at_.p_WJ[static_cast<std::size_t>(point.joint)];
+      };
+      q.head<2>() -= 0.25 * (place(foot.ankle) + place(foot.toe)).head<2>();
+    }
+    filter_->Start(q, kStartSd);
+  }
 }
 
 const Output& Reconstruction::Advance(const Inputs& inputs) {
@@ -182,7 +221,11 @@ const Output& Reconstruction::Advance(const Inputs& inputs) {
   output_.valid = output_.momentum.valid;
   Remember(inputs);
   PlaceTargets(Lagged());
-  Solve();
+  if (filter_) {
+    Filter(inputs);
+  } else {
+    Solve();
+  }
   return output_;
 }
 
@@ -221,7 +264,10 @@ void Reconstruction::PlaceTargets(const Moment& moment) {
     if (paper) {
       target.sd_m.setConstant(kPaperHandSdM);
     } else {
-      target.sd_m = (hand.sd_m.array().square() + std::pow(options_.best.hand_sd_m, 2)).sqrt();
+      target.sd_m =
+          (hand.sd_m.array().square() +
+           std::pow(filter_ ? options_.best.filter.hand_sd_m : options_.best.hand_sd_m, 2))
+              .sqrt();
     }
     targets_.Add(target);
   }
@@ -244,7 +290,13 @@ void Reconstruction::AddFeet(const Moment& moment) {
     } else if (options_.mode == Mode::kPaper) {
       AddPaperFootTargets(geometry, moment.feet[f], kPaperFootSdM, targets_);
     } else {
-      AddFootTargets(geometry, moment.feet[f], options_.best.foot, targets_);
+      const FilterConstants& filter = options_.best.filter;
+      AddFootTargets(geometry, moment.feet[f], filter_ ? filter.foot : options_.best.foot,
+                     targets_);
+      if (filter_ && moment.feet[f].contact && targets_.count >= 2) {
+        targets_.points[static_cast<std::size_t>(targets_.count - 2)].still_mps = filter.ankle_mps;
+        targets_.points[static_cast<std::size_t>(targets_.count - 1)].still_mps = filter.still_mps;
+      }
     }
   }
 }
@@ -296,6 +348,37 @@ void Reconstruction::Solve() {
   q_.head<3>() += origin_m_;
   Tell(q_);
   if (!paper) TellSpreads();
+}
+
+void Reconstruction::Filter(const Inputs& inputs) {
+  const FilterConstants& constants = options_.best.filter;
+  pose::GroundLoad load;
+  load.valid = options_.use_momentum && momentum::IsFinite(inputs.loads);
+  for (const momentum::FootLoads& foot : inputs.loads.feet) {
+    load.valid = load.valid && foot.valid;
+    for (std::size_t i = 0; i < foot.count; ++i) {
+      // The solver's masses are the body's, which the cells have weighed anew.
+      const double force_n = foot.cells[i].load_n * parts_->body.mass_kg / output_.mass_kg;
+      const Eigen::Vector3d p_m = foot.cells[i].p_WS_m - origin_m_;
+      load.force_n += force_n;
+      load.moment_nm += force_n * Eigen::Vector2d(p_m.y(), -p_m.x());
+    }
+  }
+  load.force_sd_n = constants.force_sd_n;
+  load.moment_sd_nm = constants.moment_sd_nm;
+  if (!inputs.known.com_W_m) {
+    targets_.com_sd_m.head<2>() *= constants.com_doubt;
+    targets_.com_sd_m.z() *= constants.height_doubt;
+  }
+  filter_->Advance(targets_, load);
+  q_ = filter_->q();
+  if (options_.clean_up && constants.clean_up > 0) CleanUp();
+  q_.head<3>() += origin_m_;
+  Tell(q_);
+  for (int i = 0; i < kSpreadsAFrame; ++i) {
+    next_spread_ = (next_spread_ + 1) % output_.joint_sd_m.size();
+    output_.joint_sd_m[next_spread_] = filter_->JointSd(static_cast<int>(next_spread_));
+  }
 }
 
 void Reconstruction::CleanUp() {

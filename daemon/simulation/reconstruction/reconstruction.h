@@ -18,6 +18,7 @@
 #include "daemon/simulation/pose/fibonacci.h"
 #include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/pose/leg_ik.h"
+#include "daemon/simulation/pose/motion_filter.h"
 #include "daemon/simulation/reconstruction/feet.h"
 #include "daemon/simulation/reconstruction/models.h"
 
@@ -53,6 +54,24 @@ struct Inputs {
   Known known = {};
 };
 
+/// Of the filter over the whole motion (pose::MotionFilter). What errs for many frames alike is
+/// taken as so much less certain in each of them.
+struct FilterConstants {
+  double on = 1;     ///< 0: each frame is solved for by itself.
+  double share = 1;  ///< Of the variance, in the components that it has.
+  FootSpread foot{0.12, 0.06, 0.08, 0.03, 0.10, 0.15, 0.4};
+  double still_mps = 0.06;   ///< Ball of a standing foot.
+  double ankle_mps = 0.3;    ///< Ankle of a standing foot.
+  double hand_sd_m = 0.003;  ///< Of the fist on the hand, beside what the input says.
+  double force_sd_n = 10;
+  double moment_sd_nm = 6;
+  double jerk = 1;
+  double spread = 1;
+  double clean_up = 0;  ///< 1: legs are moved to the feet's targets.
+  /// Of the momentum's centre of mass: its deviation is so many times as large in each frame.
+  double com_doubt = 4, height_doubt = 4;
+};
+
 /// Standard deviations and weights of the best mode's terms.
 struct BestConstants {
   double hand_sd_m = 0.008;  ///< Of the fist on the hand, beside what the input says.
@@ -61,6 +80,7 @@ struct BestConstants {
   double angular_sd = 3;    ///< kg m^2/s.
   double prior_weight = 1;
   double smooth_weight = 2;  ///< At 60 Hz.
+  FilterConstants filter;
 };
 
 struct Options {
@@ -117,6 +137,8 @@ class Reconstruction {
     std::array<body::Point, kHands> fists;
     Eigen::VectorXd t_pose;
     std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
+    pose::PoseBasis filter_basis;
+    std::optional<pose::BasisRates> rates;
   };
   /// What is measured at one time.
   struct Moment {
@@ -135,6 +157,7 @@ class Reconstruction {
   void AddFeet(const Moment& moment);
   void AddMomentumTargets(const Known& known);
   void Solve();
+  void Filter(const Inputs& inputs);
   void CleanUp();
   void Tell(const Eigen::VectorXd& q);
   void TellSpreads();
@@ -153,6 +176,7 @@ class Reconstruction {
   pose::PoseTargets targets_;
   pose::GaussNewton gauss_newton_;
   pose::FibonacciSearch fibonacci_;
+  std::optional<pose::MotionFilter> filter_;
   std::array<pose::LegIk, momentum::kFeet> legs_;
   Eigen::VectorXd q_;
   body::Kinematics at_;
