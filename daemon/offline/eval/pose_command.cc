@@ -7,8 +7,11 @@
 
 #include "common/cli/cli.h"
 #include "common/units/units.h"
+#include "daemon/offline/eval/pose_ablations.h"
 #include "daemon/offline/eval/pose_baselines.h"
+#include "daemon/offline/eval/pose_claims.h"
 #include "daemon/offline/eval/pose_constants.h"
+#include "daemon/offline/eval/pose_figures.h"
 #include "daemon/offline/eval/pose_scene.h"
 #include "daemon/offline/eval/pose_trial.h"
 
@@ -23,7 +26,8 @@ struct Flags {
   std::vector<std::string> models, ablate, oracle, constants;
   std::string hands = "move", mode = "best", boards = "simulated";
   double lag_ms = 0, loop_minutes = 0, yaw_error_deg = 0, height_m = 0;
-  bool baselines = true;
+  std::string figures;
+  bool baselines = true, ablations = false, claims = false;
 };
 
 bool Has(const std::vector<std::string>& list, const std::string& name) {
@@ -57,10 +61,20 @@ Result<void> Translate(Flags& flags) {
 
 Result<ordered_json> Evaluate(Flags flags) {
   if (const auto translated = Translate(flags); !translated) return translated.error();
+  if (flags.claims) {  // About the motion and equation (2): no models.
+    const auto rehearsal = MakePoseScene(flags.scene);
+    if (!rehearsal) return rehearsal.error();
+    return ordered_json{{"claims", JudgeClaims(*rehearsal)}};
+  }
   const auto models = ReadPoseModels(flags.models, flags.scene.motion);
   if (!models) return models.error();
   const auto rehearsal = MakePoseScene(flags.scene);
   if (!rehearsal) return rehearsal.error();
+  if (flags.ablations) {
+    const auto rows = JudgeAblations(*rehearsal, *models, flags.options);
+    if (!rows) return Error{rows.error().kind, flags.scene.motion + ": " + rows.error().message};
+    return ordered_json{{"ablations", *rows}};
+  }
   const Oracle oracle{Has(flags.oracle, "com"), Has(flags.oracle, "momentum"),
                       Has(flags.oracle, "feet")};
   auto json = RunPoseTrial(*rehearsal, *models, flags.options, oracle);
@@ -70,6 +84,11 @@ Result<ordered_json> Evaluate(Flags flags) {
   (*json)["boards"] = flags.boards;
   (*json)["boards_limited"] = flags.scene.settings.limited;
   (*json)["cop_outside_sensors_share"] = rehearsal->outside_share;
+  if (!flags.figures.empty()) {
+    const auto names = WriteFigures(*rehearsal, *models, flags.options, flags.figures);
+    if (!names) return names.error();
+    (*json)["figures"] = *names;
+  }
   if (!flags.baselines) return json;
   const auto baselines =
       JudgeBaselines(*rehearsal, *models, flags.options, FirstJudged(*rehearsal));
@@ -110,6 +129,10 @@ void AddFlags(CLI::App& command, Flags& flags) {
       ->check(CLI::Range(0.0, 60.0));
   command.add_option("--ablate", flags.ablate, "Parts left out")
       ->check(CLI::IsMember({"angular_momentum", "momentum", "cleanup", "basis"}));
+  command.add_flag("--ablations", flags.ablations, "The table of all of them, in both modes");
+  command.add_flag("--claims", flags.claims,
+                   "What the paper says of how COMs move and of outliers");
+  command.add_option("--figures", flags.figures, "Folder for plots like the paper's");
   command.add_option("--oracle", flags.oracle, "Parts told the truth")
       ->check(CLI::IsMember({"com", "momentum", "feet"}));
   command.add_option("--constant", flags.constants, "NAME=VALUE of the best mode");

@@ -41,14 +41,15 @@ struct Scale {
       largest = least + 1;
     }
     spacing = MarkSpacing(largest - least);
+  }
+  /// From mark to mark.
+  void Widen() {
     least = spacing * std::floor(least / spacing + 1e-9);
     largest = spacing * std::ceil(largest / spacing - 1e-9);
   }
   /// Marks are counted, so that none is a little beside zero.
-  int marks() const { return static_cast<int>(std::lround((largest - least) / spacing)); }
-  double mark(int i) const {
-    return spacing * static_cast<double>(i + static_cast<int>(std::lround(least / spacing)));
-  }
+  int first_mark() const { return static_cast<int>(std::ceil(least / spacing - 1e-9)); }
+  int last_mark() const { return static_cast<int>(std::floor(largest / spacing + 1e-9)); }
   double Share(double value) const { return (value - least) / (largest - least); }
 };
 
@@ -70,6 +71,8 @@ std::string LinePlot(const std::string& title, const std::string& x_label,
   }
   x.Close(axes);
   y.Close(axes);
+  if (axes == Axes::kFromZero) x.Widen();
+  y.Widen();
   const bool beside = axes == Axes::kFitted;
   const double width = kWidth + (beside ? kLegendWidth : 0);
   const double bottom = kHeight - kBottom, right = kWidth - kRight;
@@ -81,13 +84,13 @@ std::string LinePlot(const std::string& title, const std::string& x_label,
   svg += Label((kLeft + right) / 2, kHeight - 12, "middle", x_label);
   svg += Label(16, (kTop + bottom) / 2, "middle", y_label,
                "transform='rotate(-90 16 " + Number((kTop + bottom) / 2) + ")'");
-  for (int i = 0; i <= y.marks(); ++i) {
-    const double mark = y.mark(i);
-    svg += Line(kLeft, at_y(mark), right, at_y(mark), i == 0 ? "#222" : "#ddd");
+  for (int i = y.first_mark(); i <= y.last_mark(); ++i) {
+    const double mark = i * y.spacing;
+    svg += Line(kLeft, at_y(mark), right, at_y(mark), i == y.first_mark() ? "#222" : "#ddd");
     svg += Label(kLeft - 6, at_y(mark) + 4, "end", Number(mark));
   }
-  for (int i = 0; i <= x.marks(); ++i) {
-    const double mark = x.mark(i);
+  for (int i = x.first_mark(); i <= x.last_mark(); ++i) {
+    const double mark = i * x.spacing;
     svg += Line(at_x(mark), bottom, at_x(mark), bottom + 5, "#222");
     svg += Label(at_x(mark), bottom + 18, "middle", Number(mark));
   }

@@ -14,7 +14,7 @@ struct Curve {
 
 enum class Axes {
   kFromZero,  ///< Both begin at zero; the legend is in the corner.
-  kFitted,    ///< Both are as long as the curves; the legend is beside them.
+  kFitted,    ///< x is as long as the curves, y from mark to mark; the legend is beside them.
 };
 
 /// A line plot as SVG text: axes with round marks, a legend. Numbers that are not finite are left

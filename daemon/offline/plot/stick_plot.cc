@@ -47,19 +47,21 @@ std::string StickPlot(const std::string& title, const std::vector<Panel>& panels
   svg += Label(width / 2, 22, "middle", title, "font-size='14'");
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const double middle = kPanelWidth * (static_cast<double>(i) + 0.5);
+    // A group's opacity: lines that cross are no darker there.
     const auto draw = [&](const Sticks& sticks, const std::string& colour, const char* more) {
+      svg += std::string("<g ") + more + " stroke-linecap='round'>\n";
       for (const auto& stick : sticks) {
         if (!IsShown(stick)) continue;
         const auto at_x = [&](double x) { return middle + scale * (x - extents[i].middle()); };
         const auto at_y = [&](double y) { return ground - scale * y; };
-        svg += Line(at_x(stick[0]), at_y(stick[1]), at_x(stick[2]), at_y(stick[3]), colour, more);
+        svg += Line(at_x(stick[0]), at_y(stick[1]), at_x(stick[2]), at_y(stick[3]), colour);
       }
+      svg += "</g>\n";
     };
     svg += Line(middle - kPanelWidth / 2 + kMargin, ground, middle + kPanelWidth / 2 - kMargin,
                 ground, "#aaa");
-    draw(panels[i].reference, kReferenceColour,
-         "stroke-width='7' stroke-linecap='round' stroke-opacity='0.22'");
-    draw(panels[i].figure, kColours[0], "stroke-width='3' stroke-linecap='round'");
+    draw(panels[i].reference, kReferenceColour, "stroke-width='7' opacity='0.22'");
+    draw(panels[i].figure, kColours[0], "stroke-width='3'");
     svg += Label(middle, kHeight - 14, "middle", panels[i].name);
   }
   return svg + "</svg>\n";

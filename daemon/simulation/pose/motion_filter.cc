@@ -115,10 +115,9 @@ void MotionFilter::Predict() {
     return m.block(r * k_, c * k_, k_, k_);
   };
   for (Eigen::Index r = 0; r < 3; ++r) {
-    x_off_.segment(r * k_, k_) =
-        transition_.col(3 * r).cwiseProduct(x_.head(k_)) +
-        transition_.col(3 * r + 1).cwiseProduct(x_.segment(k_, k_)) +
-        transition_.col(3 * r + 2).cwiseProduct(x_.tail(k_));
+    x_off_.segment(r * k_, k_) = transition_.col(3 * r).cwiseProduct(x_.head(k_)) +
+                                 transition_.col(3 * r + 1).cwiseProduct(x_.segment(k_, k_)) +
+                                 transition_.col(3 * r + 2).cwiseProduct(x_.tail(k_));
     for (Eigen::Index c = 0; c < 3; ++c) {
       block(p_half_, r, c) = transition_.col(3 * r).asDiagonal() * block(p_, 0, c);
       block(p_half_, r, c) += transition_.col(3 * r + 1).asDiagonal() * block(p_, 1, c);
@@ -184,17 +183,13 @@ void MotionFilter::AddLoad(const GroundLoad& load) {
   load_acceleration_rows_.row(0) = force * com_jacobian_.row(2);
   load_residuals_(0) = force * (load.force_n - f.z());
   // M_x = c_y F_z - c_z F_y + L'_x,  M_y = c_z F_x - c_x F_z + L'_y.
-  load_rows_.row(1) =
-      turn / m * (f.z() * com_jacobian_.row(1) - f.y() * com_jacobian_.row(2));
-  load_acceleration_rows_.row(1) =
-      turn * (c.y() * com_jacobian_.row(2) - c.z() * com_jacobian_.row(1) +
-              angular_jacobian_.row(0));
+  load_rows_.row(1) = turn / m * (f.z() * com_jacobian_.row(1) - f.y() * com_jacobian_.row(2));
+  load_acceleration_rows_.row(1) = turn * (c.y() * com_jacobian_.row(2) -
+                                           c.z() * com_jacobian_.row(1) + angular_jacobian_.row(0));
   load_residuals_(1) = turn * (load.moment_nm.x() - moment.x());
-  load_rows_.row(2) =
-      turn / m * (f.x() * com_jacobian_.row(2) - f.z() * com_jacobian_.row(0));
-  load_acceleration_rows_.row(2) =
-      turn * (c.z() * com_jacobian_.row(0) - c.x() * com_jacobian_.row(2) +
-              angular_jacobian_.row(1));
+  load_rows_.row(2) = turn / m * (f.x() * com_jacobian_.row(2) - f.z() * com_jacobian_.row(0));
+  load_acceleration_rows_.row(2) = turn * (c.z() * com_jacobian_.row(0) -
+                                           c.x() * com_jacobian_.row(2) + angular_jacobian_.row(1));
   load_residuals_(2) = turn * (load.moment_nm.y() - moment.y());
   loads_ = kLoadRows;
 }
@@ -208,8 +203,7 @@ void MotionFilter::Linearise(const PoseTargets& targets, const GroundLoad& load)
   if (targets.has_com) {
     const Eigen::Vector3d weight = targets.com_sd_m.cwiseInverse();
     place_rows_.middleRows<3>(places_) = (weight / body_->mass_kg).asDiagonal() * com_jacobian_;
-    place_residuals_.segment<3>(places_) =
-        weight.cwiseProduct(targets.com_W_m - momentum_.p_WC);
+    place_residuals_.segment<3>(places_) = weight.cwiseProduct(targets.com_W_m - momentum_.p_WC);
     places_ += 3;
   }
   if (load.valid) AddLoad(load);

@@ -9,8 +9,8 @@ namespace {
 
 TEST(StickPlot, DrawsAllPanelsAtOneScaleOnOneGround) {
   // The tallest panel is 2 high: 280 of height over 2; both feet at 340.
-  const std::string svg = StickPlot("a & b", {{"tall", {}, {{0, 0, 0, 2}}},
-                                              {"short", {{1, 0, 1, 1}}, {{1, 0, 1.5, 1}}}});
+  const std::string svg = StickPlot(
+      "a & b", {{"tall", {}, {{0, 0, 0, 2}}}, {"short", {{1, 0, 1, 1}}, {{1, 0, 1.5, 1}}}});
   EXPECT_NE(svg.find("a &amp; b"), std::string::npos);
   EXPECT_NE(svg.find("y1='340' x2='120' y2='60'"), std::string::npos) << svg;
   // Middle of the second panel 360, its sticks from x = 1 to 1.5 about 1.25: 35 to each side.
