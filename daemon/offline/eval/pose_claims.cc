@@ -93,8 +93,8 @@ double ConstantVelocityShare(const Eigen::MatrixXd& velocity, const Eigen::Matri
     run = 0;
   };
   for (Eigen::Index i = 0; i < velocity.cols(); ++i) {
-    const bool constant = velocity.col(i).norm() > least_speed &&
-                          acceleration.col(i).norm() < most_acceleration;
+    const bool constant =
+        velocity.col(i).norm() > least_speed && acceleration.col(i).norm() < most_acceleration;
     if (constant) {
       ++run;
     } else {

@@ -12,6 +12,7 @@
 #include "daemon/offline/eval/pose_claims.h"
 #include "daemon/offline/eval/pose_constants.h"
 #include "daemon/offline/eval/pose_figures.h"
+#include "daemon/offline/eval/pose_insoles.h"
 #include "daemon/offline/eval/pose_scene.h"
 #include "daemon/offline/eval/pose_trial.h"
 
@@ -42,7 +43,7 @@ Result<void> Translate(Flags& flags) {
     return UsageError("--hands " + flags.hands + " is not built yet; there are move and none");
   }
   if (flags.boards == "forces") {
-    return UsageError("--boards forces is not built yet; there is simulated");
+    return UsageError("--boards forces is not built yet; there are simulated and insoles");
   }
   settings.loop_s = 60 * flags.loop_minutes;
   settings.yaw_error_rad = DegreesToRadians(flags.yaw_error_deg);
@@ -68,6 +69,11 @@ Result<ordered_json> Evaluate(Flags flags) {
   }
   const auto models = ReadPoseModels(flags.models, flags.scene.motion);
   if (!models) return models.error();
+  if (flags.boards == "insoles") {
+    const auto walk = MakeInsoleScene(flags.scene);
+    if (!walk) return walk.error();
+    return JudgeInsoles(*walk, *models, flags.options);
+  }
   const auto rehearsal = MakePoseScene(flags.scene);
   if (!rehearsal) return rehearsal.error();
   if (flags.ablations) {
@@ -106,7 +112,8 @@ void AddFlags(CLI::App& command, Flags& flags) {
   command.add_option("--height-m", flags.height_m)->check(CLI::Range(0.5, 2.6));
   command.add_option("--hands", flags.hands, "move: 1 cm of noise")
       ->check(CLI::IsMember({"move", "wiimote", "kinect", "none"}));
-  command.add_option("--boards", flags.boards)->check(CLI::IsMember({"simulated", "forces"}));
+  command.add_option("--boards", flags.boards)
+      ->check(CLI::IsMember({"simulated", "forces", "insoles"}));
   command.add_option("--model", flags.models, "*.fmodel, several; without: the product's");
   command.add_option("--mode", flags.mode)->check(CLI::IsMember({"paper", "best"}));
   command.add_option("--rate-hz", settings.rate_hz)->check(CLI::Range(30.0, 120.0));

@@ -61,8 +61,7 @@ struct Window {
 /// The window in which the values' range is greatest.
 Window Liveliest(const Show& show, const std::function<double(std::size_t)>& value) {
   const std::size_t frames = show.frames();
-  const auto length =
-      std::min(frames, static_cast<std::size_t>(kWindowS * show.rehearsal.rate_hz));
+  const auto length = std::min(frames, static_cast<std::size_t>(kWindowS * show.rehearsal.rate_hz));
   const std::size_t step = std::max<std::size_t>(1, length / 8);
   Window best{0, length};
   double widest = -1;
@@ -106,8 +105,7 @@ std::array<double, 4> ArmAngles(const body::Body& body, const Eigen::VectorXd& q
                                 body::Kinematics& at) {
   body::ComputeKinematics(body.skeleton, q, at);
   const auto joint = [&](Landmark left) {
-    return static_cast<std::size_t>(
-        body.landmarks[side == 0 ? left : body::Mirrored(left)]);
+    return static_cast<std::size_t>(body.landmarks[side == 0 ? left : body::Mirrored(left)]);
   };
   const Eigen::Vector3d shoulder = at.p_WJ[joint(Landmark::kLeftShoulder)];
   const Eigen::Vector3d elbow = at.p_WJ[joint(Landmark::kLeftElbow)];

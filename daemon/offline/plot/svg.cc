@@ -1,6 +1,6 @@
 #include "daemon/offline/plot/svg.h"
 
-#include <cstdio>
+#include <charconv>
 
 namespace footing::plot {
 namespace {
@@ -17,8 +17,9 @@ std::string Escaped(const std::string& text) {
 
 std::string Number(double value) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
+  return {text.data(), end.ptr};
 }
 
 std::string Open(double width, double height) {

@@ -14,7 +14,7 @@ constexpr double kStartSd = 0.1;  // Of the T-pose's coordinates: nobody stands 
 constexpr int kCleanUpIterations = 4;
 constexpr int kSpreadsAFrame = 3;    // Joints whose covariance is told anew in each frame.
 constexpr double kUnknownSdM = 1.0;  // Before anything is measured.
-constexpr double kKnownComSdM = 0.01, kKnownAngularSd = 1, kKnownFootSdM = 0.015;
+constexpr double kKnownComSdM = 0.01, kKnownAngularSd = 1;
 constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
 
 /// The same poses of a person whose root is so many times as high: angles stay.
@@ -284,9 +284,10 @@ void Reconstruction::AddFeet(const Moment& moment) {
     const FootGeometry& geometry = parts_->feet[f];
     if (moment.known.feet) {
       const Known::Foot& foot = (*moment.known.feet)[f];
-      const Eigen::Vector3d sd = Eigen::Vector3d::Constant(kKnownFootSdM);
-      targets_.Add({geometry.ankle.joint, geometry.ankle.p_J_m, foot.ankle_W_m, sd});
-      targets_.Add({geometry.toe.joint, geometry.toe.p_J_m, foot.toe_W_m, sd});
+      targets_.Add({geometry.ankle.joint, geometry.ankle.p_J_m, foot.ankle_W_m,
+                    Eigen::Vector3d::Constant(foot.ankle_sd_m)});
+      targets_.Add({geometry.toe.joint, geometry.toe.p_J_m, foot.toe_W_m,
+                    Eigen::Vector3d::Constant(foot.toe_sd_m)});
     } else if (options_.mode == Mode::kPaper) {
       AddPaperFootTargets(geometry, moment.feet[f], kPaperFootSdM, targets_);
     } else {

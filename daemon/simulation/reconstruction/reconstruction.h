@@ -44,6 +44,7 @@ struct Known {
   std::optional<Eigen::Vector3d> angular_W;  ///< kg m^2/s, of the body's own mass.
   struct Foot {
     Eigen::Vector3d ankle_W_m, toe_W_m;
+    double ankle_sd_m = 0.015, toe_sd_m = 0.015;
   };
   std::optional<std::array<Foot, momentum::kFeet>> feet;
 };

@@ -74,6 +74,17 @@ class Reports(unittest.TestCase):
                 self.assertTrue(root.tag.endswith("svg"))
                 self.assertNotIn("nan", (pathlib.Path(folder) / name).read_text())
 
+    def test_insoles(self):
+        walk = ["--motion", DATA.parent / "cmu_amc2" / "walk_03.amc", "--skeleton",
+                DATA.parent / "cmu_amc2" / "walk.asf", "--boards", "insoles", "--loop-minutes", "0.25"]
+        judged = run(EVAL, "pose", *walk, *self.models)
+        self.assertGreater(judged["walked_m"], 8)
+        self.assertTrue(judged["finite"])
+        self.assertGreater(judged["contact_f1"], 0.97)
+        self.assertLess(judged["mpjpe_root_relative_cm"],
+                        0.8 * judged["baselines"]["mean_pose"]["mpjpe_root_relative_cm"])
+        self.assertLess(judged["root_p95_cm"], 40)
+
 
 if __name__ == "__main__":
     if not DATA.is_dir():
