@@ -16,7 +16,7 @@ void AddUnbuiltCommand(CLI::App& app, const std::string& name, footing::train::S
   command->allow_extras();
   command->callback([name, &shared] {
     shared.exit_code = footing::cli::Report(footing::UsageError(
-        "footing-train " + name + " is not built yet; there are basis, cascade, com and mlp"));
+        "footing-train " + name + " is not built yet; there are basis, cascade, com, mlp and pose"));
   });
 }
 
@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
       "                        --feedback c2,c1,c0 --feedback other --noise 0.01\n"
       "  footing-train com --motions mocap/ --exclude 14 --out com.fmodel --json\n"
       "  footing-train basis --motions mocap/ --out basis.fmodel\n"
+      "  footing-train pose --motions mocap/ --exclude 14 --out pose.fmodel\n"
       "  footing-train mlp --data sway.csv --inputs 20 --out mlp.fmodel --mse-goal 1e-5");
   footing::train::Shared shared;
   shared.command_line = Joined(argc, argv);
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
   footing::train::AddCascadeCommand(*app, shared);
   footing::train::AddComCommand(*app, shared);
   footing::train::AddMlpCommand(*app, shared);
+  footing::train::AddPoseCommand(*app, shared);
   AddUnbuiltCommand(*app, "arm", shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;

@@ -18,6 +18,7 @@ GaussNewton::GaussNewton(const body::Body& body, const PoseBasis& basis,
       basis_(&basis),
       options_(options),
       no_mean_(Eigen::VectorXd::Zero(basis.size())),
+      mean_before_(no_mean_),
       a_(no_mean_),
       a_before_(no_mean_),
       a_best_(no_mean_),
@@ -109,15 +110,29 @@ void GaussNewton::PlaceAt(const Eigen::VectorXd& coefficients) {
   q_.noalias() += basis_->modes * coefficients;
 }
 
+void GaussNewton::ContinueFrom(const Eigen::VectorXd& q) {
+  a_.noalias() = basis_->inverse * (q - basis_->mean);
+  PlaceAt(a_);
+  mean_known_ = false;
+  started_ = true;
+}
+
 void GaussNewton::Solve(const PoseTargets& targets,
                         const Eigen::Ref<const Eigen::VectorXd>& prior_mean) {
   FOOTING_CHECK(prior_mean.size() == basis_->size());
   if (!started_) {
     a_ = prior_mean;
     PlaceAt(a_);
+    mean_known_ = false;
   }
-  a_before_ = a_;
+  if (!mean_known_) mean_before_ = prior_mean;
+  mean_known_ = true;
   q_before_ = q_;
+  // What the mean does not explain is what stays from frame to frame.
+  a_ += prior_mean - mean_before_;
+  mean_before_ = prior_mean;
+  a_before_ = a_;
+  PlaceAt(a_);
   smooth_ = started_ ? options_.smooth_weight * options_.smooth_weight : 0;
   prior_ = options_.prior_weight * options_.prior_weight;
   const int iterations = started_ ? options_.iterations : options_.first_iterations;

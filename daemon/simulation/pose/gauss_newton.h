@@ -32,11 +32,14 @@ class GaussNewton {
   GaussNewton(const body::Body& body, const PoseBasis& basis, const GaussNewtonOptions& options);
 
   /// Solves one frame; `prior_mean` is the mean of the coefficients given what is measured, zero
-  /// for that of the basis alone. The first frame begins there, each later one at the last.
+  /// for that of the basis alone. The first frame begins there, each later one at the last, moved
+  /// as the mean has moved.
   void Solve(const PoseTargets& targets, const Eigen::Ref<const Eigen::VectorXd>& prior_mean);
   void Solve(const PoseTargets& targets) { Solve(targets, no_mean_); }
   /// The next frame begins anew.
   void Reset() { started_ = false; }
+  /// The next frame goes on from this pose.
+  void ContinueFrom(const Eigen::VectorXd& q);
 
   const Eigen::VectorXd& q() const { return q_; }
   const Eigen::VectorXd& coefficients() const { return a_; }
@@ -58,8 +61,9 @@ class GaussNewton {
   const PoseBasis* basis_;
   GaussNewtonOptions options_;
   bool started_ = false;
+  bool mean_known_ = false;
   double prior_ = 0, smooth_ = 0;  ///< Weights of this frame, squared.
-  Eigen::VectorXd no_mean_, a_, a_before_, a_best_, q_, q_before_, step_q_, step_;
+  Eigen::VectorXd no_mean_, mean_before_, a_, a_before_, a_best_, q_, q_before_, step_q_, step_;
   Eigen::MatrixXd information_;
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian_;
   Eigen::MatrixXd rows_;  ///< Weighted rows in the coefficients, `row_count_` of them.

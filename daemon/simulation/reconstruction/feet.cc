@@ -65,20 +65,24 @@ void AddFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& 
                     const FootSpread& spread, pose::PoseTargets& targets) {
   if (!foot.valid) return;
   const double aloft_s = foot.contact ? 0 : foot.airborne_s;
-  const double lift_m = spread.lift * (1 - std::exp(-aloft_s / spread.lift_time_s));
-  const double more_m = spread.air_mps * aloft_s;
-  const Eigen::Vector3d place = foot.p_WF_m + Eigen::Vector3d(0, 0, lift_m);
+  const double off = 1 - std::exp(-aloft_s / spread.lift_time_s);  // 0 on the ground, 1 in the air.
+  const Eigen::Vector3d place =
+      foot.p_WF_m +
+      geometry.R_WF * Eigen::Vector3d(spread.ahead + off * spread.forward, 0, off * spread.lift);
   // W's axes stand in for the foot's: a foot points ahead, more or less.
   const auto sd = [&](double up_m) {
-    const Eigen::Vector3d own(spread.along, spread.across, up_m);
-    const Eigen::Vector3d all =
-        (foot.variance_m2.array() * Eigen::Array3d(1, 1, 0) + (own.array() + more_m).square())
-            .sqrt();
-    return Eigen::Vector3d(all.cwiseMin(kMostSpreadM));
+    const Eigen::Array3d own(spread.along, spread.across, up_m);
+    const Eigen::Array3d air(spread.air_level, spread.air_level, spread.air_up);
+    const Eigen::Array3d all =
+        foot.variance_m2.array() * Eigen::Array3d(1, 1, 0) + own.square() + (off * air).square();
+    return Eigen::Vector3d(all.sqrt().min(kMostSpreadM));
   };
-  targets.Add(
-      Target(geometry.ankle, place + geometry.R_WF * geometry.ankle_F_m, sd(spread.ankle_up)));
-  targets.Add(Target(geometry.toe, place + geometry.R_WF * geometry.toe_F_m, sd(spread.toe_up)));
+  const auto up = [&](double rise_m) { return Eigen::Vector3d(0, 0, (1 - off) * rise_m); };
+  targets.Add(Target(geometry.ankle,
+                     place + geometry.R_WF * geometry.ankle_F_m + up(spread.ankle_rise),
+                     sd(spread.ankle_up)));
+  targets.Add(Target(geometry.toe, place + geometry.R_WF * geometry.toe_F_m + up(spread.toe_rise),
+                     sd(spread.toe_up)));
 }
 
 void AddPaperFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& foot,

@@ -28,15 +28,20 @@ std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body);
 /// What the T-pose of a body tells of who stands on the cells.
 momentum::Subject SubjectOf(const body::Body& body);
 
-/// How well a foot's estimate tells where its joints are, one standard deviation, m.
+/// What a foot's estimate tells of its joints, by how far recorded feet were off it (docs/pose.md);
+/// m, and one standard deviation.
 struct FootSpread {
   double along = 0.03;  ///< In contact, beside the variance of F itself.
   double across = 0.02;
-  double ankle_up = 0.02;
-  double toe_up = 0.012;
-  double lift = 0.10;         ///< In the air: how high it is taken to be,
-  double lift_time_s = 0.15;  ///< after so long,
-  double air_mps = 0.4;       ///< and how fast all spreads grow.
+  double ankle_up = 0.024;
+  double toe_up = 0.02;
+  double ahead = -0.025;  ///< People who move press further ahead than those who stand.
+  double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat.
+  double lift = 0.22;         ///< In the air, how high the foot is,
+  double forward = 0.05;      ///< and how far ahead of where it stood,
+  double lift_time_s = 0.12;  ///< after so long;
+  double air_level = 0.10;    ///< and how far off that it is.
+  double air_up = 0.17;
 };
 
 /// Adds targets of ankle and ball.

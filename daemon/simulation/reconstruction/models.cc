@@ -30,6 +30,23 @@ Result<Eigen::MatrixXd> Matrix(const model::Model& model, const std::string& nam
   return matrix;
 }
 
+/// All components that vary at all.
+pose::PoseBasis ToBasis(const Eigen::VectorXd& mean, const Eigen::VectorXd& scale,
+                        const Eigen::MatrixXd& components, const Eigen::VectorXd& variances) {
+  pose::PoseBasis basis;
+  basis.mean = mean;
+  const Eigen::VectorXd sd = variances.cwiseMax(0).cwiseSqrt();
+  Eigen::Index count = 0;
+  while (count < sd.size() && sd(count) > kLeastSd) ++count;
+  const Eigen::MatrixXd rows = components.topRows(count);
+  basis.modes = scale.cwiseInverse().asDiagonal() * rows.transpose();
+  basis.inverse = rows * scale.asDiagonal();
+  basis.sd = sd.head(count);
+  basis.lower = -kReach * basis.sd;
+  basis.upper = kReach * basis.sd;
+  return basis;
+}
+
 Result<void> ReadBasis(const NamedModel& named, Models& models) {
   const model::Tensor* mean = model::FindAny(named.model, "mean");
   if (mean == nullptr || mean->shape.size() != 1 || mean->labels.size() != mean->values.size()) {
@@ -48,18 +65,11 @@ Result<void> ReadBasis(const NamedModel& named, Models& models) {
   if (!(scale->minCoeff() > 0)) {
     return InvalidData(named.origin + ": its tensor scale is not positive");
   }
-  pose::PoseBasis& basis = models.basis;
-  basis.mean = Eigen::Map<const Eigen::VectorXf>(mean->values.data(), dof).cast<double>();
-  const Eigen::VectorXd sd = variances->col(0).cwiseMax(0).cwiseSqrt();
-  Eigen::Index count = 0;
-  while (count < sd.size() && sd(count) > kLeastSd) ++count;
+  const Eigen::VectorXd middle =
+      Eigen::Map<const Eigen::VectorXf>(mean->values.data(), dof).cast<double>();
+  models.basis = ToBasis(middle, scale->col(0), *components, variances->col(0));
+  const Eigen::Index count = models.basis.size();
   if (count == 0) return InvalidData(named.origin + ": its poses do not vary");
-  const Eigen::MatrixXd rows = components->topRows(count);
-  basis.modes = scale->col(0).cwiseInverse().asDiagonal() * rows.transpose();
-  basis.inverse = rows * scale->col(0).asDiagonal();
-  basis.sd = sd.head(count);
-  basis.lower = -kReach * basis.sd;
-  basis.upper = kReach * basis.sd;
   models.dofs = mean->labels;
   if (model::FindAny(named.model, "root_height_m") != nullptr) {
     const auto height = read("root_height_m", 1, 1);
@@ -77,6 +87,37 @@ Result<void> ReadBasis(const NamedModel& named, Models& models) {
     models.rates = {first->col(0).head(count), second->col(0).head(count)};
   }
   models.origin = named.origin;
+  return {};
+}
+
+Result<void> ReadRegression(const NamedModel& named, Models& models) {
+  if (const auto basis = ReadBasis(named, models); !basis) return basis;
+  const auto dof = static_cast<std::uint32_t>(models.basis.dof());
+  constexpr auto kFeatures = static_cast<std::uint32_t>(Features::kCount);
+  struct Part {
+    const char* name;
+    std::uint32_t rows, columns;
+    Eigen::MatrixXd values;
+  };
+  std::array<Part, 7> parts{{{"scale", dof, 1, {}},
+                             {"feature_mean", kFeatures, 1, {}},
+                             {"feature_scale", kFeatures, 1, {}},
+                             {"regression_weights", dof, kFeatures, {}},
+                             {"regression_offset", dof, 1, {}},
+                             {"rest_components", dof, dof, {}},
+                             {"rest_variances", dof, 1, {}}}};
+  for (Part& part : parts) {
+    auto read = Matrix(named.model, part.name, part.rows, part.columns, named.origin);
+    if (!read) return read.error();
+    part.values = std::move(*read);
+  }
+  models.regression = {parts[1].values.col(0), parts[2].values.col(0), parts[3].values,
+                       parts[4].values.col(0)};
+  models.rest = ToBasis(models.basis.mean, parts[0].values.col(0), parts[5].values,
+                        parts[6].values.col(0));
+  if (models.rest.size() == 0 || !(models.root_height_m > 0)) {
+    return InvalidData(named.origin + ": its regression has no error, or its people no height");
+  }
   return {};
 }
 
@@ -108,15 +149,19 @@ Result<Models> MakeModels(const std::vector<NamedModel>& models) {
       return UsageError(named.origin + ": a second model of kind " + kind + "; give one of each");
     }
     kinds.push_back(kind);
-    const auto read = kind == "basis" ? ReadBasis(named, made)
+    if ((kind == "basis" || kind == "pose") && !made.dofs.empty()) {
+      return UsageError(named.origin + ": a pose model brings its basis; give one of the two");
+    }
+    const auto read = kind == "basis"  ? ReadBasis(named, made)
+                      : kind == "pose" ? ReadRegression(named, made)
                       : kind == "com"
                           ? ReadNetworks(named, made)
                           : Result<void>(InvalidData(named.origin + ": a model of kind " + kind +
-                                                     "; the pose engine takes basis and com"));
+                                                     "; the pose engine takes basis, pose and com"));
     if (!read) return read.error();
   }
   if (made.dofs.empty()) {
-    return UsageError("no model of kind basis: train one with footing-train basis");
+    return UsageError("no model of kind pose or basis: train one with footing-train pose or footing-train basis");
   }
   return made;
 }

@@ -10,6 +10,7 @@
 #include "daemon/simulation/cascade/network.h"
 #include "daemon/simulation/pose/basis.h"
 #include "daemon/simulation/pose/motion_filter.h"
+#include "daemon/simulation/reconstruction/features.h"
 
 namespace footing::reconstruction {
 
@@ -24,13 +25,17 @@ struct Models {
   pose::PoseBasis basis;
   double root_height_m = 0;               ///< Of the basis' people, in the T-pose; 0: unknown.
   std::optional<pose::BasisRates> rates;  ///< Where the basis tells them.
+  /// The pose that the features make likely, and what is left of it: components of the regression's
+  /// errors, about the mean of `basis`. Where the model has them (kind "pose").
+  PoseRegression regression;
+  pose::PoseBasis rest;
   std::vector<std::string> dofs;          ///< Of the basis: the layout of the bodies that it fits.
   std::string origin;                     ///< File of the basis.
   /// Next C_x and C_y (section 4.2), where there are such networks.
   std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
 };
 
-/// At most one model of each kind: "basis" is necessary, "com" is not. Errors name the file.
+/// At most one model of each kind: "basis" or "pose" is necessary, "com" is not. Errors name the file.
 Result<Models> MakeModels(const std::vector<NamedModel>& models);
 
 }  // namespace footing::reconstruction

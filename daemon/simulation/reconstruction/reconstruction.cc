@@ -59,6 +59,13 @@ pose::GaussNewtonOptions SolverOptions(const Options& options) {
   return solver;
 }
 
+pose::GaussNewtonOptions RegressedOptions(const Options& options) {
+  pose::GaussNewtonOptions solver = SolverOptions(options);
+  solver.prior_weight = options.best.regressed_prior_weight;
+  solver.smooth_weight = options.best.regressed_smooth_weight * std::sqrt(options.rate_hz / 60);
+  return solver;
+}
+
 pose::FibonacciOptions SearchOptions(const Options& options) {
   pose::FibonacciOptions search;
   search.frame_s = 1 / options.rate_hz;
@@ -119,6 +126,11 @@ Result<Reconstruction> Reconstruction::Create(const body::Body& body, const Mode
     parts->fists[static_cast<std::size_t>(side)] = body::Fist(body, side);
   }
   parts->horizontal = models.horizontal;
+  if (options.mode == Mode::kBest && options.use_basis && options.use_momentum &&
+      !models.regression.empty()) {
+    parts->regression = models.regression;
+    parts->rest = Resized(models.rest, parts->t_pose(2) / models.root_height_m);
+  }
   if (options.mode == Mode::kBest && models.rates && options.use_basis &&
       options.best.filter.on > 0) {
     parts->filter_basis = Leading(full, options.best.filter.share);
@@ -135,11 +147,18 @@ Reconstruction::Reconstruction(std::shared_ptr<const Parts> parts, const Options
       options_(options),
       step_s_(1 / options.rate_hz),
       lag_steps_(static_cast<int>(std::lround(options.lag_s * options.rate_hz))),
+      features_(step_s_, parts_->t_pose(2), parts_->body.mass_kg),
       gauss_newton_(parts_->body, parts_->basis, SolverOptions(options)),
       fibonacci_(parts_->body, parts_->basis, SearchOptions(options)),
       legs_{Leg(parts_->body, parts_->feet[0], 0), Leg(parts_->body, parts_->feet[1], 1)},
       q_(parts_->t_pose),
       at_(parts_->body.skeleton) {
+  if (!parts_->regression.empty()) {
+    regressed_.emplace(parts_->body, parts_->rest, RegressedOptions(options));
+    room_.resize(Features::kCount);
+    likely_q_ = parts_->t_pose;
+    likely_a_ = Eigen::VectorXd::Zero(parts_->rest.size());
+  }
   if (parts_->rates) {
     pose::MotionFilterOptions filter;
     filter.frame_s = step_s_;
@@ -182,6 +201,12 @@ void Reconstruction::Begin(const momentum::TPose& pose) {
   }
   gauss_newton_.Reset();
   fibonacci_.Reset();
+  if (regressed_) regressed_->Reset();
+  was_regressed_ = false;
+  features_ = Features(step_s_, parts_->t_pose(2), pose.mass_kg);
+  for (std::size_t side = 0; side < kHands; ++side) {
+    last_hands_m_[side] = output_.p_WJ_m[static_cast<std::size_t>(parts_->fists[side].joint)];
+  }
   // Poses were learned with the middle of the feet over the origin.
   origin_m_.setZero();
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
@@ -220,7 +245,9 @@ const Output& Reconstruction::Advance(const Inputs& inputs) {
   output_.resets = output_.momentum.resets + solver_resets_;
   output_.valid = output_.momentum.valid;
   Remember(inputs);
-  PlaceTargets(Lagged());
+  TakeLagged();
+  AdvanceFeatures();
+  PlaceTargets();
   if (filter_) {
     Filter(inputs);
   } else {
@@ -242,22 +269,32 @@ void Reconstruction::Remember(const Inputs& inputs) {
     hand.valid = hand.valid && hand.p_W_m.allFinite() && hand.sd_m.allFinite() &&
                  hand.sd_m.minCoeff() > 0 && (hand.p_W_m - origin_m_).norm() < kMostHandM;
   }
-  now.feet = output_.momentum.feet;
+  now.momentum = output_.momentum;
   now.known = inputs.known;
   ++frames_;
 }
 
-const Reconstruction::Moment& Reconstruction::Lagged() const {
+void Reconstruction::TakeLagged() {
   const std::size_t back = std::min(frames_, static_cast<std::size_t>(lag_steps_) + 1);
-  return past_[(frames_ - back) % kMostLag];
+  then_ = past_[(frames_ - back) % kMostLag];
+  // The estimator tells places as they were, the rest as it is.
+  then_.momentum.p_WC_m = output_.momentum.p_WC_m;
+  then_.momentum.position_variance_m2 = output_.momentum.position_variance_m2;
 }
 
-void Reconstruction::PlaceTargets(const Moment& moment) {
+void Reconstruction::AdvanceFeatures() {
+  for (std::size_t side = 0; side < kHands; ++side) {
+    if (then_.hands[side].valid) last_hands_m_[side] = then_.hands[side].p_W_m;
+  }
+  features_.Advance(last_hands_m_, then_.momentum);
+}
+
+void Reconstruction::PlaceTargets() {
   targets_.count = 0;
   targets_.has_com = targets_.has_angular = false;
   const bool paper = options_.mode == Mode::kPaper;
   for (std::size_t side = 0; side < kHands; ++side) {
-    const HandInput& hand = moment.hands[side];
+    const HandInput& hand = then_.hands[side];
     if (!hand.valid) continue;
     const body::Point& fist = parts_->fists[side];
     pose::PointTarget target{fist.joint, fist.p_J_m, hand.p_W_m, hand.sd_m};
@@ -271,30 +308,30 @@ void Reconstruction::PlaceTargets(const Moment& moment) {
     }
     targets_.Add(target);
   }
-  AddFeet(moment);
-  AddMomentumTargets(moment.known);
+  AddFeet();
+  AddMomentumTargets();
   for (int i = 0; i < targets_.count; ++i) {
     targets_.points[static_cast<std::size_t>(i)].p_W_m -= origin_m_;
   }
   targets_.com_W_m -= origin_m_;
 }
 
-void Reconstruction::AddFeet(const Moment& moment) {
+void Reconstruction::AddFeet() {
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
     const FootGeometry& geometry = parts_->feet[f];
-    if (moment.known.feet) {
-      const Known::Foot& foot = (*moment.known.feet)[f];
+    if (then_.known.feet) {
+      const Known::Foot& foot = (*then_.known.feet)[f];
       targets_.Add({geometry.ankle.joint, geometry.ankle.p_J_m, foot.ankle_W_m,
                     Eigen::Vector3d::Constant(foot.ankle_sd_m)});
       targets_.Add({geometry.toe.joint, geometry.toe.p_J_m, foot.toe_W_m,
                     Eigen::Vector3d::Constant(foot.toe_sd_m)});
     } else if (options_.mode == Mode::kPaper) {
-      AddPaperFootTargets(geometry, moment.feet[f], kPaperFootSdM, targets_);
+      AddPaperFootTargets(geometry, then_.momentum.feet[f], kPaperFootSdM, targets_);
     } else {
       const FilterConstants& filter = options_.best.filter;
-      AddFootTargets(geometry, moment.feet[f], filter_ ? filter.foot : options_.best.foot,
+      AddFootTargets(geometry, then_.momentum.feet[f], filter_ ? filter.foot : options_.best.foot,
                      targets_);
-      if (filter_ && moment.feet[f].contact && targets_.count >= 2) {
+      if (filter_ && then_.momentum.feet[f].contact && targets_.count >= 2) {
         targets_.points[static_cast<std::size_t>(targets_.count - 2)].still_mps = filter.ankle_mps;
         targets_.points[static_cast<std::size_t>(targets_.count - 1)].still_mps = filter.still_mps;
       }
@@ -302,8 +339,9 @@ void Reconstruction::AddFeet(const Moment& moment) {
   }
 }
 
-void Reconstruction::AddMomentumTargets(const Known& known) {
-  const momentum::Estimate& told = output_.momentum;
+void Reconstruction::AddMomentumTargets() {
+  const momentum::Estimate& told = then_.momentum;
+  const Known& known = then_.known;
   const bool paper = options_.mode == Mode::kPaper;
   targets_.has_com = options_.use_momentum;
   targets_.com_W_m = told.p_WC_m;
@@ -335,13 +373,13 @@ void Reconstruction::Solve() {
     fibonacci_.Solve(targets_);
     q_ = fibonacci_.q();
   } else {
-    gauss_newton_.Solve(targets_);
-    q_ = gauss_newton_.q();
+    SolveBest();
   }
   if (options_.clean_up) CleanUp();
   if (!q_.allFinite()) {
     gauss_newton_.Reset();
     fibonacci_.Reset();
+    if (regressed_) regressed_->Reset();
     output_.valid = false;
     ++solver_resets_;
     return;
@@ -349,6 +387,31 @@ void Reconstruction::Solve() {
   q_.head<3>() += origin_m_;
   Tell(q_);
   if (!paper) TellSpreads();
+}
+
+/// The regression has seen both hands at all times.
+bool Reconstruction::Regressed() const {
+  return regressed_ && then_.hands[0].valid && then_.hands[1].valid;
+}
+
+void Reconstruction::SolveBest() {
+  const bool regressed = Regressed();
+  pose::GaussNewton& solver = regressed ? *regressed_ : gauss_newton_;
+  if (regressed != was_regressed_ && frames_ > 1) {
+    solver.ContinueFrom(regressed ? gauss_newton_.q() : regressed_->q());
+  }
+  was_regressed_ = regressed;
+  if (regressed) {
+    parts_->regression.Predict(features_.values(), room_, likely_q_);
+    likely_q_.head<3>() = likely_q_.head<3>() * parts_->t_pose(2) + then_.momentum.p_WC_m -
+                          origin_m_ - parts_->rest.mean.head<3>();
+    likely_q_.tail(likely_q_.size() - 3) -= parts_->rest.mean.tail(likely_q_.size() - 3);
+    likely_a_.noalias() = parts_->rest.inverse * likely_q_;
+    solver.Solve(targets_, likely_a_);
+  } else {
+    solver.Solve(targets_);
+  }
+  q_ = solver.q();
 }
 
 void Reconstruction::Filter(const Inputs& inputs) {
@@ -383,9 +446,8 @@ void Reconstruction::Filter(const Inputs& inputs) {
 }
 
 void Reconstruction::CleanUp() {
-  const Moment& moment = Lagged();
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
-    if (moment.feet[f].contact || moment.known.feet || options_.mode == Mode::kPaper) {
+    if (then_.momentum.feet[f].contact || then_.known.feet || options_.mode == Mode::kPaper) {
       legs_[f].Solve(targets_, kCleanUpIterations, q_);
     }
   }
@@ -401,7 +463,8 @@ void Reconstruction::Tell(const Eigen::VectorXd& q) {
 void Reconstruction::TellSpreads() {
   for (int i = 0; i < kSpreadsAFrame; ++i) {
     next_spread_ = (next_spread_ + 1) % output_.joint_sd_m.size();
-    output_.joint_sd_m[next_spread_] = gauss_newton_.JointSd(static_cast<int>(next_spread_));
+    pose::GaussNewton& solver = was_regressed_ ? *regressed_ : gauss_newton_;
+    output_.joint_sd_m[next_spread_] = solver.JointSd(static_cast<int>(next_spread_));
   }
 }
 

@@ -19,6 +19,7 @@
 #include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/pose/leg_ik.h"
 #include "daemon/simulation/pose/motion_filter.h"
+#include "daemon/simulation/reconstruction/features.h"
 #include "daemon/simulation/reconstruction/feet.h"
 #include "daemon/simulation/reconstruction/models.h"
 
@@ -58,9 +59,9 @@ struct Inputs {
 /// Of the filter over the whole motion (pose::MotionFilter). What errs for many frames alike is
 /// taken as so much less certain in each of them.
 struct FilterConstants {
-  double on = 1;     ///< 0: each frame is solved for by itself.
+  double on = 0;     ///< 0: each frame is solved for by itself.
   double share = 1;  ///< Of the variance, in the components that it has.
-  FootSpread foot{0.12, 0.06, 0.08, 0.03, 0.10, 0.15, 0.4};
+  FootSpread foot{0.12, 0.06, 0.08, 0.04, -0.025, 0.015, 0.012, 0.22, 0.05, 0.12, 0.4, 0.6};
   double still_mps = 0.06;   ///< Ball of a standing foot.
   double ankle_mps = 0.3;    ///< Ankle of a standing foot.
   double hand_sd_m = 0.003;  ///< Of the fist on the hand, beside what the input says.
@@ -81,6 +82,8 @@ struct BestConstants {
   double angular_sd = 3;    ///< kg m^2/s.
   double prior_weight = 1;
   double smooth_weight = 2;  ///< At 60 Hz.
+  double regressed_prior_weight = 1;  ///< The same about the regression's pose.
+  double regressed_smooth_weight = 2;
   FilterConstants filter;
 };
 
@@ -127,6 +130,8 @@ class Reconstruction {
 
   const body::Body& body() const { return parts_->body; }
   const Output& output() const { return output_; }
+  /// Of the last frame, for training; only when calibrated.
+  const Features& features() const { return features_; }
 
  private:
   /// What never changes; copies share it, and the solvers point into it.
@@ -138,13 +143,15 @@ class Reconstruction {
     std::array<body::Point, kHands> fists;
     Eigen::VectorXd t_pose;
     std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
+    PoseRegression regression;
+    pose::PoseBasis rest;
     pose::PoseBasis filter_basis;
     std::optional<pose::BasisRates> rates;
   };
   /// What is measured at one time.
   struct Moment {
     std::array<HandInput, kHands> hands;
-    std::array<momentum::FootEstimate, momentum::kFeet> feet;
+    momentum::Estimate momentum;
     Known known;
   };
   static constexpr std::size_t kMostLag = momentum::HorizontalCom::kSlots;
@@ -153,11 +160,15 @@ class Reconstruction {
   void Begin(const momentum::TPose& pose);
   std::optional<Eigen::Vector2d> PredictHorizontal(const momentum::ContactLoads& loads);
   void Remember(const Inputs& inputs);
-  const Moment& Lagged() const;
-  void PlaceTargets(const Moment& moment);
-  void AddFeet(const Moment& moment);
-  void AddMomentumTargets(const Known& known);
+  /// What was measured then, with what is known of it now.
+  void TakeLagged();
+  void AdvanceFeatures();
+  void PlaceTargets();
+  void AddFeet();
+  void AddMomentumTargets();
   void Solve();
+  void SolveBest();
+  bool Regressed() const;
   void Filter(const Inputs& inputs);
   void CleanUp();
   void Tell(const Eigen::VectorXd& q);
@@ -174,9 +185,15 @@ class Reconstruction {
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();     ///< Of the basis' poses, in W.
   std::array<Moment, kMostLag> past_;
   std::size_t frames_ = 0;  ///< Since the T-pose.
+  Moment then_;             ///< The instant that is reconstructed.
+  std::array<Eigen::Vector3d, kHands> last_hands_m_;
+  Features features_;
   pose::PoseTargets targets_;
   pose::GaussNewton gauss_newton_;
   pose::FibonacciSearch fibonacci_;
+  std::optional<pose::GaussNewton> regressed_;  ///< Over the errors of the regression.
+  bool was_regressed_ = false;
+  Eigen::VectorXd room_, likely_q_, likely_a_;
   std::optional<pose::MotionFilter> filter_;
   std::array<pose::LegIk, momentum::kFeet> legs_;
   Eigen::VectorXd q_;

@@ -1,0 +1,127 @@
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/cli/cli.h"
+#include "common/motion/edit.h"
+#include "daemon/offline/rehearsal/rehearsal.h"
+#include "daemon/offline/train/command.h"
+#include "daemon/offline/train/model_output.h"
+#include "daemon/offline/train/motions.h"
+#include "daemon/offline/train/poses.h"
+#include "daemon/offline/training/pose_regression.h"
+
+namespace footing::train {
+namespace {
+
+constexpr double kPieceS = 10;     // Frames of one piece are left out together.
+constexpr double kSettledS = 1.5;  // After the T-pose.
+constexpr double kCellNoiseKg = 0.05;
+
+struct Options {
+  MotionOptions motions;
+  ModelOptions model;
+};
+
+/// What the sensors would have told in one motion, and its poses.
+Result<void> AddExamples(const motion::Motion& motion, const std::string& name,
+                         const reconstruction::Models& basis, std::uint64_t seed, int& piece,
+                         training::PoseExamples& examples) {
+  rehearsal::Settings settings;
+  settings.errors.noise_kg = kCellNoiseKg;
+  settings.errors.seed = settings.seed = seed;
+  const auto rehearsal = rehearsal::Rehearse(motion, settings, name);
+  if (!rehearsal) return rehearsal.error();
+  reconstruction::Options options;
+  options.rate_hz = settings.rate_hz;
+  auto made = reconstruction::Reconstruction::Create(rehearsal->body, basis, options);
+  if (!made) return made.error();
+  const double root_m = body::TPose(rehearsal->body.skeleton, rehearsal->body.landmarks)(2);
+  const auto first =
+      static_cast<std::size_t>((rehearsal::kStandS + kSettledS) * settings.rate_hz);
+  const auto piece_frames = static_cast<std::size_t>(kPieceS * settings.rate_hz);
+  for (std::size_t i = 0; i < rehearsal->frames.size(); ++i) {
+    const auto& output = made->Advance(rehearsal->frames[i].inputs);
+    if (i < first) continue;
+    if (!output.calibrated) return InvalidData(name + ": its T-pose never stood still");
+    Eigen::VectorXd pose = rehearsal->frames[i].q;
+    pose.head<3>() = (pose.head<3>() - output.momentum.p_WC_m) / root_m;
+    examples.features.push_back(made->features().values());
+    examples.poses.push_back(std::move(pose));
+    examples.folds.push_back((piece + static_cast<int>((i - first) / piece_frames)) %
+                             training::kFolds);
+  }
+  return {};
+}
+
+/// Of all clips and their mirror images; a clip and its image are in the same folds.
+Result<training::PoseExamples> Examples(const std::vector<Clip>& clips, const model::Model& basis,
+                                        std::uint64_t seed) {
+  const auto models = reconstruction::MakeModels({{"the new basis", basis}});
+  if (!models) return models.error();
+  training::PoseExamples examples;
+  int piece = 0;
+  for (const Clip& clip : clips) {
+    for (const bool mirrored : {false, true}) {
+      const auto added =
+          AddExamples(mirrored ? motion::Mirrored(clip.motion) : clip.motion, clip.name, *models,
+                      seed + 2 * static_cast<std::uint64_t>(piece) + (mirrored ? 1 : 0), piece,
+                      examples);
+      if (!added) return added.error();
+    }
+    piece += 1 + static_cast<int>(clip.motion.duration_s() / kPieceS);
+  }
+  return examples;
+}
+
+int Run(const Options& options, const Shared& shared) {
+  if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
+  const Result<Clips> clips = ReadClips(options.motions);
+  if (!clips) return cli::Report(clips.error());
+  const Result<TrainedBasis> trained = TrainBasis(clips->train);
+  if (!trained) return cli::Report(trained.error());
+  model::Model model{.kind = "basis",
+                     .provenance = {.program_version = cli::Version(),
+                                    .command = shared.command_line,
+                                    .seed = options.model.seed,
+                                    .data = DataFiles(clips->train),
+                                    .subjects = clips->subjects},
+                     .tensors = {}};
+  AppendBasis(trained->basis, model);
+  const auto examples = Examples(clips->train, model, options.model.seed);
+  if (!examples) return cli::Report(examples.error());
+  const training::FittedPoseRegression fitted =
+      training::FitPoseRegression(*examples, trained->basis.scale);
+  model.kind = "pose";
+  training::AppendTensors(fitted, model);
+  if (auto written = WriteModel(model, options.model); !written) {
+    return cli::Report(written.error());
+  }
+  const nlohmann::ordered_json report = {{"dof", trained->basis.mean.size()},
+                                         {"poses", trained->poses},
+                                         {"examples", examples->poses.size()},
+                                         {"subjects", clips->subjects},
+                                         {"ridge", fitted.ridge},
+                                         {"left_out_error", fitted.error},
+                                         {"spread", fitted.spread}};
+  if (shared.json) {
+    std::cout << report.dump() << std::endl;
+  } else {
+    std::cout << options.model.out << ": " << report.dump() << std::endl;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddPoseCommand(CLI::App& app, Shared& shared) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "pose", "The basis of the poses in motion files, and what boards and hands tell of a pose");
+  AddMotionOptions(*command, options->motions);
+  AddModelOptions(*command, options->model);
+  command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
+}
+
+}  // namespace footing::train

@@ -1,0 +1,77 @@
+#include "daemon/offline/train/poses.h"
+
+#include <algorithm>
+
+#include "common/motion/edit.h"
+#include "common/virtual_sensors/scene.h"
+#include "daemon/offline/training/alignment.h"
+
+namespace footing::train {
+namespace {
+
+constexpr double kRootHeightM = 1;
+
+/// On the ground, and as large as a person whose root is 1 m high in the T-pose.
+motion::Motion Standing(motion::Motion motion, const body::Landmarks& landmarks) {
+  motion.q.row(2).array() -= virtual_sensors::FloorHeight(motion, landmarks);
+  motion.q.topRows<3>() *= kRootHeightM / body::TPose(motion.skeleton, landmarks)(2);
+  return motion;
+}
+
+/// The motions and their mirror images: people are as often left as right.
+std::vector<motion::Motion> WithMirrors(const std::vector<Clip>& clips) {
+  std::vector<motion::Motion> motions;
+  for (const Clip& clip : clips) {
+    const body::Landmarks& landmarks = clip.body.landmarks;
+    motions.push_back(Standing(clip.motion, landmarks));
+    motions.push_back(
+        Standing(training::Aligned(motion::Mirrored(clip.motion), landmarks), landmarks));
+  }
+  return motions;
+}
+
+/// Poses 60 times a second, a column each; all clips must have one layout.
+Result<Eigen::MatrixXd> Poses(const std::vector<Clip>& clips,
+                              const std::vector<motion::Motion>& motions) {
+  constexpr double kRateHz = 60;
+  const std::vector<std::string> dofs = DofNames(clips.front().motion.skeleton);
+  std::vector<Eigen::VectorXd> columns;
+  for (const Clip& clip : clips) {
+    if (DofNames(clip.motion.skeleton) != dofs) {
+      return InvalidData(clip.name + ": another skeleton layout than " + clips.front().name +
+                         "; train a basis of one layout at a time");
+    }
+  }
+  for (const motion::Motion& motion : motions) {
+    const double step = std::max(1.0, motion.rate_hz / kRateHz);
+    for (double at = 0; at < static_cast<double>(motion.frames()); at += step) {
+      columns.emplace_back(motion.q.col(static_cast<Eigen::Index>(at)));
+    }
+  }
+  Eigen::MatrixXd poses(columns.front().size(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    poses.col(static_cast<Eigen::Index>(i)) = columns[i];
+  }
+  return poses;
+}
+
+}  // namespace
+
+Result<TrainedBasis> TrainBasis(const std::vector<Clip>& clips) {
+  const std::vector<motion::Motion> motions = WithMirrors(clips);
+  const Result<Eigen::MatrixXd> poses = Poses(clips, motions);
+  if (!poses) return poses.error();
+  training::PoseBasis basis =
+      training::MakeBasis(*poses, DofNames(clips.front().motion.skeleton));
+  std::vector<const motion::Motion*> all;
+  for (const motion::Motion& motion : motions) all.push_back(&motion);
+  training::AddRates(all, basis);
+  return TrainedBasis{std::move(basis), poses->cols()};
+}
+
+void AppendBasis(const training::PoseBasis& basis, model::Model& model) {
+  training::AppendTensors(basis, model);
+  model.tensors.push_back({.name = "root_height_m", .shape = {1}, .values = {kRootHeightM}});
+}
+
+}  // namespace footing::train

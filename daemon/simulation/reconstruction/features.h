@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "daemon/simulation/momentum/estimate.h"
+
+namespace footing::reconstruction {
+
+/// What one frame's hands, feet and momentum say of a pose, for a linear regression: places from
+/// the estimated centre of mass, their products, and how they differ from what they were. Lengths
+/// are parts of the height of the root in the T-pose, so that persons of all sizes are alike, and
+/// nothing depends on where they are in the world.
+class Features {
+ public:
+  static constexpr int kHistories = 3;
+  static constexpr int kNow = 37, kChanging = 17, kShape = 7;
+  static constexpr int kCount = kNow + kHistories * kChanging + kShape * (kShape + 1) / 2;
+  using Values = Eigen::Matrix<double, kCount, 1>;
+
+  Features(double step_s, double root_height_m, double mass_kg)
+      : step_s_(step_s), root_height_m_(root_height_m), mass_kg_(mass_kg) {}
+
+  /// The next frame: fists in W, left and right. The feet's places are those of `told`.
+  const Values& Advance(const std::array<Eigen::Vector3d, 2>& hands_W_m,
+                        const momentum::Estimate& told);
+  const Values& values() const { return values_; }
+
+ private:
+  using Changing = Eigen::Matrix<double, kChanging, 1>;
+
+  double step_s_, root_height_m_, mass_kg_;
+  bool started_ = false;
+  using Hands = Eigen::Matrix<double, 6, 1>;
+  Hands hands_ = Hands::Zero(), slow_hands_ = Hands::Zero();
+  std::array<Changing, kHistories> slow_{Changing::Zero(), Changing::Zero(), Changing::Zero()};
+  Values values_ = Values::Zero();
+};
+
+/// A linear map from features to a pose: the root from the estimated centre of mass in parts of the
+/// root's height, then the angles.
+struct PoseRegression {
+  Eigen::VectorXd mean, scale;  ///< Of the features: (f - mean) scale, cut at +-4.
+  Eigen::MatrixXd weights;      ///< dof x features.
+  Eigen::VectorXd offset;       ///< dof.
+
+  bool empty() const { return offset.size() == 0; }
+  /// Writes the scaled features to `room`, the pose to `q`, both of their sizes.
+  void Predict(const Features::Values& features, Eigen::VectorXd& room, Eigen::VectorXd& q) const;
+};
+
+}  // namespace footing::reconstruction
