@@ -47,8 +47,7 @@ Result<ordered_json> JudgeInsoles(const rehearsal::InsoleRehearsal& rehearsal,
   json["root_p95_cm"] = root_cm.Quantile(0.95);
   json["contact_f1"] = both > 0 ? 2 * both / (2 * both + one) : 0;
   json["finite"] = finite;
-  json["baselines"]["mean_pose"]["mpjpe_root_relative_cm"] =
-      still.Json()["mpjpe_root_relative_cm"];
+  json["baselines"]["mean_pose"]["mpjpe_root_relative_cm"] = still.Json()["mpjpe_root_relative_cm"];
   return json;
 }
 

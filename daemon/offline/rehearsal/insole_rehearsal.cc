@@ -56,8 +56,8 @@ Result<InsoleRehearsal> RehearseInsoles(const motion::Motion& clip, const Settin
     frame.q = scene->motion.q.col(column);
     const auto forces = sensors::ShareBetweenFeet(scene->course, scene->reaction, column);
     for (std::size_t f = 0; f < sensors::kFeet; ++f) {
-      const auto loads = sensors::LoadInsole(
-          places[f], sensors::PlaceOfSole(scene->course, f, column), forces[f]);
+      const auto loads =
+          sensors::LoadInsole(places[f], sensors::PlaceOfSole(scene->course, f, column), forces[f]);
       frame.load_n[f] = forces[f].load_n;
       reconstruction::InsoleFoot& foot = frame.inputs.feet[f];
       foot.valid = true;

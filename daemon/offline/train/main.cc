@@ -15,8 +15,9 @@ void AddUnbuiltCommand(CLI::App& app, const std::string& name, footing::train::S
   command->fallthrough(false);
   command->allow_extras();
   command->callback([name, &shared] {
-    shared.exit_code = footing::cli::Report(footing::UsageError(
-        "footing-train " + name + " is not built yet; there are basis, cascade, com, mlp and pose"));
+    shared.exit_code = footing::cli::Report(
+        footing::UsageError("footing-train " + name +
+                            " is not built yet; there are basis, cascade, com, mlp and pose"));
   });
 }
 

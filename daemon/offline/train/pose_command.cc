@@ -38,8 +38,7 @@ Result<void> AddExamples(const motion::Motion& motion, const std::string& name,
   auto made = reconstruction::Reconstruction::Create(rehearsal->body, basis, options);
   if (!made) return made.error();
   const double root_m = body::TPose(rehearsal->body.skeleton, rehearsal->body.landmarks)(2);
-  const auto first =
-      static_cast<std::size_t>((rehearsal::kStandS + kSettledS) * settings.rate_hz);
+  const auto first = static_cast<std::size_t>((rehearsal::kStandS + kSettledS) * settings.rate_hz);
   const auto piece_frames = static_cast<std::size_t>(kPieceS * settings.rate_hz);
   for (std::size_t i = 0; i < rehearsal->frames.size(); ++i) {
     const auto& output = made->Advance(rehearsal->frames[i].inputs);
@@ -64,10 +63,9 @@ Result<training::PoseExamples> Examples(const std::vector<Clip>& clips, const mo
   int piece = 0;
   for (const Clip& clip : clips) {
     for (const bool mirrored : {false, true}) {
-      const auto added =
-          AddExamples(mirrored ? motion::Mirrored(clip.motion) : clip.motion, clip.name, *models,
-                      seed + 2 * static_cast<std::uint64_t>(piece) + (mirrored ? 1 : 0), piece,
-                      examples);
+      const auto added = AddExamples(
+          mirrored ? motion::Mirrored(clip.motion) : clip.motion, clip.name, *models,
+          seed + 2 * static_cast<std::uint64_t>(piece) + (mirrored ? 1 : 0), piece, examples);
       if (!added) return added.error();
     }
     piece += 1 + static_cast<int>(clip.motion.duration_s() / kPieceS);

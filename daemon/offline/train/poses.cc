@@ -61,8 +61,7 @@ Result<TrainedBasis> TrainBasis(const std::vector<Clip>& clips) {
   const std::vector<motion::Motion> motions = WithMirrors(clips);
   const Result<Eigen::MatrixXd> poses = Poses(clips, motions);
   if (!poses) return poses.error();
-  training::PoseBasis basis =
-      training::MakeBasis(*poses, DofNames(clips.front().motion.skeleton));
+  training::PoseBasis basis = training::MakeBasis(*poses, DofNames(clips.front().motion.skeleton));
   std::vector<const motion::Motion*> all;
   for (const motion::Motion& motion : motions) all.push_back(&motion);
   training::AddRates(all, basis);

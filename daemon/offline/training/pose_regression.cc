@@ -111,8 +111,7 @@ void AppendTensors(const FittedPoseRegression& fitted, model::Model& model) {
   const auto add = [&model](const char* name, const Eigen::MatrixXd& rows) {
     std::vector<std::uint32_t> shape{static_cast<std::uint32_t>(rows.rows())};
     if (rows.cols() > 1) shape.push_back(static_cast<std::uint32_t>(rows.cols()));
-    model.tensors.push_back(
-        {.name = name, .shape = shape, .values = ToFloats(rows.transpose())});
+    model.tensors.push_back({.name = name, .shape = shape, .values = ToFloats(rows.transpose())});
   };
   add("feature_mean", fitted.regression.mean);
   add("feature_scale", fitted.regression.scale);

@@ -21,8 +21,8 @@ struct FittedPoseRegression {
   reconstruction::PoseRegression regression;
   Eigen::MatrixXd rest_components;  ///< Rows; principal axes of the errors, scaled.
   Eigen::VectorXd rest_variances;
-  double ridge = 0;  ///< Chosen: the best on frames that were left out,
-  double error = 0;  ///< and its root mean square there, scaled,
+  double ridge = 0;   ///< Chosen: the best on frames that were left out,
+  double error = 0;   ///< and its root mean square there, scaled,
   double spread = 0;  ///< beside that of the poses themselves.
 };
 

@@ -37,10 +37,10 @@ struct FootSpread {
   double toe_up = 0.02;
   double ahead = -0.025;  ///< People who move press further ahead than those who stand.
   double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat.
-  double lift = 0.22;         ///< In the air, how high the foot is,
-  double forward = 0.05;      ///< and how far ahead of where it stood,
-  double lift_time_s = 0.12;  ///< after so long;
-  double air_level = 0.10;    ///< and how far off that it is.
+  double lift = 0.22;                           ///< In the air, how high the foot is,
+  double forward = 0.05;                        ///< and how far ahead of where it stood,
+  double lift_time_s = 0.12;                    ///< after so long;
+  double air_level = 0.10;                      ///< and how far off that it is.
   double air_up = 0.17;
 };
 

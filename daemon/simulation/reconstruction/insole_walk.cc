@@ -10,7 +10,7 @@ namespace footing::reconstruction {
 namespace {
 
 constexpr momentum::FootContactConfig kContact{40, 25, 2, 10};
-constexpr double kFrameRadps = 4;      // Of the moving frame, which is critically damped.
+constexpr double kFrameRadps = 4;  // Of the moving frame, which is critically damped.
 constexpr double kSettleS = 0.12;  // A landing's place is doubted so long.
 constexpr double kPlacedSdM = 0.03, kLandingSdM = 0.05, kSwingSdM = 0.05, kLiftedSdM = 0.12;
 constexpr double kSwingLiftM = 0.06;
@@ -18,7 +18,7 @@ constexpr double kSwingLiftM = 0.06;
 // 0.55 s; it is in the air for about so long.
 constexpr double kHalfStepS = 0.28;
 constexpr double kSwingS = 0.4;
-constexpr double kHandsAheadM = 0.05;  // Of the feet, in the mean of a stride.
+constexpr double kHandsAheadM = 0.05;                   // Of the feet, in the mean of a stride.
 constexpr double kHeelShare = 0.25, kBallShare = 0.75;  // Of the sole: COP behind or ahead.
 
 Eigen::Vector3d Up(double z) { return {0, 0, z}; }
@@ -66,8 +66,7 @@ void InsoleWalk::StandUnder(const std::array<HandInput, kHands>& hands) {
     if (!hands[side].valid || !hands[side].p_W_m.allFinite()) return;
     const body::Point fist = body::Fist(reconstruction_.body(), static_cast<int>(side));
     const auto joint = static_cast<std::size_t>(fist.joint);
-    off += 0.5 * (hands[side].p_W_m -
-                  body::Place(fist, output_.R_WJ[joint], output_.p_WJ_m[joint]))
+    off += 0.5 * (hands[side].p_W_m - body::Place(fist, output_.R_WJ[joint], output_.p_WJ_m[joint]))
                      .head<2>();
   }
   for (Foot& foot : feet_) foot.place_m += off;
@@ -107,8 +106,8 @@ Known::Foot InsoleWalk::Swinging(std::size_t f) const {
   Eigen::Vector2d place = feet_[f].place_m - frame_m_;
   place.x() = kHalfStepS * (2 * swung - 1) * frame_mps_.x();
   const Eigen::Vector3d at = Flat(place) + Up(kSwingLiftM);
-  return {at + geometry.R_WF * geometry.ankle_F_m, at + geometry.R_WF * geometry.toe_F_m,
-          kSwingSdM, kSwingSdM};
+  return {at + geometry.R_WF * geometry.ankle_F_m, at + geometry.R_WF * geometry.toe_F_m, kSwingSdM,
+          kSwingSdM};
 }
 
 Inputs InsoleWalk::InMovingFrame(const InsoleInputs& inputs) const {
@@ -130,8 +129,7 @@ Inputs InsoleWalk::InMovingFrame(const InsoleInputs& inputs) const {
   if (!reconstruction_.output().calibrated) return out;
   out.known.feet.emplace();
   for (std::size_t f = 0; f < momentum::kFeet; ++f)
-    (*out.known.feet)[f] =
-        feet_[f].contact.contact() ? Carrying(f, inputs.feet[f]) : Swinging(f);
+    (*out.known.feet)[f] = feet_[f].contact.contact() ? Carrying(f, inputs.feet[f]) : Swinging(f);
   return out;
 }
 

@@ -27,10 +27,10 @@ struct InsoleInputs {
 /// The reconstruction of somebody who walks away in shoes with cells (the paper's section 8). Cells
 /// do not tell where they are: a foot that carries stays where it landed, and it lands half a step
 /// ahead of the body, which the hands tell, at the side where the reconstructed pose has it. The
-/// load's place in the sole says when heel or toes may be up. Everything happens in a frame that follows the feet smoothly, so that
-/// what was learned of people in place holds; to the laws of motion it is as good as W.
-/// The person looks along W's x axis. Best mode,
-/// without its momentum. A value that can be copied.
+/// load's place in the sole says when heel or toes may be up. Everything happens in a frame that
+/// follows the feet smoothly, so that what was learned of people in place holds; to the laws of
+/// motion it is as good as W. The person looks along W's x axis. Best mode, without its momentum. A
+/// value that can be copied.
 class InsoleWalk {
  public:
   static Result<InsoleWalk> Create(const body::Body& body, const Models& models,

@@ -113,8 +113,8 @@ Result<void> ReadRegression(const NamedModel& named, Models& models) {
   }
   models.regression = {parts[1].values.col(0), parts[2].values.col(0), parts[3].values,
                        parts[4].values.col(0)};
-  models.rest = ToBasis(models.basis.mean, parts[0].values.col(0), parts[5].values,
-                        parts[6].values.col(0));
+  models.rest =
+      ToBasis(models.basis.mean, parts[0].values.col(0), parts[5].values, parts[6].values.col(0));
   if (models.rest.size() == 0 || !(models.root_height_m > 0)) {
     return InvalidData(named.origin + ": its regression has no error, or its people no height");
   }
@@ -152,16 +152,17 @@ Result<Models> MakeModels(const std::vector<NamedModel>& models) {
     if ((kind == "basis" || kind == "pose") && !made.dofs.empty()) {
       return UsageError(named.origin + ": a pose model brings its basis; give one of the two");
     }
-    const auto read = kind == "basis"  ? ReadBasis(named, made)
-                      : kind == "pose" ? ReadRegression(named, made)
-                      : kind == "com"
-                          ? ReadNetworks(named, made)
-                          : Result<void>(InvalidData(named.origin + ": a model of kind " + kind +
-                                                     "; the pose engine takes basis, pose and com"));
+    const auto read =
+        kind == "basis"  ? ReadBasis(named, made)
+        : kind == "pose" ? ReadRegression(named, made)
+        : kind == "com"  ? ReadNetworks(named, made)
+                         : Result<void>(InvalidData(named.origin + ": a model of kind " + kind +
+                                                    "; the pose engine takes basis, pose and com"));
     if (!read) return read.error();
   }
   if (made.dofs.empty()) {
-    return UsageError("no model of kind pose or basis: train one with footing-train pose or footing-train basis");
+    return UsageError(
+        "no model of kind pose or basis: train one with footing-train pose or footing-train basis");
   }
   return made;
 }

@@ -29,13 +29,14 @@ struct Models {
   /// errors, about the mean of `basis`. Where the model has them (kind "pose").
   PoseRegression regression;
   pose::PoseBasis rest;
-  std::vector<std::string> dofs;          ///< Of the basis: the layout of the bodies that it fits.
-  std::string origin;                     ///< File of the basis.
+  std::vector<std::string> dofs;  ///< Of the basis: the layout of the bodies that it fits.
+  std::string origin;             ///< File of the basis.
   /// Next C_x and C_y (section 4.2), where there are such networks.
   std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
 };
 
-/// At most one model of each kind: "basis" or "pose" is necessary, "com" is not. Errors name the file.
+/// At most one model of each kind: "basis" or "pose" is necessary, "com" is not. Errors name the
+/// file.
 Result<Models> MakeModels(const std::vector<NamedModel>& models);
 
 }  // namespace footing::reconstruction

@@ -81,7 +81,7 @@ struct BestConstants {
   double com_sd_m = 0.015;  ///< Of the masses, beside what the filters say.
   double angular_sd = 3;    ///< kg m^2/s.
   double prior_weight = 1;
-  double smooth_weight = 2;  ///< At 60 Hz.
+  double smooth_weight = 2;           ///< At 60 Hz.
   double regressed_prior_weight = 1;  ///< The same about the regression's pose.
   double regressed_smooth_weight = 2;
   FilterConstants filter;
