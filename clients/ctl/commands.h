@@ -41,5 +41,6 @@ void AddPairCommand(CLI::App& app, Shared& shared);        ///< pair
 void AddSetupCommand(CLI::App& app, Shared& shared);       ///< setup
 void AddLayoutCommand(CLI::App& app, Shared& shared);      ///< layout
 void AddAcceptanceCommand(CLI::App& app, Shared& shared);  ///< acceptance
+void AddPoseCommands(CLI::App& app, Shared& shared);       ///< t-pose, subject
 
 }  // namespace footing::ctl

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddSetupCommand(*app, shared);
   footing::ctl::AddLayoutCommand(*app, shared);
   footing::ctl::AddAcceptanceCommand(*app, shared);
+  footing::ctl::AddPoseCommands(*app, shared);
   for (CLI::App* command : app->get_subcommands({})) {
     command->footer(command->get_footer() +
                     "\nAlso: --json and --connect, as in footing-ctl --help.");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "clients/log/export_bvh.h"
 #include "clients/log/export_csv.h"
 #include "clients/log/record.h"
 #include "common/cli/cli.h"
@@ -45,10 +46,24 @@ Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::str
                       {"duration_s", report->duration_s}};
 }
 
+Result<ordered_json> RunBvh(const std::string& file, const std::string& folder, bool replace) {
+  const auto motions = ExportBvh(file, folder, replace);
+  if (!motions) return motions.error();
+  ordered_json out{{"file", file}, {"format", "bvh"}, {"files", ordered_json::array()}};
+  for (const ExportedMotion& motion : *motions) {
+    out["files"].push_back({{"path", motion.path},
+                            {"subject", motion.subject},
+                            {"frames", motion.frames},
+                            {"rate_hz", motion.rate_hz}});
+  }
+  return out;
+}
+
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
                                const std::string& folder, bool replace) {
+  if (format == "bvh") return RunBvh(file, folder, replace);
   if (format != "csv") {
-    return UsageError("the format " + format + " is not built; built are: csv");
+    return UsageError("the format " + format + " is not built; built are: csv, bvh");
   }
   const auto files = ExportCsv(file, folder, replace);
   if (!files) return files.error();
@@ -113,8 +128,9 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   const auto folder = std::make_shared<std::string>();
   const auto replace = std::make_shared<bool>(false);
   command->add_option("FILE", *file, "The recording")->required();
-  command->add_option("--format", *format, "csv")->required();
-  command->add_option("--out", *folder, "The folder for one file a topic")->required();
+  command->add_option("--format", *format, "csv, or bvh (reconstructed bodies)")->required();
+  command->add_option("--out", *folder, "The folder for one file a topic, or a subject")
+      ->required();
   command->add_flag("--force", *replace, "Overwrite existing files");
   command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *replace), shared); });
 }

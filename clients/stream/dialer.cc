@@ -1,5 +1,6 @@
 #include "clients/stream/dialer.h"
 
+#include <algorithm>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "common/transport/framed_connection.h"
 #include "common/transport/socket.h"
 #include "common/units/units.h"
+#include "common/wire/wire.h"
 #include "footing/v1/device.pb.h"
 
 namespace footing::stream_client {
@@ -21,17 +23,18 @@ constexpr std::uint32_t kMaxEnvelopeBytes = 1024;
 
 class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Implementation> {
  public:
-  Implementation(boost::asio::io_context& io, DialerOptions options, std::vector<StandIn> devices,
+  Implementation(boost::asio::io_context& io, DialerOptions options, Plan plan,
                  std::function<void()> on_end)
       : io_(io),
         options_(std::move(options)),
+        duration_s_(plan.duration_s),
         on_end_(std::move(on_end)),
         redial_(io),
-        devices_(std::move(devices)) {
-    for (std::size_t i = 0; i < devices_.size(); ++i) {
+        devices_(std::move(plan.devices)),
+        fresh_tellings_(std::move(plan.tellings)) {
+    sequences_.assign(devices_.size(), 0);
+    for (std::size_t i = 0; i < devices_.size() + fresh_tellings_.size(); ++i)
       clocks_.push_back(std::make_unique<boost::asio::steady_timer>(io));
-      sequences_.push_back(0);
-    }
   }
 
   void Dial() {
@@ -94,6 +97,9 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
       devices_[slot].Restart();
       Schedule(slot);
     }
+    tellings_ = fresh_tellings_;
+    told_.assign(tellings_.size(), 0);
+    for (std::size_t i = 0; i < tellings_.size(); ++i) ScheduleTelling(i);
   }
 
   void OnClose(const std::string& reason) {
@@ -156,7 +162,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   }
 
   void Deliver(std::size_t slot, const StandIn::Arrival& arrival) {
-    if (options_.duration_s > 0 && arrival.arrives_s >= options_.duration_s) {
+    if (duration_s_ > 0 && arrival.arrives_s >= duration_s_) {
       if (!ended_) on_end_();
       ended_ = true;
       return;
@@ -165,6 +171,36 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
       SendReport(slot, report, start_ns_ + SecondsToNanoseconds(arrival.sampled_s));
     }
     Schedule(slot);
+  }
+
+  void ScheduleTelling(std::size_t index) {
+    const double due_s = static_cast<double>(told_[index]) / tellings_[index].rate_hz;
+    auto& timer = *clocks_[devices_.size() + index];
+    timer.expires_at(start_ + std::chrono::nanoseconds(SecondsToNanoseconds(due_s)));
+    timer.async_wait([weak = weak_from_this(), index, due_s](boost::system::error_code error) {
+      const auto self = weak.lock();
+      if (self && !error && self->connection_ && !self->stopped_) self->Tell(index, due_s);
+    });
+  }
+
+  /// Sends what was so at `due_s`; it is as old as this comes late.
+  void Tell(std::size_t index, double due_s) {
+    Telling& telling = tellings_[index];
+    const std::int64_t age_ns =
+        std::max<std::int64_t>(0, clock::MonotonicNs() - start_ns_ - SecondsToNanoseconds(due_s));
+    v1::DeviceEnvelope envelope;
+    if (telling.hands) {
+      stream::HandFrame frame = telling.hands(due_s);
+      frame.age_ns = age_ns;
+      *envelope.mutable_hand_frame() = wire::ToProto(frame);
+    } else {
+      stream::ReferenceFrame frame = telling.reference(due_s);
+      frame.age_ns = age_ns;
+      *envelope.mutable_reference_frame() = wire::ToProto(frame);
+    }
+    Send(envelope);
+    ++told_[index];
+    ScheduleTelling(index);
   }
 
   void SendReport(std::size_t slot, const device_models::Report& report, std::int64_t true_ns,
@@ -185,9 +221,13 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
 
   boost::asio::io_context& io_;
   const DialerOptions options_;
+  const double duration_s_;  // Of motion; 0 goes on until stopped.
   const std::function<void()> on_end_;
   boost::asio::steady_timer redial_;
   std::vector<StandIn> devices_;
+  const std::vector<Telling> fresh_tellings_;
+  std::vector<Telling> tellings_;
+  std::vector<std::uint64_t> told_;  // How often each was.
   std::vector<std::unique_ptr<boost::asio::steady_timer>> clocks_;
   std::chrono::steady_clock::time_point start_;
   std::vector<std::uint64_t> sequences_;
@@ -198,9 +238,9 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   bool ended_ = false;
 };
 
-Dialer::Dialer(boost::asio::io_context& io, DialerOptions options, std::vector<StandIn> devices,
+Dialer::Dialer(boost::asio::io_context& io, DialerOptions options, Plan plan,
                std::function<void()> on_end)
-    : implementation_(std::make_shared<Implementation>(io, std::move(options), std::move(devices),
+    : implementation_(std::make_shared<Implementation>(io, std::move(options), std::move(plan),
                                                        std::move(on_end))) {}
 
 Dialer::~Dialer() = default;

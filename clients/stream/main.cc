@@ -1,6 +1,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 
+#include "clients/stream/boards_command.h"
 #include "clients/stream/dialer.h"
 #include "clients/stream/plan.h"
 #include "common/cli/cli.h"
@@ -26,8 +27,8 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
     signals.cancel();
   };
   dialer = std::make_unique<stream_client::Dialer>(
-      io, stream_client::DialerOptions{*to, common.rate_scale, plan->duration_s},
-      std::move(plan->devices), [&] { end("the motion has ended"); });
+      io, stream_client::DialerOptions{*to, common.rate_scale}, std::move(plan).value(),
+      [&] { end("the motion has ended"); });
   signals.async_wait([&](boost::system::error_code error, int) {
     if (!error) end("stopped");
   });
@@ -44,7 +45,9 @@ int main(int argc, char** argv) {
                   "Stands in for the devices, over a socket, at the level of raw HID reports.",
                   "  footing-stream user --script demo --interface wrist\n"
                   "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
-                  "  footing-stream corners --left board.csv --link poor --seconds 60\n");
+                  "  footing-stream corners --left board.csv --link poor --seconds 60\n"
+                  "  footing-stream boards --motion demo --hands move\n"
+                  "  footing-stream boards --motion 14_14.amc --skeleton 14.asf --place-boards\n");
   stream_client::Common common;
   bool quiet = false;
   app->add_option("--to", common.to, "footingd's device socket: unix:PATH or tcp:HOST:PORT");
@@ -73,19 +76,18 @@ int main(int argc, char** argv) {
     recorded->add_option("--right", right, "File of the right device");
   }
   accel->add_option("--rate-hz", rate_hz, "Rows a second")->required();
-  auto* boards = app->add_subcommand("boards", "Not built yet")->group("");
+  stream_client::BoardsOptions under;
+  auto* boards = stream_client::AddBoardsCommand(*app, under);
   auto* replay = app->add_subcommand("replay", "Not built yet")->group("");
-  for (auto* absent : {boards, replay}) absent->fallthrough(false)->prefix_command();
+  replay->fallthrough(false)->prefix_command();
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   log::Start("footing-stream", quiet);
 
-  for (auto* absent : {boards, replay}) {
-    if (*absent) {
-      return cli::Report(
-          UsageError(absent->get_name() + " is not built; there are: user, accel, corners"));
-    }
+  if (*replay) {
+    return cli::Report(UsageError("replay is not built; there are: user, accel, corners, boards"));
   }
   if (*user) return Run(stream_client::PlanUser(script, interface, common, ports), common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
+  if (*boards) return Run(stream_client::PlanBoards(under, common), common);
   return Run(stream_client::PlanCorners(left, right, common), common);
 }

@@ -25,26 +25,6 @@ constexpr std::size_t kMaxRecordingBytes = 256u << 20;
 /// How fast a person changes from one motion to the next.
 constexpr double kBlendS = 0.15;
 
-Result<LinkQuality> ParseLink(const std::string& name) {
-  if (const auto quality = device_models::LinkNamed(name)) return *quality;
-  return UsageError("--link " + name + ": there are ideal, good and poor");
-}
-
-/// Seeds of one device, so that no two devices of a run share their random numbers.
-std::uint64_t DeviceSeed(const Common& common, std::uint64_t device) {
-  return common.seed * 1000 + device;
-}
-
-StandIn MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device, DeviceRole role,
-                    StandIn::WiimoteMotion motion, const Ports& ports = {}) {
-  const std::uint64_t seed = DeviceSeed(common, device);
-  device_models::Wiimote wiimote(seed);
-  if (ports.motion_plus) wiimote.Plug(device_models::Accessory::kMotionPlus, 0);
-  if (ports.nunchuk) wiimote.Plug(device_models::Accessory::kNunchuk, 0);
-  return {std::move(wiimote), std::move(motion), role,
-          device_models::WiimoteLink(link, seed + 500)};
-}
-
 using Force = std::function<Eigen::Vector3d(double t_s)>;
 
 /// What a real accelerometer adds to a made motion.
@@ -184,6 +164,25 @@ Plan PlanJoystick(const std::vector<synthetic::Segment>& segments, LinkQuality l
 }
 
 }  // namespace
+
+Result<LinkQuality> ParseLink(const std::string& name) {
+  if (const auto quality = device_models::LinkNamed(name)) return *quality;
+  return UsageError("--link " + name + ": there are ideal, good and poor");
+}
+
+std::uint64_t DeviceSeed(const Common& common, std::uint64_t device) {
+  return common.seed * 1000 + device;
+}
+
+StandIn MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device, DeviceRole role,
+                    StandIn::WiimoteMotion motion, const Ports& ports) {
+  const std::uint64_t seed = DeviceSeed(common, device);
+  device_models::Wiimote wiimote(seed);
+  if (ports.motion_plus) wiimote.Plug(device_models::Accessory::kMotionPlus, 0);
+  if (ports.nunchuk) wiimote.Plug(device_models::Accessory::kNunchuk, 0);
+  return {std::move(wiimote), std::move(motion), role,
+          device_models::WiimoteLink(link, seed + 500)};
+}
 
 Result<Plan> PlanUser(const std::string& script, const std::string& interface, const Common& common,
                       const Ports& ports) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "clients/stream/stand_in.h"
 #include "common/result/result.h"
+#include "common/stream/hands.h"
 
 namespace footing::stream_client {
 
@@ -24,9 +26,18 @@ struct Ports {
   bool nunchuk = false;
 };
 
+/// What is told at a rate without a device. One of the two functions is set; times are seconds
+/// since the motion began and go forward. A copy begins anew.
+struct Telling {
+  double rate_hz = 60;
+  std::function<stream::HandFrame(double t_s)> hands;
+  std::function<stream::ReferenceFrame(double t_s)> reference;
+};
+
 /// Stand-ins and how long their motion lasts (0: without end).
 struct Plan {
   std::vector<StandIn> devices;
+  std::vector<Telling> tellings;
   double duration_s = 0;
 };
 
@@ -43,5 +54,13 @@ Result<Plan> PlanAccelerations(const std::string& left, const std::string& right
 
 /// One or two boards that feel recorded corners: CSV `time_s,tl_kg,tr_kg,bl_kg,br_kg`.
 Result<Plan> PlanCorners(const std::string& left, const std::string& right, const Common& common);
+
+/// What every plan is made with: the link that a flag names, seeds so that no two devices of a run
+/// share their random numbers, a Wiimote with what is in its port.
+Result<device_models::LinkQuality> ParseLink(const std::string& name);
+std::uint64_t DeviceSeed(const Common& common, std::uint64_t device);
+StandIn MakeWiimote(const Common& common, device_models::LinkQuality link, std::uint64_t device,
+                    stream::DeviceRole role, StandIn::WiimoteMotion motion,
+                    const Ports& ports = {});
 
 }  // namespace footing::stream_client

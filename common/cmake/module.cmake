@@ -79,13 +79,26 @@ function(add_module name)
     add_library(${name} INTERFACE)
     set(scope INTERFACE)
   endif()
-  target_sources(${name} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
-                 FILES ${arg_HEADERS})
+  # A header that a source of its name includes first has been compiled alone there (check_includes.py sees to the order); only
+  # the others need it done for them.
+  set(with_source "")
+  set(without_source ${arg_HEADERS})
+  string(REPLACE ".cc" ".h" sourced "${arg_SOURCES}")
+  foreach(header IN LISTS arg_HEADERS)
+    if(header IN_LIST sourced)
+      list(APPEND with_source ${header})
+      list(REMOVE_ITEM without_source ${header})
+    endif()
+  endforeach()
+  target_sources(${name} ${scope}
+                 FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${with_source}
+                 FILE_SET without_source TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${without_source})
   target_link_libraries(${name} ${scope} ${public_links})
   if(arg_SOURCES)
     target_link_libraries(${name} PRIVATE ${private_links} footing_warnings)
   endif()
   set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON
+                        INTERFACE_HEADER_SETS_TO_VERIFY without_source
                         MODULE_FOLDER "${folder}" MODULE_PURE "${arg_PURE}")
 
   string(REPLACE ";" " " public "${arg_DEPS}")

@@ -1,272 +1,19 @@
 #include "common/motion/asf.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <optional>
+#include <string>
 #include <utility>
 
 #include "common/body/y_up.h"
-#include "common/motion/text.h"
-#include "common/units/units.h"
+#include "common/motion/asf_text.h"
 
 namespace footing::motion {
 namespace {
 
 using body::Axis;
+using Bone = AsfText::Bone;
 
 constexpr double kInchM = 0.0254;
-/// Lengths of one bone and of units that make no sense beyond.
-constexpr double kMostLength = 1e6;
-
-struct Bone {
-  std::string name;
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  double length = 0;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-  std::string axis_order = "XYZ";
-  std::vector<Axis> dofs;  ///< In the file's axes and order.
-  std::vector<std::pair<double, double>> limits;
-};
-
-struct Units {
-  double length = 1;
-  double radians = kPi / 180;
-};
-
-/// An ASF file section by section; the parse functions stop at the line after theirs.
-class Parser {
- public:
-  Parser(std::string_view text, const std::string& file) : lines_(text, file) {}
-
-  Result<void> Run() {
-    Advance();
-    bool any = false;
-    while (line_) {
-      std::string_view rest = *line_;
-      const std::string_view section = TakeWord(rest);
-      if (section.empty() || section[0] != ':') return Fault("expected a section such as :root");
-      Advance();
-      any = true;
-      Result<void> done;
-      if (section == ":units") done = ParseUnits();
-      if (section == ":root") done = ParseRoot();
-      if (section == ":bonedata") done = ParseBones();
-      if (section == ":hierarchy") done = ParseHierarchy();
-      if (!done) return done.error();
-      while (line_ && Trim(*line_)[0] != ':') Advance();  // :documentation and the like.
-    }
-    if (!any || bones.empty()) return Fault("no ASF file: it has no :bonedata");
-    return {};
-  }
-
-  Units units;
-  std::vector<Bone> bones;
-  std::map<std::string, std::string, std::less<>> parents;
-  std::vector<std::pair<std::string, std::string>> links;  ///< Parent, child, as they stand.
-  std::string root_axis = "XYZ";
-  std::vector<std::string> root_order = {"TX", "TY", "TZ", "RX", "RY", "RZ"};
-  Eigen::Vector3d root_position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d root_orientation = Eigen::Vector3d::Zero();
-
-  Error Fault(const std::string& message) const { return lines_.Fault(message); }
-
- private:
-  void Advance() {
-    do {
-      line_ = lines_.NextFull();
-    } while (line_ && Trim(*line_)[0] == '#');
-  }
-  bool InSection() const { return line_ && Trim(*line_)[0] != ':'; }
-
-  Result<double> Number(std::string_view& line, const std::string& of) {
-    const std::string_view word = TakeWord(line);
-    const auto number = ToNumber(word);
-    if (number && std::abs(*number) <= kMostLength) return *number;
-    return Fault("expected a number of " + of + ", found " + Quoted(word));
-  }
-  Result<Eigen::Vector3d> Vector(std::string_view& line, const std::string& of) {
-    Eigen::Vector3d vector;
-    for (int i = 0; i < 3; ++i) {
-      const auto number = Number(line, of);
-      if (!number) return number.error();
-      vector(i) = *number;
-    }
-    return vector;
-  }
-  Result<std::string> AxisOrder(std::string_view& line) {
-    std::string order(TakeWord(line));
-    std::string sorted = order;
-    std::sort(sorted.begin(), sorted.end());
-    if (sorted != "XYZ")
-      return Fault("expected an order of axes such as XYZ, found " + Quoted(order));
-    return order;
-  }
-
-  Result<void> ParseUnits() {
-    for (; InSection(); Advance()) {
-      std::string_view rest = *line_;
-      const std::string_view key = TakeWord(rest);
-      if (key == "length") {
-        const auto number = Number(rest, "length");
-        if (!number) return number.error();
-        if (!(*number > 1e-6)) return Fault("the unit of length must be positive");
-        units.length = *number;
-      } else if (key == "angle") {
-        const std::string_view unit = TakeWord(rest);
-        if (unit != "deg" && unit != "rad") return Fault("expected angle deg or rad");
-        units.radians = unit == "deg" ? kPi / 180 : 1;
-      }
-    }
-    return {};
-  }
-
-  Result<void> ParseRoot() {
-    for (; InSection(); Advance()) {
-      std::string_view rest = *line_;
-      const std::string_view key = TakeWord(rest);
-      if (key == "order") {
-        root_order.clear();
-        for (auto word = TakeWord(rest); !word.empty(); word = TakeWord(rest)) {
-          root_order.emplace_back(word);
-        }
-        auto sorted = root_order;
-        std::sort(sorted.begin(), sorted.end());
-        if (sorted != std::vector<std::string>{"RX", "RY", "RZ", "TX", "TY", "TZ"}) {
-          return Fault("expected TX TY TZ RX RY RZ in some order");
-        }
-      } else if (key == "axis") {
-        auto order = AxisOrder(rest);
-        if (!order) return order.error();
-        root_axis = *std::move(order);
-      } else if (key == "position" || key == "orientation") {
-        const auto vector = Vector(rest, "the root's " + std::string(key));
-        if (!vector) return vector.error();
-        (key == "position" ? root_position : root_orientation) = *vector;
-      }
-    }
-    return {};
-  }
-
-  Result<void> ParseBones() {
-    while (InSection()) {
-      if (Trim(*line_) != "begin") return Fault("expected 'begin' of a bone");
-      Advance();
-      if (bones.size() >= kMostJoints) {
-        return Fault("more than " + std::to_string(kMostJoints) + " bones");
-      }
-      Bone bone;
-      for (; InSection() && Trim(*line_) != "end"; Advance()) {
-        const auto done = ParseBoneLine(*line_, bone);
-        if (!done) return done.error();
-      }
-      if (!InSection()) return Fault("bone " + Quoted(bone.name) + " has no 'end'");
-      if (bone.name.empty() || bone.name == "root") return Fault("a bone without a name");
-      for (const Bone& other : bones) {
-        if (other.name == bone.name) return Fault("a second bone " + Quoted(bone.name));
-      }
-      if (bone.limits.size() > bone.dofs.size()) {
-        return Fault("bone " + bone.name + " has more limits than dof");
-      }
-      bones.push_back(std::move(bone));
-      Advance();
-    }
-    return {};
-  }
-
-  Result<void> ParseBoneLine(std::string_view line, Bone& bone) {
-    std::string_view rest = line;
-    const std::string_view key = TakeWord(rest);
-    if (key == "name") {
-      bone.name = std::string(Trim(rest));
-    } else if (key == "direction") {
-      const auto vector = Vector(rest, "direction");
-      if (!vector) return vector.error();
-      bone.direction = *vector;
-    } else if (key == "length") {
-      const auto number = Number(rest, "length");
-      if (!number) return number.error();
-      bone.length = *number;
-    } else if (key == "axis") {
-      const auto vector = Vector(rest, "axis");
-      if (!vector) return vector.error();
-      bone.axis = *vector;
-      auto order = AxisOrder(rest);
-      if (!order) return order.error();
-      bone.axis_order = *std::move(order);
-    } else if (key == "dof") {
-      return ParseDofs(rest, bone);
-    } else if (key == "limits" || key.substr(0, 1) == "(") {
-      return ParseLimit(key == "limits" ? rest : line, bone);
-    }
-    return {};  // id, bodymass, cofmass.
-  }
-
-  Result<void> ParseDofs(std::string_view rest, Bone& bone) {
-    for (auto word = TakeWord(rest); !word.empty(); word = TakeWord(rest)) {
-      const bool rotation = word.size() == 2 && (word[0] == 'r' || word[0] == 'R');
-      const auto axis = rotation ? std::string_view("xyz").find(static_cast<char>(word[1] | 0x20))
-                                 : std::string_view::npos;
-      if (axis == std::string_view::npos) {
-        return Fault("bone " + bone.name + ": expected dof rx, ry or rz, found " + Quoted(word) +
-                     " (bones that slide or stretch are not taken)");
-      }
-      const auto dof = static_cast<Axis>(axis);
-      if (std::find(bone.dofs.begin(), bone.dofs.end(), dof) != bone.dofs.end()) {
-        return Fault("bone " + bone.name + ": dof " + std::string(word) + " stands twice");
-      }
-      bone.dofs.push_back(dof);
-    }
-    return {};
-  }
-
-  Result<void> ParseLimit(std::string_view text, Bone& bone) {
-    std::string plain(text);
-    for (char& c : plain) {
-      if (c == '(' || c == ')' || c == ',') c = ' ';
-    }
-    std::string_view rest = plain;
-    while (!Trim(rest).empty()) {
-      double limits[2];
-      for (int i = 0; i < 2; ++i) {
-        const std::string_view word = TakeWord(rest);
-        const auto number = ToNumber(word);
-        const bool open = EqualsIgnoringCase(word, "inf") || EqualsIgnoringCase(word, "-inf");
-        if (!number && !open) return Fault("expected limits '(LOW HIGH)', found " + Quoted(text));
-        limits[i] = number ? *number * units.radians : (i == 0 ? -1 : 1) * body::kUnlimited;
-      }
-      if (!(limits[0] <= limits[1])) return Fault("limits " + Quoted(text) + " are the wrong way");
-      bone.limits.emplace_back(limits[0], limits[1]);
-    }
-    return {};
-  }
-
-  Result<void> ParseHierarchy() {
-    for (; InSection(); Advance()) {
-      std::string_view rest = *line_;
-      const std::string parent(TakeWord(rest));
-      if (parent == "begin" || parent == "end") continue;
-      if (parent != "root" && !Known(parent)) return Fault("no bone " + Quoted(parent));
-      for (auto word = TakeWord(rest); !word.empty(); word = TakeWord(rest)) {
-        const std::string child(word);
-        if (!Known(child)) return Fault("no bone " + Quoted(child));
-        if (!parents.emplace(child, parent).second) {
-          return Fault("bone " + child + " has two parents");
-        }
-        links.emplace_back(parent, child);
-      }
-    }
-    return {};
-  }
-
-  bool Known(std::string_view name) const {
-    return std::any_of(bones.begin(), bones.end(),
-                       [name](const Bone& bone) { return bone.name == name; });
-  }
-
-  Lines lines_;
-  std::optional<std::string_view> line_;
-};
 
 Axis FileAxis(char letter) { return static_cast<Axis>((letter | 0x20) - 'x'); }
 
@@ -282,7 +29,7 @@ Eigen::Matrix3d InOrder(const Eigen::Vector3d& angles_rad, const std::string& or
 
 class Assembly {
  public:
-  Assembly(const Parser& parsed, double unit_m) : parsed_(parsed), unit_m_(unit_m) {
+  Assembly(const AsfText& parsed, double unit_m) : parsed_(parsed), unit_m_(unit_m) {
     body::Joint root;
     root.name = "root";
     root.rotations = {{Axis::kZ}, {Axis::kX}, {Axis::kY}};
@@ -337,7 +84,7 @@ class Assembly {
     bone_of_joint.push_back(nullptr);
   }
 
-  const Parser& parsed_;
+  const AsfText& parsed_;
   double unit_m_;
 };
 
@@ -345,9 +92,9 @@ class Assembly {
 
 Result<AsfSkeleton> ParseAsf(std::string_view text, const std::string& file,
                              const AsfOptions& options) {
-  Parser parsed(text, file);
-  const auto done = parsed.Run();
-  if (!done) return done.error();
+  const auto read = ParseAsfText(text, file);
+  if (!read) return read.error();
+  const AsfText& parsed = *read;
   AsfSkeleton asf;
   asf.unit_m = options.unit_m > 0 ? options.unit_m : kInchM / parsed.units.length;
   asf.radians_per_angle = parsed.units.radians;

@@ -22,6 +22,15 @@ struct BoardLayout {
   std::string preset;  ///< "one_foot_each", "side_by_side", "single", "custom"; empty: none set.
 };
 
+/// Plate of a board: its long and its short side, and how high its surface is.
+inline constexpr double kPlateLongM = 0.511;
+inline constexpr double kPlateShortM = 0.316;
+inline constexpr double kPlateHeightM = 0.053;
+
+/// Where boards lie that nobody has laid out: one foot each, long sides fore and aft, power buttons
+/// outwards, 2 cm apart.
+BoardLayout DefaultLayout();
+
 /// One step of the guided set-up: when it was done and how well.
 struct SetupItem {
   std::string name;

@@ -8,8 +8,7 @@
 namespace footing::virtual_sensors {
 namespace {
 
-constexpr double kBoardDepthM = 0.316;  // The short side of its case.
-constexpr double kFullLoadN = 370;      // Half a person: the slow error is told for this load.
+constexpr double kFullLoadN = 370;  // Half a person: the slow error is told for this load.
 
 constexpr std::array<double, 4> kRight{-1, 1, -1, 1};  // Of the corners, in P.
 constexpr std::array<double, 4> kFront{1, 1, -1, -1};
@@ -27,6 +26,11 @@ Eigen::Vector2d Right(const BoardPlace& board) {
 std::array<BoardPlace, kFeet> SideBySide() {
   return {BoardPlace{{0, 0.5 * kBoardDepthM}, 0.5 * kPi},
           BoardPlace{{0, -0.5 * kBoardDepthM}, 0.5 * kPi}};
+}
+
+std::array<BoardPlace, kFeet> OneFootEach(double gap_m) {
+  const double middle_m = 0.5 * (kBoardDepthM + gap_m);
+  return {BoardPlace{{0, middle_m}, -0.5 * kPi}, BoardPlace{{0, -middle_m}, 0.5 * kPi}};
 }
 
 std::array<Eigen::Vector2d, 4> SensorPlaces(const BoardPlace& board) {

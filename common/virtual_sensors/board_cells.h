@@ -16,8 +16,14 @@ struct BoardPlace {
   double yaw_rad = 0;
 };
 
+inline constexpr double kBoardDepthM = 0.316;  ///< The short side of a board's case.
+
 /// Two boards, one under each foot, with their long sides ahead, edge to edge.
 std::array<BoardPlace, kFeet> SideBySide();
+
+/// The layout one_foot_each: their long sides ahead, `gap_m` between them, the origin in the
+/// middle of the gap, their front edges facing each other.
+std::array<BoardPlace, kFeet> OneFootEach(double gap_m);
 
 /// Distances between the sensors (Leach et al. 2014, Sensors 14:18244), plate frame P: x right,
 /// y front.

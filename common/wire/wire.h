@@ -2,6 +2,7 @@
 
 #include "common/stream/character.h"
 #include "common/stream/device.h"
+#include "common/stream/hands.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
 #include "footing/v1/character.pb.h"
@@ -11,7 +12,8 @@
 /// Between the plain structs of common/stream and the messages of the protocol. Enums have the same
 /// numbers on both sides; an unknown number becomes kUnspecified. A number that is not finite
 /// becomes 0 on the way out, so nothing published is ever NaN, and on the way in, where a server
-/// may not be ours; a rotation becomes the identity. Text is made valid UTF-8.
+/// may not be ours; a rotation becomes the identity. Text is made valid UTF-8. HandFrame and
+/// ReferenceFrame come in as they are, with what is not finite: footingd checks and refuses them.
 namespace footing::wire {
 
 v1::Vector3 ToProto(const Eigen::Vector3d& value);
@@ -34,6 +36,10 @@ v1::Track ToProto(const stream::Track& value);
 v1::LinkPose ToProto(const stream::LinkPose& value);
 v1::Contact ToProto(const stream::Contact& value);
 v1::GaitState ToProto(const stream::GaitState& value);
+v1::HandFrame ToProto(const stream::HandFrame& value);
+v1::ReferenceFrame ToProto(const stream::ReferenceFrame& value);
+v1::HandSample ToProto(const stream::HandSample& value);
+v1::ReferencePose ToProto(const stream::ReferencePose& value);
 
 Eigen::Vector3d FromProto(const v1::Vector3& value);
 Eigen::Quaterniond FromProto(const v1::Quaternion& value);
@@ -53,5 +59,9 @@ stream::RigSetup FromProto(const v1::RigSetup& value);
 stream::Skeleton FromProto(const v1::Skeleton& value);
 stream::Track FromProto(const v1::Track& value);
 stream::LinkPose FromProto(const v1::LinkPose& value);
+stream::HandFrame FromProto(const v1::HandFrame& value);
+stream::ReferenceFrame FromProto(const v1::ReferenceFrame& value);
+stream::HandSample FromProto(const v1::HandSample& value);
+stream::ReferencePose FromProto(const v1::ReferencePose& value);
 
 }  // namespace footing::wire

@@ -5,7 +5,8 @@ Usage: check_includes.py SOURCE_ROOT MODULE_TABLE
 The table is written by common/cmake/module.cmake. Checked, in every .h and .cc under a module's
 folder, however deep: a module of ours (with quotes or angle brackets) is named in DEPS (or, from a
 .cc file, PRIVATE_DEPS); a library from outside is named the same way; pure code uses no thread,
-lock, socket, file, log, protobuf or clock; ours are included from the root, with quotes.
+lock, socket, file, log, protobuf or clock; ours are included from the root, with quotes; a .cc
+file begins with the header of its name, which is thereby compiled alone.
 """
 import pathlib
 import re
@@ -86,7 +87,11 @@ def check_file(root, relative, folder, modules, tops):
     # A program's folder may hold a module of the same folder: its names are allowed to each other.
     text = COMMENT.sub("", (root / relative).read_text())
     errors = []
-    for quote, included in INCLUDE.findall(text):
+    own = relative.removesuffix(".cc") + ".h"
+    includes = INCLUDE.findall(text)
+    if relative.endswith(".cc") and (root / own).exists() and [i for _, i in includes[:1]] != [own]:
+        errors.append(f"{relative}: include {own} first, so that it is compiled alone")
+    for quote, included in includes:
         ours = included.split("/")[0] in tops and "/" in included
         if quote == "<" and ours:
             errors.append(f"{relative}: include our own <{included}> with quotes")

@@ -124,6 +124,9 @@ class Includes(unittest.TestCase):
     def test_catching_everything_is_refused(self):
         self.found("daemon/sensor/c/x.cc", "try {} catch (...) {}\n", "catches everything")
 
+    def test_a_source_begins_with_its_own_header(self):
+        self.found("common/a/a.cc", '#include <vector>\n#include "common/a/a.h"\n', "compiled alone")
+
     def test_a_file_in_no_module_is_refused(self):
         self.found("clients/x.cc", "\n", "belongs to no module")
 

@@ -8,7 +8,7 @@ import sys
 
 from harness import Stage, read_ticks
 
-USAGE, FAILURE = 2, 1
+USAGE, FAILURE, INVALID = 2, 1, 4
 
 
 def expect(stage, exit_code, words, program, *arguments):
@@ -40,6 +40,26 @@ def wrong_starts(stage):
            "/nonexistent.csv", "--rate-hz", 100)
     expect(stage, FAILURE, "tracks/no_such_track.json", "footing-sim", "--track", "no_such_track",
            "--listen", f"unix:{stage.folder}/unused.sock")
+
+
+def wrong_motions(stage):
+    def boards(exit_code, words, *arguments):
+        expect(stage, exit_code, words, "footing-stream", "boards", *arguments)
+
+    file = stage.folder / "motion.json"
+    file.write_text('{"keys": [{"seconds": 1}, {"seconds": 1, "left_lift_m": 0.1}]}')
+    boards(INVALID, "key 2: the left foot leaves the ground", "--motion", file)
+    file.write_text('{"keys": ')
+    boards(INVALID, "motion.json", "--motion", file)
+    file = stage.folder / "motion.bvh"
+    file.write_text("HIERARCHY\nROOT x\n{\n")
+    boards(INVALID, "motion.bvh", "--motion", file)
+    boards(USAGE, "demo quiet", "--motion", "dance")
+    boards(USAGE, "none, move and wiimote", "--motion", "quiet", "--hands", "kinect")
+    boards(FAILURE, "/nonexistent.c3d", "--motion", "/nonexistent.c3d")
+    file = stage.folder / "motion.amc"
+    file.write_text(":FULLY-SPECIFIED\n:DEGREES\n")
+    boards(USAGE, "--skeleton", "--motion", file)
 
 
 def garbage(address):
@@ -84,6 +104,7 @@ def disturb_nobody(stage):
 def main(binaries):
     with Stage(binaries) as stage:
         wrong_starts(stage)
+        wrong_motions(stage)
         disturb_nobody(stage)
 
 

@@ -44,6 +44,10 @@ Background::~Background() {
   thread_.join();
 }
 
+void Background::SendToSimulation(v1::Command command) {
+  boost::asio::post(io_, [this, command = std::move(command)] { feed_.SendToSimulation(command); });
+}
+
 void Background::Drain(scene::Show& show) {
   std::vector<scene::LinkReport>& reports = show.model().links;
   reports.resize(links_.size());

@@ -25,6 +25,8 @@ class Background {
 
   /// Render thread: takes in all that has come.
   void Drain(scene::Show& show);
+  /// Sends a command to the simulation, from the io thread.
+  void SendToSimulation(v1::Command command);
   bool stop_asked() const { return stop_.raised(); }
 
  private:

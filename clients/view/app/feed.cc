@@ -47,8 +47,11 @@ std::unique_ptr<transport::Client> Feed::Connect(boost::asio::io_context& io, in
   transport::ClientOptions options;
   options.address = address;
   options.client_name = "footing-view";
-  options.channels = {"status",    "motion", "features",   "boards",
-                      "skeletons", "track",  "characters", "events"};
+  // On the machine itself the keys T and N may command; elsewhere the viewer only looks.
+  const bool local = address.kind == transport::Address::Kind::kUnix;
+  options.role = local ? v1::ROLE_CONTROL : v1::ROLE_VIEW;
+  options.channels = {"status", "motion",     "features", "boards", "skeletons",
+                      "track",  "characters", "events",   "setup",  "reference"};
   transport::ClientHandlers handlers;
   handlers.on_welcome = [this, source, index](const v1::Welcome& welcome) {
     sources_[index].report.server_id = welcome.server_id();
@@ -71,6 +74,22 @@ std::int64_t Feed::OffsetOf(const Source& source) const {
   if (source.same_host) return 0;
   const transport::ClockOffset offset = source.client->clock();
   return offset.valid ? offset.offset_ns : 0;
+}
+
+void Feed::SendToSimulation(const v1::Command& command) {
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    Source& source = sources_[i];
+    if (source.report.server_id != "footing-sim") continue;
+    source.client->Send(command, [this, i](const v1::CommandResult& result) {
+      if (result.ok()) return;
+      scene::Update refusal;
+      refusal.source = static_cast<int>(i);
+      refusal.live = false;
+      refusal.received_ns = refusal.host_ns = clock::MonotonicNs();
+      refusal.notes.push_back({scene::NoteKind::kOther, refusal.host_ns, result.message(), {}});
+      handlers_.on_update(std::move(refusal));
+    });
+  }
 }
 
 void Feed::Start() {

@@ -24,6 +24,8 @@ class Feed {
 
   void Start();
   void Stop();
+  /// Sends a command to every live footing-sim; a refusal comes back as a note.
+  void SendToSimulation(const v1::Command& command);
 
   /// As they stand before the first word of any server.
   static std::vector<scene::LinkReport> InitialReports(

@@ -1,5 +1,6 @@
 #include "clients/view/app/off_screen_view.h"
 #include "clients/view/app/options.h"
+#include "clients/view/app/subjects.h"
 #include "clients/view/app/text_view.h"
 #include "clients/view/app/window.h"
 #include "common/cli/cli.h"
@@ -35,13 +36,14 @@ footing::Result<void> Run(const Options& options) {
 
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp("footing-view",
-                                  "Shows the bird, its track and the health of the devices, live.",
+                                  "Shows the bird and its track, or the reconstructed body, live.",
                                   "  footing-view\n"
                                   "  footing-view --connect tcp:127.0.0.1:4711 --subject\n"
                                   "  footing-view --screenshot bird.png --at 5\n"
+                                  "  footing-view --next-subject p08.json --next-subject p09.json\n"
                                   "  footing-view --text --seconds 30 --json");
   Options options;
-  std::vector<std::string> connect;
+  std::vector<std::string> connect, subjects;
   std::string recording;
   app->add_option("--connect", connect,
                   "unix:PATH or tcp:HOST:PORT, as often as wanted; default "
@@ -59,6 +61,10 @@ int main(int argc, char** argv) {
   app->add_option("--width", options.width, "Pixels")->check(CLI::Range(320, 8192));
   app->add_option("--height", options.height, "Pixels")->check(CLI::Range(180, 8192));
   app->add_flag("--subject", options.subject, "The world alone, without panels");
+  app->add_flag("--overlay-reference", options.overlay_reference,
+                "A stand-in's true pose over the body, not beside it");
+  app->add_option("--next-subject", subjects,
+                  "Subject file (JSON) for the key N; as often as wanted");
   app->add_flag("--forces", options.forces, "Force arrows at the feet");
   app->add_flag("--replay-falls", options.replay_falls,
                 "Show every fall's last 5 s again in slow motion");
@@ -74,6 +80,9 @@ int main(int argc, char** argv) {
   if (const auto resolved = Resolve(connect, options); !resolved) {
     return footing::cli::Report(resolved.error());
   }
+  auto commands = footing::view::SubjectCommands(subjects);
+  if (!commands) return footing::cli::Report(commands.error());
+  options.next_subjects = std::move(commands).value();
   const auto done = Run(options);
   return done ? 0 : footing::cli::Report(done.error());
 }

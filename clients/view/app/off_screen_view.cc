@@ -35,7 +35,7 @@ struct Studio {
     for (;;) {
       background.Drain(show);
       const std::int64_t now_ns = clock::MonotonicNs();
-      scene::Show::Shot shot = show.At(now_ns, false, {options.forces});
+      scene::Show::Shot shot = show.At(now_ns, false, {options.forces, options.overlay_reference});
       if (now_ns >= until_ns || background.stop_asked()) return shot;
       clock::SleepUntil(std::min(until_ns, now_ns + SecondsToNanoseconds(kStepS)));
     }

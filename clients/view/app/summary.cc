@@ -3,6 +3,22 @@
 #include <nlohmann/json.hpp>
 
 namespace footing::view {
+namespace {
+
+void AddPose(const scene::PoseTally& tally, nlohmann::ordered_json& summary) {
+  summary["calibrated"] = tally.calibrated();
+  summary["calibrations"] = tally.calibrations();
+  summary["calibrated_frames"] = tally.calibrated_frames();
+  summary["resets"] = tally.resets();
+  summary["mass_kg"] = tally.mass_kg();
+  summary["compared_frames"] = tally.compared();
+  if (tally.compared() == 0) return;
+  summary["mpjpe_cm"] = tally.mpjpe_cm();
+  summary["wrists_cm"] = tally.wrists_cm();
+  summary["ankles_cm"] = tally.ankles_cm();
+}
+
+}  // namespace
 
 std::string Summary(const scene::Model& model, double seconds) {
   nlohmann::ordered_json gaits = nlohmann::ordered_json::array();
@@ -11,7 +27,7 @@ std::string Summary(const scene::Model& model, double seconds) {
   for (const auto& [name, latencies] : model.tally.response_stages) {
     stages[name] = latencies.QuantileMs(0.95);
   }
-  const nlohmann::ordered_json summary{
+  nlohmann::ordered_json summary{
       {"seconds", seconds},
       {"frames_published", model.tally.frames_published()},
       {"frames_received", model.tally.frames()},
@@ -25,6 +41,7 @@ std::string Summary(const scene::Model& model, double seconds) {
       {"response_stages_p95_ms", stages},
       {"response_without_contact_p95_ms", model.tally.response_without_contact.QuantileMs(0.95)},
       {"simulated", scene::IsSimulated(model)}};
+  if (model.pose_tally.any()) AddPose(model.pose_tally, summary);
   return summary.dump();
 }
 

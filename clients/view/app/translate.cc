@@ -37,6 +37,57 @@ stream::GaitState GaitOf(const v1::GaitState& from) {
   return gait;
 }
 
+scene::BodyFoot FootOf(const v1::BodyFoot& from) {
+  return {from.contact(),
+          from.valid(),
+          wire::FromProto(from.position_m()),
+          wire::FromProto(from.variance_m2()),
+          Finite(from.load_n()),
+          from.cop_valid(),
+          wire::FromProto(from.cop_m()),
+          Finite(from.airborne_s())};
+}
+
+scene::BodyState BodyOf(const v1::BodyState& from) {
+  scene::BodyState body;
+  body.subject = from.subject();
+  body.mode = from.mode();
+  body.calibrated = from.calibrated();
+  body.calibration_progress = Finite(from.calibration_progress());
+  body.calibration_restarts = from.calibration_restarts();
+  body.mass_kg = Finite(from.mass_kg());
+  body.height_m = Finite(from.height_m());
+  body.lag_s = Finite(from.lag_s());
+  body.momentum_valid = from.momentum_valid();
+  body.com_variance_m2 = wire::FromProto(from.com_variance_m2());
+  body.angular_momentum_kgm2ps = wire::FromProto(from.angular_momentum_kgm2ps());
+  for (int i = 0; i < std::min(from.feet_size(), 2); ++i) {
+    body.feet[static_cast<std::size_t>(i)] = FootOf(from.feet(i));
+  }
+  body.resets = from.resets();
+  for (int i = 0; i < std::min(from.link_sd_m_size(), kMaxParts); ++i) {
+    body.link_sd_m.push_back(Finite(from.link_sd_m(i)));
+  }
+  body.note = from.note();
+  body.solve_us = Finite(from.solve_us());
+  for (int i = 0; i < std::min(from.hands_seen_size(), 2); ++i) {
+    body.hands_seen[static_cast<std::size_t>(i)] = from.hands_seen(i);
+  }
+  return body;
+}
+
+scene::ReferencePose ReferenceOf(const v1::ReferencePose& from, std::int64_t received_ns,
+                                 std::int64_t offset_ns) {
+  scene::ReferencePose reference;
+  reference.received_ns = received_ns;
+  reference.sampled_ns = from.sampled_ns() - offset_ns;
+  for (int i = 0; i < std::min(from.positions_m_size(), kMaxParts); ++i) {
+    reference.positions_m.push_back(wire::FromProto(from.positions_m(i)));
+    reference.parents.push_back(i < from.parents_size() ? from.parents(i) : -1);
+  }
+  return reference;
+}
+
 scene::CharacterPose CharacterOf(const v1::Character& from) {
   scene::CharacterPose pose;
   pose.character = from.character();
@@ -55,6 +106,7 @@ scene::CharacterPose CharacterOf(const v1::Character& from) {
   pose.gait = GaitOf(from.gait());
   pose.phase = from.gait().phase();
   pose.simulated_input = from.simulated_input();
+  if (from.has_body()) pose.body = BodyOf(from.body());
   return pose;
 }
 
@@ -109,6 +161,14 @@ void AddSensors(const v1::Tick& tick, std::int64_t offset_ns, scene::Update& upd
   for (const auto& rig : tick.features().rigs()) update.features.push_back(wire::FromProto(rig));
   for (const auto& sample : tick.boards().samples()) {
     update.boards.push_back(wire::FromProto(sample));
+  }
+  if (tick.has_setup()) {
+    update.setup.emplace();
+    for (const auto& rig : tick.setup().rigs()) update.setup->push_back(wire::FromProto(rig));
+  }
+  if (tick.reference().poses_size() > 0) {
+    update.reference =
+        ReferenceOf(*tick.reference().poses().rbegin(), update.received_ns, offset_ns);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "clients/view/app/background.h"
+#include "clients/view/app/subjects.h"
 #include "clients/view/app/summary.h"
 #include "clients/view/render/gl.h"
 #include "clients/view/render/screen.h"
@@ -52,6 +53,9 @@ void OnKey(GLFWwindow* window, int key, int, int action, int) {
   auto& hud = *static_cast<render::HudOptions*>(glfwGetWindowUserPointer(window));
   if (key == GLFW_KEY_F) hud.forces = !hud.forces;
   if (key == GLFW_KEY_P) hud.phases = !hud.phases;
+  if (key == GLFW_KEY_T) hud.t_pose_asked = true;
+  if (key == GLFW_KEY_N) hud.next_subject_asked = true;
+  if (key == GLFW_KEY_O) hud.overlay_reference = !hud.overlay_reference;
   if (key == GLFW_KEY_R) hud.replay_asked = true;
   if (key == GLFW_KEY_SPACE) hud.frozen = !hud.frozen;
   if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
@@ -70,13 +74,19 @@ void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
   if (options.replay_falls) show.ReplayFalls();
   const std::int64_t started_ns = clock::MonotonicNs();
   double passed_s = 0;
+  std::size_t next_subject = 0;
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !background.stop_asked() &&
          (options.seconds <= 0 || passed_s < options.seconds)) {
     glfwPollEvents();
     background.Drain(show);
     const std::int64_t now_ns = clock::MonotonicNs();
     if (std::exchange(hud.replay_asked, false)) show.ToggleReplay(now_ns);
-    const auto shot = show.At(now_ns, hud.frozen, {hud.forces});
+    if (std::exchange(hud.t_pose_asked, false)) background.SendToSimulation(TPoseCommand());
+    if (std::exchange(hud.next_subject_asked, false) && !options.next_subjects.empty()) {
+      background.SendToSimulation(options.next_subjects[next_subject++]);
+      next_subject %= options.next_subjects.size();
+    }
+    const auto shot = show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference});
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -108,6 +118,7 @@ Result<void> RunWindow(const Options& options) {
   render::HudOptions hud;
   hud.hidden = options.subject;
   hud.forces = options.forces;
+  hud.overlay_reference = options.overlay_reference;
   glfwSetWindowUserPointer(window.get(), &hud);
   glfwSetKeyCallback(window.get(), OnKey);
   glfwSetCharCallback(window.get(), OnLetter);

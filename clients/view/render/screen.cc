@@ -44,7 +44,7 @@ void Screen::Draw(const scene::Picture& picture, const scene::Model& model,
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
   const Paint paint{ImGui::GetBackgroundDrawList(), fonts_, scale_};
-  DrawHud(paint, model, frame, now_ns, options, io.DisplaySize);
+  DrawHud(paint, picture, model, frame, now_ns, options, io.DisplaySize);
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }

@@ -79,6 +79,9 @@ void main() {
 std::string PartFragmentText() {
   return SharedText() + R"(
 uniform float u_floor;
+uniform float u_opacity;
+uniform float u_lamp;   // Light that comes from the eye.
+uniform float u_plain;  // 1: its own colour, whatever the light.
 in vec3 v_position;
 in vec3 v_normal;
 in vec3 v_colour;
@@ -95,11 +98,13 @@ void main() {
   vec3 above = vec3(0.44, 0.56, 0.70), below = vec3(0.34, 0.22, 0.15);
   vec3 ambient = mix(below, above, 0.5 + 0.5 * n.z) * near_floor;
   vec3 colour = v_colour * (ambient + kSunLight * lit * lit * 0.75);
+  colour += v_colour * u_lamp * max(dot(n, to_eye), 0.0);
   float rim = pow(1.0 - max(dot(n, to_eye), 0.0), 3.0);
   colour += SkyLight(reflect(-to_eye, n)) * rim * 0.20;
   vec3 half_way = normalize(sun + to_eye);
   colour += kSunLight * v_gloss * pow(max(dot(n, half_way), 0.0), 48.0) * 0.55;
-  o_colour = ToScreen(InFog(colour, distance_squared));
+  colour = mix(colour, v_colour * 1.6, u_plain);
+  o_colour = vec4(ToScreen(InFog(colour, distance_squared)).rgb, u_opacity);
 }
 )";
 }

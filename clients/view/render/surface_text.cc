@@ -60,9 +60,23 @@ void main() {
 std::string SurfaceFragmentText(bool ribbon) {
   if (!ribbon) {
     return SurfaceSharedText() + R"(
+uniform int u_studio;
+// A light floor with a line every half metre, stronger every two.
+vec3 Studio(vec2 p, vec2 pixel) {
+  vec2 small = AwayFromLines(p, 0.5), large = AwayFromLines(p, 2.0);
+  float grid = max(Line(small.x, 0.003, pixel.x), Line(small.y, 0.003, pixel.y)) * 0.35;
+  grid = max(grid, max(Line(large.x, 0.006, pixel.x), Line(large.y, 0.006, pixel.y)) * 0.6);
+  float near = 1.0 / (1.0 + 0.035 * dot(p, p));
+  vec3 colour = mix(vec3(0.20, 0.215, 0.235), vec3(0.285, 0.29, 0.295), near);
+  return mix(colour, vec3(0.46, 0.50, 0.54), grid);
+}
 void main() {
   vec2 p = v_position.xy;
   vec2 pixel = fwidth(p) + 1e-5;
+  if (u_studio != 0) {
+    o_colour = ToScreen(Lit(Studio(p, pixel)));
+    return;
+  }
   // Mown in stripes 5 m wide.
   vec2 stripe = clamp((AwayFromLines(p + 2.5, 10.0) - 2.5) / max(pixel, vec2(0.05)), -0.5, 0.5);
   vec3 colour = mix(vec3(0.150, 0.280, 0.075), vec3(0.190, 0.325, 0.092),

@@ -11,6 +11,10 @@
 namespace footing::render {
 namespace {
 
+constexpr float kStudioLamp = 0.55f;
+constexpr float kGhostOpacity = 0.55f;
+constexpr float kClearOpacity = 0.38f;
+constexpr float kHiddenOpacity = 0.55f;
 constexpr int kShadowPixels = 512;
 // The shadow of a bird falls this far beside it: its middle is 0.9 m high.
 const Eigen::Vector3f kToShadowM(0.45f, -0.60f, 0);
@@ -73,6 +77,7 @@ World::World(Programs programs) : programs_(std::move(programs)) {
   load(ball_, scene::UnitBall(24, 14), false);
   load(bead_, scene::UnitBall(12, 6), false);
   load(rod_, scene::UnitRod(12), true);
+  load(box_, scene::UnitBox(), false);
   LoadSky();
 
   glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
@@ -135,6 +140,48 @@ void World::DrawParts(const Program& program, const scene::PartList& parts, bool
   draw(coarse ? bead_ : ball_, parts.balls);
   draw(bead_, parts.beads);
   draw(rod_, parts.rods);
+  draw(box_, parts.boxes);
+}
+
+void World::DrawGhosts(const scene::PartList& parts, float opacity) {
+  programs_.part.Set("u_opacity", opacity);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  DrawParts(programs_.part, parts, false);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  DrawParts(programs_.part, parts, false);
+  glDisable(GL_BLEND);
+  programs_.part.Set("u_opacity", 1.0f);
+}
+
+void World::DrawClear(const scene::PartList& parts) {
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  programs_.part.Set("u_opacity", kClearOpacity);
+  programs_.part.Set("u_plain", 1.0f);
+  DrawParts(programs_.part, parts, false);
+  programs_.part.Set("u_plain", 0.0f);
+  programs_.part.Set("u_opacity", 1.0f);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+void World::DrawSigns(const scene::PartList& parts) {
+  programs_.part.Set("u_plain", 0.6f);
+  DrawParts(programs_.part, parts, true);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
+  programs_.part.Set("u_opacity", kHiddenOpacity);
+  DrawParts(programs_.part, parts, true);
+  programs_.part.Set("u_opacity", 1.0f);
+  programs_.part.Set("u_plain", 0.0f);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_BLEND);
 }
 
 void World::DrawShadow(const scene::Picture& picture, const Eigen::Vector3f& centre) {
@@ -150,7 +197,7 @@ void World::DrawShadow(const scene::Picture& picture, const Eigen::Vector3f& cen
   programs_.shadow.Use();
   programs_.shadow.Set("u_centre", centre);
   programs_.shadow.Set("u_span", kMarkSpanM);
-  DrawParts(programs_.shadow, picture.birds, true);
+  DrawParts(programs_.shadow, picture.figures, true);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
   glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
 }
@@ -209,6 +256,7 @@ void World::DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& c
       glDrawElements(GL_TRIANGLES, ribbon_.index_count, GL_UNSIGNED_INT, nullptr);
     } else {
       program->Set("u_ground", picture.ground_m);
+      program->Set("u_studio", picture.studio ? 1 : 0);
       glBindVertexArray(nothing_.name());
       glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }
@@ -233,11 +281,18 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   programs_.part.Set("u_clip_from_world", clip_from_world);
   programs_.part.Set("u_eye", eye);
   programs_.part.Set("u_floor", picture.floor_m);
-  DrawParts(programs_.part, picture.birds, false);
+  programs_.part.Set("u_opacity", 1.0f);
+  programs_.part.Set("u_plain", 0.0f);
+  programs_.part.Set("u_lamp", picture.studio ? kStudioLamp : 0.0f);
+  DrawParts(programs_.part, picture.figures, false);
   DrawParts(programs_.part, picture.forces, true);
   DrawSurfaces(picture, clip_from_world);
   DrawSky(eye, clip_from_world);
   DrawMarks(picture, eye, clip_from_world);
+  programs_.part.Use();
+  DrawClear(picture.clear);
+  DrawGhosts(picture.ghosts, kGhostOpacity);
+  DrawSigns(picture.signs);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
 }
@@ -251,7 +306,7 @@ void World::DrawIds(const scene::Picture& picture, int width, int height) {
   programs_.part_id.Use();
   programs_.part_id.Set("u_clip_from_world", ClipFromWorld(picture, width, height));
   programs_.part_id.Set("u_id", static_cast<int>(scene::PartId::kBird));
-  DrawParts(programs_.part_id, picture.birds, true);
+  DrawParts(programs_.part_id, picture.figures, true);
   programs_.part_id.Set("u_id", static_cast<int>(scene::PartId::kForce));
   DrawParts(programs_.part_id, picture.forces, true);
   glDisable(GL_DEPTH_TEST);

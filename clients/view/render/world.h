@@ -10,7 +10,7 @@
 
 namespace footing::render {
 
-/// Draws the world of a picture: birds, track, ground, sky. Needs its OpenGL context current in
+/// Draws the world of a picture: figures, track, ground, sky. Needs its OpenGL context current in
 /// every call.
 class World {
  public:
@@ -49,10 +49,15 @@ class World {
   void DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
                  const Eigen::Matrix4f& clip_from_world);
   void DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& clip_from_world);
+  /// One sees through them, but never into them; `opacity` 0 to 1.
+  void DrawGhosts(const scene::PartList& parts, float opacity);
+  /// They show through what is before them, faintly.
+  void DrawSigns(const scene::PartList& parts);
+  void DrawClear(const scene::PartList& parts);
   void DrawSky(const Eigen::Vector3f& eye, const Eigen::Matrix4f& clip_from_world);
 
   Programs programs_;
-  Shape ball_, bead_, rod_;
+  Shape ball_, bead_, rod_, box_;
   Loaded ribbon_, sky_;
   VertexArray nothing_;  // For shapes that the vertex shader makes up.
   Framebuffer shadow_;

@@ -21,6 +21,14 @@ constexpr double kPlaceRadps = 9.0;
 constexpr double kHeightRadps = 2.5;  // Slow: the picture must not bounce with every step.
 constexpr double kLookAheadRadps = 1.5;
 
+constexpr double kDistanceM = 4.1;
+constexpr double kDistanceBesideM = 4.7;
+constexpr double kSideRad = 0.42;
+constexpr double kEyeHeightM = 1.70;
+constexpr double kTargetHeightM = 0.75;
+constexpr double kFollowS = 1.0;
+constexpr double kNearBoardsM = 0.6;  // So far the camera does not move.
+
 }  // namespace
 
 Eigen::Matrix4f Camera::View() const {
@@ -92,6 +100,26 @@ Camera ChaseCamera::Look() const {
   const Eigen::Vector3d past = (kBehindM * forward - kSidewaysM * left).normalized();
   camera.target_m = at_m + kTargetAheadM * past + look_ahead_.value * (forward + past) / 2 +
                     Eigen::Vector3d(0, 0, kTargetAboveM);
+  return camera;
+}
+
+void FrontCamera::Advance(const Eigen::Vector2d& body_m, bool beside, double dt_s) {
+  const Eigen::Vector2d away_m = body_m.norm() > kNearBoardsM ? body_m : Eigen::Vector2d(0, 0);
+  const Eigen::Vector2d goal_m =
+      away_m + (beside ? 0.42 * kBesideM.head<2>() : Eigen::Vector2d(0, 0));
+  const double goal_distance_m = beside ? kDistanceBesideM : kDistanceM;
+  const double share = placed_ ? 1 - std::exp(-std::clamp(dt_s, 0.0, 1.0) / kFollowS) : 1;
+  placed_ = true;
+  middle_m_ += share * (goal_m - middle_m_);
+  distance_m_ += share * (goal_distance_m - distance_m_);
+}
+
+Camera FrontCamera::Look() const {
+  Camera camera;
+  camera.vertical_field_rad = 0.64;
+  camera.target_m = {middle_m_.x(), middle_m_.y(), kTargetHeightM};
+  camera.eye_m = {middle_m_.x() + distance_m_ * std::cos(kSideRad),
+                  middle_m_.y() + distance_m_ * std::sin(kSideRad), kEyeHeightM};
   return camera;
 }
 

@@ -53,4 +53,20 @@ class ChaseCamera {
   Spring x_, y_;
 };
 
+/// From the front and a little from the side, on the boards' middle; it follows a body that walks
+/// off them. `beside`: there is a second figure.
+class FrontCamera {
+ public:
+  void Advance(const Eigen::Vector2d& body_m, bool beside, double dt_s);
+  Camera Look() const;
+
+ private:
+  bool placed_ = false;
+  Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();
+  double distance_m_ = 0;
+};
+
+/// Where a second figure stands beside the first one: on the floor, not on boards.
+inline const Eigen::Vector3d kBesideM{-0.75, -1.30, -0.053};
+
 }  // namespace footing::scene

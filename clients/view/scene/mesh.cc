@@ -37,6 +37,26 @@ Mesh UnitBall(int slices, int stacks) {
   return mesh;
 }
 
+Mesh UnitBox() {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {-0.5f, 0.5f}) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+      normal[axis] = 2 * side;
+      for (int corner = 0; corner < 4; ++corner) {
+        Eigen::Vector3f p = 0.5f * normal;
+        p[(axis + 1) % 3] = (corner & 1) != 0 ? side : -side;
+        p[(axis + 2) % 3] = (corner & 2) != 0 ? 0.5f : -0.5f;
+        mesh.vertices.push_back({p, normal});
+      }
+      mesh.indices.insert(mesh.indices.end(),
+                          {first, first + 1, first + 3, first, first + 3, first + 2});
+    }
+  }
+  return mesh;
+}
+
 Mesh UnitRod(int slices) {
   Mesh mesh;
   for (const float z : {0.0f, 1.0f}) {

@@ -20,6 +20,9 @@ struct Mesh {
 /// Sphere of radius 1. `slices` around z, `stacks` from pole to pole; both at least 3.
 Mesh UnitBall(int slices, int stacks);
 
+/// Cube of side 1 about the origin.
+Mesh UnitBox();
+
 /// Radius 1 about z from z = 0 to 1, open at the ends that its neighbours hide; the bottom is
 /// closed. The renderer tapers its top.
 Mesh UnitRod(int slices);

@@ -9,6 +9,7 @@ constexpr std::size_t kMaxBoards = 8;
 constexpr std::size_t kMaxTracePoints = 1500;
 constexpr std::size_t kMaxSpans = 512;
 constexpr std::size_t kMaxPhases = 8;
+constexpr std::int64_t kReferencesNs = 500'000'000;
 constexpr double kStandingN = 50;  // Five kilograms: less is not a person.
 
 void Replace(std::vector<Device>& devices, int source,
@@ -61,6 +62,14 @@ void AddPhase(Model& model, const CharacterPose& pose, std::int64_t received_ns)
   if (!known && model.phases.size() < kMaxPhases) model.phases.push_back(pose.phase);
 }
 
+void AddReference(Model& model, const ReferencePose& reference) {
+  model.references.push_back(reference);
+  while (model.references.size() > 1 &&
+         model.references.front().received_ns < reference.received_ns - kReferencesNs) {
+    model.references.pop_front();
+  }
+}
+
 stream::DeviceRole RoleOf(const Model& model, const std::pair<int, std::uint32_t>& key) {
   for (const Device& device : model.devices) {
     if (device.source == key.first && device.status.device == key.second) {
@@ -75,19 +84,28 @@ stream::DeviceRole RoleOf(const Model& model, const std::pair<int, std::uint32_t
 void Apply(Model& model, const Update& update) {
   model.newest_host_ns = std::max(model.newest_host_ns, update.host_ns);
   if (update.devices) Replace(model.devices, update.source, *update.devices);
-  if (update.skeletons) model.skeletons = *update.skeletons;
+  if (update.skeletons) {
+    model.skeletons = *update.skeletons;
+    model.anatomy = model.skeletons.empty() ? Anatomy{} : FindAnatomy(model.skeletons.front());
+  }
   if (update.track) {
     model.track = *update.track;
     ++model.track_version;
   }
+  if (update.setup) model.setup = *update.setup;
+  if (update.reference) AddReference(model, *update.reference);
   model.strips.Add(update);
   for (const stream::BoardSample& sample : update.boards) {
     AddBoard(model, update.source, update.received_ns, sample);
   }
   for (const Note& note : update.notes) AddNote(model, note, update.received_ns);
   if (update.frame) {
-    if (!update.frame->characters.empty()) {
+    if (!update.frame->characters.empty() && !update.frame->characters.front().body) {
       AddPhase(model, update.frame->characters.front(), update.received_ns);
+    }
+    if (!update.frame->characters.empty()) {
+      model.pose_tally.Add(update.frame->characters.front(), model.anatomy, update.host_ns,
+                           model.references);
     }
     model.tally.Add(*update.frame);
     model.replay.Push(*update.frame);
@@ -111,6 +129,15 @@ double AgeMs(const Model& model, std::int64_t now_ns) {
 bool HasPicture(const Model& model) { return !model.playout.empty(); }
 
 bool IsWaiting(const Model& model) { return model.newest_host_ns == 0; }
+
+const ReferencePose* ReferenceAt(const Model& model, std::int64_t time_ns) {
+  if (model.references.empty()) return nullptr;
+  const ReferencePose* found = &model.references.front();
+  for (const ReferencePose& reference : model.references) {
+    if (reference.received_ns <= time_ns) found = &reference;
+  }
+  return found;
+}
 
 Stance StanceOf(const Model& model) {
   Stance stance;

@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "clients/view/scene/anatomy.h"
 #include "clients/view/scene/fall_replay.h"
 #include "clients/view/scene/playout.h"
+#include "clients/view/scene/pose_tally.h"
 #include "clients/view/scene/strip.h"
 #include "clients/view/scene/tally.h"
 #include "clients/view/scene/update.h"
@@ -60,6 +62,10 @@ struct Model {
   std::vector<std::string> phases;  ///< Of the first character's present gait, in order of coming.
   std::deque<PhaseSpan> phase_spans;  ///< The last 10 s, oldest first.
   Tally tally;
+  PoseTally pose_tally;
+  Anatomy anatomy;                       ///< Of the first skeleton.
+  std::vector<stream::RigSetup> setup;   ///< Of the server that has one.
+  std::deque<ReferencePose> references;  ///< The last half second, oldest first.
 };
 
 /// Takes one tick in. Plain data in, plain data out: no clock is read.
@@ -75,6 +81,10 @@ double AgeMs(const Model& model, std::int64_t now_ns);
 bool HasPicture(const Model& model);
 /// True while no connection has ever been live and nothing has come.
 bool IsWaiting(const Model& model);
+
+/// The reference as it was at `time_ns` of the viewer's clock: the last one before, else the
+/// oldest; null when there is none.
+const ReferencePose* ReferenceAt(const Model& model, std::int64_t time_ns);
 
 /// Both feet of a person on one or two boards.
 struct Stance {

@@ -44,6 +44,20 @@ void PartList::AddRod(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float 
   rods.push_back({X, colour, radius_b / radius_a, colour, gloss});
 }
 
+void PartList::AddBox(const Eigen::Vector3f& middle, const Eigen::Matrix3f& axes,
+                      const Eigen::Vector3f& sides_m, const Colour& colour, float gloss) {
+  boxes.push_back({Ellipsoid(middle, axes, sides_m), colour, 1, 0.8f * colour, gloss});
+}
+
+void PartList::AddDisc(const Eigen::Vector3f& centre, const Eigen::Vector2f& half_axes_m,
+                       float yaw_rad, const Colour& colour) {
+  constexpr float kHalfThicknessM = 0.0015f;
+  const Eigen::Matrix3f axes =
+      Eigen::AngleAxisf(yaw_rad, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  balls.push_back({Ellipsoid(centre, axes, {half_axes_m.x(), half_axes_m.y(), kHalfThicknessM}),
+                   colour, 1, colour, 0});
+}
+
 void PartList::AddLimb(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a,
                        float radius_b, const Colour& colour, float gloss, bool round_start) {
   AddRod(a, b, radius_a, radius_b, colour, gloss);

@@ -8,6 +8,7 @@ namespace footing::scene {
 
 enum class Shape : std::uint32_t {
   kBall,  ///< Unit sphere about the origin.
+  kBox,   ///< Unit cube about the origin.
   kRod,   ///< Unit radius about z, from z = 0 to 1, its top scaled by the part's taper.
 };
 
@@ -31,6 +32,7 @@ struct PartList {
   std::vector<Part> balls;
   std::vector<Part> beads;  ///< Small balls, drawn with fewer triangles.
   std::vector<Part> rods;
+  std::vector<Part> boxes;  ///< Unit cubes about the origin: sides of 1.
 
   void AddBall(const Eigen::Matrix4f& X_WP, const Colour& colour, const Colour& under, float gloss);
   /// A rod from a to b with a rounded end at b; `round_start` rounds the one at a, too.
@@ -39,6 +41,12 @@ struct PartList {
   /// A rod from a to b with flat ends; radius_b = 0 makes a cone.
   void AddRod(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float radius_a, float radius_b,
               const Colour& colour, float gloss = 0.1f);
+  /// A box of the given sides, turned by `axes` (columns) and placed at its middle.
+  void AddBox(const Eigen::Vector3f& middle, const Eigen::Matrix3f& axes,
+              const Eigen::Vector3f& sides_m, const Colour& colour, float gloss = 0.1f);
+  /// A flat round thing on the ground: half axes along x and y, turned by `yaw_rad`.
+  void AddDisc(const Eigen::Vector3f& centre, const Eigen::Vector2f& half_axes_m, float yaw_rad,
+               const Colour& colour);
 };
 
 /// Ellipsoid of the given half axes, turned by `axes` (columns) and placed at `centre`.

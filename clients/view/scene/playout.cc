@@ -18,6 +18,7 @@ CharacterPose Between(const CharacterPose& a, const CharacterPose& b, double sha
   CharacterPose between = a;
   between.com_m = Mix(a.com_m, b.com_m, share);
   between.com_velocity_mps = Mix(a.com_velocity_mps, b.com_velocity_mps, share);
+  if (a.body && b.body) between.body = share < 0.5 ? a.body : b.body;
   for (std::size_t i = 0; i < between.links.size(); ++i) {
     between.links[i].position_m = Mix(a.links[i].position_m, b.links[i].position_m, share);
     between.links[i].orientation = a.links[i].orientation.slerp(share, b.links[i].orientation);

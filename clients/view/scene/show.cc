@@ -30,7 +30,7 @@ Show::Shot Show::At(std::int64_t now_ns, bool frozen, const StageOptions& option
   last_ns_ = now_ns;
   if (!frozen) frame_ = FrameAt(now_ns);
   ++model_.tally.frames_drawn;
-  return {frame_, stage_.Advance(model_, frame_, frozen ? 0 : passed_s, options)};
+  return {frame_, stage_.Advance(model_, frame_, now_ns, frozen ? 0 : passed_s, options)};
 }
 
 }  // namespace footing::scene

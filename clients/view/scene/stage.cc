@@ -5,6 +5,7 @@
 
 #include "clients/view/scene/arrows.h"
 #include "clients/view/scene/bird.h"
+#include "clients/view/scene/body_stage.h"
 #include "clients/view/scene/ribbon.h"
 
 namespace footing::scene {
@@ -65,7 +66,7 @@ void Stage::AddCharacter(const Model& model, const CharacterPose& pose, double d
   if (options.forces) AddForceArrows(pose, picture.forces);
 
   const double floor_m = HeightAt(model.track, pose.com_m.head<2>(), ground_m);
-  AddBird(skeleton, pose, motion, floor_m, picture.birds);
+  AddBird(skeleton, pose, motion, floor_m, picture.figures);
   picture.spots.push_back(SpotUnder(model.track, pose.com_m.head<2>(), floor_m));
   picture.blobs.push_back(BlobUnder(pose.com_m, floor_m, 0.42, 0.75));
   for (const stream::Contact& foot : pose.contacts) {
@@ -78,8 +79,37 @@ void Stage::AddCharacter(const Model& model, const CharacterPose& pose, double d
   }
 }
 
-Picture Stage::Advance(const Model& model, const WorldFrame& frame, double dt_s,
-                       const StageOptions& options) {
+void Stage::AddReconstructed(const Model& model, const CharacterPose& pose, double time_s,
+                             std::int64_t now_ns, const StageOptions& options, Picture& picture) {
+  ComTrail& trail = trails_[pose.character];
+  if (pose.body->momentum_valid) trail.Add(time_s, pose.com_m);
+  AddBody(model, pose, trail, now_ns, options, picture);
+  const double floor_m = -stream::kPlateHeightM;
+  picture.spots.push_back(
+      {Eigen::Vector3d(pose.com_m.x(), pose.com_m.y(), floor_m).cast<float>(), {0, 0}});
+}
+
+Picture Stage::AdvancePeople(const Model& model, const WorldFrame& frame, std::int64_t now_ns,
+                             double dt_s, const StageOptions& options) {
+  Picture picture;
+  picture.studio = true;
+  picture.ground_m = picture.floor_m = static_cast<float>(-stream::kPlateHeightM);
+  Eigen::Vector2d body_m(0, 0);
+  for (const CharacterPose& pose : frame.characters) {
+    if (!pose.body) continue;
+    AddReconstructed(model, pose, frame.time_s, now_ns, options, picture);
+    if (pose.body->calibrated) body_m = pose.com_m.head<2>();
+  }
+  front_.Advance(body_m, HasReference(model, now_ns) && !options.overlay_reference, dt_s);
+  picture.camera = front_.Look();
+  return picture;
+}
+
+Picture Stage::Advance(const Model& model, const WorldFrame& frame, std::int64_t now_ns,
+                       double dt_s, const StageOptions& options) {
+  if (!frame.characters.empty() && frame.characters.front().body) {
+    return AdvancePeople(model, frame, now_ns, dt_s, options);
+  }
   Picture picture;
   picture.ground_m = static_cast<float>(GroundHeight(model.track));
   Subject subject;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clients/view/scene/bird_motion.h"
+#include "clients/view/scene/body_signs.h"
 #include "clients/view/scene/camera.h"
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/part.h"
@@ -28,9 +29,14 @@ struct Spot {
 /// One picture, ready to be drawn.
 struct Picture {
   Camera camera;
-  PartList birds;
+  PartList figures;  ///< Birds and people, and what they stand on.
   PartList forces;
-  std::vector<Spot> spots;  ///< One a bird.
+  PartList ghosts;            ///< Figures that one sees through.
+  PartList signs;             ///< Drawn through what is before them.
+  PartList clear;             ///< Discs that show what is under them.
+  std::vector<Label> labels;  ///< Words beside points of the world.
+  bool studio = false;        ///< A floor in place of the grass.
+  std::vector<Spot> spots;    ///< One a figure.
   std::vector<Blob> blobs;
   std::vector<Eigen::Vector3f> footholds;  ///< Where the next feet are meant to land.
 
@@ -40,20 +46,29 @@ struct Picture {
 
 struct StageOptions {
   bool forces = false;
+  bool overlay_reference = false;  ///< Over the figure in place of beside it.
 };
 
 /// Turns frames into pictures; keeps what is filtered over time.
 class Stage {
  public:
   /// Moves on by dt_s and builds the picture of `frame`; without characters, of an empty ground.
-  Picture Advance(const Model& model, const WorldFrame& frame, double dt_s,
+  /// `now_ns` is the viewer's clock, for what is stale.
+  Picture Advance(const Model& model, const WorldFrame& frame, std::int64_t now_ns, double dt_s,
                   const StageOptions& options);
 
  private:
   void AddCharacter(const Model& model, const CharacterPose& pose, double dt_s,
                     const StageOptions& options, Picture& picture);
 
+  void AddReconstructed(const Model& model, const CharacterPose& pose, double time_s,
+                        std::int64_t now_ns, const StageOptions& options, Picture& picture);
+  Picture AdvancePeople(const Model& model, const WorldFrame& frame, std::int64_t now_ns,
+                        double dt_s, const StageOptions& options);
+
   ChaseCamera camera_;
+  FrontCamera front_;
+  std::map<std::uint32_t, ComTrail> trails_;
   std::map<std::uint32_t, BirdMotion> motions_;
 };
 

@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "clients/view/scene/body_state.h"
 #include "common/stream/character.h"
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
+#include "common/stream/setup.h"
 
 /// What one tick of a server brings, as plain structs. World frame W: x forward, y left, z up; SI.
 namespace footing::scene {
@@ -25,6 +27,7 @@ struct CharacterPose {
   stream::GaitState gait;  ///< Its phase stays empty: the name travels as a text of its own.
   std::string phase;
   bool simulated_input = false;
+  std::optional<BodyState> body;  ///< Of a reconstructed person.
 };
 
 struct WorldFrame {
@@ -80,6 +83,8 @@ struct Update {
   std::vector<stream::BoardSample> boards;
   std::optional<std::vector<stream::Skeleton>> skeletons;
   std::optional<stream::Track> track;
+  std::optional<std::vector<stream::RigSetup>> setup;
+  std::optional<ReferencePose> reference;  ///< The newest one of the tick.
   std::optional<WorldFrame> frame;
   std::vector<Note> notes;
 };

@@ -45,7 +45,50 @@ std::string DeviceLine(const stream::DeviceStatus& device) {
   return line;
 }
 
+std::string FootWords(const BodyFoot& foot) {
+  if (!foot.valid) return "unknown";
+  const double spread_m = 2 * std::sqrt(std::max(0.0, foot.variance_m2.head<2>().maxCoeff()));
+  const std::string spread = " +-" + Fixed(100 * spread_m, 1) + " cm";
+  return (foot.contact ? Fixed(foot.load_n, 0) + " N" : "off " + Fixed(foot.airborne_s, 1) + " s") +
+         spread;
+}
+
+std::vector<std::string> BodyLines(const CharacterPose& pose) {
+  const BodyState& body = *pose.body;
+  std::vector<std::string> lines{
+      "  " + (body.subject.empty() ? std::string("no subject file") : body.subject) + "   " +
+      body.mode + " mode   lag " + Fixed(1e3 * body.lag_s, 0) + " ms   resets " +
+      std::to_string(body.resets) + "   solved in " + Fixed(1e-3 * body.solve_us, 2) + " ms"};
+  if (body.calibrated) {
+    lines.push_back("  " + Fixed(body.mass_kg, 1) + " kg   COM height " + Fixed(pose.com_m.z(), 2) +
+                    " m   left foot " + FootWords(body.feet[0]) + "   right foot " +
+                    FootWords(body.feet[1]));
+  } else {
+    lines.push_back("  T-pose " + Fixed(100 * body.calibration_progress, 0) + " %   broken off " +
+                    std::to_string(body.calibration_restarts) + " times");
+  }
+  std::string hands = "  hands: left ";
+  hands += body.hands_seen[0] ? "seen" : "not seen";
+  hands += body.hands_seen[1] ? ", right seen" : ", right not seen";
+  if (pose.simulated_input) hands += "   SIMULATED input";
+  lines.push_back(hands);
+  if (!body.note.empty()) lines.push_back("  " + body.note);
+  return lines;
+}
+
+/// One line of a log.
+std::string BodyWords(const CharacterPose& pose) {
+  const BodyState& body = *pose.body;
+  std::string words =
+      body.calibrated ? Fixed(body.mass_kg, 1) + " kg  COM " + Fixed(pose.com_m.z(), 2) +
+                            " m  feet " + FootWords(body.feet[0]) + ", " + FootWords(body.feet[1])
+                      : "T-pose " + Fixed(100 * body.calibration_progress, 0) + " %";
+  if (!body.note.empty()) words += "  (" + body.note + ")";
+  return words;
+}
+
 std::vector<std::string> CharacterLines(const CharacterPose& pose) {
+  if (pose.body) return BodyLines(pose);
   const stream::GaitState& gait = pose.gait;
   std::string first = "  " + Padded(GaitTitle(gait.gait), 6) + Padded(pose.phase, 18) +
                       Fixed(gait.speed_mps, 2) + " m/s of " + Fixed(gait.commanded_speed_mps, 2) +
@@ -166,6 +209,10 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
   const WorldFrame& frame = model.playout.Newest();
   std::string line = "t " + Fixed(frame.time_s, 1) + " s";
   for (const CharacterPose& pose : frame.characters) {
+    if (pose.body) {
+      line += "  " + BodyWords(pose);
+      continue;
+    }
     line += "  " + GaitTitle(pose.gait.gait) + "  " + Fixed(pose.gait.speed_mps, 2) + "/" +
             Fixed(pose.gait.commanded_speed_mps, 2) + " m/s  " + Fixed(pose.gait.distance_m, 1) +
             " m  falls " + std::to_string(pose.gait.falls);

@@ -2,23 +2,23 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "common/cli/cli.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/gait_trial.h"
+#include "daemon/offline/tracking/tracking.h"
 
 namespace footing::eval {
 namespace {
 
 using stream::Gait;
+using tracking::Tracking;
 
 constexpr std::array kGaits{Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
-constexpr double kTrackedMps = 0.25;
-constexpr double kLongCommandS = 3;
 
 struct Options {
   double seconds = 600;
@@ -27,50 +27,14 @@ struct Options {
   bool gentle = false;
 };
 
-/// Mean speed along the heading over the last half second, about one step of any gait: within a
-/// step the speed rises and falls by nature.
-class SpeedOverAStep {
- public:
-  void Add(double speed_mps) {
-    sum_mps_ += speed_mps - last_mps_[next_];
-    last_mps_[next_] = speed_mps;
-    next_ = (next_ + 1) % last_mps_.size();
-  }
-  double mean_mps() const { return sum_mps_ / static_cast<double>(last_mps_.size()); }
-
- private:
-  std::array<double, 500> last_mps_{};  ///< One a millisecond.
-  std::size_t next_ = 0;
-  double sum_mps_ = 0;
-};
-
-/// One command, from when it is given to the next one.
-struct Given {
-  double time_s = 0;
-  double speed_mps = 0;
-  std::uint64_t falls_before = 0;
-};
-
 struct Outcome {
   double simulated_s = 0;
   int falls = 0;
   std::array<int, 4> falls_by_gait{};
-  std::uint64_t commands = 0;
-  std::uint64_t long_commands = 0;
-  std::uint64_t tracked = 0;  ///< Of the long ones.
-};
+  std::array<int, tracking::kTrackings> commands{};  ///< By what became of them.
 
-/// Counts a command at its end. One that lasted 3 s or more was tracked when its gait runs, it saw
-/// no fall, and its speed is kept to 0.25 m/s over the last step.
-void Judge(const Given& given, double time_s, const stream::GaitState& state, double mean_mps,
-           Outcome& outcome) {
-  ++outcome.commands;
-  if (time_s - given.time_s < kLongCommandS) return;
-  ++outcome.long_commands;
-  const bool tracked = !state.pending && state.falls == given.falls_before &&
-                       std::fabs(mean_mps - given.speed_mps) < kTrackedMps;
-  outcome.tracked += tracked ? 1 : 0;
-}
+  int of(Tracking became) const { return commands[static_cast<std::size_t>(became)]; }
+};
 
 /// Gentle: run to 3 m/s and walk to 1, instead of 4 and 1.3.
 biped::GaitCommand DrawCommand(bool gentle, Random& random) {
@@ -92,13 +56,16 @@ Result<void> RunTrial(const Options& options, std::uint64_t seed, Outcome& outco
   if (!engine) return engine.error();
   Random random(seed);
   Walker walker(*engine);
-  double next_s = kLongCommandS;
-  Given given;
-  SpeedOverAStep speed;
+  double next_s = tracking::kLongCommandS;
+  tracking::GivenCommand given;
+  tracking::SpeedOverAStep speed;
   for (double time_s = 0; time_s < options.seconds;) {
     if (time_s >= next_s) {
       const stream::GaitState& state = engine->Output().gait;
-      if (given.time_s > 0) Judge(given, time_s, state, speed.mean_mps(), outcome);
+      if (given.time_s > 0) {
+        const Tracking became = tracking::Judge(given, time_s, state, speed.mean_mps());
+        ++outcome.commands[static_cast<std::size_t>(became)];
+      }
       next_s = time_s + random.Uniform(0.5, 4);
       const biped::GaitCommand command = DrawCommand(options.gentle, random);
       given = {time_s, command.speed_mps, state.falls};
@@ -127,16 +94,22 @@ int Run(const Options& options, bool json) {
       return cli::Report(run.error());
     }
   }
-  const auto judged = static_cast<double>(std::max<std::uint64_t>(1, outcome.long_commands));
+  const int commands = std::accumulate(outcome.commands.begin(), outcome.commands.end(), 0);
+  const int judged = commands - outcome.of(Tracking::kShort);
+  const double tracked = outcome.of(Tracking::kTracked);
   nlohmann::ordered_json report{
       {"seed", *seed},
       {"simulated_s", outcome.simulated_s},
       {"falls", outcome.falls},
       {"mean_time_between_falls_s", outcome.simulated_s / std::max(1, outcome.falls)},
       {"falls_by_gait", nlohmann::ordered_json::object()},
-      {"commands_tracked_fraction", static_cast<double>(outcome.tracked) / judged},
-      {"commands", outcome.commands},
-      {"commands_of_3_s", outcome.long_commands}};
+      {"commands_tracked_fraction", tracked / std::max(1, judged)},
+      {"untracked",
+       {{"gait", outcome.of(Tracking::kOtherGait)},
+        {"fell", outcome.of(Tracking::kFell)},
+        {"speed", outcome.of(Tracking::kOffSpeed)}}},
+      {"commands", commands},
+      {"commands_of_3_s", judged}};
   for (std::size_t i = 0; i < kGaits.size(); ++i) {
     report["falls_by_gait"][Name(kGaits[i])] = outcome.falls_by_gait[i];
   }

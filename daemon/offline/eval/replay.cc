@@ -136,6 +136,9 @@ Result<BipedReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::Gait
   std::uint64_t first_step = 0;
   for (const v1::Tick& tick : ticks) {
     for (const v1::AppliedInput& message : tick.inputs().inputs()) {
+      if (message.has_pose()) {
+        return InvalidData("the recording is one of the pose engine, which is not run again yet");
+      }
       const simulation::Applied applied = simulation::FromAppliedInput(message);
       inputs[applied.step] = applied.inputs.engine;
     }

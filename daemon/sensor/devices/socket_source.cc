@@ -7,6 +7,7 @@
 #include "common/clock/clock.h"
 #include "common/transport/framed_connection.h"
 #include "common/transport/listener.h"
+#include "common/wire/wire.h"
 #include "footing/v1/device.pb.h"
 
 namespace footing::devices {
@@ -140,12 +141,16 @@ class SocketSource::Implementation {
       case v1::DeviceEnvelope::kDetach:
         Detach(connection, envelope_.detach().slot(), "detached");
         return;
+      case v1::DeviceEnvelope::kHandFrame:
+        if (handlers_.on_hands)
+          handlers_.on_hands(received_ns, wire::FromProto(envelope_.hand_frame()));
+        return;
+      case v1::DeviceEnvelope::kReferenceFrame:
+        if (handlers_.on_reference)
+          handlers_.on_reference(received_ns, wire::FromProto(envelope_.reference_frame()));
+        return;
       case v1::DeviceEnvelope::kOutput:
         Refuse(connection, "outputs go the other way");
-        return;
-      case v1::DeviceEnvelope::kHandFrame:
-      case v1::DeviceEnvelope::kReferenceFrame:
-        Refuse(connection, "hand and reference frames are not taken");
         return;
       case v1::DeviceEnvelope::BODY_NOT_SET:
         Refuse(connection, "a message is empty");

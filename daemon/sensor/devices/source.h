@@ -7,6 +7,7 @@
 
 #include "common/result/result.h"
 #include "common/stream/device.h"
+#include "common/stream/hands.h"
 #include "daemon/sensor/reports/output_report.h"
 
 /// Where devices come from. Above this line nothing knows whether a device is real.
@@ -58,6 +59,9 @@ struct SourceHandlers {
   std::function<void(DeviceHandle, const DeviceIdentity&)> on_attach;
   std::function<void(DeviceHandle, const IncomingReport&)> on_report;
   std::function<void(DeviceHandle, const std::string& reason)> on_detach;
+  /// What trackers and stand-ins say without a device, unchecked; null: nobody listens.
+  std::function<void(std::int64_t received_ns, const stream::HandFrame&)> on_hands = {};
+  std::function<void(std::int64_t received_ns, const stream::ReferenceFrame&)> on_reference = {};
   /// One line for a person: something is wrong with this source, and what to do.
   std::function<void(const std::string& line)> on_trouble;
 };

@@ -10,6 +10,7 @@
 #include "common/result/result.h"
 #include "daemon/sensor/devices/source.h"
 #include "daemon/sensor/features/rig_features.h"
+#include "daemon/sensor/hands/refusals.h"
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/device.h"
 #include "daemon/sensor/service/tick_content.h"
@@ -52,6 +53,11 @@ class Hub {
   void OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity);
   void OnReport(devices::DeviceHandle handle, const devices::IncomingReport& report);
   void OnDetach(devices::DeviceHandle handle, const std::string& reason);
+  /// Published with the next tick; what makes no sense is refused, counted and said now and then.
+  void OnHands(std::int64_t received_ns, const stream::HandFrame& frame);
+  void OnReference(std::int64_t received_ns, const stream::ReferenceFrame& frame);
+  /// Hand and reference frames refused so far.
+  std::uint64_t refused_frames() const { return refusals_.total(); }
 
   /// Once a tick: everything since the last one, and the features as of `now_ns`. The same reports
   /// and the same ticks give the same features bit for bit.
@@ -114,6 +120,7 @@ class Hub {
   void TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
                bool to_device, std::int64_t true_ns);
   void Flush(Device& device);
+  void Refuse(const std::string& what, const std::string& why);
   void EndLeases(std::int64_t now_ns);
   void PublishStatus(std::int64_t now_ns);
 
@@ -128,6 +135,7 @@ class Hub {
   std::uint64_t published_revision_ = 0;
   TickContent content_;
   std::vector<stream::DeviceState> last_states_;
+  hands::Refusals refusals_;
   std::int64_t status_ns_ = 0;
   bool status_due_ = true;
 };

@@ -26,7 +26,9 @@ std::vector<transport::Channel> Channels() {
           {"nunchuk", Tick::kNunchukFieldNumber, false},
           {"camera", Tick::kCameraFieldNumber, false},
           {"boards_uniform", Tick::kBoardsUniformFieldNumber, false},
-          {"setup", Tick::kSetupFieldNumber, true}};
+          {"setup", Tick::kSetupFieldNumber, true},
+          {"hands", Tick::kHandsFieldNumber, false},
+          {"reference", Tick::kReferenceFieldNumber, false}};
 }
 
 std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
@@ -70,6 +72,16 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
     v1::CameraSamples list;
     for (const auto& sample : content.cameras) *list.add_samples() = wire::ToProto(sample);
     Append(channels, Tick::kCameraFieldNumber, list);
+  }
+  if (!content.hands.empty()) {
+    v1::HandSamples list;
+    for (const auto& sample : content.hands) *list.add_samples() = wire::ToProto(sample);
+    Append(channels, Tick::kHandsFieldNumber, list);
+  }
+  if (!content.reference.empty()) {
+    v1::ReferencePoses list;
+    for (const auto& pose : content.reference) *list.add_poses() = wire::ToProto(pose);
+    Append(channels, Tick::kReferenceFieldNumber, list);
   }
   if (!content.raw.empty()) {
     v1::RawReports list;

@@ -35,7 +35,7 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   options.channels = Channels();
   options.tick_rate_hz = config.tick_rate_hz;
   options.capabilities = {"features", "boards", "raw",   "rumble", "leds",     "assign", "nunchuk",
-                          "camera",   "sphere", "setup", "tare",   "mounting", "layout"};
+                          "camera",   "sphere", "setup", "tare",   "mounting", "layout", "hands"};
   return options;
 }
 
@@ -151,6 +151,12 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     handlers.on_detach = [this](DeviceHandle device, const std::string& reason) {
       hub_.OnDetach(device, reason);
       source_of_.erase(device);
+    };
+    handlers.on_hands = [this](std::int64_t received_ns, const stream::HandFrame& frame) {
+      hub_.OnHands(received_ns, frame);
+    };
+    handlers.on_reference = [this](std::int64_t received_ns, const stream::ReferenceFrame& frame) {
+      hub_.OnReference(received_ns, frame);
     };
     handlers.on_trouble = [](const std::string& line) { log::Warning(line); };
     const auto new_handle = [this] { return ++last_handle_; };

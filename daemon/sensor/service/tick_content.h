@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/stream/device.h"
+#include "common/stream/hands.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
 
@@ -15,6 +16,8 @@ struct TickContent {
   std::vector<stream::UniformBoardSample> uniform_boards;
   std::vector<stream::NunchukSample> nunchuks;
   std::vector<stream::CameraSample> cameras;
+  std::vector<stream::HandSample> hands;
+  std::vector<stream::ReferencePose> reference;
   std::vector<stream::RawReport> raw;
   std::vector<stream::RigFeatures> features;
   bool has_status = false;
@@ -25,5 +28,7 @@ struct TickContent {
 
 /// Bounds a tick against a device that floods; a tick of eight devices has some ten of each.
 inline constexpr std::size_t kMaxSamplesPerTick = 1024;
+/// The same of poses, which are some 2 KiB each.
+inline constexpr std::size_t kMaxReferencesPerTick = 64;
 
 }  // namespace footing::sensor

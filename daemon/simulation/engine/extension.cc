@@ -28,6 +28,9 @@ void GaitEngine::Parts::TakeAppend(const EngineInputs& inputs) {
     AddEvent({.kind = EventKind::kAppendRefused, .text = why});
     return;
   }
+  // The segment that was last may have to reach under the new one.
+  const std::uint64_t last = state.track.first_segment + track.segments.size() - 1;
+  box_holds[static_cast<std::size_t>(last % terrain::kGroundBoxes)] = 0;
   const std::size_t before = track.segments.size();
   terrain::Append(segment, track);
   if (track.segments.size() == before) ++state.track.first_segment;
@@ -44,11 +47,10 @@ void GaitEngine::Parts::PlaceGround() {
     const auto slot = static_cast<std::size_t>(number % terrain::kGroundBoxes);
     if (box_holds[slot] == number + 1) continue;
     box_holds[slot] = number + 1;
-    const stream::TrackSegment* segment = &track.segments[static_cast<std::size_t>(i)];
     const int index = static_cast<int>(slot);
+    const auto place = static_cast<std::size_t>(i);
     const terrain::GroundBox box =
-        segment->pit ? terrain::WaitingBox(index)
-                     : terrain::BoxOf(number > 0 && i > 0 ? segment - 1 : nullptr, *segment);
+        track.segments[place].pit ? terrain::WaitingBox(index) : terrain::BoxOf(track, place);
     world.PlaceBox(index, box.centre_W_m, box.q_WS, box.half_size_m);
   }
 }

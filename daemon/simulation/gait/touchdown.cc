@@ -13,8 +13,9 @@ constexpr double kLongestStepS = 1.2;
 constexpr int kStepsToSettle = 2;
 constexpr double kSettledMps = 0.05;
 constexpr double kLargestErrorMps = 0.8;
-/// On a slope speeding up takes longer than v_d does: that is no error to learn from.
-constexpr double kLargestErrorOnSlopeMps = 0.3;
+/// Running, and on a slope, speeding up takes longer than v_d does: that is no error to learn from,
+/// and the speed would overshoot by what was learned.
+constexpr double kLargestErrorBehindMps = 0.3;
 
 double StepGain(stream::Gait gait, const Gains& gains) {
   return IsHopping(gait) ? gains.hopping.run_speed_integral_s : gains.walking.speed_integral_s;
@@ -64,8 +65,8 @@ void CountStep(const Context& context, GaitMemory& memory) {
     const double error_mps = v_H.x() - memory.desired_speed_mps;
     const bool settled =
         std::fabs(memory.target_speed_mps - memory.desired_speed_mps) < kSettledMps;
-    const double largest_mps =
-        memory.ground.slope != 0 ? kLargestErrorOnSlopeMps : kLargestErrorMps;
+    const bool lags = memory.gait == stream::Gait::kRun || memory.ground.slope != 0;
+    const double largest_mps = lags ? kLargestErrorBehindMps : kLargestErrorMps;
     if (settled && std::fabs(error_mps) < largest_mps) {
       Learn(error_mps, context.gains, memory);
     }

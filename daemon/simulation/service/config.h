@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,14 @@ struct Config {
   double features_timeout_s = 0.5;
   double fall_shown_s = 0.7;
   double put_back_distance_m = 3;
+  std::string subject;        ///< Subject file of the pose engine; empty: nobody has been named.
+  std::string mode = "best";  ///< Of the pose engine: "best" or "paper".
+  std::int64_t lag_ms = 0;    ///< Of the pose engine: 0, 100 or 200.
 
   void Bind(config::Binder& binder);
 };
 
-/// Usage error that lists what is built when engine or interface is not.
+/// Usage error that lists what is built when engine, interface, mode or lag is not.
 Result<void> CheckBuilt(const Config& config);
 
 }  // namespace footing::simulation

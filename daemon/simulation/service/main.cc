@@ -35,18 +35,24 @@ int main(int argc, char** argv) {
   config.Bind(binder);
   std::string file;
   std::vector<std::string> settings, listen;
-  std::string engine, sensor, interface, track;
+  std::string engine, sensor, interface, track, subject, mode;
+  std::int64_t lag_ms = -1;
   bool print = false, check = false, quiet = false;
   auto app =
-      cli::NewApp("footing-sim", "Simulation server: features in, a walking biped out.",
-                  "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n");
+      cli::NewApp("footing-sim",
+                  "Simulation server: features in, a walking biped out; or boards in, a body out.",
+                  "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n"
+                  "  footing-sim --engine pose --subject p07.json --lag-ms 100\n");
   app->add_option("--config", file, "JSON file of settings");
   app->add_option("--set", settings, "One setting, key=value; may be repeated");
   app->add_option("--listen", listen, "unix:PATH or tcp:HOST:PORT; may be repeated");
-  app->add_option("--engine", engine, "gait");
+  app->add_option("--engine", engine, "gait, or pose");
   app->add_option("--sensor", sensor, "Address of footingd");
   app->add_option("--interface", interface, "wrist");
   app->add_option("--track", track, "Name of a carried track, or a JSON file");
+  app->add_option("--subject", subject, "Subject file, JSON (pose)");
+  app->add_option("--mode", mode, "best, or paper (pose)");
+  app->add_option("--lag-ms", lag_ms, "0, 100 or 200: later is better (pose)");
   app->add_flag("--print-config", print, "Write the effective config and end");
   app->add_flag("--check-config", check, "Check the config and end");
   app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
@@ -59,6 +65,9 @@ int main(int argc, char** argv) {
   if (!sensor.empty()) config.sensor = sensor;
   if (!interface.empty()) config.interface = interface;
   if (!track.empty()) config.track = track;
+  if (!subject.empty()) config.subject = subject;
+  if (!mode.empty()) config.mode = mode;
+  if (lag_ms >= 0) config.lag_ms = lag_ms;
   if (const auto built = simulation::CheckBuilt(config); !built) return cli::Report(built.error());
   if (print) std::cout << binder.Print() << std::endl;
   if (print || check) return 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -9,10 +10,10 @@
 
 namespace footing::simulation {
 
-/// footing-sim: subscribes to footingd, runs the engine on its thread, publishes frames.
+/// footing-sim: subscribes to footingd, runs the configured engine on its thread, publishes frames.
 class Service {
  public:
-  /// Reads the data files, builds the engine, opens the listeners and starts.
+  /// Reads the engine's files, builds it, opens the listeners and starts.
   static Result<std::unique_ptr<Service>> Start(boost::asio::io_context& io, const Config& config,
                                                 const std::string& version);
   ~Service();
@@ -23,9 +24,8 @@ class Service {
   void Stop(const std::string& reason);
 
  private:
-  class Implementation;
-  explicit Service(std::shared_ptr<Implementation> implementation);
-  std::shared_ptr<Implementation> implementation_;
+  explicit Service(std::function<void(const std::string&)> stop);
+  std::function<void(const std::string&)> stop_;
 };
 
 }  // namespace footing::simulation

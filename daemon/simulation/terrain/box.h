@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 
 #include "common/stream/character.h"
 
@@ -15,9 +16,13 @@ struct GroundBox {
 };
 
 /// The box under a segment; its top face is the ground. Where the track turns, two boxes would
-/// leave a wedge open on the outer side: the later one reaches back to close it. A pit's edges stay
-/// where they are. The first segment has no `previous` and begins before the start, so that one can
-/// stand on the line.
-GroundBox BoxOf(const stream::TrackSegment* previous, const stream::TrackSegment& segment);
+/// leave a wedge open on the outer side: one of them reaches under the other to close it, the lower
+/// one, so that a step begins where the track has it. A pit's edges stay where they are. The first
+/// segment has no `previous` and begins before the start, so that one can stand on the line; the
+/// last one has no `next`.
+GroundBox BoxOf(const stream::TrackSegment* previous, const stream::TrackSegment& segment,
+                const stream::TrackSegment* next);
+/// The same by its place in the track.
+GroundBox BoxOf(const stream::Track& track, std::size_t index);
 
 }  // namespace footing::terrain

@@ -59,10 +59,8 @@ std::string GroundMjcf(const stream::Track& track) {
     return "<geom type='plane' contype='1' conaffinity='2' size='0 0 1'/>\n";
   }
   std::string text;
-  const stream::TrackSegment* previous = nullptr;
-  for (const stream::TrackSegment& segment : track.segments) {
-    if (!segment.pit) text += Geom(BoxOf(previous, segment));
-    previous = &segment;
+  for (std::size_t i = 0; i < track.segments.size(); ++i) {
+    if (!track.segments[i].pit) text += Geom(BoxOf(track, i));
   }
   return text;
 }

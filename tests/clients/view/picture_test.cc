@@ -89,11 +89,11 @@ class PictureTest : public ::testing::Test {
   void Follow(const scene::Model& model, double time_s, const scene::made::Wish& wish) {
     scene::Stage stage;
     frame_ = {};
-    picture_ = stage.Advance(model, frame_, 0, {});
+    picture_ = stage.Advance(model, frame_, 0, 0, {});
     if (model.playout.empty()) return;
     for (int i = 50; i >= 0; --i) {
       frame_ = scene::made::TickAt(time_s - 0.01 * i, wish).frame.value();
-      picture_ = stage.Advance(model, frame_, 0.01, {});
+      picture_ = stage.Advance(model, frame_, scene::made::ClockAt(time_s - 0.01 * i), 0.01, {});
     }
   }
 

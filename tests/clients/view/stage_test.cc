@@ -10,8 +10,8 @@ namespace {
 
 TEST(Stage, AnEmptyWorldHasAGroundAndNoBird) {
   Stage stage;
-  const Picture picture = stage.Advance({}, {}, 0.01, {});
-  EXPECT_TRUE(picture.birds.balls.empty());
+  const Picture picture = stage.Advance({}, {}, 0, 0.01, {});
+  EXPECT_TRUE(picture.figures.balls.empty());
   EXPECT_EQ(picture.ground_m, 0);
   EXPECT_TRUE(picture.camera.View().allFinite());
 }
@@ -19,7 +19,7 @@ TEST(Stage, AnEmptyWorldHasAGroundAndNoBird) {
 TEST(Stage, ABirdHasAShadowUnderItsCentreOfMassAndUnderItsFeet) {
   const Model model = made::ModelAfter(1, {});
   Stage stage;
-  const Picture picture = stage.Advance(model, model.playout.Newest(), 0.01, {});
+  const Picture picture = stage.Advance(model, model.playout.Newest(), 0, 0.01, {});
   ASSERT_EQ(picture.blobs.size(), 3u);
   EXPECT_NEAR(picture.blobs[0].position_m.x(), 2, 1e-5);  // 2 m/s for 1 s.
   EXPECT_EQ(picture.blobs[0].position_m.z(), 0);
@@ -32,8 +32,8 @@ TEST(Stage, ForceArrowsAreDrawnOnlyWhenAskedForAndOnlyAtTouchingFeet) {
   std::size_t touching = 0;
   for (const auto& contact : frame.characters[0].contacts) touching += contact.touching ? 1 : 0;
   Stage stage;
-  EXPECT_TRUE(stage.Advance(model, frame, 0.01, {false}).forces.rods.empty());
-  EXPECT_EQ(stage.Advance(model, frame, 0.01, {true}).forces.rods.size(), 2 * touching);
+  EXPECT_TRUE(stage.Advance(model, frame, 0, 0.01, {false}).forces.rods.empty());
+  EXPECT_EQ(stage.Advance(model, frame, 0, 0.01, {true}).forces.rods.size(), 2 * touching);
 }
 
 TEST(Stage, APoseWithoutLinksIsDrawnAsNothing) {
@@ -41,7 +41,7 @@ TEST(Stage, APoseWithoutLinksIsDrawnAsNothing) {
   frame.characters.resize(1);
   frame.characters[0].valid = true;
   Stage stage;
-  EXPECT_TRUE(stage.Advance({}, frame, 0.01, {true}).birds.balls.empty());
+  EXPECT_TRUE(stage.Advance({}, frame, 0, 0.01, {true}).figures.balls.empty());
 }
 
 CharacterPose Turned(double yaw_rad, bool touching) {

@@ -62,5 +62,38 @@ TEST(Translate, MoreCharactersThanASceneHoldsAreLeftOut) {
   EXPECT_EQ(Translate(tick, 0, 0, 0).frame->characters.size(), 8u);
 }
 
+TEST(Translate, ABodyWithItsFeetComesThroughAndIsFinite) {
+  v1::Tick tick;
+  v1::BodyState& body = *tick.mutable_characters()->add_characters()->mutable_body();
+  body.set_subject("p07");
+  body.set_calibrated(true);
+  body.set_mass_kg(std::numeric_limits<double>::quiet_NaN());
+  body.add_feet()->set_load_n(300);
+  body.add_feet()->mutable_variance_m2()->set_x(std::numeric_limits<double>::infinity());
+  body.add_feet();  // Of a newer server: a person has two.
+  body.add_hands_seen(true);
+  const scene::CharacterPose pose = Translate(tick, 0, 0, 0).frame->characters.at(0);
+  ASSERT_TRUE(pose.body.has_value());
+  EXPECT_EQ(pose.body->subject, "p07");
+  EXPECT_EQ(pose.body->mass_kg, 0);
+  EXPECT_EQ(pose.body->feet[0].load_n, 300);
+  EXPECT_TRUE(pose.body->feet[1].variance_m2.allFinite());
+  EXPECT_TRUE(pose.body->hands_seen[0]);
+  EXPECT_FALSE(pose.body->hands_seen[1]);
+}
+
+TEST(Translate, AReferencePoseHasItsTimeOnTheViewersClock) {
+  v1::Tick tick;
+  v1::ReferencePose& pose = *tick.mutable_reference()->add_poses();
+  pose.set_sampled_ns(5'000);
+  pose.add_parents(-1);
+  pose.add_positions_m()->set_z(1);
+  const scene::Update update = Translate(tick, 0, 1'200, 4'000);
+  ASSERT_TRUE(update.reference.has_value());
+  EXPECT_EQ(update.reference->sampled_ns, 1'000);
+  EXPECT_EQ(update.reference->received_ns, 1'200);
+  EXPECT_EQ(update.reference->positions_m.at(0).z(), 1);
+}
+
 }  // namespace
 }  // namespace footing::view

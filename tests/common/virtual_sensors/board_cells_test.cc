@@ -44,6 +44,17 @@ TEST(LoadBoard, NoCellPullsWhenTheFootIsBeyondTheSensors) {
   for (const double corner : load.corners_n) EXPECT_GE(corner, 0);
 }
 
+TEST(OneFootEach, HasTheFrontEdgesFacingEachOtherAcrossTheGap) {
+  const auto boards = OneFootEach(0.02);
+  EXPECT_NEAR(boards[0].middle_m.y(), 0.168, 1e-12);
+  EXPECT_NEAR(boards[1].middle_m.y(), -0.168, 1e-12);
+  // Top left is the first sensor; seen from above, the left board's front is at its right.
+  EXPECT_NEAR(SensorPlaces(boards[0])[0].y(), 0.168 - 0.5 * kSensorsAlongM, 1e-9);
+  EXPECT_NEAR(SensorPlaces(boards[0])[0].x(), 0.5 * kSensorsAcrossM, 1e-9);
+  EXPECT_NEAR(SensorPlaces(boards[1])[0].y(), -0.168 + 0.5 * kSensorsAlongM, 1e-9);
+  EXPECT_NEAR(SensorPlaces(boards[1])[0].x(), -0.5 * kSensorsAcrossM, 1e-9);
+}
+
 TEST(CellErrors, AreNoneWhenNoneAreWanted) {
   CellErrors cells({});
   const Corners forces{100, 90, 80, 70};

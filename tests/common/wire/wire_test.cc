@@ -43,6 +43,7 @@ class Filler {
         if (add) return reflection->AddString(&message, field, "text" + std::to_string(next));
         return reflection->SetString(&message, field, "text" + std::to_string(next));
       case FieldDescriptor::CPPTYPE_INT32:
+        if (add) return reflection->AddInt32(&message, field, next);
         return reflection->SetInt32(&message, field, next);
       case FieldDescriptor::CPPTYPE_INT64:
         return reflection->SetInt64(&message, field, next);
@@ -69,7 +70,8 @@ using Messages =
     testing::Types<v1::Vector3, v1::Quaternion, v1::DeviceStatus, v1::RawReport, v1::MotionSample,
                    v1::RigFeatures, v1::BoardSample, v1::NunchukSample, v1::CameraPoint,
                    v1::CameraSample, v1::UniformBoardSample, v1::BoardPose, v1::BoardLayout,
-                   v1::SetupItem, v1::RigSetup, v1::Skeleton, v1::Track, v1::LinkPose>;
+                   v1::SetupItem, v1::RigSetup, v1::Skeleton, v1::Track, v1::LinkPose,
+                   v1::HandFrame, v1::HandSample, v1::ReferencePose>;
 TYPED_TEST_SUITE(RoundTrip, Messages);
 
 TYPED_TEST(RoundTrip, EveryFieldOfTheMessageSurvives) {
@@ -132,6 +134,33 @@ TEST(Wire, NothingThatIsNotFiniteIsPublished) {
   stream::DeviceStatus status;
   status.jitter_ms = kNan;
   EXPECT_EQ(ToProto(status).jitter_ms(), 0);
+}
+
+TEST(Wire, AReferenceFrameKeepsItsJointsAndShowsWhatIsMissing) {
+  stream::ReferenceFrame frame{"main", 7, {-1, 0}, {{1, 2, 3}, {4, 5, 6.5}}, {7, 8, 9}};
+  v1::ReferenceFrame message = ToProto(frame);
+  EXPECT_EQ(message.position_m_size(), 6);
+  const stream::ReferenceFrame back = FromProto(message);
+  EXPECT_EQ(back.rig, frame.rig);
+  EXPECT_EQ(back.age_ns, frame.age_ns);
+  EXPECT_EQ(back.parents, frame.parents);
+  EXPECT_EQ(back.positions_m, frame.positions_m);
+  EXPECT_EQ(back.com_m, frame.com_m);
+  message.mutable_position_m()->RemoveLast();
+  message.clear_com_m();
+  EXPECT_TRUE(std::isnan(FromProto(message).positions_m[1].z()));
+  EXPECT_TRUE(std::isnan(FromProto(message).com_m.x()));
+}
+
+TEST(Wire, AHandFrameComesInAsItIsSoThatItCanBeRefused) {
+  v1::HandFrame message;
+  message.add_points()->set_x_m(kNan);
+  message.mutable_points(0)->set_confidence(kInfinity);
+  EXPECT_TRUE(std::isnan(FromProto(message).points[0].position_m.x()));
+  EXPECT_TRUE(std::isinf(FromProto(message).points[0].confidence));
+  stream::HandFrame frame;
+  frame.points.emplace_back().position_m.x() = kNan;
+  EXPECT_EQ(ToProto(frame).points(0).x_m(), 0);
 }
 
 TEST(Wire, ARotationThatIsNoneBecomesTheIdentity) {

@@ -93,6 +93,12 @@ class SocketSourceTest : public transport::IoFixture {
     handlers.on_detach = [this](DeviceHandle device, const std::string&) {
       detached_.push_back(device);
     };
+    handlers.on_hands = [this](std::int64_t, const stream::HandFrame& frame) {
+      hands_.push_back(frame);
+    };
+    handlers.on_reference = [this](std::int64_t, const stream::ReferenceFrame& frame) {
+      references_.push_back(frame);
+    };
     handlers.on_trouble = [this](const std::string& line) { trouble_.push_back(line); };
     return handlers;
   }
@@ -102,6 +108,8 @@ class SocketSourceTest : public transport::IoFixture {
   std::vector<DeviceIdentity> identities_;
   std::vector<std::size_t> sizes_;
   std::vector<std::string> trouble_;
+  std::vector<stream::HandFrame> hands_;
+  std::vector<stream::ReferenceFrame> references_;
   SocketSource source_;
 };
 
@@ -189,6 +197,55 @@ TEST_F(SocketSourceTest, AnOversizedMessageEndsTheConnection) {
   EXPECT_EQ(attached_.size(), 1u);
   EXPECT_EQ(detached_.size(), 1u);
   EXPECT_TRUE(reported_.empty());
+}
+
+TEST_F(SocketSourceTest, HandAndReferenceFramesNeedNoSlotAndMayBeBad) {
+  auto peer = Connect();
+  v1::DeviceEnvelope hands;
+  hands.mutable_hand_frame()->set_tracker("eye");
+  hands.mutable_hand_frame()->add_points()->set_x_m(1e300);
+  peer->Send(hands);
+  v1::DeviceEnvelope reference;
+  reference.mutable_reference_frame()->add_parents(-1);
+  for (int i = 0; i < 2; ++i) reference.mutable_reference_frame()->add_position_m(1);
+  peer->Send(reference);
+  peer->Attach(0, "a");
+  EXPECT_TRUE(RunUntil([this] { return !attached_.empty(); }));
+  ASSERT_EQ(hands_.size(), 1u);
+  EXPECT_EQ(hands_[0].points[0].position_m.x(), 1e300);
+  ASSERT_EQ(references_.size(), 1u);
+  EXPECT_EQ(references_[0].positions_m.size(), 1u);
+  EXPECT_FALSE(peer->closed);
+}
+
+TEST_F(SocketSourceTest, TheLargestFramesThatAreTakenFitIntoAMessage) {
+  auto peer = Connect();
+  v1::DeviceEnvelope hands;
+  hands.mutable_hand_frame()->set_tracker(std::string(64, 't'));
+  hands.mutable_hand_frame()->set_rig(std::string(64, 'r'));
+  hands.mutable_hand_frame()->set_age_ns(1'000'000'000);
+  hands.mutable_hand_frame()->set_simulated(true);
+  for (int i = 0; i < 8; ++i) {
+    v1::TrackedPoint& point = *hands.mutable_hand_frame()->add_points();
+    point.set_role(v1::DEVICE_ROLE_LEFT_HAND);
+    for (const auto set :
+         {&v1::TrackedPoint::set_x_m, &v1::TrackedPoint::set_y_m, &v1::TrackedPoint::set_z_m,
+          &v1::TrackedPoint::set_sd_x_m, &v1::TrackedPoint::set_sd_y_m,
+          &v1::TrackedPoint::set_sd_z_m, &v1::TrackedPoint::set_confidence}) {
+      (point.*set)(0.1);
+    }
+  }
+  peer->Send(hands);
+  v1::DeviceEnvelope reference;
+  reference.mutable_reference_frame()->set_rig(std::string(64, 'r'));
+  reference.mutable_reference_frame()->set_age_ns(1'000'000'000);
+  for (int i = 0; i < 64; ++i) reference.mutable_reference_frame()->add_parents(i - 1);
+  for (int i = 0; i < 3 * 64; ++i) reference.mutable_reference_frame()->add_position_m(0.1f);
+  for (int i = 0; i < 3; ++i) reference.mutable_reference_frame()->add_com_m(0.1f);
+  peer->Send(reference);
+  EXPECT_TRUE(RunUntil([this] { return !references_.empty(); }));
+  EXPECT_EQ(hands_.size(), 1u);
+  EXPECT_FALSE(peer->closed);
 }
 
 TEST_F(SocketSourceTest, ASecondListenerOnTheSameAddressIsAnError) {

@@ -112,6 +112,8 @@ class Bench {
     add(content.motion, tick.motion);
     add(content.boards, tick.boards);
     add(content.raw, tick.raw);
+    add(content.hands, tick.hands);
+    add(content.reference, tick.reference);
     add(content.uniform_boards, tick.uniform_boards);
     if (tick.has_setup) content.setup = std::move(tick.setup);
     content.features = std::move(tick.features);

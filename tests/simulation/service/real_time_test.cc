@@ -1,63 +1,26 @@
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <poll.h>
-#include <pthread.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <mutex>
 
 #include "common/config/data_file.h"
+#include "daemon/simulation/service/gait_run.h"
 #include "daemon/simulation/service/publish.h"
 #include "daemon/simulation/service/simulation_thread.h"
-
-// Counts what every thread but the test's own takes from the C library: memory, and mutexes, which
-// is also what a log would need. A sanitizer brings its own; there the test is skipped.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define FOOTING_COUNTS_CALLS 1
-namespace {
-std::atomic<long> allocations{0}, locks{0};
-thread_local bool is_test_thread = false;
-void Count(std::atomic<long>& calls) {
-  if (!is_test_thread) calls.fetch_add(1, std::memory_order_relaxed);
-}
-}  // namespace
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-void* malloc(std::size_t size) {
-  Count(allocations);
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  Count(allocations);
-  return __libc_calloc(count, size);
-}
-void* realloc(void* old, std::size_t size) {
-  Count(allocations);
-  return __libc_realloc(old, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  Count(allocations);
-  return __libc_memalign(alignment, size);
-}
-int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
-  using Lock = int (*)(pthread_mutex_t*);
-  static const Lock real = reinterpret_cast<Lock>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
-  Count(locks);
-  return real(mutex);
-}
-}
-#endif
+#include "tests/simulation/service/counted_calls.h"
 
 namespace footing::simulation {
 namespace {
+
+#ifdef FOOTING_COUNTS_CALLS
+using counted_calls::allocations;
+using counted_calls::is_test_thread;
+using counted_calls::locks;
+#endif
 
 /// A thread whose clock's step is a microsecond: it never sleeps, and is late at every step.
 class HastyThread {
@@ -82,7 +45,7 @@ class HastyThread {
       if (read(wake_, &count, sizeof(count)) < 0) return false;
     }
   }
-  SimulationThread& thread() { return thread_; }
+  SimulationThread<GaitRun>& thread() { return thread_; }
 
  private:
   static engine::GaitEngine MakeEngine() {
@@ -99,7 +62,7 @@ class HastyThread {
   }
 
   int wake_;
-  SimulationThread thread_;
+  SimulationThread<GaitRun> thread_;
 };
 
 TEST(SimulationThread, AllocatesLocksAndSoLogsNothingOnceItRuns) {

@@ -1,4 +1,5 @@
 #include "daemon/simulation/service/simulation_thread.h"
+#include "daemon/simulation/service/gait_run.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -21,7 +22,7 @@ engine::GaitEngine MakeEngine() {
 }
 
 /// Waits, bounded, until the thread has handed over a frame.
-bool WaitForFrame(SimulationThread& thread, int wake_descriptor, Frame& frame) {
+bool WaitForFrame(SimulationThread<GaitRun>& thread, int wake_descriptor, Frame& frame) {
   while (!thread.frames().Pop(frame)) {
     pollfd ready{wake_descriptor, POLLIN, 0};
     if (poll(&ready, 1, 5000) <= 0) return false;
@@ -34,7 +35,7 @@ bool WaitForFrame(SimulationThread& thread, int wake_descriptor, Frame& frame) {
 TEST(SimulationThread, AppliedInputsRunAgainToTheSameStateHash) {
   const int wake = eventfd(0, EFD_CLOEXEC);
   ASSERT_GE(wake, 0);
-  SimulationThread thread(MakeEngine(), 0.001, 10, wake);
+  SimulationThread<GaitRun> thread(MakeEngine(), 0.001, 10, wake);
   thread.Start();
   Inputs inputs;
   std::vector<Applied> applied;

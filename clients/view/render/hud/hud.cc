@@ -1,10 +1,14 @@
 #include "clients/view/render/hud/hud.h"
 
 #include "clients/view/render/hud/board_panel.h"
+#include "clients/view/render/hud/body_panel.h"
 #include "clients/view/render/hud/character_panel.h"
 #include "clients/view/render/hud/device_panel.h"
+#include "clients/view/render/hud/labels.h"
+#include "clients/view/render/hud/layout_panel.h"
 #include "clients/view/render/hud/overlay.h"
 #include "clients/view/render/hud/strip_panel.h"
+#include "clients/view/render/hud/t_pose_panel.h"
 
 namespace footing::render {
 namespace {
@@ -16,8 +20,9 @@ constexpr float kBoardHeight = 236;
 
 }  // namespace
 
-void DrawHud(const Paint& p, const scene::Model& model, const scene::WorldFrame& frame,
-             std::int64_t now_ns, const HudOptions& options, ImVec2 size) {
+void DrawHud(const Paint& p, const scene::Picture& picture, const scene::Model& model,
+             const scene::WorldFrame& frame, std::int64_t now_ns, const HudOptions& options,
+             ImVec2 size) {
   // A stand-in's data is never shown unstamped, in subject mode either.
   if (scene::IsSimulated(model)) DrawSimulated(p, size);
   DrawReplay(p, model, now_ns, size);
@@ -27,17 +32,28 @@ void DrawHud(const Paint& p, const scene::Model& model, const scene::WorldFrame&
     DrawWaiting(p, model, size);
   } else {
     float y = edge;
-    if (!frame.characters.empty()) {
+    const bool person = !frame.characters.empty() && frame.characters.front().body;
+    if (person) {
+      DrawLabels(p, picture, size);
+      y = DrawBodyPanel(p, {edge, edge}, frame.characters.front(), picture) + 8 * s;
+      DrawTPosePanel(p, model, frame.characters.front(), size);
+    } else if (!frame.characters.empty()) {
       y = DrawCharacterPanel(p, {edge, edge}, model, frame.characters.front(), options.phases,
                              now_ns) +
           8 * s;
     }
-    DrawStripPanel(p, {{edge, y}, {edge + kColumnWidth * s, size.y - edge}}, model.strips, now_ns);
+    if (!person) {
+      DrawStripPanel(p, {{edge, y}, {edge + kColumnWidth * s, size.y - edge}}, model.strips,
+                     now_ns);
+    }
     DrawDevicePanel(p, {size.x - edge, edge}, model, now_ns);
-    DrawBoardPanel(p,
-                   {{size.x - edge - kBoardWidth * s, size.y - edge - kBoardHeight * s},
-                    {size.x - edge, size.y - edge}},
-                   model, now_ns);
+    const Box boards{{size.x - edge - kBoardWidth * s, size.y - edge - kBoardHeight * s},
+                     {size.x - edge, size.y - edge}};
+    if (person) {
+      DrawLayoutPanel(p, boards, model, frame.characters.front(), now_ns);
+    } else {
+      DrawBoardPanel(p, boards, model, now_ns);
+    }
     DrawWaitingLines(p, model, {edge + (kColumnWidth + 12) * s, size.y - edge});
     DrawNote(p, model, now_ns, size);
   }

@@ -53,11 +53,14 @@ void DrawWaitingLines(const Paint& p, const scene::Model& model, ImVec2 at) {
 }
 
 void DrawKeys(const Paint& p, ImVec2 size) {
-  static constexpr std::array<std::array<const char*, 2>, 6> kKeys{{
+  static constexpr std::array<std::array<const char*, 2>, 9> kKeys{{
       {"?", "show or hide this list"},
       {"F", "force arrows at the feet"},
       {"P", "states of the gait controller"},
       {"R", "the last fall again, in slow motion"},
+      {"T", "take the T-pose anew"},
+      {"N", "the next subject"},
+      {"O", "the reference beside the body, or over it"},
       {"space", "freeze the picture"},
       {"Esc, Q", "leave"},
   }};

@@ -1,0 +1,69 @@
+#include <memory>
+#include <utility>
+
+#include "clients/ctl/commands.h"
+#include "common/cli/cli.h"
+#include "common/subject/subject.h"
+#include "common/transport/address.h"
+
+namespace footing::ctl {
+namespace {
+
+/// Sends one command to footing-sim, which publishes its skeletons to whoever comes.
+Result<void> Tell(const Shared& shared, v1::Command command) {
+  Shared simulation = shared;
+  if (simulation.connect.empty()) {
+    simulation.connect = transport::DefaultAddress("simulation").Text();
+  }
+  const auto session = Open(simulation, {"skeletons"});
+  if (!session) {
+    return NoDevice("no footing-sim on " + simulation.connect +
+                    "; start it with: footing-sim --engine pose, or name it with --connect");
+  }
+  if (const auto done = (*session)->Call(std::move(command)); !done) return done.error();
+  return {};
+}
+
+Result<void> TakeTPose(const Shared& shared) {
+  v1::Command command;
+  command.mutable_calibrate_t_pose()->set_character(1);
+  if (const auto told = Tell(shared, std::move(command)); !told) return told;
+  Print({{"t_pose", "awaited"}}, "the T-pose is to be taken anew: five seconds, standing still",
+        shared);
+  return {};
+}
+
+Result<void> NextSubject(const std::string& file, const Shared& shared) {
+  const auto subject = subject::ReadSubject(file);
+  if (!subject) return subject.error();
+  v1::Command command;
+  v1::SetSubject& set = *command.mutable_set_subject();
+  set.set_code(subject->code);
+  set.set_height_m(subject->height_m);
+  set.set_mass_kg(subject->mass_kg);
+  set.set_foot_length_m(subject->foot_length_m);
+  if (const auto told = Tell(shared, std::move(command)); !told) return told;
+  Print({{"subject", subject->code}, {"t_pose", "awaited"}},
+        subject->code + " is next: step on and stand in a T-pose for five seconds", shared);
+  return {};
+}
+
+void Keep(const Result<void>& done, Shared& shared) {
+  if (!done) shared.exit_code = cli::Report(done.error());
+}
+
+}  // namespace
+
+void AddPoseCommands(CLI::App& app, Shared& shared) {
+  CLI::App* t_pose = app.add_subcommand("t-pose", "Take the T-pose of the pose engine anew");
+  t_pose->footer("Example:\n  footing-ctl t-pose   # --connect names footing-sim");
+  t_pose->callback([&shared] { Keep(TakeTPose(shared), shared); });
+
+  const auto file = std::make_shared<std::string>();
+  CLI::App* next = app.add_subcommand("subject", "Put the next person before the pose engine");
+  next->add_option("FILE", *file, "JSON: code, height_m, mass_kg, foot_length_m")->required();
+  next->footer("Example:\n  footing-ctl subject p08.json   # --connect names footing-sim");
+  next->callback([file, &shared] { Keep(NextSubject(*file, shared), shared); });
+}
+
+}  // namespace footing::ctl

@@ -1,0 +1,92 @@
+#include "clients/stream/tellings.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/body/kinematics.h"
+#include "common/body/momentum.h"
+#include "common/body/points.h"
+#include "common/synthetic/random.h"
+
+namespace footing::stream_client {
+namespace {
+
+constexpr double kRateHz = 60;
+constexpr std::size_t kMostJoints = 64;  // Of a reference frame.
+constexpr double kLeastSdM = 0.001;      // Nobody's tracker is exact.
+
+/// The body's pose between two frames.
+Eigen::VectorXd PoseAt(const Stage& stage, double t_s) {
+  const Stage::Instant at = stage.At(t_s);
+  const Eigen::MatrixXd& q = stage.scene.motion.q;
+  return (1 - at.share) * q.col(at.frame) + at.share * q.col(at.frame + 1);
+}
+
+body::Kinematics KinematicsAt(const Stage& stage, double t_s) {
+  body::Kinematics at(stage.scene.body.skeleton);
+  body::ComputeKinematics(stage.scene.body.skeleton, PoseAt(stage, t_s), at);
+  return at;
+}
+
+}  // namespace
+
+std::vector<int> ShownJoints(const body::Body& body) {
+  const body::Skeleton& skeleton = body.skeleton;
+  const auto size = static_cast<std::size_t>(skeleton.size());
+  std::vector<bool> shown(size, size <= kMostJoints);
+  for (const int landmark : body.landmarks.joint)
+    for (int joint = landmark; joint >= 0; joint = skeleton.joint(joint).parent)
+      shown[static_cast<std::size_t>(joint)] = true;
+  std::vector<int> joints;
+  for (std::size_t i = 0; i < size && joints.size() < kMostJoints; ++i)
+    if (shown[i]) joints.push_back(static_cast<int>(i));
+  return joints;
+}
+
+Telling TellHands(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed) {
+  Telling telling;
+  telling.rate_hz = kRateHz;
+  telling.hands = [stage, noise_m, random = synthetic::Random(seed)](double t_s) mutable {
+    const body::Kinematics at = KinematicsAt(*stage, t_s);
+    stream::HandFrame frame;
+    frame.tracker = "stand-in";
+    frame.simulated = true;
+    for (const int side : {0, 1}) {
+      const body::Point fist = body::Fist(stage->scene.body, side);
+      const auto joint = static_cast<std::size_t>(fist.joint);
+      stream::TrackedPoint point;
+      point.role = side == 0 ? stream::DeviceRole::kLeftHand : stream::DeviceRole::kRightHand;
+      point.position_m = body::Place(fist, at.R_WJ[joint], at.p_WJ[joint]);
+      for (int axis = 0; axis < 3; ++axis) point.position_m[axis] += noise_m * random.Normal();
+      point.sd_m.setConstant(std::max(noise_m, kLeastSdM));
+      point.confidence = 1;
+      frame.points.push_back(point);
+    }
+    return frame;
+  };
+  return telling;
+}
+
+Telling TellPose(std::shared_ptr<const Stage> stage) {
+  const std::vector<int> joints = ShownJoints(stage->scene.body);
+  std::vector<int> parents;
+  for (const int joint : joints) {
+    const int parent = stage->scene.body.skeleton.joint(joint).parent;
+    const auto found = std::find(joints.begin(), joints.end(), parent);
+    parents.push_back(found == joints.end() ? -1 : static_cast<int>(found - joints.begin()));
+  }
+  Telling telling;
+  telling.rate_hz = kRateHz;
+  telling.reference = [stage, joints, parents](double t_s) {
+    const body::Kinematics at = KinematicsAt(*stage, t_s);
+    stream::ReferenceFrame frame;
+    frame.parents = parents;
+    for (const int joint : joints)
+      frame.positions_m.push_back(at.p_WJ[static_cast<std::size_t>(joint)]);
+    frame.com_m = body::CentreOfMass(stage->scene.body, at);
+    return frame;
+  };
+  return telling;
+}
+
+}  // namespace footing::stream_client

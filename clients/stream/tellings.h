@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include "clients/stream/body_stage.h"
+#include "clients/stream/plan.h"
+
+namespace footing::stream_client {
+
+/// Both fists 60 times a second as a tracker with white noise sees them.
+Telling TellHands(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed);
+
+/// The true pose 60 times a second: all joints, or of a skeleton of more than 64 those on the way
+/// to a landmark.
+Telling TellPose(std::shared_ptr<const Stage> stage);
+
+/// Joints of a skeleton that a reference frame has room for, parents first.
+std::vector<int> ShownJoints(const body::Body& body);
+
+}  // namespace footing::stream_client

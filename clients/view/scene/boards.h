@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "clients/view/scene/model.h"
+#include "clients/view/scene/part.h"
+
+namespace footing::scene {
+
+/// Distances between a board's sensors (Leach et al. 2014), plate frame P: x right, y front.
+inline constexpr double kSensorsAcrossM = 0.433;
+inline constexpr double kSensorsAlongM = 0.238;
+
+/// A board as it lies, with its newest sample where there is one.
+struct PlacedBoard {
+  stream::BoardPose pose;
+  bool live = false;  ///< A sample came within the last half second.
+  stream::BoardSample sample;
+
+  /// A point of the plate frame P in W.
+  Eigen::Vector2d InWorld(double right_m, double front_m) const;
+  /// Sensors in the order top left, top right, bottom left, bottom right.
+  std::array<Eigen::Vector2d, 4> Sensors() const;
+  std::array<double, 4> Loads() const;
+};
+
+/// The left and the right board of a rig by its layout, or by the default one.
+std::array<PlacedBoard, 2> BoardsOf(const Model& model, const std::string& rig,
+                                    std::int64_t now_ns);
+
+/// Two plates with their surface at z = 0, and on each sensor a column as high as its load.
+void AddBoards(const std::array<PlacedBoard, 2>& boards, PartList& parts);
+
+/// Left is blue, right is amber, in the whole picture.
+Colour SideColour(std::size_t side);
+
+}  // namespace footing::scene

@@ -1,0 +1,195 @@
+#include "clients/view/scene/person.h"
+
+#include <algorithm>
+#include <array>
+
+namespace footing::scene {
+namespace {
+
+using body::Landmark;
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+
+constexpr double kThighAndShankOfHeight = 0.49;  // common/body/segments.h
+constexpr double kSureSdM = 0.06;                // As good as it gets: not coloured.
+constexpr double kLostSdM = 0.35;                // As red as it gets.
+
+/// One figure being built. Sizes in the functions below are over the standing height, by eye.
+class Mannequin {
+ public:
+  Mannequin(const Anatomy& anatomy, const std::vector<Eigen::Vector3d>& p_m,
+            const std::vector<double>& sd_m, const PersonLook& look, PartList& parts)
+      : anatomy_(anatomy), p_m_(p_m), sd_m_(sd_m), look_(look), parts_(parts) {
+    height_ = std::max(0.3f, ((At(Landmark::kLeftHip) - At(Landmark::kLeftKnee)).norm() +
+                              (At(Landmark::kLeftKnee) - At(Landmark::kLeftAnkle)).norm()) /
+                                 static_cast<float>(kThighAndShankOfHeight));
+    hips_ = 0.5f * (At(Landmark::kLeftHip) + At(Landmark::kRightHip));
+    neck_ = At(Landmark::kNeck);
+    pelvis_ = Frame(At(Landmark::kLeftHip) - At(Landmark::kRightHip), neck_ - hips_);
+    chest_ = Frame(At(Landmark::kLeftShoulder) - At(Landmark::kRightShoulder), neck_ - hips_);
+  }
+
+  void Add() {
+    AddTrunk();
+    AddHead();
+    AddArm(Landmark::kLeftClavicle, Landmark::kLeftShoulder, Landmark::kLeftElbow,
+           Landmark::kLeftWrist, Landmark::kLeftHandEnd);
+    AddArm(Landmark::kRightClavicle, Landmark::kRightShoulder, Landmark::kRightElbow,
+           Landmark::kRightWrist, Landmark::kRightHandEnd);
+    AddLeg(Landmark::kLeftHip, Landmark::kLeftKnee, Landmark::kLeftAnkle);
+    AddLeg(Landmark::kRightHip, Landmark::kRightKnee, Landmark::kRightAnkle);
+    AddFoot(Landmark::kLeftAnkle, Landmark::kLeftToe, Landmark::kLeftToeEnd, look_.left_shoe);
+    AddFoot(Landmark::kRightAnkle, Landmark::kRightToe, Landmark::kRightToeEnd, look_.right_shoe);
+  }
+
+ private:
+  bool Has(Landmark landmark) const { return anatomy_.landmarks[landmark] >= 0; }
+  Vector3f At(Landmark landmark) const {
+    return p_m_[static_cast<std::size_t>(anatomy_.landmarks[landmark])].cast<float>();
+  }
+  /// Columns: forward, left, up.
+  static Matrix3f Frame(const Vector3f& left, const Vector3f& up) {
+    Matrix3f axes;
+    axes.col(2) = up.normalized();
+    Vector3f ahead = left.cross(axes.col(2));
+    if (ahead.norm() < 1e-6f) ahead = axes.col(2).unitOrthogonal();
+    axes.col(0) = ahead.normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+    return axes;
+  }
+  Colour Sure(const Colour& colour, Landmark landmark) const {
+    const auto joint = static_cast<std::size_t>(std::max(0, anatomy_.landmarks[landmark]));
+    if (joint >= sd_m_.size()) return colour;
+    const double lost = std::clamp((sd_m_[joint] - kSureSdM) / (kLostSdM - kSureSdM), 0.0, 1.0);
+    return colour + static_cast<float>(0.75 * lost) * (Rgb(0xd83a2b) - colour);
+  }
+  void Ball(const Vector3f& centre, const Matrix3f& axes, const Vector3f& half_of_height,
+            const Colour& colour, float gloss = 0.12f) {
+    parts_.AddBall(Ellipsoid(centre, axes, height_ * half_of_height), colour, 0.75f * colour,
+                   gloss);
+  }
+  void Limb(const Vector3f& a, const Vector3f& b, float radius_a, float radius_b,
+            const Colour& colour) {
+    parts_.AddLimb(a, b, height_ * radius_a, height_ * radius_b, colour, 0.12f, true);
+  }
+
+  void AddTrunk() {
+    const Vector3f up = neck_ - hips_;
+    Ball(hips_ + 0.07f * up, pelvis_, {0.060f, 0.088f, 0.058f}, look_.trousers);
+    const Matrix3f waist = Frame(pelvis_.col(1) + chest_.col(1), up);
+    Ball(hips_ + 0.30f * up, waist, {0.057f, 0.080f, 0.105f}, look_.shirt);
+    Ball(hips_ + 0.50f * up, waist, {0.060f, 0.083f, 0.110f}, look_.shirt);
+    Ball(hips_ + 0.68f * up, chest_, {0.066f, 0.091f, 0.108f}, look_.shirt);
+    const Vector3f shoulders = 0.5f * (At(Landmark::kLeftShoulder) + At(Landmark::kRightShoulder));
+    Ball(shoulders - 0.028f * height_ * chest_.col(2), chest_, {0.052f, 0.100f, 0.052f},
+         look_.shirt);
+  }
+
+  void AddHead() {
+    const Vector3f base = Has(Landmark::kHead) ? At(Landmark::kHead) : neck_;
+    const Vector3f fallback = base + 0.11f * height_ * chest_.col(2);
+    const Vector3f vertex = Has(Landmark::kVertex) ? At(Landmark::kVertex) : fallback;
+    Limb(neck_ - 0.015f * height_ * chest_.col(2), base + 0.2f * (vertex - base), 0.033f, 0.030f,
+         look_.skin);
+    // The skull ends at the vertex, whatever the rig calls the head's joint.
+    const Matrix3f axes = Frame(chest_.col(1), vertex - neck_);
+    const Vector3f middle = vertex - 0.066f * height_ * axes.col(2);
+    Ball(middle, axes, {0.054f, 0.045f, 0.068f}, look_.skin, 0.2f);
+    Ball(middle + height_ * (0.024f * axes.col(0) + 0.006f * axes.col(2)), axes,
+         {0.035f, 0.038f, 0.020f}, look_.visor, 0.6f);
+  }
+
+  void AddArm(Landmark clavicle, Landmark shoulder, Landmark elbow, Landmark wrist,
+              Landmark hand_end) {
+    const Vector3f s = At(shoulder), e = At(elbow), w = At(wrist);
+    const Vector3f root = Has(clavicle) ? At(clavicle) : neck_;
+    Limb(root + 0.35f * (s - root), s, 0.036f, 0.036f, look_.shirt);
+    Limb(neck_ + 0.004f * height_ * chest_.col(2), s, 0.028f, 0.034f, look_.shirt);
+    Limb(s, s + 0.55f * (e - s), 0.035f, 0.029f, look_.shirt);
+    Limb(s + 0.55f * (e - s), e, 0.026f, 0.023f, Sure(look_.skin, elbow));
+    Limb(e, e + 0.3f * (w - e), 0.023f, 0.024f, Sure(look_.skin, elbow));
+    Limb(e + 0.3f * (w - e), w, 0.024f, 0.016f, Sure(look_.skin, wrist));
+    Vector3f along = (w - e).normalized();
+    if (Has(hand_end) && (At(hand_end) - w).norm() > 1e-4f) along = (At(hand_end) - w).normalized();
+    const Matrix3f axes = Frame(chest_.col(0), along);
+    Ball(w + 0.046f * height_ * along, axes, {0.015f, 0.024f, 0.050f}, Sure(look_.skin, wrist));
+  }
+
+  void AddLeg(Landmark hip, Landmark knee, Landmark ankle) {
+    const Vector3f h = At(hip), k = At(knee), a = At(ankle);
+    const Colour trousers = Sure(look_.trousers, knee);
+    Limb(h, h + 0.45f * (k - h), 0.052f, 0.045f, trousers);
+    Limb(h + 0.45f * (k - h), k, 0.045f, 0.034f, trousers);
+    const Vector3f calf = k + 0.30f * (a - k);
+    Limb(k, calf, 0.034f, 0.034f, trousers);
+    Limb(calf, k + 0.72f * (a - k), 0.034f, 0.026f, trousers);
+    Limb(k + 0.72f * (a - k), a, 0.020f, 0.019f, Sure(look_.skin, ankle));
+  }
+
+  /// A shoe: the heel is behind and under the ankle, level with the ball.
+  void AddFoot(Landmark ankle, Landmark ball, Landmark tip, const Colour& colour) {
+    const Vector3f a = At(ankle);
+    if (!Has(ball)) return;
+    const Vector3f b = At(ball);
+    Vector3f ahead = Has(tip) ? Vector3f(At(tip) - b) : Vector3f(b - a);
+    if (ahead.norm() < 1e-5f) ahead = pelvis_.col(0);
+    ahead.normalize();
+    Vector3f down = (b - a) - (b - a).dot(ahead) * ahead;
+    down = down.norm() < 1e-5f ? Vector3f(-Vector3f::UnitZ()) : Vector3f(down.normalized());
+    const Vector3f left = -down.cross(ahead);
+    Matrix3f axes;
+    axes << ahead, left, -down;
+    const Vector3f heel = a + (b - a).dot(down) * down - 0.036f * height_ * ahead;
+    const Vector3f end = Has(tip) ? At(tip) : Vector3f(b + 0.03f * height_ * ahead);
+    const float length = (end - heel).norm() / height_;
+    const Colour shoe = Sure(colour, ankle);
+    const Vector3f lift = -0.008f * height_ * down;
+    Ball(0.5f * (heel + end) + lift, axes, {0.53f * length, 0.027f, 0.019f}, shoe);
+    Ball(heel + 0.022f * height_ * ahead + 1.6f * lift, axes, {0.034f, 0.025f, 0.028f}, shoe);
+    Limb(a, heel + 0.036f * height_ * ahead + 2 * lift, 0.021f, 0.022f, shoe);
+  }
+
+  const Anatomy& anatomy_;
+  const std::vector<Eigen::Vector3d>& p_m_;
+  const std::vector<double>& sd_m_;
+  const PersonLook& look_;
+  PartList& parts_;
+  float height_ = 1.7f;
+  Vector3f hips_, neck_;
+  Matrix3f pelvis_, chest_;
+};
+
+}  // namespace
+
+PersonLook MannequinLook() {
+  return {Rgb(0xecc9a4), Rgb(0x2e8a94), Rgb(0x36475a), Rgb(0x3f8fe0), Rgb(0xf2a33c), Rgb(0x26323d)};
+}
+
+PersonLook PlainLook(const Colour& colour) {
+  return {colour, colour, colour, colour, colour, 0.8f * colour};
+}
+
+void AddPerson(const Anatomy& anatomy, const std::vector<Eigen::Vector3d>& p_m,
+               const std::vector<double>& sd_m, const PersonLook& look, PartList& parts) {
+  if (!anatomy.person || p_m.size() != anatomy.parents.size()) {
+    return AddLimbs(anatomy.parents, anatomy.radii_m, p_m, look.shirt, parts);
+  }
+  Mannequin(anatomy, p_m, sd_m, look, parts).Add();
+}
+
+void AddLimbs(const std::vector<int>& parents, const std::vector<float>& radii_m,
+              const std::vector<Eigen::Vector3d>& p_m, const Colour& colour, PartList& parts) {
+  constexpr float kRadiusM = 0.03f;
+  const auto radius_at = [&](std::size_t joint) {
+    return joint < radii_m.size() && radii_m[joint] > 0 ? radii_m[joint] : kRadiusM;
+  };
+  for (std::size_t i = 1; i < std::min(parents.size(), p_m.size()); ++i) {
+    const int parent = parents[i];
+    if (parent < 0 || parent >= static_cast<int>(i)) continue;
+    const auto from = static_cast<std::size_t>(parent);
+    parts.AddLimb(p_m[from].cast<float>(), p_m[i].cast<float>(), radius_at(from), radius_at(i),
+                  colour, 0.1f, true);
+  }
+}
+
+}  // namespace footing::scene

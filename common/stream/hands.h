@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/stream/device.h"
+
+namespace footing::stream {
+
+/// A point of a body as a tracker sees it, in W.
+struct TrackedPoint {
+  DeviceRole role = DeviceRole::kUnspecified;  ///< kLeftHand: the middle of the left fist.
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sd_m = Eigen::Vector3d::Zero();  ///< Along W's axes.
+  double confidence = 0;                           ///< 0 to 1.
+};
+
+/// What a tracker sends: all points of one exposure.
+struct HandFrame {
+  std::string tracker;
+  std::string rig;
+  std::int64_t age_ns = 0;  ///< Since the exposure, when it was sent.
+  std::vector<TrackedPoint> points;
+  bool simulated = false;
+};
+
+/// What a stand-in sends: the pose that its made reports came from.
+struct ReferenceFrame {
+  std::string rig;
+  std::int64_t age_ns = 0;
+  std::vector<int> parents;                  ///< Of each joint; -1 for the root.
+  std::vector<Eigen::Vector3d> positions_m;  ///< Of each joint, in W.
+  Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
+};
+
+/// A tracked point as footingd publishes it.
+struct HandSample {
+  std::string rig;
+  DeviceRole role = DeviceRole::kUnspecified;
+  std::int64_t received_ns = 0;
+  std::int64_t sampled_ns = 0;  ///< Of the exposure.
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sd_m = Eigen::Vector3d::Zero();
+  double confidence = 0;
+  bool simulated = false;
+  std::string tracker;
+};
+
+/// A stand-in's true pose as footingd publishes it; never estimated from.
+struct ReferencePose {
+  std::string rig;
+  std::int64_t sampled_ns = 0;
+  std::vector<int> parents;
+  std::vector<Eigen::Vector3d> positions_m;
+  Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
+};
+
+}  // namespace footing::stream

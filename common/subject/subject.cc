@@ -1,0 +1,80 @@
+#include "common/subject/subject.h"
+
+#include <cmath>
+
+#include "common/config/config.h"
+#include "common/config/data_file.h"
+
+namespace footing::subject {
+namespace {
+
+constexpr double kLeastHeightM = 1.0, kMostHeightM = 2.3;
+constexpr double kLeastMassKg = 20, kMostMassKg = 250;
+constexpr double kLeastFootM = 0.15, kMostFootM = 0.36;
+constexpr double kUnnamedHeightM = 1.72;
+constexpr std::size_t kLongestCode = 32;
+
+bool IsCode(const std::string& code) {
+  if (code.empty() || code.size() > kLongestCode) return false;
+  for (const char c : code) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    if (!letter && !(c >= '0' && c <= '9') && c != '-' && c != '_') return false;
+  }
+  return true;
+}
+
+std::string Text(double value) {
+  std::string text = std::to_string(value);
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+Result<void> CheckRange(const std::string& key, double value, double least, double most,
+                        bool optional, const std::string& origin) {
+  if (optional && value == 0) return {};
+  if (std::isfinite(value) && value >= least && value <= most) return {};
+  const std::string range = Text(least) + " to " + Text(most);
+  if (value == 0) return UsageError(origin + ": " + key + " is missing; give " + range);
+  return UsageError(origin + ": " + key + " = " + Text(value) + " is outside " + range);
+}
+
+}  // namespace
+
+Subject UnnamedSubject() {
+  Subject subject;
+  subject.height_m = kUnnamedHeightM;
+  return subject;
+}
+
+Result<void> CheckSubject(const Subject& subject, const std::string& origin) {
+  if (!IsCode(subject.code)) {
+    return UsageError(origin + ": code \"" + subject.code +
+                      "\" must have 1 to 32 letters, digits, - and _");
+  }
+  if (const auto ok =
+          CheckRange("height_m", subject.height_m, kLeastHeightM, kMostHeightM, false, origin);
+      !ok) {
+    return ok;
+  }
+  if (const auto ok =
+          CheckRange("mass_kg", subject.mass_kg, kLeastMassKg, kMostMassKg, true, origin);
+      !ok) {
+    return ok;
+  }
+  return CheckRange("foot_length_m", subject.foot_length_m, kLeastFootM, kMostFootM, true, origin);
+}
+
+Result<Subject> ReadSubject(const std::string& path) {
+  Subject subject;
+  config::Binder binder;
+  binder.Text("code", subject.code, "The subject's code");
+  binder.Number("height_m", subject.height_m, kLeastHeightM, kMostHeightM, "Standing height");
+  binder.Number("mass_kg", subject.mass_kg, kLeastMassKg, kMostMassKg, "Checked by the T-pose");
+  binder.Number("foot_length_m", subject.foot_length_m, kLeastFootM, kMostFootM, "Heel to tip");
+  if (const auto read = binder.ApplyFile(path); !read) return read.error();
+  if (const auto ok = CheckSubject(subject, path); !ok) return ok.error();
+  return subject;
+}
+
+}  // namespace footing::subject

@@ -1,0 +1,136 @@
+#include <limits>
+
+#include "common/wire/scalar.h"
+#include "common/wire/wire.h"
+
+namespace footing::wire {
+namespace {
+
+stream::DeviceRole RoleOf(v1::DeviceRole role) {
+  return v1::DeviceRole_IsValid(role) ? static_cast<stream::DeviceRole>(role)
+                                      : stream::DeviceRole::kUnspecified;
+}
+
+/// Three numbers from `first` on; what is missing is NaN, so that a check finds it.
+template <typename Numbers>
+Eigen::Vector3d Triple(const Numbers& numbers, int first) {
+  Eigen::Vector3d value = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (int i = 0; i < 3 && first + i < numbers.size(); ++i)
+    value[i] = static_cast<double>(numbers.Get(first + i));
+  return value;
+}
+
+}  // namespace
+
+v1::HandFrame ToProto(const stream::HandFrame& value) {
+  v1::HandFrame message;
+  message.set_tracker(Utf8(value.tracker));
+  message.set_rig(Utf8(value.rig));
+  message.set_age_ns(value.age_ns);
+  for (const stream::TrackedPoint& point : value.points) {
+    v1::TrackedPoint& out = *message.add_points();
+    out.set_role(static_cast<v1::DeviceRole>(point.role));
+    out.set_x_m(Finite(point.position_m.x()));
+    out.set_y_m(Finite(point.position_m.y()));
+    out.set_z_m(Finite(point.position_m.z()));
+    out.set_sd_x_m(Finite(point.sd_m.x()));
+    out.set_sd_y_m(Finite(point.sd_m.y()));
+    out.set_sd_z_m(Finite(point.sd_m.z()));
+    out.set_confidence(Finite(point.confidence));
+  }
+  message.set_simulated(value.simulated);
+  return message;
+}
+
+stream::HandFrame FromProto(const v1::HandFrame& message) {
+  stream::HandFrame value;
+  value.tracker = message.tracker();
+  value.rig = message.rig();
+  value.age_ns = message.age_ns();
+  for (const v1::TrackedPoint& point : message.points()) {
+    value.points.push_back({RoleOf(point.role()),
+                            {point.x_m(), point.y_m(), point.z_m()},
+                            {point.sd_x_m(), point.sd_y_m(), point.sd_z_m()},
+                            point.confidence()});
+  }
+  value.simulated = message.simulated();
+  return value;
+}
+
+v1::ReferenceFrame ToProto(const stream::ReferenceFrame& value) {
+  v1::ReferenceFrame message;
+  message.set_rig(Utf8(value.rig));
+  message.set_age_ns(value.age_ns);
+  for (const int parent : value.parents) message.add_parents(parent);
+  for (const Eigen::Vector3d& position : value.positions_m) {
+    for (int i = 0; i < 3; ++i) message.add_position_m(static_cast<float>(Finite(position[i])));
+  }
+  for (int i = 0; i < 3; ++i) message.add_com_m(static_cast<float>(Finite(value.com_m[i])));
+  return message;
+}
+
+stream::ReferenceFrame FromProto(const v1::ReferenceFrame& message) {
+  stream::ReferenceFrame value;
+  value.rig = message.rig();
+  value.age_ns = message.age_ns();
+  value.parents.assign(message.parents().begin(), message.parents().end());
+  for (int i = 0; i < message.position_m_size(); i += 3) {
+    value.positions_m.push_back(Triple(message.position_m(), i));
+  }
+  value.com_m = Triple(message.com_m(), 0);
+  return value;
+}
+
+v1::HandSample ToProto(const stream::HandSample& value) {
+  v1::HandSample message;
+  message.set_rig(Utf8(value.rig));
+  message.set_role(static_cast<v1::DeviceRole>(value.role));
+  message.set_received_ns(value.received_ns);
+  message.set_sampled_ns(value.sampled_ns);
+  *message.mutable_position_m() = ToProto(value.position_m);
+  *message.mutable_sd_m() = ToProto(value.sd_m);
+  message.set_confidence(Finite(value.confidence));
+  message.set_simulated(value.simulated);
+  message.set_tracker(Utf8(value.tracker));
+  return message;
+}
+
+stream::HandSample FromProto(const v1::HandSample& message) {
+  stream::HandSample value;
+  value.rig = message.rig();
+  value.role = RoleOf(message.role());
+  value.received_ns = message.received_ns();
+  value.sampled_ns = message.sampled_ns();
+  value.position_m = FromProto(message.position_m());
+  value.sd_m = FromProto(message.sd_m());
+  value.confidence = Finite(message.confidence());
+  value.simulated = message.simulated();
+  value.tracker = message.tracker();
+  return value;
+}
+
+v1::ReferencePose ToProto(const stream::ReferencePose& value) {
+  v1::ReferencePose message;
+  message.set_rig(Utf8(value.rig));
+  message.set_sampled_ns(value.sampled_ns);
+  for (const int parent : value.parents) message.add_parents(parent);
+  for (const Eigen::Vector3d& position : value.positions_m) {
+    *message.add_positions_m() = ToProto(position);
+  }
+  *message.mutable_com_m() = ToProto(value.com_m);
+  return message;
+}
+
+stream::ReferencePose FromProto(const v1::ReferencePose& message) {
+  stream::ReferencePose value;
+  value.rig = message.rig();
+  value.sampled_ns = message.sampled_ns();
+  value.parents.assign(message.parents().begin(), message.parents().end());
+  for (const v1::Vector3& position : message.positions_m()) {
+    value.positions_m.push_back(FromProto(position));
+  }
+  value.com_m = FromProto(message.com_m());
+  return value;
+}
+
+}  // namespace footing::wire

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/stream/character.h"
+
+/// Whether a character does what it was told: a robust one that never obeys is of no use.
+namespace footing::tracking {
+
+/// Mean speed along the heading over the last half second, about one step of any gait: within a
+/// step the speed rises and falls by nature. One value a millisecond; 0 before the first.
+class SpeedOverAStep {
+ public:
+  void Add(double speed_mps);
+  double mean_mps() const;
+
+ private:
+  std::array<double, 500> last_mps_{};
+  std::size_t next_ = 0;
+};
+
+struct GivenCommand {
+  double time_s = 0;
+  double speed_mps = 0;
+  std::uint64_t falls_before = 0;
+};
+
+enum class Tracking {
+  kShort,      ///< Given for less than kLongCommandS: not judged.
+  kTracked,    ///< Its gait runs, at its speed to kTrackedMps, and nobody fell.
+  kOtherGait,  ///< Its gait was not reached.
+  kFell,
+  kOffSpeed,
+};
+inline constexpr std::size_t kTrackings = 5;
+inline constexpr double kLongCommandS = 3;
+inline constexpr double kTrackedMps = 0.25;
+
+/// Judges a command at its end, `time_s`, by the state then and the mean speed over a step.
+Tracking Judge(const GivenCommand& given, double time_s, const stream::GaitState& state,
+               double mean_mps);
+
+}  // namespace footing::tracking

@@ -1,0 +1,104 @@
+#include "daemon/sensor/hands/hands.h"
+
+#include <algorithm>
+
+namespace footing::hands {
+namespace {
+
+using stream::DeviceRole;
+
+constexpr std::size_t kMostNameBytes = 64;
+
+bool IsPlain(const std::string& text) {
+  return text.size() <= kMostNameBytes &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+bool IsNear(const Eigen::Vector3d& p_W) { return p_W.allFinite() && p_W.norm() <= kFarthestM; }
+
+std::string ProblemOfHead(const std::string& name, std::int64_t age_ns) {
+  if (!IsPlain(name)) return "a name is not printable text of at most 64 characters";
+  if (age_ns < 0 || age_ns > kOldestNs) {
+    return "age_ns is " + std::to_string(age_ns) + ", must be from 0 to 1000000000";
+  }
+  return "";
+}
+
+std::string ProblemOf(const stream::TrackedPoint& point) {
+  if (point.role == DeviceRole::kUnspecified) return "no role that is known";
+  if (!IsNear(point.position_m)) return "a position that is not within 10 m";
+  const auto is_sd = [](double sd_m) { return sd_m > 0 && sd_m <= kLargestSdM; };
+  if (!is_sd(point.sd_m.x()) || !is_sd(point.sd_m.y()) || !is_sd(point.sd_m.z())) {
+    return "a standard deviation that is not above 0 and at most 1 m";
+  }
+  if (!(point.confidence >= 0 && point.confidence <= 1)) {
+    return "a confidence that is not from 0 to 1";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string Problem(const stream::HandFrame& frame) {
+  if (!IsPlain(frame.tracker)) return "a name is not printable text of at most 64 characters";
+  if (auto problem = ProblemOfHead(frame.rig, frame.age_ns); !problem.empty()) return problem;
+  if (frame.points.empty() || frame.points.size() > kMostPoints) {
+    return "it has " + std::to_string(frame.points.size()) + " points, must have 1 to 8";
+  }
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    const std::string problem = ProblemOf(frame.points[i]);
+    if (!problem.empty()) return "point " + std::to_string(i + 1) + " has " + problem;
+  }
+  return "";
+}
+
+std::string Problem(const stream::ReferenceFrame& frame) {
+  if (auto problem = ProblemOfHead(frame.rig, frame.age_ns); !problem.empty()) return problem;
+  const std::size_t joints = frame.parents.size();
+  if (joints < 1 || joints > kMostJoints || frame.positions_m.size() != joints) {
+    return "it has " + std::to_string(joints) + " parents and " +
+           std::to_string(frame.positions_m.size()) + " positions, must have 1 to 64, as many each";
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    const std::string joint = "joint " + std::to_string(i);
+    if (frame.parents[i] < -1 || frame.parents[i] >= static_cast<int>(i)) {
+      return joint + " has parent " + std::to_string(frame.parents[i]) +
+             ", must be -1 or a joint before it";
+    }
+    if (!IsNear(frame.positions_m[i])) return joint + " has a position that is not within 10 m";
+  }
+  if (!IsNear(frame.com_m)) return "the centre of mass has a position that is not within 10 m";
+  return "";
+}
+
+std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::int64_t received_ns,
+                                          const std::string& default_rig) {
+  std::vector<stream::HandSample> samples;
+  for (const stream::TrackedPoint& point : frame.points) {
+    stream::HandSample sample;
+    sample.rig = frame.rig.empty() ? default_rig : frame.rig;
+    sample.role = point.role;
+    sample.received_ns = received_ns;
+    sample.sampled_ns = received_ns - frame.age_ns;
+    sample.position_m = point.position_m;
+    sample.sd_m = point.sd_m;
+    sample.confidence = point.confidence;
+    sample.simulated = frame.simulated;
+    sample.tracker = frame.tracker;
+    samples.push_back(std::move(sample));
+  }
+  return samples;
+}
+
+stream::ReferencePose ToPose(const stream::ReferenceFrame& frame, std::int64_t received_ns,
+                             const std::string& default_rig) {
+  stream::ReferencePose pose;
+  pose.rig = frame.rig.empty() ? default_rig : frame.rig;
+  pose.sampled_ns = received_ns - frame.age_ns;
+  pose.parents = frame.parents;
+  pose.positions_m = frame.positions_m;
+  pose.com_m = frame.com_m;
+  return pose;
+}
+
+}  // namespace footing::hands

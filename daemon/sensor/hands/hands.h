@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/stream/hands.h"
+
+/// Points of a body that trackers see, and the true poses of stand-ins: what of them is taken.
+namespace footing::hands {
+
+inline constexpr std::size_t kMostPoints = 8;
+inline constexpr std::size_t kMostJoints = 64;
+inline constexpr double kFarthestM = 10;  ///< From W's origin.
+inline constexpr double kLargestSdM = 1;
+inline constexpr std::int64_t kOldestNs = 1'000'000'000;
+
+/// What is wrong with a frame and what it must be, in one line; empty when it can be taken: a
+/// place within 10 m, a standard deviation in (0, 1] m along each axis, a confidence in [0, 1], a
+/// role, 1 to 8 points, an age in [0, 1] s, names of at most 64 printable characters.
+std::string Problem(const stream::HandFrame& frame);
+
+/// The same of a pose: 1 to 64 joints within 10 m, a centre of mass alike, parents before their
+/// children.
+std::string Problem(const stream::ReferenceFrame& frame);
+
+/// A frame without a problem as samples, one a point. Without a rig they are of `default_rig`.
+std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::int64_t received_ns,
+                                          const std::string& default_rig);
+
+stream::ReferencePose ToPose(const stream::ReferenceFrame& frame, std::int64_t received_ns,
+                             const std::string& default_rig);
+
+}  // namespace footing::hands

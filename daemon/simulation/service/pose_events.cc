@@ -1,0 +1,53 @@
+#include "daemon/simulation/service/pose_events.h"
+
+#include <cmath>
+#include <string>
+
+namespace footing::simulation {
+namespace {
+
+void Add(v1::Events& events, v1::Event::Kind kind, std::int64_t now_ns, const std::string& text) {
+  v1::Event& event = *events.add_events();
+  event.set_kind(kind);
+  event.set_host_ns(now_ns);
+  event.set_character(1);
+  event.set_text(text);
+}
+
+std::string Kilograms(double mass_kg) {
+  const auto tenths = std::llround(10 * mass_kg);
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " kg";
+}
+
+}  // namespace
+
+v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
+                               std::int64_t now_ns) {
+  v1::Events events;
+  const bool on_boards = frame.boards_valid[0] && frame.boards_valid[1];
+  const bool next_subject = has_last_ && frame.subject_number != subject_number_;
+  if (on_boards != on_boards_) {
+    Add(events, on_boards ? v1::Event::KIND_STREAM_BACK : v1::Event::KIND_STREAM_LOST, now_ns,
+        on_boards ? "both boards are there" : "a board is lost: the pose coasts");
+  }
+  if (next_subject) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns,
+        "next subject: " + subject.code + "; their T-pose is awaited");
+  } else if (calibrated_ && !frame.calibrated) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "the T-pose is to be taken anew");
+  }
+  if (!calibrated_ && frame.calibrated) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "T-pose taken: " + Kilograms(frame.mass_kg));
+  }
+  if (has_last_ && !next_subject && frame.resets > resets_) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "the filters began anew");
+  }
+  has_last_ = true;
+  on_boards_ = on_boards;
+  calibrated_ = frame.calibrated;
+  subject_number_ = frame.subject_number;
+  resets_ = frame.resets;
+  return events;
+}
+
+}  // namespace footing::simulation

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+
+#include "daemon/simulation/service/pose_frame.h"
+#include "daemon/simulation/service/subject_body.h"
+#include "footing/v1/character.pb.h"
+
+namespace footing::simulation {
+
+/// What a person should be told once, from one frame to the next: boards lost and back, a T-pose
+/// asked for and taken, the next subject, filters that began anew.
+class PoseEvents {
+ public:
+  v1::Events Between(const PoseFrame& frame, const Subject& subject, std::int64_t now_ns);
+
+ private:
+  bool has_last_ = false;
+  bool on_boards_ = false;
+  bool calibrated_ = false;
+  std::uint64_t subject_number_ = 0;
+  std::uint32_t resets_ = 0;
+};
+
+}  // namespace footing::simulation

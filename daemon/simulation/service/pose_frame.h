@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/stream/character.h"
+#include "daemon/simulation/momentum/estimate.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
+
+namespace footing::simulation {
+
+/// What the pose engine is told, with where it came from. Fixed size.
+struct PoseInputs {
+  reconstruction::Inputs sensors;  ///< Its time is set by the engine's own steps.
+  bool simulated = false;          ///< A stand-in is behind any of it.
+  std::uint64_t sensor_epoch = 0;
+  std::uint64_t sensor_sequence = 0;
+  std::uint64_t calibrate_number = 0;  ///< T-poses asked for so far.
+  std::uint64_t subject_number = 0;    ///< Subjects so far.
+};
+
+/// Inputs as they took effect: from this step on.
+struct PoseApplied {
+  std::uint64_t step = 0;
+  PoseInputs inputs;
+};
+
+inline constexpr std::size_t kMaxLinks = 96;
+inline constexpr int kMaxPoseApplied = 4;
+
+/// What the simulation thread hands over at every frame of the pose engine. Fixed size: filling and
+/// moving it allocates nothing. The links of a frame are those of its subject's skeleton.
+struct PoseFrame {
+  std::uint64_t step = 0;
+  double time_s = 0;
+  std::uint64_t overruns = 0;
+  std::uint64_t subject_number = 0;
+  std::uint64_t state_hash = 0;  ///< Of the pose's coordinates, bit for bit.
+  bool simulated = false;
+
+  std::array<bool, momentum::kFeet> boards_valid{};
+  std::array<double, momentum::kFeet> load_n{};  ///< Of each board, calibrated or not.
+  std::array<bool, 2> hands_valid{};
+
+  bool valid = false;
+  bool calibrated = false;
+  double calibration_progress = 0;
+  std::uint32_t calibration_restarts = 0;
+  double lag_s = 0;
+  std::uint32_t resets = 0;
+  double mass_kg = 0;
+  momentum::Estimate momentum;
+  std::size_t link_count = 0;
+  std::array<stream::LinkPose, kMaxLinks> links;
+  std::array<double, kMaxLinks> link_sd_m{};
+  double solve_us = 0;  ///< CPU time of the newest step.
+
+  std::array<PoseApplied, kMaxPoseApplied> applied;  ///< Since the last frame.
+  int applied_count = 0;
+};
+
+}  // namespace footing::simulation

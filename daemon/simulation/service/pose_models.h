@@ -1,0 +1,17 @@
+#pragma once
+
+#include "common/result/result.h"
+#include "daemon/simulation/reconstruction/models.h"
+#include "daemon/simulation/service/config.h"
+
+namespace footing::simulation {
+
+inline constexpr const char* kPoseFile = "pose.fmodel";
+inline constexpr const char* kComFile = "com.fmodel";
+
+/// The models of the pose engine, from the data folder: the prior of poses, and in the paper's mode
+/// the networks of the horizontal COM. One that is missing is an error that names it: nothing else
+/// takes its place.
+Result<reconstruction::Models> LoadPoseModels(const Config& config);
+
+}  // namespace footing::simulation

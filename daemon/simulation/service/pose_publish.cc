@@ -1,0 +1,197 @@
+#include "daemon/simulation/service/pose_publish.h"
+
+#include <algorithm>
+#include <array>
+
+#include "common/body/landmarks.h"
+#include "common/wire/wire.h"
+#include "daemon/simulation/service/pose_words.h"
+
+namespace footing::simulation {
+namespace {
+
+using body::Landmark;
+
+/// Thickness of a body at its joints over its height, by eye from anatomical proportions.
+struct Thickness {
+  Landmark landmark;
+  double of_height;
+};
+constexpr std::array<Thickness, 13> kThickness{{
+    {Landmark::kHips, 0.125},
+    {Landmark::kChest, 0.13},
+    {Landmark::kNeck, 0.065},
+    {Landmark::kHead, 0.065},
+    {Landmark::kLeftClavicle, 0.07},
+    {Landmark::kLeftShoulder, 0.062},
+    {Landmark::kLeftElbow, 0.046},
+    {Landmark::kLeftWrist, 0.034},
+    {Landmark::kLeftHip, 0.095},
+    {Landmark::kLeftKnee, 0.062},
+    {Landmark::kLeftAnkle, 0.042},
+    {Landmark::kLeftToe, 0.040},
+    {Landmark::kLeftToeEnd, 0.028},
+}};
+constexpr double kElseOfHeight = 0.03;
+
+void SetFoot(const momentum::FootEstimate& foot, v1::BodyFoot& message) {
+  message.set_contact(foot.contact);
+  message.set_valid(foot.valid);
+  *message.mutable_position_m() = wire::ToProto(foot.p_WF_m);
+  *message.mutable_variance_m2() = wire::ToProto(foot.variance_m2);
+  message.set_load_n(foot.load_n);
+  message.set_cop_valid(foot.cop_valid);
+  *message.mutable_cop_m() = wire::ToProto(foot.p_WP_m);
+  message.set_airborne_s(foot.airborne_s);
+}
+
+void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& mode,
+             v1::BodyState& body) {
+  body.set_subject(subject.code);
+  body.set_mode(mode);
+  body.set_calibrated(frame.calibrated);
+  body.set_calibration_progress(frame.calibration_progress);
+  body.set_calibration_restarts(frame.calibration_restarts);
+  body.set_mass_kg(frame.mass_kg);
+  body.set_height_m(subject.height_m);
+  body.set_lag_s(frame.lag_s);
+  body.set_momentum_valid(frame.momentum.valid);
+  *body.mutable_com_variance_m2() = wire::ToProto(frame.momentum.position_variance_m2);
+  *body.mutable_com_acceleration_mps2() = wire::ToProto(frame.momentum.a_WC_mps2);
+  *body.mutable_angular_momentum_kgm2ps() = wire::ToProto(frame.momentum.angular_momentum_kgm2ps);
+  *body.mutable_angular_momentum_variance() =
+      wire::ToProto(frame.momentum.angular_momentum_variance);
+  for (const auto& foot : frame.momentum.feet) SetFoot(foot, *body.add_feet());
+  body.set_resets(frame.resets);
+  for (std::size_t i = 0; i < frame.link_count; ++i) body.add_link_sd_m(frame.link_sd_m[i]);
+  body.set_note(PoseNote(frame, subject));
+  body.set_solve_us(frame.solve_us);
+  for (const bool seen : frame.hands_valid) body.add_hands_seen(seen);
+}
+
+void SetFootInput(const momentum::FootLoads& foot, v1::PoseFoot& message) {
+  message.set_valid(foot.valid);
+  for (std::size_t i = 0; i < foot.count; ++i) {
+    v1::PoseCell& cell = *message.add_cells();
+    *cell.mutable_position_m() = wire::ToProto(foot.cells[i].p_WS_m);
+    cell.set_load_n(foot.cells[i].load_n);
+  }
+}
+
+momentum::FootLoads FootFrom(const v1::PoseFoot& message) {
+  momentum::FootLoads foot;
+  foot.valid = message.valid();
+  foot.count = std::min(static_cast<std::size_t>(message.cells_size()), momentum::kMaxCells);
+  for (std::size_t i = 0; i < foot.count; ++i) {
+    const v1::PoseCell& cell = message.cells(static_cast<int>(i));
+    foot.cells[i] = {wire::FromProto(cell.position_m()), cell.load_n()};
+  }
+  return foot;
+}
+
+void SetHandInput(const reconstruction::HandInput& hand, v1::PoseHand& message) {
+  message.set_valid(hand.valid);
+  *message.mutable_position_m() = wire::ToProto(hand.p_W_m);
+  *message.mutable_sd_m() = wire::ToProto(hand.sd_m);
+}
+
+reconstruction::HandInput HandFrom(const v1::PoseHand& message) {
+  reconstruction::HandInput hand;
+  hand.valid = message.valid();
+  hand.p_W_m = wire::FromProto(message.position_m());
+  hand.sd_m = wire::FromProto(message.sd_m());
+  return hand;
+}
+
+}  // namespace
+
+v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subject,
+                                    const std::string& mode, const std::string& world,
+                                    const std::string& rig) {
+  v1::CharacterFrame message;
+  message.set_world(world);
+  message.set_step(frame.step);
+  message.set_time_s(frame.time_s);
+  message.set_overruns(frame.overruns);
+  message.set_state_hash(frame.state_hash);
+  v1::Character& character = *message.add_characters();
+  character.set_character(1);
+  character.set_rig(rig);
+  character.set_valid(frame.valid);
+  for (std::size_t i = 0; i < frame.link_count; ++i) {
+    *character.add_links() = wire::ToProto(frame.links[i]);
+  }
+  for (const auto& foot : frame.momentum.feet) {
+    *character.add_contacts() = wire::ToProto(
+        stream::Contact{foot.contact, foot.cop_valid ? foot.p_WP_m : foot.p_WF_m, foot.load_n});
+  }
+  *character.mutable_com_m() = wire::ToProto(frame.momentum.p_WC_m);
+  *character.mutable_com_velocity_mps() = wire::ToProto(frame.momentum.v_WC_mps);
+  character.set_simulated_input(frame.simulated);
+  SetBody(frame, subject, mode, *character.mutable_body());
+  return message;
+}
+
+stream::Skeleton ToSkeleton(const body::Body& body) {
+  stream::Skeleton skeleton;
+  skeleton.character = 1;
+  skeleton.name = "person";
+  skeleton.contact_points = {"left_foot", "right_foot"};
+  for (const body::Joint& joint : body.skeleton.joints) {
+    const double size_m = kElseOfHeight * body.height_m;
+    skeleton.links.push_back({joint.name, joint.parent, Eigen::Vector3d::Constant(size_m)});
+  }
+  for (const Thickness& thickness : kThickness) {
+    for (const Landmark landmark : {thickness.landmark, body::Mirrored(thickness.landmark)}) {
+      const int joint = body.landmarks[landmark];
+      if (joint < 0) continue;
+      skeleton.links[static_cast<std::size_t>(joint)].size_m.setConstant(thickness.of_height *
+                                                                         body.height_m);
+    }
+  }
+  return skeleton;
+}
+
+v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subject) {
+  const PoseInputs& inputs = applied.inputs;
+  v1::AppliedInput message;
+  message.set_step(applied.step);
+  message.set_sensor_epoch(inputs.sensor_epoch);
+  message.set_sensor_sequence(inputs.sensor_sequence);
+  message.set_simulated(inputs.simulated);
+  v1::PoseInput& pose = *message.mutable_pose();
+  SetFootInput(inputs.sensors.loads.feet[0], *pose.mutable_left_foot());
+  SetFootInput(inputs.sensors.loads.feet[1], *pose.mutable_right_foot());
+  SetHandInput(inputs.sensors.hands[0], *pose.mutable_left_hand());
+  SetHandInput(inputs.sensors.hands[1], *pose.mutable_right_hand());
+  pose.set_calibrate_number(inputs.calibrate_number);
+  pose.set_subject_number(inputs.subject_number);
+  pose.set_subject_code(subject.code);
+  pose.set_subject_height_m(subject.height_m);
+  pose.set_subject_mass_kg(subject.mass_kg);
+  pose.set_subject_foot_length_m(subject.foot_length_m);
+  return message;
+}
+
+PoseApplied PoseAppliedFrom(const v1::AppliedInput& message) {
+  PoseApplied applied;
+  applied.step = message.step();
+  PoseInputs& inputs = applied.inputs;
+  inputs.sensor_epoch = message.sensor_epoch();
+  inputs.sensor_sequence = message.sensor_sequence();
+  inputs.simulated = message.simulated();
+  const v1::PoseInput& pose = message.pose();
+  inputs.sensors.loads.feet = {FootFrom(pose.left_foot()), FootFrom(pose.right_foot())};
+  inputs.sensors.hands = {HandFrom(pose.left_hand()), HandFrom(pose.right_hand())};
+  inputs.calibrate_number = pose.calibrate_number();
+  inputs.subject_number = pose.subject_number();
+  return applied;
+}
+
+Subject SubjectFrom(const v1::AppliedInput& message) {
+  const v1::PoseInput& pose = message.pose();
+  return {pose.subject_code(), pose.subject_height_m(), pose.subject_mass_kg(),
+          pose.subject_foot_length_m()};
+}
+
+}  // namespace footing::simulation

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "common/exchange/bounded_queue.h"
+#include "common/exchange/latest.h"
+#include "daemon/simulation/service/pose_frame.h"
+
+namespace footing::simulation {
+
+/// One subject's reconstruction: made and destroyed by the io thread, advanced by the other one.
+struct SubjectRun {
+  std::uint64_t number = 0;
+  reconstruction::Reconstruction reconstruction;
+};
+
+/// How subjects come to the simulation thread and go back: it never allocates or frees.
+struct SubjectExchange {
+  static constexpr std::size_t kMost = 4;  ///< On their way at one time.
+
+  exchange::BoundedQueue<std::unique_ptr<SubjectRun>> next{kMost};
+  exchange::BoundedQueue<std::unique_ptr<SubjectRun>> done{kMost};
+};
+
+/// The pose engine on the simulation thread (see SimulationThread).
+///
+/// A subject takes effect with the first inputs that carry its number; it was queued before them.
+class PoseRun {
+ public:
+  using Inputs = PoseInputs;
+  using Frame = PoseFrame;
+
+  /// Without new inputs for so long, all that they said has become unknown.
+  static constexpr double kStreamLostS = 0.25;
+
+  PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExchange& subjects);
+
+  void StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame);
+  void FillOnSimThread(Frame& frame) const;
+  void TakenOnSimThread(Frame& frame) const { frame.applied_count = 0; }
+
+ private:
+  void Obey(const PoseInputs& inputs);
+
+  std::unique_ptr<SubjectRun> subject_;
+  double rate_hz_;
+  SubjectExchange* subjects_;
+  std::uint64_t step_ = 0;
+  std::uint64_t quiet_steps_ = 0;  ///< Since the last inputs.
+  std::uint64_t calibrate_number_ = 0;
+  reconstruction::Inputs told_;
+  bool simulated_ = false;
+  std::int64_t solve_ns_ = 0;
+};
+
+}  // namespace footing::simulation

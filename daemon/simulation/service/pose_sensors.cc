@@ -1,0 +1,148 @@
+#include "daemon/simulation/service/pose_sensors.h"
+
+#include <cmath>
+#include <utility>
+
+#include "common/stream/setup.h"
+#include "common/units/units.h"
+#include "common/virtual_sensors/board_cells.h"
+#include "common/wire/wire.h"
+
+namespace footing::simulation {
+namespace {
+
+/// A tracker that says less of itself is not believed: no point is known better than this.
+constexpr double kLeastHandSdM = 0.002;
+constexpr double kMostHandSdM = 1;
+
+bool IsFinite(const v1::Vector3& v) {
+  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+bool IsOld(std::int64_t seen_ns, std::int64_t now_ns, double timeout_s) {
+  return NanosecondsToSeconds(now_ns - seen_ns) > timeout_s;
+}
+
+void PlaceCells(const stream::BoardPose& pose, momentum::FootLoads& foot) {
+  const auto places = virtual_sensors::SensorPlaces({{pose.x_m, pose.y_m}, pose.yaw_rad});
+  foot.count = places.size();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    foot.cells[i].p_WS_m = {places[i].x(), places[i].y(), 0};
+  }
+}
+
+/// 0 left, 1 right; -1: another role.
+int SideOf(v1::DeviceRole role, v1::DeviceRole left, v1::DeviceRole right) {
+  return role == left ? 0 : role == right ? 1 : -1;
+}
+
+int BoardSideOf(v1::DeviceRole role) {
+  return SideOf(role, v1::DEVICE_ROLE_LEFT_BOARD, v1::DEVICE_ROLE_RIGHT_BOARD);
+}
+
+}  // namespace
+
+PoseSensors::PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out)
+    : wanted_rig_(std::move(rig)), followed_rig_(wanted_rig_), out_(out) {
+  const stream::BoardLayout layout = stream::DefaultLayout();
+  PlaceCells(layout.left, inputs_.sensors.loads.feet[0]);
+  PlaceCells(layout.right, inputs_.sensors.loads.feet[1]);
+}
+
+void PoseSensors::Bind(const v1::DeviceStatusList& status) {
+  for (const v1::DeviceStatus& device : status.devices()) {
+    if (followed_rig_.empty() && BoardSideOf(device.role()) >= 0) followed_rig_ = device.rig();
+  }
+  std::array<Board, momentum::kFeet> boards{};
+  for (const v1::DeviceStatus& device : status.devices()) {
+    const int side = BoardSideOf(device.role());
+    if (side < 0 || device.rig() != followed_rig_) continue;
+    Board& board = boards[static_cast<std::size_t>(side)];
+    const Board& before = boards_[static_cast<std::size_t>(side)];
+    if (before.bound && before.device == device.device()) board = before;
+    board.bound = true;
+    board.device = device.device();
+  }
+  boards_ = boards;
+}
+
+void PoseSensors::Place(const v1::SetupState& setup) {
+  for (const v1::RigSetup& message : setup.rigs()) {
+    if (message.rig() != followed_rig_ || !message.has_layout()) continue;
+    stream::BoardLayout layout = wire::FromProto(message).layout;
+    if (layout.preset.empty()) layout = stream::DefaultLayout();
+    PlaceCells(layout.left, inputs_.sensors.loads.feet[0]);
+    PlaceCells(layout.right, inputs_.sensors.loads.feet[1]);
+  }
+}
+
+void PoseSensors::TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns) {
+  const std::array<double, 4> corners_n{sample.top_left_n(), sample.top_right_n(),
+                                        sample.bottom_left_n(), sample.bottom_right_n()};
+  for (const double corner_n : corners_n) {
+    if (!std::isfinite(corner_n)) return;
+  }
+  for (std::size_t side = 0; side < boards_.size(); ++side) {
+    Board& board = boards_[side];
+    if (!board.bound || board.device != sample.device()) continue;
+    board.seen = true;
+    board.seen_ns = now_ns;
+    board.simulated = sample.simulated();
+    for (std::size_t i = 0; i < corners_n.size(); ++i) {
+      inputs_.sensors.loads.feet[side].cells[i].load_n = corners_n[i];
+    }
+  }
+}
+
+void PoseSensors::TakeHand(const v1::HandSample& sample, std::int64_t now_ns) {
+  const int side = SideOf(sample.role(), v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND);
+  if (side < 0 || sample.rig() != followed_rig_) return;
+  if (!IsFinite(sample.position_m()) || !IsFinite(sample.sd_m())) return;
+  if (!(sample.confidence() > 0)) return;
+  Hand& hand = hands_[static_cast<std::size_t>(side)];
+  hand = {true, now_ns, sample.simulated()};
+  reconstruction::HandInput& told = inputs_.sensors.hands[static_cast<std::size_t>(side)];
+  told.p_W_m = wire::FromProto(sample.position_m());
+  told.sd_m = wire::FromProto(sample.sd_m()).cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM);
+}
+
+void PoseSensors::Judge(std::int64_t now_ns) {
+  inputs_.simulated = false;
+  for (std::size_t side = 0; side < boards_.size(); ++side) {
+    Board& board = boards_[side];
+    if (board.seen && IsOld(board.seen_ns, now_ns, kBoardTimeoutS)) board.seen = false;
+    inputs_.sensors.loads.feet[side].valid = board.seen;
+    inputs_.simulated |= board.seen && board.simulated;
+  }
+  for (std::size_t side = 0; side < hands_.size(); ++side) {
+    Hand& hand = hands_[side];
+    if (hand.seen && IsOld(hand.seen_ns, now_ns, kHandTimeoutS)) hand.seen = false;
+    inputs_.sensors.hands[side].valid = hand.seen;
+    inputs_.simulated |= hand.seen && hand.simulated;
+  }
+}
+
+void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
+  if (tick.refilled()) return;
+  if (tick.has_status()) Bind(tick.status());
+  if (tick.has_setup()) Place(tick.setup());
+  if (tick.snapshot()) return;
+  for (const v1::BoardSample& sample : tick.boards().samples()) TakeBoard(sample, now_ns);
+  for (const v1::HandSample& sample : tick.hands().samples()) TakeHand(sample, now_ns);
+  Judge(now_ns);
+  inputs_.sensor_epoch = tick.epoch();
+  inputs_.sensor_sequence = tick.sequence();
+  out_.Write(inputs_);
+}
+
+void PoseSensors::Calibrate() {
+  ++inputs_.calibrate_number;
+  out_.Write(inputs_);
+}
+
+void PoseSensors::TakeSubject(std::uint64_t number) {
+  inputs_.subject_number = number;
+  out_.Write(inputs_);
+}
+
+}  // namespace footing::simulation

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "common/exchange/latest.h"
+#include "daemon/simulation/service/pose_frame.h"
+#include "footing/v1/command.pb.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::simulation {
+
+/// Turns ticks of the sensor daemon into what the pose engine is told, on the io thread: the newest
+/// raw sample of the rig's left and right board with its cells' places in W, and of its hands.
+///
+/// A board without samples, or a hand not seen, for longer than its timeout is not valid, which is
+/// not the same as no load. Samples that are not finite count as none.
+class PoseSensors {
+ public:
+  static constexpr double kBoardTimeoutS = 0.2;
+  static constexpr double kHandTimeoutS = 0.15;
+
+  /// `rig` empty: the first rig with a board.
+  PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out);
+
+  void OnTick(const v1::Tick& tick, std::int64_t now_ns);
+  void Calibrate();
+  void TakeSubject(std::uint64_t number);
+
+  const std::string& rig() const { return followed_rig_; }
+  const PoseInputs& inputs() const { return inputs_; }
+
+ private:
+  struct Board {
+    bool bound = false;  ///< A device has the role.
+    std::uint32_t device = 0;
+    bool seen = false;
+    std::int64_t seen_ns = 0;
+    bool simulated = false;
+  };
+  struct Hand {
+    bool seen = false;
+    std::int64_t seen_ns = 0;
+    bool simulated = false;
+  };
+
+  void Bind(const v1::DeviceStatusList& status);
+  void Place(const v1::SetupState& setup);
+  void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
+  void TakeHand(const v1::HandSample& sample, std::int64_t now_ns);
+  void Judge(std::int64_t now_ns);
+
+  const std::string wanted_rig_;
+  std::string followed_rig_;
+  exchange::Latest<PoseInputs>& out_;
+  std::array<Board, momentum::kFeet> boards_{};
+  std::array<Hand, 2> hands_{};
+  PoseInputs inputs_;
+};
+
+}  // namespace footing::simulation

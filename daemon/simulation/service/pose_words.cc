@@ -1,0 +1,106 @@
+#include "daemon/simulation/service/pose_words.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "common/units/units.h"
+#include "daemon/simulation/momentum/calibration.h"
+
+namespace footing::simulation {
+namespace {
+
+using momentum::TPoseCalibration;
+
+/// A foot that stepped off is told after so long: steps and kicks are none of our business.
+constexpr double kAwayS = 0.5;
+constexpr std::array<const char*, 2> kSides{"left", "right"};
+
+std::string Text(double value, int decimals) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, value);
+  return buffer.data();
+}
+
+void Add(std::string& note, const std::string& words) {
+  if (!note.empty()) note += "; ";
+  note += words;
+}
+
+std::string LostBoards(const PoseFrame& frame) {
+  if (!frame.boards_valid[0] && !frame.boards_valid[1]) {
+    return "nothing comes from the boards: are both on, and assigned as left and right?";
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!frame.boards_valid[side]) {
+      return std::string("nothing comes from the ") + kSides[side] + " board";
+    }
+  }
+  return "";
+}
+
+std::string Awaited(const PoseFrame& frame) {
+  const double total_n = frame.load_n[0] + frame.load_n[1];
+  if (total_n < KilogramsToNewtons(TPoseCalibration::kLeastMassKg)) {
+    return "step on, one foot on each board";
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (frame.load_n[side] < TPoseCalibration::kLeastFootShare * total_n) {
+      return std::string("put weight on the ") + kSides[side] + " foot";
+    }
+  }
+  const double left_s = (1 - frame.calibration_progress) * TPoseCalibration::kSeconds;
+  if (frame.calibration_progress > 0.04) {
+    return "T-pose: hold still, " + Text(left_s, 1) + " s more";
+  }
+  return frame.calibration_restarts > 0 ? "you moved: stand still, arms out to the sides"
+                                        : "stand still, arms out to the sides";
+}
+
+void AddFeet(const PoseFrame& frame, std::string& note) {
+  const auto& feet = frame.momentum.feet;
+  const auto away = [](const momentum::FootEstimate& foot) {
+    return !foot.contact && foot.airborne_s > kAwayS;
+  };
+  if (away(feet[0]) && away(feet[1])) {
+    return Add(note, "nobody stands on the boards");
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!away(feet[side])) continue;
+    Add(note, std::string("the ") + kSides[side] + " foot is off its board for " +
+                  Text(feet[side].airborne_s, 1) + " s: its place is a guess");
+  }
+}
+
+void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) {
+  if (subject.mass_kg <= 0 || frame.mass_kg <= 0) return;
+  const double difference = frame.mass_kg / subject.mass_kg - 1;
+  if (std::abs(difference) <= kMassTolerance) return;
+  Add(note, "the boards say " + Text(frame.mass_kg, 1) + " kg, the subject's file " +
+                Text(subject.mass_kg, 1) + " kg: is it " + subject.code +
+                ", and are both boards tared?");
+}
+
+}  // namespace
+
+std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
+  std::string note = LostBoards(frame);
+  if (!frame.calibrated) {
+    if (note.empty()) note = Awaited(frame);
+    return note;
+  }
+  if (note.empty()) AddFeet(frame, note);
+  if (!frame.hands_valid[0] && !frame.hands_valid[1]) {
+    Add(note, "no hand is seen");
+  } else {
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (!frame.hands_valid[side]) {
+        Add(note, std::string("the ") + kSides[side] + " hand is not seen");
+      }
+    }
+  }
+  AddMass(frame, subject, note);
+  return note;
+}
+
+}  // namespace footing::simulation

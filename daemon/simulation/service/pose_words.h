@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/simulation/service/pose_frame.h"
+#include "daemon/simulation/service/subject_body.h"
+
+namespace footing::simulation {
+
+/// Further than this from the subject file, the weight on the boards is another person's, or a
+/// board needs its tare.
+inline constexpr double kMassTolerance = 0.03;
+
+/// What is wrong and what to do about it, for a person; empty when all is well.
+std::string PoseNote(const PoseFrame& frame, const Subject& subject);
+
+}  // namespace footing::simulation

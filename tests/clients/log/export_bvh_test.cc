@@ -1,0 +1,95 @@
+#include "clients/log/export_bvh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/body/kinematics.h"
+#include "common/motion/bvh.h"
+#include "common/wire/wire.h"
+
+namespace footing::log_client {
+namespace {
+
+/// A chain of three links: root, a joint 0.5 m above it, and an end another 0.5 m on.
+v1::Skeleton Chain() {
+  v1::Skeleton skeleton;
+  int parent = -1;
+  for (const char* name : {"root", "spine", "top"}) {
+    v1::Link& link = *skeleton.add_links();
+    link.set_name(name);
+    link.set_parent(parent++);
+  }
+  return skeleton;
+}
+
+v1::CharacterFrame FrameAt(double time_s, double bend_rad, bool calibrated = true) {
+  v1::CharacterFrame frame;
+  frame.set_time_s(time_s);
+  v1::Character& character = *frame.add_characters();
+  character.mutable_body()->set_calibrated(calibrated);
+  character.mutable_body()->set_subject("p07");
+  const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond bent(Eigen::AngleAxisd(bend_rad, Eigen::Vector3d::UnitY()));
+  const Eigen::Vector3d root(0.1 * time_s, 0, 1), spine = root + Eigen::Vector3d(0, 0, 0.5);
+  const Eigen::Vector3d top = spine + bent * Eigen::Vector3d(0, 0, 0.5);
+  *character.add_links() = wire::ToProto(stream::LinkPose{root, upright});
+  *character.add_links() = wire::ToProto(stream::LinkPose{spine, bent});
+  *character.add_links() = wire::ToProto(stream::LinkPose{top, bent});
+  return frame;
+}
+
+TEST(MotionGatherer, TheMotionHasEveryLinkWhereItWas) {
+  MotionGatherer gatherer(Chain());
+  for (int i = 0; i < 60; ++i) gatherer.Add(FrameAt(i / 120.0, 0.02 * i));
+  const auto motion = gatherer.Finish();
+  ASSERT_TRUE(motion.ok()) << motion.error().message;
+  EXPECT_NEAR(motion->rate_hz, 120, 1e-6);
+  ASSERT_EQ(motion->frames(), 60);
+  EXPECT_EQ(gatherer.subject(), "p07");
+  // Through the file and back.
+  const auto read = motion::ParseBvh(motion::WriteBvh(*motion), "made.bvh");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  body::Kinematics at(read->skeleton);
+  for (const int i : {0, 30, 59}) {
+    body::ComputeKinematics(read->skeleton, read->q.col(i), at);
+    const v1::CharacterFrame frame = FrameAt(i / 120.0, 0.02 * i);
+    for (int link = 0; link < 3; ++link) {
+      const Eigen::Vector3d true_m = wire::FromProto(frame.characters(0).links(link).position_m());
+      EXPECT_NEAR((at.p_WJ[static_cast<std::size_t>(link)] - true_m).norm(), 0, 1e-4);
+    }
+  }
+}
+
+TEST(MotionGatherer, AMissingFrameKeepsThePoseBeforeAndTheTime) {
+  MotionGatherer gatherer(Chain());
+  for (const int i : {0, 1, 2, 4, 5}) gatherer.Add(FrameAt(i / 120.0, 0.1 * i));
+  const auto motion = gatherer.Finish();
+  ASSERT_TRUE(motion.ok());
+  ASSERT_EQ(motion->frames(), 6);
+  EXPECT_EQ(motion->q.col(3), motion->q.col(2));
+  EXPECT_NE(motion->q.col(4), motion->q.col(3));
+}
+
+TEST(MotionGatherer, WhatCameBeforeTheTPoseIsLeftOut) {
+  MotionGatherer gatherer(Chain());
+  for (int i = 0; i < 5; ++i) gatherer.Add(FrameAt(i / 120.0, 0, false));
+  EXPECT_TRUE(gatherer.empty());
+  EXPECT_FALSE(gatherer.Finish().ok());
+}
+
+TEST(MotionGatherer, TimeThatGoesBackIsRefused) {
+  MotionGatherer gatherer(Chain());
+  gatherer.Add(FrameAt(1, 0));
+  gatherer.Add(FrameAt(0.5, 0));
+  EXPECT_EQ(gatherer.Finish().error().kind, ErrorKind::kInvalidData);
+}
+
+TEST(ExportBvh, AFileThatIsNoneIsRefusedByName) {
+  const auto exported = ExportBvh("/nowhere/walk.mcap", "/tmp", false);
+  ASSERT_FALSE(exported.ok());
+  EXPECT_NE(exported.error().message.find("/nowhere/walk.mcap"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace footing::log_client

@@ -1,0 +1,204 @@
+#include "clients/stream/boards.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "clients/stream/forearm.h"
+#include "clients/stream/tellings.h"
+#include "common/body/kinematics.h"
+#include "common/body/momentum.h"
+#include "common/body/points.h"
+#include "common/units/units.h"
+
+namespace footing::stream_client {
+namespace {
+
+using testing::HasSubstr;
+
+/// A short script as a file.
+class BoardsTest : public testing::Test {
+ protected:
+  BoardsTest() {
+    std::ofstream(path_) << R"({"keys": [{"seconds": 1.5}, {"seconds": 1, "both_raise_deg": -80},
+        {"seconds": 1}, {"seconds": 0.7, "crouch_m": 0.2, "weight": 0.4},
+        {"seconds": 0.7, "crouch_m": 0, "weight": 0}, {"seconds": 1}]})";
+    options_.stage.motion = path_;
+    options_.stage.mass_kg = 60;
+  }
+  ~BoardsTest() override { std::remove(path_.c_str()); }
+
+  const std::string path_ = testing::TempDir() + "footing_boards_test.json";
+  BoardsOptions options_;
+};
+
+TEST_F(BoardsTest, TwoBoardsAndTheTruePoseAreThereAndHandsWhenAskedFor) {
+  auto plan = PlanBoards(options_, {});
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_EQ(plan->devices.size(), 2u);
+  EXPECT_EQ(plan->devices[0].role(), stream::DeviceRole::kLeftBoard);
+  EXPECT_EQ(plan->devices[1].role(), stream::DeviceRole::kRightBoard);
+  ASSERT_EQ(plan->tellings.size(), 1u);
+  EXPECT_TRUE(plan->tellings[0].reference);
+  EXPECT_EQ(plan->duration_s, 0);  // A script again and again.
+  options_.hands = "move";
+  EXPECT_EQ(PlanBoards(options_, {})->tellings.size(), 2u);
+  options_.hands = "wiimote";
+  EXPECT_EQ(PlanBoards(options_, {})->devices.size(), 4u);
+}
+
+TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
+  options_.hands = "kinect";
+  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("none, move and wiimote"));
+  options_.hands = "none";
+  options_.stage.motion = "dance";
+  const auto unknown = PlanBoards(options_, {});
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(unknown.error().message, HasSubstr("demo quiet"));
+  options_.stage.motion = "/nonexistent/walk.bvh";
+  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("/nonexistent/walk.bvh"));
+}
+
+TEST_F(BoardsTest, TheBoardsTotalAndCopAreThoseOfTheMotion) {
+  const auto stage = MakeStage(options_.stage);
+  ASSERT_TRUE(stage);
+  const auto& scene = stage->scene;
+  for (double t_s = 0.05; t_s < stage->duration_s(); t_s += 0.0917) {
+    double total_n = 0;
+    Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+    for (std::size_t f = 0; f < 2; ++f) {
+      const auto load = virtual_sensors::LoadBoard(stage->boards[f], stage->FootAt(f, t_s));
+      const auto places = virtual_sensors::SensorPlaces(stage->boards[f]);
+      for (std::size_t k = 0; k < 4; ++k) {
+        total_n += load.corners_n[k];
+        moment += load.corners_n[k] * places[k];
+      }
+    }
+    const auto at = stage->At(t_s);
+    const auto between = [&](const auto& columns) {
+      return ((1 - at.share) * columns.col(at.frame) + at.share * columns.col(at.frame + 1)).eval();
+    };
+    EXPECT_NEAR(total_n, between(scene.reaction.force_n).z(), 1e-6) << t_s;
+    EXPECT_LT((moment / total_n - between(scene.reaction.cop_m)).norm(), 0.002) << t_s;
+  }
+  EXPECT_EQ(stage->outside_share, 0);
+}
+
+TEST_F(BoardsTest, AScriptGoesOnAndARecordingStaysAtItsEnd) {
+  auto stage = MakeStage(options_.stage);
+  ASSERT_TRUE(stage);
+  const double end_s = stage->duration_s();
+  EXPECT_EQ(stage->At(end_s + 0.305).frame, stage->At(0.305).frame);
+  stage->repeats = false;
+  EXPECT_EQ(stage->At(end_s + 0.3).frame, stage->scene.motion.frames() - 2);
+  EXPECT_EQ(stage->At(end_s + 0.3).share, 1);
+  EXPECT_EQ(stage->At(-1).frame, 0);
+}
+
+TEST_F(BoardsTest, BoardsLaidUnderWideFeetLieFurtherApart) {
+  std::ofstream(path_) << R"({"keys": [{"seconds": 0.5}, {"seconds": 0.8, "weight": -1},
+      {"seconds": 0.6, "left_out_m": 0.22}, {"seconds": 0.8, "weight": 1},
+      {"seconds": 0.6, "right_out_m": 0.22}, {"seconds": 0.8, "weight": 0}, {"seconds": 9}]})";
+  const auto as_always = MakeStage(options_.stage);
+  options_.stage.place_boards = true;
+  const auto placed = MakeStage(options_.stage);
+  ASSERT_TRUE(as_always && placed);
+  EXPECT_DOUBLE_EQ(as_always->gap_m, 0.02);
+  EXPECT_GT(as_always->outside_share, 0.5);
+  EXPECT_GT(placed->gap_m, 0.05);
+  EXPECT_LT(placed->outside_share, 0.3);
+  EXPECT_DOUBLE_EQ(placed->boards[0].middle_m.y(), 0.5 * (0.316 + placed->gap_m));
+}
+
+TEST_F(BoardsTest, HandsAreSeenWhereTheFistsAreWithTheNoiseAskedFor) {
+  auto made = MakeStage(options_.stage);
+  ASSERT_TRUE(made);
+  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const Telling telling = TellHands(stage, 0.02, 7);
+  Telling first = telling, second = telling;
+  double square = 0;
+  body::Kinematics at(stage->scene.body.skeleton);
+  body::ComputeKinematics(stage->scene.body.skeleton, stage->scene.motion.q.col(0), at);
+  constexpr int kFrames = 2000;
+  for (int i = 0; i < kFrames; ++i) {
+    const stream::HandFrame frame = first.hands(0);
+    ASSERT_EQ(frame.points.size(), 2u);
+    EXPECT_TRUE(frame.simulated);
+    EXPECT_EQ(frame.points[0].role, stream::DeviceRole::kLeftHand);
+    EXPECT_EQ(frame.points[0].sd_m, Eigen::Vector3d::Constant(0.02));
+    if (i == 0) {
+      EXPECT_EQ(second.hands(0).points[1].position_m, frame.points[1].position_m);
+    }
+    for (const int side : {0, 1}) {
+      const body::Point fist = body::Fist(stage->scene.body, side);
+      const auto joint = static_cast<std::size_t>(fist.joint);
+      square += (frame.points[static_cast<std::size_t>(side)].position_m -
+                 body::Place(fist, at.R_WJ[joint], at.p_WJ[joint]))
+                    .squaredNorm();
+    }
+  }
+  EXPECT_NEAR(std::sqrt(square / (6 * kFrames)), 0.02, 0.0006);
+}
+
+TEST_F(BoardsTest, TheReferenceIsTheWholePoseAndFitsIntoAMessage) {
+  auto made = MakeStage(options_.stage);
+  ASSERT_TRUE(made);
+  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  const stream::ReferenceFrame frame = TellPose(stage).reference(3.02);
+  const auto& skeleton = stage->scene.body.skeleton;
+  ASSERT_EQ(static_cast<int>(frame.parents.size()), skeleton.size());
+  EXPECT_LE(frame.parents.size(), 64u);
+  body::Kinematics at(skeleton);
+  body::ComputeKinematics(skeleton, stage->scene.motion.q.col(302), at);
+  for (std::size_t i = 0; i < frame.parents.size(); ++i) {
+    EXPECT_EQ(frame.parents[i], skeleton.joint(static_cast<int>(i)).parent);
+    EXPECT_LT((frame.positions_m[i] - at.p_WJ[i]).norm(), 1e-6);
+  }
+  EXPECT_LT((frame.com_m - body::CentreOfMass(stage->scene.body, at)).norm(), 1e-6);
+}
+
+TEST(ShownJoints, OfALargeSkeletonAreThoseOnTheWayToALandmark) {
+  body::Body body = *body::MakeBody(body::StandardPerson(1.75), {});
+  EXPECT_EQ(static_cast<int>(ShownJoints(body).size()), body.skeleton.size());
+  std::vector<body::Joint> joints = body.skeleton.joints;
+  for (int i = 0; i < 60; ++i) {
+    joints.push_back({});
+    joints.back().name = "finger";
+    joints.back().parent = body.landmarks[body::Landmark::kLeftWrist];
+  }
+  body.skeleton = body::MakeSkeleton(std::move(joints));
+  const auto shown = ShownJoints(body);
+  EXPECT_LE(shown.size(), 64u);
+  for (const int landmark : body.landmarks.joint) {
+    if (landmark >= 0) {
+      EXPECT_THAT(shown, testing::Contains(landmark));
+    }
+  }
+}
+
+TEST_F(BoardsTest, AForearmThatHangsStillFeelsGravityAlongItselfAndTurnsWhenItIsRaised) {
+  const auto stage = MakeStage(options_.stage);
+  ASSERT_TRUE(stage);
+  for (const int side : {0, 1}) {
+    const ForearmCourse course = FollowForearm(*stage, side);
+    // T-pose: x, that is left of a hanging arm, is up or down.
+    EXPECT_NEAR(course.ForceAt(*stage, 0.7).x(), (side == 0 ? 1 : -1) * kStandardGravityMps2, 0.6);
+    EXPECT_NEAR(course.ForceAt(*stage, 0.7).norm(), kStandardGravityMps2, 0.05);
+    // 10 degrees from hanging: z is down.
+    EXPECT_NEAR(course.ForceAt(*stage, 3.0).z(), -kStandardGravityMps2 * std::cos(kPi / 18), 0.2);
+    EXPECT_LT(course.TurnAt(*stage, 3.0).norm(), 0.05);
+    // The turn between is one of 80 degrees about y, the axis to the front.
+    double turned = 0;
+    for (double t_s = 1.3; t_s < 2.7; t_s += 0.001)
+      turned += 0.001 * course.TurnAt(*stage, t_s).y();
+    EXPECT_NEAR(std::abs(turned), 80 * kPi / 180, 0.05);
+  }
+}
+
+}  // namespace
+}  // namespace footing::stream_client

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "clients/view/scene/model.h"
+
+/// A made stream of the pose engine: a person on two boards who crouches and swings the arms, the
+/// boards' samples, and a reference beside.
+namespace footing::scene::made {
+
+struct PersonWish {
+  bool calibrated = true;
+  double calibration_progress = 0.6;
+  bool left_foot_off = false;  ///< For 1.4 s already.
+  bool reference = true;
+  double lag_s = 0;
+};
+
+stream::Skeleton PersonSkeleton();
+
+/// The tick at `time_s`; the first one (time 0) carries what a snapshot carries.
+Update PersonTickAt(double time_s, const PersonWish& wish);
+
+/// A model after `seconds` of it, at 100 Hz from time 0.
+Model PersonModelAfter(double seconds, const PersonWish& wish);
+
+}  // namespace footing::scene::made

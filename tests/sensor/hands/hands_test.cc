@@ -1,0 +1,147 @@
+#include "daemon/sensor/hands/hands.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "daemon/sensor/hands/refusals.h"
+
+namespace footing::hands {
+namespace {
+
+using stream::DeviceRole;
+using stream::HandFrame;
+using stream::ReferenceFrame;
+using testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+HandFrame TwoFists() {
+  HandFrame frame;
+  frame.tracker = "eye";
+  frame.age_ns = 20'000'000;
+  frame.points = {{DeviceRole::kLeftHand, {0.1, 0.7, 1.4}, {0.01, 0.01, 0.02}, 0.9},
+                  {DeviceRole::kRightHand, {0.1, -0.7, 1.4}, {0.01, 0.01, 0.02}, 1}};
+  return frame;
+}
+
+ReferenceFrame ThreeJoints() {
+  ReferenceFrame frame;
+  frame.parents = {-1, 0, 1};
+  frame.positions_m = {{0, 0, 1}, {0, 0, 1.2}, {0, 0, 1.5}};
+  frame.com_m = {0, 0, 1.1};
+  return frame;
+}
+
+TEST(Hands, AFrameAtEveryLimitIsTaken) {
+  HandFrame frame = TwoFists();
+  EXPECT_EQ(Problem(frame), "");
+  frame.age_ns = kOldestNs;
+  frame.points[0].position_m = {0, 0, kFarthestM};
+  frame.points[0].sd_m = {1, 1, 1};
+  frame.points[1].confidence = 0;
+  frame.points.resize(kMostPoints, frame.points[0]);
+  EXPECT_EQ(Problem(frame), "");
+}
+
+TEST(Hands, EachBadValueIsRefusedAndNamed) {
+  const std::pair<const char*, std::function<void(HandFrame&)>> kBad[] = {
+      {"position", [](HandFrame& f) { f.points[1].position_m.x() = kNan; }},
+      {"position", [](HandFrame& f) { f.points[1].position_m.y() = kInfinity; }},
+      {"position",
+       [](HandFrame& f) {
+         f.points[1].position_m = {8, 8, 0};
+       }},
+      {"standard deviation", [](HandFrame& f) { f.points[1].sd_m.x() = 0; }},
+      {"standard deviation", [](HandFrame& f) { f.points[1].sd_m.y() = -0.01; }},
+      {"standard deviation", [](HandFrame& f) { f.points[1].sd_m.z() = 1.01; }},
+      {"standard deviation", [](HandFrame& f) { f.points[1].sd_m.z() = kNan; }},
+      {"confidence", [](HandFrame& f) { f.points[1].confidence = 1.1; }},
+      {"confidence", [](HandFrame& f) { f.points[1].confidence = -0.1; }},
+      {"confidence", [](HandFrame& f) { f.points[1].confidence = kNan; }},
+      {"role", [](HandFrame& f) { f.points[1].role = DeviceRole::kUnspecified; }},
+      {"age_ns", [](HandFrame& f) { f.age_ns = -1; }},
+      {"age_ns", [](HandFrame& f) { f.age_ns = kOldestNs + 1; }},
+      {"0 points", [](HandFrame& f) { f.points.clear(); }},
+      {"9 points", [](HandFrame& f) { f.points.resize(9, f.points[0]); }},
+      {"name", [](HandFrame& f) { f.tracker = "a\nb"; }},
+      {"name", [](HandFrame& f) { f.rig = std::string(65, 'r'); }},
+  };
+  for (const auto& [word, spoil] : kBad) {
+    HandFrame frame = TwoFists();
+    spoil(frame);
+    EXPECT_THAT(Problem(frame), HasSubstr(word));
+  }
+}
+
+TEST(Hands, SamplesAreDatedBackAndGoToTheDefaultRigWithoutOne) {
+  HandFrame frame = TwoFists();
+  frame.simulated = true;
+  auto samples = ToSamples(frame, 1'000'000'000, "main");
+  ASSERT_EQ(samples.size(), 2u);
+  EXPECT_EQ(samples[1].role, DeviceRole::kRightHand);
+  EXPECT_EQ(samples[1].rig, "main");
+  EXPECT_EQ(samples[1].tracker, "eye");
+  EXPECT_EQ(samples[1].received_ns, 1'000'000'000);
+  EXPECT_EQ(samples[1].sampled_ns, 980'000'000);
+  EXPECT_EQ(samples[1].position_m, frame.points[1].position_m);
+  EXPECT_EQ(samples[1].sd_m, frame.points[1].sd_m);
+  EXPECT_EQ(samples[0].confidence, 0.9);
+  EXPECT_TRUE(samples[0].simulated);
+  frame.rig = "second";
+  EXPECT_EQ(ToSamples(frame, 0, "main")[0].rig, "second");
+}
+
+TEST(Reference, EachBadValueIsRefusedAndNamed) {
+  EXPECT_EQ(Problem(ThreeJoints()), "");
+  const std::pair<const char*, std::function<void(ReferenceFrame&)>> kBad[] = {
+      {"parent 2", [](ReferenceFrame& f) { f.parents[2] = 2; }},
+      {"parent -2", [](ReferenceFrame& f) { f.parents[0] = -2; }},
+      {"joint 1", [](ReferenceFrame& f) { f.positions_m[1].z() = kNan; }},
+      {"joint 1", [](ReferenceFrame& f) { f.positions_m[1].z() = 10.1; }},
+      {"centre of mass", [](ReferenceFrame& f) { f.com_m.x() = kInfinity; }},
+      {"2 positions", [](ReferenceFrame& f) { f.positions_m.pop_back(); }},
+      {"0 parents", [](ReferenceFrame& f) { f = {}; }},
+      {"65 parents",
+       [](ReferenceFrame& f) {
+         f.parents.assign(65, -1);
+         f.positions_m.assign(65, {0, 0, 0});
+       }},
+      {"age_ns", [](ReferenceFrame& f) { f.age_ns = -5; }},
+      {"name", [](ReferenceFrame& f) { f.rig = "\x7f"; }},
+  };
+  for (const auto& [word, spoil] : kBad) {
+    ReferenceFrame frame = ThreeJoints();
+    spoil(frame);
+    EXPECT_THAT(Problem(frame), HasSubstr(word));
+  }
+}
+
+TEST(Reference, APoseIsDatedBack) {
+  ReferenceFrame frame = ThreeJoints();
+  frame.age_ns = 5;
+  const stream::ReferencePose pose = ToPose(frame, 100, "main");
+  EXPECT_EQ(pose.sampled_ns, 95);
+  EXPECT_EQ(pose.rig, "main");
+  EXPECT_EQ(pose.parents, frame.parents);
+  EXPECT_EQ(pose.positions_m, frame.positions_m);
+  EXPECT_EQ(pose.com_m, frame.com_m);
+}
+
+TEST(Refusals, AreSaidAtOnceThenOncePerTenSecondsWithTheirNumber) {
+  Refusals refusals;
+  const auto add = [&](double at_s) {
+    return refusals.Add(static_cast<std::int64_t>(at_s * 1e9), "a hand frame", "why");
+  };
+  EXPECT_THAT(add(100).value_or(""), HasSubstr("a hand frame is refused: why"));
+  EXPECT_FALSE(add(100));
+  EXPECT_FALSE(add(109.9));
+  EXPECT_THAT(add(110).value_or(""), HasSubstr("3 refused"));
+  EXPECT_EQ(refusals.total(), 4u);
+}
+
+}  // namespace
+}  // namespace footing::hands

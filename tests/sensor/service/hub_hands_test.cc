@@ -1,0 +1,91 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "daemon/sensor/service/publish.h"
+#include "footing/v1/session.pb.h"
+#include "tests/sensor/service/fixture.h"
+
+namespace footing::sensor {
+namespace {
+
+using testing::HasSubstr;
+
+stream::HandFrame Fist(double x_m) {
+  stream::HandFrame frame;
+  frame.points = {{stream::DeviceRole::kLeftHand, {x_m, 0.3, 1.2}, {0.01, 0.01, 0.01}, 1}};
+  frame.age_ns = 4'000'000;
+  return frame;
+}
+
+stream::ReferenceFrame Joint() { return {"", 2'000'000, {-1}, {{0, 0, 1}}, {0, 0, 1}}; }
+
+TEST(HubHands, EverySampleSinceTheLastTickIsPublishedOnce) {
+  Bench bench;
+  for (int i = 0; i < 5; ++i) bench.hub().OnHands(1'000'000'000 + i, Fist(0.1 * i));
+  bench.hub().OnReference(1'000'000'000, Joint());
+  bench.Advance(0.05);
+  ASSERT_EQ(bench.content.hands.size(), 5u);
+  EXPECT_EQ(bench.content.hands[3].position_m.x(), 0.1 * 3);
+  EXPECT_EQ(bench.content.hands[3].received_ns, 1'000'000'003);
+  EXPECT_EQ(bench.content.hands[3].sampled_ns, 996'000'003);
+  EXPECT_EQ(bench.content.hands[3].rig, "main");
+  ASSERT_EQ(bench.content.reference.size(), 1u);
+  EXPECT_EQ(bench.content.reference[0].rig, "main");
+  EXPECT_EQ(bench.content.reference[0].sampled_ns, 998'000'000);
+}
+
+TEST(HubHands, ABadFrameIsCountedSaidOnceAndLosesNothingElse) {
+  Bench bench;
+  const auto before = bench.log.size();
+  for (int i = 0; i < 100; ++i) {
+    bench.hub().OnHands(0, Fist(std::numeric_limits<double>::quiet_NaN()));
+    bench.hub().OnHands(0, Fist(0.5));
+    auto pose = Joint();
+    pose.com_m.x() = std::numeric_limits<double>::infinity();
+    bench.hub().OnReference(0, pose);
+    bench.hub().OnReference(0, Joint());
+    bench.Advance(0.01);
+  }
+  EXPECT_EQ(bench.hub().refused_frames(), 200u);
+  EXPECT_EQ(bench.content.hands.size(), 100u);
+  EXPECT_EQ(bench.content.reference.size(), 100u);
+  ASSERT_EQ(bench.log.size(), before + 1);
+  EXPECT_THAT(bench.log.back(), HasSubstr("a hand frame is refused: point 1"));
+  bench.Advance(10);
+  bench.hub().OnHands(0, {});
+  EXPECT_THAT(bench.log.back(), HasSubstr("(200 refused"));
+}
+
+TEST(HubHands, AFloodIsBoundedInEachTick) {
+  Bench bench;
+  for (std::size_t i = 0; i < 2 * kMaxSamplesPerTick; ++i) bench.hub().OnHands(0, Fist(0));
+  for (std::size_t i = 0; i < 2 * kMaxReferencesPerTick; ++i) bench.hub().OnReference(0, Joint());
+  bench.Advance(0.02);
+  EXPECT_EQ(bench.content.hands.size(), kMaxSamplesPerTick);
+  EXPECT_EQ(bench.content.reference.size(), kMaxReferencesPerTick);
+}
+
+TEST(HubHands, ChannelsCarryThemInTheTicksFields) {
+  TickContent content;
+  content.hands.emplace_back().position_m.z() = 1.5;
+  content.reference.emplace_back().parents = {-1};
+  std::string bytes;
+  v1::Tick tick;
+  for (const auto& channel : ToChannels(content)) {
+    if (channel.field == v1::Tick::kHandsFieldNumber)
+      tick.mutable_hands()->ParseFromString(channel.bytes);
+    if (channel.field == v1::Tick::kReferenceFieldNumber)
+      tick.mutable_reference()->ParseFromString(channel.bytes);
+  }
+  ASSERT_EQ(tick.hands().samples_size(), 1);
+  EXPECT_EQ(tick.hands().samples(0).position_m().z(), 1.5);
+  ASSERT_EQ(tick.reference().poses_size(), 1);
+  std::vector<std::string> names;
+  for (const auto& channel : Channels()) names.push_back(channel.name);
+  EXPECT_THAT(names, testing::IsSupersetOf({"hands", "reference"}));
+}
+
+}  // namespace
+}  // namespace footing::sensor

@@ -1,0 +1,188 @@
+#include "daemon/simulation/service/pose_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "daemon/simulation/service/pose_publish.h"
+#include "tests/simulation/reconstruction/made_person.h"
+
+namespace footing::simulation {
+namespace {
+
+namespace made = reconstruction;
+
+/// A person who stands in a T-pose for 6 s and then moves, in the steps of the simulation thread.
+struct Line {
+  explicit Line(double seconds = 8)
+      : person(made::MadePerson()),
+        motion(made::MadeMotion(person, seconds)),
+        measured(made::Measured(person, motion)),
+        models(made::MakeModels({made::BasisOf(person, motion)}).value()),
+        run(Subject(1), made::kMadeRateHz, subjects) {
+    told.subject_number = 1;
+  }
+
+  std::unique_ptr<SubjectRun> Subject(std::uint64_t number) const {
+    made::Options options;
+    options.rate_hz = made::kMadeRateHz;
+    return std::make_unique<SubjectRun>(
+        SubjectRun{number, made::Reconstruction::Create(person, models, options).value()});
+  }
+  /// One step with the i-th frame that was measured.
+  void Step(std::size_t i) {
+    told.sensors = measured[i % measured.size()];
+    inputs.Write(told);
+    Quiet();
+  }
+  /// One step without a word of the sensors.
+  void Quiet() {
+    run.StepOnSimThread(inputs, frame);
+    run.FillOnSimThread(frame);
+    run.TakenOnSimThread(frame);
+  }
+
+  body::Body person;
+  motion::Motion motion;
+  std::vector<made::Inputs> measured;
+  made::Models models;
+  SubjectExchange subjects;
+  PoseRun run;
+  exchange::Latest<PoseInputs> inputs;
+  PoseInputs told;
+  PoseFrame frame;
+};
+
+void ExpectFinite(const v1::CharacterFrame& message) {
+  for (const v1::LinkPose& link : message.characters(0).links()) {
+    for (const double number : {link.position_m().x(), link.position_m().y(), link.position_m().z(),
+                                link.orientation().w(), link.orientation().x(),
+                                link.orientation().y(), link.orientation().z()}) {
+      ASSERT_TRUE(std::isfinite(number));
+    }
+  }
+  for (const double sd_m : message.characters(0).body().link_sd_m()) {
+    ASSERT_TRUE(std::isfinite(sd_m) && sd_m >= 0);
+  }
+}
+
+TEST(PoseRun, TakesTheTPoseAndThenPublishesTheWholeBody) {
+  Line line;
+  for (std::size_t i = 0; i < 120; ++i) line.Step(i);
+  EXPECT_FALSE(line.frame.calibrated);
+  EXPECT_NEAR(line.frame.calibration_progress, 2.0 / 5, 0.05);
+  for (std::size_t i = 120; i < line.measured.size(); ++i) {
+    line.Step(i);
+    ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+  }
+  EXPECT_TRUE(line.frame.calibrated);
+  EXPECT_TRUE(line.frame.valid);
+  EXPECT_NEAR(line.frame.mass_kg, 70, 0.5);
+  EXPECT_EQ(line.frame.link_count, line.person.skeleton.joints.size());
+  EXPECT_DOUBLE_EQ(line.frame.time_s,
+                   static_cast<double>(line.measured.size()) / made::kMadeRateHz);
+}
+
+TEST(PoseRun, ASilentStreamMakesBoardsAndHandsUnknown) {
+  Line line;
+  for (std::size_t i = 0; i < 10; ++i) line.Step(i);
+  EXPECT_TRUE(line.frame.boards_valid[0]);
+  for (int i = 0; i < 30; ++i) line.Quiet();  // Half a second.
+  EXPECT_FALSE(line.frame.boards_valid[0]);
+  EXPECT_FALSE(line.frame.hands_valid[1]);
+  line.Step(10);
+  EXPECT_TRUE(line.frame.boards_valid[0]);
+}
+
+TEST(PoseRun, BoardsLostAndBackLeaveAFinitePose) {
+  Line line;
+  for (std::size_t i = 0; i < 400; ++i) line.Step(i);
+  ASSERT_TRUE(line.frame.calibrated);
+  for (int i = 0; i < 180; ++i) {
+    line.Quiet();
+    ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+  }
+  for (std::size_t i = 0; i < 200; ++i) {
+    line.Step(i);
+    ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+  }
+  EXPECT_TRUE(line.frame.calibrated) << "the same person is still there";
+  EXPECT_TRUE(line.frame.boards_valid[0]);
+}
+
+TEST(PoseRun, ACalibrationThatIsAskedForForgetsTheTPose) {
+  Line line;
+  for (std::size_t i = 0; i < 400; ++i) line.Step(i);
+  ASSERT_TRUE(line.frame.calibrated);
+  ++line.told.calibrate_number;
+  line.Step(0);
+  EXPECT_FALSE(line.frame.calibrated);
+  for (std::size_t i = 0; i < 350; ++i) line.Step(i);
+  EXPECT_TRUE(line.frame.calibrated);
+}
+
+TEST(PoseRun, TheNextSubjectHasNoStaleTPoseAndTheLastOneComesBackToBeFreed) {
+  Line line;
+  for (std::size_t i = 0; i < 400; ++i) line.Step(i);
+  ASSERT_TRUE(line.frame.calibrated);
+  ASSERT_TRUE(line.subjects.next.Push(line.Subject(2)));
+  line.Step(0);
+  EXPECT_EQ(line.frame.subject_number, 1u) << "not before the inputs name it";
+  line.told.subject_number = 2;
+  line.Step(1);
+  EXPECT_EQ(line.frame.subject_number, 2u);
+  EXPECT_FALSE(line.frame.calibrated);
+  EXPECT_LT(line.frame.calibration_progress, 0.01);
+  std::unique_ptr<SubjectRun> done;
+  ASSERT_TRUE(line.subjects.done.Pop(done));
+  EXPECT_EQ(done->number, 1u);
+}
+
+TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
+  Line line;
+  std::vector<PoseApplied> applied;
+  for (std::size_t i = 0; i < line.measured.size(); ++i) {
+    if (i % 7 == 3) {
+      line.Quiet();
+      continue;
+    }
+    line.told.sensors = line.measured[i];
+    line.inputs.Write(line.told);
+    line.run.StepOnSimThread(line.inputs, line.frame);
+    for (int k = 0; k < line.frame.applied_count; ++k) {
+      const auto message =
+          ToAppliedInput(line.frame.applied[static_cast<std::size_t>(k)], {"p1", 1.75, 70, 0});
+      EXPECT_EQ(SubjectFrom(message).code, "p1");
+      applied.push_back(PoseAppliedFrom(message));
+    }
+    line.run.FillOnSimThread(line.frame);
+    line.run.TakenOnSimThread(line.frame);
+  }
+  const std::uint64_t hash = line.frame.state_hash, steps = line.frame.step;
+
+  Line again;
+  std::size_t next = 0;
+  for (std::uint64_t step = 1; step <= steps; ++step) {
+    if (next < applied.size() && applied[next].step == step) {
+      again.inputs.Write(applied[next++].inputs);
+    }
+    again.Quiet();
+  }
+  EXPECT_EQ(next, applied.size());
+  EXPECT_EQ(again.frame.state_hash, hash);
+}
+
+TEST(PosePublish, TheSkeletonHasALinkForEveryJointWithItsParent) {
+  const body::Body person = made::MadePerson();
+  const stream::Skeleton skeleton = ToSkeleton(person);
+  ASSERT_EQ(skeleton.links.size(), person.skeleton.joints.size());
+  for (std::size_t i = 0; i < skeleton.links.size(); ++i) {
+    EXPECT_EQ(skeleton.links[i].name, person.skeleton.joints[i].name);
+    EXPECT_EQ(skeleton.links[i].parent, person.skeleton.joints[i].parent);
+    EXPECT_GT(skeleton.links[i].size_m.minCoeff(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace footing::simulation

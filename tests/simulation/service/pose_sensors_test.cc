@@ -1,0 +1,151 @@
+#include "daemon/simulation/service/pose_sensors.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "common/units/units.h"
+#include "tests/simulation/service/pose_ticks.h"
+
+namespace footing::simulation {
+namespace {
+
+constexpr std::int64_t kStartNs = 5'000'000'000;
+
+struct PoseSensorsTest : testing::Test {
+  /// What the engine is told after a tick.
+  const PoseInputs& After(const v1::Tick& tick, double at_s = 0) {
+    sensors.OnTick(tick, kStartNs + SecondsToNanoseconds(at_s));
+    inputs.Refresh();
+    return inputs.Front();
+  }
+  static v1::Tick Boards(const std::array<double, 4>& left_n,
+                         const std::array<double, 4>& right_n) {
+    v1::Tick tick;
+    AddBoard(tick, kLeftDevice, left_n);
+    AddBoard(tick, kRightDevice, right_n);
+    return tick;
+  }
+
+  exchange::Latest<PoseInputs> inputs;
+  PoseSensors sensors{"", inputs};
+};
+
+TEST_F(PoseSensorsTest, EachBoardIsTheFootOfItsRole) {
+  After(StatusTick());
+  EXPECT_EQ(sensors.rig(), "one");
+  const PoseInputs& told = After(Boards({1, 2, 3, 4}, {5, 6, 7, 8}));
+  EXPECT_TRUE(told.sensors.loads.feet[0].valid);
+  EXPECT_TRUE(told.sensors.loads.feet[1].valid);
+  EXPECT_EQ(told.sensors.loads.feet[0].cells[1].load_n, 2);
+  EXPECT_EQ(told.sensors.loads.feet[1].cells[3].load_n, 8);
+}
+
+TEST_F(PoseSensorsTest, BoardsThatNobodyLaidOutLieOneFootEachWithTheirButtonsOutwards) {
+  After(StatusTick());
+  const PoseInputs& told = After(Boards({100, 0, 0, 0}, {100, 0, 0, 0}));
+  // Plates 316 mm wide, 2 cm apart; sensors 433 x 238 mm apart. The left board's front looks right:
+  // its left sensors are ahead, its front ones inside.
+  const Eigen::Vector3d left = momentum::PressureOf(told.sensors.loads.feet[0], 1).p_WP_m;
+  EXPECT_NEAR(left.x(), 0.433 / 2, 1e-9);
+  EXPECT_NEAR(left.y(), 0.168 - 0.238 / 2, 1e-9);
+  // The right board's front looks left: its left sensors are behind.
+  const Eigen::Vector3d right = momentum::PressureOf(told.sensors.loads.feet[1], 1).p_WP_m;
+  EXPECT_NEAR(right.x(), -0.433 / 2, 1e-9);
+  EXPECT_NEAR(right.y(), -0.168 + 0.238 / 2, 1e-9);
+}
+
+TEST_F(PoseSensorsTest, TheLayoutOfTheRigPlacesTheCells) {
+  v1::Tick tick = StatusTick();
+  for (const char* rig : {"other", "one"}) {
+    v1::RigSetup& setup = *tick.mutable_setup()->add_rigs();
+    setup.set_rig(rig);
+    setup.mutable_layout()->set_preset("custom");
+    setup.mutable_layout()->mutable_left()->set_x_m(1);
+    setup.mutable_layout()->mutable_left()->set_y_m(rig == std::string("one") ? 2 : 50);
+    setup.mutable_layout()->mutable_right()->set_y_m(-2);
+  }
+  After(tick);
+  const PoseInputs& told = After(Boards({0, 100, 0, 0}, {1, 1, 1, 1}));
+  // Yaw 0: front is ahead, right is to the right (-y).
+  const Eigen::Vector3d left = momentum::PressureOf(told.sensors.loads.feet[0], 1).p_WP_m;
+  EXPECT_NEAR(left.x(), 1 + 0.238 / 2, 1e-9);
+  EXPECT_NEAR(left.y(), 2 - 0.433 / 2, 1e-9);
+}
+
+TEST_F(PoseSensorsTest, ABoardThatFallsSilentIsUnknownAndNotEmpty) {
+  After(StatusTick());
+  After(Boards({100, 100, 100, 100}, {100, 100, 100, 100}), 0);
+  v1::Tick right_only;
+  AddBoard(right_only, kRightDevice, {100, 100, 100, 100});
+  EXPECT_TRUE(After(right_only, 0.19).sensors.loads.feet[0].valid);
+  const PoseInputs& late = After(right_only, 0.21);
+  EXPECT_FALSE(late.sensors.loads.feet[0].valid);
+  EXPECT_EQ(late.sensors.loads.feet[0].cells[0].load_n, 100) << "never made up to be zero";
+  EXPECT_TRUE(late.sensors.loads.feet[1].valid);
+  EXPECT_TRUE(After(Boards({1, 1, 1, 1}, {1, 1, 1, 1}), 0.3).sensors.loads.feet[0].valid);
+}
+
+TEST_F(PoseSensorsTest, OfSeveralSamplesInATickTheNewestIsTold) {
+  After(StatusTick());
+  v1::Tick tick = Boards({1, 1, 1, 1}, {2, 2, 2, 2});
+  AddBoard(tick, kLeftDevice, {9, 1, 1, 1});
+  EXPECT_EQ(After(tick).sensors.loads.feet[0].cells[0].load_n, 9);
+}
+
+TEST_F(PoseSensorsTest, NumbersThatAreNoneCountAsNoSample) {
+  After(StatusTick());
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  v1::Tick tick = Boards({1, kNan, 1, 1}, {1, 1, 1, 1});
+  AddHand(tick, v1::DEVICE_ROLE_LEFT_HAND, kNan, 0, 1);
+  const PoseInputs& told = After(tick);
+  EXPECT_FALSE(told.sensors.loads.feet[0].valid);
+  EXPECT_TRUE(told.sensors.loads.feet[1].valid);
+  EXPECT_FALSE(told.sensors.hands[0].valid);
+  EXPECT_TRUE(momentum::IsFinite(told.sensors.loads));
+}
+
+TEST_F(PoseSensorsTest, AHandIsKnownForAsLongAsItIsSeen) {
+  After(StatusTick());
+  v1::Tick tick;
+  AddHand(tick, v1::DEVICE_ROLE_RIGHT_HAND, 0.1, -0.8, 1.4);
+  const PoseInputs& seen = After(tick, 0);
+  EXPECT_FALSE(seen.sensors.hands[0].valid);
+  ASSERT_TRUE(seen.sensors.hands[1].valid);
+  EXPECT_EQ(seen.sensors.hands[1].p_W_m, Eigen::Vector3d(0.1, -0.8, 1.4));
+  EXPECT_FALSE(After({}, 0.16).sensors.hands[1].valid);
+  tick.mutable_hands()->mutable_samples(0)->set_confidence(0);
+  EXPECT_FALSE(After(tick, 0.2).sensors.hands[1].valid) << "the tracker does not believe it itself";
+}
+
+TEST_F(PoseSensorsTest, SamplesOfThePastAndOfOtherRigsAreNotTold) {
+  v1::Tick status = StatusTick();
+  AddDevice(status, 11, v1::DEVICE_ROLE_LEFT_BOARD, "two");
+  After(status);
+  v1::Tick old = Boards({1, 1, 1, 1}, {1, 1, 1, 1});
+  old.set_refilled(true);
+  EXPECT_FALSE(After(old).sensors.loads.feet[0].valid);
+  v1::Tick other;
+  AddBoard(other, 11, {50, 50, 50, 50});
+  EXPECT_FALSE(After(other).sensors.loads.feet[0].valid);
+}
+
+TEST_F(PoseSensorsTest, WhatAStandInSaysIsStampedSimulated) {
+  After(StatusTick());
+  v1::Tick tick = Boards({1, 1, 1, 1}, {1, 1, 1, 1});
+  EXPECT_FALSE(After(tick).simulated);
+  tick.mutable_boards()->mutable_samples(1)->set_simulated(true);
+  EXPECT_TRUE(After(tick).simulated);
+}
+
+TEST_F(PoseSensorsTest, EveryCalibrationHasItsOwnNumber) {
+  sensors.Calibrate();
+  sensors.Calibrate();
+  sensors.TakeSubject(4);
+  ASSERT_TRUE(inputs.Refresh());
+  EXPECT_EQ(inputs.Front().calibrate_number, 2u);
+  EXPECT_EQ(inputs.Front().subject_number, 4u);
+}
+
+}  // namespace
+}  // namespace footing::simulation
