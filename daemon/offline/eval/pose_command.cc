@@ -7,8 +7,12 @@
 
 #include "common/cli/cli.h"
 #include "common/units/units.h"
+#include "daemon/offline/eval/pose_ablations.h"
 #include "daemon/offline/eval/pose_baselines.h"
+#include "daemon/offline/eval/pose_claims.h"
 #include "daemon/offline/eval/pose_constants.h"
+#include "daemon/offline/eval/pose_figures.h"
+#include "daemon/offline/eval/pose_insoles.h"
 #include "daemon/offline/eval/pose_scene.h"
 #include "daemon/offline/eval/pose_trial.h"
 
@@ -23,7 +27,8 @@ struct Flags {
   std::vector<std::string> models, ablate, oracle, constants;
   std::string hands = "move", mode = "best", boards = "simulated";
   double lag_ms = 0, loop_minutes = 0, yaw_error_deg = 0, height_m = 0;
-  bool baselines = true;
+  std::string figures;
+  bool baselines = true, ablations = false, claims = false;
 };
 
 bool Has(const std::vector<std::string>& list, const std::string& name) {
@@ -38,7 +43,7 @@ Result<void> Translate(Flags& flags) {
     return UsageError("--hands " + flags.hands + " is not built yet; there are move and none");
   }
   if (flags.boards == "forces") {
-    return UsageError("--boards forces is not built yet; there is simulated");
+    return UsageError("--boards forces is not built yet; there are simulated and insoles");
   }
   settings.loop_s = 60 * flags.loop_minutes;
   settings.yaw_error_rad = DegreesToRadians(flags.yaw_error_deg);
@@ -57,10 +62,25 @@ Result<void> Translate(Flags& flags) {
 
 Result<ordered_json> Evaluate(Flags flags) {
   if (const auto translated = Translate(flags); !translated) return translated.error();
+  if (flags.claims) {  // About the motion and equation (2): no models.
+    const auto rehearsal = MakePoseScene(flags.scene);
+    if (!rehearsal) return rehearsal.error();
+    return ordered_json{{"claims", JudgeClaims(*rehearsal)}};
+  }
   const auto models = ReadPoseModels(flags.models, flags.scene.motion);
   if (!models) return models.error();
+  if (flags.boards == "insoles") {
+    const auto walk = MakeInsoleScene(flags.scene);
+    if (!walk) return walk.error();
+    return JudgeInsoles(*walk, *models, flags.options);
+  }
   const auto rehearsal = MakePoseScene(flags.scene);
   if (!rehearsal) return rehearsal.error();
+  if (flags.ablations) {
+    const auto rows = JudgeAblations(*rehearsal, *models, flags.options);
+    if (!rows) return Error{rows.error().kind, flags.scene.motion + ": " + rows.error().message};
+    return ordered_json{{"ablations", *rows}};
+  }
   const Oracle oracle{Has(flags.oracle, "com"), Has(flags.oracle, "momentum"),
                       Has(flags.oracle, "feet")};
   auto json = RunPoseTrial(*rehearsal, *models, flags.options, oracle);
@@ -70,6 +90,11 @@ Result<ordered_json> Evaluate(Flags flags) {
   (*json)["boards"] = flags.boards;
   (*json)["boards_limited"] = flags.scene.settings.limited;
   (*json)["cop_outside_sensors_share"] = rehearsal->outside_share;
+  if (!flags.figures.empty()) {
+    const auto names = WriteFigures(*rehearsal, *models, flags.options, flags.figures);
+    if (!names) return names.error();
+    (*json)["figures"] = *names;
+  }
   if (!flags.baselines) return json;
   const auto baselines =
       JudgeBaselines(*rehearsal, *models, flags.options, FirstJudged(*rehearsal));
@@ -87,7 +112,8 @@ void AddFlags(CLI::App& command, Flags& flags) {
   command.add_option("--height-m", flags.height_m)->check(CLI::Range(0.5, 2.6));
   command.add_option("--hands", flags.hands, "move: 1 cm of noise")
       ->check(CLI::IsMember({"move", "wiimote", "kinect", "none"}));
-  command.add_option("--boards", flags.boards)->check(CLI::IsMember({"simulated", "forces"}));
+  command.add_option("--boards", flags.boards)
+      ->check(CLI::IsMember({"simulated", "forces", "insoles"}));
   command.add_option("--model", flags.models, "*.fmodel, several; without: the product's");
   command.add_option("--mode", flags.mode)->check(CLI::IsMember({"paper", "best"}));
   command.add_option("--rate-hz", settings.rate_hz)->check(CLI::Range(30.0, 120.0));
@@ -110,6 +136,10 @@ void AddFlags(CLI::App& command, Flags& flags) {
       ->check(CLI::Range(0.0, 60.0));
   command.add_option("--ablate", flags.ablate, "Parts left out")
       ->check(CLI::IsMember({"angular_momentum", "momentum", "cleanup", "basis"}));
+  command.add_flag("--ablations", flags.ablations, "The table of all of them, in both modes");
+  command.add_flag("--claims", flags.claims,
+                   "What the paper says of how COMs move and of outliers");
+  command.add_option("--figures", flags.figures, "Folder for plots like the paper's");
   command.add_option("--oracle", flags.oracle, "Parts told the truth")
       ->check(CLI::IsMember({"com", "momentum", "feet"}));
   command.add_option("--constant", flags.constants, "NAME=VALUE of the best mode");

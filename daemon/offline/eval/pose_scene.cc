@@ -23,17 +23,32 @@ Result<reconstruction::NamedModel> ReadModel(const std::string& path) {
   return reconstruction::NamedModel{path, std::move(*model)};
 }
 
-}  // namespace
-
-Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options) {
+Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
   motion_files::LoadOptions load;
   load.skeleton = options.skeleton;
   load.still = options.still;
-  const auto loaded = motion_files::LoadMotion(options.motion, load);
-  if (!loaded) return loaded.error();
+  return motion_files::LoadMotion(options.motion, load);
+}
+
+rehearsal::Settings WithHeight(const PoseSceneOptions& options,
+                               const motion_files::LoadedMotion& loaded) {
   rehearsal::Settings settings = options.settings;
-  if (!settings.height_m) settings.height_m = loaded->height_m;
-  return rehearsal::Rehearse(loaded->motion, settings, options.motion);
+  if (!settings.height_m) settings.height_m = loaded.height_m;
+  return settings;
+}
+
+}  // namespace
+
+Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options) {
+  const auto loaded = Load(options);
+  if (!loaded) return loaded.error();
+  return rehearsal::Rehearse(loaded->motion, WithHeight(options, *loaded), options.motion);
+}
+
+Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options) {
+  const auto loaded = Load(options);
+  if (!loaded) return loaded.error();
+  return rehearsal::RehearseInsoles(loaded->motion, WithHeight(options, *loaded), options.motion);
 }
 
 Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& files,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/result/result.h"
+#include "daemon/offline/rehearsal/insole_rehearsal.h"
 #include "daemon/offline/rehearsal/rehearsal.h"
 #include "daemon/simulation/reconstruction/models.h"
 
@@ -18,6 +19,8 @@ struct PoseSceneOptions {
 };
 
 Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options);
+
+Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options);
 
 /// Reads the models and refuses those that were trained on the motion's subject (the file's name up
 /// to the first '_'). No file: those that the product carries.

@@ -59,18 +59,19 @@ struct Boards {
   }
 };
 
+}  // namespace
+
 void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,
-                  synthetic::Random& random, Frame& frame) {
+                  synthetic::Random& random,
+                  std::array<reconstruction::HandInput, reconstruction::kHands>& hands) {
   for (int side = 0; side < 2; ++side) {
-    reconstruction::HandInput& hand = frame.inputs.hands[static_cast<std::size_t>(side)];
+    reconstruction::HandInput& hand = hands[static_cast<std::size_t>(side)];
     hand.valid = true;
     hand.p_W_m = At(at, body::Fist(body, side));
     for (double& value : hand.p_W_m) value += noise_m * random.Normal();
     hand.sd_m.setConstant(std::max(noise_m, 0.001));
   }
 }
-
-}  // namespace
 
 Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
                            const std::string& origin) {
@@ -119,7 +120,7 @@ Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
       }
     }
     if (settings.hands) {
-      MeasureHands(scene->body, at, settings.hand_noise_m, random, frame);
+      MeasureHands(scene->body, at, settings.hand_noise_m, random, frame.inputs.hands);
     }
     rehearsal.frames.push_back(std::move(frame));
   }

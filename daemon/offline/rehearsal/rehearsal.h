@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "common/body/body.h"
+#include "common/body/kinematics.h"
 #include "common/motion/motion.h"
 #include "common/result/result.h"
+#include "common/synthetic/random.h"
 #include "common/virtual_sensors/board_cells.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
@@ -55,6 +57,11 @@ struct Rehearsal {
 
 /// The T-pose is held so long, then left within a second and a half.
 inline constexpr double kStandS = 6;
+
+/// Where both hands are told to be: the fists of the pose, with white noise along each axis.
+void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,
+                  synthetic::Random& random,
+                  std::array<reconstruction::HandInput, reconstruction::kHands>& hands);
 
 /// Only the joints of the landmarks are kept (motion::WithLandmarksOnly). `origin` names the clip
 /// in errors.

@@ -1,9 +1,9 @@
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
@@ -22,23 +22,34 @@ using training::LoadClip;
 
 constexpr const char* kAxes[] = {"x", "y"};
 constexpr double kValidationPart = 0.2;  // The end of every clip.
+constexpr std::size_t kRoundsKept = 3;   // Whose examples are trained on, beside those with noise.
+constexpr double kRestartS = 10;         // Own outputs go on so long in training.
+
+/// A hidden unit fits the people of the training: it makes the COM of a person left out worse
+/// forward (docs/models.md).
+constexpr int kHiddenMax = 0;
 
 struct Options {
   MotionOptions motions;
   ModelOptions model;
   training::CascadeOptions cascade;
-  std::vector<double> noises_m = {0.01, 0.02, 0.04, 0.08};
+  std::vector<double> noises_m = {0.01, 0.02, 0.04};
   int copies = 1;
+  int rounds = 6;
+  bool mirror = true;
 };
 
 struct Recordings {
   std::vector<LoadClip> train, validation;
 };
 
-std::vector<LoadClip> Loads(const std::vector<Clip>& clips, std::uint64_t seed) {
+std::vector<LoadClip> Loads(const std::vector<Clip>& clips, bool mirrored, std::uint64_t seed) {
   std::vector<LoadClip> loads;
   for (const Clip& clip : clips) {
-    loads.push_back(training::BoardLoads(clip.motion, clip.body, {}, seed + loads.size()));
+    training::BoardLoadSettings settings;
+    settings.mirrored = mirrored;
+    const LoadClip all = training::BoardLoads(clip.motion, clip.body, settings, seed++);
+    for (LoadClip& part : training::PartsInPlace(all)) loads.push_back(std::move(part));
   }
   return loads;
 }
@@ -55,29 +66,34 @@ Recordings SplitClips(const std::vector<LoadClip>& clips) {
   return recordings;
 }
 
-training::CascadeResult TrainAxis(const Recordings& recordings, int axis, double noise_m,
-                                  const Options& options) {
+/// What one axis learns from.
+struct Lesson {
+  training::Examples noisy, noisy_validation;
+  std::vector<training::Examples> rounds;  ///< Of own outputs, the latest last.
+};
+
+Lesson FirstLesson(const Recordings& recordings, int axis, double noise_m, const Options& options) {
   training::FeedbackNoise noise{.groups = training::FeedbackColumns(),
                                 .common_sd = noise_m,
                                 .own_sd = noise_m / 10,
                                 .copies = options.copies};
   const std::uint64_t seed = options.model.seed;
-  const auto train =
+  Lesson lesson;
+  lesson.noisy =
       WithFeedbackNoise(training::HorizontalExamples(recordings.train, axis), noise, seed);
   noise.copies = 1;
-  const auto validation =
+  lesson.noisy_validation =
       WithFeedbackNoise(training::HorizontalExamples(recordings.validation, axis), noise, seed + 1);
-  return training::TrainCascade(train, validation, options.cascade, seed);
+  return lesson;
 }
 
 /// Mean square of the error in closed loop, both axes together.
-double ClosedLoopMse(const std::vector<training::CascadeResult>& axes,
-                     const std::vector<LoadClip>& clips) {
+double ClosedLoopMse(const training::Networks& networks, const std::vector<LoadClip>& clips) {
   double sum = 0, frames = 0;
   for (const LoadClip& clip : clips) {
     const auto size = static_cast<double>(clip.size());
     frames += size;
-    sum += size * ClosedLoopError(axes[0].network, axes[1].network, clip).squaredNorm();
+    sum += size * ClosedLoopError(networks, clip).squaredNorm();
   }
   return sum / std::max(frames, 1.0);
 }
@@ -85,36 +101,61 @@ double ClosedLoopMse(const std::vector<training::CascadeResult>& axes,
 struct Trained {
   std::vector<training::CascadeResult> axes;
   double noise_m = 0;
+  int round = 0;
+
+  training::Networks networks() const { return {axes[0].network, axes[1].network}; }
 };
 
-/// One pair of networks for each noise; the one that goes on best from its own outputs is kept. The
-/// error of one step says nothing of that.
+Trained TrainAxes(const std::array<Lesson, 2>& lessons, const Options& options) {
+  Trained trained;
+  for (const Lesson& lesson : lessons) {
+    std::vector<const training::Examples*> parts{&lesson.noisy};
+    for (const training::Examples& round : lesson.rounds) parts.push_back(&round);
+    trained.axes.push_back(training::TrainCascade(training::Joined(parts), lesson.noisy_validation,
+                                                  options.cascade, options.model.seed));
+  }
+  return trained;
+}
+
+/// For each noise a pair of networks, and then, round by round, one that has also learned to go on
+/// from the outputs of those before it: the errors it meets in use are not white noise. Of all, the
+/// one that goes on best from its own outputs is kept. The error of one step says nothing of that.
 Trained Train(const Recordings& recordings, const Options& options) {
   Trained best;
   double best_mse = std::numeric_limits<double>::infinity();
   for (const double noise_m : options.noises_m) {
-    Trained trained{.axes = {}, .noise_m = noise_m};
-    for (int axis = 0; axis < 2; ++axis) {
-      trained.axes.push_back(TrainAxis(recordings, axis, noise_m, options));
-    }
-    const double mse = ClosedLoopMse(trained.axes, recordings.validation);
-    if (mse < best_mse) {
-      best_mse = mse;
-      best = std::move(trained);
+    std::array<Lesson, 2> lessons;
+    for (int axis = 0; axis < 2; ++axis)
+      lessons[static_cast<std::size_t>(axis)] = FirstLesson(recordings, axis, noise_m, options);
+    for (int round = 0; round <= options.rounds; ++round) {
+      Trained trained = TrainAxes(lessons, options);
+      trained.noise_m = noise_m;
+      trained.round = round;
+      const training::Networks networks = trained.networks();
+      for (int axis = 0; axis < 2; ++axis) {
+        auto& rounds = lessons[static_cast<std::size_t>(axis)].rounds;
+        rounds.push_back(training::RolledOutExamples(networks, recordings.train, axis, kRestartS));
+        if (rounds.size() > kRoundsKept) rounds.erase(rounds.begin());
+      }
+      const double mse = ClosedLoopMse(networks, recordings.validation);
+      if (mse < best_mse) {
+        best_mse = mse;
+        best = std::move(trained);
+      }
     }
   }
   return best;
 }
 
 /// Root mean squares over whole clips: one step from the truth, the closed loop, and the COP.
-nlohmann::ordered_json Judge(const std::vector<training::CascadeResult>& axes,
+nlohmann::ordered_json Judge(const training::Networks& networks,
                              const std::vector<LoadClip>& clips) {
   Eigen::Vector2d one_step = Eigen::Vector2d::Zero(), loop = one_step, cop = one_step;
   double frames = 0;
   for (const LoadClip& clip : clips) {
     const auto size = static_cast<double>(clip.size());
     frames += size;
-    loop += size * ClosedLoopError(axes[0].network, axes[1].network, clip).cwiseAbs2();
+    loop += size * ClosedLoopError(networks, clip).cwiseAbs2();
     cop += size * CopError(clip).cwiseAbs2();
   }
   const auto rms = [&](const Eigen::Vector2d& sum) {
@@ -122,7 +163,7 @@ nlohmann::ordered_json Judge(const std::vector<training::CascadeResult>& axes,
     return nlohmann::ordered_json{value.x(), value.y()};
   };
   for (int axis = 0; axis < 2; ++axis) {
-    one_step(axis) = frames * MeanSquaredError(axes[static_cast<std::size_t>(axis)].network,
+    one_step(axis) = frames * MeanSquaredError(networks[static_cast<std::size_t>(axis)],
                                                training::HorizontalExamples(clips, axis));
   }
   return {
@@ -133,7 +174,16 @@ int Run(const Options& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
   const Result<Clips> clips = ReadClips(options.motions);
   if (!clips) return cli::Report(clips.error());
-  const Recordings recordings = SplitClips(Loads(clips->train, options.model.seed));
+  std::vector<LoadClip> loads = Loads(clips->train, false, options.model.seed);
+  if (options.mirror) {
+    for (LoadClip& clip : Loads(clips->train, true, options.model.seed + 500))
+      loads.push_back(std::move(clip));
+  }
+  if (loads.empty()) {
+    return cli::Report(
+        InvalidData("no motion stays in place for three seconds; nothing to train on"));
+  }
+  const Recordings recordings = SplitClips(loads);
 
   const std::int64_t start_ns = clock::MonotonicNs();
   const Trained trained = Train(recordings, options);
@@ -150,6 +200,7 @@ int Run(const Options& options, const Shared& shared) {
   nlohmann::ordered_json report = {{"subjects", clips->subjects},
                                    {"clips", clips->train.size()},
                                    {"noise_m", trained.noise_m},
+                                   {"round", trained.round},
                                    {"networks", nlohmann::ordered_json::array()}};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     cascade::AppendTensors(axes[axis].network, std::string(kAxes[axis]) + ".", model);
@@ -160,9 +211,10 @@ int Run(const Options& options, const Shared& shared) {
                                   {"validation_mse", axes[axis].validation_mse}});
   }
   report["seconds"] = seconds;
-  report["validation"] = Judge(axes, recordings.validation);
+  report["validation"] = Judge(trained.networks(), recordings.validation);
   if (!clips->excluded.empty()) {
-    report["excluded"] = Judge(axes, Loads(clips->excluded, options.model.seed + 1000));
+    report["excluded"] =
+        Judge(trained.networks(), Loads(clips->excluded, false, options.model.seed + 1000));
   }
   if (auto written = WriteModel(model, options.model); !written) {
     return cli::Report(written.error());
@@ -179,6 +231,7 @@ int Run(const Options& options, const Shared& shared) {
 
 void AddComCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
+  options->cascade.hidden_max = kHiddenMax;
   CLI::App* command = app.add_subcommand(
       "com", "The horizontal COM's networks from motion files, by what two boards would measure");
   AddMotionOptions(*command, options->motions);
@@ -189,6 +242,9 @@ void AddComCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 1.0));
   command->add_option("--copies", options->copies, "Of each row, with other noise")
       ->check(CLI::Range(1, 100));
+  command->add_option("--rounds", options->rounds, "Of training on the networks' own outputs")
+      ->check(CLI::Range(0, 50));
+  command->add_flag("!--no-mirror", options->mirror, "Without the clips' mirror images");
   command->add_option("--hidden-max", options->cascade.hidden_max, "Hidden units at most")
       ->check(CLI::Range(0, 256));
   command

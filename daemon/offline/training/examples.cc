@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/result/result.h"
 #include "common/synthetic/random.h"
 
 namespace footing::training {
@@ -13,6 +14,21 @@ Split SplitInTime(const Examples& all, double fraction) {
   const Eigen::Index first = all.rows() - last;
   return {.train = {all.inputs.topRows(first), all.targets.topRows(first)},
           .validation = {all.inputs.bottomRows(last), all.targets.bottomRows(last)}};
+}
+
+Examples Joined(const std::vector<const Examples*>& parts) {
+  FOOTING_CHECK(!parts.empty());
+  Eigen::Index rows = 0;
+  for (const Examples* part : parts) rows += part->rows();
+  Examples all{.inputs = Eigen::MatrixXd(rows, parts.front()->inputs.cols()),
+               .targets = Eigen::MatrixXd(rows, parts.front()->targets.cols())};
+  Eigen::Index row = 0;
+  for (const Examples* part : parts) {
+    all.inputs.middleRows(row, part->rows()) = part->inputs;
+    all.targets.middleRows(row, part->rows()) = part->targets;
+    row += part->rows();
+  }
+  return all;
 }
 
 Examples WithFeedbackNoise(const Examples& examples, const FeedbackNoise& noise,

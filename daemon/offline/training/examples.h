@@ -24,6 +24,9 @@ struct Split {
 /// The last `fraction` of the rows, in [0, 1), is for validation.
 Split SplitInTime(const Examples& all, double fraction);
 
+/// The rows of all, one after the other. At least one; equal columns.
+Examples Joined(const std::vector<const Examples*>& parts);
+
 /// Noise on inputs that are the network's own earlier outputs in use. A network trained on perfect
 /// ones goes on from its first error to the end of the world (closed loop, pose paper, section 4.2:
 /// the COM positions); one trained with noise learns to come back.

@@ -5,22 +5,10 @@
 #include <numbers>
 
 #include "common/synthetic/random.h"
+#include "common/units/units.h"
 
 namespace footing::training {
 namespace {
-
-/// What the axis's network sees at frame t; c(t) and before are given apart, being either true or
-/// its own.
-std::array<double, kHorizontalInputs> Inputs(const LoadFrame& before, const LoadFrame& now,
-                                             const Eigen::Vector2d& c2_m,
-                                             const Eigen::Vector2d& c1_m,
-                                             const Eigen::Vector2d& c0_m, int axis) {
-  std::array<double, kHorizontalInputs> inputs;
-  auto end = std::copy(before.load.begin(), before.load.end(), inputs.begin());
-  end = std::copy(now.load.begin(), now.load.end(), end);
-  for (const double c_m : {c2_m(axis), c1_m(axis), c0_m(axis), c0_m(1 - axis)}) *end++ = c_m;
-  return inputs;
-}
 
 /// Sum of sines of random phase at frequencies from `low` to `high`, amplitude falling with the
 /// square root of frequency, with its second derivative.
@@ -58,14 +46,14 @@ class Wander {
   std::vector<Sine> sines_;
 };
 
-constexpr double kGravityMps2 = 9.80665;
 constexpr double kHeightM = 1.0;
 constexpr double kBoardOffsetM = 0.16;  // Of each board's middle to the side.
 constexpr double kHalfLengthM = 0.119;  // From a cell to the board's middle, forward.
 constexpr double kHalfWidthM = 0.1075;
 
-}  // namespace
+using momentum::kNetworkInputs;
 
+/// The loads of a board's cells under a load whose COP is at `cop_P_m` from the board's middle.
 void ShareOut(double load, const Eigen::Vector2d& cop_P_m, double* cells) {
   const double forward = cop_P_m.x() / kHalfLengthM, left = cop_P_m.y() / kHalfWidthM;
   for (const int f : {1, -1}) {
@@ -73,62 +61,94 @@ void ShareOut(double load, const Eigen::Vector2d& cop_P_m, double* cells) {
   }
 }
 
-std::optional<Eigen::Vector2d> Cop(const LoadFrame& frame) {
-  double total = 0;
-  Eigen::Vector2d moment_m = Eigen::Vector2d::Zero();
-  for (std::size_t k = 0; k < kBoardCells; ++k) {
-    const Eigen::Vector2d cell_P_m(k % 4 < 2 ? kHalfLengthM : -kHalfLengthM,
-                                   k % 2 == 0 ? kHalfWidthM : -kHalfWidthM);
-    total += frame.load[k];
-    moment_m += frame.load[k] * (frame.board_W_m[k / 4] + cell_P_m);
-  }
-  if (total < 0.1) return std::nullopt;
-  return moment_m / total;
-}
-
-std::vector<std::vector<Eigen::Index>> FeedbackColumns() {
-  constexpr Eigen::Index kFirst = 2 * kBoardCells;
-  return {{kFirst, kFirst + 1, kFirst + 2}, {kFirst + 3}};
-}
-
-Examples HorizontalExamples(std::span<const LoadClip> clips, int axis) {
+/// A row for every t of every clip that has c(t-2) and c(t+1). `com_m` says c(t-2), c(t-1), c(t).
+template <typename Past>
+Examples MakeExamples(std::span<const LoadClip> clips, int axis, const Past& com_m) {
   std::size_t rows = 0;
   for (const LoadClip& clip : clips) rows += clip.size() > 3 ? clip.size() - 3 : 0;
-  Examples examples{.inputs = Eigen::MatrixXd(rows, kHorizontalInputs),
+  Examples examples{.inputs = Eigen::MatrixXd(rows, kNetworkInputs),
                     .targets = Eigen::MatrixXd(rows, 1)};
   Eigen::Index row = 0;
   for (const LoadClip& clip : clips) {
     for (std::size_t t = 2; t + 1 < clip.size(); ++t, ++row) {
       const auto inputs =
-          Inputs(clip[t - 1], clip[t], clip[t - 2].c_W_m, clip[t - 1].c_W_m, clip[t].c_W_m, axis);
-      examples.inputs.row(row) = Eigen::RowVectorXd::Map(inputs.data(), kHorizontalInputs);
+          momentum::NetworkInputs(clip[t - 1].load, clip[t].load, com_m(clip, t), axis);
+      examples.inputs.row(row) = Eigen::RowVectorXd::Map(inputs.data(), kNetworkInputs);
       examples.targets(row, 0) = clip[t + 1].c_W_m(axis);
     }
   }
   return examples;
 }
 
-Eigen::Vector2d ClosedLoopError(const cascade::CascadeNetwork& x, const cascade::CascadeNetwork& y,
-                                const LoadClip& clip, double border_m) {
-  if (clip.size() < 4) return Eigen::Vector2d::Zero();
-  Eigen::Vector2d c2_m = clip[0].c_W_m, c1_m = clip[1].c_W_m, c0_m = clip[2].c_W_m;
-  Eigen::Vector2d squares = Eigen::Vector2d::Zero();
-  for (std::size_t t = 2; t + 1 < clip.size(); ++t) {
-    Eigen::Vector2d next_m;
-    for (const int axis : {0, 1}) {
-      const auto inputs = Inputs(clip[t - 1], clip[t], c2_m, c1_m, c0_m, axis);
-      std::array<float, kHorizontalInputs> floats;
-      std::transform(inputs.begin(), inputs.end(), floats.begin(),
-                     [](double value) { return static_cast<float>(value); });
-      std::array<float, 1> output;
-      (axis == 0 ? x : y).Evaluate(floats, output);
-      next_m(axis) = std::clamp(static_cast<double>(output[0]), -border_m, border_m);
-    }
-    squares += (next_m - clip[t + 1].c_W_m).cwiseAbs2();
-    c2_m = c1_m;
-    c1_m = c0_m;
-    c0_m = next_m;
+std::array<Eigen::Vector2d, 3> TruePast(const LoadClip& clip, std::size_t t) {
+  return {clip[t - 2].c_W_m, clip[t - 1].c_W_m, clip[t].c_W_m};
+}
+
+momentum::HorizontalLoop LoopFrom(const Networks& networks, const LoadClip& clip, std::size_t t) {
+  return {networks, clip[t - 1].load, TruePast(clip, t)};
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector2d> Cop(const LoadFrame& frame) {
+  const auto cells = momentum::NetworkCells();
+  double total = 0;
+  Eigen::Vector2d moment_m = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    total += frame.load[k];
+    moment_m += frame.load[k] * cells[k];
   }
+  if (total < 0.1) return std::nullopt;
+  return moment_m / total;
+}
+
+std::vector<LoadClip> PartsInPlace(const LoadClip& clip) {
+  constexpr double kReachM = 0.4;
+  constexpr double kFewest = 3 * momentum::kNetworkRateHz;
+  std::vector<LoadClip> parts;
+  LoadClip part;
+  const auto close = [&] {
+    if (static_cast<double>(part.size()) >= kFewest) parts.push_back(part);
+    part.clear();
+  };
+  for (const LoadFrame& frame : clip) {
+    if (frame.c_W_m.cwiseAbs().maxCoeff() > kReachM) {
+      close();
+    } else {
+      part.push_back(frame);
+    }
+  }
+  close();
+  return parts;
+}
+
+std::vector<std::vector<Eigen::Index>> FeedbackColumns() {
+  constexpr Eigen::Index kFirst = 2 * momentum::kNetworkCells;
+  return {{kFirst, kFirst + 1, kFirst + 2}, {kFirst + 3}};
+}
+
+Examples HorizontalExamples(std::span<const LoadClip> clips, int axis) {
+  return MakeExamples(clips, axis, TruePast);
+}
+
+Examples RolledOutExamples(const Networks& networks, std::span<const LoadClip> clips, int axis,
+                           double restart_s) {
+  const auto restart = static_cast<std::size_t>(std::lround(restart_s * momentum::kNetworkRateHz));
+  std::optional<momentum::HorizontalLoop> loop;
+  return MakeExamples(clips, axis, [&](const LoadClip& clip, std::size_t t) {
+    if ((t - 2) % restart == 0) loop = LoopFrom(networks, clip, t);
+    const std::array<Eigen::Vector2d, 3> past = loop->com_m();
+    loop->Step(clip[t].load);
+    return past;
+  });
+}
+
+Eigen::Vector2d ClosedLoopError(const Networks& networks, const LoadClip& clip) {
+  if (clip.size() < 4) return Eigen::Vector2d::Zero();
+  momentum::HorizontalLoop loop = LoopFrom(networks, clip, 2);
+  Eigen::Vector2d squares = Eigen::Vector2d::Zero();
+  for (std::size_t t = 2; t + 1 < clip.size(); ++t)
+    squares += (loop.Step(clip[t].load) - clip[t + 1].c_W_m).cwiseAbs2();
   return (squares / static_cast<double>(clip.size() - 3)).cwiseSqrt();
 }
 
@@ -155,8 +175,8 @@ LoadClip MakeSway(const SwaySettings& settings, std::uint64_t seed) {
     const double t_s = static_cast<double>(i) / settings.rate_hz;
     LoadFrame& frame = clip[i];
     frame.c_W_m = {forward.Value(t_s), side.Value(t_s)};
-    const double weight = 1 + height.Acceleration(t_s) / kGravityMps2;
-    const double lever_s2 = (kHeightM + height.Value(t_s)) / (kGravityMps2 * weight);
+    const double weight = 1 + height.Acceleration(t_s) / kStandardGravityMps2;
+    const double lever_s2 = (kHeightM + height.Value(t_s)) / (kStandardGravityMps2 * weight);
     const Eigen::Vector2d cop_m =
         frame.c_W_m - lever_s2 * Eigen::Vector2d(forward.Acceleration(t_s), side.Acceleration(t_s));
     // The left board's share, after what the feet do within their boards.

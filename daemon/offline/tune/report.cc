@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "common/cli/cli.h"
-#include "daemon/offline/tune/plot.h"
+#include "daemon/offline/plot/line_plot.h"
 
 namespace footing::tune {
 namespace {
@@ -53,10 +53,10 @@ std::string TableText(const Options& options, const std::vector<TunedSet>& tuned
 }
 
 std::string Plot(const Options& options, const std::vector<SearchState>& searches) {
-  std::vector<Curve> curves;
+  std::vector<plot::Curve> curves;
   for (std::size_t i = 0; i < searches.size(); ++i) {
     const std::string speed = Short(options.speeds_mps[i]) + " m/s";
-    Curve present{speed, {}}, best{speed + ", best tried", {}};
+    plot::Curve present{speed, {}}, best{speed + ", best tried", {}};
     for (const HistoryPoint& point : searches[i].history) {
       present.points.emplace_back(point.iteration, point.objective);
       best.points.emplace_back(point.iteration, point.best);
@@ -64,9 +64,9 @@ std::string Plot(const Options& options, const std::vector<SearchState>& searche
     curves.push_back(std::move(present));
     curves.push_back(std::move(best));
   }
-  return LinePlot(options.gait + ", " + options.method + ", seed " + std::to_string(options.seed) +
-                      ", each iteration on trials of its own",
-                  "iteration", "objective", curves);
+  return plot::LinePlot(options.gait + ", " + options.method + ", seed " +
+                            std::to_string(options.seed) + ", each iteration on trials of its own",
+                        "iteration", "objective", curves);
 }
 
 ordered_json ReportOf(const Options& options, const std::vector<Dimension>& dimensions,

@@ -13,7 +13,7 @@ namespace footing::momentum {
 
 struct PaperConfig {
   LoadFilter::Config load_filter;
-  DecayRule vertical{true, 0.35, 0.05, 0.9};
+  DecayRule vertical{true, 0.35, 0.02, 0.9};
   DecayRule angular{true, 3.0, 0.05, 0.9};
   PaperFootConfig foot;
 };

@@ -31,8 +31,8 @@ void PaperFoot::Advance(const Pressure& pressure, double step_s) {
     if (lifted_) {
       lifted_ = false;
       Target(pressure.p_WP_m);
-    } else if (static_s_ >= config_.static_after_s) {
-      if (since_target_s_ > config_.landing_s) from_m_ = place_m_;
+    } else if (since_target_s_ < config_.landing_s || static_s_ >= config_.static_after_s) {
+      // A landing goes on to where the COP settles: the first load is on the heel or the ball.
       to_m_ = pressure.p_WP_m;
     }
   }

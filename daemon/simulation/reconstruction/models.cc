@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/simulation/cascade/model.h"
+#include "daemon/simulation/momentum/horizontal_network.h"
 
 namespace footing::reconstruction {
 namespace {
@@ -118,6 +119,14 @@ Result<void> ReadNetworks(const NamedModel& named, Models& models) {
   if (!x) return x.error();
   auto y = cascade::FromTensors(named.model, "y.", named.origin);
   if (!y) return y.error();
+  for (const cascade::CascadeNetwork* network : {&*x, &*y}) {
+    if (network->weights().inputs != momentum::kNetworkInputs || network->weights().outputs != 1) {
+      return InvalidData(named.origin + ": its networks have " +
+                         std::to_string(network->weights().inputs) + " inputs and " +
+                         std::to_string(network->weights().outputs) + " outputs; " +
+                         std::to_string(momentum::kNetworkInputs) + " and 1 belong");
+    }
+  }
   models.horizontal = std::array{std::move(*x), std::move(*y)};
   return {};
 }

@@ -126,6 +126,7 @@ void Reconstruction::Recalibrate() {
   calibration_ = {};
   best_.reset();
   paper_.reset();
+  horizontal_.reset();
   frames_ = 0;
   output_.calibrated = false;
   output_.calibration_progress = 0;
@@ -144,6 +145,7 @@ void Reconstruction::Begin(const momentum::TPose& pose) {
     best_.emplace(config, parts_->subject, pose, step_s_);
   } else {
     paper_.emplace(momentum::PaperConfig{}, parts_->subject, pose, step_s_);
+    if (parts_->horizontal) horizontal_.emplace(*parts_->horizontal, pose, step_s_);
   }
   gauss_newton_.Reset();
   fibonacci_.Reset();
@@ -174,8 +176,8 @@ const Output& Reconstruction::Advance(const Inputs& inputs) {
     if (done) Begin(calibration_.result());
     return output_;
   }
-  output_.momentum =
-      best_ ? best_->Advance(inputs.loads) : paper_->Advance(inputs.loads, std::nullopt);
+  output_.momentum = best_ ? best_->Advance(inputs.loads)
+                           : paper_->Advance(inputs.loads, PredictHorizontal(inputs.loads));
   output_.resets = output_.momentum.resets + solver_resets_;
   output_.valid = output_.momentum.valid;
   Remember(inputs);
@@ -184,6 +186,12 @@ const Output& Reconstruction::Advance(const Inputs& inputs) {
   PlaceTargets();
   Solve();
   return output_;
+}
+
+std::optional<Eigen::Vector2d> Reconstruction::PredictHorizontal(
+    const momentum::ContactLoads& loads) {
+  if (!horizontal_) return std::nullopt;
+  return horizontal_->Advance(loads);
 }
 
 void Reconstruction::Solve() {

@@ -13,6 +13,7 @@
 #include "daemon/simulation/momentum/best_estimator.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contact_loads.h"
+#include "daemon/simulation/momentum/horizontal_network.h"
 #include "daemon/simulation/momentum/paper_estimator.h"
 #include "daemon/simulation/pose/fibonacci.h"
 #include "daemon/simulation/pose/gauss_newton.h"
@@ -43,6 +44,7 @@ struct Known {
   std::optional<Eigen::Vector3d> angular_W;  ///< kg m^2/s, of the body's own mass.
   struct Foot {
     Eigen::Vector3d ankle_W_m, toe_W_m;
+    double ankle_sd_m = 0.015, toe_sd_m = 0.015;
   };
   std::optional<std::array<Foot, momentum::kFeet>> feet;
 };
@@ -139,6 +141,7 @@ class Reconstruction {
 
   Reconstruction(std::shared_ptr<const Parts> parts, const Options& options);
   void Begin(const momentum::TPose& pose);
+  std::optional<Eigen::Vector2d> PredictHorizontal(const momentum::ContactLoads& loads);
   void Remember(const Inputs& inputs);
   /// What was measured then, with what is known of it now.
   void TakeLagged();
@@ -160,7 +163,8 @@ class Reconstruction {
   momentum::TPoseCalibration calibration_;
   std::optional<momentum::BestEstimator> best_;
   std::optional<momentum::PaperEstimator> paper_;
-  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< Of the basis' poses, in W.
+  std::optional<momentum::HorizontalNetwork> horizontal_;  ///< Of paper mode, where there is one.
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();     ///< Of the basis' poses, in W.
   std::array<Moment, kMostLag> past_;
   std::size_t frames_ = 0;  ///< Since the T-pose.
   Moment then_;             ///< The instant that is reconstructed.

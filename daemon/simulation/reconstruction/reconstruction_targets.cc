@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;
 constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 2;
-constexpr double kKnownComSdM = 0.01, kKnownAngularSd = 1, kKnownFootSdM = 0.015;
+constexpr double kKnownComSdM = 0.01, kKnownAngularSd = 1;
 constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
 
 }  // namespace
@@ -70,9 +70,10 @@ void Reconstruction::AddFeet() {
     const FootGeometry& geometry = parts_->feet[f];
     if (then_.known.feet) {
       const Known::Foot& foot = (*then_.known.feet)[f];
-      const Eigen::Vector3d sd = Eigen::Vector3d::Constant(kKnownFootSdM);
-      targets_.Add({geometry.ankle.joint, geometry.ankle.p_J_m, foot.ankle_W_m, sd});
-      targets_.Add({geometry.toe.joint, geometry.toe.p_J_m, foot.toe_W_m, sd});
+      targets_.Add({geometry.ankle.joint, geometry.ankle.p_J_m, foot.ankle_W_m,
+                    Eigen::Vector3d::Constant(foot.ankle_sd_m)});
+      targets_.Add({geometry.toe.joint, geometry.toe.p_J_m, foot.toe_W_m,
+                    Eigen::Vector3d::Constant(foot.toe_sd_m)});
     } else if (options_.mode == Mode::kPaper) {
       AddPaperFootTargets(geometry, then_.momentum.feet[f], kPaperFootSdM, targets_);
     } else {

@@ -13,7 +13,8 @@ LoadClip Numbered(int frames) {
   LoadClip clip(static_cast<std::size_t>(frames));
   for (int t = 0; t < frames; ++t) {
     auto& frame = clip[static_cast<std::size_t>(t)];
-    for (std::size_t k = 0; k < kBoardCells; ++k) frame.load[k] = 100 * t + static_cast<int>(k);
+    for (std::size_t k = 0; k < momentum::kNetworkCells; ++k)
+      frame.load[k] = 100 * t + static_cast<int>(k);
     frame.c_W_m = {1000 + t, -1000 - t};
   }
   return clip;
@@ -77,11 +78,46 @@ TEST(ClosedLoop, DivergesWithoutNoiseInTrainingAndComesBackWithIt) {
   };
   const auto x_clean = trained(0, 0), y_clean = trained(1, 0);
   EXPECT_LT(MeanSquaredError(x_clean, HorizontalExamples({&fresh, 1}, 0)), 1e-8) << "0.1 mm a step";
-  const Eigen::Vector2d clean_m = ClosedLoopError(x_clean, y_clean, fresh);
+  const Eigen::Vector2d clean_m = ClosedLoopError({x_clean, y_clean}, fresh);
   EXPECT_GT(clean_m.maxCoeff(), 0.2);
-  const Eigen::Vector2d noisy_m = ClosedLoopError(trained(0, 0.02), trained(1, 0.02), fresh);
+  const Eigen::Vector2d noisy_m = ClosedLoopError({trained(0, 0.02), trained(1, 0.02)}, fresh);
   EXPECT_LT(noisy_m.maxCoeff(), 0.06);
   EXPECT_TRUE(clean_m.allFinite() && noisy_m.allFinite());
+}
+
+TEST(RolledOutExamples, HaveTheNetworksOwnPastAndTheTrueFuture) {
+  const LoadClip clip = MakeSway({.seconds = 8, .rate_hz = 60, .noise_sd = 0.0013}, 1);
+  CascadeOptions options;
+  options.hidden_max = 0;
+  const auto trained = [&](int axis) {
+    return TrainCascade(HorizontalExamples({&clip, 1}, axis), {}, options, 6).network;
+  };
+  const Networks networks{trained(0), trained(1)};
+  const Examples truth = HorizontalExamples({&clip, 1}, 0);
+  const Examples own = RolledOutExamples(networks, {&clip, 1}, 0, 2);
+  ASSERT_EQ(own.rows(), truth.rows());
+  EXPECT_EQ(own.targets, truth.targets);
+  EXPECT_EQ(own.inputs.leftCols(16), truth.inputs.leftCols(16)) << "loads";
+  for (const Eigen::Index start : {0, 120, 240}) {
+    EXPECT_EQ(own.inputs.row(start), truth.inputs.row(start)) << "begun from the truth";
+  }
+  // The row after a start has the network's answer to the start as c(t).
+  std::vector<float> inputs;
+  for (const double value : own.inputs.row(120)) inputs.push_back(static_cast<float>(value));
+  std::array<float, 1> answer{};
+  networks[0].Evaluate(inputs, answer);
+  EXPECT_NEAR(own.inputs(121, 18), answer[0], 1e-6);
+  EXPECT_NE(own.inputs(121, 18), truth.inputs(121, 18));
+}
+
+TEST(PartsInPlace, AreTheLongRunsNearTheOrigin) {
+  LoadClip clip(600);
+  clip[100].c_W_m = {0.5, 0};    // 100 frames before it: under three seconds.
+  clip[350].c_W_m = {0, -0.41};  // 249 and 249 around it.
+  const auto parts = PartsInPlace(clip);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].size(), 249u);
+  EXPECT_EQ(parts[1].size(), 249u);
 }
 
 }  // namespace

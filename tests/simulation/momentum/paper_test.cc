@@ -70,6 +70,19 @@ TEST(PaperFoot, IgnoresAWanderingCopAndLiftsAfterZeroPressure) {
   EXPECT_NEAR((foot.position_m() - Eigen::Vector3d(0.08, 0.2, 0)).norm(), 0, 1e-9);
 }
 
+TEST(PaperFoot, LandsWhereTheCopSettlesAndThenStays) {
+  PaperFoot foot({}, {0, 0.16, 0});
+  for (int i = 0; i < 60; ++i) foot.Advance({0, false, {}}, kMadeStepS);
+  // The heel touches first; within 0.2 s the load has rolled on to the middle of the sole.
+  for (int i = 0; i < 40; ++i)
+    foot.Advance({300, true, {std::min(0.1, 0.5 * i * kMadeStepS), 0.16, 0}}, kMadeStepS);
+  EXPECT_NEAR((foot.position_m() - Eigen::Vector3d(0.1, 0.16, 0)).norm(), 0, 1e-9);
+  // Half a second on, a COP that moves is none of its business.
+  for (int i = 0; i < 60; ++i)
+    foot.Advance({300, true, {0.1 + 0.08 * std::sin(0.5 * i), 0.16, 0}}, kMadeStepS);
+  EXPECT_NEAR(foot.position_m().x(), 0.1, 0.02);
+}
+
 TEST(PaperEstimator, TakesThePredictedCentreOfMassAndStaysFinite) {
   MadeBody body;
   PaperEstimator paper({}, {}, body.Calibrate(), kMadeStepS);

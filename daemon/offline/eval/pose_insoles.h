@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "common/result/result.h"
+#include "daemon/offline/rehearsal/insole_rehearsal.h"
+#include "daemon/simulation/reconstruction/models.h"
+
+namespace footing::eval {
+
+/// Runs the reconstruction over somebody who walks in insoles, from the T-pose's end on, and judges
+/// it root-relative; how far the root is off in W is beside it.
+Result<nlohmann::ordered_json> JudgeInsoles(const rehearsal::InsoleRehearsal& rehearsal,
+                                            const reconstruction::Models& models,
+                                            const reconstruction::Options& options);
+
+}  // namespace footing::eval

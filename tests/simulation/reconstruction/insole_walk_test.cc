@@ -1,0 +1,125 @@
+#include "daemon/simulation/reconstruction/insole_walk.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/units/units.h"
+#include "tests/simulation/reconstruction/made_person.h"
+
+namespace footing::reconstruction {
+namespace {
+
+constexpr double kSpeedMps = 1;
+constexpr double kStepS = 0.55;
+
+class Walker {
+ public:
+  Walker() : person_(MadePerson()), at_(person_.skeleton) {
+    const Models models = MakeModels({BasisOf(person_, MadeMotion(person_, 16))}).value();
+    Options options;
+    options.rate_hz = kMadeRateHz;
+    walk_ = InsoleWalk::Create(person_, models, options).value();
+    body::ComputeKinematics(person_.skeleton, body::TPose(person_.skeleton, person_.landmarks),
+                            at_);
+  }
+
+  /// Stands so long, then walks along x: hands at the level of a T-pose, feet in turns.
+  InsoleInputs At(double t_s) const {
+    InsoleInputs inputs;
+    inputs.time_s = t_s;
+    const double walked_s = std::max(0.0, t_s - kMadeStandS);
+    const bool left = std::fmod(walked_s, 2 * kStepS) < kStepS;
+    for (std::size_t f = 0; f < 2; ++f) {
+      const double share = walked_s == 0 ? 0.5 : (f == 0) == left ? 1 : 0;
+      inputs.feet[f].valid = true;
+      inputs.feet[f].count = 1;
+      inputs.feet[f].load_n[0] = share * KilogramsToNewtons(person_.mass_kg);
+    }
+    for (int side = 0; side < 2; ++side) {
+      const body::Point fist = body::Fist(person_, side);
+      const auto joint = static_cast<std::size_t>(fist.joint);
+      HandInput& hand = inputs.hands[static_cast<std::size_t>(side)];
+      hand.valid = true;
+      hand.p_W_m = body::Place(fist, at_.R_WJ[joint], at_.p_WJ[joint]) +
+                   Eigen::Vector3d(3 + kSpeedMps * walked_s, -2, 0);
+    }
+    return inputs;
+  }
+
+  InsoleWalk& walk() { return *walk_; }
+
+ private:
+  body::Body person_;
+  body::Kinematics at_;
+  std::optional<InsoleWalk> walk_;
+};
+
+TEST(InsoleWalk, StandsUnderTheHandsWhileItIsCalibrated) {
+  Walker walker;
+  for (int i = 0; i < kMadeStandS * kMadeRateHz; ++i) walker.walk().Advance(walker.At(i / 60.0));
+  EXPECT_TRUE(walker.walk().output().calibrated);
+  const Eigen::Vector2d middle = 0.5 * (walker.walk().place_m(0) + walker.walk().place_m(1));
+  EXPECT_NEAR(middle.x(), 3, 0.15);
+  EXPECT_NEAR(middle.y(), -2, 0.02);
+  EXPECT_NEAR(walker.walk().output().q(0), 3, 0.15);
+}
+
+TEST(InsoleWalk, FollowsSomebodyWhoWalksAwayAndStandsStillOnTheFootThatCarries) {
+  Walker walker;
+  std::array<Eigen::Vector2d, 2> before;
+  std::array<bool, 2> carried{};
+  double off = 0;
+  int frames = 0;
+  for (int i = 0; i < 26 * kMadeRateHz; ++i) {
+    const InsoleInputs inputs = walker.At(i / 60.0);
+    const Output& output = walker.walk().Advance(inputs);
+    ASSERT_TRUE(output.q.allFinite());
+    for (std::size_t f = 0; f < 2; ++f) {
+      const bool carries = walker.walk().contact(f);
+      if (carries && carried[f]) {
+        EXPECT_EQ(walker.walk().place_m(f).x(), before[f].x()) << i;
+      }
+      before[f] = walker.walk().place_m(f);
+      carried[f] = carries;
+    }
+    if (inputs.time_s < 16) continue;
+    // Somewhere under the hands, 10 to 20 m away from where it began.
+    const double hands = 0.5 * (inputs.hands[0].p_W_m + inputs.hands[1].p_W_m).x();
+    off += std::abs(output.q(0) - hands);
+    ++frames;
+  }
+  EXPECT_LT(off / frames, 0.25);
+  EXPECT_GT(walker.walk().output().q(0), 3 + 19);
+}
+
+TEST(InsoleWalk, IsFiniteWhateverTheSensorsSay) {
+  Walker walker;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 9 * kMadeRateHz; ++i) {
+    InsoleInputs inputs = walker.At(i / 60.0);
+    if (inputs.time_s > 6.5 && i % 3 == 0) {
+      inputs.feet[0].load_n[0] = nan;
+      inputs.hands[1].p_W_m.x() = nan;
+      inputs.feet[1].p_F_m[0].x() = i % 2 == 0 ? nan : 1e300;
+    }
+    if (i % 50 == 1) inputs.hands[0].valid = inputs.feet[1].valid = false;
+    const Output& output = walker.walk().Advance(inputs);
+    ASSERT_TRUE(output.q.allFinite()) << i;
+    ASSERT_TRUE(walker.walk().place_m(0).allFinite() && walker.walk().place_m(1).allFinite()) << i;
+  }
+}
+
+TEST(InsoleWalk, SaysThatOnlyTheBestModeWalks) {
+  const body::Body person = MadePerson();
+  const Models models = MakeModels({BasisOf(person, MadeMotion(person, 16))}).value();
+  Options options;
+  options.mode = Mode::kPaper;
+  const auto refused = InsoleWalk::Create(person, models, options);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("best mode"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace footing::reconstruction
