@@ -33,7 +33,7 @@ def wrong_starts(stage):
         assert stage.run(program, "--version").stdout.startswith(program)
         assert "Examples:" in stage.run(program, "--help").stdout
     expect(stage, USAGE, "beyond this host", "footingd", "--listen", "tcp:0.0.0.0:0")
-    expect(stage, USAGE, "there is: gait", "footing-sim", "--engine", "pose")
+    expect(stage, USAGE, "there are: gait, pose", "footing-sim", "--engine", "walkies")
     expect(stage, USAGE, "there is: wrist", "footing-sim", "--interface", "boards")
     expect(stage, USAGE, "demo", "footing-stream", "user", "--script", "dance")
     expect(stage, FAILURE, "/nonexistent.csv", "footing-stream", "accel", "--left",

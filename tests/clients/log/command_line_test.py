@@ -38,13 +38,15 @@ def main(program, writer):
         export = run("export", repaired, "--format", "csv", "--out", folder / "csv", "--json")
         assert export.returncode == 0 and len(json.loads(export.stdout)["files"]) == 3, export
 
-        for words, said in ((("export", whole, "--format", "bvh", "--out", folder), "csv"),
+        for words, said in ((("export", whole, "--format", "c3d", "--out", folder), "csv, bvh"),
                             (("serve", whole), "record, info, export, repair"),
                             (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),
                             (("record", "--connect", "unix:/x", "--out", whole), "--force"),
                             (("shred", whole), "")):
             done = run(*words)
             assert done.returncode == 2 and said in done.stderr, (words, done)
+        export = run("export", whole, "--format", "bvh", "--out", folder / "bvh")
+        assert export.returncode == 4 and "no reconstructed body" in export.stderr, export
         assert run("info", folder / "none.mcap").returncode == 1
         nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", folder / "n.mcap",
                      "--seconds", "0.2")
