@@ -26,7 +26,8 @@ LegIk::LegIk(const body::Body& body, int hip, int end)
       jacobian_(3, body.skeleton.dof),
       normal_(Dofs(body.skeleton, hip, end), Dofs(body.skeleton, hip, end)),
       gradient_(normal_.rows()),
-      cholesky_(normal_.rows()) {
+      // Decomposed already, since a copy of one that is not reads what nobody has written.
+      cholesky_(Eigen::MatrixXd::Identity(normal_.rows(), normal_.rows())) {
   for (int joint = end;; joint = body.skeleton.joint(joint).parent) {
     joints_.push_back(joint);
     const body::Joint& link = body.skeleton.joint(joint);
