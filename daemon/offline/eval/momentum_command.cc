@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "daemon/offline/eval/contact_score.h"
 #include "daemon/offline/eval/momentum_scene.h"
 #include "daemon/simulation/momentum/best_estimator.h"
 #include "daemon/simulation/momentum/paper_estimator.h"
@@ -16,9 +17,6 @@ namespace {
 
 using momentum::kFeet;
 using nlohmann::ordered_json;
-
-constexpr double kContactN = 20;
-constexpr double kSettledContactS = 0.3;  // A foot's place is judged so long after its landing.
 
 class Rms {
  public:
@@ -32,34 +30,6 @@ class Rms {
  private:
   double sum_ = 0;
   std::size_t count_ = 0;
-};
-
-struct Contacts {
-  std::size_t both = 0, only_told = 0, only_true = 0;
-  std::size_t landings = 0;
-  double delay_s = 0, worst_delay_s = 0;
-  std::array<double, kFeet> true_since_s{};
-  std::array<bool, kFeet> was{true, true};
-  std::array<bool, kFeet> seen{true, true};
-
-  void Add(std::size_t foot, bool truth, bool told, double step_s) {
-    both += truth && told ? 1 : 0;
-    only_told += !truth && told ? 1 : 0;
-    only_true += truth && !told ? 1 : 0;
-    true_since_s[foot] = truth ? (was[foot] ? true_since_s[foot] + step_s : 0) : 0;
-    if (truth && !was[foot]) seen[foot] = false;
-    if (truth && told && !seen[foot]) {
-      seen[foot] = true;
-      ++landings;
-      delay_s += true_since_s[foot];
-      worst_delay_s = std::max(worst_delay_s, true_since_s[foot]);
-    }
-    was[foot] = truth;
-  }
-  double F1() const {
-    const auto twice = 2.0 * static_cast<double>(both);
-    return twice / (twice + static_cast<double>(only_told + only_true));
-  }
 };
 
 ordered_json OfflineJson(const MomentumScene& scene, const momentum::TPose& pose,
@@ -122,7 +92,7 @@ Result<ordered_json> Evaluate(const MomentumOptions& options, bool offline) {
     rest[f] = scene->frames[0].feet[f].middle_m - pose.p_WP_m[f];
   Rms forward, lateral, vertical, first_minute, last_minute, cop_forward, cop_lateral, place;
   std::array<Rms, 3> momentum_error, momentum_true;
-  Contacts contacts;
+  ContactScore contacts;
   double nees = 0, busy_s = 0;
   std::size_t judged = 0;
   bool finite = true;
@@ -180,8 +150,7 @@ Result<ordered_json> Evaluate(const MomentumOptions& options, bool offline) {
   out["foot_position_rms_cm"] = place.centimetres();
   out["contact_f1"] = contacts.F1();
   out["landings"] = contacts.landings;
-  out["landing_delay_ms"] =
-      contacts.landings > 0 ? 1000 * contacts.delay_s / static_cast<double>(contacts.landings) : 0;
+  out["landing_delay_ms"] = 1000 * contacts.mean_delay_s();
   out["landing_delay_worst_ms"] = 1000 * contacts.worst_delay_s;
   ordered_json& angular = out["angular_momentum_error_kgm2ps"];
   for (std::size_t k = 0; k < 3; ++k)

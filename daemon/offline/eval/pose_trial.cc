@@ -5,6 +5,7 @@
 
 #include "common/body/momentum.h"
 #include "common/clock/clock.h"
+#include "daemon/offline/eval/contact_score.h"
 #include "daemon/offline/eval/pose_metrics.h"
 
 namespace footing::eval {
@@ -13,30 +14,7 @@ namespace {
 using momentum::kFeet;
 using nlohmann::ordered_json;
 
-constexpr double kContactN = 20;
-constexpr double kSettledContactS = 0.3;  // A foot's place is judged so long after its landing.
 constexpr int kCostRuns = 2000;
-
-/// Contact of both feet against the truth.
-struct Contacts {
-  double both = 0, only_told = 0, only_true = 0, landings = 0, delay_s = 0;
-  std::array<double, kFeet> since_s{};  ///< True contact.
-  std::array<bool, kFeet> was{true, true}, seen{true, true};
-
-  void Add(std::size_t f, bool truth, bool told, double step_s) {
-    both += truth && told ? 1 : 0;
-    only_told += !truth && told ? 1 : 0;
-    only_true += truth && !told ? 1 : 0;
-    since_s[f] = truth ? (was[f] ? since_s[f] + step_s : 0) : 0;
-    if (truth && !was[f]) seen[f] = false;
-    if (truth && told && !seen[f]) {
-      seen[f] = true;
-      ++landings;
-      delay_s += since_s[f];
-    }
-    was[f] = truth;
-  }
-};
 
 /// Slope of |error| over time, by least squares.
 class Drift {
@@ -124,10 +102,8 @@ class Judge {
     pose_vertical_.Add(100 * (com.z() - then.com_m.z()));
     pose_horizontal_.Add(100 * (com - then.com_m).head<2>().norm());
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const double error = output.momentum.angular_momentum_kgm2ps(axis) -
-                           rehearsal_.frames[0].angular_momentum(axis) -
-                           (then.angular_momentum - rehearsal_.frames[0].angular_momentum)(axis);
-      angular_[static_cast<std::size_t>(axis)].Add(error);
+      angular_[static_cast<std::size_t>(axis)].Add(output.momentum.angular_momentum_kgm2ps(axis) -
+                                                   then.angular_momentum(axis));
     }
   }
 
@@ -139,7 +115,7 @@ class Judge {
       const auto at = [&](const body::Kinematics& k, int joint) {
         return k.p_WJ[static_cast<std::size_t>(joint)];
       };
-      if (contacts_.since_s[f] > kSettledContactS) {
+      if (contacts_.true_since_s[f] > kSettledContactS) {
         const Eigen::Vector3d error =
             0.5 * (at(score_.at(), ankle_[f]) + at(score_.at(), toe_[f]) -
                    at(score_.truth(), ankle_[f]) - at(score_.truth(), toe_[f]));
@@ -162,7 +138,7 @@ class Judge {
   Spread vertical_, horizontal_, pose_vertical_, pose_horizontal_, place_, skate_, true_skate_;
   std::array<Spread, 3> angular_;
   Drift vertical_drift_, horizontal_drift_;
-  Contacts contacts_;
+  ContactScore contacts_;
   std::array<int, kFeet> ankle_{}, toe_{};
   std::array<Eigen::Vector3d, kFeet> toe_before_{}, true_toe_before_{};
   std::array<bool, kFeet> told_before_{};
@@ -183,11 +159,9 @@ ordered_json Judge::Json() const {
   json["foot_skate_cm_per_s"] = skate_.mean();
   json["foot_skate_true_cm_per_s"] = true_skate_.mean();
   json["foot_position_rms_cm"] = place_.rms();
-  const double twice = 2 * contacts_.both;
-  json["contact_f1"] = twice > 0 ? twice / (twice + contacts_.only_told + contacts_.only_true) : 0;
+  json["contact_f1"] = contacts_.F1();
   json["landings"] = contacts_.landings;
-  json["landing_delay_ms"] =
-      contacts_.landings > 0 ? 1000 * contacts_.delay_s / contacts_.landings : 0;
+  json["landing_delay_ms"] = 1000 * contacts_.mean_delay_s();
   json["nees"] = nees_count_ > 0 ? nees_ / nees_count_ : 0;
   json["invalid_frames"] = invalid_;
   json["finite"] = finite_;

@@ -5,31 +5,18 @@
 #include <utility>
 
 #include "common/body/kinematics.h"
-#include "common/motion/edit.h"
 #include "common/synthetic/random.h"
 #include "common/units/units.h"
 #include "common/virtual_sensors/insole_cells.h"
-#include "common/virtual_sensors/scene.h"
+#include "daemon/offline/rehearsal/stage.h"
 
 namespace footing::rehearsal {
-namespace {
 
 namespace sensors = virtual_sensors;
 
-}  // namespace
-
 Result<InsoleRehearsal> RehearseInsoles(const motion::Motion& clip, const Settings& settings,
                                         const std::string& origin) {
-  auto kept = motion::WithLandmarksOnly(clip);
-  if (!kept) return InvalidData(origin + ": " + kept.error().message);
-  body::PersonParameters person;
-  person.mass_kg = settings.mass_kg;
-  person.height_m = settings.height_m;
-  sensors::SceneOptions stage;
-  stage.hold_s = kStandS;
-  stage.rest_share = momentum::FootShape{}.rest_share;
-  stage.loop_s = settings.loop_s;
-  const auto scene = sensors::MakeScene(std::move(kept).value(), person, stage, origin);
+  const auto scene = Stage(clip, settings, origin);
   if (!scene) return scene.error();
 
   InsoleRehearsal rehearsal;
@@ -40,17 +27,15 @@ Result<InsoleRehearsal> RehearseInsoles(const motion::Motion& clip, const Settin
   for (std::size_t f = 0; f < places.size(); ++f) {
     const double length_m = sensors::PlaceOfSole(scene->course, f, 0).length_m;
     places[f] = sensors::InsolePlaces(length_m);
-    rest_m[f] = stage.rest_share * length_m;
+    rest_m[f] = momentum::FootShape{}.rest_share * length_m;
   }
   synthetic::Random random(settings.seed);
   const double noise_n = KilogramsToNewtons(settings.errors.noise_kg);
   body::Kinematics at(scene->body.skeleton);
-  const auto count = static_cast<std::size_t>(scene->motion.duration_s() * settings.rate_hz);
+  const std::size_t count = FrameCount(*scene, settings.rate_hz);
   for (std::size_t i = 0; i < count; ++i) {
     const double time_s = static_cast<double>(i) / settings.rate_hz;
-    const auto column = std::min<Eigen::Index>(
-        static_cast<Eigen::Index>(std::lround(time_s * scene->motion.rate_hz)),
-        scene->motion.frames() - 1);
+    const Eigen::Index column = ColumnAt(*scene, time_s);
     InsoleFrame frame;
     frame.inputs.time_s = time_s;
     frame.q = scene->motion.q.col(column);

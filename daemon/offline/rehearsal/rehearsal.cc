@@ -7,9 +7,9 @@
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
 #include "common/body/points.h"
-#include "common/motion/edit.h"
 #include "common/synthetic/random.h"
 #include "common/virtual_sensors/scene.h"
+#include "daemon/offline/rehearsal/stage.h"
 #include "daemon/simulation/momentum/estimate.h"
 
 namespace footing::rehearsal {
@@ -75,16 +75,7 @@ void MeasureHands(const body::Body& body, const body::Kinematics& at, double noi
 
 Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
                            const std::string& origin) {
-  auto kept = motion::WithLandmarksOnly(clip);
-  if (!kept) return InvalidData(origin + ": " + kept.error().message);
-  body::PersonParameters person;
-  person.mass_kg = settings.mass_kg;
-  person.height_m = settings.height_m;
-  sensors::SceneOptions stage;
-  stage.hold_s = kStandS;
-  stage.rest_share = momentum::FootShape{}.rest_share;
-  stage.loop_s = settings.loop_s;
-  const auto scene = sensors::MakeScene(std::move(kept).value(), person, stage, origin);
+  const auto scene = Stage(clip, settings, origin);
   if (!scene) return scene.error();
 
   Rehearsal rehearsal;
@@ -94,13 +85,11 @@ Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
   synthetic::Random random(settings.seed);
   body::Kinematics at(scene->body.skeleton);
   const double step_s = 1 / settings.rate_hz;
-  const auto count = static_cast<std::size_t>(scene->motion.duration_s() * settings.rate_hz);
+  const std::size_t count = FrameCount(*scene, settings.rate_hz);
   std::size_t loaded = 0, outside = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double time_s = static_cast<double>(i) * step_s;
-    const auto column = std::min<Eigen::Index>(
-        static_cast<Eigen::Index>(std::lround(time_s * scene->motion.rate_hz)),
-        scene->motion.frames() - 1);
+    const Eigen::Index column = ColumnAt(*scene, time_s);
     const auto forces = sensors::ShareBetweenFeet(scene->course, scene->reaction, column);
     Frame frame;
     frame.inputs.loads.time_s = time_s;
