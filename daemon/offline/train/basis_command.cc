@@ -24,13 +24,8 @@ int Run(const Options& options, const Shared& shared) {
   if (!trained) return cli::Report(trained.error());
   const training::PoseBasis& basis = trained->basis;
 
-  model::Model model{.kind = "basis",
-                     .provenance = {.program_version = cli::Version(),
-                                    .command = shared.command_line,
-                                    .seed = options.model.seed,
-                                    .data = DataFiles(clips->train),
-                                    .subjects = clips->subjects},
-                     .tensors = {}};
+  model::Model model =
+      NewModel("basis", shared, options.model, DataFiles(clips->train), clips->subjects);
   AppendBasis(basis, model);
   if (auto written = WriteModel(model, options.model); !written) {
     return cli::Report(written.error());

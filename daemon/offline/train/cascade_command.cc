@@ -37,13 +37,8 @@ int Run(const Options& options, const Shared& shared) {
       training::TrainCascade(split.train, split.validation, cascade, options.data.model.seed);
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
-  model::Model model{.kind = "cascade",
-                     .provenance = {.program_version = cli::Version(),
-                                    .command = shared.command_line,
-                                    .seed = options.data.model.seed,
-                                    .data = {data->file},
-                                    .subjects = options.data.subjects},
-                     .tensors = {}};
+  model::Model model =
+      NewModel("cascade", shared, options.data.model, {data->file}, options.data.subjects);
   cascade::AppendTensors(result.network, "", model);
   if (auto written = WriteModel(model, options.data.model); !written) {
     return cli::Report(written.error());

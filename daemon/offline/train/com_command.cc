@@ -190,13 +190,8 @@ int Run(const Options& options, const Shared& shared) {
   const std::vector<training::CascadeResult>& axes = trained.axes;
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
-  model::Model model{.kind = "com",
-                     .provenance = {.program_version = cli::Version(),
-                                    .command = shared.command_line,
-                                    .seed = options.model.seed,
-                                    .data = DataFiles(clips->train),
-                                    .subjects = clips->subjects},
-                     .tensors = {}};
+  model::Model model =
+      NewModel("com", shared, options.model, DataFiles(clips->train), clips->subjects);
   nlohmann::ordered_json report = {{"subjects", clips->subjects},
                                    {"clips", clips->train.size()},
                                    {"noise_m", trained.noise_m},

@@ -26,13 +26,8 @@ int Run(const Options& options, const Shared& shared) {
                                                         options.mlp, options.data.model.seed);
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
-  model::Model model{.kind = "mlp",
-                     .provenance = {.program_version = cli::Version(),
-                                    .command = shared.command_line,
-                                    .seed = options.data.model.seed,
-                                    .data = {data->file},
-                                    .subjects = options.data.subjects},
-                     .tensors = {}};
+  model::Model model =
+      NewModel("mlp", shared, options.data.model, {data->file}, options.data.subjects);
   training::AppendTensors(result.network, model);
   if (auto written = WriteModel(model, options.data.model); !written) {
     return cli::Report(written.error());

@@ -1,7 +1,9 @@
 #include "daemon/offline/train/model_output.h"
 
 #include <filesystem>
+#include <utility>
 
+#include "common/cli/cli.h"
 #include "common/recording/output_file.h"
 #include "common/wire/model_file.h"
 
@@ -18,6 +20,17 @@ Result<void> CheckFree(const ModelOptions& options) {
   if (options.force || !std::filesystem::exists(options.out, error)) return {};
   return UsageError(options.out +
                     " exists and is not overwritten; choose another name, or say --force");
+}
+
+model::Model NewModel(const std::string& kind, const Shared& shared, const ModelOptions& options,
+                      std::vector<model::DataFile> data, std::vector<std::string> subjects) {
+  return {.kind = kind,
+          .provenance = {.program_version = cli::Version(),
+                         .command = shared.command_line,
+                         .seed = options.seed,
+                         .data = std::move(data),
+                         .subjects = std::move(subjects)},
+          .tensors = {}};
 }
 
 Result<void> WriteModel(const model::Model& model, const ModelOptions& options) {

@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/model/model.h"
 #include "common/result/result.h"
+#include "daemon/offline/train/command.h"
 
 namespace footing::train {
 
@@ -20,6 +22,10 @@ void AddModelOptions(CLI::App& command, ModelOptions& options);
 
 /// Refuses an `out` that exists, before anything is trained.
 Result<void> CheckFree(const ModelOptions& options);
+
+/// A model without tensors, with all that is known of where it comes from.
+model::Model NewModel(const std::string& kind, const Shared& shared, const ModelOptions& options,
+                      std::vector<model::DataFile> data, std::vector<std::string> subjects);
 
 Result<void> WriteModel(const model::Model& model, const ModelOptions& options);
 

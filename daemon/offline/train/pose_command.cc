@@ -79,13 +79,8 @@ int Run(const Options& options, const Shared& shared) {
   if (!clips) return cli::Report(clips.error());
   const Result<TrainedBasis> trained = TrainBasis(clips->train);
   if (!trained) return cli::Report(trained.error());
-  model::Model model{.kind = "basis",
-                     .provenance = {.program_version = cli::Version(),
-                                    .command = shared.command_line,
-                                    .seed = options.model.seed,
-                                    .data = DataFiles(clips->train),
-                                    .subjects = clips->subjects},
-                     .tensors = {}};
+  model::Model model =
+      NewModel("basis", shared, options.model, DataFiles(clips->train), clips->subjects);
   AppendBasis(trained->basis, model);
   const auto examples = Examples(clips->train, model, options.model.seed);
   if (!examples) return cli::Report(examples.error());

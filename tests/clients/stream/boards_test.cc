@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <memory>
 
@@ -14,6 +13,7 @@
 #include "common/body/momentum.h"
 #include "common/body/points.h"
 #include "common/units/units.h"
+#include "tests/common/temporary_folder.h"
 
 namespace footing::stream_client {
 namespace {
@@ -30,9 +30,9 @@ class BoardsTest : public testing::Test {
     options_.stage.motion = path_;
     options_.stage.mass_kg = 60;
   }
-  ~BoardsTest() override { std::remove(path_.c_str()); }
 
-  const std::string path_ = testing::TempDir() + "footing_boards_test.json";
+  const test::TemporaryFolder folder_;
+  const std::string path_ = folder_.Path("script.json");
   BoardsOptions options_;
 };
 

@@ -2,77 +2,23 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 
-#include "clients/view/render/off_screen.h"
-#include "clients/view/render/screen.h"
-#include "clients/view/render/target.h"
-#include "clients/view/scene/stage.h"
 #include "tests/clients/view/made_person.h"
 #include "tests/clients/view/made_stream.h"
+#include "tests/clients/view/picture_fixture.h"
 
-// Mesa's software driver keeps some memory to its end in modules that are unloaded by then: under
-// AddressSanitizer leaks are not looked for here.
-extern "C" const char* __asan_default_options();
-extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
-
-// Pictures of the made person, judged by facts and not by bytes. FOOTING_PICTURES=FOLDER keeps them
-// as PNG files, to look at.
+// Pictures of the made person, judged by facts and not by bytes.
 namespace footing::render {
 namespace {
 
-constexpr int kWidth = 1280;
-constexpr int kHeight = 720;
-
 using scene::made::PersonWish;
-using Is = std::function<bool(int red, int green, int blue)>;
 
 bool IsShirt(int r, int g, int b) { return b > r + 35 && g > r + 35 && std::abs(g - b) < 45; }
 bool IsYellow(int r, int g, int b) { return r > b + 50 && g > b + 35 && r >= g; }
 bool IsGrass(int r, int g, int b) { return g > r + 12 && g > b + 25; }
 
-struct Region {
-  double left = 0, right = 1, top = 0, bottom = 1;
-};
-
-/// The share of a part of the picture that is of a colour.
-double ShareOf(const Image& image, const Is& is, const Region& region) {
-  std::size_t count = 0, all = 0;
-  for (int y = static_cast<int>(region.top * kHeight); y < region.bottom * kHeight; ++y) {
-    for (int x = static_cast<int>(region.left * kWidth); x < region.right * kWidth; ++x) {
-      const auto i = static_cast<std::size_t>(3 * (y * kWidth + x));
-      ++all;
-      if (is(image.rgb[i], image.rgb[i + 1], image.rgb[i + 2])) ++count;
-    }
-  }
-  return static_cast<double>(count) / static_cast<double>(all);
-}
-
-class PersonPictureTest : public ::testing::Test {
+class PersonPictureTest : public PictureFixture<1280, 720, 100> {
  protected:
-  static void SetUpTestSuite() {
-    auto context = OffScreen::Create();
-    if (!context) {
-      why_ = context.error().message;
-      return;
-    }
-    context_ = std::make_unique<OffScreen>(std::move(*context));
-    auto target = Target::Create(kWidth, kHeight, 0);
-    auto screen = Screen::Create(1.0f);
-    if (!target || !screen) {
-      why_ = target ? screen.error().message : target.error().message;
-      return;
-    }
-    target_ = std::make_unique<Target>(std::move(*target));
-    screen_ = std::move(*screen);
-  }
-  static void TearDownTestSuite() {
-    screen_.reset();
-    target_.reset();
-    context_.reset();
-  }
-  void SetUp() override { ASSERT_NE(screen_, nullptr) << why_; }
-
   Image Draw(const PersonWish& wish, const scene::StageOptions& options, const HudOptions& hud,
              const std::string& name) {
     constexpr double kTimeS = 2.2;
@@ -85,30 +31,14 @@ class PersonPictureTest : public ::testing::Test {
       frame = scene::made::PersonTickAt(time_s, wish).frame.value();
       picture = stage.Advance(model, frame, scene::made::ClockAt(kTimeS), 0.01, options);
     }
-    target_->Bind();
-    screen_->Draw(picture, model, frame, scene::made::ClockAt(kTimeS), hud, kWidth, kHeight);
-    Image image = target_->Read();
-    if (const char* folder = std::getenv("FOOTING_PICTURES")) {
-      EXPECT_TRUE(WritePng(image, std::string(folder) + "/" + name + ".png"));
-    }
-    return image;
+    return Show(picture, model, frame, scene::made::ClockAt(kTimeS), hud, name);
   }
   static HudOptions Subject() {
     HudOptions hud;
     hud.hidden = true;
     return hud;
   }
-
-  static std::string why_;
-  static std::unique_ptr<OffScreen> context_;
-  static std::unique_ptr<Target> target_;
-  static std::unique_ptr<Screen> screen_;
 };
-
-std::string PersonPictureTest::why_;
-std::unique_ptr<OffScreen> PersonPictureTest::context_;
-std::unique_ptr<Target> PersonPictureTest::target_;
-std::unique_ptr<Screen> PersonPictureTest::screen_;
 
 constexpr Region kMiddle{0.3, 0.7, 0.1, 0.95};
 

@@ -3,44 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 
-#include "clients/view/render/off_screen.h"
-#include "clients/view/render/screen.h"
-#include "clients/view/render/target.h"
-#include "clients/view/scene/stage.h"
 #include "tests/clients/view/made_stream.h"
-
-// Mesa's software driver keeps some memory to its end in modules that are unloaded by then: under
-// AddressSanitizer leaks are not looked for here.
-extern "C" const char* __asan_default_options();
-extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
+#include "tests/clients/view/picture_fixture.h"
 
 // Pictures of the made stream, judged by facts and not by bytes: drivers differ in every pixel.
-// FOOTING_PICTURES=FOLDER keeps them as PNG files, to look at.
 namespace footing::render {
 namespace {
-
-constexpr int kWidth = 640;
-constexpr int kHeight = 360;
-
-using Is = std::function<bool(int red, int green, int blue)>;
 
 bool IsSky(int r, int g, int b) { return b > 150 && b > g && g > r; }
 bool IsGrass(int r, int g, int b) { return g > r + 12 && g > b + 25; }
 bool IsClay(int r, int g, int b) { return r > g + 30 && r > b + 30; }
 bool IsFeather(int r, int g, int b) { return b > r + 40 && b > 60 && g > r; }
-
-/// The share of a part of the picture that is of a colour. Rows from `top` to `bottom`, in shares.
-double ShareOf(const Image& image, const Is& is, double top = 0, double bottom = 1) {
-  const auto from = static_cast<std::size_t>(top * image.height * image.width);
-  const auto to = static_cast<std::size_t>(bottom * image.height * image.width);
-  std::size_t count = 0;
-  for (std::size_t i = from; i < to; ++i) {
-    if (is(image.rgb[3 * i], image.rgb[3 * i + 1], image.rgb[3 * i + 2])) ++count;
-  }
-  return static_cast<double>(count) / static_cast<double>(to - from);
-}
 
 double MeanDifference(const Image& a, const Image& b) {
   double sum = 0;
@@ -48,43 +22,13 @@ double MeanDifference(const Image& a, const Image& b) {
   return sum / static_cast<double>(a.rgb.size());
 }
 
-/// One context for all cases, as one process has one screen.
-class PictureTest : public ::testing::Test {
+class PictureTest : public PictureFixture<640, 360, 50> {
  protected:
-  static void SetUpTestSuite() {
-    auto context = OffScreen::Create();
-    if (!context) {
-      why_ = context.error().message;
-      return;
-    }
-    context_ = std::make_unique<OffScreen>(std::move(*context));
-    auto target = Target::Create(kWidth, kHeight, 0);
-    auto screen = Screen::Create(0.5f);
-    if (!target || !screen) {
-      why_ = target ? screen.error().message : target.error().message;
-      return;
-    }
-    target_ = std::make_unique<Target>(std::move(*target));
-    screen_ = std::move(*screen);
-  }
-  static void TearDownTestSuite() {
-    screen_.reset();
-    target_.reset();
-    context_.reset();
-  }
-  void SetUp() override { ASSERT_NE(screen_, nullptr) << why_; }
-
   /// The picture of a model at a time of the made stream, after its camera has settled.
   Image Draw(const scene::Model& model, double time_s, const scene::made::Wish& wish,
              const HudOptions& hud, const std::string& name) {
     Follow(model, time_s, wish);
-    target_->Bind();
-    screen_->Draw(picture_, model, frame_, scene::made::ClockAt(time_s), hud, kWidth, kHeight);
-    Image image = target_->Read();
-    if (const char* folder = std::getenv("FOOTING_PICTURES")) {
-      EXPECT_TRUE(WritePng(image, std::string(folder) + "/" + name + ".png"));
-    }
-    return image;
+    return Show(picture_, model, frame_, scene::made::ClockAt(time_s), hud, name);
   }
   void Follow(const scene::Model& model, double time_s, const scene::made::Wish& wish) {
     scene::Stage stage;
@@ -97,29 +41,20 @@ class PictureTest : public ::testing::Test {
     }
   }
 
-  static std::string why_;
-  static std::unique_ptr<OffScreen> context_;
-  static std::unique_ptr<Target> target_;
-  static std::unique_ptr<Screen> screen_;
   scene::WorldFrame frame_;
   scene::Picture picture_;
 };
-
-std::string PictureTest::why_;
-std::unique_ptr<OffScreen> PictureTest::context_;
-std::unique_ptr<Target> PictureTest::target_;
-std::unique_ptr<Screen> PictureTest::screen_;
 
 TEST_F(PictureTest, SkyIsAboveGrassAndTrackAndTheBirdIsBetween) {
   const scene::made::Wish wish;
   HudOptions subject;
   subject.hidden = true;
   const Image image = Draw(scene::made::ModelAfter(3, wish), 3, wish, subject, "subject");
-  EXPECT_GT(ShareOf(image, IsSky, 0, 0.2), 0.5);
-  EXPECT_LT(ShareOf(image, IsSky, 0.6, 1), 0.02);
-  EXPECT_GT(ShareOf(image, IsGrass, 0.5, 1), 0.15);
-  EXPECT_GT(ShareOf(image, IsClay, 0.5, 1), 0.25);
-  EXPECT_GT(ShareOf(image, IsFeather, 0.4, 0.9), 0.01);
+  EXPECT_GT(ShareOf(image, IsSky, {0, 1, 0, 0.2}), 0.5);
+  EXPECT_LT(ShareOf(image, IsSky, {0, 1, 0.6, 1}), 0.02);
+  EXPECT_GT(ShareOf(image, IsGrass, {0, 1, 0.5, 1}), 0.15);
+  EXPECT_GT(ShareOf(image, IsClay, {0, 1, 0.5, 1}), 0.25);
+  EXPECT_GT(ShareOf(image, IsFeather, {0, 1, 0.4, 0.9}), 0.01);
 }
 
 TEST_F(PictureTest, TheWholeBirdStandsInTheMiddleOfThePicture) {
@@ -172,10 +107,10 @@ TEST_F(PictureTest, TheStampOfSimulatedInputShowsInSubjectModeToo) {
   subject.hidden = true;
   const auto amber = [](int r, int g, int b) { return r > 230 && g > 160 && g < 200 && b < 90; };
   const Image stamped = Draw(scene::made::ModelAfter(3, wish), 3, wish, subject, "stamped");
-  EXPECT_GT(ShareOf(stamped, amber, 0, 0.08), 0.03);
+  EXPECT_GT(ShareOf(stamped, amber, {0, 1, 0, 0.08}), 0.03);
   wish.simulated = false;
   const Image real = Draw(scene::made::ModelAfter(3, wish), 3, wish, subject, "real");
-  EXPECT_EQ(ShareOf(real, amber, 0, 0.08), 0);
+  EXPECT_EQ(ShareOf(real, amber, {0, 1, 0, 0.08}), 0);
 }
 
 TEST_F(PictureTest, BeforeAnyServerTheGroundAndAWaitingPanelAreThere) {
@@ -185,9 +120,10 @@ TEST_F(PictureTest, BeforeAnyServerTheGroundAndAWaitingPanelAreThere) {
   HudOptions subject;
   subject.hidden = true;
   const Image bare = Draw(model, 0, {}, subject, "empty_ground");
-  EXPECT_GT(ShareOf(bare, IsGrass, 0.6, 1), 0.6);
+  EXPECT_GT(ShareOf(bare, IsGrass, {0, 1, 0.6, 1}), 0.6);
   const auto letters = [](int r, int g, int b) { return r > 140 && g > 140 && b > 140; };
-  EXPECT_GT(ShareOf(waiting, letters, 0.36, 0.52), ShareOf(bare, letters, 0.36, 0.52) + 0.002);
+  EXPECT_GT(ShareOf(waiting, letters, {0, 1, 0.36, 0.52}),
+            ShareOf(bare, letters, {0, 1, 0.36, 0.52}) + 0.002);
   EXPECT_GT(MeanDifference(waiting, bare), 3);
 }
 

@@ -13,6 +13,7 @@
 #include "common/recording/repair.h"
 #include "common/recording/schema.h"
 #include "footing/v1/session.pb.h"
+#include "tests/common/temporary_folder.h"
 
 namespace footing::recording {
 namespace {
@@ -21,15 +22,7 @@ using testing::HasSubstr;
 
 class Recording : public testing::Test {
  protected:
-  void SetUp() override {
-    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::path(testing::TempDir()) / ("footing_recording_" + name);
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Path(const std::string& name) const { return folder_.Path(name); }
 
   /// Sample k of device 3, received at k * 10 ms, on /footingd/motion, one a tick.
   void WriteMotion(const std::string& path, int ticks) {
@@ -79,7 +72,7 @@ class Recording : public testing::Test {
     return values;
   }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(Recording, MessagesComeBackThroughTheSchemaInside) {

@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <fstream>
+
+#include "tests/common/temporary_folder.h"
 
 namespace footing::subject {
 namespace {
@@ -17,9 +18,9 @@ struct SubjectFileTest : testing::Test {
     std::ofstream(path) << text;
     return ReadSubject(path);
   }
-  ~SubjectFileTest() override { std::remove(path.c_str()); }
 
-  std::string path = testing::TempDir() + "/subject_test.json";
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("subject.json");
 };
 
 TEST_F(SubjectFileTest, CodeAndHeightAreEnough) {

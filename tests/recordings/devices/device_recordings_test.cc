@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/common/temporary_folder.h"
 #include "tests/recordings/devices/replay.h"
 
 namespace footing::recordings {
@@ -87,7 +88,8 @@ TEST(Capture, ReadsWhatItPrints) {
 }
 
 TEST(Capture, ABadLineIsNamed) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "bad.report";
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("bad.report");
   for (const char* bad :
        {"1.0 < 12 34", "1.0 < 123", "1.0 < xy", "1.0 ! 12", "one < 12", "1.0 < 12\n0.5 < 12"}) {
     std::ofstream(path) << "# Device: x\n" << bad << "\n";

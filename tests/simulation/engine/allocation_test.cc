@@ -1,5 +1,5 @@
 #include "daemon/simulation/engine/state.h"
-#include "tests/simulation/engine/allocations.h"
+#include "tests/simulation/allocations.h"
 #include "tests/simulation/engine/engine_fixture.h"
 
 namespace footing::engine {

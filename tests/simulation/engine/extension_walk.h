@@ -6,7 +6,7 @@
 #include "common/units/units.h"
 #include "daemon/simulation/engine/state.h"
 #include "daemon/simulation/terrain/track.h"
-#include "tests/simulation/engine/allocations.h"
+#include "tests/simulation/allocations.h"
 #include "tests/simulation/engine/engine_fixture.h"
 
 namespace footing::engine {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <memory>
 
-#include "tests/simulation/reconstruction/allocations.h"
+#include "tests/simulation/allocations.h"
 #include "tests/simulation/reconstruction/made_person.h"
 
 namespace footing::reconstruction {

@@ -1,4 +1,4 @@
-#include "tests/simulation/engine/allocations.h"
+#include "tests/simulation/allocations.h"
 
 #include <cstdlib>
 
