@@ -18,6 +18,9 @@ endif()
 # CTest test. Cases that call GTEST_SKIP show as skipped.
 function(add_module_test name)
   cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  if(FOOTING_SANITIZE AND arg_LABELS MATCHES "long")
+    return()  # Never run with sanitizers.
+  endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()
