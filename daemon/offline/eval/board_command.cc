@@ -1,13 +1,13 @@
 #include "daemon/offline/eval/board_command.h"
 
 #include <algorithm>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "common/cli/cli.h"
 #include "common/units/units.h"
+#include "daemon/offline/eval/print_report.h"
 #include "daemon/offline/eval/table.h"
 #include "daemon/offline/posturography/board.h"
 #include "daemon/offline/posturography/sway.h"
@@ -158,14 +158,6 @@ Result<ordered_json> Evaluate(const Options& options) {
   return out;
 }
 
-void Print(const ordered_json& out, bool json) {
-  if (json) {
-    std::cout << out.dump() << "\n";
-    return;
-  }
-  for (const auto& [name, value] : out.items()) std::cout << name << ": " << value.dump() << "\n";
-}
-
 }  // namespace
 
 void AddBoardCommand(CLI::App& app, Shared& shared) {
@@ -200,7 +192,7 @@ void AddBoardCommand(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(out.error());
       return;
     }
-    Print(*out, shared.json);
+    PrintReport(*out, shared.json);
   });
 }
 

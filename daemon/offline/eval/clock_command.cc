@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +10,7 @@
 #include "common/cli/cli.h"
 #include "common/device_models/link_model.h"
 #include "common/synthetic/random.h"
+#include "daemon/offline/eval/print_report.h"
 #include "daemon/sensor/link/device_clock.h"
 
 namespace footing::eval {
@@ -144,13 +144,7 @@ void AddClockCommand(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(out.error());
       return;
     }
-    if (shared.json) {
-      std::cout << out->dump() << "\n";
-      return;
-    }
-    for (const auto& [name, value] : out->items()) {
-      std::cout << name << ": " << value.dump() << "\n";
-    }
+    PrintReport(*out, shared.json);
   });
 }
 

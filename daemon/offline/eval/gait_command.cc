@@ -15,6 +15,7 @@
 #include "daemon/offline/eval/gait_trial.h"
 #include "daemon/offline/eval/ground_course.h"
 #include "daemon/offline/eval/pit_course.h"
+#include "daemon/offline/eval/print_report.h"
 #include "daemon/offline/eval/push_sweep.h"
 #include "daemon/offline/eval/step_cost.h"
 #include "daemon/simulation/gait/limits.h"
@@ -191,16 +192,6 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
   return report;
 }
 
-void Print(const nlohmann::ordered_json& report, bool json) {
-  if (json) {
-    std::printf("%s\n", report.dump().c_str());
-    return;
-  }
-  for (const auto& [key, value] : report.items()) {
-    std::printf("%-24s %s\n", key.c_str(), value.dump().c_str());
-  }
-}
-
 int RunSweep(const Options& options, std::uint64_t seed, bool json) {
   const PushSweep sweep{.command = CommandOf(options),
                         .directions = options.push_directions,
@@ -211,17 +202,17 @@ int RunSweep(const Options& options, std::uint64_t seed, bool json) {
     const auto run = RunPushSweep(sweep, TrialSeed(seed, i), result);
     if (!run) return cli::Report(run.error());
   }
-  Print({{"gait", options.gait},
-         {"speed_mps", options.speed_mps},
-         {"height_m", sweep.command.height_m},
-         {"seed", seed},
-         {"trials", options.trials},
-         {"push_ns", options.push_ns},
-         {"pushes", result.pushes},
-         {"falls", result.all_falls()},
-         {"falls_by_direction", result.falls},
-         {"largest_survived_ns", result.largest_survived_ns}},
-        json);
+  PrintReport({{"gait", options.gait},
+               {"speed_mps", options.speed_mps},
+               {"height_m", sweep.command.height_m},
+               {"seed", seed},
+               {"trials", options.trials},
+               {"push_ns", options.push_ns},
+               {"pushes", result.pushes},
+               {"falls", result.all_falls()},
+               {"falls_by_direction", result.falls},
+               {"largest_survived_ns", result.largest_survived_ns}},
+              json);
   return 0;
 }
 
@@ -246,7 +237,7 @@ int Run(const Options& options, bool json) {
   if (!trials) return cli::Report(trials.error());
   const Result<double> ratio = MeasureStepCostRatio(CommandOf(options));
   if (!ratio) return cli::Report(ratio.error());
-  Print(Report(options, *seed, *trials, *ratio), json);
+  PrintReport(Report(options, *seed, *trials, *ratio), json);
   return 0;
 }
 

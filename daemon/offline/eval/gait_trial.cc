@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/config/data_file.h"
 #include "daemon/simulation/biped/mjcf.h"
+#include "daemon/simulation/engine_files/engine_files.h"
 #include "daemon/simulation/terrain/ground.h"
 #include "daemon/simulation/terrain/track.h"
 
@@ -18,25 +18,7 @@ std::vector<std::string>& MoreGains() {
 }
 
 Result<engine::EngineTexts> ReadTexts() {
-  engine::EngineTexts texts;
-  for (const auto& [name, text] : {std::pair{engine::kBipedFile, &texts.biped},
-                                   {engine::kStraightTrackFile, &texts.track},
-                                   {engine::kWristMappingFile, &texts.wrist_mapping}}) {
-    Result<std::string> read = config::ReadDataFile(name);
-    if (!read) return read.error();
-    *text = std::move(*read);
-  }
-  for (const char* name : engine::kGainFiles) {
-    Result<std::string> read = config::ReadDataFile(name);
-    if (!read) return read.error();
-    texts.gains.push_back({name, std::move(*read)});
-  }
-  for (const std::string& path : MoreGains()) {
-    Result<std::string> read = config::ReadTextFile(path);
-    if (!read) return read.error();
-    texts.gains.push_back({path, std::move(*read)});
-  }
-  return texts;
+  return engine_files::ReadTexts({.more_gains = MoreGains()});
 }
 
 }  // namespace

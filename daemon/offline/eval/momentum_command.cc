@@ -2,13 +2,13 @@
 
 #include <chrono>
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
 #include "daemon/offline/eval/contact_score.h"
 #include "daemon/offline/eval/momentum_scene.h"
+#include "daemon/offline/eval/print_report.h"
 #include "daemon/simulation/momentum/best_estimator.h"
 #include "daemon/simulation/momentum/paper_estimator.h"
 
@@ -202,12 +202,7 @@ void AddMomentumCommand(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(out.error());
       return;
     }
-    if (shared.json) {
-      std::cout << out->dump() << "\n";
-    } else {
-      for (const auto& [name, value] : out->items())
-        std::cout << name << ": " << value.dump() << "\n";
-    }
+    PrintReport(*out, shared.json);
   });
 }
 

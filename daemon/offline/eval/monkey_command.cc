@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -10,6 +9,7 @@
 #include "common/cli/cli.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/gait_trial.h"
+#include "daemon/offline/eval/print_report.h"
 #include "daemon/offline/tracking/tracking.h"
 
 namespace footing::eval {
@@ -113,13 +113,7 @@ int Run(const Options& options, bool json) {
   for (std::size_t i = 0; i < kGaits.size(); ++i) {
     report["falls_by_gait"][Name(kGaits[i])] = outcome.falls_by_gait[i];
   }
-  if (json) {
-    std::printf("%s\n", report.dump().c_str());
-  } else {
-    for (const auto& [key, value] : report.items()) {
-      std::printf("%-26s %s\n", key.c_str(), value.dump().c_str());
-    }
-  }
+  PrintReport(report, json);
   return 0;
 }
 

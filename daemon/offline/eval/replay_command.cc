@@ -5,30 +5,17 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
-#include "common/config/data_file.h"
 #include "daemon/offline/eval/recorded.h"
 #include "daemon/offline/eval/replay.h"
+#include "daemon/simulation/engine_files/engine_files.h"
 
 namespace footing::eval {
 namespace {
 
 Result<engine::GaitEngine> MakeEngine(const std::string& track) {
-  engine::EngineTexts texts;
-  const std::pair<std::string, std::string*> files[] = {
-      {engine::kBipedFile, &texts.biped},
-      {engine::kWristMappingFile, &texts.wrist_mapping},
-      {"tracks/" + track + ".json", &texts.track}};
-  for (const auto& [name, text] : files) {
-    auto read = config::ReadDataFile(name);
-    if (!read) return read.error();
-    *text = std::move(read).value();
-  }
-  for (const char* name : engine::kGainFiles) {
-    auto gains = config::ReadDataFile(name);
-    if (!gains) return gains.error();
-    texts.gains.push_back({name, std::move(gains).value()});
-  }
-  return engine::GaitEngine::Create(texts);
+  const auto texts = engine_files::ReadTexts({.track = track});
+  if (!texts) return texts.error();
+  return engine::GaitEngine::Create(*texts);
 }
 
 int Run(const std::string& path, const std::string& track) {

@@ -8,6 +8,7 @@
 
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
+#include "daemon/offline/eval/print_report.h"
 #include "daemon/offline/eval/track_trial.h"
 
 namespace footing::eval {
@@ -91,13 +92,7 @@ int Run(const Options& options, bool json) {
   const Result<Trials> trials = RunTrials(options, *track, *interface, *seed);
   if (!trials) return cli::Report(trials.error());
   const nlohmann::ordered_json report = Report(options, *seed, *trials);
-  if (json) {
-    std::printf("%s\n", report.dump().c_str());
-  } else {
-    for (const auto& [key, value] : report.items()) {
-      std::printf("%-26s %s\n", key.c_str(), value.dump().c_str());
-    }
-  }
+  PrintReport(report, json);
   return 0;
 }
 

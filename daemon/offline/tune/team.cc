@@ -3,7 +3,7 @@
 #include <cmath>
 #include <thread>
 
-#include "daemon/offline/tune/texts.h"
+#include "daemon/simulation/engine_files/engine_files.h"
 
 namespace footing::tune {
 namespace {
@@ -24,7 +24,7 @@ Difference MeanOf(std::size_t count, const Value& value) {
 }  // namespace
 
 Result<Team> Team::Create(int threads) {
-  const Result<engine::EngineTexts> texts = ReadTexts();
+  const Result<engine::EngineTexts> texts = engine_files::ReadTexts();
   if (!texts) return texts.error();
   Team team;
   for (int i = 0; i < threads; ++i) {
@@ -36,7 +36,7 @@ Result<Team> Team::Create(int threads) {
 }
 
 Result<void> Team::Prepare(const Task& task, const gait::GainTable& table, std::uint64_t seed) {
-  const Result<engine::EngineTexts> texts = ReadTexts();
+  const Result<engine::EngineTexts> texts = engine_files::ReadTexts();
   if (!texts) return texts.error();
   Result<engine::GaitEngine> engine = engine::GaitEngine::Create(*texts);
   if (!engine) return engine.error();

@@ -9,23 +9,6 @@
 
 namespace footing::tune {
 
-Result<engine::EngineTexts> ReadTexts() {
-  engine::EngineTexts texts;
-  for (const auto& [name, text] : {std::pair{engine::kBipedFile, &texts.biped},
-                                   {engine::kStraightTrackFile, &texts.track},
-                                   {engine::kWristMappingFile, &texts.wrist_mapping}}) {
-    Result<std::string> read = config::ReadDataFile(name);
-    if (!read) return read.error();
-    *text = std::move(*read);
-  }
-  for (const char* name : engine::kGainFiles) {
-    Result<std::string> read = config::ReadDataFile(name);
-    if (!read) return read.error();
-    texts.gains.push_back({name, std::move(*read)});
-  }
-  return texts;
-}
-
 Result<gait::GainTable> TableOf(const engine::EngineTexts& texts,
                                 const std::vector<std::string>& paths) {
   gait::GainTable table;

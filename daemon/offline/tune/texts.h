@@ -5,9 +5,6 @@
 
 namespace footing::tune {
 
-/// The product's data files for the straight track.
-Result<engine::EngineTexts> ReadTexts();
-
 /// The table of these texts, with the files of `paths` read after them.
 Result<gait::GainTable> TableOf(const engine::EngineTexts& texts,
                                 const std::vector<std::string>& paths);

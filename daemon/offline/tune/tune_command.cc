@@ -15,6 +15,7 @@
 #include "daemon/offline/tune/report.h"
 #include "daemon/offline/tune/team.h"
 #include "daemon/offline/tune/texts.h"
+#include "daemon/simulation/engine_files/engine_files.h"
 
 namespace footing::tune {
 namespace {
@@ -201,7 +202,7 @@ Result<void> Check(const Options& options) {
 
 Result<ordered_json> RunChecked(const Options& options) {
   if (const auto good = Check(options); !good) return good.error();
-  const auto texts = ReadTexts();
+  const auto texts = engine_files::ReadTexts();
   if (!texts) return texts.error();
   auto table = TableOf(*texts, options.from);
   if (!table) return table.error();

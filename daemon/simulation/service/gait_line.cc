@@ -3,38 +3,17 @@
 #include <cmath>
 #include <utility>
 
-#include "common/config/data_file.h"
 #include "common/wire/wire.h"
+#include "daemon/simulation/engine_files/engine_files.h"
 #include "daemon/simulation/service/channel_bytes.h"
 #include "daemon/simulation/service/publish.h"
 #include "daemon/simulation/terrain/append.h"
 
 namespace footing::simulation {
-namespace {
-
-Result<engine::EngineTexts> ReadTexts(const Config& config) {
-  engine::EngineTexts texts;
-  const auto biped = config::ReadDataFile(engine::kBipedFile, config.data_folder);
-  if (!biped) return biped.error();
-  const auto mapping = config::ReadDataFile(engine::kWristMappingFile, config.data_folder);
-  if (!mapping) return mapping.error();
-  const auto track = config::ReadNamedOrPath(config.track, "tracks", config.data_folder);
-  if (!track) return track.error();
-  for (const char* name : engine::kGainFiles) {
-    const auto gains = config::ReadDataFile(name, config.data_folder);
-    if (!gains) return gains.error();
-    texts.gains.push_back({name, *gains});
-  }
-  texts.biped = *biped;
-  texts.wrist_mapping = *mapping;
-  texts.track = *track;
-  return texts;
-}
-
-}  // namespace
 
 Result<std::unique_ptr<GaitLine>> GaitLine::Create(const Config& config, int wake_descriptor) {
-  const auto texts = ReadTexts(config);
+  const auto texts =
+      engine_files::ReadTexts({.track = config.track, .data_folder = config.data_folder});
   if (!texts) return texts.error();
   engine::EngineConfig engine_config;
   engine_config.fall_shown_s = config.fall_shown_s;

@@ -6,6 +6,7 @@
 
 #include "daemon/offline/tune/team.h"
 #include "daemon/offline/tune/texts.h"
+#include "daemon/simulation/engine_files/engine_files.h"
 
 namespace footing::tune {
 namespace {
@@ -15,7 +16,7 @@ const Task kWalk{stream::Gait::kWalk, 0.8};
 Team NewTeam(int threads) {
   auto team = Team::Create(threads);
   EXPECT_TRUE(team.ok());
-  EXPECT_TRUE(team->Prepare(kWalk, *TableOf(*ReadTexts(), {}), 3).ok());
+  EXPECT_TRUE(team->Prepare(kWalk, *TableOf(*engine_files::ReadTexts(), {}), 3).ok());
   return std::move(team).value();
 }
 
@@ -48,7 +49,7 @@ TEST(Trials, LegsThatCannotCarryFailInEveryTrial) {
 }
 
 TEST(Trials, BeginWalkingAtTheirSpeed) {
-  auto texts = ReadTexts();
+  auto texts = engine_files::ReadTexts();
   auto engine = engine::GaitEngine::Create(*texts);
   ASSERT_TRUE(engine.ok());
   const auto states = SettledStates(*engine, kWalk, 3, 5);

@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 
-#include "common/config/data_file.h"
+#include "daemon/simulation/engine_files/engine_files.h"
 #include "daemon/simulation/service/gait_run.h"
 #include "daemon/simulation/service/publish.h"
 #include "daemon/simulation/service/simulation_thread.h"
@@ -49,14 +49,7 @@ class HastyThread {
 
  private:
   static engine::GaitEngine MakeEngine() {
-    engine::EngineTexts texts;
-    texts.biped = *config::ReadDataFile(engine::kBipedFile);
-    texts.track = *config::ReadDataFile(engine::kStraightTrackFile);
-    texts.wrist_mapping = *config::ReadDataFile(engine::kWristMappingFile);
-    for (const char* name : engine::kGainFiles) {
-      texts.gains.push_back({name, *config::ReadDataFile(name)});
-    }
-    auto engine = engine::GaitEngine::Create(texts);
+    auto engine = engine::GaitEngine::Create(*engine_files::ReadTexts());
     FOOTING_CHECK(engine.ok());
     return std::move(engine).value();
   }

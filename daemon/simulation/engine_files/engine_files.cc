@@ -1,0 +1,33 @@
+#include "daemon/simulation/engine_files/engine_files.h"
+
+#include <utility>
+
+#include "common/config/data_file.h"
+
+namespace footing::engine_files {
+
+Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
+  engine::EngineTexts texts;
+  auto biped = config::ReadDataFile(engine::kBipedFile, wish.data_folder);
+  if (!biped) return biped.error();
+  auto mapping = config::ReadDataFile(engine::kWristMappingFile, wish.data_folder);
+  if (!mapping) return mapping.error();
+  auto track = config::ReadNamedOrPath(wish.track, "tracks", wish.data_folder);
+  if (!track) return track.error();
+  texts.biped = std::move(*biped);
+  texts.wrist_mapping = std::move(*mapping);
+  texts.track = std::move(*track);
+  for (const char* name : engine::kGainFiles) {
+    auto gains = config::ReadDataFile(name, wish.data_folder);
+    if (!gains) return gains.error();
+    texts.gains.push_back({name, std::move(*gains)});
+  }
+  for (const std::string& path : wish.more_gains) {
+    auto gains = config::ReadTextFile(path);
+    if (!gains) return gains.error();
+    texts.gains.push_back({path, std::move(*gains)});
+  }
+  return texts;
+}
+
+}  // namespace footing::engine_files

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "daemon/simulation/engine/engine.h"
+
+namespace footing::engine_files {
+
+struct Wish {
+  std::string track = "straight";  ///< Name of a carried track, or a path.
+  std::string data_folder = "";  ///< Where the carried files are; empty: where FindDataFile looks.
+  /// Gain tables to read after the carried ones; a later one replaces what an earlier one had for
+  /// its gaits.
+  std::vector<std::string> more_gains = {};
+};
+
+/// The texts of the files that the engine runs on. Fails with one line that names the file.
+Result<engine::EngineTexts> ReadTexts(const Wish& wish = {});
+
+}  // namespace footing::engine_files
