@@ -7,6 +7,7 @@
 
 #include "common/cli/cli.h"
 #include "daemon/offline/eval/contact_score.h"
+#include "daemon/offline/eval/momentum_offline.h"
 #include "daemon/offline/eval/momentum_scene.h"
 #include "daemon/offline/eval/print_report.h"
 #include "daemon/simulation/momentum/best_estimator.h"
@@ -31,43 +32,6 @@ class Rms {
   double sum_ = 0;
   std::size_t count_ = 0;
 };
-
-ordered_json OfflineJson(const MomentumScene& scene, const momentum::TPose& pose,
-                         std::size_t start) {
-  const double step_s = 1 / scene.rate_hz;
-  std::vector<momentum::VerticalInput> vertical;
-  for (std::size_t i = start; i < scene.frames.size(); ++i)
-    vertical.push_back(momentum::ToVerticalInput(scene.frames[i].loads, kContactN));
-  const auto height = momentum::SmoothVertical(
-      momentum::DoubtfulVertical(scene.subject.arms_hang_m, pose.cell_noise_n), pose.mass_kg,
-      step_s, pose.mean_loads, vertical);
-  const std::array<momentum::HorizontalPrior, 2> priors{momentum::ForwardPrior(),
-                                                        momentum::LateralPrior()};
-  ordered_json out;
-  Rms z;
-  for (std::size_t i = 0; i < height.size(); ++i)
-    z.Add(height[i].mean + scene.subject.com_height_m - scene.frames[start + i].com_m.z());
-  out["com_vertical_rms_cm"] = z.centimetres();
-  for (int axis = 0; axis < 2; ++axis) {
-    std::vector<momentum::HorizontalInput> inputs;
-    for (std::size_t i = 0; i < vertical.size(); ++i) {
-      momentum::HorizontalInput input;
-      input.cop_valid = vertical[i].cop_valid;
-      input.cop_m = vertical[i].cop_m(axis);
-      for (const double load : vertical[i].load_n) input.load_n += load;
-      input.com_height_m = scene.subject.com_height_m + height[i].mean;
-      input.centre_m = pose.cop_m(axis);
-      inputs.push_back(input);
-    }
-    const auto smooth = momentum::SmoothHorizontal(priors[static_cast<std::size_t>(axis)],
-                                                   pose.mass_kg, step_s, pose.cop_m(axis), inputs);
-    Rms rms;
-    for (std::size_t i = 0; i < smooth.size(); ++i)
-      rms.Add(smooth[i].mean - scene.frames[start + i].com_m(axis));
-    out[axis == 0 ? "com_forward_rms_cm" : "com_lateral_rms_cm"] = rms.centimetres();
-  }
-  return out;
-}
 
 Result<ordered_json> Evaluate(const MomentumOptions& options, bool offline) {
   const auto scene = MakeMomentumScene(options);
@@ -156,7 +120,7 @@ Result<ordered_json> Evaluate(const MomentumOptions& options, bool offline) {
   for (std::size_t k = 0; k < 3; ++k)
     angular.push_back({{"error", momentum_error[k].value()}, {"true", momentum_true[k].value()}});
   out["frame_us"] = 1e6 * busy_s / static_cast<double>(judged);
-  if (offline) out["offline"] = OfflineJson(*scene, pose, start);
+  if (offline) out["offline"] = OfflineJson(*scene, pose, start, start);
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "daemon/offline/eval/pose_constants.h"
 #include "daemon/offline/eval/pose_figures.h"
 #include "daemon/offline/eval/pose_insoles.h"
+#include "daemon/offline/eval/pose_plates.h"
 #include "daemon/offline/eval/pose_scene.h"
 #include "daemon/offline/eval/pose_trial.h"
 
@@ -42,8 +43,8 @@ Result<void> Translate(Flags& flags) {
   if (flags.hands == "wiimote" || flags.hands == "kinect") {
     return UsageError("--hands " + flags.hands + " is not built yet; there are move and none");
   }
-  if (flags.boards == "forces") {
-    return UsageError("--boards forces is not built yet; there are simulated and insoles");
+  if ((flags.boards == "forces") == flags.scene.forces.empty()) {
+    return UsageError("--boards forces and --forces FILE (.mot, .sto or .c3d) go together");
   }
   settings.loop_s = 60 * flags.loop_minutes;
   settings.yaw_error_rad = DegreesToRadians(flags.yaw_error_deg);
@@ -74,7 +75,14 @@ Result<ordered_json> Evaluate(Flags flags) {
     if (!walk) return walk.error();
     return JudgeInsoles(*walk, *models, flags.options);
   }
-  const auto rehearsal = MakePoseScene(flags.scene);
+  std::optional<rehearsal::PlateRehearsal> plates;
+  if (flags.boards == "forces") {
+    auto made = MakePlateScene(flags.scene);
+    if (!made) return made.error();
+    plates = *std::move(made);
+  }
+  const auto rehearsal =
+      plates ? Result<rehearsal::Rehearsal>(plates->measured) : MakePoseScene(flags.scene);
   if (!rehearsal) return rehearsal.error();
   if (flags.ablations) {
     const auto rows = JudgeAblations(*rehearsal, *models, flags.options);
@@ -90,14 +98,18 @@ Result<ordered_json> Evaluate(Flags flags) {
   (*json)["boards"] = flags.boards;
   (*json)["boards_limited"] = flags.scene.settings.limited;
   (*json)["cop_outside_sensors_share"] = rehearsal->outside_share;
+  if (plates) {
+    const auto judged = JudgePlates(*plates, *models, flags.options, oracle);
+    if (!judged) return judged.error();
+    (*json)["plates"] = *judged;
+  }
   if (!flags.figures.empty()) {
     const auto names = WriteFigures(*rehearsal, *models, flags.options, flags.figures);
     if (!names) return names.error();
     (*json)["figures"] = *names;
   }
   if (!flags.baselines) return json;
-  const auto baselines =
-      JudgeBaselines(*rehearsal, *models, flags.options, FirstJudged(*rehearsal));
+  const auto baselines = JudgeBaselines(*rehearsal, *models, flags.options, rehearsal->judged_from);
   if (!baselines) return baselines.error();
   (*json)["baselines"] = *baselines;
   return json;
@@ -108,6 +120,7 @@ void AddFlags(CLI::App& command, Flags& flags) {
   command.add_option("--motion", flags.scene.motion, "BVH, AMC, TRC or C3D")->required();
   command.add_option("--skeleton", flags.scene.skeleton, "ASF of an AMC");
   command.add_option("--still", flags.scene.still, "Markers of the person standing still");
+  command.add_option("--forces", flags.scene.forces, "MOT, STO or C3D of --boards forces");
   command.add_option("--mass-kg", settings.mass_kg)->check(CLI::Range(20.0, 250.0));
   command.add_option("--height-m", flags.height_m)->check(CLI::Range(0.5, 2.6));
   command.add_option("--hands", flags.hands, "move: 1 cm of noise")

@@ -242,7 +242,7 @@ Result<std::vector<std::string>> WriteFigures(const rehearsal::Rehearsal& rehear
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return Failure("cannot make " + folder + ": " + error.message());
-  const Show show{rehearsal, models, options, FirstJudged(rehearsal)};
+  const Show show{rehearsal, models, options, rehearsal.judged_from};
   auto runs = RunAll(show);
   if (!runs) return runs.error();
   const std::vector<Told> modes{runs->best, runs->paper};

@@ -45,6 +45,15 @@ Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options) {
   return rehearsal::Rehearse(loaded->motion, WithHeight(options, *loaded), options.motion);
 }
 
+Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options) {
+  const auto loaded = Load(options);
+  if (!loaded) return loaded.error();
+  const auto forces = motion_files::LoadForces(options.forces);
+  if (!forces) return InvalidData(forces.error().message);
+  return rehearsal::RehearseOnPlates(loaded->motion, *forces, WithHeight(options, *loaded),
+                                     options.motion, options.forces);
+}
+
 Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options) {
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();

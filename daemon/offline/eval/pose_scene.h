@@ -5,6 +5,7 @@
 
 #include "common/result/result.h"
 #include "daemon/offline/rehearsal/insole_rehearsal.h"
+#include "daemon/offline/rehearsal/plates.h"
 #include "daemon/offline/rehearsal/rehearsal.h"
 #include "daemon/simulation/reconstruction/models.h"
 
@@ -15,10 +16,14 @@ struct PoseSceneOptions {
   std::string motion;    ///< BVH, AMC, TRC or C3D.
   std::string skeleton;  ///< ASF, of an AMC.
   std::string still;     ///< TRC or C3D of the same person standing, of markers.
+  std::string forces;    ///< MOT, STO or C3D of the plates under the same trial.
   rehearsal::Settings settings;
 };
 
 Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options);
+
+/// With the plates of options.forces. A file that cannot be read is InvalidData, too.
+Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options);
 
 Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options);
 

@@ -95,6 +95,8 @@ class Judge {
     const Eigen::Vector3d told = output.momentum.p_WC_m - then.com_m;
     vertical_.Add(100 * told.z());
     horizontal_.Add(100 * told.head<2>().norm());
+    forward_.Add(100 * told.x());
+    lateral_.Add(100 * told.y());
     const double t_s = then.inputs.loads.time_s;
     vertical_drift_.Add(t_s, 100 * std::abs(told.z()));
     horizontal_drift_.Add(t_s, 100 * told.head<2>().norm());
@@ -135,7 +137,8 @@ class Judge {
   const rehearsal::Rehearsal& rehearsal_;
   std::size_t lag_;
   PoseScore score_;
-  Spread vertical_, horizontal_, pose_vertical_, pose_horizontal_, place_, skate_, true_skate_;
+  Spread vertical_, horizontal_, forward_, lateral_, pose_vertical_, pose_horizontal_, place_,
+      skate_, true_skate_;
   std::array<Spread, 3> angular_;
   Drift vertical_drift_, horizontal_drift_;
   ContactScore contacts_;
@@ -151,6 +154,9 @@ ordered_json Judge::Json() const {
   ordered_json json = score_.Json();
   json["com_vertical_rms_cm"] = vertical_.rms();
   json["com_horizontal_rms_cm"] = horizontal_.rms();
+  json["com_forward_rms_cm"] = forward_.rms();
+  json["com_lateral_rms_cm"] = lateral_.rms();
+  json["com_forward_bias_cm"] = forward_.mean();
   json["com_vertical_drift_cm_per_min"] = vertical_drift_.PerMinute();
   json["com_horizontal_drift_cm_per_min"] = horizontal_drift_.PerMinute();
   json["pose_com_vertical_rms_cm"] = pose_vertical_.rms();
@@ -170,16 +176,12 @@ ordered_json Judge::Json() const {
 
 }  // namespace
 
-std::size_t FirstJudged(const rehearsal::Rehearsal& rehearsal) {
-  return static_cast<std::size_t>(std::lround(rehearsal::kStandS * rehearsal.rate_hz));
-}
-
 Result<ordered_json> RunPoseTrial(const rehearsal::Rehearsal& rehearsal,
                                   const reconstruction::Models& models,
                                   const reconstruction::Options& options, const Oracle& oracle) {
   auto made = reconstruction::Reconstruction::Create(rehearsal.body, models, options);
   if (!made) return made.error();
-  const std::size_t start = FirstJudged(rehearsal);
+  const std::size_t start = rehearsal.judged_from;
   Judge judge(rehearsal, static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz)));
   Spread solve_us;
   for (std::size_t i = 0; i < rehearsal.frames.size(); ++i) {

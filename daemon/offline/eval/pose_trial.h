@@ -13,10 +13,8 @@ struct Oracle {
   bool com = false, momentum = false, feet = false;
 };
 
-/// Frames from the end of the T-pose's calibration on are judged.
-std::size_t FirstJudged(const rehearsal::Rehearsal& rehearsal);
-
-/// Runs one reconstruction over a rehearsal and judges all that it tells.
+/// Runs one reconstruction over a rehearsal and judges all that it tells, from
+/// rehearsal.judged_from on.
 Result<nlohmann::ordered_json> RunPoseTrial(const rehearsal::Rehearsal& rehearsal,
                                             const reconstruction::Models& models,
                                             const reconstruction::Options& options,

@@ -73,49 +73,61 @@ void MeasureHands(const body::Body& body, const body::Kinematics& at, double noi
   }
 }
 
-Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
-                           const std::string& origin) {
-  const auto scene = Stage(clip, settings, origin);
-  if (!scene) return scene.error();
+FootForcesAt SimulatedForces(const sensors::Scene& scene) {
+  return [&scene](double, Eigen::Index column) {
+    return sensors::ShareBetweenFeet(scene.course, scene.reaction, column);
+  };
+}
 
+Rehearsal RehearseScene(const sensors::Scene& scene, const Settings& settings,
+                        const FootForcesAt& forces_at) {
   Rehearsal rehearsal;
-  rehearsal.body = scene->body;
+  rehearsal.body = scene.body;
   rehearsal.rate_hz = settings.rate_hz;
-  Boards boards(*scene, settings);
+  Boards boards(scene, settings);
   synthetic::Random random(settings.seed);
-  body::Kinematics at(scene->body.skeleton);
+  body::Kinematics at(scene.body.skeleton);
   const double step_s = 1 / settings.rate_hz;
-  const std::size_t count = FrameCount(*scene, settings.rate_hz);
+  const std::size_t count = FrameCount(scene, settings.rate_hz);
   std::size_t loaded = 0, outside = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double time_s = static_cast<double>(i) * step_s;
-    const Eigen::Index column = ColumnAt(*scene, time_s);
-    const auto forces = sensors::ShareBetweenFeet(scene->course, scene->reaction, column);
+    const Eigen::Index column = ColumnAt(scene, time_s);
+    const auto forces = forces_at(time_s, column);
     Frame frame;
     frame.inputs.loads.time_s = time_s;
-    frame.q = scene->motion.q.col(column);
-    frame.angular_momentum = scene->course.angular_momentum.col(column);
-    body::ComputeKinematics(scene->body.skeleton, frame.q, at);
-    frame.com_m = body::CentreOfMass(scene->body, at);
+    frame.q = scene.motion.q.col(column);
+    frame.angular_momentum = scene.course.angular_momentum.col(column);
+    body::ComputeKinematics(scene.body.skeleton, frame.q, at);
+    frame.com_m = body::CentreOfMass(scene.body, at);
     const double scale = time_s < kWeighedS ? 1 + settings.mass_error : 1;
     for (std::size_t f = 0; f < sensors::kFeet; ++f) {
       const auto load = sensors::LoadBoard(boards.real[f], forces[f], settings.limited);
       frame.inputs.loads.feet[f] = boards.Read(f, load, scale, step_s);
-      frame.feet[f] = {forces[f].load_n, At(at, body::Ankle(scene->body, static_cast<int>(f))),
-                       At(at, body::Toe(scene->body, static_cast<int>(f)))};
+      frame.feet[f] = {forces[f].load_n, forces[f].cop_m,
+                       At(at, body::Ankle(scene.body, static_cast<int>(f))),
+                       At(at, body::Toe(scene.body, static_cast<int>(f)))};
       if (forces[f].load_n > kLoadedN) {
         ++loaded;
         outside += load.outside ? 1 : 0;
       }
     }
     if (settings.hands) {
-      MeasureHands(scene->body, at, settings.hand_noise_m, random, frame.inputs.hands);
+      MeasureHands(scene.body, at, settings.hand_noise_m, random, frame.inputs.hands);
     }
     rehearsal.frames.push_back(std::move(frame));
   }
   rehearsal.outside_share =
       loaded > 0 ? static_cast<double>(outside) / static_cast<double>(loaded) : 0;
+  rehearsal.judged_from = static_cast<std::size_t>(std::lround(kStandS * settings.rate_hz));
   return rehearsal;
+}
+
+Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
+                           const std::string& origin) {
+  const auto scene = Stage(clip, settings, origin);
+  if (!scene) return scene.error();
+  return RehearseScene(*scene, settings, SimulatedForces(*scene));
 }
 
 }  // namespace footing::rehearsal

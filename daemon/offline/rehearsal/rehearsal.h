@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "common/result/result.h"
 #include "common/synthetic/random.h"
 #include "common/virtual_sensors/board_cells.h"
+#include "common/virtual_sensors/scene.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 /// What a recorded motion would have told two boards and two hand trackers, frame by frame, beside
@@ -36,6 +38,7 @@ struct Settings {
 
 struct TrueFoot {
   double load_n = 0;
+  Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
   Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d toe_m = Eigen::Vector3d::Zero();
 };
@@ -51,8 +54,9 @@ struct Frame {
 struct Rehearsal {
   body::Body body;
   double rate_hz = 60;
-  std::vector<Frame> frames;  ///< Begins with kStandS in the T-pose.
-  double outside_share = 0;   ///< Of loaded feet whose COP is beyond the sensors.
+  std::vector<Frame> frames;    ///< Begins with kStandS in the T-pose.
+  double outside_share = 0;     ///< Of loaded feet whose COP is beyond the sensors.
+  std::size_t judged_from = 0;  ///< The first frame after the calibration.
 };
 
 /// The T-pose is held so long, then left within a second and a half.
@@ -62,6 +66,17 @@ inline constexpr double kStandS = 6;
 void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,
                   synthetic::Random& random,
                   std::array<reconstruction::HandInput, reconstruction::kHands>& hands);
+
+/// Vertical force and COP under each foot at one time: of the scene, and its motion's column then.
+using FootForcesAt = std::function<std::array<virtual_sensors::FootForce, momentum::kFeet>(
+    double time_s, Eigen::Index column)>;
+
+/// By inverse dynamics. `scene` must outlive it.
+FootForcesAt SimulatedForces(const virtual_sensors::Scene& scene);
+
+/// What boards under these forces and the hands of a staged scene tell.
+Rehearsal RehearseScene(const virtual_sensors::Scene& scene, const Settings& settings,
+                        const FootForcesAt& forces_at);
 
 /// Only the joints of the landmarks are kept (motion::WithLandmarksOnly). `origin` names the clip
 /// in errors.
