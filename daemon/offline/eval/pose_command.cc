@@ -121,6 +121,8 @@ void AddFlags(CLI::App& command, Flags& flags) {
   command.add_option("--skeleton", flags.scene.skeleton, "ASF of an AMC");
   command.add_option("--still", flags.scene.still, "Markers of the person standing still");
   command.add_option("--forces", flags.scene.forces, "MOT, STO or C3D of --boards forces");
+  command.add_option("--activities", flags.scene.activities,
+                     "CSV begin_s,end_s,activity; without: by plain rules on the motion");
   command.add_option("--mass-kg", settings.mass_kg)->check(CLI::Range(20.0, 250.0));
   command.add_option("--height-m", flags.height_m)->check(CLI::Range(0.5, 2.6));
   command.add_option("--hands", flags.hands, "move: 1 cm of noise")
@@ -171,7 +173,15 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
     const auto out = Evaluate(*flags);
     if (!out) {
       shared.exit_code = cli::Report(out.error());
-    } else if (shared.json) {
+      return;
+    }
+    if (out->contains("plates")) {
+      for (const auto& warning : out->at("plates").at("warnings")) {
+        std::cerr << "warning: " << flags->scene.forces << ": " << warning.get<std::string>()
+                  << "\n";
+      }
+    }
+    if (shared.json) {
       std::cout << out->dump() << "\n";
     } else {
       for (const auto& [name, value] : out->items()) {

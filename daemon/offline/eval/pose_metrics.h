@@ -28,6 +28,8 @@ class Spread {
   /// 0.5: the median. 0 where there is nothing.
   double Quantile(double share) const;
   std::size_t size() const { return values_.size(); }
+  /// There is one.
+  double last() const { return values_.back(); }
 
  private:
   std::vector<double> values_;
@@ -46,6 +48,7 @@ class PoseScore {
   const body::Kinematics& truth() const { return truth_; }
 
   double mpjpe_cm() const { return frames_.mean(); }
+  double last_mpjpe_cm() const { return frames_.last(); }
   nlohmann::ordered_json Json() const;
 
  private:

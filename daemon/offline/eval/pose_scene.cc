@@ -6,9 +6,12 @@
 #include "common/model/model.h"
 #include "common/motion_files/load.h"
 #include "common/wire/model_file.h"
+#include "daemon/offline/rehearsal/activity.h"
 
 namespace footing::eval {
 namespace {
+
+constexpr std::size_t kMostLabelBytes = 1u << 20;
 
 std::string SubjectOf(const std::string& motion) {
   const std::string stem = std::filesystem::path(motion).stem().string();
@@ -37,21 +40,49 @@ rehearsal::Settings WithHeight(const PoseSceneOptions& options,
   return settings;
 }
 
+/// Of the labels file; none where there is no such file.
+Result<std::vector<rehearsal::ActivitySpan>> ReadActivities(const PoseSceneOptions& options) {
+  if (options.activities.empty()) return std::vector<rehearsal::ActivitySpan>{};
+  if (options.settings.loop_s > 0) {
+    return UsageError("--activities are of the clip as it is: no --loop-minutes with them");
+  }
+  const auto text = config::ReadTextFile(options.activities, kMostLabelBytes);
+  if (!text) return text.error();
+  return rehearsal::ParseActivities(*text, options.activities);
+}
+
+rehearsal::Activities Tell(const rehearsal::Rehearsal& rehearsal,
+                           const std::vector<rehearsal::ActivitySpan>& spans) {
+  return spans.empty() ? rehearsal::RuledActivities(rehearsal)
+                       : rehearsal::LabelledActivities(rehearsal, spans);
+}
+
 }  // namespace
 
 Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options) {
+  const auto spans = ReadActivities(options);
+  if (!spans) return spans.error();
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();
-  return rehearsal::Rehearse(loaded->motion, WithHeight(options, *loaded), options.motion);
+  auto rehearsal =
+      rehearsal::Rehearse(loaded->motion, WithHeight(options, *loaded), options.motion);
+  if (rehearsal) rehearsal->activities = Tell(*rehearsal, *spans);
+  return rehearsal;
 }
 
 Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options) {
+  const auto spans = ReadActivities(options);
+  if (!spans) return spans.error();
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();
   const auto forces = motion_files::LoadForces(options.forces);
   if (!forces) return InvalidData(forces.error().message);
-  return rehearsal::RehearseOnPlates(loaded->motion, *forces, WithHeight(options, *loaded),
-                                     options.motion, options.forces);
+  auto plates = rehearsal::RehearseOnPlates(loaded->motion, *forces, WithHeight(options, *loaded),
+                                            options.motion, options.forces);
+  if (!plates) return plates.error();
+  plates->measured.activities = Tell(plates->measured, *spans);
+  plates->simulated.activities = plates->measured.activities;
+  return plates;
 }
 
 Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options) {

@@ -17,6 +17,7 @@ struct PoseSceneOptions {
   std::string skeleton;  ///< ASF, of an AMC.
   std::string still;     ///< TRC or C3D of the same person standing, of markers.
   std::string forces;    ///< MOT, STO or C3D of the plates under the same trial.
+  std::string activities;  ///< CSV of labels (rehearsal/activity.h); empty: by rules.
   rehearsal::Settings settings;
 };
 

@@ -6,6 +6,7 @@
 #include "common/body/momentum.h"
 #include "common/clock/clock.h"
 #include "daemon/offline/eval/contact_score.h"
+#include "daemon/offline/eval/pose_breakdown.h"
 #include "daemon/offline/eval/pose_metrics.h"
 
 namespace footing::eval {
@@ -67,7 +68,7 @@ reconstruction::Known KnownOf(const rehearsal::Frame& frame, const Oracle& oracl
 class Judge {
  public:
   Judge(const rehearsal::Rehearsal& rehearsal, std::size_t lag)
-      : rehearsal_(rehearsal), lag_(lag), score_(rehearsal.body) {
+      : rehearsal_(rehearsal), lag_(lag), score_(rehearsal.body), breakdown_(rehearsal) {
     for (int side = 0; side < 2; ++side) {
       const auto f = static_cast<std::size_t>(side);
       ankle_[f] = body::Ankle(rehearsal.body, side).joint;
@@ -80,6 +81,7 @@ class Judge {
     score_.Add(output.q, then.q);
     AddCom(output, then);
     AddFeet(output, i);
+    breakdown_.Add(output, score_, i - lag_);
     for (std::size_t k = 0; k < output.joint_sd_m.size(); ++k) {
       nees_ += score_.errors_m()[k].squaredNorm() / (3 * std::pow(output.joint_sd_m[k], 2));
       ++nees_count_;
@@ -137,6 +139,7 @@ class Judge {
   const rehearsal::Rehearsal& rehearsal_;
   std::size_t lag_;
   PoseScore score_;
+  PoseBreakdown breakdown_;
   Spread vertical_, horizontal_, forward_, lateral_, pose_vertical_, pose_horizontal_, place_,
       skate_, true_skate_;
   std::array<Spread, 3> angular_;
@@ -169,6 +172,7 @@ ordered_json Judge::Json() const {
   json["landings"] = contacts_.landings;
   json["landing_delay_ms"] = 1000 * contacts_.mean_delay_s();
   json["nees"] = nees_count_ > 0 ? nees_ / nees_count_ : 0;
+  json.update(breakdown_.Json());
   json["invalid_frames"] = invalid_;
   json["finite"] = finite_;
   return json;

@@ -258,6 +258,8 @@ Result<PlateRehearsal> RehearseOnPlates(const motion::Motion& clip,
   out.simulated = RehearseScene(*scene, settings, SimulatedForces(*scene));
   out.measured.judged_from = out.simulated.judged_from =
       static_cast<std::size_t>(std::ceil((feet.judged_s() - kTinyS) * settings.rate_hz));
+  out.measured.clock_offset_s = out.simulated.clock_offset_s =
+      part.start_s - (scene->motion.duration_s() - part.duration_s());
   out.report.plates = felt.plates;
   out.report.begin_s = part.start_s;
   out.report.end_s = LastS(part);

@@ -127,7 +127,10 @@ Result<Rehearsal> Rehearse(const motion::Motion& clip, const Settings& settings,
                            const std::string& origin) {
   const auto scene = Stage(clip, settings, origin);
   if (!scene) return scene.error();
-  return RehearseScene(*scene, settings, SimulatedForces(*scene));
+  Rehearsal rehearsal = RehearseScene(*scene, settings, SimulatedForces(*scene));
+  rehearsal.clock_offset_s =
+      clip.start_s - (scene->motion.duration_s() - clip.duration_s());  // But for a loop.
+  return rehearsal;
 }
 
 }  // namespace footing::rehearsal

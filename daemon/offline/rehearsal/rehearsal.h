@@ -51,12 +51,20 @@ struct Frame {
   std::array<TrueFoot, momentum::kFeet> feet;
 };
 
+/// What the person does in each frame (activity.h).
+struct Activities {
+  std::vector<std::string> names;
+  std::vector<int> of_frame;  ///< Index of a name, or -1; empty: nobody has told.
+};
+
 struct Rehearsal {
   body::Body body;
   double rate_hz = 60;
   std::vector<Frame> frames;    ///< Begins with kStandS in the T-pose.
   double outside_share = 0;     ///< Of loaded feet whose COP is beyond the sensors.
   std::size_t judged_from = 0;  ///< The first frame after the calibration.
+  double clock_offset_s = 0;    ///< Time on the motion's clock less the frames' time_s.
+  Activities activities;
 };
 
 /// The T-pose is held so long, then left within a second and a half.

@@ -54,8 +54,7 @@ motion::GroundForces Plates(const motion::Motion& clip, double begin_s = 0) {
   motion::GroundForces forces;
   forces.rate_hz = 200;
   forces.start_s = begin_s;
-  const auto count =
-      2 * clip.frames() - 1 - static_cast<Eigen::Index>(forces.rate_hz * begin_s);
+  const auto count = 2 * clip.frames() - 1 - static_cast<Eigen::Index>(forces.rate_hz * begin_s);
   for (const char* name : {"under_right", "under_left"}) {
     const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, count);
     forces.plates.push_back({name, none, none, none});
