@@ -11,12 +11,11 @@ using rehearsal::LegScore;
 using rehearsal::LiftOffs;
 
 ordered_json LegJson(const LegScore& score) {
-  return {{"count", score.count()},         {"hip_cm", score.error_cm(0)},
-          {"knee_cm", score.error_cm(1)},   {"foot_cm", score.error_cm(2)},
-          {"hip_sd_cm", score.sd_cm(0)},    {"knee_sd_cm", score.sd_cm(1)},
-          {"foot_sd_cm", score.sd_cm(2)},   {"hip_nees", score.nees(0)},
-          {"knee_nees", score.nees(1)},     {"foot_nees", score.nees(2)},
-          {"nees", score.nees()}};
+  return {
+      {"count", score.count()},       {"hip_cm", score.error_cm(0)}, {"knee_cm", score.error_cm(1)},
+      {"foot_cm", score.error_cm(2)}, {"hip_sd_cm", score.sd_cm(0)}, {"knee_sd_cm", score.sd_cm(1)},
+      {"foot_sd_cm", score.sd_cm(2)}, {"hip_nees", score.nees(0)},   {"knee_nees", score.nees(1)},
+      {"foot_nees", score.nees(2)},   {"nees", score.nees()}};
 }
 
 }  // namespace
@@ -32,8 +31,7 @@ PoseBreakdown::PoseBreakdown(const rehearsal::Rehearsal& rehearsal)
   }
 }
 
-void PoseBreakdown::Add(const reconstruction::Output& told, const PoseScore& score,
-                        std::size_t i) {
+void PoseBreakdown::Add(const reconstruction::Output& told, const PoseScore& score, std::size_t i) {
   const rehearsal::Frame& frame = rehearsal_.frames[i];
   for (std::size_t f = 0; f < legs_.size(); ++f) {
     rehearsal::LegError leg;

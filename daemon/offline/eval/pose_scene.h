@@ -13,10 +13,10 @@ namespace footing::eval {
 
 /// A motion file, and what the boards and hands tell of it.
 struct PoseSceneOptions {
-  std::string motion;    ///< BVH, AMC, TRC or C3D.
-  std::string skeleton;  ///< ASF, of an AMC.
-  std::string still;     ///< TRC or C3D of the same person standing, of markers.
-  std::string forces;    ///< MOT, STO or C3D of the plates under the same trial.
+  std::string motion;      ///< BVH, AMC, TRC or C3D.
+  std::string skeleton;    ///< ASF, of an AMC.
+  std::string still;       ///< TRC or C3D of the same person standing, of markers.
+  std::string forces;      ///< MOT, STO or C3D of the plates under the same trial.
   std::string activities;  ///< CSV of labels (rehearsal/activity.h); empty: by rules.
   rehearsal::Settings settings;
 };

@@ -41,6 +41,19 @@ pose::LegIk Leg(const body::Body& body, const FootGeometry& foot, int side) {
   return {body, body.landmarks[hip], foot.toe.joint};
 }
 
+/// The knee of one side and the joints that it carries.
+std::vector<std::size_t> Shank(const body::Body& body, int side) {
+  const int knee = body.landmarks[side == 0 ? body::Landmark::kLeftKnee
+                                            : body::Mirrored(body::Landmark::kLeftKnee)];
+  std::vector<std::size_t> joints;
+  for (int joint = 0; joint < body.skeleton.size(); ++joint) {
+    int up = joint;
+    while (up >= 0 && up != knee) up = body.skeleton.joint(up).parent;
+    if (up == knee) joints.push_back(static_cast<std::size_t>(joint));
+  }
+  return joints;
+}
+
 Result<void> CheckOptions(const Options& options) {
   if (!(options.rate_hz >= 20 && options.rate_hz <= 240)) {
     return UsageError("pose: a rate of " + std::to_string(options.rate_hz) +
@@ -87,6 +100,7 @@ Result<Reconstruction> Reconstruction::Create(const body::Body& body, const Mode
   parts->feet = StandingFeet(body);
   for (int side = 0; side < 2; ++side) {
     parts->fists[static_cast<std::size_t>(side)] = body::Fist(body, side);
+    parts->shanks[static_cast<std::size_t>(side)] = Shank(body, side);
   }
   parts->horizontal = models.horizontal;
   if (options.mode == Mode::kBest && options.use_basis && options.use_momentum &&
@@ -119,6 +133,7 @@ Reconstruction::Reconstruction(std::shared_ptr<const Parts> parts, const Options
   output_.R_WJ.resize(joints);
   output_.p_WJ_m.resize(joints);
   output_.joint_sd_m.assign(joints, kUnknownSdM);
+  linear_sd_m_.assign(joints, kUnknownSdM);
   Recalibrate();
 }
 
@@ -136,6 +151,7 @@ void Reconstruction::Recalibrate() {
   output_.momentum = {};
   Tell(parts_->t_pose);
   std::fill(output_.joint_sd_m.begin(), output_.joint_sd_m.end(), kUnknownSdM);
+  std::fill(linear_sd_m_.begin(), linear_sd_m_.end(), kUnknownSdM);
 }
 
 void Reconstruction::Begin(const momentum::TPose& pose) {
@@ -258,10 +274,20 @@ void Reconstruction::Tell(const Eigen::VectorXd& q) {
 
 void Reconstruction::TellSpreads() {
   for (int i = 0; i < kSpreadsAFrame; ++i) {
-    next_spread_ = (next_spread_ + 1) % output_.joint_sd_m.size();
+    next_spread_ = (next_spread_ + 1) % linear_sd_m_.size();
     pose::GaussNewton& solver = was_regressed_ ? *regressed_ : gauss_newton_;
-    output_.joint_sd_m[next_spread_] =
+    linear_sd_m_[next_spread_] =
         options_.best.spread * solver.JointSd(static_cast<int>(next_spread_));
+  }
+  std::copy(linear_sd_m_.begin(), linear_sd_m_.end(), output_.joint_sd_m.begin());
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    const momentum::FootEstimate& foot = then_.momentum.feet[f];
+    if (foot.contact || then_.known.feet) continue;
+    const double aloft_m =
+        options_.best.aloft_sd_m * (1 - std::exp(-foot.airborne_s / options_.best.aloft_time_s));
+    for (const std::size_t joint : parts_->shanks[f]) {
+      output_.joint_sd_m[joint] = std::hypot(linear_sd_m_[joint], aloft_m);
+    }
   }
 }
 

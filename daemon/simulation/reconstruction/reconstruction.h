@@ -70,6 +70,10 @@ struct BestConstants {
   /// The told deviations are so many times those of the linearised terms, whose errors are alike
   /// for many frames.
   double spread = 1.5;
+  /// What the covariance of all frames leaves out of the knee and what is below it while the foot
+  /// is in the air: so much, m along one axis, reached with this time.
+  double aloft_sd_m = 0.14;
+  double aloft_time_s = 0.2;
 };
 
 struct Options {
@@ -125,6 +129,7 @@ class Reconstruction {
     pose::PoseBasis basis;
     momentum::Subject subject;
     std::array<FootGeometry, momentum::kFeet> feet;
+    std::array<std::vector<std::size_t>, momentum::kFeet> shanks;  ///< From the knees down.
     std::array<body::Point, kHands> fists;
     Eigen::VectorXd t_pose;
     std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
@@ -180,6 +185,7 @@ class Reconstruction {
   Eigen::VectorXd q_;
   body::Kinematics at_;
   std::size_t next_spread_ = 0;
+  std::vector<double> linear_sd_m_;  ///< Of each joint, by the linearised terms.
   std::uint32_t solver_resets_ = 0;
   Output output_;
 };

@@ -137,6 +137,41 @@ TEST(Reconstruction, StaysFiniteWithInputsThatAreNot) {
   }
 }
 
+TEST(Reconstruction, TellsALegInTheAirLessSurelyTheLongerItIsThere) {
+  World world;
+  Reconstruction reconstruction = world.Made(world.AtRate());
+  const auto sd_m = [&](body::Landmark landmark) {
+    const int joint = world.person.landmarks[landmark];
+    return reconstruction.output().joint_sd_m[static_cast<std::size_t>(joint)];
+  };
+  constexpr std::size_t kUp = 360, kDown = 420;  // The right foot is off for a second.
+  double stood_m = 0, quarter_m = 0, left_m = 0, hip_m = 0;
+  for (std::size_t i = 0; i < kDown; ++i) {
+    Inputs inputs = world.inputs[i < kUp ? i : kUp];
+    inputs.loads.time_s = world.inputs[i].loads.time_s;
+    for (std::size_t k = 0; k < 4 && i >= kUp; ++k) {
+      inputs.loads.feet[0].cells[k].load_n = 0.25 * 70 * 9.80665;
+      inputs.loads.feet[1].cells[k].load_n = 0;
+    }
+    reconstruction.Advance(inputs);
+    if (i + 1 == kUp) {
+      stood_m = sd_m(body::Landmark::kRightAnkle);
+      left_m = sd_m(body::Landmark::kLeftAnkle);
+      hip_m = sd_m(body::Landmark::kRightHip);
+    }
+    if (i == kUp + 15) quarter_m = sd_m(body::Landmark::kRightAnkle);
+  }
+  const BestConstants constants;
+  // 1 - exp(-t / tau) of it, whatever the linearised terms say.
+  EXPECT_GT(quarter_m, 0.7 * constants.aloft_sd_m);
+  EXPECT_GT(sd_m(body::Landmark::kRightAnkle), quarter_m + 0.2 * constants.aloft_sd_m);
+  EXPECT_GT(sd_m(body::Landmark::kRightKnee), 0.98 * constants.aloft_sd_m);
+  EXPECT_LT(sd_m(body::Landmark::kRightHip), hip_m + 0.03);
+  EXPECT_LT(sd_m(body::Landmark::kLeftAnkle), left_m + 0.03);
+  for (std::size_t i = kUp; i < kUp + 60; ++i) reconstruction.Advance(world.inputs[i]);
+  EXPECT_LT(sd_m(body::Landmark::kRightAnkle), stood_m + 0.03);
+}
+
 TEST(Reconstruction, ACopyGoesOnAsTheOriginalAndApartFromIt) {
   World world;
   Reconstruction original = world.Made(world.AtRate());
