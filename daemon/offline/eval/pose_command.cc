@@ -169,6 +169,12 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
   const auto flags = std::make_shared<Flags>();
   flags->scene.settings.errors.noise_kg = 0.05;
   AddFlags(*command, *flags);
+  command->footer(
+      "Examples:\n"
+      "  footing-eval pose --motion 14_14.amc --skeleton 14.asf --model pose.fmodel --json\n"
+      "  footing-eval pose --motion clip.bvh --loop-minutes 5 --activities labels.csv\n"
+      "  footing-eval pose --motion squats.trc --still static.trc --boards forces "
+      "--forces squats_grf.mot --mass-kg 60");
   command->callback([flags, &shared] {
     const auto out = Evaluate(*flags);
     if (!out) {

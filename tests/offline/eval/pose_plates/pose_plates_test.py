@@ -1,6 +1,6 @@
 """footing-eval pose on trials with measured force plates, by activity, and after lift-offs.
 
-Usage: pose_plates_test.py FOOTING_EVAL
+Usage: pose_plates_test.py FOOTING_EVAL FOOTING_TRAIN
 """
 import json
 import os
@@ -10,7 +10,7 @@ import sys
 import tempfile
 import unittest
 
-EVAL = sys.argv.pop(1)
+EVAL, TRAIN = sys.argv.pop(1), sys.argv.pop(1)
 DATA = pathlib.Path(os.environ.get("FOOTING_TEST_DATA") or "/nowhere")
 TRIALS = DATA / "forces" / "opencap_s4"
 if not TRIALS.is_dir():
@@ -129,9 +129,8 @@ class Activities(unittest.TestCase):
 
     def model(self, folder):
         """Of people other than the one who is judged."""
-        train = pathlib.Path(EVAL).with_name("footing-train")
         out = pathlib.Path(folder) / "pose.fmodel"
-        done = subprocess.run([train, "pose", "--motions", DATA / "mocap" / "cmu_amc", "--exclude", "13", "--out", out],
+        done = subprocess.run([TRAIN, "pose", "--motions", DATA / "mocap" / "cmu_amc", "--exclude", "13", "--out", out],
                               capture_output=True, text=True, timeout=200)
         self.assertEqual(done.returncode, 0, done.stderr)
         return out
