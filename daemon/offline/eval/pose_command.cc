@@ -46,6 +46,9 @@ Result<void> Translate(Flags& flags) {
   if ((flags.boards == "forces") == flags.scene.forces.empty()) {
     return UsageError("--boards forces and --forces FILE (.mot, .sto or .c3d) go together");
   }
+  if (flags.boards == "insoles" && !flags.scene.activities.empty()) {
+    return UsageError("--activities is for boards: --boards insoles has no table by activity");
+  }
   settings.loop_s = 60 * flags.loop_minutes;
   settings.yaw_error_rad = DegreesToRadians(flags.yaw_error_deg);
   if (flags.height_m > 0) settings.height_m = flags.height_m;
@@ -113,6 +116,16 @@ Result<ordered_json> Evaluate(Flags flags) {
   if (!baselines) return baselines.error();
   (*json)["baselines"] = *baselines;
   return json;
+}
+
+/// One line; a table has one for each row.
+void PrintField(const std::string& name, const ordered_json& value) {
+  if (value.empty() || !value.is_array() || !value.front().is_object()) {
+    std::cout << name << ": " << value.dump() << "\n";
+    return;
+  }
+  std::cout << name << ":\n";
+  for (const ordered_json& row : value) std::cout << "  " << row.dump() << "\n";
 }
 
 void AddFlags(CLI::App& command, Flags& flags) {
@@ -190,9 +203,7 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
     if (shared.json) {
       std::cout << out->dump() << "\n";
     } else {
-      for (const auto& [name, value] : out->items()) {
-        std::cout << name << ": " << value.dump() << "\n";
-      }
+      for (const auto& [name, value] : out->items()) PrintField(name, value);
     }
   });
 }
