@@ -1,17 +1,24 @@
 #include "clients/stream/boards_command.h"
 
 namespace footing::stream_client {
+namespace {
+
+void AddMotion(CLI::App& command, StageOptions& stage) {
+  command
+      .add_option("--motion", stage.motion,
+                  "A carried motion (demo, quiet), a script of one, or BVH, AMC, TRC, C3D")
+      ->required();
+  command.add_option("--skeleton", stage.skeleton, "ASF of an AMC");
+  command.add_option("--mass-kg", stage.mass_kg)->check(CLI::Range(20.0, 250.0));
+  command.add_option("--height-m", stage.height_m, "Of who performs a script")
+      ->check(CLI::Range(1.4, 2.1));
+}
+
+}  // namespace
 
 CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
   auto* boards = app.add_subcommand("boards", "Two Balance Boards under a body in motion");
-  boards
-      ->add_option("--motion", options.stage.motion,
-                   "A carried motion (demo, quiet), a script of one, or BVH, AMC, TRC, C3D")
-      ->required();
-  boards->add_option("--skeleton", options.stage.skeleton, "ASF of an AMC");
-  boards->add_option("--mass-kg", options.stage.mass_kg)->check(CLI::Range(20.0, 250.0));
-  boards->add_option("--height-m", options.stage.height_m, "Of who performs a script")
-      ->check(CLI::Range(1.4, 2.1));
+  AddMotion(*boards, options.stage);
   boards->add_option("--hands", options.hands, "none, move or wiimote");
   boards->add_option("--hand-noise-m", options.hand_noise_m)->check(CLI::Range(0.0, 0.5));
   boards->add_flag("--place-boards", options.stage.place_boards, "Lay the boards under the feet");
@@ -23,6 +30,18 @@ CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
   boards->add_option("--slow-force-n", options.errors.slow_force_n, "Slow error of a board")
       ->check(CLI::Range(0.0, 50.0));
   return boards;
+}
+
+CLI::App* AddInsolesCommand(CLI::App& app, InsolesOptions& options) {
+  auto* insoles =
+      app.add_subcommand("insoles", "Pressure insoles in the shoes of a body in motion");
+  AddMotion(*insoles, options.stage);
+  insoles->add_option("--hands", options.hands, "none or move");
+  insoles->add_option("--hand-noise-m", options.hand_noise_m)->check(CLI::Range(0.0, 0.5));
+  insoles->add_option("--cell-noise-kg", options.errors.noise_kg)->check(CLI::Range(0.0, 5.0));
+  insoles->add_option("--gain-error", options.errors.gain_spread, "0.01: one percent a cell")
+      ->check(CLI::Range(0.0, 0.2));
+  return insoles;
 }
 
 }  // namespace footing::stream_client

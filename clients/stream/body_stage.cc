@@ -8,6 +8,7 @@
 #include "common/choreography/perform.h"
 #include "common/config/data_file.h"
 #include "common/log/log.h"
+#include "common/motion/edit.h"
 #include "common/motion_files/load.h"
 #include "common/units/units.h"
 
@@ -82,7 +83,12 @@ Result<sensors::Scene> LoadRecording(const StageOptions& options) {
   sensors::SceneOptions scene;
   const double clip_s = options.seconds - scene.hold_s - scene.leave_s;
   if (clip_s > loaded->motion.duration_s()) scene.loop_s = clip_s;
-  return sensors::MakeScene(std::move(loaded->motion), person, scene, options.motion);
+  if (options.on_boards) {
+    return sensors::MakeScene(std::move(loaded->motion), person, scene, options.motion);
+  }
+  auto kept = motion::WithLandmarksOnly(loaded->motion);
+  if (!kept) return InvalidData(options.motion + ": " + kept.error().message);
+  return sensors::MakeScene(std::move(kept).value(), person, scene, options.motion);
 }
 
 /// The range that most of the values are in.
@@ -206,9 +212,11 @@ Result<Stage> MakeStage(const StageOptions& options) {
   Move(-start, stage);
   if (start.norm() > kWorthTellingM) {
     log::Info("moved by" + Text(" %.3f m ahead", -start.x()) +
-              Text(", %.3f m to the left", -start.y()) + ", so that its feet start on the boards");
+              Text(", %.3f m to the left", -start.y()) + ", so that its feet start " +
+              (options.on_boards ? "on the boards" : "about the origin"));
   }
   stage.boards = sensors::OneFootEach(stage.gap_m);
+  if (!options.on_boards) return stage;
   if (options.place_boards) FitBoards(stage);
   stage.outside_share = OutsideShare(stage);
   Tell(stage, options.place_boards);

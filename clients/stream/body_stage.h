@@ -16,6 +16,7 @@ struct StageOptions {
   std::string skeleton;  ///< ASF of an AMC.
   double mass_kg = 75;
   double height_m = 1.75;     ///< Of who performs a script; recordings have their own.
+  bool on_boards = true;      ///< False: it may walk anywhere, and nothing is said of boards.
   bool place_boards = false;  ///< Lay the boards under the feet instead of 20 mm apart.
   double seconds = 0;         ///< A recording goes forwards and backwards until so long; 0: once.
 };

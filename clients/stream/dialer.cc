@@ -88,8 +88,10 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     connection_ = std::make_unique<transport::FramedConnection>(std::move(socket), limits,
                                                                 std::move(handlers));
     connection_->Start();
-    log::Info("attached " + std::to_string(devices_.size()) + " simulated devices to " +
-              options_.to.Text());
+    const std::string what = devices_.empty()
+                                 ? std::to_string(fresh_tellings_.size()) + " simulated sources"
+                                 : std::to_string(devices_.size()) + " simulated devices";
+    log::Info("attached " + what + " to " + options_.to.Text());
     start_ns_ = clock::MonotonicNs();
     start_ = std::chrono::steady_clock::now();
     for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
@@ -161,12 +163,16 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
         });
   }
 
+  /// The motion has come to its end, which is told once.
+  bool IsOver(double time_s) {
+    if (duration_s_ <= 0 || time_s < duration_s_) return false;
+    if (!ended_) on_end_();
+    ended_ = true;
+    return true;
+  }
+
   void Deliver(std::size_t slot, const StandIn::Arrival& arrival) {
-    if (duration_s_ > 0 && arrival.arrives_s >= duration_s_) {
-      if (!ended_) on_end_();
-      ended_ = true;
-      return;
-    }
+    if (IsOver(arrival.arrives_s)) return;
     for (const auto& report : devices_[slot].Deliver(arrival.sampled_s)) {
       SendReport(slot, report, start_ns_ + SecondsToNanoseconds(arrival.sampled_s));
     }
@@ -185,6 +191,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
 
   /// Sends what was so at `due_s`; it is as old as this comes late.
   void Tell(std::size_t index, double due_s) {
+    if (devices_.empty() && IsOver(due_s)) return;
     Telling& telling = tellings_[index];
     const std::int64_t age_ns =
         std::max<std::int64_t>(0, clock::MonotonicNs() - start_ns_ - SecondsToNanoseconds(due_s));
@@ -193,6 +200,10 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
       stream::HandFrame frame = telling.hands(due_s);
       frame.age_ns = age_ns;
       *envelope.mutable_hand_frame() = wire::ToProto(frame);
+    } else if (telling.contacts) {
+      stream::ContactFrame frame = telling.contacts(due_s);
+      frame.age_ns = age_ns;
+      *envelope.mutable_contact_frame() = wire::ToProto(frame);
     } else {
       stream::ReferenceFrame frame = telling.reference(due_s);
       frame.age_ns = age_ns;

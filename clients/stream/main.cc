@@ -13,7 +13,7 @@ using namespace footing;  // NOLINT: main is wiring
 
 int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
   if (!plan) return cli::Report(plan.error());
-  if (plan->devices.empty())
+  if (plan->devices.empty() && plan->tellings.empty())
     return cli::Report(UsageError("name --left FILE, --right FILE or both"));
   auto to = common.to.empty() ? Result<transport::Address>(transport::DefaultAddress("devices"))
                               : transport::ParseAddress(common.to);
@@ -47,7 +47,8 @@ int main(int argc, char** argv) {
                   "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
                   "  footing-stream corners --left board.csv --link poor --seconds 60\n"
                   "  footing-stream boards --motion demo --hands move\n"
-                  "  footing-stream boards --motion 14_14.amc --skeleton 14.asf --place-boards\n");
+                  "  footing-stream boards --motion 14_14.amc --skeleton 14.asf --place-boards\n"
+                  "  footing-stream insoles --motion walk.amc --skeleton walk.asf --hands move\n");
   stream_client::Common common;
   bool quiet = false;
   app->add_option("--to", common.to, "footingd's device socket: unix:PATH or tcp:HOST:PORT");
@@ -78,16 +79,20 @@ int main(int argc, char** argv) {
   accel->add_option("--rate-hz", rate_hz, "Rows a second")->required();
   stream_client::BoardsOptions under;
   auto* boards = stream_client::AddBoardsCommand(*app, under);
+  stream_client::InsolesOptions worn;
+  auto* insoles = stream_client::AddInsolesCommand(*app, worn);
   auto* replay = app->add_subcommand("replay", "Not built yet")->group("");
   replay->fallthrough(false)->prefix_command();
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   log::Start("footing-stream", quiet);
 
   if (*replay) {
-    return cli::Report(UsageError("replay is not built; there are: user, accel, corners, boards"));
+    return cli::Report(
+        UsageError("replay is not built; there are: user, accel, corners, boards, insoles"));
   }
   if (*user) return Run(stream_client::PlanUser(script, interface, common, ports), common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
+  if (*insoles) return Run(stream_client::PlanInsoles(worn, common), common);
   if (*boards) return Run(stream_client::PlanBoards(under, common), common);
   return Run(stream_client::PlanCorners(left, right, common), common);
 }

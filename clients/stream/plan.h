@@ -7,6 +7,7 @@
 
 #include "clients/stream/stand_in.h"
 #include "common/result/result.h"
+#include "common/stream/contacts.h"
 #include "common/stream/hands.h"
 
 namespace footing::stream_client {
@@ -26,12 +27,13 @@ struct Ports {
   bool nunchuk = false;
 };
 
-/// What is told at a rate without a device. One of the two functions is set; times are seconds
+/// What is told at a rate without a device. One of the functions is set; times are seconds
 /// since the motion began and go forward. A copy begins anew.
 struct Telling {
   double rate_hz = 60;
   std::function<stream::HandFrame(double t_s)> hands;
   std::function<stream::ReferenceFrame(double t_s)> reference;
+  std::function<stream::ContactFrame(double t_s)> contacts;
 };
 
 /// Stand-ins and how long their motion lasts (0: without end).

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/stream/character.h"
+#include "common/stream/contacts.h"
 #include "common/stream/device.h"
 #include "common/stream/hands.h"
 #include "common/stream/sensor.h"
@@ -12,8 +13,9 @@
 /// Between the plain structs of common/stream and the messages of the protocol. Enums have the same
 /// numbers on both sides; an unknown number becomes kUnspecified. A number that is not finite
 /// becomes 0 on the way out, so nothing published is ever NaN, and on the way in, where a server
-/// may not be ours; a rotation becomes the identity. Text is made valid UTF-8. HandFrame and
-/// ReferenceFrame come in as they are, with what is not finite: footingd checks and refuses them.
+/// may not be ours; a rotation becomes the identity. Text is made valid UTF-8. HandFrame,
+/// ReferenceFrame and ContactFrame come in as they are, with what is not finite: footingd checks
+/// and refuses them.
 namespace footing::wire {
 
 v1::Vector3 ToProto(const Eigen::Vector3d& value);
@@ -40,6 +42,8 @@ v1::HandFrame ToProto(const stream::HandFrame& value);
 v1::ReferenceFrame ToProto(const stream::ReferenceFrame& value);
 v1::HandSample ToProto(const stream::HandSample& value);
 v1::ReferencePose ToProto(const stream::ReferencePose& value);
+v1::ContactFrame ToProto(const stream::ContactFrame& value);
+v1::ContactSample ToProto(const stream::ContactSample& value);
 
 Eigen::Vector3d FromProto(const v1::Vector3& value);
 Eigen::Quaterniond FromProto(const v1::Quaternion& value);
@@ -63,5 +67,7 @@ stream::HandFrame FromProto(const v1::HandFrame& value);
 stream::ReferenceFrame FromProto(const v1::ReferenceFrame& value);
 stream::HandSample FromProto(const v1::HandSample& value);
 stream::ReferencePose FromProto(const v1::ReferencePose& value);
+stream::ContactFrame FromProto(const v1::ContactFrame& value);
+stream::ContactSample FromProto(const v1::ContactSample& value);
 
 }  // namespace footing::wire

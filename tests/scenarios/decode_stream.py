@@ -58,6 +58,12 @@ SCHEMAS = {
     "reference_pose": {1: ("rig", "text"), 2: ("sampled_ns", "int"),
                        4: ("positions_m", "*vector3"), 5: ("com_m", "vector3")},
     "reference": {1: ("poses", "*reference_pose")},
+    "contact_cell": {1: ("x_m", "double"), 2: ("y_m", "double"), 3: ("z_m", "double"),
+                     4: ("load_n", "double")},
+    "contact_sample": {
+        1: ("rig", "text"), 2: ("source", "text"), 3: ("body", "uint"), 4: ("received_ns", "int"),
+        5: ("sampled_ns", "int"), 6: ("cells", "*contact_cell"), 7: ("simulated", "bool")},
+    "contacts": {1: ("samples", "*contact_sample")},
     "gait": {
         1: ("gait", "uint"), 2: ("commanded_gait", "uint"), 3: ("pending", "bool"),
         4: ("phase", "text"), 5: ("commanded_speed_mps", "double"), 8: ("speed_mps", "double"),
@@ -73,7 +79,8 @@ SCHEMAS = {
     "body": {1: ("subject", "text"), 2: ("mode", "text"), 3: ("calibrated", "bool"),
              4: ("calibration_progress", "double"), 6: ("mass_kg", "double"),
              7: ("height_m", "double"), 8: ("lag_s", "double"), 9: ("momentum_valid", "bool"),
-             14: ("feet", "*body_foot"), 15: ("resets", "uint"), 17: ("note", "text")},
+             14: ("feet", "*body_foot"), 15: ("resets", "uint"), 17: ("note", "text"),
+             20: ("contact_source", "text")},
     "character_frame": {1: ("world", "text"), 2: ("step", "uint"), 3: ("time_s", "double"),
                         4: ("characters", "*character"), 5: ("overruns", "uint")},
     "response": {
@@ -90,7 +97,7 @@ SCHEMAS = {
         17: ("motion", "motion"), 18: ("features", "features"), 19: ("boards", "boards"),
         20: ("raw", "raw"), 24: ("skeletons", "bytes"), 25: ("track", "bytes"),
         26: ("characters", "character_frame"), 27: ("events", "events"), 28: ("inputs", "bytes"),
-        30: ("hands", "hands"), 31: ("reference", "reference")},
+        30: ("hands", "hands"), 31: ("reference", "reference"), 32: ("contacts", "contacts")},
     "welcome": {1: ("server_id", "text"), 2: ("epoch", "uint"), 3: ("protocol_major", "uint"),
                 4: ("protocol_minor", "uint"), 5: ("granted_role", "uint"),
                 7: ("channels", "*text"), 11: ("version", "text")},

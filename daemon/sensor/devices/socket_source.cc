@@ -149,6 +149,10 @@ class SocketSource::Implementation {
         if (handlers_.on_reference)
           handlers_.on_reference(received_ns, wire::FromProto(envelope_.reference_frame()));
         return;
+      case v1::DeviceEnvelope::kContactFrame:
+        if (handlers_.on_contacts)
+          handlers_.on_contacts(received_ns, wire::FromProto(envelope_.contact_frame()));
+        return;
       case v1::DeviceEnvelope::kOutput:
         Refuse(connection, "outputs go the other way");
         return;

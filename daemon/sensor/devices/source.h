@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/result/result.h"
+#include "common/stream/contacts.h"
 #include "common/stream/device.h"
 #include "common/stream/hands.h"
 #include "daemon/sensor/reports/output_report.h"
@@ -62,6 +63,7 @@ struct SourceHandlers {
   /// What trackers and stand-ins say without a device, unchecked; null: nobody listens.
   std::function<void(std::int64_t received_ns, const stream::HandFrame&)> on_hands = {};
   std::function<void(std::int64_t received_ns, const stream::ReferenceFrame&)> on_reference = {};
+  std::function<void(std::int64_t received_ns, const stream::ContactFrame&)> on_contacts = {};
   /// One line for a person: something is wrong with this source, and what to do.
   std::function<void(const std::string& line)> on_trouble;
 };

@@ -1,6 +1,7 @@
 #include "daemon/sensor/hands/hands.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace footing::hands {
 namespace {
@@ -71,6 +72,25 @@ std::string Problem(const stream::ReferenceFrame& frame) {
   return "";
 }
 
+std::string Problem(const stream::ContactFrame& frame) {
+  if (!IsPlain(frame.source)) return "a name is not printable text of at most 64 characters";
+  if (auto problem = ProblemOfHead(frame.rig, frame.age_ns); !problem.empty()) return problem;
+  if (frame.body == stream::ContactBody::kUnspecified)
+    return "its body must be a left or right foot";
+  if (frame.cells.empty() || frame.cells.size() > kMostCells) {
+    return "it has " + std::to_string(frame.cells.size()) + " cells, must have 1 to 16";
+  }
+  for (std::size_t i = 0; i < frame.cells.size(); ++i) {
+    const stream::ContactCell& cell = frame.cells[i];
+    const std::string which = "cell " + std::to_string(i + 1) + " has ";
+    if (!cell.position_m.allFinite() || cell.position_m.norm() > kFarthestCellM) {
+      return which + "a position that is not within 1 m";
+    }
+    if (!(std::abs(cell.load_n) <= kMostLoadN)) return which + "a load that is not within 10000 N";
+  }
+  return "";
+}
+
 std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::int64_t received_ns,
                                           const std::string& default_rig) {
   std::vector<stream::HandSample> samples;
@@ -88,6 +108,19 @@ std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::i
     samples.push_back(std::move(sample));
   }
   return samples;
+}
+
+stream::ContactSample ToSample(const stream::ContactFrame& frame, std::int64_t received_ns,
+                               const std::string& default_rig) {
+  stream::ContactSample sample;
+  sample.rig = frame.rig.empty() ? default_rig : frame.rig;
+  sample.source = frame.source;
+  sample.body = frame.body;
+  sample.received_ns = received_ns;
+  sample.sampled_ns = received_ns - frame.age_ns;
+  sample.cells = frame.cells;
+  sample.simulated = frame.simulated;
+  return sample;
 }
 
 stream::ReferencePose ToPose(const stream::ReferenceFrame& frame, std::int64_t received_ns,

@@ -56,7 +56,8 @@ class Hub {
   /// Published with the next tick; what makes no sense is refused, counted and said now and then.
   void OnHands(std::int64_t received_ns, const stream::HandFrame& frame);
   void OnReference(std::int64_t received_ns, const stream::ReferenceFrame& frame);
-  /// Hand and reference frames refused so far.
+  void OnContacts(std::int64_t received_ns, const stream::ContactFrame& frame);
+  /// Hand, reference and contact frames refused so far.
   std::uint64_t refused_frames() const { return refusals_.total(); }
 
   /// Once a tick: everything since the last one, and the features as of `now_ns`. The same reports

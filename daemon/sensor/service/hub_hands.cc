@@ -1,4 +1,4 @@
-// Hands that trackers see, and the true poses of stand-ins.
+// Hands that trackers see, loads under feet that insoles feel, and the true poses of stand-ins.
 #include <utility>
 
 #include "daemon/sensor/hands/hands.h"
@@ -23,6 +23,15 @@ void Hub::OnReference(std::int64_t received_ns, const stream::ReferenceFrame& fr
   }
   if (content_.reference.size() >= kMaxReferencesPerTick) return;
   content_.reference.push_back(hands::ToPose(frame, received_ns, config_.default_rig));
+}
+
+void Hub::OnContacts(std::int64_t received_ns, const stream::ContactFrame& frame) {
+  if (const std::string problem = hands::Problem(frame); !problem.empty()) {
+    Refuse("a contact frame", problem);
+    return;
+  }
+  if (content_.contacts.size() >= kMaxContactsPerTick) return;
+  content_.contacts.push_back(hands::ToSample(frame, received_ns, config_.default_rig));
 }
 
 void Hub::Refuse(const std::string& what, const std::string& why) {

@@ -28,7 +28,8 @@ std::vector<transport::Channel> Channels() {
           {"boards_uniform", Tick::kBoardsUniformFieldNumber, false},
           {"setup", Tick::kSetupFieldNumber, true},
           {"hands", Tick::kHandsFieldNumber, false},
-          {"reference", Tick::kReferenceFieldNumber, false}};
+          {"reference", Tick::kReferenceFieldNumber, false},
+          {"contacts", Tick::kContactsFieldNumber, false}};
 }
 
 std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
@@ -82,6 +83,11 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
     v1::ReferencePoses list;
     for (const auto& pose : content.reference) *list.add_poses() = wire::ToProto(pose);
     Append(channels, Tick::kReferenceFieldNumber, list);
+  }
+  if (!content.contacts.empty()) {
+    v1::ContactSamples list;
+    for (const auto& sample : content.contacts) *list.add_samples() = wire::ToProto(sample);
+    Append(channels, Tick::kContactsFieldNumber, list);
   }
   if (!content.raw.empty()) {
     v1::RawReports list;

@@ -34,8 +34,9 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   options.version = version;
   options.channels = Channels();
   options.tick_rate_hz = config.tick_rate_hz;
-  options.capabilities = {"features", "boards", "raw",   "rumble", "leds",     "assign", "nunchuk",
-                          "camera",   "sphere", "setup", "tare",   "mounting", "layout", "hands"};
+  options.capabilities = {"features", "boards",   "raw",    "rumble", "leds",
+                          "assign",   "nunchuk",  "camera", "sphere", "setup",
+                          "tare",     "mounting", "layout", "hands",  "contacts"};
   return options;
 }
 
@@ -157,6 +158,9 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     };
     handlers.on_reference = [this](std::int64_t received_ns, const stream::ReferenceFrame& frame) {
       hub_.OnReference(received_ns, frame);
+    };
+    handlers.on_contacts = [this](std::int64_t received_ns, const stream::ContactFrame& frame) {
+      hub_.OnContacts(received_ns, frame);
     };
     handlers.on_trouble = [](const std::string& line) { log::Warning(line); };
     const auto new_handle = [this] { return ++last_handle_; };

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "common/stream/contacts.h"
 #include "common/stream/device.h"
 #include "common/stream/hands.h"
 #include "common/stream/sensor.h"
@@ -18,6 +19,7 @@ struct TickContent {
   std::vector<stream::CameraSample> cameras;
   std::vector<stream::HandSample> hands;
   std::vector<stream::ReferencePose> reference;
+  std::vector<stream::ContactSample> contacts;
   std::vector<stream::RawReport> raw;
   std::vector<stream::RigFeatures> features;
   bool has_status = false;
@@ -30,5 +32,7 @@ struct TickContent {
 inline constexpr std::size_t kMaxSamplesPerTick = 1024;
 /// The same of poses, which are some 2 KiB each.
 inline constexpr std::size_t kMaxReferencesPerTick = 64;
+/// And of contact samples, which are some 0.7 KiB.
+inline constexpr std::size_t kMaxContactsPerTick = 128;
 
 }  // namespace footing::sensor

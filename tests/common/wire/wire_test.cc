@@ -71,7 +71,8 @@ using Messages =
                    v1::RigFeatures, v1::BoardSample, v1::NunchukSample, v1::CameraPoint,
                    v1::CameraSample, v1::UniformBoardSample, v1::BoardPose, v1::BoardLayout,
                    v1::SetupItem, v1::RigSetup, v1::Skeleton, v1::Track, v1::LinkPose,
-                   v1::HandFrame, v1::HandSample, v1::ReferencePose>;
+                   v1::HandFrame, v1::HandSample, v1::ReferencePose, v1::ContactFrame,
+                   v1::ContactSample>;
 TYPED_TEST_SUITE(RoundTrip, Messages);
 
 TYPED_TEST(RoundTrip, EveryFieldOfTheMessageSurvives) {
@@ -161,6 +162,20 @@ TEST(Wire, AHandFrameComesInAsItIsSoThatItCanBeRefused) {
   stream::HandFrame frame;
   frame.points.emplace_back().position_m.x() = kNan;
   EXPECT_EQ(ToProto(frame).points(0).x_m(), 0);
+}
+
+TEST(Wire, AContactFrameComesInAsItIsAndGoesOutFinite) {
+  v1::ContactFrame message;
+  message.add_cells()->set_load_n(kNan);
+  message.set_body(static_cast<v1::ContactBody>(9));
+  const stream::ContactFrame frame = FromProto(message);
+  EXPECT_TRUE(std::isnan(frame.cells[0].load_n));
+  EXPECT_EQ(frame.body, stream::ContactBody::kUnspecified);
+  stream::ContactSample sample;
+  sample.cells = {{{kNan, 1, kInfinity}, kNan}};
+  EXPECT_EQ(ToProto(sample).cells(0).x_m(), 0);
+  EXPECT_EQ(ToProto(sample).cells(0).y_m(), 1);
+  EXPECT_EQ(ToProto(sample).cells(0).load_n(), 0);
 }
 
 TEST(Wire, ARotationThatIsNoneBecomesTheIdentity) {

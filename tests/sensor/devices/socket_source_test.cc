@@ -96,6 +96,9 @@ class SocketSourceTest : public transport::IoFixture {
     handlers.on_hands = [this](std::int64_t, const stream::HandFrame& frame) {
       hands_.push_back(frame);
     };
+    handlers.on_contacts = [this](std::int64_t, const stream::ContactFrame& frame) {
+      contacts_.push_back(frame);
+    };
     handlers.on_reference = [this](std::int64_t, const stream::ReferenceFrame& frame) {
       references_.push_back(frame);
     };
@@ -110,6 +113,7 @@ class SocketSourceTest : public transport::IoFixture {
   std::vector<std::string> trouble_;
   std::vector<stream::HandFrame> hands_;
   std::vector<stream::ReferenceFrame> references_;
+  std::vector<stream::ContactFrame> contacts_;
   SocketSource source_;
 };
 
@@ -243,7 +247,25 @@ TEST_F(SocketSourceTest, TheLargestFramesThatAreTakenFitIntoAMessage) {
   for (int i = 0; i < 3 * 64; ++i) reference.mutable_reference_frame()->add_position_m(0.1f);
   for (int i = 0; i < 3; ++i) reference.mutable_reference_frame()->add_com_m(0.1f);
   peer->Send(reference);
-  EXPECT_TRUE(RunUntil([this] { return !references_.empty(); }));
+  v1::DeviceEnvelope contacts;
+  v1::ContactFrame& insole = *contacts.mutable_contact_frame();
+  insole.set_source(std::string(64, 's'));
+  insole.set_rig(std::string(64, 'r'));
+  insole.set_age_ns(1'000'000'000);
+  insole.set_body(v1::CONTACT_BODY_RIGHT_FOOT);
+  insole.set_simulated(true);
+  for (int i = 0; i < 16; ++i) {
+    v1::ContactCell& cell = *insole.add_cells();
+    cell.set_x_m(0.1);
+    cell.set_y_m(0.1);
+    cell.set_z_m(0.1);
+    cell.set_load_n(0.1);
+  }
+  peer->Send(contacts);
+  EXPECT_TRUE(RunUntil([this] { return !contacts_.empty(); }));
+  ASSERT_EQ(references_.size(), 1u);
+  EXPECT_EQ(contacts_[0].cells.size(), 16u);
+  EXPECT_EQ(contacts_[0].body, stream::ContactBody::kRightFoot);
   EXPECT_EQ(hands_.size(), 1u);
   EXPECT_FALSE(peer->closed);
 }

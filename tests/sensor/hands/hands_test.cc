@@ -11,6 +11,7 @@
 namespace footing::hands {
 namespace {
 
+using stream::ContactFrame;
 using stream::DeviceRole;
 using stream::HandFrame;
 using stream::ReferenceFrame;
@@ -141,6 +142,32 @@ TEST(Refusals, AreSaidAtOnceThenOncePerTenSecondsWithTheirNumber) {
   EXPECT_FALSE(add(109.9));
   EXPECT_THAT(add(110).value_or(""), HasSubstr("3 refused"));
   EXPECT_EQ(refusals.total(), 4u);
+}
+
+TEST(Hands, AnInsoleThatMakesNoSenseIsRefusedWithTheReason) {
+  ContactFrame good;
+  good.source = "left";
+  good.body = stream::ContactBody::kLeftFoot;
+  good.cells = {{{0, 0.03, 0}, 100}, {{0.25, -0.03, 0}, -0.4}};
+  EXPECT_EQ(Problem(good), "");
+  const std::pair<const char*, std::function<void(ContactFrame&)>> kBad[] = {
+      {"foot", [](ContactFrame& f) { f.body = stream::ContactBody::kUnspecified; }},
+      {"0 cells", [](ContactFrame& f) { f.cells.clear(); }},
+      {"17 cells", [](ContactFrame& f) { f.cells.resize(17, f.cells[0]); }},
+      {"cell 2 has a position", [](ContactFrame& f) { f.cells[1].position_m.z() = kNan; }},
+      {"cell 1 has a position", [](ContactFrame& f) { f.cells[0].position_m.x() = 1.1; }},
+      {"cell 2 has a load", [](ContactFrame& f) { f.cells[1].load_n = kInfinity; }},
+      {"cell 1 has a load", [](ContactFrame& f) { f.cells[0].load_n = kNan; }},
+      {"cell 1 has a load", [](ContactFrame& f) { f.cells[0].load_n = -10'001; }},
+      {"age_ns", [](ContactFrame& f) { f.age_ns = kOldestNs + 1; }},
+      {"name", [](ContactFrame& f) { f.source = "a\nb"; }},
+      {"name", [](ContactFrame& f) { f.rig = std::string(65, 'r'); }},
+  };
+  for (const auto& [word, spoil] : kBad) {
+    ContactFrame frame = good;
+    spoil(frame);
+    EXPECT_THAT(Problem(frame), testing::HasSubstr(word));
+  }
 }
 
 }  // namespace

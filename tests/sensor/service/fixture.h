@@ -114,6 +114,7 @@ class Bench {
     add(content.raw, tick.raw);
     add(content.hands, tick.hands);
     add(content.reference, tick.reference);
+    add(content.contacts, tick.contacts);
     add(content.uniform_boards, tick.uniform_boards);
     if (tick.has_setup) content.setup = std::move(tick.setup);
     content.features = std::move(tick.features);

@@ -67,6 +67,44 @@ TEST(HubHands, AFloodIsBoundedInEachTick) {
   EXPECT_EQ(bench.content.reference.size(), kMaxReferencesPerTick);
 }
 
+stream::ContactFrame Insole(double load_n) {
+  stream::ContactFrame frame;
+  frame.source = "left";
+  frame.age_ns = 3'000'000;
+  frame.body = stream::ContactBody::kLeftFoot;
+  frame.cells = {{{0.1, 0.02, 0}, load_n}};
+  return frame;
+}
+
+TEST(HubHands, InsolesArePublishedWithTheirTimesAndBadOrTooManyFramesAreNot) {
+  Bench bench;
+  bench.hub().OnContacts(1'000'000'000, Insole(300));
+  bench.hub().OnContacts(1'000'000'000, Insole(std::numeric_limits<double>::quiet_NaN()));
+  bench.Advance(0.02);
+  ASSERT_EQ(bench.content.contacts.size(), 1u);
+  EXPECT_EQ(bench.content.contacts[0].rig, "main");
+  EXPECT_EQ(bench.content.contacts[0].source, "left");
+  EXPECT_EQ(bench.content.contacts[0].received_ns, 1'000'000'000);
+  EXPECT_EQ(bench.content.contacts[0].sampled_ns, 997'000'000);
+  EXPECT_EQ(bench.content.contacts[0].cells[0].load_n, 300);
+  EXPECT_EQ(bench.hub().refused_frames(), 1u);
+  bench.content.contacts.clear();
+  for (std::size_t i = 0; i < 2 * kMaxContactsPerTick; ++i) bench.hub().OnContacts(0, Insole(1));
+  bench.Advance(0.02);
+  EXPECT_EQ(bench.content.contacts.size(), kMaxContactsPerTick);
+  std::vector<std::string> names;
+  for (const auto& channel : Channels()) names.push_back(channel.name);
+  EXPECT_THAT(names, testing::Contains("contacts"));
+  for (const auto& channel : ToChannels(bench.content)) {
+    if (channel.field != v1::Tick::kContactsFieldNumber) continue;
+    v1::ContactSamples list;
+    ASSERT_TRUE(list.ParseFromString(channel.bytes));
+    EXPECT_EQ(list.samples_size(), static_cast<int>(kMaxContactsPerTick));
+    return;
+  }
+  FAIL() << "no channel carries them";
+}
+
 TEST(HubHands, ChannelsCarryThemInTheTicksFields) {
   TickContent content;
   content.hands.emplace_back().position_m.z() = 1.5;

@@ -1,0 +1,71 @@
+#include "clients/stream/insoles.h"
+
+#include <array>
+#include <utility>
+
+#include "clients/stream/tellings.h"
+#include "common/synthetic/random.h"
+#include "common/units/units.h"
+#include "common/virtual_sensors/insole_cells.h"
+
+namespace footing::stream_client {
+namespace {
+
+namespace sensors = virtual_sensors;
+
+constexpr double kRateHz = 100;
+
+}  // namespace
+
+Telling TellInsole(std::shared_ptr<const Stage> stage, std::size_t foot, const InsoleErrors& errors,
+                   std::uint64_t seed) {
+  const auto places =
+      sensors::InsolePlaces(sensors::PlaceOfSole(stage->scene.course, foot, 0).length_m);
+  synthetic::Random random(seed);
+  std::array<double, sensors::kInsoleCells> gains{};
+  for (double& gain : gains) gain = 1 + errors.gain_spread * random.Normal();
+  const double noise_n = KilogramsToNewtons(errors.noise_kg);
+  Telling telling;
+  telling.rate_hz = kRateHz;
+  telling.contacts = [=](double t_s) mutable {
+    const Stage::Instant at = stage->At(t_s);
+    const sensors::SolePlace sole =
+        sensors::PlaceOfSole(stage->scene.course, foot, at.share < 0.5 ? at.frame : at.frame + 1);
+    const auto loads_n = sensors::LoadInsole(places, sole, stage->FootAt(foot, t_s));
+    stream::ContactFrame frame;
+    frame.source = foot == 0 ? "sim-insole-left" : "sim-insole-right";
+    frame.body = foot == 0 ? stream::ContactBody::kLeftFoot : stream::ContactBody::kRightFoot;
+    frame.simulated = true;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      frame.cells.push_back(
+          {{places[i].x(), places[i].y(), 0}, gains[i] * loads_n[i] + noise_n * random.Normal()});
+    }
+    return frame;
+  };
+  return telling;
+}
+
+Result<Plan> PlanInsoles(const InsolesOptions& options, const Common& common) {
+  if (options.hands != "none" && options.hands != "move") {
+    return UsageError("--hands " + options.hands + ": with insoles there are none and move");
+  }
+  StageOptions wanted = options.stage;
+  wanted.on_boards = false;
+  wanted.seconds = common.seconds;
+  auto made = MakeStage(wanted);
+  if (!made) return made.error();
+  const auto stage = std::make_shared<const Stage>(*std::move(made));
+  Plan plan;
+  for (const std::size_t foot : {0u, 1u}) {
+    plan.tellings.push_back(
+        TellInsole(stage, foot, options.errors, DeviceSeed(common, foot + 1) + 700));
+  }
+  if (options.hands == "move") {
+    plan.tellings.push_back(TellHands(stage, options.hand_noise_m, DeviceSeed(common, 3) + 700));
+  }
+  plan.tellings.push_back(TellPose(stage));
+  plan.duration_s = common.seconds > 0 ? common.seconds : stage->repeats ? 0 : stage->duration_s();
+  return plan;
+}
+
+}  // namespace footing::stream_client
