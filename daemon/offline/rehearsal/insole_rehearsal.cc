@@ -23,11 +23,9 @@ Result<InsoleRehearsal> RehearseInsoles(const motion::Motion& clip, const Settin
   rehearsal.body = scene->body;
   rehearsal.rate_hz = settings.rate_hz;
   std::array<std::array<Eigen::Vector2d, sensors::kInsoleCells>, sensors::kFeet> places;
-  std::array<double, sensors::kFeet> rest_m{};
   for (std::size_t f = 0; f < places.size(); ++f) {
     const double length_m = sensors::PlaceOfSole(scene->course, f, 0).length_m;
     places[f] = sensors::InsolePlaces(length_m);
-    rest_m[f] = momentum::FootShape{}.rest_share * length_m;
   }
   synthetic::Random random(settings.seed);
   const double noise_n = KilogramsToNewtons(settings.errors.noise_kg);
@@ -48,7 +46,7 @@ Result<InsoleRehearsal> RehearseInsoles(const motion::Motion& clip, const Settin
       foot.valid = true;
       foot.count = loads.size();
       for (std::size_t k = 0; k < loads.size(); ++k) {
-        foot.p_F_m[k] = places[f][k] - Eigen::Vector2d(rest_m[f], 0);
+        foot.p_S_m[k] = places[f][k];
         foot.load_n[k] = loads[k] + noise_n * random.Normal();
       }
     }

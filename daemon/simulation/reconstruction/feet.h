@@ -20,6 +20,9 @@ struct FootGeometry {
   Eigen::Vector3d toe_F_m = Eigen::Vector3d::Zero();
   /// From W: turned by shape.yaw_rad.
   Eigen::Matrix3d R_WF = Eigen::Matrix3d::Identity();
+
+  /// How far F is ahead of the heel.
+  double RestM() const { return shape.rest_share * shape.length_m; }
 };
 
 /// Of both feet, from the body in its T-pose.

@@ -6,17 +6,21 @@
 
 #include "daemon/simulation/momentum/foot_contact.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
+#include "daemon/simulation/reconstruction/step_pattern.h"
 
 namespace footing::reconstruction {
 
-/// Cells in a shoe. Foot frame F: x to the toes, y left, origin where the COP rests
-/// (momentum::FootShape).
+/// Cells in a shoe. Sole frame S: x from the heel to the toes, y left, origin under the heel's
+/// middle. `valid` is false when nothing is known of them, which is not the same as no load.
 struct InsoleFoot {
   bool valid = false;
   std::size_t count = 0;
-  std::array<Eigen::Vector2d, momentum::kMaxCells> p_F_m{};
+  std::array<Eigen::Vector2d, momentum::kMaxCells> p_S_m{};
   std::array<double, momentum::kMaxCells> load_n{};
 };
+
+/// Sum of the cells' loads; 0 when nothing is known of them or they are not finite.
+double TotalLoadN(const InsoleFoot& foot);
 
 struct InsoleInputs {
   double time_s = 0;
@@ -25,12 +29,16 @@ struct InsoleInputs {
 };
 
 /// The reconstruction of somebody who walks away in shoes with cells (the paper's section 8). Cells
-/// do not tell where they are: a foot that carries stays where it landed, and it lands half a step
-/// ahead of the body, which the hands tell, at the side where the reconstructed pose has it. The
-/// load's place in the sole says when heel or toes may be up. Everything happens in a frame that
-/// follows the feet smoothly, so that what was learned of people in place holds; to the laws of
-/// motion it is as good as W. The person looks along W's x axis. Best mode, without its momentum. A
-/// value that can be copied.
+/// do not tell where they are: a foot that bears weight stays where it landed, and it lands as far
+/// ahead of the hips as it will be behind them, by the walking speed and by how long the last steps
+/// took. In between it swings there in a step's usual way. Where the hips are and how fast they go
+/// both hands tell; the centre of mass is over them, upright while they move. The load's place in
+/// the sole says when heel or toes may be up.
+///
+/// Everything happens in a frame that follows the hips smoothly, so that what was learned of people
+/// in place holds; to the laws of motion it is as good as W. Cells that fall silent leave their
+/// foot where it was, less sure of it by the second. The person looks along W's x axis. Best mode,
+/// without its momentum. A value that can be copied.
 class InsoleWalk {
  public:
   static Result<InsoleWalk> Create(const body::Body& body, const Models& models,
@@ -38,33 +46,51 @@ class InsoleWalk {
 
   /// One frame, 1 / rate_hz after the one before. Begins in a T-pose. Output is in W.
   const Output& Advance(const InsoleInputs& inputs);
+  /// Forgets the T-pose.
+  void Recalibrate();
 
   const Output& output() const { return output_; }
-  /// Point F of a foot, and whether it carries; W.
+  /// Point F of a foot, W, and whether it touches the ground.
   const Eigen::Vector2d& place_m(std::size_t foot) const { return feet_[foot].place_m; }
   bool contact(std::size_t foot) const { return feet_[foot].contact.contact(); }
 
  private:
   struct Foot {
     Eigen::Vector2d place_m = Eigen::Vector2d::Zero();
-    momentum::FootContact contact;
+    Eigen::Vector2d stood_m = Eigen::Vector2d::Zero();  ///< Where it last bore weight.
+    momentum::FootContact contact;                      ///< It touches the ground,
+    momentum::FootContact bearing;                      ///< and bears weight.
+    double silent_s = 0;                                ///< Since its cells told anything.
+    /// As the pose was solved for, in the moving frame.
+    Known::Foot known{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   };
 
   InsoleWalk(Reconstruction reconstruction, const Options& options);
   void StandUnder(const std::array<HandInput, kHands>& hands);
   Eigen::Vector2d PlaceInPose(std::size_t f) const;
-  Eigen::Vector2d LandingPlace(std::size_t f) const;
-  Inputs InMovingFrame(const InsoleInputs& inputs) const;
+  double HalfStepM() const;
+  double AsideM(std::size_t f) const;
+  Eigen::Vector2d LandingPlace(std::size_t f, double after_s) const;
+  void BeginWalking(const InsoleInputs& inputs);
+  void Step(std::size_t f, bool bore, double lasted_s);
+  void AdvanceFoot(std::size_t f, const InsoleFoot& cells);
+  Inputs InMovingFrame(const InsoleInputs& inputs);
+  void LeanOnFrame(Known& known) const;
   Known::Foot Carrying(std::size_t f, const InsoleFoot& cells) const;
   Known::Foot Swinging(std::size_t f) const;
+  Known::Foot Believed(std::size_t f, const InsoleFoot& cells) const;
   void Tell();
   void MoveFrame(const std::array<HandInput, kHands>& hands);
 
   Reconstruction reconstruction_;
   double step_s_;
   std::array<FootGeometry, momentum::kFeet> geometry_;
+  Eigen::Vector3d com_m_;  ///< Of the T-pose: from the hips, over the ground.
   std::array<Foot, momentum::kFeet> feet_;
   bool placed_ = false;
+  bool walking_ = false;  ///< The T-pose is over.
+  StepTimes times_;
+  double since_landing_s_ = 0;
   Eigen::Vector2d frame_m_ = Eigen::Vector2d::Zero();  ///< Origin of the moving frame, W.
   Eigen::Vector2d frame_mps_ = Eigen::Vector2d::Zero();
   Output output_;

@@ -41,6 +41,7 @@ struct HandInput {
 /// would help. Empty in use. Of the same instant as the loads.
 struct Known {
   std::optional<Eigen::Vector3d> com_W_m;
+  Eigen::Vector3d com_sd_m = Eigen::Vector3d::Constant(0.01);
   std::optional<Eigen::Vector3d> angular_W;  ///< kg m^2/s, of the body's own mass.
   struct Foot {
     Eigen::Vector3d ankle_W_m, toe_W_m;

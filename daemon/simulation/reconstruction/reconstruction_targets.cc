@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;
 constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 2;
-constexpr double kKnownComSdM = 0.01, kKnownAngularSd = 1;
+constexpr double kKnownAngularSd = 1;
 constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
 
 }  // namespace
@@ -86,7 +86,7 @@ void Reconstruction::AddMomentumTargets() {
   const momentum::Estimate& told = then_.momentum;
   const Known& known = then_.known;
   const bool paper = options_.mode == Mode::kPaper;
-  targets_.has_com = options_.use_momentum;
+  targets_.has_com = options_.use_momentum || known.com_W_m;
   targets_.com_W_m = told.p_WC_m;
   targets_.has_angular =
       options_.use_angular_momentum && (paper || known.angular_W || options_.best.angular_sd > 0);
@@ -103,7 +103,7 @@ void Reconstruction::AddMomentumTargets() {
   }
   if (known.com_W_m) {
     targets_.com_W_m = *known.com_W_m;
-    targets_.com_sd_m.setConstant(kKnownComSdM);
+    targets_.com_sd_m = known.com_sd_m;
   }
   if (known.angular_W) {
     targets_.angular_W = *known.angular_W;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/units/units.h"
+#include "daemon/simulation/reconstruction/step_pattern.h"
 #include "tests/simulation/reconstruction/made_person.h"
 
 namespace footing::reconstruction {
@@ -35,6 +36,7 @@ class Walker {
       const double share = walked_s == 0 ? 0.5 : (f == 0) == left ? 1 : 0;
       inputs.feet[f].valid = true;
       inputs.feet[f].count = 1;
+      inputs.feet[f].p_S_m[0].x() = 0.1;
       inputs.feet[f].load_n[0] = share * KilogramsToNewtons(person_.mass_kg);
     }
     for (int side = 0; side < 2; ++side) {
@@ -102,13 +104,113 @@ TEST(InsoleWalk, IsFiniteWhateverTheSensorsSay) {
     if (inputs.time_s > 6.5 && i % 3 == 0) {
       inputs.feet[0].load_n[0] = nan;
       inputs.hands[1].p_W_m.x() = nan;
-      inputs.feet[1].p_F_m[0].x() = i % 2 == 0 ? nan : 1e300;
+      inputs.feet[1].p_S_m[0].x() = i % 2 == 0 ? nan : 1e300;
     }
     if (i % 50 == 1) inputs.hands[0].valid = inputs.feet[1].valid = false;
     const Output& output = walker.walk().Advance(inputs);
     ASSERT_TRUE(output.q.allFinite()) << i;
     ASSERT_TRUE(walker.walk().place_m(0).allFinite() && walker.walk().place_m(1).allFinite()) << i;
   }
+}
+
+TEST(InsoleWalk, CellsThatFallSilentLeaveTheFootLessAndLessSure) {
+  Walker walker;
+  double t_s = 0;
+  for (; t_s < 9; t_s += 1 / kMadeRateHz) walker.walk().Advance(walker.At(t_s));
+  const double sure_m2 = walker.walk().output().momentum.feet[0].variance_m2.x();
+  EXPECT_LT(sure_m2, 0.01);
+  double last_m2 = sure_m2;
+  for (int second = 0; second < 3; ++second) {
+    for (int i = 0; i < kMadeRateHz; ++i, t_s += 1 / kMadeRateHz) {
+      InsoleInputs inputs = walker.At(t_s);
+      inputs.feet[0].valid = inputs.feet[1].valid = false;
+      ASSERT_TRUE(walker.walk().Advance(inputs).q.allFinite());
+    }
+    const double now_m2 = walker.walk().output().momentum.feet[0].variance_m2.x();
+    EXPECT_GE(now_m2, last_m2);
+    last_m2 = now_m2;
+  }
+  EXPECT_NEAR(std::sqrt(last_m2), 0.6, 1e-9) << "as far as it can be";
+  EXPECT_FALSE(walker.walk().output().valid);
+  for (int i = 0; i < kMadeRateHz; ++i, t_s += 1 / kMadeRateHz)
+    walker.walk().Advance(walker.At(t_s));
+  EXPECT_LT(walker.walk().output().momentum.feet[0].variance_m2.x(), 0.01);
+}
+
+TEST(InsoleWalk, ASwingingFootThatBrushesTheGroundHasNotLanded) {
+  Walker walker, brushing;
+  for (double t_s = 0; t_s < 14; t_s += 1 / kMadeRateHz) {
+    InsoleInputs inputs = walker.At(t_s);
+    walker.walk().Advance(inputs);
+    const double into_s = std::fmod(std::max(0.0, t_s - kMadeStandS), kStepS);
+    if (t_s > 8 && into_s > 0.2 && into_s < 0.3) {
+      for (InsoleFoot& foot : inputs.feet) foot.load_n[0] = std::max(foot.load_n[0], 90.0);
+    }
+    brushing.walk().Advance(inputs);
+    if (t_s < kMadeStandS) continue;
+    for (std::size_t f = 0; f < 2; ++f) {
+      ASSERT_NEAR(walker.walk().place_m(f).x(), brushing.walk().place_m(f).x(), 0.02) << t_s;
+    }
+  }
+}
+
+TEST(InsoleWalk, WithoutHandsItStaysBoundedAndGoesAheadWithTheSteps) {
+  Walker walker;
+  const double start_m = walker.walk().output().q(0);
+  for (double t_s = 0; t_s < 20; t_s += 1 / kMadeRateHz) {
+    InsoleInputs inputs = walker.At(t_s);
+    for (HandInput& hand : inputs.hands) hand.valid = false;
+    ASSERT_TRUE(walker.walk().Advance(inputs).q.allFinite());
+  }
+  const double gone_m = walker.walk().output().q(0) - start_m;
+  EXPECT_GT(gone_m, 5);
+  EXPECT_LT(gone_m, 14 * 2);  // No faster than 2 m/s.
+}
+
+TEST(InsoleWalk, ACalibrationThatIsAskedForBeginsAnew) {
+  Walker walker;
+  for (double t_s = 0; t_s < 8; t_s += 1 / kMadeRateHz) walker.walk().Advance(walker.At(t_s));
+  ASSERT_TRUE(walker.walk().output().calibrated);
+  walker.walk().Recalibrate();
+  EXPECT_FALSE(walker.walk().output().calibrated);
+  EXPECT_EQ(walker.walk().output().calibration_progress, 0);
+  for (double t_s = 0; t_s < kMadeStandS; t_s += 1 / kMadeRateHz)
+    walker.walk().Advance(walker.At(t_s));
+  EXPECT_TRUE(walker.walk().output().calibrated);
+  EXPECT_NEAR(walker.walk().output().q(0), 3, 0.15);
+}
+
+TEST(StepPattern, ASwingClearsTheGroundAndIsTheSameBackwardsTheOtherWayRound) {
+  for (double share = 0; share <= 1; share += 0.05) {
+    const FootRise ahead = SwingRise(share, 0.33), back = SwingRise(1 - share, -0.33);
+    EXPECT_GT(ahead.ankle_m, 0.02);
+    EXPECT_GT(ahead.ball_m, 0.02);
+    EXPECT_NEAR(ahead.ankle_m, back.ankle_m, 1e-12);
+    EXPECT_NEAR(ahead.ball_m, back.ball_m, 1e-12);
+    EXPECT_LT(SwingRise(share, 10).ankle_m, 0.3);
+    EXPECT_DOUBLE_EQ(SwingRise(share, 0).ball_m, 0.03);
+  }
+  EXPECT_GT(SwingRise(0.25, 0.33).ankle_m, SwingRise(0.8, 0.33).ankle_m)
+      << "the heel goes up first";
+  EXPECT_GT(SwingRise(0.8, 0.33).ball_m, SwingRise(0.8, 0.33).ankle_m) << "the heel lands first";
+  EXPECT_EQ(SwingWay(0), 0);
+  EXPECT_EQ(SwingWay(0.5), 0.5);
+  EXPECT_EQ(SwingWay(1), 1);
+}
+
+TEST(StepPattern, TimesFollowTheStepsAndIgnoreWhatIsNone) {
+  StepTimes times;
+  for (int i = 0; i < 20; ++i) {
+    times.Bore(0.8);
+    times.Swung(0.5);
+    times.Bore(12);    // Stood.
+    times.Swung(0.1);  // A blink.
+  }
+  EXPECT_NEAR(times.stance_s, 0.8, 1e-3);
+  EXPECT_NEAR(times.swing_s, 0.5, 1e-3);
+  // Walk ratio: 0.0065 m min times the cadence is a step; times the cadence again the speed.
+  const double cadence_per_min = 60 * 2 / 1.3;
+  EXPECT_NEAR(times.UsualSpeedMps(), 0.0065 * cadence_per_min * cadence_per_min / 60, 1e-3);
 }
 
 TEST(InsoleWalk, SaysThatOnlyTheBestModeWalks) {
