@@ -11,9 +11,11 @@ void AddPose(const scene::PoseTally& tally, nlohmann::ordered_json& summary) {
   summary["calibrated_frames"] = tally.calibrated_frames();
   summary["resets"] = tally.resets();
   summary["mass_kg"] = tally.mass_kg();
+  summary["contact_source"] = tally.contact_source();
   summary["compared_frames"] = tally.compared();
   if (tally.compared() == 0) return;
   summary["mpjpe_cm"] = tally.mpjpe_cm();
+  summary["mpjpe_root_relative_cm"] = tally.mpjpe_root_relative_cm();
   summary["wrists_cm"] = tally.wrists_cm();
   summary["ankles_cm"] = tally.ankles_cm();
 }

@@ -39,6 +39,7 @@ struct BodyState {
   std::string note;
   double solve_us = 0;
   std::array<bool, 2> hands_seen{};
+  std::string contact_source;  ///< "boards" or "insoles"; empty of a server that does not say.
 };
 
 /// What a stand-in's body really does.

@@ -52,20 +52,24 @@ void PoseTally::Add(const CharacterPose& pose, const Anatomy& anatomy, std::int6
 
 void PoseTally::Compare(const CharacterPose& pose, const Anatomy& anatomy,
                         const ReferencePose& reference) {
-  const auto error_cm = [&](Landmark landmark) {
+  const auto error_m = [&](Landmark landmark) -> Eigen::Vector3d {
     const auto joint = static_cast<std::size_t>(anatomy.landmarks[landmark]);
-    return 100 * (pose.links[joint].position_m - reference.positions_m[joint]).norm();
+    return pose.links[joint].position_m - reference.positions_m[joint];
   };
-  double sum_cm = 0;
+  const auto error_cm = [&](Landmark landmark) { return 100 * error_m(landmark).norm(); };
+  const Eigen::Vector3d root_m = error_m(Landmark::kHips);
+  double sum_cm = 0, relative_cm = 0;
   int joints = 0;
   for (int i = 0; i < body::kLandmarkCount; ++i) {
     const auto landmark = static_cast<Landmark>(i);
     if (anatomy.landmarks[landmark] < 0 || IsTip(landmark)) continue;
     sum_cm += error_cm(landmark);
+    relative_cm += 100 * (error_m(landmark) - root_m).norm();
     ++joints;
   }
   ++compared_;
   all_cm_ += sum_cm / joints;
+  relative_cm_ += relative_cm / joints;
   wrists_cm_ += 0.5 * (error_cm(Landmark::kLeftWrist) + error_cm(Landmark::kRightWrist));
   ankles_cm_ += 0.5 * (error_cm(Landmark::kLeftAnkle) + error_cm(Landmark::kRightAnkle));
 }

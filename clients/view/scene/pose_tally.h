@@ -26,10 +26,13 @@ class PoseTally {
   std::uint64_t calibrations() const { return calibrations_; }
   std::uint32_t resets() const { return last_.resets; }
   double mass_kg() const { return last_.mass_kg; }
+  const std::string& contact_source() const { return last_.contact_source; }
   /// Frames that were compared; the means below are over them, cm. Joints are the landmarks of a
   /// person without the tips of hands and toes.
   std::uint64_t compared() const { return compared_; }
   double mpjpe_cm() const { return Mean(all_cm_); }
+  /// Of the joints against the hips.
+  double mpjpe_root_relative_cm() const { return Mean(relative_cm_); }
   double wrists_cm() const { return Mean(wrists_cm_); }
   double ankles_cm() const { return Mean(ankles_cm_); }
 
@@ -41,7 +44,7 @@ class PoseTally {
 
   std::uint64_t frames_ = 0, calibrated_frames_ = 0, calibrations_ = 0, compared_ = 0;
   BodyState last_;
-  double all_cm_ = 0, wrists_cm_ = 0, ankles_cm_ = 0;
+  double all_cm_ = 0, relative_cm_ = 0, wrists_cm_ = 0, ankles_cm_ = 0;
 };
 
 }  // namespace footing::scene

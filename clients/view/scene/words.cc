@@ -70,6 +70,7 @@ std::vector<std::string> BodyLines(const CharacterPose& pose) {
   std::string hands = "  hands: left ";
   hands += body.hands_seen[0] ? "seen" : "not seen";
   hands += body.hands_seen[1] ? ", right seen" : ", right not seen";
+  if (!body.contact_source.empty()) hands += "   on " + body.contact_source;
   if (pose.simulated_input) hands += "   SIMULATED input";
   lines.push_back(hands);
   if (!body.note.empty()) lines.push_back("  " + body.note);
@@ -83,6 +84,7 @@ std::string BodyWords(const CharacterPose& pose) {
       body.calibrated ? Fixed(body.mass_kg, 1) + " kg  COM " + Fixed(pose.com_m.z(), 2) +
                             " m  feet " + FootWords(body.feet[0]) + ", " + FootWords(body.feet[1])
                       : "T-pose " + Fixed(100 * body.calibration_progress, 0) + " %";
+  if (!body.contact_source.empty()) words += "  on " + body.contact_source;
   if (!body.note.empty()) words += "  (" + body.note + ")";
   return words;
 }

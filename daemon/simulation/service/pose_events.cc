@@ -24,11 +24,17 @@ std::string Kilograms(double mass_kg) {
 v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
                                std::int64_t now_ns) {
   v1::Events events;
-  const bool on_boards = frame.boards_valid[0] && frame.boards_valid[1];
+  const bool told = frame.feet_told[0] && frame.feet_told[1];
+  const bool worn = frame.source == PoseSource::kInsoles;
   const bool next_subject = has_last_ && frame.subject_number != subject_number_;
-  if (on_boards != on_boards_) {
-    Add(events, on_boards ? v1::Event::KIND_STREAM_BACK : v1::Event::KIND_STREAM_LOST, now_ns,
-        on_boards ? "both boards are there" : "a board is lost: the pose coasts");
+  const std::string source = worn ? "insole" : "board";
+  if (has_last_ && frame.source != source_) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "the pose follows the " + source + "s");
+  }
+  if (told != told_) {
+    Add(events, told ? v1::Event::KIND_STREAM_BACK : v1::Event::KIND_STREAM_LOST, now_ns,
+        told ? "both " + source + "s are there"
+             : (worn ? "an " : "a ") + source + " is lost: the pose coasts");
   }
   if (next_subject) {
     Add(events, v1::Event::KIND_COMMAND, now_ns,
@@ -43,7 +49,8 @@ v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
     Add(events, v1::Event::KIND_COMMAND, now_ns, "the filters began anew");
   }
   has_last_ = true;
-  on_boards_ = on_boards;
+  told_ = told;
+  source_ = frame.source;
   calibrated_ = frame.calibrated;
   subject_number_ = frame.subject_number;
   resets_ = frame.resets;

@@ -8,7 +8,8 @@
 
 namespace footing::simulation {
 
-/// What a person should be told once, from one frame to the next: boards lost and back, a T-pose
+/// What a person should be told once, from one frame to the next: boards or insoles lost and back
+/// and which of them is followed, a T-pose
 /// asked for and taken, the next subject, filters that began anew.
 class PoseEvents {
  public:
@@ -16,7 +17,8 @@ class PoseEvents {
 
  private:
   bool has_last_ = false;
-  bool on_boards_ = false;
+  bool told_ = false;
+  PoseSource source_ = PoseSource::kBoards;
   bool calibrated_ = false;
   std::uint64_t subject_number_ = 0;
   std::uint32_t resets_ = 0;

@@ -5,14 +5,21 @@
 
 #include "common/stream/character.h"
 #include "daemon/simulation/momentum/estimate.h"
+#include "daemon/simulation/reconstruction/insole_walk.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::simulation {
 
+/// What the pose follows.
+enum class PoseSource { kBoards, kInsoles };
+
 /// What the pose engine is told, with where it came from. Fixed size.
 struct PoseInputs {
   reconstruction::Inputs sensors;  ///< Its time is set by the engine's own steps.
-  bool simulated = false;          ///< A stand-in is behind any of it.
+  /// Cells in the shoes, where there are any. While one of them tells anything, they are followed
+  /// instead of the boards.
+  std::array<reconstruction::InsoleFoot, momentum::kFeet> insoles;
+  bool simulated = false;  ///< A stand-in is behind any of it.
   std::uint64_t sensor_epoch = 0;
   std::uint64_t sensor_sequence = 0;
   std::uint64_t calibrate_number = 0;  ///< T-poses asked for so far.
@@ -38,8 +45,10 @@ struct PoseFrame {
   std::uint64_t state_hash = 0;  ///< Of the pose's coordinates, bit for bit.
   bool simulated = false;
 
-  std::array<bool, momentum::kFeet> boards_valid{};
-  std::array<double, momentum::kFeet> load_n{};  ///< Of each board, calibrated or not.
+  PoseSource source = PoseSource::kBoards;
+  bool insoles_idle = false;  ///< They tell, but this mode or lag cannot follow them.
+  std::array<bool, momentum::kFeet> feet_told{};  ///< The source tells of this foot now.
+  std::array<double, momentum::kFeet> load_n{};   ///< By the source, calibrated or not.
   std::array<bool, 2> hands_valid{};
 
   bool valid = false;

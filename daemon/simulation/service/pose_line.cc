@@ -25,7 +25,11 @@ Result<std::unique_ptr<SubjectRun>> MakeRun(std::uint64_t number, const body::Bo
   if (made->body().skeleton.joints.size() > kMaxLinks) {
     return InvalidData("the skeleton has more joints than a frame has room for");
   }
-  return std::make_unique<SubjectRun>(SubjectRun{number, std::move(made).value()});
+  auto run = std::make_unique<SubjectRun>(SubjectRun{number, std::move(made).value()});
+  if (auto walk = reconstruction::InsoleWalk::Create(body, models, options)) {
+    run->walk = std::move(walk).value();
+  }
+  return run;
 }
 
 }  // namespace

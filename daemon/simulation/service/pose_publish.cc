@@ -67,6 +67,8 @@ void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& 
   body.set_note(PoseNote(frame, subject));
   body.set_solve_us(frame.solve_us);
   for (const bool seen : frame.hands_valid) body.add_hands_seen(seen);
+  body.set_contact_source(frame.source == PoseSource::kInsoles ? "insoles" : "boards");
+  for (const bool told : frame.feet_told) body.add_feet_told(told);
 }
 
 void SetFootInput(const momentum::FootLoads& foot, v1::PoseFoot& message) {
@@ -76,6 +78,27 @@ void SetFootInput(const momentum::FootLoads& foot, v1::PoseFoot& message) {
     *cell.mutable_position_m() = wire::ToProto(foot.cells[i].p_WS_m);
     cell.set_load_n(foot.cells[i].load_n);
   }
+}
+
+void SetInsoleInput(const reconstruction::InsoleFoot& foot, v1::PoseFoot& message) {
+  for (std::size_t i = 0; foot.valid && i < foot.count; ++i) {
+    v1::PoseCell& cell = *message.add_insole_cells();
+    cell.mutable_position_m()->set_x(foot.p_S_m[i].x());
+    cell.mutable_position_m()->set_y(foot.p_S_m[i].y());
+    cell.set_load_n(foot.load_n[i]);
+  }
+}
+
+reconstruction::InsoleFoot InsoleFrom(const v1::PoseFoot& message) {
+  reconstruction::InsoleFoot foot;
+  foot.count = std::min(static_cast<std::size_t>(message.insole_cells_size()), momentum::kMaxCells);
+  foot.valid = foot.count > 0;
+  for (std::size_t i = 0; i < foot.count; ++i) {
+    const v1::PoseCell& cell = message.insole_cells(static_cast<int>(i));
+    foot.p_S_m[i] = wire::FromProto(cell.position_m()).head<2>();
+    foot.load_n[i] = cell.load_n();
+  }
+  return foot;
 }
 
 momentum::FootLoads FootFrom(const v1::PoseFoot& message) {
@@ -162,6 +185,8 @@ v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subje
   v1::PoseInput& pose = *message.mutable_pose();
   SetFootInput(inputs.sensors.loads.feet[0], *pose.mutable_left_foot());
   SetFootInput(inputs.sensors.loads.feet[1], *pose.mutable_right_foot());
+  SetInsoleInput(inputs.insoles[0], *pose.mutable_left_foot());
+  SetInsoleInput(inputs.insoles[1], *pose.mutable_right_foot());
   SetHandInput(inputs.sensors.hands[0], *pose.mutable_left_hand());
   SetHandInput(inputs.sensors.hands[1], *pose.mutable_right_hand());
   pose.set_calibrate_number(inputs.calibrate_number);
@@ -182,6 +207,7 @@ PoseApplied PoseAppliedFrom(const v1::AppliedInput& message) {
   inputs.simulated = message.simulated();
   const v1::PoseInput& pose = message.pose();
   inputs.sensors.loads.feet = {FootFrom(pose.left_foot()), FootFrom(pose.right_foot())};
+  inputs.insoles = {InsoleFrom(pose.left_foot()), InsoleFrom(pose.right_foot())};
   inputs.sensors.hands = {HandFrom(pose.left_hand()), HandFrom(pose.right_hand())};
   inputs.calibrate_number = pose.calibrate_number();
   inputs.subject_number = pose.subject_number();

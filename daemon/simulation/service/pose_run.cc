@@ -35,6 +35,29 @@ void PoseRun::Obey(const PoseInputs& inputs) {
   if (inputs.calibrate_number == calibrate_number_) return;
   calibrate_number_ = inputs.calibrate_number;
   subject_->reconstruction.Recalibrate();
+  if (subject_->walk) subject_->walk->Recalibrate();
+}
+
+void PoseRun::ChooseSource() {
+  const auto tells = [](const auto& feet) { return feet[0].valid || feet[1].valid; };
+  if (subject_->walk && tells(worn_.feet)) {
+    source_ = PoseSource::kInsoles;
+  } else if (!subject_->walk || tells(told_.loads.feet)) {
+    source_ = PoseSource::kBoards;
+  }
+}
+
+void PoseRun::Advance() {
+  const bool walks = source_ == PoseSource::kInsoles;
+  if (!walks || !subject_->reconstruction.output().calibrated)
+    subject_->reconstruction.Advance(told_);
+  if (subject_->walk && (walks || !subject_->walk->output().calibrated))
+    subject_->walk->Advance(worn_);
+}
+
+const reconstruction::Output& PoseRun::output() const {
+  return source_ == PoseSource::kInsoles ? subject_->walk->output()
+                                         : subject_->reconstruction.output();
 }
 
 void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
@@ -50,26 +73,35 @@ void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
     ++quiet_steps_;
   }
   told_ = inputs.Front().sensors;
+  worn_.feet = inputs.Front().insoles;
   simulated_ = inputs.Front().simulated;
   told_.loads.time_s = static_cast<double>(step_) / rate_hz_;
   if (static_cast<double>(quiet_steps_) > kStreamLostS * rate_hz_) {
     for (auto& foot : told_.loads.feet) foot.valid = false;
+    for (auto& foot : worn_.feet) foot.valid = false;
     for (auto& hand : told_.hands) hand.valid = false;
   }
-  subject_->reconstruction.Advance(told_);
+  worn_.time_s = told_.loads.time_s;
+  worn_.hands = told_.hands;
+  ChooseSource();
+  Advance();
   solve_ns_ = clock::ThreadCpuNs() - begun_ns;
 }
 
 void PoseRun::FillOnSimThread(Frame& frame) const {
-  const reconstruction::Output& output = subject_->reconstruction.output();
+  const reconstruction::Output& output = this->output();
   frame.step = step_;
   frame.time_s = static_cast<double>(step_) / rate_hz_;
   frame.subject_number = subject_->number;
   frame.state_hash = HashOf(output.q);
   frame.simulated = simulated_;
+  frame.source = source_;
+  frame.insoles_idle = !subject_->walk && (worn_.feet[0].valid || worn_.feet[1].valid);
+  const bool walks = source_ == PoseSource::kInsoles;
   for (std::size_t side = 0; side < momentum::kFeet; ++side) {
-    frame.boards_valid[side] = told_.loads.feet[side].valid;
-    frame.load_n[side] = momentum::PressureOf(told_.loads.feet[side], 1).total_n;
+    frame.feet_told[side] = walks ? worn_.feet[side].valid : told_.loads.feet[side].valid;
+    frame.load_n[side] = walks ? reconstruction::TotalLoadN(worn_.feet[side])
+                               : momentum::PressureOf(told_.loads.feet[side], 1).total_n;
     frame.hands_valid[side] = told_.hands[side].valid;
   }
   frame.valid = output.valid;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "common/exchange/bounded_queue.h"
 #include "common/exchange/latest.h"
@@ -13,6 +14,8 @@ namespace footing::simulation {
 struct SubjectRun {
   std::uint64_t number = 0;
   reconstruction::Reconstruction reconstruction;
+  /// The same person in insoles; none where the mode or the lag has none.
+  std::optional<reconstruction::InsoleWalk> walk = std::nullopt;
 };
 
 /// How subjects come to the simulation thread and go back: it never allocates or frees.
@@ -24,6 +27,10 @@ struct SubjectExchange {
 };
 
 /// The pose engine on the simulation thread (see SimulationThread).
+///
+/// Boards and insoles have a reconstruction each. That of the source which is followed is advanced;
+/// the other one rests, but takes its T-pose along as long as it has none. Insoles that fall silent
+/// are followed on, unless boards tell something: the pose coasts.
 ///
 /// A subject takes effect with the first inputs that carry its number; it was queued before them.
 class PoseRun {
@@ -42,6 +49,9 @@ class PoseRun {
 
  private:
   void Obey(const PoseInputs& inputs);
+  void ChooseSource();
+  void Advance();
+  const reconstruction::Output& output() const;
 
   std::unique_ptr<SubjectRun> subject_;
   double rate_hz_;
@@ -50,6 +60,8 @@ class PoseRun {
   std::uint64_t quiet_steps_ = 0;  ///< Since the last inputs.
   std::uint64_t calibrate_number_ = 0;
   reconstruction::Inputs told_;
+  reconstruction::InsoleInputs worn_;
+  PoseSource source_ = PoseSource::kBoards;
   bool simulated_ = false;
   std::int64_t solve_ns_ = 0;
 };

@@ -99,11 +99,31 @@ void PoseSensors::TakeHand(const v1::HandSample& sample, std::int64_t now_ns) {
   if (side < 0 || sample.rig() != followed_rig_) return;
   if (!IsFinite(sample.position_m()) || !IsFinite(sample.sd_m())) return;
   if (!(sample.confidence() > 0)) return;
-  Hand& hand = hands_[static_cast<std::size_t>(side)];
-  hand = {true, now_ns, sample.simulated()};
+  hands_[static_cast<std::size_t>(side)] = {true, now_ns, sample.simulated()};
   reconstruction::HandInput& told = inputs_.sensors.hands[static_cast<std::size_t>(side)];
   told.p_W_m = wire::FromProto(sample.position_m());
   told.sd_m = wire::FromProto(sample.sd_m()).cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM);
+}
+
+void PoseSensors::TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns) {
+  const bool left = sample.body() == v1::CONTACT_BODY_LEFT_FOOT;
+  if (!left && sample.body() != v1::CONTACT_BODY_RIGHT_FOOT) return;
+  if (followed_rig_.empty()) followed_rig_ = sample.rig();
+  if (sample.rig() != followed_rig_) return;
+  if (sample.cells_size() < 1 || sample.cells_size() > static_cast<int>(momentum::kMaxCells))
+    return;
+  for (const v1::ContactCell& cell : sample.cells()) {
+    if (!std::isfinite(cell.x_m()) || !std::isfinite(cell.y_m()) || !std::isfinite(cell.load_n()))
+      return;
+  }
+  insoles_[left ? 0 : 1] = {true, now_ns, sample.simulated()};
+  reconstruction::InsoleFoot& foot = inputs_.insoles[left ? 0 : 1];
+  foot.count = static_cast<std::size_t>(sample.cells_size());
+  for (std::size_t i = 0; i < foot.count; ++i) {
+    const v1::ContactCell& cell = sample.cells(static_cast<int>(i));
+    foot.p_S_m[i] = {cell.x_m(), cell.y_m()};
+    foot.load_n[i] = cell.load_n();
+  }
 }
 
 void PoseSensors::Judge(std::int64_t now_ns) {
@@ -114,11 +134,14 @@ void PoseSensors::Judge(std::int64_t now_ns) {
     inputs_.sensors.loads.feet[side].valid = board.seen;
     inputs_.simulated |= board.seen && board.simulated;
   }
+  const auto judge = [&](Worn& worn, double timeout_s) {
+    if (worn.seen && IsOld(worn.seen_ns, now_ns, timeout_s)) worn.seen = false;
+    inputs_.simulated |= worn.seen && worn.simulated;
+    return worn.seen;
+  };
   for (std::size_t side = 0; side < hands_.size(); ++side) {
-    Hand& hand = hands_[side];
-    if (hand.seen && IsOld(hand.seen_ns, now_ns, kHandTimeoutS)) hand.seen = false;
-    inputs_.sensors.hands[side].valid = hand.seen;
-    inputs_.simulated |= hand.seen && hand.simulated;
+    inputs_.sensors.hands[side].valid = judge(hands_[side], kHandTimeoutS);
+    inputs_.insoles[side].valid = judge(insoles_[side], kInsoleTimeoutS);
   }
 }
 
@@ -128,6 +151,7 @@ void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   if (tick.has_setup()) Place(tick.setup());
   if (tick.snapshot()) return;
   for (const v1::BoardSample& sample : tick.boards().samples()) TakeBoard(sample, now_ns);
+  for (const v1::ContactSample& sample : tick.contacts().samples()) TakeInsole(sample, now_ns);
   for (const v1::HandSample& sample : tick.hands().samples()) TakeHand(sample, now_ns);
   Judge(now_ns);
   inputs_.sensor_epoch = tick.epoch();

@@ -12,16 +12,18 @@
 namespace footing::simulation {
 
 /// Turns ticks of the sensor daemon into what the pose engine is told, on the io thread: the newest
-/// raw sample of the rig's left and right board with its cells' places in W, and of its hands.
+/// raw sample of the rig's left and right board with its cells' places in W, of its insoles, and of
+/// its hands.
 ///
-/// A board without samples, or a hand not seen, for longer than its timeout is not valid, which is
-/// not the same as no load. Samples that are not finite count as none.
+/// A board or an insole without samples, or a hand not seen, for longer than its timeout is not
+/// valid, which is not the same as no load. Samples that are not finite count as none.
 class PoseSensors {
  public:
   static constexpr double kBoardTimeoutS = 0.2;
   static constexpr double kHandTimeoutS = 0.15;
+  static constexpr double kInsoleTimeoutS = 0.2;
 
-  /// `rig` empty: the first rig with a board.
+  /// `rig` empty: the first rig with a board or an insole.
   PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out);
 
   void OnTick(const v1::Tick& tick, std::int64_t now_ns);
@@ -39,7 +41,8 @@ class PoseSensors {
     std::int64_t seen_ns = 0;
     bool simulated = false;
   };
-  struct Hand {
+  /// A hand or an insole.
+  struct Worn {
     bool seen = false;
     std::int64_t seen_ns = 0;
     bool simulated = false;
@@ -49,13 +52,15 @@ class PoseSensors {
   void Place(const v1::SetupState& setup);
   void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
   void TakeHand(const v1::HandSample& sample, std::int64_t now_ns);
+  void TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns);
   void Judge(std::int64_t now_ns);
 
   const std::string wanted_rig_;
   std::string followed_rig_;
   exchange::Latest<PoseInputs>& out_;
   std::array<Board, momentum::kFeet> boards_{};
-  std::array<Hand, 2> hands_{};
+  std::array<Worn, 2> hands_{};
+  std::array<Worn, momentum::kFeet> insoles_{};
   PoseInputs inputs_;
 };
 

@@ -27,13 +27,19 @@ void Add(std::string& note, const std::string& words) {
   note += words;
 }
 
-std::string LostBoards(const PoseFrame& frame) {
-  if (!frame.boards_valid[0] && !frame.boards_valid[1]) {
-    return "nothing comes from the boards: are both on, and assigned as left and right?";
+bool IsWorn(const PoseFrame& frame) { return frame.source == PoseSource::kInsoles; }
+
+std::string LostSource(const PoseFrame& frame) {
+  if (!frame.feet_told[0] && !frame.feet_told[1]) {
+    return IsWorn(frame)
+               ? "nothing comes from the insoles: are both on? the feet are guessed, less by the "
+                 "second"
+               : "nothing comes from the boards: are both on, and assigned as left and right?";
   }
   for (std::size_t side = 0; side < 2; ++side) {
-    if (!frame.boards_valid[side]) {
-      return std::string("nothing comes from the ") + kSides[side] + " board";
+    if (!frame.feet_told[side]) {
+      return std::string("nothing comes from the ") + kSides[side] +
+             (IsWorn(frame) ? " insole" : " board");
     }
   }
   return "";
@@ -42,7 +48,7 @@ std::string LostBoards(const PoseFrame& frame) {
 std::string Awaited(const PoseFrame& frame) {
   const double total_n = frame.load_n[0] + frame.load_n[1];
   if (total_n < KilogramsToNewtons(TPoseCalibration::kLeastMassKg)) {
-    return "step on, one foot on each board";
+    return IsWorn(frame) ? "stand on both feet" : "step on, one foot on each board";
   }
   for (std::size_t side = 0; side < 2; ++side) {
     if (frame.load_n[side] < TPoseCalibration::kLeastFootShare * total_n) {
@@ -63,11 +69,12 @@ void AddFeet(const PoseFrame& frame, std::string& note) {
     return !foot.contact && foot.airborne_s > kAwayS;
   };
   if (away(feet[0]) && away(feet[1])) {
-    return Add(note, "nobody stands on the boards");
+    return Add(note, IsWorn(frame) ? "both feet are in the air" : "nobody stands on the boards");
   }
   for (std::size_t side = 0; side < 2; ++side) {
     if (!away(feet[side])) continue;
-    Add(note, std::string("the ") + kSides[side] + " foot is off its board for " +
+    Add(note, std::string("the ") + kSides[side] + " foot is off " +
+                  (IsWorn(frame) ? "the ground for " : "its board for ") +
                   Text(feet[side].airborne_s, 1) + " s: its place is a guess");
   }
 }
@@ -76,20 +83,24 @@ void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) 
   if (subject.mass_kg <= 0 || frame.mass_kg <= 0) return;
   const double difference = frame.mass_kg / subject.mass_kg - 1;
   if (std::abs(difference) <= kMassTolerance) return;
-  Add(note, "the boards say " + Text(frame.mass_kg, 1) + " kg, the subject's file " +
-                Text(subject.mass_kg, 1) + " kg: is it " + subject.code +
-                ", and are both boards tared?");
+  Add(note, std::string("the ") + (IsWorn(frame) ? "insoles" : "boards") + " say " +
+                Text(frame.mass_kg, 1) + " kg, the subject's file " + Text(subject.mass_kg, 1) +
+                " kg: is it " + subject.code +
+                (IsWorn(frame) ? "?" : ", and are both boards tared?"));
 }
 
 }  // namespace
 
 std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
-  std::string note = LostBoards(frame);
+  std::string note = LostSource(frame);
+  const bool told = note.empty();
+  if (frame.insoles_idle)
+    Add(note, "insoles need the best mode without lag: they are not followed");
   if (!frame.calibrated) {
-    if (note.empty()) note = Awaited(frame);
+    if (told) Add(note, Awaited(frame));
     return note;
   }
-  if (note.empty()) AddFeet(frame, note);
+  if (told) AddFeet(frame, note);
   if (!frame.hands_valid[0] && !frame.hands_valid[1]) {
     Add(note, "no hand is seen");
   } else {

@@ -26,7 +26,8 @@ struct Person {
     made::Options options;
     options.rate_hz = made::kMadeRateHz;
     return std::make_unique<SubjectRun>(
-        SubjectRun{number, made::Reconstruction::Create(body, models, options).value()});
+        SubjectRun{number, made::Reconstruction::Create(body, models, options).value(),
+                   made::InsoleWalk::Create(body, models, options).value()});
   }
 };
 
@@ -66,6 +67,11 @@ TEST(PoseThread, AllocatesFreesLocksAndSoLogsNothingOnceItRunsThroughTPoseMotion
       told.subject_number = 1;
     }
     if (i == 450) ++told.calibrate_number;
+    for (auto& insole : told.insoles) {  // Worn while the first one moves.
+      insole.valid = i > 400 && i < 440;
+      insole.count = 1;
+      insole.load_n[0] = 343;
+    }
     thread.inputs().Write(told);
     ASSERT_TRUE(next_frame());
     calibrated |= frame.calibrated && frame.subject_number == 0;

@@ -28,7 +28,18 @@ struct Line {
     made::Options options;
     options.rate_hz = made::kMadeRateHz;
     return std::make_unique<SubjectRun>(
-        SubjectRun{number, made::Reconstruction::Create(person, models, options).value()});
+        SubjectRun{number, made::Reconstruction::Create(person, models, options).value(),
+                   made::InsoleWalk::Create(person, models, options).value()});
+  }
+  /// The person wears insoles, too: all of a foot's load in one cell under its middle.
+  void Wear(std::size_t i) {
+    const made::Inputs& seen = measured[i % measured.size()];
+    for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+      told.insoles[f].valid = true;
+      told.insoles[f].count = 1;
+      told.insoles[f].p_S_m[0] = {0.11, 0};
+      told.insoles[f].load_n[0] = momentum::PressureOf(seen.loads.feet[f], 1).total_n;
+    }
   }
   /// One step with the i-th frame that was measured.
   void Step(std::size_t i) {
@@ -87,12 +98,12 @@ TEST(PoseRun, TakesTheTPoseAndThenPublishesTheWholeBody) {
 TEST(PoseRun, ASilentStreamMakesBoardsAndHandsUnknown) {
   Line line;
   for (std::size_t i = 0; i < 10; ++i) line.Step(i);
-  EXPECT_TRUE(line.frame.boards_valid[0]);
+  EXPECT_TRUE(line.frame.feet_told[0]);
   for (int i = 0; i < 30; ++i) line.Quiet();  // Half a second.
-  EXPECT_FALSE(line.frame.boards_valid[0]);
+  EXPECT_FALSE(line.frame.feet_told[0]);
   EXPECT_FALSE(line.frame.hands_valid[1]);
   line.Step(10);
-  EXPECT_TRUE(line.frame.boards_valid[0]);
+  EXPECT_TRUE(line.frame.feet_told[0]);
 }
 
 TEST(PoseRun, BoardsLostAndBackLeaveAFinitePose) {
@@ -108,7 +119,7 @@ TEST(PoseRun, BoardsLostAndBackLeaveAFinitePose) {
     ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
   }
   EXPECT_TRUE(line.frame.calibrated) << "the same person is still there";
-  EXPECT_TRUE(line.frame.boards_valid[0]);
+  EXPECT_TRUE(line.frame.feet_told[0]);
 }
 
 TEST(PoseRun, ACalibrationThatIsAskedForForgetsTheTPose) {
@@ -148,6 +159,8 @@ TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
       continue;
     }
     line.told.sensors = line.measured[i];
+    if (i % 200 > 150) line.Wear(i);
+    if (i % 200 == 0) line.told.insoles = {};
     line.inputs.Write(line.told);
     line.run.StepOnSimThread(line.inputs, line.frame);
     for (int k = 0; k < line.frame.applied_count; ++k) {
@@ -171,6 +184,53 @@ TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
   }
   EXPECT_EQ(next, applied.size());
   EXPECT_EQ(again.frame.state_hash, hash);
+}
+
+TEST(PoseRun, InsolesAreFollowedWhileTheyTellAndBoardsKnowThePersonWhenTheyStop) {
+  Line line;
+  for (std::size_t i = 0; i < 400; ++i) {
+    line.Wear(i);
+    line.Step(i);
+    ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+  }
+  const auto message = ToCharacterFrame(line.frame, {}, "best", "boards", "one");
+  EXPECT_EQ(message.characters(0).body().contact_source(), "insoles");
+  EXPECT_TRUE(message.characters(0).body().feet_told(1));
+  EXPECT_TRUE(line.frame.calibrated);
+  EXPECT_TRUE(line.frame.valid);
+  EXPECT_NEAR(line.frame.mass_kg, 70, 0.5);
+  line.told.insoles = {};
+  line.Step(400);
+  EXPECT_EQ(line.frame.source, PoseSource::kBoards);
+  EXPECT_TRUE(line.frame.calibrated) << "the T-pose was taken on both";
+}
+
+TEST(PoseRun, InsolesThatFallSilentLeaveAPoseThatIsLessSureByTheSecond) {
+  Line line;
+  const auto walk_off = [&line](std::size_t i) {
+    line.Wear(i);
+    line.told.sensors = line.measured[i];
+    for (auto& foot : line.told.sensors.loads.feet) foot.valid = false;  // No boards are there.
+    line.inputs.Write(line.told);
+    line.Quiet();
+  };
+  for (std::size_t i = 0; i < 450; ++i) walk_off(i);
+  ASSERT_TRUE(line.frame.calibrated && line.frame.valid);
+  const auto ankle = static_cast<std::size_t>(line.person.landmarks[body::Landmark::kLeftAnkle]);
+  const double sure_m = line.frame.link_sd_m[ankle];
+  EXPECT_LT(sure_m, 0.1);
+  for (int second = 0; second < 2; ++second) {
+    for (int i = 0; i < 60; ++i) {
+      line.Quiet();
+      ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
+    }
+    // The made person's poses, of which the basis knows, are all near each other.
+    EXPECT_GT(line.frame.link_sd_m[ankle], 1.2 * sure_m) << second;
+  }
+  EXPECT_EQ(line.frame.source, PoseSource::kInsoles) << "nothing else tells anything";
+  EXPECT_FALSE(line.frame.feet_told[0]);
+  EXPECT_FALSE(line.frame.valid);
+  EXPECT_GT(line.frame.momentum.feet[0].variance_m2.x(), 0.25);
 }
 
 TEST(PosePublish, TheSkeletonHasALinkForEveryJointWithItsParent) {

@@ -138,6 +138,41 @@ TEST_F(PoseSensorsTest, WhatAStandInSaysIsStampedSimulated) {
   EXPECT_TRUE(After(tick).simulated);
 }
 
+TEST_F(PoseSensorsTest, AnInsoleIsTheFootThatItSitsOnForAsLongAsItTells) {
+  v1::Tick tick;
+  AddInsole(tick, v1::CONTACT_BODY_RIGHT_FOOT, 90);
+  const PoseInputs& told = After(tick, 0);
+  EXPECT_EQ(sensors.rig(), "one") << "nobody has a board, so the first insole's rig is followed";
+  EXPECT_FALSE(told.insoles[0].valid);
+  ASSERT_TRUE(told.insoles[1].valid);
+  ASSERT_EQ(told.insoles[1].count, 4u);
+  EXPECT_EQ(told.insoles[1].p_S_m[2], Eigen::Vector2d(0.22, -0.03));
+  EXPECT_EQ(reconstruction::TotalLoadN(told.insoles[1]), 360);
+  EXPECT_TRUE(told.simulated);
+  EXPECT_FALSE(told.sensors.loads.feet[1].valid) << "no board";
+  EXPECT_TRUE(After({}, 0.19).insoles[1].valid);
+  EXPECT_FALSE(After({}, 0.21).insoles[1].valid);
+  EXPECT_FALSE(inputs.Front().simulated);
+}
+
+TEST_F(PoseSensorsTest, InsolesOfOthersAndWithoutSenseAreNotTold) {
+  After(StatusTick());
+  v1::Tick other;
+  AddInsole(other, v1::CONTACT_BODY_LEFT_FOOT, 90, "two");
+  EXPECT_FALSE(After(other).insoles[0].valid);
+  v1::Tick broken;
+  AddInsole(broken, v1::CONTACT_BODY_LEFT_FOOT, std::numeric_limits<double>::quiet_NaN());
+  AddInsole(broken, v1::CONTACT_BODY_UNSPECIFIED, 90);
+  broken.mutable_contacts()->add_samples()->set_rig("one");
+  const PoseInputs& told = After(broken);
+  EXPECT_FALSE(told.insoles[0].valid);
+  EXPECT_FALSE(told.insoles[1].valid);
+  v1::Tick many;
+  AddInsole(many, v1::CONTACT_BODY_LEFT_FOOT, 1);
+  for (int i = 0; i < 13; ++i) many.mutable_contacts()->mutable_samples(0)->add_cells();
+  EXPECT_FALSE(After(many).insoles[0].valid);
+}
+
 TEST_F(PoseSensorsTest, EveryCalibrationHasItsOwnNumber) {
   sensors.Calibrate();
   sensors.Calibrate();

@@ -49,4 +49,21 @@ inline void AddHand(v1::Tick& tick, v1::DeviceRole role, double x_m, double y_m,
   sample.set_confidence(1);
 }
 
+/// Four cells about the middle of a sole of 24 cm, each with this load.
+inline void AddInsole(v1::Tick& tick, v1::ContactBody body, double load_n,
+                      const char* rig = "one") {
+  v1::ContactSample& sample = *tick.mutable_contacts()->add_samples();
+  sample.set_rig(rig);
+  sample.set_body(body);
+  sample.set_simulated(true);
+  for (const double x_m : {0.02, 0.22}) {
+    for (const double y_m : {-0.03, 0.03}) {
+      v1::ContactCell& cell = *sample.add_cells();
+      cell.set_x_m(x_m);
+      cell.set_y_m(y_m);
+      cell.set_load_n(load_n);
+    }
+  }
+}
+
 }  // namespace footing::simulation

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 /// 70 kg on both boards, T-pose taken, hands seen.
 PoseFrame Well() {
   PoseFrame frame;
-  frame.boards_valid = {true, true};
+  frame.feet_told = {true, true};
   frame.hands_valid = {true, true};
   frame.load_n = {343, 343};
   frame.calibrated = true;
@@ -45,9 +45,9 @@ TEST(PoseNote, LeadsThroughTheTPose) {
 
 TEST(PoseNote, NamesTheBoardThatIsLost) {
   PoseFrame frame = Well();
-  frame.boards_valid[1] = false;
+  frame.feet_told[1] = false;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right board"));
-  frame.boards_valid[0] = false;
+  frame.feet_told[0] = false;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("are both on"));
 }
 
@@ -61,6 +61,19 @@ TEST(PoseNote, NamesTheFootThatIsOffAndTheHandThatIsNotSeen) {
   const std::string note = PoseNote(frame, kSubject);
   EXPECT_THAT(note, HasSubstr("left foot is off its board for 1.2 s"));
   EXPECT_THAT(note, HasSubstr("right hand is not seen"));
+}
+
+TEST(PoseNote, SpeaksOfInsolesToWhoWalksInThem) {
+  PoseFrame frame = Well();
+  frame.source = PoseSource::kInsoles;
+  EXPECT_EQ(PoseNote(frame, kSubject), "");
+  frame.feet_told[1] = false;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right insole"));
+  frame.feet_told[0] = false;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("nothing comes from the insoles"));
+  frame = Well();
+  frame.insoles_idle = true;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("best mode without lag"));
 }
 
 TEST(PoseNote, AnotherPersonsWeightIsToldFromThreePercentOn) {
@@ -77,13 +90,24 @@ TEST(PoseEvents, ABoardLostAndBackIsToldOnceEach) {
   PoseFrame frame = Well();
   events.Between(frame, kSubject, 1);
   EXPECT_EQ(events.Between(frame, kSubject, 2).events_size(), 0);
-  frame.boards_valid[0] = false;
+  frame.feet_told[0] = false;
   const v1::Events lost = events.Between(frame, kSubject, 3);
   ASSERT_EQ(lost.events_size(), 1);
   EXPECT_EQ(lost.events(0).kind(), v1::Event::KIND_STREAM_LOST);
   EXPECT_EQ(events.Between(frame, kSubject, 4).events_size(), 0);
-  frame.boards_valid[0] = true;
+  frame.feet_told[0] = true;
   EXPECT_EQ(events.Between(frame, kSubject, 5).events(0).kind(), v1::Event::KIND_STREAM_BACK);
+}
+
+TEST(PoseEvents, TheSourceThatIsFollowedIsNamed) {
+  PoseEvents events;
+  PoseFrame frame = Well();
+  events.Between(frame, kSubject, 1);
+  frame.source = PoseSource::kInsoles;
+  EXPECT_THAT(events.Between(frame, kSubject, 2).events(0).text(),
+              HasSubstr("follows the insoles"));
+  frame.feet_told = {false, true};
+  EXPECT_THAT(events.Between(frame, kSubject, 3).events(0).text(), HasSubstr("an insole is lost"));
 }
 
 TEST(PoseEvents, TheNextSubjectIsNamed) {
