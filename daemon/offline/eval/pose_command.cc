@@ -29,7 +29,7 @@ struct Flags {
   std::string hands = "move", mode = "best", boards = "simulated";
   double lag_ms = 0, loop_minutes = 0, yaw_error_deg = 0, height_m = 0;
   std::string figures;
-  bool baselines = true, ablations = false, claims = false;
+  bool baselines = true, ablations = false, claims = false, same_person = false;
 };
 
 bool Has(const std::vector<std::string>& list, const std::string& name) {
@@ -71,7 +71,7 @@ Result<ordered_json> Evaluate(Flags flags) {
     if (!rehearsal) return rehearsal.error();
     return ordered_json{{"claims", JudgeClaims(*rehearsal)}};
   }
-  const auto models = ReadPoseModels(flags.models, flags.scene.motion);
+  const auto models = ReadPoseModels(flags.models, flags.scene.motion, flags.same_person);
   if (!models) return models.error();
   if (flags.boards == "insoles") {
     const auto walk = MakeInsoleScene(flags.scene);
@@ -143,6 +143,8 @@ void AddFlags(CLI::App& command, Flags& flags) {
   command.add_option("--boards", flags.boards)
       ->check(CLI::IsMember({"simulated", "forces", "insoles"}));
   command.add_option("--model", flags.models, "*.fmodel, several; without: the product's");
+  command.add_flag("--same-person", flags.same_person,
+                   "Models may know the person, by other takes than this");
   command.add_option("--mode", flags.mode)->check(CLI::IsMember({"paper", "best"}));
   command.add_option("--rate-hz", settings.rate_hz)->check(CLI::Range(30.0, 120.0));
   command.add_option("--lag-ms", flags.lag_ms, "0 to 200")->check(CLI::Range(0.0, 200.0));

@@ -12,6 +12,7 @@ namespace footing::eval {
 namespace {
 
 constexpr std::size_t kMostLabelBytes = 1u << 20;
+constexpr std::size_t kMostMotionBytes = 512u << 20;
 
 std::string SubjectOf(const std::string& motion) {
   const std::string stem = std::filesystem::path(motion).stem().string();
@@ -24,6 +25,20 @@ Result<reconstruction::NamedModel> ReadModel(const std::string& path) {
   auto model = wire::FromModelFile(*bytes, path);
   if (!model) return model.error();
   return reconstruction::NamedModel{path, std::move(*model)};
+}
+
+/// Refuses a model that has seen this very file.
+Result<void> CheckNotTrainedOnFile(const model::Model& model, const std::string& motion,
+                                   const std::string& origin) {
+  const auto text = config::ReadTextFile(motion, kMostMotionBytes);
+  if (!text) return text.error();
+  const model::Digest digest = model::Sha256(*text);
+  for (const model::DataFile& file : model.provenance.data) {
+    if (file.sha256 != digest) continue;
+    return InvalidData(origin + ": was trained on " + motion +
+                       " itself; judge it on another take of the same person");
+  }
+  return {};
 }
 
 Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
@@ -92,7 +107,7 @@ Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& optio
 }
 
 Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& files,
-                                              const std::string& motion) {
+                                              const std::string& motion, bool same_person) {
   std::vector<std::string> paths = files;
   if (paths.empty()) {
     for (const char* name : {"pose.fmodel", "com.fmodel"}) {
@@ -105,7 +120,9 @@ Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& fi
   for (const std::string& path : paths) {
     auto model = ReadModel(path);
     if (!model) return model.error();
-    const auto fresh = model::CheckNotTrainedOn(model->model, SubjectOf(motion), path);
+    const auto fresh = same_person
+                           ? CheckNotTrainedOnFile(model->model, motion, path)
+                           : model::CheckNotTrainedOn(model->model, SubjectOf(motion), path);
     if (!fresh) return fresh.error();
     models.push_back(std::move(*model));
   }

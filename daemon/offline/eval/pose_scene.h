@@ -29,8 +29,9 @@ Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options
 Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options);
 
 /// Reads the models and refuses those that were trained on the motion's subject (the file's name up
-/// to the first '_'). No file: those that the product carries.
+/// to the first '_'); with `same_person`, only those that were trained on this very file: a
+/// person's own model is judged on another of their takes. No file: those that the product carries.
 Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& files,
-                                              const std::string& motion);
+                                              const std::string& motion, bool same_person = false);
 
 }  // namespace footing::eval

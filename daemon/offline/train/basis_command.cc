@@ -6,6 +6,7 @@
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
+#include "daemon/offline/train/own_recordings.h"
 #include "daemon/offline/train/poses.h"
 
 namespace footing::train {
@@ -13,29 +14,34 @@ namespace {
 
 struct Options {
   MotionOptions motions;
+  OwnOptions own;
   ModelOptions model;
 };
 
+constexpr double kEnoughS = 90;  // Of range of motion: section 6.
+
 int Run(const Options& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
-  const Result<Clips> clips = ReadClips(options.motions);
-  if (!clips) return cli::Report(clips.error());
-  const Result<TrainedBasis> trained = TrainBasis(clips->train);
+  const Result<TrainingSet> set =
+      ReadTrainingSet(options.motions, options.own, kEnoughS, "for the basis of poses");
+  if (!set) return cli::Report(set.error());
+  const Result<TrainedBasis> trained = TrainBasis(set->AllClips());
   if (!trained) return cli::Report(trained.error());
   const training::PoseBasis& basis = trained->basis;
 
   model::Model model =
-      NewModel("basis", shared, options.model, DataFiles(clips->train), clips->subjects);
+      NewModel("basis", shared, options.model, set->DataFiles(), set->clips.subjects);
   AppendBasis(basis, model);
   if (auto written = WriteModel(model, options.model); !written) {
     return cli::Report(written.error());
   }
-  const nlohmann::ordered_json report = {{"dof", basis.mean.size()},
-                                         {"poses", trained->poses},
-                                         {"subjects", clips->subjects},
-                                         {"components_90", basis.ComponentsFor(0.9)},
-                                         {"components_99", basis.ComponentsFor(0.99)},
-                                         {"components_9999", basis.ComponentsFor(0.9999)}};
+  nlohmann::ordered_json report = {{"dof", basis.mean.size()},
+                                   {"poses", trained->poses},
+                                   {"subjects", set->clips.subjects},
+                                   {"components_90", basis.ComponentsFor(0.9)},
+                                   {"components_99", basis.ComponentsFor(0.99)},
+                                   {"components_9999", basis.ComponentsFor(0.9999)}};
+  AppendOwn(*set, report);
   if (shared.json) {
     std::cout << report.dump() << std::endl;
   } else {
@@ -53,6 +59,7 @@ void AddBasisCommand(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("basis", "Principal components of the poses in motion files");
   AddMotionOptions(*command, options->motions);
+  AddOwnOptions(*command, options->own);
   AddModelOptions(*command, options->model);
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }

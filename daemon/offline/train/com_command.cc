@@ -11,6 +11,7 @@
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
+#include "daemon/offline/train/own_recordings.h"
 #include "daemon/offline/training/board_loads.h"
 #include "daemon/offline/training/cascade.h"
 #include "daemon/simulation/cascade/model.h"
@@ -23,6 +24,7 @@ using training::LoadClip;
 constexpr const char* kAxes[] = {"x", "y"};
 constexpr double kValidationPart = 0.2;  // The end of every clip.
 constexpr std::size_t kRoundsKept = 3;   // Whose examples are trained on, beside those with noise.
+constexpr double kEnoughS = 180;         // Of the paper's, section 4.2.
 constexpr double kRestartS = 10;         // Own outputs go on so long in training.
 
 /// A hidden unit fits the people of the training: it makes the COM of a person left out worse
@@ -31,6 +33,7 @@ constexpr int kHiddenMax = 0;
 
 struct Options {
   MotionOptions motions;
+  OwnOptions own;
   ModelOptions model;
   training::CascadeOptions cascade;
   std::vector<double> noises_m = {0.01, 0.02, 0.04};
@@ -52,6 +55,26 @@ std::vector<LoadClip> Loads(const std::vector<Clip>& clips, bool mirrored, std::
     for (LoadClip& part : training::PartsInPlace(all)) loads.push_back(std::move(part));
   }
   return loads;
+}
+
+/// What the own boards measured, with its mirror image, `weight` times.
+Result<void> AddOwn(const TrainingSet& set, bool mirror, std::vector<LoadClip>& loads) {
+  for (const OwnRecording& own : set.own) {
+    std::vector<training::OwnTake> takes{own.take};
+    if (mirror) {
+      auto image = training::MirrorImage(own.take);
+      if (!image) return image.error();
+      takes.push_back(*std::move(image));
+    }
+    for (const training::OwnTake& take : takes) {
+      for (const LoadClip& clip : training::OwnLoads(take)) {
+        for (const LoadClip& part : training::PartsInPlace(clip)) {
+          for (int i = 0; i < set.weight; ++i) loads.push_back(part);
+        }
+      }
+    }
+  }
+  return {};
 }
 
 Recordings SplitClips(const std::vector<LoadClip>& clips) {
@@ -172,13 +195,16 @@ nlohmann::ordered_json Judge(const training::Networks& networks,
 
 int Run(const Options& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
-  const Result<Clips> clips = ReadClips(options.motions);
-  if (!clips) return cli::Report(clips.error());
+  const Result<TrainingSet> set =
+      ReadTrainingSet(options.motions, options.own, kEnoughS, "for the horizontal COM");
+  if (!set) return cli::Report(set.error());
+  const Clips* clips = &set->clips;
   std::vector<LoadClip> loads = Loads(clips->train, false, options.model.seed);
   if (options.mirror) {
     for (LoadClip& clip : Loads(clips->train, true, options.model.seed + 500))
       loads.push_back(std::move(clip));
   }
+  if (auto added = AddOwn(*set, options.mirror, loads); !added) return cli::Report(added.error());
   if (loads.empty()) {
     return cli::Report(
         InvalidData("no motion stays in place for three seconds; nothing to train on"));
@@ -190,8 +216,7 @@ int Run(const Options& options, const Shared& shared) {
   const std::vector<training::CascadeResult>& axes = trained.axes;
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
-  model::Model model =
-      NewModel("com", shared, options.model, DataFiles(clips->train), clips->subjects);
+  model::Model model = NewModel("com", shared, options.model, set->DataFiles(), clips->subjects);
   nlohmann::ordered_json report = {{"subjects", clips->subjects},
                                    {"clips", clips->train.size()},
                                    {"noise_m", trained.noise_m},
@@ -211,6 +236,7 @@ int Run(const Options& options, const Shared& shared) {
     report["excluded"] =
         Judge(trained.networks(), Loads(clips->excluded, false, options.model.seed + 1000));
   }
+  AppendOwn(*set, report);
   if (auto written = WriteModel(model, options.model); !written) {
     return cli::Report(written.error());
   }
@@ -230,6 +256,7 @@ void AddComCommand(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand(
       "com", "The horizontal COM's networks from motion files, by what two boards would measure");
   AddMotionOptions(*command, options->motions);
+  AddOwnOptions(*command, options->own);
   AddModelOptions(*command, options->model);
   command
       ->add_option("--noise", options->noises_m,

@@ -1,4 +1,5 @@
 #include "common/cli/cli.h"
+#include "common/log/log.h"
 #include "daemon/offline/train/command.h"
 
 namespace {
@@ -32,7 +33,9 @@ int main(int argc, char** argv) {
       "  footing-train com --motions mocap/ --exclude 14 --out com.fmodel --json\n"
       "  footing-train basis --motions mocap/ --out basis.fmodel\n"
       "  footing-train pose --motions mocap/ --exclude 14 --out pose.fmodel\n"
+      "  footing-train pose --motions mocap/ --recording me.mcap --motion me.bvh --out me.fmodel\n"
       "  footing-train mlp --data sway.csv --inputs 20 --out mlp.fmodel --mse-goal 1e-5");
+  footing::log::Start("footing-train", false);
   footing::train::Shared shared;
   shared.command_line = Joined(argc, argv);
   app->add_flag("--json", shared.json, "One JSON object on standard output");

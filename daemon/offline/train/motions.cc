@@ -5,9 +5,8 @@
 #include <set>
 
 #include "common/config/data_file.h"
-#include "common/motion/asf.h"
-#include "common/motion/bvh.h"
 #include "common/motion/edit.h"
+#include "common/motion_files/load.h"
 #include "daemon/offline/training/alignment.h"
 
 namespace footing::train {
@@ -35,8 +34,10 @@ Result<std::vector<fs::path>> FilesOf(const std::string& folder, const std::stri
   return files;
 }
 
-Result<motion::Motion> ReadAmc(const fs::path& path, const std::string& text) {
-  const Result<std::vector<fs::path>> skeletons = FilesOf(path.parent_path().string(), ".asf");
+/// SUBJECT.asf or SUBJECT_*.asf in the folder of an AMC file.
+Result<std::string> SkeletonBeside(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const Result<std::vector<fs::path>> skeletons = FilesOf(folder.string(), ".asf");
   if (!skeletons) return skeletons.error();
   const auto found = std::find_if(skeletons->begin(), skeletons->end(), [&](const fs::path& asf) {
     return SubjectOf(asf) == SubjectOf(path);
@@ -44,26 +45,33 @@ Result<motion::Motion> ReadAmc(const fs::path& path, const std::string& text) {
   if (found == skeletons->end()) {
     return InvalidData(path.string() + ": no skeleton " + SubjectOf(path) + ".asf beside it");
   }
-  const Result<std::string> asf = config::ReadTextFile(found->string(), kMostBytes);
-  if (!asf) return asf.error();
-  const Result<motion::AsfSkeleton> skeleton = motion::ParseAsf(*asf, found->string());
-  if (!skeleton) return skeleton.error();
-  return motion::ParseAmc(text, path.string(), *skeleton);
+  return found->string();
 }
 
-Result<Clip> ReadClip(const fs::path& path) {
-  const Result<std::string> text = config::ReadTextFile(path.string(), kMostBytes);
+}  // namespace
+
+Result<Clip> ReadClip(const std::string& file, const std::string& skeleton) {
+  const fs::path path(file);
+  const Result<std::string> text = config::ReadTextFile(file, kMostBytes);
   if (!text) return text.error();
-  const Result<motion::Motion> read =
-      path.extension() == ".amc" ? ReadAmc(path, *text) : motion::ParseBvh(*text, path.string());
-  if (!read) return read.error();
-  const Result<motion::Motion> motion = motion::WithLandmarksOnly(*read);
-  if (!motion) return InvalidData(path.string() + ": " + motion.error().message);
-  if (motion->frames() < kFewestFrames) {
-    return InvalidData(path.string() + ": only " + std::to_string(motion->frames()) + " frames");
+  motion_files::LoadOptions load;
+  load.skeleton = skeleton;
+  if (load.skeleton.empty() && path.extension() == ".amc") {
+    const Result<std::string> beside = SkeletonBeside(path);
+    if (!beside) return beside.error();
+    load.skeleton = *beside;
   }
-  const Result<body::Body> body = body::MakeBody(motion->skeleton, {});
-  if (!body) return InvalidData(path.string() + ": " + body.error().message);
+  const Result<motion_files::LoadedMotion> read = motion_files::LoadMotion(file, load);
+  if (!read) return read.error();
+  const Result<motion::Motion> motion = motion::WithLandmarksOnly(read->motion);
+  if (!motion) return InvalidData(file + ": " + motion.error().message);
+  if (motion->frames() < kFewestFrames) {
+    return InvalidData(file + ": only " + std::to_string(motion->frames()) + " frames");
+  }
+  body::PersonParameters person;
+  person.height_m = read->height_m;
+  const Result<body::Body> body = body::MakeBody(motion->skeleton, person);
+  if (!body) return InvalidData(file + ": " + body.error().message);
   const std::string name = path.filename().string();
   return Clip{.name = name,
               .subject = SubjectOf(path),
@@ -72,12 +80,9 @@ Result<Clip> ReadClip(const fs::path& path) {
               .body = *body};
 }
 
-}  // namespace
-
 void AddMotionOptions(CLI::App& command, MotionOptions& options) {
-  command
-      .add_option("--motions", options.folders, "Folders of *.bvh, and of *.amc with their *.asf")
-      ->required();
+  command.add_option("--motions", options.folders,
+                     "Folders of *.bvh, and of *.amc with their *.asf");
   command.add_option("--exclude", options.exclude,
                      "Subjects to leave out: the model may be judged on them");
 }
@@ -92,7 +97,7 @@ Result<Clips> ReadClips(const MotionOptions& options) {
       const Result<std::vector<fs::path>> files = FilesOf(folder, ending);
       if (!files) return files.error();
       for (const fs::path& path : *files) {
-        Result<Clip> clip = ReadClip(path);
+        Result<Clip> clip = ReadClip(path.string());
         if (!clip) return clip.error();
         const bool out = exclude.count(clip->subject) != 0;
         (out ? left_out : subjects).insert(clip->subject);
@@ -105,7 +110,9 @@ Result<Clips> ReadClips(const MotionOptions& options) {
       return UsageError("--exclude " + subject + ": no file of that subject is there");
     }
   }
-  if (clips.train.empty()) return InvalidData("no *.amc or *.bvh to train on in the folders named");
+  if (clips.train.empty() && !options.folders.empty()) {
+    return InvalidData("no *.amc or *.bvh to train on in the folders named");
+  }
   clips.subjects = {subjects.begin(), subjects.end()};
   return clips;
 }

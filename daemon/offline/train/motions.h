@@ -33,8 +33,12 @@ struct Clips {
   std::vector<std::string> subjects;  ///< Of `train`.
 };
 
+/// One .bvh, .amc, .trc or .c3d; an AMC's skeleton is looked for beside it if none is given.
+Result<Clip> ReadClip(const std::string& file, const std::string& skeleton = "");
+
 /// Every *.bvh and *.amc of the folders, by name. An AMC file's skeleton is SUBJECT.asf beside it,
-/// or else the first SUBJECT_*.asf. An error names the file; no file to train on is one too.
+/// or else the first SUBJECT_*.asf. An error names the file; folders without
+/// a file to train on are one too.
 Result<Clips> ReadClips(const MotionOptions& options);
 
 /// The data files of a model: those of the training.

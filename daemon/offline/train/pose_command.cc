@@ -4,11 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "common/log/log.h"
 #include "common/motion/edit.h"
 #include "daemon/offline/rehearsal/rehearsal.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
+#include "daemon/offline/train/own_recordings.h"
 #include "daemon/offline/train/poses.h"
 #include "daemon/offline/training/pose_regression.h"
 
@@ -18,9 +20,11 @@ namespace {
 constexpr double kPieceS = 10;     // Frames of one piece are left out together.
 constexpr double kSettledS = 1.5;  // After the T-pose.
 constexpr double kCellNoiseKg = 0.05;
+constexpr double kEnoughS = 90;  // Of range of motion: section 6.
 
 struct Options {
   MotionOptions motions;
+  OwnOptions own;
   ModelOptions model;
 };
 
@@ -54,14 +58,33 @@ Result<void> AddExamples(const motion::Motion& motion, const std::string& name,
   return {};
 }
 
+/// The same of an own recording, with what its boards measured, `weight` times.
+Result<void> AddOwn(const OwnRecording& own, const reconstruction::Models& basis, int weight,
+                    std::uint64_t seed, int piece, training::PoseExamples& examples) {
+  training::OwnExampleSettings settings;
+  settings.piece_s = kPieceS;
+  settings.first_piece = piece;
+  settings.settled_s = kSettledS;
+  const auto image = training::MirrorImage(own.take);
+  if (!image) return image.error();
+  for (int i = 0; i < weight; ++i) {
+    for (const training::OwnTake* take : {&own.take, &*image}) {
+      settings.seed = seed++;
+      const auto added = training::AddOwnExamples(*take, basis, settings, examples);
+      if (!added) return added;
+    }
+  }
+  return {};
+}
+
 /// Of all clips and their mirror images; a clip and its image are in the same folds.
-Result<training::PoseExamples> Examples(const std::vector<Clip>& clips, const model::Model& basis,
+Result<training::PoseExamples> Examples(const TrainingSet& set, const model::Model& basis,
                                         std::uint64_t seed) {
   const auto models = reconstruction::MakeModels({{"the new basis", basis}});
   if (!models) return models.error();
   training::PoseExamples examples;
   int piece = 0;
-  for (const Clip& clip : clips) {
+  for (const Clip& clip : set.clips.train) {
     for (const bool mirrored : {false, true}) {
       const auto added = AddExamples(
           mirrored ? motion::Mirrored(clip.motion) : clip.motion, clip.name, *models,
@@ -69,20 +92,29 @@ Result<training::PoseExamples> Examples(const std::vector<Clip>& clips, const mo
       if (!added) return added.error();
     }
     piece += 1 + static_cast<int>(clip.motion.duration_s() / kPieceS);
+    log::Info("rehearsed " + clip.name);
+  }
+  for (const OwnRecording& own : set.own) {
+    const auto added = AddOwn(own, *models, set.weight,
+                              seed + 2 * static_cast<std::uint64_t>(piece), piece, examples);
+    if (!added) return added.error();
+    piece += 1 + static_cast<int>(own.take.motion.duration_s() / kPieceS);
+    log::Info("replayed " + own.file.name);
   }
   return examples;
 }
 
 int Run(const Options& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
-  const Result<Clips> clips = ReadClips(options.motions);
-  if (!clips) return cli::Report(clips.error());
-  const Result<TrainedBasis> trained = TrainBasis(clips->train);
+  const Result<TrainingSet> set =
+      ReadTrainingSet(options.motions, options.own, kEnoughS, "for the basis of poses");
+  if (!set) return cli::Report(set.error());
+  const Result<TrainedBasis> trained = TrainBasis(set->AllClips());
   if (!trained) return cli::Report(trained.error());
   model::Model model =
-      NewModel("basis", shared, options.model, DataFiles(clips->train), clips->subjects);
+      NewModel("basis", shared, options.model, set->DataFiles(), set->clips.subjects);
   AppendBasis(trained->basis, model);
-  const auto examples = Examples(clips->train, model, options.model.seed);
+  const auto examples = Examples(*set, model, options.model.seed);
   if (!examples) return cli::Report(examples.error());
   const training::FittedPoseRegression fitted =
       training::FitPoseRegression(*examples, trained->basis.scale);
@@ -91,13 +123,14 @@ int Run(const Options& options, const Shared& shared) {
   if (auto written = WriteModel(model, options.model); !written) {
     return cli::Report(written.error());
   }
-  const nlohmann::ordered_json report = {{"dof", trained->basis.mean.size()},
-                                         {"poses", trained->poses},
-                                         {"examples", examples->poses.size()},
-                                         {"subjects", clips->subjects},
-                                         {"ridge", fitted.ridge},
-                                         {"left_out_error", fitted.error},
-                                         {"spread", fitted.spread}};
+  nlohmann::ordered_json report = {{"dof", trained->basis.mean.size()},
+                                   {"poses", trained->poses},
+                                   {"examples", examples->poses.size()},
+                                   {"subjects", set->clips.subjects},
+                                   {"ridge", fitted.ridge},
+                                   {"left_out_error", fitted.error},
+                                   {"spread", fitted.spread}};
+  AppendOwn(*set, report);
   if (shared.json) {
     std::cout << report.dump() << std::endl;
   } else {
@@ -113,6 +146,7 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand(
       "pose", "The basis of the poses in motion files, and what boards and hands tell of a pose");
   AddMotionOptions(*command, options->motions);
+  AddOwnOptions(*command, options->own);
   AddModelOptions(*command, options->model);
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }

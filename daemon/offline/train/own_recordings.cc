@@ -1,0 +1,191 @@
+#include "daemon/offline/train/own_recordings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "common/log/log.h"
+#include "common/units/units.h"
+#include "daemon/offline/train/recording_reader.h"
+
+namespace footing::train {
+namespace {
+
+constexpr int kMostWeight = 100;
+
+Result<void> CheckPairs(const OwnOptions& options) {
+  const std::size_t pairs = options.recordings.size();
+  if (options.motions.size() != pairs) {
+    return UsageError("--recording is given " + std::to_string(pairs) + " times and --motion " +
+                      std::to_string(options.motions.size()) +
+                      " times; each recording goes with the motion captured beside it");
+  }
+  if (options.skeletons.size() > 1 && options.skeletons.size() != pairs) {
+    return UsageError("--skeleton is given " + std::to_string(options.skeletons.size()) +
+                      " times; give none, one for all motions, or one for each");
+  }
+  return {};
+}
+
+void Tell(const OwnRecording& own) {
+  const training::TimeAlignment& at = own.take.alignment;
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "%s beside %s: offset %.4f s, drift %.1f ppm, residual %.2f ms, %d stomps in both "
+                "(recording %d, motion %d), correlation %.3f over %.1f s; %.1f kg; feet within "
+                "%.1f cm",
+                own.file.name.c_str(), own.clip.name.c_str(), at.offset_s, 1e6 * at.drift,
+                1e3 * at.residual_s, at.stomps_both, at.stomps_recording, at.stomps_motion,
+                at.correlation, at.overlap_s, own.take.t_pose.mass_kg,
+                100 * own.take.placement.rms_m);
+  log::Info(text);
+}
+
+Result<OwnRecording> ReadPair(const OwnOptions& options, std::size_t i) {
+  log::Info("reading " + options.recordings[i] + " and " + options.motions[i]);
+  auto recording = ReadRecording(options.recordings[i], options.rig);
+  if (!recording) return recording.error();
+  if (!recording->layout_told) {
+    log::Warning(recording->session.name +
+                 ": has no layout; the boards are taken to lie one foot each, 2 cm apart");
+  }
+  const std::string skeleton = options.skeletons.empty()       ? ""
+                               : options.skeletons.size() == 1 ? options.skeletons[0]
+                                                               : options.skeletons[i];
+  auto clip = ReadClip(options.motions[i], skeleton);
+  if (!clip) return clip.error();
+  auto take = training::MakeOwnTake(std::move(recording->session), clip->motion, clip->body,
+                                    options.motions[i]);
+  if (!take) return take.error();
+  OwnRecording own{*std::move(clip), *std::move(take), recording->file};
+  Tell(own);
+  return own;
+}
+
+double Seconds(const std::vector<Clip>& clips) {
+  double seconds = 0;
+  for (const Clip& clip : clips) seconds += clip.motion.duration_s();
+  return seconds;
+}
+
+double OwnSeconds(const std::vector<OwnRecording>& own) {
+  double seconds = 0;
+  for (const OwnRecording& one : own) seconds += one.take.alignment.overlap_s;
+  return seconds;
+}
+
+/// The number of times that makes own seconds nearest to that share of all.
+int Weight(double others_s, double own_s, double share) {
+  if (others_s <= 0 || own_s <= 0) return 1;
+  const double times = share / (1 - share) * others_s / own_s;
+  return static_cast<int>(std::clamp<double>(std::round(times), 1, kMostWeight));
+}
+
+/// A motion of the own ones is not others' too.
+void WithoutOwn(const std::vector<OwnRecording>& own, std::vector<Clip>& clips) {
+  std::erase_if(clips, [&own](const Clip& clip) {
+    return std::any_of(own.begin(), own.end(), [&clip](const OwnRecording& one) {
+      return one.clip.file.sha256 == clip.file.sha256;
+    });
+  });
+}
+
+}  // namespace
+
+void AddOwnOptions(CLI::App& command, OwnOptions& options) {
+  command
+      .add_option("--recording", options.recordings,
+                  "footing-log's, of your boards beside the next --motion; may be repeated")
+      ->allow_extra_args(false);
+  command
+      .add_option("--motion", options.motions,
+                  "BVH, AMC, TRC or C3D captured beside --recording; may be repeated")
+      ->allow_extra_args(false);
+  command.add_option("--skeleton", options.skeletons, "ASF of AMC motions: one, or one a motion")
+      ->allow_extra_args(false);
+  command.add_option("--rig", options.rig, "Whose boards, where a recording has several people's");
+  command
+      .add_option("--own-share", options.share,
+                  "Part of all seconds that your recordings count for, by repetition")
+      ->check(CLI::Range(0.0, 0.95));
+}
+
+std::vector<Clip> TrainingSet::AllClips() const {
+  std::vector<Clip> all = clips.train;
+  for (int i = 0; i < weight; ++i) {
+    for (const OwnRecording& one : own) all.push_back(one.clip);
+  }
+  return all;
+}
+
+std::vector<model::DataFile> TrainingSet::DataFiles() const {
+  std::vector<model::DataFile> files = train::DataFiles(clips.train);
+  for (const OwnRecording& one : own) {
+    files.push_back(one.clip.file);
+    files.push_back(one.file);
+  }
+  return files;
+}
+
+Result<TrainingSet> ReadTrainingSet(const MotionOptions& motions, const OwnOptions& own,
+                                    double enough_s, const std::string& enough_for) {
+  if (motions.folders.empty() && own.recordings.empty() && own.motions.empty()) {
+    return UsageError(
+        "nothing to train on: give --motions DIR, or --recording FILE.mcap with --motion FILE, or "
+        "both");
+  }
+  if (auto pairs = CheckPairs(own); !pairs) return pairs.error();
+  TrainingSet set;
+  for (std::size_t i = 0; i < own.recordings.size(); ++i) {
+    auto one = ReadPair(own, i);
+    if (!one) return one.error();
+    set.own.push_back(*std::move(one));
+  }
+  auto clips = ReadClips(motions);
+  if (!clips) return clips.error();
+  set.clips = *std::move(clips);
+  if (set.own.empty()) return set;
+  WithoutOwn(set.own, set.clips.train);
+  WithoutOwn(set.own, set.clips.excluded);
+  std::set<std::string> subjects(set.clips.subjects.begin(), set.clips.subjects.end());
+  for (const OwnRecording& one : set.own) subjects.insert(one.clip.subject);
+  set.clips.subjects = {subjects.begin(), subjects.end()};
+  const double own_s = OwnSeconds(set.own);
+  set.weight = Weight(Seconds(set.clips.train), own_s, own.share);
+  if (own_s < enough_s) {
+    char text[160];
+    std::snprintf(text, sizeof text, "your recordings last %.0f s; the paper took %.0f s ", own_s,
+                  enough_s);
+    log::Warning(text + enough_for);
+  }
+  return set;
+}
+
+void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report) {
+  if (set.own.empty()) return;
+  auto takes = nlohmann::ordered_json::array();
+  for (const OwnRecording& one : set.own) {
+    const training::TimeAlignment& at = one.take.alignment;
+    const bool hands = !one.take.session.hands[0].empty() && !one.take.session.hands[1].empty();
+    takes.push_back({{"recording", one.file.name},
+                     {"motion", one.clip.name},
+                     {"offset_s", at.offset_s},
+                     {"drift_ppm", 1e6 * at.drift},
+                     {"residual_ms", 1e3 * at.residual_s},
+                     {"correlation", at.correlation},
+                     {"overlap_s", at.overlap_s},
+                     {"stomps_both", at.stomps_both},
+                     {"stomps_recording", at.stomps_recording},
+                     {"stomps_motion", at.stomps_motion},
+                     {"mass_kg", one.take.t_pose.mass_kg},
+                     {"floor_yaw_deg", RadiansToDegrees(one.take.placement.yaw_rad)},
+                     {"floor_rms_cm", 100 * one.take.placement.rms_m},
+                     {"hands", hands ? "recorded" : "made"}});
+  }
+  report["own"] = {{"seconds", OwnSeconds(set.own)}, {"weight", set.weight}, {"takes", takes}};
+}
+
+}  // namespace footing::train

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "common/model/model.h"
+#include "common/result/result.h"
+#include "daemon/offline/train/motions.h"
+#include "daemon/offline/training/own_take.h"
+
+namespace footing::train {
+
+/// Recordings of one's own boards beside motion capture.
+struct OwnOptions {
+  std::vector<std::string> recordings;  ///< footing-log's, one a motion.
+  std::vector<std::string> motions;
+  std::vector<std::string> skeletons;  ///< Of AMC: none, one for all, or one a motion.
+  std::string rig;
+  double share = 0.5;
+};
+
+void AddOwnOptions(CLI::App& command, OwnOptions& options);
+
+/// One pair, aligned.
+struct OwnRecording {
+  Clip clip;  ///< The motion, for its poses.
+  training::OwnTake take;
+  model::DataFile file;  ///< The recording.
+};
+
+/// All that is trained on: `clips` of others and `own`, which counts `weight` times.
+struct TrainingSet {
+  Clips clips;  ///< Without the motions that are in `own`; its subjects with theirs.
+  std::vector<OwnRecording> own;
+  int weight = 1;
+
+  /// For poses: the clips, then the own ones `weight` times.
+  std::vector<Clip> AllClips() const;
+  std::vector<model::DataFile> DataFiles() const;
+};
+
+/// Reads and aligns everything, telling progress on standard error. The own recordings count the
+/// whole number of times that comes nearest to `share` of all seconds. Fewer of them than
+/// `enough_s` are a warning that says so: the paper took so many `enough_for`.
+Result<TrainingSet> ReadTrainingSet(const MotionOptions& motions, const OwnOptions& own,
+                                    double enough_s, const std::string& enough_for);
+
+/// {"own": {...}} into the report of a command; nothing where there is none of it.
+void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report);
+
+}  // namespace footing::train
