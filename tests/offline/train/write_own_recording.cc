@@ -1,0 +1,99 @@
+#include <fstream>
+#include <string>
+
+#include "common/motion/bvh.h"
+#include "common/recording/recording_writer.h"
+#include "common/result/result.h"
+#include "common/stream/setup.h"
+#include "common/wire/wire.h"
+#include "tests/offline/training/made_take.h"
+
+namespace footing {
+namespace {
+
+constexpr std::int64_t kStartNs = 5'000'000'000;
+
+/// What is wrong with the recording: "" nothing.
+struct Writer {
+  recording::RecordingWriter& out;
+  const std::string& fault;
+
+  void Put(const std::string& channel, const google::protobuf::Message& message, double time_s) {
+    const auto ns = kStartNs + static_cast<std::int64_t>(1e9 * time_s);
+    FOOTING_CHECK(out.Write("/footingd/" + channel, message, {ns, ns, 0}).ok());
+  }
+
+  void PutSetUp() {
+    v1::DeviceStatusList list;
+    v1::SetupState setup;
+    for (const std::string rig : {"main", "other"}) {
+      if (rig == "other" && fault != "two_people") continue;
+      for (const std::uint32_t side : {0u, 1u}) {
+        v1::DeviceStatus& status = *list.add_devices();
+        status.set_device((rig == "main" ? 1 : 3) + side);
+        status.set_rig(rig);
+        status.set_role(side == 0 ? v1::DEVICE_ROLE_LEFT_BOARD : v1::DEVICE_ROLE_RIGHT_BOARD);
+      }
+      v1::RigSetup& message = *setup.add_rigs();
+      message.set_rig(rig);
+      *message.mutable_layout() = wire::ToProto(stream::DefaultLayout());
+    }
+    Put("status", list, 0);
+    Put("setup", setup, 0);
+  }
+
+  void PutBoard(const training::BoardReading& reading, std::uint32_t device) {
+    v1::BoardSamples samples;
+    v1::BoardSample& sample = *samples.add_samples();
+    sample.set_device(device);
+    sample.set_sampled_ns(kStartNs + static_cast<std::int64_t>(1e9 * reading.time_s));
+    sample.set_top_left_n(reading.corners_n[0]);
+    sample.set_top_right_n(reading.corners_n[1]);
+    sample.set_bottom_left_n(reading.corners_n[2]);
+    sample.set_bottom_right_n(reading.corners_n[3]);
+    sample.set_uncalibrated(fault == "uncalibrated");
+    Put("boards", samples, reading.time_s);
+  }
+
+  void PutHand(const training::HandReading& reading, std::size_t side) {
+    v1::HandSamples samples;
+    v1::HandSample& sample = *samples.add_samples();
+    sample.set_rig("main");
+    sample.set_role(side == 0 ? v1::DEVICE_ROLE_LEFT_HAND : v1::DEVICE_ROLE_RIGHT_HAND);
+    sample.set_sampled_ns(kStartNs + static_cast<std::int64_t>(1e9 * reading.time_s));
+    *sample.mutable_position_m() = wire::ToProto(reading.p_W_m);
+    *sample.mutable_sd_m() = wire::ToProto(reading.sd_m);
+    sample.set_confidence(1);
+    Put("hands", samples, reading.time_s);
+  }
+};
+
+void WriteAll(const std::string& folder, const std::string& fault) {
+  const training::MadeTake take =
+      training::MakeTake({.offset_s = 1.5, .drift = 60e-6, .stomps = fault != "no_stomps"});
+  std::ofstream(folder + "/me_01.bvh") << motion::WriteBvh(take.motion);
+  auto made = recording::RecordingWriter::Create(folder + "/me.mcap", {"made", true, {}});
+  FOOTING_CHECK(made.ok());
+  Writer writer{*made, fault};
+  writer.PutSetUp();
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const auto& reading : take.session.boards[side]) {
+      if (fault == "no_boards") continue;
+      writer.PutBoard(reading, 1 + static_cast<std::uint32_t>(side));
+      if (fault == "two_people") writer.PutBoard(reading, 3 + static_cast<std::uint32_t>(side));
+    }
+    for (const auto& reading : take.session.hands[side]) writer.PutHand(reading, side);
+  }
+  FOOTING_CHECK(made->Finish().ok());
+}
+
+}  // namespace
+}  // namespace footing
+
+/// write_own_recording FOLDER [no_boards|no_stomps|two_people|uncalibrated]: me.mcap and the motion
+/// beside it, me_01.bvh.
+int main(int argc, char** argv) {
+  if (argc < 2 || argc > 3) return 2;
+  footing::WriteAll(argv[1], argc == 3 ? argv[2] : "");
+  return 0;
+}
