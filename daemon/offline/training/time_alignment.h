@@ -31,7 +31,7 @@ struct TimeAlignment {
 Result<TimeAlignment> AlignInTime(const ForceTrace& recorded, const ForceTrace& moved);
 
 inline constexpr double kDriftSd = 100e-6;
-inline constexpr double kLeastCorrelation = 0.5;
+inline constexpr double kLeastCorrelation = 0.7;  ///< Plates under drop jumps have 0.94.
 inline constexpr int kFewestStomps = 3;
 
 }  // namespace footing::training

@@ -20,16 +20,28 @@ constexpr double kWeightN = 700;
 struct Mover {
   std::vector<double> stomps_s;
   std::uint64_t seed = 1;
+  struct Wave {
+    double f_hz, phase;
+  };
+  std::vector<Wave> waves = Waves(seed);
+
+  static std::vector<Wave> Waves(std::uint64_t seed) {
+    synthetic::Random random(seed);
+    std::vector<Wave> waves;
+    for (int i = 0; i < 12; ++i) {
+      const double f_hz = 0.2 * std::pow(15, (i + random.Uniform()) / 12);
+      waves.push_back({f_hz, random.Uniform()});
+    }
+    return waves;
+  }
 
   struct Loads {
     double left_n, right_n;
   };
   Loads At(double time_s) const {
-    synthetic::Random random(seed);
     double total = 1;
-    for (int i = 0; i < 12; ++i) {
-      const double f_hz = 0.2 * std::pow(15, (i + random.Uniform()) / 12);
-      total += 0.02 * std::sin(2 * std::numbers::pi * (f_hz * time_s + random.Uniform()));
+    for (const Wave& wave : waves) {
+      total += 0.02 * std::sin(2 * std::numbers::pi * (wave.f_hz * time_s + wave.phase));
     }
     double right = 0.5;
     for (const double stomp_s : stomps_s) {
