@@ -13,6 +13,7 @@ constexpr double kCutoffHz = 6;     // Both are as smooth as Follow makes a moti
 constexpr double kIntervalS = 0.1;  // By which stomps may be off: 50 ms each.
 constexpr double kMatchS = 0.05;    // In the end.
 constexpr double kLeastOverlapS = 5;
+constexpr std::size_t kMostCandidates = 400;
 constexpr int kCoarseStride = 4;          // Of the rate, in the search.
 constexpr double kPieceS = 8, kHopS = 4;  // Of what is moved until it correlates best.
 constexpr double kLagS = 0.12;            // At most, and in such steps:
@@ -91,10 +92,15 @@ int Both(const std::vector<Stomp>& recorded, const std::vector<Stomp>& moved,
   return both;
 }
 
-/// Offsets at which three stomps and more go together.
+/// Offsets at which three stomps and more go together; of very many, those with most of them.
 std::vector<double> Candidates(const std::vector<Stomp>& recorded,
                                const std::vector<Stomp>& moved) {
-  std::vector<double> offsets, candidates;
+  struct Candidate {
+    double offset_s;
+    int both;
+  };
+  std::vector<double> offsets;
+  std::vector<Candidate> candidates;
   for (const Stomp& a : recorded) {
     for (const Stomp& b : moved) offsets.push_back(a.time_s - b.time_s);
   }
@@ -104,11 +110,17 @@ std::vector<double> Candidates(const std::vector<Stomp>& recorded,
     if (offset_s - last_s < 0.2 * kIntervalS) continue;
     TimeAlignment at;
     at.offset_s = offset_s;
-    if (Both(recorded, moved, at, kIntervalS) < kFewestStomps) continue;
-    candidates.push_back(offset_s);
+    const int both = Both(recorded, moved, at, kIntervalS);
+    if (both < kFewestStomps) continue;
+    candidates.push_back({offset_s, both});
     last_s = offset_s;
   }
-  return candidates;
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.both > b.both; });
+  if (candidates.size() > kMostCandidates) candidates.resize(kMostCandidates, {});
+  offsets.clear();
+  for (const Candidate& candidate : candidates) offsets.push_back(candidate.offset_s);
+  return offsets;
 }
 
 /// How much a correlation over so long says: Fisher's z in parts of its deviation.

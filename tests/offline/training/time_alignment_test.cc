@@ -130,6 +130,19 @@ TEST(AlignInTime, OtherImpactsOfEitherDoNotMatter) {
   EXPECT_EQ(at->stomps_both, 3);
 }
 
+TEST(AlignInTime, JoggingInPlaceIsFoundAmongItsManyFalseOffsets) {
+  // GIVEN two minutes of steps 0.8 s apart, by two hundredths more or less: any offset by whole
+  // steps lets most of them go together.
+  Mover mover;
+  synthetic::Random random(5);
+  for (double t_s = 3; t_s < 117; t_s += 0.8 + 0.02 * random.Normal())
+    mover.stomps_s.push_back(t_s);
+  const auto at = AlignInTime(Recorded(mover, 90, -20, 0), Moved(mover, 120));
+  ASSERT_TRUE(at) << at.error().message;
+  EXPECT_LT(WorstS(*at, -20, 0, 120), 0.003);
+  EXPECT_GT(at->stomps_both, 100);
+}
+
 TEST(AlignInTime, ABoardThatFallsSilentLeavesTheRest) {
   const Mover mover{{12.0, 13.1, 14.8}};
   const auto at =

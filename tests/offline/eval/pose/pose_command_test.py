@@ -93,6 +93,16 @@ class Pose(unittest.TestCase):
         self.assertEqual(done.stdout, "")
         self.assertIn("13", done.stderr)
 
+    def test_judges_a_persons_own_model_on_another_take_only(self):
+        own = (EVAL, "pose", "--skeleton", DATA / "13_reconstructed.asf", "--model", self.models["pose"],
+               "--same-person", "--no-baselines", "--json", "--motion")
+        done = run(*own, DATA / "13_30.amc")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(json.loads(done.stdout)["frames"], 1000)
+        done = run(*own, DATA / "13_31.amc")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("13_31.amc itself", done.stderr)
+
     def test_says_what_is_not_there(self):
         base = (EVAL, "pose", "--motion", DATA / "11_01.amc", "--skeleton", DATA / "11.asf")
         for flags, said in ((("--hands", "kinect"), "kinect"), (("--boards", "forces"), "forces"),
