@@ -10,6 +10,8 @@
 #include "common/log/log.h"
 #include "common/units/units.h"
 #include "daemon/offline/train/recording_reader.h"
+#include "daemon/offline/training/alignment.h"
+#include "daemon/offline/training/standard_layout.h"
 
 namespace footing::train {
 namespace {
@@ -44,7 +46,32 @@ void Tell(const OwnRecording& own) {
   log::Info(text);
 }
 
-Result<OwnRecording> ReadPair(const OwnOptions& options, std::size_t i) {
+/// The engine runs the standard person's layout; another is fitted to it, unless the others'
+/// motions are of the same. Returns the residual, m.
+Result<double> MakeStandard(const std::vector<Clip>& others, Clip& clip) {
+  if (training::HasStandardLayout(clip.motion)) return 0.0;
+  if (!others.empty() &&
+      body::DofNames(others.front().motion.skeleton) == body::DofNames(clip.motion.skeleton)) {
+    return 0.0;
+  }
+  auto standard = training::ToStandardLayout(clip.motion);
+  if (!standard) return InvalidData(clip.name + ": " + standard.error().message);
+  body::PersonParameters person;
+  person.height_m = standard->height_m;
+  auto body = body::MakeBody(standard->motion.skeleton, person);
+  if (!body) return InvalidData(clip.name + ": " + body.error().message);
+  clip.body = *std::move(body);
+  clip.motion = training::Aligned(standard->motion, clip.body.landmarks);
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%s: another skeleton, fitted to the standard layout within %.1f mm",
+                clip.name.c_str(), 1e3 * standard->rms_m);
+  log::Info(text);
+  return standard->rms_m;
+}
+
+Result<OwnRecording> ReadPair(const OwnOptions& options, std::size_t i,
+                              const std::vector<Clip>& others) {
   log::Info("reading " + options.recordings[i] + " and " + options.motions[i]);
   auto recording = ReadRecording(options.recordings[i], options.rig);
   if (!recording) return recording.error();
@@ -57,10 +84,12 @@ Result<OwnRecording> ReadPair(const OwnOptions& options, std::size_t i) {
                                                                : options.skeletons[i];
   auto clip = ReadClip(options.motions[i], skeleton);
   if (!clip) return clip.error();
+  const auto skeleton_rms_m = MakeStandard(others, *clip);
+  if (!skeleton_rms_m) return skeleton_rms_m.error();
   auto take = training::MakeOwnTake(std::move(recording->session), clip->motion, clip->body,
                                     options.motions[i]);
   if (!take) return take.error();
-  OwnRecording own{*std::move(clip), *std::move(take), recording->file};
+  OwnRecording own{*std::move(clip), *skeleton_rms_m, *std::move(take), recording->file};
   Tell(own);
   return own;
 }
@@ -139,14 +168,14 @@ Result<TrainingSet> ReadTrainingSet(const MotionOptions& motions, const OwnOptio
   }
   if (auto pairs = CheckPairs(own); !pairs) return pairs.error();
   TrainingSet set;
-  for (std::size_t i = 0; i < own.recordings.size(); ++i) {
-    auto one = ReadPair(own, i);
-    if (!one) return one.error();
-    set.own.push_back(*std::move(one));
-  }
   auto clips = ReadClips(motions);
   if (!clips) return clips.error();
   set.clips = *std::move(clips);
+  for (std::size_t i = 0; i < own.recordings.size(); ++i) {
+    auto one = ReadPair(own, i, set.clips.train);
+    if (!one) return one.error();
+    set.own.push_back(*std::move(one));
+  }
   if (set.own.empty()) return set;
   WithoutOwn(set.own, set.clips.train);
   WithoutOwn(set.own, set.clips.excluded);
@@ -183,6 +212,7 @@ void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report) {
                      {"mass_kg", one.take.t_pose.mass_kg},
                      {"floor_yaw_deg", RadiansToDegrees(one.take.placement.yaw_rad)},
                      {"floor_rms_cm", 100 * one.take.placement.rms_m},
+                     {"skeleton_rms_mm", 1e3 * one.skeleton_rms_m},
                      {"hands", hands ? "recorded" : "made"}});
   }
   report["own"] = {{"seconds", OwnSeconds(set.own)}, {"weight", set.weight}, {"takes", takes}};

@@ -25,7 +25,8 @@ void AddOwnOptions(CLI::App& command, OwnOptions& options);
 
 /// One pair, aligned.
 struct OwnRecording {
-  Clip clip;  ///< The motion, for its poses.
+  Clip clip;                  ///< The motion, for its poses.
+  double skeleton_rms_m = 0;  ///< Of its fit to the standard layout; 0: it has it.
   training::OwnTake take;
   model::DataFile file;  ///< The recording.
 };
@@ -41,9 +42,10 @@ struct TrainingSet {
   std::vector<model::DataFile> DataFiles() const;
 };
 
-/// Reads and aligns everything, telling progress on standard error. The own recordings count the
-/// whole number of times that comes nearest to `share` of all seconds. Fewer of them than
-/// `enough_s` are a warning that says so: the paper took so many `enough_for`.
+/// Reads and aligns everything, telling progress on standard error. An own motion whose skeleton
+/// has neither the standard person's layout nor the others' is fitted to the former. The own
+/// recordings count the whole number of times that comes nearest to `share` of all seconds. Fewer
+/// of them than `enough_s` are a warning that says so: the paper took so many `enough_for`.
 Result<TrainingSet> ReadTrainingSet(const MotionOptions& motions, const OwnOptions& own,
                                     double enough_s, const std::string& enough_for);
 
