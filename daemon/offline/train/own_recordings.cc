@@ -36,12 +36,13 @@ void Tell(const OwnRecording& own) {
   const training::TimeAlignment& at = own.take.alignment;
   char text[320];
   std::snprintf(text, sizeof text,
-                "%s beside %s: offset %.4f s, drift %.1f ppm, residual %.2f ms, %d stomps in both "
+                "%s beside %s: offset %.4f s, drift %.1f ppm, residual %.2f ms of %d pieces, %d "
+                "stomps in both "
                 "(recording %d, motion %d), correlation %.3f over %.1f s; %.1f kg; feet within "
                 "%.1f cm",
                 own.file.name.c_str(), own.clip.name.c_str(), at.offset_s, 1e6 * at.drift,
-                1e3 * at.residual_s, at.stomps_both, at.stomps_recording, at.stomps_motion,
-                at.correlation, at.overlap_s, own.take.t_pose.mass_kg,
+                1e3 * at.residual_s, at.pieces, at.stomps_both, at.stomps_recording,
+                at.stomps_motion, at.correlation, at.overlap_s, own.take.t_pose.mass_kg,
                 100 * own.take.placement.rms_m);
   log::Info(text);
 }
@@ -204,6 +205,7 @@ void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report) {
                      {"offset_s", at.offset_s},
                      {"drift_ppm", 1e6 * at.drift},
                      {"residual_ms", 1e3 * at.residual_s},
+                     {"pieces", at.pieces},
                      {"correlation", at.correlation},
                      {"overlap_s", at.overlap_s},
                      {"stomps_both", at.stomps_both},

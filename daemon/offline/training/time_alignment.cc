@@ -190,6 +190,7 @@ std::vector<Piece> PlacePieces(const Signal& recorded, const Signal& moved,
 
 struct Line {
   double middle_s = 0, lag_s = 0, drift = 0, sd_s = 0;
+  int pieces = 0;
   double At(double time_s) const { return lag_s + drift * (time_s - middle_s); }
 };
 
@@ -218,6 +219,7 @@ Line Fit(const std::vector<Piece>& pieces, double sd_s) {
     squares += piece.weight * off_s * off_s;
   }
   line.sd_s = std::sqrt(squares / weight);
+  line.pieces = static_cast<int>(pieces.size());
   return line;
 }
 
@@ -277,6 +279,7 @@ Result<TimeAlignment> AlignInTime(const ForceTrace& recorded, const ForceTrace& 
     at.offset_s += line.At(0);
     at.drift += line.drift;
     at.residual_s = line.sd_s;
+    at.pieces = line.pieces;
   }
   const Pairs pairs = CompareAll(measured, derived, at, 1);
   at.correlation = pairs.correlation();

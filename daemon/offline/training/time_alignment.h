@@ -10,7 +10,8 @@ namespace footing::training {
 struct TimeAlignment {
   double offset_s = 0;
   double drift = 0;        ///< Positive: the recording's clock is the faster one.
-  double residual_s = 0;   ///< Root mean square of what is left, between pieces of eight seconds.
+  double residual_s = 0;   ///< Root mean square of what is left, between pieces of eight seconds,
+  int pieces = 0;          ///< of which there are so many; one or two say nothing of it.
   double correlation = 0;  ///< Of the vertical forces, where both are.
   double overlap_s = 0;
   int stomps_recording = 0, stomps_motion = 0;

@@ -109,6 +109,7 @@ TEST(AlignInTime, FindsOffsetAndDriftUnderTheBoardsTiming) {
   EXPECT_LT(WorstS(*at, -3.417, 40e-6, 290), 0.002);
   EXPECT_NEAR(at->drift, 40e-6, 8e-6);
   EXPECT_LT(at->residual_s, 0.003);
+  EXPECT_GT(at->pieces, 60);
   EXPECT_GT(at->correlation, 0.97);
   EXPECT_EQ(at->stomps_both, 3);
   EXPECT_EQ(at->stomps_recording, 3);
