@@ -19,19 +19,26 @@ def run(*arguments):
 
 
 class OwnRecording(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.made = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.made.cleanup)
+        subprocess.run([WRITER, cls.made.name], check=True, timeout=120)
+
     def setUp(self):
         self.holder = tempfile.TemporaryDirectory()
         self.addCleanup(self.holder.cleanup)
-        self.folder = pathlib.Path(self.holder.name)
-        self.recording, self.motion = self.folder / "me.mcap", self.folder / "me_01.bvh"
+        self.folder, made = pathlib.Path(self.holder.name), pathlib.Path(self.made.name)
+        self.recording, self.motion = made / "me.mcap", made / "me_01.bvh"
         self.out = self.folder / "me.fmodel"
         self.pair = ["--recording", self.recording, "--motion", self.motion]
 
-    def write(self, *fault):
-        subprocess.run([WRITER, self.folder, *fault], check=True, timeout=120)
+    def other(self, name):
+        """The pair with another recording."""
+        return ["--recording", self.recording.with_stem(name), "--motion", self.motion]
 
-    def train(self, kind, *more):
-        done = run(kind, *self.pair, "--out", self.out, "--seed", 3, "--json", *more)
+    def train(self, kind, *more, pair=None):
+        done = run(kind, *(pair or self.pair), "--out", self.out, "--seed", 3, "--json", *more)
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout), done.stderr
 
@@ -45,7 +52,6 @@ class OwnRecording(unittest.TestCase):
         self.assertFalse(self.out.exists())
 
     def test_aligns_and_trains_all_three_kinds(self):
-        self.write()
         for kind, warned in (("basis", "90 s for the basis"), ("com", "180 s for the horizontal COM"),
                              ("pose", "90 s for the basis")):
             report, told = self.train(kind, "--force")
@@ -69,14 +75,12 @@ class OwnRecording(unittest.TestCase):
                 self.assertIn(file.name.encode(), written)
 
     def test_the_same_seed_gives_the_same_bits(self):
-        self.write()
         self.train("pose")
         first = self.out.read_bytes()
         self.train("pose", "--force")
         self.assertEqual(self.out.read_bytes().replace(b" --force", b"")[-2000:-34], first[-2000:-34])
 
     def test_beside_others_it_counts_for_its_share(self):
-        self.write()
         others = self.folder / "others"
         others.mkdir()
         text = self.motion.read_text()
@@ -93,25 +97,24 @@ class OwnRecording(unittest.TestCase):
         for fault, words in (("no_boards", "no boards channel in it; record footingd's"),
                              ("two_people", "boards of 2 people (rigs main, other); say whose"),
                              ("uncalibrated", "without its calibration"),
-                             ("no_stomps", "me.mcap: 0 stomps found in")):
-            self.write(fault)
-            self.refused(4, words, "pose", *self.pair, "--out", self.out)
+                             ("no_stomps", "no_stomps.mcap: 0 stomps found in")):
+            self.refused(4, words, "pose", *self.other(fault), "--out", self.out)
         self.refused(4, "is no recording", "com", "--recording", self.motion, "--motion", self.motion,
                      "--out", self.out)
 
     def test_one_of_two_people_can_be_chosen(self):
-        self.write("two_people")
-        report, _ = self.train("basis", "--rig", "other")
+        two = self.other("two_people")
+        report, _ = self.train("basis", "--rig", "other", pair=two)
         self.assertEqual(report["own"]["takes"][0]["hands"], "made")
         self.out.unlink()
-        self.refused(4, "no rig third with two boards; there are main, other", "basis", *self.pair,
+        self.refused(4, "no rig third with two boards; there are main, other", "basis", *two,
                      "--rig", "third", "--out", self.out)
 
     def test_wrong_command_lines_are_refused(self):
         self.refused(2, "nothing to train on: give --motions DIR, or --recording", "pose", "--out", self.out)
         self.refused(2, "--recording is given 1 times and --motion 0 times", "com", "--recording",
                      self.recording, "--out", self.out)
-        self.refused(1, "cannot open", "basis", *self.pair, "--out", self.out)
+        self.refused(1, "cannot open", "basis", *self.other("none"), "--out", self.out)
 
 
 if __name__ == "__main__":

@@ -68,11 +68,9 @@ struct Writer {
   }
 };
 
-void WriteAll(const std::string& folder, const std::string& fault) {
-  const training::MadeTake take =
-      training::MakeTake({.offset_s = 1.5, .drift = 60e-6, .stomps = fault != "no_stomps"});
-  std::ofstream(folder + "/me_01.bvh") << motion::WriteBvh(take.motion);
-  auto made = recording::RecordingWriter::Create(folder + "/me.mcap", {"made", true, {}});
+void Write(const training::MadeTake& take, const std::string& folder, const std::string& fault) {
+  const std::string name = fault.empty() ? "me" : fault;
+  auto made = recording::RecordingWriter::Create(folder + "/" + name + ".mcap", {"made", true, {}});
   FOOTING_CHECK(made.ok());
   Writer writer{*made, fault};
   writer.PutSetUp();
@@ -87,13 +85,24 @@ void WriteAll(const std::string& folder, const std::string& fault) {
   FOOTING_CHECK(made->Finish().ok());
 }
 
+void WriteAll(const std::string& folder) {
+  training::MadeTakeSettings settings{.offset_s = 1.5, .drift = 60e-6};
+  const training::MadeTake take = training::MakeTake(settings);
+  std::ofstream(folder + "/me_01.bvh") << motion::WriteBvh(take.motion);
+  for (const char* fault : {"", "no_boards", "two_people", "uncalibrated"}) {
+    Write(take, folder, fault);
+  }
+  settings.stomps = false;
+  Write(training::MakeTake(settings), folder, "no_stomps");
+}
+
 }  // namespace
 }  // namespace footing
 
-/// write_own_recording FOLDER [no_boards|no_stomps|two_people|uncalibrated]: me.mcap and the motion
-/// beside it, me_01.bvh.
+/// write_own_recording FOLDER: me.mcap and the motion beside it, me_01.bvh; and with one thing
+/// wrong each no_boards.mcap, no_stomps.mcap, two_people.mcap and uncalibrated.mcap.
 int main(int argc, char** argv) {
-  if (argc < 2 || argc > 3) return 2;
-  footing::WriteAll(argv[1], argc == 3 ? argv[2] : "");
+  if (argc != 2) return 2;
+  footing::WriteAll(argv[1]);
   return 0;
 }
