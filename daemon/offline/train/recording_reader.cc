@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kLeastHandSdM = 0.002;  // As live: no tracker is believed more.
 constexpr double kMostHandSdM = 1;
+constexpr double kLongestS = 2 * 3600;
 
 template <typename Value>
 struct Stamped {
@@ -228,6 +229,11 @@ Result<Recording> ReadRecording(const std::string& path, const std::string& rig)
   }
   Recording recording;
   recording.session = ToSession(**chosen, path);
+  if (recording.session.duration_s > kLongestS) {
+    return InvalidData(path + ": its boards' samples span " +
+                       std::to_string(std::lround(recording.session.duration_s / 60)) +
+                       " minutes, more than two hours; record what is beside the motion capture");
+  }
   recording.layout_told = (*chosen)->layout.has_value();
   recording.file = {.name = std::filesystem::path(path).filename().string(),
                     .sha256 = model::Sha256(file->bytes())};

@@ -96,6 +96,7 @@ class OwnRecording(unittest.TestCase):
     def test_what_is_wrong_with_a_recording_is_said(self):
         for fault, words in (("no_boards", "no boards channel in it; record footingd's"),
                              ("two_people", "boards of 2 people (rigs main, other); say whose"),
+                             ("three_hours", "span 180 minutes, more than two hours"),
                              ("uncalibrated", "without its calibration"),
                              ("no_stomps", "no_stomps.mcap: 0 stomps found in")):
             self.refused(4, words, "pose", *self.other(fault), "--out", self.out)

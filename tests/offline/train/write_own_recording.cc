@@ -76,10 +76,12 @@ void Write(const training::MadeTake& take, const std::string& folder, const std:
   writer.PutSetUp();
   for (std::size_t side = 0; side < 2; ++side) {
     for (const auto& reading : take.session.boards[side]) {
-      if (fault == "no_boards") continue;
+      if (fault == "no_boards" || (fault == "three_hours" && reading.time_s > 1)) continue;
       writer.PutBoard(reading, 1 + static_cast<std::uint32_t>(side));
       if (fault == "two_people") writer.PutBoard(reading, 3 + static_cast<std::uint32_t>(side));
     }
+    if (fault == "three_hours")
+      writer.PutBoard({3.0 * 3600, {}}, 1 + static_cast<std::uint32_t>(side));
     for (const auto& reading : take.session.hands[side]) writer.PutHand(reading, side);
   }
   FOOTING_CHECK(made->Finish().ok());
@@ -89,7 +91,7 @@ void WriteAll(const std::string& folder) {
   training::MadeTakeSettings settings{.offset_s = 1.5, .drift = 60e-6};
   const training::MadeTake take = training::MakeTake(settings);
   std::ofstream(folder + "/me_01.bvh") << motion::WriteBvh(take.motion);
-  for (const char* fault : {"", "no_boards", "two_people", "uncalibrated"}) {
+  for (const char* fault : {"", "no_boards", "three_hours", "two_people", "uncalibrated"}) {
     Write(take, folder, fault);
   }
   settings.stomps = false;
@@ -100,7 +102,8 @@ void WriteAll(const std::string& folder) {
 }  // namespace footing
 
 /// write_own_recording FOLDER: me.mcap and the motion beside it, me_01.bvh; and with one thing
-/// wrong each no_boards.mcap, no_stomps.mcap, two_people.mcap and uncalibrated.mcap.
+/// wrong each no_boards.mcap, no_stomps.mcap, three_hours.mcap, two_people.mcap and
+/// uncalibrated.mcap.
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   footing::WriteAll(argv[1]);
