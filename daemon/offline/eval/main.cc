@@ -1,4 +1,5 @@
 #include "common/cli/cli.h"
+#include "daemon/offline/eval/arm_command.h"
 #include "daemon/offline/eval/board_command.h"
 #include "daemon/offline/eval/clock_command.h"
 #include "daemon/offline/eval/command.h"
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
       "Gait tables in place of the product's, for the gaits they name");
   app->require_subcommand(1);
   app->fallthrough();
+  footing::eval::AddArmCommand(*app, shared);
   footing::eval::AddBoardCommand(*app, shared);
   footing::eval::AddClockCommand(*app, shared);
   footing::eval::AddFeaturesCommand(*app, shared);

@@ -40,8 +40,13 @@ bool Has(const std::vector<std::string>& list, const std::string& name) {
 Result<void> Translate(Flags& flags) {
   rehearsal::Settings& settings = flags.scene.settings;
   settings.hands = flags.hands != "none";
-  if (flags.hands == "wiimote" || flags.hands == "kinect") {
-    return UsageError("--hands " + flags.hands + " is not built yet; there are move and none");
+  if (flags.hands == "wiimote") settings.hand_device = rehearsal::HandDevice::kWiimote;
+  if (flags.hands == "kinect") settings.hand_device = rehearsal::HandDevice::kKinect;
+  if (flags.boards == "insoles" && flags.hands != "move" && flags.hands != "none") {
+    return UsageError("--boards insoles has --hands move and none, not " + flags.hands);
+  }
+  if (flags.boards == "forces" && flags.hands == "wiimote") {
+    return UsageError("--boards forces has --hands move, kinect and none, not wiimote");
   }
   if ((flags.boards == "forces") == flags.scene.forces.empty()) {
     return UsageError("--boards forces and --forces FILE (.mot, .sto or .c3d) go together");
@@ -84,9 +89,15 @@ Result<ordered_json> Evaluate(Flags flags) {
     if (!made) return made.error();
     plates = *std::move(made);
   }
-  const auto rehearsal =
+  auto rehearsal =
       plates ? Result<rehearsal::Rehearsal>(plates->measured) : MakePoseScene(flags.scene);
   if (!rehearsal) return rehearsal.error();
+  if (flags.hands == "wiimote") {
+    if (!models->arm) {
+      return UsageError("--hands wiimote: give a model of kind arm too (footing-train arm)");
+    }
+    rehearsal::TellArms(*models->arm, *rehearsal);
+  }
   if (flags.ablations) {
     const auto rows = JudgeAblations(*rehearsal, *models, flags.options);
     if (!rows) return Error{rows.error().kind, flags.scene.motion + ": " + rows.error().message};
@@ -138,7 +149,8 @@ void AddFlags(CLI::App& command, Flags& flags) {
                      "CSV begin_s,end_s,activity; without: by plain rules on the motion");
   command.add_option("--mass-kg", settings.mass_kg)->check(CLI::Range(20.0, 250.0));
   command.add_option("--height-m", flags.height_m)->check(CLI::Range(0.5, 2.6));
-  command.add_option("--hands", flags.hands, "move: 1 cm of noise")
+  command
+      .add_option("--hands", flags.hands, "move: 1 cm of noise; wiimote: attitudes; kinect: late")
       ->check(CLI::IsMember({"move", "wiimote", "kinect", "none"}));
   command.add_option("--boards", flags.boards)
       ->check(CLI::IsMember({"simulated", "forces", "insoles"}));

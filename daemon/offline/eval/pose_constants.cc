@@ -11,6 +11,7 @@ Result<void> SetConstants(const std::vector<std::string>& assignments,
                           reconstruction::BestConstants& c) {
   const std::map<std::string, double*> names = {
       {"hand_sd_m", &c.hand_sd_m},
+      {"arm_spread", &c.arm_spread},
       {"foot_along", &c.foot.along},
       {"foot_across", &c.foot.across},
       {"ankle_up", &c.foot.ankle_up},

@@ -19,14 +19,6 @@ std::string SubjectOf(const std::string& motion) {
   return model::SubjectName(stem.substr(0, stem.find('_')));
 }
 
-Result<reconstruction::NamedModel> ReadModel(const std::string& path) {
-  const auto bytes = config::ReadTextFile(path, model::kMostFileBytes);
-  if (!bytes) return bytes.error();
-  auto model = wire::FromModelFile(*bytes, path);
-  if (!model) return model.error();
-  return reconstruction::NamedModel{path, std::move(*model)};
-}
-
 /// Refuses a model that has seen this very file.
 Result<void> CheckNotTrainedOnFile(const model::Model& model, const std::string& motion,
                                    const std::string& origin) {
@@ -39,6 +31,19 @@ Result<void> CheckNotTrainedOnFile(const model::Model& model, const std::string&
                        " itself; judge it on another take of the same person");
   }
   return {};
+}
+
+/// Refuses one that was trained on the motion's subject, or with `same_person` on this very file.
+Result<reconstruction::NamedModel> ReadModel(const std::string& path, const std::string& motion,
+                                             bool same_person) {
+  const auto bytes = config::ReadTextFile(path, model::kMostFileBytes);
+  if (!bytes) return bytes.error();
+  auto model = wire::FromModelFile(*bytes, path);
+  if (!model) return model.error();
+  const auto fresh = same_person ? CheckNotTrainedOnFile(*model, motion, path)
+                                 : model::CheckNotTrainedOn(*model, SubjectOf(motion), path);
+  if (!fresh) return fresh.error();
+  return reconstruction::NamedModel{path, std::move(*model)};
 }
 
 Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
@@ -106,11 +111,29 @@ Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& optio
   return rehearsal::RehearseInsoles(loaded->motion, WithHeight(options, *loaded), options.motion);
 }
 
+Result<rehearsal::ArmRehearsal> MakeArmScene(const PoseSceneOptions& options) {
+  const auto loaded = Load(options);
+  if (!loaded) return loaded.error();
+  return rehearsal::RehearseArms(loaded->motion, WithHeight(options, *loaded), options.motion);
+}
+
+Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion) {
+  std::string path = file;
+  if (path.empty()) {
+    const auto found = config::FindDataFile("arm.fmodel");
+    if (!found) return found.error();
+    path = *found;
+  }
+  const auto model = ReadModel(path, motion, same_person);
+  if (!model) return model.error();
+  return arms::MakeArmModel(model->model, path);
+}
+
 Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& files,
                                               const std::string& motion, bool same_person) {
   std::vector<std::string> paths = files;
   if (paths.empty()) {
-    for (const char* name : {"pose.fmodel", "com.fmodel"}) {
+    for (const char* name : {"pose.fmodel", "com.fmodel", "arm.fmodel"}) {
       const auto path = config::FindDataFile(name);
       if (!path) return path.error();
       paths.push_back(*path);
@@ -118,12 +141,8 @@ Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& fi
   }
   std::vector<reconstruction::NamedModel> models;
   for (const std::string& path : paths) {
-    auto model = ReadModel(path);
+    auto model = ReadModel(path, motion, same_person);
     if (!model) return model.error();
-    const auto fresh = same_person
-                           ? CheckNotTrainedOnFile(model->model, motion, path)
-                           : model::CheckNotTrainedOn(model->model, SubjectOf(motion), path);
-    if (!fresh) return fresh.error();
     models.push_back(std::move(*model));
   }
   return reconstruction::MakeModels(models);

@@ -4,9 +4,11 @@
 #include <vector>
 
 #include "common/result/result.h"
+#include "daemon/offline/rehearsal/held_hands.h"
 #include "daemon/offline/rehearsal/insole_rehearsal.h"
 #include "daemon/offline/rehearsal/plates.h"
 #include "daemon/offline/rehearsal/rehearsal.h"
+#include "daemon/simulation/arms/arm_model.h"
 #include "daemon/simulation/reconstruction/models.h"
 
 namespace footing::eval {
@@ -27,6 +29,12 @@ Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options);
 Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options);
 
 Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options);
+
+Result<rehearsal::ArmRehearsal> MakeArmScene(const PoseSceneOptions& options);
+
+/// Refuses a model that was trained on the motion's subject. Empty: the one that the product
+/// carries.
+Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion);
 
 /// Reads the models and refuses those that were trained on the motion's subject (the file's name up
 /// to the first '_'); with `same_person`, only those that were trained on this very file: a

@@ -9,6 +9,8 @@
 #include "common/body/points.h"
 #include "common/synthetic/random.h"
 #include "common/virtual_sensors/scene.h"
+#include "daemon/offline/rehearsal/held_hands.h"
+#include "daemon/offline/rehearsal/kinect_hands.h"
 #include "daemon/offline/rehearsal/stage.h"
 #include "daemon/simulation/momentum/estimate.h"
 
@@ -86,6 +88,12 @@ Rehearsal RehearseScene(const sensors::Scene& scene, const Settings& settings,
   rehearsal.rate_hz = settings.rate_hz;
   Boards boards(scene, settings);
   synthetic::Random random(settings.seed);
+  std::optional<HeldHands> held;
+  if (settings.hands && settings.hand_device == HandDevice::kWiimote) {
+    held.emplace(scene, settings.seed);
+    rehearsal.reading_s = held->step_s();
+  }
+  KinectHands kinect(settings.seed, 1 / settings.rate_hz);
   body::Kinematics at(scene.body.skeleton);
   const double step_s = 1 / settings.rate_hz;
   const std::size_t count = FrameCount(scene, settings.rate_hz);
@@ -112,8 +120,12 @@ Rehearsal RehearseScene(const sensors::Scene& scene, const Settings& settings,
         outside += load.outside ? 1 : 0;
       }
     }
-    if (settings.hands) {
-      MeasureHands(scene.body, at, settings.hand_noise_m, random, frame.inputs.hands);
+    if (held) {
+      frame.readings = held->Until(column);
+    } else if (settings.hands) {
+      const bool exact = settings.hand_device == HandDevice::kKinect;
+      MeasureHands(scene.body, at, exact ? 0 : settings.hand_noise_m, random, frame.inputs.hands);
+      if (exact) frame.inputs.hands = kinect.Advance(frame.inputs.hands);
     }
     rehearsal.frames.push_back(std::move(frame));
   }

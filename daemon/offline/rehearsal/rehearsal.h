@@ -14,11 +14,20 @@
 #include "common/synthetic/random.h"
 #include "common/virtual_sensors/board_cells.h"
 #include "common/virtual_sensors/scene.h"
+#include "daemon/simulation/arms/arm_features.h"
+#include "daemon/simulation/arms/hand_attitude.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 /// What a recorded motion would have told two boards and two hand trackers, frame by frame, beside
 /// the truth: to judge the reconstruction on, and to train its models with.
 namespace footing::rehearsal {
+
+/// What tells of the hands.
+enum class HandDevice {
+  kMove,     ///< Places with white noise.
+  kWiimote,  ///< Readings of a Wiimote with MotionPlus in each fist.
+  kKinect,   ///< Places 30 times a second, late, with white noise and a slow offset.
+};
 
 struct Settings {
   double mass_kg = 75;
@@ -27,7 +36,8 @@ struct Settings {
   double loop_s = 0;     ///< Forwards and backwards so long; 0: once.
   bool limited = false;  ///< Boards end at their sensors; else as if they had no edge.
   bool hands = true;
-  double hand_noise_m = 0.01;  ///< White, of each axis.
+  HandDevice hand_device = HandDevice::kMove;
+  double hand_noise_m = 0.01;  ///< White, of each axis; of kMove.
   virtual_sensors::CellErrorConfig errors;
   // The boards are not quite where they are told to be.
   double gap_error_m = 0;    ///< Told further apart by so much.
@@ -49,6 +59,8 @@ struct Frame {
   Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< About C, kg m^2/s.
   std::array<TrueFoot, momentum::kFeet> feet;
+  /// Of kWiimote: those since the frame before.
+  std::array<std::vector<arms::HandReading>, arms::kArms> readings;
 };
 
 /// What the person does in each frame (activity.h).
@@ -61,6 +73,7 @@ struct Rehearsal {
   body::Body body;
   double rate_hz = 60;
   std::vector<Frame> frames;    ///< Begins with kStandS in the T-pose.
+  double reading_s = 0;         ///< From one reading of a Wiimote to the next; 0: there are none.
   double outside_share = 0;     ///< Of loaded feet whose COP is beyond the sensors.
   std::size_t judged_from = 0;  ///< The first frame after the calibration.
   double clock_offset_s = 0;    ///< Time on the motion's clock less the frames' time_s.
@@ -69,6 +82,8 @@ struct Rehearsal {
 
 /// The T-pose is held so long, then left within a second and a half.
 inline constexpr double kStandS = 6;
+/// By then devices in the hands know that it is held.
+inline constexpr double kAlignedS = 5.5;
 
 /// Where both hands are told to be: the fists of the pose, with white noise along each axis.
 void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,

@@ -14,6 +14,7 @@ struct Shared {
 
 /// Each adds one subcommand to footing-train; its callback does the work and sets
 /// `shared.exit_code`.
+void AddArmCommand(CLI::App& app, Shared& shared);
 void AddBasisCommand(CLI::App& app, Shared& shared);
 void AddCascadeCommand(CLI::App& app, Shared& shared);
 void AddComCommand(CLI::App& app, Shared& shared);

@@ -34,8 +34,7 @@ double FibonacciSearch::Cost(const PoseTargets& targets) {
   double cost = 0;
   for (int i = 0; i < targets.count; ++i) {
     const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
-    const auto joint = static_cast<std::size_t>(point.joint);
-    cost += Squared(point.p_W_m - at_.p_WJ[joint] - at_.R_WJ[joint] * point.p_J_m, point.sd_m);
+    cost += Squared(point.p_W_m - PlaceOf(point, at_), point.sd_m);
   }
   if (targets.has_com) {
     cost += Squared(targets.com_W_m - body::CentreOfMass(*body_, at_), targets.com_sd_m);

@@ -70,8 +70,7 @@ void GaussNewton::Measure(const PoseTargets& targets) {
   };
   for (int i = 0; i < targets.count; ++i) {
     const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
-    const auto joint = static_cast<std::size_t>(point.joint);
-    add(point.p_W_m - at_.p_WJ[joint] - at_.R_WJ[joint] * point.p_J_m, point.sd_m);
+    add(point.p_W_m - PlaceOf(point, at_), point.sd_m);
   }
   if (Angular(targets)) {
     com_W_m_ = body::ComputeCentroidalMatrix(*body_, at_, room_, centroidal_);
@@ -97,6 +96,14 @@ void GaussNewton::PointRows(const PointTarget& point, int row) {
     const double weight = 1 / point.sd_m(k);
     for (const int dof : moved_by_[joint]) {
       out.noalias() += weight * jacobian_(k, dof) * modes_.row(dof);
+    }
+  }
+  if (point.from_joint < 0) return;
+  const auto from = static_cast<std::size_t>(point.from_joint);
+  body::PointJacobian(body_->skeleton, at_, point.from_joint, at_.p_WJ[from], jacobian_);
+  for (int k = 0; k < 3; ++k) {
+    for (const int dof : moved_by_[from]) {
+      rows_.row(row + k).noalias() -= jacobian_(k, dof) / point.sd_m(k) * modes_.row(dof);
     }
   }
 }

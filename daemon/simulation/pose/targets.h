@@ -3,15 +3,26 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "common/body/kinematics.h"
+
 namespace footing::pose {
 
-/// A point of the body that is known to be somewhere.
+/// A point of the body that is known to be somewhere in W, or from the origin of another joint.
 struct PointTarget {
   int joint = 0;                                    ///< Whose frame it is fixed to.
   Eigen::Vector3d p_J_m = Eigen::Vector3d::Zero();  ///< In that frame.
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where it should be.
   Eigen::Vector3d sd_m = Eigen::Vector3d::Ones();   ///< Along W's axes, positive.
+  int from_joint = -1;  ///< p_W_m is the way from there to the point, along W's axes; -1: from W.
 };
+
+/// Where it is in a pose, in the same terms as p_W_m.
+inline Eigen::Vector3d PlaceOf(const PointTarget& point, const body::Kinematics& at) {
+  const auto joint = static_cast<std::size_t>(point.joint);
+  const Eigen::Vector3d place_m = at.p_WJ[joint] + at.R_WJ[joint] * point.p_J_m;
+  if (point.from_joint < 0) return place_m;
+  return place_m - at.p_WJ[static_cast<std::size_t>(point.from_joint)];
+}
 
 inline constexpr int kMaxPoints = 16;
 

@@ -131,6 +131,13 @@ Result<void> ReadNetworks(const NamedModel& named, Models& models) {
   return {};
 }
 
+Result<void> ReadArm(const NamedModel& named, Models& models) {
+  auto arm = arms::MakeArmModel(named.model, named.origin);
+  if (!arm) return arm.error();
+  models.arm = *std::move(arm);
+  return {};
+}
+
 }  // namespace
 
 Result<Models> MakeModels(const std::vector<NamedModel>& models) {
@@ -149,8 +156,10 @@ Result<Models> MakeModels(const std::vector<NamedModel>& models) {
         kind == "basis"  ? ReadBasis(named, made)
         : kind == "pose" ? ReadRegression(named, made)
         : kind == "com"  ? ReadNetworks(named, made)
-                         : Result<void>(InvalidData(named.origin + ": a model of kind " + kind +
-                                                    "; the pose engine takes basis, pose and com"));
+        : kind == "arm"
+            ? ReadArm(named, made)
+            : Result<void>(InvalidData(named.origin + ": a model of kind " + kind +
+                                       "; the pose engine takes basis, pose, com and arm"));
     if (!read) return read.error();
   }
   if (made.dofs.empty()) {

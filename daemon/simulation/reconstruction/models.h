@@ -7,6 +7,7 @@
 
 #include "common/model/model.h"
 #include "common/result/result.h"
+#include "daemon/simulation/arms/arm_model.h"
 #include "daemon/simulation/cascade/network.h"
 #include "daemon/simulation/pose/basis.h"
 #include "daemon/simulation/reconstruction/features.h"
@@ -31,10 +32,12 @@ struct Models {
   std::string origin;             ///< File of the basis.
   /// Next C_x and C_y (section 4.2), where there are such networks.
   std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
+  /// For hands that hold a Wiimote, where there is one.
+  std::optional<arms::ArmModel> arm;
 };
 
-/// At most one model of each kind: "basis" or "pose" is necessary, "com" is not. Errors name the
-/// file.
+/// At most one model of each kind: "basis" or "pose" is necessary, "com" and "arm" are not. Errors
+/// name the file.
 Result<Models> MakeModels(const std::vector<NamedModel>& models);
 
 }  // namespace footing::reconstruction

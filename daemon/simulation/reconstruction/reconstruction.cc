@@ -101,6 +101,7 @@ Result<Reconstruction> Reconstruction::Create(const body::Body& body, const Mode
   for (int side = 0; side < 2; ++side) {
     parts->fists[static_cast<std::size_t>(side)] = body::Fist(body, side);
     parts->shanks[static_cast<std::size_t>(side)] = Shank(body, side);
+    parts->arms.emplace_back(body, side);
   }
   parts->horizontal = models.horizontal;
   if (options.mode == Mode::kBest && options.use_basis && options.use_momentum &&
@@ -166,7 +167,7 @@ void Reconstruction::Begin(const momentum::TPose& pose) {
   gauss_newton_.Reset();
   fibonacci_.Reset();
   if (regressed_) regressed_->Reset();
-  was_regressed_ = false;
+  was_regressed_ = placed_by_arms_ = false;
   features_ = Features(step_s_, parts_->t_pose(2), pose.mass_kg);
   for (std::size_t side = 0; side < kHands; ++side) {
     last_hands_m_[side] = output_.p_WJ_m[static_cast<std::size_t>(parts_->fists[side].joint)];
@@ -198,8 +199,9 @@ const Output& Reconstruction::Advance(const Inputs& inputs) {
   output_.valid = output_.momentum.valid;
   Remember(inputs);
   TakeLagged();
-  AdvanceFeatures();
   PlaceTargets();
+  PlaceHandsByArms();
+  AdvanceFeatures();
   Solve();
   return output_;
 }
@@ -234,7 +236,22 @@ void Reconstruction::Solve() {
 
 /// The regression has seen both hands at all times.
 bool Reconstruction::Regressed() const {
-  return regressed_ && then_.hands[0].valid && then_.hands[1].valid;
+  return regressed_ && (then_.hands[0].valid || then_.arms[0].valid) &&
+         (then_.hands[1].valid || then_.arms[1].valid);
+}
+
+void Reconstruction::PlaceHandsByArms() {
+  const bool followed = placed_by_arms_ || !was_regressed_;
+  placed_by_arms_ = Regressed() && !(then_.hands[0].valid && then_.hands[1].valid);
+  if (!placed_by_arms_) return;
+  if (!followed) gauss_newton_.ContinueFrom(regressed_->q());
+  gauss_newton_.Solve(targets_);
+  body::ComputeKinematics(parts_->body.skeleton, gauss_newton_.q(), at_);
+  for (std::size_t side = 0; side < kHands; ++side) {
+    const body::Point& fist = parts_->fists[side];
+    const auto joint = static_cast<std::size_t>(fist.joint);
+    last_hands_m_[side] = origin_m_ + body::Place(fist, at_.R_WJ[joint], at_.p_WJ[joint]);
+  }
 }
 
 void Reconstruction::SolveBest() {

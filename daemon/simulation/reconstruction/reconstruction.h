@@ -10,6 +10,8 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/result/result.h"
+#include "daemon/simulation/arms/arm_geometry.h"
+#include "daemon/simulation/arms/arm_model.h"
 #include "daemon/simulation/momentum/best_estimator.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contact_loads.h"
@@ -54,11 +56,14 @@ struct Inputs {
   momentum::ContactLoads loads;
   std::array<HandInput, kHands> hands;
   Known known = {};
+  /// How the arms are held, where their hands are not seen.
+  std::array<arms::ArmEstimate, kHands> arms = {};
 };
 
 /// Standard deviations and weights of the best mode's terms.
 struct BestConstants {
   double hand_sd_m = 0.008;  ///< Of the fist on the hand, beside what the input says.
+  double arm_spread = 1.5;   ///< Of an arm's told deviations: its errors are alike for many frames.
   FootSpread foot;
   double com_sd_m = 0.005;  ///< Of the masses, beside what the filters say.
   /// kg m^2/s, beside what the estimate says; 0: the angular momentum is left out, since as it is
@@ -132,6 +137,7 @@ class Reconstruction {
     std::array<FootGeometry, momentum::kFeet> feet;
     std::array<std::vector<std::size_t>, momentum::kFeet> shanks;  ///< From the knees down.
     std::array<body::Point, kHands> fists;
+    std::vector<arms::ArmGeometry> arms;  ///< kHands.
     Eigen::VectorXd t_pose;
     std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
     PoseRegression regression;
@@ -140,6 +146,7 @@ class Reconstruction {
   /// What is measured at one time.
   struct Moment {
     std::array<HandInput, kHands> hands;
+    std::array<arms::ArmEstimate, kHands> arms;
     momentum::Estimate momentum;
     Known known;
   };
@@ -153,6 +160,9 @@ class Reconstruction {
   void TakeLagged();
   void AdvanceFeatures();
   void PlaceTargets();
+  void AddArmTargets(std::size_t side);
+  /// Hands that only their arms tell of: where a first solution has them.
+  void PlaceHandsByArms();
   void AddFeet();
   void AddMomentumTargets();
   void Solve();
@@ -181,6 +191,7 @@ class Reconstruction {
   pose::FibonacciSearch fibonacci_;
   std::optional<pose::GaussNewton> regressed_;  ///< Over the errors of the regression.
   bool was_regressed_ = false;
+  bool placed_by_arms_ = false;  ///< In the last frame.
   Eigen::VectorXd room_, likely_q_, likely_a_;
   std::array<pose::LegIk, momentum::kFeet> legs_;
   Eigen::VectorXd q_;

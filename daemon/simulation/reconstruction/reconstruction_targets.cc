@@ -10,7 +10,9 @@ namespace {
 constexpr double kPaperHandSdM = 0.012, kPaperFootSdM = 0.02;
 constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 2;
 constexpr double kKnownAngularSd = 1;
-constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
+constexpr double kPaperArmSd = 0.2;  // Of an angle of the arm, rad.
+constexpr double kHingeM = 0.25;     // At which a turn of the upper arm counts as a way.
+constexpr double kMostHandM = 10;    // Nobody's hand is further from the cells.
 
 }  // namespace
 
@@ -20,6 +22,15 @@ void Reconstruction::Remember(const Inputs& inputs) {
   for (HandInput& hand : now.hands) {
     hand.valid = hand.valid && hand.p_W_m.allFinite() && hand.sd_m.allFinite() &&
                  hand.sd_m.minCoeff() > 0 && (hand.p_W_m - origin_m_).norm() < kMostHandM;
+  }
+  now.arms = inputs.arms;
+  for (arms::ArmEstimate& arm : now.arms) {
+    const auto fine = [](const Eigen::Vector3d& way, const Eigen::Vector3d& sd) {
+      return way.allFinite() && sd.allFinite() && sd.minCoeff() > 0;
+    };
+    arm.valid = arm.valid && fine(arm.directions.upper, arm.upper_sd) &&
+                fine(arm.directions.hinge, arm.hinge_sd) &&
+                fine(arm.directions.forearm, arm.forearm_sd);
   }
   now.momentum = output_.momentum;
   now.known = inputs.known;
@@ -47,7 +58,10 @@ void Reconstruction::PlaceTargets() {
   const bool paper = options_.mode == Mode::kPaper;
   for (std::size_t side = 0; side < kHands; ++side) {
     const HandInput& hand = then_.hands[side];
-    if (!hand.valid) continue;
+    if (!hand.valid) {
+      AddArmTargets(side);
+      continue;
+    }
     const body::Point& fist = parts_->fists[side];
     pose::PointTarget target{fist.joint, fist.p_J_m, hand.p_W_m, hand.sd_m};
     if (paper) {
@@ -60,9 +74,32 @@ void Reconstruction::PlaceTargets() {
   AddFeet();
   AddMomentumTargets();
   for (int i = 0; i < targets_.count; ++i) {
-    targets_.points[static_cast<std::size_t>(i)].p_W_m -= origin_m_;
+    pose::PointTarget& point = targets_.points[static_cast<std::size_t>(i)];
+    if (point.from_joint < 0) point.p_W_m -= origin_m_;
   }
   targets_.com_W_m -= origin_m_;
+}
+
+/// The arm-angle error of equation (6): three of the shoulder, one of the elbow, as ways of the
+/// elbow from the shoulder, of a point beside the upper arm, and of the fist from the elbow.
+void Reconstruction::AddArmTargets(std::size_t side) {
+  const arms::ArmEstimate& told = then_.arms[side];
+  if (!told.valid) return;
+  const arms::ArmGeometry& arm = parts_->arms[side];
+  const bool paper = options_.mode == Mode::kPaper;
+  const auto add = [&](int joint, const Eigen::Vector3d& p_J_m, int from, double length_m,
+                       const Eigen::Vector3d& way, const Eigen::Vector3d& sd) {
+    pose::PointTarget target{joint, p_J_m, length_m * way, length_m * options_.best.arm_spread * sd,
+                             from};
+    if (paper) target.sd_m.setConstant(length_m * kPaperArmSd);
+    targets_.Add(target);
+  };
+  add(arm.elbow, Eigen::Vector3d::Zero(), arm.shoulder, arm.upper_m, told.directions.upper,
+      told.upper_sd);
+  add(arm.shoulder, kHingeM * arm.hinge_J, arm.shoulder, kHingeM, told.directions.hinge,
+      told.hinge_sd);
+  add(arm.fist.joint, arm.fist.p_J_m, arm.elbow, arm.forearm_m, told.directions.forearm,
+      told.forearm_sd);
 }
 
 void Reconstruction::AddFeet() {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/body/points.h"
+#include "daemon/offline/rehearsal/held_hands.h"
 
 namespace footing::rehearsal {
 namespace {
@@ -53,6 +54,55 @@ TEST(Rehearsal, TheHandsAreWhereTheFistsAreButForTheirNoise) {
   EXPECT_NEAR(std::sqrt(sum / static_cast<double>(rehearsal.frames.size()) / 3), 0.02, 0.002);
   settings.hands = false;
   EXPECT_FALSE(Rehearsed(settings).frames[0].inputs.hands[0].valid);
+}
+
+TEST(Rehearsal, AKinectTellsTheHandsLateAndOffset) {
+  Settings settings;
+  settings.hand_device = HandDevice::kKinect;
+  const Rehearsal rehearsal = Rehearsed(settings);
+  EXPECT_FALSE(rehearsal.frames[3].inputs.hands[0].valid);  // 67 ms are 4 frames.
+  ASSERT_TRUE(rehearsal.frames[4].inputs.hands[0].valid);
+  double changes = 0, apart = 0, count = 0;
+  for (std::size_t i = 10; i < rehearsal.frames.size(); ++i) {
+    const auto& hands = rehearsal.frames[i].inputs.hands;
+    changes += hands[0].p_W_m != rehearsal.frames[i - 1].inputs.hands[0].p_W_m ? 1 : 0;
+    // The offset is common to both, the noise is not.
+    const Eigen::Vector3d middle = 0.5 * (hands[0].p_W_m + hands[1].p_W_m);
+    apart += (hands[0].p_W_m - middle).squaredNorm();
+    ++count;
+  }
+  EXPECT_NEAR(changes / count, 0.5, 0.01);  // 30 of 60 a second.
+  EXPECT_NEAR(rehearsal.frames[20].inputs.hands[0].sd_m.x(), 0.0427, 0.0001);
+  EXPECT_GT(apart / count, 0.3);
+}
+
+TEST(Rehearsal, AWiimoteTellsReadingsAndNoPlaces) {
+  Settings settings;
+  settings.hand_device = HandDevice::kWiimote;
+  Rehearsal rehearsal = Rehearsed(settings);
+  EXPECT_NEAR(rehearsal.reading_s, 1.0 / 60, 1e-9);
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < rehearsal.frames.size(); ++i) {
+    const Frame& frame = rehearsal.frames[i];
+    ASSERT_FALSE(frame.inputs.hands[0].valid);
+    ASSERT_EQ(frame.readings[0].size(), 1u);
+    force +=
+        frame.readings[0][0].specific_force_S_mps2 / static_cast<double>(rehearsal.frames.size());
+  }
+  EXPECT_NEAR(force.norm(), 9.8, 0.5);  // Gravity, with a gain and a bias.
+
+  arms::ArmModel model;
+  model.mean.setZero();
+  model.scale.setZero();
+  model.weights.setZero(arms::kDirections, arms::ArmFeatures::kCount);
+  model.offset << 0, 1, 0, 0, 0, 1, 0, 1, 0;
+  model.covariance.setIdentity();
+  TellArms(model, rehearsal);
+  EXPECT_FALSE(rehearsal.frames[300].inputs.arms[0].valid);
+  EXPECT_TRUE(rehearsal.frames[340].inputs.arms[0].valid);
+  EXPECT_LT(
+      (rehearsal.frames[340].inputs.arms[1].directions.upper + Eigen::Vector3d::UnitY()).norm(),
+      1e-9);
 }
 
 TEST(Rehearsal, ErrorsOfTheLayoutMoveWhereTheCellsAreToldToBe) {

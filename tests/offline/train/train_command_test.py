@@ -189,8 +189,18 @@ class Train(unittest.TestCase):
         self.refused(1, "cannot list", "com", "--motions", folder / "none", "--out", self.out)
         self.assertFalse(self.out.exists())
 
-    def test_what_is_not_built_is_said_with_what_is(self):
-        self.refused(2, "there are basis, cascade, com, mlp and pose", "arm", "--motions", ".", "--out", "x")
+    def test_arm_leaves_out_a_person_at_a_time(self):
+        folder = self.motions()
+        result = run("arm", "--motions", folder, "--out", self.out, "--seed", 3, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        report = json.loads(result.stdout)
+        self.assertEqual((report["subjects"], report["folds"]), (["1", "2"], 2))
+        # Their arms stay level while the trunk bends.
+        self.assertLess(report["left_out_error"], report["spread"])
+        self.assertIn(b"2_01.bvh", self.out.read_bytes())
+        alone = run("arm", "--motions", folder, "--exclude", 2, "--out", self.out, "--force", "--json")
+        self.assertEqual(json.loads(alone.stdout)["folds"], 5)
+        self.assertNotIn(b"2_01.bvh", self.out.read_bytes())
 
 
 if __name__ == "__main__":

@@ -81,6 +81,32 @@ struct World {
   }
 };
 
+TEST(PoseTargets, APointMayBePlacedFromAnotherJoint) {
+  World world;
+  const Eigen::VectorXd& truth = world.poses.col(7);
+  PoseTargets targets = world.Targets(truth, 0.003);
+  // The wrists from the shoulders instead of from the world.
+  for (const int i : {0, 1}) {
+    PointTarget& point = targets.points[static_cast<std::size_t>(i)];
+    const Landmark shoulder = i == 0 ? Landmark::kLeftShoulder : Landmark::kRightShoulder;
+    point.from_joint = world.person.landmarks[shoulder];
+    point.p_W_m -= world.At(truth, shoulder);
+  }
+  GaussNewton solver(world.person, world.basis, {});
+  FibonacciSearch search(world.person, world.basis, {});
+  for (int frame = 0; frame < 3; ++frame) {
+    solver.Solve(targets);
+    search.Solve(targets);
+  }
+  const auto wrist_error_m = [&](const Eigen::VectorXd& q) {
+    body::ComputeKinematics(world.person.skeleton, q, world.at);
+    return (targets.points[0].p_W_m - PlaceOf(targets.points[0], world.at)).norm();
+  };
+  EXPECT_LT(wrist_error_m(solver.q()), 0.005);
+  EXPECT_LT(wrist_error_m(search.q()), 0.05);
+  EXPECT_GT(wrist_error_m(world.basis.mean), 0.06);
+}
+
 TEST(Basis, HoldsThePosesItWasMadeFrom) {
   World world;
   EXPECT_EQ(world.basis.size(), 12);

@@ -252,6 +252,61 @@ TEST(Reconstruction, ACertainRegressionDecidesAndIsLeftOutWithoutHands) {
   EXPECT_GT((regressed.output().q - t_pose).tail(53).cwiseAbs().mean(), 0.03);
 }
 
+TEST(Reconstruction, ArmsAreTakenWhereHandsAreNotSeen) {
+  World world;
+  std::vector<Inputs> unseen = world.inputs;
+  for (std::size_t i = 0; i < unseen.size(); ++i) {
+    body::ComputeKinematics(world.person.skeleton, world.motion.q.col(static_cast<Eigen::Index>(i)),
+                            world.at);
+    for (const int side : {0, 1}) {
+      const auto index = static_cast<std::size_t>(side);
+      unseen[i].hands[index].valid = false;
+      arms::ArmEstimate& arm = unseen[i].arms[index];
+      arm.valid = true;
+      arm.directions = arms::ArmGeometry(world.person, side).Directions(world.at);
+      arm.upper_sd = arm.hinge_sd = arm.forearm_sd = Eigen::Vector3d::Constant(0.05);
+    }
+  }
+  // Mean distance of the left fist; with a regression that knows nothing but a T-pose too.
+  const auto fist_error_m = [&](const std::vector<Inputs>& inputs, Mode mode, bool with_arms) {
+    Options options = world.AtRate(mode);
+    options.use_angular_momentum = false;
+    Reconstruction reconstruction = world.Made(options);
+    const body::Point fist = body::Fist(world.person, 0);
+    const auto joint = static_cast<std::size_t>(fist.joint);
+    double sum = 0, frames = 0;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      Inputs input = inputs[i];
+      if (!with_arms) input.arms = {};
+      const Output& output = reconstruction.Advance(input);
+      EXPECT_TRUE(Finite(output));
+      if (i < 400) continue;
+      body::ComputeKinematics(world.person.skeleton,
+                              world.motion.q.col(static_cast<Eigen::Index>(i)), world.at);
+      sum += (output.p_WJ_m[joint] - world.at.p_WJ[joint]).norm();
+      ++frames;
+    }
+    return sum / frames;
+  };
+  EXPECT_LT(fist_error_m(unseen, Mode::kBest, true), 0.06);
+  EXPECT_LT(fist_error_m(unseen, Mode::kPaper, true), 0.15);
+  EXPECT_GT(fist_error_m(unseen, Mode::kBest, false), 2 * fist_error_m(unseen, Mode::kBest, true));
+}
+
+TEST(Reconstruction, ArmsThatAreNotFiniteAreLeftOut) {
+  World world;
+  Reconstruction with = world.Made(world.AtRate()), without = world.Made(world.AtRate());
+  for (std::size_t i = 0; i < 420; ++i) {
+    Inputs input = world.inputs[i];
+    input.hands[0].valid = false;
+    without.Advance(input);
+    input.arms[0].valid = true;
+    input.arms[0].directions.upper.x() = std::numeric_limits<double>::quiet_NaN();
+    ASSERT_TRUE(Finite(with.Advance(input)));
+  }
+  EXPECT_EQ(with.output().q, without.output().q);
+}
+
 TEST(Features, AreTheSameWhereverThePersonStands) {
   World world;
   Features here(1 / kMadeRateHz, 1, 70), there(1 / kMadeRateHz, 1, 70);

@@ -105,7 +105,7 @@ class Pose(unittest.TestCase):
 
     def test_says_what_is_not_there(self):
         base = (EVAL, "pose", "--motion", DATA / "11_01.amc", "--skeleton", DATA / "11.asf")
-        for flags, said in ((("--hands", "kinect"), "kinect"), (("--boards", "forces"), "forces"),
+        for flags, said in ((("--hands", "wiimote"), "footing-train arm"), (("--boards", "forces"), "forces"),
                             (("--constant", "width=3"), "prior_weight"),
                             (("--mode", "paper", "--lag-ms", "100"), "lag"),
                             (("--model", self.models["basis"], "--model", self.models["pose"]),

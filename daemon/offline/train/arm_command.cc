@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/body/kinematics.h"
+#include "common/cli/cli.h"
+#include "daemon/offline/rehearsal/held_hands.h"
+#include "daemon/offline/train/command.h"
+#include "daemon/offline/train/model_output.h"
+#include "daemon/offline/train/motions.h"
+#include "daemon/offline/training/arm_regression.h"
+#include "daemon/simulation/arms/arm_geometry.h"
+
+namespace footing::train {
+namespace {
+
+constexpr double kPieceS = 10;  // Of one person's clips: a fold where there is nobody else.
+constexpr int kPieceFolds = 5;
+constexpr int kDevices = 2;  // Sets of devices that each clip is felt with.
+
+struct Options {
+  MotionOptions motions;
+  ModelOptions model;
+};
+
+/// What devices in the hands would have told in one motion, and how the arms were.
+Result<void> AddExamples(const Clip& clip, std::uint64_t seed, const std::vector<int>& folds,
+                         training::ArmExamples& examples) {
+  rehearsal::Settings settings;
+  settings.seed = seed;
+  const auto rehearsal = rehearsal::RehearseArms(clip.motion, settings, clip.name);
+  if (!rehearsal) return rehearsal.error();
+  const std::array geometry{arms::ArmGeometry(rehearsal->body, 0),
+                            arms::ArmGeometry(rehearsal->body, 1)};
+  std::array<arms::HandAttitude, arms::kArms> hands;
+  arms::ArmFeatures features;
+  arms::ArmFeatures::Values values;
+  body::Kinematics at(rehearsal->body.skeleton);
+  const double step_s = 1 / rehearsal->rate_hz;
+  for (std::size_t i = 0; i < rehearsal->frames.size(); ++i) {
+    const rehearsal::ArmFrame& frame = rehearsal->frames[i];
+    for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
+      for (const arms::HandReading& reading : frame.readings[arm]) {
+        hands[arm].Advance(reading, rehearsal->reading_s);
+      }
+      if (i == rehearsal->aligned) hands[arm].Align();
+    }
+    if (i < rehearsal->aligned) continue;
+    features.Advance({hands[0].state(), hands[1].state()}, step_s);
+    const double since_s = static_cast<double>(i) * step_s - rehearsal::kStandS;
+    if (since_s < 0) continue;
+    body::ComputeKinematics(rehearsal->body.skeleton, frame.q, at);
+    for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
+      arms::ArmDirections truth = geometry[arm].Directions(at);
+      if (arm == 1) truth = arms::Mirrored(truth);
+      features.Compute(arm, values);
+      examples.features.push_back(values);
+      examples.directions.push_back(arms::Stacked(truth));
+      examples.folds.push_back(folds[static_cast<std::size_t>(since_s / kPieceS) % folds.size()]);
+    }
+  }
+  return {};
+}
+
+/// A fold a person; of one person alone, pieces of ten seconds.
+Result<training::ArmExamples> Examples(const Clips& clips, std::uint64_t seed) {
+  training::ArmExamples examples;
+  const bool people = clips.subjects.size() >= 2;
+  examples.fold_count = people ? static_cast<int>(clips.subjects.size()) : kPieceFolds;
+  int piece = 0;
+  for (const Clip& clip : clips.train) {
+    std::vector<int> folds;
+    if (people) {
+      const auto place = std::find(clips.subjects.begin(), clips.subjects.end(), clip.subject);
+      folds.push_back(static_cast<int>(place - clips.subjects.begin()));
+    } else {
+      for (int k = 0; k < kPieceFolds; ++k) folds.push_back((piece + k) % kPieceFolds);
+      piece += 1 + static_cast<int>(clip.motion.duration_s() / kPieceS);
+    }
+    for (int device = 0; device < kDevices; ++device) {
+      if (auto added = AddExamples(clip, ++seed, folds, examples); !added) return added.error();
+    }
+  }
+  return examples;
+}
+
+int Run(const Options& options, const Shared& shared) {
+  if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
+  const Result<Clips> clips = ReadClips(options.motions);
+  if (!clips) return cli::Report(clips.error());
+  const auto examples = Examples(*clips, options.model.seed);
+  if (!examples) return cli::Report(examples.error());
+  const training::FittedArm fitted = training::FitArm(*examples);
+  model::Model model =
+      NewModel("arm", shared, options.model, DataFiles(clips->train), clips->subjects);
+  training::AppendTensors(fitted.model, model);
+  if (auto written = WriteModel(model, options.model); !written) {
+    return cli::Report(written.error());
+  }
+  const nlohmann::ordered_json report = {
+      {"examples", examples->features.size()}, {"subjects", clips->subjects},
+      {"folds", examples->fold_count},         {"ridge", fitted.ridge},
+      {"left_out_error", fitted.error},        {"spread", fitted.spread}};
+  if (shared.json) {
+    std::cout << report.dump() << std::endl;
+  } else {
+    std::cout << options.model.out << ": " << report.dump() << std::endl;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddArmCommand(CLI::App& app, Shared& shared) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("arm", "What a Wiimote with MotionPlus in each hand tells of the arms");
+  AddMotionOptions(*command, options->motions);
+  AddModelOptions(*command, options->model);
+  command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
+}
+
+}  // namespace footing::train

@@ -1,0 +1,83 @@
+"""footing-eval arm and pose --hands wiimote on a recorded person whom no model has seen.
+
+Usage: arm_command_test.py FOOTING_EVAL FOOTING_TRAIN
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+EVAL, TRAIN = sys.argv.pop(1), sys.argv.pop(1)
+DATA = pathlib.Path(os.environ.get("FOOTING_TEST_DATA") or "/nowhere") / "mocap" / "cmu_amc"
+if not DATA.is_dir():
+    print("skipped: FOOTING_TEST_DATA has no mocap/cmu_amc")
+    sys.exit(77)
+
+JUDGED = ("--motion", DATA / "13_30.amc", "--skeleton", DATA / "13_reconstructed.asf")
+
+
+def run(*arguments):
+    return subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=120)
+
+
+class Arm(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        folder = pathlib.Path(cls.folder.name)
+        clips = folder / "clips"
+        clips.mkdir()
+        for name in ("14_14.amc", "14_reconstructed.asf"):
+            shutil.copy(DATA / name, clips)
+        for kind in ("arm", "pose"):
+            done = run(TRAIN, kind, "--motions", clips, "--out", folder / f"{kind}.fmodel")
+            assert done.returncode == 0, done.stderr
+        cls.arm, cls.pose = folder / "arm.fmodel", folder / "pose.fmodel"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def report(self, *arguments):
+        done = run(EVAL, *arguments, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_arms_of_another_person(self):
+        report = self.report("arm", *JUDGED, "--model", self.arm)
+        mean = report["baselines"]["mean_arm"]
+        self.assertTrue(report["finite"])
+        self.assertLess(report["hand_position_rms_cm"], 30)
+        self.assertLess(report["hand_position_rms_cm"], 0.6 * mean["hand_position_rms_cm"])
+        self.assertLess(report["shoulder_error_deg"], 0.8 * mean["shoulder_error_deg"])
+        self.assertLess(report["elbow_error_deg"], 25)
+        self.assertLess(report["inclination_error_deg"], 8)
+        other = self.report("arm", *JUDGED, "--model", self.arm, "--seed", 2)
+        self.assertNotEqual(other["hand_position_rms_cm"], report["hand_position_rms_cm"])
+
+    def test_wiimotes_help_the_pose_and_a_kinect_more(self):
+        error = {}
+        for hands in ("none", "wiimote", "kinect"):
+            report = self.report("pose", *JUDGED, "--model", self.pose, "--model", self.arm, "--hands",
+                                 hands, "--no-baselines")
+            self.assertTrue(report["finite"])
+            error[hands] = report["mpjpe_cm"]
+        self.assertLess(error["wiimote"], 0.85 * error["none"])
+        self.assertLess(error["kinect"], error["wiimote"])
+
+    def test_is_never_judged_on_whom_it_was_trained_on(self):
+        done = run(EVAL, "arm", "--motion", DATA / "14_14.amc", "--skeleton",
+                   DATA / "14_reconstructed.asf", "--model", self.arm)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("14", done.stderr)
+        done = run(EVAL, "arm", *JUDGED, "--model", self.pose)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("kind", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
