@@ -124,7 +124,7 @@ Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& 
     if (!found) return found.error();
     path = *found;
   }
-  const auto model = ReadModel(path, motion, same_person);
+  const auto model = ReadModel(path, motion, false);
   if (!model) return model.error();
   return arms::MakeArmModel(model->model, path);
 }
