@@ -5,22 +5,27 @@
 
 #include "daemon/simulation/momentum/estimate.h"
 #include "daemon/simulation/momentum/linear_filter.h"
+#include "daemon/simulation/momentum/mixture.h"
 
 namespace footing::momentum {
 
 /// How a standing foot's centre of pressure wanders about its reference point.
 struct FootPlaceConfig {
-  double along_spread_m = 0.045;  ///< Along the foot, one standard deviation.
-  double across_spread_m = 0.012;
-  double wander_time_s = 0.4;    ///< Correlation time.
-  double slip_mps = 0.002;       ///< Growth of the place's deviation in contact, per root second.
-  double step_spread_m = 0.12;   ///< A new place against the old one.
-  double lift_growth_mps = 0.4;  ///< Growth of the deviation in the air.
+  double along_spread_m = 0.065;  ///< Along the foot, one standard deviation.
+  double across_spread_m = 0.015;
+  double ahead_m = 0.025;  ///< People who move press so much further ahead than those who stand.
+  double wander_time_s = 0.8;    ///< Correlation time.
+  double slip_mps = 0.004;       ///< Growth of the place's deviation in contact, per root second.
+  double loosen_mps = 0.001;     ///< What the outline forbids is forgotten so fast.
+  double step_spread_m = 0.05;   ///< A new place against the old one.
+  double lift_growth_mps = 0.2;  ///< Growth of the deviation in the air.
   double cop_noise_n_m = 1.5;    ///< Noise of the COP times the load.
 };
 
 /// Best mode's place of one foot: for each of its two axes a filter of the place and of the COP's
-/// wandering, with the foot's outline as limits: the COP is never outside the sole. A plain value.
+/// wandering. The COP is never outside the sole, so all that it has been since the foot came down
+/// bounds the place from both sides: what is told is the filter's density between these bounds. A
+/// plain value.
 class FootPlace {
  public:
   FootPlace(const FootShape& shape, const FootPlaceConfig& config = {});
@@ -36,11 +41,16 @@ class FootPlace {
  private:
   using Filter = LinearFilter<2, 1>;
 
+  void Unbound();
+  void Tell(std::size_t axis, double loosen_m);
+
   FootShape shape_;
   FootPlaceConfig config_;
   Eigen::Vector2d along_;
   Eigen::Vector2d across_;
-  std::array<Filter, 2> axes_{};  // Along, across; states: place, wandering.
+  std::array<Filter, 2> axes_{};          // Along, across; states: place, wandering.
+  std::array<double, 2> low_{}, high_{};  // Bounds of the place, of this contact.
+  std::array<Moments, 2> told_{};
   double height_m_ = 0;
 };
 

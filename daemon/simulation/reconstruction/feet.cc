@@ -49,6 +49,9 @@ std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body) {
     const double to_rest_m = shape.rest_share * shape.length_m - kHeelBehindM;
     foot.ankle_F_m = {-to_rest_m, 0, ankle.z()};
     foot.toe_F_m = foot.ankle_F_m + foot.R_WF.transpose() * (toe - ankle);
+    const Eigen::Matrix3d& R_WJ = at.R_WJ[static_cast<std::size_t>(foot.ankle.joint)];
+    foot.heel = foot.ankle;
+    foot.heel.p_J_m += R_WJ.transpose() * foot.R_WF * Eigen::Vector3d(-kHeelBehindM, 0, -ankle.z());
   }
   return feet;
 }

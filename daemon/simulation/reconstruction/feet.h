@@ -16,6 +16,7 @@ struct FootGeometry {
   momentum::FootShape shape;
   body::Point ankle;
   body::Point toe;
+  body::Point heel;  ///< Under and behind the ankle, on the ground.
   Eigen::Vector3d ankle_F_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d toe_F_m = Eigen::Vector3d::Zero();
   /// From W: turned by shape.yaw_rad.
@@ -38,7 +39,7 @@ struct FootSpread {
   double across = 0.02;
   double ankle_up = 0.024;
   double toe_up = 0.02;
-  double ahead = -0.025;  ///< People who move press further ahead than those who stand.
+  double ahead = -0.015;                        ///< Of F, feet of people who move.
   double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat.
   double lift = 0.22;                           ///< In the air, how high the foot is,
   double forward = 0.05;                        ///< and how far ahead of where it stood,
