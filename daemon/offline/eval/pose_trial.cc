@@ -8,6 +8,7 @@
 #include "daemon/offline/eval/contact_score.h"
 #include "daemon/offline/eval/pose_breakdown.h"
 #include "daemon/offline/eval/pose_metrics.h"
+#include "daemon/offline/eval/stance_frames.h"
 
 namespace footing::eval {
 namespace {
@@ -74,6 +75,8 @@ class Judge {
       ankle_[f] = body::Ankle(rehearsal.body, side).joint;
       toe_[f] = body::Toe(rehearsal.body, side).joint;
     }
+    first_on_feet_ = static_cast<std::size_t>(
+        std::lround((rehearsal::kStandS + rehearsal::kLeaveS) * rehearsal.rate_hz));
   }
 
   void Add(const reconstruction::Output& output, std::size_t i) {
@@ -119,7 +122,9 @@ class Judge {
       const auto at = [&](const body::Kinematics& k, int joint) {
         return k.p_WJ[static_cast<std::size_t>(joint)];
       };
-      if (contacts_.true_since_s[f] > kSettledContactS) {
+      const bool settled = i - lag_ >= first_on_feet_;
+      AddSkate(rehearsal_.frames[i - lag_].inputs.loads.feet[f], f, settled, step_s);
+      if (settled && contacts_.true_since_s[f] > kSettledContactS) {
         const Eigen::Vector3d error =
             0.5 * (at(score_.at(), ankle_[f]) + at(score_.at(), toe_[f]) -
                    at(score_.truth(), ankle_[f]) - at(score_.truth(), toe_[f]));
@@ -127,8 +132,8 @@ class Judge {
       }
       const Eigen::Vector3d toe = at(score_.at(), toe_[f]), true_toe = at(score_.truth(), toe_[f]);
       if (told && told_before_[f]) {
-        skate_.Add(100 * (toe - toe_before_[f]).head<2>().norm() / step_s);
-        true_skate_.Add(100 * (true_toe - true_toe_before_[f]).head<2>().norm() / step_s);
+        ball_speed_.Add(100 * (toe - toe_before_[f]).head<2>().norm() / step_s);
+        true_ball_speed_.Add(100 * (true_toe - true_toe_before_[f]).head<2>().norm() / step_s);
       }
       toe_before_[f] = toe;
       true_toe_before_[f] = true_toe;
@@ -136,12 +141,49 @@ class Judge {
     }
   }
 
+  /// The point of the sole where the true foot has its COP, as it moves with either foot.
+  void AddSkate(const momentum::FootLoads& loads, std::size_t f, bool settled, double step_s) {
+    const momentum::Pressure pressure = momentum::PressureOf(loads, kContactN);
+    const auto at = [](const body::Kinematics& k, const body::Point& point) {
+      const auto joint = static_cast<std::size_t>(point.joint);
+      return body::Place(point, k.R_WJ[joint], k.p_WJ[joint]);
+    };
+    const reconstruction::FootGeometry& foot = geometry_[f];
+    SolePoints told_now{at(score_.at(), foot.heel), at(score_.at(), foot.toe)};
+    SolePoints true_now{at(score_.truth(), foot.heel), at(score_.truth(), foot.toe)};
+    const Eigen::Vector2d along = (true_now[1] - true_now[0]).head<2>();
+    const double from_heel = (pressure.p_WP_m - true_now[0]).head<2>().dot(along);
+    const double share = pressure.cop_valid
+                             ? std::clamp(from_heel / std::max(along.squaredNorm(), 1e-6), 0.0, 1.0)
+                             : 0.5;
+    const auto speed = [&](const SolePoints& now, const SolePoints& before) {
+      const Eigen::Vector3d step_m =
+          (1 - share) * (now[0] - before[0]) + share * (now[1] - before[1]);
+      return 100 * step_m.head<2>().norm() / step_s;
+    };
+    if (const auto oldest = skate_[f].Advance(
+            settled && pressure.cop_valid,
+            {speed(told_now, sole_before_[f]), speed(true_now, true_sole_before_[f])}, step_s)) {
+      told_skate_.Add((*oldest)[0]);
+      true_skate_.Add((*oldest)[1]);
+    }
+    sole_before_[f] = told_now;
+    true_sole_before_[f] = true_now;
+  }
+
+  using SolePoints = std::array<Eigen::Vector3d, 2>;  ///< Heel and ball.
+
   const rehearsal::Rehearsal& rehearsal_;
   std::size_t lag_;
+  std::size_t first_on_feet_ = 0;  ///< Before, the way from the T-pose slides them.
+  std::array<reconstruction::FootGeometry, kFeet> geometry_ =
+      reconstruction::StandingFeet(rehearsal_.body);
+  std::array<StanceFrames, kFeet> skate_;
+  std::array<SolePoints, kFeet> sole_before_{}, true_sole_before_{};
   PoseScore score_;
   PoseBreakdown breakdown_;
   Spread vertical_, horizontal_, forward_, lateral_, pose_vertical_, pose_horizontal_, place_,
-      skate_, true_skate_;
+      told_skate_, true_skate_, ball_speed_, true_ball_speed_;
   std::array<Spread, 3> angular_;
   Drift vertical_drift_, horizontal_drift_;
   ContactScore contacts_;
@@ -165,8 +207,10 @@ ordered_json Judge::Json() const {
   json["pose_com_vertical_rms_cm"] = pose_vertical_.rms();
   json["pose_com_horizontal_rms_cm"] = pose_horizontal_.rms();
   for (const Spread& axis : angular_) json["angular_momentum_error_kgm2ps"].push_back(axis.rms());
-  json["foot_skate_cm_per_s"] = skate_.mean();
+  json["foot_skate_cm_per_s"] = told_skate_.mean();
   json["foot_skate_true_cm_per_s"] = true_skate_.mean();
+  json["ball_speed_in_contact_cm_per_s"] = ball_speed_.mean();
+  json["ball_speed_in_contact_true_cm_per_s"] = true_ball_speed_.mean();
   json["foot_position_rms_cm"] = place_.rms();
   json["contact_f1"] = contacts_.F1();
   json["landings"] = contacts_.landings;

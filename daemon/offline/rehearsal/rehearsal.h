@@ -80,8 +80,10 @@ struct Rehearsal {
   Activities activities;
 };
 
-/// The T-pose is held so long, then left within a second and a half.
+/// The T-pose is held so long,
 inline constexpr double kStandS = 6;
+/// then left for the clip's first frame within such a time; the feet slide over the boards by it.
+inline constexpr double kLeaveS = 1.5;
 /// By then devices in the hands know that it is held.
 inline constexpr double kAlignedS = 5.5;
 

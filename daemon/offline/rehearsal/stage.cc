@@ -17,6 +17,7 @@ Result<virtual_sensors::Scene> Stage(const motion::Motion& clip, const Settings&
   person.height_m = settings.height_m;
   virtual_sensors::SceneOptions options;
   options.hold_s = kStandS;
+  options.leave_s = kLeaveS;
   options.rest_share = momentum::FootShape{}.rest_share;
   options.loop_s = settings.loop_s;
   return virtual_sensors::MakeScene(std::move(kept).value(), person, options, origin);
