@@ -116,8 +116,10 @@ int Run(const Options& options, const Shared& shared) {
   AppendBasis(trained->basis, model);
   const auto examples = Examples(*set, model, options.model.seed);
   if (!examples) return cli::Report(examples.error());
+  training::RandomWaves waves = training::kPoseWaves;
+  waves.seed = options.model.seed;
   const training::FittedPoseRegression fitted =
-      training::FitPoseRegression(*examples, trained->basis.scale);
+      training::FitPoseRegression(*examples, trained->basis.scale, waves);
   model.kind = "pose";
   training::AppendTensors(fitted, model);
   if (auto written = WriteModel(model, options.model); !written) {

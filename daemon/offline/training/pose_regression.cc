@@ -9,7 +9,8 @@
 
 namespace footing::training {
 
-FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen::VectorXd& scale) {
+FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen::VectorXd& scale,
+                                       const RandomWaves& waves) {
   FOOTING_CHECK(!examples.poses.empty() && examples.features.size() == examples.poses.size() &&
                 examples.folds.size() == examples.poses.size());
   const auto count = static_cast<Eigen::Index>(examples.poses.size());
@@ -19,7 +20,7 @@ FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen
     x.col(i) = examples.features[static_cast<std::size_t>(i)];
     y.col(i) = examples.poses[static_cast<std::size_t>(i)];
   }
-  const RidgeFit fit = FitRidge(std::move(x), std::move(y), examples.folds, kFolds, scale);
+  const RidgeFit fit = FitRidge(std::move(x), std::move(y), examples.folds, kFolds, scale, waves);
   FittedPoseRegression fitted;
   fitted.spread = fit.spread;
   fitted.error = fit.error;
@@ -29,7 +30,13 @@ FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
   fitted.rest_variances = solver.eigenvalues().reverse().cwiseMax(0);
   fitted.rest_components = solver.eigenvectors().rowwise().reverse().transpose();
-  fitted.regression = {fit.mean, fit.scale, fit.weights, fit.offset};
+  fitted.regression = {fit.mean,
+                       fit.scale,
+                       fit.weights,
+                       fit.offset,
+                       fit.waves.cast<float>(),
+                       fit.phases.cast<float>(),
+                       fit.wave_weights.cast<float>()};
   return fitted;
 }
 
@@ -43,6 +50,11 @@ void AppendTensors(const FittedPoseRegression& fitted, model::Model& model) {
   add("feature_scale", fitted.regression.scale);
   add("regression_weights", fitted.regression.weights);
   add("regression_offset", fitted.regression.offset);
+  if (fitted.regression.phases.size() > 0) {
+    add("waves", fitted.regression.waves.cast<double>());
+    add("wave_phases", fitted.regression.phases.cast<double>());
+    add("wave_weights", fitted.regression.wave_weights.cast<double>());
+  }
   add("rest_components", fitted.rest_components);
   add("rest_variances", fitted.rest_variances);
 }

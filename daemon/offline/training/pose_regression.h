@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/model/model.h"
+#include "daemon/offline/training/ridge.h"
 #include "daemon/simulation/reconstruction/features.h"
 
 namespace footing::training {
@@ -17,6 +18,8 @@ struct PoseExamples {
 };
 inline constexpr int kFolds = 5;
 
+inline constexpr RandomWaves kPoseWaves{.count = 500};
+
 struct FittedPoseRegression {
   reconstruction::PoseRegression regression;
   Eigen::MatrixXd rest_components;  ///< Rows; principal axes of the errors, scaled.
@@ -26,9 +29,11 @@ struct FittedPoseRegression {
   double spread = 0;  ///< beside that of the poses themselves.
 };
 
-/// Ridge regression (Hoerl & Kennard 1970), its penalty chosen by leaving out folds, and the errors
-/// that it makes on what was left out. `scale`: by which an entry of a pose counts.
-FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen::VectorXd& scale);
+/// Ridge regression (Hoerl & Kennard 1970) on the features and random waves of them, its penalty
+/// chosen by leaving out folds, and the errors that it makes on what was left out. `scale`: by
+/// which an entry of a pose counts.
+FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen::VectorXd& scale,
+                                       const RandomWaves& waves = kPoseWaves);
 
 void AppendTensors(const FittedPoseRegression& fitted, model::Model& model);
 

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "common/result/result.h"
+#include "common/synthetic/random.h"
+#include "common/units/units.h"
 
 namespace footing::training {
 namespace {
@@ -29,16 +31,31 @@ struct Prepared {
 
 void Sum(Prepared& p, int fold_count) {
   for (int fold = 0; fold < fold_count; ++fold) {
-    p.xx.emplace_back(Eigen::MatrixXd::Zero(p.x.rows(), p.x.rows()));
-    p.xy.emplace_back(Eigen::MatrixXd::Zero(p.x.rows(), p.y.rows()));
-    p.examples.push_back(0);
+    std::vector<Eigen::Index> examples;
+    for (Eigen::Index i = 0; i < p.x.cols(); ++i) {
+      if (p.folds[static_cast<std::size_t>(i)] == fold) examples.push_back(i);
+    }
+    const Eigen::MatrixXd x = p.x(Eigen::all, examples), y = p.y(Eigen::all, examples);
+    p.xx.emplace_back(x * x.transpose());
+    p.xy.emplace_back(x * y.transpose());
+    p.examples.push_back(static_cast<double>(examples.size()));
   }
-  for (Eigen::Index i = 0; i < p.x.cols(); ++i) {
-    const auto fold = static_cast<std::size_t>(p.folds[static_cast<std::size_t>(i)]);
-    p.xx[fold].noalias() += p.x.col(i) * p.x.col(i).transpose();
-    p.xy[fold].noalias() += p.x.col(i) * p.y.col(i).transpose();
-    p.examples[fold] += 1;
-  }
+}
+
+/// Appends them to the scaled inputs, about their mean. Returns the mean.
+Eigen::VectorXd AddWaves(const RandomWaves& config, Prepared& p, RidgeFit& fit) {
+  synthetic::Random random(config.seed);
+  const Eigen::Index inputs = p.x.rows();
+  fit.waves.resize(config.count, inputs);
+  fit.phases.resize(config.count);
+  const double sd = 1 / (config.kernel_width * std::sqrt(static_cast<double>(inputs)));
+  for (double& value : fit.waves.reshaped()) value = sd * random.Normal();
+  for (double& value : fit.phases) value = random.Uniform(0, 2 * kPi);
+  const Eigen::MatrixXd waved = ((fit.waves * p.x).colwise() + fit.phases).array().cos().matrix();
+  const Eigen::VectorXd mean = waved.rowwise().mean();
+  p.x.conservativeResize(inputs + config.count, Eigen::NoChange);
+  p.x.bottomRows(config.count) = waved.colwise() - mean;
+  return mean;
 }
 
 /// outputs x inputs, without the examples of one fold (none: -1).
@@ -72,7 +89,7 @@ Eigen::MatrixXd LeftOut(const Prepared& p, double ridge) {
 }  // namespace
 
 RidgeFit FitRidge(Eigen::MatrixXd x, Eigen::MatrixXd y, const std::vector<int>& folds,
-                  int fold_count, const Eigen::VectorXd& output_scale) {
+                  int fold_count, const Eigen::VectorXd& output_scale, const RandomWaves& waves) {
   FOOTING_CHECK(x.cols() > 0 && x.cols() == y.cols() && fold_count > 0 &&
                 folds.size() == static_cast<std::size_t>(x.cols()));
   const auto count = static_cast<double>(x.cols());
@@ -83,6 +100,7 @@ RidgeFit FitRidge(Eigen::MatrixXd x, Eigen::MatrixXd y, const std::vector<int>& 
   const Eigen::VectorXd sd = (p.x.rowwise().squaredNorm() / count).cwiseSqrt();
   fit.scale = (sd.array() > kLeastSpread).select(sd.cwiseInverse(), 0);
   p.x = (fit.scale.asDiagonal() * p.x).cwiseMax(-kMostScaled).cwiseMin(kMostScaled);
+  const Eigen::VectorXd wave_mean = AddWaves(waves, p, fit);
   fit.offset = p.y.rowwise().mean();
   p.y.colwise() -= fit.offset;
   Sum(p, fold_count);
@@ -96,7 +114,10 @@ RidgeFit FitRidge(Eigen::MatrixXd x, Eigen::MatrixXd y, const std::vector<int>& 
     fit.ridge = ridge;
     fit.errors = std::move(errors);
   }
-  fit.weights = Solve(p, -1, fit.ridge);
+  const Eigen::MatrixXd weights = Solve(p, -1, fit.ridge);
+  fit.weights = weights.leftCols(weights.cols() - waves.count);
+  fit.wave_weights = weights.rightCols(waves.count);
+  fit.offset -= fit.wave_weights * wave_mean;
   return fit;
 }
 

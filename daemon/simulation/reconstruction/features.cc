@@ -95,11 +95,23 @@ const Features::Values& Features::Advance(const std::array<Eigen::Vector3d, 2>& 
   return values_;
 }
 
-void PoseRegression::Predict(const Features::Values& features, Eigen::VectorXd& room,
+PoseRegression::Room PoseRegression::MakeRoom() const {
+  return {Eigen::VectorXd::Zero(mean.size()), Eigen::VectorXf::Zero(mean.size()),
+          Eigen::VectorXf::Zero(phases.size()), Eigen::VectorXf::Zero(offset.size())};
+}
+
+void PoseRegression::Predict(const Features::Values& features, Room& room,
                              Eigen::VectorXd& q) const {
-  room = (features - mean).cwiseProduct(scale).cwiseMax(-kMostScaled).cwiseMin(kMostScaled);
+  room.scaled = (features - mean).cwiseProduct(scale).cwiseMax(-kMostScaled).cwiseMin(kMostScaled);
   q = offset;
-  q.noalias() += weights * room;
+  q.noalias() += weights * room.scaled;
+  if (phases.size() == 0) return;
+  room.single = room.scaled.cast<float>();
+  room.waved = phases;
+  room.waved.noalias() += waves * room.single;
+  room.waved = room.waved.array().cos();
+  room.part.noalias() = wave_weights * room.waved;
+  q += room.part.cast<double>();
 }
 
 }  // namespace footing::reconstruction

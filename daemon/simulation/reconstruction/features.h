@@ -38,15 +38,25 @@ class Features {
 };
 
 /// A linear map from features to a pose: the root from the estimated centre of mass in parts of the
-/// root's height, then the angles.
+/// root's height, then the angles. Where it has waves, it is linear in random cosines of the
+/// features, too (Rahimi & Recht 2007).
 struct PoseRegression {
-  Eigen::VectorXd mean, scale;  ///< Of the features: (f - mean) scale, cut at +-4.
-  Eigen::MatrixXd weights;      ///< dof x features.
-  Eigen::VectorXd offset;       ///< dof.
+  Eigen::VectorXd mean, scale;   ///< Of the features: (f - mean) scale, cut at +-4.
+  Eigen::MatrixXd weights;       ///< dof x features.
+  Eigen::VectorXd offset;        ///< dof.
+  Eigen::MatrixXf waves;         ///< waves x features: cos(waves f + phases). In single precision,
+  Eigen::VectorXf phases;        ///< since most of the time goes here.
+  Eigen::MatrixXf wave_weights;  ///< dof x waves.
 
+  /// What Predict needs, made once.
+  struct Room {
+    Eigen::VectorXd scaled;
+    Eigen::VectorXf single, waved, part;
+  };
+  Room MakeRoom() const;
   bool empty() const { return offset.size() == 0; }
-  /// Writes the scaled features to `room`, the pose to `q`, both of their sizes.
-  void Predict(const Features::Values& features, Eigen::VectorXd& room, Eigen::VectorXd& q) const;
+  /// Writes the pose to `q`, of its size.
+  void Predict(const Features::Values& features, Room& room, Eigen::VectorXd& q) const;
 };
 
 }  // namespace footing::reconstruction

@@ -13,6 +13,7 @@ namespace {
 constexpr double kReach = 4;
 /// Below, a component is a degree of freedom that nobody moved: m or rad.
 constexpr double kLeastSd = 1e-5;
+constexpr std::uint32_t kMostWaves = 4096;
 
 Result<Eigen::MatrixXd> Matrix(const model::Model& model, const std::string& name,
                                std::uint32_t rows, std::uint32_t columns,
@@ -83,6 +84,29 @@ Result<void> ReadBasis(const NamedModel& named, Models& models) {
   return {};
 }
 
+/// Older models have none.
+Result<void> ReadWaves(const NamedModel& named, PoseRegression& regression) {
+  const model::Tensor* phases = model::FindAny(named.model, "wave_phases");
+  if (phases == nullptr) return {};
+  if (phases->shape.size() != 1 || phases->shape[0] == 0 || phases->shape[0] > kMostWaves) {
+    return InvalidData(named.origin + ": its tensor wave_phases is not a list of 1 to " +
+                       std::to_string(kMostWaves) + " phases");
+  }
+  const std::uint32_t count = phases->shape[0];
+  const auto read = [&](const char* name, std::uint32_t rows, std::uint32_t columns) {
+    return Matrix(named.model, name, rows, columns, named.origin);
+  };
+  const auto waves = read("waves", count, Features::kCount);
+  if (!waves) return waves.error();
+  const auto weights =
+      read("wave_weights", static_cast<std::uint32_t>(regression.offset.size()), count);
+  if (!weights) return weights.error();
+  regression.phases = Eigen::Map<const Eigen::VectorXf>(phases->values.data(), count);
+  regression.waves = waves->cast<float>();
+  regression.wave_weights = weights->cast<float>();
+  return {};
+}
+
 Result<void> ReadRegression(const NamedModel& named, Models& models) {
   if (const auto basis = ReadBasis(named, models); !basis) return basis;
   const auto dof = static_cast<std::uint32_t>(models.basis.dof());
@@ -104,8 +128,14 @@ Result<void> ReadRegression(const NamedModel& named, Models& models) {
     if (!read) return read.error();
     part.values = std::move(*read);
   }
-  models.regression = {parts[1].values.col(0), parts[2].values.col(0), parts[3].values,
-                       parts[4].values.col(0)};
+  models.regression = {parts[1].values.col(0),
+                       parts[2].values.col(0),
+                       parts[3].values,
+                       parts[4].values.col(0),
+                       {},
+                       {},
+                       {}};
+  if (const auto waves = ReadWaves(named, models.regression); !waves) return waves;
   models.rest =
       ToBasis(models.basis.mean, parts[0].values.col(0), parts[5].values, parts[6].values.col(0));
   if (models.rest.size() == 0 || !(models.root_height_m > 0)) {

@@ -125,7 +125,7 @@ Reconstruction::Reconstruction(std::shared_ptr<const Parts> parts, const Options
       at_(parts_->body.skeleton) {
   if (!parts_->regression.empty()) {
     regressed_.emplace(parts_->body, parts_->rest, RegressedOptions(options));
-    room_.resize(Features::kCount);
+    room_ = parts_->regression.MakeRoom();
     likely_q_ = parts_->t_pose;
     likely_a_ = Eigen::VectorXd::Zero(parts_->rest.size());
   }
@@ -168,6 +168,7 @@ void Reconstruction::Begin(const momentum::TPose& pose) {
   fibonacci_.Reset();
   if (regressed_) regressed_->Reset();
   was_regressed_ = placed_by_arms_ = false;
+  locks_.fill(FootLock());
   features_ = Features(step_s_, parts_->t_pose(2), pose.mass_kg);
   for (std::size_t side = 0; side < kHands; ++side) {
     last_hands_m_[side] = output_.p_WJ_m[static_cast<std::size_t>(parts_->fists[side].joint)];
@@ -277,7 +278,7 @@ void Reconstruction::SolveBest() {
 void Reconstruction::CleanUp() {
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
     if (then_.momentum.feet[f].contact || then_.known.feet || options_.mode == Mode::kPaper) {
-      legs_[f].Solve(targets_, kCleanUpIterations, q_);
+      legs_[f].Solve(standing_, kCleanUpIterations, q_);
     }
   }
 }

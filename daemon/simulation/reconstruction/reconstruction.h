@@ -22,6 +22,7 @@
 #include "daemon/simulation/pose/leg_ik.h"
 #include "daemon/simulation/reconstruction/features.h"
 #include "daemon/simulation/reconstruction/feet.h"
+#include "daemon/simulation/reconstruction/foot_lock.h"
 #include "daemon/simulation/reconstruction/models.h"
 
 /// From the cells under two feet and the places of two hands to the pose of the whole body (Ha, Bai
@@ -164,6 +165,7 @@ class Reconstruction {
   /// Hands that only their arms tell of: where a first solution has them.
   void PlaceHandsByArms();
   void AddFeet();
+  void HoldFeet();
   void AddMomentumTargets();
   void Solve();
   void SolveBest();
@@ -187,12 +189,15 @@ class Reconstruction {
   std::array<Eigen::Vector3d, kHands> last_hands_m_;
   Features features_;
   pose::PoseTargets targets_;
+  pose::PoseTargets standing_;  ///< Of the clean-up: where feet on the ground are shown.
+  std::array<FootLock, momentum::kFeet> locks_;
   pose::GaussNewton gauss_newton_;
   pose::FibonacciSearch fibonacci_;
   std::optional<pose::GaussNewton> regressed_;  ///< Over the errors of the regression.
   bool was_regressed_ = false;
   bool placed_by_arms_ = false;  ///< In the last frame.
-  Eigen::VectorXd room_, likely_q_, likely_a_;
+  PoseRegression::Room room_;
+  Eigen::VectorXd likely_q_, likely_a_;
   std::array<pose::LegIk, momentum::kFeet> legs_;
   Eigen::VectorXd q_;
   body::Kinematics at_;

@@ -72,10 +72,14 @@ void Reconstruction::PlaceTargets() {
     targets_.Add(target);
   }
   AddFeet();
+  HoldFeet();
   AddMomentumTargets();
   for (int i = 0; i < targets_.count; ++i) {
     pose::PointTarget& point = targets_.points[static_cast<std::size_t>(i)];
     if (point.from_joint < 0) point.p_W_m -= origin_m_;
+  }
+  for (int i = 0; i < standing_.count; ++i) {
+    standing_.points[static_cast<std::size_t>(i)].p_W_m -= origin_m_;
   }
   targets_.com_W_m -= origin_m_;
 }
@@ -116,6 +120,33 @@ void Reconstruction::AddFeet() {
     } else {
       AddFootTargets(geometry, then_.momentum.feet[f], options_.best.foot, targets_);
     }
+  }
+}
+
+/// The clean-up goes to where the foot is shown to stand, the solver to where it is most likely.
+void Reconstruction::HoldFeet() {
+  standing_.count = 0;
+  const bool held = options_.mode == Mode::kBest && !then_.known.feet;
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    std::array<pose::PointTarget, FootLock::kPoints> points;
+    std::array<Eigen::Vector3d, FootLock::kPoints> told, shown;
+    std::size_t count = 0;
+    for (int i = 0; i < targets_.count && count < points.size(); ++i) {
+      const pose::PointTarget& point = targets_.points[static_cast<std::size_t>(i)];
+      const FootGeometry& foot = parts_->feet[f];
+      if (point.joint != foot.ankle.joint && point.joint != foot.toe.joint) continue;
+      const auto joint = static_cast<std::size_t>(point.joint);
+      told[count] = point.p_W_m;
+      shown[count] =
+          body::Place({point.joint, point.p_J_m}, output_.R_WJ[joint], output_.p_WJ_m[joint]);
+      points[count++] = point;
+    }
+    if (count < points.size()) continue;
+    if (held) {
+      const auto places = locks_[f].Advance(then_.momentum.feet[f].contact, told, shown, step_s_);
+      for (std::size_t i = 0; i < count; ++i) points[i].p_W_m = places[i];
+    }
+    for (const pose::PointTarget& point : points) standing_.Add(point);
   }
 }
 

@@ -210,7 +210,7 @@ TEST(Reconstruction, AdvancesWithoutAllocating) {
 }
 
 /// A regression that says: whatever is measured, the pose is that of the T-pose.
-Models WithRegression(const World& world) {
+NamedModel WithRegression(const World& world) {
   NamedModel named = BasisOf(world.person, world.motion);
   named.model.kind = "pose";
   const auto dof = static_cast<std::uint32_t>(world.person.skeleton.dof);
@@ -230,12 +230,12 @@ Models WithRegression(const World& world) {
   named.model.tensors.push_back({"regression_offset", {dof}, offset});
   named.model.tensors.push_back({"rest_components", {dof, dof}, identity});
   named.model.tensors.push_back({"rest_variances", {dof}, std::vector<float>(dof, 1e-8f)});
-  return MakeModels({named}).value();
+  return named;
 }
 
 TEST(Reconstruction, ACertainRegressionDecidesAndIsLeftOutWithoutHands) {
   World world;
-  const Models models = WithRegression(world);
+  const Models models = MakeModels({WithRegression(world)}).value();
   Options options = world.AtRate();
   options.clean_up = false;
   Reconstruction regressed = Reconstruction::Create(world.person, models, options).value();
@@ -305,6 +305,30 @@ TEST(Reconstruction, ArmsThatAreNotFiniteAreLeftOut) {
     ASSERT_TRUE(Finite(with.Advance(input)));
   }
   EXPECT_EQ(with.output().q, without.output().q);
+}
+
+TEST(PoseRegression, AddsTheCosinesThatItsFileHas) {
+  World world;
+  NamedModel named = WithRegression(world);
+  const auto dof = static_cast<std::uint32_t>(world.person.skeleton.dof);
+  constexpr auto kFeatures = static_cast<std::uint32_t>(Features::kCount);
+  std::vector<float> wave(kFeatures, 0), weights(dof, 0);
+  wave[3] = 2;
+  weights[7] = 0.5;
+  named.model.tensors.push_back({"waves", {1, kFeatures}, wave});
+  named.model.tensors.push_back({"wave_phases", {1}, {0.25f}});
+  const auto cut = MakeModels({named});
+  ASSERT_FALSE(cut.ok());
+  EXPECT_NE(cut.error().message.find("wave_weights"), std::string::npos) << cut.error().message;
+  named.model.tensors.push_back({"wave_weights", {dof}, weights});
+  const PoseRegression regression = MakeModels({named}).value().regression;
+  Features::Values features = Features::Values::Zero();
+  features(3) = 0.5;
+  PoseRegression::Room room = regression.MakeRoom();
+  Eigen::VectorXd q(dof);
+  regression.Predict(features, room, q);
+  EXPECT_NEAR(q(7), regression.offset(7) + 0.5 * std::cos(2 * 0.5 + 0.25), 1e-6);
+  EXPECT_EQ(q(8), regression.offset(8));
 }
 
 TEST(Features, AreTheSameWhereverThePersonStands) {

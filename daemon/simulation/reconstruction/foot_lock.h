@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+namespace footing::reconstruction {
+
+struct FootLockConfig {
+  double ease_s = 0.1;     ///< From where the foot was shown to where it landed (section 4.4).
+  double free_s = 0.15;    ///< So long after a landing the estimate is followed,
+  double band_m = 0.018;   ///< then it is followed when it is further away than this,
+  double follow_s = 0.05;  ///< within such a time.
+};
+
+/// Where a foot on the ground is shown. Standing feet do not slide, but their estimated place
+/// wanders while the centre of pressure tells more of it: what is shown is held while the
+/// estimate stays near.
+/// A plain value.
+class FootLock {
+ public:
+  static constexpr std::size_t kPoints = 2;
+  using Places = std::array<Eigen::Vector3d, kPoints>;  ///< Of ankle and ball, W, m.
+
+  explicit FootLock(const FootLockConfig& config = {}) : config_(config) {}
+
+  /// `told`: where the points are told to be; `shown`: where they were in the frame before. Returns
+  /// where to show them; off the ground that is where they are told.
+  Places Advance(bool contact, const Places& told, const Places& shown, double step_s);
+
+ private:
+  FootLockConfig config_;
+  bool held_ = false;
+  double since_s_ = 0;  ///< The landing.
+  Eigen::Vector3d place_m_ = Eigen::Vector3d::Zero();
+  Places from_m_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< Beside the place.
+};
+
+}  // namespace footing::reconstruction
