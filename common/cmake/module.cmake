@@ -53,7 +53,8 @@ function(_resolve_deps name folder pure out_links)
 endfunction()
 
 # Files that only put command lines together gain nothing from optimisation, and CLI11 makes them
-# the slowest of all to optimise.
+# the slowest of all to optimise. They must not compute: of a template that two files instantiate the
+# linker keeps one, and it may be theirs.
 function(_compile_quickly)
   foreach(source IN LISTS ARGN)
     if(source MATCHES "(^|_)(main|cli|command|command_line)\\.cc$")
