@@ -142,9 +142,15 @@ def momentum_rows(bench):
             rows.append((f"14: C {axis}, {lag} ms", f"<= {bar} cm",
                          at_most(f"com_{axis}_rms_cm", bar, "--lag-ms", lag)))
     errors = ("--gain-error", 0.01, "--slow-force-n", 1.06)
+    def height(bar, *words):
+        def judge():
+            row = bench.pose("14", "--loop-minutes", 5, "--no-baselines", *words)[0]
+            value, loads = row["com_vertical_rms_cm"], row["loads_com_vertical_rms_cm"]
+            return f"{value:.2f} cm ({loads:.2f} by the loads alone)", value <= bar
+        return judge
+
     for name, bar, words in (("white noise", 3, ()), ("gain and slow errors", 5, errors)):
-        rows.append((f"14: C vertical, 5 minutes, {name}", f"<= {bar} cm",
-                     at_most("com_vertical_rms_cm", bar, "--loop-minutes", 5, *words)))
+        rows.append((f"14: C vertical, 5 minutes, {name}", f"<= {bar} cm", height(bar, *words)))
     return rows
 
 

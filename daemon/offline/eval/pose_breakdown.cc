@@ -47,7 +47,7 @@ void PoseBreakdown::Add(const reconstruction::Output& told, const PoseScore& sco
   if (activity < 0) return;
   Activity& one = activities_[static_cast<std::size_t>(activity)];
   one.mpjpe_cm.Add(score.last_mpjpe_cm());
-  one.com_vertical_cm.Add(100 * (told.momentum.p_WC_m.z() - frame.com_m.z()));
+  one.com_vertical_cm.Add(100 * (told.com_W_m.z() - frame.com_m.z()));
 }
 
 ordered_json PoseBreakdown::Json() const {

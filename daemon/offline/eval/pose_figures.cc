@@ -49,7 +49,7 @@ Result<Told> Tell(const Show& show, const std::string& name,
     const auto& output = made->Advance(show.rehearsal.frames[i].inputs);
     if (i < show.start) continue;
     told.q.push_back(output.q);
-    told.com_m.push_back(output.momentum.p_WC_m);
+    told.com_m.push_back(output.com_W_m);
   }
   return told;
 }

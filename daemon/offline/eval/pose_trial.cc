@@ -97,7 +97,7 @@ class Judge {
 
  private:
   void AddCom(const reconstruction::Output& output, const rehearsal::Frame& then) {
-    const Eigen::Vector3d told = output.momentum.p_WC_m - then.com_m;
+    const Eigen::Vector3d told = output.com_W_m - then.com_m;
     vertical_.Add(100 * told.z());
     horizontal_.Add(100 * told.head<2>().norm());
     forward_.Add(100 * told.x());
@@ -107,6 +107,9 @@ class Judge {
     horizontal_drift_.Add(t_s, 100 * told.head<2>().norm());
     const Eigen::Vector3d com = body::CentreOfMass(rehearsal_.body, score_.at());
     pose_vertical_.Add(100 * (com.z() - then.com_m.z()));
+    loads_vertical_.Add(100 * (output.momentum.p_WC_m.z() - then.com_m.z()));
+    com_nees_ += told.z() * told.z() / output.com_variance_m2.z();
+    ++com_count_;
     pose_horizontal_.Add(100 * (com - then.com_m).head<2>().norm());
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       angular_[static_cast<std::size_t>(axis)].Add(output.momentum.angular_momentum_kgm2ps(axis) -
@@ -182,8 +185,10 @@ class Judge {
   std::array<SolePoints, kFeet> sole_before_{}, true_sole_before_{};
   PoseScore score_;
   PoseBreakdown breakdown_;
-  Spread vertical_, horizontal_, forward_, lateral_, pose_vertical_, pose_horizontal_, place_,
-      told_skate_, true_skate_, ball_speed_, true_ball_speed_;
+  double com_nees_ = 0;
+  std::size_t com_count_ = 0;
+  Spread vertical_, horizontal_, forward_, lateral_, loads_vertical_, pose_vertical_,
+      pose_horizontal_, place_, told_skate_, true_skate_, ball_speed_, true_ball_speed_;
   std::array<Spread, 3> angular_;
   Drift vertical_drift_, horizontal_drift_;
   ContactScore contacts_;
@@ -204,6 +209,8 @@ ordered_json Judge::Json() const {
   json["com_forward_bias_cm"] = forward_.mean();
   json["com_vertical_drift_cm_per_min"] = vertical_drift_.PerMinute();
   json["com_horizontal_drift_cm_per_min"] = horizontal_drift_.PerMinute();
+  json["loads_com_vertical_rms_cm"] = loads_vertical_.rms();
+  json["com_vertical_nees"] = com_nees_ / static_cast<double>(std::max(com_count_, std::size_t{1}));
   json["pose_com_vertical_rms_cm"] = pose_vertical_.rms();
   json["pose_com_horizontal_rms_cm"] = pose_horizontal_.rms();
   for (const Spread& axis : angular_) json["angular_momentum_error_kgm2ps"].push_back(axis.rms());

@@ -172,11 +172,22 @@ double GaussNewton::JointSd(int joint) {
   for (const int dof : moved_by_[index]) {
     joint_rows_.noalias() += jacobian_.col(dof) * modes_.row(dof);
   }
+  return std::sqrt(OpenVariances().sum() / 3);
+}
+
+Eigen::Vector3d GaussNewton::ComSd() {
+  jacobian_ = centroidal_.topRows<3>() / body_->mass_kg;
+  joint_rows_.noalias() = jacobian_ * modes_;
+  return OpenVariances().cwiseSqrt();
+}
+
+Eigen::Vector3d GaussNewton::OpenVariances() {
   joint_rows_ = joint_rows_ * free_sd_.asDiagonal();
   auto across = joint_across_.topRows(row_count_);
   across.noalias() = rows_.topRows(row_count_) * joint_rows_.transpose();
   square_.topLeftCorner(row_count_, row_count_).triangularView<Eigen::Lower>().solveInPlace(across);
-  return std::sqrt(std::max(joint_rows_.squaredNorm() - across.squaredNorm(), 0.0) / 3);
+  return (joint_rows_.rowwise().squaredNorm() - across.colwise().squaredNorm().transpose())
+      .cwiseMax(0);
 }
 
 void GaussNewton::PlaceAt(const Eigen::VectorXd& coefficients) {

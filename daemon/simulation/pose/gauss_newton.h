@@ -47,6 +47,8 @@ class GaussNewton {
   /// Standard deviation of a joint's place at the last solution, along one axis (root mean square
   /// of the three), m: what the linearised terms leave open.
   double JointSd(int joint);
+  /// The same of C, along each axis, m; where C was a target.
+  Eigen::Vector3d ComSd();
 
  private:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -61,6 +63,8 @@ class GaussNewton {
   double Cost(const Eigen::Ref<const Eigen::VectorXd>& prior_mean) const;
   void TakeStep(const Eigen::Ref<const Eigen::VectorXd>& prior_mean, double damping);
   void Factorise(double damping);
+  /// What the terms leave open of three lengths whose rows in the coefficients joint_rows_ has.
+  Eigen::Vector3d OpenVariances();
   void PlaceAt(const Eigen::VectorXd& coefficients);
   bool Angular(const PoseTargets& targets) const { return targets.has_angular && started_; }
 

@@ -256,6 +256,7 @@ void InsoleWalk::Tell() {
   const Eigen::Vector3d frame = Flat(frame_m_);
   output_.q.head<3>() += frame;
   for (Eigen::Vector3d& p : output_.p_WJ_m) p += frame;
+  output_.com_W_m += frame;
   output_.momentum.p_WC_m += frame;
   output_.momentum.v_WC_mps += Flat(frame_mps_);
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {

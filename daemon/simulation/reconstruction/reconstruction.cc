@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/body/momentum.h"
+
 namespace footing::reconstruction {
 namespace {
 
@@ -151,6 +153,9 @@ void Reconstruction::Recalibrate() {
   output_.mass_kg = parts_->body.mass_kg;
   output_.momentum = {};
   Tell(parts_->t_pose);
+  output_.com_W_m = body::CentreOfMass(parts_->body, at_);
+  output_.com_variance_m2.setConstant(kUnknownSdM * kUnknownSdM);
+  com_height_sd_m_ = kUnknownSdM;
   std::fill(output_.joint_sd_m.begin(), output_.joint_sd_m.end(), kUnknownSdM);
   std::fill(linear_sd_m_.begin(), linear_sd_m_.end(), kUnknownSdM);
 }
@@ -233,6 +238,7 @@ void Reconstruction::Solve() {
   q_.head<3>() += origin_m_;
   Tell(q_);
   if (!paper) TellSpreads();
+  TellCom();
 }
 
 /// The regression has seen both hands at all times.
@@ -291,11 +297,15 @@ void Reconstruction::Tell(const Eigen::VectorXd& q) {
 }
 
 void Reconstruction::TellSpreads() {
+  pose::GaussNewton& solver = was_regressed_ ? *regressed_ : gauss_newton_;
   for (int i = 0; i < kSpreadsAFrame; ++i) {
-    next_spread_ = (next_spread_ + 1) % linear_sd_m_.size();
-    pose::GaussNewton& solver = was_regressed_ ? *regressed_ : gauss_newton_;
-    linear_sd_m_[next_spread_] =
-        options_.best.spread * solver.JointSd(static_cast<int>(next_spread_));
+    next_spread_ = (next_spread_ + 1) % (linear_sd_m_.size() + 1);
+    if (next_spread_ == linear_sd_m_.size()) {
+      com_height_sd_m_ = options_.best.com_spread * solver.ComSd().z();
+    } else {
+      linear_sd_m_[next_spread_] =
+          options_.best.spread * solver.JointSd(static_cast<int>(next_spread_));
+    }
   }
   std::copy(linear_sd_m_.begin(), linear_sd_m_.end(), output_.joint_sd_m.begin());
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
@@ -307,6 +317,14 @@ void Reconstruction::TellSpreads() {
       output_.joint_sd_m[joint] = std::hypot(linear_sd_m_[joint], aloft_m);
     }
   }
+}
+
+void Reconstruction::TellCom() {
+  output_.com_W_m = then_.momentum.p_WC_m;
+  output_.com_variance_m2 = then_.momentum.position_variance_m2;
+  if (options_.mode != Mode::kBest || !targets_.has_com) return;
+  output_.com_W_m.z() = body::CentreOfMass(parts_->body, at_).z();
+  output_.com_variance_m2.z() = com_height_sd_m_ * com_height_sd_m_;
 }
 
 }  // namespace footing::reconstruction

@@ -77,6 +77,7 @@ struct BestConstants {
   /// The told deviations are so many times those of the linearised terms, whose errors are alike
   /// for many frames.
   double spread = 1.5;
+  double com_spread = 1.75;  ///< The same for the height of C.
   /// What the covariance of all frames leaves out of the knee and what is below it while the foot
   /// is in the air: so much, m along one axis, reached with this time.
   double aloft_sd_m = 0.14;
@@ -104,7 +105,11 @@ struct Output {
   double lag_s = 0;
   std::uint32_t resets = 0;
   double mass_kg = 0;
-  momentum::Estimate momentum;
+  momentum::Estimate momentum;  ///< What the loads alone tell.
+  /// C: in best mode its height is that of the pose, which hands and feet have a part in; the rest
+  /// is the loads'.
+  Eigen::Vector3d com_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d com_variance_m2 = Eigen::Vector3d::Zero();
   Eigen::VectorXd q;  ///< Pose of body().skeleton; a T-pose until calibrated.
   std::vector<Eigen::Matrix3d> R_WJ;
   std::vector<Eigen::Vector3d> p_WJ_m;
@@ -173,6 +178,7 @@ class Reconstruction {
   void CleanUp();
   void Tell(const Eigen::VectorXd& q);
   void TellSpreads();
+  void TellCom();
 
   std::shared_ptr<const Parts> parts_;
   Options options_;
@@ -203,6 +209,7 @@ class Reconstruction {
   body::Kinematics at_;
   std::size_t next_spread_ = 0;
   std::vector<double> linear_sd_m_;  ///< Of each joint, by the linearised terms.
+  double com_height_sd_m_ = 0;       ///< The same of C.
   std::uint32_t solver_resets_ = 0;
   Output output_;
 };

@@ -112,6 +112,8 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
   frame.resets = output.resets;
   frame.mass_kg = output.calibrated ? output.mass_kg : 0;  // As weighed, or nothing.
   frame.momentum = output.momentum;
+  frame.momentum.p_WC_m = output.com_W_m;
+  frame.momentum.position_variance_m2 = output.com_variance_m2;
   frame.link_count = std::min(output.p_WJ_m.size(), kMaxLinks);
   for (std::size_t i = 0; i < frame.link_count; ++i) {
     frame.links[i].position_m = output.p_WJ_m[i];

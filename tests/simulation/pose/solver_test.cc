@@ -155,6 +155,20 @@ TEST(GaussNewton, KnowsBestWhatIsMeasured) {
   EXPECT_GT(free_m, 3 * measured_m);
 }
 
+TEST(GaussNewton, KnowsTheHeightOfTheCentreOfMassBetterWhereItIsMeasured) {
+  World world;
+  GaussNewton solver(world.person, world.basis, {});
+  PoseTargets targets = world.Targets(world.poses.col(3), 0.01);
+  targets.com_sd_m << 1, 1, 0.002;
+  solver.Solve(targets);
+  const double measured_m = solver.ComSd().z();
+  targets.com_sd_m.setConstant(1);
+  solver.Reset();
+  solver.Solve(targets);
+  EXPECT_LT(measured_m, 0.002);
+  EXPECT_GT(solver.ComSd().z(), 1.5 * measured_m);
+}
+
 TEST(GaussNewton, GoesOnFromAPoseThatItIsGiven) {
   World world;
   GaussNewtonOptions options;

@@ -52,6 +52,8 @@ bool Finite(const Output& output) {
   bool finite = output.q.allFinite();
   for (const Eigen::Vector3d& p : output.p_WJ_m) finite = finite && p.allFinite();
   for (const Eigen::Matrix3d& R : output.R_WJ) finite = finite && R.allFinite();
+  finite = finite && output.com_W_m.allFinite() && output.com_variance_m2.allFinite() &&
+           output.com_variance_m2.minCoeff() > 0;
   for (const double sd : output.joint_sd_m) finite = finite && std::isfinite(sd) && sd >= 0;
   return finite;
 }
@@ -76,6 +78,24 @@ TEST(Reconstruction, FollowsAPersonWhoseMovementItKnows) {
   World world;
   Reconstruction reconstruction = world.Made(world.AtRate());
   EXPECT_LT(world.MeanErrorM(reconstruction, 0), 0.05);
+}
+
+TEST(Reconstruction, TheHeightOfCIsThatOfThePoseAndTheRestIsTheLoads) {
+  World world;
+  for (const double lag_s : {0.0, 0.1}) {
+    Reconstruction reconstruction = world.Made(world.AtRate(Mode::kBest, lag_s));
+    for (std::size_t i = 0; i < 500; ++i) reconstruction.Advance(world.inputs[i]);
+    const Output& output = reconstruction.output();
+    body::Kinematics at(world.person.skeleton);
+    body::ComputeKinematics(world.person.skeleton, output.q, at);
+    EXPECT_NEAR(output.com_W_m.z(), body::CentreOfMass(world.person, at).z(), 1e-12);
+    EXPECT_NE(output.com_W_m.z(), output.momentum.p_WC_m.z());
+    EXPECT_EQ(output.com_W_m.head<2>(), output.momentum.p_WC_m.head<2>());
+    EXPECT_LT(output.com_variance_m2.z(), output.momentum.position_variance_m2.z());
+  }
+  Reconstruction paper = world.Made(world.AtRate(Mode::kPaper));
+  for (std::size_t i = 0; i < 500; ++i) paper.Advance(world.inputs[i]);
+  EXPECT_EQ(paper.output().com_W_m, paper.output().momentum.p_WC_m);
 }
 
 TEST(Reconstruction, WithALagTellsThePoseOfBefore) {
