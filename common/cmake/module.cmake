@@ -108,14 +108,18 @@ function(add_module name)
                "${name}|${folder}|${arg_PURE}|${public}|${private}\n")
 endfunction()
 
-# add_program(<name> SOURCES main.cc DEPS ...): an executable in build/<preset>/bin. Its folder's
-# files are checked like those of a module.
+# add_program(<name> [RELEASE_ONLY] SOURCES main.cc DEPS ...): an executable in build/<preset>/bin. Its
+# folder's files are checked like those of a module. RELEASE_ONLY: no part of a build with sanitizers,
+# whose tests of the modules it calls are enough; ask for it by name.
 function(add_program name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "RELEASE_ONLY" "" "SOURCES;DEPS" ${ARGN})
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   _resolve_deps(${name} ${folder} "" links ${arg_DEPS})
   _compile_quickly(${arg_SOURCES})
   add_executable(${name} ${arg_SOURCES})
+  if(arg_RELEASE_ONLY AND FOOTING_SANITIZE)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
   target_link_libraries(${name} PRIVATE ${links} footing_warnings)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
