@@ -14,10 +14,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   set(TEST_HEADER_OPTIONS -fpch-preprocess)  # Lets ccache see what was parsed.
 endif()
 
-# add_module_test(<name> SOURCES ... [DEPS ...] [LABELS ...] [TIMEOUT seconds]): one GoogleTest program; every case becomes one
-# CTest test. Cases that call GTEST_SKIP show as skipped.
+# add_module_test(<name> [TOGETHER] SOURCES ... [DEPS ...] [LABELS ...] [TIMEOUT seconds]): one GoogleTest program; every case
+# becomes one CTest test, or with TOGETHER all cases one: they share what takes long to make. Cases that call GTEST_SKIP show as skipped.
 function(add_module_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "TOGETHER" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
   if(FOOTING_SANITIZE AND arg_LABELS MATCHES "long")
     return()  # Never run with sanitizers.
   endif()
@@ -43,6 +43,11 @@ function(add_module_test name)
   set(properties ENVIRONMENT "FOOTING_TEST_DATA=${FOOTING_TEST_DATA}" TIMEOUT ${arg_TIMEOUT})
   if(arg_LABELS)
     list(APPEND properties LABELS "${arg_LABELS}")
+  endif()
+  if(arg_TOGETHER)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES ${properties})
+    return()
   endif()
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
                        PROPERTIES ${properties})
