@@ -72,11 +72,7 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
           OnForearm(stage, side, DeviceSeed(common, device) + 700), {true, false}));
     }
   }
-  if (options.hands == "move") {
-    plan.tellings.push_back(TellHands(stage, options.hand_noise_m, DeviceSeed(common, 3) + 700));
-  }
-  plan.tellings.push_back(TellPose(stage));
-  plan.duration_s = common.seconds > 0 ? common.seconds : stage->repeats ? 0 : stage->duration_s();
+  TellTheBody(stage, options.hands, options.hand_noise_m, common, plan);
   return plan;
 }
 

@@ -60,11 +60,7 @@ Result<Plan> PlanInsoles(const InsolesOptions& options, const Common& common) {
     plan.tellings.push_back(
         TellInsole(stage, foot, options.errors, DeviceSeed(common, foot + 1) + 700));
   }
-  if (options.hands == "move") {
-    plan.tellings.push_back(TellHands(stage, options.hand_noise_m, DeviceSeed(common, 3) + 700));
-  }
-  plan.tellings.push_back(TellPose(stage));
-  plan.duration_s = common.seconds > 0 ? common.seconds : stage->repeats ? 0 : stage->duration_s();
+  TellTheBody(stage, options.hands, options.hand_noise_m, common, plan);
   return plan;
 }
 

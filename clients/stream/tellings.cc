@@ -89,4 +89,13 @@ Telling TellPose(std::shared_ptr<const Stage> stage) {
   return telling;
 }
 
+void TellTheBody(const std::shared_ptr<const Stage>& stage, const std::string& hands,
+                 double hand_noise_m, const Common& common, Plan& plan) {
+  if (hands == "move") {
+    plan.tellings.push_back(TellHands(stage, hand_noise_m, DeviceSeed(common, 3) + 700));
+  }
+  plan.tellings.push_back(TellPose(stage));
+  plan.duration_s = common.seconds > 0 ? common.seconds : stage->repeats ? 0 : stage->duration_s();
+}
+
 }  // namespace footing::stream_client

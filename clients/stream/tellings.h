@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "clients/stream/body_stage.h"
 #include "clients/stream/plan.h"
@@ -13,6 +14,11 @@ Telling TellHands(std::shared_ptr<const Stage> stage, double noise_m, std::uint6
 /// The true pose 60 times a second: all joints, or of a skeleton of more than 64 those on the way
 /// to a landmark.
 Telling TellPose(std::shared_ptr<const Stage> stage);
+
+/// Ends a plan of what is under the feet: the fists where `hands` is "move", the true pose, and how
+/// long it takes.
+void TellTheBody(const std::shared_ptr<const Stage>& stage, const std::string& hands,
+                 double hand_noise_m, const Common& common, Plan& plan);
 
 /// Joints of a skeleton that a reference frame has room for, parents first.
 std::vector<int> ShownJoints(const body::Body& body);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -95,19 +94,11 @@ int Run(const Options& options, const Shared& shared) {
   model::Model model =
       NewModel("arm", shared, options.model, DataFiles(clips->train), clips->subjects);
   training::AppendTensors(fitted.model, model);
-  if (auto written = WriteModel(model, options.model); !written) {
-    return cli::Report(written.error());
-  }
   const nlohmann::ordered_json report = {
       {"examples", examples->features.size()}, {"subjects", clips->subjects},
       {"folds", examples->fold_count},         {"ridge", fitted.ridge},
       {"left_out_error", fitted.error},        {"spread", fitted.spread}};
-  if (shared.json) {
-    std::cout << report.dump() << std::endl;
-  } else {
-    std::cout << options.model.out << ": " << report.dump() << std::endl;
-  }
-  return 0;
+  return Deliver(model, options.model, report, shared);
 }
 
 }  // namespace

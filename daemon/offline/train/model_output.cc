@@ -1,6 +1,8 @@
 #include "daemon/offline/train/model_output.h"
 
 #include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "common/cli/cli.h"
@@ -40,6 +42,14 @@ Result<void> WriteModel(const model::Model& model, const ModelOptions& options) 
   if (!file) return file.error();
   if (auto written = file->Write(*bytes); !written) return written;
   return file->Sync();
+}
+
+int Deliver(const model::Model& model, const ModelOptions& options,
+            const nlohmann::ordered_json& report, const Shared& shared) {
+  if (auto written = WriteModel(model, options); !written) return cli::Report(written.error());
+  if (!shared.json) std::cout << options.out << ": ";
+  std::cout << report.dump() << std::endl;
+  return 0;
 }
 
 }  // namespace footing::train

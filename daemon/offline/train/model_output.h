@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -28,5 +29,9 @@ model::Model NewModel(const std::string& kind, const Shared& shared, const Model
                       std::vector<model::DataFile> data, std::vector<std::string> subjects);
 
 Result<void> WriteModel(const model::Model& model, const ModelOptions& options);
+
+/// Writes the model, then the report of it to standard output; the program's exit code.
+int Deliver(const model::Model& model, const ModelOptions& options,
+            const nlohmann::ordered_json& report, const Shared& shared);
 
 }  // namespace footing::train

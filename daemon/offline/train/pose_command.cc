@@ -1,5 +1,4 @@
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -122,9 +121,6 @@ int Run(const Options& options, const Shared& shared) {
       training::FitPoseRegression(*examples, trained->basis.scale, waves);
   model.kind = "pose";
   training::AppendTensors(fitted, model);
-  if (auto written = WriteModel(model, options.model); !written) {
-    return cli::Report(written.error());
-  }
   nlohmann::ordered_json report = {{"dof", trained->basis.mean.size()},
                                    {"poses", trained->poses},
                                    {"examples", examples->poses.size()},
@@ -133,12 +129,7 @@ int Run(const Options& options, const Shared& shared) {
                                    {"left_out_error", fitted.error},
                                    {"spread", fitted.spread}};
   AppendOwn(*set, report);
-  if (shared.json) {
-    std::cout << report.dump() << std::endl;
-  } else {
-    std::cout << options.model.out << ": " << report.dump() << std::endl;
-  }
-  return 0;
+  return Deliver(model, options.model, report, shared);
 }
 
 }  // namespace
