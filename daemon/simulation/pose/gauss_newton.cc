@@ -3,13 +3,17 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/result/result.h"
 
 namespace footing::pose {
 namespace {
 
+constexpr int kStrip = 8;  // Numbers that are summed side by side.
 constexpr int kMaxRows = 3 * kMaxPoints + 6;
+
+constexpr int WholeStrips(int size) { return (size + kStrip - 1) / kStrip * kStrip; }
 
 /// Degrees of freedom that move the frame of each joint: its own and those of its ancestors.
 std::vector<std::vector<int>> MovedBy(const body::Skeleton& skeleton) {
@@ -26,6 +30,30 @@ std::vector<std::vector<int>> MovedBy(const body::Skeleton& skeleton) {
   return moved;
 }
 
+/// Three rows of a product, kStrip columns of it.
+struct Strips {
+  using Strip = Eigen::Array<double, kStrip, 1>;
+  Strip x, y, z;
+};
+
+/// Columns from `column` on of by_q m, summed over `dofs` in their order: the same bits whatever
+/// the processor adds side by side.
+template <typename Matrix>
+Strips Product(const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_q, const std::vector<int>& dofs,
+               const Matrix& m, int column) {
+  Strips sum{Strips::Strip::Zero(), Strips::Strip::Zero(), Strips::Strip::Zero()};
+  const Eigen::Index stride = m.outerStride();
+  const double* const first = m.data() + column;
+  for (const int dof : dofs) {
+    const Strips::Strip row = Eigen::Map<const Strips::Strip>(first + dof * stride);
+    const double* const weights = by_q.data() + 3 * dof;
+    sum.x += weights[0] * row;
+    sum.y += weights[1] * row;
+    sum.z += weights[2] * row;
+  }
+  return sum;
+}
+
 }  // namespace
 
 GaussNewton::GaussNewton(const body::Body& body, const PoseBasis& basis,
@@ -33,32 +61,37 @@ GaussNewton::GaussNewton(const body::Body& body, const PoseBasis& basis,
     : body_(&body),
       basis_(&basis),
       options_(options),
-      modes_(basis.modes),
+      covariance_(Rows::Zero(basis.dof(), WholeStrips(basis.dof()))),
+      whitening_(basis.sd.cwiseInverse().asDiagonal() * basis.inverse),
       moved_by_(MovedBy(body.skeleton)),
-      no_mean_(Eigen::VectorXd::Zero(basis.size())),
-      mean_before_(no_mean_),
-      a_(no_mean_),
-      a_before_(no_mean_),
-      a_best_(no_mean_),
+      all_(static_cast<std::size_t>(basis.dof())),
       q_(basis.mean),
       q_before_(basis.mean),
+      q_best_(basis.mean),
       step_q_(basis.mean),
-      variances_(basis.sd.cwiseAbs2()),
-      free_sd_(basis.sd),
-      pull_(no_mean_),
-      jacobian_(3, basis.dof()),
-      rows_(kMaxRows, basis.size()),
+      mean_(basis.mean),
+      mean_before_(basis.mean),
+      centre_(basis.mean),
+      whitened_(basis.sd),
+      blocks_(kMaxRows / 3),
+      reach_(Rows::Zero(basis.dof(), WholeStrips(kMaxRows))),
+      gram_(Rows::Zero(kMaxRows, WholeStrips(kMaxRows))),
       square_(kMaxRows, kMaxRows),
+      open_reach_(3, WholeStrips(basis.dof())),
+      open_across_(3, WholeStrips(kMaxRows)),
       residuals_(kMaxRows),
-      across_(kMaxRows),
-      joint_rows_(3, basis.size()),
-      joint_across_(kMaxRows, 3),
+      pull_(kMaxRows),
       com_W_m_(Eigen::Vector3d::Zero()),
       at_(body.skeleton),
       room_(body.skeleton),
       centroidal_(6, basis.dof()) {
   FOOTING_CHECK(body.skeleton.dof == basis.dof());
   FOOTING_CHECK(options.prior_weight > 0 || options.smooth_weight > 0);
+  covariance_.leftCols(basis.dof()).noalias() =
+      basis.modes * basis.sd.cwiseAbs2().asDiagonal() * basis.modes.transpose();
+  std::iota(all_.begin(), all_.end(), 0);
+  for (Block& block : blocks_) block.by_q.setZero(3, basis.dof());
+  open_.by_q.setZero(3, basis.dof());
 }
 
 void GaussNewton::Measure(const PoseTargets& targets) {
@@ -85,162 +118,176 @@ void GaussNewton::Measure(const PoseTargets& targets) {
   }
 }
 
-/// d(place)/d(coefficients), by the degrees of freedom that move the joint alone.
-void GaussNewton::PointRows(const PointTarget& point, int row) {
+/// By the degrees of freedom that move the joint alone.
+void GaussNewton::PointBlock(const PointTarget& point, Block& out) {
   const auto joint = static_cast<std::size_t>(point.joint);
   const Eigen::Vector3d p_W_m = at_.p_WJ[joint] + at_.R_WJ[joint] * point.p_J_m;
-  body::PointJacobian(body_->skeleton, at_, point.joint, p_W_m, jacobian_);
-  for (int k = 0; k < 3; ++k) {
-    auto out = rows_.row(row + k);
-    out.setZero();
-    const double weight = 1 / point.sd_m(k);
-    for (const int dof : moved_by_[joint]) {
-      out.noalias() += weight * jacobian_(k, dof) * modes_.row(dof);
-    }
+  body::PointJacobian(body_->skeleton, at_, point.joint, p_W_m, out.by_q);
+  out.dofs = &moved_by_[joint];
+  if (point.from_joint >= 0) {
+    const auto from = static_cast<std::size_t>(point.from_joint);
+    Eigen::Matrix<double, 3, Eigen::Dynamic>& other = open_.by_q;
+    body::PointJacobian(body_->skeleton, at_, point.from_joint, at_.p_WJ[from], other);
+    out.by_q -= other;
+    out.dofs = &all_;
   }
-  if (point.from_joint < 0) return;
-  const auto from = static_cast<std::size_t>(point.from_joint);
-  body::PointJacobian(body_->skeleton, at_, point.from_joint, at_.p_WJ[from], jacobian_);
-  for (int k = 0; k < 3; ++k) {
-    for (const int dof : moved_by_[from]) {
-      rows_.row(row + k).noalias() -= jacobian_(k, dof) / point.sd_m(k) * modes_.row(dof);
-    }
-  }
+  const Eigen::Vector3d weight = point.sd_m.cwiseInverse();
+  for (const int dof : *out.dofs) out.by_q.col(dof).array() *= weight.array();
 }
 
 void GaussNewton::Differentiate(const PoseTargets& targets) {
   int row = 0;
   for (int i = 0; i < targets.count; ++i, row += 3) {
-    PointRows(targets.points[static_cast<std::size_t>(i)], row);
-  }
-  if (targets.has_com && !Angular(targets)) {
-    body::ComputeCentroidalMatrix(*body_, at_, room_, centroidal_);
+    PointBlock(targets.points[static_cast<std::size_t>(i)], block(row));
   }
   if (targets.has_com) {
-    jacobian_ =
-        (targets.com_sd_m * body_->mass_kg).cwiseInverse().asDiagonal() * centroidal_.topRows<3>();
-    rows_.middleRows<3>(row).noalias() = jacobian_ * modes_;
+    block(row).dofs = &all_;
+    body::ComJacobian(*body_, at_, room_, block(row).by_q);
+    block(row).by_q.array().colwise() /= targets.com_sd_m.array();
     row += 3;
   }
   if (Angular(targets)) {
-    jacobian_ = (targets.angular_sd * options_.frame_s).cwiseInverse().asDiagonal() *
-                centroidal_.bottomRows<3>();
-    rows_.middleRows<3>(row).noalias() = jacobian_ * modes_;
+    block(row).dofs = &all_;
+    block(row).by_q = (targets.angular_sd * options_.frame_s).cwiseInverse().asDiagonal() *
+                      centroidal_.bottomRows<3>();
+  }
+  for (row = 0; row < row_count_; row += 3) {
+    for (int dof = 0; dof < basis_->dof(); dof += kStrip) {
+      const Strips part = Product(block(row).by_q, *block(row).dofs, covariance_, dof);
+      for (int i = 0; i < std::min(kStrip, basis_->dof() - dof); ++i) {
+        reach_.row(dof + i).segment<3>(row) << part.x(i), part.y(i), part.z(i);
+      }
+    }
+  }
+  for (row = 0; row < row_count_; row += 3) {
+    for (int column = 0; column < row + 3; column += kStrip) {
+      const Strips part = Product(block(row).by_q, *block(row).dofs, reach_, column);
+      gram_.row(row).segment<kStrip>(column) = part.x.transpose();
+      gram_.row(row + 1).segment<kStrip>(column) = part.y.transpose();
+      gram_.row(row + 2).segment<kStrip>(column) = part.z.transpose();
+    }
   }
 }
 
-double GaussNewton::Cost(const Eigen::Ref<const Eigen::VectorXd>& prior_mean) const {
-  return residuals_.head(row_count_).squaredNorm() +
-         prior_ * ((a_ - prior_mean).array().square() / variances_.array()).sum() +
-         smooth_ * ((a_ - a_before_).array().square() / variances_.array()).sum();
+/// The terms of the coefficients about `mean` and `start` are one about `centre_` and a constant.
+double GaussNewton::Cost() {
+  step_q_ = q_ - centre_;
+  whitened_.noalias() = whitening_ * step_q_;
+  return residuals_.head(row_count_).squaredNorm() + (prior_ + smooth_) * whitened_.squaredNorm();
 }
 
-/// With P the covariance that prior and smoothness alone would leave, H the rows and r the
-/// residuals, the step is P g - P H' (1 + H P H')^-1 H P g, where g = H' r + the prior's pull.
-void GaussNewton::TakeStep(const Eigen::Ref<const Eigen::VectorXd>& prior_mean, double damping) {
-  const auto rows = rows_.topRows(row_count_);
-  pull_.noalias() = rows.transpose() * residuals_.head(row_count_);
-  pull_.array() +=
-      (prior_ * (prior_mean - a_) + smooth_ * (a_before_ - a_)).array() / variances_.array();
+/// With P the covariance that prior and smoothness alone would leave about their centre, H the
+/// blocks and r the residuals, the pose is centre + P H' (1 + H P H')^-1 (r + H (q - centre)).
+/// Damping holds to q itself, so it makes P smaller and draws the centre there.
+void GaussNewton::TakeStep(double damping) {
   Factorise(damping);
-  pull_ = pull_.cwiseProduct(free_sd_);
-  auto across = across_.head(row_count_);
-  across.noalias() = rows * pull_;
+  step_q_ = (q_ - centre_) * ((held_ - damping) / held_);
+  auto pull = pull_.head(row_count_);
+  for (int row = 0; row < row_count_; row += 3) {
+    Eigen::Vector3d sum = residuals_.segment<3>(row);
+    for (const int dof : *block(row).dofs) sum += step_q_(dof) * block(row).by_q.col(dof);
+    pull.segment<3>(row) = sum;
+  }
   const auto factor = square_.topLeftCorner(row_count_, row_count_);
-  factor.triangularView<Eigen::Lower>().solveInPlace(across);
-  factor.transpose().triangularView<Eigen::Upper>().solveInPlace(across);
-  pull_.noalias() -= rows.transpose() * across;
-  a_ += free_sd_.cwiseProduct(pull_);
-  PlaceAt(a_);
+  factor.triangularView<Eigen::Lower>().solveInPlace(pull);
+  factor.transpose().triangularView<Eigen::Upper>().solveInPlace(pull);
+  pull /= held_;
+  q_ -= step_q_;
+  q_.noalias() += reach_.leftCols(row_count_) * pull;
 }
 
-/// rows_ times what is free without them, and the Cholesky factor of 1 + rows rows'.
+/// The Cholesky factor of 1 + H P H'.
 void GaussNewton::Factorise(double damping) {
-  free_sd_ = (variances_ / (prior_ + smooth_ + damping)).cwiseSqrt();
-  auto rows = rows_.topRows(row_count_);
-  rows = rows * free_sd_.asDiagonal();
+  held_ = prior_ + smooth_ + damping;
   Eigen::Ref<Rows> square = square_.topLeftCorner(row_count_, row_count_);
-  square.setIdentity();
-  square.selfadjointView<Eigen::Lower>().rankUpdate(rows);
+  square = gram_.topLeftCorner(row_count_, row_count_) / held_;
+  square.diagonal().array() += 1;
   const Eigen::LLT<Eigen::Ref<Rows>> in_place(square);
 }
 
 double GaussNewton::JointSd(int joint) {
   const auto index = static_cast<std::size_t>(joint);
-  body::PointJacobian(body_->skeleton, at_, joint, at_.p_WJ[index], jacobian_);
-  joint_rows_.setZero();
-  for (const int dof : moved_by_[index]) {
-    joint_rows_.noalias() += jacobian_.col(dof) * modes_.row(dof);
-  }
-  return std::sqrt(OpenVariances().sum() / 3);
+  body::PointJacobian(body_->skeleton, at_, joint, at_.p_WJ[index], open_.by_q);
+  open_.dofs = &moved_by_[index];
+  return std::sqrt(OpenVariances(open_).sum() / 3);
 }
 
 Eigen::Vector3d GaussNewton::ComSd() {
-  jacobian_ = centroidal_.topRows<3>() / body_->mass_kg;
-  joint_rows_.noalias() = jacobian_ * modes_;
-  return OpenVariances().cwiseSqrt();
+  body::ComJacobian(*body_, at_, room_, open_.by_q);
+  open_.dofs = &all_;
+  return OpenVariances(open_).cwiseSqrt();
 }
 
-Eigen::Vector3d GaussNewton::OpenVariances() {
-  joint_rows_ = joint_rows_ * free_sd_.asDiagonal();
-  auto across = joint_across_.topRows(row_count_);
-  across.noalias() = rows_.topRows(row_count_) * joint_rows_.transpose();
-  square_.topLeftCorner(row_count_, row_count_).triangularView<Eigen::Lower>().solveInPlace(across);
-  return (joint_rows_.rowwise().squaredNorm() - across.colwise().squaredNorm().transpose())
-      .cwiseMax(0);
-}
-
-void GaussNewton::PlaceAt(const Eigen::VectorXd& coefficients) {
-  q_ = basis_->mean;
-  q_.noalias() += basis_->modes * coefficients;
+Eigen::Vector3d GaussNewton::OpenVariances(const Block& block) {
+  const auto into = [&](const Rows& m, int size, Rows& out) {
+    for (int column = 0; column < size; column += kStrip) {
+      const Strips part = Product(block.by_q, *block.dofs, m, column);
+      out.row(0).segment<kStrip>(column) = part.x.transpose();
+      out.row(1).segment<kStrip>(column) = part.y.transpose();
+      out.row(2).segment<kStrip>(column) = part.z.transpose();
+    }
+  };
+  into(covariance_, basis_->dof(), open_reach_);
+  into(reach_, row_count_, open_across_);
+  Eigen::Vector3d open = Eigen::Vector3d::Zero();
+  for (const int dof : *block.dofs) {
+    open += block.by_q.col(dof).cwiseProduct(open_reach_.col(dof)) / held_;
+  }
+  const auto factor = square_.topLeftCorner(row_count_, row_count_);
+  for (int axis = 0; axis < 3; ++axis) {
+    auto across = pull_.head(row_count_);
+    across = open_across_.row(axis).head(row_count_).transpose() / held_;
+    factor.triangularView<Eigen::Lower>().solveInPlace(across);
+    open(axis) -= across.squaredNorm();
+  }
+  return open.cwiseMax(0);
 }
 
 void GaussNewton::ContinueFrom(const Eigen::VectorXd& q) {
-  a_.noalias() = basis_->inverse * (q - basis_->mean);
-  PlaceAt(a_);
+  step_q_ = q - basis_->mean;
+  whitened_.noalias() = basis_->inverse * step_q_;
+  q_ = basis_->mean;
+  q_.noalias() += basis_->modes * whitened_;
   mean_known_ = false;
   started_ = true;
 }
 
-void GaussNewton::Begin(const Eigen::Ref<const Eigen::VectorXd>& prior_mean) {
+void GaussNewton::Begin(const Eigen::VectorXd& likely_q) {
+  prior_ = std::max(options_.prior_weight * options_.prior_weight, 1e-9);
+  smooth_ = started_ ? options_.smooth_weight * options_.smooth_weight : 0;
   if (!started_) {
-    a_ = prior_mean;
-    PlaceAt(a_);
+    q_ = likely_q;
     mean_known_ = false;
   }
-  if (!mean_known_) mean_before_ = prior_mean;
+  if (!mean_known_) mean_before_ = likely_q;
   mean_known_ = true;
   q_before_ = q_;
   // What the mean does not explain is what stays from frame to frame.
-  a_ += prior_mean - mean_before_;
-  mean_before_ = prior_mean;
-  a_before_ = a_best_ = a_;
-  PlaceAt(a_);
+  q_ += likely_q - mean_before_;
+  mean_before_ = likely_q;
+  centre_ = (prior_ * likely_q + smooth_ * q_) / (prior_ + smooth_);
 }
 
-void GaussNewton::Solve(const PoseTargets& targets,
-                        const Eigen::Ref<const Eigen::VectorXd>& prior_mean) {
-  FOOTING_CHECK(prior_mean.size() == basis_->size());
-  Begin(prior_mean);
-  smooth_ = started_ ? options_.smooth_weight * options_.smooth_weight : 0;
-  prior_ = std::max(options_.prior_weight * options_.prior_weight, 1e-9);
+void GaussNewton::Solve(const PoseTargets& targets, const Eigen::VectorXd& likely_q) {
+  FOOTING_CHECK(likely_q.size() == basis_->dof());
+  Begin(likely_q);
+  q_best_ = q_;
   const int iterations = started_ ? options_.iterations : options_.first_iterations;
   Measure(targets);
-  double best = Cost(prior_mean), damping = 0, last_damping = 0;
+  double best = Cost(), damping = 0, last_damping = 0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Differentiate(targets);
     const double used = damping;
-    TakeStep(prior_mean, used);
+    TakeStep(used);
     Measure(targets);
-    const double cost = Cost(prior_mean);
+    const double cost = Cost();
     if (cost <= best) {
       best = cost;
-      a_best_ = a_;
+      q_best_ = q_;
       damping = damping < 1 ? 0 : damping / 10;
     } else {
       damping = std::max(10.0, 10 * damping);
-      a_ = a_best_;
-      PlaceAt(a_);
+      q_ = q_best_;
       Measure(targets);
     }
     last_damping = iteration + 1 < iterations ? 0 : used;

@@ -128,7 +128,6 @@ Reconstruction::Reconstruction(std::shared_ptr<const Parts> parts, const Options
     regressed_.emplace(parts_->body, parts_->rest, RegressedOptions(options));
     room_ = parts_->regression.MakeRoom();
     likely_q_ = parts_->t_pose;
-    likely_a_ = Eigen::VectorXd::Zero(parts_->rest.size());
   }
   const auto joints = static_cast<std::size_t>(parts_->body.skeleton.size());
   output_.q = q_;
@@ -269,11 +268,9 @@ void Reconstruction::SolveBest() {
   was_regressed_ = regressed;
   if (regressed) {
     parts_->regression.Predict(features_.values(), room_, likely_q_);
-    likely_q_.head<3>() = likely_q_.head<3>() * parts_->t_pose(2) + then_.momentum.p_WC_m -
-                          origin_m_ - parts_->rest.mean.head<3>();
-    likely_q_.tail(likely_q_.size() - 3) -= parts_->rest.mean.tail(likely_q_.size() - 3);
-    likely_a_.noalias() = parts_->rest.inverse * likely_q_;
-    solver.Solve(targets_, likely_a_);
+    likely_q_.head<3>() =
+        likely_q_.head<3>() * parts_->t_pose(2) + then_.momentum.p_WC_m - origin_m_;
+    solver.Solve(targets_, likely_q_);
   } else {
     solver.Solve(targets_);
   }

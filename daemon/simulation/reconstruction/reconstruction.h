@@ -203,7 +203,7 @@ class Reconstruction {
   bool was_regressed_ = false;
   bool placed_by_arms_ = false;  ///< In the last frame.
   PoseRegression::Room room_;
-  Eigen::VectorXd likely_q_, likely_a_;
+  Eigen::VectorXd likely_q_;
   std::array<pose::LegIk, momentum::kFeet> legs_;
   Eigen::VectorXd q_;
   body::Kinematics at_;

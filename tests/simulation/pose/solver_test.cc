@@ -184,18 +184,18 @@ TEST(GaussNewton, MovesAsItsPriorsMeanMoves) {
   GaussNewtonOptions options;
   options.prior_weight = 0;
   GaussNewton solver(world.person, world.basis, options);
-  const Eigen::VectorXd mean = 0.5 * world.basis.sd;
-  solver.Solve({}, Eigen::VectorXd::Zero(mean.size()));
+  const Eigen::VectorXd mean = world.basis.mean + 0.5 * world.basis.modes * world.basis.sd;
+  solver.Solve({}, world.basis.mean);
   solver.Solve({}, mean);
-  EXPECT_LT((solver.coefficients() - mean).norm(), 1e-6);
+  EXPECT_LT((solver.q() - mean).norm(), 1e-6);
 }
 
 TEST(GaussNewton, WithNothingMeasuredStaysAtThePriorsMean) {
   World world;
   GaussNewton solver(world.person, world.basis, {});
-  const Eigen::VectorXd mean = 0.5 * world.basis.sd;
+  const Eigen::VectorXd mean = world.basis.mean + 0.5 * world.basis.modes * world.basis.sd;
   solver.Solve({}, mean);
-  EXPECT_LT((solver.coefficients() - mean).norm(), 1e-12);
+  EXPECT_LT((solver.q() - mean).norm(), 1e-12);
 }
 
 TEST(GaussNewton, AngularMomentumMovesWhatHandsAndFeetDoNotShow) {
