@@ -40,6 +40,8 @@ class BestEstimator {
   const Estimate& Advance(const ContactLoads& loads);
   const Estimate& estimate() const { return estimate_; }
   const VerticalBank& vertical() const { return vertical_; }
+  /// Weighed in the T-pose, and anew where what came after contradicts that.
+  double mass_kg() const { return vertical_.mass_kg(); }
 
  private:
   void Begin();

@@ -1,6 +1,7 @@
 #include "daemon/simulation/momentum/vertical_bank.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace footing::momentum {
 namespace {
@@ -13,6 +14,10 @@ constexpr double kLeastCellNoiseN = 0.1;
 constexpr double kTrustAbove = 2;
 constexpr double kDoubtBelow = -4;
 constexpr double kAdoptEveryS = 5;
+// Parts of the weight: by which the T-pose's is wrong before it is doubted at all, and to which the
+// weight must be known to be told to the others.
+constexpr double kLeastOverweight = 0.005, kSettledSpread = 0.001;
+constexpr double kSureSpreads = 4;  // Of what both know of it.
 
 }  // namespace
 
@@ -52,21 +57,34 @@ VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n) {
   return config;
 }
 
+VerticalConfig UnweighedVertical(double arms_hang_m, double cell_noise_n, double mass_kg) {
+  VerticalConfig config = DoubtfulVertical(arms_hang_m, cell_noise_n);
+  config.weight_spread = 0.02;
+  config.mass_error_kg = mass_kg;  // What the T-pose weighed says nothing.
+  config.still_at_any_weight = true;
+  return config;
+}
+
 VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n)
     : trusting_(TrustingVertical(arms_hang_m, cell_noise_n), mass_kg, step_s),
       doubtful_(DoubtfulVertical(arms_hang_m, cell_noise_n), mass_kg, step_s),
+      unweighed_(UnweighedVertical(arms_hang_m, cell_noise_n, mass_kg), mass_kg, step_s),
       step_s_(step_s) {}
 
 void VerticalBank::Start(const VerticalInput& mean) {
   trusting_.Start(mean);
   doubtful_.Start(mean);
+  unweighed_.Start(mean);
   trusts_ = false;
   adopted_s_ = 0;
+  weighing_ = false;
 }
 
 void VerticalBank::Advance(const VerticalInput& input) {
   trusting_.Advance(input);
   doubtful_.Advance(input);
+  unweighed_.Advance(input);
+  Weigh();
   adopted_s_ += step_s_;
   const double lead = trusting_.score() - doubtful_.score();
   if (trusts_ ? lead < kDoubtBelow : lead > kTrustAbove) trusts_ = !trusts_;
@@ -76,9 +94,25 @@ void VerticalBank::Advance(const VerticalInput& input) {
   }
 }
 
+void VerticalBank::Weigh() {
+  const auto free = unweighed_.Overweight(), held = doubtful_.Overweight();
+  if (weighing_) {
+    if (free.variance > kSettledSpread * kSettledSpread) return;
+    weighing_ = false;
+    unweighed_.Reweigh();
+    doubtful_.Adopt(unweighed_);
+    trusting_.Adopt(unweighed_);
+    return;
+  }
+  const double off = std::abs(free.mean - held.mean);
+  weighing_ = off > kLeastOverweight &&
+              off * off > kSureSpreads * kSureSpreads * (free.variance + held.variance);
+}
+
 void VerticalBank::Coast() {
   trusting_.Coast();
   doubtful_.Coast();
+  unweighed_.Coast();
 }
 
 VerticalCom::Filter::Scalar VerticalBank::Height(int lag_steps) const {

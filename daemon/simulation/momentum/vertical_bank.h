@@ -9,9 +9,15 @@ VerticalConfig TrustingVertical(double arms_hang_m, double cell_noise_n);
 /// For cells with gains and slow errors as real boards have them.
 VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n);
 
+/// For a body whose weight is not known from the T-pose: it is what nobody can fall or rise from
+/// for long.
+VerticalConfig UnweighedVertical(double arms_hang_m, double cell_noise_n, double mass_kg);
+
 /// Two filters of the height side by side, one that trusts the cells and one that doubts them. The
 /// one that foresaw the last minute's events better speaks; a trusting filter that lost its way is
-/// set right by the doubtful one. A plain value.
+/// set right by the doubtful one. A third one takes nothing for granted of the weight: when it is
+/// sure that the T-pose's is wrong, it speaks until the weight is settled, then tells the others. A
+/// plain value.
 class VerticalBank {
  public:
   VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n);
@@ -20,16 +26,25 @@ class VerticalBank {
   void Advance(const VerticalInput& input);
   void Coast();
 
-  const VerticalCom& chosen() const { return trusts_ ? trusting_ : doubtful_; }
+  const VerticalCom& chosen() const {
+    if (weighing_) return unweighed_;
+    return trusts_ ? trusting_ : doubtful_;
+  }
   bool trusts() const { return trusts_; }
+  /// The T-pose's, or what it was found to be.
+  double mass_kg() const { return weighing_ ? unweighed_.weighed_kg() : chosen().mass_kg(); }
   /// Mean and variance, with what the anchor itself may be wrong by in it.
   VerticalCom::Filter::Scalar Height(int lag_steps) const;
 
  private:
+  void Weigh();
+
   VerticalCom trusting_;
   VerticalCom doubtful_;
+  VerticalCom unweighed_;
   bool trusts_ = false;
   double adopted_s_ = 0;
+  bool weighing_ = false;  ///< The T-pose's weight is known to be wrong, the true one not yet.
   double step_s_;
 };
 

@@ -14,6 +14,7 @@ using Filter = VerticalCom::Filter;
 
 constexpr int kGroups = VerticalInput::kGroups;
 constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
+constexpr double kLevelTimeS = 0.5;          // Of the acceleration that is kept.
 constexpr double kCopTimeS = 0.1;            // Smoothing of the COP, and again of its speed.
 constexpr double kStillAfterS = 0.2;
 constexpr double kStillLookS = 0.1;   // Time between zero-velocity measurements.
@@ -21,6 +22,7 @@ constexpr double kLoadedShare = 0.5;  // Of the weight: with less, the body may 
 constexpr double kScoreTimeS = 30;
 constexpr double kLeastLogDensity = -20;  // One event alone condemns nothing.
 constexpr double kCoastMps2 = 20;         // Of a velocity that nobody watches, per root frame.
+constexpr double kLeastShare = 0.5;       // Of a weight that is taken for the true one.
 constexpr double kStartHeightM = 0.005;
 constexpr double kStartVelocityMps = 0.005;
 
@@ -52,11 +54,14 @@ void VerticalCom::Start(const VerticalInput& mean) {
   p(0, 0) = kStartHeightM * kStartHeightM;
   p(1, 1) = kStartVelocityMps * kStartVelocityMps;
   p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
-  for (int i = 0; i < kGroups; ++i) p(3 + i, 3 + i) = config_.gain_spread * config_.gain_spread;
+  p.bottomRightCorner<kGroups, kGroups>().setConstant(config_.weight_spread *
+                                                      config_.weight_spread);
+  for (int i = 0; i < kGroups; ++i) p(3 + i, 3 + i) += config_.gain_spread * config_.gain_spread;
   filter_.Start(Filter::Vector::Zero(), p);
   // In the T-pose all gains together give the weight, but for what the mass is wrong by.
   Filter::Row h = Filter::Row::Zero();
   for (int i = 0; i < kGroups; ++i) h(3 + i) = mean.load_n[static_cast<std::size_t>(i)] / mass_kg_;
+  overweight_ = h / kStandardGravityMps2;
   h(2) = 1;
   const double error = config_.mass_error_kg * kStandardGravityMps2 / mass_kg_;
   filter_.Update(h, 0, error * error);
@@ -71,6 +76,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
     last_ = input;
     last_raw_mps2_ = raw;
     mean_cop_m_ = input.cop_m;
+    level_mps2_ = raw;
     mean_acceleration_mps2_ = std::abs(raw);
   }
   // Trapezoid over the step; the errors enter with the loads of the same time.
@@ -112,7 +118,9 @@ void VerticalCom::Advance(const VerticalInput& input) {
 
 void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
   const double share = step_s_ / (kAccelerationTimeS + step_s_);
-  mean_acceleration_mps2_ += share * (std::abs(raw_mps2) - mean_acceleration_mps2_);
+  level_mps2_ += step_s_ / (kLevelTimeS + step_s_) * (raw_mps2 - level_mps2_);
+  const double moved = raw_mps2 - (config_.still_at_any_weight ? level_mps2_ : 0);
+  mean_acceleration_mps2_ += share * (std::abs(moved) - mean_acceleration_mps2_);
   const double cop_share = step_s_ / (kCopTimeS + step_s_);
   const Eigen::Vector2d move = input.cop_valid
                                    ? Eigen::Vector2d(cop_share * (input.cop_m - mean_cop_m_))
@@ -144,6 +152,24 @@ void VerticalCom::Score(double log_density) { score_ += std::max(log_density, kL
 void VerticalCom::Adopt(const VerticalCom& other) {
   filter_ = other.filter_;
   score_ = other.score_;
+  mass_kg_ = other.mass_kg_;
+  overweight_ = other.overweight_;
+  last_raw_mps2_ = Total(last_) / mass_kg_ - kStandardGravityMps2;
+}
+
+double VerticalCom::weighed_kg() const {
+  return mass_kg_ / std::clamp(1 - Overweight().mean, kLeastShare, 2 - kLeastShare);
+}
+
+void VerticalCom::Reweigh() {
+  // (1 - gain) / mass of each group stays what it was.
+  const double share = mass_kg_ / weighed_kg();
+  Filter::Vector shift = Filter::Vector::Zero();
+  for (int i = 3; i < kStates; ++i) shift(i) = 1 - (1 - filter_.x()(i)) / share - filter_.x()(i);
+  filter_.Predict(Filter::Matrix::Identity(), shift, Filter::Matrix::Zero());
+  mass_kg_ /= share;
+  overweight_ *= share;
+  last_raw_mps2_ = Total(last_) / mass_kg_ - kStandardGravityMps2;
 }
 
 void VerticalCom::Coast() {

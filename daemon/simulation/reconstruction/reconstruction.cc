@@ -199,6 +199,7 @@ const Output& Reconstruction::Advance(const Inputs& inputs) {
   }
   output_.momentum = best_ ? best_->Advance(inputs.loads)
                            : paper_->Advance(inputs.loads, PredictHorizontal(inputs.loads));
+  if (best_) output_.mass_kg = best_->mass_kg();
   output_.resets = output_.momentum.resets + solver_resets_;
   output_.valid = output_.momentum.valid;
   Remember(inputs);

@@ -71,6 +71,48 @@ TEST(BestEstimator, OutlivesCellsWhoseGainIsWrongByOnePercent) {
   EXPECT_LT(std::sqrt(sum / kFrames), 0.05);
 }
 
+// Root mean square error of the height over a minute in which the cells tell `share` of what they
+// told in the T-pose.
+double HeightErrorAfter(MadeBody body, double share, double& mass_kg) {
+  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  double sum = 0;
+  constexpr int kFrames = 3600;
+  for (int i = 0; i < kFrames; ++i) {
+    ContactLoads loads = body.At(i * kMadeStepS);
+    for (FootLoads& foot : loads.feet)
+      for (Cell& cell : foot.cells) cell.load_n *= share;
+    const double error = best.Advance(loads).p_WC_m.z() - body.com_m(i * kMadeStepS).z();
+    sum += error * error;
+  }
+  mass_kg = best.mass_kg();
+  return std::sqrt(sum / kFrames);
+}
+
+TEST(BestEstimator, FindsAWeightThatTheTPoseHadWrong) {
+  for (const double share : {0.98, 1.02, 0.95}) {
+    double mass_kg = 0;
+    EXPECT_LT(HeightErrorAfter(Squatter(), share, mass_kg), 0.03) << share;
+    EXPECT_NEAR(mass_kg, share * kMadeMassKg, 0.002 * kMadeMassKg) << share;
+  }
+}
+
+TEST(BestEstimator, FindsTheWeightOfOneWhoNeverStandsStill) {
+  MadeBody body;
+  body.noise_n = 0.5;
+  body.com_m = [](double t) {
+    return Eigen::Vector3d(0, 0, kMadeHeightM - 0.08 * Ramp(t) * (1 - std::cos(2 * kPi * 0.8 * t)));
+  };
+  double mass_kg = 0;
+  EXPECT_LT(HeightErrorAfter(body, 0.98, mass_kg), 0.10);
+  EXPECT_NEAR(mass_kg, 0.98 * kMadeMassKg, 0.003 * kMadeMassKg);
+}
+
+TEST(BestEstimator, KeepsTheWeightThatTheTPoseHadRight) {
+  double mass_kg = 0;
+  EXPECT_LT(HeightErrorAfter(Squatter(), 1, mass_kg), 0.03);
+  EXPECT_EQ(mass_kg, Squatter().Calibrate().mass_kg);
+}
+
 TEST(BestEstimator, LagMakesTheHorizontalPlaceBetter) {
   double rms[2] = {0, 0};
   for (const int late : {0, 1}) {
