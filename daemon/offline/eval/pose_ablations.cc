@@ -37,7 +37,8 @@ constexpr std::array kAblations{
     Ablation{"angular_momentum", &reconstruction::Options::use_angular_momentum},
     Ablation{"momentum", &reconstruction::Options::use_momentum},
     Ablation{"cleanup", &reconstruction::Options::clean_up},
-    Ablation{"basis", &reconstruction::Options::use_basis}};
+    Ablation{"basis", &reconstruction::Options::use_basis},
+    Ablation{"posture", &reconstruction::Options::use_posture}};
 
 Result<ordered_json> Row(const rehearsal::Rehearsal& rehearsal,
                          const reconstruction::Models& models,
@@ -63,6 +64,8 @@ Result<ordered_json> JudgeAblations(const rehearsal::Rehearsal& rehearsal,
     of_mode.mode = mode;
     if (mode == Mode::kPaper) of_mode.lag_s = 0;
     for (const Ablation& ablation : kAblations) {
+      // The paper's estimators know of no posture.
+      if (mode == Mode::kPaper && ablation.term == &reconstruction::Options::use_posture) continue;
       reconstruction::Options without = of_mode;
       if (ablation.term != nullptr) without.*ablation.term = false;
       auto row = Row(rehearsal, models, without, ablation.without);

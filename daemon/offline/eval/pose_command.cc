@@ -66,6 +66,7 @@ Result<void> Translate(Flags& flags) {
   flags.options.use_angular_momentum = !Has(flags.ablate, "angular_momentum");
   flags.options.clean_up = !Has(flags.ablate, "cleanup");
   flags.options.use_basis = !Has(flags.ablate, "basis");
+  flags.options.use_posture = !Has(flags.ablate, "posture");
   return SetConstants(flags.constants, flags.options.best);
 }
 
@@ -177,7 +178,7 @@ void AddFlags(CLI::App& command, Flags& flags) {
   command.add_option("--loop-minutes", flags.loop_minutes, "Forwards and backwards so long")
       ->check(CLI::Range(0.0, 60.0));
   command.add_option("--ablate", flags.ablate, "Parts left out")
-      ->check(CLI::IsMember({"angular_momentum", "momentum", "cleanup", "basis"}));
+      ->check(CLI::IsMember({"angular_momentum", "momentum", "cleanup", "basis", "posture"}));
   command.add_flag("--ablations", flags.ablations, "The table of all of them, in both modes");
   command.add_flag("--claims", flags.claims,
                    "What the paper says of how COMs move and of outliers");

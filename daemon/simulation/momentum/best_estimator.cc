@@ -24,6 +24,7 @@ HorizontalPrior ForwardPrior() {
   prior.moment_spread_m = 0.0029;
   prior.moment_time_s = 0.024;
   prior.cop_noise_m = 0.0005;
+  prior.told_spread = 0.65;
   return prior;
 }
 
@@ -35,6 +36,8 @@ HorizontalPrior LateralPrior() {
   prior.moment_spread_m = 0.0079;
   prior.moment_time_s = 0.064;
   prior.cop_noise_m = 0.0006;
+  prior.posture = {1.16, 0.12, 0.25, 0.01};
+  prior.told_spread = 0.4;
   return prior;
 }
 
@@ -125,8 +128,22 @@ void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
     input.load_n = gap ? pose_.mass_kg * kStandardGravityMps2 : both.total_n;
     input.com_height_m = height;
     input.centre_m = centre(i);
-    HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
-    axis.Advance(input);
+    horizontal_[static_cast<std::size_t>(i)].Advance(input);
+  }
+  TellCom();
+}
+
+const Estimate& BestEstimator::SeePosture(const Eigen::Vector3d& p_WC_m) {
+  if (!estimate_.valid || !p_WC_m.allFinite()) return estimate_;
+  for (int i = 0; i < 2; ++i) horizontal_[static_cast<std::size_t>(i)].SeePosture(p_WC_m(i));
+  vertical_.SeePosture(p_WC_m.z() - subject_.com_height_m);
+  TellCom();
+  return estimate_;
+}
+
+void BestEstimator::TellCom() {
+  for (int i = 0; i < 2; ++i) {
+    const HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
     const auto position = axis.Position(lag_steps_);
     estimate_.p_WC_m(i) = position.mean;
     estimate_.position_variance_m2(i) = std::min(position.variance, kMostSpread);

@@ -38,6 +38,10 @@ class BestEstimator {
   /// finite, make the frame a gap: the estimate coasts, its covariance grows, and after a second
   /// it begins anew when loads come again (`resets`).
   const Estimate& Advance(const ContactLoads& loads);
+  /// Where C is by hands and feet alone, in the frame of the last Advance: its place along the
+  /// lateral axis and its height are estimated anew. What is not finite, or comes in a gap, is
+  /// passed over.
+  const Estimate& SeePosture(const Eigen::Vector3d& p_WC_m);
   const Estimate& estimate() const { return estimate_; }
   const VerticalBank& vertical() const { return vertical_; }
   /// Weighed in the T-pose, and anew where what came after contradicts that.
@@ -47,6 +51,7 @@ class BestEstimator {
   void Begin();
   void AdvanceFeet(const ContactLoads& loads);
   void AdvanceCom(const ContactLoads& loads, bool gap);
+  void TellCom();
   void AdvanceAngular();
   Eigen::Vector2d Centre() const;
 

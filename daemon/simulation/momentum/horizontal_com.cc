@@ -72,10 +72,12 @@ HorizontalCom::HorizontalCom(const HorizontalPrior& prior, double mass_kg, doubl
   }
   a_(6, 6) = std::exp(-step_s / prior.moment_time_s);
   stationary_(6, 6) = prior.moment_spread_m * prior.moment_spread_m;
+  a_(7, 7) = std::exp(-step_s / prior.posture.time_s);
+  stationary_(7, 7) = prior.posture.spread_m * prior.posture.spread_m;
   q_ = stationary_ - a_ * stationary_ * a_.transpose();
-  position_ << 1, 0, 0, 1, 0, 0, 0;
-  velocity_ << 0, 1, 0, 0, 1, 0, 0;
-  acceleration_ << 0, 0, 1, 0, 0, 1, 0;
+  position_ << 1, 0, 0, 1, 0, 0, 0, 0;
+  velocity_ << 0, 1, 0, 0, 1, 0, 0, 0;
+  acceleration_ << 0, 0, 1, 0, 0, 1, 0, 0;
   filter_.Start(Filter::Vector::Zero(), stationary_);
 }
 
@@ -105,6 +107,20 @@ void HorizontalCom::Advance(const HorizontalInput& input) {
     filter_.Update(acceleration_, 0, kFlightAcceleration * kFlightAcceleration);
   }
   filter_.Remember(position_, centre_m_);
+}
+
+void HorizontalCom::SeePosture(double c_m) {
+  const PostureError& posture = prior_.posture;
+  if (posture.spread_m <= 0) return;
+  Filter::Row h = posture.share * position_;
+  h(7) = 1;
+  filter_.Update(h, c_m - centre_m_, posture.white_m * posture.white_m);
+}
+
+Filter::Scalar HorizontalCom::Position(int lag_steps) const {
+  Filter::Scalar position = filter_.Delayed(lag_steps);
+  position.variance *= prior_.told_spread * prior_.told_spread;
+  return position;
 }
 
 std::vector<Filter::Scalar> SmoothHorizontal(const HorizontalPrior& prior, double mass_kg,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "daemon/simulation/momentum/linear_filter.h"
+#include "daemon/simulation/momentum/posture.h"
 
 namespace footing::momentum {
 
@@ -27,6 +28,9 @@ struct HorizontalPrior {
   double moment_spread_m = 0.015;  ///< Standard deviation of e.
   double moment_time_s = 0.1;      ///< Correlation time of e.
   double cop_noise_m = 0.002;      ///< White, at full weight; grows with the inverse of the load.
+  PostureError posture;
+  /// The told deviation of c is so many times the filter's, whose parts reach further than c does.
+  double told_spread = 1;
 };
 
 /// One frame of what the horizontal estimator needs.
@@ -42,7 +46,7 @@ struct HorizontalInput {
 /// of the paper with the shear forces eliminated). A plain value.
 class HorizontalCom {
  public:
-  static constexpr int kStates = 7;
+  static constexpr int kStates = 8;
   /// Steps that are remembered: 200 ms at 120 Hz.
   static constexpr int kSlots = 25;
   using Filter = LinearFilter<kStates, kSlots>;
@@ -53,9 +57,11 @@ class HorizontalCom {
   /// The body is at rest at c_m.
   void Start(double c_m, double centre_m);
   void Advance(const HorizontalInput& input);
+  /// C is there by hands and feet alone, in the frame of the last Advance.
+  void SeePosture(double c_m);
 
   /// In W, as it was `lag_steps` ago (at most kSlots - 1).
-  Filter::Scalar Position(int lag_steps) const { return filter_.Delayed(lag_steps); }
+  Filter::Scalar Position(int lag_steps) const;
   Filter::Scalar Velocity() const { return filter_.Of(velocity_); }
   Filter::Scalar Acceleration() const { return filter_.Of(acceleration_); }
 

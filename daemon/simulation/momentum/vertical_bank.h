@@ -24,6 +24,7 @@ class VerticalBank {
 
   void Start(const VerticalInput& mean);
   void Advance(const VerticalInput& input);
+  void SeePosture(double height_m);
   void Coast();
 
   const VerticalCom& chosen() const {

@@ -11,6 +11,7 @@ namespace {
 constexpr double kPaperShare =
     0.99;  // Of the variance, in the components that paper mode searches.
 constexpr int kSolverIterations = 2;
+constexpr int kPostureIterations = 1;
 constexpr int kCleanUpIterations = 2;
 constexpr double kUnknownSdM = 1.0;  // Before anything is measured.
 
@@ -27,6 +28,12 @@ pose::GaussNewtonOptions RegressedOptions(const Options& options) {
   pose::GaussNewtonOptions solver = SolverOptions(options);
   solver.prior_weight = options.best.regressed_prior_weight;
   solver.smooth_weight = options.best.regressed_smooth_weight * std::sqrt(options.rate_hz / 60);
+  return solver;
+}
+
+pose::GaussNewtonOptions PostureOptions(const Options& options) {
+  pose::GaussNewtonOptions solver = SolverOptions(options);
+  solver.iterations = kPostureIterations;
   return solver;
 }
 
@@ -120,6 +127,7 @@ Reconstruction::Reconstruction(std::shared_ptr<const Parts> parts, const Options
       lag_steps_(static_cast<int>(std::lround(options.lag_s * options.rate_hz))),
       features_(step_s_, parts_->t_pose(2), parts_->body.mass_kg),
       gauss_newton_(parts_->body, parts_->basis, SolverOptions(options)),
+      posture_(parts_->body, parts_->basis, PostureOptions(options)),
       fibonacci_(parts_->body, parts_->basis, SearchOptions(options)),
       legs_{Leg(parts_->body, parts_->feet[0], 0), Leg(parts_->body, parts_->feet[1], 1)},
       q_(parts_->t_pose),
@@ -168,6 +176,7 @@ void Reconstruction::Begin(const momentum::TPose& pose) {
     if (parts_->horizontal) horizontal_.emplace(*parts_->horizontal, pose, step_s_);
   }
   gauss_newton_.Reset();
+  posture_.Reset();
   fibonacci_.Reset();
   if (regressed_) regressed_->Reset();
   was_regressed_ = placed_by_arms_ = false;

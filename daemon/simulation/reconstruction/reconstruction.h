@@ -90,6 +90,8 @@ struct Options {
   double lag_s = 0;      ///< 0 to 0.2: poses are told so much later, and better.
   bool use_momentum = true;
   bool use_angular_momentum = true;
+  /// Of the best mode: the momentum's filters are told where hands and feet alone have C.
+  bool use_posture = true;
   bool clean_up = true;
   bool use_basis = true;
   BestConstants best;
@@ -105,7 +107,7 @@ struct Output {
   double lag_s = 0;
   std::uint32_t resets = 0;
   double mass_kg = 0;
-  momentum::Estimate momentum;  ///< What the loads alone tell.
+  momentum::Estimate momentum;  ///< What loads, and the posture of hands and feet, tell.
   /// C: in best mode its height is that of the pose, which hands and feet have a part in; the rest
   /// is the loads'.
   Eigen::Vector3d com_W_m = Eigen::Vector3d::Zero();
@@ -162,15 +164,18 @@ class Reconstruction {
   void Begin(const momentum::TPose& pose);
   std::optional<Eigen::Vector2d> PredictHorizontal(const momentum::ContactLoads& loads);
   void Remember(const Inputs& inputs);
+  void SeePosture(const std::array<HandInput, kHands>& hands);
   /// What was measured then, with what is known of it now.
   void TakeLagged();
   void AdvanceFeatures();
   void PlaceTargets();
+  void AddHandTarget(std::size_t side, const HandInput& hand);
   void AddArmTargets(std::size_t side);
   /// Hands that only their arms tell of: where a first solution has them.
   void PlaceHandsByArms();
   void AddFeet();
   void HoldFeet();
+  void TakeOrigin(pose::PoseTargets& targets) const;
   void AddMomentumTargets();
   void Solve();
   void SolveBest();
@@ -198,6 +203,7 @@ class Reconstruction {
   pose::PoseTargets standing_;  ///< Of the clean-up: where feet on the ground are shown.
   std::array<FootLock, momentum::kFeet> locks_;
   pose::GaussNewton gauss_newton_;
+  pose::GaussNewton posture_;  ///< Of hands and feet alone.
   pose::FibonacciSearch fibonacci_;
   std::optional<pose::GaussNewton> regressed_;  ///< Over the errors of the regression.
   bool was_regressed_ = false;

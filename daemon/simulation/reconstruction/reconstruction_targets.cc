@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/body/momentum.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 /// What a frame's pose is solved for.
@@ -32,9 +33,23 @@ void Reconstruction::Remember(const Inputs& inputs) {
                 fine(arm.directions.hinge, arm.hinge_sd) &&
                 fine(arm.directions.forearm, arm.forearm_sd);
   }
+  if (best_ && options_.use_posture) SeePosture(now.hands);
   now.momentum = output_.momentum;
   now.known = inputs.known;
   ++frames_;
+}
+
+/// A pose of hands and feet alone knows nothing of the loads' C, so its errors are its own.
+void Reconstruction::SeePosture(const std::array<HandInput, kHands>& hands) {
+  if (!hands[0].valid || !hands[1].valid) return;
+  targets_ = {};
+  for (std::size_t side = 0; side < kHands; ++side) AddHandTarget(side, hands[side]);
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    AddFootTargets(parts_->feet[f], output_.momentum.feet[f], options_.best.foot, targets_);
+  }
+  TakeOrigin(targets_);
+  posture_.Solve(targets_);
+  output_.momentum = best_->SeePosture(origin_m_ + body::CentreOfMass(parts_->body, posture_.at()));
 }
 
 void Reconstruction::TakeLagged() {
@@ -55,33 +70,39 @@ void Reconstruction::AdvanceFeatures() {
 void Reconstruction::PlaceTargets() {
   targets_.count = 0;
   targets_.has_com = targets_.has_angular = false;
-  const bool paper = options_.mode == Mode::kPaper;
   for (std::size_t side = 0; side < kHands; ++side) {
     const HandInput& hand = then_.hands[side];
     if (!hand.valid) {
       AddArmTargets(side);
       continue;
     }
-    const body::Point& fist = parts_->fists[side];
-    pose::PointTarget target{fist.joint, fist.p_J_m, hand.p_W_m, hand.sd_m};
-    if (paper) {
-      target.sd_m.setConstant(kPaperHandSdM);
-    } else {
-      target.sd_m = (hand.sd_m.array().square() + std::pow(options_.best.hand_sd_m, 2)).sqrt();
-    }
-    targets_.Add(target);
+    AddHandTarget(side, hand);
   }
   AddFeet();
   HoldFeet();
   AddMomentumTargets();
-  for (int i = 0; i < targets_.count; ++i) {
-    pose::PointTarget& point = targets_.points[static_cast<std::size_t>(i)];
+  TakeOrigin(targets_);
+  TakeOrigin(standing_);
+}
+
+void Reconstruction::AddHandTarget(std::size_t side, const HandInput& hand) {
+  const body::Point& fist = parts_->fists[side];
+  pose::PointTarget target{fist.joint, fist.p_J_m, hand.p_W_m, hand.sd_m};
+  if (options_.mode == Mode::kPaper) {
+    target.sd_m.setConstant(kPaperHandSdM);
+  } else {
+    target.sd_m = (hand.sd_m.array().square() + std::pow(options_.best.hand_sd_m, 2)).sqrt();
+  }
+  targets_.Add(target);
+}
+
+/// Places in W are told from there.
+void Reconstruction::TakeOrigin(pose::PoseTargets& targets) const {
+  for (int i = 0; i < targets.count; ++i) {
+    pose::PointTarget& point = targets.points[static_cast<std::size_t>(i)];
     if (point.from_joint < 0) point.p_W_m -= origin_m_;
   }
-  for (int i = 0; i < standing_.count; ++i) {
-    standing_.points[static_cast<std::size_t>(i)].p_W_m -= origin_m_;
-  }
-  targets_.com_W_m -= origin_m_;
+  targets.com_W_m -= origin_m_;
 }
 
 /// The arm-angle error of equation (6): three of the shoulder, one of the elbow, as ways of the

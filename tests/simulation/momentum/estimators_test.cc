@@ -133,6 +133,66 @@ TEST(BestEstimator, LagMakesTheHorizontalPlaceBetter) {
   EXPECT_LT(rms[1], 0.6 * rms[0]);
 }
 
+// A posture that is wrong by a first-order process along each axis.
+class WrongPosture {
+ public:
+  Eigen::Vector3d Of(const Eigen::Vector3d& com_m) {
+    const Eigen::Vector3d time_s(0.25, 0.25, 3), spread_m(0.03, 0.03, 0.06);
+    for (int i = 0; i < 3; ++i) {
+      const double keep = std::exp(-kMadeStepS / time_s(i));
+      error_m_(i) =
+          keep * error_m_(i) + spread_m(i) * std::sqrt(1 - keep * keep) * random_.Normal();
+    }
+    return com_m + error_m_;
+  }
+
+ private:
+  synthetic::Random random_{8};
+  Eigen::Vector3d error_m_ = Eigen::Vector3d::Zero();
+};
+
+// The cells tell 0.3 % too much after the T-pose.
+TEST(BestEstimator, APostureTellsWhatLoadsCannot) {
+  const auto com_m = [](double t) {
+    return Eigen::Vector3d(0, 0.05 * Ramp(t) * std::sin(4 * t) * std::sin(0.7 * t),
+                           kMadeHeightM - 0.1 * Ramp(t) * (1 + std::sin(2.3 * t)));
+  };
+  Eigen::Vector3d rms[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (const int seen : {0, 1}) {
+    MadeBody body;
+    body.com_m = com_m;
+    BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+    WrongPosture posture;
+    for (int i = 0; i < 3600; ++i) {
+      const double t = i * kMadeStepS;
+      ContactLoads loads = body.At(t);
+      for (FootLoads& foot : loads.feet) {
+        for (std::size_t k = 0; k < foot.count; ++k) foot.cells[k].load_n *= 1.003;
+      }
+      Eigen::Vector3d told_m = best.Advance(loads).p_WC_m;
+      if (seen == 1) told_m = best.SeePosture(posture.Of(com_m(t))).p_WC_m;
+      rms[seen] += (told_m - com_m(t)).cwiseAbs2() / 3600;
+    }
+    rms[seen] = rms[seen].cwiseSqrt();
+  }
+  EXPECT_LT(rms[1].y(), 0.85 * rms[0].y());
+  EXPECT_LT(rms[1].z(), 0.85 * rms[0].z());
+  EXPECT_NEAR(rms[1].x(), rms[0].x(), 1e-3);
+}
+
+TEST(BestEstimator, PassesOverAPostureThatIsNotOne) {
+  MadeBody body;
+  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  const Eigen::Vector3d before_m = best.Advance(body.At(0)).p_WC_m;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(best.SeePosture({0, nan, 1}).p_WC_m, before_m);
+  EXPECT_NE(best.SeePosture({0, 0.1, 1.1}).p_WC_m, before_m);
+  ContactLoads lost = body.At(kMadeStepS);
+  lost.feet[0].valid = false;
+  const Eigen::Vector3d coasted_m = best.Advance(lost).p_WC_m;
+  EXPECT_EQ(best.SeePosture({0, 0.1, 1.1}).p_WC_m, coasted_m);
+}
+
 TEST(BestEstimator, IsFiniteAndSaysSoWhenTheSourceIsLostOrMad) {
   MadeBody body;
   BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
