@@ -96,7 +96,8 @@ Result<motion::MarkerTracks> LoadMarkers(const std::string& path) {
   if (ending == "c3d") {
     auto c3d = ReadC3d(path);
     if (!c3d) return c3d.error();
-    return motion::ToWorld(AxesOf(*c3d), std::move(c3d->points));
+    const motion::FileAxes axes = AxesOf(*c3d);  // Before the points are moved away.
+    return motion::ToWorld(axes, std::move(c3d->points));
   }
   if (ending != "trc") return UsageError(path + ": no markers: expected .trc or .c3d");
   const auto text = Read(path);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstdlib>
 
 namespace footing::motion_files {
@@ -37,6 +38,21 @@ TEST(Load, ReadsEveryKindOfFile) {
   const auto plates = LoadForces(mocap + "c3d/JA1Gait35.c3d");
   ASSERT_TRUE(plates.ok()) << plates.error().message;
   EXPECT_EQ(plates->plates.size(), 8u);
+}
+
+// The file has no POINT:Y_SCREEN, and y is up in it.
+TEST(Load, APersonStandsUpWhereTheFileDoesNotSayWhichWayIsUp) {
+  if (Shared().empty()) GTEST_SKIP() << "needs FOOTING_TEST_DATA";
+  const auto tracks = LoadMarkers(Shared() + "/mocap/c3d/squat.c3d");
+  ASSERT_TRUE(tracks.ok()) << tracks.error().message;
+  const auto first = [&](const char* name) -> Eigen::Vector3d {
+    const int marker = motion::FindMarker(*tracks, std::string("SehoonVSK35:") + name);
+    return marker < 0 ? Eigen::Vector3d::Constant(NAN)
+                      : Eigen::Vector3d(tracks->p[static_cast<std::size_t>(marker)].col(0));
+  };
+  EXPECT_NEAR(first("ARIEL").z(), 1.76, 0.01);  // On the head,
+  EXPECT_NEAR(first("LHEL").z(), 0.11, 0.01);   // and on the heels.
+  EXPECT_NEAR(first("RHEL").z(), 0.12, 0.01);
 }
 
 }  // namespace
