@@ -10,7 +10,6 @@ namespace footing::pose {
 namespace {
 
 constexpr double kLeastVariance = 1e-9;
-constexpr double kMargin = 0.1;
 
 int Count(const Eigen::VectorXd& falling_variances, double share) {
   const double total = falling_variances.sum();
@@ -42,12 +41,6 @@ PoseBasis FitBasis(const Eigen::Ref<const Eigen::MatrixXd>& poses, const BasisOp
   basis.modes = scale.cwiseInverse().asDiagonal() * vectors;
   basis.inverse = vectors.transpose() * scale.asDiagonal();
   basis.sd = variances.head(count).cwiseSqrt();
-  const Eigen::MatrixXd coefficients = vectors.transpose() * centred;
-  basis.lower = coefficients.rowwise().minCoeff();
-  basis.upper = coefficients.rowwise().maxCoeff();
-  const Eigen::VectorXd margin = kMargin * (basis.upper - basis.lower);
-  basis.lower -= margin;
-  basis.upper += margin;
   return basis;
 }
 
@@ -66,8 +59,6 @@ PoseBasis Leading(PoseBasis basis, double share) {
   basis.modes = basis.modes.leftCols(count).eval();
   basis.inverse = basis.inverse.topRows(count).eval();
   basis.sd = basis.sd.head(count).eval();
-  basis.lower = basis.lower.head(count).eval();
-  basis.upper = basis.upper.head(count).eval();
   return basis;
 }
 
@@ -77,8 +68,6 @@ PoseBasis Unconnected(const PoseBasis& basis) {
   single.modes = Eigen::MatrixXd::Identity(basis.dof(), basis.dof());
   single.inverse = single.modes;
   single.sd = (basis.modes * basis.sd.asDiagonal()).rowwise().norm().cwiseMax(1e-4);
-  single.lower = -4 * single.sd;
-  single.upper = 4 * single.sd;
   return single;
 }
 

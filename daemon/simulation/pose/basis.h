@@ -20,8 +20,6 @@ struct PoseBasis {
   Eigen::MatrixXd modes;    ///< A column a component; q = mean + modes a.
   Eigen::MatrixXd inverse;  ///< a = inverse (q - mean), for poses of the space.
   Eigen::VectorXd sd;       ///< Of each coefficient.
-  Eigen::VectorXd lower;    ///< Least and greatest coefficient seen, each a tenth of the range
-  Eigen::VectorXd upper;    ///< further out.
 
   int dof() const { return static_cast<int>(mean.size()); }
   int size() const { return static_cast<int>(sd.size()); }

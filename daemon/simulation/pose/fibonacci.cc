@@ -92,10 +92,10 @@ void FibonacciSearch::Solve(const PoseTargets& targets) {
   const int sweeps = started_ ? options_.sweeps : options_.first_sweeps;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int i = 0; i < basis_->size(); ++i) {
-      const double reach =
-          started_ ? options_.span * basis_->sd(i) : (basis_->upper(i) - basis_->lower(i)) / 2;
-      const double lower = std::max(basis_->lower(i), a_(i) - reach);
-      const double upper = std::min(basis_->upper(i), a_(i) + reach);
+      const double reach = options_.reach * basis_->sd(i);
+      const double span = started_ ? options_.span * basis_->sd(i) : 2 * reach;
+      const double lower = std::max(-reach, a_(i) - span);
+      const double upper = std::min(reach, a_(i) + span);
       if (lower < upper) Search(targets, i, lower, upper);
     }
   }

@@ -9,8 +9,6 @@
 namespace footing::reconstruction {
 namespace {
 
-/// Coefficients go so far, in standard deviations, in the paper's search.
-constexpr double kReach = 4;
 /// Below, a component is a degree of freedom that nobody moved: m or rad.
 constexpr double kLeastSd = 1e-5;
 constexpr std::uint32_t kMostWaves = 4096;
@@ -43,8 +41,6 @@ pose::PoseBasis ToBasis(const Eigen::VectorXd& mean, const Eigen::VectorXd& scal
   basis.modes = scale.cwiseInverse().asDiagonal() * rows.transpose();
   basis.inverse = rows * scale.asDiagonal();
   basis.sd = sd.head(count);
-  basis.lower = -kReach * basis.sd;
-  basis.upper = kReach * basis.sd;
   return basis;
 }
 

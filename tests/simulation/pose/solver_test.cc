@@ -114,8 +114,6 @@ TEST(Basis, HoldsThePosesItWasMadeFrom) {
     const Eigen::VectorXd q = world.poses.col(i);
     const Eigen::VectorXd a = world.basis.inverse * (q - world.basis.mean);
     EXPECT_LT((world.basis.mean + world.basis.modes * a - q).norm(), 1e-9);
-    EXPECT_TRUE((a.array() >= world.basis.lower.array()).all());
-    EXPECT_TRUE((a.array() <= world.basis.upper.array()).all());
   }
 }
 
@@ -244,8 +242,9 @@ TEST(FibonacciSearch, KeepsEveryCoefficientWithinItsRange) {
   PoseTargets targets = world.Targets(world.poses.col(7), 0.02);
   for (auto& point : targets.points) point.p_W_m *= 3;
   for (int frame = 0; frame < 10; ++frame) solver.Solve(targets);
-  EXPECT_TRUE((solver.coefficients().array() <= world.basis.upper.array()).all());
-  EXPECT_TRUE((solver.coefficients().array() >= world.basis.lower.array()).all());
+  const Eigen::ArrayXd sds = solver.coefficients().array().abs() / world.basis.sd.array();
+  EXPECT_LE(sds.maxCoeff(), FibonacciOptions().reach);
+  EXPECT_GT(sds.maxCoeff(), 0.98 * FibonacciOptions().reach);  // They would go on.
 }
 
 TEST(LegIk, BringsTheFootToItsPlaceAndMovesNothingElse) {
