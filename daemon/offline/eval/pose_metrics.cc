@@ -1,5 +1,6 @@
 #include "daemon/offline/eval/pose_metrics.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +13,9 @@ using body::Landmark;
 using nlohmann::ordered_json;
 
 constexpr const char* kAngles[] = {"hip", "knee", "shoulder", "elbow", "chest"};
+constexpr const char* kHipParts[] = {"hip_swing_deg", "hip_twist_deg",     "hip_twist_bent_deg",
+                                     "pelvis_deg",    "thigh_direction_deg"};
+constexpr double kBentDeg = 30;  // Of the true knee: from there on it shows how the thigh turns.
 
 void AddSides(const body::Body& body, Landmark left, std::vector<int>& joints) {
   for (const Landmark landmark : {left, body::Mirrored(left)}) {
@@ -38,6 +42,18 @@ int SkullBase(const body::Body& body) {
 double AngleDeg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   const double cosine = ((a.transpose() * b).trace() - 1) / 2;
   return RadiansToDegrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
+}
+
+double DirectionDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return RadiansToDegrees(std::atan2(a.cross(b).norm(), a.dot(b)));
+}
+
+/// How `b` is turned against `a` beyond the least turn that brings the direction `along_b` to
+/// `along_a`, both of unit length.
+double TwistDeg(const Eigen::Matrix3d& a, const Eigen::Vector3d& along_a, const Eigen::Matrix3d& b,
+                const Eigen::Vector3d& along_b) {
+  const auto swing = Eigen::Quaterniond::FromTwoVectors(along_b, along_a);
+  return AngleDeg(a, swing.toRotationMatrix() * b);
 }
 
 }  // namespace
@@ -129,10 +145,36 @@ void PoseScore::AddAngles() {
       angles_[i].Add(AngleDeg(local(at_, joint), local(truth_, joint)));
     }
   }
+  AddHips();
   const int chest = body_.landmarks[Landmark::kChest];
   if (chest < 0) return;
   const auto index = static_cast<std::size_t>(chest);
   angles_[4].Add(AngleDeg(at_.R_WJ[index], truth_.R_WJ[index]));  // Against the world.
+}
+
+void PoseScore::AddHips() {
+  for (const Landmark hip : {Landmark::kLeftHip, body::Mirrored(Landmark::kLeftHip)}) {
+    const Landmark knee =
+        hip == Landmark::kLeftHip ? Landmark::kLeftKnee : body::Mirrored(Landmark::kLeftKnee);
+    const auto h = static_cast<std::size_t>(body_.landmarks[hip]);
+    const auto k = static_cast<std::size_t>(body_.landmarks[knee]);
+    const auto pelvis = static_cast<std::size_t>(body_.skeleton.joints[h].parent);
+    const auto thigh_W = [&](const body::Kinematics& at) -> Eigen::Vector3d {
+      return (at.p_WJ[k] - at.p_WJ[h]).normalized();
+    };
+    const auto in_pelvis = [&](const body::Kinematics& at) -> Eigen::Matrix3d {
+      return at.R_WJ[pelvis].transpose() * at.R_WJ[h];
+    };
+    const Eigen::Vector3d along = at_.R_WJ[pelvis].transpose() * thigh_W(at_);
+    const Eigen::Vector3d true_along = truth_.R_WJ[pelvis].transpose() * thigh_W(truth_);
+    const double twist_deg = TwistDeg(in_pelvis(at_), along, in_pelvis(truth_), true_along);
+    const double bent_deg = AngleDeg(truth_.R_WJ[h], truth_.R_WJ[k]);
+    hips_[0].Add(DirectionDeg(along, true_along));
+    hips_[1].Add(twist_deg);
+    if (bent_deg > kBentDeg) hips_[2].Add(twist_deg);
+    hips_[3].Add(AngleDeg(at_.R_WJ[pelvis], truth_.R_WJ[pelvis]));
+    hips_[4].Add(DirectionDeg(thigh_W(at_), thigh_W(truth_)));
+  }
 }
 
 ordered_json PoseScore::Json() const {
@@ -147,6 +189,7 @@ ordered_json PoseScore::Json() const {
   for (std::size_t i = 0; i < angles_.size(); ++i) {
     json["joint_angle_error_deg"][kAngles[i]] = angles_[i].mean();
   }
+  for (std::size_t i = 0; i < hips_.size(); ++i) json[kHipParts[i]] = hips_[i].mean();
   return json;
 }
 

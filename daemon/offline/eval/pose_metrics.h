@@ -54,6 +54,7 @@ class PoseScore {
  private:
   double Mean(const std::vector<int>& joints, const Eigen::Vector3d& shift) const;
   void AddAngles();
+  void AddHips();
 
   const body::Body& body_;
   JudgedJoints joints_;
@@ -61,6 +62,9 @@ class PoseScore {
   std::vector<Eigen::Vector3d> errors_m_;
   Spread frames_, relative_, legs_, torso_, arms_;  ///< cm.
   std::array<Spread, 5> angles_;                    ///< Degrees: hip, knee, shoulder, elbow, chest.
+  /// Degrees. Of the thigh in the pelvis: its direction; its turn about itself, of all frames and of
+  /// those with a bent knee. Then the pelvis and the thigh's direction in W.
+  std::array<Spread, 5> hips_;
 };
 
 }  // namespace footing::eval
