@@ -13,8 +13,8 @@ using body::Landmark;
 using nlohmann::ordered_json;
 
 constexpr const char* kAngles[] = {"hip", "knee", "shoulder", "elbow", "chest"};
-constexpr const char* kHipParts[] = {"hip_swing_deg", "hip_twist_deg",     "hip_twist_bent_deg",
-                                     "pelvis_deg",    "thigh_direction_deg"};
+constexpr const char* kHipParts[] = {"hip_swing_deg", "hip_twist_deg", "hip_twist_bent_deg",
+                                     "pelvis_deg", "thigh_direction_deg"};
 constexpr double kBentDeg = 30;  // Of the true knee: from there on it shows how the thigh turns.
 
 void AddSides(const body::Body& body, Landmark left, std::vector<int>& joints) {
@@ -54,6 +54,17 @@ double TwistDeg(const Eigen::Matrix3d& a, const Eigen::Vector3d& along_a, const 
                 const Eigen::Vector3d& along_b) {
   const auto swing = Eigen::Quaterniond::FromTwoVectors(along_b, along_a);
   return AngleDeg(a, swing.toRotationMatrix() * b);
+}
+
+/// Mean length of what is left of the vectors when their mean is taken off.
+double MeanAboutMean(const std::vector<Eigen::Vector3d>& vectors) {
+  if (vectors.empty()) return 0;
+  const auto count = static_cast<double>(vectors.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& vector : vectors) mean += vector / count;
+  double sum = 0;
+  for (const Eigen::Vector3d& vector : vectors) sum += (vector - mean).norm();
+  return sum / count;
 }
 
 }  // namespace
@@ -168,6 +179,8 @@ void PoseScore::AddHips() {
     const Eigen::Vector3d along = at_.R_WJ[pelvis].transpose() * thigh_W(at_);
     const Eigen::Vector3d true_along = truth_.R_WJ[pelvis].transpose() * thigh_W(truth_);
     const double twist_deg = TwistDeg(in_pelvis(at_), along, in_pelvis(truth_), true_along);
+    const Eigen::AngleAxisd turn(in_pelvis(truth_).transpose() * in_pelvis(at_));
+    hip_turns_rad_[hip == Landmark::kLeftHip ? 0 : 1].emplace_back(turn.angle() * turn.axis());
     const double bent_deg = AngleDeg(truth_.R_WJ[h], truth_.R_WJ[k]);
     hips_[0].Add(DirectionDeg(along, true_along));
     hips_[1].Add(twist_deg);
@@ -190,6 +203,8 @@ ordered_json PoseScore::Json() const {
     json["joint_angle_error_deg"][kAngles[i]] = angles_[i].mean();
   }
   for (std::size_t i = 0; i < hips_.size(); ++i) json[kHipParts[i]] = hips_[i].mean();
+  json["hip_about_mean_deg"] =
+      RadiansToDegrees(MeanAboutMean(hip_turns_rad_[0]) + MeanAboutMean(hip_turns_rad_[1])) / 2;
   return json;
 }
 

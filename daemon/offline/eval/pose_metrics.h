@@ -62,9 +62,12 @@ class PoseScore {
   std::vector<Eigen::Vector3d> errors_m_;
   Spread frames_, relative_, legs_, torso_, arms_;  ///< cm.
   std::array<Spread, 5> angles_;                    ///< Degrees: hip, knee, shoulder, elbow, chest.
-  /// Degrees. Of the thigh in the pelvis: its direction; its turn about itself, of all frames and of
-  /// those with a bent knee. Then the pelvis and the thigh's direction in W.
+  /// Degrees. Of the thigh in the pelvis: its direction; its turn about itself, of all frames and
+  /// of those with a bent knee. Then the pelvis and the thigh's direction in W.
   std::array<Spread, 5> hips_;
+  /// From the true hip to the told one, rad along the axis in the thigh; left and right. Their mean
+  /// is what a person's markers or way of standing turn in all frames alike.
+  std::array<std::vector<Eigen::Vector3d>, 2> hip_turns_rad_;
 };
 
 }  // namespace footing::eval

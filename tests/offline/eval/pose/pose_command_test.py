@@ -20,7 +20,9 @@ if not DATA.is_dir():
 FIELDS = ("frames rate_hz mpjpe_cm mpjpe_p95_cm mpjpe_root_relative_cm mpjpe_legs_cm mpjpe_torso_cm "
           "mpjpe_arms_cm joint_angle_error_deg com_vertical_rms_cm com_horizontal_rms_cm "
           "com_vertical_drift_cm_per_min com_horizontal_drift_cm_per_min foot_skate_cm_per_s "
-          "foot_position_rms_cm contact_f1 landing_delay_ms solve_us_p50 solve_us_p99 baselines").split()
+          "foot_position_rms_cm contact_f1 landing_delay_ms solve_us_p50 solve_us_p99 hip_swing_deg "
+          "hip_twist_deg hip_twist_bent_deg hip_about_mean_deg pelvis_deg thigh_direction_deg "
+          "baselines").split()
 
 
 def run(*arguments):
@@ -72,6 +74,17 @@ class Pose(unittest.TestCase):
         without = self.judge("pose", "--no-baselines")["mpjpe_cm"]
         known = self.judge("pose", "--no-baselines", "--oracle", "com", "--oracle", "feet")["mpjpe_cm"]
         self.assertLess(known, 0.8 * without)
+
+    def test_parts_of_the_hips_error_are_parts_of_it(self):
+        for flags in ((), ("--oracle", "com", "--oracle", "feet")):
+            report = self.judge("pose", "--no-baselines", *flags)
+            hip = report["joint_angle_error_deg"]["hip"]
+            swing, twist = report["hip_swing_deg"], report["hip_twist_deg"]
+            # A turn moves no direction by more than its angle, and is no more than both together.
+            self.assertGreaterEqual(hip, swing)
+            self.assertLessEqual(hip, swing + twist)
+            self.assertLessEqual(swing, report["pelvis_deg"] + report["thigh_direction_deg"])
+            self.assertGreater(twist, 1)
 
     def test_wrong_boards_make_it_worse(self):
         right = self.judge("pose", "--no-baselines")
