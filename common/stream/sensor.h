@@ -31,6 +31,7 @@ struct MotionSample {
   Eigen::Vector3d magnetic_field = Eigen::Vector3d::Zero();  ///< Counts in S.
   double trigger = 0;                                        ///< 0 to 1, of a PS Move.
   double temperature_c = 0;
+  Eigen::Vector3d gyroscope_bias_radps = Eigen::Vector3d::Zero();  ///< In S; what was removed.
 };
 
 /// One sample of a Nunchuk, in its own sensor frame (x left, y front, z down).

@@ -93,6 +93,9 @@ v1::MotionSample ToProto(const stream::MotionSample& value) {
   }
   message.set_trigger(Finite(value.trigger));
   message.set_temperature_c(Finite(value.temperature_c));
+  if (!value.gyroscope_bias_radps.isZero(0)) {
+    *message.mutable_gyroscope_bias_radps() = ToProto(value.gyroscope_bias_radps);
+  }
   return message;
 }
 
@@ -117,6 +120,7 @@ stream::MotionSample FromProto(const v1::MotionSample& message) {
   value.magnetic_field = FromProto(message.magnetic_field());
   value.trigger = Finite(message.trigger());
   value.temperature_c = Finite(message.temperature_c());
+  value.gyroscope_bias_radps = FromProto(message.gyroscope_bias_radps());
   return value;
 }
 

@@ -252,7 +252,8 @@ void Device::TakeMotion(stream::MotionSample& sample, bool measured, TickContent
   if (sample.has_angular_velocity) {
     gyroscope_bias_.Take(sample.sampled_ns, sample.specific_force_mps2,
                          sample.angular_velocity_radps);
-    sample.angular_velocity_radps -= gyroscope_bias_.bias_radps();
+    sample.gyroscope_bias_radps = gyroscope_bias_.bias_radps();
+    sample.angular_velocity_radps -= sample.gyroscope_bias_radps;
   }
   repeats_ += sample.repeated && measured ? 1 : 0;
   clipped_ += sample.clipped_axes != 0 ? 1 : 0;
