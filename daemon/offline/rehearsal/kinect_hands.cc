@@ -1,39 +1,35 @@
 #include "daemon/offline/rehearsal/kinect_hands.h"
 
-#include <cmath>
-
 namespace footing::rehearsal {
 
-KinectHands::KinectHands(std::uint64_t seed, double step_s) : random_(seed), step_s_(step_s) {
-  for (double& value : offset_m_) value = kOffsetM * random_.Normal();
-}
+using virtual_sensors::KinectErrors;
 
-KinectHands::Hands KinectHands::Measure(const Hands& truth) {
-  const double kept = std::exp(-kPeriodS / kOffsetChangesS);
-  for (double& value : offset_m_) {
-    value = kept * value + std::sqrt(1 - kept * kept) * kOffsetM * random_.Normal();
-  }
-  Hands hands = truth;
-  for (reconstruction::HandInput& hand : hands) {
-    hand.p_W_m += offset_m_;
-    for (double& value : hand.p_W_m) value += kNoiseM * random_.Normal();
-    hand.sd_m.setConstant(std::hypot(kNoiseM, kOffsetM));
-  }
-  return hands;
-}
+KinectHands::KinectHands(std::uint64_t seed, double step_s) : errors_(seed), step_s_(step_s) {}
 
 KinectHands::Hands KinectHands::Advance(const Hands& truth) {
   constexpr double kRoundS = 1e-9;
   if (now_s_ >= next_s_ - kRoundS) {
-    on_their_way_.push_back({now_s_ + kLateS, Measure(truth)});
-    next_s_ += kPeriodS;
+    errors_.Expose();
+    Sample sample{now_s_, {}};
+    for (std::size_t side = 0; side < truth.size(); ++side) {
+      sample.p_W_m[side] = errors_.Told(truth[side].p_W_m);
+    }
+    on_their_way_.push_back(sample);
+    next_s_ += KinectErrors::kPeriodS;
   }
-  while (!on_their_way_.empty() && on_their_way_.front().arrives_s <= now_s_ + kRoundS) {
-    told_ = on_their_way_.front().hands;
+  while (!on_their_way_.empty() &&
+         on_their_way_.front().exposed_s + KinectErrors::kLateS <= now_s_ + kRoundS) {
+    const Sample& sample = on_their_way_.front();
+    for (std::size_t side = 0; side < tracks_.size(); ++side) {
+      tracks_[side].Add(sample.exposed_s, sample.p_W_m[side],
+                        Eigen::Vector3d::Constant(KinectErrors::SdM()));
+    }
     on_their_way_.pop_front();
   }
+  Hands hands;
+  for (std::size_t side = 0; side < hands.size(); ++side) hands[side] = tracks_[side].At(now_s_);
   now_s_ += step_s_;
-  return told_;
+  return hands;
 }
 
 }  // namespace footing::rehearsal

@@ -1,22 +1,18 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <deque>
 
-#include "common/synthetic/random.h"
-#include "daemon/simulation/reconstruction/reconstruction.h"
+#include "common/virtual_sensors/kinect_errors.h"
+#include "daemon/simulation/reconstruction/hand_track.h"
 
 namespace footing::rehearsal {
 
-/// Both hands as a Kinect's skeleton tracker tells them (docs/hands.md): 30 times a second, two of
-/// its frames late, with white noise and an offset common to both that changes slowly.
+/// Both hands as a Kinect's skeleton tracker tells them (virtual_sensors::KinectErrors) and as they
+/// come to the engine: carried on over their delay by reconstruction::HandTrack.
 class KinectHands {
  public:
   using Hands = std::array<reconstruction::HandInput, reconstruction::kHands>;
-
-  static constexpr double kPeriodS = 1.0 / 30, kLateS = 2.0 / 30;
-  static constexpr double kNoiseM = 0.015, kOffsetM = 0.04, kOffsetChangesS = 5;
 
   /// `step_s` between frames.
   KinectHands(std::uint64_t seed, double step_s);
@@ -26,16 +22,14 @@ class KinectHands {
 
  private:
   struct Sample {
-    double arrives_s;
-    Hands hands;
+    double exposed_s;
+    std::array<Eigen::Vector3d, reconstruction::kHands> p_W_m;
   };
-  Hands Measure(const Hands& truth);
 
-  synthetic::Random random_;
+  virtual_sensors::KinectErrors errors_;
   double step_s_, now_s_ = 0, next_s_ = 0;
-  Eigen::Vector3d offset_m_;
   std::deque<Sample> on_their_way_;
-  Hands told_;
+  std::array<reconstruction::HandTrack, reconstruction::kHands> tracks_;
 };
 
 }  // namespace footing::rehearsal

@@ -180,6 +180,7 @@ Inputs InsoleWalk::InMovingFrame(const InsoleInputs& inputs) {
   Inputs out;
   out.loads.time_s = inputs.time_s;
   out.hands = inputs.hands;
+  out.arms = inputs.arms;
   for (HandInput& hand : out.hands) hand.p_W_m -= Flat(frame_m_);
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
     const InsoleFoot& cells = inputs.feet[f];

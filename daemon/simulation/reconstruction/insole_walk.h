@@ -26,6 +26,7 @@ struct InsoleInputs {
   double time_s = 0;
   std::array<InsoleFoot, momentum::kFeet> feet;
   std::array<HandInput, kHands> hands;  ///< W.
+  std::array<arms::ArmEstimate, kHands> arms = {};
 };
 
 /// The reconstruction of somebody who walks away in shoes with cells (the paper's section 8). Cells
