@@ -21,6 +21,10 @@ struct HeldCourse {
 HeldCourse FollowFist(const body::Body& body, const motion::Motion& motion, int side,
                       double cutoff_hz = 10);
 
+/// A vector in a Wiimote's own frame (x left, y front, z down) as in S, and back: pointing forward
+/// with its buttons up.
+inline Eigen::Vector3d AsHeld(const Eigen::Vector3d& v) { return {v.y(), v.x(), -v.z()}; }
+
 /// Errors of a Wiimote with MotionPlus and of the hand that holds it; standard deviations unless
 /// said otherwise. Noises, counts and ranges are the devices' (docs/hands.md).
 struct HeldErrorConfig {

@@ -14,7 +14,9 @@ inline constexpr std::size_t kArms = 2;  ///< 0 is the left one.
 class ArmFeatures {
  public:
   static constexpr int kTurn = 9, kHistories = 3;
-  static constexpr int kLinear = kTurn + 12 + kTurn * kHistories + kTurn + 3;
+  static constexpr int kOtherAt = kTurn + 12 + kTurn * kHistories;  ///< What the other hand says.
+  static constexpr int kOther = kTurn + 3;
+  static constexpr int kLinear = kOtherAt + kOther;
   static constexpr int kProducts = kTurn * (kTurn + 1) / 2;
   static constexpr int kCount = kLinear + kProducts;
   using Values = Eigen::Matrix<double, kCount, 1>;

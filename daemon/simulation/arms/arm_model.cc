@@ -41,8 +41,9 @@ ArmDirections Mirrored(const ArmDirections& arm) {
   return {MirroredWay(arm.upper), MirroredWay(arm.hinge), MirroredWay(arm.forearm)};
 }
 
-Directions ArmModel::Predict(ArmFeatures::Values& features) const {
+Directions ArmModel::Predict(ArmFeatures::Values& features, bool other_known) const {
   features = (features - mean).cwiseProduct(scale).cwiseMax(-kMostScaled).cwiseMin(kMostScaled);
+  if (!other_known) features.segment<ArmFeatures::kOther>(ArmFeatures::kOtherAt).setZero();
   Directions directions = offset;
   directions.noalias() += weights * features;
   return directions;

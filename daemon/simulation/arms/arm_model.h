@@ -28,8 +28,9 @@ struct ArmModel {
   /// Of the errors on persons that were left out, in the left arm's frame.
   Eigen::Matrix<double, kDirections, kDirections> covariance;
 
-  /// Writes the scaled features to `features`.
-  Directions Predict(ArmFeatures::Values& features) const;
+  /// Writes the scaled features to `features`. Where nothing is known of the other hand, what it
+  /// says is what it said in the mean.
+  Directions Predict(ArmFeatures::Values& features, bool other_known = true) const;
 };
 
 /// InvalidData where a tensor is missing or of another shape; `origin` names the file.

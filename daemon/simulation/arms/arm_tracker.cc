@@ -17,19 +17,26 @@ void ArmTracker::Add(std::size_t arm, const HandReading& reading, double step_s)
   hands_[arm].Advance(reading, step_s);
 }
 
+void ArmTracker::BeginTPose() {
+  for (HandAttitude& hand : hands_) hand.BeginTPose();
+}
+
+void ArmTracker::Lose(std::size_t arm) { hands_[arm] = {}; }
+
 void ArmTracker::Align() {
   for (HandAttitude& hand : hands_) hand.Align();
   features_ = {};
 }
 
 const std::array<ArmEstimate, kArms>& ArmTracker::Advance(double step_s) {
-  if (!aligned()) return estimates_;
-  features_.Advance({hands_[0].state(), hands_[1].state()}, step_s);
+  const bool any = hands_[0].state().valid || hands_[1].state().valid;
+  if (any) features_.Advance({hands_[0].state(), hands_[1].state()}, step_s);
   for (std::size_t arm = 0; arm < kArms; ++arm) {
+    estimates_[arm].valid = hands_[arm].state().valid;
+    if (!estimates_[arm].valid) continue;
     features_.Compute(arm, values_);
-    const ArmDirections told = Of(model_.Predict(values_));
+    const ArmDirections told = Of(model_.Predict(values_, hands_[1 - arm].state().valid));
     estimates_[arm].directions = arm == 1 ? Mirrored(told) : told;
-    estimates_[arm].valid = true;
   }
   return estimates_;
 }

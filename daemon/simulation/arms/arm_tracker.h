@@ -16,8 +16,13 @@ class ArmTracker {
 
   /// A sample of one hand, `step_s` after its last.
   void Add(std::size_t arm, const HandReading& reading, double step_s);
+  /// A T-pose begins: the readings so far are no part of it. Nothing for hands that are aligned.
+  void BeginTPose();
   /// The T-pose is held and was for some seconds.
   void Align();
+  /// A device was not heard for too long to know how it has turned. Its arm is invalid until the
+  /// next Align; the other one is told on without it.
+  void Lose(std::size_t arm);
   /// How the arms are held now, `step_s` after the last call. Invalid before Align.
   const std::array<ArmEstimate, kArms>& Advance(double step_s);
 

@@ -10,6 +10,7 @@ namespace footing::arms {
 namespace {
 
 constexpr double kMeanS = 4;       // Of the T-pose.
+constexpr double kLeastRestS = 1;  // Less of it tells nothing.
 constexpr double kGravityS = 1.5;  // Twice, one after the other: 3 s in all.
 constexpr double kFrozenS = 3;     // After a clipped reading.
 constexpr double kLeastForceMps2 = 1;
@@ -69,8 +70,12 @@ void HandAttitude::Correct(const HandReading& reading, double step_s) {
       R_WG_);
 }
 
+void HandAttitude::BeginTPose() {
+  rested_s_ = 0;  // The next reading has the whole of the means.
+}
+
 void HandAttitude::Align() {
-  if (mean_force_S_.norm() < kLeastForceMps2) return;
+  if (rested_s_ < kLeastRestS || mean_force_S_.norm() < kLeastForceMps2) return;
   const Eigen::Vector3d up_S = mean_force_S_.normalized();
   Eigen::Vector3d ahead_S = Eigen::Vector3d::UnitX() - up_S.x() * up_S;
   if (ahead_S.norm() < 1e-3) return;  // Held upright: no heading.

@@ -30,8 +30,11 @@ class HandAttitude {
  public:
   /// Non-finite readings are left out.
   void Advance(const HandReading& reading, double step_s);
+  /// A T-pose begins: the readings so far are no part of it. Nothing once aligned.
+  void BeginTPose();
   /// The T-pose is held and was for some seconds: the mean turn is the gyroscope's bias, the mean
-  /// force is up, and S's x points forward. Without readings before, the state stays invalid.
+  /// force is up, and S's x points forward. Without a second of readings the state stays
+  /// invalid.
   void Align();
   /// Invalid until aligned.
   const HandState& state() const { return state_; }

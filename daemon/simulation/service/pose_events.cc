@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
+
+#include "daemon/simulation/service/pose_words.h"
 
 namespace footing::simulation {
 namespace {
@@ -20,6 +23,21 @@ std::string Kilograms(double mass_kg) {
 }
 
 }  // namespace
+
+/// Of Wiimotes alone: trackers lose hands and find them all the time.
+void PoseEvents::AddHands(const PoseFrame& frame, std::int64_t now_ns, v1::Events& events) {
+  for (std::size_t side = 0; side < hand_trouble_.size(); ++side) {
+    const HandTrouble now = frame.hand_trouble[side];
+    const HandTrouble before = std::exchange(hand_trouble_[side], now);
+    if (!frame.calibrated || now == before) continue;
+    const std::string name = side == 0 ? "left" : "right";
+    if (now == HandTrouble::kNone) {
+      Add(events, v1::Event::KIND_STREAM_BACK, now_ns, "the " + name + " Wiimote tells its arm");
+    } else {
+      Add(events, v1::Event::KIND_STREAM_LOST, now_ns, HandWords(now, name));
+    }
+  }
+}
 
 v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
                                std::int64_t now_ns) {
@@ -48,6 +66,7 @@ v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
   if (has_last_ && !next_subject && frame.resets > resets_) {
     Add(events, v1::Event::KIND_COMMAND, now_ns, "the filters began anew");
   }
+  AddHands(frame, now_ns, events);
   has_last_ = true;
   told_ = told;
   source_ = frame.source;

@@ -13,12 +13,22 @@ namespace footing::simulation {
 /// What the pose follows.
 enum class PoseSource { kBoards, kInsoles };
 
+/// Why a Wiimote that is there does not tell how its arm is held.
+enum class HandTrouble {
+  kNone,
+  kNoModel,      ///< No arm.fmodel.
+  kNoGyroscope,  ///< No MotionPlus in it.
+  kSilent,       ///< Nothing comes from it.
+  kAwaitsTPose,  ///< It was not heard for a while: how it has turned is not known.
+};
+
 /// What the pose engine is told, with where it came from. Fixed size.
 struct PoseInputs {
   reconstruction::Inputs sensors;  ///< Its time is set by the engine's own steps.
   /// Cells in the shoes, where there are any. While one of them tells anything, they are followed
   /// instead of the boards.
   std::array<reconstruction::InsoleFoot, momentum::kFeet> insoles;
+  std::array<HandTrouble, reconstruction::kHands> hand_trouble{};  ///< For people only.
   bool simulated = false;  ///< A stand-in is behind any of it.
   std::uint64_t sensor_epoch = 0;
   std::uint64_t sensor_sequence = 0;
@@ -47,9 +57,11 @@ struct PoseFrame {
 
   PoseSource source = PoseSource::kBoards;
   bool insoles_idle = false;  ///< They tell, but this mode or lag cannot follow them.
-  std::array<bool, momentum::kFeet> feet_told{};  ///< The source tells of this foot now.
-  std::array<double, momentum::kFeet> load_n{};   ///< By the source, calibrated or not.
-  std::array<bool, 2> hands_valid{};
+  std::array<bool, momentum::kFeet> feet_told{};           ///< The source tells of this foot now.
+  std::array<double, momentum::kFeet> load_n{};            ///< By the source, calibrated or not.
+  std::array<bool, reconstruction::kHands> hands_valid{};  ///< Their places are told,
+  std::array<bool, reconstruction::kHands> arms_valid{};   ///< or how their arms are held.
+  std::array<HandTrouble, reconstruction::kHands> hand_trouble{};
 
   bool valid = false;
   bool calibrated = false;

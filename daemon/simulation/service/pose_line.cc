@@ -66,7 +66,7 @@ PoseLine::PoseLine(const Config& config, reconstruction::Models models,
       known_{std::move(first)},
       shown_number_(known_.front().number),
       thread_(PoseRun(std::move(run), kRateHz, subjects_), 1 / kRateHz, 1, wake_descriptor),
-      sensors_(config.rig, thread_.inputs()) {
+      sensors_(config.rig, thread_.inputs(), models_.arm) {
   sensors_.TakeSubject(shown_number_);
 }
 
@@ -126,6 +126,7 @@ std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
                                                        std::int64_t now_ns) {
   std::unique_ptr<SubjectRun> done;
   while (subjects_.done.Pop(done)) done.reset();
+  sensors_.Follow(frame);
   while (known_.size() > 1 && known_.front().number < frame.subject_number) known_.pop_front();
   const Known& known = Of(frame.subject_number);
   std::vector<transport::ChannelBytes> channels;
@@ -133,8 +134,8 @@ std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
     shown_number_ = frame.subject_number;
     channels = Retained();
   }
-  channels.push_back(
-      Bytes(kCharacters, ToCharacterFrame(frame, known.subject, mode_, world_, sensors_.rig())));
+  channels.push_back(Bytes(kCharacters, ToCharacterFrame(frame, known.subject, mode_, world_,
+                                                         sensors_.rig(), sensors_.tracker())));
   const v1::Events events = events_.Between(frame, known.subject, now_ns);
   if (events.events_size() > 0) channels.push_back(Bytes(kEvents, events));
   v1::AppliedInputs inputs;

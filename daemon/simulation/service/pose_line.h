@@ -31,7 +31,7 @@ class PoseLine {
   static std::vector<transport::Channel> Channels();
   static std::vector<std::string> Capabilities() { return {"pose"}; }
   static std::vector<std::string> SensorChannels() {
-    return {"status", "setup", "boards", "hands", "contacts"};
+    return {"status", "setup", "boards", "hands", "contacts", "motion"};
   }
   static constexpr v1::QueuePolicy kSensorPolicy = v1::QUEUE_POLICY_DROP_OLDEST;
   double frame_rate_hz() const { return kRateHz; }

@@ -29,6 +29,7 @@ Result<reconstruction::Models> LoadPoseModels(const Config& config) {
   std::vector<reconstruction::NamedModel> models;
   std::vector<const char*> names{kPoseFile};
   if (config.mode == "paper") names.push_back(kComFile);
+  if (config::FindDataFile(kArmFile, config.data_folder)) names.push_back(kArmFile);
   for (const char* name : names) {
     auto model = Load(name, config);
     if (!model) return model.error();

@@ -45,8 +45,13 @@ void SetFoot(const momentum::FootEstimate& foot, v1::BodyFoot& message) {
   message.set_airborne_s(foot.airborne_s);
 }
 
+std::string HandsSource(const PoseFrame& frame, const std::string& tracker) {
+  if (frame.hands_valid[0] || frame.hands_valid[1]) return tracker.empty() ? "tracker" : tracker;
+  return frame.arms_valid[0] || frame.arms_valid[1] ? "wiimote" : "";
+}
+
 void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& mode,
-             v1::BodyState& body) {
+             const std::string& tracker, v1::BodyState& body) {
   body.set_subject(subject.code);
   body.set_mode(mode);
   body.set_calibrated(frame.calibrated);
@@ -66,7 +71,10 @@ void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& 
   for (std::size_t i = 0; i < frame.link_count; ++i) body.add_link_sd_m(frame.link_sd_m[i]);
   body.set_note(PoseNote(frame, subject));
   body.set_solve_us(frame.solve_us);
-  for (const bool seen : frame.hands_valid) body.add_hands_seen(seen);
+  for (std::size_t side = 0; side < reconstruction::kHands; ++side) {
+    body.add_hands_seen(frame.hands_valid[side] || frame.arms_valid[side]);
+  }
+  body.set_hands_source(HandsSource(frame, tracker));
   body.set_contact_source(frame.source == PoseSource::kInsoles ? "insoles" : "boards");
   for (const bool told : frame.feet_told) body.add_feet_told(told);
 }
@@ -118,6 +126,30 @@ void SetHandInput(const reconstruction::HandInput& hand, v1::PoseHand& message) 
   *message.mutable_sd_m() = wire::ToProto(hand.sd_m);
 }
 
+void SetArmInput(const arms::ArmEstimate& arm, v1::PoseHand& message) {
+  if (!arm.valid) return;
+  v1::PoseArm& told = *message.mutable_arm();
+  *told.mutable_upper() = wire::ToProto(arm.directions.upper);
+  *told.mutable_hinge() = wire::ToProto(arm.directions.hinge);
+  *told.mutable_forearm() = wire::ToProto(arm.directions.forearm);
+  *told.mutable_upper_sd() = wire::ToProto(arm.upper_sd);
+  *told.mutable_hinge_sd() = wire::ToProto(arm.hinge_sd);
+  *told.mutable_forearm_sd() = wire::ToProto(arm.forearm_sd);
+}
+
+arms::ArmEstimate ArmFrom(const v1::PoseHand& message) {
+  arms::ArmEstimate arm;
+  arm.valid = message.has_arm();
+  if (!arm.valid) return arm;
+  const v1::PoseArm& told = message.arm();
+  arm.directions = {wire::FromProto(told.upper()), wire::FromProto(told.hinge()),
+                    wire::FromProto(told.forearm())};
+  arm.upper_sd = wire::FromProto(told.upper_sd());
+  arm.hinge_sd = wire::FromProto(told.hinge_sd());
+  arm.forearm_sd = wire::FromProto(told.forearm_sd());
+  return arm;
+}
+
 reconstruction::HandInput HandFrom(const v1::PoseHand& message) {
   reconstruction::HandInput hand;
   hand.valid = message.valid();
@@ -130,7 +162,7 @@ reconstruction::HandInput HandFrom(const v1::PoseHand& message) {
 
 v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subject,
                                     const std::string& mode, const std::string& world,
-                                    const std::string& rig) {
+                                    const std::string& rig, const std::string& tracker) {
   v1::CharacterFrame message;
   message.set_world(world);
   message.set_step(frame.step);
@@ -151,7 +183,7 @@ v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subje
   *character.mutable_com_m() = wire::ToProto(frame.momentum.p_WC_m);
   *character.mutable_com_velocity_mps() = wire::ToProto(frame.momentum.v_WC_mps);
   character.set_simulated_input(frame.simulated);
-  SetBody(frame, subject, mode, *character.mutable_body());
+  SetBody(frame, subject, mode, tracker, *character.mutable_body());
   return message;
 }
 
@@ -189,6 +221,8 @@ v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subje
   SetInsoleInput(inputs.insoles[1], *pose.mutable_right_foot());
   SetHandInput(inputs.sensors.hands[0], *pose.mutable_left_hand());
   SetHandInput(inputs.sensors.hands[1], *pose.mutable_right_hand());
+  SetArmInput(inputs.sensors.arms[0], *pose.mutable_left_hand());
+  SetArmInput(inputs.sensors.arms[1], *pose.mutable_right_hand());
   pose.set_calibrate_number(inputs.calibrate_number);
   pose.set_subject_number(inputs.subject_number);
   pose.set_subject_code(subject.code);
@@ -209,6 +243,7 @@ PoseApplied PoseAppliedFrom(const v1::AppliedInput& message) {
   inputs.sensors.loads.feet = {FootFrom(pose.left_foot()), FootFrom(pose.right_foot())};
   inputs.insoles = {InsoleFrom(pose.left_foot()), InsoleFrom(pose.right_foot())};
   inputs.sensors.hands = {HandFrom(pose.left_hand()), HandFrom(pose.right_hand())};
+  inputs.sensors.arms = {ArmFrom(pose.left_hand()), ArmFrom(pose.right_hand())};
   inputs.calibrate_number = pose.calibrate_number();
   inputs.subject_number = pose.subject_number();
   return applied;

@@ -10,10 +10,11 @@
 
 namespace footing::simulation {
 
-/// From a frame of the pose engine to the message of the protocol. `mode` is "best" or "paper".
+/// From a frame of the pose engine to the message of the protocol. `mode` is "best" or "paper",
+/// `tracker` the name of who tells of hands' places.
 v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subject,
                                     const std::string& mode, const std::string& world,
-                                    const std::string& rig);
+                                    const std::string& rig, const std::string& tracker = "");
 
 /// One link a joint; its size is that of a ball about the joint that the limbs end in.
 stream::Skeleton ToSkeleton(const body::Body& body);

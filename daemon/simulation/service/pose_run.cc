@@ -75,14 +75,17 @@ void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
   told_ = inputs.Front().sensors;
   worn_.feet = inputs.Front().insoles;
   simulated_ = inputs.Front().simulated;
+  hand_trouble_ = inputs.Front().hand_trouble;
   told_.loads.time_s = static_cast<double>(step_) / rate_hz_;
   if (static_cast<double>(quiet_steps_) > kStreamLostS * rate_hz_) {
     for (auto& foot : told_.loads.feet) foot.valid = false;
     for (auto& foot : worn_.feet) foot.valid = false;
     for (auto& hand : told_.hands) hand.valid = false;
+    for (auto& arm : told_.arms) arm.valid = false;
   }
   worn_.time_s = told_.loads.time_s;
   worn_.hands = told_.hands;
+  worn_.arms = told_.arms;
   ChooseSource();
   Advance();
   solve_ns_ = clock::ThreadCpuNs() - begun_ns;
@@ -103,7 +106,9 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
     frame.load_n[side] = walks ? reconstruction::TotalLoadN(worn_.feet[side])
                                : momentum::PressureOf(told_.loads.feet[side], 1).total_n;
     frame.hands_valid[side] = told_.hands[side].valid;
+    frame.arms_valid[side] = told_.arms[side].valid;
   }
+  frame.hand_trouble = hand_trouble_;
   frame.valid = output.valid;
   frame.calibrated = output.calibrated;
   frame.calibration_progress = output.calibration_progress;

@@ -63,6 +63,7 @@ class PoseRun {
   reconstruction::InsoleInputs worn_;
   PoseSource source_ = PoseSource::kBoards;
   bool simulated_ = false;
+  std::array<HandTrouble, reconstruction::kHands> hand_trouble_{};
   std::int64_t solve_ns_ = 0;
 };
 

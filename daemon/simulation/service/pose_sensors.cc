@@ -1,5 +1,6 @@
 #include "daemon/simulation/service/pose_sensors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -40,10 +41,15 @@ int BoardSideOf(v1::DeviceRole role) {
   return SideOf(role, v1::DEVICE_ROLE_LEFT_BOARD, v1::DEVICE_ROLE_RIGHT_BOARD);
 }
 
+int HandSideOf(v1::DeviceRole role) {
+  return SideOf(role, v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND);
+}
+
 }  // namespace
 
-PoseSensors::PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out)
-    : wanted_rig_(std::move(rig)), followed_rig_(wanted_rig_), out_(out) {
+PoseSensors::PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
+                         std::optional<arms::ArmModel> arm)
+    : wanted_rig_(std::move(rig)), followed_rig_(wanted_rig_), out_(out), arms_(std::move(arm)) {
   const stream::BoardLayout layout = stream::DefaultLayout();
   PlaceCells(layout.left, inputs_.sensors.loads.feet[0]);
   PlaceCells(layout.right, inputs_.sensors.loads.feet[1]);
@@ -54,9 +60,15 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
     if (followed_rig_.empty() && BoardSideOf(device.role()) >= 0) followed_rig_ = device.rig();
   }
   std::array<Board, momentum::kFeet> boards{};
+  std::array<std::optional<std::uint32_t>, reconstruction::kHands> wiimotes;
   for (const v1::DeviceStatus& device : status.devices()) {
+    if (device.rig() != followed_rig_) continue;
+    const int hand = HandSideOf(device.role());
+    if (hand >= 0 && device.kind() == v1::DEVICE_KIND_WIIMOTE) {
+      wiimotes[static_cast<std::size_t>(hand)] = device.device();
+    }
     const int side = BoardSideOf(device.role());
-    if (side < 0 || device.rig() != followed_rig_) continue;
+    if (side < 0) continue;
     Board& board = boards[static_cast<std::size_t>(side)];
     const Board& before = boards_[static_cast<std::size_t>(side)];
     if (before.bound && before.device == device.device()) board = before;
@@ -64,6 +76,7 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
     board.device = device.device();
   }
   boards_ = boards;
+  for (std::size_t side = 0; side < wiimotes.size(); ++side) arms_.Bind(side, wiimotes[side]);
 }
 
 void PoseSensors::Place(const v1::SetupState& setup) {
@@ -94,15 +107,16 @@ void PoseSensors::TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns) 
   }
 }
 
-void PoseSensors::TakeHand(const v1::HandSample& sample, std::int64_t now_ns) {
-  const int side = SideOf(sample.role(), v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND);
+void PoseSensors::TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns) {
+  const int side = HandSideOf(sample.role());
   if (side < 0 || sample.rig() != followed_rig_) return;
   if (!IsFinite(sample.position_m()) || !IsFinite(sample.sd_m())) return;
   if (!(sample.confidence() > 0)) return;
   hands_[static_cast<std::size_t>(side)] = {true, now_ns, sample.simulated()};
-  reconstruction::HandInput& told = inputs_.sensors.hands[static_cast<std::size_t>(side)];
-  told.p_W_m = wire::FromProto(sample.position_m());
-  told.sd_m = wire::FromProto(sample.sd_m()).cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM);
+  tracker_ = sample.tracker();
+  tracks_[static_cast<std::size_t>(side)].Add(
+      NanosecondsToSeconds(now_ns) - std::max(0.0, age_s), wire::FromProto(sample.position_m()),
+      wire::FromProto(sample.sd_m()).cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM));
 }
 
 void PoseSensors::TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns) {
@@ -140,7 +154,9 @@ void PoseSensors::Judge(std::int64_t now_ns) {
     return worn.seen;
   };
   for (std::size_t side = 0; side < hands_.size(); ++side) {
-    inputs_.sensors.hands[side].valid = judge(hands_[side], kHandTimeoutS);
+    const bool seen = judge(hands_[side], kHandTimeoutS);
+    if (seen) inputs_.sensors.hands[side] = tracks_[side].At(NanosecondsToSeconds(now_ns));
+    inputs_.sensors.hands[side].valid = seen;
     inputs_.insoles[side].valid = judge(insoles_[side], kInsoleTimeoutS);
   }
 }
@@ -152,8 +168,13 @@ void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   if (tick.snapshot()) return;
   for (const v1::BoardSample& sample : tick.boards().samples()) TakeBoard(sample, now_ns);
   for (const v1::ContactSample& sample : tick.contacts().samples()) TakeInsole(sample, now_ns);
-  for (const v1::HandSample& sample : tick.hands().samples()) TakeHand(sample, now_ns);
+  for (const v1::HandSample& sample : tick.hands().samples()) {
+    // Both times are footingd's; its clock may be another one than ours.
+    TakeHand(sample, NanosecondsToSeconds(tick.host_ns() - sample.sampled_ns()), now_ns);
+  }
+  for (const v1::MotionSample& sample : tick.motion().samples()) arms_.Take(sample, now_ns);
   Judge(now_ns);
+  arms_.Tell(now_ns, inputs_);
   inputs_.sensor_epoch = tick.epoch();
   inputs_.sensor_sequence = tick.sequence();
   out_.Write(inputs_);

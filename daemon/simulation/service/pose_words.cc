@@ -79,6 +79,19 @@ void AddFeet(const PoseFrame& frame, std::string& note) {
   }
 }
 
+/// Which hands nothing tells of, and why.
+void AddHands(const PoseFrame& frame, std::string& note) {
+  const auto told = [&](std::size_t side) {
+    return frame.hands_valid[side] || frame.arms_valid[side];
+  };
+  const auto& trouble = frame.hand_trouble;
+  const bool wiimotes = trouble[0] != HandTrouble::kNone || trouble[1] != HandTrouble::kNone;
+  if (!told(0) && !told(1) && !wiimotes) return Add(note, "no hand is seen");
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    if (!told(side)) Add(note, HandWords(trouble[side], kSides[side]));
+  }
+}
+
 void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) {
   if (subject.mass_kg <= 0 || frame.mass_kg <= 0) return;
   const double difference = frame.mass_kg / subject.mass_kg - 1;
@@ -91,6 +104,22 @@ void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) 
 
 }  // namespace
 
+std::string HandWords(HandTrouble trouble, const std::string& side) {
+  switch (trouble) {
+    case HandTrouble::kNone:
+      return "the " + side + " hand is not seen";
+    case HandTrouble::kNoModel:
+      return "the " + side + " Wiimote is not followed: there is no arm.fmodel (docs/models.md)";
+    case HandTrouble::kNoGyroscope:
+      return "the " + side + " Wiimote tells no turn: is a MotionPlus in it?";
+    case HandTrouble::kSilent:
+      return "nothing comes from the " + side + " Wiimote: its arm is guessed";
+    case HandTrouble::kAwaitsTPose:
+      return "the " + side + " Wiimote was lost and has no heading: take the T-pose anew";
+  }
+  return "";
+}
+
 std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
   std::string note = LostSource(frame);
   const bool told = note.empty();
@@ -101,15 +130,7 @@ std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
     return note;
   }
   if (told) AddFeet(frame, note);
-  if (!frame.hands_valid[0] && !frame.hands_valid[1]) {
-    Add(note, "no hand is seen");
-  } else {
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (!frame.hands_valid[side]) {
-        Add(note, std::string("the ") + kSides[side] + " hand is not seen");
-      }
-    }
-  }
+  AddHands(frame, note);
   AddMass(frame, subject, note);
   return note;
 }

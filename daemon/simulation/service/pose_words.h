@@ -11,6 +11,9 @@ namespace footing::simulation {
 /// board needs its tare.
 inline constexpr double kMassTolerance = 0.03;
 
+/// Why nothing tells of the hand of that side ("left").
+std::string HandWords(HandTrouble trouble, const std::string& side);
+
 /// What is wrong and what to do about it, for a person; empty when all is well.
 std::string PoseNote(const PoseFrame& frame, const Subject& subject);
 

@@ -41,6 +41,12 @@ struct Line {
       told.insoles[f].load_n[0] = momentum::PressureOf(seen.loads.feet[f], 1).total_n;
     }
   }
+  /// The left hand is not seen, but a Wiimote tells of its arm.
+  void HoldAnArm() {
+    told.sensors.hands[0].valid = false;
+    told.sensors.arms[0].valid = true;
+    told.sensors.arms[0].directions.upper = Eigen::Vector3d(0.3, 0.8, -0.4).normalized();
+  }
   /// One step with the i-th frame that was measured.
   void Step(std::size_t i) {
     told.sensors = measured[i % measured.size()];
@@ -160,6 +166,7 @@ TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
     }
     line.told.sensors = line.measured[i];
     if (i % 200 > 150) line.Wear(i);
+    if (i % 100 > 70) line.HoldAnArm();
     if (i % 200 == 0) line.told.insoles = {};
     line.inputs.Write(line.told);
     line.run.StepOnSimThread(line.inputs, line.frame);

@@ -118,6 +118,36 @@ TEST_F(PoseSensorsTest, AHandIsKnownForAsLongAsItIsSeen) {
   EXPECT_FALSE(After(tick, 0.2).sensors.hands[1].valid) << "the tracker does not believe it itself";
 }
 
+TEST_F(PoseSensorsTest, AHandThatATrackerTellsLateIsCarriedOnToNow) {
+  After(StatusTick());
+  constexpr double kLateS = 0.07, kSpeedMps = 1.5;
+  const PoseInputs* told = nullptr;
+  for (double t_s = 0; t_s < 0.6; t_s += 1.0 / 30) {
+    v1::Tick tick;
+    tick.set_host_ns(SecondsToNanoseconds(900 + t_s));  // Another host's clock.
+    AddHand(tick, v1::DEVICE_ROLE_LEFT_HAND, kSpeedMps * (t_s - kLateS), 0.8, 1.4);
+    tick.mutable_hands()->mutable_samples(0)->set_sampled_ns(
+        SecondsToNanoseconds(900 + t_s - kLateS));
+    tick.mutable_hands()->mutable_samples(0)->set_tracker("kinect");
+    told = &After(tick, t_s);
+    EXPECT_LT(told->sensors.hands[0].p_W_m.x(), kSpeedMps * t_s + 0.03) << t_s;
+  }
+  // The last tick was at 0.567 s or 0.6 s; untreated it would be 10 cm behind.
+  EXPECT_NEAR(told->sensors.hands[0].p_W_m.x(), kSpeedMps * (0.6 - 1.0 / 60), 0.05);
+  EXPECT_GT(told->sensors.hands[0].sd_m.x(), 0.01) << "a guess is less sure than what was seen";
+  EXPECT_EQ(sensors.tracker(), "kinect");
+}
+
+TEST_F(PoseSensorsTest, AWiimoteInAHandOfTheRigIsBoundByItsRole) {
+  v1::Tick status = StatusTick();
+  AddDevice(status, 21, v1::DEVICE_ROLE_LEFT_HAND);
+  status.mutable_status()->mutable_devices(2)->set_kind(v1::DEVICE_KIND_WIIMOTE);
+  After(status);
+  const PoseInputs& told = After({});
+  EXPECT_EQ(told.hand_trouble[0], HandTrouble::kNoModel);
+  EXPECT_EQ(told.hand_trouble[1], HandTrouble::kNone);
+}
+
 TEST_F(PoseSensorsTest, SamplesOfThePastAndOfOtherRigsAreNotTold) {
   v1::Tick status = StatusTick();
   AddDevice(status, 11, v1::DEVICE_ROLE_LEFT_BOARD, "two");

@@ -63,6 +63,25 @@ TEST(PoseNote, NamesTheFootThatIsOffAndTheHandThatIsNotSeen) {
   EXPECT_THAT(note, HasSubstr("right hand is not seen"));
 }
 
+TEST(PoseNote, SaysWhatAWiimoteLacksAndWhatToDo) {
+  PoseFrame frame = Well();
+  frame.hands_valid = {false, false};
+  EXPECT_EQ(PoseNote(frame, kSubject), "no hand is seen");
+  frame.arms_valid = {true, true};
+  EXPECT_EQ(PoseNote(frame, kSubject), "");
+  frame.arms_valid[0] = false;
+  frame.hand_trouble[0] = HandTrouble::kSilent;
+  EXPECT_EQ(PoseNote(frame, kSubject), "nothing comes from the left Wiimote: its arm is guessed");
+  frame.hand_trouble[0] = HandTrouble::kAwaitsTPose;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("take the T-pose anew"));
+  frame.arms_valid[1] = false;
+  frame.hand_trouble = {HandTrouble::kNoGyroscope, HandTrouble::kNoModel};
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("is a MotionPlus in it?"));
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right Wiimote is not followed"));
+  frame.hands_valid = {true, true};
+  EXPECT_EQ(PoseNote(frame, kSubject), "") << "a tracker sees both";
+}
+
 TEST(PoseNote, SpeaksOfInsolesToWhoWalksInThem) {
   PoseFrame frame = Well();
   frame.source = PoseSource::kInsoles;
@@ -108,6 +127,20 @@ TEST(PoseEvents, TheSourceThatIsFollowedIsNamed) {
               HasSubstr("follows the insoles"));
   frame.feet_told = {false, true};
   EXPECT_THAT(events.Between(frame, kSubject, 3).events(0).text(), HasSubstr("an insole is lost"));
+}
+
+TEST(PoseEvents, AWiimoteLostAndBackIsToldOnceEach) {
+  PoseEvents events;
+  PoseFrame frame = Well();
+  events.Between(frame, kSubject, 1);
+  frame.hand_trouble[1] = HandTrouble::kSilent;
+  const v1::Events lost = events.Between(frame, kSubject, 2);
+  ASSERT_EQ(lost.events_size(), 1);
+  EXPECT_EQ(lost.events(0).kind(), v1::Event::KIND_STREAM_LOST);
+  EXPECT_THAT(lost.events(0).text(), HasSubstr("the right Wiimote"));
+  EXPECT_EQ(events.Between(frame, kSubject, 3).events_size(), 0);
+  frame.hand_trouble[1] = HandTrouble::kNone;
+  EXPECT_EQ(events.Between(frame, kSubject, 4).events(0).kind(), v1::Event::KIND_STREAM_BACK);
 }
 
 TEST(PoseEvents, TheNextSubjectIsNamed) {
