@@ -4,18 +4,14 @@
 #include <memory>
 #include <utility>
 
-#include "clients/stream/forearm.h"
 #include "clients/stream/tellings.h"
-#include "common/synthetic/random.h"
-#include "common/synthetic/sensor.h"
+#include "common/virtual_sensors/held_device.h"
 
 namespace footing::stream_client {
 namespace {
 
 using stream::DeviceRole;
 namespace sensors = virtual_sensors;
-
-constexpr double kGyroscopeNoiseRadps = 0.003;  // rms an axis: two counts of a slow MotionPlus.
 
 /// What the cells of one board read; a copy begins anew.
 StandIn::CornerForces UnderFoot(std::shared_ptr<const Stage> stage, std::size_t foot,
@@ -29,26 +25,76 @@ StandIn::CornerForces UnderFoot(std::shared_ptr<const Stage> stage, std::size_t 
   };
 }
 
-StandIn::WiimoteMotion OnForearm(std::shared_ptr<const Stage> stage, int side, std::uint64_t seed) {
-  const auto course = std::make_shared<const ForearmCourse>(FollowForearm(*stage, side));
-  return [stage, course, random = synthetic::Random(seed)](double t_s) mutable {
+/// Errors of the device and of the grip; the device itself counts.
+sensors::HeldErrors ErrorsInFist(std::uint64_t seed) {
+  sensors::HeldErrorConfig config;
+  config.force_count_mps2 = config.turn_count_radps = 0;
+  config.seed = seed;
+  return sensors::HeldErrors(config);
+}
+
+}  // namespace
+
+StandIn::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side, std::uint64_t seed) {
+  const auto course = std::make_shared<const sensors::HeldCourse>(
+      sensors::FollowFist(stage->scene.body, stage->scene.motion, side));
+  return [stage, course, errors = ErrorsInFist(seed), last_s = 0.0](double t_s) mutable {
+    const Stage::Instant at = stage->At(t_s);
+    const auto between = [&at](const Eigen::Matrix3Xd& values) -> Eigen::Vector3d {
+      return (1 - at.share) * values.col(at.frame) + at.share * values.col(at.frame + 1);
+    };
+    const auto told = errors.Advance(between(course->specific_force_S_mps2),
+                                     between(course->angular_velocity_S_radps),
+                                     std::max(0.0, t_s - std::exchange(last_s, t_s)));
     device_models::WiimoteSensors felt;
-    felt.specific_force_S_mps2 = course->ForceAt(*stage, t_s);
-    felt.angular_velocity_S_radps = course->TurnAt(*stage, t_s);
-    for (int axis = 0; axis < 3; ++axis) {
-      felt.specific_force_S_mps2[axis] += synthetic::SensorModel().noise_mps2 * random.Normal();
-      felt.angular_velocity_S_radps[axis] += kGyroscopeNoiseRadps * random.Normal();
-    }
+    felt.specific_force_S_mps2 = sensors::AsHeld(told.specific_force_S_mps2);
+    felt.angular_velocity_S_radps = sensors::AsHeld(told.angular_velocity_S_radps);
     return felt;
   };
+}
+
+namespace {
+
+Result<void> CheckHands(const BoardsOptions& options) {
+  const std::string& hands = options.hands;
+  if (hands != "none" && hands != "move" && hands != "wiimote" && hands != "kinect") {
+    return UsageError("--hands " + hands + ": there are none, move, wiimote and kinect");
+  }
+  const std::string& lost = options.lost_hand;
+  if (!lost.empty() && lost != "left" && lost != "right") {
+    return UsageError("--lose-hand " + lost + ": there are left and right");
+  }
+  if (!lost.empty() && hands == "none") {
+    return UsageError("--lose-hand " + lost + ": with --hands none there is nothing to lose");
+  }
+  return {};
+}
+
+/// One hand is out of reach, or not seen, for a while.
+void LoseHand(const BoardsOptions& options, Plan& plan) {
+  if (options.lost_hand.empty()) return;
+  const DeviceRole role =
+      options.lost_hand == "left" ? DeviceRole::kLeftHand : DeviceRole::kRightHand;
+  Silence silence{0, options.lost_from_s, options.lost_from_s + options.lost_for_s};
+  for (; silence.device < plan.devices.size(); ++silence.device) {
+    if (plan.devices[silence.device].role() == role) plan.silences.push_back(silence);
+  }
+  for (Telling& telling : plan.tellings) {
+    if (!telling.hands) continue;
+    telling.hands = [seen = std::move(telling.hands), role, silence](double t_s) mutable {
+      stream::HandFrame frame = seen(t_s);
+      std::erase_if(frame.points, [&](const stream::TrackedPoint& point) {
+        return point.role == role && silence.Covers(t_s);
+      });
+      return frame;
+    };
+  }
 }
 
 }  // namespace
 
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
-  if (options.hands != "none" && options.hands != "move" && options.hands != "wiimote") {
-    return UsageError("--hands " + options.hands + ": there are none, move and wiimote");
-  }
+  if (const auto checked = CheckHands(options); !checked) return checked.error();
   const auto link = ParseLink(common.link);
   if (!link) return link.error();
   StageOptions wanted = options.stage;
@@ -69,10 +115,11 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
       const std::uint64_t device = 3 + static_cast<std::uint64_t>(side);
       plan.devices.push_back(MakeWiimote(
           common, *link, device, side == 0 ? DeviceRole::kLeftHand : DeviceRole::kRightHand,
-          OnForearm(stage, side, DeviceSeed(common, device) + 700), {true, false}));
+          InFist(stage, side, DeviceSeed(common, device) + 700), {true, false}));
     }
   }
   TellTheBody(stage, options.hands, options.hand_noise_m, common, plan);
+  LoseHand(options, plan);
   return plan;
 }
 

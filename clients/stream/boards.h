@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 
 #include "clients/stream/body_stage.h"
@@ -10,14 +12,21 @@ namespace footing::stream_client {
 
 struct BoardsOptions {
   StageOptions stage;
-  std::string hands = "none";  ///< none, move or wiimote.
+  std::string hands = "none";  ///< none, move, wiimote or kinect.
+  /// A hand that is lost for a while: its Wiimote out of reach, or not seen.
+  std::string lost_hand;  ///< left or right; empty: none is.
+  double lost_from_s = 0, lost_for_s = 0;
   double hand_noise_m = 0.01;  ///< Standard deviation along each axis, of hands "move".
   virtual_sensors::CellErrorConfig errors;  ///< Its seed is not used.
 };
 
 /// Two Balance Boards under a body in motion, its true pose, and its hands: as a tracker sees them
-/// ("move"), or two Wiimotes with MotionPlus on the forearms ("wiimote"), each mounted so that with
-/// hanging arms x is left, y front and z down.
+/// ("move"), as a Kinect does ("kinect"), or as two Wiimotes with MotionPlus in the fists feel them
+/// ("wiimote"), each held so that it points forward with its buttons up in the T-pose, give or take
+/// the errors of virtual_sensors::HeldErrors.
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common);
+
+/// What a Wiimote in the fist of side 0 (left) or 1 feels. A copy begins anew.
+StandIn::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side, std::uint64_t seed);
 
 }  // namespace footing::stream_client

@@ -19,7 +19,11 @@ void AddMotion(CLI::App& command, StageOptions& stage) {
 CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
   auto* boards = app.add_subcommand("boards", "Two Balance Boards under a body in motion");
   AddMotion(*boards, options.stage);
-  boards->add_option("--hands", options.hands, "none, move or wiimote");
+  boards->add_option("--hands", options.hands, "none, move, wiimote or kinect");
+  boards->add_option("--lose-hand", options.lost_hand, "left or right: lost for a while");
+  boards->add_option("--lose-from-s", options.lost_from_s, "From then on,")
+      ->check(CLI::Range(0.0, 1e6));
+  boards->add_option("--lose-for-s", options.lost_for_s, "so long")->check(CLI::Range(0.0, 1e6));
   boards->add_option("--hand-noise-m", options.hand_noise_m)->check(CLI::Range(0.0, 0.5));
   boards->add_flag("--place-boards", options.stage.place_boards, "Lay the boards under the feet");
   boards->add_option("--cell-noise-kg", options.errors.noise_kg)->check(CLI::Range(0.0, 5.0));

@@ -31,7 +31,8 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
         on_end_(std::move(on_end)),
         redial_(io),
         devices_(std::move(plan.devices)),
-        fresh_tellings_(std::move(plan.tellings)) {
+        fresh_tellings_(std::move(plan.tellings)),
+        silences_(std::move(plan.silences)) {
     sequences_.assign(devices_.size(), 0);
     for (std::size_t i = 0; i < devices_.size() + fresh_tellings_.size(); ++i)
       clocks_.push_back(std::make_unique<boost::asio::steady_timer>(io));
@@ -135,6 +136,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     const std::string& bytes = envelope.output().report();
     const std::size_t slot = envelope.output().slot();
     const std::int64_t now_ns = clock::MonotonicNs();
+    if (IsSilent(slot, NanosecondsToSeconds(now_ns - start_ns_))) return;
     StandIn& device = devices_[slot];
     if (envelope.output().channel() == v1::DeviceOutput::CHANNEL_FEATURE_GET) {
       if (bytes.empty()) return;
@@ -163,6 +165,12 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
         });
   }
 
+  bool IsSilent(std::size_t slot, double time_s) const {
+    return std::any_of(silences_.begin(), silences_.end(), [&](const Silence& silence) {
+      return silence.device == slot && silence.Covers(time_s);
+    });
+  }
+
   /// The motion has come to its end, which is told once.
   bool IsOver(double time_s) {
     if (duration_s_ <= 0 || time_s < duration_s_) return false;
@@ -174,6 +182,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   void Deliver(std::size_t slot, const StandIn::Arrival& arrival) {
     if (IsOver(arrival.arrives_s)) return;
     for (const auto& report : devices_[slot].Deliver(arrival.sampled_s)) {
+      if (IsSilent(slot, arrival.arrives_s)) continue;
       SendReport(slot, report, start_ns_ + SecondsToNanoseconds(arrival.sampled_s));
     }
     Schedule(slot);
@@ -182,7 +191,8 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   void ScheduleTelling(std::size_t index) {
     const double due_s = static_cast<double>(told_[index]) / tellings_[index].rate_hz;
     auto& timer = *clocks_[devices_.size() + index];
-    timer.expires_at(start_ + std::chrono::nanoseconds(SecondsToNanoseconds(due_s)));
+    timer.expires_at(
+        start_ + std::chrono::nanoseconds(SecondsToNanoseconds(due_s + tellings_[index].late_s)));
     timer.async_wait([weak = weak_from_this(), index, due_s](boost::system::error_code error) {
       const auto self = weak.lock();
       if (self && !error && self->connection_ && !self->stopped_) self->Tell(index, due_s);
@@ -237,6 +247,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   boost::asio::steady_timer redial_;
   std::vector<StandIn> devices_;
   const std::vector<Telling> fresh_tellings_;
+  const std::vector<Silence> silences_;
   std::vector<Telling> tellings_;
   std::vector<std::uint64_t> told_;  // How often each was.
   std::vector<std::unique_ptr<boost::asio::steady_timer>> clocks_;

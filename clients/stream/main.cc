@@ -47,6 +47,8 @@ int main(int argc, char** argv) {
                   "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
                   "  footing-stream corners --left board.csv --link poor --seconds 60\n"
                   "  footing-stream boards --motion demo --hands move\n"
+                  "  footing-stream boards --motion demo --hands wiimote --lose-hand left "
+                  "--lose-from-s 12 --lose-for-s 2\n"
                   "  footing-stream boards --motion 14_14.amc --skeleton 14.asf --place-boards\n"
                   "  footing-stream insoles --motion walk.amc --skeleton walk.asf --hands move\n");
   stream_client::Common common;

@@ -31,15 +31,25 @@ struct Ports {
 /// since the motion began and go forward. A copy begins anew.
 struct Telling {
   double rate_hz = 60;
+  double late_s = 0;  ///< Each is sent so long after its time.
   std::function<stream::HandFrame(double t_s)> hands;
   std::function<stream::ReferenceFrame(double t_s)> reference;
   std::function<stream::ContactFrame(double t_s)> contacts;
+};
+
+/// A device of the plan that is out of reach for a while, seconds since the motion began: nothing
+/// comes from it and nothing gets to it.
+struct Silence {
+  std::size_t device = 0;
+  double from_s = 0, to_s = 0;
+  bool Covers(double t_s) const { return t_s >= from_s && t_s < to_s; }
 };
 
 /// Stand-ins and how long their motion lasts (0: without end).
 struct Plan {
   std::vector<StandIn> devices;
   std::vector<Telling> tellings;
+  std::vector<Silence> silences;
   double duration_s = 0;
 };
 

@@ -7,6 +7,7 @@
 #include "common/body/momentum.h"
 #include "common/body/points.h"
 #include "common/synthetic/random.h"
+#include "common/virtual_sensors/kinect_errors.h"
 
 namespace footing::stream_client {
 namespace {
@@ -43,25 +44,51 @@ std::vector<int> ShownJoints(const body::Body& body) {
   return joints;
 }
 
+namespace {
+
+/// Both fists where they are.
+stream::HandFrame Fists(const Stage& stage, const char* tracker, double sd_m, double t_s) {
+  const body::Kinematics at = KinematicsAt(stage, t_s);
+  stream::HandFrame frame;
+  frame.tracker = tracker;
+  frame.simulated = true;
+  for (const int side : {0, 1}) {
+    const body::Point fist = body::Fist(stage.scene.body, side);
+    const auto joint = static_cast<std::size_t>(fist.joint);
+    stream::TrackedPoint point;
+    point.role = side == 0 ? stream::DeviceRole::kLeftHand : stream::DeviceRole::kRightHand;
+    point.position_m = body::Place(fist, at.R_WJ[joint], at.p_WJ[joint]);
+    point.sd_m.setConstant(sd_m);
+    point.confidence = 1;
+    frame.points.push_back(point);
+  }
+  return frame;
+}
+
+}  // namespace
+
 Telling TellHands(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed) {
   Telling telling;
   telling.rate_hz = kRateHz;
   telling.hands = [stage, noise_m, random = synthetic::Random(seed)](double t_s) mutable {
-    const body::Kinematics at = KinematicsAt(*stage, t_s);
-    stream::HandFrame frame;
-    frame.tracker = "stand-in";
-    frame.simulated = true;
-    for (const int side : {0, 1}) {
-      const body::Point fist = body::Fist(stage->scene.body, side);
-      const auto joint = static_cast<std::size_t>(fist.joint);
-      stream::TrackedPoint point;
-      point.role = side == 0 ? stream::DeviceRole::kLeftHand : stream::DeviceRole::kRightHand;
-      point.position_m = body::Place(fist, at.R_WJ[joint], at.p_WJ[joint]);
-      for (int axis = 0; axis < 3; ++axis) point.position_m[axis] += noise_m * random.Normal();
-      point.sd_m.setConstant(std::max(noise_m, kLeastSdM));
-      point.confidence = 1;
-      frame.points.push_back(point);
-    }
+    stream::HandFrame frame = Fists(*stage, "move", std::max(noise_m, kLeastSdM), t_s);
+    for (stream::TrackedPoint& point : frame.points)
+      for (double& value : point.position_m) value += noise_m * random.Normal();
+    return frame;
+  };
+  return telling;
+}
+
+Telling TellKinectHands(std::shared_ptr<const Stage> stage, std::uint64_t seed) {
+  using virtual_sensors::KinectErrors;
+  Telling telling;
+  telling.rate_hz = 1 / KinectErrors::kPeriodS;
+  telling.late_s = KinectErrors::kLateS;
+  telling.hands = [stage, errors = KinectErrors(seed)](double t_s) mutable {
+    stream::HandFrame frame = Fists(*stage, "kinect", KinectErrors::SdM(), t_s);
+    errors.Expose();
+    for (stream::TrackedPoint& point : frame.points)
+      point.position_m = errors.Told(point.position_m);
     return frame;
   };
   return telling;
@@ -93,6 +120,8 @@ void TellTheBody(const std::shared_ptr<const Stage>& stage, const std::string& h
                  double hand_noise_m, const Common& common, Plan& plan) {
   if (hands == "move") {
     plan.tellings.push_back(TellHands(stage, hand_noise_m, DeviceSeed(common, 3) + 700));
+  } else if (hands == "kinect") {
+    plan.tellings.push_back(TellKinectHands(stage, DeviceSeed(common, 3) + 700));
   }
   plan.tellings.push_back(TellPose(stage));
   plan.duration_s = common.seconds > 0 ? common.seconds : stage->repeats ? 0 : stage->duration_s();

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <memory>
 
-#include "clients/stream/forearm.h"
 #include "clients/stream/tellings.h"
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
@@ -51,10 +50,42 @@ TEST_F(BoardsTest, TwoBoardsAndTheTruePoseAreThereAndHandsWhenAskedFor) {
   EXPECT_EQ(PlanBoards(options_, {})->devices.size(), 4u);
 }
 
-TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
+TEST_F(BoardsTest, ALostHandIsASilentWiimoteOrAPointThatIsNotSeen) {
+  options_.lost_hand = "right";
+  options_.lost_from_s = 2;
+  options_.lost_for_s = 1;
+  options_.hands = "wiimote";
+  const auto held = PlanBoards(options_, {});
+  ASSERT_TRUE(held && held->silences.size() == 1);
+  const Silence& silence = held->silences[0];
+  EXPECT_EQ(held->devices[silence.device].role(), stream::DeviceRole::kRightHand);
+  EXPECT_FALSE(silence.Covers(1.99));
+  EXPECT_TRUE(silence.Covers(2.99));
+  EXPECT_FALSE(silence.Covers(3));
   options_.hands = "kinect";
-  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("none, move and wiimote"));
+  auto seen = PlanBoards(options_, {});
+  ASSERT_TRUE(seen);
+  EXPECT_TRUE(seen->silences.empty());
+  Telling& kinect = seen->tellings[0];
+  EXPECT_NEAR(kinect.rate_hz, 30, 1e-9);
+  EXPECT_NEAR(kinect.late_s, 2.0 / 30, 1e-9);
+  EXPECT_EQ(kinect.hands(1.9).points.size(), 2u);
+  ASSERT_EQ(kinect.hands(2.5).points.size(), 1u);
+  EXPECT_EQ(kinect.hands(2.6).points[0].role, stream::DeviceRole::kLeftHand);
+  EXPECT_EQ(kinect.hands(3.1).points.size(), 2u);
+}
+
+TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
+  options_.hands = "leap";
+  EXPECT_THAT(PlanBoards(options_, {}).error().message,
+              HasSubstr("none, move, wiimote and kinect"));
+  options_.hands = "move";
+  options_.lost_hand = "middle";
+  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("left and right"));
   options_.hands = "none";
+  options_.lost_hand = "left";
+  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("nothing to lose"));
+  options_.lost_hand = "";
   options_.stage.motion = "dance";
   const auto unknown = PlanBoards(options_, {});
   ASSERT_FALSE(unknown);
@@ -181,23 +212,38 @@ TEST(ShownJoints, OfALargeSkeletonAreThoseOnTheWayToALandmark) {
   }
 }
 
-TEST_F(BoardsTest, AForearmThatHangsStillFeelsGravityAlongItselfAndTurnsWhenItIsRaised) {
-  const auto stage = MakeStage(options_.stage);
-  ASSERT_TRUE(stage);
+TEST_F(BoardsTest, AWiimoteInTheFistFeelsGravityAndTurnsWithTheArm) {
+  auto made = MakeStage(options_.stage);
+  ASSERT_TRUE(made);
+  const auto stage = std::make_shared<const Stage>(*std::move(made));
   for (const int side : {0, 1}) {
-    const ForearmCourse course = FollowForearm(*stage, side);
-    // T-pose: x, that is left of a hanging arm, is up or down.
-    EXPECT_NEAR(course.ForceAt(*stage, 0.7).x(), (side == 0 ? 1 : -1) * kStandardGravityMps2, 0.6);
-    EXPECT_NEAR(course.ForceAt(*stage, 0.7).norm(), kStandardGravityMps2, 0.05);
-    // 10 degrees from hanging: z is down.
-    EXPECT_NEAR(course.ForceAt(*stage, 3.0).z(), -kStandardGravityMps2 * std::cos(kPi / 18), 0.2);
-    EXPECT_LT(course.TurnAt(*stage, 3.0).norm(), 0.05);
-    // The turn between is one of 80 degrees about y, the axis to the front.
-    double turned = 0;
-    for (double t_s = 1.3; t_s < 2.7; t_s += 0.001)
-      turned += 0.001 * course.TurnAt(*stage, t_s).y();
-    EXPECT_NEAR(std::abs(turned), 80 * kPi / 180, 0.05);
+    StandIn::WiimoteMotion motion = InFist(stage, side, 5);
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), turned = Eigen::Vector3d::Zero();
+    Eigen::Vector3d bias = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 270; ++i) {
+      const auto felt = motion(0.01 * i);
+      if (i < 100) force += 0.01 * felt.specific_force_S_mps2;
+      if (i < 100) bias += 0.01 * felt.angular_velocity_S_radps;
+      if (i >= 100) turned += 0.01 * (felt.angular_velocity_S_radps - bias);
+    }
+    // T-pose, buttons up: z of a Wiimote is down; it lies up to 3 x 0.17 rad off.
+    EXPECT_LT(force.z(), -kStandardGravityMps2 * std::cos(0.51));
+    EXPECT_NEAR(force.norm(), kStandardGravityMps2, 0.4);
+    // The arm comes down by 80 degrees about the axis ahead, which is the Wiimote's y.
+    EXPECT_NEAR(turned.y(), (side == 0 ? -1 : 1) * 80 * kPi / 180, 0.25);
+    EXPECT_NEAR(turned.norm(), 80 * kPi / 180, 0.1);
   }
+}
+
+TEST_F(BoardsTest, ACopyOfAWiimotesMotionBeginsAnew) {
+  auto made = MakeStage(options_.stage);
+  ASSERT_TRUE(made);
+  const StandIn::WiimoteMotion motion = InFist(std::make_shared<const Stage>(*made), 0, 5);
+  StandIn::WiimoteMotion one = motion, other = motion;
+  for (int i = 0; i < 5; ++i) one(0.01 * i);
+  EXPECT_NE(one(0.05).specific_force_S_mps2, other(0.05).specific_force_S_mps2);
+  StandIn::WiimoteMotion first = motion, again = motion;
+  EXPECT_EQ(first(0.1).specific_force_S_mps2, again(0.1).specific_force_S_mps2);
 }
 
 }  // namespace
