@@ -11,6 +11,7 @@ void AddPose(const scene::PoseTally& tally, nlohmann::ordered_json& summary) {
   summary["calibrated_frames"] = tally.calibrated_frames();
   summary["resets"] = tally.resets();
   summary["mass_kg"] = tally.mass_kg();
+  summary["hands"] = tally.hands_source().empty() ? "none" : tally.hands_source();
   summary["contact_source"] = tally.contact_source();
   summary["compared_frames"] = tally.compared();
   if (tally.compared() == 0) return;

@@ -73,6 +73,7 @@ scene::BodyState BodyOf(const v1::BodyState& from) {
   for (int i = 0; i < std::min(from.hands_seen_size(), 2); ++i) {
     body.hands_seen[static_cast<std::size_t>(i)] = from.hands_seen(i);
   }
+  body.hands_source = from.hands_source();
   body.contact_source = from.contact_source();
   return body;
 }

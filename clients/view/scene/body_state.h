@@ -39,6 +39,7 @@ struct BodyState {
   std::string note;
   double solve_us = 0;
   std::array<bool, 2> hands_seen{};
+  std::string hands_source;    ///< "wiimote", a tracker's name; empty: nothing tells of the hands.
   std::string contact_source;  ///< "boards" or "insoles"; empty of a server that does not say.
 };
 

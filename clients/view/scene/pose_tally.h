@@ -26,6 +26,7 @@ class PoseTally {
   std::uint64_t calibrations() const { return calibrations_; }
   std::uint32_t resets() const { return last_.resets; }
   double mass_kg() const { return last_.mass_kg; }
+  const std::string& hands_source() const { return last_.hands_source; }
   const std::string& contact_source() const { return last_.contact_source; }
   /// Frames that were compared; the means below are over them, cm. Joints are the landmarks of a
   /// person without the tips of hands and toes.

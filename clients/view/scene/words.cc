@@ -70,6 +70,7 @@ std::vector<std::string> BodyLines(const CharacterPose& pose) {
   std::string hands = "  hands: left ";
   hands += body.hands_seen[0] ? "seen" : "not seen";
   hands += body.hands_seen[1] ? ", right seen" : ", right not seen";
+  if (!body.hands_source.empty()) hands += " by " + body.hands_source;
   if (!body.contact_source.empty()) hands += "   on " + body.contact_source;
   if (pose.simulated_input) hands += "   SIMULATED input";
   lines.push_back(hands);
@@ -85,6 +86,7 @@ std::string BodyWords(const CharacterPose& pose) {
                             " m  feet " + FootWords(body.feet[0]) + ", " + FootWords(body.feet[1])
                       : "T-pose " + Fixed(100 * body.calibration_progress, 0) + " %";
   if (!body.contact_source.empty()) words += "  on " + body.contact_source;
+  words += "  hands " + (body.hands_source.empty() ? std::string("none") : body.hands_source);
   if (!body.note.empty()) words += "  (" + body.note + ")";
   return words;
 }

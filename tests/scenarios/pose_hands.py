@@ -1,0 +1,76 @@
+"""The hands of the pose engine, from devices to the body: Wiimotes with MotionPlus in the fists, one of
+which is lost and told so; a Kinect, late; and none.
+
+Usage: pose_hands.py BINARY_FOLDER wiimote|kinect|none
+"""
+import pathlib
+import sys
+
+import harness
+from pose_line import SKIPPED, Watcher
+
+# Joints, wrists, cm. Generous: the made person moves at ease, but every latency counts as an error,
+# and other people's arms are what the Wiimotes' are learned from.
+BOUNDS = {"wiimote": (14, 35), "kinect": (11, 16), "none": (25, 70)}
+SECONDS = 17
+LOST_FOR_S = 2
+
+
+def check_the_body(stage, hands):
+    seen = stage.run_json("footing-view", "--connect", stage.simulation, "--connect", stage.sensor,
+                          "--text", "--seconds", SECONDS)
+    print(hands, seen)
+    assert seen["calibrated"] and seen["resets"] == 0, seen
+    assert seen["hands"] == hands, seen
+    assert seen["compared_frames"] > 400, seen
+    mpjpe_cm, wrists_cm = BOUNDS[hands]
+    assert seen["mpjpe_cm"] < mpjpe_cm, seen
+    assert seen["wrists_cm"] < wrists_cm, seen
+    return seen
+
+
+def start(stage, hands, *words):
+    stage.start("footing-stream", "boards", "--motion", "demo", "--hands", hands, "--to",
+                stage.devices, *words)
+    log = stage.folder / "footing-stream.log"
+    stage.wait_for(lambda: "attached" in log.read_text(), "the stand-ins to attach", 60)
+
+
+def check_loss(stage, watcher):
+    """The left Wiimote falls silent; the body goes on, and who wears it is told what to do."""
+    body = watcher.wait(lambda body: "nothing comes from the left Wiimote" in body["note"],
+                        "the loss to be told", 12)
+    assert body["hands_source"] == "wiimote", body
+    body = watcher.wait(lambda body: "take the T-pose anew" in body["note"],
+                        "the way back to be told", LOST_FOR_S + 8)
+    assert body["calibrated"] and body["hands_source"] == "wiimote", body
+    assert body["resets"] == 0, body
+
+
+def main(binaries, hands):
+    data = pathlib.Path(__file__).parents[2] / "daemon/simulation/data"
+    if not (data / "pose.fmodel").exists() or not (data / "arm.fmodel").exists():
+        print("no pose.fmodel and arm.fmodel are carried")
+        return SKIPPED
+    with harness.Stage(binaries) as stage:
+        stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
+        stage.wait_for_socket(stage.sensor)
+        stage.wait_for_socket(stage.devices)
+        stage.start("footing-sim", "--engine", "pose", "--sensor", stage.sensor, "--listen",
+                    stage.simulation)
+        stage.wait_for_socket(stage.simulation)
+        loses = ("--lose-hand", "left", "--lose-from-s", SECONDS + 2, "--lose-for-s", LOST_FOR_S)
+        start(stage, hands, *(loses if hands == "wiimote" else ()))
+        check_the_body(stage, hands)
+        if hands == "wiimote":
+            check_loss(stage, Watcher(stage.simulation))
+        if hands == "none":
+            body = next(Watcher(stage.simulation).bodies(1))
+            assert "no hand is seen" in body["note"] and body["hands_source"] == "", body
+        for name in ("footing-stream", "footing-sim", "footingd"):
+            assert stage.stop(name) == 0, name
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], sys.argv[2]))
