@@ -83,9 +83,7 @@ Result<sensors::Scene> LoadRecording(const StageOptions& options) {
   sensors::SceneOptions scene;
   const double clip_s = options.seconds - scene.hold_s - scene.leave_s;
   if (clip_s > loaded->motion.duration_s()) scene.loop_s = clip_s;
-  if (options.on_boards) {
-    return sensors::MakeScene(std::move(loaded->motion), person, scene, options.motion);
-  }
+  // As footing-eval has it, and so that a viewer can hold the pose against it.
   auto kept = motion::WithLandmarksOnly(loaded->motion);
   if (!kept) return InvalidData(options.motion + ": " + kept.error().message);
   return sensors::MakeScene(std::move(kept).value(), person, scene, options.motion);
