@@ -11,7 +11,7 @@ from pose_line import SKIPPED, Watcher
 
 # Joints, wrists, cm. Generous: the made person moves at ease, but every latency counts as an error,
 # and other people's arms are what the Wiimotes' are learned from.
-BOUNDS = {"wiimote": (14, 35), "kinect": (11, 16), "none": (25, 70)}
+BOUNDS = {"wiimote": (12, 30), "kinect": (11, 16), "none": (25, 70)}
 SECONDS = 17
 LOST_FOR_S = 2
 
