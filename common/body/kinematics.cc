@@ -19,6 +19,35 @@ void RotateColumns(Axis axis, double angle_rad, Eigen::Matrix3d& R) {
   R.col(j) = cosine * second - sine * first;
 }
 
+/// One joint, whose parent is placed already.
+inline void Place(const Skeleton& skeleton, const PoseRef& q, std::size_t i, Kinematics& out) {
+  const Joint& joint = skeleton.joints[i];
+  Eigen::Matrix3d& R = out.R_WJ[i];
+  if (joint.parent < 0) {
+    R = joint.axes;
+    out.p_WJ[i] = q.head<3>();
+  } else {
+    const std::size_t parent = Index(joint.parent);
+    out.p_WJ[i].noalias() = out.p_WJ[parent] + out.R_WJ[parent] * joint.offset_m;
+    if (joint.rotations.empty()) {
+      R = out.R_WJ[parent];
+      return;
+    }
+    if (joint.plain_axes) {
+      R = out.R_WJ[parent];
+    } else {
+      R.noalias() = out.R_WJ[parent] * joint.axes;
+    }
+  }
+  int dof = joint.first_dof;
+  for (const Rotation& rotation : joint.rotations) {
+    out.axis_W[Index(dof)] = R.col(static_cast<int>(rotation.axis));
+    RotateColumns(rotation.axis, q(dof), R);
+    ++dof;
+  }
+  if (!joint.plain_axes) R = (R * joint.axes.transpose()).eval();
+}
+
 }  // namespace
 
 Kinematics::Kinematics(const Skeleton& skeleton)
@@ -37,33 +66,13 @@ JointAccelerations::JointAccelerations(const Skeleton& skeleton)
 void ComputeKinematics(const Skeleton& skeleton, PoseRef q, Kinematics& out) {
   FOOTING_CHECK(q.size() == skeleton.dof);
   for (int axis = 0; axis < 3; ++axis) out.axis_W[Index(axis)] = Eigen::Vector3d::Unit(axis);
-  for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
-    const Joint& joint = skeleton.joints[i];
-    Eigen::Matrix3d& R = out.R_WJ[i];
-    if (joint.parent < 0) {
-      R = joint.axes;
-      out.p_WJ[i] = q.head<3>();
-    } else {
-      const std::size_t parent = Index(joint.parent);
-      out.p_WJ[i].noalias() = out.p_WJ[parent] + out.R_WJ[parent] * joint.offset_m;
-      if (joint.rotations.empty()) {
-        R = out.R_WJ[parent];
-        continue;
-      }
-      if (joint.plain_axes) {
-        R = out.R_WJ[parent];
-      } else {
-        R.noalias() = out.R_WJ[parent] * joint.axes;
-      }
-    }
-    int dof = joint.first_dof;
-    for (const Rotation& rotation : joint.rotations) {
-      out.axis_W[Index(dof)] = R.col(static_cast<int>(rotation.axis));
-      RotateColumns(rotation.axis, q(dof), R);
-      ++dof;
-    }
-    if (!joint.plain_axes) R = (R * joint.axes.transpose()).eval();
-  }
+  for (std::size_t i = 0; i < skeleton.joints.size(); ++i) Place(skeleton, q, i, out);
+}
+
+void ComputeKinematics(const Skeleton& skeleton, PoseRef q, std::span<const int> joints,
+                       Kinematics& out) {
+  FOOTING_CHECK(q.size() == skeleton.dof);
+  for (const int joint : joints) Place(skeleton, q, Index(joint), out);
 }
 
 void ComputeVelocities(const Skeleton& skeleton, const Kinematics& at, PoseRef q_dot,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "common/body/skeleton.h"
@@ -35,6 +36,9 @@ struct JointAccelerations {
 
 /// Forward kinematics. `q` has skeleton.dof entries.
 void ComputeKinematics(const Skeleton& skeleton, PoseRef q, Kinematics& out);
+/// The same for these joints alone, parents first; what is not among them is in `out` already.
+void ComputeKinematics(const Skeleton& skeleton, PoseRef q, std::span<const int> joints,
+                       Kinematics& out);
 
 /// `q_dot` is the time derivative of the coordinates, entry for entry (of Euler angles: not the
 /// angular velocity).

@@ -10,7 +10,7 @@
 namespace footing::pose {
 namespace {
 
-constexpr int kStrip = 8;  // Numbers that are summed side by side.
+constexpr int kStrip = 6;  // Numbers that are summed side by side.
 constexpr int kMaxRows = 3 * kMaxPoints + 6;
 
 constexpr int WholeStrips(int size) { return (size + kStrip - 1) / kStrip * kStrip; }
@@ -41,17 +41,17 @@ struct Strips {
 template <typename Matrix>
 Strips Product(const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_q, const std::vector<int>& dofs,
                const Matrix& m, int column) {
-  Strips sum{Strips::Strip::Zero(), Strips::Strip::Zero(), Strips::Strip::Zero()};
+  Strips::Strip x = Strips::Strip::Zero(), y = x, z = x;
   const Eigen::Index stride = m.outerStride();
   const double* const first = m.data() + column;
+  const double* const weights = by_q.data();
   for (const int dof : dofs) {
     const Strips::Strip row = Eigen::Map<const Strips::Strip>(first + dof * stride);
-    const double* const weights = by_q.data() + 3 * dof;
-    sum.x += weights[0] * row;
-    sum.y += weights[1] * row;
-    sum.z += weights[2] * row;
+    x += weights[3 * dof] * row;
+    y += weights[3 * dof + 1] * row;
+    z += weights[3 * dof + 2] * row;
   }
-  return sum;
+  return {x, y, z};
 }
 
 }  // namespace

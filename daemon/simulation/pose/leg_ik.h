@@ -19,16 +19,18 @@ class LegIk {
   /// The leg of the joints from `hip` down to `end`, one of its descendants.
   LegIk(const body::Body& body, int hip, int end);
 
-  /// The targets that belong to the leg, all others are left alone. `q` is changed in place.
-  void Solve(const PoseTargets& targets, int iterations, Eigen::Ref<Eigen::VectorXd> q);
+  /// The targets that belong to the leg, all others are left alone. `q` is changed in place, and
+  /// so is `at`, where it has the joints.
+  void Solve(const PoseTargets& targets, int iterations, Eigen::VectorXd& q, body::Kinematics& at);
 
  private:
-  bool Has(int joint) const;
+  /// Adds a target to the normal equations.
+  void Add(const PointTarget& point, const body::Kinematics& at);
 
   const body::Body* body_;
-  std::vector<int> joints_;
-  std::vector<int> dofs_;
-  body::Kinematics at_;
+  std::vector<int> carried_;  ///< The hip and all that hangs on it.
+  std::vector<int> dofs_;     ///< From the hip down to the end,
+  std::vector<int> joints_;   ///< and the joint of each.
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian_;
   Eigen::MatrixXd normal_;
   Eigen::VectorXd gradient_;

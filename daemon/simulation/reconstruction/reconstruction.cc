@@ -158,6 +158,7 @@ void Reconstruction::Recalibrate() {
   output_.lag_s = lag_steps_ * step_s_;
   output_.mass_kg = parts_->body.mass_kg;
   output_.momentum = {};
+  body::ComputeKinematics(parts_->body.skeleton, parts_->t_pose, at_);
   Tell(parts_->t_pose);
   output_.com_W_m = body::CentreOfMass(parts_->body, at_);
   output_.com_variance_m2.setConstant(kUnknownSdM * kUnknownSdM);
@@ -231,6 +232,7 @@ void Reconstruction::Solve() {
   if (paper) {
     fibonacci_.Solve(targets_);
     q_ = fibonacci_.q();
+    body::ComputeKinematics(parts_->body.skeleton, q_, at_);
   } else {
     SolveBest();
   }
@@ -244,6 +246,7 @@ void Reconstruction::Solve() {
     return;
   }
   q_.head<3>() += origin_m_;
+  for (Eigen::Vector3d& p_WJ : at_.p_WJ) p_WJ += origin_m_;
   Tell(q_);
   if (!paper) TellSpreads();
   TellCom();
@@ -285,12 +288,13 @@ void Reconstruction::SolveBest() {
     solver.Solve(targets_);
   }
   q_ = solver.q();
+  at_ = solver.at();
 }
 
 void Reconstruction::CleanUp() {
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
     if (then_.momentum.feet[f].contact || then_.known.feet || options_.mode == Mode::kPaper) {
-      legs_[f].Solve(standing_, kCleanUpIterations, q_);
+      legs_[f].Solve(standing_, kCleanUpIterations, q_, at_);
     }
   }
 }

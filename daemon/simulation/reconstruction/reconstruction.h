@@ -181,6 +181,7 @@ class Reconstruction {
   void SolveBest();
   bool Regressed() const;
   void CleanUp();
+  /// A pose whose joints at_ has.
   void Tell(const Eigen::VectorXd& q);
   void TellSpreads();
   void TellCom();

@@ -14,7 +14,6 @@ constexpr int kSpreadsAFrame = 2;  // Of the joints and C, those whose covarianc
 
 void Reconstruction::Tell(const Eigen::VectorXd& q) {
   output_.q = q;
-  body::ComputeKinematics(parts_->body.skeleton, output_.q, at_);
   std::copy(at_.R_WJ.begin(), at_.R_WJ.end(), output_.R_WJ.begin());
   std::copy(at_.p_WJ.begin(), at_.p_WJ.end(), output_.p_WJ_m.begin());
 }

@@ -249,8 +249,8 @@ TEST(FibonacciSearch, KeepsEveryCoefficientWithinItsRange) {
 
 TEST(LegIk, BringsTheFootToItsPlaceAndMovesNothingElse) {
   World world;
-  const body::Landmarks& at = world.person.landmarks;
-  LegIk leg(world.person, at[Landmark::kLeftHip], at[Landmark::kLeftToe]);
+  const body::Landmarks& landmarks = world.person.landmarks;
+  LegIk leg(world.person, landmarks[Landmark::kLeftHip], landmarks[Landmark::kLeftToe]);
   Eigen::VectorXd q = world.poses.col(5);
   PoseTargets targets = world.Targets(q, 0.02);
   targets.has_com = false;
@@ -259,10 +259,14 @@ TEST(LegIk, BringsTheFootToItsPlaceAndMovesNothingElse) {
   }
   const Eigen::Vector3d right_before = world.At(q, Landmark::kRightAnkle);
   const Eigen::Vector3d hips_before = world.At(q, Landmark::kHips);
-  leg.Solve(targets, 20, q);
+  body::Kinematics at(world.person.skeleton);
+  body::ComputeKinematics(world.person.skeleton, q, at);
+  leg.Solve(targets, 20, q, at);
   EXPECT_LT((world.At(q, Landmark::kLeftAnkle) - targets.points[2].p_W_m).norm(), 0.01);
   EXPECT_EQ(world.At(q, Landmark::kRightAnkle), right_before);
   EXPECT_EQ(world.At(q, Landmark::kHips), hips_before);
+  body::ComputeKinematics(world.person.skeleton, q, world.at);
+  EXPECT_EQ(at.p_WJ, world.at.p_WJ);  // It tells where it has brought the joints.
 }
 
 }  // namespace
