@@ -31,10 +31,26 @@ class LinearFilter {
 
   /// x <- a x + u, P <- a P a' + q.
   void Predict(const Matrix& a, const Vector& u, const Matrix& q) {
-    x_ = a * x_ + u;
-    p_ = a * p_ * a.transpose() + q;
+    // Most states of most filters stay as they are: their rows of `a` are those of the identity.
+    std::array<int, N> moved{};
+    Matrix by_row;
+    int count = 0;
+    for (int i = 0; i < N; ++i) {
+      if (a.row(i) == Row::Unit(i)) continue;
+      by_row.col(count) = a.row(i).transpose();
+      moved[static_cast<std::size_t>(count++)] = i;
+    }
+    const auto apply = [&](const auto& from, auto&& to) {
+      for (int k = 0; k < count; ++k)
+        to(moved[static_cast<std::size_t>(k)]) = by_row.col(k).dot(from);
+    };
+    apply(Vector(x_), x_);
+    x_ += u;
+    for (int column = 0; column < N; ++column) apply(Vector(p_.col(column)), p_.col(column));
+    for (int row = 0; row < N; ++row) apply(Row(p_.row(row)), p_.row(row));
+    p_ += q;
     Symmetrise();
-    for (std::size_t i = 0; i < Used(); ++i) slots_[i].cross = slots_[i].cross * a.transpose();
+    for (std::size_t i = 0; i < Used(); ++i) apply(Row(slots_[i].cross), slots_[i].cross);
   }
 
   /// Takes the measurement z = h x + noise of that variance (> 0). Returns the innovation's square
