@@ -34,9 +34,9 @@ FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen
                        fit.scale,
                        fit.weights,
                        fit.offset,
-                       fit.waves.cast<float>(),
+                       reconstruction::StripMatrix(fit.waves.cast<float>()),
                        fit.phases.cast<float>(),
-                       fit.wave_weights.cast<float>()};
+                       reconstruction::StripMatrix(fit.wave_weights.cast<float>())};
   return fitted;
 }
 
@@ -51,9 +51,9 @@ void AppendTensors(const FittedPoseRegression& fitted, model::Model& model) {
   add("regression_weights", fitted.regression.weights);
   add("regression_offset", fitted.regression.offset);
   if (fitted.regression.phases.size() > 0) {
-    add("waves", fitted.regression.waves.cast<double>());
+    add("waves", fitted.regression.waves.Dense().cast<double>());
     add("wave_phases", fitted.regression.phases.cast<double>());
-    add("wave_weights", fitted.regression.wave_weights.cast<double>());
+    add("wave_weights", fitted.regression.wave_weights.Dense().cast<double>());
   }
   add("rest_components", fitted.rest_components);
   add("rest_variances", fitted.rest_variances);

@@ -95,9 +95,37 @@ const Features::Values& Features::Advance(const std::array<Eigen::Vector3d, 2>& 
   return values_;
 }
 
+StripMatrix::StripMatrix(const Eigen::MatrixXf& dense) : rows_(dense.rows()), cols_(dense.cols()) {
+  strips_.setZero(kStrip, StripRows() / kStrip * cols_);
+  for (Eigen::Index row = 0; row < rows_; ++row) {
+    strips_.row(row % kStrip).segment(row / kStrip * cols_, cols_) = dense.row(row);
+  }
+}
+
+Eigen::MatrixXf StripMatrix::Dense() const {
+  Eigen::MatrixXf dense(rows_, cols_);
+  for (Eigen::Index row = 0; row < rows_; ++row) {
+    dense.row(row) = strips_.row(row % kStrip).segment(row / kStrip * cols_, cols_);
+  }
+  return dense;
+}
+
+void StripMatrix::AddProduct(const Eigen::VectorXf& x, Eigen::VectorXf& y) const {
+  using Strip = Eigen::Array<float, kStrip, 1>;
+  const float* column = strips_.data();
+  for (Eigen::Index row = 0; row < StripRows(); row += kStrip) {
+    Strip sum = Eigen::Map<const Strip>(y.data() + row);
+    for (Eigen::Index i = 0; i < cols_; ++i, column += kStrip) {
+      sum += x(i) * Eigen::Map<const Strip, Eigen::Aligned16>(column);
+    }
+    Eigen::Map<Strip>(y.data() + row) = sum;
+  }
+}
+
 PoseRegression::Room PoseRegression::MakeRoom() const {
   return {Eigen::VectorXd::Zero(mean.size()), Eigen::VectorXf::Zero(mean.size()),
-          Eigen::VectorXf::Zero(phases.size()), Eigen::VectorXf::Zero(offset.size())};
+          Eigen::VectorXf::Zero(waves.StripRows()),
+          Eigen::VectorXf::Zero(wave_weights.StripRows())};
 }
 
 void PoseRegression::Predict(const Features::Values& features, Room& room,
@@ -107,11 +135,12 @@ void PoseRegression::Predict(const Features::Values& features, Room& room,
   q.noalias() += weights * room.scaled;
   if (phases.size() == 0) return;
   room.single = room.scaled.cast<float>();
-  room.waved = phases;
-  room.waved.noalias() += waves * room.single;
+  room.waved.head(phases.size()) = phases;
+  waves.AddProduct(room.single, room.waved);
   room.waved = room.waved.array().cos();
-  room.part.noalias() = wave_weights * room.waved;
-  q += room.part.cast<double>();
+  room.part.setZero();
+  wave_weights.AddProduct(room.waved, room.part);
+  q += room.part.head(q.size()).cast<double>();
 }
 
 }  // namespace footing::reconstruction

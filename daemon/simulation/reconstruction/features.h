@@ -37,16 +37,38 @@ class Features {
   Values values_ = Values::Zero();
 };
 
+/// A matrix in single precision that is read once a frame from first to last: strips of kStrip
+/// rows, each a column after the other in memory. Its products are summed in the order of the
+/// columns.
+class StripMatrix {
+ public:
+  static constexpr int kStrip = 32;
+
+  StripMatrix() = default;
+  explicit StripMatrix(const Eigen::MatrixXf& dense);
+
+  Eigen::Index rows() const { return rows_; }
+  /// Of a vector of products, whole strips.
+  Eigen::Index StripRows() const { return (rows_ + kStrip - 1) / kStrip * kStrip; }
+  Eigen::MatrixXf Dense() const;
+  /// y += matrix x; y has StripRows() rows, those beyond rows() stay.
+  void AddProduct(const Eigen::VectorXf& x, Eigen::VectorXf& y) const;
+
+ private:
+  Eigen::Index rows_ = 0, cols_ = 0;
+  Eigen::MatrixXf strips_;
+};
+
 /// A linear map from features to a pose: the root from the estimated centre of mass in parts of the
 /// root's height, then the angles. Where it has waves, it is linear in random cosines of the
 /// features, too (Rahimi & Recht 2007).
 struct PoseRegression {
-  Eigen::VectorXd mean, scale;   ///< Of the features: (f - mean) scale, cut at +-4.
-  Eigen::MatrixXd weights;       ///< dof x features.
-  Eigen::VectorXd offset;        ///< dof.
-  Eigen::MatrixXf waves;         ///< waves x features: cos(waves f + phases). In single precision,
-  Eigen::VectorXf phases;        ///< since most of the time goes here.
-  Eigen::MatrixXf wave_weights;  ///< dof x waves.
+  Eigen::VectorXd mean, scale;  ///< Of the features: (f - mean) scale, cut at +-4.
+  Eigen::MatrixXd weights;      ///< dof x features.
+  Eigen::VectorXd offset;       ///< dof.
+  StripMatrix waves;            ///< waves x features: cos(waves f + phases).
+  Eigen::VectorXf phases;
+  StripMatrix wave_weights;  ///< dof x waves.
 
   /// What Predict needs, made once.
   struct Room {

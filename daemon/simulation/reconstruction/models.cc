@@ -98,8 +98,8 @@ Result<void> ReadWaves(const NamedModel& named, PoseRegression& regression) {
       read("wave_weights", static_cast<std::uint32_t>(regression.offset.size()), count);
   if (!weights) return weights.error();
   regression.phases = Eigen::Map<const Eigen::VectorXf>(phases->values.data(), count);
-  regression.waves = waves->cast<float>();
-  regression.wave_weights = weights->cast<float>();
+  regression.waves = StripMatrix(waves->cast<float>());
+  regression.wave_weights = StripMatrix(weights->cast<float>());
   return {};
 }
 
