@@ -17,6 +17,7 @@ constexpr Benchmark kBenchmarks[] = {
     {"fan_out_cpu", footing::bench::FanOutCpu},
     {"stalled_readers", footing::bench::StalledReaders},
     {"body_kinematics", footing::bench::BodyKinematics},
+    {"pose_frame", footing::bench::PoseFrame},
 #ifdef FOOTING_HAS_FANN
     {"cascade_training", footing::bench::CascadeTraining},
 #endif
