@@ -8,6 +8,7 @@
 #include "daemon/offline/eval/contact_score.h"
 #include "daemon/offline/eval/pose_breakdown.h"
 #include "daemon/offline/eval/pose_metrics.h"
+#include "daemon/offline/eval/roughness.h"
 #include "daemon/offline/eval/stance_frames.h"
 
 namespace footing::eval {
@@ -17,6 +18,8 @@ using momentum::kFeet;
 using nlohmann::ordered_json;
 
 constexpr int kCostRuns = 2000;
+constexpr double kStraightDeg =
+    25;  // An elbow that is bent by less hardly changes the arm's reach.
 
 /// Slope of |error| over time, by least squares.
 class Drift {
@@ -84,6 +87,7 @@ class Judge {
     score_.Add(output.q, then.q);
     AddCom(output, then);
     AddFeet(output, i);
+    AddRoughness(output, then);
     breakdown_.Add(output, score_, i - lag_);
     for (std::size_t k = 0; k < output.joint_sd_m.size(); ++k) {
       nees_ += score_.errors_m()[k].squaredNorm() / (3 * std::pow(output.joint_sd_m[k], 2));
@@ -114,6 +118,20 @@ class Judge {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       angular_[static_cast<std::size_t>(axis)].Add(output.momentum.angular_momentum_kgm2ps(axis) -
                                                    then.angular_momentum(axis));
+    }
+  }
+
+  void AddRoughness(const reconstruction::Output& output, const rehearsal::Frame& then) {
+    com_height_.Add(100 * output.com_W_m.z());
+    true_com_height_.Add(100 * then.com_m.z());
+    loads_com_height_.Add(100 * output.momentum.p_WC_m.z());
+    for (int side = 0; side < 2; ++side) {
+      const auto hand = static_cast<std::size_t>(side);
+      const body::Landmarks& landmarks = rehearsal_.body.landmarks;
+      const double bend_deg = ElbowBendDeg(landmarks, score_.truth(), side);
+      const bool straight = bend_deg < kStraightDeg;
+      elbow_[hand].Add(ElbowBendDeg(landmarks, score_.at(), side), straight);
+      true_elbow_[hand].Add(bend_deg, straight);
     }
   }
 
@@ -189,6 +207,8 @@ class Judge {
   std::size_t com_count_ = 0;
   Spread vertical_, horizontal_, forward_, lateral_, loads_vertical_, pose_vertical_,
       pose_horizontal_, place_, told_skate_, true_skate_, ball_speed_, true_ball_speed_;
+  Roughness com_height_, true_com_height_, loads_com_height_;
+  std::array<Roughness, 2> elbow_, true_elbow_;
   std::array<Spread, 3> angular_;
   Drift vertical_drift_, horizontal_drift_;
   ContactScore contacts_;
@@ -214,6 +234,11 @@ ordered_json Judge::Json() const {
   json["pose_com_vertical_rms_cm"] = pose_vertical_.rms();
   json["pose_com_horizontal_rms_cm"] = pose_horizontal_.rms();
   for (const Spread& axis : angular_) json["angular_momentum_error_kgm2ps"].push_back(axis.rms());
+  json["com_vertical_roughness_cm"] = com_height_.rms();
+  json["com_vertical_roughness_true_cm"] = true_com_height_.rms();
+  json["com_vertical_roughness_loads_cm"] = loads_com_height_.rms();
+  json["straight_elbow_roughness_deg"] = {elbow_[0].rms(), elbow_[1].rms()};
+  json["straight_elbow_roughness_true_deg"] = {true_elbow_[0].rms(), true_elbow_[1].rms()};
   json["foot_skate_cm_per_s"] = told_skate_.mean();
   json["foot_skate_true_cm_per_s"] = true_skate_.mean();
   json["ball_speed_in_contact_cm_per_s"] = ball_speed_.mean();
