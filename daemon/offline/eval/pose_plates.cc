@@ -18,6 +18,7 @@ constexpr const char* kCompared[] = {"mpjpe_cm",
                                      "com_forward_rms_cm",
                                      "com_lateral_rms_cm",
                                      "com_forward_bias_cm",
+                                     "com_forward_sd_cm",
                                      "foot_position_rms_cm",
                                      "contact_f1",
                                      "nees"};
@@ -63,6 +64,8 @@ Result<ordered_json> JudgePlates(const rehearsal::PlateRehearsal& plates,
                        {"mass_kg", report.mass_kg}};
   const double weight_n = plates.measured.body.mass_kg * kStandardGravityMps2;
   json["force_rms_percent"] = 100 * report.force_rms_n / weight_n;
+  json["force_own_mass_rms_percent"] = 100 * report.force_own_mass_rms_n / weight_n;
+  json["cop_forward_bias_cm"] = 100 * report.cop_bias_m.x();
   json["cop_forward_rms_cm"] = 100 * report.cop_rms_m.x();
   json["cop_lateral_rms_cm"] = 100 * report.cop_rms_m.y();
   json["of_feet"] = ordered_json::array();

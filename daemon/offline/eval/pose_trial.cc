@@ -227,6 +227,8 @@ ordered_json Judge::Json() const {
   json["com_forward_rms_cm"] = forward_.rms();
   json["com_lateral_rms_cm"] = lateral_.rms();
   json["com_forward_bias_cm"] = forward_.mean();
+  json["com_forward_sd_cm"] =
+      std::sqrt(std::max(0.0, std::pow(forward_.rms(), 2) - std::pow(forward_.mean(), 2)));
   json["com_vertical_drift_cm_per_min"] = vertical_drift_.PerMinute();
   json["com_horizontal_drift_cm_per_min"] = horizontal_drift_.PerMinute();
   json["loads_com_vertical_rms_cm"] = loads_vertical_.rms();

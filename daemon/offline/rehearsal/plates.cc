@@ -6,6 +6,7 @@
 
 #include "common/motion/text.h"
 #include "common/units/units.h"
+#include "common/virtual_sensors/impact_reaction.h"
 #include "daemon/offline/rehearsal/stage.h"
 
 namespace footing::rehearsal {
@@ -37,6 +38,15 @@ motion::Motion Part(const motion::Motion& clip, Eigen::Index begin, Eigen::Index
 
 double LastS(const motion::Motion& clip) {
   return clip.start_s + static_cast<double>(clip.frames() - 1) / clip.rate_hz;
+}
+
+/// Stage, with forces that measured ones can be compared with.
+Result<sensors::Scene> StageOnPlates(const motion::Motion& clip, const Settings& settings,
+                                     const std::string& origin) {
+  auto scene = Stage(clip, settings, origin);
+  if (!scene) return scene.error();
+  scene->reaction = sensors::ReactToImpacts(scene->body, scene->motion, scene->course);
+  return scene;
 }
 
 std::string Fixed(double value, int decimals) {
@@ -189,30 +199,45 @@ void AddWarnings(double mass_kg, PlateReport& report) {
   }
 }
 
-/// How far the measured forces are from the simulated ones.
-void Compare(const Rehearsal& measured, const Rehearsal& simulated, PlateReport& report) {
+/// How far the measured forces are from those made from the motion, at the motion's own frames but
+/// for the first and last ones, which the low-pass spreads the ends over.
+void Compare(const motion::Motion& clip, const sensors::Scene& scene, const FeltForces& felt,
+             PlateReport& report) {
   double sum_n = 0, square_n2 = 0, count = 0, loaded = 0;
-  Eigen::Vector2d square_m2 = Eigen::Vector2d::Zero();
-  const std::size_t frames = std::min(measured.frames.size(), simulated.frames.size());
-  for (std::size_t i = measured.judged_from; i < frames; ++i) {
-    const auto total = [i](const Rehearsal& rehearsal) {
-      const auto& feet = rehearsal.frames[i].feet;
-      return feet[0].load_n + feet[1].load_n;
-    };
-    const auto cop = [i, &total](const Rehearsal& rehearsal) -> Eigen::Vector2d {
-      const auto& feet = rehearsal.frames[i].feet;
-      return (feet[0].load_n * feet[0].cop_m + feet[1].load_n * feet[1].cop_m) / total(rehearsal);
-    };
-    sum_n += total(measured);
-    square_n2 += std::pow(total(measured) - total(simulated), 2);
+  double made_n = 0, made_n2 = 0, both_n2 = 0;
+  Eigen::Vector2d square_m2 = Eigen::Vector2d::Zero(), sum_m = Eigen::Vector2d::Zero();
+  const Eigen::Index before = scene.motion.frames() - clip.frames();
+  const auto end_frames = static_cast<Eigen::Index>(std::ceil(kRunInS * clip.rate_hz));
+  for (Eigen::Index i = end_frames; i + end_frames < clip.frames(); ++i) {
+    const double made = scene.reaction.force_n(2, before + i);
+    double load = 0;
+    Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+    for (std::size_t f = 0; f < kFeet; ++f) {
+      const auto foot = felt.Mean(f, static_cast<double>(i) / clip.rate_hz, 1 / clip.rate_hz);
+      if (!foot.cop_m.allFinite()) continue;
+      load += foot.load_n;
+      moment += foot.load_n * foot.cop_m;
+    }
+    sum_n += load;
+    square_n2 += std::pow(load - made, 2);
+    made_n += made;
+    made_n2 += made * made;
+    both_n2 += made * (load - made);
     ++count;
-    if (std::min(total(measured), total(simulated)) < kLoadedN * kFeet) continue;
-    square_m2 += (cop(measured) - cop(simulated)).cwiseAbs2();
+    if (std::min(load, made) < kLoadedN * kFeet) continue;
+    const Eigen::Vector2d off = moment / load - scene.reaction.cop_m.col(before + i);
+    sum_m += off;
+    square_m2 += off.cwiseAbs2();
     ++loaded;
   }
   report.mass_kg = count > 0 ? sum_n / count / kStandardGravityMps2 : 0;
   report.force_rms_n = count > 0 ? std::sqrt(square_n2 / count) : 0;
   report.cop_rms_m = (square_m2 / std::max(loaded, 1.0)).cwiseSqrt();
+  report.cop_bias_m = sum_m / std::max(loaded, 1.0);
+  // |measured - (1 + more) simulated|^2, from the sums of |measured - simulated|^2 and its like.
+  const double more = made_n > 0 ? sum_n / made_n - 1 : 0;
+  const double own_n2 = square_n2 - 2 * more * both_n2 + more * more * made_n2;
+  report.force_own_mass_rms_n = count > 0 ? std::sqrt(std::max(own_n2, 0.0) / count) : 0;
 }
 
 }  // namespace
@@ -226,7 +251,7 @@ Result<PlateRehearsal> RehearseOnPlates(const motion::Motion& clip,
   }
   auto common = InCommon(clip, forces, origin, forces_origin);
   if (!common) return common.error();
-  auto scene = Stage(*common, settings, origin);
+  auto scene = StageOnPlates(*common, settings, origin);
   if (!scene) return scene.error();
   PlateRehearsal out;
   FeltForces felt = FeelPlates(*common, *scene, forces);
@@ -247,7 +272,7 @@ Result<PlateRehearsal> RehearseOnPlates(const motion::Motion& clip,
                              static_cast<double>(carried.size());
   motion::Motion part = Part(*common, stretch.begin, stretch.count);
   if (stretch.count < common->frames()) {
-    scene = Stage(part, settings, origin);
+    scene = StageOnPlates(part, settings, origin);
     if (!scene) return scene.error();
     felt = FeelPlates(part, *scene, forces);
   }
@@ -267,7 +292,7 @@ Result<PlateRehearsal> RehearseOnPlates(const motion::Motion& clip,
   out.report.begin_mps =
       (out.measured.frames[first + 1].com_m - out.measured.frames[first].com_m).norm() *
       settings.rate_hz;
-  Compare(out.measured, out.simulated, out.report);
+  Compare(part, *scene, felt, out.report);
   AddWarnings(settings.mass_kg, out.report);
   return out;
 }

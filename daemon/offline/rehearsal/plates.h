@@ -20,10 +20,13 @@ struct PlateReport {
   /// Of the time that motion and forces have in common: where the plates carry what the motion
   /// needs, within a quarter of the weight.
   double carried_share = 1;
-  double begin_mps = 0;       ///< Of the centre of mass where the stretch begins.
-  double mass_kg = 0;         ///< Of the plates: their mean over the stretch.
-  double force_rms_n = 0;     ///< Vertical: measured less inverse dynamics.
-  Eigen::Vector2d cop_rms_m;  ///< Of both feet together, the same: along x and y.
+  double begin_mps = 0;    ///< Of the centre of mass where the stretch begins.
+  double mass_kg = 0;      ///< Of the plates: their mean over the stretch.
+  double force_rms_n = 0;  ///< Vertical: measured less inverse dynamics.
+  /// The same, of a body as heavy as the measured forces have it in their mean.
+  double force_own_mass_rms_n = 0;
+  Eigen::Vector2d cop_rms_m;   ///< Of both feet together, the same: along x and y.
+  Eigen::Vector2d cop_bias_m;  ///< The mean of that.
   std::vector<std::string> warnings;
 };
 
