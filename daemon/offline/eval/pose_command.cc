@@ -51,6 +51,10 @@ Result<void> Translate(Flags& flags) {
   if ((flags.boards == "forces") == flags.scene.forces.empty()) {
     return UsageError("--boards forces and --forces FILE (.mot, .sto or .c3d) go together");
   }
+  if (!flags.scene.still_forces.empty() &&
+      (flags.boards != "forces" || flags.scene.still.empty())) {
+    return UsageError("--still-forces goes with --boards forces and the --still that it is of");
+  }
   if (flags.boards == "insoles" && !flags.scene.activities.empty()) {
     return UsageError("--activities is for boards: --boards insoles has no table by activity");
   }
@@ -146,6 +150,8 @@ void AddFlags(CLI::App& command, Flags& flags) {
   command.add_option("--skeleton", flags.scene.skeleton, "ASF of an AMC");
   command.add_option("--still", flags.scene.still, "Markers of the person standing still");
   command.add_option("--forces", flags.scene.forces, "MOT, STO or C3D of --boards forces");
+  command.add_option("--still-forces", flags.scene.still_forces,
+                     "MOT, STO or C3D under --still: puts the plates under the body");
   command.add_option("--activities", flags.scene.activities,
                      "CSV begin_s,end_s,activity; without: by plain rules on the motion");
   command.add_option("--mass-kg", settings.mass_kg)->check(CLI::Range(20.0, 250.0));

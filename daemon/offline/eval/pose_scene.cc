@@ -7,6 +7,7 @@
 #include "common/motion_files/load.h"
 #include "common/wire/model_file.h"
 #include "daemon/offline/rehearsal/activity.h"
+#include "daemon/offline/rehearsal/standing.h"
 
 namespace footing::eval {
 namespace {
@@ -71,6 +72,18 @@ Result<std::vector<rehearsal::ActivitySpan>> ReadActivities(const PoseSceneOptio
   return rehearsal::ParseActivities(*text, options.activities);
 }
 
+/// By somebody who stands still: what is added to a COP of the plates.
+Result<Eigen::Vector2d> PlatesOffset(const PoseSceneOptions& options) {
+  PoseSceneOptions still = options;
+  still.motion = options.still;
+  const auto loaded = Load(still);
+  if (!loaded) return loaded.error();
+  const auto forces = motion_files::LoadForces(options.still_forces);
+  if (!forces) return InvalidData(forces.error().message);
+  return rehearsal::StandingOffset(loaded->motion, *forces, WithHeight(still, *loaded),
+                                   options.still, options.still_forces);
+}
+
 rehearsal::Activities Tell(const rehearsal::Rehearsal& rehearsal,
                            const std::vector<rehearsal::ActivitySpan>& spans) {
   return spans.empty() ? rehearsal::RuledActivities(rehearsal)
@@ -95,8 +108,15 @@ Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options
   if (!spans) return spans.error();
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();
-  const auto forces = motion_files::LoadForces(options.forces);
+  auto forces = motion_files::LoadForces(options.forces);
   if (!forces) return InvalidData(forces.error().message);
+  if (!options.still_forces.empty()) {
+    const auto offset = PlatesOffset(options);
+    if (!offset) return offset.error();
+    for (motion::PlateForces& plate : forces->plates) {
+      plate.cop_W.topRows<2>().colwise() += *offset;
+    }
+  }
   auto plates = rehearsal::RehearseOnPlates(loaded->motion, *forces, WithHeight(options, *loaded),
                                             options.motion, options.forces);
   if (!plates) return plates.error();

@@ -15,17 +15,19 @@ namespace footing::eval {
 
 /// A motion file, and what the boards and hands tell of it.
 struct PoseSceneOptions {
-  std::string motion;      ///< BVH, AMC, TRC or C3D.
-  std::string skeleton;    ///< ASF, of an AMC.
-  std::string still;       ///< TRC or C3D of the same person standing, of markers.
-  std::string forces;      ///< MOT, STO or C3D of the plates under the same trial.
-  std::string activities;  ///< CSV of labels (rehearsal/activity.h); empty: by rules.
+  std::string motion;             ///< BVH, AMC, TRC or C3D.
+  std::string skeleton;           ///< ASF, of an AMC.
+  std::string still;              ///< TRC or C3D of the same person standing, of markers.
+  std::string forces;             ///< MOT, STO or C3D of the plates under the same trial.
+  std::string still_forces = {};  ///< The same of the plates under `still`; may be empty.
+  std::string activities;         ///< CSV of labels (rehearsal/activity.h); empty: by rules.
   rehearsal::Settings settings;
 };
 
 Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options);
 
-/// With the plates of options.forces. A file that cannot be read is InvalidData, too.
+/// With the plates of options.forces, whose COPs are moved by what those of options.still_forces
+/// are off from under the body that stands still. A file that cannot be read is InvalidData, too.
 Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options);
 
 Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options);
