@@ -13,6 +13,7 @@
 #include "daemon/offline/eval/pose_trial.h"
 #include "daemon/offline/plot/line_plot.h"
 #include "daemon/offline/plot/stick_plot.h"
+#include "daemon/offline/rehearsal/crouch.h"
 
 namespace footing::eval {
 namespace {
@@ -179,17 +180,20 @@ plot::Sticks SticksOf(const body::Body& body, const Eigen::VectorXd& q) {
   return sticks;
 }
 
-std::string Crouch(const Show& show, const std::string& title, const std::vector<Told>& told) {
-  std::size_t deepest = 0;
-  for (std::size_t i = 1; i < show.frames(); ++i)
-    if (show.frame(i).com_m.z() < show.frame(deepest).com_m.z()) deepest = i;
+std::string Crouch(const Show& show, const rehearsal::Crouch& crouch, const std::string& compared,
+                   const std::vector<Told>& told) {
   const body::Body& body = show.rehearsal.body;
-  const plot::Sticks truth = SticksOf(body, show.frame(deepest).q);
+  const plot::Sticks truth = SticksOf(body, show.frame(crouch.frame - show.start).q);
   std::vector<plot::Panel> panels{{"motion capture", {}, truth}};
   for (const Told& one : told) {
-    panels.push_back({one.name, truth, SticksOf(body, one.q[deepest])});
+    panels.push_back({one.name, truth, SticksOf(body, one.q[crouch.frame - show.start])});
   }
-  return plot::StickPlot(title, panels);
+  const std::string bend =
+      std::to_string(std::lround(RadiansToDegrees(crouch.bend_rad))) + " degrees";
+  const std::string title = crouch.bend_rad < rehearsal::kCrouchRad
+                                ? "No crouch here: knees and hips bend by " + bend + " at most"
+                                : "The deepest crouch, knees and hips bent by " + bend;
+  return plot::StickPlot(title + ", " + compared, panels);
 }
 
 struct Runs {
@@ -247,6 +251,7 @@ Result<std::vector<std::string>> WriteFigures(const rehearsal::Rehearsal& rehear
   if (!runs) return runs.error();
   const std::vector<Told> modes{runs->best, runs->paper};
   const auto arm = ArmPlots(show, {runs->best, runs->paper_without_angular});
+  const rehearsal::Crouch crouch = rehearsal::DeepestCrouch(rehearsal, show.start);
   const std::vector<std::pair<std::string, std::string>> files{
       {"figure5_vertical_com.svg", ComPlot(show, "Height of the COM", 2, modes)},
       {"figure5_forward_com.svg", ComPlot(show, "COM, forward", 0, modes)},
@@ -255,11 +260,10 @@ Result<std::vector<std::string>> WriteFigures(const rehearsal::Rehearsal& rehear
       {"figure6_shoulder_forwards.svg", arm[1]},
       {"figure6_shoulder_turn.svg", arm[2]},
       {"figure6_elbow.svg", arm[3]},
-      {"figure7_crouch_boards.svg",
-       Crouch(show, "The deepest crouch, with the boards' momentum and without",
-              {runs->best, runs->without_boards})},
+      {"figure7_crouch_boards.svg", Crouch(show, crouch, "with the boards' momentum and without",
+                                           {runs->best, runs->without_boards})},
       {"figure8_crouch_angular_momentum.svg",
-       Crouch(show, "The deepest crouch, with and without angular momentum",
+       Crouch(show, crouch, "with and without angular momentum",
               {runs->best, runs->best_without_angular, runs->paper, runs->paper_without_angular})}};
   std::vector<std::string> names;
   for (const auto& [name, text] : files) {
