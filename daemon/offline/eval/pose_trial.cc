@@ -94,6 +94,7 @@ class Judge {
       ++nees_count_;
     }
     invalid_ += output.valid ? 0 : 1;
+    misfit_.Add(output.misfit);
     finite_ = finite_ && output.q.allFinite();
   }
 
@@ -216,6 +217,7 @@ class Judge {
   std::array<Eigen::Vector3d, kFeet> toe_before_{}, true_toe_before_{};
   std::array<bool, kFeet> told_before_{};
   double nees_ = 0, nees_count_ = 0;
+  Spread misfit_;
   std::size_t invalid_ = 0;
   bool finite_ = true;
 };
@@ -251,6 +253,8 @@ ordered_json Judge::Json() const {
   json["landing_delay_ms"] = 1000 * contacts_.mean_delay_s();
   json["nees"] = nees_count_ > 0 ? nees_ / nees_count_ : 0;
   json.update(breakdown_.Json());
+  json["misfit_p50"] = misfit_.Quantile(0.5);
+  json["misfit_p95"] = misfit_.Quantile(0.95);
   json["invalid_frames"] = invalid_;
   json["finite"] = finite_;
   return json;

@@ -248,7 +248,10 @@ void Reconstruction::Solve() {
   q_.head<3>() += origin_m_;
   for (Eigen::Vector3d& p_WJ : at_.p_WJ) p_WJ += origin_m_;
   Tell(q_);
-  if (!paper) TellSpreads();
+  if (!paper) {
+    TellFit();
+    TellSpreads();
+  }
   TellCom();
 }
 

@@ -112,6 +112,11 @@ struct Output {
   /// is the loads'.
   Eigen::Vector3d com_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d com_variance_m2 = Eigen::Vector3d::Zero();
+  /// How badly what is measured and what is known of people fit together, in best mode: square of
+  /// what is left of the terms, by their deviations, a row, in the mean of the last half second. 1
+  /// where all told deviations are right. With more than 1.5 the pose's deviations grow, with more
+  /// than 2 it is not valid: the person does what nothing here knows, such as walking on boards.
+  double misfit = 0;
   Eigen::VectorXd q;  ///< Pose of body().skeleton; a T-pose until calibrated.
   std::vector<Eigen::Matrix3d> R_WJ;
   std::vector<Eigen::Vector3d> p_WJ_m;
@@ -185,6 +190,8 @@ class Reconstruction {
   void Tell(const Eigen::VectorXd& q);
   void TellSpreads();
   void TellCom();
+  void TellFit();
+  double Doubt() const;
 
   std::shared_ptr<const Parts> parts_;
   Options options_;

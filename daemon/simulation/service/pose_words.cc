@@ -130,6 +130,8 @@ std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
     return note;
   }
   if (told) AddFeet(frame, note);
+  if (told && frame.momentum.valid && !frame.valid)
+    Add(note, "what is measured fits no pose that the model knows: this one is a guess");
   AddHands(frame, note);
   AddMass(frame, subject, note);
   return note;

@@ -27,6 +27,15 @@ const Subject kSubject{"p07", 1.75, 70, 0};
 
 TEST(PoseNote, SaysNothingWhenAllIsWell) { EXPECT_EQ(PoseNote(Well(), kSubject), ""); }
 
+TEST(PoseNote, SaysThatWhatIsMeasuredFitsNoPose) {
+  PoseFrame frame = Well();
+  frame.valid = false;
+  frame.momentum.valid = true;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("fits no pose"));
+  frame.momentum.valid = false;  // The boards are what is wrong.
+  EXPECT_EQ(PoseNote(frame, kSubject), "");
+}
+
 TEST(PoseNote, LeadsThroughTheTPose) {
   PoseFrame frame = Well();
   frame.calibrated = false;
