@@ -54,6 +54,8 @@ BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, c
       vertical_(pose.mass_kg, step_s, subject.arms_hang_m, pose.cell_noise_n),
       contacts_{FootContact(config.contact), FootContact(config.contact)},
       places_{FootPlace(subject.feet[0], config.place), FootPlace(subject.feet[1], config.place)} {
+  for (HorizontalCom& axis : horizontal_) axis.KeepLag(lag_steps_);
+  vertical_.KeepLag(lag_steps_);
   for (std::size_t f = 0; f < kFeet; ++f) places_[f].Start(pose.p_WP_m[f]);
   Begin();
   estimate_.p_WC_m << pose.cop_m.x(), pose.cop_m.y(), subject.com_height_m;

@@ -54,6 +54,8 @@ class HorizontalCom {
   /// `step_s` is the time between frames, > 0.
   HorizontalCom(const HorizontalPrior& prior, double mass_kg, double step_s);
 
+  /// Only Position of up to so many steps ago will be asked for. Before Start.
+  void KeepLag(int lag_steps) { filter_.Keep(lag_steps + 1); }
   /// The body is at rest at c_m.
   void Start(double c_m, double centre_m);
   void Advance(const HorizontalInput& input);

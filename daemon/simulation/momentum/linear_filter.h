@@ -29,6 +29,13 @@ class LinearFilter {
     count_ = 0;
   }
 
+  /// Only the newest so many steps are remembered, at least one and at most kSlots: each costs
+  /// time. Forgets all of them.
+  void Keep(int steps) {
+    kept_ = static_cast<std::size_t>(std::clamp(steps, 1, kSlots));
+    count_ = 0;
+  }
+
   /// x <- a x + u, P <- a P a' + q.
   void Predict(const Matrix& a, const Vector& u, const Matrix& q) {
     // Most states of most filters stay as they are: their rows of `a` are those of the identity.
@@ -73,7 +80,7 @@ class LinearFilter {
 
   /// Remembers h x + offset of this step as the newest slot.
   void Remember(const Row& h, double offset = 0) {
-    Slot& slot = slots_[count_ % kSlots];
+    Slot& slot = slots_[count_ % kept_];
     slot.mean = h * x_ + offset;
     slot.cross = h * p_;
     slot.variance = slot.cross * h.transpose();
@@ -84,7 +91,7 @@ class LinearFilter {
   /// than there are: the oldest there is). At least one must have been remembered.
   Scalar Delayed(int steps) const {
     const std::size_t back = std::min<std::size_t>(static_cast<std::size_t>(steps), Used() - 1);
-    const Slot& slot = slots_[(count_ - 1 - back) % kSlots];
+    const Slot& slot = slots_[(count_ - 1 - back) % kept_];
     return {slot.mean, slot.variance};
   }
 
@@ -99,7 +106,7 @@ class LinearFilter {
     Row cross = Row::Zero();
   };
 
-  std::size_t Used() const { return std::min<std::size_t>(count_, kSlots); }
+  std::size_t Used() const { return std::min(count_, kept_); }
 
   // x += P h' dx, P -= P h' h P dp, and the same for the slots.
   void Correct(const Row& h, double dx, double dp) {
@@ -124,6 +131,7 @@ class LinearFilter {
   Vector x_ = Vector::Zero();
   Matrix p_ = Matrix::Identity();
   std::size_t count_ = 0;
+  std::size_t kept_ = kSlots;
   std::array<Slot, kSlots> slots_{};
 };
 

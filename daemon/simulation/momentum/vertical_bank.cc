@@ -71,6 +71,10 @@ VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, do
       unweighed_(UnweighedVertical(arms_hang_m, cell_noise_n, mass_kg), mass_kg, step_s),
       step_s_(step_s) {}
 
+void VerticalBank::KeepLag(int lag_steps) {
+  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_}) filter->KeepLag(lag_steps);
+}
+
 void VerticalBank::Start(const VerticalInput& mean) {
   trusting_.Start(mean);
   doubtful_.Start(mean);

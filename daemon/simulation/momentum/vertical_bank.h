@@ -22,6 +22,8 @@ class VerticalBank {
  public:
   VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n);
 
+  /// VerticalCom::KeepLag of all.
+  void KeepLag(int lag_steps);
   void Start(const VerticalInput& mean);
   void Advance(const VerticalInput& input);
   void SeePosture(double height_m);

@@ -59,6 +59,8 @@ class VerticalCom {
 
   VerticalCom(const VerticalConfig& config, double mass_kg, double step_s);
 
+  /// Only Height of up to so many steps ago will be asked for. Before Start.
+  void KeepLag(int lag_steps) { filter_.Keep(lag_steps + 1); }
   /// The body stands still in its T-pose; `mean` is the calibration's mean load of each group.
   void Start(const VerticalInput& mean);
   void Advance(const VerticalInput& input);

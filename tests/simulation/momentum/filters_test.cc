@@ -43,6 +43,20 @@ TEST(LinearFilter, DelayedScalarIsThatOfTheBackwardRecursion) {
   EXPECT_NEAR(filter.Delayed(2).variance, information.inverse()(0, 0), 1e-6);
 }
 
+TEST(LinearFilter, KeepsNoMoreStepsThanItIsTold) {
+  using F = LinearFilter<1, 4>;
+  F filter;
+  filter.Keep(2);
+  filter.Start(F::Vector(0), F::Matrix(1));
+  for (const double z : {1.0, 2.0, 4.0}) {
+    filter.Predict(F::Matrix(1), F::Vector(0), F::Matrix(1));
+    filter.Update(F::Row(1), z, 1);
+    filter.Remember(F::Row(1));
+  }
+  EXPECT_EQ(filter.Delayed(3).mean, filter.Delayed(1).mean);
+  EXPECT_LT(filter.Delayed(1).mean, filter.Delayed(0).mean);
+}
+
 TEST(Mixture, FarFromTheFirstComponentTheSecondTakesAll) {
   const auto out = TimesMixture({-0.5, 0.01}, {{{0.9, 0, 0.02}, {0.1, -0.5, 0.1}}});
   EXPECT_NEAR(out.moments.mean, -0.5, 1e-3);
