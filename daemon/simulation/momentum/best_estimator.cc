@@ -138,7 +138,6 @@ void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
 const Estimate& BestEstimator::SeePosture(const Eigen::Vector3d& p_WC_m) {
   if (!estimate_.valid || !p_WC_m.allFinite()) return estimate_;
   for (int i = 0; i < 2; ++i) horizontal_[static_cast<std::size_t>(i)].SeePosture(p_WC_m(i));
-  vertical_.SeePosture(p_WC_m.z() - subject_.com_height_m);
   TellCom();
   return estimate_;
 }

@@ -39,8 +39,7 @@ class BestEstimator {
   /// it begins anew when loads come again (`resets`).
   const Estimate& Advance(const ContactLoads& loads);
   /// Where C is by hands and feet alone, in the frame of the last Advance: its place along the
-  /// lateral axis and its height are estimated anew. What is not finite, or comes in a gap, is
-  /// passed over.
+  /// lateral axis is estimated anew. What is not finite, or comes in a gap, is passed over.
   const Estimate& SeePosture(const Eigen::Vector3d& p_WC_m);
   const Estimate& estimate() const { return estimate_; }
   const VerticalBank& vertical() const { return vertical_; }

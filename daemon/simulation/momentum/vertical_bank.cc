@@ -113,12 +113,6 @@ void VerticalBank::Weigh() {
               off * off > kSureSpreads * kSureSpreads * (free.variance + held.variance);
 }
 
-void VerticalBank::SeePosture(double height_m) {
-  trusting_.SeePosture(height_m);
-  doubtful_.SeePosture(height_m);
-  unweighed_.SeePosture(height_m);
-}
-
 void VerticalBank::Coast() {
   trusting_.Coast();
   doubtful_.Coast();

@@ -26,7 +26,6 @@ class VerticalBank {
   void KeepLag(int lag_steps);
   void Start(const VerticalInput& mean);
   void Advance(const VerticalInput& input);
-  void SeePosture(double height_m);
   void Coast();
 
   const VerticalCom& chosen() const {

@@ -46,9 +46,6 @@ VerticalCom::VerticalCom(const VerticalConfig& config, double mass_kg, double st
   q_(0, 0) = 1e-9;
   q_(1, 1) = white * white * step_s * step_s;
   q_(2, 2) = slow * slow * (1 - keep * keep);
-  const double posture_keep = std::exp(-step_s / config.posture.time_s);
-  a_(kPosture, kPosture) = posture_keep;
-  q_(kPosture, kPosture) = PostureVariance() * (1 - posture_keep * posture_keep);
   u_.setZero();
 }
 
@@ -57,8 +54,8 @@ void VerticalCom::Start(const VerticalInput& mean) {
   p(0, 0) = kStartHeightM * kStartHeightM;
   p(1, 1) = kStartVelocityMps * kStartVelocityMps;
   p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
-  p(kPosture, kPosture) = PostureVariance();
-  p.block<kGroups, kGroups>(3, 3).setConstant(config_.weight_spread * config_.weight_spread);
+  p.bottomRightCorner<kGroups, kGroups>().setConstant(config_.weight_spread *
+                                                      config_.weight_spread);
   for (int i = 0; i < kGroups; ++i) p(3 + i, 3 + i) += config_.gain_spread * config_.gain_spread;
   filter_.Start(Filter::Vector::Zero(), p);
   // In the T-pose all gains together give the weight, but for what the mass is wrong by.
@@ -119,15 +116,6 @@ void VerticalCom::Advance(const VerticalInput& input) {
   filter_.Remember(Filter::Row::Unit(0));
 }
 
-void VerticalCom::SeePosture(double height_m) {
-  const PostureError& posture = config_.posture;
-  if (posture.spread_m <= 0) return;
-  Filter::Row h = Filter::Row::Zero();
-  h(0) = posture.share;
-  h(kPosture) = 1;
-  filter_.Update(h, height_m, posture.white_m * posture.white_m);
-}
-
 void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
   const double share = step_s_ / (kAccelerationTimeS + step_s_);
   level_mps2_ += step_s_ / (kLevelTimeS + step_s_) * (raw_mps2 - level_mps2_);
@@ -177,7 +165,7 @@ void VerticalCom::Reweigh() {
   // (1 - gain) / mass of each group stays what it was.
   const double share = mass_kg_ / weighed_kg();
   Filter::Vector shift = Filter::Vector::Zero();
-  for (int i = 3; i < kPosture; ++i) shift(i) = 1 - (1 - filter_.x()(i)) / share - filter_.x()(i);
+  for (int i = 3; i < kStates; ++i) shift(i) = 1 - (1 - filter_.x()(i)) / share - filter_.x()(i);
   filter_.Predict(Filter::Matrix::Identity(), shift, Filter::Matrix::Zero());
   mass_kg_ /= share;
   overweight_ *= share;
@@ -187,7 +175,6 @@ void VerticalCom::Reweigh() {
 void VerticalCom::Coast() {
   Filter::Matrix a = Filter::Matrix::Identity();
   a(0, 1) = step_s_;
-  a(kPosture, kPosture) = a_(kPosture, kPosture);
   Filter::Matrix q = q_;
   q(1, 1) += kCoastMps2 * kCoastMps2 * step_s_ * step_s_;
   u_.setZero();

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "daemon/simulation/momentum/linear_filter.h"
-#include "daemon/simulation/momentum/posture.h"
 
 namespace footing::momentum {
 
@@ -32,7 +31,6 @@ struct VerticalConfig {
   double low_below_m = 0.12;  ///< Mean and spread of all other heights.
   double low_spread_m = 0.15;
   double highest_m = 0.12;  ///< Over the T-pose, with load on the feet: tiptoe, arms up.
-  PostureError posture{1, 0.06, 3, 0.02};
 };
 
 /// One frame: the load of each group of cells, and where the COP is.
@@ -45,15 +43,14 @@ struct VerticalInput {
 
 /// Height of the centre of mass over its height in the T-pose, by a Kalman filter of the loads.
 ///
-/// States: height, velocity, slow error of the acceleration, one gain error per group of cells,
-/// what the posture is wrong by. The loads enter as an input; the cells' gains, the mass and the
-/// slow error are found by what the filter learns when the body is still (zero velocity) and
-/// upright (a mixture of densities, matched in its moments): the more doubtful the height, the
-/// wider the reach of the anchor. A plain value.
+/// States: height, velocity, slow error of the acceleration, one gain error per group of cells. The
+/// loads enter as an input; the cells' gains, the mass and the slow error are found by what the
+/// filter learns when the body is still (zero velocity) and upright (a mixture of densities,
+/// matched in its moments): the more doubtful the height, the wider the reach of the anchor. A
+/// plain value.
 class VerticalCom {
  public:
-  static constexpr int kPosture = 3 + VerticalInput::kGroups;
-  static constexpr int kStates = kPosture + 1;
+  static constexpr int kStates = 3 + VerticalInput::kGroups;
   static constexpr int kSlots = 25;
   using Filter = LinearFilter<kStates, kSlots>;
 
@@ -64,8 +61,6 @@ class VerticalCom {
   /// The body stands still in its T-pose; `mean` is the calibration's mean load of each group.
   void Start(const VerticalInput& mean);
   void Advance(const VerticalInput& input);
-  /// So high is C by hands and feet alone, over the T-pose, in the frame of the last Advance.
-  void SeePosture(double height_m);
 
   Filter::Scalar Height(int lag_steps) const { return filter_.Delayed(lag_steps); }
   Filter::Scalar Velocity() const { return filter_.Of(Filter::Row::Unit(1)); }
@@ -94,7 +89,6 @@ class VerticalCom {
   const Filter::Vector& input_shift() const { return u_; }
 
  private:
-  double PostureVariance() const { return config_.posture.spread_m * config_.posture.spread_m; }
   void Watch(const VerticalInput& input, double raw_mps2);
   void Anchor(bool loaded);
   void Score(double log_density);
