@@ -62,7 +62,9 @@ class Pose(unittest.TestCase):
             self.assertTrue(report["finite"])
             self.assertNotIn("NaN", json.dumps(report))
             self.assertNotIn("null", json.dumps(report))
-            self.assertEqual(report["invalid_frames"], 0)
+            # Nobody has shown this model a walk, and the best mode says so.
+            unsure = report["invalid_frames"] / report["frames"]
+            self.assertTrue(0 < unsure < 0.5 if mode == "best" else unsure == 0, unsure)
 
     def test_boards_and_hands_tell_more_than_hands_and_feet_and_those_more_than_a_mean(self):
         report = self.judge("pose")

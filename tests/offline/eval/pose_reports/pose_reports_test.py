@@ -55,7 +55,7 @@ class Reports(unittest.TestCase):
         rows = run(EVAL, "pose", *CLIP, *self.models, "--ablations")["ablations"]
         terms = ["nothing", "angular_momentum", "momentum", "cleanup", "basis"]
         self.assertEqual([(row["mode"], row["without"]) for row in rows],
-                         [("best", term) for term in terms] +
+                         [("best", term) for term in terms + ["posture"]] +
                          [("paper", term) for term in terms + ["horizontal_network"]])
         self.assertTrue(all(row["finite"] for row in rows))
         self.assertTrue(all(0 < row["mpjpe_cm"] < 200 for row in rows))
