@@ -88,6 +88,21 @@ void SetFootInput(const momentum::FootLoads& foot, v1::PoseFoot& message) {
   }
 }
 
+void SetImpulse(const BoardImpulse& impulse, v1::PoseFoot& message) {
+  if (!impulse.valid) return;
+  message.set_sampled_s(impulse.sampled_s);
+  for (const double impulse_ns : impulse.impulse_ns) message.add_impulse_ns(impulse_ns);
+}
+
+BoardImpulse ImpulseFrom(const v1::PoseFoot& message) {
+  BoardImpulse impulse;
+  impulse.valid = message.impulse_ns_size() == static_cast<int>(kBoardCells);
+  if (!impulse.valid) return impulse;
+  impulse.sampled_s = message.sampled_s();
+  std::copy(message.impulse_ns().begin(), message.impulse_ns().end(), impulse.impulse_ns.begin());
+  return impulse;
+}
+
 void SetInsoleInput(const reconstruction::InsoleFoot& foot, v1::PoseFoot& message) {
   for (std::size_t i = 0; foot.valid && i < foot.count; ++i) {
     v1::PoseCell& cell = *message.add_insole_cells();
@@ -217,6 +232,8 @@ v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subje
   v1::PoseInput& pose = *message.mutable_pose();
   SetFootInput(inputs.sensors.loads.feet[0], *pose.mutable_left_foot());
   SetFootInput(inputs.sensors.loads.feet[1], *pose.mutable_right_foot());
+  SetImpulse(inputs.impulses[0], *pose.mutable_left_foot());
+  SetImpulse(inputs.impulses[1], *pose.mutable_right_foot());
   SetInsoleInput(inputs.insoles[0], *pose.mutable_left_foot());
   SetInsoleInput(inputs.insoles[1], *pose.mutable_right_foot());
   SetHandInput(inputs.sensors.hands[0], *pose.mutable_left_hand());
@@ -241,6 +258,7 @@ PoseApplied PoseAppliedFrom(const v1::AppliedInput& message) {
   inputs.simulated = message.simulated();
   const v1::PoseInput& pose = message.pose();
   inputs.sensors.loads.feet = {FootFrom(pose.left_foot()), FootFrom(pose.right_foot())};
+  inputs.impulses = {ImpulseFrom(pose.left_foot()), ImpulseFrom(pose.right_foot())};
   inputs.insoles = {InsoleFrom(pose.left_foot()), InsoleFrom(pose.right_foot())};
   inputs.sensors.hands = {HandFrom(pose.left_hand()), HandFrom(pose.right_hand())};
   inputs.sensors.arms = {ArmFrom(pose.left_hand()), ArmFrom(pose.right_hand())};

@@ -68,11 +68,13 @@ void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
     applied.step = step_;
     applied.inputs = inputs.Front();
     quiet_steps_ = 0;
+    for (std::size_t f = 0; f < momentum::kFeet; ++f) player_.Take(f, inputs.Front().impulses[f]);
     Obey(inputs.Front());
   } else {
     ++quiet_steps_;
   }
   told_ = inputs.Front().sensors;
+  player_.Advance(1 / rate_hz_, told_.loads.feet);
   worn_.feet = inputs.Front().insoles;
   simulated_ = inputs.Front().simulated;
   hand_trouble_ = inputs.Front().hand_trouble;

@@ -101,6 +101,7 @@ void PoseSensors::TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns) 
     board.seen = true;
     board.seen_ns = now_ns;
     board.simulated = sample.simulated();
+    board.meter.Add(NanosecondsToSeconds(sample.sampled_ns()), corners_n);
     for (std::size_t i = 0; i < corners_n.size(); ++i) {
       inputs_.sensors.loads.feet[side].cells[i].load_n = corners_n[i];
     }
@@ -146,6 +147,7 @@ void PoseSensors::Judge(std::int64_t now_ns) {
     Board& board = boards_[side];
     if (board.seen && IsOld(board.seen_ns, now_ns, kBoardTimeoutS)) board.seen = false;
     inputs_.sensors.loads.feet[side].valid = board.seen;
+    inputs_.impulses[side] = board.seen ? board.meter.impulse() : BoardImpulse{};
     inputs_.simulated |= board.seen && board.simulated;
   }
   const auto judge = [&](Worn& worn, double timeout_s) {

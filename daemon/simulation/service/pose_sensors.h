@@ -15,7 +15,8 @@
 namespace footing::simulation {
 
 /// Turns ticks of the sensor daemon into what the pose engine is told, on the io thread: the newest
-/// raw sample of the rig's left and right board with its cells' places in W, of its insoles, and of
+/// raw sample of the rig's left and right board with its cells' places in W and what they have felt
+/// so far, of its insoles, and of
 /// its hands as they have gone on since the tracker saw them, and how its arms are held by the
 /// Wiimotes in the fists.
 ///
@@ -52,6 +53,7 @@ class PoseSensors {
     bool seen = false;
     std::int64_t seen_ns = 0;
     bool simulated = false;
+    ImpulseMeter meter;
   };
   /// A hand or an insole.
   struct Worn {

@@ -41,6 +41,16 @@ struct Line {
       told.insoles[f].load_n[0] = momentum::PressureOf(seen.loads.feet[f], 1).total_n;
     }
   }
+  /// What the boards have felt until the i-th frame, which comes at once.
+  void Press(std::size_t i) {
+    for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+      const momentum::FootLoads& foot = measured[i].loads.feet[f];
+      std::array<double, kBoardCells> load_n{};
+      for (std::size_t k = 0; k < kBoardCells; ++k) load_n[k] = foot.cells[k].load_n;
+      meters[f].Add(1 + static_cast<double>(i) / made::kMadeRateHz, load_n);
+      told.impulses[f] = meters[f].impulse();
+    }
+  }
   /// The left hand is not seen, but a Wiimote tells of its arm.
   void HoldAnArm() {
     told.sensors.hands[0].valid = false;
@@ -68,6 +78,7 @@ struct Line {
   PoseRun run;
   exchange::Latest<PoseInputs> inputs;
   PoseInputs told;
+  std::array<ImpulseMeter, momentum::kFeet> meters;
   PoseFrame frame;
 };
 
@@ -165,6 +176,7 @@ TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
       continue;
     }
     line.told.sensors = line.measured[i];
+    line.Press(i);
     if (i % 200 > 150) line.Wear(i);
     if (i % 100 > 70) line.HoldAnArm();
     if (i % 200 == 0) line.told.insoles = {};
