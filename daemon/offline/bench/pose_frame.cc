@@ -2,13 +2,13 @@
 #include <cmath>
 #include <vector>
 
-#include "common/body/momentum.h"
 #include "common/clock/clock.h"
 #include "common/motion/motion.h"
 #include "common/synthetic/random.h"
 #include "common/virtual_sensors/board_cells.h"
 #include "common/virtual_sensors/ground_reaction.h"
 #include "daemon/offline/bench/pairs.h"
+#include "daemon/offline/timing/momentum_cost.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::bench {
@@ -23,7 +23,6 @@ constexpr double kStandS = 6, kMoveS = 20;
 constexpr int kWays = 12;      // Independent ways to move,
 constexpr double kWay = 0.06;  // and how far, rad.
 constexpr int kWaves = 500;    // As many as a trained model has.
-constexpr int kEvaluations = 2000;
 
 /// A T-pose, then all joints move to and fro, each way with its own frequency.
 motion::Motion Moving(const body::Body& body) {
@@ -109,21 +108,6 @@ reconstruction::Models Trained(const body::Body& body, const motion::Motion& mot
   return models;
 }
 
-double MomentumUs(const body::Body& body, const Eigen::VectorXd& q) {
-  body::Kinematics at(body.skeleton);
-  body::JointVelocities velocities(body.skeleton);
-  const Eigen::VectorXd rate = Eigen::VectorXd::Constant(q.size(), 0.1);
-  volatile double kept = 0;  // So that nothing is left out.
-  const std::int64_t begin_ns = clock::ThreadCpuNs();
-  for (int i = 0; i < kEvaluations; ++i) {
-    body::ComputeKinematics(body.skeleton, q, at);
-    body::ComputeVelocities(body.skeleton, at, rate, velocities);
-    kept = body::ComputeMomentum(body, at, velocities).angular_W.x();
-  }
-  static_cast<void>(kept);
-  return static_cast<double>(clock::ThreadCpuNs() - begin_ns) / 1e3 / kEvaluations;
-}
-
 }  // namespace
 
 Result<Rows> PoseFrame() {
@@ -152,7 +136,9 @@ Result<Rows> PoseFrame() {
       return Quantile(std::move(spent_us), quantile);
     };
   };
-  const auto unit_us = [&] { return MomentumUs(*body, motion.q.col(motion.frames() - 1)); };
+  const auto unit_us = [&] {
+    return timing::MomentumCostUs(*body, motion.q.col(motion.frames() - 1));
+  };
   const char* const unit = "us (baseline: forward kinematics, centre of mass and momentum once)";
   return Rows{RunPairs("pose_frame_p50_us", unit, kPairs, frame_us(0.5), unit_us),
               RunPairs("pose_frame_p99_us", unit, kPairs, frame_us(0.99), unit_us)};

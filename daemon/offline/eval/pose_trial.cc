@@ -10,6 +10,7 @@
 #include "daemon/offline/eval/pose_metrics.h"
 #include "daemon/offline/eval/roughness.h"
 #include "daemon/offline/eval/stance_frames.h"
+#include "daemon/offline/timing/momentum_cost.h"
 
 namespace footing::eval {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 using momentum::kFeet;
 using nlohmann::ordered_json;
 
-constexpr int kCostRuns = 2000;
 constexpr double kStraightDeg =
     25;  // An elbow that is bent by less hardly changes the arm's reach.
 
@@ -39,22 +39,6 @@ class Drift {
  private:
   double n_ = 0, t_ = 0, e_ = 0, tt_ = 0, te_ = 0;
 };
-
-/// Microseconds of forward kinematics, centre of mass and momentum: the unit of the solver's cost.
-double MomentumCostUs(const body::Body& body, const Eigen::VectorXd& q) {
-  body::Kinematics at(body.skeleton);
-  body::JointVelocities velocities(body.skeleton);
-  const Eigen::VectorXd rate = Eigen::VectorXd::Constant(q.size(), 0.1);
-  volatile double kept = 0;  // So that nothing is left out.
-  const std::int64_t begin_ns = clock::ThreadCpuNs();
-  for (int i = 0; i < kCostRuns; ++i) {
-    body::ComputeKinematics(body.skeleton, q, at);
-    body::ComputeVelocities(body.skeleton, at, rate, velocities);
-    kept = body::ComputeMomentum(body, at, velocities).angular_W.x();
-    static_cast<void>(kept);
-  }
-  return static_cast<double>(clock::ThreadCpuNs() - begin_ns) / 1e3 / kCostRuns;
-}
 
 reconstruction::Known KnownOf(const rehearsal::Frame& frame, const Oracle& oracle) {
   reconstruction::Known known;
@@ -289,7 +273,7 @@ Result<ordered_json> RunPoseTrial(const rehearsal::Rehearsal& rehearsal,
                        {"lag_ms", 1000 * made->output().lag_s},
                        {"resets", made->output().resets}};
   json.update(judge.Json());
-  const double unit_us = MomentumCostUs(rehearsal.body, rehearsal.frames.front().q);
+  const double unit_us = timing::MomentumCostUs(rehearsal.body, rehearsal.frames.front().q);
   json["solve_us_p50"] = solve_us.Quantile(0.5);
   json["solve_us_p99"] = solve_us.Quantile(0.99);
   json["kinematics_us"] = unit_us;
