@@ -9,9 +9,9 @@
 
 #include "clients/log/contents.h"
 #include "common/mcap/walk.h"
-#include "common/motion/bvh.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
+#include "common/virtual/motion/bvh.h"
 #include "common/wire/wire.h"
 
 namespace footing::log_client {

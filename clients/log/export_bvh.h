@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "common/motion/motion.h"
 #include "common/result/result.h"
+#include "common/virtual/motion/motion.h"
 #include "footing/v1/character.pb.h"
 
 namespace footing::log_client {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "clients/stream/tellings.h"
-#include "common/virtual_sensors/held_device.h"
+#include "common/virtual/sensors/held_device.h"
 
 namespace footing::stream_client {
 namespace {
@@ -21,7 +21,7 @@ StandIn::CornerForces UnderFoot(std::shared_ptr<const Stage> stage, std::size_t 
     const auto load = sensors::LoadBoard(stage->boards[foot], stage->FootAt(foot, t_s));
     const sensors::Corners read = cells.Advance(load.corners_n, std::max(0.0, t_s - last_s));
     last_s = t_s;
-    return device_models::CornerForces{read[0], read[1], read[2], read[3]};
+    return virtual_devices::CornerForces{read[0], read[1], read[2], read[3]};
   };
 }
 
@@ -46,7 +46,7 @@ StandIn::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side, std:
     const auto told = errors.Advance(between(course->specific_force_S_mps2),
                                      between(course->angular_velocity_S_radps),
                                      std::max(0.0, t_s - std::exchange(last_s, t_s)));
-    device_models::WiimoteSensors felt;
+    virtual_devices::WiimoteSensors felt;
     felt.specific_force_S_mps2 = sensors::AsHeld(told.specific_force_S_mps2);
     felt.angular_velocity_S_radps = sensors::AsHeld(told.angular_velocity_S_radps);
     return felt;
@@ -105,10 +105,10 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
   Plan plan;
   for (const std::size_t foot : {0u, 1u}) {
     const std::uint64_t seed = DeviceSeed(common, foot + 1);
-    plan.devices.emplace_back(device_models::BalanceBoard(seed),
+    plan.devices.emplace_back(virtual_devices::BalanceBoard(seed),
                               UnderFoot(stage, foot, options.errors, seed + 700),
                               foot == 0 ? DeviceRole::kLeftBoard : DeviceRole::kRightBoard,
-                              device_models::BoardLink(*link, seed + 500));
+                              virtual_devices::BoardLink(*link, seed + 500));
   }
   if (options.hands == "wiimote") {
     for (const int side : {0, 1}) {

@@ -6,7 +6,7 @@
 
 #include "clients/stream/body_stage.h"
 #include "clients/stream/plan.h"
-#include "common/virtual_sensors/board_cells.h"
+#include "common/virtual/sensors/board_cells.h"
 
 namespace footing::stream_client {
 

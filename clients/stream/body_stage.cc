@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <utility>
 
-#include "common/choreography/perform.h"
 #include "common/config/data_file.h"
 #include "common/log/log.h"
-#include "common/motion/edit.h"
-#include "common/motion_files/load.h"
 #include "common/units/units.h"
+#include "common/virtual/choreography/perform.h"
+#include "common/virtual/motion/edit.h"
+#include "common/virtual/motion_files/load.h"
 
 namespace footing::stream_client {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/result/result.h"
-#include "common/virtual_sensors/board_cells.h"
-#include "common/virtual_sensors/scene.h"
+#include "common/virtual/sensors/board_cells.h"
+#include "common/virtual/sensors/scene.h"
 
 namespace footing::stream_client {
 

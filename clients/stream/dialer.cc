@@ -116,7 +116,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   }
 
   void SendAttach(std::size_t slot) {
-    const device_models::Identity& identity = devices_[slot].identity();
+    const virtual_devices::Identity& identity = devices_[slot].identity();
     v1::DeviceEnvelope envelope;
     v1::DeviceAttach& attach = *envelope.mutable_attach();
     attach.set_slot(static_cast<std::uint32_t>(slot));
@@ -224,7 +224,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     ScheduleTelling(index);
   }
 
-  void SendReport(std::size_t slot, const device_models::Report& report, std::int64_t true_ns,
+  void SendReport(std::size_t slot, const virtual_devices::Report& report, std::int64_t true_ns,
                   bool feature = false) {
     v1::DeviceEnvelope envelope;
     v1::DeviceInputReport& input = *envelope.mutable_input_report();

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "clients/stream/tellings.h"
-#include "common/synthetic/random.h"
 #include "common/units/units.h"
-#include "common/virtual_sensors/insole_cells.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/sensors/insole_cells.h"
 
 namespace footing::stream_client {
 namespace {
@@ -21,7 +21,7 @@ Telling TellInsole(std::shared_ptr<const Stage> stage, std::size_t foot, const I
                    std::uint64_t seed) {
   const auto places =
       sensors::InsolePlaces(sensors::PlaceOfSole(stage->scene.course, foot, 0).length_m);
-  synthetic::Random random(seed);
+  noise::Random random(seed);
   std::array<double, sensors::kInsoleCells> gains{};
   for (double& gain : gains) gain = 1 + errors.gain_spread * random.Normal();
   const double noise_n = KilogramsToNewtons(errors.noise_kg);

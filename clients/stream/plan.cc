@@ -10,16 +10,16 @@
 #include "clients/stream/stick.h"
 #include "clients/stream/table.h"
 #include "common/config/data_file.h"
-#include "common/synthetic/hand_motion.h"
-#include "common/synthetic/random.h"
-#include "common/synthetic/sensor.h"
 #include "common/units/units.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/wrists/accelerometer.h"
+#include "common/virtual/wrists/hand_motion.h"
 
 namespace footing::stream_client {
 namespace {
 
-using device_models::LinkQuality;
 using stream::DeviceRole;
+using virtual_devices::LinkQuality;
 
 constexpr std::size_t kMaxRecordingBytes = 256u << 20;
 /// How fast a person changes from one motion to the next.
@@ -29,8 +29,8 @@ using Force = std::function<Eigen::Vector3d(double t_s)>;
 
 /// What a real accelerometer adds to a made motion.
 Force WithNoise(std::uint64_t seed, Force force) {
-  return [random = synthetic::Random(seed), force](double t_s) mutable {
-    const double sd_mps2 = synthetic::SensorModel().noise_mps2;
+  return [random = noise::Random(seed), force](double t_s) mutable {
+    const double sd_mps2 = wrists::SensorModel().noise_mps2;
     Eigen::Vector3d felt = force(t_s);
     for (int axis = 0; axis < 3; ++axis) felt[axis] += sd_mps2 * random.Normal();
     return felt;
@@ -55,7 +55,7 @@ Force Repeated(Force force, double duration_s) {
 
 StandIn::WiimoteMotion Felt(Force force, Force turn = nullptr) {
   return [force, turn](double t_s) {
-    device_models::WiimoteSensors sensors;
+    virtual_devices::WiimoteSensors sensors;
     sensors.specific_force_S_mps2 = force(t_s);
     if (turn) sensors.angular_velocity_S_radps = turn(t_s);
     return sensors;
@@ -79,8 +79,8 @@ StandIn::CornerForces PlayCorners(std::shared_ptr<const Table> table) {
     auto next = std::upper_bound(table->rows.begin(), table->rows.end(), time_s,
                                  [](double time, const auto& row) { return time < row[0]; });
     const auto& row = next == table->rows.begin() ? *next : *std::prev(next);
-    return device_models::CornerForces{KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
-                                       KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])};
+    return virtual_devices::CornerForces{KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
+                                         KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])};
   };
 }
 
@@ -105,7 +105,7 @@ double Duration(const Common& common, double natural_s) {
   return common.seconds > 0 ? common.seconds : natural_s;
 }
 
-Result<std::vector<synthetic::Segment>> ReadScript(const std::string& script) {
+Result<std::vector<wrists::Segment>> ReadScript(const std::string& script) {
   const bool is_path = script.find('/') != std::string::npos || script.ends_with(".json");
   if (!is_path) return ScriptNamed(script);
   const auto text = config::ReadTextFile(script);
@@ -113,20 +113,20 @@ Result<std::vector<synthetic::Segment>> ReadScript(const std::string& script) {
   return ParseScript(*text, script);
 }
 
-Plan PlanWrists(const std::vector<synthetic::Segment>& segments, LinkQuality link,
+Plan PlanWrists(const std::vector<wrists::Segment>& segments, LinkQuality link,
                 const Common& common, const Ports& ports) {
-  using synthetic::HandMotion;
-  const auto make = [](std::vector<synthetic::Segment> script) {
-    return std::make_shared<const HandMotion>(std::move(script), synthetic::WristShape(), kBlendS);
+  using wrists::HandMotion;
+  const auto make = [](std::vector<wrists::Segment> script) {
+    return std::make_shared<const HandMotion>(std::move(script), wrists::WristShape(), kBlendS);
   };
   const auto motion = make(segments);
   // The same without the swing is gravity alone.
-  std::vector<synthetic::Segment> inclined = segments;
-  for (synthetic::Segment& segment : inclined) segment.amplitude_mps2 = 0;
+  std::vector<wrists::Segment> inclined = segments;
+  for (wrists::Segment& segment : inclined) segment.amplitude_mps2 = 0;
   const auto gravity = make(inclined);
   const auto of = [](std::shared_ptr<const HandMotion> hands, bool left) -> Force {
     return [hands, left](double t_s) -> Eigen::Vector3d {
-      const synthetic::Hands felt = hands->At(t_s);
+      const wrists::Hands felt = hands->At(t_s);
       return left ? felt.left_mps2 : felt.right_mps2;
     };
   };
@@ -143,14 +143,14 @@ Plan PlanWrists(const std::vector<synthetic::Segment>& segments, LinkQuality lin
   return plan;
 }
 
-Plan PlanJoystick(const std::vector<synthetic::Segment>& segments, LinkQuality link,
+Plan PlanJoystick(const std::vector<wrists::Segment>& segments, LinkQuality link,
                   const Common& common, const Ports& ports) {
   const auto stick = std::make_shared<const StickMotion>(segments, kBlendS);
   const auto still = [](double) { return Eigen::Vector3d(0, 0, -kStandardGravityMps2); };
   const auto motion = [stick, force = WithNoise(DeviceSeed(common, 1), still)](double t_s) mutable {
     const StickState state = stick->At(std::fmod(t_s, stick->DurationSeconds()));
     constexpr std::uint16_t kA = 0x0008;
-    device_models::WiimoteSensors sensors;
+    virtual_devices::WiimoteSensors sensors;
     sensors.specific_force_S_mps2 = force(t_s);
     sensors.buttons = state.jump ? kA : 0;
     sensors.nunchuk.stick_x = state.x;
@@ -166,7 +166,7 @@ Plan PlanJoystick(const std::vector<synthetic::Segment>& segments, LinkQuality l
 }  // namespace
 
 Result<LinkQuality> ParseLink(const std::string& name) {
-  if (const auto quality = device_models::LinkNamed(name)) return *quality;
+  if (const auto quality = virtual_devices::LinkNamed(name)) return *quality;
   return UsageError("--link " + name + ": there are ideal, good and poor");
 }
 
@@ -177,11 +177,11 @@ std::uint64_t DeviceSeed(const Common& common, std::uint64_t device) {
 StandIn MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device, DeviceRole role,
                     StandIn::WiimoteMotion motion, const Ports& ports) {
   const std::uint64_t seed = DeviceSeed(common, device);
-  device_models::Wiimote wiimote(seed);
-  if (ports.motion_plus) wiimote.Plug(device_models::Accessory::kMotionPlus, 0);
-  if (ports.nunchuk) wiimote.Plug(device_models::Accessory::kNunchuk, 0);
+  virtual_devices::Wiimote wiimote(seed);
+  if (ports.motion_plus) wiimote.Plug(virtual_devices::Accessory::kMotionPlus, 0);
+  if (ports.nunchuk) wiimote.Plug(virtual_devices::Accessory::kNunchuk, 0);
   return {std::move(wiimote), std::move(motion), role,
-          device_models::WiimoteLink(link, seed + 500)};
+          virtual_devices::WiimoteLink(link, seed + 500)};
 }
 
 Result<Plan> PlanUser(const std::string& script, const std::string& interface, const Common& common,
@@ -234,8 +234,8 @@ Result<Plan> PlanCorners(const std::string& left, const std::string& right, cons
     if (const auto times = CheckTimes(**table, path); !times) return times.error();
     longest_s = std::max(longest_s, (*table)->rows.back()[0] - (*table)->rows.front()[0]);
     const std::uint64_t seed = DeviceSeed(common, plan.devices.size() + 1);
-    plan.devices.emplace_back(device_models::BalanceBoard(seed), PlayCorners(*table), role,
-                              device_models::BoardLink(*link, seed + 500));
+    plan.devices.emplace_back(virtual_devices::BalanceBoard(seed), PlayCorners(*table), role,
+                              virtual_devices::BoardLink(*link, seed + 500));
   }
   plan.duration_s = Duration(common, longest_s);
   return plan;

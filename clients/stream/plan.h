@@ -69,9 +69,9 @@ Result<Plan> PlanCorners(const std::string& left, const std::string& right, cons
 
 /// What every plan is made with: the link that a flag names, seeds so that no two devices of a run
 /// share their random numbers, a Wiimote with what is in its port.
-Result<device_models::LinkQuality> ParseLink(const std::string& name);
+Result<virtual_devices::LinkQuality> ParseLink(const std::string& name);
 std::uint64_t DeviceSeed(const Common& common, std::uint64_t device);
-StandIn MakeWiimote(const Common& common, device_models::LinkQuality link, std::uint64_t device,
+StandIn MakeWiimote(const Common& common, virtual_devices::LinkQuality link, std::uint64_t device,
                     stream::DeviceRole role, StandIn::WiimoteMotion motion,
                     const Ports& ports = {});
 

@@ -8,7 +8,7 @@
 namespace footing::stream_client {
 namespace {
 
-using synthetic::Segment;
+using wrists::Segment;
 
 constexpr std::size_t kMaxSegments = 10'000;
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/result/result.h"
-#include "common/synthetic/hand_motion.h"
+#include "common/virtual/wrists/hand_motion.h"
 
 namespace footing::stream_client {
 
@@ -12,12 +12,12 @@ namespace footing::stream_client {
 std::vector<std::string> ScriptNames();
 
 /// The carried script of that name; a usage error that lists the names when there is none.
-Result<std::vector<synthetic::Segment>> ScriptNamed(const std::string& name);
+Result<std::vector<wrists::Segment>> ScriptNamed(const std::string& name);
 
 /// A script from JSON: a list of objects {duration_s, frequency_hz, phase_deg, amplitude_mps2,
 /// roll_deg, pitch_deg}, all but duration_s optional. `origin` names it in errors, which say which
 /// stretch and what its values may be.
-Result<std::vector<synthetic::Segment>> ParseScript(const std::string& text,
-                                                    const std::string& origin);
+Result<std::vector<wrists::Segment>> ParseScript(const std::string& text,
+                                                 const std::string& origin);
 
 }  // namespace footing::stream_client

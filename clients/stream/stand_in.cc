@@ -7,7 +7,7 @@
 
 namespace footing::stream_client {
 
-using device_models::Report;
+using virtual_devices::Report;
 
 namespace {
 
@@ -16,48 +16,48 @@ StandIn::Shown Show(const Remote& remote, std::int64_t) {
   return {" LEDs " + std::to_string(remote.leds()), remote.rumble()};
 }
 
-StandIn::Shown Show(const device_models::PsMove& move, std::int64_t now_ns) {
+StandIn::Shown Show(const virtual_devices::PsMove& move, std::int64_t now_ns) {
   char sphere[32];
   std::snprintf(sphere, sizeof sphere, " sphere #%06x", move.sphere_rgb(now_ns));
   return {sphere, move.rumble(now_ns) != 0};
 }
 
-std::vector<Report> Sample(device_models::Wiimote& wiimote, std::int64_t now_ns,
-                           const device_models::WiimoteSensors& sensors) {
+std::vector<Report> Sample(virtual_devices::Wiimote& wiimote, std::int64_t now_ns,
+                           const virtual_devices::WiimoteSensors& sensors) {
   return wiimote.Sample(now_ns, sensors);
 }
 
-std::vector<Report> Sample(device_models::BalanceBoard& board, std::int64_t,
-                           const device_models::CornerForces& forces) {
+std::vector<Report> Sample(virtual_devices::BalanceBoard& board, std::int64_t,
+                           const virtual_devices::CornerForces& forces) {
   const auto report = board.Sample(forces);
   return report ? std::vector<Report>{*report} : std::vector<Report>{};
 }
 
-std::vector<Report> Sample(device_models::PsMove& move, std::int64_t now_ns,
-                           const device_models::MoveSensors& sensors) {
+std::vector<Report> Sample(virtual_devices::PsMove& move, std::int64_t now_ns,
+                           const virtual_devices::MoveSensors& sensors) {
   return move.Sample(now_ns, sensors);
 }
 
 }  // namespace
 
-StandIn::StandIn(Device device, stream::DeviceRole role, const device_models::LinkConfig& link)
+StandIn::StandIn(Device device, stream::DeviceRole role, const virtual_devices::LinkConfig& link)
     : fresh_(std::move(device)), device_(fresh_), role_(role), link_config_(link), link_(link, 0) {
   Restart();
 }
 
-StandIn::StandIn(device_models::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
-                 const device_models::LinkConfig& link)
+StandIn::StandIn(virtual_devices::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
+                 const virtual_devices::LinkConfig& link)
     : StandIn(Device(Wiimote{std::move(wiimote), std::move(motion)}), role, link) {}
 
-StandIn::StandIn(device_models::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
-                 const device_models::LinkConfig& link)
+StandIn::StandIn(virtual_devices::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
+                 const virtual_devices::LinkConfig& link)
     : StandIn(Device(Board{std::move(board), std::move(forces)}), role, link) {}
 
-StandIn::StandIn(device_models::PsMove move, MoveMotion motion, stream::DeviceRole role,
-                 const device_models::LinkConfig& link)
+StandIn::StandIn(virtual_devices::PsMove move, MoveMotion motion, stream::DeviceRole role,
+                 const virtual_devices::LinkConfig& link)
     : StandIn(Device(Move{std::move(move), std::move(motion)}), role, link) {}
 
-const device_models::Identity& StandIn::identity() const {
+const virtual_devices::Identity& StandIn::identity() const {
   return std::visit(
       [](const auto& felt) -> const auto& { return felt.device.identity(); }, device_);
 }
@@ -73,7 +73,7 @@ Report StandIn::Feature(std::uint8_t id, std::size_t size) {
 }
 
 StandIn::Arrival StandIn::Next() {
-  const device_models::LinkModel::Arrival arrival = link_.Next();
+  const virtual_devices::LinkModel::Arrival arrival = link_.Next();
   return {NanosecondsToSeconds(arrival.arrives_ns), NanosecondsToSeconds(arrival.sampled_ns)};
 }
 
@@ -90,7 +90,7 @@ std::vector<Report> StandIn::Deliver(double sampled_s) {
 
 void StandIn::Restart() {
   device_ = fresh_;
-  link_ = device_models::LinkModel(link_config_, 0);
+  link_ = virtual_devices::LinkModel(link_config_, 0);
   held_s_ = -1;
   shown_ = Show(0);
 }

@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "common/device_models/balance_board.h"
-#include "common/device_models/link_model.h"
-#include "common/device_models/ps_move.h"
-#include "common/device_models/wiimote.h"
 #include "common/stream/device.h"
+#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/link_model.h"
+#include "common/virtual/devices/ps_move.h"
+#include "common/virtual/devices/wiimote.h"
 
 namespace footing::stream_client {
 
@@ -19,25 +19,25 @@ namespace footing::stream_client {
 /// knows no clock; times are seconds since its motion began.
 class StandIn {
  public:
-  using WiimoteMotion = std::function<device_models::WiimoteSensors(double t_s)>;
-  using CornerForces = std::function<device_models::CornerForces(double t_s)>;
-  using MoveMotion = std::function<device_models::MoveSensors(double t_s)>;
+  using WiimoteMotion = std::function<virtual_devices::WiimoteSensors(double t_s)>;
+  using CornerForces = std::function<virtual_devices::CornerForces(double t_s)>;
+  using MoveMotion = std::function<virtual_devices::MoveSensors(double t_s)>;
 
-  StandIn(device_models::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
-          const device_models::LinkConfig& link);
-  StandIn(device_models::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
-          const device_models::LinkConfig& link);
-  StandIn(device_models::PsMove move, MoveMotion motion, stream::DeviceRole role,
-          const device_models::LinkConfig& link);
+  StandIn(virtual_devices::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
+          const virtual_devices::LinkConfig& link);
+  StandIn(virtual_devices::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
+          const virtual_devices::LinkConfig& link);
+  StandIn(virtual_devices::PsMove move, MoveMotion motion, stream::DeviceRole role,
+          const virtual_devices::LinkConfig& link);
 
-  const device_models::Identity& identity() const;
+  const virtual_devices::Identity& identity() const;
   stream::DeviceRole role() const { return role_; }
 
   /// What the device answers to an output report.
-  std::vector<device_models::Report> HandleOutput(double now_s,
-                                                  std::span<const std::uint8_t> output);
+  std::vector<virtual_devices::Report> HandleOutput(double now_s,
+                                                    std::span<const std::uint8_t> output);
   /// A feature report of `size` bytes; empty when the device refuses.
-  device_models::Report Feature(std::uint8_t id, std::size_t size);
+  virtual_devices::Report Feature(std::uint8_t id, std::size_t size);
 
   struct Arrival {
     double arrives_s = 0;
@@ -47,7 +47,7 @@ class StandIn {
   Arrival Next();
   /// The reports with the value of `sampled_s`; none while a mode is wanted and the host has set
   /// none.
-  std::vector<device_models::Report> Deliver(double sampled_s);
+  std::vector<virtual_devices::Report> Deliver(double sampled_s);
   /// The motion begins anew at time 0, with the device fresh from its box, as after a new
   /// connection.
   void Restart();
@@ -69,20 +69,20 @@ class StandIn {
     std::function<Sensors(double)> motion;
     Sensors held{};  ///< The sensor holds one value until it takes the next.
   };
-  using Wiimote = Felt<device_models::Wiimote, device_models::WiimoteSensors>;
-  using Board = Felt<device_models::BalanceBoard, device_models::CornerForces>;
-  using Move = Felt<device_models::PsMove, device_models::MoveSensors>;
+  using Wiimote = Felt<virtual_devices::Wiimote, virtual_devices::WiimoteSensors>;
+  using Board = Felt<virtual_devices::BalanceBoard, virtual_devices::CornerForces>;
+  using Move = Felt<virtual_devices::PsMove, virtual_devices::MoveSensors>;
   using Device = std::variant<Wiimote, Board, Move>;
 
-  StandIn(Device device, stream::DeviceRole role, const device_models::LinkConfig& link);
+  StandIn(Device device, stream::DeviceRole role, const virtual_devices::LinkConfig& link);
 
   Shown Show(double now_s) const;
 
   Device fresh_;
   Device device_;
   stream::DeviceRole role_;
-  device_models::LinkConfig link_config_;
-  device_models::LinkModel link_;
+  virtual_devices::LinkConfig link_config_;
+  virtual_devices::LinkModel link_;
   double held_s_ = -1;
   Shown shown_;  ///< As told last.
 };

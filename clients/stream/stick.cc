@@ -17,12 +17,12 @@ constexpr double kStickPerRoll = 3;
 constexpr double kMaxAngleRad = 75 * kPi / 180;
 constexpr double kPressS = 0.1;
 
-bool Jumps(const synthetic::Segment& segment) {
+bool Jumps(const wrists::Segment& segment) {
   return segment.amplitude_mps2 > 0 && std::abs(WrapAngle(segment.phase_rad)) < kPi / 2;
 }
 
 /// Where the stick stands in this stretch: right, front.
-std::pair<double, double> Place(const synthetic::Segment& segment) {
+std::pair<double, double> Place(const wrists::Segment& segment) {
   if (segment.amplitude_mps2 == 0) return {0, 0};
   const bool runs = !Jumps(segment) && segment.frequency_hz > kRunFrequencyHz;
   const double radius = runs ? kRunRadius : kWalkRadius;
@@ -33,9 +33,9 @@ std::pair<double, double> Place(const synthetic::Segment& segment) {
 
 }  // namespace
 
-StickMotion::StickMotion(std::vector<synthetic::Segment> segments, double blend_s)
+StickMotion::StickMotion(std::vector<wrists::Segment> segments, double blend_s)
     : segments_(std::move(segments)), blend_s_(blend_s) {
-  for (const synthetic::Segment& segment : segments_) duration_s_ += segment.duration_s;
+  for (const wrists::Segment& segment : segments_) duration_s_ += segment.duration_s;
 }
 
 StickState StickMotion::At(double t_s) const {
@@ -44,7 +44,7 @@ StickState StickMotion::At(double t_s) const {
   for (; i + 1 < segments_.size() && into_s >= segments_[i].duration_s; ++i) {
     into_s -= segments_[i].duration_s;
   }
-  const synthetic::Segment& segment = segments_[i];
+  const wrists::Segment& segment = segments_[i];
   const auto [from_x, from_y] = Place(segments_[i == 0 ? 0 : i - 1]);
   const auto [x, y] = Place(segment);
   const double share = into_s < blend_s_ ? into_s / blend_s_ : 1;

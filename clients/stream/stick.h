@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/synthetic/hand_motion.h"
+#include "common/virtual/wrists/hand_motion.h"
 
 namespace footing::stream_client {
 
@@ -20,14 +20,14 @@ struct StickState {
 class StickMotion {
  public:
   /// The stick needs `blend_s` to get to its new place. `segments` not empty.
-  StickMotion(std::vector<synthetic::Segment> segments, double blend_s);
+  StickMotion(std::vector<wrists::Segment> segments, double blend_s);
 
   /// At t_s since the start; before it the first instant, after the end the last segment goes on.
   StickState At(double t_s) const;
   double DurationSeconds() const { return duration_s_; }
 
  private:
-  std::vector<synthetic::Segment> segments_;
+  std::vector<wrists::Segment> segments_;
   double blend_s_;
   double duration_s_ = 0;
 };

@@ -6,8 +6,8 @@
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
 #include "common/body/points.h"
-#include "common/synthetic/random.h"
-#include "common/virtual_sensors/kinect_errors.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/sensors/kinect_errors.h"
 
 namespace footing::stream_client {
 namespace {
@@ -70,7 +70,7 @@ stream::HandFrame Fists(const Stage& stage, const char* tracker, double sd_m, do
 Telling TellHands(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed) {
   Telling telling;
   telling.rate_hz = kRateHz;
-  telling.hands = [stage, noise_m, random = synthetic::Random(seed)](double t_s) mutable {
+  telling.hands = [stage, noise_m, random = noise::Random(seed)](double t_s) mutable {
     stream::HandFrame frame = Fists(*stage, "move", std::max(noise_m, kLeastSdM), t_s);
     for (stream::TrackedPoint& point : frame.points)
       for (double& value : point.position_m) value += noise_m * random.Normal();

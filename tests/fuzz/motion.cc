@@ -1,11 +1,11 @@
 #include <string>
 #include <string_view>
 
-#include "common/motion/asf.h"
-#include "common/motion/bvh.h"
-#include "common/motion/c3d.h"
-#include "common/motion/table.h"
-#include "common/motion/trc.h"
+#include "common/virtual/motion/asf.h"
+#include "common/virtual/motion/bvh.h"
+#include "common/virtual/motion/c3d.h"
+#include "common/virtual/motion/table.h"
+#include "common/virtual/motion/trc.h"
 #include "tests/fuzz/input.h"
 
 // Any bytes as each kind of motion file: read or refused, and what is read can be written.

@@ -32,7 +32,7 @@ SOURCES = ("CMakeLists.txt", "CMakePresets.json", "clients", "common", "daemon",
            "systemd", "tests", "docs")
 # What decides a result.
 JUDGED = ("CMakeLists.txt", "CMakePresets.json", "clients/log", "common", "daemon", "proto", "systemd",
-          "tests/bench")
+          "tests/device_faults")
 PRODUCT = ("daemon/", "common/", "clients/")
 PROGRAMS = ("footingd", "footing-log")
 # In a second each: devices without sense in their memory, a board's forces, a Wiimote's.

@@ -95,7 +95,7 @@ class Life {
   }
 
   void Send(const MadeDevice::Reports& reports) {
-    for (const device_models::Report& report : reports) {
+    for (const virtual_devices::Report& report : reports) {
       ++inputs_[report[0]];
       Trace("->", report);
       node_.Send(report);

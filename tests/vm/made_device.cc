@@ -1,20 +1,20 @@
 #include "tests/vm/made_device.h"
 
-#include "common/device_models/balance_board.h"
-#include "common/device_models/ps_move.h"
-#include "common/device_models/wiimote.h"
 #include "common/units/units.h"
+#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/ps_move.h"
+#include "common/virtual/devices/wiimote.h"
 #include "tests/vm/ramp.h"
 #include "tests/vm/report_descriptor.h"
 
 namespace footing::vm {
 namespace {
 
-using device_models::MoveModel;
+using virtual_devices::MoveModel;
 
 constexpr std::size_t kMoveFeatureBytes = 49;
 
-MadeDevice::Reports List(std::optional<device_models::Report> report) {
+MadeDevice::Reports List(std::optional<virtual_devices::Report> report) {
   if (!report) return {};
   return {*std::move(report)};
 }
@@ -23,11 +23,11 @@ class MadeWiimote : public MadeDevice {
  public:
   MadeWiimote(std::uint64_t seed, bool plus)
       : wiimote_(seed, {.tr = plus, .motion_plus_inside = plus}) {
-    if (plus) wiimote_.Plug(device_models::Accessory::kNunchuk, 0);
+    if (plus) wiimote_.Plug(virtual_devices::Accessory::kNunchuk, 0);
     sensors_.angular_velocity_S_radps = {0.5, -0.4, 0.3};
     sensors_.nunchuk.stick_x = 0.5;
   }
-  const device_models::Identity& identity() const override { return wiimote_.identity(); }
+  const virtual_devices::Identity& identity() const override { return wiimote_.identity(); }
   Reports HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report) override {
     return wiimote_.HandleOutput(now_ns, report);
   }
@@ -39,14 +39,14 @@ class MadeWiimote : public MadeDevice {
   std::span<const std::uint8_t> descriptor() const override { return kReportDescriptor; }
 
  private:
-  device_models::Wiimote wiimote_;
-  device_models::WiimoteSensors sensors_;
+  virtual_devices::Wiimote wiimote_;
+  virtual_devices::WiimoteSensors sensors_;
 };
 
 class MadeBoard : public MadeDevice {
  public:
   explicit MadeBoard(std::uint64_t seed) : board_(seed) {}
-  const device_models::Identity& identity() const override { return board_.identity(); }
+  const virtual_devices::Identity& identity() const override { return board_.identity(); }
   Reports HandleOutput(std::int64_t, std::span<const std::uint8_t> report) override {
     return board_.HandleOutput(report);
   }
@@ -57,23 +57,23 @@ class MadeBoard : public MadeDevice {
   std::span<const std::uint8_t> descriptor() const override { return kReportDescriptor; }
 
  private:
-  device_models::BalanceBoard board_;
+  virtual_devices::BalanceBoard board_;
 };
 
 class MadeMove : public MadeDevice {
  public:
   MadeMove(std::uint64_t seed, MoveModel model)
       : move_(seed, model), samples_a_report_(model == MoveModel::kZcm1 ? 2 : 1) {}
-  const device_models::Identity& identity() const override { return move_.identity(); }
+  const virtual_devices::Identity& identity() const override { return move_.identity(); }
   Reports HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report) override {
     return move_.HandleOutput(now_ns, report);
   }
   Reports Sample(std::int64_t now_ns, std::uint64_t sample) override {
-    device_models::MoveSensors sensors;
+    virtual_devices::MoveSensors sensors;
     sensors.specific_force_S_mps2.x() = kMoveRampMps2.At(samples_a_report_ * sample);
     return move_.Sample(now_ns, sensors);
   }
-  std::optional<device_models::Report> Feature(std::uint8_t id) override {
+  std::optional<virtual_devices::Report> Feature(std::uint8_t id) override {
     return move_.Feature(id, kMoveFeatureBytes);
   }
   std::span<const std::uint8_t> descriptor() const override {
@@ -82,7 +82,7 @@ class MadeMove : public MadeDevice {
   }
 
  private:
-  device_models::PsMove move_;
+  virtual_devices::PsMove move_;
   std::uint64_t samples_a_report_;
 };
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/device_models/controller.h"
-#include "common/device_models/identity.h"
+#include "common/virtual/devices/controller.h"
+#include "common/virtual/devices/identity.h"
 
 namespace footing::vm {
 
@@ -16,15 +16,15 @@ namespace footing::vm {
 /// measures. Time is an argument.
 class MadeDevice {
  public:
-  using Reports = std::vector<device_models::Report>;
+  using Reports = std::vector<virtual_devices::Report>;
 
   virtual ~MadeDevice() = default;
-  virtual const device_models::Identity& identity() const = 0;
+  virtual const virtual_devices::Identity& identity() const = 0;
   virtual Reports HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report) = 0;
   virtual Reports Sample(std::int64_t now_ns, std::uint64_t sample) = 0;
   /// The status report that a device sends of itself, if its kind does.
   virtual Reports Status() { return {}; }
-  virtual std::optional<device_models::Report> Feature(std::uint8_t) { return std::nullopt; }
+  virtual std::optional<virtual_devices::Report> Feature(std::uint8_t) { return std::nullopt; }
   virtual std::span<const std::uint8_t> descriptor() const = 0;
 };
 

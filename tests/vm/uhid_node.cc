@@ -37,7 +37,7 @@ void UhidNode::Write(const void* event, std::size_t bytes) {
   std::exit(1);
 }
 
-void UhidNode::Plug(const device_models::Identity& identity,
+void UhidNode::Plug(const virtual_devices::Identity& identity,
                     std::span<const std::uint8_t> descriptor) {
   uhid_event event{};
   event.type = UHID_CREATE2;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/device_models/controller.h"
-#include "common/device_models/identity.h"
+#include "common/virtual/devices/controller.h"
+#include "common/virtual/devices/identity.h"
 
 namespace footing::vm {
 
@@ -19,7 +19,7 @@ class UhidNode {
     std::function<void()> on_start;  ///< The kernel's driver took the device: its node comes.
     std::function<void(std::span<const std::uint8_t>)> on_output;
     /// A feature report by its id; none refuses the request.
-    std::function<std::optional<device_models::Report>(std::uint8_t)> on_feature;
+    std::function<std::optional<virtual_devices::Report>(std::uint8_t)> on_feature;
   };
 
   /// Aborts when /dev/uhid cannot be opened: nothing can be tested then.
@@ -28,7 +28,7 @@ class UhidNode {
   UhidNode(const UhidNode&) = delete;
   UhidNode& operator=(const UhidNode&) = delete;
 
-  void Plug(const device_models::Identity& identity, std::span<const std::uint8_t> descriptor);
+  void Plug(const virtual_devices::Identity& identity, std::span<const std::uint8_t> descriptor);
   void Unplug();
   void Send(std::span<const std::uint8_t> report);
 

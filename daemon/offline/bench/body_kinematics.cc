@@ -3,7 +3,7 @@
 
 #include "common/body/momentum.h"
 #include "common/clock/clock.h"
-#include "common/synthetic/random.h"
+#include "common/virtual/noise/random.h"
 #include "daemon/offline/bench/pairs.h"
 
 namespace footing::bench {
@@ -18,7 +18,7 @@ struct Poses {
   Eigen::MatrixXd q, q_dot;
 
   explicit Poses(int dof) : q(dof, kPoses), q_dot(dof, kPoses) {
-    synthetic::Random random(1);
+    noise::Random random(1);
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       q(i) = random.Uniform(-1, 1);
       q_dot(i) = random.Uniform(-3, 3);

@@ -6,15 +6,15 @@
 #include "common/clock/clock.h"
 #include "common/units/units.h"
 #include "daemon/offline/bench/row.h"
-#include "daemon/offline/training/cascade.h"
-#include "daemon/offline/training/horizontal_com.h"
-#include "daemon/offline/training/mlp.h"
-#include "daemon/offline/training/scaling.h"
+#include "daemon/offline/learning/cascade.h"
+#include "daemon/offline/learning/horizontal_com.h"
+#include "daemon/offline/learning/mlp.h"
+#include "daemon/offline/learning/scaling.h"
 
 namespace footing::bench {
 namespace {
 
-using training::Examples;
+using learning::Examples;
 
 constexpr int kAxes = 2;
 constexpr int kHidden = 20;       // Of FANN's network, and at most of ours.
@@ -26,13 +26,13 @@ struct Axis {
 };
 
 Axis MakeAxis(int axis) {
-  const training::FeedbackNoise noise{.groups = training::FeedbackColumns(),
+  const learning::FeedbackNoise noise{.groups = learning::FeedbackColumns(),
                                       .common_sd = kNoiseM,
                                       .own_sd = kNoiseM / 10,
                                       .copies = 1};
   const auto examples = [&](std::uint64_t seed) {
-    const training::LoadClip clip = training::MakeSway({}, seed);
-    return training::WithFeedbackNoise(training::HorizontalExamples({&clip, 1}, axis), noise, seed);
+    const learning::LoadClip clip = learning::MakeSway({}, seed);
+    return learning::WithFeedbackNoise(learning::HorizontalExamples({&clip, 1}, axis), noise, seed);
   };
   return {.train = examples(1), .validation = examples(2), .fresh = examples(3)};
 }
@@ -48,23 +48,23 @@ double SecondsSince(std::int64_t start_ns) {
 }
 
 Measured Ours(const Axis& axis, int patience, double* validation_mse) {
-  training::CascadeOptions options;
+  learning::CascadeOptions options;
   options.hidden_max = kHidden;
   options.patience = patience;
   const std::int64_t start_ns = clock::ThreadCpuNs();
-  const auto result = training::TrainCascade(axis.train, axis.validation, options, 1);
+  const auto result = learning::TrainCascade(axis.train, axis.validation, options, 1);
   *validation_mse = result.validation_mse;
   return {SecondsSince(start_ns), MeanSquaredError(result.network, axis.fresh)};
 }
 
 /// Back-propagation until its error of validation equals the cascade's; at most 1000 epochs.
 Measured Perceptron(const Axis& axis, double validation_mse) {
-  training::MlpOptions options;
+  learning::MlpOptions options;
   options.hidden = kHidden;
   options.epochs_max = options.patience = 1000;
   options.mse_goal = validation_mse;
   const std::int64_t start_ns = clock::ThreadCpuNs();
-  const auto result = training::TrainMlp(axis.train, axis.validation, options, 1);
+  const auto result = learning::TrainMlp(axis.train, axis.validation, options, 1);
   return {SecondsSince(start_ns), MeanSquaredError(result.network, axis.fresh)};
 }
 
@@ -85,8 +85,8 @@ FannData ToFann(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
 
 /// FANN's Cascade2 as it comes, with linear outputs, on inputs and targets scaled as ours are.
 Measured Fann(const Axis& axis) {
-  const auto in = training::Scaling::Of(axis.train.inputs);
-  const auto out = training::Scaling::Of(axis.train.targets);
+  const auto in = learning::Scaling::Of(axis.train.inputs);
+  const auto out = learning::Scaling::Of(axis.train.targets);
   const FannData train = ToFann(in.Apply(axis.train.inputs), out.Apply(axis.train.targets));
   const FannNetwork network(
       fann_create_shortcut(2, static_cast<unsigned>(axis.train.inputs.cols()), 1), &fann_destroy);
@@ -125,7 +125,7 @@ Result<Rows> CascadeTraining() {
     const Axis data = MakeAxis(axis);
     double validation_mse = 0;
     add(all_units, Ours(data, kHidden + 1, &validation_mse));
-    add(ours, Ours(data, training::CascadeOptions{}.patience, &validation_mse));
+    add(ours, Ours(data, learning::CascadeOptions{}.patience, &validation_mse));
     add(perceptron, Perceptron(data, validation_mse));
     add(baseline, Fann(data));
   }

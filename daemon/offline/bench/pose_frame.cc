@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "common/clock/clock.h"
-#include "common/motion/motion.h"
-#include "common/synthetic/random.h"
-#include "common/virtual_sensors/board_cells.h"
-#include "common/virtual_sensors/ground_reaction.h"
+#include "common/virtual/motion/motion.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/sensors/board_cells.h"
+#include "common/virtual/sensors/ground_reaction.h"
 #include "daemon/offline/bench/pairs.h"
 #include "daemon/offline/timing/momentum_cost.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
@@ -26,7 +26,7 @@ constexpr int kWaves = 500;    // As many as a trained model has.
 
 /// A T-pose, then all joints move to and fro, each way with its own frequency.
 motion::Motion Moving(const body::Body& body) {
-  synthetic::Random random(1);
+  noise::Random random(1);
   Eigen::MatrixXd ways(body.skeleton.dof, kWays);
   for (double& value : ways.reshaped()) value = kWay * random.Normal();
   ways.topRows<3>() *= 0.2;
@@ -82,7 +82,7 @@ std::vector<Inputs> Measured(const body::Body& body, const motion::Motion& motio
 /// Of a trained model's sizes; it tells the T-pose and trembles a little about it.
 reconstruction::Models Trained(const body::Body& body, const motion::Motion& motion) {
   const int dof = body.skeleton.dof;
-  synthetic::Random random(2);
+  noise::Random random(2);
   const auto noise = [&](Eigen::Index rows, Eigen::Index columns, double sd) {
     Eigen::MatrixXd m(rows, columns);
     for (double& value : m.reshaped()) value = sd * random.Normal();

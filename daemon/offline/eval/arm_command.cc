@@ -23,9 +23,9 @@ Result<ordered_json> Evaluate(Flags flags) {
   flags.scene.settings.loop_s = 60 * flags.loop_minutes;
   const auto model = ReadArmModel(flags.model, flags.scene.motion);
   if (!model) return model.error();
-  const auto rehearsal = MakeArmScene(flags.scene);
-  if (!rehearsal) return rehearsal.error();
-  return RunArmTrial(*rehearsal, *model);
+  const auto run = MakeArmScene(flags.scene);
+  if (!run) return run.error();
+  return RunArmTrial(*run, *model);
 }
 
 }  // namespace

@@ -53,36 +53,35 @@ class TurnScore {
 
 class ArmTrial {
  public:
-  ArmTrial(const rehearsal::ArmRehearsal& rehearsal, const arms::ArmModel& model)
-      : rehearsal_(rehearsal),
+  ArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model)
+      : run_(run),
         tracker_(model),
-        geometry_{arms::ArmGeometry(rehearsal.body, 0), arms::ArmGeometry(rehearsal.body, 1)},
-        at_(rehearsal.body.skeleton) {
+        geometry_{arms::ArmGeometry(run.body, 0), arms::ArmGeometry(run.body, 1)},
+        at_(run.body.skeleton) {
     mean_ = arms::Of(model.offset);
-    body::ComputeKinematics(rehearsal.body.skeleton, rehearsal.frames.front().q, at_);
+    body::ComputeKinematics(run.body.skeleton, run.frames.front().q, at_);
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) rest_[arm] = HandAt(arm).transpose();
   }
 
   ordered_json Run() {
-    const double step_s = 1 / rehearsal_.rate_hz;
-    const auto first =
-        static_cast<std::size_t>(std::lround(rehearsal::kStandS * rehearsal_.rate_hz));
-    for (std::size_t i = 0; i < rehearsal_.frames.size(); ++i) {
-      const rehearsal::ArmFrame& frame = rehearsal_.frames[i];
+    const double step_s = 1 / run_.rate_hz;
+    const auto first = static_cast<std::size_t>(std::lround(pose_run::kStandS * run_.rate_hz));
+    for (std::size_t i = 0; i < run_.frames.size(); ++i) {
+      const pose_run::ArmFrame& frame = run_.frames[i];
       for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
         for (const arms::HandReading& reading : frame.readings[arm]) {
-          tracker_.Add(arm, reading, rehearsal_.reading_s);
+          tracker_.Add(arm, reading, run_.reading_s);
           clipped_ += reading.clipped ? 1 : 0;
           ++readings_;
         }
       }
-      if (i == rehearsal_.aligned) tracker_.Align();
+      if (i == run_.aligned) tracker_.Align();
       const auto& told = tracker_.Advance(step_s);
       if (i < first) continue;
-      body::ComputeKinematics(rehearsal_.body.skeleton, frame.q, at_);
+      body::ComputeKinematics(run_.body.skeleton, frame.q, at_);
       for (std::size_t arm = 0; arm < arms::kArms; ++arm) Judge(arm, told[arm]);
     }
-    return Json(rehearsal_.frames.size() - first);
+    return Json(run_.frames.size() - first);
   }
 
  private:
@@ -110,7 +109,7 @@ class ArmTrial {
   }
 
   ordered_json Json(std::size_t frames) const {
-    ordered_json json = {{"frames", frames}, {"rate_hz", rehearsal_.rate_hz}};
+    ordered_json json = {{"frames", frames}, {"rate_hz", run_.rate_hz}};
     json.update(told_.Json());
     json["attitude_error_deg"] = turn_.mean_deg();
     json["inclination_error_deg"] = turn_.inclination_deg();
@@ -121,7 +120,7 @@ class ArmTrial {
     return json;
   }
 
-  const rehearsal::ArmRehearsal& rehearsal_;
+  const pose_run::ArmRun& run_;
   arms::ArmTracker tracker_;
   std::array<arms::ArmGeometry, arms::kArms> geometry_;
   std::array<Eigen::Matrix3d, arms::kArms> rest_;
@@ -136,8 +135,8 @@ class ArmTrial {
 
 }  // namespace
 
-ordered_json RunArmTrial(const rehearsal::ArmRehearsal& rehearsal, const arms::ArmModel& model) {
-  return ArmTrial(rehearsal, model).Run();
+ordered_json RunArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model) {
+  return ArmTrial(run, model).Run();
 }
 
 }  // namespace footing::eval

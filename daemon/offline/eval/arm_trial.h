@@ -2,14 +2,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/offline/rehearsal/held_hands.h"
+#include "daemon/offline/pose_run/held_hands.h"
 #include "daemon/simulation/arms/arm_model.h"
 
 namespace footing::eval {
 
-/// The arms told by the devices of a rehearsal against the truth from the T-pose on, beside an arm
+/// The arms told by the devices of a run against the truth from the T-pose on, beside an arm
 /// that never moves; the fields of `footing-eval arm`.
-nlohmann::ordered_json RunArmTrial(const rehearsal::ArmRehearsal& rehearsal,
-                                   const arms::ArmModel& model);
+nlohmann::ordered_json RunArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model);
 
 }  // namespace footing::eval

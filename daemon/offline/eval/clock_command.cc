@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "common/cli/cli.h"
-#include "common/device_models/link_model.h"
-#include "common/synthetic/random.h"
+#include "common/virtual/devices/link_model.h"
+#include "common/virtual/noise/random.h"
 #include "daemon/offline/eval/print_report.h"
 #include "daemon/sensor/link/device_clock.h"
 
 namespace footing::eval {
 namespace {
 
-using device_models::LinkModel;
 using nlohmann::ordered_json;
+using virtual_devices::LinkModel;
 
 /// What comes before is not measured: the clock still looks for the sensor's ticks.
 constexpr double kSettleS = 5;
@@ -48,10 +48,10 @@ Course Follow(const Options& options) {
   config.sensor_period_s = 1 / sensor_rate_hz;
   link::DeviceClock clock(config);
   LinkModel link(
-      {device_models::LinkNamed(options.link).value(),
+      {virtual_devices::LinkNamed(options.link).value(),
        sensor_rate_hz * (1 + options.clock_error_ppm * 1e-6), options.rate_hz, options.seed},
       0);
-  synthetic::Random random(options.seed + 1);
+  noise::Random random(options.seed + 1);
   Course course;
   std::int64_t held_ns = -1;
   std::int64_t before_ns = 0;

@@ -37,13 +37,13 @@ struct Totals {
 };
 
 struct Trial {
-  synthetic::Segment segment;
-  synthetic::Shape shape;
-  synthetic::SensorModel sensor;
+  wrists::Segment segment;
+  wrists::Shape shape;
+  wrists::SensorModel sensor;
   double start_angle_rad = 0;
 };
 
-Trial Draw(synthetic::Random& random, bool clip) {
+Trial Draw(noise::Random& random, bool clip) {
   Trial trial;
   trial.segment.frequency_hz = random.Uniform(0.5, 4.5);
   trial.segment.phase_rad = random.Uniform(-kPi, kPi);
@@ -51,7 +51,7 @@ Trial Draw(synthetic::Random& random, bool clip) {
   trial.segment.roll_rad = DegreesToRadians(random.Uniform(-25, 25));
   trial.segment.pitch_rad = DegreesToRadians(random.Uniform(-25, 25));
   trial.segment.duration_s = 3 + 5 / trial.segment.frequency_hz;
-  if (random.Uniform() < 0.5) trial.shape = synthetic::WristShape();
+  if (random.Uniform() < 0.5) trial.shape = wrists::WristShape();
   const double tilt = random.Uniform(0, 2 * kPi);
   if (clip) trial.shape.direction_S = {0, std::cos(tilt), std::sin(tilt)};
   trial.start_angle_rad = random.Uniform(0, 2 * kPi);
@@ -86,11 +86,11 @@ void Count(const Trial& trial, const stream::RigFeatures& rig, Totals& totals) {
 }
 
 nlohmann::json MeasureVariant(int trials, std::uint64_t seed, bool clip) {
-  synthetic::Random random(seed);
+  noise::Random random(seed);
   Totals totals;
   for (int i = 0; i < trials; ++i) {
     const Trial trial = Draw(random, clip);
-    const synthetic::HandMotion motion({trial.segment}, trial.shape, 0, trial.start_angle_rad);
+    const wrists::HandMotion motion({trial.segment}, trial.shape, 0, trial.start_angle_rad);
     const auto ticks = Run(Record(motion, trial.sensor, seed + static_cast<std::uint64_t>(i)));
     const double settled_s = 0.5 + 3 / trial.segment.frequency_hz;
     for (const Tick& tick : ticks) {

@@ -30,7 +30,7 @@ void Chain::Add(std::uint32_t device, std::int64_t sampled_ns,
   rig_.AddSample(sample);
 }
 
-std::vector<Tick> Run(const std::vector<synthetic::TimedReading>& readings) {
+std::vector<Tick> Run(const std::vector<wrists::TimedReading>& readings) {
   Chain chain(true);
   std::vector<Tick> ticks;
   ticks.reserve(readings.size());

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/stream/sensor.h"
-#include "common/synthetic/sensor.h"
+#include "common/virtual/wrists/accelerometer.h"
 #include "daemon/sensor/features/rig_features.h"
 #include "daemon/sensor/signal/kalman_filter.h"
 
@@ -39,6 +39,6 @@ struct Tick {
 };
 
 /// Runs made motion through the chain: one tick a reading.
-std::vector<Tick> Run(const std::vector<synthetic::TimedReading>& readings);
+std::vector<Tick> Run(const std::vector<wrists::TimedReading>& readings);
 
 }  // namespace footing::eval

@@ -54,21 +54,21 @@ Right PhaseIs(double phase_rad) {
   };
 }
 
-synthetic::Segment Still() { return {}; }
+wrists::Segment Still() { return {}; }
 
-synthetic::Segment Swing(double frequency_hz, double phase_rad, double amplitude_mps2,
-                         double duration_s) {
+wrists::Segment Swing(double frequency_hz, double phase_rad, double amplitude_mps2,
+                      double duration_s) {
   return {duration_s, frequency_hz, phase_rad, amplitude_mps2, 0.1, -0.1};
 }
 
 /// A change from one stretch to another, and what must become right after it.
 struct Change {
-  synthetic::Segment before;
-  synthetic::Segment after;
+  wrists::Segment before;
+  wrists::Segment after;
   double slower_hz = 1;
   Right right;
 };
-using Draw = std::function<Change(synthetic::Random&)>;
+using Draw = std::function<Change(noise::Random&)>;
 
 /// The delay of every trial with the frequency of its slower motion.
 struct Sample {
@@ -77,13 +77,13 @@ struct Sample {
 };
 
 std::vector<Sample> RunTrials(int trials, std::uint64_t seed, const Draw& draw) {
-  synthetic::Random random(seed);
+  noise::Random random(seed);
   std::vector<Sample> samples;
   for (int i = 0; i < trials; ++i) {
     const Change change = draw(random);
-    const auto shape = random.Uniform() < 0.5 ? synthetic::Shape() : synthetic::WristShape();
-    const synthetic::HandMotion motion({change.before, change.after}, shape, 0,
-                                       random.Uniform(0, 2 * kPi));
+    const auto shape = random.Uniform() < 0.5 ? wrists::Shape() : wrists::WristShape();
+    const wrists::HandMotion motion({change.before, change.after}, shape, 0,
+                                    random.Uniform(0, 2 * kPi));
     const auto ticks = Run(Record(motion, {}, seed + static_cast<std::uint64_t>(i)));
     samples.push_back({Delay(ticks, change.before.duration_s, change.right), change.slower_hz});
   }
@@ -135,21 +135,21 @@ nlohmann::json CyclesRow(const std::vector<Sample>& samples) {
           {"met", less.first <= 1.25 && cycles.second <= 2}};
 }
 
-double DrawFrequency(synthetic::Random& random) { return random.Uniform(0.5, 4.5); }
-double DrawAmplitude(synthetic::Random& random) { return random.Uniform(4, 18); }
+double DrawFrequency(noise::Random& random) { return random.Uniform(0.5, 4.5); }
+double DrawAmplitude(noise::Random& random) { return random.Uniform(4, 18); }
 
 Draw FromStill(const std::function<Right(double frequency_hz)>& right) {
-  return [right](synthetic::Random& random) {
+  return [right](noise::Random& random) {
     const double f = DrawFrequency(random);
     return Change{Still(), Swing(f, kPi, DrawAmplitude(random), 4 / f), f, right(f)};
   };
 }
 
 Draw ToStill() {
-  return [](synthetic::Random& random) {
+  return [](noise::Random& random) {
     const double f = DrawFrequency(random);
     const double swung_s = random.Uniform(4, 5) / f;
-    synthetic::Segment still = Still();
+    wrists::Segment still = Still();
     still.duration_s = 1.5;
     still.roll_rad = 0.1;
     still.pitch_rad = -0.1;
@@ -158,7 +158,7 @@ Draw ToStill() {
 }
 
 Draw FrequencyJump(double from_hz, double to_hz) {
-  return [from_hz, to_hz](synthetic::Random& random) {
+  return [from_hz, to_hz](noise::Random& random) {
     const double amplitude = DrawAmplitude(random);
     const double slower_hz = std::min(from_hz, to_hz);
     return Change{Swing(from_hz, kPi, amplitude, random.Uniform(4, 5) / from_hz),
@@ -167,7 +167,7 @@ Draw FrequencyJump(double from_hz, double to_hz) {
 }
 
 Draw PhaseJump(double from_rad, double to_rad) {
-  return [from_rad, to_rad](synthetic::Random& random) {
+  return [from_rad, to_rad](noise::Random& random) {
     const double f = DrawFrequency(random);
     const double amplitude = DrawAmplitude(random);
     return Change{Swing(f, from_rad, amplitude, random.Uniform(4, 5) / f),

@@ -59,7 +59,7 @@ MadeWrists::Swing MadeWrists::For(const biped::GaitCommand& wanted) const {
 }
 
 Eigen::Vector3d MadeWrists::SpecificForce(double angle_rad) const {
-  return synthetic::InclinedGravity(now_.roll_rad, 0) +
+  return wrists::InclinedGravity(now_.roll_rad, 0) +
          now_.amplitude_mps2 * std::sin(angle_rad) * shape_.direction_S;
 }
 
@@ -71,8 +71,8 @@ mapping::WristFeatures MadeWrists::Advance(const biped::GaitCommand& wanted) {
   Approach(to.roll_rad, kTiltChangesS, now_.roll_rad);
   angle_rad_ = WrapAngle(angle_rad_ + 2 * kPi * now_.frequency_hz * kReadingS);
   const std::int64_t now_ns = SecondsToNanoseconds(static_cast<double>(++readings_) * kReadingS);
-  const auto left = synthetic::Read(sensor_, SpecificForce(angle_rad_), random_);
-  const auto right = synthetic::Read(sensor_, SpecificForce(angle_rad_ + now_.phase_rad), random_);
+  const auto left = wrists::Read(sensor_, SpecificForce(angle_rad_), random_);
+  const auto right = wrists::Read(sensor_, SpecificForce(angle_rad_ + now_.phase_rad), random_);
   chain_.Add(kLeftDevice, now_ns, left.specific_force_mps2, left.clipped_axes);
   chain_.Add(kRightDevice, now_ns, right.specific_force_mps2, right.clipped_axes);
   return mapping::ToWristFeatures(chain_.Compute(now_ns));

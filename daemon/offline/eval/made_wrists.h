@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/synthetic/sensor.h"
+#include "common/virtual/wrists/accelerometer.h"
 #include "daemon/offline/eval/features_chain.h"
 #include "daemon/simulation/biped/command.h"
 #include "daemon/simulation/mapping/wrist_features.h"
@@ -32,9 +32,9 @@ class MadeWrists {
 
   mapping::WristMapping mapping_;
   Chain chain_;
-  synthetic::Random random_;
-  synthetic::SensorModel sensor_;
-  synthetic::Shape shape_;
+  noise::Random random_;
+  wrists::SensorModel sensor_;
+  wrists::Shape shape_;
   Swing now_;
   double angle_rad_ = 0;
   std::int64_t readings_ = 0;

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "common/config/data_file.h"
-#include "common/motion/asf.h"
-#include "common/motion/bvh.h"
-#include "common/virtual_sensors/scene.h"
+#include "common/virtual/motion/asf.h"
+#include "common/virtual/motion/bvh.h"
+#include "common/virtual/sensors/scene.h"
 
 namespace footing::eval {
 namespace {

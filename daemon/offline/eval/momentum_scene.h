@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/result/result.h"
-#include "common/virtual_sensors/board_cells.h"
-#include "common/virtual_sensors/body_course.h"
+#include "common/virtual/sensors/board_cells.h"
+#include "common/virtual/sensors/body_course.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 #include "daemon/simulation/momentum/estimate.h"
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/stream/sensor.h"
-#include "common/synthetic/random.h"
-#include "common/synthetic/sensor.h"
 #include "common/units/units.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/wrists/accelerometer.h"
 #include "daemon/offline/eval/features_chain.h"
 #include "daemon/sensor/mounting/mounting.h"
 
@@ -24,8 +24,8 @@ constexpr double kSlack = 1.5;
 constexpr double kRateHz = 100;
 
 /// Reports of 31 and 35 have 10 bits of x and 9 of y and z: two counts of some 104 to the g.
-synthetic::SensorModel Sensor() {
-  synthetic::SensorModel sensor;
+wrists::SensorModel Sensor() {
+  wrists::SensorModel sensor;
   sensor.quantum_mps2 = 2 * kStandardGravityMps2 / 104;
   sensor.jitter_s = 0.002;
   return sensor;
@@ -38,7 +38,7 @@ struct Flaw {
   Eigen::Array3d offset_mps2 = Eigen::Array3d::Zero();
 };
 
-Flaw DrawFlaw(synthetic::Random& random) {
+Flaw DrawFlaw(noise::Random& random) {
   constexpr double kHalfCount = 0.5 / 104;  // In g.
   Flaw flaw;
   for (int axis = 0; axis < 3; ++axis) {
@@ -81,8 +81,8 @@ constexpr struct {
 /// Both sensors over the whole walk, each turned by its rotation.
 std::vector<Samples> Record(const MountingWalk& walk, const Quaterniond (&rotations_MS)[2],
                             const Flaw (&flaws)[2], std::uint64_t seed) {
-  const synthetic::SensorModel sensor = Sensor();
-  synthetic::Random random(seed);
+  const wrists::SensorModel sensor = Sensor();
+  noise::Random random(seed);
   std::vector<Samples> sides(2);
   const auto count = static_cast<int>(walk.end_s * kRateHz);
   for (int i = 1; i < count; ++i) {
@@ -152,7 +152,7 @@ void Measure(const MountingWalk& walk, const std::vector<Samples>& sides,
   }
 }
 
-Quaterniond RandomRotation(synthetic::Random& random) {
+Quaterniond RandomRotation(noise::Random& random) {
   return Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal())
       .normalized();
 }
@@ -160,7 +160,7 @@ Quaterniond RandomRotation(synthetic::Random& random) {
 }  // namespace
 
 nlohmann::json MeasureMounting(const MountingWalk& walk, int trials, std::uint64_t seed) {
-  synthetic::Random random(seed);
+  noise::Random random(seed);
   Errors perfect;
   Errors solved;
   Errors rotation;

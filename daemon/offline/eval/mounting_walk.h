@@ -34,7 +34,8 @@ struct MountingWalk {
   std::function<std::optional<WalkTruth>(double t_s)> truth;
 };
 
-/// Two wrists by common/synthetic: swings of 0.9, 1.2 and 1.6 Hz, inclined by up to 15 degrees.
+/// Two wrists by common/virtual/wrists: swings of 0.9, 1.2 and 1.6 Hz, inclined by up to 15
+/// degrees.
 MountingWalk MadeWalk();
 
 /// Two shins of a person on motion capture: `standing` and `walking` are TRC files with the same

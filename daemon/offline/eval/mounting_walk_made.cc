@@ -1,14 +1,14 @@
 #include <memory>
 #include <vector>
 
-#include "common/synthetic/hand_motion.h"
 #include "common/units/units.h"
+#include "common/virtual/wrists/hand_motion.h"
 #include "daemon/offline/eval/mounting_walk.h"
 
 namespace footing::eval {
 
 MountingWalk MadeWalk() {
-  using synthetic::Segment;
+  using wrists::Segment;
   constexpr double kStillS = 2.5;
   constexpr double kStepHz = 0.9;
   const auto degrees = DegreesToRadians;
@@ -23,10 +23,9 @@ MountingWalk MadeWalk() {
   };
   // The left arm begins backwards: its swing falls from half a turn on.
   const double start_rad = kPi - 2 * kPi * kStepHz * kStillS;
-  auto motion =
-      std::make_shared<synthetic::HandMotion>(script, synthetic::WristShape(), 0.3, start_rad);
+  auto motion = std::make_shared<wrists::HandMotion>(script, wrists::WristShape(), 0.3, start_rad);
   MountingWalk walk;
-  walk.what = "two wrists of common/synthetic";
+  walk.what = "two wrists of common/virtual/wrists";
   walk.roles[0] = stream::DeviceRole::kLeftHand;
   walk.roles[1] = stream::DeviceRole::kRightHand;
   walk.still_from_s = 0.2;
@@ -35,7 +34,7 @@ MountingWalk MadeWalk() {
   walk.walk_from_s = kStillS + script[1].duration_s + script[2].duration_s;
   walk.end_s = motion->DurationSeconds();
   walk.force_M_mps2 = [motion](int side, double t_s) {
-    const synthetic::Hands hands = motion->At(t_s);
+    const wrists::Hands hands = motion->At(t_s);
     return side == 0 ? hands.left_mps2 : hands.right_mps2;
   };
   walk.truth = [script](double t_s) -> std::optional<WalkTruth> {

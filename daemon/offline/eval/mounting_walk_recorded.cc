@@ -8,9 +8,9 @@
 #include <Eigen/Geometry>
 
 #include "common/config/data_file.h"
-#include "common/motion/markers.h"
-#include "common/motion/trc.h"
 #include "common/units/units.h"
+#include "common/virtual/motion/markers.h"
+#include "common/virtual/motion/trc.h"
 #include "daemon/offline/eval/features_chain.h"
 #include "daemon/offline/eval/mounting_walk.h"
 

@@ -40,10 +40,9 @@ constexpr std::array kAblations{
     Ablation{"basis", &reconstruction::Options::use_basis},
     Ablation{"posture", &reconstruction::Options::use_posture}};
 
-Result<ordered_json> Row(const rehearsal::Rehearsal& rehearsal,
-                         const reconstruction::Models& models,
+Result<ordered_json> Row(const pose_run::PoseRun& run, const reconstruction::Models& models,
                          const reconstruction::Options& options, const std::string& without) {
-  const auto trial = RunPoseTrial(rehearsal, models, options, {});
+  const auto trial = RunPoseTrial(run, models, options, {});
   if (!trial) return trial.error();
   ordered_json row = {{"mode", options.mode == Mode::kBest ? "best" : "paper"},
                       {"without", without}};
@@ -55,7 +54,7 @@ Result<ordered_json> Row(const rehearsal::Rehearsal& rehearsal,
 
 }  // namespace
 
-Result<ordered_json> JudgeAblations(const rehearsal::Rehearsal& rehearsal,
+Result<ordered_json> JudgeAblations(const pose_run::PoseRun& run,
                                     const reconstruction::Models& models,
                                     const reconstruction::Options& options) {
   ordered_json rows = ordered_json::array();
@@ -68,14 +67,14 @@ Result<ordered_json> JudgeAblations(const rehearsal::Rehearsal& rehearsal,
       if (mode == Mode::kPaper && ablation.term == &reconstruction::Options::use_posture) continue;
       reconstruction::Options without = of_mode;
       if (ablation.term != nullptr) without.*ablation.term = false;
-      auto row = Row(rehearsal, models, without, ablation.without);
+      auto row = Row(run, models, without, ablation.without);
       if (!row) return row.error();
       rows.push_back(std::move(*row));
     }
     if (mode == Mode::kPaper && models.horizontal) {
       reconstruction::Models cop = models;
       cop.horizontal.reset();
-      auto row = Row(rehearsal, cop, of_mode, "horizontal_network");
+      auto row = Row(run, cop, of_mode, "horizontal_network");
       if (!row) return row.error();
       rows.push_back(std::move(*row));
     }

@@ -9,41 +9,41 @@ namespace {
 
 using nlohmann::ordered_json;
 
-double Still(const rehearsal::Rehearsal& rehearsal, const Eigen::VectorXd& q, std::size_t start) {
-  PoseScore score(rehearsal.body);
-  for (std::size_t i = start; i < rehearsal.frames.size(); ++i) {
-    score.Add(q, rehearsal.frames[i].q);
+double Still(const pose_run::PoseRun& run, const Eigen::VectorXd& q, std::size_t start) {
+  PoseScore score(run.body);
+  for (std::size_t i = start; i < run.frames.size(); ++i) {
+    score.Add(q, run.frames[i].q);
   }
   return score.mpjpe_cm();
 }
 
 }  // namespace
 
-Result<ordered_json> JudgeBaselines(const rehearsal::Rehearsal& rehearsal,
+Result<ordered_json> JudgeBaselines(const pose_run::PoseRun& run,
                                     const reconstruction::Models& models,
                                     const reconstruction::Options& options, std::size_t start) {
   ordered_json json;
-  const Eigen::VectorXd& t_pose = rehearsal.frames.front().q;
-  json["t_pose"]["mpjpe_cm"] = Still(rehearsal, t_pose, start);
+  const Eigen::VectorXd& t_pose = run.frames.front().q;
+  json["t_pose"]["mpjpe_cm"] = Still(run, t_pose, start);
   Eigen::VectorXd mean = models.basis.mean;
   if (models.root_height_m > 0) {
-    const body::Body& body = rehearsal.body;
+    const body::Body& body = run.body;
     mean.head<3>() *= body::TPose(body.skeleton, body.landmarks)(2) / models.root_height_m;
   }
-  for (const auto& foot : rehearsal.frames.front().feet) {
+  for (const auto& foot : run.frames.front().feet) {
     mean.head<2>() += 0.25 * (foot.ankle_m + foot.toe_m).head<2>();
   }
-  json["mean_pose"]["mpjpe_cm"] = Still(rehearsal, mean, start);
+  json["mean_pose"]["mpjpe_cm"] = Still(run, mean, start);
 
   reconstruction::Options without = options;
   without.use_momentum = without.use_angular_momentum = false;
-  auto made = reconstruction::Reconstruction::Create(rehearsal.body, models, without);
+  auto made = reconstruction::Reconstruction::Create(run.body, models, without);
   if (!made) return made.error();
-  PoseScore score(rehearsal.body);
+  PoseScore score(run.body);
   const auto lag = static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz));
-  for (std::size_t i = 0; i < rehearsal.frames.size(); ++i) {
-    const auto& output = made->Advance(rehearsal.frames[i].inputs);
-    if (i >= start) score.Add(output.q, rehearsal.frames[i - lag].q);
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    const auto& output = made->Advance(run.frames[i].inputs);
+    if (i >= start) score.Add(output.q, run.frames[i - lag].q);
   }
   json["hands_feet_ik"] = score.Json();
   return json;

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/result/result.h"
-#include "daemon/offline/rehearsal/rehearsal.h"
+#include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::eval {
@@ -11,7 +11,7 @@ namespace footing::eval {
 /// What little knowledge would reach on the same frames, from `start` on: a T-pose that stays, the
 /// mean pose of the basis, both where the T-pose was, and the same solver and prior from hands and
 /// feet alone.
-Result<nlohmann::ordered_json> JudgeBaselines(const rehearsal::Rehearsal& rehearsal,
+Result<nlohmann::ordered_json> JudgeBaselines(const pose_run::PoseRun& run,
                                               const reconstruction::Models& models,
                                               const reconstruction::Options& options,
                                               std::size_t start);

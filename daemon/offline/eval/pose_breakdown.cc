@@ -7,8 +7,8 @@ namespace {
 
 using body::Landmark;
 using nlohmann::ordered_json;
-using rehearsal::LegScore;
-using rehearsal::LiftOffs;
+using pose_run::LegScore;
+using pose_run::LiftOffs;
 
 ordered_json LegJson(const LegScore& score) {
   return {
@@ -20,21 +20,19 @@ ordered_json LegJson(const LegScore& score) {
 
 }  // namespace
 
-PoseBreakdown::PoseBreakdown(const rehearsal::Rehearsal& rehearsal)
-    : rehearsal_(rehearsal),
-      lift_offs_(1 / rehearsal.rate_hz),
-      activities_(rehearsal.activities.names.size()) {
+PoseBreakdown::PoseBreakdown(const pose_run::PoseRun& run)
+    : run_(run), lift_offs_(1 / run.rate_hz), activities_(run.activities.names.size()) {
   constexpr std::array kLeft{Landmark::kLeftHip, Landmark::kLeftKnee, Landmark::kLeftAnkle};
   for (std::size_t k = 0; k < kLeft.size(); ++k) {
-    legs_[0][k] = rehearsal.body.landmarks[kLeft[k]];
-    legs_[1][k] = rehearsal.body.landmarks[body::Mirrored(kLeft[k])];
+    legs_[0][k] = run.body.landmarks[kLeft[k]];
+    legs_[1][k] = run.body.landmarks[body::Mirrored(kLeft[k])];
   }
 }
 
 void PoseBreakdown::Add(const reconstruction::Output& told, const PoseScore& score, std::size_t i) {
-  const rehearsal::Frame& frame = rehearsal_.frames[i];
+  const pose_run::Frame& frame = run_.frames[i];
   for (std::size_t f = 0; f < legs_.size(); ++f) {
-    rehearsal::LegError leg;
+    pose_run::LegError leg;
     for (std::size_t k = 0; k < legs_[f].size(); ++k) {
       const auto joint = static_cast<std::size_t>(legs_[f][k]);
       leg.error_m[k] = score.errors_m()[joint];
@@ -42,8 +40,8 @@ void PoseBreakdown::Add(const reconstruction::Output& told, const PoseScore& sco
     }
     lift_offs_.Add(f, frame.feet[f].load_n, frame.feet[f].ankle_m, leg);
   }
-  if (i >= rehearsal_.activities.of_frame.size()) return;
-  const int activity = rehearsal_.activities.of_frame[i];
+  if (i >= run_.activities.of_frame.size()) return;
+  const int activity = run_.activities.of_frame[i];
   if (activity < 0) return;
   Activity& one = activities_[static_cast<std::size_t>(activity)];
   one.mpjpe_cm.Add(score.last_mpjpe_cm());
@@ -67,7 +65,7 @@ ordered_json PoseBreakdown::Json() const {
   for (std::size_t k = 0; k < activities_.size(); ++k) {
     const Activity& one = activities_[k];
     if (one.mpjpe_cm.size() == 0) continue;
-    json["by_activity"].push_back({{"activity", rehearsal_.activities.names[k]},
+    json["by_activity"].push_back({{"activity", run_.activities.names[k]},
                                    {"frames", one.mpjpe_cm.size()},
                                    {"mpjpe_cm", one.mpjpe_cm.mean()},
                                    {"mpjpe_p95_cm", one.mpjpe_cm.Quantile(0.95)},

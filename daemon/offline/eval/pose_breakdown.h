@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "daemon/offline/eval/pose_metrics.h"
-#include "daemon/offline/rehearsal/lift_off.h"
-#include "daemon/offline/rehearsal/rehearsal.h"
+#include "daemon/offline/pose_run/lift_off.h"
+#include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::eval {
@@ -14,8 +14,8 @@ namespace footing::eval {
 /// Errors by what the person does, and of legs in the air.
 class PoseBreakdown {
  public:
-  /// `rehearsal` must outlive it.
-  explicit PoseBreakdown(const rehearsal::Rehearsal& rehearsal);
+  /// `run` must outlive it.
+  explicit PoseBreakdown(const pose_run::PoseRun& run);
 
   /// What was told of frame `i`; `score` has just taken it.
   void Add(const reconstruction::Output& told, const PoseScore& score, std::size_t i);
@@ -28,9 +28,9 @@ class PoseBreakdown {
     Spread mpjpe_cm, com_vertical_cm;
   };
 
-  const rehearsal::Rehearsal& rehearsal_;
-  std::array<std::array<int, rehearsal::kLegJoints>, momentum::kFeet> legs_{};
-  rehearsal::LiftOffs lift_offs_;
+  const pose_run::PoseRun& run_;
+  std::array<std::array<int, pose_run::kLegJoints>, momentum::kFeet> legs_{};
+  pose_run::LiftOffs lift_offs_;
   std::vector<Activity> activities_;
 };
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "common/motion/signal.h"
 #include "common/units/units.h"
-#include "common/virtual_sensors/derivative.h"
+#include "common/virtual/motion/signal.h"
+#include "common/virtual/sensors/derivative.h"
 #include "daemon/simulation/momentum/paper_estimator.h"
 
 namespace footing::eval {
@@ -23,12 +23,12 @@ constexpr std::array kAfterS{1.0, 5.0, 10.0};
 constexpr double kOutlierN = 50;
 constexpr double kOutlierAtS = 2;  // After the judged part begins.
 
-ordered_json ConstantVelocity(const rehearsal::Rehearsal& rehearsal, std::size_t start) {
-  const auto count = static_cast<Eigen::Index>(rehearsal.frames.size() - start);
+ordered_json ConstantVelocity(const pose_run::PoseRun& simulated, std::size_t start) {
+  const auto count = static_cast<Eigen::Index>(simulated.frames.size() - start);
   Eigen::MatrixXd com(3, count);
   for (Eigen::Index i = 0; i < count; ++i)
-    com.col(i) = rehearsal.frames[start + static_cast<std::size_t>(i)].com_m;
-  const double rate = rehearsal.rate_hz;
+    com.col(i) = simulated.frames[start + static_cast<std::size_t>(i)].com_m;
+  const double rate = simulated.rate_hz;
   const Eigen::MatrixXd smooth = motion::LowPass(com, rate, kCutoffHz);
   const Eigen::MatrixXd velocity = virtual_sensors::Derivative(smooth, rate);
   const Eigen::MatrixXd acceleration = virtual_sensors::Derivative(velocity, rate);
@@ -106,12 +106,12 @@ double ConstantVelocityShare(const Eigen::MatrixXd& velocity, const Eigen::Matri
                              : 0;
 }
 
-ordered_json JudgeClaims(const rehearsal::Rehearsal& rehearsal) {
-  const auto start = static_cast<std::size_t>(rehearsal::kStandS * rehearsal.rate_hz);
+ordered_json JudgeClaims(const pose_run::PoseRun& simulated) {
+  const auto start = static_cast<std::size_t>(pose_run::kStandS * simulated.rate_hz);
   std::vector<double> loads_n, true_m;
   double weight_n = 0;
-  for (std::size_t i = 0; i < rehearsal.frames.size(); ++i) {
-    const auto& frame = rehearsal.frames[i];
+  for (std::size_t i = 0; i < simulated.frames.size(); ++i) {
+    const auto& frame = simulated.frames[i];
     const double total_n = momentum::PressureOf(frame.inputs.loads, 1).total_n;
     if (i < start) weight_n += total_n / static_cast<double>(start);
     if (i < start) continue;
@@ -119,15 +119,15 @@ ordered_json JudgeClaims(const rehearsal::Rehearsal& rehearsal) {
     true_m.push_back(frame.com_m.z());
   }
   const double mass_kg = NewtonsToKilograms(weight_n);
-  const std::vector<double> still_n(static_cast<std::size_t>(13 * rehearsal.rate_hz), weight_n);
+  const std::vector<double> still_n(static_cast<std::size_t>(13 * simulated.rate_hz), weight_n);
   const std::vector<double> still_m(still_n.size(), 0);
-  return {{"constant_velocity", ConstantVelocity(rehearsal, start)},
+  return {{"constant_velocity", ConstantVelocity(simulated, start)},
           {"outlier",
            {{"definition",
              "one frame of 50 N too much; difference of the height by equation (2) from the same "
              "run without it, and that run's own error"},
-            {"standing", Outlier(still_n, still_m, mass_kg, rehearsal.rate_hz)},
-            {"in_motion", Outlier(loads_n, true_m, mass_kg, rehearsal.rate_hz)}}}};
+            {"standing", Outlier(still_n, still_m, mass_kg, simulated.rate_hz)},
+            {"in_motion", Outlier(loads_n, true_m, mass_kg, simulated.rate_hz)}}}};
 }
 
 }  // namespace footing::eval

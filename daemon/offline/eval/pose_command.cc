@@ -38,10 +38,10 @@ bool Has(const std::vector<std::string>& list, const std::string& name) {
 
 /// What the strings say, into the options.
 Result<void> Translate(Flags& flags) {
-  rehearsal::Settings& settings = flags.scene.settings;
+  pose_run::Settings& settings = flags.scene.settings;
   settings.hands = flags.hands != "none";
-  if (flags.hands == "wiimote") settings.hand_device = rehearsal::HandDevice::kWiimote;
-  if (flags.hands == "kinect") settings.hand_device = rehearsal::HandDevice::kKinect;
+  if (flags.hands == "wiimote") settings.hand_device = pose_run::HandDevice::kWiimote;
+  if (flags.hands == "kinect") settings.hand_device = pose_run::HandDevice::kKinect;
   if (flags.boards == "insoles" && flags.hands != "move" && flags.hands != "none") {
     return UsageError("--boards insoles has --hands move and none, not " + flags.hands);
   }
@@ -77,9 +77,9 @@ Result<void> Translate(Flags& flags) {
 Result<ordered_json> Evaluate(Flags flags) {
   if (const auto translated = Translate(flags); !translated) return translated.error();
   if (flags.claims) {  // About the motion and equation (2): no models.
-    const auto rehearsal = MakePoseScene(flags.scene);
-    if (!rehearsal) return rehearsal.error();
-    return ordered_json{{"claims", JudgeClaims(*rehearsal)}};
+    const auto run = MakePoseScene(flags.scene);
+    if (!run) return run.error();
+    return ordered_json{{"claims", JudgeClaims(*run)}};
   }
   const auto models = ReadPoseModels(flags.models, flags.scene.motion, flags.same_person);
   if (!models) return models.error();
@@ -88,47 +88,46 @@ Result<ordered_json> Evaluate(Flags flags) {
     if (!walk) return walk.error();
     return JudgeInsoles(*walk, *models, flags.options);
   }
-  std::optional<rehearsal::PlateRehearsal> plates;
+  std::optional<pose_run::PlateRun> plates;
   if (flags.boards == "forces") {
     auto made = MakePlateScene(flags.scene);
     if (!made) return made.error();
     plates = *std::move(made);
   }
-  auto rehearsal =
-      plates ? Result<rehearsal::Rehearsal>(plates->measured) : MakePoseScene(flags.scene);
-  if (!rehearsal) return rehearsal.error();
+  auto run = plates ? Result<pose_run::PoseRun>(plates->measured) : MakePoseScene(flags.scene);
+  if (!run) return run.error();
   if (flags.hands == "wiimote") {
     if (!models->arm) {
       return UsageError("--hands wiimote: give a model of kind arm too (footing-train arm)");
     }
-    rehearsal::TellArms(*models->arm, *rehearsal);
+    pose_run::TellArms(*models->arm, *run);
   }
   if (flags.ablations) {
-    const auto rows = JudgeAblations(*rehearsal, *models, flags.options);
+    const auto rows = JudgeAblations(*run, *models, flags.options);
     if (!rows) return Error{rows.error().kind, flags.scene.motion + ": " + rows.error().message};
     return ordered_json{{"ablations", *rows}};
   }
   const Oracle oracle{Has(flags.oracle, "com"), Has(flags.oracle, "momentum"),
                       Has(flags.oracle, "feet")};
-  auto json = RunPoseTrial(*rehearsal, *models, flags.options, oracle);
+  auto json = RunPoseTrial(*run, *models, flags.options, oracle);
   if (!json) return Error{json.error().kind, flags.scene.motion + ": " + json.error().message};
   (*json)["mode"] = flags.mode;
   (*json)["hands"] = flags.hands;
   (*json)["boards"] = flags.boards;
   (*json)["boards_limited"] = flags.scene.settings.limited;
-  (*json)["cop_outside_sensors_share"] = rehearsal->outside_share;
+  (*json)["cop_outside_sensors_share"] = run->outside_share;
   if (plates) {
     const auto judged = JudgePlates(*plates, *models, flags.options, oracle);
     if (!judged) return judged.error();
     (*json)["plates"] = *judged;
   }
   if (!flags.figures.empty()) {
-    const auto names = WriteFigures(*rehearsal, *models, flags.options, flags.figures);
+    const auto names = WriteFigures(*run, *models, flags.options, flags.figures);
     if (!names) return names.error();
     (*json)["figures"] = *names;
   }
   if (!flags.baselines) return json;
-  const auto baselines = JudgeBaselines(*rehearsal, *models, flags.options, rehearsal->judged_from);
+  const auto baselines = JudgeBaselines(*run, *models, flags.options, run->judged_from);
   if (!baselines) return baselines.error();
   (*json)["baselines"] = *baselines;
   return json;
@@ -145,7 +144,7 @@ void PrintField(const std::string& name, const ordered_json& value) {
 }
 
 void AddFlags(CLI::App& command, Flags& flags) {
-  rehearsal::Settings& settings = flags.scene.settings;
+  pose_run::Settings& settings = flags.scene.settings;
   command.add_option("--motion", flags.scene.motion, "BVH, AMC, TRC or C3D")->required();
   command.add_option("--skeleton", flags.scene.skeleton, "ASF of an AMC");
   command.add_option("--still", flags.scene.still, "Markers of the person standing still");

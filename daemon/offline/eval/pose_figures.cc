@@ -13,7 +13,7 @@
 #include "daemon/offline/eval/pose_trial.h"
 #include "daemon/offline/plot/line_plot.h"
 #include "daemon/offline/plot/stick_plot.h"
-#include "daemon/offline/rehearsal/crouch.h"
+#include "daemon/offline/pose_run/crouch.h"
 
 namespace footing::eval {
 namespace {
@@ -31,23 +31,23 @@ struct Told {
 };
 
 struct Show {
-  const rehearsal::Rehearsal& rehearsal;
+  const pose_run::PoseRun& run;
   const reconstruction::Models& models;
   reconstruction::Options options;
   std::size_t start;
 
-  std::size_t frames() const { return rehearsal.frames.size() - start; }
-  const rehearsal::Frame& frame(std::size_t i) const { return rehearsal.frames[start + i]; }
-  double Time(std::size_t i) const { return static_cast<double>(i) / rehearsal.rate_hz; }
+  std::size_t frames() const { return run.frames.size() - start; }
+  const pose_run::Frame& frame(std::size_t i) const { return run.frames[start + i]; }
+  double Time(std::size_t i) const { return static_cast<double>(i) / run.rate_hz; }
 };
 
 Result<Told> Tell(const Show& show, const std::string& name,
                   const reconstruction::Options& options) {
-  auto made = reconstruction::Reconstruction::Create(show.rehearsal.body, show.models, options);
+  auto made = reconstruction::Reconstruction::Create(show.run.body, show.models, options);
   if (!made) return made.error();
   Told told{name, {}, {}};
-  for (std::size_t i = 0; i < show.rehearsal.frames.size(); ++i) {
-    const auto& output = made->Advance(show.rehearsal.frames[i].inputs);
+  for (std::size_t i = 0; i < show.run.frames.size(); ++i) {
+    const auto& output = made->Advance(show.run.frames[i].inputs);
     if (i < show.start) continue;
     told.q.push_back(output.q);
     told.com_m.push_back(output.com_W_m);
@@ -62,7 +62,7 @@ struct Window {
 /// The window in which the values' range is greatest.
 Window Liveliest(const Show& show, const std::function<double(std::size_t)>& value) {
   const std::size_t frames = show.frames();
-  const auto length = std::min(frames, static_cast<std::size_t>(kWindowS * show.rehearsal.rate_hz));
+  const auto length = std::min(frames, static_cast<std::size_t>(kWindowS * show.run.rate_hz));
   const std::size_t step = std::max<std::size_t>(1, length / 8);
   Window best{0, length};
   double widest = -1;
@@ -136,7 +136,7 @@ std::array<std::string, 4> ArmPlots(const Show& show, const std::vector<Told>& t
   constexpr int kSide = 1;
   constexpr std::array kNames{"shoulder, outwards", "shoulder, forwards", "shoulder, turn",
                               "elbow, bend"};
-  const body::Body& body = show.rehearsal.body;
+  const body::Body& body = show.run.body;
   body::Kinematics at(body.skeleton);
   std::vector<std::array<double, 4>> truth(show.frames());
   for (std::size_t i = 0; i < truth.size(); ++i)
@@ -180,9 +180,9 @@ plot::Sticks SticksOf(const body::Body& body, const Eigen::VectorXd& q) {
   return sticks;
 }
 
-std::string Crouch(const Show& show, const rehearsal::Crouch& crouch, const std::string& compared,
+std::string Crouch(const Show& show, const pose_run::Crouch& crouch, const std::string& compared,
                    const std::vector<Told>& told) {
-  const body::Body& body = show.rehearsal.body;
+  const body::Body& body = show.run.body;
   const plot::Sticks truth = SticksOf(body, show.frame(crouch.frame - show.start).q);
   std::vector<plot::Panel> panels{{"motion capture", {}, truth}};
   for (const Told& one : told) {
@@ -190,7 +190,7 @@ std::string Crouch(const Show& show, const rehearsal::Crouch& crouch, const std:
   }
   const std::string bend =
       std::to_string(std::lround(RadiansToDegrees(crouch.bend_rad))) + " degrees";
-  const std::string title = crouch.bend_rad < rehearsal::kCrouchRad
+  const std::string title = crouch.bend_rad < pose_run::kCrouchRad
                                 ? "No crouch here: knees and hips bend by " + bend + " at most"
                                 : "The deepest crouch, knees and hips bent by " + bend;
   return plot::StickPlot(title + ", " + compared, panels);
@@ -239,19 +239,19 @@ Result<void> Write(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-Result<std::vector<std::string>> WriteFigures(const rehearsal::Rehearsal& rehearsal,
+Result<std::vector<std::string>> WriteFigures(const pose_run::PoseRun& run,
                                               const reconstruction::Models& models,
                                               const reconstruction::Options& options,
                                               const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return Failure("cannot make " + folder + ": " + error.message());
-  const Show show{rehearsal, models, options, rehearsal.judged_from};
+  const Show show{run, models, options, run.judged_from};
   auto runs = RunAll(show);
   if (!runs) return runs.error();
   const std::vector<Told> modes{runs->best, runs->paper};
   const auto arm = ArmPlots(show, {runs->best, runs->paper_without_angular});
-  const rehearsal::Crouch crouch = rehearsal::DeepestCrouch(rehearsal, show.start);
+  const pose_run::Crouch crouch = pose_run::DeepestCrouch(run, show.start);
   const std::vector<std::pair<std::string, std::string>> files{
       {"figure5_vertical_com.svg", ComPlot(show, "Height of the COM", 2, modes)},
       {"figure5_forward_com.svg", ComPlot(show, "COM, forward", 0, modes)},

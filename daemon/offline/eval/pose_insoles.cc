@@ -9,19 +9,19 @@ namespace footing::eval {
 
 using nlohmann::ordered_json;
 
-Result<ordered_json> JudgeInsoles(const rehearsal::InsoleRehearsal& rehearsal,
+Result<ordered_json> JudgeInsoles(const pose_run::InsoleRun& run,
                                   const reconstruction::Models& models,
                                   const reconstruction::Options& options) {
-  auto made = reconstruction::InsoleWalk::Create(rehearsal.body, models, options);
+  auto made = reconstruction::InsoleWalk::Create(run.body, models, options);
   if (!made) return made.error();
-  const auto start = static_cast<std::size_t>(rehearsal::kStandS * rehearsal.rate_hz);
+  const auto start = static_cast<std::size_t>(pose_run::kStandS * run.rate_hz);
   constexpr double kContactN = 40;
-  PoseScore score(rehearsal.body), still(rehearsal.body);
+  PoseScore score(run.body), still(run.body);
   Spread root_cm;
   double both = 0, one = 0, walked_m = 0;
   bool finite = true;
-  for (std::size_t i = 0; i < rehearsal.frames.size(); ++i) {
-    const rehearsal::InsoleFrame& frame = rehearsal.frames[i];
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    const pose_run::InsoleFrame& frame = run.frames[i];
     const reconstruction::Output& output = made->Advance(frame.inputs);
     if (i < start) continue;
     if (!output.calibrated) {
@@ -31,15 +31,15 @@ Result<ordered_json> JudgeInsoles(const rehearsal::InsoleRehearsal& rehearsal,
     score.Add(output.q, frame.q);
     still.Add(models.basis.mean, frame.q);
     root_cm.Add(100 * (output.q - frame.q).head<2>().norm());
-    walked_m += (frame.q - rehearsal.frames[i - 1].q).head<2>().norm();
+    walked_m += (frame.q - run.frames[i - 1].q).head<2>().norm();
     for (std::size_t f = 0; f < momentum::kFeet; ++f) {
       const bool truth = frame.load_n[f] > kContactN;
       both += truth && made->contact(f) ? 1 : 0;
       one += truth != made->contact(f) ? 1 : 0;
     }
   }
-  ordered_json json = {{"frames", score.Json().value("frames", rehearsal.frames.size() - start)},
-                       {"rate_hz", rehearsal.rate_hz},
+  ordered_json json = {{"frames", score.Json().value("frames", run.frames.size() - start)},
+                       {"rate_hz", run.rate_hz},
                        {"boards", "insoles"},
                        {"walked_m", walked_m}};
   json.update(score.Json());

@@ -3,14 +3,14 @@
 #include <nlohmann/json.hpp>
 
 #include "common/result/result.h"
-#include "daemon/offline/rehearsal/insole_rehearsal.h"
+#include "daemon/offline/pose_run/insole_run.h"
 #include "daemon/simulation/reconstruction/models.h"
 
 namespace footing::eval {
 
 /// Runs the reconstruction over somebody who walks in insoles, from the T-pose's end on, and judges
 /// it root-relative; how far the root is off in W is beside it.
-Result<nlohmann::ordered_json> JudgeInsoles(const rehearsal::InsoleRehearsal& rehearsal,
+Result<nlohmann::ordered_json> JudgeInsoles(const pose_run::InsoleRun& run,
                                             const reconstruction::Models& models,
                                             const reconstruction::Options& options);
 

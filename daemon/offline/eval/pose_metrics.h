@@ -7,7 +7,7 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "daemon/offline/rehearsal/rehearsal.h"
+#include "daemon/offline/pose_run/pose_run.h"
 
 namespace footing::eval {
 

@@ -23,7 +23,7 @@ constexpr const char* kCompared[] = {"mpjpe_cm",
                                      "contact_f1",
                                      "nees"};
 
-ordered_json FeetJson(const rehearsal::PlateUse& use) {
+ordered_json FeetJson(const pose_run::PlateUse& use) {
   return {{"plate", use.plate},
           {"left_s", use.loaded_s[0]},
           {"right_s", use.loaded_s[1]},
@@ -31,33 +31,33 @@ ordered_json FeetJson(const rehearsal::PlateUse& use) {
 }
 
 /// The centre of mass by the offline smoothers, from the cells alone.
-Result<ordered_json> Offline(const rehearsal::Rehearsal& rehearsal) {
+Result<ordered_json> Offline(const pose_run::PoseRun& run) {
   MomentumScene scene;
-  scene.rate_hz = rehearsal.rate_hz;
-  scene.subject = reconstruction::SubjectOf(rehearsal.body);
+  scene.rate_hz = run.rate_hz;
+  scene.subject = reconstruction::SubjectOf(run.body);
   momentum::TPoseCalibration calibration;
   std::size_t start = 0;
-  for (const rehearsal::Frame& frame : rehearsal.frames) {
+  for (const pose_run::Frame& frame : run.frames) {
     scene.frames.push_back({frame.inputs.loads, frame.com_m, frame.angular_momentum, {}});
     if (!calibration.complete()) {
-      calibration.Advance(frame.inputs.loads, 1 / rehearsal.rate_hz);
+      calibration.Advance(frame.inputs.loads, 1 / run.rate_hz);
       ++start;
     }
   }
-  if (!calibration.complete() || start > rehearsal.judged_from) {
+  if (!calibration.complete() || start > run.judged_from) {
     return InvalidData("the T-pose never stood still on both boards: no calibration");
   }
-  return OfflineJson(scene, calibration.result(), start, rehearsal.judged_from);
+  return OfflineJson(scene, calibration.result(), start, run.judged_from);
 }
 
 }  // namespace
 
-Result<ordered_json> JudgePlates(const rehearsal::PlateRehearsal& plates,
+Result<ordered_json> JudgePlates(const pose_run::PlateRun& plates,
                                  const reconstruction::Models& models,
                                  const reconstruction::Options& options, const Oracle& oracle) {
   const auto simulated = RunPoseTrial(plates.simulated, models, options, oracle);
   if (!simulated) return simulated.error();
-  const rehearsal::PlateReport& report = plates.report;
+  const pose_run::PlateReport& report = plates.report;
   ordered_json json = {{"begin_s", report.begin_s},
                        {"end_s", report.end_s},
                        {"carried_share", report.carried_share},
@@ -69,7 +69,7 @@ Result<ordered_json> JudgePlates(const rehearsal::PlateRehearsal& plates,
   json["cop_forward_rms_cm"] = 100 * report.cop_rms_m.x();
   json["cop_lateral_rms_cm"] = 100 * report.cop_rms_m.y();
   json["of_feet"] = ordered_json::array();
-  for (const rehearsal::PlateUse& use : report.plates) json["of_feet"].push_back(FeetJson(use));
+  for (const pose_run::PlateUse& use : report.plates) json["of_feet"].push_back(FeetJson(use));
   const auto offline = Offline(plates.measured);
   if (!offline) return offline.error();
   json["offline"] = *offline;

@@ -4,10 +4,10 @@
 
 #include "common/config/data_file.h"
 #include "common/model/model.h"
-#include "common/motion_files/load.h"
+#include "common/virtual/motion_files/load.h"
 #include "common/wire/model_file.h"
-#include "daemon/offline/rehearsal/activity.h"
-#include "daemon/offline/rehearsal/standing.h"
+#include "daemon/offline/pose_run/activity.h"
+#include "daemon/offline/pose_run/standing.h"
 
 namespace footing::eval {
 namespace {
@@ -54,22 +54,22 @@ Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
   return motion_files::LoadMotion(options.motion, load);
 }
 
-rehearsal::Settings WithHeight(const PoseSceneOptions& options,
-                               const motion_files::LoadedMotion& loaded) {
-  rehearsal::Settings settings = options.settings;
+pose_run::Settings WithHeight(const PoseSceneOptions& options,
+                              const motion_files::LoadedMotion& loaded) {
+  pose_run::Settings settings = options.settings;
   if (!settings.height_m) settings.height_m = loaded.height_m;
   return settings;
 }
 
 /// Of the labels file; none where there is no such file.
-Result<std::vector<rehearsal::ActivitySpan>> ReadActivities(const PoseSceneOptions& options) {
-  if (options.activities.empty()) return std::vector<rehearsal::ActivitySpan>{};
+Result<std::vector<pose_run::ActivitySpan>> ReadActivities(const PoseSceneOptions& options) {
+  if (options.activities.empty()) return std::vector<pose_run::ActivitySpan>{};
   if (options.settings.loop_s > 0) {
     return UsageError("--activities are of the clip as it is: no --loop-minutes with them");
   }
   const auto text = config::ReadTextFile(options.activities, kMostLabelBytes);
   if (!text) return text.error();
-  return rehearsal::ParseActivities(*text, options.activities);
+  return pose_run::ParseActivities(*text, options.activities);
 }
 
 /// By somebody who stands still: what is added to a COP of the plates.
@@ -80,30 +80,28 @@ Result<Eigen::Vector2d> PlatesOffset(const PoseSceneOptions& options) {
   if (!loaded) return loaded.error();
   const auto forces = motion_files::LoadForces(options.still_forces);
   if (!forces) return InvalidData(forces.error().message);
-  return rehearsal::StandingOffset(loaded->motion, *forces, WithHeight(still, *loaded),
-                                   options.still, options.still_forces);
+  return pose_run::StandingOffset(loaded->motion, *forces, WithHeight(still, *loaded),
+                                  options.still, options.still_forces);
 }
 
-rehearsal::Activities Tell(const rehearsal::Rehearsal& rehearsal,
-                           const std::vector<rehearsal::ActivitySpan>& spans) {
-  return spans.empty() ? rehearsal::RuledActivities(rehearsal)
-                       : rehearsal::LabelledActivities(rehearsal, spans);
+pose_run::Activities Tell(const pose_run::PoseRun& run,
+                          const std::vector<pose_run::ActivitySpan>& spans) {
+  return spans.empty() ? pose_run::RuledActivities(run) : pose_run::LabelledActivities(run, spans);
 }
 
 }  // namespace
 
-Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options) {
+Result<pose_run::PoseRun> MakePoseScene(const PoseSceneOptions& options) {
   const auto spans = ReadActivities(options);
   if (!spans) return spans.error();
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();
-  auto rehearsal =
-      rehearsal::Rehearse(loaded->motion, WithHeight(options, *loaded), options.motion);
-  if (rehearsal) rehearsal->activities = Tell(*rehearsal, *spans);
-  return rehearsal;
+  auto run = pose_run::RunPose(loaded->motion, WithHeight(options, *loaded), options.motion);
+  if (run) run->activities = Tell(*run, *spans);
+  return run;
 }
 
-Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options) {
+Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options) {
   const auto spans = ReadActivities(options);
   if (!spans) return spans.error();
   const auto loaded = Load(options);
@@ -117,24 +115,24 @@ Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options
       plate.cop_W.topRows<2>().colwise() += *offset;
     }
   }
-  auto plates = rehearsal::RehearseOnPlates(loaded->motion, *forces, WithHeight(options, *loaded),
-                                            options.motion, options.forces);
+  auto plates = pose_run::RunOnPlates(loaded->motion, *forces, WithHeight(options, *loaded),
+                                      options.motion, options.forces);
   if (!plates) return plates.error();
   plates->measured.activities = Tell(plates->measured, *spans);
   plates->simulated.activities = plates->measured.activities;
   return plates;
 }
 
-Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options) {
+Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options) {
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();
-  return rehearsal::RehearseInsoles(loaded->motion, WithHeight(options, *loaded), options.motion);
+  return pose_run::RunInsoles(loaded->motion, WithHeight(options, *loaded), options.motion);
 }
 
-Result<rehearsal::ArmRehearsal> MakeArmScene(const PoseSceneOptions& options) {
+Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options) {
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();
-  return rehearsal::RehearseArms(loaded->motion, WithHeight(options, *loaded), options.motion);
+  return pose_run::RunArms(loaded->motion, WithHeight(options, *loaded), options.motion);
 }
 
 Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion) {

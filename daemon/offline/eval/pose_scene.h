@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "common/result/result.h"
-#include "daemon/offline/rehearsal/held_hands.h"
-#include "daemon/offline/rehearsal/insole_rehearsal.h"
-#include "daemon/offline/rehearsal/plates.h"
-#include "daemon/offline/rehearsal/rehearsal.h"
+#include "daemon/offline/pose_run/held_hands.h"
+#include "daemon/offline/pose_run/insole_run.h"
+#include "daemon/offline/pose_run/plates.h"
+#include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/simulation/arms/arm_model.h"
 #include "daemon/simulation/reconstruction/models.h"
 
@@ -20,19 +20,19 @@ struct PoseSceneOptions {
   std::string still;              ///< TRC or C3D of the same person standing, of markers.
   std::string forces;             ///< MOT, STO or C3D of the plates under the same trial.
   std::string still_forces = {};  ///< The same of the plates under `still`; may be empty.
-  std::string activities;         ///< CSV of labels (rehearsal/activity.h); empty: by rules.
-  rehearsal::Settings settings;
+  std::string activities;         ///< CSV of labels (run/activity.h); empty: by rules.
+  pose_run::Settings settings;
 };
 
-Result<rehearsal::Rehearsal> MakePoseScene(const PoseSceneOptions& options);
+Result<pose_run::PoseRun> MakePoseScene(const PoseSceneOptions& options);
 
 /// With the plates of options.forces, whose COPs are moved by what those of options.still_forces
 /// are off from under the body that stands still. A file that cannot be read is InvalidData, too.
-Result<rehearsal::PlateRehearsal> MakePlateScene(const PoseSceneOptions& options);
+Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options);
 
-Result<rehearsal::InsoleRehearsal> MakeInsoleScene(const PoseSceneOptions& options);
+Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options);
 
-Result<rehearsal::ArmRehearsal> MakeArmScene(const PoseSceneOptions& options);
+Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options);
 
 /// Refuses a model that was trained on the motion's subject. Empty: the one that the product
 /// carries.

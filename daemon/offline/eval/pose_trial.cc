@@ -40,7 +40,7 @@ class Drift {
   double n_ = 0, t_ = 0, e_ = 0, tt_ = 0, te_ = 0;
 };
 
-reconstruction::Known KnownOf(const rehearsal::Frame& frame, const Oracle& oracle) {
+reconstruction::Known KnownOf(const pose_run::Frame& frame, const Oracle& oracle) {
   reconstruction::Known known;
   if (oracle.com) known.com_W_m = frame.com_m;
   if (oracle.momentum) known.angular_W = frame.angular_momentum;
@@ -55,19 +55,19 @@ reconstruction::Known KnownOf(const rehearsal::Frame& frame, const Oracle& oracl
 /// Everything that is judged beside the pose itself.
 class Judge {
  public:
-  Judge(const rehearsal::Rehearsal& rehearsal, std::size_t lag)
-      : rehearsal_(rehearsal), lag_(lag), score_(rehearsal.body), breakdown_(rehearsal) {
+  Judge(const pose_run::PoseRun& run, std::size_t lag)
+      : run_(run), lag_(lag), score_(run.body), breakdown_(run) {
     for (int side = 0; side < 2; ++side) {
       const auto f = static_cast<std::size_t>(side);
-      ankle_[f] = body::Ankle(rehearsal.body, side).joint;
-      toe_[f] = body::Toe(rehearsal.body, side).joint;
+      ankle_[f] = body::Ankle(run.body, side).joint;
+      toe_[f] = body::Toe(run.body, side).joint;
     }
     first_on_feet_ = static_cast<std::size_t>(
-        std::lround((rehearsal::kStandS + rehearsal::kLeaveS) * rehearsal.rate_hz));
+        std::lround((pose_run::kStandS + pose_run::kLeaveS) * run.rate_hz));
   }
 
   void Add(const reconstruction::Output& output, std::size_t i) {
-    const rehearsal::Frame& then = rehearsal_.frames[i - lag_];
+    const pose_run::Frame& then = run_.frames[i - lag_];
     score_.Add(output.q, then.q);
     AddCom(output, then);
     AddFeet(output, i);
@@ -85,7 +85,7 @@ class Judge {
   ordered_json Json() const;
 
  private:
-  void AddCom(const reconstruction::Output& output, const rehearsal::Frame& then) {
+  void AddCom(const reconstruction::Output& output, const pose_run::Frame& then) {
     const Eigen::Vector3d told = output.com_W_m - then.com_m;
     vertical_.Add(100 * told.z());
     horizontal_.Add(100 * told.head<2>().norm());
@@ -94,7 +94,7 @@ class Judge {
     const double t_s = then.inputs.loads.time_s;
     vertical_drift_.Add(t_s, 100 * std::abs(told.z()));
     horizontal_drift_.Add(t_s, 100 * told.head<2>().norm());
-    const Eigen::Vector3d com = body::CentreOfMass(rehearsal_.body, score_.at());
+    const Eigen::Vector3d com = body::CentreOfMass(run_.body, score_.at());
     pose_vertical_.Add(100 * (com.z() - then.com_m.z()));
     loads_vertical_.Add(100 * (output.momentum.p_WC_m.z() - then.com_m.z()));
     com_nees_ += told.z() * told.z() / output.com_variance_m2.z();
@@ -106,13 +106,13 @@ class Judge {
     }
   }
 
-  void AddRoughness(const reconstruction::Output& output, const rehearsal::Frame& then) {
+  void AddRoughness(const reconstruction::Output& output, const pose_run::Frame& then) {
     com_height_.Add(100 * output.com_W_m.z());
     true_com_height_.Add(100 * then.com_m.z());
     loads_com_height_.Add(100 * output.momentum.p_WC_m.z());
     for (int side = 0; side < 2; ++side) {
       const auto hand = static_cast<std::size_t>(side);
-      const body::Landmarks& landmarks = rehearsal_.body.landmarks;
+      const body::Landmarks& landmarks = run_.body.landmarks;
       const double bend_deg = ElbowBendDeg(landmarks, score_.truth(), side);
       const bool straight = bend_deg < kStraightDeg;
       elbow_[hand].Add(ElbowBendDeg(landmarks, score_.at(), side), straight);
@@ -121,15 +121,15 @@ class Judge {
   }
 
   void AddFeet(const reconstruction::Output& output, std::size_t i) {
-    const double step_s = 1 / rehearsal_.rate_hz;
+    const double step_s = 1 / run_.rate_hz;
     for (std::size_t f = 0; f < kFeet; ++f) {
       const bool told = output.momentum.feet[f].contact;
-      contacts_.Add(f, rehearsal_.frames[i].feet[f].load_n > kContactN, told, step_s);
+      contacts_.Add(f, run_.frames[i].feet[f].load_n > kContactN, told, step_s);
       const auto at = [&](const body::Kinematics& k, int joint) {
         return k.p_WJ[static_cast<std::size_t>(joint)];
       };
       const bool settled = i - lag_ >= first_on_feet_;
-      AddSkate(rehearsal_.frames[i - lag_].inputs.loads.feet[f], f, settled, step_s);
+      AddSkate(run_.frames[i - lag_].inputs.loads.feet[f], f, settled, step_s);
       if (settled && contacts_.true_since_s[f] > kSettledContactS) {
         const Eigen::Vector3d error =
             0.5 * (at(score_.at(), ankle_[f]) + at(score_.at(), toe_[f]) -
@@ -179,11 +179,11 @@ class Judge {
 
   using SolePoints = std::array<Eigen::Vector3d, 2>;  ///< Heel and ball.
 
-  const rehearsal::Rehearsal& rehearsal_;
+  const pose_run::PoseRun& run_;
   std::size_t lag_;
   std::size_t first_on_feet_ = 0;  ///< Before, the way from the T-pose slides them.
   std::array<reconstruction::FootGeometry, kFeet> geometry_ =
-      reconstruction::StandingFeet(rehearsal_.body);
+      reconstruction::StandingFeet(run_.body);
   std::array<StanceFrames, kFeet> skate_;
   std::array<SolePoints, kFeet> sole_before_{}, true_sole_before_{};
   PoseScore score_;
@@ -246,17 +246,17 @@ ordered_json Judge::Json() const {
 
 }  // namespace
 
-Result<ordered_json> RunPoseTrial(const rehearsal::Rehearsal& rehearsal,
+Result<ordered_json> RunPoseTrial(const pose_run::PoseRun& run,
                                   const reconstruction::Models& models,
                                   const reconstruction::Options& options, const Oracle& oracle) {
-  auto made = reconstruction::Reconstruction::Create(rehearsal.body, models, options);
+  auto made = reconstruction::Reconstruction::Create(run.body, models, options);
   if (!made) return made.error();
-  const std::size_t start = rehearsal.judged_from;
-  Judge judge(rehearsal, static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz)));
+  const std::size_t start = run.judged_from;
+  Judge judge(run, static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz)));
   Spread solve_us;
-  for (std::size_t i = 0; i < rehearsal.frames.size(); ++i) {
-    reconstruction::Inputs inputs = rehearsal.frames[i].inputs;
-    inputs.known = KnownOf(rehearsal.frames[i], oracle);
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    reconstruction::Inputs inputs = run.frames[i].inputs;
+    inputs.known = KnownOf(run.frames[i], oracle);
     const std::int64_t begin_ns = clock::ThreadCpuNs();
     const reconstruction::Output& output = made->Advance(inputs);
     const auto spent_ns = static_cast<double>(clock::ThreadCpuNs() - begin_ns);
@@ -267,13 +267,13 @@ Result<ordered_json> RunPoseTrial(const rehearsal::Rehearsal& rehearsal,
     solve_us.Add(spent_ns / 1e3);
     judge.Add(output, i);
   }
-  ordered_json json = {{"frames", rehearsal.frames.size() - start},
-                       {"rate_hz", rehearsal.rate_hz},
+  ordered_json json = {{"frames", run.frames.size() - start},
+                       {"rate_hz", run.rate_hz},
                        {"mass_kg", made->output().mass_kg},
                        {"lag_ms", 1000 * made->output().lag_s},
                        {"resets", made->output().resets}};
   json.update(judge.Json());
-  const double unit_us = timing::MomentumCostUs(rehearsal.body, rehearsal.frames.front().q);
+  const double unit_us = timing::MomentumCostUs(run.body, run.frames.front().q);
   json["solve_us_p50"] = solve_us.Quantile(0.5);
   json["solve_us_p99"] = solve_us.Quantile(0.99);
   json["kinematics_us"] = unit_us;

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/result/result.h"
-#include "daemon/offline/rehearsal/rehearsal.h"
+#include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::eval {
@@ -13,9 +13,9 @@ struct Oracle {
   bool com = false, momentum = false, feet = false;
 };
 
-/// Runs one reconstruction over a rehearsal and judges all that it tells, from
-/// rehearsal.judged_from on.
-Result<nlohmann::ordered_json> RunPoseTrial(const rehearsal::Rehearsal& rehearsal,
+/// Runs one reconstruction over a run and judges all that it tells, from
+/// run.judged_from on.
+Result<nlohmann::ordered_json> RunPoseTrial(const pose_run::PoseRun& run,
                                             const reconstruction::Models& models,
                                             const reconstruction::Options& options,
                                             const Oracle& oracle);

@@ -4,11 +4,11 @@
 
 #include "common/body/kinematics.h"
 #include "common/cli/cli.h"
-#include "daemon/offline/rehearsal/held_hands.h"
+#include "daemon/offline/learning/arm_regression.h"
+#include "daemon/offline/pose_run/held_hands.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
-#include "daemon/offline/training/arm_regression.h"
 #include "daemon/simulation/arms/arm_geometry.h"
 
 namespace footing::train {
@@ -25,31 +25,30 @@ struct Options {
 
 /// What devices in the hands would have told in one motion, and how the arms were.
 Result<void> AddExamples(const Clip& clip, std::uint64_t seed, const std::vector<int>& folds,
-                         training::ArmExamples& examples) {
-  rehearsal::Settings settings;
+                         learning::ArmExamples& examples) {
+  pose_run::Settings settings;
   settings.seed = seed;
-  const auto rehearsal = rehearsal::RehearseArms(clip.motion, settings, clip.name);
-  if (!rehearsal) return rehearsal.error();
-  const std::array geometry{arms::ArmGeometry(rehearsal->body, 0),
-                            arms::ArmGeometry(rehearsal->body, 1)};
+  const auto run = pose_run::RunArms(clip.motion, settings, clip.name);
+  if (!run) return run.error();
+  const std::array geometry{arms::ArmGeometry(run->body, 0), arms::ArmGeometry(run->body, 1)};
   std::array<arms::HandAttitude, arms::kArms> hands;
   arms::ArmFeatures features;
   arms::ArmFeatures::Values values;
-  body::Kinematics at(rehearsal->body.skeleton);
-  const double step_s = 1 / rehearsal->rate_hz;
-  for (std::size_t i = 0; i < rehearsal->frames.size(); ++i) {
-    const rehearsal::ArmFrame& frame = rehearsal->frames[i];
+  body::Kinematics at(run->body.skeleton);
+  const double step_s = 1 / run->rate_hz;
+  for (std::size_t i = 0; i < run->frames.size(); ++i) {
+    const pose_run::ArmFrame& frame = run->frames[i];
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
       for (const arms::HandReading& reading : frame.readings[arm]) {
-        hands[arm].Advance(reading, rehearsal->reading_s);
+        hands[arm].Advance(reading, run->reading_s);
       }
-      if (i == rehearsal->aligned) hands[arm].Align();
+      if (i == run->aligned) hands[arm].Align();
     }
-    if (i < rehearsal->aligned) continue;
+    if (i < run->aligned) continue;
     features.Advance({hands[0].state(), hands[1].state()}, step_s);
-    const double since_s = static_cast<double>(i) * step_s - rehearsal::kStandS;
+    const double since_s = static_cast<double>(i) * step_s - pose_run::kStandS;
     if (since_s < 0) continue;
-    body::ComputeKinematics(rehearsal->body.skeleton, frame.q, at);
+    body::ComputeKinematics(run->body.skeleton, frame.q, at);
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
       arms::ArmDirections truth = geometry[arm].Directions(at);
       if (arm == 1) truth = arms::Mirrored(truth);
@@ -63,8 +62,8 @@ Result<void> AddExamples(const Clip& clip, std::uint64_t seed, const std::vector
 }
 
 /// A fold a person; of one person alone, pieces of ten seconds.
-Result<training::ArmExamples> Examples(const Clips& clips, std::uint64_t seed) {
-  training::ArmExamples examples;
+Result<learning::ArmExamples> Examples(const Clips& clips, std::uint64_t seed) {
+  learning::ArmExamples examples;
   const bool people = clips.subjects.size() >= 2;
   examples.fold_count = people ? static_cast<int>(clips.subjects.size()) : kPieceFolds;
   int piece = 0;
@@ -90,10 +89,10 @@ int Run(const Options& options, const Shared& shared) {
   if (!clips) return cli::Report(clips.error());
   const auto examples = Examples(*clips, options.model.seed);
   if (!examples) return cli::Report(examples.error());
-  const training::FittedArm fitted = training::FitArm(*examples);
+  const learning::FittedArm fitted = learning::FitArm(*examples);
   model::Model model =
       NewModel("arm", shared, options.model, DataFiles(clips->train), clips->subjects);
-  training::AppendTensors(fitted.model, model);
+  learning::AppendTensors(fitted.model, model);
   const nlohmann::ordered_json report = {
       {"examples", examples->features.size()}, {"subjects", clips->subjects},
       {"folds", examples->fold_count},         {"ridge", fitted.ridge},

@@ -27,7 +27,7 @@ int Run(const Options& options, const Shared& shared) {
   if (!set) return cli::Report(set.error());
   const Result<TrainedBasis> trained = TrainBasis(set->AllClips());
   if (!trained) return cli::Report(trained.error());
-  const training::PoseBasis& basis = trained->basis;
+  const learning::PoseBasis& basis = trained->basis;
 
   model::Model model =
       NewModel("basis", shared, options.model, set->DataFiles(), set->clips.subjects);

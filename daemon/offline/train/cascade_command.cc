@@ -5,10 +5,10 @@
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
 #include "common/units/units.h"
+#include "daemon/offline/learning/cascade.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/training_data.h"
-#include "daemon/offline/training/cascade.h"
 #include "daemon/simulation/cascade/model.h"
 
 namespace footing::train {
@@ -16,7 +16,7 @@ namespace {
 
 struct Options {
   DataOptions data;
-  training::CascadeOptions cascade;
+  learning::CascadeOptions cascade;
   bool sigmoid = false;
   bool covariance = false;
 };
@@ -24,17 +24,17 @@ struct Options {
 int Run(const Options& options, const Shared& shared) {
   const Result<TrainingData> data = Load(options.data);
   if (!data) return cli::Report(data.error());
-  training::CascadeOptions cascade = options.cascade;
-  if (options.sigmoid) cascade.outputs = training::Outputs::kSigmoid;
-  if (options.covariance) cascade.objective = training::Objective::kCovariance;
+  learning::CascadeOptions cascade = options.cascade;
+  if (options.sigmoid) cascade.outputs = learning::Outputs::kSigmoid;
+  if (options.covariance) cascade.objective = learning::Objective::kCovariance;
 
-  const training::Split& split = data->split;
+  const learning::Split& split = data->split;
   if (options.sigmoid && split.train.targets.cwiseAbs().maxCoeff() > 0.5) {
     return cli::Report(InvalidData(options.data.data + ": --sigmoid outputs lie within +-0.5"));
   }
   const std::int64_t start_ns = clock::MonotonicNs();
-  const training::CascadeResult result =
-      training::TrainCascade(split.train, split.validation, cascade, options.data.model.seed);
+  const learning::CascadeResult result =
+      learning::TrainCascade(split.train, split.validation, cascade, options.data.model.seed);
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
   model::Model model =
@@ -63,7 +63,7 @@ int Run(const Options& options, const Shared& shared) {
 
 void AddCascadeCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
-  training::CascadeOptions& cascade = options->cascade;
+  learning::CascadeOptions& cascade = options->cascade;
   CLI::App* command =
       app.add_subcommand("cascade", "A cascade-correlation network on any table of numbers");
   AddDataOptions(*command, options->data);

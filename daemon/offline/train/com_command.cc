@@ -8,18 +8,18 @@
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
 #include "common/units/units.h"
+#include "daemon/offline/learning/board_loads.h"
+#include "daemon/offline/learning/cascade.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
 #include "daemon/offline/train/own_recordings.h"
-#include "daemon/offline/training/board_loads.h"
-#include "daemon/offline/training/cascade.h"
 #include "daemon/simulation/cascade/model.h"
 
 namespace footing::train {
 namespace {
 
-using training::LoadClip;
+using learning::LoadClip;
 
 constexpr const char* kAxes[] = {"x", "y"};
 constexpr double kValidationPart = 0.2;  // The end of every clip.
@@ -35,7 +35,7 @@ struct Options {
   MotionOptions motions;
   OwnOptions own;
   ModelOptions model;
-  training::CascadeOptions cascade;
+  learning::CascadeOptions cascade;
   std::vector<double> noises_m = {0.01, 0.02, 0.04};
   int copies = 1;
   int rounds = 6;
@@ -49,10 +49,10 @@ struct Recordings {
 std::vector<LoadClip> Loads(const std::vector<Clip>& clips, bool mirrored, std::uint64_t seed) {
   std::vector<LoadClip> loads;
   for (const Clip& clip : clips) {
-    training::BoardLoadSettings settings;
+    learning::BoardLoadSettings settings;
     settings.mirrored = mirrored;
-    const LoadClip all = training::BoardLoads(clip.motion, clip.body, settings, seed++);
-    for (LoadClip& part : training::PartsInPlace(all)) loads.push_back(std::move(part));
+    const LoadClip all = learning::BoardLoads(clip.motion, clip.body, settings, seed++);
+    for (LoadClip& part : learning::PartsInPlace(all)) loads.push_back(std::move(part));
   }
   return loads;
 }
@@ -60,15 +60,15 @@ std::vector<LoadClip> Loads(const std::vector<Clip>& clips, bool mirrored, std::
 /// What the own boards measured, with its mirror image, `weight` times.
 Result<void> AddOwn(const TrainingSet& set, bool mirror, std::vector<LoadClip>& loads) {
   for (const OwnRecording& own : set.own) {
-    std::vector<training::OwnTake> takes{own.take};
+    std::vector<learning::OwnTake> takes{own.take};
     if (mirror) {
-      auto image = training::MirrorImage(own.take);
+      auto image = learning::MirrorImage(own.take);
       if (!image) return image.error();
       takes.push_back(*std::move(image));
     }
-    for (const training::OwnTake& take : takes) {
-      for (const LoadClip& clip : training::OwnLoads(take)) {
-        for (const LoadClip& part : training::PartsInPlace(clip)) {
+    for (const learning::OwnTake& take : takes) {
+      for (const LoadClip& clip : learning::OwnLoads(take)) {
+        for (const LoadClip& part : learning::PartsInPlace(clip)) {
           for (int i = 0; i < set.weight; ++i) loads.push_back(part);
         }
       }
@@ -91,27 +91,27 @@ Recordings SplitClips(const std::vector<LoadClip>& clips) {
 
 /// What one axis learns from.
 struct Lesson {
-  training::Examples noisy, noisy_validation;
-  std::vector<training::Examples> rounds;  ///< Of own outputs, the latest last.
+  learning::Examples noisy, noisy_validation;
+  std::vector<learning::Examples> rounds;  ///< Of own outputs, the latest last.
 };
 
 Lesson FirstLesson(const Recordings& recordings, int axis, double noise_m, const Options& options) {
-  training::FeedbackNoise noise{.groups = training::FeedbackColumns(),
+  learning::FeedbackNoise noise{.groups = learning::FeedbackColumns(),
                                 .common_sd = noise_m,
                                 .own_sd = noise_m / 10,
                                 .copies = options.copies};
   const std::uint64_t seed = options.model.seed;
   Lesson lesson;
   lesson.noisy =
-      WithFeedbackNoise(training::HorizontalExamples(recordings.train, axis), noise, seed);
+      WithFeedbackNoise(learning::HorizontalExamples(recordings.train, axis), noise, seed);
   noise.copies = 1;
   lesson.noisy_validation =
-      WithFeedbackNoise(training::HorizontalExamples(recordings.validation, axis), noise, seed + 1);
+      WithFeedbackNoise(learning::HorizontalExamples(recordings.validation, axis), noise, seed + 1);
   return lesson;
 }
 
 /// Mean square of the error in closed loop, both axes together.
-double ClosedLoopMse(const training::Networks& networks, const std::vector<LoadClip>& clips) {
+double ClosedLoopMse(const learning::Networks& networks, const std::vector<LoadClip>& clips) {
   double sum = 0, frames = 0;
   for (const LoadClip& clip : clips) {
     const auto size = static_cast<double>(clip.size());
@@ -122,19 +122,19 @@ double ClosedLoopMse(const training::Networks& networks, const std::vector<LoadC
 }
 
 struct Trained {
-  std::vector<training::CascadeResult> axes;
+  std::vector<learning::CascadeResult> axes;
   double noise_m = 0;
   int round = 0;
 
-  training::Networks networks() const { return {axes[0].network, axes[1].network}; }
+  learning::Networks networks() const { return {axes[0].network, axes[1].network}; }
 };
 
 Trained TrainAxes(const std::array<Lesson, 2>& lessons, const Options& options) {
   Trained trained;
   for (const Lesson& lesson : lessons) {
-    std::vector<const training::Examples*> parts{&lesson.noisy};
-    for (const training::Examples& round : lesson.rounds) parts.push_back(&round);
-    trained.axes.push_back(training::TrainCascade(training::Joined(parts), lesson.noisy_validation,
+    std::vector<const learning::Examples*> parts{&lesson.noisy};
+    for (const learning::Examples& round : lesson.rounds) parts.push_back(&round);
+    trained.axes.push_back(learning::TrainCascade(learning::Joined(parts), lesson.noisy_validation,
                                                   options.cascade, options.model.seed));
   }
   return trained;
@@ -154,10 +154,10 @@ Trained Train(const Recordings& recordings, const Options& options) {
       Trained trained = TrainAxes(lessons, options);
       trained.noise_m = noise_m;
       trained.round = round;
-      const training::Networks networks = trained.networks();
+      const learning::Networks networks = trained.networks();
       for (int axis = 0; axis < 2; ++axis) {
         auto& rounds = lessons[static_cast<std::size_t>(axis)].rounds;
-        rounds.push_back(training::RolledOutExamples(networks, recordings.train, axis, kRestartS));
+        rounds.push_back(learning::RolledOutExamples(networks, recordings.train, axis, kRestartS));
         if (rounds.size() > kRoundsKept) rounds.erase(rounds.begin());
       }
       const double mse = ClosedLoopMse(networks, recordings.validation);
@@ -171,7 +171,7 @@ Trained Train(const Recordings& recordings, const Options& options) {
 }
 
 /// Root mean squares over whole clips: one step from the truth, the closed loop, and the COP.
-nlohmann::ordered_json Judge(const training::Networks& networks,
+nlohmann::ordered_json Judge(const learning::Networks& networks,
                              const std::vector<LoadClip>& clips) {
   Eigen::Vector2d one_step = Eigen::Vector2d::Zero(), loop = one_step, cop = one_step;
   double frames = 0;
@@ -187,7 +187,7 @@ nlohmann::ordered_json Judge(const training::Networks& networks,
   };
   for (int axis = 0; axis < 2; ++axis) {
     one_step(axis) = frames * MeanSquaredError(networks[static_cast<std::size_t>(axis)],
-                                               training::HorizontalExamples(clips, axis));
+                                               learning::HorizontalExamples(clips, axis));
   }
   return {
       {"one_step_rms_m", rms(one_step)}, {"closed_loop_rms_m", rms(loop)}, {"cop_rms_m", rms(cop)}};
@@ -213,7 +213,7 @@ int Run(const Options& options, const Shared& shared) {
 
   const std::int64_t start_ns = clock::MonotonicNs();
   const Trained trained = Train(recordings, options);
-  const std::vector<training::CascadeResult>& axes = trained.axes;
+  const std::vector<learning::CascadeResult>& axes = trained.axes;
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
   model::Model model = NewModel("com", shared, options.model, set->DataFiles(), clips->subjects);

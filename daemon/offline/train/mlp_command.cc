@@ -5,30 +5,30 @@
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
 #include "common/units/units.h"
+#include "daemon/offline/learning/mlp.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/training_data.h"
-#include "daemon/offline/training/mlp.h"
 
 namespace footing::train {
 namespace {
 
 struct Options {
   DataOptions data;
-  training::MlpOptions mlp;
+  learning::MlpOptions mlp;
 };
 
 int Run(const Options& options, const Shared& shared) {
   const Result<TrainingData> data = Load(options.data);
   if (!data) return cli::Report(data.error());
   const std::int64_t start_ns = clock::MonotonicNs();
-  const training::MlpResult result = training::TrainMlp(data->split.train, data->split.validation,
+  const learning::MlpResult result = learning::TrainMlp(data->split.train, data->split.validation,
                                                         options.mlp, options.data.model.seed);
   const double seconds = NanosecondsToSeconds(clock::MonotonicNs() - start_ns);
 
   model::Model model =
       NewModel("mlp", shared, options.data.model, {data->file}, options.data.subjects);
-  training::AppendTensors(result.network, model);
+  learning::AppendTensors(result.network, model);
   if (auto written = WriteModel(model, options.data.model); !written) {
     return cli::Report(written.error());
   }
@@ -53,7 +53,7 @@ int Run(const Options& options, const Shared& shared) {
 
 void AddMlpCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
-  training::MlpOptions& mlp = options->mlp;
+  learning::MlpOptions& mlp = options->mlp;
   CLI::App* command = app.add_subcommand(
       "mlp", "A perceptron by back-propagation on the same table, to compare with");
   AddDataOptions(*command, options->data);

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "common/config/data_file.h"
-#include "common/motion/edit.h"
-#include "common/motion_files/load.h"
-#include "daemon/offline/training/alignment.h"
+#include "common/virtual/motion/edit.h"
+#include "common/virtual/motion_files/load.h"
+#include "daemon/offline/learning/alignment.h"
 
 namespace footing::train {
 namespace {
@@ -76,7 +76,7 @@ Result<Clip> ReadClip(const std::string& file, const std::string& skeleton) {
   return Clip{.name = name,
               .subject = SubjectOf(path),
               .file = {.name = name, .sha256 = model::Sha256(*text)},
-              .motion = training::Aligned(*motion, body->landmarks),
+              .motion = learning::Aligned(*motion, body->landmarks),
               .body = *body};
 }
 

@@ -6,8 +6,8 @@
 
 #include "common/body/body.h"
 #include "common/model/model.h"
-#include "common/motion/motion.h"
 #include "common/result/result.h"
+#include "common/virtual/motion/motion.h"
 
 namespace footing::train {
 

@@ -9,9 +9,9 @@
 
 #include "common/log/log.h"
 #include "common/units/units.h"
+#include "daemon/offline/learning/alignment.h"
+#include "daemon/offline/learning/standard_layout.h"
 #include "daemon/offline/train/recording_reader.h"
-#include "daemon/offline/training/alignment.h"
-#include "daemon/offline/training/standard_layout.h"
 
 namespace footing::train {
 namespace {
@@ -33,7 +33,7 @@ Result<void> CheckPairs(const OwnOptions& options) {
 }
 
 void Tell(const OwnRecording& own) {
-  const training::TimeAlignment& at = own.take.alignment;
+  const learning::TimeAlignment& at = own.take.alignment;
   char text[320];
   std::snprintf(text, sizeof text,
                 "%s beside %s: offset %.4f s, drift %.1f ppm, residual %.2f ms of %d pieces, %d "
@@ -50,19 +50,19 @@ void Tell(const OwnRecording& own) {
 /// The engine runs the standard person's layout; another is fitted to it, unless the others'
 /// motions are of the same. Returns the residual, m.
 Result<double> MakeStandard(const std::vector<Clip>& others, Clip& clip) {
-  if (training::HasStandardLayout(clip.motion)) return 0.0;
+  if (learning::HasStandardLayout(clip.motion)) return 0.0;
   if (!others.empty() &&
       body::DofNames(others.front().motion.skeleton) == body::DofNames(clip.motion.skeleton)) {
     return 0.0;
   }
-  auto standard = training::ToStandardLayout(clip.motion);
+  auto standard = learning::ToStandardLayout(clip.motion);
   if (!standard) return InvalidData(clip.name + ": " + standard.error().message);
   body::PersonParameters person;
   person.height_m = standard->height_m;
   auto body = body::MakeBody(standard->motion.skeleton, person);
   if (!body) return InvalidData(clip.name + ": " + body.error().message);
   clip.body = *std::move(body);
-  clip.motion = training::Aligned(standard->motion, clip.body.landmarks);
+  clip.motion = learning::Aligned(standard->motion, clip.body.landmarks);
   char text[200];
   std::snprintf(text, sizeof text,
                 "%s: another skeleton, fitted to the standard layout within %.1f mm",
@@ -87,7 +87,7 @@ Result<OwnRecording> ReadPair(const OwnOptions& options, std::size_t i,
   if (!clip) return clip.error();
   const auto skeleton_rms_m = MakeStandard(others, *clip);
   if (!skeleton_rms_m) return skeleton_rms_m.error();
-  auto take = training::MakeOwnTake(std::move(recording->session), clip->motion, clip->body,
+  auto take = learning::MakeOwnTake(std::move(recording->session), clip->motion, clip->body,
                                     options.motions[i]);
   if (!take) return take.error();
   OwnRecording own{*std::move(clip), *skeleton_rms_m, *std::move(take), recording->file};
@@ -198,7 +198,7 @@ void AppendOwn(const TrainingSet& set, nlohmann::ordered_json& report) {
   if (set.own.empty()) return;
   auto takes = nlohmann::ordered_json::array();
   for (const OwnRecording& one : set.own) {
-    const training::TimeAlignment& at = one.take.alignment;
+    const learning::TimeAlignment& at = one.take.alignment;
     const bool hands = !one.take.session.hands[0].empty() && !one.take.session.hands[1].empty();
     takes.push_back({{"recording", one.file.name},
                      {"motion", one.clip.name},

@@ -7,8 +7,8 @@
 
 #include "common/model/model.h"
 #include "common/result/result.h"
+#include "daemon/offline/learning/own_take.h"
 #include "daemon/offline/train/motions.h"
-#include "daemon/offline/training/own_take.h"
 
 namespace footing::train {
 
@@ -27,7 +27,7 @@ void AddOwnOptions(CLI::App& command, OwnOptions& options);
 struct OwnRecording {
   Clip clip;                  ///< The motion, for its poses.
   double skeleton_rms_m = 0;  ///< Of its fit to the standard layout; 0: it has it.
-  training::OwnTake take;
+  learning::OwnTake take;
   model::DataFile file;  ///< The recording.
 };
 

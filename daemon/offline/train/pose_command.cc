@@ -4,14 +4,14 @@
 
 #include "common/cli/cli.h"
 #include "common/log/log.h"
-#include "common/motion/edit.h"
-#include "daemon/offline/rehearsal/rehearsal.h"
+#include "common/virtual/motion/edit.h"
+#include "daemon/offline/learning/pose_regression.h"
+#include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
 #include "daemon/offline/train/own_recordings.h"
 #include "daemon/offline/train/poses.h"
-#include "daemon/offline/training/pose_regression.h"
 
 namespace footing::train {
 namespace {
@@ -30,46 +30,46 @@ struct Options {
 /// What the sensors would have told in one motion, and its poses.
 Result<void> AddExamples(const motion::Motion& motion, const std::string& name,
                          const reconstruction::Models& basis, std::uint64_t seed, int& piece,
-                         training::PoseExamples& examples) {
-  rehearsal::Settings settings;
+                         learning::PoseExamples& examples) {
+  pose_run::Settings settings;
   settings.errors.noise_kg = kCellNoiseKg;
   settings.errors.seed = settings.seed = seed;
-  const auto rehearsal = rehearsal::Rehearse(motion, settings, name);
-  if (!rehearsal) return rehearsal.error();
+  const auto run = pose_run::RunPose(motion, settings, name);
+  if (!run) return run.error();
   reconstruction::Options options;
   options.rate_hz = settings.rate_hz;
-  auto made = reconstruction::Reconstruction::Create(rehearsal->body, basis, options);
+  auto made = reconstruction::Reconstruction::Create(run->body, basis, options);
   if (!made) return made.error();
-  const double root_m = body::TPose(rehearsal->body.skeleton, rehearsal->body.landmarks)(2);
-  const auto first = static_cast<std::size_t>((rehearsal::kStandS + kSettledS) * settings.rate_hz);
+  const double root_m = body::TPose(run->body.skeleton, run->body.landmarks)(2);
+  const auto first = static_cast<std::size_t>((pose_run::kStandS + kSettledS) * settings.rate_hz);
   const auto piece_frames = static_cast<std::size_t>(kPieceS * settings.rate_hz);
-  for (std::size_t i = 0; i < rehearsal->frames.size(); ++i) {
-    const auto& output = made->Advance(rehearsal->frames[i].inputs);
+  for (std::size_t i = 0; i < run->frames.size(); ++i) {
+    const auto& output = made->Advance(run->frames[i].inputs);
     if (i < first) continue;
     if (!output.calibrated) return InvalidData(name + ": its T-pose never stood still");
-    Eigen::VectorXd pose = rehearsal->frames[i].q;
+    Eigen::VectorXd pose = run->frames[i].q;
     pose.head<3>() = (pose.head<3>() - output.momentum.p_WC_m) / root_m;
     examples.features.push_back(made->features().values());
     examples.poses.push_back(std::move(pose));
     examples.folds.push_back((piece + static_cast<int>((i - first) / piece_frames)) %
-                             training::kFolds);
+                             learning::kFolds);
   }
   return {};
 }
 
 /// The same of an own recording, with what its boards measured, `weight` times.
 Result<void> AddOwn(const OwnRecording& own, const reconstruction::Models& basis, int weight,
-                    std::uint64_t seed, int piece, training::PoseExamples& examples) {
-  training::OwnExampleSettings settings;
+                    std::uint64_t seed, int piece, learning::PoseExamples& examples) {
+  learning::OwnExampleSettings settings;
   settings.piece_s = kPieceS;
   settings.first_piece = piece;
   settings.settled_s = kSettledS;
-  const auto image = training::MirrorImage(own.take);
+  const auto image = learning::MirrorImage(own.take);
   if (!image) return image.error();
   for (int i = 0; i < weight; ++i) {
-    for (const training::OwnTake* take : {&own.take, &*image}) {
+    for (const learning::OwnTake* take : {&own.take, &*image}) {
       settings.seed = seed++;
-      const auto added = training::AddOwnExamples(*take, basis, settings, examples);
+      const auto added = learning::AddOwnExamples(*take, basis, settings, examples);
       if (!added) return added;
     }
   }
@@ -77,11 +77,11 @@ Result<void> AddOwn(const OwnRecording& own, const reconstruction::Models& basis
 }
 
 /// Of all clips and their mirror images; a clip and its image are in the same folds.
-Result<training::PoseExamples> Examples(const TrainingSet& set, const model::Model& basis,
+Result<learning::PoseExamples> Examples(const TrainingSet& set, const model::Model& basis,
                                         std::uint64_t seed) {
   const auto models = reconstruction::MakeModels({{"the new basis", basis}});
   if (!models) return models.error();
-  training::PoseExamples examples;
+  learning::PoseExamples examples;
   int piece = 0;
   for (const Clip& clip : set.clips.train) {
     for (const bool mirrored : {false, true}) {
@@ -91,7 +91,7 @@ Result<training::PoseExamples> Examples(const TrainingSet& set, const model::Mod
       if (!added) return added.error();
     }
     piece += 1 + static_cast<int>(clip.motion.duration_s() / kPieceS);
-    log::Info("rehearsed " + clip.name);
+    log::Info("simulated " + clip.name);
   }
   for (const OwnRecording& own : set.own) {
     const auto added = AddOwn(own, *models, set.weight,
@@ -115,12 +115,12 @@ int Run(const Options& options, const Shared& shared) {
   AppendBasis(trained->basis, model);
   const auto examples = Examples(*set, model, options.model.seed);
   if (!examples) return cli::Report(examples.error());
-  training::RandomWaves waves = training::kPoseWaves;
+  learning::RandomWaves waves = learning::kPoseWaves;
   waves.seed = options.model.seed;
-  const training::FittedPoseRegression fitted =
-      training::FitPoseRegression(*examples, trained->basis.scale, waves);
+  const learning::FittedPoseRegression fitted =
+      learning::FitPoseRegression(*examples, trained->basis.scale, waves);
   model.kind = "pose";
-  training::AppendTensors(fitted, model);
+  learning::AppendTensors(fitted, model);
   nlohmann::ordered_json report = {{"dof", trained->basis.mean.size()},
                                    {"poses", trained->poses},
                                    {"examples", examples->poses.size()},

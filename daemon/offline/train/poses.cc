@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "common/motion/edit.h"
-#include "common/virtual_sensors/scene.h"
-#include "daemon/offline/training/alignment.h"
+#include "common/virtual/motion/edit.h"
+#include "common/virtual/sensors/scene.h"
+#include "daemon/offline/learning/alignment.h"
 
 namespace footing::train {
 namespace {
@@ -25,7 +25,7 @@ std::vector<motion::Motion> WithMirrors(const std::vector<Clip>& clips) {
     const body::Landmarks& landmarks = clip.body.landmarks;
     motions.push_back(Standing(clip.motion, landmarks));
     motions.push_back(
-        Standing(training::Aligned(motion::Mirrored(clip.motion), landmarks), landmarks));
+        Standing(learning::Aligned(motion::Mirrored(clip.motion), landmarks), landmarks));
   }
   return motions;
 }
@@ -61,12 +61,12 @@ Result<TrainedBasis> TrainBasis(const std::vector<Clip>& clips) {
   const std::vector<motion::Motion> motions = WithMirrors(clips);
   const Result<Eigen::MatrixXd> poses = Poses(clips, motions);
   if (!poses) return poses.error();
-  training::PoseBasis basis = training::MakeBasis(*poses, DofNames(clips.front().motion.skeleton));
+  learning::PoseBasis basis = learning::MakeBasis(*poses, DofNames(clips.front().motion.skeleton));
   return TrainedBasis{std::move(basis), poses->cols()};
 }
 
-void AppendBasis(const training::PoseBasis& basis, model::Model& model) {
-  training::AppendTensors(basis, model);
+void AppendBasis(const learning::PoseBasis& basis, model::Model& model) {
+  learning::AppendTensors(basis, model);
   model.tensors.push_back({.name = "root_height_m", .shape = {1}, .values = {kRootHeightM}});
 }
 

@@ -4,13 +4,13 @@
 
 #include "common/model/model.h"
 #include "common/result/result.h"
+#include "daemon/offline/learning/basis.h"
 #include "daemon/offline/train/motions.h"
-#include "daemon/offline/training/basis.h"
 
 namespace footing::train {
 
 struct TrainedBasis {
-  training::PoseBasis basis;
+  learning::PoseBasis basis;
   Eigen::Index poses = 0;
 };
 
@@ -19,6 +19,6 @@ struct TrainedBasis {
 Result<TrainedBasis> TrainBasis(const std::vector<Clip>& clips);
 
 /// The basis' tensors and the height of its people.
-void AppendBasis(const training::PoseBasis& basis, model::Model& model);
+void AppendBasis(const learning::PoseBasis& basis, model::Model& model);
 
 }  // namespace footing::train

@@ -14,7 +14,7 @@
 #include "common/recording/mapped_file.h"
 #include "common/stream/setup.h"
 #include "common/units/units.h"
-#include "common/virtual_sensors/board_cells.h"
+#include "common/virtual/sensors/board_cells.h"
 #include "common/wire/wire.h"
 
 namespace footing::train {
@@ -33,7 +33,7 @@ struct Stamped {
 /// What one rig's devices told.
 struct Rig {
   std::array<std::vector<Stamped<std::array<double, 4>>>, 2> boards;
-  std::array<std::vector<Stamped<training::HandReading>>, 2> hands;
+  std::array<std::vector<Stamped<learning::HandReading>>, 2> hands;
   std::optional<stream::BoardLayout> layout;
   bool uncalibrated = false;
 
@@ -143,7 +143,7 @@ class Reader {
     const Eigen::Vector3d p_m = wire::FromProto(sample.position_m());
     const Eigen::Vector3d sd_m = wire::FromProto(sample.sd_m());
     if (!side || !(sample.confidence() > 0) || !p_m.allFinite() || !sd_m.allFinite()) return;
-    training::HandReading reading;
+    learning::HandReading reading;
     reading.p_W_m = p_m;
     reading.sd_m = sd_m.cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM);
     Append(sample.sampled_ns(), reading, rigs[{server, sample.rig()}].hands[*side]);
@@ -157,8 +157,8 @@ std::array<Eigen::Vector2d, 4> Cells(const stream::BoardPose& pose) {
   return virtual_sensors::SensorPlaces({{pose.x_m, pose.y_m}, pose.yaw_rad});
 }
 
-training::RecordedSession ToSession(const Rig& rig, const std::string& name) {
-  training::RecordedSession session;
+learning::RecordedSession ToSession(const Rig& rig, const std::string& name) {
+  learning::RecordedSession session;
   session.name = name;
   const std::int64_t start_ns =
       std::min(rig.boards[0].front().sampled_ns, rig.boards[1].front().sampled_ns);
@@ -170,7 +170,7 @@ training::RecordedSession ToSession(const Rig& rig, const std::string& name) {
       session.boards[side].push_back({seconds(sample.sampled_ns), sample.value});
     }
     for (const auto& sample : rig.hands[side]) {
-      training::HandReading reading = sample.value;
+      learning::HandReading reading = sample.value;
       reading.time_s = seconds(sample.sampled_ns);
       if (reading.time_s >= 0) session.hands[side].push_back(reading);
     }

@@ -4,12 +4,12 @@
 
 #include "common/model/model.h"
 #include "common/result/result.h"
-#include "daemon/offline/training/recorded_session.h"
+#include "daemon/offline/learning/recorded_session.h"
 
 namespace footing::train {
 
 struct Recording {
-  training::RecordedSession session;
+  learning::RecordedSession session;
   model::DataFile file;
   bool layout_told = false;  ///< Else the boards are taken to lie as stream::DefaultLayout.
 };

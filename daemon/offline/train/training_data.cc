@@ -73,7 +73,7 @@ Result<TrainingData> Load(const DataOptions& options) {
   TrainingData data;
   data.file = {.name = std::filesystem::path(options.data).filename().string(),
                .sha256 = model::Sha256(*text)};
-  data.split = training::SplitInTime({.inputs = table->values.leftCols(options.inputs),
+  data.split = learning::SplitInTime({.inputs = table->values.leftCols(options.inputs),
                                       .targets = table->values.rightCols(outputs)},
                                      options.validation);
   if (data.split.train.rows() < kFewestRows) {
@@ -81,15 +81,15 @@ Result<TrainingData> Load(const DataOptions& options) {
                        " rows are left for training, at least " + std::to_string(kFewestRows) +
                        " are needed");
   }
-  training::FeedbackNoise noise{.groups = *groups,
+  learning::FeedbackNoise noise{.groups = *groups,
                                 .common_sd = options.noise_sd,
                                 .own_sd = options.noise_sd / 10,
                                 .copies = options.copies};
   if (options.noise_sd > 0) {
-    data.split.train = training::WithFeedbackNoise(data.split.train, noise, options.model.seed);
+    data.split.train = learning::WithFeedbackNoise(data.split.train, noise, options.model.seed);
     noise.copies = 1;
     data.split.validation =
-        training::WithFeedbackNoise(data.split.validation, noise, options.model.seed + 1);
+        learning::WithFeedbackNoise(data.split.validation, noise, options.model.seed + 1);
   }
   return data;
 }

@@ -6,8 +6,8 @@
 
 #include "common/model/model.h"
 #include "common/result/result.h"
+#include "daemon/offline/learning/examples.h"
 #include "daemon/offline/train/model_output.h"
-#include "daemon/offline/training/examples.h"
 
 namespace footing::train {
 
@@ -26,7 +26,7 @@ struct DataOptions {
 void AddDataOptions(CLI::App& command, DataOptions& options);
 
 struct TrainingData {
-  training::Split split;
+  learning::Split split;
   model::DataFile file;
 };
 

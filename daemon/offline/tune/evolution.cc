@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/synthetic/random.h"
+#include "common/virtual/noise/random.h"
 #include "daemon/offline/tune/search.h"
 
 namespace footing::tune {
@@ -47,7 +47,7 @@ void Evolve(SearchState& state, const Evaluate& evaluate, std::uint64_t seed) {
   const MatrixXd& B = axes.eigenvectors();
   const VectorXd D = axes.eigenvalues().cwiseMax(1e-12).cwiseSqrt();
 
-  synthetic::Random random(seed * 6364136223846793005u + batch);
+  noise::Random random(seed * 6364136223846793005u + batch);
   std::vector<VectorXd> moves, points;
   for (int k = 0; k < c.offspring; ++k) {
     VectorXd z(state.point.size());

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/synthetic/random.h"
 #include "common/units/units.h"
+#include "common/virtual/noise/random.h"
 #include "daemon/offline/tune/gait_meter.h"
 
 namespace footing::tune {
@@ -59,7 +59,7 @@ std::uint64_t MixSeeds(std::uint64_t a, std::uint64_t b) {
 
 Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engine, const Task& task,
                                                        int count, std::uint64_t seed) {
-  synthetic::Random random(MixSeeds(seed, 0));
+  noise::Random random(MixSeeds(seed, 0));
   const engine::EngineInputs inputs = Inputs(task);
   std::vector<engine::EngineState> states;
   double until_s = kSettleS + task.speed_mps;
@@ -80,7 +80,7 @@ Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engin
 
 TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& start, const Task& task,
                      std::uint64_t seed) {
-  synthetic::Random random(MixSeeds(seed, 1));
+  noise::Random random(MixSeeds(seed, 1));
   engine::EngineInputs inputs = Inputs(task);
   inputs.features_number = start.inputs.features_number;
   inputs.push_number = start.inputs.push_number;

@@ -9,7 +9,7 @@
 namespace footing::reconstruction {
 namespace {
 
-constexpr double kHeelBehindM = 0.045;  // Of the ankle, as the soles of common/virtual_sensors.
+constexpr double kHeelBehindM = 0.045;  // Of the ankle, as the soles of common/virtual/sensors.
 constexpr double kMostSpreadM = 0.6;
 
 Eigen::Vector3d At(const body::Kinematics& at, const body::Point& point) {

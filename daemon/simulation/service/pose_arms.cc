@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/units/units.h"
-#include "common/virtual_sensors/held_device.h"
+#include "common/virtual/sensors/held_device.h"
 #include "common/wire/wire.h"
 
 namespace footing::simulation {

@@ -6,7 +6,7 @@
 
 #include "common/stream/setup.h"
 #include "common/units/units.h"
-#include "common/virtual_sensors/board_cells.h"
+#include "common/virtual/sensors/board_cells.h"
 #include "common/wire/wire.h"
 
 namespace footing::simulation {

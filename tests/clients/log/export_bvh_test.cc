@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/body/kinematics.h"
-#include "common/motion/bvh.h"
+#include "common/virtual/motion/bvh.h"
 #include "common/wire/wire.h"
 
 namespace footing::log_client {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "common/units/units.h"
-#include "common/virtual_sensors/insole_cells.h"
+#include "common/virtual/sensors/insole_cells.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::stream_client {

@@ -9,7 +9,7 @@
 namespace footing::stream_client {
 namespace {
 
-using device_models::Report;
+using virtual_devices::Report;
 
 Common Ideal() {
   Common common;
@@ -105,11 +105,11 @@ TEST(StandIn, AfterARestartItIsFreshFromItsBox) {
 }
 
 TEST(StandIn, AMoveNeedsNoModeAnswersFeaturesAndGoesDark) {
-  const device_models::LinkConfig link =
-      device_models::WiimoteLink(device_models::LinkQuality::kIdeal, 1);
+  const virtual_devices::LinkConfig link =
+      virtual_devices::WiimoteLink(virtual_devices::LinkQuality::kIdeal, 1);
   StandIn device(
-      device_models::PsMove(1, device_models::MoveModel::kZcm1),
-      [](double) { return device_models::MoveSensors(); }, stream::DeviceRole::kRightHand, link);
+      virtual_devices::PsMove(1, virtual_devices::MoveModel::kZcm1),
+      [](double) { return virtual_devices::MoveSensors(); }, stream::DeviceRole::kRightHand, link);
   ASSERT_EQ(device.Deliver(0).size(), 1u);
   EXPECT_EQ(device.Feature(0x10, 49).size(), 49u);
   EXPECT_TRUE(device.Feature(0x77, 49).empty());

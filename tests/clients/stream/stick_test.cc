@@ -9,9 +9,9 @@
 namespace footing::stream_client {
 namespace {
 
-synthetic::Segment Swing(double duration_s, double frequency_hz, double phase_rad,
-                         double roll_rad = 0) {
-  synthetic::Segment segment;
+wrists::Segment Swing(double duration_s, double frequency_hz, double phase_rad,
+                      double roll_rad = 0) {
+  wrists::Segment segment;
   segment.duration_s = duration_s;
   segment.frequency_hz = frequency_hz;
   segment.phase_rad = phase_rad;

@@ -33,7 +33,7 @@ TEST(Kinematics, ATwoLinkArmIsWhereTrigonometrySays) {
 
 TEST(Kinematics, AgreesWithProductsOfTheJointsRotations) {
   const Skeleton skeleton = StandardPerson(1.7);
-  synthetic::Random random(2);
+  noise::Random random(2);
   const Eigen::VectorXd q = RandomVector(skeleton.dof, 2, random);
   Kinematics at(skeleton);
   ComputeKinematics(skeleton, q, at);
@@ -48,7 +48,7 @@ TEST(Kinematics, AgreesWithProductsOfTheJointsRotations) {
 
 TEST(Kinematics, JacobiansAreTheDifferencesOfPlaces) {
   const Skeleton skeleton = StandardPerson(1.7);
-  synthetic::Random random(3);
+  noise::Random random(3);
   const Eigen::VectorXd q = RandomVector(skeleton.dof, 1.5, random);
   Kinematics at(skeleton), after(skeleton), before(skeleton);
   ComputeKinematics(skeleton, q, at);
@@ -73,7 +73,7 @@ TEST(Kinematics, JacobiansAreTheDifferencesOfPlaces) {
 
 TEST(Kinematics, VelocitiesAndAccelerationsAreTheDerivativesOfAMovement) {
   const Skeleton skeleton = StandardPerson(1.7);
-  synthetic::Random random(4);
+  noise::Random random(4);
   const Eigen::VectorXd q = RandomVector(skeleton.dof, 1, random);
   const Eigen::VectorXd q_dot = RandomVector(skeleton.dof, 2, random);
   const Eigen::VectorXd q_ddot = RandomVector(skeleton.dof, 5, random);

@@ -59,7 +59,7 @@ struct Moving {
   Eigen::VectorXd q, q_dot, q_ddot;
 
   explicit Moving(int dof, std::uint64_t seed) {
-    synthetic::Random random(seed);
+    noise::Random random(seed);
     q = RandomVector(dof, 1, random);
     q_dot = RandomVector(dof, 2, random);
     q_ddot = RandomVector(dof, 5, random);

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "common/body/body.h"
-#include "common/synthetic/random.h"
+#include "common/virtual/noise/random.h"
 
 namespace footing::body::test {
 
@@ -16,7 +16,7 @@ inline Body StandardBody(double mass_kg = 70) {
   return MakeBody(StandardPerson(kHeightM), person).value();
 }
 
-inline Eigen::VectorXd RandomVector(int size, double range, synthetic::Random& random) {
+inline Eigen::VectorXd RandomVector(int size, double range, noise::Random& random) {
   Eigen::VectorXd vector(size);
   for (int i = 0; i < size; ++i) vector(i) = random.Uniform(-range, range);
   return vector;

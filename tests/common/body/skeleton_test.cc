@@ -18,7 +18,7 @@ Skeleton ThreeAxisJoint(Axis a, Axis b, Axis c) {
 }
 
 TEST(Skeleton, EveryOrderOfThreeAxesIsTakenApartAgain) {
-  synthetic::Random random(1);
+  noise::Random random(1);
   const Axis axes[] = {Axis::kX, Axis::kY, Axis::kZ};
   for (Axis a : axes) {
     for (Axis b : axes) {

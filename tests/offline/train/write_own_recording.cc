@@ -1,12 +1,12 @@
 #include <fstream>
 #include <string>
 
-#include "common/motion/bvh.h"
 #include "common/recording/recording_writer.h"
 #include "common/result/result.h"
 #include "common/stream/setup.h"
+#include "common/virtual/motion/bvh.h"
 #include "common/wire/wire.h"
-#include "tests/offline/training/made_take.h"
+#include "tests/offline/learning/made_take.h"
 
 namespace footing {
 namespace {
@@ -42,7 +42,7 @@ struct Writer {
     Put("setup", setup, 0);
   }
 
-  void PutBoard(const training::BoardReading& reading, std::uint32_t device) {
+  void PutBoard(const learning::BoardReading& reading, std::uint32_t device) {
     v1::BoardSamples samples;
     v1::BoardSample& sample = *samples.add_samples();
     sample.set_device(device);
@@ -55,7 +55,7 @@ struct Writer {
     Put("boards", samples, reading.time_s);
   }
 
-  void PutHand(const training::HandReading& reading, std::size_t side) {
+  void PutHand(const learning::HandReading& reading, std::size_t side) {
     v1::HandSamples samples;
     v1::HandSample& sample = *samples.add_samples();
     sample.set_rig("main");
@@ -68,7 +68,7 @@ struct Writer {
   }
 };
 
-void Write(const training::MadeTake& take, const std::string& folder, const std::string& fault) {
+void Write(const learning::MadeTake& take, const std::string& folder, const std::string& fault) {
   const std::string name = fault.empty() ? "me" : fault;
   auto made = recording::RecordingWriter::Create(folder + "/" + name + ".mcap", {"made", true, {}});
   FOOTING_CHECK(made.ok());
@@ -88,14 +88,14 @@ void Write(const training::MadeTake& take, const std::string& folder, const std:
 }
 
 void WriteAll(const std::string& folder) {
-  training::MadeTakeSettings settings{.offset_s = 1.5, .drift = 60e-6};
-  const training::MadeTake take = training::MakeTake(settings);
+  learning::MadeTakeSettings settings{.offset_s = 1.5, .drift = 60e-6};
+  const learning::MadeTake take = learning::MakeTake(settings);
   std::ofstream(folder + "/me_01.bvh") << motion::WriteBvh(take.motion);
   for (const char* fault : {"", "no_boards", "three_hours", "two_people", "uncalibrated"}) {
     Write(take, folder, fault);
   }
   settings.stomps = false;
-  Write(training::MakeTake(settings), folder, "no_stomps");
+  Write(learning::MakeTake(settings), folder, "no_stomps");
 }
 
 }  // namespace

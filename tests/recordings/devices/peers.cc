@@ -4,13 +4,13 @@
 #include <cmath>
 #include <memory>
 
-#include "common/device_models/balance_board.h"
+#include "common/virtual/devices/balance_board.h"
 #include "daemon/sensor/reports/input_report.h"
 
 namespace footing::recordings {
 namespace {
 
-devices::DeviceIdentity IdentityOf(const device_models::Identity& own) {
+devices::DeviceIdentity IdentityOf(const virtual_devices::Identity& own) {
   devices::DeviceIdentity identity;
   identity.bus = devices::Bus::kBluetooth;
   identity.vendor = own.vendor;
@@ -29,13 +29,13 @@ std::int64_t Nanoseconds(double t_s) { return std::llround(t_s * 1e9); }
 
 constexpr double kTwoPi = 2 * 3.14159265358979;
 
-using Sensors = std::function<device_models::WiimoteSensors(double t_s)>;
-using Event = std::function<std::vector<Report>(device_models::Wiimote&, std::int64_t now_ns)>;
+using Sensors = std::function<virtual_devices::WiimoteSensors(double t_s)>;
+using Event = std::function<std::vector<Report>(virtual_devices::Wiimote&, std::int64_t now_ns)>;
 
 /// `at_s`: when `event` happens, once; 0 never.
-Peer MakeWiimote(const device_models::Wiimote& fresh, const Sensors& sensors, double at_s = 0,
+Peer MakeWiimote(const virtual_devices::Wiimote& fresh, const Sensors& sensors, double at_s = 0,
                  const Event& event = nullptr) {
-  auto model = std::make_shared<device_models::Wiimote>(fresh);
+  auto model = std::make_shared<virtual_devices::Wiimote>(fresh);
   const auto sample = [=, happened = at_s == 0](double t_s) mutable {
     std::vector<Report> reports;
     if (!happened && t_s >= at_s) {
@@ -53,8 +53,8 @@ Peer MakeWiimote(const device_models::Wiimote& fresh, const Sensors& sensors, do
 }
 
 /// Stick in a circle of 1 Hz, C and Z pressed in turn, tilted to and fro.
-device_models::NunchukSensors Stick(double t_s) {
-  device_models::NunchukSensors sensors;
+virtual_devices::NunchukSensors Stick(double t_s) {
+  virtual_devices::NunchukSensors sensors;
   sensors.stick_x = 0.9 * std::sin(kTwoPi * t_s);
   sensors.stick_y = 0.9 * std::cos(kTwoPi * t_s);
   sensors.c = std::fmod(t_s, 0.4) < 0.1;
@@ -70,14 +70,14 @@ Eigen::Vector3d Turn(double t_s) {
           20 * std::sin(kTwoPi * 2 * t_s + 4)};
 }
 
-device_models::WiimoteSensors Swung(double t_s) {
-  device_models::WiimoteSensors sensors;
+virtual_devices::WiimoteSensors Swung(double t_s) {
+  virtual_devices::WiimoteSensors sensors;
   sensors.specific_force_S_mps2 = Swing(t_s);
   return sensors;
 }
 
-device_models::WiimoteSensors Everything(double t_s) {
-  device_models::WiimoteSensors sensors = Swung(t_s);
+virtual_devices::WiimoteSensors Everything(double t_s) {
+  virtual_devices::WiimoteSensors sensors = Swung(t_s);
   sensors.nunchuk = Stick(t_s);
   sensors.angular_velocity_S_radps = Turn(t_s);
   return sensors;
@@ -86,35 +86,35 @@ device_models::WiimoteSensors Everything(double t_s) {
 }  // namespace
 
 Peer MakePlainWiimote() {
-  return MakeWiimote(device_models::Wiimote(11), [](double t_s) {
-    device_models::WiimoteSensors sensors = Swung(t_s);
+  return MakeWiimote(virtual_devices::Wiimote(11), [](double t_s) {
+    virtual_devices::WiimoteSensors sensors = Swung(t_s);
     sensors.buttons = std::fmod(t_s, 0.5) < 0.1 ? reports::kA | reports::kUp : 0;
     return sensors;
   });
 }
 
 Peer MakeCamera() {
-  return MakeWiimote(device_models::Wiimote(20), [](double t_s) {
-    device_models::WiimoteSensors sensors = Swung(t_s);
+  return MakeWiimote(virtual_devices::Wiimote(20), [](double t_s) {
+    virtual_devices::WiimoteSensors sensors = Swung(t_s);
     const int x = static_cast<int>(std::lround(512 + 300 * std::sin(kTwoPi * t_s)));
-    sensors.camera[0] = device_models::CameraPoint{x - 100, 300, 3};
-    if (t_s < 1.2) sensors.camera[1] = device_models::CameraPoint{x + 100, 310, 4};
+    sensors.camera[0] = virtual_devices::CameraPoint{x - 100, 300, 3};
+    if (t_s < 1.2) sensors.camera[1] = virtual_devices::CameraPoint{x + 100, 310, 4};
     return sensors;
   });
 }
 
-Peer MakeExtended(device_models::Accessory accessory, const device_models::Wiimote& fresh,
+Peer MakeExtended(virtual_devices::Accessory accessory, const virtual_devices::Wiimote& fresh,
                   double pulled_at_s) {
-  device_models::Wiimote wiimote = fresh;
+  virtual_devices::Wiimote wiimote = fresh;
   wiimote.Plug(accessory, 0);
   return MakeWiimote(wiimote, Everything, pulled_at_s,
                      [](auto& model, std::int64_t now_ns) { return model.Pull(now_ns); });
 }
 
-Peer MakeMove(std::uint64_t seed, device_models::MoveModel which) {
-  auto model = std::make_shared<device_models::PsMove>(seed, which);
+Peer MakeMove(std::uint64_t seed, virtual_devices::MoveModel which) {
+  auto model = std::make_shared<virtual_devices::PsMove>(seed, which);
   const auto sample = [model](double t_s) {
-    device_models::MoveSensors sensors;
+    virtual_devices::MoveSensors sensors;
     sensors.specific_force_S_mps2 = Swing(t_s);
     sensors.angular_velocity_S_radps = Turn(t_s) / 2;
     sensors.magnetic_field_S_counts = {200 * std::sin(kTwoPi * t_s), 150, -300};
@@ -133,7 +133,7 @@ Peer MakeMove(std::uint64_t seed, device_models::MoveModel which) {
 }
 
 Peer MakeBoard() {
-  auto model = std::make_shared<device_models::BalanceBoard>(12);
+  auto model = std::make_shared<virtual_devices::BalanceBoard>(12);
   model->set_temperature(0x1f);  // Warmer than at its calibration.
   const auto sample = [model](double t_s) {
     // Nobody for the first 0.8 s, then 60 kg that lean to the left and back.

@@ -4,14 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "common/device_models/ps_move.h"
-#include "common/device_models/wiimote.h"
+#include "common/virtual/devices/ps_move.h"
+#include "common/virtual/devices/wiimote.h"
 #include "daemon/sensor/devices/source.h"
 
 /// Device models in motion, for captures.
 namespace footing::recordings {
 
-using device_models::Report;
+using virtual_devices::Report;
 
 /// A device model at the other end of the link.
 struct Peer {
@@ -28,9 +28,9 @@ Peer MakePlainWiimote();
 Peer MakeCamera();
 /// Swung, turned past the slow range of a MotionPlus, a Nunchuk's stick in circles. `accessory` is
 /// in the port and is pulled at `pulled_at_s`, unless that is 0.
-Peer MakeExtended(device_models::Accessory accessory, const device_models::Wiimote& fresh,
+Peer MakeExtended(virtual_devices::Accessory accessory, const virtual_devices::Wiimote& fresh,
                   double pulled_at_s = 0);
-Peer MakeMove(std::uint64_t seed, device_models::MoveModel which);
+Peer MakeMove(std::uint64_t seed, virtual_devices::MoveModel which);
 /// Empty for 0.8 s, then 60 kg that lean to the left and back; warmer than at its calibration.
 Peer MakeBoard();
 

@@ -86,7 +86,7 @@ Capture Record(const Plan& plan) {
                 peer.identity.product);
   capture.header = {{"Device", peer.identity.name},
                     {"Identity", identity},
-                    {"Firmware", "device model of common/device_models"},
+                    {"Firmware", "device model of common/virtual/devices"},
                     {"Motion", plan.motion},
                     {"Date", "2026-11-21"},
                     {"Made", plan.made}};
@@ -96,9 +96,9 @@ Capture Record(const Plan& plan) {
 
 /// A Nunchuk behind a MotionPlus.
 Peer MakeBoth() {
-  device_models::Wiimote wiimote(15);
-  wiimote.Plug(device_models::Accessory::kMotionPlus, 0);
-  return MakeExtended(device_models::Accessory::kNunchuk, wiimote, 1.5);
+  virtual_devices::Wiimote wiimote(15);
+  wiimote.Plug(virtual_devices::Accessory::kMotionPlus, 0);
+  return MakeExtended(virtual_devices::Accessory::kNunchuk, wiimote, 1.5);
 }
 
 /// wiiuse issue 42: a cell that is stuck.
@@ -110,8 +110,8 @@ Report RealBoardReport() {
 }
 
 std::vector<Plan> Plans() {
-  using device_models::Accessory;
-  using device_models::MoveModel;
+  using virtual_devices::Accessory;
+  using virtual_devices::MoveModel;
   const std::string kSwung = "swung to and fro at 2 Hz";
   const std::string kStick = "stick in circles, C and Z pressed in turn, tilted to and fro";
   const std::string kTurned = "turned about all axes, past the slow range";
@@ -133,21 +133,21 @@ std::vector<Plan> Plans() {
        false,
        2,
        {},
-       [] { return MakeExtended(Accessory::kNunchuk, device_models::Wiimote(13), 1.5); }},
+       [] { return MakeExtended(Accessory::kNunchuk, virtual_devices::Wiimote(13), 1.5); }},
       {"classic",
        kSwung + "; pulled at 1 s",
        kMade + "Wiimote of seed 14 with a Classic Controller",
        false,
        1.6,
        {},
-       [] { return MakeExtended(Accessory::kClassic, device_models::Wiimote(14), 1); }},
+       [] { return MakeExtended(Accessory::kClassic, virtual_devices::Wiimote(14), 1); }},
       {"motion_plus",
        kTurned,
        kMade + "Wiimote of seed 16 with a MotionPlus plugged in",
        false,
        2,
        {},
-       [] { return MakeExtended(Accessory::kMotionPlus, device_models::Wiimote(16)); }},
+       [] { return MakeExtended(Accessory::kMotionPlus, virtual_devices::Wiimote(16)); }},
       {"motion_plus_nunchuk",
        kTurned + "; " + kStick + "; the Nunchuk is pulled at 1.5 s",
        kMade + "Wiimote of seed 15 with a Nunchuk behind a MotionPlus",
@@ -161,7 +161,7 @@ std::vector<Plan> Plans() {
        false,
        2,
        {},
-       [] { return MakeExtended(Accessory::kNone, device_models::Wiimote(17, {.tr = true})); }},
+       [] { return MakeExtended(Accessory::kNone, virtual_devices::Wiimote(17, {.tr = true})); }},
       {"wiimote_camera",
        "two points that move to and fro, one of them gone after 1.2 s",
        kMade + "Wiimote of seed 20",

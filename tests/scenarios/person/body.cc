@@ -89,7 +89,7 @@ double Body::Share(int place) const {
   return stance_ == (place == 0 ? "left" : "right") ? 1 : 0;
 }
 
-device_models::CornerForces Body::Board(int board, double t_s) {
+virtual_devices::CornerForces Body::Board(int board, double t_s) {
   const auto i = static_cast<std::size_t>(board);
   const double elapsed_s = std::max(0.0, t_s - board_s_[i]);
   board_s_[i] = t_s;

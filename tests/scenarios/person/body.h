@@ -5,9 +5,9 @@
 #include <array>
 #include <string>
 
-#include "common/device_models/balance_board.h"
 #include "common/stream/device.h"
-#include "common/synthetic/random.h"
+#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/noise/random.h"
 
 namespace footing::scenario {
 
@@ -32,7 +32,7 @@ class Body {
   bool Tell(const std::string& line);
 
   /// What the board feels that lies in this place in the beginning. Times never go back.
-  device_models::CornerForces Board(int board, double t_s);
+  virtual_devices::CornerForces Board(int board, double t_s);
   /// What the limb's remote feels, in the remote's own axes.
   Eigen::Vector3d Limb(int limb, double t_s);
 
@@ -61,7 +61,7 @@ class Body {
   std::array<double, 2> board_s_{};
   std::array<double, 2> limb_s_{};
   std::array<double, 2> swinging_s_{};  // Since the swing began.
-  synthetic::Random random_{7};
+  noise::Random random_{7};
 };
 
 }  // namespace footing::scenario

@@ -23,10 +23,10 @@ namespace {
 
 using namespace footing;  // NOLINT: a program of one file
 namespace asio = boost::asio;
-using device_models::LinkQuality;
 using stream::DeviceRole;
 using stream_client::Dialer;
 using stream_client::StandIn;
+using virtual_devices::LinkQuality;
 
 constexpr std::uint8_t kExhausted = 0x08;  // Of a Wiimote's battery; full is 0xc8.
 constexpr std::size_t kLeftRemote = 2;     // Slots: left board, right board, left and right remote.
@@ -48,22 +48,22 @@ class Person {
  private:
   StandIn Board(int side, std::uint64_t seed) {
     const bool left = (side == 0) != options_.jumbled;
-    return {device_models::BalanceBoard(seed),
+    return {virtual_devices::BalanceBoard(seed),
             [this, side](double t_s) { return body_.Board(side, t_s); },
             left ? DeviceRole::kLeftBoard : DeviceRole::kRightBoard,
-            device_models::BoardLink(LinkQuality::kGood, seed)};
+            virtual_devices::BoardLink(LinkQuality::kGood, seed)};
   }
 
   StandIn Remote(int side, std::uint64_t seed) {
-    device_models::Wiimote wiimote(seed);
+    virtual_devices::Wiimote wiimote(seed);
     if (options_.low_battery && side == 1) wiimote.controller().set_battery(kExhausted);
     const auto feels = [this, side](double t_s) {
-      device_models::WiimoteSensors sensors;
+      virtual_devices::WiimoteSensors sensors;
       sensors.specific_force_S_mps2 = body_.Limb(side, t_s);
       return sensors;
     };
     return {std::move(wiimote), feels, body_.Role(options_.jumbled ? 1 - side : side),
-            device_models::WiimoteLink(LinkQuality::kGood, seed)};
+            virtual_devices::WiimoteLink(LinkQuality::kGood, seed)};
   }
 
   void SwitchOn(std::size_t slot) {

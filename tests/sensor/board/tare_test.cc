@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/synthetic/random.h"
+#include "common/virtual/noise/random.h"
 
 namespace footing::board {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 /// 2 s at 80 samples a second of a board that carries `total_n(t)`, spread unevenly, with noise.
 template <typename Load>
 std::vector<TareSample> Samples(Load total_n, double rate_hz = 80) {
-  synthetic::Random random(7);
+  noise::Random random(7);
   std::vector<TareSample> samples;
   for (int i = 0; i < static_cast<int>(2 * rate_hz); ++i) {
     const double t_s = i / rate_hz;

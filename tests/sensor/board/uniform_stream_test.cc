@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "common/device_models/link_model.h"
-#include "common/synthetic/random.h"
 #include "common/units/units.h"
+#include "common/virtual/devices/link_model.h"
+#include "common/virtual/noise/random.h"
 
 namespace footing::board {
 namespace {
@@ -28,9 +28,9 @@ double SwayRate(double t_s) {
 }
 
 /// What a board sends of it over a link: repeats, bursts, and the board's own noise (0.85 N).
-std::vector<Raw> Record(device_models::LinkQuality quality, double seconds) {
-  device_models::LinkModel link(device_models::BoardLink(quality, 5), 0);
-  synthetic::Random random(6);
+std::vector<Raw> Record(virtual_devices::LinkQuality quality, double seconds) {
+  virtual_devices::LinkModel link(virtual_devices::BoardLink(quality, 5), 0);
+  noise::Random random(6);
   std::vector<Raw> raw;
   while (raw.empty() || raw.back().arrives_ns < SecondsToNanoseconds(seconds)) {
     const auto arrival = link.Next();
@@ -82,7 +82,7 @@ double RateError(const std::vector<UniformReading>& readings, const std::vector<
 }
 
 TEST(UniformStream, DifferentiatesBetterThanLinearAndZeroOrderInterpolation) {
-  const auto raw = Record(device_models::LinkQuality::kGood, 20);
+  const auto raw = Record(virtual_devices::LinkQuality::kGood, 20);
   const auto readings = Resample(raw);
   ASSERT_GT(readings.size(), 1900u);
   std::vector<double> averaged;
@@ -104,7 +104,7 @@ TEST(UniformStream, DifferentiatesBetterThanLinearAndZeroOrderInterpolation) {
 TEST(UniformStream, KeepsItsRateExactlyAndNeverDrifts) {
   UniformConfig config;
   config.rate_hz = 60;  // No whole number of nanoseconds.
-  auto raw = Record(device_models::LinkQuality::kGood, 30);
+  auto raw = Record(virtual_devices::LinkQuality::kGood, 30);
   for (Raw& one : raw) one.sampled_ns += 86'400'000'000'000;  // A day of uptime.
   for (Raw& one : raw) one.arrives_ns += 86'400'000'000'000;
   const auto readings = Resample(raw, nullptr, config);
@@ -118,7 +118,7 @@ TEST(UniformStream, KeepsItsRateExactlyAndNeverDrifts) {
 
 TEST(UniformStream, ComesHalfAWindowAndASampleLater) {
   double worst_s = 0;
-  Resample(Record(device_models::LinkQuality::kGood, 20), &worst_s);
+  Resample(Record(virtual_devices::LinkQuality::kGood, 20), &worst_s);
   EXPECT_GT(worst_s, 0.025);
   // Half a window, the longest recorded interval (0.06 s) and the age of a sample.
   EXPECT_LT(worst_s, 0.025 + 0.06 + 0.02);

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <random>
 
-#include "common/device_models/balance_board.h"
-#include "common/device_models/ps_move.h"
-#include "common/device_models/wiimote.h"
+#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/ps_move.h"
+#include "common/virtual/devices/wiimote.h"
 #include "daemon/sensor/calibration/acceleration.h"
 #include "daemon/sensor/calibration/board.h"
 #include "daemon/sensor/calibration/motion_plus.h"
@@ -19,8 +19,8 @@
 namespace footing::calibration {
 namespace {
 
-using device_models::Report;
 using stream::CalibrationOrigin;
+using virtual_devices::Report;
 
 constexpr double kG = kStandardGravityMps2;
 constexpr int kUnits = 40;
@@ -46,14 +46,14 @@ std::vector<std::uint8_t> Bytes(std::span<const std::uint8_t> page, std::size_t 
 TEST(RoundTrip, WiimoteAccelerationComesBackWithinACount) {
   std::mt19937 random(1);
   for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
-    device_models::Wiimote wiimote(seed);
+    virtual_devices::Wiimote wiimote(seed);
     const auto calibration =
         ParseAcceleration(Bytes(wiimote.controller().memory().eeprom(), 0x16, 20));
     ASSERT_EQ(calibration.origin, CalibrationOrigin::kDevice) << calibration.problem;
     for (const std::uint8_t mode : {0x31, 0x33, 0x35, 0x37, 0x3e}) {
       wiimote.HandleOutput(0, Report{0x12, 0x04, mode});
       for (int i = 0; i < kMotions; ++i) {
-        device_models::WiimoteSensors sensors;
+        virtual_devices::WiimoteSensors sensors;
         sensors.specific_force_S_mps2 = DrawVector(random, 3.5 * kG);
         reports::Interleaver interleaver;
         std::optional<reports::Data> data;
@@ -70,7 +70,7 @@ TEST(RoundTrip, WiimoteAccelerationComesBackWithinACount) {
 }
 
 TEST(RoundTrip, CameraPointsComeBackInEveryFormat) {
-  device_models::Wiimote wiimote(1);
+  virtual_devices::Wiimote wiimote(1);
   const auto write = [&](std::uint8_t at, std::uint8_t value) {
     Report report(22, 0);
     report[0] = 0x16;
@@ -91,12 +91,12 @@ TEST(RoundTrip, CameraPointsComeBackInEveryFormat) {
     write(0x33, format);
     wiimote.HandleOutput(0, Report{0x12, 0x04, mode});
     for (int i = 0; i < kMotions; ++i) {
-      device_models::WiimoteSensors sensors;
+      virtual_devices::WiimoteSensors sensors;
       for (auto& point : sensors.camera) {
         if (random() % 4 == 0) continue;
-        point = device_models::CameraPoint{static_cast<int>(random() % 1023),
-                                           static_cast<int>(random() % 768),
-                                           static_cast<int>(random() % 15)};
+        point = virtual_devices::CameraPoint{static_cast<int>(random() % 1023),
+                                             static_cast<int>(random() % 768),
+                                             static_cast<int>(random() % 15)};
       }
       reports::Interleaver interleaver;
       std::optional<reports::Data> data;
@@ -119,19 +119,19 @@ TEST(RoundTrip, CameraPointsComeBackInEveryFormat) {
 TEST(RoundTrip, NunchukComesBackWithinACountAlsoThroughAMotionPlus) {
   std::mt19937 random(3);
   for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
-    const auto block = device_models::DrawNunchukBlock(seed);
-    const auto page = device_models::NunchukPage(block);
+    const auto block = virtual_devices::DrawNunchukBlock(seed);
+    const auto page = virtual_devices::NunchukPage(block);
     const auto calibration = ParseNunchuk(Bytes(page, 0x20, 32));
     ASSERT_EQ(calibration.origin, CalibrationOrigin::kDevice) << calibration.problem;
     for (int i = 0; i < kMotions; ++i) {
-      device_models::NunchukSensors sensors;
+      virtual_devices::NunchukSensors sensors;
       sensors.specific_force_S_mps2 = DrawVector(random, 2 * kG);
       sensors.stick_x = Draw(random, 1);
       sensors.stick_y = Draw(random, 1);
       sensors.c = random() % 2;
       sensors.z = random() % 2;
-      const auto plain = device_models::NunchukBytes(block, sensors);
-      const auto passed = device_models::PassedNunchuk(plain);
+      const auto plain = virtual_devices::NunchukBytes(block, sensors);
+      const auto passed = virtual_devices::PassedNunchuk(plain);
       for (const bool through : {false, true}) {
         const auto counts =
             through ? reports::DecodePassedNunchuk(passed) : reports::DecodeNunchuk(plain);
@@ -156,14 +156,14 @@ TEST(RoundTrip, MotionPlusComesBackWithinACountOfItsRange) {
   int fast = 0;
   int slow = 0;
   for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
-    const auto block = device_models::DrawMotionPlusBlock(seed);
+    const auto block = virtual_devices::DrawMotionPlusBlock(seed);
     const auto calibration = ParseMotionPlus(block);
     ASSERT_EQ(calibration.origin, CalibrationOrigin::kDevice) << calibration.problem;
     for (int i = 0; i < kMotions; ++i) {
       // Mixed: each axis crosses the border of its range at another time.
       const Eigen::Vector3d turn = DrawVector(random, 1200 * kDegree);
       const auto counts =
-          reports::DecodeMotionPlus(device_models::MotionPlusBytes(block, turn, i % 2));
+          reports::DecodeMotionPlus(virtual_devices::MotionPlusBytes(block, turn, i % 2));
       ASSERT_TRUE(counts);
       EXPECT_EQ(counts->extension_connected, i % 2 == 1);
       const Eigen::Vector3d back = Calibrate(calibration, *counts).angular_velocity_S_radps;
@@ -184,7 +184,7 @@ TEST(RoundTrip, MotionPlusComesBackWithinACountOfItsRange) {
 TEST(RoundTrip, BoardForcesComeBackWithinACountInWarmAndCold) {
   std::mt19937 random(5);
   for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
-    device_models::BalanceBoard board(seed);
+    virtual_devices::BalanceBoard board(seed);
     auto& memory = board.controller().memory();
     (void)memory.Write(true, 0xa400f0, {{0x55}});
     (void)memory.Write(true, 0xa400fb, {{0x00}});
@@ -195,7 +195,7 @@ TEST(RoundTrip, BoardForcesComeBackWithinACountInWarmAndCold) {
     for (int i = 0; i < kMotions; ++i) {
       board.set_temperature(static_cast<std::uint8_t>(1 + random() % 60));
       board.set_battery(static_cast<std::uint8_t>(0x60 + random() % 0x40));
-      device_models::CornerForces forces;
+      virtual_devices::CornerForces forces;
       for (double* corner : {&forces.top_right_n, &forces.bottom_right_n, &forces.top_left_n,
                              &forces.bottom_left_n}) {
         *corner = 250 + Draw(random, 300);  // From -5 to 56 kg.
@@ -213,7 +213,7 @@ TEST(RoundTrip, BoardForcesComeBackWithinACountInWarmAndCold) {
 }
 
 TEST(RoundTrip, SixtyKilogramsAreSixtyAtTheEquator) {
-  device_models::BalanceBoard board(3);
+  virtual_devices::BalanceBoard board(3);
   auto& memory = board.controller().memory();
   (void)memory.Write(true, 0xa400f0, {{0x55}});
   (void)memory.Write(true, 0xa400fb, {{0x00}});
@@ -234,8 +234,8 @@ TEST(RoundTrip, MoveComesBackWithinACountInBothHalves) {
   for (const auto model : {reports::MoveModel::kZcm1, reports::MoveModel::kZcm2}) {
     const bool first = model == reports::MoveModel::kZcm1;
     for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
-      device_models::PsMove move(
-          seed, first ? device_models::MoveModel::kZcm1 : device_models::MoveModel::kZcm2);
+      virtual_devices::PsMove move(
+          seed, first ? virtual_devices::MoveModel::kZcm1 : virtual_devices::MoveModel::kZcm2);
       MoveBlob blob(model);
       move.Feature(0x10, 49);  // The first that the host sees need not be the first piece.
       for (int piece = 0; piece < 3; ++piece) EXPECT_TRUE(blob.Take(*move.Feature(0x10, 49)));
@@ -243,9 +243,9 @@ TEST(RoundTrip, MoveComesBackWithinACountInBothHalves) {
       EXPECT_EQ(blob.bytes(), move.blob());
       const auto calibration = ParseMove(model, blob.bytes());
       ASSERT_EQ(calibration.origin, CalibrationOrigin::kDevice) << calibration.problem;
-      std::optional<device_models::MoveSensors> last;
+      std::optional<virtual_devices::MoveSensors> last;
       for (int i = 0; i < kMotions; ++i) {
-        device_models::MoveSensors sensors;
+        virtual_devices::MoveSensors sensors;
         sensors.specific_force_S_mps2 = DrawVector(random, 4 * kG);
         sensors.angular_velocity_S_radps = DrawVector(random, 20);
         sensors.magnetic_field_S_counts = DrawVector(random, 2000);

@@ -4,15 +4,15 @@
 #include <limits>
 
 #include "common/units/units.h"
-#include "tests/sensor/features/rehearsal.h"
+#include "tests/sensor/features/chain.h"
 
 /// Links that lose, repeat and delay, samples that make no sense, rigs of every kind.
 namespace footing::features {
 namespace {
 
 using stream::DeviceRole;
-using synthetic::HandMotion;
-using synthetic::Shape;
+using wrists::HandMotion;
+using wrists::Shape;
 
 HandMotion Walk() { return HandMotion({{6, 1.5, kPi, 8, 0.2, 0}}, Shape(), 0); }
 
@@ -26,9 +26,9 @@ stream::RigFeatures After(RigFeatureExtractor rig,
 }
 
 TEST(Links, AThirdOfTheSamplesLostAndStampsThatJitterChangeLittle) {
-  synthetic::SensorModel model;
+  wrists::SensorModel model;
   model.jitter_s = 0.003;
-  synthetic::Random random(5);
+  noise::Random random(5);
   std::vector<stream::MotionSample> kept;
   for (const auto& sample : Samples(Walk(), model)) {
     if (random.Uniform() > 0.33) kept.push_back(sample);
@@ -40,7 +40,7 @@ TEST(Links, AThirdOfTheSamplesLostAndStampsThatJitterChangeLittle) {
 }
 
 TEST(Links, RepeatsOfASixtyHertzSensorAreNoSteps) {
-  synthetic::SensorModel slow;
+  wrists::SensorModel slow;
   slow.rate_hz = 60;
   std::vector<stream::MotionSample> samples;
   for (auto sample : Samples(Walk(), slow)) {
@@ -112,7 +112,7 @@ TEST(Samples, ThatAreNotFiniteOrOfAnotherDeviceAreIgnored) {
 }
 
 TEST(Samples, OfAnyKindNeverMakeAFeatureThatIsNotFinite) {
-  synthetic::Random random(17);
+  noise::Random random(17);
   auto rig = TwoHands();
   std::int64_t now_ns = 0;
   for (int i = 0; i < 6000; ++i) {
@@ -140,7 +140,7 @@ TEST(Rigs, OfThreeControllersHaveThreeFeaturesAndOnePair) {
     samples.push_back(sample);
     if (sample.device == 2) continue;
     sample.device = 3;
-    sample.specific_force_mps2 = sample.filtered_mps2 = synthetic::InclinedGravity(0.3, 0);
+    sample.specific_force_mps2 = sample.filtered_mps2 = wrists::InclinedGravity(0.3, 0);
     samples.push_back(sample);
   }
   const auto features = After(rig, samples);

@@ -4,15 +4,15 @@
 #include <functional>
 
 #include "common/units/units.h"
-#include "tests/sensor/features/rehearsal.h"
+#include "tests/sensor/features/chain.h"
 
 /// How long after a change of motion the features are right, and stay so.
 namespace footing::features {
 namespace {
 
-using synthetic::HandMotion;
-using synthetic::Segment;
-using synthetic::Shape;
+using wrists::HandMotion;
+using wrists::Segment;
+using wrists::Shape;
 
 using Right = std::function<bool(const stream::RigFeatures&)>;
 
@@ -20,7 +20,7 @@ double Delay(const std::vector<Segment>& segments, double start_angle_rad, const
   const HandMotion motion(segments, Shape(), 0, start_angle_rad);
   const double change_s = segments.front().duration_s;
   double since_s = INFINITY;
-  for (const auto& instant : Rehearse(motion)) {
+  for (const auto& instant : RunChain(motion)) {
     if (instant.t_s < change_s) continue;
     if (!right(instant.rig)) {
       since_s = INFINITY;
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(FromAngle, Changes, testing::Values(0.0, 1.3, 2.9, 4.6)
 TEST(SlowTilt, IsNotMotion) {
   // 60 degrees in 2 s, by a blend whose fastest is 1.5 times its mean.
   const HandMotion motion({{1, 1, 0, 0, 0, 0}, {3, 1, 0, 0, DegreesToRadians(60), 0}}, Shape(), 2);
-  for (const auto& instant : Rehearse(motion)) {
+  for (const auto& instant : RunChain(motion)) {
     EXPECT_FALSE(instant.rig.devices[0].moving) << instant.t_s;
   }
 }
@@ -111,8 +111,8 @@ TEST(Twist, HandsThatSwingInTurnsAreNeverSeenTogetherWhileBothTwist) {
         swing.roll_rad = DegreesToRadians(roll_deg);
         segments.push_back(swing);
       }
-      const HandMotion motion(segments, synthetic::WristShape(), blend_s);
-      for (const auto& instant : Rehearse(motion)) {
+      const HandMotion motion(segments, wrists::WristShape(), blend_s);
+      for (const auto& instant : RunChain(motion)) {
         if (instant.t_s < 1.9 || !instant.rig.pairs[0].phase_valid) continue;
         EXPECT_GT(std::abs(instant.rig.pairs[0].phase_rad), DegreesToRadians(80))
             << f << " Hz, twist in " << blend_s << " s, at " << instant.t_s;

@@ -3,16 +3,16 @@
 #include <cmath>
 
 #include "common/units/units.h"
-#include "tests/sensor/features/rehearsal.h"
+#include "tests/sensor/features/chain.h"
 
 /// Steady motion: the numbers of the gait paper's section 6 against those the motion was made from.
 namespace footing::features {
 namespace {
 
-using synthetic::HandMotion;
-using synthetic::Segment;
-using synthetic::Shape;
-using synthetic::WristShape;
+using wrists::HandMotion;
+using wrists::Segment;
+using wrists::Shape;
+using wrists::WristShape;
 
 struct Made {
   double frequency_hz;
@@ -35,7 +35,7 @@ class SteadyMotion : public testing::TestWithParam<Made> {
                         pitch_rad};
     std::vector<Instant> settled;
     for (const Instant& instant :
-         Rehearse(HandMotion({swing}, made.wrist ? WristShape() : Shape(), 0))) {
+         RunChain(HandMotion({swing}, made.wrist ? WristShape() : Shape(), 0))) {
       if (instant.t_s >= before_s) settled.push_back(instant);
     }
     return settled;
@@ -89,12 +89,12 @@ INSTANTIATE_TEST_SUITE_P(Swings, SteadyMotion,
 
 TEST(Phase, IsPositiveWhenTheRightOneLeads) {
   // The right hand does a quarter of a cycle before what the left one does.
-  const auto instants = Rehearse(HandMotion({{4, 1.5, kPi / 2, 8, 0, 0}}, Shape(), 0));
+  const auto instants = RunChain(HandMotion({{4, 1.5, kPi / 2, 8, 0, 0}}, Shape(), 0));
   EXPECT_NEAR(instants.back().rig.pairs[0].phase_rad, kPi / 2, 0.05);
 }
 
 TEST(Phase, OfAlternatingHandsIsHalfACycleAndNeverMinusHalf) {
-  for (const auto& instant : Rehearse(HandMotion({{5, 2, kPi, 8, 0, 0}}, WristShape(), 0))) {
+  for (const auto& instant : RunChain(HandMotion({{5, 2, kPi, 8, 0, 0}}, WristShape(), 0))) {
     if (!instant.rig.pairs[0].phase_valid) continue;
     EXPECT_GT(instant.rig.pairs[0].phase_rad, -kPi);
     EXPECT_LE(instant.rig.pairs[0].phase_rad, kPi);
@@ -104,14 +104,14 @@ TEST(Phase, OfAlternatingHandsIsHalfACycleAndNeverMinusHalf) {
 TEST(Frequency, OfAStrongSecondHarmonicIsNotDoubled) {
   Shape shape;
   shape.second = 0.8;
-  const auto instants = Rehearse(HandMotion({{5, 1.2, 0, 10, 0, 0}}, shape, 0));
+  const auto instants = RunChain(HandMotion({{5, 1.2, 0, 10, 0, 0}}, shape, 0));
   EXPECT_NEAR(instants.back().rig.devices[0].frequency_hz, 1.2, 0.03);
 }
 
 TEST(Inclination, AtRestIsTheArcSineOfTheAxisOverG) {
   const double roll = DegreesToRadians(25);
   const double pitch = DegreesToRadians(-40);
-  const auto instants = Rehearse(HandMotion({{1, 1, 0, 0, roll, pitch}}, Shape(), 0));
+  const auto instants = RunChain(HandMotion({{1, 1, 0, 0, roll, pitch}}, Shape(), 0));
   const auto& left = instants.back().rig.devices[0];
   EXPECT_FALSE(left.moving);
   // One count of 0.373 m/s² at 40 degrees: 0.373 / 2 / (g cos 40) = 1.4 degrees.
@@ -133,7 +133,7 @@ TEST_P(ClippedMotion, KeepsTwiceTheBounds) {
                       roll,
                       0};
   for (const auto& instant :
-       Rehearse(HandMotion({swing}, made.wrist ? WristShape() : Shape(), 0))) {
+       RunChain(HandMotion({swing}, made.wrist ? WristShape() : Shape(), 0))) {
     if (instant.t_s < settled_s) continue;
     const auto& left = instant.rig.devices[0];
     ASSERT_TRUE(left.frequency_valid && left.amplitude_valid && left.inclination_valid);
@@ -151,9 +151,9 @@ INSTANTIATE_TEST_SUITE_P(Swings, ClippedMotion,
                                          Made{3.5, kPi, 33, true}, Made{4.5, 0.7, 40, false}));
 
 TEST(ClippedMotion, HoldsWhenThereIsTooLittleLeftToFit) {
-  synthetic::SensorModel narrow;
+  wrists::SensorModel narrow;
   const HandMotion motion({{3, 2, 0, 15, 0, 0}, {2, 2, 0, 150, 0, 0}}, Shape(), 0);
-  const auto instants = Rehearse(motion, narrow);
+  const auto instants = RunChain(motion, narrow);
   const auto& before = instants[295].rig.devices[0];
   const auto& after = instants.back().rig.devices[0];
   EXPECT_FALSE(before.held);

@@ -19,14 +19,14 @@ Talk With(Child child, bool motion_plus) {
   return talk;
 }
 
-void Say(Talk& talk, const std::vector<device_models::Report>& reports) {
+void Say(Talk& talk, const std::vector<virtual_devices::Report>& reports) {
   for (const auto& report : reports) talk.Receive(report);
 }
 
 /// Counts the data reports with acceleration that arrive in that time.
 int CoreReports(Talk& talk, double seconds) {
   int count = 0;
-  talk.on_input = [&count](device_models::Report& report) {
+  talk.on_input = [&count](virtual_devices::Report& report) {
     count += report[0] >= 0x31 && report[0] <= 0x37 ? 1 : 0;
     return true;
   };
@@ -66,7 +66,7 @@ TEST(ExtensionPort, TheNunchuksCalibrationIsReadBeforeTheMotionPlusHidesIt) {
 
 /// As hid_wiimote does when it looks for a MotionPlus: the key, which switches an active one off.
 void SwitchOffByAnother(Talk& talk) {
-  device_models::Report key(22, 0);
+  virtual_devices::Report key(22, 0);
   key[0] = 0x16;
   key[1] = 0x04;
   key[2] = 0xa4;
@@ -247,7 +247,7 @@ TEST(ExtensionPort, OnlyOneMemoryReadIsOutAtATime) {
     }
     return true;
   };
-  talk.on_input = [&missing](device_models::Report& report) {
+  talk.on_input = [&missing](virtual_devices::Report& report) {
     if (report[0] == 0x21) missing = (report[3] & 0xf) != 0 ? 0 : missing - (report[3] >> 4) - 1;
     return true;
   };

@@ -6,18 +6,18 @@
 #include <random>
 #include <string>
 
-#include "common/device_models/balance_board.h"
-#include "common/device_models/wiimote.h"
+#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/wiimote.h"
 #include "daemon/sensor/handshake/handshake.h"
 #include "tests/sensor/handshake/fixture.h"
 
 namespace footing::handshake {
 namespace {
 
-using device_models::BalanceBoard;
-using device_models::Report;
-using device_models::Wiimote;
 using stream::CalibrationOrigin;
+using virtual_devices::BalanceBoard;
+using virtual_devices::Report;
+using virtual_devices::Wiimote;
 
 using Talk = Conversation<Wiimote>;
 

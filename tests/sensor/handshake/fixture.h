@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/device_models/controller.h"
+#include "common/virtual/devices/controller.h"
 #include "daemon/sensor/handshake/handshake.h"
 
 namespace footing::handshake {
@@ -19,9 +19,9 @@ class Conversation {
 
   /// What the host sends and what arrives from the device may be changed or dropped (false).
   std::function<bool(reports::OutputReport&)> on_output;
-  std::function<bool(device_models::Report&)> on_input;
+  std::function<bool(virtual_devices::Report&)> on_input;
   /// The device's data report of a step, if any.
-  std::function<std::optional<device_models::Report>(Device&)> sample;
+  std::function<std::optional<virtual_devices::Report>(Device&)> sample;
 
   void Advance(double seconds) {
     for (int step = 0; step < static_cast<int>(seconds / kStepS); ++step) {
@@ -34,7 +34,7 @@ class Conversation {
     }
   }
 
-  void Receive(device_models::Report report) {
+  void Receive(virtual_devices::Report report) {
     if (on_input && !on_input(report)) return;
     Handshake::Outputs outputs;
     handshake_.Take(now_ns_, reports::Decode(report), outputs);

@@ -2,17 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include "common/device_models/balance_board.h"
-#include "common/device_models/wiimote.h"
+#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/wiimote.h"
 #include "tests/sensor/handshake/fixture.h"
 
 namespace footing::handshake {
 namespace {
 
-using device_models::BalanceBoard;
-using device_models::Wiimote;
 using stream::CalibrationOrigin;
 using stream::DeviceKind;
+using virtual_devices::BalanceBoard;
+using virtual_devices::Wiimote;
 
 Conversation<Wiimote> WithWiimote() {
   Conversation<Wiimote> talk(Wiimote(5), "Nintendo RVL-CNT-01");
@@ -70,7 +70,7 @@ TEST(Handshake, OneQuestionIsOutAtATime) {
     if (output[0] != 0x14 && output[0] != 0x19) most = std::max(most, ++open);
     return true;
   };
-  talk.on_input = [&](device_models::Report& report) {
+  talk.on_input = [&](virtual_devices::Report& report) {
     // The last piece of an answer: an acknowledgement, a status or a read's end.
     const bool more = report[0] == 0x21 && report[3] == 0xf0 && report[5] == 0x20;
     if (report[0] < 0x30 && !more) --open;
@@ -105,7 +105,7 @@ TEST(Handshake, AModeThatAnotherProgramSetIsSetBackAtALimitedRate) {
   talk.Advance(0.1);
   const int before = talk.Sent(0x12);
   for (int i = 0; i < 40; ++i) {  // Ten seconds of a driver that never gives in.
-    talk.device().HandleOutput(device_models::Report{0x12, 0x00, 0x30});
+    talk.device().HandleOutput(virtual_devices::Report{0x12, 0x00, 0x30});
     talk.Advance(0.25);
   }
   EXPECT_GE(talk.Sent(0x12) - before, 5);

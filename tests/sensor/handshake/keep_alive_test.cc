@@ -11,7 +11,7 @@
 namespace footing::handshake {
 namespace {
 
-using device_models::Report;
+using virtual_devices::Report;
 using Talk = Conversation<PortModel>;
 
 constexpr std::int64_t kMs = 1'000'000;

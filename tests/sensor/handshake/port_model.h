@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/device_models/wiimote.h"
+#include "common/virtual/devices/wiimote.h"
 
 namespace footing::handshake {
 
@@ -15,13 +15,13 @@ namespace footing::handshake {
 /// Controllers" and "Wii Motion Plus" describe them; the blocks are those of real units.
 class PortModel {
  public:
-  using Report = device_models::Report;
+  using Report = virtual_devices::Report;
   enum class Child { kNone, kNunchuk, kClassic, kUnknown };
 
   explicit PortModel(Child child = Child::kNone, bool motion_plus = false, std::uint64_t seed = 5)
       : wiimote_(seed), child_(child), motion_plus_(motion_plus) {}
 
-  const device_models::Identity& identity() const { return wiimote_.identity(); }
+  const virtual_devices::Identity& identity() const { return wiimote_.identity(); }
 
   static constexpr std::array<std::uint8_t, 16> kNunchukBlock = {0x7d, 0x7a, 0x7e, 0x0a, 0xb0, 0xaf,
                                                                  0xb1, 0x12, 0xe5, 0x21, 0x7c, 0xe7,
@@ -88,7 +88,7 @@ class PortModel {
   bool active() const { return active_; }
   std::uint8_t active_mode() const { return active_mode_; }
   int activations() const { return activations_; }
-  device_models::Controller& controller() { return wiimote_.controller(); }
+  virtual_devices::Controller& controller() { return wiimote_.controller(); }
   std::uint8_t camera_register(std::uint32_t at) {
     std::array<std::uint8_t, 1> byte{};
     (void)controller().memory().Read(true, 0xb00000 + at, byte);
@@ -194,7 +194,7 @@ class PortModel {
     return kNothing;
   }
 
-  device_models::Wiimote wiimote_;
+  virtual_devices::Wiimote wiimote_;
   Child child_;
   bool motion_plus_;
   bool active_ = false;

@@ -3,17 +3,17 @@
 
 #include <functional>
 
-#include "common/device_models/link_model.h"
-#include "common/synthetic/random.h"
+#include "common/virtual/devices/link_model.h"
+#include "common/virtual/noise/random.h"
 #include "daemon/sensor/link/device_clock.h"
 #include "tests/sensor/link/sampled_time_error.h"
 
 namespace footing::link {
 namespace {
 
-using device_models::LinkConfig;
-using device_models::LinkModel;
-using device_models::LinkQuality;
+using virtual_devices::LinkConfig;
+using virtual_devices::LinkModel;
+using virtual_devices::LinkQuality;
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 /// The ticks are found within that long after the start and after a suspension; what comes before
@@ -78,49 +78,49 @@ class EverySeed : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Seeds, EverySeed, testing::Range<std::uint64_t>(1, 9));
 
 TEST_P(EverySeed, AWiimotesSamplesAreKnownToTwoMilliseconds) {
-  ExpectGood(Follow(device_models::WiimoteLink(LinkQuality::kGood, GetParam()), {}));
+  ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kGood, GetParam()), {}));
 }
 
 TEST_P(EverySeed, ABoardsSamplesAreKnownToTwoMilliseconds) {
-  ExpectGood(Follow(device_models::BoardLink(LinkQuality::kGood, GetParam()), {}));
+  ExpectGood(Follow(virtual_devices::BoardLink(LinkQuality::kGood, GetParam()), {}));
 }
 
 TEST_P(EverySeed, ACrystalTensOfPpmOffCostsNothing) {
   Course course;
   course.clock_error_ppm = GetParam() % 2 == 0 ? 80 : -50;
-  ExpectGood(Follow(device_models::WiimoteLink(LinkQuality::kGood, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kGood, GetParam()), course));
 }
 
 TEST_P(EverySeed, ASensorThatIsFourPercentOffIsFound) {
   Course course;
   course.clock_error_ppm = GetParam() % 2 == 0 ? 40'000 : -40'000;
-  ExpectGood(Follow(device_models::WiimoteLink(LinkQuality::kGood, GetParam()), course));
-  ExpectGood(Follow(device_models::BoardLink(LinkQuality::kGood, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kGood, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::BoardLink(LinkQuality::kGood, GetParam()), course));
 }
 
 TEST_P(EverySeed, AThirdOfTheReportsLostCostsNothing) {
-  synthetic::Random random(GetParam() + 1000);  // Not the link's own draws.
+  noise::Random random(GetParam() + 1000);  // Not the link's own draws.
   Course course;
   course.lost = [&random](std::int64_t) { return random.Uniform() < 0.33; };
-  ExpectGood(Follow(device_models::WiimoteLink(LinkQuality::kGood, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kGood, GetParam()), course));
 }
 
 TEST_P(EverySeed, LostReportsOnAPoorLinkCostLittle) {
-  synthetic::Random random(GetParam() + 1000);  // Not the link's own draws.
+  noise::Random random(GetParam() + 1000);  // Not the link's own draws.
   Course course;
   course.lost = [&random](std::int64_t) { return random.Uniform() < 0.1; };
-  ExpectGood(Follow(device_models::BoardLink(LinkQuality::kPoor, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::BoardLink(LinkQuality::kPoor, GetParam()), course));
 }
 
 TEST_P(EverySeed, StallsOfSecondsCostNothing) {
   Course course;  // Two seconds of every twenty nothing comes through.
   course.lost = [](std::int64_t at_ns) { return at_ns % (20 * kSecondNs) > 18 * kSecondNs; };
-  ExpectGood(Follow(device_models::WiimoteLink(LinkQuality::kGood, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kGood, GetParam()), course));
 }
 
 TEST_P(EverySeed, APoorLinkIsNoWorse) {
-  ExpectGood(Follow(device_models::WiimoteLink(LinkQuality::kPoor, GetParam()), {}));
-  ExpectGood(Follow(device_models::BoardLink(LinkQuality::kPoor, GetParam()), {}));
+  ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kPoor, GetParam()), {}));
+  ExpectGood(Follow(virtual_devices::BoardLink(LinkQuality::kPoor, GetParam()), {}));
 }
 
 TEST_P(EverySeed, AnHourThatPassesUnseenIsForgottenWithinSeconds) {
@@ -131,16 +131,16 @@ TEST_P(EverySeed, AnHourThatPassesUnseenIsForgottenWithinSeconds) {
   course.lost = [](std::int64_t at_ns) {
     return at_ns > 30 * kSecondNs && at_ns < 3630 * kSecondNs;
   };
-  ExpectGood(Follow(device_models::WiimoteLink(LinkQuality::kGood, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kGood, GetParam()), course));
 }
 
 TEST_P(EverySeed, RepeatsOfASlowlyMovingSensorCostNothing) {
   // Every third new sample reads as the one before, as between two counts of a slow motion.
-  synthetic::Random random(GetParam() + 1000);
+  noise::Random random(GetParam() + 1000);
   Course course;
   course.reads_alike = [&random] { return random.Uniform() < 0.33; };
-  ExpectGood(Follow(device_models::WiimoteLink(LinkQuality::kGood, GetParam()), course));
-  ExpectGood(Follow(device_models::BoardLink(LinkQuality::kGood, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kGood, GetParam()), course));
+  ExpectGood(Follow(virtual_devices::BoardLink(LinkQuality::kGood, GetParam()), course));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "common/device_models/link_model.h"
+#include "common/virtual/devices/link_model.h"
 
 namespace footing::link {
 namespace {
@@ -48,9 +48,9 @@ struct Accuracy {
   bool monotonic = true;
 };
 
-Accuracy Measure(device_models::LinkConfig link, double sensor_period_s, double from_s,
+Accuracy Measure(virtual_devices::LinkConfig link, double sensor_period_s, double from_s,
                  double to_s) {
-  device_models::LinkModel model(link, 0);
+  virtual_devices::LinkModel model(link, 0);
   DeviceClockConfig config;
   config.nominal_period_s = 1 / link.nominal_rate_hz;
   config.sensor_period_s = sensor_period_s;
@@ -86,13 +86,13 @@ TEST(DeviceClock, FindsTheSensorsOwnTicksOnAGoodLink) {
   // The sensor's rate is off by 0, 50 ppm, 0.5 % and -1 %.
   for (const double factor : {1.0, 1.00005, 1.005, 0.99}) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-      auto wiimote = device_models::WiimoteLink(device_models::LinkQuality::kGood, seed);
+      auto wiimote = virtual_devices::WiimoteLink(virtual_devices::LinkQuality::kGood, seed);
       wiimote.sensor_rate_hz *= factor;
       const Accuracy of_wiimote = Measure(wiimote, 0.01, 5, 120);
       EXPECT_LE(of_wiimote.rms_ms, 2) << factor << " seed " << seed;
       EXPECT_LE(of_wiimote.p99_ms, 6) << factor << " seed " << seed;
       EXPECT_TRUE(of_wiimote.monotonic);
-      auto board = device_models::BoardLink(device_models::LinkQuality::kGood, seed);
+      auto board = virtual_devices::BoardLink(virtual_devices::LinkQuality::kGood, seed);
       board.sensor_rate_hz *= factor;
       const Accuracy of_board = Measure(board, 1 / 60.0, 5, 120);
       EXPECT_LE(of_board.rms_ms, 2) << factor << " seed " << seed;
@@ -103,7 +103,7 @@ TEST(DeviceClock, FindsTheSensorsOwnTicksOnAGoodLink) {
 
 TEST(DeviceClock, OnAPoorLinkTheErrorStaysFarBelowAPeriod) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const auto link = device_models::WiimoteLink(device_models::LinkQuality::kPoor, seed);
+    const auto link = virtual_devices::WiimoteLink(virtual_devices::LinkQuality::kPoor, seed);
     const Accuracy accuracy = Measure(link, 0.01, 5, 600);
     EXPECT_LE(accuracy.rms_ms, 2.9) << "no better than the arrival itself";
     EXPECT_TRUE(accuracy.monotonic);
@@ -112,8 +112,8 @@ TEST(DeviceClock, OnAPoorLinkTheErrorStaysFarBelowAPeriod) {
 
 TEST(DeviceClock, ASensorAtRestDoesNotDisturbTheGrid) {
   // Moves for 20 s, rests for 20 s (all values the same), moves again.
-  device_models::LinkModel link(device_models::WiimoteLink(device_models::LinkQuality::kGood, 4),
-                                0);
+  virtual_devices::LinkModel link(
+      virtual_devices::WiimoteLink(virtual_devices::LinkQuality::kGood, 4), 0);
   DeviceClock clock;
   std::int64_t held_ns = -1;
   double worst_ms = 0;
@@ -135,8 +135,8 @@ TEST(DeviceClock, ASensorAtRestDoesNotDisturbTheGrid) {
 
 TEST(DeviceClock, StaysBetweenTheArrivalAndTheLagOnAnyLink) {
   for (const auto quality :
-       {device_models::LinkQuality::kGood, device_models::LinkQuality::kPoor}) {
-    device_models::LinkModel link(device_models::BoardLink(quality, 3), 0);
+       {virtual_devices::LinkQuality::kGood, virtual_devices::LinkQuality::kPoor}) {
+    virtual_devices::LinkModel link(virtual_devices::BoardLink(quality, 3), 0);
     DeviceClockConfig config;
     config.nominal_period_s = 1 / 83.6;
     DeviceClock clock(config);

@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "common/synthetic/random.h"
-#include "common/synthetic/sensor.h"
 #include "common/units/units.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/wrists/accelerometer.h"
 
 namespace footing::mounting {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using stream::DeviceRole;
 
-Eigen::Quaterniond RandomRotation(synthetic::Random& random) {
+Eigen::Quaterniond RandomRotation(noise::Random& random) {
   return Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal())
       .normalized();
 }
@@ -25,8 +25,8 @@ Eigen::Quaterniond RandomRotation(synthetic::Random& random) {
 std::vector<stream::MotionSample> Record(const std::function<Vector3d(double)>& force_M,
                                          const Eigen::Quaterniond& rotation_MS, double seconds,
                                          std::uint64_t seed) {
-  synthetic::Random random(seed);
-  synthetic::SensorModel sensor;
+  noise::Random random(seed);
+  wrists::SensorModel sensor;
   sensor.quantum_mps2 = 0.092;
   std::vector<stream::MotionSample> samples;
   for (int i = 0; i < static_cast<int>(seconds * 100); ++i) {
@@ -54,7 +54,7 @@ double ErrorRad(const Eigen::Quaterniond& found, const Eigen::Quaterniond& truth
 }
 
 TEST(Mounting, AnyRotationIsFoundForEveryRole) {
-  synthetic::Random random(3);
+  noise::Random random(3);
   for (const auto& [role, first] : {std::pair{DeviceRole::kLeftHand, -1.0},
                                     {DeviceRole::kRightHand, 1.0},
                                     {DeviceRole::kLeftLeg, 1.0},

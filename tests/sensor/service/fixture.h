@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "common/device_models/balance_board.h"
-#include "common/device_models/wiimote.h"
+#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/wiimote.h"
 #include "daemon/sensor/service/hub.h"
 
 namespace footing::sensor {
@@ -21,7 +21,7 @@ namespace footing::sensor {
 /// report of every attached model a tick.
 class Bench {
  public:
-  using Model = std::variant<device_models::Wiimote, device_models::BalanceBoard>;
+  using Model = std::variant<virtual_devices::Wiimote, virtual_devices::BalanceBoard>;
 
   explicit Bench(const Config& config = {}, const setup::Shelf& shelf = {})
       : hub_(config, {[this](devices::DeviceHandle handle, const reports::OutputReport& report) {
@@ -89,16 +89,16 @@ class Bench {
   std::function<Eigen::Vector3d(double t_s)> force = [](double) {
     return Eigen::Vector3d(0, 0, -9.80665);
   };
-  device_models::CornerForces corners{150, 150, 150, 150};
+  virtual_devices::CornerForces corners{150, 150, 150, 150};
   stream::DeviceRole wish = stream::DeviceRole::kUnspecified;
   bool silent = false;
 
  private:
-  std::optional<device_models::Report> Sample(Model& model) {
-    if (auto* wiimote = std::get_if<device_models::Wiimote>(&model)) {
+  std::optional<virtual_devices::Report> Sample(Model& model) {
+    if (auto* wiimote = std::get_if<virtual_devices::Wiimote>(&model)) {
       return wiimote->Sample(force(static_cast<double>(now_ns_) * 1e-9));
     }
-    return std::get<device_models::BalanceBoard>(model).Sample(corners);
+    return std::get<virtual_devices::BalanceBoard>(model).Sample(corners);
   }
   void Answer(devices::DeviceHandle handle, const reports::OutputReport& report) {
     const auto model = models_.find(handle);
@@ -124,7 +124,7 @@ class Bench {
   std::int64_t now_ns_ = 1'000'000'000;
   devices::DeviceHandle last_handle_ = 0;
   std::map<devices::DeviceHandle, Model> models_;
-  std::deque<std::pair<devices::DeviceHandle, device_models::Report>> answers_;
+  std::deque<std::pair<devices::DeviceHandle, virtual_devices::Report>> answers_;
   Hub hub_;
 };
 

@@ -10,9 +10,9 @@
 namespace footing::sensor {
 namespace {
 
-using device_models::BalanceBoard;
-using device_models::Wiimote;
 using testing::HasSubstr;
+using virtual_devices::BalanceBoard;
+using virtual_devices::Wiimote;
 
 TEST(HubTare, TakesTheEmptyWeightOffWithoutClampingAndIsKept) {
   Kept kept;

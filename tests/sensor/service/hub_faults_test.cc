@@ -8,9 +8,9 @@
 namespace footing::sensor {
 namespace {
 
-using device_models::Wiimote;
 using stream::CalibrationOrigin;
 using stream::DeviceState;
+using virtual_devices::Wiimote;
 
 std::string Serial(std::size_t number) {
   std::string serial = "serial ";

@@ -11,10 +11,10 @@
 namespace footing::sensor {
 namespace {
 
-using device_models::BalanceBoard;
-using device_models::Wiimote;
 using stream::DeviceRole;
 using testing::HasSubstr;
+using virtual_devices::BalanceBoard;
+using virtual_devices::Wiimote;
 
 /// A wearer with one sensor, turned by `rotation_MS`, who stands, takes steps, stands, and leans.
 class MountedLeg : public testing::Test {

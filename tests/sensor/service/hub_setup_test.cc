@@ -2,18 +2,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/device_models/ps_move.h"
 #include "common/units/units.h"
+#include "common/virtual/devices/ps_move.h"
 #include "daemon/sensor/setup/book.h"
 #include "tests/sensor/service/kept.h"
 
 namespace footing::sensor {
 namespace {
 
-using device_models::PsMove;
-using device_models::Wiimote;
 using stream::DeviceRole;
 using testing::HasSubstr;
+using virtual_devices::PsMove;
+using virtual_devices::Wiimote;
 
 TEST(HubLayout, IsCheckedKeptAndPublished) {
   Kept kept;
@@ -81,7 +81,7 @@ class StoredMove : public testing::Test {
     ports.request_feature = [this, readable](devices::DeviceHandle handle, std::uint8_t id,
                                              std::size_t size) {
       auto piece = readable ? move_.Feature(id, size) : std::nullopt;
-      features_.emplace_back(handle, piece.value_or(device_models::Report()));
+      features_.emplace_back(handle, piece.value_or(virtual_devices::Report()));
     };
     ports.load_calibration = [this](const std::string& serial) { return shelf_.Load(serial); };
     ports.save_calibration = [this](const std::string& serial,
@@ -111,8 +111,8 @@ class StoredMove : public testing::Test {
 
   Kept kept_;
   setup::CalibrationShelf shelf_{kept_.shelf()};
-  PsMove move_{1, device_models::MoveModel::kZcm1};
-  std::vector<std::pair<devices::DeviceHandle, device_models::Report>> features_;
+  PsMove move_{1, virtual_devices::MoveModel::kZcm1};
+  std::vector<std::pair<devices::DeviceHandle, virtual_devices::Report>> features_;
   std::int64_t now_ns_ = 1'000'000'000;
 };
 

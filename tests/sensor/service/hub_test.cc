@@ -11,11 +11,11 @@
 namespace footing::sensor {
 namespace {
 
-using device_models::BalanceBoard;
-using device_models::Wiimote;
 using stream::CalibrationOrigin;
 using stream::DeviceRole;
 using stream::DeviceState;
+using virtual_devices::BalanceBoard;
+using virtual_devices::Wiimote;
 
 /// One count of y and z is 9 bits: about 19 mg.
 constexpr double kCountMps2 = 2 * kStandardGravityMps2 / 103;

@@ -9,18 +9,18 @@
 #include <variant>
 #include <vector>
 
-#include "common/device_models/balance_board.h"
-#include "common/device_models/link_model.h"
 #include "common/units/units.h"
+#include "common/virtual/devices/balance_board.h"
+#include "common/virtual/devices/link_model.h"
 #include "daemon/sensor/service/hub.h"
 #include "tests/sensor/handshake/port_model.h"
 
 namespace footing::sensor {
-using device_models::BalanceBoard;
-using device_models::LinkModel;
-using device_models::LinkQuality;
-using device_models::Report;
 using handshake::PortModel;
+using virtual_devices::BalanceBoard;
+using virtual_devices::LinkModel;
+using virtual_devices::LinkQuality;
+using virtual_devices::Report;
 
 constexpr std::int64_t kTickNs = 10'000'000;
 
@@ -32,8 +32,8 @@ class LongRun {
   void Add(std::variant<PortModel, BalanceBoard> model) {
     const bool board = std::holds_alternative<BalanceBoard>(model);
     const auto seed = static_cast<std::uint64_t>(devices_.size() + 1);
-    const LinkModel link(board ? device_models::BoardLink(quality_, seed)
-                               : device_models::WiimoteLink(quality_, seed),
+    const LinkModel link(board ? virtual_devices::BoardLink(quality_, seed)
+                               : virtual_devices::WiimoteLink(quality_, seed),
                          now_ns_);
     const auto& own = std::visit(
         [](const auto& one) -> const auto& { return one.identity(); }, model);

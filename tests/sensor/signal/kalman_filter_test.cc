@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "common/synthetic/random.h"
 #include "common/units/units.h"
+#include "common/virtual/noise/random.h"
 
 namespace footing::signal {
 namespace {
@@ -29,7 +29,7 @@ TEST(KalmanFilter, AConstantForceStaysAsItIs) {
 /// Noise power after the filter over that before, at rest.
 double NoiseLeft(const KalmanConfig& config) {
   KalmanFilter filter(config);
-  synthetic::Random random(3);
+  noise::Random random(3);
   double raw = 0;
   double filtered = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -99,7 +99,7 @@ TEST(KalmanFilter, WhatIsNotFiniteAndWhatIsNotNewerChangesNothing) {
 
 TEST(KalmanFilter, ACopyContinuesBitForBit) {
   KalmanFilter filter;
-  synthetic::Random random(9);
+  noise::Random random(9);
   for (int i = 0; i < 20; ++i) filter.Advance(i * kStepNs, {random.Normal(), 0, 0});
   KalmanFilter copy = filter;
   for (int i = 20; i < 40; ++i) {

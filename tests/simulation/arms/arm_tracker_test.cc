@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "common/body/kinematics.h"
-#include "common/synthetic/random.h"
 #include "common/units/units.h"
+#include "common/virtual/noise/random.h"
 #include "daemon/simulation/arms/arm_geometry.h"
 #include "tests/simulation/allocations.h"
 
@@ -71,7 +71,7 @@ TEST(ArmGeometry, ErrorsAreTheAnglesOfShoulderAndElbow) {
 }
 
 TEST(ArmFeatures, ARightArmIsTheMirrorImageOfALeftOne) {
-  synthetic::Random random(3);
+  noise::Random random(3);
   ArmFeatures features;
   const Eigen::Vector3d mirror(1, -1, 1);
   for (int i = 0; i < 50; ++i) {

@@ -8,8 +8,8 @@
 #include <functional>
 #include <limits>
 
-#include "common/synthetic/random.h"
 #include "common/units/units.h"
+#include "common/virtual/noise/random.h"
 
 namespace footing::arms {
 namespace {
@@ -20,7 +20,7 @@ constexpr double kStepS = 0.01;
 struct Device {
   Eigen::Matrix3d R_WS = Eigen::Matrix3d::Identity();
   Eigen::Vector3d bias = Eigen::Vector3d(0.01, -0.007, 0.005);
-  synthetic::Random random{5};
+  noise::Random random{5};
   HandAttitude attitude;
 
   /// Turns at a rate in W and accelerates for so long.

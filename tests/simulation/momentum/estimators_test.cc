@@ -147,7 +147,7 @@ class WrongPosture {
   }
 
  private:
-  synthetic::Random random_{8};
+  noise::Random random_{8};
   Eigen::Vector3d error_m_ = Eigen::Vector3d::Zero();
 };
 
@@ -212,7 +212,7 @@ TEST(BestEstimator, IsFiniteAndSaysSoWhenTheSourceIsLostOrMad) {
 TEST(BestEstimator, StaysFiniteUnderAnyLoads) {
   MadeBody body;
   BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
-  synthetic::Random random(11);
+  noise::Random random(11);
   for (int i = 0; i < 20000; ++i) {
     ContactLoads loads = body.At(i * kMadeStepS);
     const double size = std::pow(10, random.Uniform(-3, 5));

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/synthetic/random.h"
+#include "common/virtual/noise/random.h"
 #include "daemon/simulation/momentum/foot_contact.h"
 #include "daemon/simulation/momentum/horizontal_com.h"
 #include "daemon/simulation/momentum/linear_filter.h"
@@ -87,7 +87,7 @@ TEST(HorizontalCom, SmootherFindsASwayThatTheCopOvershoots) {
   const double w = 2 * kPi * 0.7;
   std::vector<HorizontalInput> inputs;
   std::vector<double> truth;
-  synthetic::Random random(3);
+  noise::Random random(3);
   for (int i = 0; i < 1200; ++i) {
     const double t = i * kMadeStepS;
     truth.push_back(0.05 * std::sin(w * t));

@@ -4,8 +4,8 @@
 #include <functional>
 #include <limits>
 
-#include "common/synthetic/random.h"
 #include "common/units/units.h"
+#include "common/virtual/noise/random.h"
 #include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 
@@ -25,7 +25,7 @@ struct MadeBody {
     return Eigen::Vector3d(0, 0, kMadeHeightM);
   };
   double noise_n = 0;
-  synthetic::Random random{5};
+  noise::Random random{5};
 
   Eigen::Vector3d Acceleration(double t) const {
     constexpr double kH = 1e-3;

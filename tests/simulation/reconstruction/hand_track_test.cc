@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/synthetic/random.h"
+#include "common/virtual/noise/random.h"
 
 namespace footing::reconstruction {
 namespace {
@@ -38,7 +38,7 @@ TEST(HandTrack, CarriesASteadyHandOnOverTheDelay) {
 
 TEST(HandTrack, OfADelaysErrorInASwingLittleMoreThanHalfIsLeft) {
   // A swing of 0.3 m at 0.8 Hz, told with 1.5 cm of noise and 83 ms late.
-  synthetic::Random random(3);
+  noise::Random random(3);
   HandTrack track;
   constexpr double kLateS = 0.083, kOmega = 2 * 3.14159265358979 * 0.8;
   double carried = 0, left = 0;

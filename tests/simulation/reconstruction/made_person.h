@@ -6,10 +6,10 @@
 
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
-#include "common/motion/motion.h"
-#include "common/synthetic/random.h"
-#include "common/virtual_sensors/board_cells.h"
-#include "common/virtual_sensors/ground_reaction.h"
+#include "common/virtual/motion/motion.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/sensors/board_cells.h"
+#include "common/virtual/sensors/ground_reaction.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::reconstruction {
@@ -91,7 +91,7 @@ inline std::vector<Inputs> Measured(const body::Body& person, const motion::Moti
     boards[f].middle_m = course.sole_m[f][0].col(0).head<2>();
   }
   body::Kinematics at(person.skeleton);
-  synthetic::Random random(3);
+  noise::Random random(3);
   std::vector<Inputs> inputs;
   for (Eigen::Index i = 0; i < motion.frames(); ++i) {
     Inputs input;

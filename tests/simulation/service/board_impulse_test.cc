@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "common/synthetic/random.h"
+#include "common/virtual/noise/random.h"
 
 namespace footing::simulation {
 namespace {
@@ -48,7 +48,7 @@ struct Boards {
   std::array<double, momentum::kFeet> next_s{10, 10.004};
   LoadPlayer player;
   Feet feet = OnBoards();
-  synthetic::Random random{3};
+  noise::Random random{3};
   double tick_s = 10.05;
 
   /// Everything that came until then; what the newest samples have is in `feet`.

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/virtual/noise/random.h"
+
+namespace footing::virtual_devices {
+
+enum class LinkQuality { kIdeal, kGood, kPoor };
+
+/// "ideal", "good", "poor"; none for another name.
+std::optional<LinkQuality> LinkNamed(const std::string& name);
+
+struct LinkConfig {
+  LinkQuality quality = LinkQuality::kGood;
+  double sensor_rate_hz = 100;   ///< How often the device's sensor takes a new sample.
+  double nominal_rate_hz = 100;  ///< Of reports on a good link.
+  std::uint64_t seed = 1;
+};
+
+/// 100 new samples and 100 reports a second.
+LinkConfig WiimoteLink(LinkQuality quality, std::uint64_t seed);
+/// 60 new samples and 83.6 reports a second, as recorded.
+LinkConfig BoardLink(LinkQuality quality, std::uint64_t seed);
+
+/// When reports arrive over Bluetooth, and how old the sample in each is.
+///
+/// The sensor runs at its own rate and holds each sample; a report carries the one held when it
+/// leaves, so some are repeats and some samples are never sent. Intervals between arrivals are
+/// drawn from the quantiles of two real recordings of a Balance Board (39 s on a good link, 18 min
+/// on a poor one), scaled to the nominal rate. Order is kept: Bluetooth never changes it. A poor
+/// link has outages besides: about one in two minutes, exponential in length with mean 1 s, 0.1 s
+/// to 20 s; their samples are lost. An ideal link delivers every sample at once.
+class LinkModel {
+ public:
+  LinkModel(const LinkConfig& config, std::int64_t start_ns);
+
+  struct Arrival {
+    std::int64_t arrives_ns = 0;
+    std::int64_t sampled_ns = 0;  ///< Not after it arrives.
+  };
+  /// The next report.
+  Arrival Next();
+
+ private:
+  double DrawInterval();
+  double DrawOutage(double interval_s);
+
+  LinkConfig config_;
+  noise::Random random_;
+  std::int64_t start_ns_;
+  std::int64_t last_ns_;
+  std::uint64_t ideal_count_ = 0;
+};
+
+}  // namespace footing::virtual_devices

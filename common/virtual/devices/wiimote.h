@@ -1,0 +1,112 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/virtual/devices/controller.h"
+#include "common/virtual/devices/extensions.h"
+#include "common/virtual/devices/identity.h"
+
+namespace footing::virtual_devices {
+
+/// Ten bytes of EEPROM: zero, 1 g, volume, sum.
+using AccelerationBlock = std::array<std::uint8_t, 10>;
+
+struct WiimoteOptions {
+  /// A 057e:0330, which always has a MotionPlus inside.
+  bool tr = false;
+  bool motion_plus_inside = false;
+  /// Of units that are known; else drawn from the seed.
+  std::optional<AccelerationBlock> acceleration = std::nullopt;
+  std::optional<NunchukBlock> nunchuk = std::nullopt;
+  std::optional<MotionPlusBlock> motion_plus = std::nullopt;
+};
+
+/// What a Wiimote and what is plugged into it feel. S of the Wiimote: x left, y front, z down.
+struct WiimoteSensors {
+  Eigen::Vector3d specific_force_S_mps2{0, 0, -9.80665};
+  std::uint16_t buttons = 0;  ///< First button byte in bits 8 to 15.
+  std::array<std::optional<CameraPoint>, 4> camera;
+  NunchukSensors nunchuk;
+  Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();  ///< Right-handed.
+};
+
+/// A Wiimote and what is in its port: nothing, a Nunchuk, a Classic, a MotionPlus with or without
+/// one of them behind it. Calibrations are drawn from the seed, as units differ.
+///
+/// When something comes or goes, a status report comes unasked and data stop until the mode is set
+/// again; behind an active MotionPlus it shows in a bit of the packets only. A MotionPlus that is
+/// switched on or off takes the port away for 20 ms (Dolphin's MotionPlus.cpp): a status report
+/// without extension, then one of what is there. Its first two packets make no sense.
+class Wiimote {
+ public:
+  static constexpr std::int64_t kDeadNs = 20'000'000;
+
+  explicit Wiimote(std::uint64_t seed, const WiimoteOptions& options = {});
+
+  const Identity& identity() const { return identity_; }
+
+  /// Puts it into the port, or into the MotionPlus' own when there is one; what was there goes.
+  /// Gives the reports that the Wiimote sends of it.
+  std::vector<Report> Plug(Accessory accessory, std::int64_t now_ns);
+  /// Pulls what is outermost: the Nunchuk or Classic, else the MotionPlus unless it is inside.
+  std::vector<Report> Pull(std::int64_t now_ns);
+  /// Pulls the MotionPlus with all that is in it.
+  std::vector<Report> PullMotionPlus(std::int64_t now_ns);
+
+  /// The answers to an output report.
+  std::vector<Report> HandleOutput(std::int64_t now_ns, std::span<const std::uint8_t> report);
+  /// The reports of one sample: what is due of the port, and the data report when the mode calls
+  /// for one. Vectors are turned into counts by the device's own calibrations and end at the range.
+  std::vector<Report> Sample(std::int64_t now_ns, const WiimoteSensors& sensors);
+
+  /// The same without a clock: the port is never away.
+  std::vector<Report> HandleOutput(std::span<const std::uint8_t> report);
+  std::optional<Report> Sample(const Eigen::Vector3d& specific_force_S_mps2,
+                               std::uint16_t buttons = 0);
+
+  /// The next so many requests for status or memory are refused with error 2, as a -TR does that is
+  /// busy.
+  void RefuseNext(int requests) { refusals_ = requests; }
+
+  Controller& controller() { return controller_; }
+  std::uint8_t leds() const { return controller_.leds(); }  ///< Bits 0 to 3.
+  bool rumble() const { return controller_.rumble(); }
+  Accessory accessory() const { return child_; }  ///< Not the MotionPlus.
+  bool has_motion_plus() const { return controller_.memory().has_motion_plus(); }
+  bool motion_plus_active() const { return controller_.memory().motion_plus_mode() != 0; }
+
+  struct Axis {
+    int zero_counts = 0x200;
+    int one_g_counts = 0x268;
+  };
+  /// Raw axes x, y, z; what the EEPROM holds.
+  const std::array<Axis, 3>& axes() const { return axes_; }
+  const NunchukBlock& nunchuk_block() const { return nunchuk_; }
+  const MotionPlusBlock& motion_plus_block() const { return motion_plus_; }
+
+ private:
+  void TakePortAway(std::int64_t now_ns, std::vector<Report>& reports);
+  void Advance(std::int64_t now_ns, std::vector<Report>& reports);
+  ExtensionBytes ExtensionPacket(const WiimoteSensors& sensors);
+  ExtensionBytes PassedPacket(const WiimoteSensors& sensors);
+  Readings Read(const WiimoteSensors& sensors);
+
+  std::array<Axis, 3> axes_;
+  NunchukBlock nunchuk_;
+  MotionPlusBlock motion_plus_;
+  bool motion_plus_inside_;
+  Identity identity_;
+  Controller controller_;
+  Accessory child_ = Accessory::kNone;
+  std::optional<std::int64_t> dead_until_ns_;
+  int rubbish_packets_ = 0;
+  bool child_turn_ = false;  ///< The next packet is the child's.
+  int refusals_ = 0;
+};
+
+}  // namespace footing::virtual_devices

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/virtual/motion/motion.h"
+
+/// Acclaim skeleton (ASF) and motion (AMC), as the CMU database has them; y up, z ahead.
+namespace footing::motion {
+
+struct AsfOptions {
+  /// One unit of length; 0 takes the file's own `length` as CMU means it, inches over it: with 0.45
+  /// that is 0.0254 / 0.45 m = 5.644 cm.
+  double unit_m = 0;
+};
+
+/// A skeleton and how its AMC files name and order their numbers.
+struct AsfSkeleton {
+  /// The root's rotations are heading, roll, pitch (about z, x, y of W), whatever the file has:
+  /// they lock only when the pelvis lies on its side. Bones are joints at their near ends; the far
+  /// end of the last of each chain is a joint "NAME_end".
+  body::Skeleton skeleton;
+
+  /// The numbers that a bone has in a frame of an AMC file: where each goes into q.
+  struct Bone {
+    std::string name;
+    std::vector<int> dofs;
+  };
+  std::vector<Bone> bones;
+
+  /// The root as the file has it: its six numbers in the file's order.
+  body::Joint file_root;
+  struct RootNumber {
+    bool rotation = false;
+    int index = 0;  ///< Axis in W of a position, or which of file_root's rotations.
+  };
+  std::array<RootNumber, 6> root_numbers;
+  Eigen::Vector3d root_position_m = Eigen::Vector3d::Zero();
+
+  double unit_m = 0;
+  double radians_per_angle = 0;  ///< Of the ASF file; AMC files say their own.
+};
+
+/// `file` is the name for errors, which say the line and what was expected there. Bones that slide
+/// or stretch (tx, ty, tz, l) are refused; a bone without length has length 0.
+Result<AsfSkeleton> ParseAsf(std::string_view text, const std::string& file,
+                             const AsfOptions& options = {});
+
+/// The motion of that skeleton. AMC files do not state their rate: CMU's are 120 Hz.
+Result<Motion> ParseAmc(std::string_view text, const std::string& file, const AsfSkeleton& skeleton,
+                        double rate_hz = 120);
+
+}  // namespace footing::motion

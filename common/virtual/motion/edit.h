@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "common/body/landmarks.h"
+#include "common/result/result.h"
+#include "common/virtual/motion/motion.h"
+
+/// What is done to a motion before it is used.
+namespace footing::motion {
+
+/// The same rotations with angles that do not jump: of the triples and whole turns that mean the
+/// same, each frame takes those nearest to the frame before.
+Motion Continuous(Motion motion);
+
+/// Smoothed by LowPass (signal.h), angles made continuous first. About 8 Hz for daily movement, 14
+/// for jumps.
+Motion Smoothed(const Motion& motion, double cutoff_hz);
+
+/// At another rate, by a spline; a lower rate is low-passed at 0.4 of it first.
+Motion Resampled(const Motion& motion, double rate_hz);
+
+/// A motion with its velocities and accelerations, one column a frame, entry for entry of q.
+struct MotionRates {
+  Eigen::MatrixXd q_dot;   ///< m/s, rad/s.
+  Eigen::MatrixXd q_ddot;  ///< m/s^2, rad/s^2.
+};
+/// Of the spline through the poses, angles made continuous first. Smooth the motion before.
+MotionRates Rates(const Motion& motion);
+
+/// The mirror image at the plane y = 0: left and right limbs change places, lengths too. Joints are
+/// paired by name. A joint with fewer than three rotations whose axes are not the mirror image of
+/// its partner's is met as nearly as it can.
+Motion Mirrored(const Motion& motion);
+
+/// Forwards, backwards, forwards, ... until `seconds` are full. Around each turning point the clip
+/// slows down and back up over `ease_s` before its end, so that velocities do not jump; with 0 it
+/// turns at once.
+Motion Looped(const Motion& motion, double seconds, double ease_s = 0.5);
+
+/// Only the joints between the root and the landmarks (landmarks.h): no fingers, no face, no
+/// helpers of the rig. A wrist keeps an end point "NAME_end" where its hand goes on. A CMU skeleton
+/// becomes one of 56 degrees of freedom, those of StandardPerson.
+Result<Motion> WithLandmarksOnly(const Motion& motion);
+
+/// Turned about the vertical and moved over the floor, so that in the middle (median) of the motion
+/// the person looks along x with the hips over the origin.
+Motion FacingForward(const Motion& motion, const body::Landmarks& landmarks);
+
+}  // namespace footing::motion

@@ -1,0 +1,137 @@
+#include "common/virtual/motion_files/load.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstdio>
+#include <span>
+#include <utility>
+
+#include "common/config/data_file.h"
+#include "common/virtual/motion/asf.h"
+#include "common/virtual/motion/bvh.h"
+#include "common/virtual/motion/c3d.h"
+#include "common/virtual/motion/marker_fit.h"
+#include "common/virtual/motion/trc.h"
+
+namespace footing::motion_files {
+namespace {
+
+constexpr std::size_t kMostBytes = 512u << 20;
+
+Result<std::string> Read(const std::string& path) { return config::ReadTextFile(path, kMostBytes); }
+
+/// "trc" of "a/b.TRC".
+std::string Ending(const std::string& path) {
+  const auto dot = path.find_last_of("./");
+  if (dot == std::string::npos || path[dot] == '/') return "";
+  std::string ending = path.substr(dot + 1);
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+Result<motion::C3d> ReadC3d(const std::string& path) {
+  const auto text = Read(path);
+  if (!text) return text.error();
+  return motion::ParseC3d({reinterpret_cast<const std::uint8_t*>(text->data()), text->size()},
+                          path);
+}
+
+/// Up as the file says it, or as the markers have it.
+motion::FileAxes AxesOf(const motion::C3d& c3d) {
+  if (c3d.y_screen == "+Z") return motion::FileAxes::kZUp;
+  if (c3d.y_screen == "+Y") return motion::FileAxes::kYUp;
+  return motion::GuessAxes(c3d.points);
+}
+
+Result<LoadedMotion> FromMarkers(const std::string& path, const LoadOptions& options) {
+  const auto tracks = LoadMarkers(path);
+  if (!tracks) return tracks.error();
+  motion::MarkerTracks still;
+  motion::MarkerFitOptions fit_options{.set = options.marker_set, .sex = options.sex};
+  if (!options.still.empty()) {
+    auto read = LoadMarkers(options.still);
+    if (!read) return read.error();
+    still = *std::move(read);
+    fit_options.still = &still;
+  }
+  auto fit = motion::FitMarkers(*tracks, fit_options);
+  if (!fit) return Error{fit.error().kind, path + ": " + fit.error().message};
+  char note[160];
+  std::snprintf(note, sizeof note, "%zu markers of set %s fitted: height %.2f m, residual %.1f mm",
+                fit->markers.size(), fit->set.c_str(), fit->height_m, 1000 * fit->rms_m);
+  return LoadedMotion{std::move(fit->motion), note, fit->height_m};
+}
+
+}  // namespace
+
+Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options) {
+  const std::string ending = Ending(path);
+  if (ending == "trc" || ending == "c3d") return FromMarkers(path, options);
+  if (ending != "bvh" && ending != "amc") {
+    return UsageError(path + ": no motion file: expected .bvh, .amc, .trc or .c3d");
+  }
+  const auto text = Read(path);
+  if (!text) return text.error();
+  if (ending == "bvh") {
+    auto motion = motion::ParseBvh(*text, path, {.unit_m = options.bvh_unit_m});
+    if (!motion) return motion.error();
+    return LoadedMotion{*std::move(motion), "", std::nullopt};
+  }
+  if (options.skeleton.empty()) {
+    return UsageError(path + ": an AMC file needs its skeleton: give --skeleton FILE.asf");
+  }
+  const auto asf_text = Read(options.skeleton);
+  if (!asf_text) return asf_text.error();
+  const auto asf = motion::ParseAsf(*asf_text, options.skeleton);
+  if (!asf) return asf.error();
+  auto motion = motion::ParseAmc(*text, path, *asf, options.amc_rate_hz);
+  if (!motion) return motion.error();
+  return LoadedMotion{*std::move(motion), "", std::nullopt};
+}
+
+Result<motion::MarkerTracks> LoadMarkers(const std::string& path) {
+  const std::string ending = Ending(path);
+  if (ending == "c3d") {
+    auto c3d = ReadC3d(path);
+    if (!c3d) return c3d.error();
+    const motion::FileAxes axes = AxesOf(*c3d);  // Before the points are moved away.
+    return motion::ToWorld(axes, std::move(c3d->points));
+  }
+  if (ending != "trc") return UsageError(path + ": no markers: expected .trc or .c3d");
+  const auto text = Read(path);
+  if (!text) return text.error();
+  auto tracks = motion::ParseTrc(*text, path);
+  if (!tracks) return tracks.error();
+  const motion::FileAxes axes = motion::GuessAxes(*tracks);
+  return motion::ToWorld(axes, *std::move(tracks));
+}
+
+Result<motion::GroundForces> LoadForces(const std::string& path) {
+  const std::string ending = Ending(path);
+  if (ending == "c3d") {
+    const auto c3d = ReadC3d(path);
+    if (!c3d) return c3d.error();
+    auto forces = motion::ToGroundForces(*c3d, path);
+    if (!forces) return forces.error();
+    for (motion::PlateForces& plate : forces->plates) {
+      for (Eigen::Matrix3Xd* track : {&plate.force_W, &plate.cop_W, &plate.moment_W}) {
+        for (Eigen::Index i = 0; i < track->cols(); ++i) {
+          track->col(i) = motion::ToWorld(AxesOf(*c3d), Eigen::Vector3d(track->col(i)));
+        }
+      }
+    }
+    return forces;
+  }
+  if (ending != "mot" && ending != "sto") {
+    return UsageError(path + ": no ground forces: expected .mot, .sto or .c3d");
+  }
+  const auto text = Read(path);
+  if (!text) return text.error();
+  const auto table = motion::ParseTable(*text, path);
+  if (!table) return table.error();
+  return motion::ToGroundForces(*table, path);
+}
+
+}  // namespace footing::motion_files

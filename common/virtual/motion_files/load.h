@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/body/body.h"
+#include "common/result/result.h"
+#include "common/virtual/motion/markers.h"
+#include "common/virtual/motion/motion.h"
+#include "common/virtual/motion/table.h"
+
+/// Motion files by their paths: the edge around the pure readers of common/virtual/motion.
+namespace footing::motion_files {
+
+struct LoadOptions {
+  std::string skeleton = {};  ///< ASF file of an AMC motion.
+  double amc_rate_hz = 120;   ///< AMC files do not say.
+  double bvh_unit_m = 0.01;
+  std::string marker_set = {};  ///< Of TRC and C3D; empty: the one that is there.
+  std::string still = {};       ///< TRC or C3D of the same person standing still; may be empty.
+  body::Sex sex = body::Sex::kMean;
+};
+
+/// A motion in W, whatever it was recorded as.
+struct LoadedMotion {
+  motion::Motion motion;
+  /// From markers: one line that says the set, the height and the residual. Else empty.
+  std::string note;
+  std::optional<double> height_m;
+};
+
+/// Reads .bvh, .amc (with its skeleton), .trc and .c3d. The error of an unknown ending lists them.
+Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options = {});
+
+/// Ground forces of a .mot, .sto or .c3d file, in W.
+Result<motion::GroundForces> LoadForces(const std::string& path);
+
+/// Markers of a .trc or .c3d file, in W.
+Result<motion::MarkerTracks> LoadMarkers(const std::string& path);
+
+}  // namespace footing::motion_files

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace footing::noise {
+
+/// Random numbers whose bits depend on the seed alone: the standard fixes mt19937_64, and what
+/// comes after it here is additions and one multiplication (the standard's distributions are not
+/// fixed).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// In [0, 1), of 53 bits.
+  double Uniform();
+  /// In [low, high).
+  double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
+  /// Mean 0, standard deviation 1: the sum of twelve uniforms less six, so within +-6.
+  double Normal();
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace footing::noise

@@ -1,0 +1,86 @@
+#include "common/virtual/sensors/held_device.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "common/body/kinematics.h"
+#include "common/body/points.h"
+#include "common/units/units.h"
+#include "common/virtual/motion/edit.h"
+
+namespace footing::virtual_sensors {
+
+HeldCourse FollowFist(const body::Body& body, const motion::Motion& motion, int side,
+                      double cutoff_hz) {
+  const body::Skeleton& skeleton = body.skeleton;
+  const body::Point fist = body::Fist(body, side);
+  const auto j = static_cast<std::size_t>(fist.joint);
+  body::Kinematics at(skeleton);
+  body::ComputeKinematics(skeleton, body::TPose(skeleton, body.landmarks), at);
+  const Eigen::Matrix3d R_SJ = at.R_WJ[j];
+
+  const motion::Motion smooth = motion::Smoothed(motion, cutoff_hz);
+  const motion::MotionRates rates = motion::Rates(smooth);
+  body::JointVelocities velocities(skeleton);
+  body::JointAccelerations accelerations(skeleton);
+  HeldCourse course;
+  course.specific_force_S_mps2.resize(3, smooth.frames());
+  course.angular_velocity_S_radps.resize(3, smooth.frames());
+  for (Eigen::Index i = 0; i < smooth.frames(); ++i) {
+    body::ComputeKinematics(skeleton, smooth.q.col(i), at);
+    body::ComputeVelocities(skeleton, at, rates.q_dot.col(i), velocities);
+    body::ComputeAccelerations(skeleton, at, rates.q_dot.col(i), rates.q_ddot.col(i), velocities,
+                               accelerations);
+    const Eigen::Vector3d r = at.R_WJ[j] * fist.p_J_m;
+    const Eigen::Vector3d& w = velocities.w_WJ[j];
+    const Eigen::Vector3d a =
+        accelerations.a_WJ[j] + accelerations.alpha_WJ[j].cross(r) + w.cross(w.cross(r));
+    const Eigen::Matrix3d R_SW = R_SJ * at.R_WJ[j].transpose();
+    course.specific_force_S_mps2.col(i) = R_SW * (a + Eigen::Vector3d(0, 0, kStandardGravityMps2));
+    course.angular_velocity_S_radps.col(i) = R_SW * w;
+  }
+  return course;
+}
+
+HeldErrors::HeldErrors(const HeldErrorConfig& config) : config_(config), random_(config.seed) {
+  const Eigen::Vector3d tilt = Normals(config.grip_tilt_rad);
+  grip_ = Eigen::AngleAxisd(tilt.x(), Eigen::Vector3d::UnitX()) *
+          Eigen::AngleAxisd(tilt.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(config.grip_heading_rad * random_.Normal(), Eigen::Vector3d::UnitZ())
+              .toRotationMatrix();
+  force_gain_ = Eigen::Vector3d::Ones() + Normals(config.gain_spread);
+  turn_gain_ = Eigen::Vector3d::Ones() + Normals(config.gain_spread);
+  force_bias_ = Normals(config.force_bias_mps2);
+  turn_bias_ = Normals(config.turn_bias_radps);
+}
+
+Eigen::Vector3d HeldErrors::Normals(double sd) {
+  Eigen::Vector3d values;
+  for (double& value : values) value = sd * random_.Normal();
+  return values;
+}
+
+HeldReading HeldErrors::Advance(const Eigen::Vector3d& specific_force_mps2,
+                                const Eigen::Vector3d& angular_velocity_radps, double step_s) {
+  const auto counted = [](double value, double count) {
+    return count > 0 ? count * std::round(value / count) : value;
+  };
+  turn_bias_ += Normals(config_.turn_walk_radps_rt_s * std::sqrt(step_s));
+  HeldReading reading;
+  reading.specific_force_S_mps2 = force_gain_.cwiseProduct(grip_ * specific_force_mps2) +
+                                  force_bias_ + Normals(config_.force_noise_mps2);
+  reading.angular_velocity_S_radps = turn_gain_.cwiseProduct(grip_ * angular_velocity_radps) +
+                                     turn_bias_ + Normals(config_.turn_noise_radps);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    double& force = reading.specific_force_S_mps2(axis);
+    reading.clipped = reading.clipped || std::abs(force) >= config_.force_range_mps2;
+    force = std::clamp(counted(force, config_.force_count_mps2), -config_.force_range_mps2,
+                       config_.force_range_mps2);
+    double& turn = reading.angular_velocity_S_radps(axis);
+    turn = counted(turn, config_.turn_count_radps);
+  }
+  return reading;
+}
+
+}  // namespace footing::virtual_sensors

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "common/body/body.h"
+#include "common/virtual/motion/motion.h"
+#include "common/virtual/noise/random.h"
+
+namespace footing::virtual_sensors {
+
+/// What a device held in a fist feels, a column a frame, in its frame S as it should be held: with
+/// the arms of a T-pose its axes are W's (it points forward, buttons up).
+struct HeldCourse {
+  Eigen::Matrix3Xd specific_force_S_mps2;
+  Eigen::Matrix3Xd angular_velocity_S_radps;
+};
+
+/// In the middle of the fist of side 0 (left) or 1. Poses are smoothed first, since recorded ones
+/// are not fit to be differentiated twice. The motion's skeleton is the body's.
+HeldCourse FollowFist(const body::Body& body, const motion::Motion& motion, int side,
+                      double cutoff_hz = 10);
+
+/// A vector in a Wiimote's own frame (x left, y front, z down) as in S, and back: pointing forward
+/// with its buttons up.
+inline Eigen::Vector3d AsHeld(const Eigen::Vector3d& v) { return {v.y(), v.x(), -v.z()}; }
+
+/// Errors of a Wiimote with MotionPlus and of the hand that holds it; standard deviations unless
+/// said otherwise. Noises, counts and ranges are the devices' (docs/hands.md).
+struct HeldErrorConfig {
+  double force_noise_mps2 = 0.06;
+  double force_count_mps2 = 9.80665 / 104;
+  double force_range_mps2 = 3.6 * 9.80665;  ///< Ends there.
+  double force_bias_mps2 = 0.1;
+  double turn_noise_radps = 0.006;
+  double turn_count_radps = 0.00127;     ///< 595 degrees/s / 8192.
+  double turn_bias_radps = 0.006;        ///< Constant; a rest can tell it.
+  double turn_walk_radps_rt_s = 0.0003;  ///< The bias' random walk, after a second.
+  double gain_spread = 0.01;             ///< Of every axis of both.
+  double grip_tilt_rad = 0.17;           ///< How it lies in the fist, about level axes,
+  double grip_heading_rad = 0.07;        ///< and how far off forward it points in the T-pose.
+  std::uint64_t seed = 1;
+};
+
+struct HeldReading {
+  Eigen::Vector3d specific_force_S_mps2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();
+  bool clipped = false;  ///< The accelerometer was at the end of its range.
+};
+
+/// One device with errors of its own, drawn from the seed.
+class HeldErrors {
+ public:
+  explicit HeldErrors(const HeldErrorConfig& config);
+
+  /// What it tells of the truth, `step_s` after the reading before.
+  HeldReading Advance(const Eigen::Vector3d& specific_force_mps2,
+                      const Eigen::Vector3d& angular_velocity_radps, double step_s);
+
+ private:
+  Eigen::Vector3d Normals(double sd);
+
+  HeldErrorConfig config_;
+  noise::Random random_;
+  Eigen::Matrix3d grip_;  ///< From the frame as it should be held.
+  Eigen::Vector3d force_gain_, turn_gain_, force_bias_, turn_bias_;
+};
+
+}  // namespace footing::virtual_sensors

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "common/virtual/noise/random.h"
+
+namespace footing::virtual_sensors {
+
+/// Errors of hands as a Kinect's skeleton tracker tells them (docs/hands.md): white noise, and an
+/// offset common to both hands that changes slowly. It sees 30 frames a second and tells each two
+/// frames late.
+class KinectErrors {
+ public:
+  static constexpr double kPeriodS = 1.0 / 30, kLateS = 2.0 / 30;
+  static constexpr double kNoiseM = 0.015, kOffsetM = 0.04, kOffsetChangesS = 5;
+
+  explicit KinectErrors(std::uint64_t seed);
+
+  /// The next exposure, kPeriodS after the one before.
+  void Expose();
+  /// A hand of this exposure where it is told to be; the left one first.
+  Eigen::Vector3d Told(const Eigen::Vector3d& p_W_m);
+  /// Along each axis, of all errors.
+  static double SdM();
+
+ private:
+  noise::Random random_;
+  Eigen::Vector3d offset_m_;
+};
+
+}  // namespace footing::virtual_sensors

@@ -1,0 +1,123 @@
+#include "daemon/offline/learning/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footing::learning {
+namespace {
+
+/// Rows that stay in the processor's cache from one product to the next.
+constexpr Eigen::Index kBlockRows = 256;
+/// Standard deviation (of values within +-1/2) under which a unit counts as no news: its output
+/// weights would be so large that float32 could not hold the sum.
+constexpr double kLeastNews = 3e-3;
+
+template <typename Work>
+void ForBlocks(Eigen::Index rows, const Work& work) {
+  for (Eigen::Index first = 0; first < rows; first += kBlockRows) {
+    work(first, std::min(kBlockRows, rows - first));
+  }
+}
+
+}  // namespace
+
+Eigen::ArrayXXd Sigmoid(const Eigen::ArrayXXd& x) { return 1 / (1 + (-x).exp()) - 0.5; }
+
+CandidateTask CandidateTask::Covariance(const Eigen::Ref<const Eigen::MatrixXd>& units,
+                                        const Eigen::MatrixXd& errors) {
+  Eigen::MatrixXd centred = errors.rowwise() - errors.colwise().mean();
+  const double rms = std::sqrt(centred.squaredNorm() / static_cast<double>(errors.size()));
+  if (rms > 0) centred /= rms * static_cast<double>(errors.rows());
+  return {.units = units, .basis = units.leftCols(0), .errors = std::move(centred)};
+}
+
+CandidateTask CandidateTask::ErrorReduction(const Eigen::Ref<const Eigen::MatrixXd>& units,
+                                            const Eigen::MatrixXd& errors,
+                                            const Eigen::Ref<const Eigen::MatrixXd>& basis) {
+  const double size = errors.norm();
+  return {.units = units, .basis = basis, .errors = size > 0 ? errors / size : errors};
+}
+
+Scores Score(const CandidateTask& task, const Eigen::MatrixXd& weights) {
+  const Eigen::Index rows = task.units.rows();
+  Scores result{.values = Eigen::MatrixXd(rows, weights.cols()),
+                .rest = {},
+                .correlations = Eigen::MatrixXd::Zero(task.errors.cols(), weights.cols()),
+                .sizes = Eigen::RowVectorXd::Ones(weights.cols()),
+                .scores = {}};
+  Eigen::MatrixXd along = Eigen::MatrixXd::Zero(task.basis.cols(), weights.cols());
+  ForBlocks(rows, [&](Eigen::Index first, Eigen::Index count) {
+    auto values = result.values.middleRows(first, count);
+    values.noalias() = task.units.middleRows(first, count) * weights;
+    values = Sigmoid(values.array()).matrix();
+    result.correlations.noalias() += task.errors.middleRows(first, count).transpose() * values;
+    along.noalias() += task.basis.middleRows(first, count).transpose() * values;
+  });
+  if (task.basis.cols() == 0) {
+    result.scores = result.correlations.cwiseAbs().colwise().sum();
+    return result;
+  }
+  result.rest = result.values;
+  ForBlocks(rows, [&](Eigen::Index first, Eigen::Index count) {
+    result.rest.middleRows(first, count).noalias() -= task.basis.middleRows(first, count) * along;
+  });
+  const double least = static_cast<double>(rows) * kLeastNews * kLeastNews;
+  result.sizes = (result.rest.colwise().squaredNorm().array() + least).sqrt();
+  result.scores = result.correlations.colwise().norm().cwiseQuotient(result.sizes);
+  return result;
+}
+
+Eigen::MatrixXd ScoreGradient(const CandidateTask& task, const Scores& scores) {
+  const bool covariance = task.basis.cols() == 0;
+  // dS/dV = E towards + rest away, each candidate's column by its own factors.
+  Eigen::MatrixXd towards = scores.correlations.cwiseSign();
+  Eigen::RowVectorXd away = Eigen::RowVectorXd::Zero(scores.sizes.size());
+  if (!covariance) {
+    const Eigen::RowVectorXd lengths = scores.correlations.colwise().norm();
+    for (Eigen::Index c = 0; c < lengths.size(); ++c) {
+      towards.col(c).setZero();
+      if (lengths(c) == 0) continue;
+      towards.col(c) = scores.correlations.col(c) / (lengths(c) * scores.sizes(c));
+      away(c) = -scores.scores(c) / (scores.sizes(c) * scores.sizes(c));
+    }
+  }
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(task.units.cols(), towards.cols());
+  Eigen::MatrixXd back;
+  ForBlocks(task.units.rows(), [&](Eigen::Index first, Eigen::Index count) {
+    back.noalias() = task.errors.middleRows(first, count) * towards;
+    if (!covariance) back += scores.rest.middleRows(first, count) * away.asDiagonal();
+    back.array() *= 0.25 - scores.values.middleRows(first, count).array().square();
+    gradient.noalias() += task.units.middleRows(first, count).transpose() * back;
+  });
+  return gradient;
+}
+
+NewUnit TrainCandidates(const CandidateTask& task, const CandidateOptions& options,
+                        noise::Random& random) {
+  Eigen::MatrixXd weights(task.units.cols(), options.pool);
+  for (double& weight : weights.reshaped()) {
+    weight = random.Uniform(-options.weight_range, options.weight_range);
+  }
+  Quickprop quickprop(weights.rows(), weights.cols(), options.quickprop);
+  double last_best = 0;
+  int quit = options.patience;
+  int epoch = 0;
+  Scores scores = Score(task, weights);
+  for (; epoch < options.epochs_max && epoch < quit; ++epoch) {
+    quickprop.Step(-ScoreGradient(task, scores), weights);
+    scores = Score(task, weights);
+    const double best = scores.scores.maxCoeff();
+    if (epoch == 0 || std::abs(best - last_best) > options.change * last_best) {
+      last_best = best;
+      quit = epoch + options.patience;
+    }
+  }
+  Eigen::Index best = 0;
+  scores.scores.maxCoeff(&best);
+  return {.weights = weights.col(best),
+          .values = scores.values.col(best),
+          .correlations = scores.correlations.col(best),
+          .epochs = epoch};
+}
+
+}  // namespace footing::learning

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+
+#include "daemon/offline/learning/candidates.h"
+#include "daemon/offline/learning/examples.h"
+#include "daemon/offline/learning/sigmoid_outputs.h"
+#include "daemon/simulation/cascade/network.h"
+
+namespace footing::learning {
+
+enum class Outputs {
+  kLinear,   ///< Any targets; output weights by least squares.
+  kSigmoid,  ///< Targets of +-1/2, as the classic problems have; by Quickprop.
+};
+
+/// What a candidate unit is trained for; see Scores.
+enum class Objective { kCovariance, kErrorReduction };
+
+struct CascadeOptions {
+  Outputs outputs = Outputs::kLinear;
+  /// Of linear outputs; candidates for sigmoid ones always go by covariance.
+  Objective objective = Objective::kErrorReduction;
+  int hidden_max = 30;
+  /// Stops at a mean squared error of training, in the targets' unit squared, at or below this.
+  double mse_goal = 0;
+  /// Sigmoid outputs: stops when every output is nearer to its target than this.
+  double near = 0.4;
+  /// With validation rows: hidden units in a row without an improvement of validation by the part
+  /// `improvement`; then the network goes back to its best.
+  int patience = 5;
+  double improvement = 0.01;
+  CandidateOptions candidates;
+  OutputOptions output_training;
+};
+
+struct CascadeResult {
+  cascade::CascadeNetwork network;
+  int hidden_units = 0;
+  int epochs = 0;  ///< Passes over the data, of candidates and outputs.
+  double train_mse = 0;
+  double validation_mse = 0;  ///< Of the float32 network; 0 without validation rows.
+  bool goal_reached = false;  ///< mse_goal or near.
+};
+
+/// Cascade correlation (Fahlman & Lebiere 1990; pose paper, section 4.2): starts without hidden
+/// units; then one unit at a time, the best of a pool trained to follow the error that is left,
+/// whose weights are never changed again; then the outputs are trained anew.
+/// Departure: linear outputs are solved for, not gone down to. Nothing trains on `validation`
+/// (which may be empty), but it chooses how many hidden units stay.
+CascadeResult TrainCascade(const Examples& train, const Examples& validation,
+                           const CascadeOptions& options, std::uint64_t seed);
+
+/// Mean over rows and outputs of the squared error of a network, in the targets' unit squared.
+double MeanSquaredError(const cascade::CascadeNetwork& network, const Examples& examples);
+
+}  // namespace footing::learning

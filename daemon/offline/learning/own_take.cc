@@ -1,0 +1,175 @@
+#include "daemon/offline/learning/own_take.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "common/units/units.h"
+#include "common/virtual/motion/edit.h"
+#include "common/virtual/sensors/body_course.h"
+#include "common/virtual/sensors/ground_reaction.h"
+#include "common/virtual/sensors/scene.h"
+
+namespace footing::learning {
+namespace {
+
+namespace sensors = virtual_sensors;
+
+constexpr double kPairRateHz = 20;
+constexpr double kLoadedShare = 0.15;  // Of the weight, on a foot whose place counts.
+constexpr Eigen::Index kFewestPairs = 100;
+constexpr double kMostYawRad = DegreesToRadians(60);
+constexpr double kMostOffM = 0.1;
+
+/// What the ground feels of a motion.
+struct Felt {
+  ForceTrace trace;
+  std::array<Eigen::Matrix2Xd, 2> cop_m;  ///< A column a frame, as the trace.
+};
+
+Felt Feel(const body::Body& body, const motion::Motion& motion, const std::string& name) {
+  const sensors::BodyCourse course = sensors::Follow(body, motion);
+  const sensors::GroundReaction reaction = sensors::React(course);
+  Felt felt;
+  felt.trace.name = name;
+  felt.trace.rate_hz = motion.rate_hz;
+  felt.trace.weight_n = KilogramsToNewtons(body.mass_kg);
+  felt.trace.load_n.resize(2, course.frames());
+  felt.trace.valid.assign(static_cast<std::size_t>(course.frames()), true);
+  for (auto& cop_m : felt.cop_m) cop_m.resize(2, course.frames());
+  for (Eigen::Index i = 0; i < course.frames(); ++i) {
+    const auto feet = sensors::ShareBetweenFeet(course, reaction, i);
+    for (std::size_t f = 0; f < feet.size(); ++f) {
+      felt.trace.load_n(static_cast<Eigen::Index>(f), i) = feet[f].load_n;
+      felt.cop_m[f].col(i) = feet[f].cop_m;
+    }
+  }
+  return felt;
+}
+
+/// Where each loaded foot presses in the motion, and where its board was pressed then.
+std::pair<Eigen::Matrix2Xd, Eigen::Matrix2Xd> PressedPlaces(const RecordedSession& session,
+                                                            const Felt& felt,
+                                                            const TimeAlignment& alignment) {
+  const double least_n = kLoadedShare * felt.trace.weight_n;
+  const double step = std::max(1.0, felt.trace.rate_hz / kPairRateHz);
+  std::vector<Eigen::Vector2d> from, to;
+  for (double at = 0; at < static_cast<double>(felt.trace.load_n.cols()); at += step) {
+    const auto i = static_cast<Eigen::Index>(at);
+    const auto loads =
+        LoadsAt(session, alignment.ToRecording(static_cast<double>(i) / felt.trace.rate_hz));
+    for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+      const auto pressure = momentum::PressureOf(loads.feet[f], least_n);
+      if (!pressure.cop_valid || felt.trace.load_n(static_cast<Eigen::Index>(f), i) < least_n) {
+        continue;
+      }
+      from.emplace_back(felt.cop_m[f].col(i));
+      to.emplace_back(pressure.p_WP_m.head<2>());
+    }
+  }
+  std::pair<Eigen::Matrix2Xd, Eigen::Matrix2Xd> places;
+  places.first.resize(2, std::ssize(from));
+  places.second.resize(2, std::ssize(to));
+  for (Eigen::Index i = 0; i < std::ssize(from); ++i) {
+    places.first.col(i) = from[static_cast<std::size_t>(i)];
+    places.second.col(i) = to[static_cast<std::size_t>(i)];
+  }
+  return places;
+}
+
+Result<FloorPlacement> PlaceFeet(const RecordedSession& session, const Felt& felt,
+                                 const TimeAlignment& alignment) {
+  const auto [from, to] = PressedPlaces(session, felt, alignment);
+  const std::string both = session.name + " and " + felt.trace.name;
+  if (from.cols() < kFewestPairs) {
+    return InvalidData(both + ": feet stand on the boards in less than " +
+                       std::to_string(static_cast<int>(kFewestPairs / kPairRateHz / 2)) +
+                       " s of what both have");
+  }
+  const FloorPlacement placement = PlaceFloor(from, to);
+  if (std::abs(placement.yaw_rad) <= kMostYawRad && placement.rms_m <= kMostOffM) return placement;
+  std::ostringstream text;
+  text.precision(2);
+  text << both << ": the boards do not lie where the feet stand (turned by "
+       << RadiansToDegrees(placement.yaw_rad) << " degrees, " << 100 * placement.rms_m
+       << " cm off): were left and right changed, or the layout not told (footing-ctl layout)?";
+  return InvalidData(text.str());
+}
+
+}  // namespace
+
+Result<OwnTake> MakeOwnTake(RecordedSession session, motion::Motion motion,
+                            const body::Body& person, const std::string& motion_name) {
+  const auto t_pose = FindTPose(session);
+  if (!t_pose) {
+    std::ostringstream text;
+    text.precision(3);
+    text << session.name << ": nobody stands still on both boards for "
+         << momentum::TPoseCalibration::kSeconds << " s in its " << session.duration_s
+         << " s; record again and begin with the T-pose";
+    return InvalidData(text.str());
+  }
+  motion = motion::FacingForward(motion::Continuous(std::move(motion)), person.landmarks);
+  motion.q.row(2).array() -= sensors::FloorHeight(motion, person.landmarks);
+  OwnTake take;
+  take.t_pose = *t_pose;
+  take.body = body::WithMass(person, t_pose->mass_kg);
+  const Felt felt = Feel(take.body, motion, motion_name);
+  const auto alignment =
+      AlignInTime(TraceOf(session, KilogramsToNewtons(t_pose->mass_kg)), felt.trace);
+  if (!alignment) return alignment.error();
+  take.alignment = *alignment;
+  const auto placement = PlaceFeet(session, felt, take.alignment);
+  if (!placement) return placement.error();
+  take.placement = *placement;
+  take.motion = Placed(motion, take.placement);
+  take.session = std::move(session);
+  return take;
+}
+
+Result<OwnTake> MirrorImage(const OwnTake& take) {
+  OwnTake image = take;
+  image.motion = motion::Mirrored(take.motion);
+  body::PersonParameters person;
+  person.mass_kg = take.body.mass_kg;
+  person.height_m = take.body.height_m;
+  auto body = body::MakeBody(image.motion.skeleton, person);
+  if (!body) return body.error();
+  image.body = *std::move(body);
+  std::swap(image.session.boards[0], image.session.boards[1]);
+  std::swap(image.session.cells_W_m[0], image.session.cells_W_m[1]);
+  std::swap(image.session.hands[0], image.session.hands[1]);
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (Eigen::Vector2d& cell : image.session.cells_W_m[side]) cell.y() *= -1;
+    for (HandReading& hand : image.session.hands[side]) hand.p_W_m.y() *= -1;
+  }
+  const auto t_pose = FindTPose(image.session);
+  if (!t_pose) return InvalidData(take.session.name + ": its T-pose hardly stands still");
+  image.t_pose = *t_pose;
+  return image;
+}
+
+std::vector<LoadClip> OwnLoads(const OwnTake& take) {
+  const sensors::BodyCourse course = sensors::Follow(take.body, take.motion);
+  const Eigen::Vector2d origin_m = momentum::NetworkOrigin(take.t_pose);
+  const double weight_n = KilogramsToNewtons(take.t_pose.mass_kg);
+  std::vector<LoadClip> clips;
+  bool going_on = false;
+  for (double t_s = 0;; t_s += 1 / momentum::kNetworkRateHz) {
+    const auto at = static_cast<Eigen::Index>(std::lround(t_s * take.motion.rate_hz));
+    if (at >= course.frames()) break;
+    const auto loads = LoadsAt(take.session, take.alignment.ToRecording(t_s));
+    if (!loads.feet[0].valid || !loads.feet[1].valid) {
+      going_on = false;
+      continue;
+    }
+    if (!std::exchange(going_on, true)) clips.emplace_back();
+    clips.back().push_back({momentum::ToNetworkLoads(loads, origin_m, weight_n),
+                            course.com_m.col(at).head<2>() - origin_m});
+  }
+  return clips;
+}
+
+}  // namespace footing::learning

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/body/body.h"
+#include "common/result/result.h"
+#include "common/virtual/motion/motion.h"
+#include "daemon/offline/learning/horizontal_com.h"
+#include "daemon/offline/learning/pose_regression.h"
+#include "daemon/offline/learning/recorded_session.h"
+#include "daemon/offline/learning/registration.h"
+#include "daemon/offline/learning/time_alignment.h"
+#include "daemon/simulation/reconstruction/models.h"
+
+namespace footing::learning {
+
+/// A recording of boards and the motion that was captured beside it, on one clock and one floor.
+struct OwnTake {
+  RecordedSession session;
+  momentum::TPose t_pose;
+  body::Body body;        ///< Of the weight in the T-pose.
+  motion::Motion motion;  ///< In W of the boards.
+  TimeAlignment alignment;
+  FloorPlacement placement;
+
+  /// Where the recording has the motion's first frame and its end.
+  double from_s() const { return alignment.ToRecording(0); }
+  double to_s() const { return alignment.ToRecording(motion.duration_s() - 1 / motion.rate_hz); }
+};
+
+/// Puts them on one clock (AlignInTime) and one floor: the motion is turned and moved so that its
+/// feet press where the boards were pressed. `motion` lies on any floor, `person` is of its
+/// skeleton. InvalidData: no T-pose, stomps or forces that do not go together, boards that lie
+/// otherwise than the feet stand.
+Result<OwnTake> MakeOwnTake(RecordedSession session, motion::Motion motion,
+                            const body::Body& person, const std::string& motion_name);
+
+/// All of it in the mirror at the plane y = 0. InvalidData where the mirrored skeleton is no
+/// person.
+Result<OwnTake> MirrorImage(const OwnTake& take);
+
+/// The measured loads with the COM of the motion, momentum::kNetworkRateHz, both counted from half
+/// way between the feet's COPs in the T-pose; a clip for each span in which both boards speak.
+std::vector<LoadClip> OwnLoads(const OwnTake& take);
+
+struct OwnExampleSettings {
+  double rate_hz = 60;
+  double hand_noise_m = 0.01;  ///< Of fists that stand in for hands that no tracker told of.
+  double piece_s = 10;         ///< Frames of one piece are in one fold,
+  int first_piece = 0;         ///< numbered from here on.
+  double settled_s = 1.5;      ///< After the T-pose and the motion's first frame: left out.
+  std::uint64_t seed = 1;
+};
+
+/// Appends what the reconstruction would have told of the recording, with the poses of the motion.
+/// InvalidData when there is no frame of both.
+Result<void> AddOwnExamples(const OwnTake& take, const reconstruction::Models& basis,
+                            const OwnExampleSettings& settings, PoseExamples& examples);
+
+}  // namespace footing::learning

@@ -1,0 +1,62 @@
+#include "daemon/offline/learning/pose_regression.h"
+
+#include <Eigen/Eigenvalues>
+#include <utility>
+
+#include "common/result/result.h"
+#include "daemon/offline/learning/ridge.h"
+#include "daemon/offline/learning/scaling.h"
+
+namespace footing::learning {
+
+FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen::VectorXd& scale,
+                                       const RandomWaves& waves) {
+  FOOTING_CHECK(!examples.poses.empty() && examples.features.size() == examples.poses.size() &&
+                examples.folds.size() == examples.poses.size());
+  const auto count = static_cast<Eigen::Index>(examples.poses.size());
+  Eigen::MatrixXd x(reconstruction::Features::kCount, count);
+  Eigen::MatrixXd y(examples.poses.front().size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    x.col(i) = examples.features[static_cast<std::size_t>(i)];
+    y.col(i) = examples.poses[static_cast<std::size_t>(i)];
+  }
+  const RidgeFit fit = FitRidge(std::move(x), std::move(y), examples.folds, kFolds, scale, waves);
+  FittedPoseRegression fitted;
+  fitted.spread = fit.spread;
+  fitted.error = fit.error;
+  fitted.ridge = fit.ridge;
+  const Eigen::MatrixXd covariance =
+      fit.errors * fit.errors.transpose() / static_cast<double>(count);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+  fitted.rest_variances = solver.eigenvalues().reverse().cwiseMax(0);
+  fitted.rest_components = solver.eigenvectors().rowwise().reverse().transpose();
+  fitted.regression = {fit.mean,
+                       fit.scale,
+                       fit.weights,
+                       fit.offset,
+                       reconstruction::StripMatrix(fit.waves.cast<float>()),
+                       fit.phases.cast<float>(),
+                       reconstruction::StripMatrix(fit.wave_weights.cast<float>())};
+  return fitted;
+}
+
+void AppendTensors(const FittedPoseRegression& fitted, model::Model& model) {
+  const auto add = [&model](const char* name, const Eigen::MatrixXd& rows) {
+    std::vector<std::uint32_t> shape{static_cast<std::uint32_t>(rows.rows())};
+    if (rows.cols() > 1) shape.push_back(static_cast<std::uint32_t>(rows.cols()));
+    model.tensors.push_back({.name = name, .shape = shape, .values = ToFloats(rows.transpose())});
+  };
+  add("feature_mean", fitted.regression.mean);
+  add("feature_scale", fitted.regression.scale);
+  add("regression_weights", fitted.regression.weights);
+  add("regression_offset", fitted.regression.offset);
+  if (fitted.regression.phases.size() > 0) {
+    add("waves", fitted.regression.waves.Dense().cast<double>());
+    add("wave_phases", fitted.regression.phases.cast<double>());
+    add("wave_weights", fitted.regression.wave_weights.Dense().cast<double>());
+  }
+  add("rest_components", fitted.rest_components);
+  add("rest_variances", fitted.rest_variances);
+}
+
+}  // namespace footing::learning

@@ -1,0 +1,134 @@
+#include "daemon/offline/learning/standard_layout.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "common/body/landmarks.h"
+#include "common/virtual/motion/marker_fit.h"
+
+namespace footing::learning {
+namespace {
+
+using body::Landmark;
+
+constexpr double kPelvisDepthM = 0.15;  // Any: the regression of the hips is met with it.
+
+/// A marker on a joint's frame.
+struct Marker {
+  std::string name;
+  std::size_t joint;
+  Eigen::Vector3d p_J_m;
+};
+
+/// Markers of the set plug-in-gait, put where its joint centres become the skeleton's joints.
+class Placer {
+ public:
+  Placer(const body::Skeleton& skeleton, const body::Landmarks& landmarks)
+      : skeleton_(skeleton), landmarks_(landmarks), at_(skeleton) {
+    body::ComputeKinematics(skeleton, body::TPose(skeleton, landmarks), at_);
+  }
+
+  std::vector<Marker> Place() {
+    PlacePelvis();
+    const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
+    for (const int side : {0, 1}) {
+      const std::string s = side == 0 ? "L" : "R";
+      const auto of = [side](Landmark left) { return side == 0 ? left : body::Mirrored(left); };
+      const Eigen::Vector3d out = (side == 0 ? 1 : -1) * Eigen::Vector3d::UnitY();
+      Pair(s + "KNE", s + "KNM", of(Landmark::kLeftHip), of(Landmark::kLeftKnee), 0.055 * out);
+      Pair(s + "ANK", s + "MED", of(Landmark::kLeftKnee), of(Landmark::kLeftAnkle), 0.04 * out);
+      Pair(s + "ELB", s + "ELM", of(Landmark::kLeftShoulder), of(Landmark::kLeftElbow), -0.045 * x);
+      Pair(s + "WRA", s + "WRB", of(Landmark::kLeftElbow), of(Landmark::kLeftWrist), 0.03 * x);
+      const Eigen::Vector3d ankle = At(of(Landmark::kLeftAnkle));
+      Add(s + "HEE", of(Landmark::kLeftAnkle), ankle - 0.045 * x - 0.05 * z);
+      const Landmark toe = of(Landmark::kLeftToe);
+      Add(s + "TOE", of(Landmark::kLeftAnkle), landmarks_[toe] >= 0 ? At(toe) : ankle + 0.14 * x);
+      const Landmark shoulder = of(Landmark::kLeftShoulder);
+      AddTo(s + "SHO", skeleton_.joint(landmarks_[shoulder]).parent, At(shoulder) + 0.04 * z);
+      const Landmark hand = of(Landmark::kLeftHandEnd);
+      if (landmarks_[hand] >= 0) Add(s + "FIN", of(Landmark::kLeftWrist), At(hand));
+    }
+    const int chest = skeleton_.joint(landmarks_[Landmark::kNeck]).parent;
+    AddTo("C7", chest, At(Landmark::kNeck) - 0.05 * x);
+    AddTo("CLAV", chest, At(Landmark::kNeck) + 0.05 * x);
+    const Landmark head = landmarks_[Landmark::kHead] >= 0 ? Landmark::kHead : Landmark::kNeck;
+    for (const double left_m : {0.07, -0.07}) {
+      for (const double ahead_m : {0.08, -0.08}) {
+        Add(std::string(left_m > 0 ? "L" : "R") + (ahead_m > 0 ? "FHD" : "BHD"), head,
+            At(head) + Eigen::Vector3d(ahead_m, left_m, 0.12));
+      }
+    }
+    return std::move(markers_);
+  }
+
+ private:
+  Eigen::Vector3d At(Landmark landmark) const {
+    return at_.p_WJ[static_cast<std::size_t>(landmarks_[landmark])];
+  }
+  void AddTo(const std::string& name, int joint, const Eigen::Vector3d& p_W_m) {
+    const auto index = static_cast<std::size_t>(std::max(joint, 0));
+    markers_.push_back({name, index, at_.R_WJ[index].transpose() * (p_W_m - at_.p_WJ[index])});
+  }
+  void Add(const std::string& name, Landmark carrier, const Eigen::Vector3d& p_W_m) {
+    AddTo(name, landmarks_[carrier], p_W_m);
+  }
+  /// Both sides of a joint, on the segment above it.
+  void Pair(const std::string& one, const std::string& other, Landmark carrier, Landmark joint,
+            const Eigen::Vector3d& aside_m) {
+    Add(one, carrier, At(joint) + aside_m);
+    Add(other, carrier, At(joint) - aside_m);
+  }
+  /// Where Harrington's regression (motion::JointCentres) finds the hips again.
+  void PlacePelvis() {
+    const Eigen::Vector3d left = At(Landmark::kLeftHip), right = At(Landmark::kRightHip);
+    const double width_m = std::max(0.05, (0.5 * (left - right).norm() - 0.0073) / 0.33);
+    const Eigen::Vector3d front =
+        0.5 * (left + right) +
+        Eigen::Vector3d(0.24 * kPelvisDepthM + 0.0099, 0, 0.30 * width_m + 0.0109);
+    const int pelvis = skeleton_.joint(landmarks_[Landmark::kLeftHip]).parent;
+    for (const int sign : {1, -1}) {
+      const std::string s = sign > 0 ? "L" : "R";
+      AddTo(s + "ASI", pelvis, front + Eigen::Vector3d(0, 0.5 * sign * width_m, 0));
+      AddTo(s + "PSI", pelvis, front + Eigen::Vector3d(-kPelvisDepthM, 0.05 * sign, 0));
+    }
+  }
+
+  const body::Skeleton& skeleton_;
+  const body::Landmarks& landmarks_;
+  body::Kinematics at_;
+  std::vector<Marker> markers_;
+};
+
+}  // namespace
+
+bool HasStandardLayout(const motion::Motion& motion) {
+  static const std::vector<std::string> kStandard = body::DofNames(body::StandardPerson(1.7));
+  return body::DofNames(motion.skeleton) == kStandard;
+}
+
+Result<StandardMotion> ToStandardLayout(const motion::Motion& motion) {
+  const auto landmarks = body::FindLandmarks(motion.skeleton);
+  if (!landmarks) return landmarks.error();
+  const std::vector<Marker> markers = Placer(motion.skeleton, *landmarks).Place();
+  motion::MarkerTracks tracks;
+  tracks.rate_hz = motion.rate_hz;
+  tracks.start_s = motion.start_s;
+  for (const Marker& marker : markers) tracks.names.push_back(marker.name);
+  tracks.p.assign(markers.size(), Eigen::Matrix3Xd(3, motion.frames()));
+  body::Kinematics at(motion.skeleton);
+  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
+    body::ComputeKinematics(motion.skeleton, motion.q.col(i), at);
+    for (std::size_t k = 0; k < markers.size(); ++k) {
+      tracks.p[k].col(i) = at.p_WJ[markers[k].joint] + at.R_WJ[markers[k].joint] * markers[k].p_J_m;
+    }
+  }
+  auto fit = motion::FitMarkers(tracks, {.set = "plug-in-gait"});
+  if (!fit) return fit.error();
+  return StandardMotion{std::move(fit->motion), fit->height_m, fit->rms_m};
+}
+
+}  // namespace footing::learning

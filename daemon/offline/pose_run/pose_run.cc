@@ -1,0 +1,147 @@
+#include "daemon/offline/pose_run/pose_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/body/kinematics.h"
+#include "common/body/momentum.h"
+#include "common/body/points.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/sensors/scene.h"
+#include "daemon/offline/pose_run/held_hands.h"
+#include "daemon/offline/pose_run/kinect_hands.h"
+#include "daemon/offline/pose_run/stage.h"
+#include "daemon/simulation/momentum/estimate.h"
+
+namespace footing::pose_run {
+namespace {
+
+namespace sensors = virtual_sensors;
+
+constexpr double kLoadedN = 20;
+/// The calibration is over before the T-pose is.
+constexpr double kWeighedS = momentum::TPoseCalibration::kSeconds + 0.2;
+
+Eigen::Vector3d At(const body::Kinematics& at, const body::Point& point) {
+  const auto joint = static_cast<std::size_t>(point.joint);
+  return body::Place(point, at.R_WJ[joint], at.p_WJ[joint]);
+}
+
+/// The boards, where they are and where they are told to be.
+struct Boards {
+  std::array<sensors::BoardPlace, sensors::kFeet> real = sensors::SideBySide();
+  std::array<sensors::BoardPlace, sensors::kFeet> told;
+  std::vector<sensors::CellErrors> cells;
+
+  Boards(const sensors::Scene& scene, const Settings& settings) {
+    for (std::size_t f = 0; f < sensors::kFeet; ++f) {
+      // Each foot begins in its board's middle.
+      real[f].middle_m = sensors::SoleMiddle(scene.course, f, 0).head<2>();
+      told[f] = real[f];
+      told[f].middle_m.y() += (f == 0 ? 0.5 : -0.5) * settings.gap_error_m;
+      if (f == 1) told[f].yaw_rad -= settings.yaw_error_rad;
+      sensors::CellErrorConfig errors = settings.errors;
+      errors.seed = 2 * settings.errors.seed + f;
+      cells.emplace_back(errors);
+    }
+  }
+
+  momentum::FootLoads Read(std::size_t f, const sensors::BoardLoad& load, double scale,
+                           double step_s) {
+    const auto read_n = cells[f].Advance(load.corners_n, step_s);
+    const auto places = sensors::SensorPlaces(told[f]);
+    momentum::FootLoads foot;
+    foot.valid = true;
+    foot.count = places.size();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      foot.cells[k] = {{places[k].x(), places[k].y(), 0}, scale * read_n[k]};
+    }
+    return foot;
+  }
+};
+
+}  // namespace
+
+void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,
+                  noise::Random& random,
+                  std::array<reconstruction::HandInput, reconstruction::kHands>& hands) {
+  for (int side = 0; side < 2; ++side) {
+    reconstruction::HandInput& hand = hands[static_cast<std::size_t>(side)];
+    hand.valid = true;
+    hand.p_W_m = At(at, body::Fist(body, side));
+    for (double& value : hand.p_W_m) value += noise_m * random.Normal();
+    hand.sd_m.setConstant(std::max(noise_m, 0.001));
+  }
+}
+
+FootForcesAt SimulatedForces(const sensors::Scene& scene) {
+  return [&scene](double, Eigen::Index column) {
+    return sensors::ShareBetweenFeet(scene.course, scene.reaction, column);
+  };
+}
+
+PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
+                 const FootForcesAt& forces_at) {
+  PoseRun run;
+  run.body = scene.body;
+  run.rate_hz = settings.rate_hz;
+  Boards boards(scene, settings);
+  noise::Random random(settings.seed);
+  std::optional<HeldHands> held;
+  if (settings.hands && settings.hand_device == HandDevice::kWiimote) {
+    held.emplace(scene, settings.seed);
+    run.reading_s = held->step_s();
+  }
+  KinectHands kinect(settings.seed, 1 / settings.rate_hz);
+  body::Kinematics at(scene.body.skeleton);
+  const double step_s = 1 / settings.rate_hz;
+  const std::size_t count = FrameCount(scene, settings.rate_hz);
+  std::size_t loaded = 0, outside = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double time_s = static_cast<double>(i) * step_s;
+    const Eigen::Index column = ColumnAt(scene, time_s);
+    const auto forces = forces_at(time_s, column);
+    Frame frame;
+    frame.inputs.loads.time_s = time_s;
+    frame.q = scene.motion.q.col(column);
+    frame.angular_momentum = scene.course.angular_momentum.col(column);
+    body::ComputeKinematics(scene.body.skeleton, frame.q, at);
+    frame.com_m = body::CentreOfMass(scene.body, at);
+    const double scale = time_s < kWeighedS ? 1 + settings.mass_error : 1;
+    for (std::size_t f = 0; f < sensors::kFeet; ++f) {
+      const auto load = sensors::LoadBoard(boards.real[f], forces[f], settings.limited);
+      frame.inputs.loads.feet[f] = boards.Read(f, load, scale, step_s);
+      frame.feet[f] = {forces[f].load_n, forces[f].cop_m,
+                       At(at, body::Ankle(scene.body, static_cast<int>(f))),
+                       At(at, body::Toe(scene.body, static_cast<int>(f)))};
+      if (forces[f].load_n > kLoadedN) {
+        ++loaded;
+        outside += load.outside ? 1 : 0;
+      }
+    }
+    if (held) {
+      frame.readings = held->Until(column);
+    } else if (settings.hands) {
+      const bool exact = settings.hand_device == HandDevice::kKinect;
+      MeasureHands(scene.body, at, exact ? 0 : settings.hand_noise_m, random, frame.inputs.hands);
+      if (exact) frame.inputs.hands = kinect.Advance(frame.inputs.hands);
+    }
+    run.frames.push_back(std::move(frame));
+  }
+  run.outside_share = loaded > 0 ? static_cast<double>(outside) / static_cast<double>(loaded) : 0;
+  run.judged_from = static_cast<std::size_t>(std::lround(kStandS * settings.rate_hz));
+  return run;
+}
+
+Result<PoseRun> RunPose(const motion::Motion& clip, const Settings& settings,
+                        const std::string& origin) {
+  const auto scene = Stage(clip, settings, origin);
+  if (!scene) return scene.error();
+  PoseRun run = RunScene(*scene, settings, SimulatedForces(*scene));
+  run.clock_offset_s =
+      clip.start_s - (scene->motion.duration_s() - clip.duration_s());  // But for a loop.
+  return run;
+}
+
+}  // namespace footing::pose_run

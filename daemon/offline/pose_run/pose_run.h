@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "common/result/result.h"
+#include "common/virtual/motion/motion.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/sensors/board_cells.h"
+#include "common/virtual/sensors/scene.h"
+#include "daemon/simulation/arms/arm_features.h"
+#include "daemon/simulation/arms/hand_attitude.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
+
+/// What a recorded motion would have told two boards and two hand trackers, frame by frame, beside
+/// the truth: to judge the reconstruction on, and to train its models with.
+namespace footing::pose_run {
+
+/// What tells of the hands.
+enum class HandDevice {
+  kMove,     ///< Places with white noise.
+  kWiimote,  ///< Readings of a Wiimote with MotionPlus in each fist.
+  kKinect,   ///< Places 30 times a second, late, with white noise and a slow offset.
+};
+
+struct Settings {
+  double mass_kg = 75;
+  std::optional<double> height_m = std::nullopt;
+  double rate_hz = 60;   ///< Of the inputs.
+  double loop_s = 0;     ///< Forwards and backwards so long; 0: once.
+  bool limited = false;  ///< Boards end at their sensors; else as if they had no edge.
+  bool hands = true;
+  HandDevice hand_device = HandDevice::kMove;
+  double hand_noise_m = 0.01;  ///< White, of each axis; of kMove.
+  virtual_sensors::CellErrorConfig errors;
+  // The boards are not quite where they are told to be.
+  double gap_error_m = 0;    ///< Told further apart by so much.
+  double yaw_error_rad = 0;  ///< The right one turned to the left.
+  double mass_error = 0;     ///< What the T-pose weighs too much, as a part.
+  std::uint64_t seed = 1;    ///< Of the hands.
+};
+
+struct TrueFoot {
+  double load_n = 0;
+  Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
+  Eigen::Vector3d ankle_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d toe_m = Eigen::Vector3d::Zero();
+};
+
+struct Frame {
+  reconstruction::Inputs inputs;
+  Eigen::VectorXd q;
+  Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< About C, kg m^2/s.
+  std::array<TrueFoot, momentum::kFeet> feet;
+  /// Of kWiimote: those since the frame before.
+  std::array<std::vector<arms::HandReading>, arms::kArms> readings;
+};
+
+/// What the person does in each frame (activity.h).
+struct Activities {
+  std::vector<std::string> names;
+  std::vector<int> of_frame;  ///< Index of a name, or -1; empty: nobody has told.
+};
+
+struct PoseRun {
+  body::Body body;
+  double rate_hz = 60;
+  std::vector<Frame> frames;    ///< Begins with kStandS in the T-pose.
+  double reading_s = 0;         ///< From one reading of a Wiimote to the next; 0: there are none.
+  double outside_share = 0;     ///< Of loaded feet whose COP is beyond the sensors.
+  std::size_t judged_from = 0;  ///< The first frame after the calibration.
+  double clock_offset_s = 0;    ///< Time on the motion's clock less the frames' time_s.
+  Activities activities;
+};
+
+/// The T-pose is held so long,
+inline constexpr double kStandS = 6;
+/// then left for the clip's first frame within such a time; the feet slide over the boards by it.
+inline constexpr double kLeaveS = 1.5;
+/// By then devices in the hands know that it is held.
+inline constexpr double kAlignedS = 5.5;
+
+/// Where both hands are told to be: the fists of the pose, with white noise along each axis.
+void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,
+                  noise::Random& random,
+                  std::array<reconstruction::HandInput, reconstruction::kHands>& hands);
+
+/// Vertical force and COP under each foot at one time: of the scene, and its motion's column then.
+using FootForcesAt = std::function<std::array<virtual_sensors::FootForce, momentum::kFeet>(
+    double time_s, Eigen::Index column)>;
+
+/// By inverse dynamics. `scene` must outlive it.
+FootForcesAt SimulatedForces(const virtual_sensors::Scene& scene);
+
+/// What boards under these forces and the hands of a staged scene tell.
+PoseRun RunScene(const virtual_sensors::Scene& scene, const Settings& settings,
+                 const FootForcesAt& forces_at);
+
+/// Only the joints of the landmarks are kept (motion::WithLandmarksOnly). `origin` names the clip
+/// in errors.
+Result<PoseRun> RunPose(const motion::Motion& clip, const Settings& settings,
+                        const std::string& origin);
+
+}  // namespace footing::pose_run

@@ -1,0 +1,187 @@
+#include "common/virtual/motion/asf.h"
+
+#include <gmock/gmock.h>
+
+#include "common/body/kinematics.h"
+#include "common/units/units.h"
+
+namespace footing::motion {
+namespace {
+
+using testing::HasSubstr;
+
+// One leg: a bone that does not turn, and two that do, about axes of their own.
+constexpr const char* kAsf = R"(# a comment
+:version 1.10
+:name LEG
+:units
+  mass 1.0
+  length 0.45
+  angle deg
+:documentation
+   anything at all
+:root
+   order TX TY TZ RX RY RZ
+   axis XYZ
+   position 0 0 0
+   orientation 0 0 0
+:bonedata
+  begin
+     id 1
+     name hipjoint
+     direction 0 -1 0
+     length 2
+     axis 0 0 0 XYZ
+  end
+  begin
+     id 2
+     name femur
+     direction 0 -1 0
+     length 8
+     axis 0 90 0 XYZ
+    dof rx ry
+    limits (-160.0 20.0)
+           (-70.0 70.0)
+  end
+  begin
+     id 3
+     name tibia
+     direction 0 -2 0
+     length 7
+     axis 0 0 0 XYZ
+    dof rx
+  end
+:hierarchy
+  begin
+    root hipjoint
+    hipjoint femur
+    femur tibia
+  end
+)";
+
+constexpr const char* kAmc = R"(#!OML:ASF
+:FULLY-SPECIFIED
+:DEGREES
+1
+root 1 16 2 0 0 0
+femur 0 0
+tibia 0
+2
+root 1 16 2 0 30 0
+tibia 90
+femur 90 0
+)";
+
+constexpr double kUnitM = 0.0254 / 0.45;
+
+std::string With(std::string text, const std::string& from, const std::string& to) {
+  text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
+Motion Read(const std::string& asf = kAsf, const std::string& amc = kAmc) {
+  return ParseAmc(amc, "leg.amc", ParseAsf(asf, "leg.asf").value()).value();
+}
+
+Eigen::Vector3d Place(const Motion& motion, Eigen::Index frame, const char* joint) {
+  body::Kinematics at(motion.skeleton);
+  ComputeKinematics(motion.skeleton, motion.q.col(frame), at);
+  return at.p_WJ[static_cast<std::size_t>(body::FindJoint(motion.skeleton, joint))];
+}
+
+TEST(Asf, BonesHangEndToEndInCmuUnits) {
+  const Motion motion = Read();
+  // File (1, 16, 2) is W (2, 1, 16); the leg hangs 2 + 8 + 7 down.
+  EXPECT_TRUE(Place(motion, 0, "femur").isApprox(kUnitM * Eigen::Vector3d(2, 1, 14), 1e-9));
+  EXPECT_TRUE(Place(motion, 0, "tibia").isApprox(kUnitM * Eigen::Vector3d(2, 1, 6), 1e-9));
+  EXPECT_TRUE(Place(motion, 0, "tibia_end").isApprox(kUnitM * Eigen::Vector3d(2, 1, -1), 1e-9));
+}
+
+TEST(Asf, ABoneTurnsAboutItsOwnAxes) {
+  const Motion motion = Read();
+  // Its x axis is the file's x turned by 90 degrees about y: -z. A turn of 90 degrees about -z
+  // takes down (0, -1, 0) to (-1, 0, 0) of the file. The whole is then turned by 30 degrees about
+  // up (y), which takes (-1, 0, 0) to (-cos 30, 0, sin 30).
+  const double c = std::cos(kPi / 6), s = std::sin(kPi / 6);
+  const Eigen::Vector3d root(2, 1, 16);  // W
+  const Eigen::Vector3d knee = root + Eigen::Vector3d(8 * s, -8 * c, -2);
+  EXPECT_TRUE(Place(motion, 1, "tibia").isApprox(kUnitM * knee, 1e-9))
+      << Place(motion, 1, "tibia").transpose() / kUnitM;
+}
+
+TEST(Asf, TheRootTurnsByHeadingRollAndPitch) {
+  const Motion motion = Read();
+  // 30 degrees about up: heading, the first of the three.
+  EXPECT_NEAR(motion.q(3, 1), kPi / 6, 1e-12);
+  EXPECT_NEAR(motion.q(4, 1), 0, 1e-12);
+  EXPECT_NEAR(motion.q(5, 1), 0, 1e-12);
+}
+
+TEST(Asf, LimitsGoWithTheirDegreesOfFreedom) {
+  const auto asf = ParseAsf(kAsf, "leg.asf").value();
+  const body::Joint& femur = asf.skeleton.joint(body::FindJoint(asf.skeleton, "femur"));
+  ASSERT_EQ(femur.rotations.size(), 2u);
+  // In the order of the product: y (z of W) before x (y of W).
+  EXPECT_EQ(femur.rotations[0].axis, body::Axis::kZ);
+  EXPECT_NEAR(femur.rotations[0].lower_rad, DegreesToRadians(-70), 1e-12);
+  EXPECT_EQ(femur.rotations[1].axis, body::Axis::kY);
+  EXPECT_NEAR(femur.rotations[1].lower_rad, DegreesToRadians(-160), 1e-12);
+}
+
+TEST(Asf, RadiansAreTakenWhereTheFileSaysSo) {
+  const Motion degrees = Read();
+  const Motion radians =
+      Read(kAsf, With(With(With(kAmc, ":DEGREES", ":RADIANS"), "0 30 0", "0 0.523598775598 0"),
+                      "tibia 90\nfemur 90", "tibia 1.570796326795\nfemur 1.570796326795"));
+  EXPECT_LT((degrees.q - radians.q).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Asf, ABoneWithoutLengthIsAPoint) {
+  const auto asf = ParseAsf(With(kAsf, "     length 2\n", ""), "leg.asf");
+  ASSERT_TRUE(asf.ok()) << asf.error().message;
+  EXPECT_TRUE(asf->skeleton.joint(body::FindJoint(asf->skeleton, "femur")).offset_m.isZero());
+}
+
+TEST(Asf, ErrorsSayFileLineAndWhatWasExpected) {
+  const struct {
+    std::string text, message;
+  } kRows[] = {
+      {"", "no ASF file"},
+      {With(kAsf, "length 8", "length x"), "leg.asf, line 27: expected a number of length"},
+      {With(kAsf, "dof rx ry", "dof rx l"), "slide or stretch"},
+      {With(kAsf, "dof rx ry", "dof rx rx"), "stands twice"},
+      {With(kAsf, "90 0 XYZ", "90 0 XYX"), "expected an order of axes"},
+      {With(kAsf, "(-160.0 20.0)", "(20 -160)"), "the wrong way"},
+      {With(kAsf, "femur tibia", "femur fibula"), "no bone 'fibula'"},
+      {With(kAsf, "    femur tibia\n", ""), "tibia hangs on nothing"},
+      {With(kAsf, "    femur tibia\n", "    femur tibia\n hipjoint tibia\n"), "two parents"},
+  };
+  for (const auto& row : kRows) {
+    const auto asf = ParseAsf(row.text, "leg.asf");
+    ASSERT_FALSE(asf.ok()) << row.message;
+    EXPECT_THAT(asf.error().message, HasSubstr(row.message));
+  }
+}
+
+TEST(Amc, ErrorsSayFileLineAndWhatWasExpected) {
+  const auto asf = ParseAsf(kAsf, "leg.asf").value();
+  const struct {
+    std::string text, message;
+  } kRows[] = {
+      {":DEGREES\n", "no frame"},
+      {With(kAmc, "femur 0 0", "femur 0"), "leg.amc, line 6: expected a number of femur"},
+      {With(kAmc, "femur 0 0", "femur 0 0 0"), "more numbers than femur"},
+      {With(kAmc, "femur 0 0", "thigh 0 0"), "'thigh' is not in the skeleton"},
+      {With(kAmc, "femur 0 0\n", ""), "frame 1 ends without femur"},
+      {With(kAmc, "tibia 0", "tibia 0\ntibia 0"), "a second tibia"},
+      {With(kAmc, "1\nroot", "one\nroot"), "expected the number of a frame"},
+  };
+  for (const auto& row : kRows) {
+    const auto motion = ParseAmc(row.text, "leg.amc", asf);
+    ASSERT_FALSE(motion.ok()) << row.message;
+    EXPECT_THAT(motion.error().message, HasSubstr(row.message));
+  }
+}
+
+}  // namespace
+}  // namespace footing::motion

@@ -1,0 +1,208 @@
+#include "common/virtual/motion/c3d.h"
+
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cstring>
+
+#include "common/virtual/motion/c3d_reader.h"
+
+namespace footing::motion {
+namespace {
+
+using testing::HasSubstr;
+using Bytes = std::vector<std::uint8_t>;
+
+/// Writes C3D files of any processor, for the tests alone.
+class Writer {
+ public:
+  explicit Writer(Processor processor) : processor_(processor) {}
+
+  void Word(std::uint16_t value, Bytes& to) const {
+    const bool big = processor_ == Processor::kMips;
+    to.push_back(static_cast<std::uint8_t>(big ? value >> 8 : value));
+    to.push_back(static_cast<std::uint8_t>(big ? value : value >> 8));
+  }
+  void Float(float value, Bytes& to) const {
+    const auto bits =
+        std::bit_cast<std::uint32_t>(processor_ == Processor::kDec ? value * 4 : value);
+    const auto low = static_cast<std::uint16_t>(bits),
+               high = static_cast<std::uint16_t>(bits >> 16);
+    Word(processor_ == Processor::kIntel ? low : high, to);
+    Word(processor_ == Processor::kIntel ? high : low, to);
+  }
+  void Group(int id, const std::string& name, Bytes& to) const {
+    Head(-id, name, 3, to);
+    to.push_back(0);  // No description.
+  }
+  void Texts(int id, const std::string& name, const std::vector<std::string>& texts,
+             Bytes& to) const {
+    const std::size_t width = texts[0].size();
+    Head(id, name, 2 + 4 + width * texts.size() + 1, to);
+    for (int byte : {-1, 2}) to.push_back(static_cast<std::uint8_t>(byte));
+    to.push_back(static_cast<std::uint8_t>(width));
+    to.push_back(static_cast<std::uint8_t>(texts.size()));
+    for (const std::string& text : texts) to.insert(to.end(), text.begin(), text.end());
+    to.push_back(0);
+  }
+  void Floats(int id, const std::string& name, const std::vector<float>& values, Bytes& to) const {
+    Head(id, name, 2 + 3 + 4 * values.size() + 1, to);
+    for (int byte : {4, 1}) to.push_back(static_cast<std::uint8_t>(byte));
+    to.push_back(static_cast<std::uint8_t>(values.size()));
+    for (float value : values) Float(value, to);
+    to.push_back(0);
+  }
+  void Words(int id, const std::string& name, const std::vector<int>& values, Bytes& to) const {
+    Head(id, name, 2 + 3 + 2 * values.size() + 1, to);
+    for (int byte : {2, 1}) to.push_back(static_cast<std::uint8_t>(byte));
+    to.push_back(static_cast<std::uint8_t>(values.size()));
+    for (int value : values) Word(static_cast<std::uint16_t>(value), to);
+    to.push_back(0);
+  }
+
+ private:
+  void Head(int id, const std::string& name, std::size_t link, Bytes& to) const {
+    to.push_back(static_cast<std::uint8_t>(name.size()));
+    to.push_back(static_cast<std::uint8_t>(id));
+    to.insert(to.end(), name.begin(), name.end());
+    Word(static_cast<std::uint16_t>(link), to);
+  }
+
+  Processor processor_;
+};
+
+/// Two points and six analog channels (a plate), three frames at 100 Hz, two samples a frame. The
+/// first point is at (1, 2, 3) m moving by 0.5 m a frame in x; the second is hidden in frame 2.
+Bytes Example(Processor processor, bool floats) {
+  const Writer writer(processor);
+  Bytes file = {2, 0x50};
+  writer.Word(2, file);   // Points.
+  writer.Word(12, file);  // Analog values a frame.
+  writer.Word(1, file);   // First and last frame.
+  writer.Word(3, file);
+  writer.Word(10, file);  // Gap.
+  writer.Float(floats ? -0.5f : 0.5f, file);
+  writer.Word(4, file);  // Data in block 4.
+  writer.Word(2, file);  // Samples a frame.
+  writer.Float(100, file);
+  file.resize(512);
+  file.insert(file.end(), {1, 0x50, 2, static_cast<std::uint8_t>(processor)});
+  writer.Group(1, "POINT", file);
+  writer.Group(2, "ANALOG", file);
+  writer.Group(3, "FORCE_PLATFORM", file);
+  writer.Texts(1, "LABELS", {"LTOE", "RTOE"}, file);
+  writer.Texts(1, "UNITS", {"mm"}, file);
+  writer.Texts(1, "Y_SCREEN", {"+Z"}, file);
+  writer.Floats(2, "GEN_SCALE", {0.5f}, file);
+  writer.Floats(2, "SCALE", {2, 2, 2, 200, 200, 200}, file);
+  writer.Words(2, "OFFSET", {0, 0, 10, 0, 0, 0}, file);
+  writer.Texts(2, "UNITS", {"N  ", "N  ", "N  ", "Nmm", "Nmm", "Nmm"}, file);
+  writer.Words(3, "USED", {1}, file);
+  writer.Words(3, "TYPE", {2}, file);
+  // x along -x, y along y, z down: corners in the order of the quadrants.
+  writer.Floats(3, "CORNERS", {0, 900, 0, 600, 900, 0, 600, 0, 0, 0, 0, 0}, file);
+  writer.Floats(3, "ORIGIN", {0, 0, 0}, file);
+  writer.Words(3, "CHANNEL", {1, 2, 3, 4, 5, 6}, file);
+  file.resize(3 * 512);
+  for (int frame = 0; frame < 3; ++frame) {
+    const std::vector<float> point = {1000.0f + 500 * static_cast<float>(frame), 2000, 3000, 0};
+    const std::vector<float> hidden = {1, 1, 1, frame == 1 ? -1.0f : 0.0f};
+    for (const auto& values : {point, hidden}) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (floats) {
+          writer.Float(values[i], file);
+        } else {  // Half millimetres.
+          writer.Word(
+              static_cast<std::uint16_t>(static_cast<int>(i < 3 ? values[i] / 0.5f : values[i])),
+              file);
+        }
+      }
+    }
+    for (int sample = 0; sample < 2; ++sample) {
+      // 800 N down on the plate at x = 0.1, y = 0.2 m of its axes: Mx = y Fz, My = -x Fz (N mm, in
+      // steps of 100), and 5 N m about z.
+      for (int raw : {0, 0, 810, 1600, -800, 50}) {
+        if (floats) {
+          writer.Float(static_cast<float>(raw), file);
+        } else {
+          writer.Word(static_cast<std::uint16_t>(raw), file);
+        }
+      }
+    }
+  }
+  return file;
+}
+
+class EveryC3d : public testing::TestWithParam<std::tuple<Processor, bool>> {};
+
+TEST_P(EveryC3d, IsReadAlike) {
+  const auto [processor, floats] = GetParam();
+  const auto c3d = ParseC3d(Example(processor, floats), "x.c3d");
+  ASSERT_TRUE(c3d.ok()) << c3d.error().message;
+  EXPECT_EQ(c3d->points.rate_hz, 100);
+  ASSERT_EQ(c3d->points.frames(), 3);
+  EXPECT_EQ(c3d->points.names, (std::vector<std::string>{"LTOE", "RTOE"}));
+  EXPECT_TRUE(c3d->points.p[0].col(2).isApprox(Eigen::Vector3d(2, 2, 3), 1e-6));
+  EXPECT_TRUE(Seen(c3d->points.p[1].col(0)));
+  EXPECT_FALSE(Seen(c3d->points.p[1].col(1)));
+  EXPECT_EQ(c3d->analog_rate_hz, 200);
+  ASSERT_EQ(c3d->analog.cols(), 6);
+  EXPECT_NEAR(c3d->analog(2, 3), 800, 1e-3);  // (810 - 10) * 2 * 0.5.
+  EXPECT_EQ(c3d->y_screen, "+Z");
+}
+
+TEST_P(EveryC3d, ForcesOfItsPlateActOnThePerson) {
+  const auto [processor, floats] = GetParam();
+  const auto forces = ToGroundForces(ParseC3d(Example(processor, floats), "x").value(), "x.c3d");
+  ASSERT_TRUE(forces.ok()) << forces.error().message;
+  ASSERT_EQ(forces->plates.size(), 1u);
+  const PlateForces& plate = forces->plates[0];
+  EXPECT_LT((plate.force_W.col(0) - Eigen::Vector3d(0, 0, 800)).norm(), 1e-3);
+  // The plate's middle (0.3, 0.45), its x is -x of the file, its y the file's.
+  EXPECT_LT((plate.cop_W.col(0) - Eigen::Vector3d(0.3 - 0.1, 0.45 + 0.2, 0)).norm(), 1e-6);
+  // On the plate 5 N m about down; on the person the opposite about down: 5 about up.
+  EXPECT_LT((plate.moment_W.col(0) - Eigen::Vector3d(0, 0, 5)).norm(), 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryC3d,
+                         testing::Combine(testing::Values(Processor::kIntel, Processor::kDec,
+                                                          Processor::kMips),
+                                          testing::Bool()));
+
+TEST(C3d, EveryCutOfAFileIsRefused) {
+  const Bytes file = Example(Processor::kIntel, true);
+  for (std::size_t length = 0; length < file.size(); length += 7) {
+    EXPECT_FALSE(ParseC3d(std::span(file).first(length), "cut").ok()) << length;
+  }
+}
+
+TEST(C3d, EveryChangedByteIsReadOrRefused) {
+  const Bytes file = Example(Processor::kIntel, false);
+  for (std::size_t at = 0; at < 3 * 512; ++at) {
+    for (std::uint8_t value : {0x00, 0x7f, 0x80, 0xff}) {
+      Bytes changed = file;
+      changed[at] = value;
+      const auto c3d = ParseC3d(changed, "changed");
+      if (c3d.ok()) {
+        EXPECT_LE(c3d->points.frames(), 3 * 512) << at;
+        const auto forces = ToGroundForces(*c3d, "changed");
+        EXPECT_TRUE(!forces.ok() || forces->plates.size() <= 100);
+      }
+    }
+  }
+}
+
+TEST(C3d, ErrorsSayWhatWasExpected) {
+  Bytes file = Example(Processor::kIntel, true);
+  file[1] = 0;
+  EXPECT_THAT(ParseC3d(file, "x.c3d").error().message, HasSubstr("x.c3d: no C3D file"));
+  file = Example(Processor::kIntel, true);
+  file[515] = 7;
+  EXPECT_THAT(ParseC3d(file, "x.c3d").error().message, HasSubstr("expected processor 84"));
+  file = Example(Processor::kIntel, true);
+  file[8] = 0xff;  // Last frame.
+  EXPECT_THAT(ParseC3d(file, "x.c3d").error().message, HasSubstr("the file ends before"));
+}
+
+}  // namespace
+}  // namespace footing::motion

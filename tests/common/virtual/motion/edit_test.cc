@@ -1,0 +1,167 @@
+#include "common/virtual/motion/edit.h"
+
+#include <gtest/gtest.h>
+
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "common/body/momentum.h"
+#include "common/units/units.h"
+#include "common/virtual/motion/asf.h"
+#include "common/virtual/motion/bvh.h"
+#include "tests/common/virtual/motion/shared_data.h"
+
+namespace footing::motion {
+namespace {
+
+/// A standard person whose every joint swings a little, each at its own phase.
+Motion Swinging(double rate_hz, double seconds) {
+  Motion motion{body::StandardPerson(1.75), rate_hz, 0, {}};
+  const auto frames = static_cast<Eigen::Index>(seconds * rate_hz) + 1;
+  motion.q.resize(motion.skeleton.dof, frames);
+  for (Eigen::Index i = 0; i < frames; ++i) {
+    const double t_s = static_cast<double>(i) / rate_hz;
+    for (int dof = 0; dof < motion.skeleton.dof; ++dof) {
+      motion.q(dof, i) = 0.3 * std::sin(2 * kPi * 0.7 * t_s + dof) + 0.1;
+    }
+  }
+  return motion;
+}
+
+std::vector<Eigen::Vector3d> Places(const Motion& motion, Eigen::Index frame) {
+  body::Kinematics at(motion.skeleton);
+  ComputeKinematics(motion.skeleton, motion.q.col(frame), at);
+  return at.p_WJ;
+}
+
+double Largest(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
+  double largest_m = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest_m = std::max(largest_m, (a[i] - b[i]).norm());
+  return largest_m;
+}
+
+TEST(Edit, ContinuousAnglesMeanTheSame) {
+  Motion motion = Swinging(60, 1);
+  const Motion smooth = motion;
+  for (Eigen::Index i = 0; i < motion.frames(); i += 2) {  // The other triple and whole turns.
+    motion.q.col(i).segment<3>(3) += Eigen::Vector3d(kPi, 0, -kPi);
+    motion.q(4, i) = kPi - motion.q(4, i);
+    motion.q(20, i) += 2 * kPi * static_cast<double>(i % 3);
+  }
+  const Motion again = Continuous(motion);
+  EXPECT_LT((again.q.rightCols(60) - again.q.leftCols(60)).cwiseAbs().maxCoeff(), 0.1);
+  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
+    EXPECT_LT(Largest(Places(again, i), Places(smooth, i)), 1e-9);
+  }
+}
+
+TEST(Edit, ResamplingKeepsPlacesInTime) {
+  const Motion motion = Swinging(120, 2);
+  const Motion slow = Resampled(motion, 60);
+  EXPECT_EQ(slow.frames(), 121);
+  for (Eigen::Index i = 10; i < 110; ++i) {
+    EXPECT_LT(Largest(Places(slow, i), Places(motion, 2 * i)), 1e-4);
+  }
+  const Motion back = Resampled(slow, 120);
+  EXPECT_EQ(back.frames(), 241);
+  for (Eigen::Index i = 20; i < 220; ++i) {
+    EXPECT_LT(Largest(Places(back, i), Places(motion, i)), 1e-4);
+  }
+}
+
+TEST(Edit, RatesAreTheDerivativesOfTheSwing) {
+  const Motion motion = Swinging(120, 3);
+  const MotionRates rates = Rates(motion);
+  const double w = 2 * kPi * 0.7, t_s = 1.5;
+  for (int dof = 0; dof < motion.skeleton.dof; ++dof) {
+    EXPECT_NEAR(rates.q_dot(dof, 180), 0.3 * w * std::cos(w * t_s + dof), 1e-4);
+    EXPECT_NEAR(rates.q_ddot(dof, 180), -0.3 * w * w * std::sin(w * t_s + dof), 0.01);
+  }
+}
+
+TEST(Edit, AMirroredMotionIsTheMirrorImage) {
+  Motion motion = Swinging(60, 1);
+  motion.skeleton.joints[2].offset_m *= 1.1;  // Not the same left and right.
+  const Motion mirrored = Mirrored(motion);
+  const auto landmarks = body::FindLandmarks(motion.skeleton).value();
+  for (Eigen::Index frame : {0, 17, 60}) {
+    const auto here = Places(motion, frame), there = Places(mirrored, frame);
+    for (int i = 0; i < body::kLandmarkCount; ++i) {
+      const auto landmark = static_cast<body::Landmark>(i);
+      const Eigen::Vector3d a = here[static_cast<std::size_t>(landmarks[landmark])];
+      const Eigen::Vector3d b =
+          there[static_cast<std::size_t>(landmarks[body::Mirrored(landmark)])];
+      EXPECT_LT((a - Eigen::Vector3d(b.x(), -b.y(), b.z())).norm(), 1e-9)
+          << body::LandmarkName(landmark);
+    }
+  }
+  const Motion twice = Mirrored(mirrored);
+  EXPECT_LT(Largest(Places(twice, 30), Places(motion, 30)), 1e-9);
+}
+
+TEST(Edit, ALoopComesBackWithoutAJumpOfVelocity) {
+  const Motion motion = Swinging(100, 4);
+  const Motion loop = Looped(motion, 30);
+  EXPECT_EQ(loop.frames(), 3001);
+  // One way takes 4 s and 0.5 s more at each end: back at the start after 10 s.
+  EXPECT_LT((loop.q.col(1000) - motion.q.col(0)).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((loop.q.col(500) - motion.q.col(400)).cwiseAbs().maxCoeff(), 1e-9);
+  const Eigen::MatrixXd v = (loop.q.rightCols(3000) - loop.q.leftCols(3000)) * 100;
+  // Speed changes from 1 to 0 of the clip's own (1.3 rad/s at most) over 1 s, and its own
+  // acceleration is 5.8 rad/s^2 at most: below 0.08 a frame. A plain turn would jump by 2.6.
+  EXPECT_LT((v.rightCols(2999) - v.leftCols(2999)).cwiseAbs().maxCoeff(), 0.08);
+  const Motion plain = Looped(motion, 9, 0);
+  EXPECT_LT((plain.q.col(800) - motion.q.col(0)).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((plain.q.col(401) - motion.q.col(399)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Edit, FacingForwardLooksAlongX) {
+  Motion motion = Swinging(60, 3);
+  motion.q.row(3).array() += 2.5;
+  motion.q.row(0).array() += 3;
+  const auto landmarks = body::FindLandmarks(motion.skeleton).value();
+  const Motion forward = FacingForward(motion, landmarks);
+  const auto middle = Places(forward, 90);
+  const Eigen::Vector3d left =
+      middle[static_cast<std::size_t>(landmarks[body::Landmark::kLeftHip])];
+  const Eigen::Vector3d right =
+      middle[static_cast<std::size_t>(landmarks[body::Landmark::kRightHip])];
+  EXPECT_GT((left - right).normalized().y(), 0.8);  // Less its own swing.
+  EXPECT_LT(((left + right) / 2).head<2>().norm(), 0.5);
+  // A rigid move: distances stay.
+  const auto before = Places(motion, 90);
+  EXPECT_NEAR((middle[10] - middle[30]).norm(), (before[10] - before[30]).norm(), 1e-9);
+  EXPECT_NEAR(middle[10].z(), before[10].z(), 1e-9);
+}
+
+TEST(Edit, ACmuSkeletonWithLandmarksOnlyIsAStandardPersons) {
+  SKIP_WITHOUT_SHARED_DATA();
+  const auto asf = ParseAsf(test::ReadShared("mocap/cmu_amc/01.asf"), "01");
+  const auto motion = ParseAmc(test::ReadShared("mocap/cmu_amc/01_01.amc"), "01_01", *asf).value();
+  const auto plain = WithLandmarksOnly(motion);
+  ASSERT_TRUE(plain.ok()) << plain.error().message;
+  const body::Skeleton standard = body::StandardPerson(1.75);
+  EXPECT_EQ(body::DofNames(plain->skeleton), body::DofNames(standard));
+  ASSERT_EQ(plain->skeleton.size(), standard.size());
+  const auto here = Places(motion, 500), there = Places(*plain, 500);
+  for (int i = 0; i < standard.size(); ++i) {
+    EXPECT_EQ(plain->skeleton.joint(i).name, standard.joint(i).name);
+    const int in_file = body::FindJoint(motion.skeleton, standard.joint(i).name);
+    if (in_file < 0) continue;
+    EXPECT_LT((here[static_cast<std::size_t>(in_file)] - there[static_cast<std::size_t>(i)]).norm(),
+              1e-12);
+  }
+}
+
+TEST(Edit, AnyRigWithLandmarksOnlyLosesItsHelpers) {
+  SKIP_WITHOUT_SHARED_DATA();
+  for (const char* path : {"mocap/mass_bvh/walk.bvh", "mocap/cmu_bvh/002_04.bvh"}) {
+    const auto motion = ParseBvh(test::ReadShared(path), path).value();
+    const auto plain = WithLandmarksOnly(motion);
+    ASSERT_TRUE(plain.ok()) << plain.error().message;
+    EXPECT_LT(plain->skeleton.dof, 85) << path;
+    EXPECT_TRUE(body::MakeBody(plain->skeleton, {}).ok()) << path;
+  }
+}
+
+}  // namespace
+}  // namespace footing::motion

@@ -1,0 +1,59 @@
+#include "common/virtual/motion_files/load.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace footing::motion_files {
+namespace {
+
+using testing::HasSubstr;
+
+std::string Shared() {
+  const char* folder = std::getenv("FOOTING_TEST_DATA");
+  return folder == nullptr ? "" : folder;
+}
+
+TEST(Load, ErrorsSayWhatIsExpected) {
+  EXPECT_THAT(LoadMotion("x.fbx").error().message, HasSubstr("x.fbx: no motion file: expected"));
+  EXPECT_EQ(LoadMotion("x.fbx").error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(LoadMotion("/nowhere/x.bvh").error().message, HasSubstr("/nowhere/x.bvh"));
+  EXPECT_THAT(LoadForces("x.bvh").error().message, HasSubstr("expected .mot"));
+  EXPECT_THAT(LoadMarkers("x").error().message, HasSubstr("expected .trc"));
+}
+
+TEST(Load, ReadsEveryKindOfFile) {
+  if (Shared().empty()) GTEST_SKIP() << "needs FOOTING_TEST_DATA";
+  const std::string mocap = Shared() + "/mocap/", forces = Shared() + "/forces/";
+  EXPECT_THAT(LoadMotion(mocap + "cmu_amc/01_01.amc").error().message, HasSubstr("--skeleton"));
+  const auto amc = LoadMotion(mocap + "cmu_amc/01_01.amc", {.skeleton = mocap + "cmu_amc/01.asf"});
+  ASSERT_TRUE(amc.ok()) << amc.error().message;
+  EXPECT_EQ(amc->motion.frames(), 2751);
+  const auto bvh = LoadMotion(mocap + "mass_bvh/walk.bvh");
+  ASSERT_TRUE(bvh.ok()) << bvh.error().message;
+  const auto trc = LoadMotion(forces + "osim/WeirdFormatTests/markers.trc");
+  ASSERT_TRUE(trc.ok()) << trc.error().message;
+  EXPECT_THAT(trc->note, HasSubstr("61 markers of set plug-in-gait fitted"));
+  const auto plates = LoadForces(mocap + "c3d/JA1Gait35.c3d");
+  ASSERT_TRUE(plates.ok()) << plates.error().message;
+  EXPECT_EQ(plates->plates.size(), 8u);
+}
+
+// The file has no POINT:Y_SCREEN, and y is up in it.
+TEST(Load, APersonStandsUpWhereTheFileDoesNotSayWhichWayIsUp) {
+  if (Shared().empty()) GTEST_SKIP() << "needs FOOTING_TEST_DATA";
+  const auto tracks = LoadMarkers(Shared() + "/mocap/c3d/squat.c3d");
+  ASSERT_TRUE(tracks.ok()) << tracks.error().message;
+  const auto first = [&](const char* name) -> Eigen::Vector3d {
+    const int marker = motion::FindMarker(*tracks, std::string("SehoonVSK35:") + name);
+    return marker < 0 ? Eigen::Vector3d::Constant(NAN)
+                      : Eigen::Vector3d(tracks->p[static_cast<std::size_t>(marker)].col(0));
+  };
+  EXPECT_NEAR(first("ARIEL").z(), 1.76, 0.01);  // On the head,
+  EXPECT_NEAR(first("LHEL").z(), 0.11, 0.01);   // and on the heels.
+  EXPECT_NEAR(first("RHEL").z(), 0.12, 0.01);
+}
+
+}  // namespace
+}  // namespace footing::motion_files

@@ -1,0 +1,84 @@
+#include "common/virtual/sensors/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/units/units.h"
+
+namespace footing::virtual_sensors {
+namespace {
+
+// The standard person stands still for a second, somewhere, above the floor, turned.
+motion::Motion Clip() {
+  motion::Motion clip;
+  clip.skeleton = body::StandardPerson(1.75);
+  clip.rate_hz = 100;
+  Eigen::VectorXd q = body::TPose(clip.skeleton, body::FindLandmarks(clip.skeleton).value());
+  q.head<3>() += Eigen::Vector3d(2, -1, 0.3);
+  q(3) = 0.7;
+  clip.q = q.replicate(1, 100);
+  return clip;
+}
+
+TEST(MakeScene, PutsATPoseInFrontWithTheWeightOverTheSoles) {
+  const auto scene = MakeScene(Clip(), {}, {}, "clip");
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_NEAR(scene->motion.duration_s(), 6 + 1.5 + 1, 0.011);
+  const double weight_n = 75 * kStandardGravityMps2;
+  EXPECT_NEAR(scene->reaction.force_n(2, 300), weight_n, 0.5);
+  const Eigen::Vector3d left = SoleMiddle(scene->course, 0, 300);
+  const Eigen::Vector3d right = SoleMiddle(scene->course, 1, 300);
+  EXPECT_NEAR(left.z(), 0, 5e-3);
+  EXPECT_GT(left.y() - right.y(), 0.1);  // It looks along x.
+  // 0.42 of heel to toe is 8 % of a sole of 24 cm behind its middle.
+  EXPECT_NEAR(scene->course.com_m(0, 300), left.x() - 0.02, 0.01);
+}
+
+TEST(MakeScene, LeavesAClipThatBeginsInATPoseAsItIs) {
+  SceneOptions options;
+  options.t_pose = false;
+  const auto scene = MakeScene(Clip(), {}, options, "clip");
+  ASSERT_TRUE(scene);
+  EXPECT_LT((scene->motion.q - Clip().q).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(MakeScene, ErrorsNameTheClip) {
+  motion::Motion one = Clip();
+  one.q = Eigen::MatrixXd(one.q.leftCols(1));
+  const auto scene = MakeScene(one, {}, {}, "walk.bvh");
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error().message, testing::HasSubstr("walk.bvh: a motion needs two frames"));
+  motion::Motion nobody = Clip();
+  for (auto& joint : nobody.skeleton.joints) joint.name = "x";
+  EXPECT_THAT(MakeScene(nobody, {}, {}, "walk.bvh").error().message,
+              testing::HasSubstr("walk.bvh: "));
+}
+
+TEST(Shift, MovesEverythingThatHasAPlace) {
+  auto scene = MakeScene(Clip(), {}, {}, "clip");
+  ASSERT_TRUE(scene);
+  const Scene before = *scene;
+  const auto feet_before = ShareThroughout(before);
+  Shift({0.5, -0.25}, *scene);
+  const auto feet = ShareThroughout(*scene);
+  const Eigen::Vector2d by(0.5, -0.25);
+  EXPECT_EQ(Eigen::Vector2d(scene->motion.q.col(9).head<2>()),
+            Eigen::Vector2d(before.motion.q.col(9).head<2>() + by));
+  for (std::size_t f = 0; f < kFeet; ++f) {
+    EXPECT_NEAR((feet[300][f].cop_m - feet_before[300][f].cop_m - by).norm(), 0, 1e-9);
+    EXPECT_NEAR(feet[300][f].load_n, feet_before[300][f].load_n, 1e-6);
+  }
+  EXPECT_NEAR((scene->course.com_m.col(300) - before.course.com_m.col(300)).head<2>().norm(),
+              by.norm(), 1e-12);
+}
+
+TEST(ShareThroughout, HasAnEntryAFrame) {
+  const auto scene = MakeScene(Clip(), {}, {}, "clip");
+  ASSERT_TRUE(scene);
+  const auto feet = ShareThroughout(*scene);
+  ASSERT_EQ(feet.size(), static_cast<std::size_t>(scene->course.frames()));
+  EXPECT_NEAR(feet[300][0].load_n + feet[300][1].load_n, 75 * kStandardGravityMps2, 0.5);
+}
+
+}  // namespace
+}  // namespace footing::virtual_sensors

@@ -1,0 +1,110 @@
+#include "daemon/offline/learning/candidates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "daemon/offline/learning/least_squares.h"
+
+namespace footing::learning {
+namespace {
+
+Eigen::MatrixXd Drawn(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
+  noise::Random random(seed);
+  Eigen::MatrixXd values(rows, columns);
+  for (double& value : values.reshaped()) value = random.Uniform(-1, 1);
+  return values;
+}
+
+void ExpectTrueGradient(const CandidateTask& task) {
+  const Eigen::MatrixXd weights = 3 * Drawn(5, 4, 3);
+  const Eigen::MatrixXd gradient = ScoreGradient(task, Score(task, weights));
+  constexpr double kStep = 1e-6;
+  for (Eigen::Index c = 0; c < weights.cols(); ++c) {
+    for (Eigen::Index i = 0; i < weights.rows(); ++i) {
+      Eigen::MatrixXd more = weights, less = weights;
+      more(i, c) += kStep;
+      less(i, c) -= kStep;
+      const double expected =
+          (Score(task, more).scores(c) - Score(task, less).scores(c)) / (2 * kStep);
+      EXPECT_NEAR(gradient(i, c), expected, 1e-7) << i << " " << c;
+    }
+  }
+}
+
+// 300 rows: more than the block in which the products are made.
+TEST(Candidates, GradientOfCovarianceIsThatOfFiniteDifferences) {
+  const Eigen::MatrixXd units = Drawn(300, 5, 1);
+  ExpectTrueGradient(CandidateTask::Covariance(units, Drawn(300, 2, 2)));
+}
+
+TEST(Candidates, GradientOfErrorReductionIsThatOfFiniteDifferences) {
+  const Eigen::MatrixXd units = Drawn(300, 5, 1);
+  LeastSquares solver(Drawn(300, 2, 2), 5);
+  for (Eigen::Index i = 0; i < 5; ++i) solver.Add(units.col(i));
+  ExpectTrueGradient(CandidateTask::ErrorReduction(units, solver.errors(), solver.basis()));
+}
+
+TEST(Candidates, CovarianceIsTheSumOverOutputs) {
+  constexpr int kRows = 50;
+  const Eigen::MatrixXd units = Drawn(kRows, 3, 4);
+  const Eigen::MatrixXd errors = Drawn(kRows, 2, 5);
+  const Eigen::MatrixXd weights = Drawn(3, 1, 6);
+  double expected = 0, square = 0;
+  for (Eigen::Index o = 0; o < 2; ++o) {
+    const double mean = errors.col(o).mean();
+    double covariance = 0;
+    for (int p = 0; p < kRows; ++p) {
+      const double value = 1 / (1 + std::exp(-units.row(p).dot(weights.col(0)))) - 0.5;
+      covariance += value * (errors(p, o) - mean);
+      square += (errors(p, o) - mean) * (errors(p, o) - mean);
+    }
+    expected += std::abs(covariance);
+  }
+  expected /= kRows * std::sqrt(square / (2 * kRows));
+  const CandidateTask task = CandidateTask::Covariance(units, errors);
+  EXPECT_NEAR(Score(task, weights).scores(0), expected, 1e-12);
+}
+
+TEST(Candidates, ErrorReductionIsWhatOutputsSolvedAnewLose) {
+  const Eigen::MatrixXd units = Drawn(200, 4, 4);
+  LeastSquares solver(Drawn(200, 2, 5), 5);
+  for (Eigen::Index i = 0; i < 4; ++i) solver.Add(units.col(i));
+  const CandidateTask task = CandidateTask::ErrorReduction(units, solver.errors(), solver.basis());
+  const Scores scores = Score(task, 4 * Drawn(4, 1, 6));
+  const double before = solver.errors().squaredNorm();
+  solver.Add(scores.values.col(0));
+  const double lost = 1 - solver.errors().squaredNorm() / before;
+  // The little more of a unit's size is 3e-3^2 of about 0.1^2.
+  EXPECT_NEAR(scores.scores(0) * scores.scores(0), lost, 2e-3 * lost);
+}
+
+TEST(Candidates, TrainingFindsAUnitThatTheErrorIsMadeOf) {
+  Eigen::MatrixXd units = Drawn(400, 4, 7);
+  units.col(0).setOnes();
+  const Eigen::Vector4d truth(0.2, 3, -2, 4);
+  LeastSquares solver(Sigmoid((units * truth).array()).matrix(), 5);
+  for (Eigen::Index i = 0; i < 4; ++i) solver.Add(units.col(i));
+  const double before = solver.errors().squaredNorm();
+  noise::Random random(8);
+  const NewUnit unit = TrainCandidates(
+      CandidateTask::ErrorReduction(units, solver.errors(), solver.basis()), {}, random);
+  EXPECT_EQ(unit.values, Sigmoid((units * unit.weights).array()).matrix());
+  EXPECT_GT(unit.epochs, 8);
+  solver.Add(unit.values);
+  EXPECT_LT(solver.errors().squaredNorm(), 0.05 * before);
+}
+
+TEST(Candidates, CovarianceChangesNeitherWithTheErrorsSizeNorWithRowsRepeated) {
+  const Eigen::MatrixXd units = Drawn(64, 3, 9), twice = units.replicate(2, 1);
+  const Eigen::MatrixXd error = Drawn(64, 1, 10);
+  noise::Random first(11), second(11);
+  const NewUnit once = TrainCandidates(CandidateTask::Covariance(units, error), {}, first);
+  const NewUnit scaled =
+      TrainCandidates(CandidateTask::Covariance(twice, 1024 * error.replicate(2, 1)), {}, second);
+  EXPECT_EQ(once.epochs, scaled.epochs);
+  EXPECT_TRUE(once.weights.isApprox(scaled.weights, 1e-6));
+}
+
+}  // namespace
+}  // namespace footing::learning

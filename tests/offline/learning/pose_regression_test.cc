@@ -1,0 +1,106 @@
+#include "daemon/offline/learning/pose_regression.h"
+
+#include <gtest/gtest.h>
+
+#include "common/virtual/noise/random.h"
+
+namespace footing::learning {
+namespace {
+
+constexpr int kDof = 6;
+constexpr RandomWaves kWaves{.count = 40};
+
+/// Poses that are a linear map of the features and some noise.
+PoseExamples Linear(double noise, std::uint64_t seed, Eigen::MatrixXd& map, int frames = 3000) {
+  noise::Random random(seed);
+  map = Eigen::MatrixXd::Zero(kDof, reconstruction::Features::kCount);
+  for (int i = 0; i < kDof; ++i) {
+    for (int k = 0; k < 10; ++k) map(i, k) = random.Normal();
+  }
+  PoseExamples examples;
+  for (int i = 0; i < frames; ++i) {
+    reconstruction::Features::Values features;
+    for (double& value : features) value = 0.5 * random.Normal();
+    Eigen::VectorXd pose = map * features;
+    for (double& value : pose) value += noise * random.Normal();
+    examples.features.push_back(features);
+    examples.poses.push_back(pose);
+    examples.folds.push_back(i / 100 % kFolds);
+  }
+  return examples;
+}
+
+TEST(PoseRegression, FindsALinearMapAndTellsItsErrorOnWhatWasLeftOut) {
+  Eigen::MatrixXd map;
+  const PoseExamples examples = Linear(0.1, 1, map);
+  const auto fitted = FitPoseRegression(examples, Eigen::VectorXd::Ones(kDof), kWaves);
+  reconstruction::PoseRegression::Room room = fitted.regression.MakeRoom();
+  Eigen::VectorXd pose(kDof);
+  double sum = 0;
+  for (std::size_t i = 0; i < 200; ++i) {
+    fitted.regression.Predict(examples.features[i], room, pose);
+    sum += (pose - map * examples.features[i]).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(sum / 200 / kDof), 0.04);
+  // The noise of 0.1 in each of six entries, and a little for what is not quite learned.
+  EXPECT_NEAR(fitted.error, 0.1 * std::sqrt(6.0), 0.02);
+  EXPECT_NEAR(std::sqrt(fitted.rest_variances.sum()), fitted.error, 1e-9);
+  EXPECT_GT(fitted.spread, 5 * fitted.error);
+}
+
+TEST(PoseRegression, ItsWavesFindWhatIsNotLinear) {
+  noise::Random random(5);
+  PoseExamples examples;
+  for (int i = 0; i < 1000; ++i) {
+    reconstruction::Features::Values features = reconstruction::Features::Values::Zero();
+    for (double& value : features.head<3>()) value = random.Normal();
+    Eigen::VectorXd pose(2);
+    pose << features(0) * features(1), features(2) * features(2);
+    examples.features.push_back(features);
+    examples.poses.push_back(pose);
+    examples.folds.push_back(i / 100 % kFolds);
+  }
+  const Eigen::VectorXd scale = Eigen::VectorXd::Ones(2);
+  const auto linear = FitPoseRegression(examples, scale, {.count = 0});
+  const auto waved = FitPoseRegression(examples, scale, {.count = 100, .kernel_width = 0.2});
+  EXPECT_GT(linear.error, 0.95 * linear.spread);  // Products know nothing of their factors' signs.
+  EXPECT_LT(waved.error, 0.5 * linear.error);
+  reconstruction::PoseRegression::Room room = waved.regression.MakeRoom();
+  Eigen::VectorXd pose(2);
+  waved.regression.Predict(examples.features[7], room, pose);
+  EXPECT_LT((pose - examples.poses[7]).norm(), 2 * waved.error);
+}
+
+TEST(PoseRegression, WithNothingToLearnShrinksAndItsErrorIsTheSpread) {
+  Eigen::MatrixXd map;
+  PoseExamples examples = Linear(0, 2, map);
+  noise::Random random(3);
+  for (Eigen::VectorXd& pose : examples.poses) {
+    for (double& value : pose) value = random.Normal();
+  }
+  const auto fitted = FitPoseRegression(examples, Eigen::VectorXd::Ones(kDof), kWaves);
+  EXPECT_EQ(fitted.ridge, 1.0);  // The greatest that is tried.
+  EXPECT_NEAR(fitted.error / fitted.spread, 1, 0.03);
+}
+
+TEST(PoseRegression, ItsTensorsHaveTheShapesThatTheyAreReadBy) {
+  Eigen::MatrixXd map;
+  const auto fitted =
+      FitPoseRegression(Linear(0.1, 4, map, 500), Eigen::VectorXd::Ones(kDof), kWaves);
+  model::Model model{.kind = "pose", .provenance = {}, .tensors = {}};
+  AppendTensors(fitted, model);
+  constexpr auto kFeatures = static_cast<std::uint32_t>(reconstruction::Features::kCount);
+  ASSERT_TRUE(model::Check(model, "made").ok());
+  const auto weights = model::Find(model, "regression_weights", {kDof, kFeatures}, "made");
+  ASSERT_TRUE(weights.ok());
+  EXPECT_FLOAT_EQ((*weights)->values[kFeatures + 2],
+                  static_cast<float>(fitted.regression.weights(1, 2)));
+  EXPECT_TRUE(model::Find(model, "feature_mean", {kFeatures}, "made").ok());
+  EXPECT_TRUE(model::Find(model, "waves", {kWaves.count, kFeatures}, "made").ok());
+  EXPECT_TRUE(model::Find(model, "wave_phases", {kWaves.count}, "made").ok());
+  EXPECT_TRUE(model::Find(model, "wave_weights", {kDof, kWaves.count}, "made").ok());
+  EXPECT_TRUE(model::Find(model, "rest_components", {kDof, kDof}, "made").ok());
+}
+
+}  // namespace
+}  // namespace footing::learning

@@ -1,0 +1,53 @@
+#include "tests/offline/learning/problems.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "common/virtual/noise/random.h"
+
+namespace footing::learning {
+
+Examples TwoSpirals(int denser) {
+  const int points = 96 * denser + 1;
+  Examples examples{.inputs = Eigen::MatrixXd(2 * points, 2),
+                    .targets = Eigen::MatrixXd(2 * points, 1)};
+  for (int i = 0; i < points; ++i) {
+    const double along = static_cast<double>(i) / denser;
+    const double radius = 6.5 * (104 - along) / 104;
+    const double angle = along * std::numbers::pi / 16;
+    const Eigen::RowVector2d point(radius * std::sin(angle), radius * std::cos(angle));
+    examples.inputs.row(2 * i) = point;
+    examples.inputs.row(2 * i + 1) = -point;
+    examples.targets(2 * i, 0) = 0.5;
+    examples.targets(2 * i + 1, 0) = -0.5;
+  }
+  return examples;
+}
+
+Examples Parity(int bits) {
+  const int rows = 1 << bits;
+  Examples examples{.inputs = Eigen::MatrixXd(rows, bits), .targets = Eigen::MatrixXd(rows, 1)};
+  for (int row = 0; row < rows; ++row) {
+    bool odd = false;
+    for (int bit = 0; bit < bits; ++bit) {
+      const bool up = (row >> bit & 1) != 0;
+      odd = odd != up;
+      examples.inputs(row, bit) = up ? 0.5 : -0.5;
+    }
+    examples.targets(row, 0) = odd ? 0.5 : -0.5;
+  }
+  return examples;
+}
+
+Examples Curved(int rows, double noise_sd, std::uint64_t seed) {
+  noise::Random random(seed);
+  Examples examples{.inputs = Eigen::MatrixXd(rows, 3), .targets = Eigen::MatrixXd(rows, 1)};
+  for (int row = 0; row < rows; ++row) {
+    const double a = random.Uniform(-1, 1), b = random.Uniform(-1, 1), c = random.Uniform(-1, 1);
+    examples.inputs.row(row) << a, b, c;
+    examples.targets(row, 0) = std::sin(2 * a) + b * c + 0.3 * a * a + noise_sd * random.Normal();
+  }
+  return examples;
+}
+
+}  // namespace footing::learning

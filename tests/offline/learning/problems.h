@@ -1,0 +1,20 @@
+#pragma once
+
+#include "daemon/offline/learning/examples.h"
+
+/// The field's test problems.
+namespace footing::learning {
+
+/// Two interlocking spirals of three turns (Lang & Witbrock 1988, as Fahlman & Lebiere used them):
+/// 194 points (x, y) within 6.5 -> +-1/2. With `denser` > 1, that many times as many points along
+/// the same spirals.
+Examples TwoSpirals(int denser = 1);
+
+/// All patterns of `bits` inputs of +-1/2 -> +1/2 where an odd number of them is up.
+Examples Parity(int bits);
+
+/// A smooth function of three inputs with noise: sin(2 a) + b c + 0.3 a^2, inputs uniform within
+/// +-1.
+Examples Curved(int rows, double noise_sd, std::uint64_t seed);
+
+}  // namespace footing::learning
