@@ -1,0 +1,55 @@
+#include "daemon/offline/eval/arm/arm_command.h"
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/cli/cli.h"
+#include "daemon/offline/eval/arm/trial.h"
+#include "daemon/offline/eval/pose/scene.h"
+#include "daemon/offline/eval/report/print_report.h"
+
+namespace footing::eval {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Flags {
+  PoseSceneOptions scene;
+  std::string model;
+  double loop_minutes = 0;
+};
+
+Result<ordered_json> Evaluate(Flags flags) {
+  flags.scene.settings.loop_s = 60 * flags.loop_minutes;
+  const auto model = ReadArmModel(flags.model, flags.scene.motion);
+  if (!model) return model.error();
+  const auto run = MakeArmScene(flags.scene);
+  if (!run) return run.error();
+  return RunArmTrial(*run, *model);
+}
+
+}  // namespace
+
+void AddArmCommand(CLI::App& app, Shared& shared) {
+  auto* command = app.add_subcommand(
+      "arm", "The arms from a Wiimote with MotionPlus in each hand, against the truth");
+  const auto flags = std::make_shared<Flags>();
+  command->add_option("--motion", flags->scene.motion, "BVH, AMC, TRC or C3D")->required();
+  command->add_option("--skeleton", flags->scene.skeleton, "ASF of an AMC");
+  command->add_option("--still", flags->scene.still, "Markers of the person standing still");
+  command->add_option("--model", flags->model, "*.fmodel of kind arm; without: the product's");
+  command->add_option("--rate-hz", flags->scene.settings.rate_hz)->check(CLI::Range(30.0, 120.0));
+  command->add_option("--seed", flags->scene.settings.seed, "Of the devices' errors");
+  command->add_option("--loop-minutes", flags->loop_minutes, "Forwards and backwards so long")
+      ->check(CLI::Range(0.0, 60.0));
+  command->callback([flags, &shared] {
+    const auto out = Evaluate(*flags);
+    if (!out) {
+      shared.exit_code = cli::Report(out.error());
+    } else {
+      PrintReport(*out, shared.json);
+    }
+  });
+}
+
+}  // namespace footing::eval

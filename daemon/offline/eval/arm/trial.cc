@@ -1,0 +1,142 @@
+#include "daemon/offline/eval/arm/trial.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/body/kinematics.h"
+#include "common/units/units.h"
+#include "daemon/offline/eval/scores/pose_metrics.h"
+#include "daemon/simulation/arms/arm_geometry.h"
+#include "daemon/simulation/arms/arm_tracker.h"
+
+namespace footing::eval {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// One way to tell an arm, against the truth.
+class ArmScore {
+ public:
+  void Add(const arms::ArmGeometry& geometry, const arms::ArmDirections& told,
+           const arms::ArmDirections& truth, const Eigen::Vector3d& hand_m) {
+    shoulder_.Add(RadiansToDegrees(arms::ShoulderError(told, truth)));
+    elbow_.Add(RadiansToDegrees(arms::ElbowError(told, truth)));
+    hand_.Add(100 * (geometry.Hand(told) - hand_m).norm());
+  }
+  ordered_json Json() const {
+    return {{"shoulder_error_deg", shoulder_.mean()},
+            {"elbow_error_deg", elbow_.mean()},
+            {"hand_position_rms_cm", hand_.rms()},
+            {"hand_position_p95_cm", hand_.Quantile(0.95)}};
+  }
+
+ private:
+  Spread shoulder_, elbow_, hand_;
+};
+
+/// How far the told turn of a hand since the T-pose is off, in all and of its up alone.
+class TurnScore {
+ public:
+  void Add(const Eigen::Matrix3d& told, const Eigen::Matrix3d& truth) {
+    const double cosine = ((told.transpose() * truth).trace() - 1) / 2;
+    all_.Add(RadiansToDegrees(std::acos(std::clamp(cosine, -1.0, 1.0))));
+    const double level = told.row(2).dot(truth.row(2));
+    inclination_.Add(RadiansToDegrees(std::acos(std::clamp(level, -1.0, 1.0))));
+  }
+  double mean_deg() const { return all_.mean(); }
+  double inclination_deg() const { return inclination_.mean(); }
+
+ private:
+  Spread all_, inclination_;
+};
+
+class ArmTrial {
+ public:
+  ArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model)
+      : run_(run),
+        tracker_(model),
+        geometry_{arms::ArmGeometry(run.body, 0), arms::ArmGeometry(run.body, 1)},
+        at_(run.body.skeleton) {
+    mean_ = arms::Of(model.offset);
+    body::ComputeKinematics(run.body.skeleton, run.frames.front().q, at_);
+    for (std::size_t arm = 0; arm < arms::kArms; ++arm) rest_[arm] = HandAt(arm).transpose();
+  }
+
+  ordered_json Run() {
+    const double step_s = 1 / run_.rate_hz;
+    const auto first = static_cast<std::size_t>(std::lround(pose_run::kStandS * run_.rate_hz));
+    for (std::size_t i = 0; i < run_.frames.size(); ++i) {
+      const pose_run::ArmFrame& frame = run_.frames[i];
+      for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
+        for (const arms::HandReading& reading : frame.readings[arm]) {
+          tracker_.Add(arm, reading, run_.reading_s);
+          clipped_ += reading.clipped ? 1 : 0;
+          ++readings_;
+        }
+      }
+      if (i == run_.aligned) tracker_.Align();
+      const auto& told = tracker_.Advance(step_s);
+      if (i < first) continue;
+      body::ComputeKinematics(run_.body.skeleton, frame.q, at_);
+      for (std::size_t arm = 0; arm < arms::kArms; ++arm) Judge(arm, told[arm]);
+    }
+    return Json(run_.frames.size() - first);
+  }
+
+ private:
+  Eigen::Matrix3d HandAt(std::size_t arm) const {
+    return at_.R_WJ[static_cast<std::size_t>(geometry_[arm].fist.joint)];
+  }
+
+  void Judge(std::size_t arm, const arms::ArmEstimate& told) {
+    const arms::ArmGeometry& geometry = geometry_[arm];
+    const arms::ArmDirections truth = geometry.Directions(at_);
+    const auto fist = static_cast<std::size_t>(geometry.fist.joint);
+    const Eigen::Vector3d hand_m = body::Place(geometry.fist, at_.R_WJ[fist], at_.p_WJ[fist]) -
+                                   at_.p_WJ[static_cast<std::size_t>(geometry.shoulder)];
+    told_.Add(geometry, told.directions, truth, hand_m);
+    still_.Add(geometry, arm == 1 ? arms::Mirrored(mean_) : mean_, truth, hand_m);
+    turn_.Add(tracker_.hand(arm).turn_W, HandAt(arm) * rest_[arm]);
+    const auto add = [this](const Eigen::Vector3d& error, const Eigen::Vector3d& sd) {
+      nees_ += error.cwiseQuotient(sd).squaredNorm() / 9;
+    };
+    add(told.directions.upper - truth.upper, told.upper_sd);
+    add(told.directions.hinge - truth.hinge, told.hinge_sd);
+    add(told.directions.forearm - truth.forearm, told.forearm_sd);
+    ++judged_;
+    finite_ = finite_ && arms::Stacked(told.directions).allFinite();
+  }
+
+  ordered_json Json(std::size_t frames) const {
+    ordered_json json = {{"frames", frames}, {"rate_hz", run_.rate_hz}};
+    json.update(told_.Json());
+    json["attitude_error_deg"] = turn_.mean_deg();
+    json["inclination_error_deg"] = turn_.inclination_deg();
+    json["clipped_share"] = static_cast<double>(clipped_) / static_cast<double>(readings_);
+    json["nees"] = nees_ / static_cast<double>(judged_);
+    json["finite"] = finite_;
+    json["baselines"]["mean_arm"] = still_.Json();
+    return json;
+  }
+
+  const pose_run::ArmRun& run_;
+  arms::ArmTracker tracker_;
+  std::array<arms::ArmGeometry, arms::kArms> geometry_;
+  std::array<Eigen::Matrix3d, arms::kArms> rest_;
+  body::Kinematics at_;
+  arms::ArmDirections mean_;
+  ArmScore told_, still_;
+  TurnScore turn_;
+  std::size_t clipped_ = 0, readings_ = 0, judged_ = 0;
+  double nees_ = 0;
+  bool finite_ = true;
+};
+
+}  // namespace
+
+ordered_json RunArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model) {
+  return ArmTrial(run, model).Run();
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "daemon/offline/eval/report/command.h"
+
+namespace footing::eval {
+
+/// `features`: the features of recorded accelerations, or how good the features are on made motion.
+void AddFeaturesCommand(CLI::App& app, Shared& shared);
+
+}  // namespace footing::eval

@@ -1,0 +1,133 @@
+#include "daemon/offline/eval/gait/monkey_command.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "common/cli/cli.h"
+#include "common/units/units.h"
+#include "daemon/offline/eval/gait/trial.h"
+#include "daemon/offline/eval/report/print_report.h"
+#include "daemon/offline/tracking/tracking.h"
+
+namespace footing::eval {
+namespace {
+
+using stream::Gait;
+using tracking::Tracking;
+
+constexpr std::array kGaits{Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
+
+struct Options {
+  double seconds = 600;
+  int trials = 1;
+  std::string seed = "1";
+  bool gentle = false;
+};
+
+struct Outcome {
+  double simulated_s = 0;
+  int falls = 0;
+  std::array<int, 4> falls_by_gait{};
+  std::array<int, tracking::kTrackings> commands{};  ///< By what became of them.
+
+  int of(Tracking became) const { return commands[static_cast<std::size_t>(became)]; }
+};
+
+/// Gentle: run to 3 m/s and walk to 1, instead of 4 and 1.3.
+biped::GaitCommand DrawCommand(bool gentle, Random& random) {
+  biped::GaitCommand command;
+  command.gait = kGaits[static_cast<std::size_t>(random.Uniform(0, 3.999))];
+  const double part = random.Uniform(0, 1);
+  if (command.gait == Gait::kWalk) command.speed_mps = part * (gentle ? 1.0 : 1.3);
+  if (command.gait == Gait::kRun) command.speed_mps = 1 + part * (gentle ? 2.0 : 3.0);
+  if (command.gait == Gait::kJump) command.speed_mps = part * 1.5;
+  command.height_m = random.Uniform(0.08, 0.35);
+  const bool turns = random.Uniform(0, 1) < 0.5;
+  command.turn_per_step_rad = turns ? DegreesToRadians(random.Uniform(-5, 5)) : 0;
+  return command;
+}
+
+/// One trial; a fall is put back by the engine and the trial goes on.
+Result<void> RunTrial(const Options& options, std::uint64_t seed, Outcome& outcome) {
+  Result<engine::GaitEngine> engine = NewEngine();
+  if (!engine) return engine.error();
+  Random random(seed);
+  Walker walker(*engine);
+  double next_s = tracking::kLongCommandS;
+  tracking::GivenCommand given;
+  tracking::SpeedOverAStep speed;
+  for (double time_s = 0; time_s < options.seconds;) {
+    if (time_s >= next_s) {
+      const stream::GaitState& state = engine->Output().gait;
+      if (given.time_s > 0) {
+        const Tracking became = tracking::Judge(given, time_s, state, speed.mean_mps());
+        ++outcome.commands[static_cast<std::size_t>(became)];
+      }
+      next_s = time_s + random.Uniform(0.5, 4);
+      const biped::GaitCommand command = DrawCommand(options.gentle, random);
+      given = {time_s, command.speed_mps, state.falls};
+      walker.Command(command);
+    }
+    const engine::EngineOutput& output = walker.Advance();
+    time_s = output.time_s;
+    speed.Add(output.gait.speed_mps);
+    for (int i = 0; i < output.event_count; ++i) {
+      const engine::EngineEvent& event = output.events[static_cast<std::size_t>(i)];
+      if (event.kind != engine::EventKind::kFall) continue;
+      ++outcome.falls;
+      ++outcome.falls_by_gait[static_cast<std::size_t>(event.from) - 1];
+    }
+  }
+  outcome.simulated_s += options.seconds;
+  return {};
+}
+
+int Run(const Options& options, bool json) {
+  const Result<std::uint64_t> seed = ParseSeed(options.seed);
+  if (!seed) return cli::Report(seed.error());
+  Outcome outcome;
+  for (int i = 0; i < options.trials; ++i) {
+    if (auto run = RunTrial(options, TrialSeed(*seed, i), outcome); !run) {
+      return cli::Report(run.error());
+    }
+  }
+  const int commands = std::accumulate(outcome.commands.begin(), outcome.commands.end(), 0);
+  const int judged = commands - outcome.of(Tracking::kShort);
+  const double tracked = outcome.of(Tracking::kTracked);
+  nlohmann::ordered_json report{
+      {"seed", *seed},
+      {"simulated_s", outcome.simulated_s},
+      {"falls", outcome.falls},
+      {"mean_time_between_falls_s", outcome.simulated_s / std::max(1, outcome.falls)},
+      {"falls_by_gait", nlohmann::ordered_json::object()},
+      {"commands_tracked_fraction", tracked / std::max(1, judged)},
+      {"untracked",
+       {{"gait", outcome.of(Tracking::kOtherGait)},
+        {"fell", outcome.of(Tracking::kFell)},
+        {"speed", outcome.of(Tracking::kOffSpeed)}}},
+      {"commands", commands},
+      {"commands_of_3_s", judged}};
+  for (std::size_t i = 0; i < kGaits.size(); ++i) {
+    report["falls_by_gait"][Name(kGaits[i])] = outcome.falls_by_gait[i];
+  }
+  PrintReport(report, json);
+  return 0;
+}
+
+}  // namespace
+
+void AddMonkeyCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("monkey", "Random commands every 0.5 to 4 s");
+  auto options = std::make_shared<Options>();
+  command->add_option("--seconds", options->seconds, "Of each trial")
+      ->check(CLI::Range(1.0, 36000.0));
+  command->add_option("--trials", options->trials, "How many")->check(CLI::Range(1, 10000));
+  command->add_option("--seed", options->seed, "A number, or random");
+  command->add_flag("--gentle", options->gentle, "Run to 3 m/s and walk to 1, not 4 and 1.3");
+  command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
+}
+
+}  // namespace footing::eval

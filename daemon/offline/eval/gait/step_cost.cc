@@ -1,0 +1,76 @@
+#include "daemon/offline/eval/gait/step_cost.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "common/clock/clock.h"
+#include "daemon/offline/eval/gait/trial.h"
+#include "daemon/simulation/engine/state.h"
+
+namespace footing::eval {
+namespace {
+
+constexpr int kWarmUpSteps = 5000;
+constexpr int kSteps = 2000;
+constexpr int kPairs = 7;
+constexpr int kPublishEvery = 10;
+
+struct Forces {
+  physics::JointEfforts joints;
+  Eigen::Vector3d push_W_n;
+};
+
+std::int64_t TimeEngine(engine::GaitEngine& engine, const engine::EngineState& start,
+                        const engine::EngineInputs& inputs) {
+  engine.Restore(start);
+  const std::int64_t begin_ns = clock::ThreadCpuNs();
+  for (int i = 0; i < kSteps; ++i) {
+    engine.Advance(inputs);
+    if (i % kPublishEvery == 0) engine.Output();
+  }
+  return clock::ThreadCpuNs() - begin_ns;
+}
+
+std::int64_t TimeBare(physics::World& world, const physics::WorldState& start,
+                      const std::vector<Forces>& forces) {
+  world.Restore(start);
+  const std::int64_t begin_ns = clock::ThreadCpuNs();
+  for (const Forces& force : forces) world.StepBare(force.joints, force.push_W_n);
+  return clock::ThreadCpuNs() - begin_ns;
+}
+
+}  // namespace
+
+Result<double> MeasureStepCostRatio(const biped::GaitCommand& command) {
+  Result<engine::GaitEngine> engine = NewEngine();
+  if (!engine) return engine.error();
+  Result<physics::World> world = NewWorld();
+  if (!world) return world.error();
+  Walker walker(*engine);
+  walker.Command(command);
+  for (int i = 0; i < kWarmUpSteps; ++i) walker.Advance();
+
+  const engine::EngineState start = engine->Save();
+  std::vector<Forces> forces;
+  for (int i = 0; i < kSteps; ++i) {
+    const engine::EngineOutput& output = walker.Advance();
+    forces.push_back({output.joint_efforts, output.push_W_n});
+  }
+  const std::uint64_t expected = engine->Output().state_hash;
+
+  std::vector<double> ratios;
+  for (int pair = 0; pair < kPairs; ++pair) {
+    std::int64_t ours_ns = TimeEngine(*engine, start, walker.inputs());
+    std::int64_t bare_ns = TimeBare(*world, start.world, forces);
+    bare_ns += TimeBare(*world, start.world, forces);
+    if (world->StateHash() != expected) {
+      return Failure("bare mj_step ended in another state than the engine");
+    }
+    ours_ns += TimeEngine(*engine, start, walker.inputs());
+    ratios.push_back(static_cast<double>(ours_ns) / static_cast<double>(bare_ns));
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + kPairs / 2, ratios.end());
+  return ratios[kPairs / 2];
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,97 @@
+#include "daemon/offline/eval/gait/transition_trial.h"
+
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::eval {
+namespace {
+
+using stream::Gait;
+
+constexpr double kKickTimeS = 1.5;
+constexpr double kKickNs = 2;
+constexpr double kLatestReachS = 10;
+constexpr double kUprightS = 5;
+constexpr double kSettleS = 4;  ///< Beyond the upright time, for the slew of the speed command.
+constexpr double kSpeedToleranceMps = 0.1;
+
+/// Mean speed over one whole second, a second after the next.
+class SpeedPerSecond {
+ public:
+  void Add(double speed_mps, double step_s) {
+    sum_m_ += speed_mps * step_s;
+    time_s_ += step_s;
+    if (time_s_ < 1) return;
+    last_mps_ = sum_m_ / time_s_;
+    sum_m_ = time_s_ = 0;
+  }
+  double last_mps() const { return last_mps_; }
+
+ private:
+  double sum_m_ = 0, time_s_ = 0, last_mps_ = 0;
+};
+
+}  // namespace
+
+biped::GaitCommand DrawCommand(Gait gait, Random& random) {
+  biped::GaitCommand command;
+  command.gait = gait;
+  command.height_m = random.Uniform(0.1, 0.35);
+  switch (gait) {
+    case Gait::kWalk:
+      command.speed_mps = random.Uniform(0.2, 1.4);
+      break;
+    case Gait::kRun:
+      command.speed_mps = random.Uniform(1.5, 4.5);
+      break;
+    case Gait::kJump:
+      command.speed_mps = random.Uniform(0, 1);
+      break;
+    case Gait::kStep:
+    case Gait::kUnspecified:
+      break;
+  }
+  return command;
+}
+
+Result<TransitionResult> RunTransition(Gait from, Gait to, std::uint64_t seed,
+                                       const TransitionSpeeds& speeds) {
+  Result<engine::GaitEngine> engine = NewEngine();
+  if (!engine) return engine.error();
+  Random random(seed);
+  biped::GaitCommand before = DrawCommand(from, random);
+  biped::GaitCommand after = DrawCommand(to, random);
+  before.speed_mps = speeds.from_mps.value_or(before.speed_mps);
+  after.speed_mps = speeds.to_mps.value_or(after.speed_mps);
+  const double change_s = random.Uniform(7, 8.5);
+  const double kick_rad = random.Uniform(-kPi, kPi);
+  const double step_s = engine::EngineConfig{}.step_s;
+
+  Walker walker(*engine);
+  TransitionResult result;
+  SpeedPerSecond speed;
+  double reached_s = -1;
+  bool kicked = false, changed = false;
+  for (double time_s = 0; !walker.fell();) {
+    if (!kicked && time_s >= kKickTimeS) walker.Push(kKickNs, kick_rad);
+    kicked = kicked || time_s >= kKickTimeS;
+    changed = time_s >= change_s;
+    walker.Command(changed ? after : before);
+    const engine::EngineOutput& output = walker.Advance();
+    time_s = output.time_s;
+    speed.Add(output.gait.speed_mps, step_s);
+    if (changed && reached_s < 0 && output.gait.gait == to) reached_s = time_s;
+    if (reached_s < 0 && time_s > change_s + kLatestReachS) break;
+    const bool stayed = reached_s >= 0 && time_s > reached_s + kUprightS;
+    result.succeeded = stayed && output.gait.gait == to &&
+                       std::fabs(speed.last_mps() - after.speed_mps) <= kSpeedToleranceMps;
+    if (result.succeeded || (stayed && time_s > reached_s + kUprightS + kSettleS)) break;
+  }
+  result.fell = walker.fell();
+  result.succeeded = result.succeeded && !result.fell;
+  if (reached_s >= 0) result.latency_s = reached_s - change_s;
+  return result;
+}
+
+}  // namespace footing::eval

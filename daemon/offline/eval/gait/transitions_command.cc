@@ -1,0 +1,85 @@
+#include "daemon/offline/eval/gait/transitions_command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "common/cli/cli.h"
+#include "daemon/offline/eval/gait/transition_trial.h"
+
+namespace footing::eval {
+namespace {
+
+struct Options {
+  std::string from;
+  std::string to;
+  int trials = 10;
+  std::string seed = "1";
+  TransitionSpeeds speeds;
+};
+
+/// The value below which this part of the sorted values lies; 0 of none.
+double Quantile(const std::vector<double>& sorted, double part) {
+  if (sorted.empty()) return 0;
+  const auto last = static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(part * last + 0.5)];
+}
+
+int Run(const Options& options, bool json) {
+  const stream::Gait from = stream::GaitNamed(options.from);
+  const stream::Gait to = stream::GaitNamed(options.to);
+  if (from == stream::Gait::kUnspecified || to == stream::Gait::kUnspecified || from == to) {
+    return cli::Report(UsageError("--from " + options.from + " --to " + options.to +
+                                  ": must be two different ones of step, walk, run, jump"));
+  }
+  const Result<std::uint64_t> seed = ParseSeed(options.seed);
+  if (!seed) return cli::Report(seed.error());
+  int succeeded = 0, falls = 0;
+  std::vector<double> latencies_s;
+  for (int i = 0; i < options.trials; ++i) {
+    const Result<TransitionResult> trial =
+        RunTransition(from, to, TrialSeed(*seed, i), options.speeds);
+    if (!trial) return cli::Report(trial.error());
+    falls += trial.value().fell ? 1 : 0;
+    if (!trial.value().succeeded) continue;
+    ++succeeded;
+    latencies_s.push_back(trial.value().latency_s);
+  }
+  std::sort(latencies_s.begin(), latencies_s.end());
+  const nlohmann::ordered_json report{{"from", options.from},
+                                      {"to", options.to},
+                                      {"seed", *seed},
+                                      {"trials", options.trials},
+                                      {"succeeded", succeeded},
+                                      {"falls", falls},
+                                      {"median_latency_s", Quantile(latencies_s, 0.5)},
+                                      {"p95_latency_s", Quantile(latencies_s, 0.95)}};
+  if (json) {
+    std::printf("%s\n", report.dump().c_str());
+  } else {
+    std::printf("%s -> %s: %d of %d succeeded, %d falls, latency median %.2f s, p95 %.2f s\n",
+                options.from.c_str(), options.to.c_str(), succeeded, options.trials, falls,
+                Quantile(latencies_s, 0.5), Quantile(latencies_s, 0.95));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddTransitionsCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("transitions", "From one gait to another");
+  auto options = std::make_shared<Options>();
+  command->add_option("--from", options->from, "step, walk, run or jump")->required();
+  command->add_option("--to", options->to, "step, walk, run or jump")->required();
+  command->add_option("--trials", options->trials, "How many")->check(CLI::Range(1, 100000));
+  command->add_option("--seed", options->seed, "A number, or random");
+  command->add_option("--from-speed", options->speeds.from_mps, "m/s; drawn by default")
+      ->check(CLI::Range(0.0, 6.0));
+  command->add_option("--to-speed", options->speeds.to_mps, "m/s; drawn by default")
+      ->check(CLI::Range(0.0, 6.0));
+  command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,93 @@
+#include "daemon/offline/eval/gait/trial.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "daemon/simulation/biped/mjcf.h"
+#include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/terrain/track.h"
+
+namespace footing::eval {
+namespace {
+
+std::vector<std::string>& MoreGains() {
+  static std::vector<std::string> paths;
+  return paths;
+}
+
+Result<engine::EngineTexts> ReadTexts() {
+  return engine_files::ReadTexts({.more_gains = MoreGains()});
+}
+
+}  // namespace
+
+void ReadGainsToo(std::vector<std::string> paths) { MoreGains() = std::move(paths); }
+
+std::uint64_t TrialSeed(std::uint64_t seed, int trial) {
+  return seed * 1000003u + static_cast<std::uint64_t>(trial);
+}
+
+Result<std::uint64_t> ParseSeed(const std::string& text) {
+  if (text == "random") {
+    const std::uint64_t seed = std::random_device{}();
+    std::fprintf(stderr, "seed %llu\n", static_cast<unsigned long long>(seed));
+    return seed;
+  }
+  std::uint64_t seed = 0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, seed);
+  if (read.ec != std::errc() || read.ptr != end) {
+    return UsageError("--seed " + text + ": must be a number, or random");
+  }
+  return seed;
+}
+
+Result<engine::GaitEngine> NewEngine() {
+  Result<engine::EngineTexts> texts = ReadTexts();
+  if (!texts) return texts.error();
+  return engine::GaitEngine::Create(*texts);
+}
+
+Result<engine::GaitEngine> NewEngineOn(const std::string& track) {
+  Result<engine::EngineTexts> texts = ReadTexts();
+  if (!texts) return texts.error();
+  texts->track = track;
+  return engine::GaitEngine::Create(*texts);
+}
+
+Result<physics::World> NewWorld() {
+  Result<engine::EngineTexts> texts = ReadTexts();
+  if (!texts) return texts.error();
+  Result<biped::BipedParameters> biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
+  if (!biped) return biped.error();
+  Result<stream::Track> track = terrain::ParseTrack(texts->track, engine::kStraightTrackFile);
+  if (!track) return track.error();
+  return physics::World::FromMjcf(
+      biped::WriteMjcf(*biped, terrain::GroundMjcf(*track), engine::EngineConfig{}.step_s),
+      biped::Names());
+}
+
+void Walker::Command(const biped::GaitCommand& command) {
+  inputs_.direct = true;
+  inputs_.direct_command = command;
+}
+
+void Walker::Push(double impulse_ns, double direction_rad) {
+  Push(impulse_ns, direction_rad, inputs_.push_number + 1);
+}
+
+void Walker::Push(double impulse_ns, double direction_rad, std::uint64_t number) {
+  inputs_.push_number = number;
+  inputs_.push_impulse_W_ns =
+      impulse_ns * Eigen::Vector2d(std::cos(direction_rad), std::sin(direction_rad));
+}
+
+const engine::EngineOutput& Walker::Advance() {
+  engine_.Advance(inputs_);
+  output_ = &engine_.Output();
+  return *output_;
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,81 @@
+#include "daemon/offline/eval/pose/plates.h"
+
+#include "common/units/units.h"
+#include "daemon/offline/eval/momentum/offline.h"
+#include "daemon/simulation/reconstruction/feet.h"
+
+namespace footing::eval {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// The fields of a trial that measured and simulated forces are compared by.
+constexpr const char* kCompared[] = {"mpjpe_cm",
+                                     "mpjpe_p95_cm",
+                                     "mpjpe_root_relative_cm",
+                                     "com_vertical_rms_cm",
+                                     "com_horizontal_rms_cm",
+                                     "com_forward_rms_cm",
+                                     "com_lateral_rms_cm",
+                                     "com_forward_bias_cm",
+                                     "com_forward_sd_cm",
+                                     "foot_position_rms_cm",
+                                     "contact_f1",
+                                     "nees"};
+
+ordered_json FeetJson(const pose_run::PlateUse& use) {
+  return {{"plate", use.plate},
+          {"left_s", use.loaded_s[0]},
+          {"right_s", use.loaded_s[1]},
+          {"beside_cm", 100 * use.beside_m}};
+}
+
+/// The centre of mass by the offline smoothers, from the cells alone.
+Result<ordered_json> Offline(const pose_run::PoseRun& run) {
+  MomentumScene scene;
+  scene.rate_hz = run.rate_hz;
+  scene.subject = reconstruction::SubjectOf(run.body);
+  momentum::TPoseCalibration calibration;
+  std::size_t start = 0;
+  for (const pose_run::Frame& frame : run.frames) {
+    scene.frames.push_back({frame.inputs.loads, frame.com_m, frame.angular_momentum, {}});
+    if (!calibration.complete()) {
+      calibration.Advance(frame.inputs.loads, 1 / run.rate_hz);
+      ++start;
+    }
+  }
+  if (!calibration.complete() || start > run.judged_from) {
+    return InvalidData("the T-pose never stood still on both boards: no calibration");
+  }
+  return OfflineJson(scene, calibration.result(), start, run.judged_from);
+}
+
+}  // namespace
+
+Result<ordered_json> JudgePlates(const pose_run::PlateRun& plates,
+                                 const reconstruction::Models& models,
+                                 const reconstruction::Options& options, const Oracle& oracle) {
+  const auto simulated = RunPoseTrial(plates.simulated, models, options, oracle);
+  if (!simulated) return simulated.error();
+  const pose_run::PlateReport& report = plates.report;
+  ordered_json json = {{"begin_s", report.begin_s},
+                       {"end_s", report.end_s},
+                       {"carried_share", report.carried_share},
+                       {"mass_kg", report.mass_kg}};
+  const double weight_n = plates.measured.body.mass_kg * kStandardGravityMps2;
+  json["force_rms_percent"] = 100 * report.force_rms_n / weight_n;
+  json["force_own_mass_rms_percent"] = 100 * report.force_own_mass_rms_n / weight_n;
+  json["cop_forward_bias_cm"] = 100 * report.cop_bias_m.x();
+  json["cop_forward_rms_cm"] = 100 * report.cop_rms_m.x();
+  json["cop_lateral_rms_cm"] = 100 * report.cop_rms_m.y();
+  json["of_feet"] = ordered_json::array();
+  for (const pose_run::PlateUse& use : report.plates) json["of_feet"].push_back(FeetJson(use));
+  const auto offline = Offline(plates.measured);
+  if (!offline) return offline.error();
+  json["offline"] = *offline;
+  json["warnings"] = report.warnings;
+  for (const char* field : kCompared) json["simulated"][field] = simulated->at(field);
+  return json;
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "common/result/result.h"
+#include "daemon/offline/eval/pose/trial.h"
+#include "daemon/offline/pose_run/plates.h"
+
+namespace footing::eval {
+
+/// What the plates told, the centre of mass along each axis, and the same reconstruction on
+/// simulated forces, over the same frames. Field `plates` of `pose --boards forces`.
+Result<nlohmann::ordered_json> JudgePlates(const pose_run::PlateRun& plates,
+                                           const reconstruction::Models& models,
+                                           const reconstruction::Options& options,
+                                           const Oracle& oracle);
+
+}  // namespace footing::eval
