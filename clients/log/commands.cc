@@ -105,31 +105,36 @@ void Finish(const Result<ordered_json>& result, Shared& shared) {
 }  // namespace
 
 void AddRecordCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("record", "Record what servers send to an MCAP file");
+  CLI::App* command =
+      app.add_subcommand("record", "Record the messages of servers to an MCAP file");
   const auto options = std::make_shared<RecordOptions>();
   const auto addresses = std::make_shared<std::vector<std::string>>();
   command
-      ->add_option("--connect", *addresses, "A server: unix:PATH or tcp:HOST:PORT; may be repeated")
+      ->add_option("--connect", *addresses,
+                   "Address of a server, unix:PATH or tcp:HOST:PORT; may be repeated")
       ->required();
-  command->add_option("--out", options->out, "The new file")->required();
-  command->add_option("--seconds", options->seconds, "End by itself; left out: until SIGINT")
+  command->add_option("--out", options->out, "Output file, MCAP")->required();
+  command->add_option("--seconds", options->seconds, "Duration, s (default: until SIGINT)")
       ->check(CLI::Range(0.1, 1e6));
-  command->add_option("--attach", options->attachments,
-                      "A file to keep inside: config, calibration, track; may be repeated");
+  command->add_option(
+      "--attach", options->attachments,
+      "File to store in the recording, such as a config or a track; may be repeated");
   command->add_flag("--force", options->replace, "Overwrite an existing file");
   command->callback(
       [options, addresses, &shared] { Finish(RunRecord(*options, *addresses), shared); });
 }
 
 void AddExportCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("export", "Write a recording's messages in other formats");
+  CLI::App* command =
+      app.add_subcommand("export", "Write the messages of a recording in other formats");
   const auto file = std::make_shared<std::string>();
   const auto format = std::make_shared<std::string>();
   const auto folder = std::make_shared<std::string>();
   const auto replace = std::make_shared<bool>(false);
-  command->add_option("FILE", *file, "The recording")->required();
-  command->add_option("--format", *format, "csv, or bvh (reconstructed bodies)")->required();
-  command->add_option("--out", *folder, "The folder for one file a topic, or a subject")
+  command->add_option("FILE", *file, "Recording, MCAP file")->required();
+  command->add_option("--format", *format, "Output format: csv, or bvh (reconstructed bodies)")
+      ->required();
+  command->add_option("--out", *folder, "Output folder; one file per topic (csv) or subject (bvh)")
       ->required();
   command->add_flag("--force", *replace, "Overwrite existing files");
   command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *replace), shared); });
@@ -137,21 +142,21 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
 
 void AddRepairCommand(CLI::App& app, Shared& shared) {
   CLI::App* command =
-      app.add_subcommand("repair", "Make a complete recording of one cut short or damaged");
+      app.add_subcommand("repair", "Write a complete recording from a truncated or damaged one");
   const auto in = std::make_shared<std::string>();
   const auto out = std::make_shared<std::string>();
   const auto replace = std::make_shared<bool>(false);
-  command->add_option("IN", *in, "The recording cut short")->required();
-  command->add_option("--out", *out, "The new file")->required();
+  command->add_option("IN", *in, "Truncated or damaged recording, MCAP file")->required();
+  command->add_option("--out", *out, "Output file, MCAP")->required();
   command->add_flag("--force", *replace, "Overwrite an existing file");
   command->callback([=, &shared] { Finish(RunRepair(*in, *out, *replace), shared); });
 }
 
 void AddServeCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("serve", "Stand in for footingd with a recording");
+  CLI::App* command = app.add_subcommand("serve", "Serve a recording in place of footingd");
   const auto file = std::make_shared<std::string>();
   const auto addresses = std::make_shared<std::vector<std::string>>();
-  command->add_option("FILE", *file, "The recording");
+  command->add_option("FILE", *file, "Recording, MCAP file");
   command->add_option("--listen", *addresses, "unix:PATH or tcp:HOST:PORT");
   command->callback([file, addresses, &shared] {  // The options live as long as their command.
     shared.exit_code =

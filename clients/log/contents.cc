@@ -144,7 +144,7 @@ Result<Contents> ReadContents(const std::string& path) {
   if (!file) return file.error();
   const std::string_view magic = file->bytes().substr(0, mcap::kMagic.size());
   if (magic.empty() || magic != mcap::kMagic.substr(0, magic.size())) {
-    return InvalidData(path + " is no recording: it does not begin as an MCAP file does");
+    return InvalidData(path + " is not a recording: it does not begin as an MCAP file does");
   }
   Contents contents;
   contents.path = path;

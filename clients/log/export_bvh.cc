@@ -38,7 +38,7 @@ Result<body::Skeleton> SkeletonOf(const v1::Skeleton& skeleton, const v1::Charac
   for (int i = 0; i < skeleton.links_size(); ++i) {
     const v1::Link& link = skeleton.links(i);
     const bool fits = i == 0 ? link.parent() == -1 : link.parent() >= 0 && link.parent() < i;
-    if (!fits) return InvalidData("the recorded skeleton is no tree");
+    if (!fits) return InvalidData("the recorded skeleton is not a tree");
     body::Joint joint;
     joint.name = link.name();
     joint.parent = link.parent();

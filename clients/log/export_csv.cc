@@ -155,7 +155,7 @@ Result<std::vector<ExportedFile>> ExportCsv(const std::string& recording, const 
   if (!file) return file.error();
   const std::string_view magic = file->bytes().substr(0, mcap::kMagic.size());
   if (magic != mcap::kMagic.substr(0, magic.size()) || magic.empty()) {
-    return InvalidData(recording + " is no recording: it does not begin as an MCAP file does");
+    return InvalidData(recording + " is not a recording: it does not begin as an MCAP file does");
   }
   return Exporter(file->bytes(), recording).Run(folder, replace);
 }

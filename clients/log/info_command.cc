@@ -84,9 +84,9 @@ void PrintText(const Contents& contents) {
 }  // namespace
 
 void AddInfoCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("info", "What a recording holds");
+  CLI::App* command = app.add_subcommand("info", "Print the contents of a recording");
   const auto file = std::make_shared<std::string>();
-  command->add_option("FILE", *file, "The recording")->required();
+  command->add_option("FILE", *file, "Recording, MCAP file")->required();
   command->callback([file, &shared] {
     const Result<Contents> contents = ReadContents(*file);
     if (!contents) {

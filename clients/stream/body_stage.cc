@@ -160,15 +160,16 @@ void Tell(const Stage& stage, bool placed) {
   const std::string gap = Text("%.0f", 1000 * stage.gap_m);
   const std::string outside = Text("%.1f %%", 100 * stage.outside_share);
   if (placed) {
-    log::Info("boards laid under the feet, " + gap +
-              " mm apart; tell footingd: footing-ctl layout --preset one_foot_each --gap-mm " +
-              gap);
+    log::Info(
+        "boards placed under the feet, " + gap +
+        " mm apart; set this in footingd: footing-ctl layout --preset one_foot_each --gap-mm " +
+        gap);
   }
   if (stage.outside_share <= kOutsideWorthTelling) return;
   log::Warning(outside +
-               " of the loaded samples have a foot beyond its board's sensors and are "
-               "told at their edge" +
-               (placed ? std::string() : "; --place-boards lays the boards under the feet"));
+               " of the loaded samples have a foot beyond its board's sensors; their COP is "
+               "limited to the edge" +
+               (placed ? std::string() : "; --place-boards places the boards under the feet"));
 }
 
 }  // namespace

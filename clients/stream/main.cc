@@ -40,45 +40,47 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  auto app =
-      cli::NewApp("footing-stream",
-                  "Stands in for the devices, over a socket, at the level of raw HID reports.",
-                  "  footing-stream user --script demo --interface wrist\n"
-                  "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
-                  "  footing-stream corners --left board.csv --link poor --seconds 60\n"
-                  "  footing-stream boards --motion demo --hands move\n"
-                  "  footing-stream boards --motion demo --hands wiimote --lose-hand left "
-                  "--lose-from-s 12 --lose-for-s 2\n"
-                  "  footing-stream boards --motion 14_14.amc --skeleton 14.asf --place-boards\n"
-                  "  footing-stream insoles --motion walk.amc --skeleton walk.asf --hands move\n");
+  auto app = cli::NewApp(
+      "footing-stream", "Simulates devices at the level of raw HID reports, over a socket.",
+      "  footing-stream user --script demo --interface wrist\n"
+      "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
+      "  footing-stream corners --left board.csv --link poor --seconds 60\n"
+      "  footing-stream boards --motion demo --hands move\n"
+      "  footing-stream boards --motion demo --hands wiimote --lose-hand left "
+      "--lose-from-s 12 --lose-for-s 2\n"
+      "  footing-stream boards --motion 14_14.amc --skeleton 14.asf --place-boards\n"
+      "  footing-stream insoles --motion walk.amc --skeleton walk.asf --hands move\n");
   stream_client::Common common;
   bool quiet = false;
-  app->add_option("--to", common.to, "footingd's device socket: unix:PATH or tcp:HOST:PORT");
-  app->add_option("--seed", common.seed, "Of calibrations, noise and link");
-  app->add_option("--link", common.link, "ideal, good (default) or poor");
-  app->add_option("--rate-scale", common.rate_scale, "Devices' clocks against nominal")
+  app->add_option("--to", common.to,
+                  "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
+  app->add_option("--seed", common.seed, "Seed of calibrations, noise and link");
+  app->add_option("--link", common.link, "Link model: ideal, good or poor");
+  app->add_option("--rate-scale", common.rate_scale, "Ratio of the devices' clock rates to nominal")
       ->check(CLI::Range(0.1, 10.0));
-  app->add_option("--seconds", common.seconds, "Ends after so long")->check(CLI::Range(0.0, 1e6));
+  app->add_option("--seconds", common.seconds, "Duration, s (default: until SIGINT)")
+      ->check(CLI::Range(0.0, 1e6));
   app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
   app->require_subcommand(1);
   app->fallthrough();
 
   std::string script = "demo", interface = "wrist", left, right;
   double rate_hz = 100;
-  auto* user = app->add_subcommand("user", "A made user of Wiimotes");
-  user->add_option("--script", script, "A carried script's name, or a JSON file");
-  user->add_option("--interface", interface, "wrist or joystick");
+  auto* user = app->add_subcommand("user", "A synthetic user with a Wiimote in each hand");
+  user->add_option("--script", script, "Script of the user: a built-in name, or a JSON file");
+  user->add_option("--interface", interface, "Interface: wrist or joystick");
   stream_client::Ports ports;
-  user->add_flag("--motion-plus", ports.motion_plus, "A MotionPlus in every Wiimote");
-  user->add_flag("--nunchuk", ports.nunchuk, "A Nunchuk in every Wiimote");
-  auto* accel = app->add_subcommand("accel", "Recorded accelerations, CSV ax,ay,az in m/s2");
-  auto* corners =
-      app->add_subcommand("corners", "Recorded corners, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg");
+  user->add_flag("--motion-plus", ports.motion_plus, "Add a MotionPlus to each Wiimote");
+  user->add_flag("--nunchuk", ports.nunchuk, "Add a Nunchuk to each Wiimote");
+  auto* accel = app->add_subcommand(
+      "accel", "Wiimotes that play recorded accelerations, CSV ax,ay,az in m/s2");
+  auto* corners = app->add_subcommand(
+      "corners", "Boards that play recorded corner loads, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg");
   for (auto* recorded : {accel, corners}) {
-    recorded->add_option("--left", left, "File of the left device");
-    recorded->add_option("--right", right, "File of the right device");
+    recorded->add_option("--left", left, "Recording of the left device, CSV");
+    recorded->add_option("--right", right, "Recording of the right device, CSV");
   }
-  accel->add_option("--rate-hz", rate_hz, "Rows a second")->required();
+  accel->add_option("--rate-hz", rate_hz, "Sample rate of the CSV files, Hz")->required();
   stream_client::BoardsOptions under;
   auto* boards = stream_client::AddBoardsCommand(*app, under);
   stream_client::InsolesOptions worn;

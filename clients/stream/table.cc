@@ -54,7 +54,7 @@ Result<Table> ParseTable(const std::string& text, std::size_t columns, const std
     for (const std::string_view cell : cells) {
       const auto number = ParseNumber(cell);
       if (!number)
-        return InvalidData(place + ": \"" + std::string(cell) + "\" is no finite number");
+        return InvalidData(place + ": \"" + std::string(cell) + "\" is not a finite number");
       row.push_back(*number);
     }
     table.rows.push_back(std::move(row));

@@ -203,7 +203,7 @@ Result<Body> MakeBody(const Skeleton& skeleton, const PersonParameters& person) 
   if (!landmarks) return landmarks.error();
   if (!(person.mass_kg >= kLeastMassKg && person.mass_kg <= kMostMassKg)) {
     return InvalidData("a mass of " + std::to_string(person.mass_kg) +
-                       " kg is no person's: give one from 10 to 400 kg");
+                       " kg is out of range: give one from 10 to 400 kg");
   }
   if (person.upright_pose && person.upright_pose->size() != skeleton.dof) {
     return InvalidData("the upright pose has " + std::to_string(person.upright_pose->size()) +
@@ -212,7 +212,7 @@ Result<Body> MakeBody(const Skeleton& skeleton, const PersonParameters& person) 
   const double height_m = person.height_m.value_or(EstimateHeight(skeleton, *landmarks, person));
   if (!(height_m >= kLeastHeightM && height_m <= kMostHeightM)) {
     return InvalidData("a height of " + std::to_string(height_m) +
-                       " m is no person's (0.5 to 2.6 m): is the skeleton in other units?");
+                       " m is out of range (0.5 to 2.6 m): is the skeleton in other units?");
   }
   Builder builder{skeleton,
                   *landmarks,

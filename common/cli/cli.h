@@ -9,8 +9,8 @@
 /// What every program's command line has in common.
 namespace footing::cli {
 
-/// A new parser with --version and the house's exit codes in its footer. `examples` is a few lines
-/// of commands to copy.
+/// A new parser with --version and the house's exit codes in its footer; help prints the default of
+/// every option that has one. `examples` is a few lines of commands to copy.
 std::unique_ptr<CLI::App> NewApp(const std::string& name, const std::string& what,
                                  const std::string& examples);
 

@@ -55,7 +55,7 @@ bool Take(std::uint8_t opcode, std::string_view body, Summary& summary) {
 Result<Summary> ReadSummary(std::string_view file) {
   const std::size_t tail = kFooterBytes + kMagic.size();
   if (file.size() < kMagic.size() + tail || file.substr(0, kMagic.size()) != kMagic) {
-    return At(0, "this is no complete MCAP file");
+    return At(0, "this is not a complete MCAP file");
   }
   const std::uint64_t footer_offset = file.size() - tail;
   const auto body = Body(file, footer_offset, Opcode::kFooter);

@@ -48,7 +48,7 @@ class Walker {
   bool OpeningMagic() {
     if (file_.substr(0, kMagic.size()) == kMagic) return true;
     end_.cut = kMagic.substr(0, file_.size()) == file_;
-    Problem(0, end_.cut ? "the file ends within its first 8 bytes" : "this is no MCAP file");
+    Problem(0, end_.cut ? "the file ends within its first 8 bytes" : "this is not an MCAP file");
     return false;
   }
 

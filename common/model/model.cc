@@ -74,7 +74,7 @@ Result<void> CheckNotTrainedOn(const Model& model, const std::string& subject,
   });
   if (!trained) return {};
   return InvalidData(origin + ": was trained on subject " + subject +
-                     ", so it cannot be judged on them; train one with --exclude " + subject);
+                     ", so it cannot be evaluated on them; train one with --exclude " + subject);
 }
 
 const Tensor* FindAny(const Model& model, const std::string& name) {

@@ -56,7 +56,7 @@ Result<void> SchemaPool::Add(const mcap::Schema& schema) {
   }
   pb::FileDescriptorSet files;
   if (!files.ParseFromString(schema.data)) {
-    return InvalidData(which + " is no FileDescriptorSet");
+    return InvalidData(which + " is not a FileDescriptorSet");
   }
   auto entry = std::make_unique<Entry>();
   for (const pb::FileDescriptorProto& file : files.file()) {

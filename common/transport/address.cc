@@ -12,7 +12,7 @@ namespace footing::transport {
 namespace {
 
 Error NotAnAddress(const std::string& text, const std::string& why) {
-  return UsageError("\"" + text + "\" is no address: " + why +
+  return UsageError("\"" + text + "\" is not an address: " + why +
                     "; write unix:PATH or tcp:HOST:PORT, for example tcp:127.0.0.1:7450");
 }
 

@@ -147,7 +147,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     arena_.Reset();
     auto& message = *google::protobuf::Arena::CreateMessage<v1::Envelope>(&arena_);
     if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
-      return Break("the server sent what is no message of Footing's protocol");
+      return Break("the server sent bytes that are not a message of Footing's protocol");
     }
     if (state_ == LinkState::kStale) SetState(LinkState::kLive, live_text_);
     if (!connection_) return;  // The handler stopped us.

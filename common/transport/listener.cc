@@ -90,7 +90,7 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
     }
     if (name.ss_family != AF_UNIX) {
       return UsageError("the socket passed as " + address_.path +
-                        " is no Unix socket; beyond this host nothing is encrypted yet");
+                        " is not a Unix socket; beyond this host nothing is encrypted yet");
     }
     // A copy: closing it must not close what the manager passed.
     const int own = fcntl(passed, F_DUPFD_CLOEXEC, 0);

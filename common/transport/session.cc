@@ -104,7 +104,7 @@ void Session::OnTimer() {
 void Session::OnFrame(std::string_view payload) {
   v1::Envelope message;
   if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
-    BadMessage("this is no message of Footing's protocol");
+    BadMessage("this is not a message of Footing's protocol");
     return;
   }
   if (phase_ != Phase::kHello) {

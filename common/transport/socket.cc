@@ -30,7 +30,7 @@ Result<Endpoint> EndpointOf(const Address& address) {
   const asio::ip::address host = NumericHost(address, error);
   if (error) {
     return UsageError(address.Text() + ": \"" + address.host +
-                      "\" is no numeric address; write for example tcp:127.0.0.1:" +
+                      "\" is not a numeric address; write for example tcp:127.0.0.1:" +
                       std::to_string(address.port));
   }
   return Endpoint(asio::ip::tcp::endpoint(host, address.port));

@@ -49,7 +49,7 @@ Result<void> ClearTheWay(const std::string& path, const std::string& address_tex
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0) return {};
   if (!S_ISSOCK(status.st_mode)) {
-    return Failure(address_text + ": the file exists and is no socket; choose another path");
+    return Failure(address_text + ": the file exists and is not a socket; choose another path");
   }
   const int failed = TryToConnect(path);
   if (failed == 0) {
@@ -57,7 +57,7 @@ Result<void> ClearTheWay(const std::string& path, const std::string& address_tex
                    " is in use by another server; stop that one or choose another address");
   }
   if (failed != ECONNREFUSED) {
-    return Failure(address_text + ": cannot tell whether another server uses it (" +
+    return Failure(address_text + ": cannot find out whether another server uses it (" +
                    std::strerror(failed) + "); choose another path");
   }
   unlink(path.c_str());

@@ -41,7 +41,7 @@ def check_loss(stage, watcher):
     body = watcher.wait(lambda body: "nothing comes from the left Wiimote" in body["note"],
                         "the loss to be told", 12)
     assert body["hands_source"] == "wiimote", body
-    body = watcher.wait(lambda body: "take the T-pose anew" in body["note"],
+    body = watcher.wait(lambda body: "take the T-pose again" in body["note"],
                         "the way back to be told", LOST_FOR_S + 8)
     assert body["calibrated"] and body["hands_source"] == "wiimote", body
     assert body["resets"] == 0, body

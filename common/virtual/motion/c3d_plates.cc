@@ -38,7 +38,7 @@ Result<GroundForces> ToGroundForces(const C3d& c3d, const std::string& file) {
     }
     const Eigen::Matrix3d R = Axes(plate.corners);
     if (!R.allFinite() || std::abs(R.determinant() - 1) > 1e-6) {
-      return InvalidData(file + ": the corners of " + name + " are no rectangle");
+      return InvalidData(file + ": the corners of " + name + " do not form a rectangle");
     }
     const Eigen::Vector3d middle = plate.corners.rowwise().mean();
     // The surface is over the origin and z points down, whatever sign the file has.

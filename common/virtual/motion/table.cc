@@ -121,7 +121,7 @@ Result<GroundForces> ToGroundForces(const Table& table, const std::string& file)
   GroundForces forces;
   const Eigen::VectorXd times = table.values.col(0);
   const Eigen::Index rows = times.size();
-  if (rows < 2) return InvalidData(file + ": one row is no course of forces");
+  if (rows < 2) return InvalidData(file + ": one row; ground forces need at least two");
   const double step_s = (times(rows - 1) - times(0)) / static_cast<double>(rows - 1);
   if (!(step_s > 0) || !IsRate(1 / step_s)) return InvalidData(file + ": its times do not rise");
   for (Eigen::Index row = 0; row < rows; ++row) {

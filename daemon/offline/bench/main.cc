@@ -49,13 +49,14 @@ void Print(const footing::bench::Row& row, std::ostream& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  auto app = footing::cli::NewApp(
-      "footing-bench", "Ours against the baseline of the same run: median of the pairs' ratios.",
-      "  footing-bench --json\n  footing-bench fan_out_cpu");
+  auto app = footing::cli::NewApp("footing-bench",
+                                  "Benchmarks of this program against a baseline measured in the "
+                                  "same run; reports the median of paired ratios.",
+                                  "  footing-bench --json\n  footing-bench fan_out_cpu");
   bool json = false;
   std::vector<std::string> wanted;
   app->add_flag("--json", json, "One JSON object on standard output");
-  app->add_option("NAME", wanted, "Which ones; all when none is named")
+  app->add_option("NAME", wanted, "Benchmark to run; may be repeated (default: all)")
       ->check(CLI::IsMember(Names()));
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
 

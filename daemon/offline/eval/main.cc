@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   app->add_flag("--json", shared.json, "One JSON object on standard output");
   app->add_option_function<std::vector<std::string>>(
       "--gains", footing::eval::ReadGainsToo,
-      "Gait tables in place of the product's, for the gaits they name");
+      "Gait tables, CSV; may be repeated. They replace the built-in tables of their gaits");
   app->require_subcommand(1);
   app->fallthrough();
   footing::eval::AddArmCommand(*app, shared);

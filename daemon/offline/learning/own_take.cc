@@ -94,7 +94,7 @@ Result<FloorPlacement> PlaceFeet(const RecordedSession& session, const Felt& fel
   text.precision(2);
   text << both << ": the boards do not lie where the feet stand (turned by "
        << RadiansToDegrees(placement.yaw_rad) << " degrees, " << 100 * placement.rms_m
-       << " cm off): were left and right changed, or the layout not told (footing-ctl layout)?";
+       << " cm off): were left and right changed, or the layout not set (footing-ctl layout)?";
   return InvalidData(text.str());
 }
 

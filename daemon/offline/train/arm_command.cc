@@ -105,7 +105,7 @@ int Run(const Options& options, const Shared& shared) {
 void AddArmCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("arm", "What a Wiimote with MotionPlus in each hand tells of the arms");
+      app.add_subcommand("arm", "Arm model: arm poses from a Wiimote with MotionPlus in each hand");
   AddMotionOptions(*command, options->motions);
   AddModelOptions(*command, options->model);
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });

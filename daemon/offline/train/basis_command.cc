@@ -57,7 +57,7 @@ int Run(const Options& options, const Shared& shared) {
 void AddBasisCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("basis", "Principal components of the poses in motion files");
+      app.add_subcommand("basis", "Pose basis: principal components of the poses in motion files");
   AddMotionOptions(*command, options->motions);
   AddOwnOptions(*command, options->own);
   AddModelOptions(*command, options->model);

@@ -65,21 +65,29 @@ void AddCascadeCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
   learning::CascadeOptions& cascade = options->cascade;
   CLI::App* command =
-      app.add_subcommand("cascade", "A cascade-correlation network on any table of numbers");
+      app.add_subcommand("cascade", "Cascade-correlation network for any table of numbers");
   AddDataOptions(*command, options->data);
-  command->add_option("--hidden-max", cascade.hidden_max, "Hidden units at most")
+  command->add_option("--hidden-max", cascade.hidden_max, "Maximum number of hidden units")
       ->check(CLI::Range(0, 256));
-  command->add_option("--patience", cascade.patience, "Hidden units without a better validation")
+  command
+      ->add_option("--patience", cascade.patience,
+                   "Number of hidden units without a lower validation error before training stops")
       ->check(CLI::Range(1, 256));
-  command->add_option("--mse-goal", cascade.mse_goal, "Stop at this error of training")
+  command
+      ->add_option("--mse-goal", cascade.mse_goal,
+                   "Training error at which training stops, mean square")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--pool", cascade.candidates.pool, "Candidates for each hidden unit")
+  command
+      ->add_option("--pool", cascade.candidates.pool, "Number of candidates for each hidden unit")
       ->check(CLI::Range(1, 256));
-  command->add_option("--epochs-max", cascade.candidates.epochs_max, "Of a pool of candidates")
+  command
+      ->add_option("--epochs-max", cascade.candidates.epochs_max,
+                   "Maximum number of epochs for a pool of candidates")
       ->check(CLI::Range(1, 100000));
-  command->add_flag("--sigmoid", options->sigmoid, "Outputs of +-0.5, by Quickprop");
+  command->add_flag("--sigmoid", options->sigmoid,
+                    "Use sigmoid outputs of +-0.5, trained by Quickprop");
   command->add_flag("--covariance", options->covariance,
-                    "Train candidates by covariance as in 1990, not by the error they take away");
+                    "Train candidates by covariance (1990) in place of error reduction");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }
 

@@ -254,24 +254,29 @@ void AddComCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
   options->cascade.hidden_max = kHiddenMax;
   CLI::App* command = app.add_subcommand(
-      "com", "The horizontal COM's networks from motion files, by what two boards would measure");
+      "com", "COM model: networks for the horizontal COM, from motion files and simulated boards");
   AddMotionOptions(*command, options->motions);
   AddOwnOptions(*command, options->own);
   AddModelOptions(*command, options->model);
   command
       ->add_option("--noise", options->noises_m,
-                   "Errors of the fed-back COM in training, m; the best in closed loop is kept")
+                   "Noise of the fed-back COM in training, m; may be repeated; the best in closed "
+                   "loop is written")
       ->check(CLI::Range(0.0, 1.0));
-  command->add_option("--copies", options->copies, "Of each row, with other noise")
+  command
+      ->add_option("--copies", options->copies,
+                   "Number of copies of each row, each with its own noise")
       ->check(CLI::Range(1, 100));
-  command->add_option("--rounds", options->rounds, "Of training on the networks' own outputs")
+  command
+      ->add_option("--rounds", options->rounds,
+                   "Number of training rounds on the networks' own outputs")
       ->check(CLI::Range(0, 50));
-  command->add_flag("!--no-mirror", options->mirror, "Without the clips' mirror images");
-  command->add_option("--hidden-max", options->cascade.hidden_max, "Hidden units at most")
+  command->add_flag("!--no-mirror", options->mirror, "Leave out the mirror images of the clips");
+  command->add_option("--hidden-max", options->cascade.hidden_max, "Maximum number of hidden units")
       ->check(CLI::Range(0, 256));
   command
       ->add_option("--patience", options->cascade.patience,
-                   "Hidden units without a better validation")
+                   "Number of hidden units without a lower validation error before training stops")
       ->check(CLI::Range(1, 256));
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }

@@ -55,18 +55,24 @@ void AddMlpCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
   learning::MlpOptions& mlp = options->mlp;
   CLI::App* command = app.add_subcommand(
-      "mlp", "A perceptron by back-propagation on the same table, to compare with");
+      "mlp", "Multilayer perceptron trained by back-propagation on the same table, for comparison");
   AddDataOptions(*command, options->data);
-  command->add_option("--hidden", mlp.hidden, "Hidden units")->check(CLI::Range(1, 256));
+  command->add_option("--hidden", mlp.hidden, "Number of hidden units")->check(CLI::Range(1, 256));
   command->add_option("--rate", mlp.rate, "Learning rate")->check(CLI::Range(1e-6, 10.0));
-  command->add_option("--momentum", mlp.momentum, "Part of the last step that goes on")
+  command
+      ->add_option("--momentum", mlp.momentum, "Momentum: share of the previous step, 0 to 0.999")
       ->check(CLI::Range(0.0, 0.999));
-  command->add_option("--batch", mlp.batch, "Rows a step")->check(CLI::Range(1, 100000));
-  command->add_option("--epochs-max", mlp.epochs_max, "Passes over the data at most")
+  command->add_option("--batch", mlp.batch, "Number of rows in a batch")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--epochs-max", mlp.epochs_max, "Maximum number of passes over the data")
       ->check(CLI::Range(1, 1000000));
-  command->add_option("--patience", mlp.patience, "Epochs without a better error")
+  command
+      ->add_option("--patience", mlp.patience,
+                   "Number of epochs without a lower error before training stops")
       ->check(CLI::Range(1, 1000000));
-  command->add_option("--mse-goal", mlp.mse_goal, "Stop at this error of validation: equal error")
+  command
+      ->add_option("--mse-goal", mlp.mse_goal,
+                   "Validation error at which training stops, mean square")
       ->check(CLI::NonNegativeNumber);
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }

@@ -12,8 +12,9 @@
 namespace footing::train {
 
 void AddModelOptions(CLI::App& command, ModelOptions& options) {
-  command.add_option("--out", options.out, "Model file to write, NAME.fmodel")->required();
-  command.add_option("--seed", options.seed, "Of first weights and noise; the same gives the same");
+  command.add_option("--out", options.out, "Output model, NAME.fmodel")->required();
+  command.add_option("--seed", options.seed,
+                     "Seed of initial weights and noise; equal seeds give equal models");
   command.add_flag("--force", options.force, "Overwrite an existing model");
 }
 

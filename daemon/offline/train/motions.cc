@@ -82,9 +82,10 @@ Result<Clip> ReadClip(const std::string& file, const std::string& skeleton) {
 
 void AddMotionOptions(CLI::App& command, MotionOptions& options) {
   command.add_option("--motions", options.folders,
-                     "Folders of *.bvh, and of *.amc with their *.asf");
+                     "Folder of motion files, *.bvh, or *.amc with their *.asf; may be repeated");
   command.add_option("--exclude", options.exclude,
-                     "Subjects to leave out: the model may be judged on them");
+                     "Subject to leave out of training, so that the model may be evaluated on it; "
+                     "may be repeated");
 }
 
 Result<Clips> ReadClips(const MotionOptions& options) {

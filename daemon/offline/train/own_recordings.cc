@@ -127,19 +127,23 @@ void WithoutOwn(const std::vector<OwnRecording>& own, std::vector<Clip>& clips) 
 
 void AddOwnOptions(CLI::App& command, OwnOptions& options) {
   command
-      .add_option("--recording", options.recordings,
-                  "footing-log's, of your boards beside the next --motion; may be repeated")
+      .add_option(
+          "--recording", options.recordings,
+          "Recording of your boards, MCAP, made together with the next --motion; may be repeated")
       ->allow_extra_args(false);
   command
-      .add_option("--motion", options.motions,
-                  "BVH, AMC, TRC or C3D captured beside --recording; may be repeated")
+      .add_option(
+          "--motion", options.motions,
+          "Motion captured together with --recording: BVH, AMC, TRC or C3D; may be repeated")
       ->allow_extra_args(false);
-  command.add_option("--skeleton", options.skeletons, "ASF of AMC motions: one, or one a motion")
+  command
+      .add_option("--skeleton", options.skeletons,
+                  "Skeleton of the AMC motions, ASF file: one for all, or one for each")
       ->allow_extra_args(false);
-  command.add_option("--rig", options.rig, "Whose boards, where a recording has several people's");
+  command.add_option("--rig", options.rig, "Rig of the boards, when a recording has several");
   command
       .add_option("--own-share", options.share,
-                  "Part of all seconds that your recordings count for, by repetition")
+                  "Share of your recordings in the training data, reached by repetition, 0 to 0.95")
       ->check(CLI::Range(0.0, 0.95));
 }
 

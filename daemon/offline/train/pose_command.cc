@@ -137,7 +137,7 @@ int Run(const Options& options, const Shared& shared) {
 void AddPoseCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "pose", "The basis of the poses in motion files, and what boards and hands tell of a pose");
+      "pose", "Pose model: the pose basis and a network from boards and hands to a pose");
   AddMotionOptions(*command, options->motions);
   AddOwnOptions(*command, options->own);
   AddModelOptions(*command, options->model);

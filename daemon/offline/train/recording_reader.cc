@@ -215,7 +215,7 @@ Result<Recording> ReadRecording(const std::string& path, const std::string& rig)
   if (!file) return file.error();
   const std::string_view magic = file->bytes().substr(0, mcap::kMagic.size());
   if (magic != mcap::kMagic) {
-    return InvalidData(path + " is no recording: it does not begin as an MCAP file does");
+    return InvalidData(path + " is not a recording: it does not begin as an MCAP file does");
   }
   Reader reader;
   const mcap::WalkEnd end = reader.Run(file->bytes());
@@ -224,8 +224,8 @@ Result<Recording> ReadRecording(const std::string& path, const std::string& rig)
   if (!chosen) return chosen.error();
   if ((*chosen)->uncalibrated) {
     return InvalidData(path +
-                       ": a board told forces without its calibration, which mean nothing; pair it "
-                       "again (footing-ctl doctor) and record anew");
+                       ": a board sent forces without its calibration, which cannot be used; pair "
+                       "it again (footing-ctl doctor) and record again");
   }
   Recording recording;
   recording.session = ToSession(**chosen, path);

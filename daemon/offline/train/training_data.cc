@@ -35,23 +35,33 @@ Result<std::vector<std::vector<Eigen::Index>>> FeedbackColumns(const DataOptions
 }  // namespace
 
 void AddDataOptions(CLI::App& command, DataOptions& options) {
-  command.add_option("--data", options.data, "CSV: column names, then a row of numbers an example")
+  command
+      .add_option("--data", options.data,
+                  "Training data, CSV: a row of column names, then one row per example")
       ->required();
-  command.add_option("--inputs", options.inputs, "The first so many columns; the rest are outputs")
+  command
+      .add_option("--inputs", options.inputs,
+                  "Number of input columns, counted from the left; the other columns are outputs")
       ->required()
       ->check(CLI::Range(1, 256));
-  command.add_option("--validation", options.validation, "Part of the rows, the last ones")
+  command
+      .add_option("--validation", options.validation,
+                  "Share of the rows used for validation, taken from the end")
       ->check(CLI::Range(0.0, 0.9));
-  command.add_option("--feedback", options.feedback,
-                     "Input columns that are earlier outputs in use: A,B,... of one signal");
+  command.add_option(
+      "--feedback", options.feedback,
+      "Input columns A,B,... that are earlier outputs of one signal; may be repeated");
   command
       .add_option("--noise", options.noise_sd,
-                  "Error of those columns, their unit: shared by a group, and a tenth each")
+                  "Noise of the feedback columns, in their unit: shared by a group, plus a tenth "
+                  "of it per column")
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--copies", options.copies, "Of each row, with other noise")
+  command
+      .add_option("--copies", options.copies,
+                  "Number of copies of each row, each with its own noise")
       ->check(CLI::Range(1, 100));
   command.add_option("--subject", options.subjects,
-                     "Whose motion the data is; the model is never judged on them");
+                     "Subject of the data; the model is never evaluated on it; may be repeated");
   AddModelOptions(command, options.model);
 }
 

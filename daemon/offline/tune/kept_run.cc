@@ -64,20 +64,20 @@ Result<std::vector<SearchState>> ResumeRun(const std::string& text, const RunKey
                                            const std::string& path) {
   const json kept = json::parse(text, nullptr, false);
   if (!kept.is_object() || !kept.contains("key") || !kept["key"].is_object()) {
-    return InvalidData(path + " is no state of footing-tune; remove it to begin anew");
+    return InvalidData(path + " is not a state file of footing-tune; remove it to start again");
   }
   const json wanted = ToJson(key);
   for (const auto& [name, value] : wanted.items()) {
     if (kept["key"].value(name, json()) == value) continue;
     return InvalidData(path + " is of a run with another " + name +
-                       "; remove it to begin anew, or name another --out");
+                       "; remove it to start again, or name another --out");
   }
   try {
     std::vector<SearchState> searches;
     for (const json& search : kept.at("searches")) searches.push_back(FromJson(search));
     return searches;
   } catch (const json::exception& error) {
-    return InvalidData(path + " is damaged (" + error.what() + "); remove it to begin anew");
+    return InvalidData(path + " is damaged (" + error.what() + "); remove it to start again");
   }
 }
 

@@ -9,22 +9,26 @@ int main(int argc, char** argv) {
       "  footing-tune --gait walk --speeds 0.5 --from mine.csv --iterations 0 --trials 400 "
       "--seed 7 --json");
   footing::tune::Options options;
-  app->add_option("--gait", options.gait, "step, walk, run or jump")->required();
-  app->add_option("--speeds", options.speeds_mps, "One set for each, m/s, rising")
+  app->add_option("--gait", options.gait, "Gait: step, walk, run or jump")->required();
+  app->add_option("--speeds", options.speeds_mps,
+                  "Speeds, m/s, increasing: A,B,...; one set of gains for each")
       ->required()
       ->delimiter(',')
       ->check(CLI::Range(0.0, 6.0));
   app->add_option("--out", options.out,
-                  "The table; its state for going on and its plot are beside it. Needed unless "
+                  "Output table, CSV; resume state and plot are written beside it. Required unless "
                   "--iterations is 0");
-  app->add_option("--from", options.from, "Gait tables to start from; default: the product's");
-  app->add_option("--seed", options.seed, "Of the trials");
-  app->add_option("--method", options.method, "descent (the paper's) or cmaes")
+  app->add_option("--from", options.from, "Gait tables to start from, CSV (default: built in)");
+  app->add_option("--seed", options.seed, "Seed of the trials");
+  app->add_option("--method", options.method, "Search method: descent (as in the paper) or cmaes")
       ->check(CLI::IsMember({"descent", "cmaes"}));
-  app->add_option("--iterations", options.iterations, "Altogether; 0 only scores the start")
+  app->add_option("--iterations", options.iterations,
+                  "Total number of iterations; 0 only scores the initial table")
       ->check(CLI::Range(0, 100000));
-  app->add_option("--trials", options.trials, "Of each point tried")->check(CLI::Range(1, 100000));
-  app->add_option("--threads", options.threads, "0: one a core")->check(CLI::Range(0, 256));
+  app->add_option("--trials", options.trials, "Number of trials for each point")
+      ->check(CLI::Range(1, 100000));
+  app->add_option("--threads", options.threads, "Number of threads (0: one per core)")
+      ->check(CLI::Range(0, 256));
   app->add_flag("--json", options.json, "One JSON object on standard output");
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   options.command_line = "footing-tune";

@@ -55,7 +55,7 @@ class Tuning {
     };
     if (searches->size() != searches_.size() ||
         !std::all_of(searches->begin(), searches->end(), sized)) {
-      return InvalidData(StatePath() + " is of another version; remove it to begin anew");
+      return InvalidData(StatePath() + " is of another version; remove it to start again");
     }
     searches_ = std::move(*searches);
     std::fprintf(stderr, "goes on from %s\n", StatePath().c_str());

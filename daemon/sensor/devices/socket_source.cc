@@ -225,7 +225,7 @@ class SocketSource::Implementation {
   void OnClose(std::uint64_t id, const std::string& reason) {
     Connection& connection = connections_.at(id);
     while (!connection.slots.empty()) {
-      Detach(connection, connection.slots.begin()->first, "stand-in is gone: " + reason);
+      Detach(connection, connection.slots.begin()->first, "simulated device is gone: " + reason);
     }
     connections_.erase(id);
   }

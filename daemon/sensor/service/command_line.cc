@@ -16,17 +16,22 @@ std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_cod
   std::string file;
   std::vector<std::string> settings, listen, sources;
   bool print = false, check = false, quiet = false;
-  auto app = cli::NewApp("footingd", "Sensor daemon: device reports in, samples and features out.",
+  auto app = cli::NewApp("footingd",
+                         "Sensor daemon: reads devices, publishes samples, features and forces.",
                          "  footingd\n"
                          "  footingd --source stream:unix:/tmp/devices.sock\n"
                          "  footingd --set 'roles={\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}'\n");
-  app->add_option("--config", file, "JSON file of settings");
-  app->add_option("--set", settings, "One setting, key=value; may be repeated");
-  app->add_option("--listen", listen, "unix:PATH or tcp:HOST:PORT; may be repeated");
-  app->add_option("--source", sources, "hid or stream:ADDRESS; may be repeated");
-  app->add_flag("--print-config", print, "Write the effective config and end");
-  app->add_flag("--check-config", check, "Check the config and end");
-  app->add_flag("--json", line.json, "Say where it listens as one JSON object");
+  app->add_option("--config", file, "Config file, JSON");
+  app->add_option("--set", settings,
+                  "Setting, key=value; may be repeated; overrides the config file");
+  app->add_option("--listen", listen,
+                  "Address for clients, unix:PATH or tcp:HOST:PORT; may be repeated");
+  app->add_option(
+      "--source", sources,
+      "Source of devices: hid, or stream:ADDRESS for simulated devices; may be repeated");
+  app->add_flag("--print-config", print, "Print the effective config and exit");
+  app->add_flag("--check-config", check, "Check the config and exit");
+  app->add_flag("--json", line.json, "Print the listening addresses as one JSON object");
   app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
   exit_code = 0;
   if (const auto code = cli::Parse(*app, argc, argv)) {

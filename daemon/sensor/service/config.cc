@@ -5,38 +5,40 @@
 namespace footing::sensor {
 
 void Config::Bind(config::Binder& binder) {
-  binder.TextList("listen", listen, "Addresses for clients");
-  binder.TextList("sources", sources, "hid, or stream:ADDRESS for device stand-ins");
+  binder.TextList("listen", listen, "Addresses for clients, unix:PATH or tcp:HOST:PORT");
+  binder.TextList("sources", sources,
+                  "Sources of devices: hid, or stream:ADDRESS for simulated devices");
   binder.TextMap("roles", roles,
-                 "Serial to rig/role, e.g. {\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}",
+                 "Rig and role of each serial, e.g. {\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}",
                  [](const std::string& text) {
                    const auto binding = ParseBinding(text);
                    return binding ? std::string() : binding.error().message;
                  });
-  binder.Text("default_rig", default_rig, "Rig of devices that nobody assigned");
-  binder.Number("tick_rate_hz", tick_rate_hz, 10, 200, "Ticks a second");
-  binder.Number("stale_after_s", stale_after_s, 0.1, 10, "Without data for so long: stale");
+  binder.Text("default_rig", default_rig, "Rig of unassigned devices");
+  binder.Number("tick_rate_hz", tick_rate_hz, 10, 200, "Tick rate, Hz");
+  binder.Number("stale_after_s", stale_after_s, 0.1, 10,
+                "Time without data after which a device is stale, s");
   binder.Number("board_sensor_distance_x_m", plate.sensor_distance_x_m, 0.1, 1,
-                "Between a board's left and right sensors");
+                "Distance between a board's left and right sensors, m");
   binder.Number("board_sensor_distance_y_m", plate.sensor_distance_y_m, 0.1, 1,
-                "Between a board's front and rear sensors");
-  binder.Number("board_contact_on_n", plate.contact_on_n, 1, 500, "Over it there is contact");
+                "Distance between a board's front and rear sensors, m");
+  binder.Number("board_contact_on_n", plate.contact_on_n, 1, 500,
+                "Force above which a board reports contact, N");
   binder.Number("board_contact_off_n", plate.contact_off_n, 1, 500,
-                "Under it there is none, and the COP is undefined");
+                "Force below which a board reports no contact and no COP, N");
   binder.Number("board_uniform_rate_hz", board_uniform.rate_hz, 10, 1000,
-                "Of the channel boards_uniform");
+                "Sample rate of the channel boards_uniform, Hz");
   binder.Number("board_uniform_window_s", board_uniform.window_s, 0.01, 0.5,
-                "Each of its samples is the mean over so long");
+                "Averaging window of the channel boards_uniform, s");
   binder.Number("local_gravity_mps2", local_gravity_mps2, 9.76, 9.84,
-                "Where the boards stand; divided out of their forces");
-  binder.Text(
-      "state_directory", state_directory,
-      "Where the set-up is kept; empty: $STATE_DIRECTORY, else $XDG_STATE_HOME/footing, else "
-      "~/.local/state/footing; none: nowhere");
-  binder.Flag("motion_plus", motion_plus, "Look for MotionPlus and use it");
-  binder.Flag("camera", camera, "Switch the infrared cameras of Wiimotes on");
+                "Local gravity at the boards, m/s2; forces are scaled by it");
+  binder.Text("state_directory", state_directory,
+              "Folder of the stored setup; empty: $STATE_DIRECTORY, else $XDG_STATE_HOME/footing, "
+              "else ~/.local/state/footing; none: store nothing");
+  binder.Flag("motion_plus", motion_plus, "Detect and use MotionPlus");
+  binder.Flag("camera", camera, "Enable the infrared cameras of Wiimotes");
   binder.Number("status_interval_s", status_interval_s, 0, 3600,
-                "Ask devices for their status so often; 0 never");
+                "Interval of status requests to devices, s (0: never)");
 }
 
 Result<std::optional<transport::Address>> ParseSource(const std::string& text) {

@@ -77,7 +77,8 @@ Device* Hub::MakeRoom() {
 void Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
   Device* device = WithSerial(identity.serial);
   if (device != nullptr && device->attached() && !device->simulated() && identity.simulated) {
-    ports_.log("a stand-in with the serial of the real device " + identity.serial + " is ignored");
+    ports_.log("a simulated device with the serial of the real device " + identity.serial +
+               " is ignored");
     return;
   }
   if (device != nullptr && device->attached() && device->kind() == DeviceKind::kPsMove &&
@@ -330,7 +331,7 @@ Result<void> Hub::SetSphere(std::uint32_t device, std::uint32_t rgb) {
   const auto found = Attached(device);
   if (!found) return found.error();
   if (!(*found)->SetSphere(rgb)) {
-    return UsageError("device " + std::to_string(device) + " has no sphere: it is no PS Move");
+    return UsageError("device " + std::to_string(device) + " has no sphere: it is not a PS Move");
   }
   status_due_ = true;
   Flush(**found);
@@ -341,7 +342,7 @@ Result<void> Hub::SetCamera(std::uint32_t device, bool on) {
   const auto found = Attached(device);
   if (!found) return found.error();
   if (!(*found)->SetCamera(on)) {
-    return UsageError("device " + std::to_string(device) + " has no camera: it is no Wiimote");
+    return UsageError("device " + std::to_string(device) + " has no camera: it is not a Wiimote");
   }
   return {};
 }

@@ -210,11 +210,12 @@ Result<Hub::Measured> Hub::SetBoardLayout(stream::BoardLayout layout) {
                        !same(before.left, layout.left) || !same(before.right, layout.right);
   if (!book_.SetLayout(layout)) return Failure("layout: there are too many rigs already");
   if (changed) {
-    book_.MarkStale(layout.rig, "layout", "", "the layout was set anew and not checked since");
+    book_.MarkStale(layout.rig, "layout", "", "the layout was changed and not checked since");
   }
-  return Measured{
-      0, "",
-      layout.preset == "single" ? "one board alone: left and right foot are not told apart" : ""};
+  return Measured{0, "",
+                  layout.preset == "single"
+                      ? "one board alone: left and right foot cannot be distinguished"
+                      : ""};
 }
 
 Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& item, bool forget) {

@@ -175,7 +175,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     sources_.push_back(
         std::make_unique<devices::SocketSource>(io_, **address, new_handle, handlers));
     if (const auto started = sources_.back()->Start(); !started) return started;
-    log::Info("device stand-ins on " + (*address)->Text());
+    log::Info("simulated devices on " + (*address)->Text());
     return {};
   }
 

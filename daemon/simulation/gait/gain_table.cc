@@ -125,7 +125,7 @@ class Reader {
     const char* end = cell.data() + cell.size();
     const auto read = std::from_chars(cell.data(), end, value);
     if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value)) {
-      return Wrong(std::string(name) + " is " + Quoted(cell) + ", which is no number");
+      return Wrong(std::string(name) + " is " + Quoted(cell) + ", which is not a number");
     }
     if (value < min || value > max) {
       return Wrong(std::string(name) + " is " + std::string(cell) + ", allowed is " + Text(min) +

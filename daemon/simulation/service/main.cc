@@ -38,23 +38,27 @@ int main(int argc, char** argv) {
   std::string engine, sensor, interface, track, subject, mode;
   std::int64_t lag_ms = -1;
   bool print = false, check = false, quiet = false;
-  auto app =
-      cli::NewApp("footing-sim",
-                  "Simulation server: features in, a walking biped out; or boards in, a body out.",
-                  "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n"
-                  "  footing-sim --engine pose --subject p07.json --lag-ms 100\n");
-  app->add_option("--config", file, "JSON file of settings");
-  app->add_option("--set", settings, "One setting, key=value; may be repeated");
-  app->add_option("--listen", listen, "unix:PATH or tcp:HOST:PORT; may be repeated");
-  app->add_option("--engine", engine, "gait, or pose");
+  auto app = cli::NewApp(
+      "footing-sim",
+      "Simulation server: drives a walking biped by features, or reconstructs a body from boards.",
+      "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n"
+      "  footing-sim --engine pose --subject p07.json --lag-ms 100\n");
+  app->add_option("--config", file, "Config file, JSON");
+  app->add_option("--set", settings,
+                  "Setting, key=value; may be repeated; overrides the config file");
+  app->add_option("--listen", listen,
+                  "Address for clients, unix:PATH or tcp:HOST:PORT; may be repeated");
+  app->add_option("--engine", engine, "Engine: gait or pose");
   app->add_option("--sensor", sensor, "Address of footingd");
-  app->add_option("--interface", interface, "wrist");
-  app->add_option("--track", track, "Name of a carried track, or a JSON file");
-  app->add_option("--subject", subject, "Subject file, JSON (pose)");
-  app->add_option("--mode", mode, "best, or paper (pose)");
-  app->add_option("--lag-ms", lag_ms, "0, 100 or 200: later is better (pose)");
-  app->add_flag("--print-config", print, "Write the effective config and end");
-  app->add_flag("--check-config", check, "Check the config and end");
+  app->add_option("--interface", interface, "User interface: wrist (gait engine)");
+  app->add_option("--track", track, "Track: a built-in name, or a JSON file (gait engine)");
+  app->add_option("--subject", subject, "Subject file, JSON (pose engine)");
+  app->add_option("--mode", mode, "Reconstruction mode: best or paper (pose engine)");
+  app->add_option(
+      "--lag-ms", lag_ms,
+      "Output delay of the pose engine, ms: 0, 100 or 200; longer is more accurate (default: 0)");
+  app->add_flag("--print-config", print, "Print the effective config and exit");
+  app->add_flag("--check-config", check, "Check the config and exit");
   app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   log::Start("footing-sim", quiet);

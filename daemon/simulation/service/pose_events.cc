@@ -32,7 +32,8 @@ void PoseEvents::AddHands(const PoseFrame& frame, std::int64_t now_ns, v1::Event
     if (!frame.calibrated || now == before) continue;
     const std::string name = side == 0 ? "left" : "right";
     if (now == HandTrouble::kNone) {
-      Add(events, v1::Event::KIND_STREAM_BACK, now_ns, "the " + name + " Wiimote tells its arm");
+      Add(events, v1::Event::KIND_STREAM_BACK, now_ns,
+          "the " + name + " Wiimote reports its arm again");
     } else {
       Add(events, v1::Event::KIND_STREAM_LOST, now_ns, HandWords(now, name));
     }
@@ -58,13 +59,13 @@ v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
     Add(events, v1::Event::KIND_COMMAND, now_ns,
         "next subject: " + subject.code + "; their T-pose is awaited");
   } else if (calibrated_ && !frame.calibrated) {
-    Add(events, v1::Event::KIND_COMMAND, now_ns, "the T-pose is to be taken anew");
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "the T-pose is to be taken again");
   }
   if (!calibrated_ && frame.calibrated) {
     Add(events, v1::Event::KIND_COMMAND, now_ns, "T-pose taken: " + Kilograms(frame.mass_kg));
   }
   if (has_last_ && !next_subject && frame.resets > resets_) {
-    Add(events, v1::Event::KIND_COMMAND, now_ns, "the filters began anew");
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "the filters were reset");
   }
   AddHands(frame, now_ns, events);
   has_last_ = true;

@@ -23,7 +23,7 @@ Result<std::unique_ptr<SubjectRun>> MakeRun(std::uint64_t number, const body::Bo
   auto made = reconstruction::Reconstruction::Create(body, models, options);
   if (!made) return made.error();
   if (made->body().skeleton.joints.size() > kMaxLinks) {
-    return InvalidData("the skeleton has more joints than a frame has room for");
+    return InvalidData("the skeleton has more joints than a frame can hold");
   }
   auto run = std::make_unique<SubjectRun>(SubjectRun{number, std::move(made).value()});
   if (auto walk = reconstruction::InsoleWalk::Create(body, models, options)) {

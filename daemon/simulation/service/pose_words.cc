@@ -111,11 +111,11 @@ std::string HandWords(HandTrouble trouble, const std::string& side) {
     case HandTrouble::kNoModel:
       return "the " + side + " Wiimote is not followed: there is no arm.fmodel (docs/models.md)";
     case HandTrouble::kNoGyroscope:
-      return "the " + side + " Wiimote tells no turn: is a MotionPlus in it?";
+      return "the " + side + " Wiimote reports no rotation: is a MotionPlus in it?";
     case HandTrouble::kSilent:
       return "nothing comes from the " + side + " Wiimote: its arm is guessed";
     case HandTrouble::kAwaitsTPose:
-      return "the " + side + " Wiimote was lost and has no heading: take the T-pose anew";
+      return "the " + side + " Wiimote was lost and has no heading: take the T-pose again";
   }
   return "";
 }

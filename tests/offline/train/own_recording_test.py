@@ -100,7 +100,7 @@ class OwnRecording(unittest.TestCase):
                              ("uncalibrated", "without its calibration"),
                              ("no_stomps", "no_stomps.mcap: 0 stomps found in")):
             self.refused(4, words, "pose", *self.other(fault), "--out", self.out)
-        self.refused(4, "is no recording", "com", "--recording", self.motion, "--motion", self.motion,
+        self.refused(4, "is not a recording", "com", "--recording", self.motion, "--motion", self.motion,
                      "--out", self.out)
 
     def test_one_of_two_people_can_be_chosen(self):

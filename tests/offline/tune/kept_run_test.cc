@@ -46,7 +46,7 @@ TEST(KeptRun, RefusesAnotherRunsStateAndSaysWhatDiffers) {
   const auto resumed = ResumeRun(KeepRun(kKey, Searched()), other, "walk.csv.state.json");
   ASSERT_FALSE(resumed.ok());
   EXPECT_EQ(resumed.error().message,
-            "walk.csv.state.json is of a run with another seed; remove it to begin anew, or name "
+            "walk.csv.state.json is of a run with another seed; remove it to start again, or name "
             "another --out");
 }
 

@@ -219,7 +219,7 @@ TEST(HubBoards, OneAloneWorksAndSaysThatItIs) {
   single.preset = "single";
   const auto set = bench.hub().SetBoardLayout(single);
   ASSERT_TRUE(set);
-  EXPECT_THAT(set->message, HasSubstr("not told apart"));
+  EXPECT_THAT(set->message, HasSubstr("cannot be distinguished"));
   bench.Advance(0.5);
   EXPECT_EQ(bench.StatusOf("a").note, "") << "it is meant to be alone";
 }

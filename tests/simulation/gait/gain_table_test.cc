@@ -126,8 +126,8 @@ TEST(GainTable, NamesFileLineAndFaultOfWhatItCannotRead) {
       {names + units + "walk,slow,0.5\n", "made.csv:3: 3 cells where 4 columns are named"},
       {names + units + "hop,slow,0.5,0.2\n", "made.csv:3: gait is \"hop\", must be step"},
       {names + units + "walk,,0.5,0.2\n", "the set has no name"},
-      {names + units + "walk,slow,fast,0.2\n", "speed_mps is \"fast\", which is no number"},
-      {names + units + "walk,slow,0.5,nan\n", "step_width_m is \"nan\", which is no number"},
+      {names + units + "walk,slow,fast,0.2\n", "speed_mps is \"fast\", which is not a number"},
+      {names + units + "walk,slow,0.5,nan\n", "step_width_m is \"nan\", which is not a number"},
       {names + units + "walk,slow,0.5,3\n", "walking.step_width_m is 3, allowed is 0 to 1"},
       {names + units + "walk,a,1,0.2\nwalk,b,1,0.2\n", "made.csv:4: speed_mps is 1 after 1"},
   };

@@ -82,7 +82,7 @@ TEST(PoseNote, SaysWhatAWiimoteLacksAndWhatToDo) {
   frame.hand_trouble[0] = HandTrouble::kSilent;
   EXPECT_EQ(PoseNote(frame, kSubject), "nothing comes from the left Wiimote: its arm is guessed");
   frame.hand_trouble[0] = HandTrouble::kAwaitsTPose;
-  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("take the T-pose anew"));
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("take the T-pose again"));
   frame.arms_valid[1] = false;
   frame.hand_trouble = {HandTrouble::kNoGyroscope, HandTrouble::kNoModel};
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("is a MotionPlus in it?"));

@@ -32,15 +32,22 @@ Result<ordered_json> Evaluate(Flags flags) {
 
 void AddArmCommand(CLI::App& app, Shared& shared) {
   auto* command = app.add_subcommand(
-      "arm", "The arms from a Wiimote with MotionPlus in each hand, against the truth");
+      "arm",
+      "Arm poses estimated from a Wiimote with MotionPlus in each hand, compared with the motion");
   const auto flags = std::make_shared<Flags>();
-  command->add_option("--motion", flags->scene.motion, "BVH, AMC, TRC or C3D")->required();
-  command->add_option("--skeleton", flags->scene.skeleton, "ASF of an AMC");
-  command->add_option("--still", flags->scene.still, "Markers of the person standing still");
-  command->add_option("--model", flags->model, "*.fmodel of kind arm; without: the product's");
-  command->add_option("--rate-hz", flags->scene.settings.rate_hz)->check(CLI::Range(30.0, 120.0));
-  command->add_option("--seed", flags->scene.settings.seed, "Of the devices' errors");
-  command->add_option("--loop-minutes", flags->loop_minutes, "Forwards and backwards so long")
+  command->add_option("--motion", flags->scene.motion, "Motion file: BVH, AMC, TRC or C3D")
+      ->required();
+  command->add_option("--skeleton", flags->scene.skeleton, "Skeleton of an AMC motion, ASF file");
+  command->add_option("--still", flags->scene.still,
+                      "Marker file of the same person standing still, TRC or C3D");
+  command->add_option("--model", flags->model, "Arm model, *.fmodel (default: built in)");
+  command->add_option("--rate-hz", flags->scene.settings.rate_hz, "Frame rate, Hz")
+      ->check(CLI::Range(30.0, 120.0));
+  command->add_option("--seed", flags->scene.settings.seed, "Seed of the simulated device errors");
+  command
+      ->add_option(
+          "--loop-minutes", flags->loop_minutes,
+          "Total duration, min: the motion is played forwards and backwards until then (0: once)")
       ->check(CLI::Range(0.0, 60.0));
   command->callback([flags, &shared] {
     const auto out = Evaluate(*flags);

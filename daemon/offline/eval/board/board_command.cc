@@ -52,7 +52,7 @@ Result<Input> ReadCorners(const Options& options) {
   shape.sensor_spacing_y_m = options.spacing_y_mm / 1000;
   posturography::Standing standing = posturography::FindStanding(samples, shape);
   if (standing.weight_n <= 0) {
-    return InvalidData(options.corners + ": no sample carries " +
+    return InvalidData(options.corners + ": no sample with a load above " +
                        std::to_string(NewtonsToKilograms(shape.least_body_weight_n)).substr(0, 4) +
                        " kg or more: nobody stood on the board");
   }
@@ -161,25 +161,31 @@ Result<ordered_json> Evaluate(const Options& options) {
 }  // namespace
 
 void AddBoardCommand(CLI::App& app, Shared& shared) {
-  auto* command = app.add_subcommand("board", "Measures of sway of somebody standing on a board");
+  auto* command = app.add_subcommand("board", "Sway measures of a person standing on one board");
   const auto options = std::make_shared<Options>();
-  auto* corners = command->add_option("--corners", options->corners,
-                                      "CSV time_s,tl_kg,tr_kg,bl_kg,br_kg of one board");
+  auto* corners =
+      command->add_option("--corners", options->corners,
+                          "Corner loads of one board, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg");
   auto* cop = command->add_option("--cop", options->cop,
-                                  "CSV time_s,x_mm,y_mm: x to the right (ML), y to the front (AP)");
+                                  "COP in place of corner loads, CSV time_s,x_mm,y_mm: x to the "
+                                  "right (ML), y to the front (AP)");
   corners->excludes(cop);
   command
       ->add_option("--rate-hz", options->rate_hz,
-                   "Resample to this even rate by window averages; left out: as recorded")
+                   "Uniform rate to resample to by window averages, Hz (default: as recorded)")
       ->check(CLI::Range(1.0, 1000.0));
   command
       ->add_option("--window-s", options->window_s,
-                   "Window of the averages; left out: 2 intervals of the slower rate")
+                   "Window of the averages, s (default: 2 intervals of the slower rate)")
       ->check(CLI::Range(0.001, 10.0));
-  command->add_option("--spacing-x-mm", options->spacing_x_mm, "Cells' spacing, long axis")
+  command
+      ->add_option("--spacing-x-mm", options->spacing_x_mm,
+                   "Distance between the sensors along the long axis, mm")
       ->check(CLI::Range(1.0, 2000.0))
       ->capture_default_str();
-  command->add_option("--spacing-y-mm", options->spacing_y_mm, "Cells' spacing, short axis")
+  command
+      ->add_option("--spacing-y-mm", options->spacing_y_mm,
+                   "Distance between the sensors along the short axis, mm")
       ->check(CLI::Range(1.0, 2000.0))
       ->capture_default_str();
   command->callback([options, &shared] {

@@ -114,30 +114,31 @@ Result<ordered_json> Evaluate(const Options& options) {
 
 void AddClockCommand(CLI::App& app, Shared& shared) {
   auto* command = app.add_subcommand(
-      "clock", "sampled_ns against the true device clock, over a modelled Bluetooth link");
+      "clock",
+      "Error of sampled_ns against the true device clock, over a simulated Bluetooth link");
   const auto options = std::make_shared<Options>();
-  command->add_option("--link", options->link, "ideal, good or poor")
+  command->add_option("--link", options->link, "Link model: ideal, good or poor")
       ->check(CLI::IsMember({"ideal", "good", "poor"}))
       ->capture_default_str();
-  command->add_option("--rate-hz", options->rate_hz, "Reports on a good link")
+  command->add_option("--rate-hz", options->rate_hz, "Report rate of a good link, Hz")
       ->check(CLI::Range(10.0, 1000.0))
       ->capture_default_str();
   command
       ->add_option("--sensor-rate-hz", options->sensor_rate_hz,
-                   "New samples, 60 of a board; left out: as the reports")
+                   "Rate of new samples, Hz; 60 for a board (default: the report rate)")
       ->check(CLI::Range(10.0, 1000.0));
   command
       ->add_option("--clock-error-ppm", options->clock_error_ppm,
-                   "How much too fast the device's clock is")
+                   "Rate error of the device clock, ppm; positive when fast")
       ->check(CLI::Range(-50000.0, 50000.0))
       ->capture_default_str();
-  command->add_option("--loss", options->loss, "Share of reports lost besides, 0 to 0.9")
+  command->add_option("--loss", options->loss, "Additional share of lost reports, 0 to 0.9")
       ->check(CLI::Range(0.0, 0.9))
       ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "Length")
+  command->add_option("--seconds", options->seconds, "Duration, s")
       ->check(CLI::Range(6.0, 86400.0))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of the link")->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of the link model")->capture_default_str();
   command->callback([options, &shared] {
     const Result<ordered_json> out = Evaluate(*options);
     if (!out) {

@@ -168,28 +168,36 @@ Result<nlohmann::json> Evaluate(const Options& options) {
 void AddFeaturesCommand(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "features", "Moving, frequency, phase, amplitude and inclination of accelerations");
-  command->add_option("--left", options->left, "CSV ax,ay,az in m/s2 of the sensor frame");
-  command->add_option("--right", options->right, "The right hand's, row by row beside --left");
-  command->add_option("--rate-hz", options->rate_hz, "Rows a second")
+      "features", "Features of accelerations: moving, frequency, phase, amplitude, inclination");
+  command->add_option("--left", options->left,
+                      "Accelerations of the left hand, CSV ax,ay,az in m/s2, sensor frame");
+  command->add_option("--right", options->right,
+                      "Accelerations of the right hand, same rows as --left");
+  command->add_option("--rate-hz", options->rate_hz, "Sample rate of the CSV files, Hz")
       ->check(CLI::Range(10.0, 1000.0));
   command
       ->add_option("--range-mps2", options->range_mps2,
-                   "End of the sensor's range; found in the file when not given")
+                   "Full-scale range of the sensor, m/s2 (default: detected in the file)")
       ->check(CLI::Range(1.0, 200.0));
-  command->add_option("--grt", options->grt, "A recording of the Gesture Recognition Toolkit");
-  command->add_flag("--synthetic", options->synthetic, "Errors on made motion, beside the bars");
-  command->add_flag("--delays", options->delays, "Delays after made changes, beside the bars");
+  command->add_option("--grt", options->grt,
+                      "Recording of the Gesture Recognition Toolkit in place of --left");
+  command->add_flag("--synthetic", options->synthetic,
+                    "Feature errors on synthetic motion, with their limits");
+  command->add_flag("--delays", options->delays,
+                    "Feature delays after synthetic changes, with their limits");
   command
-      ->add_option("--mounting-trials", options->mounting_trials,
-                   "Walk so often with sensors turned at random, beside a perfect mounting")
+      ->add_option(
+          "--mounting-trials", options->mounting_trials,
+          "Number of walks with randomly rotated sensors, compared with a perfect mounting")
       ->check(CLI::Range(1, 100000));
-  command->add_option("--standing", options->standing,
-                      "TRC of the person standing: with --walking in place of the made walk");
-  command->add_option("--walking", options->walking, "TRC of the same markers, a stride or more");
-  command->add_option("--trials", options->trials, "Made motions a row")
+  command->add_option(
+      "--standing", options->standing,
+      "Marker file of the person standing, TRC; with --walking it replaces the synthetic walk");
+  command->add_option("--walking", options->walking,
+                      "Marker file of the same person walking one stride or more, TRC");
+  command->add_option("--trials", options->trials, "Number of synthetic motions in each table row")
       ->check(CLI::Range(1, 100000));
-  command->add_option("--seed", options->seed, "Of the made motions");
+  command->add_option("--seed", options->seed, "Seed of the synthetic motions");
   command->callback([options, &shared] {
     const auto result = Evaluate(*options);
     if (!result) {

@@ -244,45 +244,55 @@ int Run(const Options& options, bool json) {
 }  // namespace
 
 void AddGaitCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("gait", "Trials of one gait, each kicked once");
+  CLI::App* command = app.add_subcommand("gait", "Trials of one gait, each with one push");
   auto options = std::make_shared<Options>();
-  command->add_option("--gait", options->gait, "step, walk, run or jump")->required();
-  command->add_option("--speed", options->speed_mps, "m/s")->check(CLI::Range(0.0, 6.0));
-  command->add_option("--height", options->height_m, "Of jumps, m; 0.2, or what a pit needs")
+  command->add_option("--gait", options->gait, "Gait: step, walk, run or jump")->required();
+  command->add_option("--speed", options->speed_mps, "Commanded speed, m/s")
+      ->check(CLI::Range(0.0, 6.0));
+  command
+      ->add_option("--height", options->height_m,
+                   "Jump height, m (default: 0.2, or the height that the pit needs)")
       ->check(CLI::Range(0.05, 0.7));
-  command->add_option("--turn", options->turn_deg, "Degrees a step, left positive")
+  command->add_option("--turn", options->turn_deg, "Turn, degrees per step; left positive")
       ->check(CLI::Range(-8.0, 8.0));
-  command->add_option("--seconds", options->seconds, "Of each trial")
+  command->add_option("--seconds", options->seconds, "Duration of each trial, s")
       ->check(CLI::Range(0.1, 36000.0));
-  command->add_option("--trials", options->trials, "How many")->check(CLI::Range(1, 100000));
-  command->add_option("--seed", options->seed, "A number, or random");
-  command->add_option("--push", options->push_ns, "Kick, N s; 2 by default")
+  command->add_option("--trials", options->trials, "Number of trials")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--seed", options->seed, "Seed: a number, or random");
+  command->add_option("--push", options->push_ns, "Push impulse, N s (default: 2)")
       ->check(CLI::Range(0.0, 1000.0));
-  command->add_option("--push-direction", options->push_direction_deg,
-                      "Degrees, 0 from behind, 90 to the left; drawn by default");
+  command->add_option(
+      "--push-direction", options->push_direction_deg,
+      "Push direction, degrees: 0 pushes forwards, 90 to the left (default: random)");
   command
       ->add_option("--push-phase", options->push_phase,
-                   "Moment of the kick, 0 to 1 of a cycle; drawn by default")
+                   "Push time as a fraction of the gait cycle, 0 to 1 (default: random)")
       ->check(CLI::Range(0.0, 1.0));
-  command->add_option("--slope", options->slope_deg, "Of the ground, degrees; uphill positive")
+  command
+      ->add_option("--slope", options->slope_deg, "Slope of the ground, degrees; uphill positive")
       ->check(CLI::Range(-20.0, 20.0));
   command
-      ->add_option("--step", options->step_m,
-                   "Height of steps of the ground, up and down, m; negative: the first is down")
+      ->add_option(
+          "--step", options->step_m,
+          "Height of the alternating steps of the ground, m; negative: the first step is down")
       ->check(CLI::Range(-0.3, 0.3));
   command
-      ->add_option("--push-directions", options->push_directions,
-                   "Sweep: push in this many directions, at --push-phases moments of a cycle each")
+      ->add_option(
+          "--push-directions", options->push_directions,
+          "Number of push directions of a sweep; each is tried at --push-phases times of the cycle")
       ->check(CLI::Range(1, 360));
-  command->add_option("--push-phases", options->push_phases, "Of the sweep; 12 by default")
+  command
+      ->add_option("--push-phases", options->push_phases,
+                   "Number of push times per cycle of a sweep (default: 12)")
       ->check(CLI::Range(1, 1000));
-  command->add_option("--pit", options->pit_m, "Width of pits across the track, m")
+  command->add_option("--pit", options->pit_m, "Width of the pits across the track, m")
       ->check(CLI::Range(0.05, 5.0));
   command
       ->add_option("--jump-lead", options->jump_lead_s,
-                   "A run is told to jump this long before it reaches a pit, s")
+                   "Lead of the jump command before a pit, s (run only)")
       ->check(CLI::Range(0.0, 5.0));
-  command->add_flag("--no-jump", options->no_jump, "A run is not told to jump");
+  command->add_flag("--no-jump", options->no_jump, "Give a run no jump commands at pits");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

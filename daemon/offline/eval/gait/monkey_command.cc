@@ -120,13 +120,15 @@ int Run(const Options& options, bool json) {
 }  // namespace
 
 void AddMonkeyCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("monkey", "Random commands every 0.5 to 4 s");
+  CLI::App* command = app.add_subcommand(
+      "monkey", "Trials with random gait, speed, height and turn every 0.5 to 4 s");
   auto options = std::make_shared<Options>();
-  command->add_option("--seconds", options->seconds, "Of each trial")
+  command->add_option("--seconds", options->seconds, "Duration of each trial, s")
       ->check(CLI::Range(1.0, 36000.0));
-  command->add_option("--trials", options->trials, "How many")->check(CLI::Range(1, 10000));
-  command->add_option("--seed", options->seed, "A number, or random");
-  command->add_flag("--gentle", options->gentle, "Run to 3 m/s and walk to 1, not 4 and 1.3");
+  command->add_option("--trials", options->trials, "Number of trials")->check(CLI::Range(1, 10000));
+  command->add_option("--seed", options->seed, "Seed: a number, or random");
+  command->add_flag("--gentle", options->gentle,
+                    "Limit runs to 3 m/s and walks to 1 m/s, in place of 4 and 1.3");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

@@ -69,12 +69,14 @@ int Run(const Options& options, bool json) {
 }  // namespace
 
 void AddTransitionsCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("transitions", "From one gait to another");
+  CLI::App* command =
+      app.add_subcommand("transitions", "Trials of a transition from one gait to another");
   auto options = std::make_shared<Options>();
   command->add_option("--from", options->from, "step, walk, run or jump")->required();
   command->add_option("--to", options->to, "step, walk, run or jump")->required();
-  command->add_option("--trials", options->trials, "How many")->check(CLI::Range(1, 100000));
-  command->add_option("--seed", options->seed, "A number, or random");
+  command->add_option("--trials", options->trials, "Number of trials")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--seed", options->seed, "Seed: a number, or random");
   command->add_option("--from-speed", options->speeds.from_mps, "m/s; drawn by default")
       ->check(CLI::Range(0.0, 6.0));
   command->add_option("--to-speed", options->speeds.to_mps, "m/s; drawn by default")

@@ -128,7 +128,8 @@ Result<ordered_json> Evaluate(const MomentumOptions& options, bool offline) {
 
 void AddMomentumCommand(CLI::App& app, Shared& shared) {
   auto* command = app.add_subcommand(
-      "momentum", "Centre of mass, angular momentum and feet from two boards under a motion");
+      "momentum",
+      "COM, angular momentum and feet estimated from two simulated boards under a motion");
   struct Flags {
     MomentumOptions options;
     double lag_ms = 0;
@@ -137,23 +138,39 @@ void AddMomentumCommand(CLI::App& app, Shared& shared) {
   };
   const auto flags = std::make_shared<Flags>();
   MomentumOptions& options = flags->options;
-  command->add_option("--motion", options.motion, "BVH, or AMC with --skeleton")->required();
-  command->add_option("--skeleton", options.skeleton, "ASF of an AMC");
-  command->add_option("--mass-kg", options.mass_kg)->check(CLI::Range(20.0, 250.0));
-  command->add_option("--mode", flags->mode)->check(CLI::IsMember({"paper", "best"}));
-  command->add_option("--lag-ms", flags->lag_ms, "0 to 200")->check(CLI::Range(0.0, 200.0));
-  command->add_option("--loop-minutes", options.loop_minutes, "Forwards and backwards so long")
+  command->add_option("--motion", options.motion, "Motion file: BVH, or AMC with --skeleton")
+      ->required();
+  command->add_option("--skeleton", options.skeleton, "Skeleton of an AMC motion, ASF file");
+  command->add_option("--mass-kg", options.mass_kg, "Mass of the body, kg")
+      ->check(CLI::Range(20.0, 250.0));
+  command->add_option("--mode", flags->mode, "Reconstruction mode: paper or best")
+      ->check(CLI::IsMember({"paper", "best"}));
+  command->add_option("--lag-ms", flags->lag_ms, "Output delay for smoothing, ms, 0 to 200")
+      ->check(CLI::Range(0.0, 200.0));
+  command
+      ->add_option(
+          "--loop-minutes", options.loop_minutes,
+          "Total duration, min: the motion is played forwards and backwards until then (0: once)")
       ->check(CLI::Range(0.0, 60.0));
-  command->add_option("--cell-noise-kg", options.errors.noise_kg)->check(CLI::Range(0.0, 5.0));
-  command->add_option("--gain-error", options.errors.gain_spread, "0.01: one percent a cell")
+  command
+      ->add_option("--cell-noise-kg", options.errors.noise_kg,
+                   "Standard deviation of the noise of a sensor, kg")
+      ->check(CLI::Range(0.0, 5.0));
+  command
+      ->add_option("--gain-error", options.errors.gain_spread,
+                   "Standard deviation of the relative gain error of a sensor; 0.01 is one percent")
       ->check(CLI::Range(0.0, 0.2));
-  command->add_option("--slow-force-n", options.errors.slow_force_n, "Slow error of a board")
+  command
+      ->add_option("--slow-force-n", options.errors.slow_force_n,
+                   "Slowly varying force error of a board, N")
       ->check(CLI::Range(0.0, 50.0));
-  command->add_option("--hysteresis-n", options.errors.hysteresis_n, "Play of a cell, half")
+  command
+      ->add_option("--hysteresis-n", options.errors.hysteresis_n,
+                   "Half width of a sensor's hysteresis, N")
       ->check(CLI::Range(0.0, 50.0));
-  command->add_option("--seed", options.errors.seed, "Of the cells' errors");
-  command->add_flag("--unlimited", options.unlimited, "Boards without an edge");
-  command->add_flag("--offline", flags->offline, "The offline smoothers, too");
+  command->add_option("--seed", options.errors.seed, "Seed of the sensor errors");
+  command->add_flag("--unlimited", options.unlimited, "Simulate boards of unlimited size");
+  command->add_flag("--offline", flags->offline, "Run the offline smoothers as well");
   command->callback([flags, &shared] {
     flags->options.lag_s = flags->lag_ms / 1000;
     flags->options.paper = flags->mode == "paper";

@@ -145,60 +145,102 @@ void PrintField(const std::string& name, const ordered_json& value) {
 
 void AddFlags(CLI::App& command, Flags& flags) {
   pose_run::Settings& settings = flags.scene.settings;
-  command.add_option("--motion", flags.scene.motion, "BVH, AMC, TRC or C3D")->required();
-  command.add_option("--skeleton", flags.scene.skeleton, "ASF of an AMC");
-  command.add_option("--still", flags.scene.still, "Markers of the person standing still");
-  command.add_option("--forces", flags.scene.forces, "MOT, STO or C3D of --boards forces");
-  command.add_option("--still-forces", flags.scene.still_forces,
-                     "MOT, STO or C3D under --still: puts the plates under the body");
+  command.add_option("--motion", flags.scene.motion, "Motion file: BVH, AMC, TRC or C3D")
+      ->required();
+  command.add_option("--skeleton", flags.scene.skeleton, "Skeleton of an AMC motion, ASF file");
+  command.add_option("--still", flags.scene.still,
+                     "Marker file of the same person standing still, TRC or C3D");
+  command.add_option("--forces", flags.scene.forces,
+                     "Measured forces for --boards forces: MOT, STO or C3D");
+  command.add_option(
+      "--still-forces", flags.scene.still_forces,
+      "Measured forces under --still (MOT, STO or C3D), to place the plates under the body");
   command.add_option("--activities", flags.scene.activities,
-                     "CSV begin_s,end_s,activity; without: by plain rules on the motion");
-  command.add_option("--mass-kg", settings.mass_kg)->check(CLI::Range(20.0, 250.0));
-  command.add_option("--height-m", flags.height_m)->check(CLI::Range(0.5, 2.6));
+                     "Activities, CSV begin_s,end_s,activity (default: detected from the motion)");
+  command.add_option("--mass-kg", settings.mass_kg, "Mass of the body, kg")
+      ->check(CLI::Range(20.0, 250.0));
+  command.add_option("--height-m", flags.height_m, "Height of the body, m")
+      ->check(CLI::Range(0.5, 2.6));
   command
-      .add_option("--hands", flags.hands, "move: 1 cm of noise; wiimote: attitudes; kinect: late")
+      .add_option("--hands", flags.hands,
+                  "Hand devices: move (positions, 1 cm noise), wiimote (attitudes), kinect (late "
+                  "positions), none")
       ->check(CLI::IsMember({"move", "wiimote", "kinect", "none"}));
-  command.add_option("--boards", flags.boards)
+  command
+      .add_option("--boards", flags.boards,
+                  "Board forces: simulated, forces (measured), or insoles")
       ->check(CLI::IsMember({"simulated", "forces", "insoles"}));
-  command.add_option("--model", flags.models, "*.fmodel, several; without: the product's");
+  command.add_option("--model", flags.models,
+                     "Model file, *.fmodel; may be repeated (default: built in)");
   command.add_flag("--same-person", flags.same_person,
-                   "Models may know the person, by other takes than this");
-  command.add_option("--mode", flags.mode)->check(CLI::IsMember({"paper", "best"}));
-  command.add_option("--rate-hz", settings.rate_hz)->check(CLI::Range(30.0, 120.0));
-  command.add_option("--lag-ms", flags.lag_ms, "0 to 200")->check(CLI::Range(0.0, 200.0));
-  command.add_option("--cell-noise-kg", settings.errors.noise_kg)->check(CLI::Range(0.0, 5.0));
-  command.add_option("--gain-error", settings.errors.gain_spread, "0.01: one percent a cell")
+                   "Accept models trained on other takes of the tested person");
+  command.add_option("--mode", flags.mode, "Reconstruction mode: paper or best")
+      ->check(CLI::IsMember({"paper", "best"}));
+  command.add_option("--rate-hz", settings.rate_hz, "Frame rate, Hz")
+      ->check(CLI::Range(30.0, 120.0));
+  command.add_option("--lag-ms", flags.lag_ms, "Output delay for smoothing, ms, 0 to 200")
+      ->check(CLI::Range(0.0, 200.0));
+  command
+      .add_option("--cell-noise-kg", settings.errors.noise_kg,
+                  "Standard deviation of the noise of a sensor, kg")
+      ->check(CLI::Range(0.0, 5.0));
+  command
+      .add_option("--gain-error", settings.errors.gain_spread,
+                  "Standard deviation of the relative gain error of a sensor; 0.01 is one percent")
       ->check(CLI::Range(0.0, 0.2));
-  command.add_option("--slow-force-n", settings.errors.slow_force_n, "Slow error of a board")
+  command
+      .add_option("--slow-force-n", settings.errors.slow_force_n,
+                  "Slowly varying force error of a board, N")
       ->check(CLI::Range(0.0, 50.0));
-  command.add_option("--hysteresis-n", settings.errors.hysteresis_n)->check(CLI::Range(0.0, 50.0));
-  command.add_option("--seed", settings.errors.seed, "Of the errors of cells and hands");
-  command.add_option("--gap-error-m", settings.gap_error_m, "Boards told too far apart")
+  command
+      .add_option("--hysteresis-n", settings.errors.hysteresis_n,
+                  "Half width of a sensor's hysteresis, N")
+      ->check(CLI::Range(0.0, 50.0));
+  command.add_option("--seed", settings.errors.seed, "Seed of the errors of sensors and hands");
+  command
+      .add_option("--gap-error-m", settings.gap_error_m,
+                  "Error of the configured gap between the boards, m")
       ->check(CLI::Range(-0.2, 0.2));
-  command.add_option("--yaw-error-deg", flags.yaw_error_deg, "Of the right board")
+  command
+      .add_option("--yaw-error-deg", flags.yaw_error_deg,
+                  "Error of the configured yaw of the right board, degrees")
       ->check(CLI::Range(-45.0, 45.0));
-  command.add_option("--mass-error", settings.mass_error, "Of the T-pose's weight: 0.02")
+  command
+      .add_option("--mass-error", settings.mass_error,
+                  "Relative error of the mass measured in the T-pose; 0.02 is two percent")
       ->check(CLI::Range(-0.2, 0.2));
-  command.add_flag("--limited", settings.limited, "Boards that end at their sensors");
-  command.add_option("--loop-minutes", flags.loop_minutes, "Forwards and backwards so long")
+  command.add_flag("--limited", settings.limited, "End the boards at their sensors");
+  command
+      .add_option(
+          "--loop-minutes", flags.loop_minutes,
+          "Total duration, min: the motion is played forwards and backwards until then (0: once)")
       ->check(CLI::Range(0.0, 60.0));
-  command.add_option("--ablate", flags.ablate, "Parts left out")
+  command
+      .add_option("--ablate", flags.ablate,
+                  "Part of the reconstruction to leave out; may be repeated")
       ->check(CLI::IsMember({"angular_momentum", "momentum", "cleanup", "basis", "posture"}));
-  command.add_flag("--ablations", flags.ablations, "The table of all of them, in both modes");
+  command.add_flag("--ablations", flags.ablations,
+                   "Print the table of all ablations, in both modes");
   command.add_flag("--claims", flags.claims,
-                   "What the paper says of how COMs move and of outliers");
-  command.add_option("--figures", flags.figures, "Folder for plots like the paper's");
-  command.add_option("--oracle", flags.oracle, "Parts told the truth")
+                   "Test the paper's statements about COM motion and outliers");
+  command.add_option("--figures", flags.figures,
+                     "Folder for plots in the form of the paper's figures");
+  command
+      .add_option("--oracle", flags.oracle,
+                  "Quantity taken from the motion in place of its estimate; may be repeated")
       ->check(CLI::IsMember({"com", "momentum", "feet"}));
-  command.add_option("--constant", flags.constants, "NAME=VALUE of the best mode");
-  command.add_flag("--baselines,!--no-baselines", flags.baselines, "Compare with knowing less");
+  command.add_option("--constant", flags.constants,
+                     "Constant of the best mode, NAME=VALUE; may be repeated");
+  command.add_flag("--baselines,!--no-baselines", flags.baselines,
+                   "Compare with reconstructions from fewer measurements");
 }
 
 }  // namespace
 
 void AddPoseCommand(CLI::App& app, Shared& shared) {
-  auto* command = app.add_subcommand(
-      "pose", "The whole body from two boards and two hands under a motion, against the truth");
+  auto* command = app.add_subcommand("pose",
+                                     "Whole-body pose estimated from two boards and two hands "
+                                     "under a motion, compared with the motion");
   const auto flags = std::make_shared<Flags>();
   flags->scene.settings.errors.noise_kg = 0.05;
   AddFlags(*command, *flags);

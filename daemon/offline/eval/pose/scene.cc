@@ -29,7 +29,7 @@ Result<void> CheckNotTrainedOnFile(const model::Model& model, const std::string&
   for (const model::DataFile& file : model.provenance.data) {
     if (file.sha256 != digest) continue;
     return InvalidData(origin + ": was trained on " + motion +
-                       " itself; judge it on another take of the same person");
+                       " itself; evaluate it on another take of the same person");
   }
   return {};
 }

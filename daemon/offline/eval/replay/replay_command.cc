@@ -55,10 +55,12 @@ void AddReplayCommand(CLI::App& app, Shared& shared) {
     std::string track = "straight";
   };
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand(
-      "replay", "Runs a recording again and compares features and state hashes bit for bit");
-  command->add_option("file", options->file, "A recording of footing-log")->required();
-  command->add_option("--track", options->track, "The track that the simulation ran on");
+  auto* command = app.add_subcommand("replay",
+                                     "Replay of a recording through the same code; compares "
+                                     "features and state hashes bit for bit");
+  command->add_option("file", options->file, "Recording, MCAP file of footing-log")->required();
+  command->add_option("--track", options->track,
+                      "Track of the recorded simulation: a name, or a JSON file");
   command->callback([options, &shared] { shared.exit_code = Run(options->file, options->track); });
 }
 

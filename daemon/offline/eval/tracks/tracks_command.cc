@@ -99,12 +99,14 @@ int Run(const Options& options, bool json) {
 }  // namespace
 
 void AddTracksCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("tracks", "A made user drives along a track");
+  CLI::App* command =
+      app.add_subcommand("tracks", "Trials of a synthetic user steering along a track");
   auto options = std::make_shared<Options>();
-  command->add_option("--interface", options->interface, "wrist or direct");
-  command->add_option("--track", options->track, "straight, 1, 2, 3, 4, or a JSON file");
-  command->add_option("--trials", options->trials, "How many")->check(CLI::Range(1, 100000));
-  command->add_option("--seed", options->seed, "A number, or random");
+  command->add_option("--interface", options->interface, "Interface: wrist or direct");
+  command->add_option("--track", options->track, "Track: straight, 1, 2, 3, 4, or a JSON file");
+  command->add_option("--trials", options->trials, "Number of trials")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--seed", options->seed, "Seed: a number, or random");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 
