@@ -16,10 +16,10 @@
 namespace footing::ctl {
 namespace {
 
-constexpr double kStep_s = 0.05;
-constexpr double kRumbleEvery_s = 1;
-constexpr std::uint32_t kRumbleLease_ms = 600;
-constexpr double kLedEvery_s = 0.8;  // Status comes once a second at the slowest.
+constexpr double kStepS = 0.05;
+constexpr double kRumbleEveryS = 1;
+constexpr std::uint32_t kRumbleLeaseMs = 600;
+constexpr double kLedEveryS = 0.8;  // Status comes once a second at the slowest.
 
 /// The rumble and the lamps during their phases: a command now and then for every controller.
 class Actuators {
@@ -27,7 +27,7 @@ class Actuators {
   void Drive(Session& session, const std::string& rig, guide::Phase phase, std::int64_t now_ns) {
     const bool rumble = phase == guide::Phase::kRumble;
     if (!rumble && phase != guide::Phase::kLed) return;
-    const double every_s = rumble ? kRumbleEvery_s : kLedEvery_s;
+    const double every_s = rumble ? kRumbleEveryS : kLedEveryS;
     if (now_ns - last_ns_ < SecondsToNanoseconds(every_s)) return;
     last_ns_ = now_ns;
     ++count_;
@@ -38,7 +38,7 @@ class Actuators {
       if (rumble) {
         command.mutable_set_rumble()->set_device(device.device);
         command.mutable_set_rumble()->set_on(true);
-        command.mutable_set_rumble()->set_lease_ms(kRumbleLease_ms);
+        command.mutable_set_rumble()->set_lease_ms(kRumbleLeaseMs);
       } else {
         command.mutable_set_leds()->set_device(device.device);
         command.mutable_set_leds()->set_leds(board ? count_ % 2 : count_ % 16);
@@ -86,7 +86,7 @@ class Run {
       next_ = planned.phase;
       double left_s = planned.duration_s;
       for (std::int64_t before_ns = clock::MonotonicNs(); left_s > 0 && kept_;) {
-        if (session_.RunFor(std::min(kStep_s, left_s)) == Waited::kInterrupted) {
+        if (session_.RunFor(std::min(kStepS, left_s)) == Waited::kInterrupted) {
           kept_ = Failure("stopped before the verdict; " + writer_.path() + " has no end");
         }
         actuators.Drive(session_, options_.rig, planned.phase, session_.server_ns());
@@ -97,7 +97,7 @@ class Run {
       }
     }
     ending_ = true;
-    session_.RunFor(2 * kStep_s);  // One more tick, at which the last phase ends.
+    session_.RunFor(2 * kStepS);  // One more tick, at which the last phase ends.
     session_.set_on_tick({});
     actuators.Restore(session_, options_.rig);
     return Finish();
@@ -153,7 +153,7 @@ Result<AcceptanceVerdict> RunAcceptance(Session& session, const AcceptanceOption
     return NoDevice("rig " + options.rig + " has no device; see footing-ctl devices");
   }
   stream::BoardLayout layout =
-      *guide::LayoutNamed(boards > 1 ? "one_foot_each" : "single", guide::kUsualGap_mm);
+      *guide::LayoutNamed(boards > 1 ? "one_foot_each" : "single", guide::kUsualGapMm);
   for (const auto& rig : session.setup()) {
     if (rig.rig == options.rig && !rig.layout.preset.empty()) layout = rig.layout;
   }

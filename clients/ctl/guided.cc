@@ -14,9 +14,9 @@
 namespace footing::ctl {
 namespace {
 
-constexpr double kStep_s = 0.05;
-constexpr double kSolveWithin_s = 10;
-constexpr double kFarewell_s = 3;  // Without a tick for so long: footingd is gone.
+constexpr double kStepS = 0.05;
+constexpr double kSolveWithinS = 10;
+constexpr double kFarewellS = 3;  // Without a tick for so long: footingd is gone.
 
 std::vector<std::string> Adapters() {
   std::vector<std::string> adapters;
@@ -68,7 +68,7 @@ v1::Command CommandOf(const guide::Action& action, const std::string& rig) {
 guide::Answer Do(Session& session, const guide::Action& action, const std::string& rig) {
   guide::Answer answer;
   answer.key = action.key;
-  const auto result = session.Call(CommandOf(action, rig), kSolveWithin_s);
+  const auto result = session.Call(CommandOf(action, rig), kSolveWithinS);
   answer.ok = result.ok();
   if (result) {
     answer.message = result->message();
@@ -167,10 +167,10 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session, const guide::
   double silent_s = 0;
   Result<void> outcome;
   for (bool finished = false; !finished && outcome;) {
-    if (session.RunFor(kStep_s) == Waited::kInterrupted) outcome = Failure("stopped");
-    silent_s = session.server_ns() == last_ns ? silent_s + kStep_s : 0;
+    if (session.RunFor(kStepS) == Waited::kInterrupted) outcome = Failure("stopped");
+    silent_s = session.server_ns() == last_ns ? silent_s + kStepS : 0;
     last_ns = session.server_ns();
-    if (silent_s > kFarewell_s) outcome = NoDevice("footingd is gone: " + session.link());
+    if (silent_s > kFarewellS) outcome = NoDevice("footingd is gone: " + session.link());
     if (!outcome || silent_s > 0) continue;
     guide::Situation now;
     now.now_ns = last_ns;

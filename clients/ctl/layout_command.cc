@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 struct Words {
   std::string rig = "main";
   std::string preset;
-  double gap_mm = guide::kUsualGap_mm;
+  double gap_mm = guide::kUsualGapMm;
   bool check = false;
   bool script = false;
 };

@@ -18,8 +18,8 @@ struct Words {
   bool script = false;
 };
 
-constexpr double kScriptSettle_s = 2;
-constexpr double kEffectsSeen_s = 1.2;
+constexpr double kScriptSettleS = 2;
+constexpr double kEffectsSeenS = 1.2;
 
 /// What the words ask for; UsageError when they make no sense.
 Result<std::vector<guide::Item>> Understand(Words& words) {
@@ -41,7 +41,7 @@ Result<std::vector<guide::Item>> Understand(Words& words) {
                       ": no such layout; there are: one_foot_each side_by_side single");
   }
   if (words.mass_kg > 0) words.wishes.mass_kg = words.mass_kg;
-  if (words.script || words.yes) words.wishes.settle_s = kScriptSettle_s;
+  if (words.script || words.yes) words.wishes.settle_s = kScriptSettleS;
   return items;
 }
 
@@ -50,7 +50,7 @@ Result<void> Setup(Session& session, const Words& words, const std::vector<guide
   const auto results = RunGuided(session, words.wishes, items, Talk{words.script});
   if (!results) return results.error();
   // So that the last answers' effects on the devices are seen.
-  session.RunFor(kEffectsSeen_s);
+  session.RunFor(kEffectsSeenS);
   const auto list = ItemsOf(session, words.wishes.rig, *results);
   const bool whole = items.empty();
   if (const auto printed = PrintItems(session, words.wishes.rig, list, whole, shared); !printed) {

@@ -146,7 +146,7 @@ class Recording {
       if (error) return;
       const std::int64_t now_ns = clock::MonotonicNs();
       if (!writer_.pending()) written_down_ns_ = now_ns;
-      if (now_ns - written_down_ns_ >= kLongestUnwritten_ns) {
+      if (now_ns - written_down_ns_ >= kLongestUnwrittenNs) {
         Keep(writer_.Flush());
         written_down_ns_ = now_ns;
       }

@@ -12,7 +12,7 @@
 namespace footing::log_client {
 
 /// The latest that a message waits in memory before it is written down.
-inline constexpr std::int64_t kLongestUnwritten_ns = 800'000'000;
+inline constexpr std::int64_t kLongestUnwrittenNs = 800'000'000;
 
 /// Writes what one server sends to a recording that several may share: every channel of a tick on
 /// the topic /SERVER/CHANNEL, gaps on /SERVER/gaps, sessions and the link as metadata. Calls of one

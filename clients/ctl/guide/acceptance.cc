@@ -8,7 +8,7 @@
 namespace footing::guide {
 namespace {
 
-constexpr double kReactionMost_s = 3;  // A person hears a prompt and gets going.
+constexpr double kReactionMostS = 3;  // A person hears a prompt and gets going.
 constexpr double kReactionShare = 0.4;
 
 struct Row {
@@ -85,10 +85,10 @@ std::optional<Phase> Acceptance::Settled(std::int64_t now_ns) const {
   if (!running_) return std::nullopt;
   // The length of a phase is not known while it runs; the one before is alike enough to go by.
   const double before_s = spans_.size() < 2
-                              ? kReactionMost_s
+                              ? kReactionMostS
                               : NanosecondsToSeconds(spans_[spans_.size() - 2].to_ns -
                                                      spans_[spans_.size() - 2].from_ns);
-  const double reaction_s = std::min(kReactionMost_s, kReactionShare * before_s);
+  const double reaction_s = std::min(kReactionMostS, kReactionShare * before_s);
   if (now_ns - spans_.back().from_ns < SecondsToNanoseconds(reaction_s)) return std::nullopt;
   return spans_.back().phase;
 }

@@ -10,20 +10,20 @@ namespace footing::guide {
 namespace {
 
 // Bars; where they come from: docs/setup.md.
-constexpr double kBoardRate_hz = 30;
-constexpr double kControllerRate_hz = 60;
+constexpr double kBoardRateHz = 30;
+constexpr double kControllerRateHz = 60;
 constexpr double kGapsPerMinute = 6;
-constexpr double kJitter_ms = 40;
+constexpr double kJitterMs = 40;
 constexpr double kRepeatShare = 0.6;
-constexpr double kClockSd_ms = 6;
+constexpr double kClockSdMs = 6;
 constexpr double kStillShare = 0.2;  // Of the frames that may call standing still a motion.
 constexpr double kMovingShare = 0.7;
-constexpr double kWalkLeast_hz = 0.5;
-constexpr double kRunLeast_hz = 2;  // The gait paper's border between walking and running.
-constexpr double kInTurns_rad = 2;  // Half a cycle is pi.
-constexpr double kTogether_rad = 1;
-constexpr double kMassChange_kg = 1;
-constexpr double kEmpty_n = 10;
+constexpr double kWalkLeastHz = 0.5;
+constexpr double kRunLeastHz = 2;  // The gait paper's border between walking and running.
+constexpr double kInTurnsRad = 2;  // Half a cycle is pi.
+constexpr double kTogetherRad = 1;
+constexpr double kMassChangeKg = 1;
+constexpr double kEmptyN = 10;
 constexpr double kLedPatterns = 2;
 
 Check AtLeast(std::string name, double value, double bar, std::string unit, std::string note) {
@@ -53,13 +53,13 @@ void Acceptance::CheckDevice(const DeviceRecord& device, std::vector<Check>& che
   const double steady_s = std::max(Steady_s(), 1e-3);
   const auto samples = static_cast<double>(device.samples);
   checks.push_back(AtLeast("rate " + serial, samples / steady_s,
-                           IsBoard(last) ? kBoardRate_hz : kControllerRate_hz, "Hz",
+                           IsBoard(last) ? kBoardRateHz : kControllerRateHz, "Hz",
                            "reports a second"));
   const double gaps =
       static_cast<double>(std::max(device.gaps_last, device.gaps_first) - device.gaps_first);
   checks.push_back(AtMost("gaps " + serial, gaps * 60 / std::max(steady_s, 60.0), kGapsPerMinute,
                           "1/min", "holes in the stream: go nearer, fewer devices an adapter"));
-  checks.push_back(AtMost("jitter " + serial, last.jitter_ms, kJitter_ms, "ms",
+  checks.push_back(AtMost("jitter " + serial, last.jitter_ms, kJitterMs, "ms",
                           "standard deviation of the intervals"));
   checks.push_back(AtMost("repeats " + serial,
                           static_cast<double>(device.repeats) / std::max(samples, 1.0),
@@ -73,7 +73,7 @@ void Acceptance::CheckDevice(const DeviceRecord& device, std::vector<Check>& che
                     : last.battery_fraction < 0 ? "not told by the device"
                                                 : "share that is left"});
   checks.push_back(
-      AtMost("clock " + serial, last.clock_offset_sd_ms, kClockSd_ms, "ms",
+      AtMost("clock " + serial, last.clock_offset_sd_ms, kClockSdMs, "ms",
              last.clock_offset_sd_ms < 0 ? "not known" : "how well the sampling time is known"));
   if (IsBoard(last)) {
     checks.push_back(AtMost("moved " + serial, device.moved ? 1 : 0, 0, "",
@@ -102,18 +102,18 @@ void Acceptance::CheckFeatures(std::vector<Check>& checks) const {
     } else if (phase == Phase::kWalk) {
       checks.push_back(
           AtLeast("walk", moving(record), kMovingShare, "", "share of frames that see motion"));
-      checks.push_back(AtLeast("walk cadence", frequency_hz, kWalkLeast_hz, "Hz", "median"));
+      checks.push_back(AtLeast("walk cadence", frequency_hz, kWalkLeastHz, "Hz", "median"));
       if (!sizes.empty()) {
-        checks.push_back(AtLeast("walk phase", phase_rad, kInTurns_rad, "rad",
+        checks.push_back(AtLeast("walk phase", phase_rad, kInTurnsRad, "rad",
                                  "left and right in turns: near pi"));
       }
     } else if (phase == Phase::kRun) {
-      checks.push_back(AtLeast("run cadence", frequency_hz, kRunLeast_hz, "Hz", "median"));
+      checks.push_back(AtLeast("run cadence", frequency_hz, kRunLeastHz, "Hz", "median"));
     } else if (phase == Phase::kJump) {
       checks.push_back(
           AtLeast("jump", moving(record), kMovingShare, "", "share of frames that see motion"));
       if (!sizes.empty()) {
-        checks.push_back(AtMost("jump phase", phase_rad, kTogether_rad, "rad",
+        checks.push_back(AtMost("jump phase", phase_rad, kTogetherRad, "rad",
                                 "left and right together: near 0"));
       }
     }
@@ -141,9 +141,9 @@ void Acceptance::CheckBoards(std::vector<Check>& checks) const {
   }
   const double mass_kg = NewtonsToKilograms((first_n + second_n) / 2);
   checks.push_back(
-      AtLeast("stood on", mass_kg, NewtonsToKilograms(kStoodOn_n), "kg", "on all boards together"));
+      AtLeast("stood on", mass_kg, NewtonsToKilograms(kStoodOnN), "kg", "on all boards together"));
   checks.push_back(AtMost("mass constancy", NewtonsToKilograms(std::abs(second_n - first_n)),
-                          kMassChange_kg, "kg", "between the halves of quiet standing"));
+                          kMassChangeKg, "kg", "between the halves of quiet standing"));
 
   const auto stepping = boards_.find(Phase::kStepping);
   if (stepping != boards_.end()) {
@@ -152,7 +152,7 @@ void Acceptance::CheckBoards(std::vector<Check>& checks) const {
       for (const auto& sample : samples) {
         if (!sample.contact) empty_n.push_back(sample.total_n);
       }
-      checks.push_back(AtMost("tare " + serial, std::abs(Median(empty_n)), kEmpty_n, "N",
+      checks.push_back(AtMost("tare " + serial, std::abs(Median(empty_n)), kEmptyN, "N",
                               empty_n.empty() ? "was never empty" : "on the empty board"));
       if (empty_n.empty()) checks.back().passed = false;
     }

@@ -10,24 +10,24 @@
 namespace footing::guide {
 namespace {
 
-constexpr double kStandFor_s = 1.0;
-constexpr double kLeanFor_s = 0.8;
+constexpr double kStandForS = 1.0;
+constexpr double kLeanForS = 0.8;
 constexpr double kSteady = 0.05;  // Standard deviation of a steady load, share of its mean.
-constexpr double kSteadyLeast_n = 10;
-constexpr double kSteadyCop_m = 0.012;
-constexpr double kEmptyFor_s = 2.5;  // Half a second more than the tare takes.
-constexpr double kTareWindow_s = 2;
-constexpr double kEmptyMost_n = 60;  // An untared board shows up to some kilograms.
-constexpr double kEmptyQuiet_n = 5;
+constexpr double kSteadyLeastN = 10;
+constexpr double kSteadyCopM = 0.012;
+constexpr double kEmptyForS = 2.5;  // Half a second more than the tare takes.
+constexpr double kTareWindowS = 2;
+constexpr double kEmptyMostN = 60;  // An untared board shows up to some kilograms.
+constexpr double kEmptyQuietN = 5;
 
 bool Steady(const Load& load) {
-  return load.samples > 0 && load.sd_n < std::max(kSteadyLeast_n, kSteady * load.mean_n);
+  return load.samples > 0 && load.sd_n < std::max(kSteadyLeastN, kSteady * load.mean_n);
 }
 
-bool StoodOn(const Load& load) { return Steady(load) && load.mean_n > kStoodOn_n; }
+bool StoodOn(const Load& load) { return Steady(load) && load.mean_n > kStoodOnN; }
 
 bool Upright(const Load& load) {
-  return StoodOn(load) && load.cop_valid && load.cop_sd_m < kSteadyCop_m;
+  return StoodOn(load) && load.cop_valid && load.cop_sd_m < kSteadyCopM;
 }
 
 double Moved_m(const Load& from, const Load& to) {
@@ -66,7 +66,7 @@ void LayoutStep::Begin(const Situation& now, const Wishes& wishes) {
     return;
   }
   two_ = boards.size() > 1;
-  const double gap_mm = wishes.gap_mm == Wishes::kNoGap_mm ? kUsualGap_mm : wishes.gap_mm;
+  const double gap_mm = wishes.gap_mm == Wishes::kNoGapMm ? kUsualGapMm : wishes.gap_mm;
   const auto usual = LayoutNamed(two_ ? "one_foot_each" : "single", gap_mm);
   layout_ = *usual;
   if (!wishes.preset.empty()) {
@@ -97,12 +97,12 @@ Progress LayoutStep::One(const Situation& now, const Wishes& wishes) {
   progress.prompt = std::string("Stand on the ") + (left ? "left" : "right") +
                     " board alone, with both feet, and keep still.";
   if (left) progress.picture = LayoutPicture(layout_.preset);
-  const Stance stance = Stand(now, wishes, kStandFor_s);
+  const Stance stance = Stand(now, wishes, kStandForS);
   progress.feedback = Loads(stance, true);
   const bool on_left = StoodOn(stance.left) && stance.right.samples > 0 &&
-                       stance.right.mean_n < kFree_n && Steady(stance.right);
+                       stance.right.mean_n < kFreeN && Steady(stance.right);
   const bool on_right = StoodOn(stance.right) && stance.left.samples > 0 &&
-                        stance.left.mean_n < kFree_n && Steady(stance.left);
+                        stance.left.mean_n < kFreeN && Steady(stance.left);
   if (!on_left && !on_right) return progress;
   if (left) {
     observed_.left_alone = stance;
@@ -120,7 +120,7 @@ Progress LayoutStep::One(const Situation& now, const Wishes& wishes) {
 Progress LayoutStep::Both(const Situation& now, const Wishes& wishes) {
   Progress progress;
   const bool upright = phase_ == Phase::kUpright;
-  const Stance stance = Stand(now, wishes, upright ? kStandFor_s : kLeanFor_s);
+  const Stance stance = Stand(now, wishes, upright ? kStandForS : kLeanForS);
   progress.feedback = Loads(stance, two_);
   const bool steady = Upright(stance.left) && (!two_ || Upright(stance.right));
   if (upright) {
@@ -137,7 +137,7 @@ Progress LayoutStep::Both(const Situation& now, const Wishes& wishes) {
   const double right_m = two_ ? Moved_m(observed_.upright.right, stance.right) : left_m;
   progress.feedback += ", moved by " + std::to_string(std::lround(left_m * 1e3)) + " mm";
   if (two_) progress.feedback += " and " + std::to_string(std::lround(right_m * 1e3)) + " mm";
-  if (!steady || std::min(left_m, right_m) < kLeastLean_m) return progress;
+  if (!steady || std::min(left_m, right_m) < kLeastLeanM) return progress;
   observed_.forward = stance;
   const LayoutVerdict verdict = JudgeLayout(layout_, observed_);
   results_ = {Outcome(Item::kLayout, "", verdict.passed(), verdict.residual_mm, "mm",
@@ -183,11 +183,11 @@ Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
   }
   progress.finished = boards.empty();
   if (asked_) return progress;
-  const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kEmptyFor_s);
+  const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kEmptyForS);
   for (const auto& board : boards) {
     const Load load = now.recent->BoardLoad(board.device, from_ns, now.now_ns);
     progress.feedback += (progress.feedback.empty() ? "" : ", ") + Newtons(load);
-    if (load.samples == 0 || load.mean_n > kEmptyMost_n || load.sd_n > kEmptyQuiet_n) {
+    if (load.samples == 0 || load.mean_n > kEmptyMostN || load.sd_n > kEmptyQuietN) {
       return progress;
     }
   }
@@ -196,7 +196,7 @@ Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
     tare.kind = Action::Kind::kTare;
     tare.key = "tare " + board.serial;
     tare.serial = board.serial;
-    tare.window_s = kTareWindow_s;
+    tare.window_s = kTareWindowS;
     progress.actions.push_back(tare);
   }
   asked_ = !boards.empty();
@@ -211,7 +211,7 @@ Progress WeighStep::Advance(const Situation& now, const Wishes& wishes) {
       boards.size() > 1 ? "Stand still, one foot on each board." : "Stand still on the board.";
   progress.finished = boards.empty();
   if (boards.empty()) return progress;
-  const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kWeighFor_s);
+  const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kWeighForS);
   std::vector<Load> loads;
   for (const auto& board : boards) {
     loads.push_back(now.recent->BoardLoad(board.device, from_ns, now.now_ns));

@@ -9,11 +9,11 @@
 namespace footing::guide {
 namespace {
 
-constexpr double kLeastBoardRate_hz = 30;
-constexpr double kLeastControllerRate_hz = 60;
-constexpr double kCheckFor_s = 2;
-constexpr std::int64_t kGesture_ns = 1'000'000'000;  // Looked at for a gesture.
-constexpr std::int64_t kRest_ns = 500'000'000;       // Between two gestures.
+constexpr double kLeastBoardRateHz = 30;
+constexpr double kLeastControllerRateHz = 60;
+constexpr double kCheckForS = 2;
+constexpr std::int64_t kGestureNs = 1'000'000'000;  // Looked at for a gesture.
+constexpr std::int64_t kRestNs = 500'000'000;       // Between two gestures.
 
 std::vector<stream::DeviceStatus> Everything(const Situation& now, const Wishes& wishes) {
   std::vector<stream::DeviceStatus> all = now.recent->Boards(wishes.rig);
@@ -60,7 +60,7 @@ std::string WrongWith(const stream::DeviceStatus& device) {
   if (device.calibration == stream::CalibrationOrigin::kDefaults) {
     return "uncalibrated: its own calibration makes no sense; use another device";
   }
-  const double least_hz = board ? kLeastBoardRate_hz : kLeastControllerRate_hz;
+  const double least_hz = board ? kLeastBoardRateHz : kLeastControllerRateHz;
   if (device.report_rate_hz < least_hz) {
     return "only " + std::to_string(std::lround(device.report_rate_hz)) +
            " reports a second: go nearer, or take devices off this adapter";
@@ -142,14 +142,14 @@ void RolesStep::Begin(const Situation& now, const Wishes& wishes) {
 }
 
 bool RolesStep::Resting(const Situation& now, const Wishes& wishes) const {
-  const std::int64_t from_ns = now.now_ns - kRest_ns;
+  const std::int64_t from_ns = now.now_ns - kRestNs;
   for (const auto& device : now.recent->Boards(wishes.rig)) {
     const Load load = now.recent->BoardLoad(device.device, from_ns, now.now_ns);
-    if (load.samples == 0 || load.mean_n > kFree_n) return false;
+    if (load.samples == 0 || load.mean_n > kFreeN) return false;
   }
   for (const auto& device : now.recent->Worn(wishes.rig)) {
     const Motion motion = now.recent->DeviceMotion(device.device, from_ns, now.now_ns);
-    if (motion.samples == 0 || motion.shake_mps2 > kShaken_mps2 / 2) return false;
+    if (motion.samples == 0 || motion.shake_mps2 > kShakenMps2 / 2) return false;
   }
   return true;
 }
@@ -180,8 +180,8 @@ Progress RolesStep::Ask(const Situation& now, const Wishes& wishes) {
     only.note = ", the only one of its kind";
     return Assign(devices.front(), only);
   }
-  const std::int64_t from_ns = std::max(now.now_ns - kGesture_ns, rest_since_ns_);
-  if (now.now_ns - from_ns < kGesture_ns) return progress;
+  const std::int64_t from_ns = std::max(now.now_ns - kGestureNs, rest_since_ns_);
+  if (now.now_ns - from_ns < kGestureNs) return progress;
   Pick pick;
   if (IsBoard(role)) {
     std::vector<BoardLoad> loads;
@@ -230,7 +230,7 @@ Progress RolesStep::Advance(const Situation& now, const Wishes& wishes) {
     if (one) progress.prompt.clear();
     if (one || Resting(now, wishes)) {
       phase_ = Phase::kAsk;
-      rest_since_ns_ = now.now_ns - kRest_ns;
+      rest_since_ns_ = now.now_ns - kRestNs;
     }
   }
   if (phase_ == Phase::kAsk) {
@@ -267,7 +267,7 @@ Progress ChecksStep::Advance(const Situation& now, const Wishes& wishes) {
   Progress progress;
   progress.prompt = "The devices are looked over; nothing to do.";
   if (since_ns_ == 0) since_ns_ = now.now_ns;
-  if (now.now_ns - since_ns_ < SecondsToNanoseconds(kCheckFor_s)) return progress;
+  if (now.now_ns - since_ns_ < SecondsToNanoseconds(kCheckForS)) return progress;
   for (const auto& device : Everything(now, wishes)) {
     const std::string wrong = WrongWith(device);
     progress.results.push_back(Outcome(Item::kChecks, device.serial, wrong.empty(),

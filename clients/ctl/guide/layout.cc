@@ -69,11 +69,11 @@ std::optional<stream::BoardLayout> LayoutNamed(const std::string& preset, double
   layout.gap_mm = gap_mm;
   const double gap_m = gap_mm * 1e-3;
   if (preset == "one_foot_each") {
-    layout.left = {0, (kBoardShort_m + gap_m) / 2, -kPi / 2};
-    layout.right = {0, -(kBoardShort_m + gap_m) / 2, kPi / 2};
+    layout.left = {0, (kBoardShortM + gap_m) / 2, -kPi / 2};
+    layout.right = {0, -(kBoardShortM + gap_m) / 2, kPi / 2};
   } else if (preset == "side_by_side") {
-    layout.left = {0, (kBoardLong_m + gap_m) / 2, 0};
-    layout.right = {0, -(kBoardLong_m + gap_m) / 2, 0};
+    layout.left = {0, (kBoardLongM + gap_m) / 2, 0};
+    layout.right = {0, -(kBoardLongM + gap_m) / 2, 0};
   } else if (preset == "single") {
     layout.gap_mm = 0;
   } else {
@@ -112,7 +112,7 @@ CombinedCop Combine(const stream::BoardLayout& layout, const Load* left, const L
   };
   add(layout.left, left);
   add(layout.right, right);
-  combined.valid = combined.total_n > kFree_n;
+  combined.valid = combined.total_n > kFreeN;
   if (combined.valid) {
     combined.at = {moment_x_nm / combined.total_n, moment_y_nm / combined.total_n};
   } else {
@@ -136,7 +136,7 @@ LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserve
           "roles again: footing-ctl setup --only roles";
       return verdict;
     }
-    if (left.left.mean_n < kStoodOn_n || right.right.mean_n < kStoodOn_n) {
+    if (left.left.mean_n < kStoodOnN || right.right.mean_n < kStoodOnN) {
       return NoContact("a board felt nobody: stand on it alone, then on the other");
     }
   }
@@ -146,11 +146,11 @@ LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserve
     return NoContact("a board had no centre of pressure while leaning: stand on all boards");
   }
   const auto wrong = [](const std::optional<WorldPoint>& moved) {
-    return moved && moved->x_m < std::max(kLeastLean_m, std::abs(moved->y_m));
+    return moved && moved->x_m < std::max(kLeastLeanM, std::abs(moved->y_m));
   };
   for (const auto& moved : {left, right}) {
-    if (moved && std::hypot(moved->x_m, moved->y_m) < kLeastLean_m) {
-      return NoContact("the centre of pressure moved by less than " + Text(kLeastLean_m * 1e3) +
+    if (moved && std::hypot(moved->x_m, moved->y_m) < kLeastLeanM) {
+      return NoContact("the centre of pressure moved by less than " + Text(kLeastLeanM * 1e3) +
                        " mm: lean further forward, heels down");
     }
     if (moved) verdict.residual_mm = std::max(verdict.residual_mm, std::abs(moved->y_m) * 1e3);

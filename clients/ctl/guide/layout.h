@@ -8,9 +8,9 @@
 
 namespace footing::guide {
 
-inline constexpr double kBoardLong_m = 0.511;  ///< Outer size of a Balance Board.
-inline constexpr double kBoardShort_m = 0.316;
-inline constexpr double kUsualGap_mm = 20;
+inline constexpr double kBoardLongM = 0.511;  ///< Outer size of a Balance Board.
+inline constexpr double kBoardShortM = 0.316;
+inline constexpr double kUsualGapMm = 20;
 
 /// Poses of the boards; the origin is midway between them.
 ///   one_foot_each  long axes fore and aft, power buttons outwards: left yaw -90 deg, right +90 deg
@@ -68,6 +68,6 @@ struct LayoutVerdict {
 /// Leaning forward must move each board's COP forward in W; standing left must load the left one.
 LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserved& observed);
 
-inline constexpr double kLeastLean_m = 0.015;  ///< Less movement than this is no lean.
+inline constexpr double kLeastLeanM = 0.015;  ///< Less movement than this is no lean.
 
 }  // namespace footing::guide

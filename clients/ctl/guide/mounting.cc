@@ -7,12 +7,12 @@
 namespace footing::guide {
 namespace {
 
-constexpr double kStill_mps2 = 0.8;     // A standing person's hands and shins stay under half.
-constexpr double kStepping_mps2 = 1.5;  // The slowest step shakes a shin or wrist more.
-constexpr std::int64_t kWindow_ns = 500'000'000;        // Of the shake that Advance is given.
-constexpr std::int64_t kStepsLeast_ns = 1'000'000'000;  // Three steps take longer.
-constexpr std::int64_t kStepsMost_ns = 12'000'000'000;
-constexpr std::int64_t kStandAgain_ns = 700'000'000;
+constexpr double kStillMps2 = 0.8;     // A standing person's hands and shins stay under half.
+constexpr double kSteppingMps2 = 1.5;  // The slowest step shakes a shin or wrist more.
+constexpr std::int64_t kWindowNs = 500'000'000;        // Of the shake that Advance is given.
+constexpr std::int64_t kStepsLeastNs = 1'000'000'000;  // Three steps take longer.
+constexpr std::int64_t kStepsMostNs = 12'000'000'000;
+constexpr std::int64_t kStandAgainNs = 700'000'000;
 
 constexpr const char* kShin = R"(
         the leg from its outside
@@ -100,44 +100,44 @@ std::string Wearing(stream::DeviceRole role) {
 
 double StillThenSteps::still_s(std::int64_t now_ns) const {
   if (still_from_ns_ == 0) return 0;
-  return std::clamp(NanosecondsToSeconds(now_ns - kWindow_ns - still_from_ns_), 0.0, kStillFor_s);
+  return std::clamp(NanosecondsToSeconds(now_ns - kWindowNs - still_from_ns_), 0.0, kStillForS);
 }
 
 void StillThenSteps::Advance(std::int64_t now_ns, double moving_mps2) {
   if (phase_ == Phase::kStill) {
-    if (moving_mps2 > kStill_mps2) {
+    if (moving_mps2 > kStillMps2) {
       still_from_ns_ = 0;
       return;
     }
     // The whole window that the shake is taken over was still.
-    if (still_from_ns_ == 0) still_from_ns_ = now_ns - kWindow_ns;
+    if (still_from_ns_ == 0) still_from_ns_ = now_ns - kWindowNs;
     // The newest window may hold the beginning of a movement: it belongs to the steps.
-    still_to_ns_ = now_ns - kWindow_ns;
-    if (NanosecondsToSeconds(still_to_ns_ - still_from_ns_) < kStillFor_s) return;
+    still_to_ns_ = now_ns - kWindowNs;
+    if (NanosecondsToSeconds(still_to_ns_ - still_from_ns_) < kStillForS) return;
     moved_first_ns_ = 0;
     phase_ = Phase::kSteps;
     return;
   }
   if (phase_ == Phase::kDone) return;
-  if (moving_mps2 > kStepping_mps2) {
+  if (moving_mps2 > kSteppingMps2) {
     if (moved_first_ns_ == 0) moved_first_ns_ = now_ns;
     moved_last_ns_ = now_ns;
   } else if (moved_first_ns_ == 0) {
     // Still standing: the newest stillness is the one that counts, up to the first movement.
-    if (moving_mps2 <= kStill_mps2) {
-      still_to_ns_ = now_ns - kWindow_ns;
+    if (moving_mps2 <= kStillMps2) {
+      still_to_ns_ = now_ns - kWindowNs;
       still_from_ns_ =
-          std::max(still_from_ns_, still_to_ns_ - SecondsToNanoseconds(2 * kStillFor_s));
+          std::max(still_from_ns_, still_to_ns_ - SecondsToNanoseconds(2 * kStillForS));
     }
     return;
   }
-  const bool stands_again = now_ns - moved_last_ns_ > kStandAgain_ns;
-  const bool took_steps = moved_last_ns_ - moved_first_ns_ > kStepsLeast_ns;
+  const bool stands_again = now_ns - moved_last_ns_ > kStandAgainNs;
+  const bool took_steps = moved_last_ns_ - moved_first_ns_ > kStepsLeastNs;
   if (stands_again && !took_steps) {  // A twitch.
     *this = StillThenSteps();
     return;
   }
-  if (stands_again || now_ns - moved_first_ns_ > kStepsMost_ns) {
+  if (stands_again || now_ns - moved_first_ns_ > kStepsMostNs) {
     steps_to_ns_ = now_ns;
     phase_ = Phase::kDone;
   }

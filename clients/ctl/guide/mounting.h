@@ -15,7 +15,7 @@ std::string Picture(stream::DeviceRole role);
 /// The same in a sentence.
 std::string Wearing(stream::DeviceRole role);
 
-inline constexpr double kStillFor_s = 2;
+inline constexpr double kStillForS = 2;
 
 /// What the worn devices show of "two seconds still, then three steps": where each stretch lies.
 /// The steps begin half a second before a movement shows, so that its very first way is among them.
@@ -29,7 +29,7 @@ class StillThenSteps {
   void Advance(std::int64_t now_ns, double moving_mps2);
 
   Phase phase() const { return phase_; }
-  /// Stillness so far, s; at most kStillFor_s counts.
+  /// Stillness so far, s; at most kStillForS counts.
   double still_s(std::int64_t now_ns) const;
   std::int64_t still_from_ns() const { return still_from_ns_; }
   std::int64_t still_to_ns() const { return still_to_ns_; }
@@ -46,6 +46,6 @@ class StillThenSteps {
 };
 
 /// A solved mounting is good up to this residual.
-inline constexpr double kMountingBar_deg = 15;
+inline constexpr double kMountingBarDeg = 15;
 
 }  // namespace footing::guide

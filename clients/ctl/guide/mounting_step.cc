@@ -6,8 +6,8 @@
 namespace footing::guide {
 namespace {
 
-constexpr std::int64_t kMoving_ns = 500'000'000;
-constexpr double kNotKnown_mps2 = 99;
+constexpr std::int64_t kMovingNs = 500'000'000;
+constexpr double kNotKnownMps2 = 99;
 
 std::string Tenths(double value) {
   const long tenths = std::lround(value * 10);
@@ -50,7 +50,7 @@ Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
   if (worn.empty()) return progress;
   for (const Answer& answer : now.answers) {
     if (!asked_ || !answer.key.starts_with("mounting ")) continue;
-    const bool passed = answer.ok && answer.residual <= kMountingBar_deg;
+    const bool passed = answer.ok && answer.residual <= kMountingBarDeg;
     std::string note = answer.message;
     if (answer.ok && !passed) note = "does not fit: fasten it tighter and take the steps again";
     results_.push_back(
@@ -64,8 +64,8 @@ Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
   double moving_mps2 = 0;
   for (const auto& device : worn) {
     const Motion motion =
-        now.recent->DeviceMotion(device.device, now.now_ns - kMoving_ns, now.now_ns);
-    moving_mps2 = std::max(moving_mps2, motion.samples == 0 ? kNotKnown_mps2 : motion.shake_mps2);
+        now.recent->DeviceMotion(device.device, now.now_ns - kMovingNs, now.now_ns);
+    moving_mps2 = std::max(moving_mps2, motion.samples == 0 ? kNotKnownMps2 : motion.shake_mps2);
   }
   stretches_.Advance(now.now_ns, moving_mps2);
   progress.feedback = "moves by " + Tenths(moving_mps2) + " m/s2";

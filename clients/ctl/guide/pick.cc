@@ -27,8 +27,8 @@ Pick WhichBoard(const std::vector<BoardLoad>& boards) {
       next_n = std::max(next_n, force_n);
     }
   }
-  if (most_n < kStoodOn_n) return {Pick::Kind::kNone, 0, 0, "no board is stood on"};
-  if (next_n > kFree_n) {
+  if (most_n < kStoodOnN) return {Pick::Kind::kNone, 0, 0, "no board is stood on"};
+  if (next_n > kFreeN) {
     return {Pick::Kind::kAmbiguous, 0, most_n / next_n,
             "two boards carry load (" + Rounded(most_n) + " N and " + Rounded(next_n) +
                 " N): stand on one alone"};
@@ -54,7 +54,7 @@ Pick WhichShaken(const std::vector<DeviceMotion>& devices) {
       next = std::max(next, shake);
     }
   }
-  if (most < kShaken_mps2) return {Pick::Kind::kNone, 0, 0, "nothing is shaken"};
+  if (most < kShakenMps2) return {Pick::Kind::kNone, 0, 0, "nothing is shaken"};
   if (most < kClearlyMore * next) {
     return {Pick::Kind::kAmbiguous, 0, most / next,
             "two devices move (" + Rounded(most) + " and " + Rounded(next) +

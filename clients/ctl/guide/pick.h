@@ -27,9 +27,9 @@ struct DeviceMotion {
   Motion motion;
 };
 
-inline constexpr double kStoodOn_n = 100;    ///< 10 kg: somebody stands on it.
-inline constexpr double kFree_n = 49;        ///< 5 kg: nobody does (the plate's own threshold).
-inline constexpr double kShaken_mps2 = 4;    ///< A deliberate shake, four times a slow gesture.
+inline constexpr double kStoodOnN = 100;     ///< 10 kg: somebody stands on it.
+inline constexpr double kFreeN = 49;         ///< 5 kg: nobody does (the plate's own threshold).
+inline constexpr double kShakenMps2 = 4;     ///< A deliberate shake, four times a slow gesture.
 inline constexpr double kClearlyMore = 2.5;  ///< Ratio of the shaken device to every other.
 
 /// The one board that is stood on while every other is free.

@@ -6,7 +6,7 @@
 namespace footing::guide {
 namespace {
 
-constexpr std::int64_t kKept_ns = 30'000'000'000;
+constexpr std::int64_t kKeptNs = 30'000'000'000;
 // Taken from the front in one go, so that forgetting costs nothing a sample.
 constexpr std::size_t kForgetAtOnce = 1024;
 
@@ -15,7 +15,7 @@ void Keep(std::vector<Sample>& kept, const Sample& sample) {
   kept.push_back(sample);
   if (kept.size() % kForgetAtOnce != 0) return;
   const auto old = std::find_if(kept.begin(), kept.end(), [&](const Sample& one) {
-    return sample.received_ns - one.received_ns <= kKept_ns;
+    return sample.received_ns - one.received_ns <= kKeptNs;
   });
   kept.erase(kept.begin(), old);
 }

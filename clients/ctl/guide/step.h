@@ -21,7 +21,7 @@ const std::vector<Item>& AllItems();
 struct Wishes {
   std::string rig = "main";
   std::string preset;  ///< Empty: the rig's own layout, else one_foot_each (or single).
-  double gap_mm = kNoGap_mm;
+  double gap_mm = kNoGapMm;
   /// What the hand devices are worn as, each once; empty: as their roles are now.
   std::vector<stream::DeviceRole> worn;
   std::optional<double> mass_kg;
@@ -29,7 +29,7 @@ struct Wishes {
   double settle_s = 4;     ///< No new device for so long: all are there.
   int tries = 2;
 
-  static constexpr double kNoGap_mm = -1;  ///< The usual one.
+  static constexpr double kNoGapMm = -1;  ///< The usual one.
 };
 
 /// Something that footingd is asked to do. Its answer comes back under the same key.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kQuiet = 0.015;
 constexpr double kAgree = 0.03;
-constexpr double kAgreeLeast_kg = 2;
+constexpr double kAgreeLeastKg = 2;
 
 std::string Kilograms(double mass_kg) {
   const long tenths = std::lround(mass_kg * 10);
@@ -33,7 +33,7 @@ Weight Weigh(const std::vector<Load>& boards, std::optional<double> given_kg) {
   }
   weight.mass_kg = NewtonsToKilograms(total_n);
   weight.sd_kg = NewtonsToKilograms(worst_n);
-  if (weight.mass_kg < kLeastMass_kg) {
+  if (weight.mass_kg < kLeastMassKg) {
     weight.note = "nobody is on the boards";
     return weight;
   }
@@ -42,14 +42,14 @@ Weight Weigh(const std::vector<Load>& boards, std::optional<double> given_kg) {
     return weight;
   }
   weight.done = true;
-  if (weight.mass_kg > kMostMass_kg) {
+  if (weight.mass_kg > kMostMassKg) {
     weight.note = Kilograms(weight.mass_kg) + " is more than a person: tare the empty boards again";
     return weight;
   }
   weight.passed = true;
   weight.note = Kilograms(weight.mass_kg);
   if (given_kg &&
-      std::abs(weight.mass_kg - *given_kg) > std::max(kAgreeLeast_kg, kAgree * *given_kg)) {
+      std::abs(weight.mass_kg - *given_kg) > std::max(kAgreeLeastKg, kAgree * *given_kg)) {
     weight.passed = false;
     weight.note += " measured, " + Kilograms(*given_kg) +
                    " given: tare the empty boards again, stand with both feet on them";

@@ -8,9 +8,9 @@
 
 namespace footing::guide {
 
-inline constexpr double kWeighFor_s = 3;
-inline constexpr double kLeastMass_kg = 10;
-inline constexpr double kMostMass_kg = 200;
+inline constexpr double kWeighForS = 3;
+inline constexpr double kLeastMassKg = 10;
+inline constexpr double kMostMassKg = 200;
 
 struct Weight {
   bool done = false;    ///< Quiet enough and plausible; else wait, or say what `note` says.
@@ -20,7 +20,7 @@ struct Weight {
   std::string note;
 };
 
-/// The person on all boards together, standing still for kWeighFor_s. Quiet is a standard deviation
+/// The person on all boards together, standing still for kWeighForS. Quiet is a standard deviation
 /// under 1.5 % of the weight: standing people sway by 0.4 % (0.18 kg of 46 kg on a real board).
 Weight Weigh(const std::vector<Load>& boards, std::optional<double> given_kg);
 

@@ -21,9 +21,9 @@ constexpr Quantile kPoor[] = {{0, 1},     {0.01, 1},  {0.05, 2},  {0.25, 7},    
 /// The recordings' own rate on a good link: intervals scale by this over the nominal rate.
 constexpr double kRecordedGoodHz = 83.6;
 constexpr double kOutagesPerSecond = 1.0 / 120;
-constexpr double kOutageMeanSeconds = 1;
-constexpr double kOutageMinSeconds = 0.1;
-constexpr double kOutageMaxSeconds = 20;
+constexpr double kOutageMeanS = 1;
+constexpr double kOutageMinS = 0.1;
+constexpr double kOutageMaxS = 20;
 
 template <std::size_t N>
 double AtProbability(const Quantile (&table)[N], double probability) {
@@ -65,8 +65,8 @@ double LinkModel::DrawInterval() {
 
 double LinkModel::DrawOutage(double interval_s) {
   if (random_.Uniform() >= kOutagesPerSecond * interval_s) return 0;
-  const double length_s = -kOutageMeanSeconds * std::log1p(-random_.Uniform());
-  return std::clamp(length_s, kOutageMinSeconds, kOutageMaxSeconds);
+  const double length_s = -kOutageMeanS * std::log1p(-random_.Uniform());
+  return std::clamp(length_s, kOutageMinS, kOutageMaxS);
 }
 
 LinkModel::Arrival LinkModel::Next() {

@@ -16,12 +16,12 @@ constexpr int kReaders = 20;
 constexpr int kTicks = 1000;
 constexpr std::int64_t kIntervalNs = 1'000'000;
 // Short, so that ring and queues are full before the first run that counts.
-constexpr double kRingSeconds = 0.5;
+constexpr double kRingS = 0.5;
 constexpr std::uint32_t kQueueTicks = 512;
 constexpr double kMemoryBarMegabytes = 2;
 
 transport::ServerOptions CrowdOptions() {
-  transport::ServerOptions options = ServerOptionsFor(1e9 / kIntervalNs, kRingSeconds);
+  transport::ServerOptions options = ServerOptionsFor(1e9 / kIntervalNs, kRingS);
   options.max_queue_ticks = kQueueTicks;
   return options;
 }

@@ -42,7 +42,7 @@ template <typename Sample>
 double LongestInterval(const std::vector<Sample>& samples) {
   std::vector<CopSample> times(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) times[i].time_s = samples[i].time_s;
-  return std::max(kLongestInterval_s, 5 * MedianInterval({times}));
+  return std::max(kLongestIntervalS, 5 * MedianInterval({times}));
 }
 
 }  // namespace

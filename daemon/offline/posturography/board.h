@@ -33,13 +33,13 @@ struct Standing {
 };
 
 /// Longest interval of samples that is no gap.
-inline constexpr double kLongestInterval_s = 0.5;
+inline constexpr double kLongestIntervalS = 0.5;
 
 /// Centre of pressure in the plate frame: x = dx/2 ((TR + BR) - (TL + BL)) / F and
 /// y = dy/2 ((TL + TR) - (BL + BR)) / F, F the sum of all. Times must not decrease.
 Standing FindStanding(const std::vector<CornerSample>& samples, const BoardShape& shape);
 
-/// Cuts samples into stretches at gaps: intervals above kLongestInterval_s and 5 median ones.
+/// Cuts samples into stretches at gaps: intervals above kLongestIntervalS and 5 median ones.
 Stretches SplitAtGaps(const std::vector<CopSample>& samples);
 
 }  // namespace footing::posturography

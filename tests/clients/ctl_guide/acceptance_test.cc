@@ -8,7 +8,7 @@
 namespace footing::guide {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 stream::DeviceStatus Device(std::uint32_t device, stream::DeviceKind kind,
                             stream::DeviceRole role) {
@@ -42,11 +42,11 @@ struct Minute {
 
   std::vector<Check> Run() {
     Acceptance acceptance("main", *LayoutNamed("one_foot_each", 20));
-    std::int64_t now_ns = 5 * kSecond_ns;
+    std::int64_t now_ns = 5 * kSecondNs;
     for (const Planned& planned : PlanOf(1, true, true)) {
       acceptance.Begin(planned.phase, now_ns);
       const int ticks = static_cast<int>(planned.duration_s * 100);
-      for (int i = 0; i < ticks; ++i, now_ns += kSecond_ns / 100) {
+      for (int i = 0; i < ticks; ++i, now_ns += kSecondNs / 100) {
         Tick(acceptance, planned.phase, i, ticks, now_ns);
       }
     }

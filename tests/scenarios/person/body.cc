@@ -9,18 +9,18 @@
 namespace footing::scenario {
 namespace {
 
-constexpr double kWeight_n = 70 * kStandardGravityMps2;
-constexpr double kLean_m = 0.05;
-constexpr double kFollow_s = 0.1;
-constexpr double kHalfX_m = 0.433 / 2;  // Sensor distances of the board.
-constexpr double kHalfY_m = 0.238 / 2;
+constexpr double kWeightN = 70 * kStandardGravityMps2;
+constexpr double kLeanM = 0.05;
+constexpr double kFollowS = 0.1;
+constexpr double kHalfXM = 0.433 / 2;  // Sensor distances of the board.
+constexpr double kHalfYM = 0.238 / 2;
 // One foot on each: long axes fore and aft, power buttons outwards.
-constexpr double kYaw_rad[2] = {-kPi / 2, kPi / 2};
-constexpr double kTremor_mps2 = 0.05;
-constexpr double kSway_m = 0.002;
-constexpr double kOvertone = 0.25;   // Without it half a period would look like a whole one.
-constexpr double kRattle_rad = 0.5;  // How far a loose strap turns about the limb, to and fro.
-constexpr double kRattle_hz = 0.35;  // Slow, so that two parts of three steps differ.
+constexpr double kYawRad[2] = {-kPi / 2, kPi / 2};
+constexpr double kTremorMps2 = 0.05;
+constexpr double kSwayM = 0.002;
+constexpr double kOvertone = 0.25;  // Without it half a period would look like a whole one.
+constexpr double kRattleRad = 0.5;  // How far a loose strap turns about the limb, to and fro.
+constexpr double kRattleHz = 0.35;  // Slow, so that two parts of three steps differ.
 const Eigen::Vector3d kSwing_M = Eigen::Vector3d(0, 0.6, 0.8);
 
 /// How the straps sit in truth: f_S = this * f_M.
@@ -30,7 +30,7 @@ Eigen::Quaterniond Askew(int limb) {
 }
 
 double Follow(double value, double target, double elapsed_s) {
-  return target + (value - target) * std::exp(-elapsed_s / kFollow_s);
+  return target + (value - target) * std::exp(-elapsed_s / kFollowS);
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ bool Body::Tell(const std::string& line) {
     stance_ = verb;
     lean_m_ = 0;
   } else if (verb == "lean") {
-    lean_m_ = kLean_m;
+    lean_m_ = kLeanM;
   } else if (verb == "still") {
     both({});
   } else if (verb == "shake") {
@@ -96,12 +96,12 @@ virtual_devices::CornerForces Body::Board(int board, double t_s) {
   const int place = swapped_ ? 1 - board : board;
   share_[i] = Follow(share_[i], Share(place), elapsed_s);
   leaning_m_[i] = Follow(leaning_m_[i], lean_m_, elapsed_s);
-  const double yaw_rad = kYaw_rad[place] + (turned_[i] ? kPi : 0);
-  const double forward_m = leaning_m_[i] + kSway_m * std::sin(2 * kPi * 0.7 * t_s);
+  const double yaw_rad = kYawRad[place] + (turned_[i] ? kPi : 0);
+  const double forward_m = leaning_m_[i] + kSwayM * std::sin(2 * kPi * 0.7 * t_s);
   // In the plate's frame: x to the right, y to the front; yaw turns the front away from forward.
-  const double x = forward_m * std::sin(yaw_rad) / kHalfX_m;
-  const double y = forward_m * std::cos(yaw_rad) / kHalfY_m;
-  const double quarter_n = (share_[i] * kWeight_n + 0.5 * random_.Normal()) / 4;
+  const double x = forward_m * std::sin(yaw_rad) / kHalfXM;
+  const double y = forward_m * std::cos(yaw_rad) / kHalfYM;
+  const double quarter_n = (share_[i] * kWeightN + 0.5 * random_.Normal()) / 4;
   return {quarter_n * (1 - x) * (1 + y), quarter_n * (1 + x) * (1 + y),
           quarter_n * (1 - x) * (1 - y), quarter_n * (1 + x) * (1 - y)};
 }
@@ -125,10 +125,10 @@ Eigen::Vector3d Body::Limb(int limb, double t_s) {
   swinging_s_[i] += elapsed_s;
   Eigen::Vector3d force_M = Eigen::Vector3d(0, 0, -kStandardGravityMps2) +
                             swing_[i].amplitude_mps2 * Wave(limb) * kSwing_M;
-  for (int axis = 0; axis < 3; ++axis) force_M[axis] += kTremor_mps2 * random_.Normal();
+  for (int axis = 0; axis < 3; ++axis) force_M[axis] += kTremorMps2 * random_.Normal();
   double about_limb_rad = strap_[i].slip_rad;
   if (strap_[i].loose && swing_[i].amplitude_mps2 > 0) {
-    about_limb_rad += kRattle_rad * std::sin(2 * kPi * kRattle_hz * swinging_s_[i]);
+    about_limb_rad += kRattleRad * std::sin(2 * kPi * kRattleHz * swinging_s_[i]);
   }
   return Askew(limb) * (Eigen::AngleAxisd(about_limb_rad, Eigen::Vector3d::UnitZ()) * force_M);
 }
