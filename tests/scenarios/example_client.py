@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""docs/examples/client.py against a live footingd: controllers, boards, and a server that is not there.
+
+Usage: example_client.py BINARY_FOLDER
+"""
+import pathlib
+import subprocess
+import sys
+
+from harness import Stage
+
+CLIENT = pathlib.Path(__file__).resolve().parents[2] / "docs/examples/client.py"
+
+
+def client(address, *words):
+    return subprocess.run([sys.executable, "-B", CLIENT, address, *words], capture_output=True,
+                          text=True, timeout=60, check=False)
+
+
+def rows_of(stage, samples):
+    done = client(stage.sensor, "--samples", str(samples))
+    assert done.returncode == 0, done.stderr
+    rows = [line.split(",") for line in done.stdout.splitlines()]
+    assert len(rows) == samples, f"{len(rows)} rows of {samples}"
+    assert all(len(row) == 6 for row in rows), rows[:3]
+    return rows
+
+
+def main():
+    with Stage(sys.argv[1]) as stage:
+        absent = client(stage.sensor)
+        assert absent.returncode == 1 and "error:" in absent.stderr, absent
+
+        stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
+        stage.wait_for_socket(stage.sensor)
+        stage.wait_for_socket(stage.devices)
+        stage.start_user("demo")
+        rows = rows_of(stage, 200)
+        assert len({row[1] for row in rows}) == 2, "the serials of two controllers"
+        assert {row[2] for row in rows} == {"force_mps2"}
+        times = [float(row[0]) for row in rows if row[1] == rows[0][1]]
+        assert times == sorted(times), "the samples of a device are in order"
+        stage.stop("footing-stream")
+
+        stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "none",
+                    "--to", stage.devices, name="boards")
+        rows = rows_of(stage, 200)
+        boards = [row for row in rows if row[2] == "cop_n_m_m"]
+        assert boards, "no board row"
+        assert all(float(row[3]) > 40 and abs(float(row[4])) < 0.3 for row in boards), boards[:3]
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
