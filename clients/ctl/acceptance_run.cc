@@ -16,7 +16,7 @@
 namespace footing::ctl {
 namespace {
 
-constexpr double kStepS = 0.05;
+constexpr double kAcceptanceStepS = 0.05;
 constexpr double kRumbleEveryS = 1;
 constexpr std::uint32_t kRumbleLeaseMs = 600;
 constexpr double kLedEveryS = 0.8;  // Status comes once a second at the slowest.
@@ -86,7 +86,7 @@ class Run {
       next_ = planned.phase;
       double left_s = planned.duration_s;
       for (std::int64_t before_ns = clock::MonotonicNs(); left_s > 0 && kept_;) {
-        if (session_.RunFor(std::min(kStepS, left_s)) == Waited::kInterrupted) {
+        if (session_.RunFor(std::min(kAcceptanceStepS, left_s)) == Waited::kInterrupted) {
           kept_ = Failure("stopped before the verdict; " + writer_.path() + " has no end");
         }
         actuators.Drive(session_, options_.rig, planned.phase, session_.server_ns());
@@ -97,7 +97,7 @@ class Run {
       }
     }
     ending_ = true;
-    session_.RunFor(2 * kStepS);  // One more tick, at which the last phase ends.
+    session_.RunFor(2 * kAcceptanceStepS);  // One more tick, at which the last phase ends.
     session_.set_on_tick({});
     actuators.Restore(session_, options_.rig);
     return Finish();

@@ -14,7 +14,7 @@
 namespace footing::ctl {
 namespace {
 
-constexpr double kStepS = 0.05;
+constexpr double kGuideStepS = 0.05;
 constexpr double kSolveWithinS = 10;
 constexpr double kFarewellS = 3;  // Without a tick for so long: footingd is gone.
 
@@ -167,8 +167,8 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session, const guide::
   double silent_s = 0;
   Result<void> outcome;
   for (bool finished = false; !finished && outcome;) {
-    if (session.RunFor(kStepS) == Waited::kInterrupted) outcome = Failure("stopped");
-    silent_s = session.server_ns() == last_ns ? silent_s + kStepS : 0;
+    if (session.RunFor(kGuideStepS) == Waited::kInterrupted) outcome = Failure("stopped");
+    silent_s = session.server_ns() == last_ns ? silent_s + kGuideStepS : 0;
     last_ns = session.server_ns();
     if (silent_s > kFarewellS) outcome = NoDevice("footingd is gone: " + session.link());
     if (!outcome || silent_s > 0) continue;

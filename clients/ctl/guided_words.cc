@@ -21,7 +21,7 @@ std::string Date(std::int64_t wall_time_ns) {
   return text;
 }
 
-std::string Rounded(double value) {
+std::string RoundedText(double value) {
   const double rounded = std::round(value * 100) / 100;
   return ordered_json(rounded).dump();
 }
@@ -38,7 +38,7 @@ std::string ToText(const stream::SetupItem& item) {
   std::string text = item.name;
   if (!item.serial.empty()) text += " " + item.serial;
   text += item.passed ? (item.stale ? ": stale" : ": ok") : ": FAILED";
-  if (!item.unit.empty()) text += ", " + Rounded(item.residual) + " " + item.unit;
+  if (!item.unit.empty()) text += ", " + RoundedText(item.residual) + " " + item.unit;
   if (!item.note.empty()) text += ", " + item.note;
   return text;
 }

@@ -37,7 +37,7 @@ bool IsPath(const std::string& motion) {
   return false;
 }
 
-Result<choreography::Script> ReadScript(const std::string& motion) {
+Result<choreography::Script> ReadChoreography(const std::string& motion) {
   if (!IsPath(motion)) {
     auto script = choreography::Carried(motion);
     if (script) return script;
@@ -50,7 +50,7 @@ Result<choreography::Script> ReadScript(const std::string& motion) {
 }
 
 Result<sensors::Scene> PerformScript(const StageOptions& options) {
-  const auto script = ReadScript(options.motion);
+  const auto script = ReadChoreography(options.motion);
   if (!script) return script.error();
   const auto body = choreography::Performer(options.height_m, options.mass_kg);
   if (!body) return body.error();

@@ -13,7 +13,7 @@ namespace {
 
 namespace sensors = virtual_sensors;
 
-constexpr double kRateHz = 100;
+constexpr double kInsoleRateHz = 100;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ Telling TellInsole(std::shared_ptr<const Stage> stage, std::size_t foot, const I
   for (double& gain : gains) gain = 1 + errors.gain_spread * random.Normal();
   const double noise_n = KilogramsToNewtons(errors.noise_kg);
   Telling telling;
-  telling.rate_hz = kRateHz;
+  telling.rate_hz = kInsoleRateHz;
   telling.contacts = [=](double t_s) mutable {
     const Stage::Instant at = stage->At(t_s);
     const sensors::SolePlace sole =

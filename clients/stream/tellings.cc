@@ -12,7 +12,7 @@
 namespace footing::stream_client {
 namespace {
 
-constexpr double kRateHz = 60;
+constexpr double kTruthRateHz = 60;
 constexpr std::size_t kMostJoints = 64;  // Of a reference frame.
 constexpr double kLeastSdM = 0.001;      // Nobody's tracker is exact.
 
@@ -69,7 +69,7 @@ stream::HandFrame Fists(const Stage& stage, const char* tracker, double sd_m, do
 
 Telling TellHands(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed) {
   Telling telling;
-  telling.rate_hz = kRateHz;
+  telling.rate_hz = kTruthRateHz;
   telling.hands = [stage, noise_m, random = noise::Random(seed)](double t_s) mutable {
     stream::HandFrame frame = Fists(*stage, "move", std::max(noise_m, kLeastSdM), t_s);
     for (stream::TrackedPoint& point : frame.points)
@@ -103,7 +103,7 @@ Telling TellPose(std::shared_ptr<const Stage> stage) {
     parents.push_back(found == joints.end() ? -1 : static_cast<int>(found - joints.begin()));
   }
   Telling telling;
-  telling.rate_hz = kRateHz;
+  telling.rate_hz = kTruthRateHz;
   telling.reference = [stage, joints, parents](double t_s) {
     const body::Kinematics at = KinematicsAt(*stage, t_s);
     stream::ReferenceFrame frame;

@@ -9,6 +9,9 @@
 
 namespace footing::transport {
 
+/// Of a command that states none.
+inline constexpr std::uint32_t kDefaultDeadlineMs = 1000;
+
 /// The answers to a session's last commands, so that a repeated id gets its first answer again.
 class Answers {
  public:

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/transport/answers.h"
 #include "common/transport/backoff.h"
 #include "common/transport/clock_offset.h"
 #include "common/transport/framed_connection.h"
@@ -19,7 +20,6 @@
 namespace footing::transport {
 namespace {
 
-constexpr std::uint32_t kDefaultDeadlineMs = 1000;
 constexpr std::size_t kMaxWaitingCommands = 64;
 /// Enough for a tick of eight devices; a longer message takes more from the heap.
 constexpr std::size_t kArenaBytes = 32 << 10;

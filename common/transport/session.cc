@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t kMaxQueuedAnswers = 64;
 constexpr std::size_t kRememberedAnswers = 256;
-constexpr std::uint32_t kDefaultDeadlineMs = 1000;
 
 FramedLimits LimitsOf(const ServerOptions& options) {
   FramedLimits limits;

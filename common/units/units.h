@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 
@@ -26,6 +27,8 @@ constexpr std::int64_t SecondsToNanoseconds(double seconds) {
 constexpr double NanosecondsToSeconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }
+
+inline double FiniteOrZero(double value) { return std::isfinite(value) ? value : 0; }
 
 /// The same angle in (-pi, pi]. `radians` must be finite.
 double WrapAngle(double radians);

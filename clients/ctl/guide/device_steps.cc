@@ -21,7 +21,7 @@ std::vector<stream::DeviceStatus> Everything(const Situation& now, const Wishes&
   return all;
 }
 
-bool IsBoard(stream::DeviceRole role) {
+bool IsBoardRole(stream::DeviceRole role) {
   return role == stream::DeviceRole::kLeftBoard || role == stream::DeviceRole::kRightBoard;
 }
 
@@ -174,7 +174,7 @@ Progress RolesStep::Ask(const Situation& now, const Wishes& wishes) {
   Progress progress;
   const stream::DeviceRole role = wanted_.front();
   const auto devices =
-      IsBoard(role) ? now.recent->Boards(wishes.rig) : now.recent->Worn(wishes.rig);
+      IsBoardRole(role) ? now.recent->Boards(wishes.rig) : now.recent->Worn(wishes.rig);
   if (alone_.count(role) > 0 && devices.size() == 1) {
     Pick only;
     only.note = ", the only one of its kind";
@@ -183,7 +183,7 @@ Progress RolesStep::Ask(const Situation& now, const Wishes& wishes) {
   const std::int64_t from_ns = std::max(now.now_ns - kGestureNs, rest_since_ns_);
   if (now.now_ns - from_ns < kGestureNs) return progress;
   Pick pick;
-  if (IsBoard(role)) {
+  if (IsBoardRole(role)) {
     std::vector<BoardLoad> loads;
     for (const auto& device : devices) {
       loads.push_back({device.device, now.recent->BoardLoad(device.device, from_ns, now.now_ns)});
@@ -237,7 +237,7 @@ Progress RolesStep::Advance(const Situation& now, const Wishes& wishes) {
     const stream::DeviceRole role = wanted_.front();
     progress = Ask(now, wishes);
     if (alone_.count(role) == 0) {
-      progress.prompt = (IsBoard(role) ? "Step on " : "Shake ") + Spoken(role) + " now.";
+      progress.prompt = (IsBoardRole(role) ? "Step on " : "Shake ") + Spoken(role) + " now.";
     }
   }
   if (phase_ == Phase::kEnd) {

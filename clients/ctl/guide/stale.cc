@@ -13,7 +13,7 @@ const stream::SetupItem* Find(const std::vector<stream::SetupItem>& items, Item 
   return nullptr;
 }
 
-bool IsBoard(const stream::DeviceStatus& device) {
+bool IsBalanceBoard(const stream::DeviceStatus& device) {
   return device.kind == stream::DeviceKind::kBalanceBoard;
 }
 
@@ -23,7 +23,7 @@ std::string Contradiction(const stream::SetupItem& item,
                           const std::vector<stream::DeviceStatus>& devices) {
   if (item.name == Name(Item::kLayout)) {
     for (const auto& device : devices) {
-      if (!IsBoard(device)) continue;
+      if (!IsBalanceBoard(device)) continue;
       if (device.moved) return "a board was moved";
       const auto* roles = Find(items, Item::kRoles, device.serial);
       if (roles != nullptr && roles->wall_time_ns > item.wall_time_ns) {
@@ -100,10 +100,10 @@ bool Ready(const std::vector<stream::SetupItem>& items,
   for (const auto& device : rig_devices) {
     if (device.state == stream::DeviceState::kLost) continue;
     any = true;
-    boards = boards || IsBoard(device);
+    boards = boards || IsBalanceBoard(device);
     need(Item::kPairing, device.serial);
     need(Item::kRoles, device.serial);
-    if (IsBoard(device)) need(Item::kTare, device.serial);
+    if (IsBalanceBoard(device)) need(Item::kTare, device.serial);
     if (NeedsMounting(device.role)) need(Item::kMounting, device.serial);
     need(Item::kChecks, device.serial);
   }

@@ -8,7 +8,7 @@ namespace footing::scene {
 namespace {
 
 constexpr std::int64_t kKeptNs = 3 * kNanosecondsPerSecond / 2;
-constexpr std::size_t kMaxFrames = 512;
+constexpr std::size_t kMaxPlayoutFrames = 512;
 
 Eigen::Vector3d Mix(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double share) {
   return a + share * (b - a);
@@ -52,7 +52,8 @@ void Playout::Push(WorldFrame frame, std::int64_t received_ns) {
   if (!frames_.empty() && frame.time_s < frames_.back().frame.time_s) frames_.clear();
   if (!frames_.empty() && frame.time_s == frames_.back().frame.time_s) return;
   frames_.push_back({std::move(frame), received_ns});
-  while (frames_.size() > kMaxFrames || frames_.front().received_ns < received_ns - kKeptNs) {
+  while (frames_.size() > kMaxPlayoutFrames ||
+         frames_.front().received_ns < received_ns - kKeptNs) {
     frames_.pop_front();
   }
 }

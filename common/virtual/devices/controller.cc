@@ -5,28 +5,28 @@
 namespace footing::virtual_devices {
 namespace {
 
-constexpr std::size_t kPieceBytes = 16;
+constexpr std::size_t kMemoryPieceBytes = 16;
 constexpr std::uint8_t kErrorNoSuchMode = 3;
 
 /// Lengths of the output reports, id byte included, from 0x10 on; 0 is no such report.
 constexpr std::uint8_t kOutputBytes[] = {2, 2, 3, 2, 2, 2, 22, 7, 22, 2, 2};
 
 /// Payload of each data report: what follows the id, from left to right.
-struct Layout {
+struct ReportLayout {
   std::uint8_t id;
   bool buttons;
   bool acceleration;
   std::uint8_t camera;  ///< Bytes.
   std::uint8_t extension;
 };
-constexpr Layout kLayouts[] = {
+constexpr ReportLayout kReportLayouts[] = {
     {0x30, true, false, 0, 0},  {0x31, true, true, 0, 0},   {0x32, true, false, 0, 8},
     {0x33, true, true, 12, 0},  {0x34, true, false, 0, 19}, {0x35, true, true, 0, 16},
     {0x36, true, false, 10, 9}, {0x37, true, true, 10, 6},  {0x3d, false, false, 0, 21},
 };
 
-const Layout* FindLayout(std::uint8_t id) {
-  for (const Layout& layout : kLayouts) {
+const ReportLayout* FindLayout(std::uint8_t id) {
+  for (const ReportLayout& layout : kReportLayouts) {
     if (layout.id == id) return &layout;
   }
   return nullptr;
@@ -75,7 +75,7 @@ std::uint32_t Address(std::span<const std::uint8_t> report) {
 }  // namespace
 
 bool CarriesExtension(std::uint8_t mode) {
-  const Layout* layout = FindLayout(mode);
+  const ReportLayout* layout = FindLayout(mode);
   return layout != nullptr && layout->extension > 0;
 }
 
@@ -119,7 +119,7 @@ void Controller::AnswerMode(std::span<const std::uint8_t> report, std::vector<Re
 
 void Controller::AnswerWrite(std::span<const std::uint8_t> report, std::vector<Report>& answers) {
   const std::size_t size = report[5];
-  if (size == 0 || size > kPieceBytes) {
+  if (size == 0 || size > kMemoryPieceBytes) {
     answers.push_back(Acknowledge(0x16, kMemoryBeyond));
     return;
   }
@@ -134,7 +134,7 @@ void Controller::AnswerRead(std::span<const std::uint8_t> report,
   std::uint32_t address = Address(report);
   std::size_t left = static_cast<std::size_t>(report[5] << 8 | report[6]);
   while (left > 0) {
-    const std::size_t size = std::min(left, kPieceBytes);
+    const std::size_t size = std::min(left, kMemoryPieceBytes);
     Report piece(22, 0);
     piece[0] = 0x21;
     piece[1] = static_cast<std::uint8_t>(buttons_ >> 8);
@@ -143,7 +143,7 @@ void Controller::AnswerRead(std::span<const std::uint8_t> report,
     piece[5] = static_cast<std::uint8_t>(address);
     const std::uint8_t error =
         memory_.Read(registers, address, std::span<std::uint8_t>(piece).subspan(6, size));
-    const std::size_t said = error == kMemoryOk ? size : kPieceBytes;
+    const std::size_t said = error == kMemoryOk ? size : kMemoryPieceBytes;
     piece[3] = static_cast<std::uint8_t>((said - 1) << 4 | error);
     answers.push_back(std::move(piece));
     if (error != kMemoryOk) return;
@@ -155,7 +155,7 @@ void Controller::AnswerRead(std::span<const std::uint8_t> report,
 std::optional<Report> Controller::DataReport(const Readings& readings) {
   buttons_ = readings.buttons;
   if (Interleaved(mode_)) return InterleavedReport(readings);
-  const Layout* layout = FindLayout(mode_);
+  const ReportLayout* layout = FindLayout(mode_);
   if (layout == nullptr) return std::nullopt;
   Report report = {layout->id};
   const auto& counts = readings.acceleration_counts;

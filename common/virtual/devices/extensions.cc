@@ -16,12 +16,6 @@ constexpr std::size_t kPageBytes = 256;
 constexpr std::size_t kBlockAt = 0x20;
 constexpr std::size_t kIdentityAt = 0xfa;
 
-double Finite(double value) { return std::isfinite(value) ? value : 0; }
-
-int Integer(noise::Random& random, int low, int high) {
-  return low + static_cast<int>(random.Uniform() * (high - low + 1));
-}
-
 std::vector<std::uint8_t> Page(std::span<const std::uint8_t> block, const ExtensionBytes& id) {
   std::vector<std::uint8_t> page(kPageBytes, 0);
   std::copy(block.begin(), block.end(), page.begin() + kBlockAt);
@@ -35,7 +29,7 @@ int TenBits(const NunchukBlock& block, std::size_t at, std::size_t axis) {
 }
 
 std::uint8_t StickByte(double deflection, int highest, int lowest, int middle) {
-  const double share = std::clamp(Finite(deflection), -1.0, 1.0);
+  const double share = std::clamp(FiniteOrZero(deflection), -1.0, 1.0);
   const double way = share < 0 ? middle - lowest : highest - middle;
   return static_cast<std::uint8_t>(std::clamp(std::round(middle + share * way), 0.0, 255.0));
 }
@@ -64,8 +58,8 @@ NunchukBlock DrawNunchukBlock(std::uint64_t seed) {
   noise::Random random(seed);
   NunchukBlock block{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int zero = Integer(random, 490, 520);
-    const int one_g = zero + Integer(random, 196, 210);
+    const int zero = random.Integer(490, 520);
+    const int one_g = zero + random.Integer(196, 210);
     const std::size_t shift = 4 - 2 * axis;
     block[axis] = static_cast<std::uint8_t>(zero >> 2);
     block[3] = static_cast<std::uint8_t>(block[3] | (zero & 3) << shift);
@@ -73,9 +67,9 @@ NunchukBlock DrawNunchukBlock(std::uint64_t seed) {
     block[7] = static_cast<std::uint8_t>(block[7] | (one_g & 3) << shift);
   }
   for (const std::size_t at : {8u, 11u}) {
-    block[at] = static_cast<std::uint8_t>(Integer(random, 220, 232));
-    block[at + 1] = static_cast<std::uint8_t>(Integer(random, 28, 38));
-    block[at + 2] = static_cast<std::uint8_t>(Integer(random, 122, 134));
+    block[at] = static_cast<std::uint8_t>(random.Integer(220, 232));
+    block[at + 1] = static_cast<std::uint8_t>(random.Integer(28, 38));
+    block[at + 2] = static_cast<std::uint8_t>(random.Integer(122, 134));
   }
   std::uint8_t sum = 0x55;
   for (std::size_t i = 0; i < 14; ++i) sum = static_cast<std::uint8_t>(sum + block[i]);
@@ -91,13 +85,13 @@ MotionPlusBlock DrawMotionPlusBlock(std::uint64_t seed) {
   MotionPlusBlock block{};
   for (const std::size_t half : {0u, 16u}) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const int zero = Integer(random, 30200, 32200);
-      const int span = half == 0 ? Integer(random, 17500, 21500) : Integer(random, 12500, 18000);
+      const int zero = random.Integer(30200, 32200);
+      const int span = half == 0 ? random.Integer(17500, 21500) : random.Integer(12500, 18000);
       PutWord(block, half + 2 * axis, zero);
       PutWord(block, half + 6 + 2 * axis, axis == 1 ? zero + span : zero - span);
     }
     block[half + 12] = half == 0 ? 0xc8 : 0x2d;
-    block[half + 13] = static_cast<std::uint8_t>(Integer(random, 0, 255));
+    block[half + 13] = static_cast<std::uint8_t>(random.Integer(0, 255));
   }
   PutMotionPlusChecksum(block);
   return block;
@@ -132,7 +126,8 @@ ExtensionBytes NunchukBytes(const NunchukBlock& block, const NunchukSensors& sen
   out[5] = static_cast<std::uint8_t>((sensors.c ? 0 : 2) | (sensors.z ? 0 : 1));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double force =
-        kRawSigns[axis] * Finite(sensors.specific_force_S_mps2[static_cast<Eigen::Index>(axis)]);
+        kRawSigns[axis] *
+        FiniteOrZero(sensors.specific_force_S_mps2[static_cast<Eigen::Index>(axis)]);
     const int zero = TenBits(block, 0, axis);
     const int one_g = TenBits(block, 4, axis);
     const int counts = static_cast<int>(
@@ -180,7 +175,7 @@ ExtensionBytes MotionPlusBytes(const MotionPlusBlock& block,
   int counts[3];
   bool slow[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double degrees_per_s = Finite(turn_radps[axis]) * 180 / kPi;
+    const double degrees_per_s = FiniteOrZero(turn_radps[axis]) * 180 / kPi;
     double value = GyroscopeCounts(block, 16, axis, degrees_per_s);
     slow[axis] = value >= kSlowLow && value <= kSlowHigh;
     if (!slow[axis]) value = GyroscopeCounts(block, 0, axis, degrees_per_s);

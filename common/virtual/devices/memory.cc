@@ -7,7 +7,7 @@ namespace footing::virtual_devices {
 namespace {
 
 constexpr std::size_t kEepromBytes = 0x1700;
-constexpr std::size_t kPageBytes = 0x100;
+constexpr std::size_t kRegisterPageBytes = 0x100;
 constexpr std::uint32_t kSpeakerPage = 0xa200;
 constexpr std::uint32_t kExtensionPage = 0xa400;
 constexpr std::uint32_t kMotionPlusPage = 0xa600;
@@ -25,9 +25,9 @@ bool Holds(std::size_t size, std::size_t at, std::size_t count) {
 
 Memory::Memory(bool extension)
     : eeprom_(kEepromBytes, 0),
-      extension_(extension ? kPageBytes : 0, 0),
-      speaker_(kPageBytes, 0),
-      camera_(kPageBytes, 0) {}
+      extension_(extension ? kRegisterPageBytes : 0, 0),
+      speaker_(kRegisterPageBytes, 0),
+      camera_(kRegisterPageBytes, 0) {}
 
 const std::vector<std::uint8_t>* Memory::Page(std::uint32_t page) const {
   if (page == kSpeakerPage) return &speaker_;

@@ -12,16 +12,16 @@
 namespace footing::virtual_devices {
 namespace {
 
-constexpr std::array<double, 3> kRawSigns = {-1, +1, -1};
+constexpr std::array<double, 3> kMoveRawSigns = {-1, +1, -1};
 constexpr std::array<double, 3> kMagneticSigns = {-1, -1, -1};
 constexpr double kRpmToRadps = 2 * kPi / 60;
 constexpr std::size_t kHeadBytes = 2;
-constexpr std::size_t kPieceBytes = 49;
+constexpr std::size_t kCalibrationPieceBytes = 49;
 /// Nobody wrote down what a step of the time stamp is; hosts use it to see that reports differ.
 constexpr std::int64_t kTickNs = 10'000;
 
 /// Where the blob has what (moveonpc wiki, "Calibration data"): vectors of three words each.
-struct Layout {
+struct CalibrationLayout {
   std::size_t pieces;
   std::array<std::size_t, 3> up;    ///< The axis points up: +1 g.
   std::array<std::size_t, 3> down;  ///< It points down: -1 g.
@@ -30,14 +30,16 @@ struct Layout {
   std::size_t bias;
   double turn_rpm;
 };
-constexpr Layout kZcm1 = {3, {0x16, 0x1c, 0x04}, {0x0a, 0x22, 0x10}, {0x46, 0x4e, 0x56}, {}, 0x2a,
-                          80};
-constexpr Layout kZcm2 = {
+constexpr CalibrationLayout kZcm1 = {
+    3, {0x16, 0x1c, 0x04}, {0x0a, 0x22, 0x10}, {0x46, 0x4e, 0x56}, {}, 0x2a, 80};
+constexpr CalibrationLayout kZcm2 = {
     2, {0x02, 0x0e, 0x1a}, {0x08, 0x14, 0x20}, {0x30, 0x36, 0x3c}, {0x42, 0x48, 0x4e}, 0x26, 90};
 constexpr std::size_t kZcm1SecondBias = 0x32;
 constexpr std::size_t kZcm1BiasFactor = 0x6a;
 
-const Layout& LayoutOf(MoveModel model) { return model == MoveModel::kZcm1 ? kZcm1 : kZcm2; }
+const CalibrationLayout& CalibrationLayoutOf(MoveModel model) {
+  return model == MoveModel::kZcm1 ? kZcm1 : kZcm2;
+}
 
 /// A ZCM1 counts from 0x8000, a ZCM2 has two's complement.
 int Zero(MoveModel model) { return model == MoveModel::kZcm1 ? 0x8000 : 0; }
@@ -53,17 +55,11 @@ int Word(MoveModel model, std::span<const std::uint8_t> bytes, std::size_t at) {
   return model == MoveModel::kZcm1 ? raw - 0x8000 : static_cast<std::int16_t>(raw);
 }
 
-int Integer(noise::Random& random, int low, int high) {
-  return low + static_cast<int>(random.Uniform() * (high - low + 1));
-}
-
 double BiasFactor(std::span<const std::uint8_t> blob, std::size_t axis) {
   float factor = 0;
   std::memcpy(&factor, blob.data() + kZcm1BiasFactor + 4 * axis, sizeof factor);
   return factor;
 }
-
-double Finite(double value) { return std::isfinite(value) ? value : 0; }
 
 int Rounded(double value) { return static_cast<int>(std::lround(std::clamp(value, -4e4, 4e4))); }
 
@@ -81,31 +77,32 @@ std::vector<std::uint8_t> DrawMoveBlob(std::uint64_t seed, MoveModel model) {
   // Around real units: 4050 to 4480 counts a g, 5170 to 5700 (ZCM1) and 6600 to 6900 (ZCM2) at the
   // turn, a gyroscope's bias of some hundred (ZCM1) or a few counts.
   noise::Random random(seed);
-  const Layout& layout = LayoutOf(model);
+  const CalibrationLayout& layout = CalibrationLayoutOf(model);
   const bool first = model == MoveModel::kZcm1;
-  std::vector<std::uint8_t> blob(layout.pieces * (kPieceBytes - kHeadBytes) + kHeadBytes, 0);
+  std::vector<std::uint8_t> blob(layout.pieces * (kCalibrationPieceBytes - kHeadBytes) + kHeadBytes,
+                                 0);
   blob[0] = 0x10;
   const auto put = [&](std::size_t at, std::size_t axis, int count) {
     PutWord(model, blob, at + 2 * axis, count);
   };
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int one_g = Integer(random, 4060, 4470);
-    const int zero = Integer(random, -150, 150);
+    const int one_g = random.Integer(4060, 4470);
+    const int zero = random.Integer(-150, 150);
     for (std::size_t other = 0; other < 3; ++other) {
       const bool own = other == axis;
-      put(layout.up[other], axis, own ? zero + one_g : zero + Integer(random, -60, 60));
-      put(layout.down[other], axis, own ? zero - one_g : zero + Integer(random, -60, 60));
+      put(layout.up[other], axis, own ? zero + one_g : zero + random.Integer(-60, 60));
+      put(layout.down[other], axis, own ? zero - one_g : zero + random.Integer(-60, 60));
     }
-    const int bias = first ? Integer(random, -400, 400) : Integer(random, -10, 10);
-    const int turn = first ? Integer(random, 5170, 5700) : Integer(random, 6600, 6900);
+    const int bias = first ? random.Integer(-400, 400) : random.Integer(-10, 10);
+    const int turn = first ? random.Integer(5170, 5700) : random.Integer(6600, 6900);
     const auto factor = static_cast<float>(random.Uniform(0.96, 1.02));
     put(layout.bias, axis, bias);
     if (first) {
-      put(kZcm1SecondBias, axis, bias + Integer(random, -11, 11));
+      put(kZcm1SecondBias, axis, bias + random.Integer(-11, 11));
       std::memcpy(blob.data() + kZcm1BiasFactor + 4 * axis, &factor, sizeof factor);
     }
     for (std::size_t other = 0; other < 3; ++other) {
-      put(layout.turn[other], axis, bias + (other == axis ? turn : Integer(random, -160, 160)));
+      put(layout.turn[other], axis, bias + (other == axis ? turn : random.Integer(-160, 160)));
       if (!first) put(layout.back[other], axis, bias - (other == axis ? turn : 0));
     }
   }
@@ -117,8 +114,8 @@ PsMove::PsMove(std::uint64_t seed, MoveModel model)
 
 PsMove::PsMove(std::uint64_t seed, MoveModel model, std::vector<std::uint8_t> blob)
     : model_(model), blob_(std::move(blob)) {
-  const Layout& layout = LayoutOf(model);
-  blob_.resize(layout.pieces * (kPieceBytes - kHeadBytes) + kHeadBytes);
+  const CalibrationLayout& layout = CalibrationLayoutOf(model);
+  blob_.resize(layout.pieces * (kCalibrationPieceBytes - kHeadBytes) + kHeadBytes);
   for (std::size_t i = 0; i < 3; ++i) {
     const int up = Word(model, blob_, layout.up[i] + 2 * i);
     const int down = Word(model, blob_, layout.down[i] + 2 * i);
@@ -153,12 +150,13 @@ std::vector<Report> PsMove::HandleOutput(std::int64_t now_ns,
 std::optional<Report> PsMove::Feature(std::uint8_t id, std::size_t size) {
   Report report;
   if (id == 0x10) {
-    const std::size_t pieces = LayoutOf(model_).pieces;
+    const std::size_t pieces = CalibrationLayoutOf(model_).pieces;
     const std::size_t piece = std::exchange(next_piece_, (next_piece_ + 1) % pieces);
-    const auto from = blob_.begin() +
-                      static_cast<std::ptrdiff_t>(piece * (kPieceBytes - kHeadBytes) + kHeadBytes);
+    const auto from =
+        blob_.begin() +
+        static_cast<std::ptrdiff_t>(piece * (kCalibrationPieceBytes - kHeadBytes) + kHeadBytes);
     report = {0x10, static_cast<std::uint8_t>(piece | (piece + 1 == pieces ? 0x80 : 0))};
-    report.insert(report.end(), from, from + (kPieceBytes - kHeadBytes));
+    report.insert(report.end(), from, from + (kCalibrationPieceBytes - kHeadBytes));
   } else if (id == 0x04) {
     report.assign(16, 0);
     report[0] = id;
@@ -174,12 +172,12 @@ std::optional<Report> PsMove::Feature(std::uint8_t id, std::size_t size) {
 }
 
 void PsMove::PutSample(const MoveSensors& sensors, std::size_t half, Report& report) const {
-  report[0x05 + half] =
-      static_cast<std::uint8_t>(std::lround(255 * std::clamp(Finite(sensors.trigger), 0.0, 1.0)));
+  report[0x05 + half] = static_cast<std::uint8_t>(
+      std::lround(255 * std::clamp(FiniteOrZero(sensors.trigger), 0.0, 1.0)));
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
-    const double force = kRawSigns[i] * Finite(sensors.specific_force_S_mps2[axis]);
-    const double turn = kRawSigns[i] * Finite(sensors.angular_velocity_S_radps[axis]);
+    const double force = kMoveRawSigns[i] * FiniteOrZero(sensors.specific_force_S_mps2[axis]);
+    const double turn = kMoveRawSigns[i] * FiniteOrZero(sensors.angular_velocity_S_radps[axis]);
     PutWord(model_, report, 0x0d + 6 * half + 2 * i,
             Rounded(force_zero_[i] + force * force_gain_[i]));
     PutWord(model_, report, 0x19 + 6 * half + 2 * i, Rounded(turn_zero_[i] + turn * turn_gain_[i]));
@@ -208,7 +206,7 @@ std::vector<Report> PsMove::Sample(std::int64_t now_ns, const MoveSensors& senso
     int field[3];
     for (std::size_t i = 0; i < 3; ++i) {
       const double value = sensors.magnetic_field_S_counts[static_cast<Eigen::Index>(i)];
-      field[i] = std::clamp(Rounded(kMagneticSigns[i] * Finite(value)), -2048, 2047) & 0xfff;
+      field[i] = std::clamp(Rounded(kMagneticSigns[i] * FiniteOrZero(value)), -2048, 2047) & 0xfff;
     }
     report[0x26] = static_cast<std::uint8_t>(report[0x26] | field[0] >> 8);
     report[0x27] = static_cast<std::uint8_t>(field[0]);

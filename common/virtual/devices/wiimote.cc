@@ -14,17 +14,13 @@ namespace {
 constexpr std::array<double, 3> kRawSigns = {+1, -1, -1};
 
 /// In low..high, both included.
-int Integer(noise::Random& random, int low, int high) {
-  return low + static_cast<int>(random.Uniform() * (high - low + 1));
-}
-
 std::array<Wiimote::Axis, 3> DrawAxes(std::uint64_t seed) {
   // Around what real units have: zero near 521 and 532, 1 g 105 to 111 above it.
   noise::Random random(seed);
   std::array<Wiimote::Axis, 3> axes;
   for (Wiimote::Axis& axis : axes) {
-    axis.zero_counts = Integer(random, 505, 535);
-    axis.one_g_counts = axis.zero_counts + Integer(random, 103, 112);
+    axis.zero_counts = random.Integer(505, 535);
+    axis.one_g_counts = axis.zero_counts + random.Integer(103, 112);
   }
   return axes;
 }

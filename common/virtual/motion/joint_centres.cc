@@ -6,7 +6,7 @@ namespace footing::motion {
 namespace {
 
 using body::Landmark;
-using Place = std::optional<Eigen::Vector3d>;
+using MaybePoint = std::optional<Eigen::Vector3d>;
 
 // From a lateral marker's centre to the joint's, m: half the width of an adult's joint and the
 // marker's own radius.
@@ -18,7 +18,7 @@ struct Markers {
   Eigen::Index frame;
 
   /// Mean of the markers of a field; nothing where one of them was not seen.
-  Place Mean(std::string_view field, int side) const {
+  MaybePoint Mean(std::string_view field, int side) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const auto markers = MarkersOf(tracks, set, field, side);
     for (const int marker : markers) {
@@ -30,16 +30,16 @@ struct Markers {
 };
 
 /// Harrington's regression, of the left (0) and right (1) hip. Pelvis: x ahead, y left, z up.
-std::array<Place, 2> Hips(const Markers& markers) {
-  const Place asis[2] = {markers.Mean(markers.set.asis, 0), markers.Mean(markers.set.asis, 1)};
-  const Place psis[2] = {markers.Mean(markers.set.psis, 0), markers.Mean(markers.set.psis, 1)};
+std::array<MaybePoint, 2> Hips(const Markers& markers) {
+  const MaybePoint asis[2] = {markers.Mean(markers.set.asis, 0), markers.Mean(markers.set.asis, 1)};
+  const MaybePoint psis[2] = {markers.Mean(markers.set.psis, 0), markers.Mean(markers.set.psis, 1)};
   if (!asis[0] || !asis[1] || !psis[0] || !psis[1]) return {};
   const Eigen::Vector3d front = (*asis[0] + *asis[1]) / 2, back = (*psis[0] + *psis[1]) / 2;
   const Eigen::Vector3d y = (*asis[0] - *asis[1]).normalized();
   const Eigen::Vector3d z = (front - back).cross(y).normalized();
   const Eigen::Vector3d x = y.cross(z);
   const double depth_m = (front - back).norm(), width_m = (*asis[0] - *asis[1]).norm();
-  std::array<Place, 2> hips;
+  std::array<MaybePoint, 2> hips;
   for (int side = 0; side < 2; ++side) {
     hips[static_cast<std::size_t>(side)] = front + (-0.24 * depth_m - 0.0099) * x +
                                            (-0.30 * width_m - 0.0109) * z +
@@ -50,8 +50,9 @@ std::array<Place, 2> Hips(const Markers& markers) {
 
 /// Midway between both markers, or from the lateral one inwards: square to the limb, along
 /// `left_W`.
-Place Joint(const Place& lateral, const Place& medial, const Place& above,
-            const Eigen::Vector3d& left_W, int side, double half_width_m) {
+MaybePoint JointBetween(const MaybePoint& lateral, const MaybePoint& medial,
+                        const MaybePoint& above, const Eigen::Vector3d& left_W, int side,
+                        double half_width_m) {
   if (lateral && medial) return (*lateral + *medial) / 2;
   if (!lateral || !above) return std::nullopt;
   const Eigen::Vector3d limb = (*lateral - *above).normalized();
@@ -67,11 +68,11 @@ Landmark OfSide(Landmark left, int side) { return side == 0 ? left : Mirrored(le
 Centres JointCentres(const MarkerTracks& tracks, const MarkerSet& set, Eigen::Index frame) {
   const Markers markers{tracks, set, frame};
   Centres centres;
-  const auto at = [&centres](Landmark landmark) -> Place& {
+  const auto at = [&centres](Landmark landmark) -> MaybePoint& {
     return centres[static_cast<std::size_t>(landmark)];
   };
   const auto hips = Hips(markers);
-  const Place shoulders[2] = {markers.Mean(set.shoulder, 0), markers.Mean(set.shoulder, 1)};
+  const MaybePoint shoulders[2] = {markers.Mean(set.shoulder, 0), markers.Mean(set.shoulder, 1)};
   if (!hips[0] || !hips[1]) return centres;
   const Eigen::Vector3d middle = (*hips[0] + *hips[1]) / 2;
   at(Landmark::kHips) = middle;
@@ -81,24 +82,27 @@ Centres JointCentres(const MarkerTracks& tracks, const MarkerSet& set, Eigen::In
   }
   const Eigen::Vector3d left_W = (*hips[0] - *hips[1]).normalized();
   for (int side = 0; side < 2; ++side) {
-    const auto here = [&](Landmark left) -> Place& { return at(OfSide(left, side)); };
+    const auto here = [&](Landmark left) -> MaybePoint& { return at(OfSide(left, side)); };
     const auto mean = [&](std::string_view field) { return markers.Mean(field, side); };
     here(Landmark::kLeftHip) = hips[static_cast<std::size_t>(side)];
-    here(Landmark::kLeftKnee) = Joint(mean(set.knee_lateral), mean(set.knee_medial),
-                                      here(Landmark::kLeftHip), left_W, side, kHalfKneeM);
-    here(Landmark::kLeftAnkle) = Joint(mean(set.ankle_lateral), mean(set.ankle_medial),
-                                       here(Landmark::kLeftKnee), left_W, side, kHalfAnkleM);
+    here(Landmark::kLeftKnee) = JointBetween(mean(set.knee_lateral), mean(set.knee_medial),
+                                             here(Landmark::kLeftHip), left_W, side, kHalfKneeM);
+    here(Landmark::kLeftAnkle) = JointBetween(mean(set.ankle_lateral), mean(set.ankle_medial),
+                                              here(Landmark::kLeftKnee), left_W, side, kHalfAnkleM);
     here(Landmark::kLeftToe) = mean(set.toe);
     if (shoulders[side]) {
       here(Landmark::kLeftShoulder) = *shoulders[side] - set.shoulder_over_joint_m * up;
     }
-    here(Landmark::kLeftElbow) = Joint(mean(set.elbow_lateral), mean(set.elbow_medial),
-                                       here(Landmark::kLeftShoulder), left_W, side, kHalfElbowM);
-    here(Landmark::kLeftWrist) = Joint(mean(set.wrist_radius), mean(set.wrist_ulna),
-                                       here(Landmark::kLeftElbow), left_W, side, kHalfWristM);
+    here(Landmark::kLeftElbow) =
+        JointBetween(mean(set.elbow_lateral), mean(set.elbow_medial), here(Landmark::kLeftShoulder),
+                     left_W, side, kHalfElbowM);
+    here(Landmark::kLeftWrist) =
+        JointBetween(mean(set.wrist_radius), mean(set.wrist_ulna), here(Landmark::kLeftElbow),
+                     left_W, side, kHalfWristM);
     here(Landmark::kLeftHandEnd) = mean(set.hand);
   }
-  const Place cervicale = markers.Mean(set.cervicale, 0), sternum = markers.Mean(set.sternum, 0);
+  const MaybePoint cervicale = markers.Mean(set.cervicale, 0),
+                   sternum = markers.Mean(set.sternum, 0);
   at(Landmark::kNeck) = cervicale;
   if (cervicale && sternum) at(Landmark::kNeck) = (*cervicale + *sternum) / 2;
   at(Landmark::kHead) = markers.Mean(set.head, 0);

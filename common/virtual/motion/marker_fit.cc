@@ -23,7 +23,7 @@ constexpr std::size_t kLeastMarkers = 10;        // Of a frame.
 // neck, the shoulder girdle and what lies beyond the last markers, a centimetre for a large bend.
 constexpr double kHoldLimb = 0.002, kHoldSpine = 0.05;
 
-std::size_t Index(int value) { return static_cast<std::size_t>(value); }
+std::size_t MarkerIndex(int value) { return static_cast<std::size_t>(value); }
 
 class Fitter {
  public:
@@ -54,14 +54,14 @@ class Fitter {
     q = body::TPose(skeleton_, landmarks_);
     q(3) = std::atan2(-across.x(), across.y());
     ComputeKinematics(skeleton_, q, at_);
-    const Eigen::Vector3d middle = (at_.p_WJ[Index(landmarks_[Landmark::kLeftHip])] +
-                                    at_.p_WJ[Index(landmarks_[Landmark::kRightHip])]) /
+    const Eigen::Vector3d middle = (at_.p_WJ[MarkerIndex(landmarks_[Landmark::kLeftHip])] +
+                                    at_.p_WJ[MarkerIndex(landmarks_[Landmark::kRightHip])]) /
                                    2;
     q.head<3>() += (*left + *right) / 2 - middle;
     targets_.clear();
     for (int i = 0; i < body::kLandmarkCount; ++i) {
       const auto landmark = static_cast<Landmark>(i);
-      const auto& centre = centres[Index(i)];
+      const auto& centre = centres[MarkerIndex(i)];
       if (!centre || landmarks_[landmark] < 0 || landmark == Landmark::kHips) continue;
       // A neck or a hand is not quite where its markers are.
       const bool rough = landmark == Landmark::kNeck || landmark == Landmark::kHead ||
@@ -78,7 +78,7 @@ class Fitter {
     targets_.clear();
     for (std::size_t i = 0; i < markers.size(); ++i) {
       if (tracks_of[i] < 0) continue;
-      const Eigen::Vector3d p_W = tracks.p[Index(tracks_of[i])].col(frame);
+      const Eigen::Vector3d p_W = tracks.p[MarkerIndex(tracks_of[i])].col(frame);
       if (Seen(p_W)) targets_.push_back({markers[i].joint, markers[i].p_J, p_W, 1});
     }
     if (targets_.size() < kLeastMarkers) return false;
@@ -92,10 +92,10 @@ class Fitter {
 
   /// Place of a marker in each candidate joint's frame.
   Eigen::Vector3d Local(int joint, const Eigen::Vector3d& p_W) const {
-    return at_.R_WJ[Index(joint)].transpose() * (p_W - at_.p_WJ[Index(joint)]);
+    return at_.R_WJ[MarkerIndex(joint)].transpose() * (p_W - at_.p_WJ[MarkerIndex(joint)]);
   }
   Eigen::Vector3d World(int joint, const Eigen::Vector3d& p_J) const {
-    return at_.p_WJ[Index(joint)] + at_.R_WJ[Index(joint)] * p_J;
+    return at_.p_WJ[MarkerIndex(joint)] + at_.R_WJ[MarkerIndex(joint)] * p_J;
   }
   void Place(const Eigen::VectorXd& q) { ComputeKinematics(skeleton_, q, at_); }
 
@@ -144,7 +144,8 @@ class Fitter {
           {set.head, landmarks_[Landmark::kHead]},
       };
       for (const auto& [field, joint] : kFields) {
-        for (const int marker : MarkersOf(tracks, set, field, side)) known[Index(marker)] = joint;
+        for (const int marker : MarkersOf(tracks, set, field, side))
+          known[MarkerIndex(marker)] = joint;
       }
     }
     return known;
@@ -258,7 +259,7 @@ Result<MarkerFit> FitMarkers(const MarkerTracks& tracks, const MarkerFitOptions&
     out.motion.q.col(frame) = q;
     fitter.Place(q);
     for (std::size_t i = 0; i < out.markers.size(); ++i) {
-      const Eigen::Vector3d p_W = tracks.p[Index(tracks_of[i])].col(frame);
+      const Eigen::Vector3d p_W = tracks.p[MarkerIndex(tracks_of[i])].col(frame);
       if (!Seen(p_W)) continue;
       const double square =
           (p_W - fitter.World(out.markers[i].joint, out.markers[i].p_J)).squaredNorm();

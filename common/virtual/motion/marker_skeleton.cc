@@ -15,7 +15,7 @@ using body::Landmark;
 constexpr Eigen::Index kMostFrames = 400;              // Of a trial for its lengths.
 constexpr double kLeastRatio = 0.6, kMostRatio = 1.6;  // Of a length over the standard one.
 
-Landmark OfSide(Landmark left, int side) { return side == 0 ? left : Mirrored(left); }
+Landmark LandmarkOfSide(Landmark left, int side) { return side == 0 ? left : Mirrored(left); }
 
 /// Medians of distances between centres over the frames in which both are there.
 class Lengths {
@@ -68,10 +68,11 @@ Result<FittedSkeleton> FitLengths(const MarkerTracks& tracks, const MarkerSet& s
   const Lengths lengths(tracks, set);
   double legs_m = 0;
   for (int side = 0; side < 2; ++side) {
-    legs_m +=
-        (lengths.Between(OfSide(Landmark::kLeftHip, side), OfSide(Landmark::kLeftKnee, side)) +
-         lengths.Between(OfSide(Landmark::kLeftKnee, side), OfSide(Landmark::kLeftAnkle, side))) /
-        2;
+    legs_m += (lengths.Between(LandmarkOfSide(Landmark::kLeftHip, side),
+                               LandmarkOfSide(Landmark::kLeftKnee, side)) +
+               lengths.Between(LandmarkOfSide(Landmark::kLeftKnee, side),
+                               LandmarkOfSide(Landmark::kLeftAnkle, side))) /
+              2;
   }
   const double trunk_m = lengths.Trunk();
   const double height_m = body::StatureOfLengths(sex) * (legs_m + trunk_m);
@@ -111,7 +112,7 @@ Result<FittedSkeleton> FitLengths(const MarkerTracks& tracks, const MarkerSet& s
   const double hips_m = lengths.Between(Landmark::kLeftHip, Landmark::kRightHip);
   const double shoulders_m = lengths.Between(Landmark::kLeftShoulder, Landmark::kRightShoulder);
   for (int side = 0; side < 2; ++side) {
-    const auto here = [side](Landmark left) { return OfSide(left, side); };
+    const auto here = [side](Landmark left) { return LandmarkOfSide(left, side); };
     stretch(here(Landmark::kLeftHip), here(Landmark::kLeftKnee));
     stretch(here(Landmark::kLeftKnee), here(Landmark::kLeftAnkle));
     stretch(here(Landmark::kLeftAnkle), here(Landmark::kLeftToe));

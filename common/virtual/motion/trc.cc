@@ -11,7 +11,7 @@
 namespace footing::motion {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMissingTrcValue = std::numeric_limits<double>::quiet_NaN();
 constexpr int kPlaceDecimals = 5;  // Of millimetres.
 constexpr int kTimeDecimals = 6;
 
@@ -93,10 +93,10 @@ Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
           return lines.Fault("marker " + tracks.names[marker] + ": expected a number, found " +
                              Quoted(fields[at]));
         }
-        p(static_cast<int>(axis)) = number ? *number * head->unit_m : kMissing;
+        p(static_cast<int>(axis)) = number ? *number * head->unit_m : kMissingTrcValue;
       }
       const bool seen = p.allFinite() && !p.isZero(0);
-      places[marker].push_back(seen ? p : Eigen::Vector3d::Constant(kMissing));
+      places[marker].push_back(seen ? p : Eigen::Vector3d::Constant(kMissingTrcValue));
     }
     ++frames;
   }

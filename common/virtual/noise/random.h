@@ -16,6 +16,8 @@ class Random {
   double Uniform();
   /// In [low, high).
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
+  /// A whole number in [low, high], evenly.
+  int Integer(int low, int high) { return low + static_cast<int>(Uniform() * (high - low + 1)); }
   /// Mean 0, standard deviation 1: the sum of twelve uniforms less six, so within +-6.
   double Normal();
 

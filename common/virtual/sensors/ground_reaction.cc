@@ -16,13 +16,13 @@ constexpr double kReluctanceM = 0.025;
 constexpr double kMomentScaleM = 0.3;  // Makes the COP's rows as large as the total's.
 constexpr double kEquality = 30;       // Weight of total and COP against evenness.
 constexpr int kForces = kFeet * kFootPoints;
-constexpr int kRows = 3 + kForces;
+constexpr int kEquations = 3 + kForces;
 
 using Forces = Eigen::Matrix<double, kForces, 1>;
 
 // min |a x - b| with x >= 0: Lawson & Hanson 1974, chapter 23.
-Forces SolveNonNegative(const Eigen::Matrix<double, kRows, kForces>& a,
-                        const Eigen::Matrix<double, kRows, 1>& b) {
+Forces SolveNonNegative(const Eigen::Matrix<double, kEquations, kForces>& a,
+                        const Eigen::Matrix<double, kEquations, 1>& b) {
   Forces x = Forces::Zero();
   std::array<bool, kForces> free{};
   for (int round = 0; round < 4 * kForces; ++round) {
@@ -35,7 +35,7 @@ Forces SolveNonNegative(const Eigen::Matrix<double, kRows, kForces>& a,
     if (best < 0) break;
     free[static_cast<std::size_t>(best)] = true;
     for (int inner = 0; inner < kForces; ++inner) {
-      Eigen::Matrix<double, kRows, kForces> part = a;
+      Eigen::Matrix<double, kEquations, kForces> part = a;
       for (int i = 0; i < kForces; ++i)
         if (!free[static_cast<std::size_t>(i)]) part.col(i).setZero();
       Forces s = part.completeOrthogonalDecomposition().solve(b);
@@ -105,8 +105,8 @@ std::array<FootForce, kFeet> ShareBetweenFeet(const BodyCourse& course,
   }
   // Near the lowest corner heights count as differences: somebody stands on a toe, too.
   const Forces will = (-(height.array() - height.minCoeff()) / kReluctanceM).exp();
-  Eigen::Matrix<double, kRows, kForces> a = Eigen::Matrix<double, kRows, kForces>::Zero();
-  Eigen::Matrix<double, kRows, 1> b = Eigen::Matrix<double, kRows, 1>::Zero();
+  Eigen::Matrix<double, kEquations, kForces> a = Eigen::Matrix<double, kEquations, kForces>::Zero();
+  Eigen::Matrix<double, kEquations, 1> b = Eigen::Matrix<double, kEquations, 1>::Zero();
   const Eigen::Vector2d cop = reaction.cop_m.col(frame);
   const Eigen::Vector2d middle = place.rowwise().mean();
   for (int i = 0; i < kForces; ++i) {

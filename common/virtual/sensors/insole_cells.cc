@@ -7,7 +7,7 @@
 namespace footing::virtual_sensors {
 namespace {
 
-constexpr int kRows = 8;
+constexpr int kCellRows = 8;
 constexpr double kHalfWidthM = 0.03;
 constexpr double kInsideM = 0.005;
 constexpr int kNewtonSteps = 30;
@@ -25,7 +25,7 @@ SolePlace PlaceOfSole(const BodyCourse& course, std::size_t foot, Eigen::Index f
 std::array<Eigen::Vector2d, kInsoleCells> InsolePlaces(double length_m) {
   std::array<Eigen::Vector2d, kInsoleCells> places;
   for (std::size_t i = 0; i < places.size(); ++i)
-    places[i] = {length_m * static_cast<double>(i / 2) / (kRows - 1),
+    places[i] = {length_m * static_cast<double>(i / 2) / (kCellRows - 1),
                  i % 2 == 0 ? kHalfWidthM : -kHalfWidthM};
   return places;
 }

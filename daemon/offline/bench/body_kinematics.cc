@@ -9,10 +9,10 @@
 namespace footing::bench {
 namespace {
 
-constexpr int kPairs = 15;
+constexpr int kKinematicsPairs = 15;
 constexpr int kPoses = 64;
 constexpr int kEvaluations = 20'000;  // A run: some 50 ms.
-constexpr double kHeightM = 1.75;
+constexpr double kPersonHeightM = 1.75;
 
 struct Poses {
   Eigen::MatrixXd q, q_dot;
@@ -38,8 +38,8 @@ double CostUs(F evaluate) {
 
 Result<Rows> BodyKinematics() {
   body::PersonParameters person;
-  person.height_m = kHeightM;
-  const auto body = body::MakeBody(body::StandardPerson(kHeightM), person);
+  person.height_m = kPersonHeightM;
+  const auto body = body::MakeBody(body::StandardPerson(kPersonHeightM), person);
   if (!body) return body.error();
   const body::Skeleton& skeleton = body->skeleton;
   const Poses poses(skeleton.dof);
@@ -72,10 +72,11 @@ Result<Rows> BodyKinematics() {
       kept = sum;
     });
   };
-  return Rows{RunPairs("body_kinematics_com_momentum_us",
-                       "us (baseline: the angles' sines and cosines)", kPairs, momentum, sines),
-              RunPairs("body_centroidal_matrix_us", "us (baseline: the angles' sines and cosines)",
-                       kPairs, centroidal, sines)};
+  return Rows{
+      RunPairs("body_kinematics_com_momentum_us", "us (baseline: the angles' sines and cosines)",
+               kKinematicsPairs, momentum, sines),
+      RunPairs("body_centroidal_matrix_us", "us (baseline: the angles' sines and cosines)",
+               kKinematicsPairs, centroidal, sines)};
 }
 
 }  // namespace footing::bench

@@ -38,7 +38,7 @@ Axis MakeAxis(int axis) {
 }
 
 /// CPU seconds, and the mean squared error on the fresh rows.
-struct Measured {
+struct TrainingCost {
   double seconds = 0;
   double mse = 0;
 };
@@ -47,7 +47,7 @@ double SecondsSince(std::int64_t start_ns) {
   return NanosecondsToSeconds(clock::ThreadCpuNs() - start_ns);
 }
 
-Measured Ours(const Axis& axis, int patience, double* validation_mse) {
+TrainingCost Ours(const Axis& axis, int patience, double* validation_mse) {
   learning::CascadeOptions options;
   options.hidden_max = kHidden;
   options.patience = patience;
@@ -58,7 +58,7 @@ Measured Ours(const Axis& axis, int patience, double* validation_mse) {
 }
 
 /// Back-propagation until its error of validation equals the cascade's; at most 1000 epochs.
-Measured Perceptron(const Axis& axis, double validation_mse) {
+TrainingCost Perceptron(const Axis& axis, double validation_mse) {
   learning::MlpOptions options;
   options.hidden = kHidden;
   options.epochs_max = options.patience = 1000;
@@ -84,7 +84,7 @@ FannData ToFann(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
 }
 
 /// FANN's Cascade2 as it comes, with linear outputs, on inputs and targets scaled as ours are.
-Measured Fann(const Axis& axis) {
+TrainingCost Fann(const Axis& axis) {
   const auto in = learning::Scaling::Of(axis.train.inputs);
   const auto out = learning::Scaling::Of(axis.train.targets);
   const FannData train = ToFann(in.Apply(axis.train.inputs), out.Apply(axis.train.targets));
@@ -96,7 +96,7 @@ Measured Fann(const Axis& axis) {
   fann_set_training_algorithm(network.get(), FANN_TRAIN_RPROP);
   const std::int64_t start_ns = clock::ThreadCpuNs();
   fann_cascadetrain_on_data(network.get(), train.get(), kHidden, 0, 1e-7f);
-  Measured measured{SecondsSince(start_ns), 0};
+  TrainingCost measured{SecondsSince(start_ns), 0};
 
   const FannData fresh = ToFann(in.Apply(axis.fresh.inputs), out.Apply(axis.fresh.targets));
   for (Eigen::Index row = 0; row < axis.fresh.rows(); ++row) {
@@ -116,8 +116,8 @@ double Rms(double mse_sum_m2) { return 1e3 * std::sqrt(mse_sum_m2 / kAxes); }
 }  // namespace
 
 Result<Rows> CascadeTraining() {
-  Measured ours, all_units, perceptron, baseline;
-  const auto add = [](Measured& sum, const Measured& one) {
+  TrainingCost ours, all_units, perceptron, baseline;
+  const auto add = [](TrainingCost& sum, const TrainingCost& one) {
     sum.seconds += one.seconds;
     sum.mse += one.mse;
   };

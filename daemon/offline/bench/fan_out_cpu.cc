@@ -12,10 +12,10 @@
 namespace footing::bench {
 namespace {
 
-constexpr int kPairs = 9;
+constexpr int kFanOutPairs = 9;
 constexpr std::size_t kViewers = 100;
-constexpr int kTicks = 100;
-constexpr std::int64_t kIntervalNs = 10'000'000;
+constexpr int kFanOutTicks = 100;
+constexpr std::int64_t kFanOutIntervalNs = 10'000'000;
 
 using Viewers = std::vector<std::unique_ptr<Viewer>>;
 
@@ -39,9 +39,9 @@ double CpuPercent(LoopThread& server_thread, const std::function<void()>& publis
   std::int64_t before_ns = 0;
   std::int64_t after_ns = 0;
   server_thread.Do([&] { before_ns = clock::ThreadCpuNs(); });
-  server_thread.Pace(kTicks, kIntervalNs, publish);
+  server_thread.Pace(kFanOutTicks, kFanOutIntervalNs, publish);
   server_thread.Do([&] { after_ns = clock::ThreadCpuNs(); });
-  return 100.0 * static_cast<double>(after_ns - before_ns) / (kTicks * kIntervalNs);
+  return 100.0 * static_cast<double>(after_ns - before_ns) / (kFanOutTicks * kFanOutIntervalNs);
 }
 
 /// One string with what our server sends for a tick, made anew for every tick as ours is.
@@ -77,7 +77,7 @@ Result<Rows> FanOutCpu() {
   if (!connected) return Failure("fan_out_cpu: the viewers did not connect; see ulimit -n");
 
   const Row row = RunPairs(
-      "fan_out_cpu", "percent of a core", kPairs,
+      "fan_out_cpu", "percent of a core", kFanOutPairs,
       [&] {
         return CpuPercent(server_thread, [&] { server.Publish(clock::MonotonicNs(), channels); });
       },

@@ -17,7 +17,7 @@ namespace {
 using reconstruction::Features;
 using reconstruction::Inputs;
 
-constexpr int kPairs = 15;
+constexpr int kPosePairs = 15;
 constexpr double kHeightM = 1.75, kRateHz = 60;
 constexpr double kStandS = 6, kMoveS = 20;
 constexpr int kWays = 12;      // Independent ways to move,
@@ -140,8 +140,8 @@ Result<Rows> PoseFrame() {
     return timing::MomentumCostUs(*body, motion.q.col(motion.frames() - 1));
   };
   const char* const unit = "us (baseline: forward kinematics, centre of mass and momentum once)";
-  return Rows{RunPairs("pose_frame_p50_us", unit, kPairs, frame_us(0.5), unit_us),
-              RunPairs("pose_frame_p99_us", unit, kPairs, frame_us(0.99), unit_us)};
+  return Rows{RunPairs("pose_frame_p50_us", unit, kPosePairs, frame_us(0.5), unit_us),
+              RunPairs("pose_frame_p99_us", unit, kPosePairs, frame_us(0.99), unit_us)};
 }
 
 }  // namespace footing::bench

@@ -18,10 +18,10 @@
 namespace footing::bench {
 namespace {
 
-constexpr int kPairs = 9;
-constexpr int kTicks = 200;
+constexpr int kPublishPairs = 9;
+constexpr int kPublishTicks = 200;
 constexpr std::size_t kShortestTick = 400;
-constexpr std::int64_t kIntervalNs = 2'000'000;
+constexpr std::int64_t kPublishIntervalNs = 2'000'000;
 
 /// A frame as long as ours, whose first eight bytes are the instant it was published.
 std::shared_ptr<const std::string> StampedFrame(std::size_t payload_bytes) {
@@ -152,7 +152,7 @@ Result<Rows> PublishToClient() {
 
   const auto run = [&](const std::function<void()>& publish) {
     client_thread.Do([&] { delays_us.clear(); });
-    server_thread.Pace(kTicks, kIntervalNs, publish);
+    server_thread.Pace(kPublishTicks, kPublishIntervalNs, publish);
     double p50_us = 0;
     client_thread.Do([&] { p50_us = Quantile(delays_us, 0.5); });
     return p50_us;
@@ -165,9 +165,11 @@ Result<Rows> PublishToClient() {
   };
   const auto publish_bare = [&] { return run([&] { bare.Publish(StampedFrame(payload_bytes)); }); };
   const Row bytes = RunPairs(
-      "publish_to_client_p50", "us", kPairs, [&] { return publish_on(server); }, publish_bare);
+      "publish_to_client_p50", "us", kPublishPairs, [&] { return publish_on(server); },
+      publish_bare);
   const Row parsed = RunPairs(
-      "publish_to_handler_p50", "us", kPairs, [&] { return publish_on(to_handler); }, publish_bare);
+      "publish_to_handler_p50", "us", kPublishPairs, [&] { return publish_on(to_handler); },
+      publish_bare);
   client_thread.Do([&] {
     client.reset();
     viewer.reset();

@@ -11,18 +11,18 @@
 namespace footing::bench {
 namespace {
 
-constexpr int kPairs = 9;
+constexpr int kStalledPairs = 9;
 constexpr int kReaders = 20;
-constexpr int kTicks = 1000;
-constexpr std::int64_t kIntervalNs = 1'000'000;
+constexpr int kStalledTicks = 1000;
+constexpr std::int64_t kStalledIntervalNs = 1'000'000;
 // Short, so that ring and queues are full before the first run that counts.
 constexpr double kRingS = 0.5;
-constexpr std::uint32_t kQueueTicks = 512;
+constexpr std::uint32_t kStalledQueueTicks = 512;
 constexpr double kMemoryBarMegabytes = 2;
 
 transport::ServerOptions CrowdOptions() {
-  transport::ServerOptions options = ServerOptionsFor(1e9 / kIntervalNs, kRingS);
-  options.max_queue_ticks = kQueueTicks;
+  transport::ServerOptions options = ServerOptionsFor(1e9 / kStalledIntervalNs, kRingS);
+  options.max_queue_ticks = kStalledQueueTicks;
   return options;
 }
 
@@ -55,7 +55,7 @@ class Crowd {
   /// 99th percentile of the delay from Publish to a healthy reader, over all of them.
   double P99Microseconds() {
     client_thread_.Do([&] { delays_us_.clear(); });
-    server_thread_.Pace(kTicks, kIntervalNs,
+    server_thread_.Pace(kStalledTicks, kStalledIntervalNs,
                         [&] { server_.Publish(clock::MonotonicNs(), channels_); });
     double p99_us = 0;
     client_thread_.Do([&] { p99_us = Quantile(delays_us_, 0.99); });
@@ -100,7 +100,7 @@ Result<Rows> StalledReaders() {
   int runs = 0;
   double full_megabytes = 0;
   const Row delay = RunPairs(
-      "stalled_readers", "us", kPairs,
+      "stalled_readers", "us", kStalledPairs,
       [&] {
         if (runs++ == 1) full_megabytes = ResidentMegabytes();  // After the run not counted.
         return with.P99Microseconds();

@@ -9,7 +9,7 @@ namespace footing::bench {
 namespace {
 
 constexpr char kPingTag = (6 << 3) | 2;  // Envelope.ping, length-delimited.
-constexpr std::uint32_t kQueueTicks = 1024;
+constexpr std::uint32_t kViewerQueueTicks = 1024;
 
 std::string HelloBytes() {
   v1::Envelope message;
@@ -21,7 +21,7 @@ std::string HelloBytes() {
 std::string SubscribeBytes() {
   v1::Envelope message;
   message.mutable_subscribe()->set_policy(v1::QUEUE_POLICY_DROP_OLDEST);
-  message.mutable_subscribe()->set_queue_ticks(kQueueTicks);
+  message.mutable_subscribe()->set_queue_ticks(kViewerQueueTicks);
   return message.SerializeAsString();
 }
 

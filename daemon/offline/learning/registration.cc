@@ -12,7 +12,7 @@ namespace footing::learning {
 namespace {
 
 constexpr int kRounds = 8;
-constexpr double kOutlier = 2.5;  // Of the median distance.
+constexpr double kOutlierMedians = 2.5;  // Of the median distance.
 
 Eigen::Matrix2d Turn(double yaw_rad) {
   return body::AxisRotation(body::Axis::kZ, yaw_rad).topLeftCorner<2, 2>();
@@ -45,7 +45,7 @@ FloorPlacement PlaceFloor(const Eigen::Matrix2Xd& from, const Eigen::Matrix2Xd& 
     counts.clear();
     double squares = 0;
     for (Eigen::Index i = 0; i < off_m.size(); ++i) {
-      if (off_m(i) > kOutlier * *middle + 1e-9) continue;
+      if (off_m(i) > kOutlierMedians * *middle + 1e-9) continue;
       counts.push_back(i);
       squares += off_m(i) * off_m(i);
     }

@@ -9,7 +9,8 @@
 namespace footing::plot {
 namespace {
 
-constexpr double kPanelWidth = 240, kHeight = 380, kTop = 60, kBottom = 40, kMargin = 12;
+constexpr double kPanelWidth = 240, kPanelHeight = 380, kPanelTop = 60, kPanelBottom = 40,
+                 kMargin = 12;
 
 bool IsShown(const std::array<double, 4>& stick) {
   return std::all_of(stick.begin(), stick.end(), [](double value) { return std::isfinite(value); });
@@ -39,11 +40,11 @@ std::string StickPlot(const std::string& title, const std::vector<Panel>& panels
     extents[i].Take(panels[i].reference);
     extents[i].Take(panels[i].figure);
     scale = std::min({scale, (kPanelWidth - 2 * kMargin) / extents[i].width(),
-                      (kHeight - kTop - kBottom) / std::max(extents[i].top, 1e-9)});
+                      (kPanelHeight - kPanelTop - kPanelBottom) / std::max(extents[i].top, 1e-9)});
   }
   const double width = kPanelWidth * static_cast<double>(std::max<std::size_t>(panels.size(), 1));
-  const double ground = kHeight - kBottom;
-  std::string svg = Open(width, kHeight);
+  const double ground = kPanelHeight - kPanelBottom;
+  std::string svg = Open(width, kPanelHeight);
   svg += Label(width / 2, 22, "middle", title, "font-size='14'");
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const double middle = kPanelWidth * (static_cast<double>(i) + 0.5);
@@ -62,7 +63,7 @@ std::string StickPlot(const std::string& title, const std::vector<Panel>& panels
                 ground, "#aaa");
     draw(panels[i].reference, kReferenceColour, "stroke-width='7' opacity='0.22'");
     draw(panels[i].figure, kColours[0], "stroke-width='3'");
-    svg += Label(middle, kHeight - 14, "middle", panels[i].name);
+    svg += Label(middle, kPanelHeight - 14, "middle", panels[i].name);
   }
   return svg + "</svg>\n";
 }

@@ -13,11 +13,10 @@ namespace {
 
 using body::Landmark;
 
-constexpr double kLoadedN = 20;
 constexpr double kBentRad = 35 * kPi / 180;
 constexpr double kCrouchedShare = 0.9;  // Of the T-pose's height of the COM.
 constexpr double kArmMps = 0.5;
-constexpr double kMovingMps = 0.1;
+constexpr double kWalkingMps = 0.1;
 constexpr double kSpanS = 0.1;
 constexpr std::size_t kMostName = 60;
 constexpr std::string_view kHead = "begin_s,end_s,activity";
@@ -62,7 +61,7 @@ Rule RuleOf(const PoseRun& run, const std::vector<Shape>& shapes, std::size_t i,
   for (std::size_t side = 0; side < 2; ++side) {
     if (speed(shapes[low].wrists[side], shapes[high].wrists[side]) > kArmMps) return kArms;
   }
-  return speed(shapes[low].com_m, shapes[high].com_m) > kMovingMps ? kMoving : kStill;
+  return speed(shapes[low].com_m, shapes[high].com_m) > kWalkingMps ? kMoving : kStill;
 }
 
 Result<ActivitySpan> ParseSpan(motion::Lines& lines, std::string_view line) {

@@ -11,8 +11,6 @@ namespace {
 
 using body::Landmark;
 
-constexpr double kLoadedN = 20;
-
 double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }

@@ -5,14 +5,13 @@
 #include <limits>
 
 #include "common/body/kinematics.h"
+#include "daemon/offline/pose_run/pose_run.h"
 
 namespace footing::pose_run {
 namespace {
 
 namespace sensors = virtual_sensors;
 using sensors::kFeet;
-
-constexpr double kLoadedN = 20;
 
 /// The clip's frame in the scene's: columns before it, and how W of its file lies in W.
 struct Placed {

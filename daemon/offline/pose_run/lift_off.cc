@@ -5,7 +5,7 @@
 namespace footing::pose_run {
 namespace {
 
-constexpr double kTinyS = 1e-9;
+constexpr double kInstantS = 1e-9;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void LiftOffs::Add(std::size_t foot, double load_n, const Eigen::Vector3d& ankle
   }
   if (now.aloft) {
     now.aloft_s += step_s_;
-  } else if (now.stood_s > kStoodS - kTinyS) {
+  } else if (now.stood_s > kStoodS - kInstantS) {
     now.aloft = true;
     now.aloft_s = 0;
     now.next = 0;
@@ -59,7 +59,7 @@ void LiftOffs::Add(std::size_t foot, double load_n, const Eigen::Vector3d& ankle
   now.stood_s = 0;
   if (!now.aloft) return;
   aloft_.Add(leg);
-  if (now.next < kAfterS.size() && now.aloft_s > kAfterS[now.next] - kTinyS) {
+  if (now.next < kAfterS.size() && now.aloft_s > kAfterS[now.next] - kInstantS) {
     after_[now.next++].Add(leg);
   }
   const bool kicking = speed_mps > kKickMps;

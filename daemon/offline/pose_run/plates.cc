@@ -15,8 +15,7 @@ namespace {
 namespace sensors = virtual_sensors;
 using sensors::kFeet;
 
-constexpr double kLoadedN = 20;
-constexpr double kLeastS = 0.5;
+constexpr double kLeastCarriedS = 0.5;
 /// The first frames of a clip have the forces of leaving the T-pose in them: the low-pass of the
 /// motion spreads them so far.
 constexpr double kRunInS = 0.15;
@@ -65,7 +64,7 @@ Result<motion::Motion> InCommon(const motion::Motion& clip, const motion::Ground
   const double forces_end_s = forces.start_s + (samples - 1) / forces.rate_hz;
   const double begin_s = std::max(clip.start_s, forces.start_s);
   const double end_s = std::min(LastS(clip), forces_end_s);
-  if (end_s - begin_s < kLeastS) {
+  if (end_s - begin_s < kLeastCarriedS) {
     return InvalidData(forces_origin + ": its forces (" + Seconds(forces.start_s, forces_end_s) +
                        ") and the motion of " + origin + " (" + Seconds(clip.start_s, LastS(clip)) +
                        ") have less than half a second in common: give the same trial's");
@@ -263,7 +262,7 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
   }
   const std::vector<bool> carried = Carried(*common, *scene, felt);
   const Stretch stretch = Longest(carried);
-  if (static_cast<double>(stretch.count) < kLeastS * common->rate_hz) {
+  if (static_cast<double>(stretch.count) < kLeastCarriedS * common->rate_hz) {
     return InvalidData(forces_origin + ": never carries the body of " + origin +
                        " for half a second: give all plates and the person's --mass-kg");
   }

@@ -19,7 +19,6 @@ namespace {
 
 namespace sensors = virtual_sensors;
 
-constexpr double kLoadedN = 20;
 /// The calibration is over before the T-pose is.
 constexpr double kWeighedS = momentum::TPoseCalibration::kSeconds + 0.2;
 

@@ -22,6 +22,9 @@
 /// the truth: to judge the reconstruction on, and to train its models with.
 namespace footing::pose_run {
 
+/// A foot or plate under more than this is loaded: below, a centre of pressure is too coarse.
+inline constexpr double kLoadedN = 20;
+
 /// What tells of the hands.
 enum class HandDevice {
   kMove,     ///< Places with white noise.

@@ -12,11 +12,10 @@
 namespace footing::pose_run {
 namespace {
 
-constexpr double kLoadedN = 20;
-constexpr double kLeastS = 1;
+constexpr double kLeastStandingS = 1;
 constexpr double kWeightBand = 0.06;  // Of the mean load: breathing and sway stay far below.
 constexpr double kSwayM = 0.04;
-constexpr double kMassOff = 0.1;
+constexpr double kStandingMassOff = 0.1;
 constexpr double kMostOffsetM = 0.08;
 
 struct Felt {
@@ -72,7 +71,7 @@ Result<Eigen::Vector2d> StandingOffset(const motion::Motion& still,
     sum += com - felt.cop_m;
     ++count;
   }
-  if (count < kLeastS * kept->rate_hz) {
+  if (count < kLeastStandingS * kept->rate_hz) {
     return InvalidData(forces_origin + ": has less than a second in common with " + origin);
   }
   load_n /= count;
@@ -80,7 +79,7 @@ Result<Eigen::Vector2d> StandingOffset(const motion::Motion& still,
   if (most_n - least_n > 2 * kWeightBand * load_n || (most - least).norm() > 2 * kSwayM) {
     return InvalidData(origin + ": this person moves: give a trial of standing still");
   }
-  if (std::abs(load_n - weight_n) > kMassOff * weight_n) {
+  if (std::abs(load_n - weight_n) > kStandingMassOff * weight_n) {
     return InvalidData(forces_origin + ": the plates carry " +
                        std::to_string(std::lround(NewtonsToKilograms(load_n))) +
                        " kg of a person of " + std::to_string(std::lround(settings.mass_kg)) +

@@ -18,7 +18,7 @@ constexpr double kPieceS = 10;  // Of one person's clips: a fold where there is 
 constexpr int kPieceFolds = 5;
 constexpr int kDevices = 2;  // Sets of devices that each clip is felt with.
 
-struct Options {
+struct ArmOptions {
   MotionOptions motions;
   ModelOptions model;
 };
@@ -83,7 +83,7 @@ Result<learning::ArmExamples> Examples(const Clips& clips, std::uint64_t seed) {
   return examples;
 }
 
-int Run(const Options& options, const Shared& shared) {
+int Run(const ArmOptions& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
   const Result<Clips> clips = ReadClips(options.motions);
   if (!clips) return cli::Report(clips.error());
@@ -103,7 +103,7 @@ int Run(const Options& options, const Shared& shared) {
 }  // namespace
 
 void AddArmCommand(CLI::App& app, Shared& shared) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ArmOptions>();
   CLI::App* command =
       app.add_subcommand("arm", "Arm model: arm poses from a Wiimote with MotionPlus in each hand");
   AddMotionOptions(*command, options->motions);

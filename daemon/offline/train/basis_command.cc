@@ -12,7 +12,7 @@
 namespace footing::train {
 namespace {
 
-struct Options {
+struct BasisOptions {
   MotionOptions motions;
   OwnOptions own;
   ModelOptions model;
@@ -20,7 +20,7 @@ struct Options {
 
 constexpr double kEnoughS = 90;  // Of range of motion: section 6.
 
-int Run(const Options& options, const Shared& shared) {
+int Run(const BasisOptions& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
   const Result<TrainingSet> set =
       ReadTrainingSet(options.motions, options.own, kEnoughS, "for the basis of poses");
@@ -55,7 +55,7 @@ int Run(const Options& options, const Shared& shared) {
 }  // namespace
 
 void AddBasisCommand(CLI::App& app, Shared& shared) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BasisOptions>();
   CLI::App* command =
       app.add_subcommand("basis", "Pose basis: principal components of the poses in motion files");
   AddMotionOptions(*command, options->motions);

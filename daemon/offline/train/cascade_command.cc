@@ -14,14 +14,14 @@
 namespace footing::train {
 namespace {
 
-struct Options {
+struct CascadeOptions {
   DataOptions data;
   learning::CascadeOptions cascade;
   bool sigmoid = false;
   bool covariance = false;
 };
 
-int Run(const Options& options, const Shared& shared) {
+int Run(const CascadeOptions& options, const Shared& shared) {
   const Result<TrainingData> data = Load(options.data);
   if (!data) return cli::Report(data.error());
   learning::CascadeOptions cascade = options.cascade;
@@ -62,7 +62,7 @@ int Run(const Options& options, const Shared& shared) {
 }  // namespace
 
 void AddCascadeCommand(CLI::App& app, Shared& shared) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CascadeOptions>();
   learning::CascadeOptions& cascade = options->cascade;
   CLI::App* command =
       app.add_subcommand("cascade", "Cascade-correlation network for any table of numbers");

@@ -24,14 +24,14 @@ using learning::LoadClip;
 constexpr const char* kAxes[] = {"x", "y"};
 constexpr double kValidationPart = 0.2;  // The end of every clip.
 constexpr std::size_t kRoundsKept = 3;   // Whose examples are trained on, beside those with noise.
-constexpr double kEnoughS = 180;         // Of the paper's, section 4.2.
+constexpr double kEnoughComS = 180;      // Of the paper's, section 4.2.
 constexpr double kRestartS = 10;         // Own outputs go on so long in training.
 
 /// A hidden unit fits the people of the training: it makes the COM of a person left out worse
 /// forward (docs/models.md).
 constexpr int kHiddenMax = 0;
 
-struct Options {
+struct ComOptions {
   MotionOptions motions;
   OwnOptions own;
   ModelOptions model;
@@ -95,7 +95,8 @@ struct Lesson {
   std::vector<learning::Examples> rounds;  ///< Of own outputs, the latest last.
 };
 
-Lesson FirstLesson(const Recordings& recordings, int axis, double noise_m, const Options& options) {
+Lesson FirstLesson(const Recordings& recordings, int axis, double noise_m,
+                   const ComOptions& options) {
   learning::FeedbackNoise noise{.groups = learning::FeedbackColumns(),
                                 .common_sd = noise_m,
                                 .own_sd = noise_m / 10,
@@ -129,7 +130,7 @@ struct Trained {
   learning::Networks networks() const { return {axes[0].network, axes[1].network}; }
 };
 
-Trained TrainAxes(const std::array<Lesson, 2>& lessons, const Options& options) {
+Trained TrainAxes(const std::array<Lesson, 2>& lessons, const ComOptions& options) {
   Trained trained;
   for (const Lesson& lesson : lessons) {
     std::vector<const learning::Examples*> parts{&lesson.noisy};
@@ -143,7 +144,7 @@ Trained TrainAxes(const std::array<Lesson, 2>& lessons, const Options& options) 
 /// For each noise a pair of networks, and then, round by round, one that has also learned to go on
 /// from the outputs of those before it: the errors it meets in use are not white noise. Of all, the
 /// one that goes on best from its own outputs is kept. The error of one step says nothing of that.
-Trained Train(const Recordings& recordings, const Options& options) {
+Trained Train(const Recordings& recordings, const ComOptions& options) {
   Trained best;
   double best_mse = std::numeric_limits<double>::infinity();
   for (const double noise_m : options.noises_m) {
@@ -193,10 +194,10 @@ nlohmann::ordered_json Judge(const learning::Networks& networks,
       {"one_step_rms_m", rms(one_step)}, {"closed_loop_rms_m", rms(loop)}, {"cop_rms_m", rms(cop)}};
 }
 
-int Run(const Options& options, const Shared& shared) {
+int Run(const ComOptions& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
   const Result<TrainingSet> set =
-      ReadTrainingSet(options.motions, options.own, kEnoughS, "for the horizontal COM");
+      ReadTrainingSet(options.motions, options.own, kEnoughComS, "for the horizontal COM");
   if (!set) return cli::Report(set.error());
   const Clips* clips = &set->clips;
   std::vector<LoadClip> loads = Loads(clips->train, false, options.model.seed);
@@ -251,7 +252,7 @@ int Run(const Options& options, const Shared& shared) {
 }  // namespace
 
 void AddComCommand(CLI::App& app, Shared& shared) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ComOptions>();
   options->cascade.hidden_max = kHiddenMax;
   CLI::App* command = app.add_subcommand(
       "com", "COM model: networks for the horizontal COM, from motion files and simulated boards");

@@ -13,12 +13,12 @@
 namespace footing::train {
 namespace {
 
-struct Options {
+struct MlpOptions {
   DataOptions data;
   learning::MlpOptions mlp;
 };
 
-int Run(const Options& options, const Shared& shared) {
+int Run(const MlpOptions& options, const Shared& shared) {
   const Result<TrainingData> data = Load(options.data);
   if (!data) return cli::Report(data.error());
   const std::int64_t start_ns = clock::MonotonicNs();
@@ -52,7 +52,7 @@ int Run(const Options& options, const Shared& shared) {
 }  // namespace
 
 void AddMlpCommand(CLI::App& app, Shared& shared) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MlpOptions>();
   learning::MlpOptions& mlp = options->mlp;
   CLI::App* command = app.add_subcommand(
       "mlp", "Multilayer perceptron trained by back-propagation on the same table, for comparison");

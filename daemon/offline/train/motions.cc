@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = 256u << 20;
+constexpr std::size_t kMostMotionBytes = 256u << 20;
 constexpr Eigen::Index kFewestFrames = 30;
 
 std::string SubjectOf(const fs::path& path) {
@@ -52,7 +52,7 @@ Result<std::string> SkeletonBeside(const fs::path& path) {
 
 Result<Clip> ReadClip(const std::string& file, const std::string& skeleton) {
   const fs::path path(file);
-  const Result<std::string> text = config::ReadTextFile(file, kMostBytes);
+  const Result<std::string> text = config::ReadTextFile(file, kMostMotionBytes);
   if (!text) return text.error();
   motion_files::LoadOptions load;
   load.skeleton = skeleton;

@@ -16,12 +16,12 @@
 namespace footing::train {
 namespace {
 
-constexpr double kPieceS = 10;     // Frames of one piece are left out together.
-constexpr double kSettledS = 1.5;  // After the T-pose.
+constexpr double kPosePieceS = 10;  // Frames of one piece are left out together.
+constexpr double kSettledS = 1.5;   // After the T-pose.
 constexpr double kCellNoiseKg = 0.05;
-constexpr double kEnoughS = 90;  // Of range of motion: section 6.
+constexpr double kEnoughPoseS = 90;  // Of range of motion: section 6.
 
-struct Options {
+struct PoseOptions {
   MotionOptions motions;
   OwnOptions own;
   ModelOptions model;
@@ -42,7 +42,7 @@ Result<void> AddExamples(const motion::Motion& motion, const std::string& name,
   if (!made) return made.error();
   const double root_m = body::TPose(run->body.skeleton, run->body.landmarks)(2);
   const auto first = static_cast<std::size_t>((pose_run::kStandS + kSettledS) * settings.rate_hz);
-  const auto piece_frames = static_cast<std::size_t>(kPieceS * settings.rate_hz);
+  const auto piece_frames = static_cast<std::size_t>(kPosePieceS * settings.rate_hz);
   for (std::size_t i = 0; i < run->frames.size(); ++i) {
     const auto& output = made->Advance(run->frames[i].inputs);
     if (i < first) continue;
@@ -61,7 +61,7 @@ Result<void> AddExamples(const motion::Motion& motion, const std::string& name,
 Result<void> AddOwn(const OwnRecording& own, const reconstruction::Models& basis, int weight,
                     std::uint64_t seed, int piece, learning::PoseExamples& examples) {
   learning::OwnExampleSettings settings;
-  settings.piece_s = kPieceS;
+  settings.piece_s = kPosePieceS;
   settings.first_piece = piece;
   settings.settled_s = kSettledS;
   const auto image = learning::MirrorImage(own.take);
@@ -90,23 +90,23 @@ Result<learning::PoseExamples> Examples(const TrainingSet& set, const model::Mod
           seed + 2 * static_cast<std::uint64_t>(piece) + (mirrored ? 1 : 0), piece, examples);
       if (!added) return added.error();
     }
-    piece += 1 + static_cast<int>(clip.motion.duration_s() / kPieceS);
+    piece += 1 + static_cast<int>(clip.motion.duration_s() / kPosePieceS);
     log::Info("simulated " + clip.name);
   }
   for (const OwnRecording& own : set.own) {
     const auto added = AddOwn(own, *models, set.weight,
                               seed + 2 * static_cast<std::uint64_t>(piece), piece, examples);
     if (!added) return added.error();
-    piece += 1 + static_cast<int>(own.take.motion.duration_s() / kPieceS);
+    piece += 1 + static_cast<int>(own.take.motion.duration_s() / kPosePieceS);
     log::Info("replayed " + own.file.name);
   }
   return examples;
 }
 
-int Run(const Options& options, const Shared& shared) {
+int Run(const PoseOptions& options, const Shared& shared) {
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
   const Result<TrainingSet> set =
-      ReadTrainingSet(options.motions, options.own, kEnoughS, "for the basis of poses");
+      ReadTrainingSet(options.motions, options.own, kEnoughPoseS, "for the basis of poses");
   if (!set) return cli::Report(set.error());
   const Result<TrainedBasis> trained = TrainBasis(set->AllClips());
   if (!trained) return cli::Report(trained.error());
@@ -135,7 +135,7 @@ int Run(const Options& options, const Shared& shared) {
 }  // namespace
 
 void AddPoseCommand(CLI::App& app, Shared& shared) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PoseOptions>();
   CLI::App* command = app.add_subcommand(
       "pose", "Pose model: the pose basis and a network from boards and hands to a pose");
   AddMotionOptions(*command, options->motions);

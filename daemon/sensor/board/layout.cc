@@ -10,7 +10,7 @@ constexpr double kFarthestM = 5;
 constexpr double kLargestYawRad = 6.3;
 constexpr double kGapToleranceMm = 2;  // The gap is measured with a ruler, poses are worked out.
 
-std::string Number(double value) { return std::to_string(std::lround(value)); }
+std::string WholeNumber(double value) { return std::to_string(std::lround(value)); }
 
 bool Sound(const stream::BoardPose& pose) {
   return std::abs(pose.x_m) <= kFarthestM && std::abs(pose.y_m) <= kFarthestM &&
@@ -58,12 +58,12 @@ std::string Problem(const stream::BoardLayout& layout) {
   }
   const double gap_mm = GapM(layout.left, layout.right) * 1e3;
   if (gap_mm < -kGapToleranceMm) {
-    return "the boards overlap by " + Number(-gap_mm) +
+    return "the boards overlap by " + WholeNumber(-gap_mm) +
            " mm (each is 511 x 316 mm); move their poses apart";
   }
   if (std::abs(gap_mm - layout.gap_mm) > kGapToleranceMm) {
-    return "gap_mm is " + Number(layout.gap_mm) + ", but the poses leave " + Number(gap_mm) +
-           " mm; measure between the facing edges and make them agree";
+    return "gap_mm is " + WholeNumber(layout.gap_mm) + ", but the poses leave " +
+           WholeNumber(gap_mm) + " mm; measure between the facing edges and make them agree";
   }
   return "";
 }

@@ -14,7 +14,7 @@ Tare Refused(std::string problem) {
 }
 
 /// With one decimal.
-std::string Number(double value) {
+std::string OneDecimal(double value) {
   const long tenths = std::lround(std::abs(value) * 10);
   return (value < 0 && tenths > 0 ? "-" : "") + std::to_string(tenths / 10) + "." +
          std::to_string(tenths % 10);
@@ -40,13 +40,13 @@ double Total(const CornerForces& forces) {
 Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareConfig& config) {
   const std::size_t count = samples.size();
   if (count < 3 || static_cast<double>(count) < config.least_rate_hz * window_s) {
-    return Refused("only " + std::to_string(count) + " samples in " + Number(window_s) +
+    return Refused("only " + std::to_string(count) + " samples in " + OneDecimal(window_s) +
                    " s; is the board awake, near enough, and its battery full?");
   }
   const double span_s =
       static_cast<double>(samples.back().sampled_ns - samples.front().sampled_ns) * 1e-9;
   if (span_s < window_s - config.longest_gap_s) {
-    return Refused("only " + Number(span_s) + " s of samples, " + Number(window_s) +
+    return Refused("only " + OneDecimal(span_s) + " s of samples, " + OneDecimal(window_s) +
                    " are needed; wait and try again");
   }
   double longest_gap_s = 0;
@@ -55,7 +55,7 @@ Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareC
     longest_gap_s = std::max(longest_gap_s, static_cast<double>(step_ns) * 1e-9);
   }
   if (longest_gap_s > config.longest_gap_s) {
-    return Refused("a gap of " + Number(longest_gap_s) + " s in its samples; try again");
+    return Refused("a gap of " + OneDecimal(longest_gap_s) + " s in its samples; try again");
   }
   Tare tare;
   CornerForces sum{0, 0, 0, 0};
@@ -75,17 +75,17 @@ Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareC
   }
   tare.residual_n = std::sqrt(squares / n);
   if (std::abs(mean_n) > config.most_total_n) {
-    return Refused("the load is " + Number(mean_n) + " N (" + Number(mean_n / 9.80665) +
+    return Refused("the load is " + OneDecimal(mean_n) + " N (" + OneDecimal(mean_n / 9.80665) +
                    " kg), too much for an empty board; step off");
   }
   if (tare.residual_n > config.most_sd_n) {
-    return Refused("the load moves by " + Number(tare.residual_n) +
+    return Refused("the load moves by " + OneDecimal(tare.residual_n) +
                    " N; step off and leave the board alone");
   }
   const std::size_t third = count / 3;
   const double trend_n = MeanTotal(samples.last(third)) - MeanTotal(samples.first(third));
   if (std::abs(trend_n) > config.most_trend_n) {
-    return Refused("the load drifts by " + Number(trend_n) +
+    return Refused("the load drifts by " + OneDecimal(trend_n) +
                    " N; leave the board alone and try again");
   }
   tare.ok = true;

@@ -12,15 +12,15 @@ namespace {
 
 using reports::MoveModel;
 
-constexpr std::array<double, 3> kSigns = {-1, +1, -1};
+constexpr std::array<double, 3> kMoveSigns = {-1, +1, -1};
 constexpr std::array<double, 3> kMagneticSigns = {-1, -1, -1};
 
 constexpr double kRpmToRadps = 2 * kPi / 60;
 constexpr std::size_t kHeadBytes = 2;
-constexpr int kTopCount = 32767;
+constexpr int kMoveTopCount = 32767;
 
 /// Offsets of 16-bit vectors in the blob (psmoveapi and Monado agree).
-struct Layout {
+struct MoveLayout {
   std::array<std::size_t, 3> low;   ///< -1 g of x, y, z.
   std::array<std::size_t, 3> high;  ///< +1 g of x, y, z.
   std::array<std::size_t, 3> turn;  ///< Turning about x, y, z.
@@ -28,19 +28,19 @@ struct Layout {
   double turn_radps;
 };
 
-constexpr Layout kZcm1 = {
+constexpr MoveLayout kZcm1 = {
     {0x0a, 0x22, 0x10}, {0x16, 0x1c, 0x04}, {0x46, 0x4e, 0x56}, 0x2a, 80 * kRpmToRadps};
 constexpr std::size_t kZcm1BiasFactorAt = 0x6a;
-constexpr Layout kZcm2 = {
+constexpr MoveLayout kZcm2 = {
     {0x08, 0x14, 0x20}, {0x02, 0x0e, 0x1a}, {0x30, 0x36, 0x3c}, 0x26, 90 * kRpmToRadps};
 constexpr std::array<std::size_t, 3> kZcm2BackTurn = {0x42, 0x48, 0x4e};
 
 /// Real units: 4050 to 4480 counts a g, 5170 to 6830 counts at the turn.
-constexpr double kMinOneG = 2000;
-constexpr double kMaxOneG = 9000;
+constexpr double kMoveMinOneG = 2000;
+constexpr double kMoveMaxOneG = 9000;
 constexpr double kMinTurn = 2000;
 constexpr double kMaxTurn = 16000;
-constexpr double kMaxZero = 4000;
+constexpr double kMoveMaxZero = 4000;
 
 int Count(MoveModel model, reports::Bytes blob, std::size_t at) {
   const int raw = blob[at] | blob[at + 1] << 8;
@@ -57,22 +57,22 @@ double BiasFactor(reports::Bytes blob, std::size_t axis) {
   return factor >= 0.5f && factor <= 2 ? factor : 1;
 }
 
-std::string ReadAcceleration(MoveModel model, const Layout& layout, reports::Bytes blob,
+std::string ReadAcceleration(MoveModel model, const MoveLayout& layout, reports::Bytes blob,
                              MoveCalibration& calibration) {
   for (std::size_t i = 0; i < 3; ++i) {
     const int low = Count(model, blob, layout.low[i] + 2 * i);
     const int high = Count(model, blob, layout.high[i] + 2 * i);
     const double one_g = (high - low) / 2.0;
     const double zero = (high + low) / 2.0;
-    if (!(one_g > kMinOneG && one_g < kMaxOneG)) return "1 g is impossible";
-    if (std::abs(zero) > kMaxZero) return "zero point is impossible";
+    if (!(one_g > kMoveMinOneG && one_g < kMoveMaxOneG)) return "1 g is impossible";
+    if (std::abs(zero) > kMoveMaxZero) return "zero point is impossible";
     calibration.acceleration_zero_counts[i] = zero;
     calibration.acceleration_gain_mps2[i] = kStandardGravityMps2 / one_g;
   }
   return "";
 }
 
-std::string ReadGyroscope(MoveModel model, const Layout& layout, reports::Bytes blob,
+std::string ReadGyroscope(MoveModel model, const MoveLayout& layout, reports::Bytes blob,
                           MoveCalibration& calibration) {
   for (std::size_t i = 0; i < 3; ++i) {
     const int forth = Count(model, blob, layout.turn[i] + 2 * i);
@@ -86,7 +86,7 @@ std::string ReadGyroscope(MoveModel model, const Layout& layout, reports::Bytes 
       calibration.gyroscope_zero_counts[i] = bias;
     }
     if (!(turn > kMinTurn && turn < kMaxTurn)) return "gyroscope's scale is impossible";
-    if (std::abs(bias) > kMaxZero) return "gyroscope's bias is impossible";
+    if (std::abs(bias) > kMoveMaxZero) return "gyroscope's bias is impossible";
     calibration.gyroscope_gain_radps[i] = layout.turn_radps / turn;
   }
   return "";
@@ -99,7 +99,7 @@ std::string ReadBlob(MoveModel model, reports::Bytes blob, MoveCalibration& cali
   if (AllEqual(blob.subspan(kHeadBytes), 0xff)) return "all FF";
   if (AllEqual(blob.subspan(kHeadBytes), 0x00)) return "all 00";
   if (blob[0] != reports::kMoveCalibrationFeature || blob[1] != 0) return "does not begin rightly";
-  const Layout& layout = model == MoveModel::kZcm1 ? kZcm1 : kZcm2;
+  const MoveLayout& layout = model == MoveModel::kZcm1 ? kZcm1 : kZcm2;
   const std::string problem = ReadAcceleration(model, layout, blob, calibration);
   return problem.empty() ? ReadGyroscope(model, layout, blob, calibration) : problem;
 }
@@ -156,13 +156,13 @@ MoveReading Calibrate(const MoveCalibration& calibration, const reports::MoveRep
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     reading.specific_force_S_mps2[axis] =
-        kSigns[i] * (sample.acceleration[i] - calibration.acceleration_zero_counts[i]) *
+        kMoveSigns[i] * (sample.acceleration[i] - calibration.acceleration_zero_counts[i]) *
         calibration.acceleration_gain_mps2[i];
     reading.angular_velocity_S_radps[axis] =
-        kSigns[i] * (sample.angular_velocity[i] - calibration.gyroscope_zero_counts[i]) *
+        kMoveSigns[i] * (sample.angular_velocity[i] - calibration.gyroscope_zero_counts[i]) *
         calibration.gyroscope_gain_radps[i];
-    if (std::abs(int{sample.acceleration[i]}) >= kTopCount) reading.clipped_axes |= 1u << i;
-    if (std::abs(int{sample.angular_velocity[i]}) >= kTopCount) {
+    if (std::abs(int{sample.acceleration[i]}) >= kMoveTopCount) reading.clipped_axes |= 1u << i;
+    if (std::abs(int{sample.angular_velocity[i]}) >= kMoveTopCount) {
       reading.angular_velocity_clipped = true;
     }
   }

@@ -11,21 +11,21 @@ namespace {
 using stream::CalibrationOrigin;
 
 /// Bounds of what a working sensor can have; a real unit: zero near 500, 1 g 204 above.
-constexpr int kMinZero = 350;
-constexpr int kMaxZero = 680;
-constexpr int kMinOneG = 100;
-constexpr int kMaxOneG = 400;
+constexpr int kNunchukMinZero = 350;
+constexpr int kNunchukMaxZero = 680;
+constexpr int kNunchukMinOneG = 100;
+constexpr int kNunchukMaxOneG = 400;
 /// Half the way of a real stick is near 100 counts.
 constexpr int kMinStick = 40;
 
-constexpr std::array<double, 3> kSigns = {+1, -1, -1};
+constexpr std::array<double, 3> kNunchukSigns = {+1, -1, -1};
 
 constexpr std::size_t kStickAt = 8;
-constexpr std::size_t kChecksumAt = 14;
+constexpr std::size_t kNunchukChecksumAt = 14;
 
 /// Three 10-bit values: upper bits, then one byte of lower ones, x from bit 5 down as in the
 /// Wiimote's block.
-std::array<int, 3> TenBits(reports::Bytes block, std::size_t at) {
+std::array<int, 3> NunchukTenBits(reports::Bytes block, std::size_t at) {
   const int low = block[at + 3];
   return {block[at] << 2 | (low >> 4 & 3), block[at + 1] << 2 | (low >> 2 & 3),
           block[at + 2] << 2 | (low & 3)};
@@ -44,17 +44,17 @@ bool Possible(const NunchukCalibration::Stick& stick) {
 std::string ReadBlock(reports::Bytes block, NunchukCalibration& calibration) {
   if (AllEqual(block, 0x00)) return "all 00";
   if (AllEqual(block, 0xff)) return "all FF";
-  const std::uint8_t sum = SumChecksum(block.first(kChecksumAt));
-  if (sum != block[kChecksumAt] ||
-      static_cast<std::uint8_t>(sum + 0x55) != block[kChecksumAt + 1]) {
+  const std::uint8_t sum = SumChecksum(block.first(kNunchukChecksumAt));
+  if (sum != block[kNunchukChecksumAt] ||
+      static_cast<std::uint8_t>(sum + 0x55) != block[kNunchukChecksumAt + 1]) {
     return "checksum is wrong";
   }
-  const std::array<int, 3> zero = TenBits(block, 0);
-  const std::array<int, 3> one_g = TenBits(block, 4);
+  const std::array<int, 3> zero = NunchukTenBits(block, 0);
+  const std::array<int, 3> one_g = NunchukTenBits(block, 4);
   for (std::size_t i = 0; i < 3; ++i) {
     const int span = one_g[i] - zero[i];
-    if (zero[i] <= kMinZero || zero[i] >= kMaxZero) return "zero point is impossible";
-    if (span <= kMinOneG || span >= kMaxOneG) return "1 g is impossible";
+    if (zero[i] <= kNunchukMinZero || zero[i] >= kNunchukMaxZero) return "zero point is impossible";
+    if (span <= kNunchukMinOneG || span >= kNunchukMaxOneG) return "1 g is impossible";
   }
   calibration.zero_counts = zero;
   calibration.one_g_counts = one_g;
@@ -110,7 +110,7 @@ NunchukReading Calibrate(const NunchukCalibration& calibration,
     const double raw_g = static_cast<double>(raw - calibration.zero_counts[i]) /
                          (calibration.one_g_counts[i] - calibration.zero_counts[i]);
     reading.specific_force_S_mps2[static_cast<Eigen::Index>(i)] =
-        kSigns[i] * raw_g * kStandardGravityMps2;
+        kNunchukSigns[i] * raw_g * kStandardGravityMps2;
   }
   return reading;
 }

@@ -11,7 +11,7 @@
 namespace footing::devices {
 namespace {
 
-using Outcome = HidOpening::Outcome;
+using SearchOutcome = HidOpening::Outcome;
 
 constexpr int kSoonMs = 50;
 constexpr int kSlowlyMs = 1000;
@@ -27,21 +27,21 @@ constexpr const char* kUdevRule =
 std::string Trouble(const HidOpening& opening) {
   const std::string node = opening.identity.place + " (" + opening.identity.name + ")";
   switch (opening.outcome) {
-    case Outcome::kDenied:
+    case SearchOutcome::kDenied:
       return "cannot open " + node + ": " + opening.reason +
              "; put this line into /etc/udev/rules.d/70-footing.rules, join the group footing and "
              "reconnect the device: " +
              kUdevRule;
-    case Outcome::kInUse:
+    case SearchOutcome::kInUse:
       return node +
              " belongs to another footingd; stop that one, or run this one with --source "
              "stream:ADDRESS only";
-    case Outcome::kUnidentified:
+    case SearchOutcome::kUnidentified:
       return node + " has no serial; reconnect the device";
-    case Outcome::kFailed:
+    case SearchOutcome::kFailed:
       return "cannot open " + node + ": " + opening.reason + "; reconnect the device";
-    case Outcome::kOpen:
-    case Outcome::kNobodyThere:
+    case SearchOutcome::kOpen:
+    case SearchOutcome::kNobodyThere:
       break;
   }
   return "";
@@ -108,7 +108,7 @@ void HidSearch::Look(std::int64_t now_ns) {
 
 void HidSearch::Open(const HidNode& node, std::int64_t now_ns) {
   HidOpening opening = OpenHid(node);
-  if (opening.outcome != Outcome::kOpen) {
+  if (opening.outcome != SearchOutcome::kOpen) {
     const bool is_new = waiting_.try_emplace(node.path, Waiting{now_ns, false}).second;
     Waiting& waiting = waiting_[node.path];
     if (is_new || waiting.said || now_ns - waiting.since_ns < kNewNs) return;

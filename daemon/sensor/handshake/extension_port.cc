@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/units/units.h"
 #include "daemon/sensor/handshake/handshake.h"
 
 namespace footing::handshake {
@@ -15,8 +16,6 @@ constexpr double kUndoneSoonS =
     10;                         // A MotionPlus that was on for longer was switched off by chance.
 constexpr int kUndoneMost = 5;  // Switched off by somebody else so often in a row: theirs.
 constexpr int kChildBitPackets = 4;  // In a row: rubbish packets have the bit at random.
-
-std::int64_t Nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
 bool IsActiveMotionPlus(Extension extension) {
   return extension == Extension::kMotionPlus || extension == Extension::kMotionPlusNunchuk ||
@@ -105,7 +104,7 @@ void Handshake::TakeMotionPlusIdentity(const std::vector<std::uint8_t>& bytes) {
     return;
   }
   if (std::exchange(motion_plus_lost_, false) && found) {
-    const bool soon = now_ns_ - activated_ns_ < Nanoseconds(kUndoneSoonS);
+    const bool soon = now_ns_ - activated_ns_ < SecondsToNanoseconds(kUndoneSoonS);
     motion_plus_undone_ = soon ? motion_plus_undone_ + 1 : 1;
   }
   if (polling_) {
@@ -141,9 +140,9 @@ void Handshake::StartOver() {
 
 void Handshake::WantRedo(std::int64_t now_ns) {
   if (redo_due_) return;
-  if (now_ns - redone_ns_ > Nanoseconds(kQuietS)) redo_wait_s_ = 0;
+  if (now_ns - redone_ns_ > SecondsToNanoseconds(kQuietS)) redo_wait_s_ = 0;
   redo_due_ = true;
-  redo_ns_ = now_ns + Nanoseconds(std::max(redo_wait_s_, config_.settle_s));
+  redo_ns_ = now_ns + SecondsToNanoseconds(std::max(redo_wait_s_, config_.settle_s));
   redo_wait_s_ = std::clamp(2 * redo_wait_s_, config_.redo_min_s, config_.redo_max_s);
 }
 
@@ -161,7 +160,7 @@ void Handshake::Watch(std::int64_t now_ns, Outputs& outputs) {
       break;
   }
   if (config_.status_interval_s > 0 &&
-      now_ns - status_asked_ns_ >= Nanoseconds(config_.status_interval_s)) {
+      now_ns - status_asked_ns_ >= SecondsToNanoseconds(config_.status_interval_s)) {
     RequestStatus(now_ns);
   }
   if (status_due_ && writes_.Take(now_ns)) {
@@ -186,7 +185,7 @@ void Handshake::Watch(std::int64_t now_ns, Outputs& outputs) {
     }
   } else if (config_.motion_plus && !motion_plus_active_ && !motion_plus_given_up() &&
              now_ns >= poll_ns_) {
-    poll_ns_ = now_ns + Nanoseconds(config_.motion_plus_poll_s);
+    poll_ns_ = now_ns + SecondsToNanoseconds(config_.motion_plus_poll_s);
     polling_ = true;
     Enter(Step::kMotionPlusIdentity);
   }
@@ -233,7 +232,7 @@ void Handshake::WatchExtension(std::int64_t now_ns, const reports::Data& data) {
   } else if (child_ != Extension::kNunchuk || reports::DecodeNunchuk(bytes)) {
     extension_data_ns_ = now_ns;
   }
-  if (now_ns - extension_data_ns_ > Nanoseconds(kSenselessS)) {
+  if (now_ns - extension_data_ns_ > SecondsToNanoseconds(kSenselessS)) {
     extension_data_ns_ = now_ns;
     motion_plus_lost_ = motion_plus_lost_ || motion_plus_active_;
     WantRedo(now_ns);

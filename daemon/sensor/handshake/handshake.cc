@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/units/units.h"
 namespace footing::handshake {
 namespace {
 
@@ -14,8 +15,6 @@ using stream::DeviceKind;
 constexpr double kJumpS = 1;             // Time that passes unseen for longer is a suspension.
 constexpr double kNoAckTimeoutS = 0.05;  // Of a device that never acknowledged.
 constexpr std::int64_t kStatusSpacingNs = 1'000'000'000;
-
-std::int64_t Nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
 }  // namespace
 
@@ -60,7 +59,7 @@ void Handshake::Enter(Step step) {
 }
 
 void Handshake::Advance(std::int64_t now_ns, Outputs& outputs) {
-  if (now_ns_ != 0 && now_ns - now_ns_ > Nanoseconds(kJumpS)) {
+  if (now_ns_ != 0 && now_ns - now_ns_ > SecondsToNanoseconds(kJumpS)) {
     keep_alive_.Shift(now_ns);
     extension_data_ns_ = now_ns;
   }
@@ -72,14 +71,14 @@ void Handshake::Advance(std::int64_t now_ns, Outputs& outputs) {
     const double timeout_s = !by_ack         ? config_.reply_timeout_s
                              : acknowledges_ ? config_.ack_timeout_s
                                              : kNoAckTimeoutS;
-    if (now_ns - asked_ns_ < Nanoseconds(timeout_s)) return;
+    if (now_ns - asked_ns_ < SecondsToNanoseconds(timeout_s)) return;
     if (tries_ >= (by_ack && !acknowledges_ ? 1 : config_.tries)) {
       if (by_ack && !acknowledged_) acknowledges_ = false;
       Proceed();
     }
   }
   if (pause_s_ > 0) {
-    not_before_ns_ = now_ns + Nanoseconds(pause_s_);
+    not_before_ns_ = now_ns + SecondsToNanoseconds(pause_s_);
     pause_s_ = 0;
   }
   if (step_ != Step::kLive && now_ns >= not_before_ns_) Ask(now_ns, outputs);
@@ -120,7 +119,7 @@ void Handshake::Ask(std::int64_t now_ns, Outputs& outputs) {
     outputs.push_back({0x14, 0x00});
   }
   if (step_ == Step::kExtensionKey || step_ == Step::kMotionPlusActivate) {
-    dead_until_ns_ = now_ns + Nanoseconds(config_.dead_window_s);
+    dead_until_ns_ = now_ns + SecondsToNanoseconds(config_.dead_window_s);
     extension_ready_ = false;
   }
   outputs.push_back(Output());
@@ -301,7 +300,7 @@ void Handshake::BecomeLive() {
     ++extension_changes_;
   }
   published_ = extension();
-  poll_ns_ = now_ns_ + Nanoseconds(config_.motion_plus_poll_s);
+  poll_ns_ = now_ns_ + SecondsToNanoseconds(config_.motion_plus_poll_s);
   redone_ns_ = now_ns_;
   // Not ready is not none: what the status shows is looked at again.
   const bool shown = status_ && status_->extension;

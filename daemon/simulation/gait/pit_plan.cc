@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/gait/context.h"
+
 namespace footing::gait {
 namespace {
 
-constexpr double kGravityMps2 = 9.81;
 /// Costs of a plan in m/s of lift-off speed: a stride more, and a plan beyond its limits.
 constexpr double kStrideCostMps = 0.3;
 constexpr double kLeapCost = 1.5;

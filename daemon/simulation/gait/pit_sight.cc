@@ -16,7 +16,7 @@ constexpr double kSightM = 8;
 /// Pits that are crossed at a steeper angle than this are not planned for.
 constexpr double kLeastCosine = 0.5;
 
-Vector2d Ahead(double heading_rad) { return {std::cos(heading_rad), std::sin(heading_rad)}; }
+Vector2d AheadOnPath(double heading_rad) { return {std::cos(heading_rad), std::sin(heading_rad)}; }
 
 double GroundAtEnd(const stream::TrackSegment& segment) {
   return segment.start_m.z() + segment.length_m * std::sin(segment.slope_rad);
@@ -92,12 +92,12 @@ void LookForPit(const Context& context, GaitMemory& memory) {
   if (context.seen_ground == nullptr) return;
   const auto& segments = context.seen_ground->segments;
   const Vector2d p_W = context.body.p_WC.head<2>();
-  const Vector2d ahead = Ahead(memory.heading_rad);
+  const Vector2d ahead = AheadOnPath(memory.heading_rad);
   double nearest_m = kSightM;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (!segments[i].pit || (i > 0 && segments[i - 1].pit)) continue;
     const stream::TrackSegment& first = segments[i];
-    const Vector2d along = Ahead(first.heading_rad);
+    const Vector2d along = AheadOnPath(first.heading_rad);
     const Vector2d offset = p_W - first.start_m.head<2>();
     const double sideways_m = along.x() * offset.y() - along.y() * offset.x();
     if (std::fabs(sideways_m) > first.width_m || along.dot(ahead) < kLeastCosine) continue;
@@ -123,7 +123,7 @@ void LookForPit(const Context& context, GaitMemory& memory) {
 std::optional<PitAhead> PitFrom(const GaitMemory& memory, const Vector3d& p_W_m) {
   const PitMemory& seen = memory.pit;
   if (!seen.ahead) return std::nullopt;
-  const double cosine = std::max(kLeastCosine, seen.along_W.dot(Ahead(memory.heading_rad)));
+  const double cosine = std::max(kLeastCosine, seen.along_W.dot(AheadOnPath(memory.heading_rad)));
   const double near_m = (seen.near_W_m - p_W_m.head<2>()).dot(seen.along_W) / cosine;
   return PitAhead{near_m, near_m + seen.length_m / cosine, seen.rise_m};
 }

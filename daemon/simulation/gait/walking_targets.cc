@@ -53,7 +53,7 @@ LegTarget Supporting(const Context& context, const GaitMemory& memory, int leg, 
 }
 
 /// A foot that bounced off is held where it touched, and pressed down there.
-LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
+LegTarget WalkingLanding(const Context& context, const GaitMemory& memory, int leg) {
   LegTarget target;
   target.task = LegTask::kPlace;
   target.r_HF_W_m = memory.landed_W_m - context.body.legs[leg].p_WH;
@@ -70,7 +70,7 @@ Targets DoubleSupport(const Context& context, const GaitMemory& memory) {
   const double front_share = !front_touches || passed > 0.5 ? 1 : 0.5 + passed;
   Targets targets;
   targets.legs[front] = front_touches ? Supporting(context, memory, front, front_share)
-                                      : Landing(context, memory, front);
+                                      : WalkingLanding(context, memory, front);
   if (context.body.legs[rear].touching) {
     targets.legs[rear] = Supporting(context, memory, rear, 1 - passed);
   }

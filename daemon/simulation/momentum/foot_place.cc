@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStartSpreadM = 0.01;
 constexpr double kSoleMarginM = 0.005;  // The COP's own error at the edge of the sole.
-constexpr double kLeastCopN = 60;       // Below, the COP is too coarse for a limit.
+constexpr double kFootLimitLoadN = 60;  // Below, the COP is too coarse for a limit.
 constexpr double kMostSpreadM = 0.5;
 constexpr double kNoBoundM = 1e3;
 constexpr double kToldVarianceM2 = 1e-5;
@@ -64,7 +64,7 @@ void FootPlace::Advance(const Pressure& pressure, bool contact, bool landed, dou
     const double shift = i == 0 ? config_.ahead_m : 0;
     const double noise = config_.cop_noise_n_m / std::max(pressure.total_n, 1.0);
     axis.Update(Filter::Row(1, 1), cop - shift, noise * noise);
-    if (pressure.total_n < kLeastCopN) continue;
+    if (pressure.total_n < kFootLimitLoadN) continue;
     low_[i] = std::max(low_[i], cop - ahead[i] - kSoleMarginM);
     high_[i] = std::min(high_[i], cop + behind[i] + kSoleMarginM);
   }

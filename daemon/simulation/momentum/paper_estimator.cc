@@ -7,7 +7,7 @@ namespace {
 
 // The COP stands for the COM in the variance when nobody predicts it (facts: 2 to 7 cm).
 constexpr double kPredictedSpreadM = 0.04;
-constexpr double kLeastCopN = 20;
+constexpr double kPaperLeastCopN = 20;
 
 }  // namespace
 
@@ -32,7 +32,7 @@ const Estimate& PaperEstimator::Advance(const ContactLoads& loads,
     return estimate_;
   }
   estimate_.valid = loads.feet[0].valid && loads.feet[1].valid;
-  const Pressure both = PressureOf(loads, kLeastCopN);
+  const Pressure both = PressureOf(loads, kPaperLeastCopN);
   if (estimate_.valid) vertical_.Advance(both.total_n, step_s_);
 
   Eigen::Vector2d com = estimate_.p_WC_m.head<2>();
@@ -57,7 +57,7 @@ const Estimate& PaperEstimator::Advance(const ContactLoads& loads,
 
   std::array<Pressure, kFeet> pressures;
   for (std::size_t f = 0; f < kFeet; ++f) {
-    pressures[f] = PressureOf(loads.feet[f], kLeastCopN);
+    pressures[f] = PressureOf(loads.feet[f], kPaperLeastCopN);
     FootEstimate& foot = estimate_.feet[f];
     if (loads.feet[f].valid) {
       feet_[f].Advance(pressures[f], step_s_);

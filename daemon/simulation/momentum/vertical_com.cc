@@ -10,7 +10,7 @@
 namespace footing::momentum {
 namespace {
 
-using Filter = VerticalCom::Filter;
+using VerticalFilter = VerticalCom::Filter;
 
 constexpr int kGroups = VerticalInput::kGroups;
 constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
@@ -50,22 +50,22 @@ VerticalCom::VerticalCom(const VerticalConfig& config, double mass_kg, double st
 }
 
 void VerticalCom::Start(const VerticalInput& mean) {
-  Filter::Matrix p = Filter::Matrix::Zero();
+  VerticalFilter::Matrix p = VerticalFilter::Matrix::Zero();
   p(0, 0) = kStartHeightM * kStartHeightM;
   p(1, 1) = kStartVelocityMps * kStartVelocityMps;
   p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
   p.bottomRightCorner<kGroups, kGroups>().setConstant(config_.weight_spread *
                                                       config_.weight_spread);
   for (int i = 0; i < kGroups; ++i) p(3 + i, 3 + i) += config_.gain_spread * config_.gain_spread;
-  filter_.Start(Filter::Vector::Zero(), p);
+  filter_.Start(VerticalFilter::Vector::Zero(), p);
   // In the T-pose all gains together give the weight, but for what the mass is wrong by.
-  Filter::Row h = Filter::Row::Zero();
+  VerticalFilter::Row h = VerticalFilter::Row::Zero();
   for (int i = 0; i < kGroups; ++i) h(3 + i) = mean.load_n[static_cast<std::size_t>(i)] / mass_kg_;
   overweight_ = h / kStandardGravityMps2;
   h(2) = 1;
   const double error = config_.mass_error_kg * kStandardGravityMps2 / mass_kg_;
   filter_.Update(h, 0, error * error);
-  filter_.Remember(Filter::Row::Unit(0));
+  filter_.Remember(VerticalFilter::Row::Unit(0));
   started_ = false;
 }
 
@@ -102,7 +102,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
       since_still_look_s_ = 0;
       const double variance = config_.still_velocity_mps * config_.still_velocity_mps;
       const double s = filter_.p()(1, 1) + variance;
-      Score(-0.5 * (filter_.Update(Filter::Row::Unit(1), 0, variance) + std::log(s)));
+      Score(-0.5 * (filter_.Update(VerticalFilter::Row::Unit(1), 0, variance) + std::log(s)));
     }
   }
   score_ *= std::exp(-h / kScoreTimeS);
@@ -113,7 +113,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
   }
   last_ = input;
   last_raw_mps2_ = raw;
-  filter_.Remember(Filter::Row::Unit(0));
+  filter_.Remember(VerticalFilter::Row::Unit(0));
 }
 
 void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
@@ -136,8 +136,8 @@ void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
 
 void VerticalCom::Anchor(bool loaded) {
   if (!loaded) return;
-  const Filter::Row row = Filter::Row::Unit(0);
-  const Filter::Scalar now = filter_.Of(row);
+  const VerticalFilter::Row row = VerticalFilter::Row::Unit(0);
+  const VerticalFilter::Scalar now = filter_.Of(row);
   const double upright = config_.upright_share;
   MixtureMoments product = TimesMixture(
       {now.mean, now.variance}, {{{upright, -config_.upright_below_m, config_.upright_spread_m},
@@ -164,34 +164,34 @@ double VerticalCom::weighed_kg() const {
 void VerticalCom::Reweigh() {
   // (1 - gain) / mass of each group stays what it was.
   const double share = mass_kg_ / weighed_kg();
-  Filter::Vector shift = Filter::Vector::Zero();
+  VerticalFilter::Vector shift = VerticalFilter::Vector::Zero();
   for (int i = 3; i < kStates; ++i) shift(i) = 1 - (1 - filter_.x()(i)) / share - filter_.x()(i);
-  filter_.Predict(Filter::Matrix::Identity(), shift, Filter::Matrix::Zero());
+  filter_.Predict(VerticalFilter::Matrix::Identity(), shift, VerticalFilter::Matrix::Zero());
   mass_kg_ /= share;
   overweight_ *= share;
   last_raw_mps2_ = Total(last_) / mass_kg_ - kStandardGravityMps2;
 }
 
 void VerticalCom::Coast() {
-  Filter::Matrix a = Filter::Matrix::Identity();
+  VerticalFilter::Matrix a = VerticalFilter::Matrix::Identity();
   a(0, 1) = step_s_;
-  Filter::Matrix q = q_;
+  VerticalFilter::Matrix q = q_;
   q(1, 1) += kCoastMps2 * kCoastMps2 * step_s_ * step_s_;
   u_.setZero();
   filter_.Predict(a, u_, q);
   started_ = false;
   still_s_ = 0;
   still_ = false;
-  filter_.Remember(Filter::Row::Unit(0));
+  filter_.Remember(VerticalFilter::Row::Unit(0));
 }
 
-std::vector<Filter::Scalar> SmoothVertical(const VerticalConfig& config, double mass_kg,
-                                           double step_s, const VerticalInput& mean,
-                                           const std::vector<VerticalInput>& inputs) {
+std::vector<VerticalFilter::Scalar> SmoothVertical(const VerticalConfig& config, double mass_kg,
+                                                   double step_s, const VerticalInput& mean,
+                                                   const std::vector<VerticalInput>& inputs) {
   if (inputs.empty()) return {};
   struct Step {
-    Filter::Vector x, u;
-    Filter::Matrix p, a;
+    VerticalFilter::Vector x, u;
+    VerticalFilter::Matrix p, a;
   };
   VerticalCom com(config, mass_kg, step_s);
   com.Start(mean);
@@ -201,14 +201,14 @@ std::vector<Filter::Scalar> SmoothVertical(const VerticalConfig& config, double 
     com.Advance(input);
     steps.push_back({com.filter().x(), com.input_shift(), com.filter().p(), com.transition()});
   }
-  std::vector<Filter::Scalar> out(steps.size());
-  Filter::Vector x = steps.back().x;
-  Filter::Matrix p = steps.back().p;
+  std::vector<VerticalFilter::Scalar> out(steps.size());
+  VerticalFilter::Vector x = steps.back().x;
+  VerticalFilter::Matrix p = steps.back().p;
   for (std::size_t i = steps.size(); i-- > 0;) {
     if (i + 1 < steps.size()) {
       const Step& next = steps[i + 1];
-      const Filter::Matrix p_ahead = next.a * steps[i].p * next.a.transpose() + com.noise();
-      const Filter::Matrix gain = p_ahead.ldlt().solve(next.a * steps[i].p).transpose();
+      const VerticalFilter::Matrix p_ahead = next.a * steps[i].p * next.a.transpose() + com.noise();
+      const VerticalFilter::Matrix gain = p_ahead.ldlt().solve(next.a * steps[i].p).transpose();
       x = steps[i].x + gain * (x - (next.a * steps[i].x + next.u));
       p = steps[i].p + gain * (p - p_ahead) * gain.transpose();
     }

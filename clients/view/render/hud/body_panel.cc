@@ -9,8 +9,8 @@
 namespace footing::render {
 namespace {
 
-constexpr float kWidth = 300;
-constexpr float kHeight = 316;
+constexpr float kBodyPanelWidth = 300;
+constexpr float kBodyPanelHeight = 316;
 constexpr double kSureM = 0.03;    // Two standard deviations of a foot that stands.
 constexpr double kUnsureM = 0.15;  // Of one that is only guessed.
 constexpr ImU32 kDark = IM_COL32(14, 20, 26, 255);
@@ -81,8 +81,8 @@ float DrawBodyPanel(const Paint& p, ImVec2 at, const scene::CharacterPose& pose,
   const float s = p.scale;
   const scene::BodyState& body = *pose.body;
   const bool ghost = !picture.ghosts.balls.empty() && body.calibrated;
-  const float height = (kHeight + (ghost ? 22 : 0)) * s;
-  const Box in = p.Panel({at, {at.x + kWidth * s, at.y + height}});
+  const float height = (kBodyPanelHeight + (ghost ? 22 : 0)) * s;
+  const Box in = p.Panel({at, {at.x + kBodyPanelWidth * s, at.y + height}});
   const std::string who = body.subject.empty() ? "no subject file" : body.subject;
   p.Write(p.fonts.heading, {in.low.x, in.low.y - 2 * s},
           body.subject.empty() ? colour::kFaint : colour::kText,

@@ -10,8 +10,8 @@
 namespace footing::render {
 namespace {
 
-constexpr float kWidth = 300;
-constexpr float kHeight = 196;
+constexpr float kCharacterPanelWidth = 300;
+constexpr float kCharacterPanelHeight = 196;
 constexpr float kPhaseHeight = 70;
 constexpr double kFullSpeedMps = 4;
 constexpr double kFullTurnRad = DegreesToRadians(15);
@@ -113,8 +113,8 @@ float DrawCharacterPanel(const Paint& p, ImVec2 at, const scene::Model& model,
                          const scene::CharacterPose& pose, bool phases, std::int64_t now_ns) {
   const float s = p.scale;
   const stream::GaitState& gait = pose.gait;
-  const float height = (kHeight + (phases ? kPhaseHeight : 0)) * s;
-  const Box in = p.Panel({at, {at.x + kWidth * s, at.y + height}});
+  const float height = (kCharacterPanelHeight + (phases ? kPhaseHeight : 0)) * s;
+  const Box in = p.Panel({at, {at.x + kCharacterPanelWidth * s, at.y + height}});
   const ImU32 ink = ColourOf(gait.gait);
   p.Write(p.fonts.title, {in.low.x, in.low.y - 8 * s}, ink, scene::GaitTitle(gait.gait));
   DrawTurn(p, {in.high.x - 44 * s, in.low.y + 42 * s}, 38 * s, gait.commanded_turn_rad);

@@ -8,7 +8,7 @@
 namespace footing::render {
 namespace {
 
-constexpr float kWidth = 292;
+constexpr float kDevicePanelWidth = 292;
 constexpr float kLinkRow = 20;
 constexpr float kDeviceRow = 40;
 constexpr float kResponseRow = 52;
@@ -110,7 +110,7 @@ void DrawDevicePanel(const Paint& p, ImVec2 at, const scene::Model& model, std::
                         (model.last_response ? kResponseRow : 0) +
                         kDeviceRow * static_cast<float>(devices) + (devices > 0 ? 8 : 0)) *
                        s;
-  const Box in = p.Panel({{at.x - kWidth * s, at.y}, {at.x, at.y + height}});
+  const Box in = p.Panel({{at.x - kDevicePanelWidth * s, at.y}, {at.x, at.y + height}});
   float y = in.low.y;
   for (const scene::LinkReport& link : model.links) {
     DrawLink(p, in, y, link);

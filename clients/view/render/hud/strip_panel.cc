@@ -10,9 +10,9 @@
 namespace footing::render {
 namespace {
 
-constexpr std::size_t kMaxDevices = 4;
+constexpr std::size_t kMaxStripDevices = 4;
 constexpr float kDeviceHeight = 180;
-constexpr float kPhaseHeight = 30;
+constexpr float kStripPhaseHeight = 30;
 constexpr float kLeastRowHeight = 24;
 
 /// A row of curves over the same range.
@@ -196,11 +196,11 @@ void DrawPhase(const Paint& p, const Box& box, const scene::Strip& phase, std::i
 
 void DrawStripPanel(const Paint& p, const Box& box, const scene::StripSet& strips,
                     std::int64_t now_ns) {
-  const std::size_t devices = std::min(strips.devices.size(), kMaxDevices);
+  const std::size_t devices = std::min(strips.devices.size(), kMaxStripDevices);
   if (devices == 0) return;
   const auto count = static_cast<float>(devices);
   const float s = p.scale, gap = 10 * s;
-  const float phase_height = strips.phases_rad.empty() ? 0 : kPhaseHeight * s + gap;
+  const float phase_height = strips.phases_rad.empty() ? 0 : kStripPhaseHeight * s + gap;
   const float room = box.height() - 28 * s - phase_height;
   const float height = std::min(kDeviceHeight * s, (room - gap * (count - 1)) / count);
   const float used = count * (height + gap) - gap + phase_height + 28 * s;

@@ -68,7 +68,7 @@ struct Change {
   double slower_hz = 1;
   Right right;
 };
-using Draw = std::function<Change(noise::Random&)>;
+using DrawChange = std::function<Change(noise::Random&)>;
 
 /// The delay of every trial with the frequency of its slower motion.
 struct Sample {
@@ -76,7 +76,7 @@ struct Sample {
   double slower_hz = 1;
 };
 
-std::vector<Sample> RunTrials(int trials, std::uint64_t seed, const Draw& draw) {
+std::vector<Sample> RunTrials(int trials, std::uint64_t seed, const DrawChange& draw) {
   noise::Random random(seed);
   std::vector<Sample> samples;
   for (int i = 0; i < trials; ++i) {
@@ -138,14 +138,14 @@ nlohmann::json CyclesRow(const std::vector<Sample>& samples) {
 double DrawFrequency(noise::Random& random) { return random.Uniform(0.5, 4.5); }
 double DrawAmplitude(noise::Random& random) { return random.Uniform(4, 18); }
 
-Draw FromStill(const std::function<Right(double frequency_hz)>& right) {
+DrawChange FromStill(const std::function<Right(double frequency_hz)>& right) {
   return [right](noise::Random& random) {
     const double f = DrawFrequency(random);
     return Change{Still(), Swing(f, kPi, DrawAmplitude(random), 4 / f), f, right(f)};
   };
 }
 
-Draw ToStill() {
+DrawChange ToStill() {
   return [](noise::Random& random) {
     const double f = DrawFrequency(random);
     const double swung_s = random.Uniform(4, 5) / f;
@@ -157,7 +157,7 @@ Draw ToStill() {
   };
 }
 
-Draw FrequencyJump(double from_hz, double to_hz) {
+DrawChange FrequencyJump(double from_hz, double to_hz) {
   return [from_hz, to_hz](noise::Random& random) {
     const double amplitude = DrawAmplitude(random);
     const double slower_hz = std::min(from_hz, to_hz);
@@ -166,7 +166,7 @@ Draw FrequencyJump(double from_hz, double to_hz) {
   };
 }
 
-Draw PhaseJump(double from_rad, double to_rad) {
+DrawChange PhaseJump(double from_rad, double to_rad) {
   return [from_rad, to_rad](noise::Random& random) {
     const double f = DrawFrequency(random);
     const double amplitude = DrawAmplitude(random);
@@ -180,7 +180,7 @@ Draw PhaseJump(double from_rad, double to_rad) {
 nlohmann::json MeasureDelays(int trials, std::uint64_t seed) {
   const auto start_s = [](const Sample&) { return 0.3; };
   const auto stop_s = [](const Sample& s) { return s.slower_hz >= 1.5 ? 0.3 : 0.45 / s.slower_hz; };
-  const auto run = [&](const Draw& draw) { return RunTrials(trials, seed, draw); };
+  const auto run = [&](const DrawChange& draw) { return RunTrials(trials, seed, draw); };
   const auto moving = FromStill([](double) { return MovingIs(true); });
   const auto frequency = FromStill([](double f) { return FrequencyIs(f); });
   const auto phase = FromStill([](double) { return PhaseIs(kPi); });

@@ -12,7 +12,7 @@
 namespace footing::eval {
 namespace {
 
-constexpr std::size_t kMostBytes = 256u << 20;
+constexpr std::size_t kMostSampleBytes = 256u << 20;
 /// No controller measures more than this (about 20 g); a larger number is in another unit.
 constexpr double kMostMps2 = 200;
 constexpr double kGrtZero = 0.5;
@@ -71,7 +71,7 @@ double FitScale(const GrtRecording& recording) {
 }  // namespace
 
 Result<std::vector<Eigen::Vector3d>> ReadAccelerationCsv(const std::string& path) {
-  const Result<std::string> text = config::ReadTextFile(path, kMostBytes);
+  const Result<std::string> text = config::ReadTextFile(path, kMostSampleBytes);
   if (!text) return text.error();
   std::istringstream lines(*text);
   std::vector<Eigen::Vector3d> rows;
@@ -114,7 +114,7 @@ std::vector<std::uint32_t> ClippedAxes(const std::vector<Eigen::Vector3d>& rows,
 }
 
 Result<GrtRecording> ReadGrt(const std::string& path) {
-  const Result<std::string> text = config::ReadTextFile(path, kMostBytes);
+  const Result<std::string> text = config::ReadTextFile(path, kMostSampleBytes);
   if (!text) return text.error();
   std::istringstream lines(*text);
   GrtRecording recording;

@@ -23,7 +23,7 @@
 namespace footing::eval {
 namespace {
 
-struct Options {
+struct GaitOptions {
   std::string gait = "walk";
   double speed_mps = 0;
   std::optional<double> height_m;
@@ -55,14 +55,14 @@ struct Trials {
   std::uint64_t state_hash = 0;
 };
 
-double HeightOf(const Options& options) {
+double HeightOf(const GaitOptions& options) {
   constexpr double kHeightM = 0.2;
   const double fallback_m =
       options.pit_m ? SensibleHeight(*options.pit_m, options.speed_mps) : kHeightM;
   return options.height_m.value_or(fallback_m);
 }
 
-biped::GaitCommand CommandOf(const Options& options) {
+biped::GaitCommand CommandOf(const GaitOptions& options) {
   return gait::Limited({.gait = stream::GaitNamed(options.gait),
                         .speed_mps = options.speed_mps,
                         .height_m = HeightOf(options),
@@ -70,20 +70,20 @@ biped::GaitCommand CommandOf(const Options& options) {
 }
 
 /// The kick comes once the speed is reached, at a moment of the cycle that is drawn or given.
-double PushTime(const Options& options, Random& random) {
+double PushTime(const GaitOptions& options, Random& random) {
   constexpr double kCycleS = 0.74;  // Two walking steps.
   const double phase = options.push_phase >= 0 ? options.push_phase : random.Uniform(0, 1);
   return std::min(0.3 * options.seconds, 3 + options.speed_mps) + phase * kCycleS;
 }
 
-std::optional<GroundCourse> GroundCourseOf(const Options& options, double length_m,
+std::optional<GroundCourse> GroundCourseOf(const GaitOptions& options, double length_m,
                                            Random& random) {
   if (options.step_m != 0) return MakeStepCourse(options.step_m, length_m, random);
   if (options.slope_deg == 0) return std::nullopt;
   return MakeSlopeCourse(options.slope_deg, options.speed_mps, length_m, random);
 }
 
-Result<void> RunTrial(const Options& options, std::uint64_t seed, Trials& trials) {
+Result<void> RunTrial(const GaitOptions& options, std::uint64_t seed, Trials& trials) {
   Random random(seed);
   const double length_m = options.speed_mps * options.seconds;
   const PitCourse course =
@@ -141,7 +141,7 @@ Result<void> RunTrial(const Options& options, std::uint64_t seed, Trials& trials
   return {};
 }
 
-Result<Trials> RunTrials(const Options& options, std::uint64_t seed) {
+Result<Trials> RunTrials(const GaitOptions& options, std::uint64_t seed) {
   Trials trials;
   trials.survived_s_min = options.seconds;
   const std::int64_t wall_ns = clock::MonotonicNs();
@@ -160,7 +160,7 @@ std::string Hex(std::uint64_t value) {
   return text.data();
 }
 
-nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const Trials& trials,
+nlohmann::ordered_json Report(const GaitOptions& options, std::uint64_t seed, const Trials& trials,
                               double step_cost_ratio) {
   nlohmann::ordered_json report{{"gait", options.gait},
                                 {"speed_mps", options.speed_mps},
@@ -192,7 +192,7 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
   return report;
 }
 
-int RunSweep(const Options& options, std::uint64_t seed, bool json) {
+int RunSweep(const GaitOptions& options, std::uint64_t seed, bool json) {
   const PushSweep sweep{.command = CommandOf(options),
                         .directions = options.push_directions,
                         .phases = options.push_phases,
@@ -216,7 +216,7 @@ int RunSweep(const Options& options, std::uint64_t seed, bool json) {
   return 0;
 }
 
-int Run(const Options& options, bool json) {
+int Run(const GaitOptions& options, bool json) {
   if (stream::GaitNamed(options.gait) == stream::Gait::kUnspecified) {
     return cli::Report(UsageError("--gait " + options.gait + ": must be step, walk, run or jump"));
   }
@@ -245,7 +245,7 @@ int Run(const Options& options, bool json) {
 
 void AddGaitCommand(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand("gait", "Trials of one gait, each with one push");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GaitOptions>();
   command->add_option("--gait", options->gait, "Gait: step, walk, run or jump")->required();
   command->add_option("--speed", options->speed_mps, "Commanded speed, m/s")
       ->check(CLI::Range(0.0, 6.0));

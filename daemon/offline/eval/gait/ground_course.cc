@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kWidthM = 12;  ///< Nobody steers: there is room to drift.
 constexpr double kBehindM = 500;
-constexpr double kUprightS = 1;
+constexpr double kGroundUprightS = 1;
 constexpr double kSettlingS = 5;
 constexpr double kKickWithinM = 3;
 constexpr double kKickWithinS = 1;
@@ -74,7 +74,7 @@ biped::GaitCommand GroundPilot::Command(const engine::EngineOutput& output) {
   }
   const bool beyond =
       !reached_s_.empty() && x_m > course_.edges_m[static_cast<std::size_t>(crossed_)];
-  if (beyond && output.time_s - reached_s_.front() > kUprightS) {
+  if (beyond && output.time_s - reached_s_.front() > kGroundUprightS) {
     reached_s_.erase(reached_s_.begin());
     ++crossed_;
   }

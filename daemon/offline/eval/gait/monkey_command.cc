@@ -20,7 +20,7 @@ using tracking::Tracking;
 
 constexpr std::array kGaits{Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
 
-struct Options {
+struct MonkeyOptions {
   double seconds = 600;
   int trials = 1;
   std::string seed = "1";
@@ -51,7 +51,7 @@ biped::GaitCommand DrawCommand(bool gentle, Random& random) {
 }
 
 /// One trial; a fall is put back by the engine and the trial goes on.
-Result<void> RunTrial(const Options& options, std::uint64_t seed, Outcome& outcome) {
+Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, Outcome& outcome) {
   Result<engine::GaitEngine> engine = NewEngine();
   if (!engine) return engine.error();
   Random random(seed);
@@ -85,7 +85,7 @@ Result<void> RunTrial(const Options& options, std::uint64_t seed, Outcome& outco
   return {};
 }
 
-int Run(const Options& options, bool json) {
+int RunMonkey(const MonkeyOptions& options, bool json) {
   const Result<std::uint64_t> seed = ParseSeed(options.seed);
   if (!seed) return cli::Report(seed.error());
   Outcome outcome;
@@ -122,14 +122,14 @@ int Run(const Options& options, bool json) {
 void AddMonkeyCommand(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand(
       "monkey", "Trials with random gait, speed, height and turn every 0.5 to 4 s");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MonkeyOptions>();
   command->add_option("--seconds", options->seconds, "Duration of each trial, s")
       ->check(CLI::Range(1.0, 36000.0));
   command->add_option("--trials", options->trials, "Number of trials")->check(CLI::Range(1, 10000));
   command->add_option("--seed", options->seed, "Seed: a number, or random");
   command->add_flag("--gentle", options->gentle,
                     "Limit runs to 3 m/s and walks to 1 m/s, in place of 4 and 1.3");
-  command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
+  command->callback([options, &shared] { shared.exit_code = RunMonkey(*options, shared.json); });
 }
 
 }  // namespace footing::eval

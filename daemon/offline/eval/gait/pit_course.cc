@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kRunUpMinM = 16;
 constexpr double kRunUpMaxM = 20;
-constexpr double kBehindM = 2000;
-constexpr double kUprightS = 2;
+constexpr double kBehindPitM = 2000;
+constexpr double kPitUprightS = 2;
 /// The pilot keeps to the middle: heading by sideways distance, turned a little a step.
 constexpr double kSteeringRadPerM = 0.1;
 constexpr double kHeadingLimitRad = 0.1;
@@ -34,7 +34,7 @@ PitCourse MakePitCourse(double width_m, double length_m, Random& random) {
     course.pits.push_back({x_m, x_m + width_m});
     x_m += width_m;
   }
-  segments.push_back({{"length_m", kBehindM}});
+  segments.push_back({{"length_m", kBehindPitM}});
   course.track = nlohmann::json{{"version", 1}, {"name", "pits"}, {"segments", segments}}.dump();
   return course;
 }
@@ -52,7 +52,7 @@ biped::GaitCommand PitPilot::Command(const engine::EngineOutput& output) {
   }
   const bool lands = output.contacts[0].touching || output.contacts[1].touching;
   if (passed_s_ >= 0 && lands) jumping_ = false;
-  if (passed_s_ >= 0 && output.time_s - passed_s_ > kUprightS) {
+  if (passed_s_ >= 0 && output.time_s - passed_s_ > kPitUprightS) {
     ++next_;
     ++crossed_;
     over_ = false;

@@ -9,9 +9,9 @@
 namespace footing::eval {
 namespace {
 
-constexpr double kSettleS = 4;  ///< And a second for each m/s.
-constexpr double kKickNs = 2;
-constexpr double kUprightS = 5;
+constexpr double kPushSettleS = 4;  ///< And a second for each m/s.
+constexpr double kPushKickNs = 2;
+constexpr double kPushUprightS = 5;
 constexpr double kLargestNs = 64;
 constexpr double kResolutionNs = 1;
 constexpr double kNoCycleS = 5;  ///< A cycle that takes longer is none.
@@ -55,8 +55,8 @@ class Cycle {
 Result<void> Cycle::Record(int phases, Random& random) {
   Walker walker = NewWalker();
   Run(walker, random.Uniform(1, 2));
-  walker.Push(kKickNs, random.Uniform(-kPi, kPi));
-  Run(walker, kSettleS + command_.speed_mps + random.Uniform(0, 1));
+  walker.Push(kPushKickNs, random.Uniform(-kPi, kPi));
+  Run(walker, kPushSettleS + command_.speed_mps + random.Uniform(0, 1));
   const double start_s = NextTouchdown(walker);
   double end_s = NextTouchdown(walker);
   if (command_.gait != stream::Gait::kJump) end_s = NextTouchdown(walker);
@@ -75,7 +75,7 @@ bool Cycle::Falls(int phase, double impulse_ns, double direction_rad) {
   engine_.Restore(state);
   Walker walker = NewWalker();
   walker.Push(impulse_ns, direction_rad, ++pushes_);
-  Run(walker, engine_.Output().time_s + kUprightS);
+  Run(walker, engine_.Output().time_s + kPushUprightS);
   return walker.fell();
 }
 

@@ -10,10 +10,11 @@ namespace {
 using stream::Gait;
 
 constexpr double kKickTimeS = 1.5;
-constexpr double kKickNs = 2;
+constexpr double kTransitionKickNs = 2;
 constexpr double kLatestReachS = 10;
-constexpr double kUprightS = 5;
-constexpr double kSettleS = 4;  ///< Beyond the upright time, for the slew of the speed command.
+constexpr double kTransitionUprightS = 5;
+constexpr double kTransitionSettleS =
+    4;  ///< Beyond the upright time, for the slew of the speed command.
 constexpr double kSpeedToleranceMps = 0.1;
 
 /// Mean speed over one whole second, a second after the next.
@@ -74,7 +75,7 @@ Result<TransitionResult> RunTransition(Gait from, Gait to, std::uint64_t seed,
   double reached_s = -1;
   bool kicked = false, changed = false;
   for (double time_s = 0; !walker.fell();) {
-    if (!kicked && time_s >= kKickTimeS) walker.Push(kKickNs, kick_rad);
+    if (!kicked && time_s >= kKickTimeS) walker.Push(kTransitionKickNs, kick_rad);
     kicked = kicked || time_s >= kKickTimeS;
     changed = time_s >= change_s;
     walker.Command(changed ? after : before);
@@ -83,10 +84,12 @@ Result<TransitionResult> RunTransition(Gait from, Gait to, std::uint64_t seed,
     speed.Add(output.gait.speed_mps, step_s);
     if (changed && reached_s < 0 && output.gait.gait == to) reached_s = time_s;
     if (reached_s < 0 && time_s > change_s + kLatestReachS) break;
-    const bool stayed = reached_s >= 0 && time_s > reached_s + kUprightS;
+    const bool stayed = reached_s >= 0 && time_s > reached_s + kTransitionUprightS;
     result.succeeded = stayed && output.gait.gait == to &&
                        std::fabs(speed.last_mps() - after.speed_mps) <= kSpeedToleranceMps;
-    if (result.succeeded || (stayed && time_s > reached_s + kUprightS + kSettleS)) break;
+    if (result.succeeded ||
+        (stayed && time_s > reached_s + kTransitionUprightS + kTransitionSettleS))
+      break;
   }
   result.fell = walker.fell();
   result.succeeded = result.succeeded && !result.fell;

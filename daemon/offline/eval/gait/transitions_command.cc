@@ -12,7 +12,7 @@
 namespace footing::eval {
 namespace {
 
-struct Options {
+struct TransitionOptions {
   std::string from;
   std::string to;
   int trials = 10;
@@ -27,7 +27,7 @@ double Quantile(const std::vector<double>& sorted, double part) {
   return sorted[static_cast<std::size_t>(part * last + 0.5)];
 }
 
-int Run(const Options& options, bool json) {
+int RunTransitions(const TransitionOptions& options, bool json) {
   const stream::Gait from = stream::GaitNamed(options.from);
   const stream::Gait to = stream::GaitNamed(options.to);
   if (from == stream::Gait::kUnspecified || to == stream::Gait::kUnspecified || from == to) {
@@ -71,7 +71,7 @@ int Run(const Options& options, bool json) {
 void AddTransitionsCommand(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("transitions", "Trials of a transition from one gait to another");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TransitionOptions>();
   command->add_option("--from", options->from, "step, walk, run or jump")->required();
   command->add_option("--to", options->to, "step, walk, run or jump")->required();
   command->add_option("--trials", options->trials, "Number of trials")
@@ -81,7 +81,8 @@ void AddTransitionsCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 6.0));
   command->add_option("--to-speed", options->speeds.to_mps, "m/s; drawn by default")
       ->check(CLI::Range(0.0, 6.0));
-  command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
+  command->callback(
+      [options, &shared] { shared.exit_code = RunTransitions(*options, shared.json); });
 }
 
 }  // namespace footing::eval

@@ -14,13 +14,13 @@ namespace {
 
 namespace sensors = virtual_sensors;
 
-constexpr std::size_t kMostBytes = 64u << 20;
+constexpr std::size_t kMostClipBytes = 64u << 20;
 
 Result<motion::Motion> Read(const MomentumOptions& options) {
-  const auto text = config::ReadTextFile(options.motion, kMostBytes);
+  const auto text = config::ReadTextFile(options.motion, kMostClipBytes);
   if (!text) return text.error();
   if (options.skeleton.empty()) return motion::ParseBvh(*text, options.motion);
-  const auto asf = config::ReadTextFile(options.skeleton, kMostBytes);
+  const auto asf = config::ReadTextFile(options.skeleton, kMostClipBytes);
   if (!asf) return asf.error();
   const auto skeleton = motion::ParseAsf(*asf, options.skeleton);
   if (!skeleton) return skeleton.error();
