@@ -52,17 +52,6 @@ function(_resolve_deps name folder pure out_links)
   set(${out_links} ${links} PARENT_SCOPE)
 endfunction()
 
-# Files that only put command lines together gain nothing from optimisation, and CLI11 makes them
-# the slowest of all to optimise. They must not compute: of a template that two files instantiate the
-# linker keeps one, and it may be theirs.
-function(_compile_quickly)
-  foreach(source IN LISTS ARGN)
-    if(source MATCHES "(^|_)(main|cli|command|command_line)\\.cc$")
-      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS -O0)
-    endif()
-  endforeach()
-endfunction()
-
 function(add_module name)
   cmake_parse_arguments(arg "PURE" "" "HEADERS;SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
@@ -72,7 +61,6 @@ function(add_module name)
   _resolve_deps(${name} ${folder} "${arg_PURE}" public_links ${arg_DEPS})
   _resolve_deps(${name} ${folder} "${arg_PURE}" private_links ${arg_PRIVATE_DEPS})
 
-  _compile_quickly(${arg_SOURCES})
   if(arg_SOURCES)
     add_library(${name} STATIC ${arg_SOURCES})
     set(scope PUBLIC)
@@ -115,7 +103,6 @@ function(add_program name)
   cmake_parse_arguments(arg "RELEASE_ONLY" "" "SOURCES;DEPS" ${ARGN})
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   _resolve_deps(${name} ${folder} "" links ${arg_DEPS})
-  _compile_quickly(${arg_SOURCES})
   add_executable(${name} ${arg_SOURCES})
   if(arg_RELEASE_ONLY AND FOOTING_SANITIZE)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
