@@ -110,7 +110,7 @@ void ComputeAccelerations(const Skeleton& skeleton, const Kinematics& at, PoseRe
       const Eigen::Vector3d arm = at.p_WJ[i] - at.p_WJ[parent];
       out.a_WJ[i] = out.a_WJ[parent] + alpha.cross(arm) + w.cross(w.cross(arm));
     }
-    // Each axis is carried round by the rotations before it.
+    // Each axis is rotated by the rotations before it.
     const int end = joint.first_dof + static_cast<int>(joint.rotations.size());
     for (int dof = joint.first_dof; dof < end; ++dof) {
       const Eigen::Vector3d turn = at.axis_W[Index(dof)] * q_dot(dof);

@@ -24,7 +24,7 @@ struct MomentumRate {
 /// Six rows (linear, then angular about C) and a column a degree of freedom.
 using CentroidalMatrix = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Room for the composites of ComputeCentroidalMatrix; the caller owns it.
+/// Workspace for the composites of ComputeCentroidalMatrix; the caller owns it.
 struct CompositeMasses {
   explicit CompositeMasses(const Skeleton& skeleton);
 

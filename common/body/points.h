@@ -4,7 +4,7 @@
 
 #include "common/body/body.h"
 
-/// Points of the body that sensors tell of.
+/// Points of the body that sensors measure.
 namespace footing::body {
 
 /// A point fixed to a joint's frame.

@@ -14,7 +14,8 @@ Result<std::string> FindDataFile(const std::string& name, const std::string& fol
 /// The whole text of a file of at most `max_bytes`.
 Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes = 4u << 20);
 
-/// The file at a path (it has a / or ends in .json), else the carried file "FOLDER/NAME.json".
+/// The file at a path (it has a / or ends in .json), otherwise the built-in file
+/// "FOLDER/NAME.json".
 Result<std::string> ReadNamedOrPath(const std::string& name_or_path, const std::string& folder,
                                     const std::string& data_folder = "");
 

@@ -11,7 +11,7 @@ namespace footing::exchange {
 /// A queue of fixed size between one producer thread and one consumer thread.
 ///
 /// No locks, no allocation after construction. When it is full the newest item is refused and
-/// counted, as hidraw's own queue does: the consumer sees the count and can tell a gap.
+/// counted, as hidraw's own queue does: the consumer sees the count and can detect a gap.
 template <typename T>
 class BoundedQueue {
  public:

@@ -55,7 +55,7 @@ Result<void> CheckKind(const Model& model, const std::string& kind, const std::s
 /// "013" and "13" are one person.
 std::string SubjectName(const std::string& subject);
 
-/// Refuses to judge a model on a person it was trained with: no score would be cross-subject.
+/// Refuses to evaluate a model on a person it was trained with: no score would be cross-subject.
 Result<void> CheckNotTrainedOn(const Model& model, const std::string& subject,
                                const std::string& origin);
 

@@ -19,7 +19,7 @@ struct RepairReport {
 
 /// Writes a complete file with every complete record of `input`: of a file cut at any byte, all
 /// before the cut; of a damaged one, all but the chunks and records whose CRC or form is wrong.
-/// InvalidData when the input is no MCAP file; a usage error when `output` exists, unless
+/// InvalidData when the input is not an MCAP file; a usage error when `output` exists, unless
 /// `replace`, or is the input.
 Result<RepairReport> Repair(const std::string& input, const std::string& output,
                             const std::string& library, bool replace);

@@ -20,7 +20,7 @@ void AddWithImports(const pb::FileDescriptor& file, std::set<std::string>& seen,
   file.CopyTo(files.add_file());
 }
 
-/// Protobuf logs what is wrong with a descriptor unless told to collect it.
+/// Protobuf logs what is wrong with a descriptor unless it collects it.
 class FirstError : public pb::DescriptorPool::ErrorCollector {
  public:
   void AddError(const std::string&, const std::string& element, const pb::Message*, ErrorLocation,

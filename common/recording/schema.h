@@ -26,7 +26,7 @@ class SchemaPool {
   SchemaPool(const SchemaPool&) = delete;
   SchemaPool& operator=(const SchemaPool&) = delete;
 
-  /// InvalidData when the schema is no protobuf one or makes no sense.
+  /// InvalidData when the schema is not a protobuf one or makes no sense.
   Result<void> Add(const mcap::Schema& schema);
 
   /// The message of these bytes; null when there is no schema of that id or they do not fit it.

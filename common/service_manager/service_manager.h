@@ -5,8 +5,8 @@
 #include <chrono>
 #include <string>
 
-/// What a program tells the service manager that started it (sd_notify(3)), and what it got from it
-/// (sd_listen_fds(3)). Started by hand, nothing of this happens.
+/// What a program reports to the service manager that started it (sd_notify(3)), and what it got
+/// from it (sd_listen_fds(3)). Started by hand, nothing of this happens.
 namespace footing::service_manager {
 
 /// The descriptor of the listening socket that the manager passed under this name

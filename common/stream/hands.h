@@ -26,7 +26,7 @@ struct HandFrame {
   bool simulated = false;
 };
 
-/// What a stand-in sends: the pose that its made reports came from.
+/// From a device simulator: the true pose behind its simulated reports.
 struct ReferenceFrame {
   std::string rig;
   std::int64_t age_ns = 0;
@@ -48,7 +48,7 @@ struct HandSample {
   std::string tracker;
 };
 
-/// A stand-in's true pose as footingd publishes it; never estimated from.
+/// A simulated body's true pose as footingd publishes it; never estimated from.
 struct ReferencePose {
   std::string rig;
   std::int64_t sampled_ns = 0;

@@ -11,7 +11,7 @@ class Decimator {
   /// `max_hz` 0 takes every tick. `tick_ns` is the nominal interval between ticks.
   Decimator(double max_hz, std::int64_t tick_ns);
 
-  /// Whether the tick of this instant goes out. An instant before the last one begins anew.
+  /// Whether the tick of this instant goes out. An instant before the last one resets it.
   bool Take(std::int64_t host_ns);
 
  private:

@@ -18,7 +18,7 @@ class Publication {
   explicit Publication(const ServerOptions& options);
 
   /// Serialises the next tick once. Channels that would make it longer than max_message_out_bytes
-  /// are left out, and so are fields that are no channel. Trim() once it is on its way.
+  /// are left out, and so are fields that are not a channel. Trim() once it is on its way.
   SharedTick Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels);
 
   void Trim() { ring_.Trim(); }

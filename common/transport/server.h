@@ -66,15 +66,15 @@ struct ServerStatistics {
   std::uint64_t accepted = 0;
   std::uint64_t refused = 0;
   std::uint64_t ticks_dropped = 0;      ///< Of full session queues, all sessions together.
-  std::uint64_t channels_left_out = 0;  ///< Did not fit into a tick, or are no channel.
+  std::uint64_t channels_left_out = 0;  ///< Did not fit into a tick, or are not a channel.
   std::uint64_t ring_bytes = 0;
 };
 
 /// Publishes ticks to any number of sessions. Everything runs on the io_context's one thread.
 ///
 /// A tick is serialised once; each session gets a gather-write of a small head of its own and the
-/// shared bytes of its channels. A slow session loses ticks of its own queue (and is told by a Gap)
-/// or is ended, by the policy it chose; it never slows another. See docs/protocol.md.
+/// shared bytes of its channels. A slow session loses ticks of its own queue (and is informed by a
+/// Gap) or is ended, by the policy it chose; it never slows another. See docs/protocol.md.
 class Server {
  public:
   Server(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers);

@@ -48,7 +48,7 @@ void TickQueue::DropOldest() {
   const std::uint64_t sequence = oldest.tick->sequence;
   dropped_ = Dropped{dropped_ ? dropped_->from : sequence, sequence};
   ++dropped_ticks_;
-  // What the dropped one carried, then its own, then what its heir has already: the newest stays.
+  // What the dropped one contained, then its own, then what its heir has already: the newest stays.
   std::vector<CarriedField> carried = std::move(oldest.carried);
   Carry(oldest.tick, carried);
   Entry& heir = entries_.front();

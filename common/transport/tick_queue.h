@@ -21,7 +21,7 @@ struct CarriedField {
   SharedTick tick;
 };
 
-/// Ticks dropped for want of room: first and last sequence.
+/// Ticks dropped because the queue was full: first and last sequence.
 struct Dropped {
   std::uint64_t from = 0;
   std::uint64_t to = 0;
@@ -30,7 +30,7 @@ struct Dropped {
 /// The ticks that wait for one session, bounded, with the ticks themselves shared.
 ///
 /// A retained channel says how things stand, so its newest value must not be lost with a tick that
-/// was dropped or left out by decimation: it is carried along with the next tick that goes out.
+/// was dropped or left out by decimation: it is added to the next tick that goes out.
 class TickQueue {
  public:
   struct Entry {
@@ -39,12 +39,12 @@ class TickQueue {
   };
 
   TickQueue() = default;
-  /// `capacity` >= 1; kLatest has one of 1 whatever is said. `retained`: fields that are carried.
+  /// `capacity` >= 1; kLatest has one of 1 whatever is said. `retained`: fields that are retained.
   TickQueue(QueueRule rule, std::size_t capacity, std::set<std::uint32_t> retained);
 
   /// False for kReliable when the queue is full: the session has to end.
   bool Push(SharedTick tick);
-  /// A tick that is left out on purpose: nothing is missing, but retained channels are carried.
+  /// A tick that is left out on purpose: nothing is missing, but retained channels are kept.
   void Skip(const SharedTick& tick);
 
   /// What was dropped in front of the oldest tick, once.
@@ -63,7 +63,7 @@ class TickQueue {
   std::size_t capacity_ = 1;
   std::set<std::uint32_t> retained_;
   std::deque<Entry> entries_;
-  std::vector<CarriedField> for_next_;  ///< Carried by ticks skipped since the last Push.
+  std::vector<CarriedField> for_next_;  ///< Retained fields of ticks skipped since the last Push.
   std::optional<Dropped> dropped_;
   std::uint64_t dropped_ticks_ = 0;
 };

@@ -14,7 +14,7 @@ namespace footing::transport {
 inline constexpr std::size_t kBuffersPerTick = 8;
 
 /// Adds the frame of one tick: a head of this session's own, and the shared bytes of the channels
-/// subscribed to. `head` says all but what the tick does. The batch has room for kBuffersPerTick.
+/// subscribed to. `head` says all but what the tick does. The batch has space for kBuffersPerTick.
 void AddTick(const TickQueue::Entry& entry, const Subscription& subscription, TickHead head,
              WriteBatch& batch);
 

@@ -6,7 +6,7 @@
 
 #include "common/result/result.h"
 
-/// Made movement: a short script of key poses becomes a motion that a person could make, with
+/// Synthetic motion: a short script of key poses becomes a motion that a person could make, with
 /// feet that stay where they stand and a centre of pressure that stays where the script puts it.
 namespace footing::choreography {
 

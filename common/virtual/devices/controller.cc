@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kMemoryPieceBytes = 16;
 constexpr std::uint8_t kErrorNoSuchMode = 3;
 
-/// Lengths of the output reports, id byte included, from 0x10 on; 0 is no such report.
+/// Lengths of the output reports, id byte included, from 0x10 on; 0 is not a report.
 constexpr std::uint8_t kOutputBytes[] = {2, 2, 3, 2, 2, 2, 22, 7, 22, 2, 2};
 
 /// Payload of each data report: what follows the id, from left to right.

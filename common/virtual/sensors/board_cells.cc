@@ -8,7 +8,7 @@
 namespace footing::virtual_sensors {
 namespace {
 
-constexpr double kFullLoadN = 370;  // Half a person: the slow error is told for this load.
+constexpr double kFullLoadN = 370;  // Half a person: the slow error is stated for this load.
 
 constexpr std::array<double, 4> kRight{-1, 1, -1, 1};  // Of the corners, in P.
 constexpr std::array<double, 4> kFront{1, 1, -1, -1};

@@ -11,7 +11,8 @@ namespace footing::virtual_sensors {
 /// The force of the ground on the body, a column a frame.
 struct GroundReaction {
   Eigen::Matrix3Xd force_n;
-  /// Where a vertical force and a shear on the ground make the body's moment. Only where `carried`.
+  /// Where a vertical force and a shear on the ground make the body's moment. Valid where
+  /// `carried`.
   Eigen::Matrix2Xd cop_m;
   /// False in flight: the vertical force is under 6 % of the weight.
   std::vector<bool> carried;

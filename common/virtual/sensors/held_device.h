@@ -34,7 +34,7 @@ struct HeldErrorConfig {
   double force_bias_mps2 = 0.1;
   double turn_noise_radps = 0.006;
   double turn_count_radps = 0.00127;     ///< 595 degrees/s / 8192.
-  double turn_bias_radps = 0.006;        ///< Constant; a rest can tell it.
+  double turn_bias_radps = 0.006;        ///< Constant; a rest can measure it.
   double turn_walk_radps_rt_s = 0.0003;  ///< The bias' random walk, after a second.
   double gain_spread = 0.01;             ///< Of every axis of both.
   double grip_tilt_rad = 0.17;           ///< How it lies in the fist, about level axes,
@@ -53,7 +53,7 @@ class HeldErrors {
  public:
   explicit HeldErrors(const HeldErrorConfig& config);
 
-  /// What it tells of the truth, `step_s` after the reading before.
+  /// What it measures of the truth, `step_s` after the reading before.
   HeldReading Advance(const Eigen::Vector3d& specific_force_mps2,
                       const Eigen::Vector3d& angular_velocity_radps, double step_s);
 

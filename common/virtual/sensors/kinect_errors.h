@@ -7,8 +7,8 @@
 
 namespace footing::virtual_sensors {
 
-/// Errors of hands as a Kinect's skeleton tracker tells them (docs/hands.md): white noise, and an
-/// offset common to both hands that changes slowly. It sees 30 frames a second and tells each two
+/// Errors of hands as a Kinect's skeleton tracker reports them (docs/hands.md): white noise, and an
+/// offset common to both hands that changes slowly. It sees 30 frames a second and reports each two
 /// frames late.
 class KinectErrors {
  public:
@@ -19,7 +19,7 @@ class KinectErrors {
 
   /// The next exposure, kPeriodS after the one before.
   void Expose();
-  /// A hand of this exposure where it is told to be; the left one first.
+  /// A hand of this exposure where it is reported; the left one first.
   Eigen::Vector3d Told(const Eigen::Vector3d& p_W_m);
   /// Along each axis, of all errors.
   static double SdM();

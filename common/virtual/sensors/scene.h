@@ -17,10 +17,10 @@ namespace footing::virtual_sensors {
 /// How a clip becomes something that boards can be calibrated under.
 struct SceneOptions {
   bool t_pose = true;        ///< Prepend a T-pose; false: the clip begins with one.
-  double hold_s = 6;         ///< So long it is held,
-  double leave_s = 1.5;      ///< then left for the clip's first frame.
+  double hold_s = 6;         ///< Duration of the T-pose,
+  double leave_s = 1.5;      ///< then of its transition to the clip's first frame.
   double rest_share = 0.42;  ///< Where the weight is in a standing foot: of heel to toe.
-  double loop_s = 0;         ///< Forwards and backwards until so long; 0: once.
+  double loop_s = 0;         ///< Total duration, forwards and backwards; 0: once.
 };
 
 /// A body in motion over the ground and what the ground feels of it.

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-/// Made motion of two hands that swing a controller each, as the true specific force in the sensor
-/// frame S (x left, y front, z down; at rest face up (0, 0, -9.81) m/s²).
+/// Synthetic motion of two hands that swing a controller each, as the true specific force in the
+/// sensor frame S (x left, y front, z down; at rest face up (0, 0, -9.81) m/s²).
 namespace footing::wrists {
 
 /// One stretch of the script. What changes from the stretch before blends in over the first

@@ -20,7 +20,7 @@ constexpr int kAxes = 2;
 constexpr int kHidden = 20;       // Of FANN's network, and at most of ours.
 constexpr double kNoiseM = 0.01;  // On the fed-back COM, without which the closed loop diverges.
 
-/// One axis: 84 s at 60 Hz to train on, as much to choose by, as much to judge by.
+/// One axis: 84 s at 60 Hz to train on, as much to choose by, as much to test with.
 struct Axis {
   Examples train, validation, fresh;
 };

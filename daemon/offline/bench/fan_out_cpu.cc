@@ -44,7 +44,7 @@ double CpuPercent(LoopThread& server_thread, const std::function<void()>& publis
   return 100.0 * static_cast<double>(after_ns - before_ns) / (kFanOutTicks * kFanOutIntervalNs);
 }
 
-/// One string with what our server sends for a tick, made anew for every tick as ours is.
+/// One string with what our server sends for a tick, made again for every tick as ours is.
 std::shared_ptr<const std::string> BareFrame(const std::vector<transport::ChannelBytes>& channels) {
   std::string payload(32, '\0');  // As long as a tick's own head.
   for (const auto& channel : channels) payload += channel.bytes;

@@ -79,7 +79,7 @@ std::vector<Inputs> Measured(const body::Body& body, const motion::Motion& motio
   return all;
 }
 
-/// Of a trained model's sizes; it tells the T-pose and trembles a little about it.
+/// Of a trained model's sizes; it outputs the T-pose and trembles a little about it.
 reconstruction::Models Trained(const body::Body& body, const motion::Motion& motion) {
   const int dof = body.skeleton.dof;
   noise::Random random(2);

@@ -159,7 +159,7 @@ Result<Rows> PublishToClient() {
   };
   const auto publish_on = [&](transport::Server& one) {
     return run([&] {
-      auto serialised = channels;  // footingd serialises them anew and hands them over.
+      auto serialised = channels;  // footingd serialises them again and hands them over.
       one.Publish(clock::MonotonicNs(), std::move(serialised));
     });
   };

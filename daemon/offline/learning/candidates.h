@@ -40,7 +40,8 @@ struct CandidateTask {
 /// Covariance (1990, section 2): S = sum over o of |sum over p of V_pc (E_po - mean E_o)|.
 ///   Departure: E is divided by its root mean square and by the number of rows, so that neither
 ///   changes the step size.
-/// Error reduction: S^2 is the part of the squared error that outputs solved anew lose by the unit:
+/// Error reduction: S^2 is the part of the squared error that outputs solved again lose by the
+/// unit:
 ///   S = |E' V_c| / (|E| |V_c less what the basis explains of it|). It follows a curve where
 ///   covariance, which grows with a unit's size, finds a step.
 struct Scores {

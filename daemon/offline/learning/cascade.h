@@ -45,7 +45,7 @@ struct CascadeResult {
 
 /// Cascade correlation (Fahlman & Lebiere 1990; pose paper, section 4.2): starts without hidden
 /// units; then one unit at a time, the best of a pool trained to follow the error that is left,
-/// whose weights are never changed again; then the outputs are trained anew.
+/// whose weights are never changed again; then the outputs are trained again.
 /// Departure: linear outputs are solved for, not gone down to. Nothing trains on `validation`
 /// (which may be empty), but it chooses how many hidden units stay.
 CascadeResult TrainCascade(const Examples& train, const Examples& validation,

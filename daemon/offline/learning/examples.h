@@ -16,7 +16,7 @@ struct Examples {
 };
 
 /// Training and validation, split in time: neighbours in a recording are nearly equal, so that rows
-/// drawn at random would judge a network by what it learned from.
+/// drawn at random would test a network by what it learned from.
 struct Split {
   Examples train, validation;
 };

@@ -21,7 +21,7 @@ struct ForceTrace {
 };
 
 /// A stomp: a short push over the weight (kStompOver and more) within kUnloadedS of a foot that
-/// carried less than kUnloadedShare. Landings of jumps and steps are like it.
+/// bore less than kUnloadedShare. Landings of jumps and steps are like it.
 struct Stomp {
   double time_s = 0;
   double over = 0;  ///< Parts of the weight over it, low-passed at kStompCutoffHz.

@@ -39,7 +39,7 @@ std::vector<std::vector<Eigen::Index>> FeedbackColumns();
 Examples HorizontalExamples(std::span<const LoadClip> clips, int axis);
 
 /// The same examples as the networks meet them when they go on from their own outputs: c(t-2),
-/// c(t-1), c(t) and the other axis's c(t) are theirs, c(t+1) is true. A clip is begun anew, from
+/// c(t-1), c(t) and the other axis's c(t) are theirs, c(t+1) is true. A clip is restarted, from
 /// the truth, every `restart_s`.
 Examples RolledOutExamples(const Networks& networks, std::span<const LoadClip> clips, int axis,
                            double restart_s);

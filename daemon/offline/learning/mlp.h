@@ -54,7 +54,7 @@ struct MlpResult {
   bool goal_reached = false;
 };
 
-/// Back-propagation with momentum over batches drawn anew each epoch.
+/// Back-propagation with momentum over batches drawn again each epoch.
 MlpResult TrainMlp(const Examples& train, const Examples& validation, const MlpOptions& options,
                    std::uint64_t seed);
 

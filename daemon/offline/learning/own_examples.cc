@@ -44,7 +44,7 @@ Result<void> AddOwnExamples(const OwnTake& take, const reconstruction::Models& b
   const std::size_t before = examples.poses.size();
   const auto frames =
       static_cast<std::size_t>(std::min(take.session.duration_s, take.to_s()) * settings.rate_hz);
-  double since_s = 0;  // So long both the T-pose and the motion have been there.
+  double since_s = 0;  // Duration for which both the T-pose and the motion have been there.
   for (std::size_t i = 0; i < frames; ++i) {
     const double time_s = static_cast<double>(i) / settings.rate_hz;
     const bool moves = time_s >= take.from_s();

@@ -37,8 +37,8 @@ struct OwnTake {
 Result<OwnTake> MakeOwnTake(RecordedSession session, motion::Motion motion,
                             const body::Body& person, const std::string& motion_name);
 
-/// All of it in the mirror at the plane y = 0. InvalidData where the mirrored skeleton is no
-/// person.
+/// All of it in the mirror at the plane y = 0. InvalidData where the mirrored skeleton is not
+/// a person.
 Result<OwnTake> MirrorImage(const OwnTake& take);
 
 /// The measured loads with the COM of the motion, momentum::kNetworkRateHz, both counted from half
@@ -47,15 +47,15 @@ std::vector<LoadClip> OwnLoads(const OwnTake& take);
 
 struct OwnExampleSettings {
   double rate_hz = 60;
-  double hand_noise_m = 0.01;  ///< Of fists that stand in for hands that no tracker told of.
+  double hand_noise_m = 0.01;  ///< Of the motion's fists, where no tracker measured hands.
   double piece_s = 10;         ///< Frames of one piece are in one fold,
   int first_piece = 0;         ///< numbered from here on.
   double settled_s = 1.5;      ///< After the T-pose and the motion's first frame: left out.
   std::uint64_t seed = 1;
 };
 
-/// Appends what the reconstruction would have told of the recording, with the poses of the motion.
-/// InvalidData when there is no frame of both.
+/// Appends what the reconstruction would have estimated from the recording, with the poses of the
+/// motion. InvalidData when there is no frame of both.
 Result<void> AddOwnExamples(const OwnTake& take, const reconstruction::Models& basis,
                             const OwnExampleSettings& settings, PoseExamples& examples);
 

@@ -25,8 +25,8 @@ struct HandReading {
   Eigen::Vector3d sd_m = Eigen::Vector3d::Zero();
 };
 
-/// What two boards and two hand trackers told of one person, in the order of time from the first
-/// reading of a board on. 0 is left.
+/// What two boards and two hand trackers measured of one person, in the order of time from the
+/// first reading of a board on. 0 is left.
 struct RecordedSession {
   std::string name;  ///< Of the file.
   std::array<std::vector<BoardReading>, 2> boards;

@@ -19,7 +19,7 @@ constexpr double kPieceS = 8, kHopS = 4;  // Of what is moved until it correlate
 constexpr double kLagS = 0.12;            // At most, and in such steps:
 constexpr double kLagStepS = 0.01;
 constexpr double kPieceCorrelation = 0.6;
-constexpr double kPieceSpread = 0.02;  // Of the weight: less tells nothing.
+constexpr double kPieceSpread = 0.02;  // Of the weight: less means nothing.
 constexpr int kPasses = 3;
 constexpr double kOutlier = 3.5;  // Of the pieces' usual distance from the line.
 constexpr double kLeastSdS = 5e-4;
@@ -123,7 +123,7 @@ std::vector<double> Candidates(const std::vector<Stomp>& recorded,
   return offsets;
 }
 
-/// How much a correlation over so long says: Fisher's z in parts of its deviation.
+/// Evidence of a correlation over this time: Fisher's z in parts of its deviation.
 double Evidence(const Pairs& pairs, double rate_hz) {
   const double seconds = pairs.n / rate_hz;
   if (seconds < kLeastOverlapS) return 0;

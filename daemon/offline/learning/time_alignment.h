@@ -25,7 +25,7 @@ struct TimeAlignment {
 /// forces are correlated over all that both have, and the best is kept. Then pieces of eight
 /// seconds are moved until each correlates best, and a line through their lags is the offset and
 /// the drift. Clocks are quartz: the drift is held to 0 with kDriftSd, which only matters where a
-/// recording is too short to tell.
+/// recording is too short to estimate.
 ///
 /// InvalidData: fewer than three stomps in one of them, none that go together, or forces that do
 /// not (a correlation under kLeastCorrelation).

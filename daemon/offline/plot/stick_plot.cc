@@ -48,7 +48,7 @@ std::string StickPlot(const std::string& title, const std::vector<Panel>& panels
   svg += Label(width / 2, 22, "middle", title, "font-size='14'");
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const double middle = kPanelWidth * (static_cast<double>(i) + 0.5);
-    // A group's opacity: lines that cross are no darker there.
+    // A group's opacity: lines that cross do not get darker there.
     const auto draw = [&](const Sticks& sticks, const std::string& colour, const char* more) {
       svg += std::string("<g ") + more + " stroke-linecap='round'>\n";
       for (const auto& stick : sticks) {

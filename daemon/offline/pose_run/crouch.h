@@ -7,7 +7,7 @@
 
 namespace footing::pose_run {
 
-/// Less is no crouch.
+/// Less is not a crouch.
 inline constexpr double kCrouchRad = 45 * kPi / 180;
 
 /// A frame, and how far every knee and every hip is bent in it at least: from a straight leg, from

@@ -32,7 +32,7 @@ class HeldHands {
 /// Puts how the arms are held into the inputs, by the readings of a Wiimote in each hand.
 void TellArms(const arms::ArmModel& model, PoseRun& run);
 
-/// What a recorded motion would have told two Wiimotes alone, beside the truth.
+/// What a recorded motion would have given two Wiimotes alone, beside the truth.
 struct ArmFrame {
   std::array<std::vector<arms::HandReading>, arms::kArms> readings;
   Eigen::VectorXd q;

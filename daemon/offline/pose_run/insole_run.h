@@ -14,7 +14,7 @@ struct InsoleFrame {
   std::array<double, momentum::kFeet> load_n{};
 };
 
-/// What a recorded motion would have told two insoles and two hand trackers, beside the truth.
+/// What a recorded motion would have given two insoles and two hand trackers, beside the truth.
 struct InsoleRun {
   body::Body body;
   double rate_hz = 60;

@@ -8,8 +8,8 @@
 
 namespace footing::pose_run {
 
-/// Both hands as a Kinect's skeleton tracker tells them (virtual_sensors::KinectErrors) and as they
-/// come to the engine: carried on over their delay by reconstruction::HandTrack.
+/// Both hands as a Kinect's skeleton tracker reports them (virtual_sensors::KinectErrors) and as
+/// they come to the engine: predicted over their delay by reconstruction::HandTrack.
 class KinectHands {
  public:
   using Hands = std::array<reconstruction::HandInput, reconstruction::kHands>;
@@ -17,7 +17,7 @@ class KinectHands {
   /// `step_s` between frames.
   KinectHands(std::uint64_t seed, double step_s);
 
-  /// What is told when the hands are where `truth` has them; invalid until the first has come.
+  /// The report when the hands are where `truth` has them; invalid until the first has come.
   Hands Advance(const Hands& truth);
 
  private:

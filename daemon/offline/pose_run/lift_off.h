@@ -8,7 +8,8 @@ namespace footing::pose_run {
 
 inline constexpr std::size_t kLegJoints = 3;  ///< Hip, knee, foot (its ankle).
 
-/// A leg in one frame: how far its joints are off (W, m), and what was told of it, along one axis.
+/// A leg in one frame: how far its joints are off (W, m), and what was reported of it, along one
+/// axis.
 struct LegError {
   std::array<Eigen::Vector3d, kLegJoints> error_m{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                                                   Eigen::Vector3d::Zero()};
@@ -23,9 +24,9 @@ class LegScore {
   std::size_t count() const { return count_; }
   /// Distance in space, cm; 0 where there is nothing.
   double error_cm(std::size_t joint) const;
-  /// The told deviation along one axis, cm.
+  /// The reported deviation along one axis, cm.
   double sd_cm(std::size_t joint) const;
-  /// Mean of |error|² / (3 sd²): 1 where the told deviation is right.
+  /// Mean of |error|² / (3 sd²): 1 where the reported deviation is right.
   double nees(std::size_t joint) const;
   /// Over all joints.
   double nees() const;
@@ -45,7 +46,7 @@ class LiftOffs {
 
   explicit LiftOffs(double step_s) : step_s_(step_s) {}
 
-  /// The next frame of a foot, 0 or 1: its true load and ankle, and its leg as it was told.
+  /// The next frame of a foot, 0 or 1: its true load and ankle, and its leg as estimated.
   void Add(std::size_t foot, double load_n, const Eigen::Vector3d& ankle_m, const LegError& leg);
 
   std::size_t count() const { return count_; }  ///< Times that a foot left.

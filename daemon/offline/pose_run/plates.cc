@@ -20,7 +20,7 @@ constexpr double kLeastCarriedS = 0.5;
 /// motion spreads them so far.
 constexpr double kRunInS = 0.15;
 constexpr double kMissingShare = 0.25;  // Of the weight: more than inverse dynamics is wrong by.
-constexpr double kMissingSpanS = 0.2;   // In the mean over so long: it smears impacts.
+constexpr double kMissingSpanS = 0.2;   // Span of the mean: it smears impacts.
 constexpr double kBesideM = 0.08;       // Further from a foot than a COP under it can be.
 constexpr double kElsewhereM = 0.4;     // Forces of another place or trial.
 constexpr double kMassOff = 0.05;

@@ -30,8 +30,8 @@ struct PlateReport {
   std::vector<std::string> warnings;
 };
 
-/// The same frames with the boards driven by the plates, and by inverse dynamics. Both are judged
-/// from judged_from on.
+/// The same frames with the boards driven by the plates, and by inverse dynamics. Both are
+/// evaluated from judged_from on.
 struct PlateRun {
   PoseRun measured, simulated;
   PlateReport report;

@@ -27,7 +27,7 @@ Eigen::Vector3d At(const body::Kinematics& at, const body::Point& point) {
   return body::Place(point, at.R_WJ[joint], at.p_WJ[joint]);
 }
 
-/// The boards, where they are and where they are told to be.
+/// The boards, where they are and where they are configured to be.
 struct Boards {
   std::array<sensors::BoardPlace, sensors::kFeet> real = sensors::SideBySide();
   std::array<sensors::BoardPlace, sensors::kFeet> told;

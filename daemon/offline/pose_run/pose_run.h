@@ -18,14 +18,14 @@
 #include "daemon/simulation/arms/hand_attitude.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
-/// What a recorded motion would have told two boards and two hand trackers, frame by frame, beside
-/// the truth: to judge the reconstruction on, and to train its models with.
+/// What a recorded motion would have given two boards and two hand trackers, frame by frame, beside
+/// the truth: to evaluate the reconstruction on, and to train its models with.
 namespace footing::pose_run {
 
 /// A foot or plate under more than this is loaded: below, a centre of pressure is too coarse.
 inline constexpr double kLoadedN = 20;
 
-/// What tells of the hands.
+/// Source of the hands.
 enum class HandDevice {
   kMove,     ///< Places with white noise.
   kWiimote,  ///< Readings of a Wiimote with MotionPlus in each fist.
@@ -36,14 +36,14 @@ struct Settings {
   double mass_kg = 75;
   std::optional<double> height_m = std::nullopt;
   double rate_hz = 60;   ///< Of the inputs.
-  double loop_s = 0;     ///< Forwards and backwards so long; 0: once.
+  double loop_s = 0;     ///< Forwards and backwards for this duration; 0: once.
   bool limited = false;  ///< Boards end at their sensors; else as if they had no edge.
   bool hands = true;
   HandDevice hand_device = HandDevice::kMove;
   double hand_noise_m = 0.01;  ///< White, of each axis; of kMove.
   virtual_sensors::CellErrorConfig errors;
-  // The boards are not quite where they are told to be.
-  double gap_error_m = 0;    ///< Told further apart by so much.
+  // The boards are not quite where they are configured to be.
+  double gap_error_m = 0;    ///< Configured further apart by this.
   double yaw_error_rad = 0;  ///< The right one turned to the left.
   double mass_error = 0;     ///< What the T-pose weighs too much, as a part.
   std::uint64_t seed = 1;    ///< Of the hands.
@@ -69,7 +69,7 @@ struct Frame {
 /// What the person does in each frame (activity.h).
 struct Activities {
   std::vector<std::string> names;
-  std::vector<int> of_frame;  ///< Index of a name, or -1; empty: nobody has told.
+  std::vector<int> of_frame;  ///< Index of a name, or -1; empty: not given.
 };
 
 struct PoseRun {
@@ -83,14 +83,14 @@ struct PoseRun {
   Activities activities;
 };
 
-/// The T-pose is held so long,
+/// Duration of the T-pose,
 inline constexpr double kStandS = 6;
 /// then left for the clip's first frame within such a time; the feet slide over the boards by it.
 inline constexpr double kLeaveS = 1.5;
 /// By then devices in the hands know that it is held.
 inline constexpr double kAlignedS = 5.5;
 
-/// Where both hands are told to be: the fists of the pose, with white noise along each axis.
+/// Where both hands are reported: the fists of the pose, with white noise along each axis.
 void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,
                   noise::Random& random,
                   std::array<reconstruction::HandInput, reconstruction::kHands>& hands);
@@ -102,7 +102,7 @@ using FootForcesAt = std::function<std::array<virtual_sensors::FootForce, moment
 /// By inverse dynamics. `scene` must outlive it.
 FootForcesAt SimulatedForces(const virtual_sensors::Scene& scene);
 
-/// What boards under these forces and the hands of a staged scene tell.
+/// What boards under these forces and the hands of a staged scene measure.
 PoseRun RunScene(const virtual_sensors::Scene& scene, const Settings& settings,
                  const FootForcesAt& forces_at);
 

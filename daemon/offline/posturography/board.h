@@ -32,7 +32,7 @@ struct Standing {
   Stretches stretches;      ///< Ended by stepping off and by gaps in the recording.
 };
 
-/// Longest interval of samples that is no gap.
+/// Longest interval of samples that is not a gap.
 inline constexpr double kLongestIntervalS = 0.5;
 
 /// Centre of pressure in the plate frame: x = dx/2 ((TR + BR) - (TL + BL)) / F and

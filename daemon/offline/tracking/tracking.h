@@ -6,7 +6,7 @@
 
 #include "common/stream/character.h"
 
-/// Whether a character does what it was told: a robust one that never obeys is of no use.
+/// Whether a character does what it was commanded: a robust one that never follows is of no use.
 namespace footing::tracking {
 
 /// Mean speed along the heading over the last half second, about one step of any gait: within a
@@ -28,7 +28,7 @@ struct GivenCommand {
 };
 
 enum class Tracking {
-  kShort,      ///< Given for less than kLongCommandS: not judged.
+  kShort,      ///< Given for less than kLongCommandS: not evaluated.
   kTracked,    ///< Its gait runs, at its speed to kTrackedMps, and nobody fell.
   kOtherGait,  ///< Its gait was not reached.
   kFell,
@@ -38,7 +38,7 @@ inline constexpr std::size_t kTrackings = 5;
 inline constexpr double kLongCommandS = 3;
 inline constexpr double kTrackedMps = 0.25;
 
-/// Judges a command at its end, `time_s`, by the state then and the mean speed over a step.
+/// Evaluates a command at its end, `time_s`, by the state then and the mean speed over a step.
 Tracking Judge(const GivenCommand& given, double time_s, const stream::GaitState& state,
                double mean_mps);
 

@@ -23,7 +23,7 @@ struct ArmOptions {
   ModelOptions model;
 };
 
-/// What devices in the hands would have told in one motion, and how the arms were.
+/// What devices in the hands would have measured in one motion, and how the arms were.
 Result<void> AddExamples(const Clip& clip, std::uint64_t seed, const std::vector<int>& folds,
                          learning::ArmExamples& examples) {
   pose_run::Settings settings;

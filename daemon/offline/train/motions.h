@@ -29,7 +29,7 @@ void AddMotionOptions(CLI::App& command, MotionOptions& options);
 
 struct Clips {
   std::vector<Clip> train;
-  std::vector<Clip> excluded;         ///< Of the excluded subjects: to judge on, never to train on.
+  std::vector<Clip> excluded;         ///< Of the excluded subjects: to test on, never to train on.
   std::vector<std::string> subjects;  ///< Of `train`.
 };
 

@@ -42,7 +42,7 @@ struct TrainingSet {
   std::vector<model::DataFile> DataFiles() const;
 };
 
-/// Reads and aligns everything, telling progress on standard error. An own motion whose skeleton
+/// Reads and aligns everything, reporting progress on standard error. An own motion whose skeleton
 /// has neither the standard person's layout nor the others' is fitted to the former. The own
 /// recordings count the whole number of times that comes nearest to `share` of all seconds. Fewer
 /// of them than `enough_s` are a warning that says so: the paper took so many `enough_for`.

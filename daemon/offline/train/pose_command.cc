@@ -27,7 +27,7 @@ struct PoseOptions {
   ModelOptions model;
 };
 
-/// What the sensors would have told in one motion, and its poses.
+/// What the sensors would have measured in one motion, and its poses.
 Result<void> AddExamples(const motion::Motion& motion, const std::string& name,
                          const reconstruction::Models& basis, std::uint64_t seed, int& piece,
                          learning::PoseExamples& examples) {

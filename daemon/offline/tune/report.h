@@ -9,7 +9,7 @@
 
 namespace footing::tune {
 
-/// One set at the end: judged on trials that no iteration saw.
+/// One set at the end: evaluated on trials that no iteration saw.
 struct TunedSet {
   gait::GainSet set;  ///< The answer's gains when it is better, else the start's.
   Score before, after;

@@ -24,7 +24,7 @@ using nlohmann::ordered_json;
 
 /// Batches of trials that no iteration has.
 constexpr std::uint64_t kJudgingBatch = 1u << 30;
-constexpr int kJudgingTimes = 8;  // Trials for judging, of those a search has.
+constexpr int kJudgingTimes = 8;  // Trials for evaluation, of those a search has.
 
 std::string SetName(std::size_t index, std::size_t count) {
   if (count == 1) return "all";

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// One way to tell an arm, against the truth.
+/// One way to estimate an arm, against the truth.
 class ArmScore {
  public:
   void Add(const arms::ArmGeometry& geometry, const arms::ArmDirections& told,
@@ -35,7 +35,7 @@ class ArmScore {
   Spread shoulder_, elbow_, hand_;
 };
 
-/// How far the told turn of a hand since the T-pose is off, in all and of its up alone.
+/// How far the estimated rotation of a hand since the T-pose is off, in all and of its up alone.
 class TurnScore {
  public:
   void Add(const Eigen::Matrix3d& told, const Eigen::Matrix3d& truth) {

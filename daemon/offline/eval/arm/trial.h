@@ -7,7 +7,7 @@
 
 namespace footing::eval {
 
-/// The arms told by the devices of a run against the truth from the T-pose on, beside an arm
+/// The arms estimated from the devices of a run against the truth from the T-pose on, beside an arm
 /// that never moves; the fields of `footing-eval arm`.
 nlohmann::ordered_json RunArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model);
 

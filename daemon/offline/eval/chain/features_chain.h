@@ -38,7 +38,7 @@ struct Tick {
   stream::RigFeatures features;
 };
 
-/// Runs made motion through the chain: one tick a reading.
+/// Runs synthetic motion through the chain: one tick a reading.
 std::vector<Tick> Run(const std::vector<wrists::TimedReading>& readings);
 
 }  // namespace footing::eval

@@ -113,7 +113,7 @@ Result<nlohmann::json> EvaluateGrt(const Options& options) {
   auto rows = nlohmann::json::array();
   for (std::size_t i = 0; i < recording->rows.size(); ++i) {
     const auto& row = recording->rows[i];
-    // Stretches were recorded one by one; what follows another begins anew.
+    // Stretches were recorded one by one; what follows another starts again.
     if (!chain || row.stretch != stretch) chain.emplace(false);
     stretch = row.stretch;
     const double t_s = static_cast<double>(i) / rate_hz;

@@ -5,7 +5,7 @@
 namespace footing::eval {
 namespace {
 
-constexpr double kWidthM = 12;  ///< Nobody steers: there is room to drift.
+constexpr double kWidthM = 12;  ///< Nobody steers: there is space to drift.
 constexpr double kBehindM = 500;
 constexpr double kGroundUprightS = 1;
 constexpr double kSettlingS = 5;

@@ -32,7 +32,7 @@ class GroundPilot {
   biped::GaitCommand Command(const engine::EngineOutput& output);
   /// True from the moment of the kick on.
   bool kick_due() const { return kick_due_; }
-  /// True once the character has been on the course for so long that its speed has settled.
+  /// True once the character has been on the course until its speed has settled.
   bool settled() const { return settled_; }
 
   /// Steps passed: the COM beyond the edge and the character still up 1 s later.

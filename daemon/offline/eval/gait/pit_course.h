@@ -23,9 +23,9 @@ struct PitCourse {
 /// edge is thus random.
 PitCourse MakePitCourse(double width_m, double length_m, Random& random);
 
-/// Commands a gait along a course. A run is told to jump when the edge is `lead_s` away, and to run
-/// again once it has landed behind the pit; other gaits get one command all along. All are steered
-/// towards the middle.
+/// Commands a gait along a course. A run is commanded to jump when the edge is `lead_s` away, and
+/// to run again once it has landed behind the pit; other gaits get one command all along. All are
+/// steered towards the middle.
 class PitPilot {
  public:
   PitPilot(const PitCourse& course, const biped::GaitCommand& command, double height_m,

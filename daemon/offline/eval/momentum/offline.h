@@ -8,7 +8,7 @@
 
 namespace footing::eval {
 
-/// The offline smoothers over the frames from `start` on, where the T-pose was complete; judged
+/// The offline smoothers over the frames from `start` on, where the T-pose was complete; evaluated
 /// from `judged` on. Root mean squares along each axis, cm.
 nlohmann::ordered_json OfflineJson(const MomentumScene& scene, const momentum::TPose& pose,
                                    std::size_t start, std::size_t judged);

@@ -44,7 +44,7 @@ struct MomentumScene {
   double outside_share = 0;           ///< Of loaded feet whose COP is beyond the sensors.
 };
 
-/// The T-pose is held so long, then left within a second and a half.
+/// Duration of the T-pose; the transition from it takes a second and a half.
 inline constexpr double kCalibrationS = 6;
 
 /// Errors name the file and what is wrong in it.

@@ -17,10 +17,10 @@ class PoseBreakdown {
   /// `run` must outlive it.
   explicit PoseBreakdown(const pose_run::PoseRun& run);
 
-  /// What was told of frame `i`; `score` has just taken it.
+  /// The output for frame `i`; `score` has just taken it.
   void Add(const reconstruction::Output& told, const PoseScore& score, std::size_t i);
 
-  /// Fields lift_off, aloft, kick and, where somebody has told the activities, by_activity.
+  /// Fields lift_off, aloft, kick and, where the activities are given, by_activity.
   nlohmann::ordered_json Json() const;
 
  private:

@@ -21,7 +21,7 @@ constexpr double kCutoffHz = 6;
 constexpr std::array kAccelerationsMps2{0.1, 0.2, 0.35, 0.5};
 constexpr std::array kAfterS{1.0, 5.0, 10.0};
 constexpr double kOutlierN = 50;
-constexpr double kOutlierAtS = 2;  // After the judged part begins.
+constexpr double kOutlierAtS = 2;  // After the evaluated part begins.
 
 ordered_json ConstantVelocity(const pose_run::PoseRun& simulated, std::size_t start) {
   const auto count = static_cast<Eigen::Index>(simulated.frames.size() - start);

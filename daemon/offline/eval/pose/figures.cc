@@ -23,7 +23,7 @@ using reconstruction::Mode;
 
 constexpr double kWindowS = 12;
 
-/// What one reconstruction told of every judged frame.
+/// The output of one reconstruction for every evaluated frame.
 struct Told {
   std::string name;
   std::vector<Eigen::VectorXd> q;

@@ -13,7 +13,7 @@
 
 namespace footing::eval {
 
-/// A motion file, and what the boards and hands tell of it.
+/// A motion file, and what the boards and hands measure of it.
 struct PoseSceneOptions {
   std::string motion;             ///< BVH, AMC, TRC or C3D.
   std::string skeleton;           ///< ASF, of an AMC.
@@ -40,7 +40,8 @@ Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& 
 
 /// Reads the models and refuses those that were trained on the motion's subject (the file's name up
 /// to the first '_'); with `same_person`, only those that were trained on this very file: a
-/// person's own model is judged on another of their takes. No file: those that the product carries.
+/// person's own model is evaluated on another of their takes. No file: those that the product
+/// carries.
 Result<reconstruction::Models> ReadPoseModels(const std::vector<std::string>& files,
                                               const std::string& motion, bool same_person = false);
 

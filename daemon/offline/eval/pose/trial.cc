@@ -52,7 +52,7 @@ reconstruction::Known KnownOf(const pose_run::Frame& frame, const Oracle& oracle
   return known;
 }
 
-/// Everything that is judged beside the pose itself.
+/// Everything that is evaluated beside the pose itself.
 class Judge {
  public:
   Judge(const pose_run::PoseRun& run, std::size_t lag)

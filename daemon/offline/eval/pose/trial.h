@@ -8,12 +8,12 @@
 
 namespace footing::eval {
 
-/// What is told to the reconstruction instead of its own estimates.
+/// What is given to the reconstruction instead of its own estimates.
 struct Oracle {
   bool com = false, momentum = false, feet = false;
 };
 
-/// Runs one reconstruction over a run and judges all that it tells, from
+/// Runs one reconstruction over a run and evaluates all its outputs, from
 /// run.judged_from on.
 Result<nlohmann::ordered_json> RunPoseTrial(const pose_run::PoseRun& run,
                                             const reconstruction::Models& models,

@@ -9,14 +9,14 @@
 namespace footing::eval {
 
 inline constexpr double kContactN = 20;          ///< A foot with more load is in contact.
-inline constexpr double kSettledContactS = 0.3;  ///< A place is judged so long after a landing.
+inline constexpr double kSettledContactS = 0.3;  ///< From a landing to its evaluation.
 
-/// Told contact of both feet against the true one.
+/// Estimated contact of both feet against the true one.
 struct ContactScore {
   std::size_t both = 0, only_told = 0, only_true = 0;
   std::size_t landings = 0;
-  double delay_s = 0, worst_delay_s = 0;               ///< From landings to when they were told.
-  std::array<double, momentum::kFeet> true_since_s{};  ///< True contact lasts so long.
+  double delay_s = 0, worst_delay_s = 0;  ///< From landings to when they were reported.
+  std::array<double, momentum::kFeet> true_since_s{};  ///< Minimum duration of true contact.
 
   void Add(std::size_t foot, bool truth, bool told, double step_s) {
     both += truth && told ? 1 : 0;

@@ -11,7 +11,7 @@
 
 namespace footing::eval {
 
-/// Which joints a pose is judged by: hips, knees, ankles, balls of the feet; root, chest, neck,
+/// Which joints a pose is evaluated by: hips, knees, ankles, balls of the feet; root, chest, neck,
 /// base and top of the head; shoulders, elbows, end of the forearm's upper two thirds where there
 /// is one (CMU), wrists. Those that the skeleton has, at most 21.
 struct JudgedJoints {
@@ -65,8 +65,8 @@ class PoseScore {
   /// Degrees. Of the thigh in the pelvis: its direction; its turn about itself, of all frames and
   /// of those with a bent knee. Then the pelvis and the thigh's direction in W.
   std::array<Spread, 5> hips_;
-  /// From the true hip to the told one, rad along the axis in the thigh; left and right. Their mean
-  /// is what a person's markers or way of standing turn in all frames alike.
+  /// From the true hip to the estimated one, rad along the axis in the thigh; left and right. Their
+  /// mean is what a person's markers or way of standing turn in all frames alike.
   std::array<std::vector<Eigen::Vector3d>, 2> hip_turns_rad_;
 };
 

@@ -12,7 +12,7 @@ namespace footing::eval {
 class StanceFrames {
  public:
   static constexpr double kEdgeS = 0.1;
-  using Speeds = std::array<double, 2>;  ///< Told and true.
+  using Speeds = std::array<double, 2>;  ///< Estimated and true.
 
   /// The next frame. Returns those of kEdgeS ago when the foot stood then.
   std::optional<Speeds> Advance(bool contact, const Speeds& speeds, double step_s) {

@@ -19,7 +19,7 @@ constexpr double kSteerAboveRad = 0.07;
 constexpr double kSteerBelowRad = 0.02;
 /// Share of the error that one step is to take away, when it can be chosen.
 constexpr double kSteerShare = 0.35;
-/// Told to jump, a run leaves the ground after this long, a walk after the other, about.
+/// Commanded to jump, a run leaves the ground after this long, a walk after the other, about.
 constexpr double kRunLeadS = 0.7;
 constexpr double kWalkLeadS = 0.35;
 /// Narrower pits are run across without a jump.

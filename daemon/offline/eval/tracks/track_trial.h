@@ -8,7 +8,7 @@
 
 namespace footing::eval {
 
-/// How the made user's wishes reach the engine.
+/// How the synthetic user's commands reach the engine.
 enum class Interface {
   kDirect,  ///< As a GaitCommand, at once.
   kWrist,   ///< By two swung controllers, footingd's features and the wrist mapping.

@@ -4,7 +4,7 @@
 
 namespace footing::eval {
 
-/// `tracks`: a made user drives along a track through an interface.
+/// `tracks`: a synthetic user steers along a track through an interface.
 void AddTracksCommand(CLI::App& app, Shared& shared);
 
 }  // namespace footing::eval
