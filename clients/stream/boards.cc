@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clients/stream/tellings.h"
+#include "common/body/held_frame.h"
 #include "common/virtual/sensors/held_device.h"
 
 namespace footing::stream_client {
@@ -47,8 +48,8 @@ StandIn::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side, std:
                                      between(course->angular_velocity_S_radps),
                                      std::max(0.0, t_s - std::exchange(last_s, t_s)));
     virtual_devices::WiimoteSensors felt;
-    felt.specific_force_S_mps2 = sensors::AsHeld(told.specific_force_S_mps2);
-    felt.angular_velocity_S_radps = sensors::AsHeld(told.angular_velocity_S_radps);
+    felt.specific_force_S_mps2 = body::AsHeld(told.specific_force_S_mps2);
+    felt.angular_velocity_S_radps = body::AsHeld(told.angular_velocity_S_radps);
     return felt;
   };
 }

@@ -9,8 +9,8 @@
 
 namespace footing::virtual_sensors {
 
-/// What a device held in a fist feels, a column a frame, in its frame S as it should be held: with
-/// the arms of a T-pose its axes are W's (it points forward, buttons up).
+/// What a device held in a fist measures, a column a frame, in its held frame S
+/// (common/body/held_frame.h).
 struct HeldCourse {
   Eigen::Matrix3Xd specific_force_S_mps2;
   Eigen::Matrix3Xd angular_velocity_S_radps;
@@ -20,10 +20,6 @@ struct HeldCourse {
 /// are not fit to be differentiated twice. The motion's skeleton is the body's.
 HeldCourse FollowFist(const body::Body& body, const motion::Motion& motion, int side,
                       double cutoff_hz = 10);
-
-/// A vector in a Wiimote's own frame (x left, y front, z down) as in S, and back: pointing forward
-/// with its buttons up.
-inline Eigen::Vector3d AsHeld(const Eigen::Vector3d& v) { return {v.y(), v.x(), -v.z()}; }
 
 /// Errors of a Wiimote with MotionPlus and of the hand that holds it; standard deviations unless
 /// said otherwise. Noises, counts and ranges are the devices' (docs/hands.md).

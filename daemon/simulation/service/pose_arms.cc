@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/body/held_frame.h"
 #include "common/units/units.h"
-#include "common/virtual/sensors/held_device.h"
 #include "common/wire/wire.h"
 
 namespace footing::simulation {
@@ -51,8 +51,8 @@ void PoseArms::Take(const v1::MotionSample& sample, std::int64_t now_ns) {
     const Eigen::Vector3d turn_S = wire::FromProto(sample.angular_velocity_radps()) +
                                    wire::FromProto(sample.gyroscope_bias_radps());
     tracker_->Add(side,
-                  {virtual_sensors::AsHeld(wire::FromProto(sample.specific_force_mps2())),
-                   virtual_sensors::AsHeld(turn_S), sample.clipped_axes() != 0},
+                  {body::AsHeld(wire::FromProto(sample.specific_force_mps2())),
+                   body::AsHeld(turn_S), sample.clipped_axes() != 0},
                   step_s);
   }
 }
