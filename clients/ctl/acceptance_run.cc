@@ -8,6 +8,7 @@
 #include "clients/ctl/acceptance_text.h"
 #include "clients/ctl/guided.h"
 #include "clients/log/stream_recorder.h"
+#include "common/board/layout.h"
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
 #include "common/units/units.h"
@@ -153,7 +154,7 @@ Result<AcceptanceVerdict> RunAcceptance(Session& session, const AcceptanceOption
     return NoDevice("rig " + options.rig + " has no device; see footing-ctl devices");
   }
   stream::BoardLayout layout =
-      *guide::LayoutNamed(boards > 1 ? "one_foot_each" : "single", guide::kUsualGapMm);
+      *board::LayoutNamed(boards > 1 ? "one_foot_each" : "single", board::kUsualGapMm);
   for (const auto& rig : session.setup()) {
     if (rig.rig == options.rig && !rig.layout.preset.empty()) layout = rig.layout;
   }

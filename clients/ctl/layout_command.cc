@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/guide/layout.h"
 #include "clients/ctl/guided.h"
+#include "common/board/layout.h"
 #include "common/cli/cli.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 struct Words {
   std::string rig = "main";
   std::string preset;
-  double gap_mm = guide::kUsualGapMm;
+  double gap_mm = board::kUsualGapMm;
   bool check = false;
   bool script = false;
 };
@@ -38,7 +38,7 @@ Result<void> Layout(Session& session, const Words& words, const Shared& shared) 
     if (rig.rig == words.rig) layout = rig.layout;
   }
   if (!words.preset.empty()) {
-    layout = *guide::LayoutNamed(words.preset, words.gap_mm);
+    layout = *board::LayoutNamed(words.preset, words.gap_mm);
     layout.rig = words.rig;
     v1::Command command;
     *command.mutable_set_board_layout()->mutable_layout() = wire::ToProto(layout);
@@ -88,7 +88,7 @@ void AddLayoutCommand(CLI::App& app, Shared& shared) {
       "Examples:\n  footing-ctl layout\n"
       "  footing-ctl layout --preset one_foot_each --gap-mm 20 --check");
   command->callback([words, &shared] {
-    if (!words->preset.empty() && !guide::LayoutNamed(words->preset, 0)) {
+    if (!words->preset.empty() && !board::LayoutNamed(words->preset, 0)) {
       shared.exit_code =
           cli::Report(UsageError("--preset " + words->preset +
                                  ": no such layout; there are: one_foot_each side_by_side single"));

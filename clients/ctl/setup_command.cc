@@ -2,8 +2,8 @@
 
 #include "clients/ctl/commands.h"
 #include "clients/ctl/gesture_command.h"
-#include "clients/ctl/guide/layout.h"
 #include "clients/ctl/guided.h"
+#include "common/board/layout.h"
 #include "common/cli/cli.h"
 
 namespace footing::ctl {
@@ -36,7 +36,7 @@ Result<std::vector<guide::Item>> Understand(Words& words) {
   auto worn = WornRoles(words.worn);
   if (!worn) return worn.error();
   words.wishes.worn = std::move(worn).value();
-  if (!words.wishes.preset.empty() && !guide::LayoutNamed(words.wishes.preset, 0)) {
+  if (!words.wishes.preset.empty() && !board::LayoutNamed(words.wishes.preset, 0)) {
     return UsageError("--preset " + words.wishes.preset +
                       ": no such layout; there are: one_foot_each side_by_side single");
   }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "common/board/geometry.h"
 #include "common/config/data_file.h"
 #include "common/log/log.h"
 #include "common/units/units.h"
@@ -126,10 +127,10 @@ double BestGap(const std::vector<double>& aside_m) {
   std::size_t fewest = aside_m.size() + 1;
   double first_m = 0, last_m = 0;
   for (int i = 0; i * kStepM <= kWidestM; ++i) {
-    const double middle_m = 0.5 * (sensors::kBoardDepthM + i * kStepM);
+    const double middle_m = 0.5 * (board::kBalanceBoard.plate_y_m + i * kStepM);
     const auto outside = static_cast<std::size_t>(
         std::count_if(aside_m.begin(), aside_m.end(), [middle_m](double at_m) {
-          return std::abs(at_m - middle_m) > 0.5 * sensors::kSensorsAlongM;
+          return std::abs(at_m - middle_m) > 0.5 * board::kBalanceBoard.sensor_distance_y_m;
         }));
     if (outside < fewest) {
       fewest = outside;

@@ -120,21 +120,4 @@ struct BoardSample {
   bool tared = false;
 };
 
-/// Board forces at a uniform rate.
-struct UniformBoardSample {
-  std::uint32_t device = 0;
-  std::int64_t sampled_ns = 0;
-  double top_left_n = 0;
-  double top_right_n = 0;
-  double bottom_left_n = 0;
-  double bottom_right_n = 0;
-  double total_n = 0;
-  bool cop_valid = false;
-  double cop_x_m = 0;
-  double cop_y_m = 0;
-  std::uint32_t samples = 0;  ///< Raw samples in the window.
-  bool gap = false;           ///< The window is empty: held, not valid.
-  bool simulated = false;
-};
-
 }  // namespace footing::stream

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,22 +15,27 @@ struct BoardPose {
   double yaw_rad = 0;  ///< Of the plate's front edge against W's x, about z.
 };
 
+/// A board in its plate frame P (x to the right, y to the front, origin in the middle). Its values
+/// are in common/board/geometry.h.
+struct BoardGeometry {
+  double plate_x_m = 0;  ///< Outer size.
+  double plate_y_m = 0;
+  double sensor_distance_x_m = 0;  ///< Between the left and the right sensors.
+  double sensor_distance_y_m = 0;  ///< Between the rear and the front sensors.
+
+  bool operator==(const BoardGeometry&) const = default;
+};
+
 struct BoardLayout {
   std::string rig;
   BoardPose left;
   BoardPose right;
   double gap_mm = 0;
   std::string preset;  ///< "one_foot_each", "side_by_side", "single", "custom"; empty: none set.
+  /// In force at the server; none where it does not publish one (board::GeometryOf).
+  std::optional<BoardGeometry> left_geometry = std::nullopt;
+  std::optional<BoardGeometry> right_geometry = std::nullopt;
 };
-
-/// Plate of a board: its long and its short side, and how high its surface is.
-inline constexpr double kPlateLongM = 0.511;
-inline constexpr double kPlateShortM = 0.316;
-inline constexpr double kPlateHeightM = 0.053;
-
-/// Where boards lie that nobody has laid out: one foot each, long sides fore and aft, power buttons
-/// outwards, 2 cm apart.
-BoardLayout DefaultLayout();
 
 /// One step of the guided set-up: when it was done and how well.
 struct SetupItem {

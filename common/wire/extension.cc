@@ -75,40 +75,4 @@ stream::CameraSample FromProto(const v1::CameraSample& message) {
   return value;
 }
 
-v1::UniformBoardSample ToProto(const stream::UniformBoardSample& value) {
-  v1::UniformBoardSample message;
-  message.set_device(value.device);
-  message.set_sampled_ns(value.sampled_ns);
-  message.set_top_left_n(Finite(value.top_left_n));
-  message.set_top_right_n(Finite(value.top_right_n));
-  message.set_bottom_left_n(Finite(value.bottom_left_n));
-  message.set_bottom_right_n(Finite(value.bottom_right_n));
-  message.set_total_n(Finite(value.total_n));
-  message.set_cop_valid(value.cop_valid);
-  message.set_cop_x_m(Finite(value.cop_x_m));
-  message.set_cop_y_m(Finite(value.cop_y_m));
-  message.set_samples(value.samples);
-  message.set_gap(value.gap);
-  message.set_simulated(value.simulated);
-  return message;
-}
-
-stream::UniformBoardSample FromProto(const v1::UniformBoardSample& message) {
-  stream::UniformBoardSample value;
-  value.device = message.device();
-  value.sampled_ns = message.sampled_ns();
-  value.top_left_n = Finite(message.top_left_n());
-  value.top_right_n = Finite(message.top_right_n());
-  value.bottom_left_n = Finite(message.bottom_left_n());
-  value.bottom_right_n = Finite(message.bottom_right_n());
-  value.total_n = Finite(message.total_n());
-  value.cop_valid = message.cop_valid();
-  value.cop_x_m = Finite(message.cop_x_m());
-  value.cop_y_m = Finite(message.cop_y_m());
-  value.samples = message.samples();
-  value.gap = message.gap();
-  value.simulated = message.simulated();
-  return value;
-}
-
 }  // namespace footing::wire

@@ -19,6 +19,24 @@ stream::BoardPose FromProto(const v1::BoardPose& message) {
   return value;
 }
 
+v1::BoardGeometry ToProto(const stream::BoardGeometry& value) {
+  v1::BoardGeometry message;
+  message.set_plate_x_m(Finite(value.plate_x_m));
+  message.set_plate_y_m(Finite(value.plate_y_m));
+  message.set_sensor_distance_x_m(Finite(value.sensor_distance_x_m));
+  message.set_sensor_distance_y_m(Finite(value.sensor_distance_y_m));
+  return message;
+}
+
+stream::BoardGeometry FromProto(const v1::BoardGeometry& message) {
+  stream::BoardGeometry value;
+  value.plate_x_m = Finite(message.plate_x_m());
+  value.plate_y_m = Finite(message.plate_y_m());
+  value.sensor_distance_x_m = Finite(message.sensor_distance_x_m());
+  value.sensor_distance_y_m = Finite(message.sensor_distance_y_m());
+  return value;
+}
+
 v1::BoardLayout ToProto(const stream::BoardLayout& value) {
   v1::BoardLayout message;
   message.set_rig(Utf8(value.rig));
@@ -26,6 +44,8 @@ v1::BoardLayout ToProto(const stream::BoardLayout& value) {
   *message.mutable_right() = ToProto(value.right);
   message.set_gap_mm(Finite(value.gap_mm));
   message.set_preset(Utf8(value.preset));
+  if (value.left_geometry) *message.mutable_left_geometry() = ToProto(*value.left_geometry);
+  if (value.right_geometry) *message.mutable_right_geometry() = ToProto(*value.right_geometry);
   return message;
 }
 
@@ -36,6 +56,8 @@ stream::BoardLayout FromProto(const v1::BoardLayout& message) {
   value.right = FromProto(message.right());
   value.gap_mm = Finite(message.gap_mm());
   value.preset = message.preset();
+  if (message.has_left_geometry()) value.left_geometry = FromProto(message.left_geometry());
+  if (message.has_right_geometry()) value.right_geometry = FromProto(message.right_geometry());
   return value;
 }
 

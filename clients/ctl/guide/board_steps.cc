@@ -5,6 +5,7 @@
 
 #include "clients/ctl/guide/pick.h"
 #include "clients/ctl/guide/weigh.h"
+#include "common/board/layout.h"
 #include "common/units/units.h"
 
 namespace footing::guide {
@@ -66,11 +67,11 @@ void LayoutStep::Begin(const Situation& now, const Wishes& wishes) {
     return;
   }
   two_ = boards.size() > 1;
-  const double gap_mm = wishes.gap_mm == Wishes::kNoGapMm ? kUsualGapMm : wishes.gap_mm;
-  const auto usual = LayoutNamed(two_ ? "one_foot_each" : "single", gap_mm);
+  const double gap_mm = wishes.gap_mm == Wishes::kNoGapMm ? board::kUsualGapMm : wishes.gap_mm;
+  const auto usual = board::LayoutNamed(two_ ? "one_foot_each" : "single", gap_mm);
   layout_ = *usual;
   if (!wishes.preset.empty()) {
-    layout_ = LayoutNamed(wishes.preset, gap_mm).value_or(*usual);
+    layout_ = board::LayoutNamed(wishes.preset, gap_mm).value_or(*usual);
   } else if (two_) {
     for (const auto& rig : *now.setup) {
       const std::string& preset = rig.layout.preset;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "clients/ctl/guide/pick.h"
+#include "common/board/geometry.h"
 #include "common/units/units.h"
 
 namespace footing::guide {
@@ -33,11 +34,12 @@ constexpr const char* kSingle = R"(
 )";
 
 /// Movement of a board's COP in W between two stances; nothing when it was not stood on.
-std::optional<WorldPoint> Moved(const stream::BoardPose& pose, const Load& from, const Load& to) {
+std::optional<Eigen::Vector2d> Moved(const stream::BoardPose& pose, const Load& from,
+                                     const Load& to) {
   if (!from.cop_valid || !to.cop_valid) return std::nullopt;
   stream::BoardPose turned;  // A difference: the place drops out.
   turned.yaw_rad = pose.yaw_rad;
-  return InWorld(turned, to.cop_x_m - from.cop_x_m, to.cop_y_m - from.cop_y_m);
+  return board::InWorld(turned, to.cop_x_m - from.cop_x_m, to.cop_y_m - from.cop_y_m);
 }
 
 /// Stood the wrong way: the other board carried the load that this one should have had.
@@ -49,8 +51,8 @@ bool Swapped(const LayoutObserved& observed) {
 
 std::string Text(double value) { return std::to_string(std::lround(value)); }
 
-std::string Turn(const WorldPoint& moved) {
-  const bool about = moved.x_m < 0 && std::abs(moved.x_m) >= std::abs(moved.y_m);
+std::string Turn(const Eigen::Vector2d& moved) {
+  const bool about = moved.x() < 0 && std::abs(moved.x()) >= std::abs(moved.y());
   return about ? "by half a turn" : "by a quarter turn";
 }
 
@@ -63,62 +65,10 @@ LayoutVerdict NoContact(const std::string& note) {
 
 }  // namespace
 
-std::optional<stream::BoardLayout> LayoutNamed(const std::string& preset, double gap_mm) {
-  stream::BoardLayout layout;
-  layout.preset = preset;
-  layout.gap_mm = gap_mm;
-  const double gap_m = gap_mm * 1e-3;
-  if (preset == "one_foot_each") {
-    layout.left = {0, (kBoardShortM + gap_m) / 2, -kPi / 2};
-    layout.right = {0, -(kBoardShortM + gap_m) / 2, kPi / 2};
-  } else if (preset == "side_by_side") {
-    layout.left = {0, (kBoardLongM + gap_m) / 2, 0};
-    layout.right = {0, -(kBoardLongM + gap_m) / 2, 0};
-  } else if (preset == "single") {
-    layout.gap_mm = 0;
-  } else {
-    return std::nullopt;
-  }
-  return layout;
-}
-
 std::string LayoutPicture(const std::string& preset) {
   if (preset == "one_foot_each") return kOneFootEach;
   if (preset == "side_by_side") return kSideBySide;
   return preset == "single" ? kSingle : "";
-}
-
-WorldPoint InWorld(const stream::BoardPose& pose, double x_P_m, double y_P_m) {
-  // With yaw 0 the plate's front (y_P) is forward (x_W) and its right (x_P) is -y_W.
-  const double forward_m = y_P_m;
-  const double left_m = -x_P_m;
-  const double cosine = std::cos(pose.yaw_rad);
-  const double sine = std::sin(pose.yaw_rad);
-  return {pose.x_m + cosine * forward_m - sine * left_m,
-          pose.y_m + sine * forward_m + cosine * left_m};
-}
-
-CombinedCop Combine(const stream::BoardLayout& layout, const Load* left, const Load* right) {
-  CombinedCop combined;
-  combined.degraded = left == nullptr || right == nullptr;
-  double moment_x_nm = 0;
-  double moment_y_nm = 0;
-  const auto add = [&](const stream::BoardPose& pose, const Load* load) {
-    if (load == nullptr || !load->cop_valid) return;
-    const WorldPoint at = InWorld(pose, load->cop_x_m, load->cop_y_m);
-    combined.total_n += load->mean_n;
-    moment_x_nm += load->mean_n * at.x_m;
-    moment_y_nm += load->mean_n * at.y_m;
-  };
-  add(layout.left, left);
-  add(layout.right, right);
-  combined.valid = combined.total_n > kFreeN;
-  if (combined.valid) {
-    combined.at = {moment_x_nm / combined.total_n, moment_y_nm / combined.total_n};
-  } else {
-    combined.total_n = 0;
-  }
-  return combined;
 }
 
 LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserved& observed) {
@@ -145,15 +95,15 @@ LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserve
   if ((!left && !right) || (!verdict.degraded && (!left || !right))) {
     return NoContact("a board had no centre of pressure while leaning: stand on all boards");
   }
-  const auto wrong = [](const std::optional<WorldPoint>& moved) {
-    return moved && moved->x_m < std::max(kLeastLeanM, std::abs(moved->y_m));
+  const auto wrong = [](const std::optional<Eigen::Vector2d>& moved) {
+    return moved && moved->x() < std::max(kLeastLeanM, std::abs(moved->y()));
   };
   for (const auto& moved : {left, right}) {
-    if (moved && std::hypot(moved->x_m, moved->y_m) < kLeastLeanM) {
+    if (moved && std::hypot(moved->x(), moved->y()) < kLeastLeanM) {
       return NoContact("the centre of pressure moved by less than " + Text(kLeastLeanM * 1e3) +
                        " mm: lean further forward, heels down");
     }
-    if (moved) verdict.residual_mm = std::max(verdict.residual_mm, std::abs(moved->y_m) * 1e3);
+    if (moved) verdict.residual_mm = std::max(verdict.residual_mm, std::abs(moved->y()) * 1e3);
   }
   if (wrong(left) && wrong(right)) {
     verdict.fault = LayoutFault::kBothTurned;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clients/ctl/guide/recent.h"
+#include "common/board/geometry.h"
 
 namespace footing::guide {
 
@@ -27,8 +28,8 @@ struct DeviceMotion {
   Motion motion;
 };
 
-inline constexpr double kStoodOnN = 100;     ///< 10 kg: somebody stands on it.
-inline constexpr double kFreeN = 49;         ///< 5 kg: nobody does (the plate's own threshold).
+inline constexpr double kStoodOnN = 100;               ///< 10 kg: somebody stands on it.
+inline constexpr double kFreeN = board::kContactOffN;  ///< Nobody does.
 inline constexpr double kShakenMps2 = 4;     ///< A deliberate shake, four times a slow gesture.
 inline constexpr double kClearlyMore = 2.5;  ///< Ratio of the shaken device to every other.
 

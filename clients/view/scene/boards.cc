@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/board/layout.h"
+
 namespace footing::scene {
 namespace {
 
@@ -25,9 +27,9 @@ void AddPlate(const PlacedBoard& board, const Colour& accent, PartList& parts) {
                        const Colour& colour, float gloss) {
     parts.AddBox(At(board.InWorld(right_m, front_m), z_m), axes, sides_m, colour, gloss);
   };
-  const auto wide = static_cast<float>(stream::kPlateLongM),
-             deep = static_cast<float>(stream::kPlateShortM),
-             high = static_cast<float>(stream::kPlateHeightM);
+  const auto wide = static_cast<float>(board.geometry.plate_x_m),
+             deep = static_cast<float>(board.geometry.plate_y_m),
+             high = static_cast<float>(board::kPlateHeightM);
   const Colour body = board.live ? Rgb(0xe8ebee) : Rgb(0x8d949b);
   const Colour pad = board.live ? Rgb(0xd3d8dd) : Rgb(0x7d848b);
   box(0, 0, -0.60 * high, {wide, deep - 0.03f, 0.8f * high}, body, 0.3f);
@@ -56,13 +58,11 @@ void AddColumns(const PlacedBoard& board, const Colour& accent, PartList& parts)
 }  // namespace
 
 Eigen::Vector2d PlacedBoard::InWorld(double right_m, double front_m) const {
-  const double c = std::cos(pose.yaw_rad), s = std::sin(pose.yaw_rad);
-  return {pose.x_m + s * right_m + c * front_m, pose.y_m - c * right_m + s * front_m};
+  return board::InWorld(pose, right_m, front_m);
 }
 
-std::array<Eigen::Vector2d, 4> PlacedBoard::Sensors() const {
-  constexpr double kX = kSensorsAcrossM / 2, kY = kSensorsAlongM / 2;
-  return {InWorld(-kX, kY), InWorld(kX, kY), InWorld(-kX, -kY), InWorld(kX, -kY)};
+std::array<Eigen::Vector2d, board::kCorners> PlacedBoard::Sensors() const {
+  return board::SensorPlaces(pose, geometry);
 }
 
 std::array<double, 4> PlacedBoard::Loads() const {
@@ -72,15 +72,29 @@ std::array<double, 4> PlacedBoard::Loads() const {
 
 Colour SideColour(std::size_t side) { return side == 0 ? Rgb(0x3f8fe0) : Rgb(0xf2a33c); }
 
+stream::BoardGeometry GeometryOf(const Model& model, const std::pair<int, std::uint32_t>& board) {
+  for (const Device& device : model.devices) {
+    if (std::pair(device.source, device.status.device) != board) continue;
+    const bool left = device.status.role == stream::DeviceRole::kLeftBoard;
+    for (const stream::RigSetup& setup : model.setup) {
+      if (setup.rig != device.status.rig) continue;
+      return board::GeometryOr(left ? setup.layout.left_geometry : setup.layout.right_geometry);
+    }
+  }
+  return board::kBalanceBoard;
+}
+
 std::array<PlacedBoard, 2> BoardsOf(const Model& model, const std::string& rig,
                                     std::int64_t now_ns) {
-  stream::BoardLayout layout = stream::DefaultLayout();
+  stream::BoardLayout layout = board::DefaultLayout();
   for (const stream::RigSetup& setup : model.setup) {
-    if (setup.rig == rig && !setup.layout.preset.empty()) layout = setup.layout;
+    if (setup.rig == rig) layout = board::LayoutOr(setup.layout);
   }
   std::array<PlacedBoard, 2> boards;
   boards[0].pose = layout.left;
+  boards[0].geometry = board::GeometryOr(layout.left_geometry);
   boards[1].pose = layout.right;
+  boards[1].geometry = board::GeometryOr(layout.right_geometry);
   for (const Device& device : model.devices) {
     if (device.status.rig != rig) continue;
     const bool left = device.status.role == stream::DeviceRole::kLeftBoard;

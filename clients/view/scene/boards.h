@@ -3,32 +3,34 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/part.h"
+#include "common/board/geometry.h"
 
 namespace footing::scene {
-
-/// Distances between a board's sensors (Leach et al. 2014), plate frame P: x right, y front.
-inline constexpr double kSensorsAcrossM = 0.433;
-inline constexpr double kSensorsAlongM = 0.238;
 
 /// A board as it lies, with its newest sample where there is one.
 struct PlacedBoard {
   stream::BoardPose pose;
   bool live = false;  ///< A sample came within the last half second.
   stream::BoardSample sample;
+  stream::BoardGeometry geometry = board::kBalanceBoard;
 
   /// A point of the plate frame P in W.
   Eigen::Vector2d InWorld(double right_m, double front_m) const;
   /// Sensors in the order top left, top right, bottom left, bottom right.
-  std::array<Eigen::Vector2d, 4> Sensors() const;
+  std::array<Eigen::Vector2d, board::kCorners> Sensors() const;
   std::array<double, 4> Loads() const;
 };
 
-/// The left and the right board of a rig by its layout, or by the default one.
+/// The left and the right board of a rig by its published layout, or by the default one.
 std::array<PlacedBoard, 2> BoardsOf(const Model& model, const std::string& rig,
                                     std::int64_t now_ns);
+
+/// The geometry in force of a board, by {source, device}.
+stream::BoardGeometry GeometryOf(const Model& model, const std::pair<int, std::uint32_t>& board);
 
 /// Two plates with their surface at z = 0, and on each sensor a column as high as its load.
 void AddBoards(const std::array<PlacedBoard, 2>& boards, PartList& parts);

@@ -7,6 +7,7 @@
 #include "clients/view/scene/bird.h"
 #include "clients/view/scene/body_stage.h"
 #include "clients/view/scene/ribbon.h"
+#include "common/board/geometry.h"
 
 namespace footing::scene {
 namespace {
@@ -84,7 +85,7 @@ void Stage::AddReconstructed(const Model& model, const CharacterPose& pose, doub
   ComTrail& trail = trails_[pose.character];
   if (pose.body->momentum_valid) trail.Add(time_s, pose.com_m);
   AddBody(model, pose, trail, now_ns, options, picture);
-  const double floor_m = -stream::kPlateHeightM;
+  const double floor_m = -board::kPlateHeightM;
   picture.spots.push_back(
       {Eigen::Vector3d(pose.com_m.x(), pose.com_m.y(), floor_m).cast<float>(), {0, 0}});
 }
@@ -93,7 +94,7 @@ Picture Stage::AdvancePeople(const Model& model, const WorldFrame& frame, std::i
                              double dt_s, const StageOptions& options) {
   Picture picture;
   picture.studio = true;
-  picture.ground_m = picture.floor_m = static_cast<float>(-stream::kPlateHeightM);
+  picture.ground_m = picture.floor_m = static_cast<float>(-board::kPlateHeightM);
   Eigen::Vector2d body_m(0, 0);
   for (const CharacterPose& pose : frame.characters) {
     if (!pose.body) continue;

@@ -6,18 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "common/board/plate.h"
 #include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/identity.h"
 
 namespace footing::virtual_devices {
 
-/// N on each sensor.
-struct CornerForces {
-  double top_left_n = 0;
-  double top_right_n = 0;
-  double bottom_left_n = 0;
-  double bottom_right_n = 0;
-};
+using board::CornerForces;
 
 /// A Balance Board: a Wiimote's radio with an extension that measures four corners.
 ///

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/board/layout.h"
 #include "common/units/units.h"
 
 namespace footing::virtual_sensors {
 namespace {
 
 constexpr double kFullLoadN = 370;  // Half a person: the slow error is stated for this load.
-
-constexpr std::array<double, 4> kRight{-1, 1, -1, 1};  // Of the corners, in P.
-constexpr std::array<double, 4> kFront{1, 1, -1, -1};
 
 // Axes of P in W.
 Eigen::Vector2d Front(const BoardPlace& board) {
@@ -24,28 +22,26 @@ Eigen::Vector2d Right(const BoardPlace& board) {
 }  // namespace
 
 std::array<BoardPlace, kFeet> SideBySide() {
-  return {BoardPlace{{0, 0.5 * kBoardDepthM}, 0.5 * kPi},
-          BoardPlace{{0, -0.5 * kBoardDepthM}, 0.5 * kPi}};
+  const double middle_m = 0.5 * board::kBalanceBoard.plate_y_m;
+  return {BoardPlace{{0, middle_m}, 0.5 * kPi}, BoardPlace{{0, -middle_m}, 0.5 * kPi}};
 }
 
 std::array<BoardPlace, kFeet> OneFootEach(double gap_m) {
-  const double middle_m = 0.5 * (kBoardDepthM + gap_m);
-  return {BoardPlace{{0, middle_m}, -0.5 * kPi}, BoardPlace{{0, -middle_m}, 0.5 * kPi}};
+  const auto poses = board::OneFootEach(gap_m);
+  const auto place = [](const stream::BoardPose& pose) {
+    return BoardPlace{{pose.x_m, pose.y_m}, pose.yaw_rad};
+  };
+  return {place(poses[0]), place(poses[1])};
 }
 
-std::array<Eigen::Vector2d, 4> SensorPlaces(const BoardPlace& board) {
-  std::array<Eigen::Vector2d, 4> places;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    places[i] = board.middle_m + 0.5 * kRight[i] * kSensorsAcrossM * Right(board) +
-                0.5 * kFront[i] * kSensorsAlongM * Front(board);
-  }
-  return places;
+std::array<Eigen::Vector2d, board::kCorners> SensorPlaces(const BoardPlace& board) {
+  return board::SensorPlaces({board.middle_m.x(), board.middle_m.y(), board.yaw_rad});
 }
 
 BoardLoad LoadBoard(const BoardPlace& board, const FootForce& foot, bool limited) {
   const Eigen::Vector2d p = foot.cop_m - board.middle_m;
-  const double x = p.dot(Right(board)) / (0.5 * kSensorsAcrossM);
-  const double y = p.dot(Front(board)) / (0.5 * kSensorsAlongM);
+  const double x = p.dot(Right(board)) / (0.5 * board::kBalanceBoard.sensor_distance_x_m);
+  const double y = p.dot(Front(board)) / (0.5 * board::kBalanceBoard.sensor_distance_y_m);
   double inside_x = std::clamp(x, -1.0, 1.0), inside_y = std::clamp(y, -1.0, 1.0);
   BoardLoad load;
   load.outside = inside_x != x || inside_y != y;
@@ -54,8 +50,8 @@ BoardLoad LoadBoard(const BoardPlace& board, const FootForce& foot, bool limited
     inside_y = y;
   }
   for (std::size_t i = 0; i < load.corners_n.size(); ++i) {
-    load.corners_n[i] =
-        0.25 * foot.load_n * (1 + kRight[i] * inside_x) * (1 + kFront[i] * inside_y);
+    load.corners_n[i] = 0.25 * foot.load_n * (1 + board::kCornerRight[i] * inside_x) *
+                        (1 + board::kCornerFront[i] * inside_y);
   }
   return load;
 }

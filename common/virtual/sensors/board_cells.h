@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "common/board/geometry.h"
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/ground_reaction.h"
 
@@ -16,8 +17,6 @@ struct BoardPlace {
   double yaw_rad = 0;
 };
 
-inline constexpr double kBoardDepthM = 0.316;  ///< The short side of a board's case.
-
 /// Two boards, one under each foot, with their long sides ahead, edge to edge.
 std::array<BoardPlace, kFeet> SideBySide();
 
@@ -25,16 +24,11 @@ std::array<BoardPlace, kFeet> SideBySide();
 /// middle of the gap, their front edges facing each other.
 std::array<BoardPlace, kFeet> OneFootEach(double gap_m);
 
-/// Distances between the sensors (Leach et al. 2014, Sensors 14:18244), plate frame P: x right,
-/// y front.
-inline constexpr double kSensorsAcrossM = 0.433;
-inline constexpr double kSensorsAlongM = 0.238;
+/// N on the four corners.
+using Corners = board::Corners;
 
-/// N on the four corners, in the order top left, top right, bottom left, bottom right.
-using Corners = std::array<double, 4>;
-
-/// Place of each corner's sensor in W, in the order of Corners.
-std::array<Eigen::Vector2d, 4> SensorPlaces(const BoardPlace& board);
+/// Place of each corner's sensor in W.
+std::array<Eigen::Vector2d, board::kCorners> SensorPlaces(const BoardPlace& board);
 
 /// The corners under a foot. A cell only pushes, so a COP outside the sensors' rectangle is one
 /// the board cannot have without tipping: it is moved to the nearest edge.

@@ -5,14 +5,10 @@
 namespace footing::posturography {
 namespace {
 
-double Total(const CornerSample& sample) {
-  return sample.top_left_n + sample.top_right_n + sample.bottom_left_n + sample.bottom_right_n;
-}
-
 double MedianWeight(const std::vector<CornerSample>& samples, double least_n) {
   std::vector<double> totals;
   for (const CornerSample& sample : samples) {
-    if (Total(sample) >= least_n) totals.push_back(Total(sample));
+    if (Total(sample.forces) >= least_n) totals.push_back(Total(sample.forces));
   }
   if (totals.empty()) return 0;
   const auto middle = totals.begin() + static_cast<std::ptrdiff_t>(totals.size() / 2);
@@ -21,13 +17,9 @@ double MedianWeight(const std::vector<CornerSample>& samples, double least_n) {
 }
 
 CopSample CentreOfPressure(const CornerSample& sample, const BoardShape& shape) {
-  const double total = Total(sample);
-  const double right = sample.top_right_n + sample.bottom_right_n;
-  const double left = sample.top_left_n + sample.bottom_left_n;
-  const double top = sample.top_left_n + sample.top_right_n;
-  const double bottom = sample.bottom_left_n + sample.bottom_right_n;
-  return {sample.time_s, shape.sensor_spacing_x_m / 2 * (right - left) / total,
-          shape.sensor_spacing_y_m / 2 * (top - bottom) / total};
+  const board::PlatePoint at =
+      board::CentreOfPressure(sample.forces, Total(sample.forces), shape.geometry);
+  return {sample.time_s, at.x_m, at.y_m};
 }
 
 /// Appends to the last stretch, or begins one after a gap.
@@ -55,7 +47,7 @@ Standing FindStanding(const std::vector<CornerSample>& samples, const BoardShape
   const double longest_s = LongestInterval(samples);
   bool stood = false;
   for (const CornerSample& sample : samples) {
-    const bool stands = Total(sample) >= least_n;
+    const bool stands = Total(sample.forces) >= least_n;
     if (stands) {
       Append(CentreOfPressure(sample, shape), longest_s, !stood, standing.stretches);
       ++standing.samples;

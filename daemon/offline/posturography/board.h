@@ -3,24 +3,20 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/board/plate.h"
 #include "daemon/offline/posturography/sway.h"
 
 namespace footing::posturography {
 
-/// Forces under the four corners of a board.
 struct CornerSample {
   double time_s = 0;
-  double top_left_n = 0;
-  double top_right_n = 0;
-  double bottom_left_n = 0;
-  double bottom_right_n = 0;
+  board::CornerForces forces;
 };
 
 struct BoardShape {
-  double sensor_spacing_x_m = 0.433;  ///< Between the cells' centres, along the long axis.
-  double sensor_spacing_y_m = 0.238;
+  stream::BoardGeometry geometry = board::kBalanceBoard;
   /// Less than this is nobody: the board and a step on or off it.
-  double least_body_weight_n = 49;
+  double least_body_weight_n = board::kContactOffN;
   /// A COP is undefined below this share of the body weight.
   double least_share_of_weight = 0.1;
 };
@@ -35,8 +31,7 @@ struct Standing {
 /// Longest interval of samples that is not a gap.
 inline constexpr double kLongestIntervalS = 0.5;
 
-/// Centre of pressure in the plate frame: x = dx/2 ((TR + BR) - (TL + BL)) / F and
-/// y = dy/2 ((TL + TR) - (BL + BR)) / F, F the sum of all. Times must not decrease.
+/// Centre of pressure in the plate frame (board::CentreOfPressure). Times must not decrease.
 Standing FindStanding(const std::vector<CornerSample>& samples, const BoardShape& shape);
 
 /// Cuts samples into stretches at gaps: intervals above kLongestIntervalS and 5 median ones.

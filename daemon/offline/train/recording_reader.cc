@@ -9,12 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/board/geometry.h"
+#include "common/board/layout.h"
 #include "common/log/log.h"
 #include "common/mcap/walk.h"
 #include "common/recording/mapped_file.h"
 #include "common/stream/setup.h"
 #include "common/units/units.h"
-#include "common/virtual/sensors/board_cells.h"
 #include "common/wire/wire.h"
 
 namespace footing::train {
@@ -34,7 +35,7 @@ struct Stamped {
 struct Rig {
   std::array<std::vector<Stamped<std::array<double, 4>>>, 2> boards;
   std::array<std::vector<Stamped<learning::HandReading>>, 2> hands;
-  std::optional<stream::BoardLayout> layout;
+  stream::BoardLayout layout;
   bool uncalibrated = false;
 
   bool complete() const { return !boards[0].empty() && !boards[1].empty(); }
@@ -68,7 +69,9 @@ class Reader {
       topics_[channel.id] = SplitTopic(channel.topic);
     };
     visitor.message = [this](const mcap::Message& message) { Take(message); };
-    return mcap::Walk(bytes, visitor, mcap::WalkMode::kSalvage);
+    const mcap::WalkEnd end = mcap::Walk(bytes, visitor, mcap::WalkMode::kSalvage);
+    for (auto& [name, rig] : rigs) rig.layout = layouts_[name];
+    return end;
   }
 
   /// By the server's name and their own.
@@ -91,8 +94,7 @@ class Reader {
       TakeAll<v1::SetupState>(message, [&](const auto& setup) {
         for (const v1::RigSetup& rig : setup.rigs()) {
           if (!rig.has_layout()) continue;
-          const stream::BoardLayout layout = wire::FromProto(rig).layout;
-          if (!layout.preset.empty()) rigs[{server, rig.rig()}].layout = layout;
+          layouts_[{server, rig.rig()}] = wire::FromProto(rig).layout;
         }
       });
     } else if (channel == "boards") {
@@ -150,12 +152,9 @@ class Reader {
   }
 
   std::map<std::uint16_t, std::pair<std::string, std::string>> topics_;
+  std::map<std::pair<std::string, std::string>, stream::BoardLayout> layouts_;
   std::map<std::pair<std::string, std::uint32_t>, Bound> bound_;
 };
-
-std::array<Eigen::Vector2d, 4> Cells(const stream::BoardPose& pose) {
-  return virtual_sensors::SensorPlaces({{pose.x_m, pose.y_m}, pose.yaw_rad});
-}
 
 learning::RecordedSession ToSession(const Rig& rig, const std::string& name) {
   learning::RecordedSession session;
@@ -163,8 +162,9 @@ learning::RecordedSession ToSession(const Rig& rig, const std::string& name) {
   const std::int64_t start_ns =
       std::min(rig.boards[0].front().sampled_ns, rig.boards[1].front().sampled_ns);
   const auto seconds = [start_ns](std::int64_t ns) { return NanosecondsToSeconds(ns - start_ns); };
-  const stream::BoardLayout layout = rig.layout.value_or(stream::DefaultLayout());
-  session.cells_W_m = {Cells(layout.left), Cells(layout.right)};
+  const stream::BoardLayout layout = board::LayoutOr(rig.layout);
+  session.cells_W_m = {board::SensorPlaces(layout.left, board::GeometryOr(layout.left_geometry)),
+                       board::SensorPlaces(layout.right, board::GeometryOr(layout.right_geometry))};
   for (std::size_t side = 0; side < 2; ++side) {
     for (const auto& sample : rig.boards[side]) {
       session.boards[side].push_back({seconds(sample.sampled_ns), sample.value});
@@ -234,7 +234,7 @@ Result<Recording> ReadRecording(const std::string& path, const std::string& rig)
                        std::to_string(std::lround(recording.session.duration_s / 60)) +
                        " minutes, more than two hours; record what is beside the motion capture");
   }
-  recording.layout_told = (*chosen)->layout.has_value();
+  recording.layout_told = !(*chosen)->layout.preset.empty();
   recording.file = {.name = std::filesystem::path(path).filename().string(),
                     .sha256 = model::Sha256(file->bytes())};
   return recording;

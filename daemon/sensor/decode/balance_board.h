@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "common/board/plate.h"
 #include "common/units/units.h"
-#include "daemon/sensor/board/plate.h"
 #include "daemon/sensor/calibration/board.h"
 #include "daemon/sensor/reports/extension.h"
 

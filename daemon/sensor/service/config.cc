@@ -18,18 +18,16 @@ void Config::Bind(config::Binder& binder) {
   binder.Number("tick_rate_hz", tick_rate_hz, 10, 200, "Tick rate, Hz");
   binder.Number("stale_after_s", stale_after_s, 0.1, 10,
                 "Time without data after which a device is stale, s");
-  binder.Number("board_sensor_distance_x_m", plate.sensor_distance_x_m, 0.1, 1,
+  binder.Number("board_sensor_distance_x_m", plate.geometry.sensor_distance_x_m,
+                board::kLeastLengthM, board::kMostLengthM,
                 "Distance between a board's left and right sensors, m");
-  binder.Number("board_sensor_distance_y_m", plate.sensor_distance_y_m, 0.1, 1,
+  binder.Number("board_sensor_distance_y_m", plate.geometry.sensor_distance_y_m,
+                board::kLeastLengthM, board::kMostLengthM,
                 "Distance between a board's front and rear sensors, m");
   binder.Number("board_contact_on_n", plate.contact_on_n, 1, 500,
                 "Force above which a board reports contact, N");
   binder.Number("board_contact_off_n", plate.contact_off_n, 1, 500,
                 "Force below which a board reports no contact and no COP, N");
-  binder.Number("board_uniform_rate_hz", board_uniform.rate_hz, 10, 1000,
-                "Sample rate of the channel boards_uniform, Hz");
-  binder.Number("board_uniform_window_s", board_uniform.window_s, 0.01, 0.5,
-                "Averaging window of the channel boards_uniform, s");
   binder.Number("local_gravity_mps2", local_gravity_mps2, 9.76, 9.84,
                 "Local gravity at the boards, m/s2; forces are scaled by it");
   binder.Text("state_directory", state_directory,

@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "common/board/plate.h"
 #include "common/config/config.h"
 #include "common/result/result.h"
 #include "common/transport/address.h"
 #include "common/units/units.h"
-#include "daemon/sensor/board/plate.h"
-#include "daemon/sensor/board/uniform_stream.h"
 
 namespace footing::sensor {
 
@@ -24,7 +23,6 @@ struct Config {
   double tick_rate_hz = 100;
   double stale_after_s = 0.5;  ///< A live device without data for so long is stale.
   board::PlateConfig plate;
-  board::UniformConfig board_uniform;
   double local_gravity_mps2 = kStandardGravityMps2;  ///< Where the boards stand.
   /// Empty: see setup::StatePath. "none": nothing is kept between runs.
   std::string state_directory;

@@ -277,16 +277,6 @@ void Device::TakeBoard(const devices::IncomingReport& report, const decode::Boar
   content.boards.push_back(sample);
 }
 
-void Device::TakeUniform(std::int64_t now_ns, TickContent& content) {
-  while (content.uniform_boards.size() < kMaxSamplesPerTick) {
-    auto sample = chain_.NextUniform(now_ns);
-    if (!sample) return;
-    sample->device = number_;
-    sample->simulated = simulated();
-    content.uniform_boards.push_back(*sample);
-  }
-}
-
 std::string Device::Note(std::int64_t now_ns) const {
   if (move_) return move_->handshake.calibration().problem;
   std::string note = handshake_.Note(now_ns);

@@ -26,7 +26,7 @@
 namespace footing::sensor {
 
 struct DeviceOptions {
-  BoardOptions board;
+  board::PlateConfig plate;
   double local_gravity_mps2 = kStandardGravityMps2;
   handshake::HandshakeConfig handshake;
 };
@@ -39,7 +39,7 @@ class Device {
   using Stored = std::optional<std::vector<std::uint8_t>>;
 
   Device(std::uint32_t number, const DeviceOptions& options)
-      : number_(number), options_(options), chain_(options.board) {}
+      : number_(number), options_(options), chain_(options.plate) {}
 
   void Attach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity,
               const Stored& stored = {});
@@ -95,8 +95,6 @@ class Device {
   /// Of a board.
   BoardChain& chain() { return chain_; }
   const BoardChain& chain() const { return chain_; }
-  /// The board's samples at the uniform rate that are complete by now go to `content`.
-  void TakeUniform(std::int64_t now_ns, TickContent& content);
 
  private:
   struct Move {

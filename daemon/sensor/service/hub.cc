@@ -65,7 +65,7 @@ Device* Hub::MakeRoom() {
     devices_.erase(lost);
   }
   DeviceOptions options;
-  options.board = {config_.plate, config_.board_uniform};
+  options.plate = config_.plate;
   options.local_gravity_mps2 = config_.local_gravity_mps2;
   options.handshake.motion_plus = config_.motion_plus;
   options.handshake.camera = config_.camera;
@@ -270,7 +270,6 @@ TickContent Hub::Tick(std::int64_t now_ns) {
   EndLeases(now_ns);
   for (const auto& device : devices_) {
     device->Advance(now_ns);
-    device->TakeUniform(now_ns, content_);
     Flush(*device);
   }
   for (auto& [name, rig] : rigs_) {
@@ -286,9 +285,13 @@ TickContent Hub::Tick(std::int64_t now_ns) {
   if (book_.revision() != published_revision_) {
     published_revision_ = book_.revision();
     content_.has_setup = true;
-    content_.setup = book_.Rigs();
     ApplySetupToAll();
   }
+  if (std::set<std::string> rigs = RigsWithBoards(); rigs != published_board_rigs_) {
+    published_board_rigs_ = std::move(rigs);
+    content_.has_setup = true;
+  }
+  if (content_.has_setup) content_.setup = SetupInForce();
   WatchSetup();
   PublishStatus(now_ns);
   return std::exchange(content_, {});

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -115,6 +116,8 @@ class Hub {
   void ApplySetup(Device& device);
   void ApplySetupToAll();
   void WatchSetup();
+  std::set<std::string> RigsWithBoards() const;
+  std::vector<stream::RigSetup> SetupInForce() const;
   void AddSetupTo(stream::DeviceStatus& status) const;
   std::string BoardNote(const stream::DeviceStatus& status) const;
   void AddToRig(const Device& device, const stream::MotionSample& sample);
@@ -134,6 +137,7 @@ class Hub {
   std::map<std::uint32_t, Lease> leases_;  // By device.
   setup::Book book_;
   std::uint64_t published_revision_ = 0;
+  std::set<std::string> published_board_rigs_;
   TickContent content_;
   std::vector<stream::DeviceState> last_states_;
   hands::Refusals refusals_;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/board/layout.h"
 #include "common/units/units.h"
-#include "daemon/sensor/board/layout.h"
 #include "daemon/sensor/service/hub.h"
 
 namespace footing::sensor {
@@ -82,6 +82,29 @@ void Hub::ApplySetupToAll() {
   status_due_ = true;
 }
 
+std::set<std::string> Hub::RigsWithBoards() const {
+  std::set<std::string> rigs;
+  for (const auto& device : devices_) {
+    if (device->kind() == DeviceKind::kBalanceBoard) rigs.insert(device->binding().rig);
+  }
+  return rigs;
+}
+
+/// The set-up of every rig that has one or a board, with the geometry by which its boards' samples
+/// are computed.
+std::vector<stream::RigSetup> Hub::SetupInForce() const {
+  std::vector<stream::RigSetup> setup = book_.Rigs();
+  for (const std::string& rig : RigsWithBoards()) {
+    const bool has_one =
+        std::any_of(setup.begin(), setup.end(), [&rig](const auto& one) { return one.rig == rig; });
+    if (!has_one) setup.emplace_back().rig = rig;
+  }
+  for (stream::RigSetup& one : setup) {
+    one.layout.left_geometry = one.layout.right_geometry = config_.plate.geometry;
+  }
+  return setup;
+}
+
 /// Alarms that the devices' own watches raise; the book keeps them until that part is done again.
 void Hub::WatchSetup() {
   for (const auto& device : devices_) {
@@ -151,7 +174,7 @@ Result<Hub::Measured> Hub::Tare(const std::string& serial, double window_s, bool
   if (!(window_s >= kLeastTareWindowS && window_s <= kMostTareWindowS)) {
     return UsageError("tare: window_s must be from 0.5 to 30");
   }
-  const board::Tare tare = (*found)->chain().SolveTare(ports_.now_ns(), window_s);
+  const tare::Tare tare = (*found)->chain().SolveTare(ports_.now_ns(), window_s);
   if (!tare.ok) return Failure("tare of " + serial + ": " + tare.problem);
   book_.SetTare(serial, setup::StoredTare{tare.offset, tare.residual_n});
   return Measured{tare.residual_n, "N",

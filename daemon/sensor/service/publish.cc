@@ -25,7 +25,6 @@ std::vector<transport::Channel> Channels() {
           {"raw", Tick::kRawFieldNumber, false},
           {"nunchuk", Tick::kNunchukFieldNumber, false},
           {"camera", Tick::kCameraFieldNumber, false},
-          {"boards_uniform", Tick::kBoardsUniformFieldNumber, false},
           {"setup", Tick::kSetupFieldNumber, true},
           {"hands", Tick::kHandsFieldNumber, false},
           {"reference", Tick::kReferenceFieldNumber, false},
@@ -53,11 +52,6 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
     v1::BoardSamples list;
     for (const auto& sample : content.boards) *list.add_samples() = wire::ToProto(sample);
     Append(channels, Tick::kBoardsFieldNumber, list);
-  }
-  if (!content.uniform_boards.empty()) {
-    v1::UniformBoardSamples list;
-    for (const auto& sample : content.uniform_boards) *list.add_samples() = wire::ToProto(sample);
-    Append(channels, Tick::kBoardsUniformFieldNumber, list);
   }
   if (content.has_setup) {
     v1::SetupState state;

@@ -14,7 +14,6 @@ namespace footing::sensor {
 struct TickContent {
   std::vector<stream::MotionSample> motion;
   std::vector<stream::BoardSample> boards;
-  std::vector<stream::UniformBoardSample> uniform_boards;
   std::vector<stream::NunchukSample> nunchuks;
   std::vector<stream::CameraSample> cameras;
   std::vector<stream::HandSample> hands;

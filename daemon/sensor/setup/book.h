@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "common/board/plate.h"
 #include "common/stream/device.h"
 #include "common/stream/setup.h"
-#include "daemon/sensor/board/plate.h"
 
 namespace footing::setup {
 

@@ -3,11 +3,11 @@
 #include <array>
 #include <cstdint>
 
+#include "common/board/impulse.h"
 #include "common/stream/character.h"
 #include "daemon/simulation/momentum/estimate.h"
 #include "daemon/simulation/reconstruction/insole_walk.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
-#include "daemon/simulation/service/board_impulse.h"
 
 namespace footing::simulation {
 
@@ -27,7 +27,7 @@ enum class HandTrouble {
 struct PoseInputs {
   reconstruction::Inputs sensors;  ///< Its time is set by the engine's own steps.
   /// Of the boards: what `sensors` has is their newest samples. Where both are valid, these count.
-  std::array<BoardImpulse, momentum::kFeet> impulses;
+  std::array<board::BoardImpulse, momentum::kFeet> impulses;
   /// Cells in the shoes, where there are any. While one of them tells anything, they are followed
   /// instead of the boards.
   std::array<reconstruction::InsoleFoot, momentum::kFeet> insoles;

@@ -88,15 +88,15 @@ void SetFootInput(const momentum::FootLoads& foot, v1::PoseFoot& message) {
   }
 }
 
-void SetImpulse(const BoardImpulse& impulse, v1::PoseFoot& message) {
+void SetImpulse(const board::BoardImpulse& impulse, v1::PoseFoot& message) {
   if (!impulse.valid) return;
   message.set_sampled_s(impulse.sampled_s);
   for (const double impulse_ns : impulse.impulse_ns) message.add_impulse_ns(impulse_ns);
 }
 
-BoardImpulse ImpulseFrom(const v1::PoseFoot& message) {
-  BoardImpulse impulse;
-  impulse.valid = message.impulse_ns_size() == static_cast<int>(kBoardCells);
+board::BoardImpulse ImpulseFrom(const v1::PoseFoot& message) {
+  board::BoardImpulse impulse;
+  impulse.valid = message.impulse_ns_size() == static_cast<int>(board::kCorners);
   if (!impulse.valid) return impulse;
   impulse.sampled_s = message.sampled_s();
   std::copy(message.impulse_ns().begin(), message.impulse_ns().end(), impulse.impulse_ns.begin());

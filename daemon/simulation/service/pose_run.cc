@@ -9,6 +9,20 @@
 namespace footing::simulation {
 namespace {
 
+/// Where there is enough to play, the boards' cells get their mean loads of the next step in place
+/// of their newest samples.
+void PlayLoads(double step_s, board::LoadPlayer& player,
+               std::array<momentum::FootLoads, momentum::kFeet>& feet) {
+  if (feet[0].count != board::kCorners || feet[1].count != board::kCorners) {
+    player.Restart();
+    return;
+  }
+  const auto loads_n = player.Advance(step_s);
+  for (std::size_t f = 0; loads_n && f < feet.size(); ++f) {
+    for (std::size_t i = 0; i < board::kCorners; ++i) feet[f].cells[i].load_n = (*loads_n)[f][i];
+  }
+}
+
 /// FNV-1a over the bits of a pose.
 std::uint64_t HashOf(const Eigen::VectorXd& q) {
   std::uint64_t hash = 14695981039346656037ull;
@@ -74,7 +88,7 @@ void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
     ++quiet_steps_;
   }
   told_ = inputs.Front().sensors;
-  player_.Advance(1 / rate_hz_, told_.loads.feet);
+  PlayLoads(1 / rate_hz_, player_, told_.loads.feet);
   worn_.feet = inputs.Front().insoles;
   simulated_ = inputs.Front().simulated;
   hand_trouble_ = inputs.Front().hand_trouble;

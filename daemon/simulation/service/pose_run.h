@@ -61,7 +61,7 @@ class PoseRun {
   std::uint64_t calibrate_number_ = 0;
   reconstruction::Inputs told_;
   reconstruction::InsoleInputs worn_;
-  LoadPlayer player_;
+  board::LoadPlayer player_;
   PoseSource source_ = PoseSource::kBoards;
   bool simulated_ = false;
   std::array<HandTrouble, reconstruction::kHands> hand_trouble_{};

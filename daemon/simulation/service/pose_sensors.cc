@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "common/stream/setup.h"
+#include "common/board/geometry.h"
+#include "common/board/layout.h"
 #include "common/units/units.h"
-#include "common/virtual/sensors/board_cells.h"
 #include "common/wire/wire.h"
 
 namespace footing::simulation {
@@ -24,8 +24,9 @@ bool IsOld(std::int64_t seen_ns, std::int64_t now_ns, double timeout_s) {
   return NanosecondsToSeconds(now_ns - seen_ns) > timeout_s;
 }
 
-void PlaceCells(const stream::BoardPose& pose, momentum::FootLoads& foot) {
-  const auto places = virtual_sensors::SensorPlaces({{pose.x_m, pose.y_m}, pose.yaw_rad});
+void PlaceCells(const stream::BoardPose& pose, const std::optional<stream::BoardGeometry>& geometry,
+                momentum::FootLoads& foot) {
+  const auto places = board::SensorPlaces(pose, board::GeometryOr(geometry));
   foot.count = places.size();
   for (std::size_t i = 0; i < places.size(); ++i) {
     foot.cells[i].p_WS_m = {places[i].x(), places[i].y(), 0};
@@ -50,9 +51,7 @@ int HandSideOf(v1::DeviceRole role) {
 PoseSensors::PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
                          std::optional<arms::ArmModel> arm)
     : wanted_rig_(std::move(rig)), followed_rig_(wanted_rig_), out_(out), arms_(std::move(arm)) {
-  const stream::BoardLayout layout = stream::DefaultLayout();
-  PlaceCells(layout.left, inputs_.sensors.loads.feet[0]);
-  PlaceCells(layout.right, inputs_.sensors.loads.feet[1]);
+  Place({});
 }
 
 void PoseSensors::Bind(const v1::DeviceStatusList& status) {
@@ -80,13 +79,13 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
 }
 
 void PoseSensors::Place(const v1::SetupState& setup) {
+  stream::BoardLayout layout;
   for (const v1::RigSetup& message : setup.rigs()) {
-    if (message.rig() != followed_rig_ || !message.has_layout()) continue;
-    stream::BoardLayout layout = wire::FromProto(message).layout;
-    if (layout.preset.empty()) layout = stream::DefaultLayout();
-    PlaceCells(layout.left, inputs_.sensors.loads.feet[0]);
-    PlaceCells(layout.right, inputs_.sensors.loads.feet[1]);
+    if (message.rig() == followed_rig_) layout = wire::FromProto(message).layout;
   }
+  layout = board::LayoutOr(layout);
+  PlaceCells(layout.left, layout.left_geometry, inputs_.sensors.loads.feet[0]);
+  PlaceCells(layout.right, layout.right_geometry, inputs_.sensors.loads.feet[1]);
 }
 
 void PoseSensors::TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns) {
@@ -147,7 +146,7 @@ void PoseSensors::Judge(std::int64_t now_ns) {
     Board& board = boards_[side];
     if (board.seen && IsOld(board.seen_ns, now_ns, kBoardTimeoutS)) board.seen = false;
     inputs_.sensors.loads.feet[side].valid = board.seen;
-    inputs_.impulses[side] = board.seen ? board.meter.impulse() : BoardImpulse{};
+    inputs_.impulses[side] = board.seen ? board.meter.impulse() : board::BoardImpulse{};
     inputs_.simulated |= board.seen && board.simulated;
   }
   const auto judge = [&](Worn& worn, double timeout_s) {
@@ -165,8 +164,11 @@ void PoseSensors::Judge(std::int64_t now_ns) {
 
 void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   if (tick.refilled()) return;
+  const std::string rig_before = followed_rig_;
   if (tick.has_status()) Bind(tick.status());
-  if (tick.has_setup()) Place(tick.setup());
+  if (tick.has_setup()) setup_ = tick.setup();
+  // Which rig is followed may be known after its set-up was published.
+  if (tick.has_setup() || followed_rig_ != rig_before) Place(setup_);
   if (tick.snapshot()) return;
   for (const v1::BoardSample& sample : tick.boards().samples()) TakeBoard(sample, now_ns);
   for (const v1::ContactSample& sample : tick.contacts().samples()) TakeInsole(sample, now_ns);

@@ -53,7 +53,7 @@ class PoseSensors {
     bool seen = false;
     std::int64_t seen_ns = 0;
     bool simulated = false;
-    ImpulseMeter meter;
+    board::ImpulseMeter meter;
   };
   /// A hand or an insole.
   struct Worn {
@@ -63,6 +63,7 @@ class PoseSensors {
   };
 
   void Bind(const v1::DeviceStatusList& status);
+  /// Puts the cells where the followed rig's boards have them.
   void Place(const v1::SetupState& setup);
   void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
   /// `age_s` of its exposure.
@@ -78,6 +79,7 @@ class PoseSensors {
   std::array<reconstruction::HandTrack, reconstruction::kHands> tracks_;
   std::array<Worn, momentum::kFeet> insoles_{};
   std::string tracker_;
+  v1::SetupState setup_;  ///< As published last.
   PoseArms arms_;
   PoseInputs inputs_;
 };

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clients/ctl/guide/layout.h"
+#include "common/board/layout.h"
 #include "common/units/units.h"
 
 namespace footing::guide {
@@ -41,7 +41,7 @@ struct Minute {
   double heavier_n = 0;  ///< In the second half of standing.
 
   std::vector<Check> Run() {
-    Acceptance acceptance("main", *LayoutNamed("one_foot_each", 20));
+    Acceptance acceptance("main", *board::LayoutNamed("one_foot_each", 20));
     std::int64_t now_ns = 5 * kSecondNs;
     for (const Planned& planned : PlanOf(1, true, true)) {
       acceptance.Begin(planned.phase, now_ns);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/board/layout.h"
 #include "common/units/units.h"
 
 namespace footing::guide {
@@ -20,7 +21,7 @@ Load Standing(double force_n, double cop_x_m, double cop_y_m) {
 }
 
 /// In the plate frame of a board of this yaw: a point given by its distance forward and to the left
-/// of the plate's middle. The inverse of InWorld, written out by hand for each quarter turn.
+/// of the plate's middle. The inverse of board::InWorld, written out by hand for each quarter turn.
 Load At(double force_n, double yaw_rad, double forward_m, double left_m) {
   if (yaw_rad == 0) return Standing(force_n, -left_m, forward_m);
   if (yaw_rad < 0) return Standing(force_n, -forward_m, -left_m);  // Front to the right.
@@ -39,62 +40,15 @@ LayoutObserved Person(double left_yaw_rad, double right_yaw_rad, double lean_m =
   return observed;
 }
 
-const stream::BoardLayout kOneFootEach = *LayoutNamed("one_foot_each", 20);
+const stream::BoardLayout kOneFootEach = *board::LayoutNamed("one_foot_each", 20);
 constexpr double kOut = kPi / 2;
-
-TEST(Layout, OneFootEachHasItsCentres168MillimetresFromTheMiddle) {
-  EXPECT_NEAR(kOneFootEach.left.y_m, (0.316 + 0.02) / 2, 1e-12);
-  EXPECT_NEAR(kOneFootEach.right.y_m, -0.168, 1e-12);
-  EXPECT_FALSE(LayoutNamed("in_a_row", 20));
-}
-
-TEST(Layout, PowerButtonsPointOutwardsWithOneFootEach) {
-  // The button is on the plate's rear edge: -y_P.
-  const WorldPoint left = InWorld(kOneFootEach.left, 0, -0.158);
-  const WorldPoint right = InWorld(kOneFootEach.right, 0, -0.158);
-  EXPECT_NEAR(left.y_m, 0.168 + 0.158, 1e-12);
-  EXPECT_NEAR(right.y_m, -0.168 - 0.158, 1e-12);
-  EXPECT_NEAR(left.x_m, 0, 1e-12);
-}
-
-TEST(Layout, SideBySideHasTheFrontEdgeForward) {
-  const auto layout = LayoutNamed("side_by_side", 20);
-  EXPECT_NEAR(InWorld(layout->left, 0, 0.1).x_m, 0.1, 1e-12);
-  EXPECT_NEAR(InWorld(layout->left, 0.1, 0).y_m, 0.2655 - 0.1, 1e-12);
-}
-
-TEST(Layout, CombinesBoardsByTheirMoments) {
-  // 300 N in the left board's middle and 100 N in the right one's: y = 0.168 (300 - 100) / 400.
-  const Load left = Standing(300, 0, 0);
-  const Load right = Standing(100, 0, 0);
-  const CombinedCop both = Combine(kOneFootEach, &left, &right);
-  ASSERT_TRUE(both.valid);
-  EXPECT_FALSE(both.degraded);
-  EXPECT_NEAR(both.at.y_m, 0.168 * 200 / 400, 1e-12);
-  EXPECT_NEAR(both.at.x_m, 0, 1e-12);
-}
-
-TEST(Layout, OneBoardAloneWorksAndIsSaidToBeDegraded) {
-  const Load left = Standing(300, 0.1, 0);
-  const CombinedCop alone = Combine(*LayoutNamed("single", 20), &left, nullptr);
-  ASSERT_TRUE(alone.valid);
-  EXPECT_TRUE(alone.degraded);
-  EXPECT_NEAR(alone.at.y_m, -0.1, 1e-12);
-}
-
-TEST(Layout, HasNoCombinedCopWithNobodyOnIt) {
-  const Load empty = Standing(4, 0, 0);
-  const CombinedCop none = Combine(kOneFootEach, &empty, &empty);
-  EXPECT_FALSE(none.valid);
-  EXPECT_EQ(none.at.y_m, 0);
-}
 
 TEST(Layout, PassesWhenTheBoardsLieAsTheyShould) {
   const LayoutVerdict verdict = JudgeLayout(kOneFootEach, Person(-kOut, kOut));
   EXPECT_TRUE(verdict.passed()) << verdict.note;
   EXPECT_NEAR(verdict.residual_mm, 4, 1e-6);
   EXPECT_NEAR(verdict.rest_n, 3, 1e-9);
-  EXPECT_TRUE(JudgeLayout(*LayoutNamed("side_by_side", 20), Person(0, 0)).passed());
+  EXPECT_TRUE(JudgeLayout(*board::LayoutNamed("side_by_side", 20), Person(0, 0)).passed());
 }
 
 TEST(Layout, TellsATurnedBoardAndWhichOne) {
@@ -136,7 +90,7 @@ TEST(Layout, ChecksASingleBoardByTheLeanAlone) {
   LayoutObserved observed;
   observed.upright.left = At(700, 0, 0, 0);
   observed.forward.left = At(700, 0, 0.06, 0.001);
-  const auto single = *LayoutNamed("single", 0);
+  const auto single = *board::LayoutNamed("single", 0);
   const LayoutVerdict right_way = JudgeLayout(single, observed);
   EXPECT_TRUE(right_way.passed()) << right_way.note;
   EXPECT_TRUE(right_way.degraded);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "clients/view/scene/boards.h"
+#include "common/board/layout.h"
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
@@ -173,8 +174,8 @@ stream::BoardSample SampleOf(const BodyFoot& foot, const stream::BoardPose& pose
   sample.cop_valid = foot.cop_valid;
   sample.cop_x_m = cop.dot(right);
   sample.cop_y_m = cop.dot(front);
-  const double x = sample.cop_x_m / (kSensorsAcrossM / 2),
-               y = sample.cop_y_m / (kSensorsAlongM / 2);
+  const double x = sample.cop_x_m / (board.geometry.sensor_distance_x_m / 2),
+               y = sample.cop_y_m / (board.geometry.sensor_distance_y_m / 2);
   sample.top_left_n = foot.load_n / 4 * (1 - x) * (1 + y);
   sample.top_right_n = foot.load_n / 4 * (1 + x) * (1 + y);
   sample.bottom_left_n = foot.load_n / 4 * (1 - x) * (1 - y);
@@ -205,7 +206,7 @@ Update PersonTickAt(double time_s, const PersonWish& wish) {
   frame.step = static_cast<std::uint64_t>(120 * time_s);
   frame.characters.push_back(CharacterAt(time_s, wish));
   const BodyState& body = *frame.characters[0].body;
-  const stream::BoardLayout layout = stream::DefaultLayout();
+  const stream::BoardLayout layout = board::DefaultLayout();
   update.boards.push_back(SampleOf(body.feet[0], layout.left, kLeftDevice));
   update.boards.push_back(SampleOf(body.feet[1], layout.right, kRightDevice));
   if (wish.reference) {

@@ -113,8 +113,8 @@ TEST(Boards, CellsStandWhereTheLayoutSays) {
   PlacedBoard board;
   board.pose = {1, 2, 0};  // Front ahead, right to the right (-y).
   const auto sensors = board.Sensors();
-  EXPECT_NEAR(sensors[1].x(), 1 + kSensorsAlongM / 2, 1e-12);  // Top right.
-  EXPECT_NEAR(sensors[1].y(), 2 - kSensorsAcrossM / 2, 1e-12);
+  EXPECT_NEAR(sensors[1].x(), 1 + 0.238 / 2, 1e-12);  // Top right.
+  EXPECT_NEAR(sensors[1].y(), 2 - 0.433 / 2, 1e-12);
 }
 
 TEST(PoseTally, ComparesEachPoseWithTheReferenceOfItsTime) {

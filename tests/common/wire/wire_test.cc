@@ -69,7 +69,7 @@ class RoundTrip : public testing::Test {};
 using Messages =
     testing::Types<v1::Vector3, v1::Quaternion, v1::DeviceStatus, v1::RawReport, v1::MotionSample,
                    v1::RigFeatures, v1::BoardSample, v1::NunchukSample, v1::CameraPoint,
-                   v1::CameraSample, v1::UniformBoardSample, v1::BoardPose, v1::BoardLayout,
+                   v1::CameraSample, v1::BoardGeometry, v1::BoardPose, v1::BoardLayout,
                    v1::SetupItem, v1::RigSetup, v1::Skeleton, v1::Track, v1::LinkPose,
                    v1::HandFrame, v1::HandSample, v1::ReferencePose, v1::ContactFrame,
                    v1::ContactSample>;

@@ -1,9 +1,9 @@
 #include <fstream>
 #include <string>
 
+#include "common/board/layout.h"
 #include "common/recording/recording_writer.h"
 #include "common/result/result.h"
-#include "common/stream/setup.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/wire/wire.h"
 #include "tests/offline/learning/made_take.h"
@@ -36,7 +36,7 @@ struct Writer {
       }
       v1::RigSetup& message = *setup.add_rigs();
       message.set_rig(rig);
-      *message.mutable_layout() = wire::ToProto(stream::DefaultLayout());
+      *message.mutable_layout() = wire::ToProto(board::DefaultLayout());
     }
     Put("status", list, 0);
     Put("setup", setup, 0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/board/geometry.h"
 #include "common/units/units.h"
 
 namespace footing::scenario {
@@ -12,8 +13,8 @@ namespace {
 constexpr double kWeightN = 70 * kStandardGravityMps2;
 constexpr double kLeanM = 0.05;
 constexpr double kFollowS = 0.1;
-constexpr double kHalfXM = 0.433 / 2;  // Sensor distances of the board.
-constexpr double kHalfYM = 0.238 / 2;
+constexpr double kHalfXM = board::kBalanceBoard.sensor_distance_x_m / 2;
+constexpr double kHalfYM = board::kBalanceBoard.sensor_distance_y_m / 2;
 // One foot on each: long axes fore and aft, power buttons outwards.
 constexpr double kYawRad[2] = {-kPi / 2, kPi / 2};
 constexpr double kTremorMps2 = 0.05;

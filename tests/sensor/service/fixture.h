@@ -115,7 +115,6 @@ class Bench {
     add(content.hands, tick.hands);
     add(content.reference, tick.reference);
     add(content.contacts, tick.contacts);
-    add(content.uniform_boards, tick.uniform_boards);
     if (tick.has_setup) content.setup = std::move(tick.setup);
     content.features = std::move(tick.features);
     if (tick.has_status) content.status = std::move(tick.status);

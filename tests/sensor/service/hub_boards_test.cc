@@ -1,4 +1,4 @@
-// A board at the hub: tare, uniform stream, corrections, alarms.
+// A board at the hub: tare, geometry, corrections, alarms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -70,27 +70,29 @@ TEST(HubTare, RefusesAMovingLoadAPersonAnotherDeviceAndNobody) {
   EXPECT_FALSE(bench.StatusOf("a").tared);
 }
 
-TEST(HubBoards, AUniformStreamRunsBesideTheRawOneAtItsOwnRate) {
+TEST(HubBoards, TheGeometryInForceIsPublishedWithTheLayoutOfEveryRigWithABoard) {
   Config config;
-  config.board_uniform.rate_hz = 50;
+  config.plate.geometry.sensor_distance_x_m = 0.866;
   Bench bench(config);
+  bench.Advance(0.1);
+  EXPECT_TRUE(bench.content.setup.empty());
   bench.Attach(BalanceBoard(1), "a");
   bench.corners = {100, 200, 100, 200};
-  bench.Advance(3);
-  ASSERT_GT(bench.content.uniform_boards.size(), 120u);
-  std::int64_t before_ns = 0;
-  for (const auto& sample : bench.content.uniform_boards) {
-    if (before_ns != 0) {
-      EXPECT_EQ(sample.sampled_ns - before_ns, 20'000'000);
-    }
-    before_ns = sample.sampled_ns;
-    EXPECT_NEAR(sample.total_n, 600, 2);
-    EXPECT_TRUE(sample.cop_valid);
-    EXPECT_NEAR(sample.cop_x_m, 0.433 / 2 / 3, 1e-3);  // (400 - 200) / 600 of half the distance.
-    EXPECT_FALSE(sample.gap);
-    EXPECT_TRUE(sample.simulated);
-  }
-  EXPECT_GT(bench.content.boards.size(), 250u);  // The raw one is as before.
+  bench.Advance(1);
+  ASSERT_EQ(bench.content.setup.size(), 1u);
+  const stream::RigSetup& published = bench.content.setup[0];
+  EXPECT_EQ(published.rig, "main");
+  EXPECT_EQ(published.layout.preset, "") << "nobody laid them out";
+  ASSERT_TRUE(published.layout.left_geometry && published.layout.right_geometry);
+  EXPECT_EQ(published.layout.left_geometry->sensor_distance_x_m, 0.866);
+  EXPECT_EQ(published.layout.right_geometry->sensor_distance_y_m, 0.238);
+  // Its samples are computed with it: (400 - 200) / 600 of half the distance.
+  EXPECT_NEAR(bench.content.boards.back().cop_x_m, 0.866 / 2 / 3, 1e-3);
+  ASSERT_TRUE(bench.hub().SetBoardLayout(OneFootEach()));
+  bench.Advance(0.1);
+  ASSERT_EQ(bench.content.setup.size(), 1u);
+  EXPECT_EQ(bench.content.setup[0].layout.preset, "one_foot_each");
+  EXPECT_EQ(bench.content.setup[0].layout.left_geometry->sensor_distance_x_m, 0.866);
 }
 
 TEST(HubBoards, LocalGravityIsDividedOut) {
@@ -194,11 +196,6 @@ TEST(HubBoards, UnderTheThresholdThereIsNoCentreOfPressure) {
   for (const auto& sample : bench.content.boards) {
     EXPECT_FALSE(sample.cop_valid || sample.contact);
     EXPECT_EQ(sample.cop_x_m, 0);
-  }
-  ASSERT_FALSE(bench.content.uniform_boards.empty());
-  for (const auto& sample : bench.content.uniform_boards) {
-    EXPECT_FALSE(sample.cop_valid);
-    EXPECT_EQ(sample.cop_y_m, 0);
   }
 }
 

@@ -45,8 +45,8 @@ struct Line {
   void Press(std::size_t i) {
     for (std::size_t f = 0; f < momentum::kFeet; ++f) {
       const momentum::FootLoads& foot = measured[i].loads.feet[f];
-      std::array<double, kBoardCells> load_n{};
-      for (std::size_t k = 0; k < kBoardCells; ++k) load_n[k] = foot.cells[k].load_n;
+      std::array<double, board::kCorners> load_n{};
+      for (std::size_t k = 0; k < board::kCorners; ++k) load_n[k] = foot.cells[k].load_n;
       meters[f].Add(1 + static_cast<double>(i) / made::kMadeRateHz, load_n);
       told.impulses[f] = meters[f].impulse();
     }
@@ -78,7 +78,7 @@ struct Line {
   PoseRun run;
   exchange::Latest<PoseInputs> inputs;
   PoseInputs told;
-  std::array<ImpulseMeter, momentum::kFeet> meters;
+  std::array<board::ImpulseMeter, momentum::kFeet> meters;
   PoseFrame frame;
 };
 

@@ -73,6 +73,44 @@ TEST_F(PoseSensorsTest, TheLayoutOfTheRigPlacesTheCells) {
   EXPECT_NEAR(left.y(), 2 - 0.433 / 2, 1e-9);
 }
 
+/// A rig's set-up with boards where nobody laid them out, whose sensors are this far apart.
+v1::Tick GeometryTick(double distance_x_m, double distance_y_m) {
+  v1::Tick tick;
+  v1::RigSetup& setup = *tick.mutable_setup()->add_rigs();
+  setup.set_rig("one");
+  for (v1::BoardGeometry* geometry : {setup.mutable_layout()->mutable_left_geometry(),
+                                      setup.mutable_layout()->mutable_right_geometry()}) {
+    geometry->set_plate_x_m(0.511);
+    geometry->set_plate_y_m(0.316);
+    geometry->set_sensor_distance_x_m(distance_x_m);
+    geometry->set_sensor_distance_y_m(distance_y_m);
+  }
+  return tick;
+}
+
+TEST_F(PoseSensorsTest, ThePublishedGeometryPlacesTheCells) {
+  After(GeometryTick(0.866, 0.476));
+  After(StatusTick());  // Which rig is followed shows after its set-up.
+  const PoseInputs& told = After(Boards({100, 0, 0, 0}, {100, 0, 0, 0}));
+  const Eigen::Vector3d left = momentum::PressureOf(told.sensors.loads.feet[0], 1).p_WP_m;
+  EXPECT_NEAR(left.x(), 0.866 / 2, 1e-9);
+  EXPECT_NEAR(left.y(), 0.168 - 0.476 / 2, 1e-9);
+  const Eigen::Vector3d right = momentum::PressureOf(told.sensors.loads.feet[1], 1).p_WP_m;
+  EXPECT_NEAR(right.x(), -0.866 / 2, 1e-9);
+}
+
+TEST_F(PoseSensorsTest, AGeometryThatIsNotOneIsRejected) {
+  After(StatusTick());
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {0.0, -0.433, 9.0, kNan, std::numeric_limits<double>::infinity()}) {
+    After(GeometryTick(bad, 0.238));
+    const PoseInputs& told = After(Boards({100, 0, 0, 0}, {100, 0, 0, 0}));
+    const Eigen::Vector3d left = momentum::PressureOf(told.sensors.loads.feet[0], 1).p_WP_m;
+    EXPECT_NEAR(left.x(), 0.433 / 2, 1e-9) << bad;
+    EXPECT_NEAR(left.y(), 0.168 - 0.238 / 2, 1e-9) << bad;
+  }
+}
+
 TEST_F(PoseSensorsTest, ABoardThatFallsSilentIsUnknownAndNotEmpty) {
   After(StatusTick());
   After(Boards({100, 100, 100, 100}, {100, 100, 100, 100}), 0);

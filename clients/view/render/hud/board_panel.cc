@@ -2,23 +2,22 @@
 
 #include <algorithm>
 
+#include "clients/view/scene/boards.h"
 #include "clients/view/scene/words.h"
 #include "common/units/units.h"
 
 namespace footing::render {
 namespace {
 
-// The plate, 511 x 316 mm.
-constexpr float kPlateWidthM = 0.511f;
-constexpr float kPlateDepthM = 0.316f;
-
 /// One plate seen from above, front up, with the trace of the last 10 s fading away.
-void DrawPlate(const Paint& p, const Box& room, const scene::BoardTrace& board,
-               std::int64_t now_ns) {
+void DrawPlate(const Paint& p, const Box& room, const stream::BoardGeometry& geometry,
+               const scene::BoardTrace& board, std::int64_t now_ns) {
   const float s = p.scale;
-  const float pixels_per_m = std::min(room.width() / kPlateWidthM, room.height() / kPlateDepthM);
+  const auto wide_m = static_cast<float>(geometry.plate_x_m),
+             deep_m = static_cast<float>(geometry.plate_y_m);
+  const float pixels_per_m = std::min(room.width() / wide_m, room.height() / deep_m);
   const ImVec2 centre((room.low.x + room.high.x) / 2, (room.low.y + room.high.y) / 2);
-  const ImVec2 half(kPlateWidthM / 2 * pixels_per_m, kPlateDepthM / 2 * pixels_per_m);
+  const ImVec2 half(wide_m / 2 * pixels_per_m, deep_m / 2 * pixels_per_m);
   const auto at = [&](float x_m, float y_m) {
     return ImVec2(centre.x + x_m * pixels_per_m, centre.y - y_m * pixels_per_m);
   };
@@ -77,7 +76,8 @@ void DrawBoardPanel(const Paint& p, const Box& box, const scene::Model& model,
   const float width = in.width() / count;
   float x = in.low.x;
   for (const auto& [key, board] : model.boards) {
-    DrawPlate(p, {{x + 2 * s, top}, {x + width - 2 * s, bottom}}, board, now_ns);
+    DrawPlate(p, {{x + 2 * s, top}, {x + width - 2 * s, bottom}}, scene::GeometryOf(model, key),
+              board, now_ns);
     x += width;
   }
   if (stance.valid) DrawSplit(p, {{in.low.x, bottom + 6 * s}, in.high}, stance);

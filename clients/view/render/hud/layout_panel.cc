@@ -28,9 +28,8 @@ struct Plan {
 };
 
 std::array<Eigen::Vector2d, 4> CornersOf(const scene::PlacedBoard& board) {
-  constexpr double kX = stream::kPlateLongM / 2, kY = stream::kPlateShortM / 2;
-  return {board.InWorld(-kX, -kY), board.InWorld(kX, -kY), board.InWorld(kX, kY),
-          board.InWorld(-kX, kY)};
+  const double x = board.geometry.plate_x_m / 2, y = board.geometry.plate_y_m / 2;
+  return {board.InWorld(-x, -y), board.InWorld(x, -y), board.InWorld(x, y), board.InWorld(-x, y)};
 }
 
 Plan FitPlan(const std::array<scene::PlacedBoard, 2>& boards, const Box& room) {
@@ -58,8 +57,8 @@ void DrawPlate(const Paint& p, const Plan& plan, const scene::PlacedBoard& board
   p.list->AddPolyline(at.data(), 4, Faded(ink, board.live ? 0.8f : 0.3f), ImDrawFlags_Closed,
                       1.5f * p.scale);
   // The edge with the power button.
-  const ImVec2 a = plan.At(board.InWorld(-0.06, -0.5 * stream::kPlateShortM));
-  const ImVec2 b = plan.At(board.InWorld(0.06, -0.5 * stream::kPlateShortM));
+  const ImVec2 a = plan.At(board.InWorld(-0.06, -0.5 * board.geometry.plate_y_m));
+  const ImVec2 b = plan.At(board.InWorld(0.06, -0.5 * board.geometry.plate_y_m));
   p.list->AddLine(a, b, ink, 4 * p.scale);
 }
 

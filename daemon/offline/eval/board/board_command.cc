@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/board/geometry.h"
 #include "common/cli/cli.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/report/print_report.h"
@@ -28,8 +29,8 @@ struct Options {
   double rate_hz = 0;
   double window_s = 0;
   posturography::BoardShape shape;
-  double spacing_x_mm = 433;
-  double spacing_y_mm = 238;
+  double spacing_x_mm = board::kBalanceBoard.sensor_distance_x_m * 1e3;
+  double spacing_y_mm = board::kBalanceBoard.sensor_distance_y_m * 1e3;
 };
 
 /// What there is to measure.
@@ -44,12 +45,13 @@ Result<Input> ReadCorners(const Options& options) {
   std::vector<posturography::CornerSample> samples;
   samples.reserve(rows->size());
   for (const std::vector<double>& row : *rows) {
-    samples.push_back({row[0], KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
-                       KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])});
+    samples.push_back({row[0],
+                       {KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
+                        KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])}});
   }
   posturography::BoardShape shape = options.shape;
-  shape.sensor_spacing_x_m = options.spacing_x_mm / 1000;
-  shape.sensor_spacing_y_m = options.spacing_y_mm / 1000;
+  shape.geometry.sensor_distance_x_m = options.spacing_x_mm / 1000;
+  shape.geometry.sensor_distance_y_m = options.spacing_y_mm / 1000;
   posturography::Standing standing = posturography::FindStanding(samples, shape);
   if (standing.weight_n <= 0) {
     return InvalidData(options.corners + ": no sample with a load above " +

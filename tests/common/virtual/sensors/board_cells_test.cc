@@ -31,7 +31,7 @@ TEST(LoadBoard, CornersGiveBackLoadAndCopOfAnyBoardThatIsTurned) {
 }
 
 TEST(LoadBoard, FrontOfABoardThatIsNotTurnedIsAhead) {
-  const BoardLoad load = LoadBoard({}, {100, {0.5 * kSensorsAlongM, 0}});
+  const BoardLoad load = LoadBoard({}, {100, {0.5 * 0.238, 0}});
   EXPECT_NEAR(load.corners_n[0], 50, 1e-9);  // Top left and right carry all.
   EXPECT_NEAR(load.corners_n[1], 50, 1e-9);
   EXPECT_GT(LoadBoard({}, {100, {0, 0.1}}).corners_n[0], 25);  // Left is left.
@@ -49,10 +49,10 @@ TEST(OneFootEach, HasTheFrontEdgesFacingEachOtherAcrossTheGap) {
   EXPECT_NEAR(boards[0].middle_m.y(), 0.168, 1e-12);
   EXPECT_NEAR(boards[1].middle_m.y(), -0.168, 1e-12);
   // Top left is the first sensor; seen from above, the left board's front is at its right.
-  EXPECT_NEAR(SensorPlaces(boards[0])[0].y(), 0.168 - 0.5 * kSensorsAlongM, 1e-9);
-  EXPECT_NEAR(SensorPlaces(boards[0])[0].x(), 0.5 * kSensorsAcrossM, 1e-9);
-  EXPECT_NEAR(SensorPlaces(boards[1])[0].y(), -0.168 + 0.5 * kSensorsAlongM, 1e-9);
-  EXPECT_NEAR(SensorPlaces(boards[1])[0].x(), -0.5 * kSensorsAcrossM, 1e-9);
+  EXPECT_NEAR(SensorPlaces(boards[0])[0].y(), 0.168 - 0.5 * 0.238, 1e-9);
+  EXPECT_NEAR(SensorPlaces(boards[0])[0].x(), 0.5 * 0.433, 1e-9);
+  EXPECT_NEAR(SensorPlaces(boards[1])[0].y(), -0.168 + 0.5 * 0.238, 1e-9);
+  EXPECT_NEAR(SensorPlaces(boards[1])[0].x(), -0.5 * 0.433, 1e-9);
 }
 
 TEST(CellErrors, AreNoneWhenNoneAreWanted) {

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "daemon/sensor/board/plate.h"
+#include "common/board/plate.h"
 
-namespace footing::board {
+namespace footing::tare {
 
 struct DisplacementConfig {
   /// A board in the air hangs on its feet: its plate's some 3 kg leave the sensors; with one edge
@@ -19,19 +19,19 @@ struct DisplacementConfig {
   double rests_s = 2;
 };
 
-/// Whether a tared board was moved. A plain value; it stays true until it is begun anew.
+/// Whether a tared board was moved. A plain value; it stays true until it is restarted.
 ///
 /// What can be sensed is force across the plate alone. Lifting the board, or one edge of it, shows
 /// while it is up; a board that was put down on another floor shows by its corners. Sliding or
 /// turning it on the same floor, empty or under a person, changes no vertical force and cannot be
-/// told from standing; neither can anything while the board is off. The layout's check (stand left,
-/// right, lean forward) is what finds those.
+/// distinguished from standing; neither can anything while the board is off. The layout's check
+/// (stand left, right, lean forward) is what finds those.
 class Displacement {
  public:
   explicit Displacement(const DisplacementConfig& config = {}) : config_(config) {}
 
   /// Takes the next sample, tared. True once the board was moved.
-  bool Advance(std::int64_t sampled_ns, const CornerForces& tared);
+  bool Advance(std::int64_t sampled_ns, const board::CornerForces& tared);
   bool moved() const { return moved_; }
 
  private:
@@ -41,7 +41,7 @@ class Displacement {
   std::int64_t grounded_ns_ = 0;  ///< When it last stood on the floor.
   std::int64_t level_ns_ = 0;     ///< When it last was loaded, moving, or as at its tare.
   std::int64_t last_ns_ = 0;
-  CornerForces last_;
+  board::CornerForces last_;
 };
 
-}  // namespace footing::board
+}  // namespace footing::tare

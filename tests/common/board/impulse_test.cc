@@ -1,4 +1,4 @@
-#include "daemon/simulation/service/board_impulse.h"
+#include "common/board/impulse.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 
 #include "common/virtual/noise/random.h"
 
-namespace footing::simulation {
+namespace footing::board {
 namespace {
 
-using Feet = std::array<momentum::FootLoads, momentum::kFeet>;
+using Feet = std::array<Corners, LoadPlayer::kBoards>;
 
 constexpr double kStepS = 1 / 120.0;
 constexpr double kWeightN = 700;
@@ -24,19 +24,10 @@ double Hop(double time_s) {
              : kWeightN * std::numbers::pi / 2 * std::sin((phase - 0.5) * 2 * std::numbers::pi);
 }
 
-Feet OnBoards() {
-  Feet feet;
-  for (momentum::FootLoads& foot : feet) {
-    foot.valid = true;
-    foot.count = kBoardCells;
-  }
-  return feet;
-}
-
 double Total(const Feet& feet) {
   double total_n = 0;
-  for (const momentum::FootLoads& foot : feet) {
-    for (std::size_t i = 0; i < foot.count; ++i) total_n += foot.cells[i].load_n;
+  for (const Corners& corners_n : feet) {
+    for (const double load_n : corners_n) total_n += load_n;
   }
   return total_n;
 }
@@ -44,10 +35,10 @@ double Total(const Feet& feet) {
 /// Two boards that are sampled some 100 times a second, each in its own time, and are told of every
 /// 10 ms; the engine steps at 120 Hz.
 struct Boards {
-  std::array<ImpulseMeter, momentum::kFeet> meters;
-  std::array<double, momentum::kFeet> next_s{10, 10.004};
+  std::array<ImpulseMeter, LoadPlayer::kBoards> meters;
+  std::array<double, LoadPlayer::kBoards> next_s{10, 10.004};
   LoadPlayer player;
-  Feet feet = OnBoards();
+  Feet feet{};
   noise::Random random{3};
   double tick_s = 10.05;
 
@@ -56,9 +47,9 @@ struct Boards {
     for (; tick_s <= now_s; tick_s += 0.01) {
       for (std::size_t f = 0; f < meters.size(); ++f) {
         for (; next_s[f] <= tick_s; next_s[f] += 0.01 + 0.004 * (random.Uniform() - 0.5)) {
-          const double cell_n = Hop(next_s[f]) / kBoardCells;
+          const double cell_n = Hop(next_s[f]) / kCorners;
           meters[f].Add(next_s[f], {cell_n, cell_n, cell_n, cell_n});
-          for (momentum::Cell& cell : feet[f].cells) cell.load_n = cell_n;
+          feet[f].fill(cell_n);
         }
         player.Take(f, meters[f].impulse());
       }
@@ -74,11 +65,10 @@ TEST(LoadPlayer, NoImpulseIsLostWhereHeldSamplesLoseThem) {
   for (int i = 0; i < 120 * 20; ++i) {
     const double now_s = 10.06 + i * kStepS;
     boards.Hear(now_s);
-    Feet told = boards.feet;
-    const bool plays = boards.player.Advance(kStepS, told);
-    EXPECT_TRUE(plays || i < 5) << i;
+    const auto played = boards.player.Advance(kStepS);
+    EXPECT_TRUE(played || i < 5) << i;
     if (i < 60) continue;  // Until the delay is what it should be.
-    played_ns += Total(told) * kStepS;
+    played_ns += Total(*played) * kStepS;
     held_ns += Total(boards.feet) * kStepS;
     constexpr int kParts = 20;
     for (int k = 0; k < kParts; ++k) {
@@ -93,23 +83,20 @@ TEST(LoadPlayer, NoImpulseIsLostWhereHeldSamplesLoseThem) {
   EXPECT_GT(worst_held, 2 * worst_played);
 }
 
-TEST(LoadPlayer, BeginsAnewAfterAGapAndTellsNothingUntilThen) {
+TEST(LoadPlayer, StartsAgainAfterAGapAndPlaysNothingUntilThen) {
   Boards boards;
   for (int i = 0; i < 60; ++i) {
     boards.Hear(10.06 + i * kStepS);
-    Feet told = boards.feet;
-    boards.player.Advance(kStepS, told);
+    boards.player.Advance(kStepS);
   }
   boards.player.Take(0, {});
-  Feet told = boards.feet;
-  EXPECT_FALSE(boards.player.Advance(kStepS, told)) << "a board is lost";
-  EXPECT_EQ(Total(told), Total(boards.feet));
+  EXPECT_FALSE(boards.player.Advance(kStepS)) << "a board is lost";
   int silent = 0;
   for (int i = 60; i < 120; ++i) {
     boards.Hear(10.06 + i * kStepS);
-    told = boards.feet;
-    silent += boards.player.Advance(kStepS, told) ? 0 : 1;
-    EXPECT_LT(std::abs(Total(told)), 4 * kWeightN);
+    const auto played = boards.player.Advance(kStepS);
+    silent += played ? 0 : 1;
+    EXPECT_LT(std::abs(Total(played.value_or(boards.feet))), 4 * kWeightN);
   }
   EXPECT_LT(silent, 8);
   EXPECT_GT(silent, 1);
@@ -133,4 +120,4 @@ TEST(ImpulseMeter, AddsUpTrapezoidsAndNothingAcrossAGap) {
 }
 
 }  // namespace
-}  // namespace footing::simulation
+}  // namespace footing::board

@@ -1,23 +1,21 @@
-#include "daemon/sensor/board/displacement.h"
+#include "daemon/sensor/tare/displacement.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/sensor/board/tare.h"
-
-namespace footing::board {
+namespace footing::tare {
 namespace {
 
 constexpr std::int64_t kPauseNs = 250'000'000;
 
-double Largest(const CornerForces& forces) {
+double Largest(const board::CornerForces& forces) {
   return std::max({std::abs(forces.top_left_n), std::abs(forces.top_right_n),
                    std::abs(forces.bottom_left_n), std::abs(forces.bottom_right_n)});
 }
 
 }  // namespace
 
-bool Displacement::Advance(std::int64_t sampled_ns, const CornerForces& tared) {
+bool Displacement::Advance(std::int64_t sampled_ns, const board::CornerForces& tared) {
   const double total_n = Total(tared);
   const bool quiet = started_ && Largest(tared - last_) <= config_.quiet_n;
   // A pause proves nothing about what happened in it.
@@ -37,4 +35,4 @@ bool Displacement::Advance(std::int64_t sampled_ns, const CornerForces& tared) {
   return moved_;
 }
 
-}  // namespace footing::board
+}  // namespace footing::tare

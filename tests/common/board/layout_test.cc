@@ -1,9 +1,11 @@
-#include "daemon/sensor/board/layout.h"
+#include "common/board/layout.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "common/board/geometry.h"
 
 namespace footing::board {
 namespace {
@@ -31,6 +33,42 @@ TEST(BoardLayout, ThePresetsAreSound) {
   stream::BoardLayout single;
   single.preset = "single";
   EXPECT_EQ(Problem(single), "");
+}
+
+TEST(BoardLayout, OneFootEachHasItsCentres168MillimetresFromTheMiddle) {
+  const auto layout = LayoutNamed("one_foot_each", 20);
+  EXPECT_NEAR(layout->left.y_m, (0.316 + 0.02) / 2, 1e-12);
+  EXPECT_NEAR(layout->right.y_m, -0.168, 1e-12);
+  EXPECT_FALSE(LayoutNamed("in_a_row", 20));
+  EXPECT_EQ(Problem(*layout), "");
+}
+
+TEST(BoardLayout, PowerButtonsPointOutwardsWithOneFootEach) {
+  // The button is on the plate's rear edge.
+  const stream::BoardLayout layout = DefaultLayout();
+  EXPECT_NEAR(InWorld(layout.left, 0, -0.158).y(), 0.168 + 0.158, 1e-12);
+  EXPECT_NEAR(InWorld(layout.right, 0, -0.158).y(), -0.168 - 0.158, 1e-12);
+  EXPECT_NEAR(InWorld(layout.left, 0, -0.158).x(), 0, 1e-12);
+}
+
+TEST(BoardLayout, SideBySideHasTheFrontEdgeForward) {
+  const auto layout = LayoutNamed("side_by_side", 20);
+  EXPECT_NEAR(InWorld(layout->left, 0, 0.1).x(), 0.1, 1e-12);
+  EXPECT_NEAR(InWorld(layout->left, 0.1, 0).y(), 0.2655 - 0.1, 1e-12);
+}
+
+TEST(BoardLayout, WithoutAPresetTheBoardsLieByDefaultWithThePublishedGeometry) {
+  stream::BoardLayout published;
+  published.rig = "one";
+  published.left_geometry = stream::BoardGeometry{0.511, 0.316, 0.8, 0.4};
+  const stream::BoardLayout layout = LayoutOr(published);
+  EXPECT_EQ(layout.preset, "one_foot_each");
+  EXPECT_EQ(layout.rig, "one");
+  EXPECT_NEAR(layout.left.y_m, 0.168, 1e-12);
+  EXPECT_EQ(layout.left_geometry, published.left_geometry);
+  published.preset = "custom";
+  published.left.x_m = 1;
+  EXPECT_EQ(LayoutOr(published).left.x_m, 1);
 }
 
 TEST(BoardLayout, TheGapIsBetweenTheFacingEdges) {

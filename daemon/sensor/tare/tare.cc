@@ -1,10 +1,10 @@
-#include "daemon/sensor/board/tare.h"
+#include "daemon/sensor/tare/tare.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace footing::board {
+namespace footing::tare {
 namespace {
 
 Tare Refused(std::string problem) {
@@ -28,15 +28,6 @@ double MeanTotal(std::span<const TareSample> samples) {
 
 }  // namespace
 
-CornerForces operator-(const CornerForces& a, const CornerForces& b) {
-  return {a.top_left_n - b.top_left_n, a.top_right_n - b.top_right_n,
-          a.bottom_left_n - b.bottom_left_n, a.bottom_right_n - b.bottom_right_n};
-}
-
-double Total(const CornerForces& forces) {
-  return forces.top_left_n + forces.top_right_n + forces.bottom_left_n + forces.bottom_right_n;
-}
-
 Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareConfig& config) {
   const std::size_t count = samples.size();
   if (count < 3 || static_cast<double>(count) < config.least_rate_hz * window_s) {
@@ -58,7 +49,7 @@ Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareC
     return Refused("a gap of " + OneDecimal(longest_gap_s) + " s in its samples; try again");
   }
   Tare tare;
-  CornerForces sum{0, 0, 0, 0};
+  board::CornerForces sum{0, 0, 0, 0};
   for (const TareSample& sample : samples) {
     sum.top_left_n += sample.forces.top_left_n;
     sum.top_right_n += sample.forces.top_right_n;
@@ -92,4 +83,4 @@ Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareC
   return tare;
 }
 
-}  // namespace footing::board
+}  // namespace footing::tare

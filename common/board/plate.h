@@ -1,17 +1,17 @@
 #pragma once
 
-/// A Balance Board as a force plate: corner forces to total, centre of pressure and contact.
+#include "common/board/geometry.h"
+
 namespace footing::board {
 
 /// Where the sensors are, and when somebody stands on them.
 struct PlateConfig {
-  double sensor_distance_x_m = 0.433;  ///< Left to right (Leach et al. 2014, Sensors 14:18244).
-  double sensor_distance_y_m = 0.238;  ///< Rear to front.
-  double contact_on_n = 68.6;          ///< 7 kg: over it there is contact.
-  double contact_off_n = 49.0;         ///< 5 kg: under it there is none; above, the COP is defined.
+  stream::BoardGeometry geometry = kBalanceBoard;
+  double contact_on_n = kContactOnN;
+  double contact_off_n = kContactOffN;
 };
 
-/// N, upwards on the sensors positive. "Top" is the front edge, away from the power button.
+/// N, upwards on the sensors positive.
 struct CornerForces {
   double top_left_n = 0;
   double top_right_n = 0;
@@ -21,7 +21,23 @@ struct CornerForces {
   bool operator==(const CornerForces&) const = default;
 };
 
-/// In the plate frame P: x to the right, y to the front, origin at the plate's middle.
+/// Nothing is clamped: forces below zero after a tare are as true as those above.
+CornerForces operator-(const CornerForces& a, const CornerForces& b);
+
+double Total(const CornerForces& forces);
+
+/// Centre of pressure in the plate frame P, m.
+struct PlatePoint {
+  double x_m = 0;
+  double y_m = 0;
+};
+
+/// COP of forces with this total, which is not 0: x = dx/2 (right - left) / total,
+/// y = dy/2 (front - rear) / total, with the distances between the sensors.
+PlatePoint CentreOfPressure(const CornerForces& forces, double total_n,
+                            const stream::BoardGeometry& geometry);
+
+/// In the plate frame P.
 struct PlateReading {
   double total_n = 0;
   bool cop_valid = false;
@@ -31,7 +47,8 @@ struct PlateReading {
   bool repeated = false;  ///< Bit for bit the reading before: the board samples at about 60 Hz.
 };
 
-/// One board. A plain value.
+/// One board as a force plate: corner forces to total, centre of pressure and contact. A plain
+/// value.
 class Plate {
  public:
   explicit Plate(const PlateConfig& config = {}) : config_(config) {}

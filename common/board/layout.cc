@@ -1,13 +1,17 @@
-#include "daemon/sensor/board/layout.h"
+#include "common/board/layout.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "common/board/geometry.h"
+#include "common/units/units.h"
 
 namespace footing::board {
 namespace {
 
 constexpr double kFarthestM = 5;
 constexpr double kLargestYawRad = 6.3;
+constexpr double kQuarterRad = 0.5 * kPi;
 constexpr double kGapToleranceMm = 2;  // The gap is measured with a ruler, poses are worked out.
 
 std::string WholeNumber(double value) { return std::to_string(std::lround(value)); }
@@ -20,14 +24,49 @@ bool Sound(const stream::BoardPose& pose) {
 /// Half the extent of a board along the direction (cos a, sin a) of W.
 double HalfExtentM(const stream::BoardPose& pose, double direction_rad) {
   const double off_front_rad = direction_rad - pose.yaw_rad;
-  return 0.5 * (kBoardWidthM * std::abs(std::cos(off_front_rad)) +
-                kBoardLengthM * std::abs(std::sin(off_front_rad)));
+  return 0.5 * (kBalanceBoard.plate_y_m * std::abs(std::cos(off_front_rad)) +
+                kBalanceBoard.plate_x_m * std::abs(std::sin(off_front_rad)));
 }
 
 }  // namespace
 
+std::array<stream::BoardPose, 2> OneFootEach(double gap_m) {
+  const double middle_m = 0.5 * (kBalanceBoard.plate_y_m + gap_m);
+  return {stream::BoardPose{0, middle_m, -kQuarterRad},
+          stream::BoardPose{0, -middle_m, kQuarterRad}};
+}
+
+std::optional<stream::BoardLayout> LayoutNamed(const std::string& preset, double gap_mm) {
+  stream::BoardLayout layout;
+  layout.preset = preset;
+  layout.gap_mm = gap_mm;
+  if (preset == "one_foot_each") {
+    const auto poses = OneFootEach(gap_mm * 1e-3);
+    layout.left = poses[0];
+    layout.right = poses[1];
+  } else if (preset == "side_by_side") {
+    layout.left.y_m = 0.5 * (kBalanceBoard.plate_x_m + gap_mm * 1e-3);
+    layout.right.y_m = -layout.left.y_m;
+  } else if (preset == "single") {
+    layout.gap_mm = 0;
+  } else {
+    return std::nullopt;
+  }
+  return layout;
+}
+
+stream::BoardLayout DefaultLayout() { return *LayoutNamed("one_foot_each", kUsualGapMm); }
+
+stream::BoardLayout LayoutOr(const stream::BoardLayout& published) {
+  if (!published.preset.empty()) return published;
+  stream::BoardLayout layout = DefaultLayout();
+  layout.rig = published.rig;
+  layout.left_geometry = published.left_geometry;
+  layout.right_geometry = published.right_geometry;
+  return layout;
+}
+
 double GapM(const stream::BoardPose& left, const stream::BoardPose& right) {
-  constexpr double kQuarterRad = 1.5707963267948966;
   double widest_m = -kFarthestM;
   for (const double direction_rad :
        {left.yaw_rad, left.yaw_rad + kQuarterRad, right.yaw_rad, right.yaw_rad + kQuarterRad}) {
@@ -58,8 +97,9 @@ std::string Problem(const stream::BoardLayout& layout) {
   }
   const double gap_mm = GapM(layout.left, layout.right) * 1e3;
   if (gap_mm < -kGapToleranceMm) {
-    return "the boards overlap by " + WholeNumber(-gap_mm) +
-           " mm (each is 511 x 316 mm); move their poses apart";
+    return "the boards overlap by " + WholeNumber(-gap_mm) + " mm (each is " +
+           WholeNumber(kBalanceBoard.plate_x_m * 1e3) + " x " +
+           WholeNumber(kBalanceBoard.plate_y_m * 1e3) + " mm); move their poses apart";
   }
   if (std::abs(gap_mm - layout.gap_mm) > kGapToleranceMm) {
     return "gap_mm is " + WholeNumber(layout.gap_mm) + ", but the poses leave " +

@@ -1,4 +1,4 @@
-#include "daemon/sensor/board/tare.h"
+#include "daemon/sensor/tare/tare.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "common/virtual/noise/random.h"
 
-namespace footing::board {
+namespace footing::tare {
 namespace {
 
 /// 2 s at 80 samples a second of a board that carries `total_n(t)`, spread unevenly, with noise.
@@ -63,8 +63,8 @@ TEST(Tare, RefusesTooFewSamplesAndGaps) {
 }
 
 TEST(Tare, ForcesBelowZeroAfterItAreKept) {
-  EXPECT_EQ(Total(CornerForces{1, 1, 1, 1} - CornerForces{2, 2, 2, 2}), -4);
+  EXPECT_EQ(Total(board::CornerForces{1, 1, 1, 1} - board::CornerForces{2, 2, 2, 2}), -4);
 }
 
 }  // namespace
-}  // namespace footing::board
+}  // namespace footing::tare

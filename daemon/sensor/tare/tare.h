@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
-#include "daemon/sensor/board/plate.h"
+#include "common/board/plate.h"
 
-namespace footing::board {
+namespace footing::tare {
 
 struct TareConfig {
   /// An empty board stays within this; a person on it does not. Its own noise is 0.1 kg (recorded).
@@ -20,23 +20,18 @@ struct TareConfig {
 
 struct TareSample {
   std::int64_t sampled_ns = 0;
-  CornerForces forces;  ///< As measured, before any tare.
+  board::CornerForces forces;  ///< As measured, before any tare.
 };
 
 struct Tare {
   bool ok = false;
-  std::string problem;    ///< Why it was refused.
-  CornerForces offset;    ///< To take off every sample.
-  double residual_n = 0;  ///< Standard deviation of the total over the window.
+  std::string problem;         ///< Why it was refused.
+  board::CornerForces offset;  ///< To take off every sample.
+  double residual_n = 0;       ///< Standard deviation of the total over the window.
 };
 
 /// The mean of the samples, which must cover `window_s`; refused when the load moves, when it is
 /// too heavy for an empty board, and when there are too few samples.
 Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareConfig& config = {});
 
-/// Nothing is clamped: forces below zero after the tare are as true as those above.
-CornerForces operator-(const CornerForces& a, const CornerForces& b);
-
-double Total(const CornerForces& forces);
-
-}  // namespace footing::board
+}  // namespace footing::tare

@@ -1,4 +1,4 @@
-#include "daemon/sensor/board/plate.h"
+#include "common/board/plate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
-#include "daemon/sensor/board/displacement.h"
+#include "daemon/sensor/tare/displacement.h"
 
 #include <gtest/gtest.h>
 
-namespace footing::board {
+namespace footing::tare {
 namespace {
 
 class DisplacementTest : public testing::Test {
  protected:
   /// A second of the same forces at 60 Hz.
-  bool Hold(const CornerForces& forces, double seconds = 1) {
+  bool Hold(const board::CornerForces& forces, double seconds = 1) {
     for (int i = 0; i < static_cast<int>(60 * seconds); ++i) {
       now_ns_ += 16'666'667;
       displacement_.Advance(now_ns_, forces);
@@ -55,4 +55,4 @@ TEST_F(DisplacementTest, APauseProvesNothing) {
 }
 
 }  // namespace
-}  // namespace footing::board
+}  // namespace footing::tare
