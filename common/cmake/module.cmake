@@ -5,7 +5,8 @@
 # layering, and cycles cannot be written. DEPS also names external libraries by their short
 # names (see common/cmake/external.cmake); a pure module may name only the pure ones.
 # A folder daemon/sensor/... never names daemon/simulation/... or the other way round, clients name
-# common only; daemon/offline alone may name both daemons.
+# common only; daemon/offline alone may name both daemons. Synthetic people and devices (common/virtual) are
+# for clients, daemon/offline and tests: never in what footingd and footing-sim are made of.
 define_property(TARGET PROPERTY MODULE_FOLDER)
 define_property(TARGET PROPERTY MODULE_PURE)
 
@@ -22,6 +23,11 @@ function(_check_side name folder dep_folder)
   endif()
   if(NOT dep_folder MATCHES "${allowed}")
     message(FATAL_ERROR "${name} in ${folder} may not name a module of ${dep_folder}")
+  endif()
+  if(dep_folder MATCHES "^common/virtual/"
+     AND NOT folder MATCHES "^(common/virtual|daemon/offline|clients|tests)/")
+    message(FATAL_ERROR "${name} in ${folder} may not name ${dep_folder}: no daemon contains synthetic "
+                        "people or devices; move what is shared out of common/virtual")
   endif()
 endfunction()
 

@@ -73,6 +73,20 @@ class Configure(unittest.TestCase):
         self.refused([("daemon/sensor/a", "a HEADERS a.h"),
                       ("clients/b", "b HEADERS a.h DEPS a")], "may not name")
 
+    def test_what_runs_never_names_synthetic_people_or_devices(self):
+        for folder in ("daemon/sensor/b", "daemon/simulation/b", "common/b"):
+            self.refused([("common/virtual/a", "a HEADERS a.h"),
+                          (folder, "b HEADERS a.h DEPS a")], "no daemon contains synthetic")
+            self.refused([("common/virtual/a", "a HEADERS a.h"),
+                          (folder, "b HEADERS a.h PRIVATE_DEPS a")], "no daemon contains synthetic")
+
+    def test_offline_clients_and_other_synthetic_modules_may_name_them(self):
+        code, output = configure([("common/virtual/a", "a HEADERS a.h"),
+                                  ("common/virtual/b", "b HEADERS a.h DEPS a"),
+                                  ("daemon/offline/c", "c HEADERS a.h DEPS a"),
+                                  ("clients/d", "d HEADERS a.h DEPS a")])
+        self.assertEqual(code, 0, output)
+
     def test_offline_may_name_both_daemons(self):
         code, output = configure([("daemon/sensor/a", "a HEADERS a.h"),
                                   ("daemon/simulation/b", "b HEADERS a.h"),
