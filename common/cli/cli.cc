@@ -17,6 +17,15 @@ void HideEmptyDefaults(CLI::App& app) {
   }
 }
 
+/// What is wrong with a command line, as one line.
+std::string Problem(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> unknown = app.remaining(true);
+  const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty();
+  if (!extra) return error.what();
+  const std::string& first = unknown.front();
+  return (first.starts_with('-') ? "unknown option " : "unexpected argument ") + first;
+}
+
 }  // namespace
 
 std::unique_ptr<CLI::App> NewApp(const std::string& name, const std::string& what,
@@ -35,8 +44,11 @@ std::optional<int> Parse(CLI::App& app, int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+    if (!asked) {
+      return Report(UsageError(Problem(app, error) + "; run " + app.get_name() + " --help"));
+    }
     app.exit(error, std::cout, std::cerr);
-    return asked ? 0 : static_cast<int>(ErrorKind::kUsage);
+    return 0;
   }
   return std::nullopt;
 }

@@ -1,0 +1,73 @@
+#include "common/cli/cli.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace footing::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+struct Options {
+  int trials = 3;
+  double seconds = 0;
+  std::vector<std::string> listen;
+};
+
+/// A program with one command, as all of ours are built.
+struct Program {
+  Program() {
+    CLI::App* run = app->add_subcommand("run", "Run the trials");
+    run->add_option("--trials", options.trials, "Number of trials");
+    run->add_option("--seconds", options.seconds, "Duration, s (default: until SIGINT)");
+    run->add_option("--listen", options.listen, "Address; may be repeated");
+    app->require_subcommand(1);
+  }
+
+  Options options;
+  std::unique_ptr<CLI::App> app = NewApp("footing-test", "A program.", "  footing-test run\n");
+};
+
+/// The exit code that Parse asks for; 0 when the program may go on.
+int ExitCode(Program& program, std::vector<std::string> words) {
+  std::vector<char*> argv{const_cast<char*>("footing-test")};
+  for (std::string& word : words) argv.push_back(word.data());
+  return Parse(*program.app, static_cast<int>(argv.size()), argv.data()).value_or(0);
+}
+
+TEST(Help, PrintsDefaultsButNoEmptyOrStatedOnes) {
+  Program program;
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(ExitCode(program, {"run", "--help"}), 0);
+  const std::string help = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(help, HasSubstr("--trials INT=3"));
+  EXPECT_THAT(help, Not(HasSubstr("=[]")));
+  EXPECT_THAT(help, Not(HasSubstr("--seconds FLOAT=0")));
+}
+
+TEST(Parse, NamesAnUnknownOptionAndWhereHelpIs) {
+  Program program;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(ExitCode(program, {"run", "--frequency", "3"}), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "error: unknown option --frequency; run footing-test --help\n");
+}
+
+TEST(Parse, ReportsAValueThatIsNotANumberInOneLine) {
+  Program program;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(ExitCode(program, {"run", "--trials", "many"}), 2);
+  const std::string error = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(error, testing::StartsWith("error: "));
+  EXPECT_THAT(error, HasSubstr("--trials"));
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1);
+}
+
+}  // namespace
+}  // namespace footing::cli
