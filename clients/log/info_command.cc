@@ -6,6 +6,7 @@
 #include "clients/log/commands.h"
 #include "clients/log/contents.h"
 #include "common/cli/cli.h"
+#include "common/units/units.h"
 
 namespace footing::log_client {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using nlohmann::ordered_json;
 
 double SecondsBetween(std::uint64_t from_ns, std::uint64_t to_ns) {
-  return to_ns <= from_ns ? 0 : 1e-9 * static_cast<double>(to_ns - from_ns);
+  return to_ns <= from_ns ? 0 : NanosecondsToSeconds(static_cast<std::int64_t>(to_ns - from_ns));
 }
 
 ordered_json ToJson(const Contents& contents) {

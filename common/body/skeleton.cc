@@ -6,15 +6,11 @@
 #include <utility>
 
 #include "common/result/result.h"
+#include "common/units/angle.h"
 #include "common/units/units.h"
 
 namespace footing::body {
 namespace {
-
-/// `angle` plus the whole turns that bring it nearest to `reference`.
-double Near(double angle, double reference) {
-  return angle + 2 * kPi * std::round((reference - angle) / (2 * kPi));
-}
 
 /// Angle about the axis that brings R nearest to that rotation: the largest trace of R^T R(angle).
 double AngleAbout(Axis axis, const Eigen::Matrix3d& R) {
@@ -148,7 +144,7 @@ void SetJointRotation(const Joint& joint, const Eigen::Matrix3d& R_PJ,
   if (!three) {
     for (std::size_t i = 0; i < rotations.size(); ++i) {
       double& angle = q(dof + static_cast<int>(i));
-      angle = Near(AngleAbout(rotations[i].axis, rest), angle);
+      angle = NearestTurn(AngleAbout(rotations[i].axis, rest), angle);
       rest = AxisRotation(rotations[i].axis, angle).transpose() * rest;
     }
     return;
@@ -157,7 +153,8 @@ void SetJointRotation(const Joint& joint, const Eigen::Matrix3d& R_PJ,
       Decompose(rest, rotations[0].axis, rotations[1].axis, rotations[2].axis, q(dof + 2));
   const Eigen::Vector3d before = q.segment<3>(dof);
   const auto near = [&before](double a, double b, double c) {
-    return Eigen::Vector3d(Near(a, before(0)), Near(b, before(1)), Near(c, before(2)));
+    return Eigen::Vector3d(NearestTurn(a, before(0)), NearestTurn(b, before(1)),
+                           NearestTurn(c, before(2)));
   };
   const Eigen::Vector3d first = near(one.first, one.second, one.third);
   const Eigen::Vector3d second = near(one.first + kPi, kPi - one.second, one.third + kPi);

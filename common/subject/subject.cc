@@ -4,6 +4,7 @@
 
 #include "common/config/config.h"
 #include "common/config/data_file.h"
+#include "common/text/number.h"
 
 namespace footing::subject {
 namespace {
@@ -23,20 +24,13 @@ bool IsCode(const std::string& code) {
   return true;
 }
 
-std::string Text(double value) {
-  std::string text = std::to_string(value);
-  while (text.back() == '0') text.pop_back();
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
 Result<void> CheckRange(const std::string& key, double value, double least, double most,
                         bool optional, const std::string& origin) {
   if (optional && value == 0) return {};
   if (std::isfinite(value) && value >= least && value <= most) return {};
-  const std::string range = Text(least) + " to " + Text(most);
+  const std::string range = text::Shortest(least) + " to " + text::Shortest(most);
   if (value == 0) return UsageError(origin + ": " + key + " is missing; give " + range);
-  return UsageError(origin + ": " + key + " = " + Text(value) + " is outside " + range);
+  return UsageError(origin + ": " + key + " = " + text::Shortest(value) + " is outside " + range);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "common/transport/clock_offset.h"
 #include "common/transport/framed_connection.h"
 #include "common/transport/handshake.h"
+#include "common/units/time.h"
 #include "common/units/units.h"
 
 namespace footing::transport {
@@ -68,7 +69,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     }
     const std::uint32_t deadline_ms =
         command.deadline_ms() == 0 ? kDefaultDeadlineMs : command.deadline_ms();
-    commands_[command.id()] = {std::move(done), NowNs() + std::int64_t{deadline_ms} * 1'000'000};
+    commands_[command.id()] = {std::move(done),
+                               NowNs() + std::int64_t{deadline_ms} * kNanosecondsPerMillisecond};
     v1::Envelope message;
     *message.mutable_command() = std::move(command);
     SendMessage(message);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "common/units/time.h"
+
 namespace footing::transport {
 
 Decimator::Decimator(double max_hz, std::int64_t tick_ns)
-    : interval_ns_(max_hz > 0 ? static_cast<std::int64_t>(1e9 / max_hz) : 0),
+    : interval_ns_(max_hz > 0 ? PeriodNanoseconds(max_hz) : 0),
       slack_ns_(std::min(tick_ns, interval_ns_) / 2) {}
 
 bool Decimator::Take(std::int64_t host_ns) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/units/time.h"
 #include "common/units/units.h"
 
 namespace footing::transport {
@@ -189,7 +190,8 @@ v1::CommandResult Session::Carry(const v1::Command& command, std::int64_t arrive
       command.deadline_ms() == 0 ? kDefaultDeadlineMs : command.deadline_ms();
   if (info_.role < v1::ROLE_CONTROL) {
     failed.set_message("this session may only look; ask for the role control in Hello");
-  } else if (shared_.NowNs() - arrived_ns > std::int64_t{deadline_ms} * 1'000'000) {
+  } else if (shared_.NowNs() - arrived_ns >
+             std::int64_t{deadline_ms} * kNanosecondsPerMillisecond) {
     failed.set_message("not carried out: its deadline of " + std::to_string(deadline_ms) +
                        " ms had passed");
   } else if (!shared_.handlers.on_command) {

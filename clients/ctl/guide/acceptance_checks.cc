@@ -4,6 +4,7 @@
 #include "clients/ctl/guide/acceptance.h"
 #include "clients/ctl/guide/layout.h"
 #include "clients/ctl/guide/pick.h"
+#include "common/text/quantile.h"
 #include "common/units/units.h"
 
 namespace footing::guide {
@@ -32,13 +33,6 @@ Check AtLeast(std::string name, double value, double bar, std::string unit, std:
 
 Check AtMost(std::string name, double value, double bar, std::string unit, std::string note) {
   return {std::move(name), value <= bar, value, bar, std::move(unit), std::move(note)};
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 bool IsBoard(const stream::DeviceStatus& device) {
@@ -92,10 +86,10 @@ void Acceptance::CheckFeatures(std::vector<Check>& checks) const {
     return record.frames == 0 ? 0 : static_cast<double>(record.moving) / record.frames;
   };
   for (const auto& [phase, record] : features_) {
-    const double frequency_hz = Median(record.frequencies_hz);
+    const double frequency_hz = text::Median(record.frequencies_hz);
     std::vector<double> sizes;
     for (const double angle : record.phases_rad) sizes.push_back(std::abs(angle));
-    const double phase_rad = Median(sizes);
+    const double phase_rad = text::Median(sizes);
     if (phase == Phase::kStill) {
       checks.push_back(
           AtMost("still", moving(record), kStillShare, "", "share of frames that see motion"));
@@ -152,7 +146,7 @@ void Acceptance::CheckBoards(std::vector<Check>& checks) const {
       for (const auto& sample : samples) {
         if (!sample.contact) empty_n.push_back(sample.total_n);
       }
-      checks.push_back(AtMost("tare " + serial, std::abs(Median(empty_n)), kEmptyN, "N",
+      checks.push_back(AtMost("tare " + serial, std::abs(text::Median(empty_n)), kEmptyN, "N",
                               empty_n.empty() ? "was never empty" : "on the empty board"));
       if (empty_n.empty()) checks.back().passed = false;
     }

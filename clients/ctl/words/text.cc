@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "common/text/number.h"
+
 namespace footing::ctl::words {
 namespace {
 
@@ -22,12 +24,7 @@ bool IsNumber(const std::string& cell) {
 
 std::string Fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
-  std::array<char, 400> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value,
-                                          std::chars_format::fixed, decimals);
-  std::string out = error == std::errc() ? std::string(text.data(), end) : "-";
-  if (out.find_first_not_of("-0.") == std::string::npos && out[0] == '-') out.erase(0, 1);
-  return out;
+  return text::Fixed(value, decimals);
 }
 
 std::string Date(std::int64_t wall_time_ns) {

@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "common/units/time.h"
+
 namespace footing::scene {
 
 std::vector<ResponseStage> ResponseTimes(const ResponseStages& r) {
@@ -18,7 +20,7 @@ std::vector<ResponseStage> ResponseTimes(const ResponseStages& r) {
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     const std::int64_t from_ns = stamps[i - 1].second, to_ns = stamps[i].second;
     if (from_ns == 0 || to_ns < from_ns) return {};
-    stages.push_back({stamps[i].first, static_cast<double>(to_ns - from_ns) * 1e-6});
+    stages.push_back({stamps[i].first, NanosecondsToMilliseconds(to_ns - from_ns)});
   }
   return stages;
 }

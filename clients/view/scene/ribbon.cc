@@ -5,6 +5,7 @@
 #include <string>
 
 #include "clients/view/scene/digits.h"
+#include "common/units/units.h"
 
 namespace footing::scene {
 namespace {
@@ -48,8 +49,8 @@ struct Mitre {
 
 Mitre MitreOf(const stream::Track& track, std::size_t i) {
   const auto half_turn = [&](std::size_t before, std::size_t after) {
-    const double turn_rad = std::remainder(
-        track.segments[after].heading_rad - track.segments[before].heading_rad, 2 * M_PI);
+    const double turn_rad =
+        WrapAngle(track.segments[after].heading_rad - track.segments[before].heading_rad);
     return std::tan(turn_rad / 2);
   };
   Mitre mitre;

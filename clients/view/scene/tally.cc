@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "clients/view/scene/response.h"
+#include "common/text/quantile.h"
+#include "common/units/time.h"
 
 namespace footing::scene {
 namespace {
@@ -27,14 +29,11 @@ void Latencies::Add(std::int64_t latency_ns) {
 
 double Latencies::QuantileMs(double share) const {
   if (values_ns_.empty()) return 0;
-  std::vector<std::int64_t> sorted = values_ns_;
-  const auto rank = static_cast<std::size_t>(std::llround(share * (sorted.size() - 1.0)));
-  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(sorted.begin(), at, sorted.end());
-  return static_cast<double>(*at) * 1e-6;
+  const auto rank = static_cast<std::size_t>(std::llround(share * (values_ns_.size() - 1.0)));
+  return NanosecondsToMilliseconds(text::OfRank(values_ns_, rank));
 }
 
-double Latencies::LastMs() const { return static_cast<double>(last_ns_) * 1e-6; }
+double Latencies::LastMs() const { return NanosecondsToMilliseconds(last_ns_); }
 
 void Tally::Add(const WorldFrame& frame) {
   ++frames_;

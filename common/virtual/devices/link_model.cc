@@ -4,6 +4,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/units/time.h"
+#include "common/units/units.h"
+
 namespace footing::virtual_devices {
 namespace {
 
@@ -74,14 +77,14 @@ LinkModel::Arrival LinkModel::Next() {
   if (config_.quality == LinkQuality::kIdeal) {
     ++ideal_count_;
     const double at_s = static_cast<double>(ideal_count_) * period_s;
-    const std::int64_t at_ns = start_ns_ + std::llround(at_s * 1e9);
+    const std::int64_t at_ns = start_ns_ + RoundToNanoseconds(at_s);
     return {at_ns, at_ns};
   }
   double interval_s = DrawInterval();
   if (config_.quality == LinkQuality::kPoor) interval_s += DrawOutage(interval_s);
-  last_ns_ += std::llround(interval_s * 1e9);
-  const double since_s = static_cast<double>(last_ns_ - start_ns_) * 1e-9;
-  const std::int64_t held_ns = std::llround(std::floor(since_s / period_s) * period_s * 1e9);
+  last_ns_ += RoundToNanoseconds(interval_s);
+  const double since_s = NanosecondsToSeconds(last_ns_ - start_ns_);
+  const std::int64_t held_ns = RoundToNanoseconds(std::floor(since_s / period_s) * period_s);
   return {last_ns_, std::min(last_ns_, start_ns_ + held_ns)};
 }
 

@@ -2,10 +2,11 @@
 #include <optional>
 #include <utility>
 
+#include "common/text/lines.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "common/virtual/motion/asf.h"
 #include "common/virtual/motion/rate.h"
-#include "common/virtual/motion/text.h"
 
 namespace footing::motion {
 namespace {
@@ -24,8 +25,8 @@ class Frame {
   }
 
   /// One line "BONE number ...". `q` is the frame's column.
-  Result<void> Take(std::string_view line, const Lines& lines, Eigen::VectorXd& q) {
-    const std::string_view name = TakeWord(line);
+  Result<void> Take(std::string_view line, const text::Lines& lines, Eigen::VectorXd& q) {
+    const std::string_view name = text::TakeWord(line);
     if (name == "root") {
       if (std::exchange(root_seen_, true)) return lines.Fault("a second root in one frame");
       return TakeRoot(line, lines, q);
@@ -35,7 +36,8 @@ class Frame {
       for (bone = 0; bone < asf_.bones.size() && asf_.bones[bone].name != name; ++bone) {
       }
       if (bone == asf_.bones.size()) {
-        return lines.Fault("bone " + Quoted(name) + " is not in the skeleton, or does not turn");
+        return lines.Fault("bone " + text::Quoted(name) +
+                           " is not in the skeleton, or does not turn");
       }
     }
     next_ = bone + 1;
@@ -59,19 +61,20 @@ class Frame {
   }
 
  private:
-  Result<double> Next(std::string_view& line, const Lines& lines, std::string_view name) const {
-    const std::string_view word = TakeWord(line);
-    const auto number = ToNumber(word);
+  Result<double> Next(std::string_view& line, const text::Lines& lines,
+                      std::string_view name) const {
+    const std::string_view word = text::TakeWord(line);
+    const auto number = text::ToNumber(word);
     if (number) return *number;
     return lines.Fault("expected a number of " + std::string(name) + ", found " +
-                       (word.empty() ? "the end of the line" : Quoted(word)));
+                       (word.empty() ? "the end of the line" : text::Quoted(word)));
   }
-  Result<void> End(std::string_view line, const Lines& lines, std::string_view name) const {
-    if (Trim(line).empty()) return {};
+  Result<void> End(std::string_view line, const text::Lines& lines, std::string_view name) const {
+    if (text::Trim(line).empty()) return {};
     return lines.Fault("more numbers than " + std::string(name) + " has degrees of freedom");
   }
 
-  Result<void> TakeRoot(std::string_view line, const Lines& lines, Eigen::VectorXd& q) {
+  Result<void> TakeRoot(std::string_view line, const text::Lines& lines, Eigen::VectorXd& q) {
     body::Joint file_root = asf_.file_root;
     file_root.first_dof = 0;
     for (const auto& which : asf_.root_numbers) {
@@ -102,11 +105,11 @@ class Frame {
 Result<Motion> ParseAmc(std::string_view text, const std::string& file, const AsfSkeleton& asf,
                         double rate_hz) {
   if (!IsRate(rate_hz)) return UsageError("a rate of " + std::to_string(rate_hz) + " Hz");
-  Lines lines(text, file);
+  text::Lines lines(text, file);
   double radians = asf.radians_per_angle;
   auto line = lines.NextFull();
   for (; line; line = lines.NextFull()) {
-    const std::string_view word = Trim(*line);
+    const std::string_view word = text::Trim(*line);
     if (word[0] == '#') continue;
     if (word[0] != ':') break;
     if (word == ":DEGREES") radians = kPi / 180;
@@ -118,16 +121,17 @@ Result<Motion> ParseAmc(std::string_view text, const std::string& file, const As
   Eigen::VectorXd q = Eigen::VectorXd::Zero(asf.skeleton.dof);
   std::size_t frames = 0;
   while (line) {
-    const std::string_view word = Trim(*line);
-    const auto number = ToCount(word);
+    const std::string_view word = text::Trim(*line);
+    const auto number = text::ToCount(word);
     if (!number) {
-      return lines.Fault("expected the number of a frame, found " + Quoted(word));
+      return lines.Fault("expected the number of a frame, found " + text::Quoted(word));
     }
     if (values.size() + dof > kMostValues) {
       return lines.Fault("over " + std::to_string(kMostValues) + " values");
     }
     frame.Begin();
-    for (line = lines.NextFull(); line && !ToCount(Trim(*line)); line = lines.NextFull()) {
+    for (line = lines.NextFull(); line && !text::ToCount(text::Trim(*line));
+         line = lines.NextFull()) {
       const auto done = frame.Take(*line, lines, q);
       if (!done) return done.error();
     }

@@ -5,8 +5,9 @@
 #include <map>
 #include <optional>
 
+#include "common/text/lines.h"
+#include "common/text/number.h"
 #include "common/virtual/motion/motion.h"
-#include "common/virtual/motion/text.h"
 
 namespace footing::motion {
 namespace {
@@ -26,7 +27,7 @@ class Parser {
     bool any = false;
     while (line_) {
       std::string_view rest = *line_;
-      const std::string_view section = TakeWord(rest);
+      const std::string_view section = text::TakeWord(rest);
       if (section.empty() || section[0] != ':') return Fault("expected a section such as :root");
       Advance();
       any = true;
@@ -36,7 +37,7 @@ class Parser {
       if (section == ":bonedata") done = ParseBones();
       if (section == ":hierarchy") done = ParseHierarchy();
       if (!done) return done.error();
-      while (line_ && Trim(*line_)[0] != ':') Advance();  // :documentation and the like.
+      while (line_ && text::Trim(*line_)[0] != ':') Advance();  // :documentation and the like.
     }
     if (!any || out_.bones.empty()) return Fault("no ASF file: it has no :bonedata");
     return std::move(out_);
@@ -50,15 +51,15 @@ class Parser {
   void Advance() {
     do {
       line_ = lines_.NextFull();
-    } while (line_ && Trim(*line_)[0] == '#');
+    } while (line_ && text::Trim(*line_)[0] == '#');
   }
-  bool InSection() const { return line_ && Trim(*line_)[0] != ':'; }
+  bool InSection() const { return line_ && text::Trim(*line_)[0] != ':'; }
 
   Result<double> Number(std::string_view& line, const std::string& of) {
-    const std::string_view word = TakeWord(line);
-    const auto number = ToNumber(word);
+    const std::string_view word = text::TakeWord(line);
+    const auto number = text::ToNumber(word);
     if (number && std::abs(*number) <= kMostLength) return *number;
-    return Fault("expected a number of " + of + ", found " + Quoted(word));
+    return Fault("expected a number of " + of + ", found " + text::Quoted(word));
   }
   Result<Eigen::Vector3d> Vector(std::string_view& line, const std::string& of) {
     Eigen::Vector3d vector;
@@ -70,25 +71,25 @@ class Parser {
     return vector;
   }
   Result<std::string> AxisOrder(std::string_view& line) {
-    std::string order(TakeWord(line));
+    std::string order(text::TakeWord(line));
     std::string sorted = order;
     std::sort(sorted.begin(), sorted.end());
     if (sorted != "XYZ")
-      return Fault("expected an order of axes such as XYZ, found " + Quoted(order));
+      return Fault("expected an order of axes such as XYZ, found " + text::Quoted(order));
     return order;
   }
 
   Result<void> ParseUnits() {
     for (; InSection(); Advance()) {
       std::string_view rest = *line_;
-      const std::string_view key = TakeWord(rest);
+      const std::string_view key = text::TakeWord(rest);
       if (key == "length") {
         const auto number = Number(rest, "length");
         if (!number) return number.error();
         if (!(*number > 1e-6)) return Fault("the unit of length must be positive");
         out_.units.length = *number;
       } else if (key == "angle") {
-        const std::string_view unit = TakeWord(rest);
+        const std::string_view unit = text::TakeWord(rest);
         if (unit != "deg" && unit != "rad") return Fault("expected angle deg or rad");
         out_.units.radians = unit == "deg" ? kPi / 180 : 1;
       }
@@ -99,10 +100,10 @@ class Parser {
   Result<void> ParseRoot() {
     for (; InSection(); Advance()) {
       std::string_view rest = *line_;
-      const std::string_view key = TakeWord(rest);
+      const std::string_view key = text::TakeWord(rest);
       if (key == "order") {
         out_.root_order.clear();
-        for (auto word = TakeWord(rest); !word.empty(); word = TakeWord(rest)) {
+        for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
           out_.root_order.emplace_back(word);
         }
         auto sorted = out_.root_order;
@@ -125,20 +126,20 @@ class Parser {
 
   Result<void> ParseBones() {
     while (InSection()) {
-      if (Trim(*line_) != "begin") return Fault("expected 'begin' of a bone");
+      if (text::Trim(*line_) != "begin") return Fault("expected 'begin' of a bone");
       Advance();
       if (out_.bones.size() >= kMostJoints) {
         return Fault("more than " + std::to_string(kMostJoints) + " bones");
       }
       Bone bone;
-      for (; InSection() && Trim(*line_) != "end"; Advance()) {
+      for (; InSection() && text::Trim(*line_) != "end"; Advance()) {
         const auto done = ParseBoneLine(*line_, bone);
         if (!done) return done.error();
       }
-      if (!InSection()) return Fault("bone " + Quoted(bone.name) + " has no 'end'");
+      if (!InSection()) return Fault("bone " + text::Quoted(bone.name) + " has no 'end'");
       if (bone.name.empty() || bone.name == "root") return Fault("a bone without a name");
       for (const Bone& other : out_.bones) {
-        if (other.name == bone.name) return Fault("a second bone " + Quoted(bone.name));
+        if (other.name == bone.name) return Fault("a second bone " + text::Quoted(bone.name));
       }
       if (bone.limits.size() > bone.dofs.size()) {
         return Fault("bone " + bone.name + " has more limits than dof");
@@ -151,9 +152,9 @@ class Parser {
 
   Result<void> ParseBoneLine(std::string_view line, Bone& bone) {
     std::string_view rest = line;
-    const std::string_view key = TakeWord(rest);
+    const std::string_view key = text::TakeWord(rest);
     if (key == "name") {
-      bone.name = std::string(Trim(rest));
+      bone.name = std::string(text::Trim(rest));
     } else if (key == "direction") {
       const auto vector = Vector(rest, "direction");
       if (!vector) return vector.error();
@@ -178,13 +179,13 @@ class Parser {
   }
 
   Result<void> ParseDofs(std::string_view rest, Bone& bone) {
-    for (auto word = TakeWord(rest); !word.empty(); word = TakeWord(rest)) {
+    for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
       const bool rotation = word.size() == 2 && (word[0] == 'r' || word[0] == 'R');
       const auto axis = rotation ? std::string_view("xyz").find(static_cast<char>(word[1] | 0x20))
                                  : std::string_view::npos;
       if (axis == std::string_view::npos) {
-        return Fault("bone " + bone.name + ": expected dof rx, ry or rz, found " + Quoted(word) +
-                     " (bones that slide or stretch are not taken)");
+        return Fault("bone " + bone.name + ": expected dof rx, ry or rz, found " +
+                     text::Quoted(word) + " (bones that slide or stretch are not taken)");
       }
       const auto dof = static_cast<Axis>(axis);
       if (std::find(bone.dofs.begin(), bone.dofs.end(), dof) != bone.dofs.end()) {
@@ -201,16 +202,19 @@ class Parser {
       if (c == '(' || c == ')' || c == ',') c = ' ';
     }
     std::string_view rest = plain;
-    while (!Trim(rest).empty()) {
+    while (!text::Trim(rest).empty()) {
       double limits[2];
       for (int i = 0; i < 2; ++i) {
-        const std::string_view word = TakeWord(rest);
-        const auto number = ToNumber(word);
-        const bool open = EqualsIgnoringCase(word, "inf") || EqualsIgnoringCase(word, "-inf");
-        if (!number && !open) return Fault("expected limits '(LOW HIGH)', found " + Quoted(text));
+        const std::string_view word = text::TakeWord(rest);
+        const auto number = text::ToNumber(word);
+        const bool open =
+            text::EqualsIgnoringCase(word, "inf") || text::EqualsIgnoringCase(word, "-inf");
+        if (!number && !open)
+          return Fault("expected limits '(LOW HIGH)', found " + text::Quoted(text));
         limits[i] = number ? *number * out_.units.radians : (i == 0 ? -1 : 1) * body::kUnlimited;
       }
-      if (!(limits[0] <= limits[1])) return Fault("limits " + Quoted(text) + " are the wrong way");
+      if (!(limits[0] <= limits[1]))
+        return Fault("limits " + text::Quoted(text) + " are the wrong way");
       bone.limits.emplace_back(limits[0], limits[1]);
     }
     return {};
@@ -219,12 +223,12 @@ class Parser {
   Result<void> ParseHierarchy() {
     for (; InSection(); Advance()) {
       std::string_view rest = *line_;
-      const std::string parent(TakeWord(rest));
+      const std::string parent(text::TakeWord(rest));
       if (parent == "begin" || parent == "end") continue;
-      if (parent != "root" && !Known(parent)) return Fault("no bone " + Quoted(parent));
-      for (auto word = TakeWord(rest); !word.empty(); word = TakeWord(rest)) {
+      if (parent != "root" && !Known(parent)) return Fault("no bone " + text::Quoted(parent));
+      for (auto word = text::TakeWord(rest); !word.empty(); word = text::TakeWord(rest)) {
         const std::string child(word);
-        if (!Known(child)) return Fault("no bone " + Quoted(child));
+        if (!Known(child)) return Fault("no bone " + text::Quoted(child));
         if (!parents_.emplace(child, parent).second) {
           return Fault("bone " + child + " has two parents");
         }
@@ -239,7 +243,7 @@ class Parser {
                        [name](const Bone& bone) { return bone.name == name; });
   }
 
-  Lines lines_;
+  text::Lines lines_;
   std::optional<std::string_view> line_;
   AsfText out_;
   std::map<std::string, std::string, std::less<>> parents_;

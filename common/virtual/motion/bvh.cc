@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "common/body/y_up.h"
+#include "common/text/lines.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "common/virtual/motion/rate.h"
-#include "common/virtual/motion/text.h"
 
 namespace footing::motion {
 namespace {
@@ -36,11 +37,11 @@ struct Header {
 /// Words of the header, however they are spread over lines.
 class HeaderWords {
  public:
-  explicit HeaderWords(Lines& lines) : lines_(lines) {}
+  explicit HeaderWords(text::Lines& lines) : lines_(lines) {}
 
   std::string_view Next() {
     for (;;) {
-      const std::string_view word = TakeWord(line_);
+      const std::string_view word = text::TakeWord(line_);
       if (!word.empty()) return word;
       const auto line = lines_.Next();
       if (!line) return {};
@@ -49,22 +50,22 @@ class HeaderWords {
   }
   /// What is left of the line, but for a brace at its end: a name with blanks.
   std::string_view Name() {
-    std::string_view name = Trim(line_);
+    std::string_view name = text::Trim(line_);
     line_ = {};
     if (!name.empty() && name.back() == '{') {
       line_ = "{";
-      name = Trim(name.substr(0, name.size() - 1));
+      name = text::Trim(name.substr(0, name.size() - 1));
     }
     return name;
   }
   Error Expected(const std::string& what, std::string_view found) const {
     return lines_.Fault("expected " + what + ", found " +
-                        (found.empty() ? "the end of the file" : Quoted(found)));
+                        (found.empty() ? "the end of the file" : text::Quoted(found)));
   }
-  Lines& lines() { return lines_; }
+  text::Lines& lines() { return lines_; }
 
  private:
-  Lines& lines_;
+  text::Lines& lines_;
   std::string_view line_;
 };
 
@@ -78,7 +79,7 @@ std::optional<Channel> ToChannel(std::string_view word) {
                     : axis == 'Z' || axis == 'z' ? 2
                                                  : -1;
   for (const auto& [name, rotation] : kKinds) {
-    if (index >= 0 && EqualsIgnoringCase(word.substr(1), name)) {
+    if (index >= 0 && text::EqualsIgnoringCase(word.substr(1), name)) {
       Channel channel;
       channel.rotation = rotation;
       channel.axis = static_cast<Axis>(index);
@@ -92,7 +93,7 @@ Result<void> ParseOffset(HeaderWords& words, double unit_m, Joint& joint) {
   Eigen::Vector3d offset;
   for (int axis = 0; axis < 3; ++axis) {
     const auto word = words.Next();
-    const auto number = ToNumber(word);
+    const auto number = text::ToNumber(word);
     if (!number) return words.Expected("a number of OFFSET", word);
     offset(axis) = *number * unit_m;
   }
@@ -102,7 +103,7 @@ Result<void> ParseOffset(HeaderWords& words, double unit_m, Joint& joint) {
 
 Result<void> ParseChannels(HeaderWords& words, int joint, Header& header) {
   const auto count_word = words.Next();
-  const auto count = ToCount(count_word);
+  const auto count = text::ToCount(count_word);
   if (!count || *count > 6) return words.Expected("a number of channels up to 6", count_word);
   std::array<bool, 6> seen{};
   for (std::size_t i = 0; i < *count; ++i) {
@@ -124,13 +125,14 @@ Result<void> ParseChannels(HeaderWords& words, int joint, Header& header) {
 
 Result<Header> ParseHeader(HeaderWords& words, double unit_m) {
   auto word = words.Next();
-  if (!EqualsIgnoringCase(word, "HIERARCHY")) return words.Expected("HIERARCHY", word);
+  if (!text::EqualsIgnoringCase(word, "HIERARCHY")) return words.Expected("HIERARCHY", word);
   Header header;
   std::vector<int> open;
   do {
     word = words.Next();
-    const bool root = EqualsIgnoringCase(word, "ROOT"), end = EqualsIgnoringCase(word, "End");
-    if (root || end || EqualsIgnoringCase(word, "JOINT")) {
+    const bool root = text::EqualsIgnoringCase(word, "ROOT"),
+               end = text::EqualsIgnoringCase(word, "End");
+    if (root || end || text::EqualsIgnoringCase(word, "JOINT")) {
       if (root != open.empty()) {
         return words.lines().Fault(root ? "a second ROOT: one skeleton a file" : "no ROOT before");
       }
@@ -152,11 +154,11 @@ Result<Header> ParseHeader(HeaderWords& words, double unit_m) {
       header.joints.push_back(std::move(joint));
       word = words.Next();
       if (word != "{") return words.Expected("'{'", word);
-    } else if (EqualsIgnoringCase(word, "OFFSET") && !open.empty()) {
+    } else if (text::EqualsIgnoringCase(word, "OFFSET") && !open.empty()) {
       const auto done =
           ParseOffset(words, unit_m, header.joints[static_cast<std::size_t>(open.back())]);
       if (!done) return done.error();
-    } else if (EqualsIgnoringCase(word, "CHANNELS") && !open.empty()) {
+    } else if (text::EqualsIgnoringCase(word, "CHANNELS") && !open.empty()) {
       if (!header.joints[static_cast<std::size_t>(open.back())].rotations.empty()) {
         return words.lines().Fault("a second CHANNELS of one joint");
       }
@@ -173,7 +175,7 @@ Result<Header> ParseHeader(HeaderWords& words, double unit_m) {
 }
 
 /// Where each channel goes; the skeleton's own order of coordinates is the joints'.
-Result<body::Skeleton> Place(Header& header, Lines& lines) {
+Result<body::Skeleton> Place(Header& header, text::Lines& lines) {
   body::Skeleton skeleton = body::MakeSkeleton(header.joints);
   std::vector<int> next;
   int positions = 0;
@@ -192,18 +194,18 @@ Result<body::Skeleton> Place(Header& header, Lines& lines) {
 
 Result<std::pair<std::size_t, double>> ParseMotionHead(HeaderWords& words) {
   auto word = words.Next();
-  if (!EqualsIgnoringCase(word, "MOTION")) return words.Expected("MOTION", word);
+  if (!text::EqualsIgnoringCase(word, "MOTION")) return words.Expected("MOTION", word);
   word = words.Next();
-  if (!EqualsIgnoringCase(word, "Frames:")) return words.Expected("'Frames:'", word);
+  if (!text::EqualsIgnoringCase(word, "Frames:")) return words.Expected("'Frames:'", word);
   word = words.Next();
-  const auto frames = ToCount(word);
+  const auto frames = text::ToCount(word);
   if (!frames || *frames == 0) return words.Expected("a number of frames over 0", word);
   word = words.Next();
-  if (!EqualsIgnoringCase(word, "Frame")) return words.Expected("'Frame Time:'", word);
+  if (!text::EqualsIgnoringCase(word, "Frame")) return words.Expected("'Frame Time:'", word);
   word = words.Next();
-  if (!EqualsIgnoringCase(word, "Time:")) return words.Expected("'Frame Time:'", word);
+  if (!text::EqualsIgnoringCase(word, "Time:")) return words.Expected("'Frame Time:'", word);
   word = words.Next();
-  const auto step_s = ToNumber(word);
+  const auto step_s = text::ToNumber(word);
   if (!step_s || !IsRate(1 / *step_s)) {
     return words.Expected("a frame time from 0.00001 to 10 s", word);
   }
@@ -211,7 +213,7 @@ Result<std::pair<std::size_t, double>> ParseMotionHead(HeaderWords& words) {
 }
 
 /// Moves the joint to where its position channels say, or holds it to that.
-Result<void> Hold(const Channel& channel, double value_m, bool first, const Lines& lines,
+Result<void> Hold(const Channel& channel, double value_m, bool first, const text::Lines& lines,
                   body::Skeleton& skeleton) {
   double& offset_m = skeleton.joints[static_cast<std::size_t>(channel.joint)].offset_m(
       static_cast<int>(body::FromYUp(channel.axis)));
@@ -224,7 +226,7 @@ Result<void> Hold(const Channel& channel, double value_m, bool first, const Line
 }  // namespace
 
 Result<Motion> ParseBvh(std::string_view text, const std::string& file, const BvhOptions& options) {
-  Lines lines(text, file);
+  text::Lines lines(text, file);
   HeaderWords words(lines);
   auto header = ParseHeader(words, options.unit_m);
   if (!header) return header.error();
@@ -250,12 +252,12 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
     }
     for (std::size_t i = 0; i < columns; ++i) {
       const Channel& channel = header->channels[i];
-      const auto word = TakeWord(*line);
-      const auto number = ToNumber(word);
+      const auto word = text::TakeWord(*line);
+      const auto number = text::ToNumber(word);
       if (!number) {
         return lines.Fault("frame " + std::to_string(frame + 1) + ": expected number " +
                            std::to_string(i + 1) + " of " + std::to_string(columns) + ", found " +
-                           (word.empty() ? "the end of the line" : Quoted(word)));
+                           (word.empty() ? "the end of the line" : text::Quoted(word)));
       }
       const double value = channel.rotation ? DegreesToRadians(*number) : *number * options.unit_m;
       if (channel.dof >= 0) {
@@ -265,7 +267,7 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
         if (!held) return held.error();
       }
     }
-    if (!Trim(*line).empty()) {
+    if (!text::Trim(*line).empty()) {
       return lines.Fault("frame " + std::to_string(frame + 1) + " has more than the " +
                          std::to_string(columns) + " numbers of its channels");
     }

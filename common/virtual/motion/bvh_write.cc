@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "common/body/y_up.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "common/virtual/motion/bvh.h"
-#include "common/virtual/motion/text.h"
 
 namespace footing::motion {
 namespace {
@@ -36,7 +36,7 @@ void AppendVector(std::string& text, const Eigen::Vector3d& p_W) {
   const Eigen::Vector3d file = 100 * body::ToYUp(p_W);
   for (int axis = 0; axis < 3; ++axis) {
     text += ' ';
-    AppendFixed(text, file(axis), kDecimals);
+    text::AppendFixed(text, file(axis), kDecimals);
   }
 }
 
@@ -93,7 +93,7 @@ std::string WriteBvh(const Motion& motion) {
   Writer writer(motion);
   std::string text = std::move(writer.text);
   text += "MOTION\nFrames: " + std::to_string(motion.frames()) + "\nFrame Time: ";
-  AppendFixed(text, 1 / motion.rate_hz, 9);
+  text::AppendFixed(text, 1 / motion.rate_hz, 9);
   text += "\n";
   std::vector<Written> joints;
   for (const int index : writer.order) joints.push_back(ToWritten(motion.skeleton.joint(index)));
@@ -104,7 +104,7 @@ std::string WriteBvh(const Motion& motion) {
     const Eigen::Vector3d root = 100 * body::ToYUp(Eigen::Vector3d(q.head<3>()));
     for (int axis = 0; axis < 3; ++axis) {
       if (axis > 0) text += ' ';
-      AppendFixed(text, root(axis), kDecimals);
+      text::AppendFixed(text, root(axis), kDecimals);
     }
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (joints[i].as_it_is) {
@@ -117,7 +117,7 @@ std::string WriteBvh(const Motion& motion) {
       }
       for (int axis = 0; axis < 3; ++axis) {
         text += ' ';
-        AppendFixed(text, RadiansToDegrees(angles[i](axis)), kDecimals);
+        text::AppendFixed(text, RadiansToDegrees(angles[i](axis)), kDecimals);
       }
     }
     text += '\n';

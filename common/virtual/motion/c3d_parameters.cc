@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "common/virtual/motion/text.h"
+#include "common/text/lines.h"
 
 namespace footing::motion {
 namespace {
@@ -52,7 +52,7 @@ bool ParseValues(const C3dReader& reader, std::size_t at, Values& out) {
       std::string text;
       for (std::size_t k = 0; k < width; ++k) text += static_cast<char>(reader.Byte(at + i + k));
       text.resize(std::min(text.size(), text.find('\0')));
-      out.texts.emplace_back(Trim(text));
+      out.texts.emplace_back(text::Trim(text));
     }
     return true;
   }
@@ -113,7 +113,7 @@ Result<C3dParameters> ParseC3dParameters(const C3dReader& reader, std::size_t be
     } else {
       Values values;
       if (!ParseValues(reader, link + 2, values)) {
-        return fault("parameter " + Quoted(name) + " is of no known type or size");
+        return fault("parameter " + text::Quoted(name) + " is of no known type or size");
       }
       found.push_back({{group, std::move(name)}, std::move(values)});
     }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "common/body/kinematics.h"
+#include "common/text/quantile.h"
+#include "common/units/angle.h"
 #include "common/units/units.h"
 #include "common/virtual/motion/rate.h"
 #include "common/virtual/motion/signal.h"
@@ -18,12 +20,6 @@ namespace {
 constexpr double kCutoffOfNewRate = 0.4;
 
 std::size_t Index(int value) { return static_cast<std::size_t>(value); }
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -39,7 +35,7 @@ Motion Continuous(Motion motion) {
       }
       for (std::size_t i = 0; i < joint.rotations.size(); ++i) {
         const int dof = joint.first_dof + static_cast<int>(i);
-        q(dof) = raw(dof) + 2 * kPi * std::round((q(dof) - raw(dof)) / (2 * kPi));
+        q(dof) = NearestTurn(raw(dof), q(dof));
       }
     }
     motion.q.col(frame) = q;
@@ -123,8 +119,8 @@ Motion FacingForward(const Motion& motion, const body::Landmarks& landmarks) {
     turn_x.push_back(ahead.x());
     turn_y.push_back(ahead.y());
   }
-  const double heading_rad = std::atan2(Median(turn_y), Median(turn_x));
-  const Eigen::Vector3d middle(Median(x), Median(y), 0);
+  const double heading_rad = std::atan2(text::Median(turn_y), text::Median(turn_x));
+  const Eigen::Vector3d middle(text::Median(x), text::Median(y), 0);
   const Eigen::Matrix3d back = body::AxisRotation(body::Axis::kZ, -heading_rad);
   Motion out = motion;
   const body::Joint& root = motion.skeleton.joint(0);

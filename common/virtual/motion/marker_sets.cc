@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "common/virtual/motion/text.h"
+#include "common/text/lines.h"
 
 namespace footing::motion {
 namespace {
@@ -162,7 +162,7 @@ std::span<const MarkerSet> MarkerSets() { return kSets; }
 std::vector<int> MarkersOf(const MarkerTracks& tracks, const MarkerSet& set, std::string_view field,
                            int side) {
   std::vector<int> found;
-  for (const std::string_view word : Words(field)) {
+  for (const std::string_view word : text::Words(field)) {
     if (word == "|") {
       if (!found.empty()) break;
       continue;
@@ -172,7 +172,7 @@ std::vector<int> MarkersOf(const MarkerTracks& tracks, const MarkerSet& set, std
     if (at == std::string_view::npos) {
       index = Find(tracks, word);
     } else {
-      for (const std::string_view spelling : Words(side == 0 ? set.left : set.right)) {
+      for (const std::string_view spelling : text::Words(side == 0 ? set.left : set.right)) {
         std::string name(word);
         name.replace(at, 1, spelling);
         index = Find(tracks, name);
@@ -203,7 +203,7 @@ Result<MarkerSet> FindMarkerSet(const MarkerTracks& tracks, std::string_view nam
     }
   }
   if (!name.empty()) {
-    return UsageError("no marker set " + Quoted(name) + "; there are " + names);
+    return UsageError("no marker set " + text::Quoted(name) + "; there are " + names);
   }
   if (best == nullptr) return InvalidData("the markers are of no set known (" + names + ")");
   return *best;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/body/body.h"
+#include "common/text/quantile.h"
 #include "common/virtual/motion/joint_centres.h"
 #include "common/virtual/motion/marker_fit.h"
 
@@ -29,7 +30,7 @@ class Lengths {
 
   /// 0 where the two are never there together.
   double Between(Landmark a, Landmark b) const {
-    return Median([&](const Centres& centres) -> std::optional<double> {
+    return MedianOf([&](const Centres& centres) -> std::optional<double> {
       const auto& from = centres[static_cast<std::size_t>(a)];
       const auto& to = centres[static_cast<std::size_t>(b)];
       if (!from || !to) return std::nullopt;
@@ -37,7 +38,7 @@ class Lengths {
     });
   }
   double Trunk() const {
-    return Median([](const Centres& centres) -> std::optional<double> {
+    return MedianOf([](const Centres& centres) -> std::optional<double> {
       const auto& left = centres[static_cast<std::size_t>(Landmark::kLeftShoulder)];
       const auto& right = centres[static_cast<std::size_t>(Landmark::kRightShoulder)];
       const auto& hips = centres[static_cast<std::size_t>(Landmark::kHips)];
@@ -48,15 +49,12 @@ class Lengths {
 
  private:
   template <typename F>
-  double Median(F length) const {
+  double MedianOf(F length) const {
     std::vector<double> values;
     for (const Centres& centres : frames_) {
       if (const auto value = length(centres)) values.push_back(*value);
     }
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return text::Median(std::move(values));
   }
 
   std::vector<Centres> frames_;

@@ -5,44 +5,48 @@
 #include <cmath>
 #include <optional>
 
+#include "common/text/lines.h"
+#include "common/text/number.h"
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/rate.h"
-#include "common/virtual/motion/text.h"
 
 namespace footing::motion {
 namespace {
 
 /// "key=value" or "key value" of a header line.
 std::string_view ValueOf(std::string_view line, std::string_view key) {
-  line = Trim(line);
-  if (line.size() <= key.size() || !EqualsIgnoringCase(line.substr(0, key.size()), key)) return {};
+  line = text::Trim(line);
+  if (line.size() <= key.size() || !text::EqualsIgnoringCase(line.substr(0, key.size()), key))
+    return {};
   const char after = line[key.size()];
   if (after != '=' && after != ' ' && after != '\t') return {};
-  return Trim(line.substr(key.size() + 1));
+  return text::Trim(line.substr(key.size() + 1));
 }
 
 struct Announced {
   std::optional<std::size_t> rows, columns;
 };
 
-Result<Announced> ParseHead(Lines& lines, Table& table) {
+Result<Announced> ParseHead(text::Lines& lines, Table& table) {
   Announced announced;
   bool first = true;
   for (auto line = lines.Next(); line; line = lines.Next()) {
-    if (EqualsIgnoringCase(Trim(*line), "endheader")) return announced;
+    if (text::EqualsIgnoringCase(text::Trim(*line), "endheader")) return announced;
     const auto name = ValueOf(*line, "name");
-    if (first && Trim(*line).find('=') == std::string_view::npos) table.name = Trim(*line);
+    if (first && text::Trim(*line).find('=') == std::string_view::npos)
+      table.name = text::Trim(*line);
     if (!name.empty()) table.name = name;
     first = false;
     for (const std::string_view key : {"nRows", "datarows"}) {
-      if (const auto value = ValueOf(*line, key); !value.empty()) announced.rows = ToCount(value);
+      if (const auto value = ValueOf(*line, key); !value.empty())
+        announced.rows = text::ToCount(value);
     }
     for (const std::string_view key : {"nColumns", "datacolumns"}) {
       if (const auto value = ValueOf(*line, key); !value.empty())
-        announced.columns = ToCount(value);
+        announced.columns = text::ToCount(value);
     }
-    if (EqualsIgnoringCase(ValueOf(*line, "inDegrees"), "yes")) table.in_degrees = true;
+    if (text::EqualsIgnoringCase(ValueOf(*line, "inDegrees"), "yes")) table.in_degrees = true;
   }
   return lines.Fault("no MOT or STO file: expected 'endheader'");
 }
@@ -57,11 +61,11 @@ int FindColumn(const Table& table, std::string_view name) {
 }
 
 Result<Table> ParseTable(std::string_view text, const std::string& file) {
-  Lines lines(text, file);
+  text::Lines lines(text, file);
   Table table;
   const auto announced = ParseHead(lines, table);
   if (!announced) return announced.error();
-  const auto labels = Words(lines.NextFull().value_or(""));
+  const auto labels = text::Words(lines.NextFull().value_or(""));
   if (labels.size() < 2) return lines.Fault("expected the names of at least two columns");
   if (labels.size() > kMostColumns) return lines.Fault("too many columns");
   if (announced->columns && *announced->columns != labels.size()) {
@@ -73,15 +77,15 @@ Result<Table> ParseTable(std::string_view text, const std::string& file) {
   for (auto line = lines.NextFull(); line; line = lines.NextFull()) {
     if (values.size() + labels.size() > kMostValues) return lines.Fault("too many rows");
     for (const std::string& column : table.columns) {
-      const std::string_view word = TakeWord(*line);
-      const auto number = ToNumber(word);
+      const std::string_view word = text::TakeWord(*line);
+      const auto number = text::ToNumber(word);
       if (!number) {
         return lines.Fault("column " + column + ": expected a number, found " +
-                           (word.empty() ? "the end of the line" : Quoted(word)));
+                           (word.empty() ? "the end of the line" : text::Quoted(word)));
       }
       values.push_back(*number);
     }
-    if (!Trim(*line).empty()) return lines.Fault("more numbers than columns");
+    if (!text::Trim(*line).empty()) return lines.Fault("more numbers than columns");
   }
   const std::size_t rows = values.size() / labels.size();
   if (rows == 0) return lines.Fault("no row in the file");
@@ -103,14 +107,11 @@ std::string WriteTable(const Table& table) {
     text += (i == 0 ? "" : "\t") + table.columns[i];
   }
   text += '\n';
-  std::array<char, 32> digits;
   for (Eigen::Index row = 0; row < table.values.rows(); ++row) {
     for (Eigen::Index column = 0; column < table.values.cols(); ++column) {
       if (column > 0) text += '\t';
       const double value = table.values(row, column) + 0.0;  // Minus zero is zero.
-      const auto [end, code] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-      FOOTING_CHECK(code == std::errc());
-      text.append(digits.data(), end);
+      text::AppendShortest(text, value);
     }
     text += '\n';
   }

@@ -4,9 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "common/text/lines.h"
+#include "common/text/number.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/motion/rate.h"
-#include "common/virtual/motion/text.h"
 
 namespace footing::motion {
 namespace {
@@ -18,7 +19,7 @@ constexpr int kTimeDecimals = 6;
 /// Fields between tabs that are not empty.
 std::vector<std::string_view> FullFields(std::string_view line) {
   std::vector<std::string_view> full;
-  for (const std::string_view field : Fields(line, '\t')) {
+  for (const std::string_view field : text::Fields(line, '\t')) {
     if (!field.empty()) full.push_back(field);
   }
   return full;
@@ -29,9 +30,9 @@ struct Head {
   double unit_m = 0;
 };
 
-Result<Head> ParseHead(Lines& lines) {
+Result<Head> ParseHead(text::Lines& lines) {
   auto line = lines.Next();
-  if (!line || Trim(*line).substr(0, 12) != "PathFileType") {
+  if (!line || text::Trim(*line).substr(0, 12) != "PathFileType") {
     return lines.Fault("no TRC file: expected PathFileType");
   }
   line = lines.Next();
@@ -40,7 +41,7 @@ Result<Head> ParseHead(Lines& lines) {
   const auto values = FullFields(line.value_or(""));
   Head head;
   for (std::size_t i = 0; i < keys.size() && i < values.size(); ++i) {
-    if (keys[i] == "DataRate") head.rate_hz = ToNumber(values[i]).value_or(0);
+    if (keys[i] == "DataRate") head.rate_hz = text::ToNumber(values[i]).value_or(0);
     if (keys[i] == "Units") {
       head.unit_m = values[i] == "m" ? 1 : values[i] == "cm" ? 1e-2 : values[i] == "mm" ? 1e-3 : 0;
     }
@@ -52,17 +53,18 @@ Result<Head> ParseHead(Lines& lines) {
 
 /// One coordinate; nothing where the field has no number in it.
 std::optional<double> Coordinate(const std::vector<std::string_view>& fields, std::size_t index) {
-  return index < fields.size() ? ToNumber(fields[index]) : std::nullopt;
+  return index < fields.size() ? text::ToNumber(fields[index]) : std::nullopt;
 }
 
 bool IsGap(std::string_view field) {
-  return field.empty() || EqualsIgnoringCase(field, "nan") || EqualsIgnoringCase(field, "-nan");
+  return field.empty() || text::EqualsIgnoringCase(field, "nan") ||
+         text::EqualsIgnoringCase(field, "-nan");
 }
 
 }  // namespace
 
 Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
-  Lines lines(text, file);
+  text::Lines lines(text, file);
   const auto head = ParseHead(lines);
   if (!head) return head.error();
   MarkerTracks tracks;
@@ -78,11 +80,12 @@ Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
   std::vector<std::vector<Eigen::Vector3d>> places(markers);
   std::size_t frames = 0;
   for (auto line = lines.NextFull(); line; line = lines.NextFull()) {
-    const auto fields = Fields(*line, '\t');
+    const auto fields = text::Fields(*line, '\t');
     if (fields[0].empty()) continue;
     if ((frames + 1) * 3 * markers > kMostValues) return lines.Fault("too many frames");
     const auto time_s = Coordinate(fields, 1);
-    if (!ToNumber(fields[0]) || !time_s) return lines.Fault("expected a frame number and a time");
+    if (!text::ToNumber(fields[0]) || !time_s)
+      return lines.Fault("expected a frame number and a time");
     if (frames == 0) tracks.start_s = *time_s;
     for (std::size_t marker = 0; marker < markers; ++marker) {
       Eigen::Vector3d p;
@@ -91,7 +94,7 @@ Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
         const auto number = Coordinate(fields, at);
         if (!number && at < fields.size() && !IsGap(fields[at])) {
           return lines.Fault("marker " + tracks.names[marker] + ": expected a number, found " +
-                             Quoted(fields[at]));
+                             text::Quoted(fields[at]));
         }
         p(static_cast<int>(axis)) = number ? *number * head->unit_m : kMissingTrcValue;
       }
@@ -114,7 +117,7 @@ Result<MarkerTracks> ParseTrc(std::string_view text, const std::string& file) {
 std::string WriteTrc(const MarkerTracks& tracks, const std::string& name) {
   const std::string frames = std::to_string(tracks.frames());
   std::string rate;
-  AppendFixed(rate, tracks.rate_hz, kTimeDecimals);
+  text::AppendFixed(rate, tracks.rate_hz, kTimeDecimals);
   std::string text = "PathFileType\t4\t(X/Y/Z)\t" + name +
                      "\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\t"
                      "OrigDataStartFrame\tOrigNumFrames\n" +
@@ -129,12 +132,13 @@ std::string WriteTrc(const MarkerTracks& tracks, const std::string& name) {
   text += "\n\n";
   for (Eigen::Index frame = 0; frame < tracks.frames(); ++frame) {
     text += std::to_string(frame + 1) + "\t";
-    AppendFixed(text, tracks.start_s + static_cast<double>(frame) / tracks.rate_hz, kTimeDecimals);
+    text::AppendFixed(text, tracks.start_s + static_cast<double>(frame) / tracks.rate_hz,
+                      kTimeDecimals);
     for (const Eigen::Matrix3Xd& track : tracks.p) {
       const Eigen::Vector3d p = track.col(frame);
       for (int axis = 0; axis < 3; ++axis) {
         text += '\t';
-        if (Seen(p)) AppendFixed(text, 1000 * p(axis), kPlaceDecimals);
+        if (Seen(p)) text::AppendFixed(text, 1000 * p(axis), kPlaceDecimals);
       }
     }
     text += '\n';

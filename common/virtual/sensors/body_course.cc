@@ -5,6 +5,7 @@
 
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
+#include "common/text/quantile.h"
 #include "common/virtual/motion/signal.h"
 #include "common/virtual/sensors/derivative.h"
 
@@ -76,11 +77,8 @@ BodyCourse Follow(const body::Body& body, const motion::Motion& motion, double c
   }
   for (auto& foot : course.sole_m) {
     for (auto& point : foot) {
-      std::vector<double> heights(point.row(2).begin(), point.row(2).end());
-      const auto low = heights.begin() +
-                       static_cast<std::ptrdiff_t>(kLowShare * static_cast<double>(heights.size()));
-      std::nth_element(heights.begin(), low, heights.end());
-      point.row(2).array() -= *low;
+      const std::vector<double> heights(point.row(2).begin(), point.row(2).end());
+      point.row(2).array() -= text::Quantile(heights, kLowShare);
     }
   }
   return course;

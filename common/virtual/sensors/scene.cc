@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/body/kinematics.h"
+#include "common/text/quantile.h"
 #include "common/virtual/motion/edit.h"
 
 namespace footing::virtual_sensors {
@@ -85,10 +86,7 @@ double FloorHeight(const motion::Motion& motion, const body::Landmarks& landmark
     }
     lowest.push_back(low);
   }
-  const auto place = lowest.begin() +
-                     static_cast<std::ptrdiff_t>(kStandShare * static_cast<double>(lowest.size()));
-  std::nth_element(lowest.begin(), place, lowest.end());
-  return *place;
+  return text::Quantile(std::move(lowest), kStandShare);
 }
 
 Result<Scene> MakeScene(motion::Motion clip, const body::PersonParameters& person,

@@ -2,16 +2,9 @@
 
 #include <algorithm>
 
-namespace footing::bench {
+#include "common/text/quantile.h"
 
-double Quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0;
-  const auto index = std::min(
-      values.size() - 1, static_cast<std::size_t>(fraction * static_cast<double>(values.size())));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index),
-                   values.end());
-  return values[index];
-}
+namespace footing::bench {
 
 Row RunPairs(const std::string& name, const std::string& unit, int pairs,
              const std::function<double()>& ours, const std::function<double()>& baseline) {
@@ -27,7 +20,7 @@ Row RunPairs(const std::string& name, const std::string& unit, int pairs,
     if (!ours_first) a.push_back(ours());
     ratios.push_back(b.back() > 0 ? a.back() / b.back() : 0);
   }
-  return {name, Quantile(a, 0.5), Quantile(b, 0.5), Quantile(ratios, 0.5), unit};
+  return {name, text::Median(a), text::Median(b), text::Median(ratios), unit};
 }
 
 }  // namespace footing::bench

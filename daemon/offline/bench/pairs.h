@@ -13,7 +13,4 @@ namespace footing::bench {
 Row RunPairs(const std::string& name, const std::string& unit, int pairs,
              const std::function<double()>& ours, const std::function<double()>& baseline);
 
-/// The value below which `fraction` of the values lie; 0 of none.
-double Quantile(std::vector<double> values, double fraction);
-
 }  // namespace footing::bench

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/clock/clock.h"
+#include "common/text/quantile.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/board_cells.h"
@@ -133,7 +134,7 @@ Result<Rows> PoseFrame() {
         moving.Advance(all[i]);
         spent_us.push_back(static_cast<double>(clock::ThreadCpuNs() - begin_ns) / 1e3);
       }
-      return Quantile(std::move(spent_us), quantile);
+      return text::Quantile(std::move(spent_us), quantile);
     };
   };
   const auto unit_us = [&] {

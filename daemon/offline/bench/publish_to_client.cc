@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/clock/clock.h"
+#include "common/text/quantile.h"
 #include "common/transport/client.h"
 #include "common/transport/framing.h"
 #include "common/transport/server.h"
@@ -154,7 +155,7 @@ Result<Rows> PublishToClient() {
     client_thread.Do([&] { delays_us.clear(); });
     server_thread.Pace(kPublishTicks, kPublishIntervalNs, publish);
     double p50_us = 0;
-    client_thread.Do([&] { p50_us = Quantile(delays_us, 0.5); });
+    client_thread.Do([&] { p50_us = text::Quantile(delays_us, 0.5); });
     return p50_us;
   };
   const auto publish_on = [&](transport::Server& one) {

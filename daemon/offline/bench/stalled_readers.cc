@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "common/clock/clock.h"
+#include "common/text/quantile.h"
 #include "common/transport/server.h"
 #include "daemon/offline/bench/example_tick.h"
 #include "daemon/offline/bench/pairs.h"
@@ -58,7 +59,7 @@ class Crowd {
     server_thread_.Pace(kStalledTicks, kStalledIntervalNs,
                         [&] { server_.Publish(clock::MonotonicNs(), channels_); });
     double p99_us = 0;
-    client_thread_.Do([&] { p99_us = Quantile(delays_us_, 0.99); });
+    client_thread_.Do([&] { p99_us = text::Quantile(delays_us_, 0.99); });
     return p99_us;
   }
 

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "common/body/kinematics.h"
 #include "common/result/result.h"
+#include "common/text/quantile.h"
+#include "common/units/angle.h"
 
 namespace footing::learning {
 namespace {
@@ -18,20 +19,16 @@ constexpr double kPartBelowFloor = 0.02;
 void Unwrap(const body::Skeleton& skeleton, Eigen::MatrixXd& q) {
   for (int row = 3; row < skeleton.dof; ++row) {
     for (Eigen::Index t = 1; t < q.cols(); ++t) {
-      const double turns = (q(row, t) - q(row, t - 1)) / (2 * std::numbers::pi);
-      q(row, t) -= 2 * std::numbers::pi * std::round(turns);
+      q(row, t) = NearestTurn(q(row, t), q(row, t - 1));
     }
   }
 }
 
 }  // namespace
 
-double Quantile(Eigen::VectorXd values, double fraction) {
+double Quantile(const Eigen::VectorXd& values, double share) {
   FOOTING_CHECK(values.size() > 0);
-  const auto index = std::min(
-      values.size() - 1, static_cast<Eigen::Index>(fraction * static_cast<double>(values.size())));
-  std::nth_element(values.data(), values.data() + index, values.data() + values.size());
-  return values(index);
+  return text::Quantile({values.begin(), values.end()}, share);
 }
 
 motion::Motion Aligned(const motion::Motion& motion, const body::Landmarks& landmarks) {

@@ -11,7 +11,7 @@ namespace footing::learning {
 /// by more than half a turn from one frame to the next.
 motion::Motion Aligned(const motion::Motion& motion, const body::Landmarks& landmarks);
 
-/// The value below which `fraction` of the values lie; there must be one.
-double Quantile(Eigen::VectorXd values, double fraction);
+/// text::Quantile of a vector, which must not be empty.
+double Quantile(const Eigen::VectorXd& values, double share);
 
 }  // namespace footing::learning

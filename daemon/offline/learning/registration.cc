@@ -6,6 +6,7 @@
 
 #include "common/body/kinematics.h"
 #include "common/result/result.h"
+#include "common/text/quantile.h"
 #include "common/virtual/motion/edit.h"
 
 namespace footing::learning {
@@ -39,13 +40,11 @@ FloorPlacement PlaceFloor(const Eigen::Matrix2Xd& from, const Eigen::Matrix2Xd& 
   for (int round = 0; round < kRounds; ++round) {
     const Eigen::Matrix2Xd moved = (Turn(placement.yaw_rad) * from).colwise() + placement.shift_m;
     const Eigen::VectorXd off_m = (moved - to).colwise().norm();
-    std::vector<double> sorted(off_m.begin(), off_m.end());
-    const auto middle = sorted.begin() + std::ssize(sorted) / 2;
-    std::nth_element(sorted.begin(), middle, sorted.end());
+    const double median_m = text::Median({off_m.begin(), off_m.end()});
     counts.clear();
     double squares = 0;
     for (Eigen::Index i = 0; i < off_m.size(); ++i) {
-      if (off_m(i) > kOutlierMedians * *middle + 1e-9) continue;
+      if (off_m(i) > kOutlierMedians * median_m + 1e-9) continue;
       counts.push_back(i);
       squares += off_m(i) * off_m(i);
     }

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <vector>
 
+#include "common/text/quantile.h"
+
 namespace footing::learning {
 namespace {
 
@@ -229,8 +231,7 @@ Line FitRobustly(std::vector<Piece> pieces) {
   for (int round = 0; round < 5; ++round) {
     std::vector<double> off_s;
     for (const Piece& p : pieces) off_s.push_back(std::abs(p.lag_s - line.At(p.time_s)));
-    std::nth_element(off_s.begin(), off_s.begin() + std::ssize(off_s) / 2, off_s.end());
-    const double limit_s = kOutlier * std::max(1.5 * off_s[off_s.size() / 2], kLeastSdS);
+    const double limit_s = kOutlier * std::max(1.5 * text::Median(std::move(off_s)), kLeastSdS);
     const auto end = std::remove_if(pieces.begin(), pieces.end(), [&](const Piece& p) {
       return std::abs(p.lag_s - line.At(p.time_s)) > limit_s;
     });

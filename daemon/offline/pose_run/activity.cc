@@ -5,8 +5,9 @@
 #include <utility>
 
 #include "common/body/kinematics.h"
+#include "common/text/lines.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
-#include "common/virtual/motion/text.h"
 
 namespace footing::pose_run {
 namespace {
@@ -64,13 +65,13 @@ Rule RuleOf(const PoseRun& run, const std::vector<Shape>& shapes, std::size_t i,
   return speed(shapes[low].com_m, shapes[high].com_m) > kWalkingMps ? kMoving : kStill;
 }
 
-Result<ActivitySpan> ParseSpan(motion::Lines& lines, std::string_view line) {
-  const auto fields = motion::Fields(line, ',');
+Result<ActivitySpan> ParseSpan(text::Lines& lines, std::string_view line) {
+  const auto fields = text::Fields(line, ',');
   if (fields.size() != 3) return lines.Fault("expected three fields: " + std::string(kHead));
-  const auto begin = motion::ToNumber(fields[0]), end = motion::ToNumber(fields[1]);
+  const auto begin = text::ToNumber(fields[0]), end = text::ToNumber(fields[1]);
   if (!begin || !end || !(*begin < *end)) {
     return lines.Fault("expected two times in s, the first one earlier, found " +
-                       motion::Quoted(fields[0]) + " and " + motion::Quoted(fields[1]));
+                       text::Quoted(fields[0]) + " and " + text::Quoted(fields[1]));
   }
   if (fields[2].empty() || fields[2].size() > kMostName) {
     return lines.Fault("expected the name of an activity, of 1 to 60 bytes");
@@ -81,8 +82,8 @@ Result<ActivitySpan> ParseSpan(motion::Lines& lines, std::string_view line) {
 }  // namespace
 
 Result<std::vector<ActivitySpan>> ParseActivities(std::string_view text, const std::string& file) {
-  motion::Lines lines(text, file);
-  if (motion::Trim(lines.NextFull().value_or("")) != kHead) {
+  text::Lines lines(text, file);
+  if (text::Trim(lines.NextFull().value_or("")) != kHead) {
     return lines.Fault("expected the line '" + std::string(kHead) + "'");
   }
   std::vector<ActivitySpan> spans;

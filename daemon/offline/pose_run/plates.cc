@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/text/number.h"
 #include "common/units/units.h"
-#include "common/virtual/motion/text.h"
 #include "common/virtual/sensors/impact_reaction.h"
 #include "daemon/offline/pose_run/stage.h"
 
@@ -48,14 +48,8 @@ Result<sensors::Scene> StageOnPlates(const motion::Motion& clip, const Settings&
   return scene;
 }
 
-std::string Fixed(double value, int decimals) {
-  std::string text;
-  motion::AppendFixed(text, value, decimals);
-  return text;
-}
-
 std::string Seconds(double begin_s, double end_s) {
-  return Fixed(begin_s, 2) + " to " + Fixed(end_s, 2) + " s";
+  return text::Fixed(begin_s, 2) + " to " + text::Fixed(end_s, 2) + " s";
 }
 
 Result<motion::Motion> InCommon(const motion::Motion& clip, const motion::GroundForces& forces,
@@ -178,22 +172,22 @@ class Feet {
 void AddWarnings(double mass_kg, PlateReport& report) {
   if (report.carried_share < 1) {
     report.warnings.push_back("the plates carry the body in " +
-                              Fixed(100 * report.carried_share, 0) +
+                              text::Fixed(100 * report.carried_share, 0) +
                               " % of the trial only (a chair, a box, the floor beside them?): " +
                               Seconds(report.begin_s, report.end_s) + " is performed");
   }
   if (report.begin_mps > kMovingMps) {
-    report.warnings.push_back("it begins with the body at " + Fixed(report.begin_mps, 1) +
+    report.warnings.push_back("it begins with the body at " + text::Fixed(report.begin_mps, 1) +
                               " m/s, which the boards have not seen come");
   }
   if (std::abs(report.mass_kg / mass_kg - 1) > kMassOff) {
-    report.warnings.push_back("the plates carry " + Fixed(report.mass_kg, 1) +
-                              " kg in the mean, --mass-kg says " + Fixed(mass_kg, 1));
+    report.warnings.push_back("the plates carry " + text::Fixed(report.mass_kg, 1) +
+                              " kg in the mean, --mass-kg says " + text::Fixed(mass_kg, 1));
   }
   for (const PlateUse& use : report.plates) {
     if (use.beside_m < kBesideM) continue;
     report.warnings.push_back(use.plate + ": its centre of pressure is " +
-                              Fixed(100 * use.beside_m, 0) +
+                              text::Fixed(100 * use.beside_m, 0) +
                               " cm beside the foot: are both feet on it, or the markers off?");
   }
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/text/quantile.h"
+
 namespace footing::posturography {
 namespace {
 
@@ -10,10 +12,7 @@ double MedianWeight(const std::vector<CornerSample>& samples, double least_n) {
   for (const CornerSample& sample : samples) {
     if (Total(sample.forces) >= least_n) totals.push_back(Total(sample.forces));
   }
-  if (totals.empty()) return 0;
-  const auto middle = totals.begin() + static_cast<std::ptrdiff_t>(totals.size() / 2);
-  std::nth_element(totals.begin(), middle, totals.end());
-  return *middle;
+  return text::Median(std::move(totals));
 }
 
 CopSample CentreOfPressure(const CornerSample& sample, const BoardShape& shape) {

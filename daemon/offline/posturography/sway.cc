@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/result/result.h"
+#include "common/text/quantile.h"
 #include "common/units/units.h"
 
 namespace footing::posturography {
@@ -172,10 +173,7 @@ double MedianInterval(const Stretches& stretches) {
       intervals.push_back(stretch[i].time_s - stretch[i - 1].time_s);
     }
   }
-  if (intervals.empty()) return 0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return text::Median(std::move(intervals));
 }
 
 }  // namespace footing::posturography

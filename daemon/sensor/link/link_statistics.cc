@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "common/units/units.h"
+
 namespace footing::link {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr double kGapPeriods = 5;
 
 void LinkStatistics::Advance(std::int64_t received_ns) {
   ++reports_;
-  const double interval_s = static_cast<double>(received_ns - last_ns_) * 1e-9;
+  const double interval_s = NanosecondsToSeconds(received_ns - last_ns_);
   last_ns_ = received_ns;
   if (reports_ == 1) return;
   if (interval_s > kGapPeriods * nominal_period_s_) ++gaps_;
@@ -27,7 +29,7 @@ void LinkStatistics::Advance(std::int64_t received_ns) {
 }
 
 double LinkStatistics::RateHz(std::int64_t now_ns) const {
-  const bool silent = now_ns - last_ns_ > 1'000'000'000;
+  const bool silent = now_ns - last_ns_ > kNanosecondsPerSecond;
   return silent || mean_s_ <= 0 ? 0 : 1 / mean_s_;
 }
 

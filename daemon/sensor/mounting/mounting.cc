@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/text/number.h"
 #include "common/units/units.h"
 
 namespace footing::mounting {
@@ -25,12 +26,7 @@ Mounting Refused(std::string problem) {
   return mounting;
 }
 
-/// With one decimal.
-std::string Number(double value) {
-  const long tenths = std::lround(std::abs(value) * 10);
-  return (value < 0 && tenths > 0 ? "-" : "") + std::to_string(tenths / 10) + "." +
-         std::to_string(tenths % 10);
-}
+std::string Number(double value) { return text::Fixed(value, 1); }
 
 double Seconds(const stream::MotionSample& sample) {
   return NanosecondsToSeconds(sample.sampled_ns);

@@ -10,6 +10,7 @@
 #include "common/service_manager/service_manager.h"
 #include "common/transport/address.h"
 #include "common/transport/server.h"
+#include "common/units/time.h"
 #include "common/wire/wire.h"
 #include "daemon/sensor/devices/hid_source.h"
 #include "daemon/sensor/devices/socket_source.h"
@@ -190,8 +191,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   }
 
   void WaitForTick() {
-    const auto period =
-        std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / config_.tick_rate_hz));
+    const auto period = std::chrono::nanoseconds(PeriodNanoseconds(config_.tick_rate_hz));
     const auto now = std::chrono::steady_clock::now();
     next_tick_ += period;
     if (now - next_tick_ > 10 * period) next_tick_ = now;  // After a pause of the machine.

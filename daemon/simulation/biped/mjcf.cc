@@ -3,44 +3,40 @@
 #include <array>
 #include <charconv>
 
+#include "common/text/number.h"
 #include "daemon/simulation/biped/body_state.h"
 
 namespace footing::biped {
 namespace {
 
-/// The shortest text that reads back as the same number, in any locale.
-std::string Text(double value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
+using text::Shortest;
 
 std::string Inertial(double below_m, double mass_kg, double x, double y, double z) {
-  return "<inertial pos='0 0 " + Text(-below_m) + "' mass='" + Text(mass_kg) + "' diaginertia='" +
-         Text(x) + " " + Text(y) + " " + Text(z) + "'/>\n";
+  return "<inertial pos='0 0 " + Shortest(-below_m) + "' mass='" + Shortest(mass_kg) +
+         "' diaginertia='" + Shortest(x) + " " + Shortest(y) + " " + Shortest(z) + "'/>\n";
 }
 
 std::string Hinge(const char* axis, double armature_kgm2) {
-  return std::string("<joint type='hinge' axis='") + axis + "' armature='" + Text(armature_kgm2) +
-         "'/>\n";
+  return std::string("<joint type='hinge' axis='") + axis + "' armature='" +
+         Shortest(armature_kgm2) + "'/>\n";
 }
 
 std::string Knee(const BipedParameters& p, const std::string& side) {
   const double knee_below_hip_m = p.leg_length_m - p.foot_below_knee_link_com_m;
-  return "<body name='" + side + "_knee' pos='0 0 " + Text(-knee_below_hip_m) + "'>\n" +
+  return "<body name='" + side + "_knee' pos='0 0 " + Shortest(-knee_below_hip_m) + "'>\n" +
          Inertial(0, p.link_mass_kg, p.link_inertia_across_kgm2, p.link_inertia_across_kgm2,
                   p.link_inertia_along_kgm2) +
          "<joint type='slide' axis='0 0 -1' limited='true' solreflimit='0.01 1' range='" +
-         Text(p.leg_length_min_m - p.leg_length_m) + " " +
-         Text(p.leg_length_max_m - p.leg_length_m) + "'/>\n" + "<geom name='" + side +
-         "_foot' type='sphere' class='foot' size='" + Text(p.foot_radius_m) + "' pos='0 0 " +
-         Text(-p.foot_below_knee_link_com_m) + "'/>\n</body>\n";
+         Shortest(p.leg_length_min_m - p.leg_length_m) + " " +
+         Shortest(p.leg_length_max_m - p.leg_length_m) + "'/>\n" + "<geom name='" + side +
+         "_foot' type='sphere' class='foot' size='" + Shortest(p.foot_radius_m) + "' pos='0 0 " +
+         Shortest(-p.foot_below_knee_link_com_m) + "'/>\n</body>\n";
 }
 
 std::string Leg(const BipedParameters& p, int leg) {
   const std::string side = leg == kLeft ? "left" : "right";
-  return "<body name='" + side + "_hip' pos='0 " + Text(Side(leg) * p.hip_half_spacing_m) + " " +
-         Text(-p.hip_below_body_com_m) + "'>\n" +
+  return "<body name='" + side + "_hip' pos='0 " + Shortest(Side(leg) * p.hip_half_spacing_m) +
+         " " + Shortest(-p.hip_below_body_com_m) + "'>\n" +
          Inertial(p.hip_link_com_below_hip_m, p.link_mass_kg, p.link_inertia_across_kgm2,
                   p.link_inertia_across_kgm2, p.link_inertia_along_kgm2) +
          Hinge("0 0 1", p.hip_armature_kgm2) + Hinge("1 0 0", p.hip_armature_kgm2) +
@@ -54,13 +50,13 @@ std::string Leg(const BipedParameters& p, int leg) {
 std::string WriteMjcf(const BipedParameters& p, const std::string& ground, double step_s) {
   return "<mujoco>\n<compiler angle='radian' inertiafromgeom='false'/>\n"
          "<option timestep='" +
-         Text(step_s) +
+         Shortest(step_s) +
          "' integrator='Euler' cone='elliptic' gravity='0 0 -9.81' iterations='50'/>\n"
          "<default>\n<geom solref='0.006 1'/>\n"
          "<default class='shell'><geom contype='2' conaffinity='1'/></default>\n"
          "<default class='foot'><geom contype='2' conaffinity='1' priority='1' condim='4' "
          "friction='" +
-         Text(p.sliding_friction) + " " + Text(p.torsional_friction_m) +
+         Shortest(p.sliding_friction) + " " + Shortest(p.torsional_friction_m) +
          " 0.0001'/></default>\n</default>\n<worldbody>\n" + ground +
          "<body name='body' pos='0 0 1'>\n<freejoint/>\n" +
          Inertial(0, p.body_mass_kg, p.body_inertia_roll_kgm2, p.body_inertia_pitch_kgm2,

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "common/text/fnv.h"
 #include "daemon/simulation/physics/parts.h"
 
 namespace footing::physics {
@@ -21,7 +22,7 @@ void KeepQuaternion(const mjData& state, std::array<double, 4>& quaternion) {
 
 std::uint64_t HashWords(std::uint64_t hash, const mjtNum* words, int count) {
   for (int i = 0; i < count; ++i) {
-    hash = (hash ^ std::bit_cast<std::uint64_t>(words[i])) * 1099511628211u;
+    hash = text::AddFnv(hash, std::bit_cast<std::uint64_t>(words[i]));
   }
   return hash;
 }
@@ -134,7 +135,7 @@ void World::LinkPose(int index, Eigen::Vector3d& position_m,
 std::uint64_t World::StateHash() const {
   const mjModel& m = *parts_->model;
   const mjData& d = *parts_->state;
-  std::uint64_t hash = 14695981039346656037u;
+  std::uint64_t hash = text::kFnvBasis;
   hash = HashWords(hash, d.qpos, 3);
   hash = HashWords(hash, parts_->root_quaternion.data(), 4);
   hash = HashWords(hash, d.qpos + 7, m.nq - 7);

@@ -21,7 +21,7 @@ TEST(Table, TheFaultyLineIsNamed) {
     const auto table = ParseTable(text, 3, "some.csv");
     ASSERT_FALSE(table) << text;
     EXPECT_EQ(table.error().kind, ErrorKind::kInvalidData);
-    EXPECT_THAT(table.error().message, HasSubstr("some.csv line 2")) << text;
+    EXPECT_THAT(table.error().message, HasSubstr("some.csv, line 2")) << text;
   }
 }
 

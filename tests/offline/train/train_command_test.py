@@ -124,7 +124,7 @@ class Train(unittest.TestCase):
 
     def test_bad_tables_are_refused_by_line(self):
         for text, words in (("a,b,y\n1,2,3\n1,2\n", "line 3: 2 cells where 3 belong"),
-                            ("a,b,y\n1,2,3\n1,nan,2\n", "line 3: no number within"),
+                            ("a,b,y\n1,2,3\n1,nan,2\n", "line 3: not a number within"),
                             ("a,b,a\n1,2,3\n", "line 1: the first line must name every column"),
                             ("a,b,y\n", "no rows"),
                             ("a,b,y\n1,2,3\n", "at least 10 are needed")):

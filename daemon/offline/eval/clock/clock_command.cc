@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "common/cli/cli.h"
+#include "common/units/time.h"
+#include "common/units/units.h"
 #include "common/virtual/devices/link_model.h"
 #include "common/virtual/noise/random.h"
 #include "daemon/offline/eval/report/print_report.h"
@@ -55,7 +57,7 @@ Course Follow(const Options& options) {
   Course course;
   std::int64_t held_ns = -1;
   std::int64_t before_ns = 0;
-  const auto end_ns = static_cast<std::int64_t>(options.seconds * 1e9);
+  const auto end_ns = SecondsToNanoseconds(options.seconds);
   for (auto arrival = link.Next(); arrival.arrives_ns < end_ns; arrival = link.Next()) {
     if (random.Uniform() < options.loss) {
       ++course.lost;
@@ -68,8 +70,8 @@ Course Follow(const Options& options) {
     const std::int64_t sampled_ns = clock.Advance(arrival.arrives_ns, changed);
     course.monotonic = course.monotonic && sampled_ns >= before_ns;
     before_ns = sampled_ns;
-    if (static_cast<double>(arrival.arrives_ns) * 1e-9 < kSettleS) continue;
-    course.error_ms.push_back(static_cast<double>(sampled_ns - arrival.sampled_ns) * 1e-6);
+    if (NanosecondsToSeconds(arrival.arrives_ns) < kSettleS) continue;
+    course.error_ms.push_back(NanosecondsToMilliseconds(sampled_ns - arrival.sampled_ns));
   }
   return course;
 }

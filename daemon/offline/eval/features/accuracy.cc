@@ -4,24 +4,20 @@
 #include <cmath>
 #include <vector>
 
+#include "common/text/quantile.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/chain/features_chain.h"
 
 namespace footing::eval {
 namespace {
 
-/// Errors of one feature, sorted when summed up.
+/// Errors of one feature.
 struct Errors {
   std::vector<double> values;
-  double Percentile(double share) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    return values[std::min(values.size() - 1, static_cast<std::size_t>(share * values.size()))];
-  }
-  nlohmann::json Summary(double bar) {
-    const double p95 = Percentile(0.95);
-    return {{"p50", Percentile(0.5)}, {"p95", p95}, {"p99", Percentile(0.99)},
-            {"max", Percentile(1.0)}, {"bar", bar}, {"met", p95 <= bar}};
+  nlohmann::json Summary(double bar) const {
+    const double p95 = text::Quantile(values, 0.95);
+    return {{"p50", text::Median(values)},      {"p95", p95}, {"p99", text::Quantile(values, 0.99)},
+            {"max", text::Quantile(values, 1)}, {"bar", bar}, {"met", p95 <= bar}};
   }
 };
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/cli/cli.h"
+#include "common/units/time.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/chain/features_chain.h"
 #include "daemon/offline/eval/features/accuracy.h"
@@ -93,7 +94,7 @@ Result<nlohmann::json> EvaluateCsv(const Options& options) {
   auto rows = nlohmann::json::array();
   for (std::size_t i = 0; i < count; ++i) {
     const double t_s = static_cast<double>(i) / options.rate_hz;
-    const auto now_ns = static_cast<std::int64_t>(std::llround(t_s * 1e9));
+    const auto now_ns = RoundToNanoseconds(t_s);
     chain.Add(kLeftDevice, now_ns, (*left)[i], left_clipped[i]);
     if (right) chain.Add(kRightDevice, now_ns, (*right)[i], right_clipped[i]);
     const auto features = chain.Compute(now_ns);
@@ -117,7 +118,7 @@ Result<nlohmann::json> EvaluateGrt(const Options& options) {
     if (!chain || row.stretch != stretch) chain.emplace(false);
     stretch = row.stretch;
     const double t_s = static_cast<double>(i) / rate_hz;
-    const auto now_ns = static_cast<std::int64_t>(std::llround(t_s * 1e9));
+    const auto now_ns = RoundToNanoseconds(t_s);
     chain->Add(kLeftDevice, now_ns, row.specific_force_mps2);
     const auto features = chain->Compute(now_ns);
     moving += features.devices.front().moving ? 1 : 0;

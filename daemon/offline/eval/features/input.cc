@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "common/config/data_file.h"
+#include "common/text/quantile.h"
 #include "common/units/units.h"
 
 namespace footing::eval {
@@ -64,8 +65,7 @@ double FitScale(const GrtRecording& recording) {
   change_and_length.resize(std::max<std::size_t>(1, change_and_length.size() / 2));
   std::vector<double> lengths;
   for (const auto& entry : change_and_length) lengths.push_back(entry.second);
-  std::nth_element(lengths.begin(), lengths.begin() + lengths.size() / 2, lengths.end());
-  return kStandardGravityMps2 / std::max(1e-6, lengths[lengths.size() / 2]);
+  return kStandardGravityMps2 / std::max(1e-6, text::Median(std::move(lengths)));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/text/fnv.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/gait/ground_course.h"
 #include "daemon/offline/eval/gait/pit_course.h"
@@ -137,7 +138,7 @@ Result<void> RunTrial(const GaitOptions& options, std::uint64_t seed, Trials& tr
   trials.speed_error.Add(statistics.speed_error_rms_mps());
   trials.heading_error.Add(statistics.heading_error_rms_rad());
   trials.root_force_max_n = std::max(trials.root_force_max_n, last.root_force_max_n);
-  trials.state_hash = (trials.state_hash ^ last.state_hash) * 1099511628211u;
+  trials.state_hash = text::AddFnv(trials.state_hash, last.state_hash);
   return {};
 }
 

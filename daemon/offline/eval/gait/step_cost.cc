@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/clock/clock.h"
+#include "common/text/quantile.h"
 #include "daemon/offline/eval/gait/trial.h"
 #include "daemon/simulation/engine/state.h"
 
@@ -69,8 +70,7 @@ Result<double> MeasureStepCostRatio(const biped::GaitCommand& command) {
     ours_ns += TimeEngine(*engine, start, walker.inputs());
     ratios.push_back(static_cast<double>(ours_ns) / static_cast<double>(bare_ns));
   }
-  std::nth_element(ratios.begin(), ratios.begin() + kPairs / 2, ratios.end());
-  return ratios[kPairs / 2];
+  return text::Median(std::move(ratios));
 }
 
 }  // namespace footing::eval

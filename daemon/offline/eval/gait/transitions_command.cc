@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/cli/cli.h"
+#include "common/text/quantile.h"
 #include "daemon/offline/eval/gait/transition_trial.h"
 
 namespace footing::eval {
@@ -20,11 +21,11 @@ struct TransitionOptions {
   TransitionSpeeds speeds;
 };
 
-/// The value below which this part of the sorted values lies; 0 of none.
-double Quantile(const std::vector<double>& sorted, double part) {
-  if (sorted.empty()) return 0;
-  const auto last = static_cast<double>(sorted.size() - 1);
-  return sorted[static_cast<std::size_t>(part * last + 0.5)];
+/// The value of the rank nearest to this part of the way from the least to the greatest; 0 of none.
+double NearestQuantile(const std::vector<double>& values, double part) {
+  if (values.empty()) return 0;
+  const auto last = static_cast<double>(values.size() - 1);
+  return text::OfRank(values, static_cast<std::size_t>(part * last + 0.5));
 }
 
 int RunTransitions(const TransitionOptions& options, bool json) {
@@ -54,14 +55,14 @@ int RunTransitions(const TransitionOptions& options, bool json) {
                                       {"trials", options.trials},
                                       {"succeeded", succeeded},
                                       {"falls", falls},
-                                      {"median_latency_s", Quantile(latencies_s, 0.5)},
-                                      {"p95_latency_s", Quantile(latencies_s, 0.95)}};
+                                      {"median_latency_s", NearestQuantile(latencies_s, 0.5)},
+                                      {"p95_latency_s", NearestQuantile(latencies_s, 0.95)}};
   if (json) {
     std::printf("%s\n", report.dump().c_str());
   } else {
     std::printf("%s -> %s: %d of %d succeeded, %d falls, latency median %.2f s, p95 %.2f s\n",
                 options.from.c_str(), options.to.c_str(), succeeded, options.trials, falls,
-                Quantile(latencies_s, 0.5), Quantile(latencies_s, 0.95));
+                NearestQuantile(latencies_s, 0.5), NearestQuantile(latencies_s, 0.95));
   }
   return 0;
 }

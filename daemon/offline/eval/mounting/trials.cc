@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/stream/sensor.h"
+#include "common/text/quantile.h"
 #include "common/units/units.h"
 #include "common/virtual/noise/random.h"
 #include "common/virtual/wrists/accelerometer.h"
@@ -54,11 +55,7 @@ struct Errors {
   std::size_t missing = 0;  // Not moving, or a feature that is not valid.
 
   double Percentile(const std::string& name, double share) {
-    auto& values = of[name];
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    return values[std::min(values.size() - 1,
-                           static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+    return text::Quantile(of[name], share);
   }
   nlohmann::json Summary(const std::string& name) {
     return {{"p50", Percentile(name, 0.5)},

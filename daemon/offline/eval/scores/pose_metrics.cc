@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/text/quantile.h"
 #include "common/units/units.h"
 
 namespace footing::eval {
@@ -99,11 +100,8 @@ double Spread::rms() const {
 
 double Spread::Quantile(double share) const {
   if (values_.empty()) return 0;
-  std::vector<double> values = values_;
-  const auto place =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
+  return text::OfRank(values_,
+                      static_cast<std::size_t>(share * static_cast<double>(values_.size() - 1)));
 }
 
 PoseScore::PoseScore(const body::Body& body)

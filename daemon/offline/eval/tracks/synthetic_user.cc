@@ -25,8 +25,6 @@ constexpr double kWalkLeadS = 0.35;
 /// Narrower pits are run across without a jump.
 constexpr double kRunOverM = 0.3;
 
-double Wrap(double angle_rad) { return WrapAngle(angle_rad); }
-
 }  // namespace
 
 MadeUser::MadeUser(const stream::Track& track, const Skill& skill, Random random)
@@ -75,7 +73,7 @@ double MadeUser::CurvatureAhead(const Sight& now) const {
   for (double ahead_m = 0; ahead_m < sight_m; ahead_m += 0.5) {
     const double from_rad = terrain::CentreAhead(track_, place, ahead_m).heading_rad;
     const double to_rad = terrain::CentreAhead(track_, place, ahead_m + kSpanM).heading_rad;
-    sharpest = std::max(sharpest, std::fabs(Wrap(to_rad - from_rad)) / kSpanM);
+    sharpest = std::max(sharpest, std::fabs(WrapAngle(to_rad - from_rad)) / kSpanM);
   }
   return sharpest;
 }
@@ -85,7 +83,7 @@ double MadeUser::Steer(const Sight& now) {
   const double ahead_m = std::clamp(1.5 + now.speed_mps, 2.0, 5.0);
   const Eigen::Vector3d target = terrain::CentreAhead(track_, place, ahead_m).p_W_m;
   const Eigen::Vector2d way = target.head<2>() - now.p_W_m;
-  const double error_rad = Wrap(std::atan2(way.y(), way.x()) - now.heading_rad);
+  const double error_rad = WrapAngle(std::atan2(way.y(), way.x()) - now.heading_rad);
   const double most_rad = skill_.turn_per_step_rad;
   if (skill_.turns_by_degrees) {
     return std::clamp(kSteerShare * error_rad, -most_rad, most_rad);

@@ -8,9 +8,8 @@
 
 #include "common/result/result.h"
 
-/// Reading and writing of the numbers and lines that motion files are made of, the same under every
-/// locale.
-namespace footing::motion {
+/// Lines, words and fields of text files.
+namespace footing::text {
 
 /// The lines of a text, one after the other, without their ends (LF or CR LF).
 class Lines {
@@ -21,6 +20,8 @@ class Lines {
   std::optional<std::string_view> Next();
   /// The next line that is not blank.
   std::optional<std::string_view> NextFull();
+  /// The next line that is not blank and no comment: the first character of a comment is #.
+  std::optional<std::string_view> NextRow();
 
   std::size_t bytes_left() const { return rest_.size(); }
   const std::string& file() const { return file_; }
@@ -33,6 +34,7 @@ class Lines {
   std::size_t number_ = 0;
 };
 
+/// Without the blanks around it.
 std::string_view Trim(std::string_view text);
 
 /// Words between blanks; fields between separators, trimmed, empty ones included.
@@ -44,15 +46,7 @@ std::string_view TakeWord(std::string_view& line);
 
 bool EqualsIgnoringCase(std::string_view a, std::string_view b);
 
-/// A finite number that is the whole of `word`, or nothing.
-std::optional<double> ToNumber(std::string_view word);
-/// A whole number, not negative, or nothing.
-std::optional<std::size_t> ToCount(std::string_view word);
-
 /// `word` in quotes for a message: shortened, unprintable characters as ?.
 std::string Quoted(std::string_view word);
 
-/// Appends the number with so many decimals; minus zero is zero.
-void AppendFixed(std::string& text, double value, int decimals);
-
-}  // namespace footing::motion
+}  // namespace footing::text

@@ -1,11 +1,8 @@
-#include "common/virtual/motion/text.h"
+#include "common/text/lines.h"
 
-#include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
 
-namespace footing::motion {
+namespace footing::text {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\f\v";
@@ -25,6 +22,13 @@ std::optional<std::string_view> Lines::Next() {
 std::optional<std::string_view> Lines::NextFull() {
   for (auto line = Next(); line; line = Next()) {
     if (!Trim(*line).empty()) return line;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string_view> Lines::NextRow() {
+  for (auto line = NextFull(); line; line = NextFull()) {
+    if (Trim(*line).front() != '#') return line;
   }
   return std::nullopt;
 }
@@ -78,24 +82,6 @@ bool EqualsIgnoringCase(std::string_view a, std::string_view b) {
   return true;
 }
 
-std::optional<double> ToNumber(std::string_view word) {
-  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-  double value = 0;
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (end != word.data() + word.size() || word.empty()) return std::nullopt;
-  // Smaller than the smallest double: zero, as strtod has it.
-  if (code == std::errc::result_out_of_range && word.find("e-") != std::string_view::npos) return 0;
-  if (code != std::errc() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::optional<std::size_t> ToCount(std::string_view word) {
-  std::size_t value = 0;
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (end != word.data() + word.size() || word.empty() || code != std::errc()) return std::nullopt;
-  return value;
-}
-
 std::string Quoted(std::string_view word) {
   std::string text = "'";
   for (const char c : word.substr(0, 40)) {
@@ -104,16 +90,4 @@ std::string Quoted(std::string_view word) {
   return text + (word.size() > 40 ? "...'" : "'");
 }
 
-void AppendFixed(std::string& text, double value, int decimals) {
-  std::array<char, 400> digits;
-  const auto [end, code] = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                         std::chars_format::fixed, decimals);
-  FOOTING_CHECK(code == std::errc());
-  std::string_view number(digits.data(), static_cast<std::size_t>(end - digits.data()));
-  if (number[0] == '-' && number.find_first_not_of("-0.") == std::string_view::npos) {
-    number.remove_prefix(1);
-  }
-  text += number;
-}
-
-}  // namespace footing::motion
+}  // namespace footing::text
