@@ -1,0 +1,113 @@
+#include "daemon/simulation/pose/measured_terms.h"
+
+#include <numeric>
+
+namespace footing::pose {
+namespace {
+
+/// Degrees of freedom that move the frame of each joint: its own and those of its ancestors.
+std::vector<std::vector<int>> DofsThatMove(const body::Skeleton& skeleton) {
+  std::vector<std::vector<int>> moved(skeleton.joints.size());
+  for (int i = 0; i < skeleton.size(); ++i) {
+    std::vector<int>& dofs = moved[static_cast<std::size_t>(i)];
+    const body::Joint& joint = skeleton.joint(i);
+    dofs = joint.parent < 0 ? std::vector<int>{0, 1, 2}
+                            : moved[static_cast<std::size_t>(joint.parent)];
+    for (std::size_t k = 0; k < joint.rotations.size(); ++k) {
+      dofs.push_back(joint.first_dof + static_cast<int>(k));
+    }
+  }
+  return moved;
+}
+
+}  // namespace
+
+MeasuredTerms::MeasuredTerms(const body::Body& body, double frame_s)
+    : body_(&body),
+      frame_s_(frame_s),
+      moved_by_(DofsThatMove(body.skeleton)),
+      all_dofs_(static_cast<std::size_t>(body.skeleton.dof)),
+      residuals_(Eigen::VectorXd::Zero(kMaxRows)),
+      rate_(Eigen::VectorXd::Zero(body.skeleton.dof)),
+      blocks_(kMaxRows / 3),
+      at_(body.skeleton),
+      workspace_(body.skeleton),
+      centroidal_(6, body.skeleton.dof) {
+  std::iota(all_dofs_.begin(), all_dofs_.end(), 0);
+  for (JacobianBlock& block : blocks_) block.by_q.setZero(3, body.skeleton.dof);
+  single_.by_q.setZero(3, body.skeleton.dof);
+}
+
+void MeasuredTerms::Measure(const PoseTargets& targets, const Eigen::VectorXd& q,
+                            const Eigen::VectorXd* q_before) {
+  body::ComputeKinematics(body_->skeleton, q, at_);
+  has_angular_ = targets.has_angular && q_before != nullptr;
+  row_count_ = 0;
+  const auto add = [this](const Eigen::Vector3d& residual, const Eigen::Vector3d& sd) {
+    residuals_.segment<3>(row_count_) = residual.cwiseQuotient(sd);
+    row_count_ += 3;
+  };
+  for (int i = 0; i < targets.count; ++i) {
+    const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
+    add(point.p_W_m - PlaceOf(point, at_), point.sd_m);
+  }
+  if (has_angular_) {
+    com_W_m_ = body::ComputeCentroidalMatrix(*body_, at_, workspace_, centroidal_);
+  } else if (targets.has_com) {
+    com_W_m_ = body::CentreOfMass(*body_, at_);
+  }
+  if (targets.has_com) add(targets.com_W_m - com_W_m_, targets.com_sd_m);
+  if (has_angular_) {
+    rate_ = (q - *q_before) / frame_s_;
+    const Eigen::Vector3d angular_W = centroidal_.bottomRows<3>() * rate_;
+    add(targets.angular_W - angular_W, targets.angular_sd);
+  }
+}
+
+void MeasuredTerms::DifferentiatePoint(const PointTarget& point, JacobianBlock& out) {
+  const auto joint = static_cast<std::size_t>(point.joint);
+  const Eigen::Vector3d p_W_m = at_.p_WJ[joint] + at_.R_WJ[joint] * point.p_J_m;
+  body::PointJacobian(body_->skeleton, at_, point.joint, p_W_m, out.by_q);
+  out.dofs = &moved_by_[joint];
+  if (point.from_joint >= 0) {
+    out.by_q -= JointBlock(point.from_joint).by_q;
+    out.dofs = &all_dofs_;
+  }
+  const Eigen::Vector3d weight = point.sd_m.cwiseInverse();
+  for (const int dof : *out.dofs) out.by_q.col(dof).array() *= weight.array();
+}
+
+void MeasuredTerms::Differentiate(const PoseTargets& targets) {
+  int row = 0;
+  for (int i = 0; i < targets.count; ++i, row += 3) {
+    DifferentiatePoint(targets.points[static_cast<std::size_t>(i)], MutableBlock(row));
+  }
+  if (targets.has_com) {
+    JacobianBlock& com = MutableBlock(row);
+    com.dofs = &all_dofs_;
+    body::ComJacobian(*body_, at_, workspace_, com.by_q);
+    com.by_q.array().colwise() /= targets.com_sd_m.array();
+    row += 3;
+  }
+  if (has_angular_) {
+    JacobianBlock& angular = MutableBlock(row);
+    angular.dofs = &all_dofs_;
+    angular.by_q =
+        (targets.angular_sd * frame_s_).cwiseInverse().asDiagonal() * centroidal_.bottomRows<3>();
+  }
+}
+
+const JacobianBlock& MeasuredTerms::JointBlock(int joint) {
+  const auto index = static_cast<std::size_t>(joint);
+  body::PointJacobian(body_->skeleton, at_, joint, at_.p_WJ[index], single_.by_q);
+  single_.dofs = &moved_by_[index];
+  return single_;
+}
+
+const JacobianBlock& MeasuredTerms::ComBlock() {
+  body::ComJacobian(*body_, at_, workspace_, single_.by_q);
+  single_.dofs = &all_dofs_;
+  return single_;
+}
+
+}  // namespace footing::pose
