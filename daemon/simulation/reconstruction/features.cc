@@ -36,7 +36,7 @@ Eigen::Vector3d Clipped(const Eigen::Vector3d& value, double most) {
 }  // namespace
 
 const Features::Values& Features::Advance(const std::array<Eigen::Vector3d, 2>& hands_W_m,
-                                          const momentum::Estimate& told) {
+                                          const momentum::Estimate& estimate) {
   const double unit = 1 / root_height_m_;
   const double weight_n = mass_kg_ * kStandardGravityMps2;
   Eigen::Matrix<double, 6, 1> hands;
@@ -45,11 +45,11 @@ const Features::Values& Features::Advance(const std::array<Eigen::Vector3d, 2>& 
   hands_ += (1 - std::exp(-step_s_ / kHandS)) * (hands - hands_);
   slow_hands_ += (1 - std::exp(-step_s_ / kSlowHandS)) * (hands - slow_hands_);
 
-  const Eigen::Vector3d& c = told.p_WC_m;
+  const Eigen::Vector3d& c = estimate.p_WC_m;
   std::array<double, 2> share{};
   Eigen::Vector2d moment = Eigen::Vector2d::Zero();
   for (std::size_t f = 0; f < 2; ++f) {
-    const momentum::FootEstimate& foot = told.feet[f];
+    const momentum::FootEstimate& foot = estimate.feet[f];
     share[f] = std::clamp(foot.load_n / weight_n, -0.2, 4.0);
     const Eigen::Vector3d& p = foot.cop_valid ? foot.p_WP_m : foot.p_WF_m;
     moment += std::max(share[f], 0.0) * p.head<2>();
@@ -63,7 +63,7 @@ const Features::Values& Features::Advance(const std::array<Eigen::Vector3d, 2>& 
   change.Add(unit * hands_);
   change.Add(unit * cop);
   change.Add(Eigen::Vector2d(share[0], share[1]));
-  for (const momentum::FootEstimate& foot : told.feet) change.Add(unit * foot.p_WF_m.head<2>());
+  for (const momentum::FootEstimate& foot : estimate.feet) change.Add(unit * foot.p_WF_m.head<2>());
   change.Add(unit * c);
 
   Eigen::Matrix<double, kShape, 1> shape;
@@ -72,11 +72,11 @@ const Features::Values& Features::Advance(const std::array<Eigen::Vector3d, 2>& 
   Appender<Values> out{values_};
   out.Add(shape);
   out.Add(unit / kSlowHandS * (hands_ - slow_hands_));
-  out.Add(unit * told.v_WC_mps);
-  out.Add(Clipped(told.a_WC_mps2, kMostAcceleration));
-  out.Add(Clipped(told.angular_momentum_kgm2ps, kMostAngular) / mass_kg_);
-  out.Add(Clipped(told.angular_momentum_rate_nm, kMostTorque) / mass_kg_);
-  for (const momentum::FootEstimate& foot : told.feet) {
+  out.Add(unit * estimate.v_WC_mps);
+  out.Add(Clipped(estimate.a_WC_mps2, kMostAcceleration));
+  out.Add(Clipped(estimate.angular_momentum_kgm2ps, kMostAngular) / mass_kg_);
+  out.Add(Clipped(estimate.angular_momentum_rate_nm, kMostTorque) / mass_kg_);
+  for (const momentum::FootEstimate& foot : estimate.feet) {
     out.Add(unit * (foot.p_WF_m - c).head<2>());
     out.Add(foot.contact ? 1.0 : 0.0);
     out.Add(std::min(foot.airborne_s, kMostAirS));
@@ -122,25 +122,26 @@ void StripMatrix::AddProduct(const Eigen::VectorXf& x, Eigen::VectorXf& y) const
   }
 }
 
-PoseRegression::Room PoseRegression::MakeRoom() const {
+PoseRegression::Workspace PoseRegression::MakeWorkspace() const {
   return {Eigen::VectorXd::Zero(mean.size()), Eigen::VectorXf::Zero(mean.size()),
           Eigen::VectorXf::Zero(waves.StripRows()),
           Eigen::VectorXf::Zero(wave_weights.StripRows())};
 }
 
-void PoseRegression::Predict(const Features::Values& features, Room& room,
+void PoseRegression::Predict(const Features::Values& features, Workspace& workspace,
                              Eigen::VectorXd& q) const {
-  room.scaled = (features - mean).cwiseProduct(scale).cwiseMax(-kMostScaled).cwiseMin(kMostScaled);
+  workspace.scaled =
+      (features - mean).cwiseProduct(scale).cwiseMax(-kMostScaled).cwiseMin(kMostScaled);
   q = offset;
-  q.noalias() += weights * room.scaled;
+  q.noalias() += weights * workspace.scaled;
   if (phases.size() == 0) return;
-  room.single = room.scaled.cast<float>();
-  room.waved.head(phases.size()) = phases;
-  waves.AddProduct(room.single, room.waved);
-  room.waved = room.waved.array().cos();
-  room.part.setZero();
-  wave_weights.AddProduct(room.waved, room.part);
-  q += room.part.head(q.size()).cast<double>();
+  workspace.single = workspace.scaled.cast<float>();
+  workspace.waved.head(phases.size()) = phases;
+  waves.AddProduct(workspace.single, workspace.waved);
+  workspace.waved = workspace.waved.array().cos();
+  workspace.part.setZero();
+  wave_weights.AddProduct(workspace.waved, workspace.part);
+  q += workspace.part.head(q.size()).cast<double>();
 }
 
 }  // namespace footing::reconstruction

@@ -21,9 +21,9 @@ class Features {
   Features(double step_s, double root_height_m, double mass_kg)
       : step_s_(step_s), root_height_m_(root_height_m), mass_kg_(mass_kg) {}
 
-  /// The next frame: fists in W, left and right. The feet's places are those of `told`.
+  /// The next frame: fists in W, left and right.
   const Values& Advance(const std::array<Eigen::Vector3d, 2>& hands_W_m,
-                        const momentum::Estimate& told);
+                        const momentum::Estimate& estimate);
   const Values& values() const { return values_; }
 
  private:
@@ -70,15 +70,15 @@ struct PoseRegression {
   Eigen::VectorXf phases;
   StripMatrix wave_weights;  ///< dof x waves.
 
-  /// What Predict needs, made once.
-  struct Room {
+  /// What Predict computes in, allocated once.
+  struct Workspace {
     Eigen::VectorXd scaled;
     Eigen::VectorXf single, waved, part;
   };
-  Room MakeRoom() const;
+  Workspace MakeWorkspace() const;
   bool empty() const { return offset.size() == 0; }
   /// Writes the pose to `q`, of its size.
-  void Predict(const Features::Values& features, Room& room, Eigen::VectorXd& q) const;
+  void Predict(const Features::Values& features, Workspace& workspace, Eigen::VectorXd& q) const;
 };
 
 }  // namespace footing::reconstruction

@@ -29,11 +29,11 @@ struct FootGeometry {
 /// Of both feet, from the body in its T-pose.
 std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body);
 
-/// What the T-pose of a body tells of who stands on the cells.
+/// Of the person on the cells, by the body in its T-pose.
 momentum::Subject SubjectOf(const body::Body& body);
 
-/// What a foot's estimate tells of its joints, by how far recorded feet were off it (docs/pose.md);
-/// m, and one standard deviation.
+/// Where a foot's joints are from its estimate, by how far recorded feet were off it
+/// (docs/pose.md); m, and one standard deviation.
 struct FootSpread {
   double along = 0.03;  ///< In contact, beside the variance of F itself.
   double across = 0.02;
@@ -43,7 +43,7 @@ struct FootSpread {
   double ankle_rise = 0.015, toe_rise = 0.012;  ///< Feet are not always flat.
   double lift = 0.22;                           ///< In the air, how high the foot is,
   double forward = 0.05;                        ///< and how far ahead of where it stood,
-  double lift_time_s = 0.12;                    ///< after so long;
+  double lift_time_s = 0.12;                    ///< with this time constant;
   double air_level = 0.20;                      ///< and how far off that it is.
   double air_up = 0.17;
 };
@@ -52,7 +52,7 @@ struct FootSpread {
 void AddFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& foot,
                     const FootSpread& spread, pose::PoseTargets& targets);
 
-/// The same as the paper has it: stiff constraints at where the foot was told to be.
+/// The same as the paper has it: stiff constraints at the foot's estimate.
 void AddPaperFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& foot,
                          double sd_m, pose::PoseTargets& targets);
 

@@ -8,14 +8,14 @@ namespace footing::reconstruction {
 
 struct FootLockConfig {
   double ease_s = 0.1;     ///< From where the foot was shown to where it landed (section 4.4).
-  double free_s = 0.15;    ///< So long after a landing the estimate is followed,
+  double free_s = 0.15;    ///< The estimate is followed for this time after a landing,
   double band_m = 0.018;   ///< then it is followed when it is further away than this,
-  double follow_s = 0.05;  ///< within such a time.
+  double follow_s = 0.05;  ///< with this time constant.
 };
 
 /// Where a foot on the ground is shown. Standing feet do not slide, but their estimated place
-/// wanders while the centre of pressure tells more of it: what is shown is held while the
-/// estimate stays near.
+/// wanders while it takes in the centre of pressure: what is shown is held while the estimate stays
+/// near.
 /// A plain value.
 class FootLock {
  public:
@@ -24,9 +24,9 @@ class FootLock {
 
   explicit FootLock(const FootLockConfig& config = {}) : config_(config) {}
 
-  /// `told`: where the points are told to be; `shown`: where they were in the frame before. Returns
-  /// where to show them; off the ground that is where they are told.
-  Places Advance(bool contact, const Places& told, const Places& shown, double step_s);
+  /// `estimated`: where the points are estimated to be; `shown`: where they were shown in the frame
+  /// before. Returns where to show them; off the ground that is where they are estimated to be.
+  Places Advance(bool contact, const Places& estimated, const Places& shown, double step_s);
 
  private:
   FootLockConfig config_;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kSpeedLastsS = 0.3;
 /// m^2/s^3. With the time above, a hand's speed along an axis has a deviation of 1.7 m/s: of swings
-/// of 0.3 m at 0.3 to 1.5 Hz, told as a Kinect does, it leaves least error for all.
+/// of 0.3 m at 0.3 to 1.5 Hz, measured as by a Kinect, it leaves least error for all.
 constexpr double kAcceleration = 20;
 constexpr double kSpeedSdMps = 1;  // Of a hand of which nothing is known.
 
@@ -27,17 +27,17 @@ void HandTrack::Predict(double step_s) {
 void HandTrack::Add(double time_s, const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& sd_m) {
   const double step_s = time_s - time_s_;
   if (started_ && step_s <= 0 && step_s > -kFurthestS) return;
-  told_variance_ = sd_m.array().square();
+  measured_variance_ = sd_m.array().square();
   if (!started_ || std::abs(step_s) > kFurthestS) {
     p_m_ = p_W_m;
     v_mps_.setZero();
-    pp_ = told_variance_;
+    pp_ = measured_variance_;
     pv_.setZero();
     vv_.setConstant(kSpeedSdMps * kSpeedSdMps);
   } else {
     Predict(step_s);
-    const Eigen::Array3d place_gain = pp_ / (pp_ + told_variance_);
-    const Eigen::Array3d speed_gain = pv_ / (pp_ + told_variance_);
+    const Eigen::Array3d place_gain = pp_ / (pp_ + measured_variance_);
+    const Eigen::Array3d speed_gain = pv_ / (pp_ + measured_variance_);
     const Eigen::Array3d off_m = p_W_m.array() - p_m_;
     p_m_ += place_gain * off_m;
     v_mps_ += speed_gain * off_m;
@@ -55,7 +55,7 @@ HandInput HandTrack::At(double time_s) const {
   HandInput hand;
   hand.valid = started_;
   hand.p_W_m = later.p_m_;
-  hand.sd_m = (told_variance_ + later.pp_ - pp_).sqrt();
+  hand.sd_m = (measured_variance_ + later.pp_ - pp_).sqrt();
   return hand;
 }
 

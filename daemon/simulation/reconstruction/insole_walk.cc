@@ -4,9 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "common/body/kinematics.h"
 #include "common/body/momentum.h"
+#include "common/body/points.h"
 #include "common/units/units.h"
+#include "daemon/simulation/reconstruction/measurement.h"
 
 namespace footing::reconstruction {
 namespace {
@@ -15,29 +16,20 @@ constexpr momentum::FootContactConfig kContact{40, 25, 2, 10};
 // Of the weight: a swinging foot may brush the ground with less.
 constexpr double kBearsShare = 0.22, kBearsNoMoreShare = 0.11;
 constexpr double kFrameRadps = 8;  // Of the moving frame, which is critically damped.
-constexpr double kSettleS = 0.12;  // A landing's place is doubted so long.
+constexpr double kSettleS = 0.12;  // After which a landing's place is known as well as later.
 constexpr double kPlacedSdM = 0.03, kLandingSdM = 0.05, kSwingSdM = 0.05, kLiftedSdM = 0.12;
 constexpr double kHandsAheadM = 0.07;  // Of the hips, in the mean of a stride.
 constexpr double kAsideM = 0.08;       // A walking foot from the middle.
-constexpr double kStandsS = 10;        // Who has not stepped yet, for so long.
+constexpr double kStandsS = 10;        // Since the last landing of somebody who has not stepped.
 constexpr double kHipsSdM = 0.06;      // The frame, as the centre of mass' place.
 // The height of the centre of mass, of somebody who walks this fast or faster, and who stands.
 constexpr double kUprightSdM = 0.04, kStandingSdM = 0.34, kWalkingMps = 0.5;
 constexpr double kArmsHangM = 0.028;  // Lower than in the T-pose by that (momentum::Subject).
-// A foot that nobody tells of: how fast its place becomes unknown, and how far off it is at most.
+// A foot whose cells are silent: how fast its place becomes unknown, and how far off it is at most.
 constexpr double kSilentSdMps = 0.5, kSilentSdM = 0.6;
 constexpr double kHeelShare = 0.25, kBallShare = 0.75;  // Of the sole: COP behind or ahead.
 
 Eigen::Vector3d Up(double z) { return {0, 0, z}; }
-
-/// Of the T-pose: from the hips, over the ground.
-Eigen::Vector3d CentreOverHips(const body::Body& body) {
-  body::Kinematics at(body.skeleton);
-  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), at);
-  Eigen::Vector3d com_m = body::CentreOfMass(body, at);
-  com_m.head<2>() -= at.p_WJ[0].head<2>();
-  return com_m;
-}
 
 Eigen::Vector3d Flat(const Eigen::Vector2d& p) { return {p.x(), p.y(), 0}; }
 
@@ -55,27 +47,21 @@ Result<InsoleWalk> InsoleWalk::Create(const body::Body& body, const Models& mode
   if (options.mode != Mode::kBest || options.lag_s > 0) {
     return UsageError("insoles: only the best mode without lag walks");
   }
-  // The momentum's priors are of people in place: they hold C back, and no sensor here says more
-  // of it than the hands.
-  Options walking = options;
-  walking.use_momentum = walking.use_angular_momentum = false;
-  auto made = Reconstruction::Create(body, models, walking);
+  if (const auto checked = CheckOptions(options); !checked) return checked.error();
+  auto made = WalkSubjectModel(body, models, options);
   if (!made) return made.error();
-  return InsoleWalk(std::move(*made), options);
+  return InsoleWalk(std::make_shared<const SubjectModel>(std::move(made).value()), options);
 }
 
-InsoleWalk::InsoleWalk(Reconstruction reconstruction, const Options& options)
-    : reconstruction_(std::move(reconstruction)),
-      step_s_(1 / options.rate_hz),
-      geometry_(StandingFeet(reconstruction_.body())),
-      com_m_(CentreOverHips(reconstruction_.body())),
-      output_(reconstruction_.output()) {
+InsoleWalk::InsoleWalk(std::shared_ptr<const SubjectModel> model, const Options& options)
+    : model_(std::move(model)), options_(options), mode_(*model_, options) {
   Recalibrate();
 }
 
 void InsoleWalk::Recalibrate() {
-  reconstruction_.Recalibrate();
-  output_ = reconstruction_.output();
+  calibration_ = {};
+  ReportTPose(*model_, options_, in_frame_);
+  output_ = in_frame_;
   frame_m_.setZero();
   frame_mps_.setZero();
   placed_ = walking_ = false;
@@ -91,7 +77,7 @@ void InsoleWalk::Recalibrate() {
 
 /// Where F is when the pose's ankle is where it is.
 Eigen::Vector2d InsoleWalk::PlaceInPose(std::size_t f) const {
-  const FootGeometry& geometry = geometry_[f];
+  const FootGeometry& geometry = model_->feet[f];
   const auto joint = static_cast<std::size_t>(geometry.ankle.joint);
   const Eigen::Vector3d ankle =
       body::Place(geometry.ankle, output_.R_WJ[joint], output_.p_WJ_m[joint]);
@@ -103,7 +89,7 @@ void InsoleWalk::StandUnder(const std::array<HandInput, kHands>& hands) {
   Eigen::Vector2d off = Eigen::Vector2d::Zero();
   for (std::size_t side = 0; side < kHands; ++side) {
     if (!hands[side].valid || !hands[side].p_W_m.allFinite()) return;
-    const body::Point fist = body::Fist(reconstruction_.body(), static_cast<int>(side));
+    const body::Point& fist = model_->fists[side];
     const auto joint = static_cast<std::size_t>(fist.joint);
     off += 0.5 * (hands[side].p_W_m - body::Place(fist, output_.R_WJ[joint], output_.p_WJ_m[joint]))
                      .head<2>();
@@ -113,11 +99,11 @@ void InsoleWalk::StandUnder(const std::array<HandInput, kHands>& hands) {
   placed_ = true;
 }
 
-Known::Foot InsoleWalk::Carrying(std::size_t f, const InsoleFoot& cells) const {
-  const FootGeometry& geometry = geometry_[f];
+FootPrior InsoleWalk::Bearing(std::size_t f, const InsoleFoot& cells) const {
+  const FootGeometry& geometry = model_->feet[f];
   const Eigen::Vector3d place = Flat(feet_[f].place_m - frame_m_);
-  Known::Foot foot{place + geometry.R_WF * geometry.ankle_F_m,
-                   place + geometry.R_WF * geometry.toe_F_m};
+  FootPrior foot{place + geometry.R_WF * geometry.ankle_F_m,
+                 place + geometry.R_WF * geometry.toe_F_m};
   const double settled = std::min(1.0, feet_[f].bearing.since_s() / kSettleS);
   foot.ankle_sd_m = foot.toe_sd_m = kLandingSdM + settled * (kPlacedSdM - kLandingSdM);
   double total = 0, moment = 0;
@@ -145,12 +131,12 @@ double InsoleWalk::AsideM(std::size_t f) const {
 /// The ankle half a step ahead of where the hips will be. A pose that lags behind would place it
 /// behind, and lag the more: it is not asked.
 Eigen::Vector2d InsoleWalk::LandingPlace(std::size_t f, double after_s) const {
-  const double ankle_ahead_m = (geometry_[f].R_WF * geometry_[f].ankle_F_m).x();
+  const double ankle_ahead_m = (model_->feet[f].R_WF * model_->feet[f].ankle_F_m).x();
   return {frame_m_.x() + after_s * frame_mps_.x() + HalfStepM() - ankle_ahead_m, AsideM(f)};
 }
 
-Known::Foot InsoleWalk::Swinging(std::size_t f) const {
-  const FootGeometry& geometry = geometry_[f];
+FootPrior InsoleWalk::Swinging(std::size_t f) const {
+  const FootGeometry& geometry = model_->feet[f];
   const double share = std::min(1.0, feet_[f].bearing.since_s() / times_.swing_s);
   const Eigen::Vector2d to = LandingPlace(f, (1 - share) * times_.swing_s);
   Eigen::Vector2d place = feet_[f].stood_m + SwingWay(share) * (to - feet_[f].stood_m);
@@ -161,22 +147,32 @@ Known::Foot InsoleWalk::Swinging(std::size_t f) const {
           at + geometry.R_WF * geometry.toe_F_m + Up(rise.ball_m), kSwingSdM, kSwingSdM};
 }
 
-Known::Foot InsoleWalk::Believed(std::size_t f, const InsoleFoot& cells) const {
-  Known::Foot foot = feet_[f].bearing.contact() ? Carrying(f, cells) : Swinging(f);
-  const double doubt_m = kSilentSdMps * feet_[f].silent_s;
+FootPrior InsoleWalk::Expected(std::size_t f, const InsoleFoot& cells) const {
+  FootPrior foot = feet_[f].bearing.contact() ? Bearing(f, cells) : Swinging(f);
+  const double silent_sd_m = kSilentSdMps * feet_[f].silent_s;
   for (double* sd_m : {&foot.ankle_sd_m, &foot.toe_sd_m})
-    *sd_m = std::min(kSilentSdM, std::hypot(*sd_m, doubt_m));
+    *sd_m = std::min(kSilentSdM, std::hypot(*sd_m, silent_sd_m));
   return foot;
 }
 
-/// The centre of mass over the hips, which are where the frame is.
-void InsoleWalk::LeanOnFrame(Known& known) const {
+/// The frame is where the hips are.
+WalkPrior::Com InsoleWalk::ComOverHips() const {
+  WalkPrior::Com com{body::CentreOfMass(model_->body, model_->t_pose_at) - Up(kArmsHangM), {}};
+  com.p_W_m.head<2>() -= model_->t_pose_at.p_WJ[0].head<2>();
   const double stands = std::max(0.0, 1 - std::abs(frame_mps_.x()) / kWalkingMps);
-  known.com_W_m = com_m_ - Up(kArmsHangM);
-  known.com_sd_m << kHipsSdM, kHipsSdM, kUprightSdM + stands * (kStandingSdM - kUprightSdM);
+  com.sd_m << kHipsSdM, kHipsSdM, kUprightSdM + stands * (kStandingSdM - kUprightSdM);
+  return com;
 }
 
-Inputs InsoleWalk::InMovingFrame(const InsoleInputs& inputs) {
+WalkPrior InsoleWalk::Expected(const InsoleInputs& inputs) {
+  WalkPrior prior;
+  if (inputs.hands[0].valid && inputs.hands[1].valid) prior.com = ComOverHips();
+  for (std::size_t f = 0; f < momentum::kFeet; ++f)
+    prior.feet[f] = feet_[f].prior = Expected(f, inputs.feet[f]);
+  return prior;
+}
+
+Inputs InsoleWalk::InMovingFrame(const InsoleInputs& inputs) const {
   Inputs out;
   out.loads.time_s = inputs.time_s;
   out.hands = inputs.hands;
@@ -189,20 +185,25 @@ Inputs InsoleWalk::InMovingFrame(const InsoleInputs& inputs) {
     loads.count = std::min(cells.count, momentum::kMaxCells);
     for (std::size_t i = 0; i < loads.count; ++i) {
       const Eigen::Vector3d p_F =
-          Flat(cells.p_S_m[i]) - Eigen::Vector3d(geometry_[f].RestM(), 0, 0);
-      loads.cells[i] = {Flat(feet_[f].place_m - frame_m_) + geometry_[f].R_WF * p_F,
+          Flat(cells.p_S_m[i]) - Eigen::Vector3d(model_->feet[f].RestM(), 0, 0);
+      loads.cells[i] = {Flat(feet_[f].place_m - frame_m_) + model_->feet[f].R_WF * p_F,
                         cells.load_n[i]};
     }
   }
-  if (!reconstruction_.output().calibrated) return out;
-  if (inputs.hands[0].valid && inputs.hands[1].valid) LeanOnFrame(out.known);
-  out.known.feet.emplace();
-  for (std::size_t f = 0; f < momentum::kFeet; ++f)
-    (*out.known.feet)[f] = feet_[f].known = Believed(f, inputs.feet[f]);
   return out;
 }
 
-/// How much load is a foot that bears is known when the weight is.
+void InsoleWalk::AdvancePose(const InsoleInputs& inputs) {
+  const Inputs moved = InMovingFrame(inputs);
+  if (std::isfinite(inputs.time_s)) in_frame_.time_s = inputs.time_s;
+  if (in_frame_.calibrated) {
+    mode_.Advance(moved, Expected(inputs), in_frame_);
+  } else if (Calibrate(moved, options_.step_s(), calibration_, in_frame_)) {
+    mode_.Start(calibration_.result());
+  }
+}
+
+/// The load of a foot that bears weight is a share of the weight, which is known by now.
 void InsoleWalk::BeginWalking(const InsoleInputs& inputs) {
   const double weight_n = KilogramsToNewtons(output_.mass_kg);
   momentum::FootContactConfig bears = kContact;
@@ -210,13 +211,13 @@ void InsoleWalk::BeginWalking(const InsoleInputs& inputs) {
   bears.off_n = kBearsNoMoreShare * weight_n;
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
     feet_[f].bearing = momentum::FootContact(bears);
-    feet_[f].bearing.Advance(TotalLoadN(inputs.feet[f]), step_s_);
+    feet_[f].bearing.Advance(TotalLoadN(inputs.feet[f]), options_.step_s());
     feet_[f].stood_m = feet_[f].place_m;
   }
   walking_ = true;
 }
 
-/// A foot has landed, or left the ground, after it did the other thing for so long.
+/// A foot has left the ground (`bore`) or landed; what it did before lasted `lasted_s`.
 void InsoleWalk::Step(std::size_t f, bool bore, double lasted_s) {
   if (bore) {
     times_.Bore(lasted_s);
@@ -230,13 +231,14 @@ void InsoleWalk::Step(std::size_t f, bool bore, double lasted_s) {
 
 void InsoleWalk::AdvanceFoot(std::size_t f, const InsoleFoot& cells) {
   Foot& foot = feet_[f];
-  foot.silent_s = cells.valid ? 0 : foot.silent_s + step_s_;
+  foot.silent_s = cells.valid ? 0 : foot.silent_s + options_.step_s();
   if (cells.valid) {
     const double load_n = TotalLoadN(cells);
-    foot.contact.Advance(load_n, step_s_);
+    foot.contact.Advance(load_n, options_.step_s());
     const bool bore = foot.bearing.contact();
     const double lasted_s = foot.bearing.since_s();
-    if (walking_ && foot.bearing.Advance(load_n, step_s_) != bore) Step(f, bore, lasted_s);
+    if (walking_ && foot.bearing.Advance(load_n, options_.step_s()) != bore)
+      Step(f, bore, lasted_s);
   }
   if (walking_ && !foot.bearing.contact()) foot.place_m.y() = AsideM(f);
 }
@@ -244,16 +246,16 @@ void InsoleWalk::AdvanceFoot(std::size_t f, const InsoleFoot& cells) {
 const Output& InsoleWalk::Advance(const InsoleInputs& inputs) {
   if (!placed_) StandUnder(inputs.hands);
   if (output_.calibrated && !walking_) BeginWalking(inputs);
-  since_landing_s_ += step_s_;
+  since_landing_s_ += options_.step_s();
   for (std::size_t f = 0; f < momentum::kFeet; ++f) AdvanceFoot(f, inputs.feet[f]);
-  reconstruction_.Advance(InMovingFrame(inputs));
-  Tell();
+  AdvancePose(inputs);
+  ReportInWorld();
   if (output_.calibrated) MoveFrame(inputs.hands);
   return output_;
 }
 
-void InsoleWalk::Tell() {
-  output_ = reconstruction_.output();
+void InsoleWalk::ReportInWorld() {
+  output_ = in_frame_;
   const Eigen::Vector3d frame = Flat(frame_m_);
   output_.q.head<3>() += frame;
   for (Eigen::Vector3d& p : output_.p_WJ_m) p += frame;
@@ -262,30 +264,30 @@ void InsoleWalk::Tell() {
   output_.momentum.v_WC_mps += Flat(frame_mps_);
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
     momentum::FootEstimate& foot = output_.momentum.feet[f];
-    const Known::Foot& known = feet_[f].known;
+    const FootPrior& prior = feet_[f].prior;
     foot.p_WP_m += frame;
     if (!walking_) continue;
-    foot.p_WF_m = frame + known.ankle_W_m - geometry_[f].R_WF * geometry_[f].ankle_F_m;
-    foot.variance_m2.setConstant(std::pow(std::min(known.ankle_sd_m, known.toe_sd_m), 2));
-    momentum::PlaceHeelAndToe(geometry_[f].shape, foot);
+    foot.p_WF_m = frame + prior.ankle_W_m - model_->feet[f].R_WF * model_->feet[f].ankle_F_m;
+    foot.variance_m2.setConstant(std::pow(std::min(prior.ankle_sd_m, prior.toe_sd_m), 2));
+    momentum::PlaceHeelAndToe(model_->feet[f].shape, foot);
   }
 }
 
 /// Both hands' middle goes with the body, without the swing of the arms. Without hands nothing
-/// tells the place, and the speed is that of somebody who walks ahead with these steps.
+/// measures the place, and the speed is that of somebody who walks ahead with these steps.
 void InsoleWalk::MoveFrame(const std::array<HandInput, kHands>& hands) {
   const Eigen::Vector2d middle = 0.5 * (hands[0].p_W_m + hands[1].p_W_m).head<2>();
   if (hands[0].valid && hands[1].valid && middle.allFinite()) {
     // An observer of place and velocity: no lag behind somebody who walks evenly.
     const Eigen::Vector2d off = middle - Eigen::Vector2d(kHandsAheadM, 0) - frame_m_;
-    frame_mps_ += kFrameRadps * kFrameRadps * step_s_ * off;
-    frame_m_ += (frame_mps_ + 2 * kFrameRadps * off) * step_s_;
+    frame_mps_ += kFrameRadps * kFrameRadps * options_.step_s() * off;
+    frame_m_ += (frame_mps_ + 2 * kFrameRadps * off) * options_.step_s();
     return;
   }
   const bool steps = since_landing_s_ < times_.stance_s + times_.swing_s;
   const Eigen::Vector2d usual(steps ? times_.UsualSpeedMps() : 0, 0);
-  frame_mps_ += kFrameRadps * step_s_ * (usual - frame_mps_);
-  frame_m_ += frame_mps_ * step_s_;
+  frame_mps_ += kFrameRadps * options_.step_s() * (usual - frame_mps_);
+  frame_m_ += frame_mps_ * options_.step_s();
 }
 
 }  // namespace footing::reconstruction

@@ -3,10 +3,19 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <memory>
 
+#include "common/body/body.h"
+#include "common/result/result.h"
+#include "daemon/simulation/momentum/calibration.h"
 #include "daemon/simulation/momentum/foot_contact.h"
-#include "daemon/simulation/reconstruction/reconstruction.h"
+#include "daemon/simulation/reconstruction/inputs.h"
+#include "daemon/simulation/reconstruction/insole_mode.h"
+#include "daemon/simulation/reconstruction/models.h"
+#include "daemon/simulation/reconstruction/options.h"
+#include "daemon/simulation/reconstruction/output.h"
 #include "daemon/simulation/reconstruction/step_pattern.h"
+#include "daemon/simulation/reconstruction/subject_model.h"
 
 namespace footing::reconstruction {
 
@@ -30,22 +39,22 @@ struct InsoleInputs {
 };
 
 /// The reconstruction of somebody who walks away in shoes with cells (the paper's section 8). Cells
-/// do not tell where they are: a foot that bears weight stays where it landed, and it lands as far
-/// ahead of the hips as it will be behind them, by the walking speed and by how long the last steps
-/// took. In between it swings there in a step's usual way. Where the hips are and how fast they go
-/// both hands tell; the centre of mass is over them, upright while they move. The load's place in
-/// the sole says when heel or toes may be up.
+/// do not measure where they are: a foot that bears weight stays where it landed, and it lands as
+/// far ahead of the hips as it will be behind them, by the walking speed and by how long the last
+/// steps took. In between it swings there in a step's usual way. Both hands show where the hips are
+/// and how fast they go; the centre of mass is over them, upright while they move. The load's place
+/// in the sole shows when heel or toes may be up.
 ///
 /// Everything happens in a frame that follows the hips smoothly, so that what was learned of people
-/// in place holds; to the laws of motion it is as good as W. Cells that fall silent leave their
-/// foot where it was, less sure of it by the second. The person looks along W's x axis. Best mode,
-/// without its momentum. A value that can be copied.
+/// in place holds; it moves evenly enough for the laws of motion. A foot whose cells are silent
+/// stays where it was, with a deviation that grows. The person looks along W's x axis. Best mode's
+/// steps, without its momentum. A value that can be copied.
 class InsoleWalk {
  public:
   static Result<InsoleWalk> Create(const body::Body& body, const Models& models,
                                    const Options& options);
 
-  /// One frame, 1 / rate_hz after the one before. Begins in a T-pose. Output is in W.
+  /// One frame, 1 / rate_hz after the one before; the first ones are of a T-pose. Output is in W.
   const Output& Advance(const InsoleInputs& inputs);
   /// Forgets the T-pose.
   void Recalibrate();
@@ -61,12 +70,11 @@ class InsoleWalk {
     Eigen::Vector2d stood_m = Eigen::Vector2d::Zero();  ///< Where it last bore weight.
     momentum::FootContact contact;                      ///< It touches the ground,
     momentum::FootContact bearing;                      ///< and bears weight.
-    double silent_s = 0;                                ///< Since its cells told anything.
-    /// As the pose was solved for, in the moving frame.
-    Known::Foot known{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    double silent_s = 0;                                ///< Since its cells were heard.
+    FootPrior prior;  ///< As the pose was solved for, in the moving frame.
   };
 
-  InsoleWalk(Reconstruction reconstruction, const Options& options);
+  InsoleWalk(std::shared_ptr<const SubjectModel> model, const Options& options);
   void StandUnder(const std::array<HandInput, kHands>& hands);
   Eigen::Vector2d PlaceInPose(std::size_t f) const;
   double HalfStepM() const;
@@ -75,18 +83,21 @@ class InsoleWalk {
   void BeginWalking(const InsoleInputs& inputs);
   void Step(std::size_t f, bool bore, double lasted_s);
   void AdvanceFoot(std::size_t f, const InsoleFoot& cells);
-  Inputs InMovingFrame(const InsoleInputs& inputs);
-  void LeanOnFrame(Known& known) const;
-  Known::Foot Carrying(std::size_t f, const InsoleFoot& cells) const;
-  Known::Foot Swinging(std::size_t f) const;
-  Known::Foot Believed(std::size_t f, const InsoleFoot& cells) const;
-  void Tell();
+  Inputs InMovingFrame(const InsoleInputs& inputs) const;
+  FootPrior Bearing(std::size_t f, const InsoleFoot& cells) const;
+  FootPrior Swinging(std::size_t f) const;
+  FootPrior Expected(std::size_t f, const InsoleFoot& cells) const;
+  WalkPrior::Com ComOverHips() const;
+  WalkPrior Expected(const InsoleInputs& inputs);
+  void AdvancePose(const InsoleInputs& inputs);
+  void ReportInWorld();
   void MoveFrame(const std::array<HandInput, kHands>& hands);
 
-  Reconstruction reconstruction_;
-  double step_s_;
-  std::array<FootGeometry, momentum::kFeet> geometry_;
-  Eigen::Vector3d com_m_;  ///< Of the T-pose: from the hips, over the ground.
+  std::shared_ptr<const SubjectModel> model_;  ///< Copies share it; the mode points into it.
+  Options options_;
+  momentum::TPoseCalibration calibration_;
+  InsoleMode mode_;
+  Output in_frame_;  ///< As `output_`, but in the moving frame.
   std::array<Foot, momentum::kFeet> feet_;
   bool placed_ = false;
   bool walking_ = false;  ///< The T-pose is over.

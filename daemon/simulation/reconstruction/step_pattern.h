@@ -8,7 +8,7 @@ struct StepTimes {
   double stance_s = 0.65;
   double swing_s = 0.4;
 
-  /// A foot bore, or swung, for so long. What is no step counts for nothing.
+  /// A foot bore weight, or swung, for that time. What is not a step does not count.
   void Bore(double lasted_s);
   void Swung(double lasted_s);
   /// Of somebody who walks ahead with such steps, by the walk ratio of step length over cadence,
@@ -23,8 +23,8 @@ struct FootRise {
 };
 
 /// Of a swinging foot, `share` (0 to 1) of its swing after it left the ground, in steps whose feet
-/// come to be so far ahead of the hips and behind. Backwards (a negative half step) it is the same
-/// the other way round.
+/// come to be half a step ahead of the hips and behind. Backwards (a negative half step) it is the
+/// same the other way round.
 FootRise SwingRise(double share, double half_step_m);
 
 /// Which part of the way from where it stood to where it will stand a foot has gone by then: it

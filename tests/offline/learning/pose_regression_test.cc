@@ -34,11 +34,11 @@ TEST(PoseRegression, FindsALinearMapAndTellsItsErrorOnWhatWasLeftOut) {
   Eigen::MatrixXd map;
   const PoseExamples examples = Linear(0.1, 1, map);
   const auto fitted = FitPoseRegression(examples, Eigen::VectorXd::Ones(kDof), kWaves);
-  reconstruction::PoseRegression::Room room = fitted.regression.MakeRoom();
+  reconstruction::PoseRegression::Workspace workspace = fitted.regression.MakeWorkspace();
   Eigen::VectorXd pose(kDof);
   double sum = 0;
   for (std::size_t i = 0; i < 200; ++i) {
-    fitted.regression.Predict(examples.features[i], room, pose);
+    fitted.regression.Predict(examples.features[i], workspace, pose);
     sum += (pose - map * examples.features[i]).squaredNorm();
   }
   EXPECT_LT(std::sqrt(sum / 200 / kDof), 0.04);
@@ -65,9 +65,9 @@ TEST(PoseRegression, ItsWavesFindWhatIsNotLinear) {
   const auto waved = FitPoseRegression(examples, scale, {.count = 100, .kernel_width = 0.2});
   EXPECT_GT(linear.error, 0.95 * linear.spread);  // Products know nothing of their factors' signs.
   EXPECT_LT(waved.error, 0.5 * linear.error);
-  reconstruction::PoseRegression::Room room = waved.regression.MakeRoom();
+  reconstruction::PoseRegression::Workspace workspace = waved.regression.MakeWorkspace();
   Eigen::VectorXd pose(2);
-  waved.regression.Predict(examples.features[7], room, pose);
+  waved.regression.Predict(examples.features[7], workspace, pose);
   EXPECT_LT((pose - examples.poses[7]).norm(), 2 * waved.error);
 }
 

@@ -123,9 +123,9 @@ TEST(PoseRegression, AddsTheCosinesThatItsFileHas) {
   const PoseRegression regression = MakeModels({named}).value().regression;
   Features::Values features = Features::Values::Zero();
   features(3) = 0.5;
-  PoseRegression::Room room = regression.MakeRoom();
+  PoseRegression::Workspace workspace = regression.MakeWorkspace();
   Eigen::VectorXd q(dof);
-  regression.Predict(features, room, q);
+  regression.Predict(features, workspace, q);
   EXPECT_NEAR(q(7), regression.offset(7) + 0.5 * std::cos(2 * 0.5 + 0.25), 1e-6);
   EXPECT_EQ(q(8), regression.offset(8));
 }

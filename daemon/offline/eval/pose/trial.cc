@@ -40,16 +40,16 @@ class Drift {
   double n_ = 0, t_ = 0, e_ = 0, tt_ = 0, te_ = 0;
 };
 
-reconstruction::Known KnownOf(const pose_run::Frame& frame, const Oracle& oracle) {
-  reconstruction::Known known;
-  if (oracle.com) known.com_W_m = frame.com_m;
-  if (oracle.momentum) known.angular_W = frame.angular_momentum;
+reconstruction::Truth TruthOf(const pose_run::Frame& frame, const Oracle& oracle) {
+  reconstruction::Truth truth;
+  if (oracle.com) truth.com_W_m = frame.com_m;
+  if (oracle.momentum) truth.angular_W = frame.angular_momentum;
   if (oracle.feet) {
-    known.feet =
-        std::array{reconstruction::Known::Foot{frame.feet[0].ankle_m, frame.feet[0].toe_m},
-                   reconstruction::Known::Foot{frame.feet[1].ankle_m, frame.feet[1].toe_m}};
+    truth.feet =
+        std::array{reconstruction::Truth::Foot{frame.feet[0].ankle_m, frame.feet[0].toe_m},
+                   reconstruction::Truth::Foot{frame.feet[1].ankle_m, frame.feet[1].toe_m}};
   }
-  return known;
+  return truth;
 }
 
 /// Everything that is evaluated beside the pose itself.
@@ -255,10 +255,9 @@ Result<ordered_json> RunPoseTrial(const pose_run::PoseRun& run,
   Judge judge(run, static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz)));
   Spread solve_us;
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
-    reconstruction::Inputs inputs = run.frames[i].inputs;
-    inputs.known = KnownOf(run.frames[i], oracle);
+    const reconstruction::Truth truth = TruthOf(run.frames[i], oracle);
     const std::int64_t begin_ns = clock::ThreadCpuNs();
-    const reconstruction::Output& output = made->Advance(inputs);
+    const reconstruction::Output& output = made->Advance(run.frames[i].inputs, truth);
     const auto spent_ns = static_cast<double>(clock::ThreadCpuNs() - begin_ns);
     if (i < start) continue;
     if (!output.calibrated) {

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "daemon/simulation/momentum/horizontal_com.h"
+#include "daemon/simulation/reconstruction/best_solver.h"
+#include "daemon/simulation/reconstruction/clean_up.h"
+#include "daemon/simulation/reconstruction/delay.h"
+#include "daemon/simulation/reconstruction/measurement.h"
+#include "daemon/simulation/reconstruction/report.h"
+
+namespace footing::reconstruction {
+
+/// Boards and hands by what goes beyond the paper (docs/pose.md): filters with covariances, a
+/// regressed mean, Gauss-Newton. A value; `model` must outlive it.
+class BestMode {
+ public:
+  BestMode(const SubjectModel& model, const Options& options);
+
+  /// The T-pose is complete.
+  void Start(const momentum::TPose& pose);
+  /// One frame after it.
+  void Advance(const Inputs& inputs, const Truth& truth, Output& output);
+  const Features& features() const { return solver_.features(); }
+
+ private:
+  template <typename T>
+  using Lag = Delay<T, momentum::HorizontalCom::kSlots>;
+
+  /// What was measured at the instant that is reconstructed, with what is known of it now.
+  Measurement Delayed(const Measurement& now);
+  void SetTargets(const Measurement& then, const Truth& truth, const Output& output);
+  void CleanUp(const Measurement& then, const Truth& truth);
+  void Report(const Measurement& then, const Truth& truth, Output& output);
+
+  const SubjectModel* model_;
+  Options options_;
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< Of the basis' poses, W.
+  BestEstimate estimate_;
+  Lag<Measurement> measured_;
+  Lag<Truth> truth_;
+  pose::PoseTargets targets_;
+  BestSolver solver_;
+  FootHold hold_;
+  pose::PoseTargets shown_feet_;
+  LegCleanUp legs_;
+  SolvedPose pose_;
+  MeanMisfit misfit_;
+  PoseSpread spread_;
+  std::uint32_t solver_resets_ = 0;
+};
+
+}  // namespace footing::reconstruction

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "daemon/simulation/pose/gauss_newton.h"
+#include "daemon/simulation/pose/targets.h"
+#include "daemon/simulation/reconstruction/clean_up.h"
+#include "daemon/simulation/reconstruction/features.h"
+#include "daemon/simulation/reconstruction/measurement.h"
+#include "daemon/simulation/reconstruction/options.h"
+#include "daemon/simulation/reconstruction/report.h"
+#include "daemon/simulation/reconstruction/subject_model.h"
+
+namespace footing::reconstruction {
+
+/// The fourth step of best mode: Gauss-Newton about the pose that the regression of the features
+/// makes likely. While a hand is neither seen nor known by its arm, and where there is no
+/// regression, about the mean of all poses.
+class BestSolver {
+ public:
+  /// `model` must outlive it.
+  BestSolver(const SubjectModel& model, const Options& options);
+
+  void Start(double mass_kg);
+  /// One frame. `targets` are from `origin_m`, and so is the pose.
+  void Solve(const Measurement& then, const pose::PoseTargets& targets,
+             const Eigen::Vector3d& origin_m, SolvedPose& pose);
+  /// The next frame starts at the mean.
+  void Reset();
+
+  /// Of the last frame.
+  pose::GaussNewton& solver() { return was_regressed_ ? *regressed_ : plain_; }
+  PriorOfPose prior() const;
+  const Features& features() const { return features_; }
+
+ private:
+  /// The regression has seen both hands at all times.
+  bool CanRegress(const Measurement& then) const;
+  /// Where hands that only their arms show are: where a solution without the regression has them.
+  void PlaceHandsByArms(const Measurement& then, const pose::PoseTargets& targets,
+                        const Eigen::Vector3d& origin_m);
+  void SolveAboutRegression(const Measurement& then, const pose::PoseTargets& targets,
+                            const Eigen::Vector3d& origin_m);
+
+  const SubjectModel* model_;
+  Options options_;
+  pose::GaussNewton plain_;
+  std::optional<pose::GaussNewton> regressed_;  ///< Over the errors of the regression.
+  Features features_;
+  std::array<Eigen::Vector3d, kHands> hands_W_m_;  ///< Where they were last.
+  PoseRegression::Workspace workspace_;
+  Eigen::VectorXd likely_q_;
+  bool first_ = true;  ///< No frame since Start.
+  bool was_regressed_ = false;
+  bool placed_by_arms_ = false;  ///< In the last frame.
+};
+
+}  // namespace footing::reconstruction

@@ -1,0 +1,115 @@
+#include "daemon/simulation/reconstruction/measurement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/body/momentum.h"
+#include "daemon/simulation/reconstruction/pose_targets.h"
+#include "daemon/simulation/reconstruction/report.h"
+
+namespace footing::reconstruction {
+namespace {
+
+constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
+
+bool UsableDirection(const Eigen::Vector3d& direction, const Eigen::Vector3d& sd) {
+  return direction.allFinite() && sd.allFinite() && sd.minCoeff() > 0;
+}
+
+}  // namespace
+
+std::array<HandInput, kHands> UsableHands(const std::array<HandInput, kHands>& hands,
+                                          const Eigen::Vector3d& origin_m) {
+  std::array<HandInput, kHands> usable = hands;
+  for (HandInput& hand : usable) {
+    hand.valid = hand.valid && hand.p_W_m.allFinite() && hand.sd_m.allFinite() &&
+                 hand.sd_m.minCoeff() > 0 && (hand.p_W_m - origin_m).norm() < kMostHandM;
+  }
+  return usable;
+}
+
+std::array<arms::ArmEstimate, kHands> UsableArms(
+    const std::array<arms::ArmEstimate, kHands>& arms) {
+  std::array<arms::ArmEstimate, kHands> usable = arms;
+  for (arms::ArmEstimate& arm : usable) {
+    arm.valid = arm.valid && UsableDirection(arm.directions.upper, arm.upper_sd) &&
+                UsableDirection(arm.directions.hinge, arm.hinge_sd) &&
+                UsableDirection(arm.directions.forearm, arm.forearm_sd);
+  }
+  return usable;
+}
+
+void ReportTPose(const SubjectModel& model, const Options& options, Output& output) {
+  const auto joints = static_cast<std::size_t>(model.body.skeleton.size());
+  output.calibrated = false;
+  output.calibration_progress = 0;
+  output.valid = false;
+  output.lag_s = options.lag_steps() * options.step_s();
+  output.mass_kg = model.body.mass_kg;
+  output.momentum = {};
+  output.R_WJ.resize(joints);
+  output.p_WJ_m.resize(joints);
+  ReportPose(model.t_pose, model.t_pose_at, output);
+  output.com_W_m = body::CentreOfMass(model.body, model.t_pose_at);
+  output.com_variance_m2.setConstant(kUnknownSdM * kUnknownSdM);
+  output.joint_sd_m.assign(joints, kUnknownSdM);
+}
+
+bool Calibrate(const Inputs& inputs, double step_s, momentum::TPoseCalibration& calibration,
+               Output& output) {
+  const bool complete = calibration.Advance(inputs.loads, step_s);
+  output.calibration_progress = calibration.progress();
+  output.calibration_restarts = calibration.restarts();
+  if (!complete) return false;
+  output.mass_kg = calibration.result().mass_kg;
+  output.calibrated = true;
+  return true;
+}
+
+BestEstimate::BestEstimate(const SubjectModel& model, const Options& options)
+    : model_(&model),
+      options_(options),
+      posture_(model.body, model.basis, PostureSolverOptions(options)) {}
+
+void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {
+  momentum::BestConfig config;
+  config.lag_s = options_.lag_steps() * options_.step_s();
+  estimator_.emplace(config, model_->subject, pose, options_.step_s());
+  posture_.Reset();
+  origin_m_ = origin_m;
+}
+
+Measurement BestEstimate::Advance(const Inputs& inputs) {
+  Measurement now{UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
+                  estimator_->Advance(inputs.loads)};
+  if (options_.use_posture && now.both_hands()) {
+    now.momentum = estimator_->SeePosture(PostureCom(now));
+  }
+  return now;
+}
+
+Eigen::Vector3d BestEstimate::PostureCom(const Measurement& now) {
+  targets_ = {};
+  AddHandTargets(*model_, now, options_.best, targets_);
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    AddFootTargets(model_->feet[f], now.momentum.feet[f], options_.best.foot, targets_);
+  }
+  MoveOrigin(origin_m_, targets_);
+  posture_.Solve(targets_);
+  return origin_m_ + body::CentreOfMass(model_->body, posture_.at());
+}
+
+void PaperEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {
+  estimator_.emplace(momentum::PaperConfig{}, model_->subject, pose, step_s_);
+  if (model_->horizontal) horizontal_.emplace(*model_->horizontal, pose, step_s_);
+  origin_m_ = origin_m;
+}
+
+Measurement PaperEstimate::Advance(const Inputs& inputs) {
+  std::optional<Eigen::Vector2d> com_m;
+  if (horizontal_) com_m = horizontal_->Advance(inputs.loads);
+  return {UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
+          estimator_->Advance(inputs.loads, com_m)};
+}
+
+}  // namespace footing::reconstruction
