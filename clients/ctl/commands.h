@@ -34,7 +34,7 @@ Result<void> Assign(Session& session, const std::string& device, const std::stri
                     const Shared& shared);
 
 void AddDeviceCommands(CLI::App& app, Shared& shared);     ///< devices, status, watch
-void AddControlCommands(CLI::App& app, Shared& shared);    ///< rumble, led, tare, trust
+void AddControlCommands(CLI::App& app, Shared& shared);    ///< rumble, led, tare
 void AddAssignCommand(CLI::App& app, Shared& shared);      ///< assign
 void AddDoctorCommand(CLI::App& app, Shared& shared);      ///< doctor
 void AddPairCommand(CLI::App& app, Shared& shared);        ///< pair

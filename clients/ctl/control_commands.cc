@@ -212,13 +212,6 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
     WithSession(shared, {"status"},
                 [&](Session& session) { return Tare(session, words->device, *clear, shared); });
   });
-
-  CLI::App* trust = app.add_subcommand("trust", "Certificates for other hosts");
-  trust->allow_extras();
-  trust->callback([&shared] {
-    shared.exit_code = cli::Report(
-        UsageError("trust is not built yet; reach other hosts through an SSH tunnel until then"));
-  });
 }
 
 }  // namespace footing::ctl

@@ -42,9 +42,11 @@ def check_without_footingd(stage):
     console = Console(stage)
     for words in (("devices",), ("status",), ("watch", "--seconds", "1"), ("led", "1", "1000")):
         console.refused(3, *words, says="no footingd")
-    console.refused(2, "trust", says="not built yet")
     assert console.run("led", "1").returncode == 2
-    assert console.run("frobnicate").returncode == 2
+    for unknown in ("frobnicate", "trust"):  # trust is reserved for encrypted connections.
+        done = console.run(unknown)
+        assert done.returncode == 2 and unknown in done.stderr, done
+    assert "trust" not in console.run("--help").stdout
     assert stage.run("footing-ctl", "--connect", "nonsense", "devices").returncode == 2
 
 
