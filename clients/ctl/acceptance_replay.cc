@@ -3,63 +3,53 @@
 
 #include "clients/ctl/acceptance_run.h"
 #include "clients/ctl/acceptance_text.h"
-#include "common/mcap/walk.h"
-#include "common/recording/mapped_file.h"
+#include "common/mcap/records.h"
+#include "common/recording/recorded_session.h"
 
 namespace footing::ctl {
 namespace {
 
-/// Parses a channel's message into its place in the tick.
-bool ParseInto(v1::Tick& tick, const std::string& channel, std::string_view data) {
-  const auto parse = [data](google::protobuf::MessageLite& message) {
-    return message.ParseFromArray(data.data(), static_cast<int>(data.size()));
-  };
-  if (channel == "status") return parse(*tick.mutable_status());
-  if (channel == "motion") return parse(*tick.mutable_motion());
-  if (channel == "boards") return parse(*tick.mutable_boards());
-  if (channel == "features") return parse(*tick.mutable_features());
-  return true;
+using v1::Tick;
+
+const std::vector<std::uint32_t>& JudgedFields() {
+  static const std::vector<std::uint32_t> fields = {
+      Tick::kStatusFieldNumber, Tick::kMotionFieldNumber, Tick::kBoardsFieldNumber,
+      Tick::kFeaturesFieldNumber};
+  return fields;
+}
+
+/// What RunAcceptance kept beside the ticks.
+std::optional<std::map<std::string, std::string>> KeptPlan(
+    const recording::RecordedSession& session) {
+  for (const mcap::Metadata& one : session.metadata()) {
+    if (one.name == "acceptance") return std::map(one.values.begin(), one.values.end());
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path) {
-  auto file = recording::MappedFile::Open(path);
-  if (!file) return file.error();
-  std::map<std::uint16_t, std::string> topics;
-  std::map<std::uint64_t, v1::Tick> ticks;  // By time of footingd.
-  std::optional<std::map<std::string, std::string>> metadata;
-  std::string wrong;
-  mcap::Visitor visitor;
-  visitor.channel = [&](const mcap::Channel& channel) { topics[channel.id] = channel.topic; };
-  visitor.message = [&](const mcap::Message& message) {
-    const std::string& topic = topics[message.channel_id];
-    if (!topic.starts_with("/footingd/")) return;
-    v1::Tick& tick = ticks[message.log_time_ns];
-    tick.set_host_ns(static_cast<std::int64_t>(message.log_time_ns));
-    if (!ParseInto(tick, topic.substr(topic.rfind('/') + 1), message.data)) {
-      wrong = topic + ", sequence " + std::to_string(message.sequence);
-    }
-  };
-  visitor.metadata = [&](const mcap::Metadata& one) {
-    if (one.name == "acceptance") metadata.emplace(one.values.begin(), one.values.end());
-  };
-  const mcap::WalkEnd end = mcap::Walk(file->bytes(), visitor, mcap::WalkMode::kStrict);
-  if (!end.complete) {
-    return InvalidData(path + ": " + end.problem +
-                       "; the run did not end, so there is no verdict to compute again");
+  const auto session = recording::RecordedSession::Open(path);
+  if (!session) {
+    return Error{session.error().kind,
+                 session.error().message + "; a run that did not end has no verdict to compute"};
   }
-  if (!wrong.empty()) return InvalidData(path + ": a message that does not parse: " + wrong);
+  const auto metadata = KeptPlan(*session);
   if (!metadata) {
     return InvalidData(path +
-                       " is no recording of an acceptance; make one with: footing-ctl "
+                       " is not a recording of an acceptance; make one with: footing-ctl "
                        "acceptance --out FILE.mcap");
   }
   const auto plan = ReadAcceptanceMetadata(*metadata);
   if (!plan) return InvalidData(path + ": " + plan.error().message);
   guide::Acceptance acceptance(plan->rig, plan->layout);
   auto span = plan->spans.begin();
-  for (const auto& [time_ns, tick] : ticks) {
+  const recording::RecordedServer* server = session->Find("footingd");
+  if (server == nullptr) return InvalidData(path + " holds no ticks of footingd");
+  const auto ticks = recording::ReadTicks(*server, JudgedFields());
+  if (!ticks) return InvalidData(path + ": " + ticks.error().message);
+  for (const v1::Tick& tick : *ticks) {
     if (span != plan->spans.end() && tick.host_ns() >= span->from_ns) {
       acceptance.Begin(span->phase, span->from_ns);
       ++span;

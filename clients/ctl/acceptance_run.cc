@@ -7,10 +7,10 @@
 
 #include "clients/ctl/acceptance_text.h"
 #include "clients/ctl/guided.h"
-#include "clients/log/stream_recorder.h"
 #include "common/board/layout.h"
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/recording/stream_recorder.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 
@@ -135,7 +135,7 @@ class Run {
   const AcceptanceOptions& options_;
   stream::BoardLayout layout_;
   recording::RecordingWriter writer_;
-  log_client::StreamRecorder recorder_;
+  recording::StreamRecorder recorder_;
   guide::Acceptance acceptance_;
   std::optional<guide::Phase> next_;
   bool ending_ = false;

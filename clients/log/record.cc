@@ -11,10 +11,10 @@
 #include <memory>
 #include <utility>
 
-#include "clients/log/stream_recorder.h"
 #include "common/clock/clock.h"
 #include "common/config/data_file.h"
 #include "common/recording/recording_writer.h"
+#include "common/recording/stream_recorder.h"
 #include "common/transport/client.h"
 
 namespace footing::log_client {
@@ -63,7 +63,7 @@ class Recording {
 
  private:
   struct Source {
-    std::unique_ptr<StreamRecorder> recorder;
+    std::unique_ptr<recording::StreamRecorder> recorder;
     std::unique_ptr<transport::Client> client;
   };
 
@@ -95,10 +95,10 @@ class Recording {
 
   void Link(const transport::Address& address) {
     auto link = std::make_unique<Source>();
-    link->recorder = std::make_unique<StreamRecorder>(
+    link->recorder = std::make_unique<recording::StreamRecorder>(
         writer_, address.Text(),
         [this, text = address.Text()](const std::string& id) { return NameOf(id, text); });
-    StreamRecorder& recorder = *link->recorder;
+    recording::StreamRecorder& recorder = *link->recorder;
     transport::ClientOptions client;
     client.address = address;
     client.client_name = "footing-log";
@@ -146,7 +146,7 @@ class Recording {
       if (error) return;
       const std::int64_t now_ns = clock::MonotonicNs();
       if (!writer_.pending()) written_down_ns_ = now_ns;
-      if (now_ns - written_down_ns_ >= kLongestUnwrittenNs) {
+      if (now_ns - written_down_ns_ >= recording::kLongestUnwrittenNs) {
         Keep(writer_.Flush());
         written_down_ns_ = now_ns;
       }

@@ -4,8 +4,8 @@
 # declared above it, so the order of add_subdirectory() in the top-level CMakeLists.txt is the
 # layering, and cycles cannot be written. DEPS also names external libraries by their short
 # names (see common/cmake/external.cmake); a pure module may name only the pure ones.
-# A folder daemon/sensor/... never names daemon/simulation/... or the other way round, clients name
-# common only; daemon/offline alone may name both daemons. Synthetic people and devices (common/virtual) are
+# A folder daemon/sensor/... never names daemon/simulation/... or the other way round, a client
+# names common and itself, never another client; daemon/offline alone may name both daemons. Synthetic people and devices (common/virtual) are
 # for clients, daemon/offline and tests: never in what footingd and footing-sim are made of.
 define_property(TARGET PROPERTY MODULE_FOLDER)
 define_property(TARGET PROPERTY MODULE_PURE)
@@ -18,8 +18,8 @@ function(_check_side name folder dep_folder)
     string(APPEND allowed "|^daemon/simulation/")
   elseif(folder MATCHES "^daemon/offline/")
     string(APPEND allowed "|^daemon/")
-  elseif(folder MATCHES "^clients/")
-    string(APPEND allowed "|^clients/")
+  elseif(folder MATCHES "^(clients/[^/]+)")
+    string(APPEND allowed "|^${CMAKE_MATCH_1}(/|$)")
   endif()
   if(NOT dep_folder MATCHES "${allowed}")
     message(FATAL_ERROR "${name} in ${folder} may not name a module of ${dep_folder}")

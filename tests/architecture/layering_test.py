@@ -87,6 +87,17 @@ class Configure(unittest.TestCase):
                                   ("clients/d", "d HEADERS a.h DEPS a")])
         self.assertEqual(code, 0, output)
 
+    def test_a_client_never_names_another_client(self):
+        self.refused([("clients/log", "a HEADERS a.h"), ("clients/ctl", "b HEADERS a.h DEPS a")],
+                     "may not name")
+        self.refused([("clients/log", "a HEADERS a.h"),
+                      ("clients/log_reader/x", "b HEADERS a.h DEPS a")], "may not name")
+
+    def test_a_client_may_name_its_own_modules(self):
+        code, output = configure([("clients/ctl/words", "a HEADERS a.h"),
+                                  ("clients/ctl/guide", "b HEADERS a.h DEPS a")])
+        self.assertEqual(code, 0, output)
+
     def test_offline_may_name_both_daemons(self):
         code, output = configure([("daemon/sensor/a", "a HEADERS a.h"),
                                   ("daemon/simulation/b", "b HEADERS a.h"),

@@ -1,6 +1,6 @@
 #include "tests/clients/log/sample_recording.h"
 
-#include "clients/log/stream_recorder.h"
+#include "common/recording/stream_recorder.h"
 #include "common/result/result.h"
 
 namespace footing::log_client {
@@ -29,7 +29,8 @@ v1::Tick SampleTick(int k, bool simulated) {
 void WriteSampleRecording(const std::string& path, bool simulated) {
   auto writer = recording::RecordingWriter::Create(path, {"footing-log test", true, {}});
   FOOTING_CHECK(writer.ok());
-  StreamRecorder recorder(*writer, "unix:/made", [](const std::string& id) { return id; });
+  recording::StreamRecorder recorder(*writer, "unix:/made",
+                                     [](const std::string& id) { return id; });
   v1::Welcome welcome;
   welcome.set_server_id("footingd");
   welcome.set_version("0.1.0");

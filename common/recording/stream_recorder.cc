@@ -1,10 +1,10 @@
-#include "clients/log/stream_recorder.h"
+#include "common/recording/stream_recorder.h"
 
 #include <google/protobuf/descriptor.h>
 
 #include <utility>
 
-namespace footing::log_client {
+namespace footing::recording {
 namespace {
 
 /// Fields of a tick from here on are channels.
@@ -26,12 +26,14 @@ const char* Name(transport::LinkState state) {
 
 }  // namespace
 
-StreamRecorder::StreamRecorder(recording::RecordingWriter& writer, std::string address,
+StreamRecorder::StreamRecorder(RecordingWriter& writer, std::string address,
                                std::function<std::string(const std::string&)> name_of)
     : writer_(writer), address_(std::move(address)), name_of_(std::move(name_of)) {}
 
 Result<void> StreamRecorder::OnWelcome(const v1::Welcome& welcome, std::int64_t now_ns) {
   server_ = name_of_(welcome.server_id());
+  // Metadata goes into the file at once: what came before it has to stand before it.
+  if (const Result<void> flushed = writer_.Flush(); !flushed) return flushed;
   return writer_.AddMetadata("session",
                              {{"server", server_},
                               {"server_id", welcome.server_id()},
@@ -51,7 +53,7 @@ Result<void> StreamRecorder::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   if (server_.empty()) return {};
   const google::protobuf::Descriptor& type = *tick.GetDescriptor();
   const google::protobuf::Reflection& fields = *tick.GetReflection();
-  const recording::Stamp stamp{tick.host_ns(), now_ns, static_cast<std::uint32_t>(tick.sequence())};
+  const Stamp stamp{tick.host_ns(), now_ns, static_cast<std::uint32_t>(tick.sequence())};
   for (int i = 0; i < type.field_count(); ++i) {
     const google::protobuf::FieldDescriptor* field = type.field(i);
     if (field->number() < kFirstChannelField || field->message_type() == nullptr ||
@@ -73,7 +75,7 @@ Result<void> StreamRecorder::OnGap(const v1::Gap& gap, std::int64_t now_ns) {
   if (gap.to_sequence() >= gap.from_sequence()) {
     missing_ticks_ += gap.to_sequence() - gap.from_sequence() + 1;
   }
-  const recording::Stamp stamp{last_host_ns_, now_ns, static_cast<std::uint32_t>(last_sequence_)};
+  const Stamp stamp{last_host_ns_, now_ns, static_cast<std::uint32_t>(last_sequence_)};
   return writer_.Write("/" + server_ + "/gaps", gap, stamp);
 }
 
@@ -99,4 +101,4 @@ Result<void> StreamRecorder::OnEnd(const transport::ClockOffset& clock, std::int
                               {"recorder_host_ns", std::to_string(now_ns)}});
 }
 
-}  // namespace footing::log_client
+}  // namespace footing::recording

@@ -9,7 +9,7 @@
 #include "common/transport/client.h"
 #include "footing/v1/session.pb.h"
 
-namespace footing::log_client {
+namespace footing::recording {
 
 /// The latest that a message waits in memory before it is written down.
 inline constexpr std::int64_t kLongestUnwrittenNs = 800'000'000;
@@ -21,7 +21,7 @@ class StreamRecorder {
  public:
   /// `number` tells servers of the same id apart: the second is /SERVER_2, as numbered by the
   /// owner.
-  StreamRecorder(recording::RecordingWriter& writer, std::string address,
+  StreamRecorder(RecordingWriter& writer, std::string address,
                  std::function<std::string(const std::string& server_id)> name_of);
 
   Result<void> OnWelcome(const v1::Welcome& welcome, std::int64_t now_ns);
@@ -38,7 +38,7 @@ class StreamRecorder {
   const std::string& address() const { return address_; }
 
  private:
-  recording::RecordingWriter& writer_;
+  RecordingWriter& writer_;
   std::string address_;
   std::function<std::string(const std::string&)> name_of_;
   std::string server_;
@@ -49,4 +49,4 @@ class StreamRecorder {
   std::uint64_t missing_ticks_ = 0;
 };
 
-}  // namespace footing::log_client
+}  // namespace footing::recording

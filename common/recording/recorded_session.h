@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/mcap/records.h"
+#include "common/recording/mapped_file.h"
+#include "common/result/result.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::recording {
+
+/// A channel's message as it was published, borrowed from the recording.
+struct RecordedChannel {
+  std::uint32_t field = 0;  ///< Of v1::Tick.
+  std::string_view bytes;   ///< The serialised message.
+};
+
+struct RecordedTick {
+  std::int64_t host_ns = 0;    ///< CLOCK_MONOTONIC of the server: when the tick was made.
+  std::uint32_t sequence = 0;  ///< The tick's, lowest 32 bits.
+  std::vector<RecordedChannel> channels;
+};
+
+/// What one server published from its start to its end.
+struct RecordedServer {
+  std::string name;       ///< Of its topics: the server's id, with a number when there are several.
+  std::string server_id;  ///< "footingd" or "footing-sim".
+  std::string version;
+  std::uint64_t epoch = 0;  ///< 0 when the recording does not say.
+  double tick_rate_hz = 100;
+  std::int64_t host_ns = 0;       ///< An instant of the server's clock,
+  std::int64_t wall_time_ns = 0;  ///< and the UNIX time then; both 0 when the recording is silent.
+  std::vector<RecordedTick> ticks;  ///< By sequence.
+};
+
+/// A whole recording as ticks. The first tick may be the snapshot that the recorder began with:
+/// retained channels only, and later than the tick behind it.
+class RecordedSession {
+ public:
+  /// InvalidData when the file is not a complete recording; the message names the repair.
+  static Result<RecordedSession> Open(const std::string& path);
+
+  /// In the order in which the recorder met them: one entry for each start of each server.
+  const std::vector<RecordedServer>& servers() const { return servers_; }
+  /// The first start of the server whose topics have this name; null when there is none.
+  const RecordedServer* Find(std::string_view name) const;
+  const std::vector<mcap::Metadata>& metadata() const { return metadata_; }
+  const std::string& path() const { return path_; }
+
+ private:
+  RecordedSession(std::string path, MappedFile file)
+      : path_(std::move(path)), file_(std::move(file)) {}
+
+  std::string path_;
+  MappedFile file_;
+  std::vector<RecordedServer> servers_;
+  std::vector<mcap::Metadata> metadata_;
+};
+
+/// The tick with those of its channels that are among `fields`; all of them when that is empty.
+/// InvalidData that names the channel when a message does not parse.
+Result<v1::Tick> ReadTick(const RecordedTick& recorded,
+                          const std::vector<std::uint32_t>& fields = {});
+
+/// Every tick of a server, in order.
+Result<std::vector<v1::Tick>> ReadTicks(const RecordedServer& server,
+                                        const std::vector<std::uint32_t>& fields = {});
+
+}  // namespace footing::recording
