@@ -4,33 +4,24 @@
 
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
-#include <map>
 #include <optional>
 #include <random>
 #include <utility>
 
 #include "common/clock/clock.h"
-#include "common/transport/answers.h"
 #include "common/transport/backoff.h"
+#include "common/transport/client_messages.h"
 #include "common/transport/clock_offset.h"
 #include "common/transport/framed_connection.h"
-#include "common/transport/handshake.h"
+#include "common/transport/pending_commands.h"
 #include "common/units/time.h"
 #include "common/units/units.h"
 
 namespace footing::transport {
 namespace {
 
-constexpr std::size_t kMaxWaitingCommands = 64;
 /// Enough for a tick of eight devices; a longer message takes more from the heap.
 constexpr std::size_t kArenaBytes = 32 << 10;
-
-v1::CommandResult Failed(std::uint64_t id, const std::string& why) {
-  v1::CommandResult result;
-  result.set_id(id);
-  result.set_message(why);
-  return result;
-}
 
 }  // namespace
 
@@ -58,30 +49,20 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     retry_.cancel();
     pulse_.cancel();
     connection_.reset();
-    FailCommands("the client was stopped");
+    commands_.Fail("the client was stopped");
   }
 
-  void Send(v1::Command command, std::function<void(const v1::CommandResult&)> done) {
-    command.set_id(++last_command_);
-    if (!subscribed_) return done(Failed(command.id(), "not connected: " + why_));
-    if (commands_.size() >= kMaxWaitingCommands) {
-      return done(Failed(command.id(), "too many commands wait for their answers"));
-    }
-    const std::uint32_t deadline_ms =
-        command.deadline_ms() == 0 ? kDefaultDeadlineMs : command.deadline_ms();
-    commands_[command.id()] = {std::move(done),
-                               NowNs() + std::int64_t{deadline_ms} * kNanosecondsPerMillisecond};
+  void Send(v1::Command command, const PendingCommands::Done& done) {
+    if (!subscribed_) return commands_.Refuse(done, "not connected: " + why_);
+    auto sent = commands_.Add(std::move(command), done, NowNs());
+    if (!sent) return;
     v1::Envelope message;
-    *message.mutable_command() = std::move(command);
+    *message.mutable_command() = std::move(*sent);
     SendMessage(message);
   }
 
   void Refill(std::uint64_t from_sequence, std::uint64_t to_sequence) {
-    if (!subscribed_) return;
-    v1::Envelope message;
-    message.mutable_refill()->set_from_sequence(from_sequence);
-    message.mutable_refill()->set_to_sequence(to_sequence);
-    SendMessage(message);
+    if (subscribed_) SendMessage(MakeRefill(from_sequence, to_sequence));
   }
 
   LinkState state() const { return state_; }
@@ -92,11 +73,6 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
  private:
-  struct Waiting {
-    std::function<void(const v1::CommandResult&)> done;
-    std::int64_t deadline_ns = 0;
-  };
-
   std::int64_t NowNs() const { return options_.now_ns ? options_.now_ns() : clock::MonotonicNs(); }
 
   static std::chrono::nanoseconds Duration(double seconds) {
@@ -109,7 +85,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
            const auto self = weak.lock();
            if (!self || attempt != self->attempt_) return;
            if (!socket) {
-             self->ConnectLater("waiting for a server on " + socket.error().message);
+             self->Retry(LinkState::kConnecting,
+                         "waiting for a server on " + socket.error().message);
              return;
            }
            self->OnConnected(std::move(*socket));
@@ -134,14 +111,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     connection_->Start();
     heard_ns_ = NowNs();
     goodbye_.clear();
-    v1::Envelope message;
-    v1::Hello& hello = *message.mutable_hello();
-    hello.set_protocol_major(kProtocolMajor);
-    hello.set_protocol_minor(kProtocolMinor);
-    hello.set_role(options_.role);
-    hello.set_token(options_.token);
-    hello.set_client_name(options_.client_name);
-    SendMessage(message);
+    SendMessage(MakeHello(options_));
     ArmPulse();
   }
 
@@ -159,11 +129,11 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
       case v1::Envelope::kGap:
         return Call(handlers_.on_gap, message.gap());
       case v1::Envelope::kPing:
-        return OnPing(message.ping());
+        return SendMessage(MakePong(message.ping(), heard_ns_, NowNs()));
       case v1::Envelope::kPong:
         return OnPong(message.pong());
       case v1::Envelope::kCommandResult:
-        return OnAnswer(message.command_result());
+        return commands_.TakeAnswer(message.command_result());
       case v1::Envelope::kWelcome:
         return OnWelcome(message.welcome());
       case v1::Envelope::kSubscribed:
@@ -183,22 +153,10 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   void OnWelcome(const v1::Welcome& welcome) {
     if (welcome.epoch() != epoch_) offset_ = {};  // Perhaps another host.
     server_ = welcome.server_id() + " " + welcome.version();
-    v1::Envelope message;
-    v1::Subscribe& wish = *message.mutable_subscribe();
-    for (const auto& channel : options_.channels) wish.add_channels(channel);
-    wish.set_max_hz(options_.max_hz);
-    wish.set_policy(options_.policy);
-    wish.set_queue_ticks(options_.queue_ticks);
-    if (last_sequence_ != 0 && options_.policy != v1::QUEUE_POLICY_LATEST) {
-      wish.set_from_sequence(last_sequence_ + 1);
-      wish.set_from_epoch(epoch_);
-    } else if (options_.from_ring_start) {
-      wish.set_from_sequence(1);
-      wish.set_from_epoch(welcome.epoch());
-    }
+    const auto wish = MakeSubscribe(options_, welcome.epoch(), epoch_, last_sequence_);
     if (welcome.epoch() != epoch_) last_sequence_ = 0;
     epoch_ = welcome.epoch();
-    SendMessage(message);
+    SendMessage(wish);
     SendPing();
     Call(handlers_.on_welcome, welcome);
   }
@@ -215,35 +173,12 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     Call(handlers_.on_tick, tick);
   }
 
-  void OnPing(const v1::Ping& ping) {
-    v1::Envelope message;
-    v1::Pong& pong = *message.mutable_pong();
-    pong.set_id(ping.id());
-    pong.set_t0_ns(ping.t0_ns());
-    pong.set_t1_ns(heard_ns_);
-    pong.set_t2_ns(NowNs());
-    SendMessage(message);
-  }
-
   void OnPong(const v1::Pong& pong) {
-    if (pong.id() > ping_id_) return;  // Never asked.
-    offset_.Add({pong.t0_ns(), pong.t1_ns(), pong.t2_ns(), heard_ns_});
+    const bool asked = pong.id() <= ping_id_;
+    if (asked) offset_.Add({pong.t0_ns(), pong.t1_ns(), pong.t2_ns(), heard_ns_});
   }
 
-  void OnAnswer(const v1::CommandResult& answer) {
-    const auto found = commands_.find(answer.id());
-    if (found == commands_.end()) return;
-    const auto done = std::move(found->second.done);
-    commands_.erase(found);
-    done(answer);
-  }
-
-  void SendPing() {
-    v1::Envelope message;
-    message.mutable_ping()->set_id(++ping_id_);
-    message.mutable_ping()->set_t0_ns(NowNs());
-    SendMessage(message);
-  }
+  void SendPing() { SendMessage(MakePing(++ping_id_, NowNs())); }
 
   void SendMessage(const v1::Envelope& message) {
     if (connection_) connection_->Send(message.SerializeAsString());
@@ -260,7 +195,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   void OnPulse() {
     const std::int64_t now_ns = NowNs();
     const double silent_s = NanosecondsToSeconds(now_ns - heard_ns_);
-    ExpireCommands(now_ns);
+    commands_.Expire(now_ns);
     if (!connection_) return;  // A handler stopped us.
     const double patience_s = subscribed_ ? options_.dead_after_s : options_.stale_after_s;
     if (silent_s > patience_s) {
@@ -274,22 +209,6 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     ArmPulse();
   }
 
-  void ExpireCommands(std::int64_t now_ns) {
-    for (auto next = commands_.begin(); next != commands_.end();) {
-      const auto one = next++;
-      if (now_ns < one->second.deadline_ns) continue;
-      const auto done = std::move(one->second.done);
-      const std::uint64_t id = one->first;
-      commands_.erase(one);
-      done(Failed(id, "no answer within its deadline; it may still be carried out"));
-    }
-  }
-
-  void FailCommands(const std::string& why) {
-    const auto commands = std::exchange(commands_, {});
-    for (const auto& [id, waiting] : commands) waiting.done(Failed(id, why));
-  }
-
   /// Ends this connection from our side; the next one is dialled later.
   void Break(const std::string& why) {
     if (connection_) connection_->Finish("", why);
@@ -301,16 +220,14 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     connection_.reset();
     subscribed_ = false;
     pulse_.cancel();
-    FailCommands("the connection was lost before the answer; it may still be carried out");
+    commands_.Fail("the connection was lost before the answer; it may still be carried out");
     if (refused) {
       backoff_.Slowest();
       Retry(LinkState::kRefused, options_.address.Text() + " refused: " + words);
     } else {
-      ConnectLater("waiting for " + options_.address.Text() + ": " + words);
+      Retry(LinkState::kConnecting, "waiting for " + options_.address.Text() + ": " + words);
     }
   }
-
-  void ConnectLater(const std::string& why) { Retry(LinkState::kConnecting, why); }
 
   void Retry(LinkState state, const std::string& why) {
     if (!started_) return;
@@ -357,8 +274,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   std::uint64_t epoch_ = 0;
   std::uint64_t last_sequence_ = 0;
   std::uint64_t ping_id_ = 0;
-  std::uint64_t last_command_ = 0;
-  std::map<std::uint64_t, Waiting> commands_;
+  PendingCommands commands_;
   ClockOffsetEstimator offset_;
   /// Every message is parsed into one block, again and again: a tick has dozens of small parts, and
   /// fetching them from all over the heap takes longer than parsing them.

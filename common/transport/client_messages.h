@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/transport/client.h"
+#include "footing/v1/session.pb.h"
+
+/// What a client says to its server, as functions of what it knows.
+namespace footing::transport {
+
+v1::Envelope MakeHello(const ClientOptions& options);
+
+/// Asks for the ticks behind `last_sequence` of `last_epoch`, or, when that is 0, for those that
+/// the options say. `epoch` is that of the server that welcomed us.
+v1::Envelope MakeSubscribe(const ClientOptions& options, std::uint64_t epoch,
+                           std::uint64_t last_epoch, std::uint64_t last_sequence);
+
+v1::Envelope MakeRefill(std::uint64_t from_sequence, std::uint64_t to_sequence);
+v1::Envelope MakePing(std::uint64_t id, std::int64_t now_ns);
+v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_t now_ns);
+
+}  // namespace footing::transport
