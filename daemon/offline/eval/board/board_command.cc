@@ -8,6 +8,7 @@
 #include "common/board/geometry.h"
 #include "common/cli/cli.h"
 #include "common/units/units.h"
+#include "daemon/offline/eval/board/board_export.h"
 #include "daemon/offline/eval/report/print_report.h"
 #include "daemon/offline/eval/report/table.h"
 #include "daemon/offline/posturography/board.h"
@@ -26,6 +27,7 @@ constexpr double kMostResampled = 2e7;
 struct Options {
   std::string corners;
   std::string cop;
+  std::string board;  ///< Of an export with several.
   double rate_hz = 0;
   double window_s = 0;
   posturography::BoardShape shape;
@@ -39,7 +41,12 @@ struct Input {
   Stretches stretches;
 };
 
-Result<Input> ReadCorners(const Options& options) {
+Result<std::vector<posturography::CornerSample>> ReadSamples(const Options& options) {
+  if (IsBoardExport(options.corners)) return ReadBoardExport(options.corners, options.board);
+  if (!options.board.empty()) {
+    return UsageError("--board chooses a board of footing-log's export; " + options.corners +
+                      " holds one board");
+  }
   const auto rows = ReadTimeTable(options.corners, "time_s,tl_kg,tr_kg,bl_kg,br_kg");
   if (!rows) return rows.error();
   std::vector<posturography::CornerSample> samples;
@@ -49,6 +56,13 @@ Result<Input> ReadCorners(const Options& options) {
                        {KilogramsToNewtons(row[1]), KilogramsToNewtons(row[2]),
                         KilogramsToNewtons(row[3]), KilogramsToNewtons(row[4])}});
   }
+  return samples;
+}
+
+Result<Input> ReadCorners(const Options& options) {
+  const auto read = ReadSamples(options);
+  if (!read) return read.error();
+  const std::vector<posturography::CornerSample>& samples = *read;
   posturography::BoardShape shape = options.shape;
   shape.geometry.sensor_distance_x_m = options.spacing_x_mm / 1000;
   shape.geometry.sensor_distance_y_m = options.spacing_y_mm / 1000;
@@ -167,11 +181,16 @@ void AddBoardCommand(CLI::App& app, Shared& shared) {
   const auto options = std::make_shared<Options>();
   auto* corners =
       command->add_option("--corners", options->corners,
-                          "Corner loads of one board, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg");
+                          "Corner loads of one board, CSV time_s,tl_kg,tr_kg,bl_kg,br_kg, or "
+                          "footingd_boards.csv of footing-log export");
   auto* cop = command->add_option("--cop", options->cop,
                                   "COP in place of corner loads, CSV time_s,x_mm,y_mm: x to the "
                                   "right (ML), y to the front (AP)");
   corners->excludes(cop);
+  command
+      ->add_option("--board", options->board,
+                   "Board of an export with several: its role (left_board) or device number")
+      ->needs(corners);
   command
       ->add_option("--rate-hz", options->rate_hz,
                    "Uniform rate to resample to by window averages, Hz (default: as recorded)")

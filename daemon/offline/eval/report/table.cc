@@ -1,5 +1,6 @@
 #include "daemon/offline/eval/report/table.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "common/config/data_file.h"
@@ -12,6 +13,44 @@ namespace {
 constexpr std::size_t kMostBytes = 256u << 20;
 
 }  // namespace
+
+Result<std::vector<std::vector<std::string>>> ReadNamedColumns(
+    const std::string& path, const std::vector<std::string>& names) {
+  const Result<std::string> text = config::ReadTextFile(path, kMostBytes);
+  if (!text) return text.error();
+  text::Lines lines(*text, path);
+  std::vector<std::size_t> places;
+  std::vector<std::vector<std::string>> rows;
+  while (const auto line = lines.NextRow()) {
+    const std::vector<std::string_view> cells = text::Cells(*line);
+    if (places.empty()) {
+      for (const std::string& name : names) {
+        const auto found = std::find(cells.begin(), cells.end(), name);
+        if (found == cells.end()) return InvalidData(path + " has no column " + name);
+        places.push_back(static_cast<std::size_t>(found - cells.begin()));
+      }
+      continue;
+    }
+    std::vector<std::string>& row = rows.emplace_back();
+    for (const std::size_t place : places) {
+      if (place >= cells.size()) return lines.Fault("fewer cells than the header has names");
+      row.emplace_back(cells[place]);
+    }
+  }
+  if (places.empty()) return InvalidData(path + " is empty");
+  return rows;
+}
+
+std::vector<std::string> ReadHeader(const std::string& path) {
+  const Result<std::string> text = config::ReadTextFile(path, kMostBytes);
+  if (!text) return {};
+  text::Lines lines(*text, path);
+  const auto line = lines.NextRow();
+  std::vector<std::string> names;
+  if (!line) return names;
+  for (const std::string_view name : text::Cells(*line)) names.emplace_back(name);
+  return names;
+}
 
 Result<std::vector<std::vector<double>>> ReadTimeTable(const std::string& path,
                                                        const std::string& columns) {

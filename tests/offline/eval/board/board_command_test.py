@@ -45,6 +45,27 @@ def made(program, folder):
                        ("time_s,x_mm,y_mm\n0,0,0\n", "3 samples")):
         done = run(text)
         assert done.returncode == 4 and said in done.stderr and not done.stdout, (text, done)
+    # The export of footing-log: two boards, forces in N, times in ns.
+    export = ("log_time_ns,publish_time_ns,sequence,device,sampled_ns,top_left_n,top_right_n,"
+              "bottom_left_n,bottom_right_n,wall_time,device_role\n") + "".join(
+        f"{k},{k},{k},{device},{90_000_000_000_000 + 10_000_000 * k},{9.80665 * kg},{9.80665 * kg},"
+        f"{9.80665 * kg},{9.80665 * kg},,{role}\n" for k in range(100)
+        for device, kg, role in ((3, 15, "left_board"), (4, 20, "right_board")))
+    for board, mass_kg in (("left_board", 60), ("4", 80)):
+        out = json.loads(run(export, "--board", board, kind="--corners").stdout)
+        assert math.isclose(out["mass_kg"], mass_kg, rel_tol=1e-9), out
+        assert math.isclose(out["duration_s"], 0.99, rel_tol=1e-6), out
+    for words in ((), ("--board", "head")):
+        done = run(export, *words, kind="--corners")
+        assert done.returncode == 2 and "left_board (3), right_board (4)" in done.stderr, done
+    one = "\n".join(line for line in export.split("\n") if "right_board" not in line)
+    assert math.isclose(json.loads(run(one, kind="--corners").stdout)["mass_kg"], 60), one
+    broken = run(export.replace("147.", "x"), "--board", "3", kind="--corners")
+    assert broken.returncode == 4 and "not a number" in broken.stderr, broken
+    assert run(corners, "--board", "3", kind="--corners").returncode == 2
+    missing = run("device,top_left_n\n1,2\n", kind="--corners")
+    assert missing.returncode == 4 and "sampled_ns" in missing.stderr, missing
+
     nobody = run("time_s,tl_kg,tr_kg,bl_kg,br_kg\n0,0,0,0,0\n", kind="--corners")
     assert nobody.returncode == 4 and "nobody" in nobody.stderr, nobody
     long = run("time_s,x_mm,y_mm\n0,0,0\n1e9,0,0\n1e9,1,1\n", "--rate-hz", "1000")
