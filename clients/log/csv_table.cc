@@ -221,13 +221,14 @@ void CsvTable::Cells(const pb::Message* message, const std::vector<Node>& nodes,
   }
 }
 
-void CsvTable::AppendRows(const pb::Message& message, const std::string& prefix,
+void CsvTable::AppendRows(const pb::Message& message, const std::string& prefix, const RowEnd& end,
                           std::string& out) const {
   const auto append = [&](const pb::Message* entry) {
     out += prefix;
     Cells(&message, outer_, out);
     Cells(entry, inner_, out);
     if (out.back() == ',') out.pop_back();  // Each cell ends in a comma; the last one needs none.
+    out += end(entry);
     out += '\n';
   };
   if (rows_ == nullptr) return append(nullptr);

@@ -4,6 +4,7 @@
 #include <google/protobuf/message.h>
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,18 @@ class CsvTable {
   /// Column names, separated by commas, without a line's end.
   std::string Header() const;
 
-  /// Appends a line for each row: `prefix` (itself ending in a comma, or empty) and the cells.
+  /// Adds to a row's line; null is the entry of a message that has one row.
+  using RowEnd = std::function<std::string(const google::protobuf::Message* entry)>;
+
+  /// Appends a line for each row: `prefix` (itself ending in a comma, or empty), the cells, and
+  /// what `end` says of the row (itself beginning with a comma, or empty).
   void AppendRows(const google::protobuf::Message& message, const std::string& prefix,
-                  std::string& out) const;
+                  const RowEnd& end, std::string& out) const;
+
+  /// The type of a row's entry; null when a message has one row.
+  const google::protobuf::Descriptor* row_type() const {
+    return rows_ == nullptr ? nullptr : rows_->message_type();
+  }
 
   static constexpr std::size_t kMostColumns = 4096;
 

@@ -11,6 +11,7 @@
 
 #include "clients/log/contents.h"
 #include "clients/log/csv_table.h"
+#include "clients/log/row_notes.h"
 #include "common/mcap/walk.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
@@ -75,10 +76,15 @@ class Exporter {
       sheet.topic = channel.topic;
       sheet.schema_id = channel.schema_id;
     };
+    visitor.metadata = [this](const mcap::Metadata& metadata) {
+      if (metadata.name == "session") notes_.TakeSession(metadata.values);
+    };
     visitor.message = [this](const mcap::Message& message) {
       Sheet& sheet = sheets_[message.channel_id];
       const google::protobuf::Message* parsed = Parse(sheet, message);
       if (parsed == nullptr) return;
+      notes_.TakeTime(message.log_time_ns);
+      notes_.Take(sheet.topic, message.data);
       if (!sheet.table) sheet.table.emplace(*parsed->GetDescriptor());
       Fail(sheet.table->Learn(*parsed));
     };
@@ -100,8 +106,13 @@ class Exporter {
       sheet.file.emplace(std::move(*file));
       sheet.exported = {sheet.topic, path, 0};
       const std::string columns = sheet.table->Header();
-      sheet.text =
-          "log_time_ns,publish_time_ns,sequence" + (columns.empty() ? "" : "," + columns) + "\n";
+      sheet.text = "log_time_ns,publish_time_ns,sequence" + (columns.empty() ? "" : "," + columns);
+      for (const std::string& column : notes_.Columns(sheet.table->row_type())) {
+        // The message's own column of that name comes first; ours says that it is a note.
+        const bool taken = ("," + columns + ",").find("," + column + ",") != std::string::npos;
+        sheet.text += "," + (taken ? "note_" + column : column);
+      }
+      sheet.text += "\n";
     }
     return {};
   }
@@ -117,7 +128,11 @@ class Exporter {
                                  std::to_string(message.publish_time_ns) + "," +
                                  std::to_string(message.sequence) + ",";
       const std::size_t before = sheet.text.size();
-      sheet.table->AppendRows(*parsed, prefix, sheet.text);
+      notes_.Take(sheet.topic, message.data);
+      const auto end = [&](const google::protobuf::Message* entry) {
+        return notes_.Cells(sheet.topic, sheet.table->row_type(), entry, message.log_time_ns);
+      };
+      sheet.table->AppendRows(*parsed, prefix, end, sheet.text);
       sheet.exported.rows += static_cast<std::uint64_t>(std::count(
           sheet.text.begin() + static_cast<std::ptrdiff_t>(before), sheet.text.end(), '\n'));
       if (sheet.text.size() < kWriteBytes) return;
@@ -143,6 +158,7 @@ class Exporter {
   std::string_view bytes_;
   std::string path_;
   recording::SchemaPool pool_;
+  RowNotes notes_;  ///< Of the first pass, then as the second goes on.
   std::map<std::uint16_t, Sheet> sheets_;
   Result<void> first_failure_;
 };

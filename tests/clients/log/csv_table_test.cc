@@ -15,7 +15,8 @@ namespace {
 
 std::string Rows(const CsvTable& table, const google::protobuf::Message& message) {
   std::string rows;
-  table.AppendRows(message, "", rows);
+  table.AppendRows(
+      message, "", [](const auto*) { return ""; }, rows);
   return rows;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/recording/recording_writer.h"
+#include "common/recording/stream_recorder.h"
 #include "footing/v1/session.pb.h"
 #include "tests/clients/log/sample_recording.h"
 #include "tests/clients/log/temporary_folder.h"
@@ -28,6 +29,52 @@ TEST_F(ExportCsvTest, OneFileATopicWithARowASample) {
   EXPECT_THAT(motion, HasSubstr("\n1000000000,1000000000,100,1,100,0,0,0,0,-9.80665,"));
   EXPECT_THAT(Bytes(Path("csv/footingd_status.csv")), HasSubstr("\"battery, \"\"low\"\"\""));
   EXPECT_THAT(Bytes(Path("csv/footingd_gaps.csv")), HasSubstr(",101,105,"));
+}
+
+/// One device with a role, one character with named links, and a server whose wall time is known.
+void WriteNamedRecording(const std::string& path) {
+  auto writer = recording::RecordingWriter::Create(path, {"test", false, {}});
+  ASSERT_TRUE(writer.ok());
+  recording::StreamRecorder recorder(*writer, "unix:/x", [](const std::string& id) { return id; });
+  v1::Welcome welcome;
+  welcome.set_server_id("footingd");
+  welcome.set_host_ns(5'000'000'000);
+  welcome.set_wall_time_ns(1'760'000'005'000'000'000);  // 2025-10-09T08:53:25Z.
+  ASSERT_TRUE(recorder.OnWelcome(welcome, 0).ok());
+  v1::Tick tick;
+  tick.set_sequence(1);
+  tick.set_host_ns(6'000'000'000);
+  v1::DeviceStatus& status = *tick.mutable_status()->add_devices();
+  status.set_device(7);
+  status.set_role(v1::DEVICE_ROLE_LEFT_BOARD);
+  v1::Skeleton& skeleton = *tick.mutable_skeletons()->add_skeletons();
+  skeleton.add_links()->set_name("hips");
+  skeleton.add_links()->set_name("left,knee");
+  skeleton.add_contact_points("left_foot");
+  ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
+  tick.Clear();
+  tick.set_sequence(2);
+  tick.set_host_ns(6'250'000'000);
+  tick.mutable_boards()->add_samples()->set_device(7);
+  tick.mutable_boards()->add_samples()->set_device(8);
+  v1::Character& character = *tick.mutable_characters()->add_characters();
+  character.add_links();
+  character.add_links();
+  ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
+  ASSERT_TRUE(writer->Finish().ok());
+}
+
+TEST_F(ExportCsvTest, RowsSayTheirTimeTheirDevicesRoleAndTheirJointsNames) {
+  WriteNamedRecording(Path("a.mcap"));
+  ASSERT_TRUE(ExportCsv(Path("a.mcap"), Path("csv"), false).ok());
+  const std::string boards = Bytes(Path("csv/footingd_boards.csv"));
+  EXPECT_THAT(boards, HasSubstr(",recording_time_s,wall_time,device_role\n"));
+  EXPECT_THAT(boards, HasSubstr(",0.250000000,2025-10-09T08:53:26.250000Z,left_board\n"));
+  EXPECT_THAT(boards, HasSubstr(",0.250000000,2025-10-09T08:53:26.250000Z,\n"));  // No status.
+  const std::string characters = Bytes(Path("csv/footingd_characters.csv"));
+  EXPECT_THAT(characters, HasSubstr(",links_0_name,links_1_name,contacts_0_name\n"));
+  EXPECT_THAT(characters, HasSubstr(",hips,leftknee,left_foot\n"));
+  EXPECT_THAT(Bytes(Path("csv/footingd_status.csv")), HasSubstr(",recording_time_s,wall_time\n"));
 }
 
 TEST_F(ExportCsvTest, NeverOverwritesUnlessTold) {

@@ -1,0 +1,146 @@
+#include "clients/log/row_notes.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <ctime>
+
+#include "common/stream/device.h"
+#include "footing/v1/character.pb.h"
+#include "footing/v1/device.pb.h"
+
+namespace footing::log_client {
+namespace {
+
+namespace pb = google::protobuf;
+
+constexpr std::int64_t kNsInSecond = 1'000'000'000;
+
+/// Of /SERVER/CHANNEL.
+std::string ServerOf(const std::string& topic) {
+  const std::size_t slash = topic.rfind('/');
+  return slash == std::string::npos || slash == 0 ? "" : topic.substr(1, slash - 1);
+}
+
+std::int64_t NumberOf(const mcap::TextMap& values, const std::string& key) {
+  const auto found = values.find(key);
+  std::int64_t number = 0;
+  if (found != values.end()) {
+    std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
+  }
+  return number;
+}
+
+/// Rows of this type are about a device and do not say its role themselves.
+const pb::FieldDescriptor* DeviceField(const pb::Descriptor* row) {
+  if (row == nullptr || row->FindFieldByName("role") != nullptr) return nullptr;
+  const pb::FieldDescriptor* field = row->FindFieldByName("device");
+  const bool number = field != nullptr && !field->is_repeated() &&
+                      field->cpp_type() == pb::FieldDescriptor::CPPTYPE_UINT32;
+  return number ? field : nullptr;
+}
+
+bool IsCharacter(const pb::Descriptor* row) {
+  return row != nullptr && row->full_name() == "footing.v1.Character";
+}
+
+void AppendNames(const std::vector<std::string>& names, std::size_t count, std::string& out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    out += ',';
+    if (i >= names.size()) continue;
+    // A name comes from a motion file: what would break the row is left out.
+    for (const char c : names[i]) {
+      if (c != ',' && c != '"' && c != '\n' && c != '\r') out += c;
+    }
+  }
+}
+
+}  // namespace
+
+std::string UtcText(std::int64_t unix_ns) {
+  const auto seconds = static_cast<std::time_t>(unix_ns / kNsInSecond);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[40];
+  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
+  char fraction[16];
+  std::snprintf(fraction, sizeof fraction, ".%06dZ",
+                static_cast<int>(unix_ns % kNsInSecond / 1000));
+  return std::string(text, length) + fraction;
+}
+
+void RowNotes::TakeSession(const mcap::TextMap& values) {
+  const auto name = values.find("server");
+  const std::int64_t wall_ns = NumberOf(values, "server_wall_time_ns");
+  if (name == values.end() || wall_ns == 0) return;
+  Server& server = servers_[name->second];
+  server.has_wall_time = true;
+  server.wall_minus_host_ns = wall_ns - NumberOf(values, "server_host_ns");
+}
+
+void RowNotes::Take(const std::string& topic, std::string_view bytes) {
+  const int size = static_cast<int>(bytes.size());
+  if (topic.ends_with("/status")) {
+    v1::DeviceStatusList list;
+    if (!list.ParseFromArray(bytes.data(), size)) return;
+    for (const v1::DeviceStatus& status : list.devices()) {
+      const auto role = static_cast<stream::DeviceRole>(status.role());
+      servers_[ServerOf(topic)].roles[status.device()] =
+          status.role() == v1::DEVICE_ROLE_UNSPECIFIED ? "" : stream::Name(role);
+    }
+  } else if (topic.ends_with("/skeletons")) {
+    v1::Skeletons skeletons;
+    if (!skeletons.ParseFromArray(bytes.data(), size) || skeletons.skeletons_size() == 0) return;
+    Server& server = servers_[ServerOf(topic)];
+    const v1::Skeleton& skeleton = skeletons.skeletons(0);
+    server.links.clear();
+    for (const v1::Link& link : skeleton.links()) server.links.push_back(link.name());
+    server.contacts.assign(skeleton.contact_points().begin(), skeleton.contact_points().end());
+    most_links_ = std::max(most_links_, server.links.size());
+    most_contacts_ = std::max(most_contacts_, server.contacts.size());
+  }
+}
+
+void RowNotes::TakeTime(std::uint64_t log_time_ns) { first_ns_ = std::min(first_ns_, log_time_ns); }
+
+std::vector<std::string> RowNotes::Columns(const pb::Descriptor* row) const {
+  std::vector<std::string> names = {"recording_time_s", "wall_time"};
+  if (DeviceField(row) != nullptr) names.push_back("device_role");
+  if (!IsCharacter(row)) return names;
+  for (std::size_t i = 0; i < most_links_; ++i) {
+    names.push_back("links_" + std::to_string(i) + "_name");
+  }
+  for (std::size_t i = 0; i < most_contacts_; ++i) {
+    names.push_back("contacts_" + std::to_string(i) + "_name");
+  }
+  return names;
+}
+
+std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
+                            const pb::Message* entry, std::uint64_t log_time_ns) const {
+  static const Server kUnknown;
+  const auto found = servers_.find(ServerOf(topic));
+  const Server& server = found == servers_.end() ? kUnknown : found->second;
+  char seconds[40];
+  std::snprintf(seconds, sizeof seconds, ",%.9f,",
+                1e-9 * static_cast<double>(log_time_ns - std::min(first_ns_, log_time_ns)));
+  std::string cells = seconds;
+  if (server.has_wall_time) {
+    cells += UtcText(static_cast<std::int64_t>(log_time_ns) + server.wall_minus_host_ns);
+  }
+  if (const pb::FieldDescriptor* field = DeviceField(row)) {
+    cells += ',';
+    const auto role =
+        server.roles.find(entry == nullptr ? 0 : entry->GetReflection()->GetUInt32(*entry, field));
+    if (role != server.roles.end()) cells += role->second;
+  }
+  if (IsCharacter(row)) {
+    AppendNames(server.links, most_links_, cells);
+    AppendNames(server.contacts, most_contacts_, cells);
+  }
+  return cells;
+}
+
+}  // namespace footing::log_client

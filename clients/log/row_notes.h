@@ -1,0 +1,51 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/mcap/records.h"
+
+namespace footing::log_client {
+
+/// What an exported row says beside its message: its time in seconds and as wall time, the role of
+/// the device that it is about, the names of a character's links and contact points. They come from
+/// other messages of the same server, as far as the recording has been read.
+class RowNotes {
+ public:
+  /// A session of a server: its metadata relates the server's clock to wall time.
+  void TakeSession(const mcap::TextMap& values);
+  /// Remembers the roles in .../status and the names in .../skeletons; of other topics nothing.
+  void Take(const std::string& topic, std::string_view bytes);
+  /// Seconds count from the earliest time taken.
+  void TakeTime(std::uint64_t log_time_ns);
+
+  /// The names of the columns for rows of this type (null: the message has one row).
+  std::vector<std::string> Columns(const google::protobuf::Descriptor* row) const;
+  /// The cells of a row, each with a comma in front. `entry` is null for a message with one row.
+  std::string Cells(const std::string& topic, const google::protobuf::Descriptor* row,
+                    const google::protobuf::Message* entry, std::uint64_t log_time_ns) const;
+
+ private:
+  struct Server {
+    bool has_wall_time = false;
+    std::int64_t wall_minus_host_ns = 0;
+    std::map<std::uint32_t, std::string> roles;
+    std::vector<std::string> links;
+    std::vector<std::string> contacts;
+  };
+
+  std::map<std::string, Server> servers_;
+  std::uint64_t first_ns_ = UINT64_MAX;
+  std::size_t most_links_ = 0;
+  std::size_t most_contacts_ = 0;
+};
+
+/// Nanoseconds of UNIX time as UTC: 2026-11-22T13:38:48.123456Z.
+std::string UtcText(std::int64_t unix_ns);
+
+}  // namespace footing::log_client
