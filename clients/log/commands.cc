@@ -36,6 +36,10 @@ Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::str
     if (!address) return address.error();
     options.addresses.push_back(*address);
   }
+  if (addresses.empty()) {
+    options.addresses = {transport::DefaultAddress("sensor"),
+                         transport::DefaultAddress("simulation")};
+  }
   options.version = cli::Version();
   const Result<RecordReport> report = Record(options);
   if (!report) return report.error();
@@ -94,6 +98,8 @@ Result<ordered_json> RunRepair(const std::string& in, const std::string& out, bo
       {"bytes_behind_last_complete_record", report->input_bytes - found.end_offset}};
 }
 
+}  // namespace
+
 void Finish(const Result<ordered_json>& result, Shared& shared) {
   if (result) {
     Print(*result, shared.json);
@@ -102,17 +108,14 @@ void Finish(const Result<ordered_json>& result, Shared& shared) {
   }
 }
 
-}  // namespace
-
 void AddRecordCommand(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("record", "Record the messages of servers to an MCAP file");
   const auto options = std::make_shared<RecordOptions>();
   const auto addresses = std::make_shared<std::vector<std::string>>();
-  command
-      ->add_option("--connect", *addresses,
-                   "Address of a server, unix:PATH or tcp:HOST:PORT; may be repeated")
-      ->required();
+  command->add_option("--connect", *addresses,
+                      "Address of a server, unix:PATH or tcp:HOST:PORT; may be repeated (default: "
+                      "this user's sensor and simulation servers)");
   command->add_option("--out", options->out, "Output file, MCAP")->required();
   command->add_option("--seconds", options->seconds, "Duration, s (default: until SIGINT)")
       ->check(CLI::Range(0.1, 1e6));
@@ -150,18 +153,6 @@ void AddRepairCommand(CLI::App& app, Shared& shared) {
   command->add_option("--out", *out, "Output file, MCAP")->required();
   command->add_flag("--force", *replace, "Overwrite an existing file");
   command->callback([=, &shared] { Finish(RunRepair(*in, *out, *replace), shared); });
-}
-
-void AddServeCommand(CLI::App& app, Shared& shared) {
-  CLI::App* command = app.add_subcommand("serve", "Serve a recording in place of footingd");
-  const auto file = std::make_shared<std::string>();
-  const auto addresses = std::make_shared<std::vector<std::string>>();
-  command->add_option("FILE", *file, "Recording, MCAP file");
-  command->add_option("--listen", *addresses, "unix:PATH or tcp:HOST:PORT");
-  command->callback([file, addresses, &shared] {  // The options live as long as their command.
-    shared.exit_code =
-        cli::Report(UsageError("serve is not built; built are: record, info, export, repair"));
-  });
 }
 
 }  // namespace footing::log_client

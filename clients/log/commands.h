@@ -1,6 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/result/result.h"
 
 namespace footing::log_client {
 
@@ -9,6 +12,9 @@ struct Shared {
   bool json = false;
   int exit_code = 0;  ///< Set by the subcommand that ran.
 };
+
+/// Prints a command's answer as the flags ask for, or its error; keeps the exit code.
+void Finish(const Result<nlohmann::ordered_json>& result, Shared& shared);
 
 /// Each adds one subcommand to footing-log; its callback does the work.
 void AddRecordCommand(CLI::App& app, Shared& shared);

@@ -109,8 +109,8 @@ class Exporter {
       sheet.text = "log_time_ns,publish_time_ns,sequence" + (columns.empty() ? "" : "," + columns);
       for (const std::string& column : notes_.Columns(sheet.table->row_type())) {
         // The message's own column of that name comes first; ours says that it is a note.
-        const bool taken = ("," + columns + ",").find("," + column + ",") != std::string::npos;
-        sheet.text += "," + (taken ? "note_" + column : column);
+        const bool is_own = ("," + columns + ",").find("," + column + ",") != std::string::npos;
+        sheet.text += "," + (is_own ? "note_" + column : column);
       }
       sheet.text += "\n";
     }

@@ -4,10 +4,11 @@
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
       "footing-log", "Records what the servers send, and reads, exports and repairs recordings.",
-      "  footing-log record --connect unix:/run/user/1000/footing/sensor.sock --out a.mcap\n"
+      "  footing-log record --out a.mcap\n"
       "  footing-log info a.mcap --json\n"
       "  footing-log export a.mcap --format csv --out a/\n"
-      "  footing-log repair cut.mcap --out whole.mcap");
+      "  footing-log repair cut.mcap --out whole.mcap\n"
+      "  footing-log serve a.mcap --listen unix:/tmp/replay.sock");
   footing::log_client::Shared shared;
   app->add_flag("--json", shared.json, "One JSON object on standard output");
   app->require_subcommand(1);

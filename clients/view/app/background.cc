@@ -13,15 +13,15 @@ constexpr std::size_t kQueuedTicks = 1024;
 
 }  // namespace
 
-Background::Background(const std::vector<transport::Address>& addresses)
+Background::Background(const Options& options)
     : signals_(io_, SIGINT, SIGTERM),
       updates_(kQueuedTicks),
-      feed_(io_, addresses,
+      feed_(io_, options,
             {[this](scene::Update update) { updates_.Push(std::move(update)); },
              [this](int source, const scene::LinkReport& report) {
                links_[static_cast<std::size_t>(source)]->Write(report);
              }}) {
-  for (const scene::LinkReport& report : Feed::InitialReports(addresses)) {
+  for (const scene::LinkReport& report : Feed::InitialReports(options)) {
     links_.push_back(std::make_unique<exchange::Latest<scene::LinkReport>>(report));
   }
   signals_.async_wait([this](const boost::system::error_code& error, int) {

@@ -18,7 +18,7 @@ namespace footing::view {
 /// queue. Ctrl-C and SIGTERM raise a flag.
 class Background {
  public:
-  explicit Background(const std::vector<transport::Address>& addresses);
+  explicit Background(const Options& options);
   ~Background();
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;

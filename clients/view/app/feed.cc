@@ -1,10 +1,15 @@
 #include "clients/view/app/feed.h"
 
+#include <array>
+
 #include "clients/view/app/translate.h"
 #include "common/clock/clock.h"
 
 namespace footing::view {
 namespace {
+
+/// The servers of a recording that are shown, in the order of the default addresses.
+constexpr std::array<const char*, 2> kPlayedServers = {"footing-sim", "footingd"};
 
 scene::LinkState StateOf(transport::LinkState state) {
   switch (state) {
@@ -22,23 +27,51 @@ scene::LinkState StateOf(transport::LinkState state) {
 
 }  // namespace
 
-std::vector<scene::LinkReport> Feed::InitialReports(
-    const std::vector<transport::Address>& addresses) {
+std::vector<scene::LinkReport> Feed::InitialReports(const Options& options) {
   std::vector<scene::LinkReport> reports;
-  for (const transport::Address& address : addresses) {
+  if (options.recording) {
+    for (const char* const name : kPlayedServers) {
+      reports.push_back({options.recording->path(), name, scene::LinkState::kLive, ""});
+    }
+  }
+  for (const transport::Address& address : options.addresses) {
     reports.push_back({address.Text(), "", scene::LinkState::kConnecting, ""});
   }
   return reports;
 }
 
-Feed::Feed(boost::asio::io_context& io, const std::vector<transport::Address>& addresses,
-           Handlers handlers)
+Feed::Feed(boost::asio::io_context& io, const Options& options, Handlers handlers)
     : handlers_(std::move(handlers)) {
-  const auto reports = InitialReports(addresses);
-  for (std::size_t i = 0; i < addresses.size(); ++i) {
-    const bool same_host = addresses[i].kind == transport::Address::Kind::kUnix;
-    sources_.push_back({reports[i], same_host, Connect(io, static_cast<int>(i), addresses[i])});
+  const auto reports = InitialReports(options);
+  if (options.recording) {
+    for (const scene::LinkReport& report : reports) sources_.push_back({report, true, nullptr});
+    player_ = Play(io, *options.recording);
+    return;
   }
+  for (std::size_t i = 0; i < options.addresses.size(); ++i) {
+    const transport::Address& address = options.addresses[i];
+    const bool same_host = address.kind == transport::Address::Kind::kUnix;
+    sources_.push_back({reports[i], same_host, Connect(io, static_cast<int>(i), address)});
+  }
+}
+
+std::unique_ptr<playback::TickPlayer> Feed::Play(boost::asio::io_context& io,
+                                                 const recording::RecordedSession& session) {
+  playback::TickPlayer::Handlers handlers;
+  handlers.on_tick = [this](std::size_t source, const v1::Tick& tick) {
+    handlers_.on_update(Translate(tick, static_cast<int>(source), clock::MonotonicNs(), 0));
+  };
+  handlers.on_end = [this](const Result<void>& ended) {
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      sources_[i].report.state = scene::LinkState::kStale;
+      sources_[i].report.why = ended ? "the recording has ended" : ended.error().message;
+      handlers_.on_link(static_cast<int>(i), sources_[i].report);
+    }
+    if (handlers_.on_end) handlers_.on_end();
+  };
+  return std::make_unique<playback::TickPlayer>(
+      io, session, std::vector<std::string>{kPlayedServers.begin(), kPlayedServers.end()},
+      std::move(handlers));
 }
 
 std::unique_ptr<transport::Client> Feed::Connect(boost::asio::io_context& io, int source,
@@ -79,7 +112,7 @@ std::int64_t Feed::OffsetOf(const Source& source) const {
 void Feed::SendToSimulation(const v1::Command& command) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     Source& source = sources_[i];
-    if (source.report.server_id != "footing-sim") continue;
+    if (source.report.server_id != "footing-sim" || !source.client) continue;
     source.client->Send(command, [this, i](const v1::CommandResult& result) {
       if (result.ok()) return;
       scene::Update refusal;
@@ -93,10 +126,12 @@ void Feed::SendToSimulation(const v1::Command& command) {
 }
 
 void Feed::Start() {
+  if (player_) return player_->Start();
   for (Source& source : sources_) source.client->Start();
 }
 
 void Feed::Stop() {
+  if (player_) return player_->Stop();
   for (Source& source : sources_) source.client->Stop();
 }
 

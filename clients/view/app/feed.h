@@ -5,31 +5,33 @@
 #include <memory>
 #include <vector>
 
+#include "clients/view/app/options.h"
 #include "clients/view/scene/update.h"
+#include "common/playback/tick_player.h"
 #include "common/transport/address.h"
 #include "common/transport/client.h"
 
 namespace footing::view {
 
-/// Listens to any number of servers. Everything runs on the io_context's one thread.
+/// Listens to any number of servers, or plays a recording of them. Everything runs on the
+/// io_context's one thread.
 class Feed {
  public:
   struct Handlers {
     std::function<void(scene::Update)> on_update;
     std::function<void(int source, const scene::LinkReport&)> on_link;
+    std::function<void()> on_end = {};  ///< The recording has ended.
   };
 
-  Feed(boost::asio::io_context& io, const std::vector<transport::Address>& addresses,
-       Handlers handlers);
+  Feed(boost::asio::io_context& io, const Options& options, Handlers handlers);
 
   void Start();
   void Stop();
   /// Sends a command to every live footing-sim; a refusal comes back as a note.
   void SendToSimulation(const v1::Command& command);
 
-  /// As they stand before the first word of any server.
-  static std::vector<scene::LinkReport> InitialReports(
-      const std::vector<transport::Address>& addresses);
+  /// The sources as they stand before anything has arrived.
+  static std::vector<scene::LinkReport> InitialReports(const Options& options);
 
  private:
   struct Source {
@@ -39,10 +41,13 @@ class Feed {
   };
   std::unique_ptr<transport::Client> Connect(boost::asio::io_context& io, int source,
                                              const transport::Address& address);
+  std::unique_ptr<playback::TickPlayer> Play(boost::asio::io_context& io,
+                                             const recording::RecordedSession& session);
   std::int64_t OffsetOf(const Source& source) const;
 
   Handlers handlers_;
   std::vector<Source> sources_;
+  std::unique_ptr<playback::TickPlayer> player_;  ///< Of a recording, in place of clients.
 };
 
 }  // namespace footing::view

@@ -10,8 +10,19 @@ namespace {
 
 using footing::view::Options;
 
-footing::Result<void> Resolve(const std::vector<std::string>& connect, Options& options) {
+footing::Result<void> Resolve(const std::vector<std::string>& connect, const std::string& recording,
+                              Options& options) {
   namespace transport = footing::transport;
+  if (!recording.empty()) {
+    auto session = footing::recording::RecordedSession::Open(recording);
+    if (!session) return session.error();
+    if (session->Find("footing-sim") == nullptr && session->Find("footingd") == nullptr) {
+      return footing::InvalidData(recording + " holds no ticks of footing-sim or footingd");
+    }
+    options.recording =
+        std::make_shared<footing::recording::RecordedSession>(std::move(session).value());
+    return {};
+  }
   for (const std::string& text : connect) {
     auto address = transport::ParseAddress(text);
     if (!address) return address.error();
@@ -39,6 +50,7 @@ int main(int argc, char** argv) {
                                   "Shows the bird and its track, or the reconstructed body, live.",
                                   "  footing-view\n"
                                   "  footing-view --connect tcp:127.0.0.1:4711 --subject\n"
+                                  "  footing-view --recording walk.mcap\n"
                                   "  footing-view --screenshot bird.png --at 5\n"
                                   "  footing-view --next-subject p08.json --next-subject p09.json\n"
                                   "  footing-view --text --seconds 30 --json");
@@ -48,7 +60,8 @@ int main(int argc, char** argv) {
   app->add_option("--connect", connect,
                   "unix:PATH or tcp:HOST:PORT, as often as wanted; default "
                   "are this user's simulation and sensor servers");
-  app->add_option("--recording", recording, "A recording to show");
+  app->add_option("--recording", recording, "Recording to play in place of servers, MCAP file")
+      ->excludes("--connect");
   app->add_option("--screenshot", options.screenshot, "Draw one picture to this PNG and end");
   app->add_option("--at", options.at_s, "Seconds after connecting (screenshot)")
       ->check(CLI::Range(0.0, 86400.0));
@@ -73,11 +86,7 @@ int main(int argc, char** argv) {
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
 
   footing::log::Start("footing-view", false);
-  if (!recording.empty()) {
-    return footing::cli::Report(footing::UsageError(
-        "--recording is not built yet; these are: --connect ADDRESS to a live server"));
-  }
-  if (const auto resolved = Resolve(connect, options); !resolved) {
+  if (const auto resolved = Resolve(connect, recording, options); !resolved) {
     return footing::cli::Report(resolved.error());
   }
   auto commands = footing::view::SubjectCommands(subjects);

@@ -106,7 +106,7 @@ Result<void> RunOffScreen(const Options& options) {
   if (!target) return target.error();
   auto screen = render::Screen::Create(options.scale());
   if (!screen) return screen.error();
-  Background background(options.addresses);
+  Background background(options);
   Studio studio{options, *target, **screen, background, {}};
   if (options.replay_falls) studio.show.ReplayFalls();
   auto done = options.screenshot.empty() ? Record(studio) : TakeScreenshot(studio);

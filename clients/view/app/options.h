@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "common/recording/recorded_session.h"
 #include "common/transport/address.h"
 #include "footing/v1/command.pb.h"
 
@@ -11,7 +13,8 @@ namespace footing::view {
 /// What the command line asks for.
 struct Options {
   std::vector<transport::Address> addresses;
-  std::string screenshot;                  ///< A PNG file; empty for none.
+  std::shared_ptr<const recording::RecordedSession> recording;  ///< In place of servers.
+  std::string screenshot;                                       ///< A PNG file; empty for none.
   double at_s = 1;                         ///< When to take it, after connecting.
   std::string record_folder;               ///< For numbered PNG files; empty for none.
   double record_hz = 10;                   ///< Pictures a second.

@@ -31,12 +31,13 @@ class TextView {
         screen_(!options.json && isatty(STDOUT_FILENO) == 1),
         timer_(io_),
         signals_(io_, SIGINT, SIGTERM),
-        feed_(io_, options.addresses,
+        feed_(io_, options,
               {[this](const scene::Update& update) { show_.Take(update, clock::MonotonicNs()); },
                [this](int source, const scene::LinkReport& report) {
                  show_.model().links[static_cast<std::size_t>(source)] = report;
-               }}) {
-    show_.model().links = Feed::InitialReports(options.addresses);
+               },
+               [this] { Stop(); }}) {
+    show_.model().links = Feed::InitialReports(options);
   }
 
   void Run() {

@@ -69,7 +69,7 @@ void OnLetter(GLFWwindow* window, unsigned int letter) {
 
 void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
           render::HudOptions& hud) {
-  Background background(options.addresses);
+  Background background(options);
   scene::Show show;
   if (options.replay_falls) show.ReplayFalls();
   const std::int64_t started_ns = clock::MonotonicNs();

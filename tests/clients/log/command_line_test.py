@@ -3,6 +3,7 @@
 Usage: command_line_test.py FOOTING_LOG WRITE_SAMPLE_RECORDING
 """
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -10,9 +11,9 @@ import tempfile
 
 
 def main(program, writer):
-    def run(*words):
+    def run(*words, env=None):
         return subprocess.run([program, *map(str, words)], capture_output=True, text=True,
-                              timeout=30, check=False, stdin=subprocess.DEVNULL)
+                              timeout=30, check=False, stdin=subprocess.DEVNULL, env=env)
 
     with tempfile.TemporaryDirectory(prefix="footing-log.") as name:
         folder = pathlib.Path(name)
@@ -39,7 +40,7 @@ def main(program, writer):
         assert export.returncode == 0 and len(json.loads(export.stdout)["files"]) == 3, export
 
         for words, said in ((("export", whole, "--format", "c3d", "--out", folder), "csv, bvh"),
-                            (("serve", whole), "record, info, export, repair"),
+                            (("serve", whole, "--server", "none"), "there are: footingd"),
                             (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),
                             (("record", "--connect", "unix:/x", "--out", whole), "--force"),
                             (("shred", whole), "")):
@@ -52,6 +53,10 @@ def main(program, writer):
                      "--seconds", "0.2")
         assert nobody.returncode == 1 and "none.sock" in nobody.stderr, nobody
         assert run("info", folder / "n.mcap").returncode == 0
+        nobody = run("record", "--out", folder / "d.mcap", "--seconds", "0.2",
+                     env=dict(os.environ, XDG_RUNTIME_DIR=str(folder)))
+        for server in ("sensor.sock", "simulation.sock"):  # The default of every client.
+            assert nobody.returncode == 1 and server in nobody.stderr, nobody
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ const std::vector<std::string>& ExportColumns() {
   return names;
 }
 
-using Cells = std::vector<std::string>;
+using ExportRow = std::vector<std::string>;
 
 template <typename Number>
 bool ParseCell(const std::string& cell, Number& value) {
@@ -37,13 +37,13 @@ bool ParseCell(const std::string& cell, Number& value) {
   return parsed.ec == std::errc() && parsed.ptr == end;
 }
 
-std::string RoleOf(const Cells& cells) { return cells.size() > kRole ? cells[kRole] : ""; }
+std::string RoleOf(const ExportRow& cells) { return cells.size() > kRole ? cells[kRole] : ""; }
 
 /// The device number that `board` means; see ReadBoardExport.
-Result<std::string> ChooseBoard(const std::string& path, const std::vector<Cells>& rows,
+Result<std::string> ChooseBoard(const std::string& path, const std::vector<ExportRow>& rows,
                                 const std::string& board) {
   std::map<std::string, std::string> boards;  // Roles by device number.
-  for (const Cells& cells : rows) boards[cells[kDevice]] = RoleOf(cells);
+  for (const ExportRow& cells : rows) boards[cells[kDevice]] = RoleOf(cells);
   if (board.empty() && boards.size() == 1) return boards.begin()->first;
   std::string found;
   std::string known;
@@ -75,7 +75,7 @@ Result<std::vector<posturography::CornerSample>> ReadBoardExport(const std::stri
   if (!device) return device.error();
   std::vector<posturography::CornerSample> samples;
   std::int64_t first_ns = 0;
-  for (const Cells& cells : *rows) {
+  for (const ExportRow& cells : *rows) {
     if (cells[kDevice] != *device) continue;
     std::int64_t sampled_ns = 0;
     std::array<double, 4> forces_n{};
