@@ -7,7 +7,7 @@
 namespace footing::playback {
 
 /// Moves every instant of a server's clock in the message by `shift_ns`: the int64 fields, at any
-/// depth, whose names end in _ns, but for those that are no instants of that clock (age_ns,
+/// depth, whose names end in _ns, except those of other clocks (age_ns,
 /// true_ns, wall_time_ns). Zero means unknown and stays.
 void ShiftStamps(google::protobuf::Message& message, std::int64_t shift_ns);
 

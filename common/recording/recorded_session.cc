@@ -29,8 +29,8 @@ std::string TextOf(const mcap::TextMap& values, const std::string& key) {
   return found == values.end() ? "" : found->second;
 }
 
-/// The field of v1::Tick that a topic's messages are; 0 when it is no channel, or one of a later
-/// version.
+/// The field of v1::Tick that a topic's messages are; 0 for other topics and for channels of a
+/// later version.
 std::uint32_t FieldOf(const std::string& channel) {
   const pb::FieldDescriptor* field = v1::Tick::descriptor()->FindFieldByName(channel);
   const bool is_channel = field != nullptr && field->message_type() != nullptr;
