@@ -6,7 +6,7 @@
 
 #include "common/wire/wire.h"
 #include "daemon/sensor/service/hub.h"
-#include "daemon/simulation/service/publish.h"
+#include "daemon/simulation/gait_service/publish.h"
 
 namespace footing::eval {
 namespace {
@@ -139,7 +139,7 @@ Result<BipedReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::Gait
       if (message.has_pose()) {
         return InvalidData("the recording is one of the pose engine, which is not run again yet");
       }
-      const simulation::Applied applied = simulation::FromAppliedInput(message);
+      const gait_service::Applied applied = gait_service::FromAppliedInput(message);
       inputs[applied.step] = applied.inputs.engine;
     }
     if (!tick.has_characters()) continue;

@@ -1,0 +1,91 @@
+#include "daemon/simulation/gait_service/gait_line.h"
+
+#include <cmath>
+#include <utility>
+
+#include "common/wire/wire.h"
+#include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/gait_service/publish.h"
+#include "daemon/simulation/serving/channel_bytes.h"
+#include "daemon/simulation/terrain/append.h"
+
+namespace footing::gait_service {
+
+Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& config,
+                                                   int wake_descriptor) {
+  const auto texts =
+      engine_files::ReadTexts({.track = config.track, .data_folder = config.data_folder});
+  if (!texts) return texts.error();
+  engine::EngineConfig engine_config;
+  engine_config.fall_shown_s = config.fall_shown_s;
+  engine_config.put_back_distance_m = config.put_back_distance_m;
+  engine_config.features_timeout_s = config.features_timeout_s;
+  auto engine = engine::GaitEngine::Create(*texts, engine_config);
+  if (!engine) return engine.error();
+  return std::unique_ptr<GaitLine>(
+      new GaitLine(config, std::move(engine).value(), engine_config.step_s, wake_descriptor));
+}
+
+GaitLine::GaitLine(const serving::Config& config, engine::GaitEngine engine, double step_s,
+                   int wake_descriptor)
+    : world_(config.track),
+      frame_rate_hz_(config.frame_rate_hz),
+      thread_(std::move(engine), step_s,
+              static_cast<int>(std::lround(1.0 / (step_s * config.frame_rate_hz))),
+              wake_descriptor),
+      track_(thread_.run().engine().track()),
+      input_(config.rig, thread_.inputs(), responses_) {}
+
+std::vector<transport::Channel> GaitLine::Channels() {
+  return {{"skeletons", serving::kSkeletons, true},
+          {"track", serving::kTrack, true},
+          {"characters", serving::kCharacters, false},
+          {"events", serving::kEvents, false},
+          {"inputs", serving::kInputs, false}};
+}
+
+std::vector<transport::ChannelBytes> GaitLine::Retained() const {
+  v1::Skeletons skeletons;
+  skeletons.set_world(world_);
+  *skeletons.add_skeletons() = wire::ToProto(thread_.run().engine().skeleton());
+  return {serving::Bytes(serving::kSkeletons, skeletons),
+          serving::Bytes(serving::kTrack, wire::ToProto(track_))};
+}
+
+v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
+  v1::Events events;
+  for (int i = 0; i < frame.event_count; ++i) {
+    *events.add_events() = ToEvent(frame.events[static_cast<std::size_t>(i)], now_ns);
+  }
+  v1::ResponseStages stages;
+  if (!responses_.Complete(frame, now_ns, stages)) return events;
+  v1::Event& event = *events.add_events();
+  event.set_kind(v1::Event::KIND_RESPONSE);
+  event.set_host_ns(now_ns);
+  event.set_character(1);
+  event.set_gait(stages.to());
+  *event.mutable_response() = stages;
+  return events;
+}
+
+std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::int64_t now_ns) {
+  input_.OnFrame(frame);
+  std::vector<transport::ChannelBytes> channels;
+  for (int i = 0; i < frame.added_count; ++i) {
+    terrain::Add(frame.added[static_cast<std::size_t>(i)], track_);
+  }
+  if (frame.added_count > 0)
+    channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(track_)));
+  channels.push_back(
+      serving::Bytes(serving::kCharacters, ToCharacterFrame(frame, world_, input_.rig())));
+  const v1::Events events = EventsOf(frame, now_ns);
+  if (events.events_size() > 0) channels.push_back(serving::Bytes(serving::kEvents, events));
+  v1::AppliedInputs inputs;
+  for (int i = 0; i < frame.applied_count; ++i) {
+    *inputs.add_inputs() = ToAppliedInput(frame.applied[static_cast<std::size_t>(i)]);
+  }
+  if (inputs.inputs_size() > 0) channels.push_back(serving::Bytes(serving::kInputs, inputs));
+  return channels;
+}
+
+}  // namespace footing::gait_service

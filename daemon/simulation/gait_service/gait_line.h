@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/stream/character.h"
+#include "common/transport/server.h"
+#include "daemon/simulation/gait_service/gait_run.h"
+#include "daemon/simulation/gait_service/responses.h"
+#include "daemon/simulation/gait_service/sensor_input.h"
+#include "daemon/simulation/serving/config.h"
+#include "daemon/simulation/serving/simulation_thread.h"
+
+namespace footing::gait_service {
+
+/// The io side of the gait engine: features in, a walking biped out (see Service).
+class GaitLine {
+ public:
+  using Run = GaitRun;
+
+  /// Reads the data files and builds the engine.
+  static Result<std::unique_ptr<GaitLine>> Create(const serving::Config& config,
+                                                  int wake_descriptor);
+
+  static std::vector<transport::Channel> Channels();
+  static std::vector<std::string> Capabilities() { return {"gait", "wrist"}; }
+  static std::vector<std::string> SensorChannels() { return {"features"}; }
+  static constexpr v1::QueuePolicy kSensorPolicy = v1::QUEUE_POLICY_LATEST;
+  double frame_rate_hz() const { return frame_rate_hz_; }
+
+  serving::SimulationThread<GaitRun>& thread() { return thread_; }
+  std::vector<transport::ChannelBytes> Retained() const;
+  void OnTick(const v1::Tick& tick, std::int64_t now_ns) { input_.OnTick(tick, now_ns); }
+  v1::CommandResult OnCommand(const v1::Command& command) { return input_.OnCommand(command); }
+  std::vector<transport::ChannelBytes> OnFrame(const Frame& frame, std::int64_t now_ns);
+
+ private:
+  GaitLine(const serving::Config& config, engine::GaitEngine engine, double step_s,
+           int wake_descriptor);
+  v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);
+
+  const std::string world_;
+  const double frame_rate_hz_;
+  Responses responses_;
+  serving::SimulationThread<GaitRun> thread_;
+  stream::Track track_;  ///< The engine's, as of the last frame: the engine is its thread's alone.
+  SensorInput input_;
+};
+
+}  // namespace footing::gait_service

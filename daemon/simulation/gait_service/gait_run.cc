@@ -1,0 +1,35 @@
+#include "daemon/simulation/gait_service/gait_run.h"
+
+#include "common/clock/clock.h"
+
+namespace footing::gait_service {
+
+void GaitRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
+  // One input adds at most kMaxAppends segments, of which each has its place in the frame.
+  const bool room =
+      frame.applied_count < kMaxApplied && frame.added_count + engine::kMaxAppends <= kMaxAdded;
+  if (room && inputs.Refresh()) {
+    Applied& applied = frame.applied[static_cast<std::size_t>(frame.applied_count++)];
+    applied.step = engine_.Output().step + 1;
+    applied.inputs = inputs.Front();
+  }
+  engine_.Advance(inputs.Front().engine);
+  const engine::EngineOutput& output = engine_.Output();
+  if (output.appended && frame.added_count < kMaxAdded) {
+    frame.added[static_cast<std::size_t>(frame.added_count++)] = engine_.track().segments.back();
+  }
+  if (output.commanded_step == output.step) frame.command_ns = clock::MonotonicNs();
+  if (output.taken_over_step == output.step) frame.contact_ns = clock::MonotonicNs();
+  for (int i = 0; i < output.event_count && frame.event_count < kMaxFrameEvents; ++i) {
+    frame.events[static_cast<std::size_t>(frame.event_count++)] =
+        output.events[static_cast<std::size_t>(i)];
+  }
+}
+
+void GaitRun::TakenOnSimThread(Frame& frame) const {
+  frame.event_count = 0;
+  frame.applied_count = 0;
+  frame.added_count = 0;
+}
+
+}  // namespace footing::gait_service

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/simulation/gait_service/frame.h"
+#include "footing/v1/character.pb.h"
+
+namespace footing::gait_service {
+
+/// From a frame of the simulation thread to the messages of the protocol.
+v1::CharacterFrame ToCharacterFrame(const Frame& frame, const std::string& world,
+                                    const std::string& rig);
+v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns);
+v1::AppliedInput ToAppliedInput(const Applied& applied);
+/// The other way round, for replays.
+Applied FromAppliedInput(const v1::AppliedInput& message);
+
+}  // namespace footing::gait_service

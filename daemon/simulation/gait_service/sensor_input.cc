@@ -1,0 +1,118 @@
+#include "daemon/simulation/gait_service/sensor_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/wire/wire.h"
+#include "daemon/simulation/mapping/wrist_features.h"
+
+namespace footing::gait_service {
+namespace {
+
+bool HasHands(const stream::RigFeatures& rig) {
+  for (const auto& device : rig.devices) {
+    if (device.role == stream::DeviceRole::kLeftHand ||
+        device.role == stream::DeviceRole::kRightHand) {
+      return true;
+    }
+  }
+  return false;
+}
+
+v1::CommandResult Answer(bool ok, const std::string& message) {
+  v1::CommandResult result;
+  result.set_ok(ok);
+  result.set_message(message);
+  return result;
+}
+
+constexpr double kMaxPushNs = 200;
+
+}  // namespace
+
+SensorInput::SensorInput(std::string rig, exchange::Latest<Inputs>& out, Responses& responses)
+    : wanted_rig_(std::move(rig)), out_(out), responses_(responses) {}
+
+void SensorInput::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
+  if (tick.snapshot() || tick.refilled() || !tick.has_features()) return;
+  for (const v1::RigFeatures& message : tick.features().rigs()) {
+    if (!wanted_rig_.empty() && message.rig() != wanted_rig_) continue;
+    const stream::RigFeatures rig = wire::FromProto(message);
+    if (!HasHands(rig)) continue;
+    followed_rig_ = rig.rig;
+    inputs_.engine.features = mapping::ToWristFeatures(rig);
+    ++inputs_.engine.features_number;
+    inputs_.sensor_epoch = tick.epoch();
+    inputs_.sensor_sequence = tick.sequence();
+    responses_.Received({inputs_.engine.features_number, rig.newest_received_ns, rig.decoded_ns,
+                         rig.computed_ns, now_ns});
+    Publish();
+    return;
+  }
+}
+
+/// The engine takes one segment a step, so those not yet taken wait in the inputs.
+v1::CommandResult SensorInput::Append(const v1::AppendSegment& message) {
+  const terrain::NewSegment segment{message.length_m(), message.slope_rad(), message.curve_rad(),
+                                    message.step_m(), message.pit()};
+  for (const double number :
+       {segment.length_m, segment.slope_rad, segment.curve_rad, segment.step_m}) {
+    if (!std::isfinite(number)) {
+      return Answer(false, "append_segment: every number must be finite");
+    }
+  }
+  engine::EngineInputs& engine = inputs_.engine;
+  const auto waiting = static_cast<int>(engine.append_number - appends_taken_);
+  if (waiting >= engine::kMaxAppends) {
+    return Answer(false, "append_segment: 16 segments wait to be taken; try again in a moment");
+  }
+  std::move(engine.appends.begin() + engine.append_count - waiting,
+            engine.appends.begin() + engine.append_count, engine.appends.begin());
+  engine.append_count = waiting;
+  engine.appends[static_cast<std::size_t>(engine.append_count++)] = segment;
+  ++engine.append_number;
+  Publish();
+  return Answer(true, "");
+}
+
+v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
+  engine::EngineInputs& engine = inputs_.engine;
+  switch (command.action_case()) {
+    case v1::Command::kDirectGait: {
+      const v1::DirectGait& direct = command.direct_gait();
+      const double numbers[] = {direct.speed_mps(), direct.height_m(), direct.turn_rad()};
+      for (const double number : numbers) {
+        if (!std::isfinite(number))
+          return Answer(false, "direct_gait: every number must be finite");
+      }
+      if (!direct.release() && (direct.gait() < v1::GAIT_STEP || direct.gait() > v1::GAIT_JUMP)) {
+        return Answer(false, "direct_gait: the gait must be step, walk, run or jump");
+      }
+      engine.direct = !direct.release();
+      engine.direct_command = {static_cast<stream::Gait>(direct.gait()), direct.speed_mps(),
+                               direct.height_m(), direct.turn_rad()};
+      break;
+    }
+    case v1::Command::kPush: {
+      const Eigen::Vector2d impulse(command.push().impulse_x_ns(), command.push().impulse_y_ns());
+      if (!impulse.allFinite() || impulse.norm() > kMaxPushNs) {
+        return Answer(false, "push: the impulse must be at most 200 N s");
+      }
+      engine.push_impulse_W_ns = impulse;
+      ++engine.push_number;
+      break;
+    }
+    case v1::Command::kPutBack:
+      ++engine.put_back_number;
+      break;
+    case v1::Command::kAppendSegment:
+      return Append(command.append_segment());
+    default:
+      return Answer(false, "footing-sim takes direct_gait, push, put_back and append_segment");
+  }
+  Publish();
+  return Answer(true, "");
+}
+
+}  // namespace footing::gait_service

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "daemon/simulation/arms/arm_tracker.h"
+#include "daemon/simulation/pose_service/pose_frame.h"
+#include "footing/v1/sensor.pb.h"
+
+namespace footing::pose_service {
+
+/// How both arms are held by what the Wiimotes in the fists tell (docs/hands.md), on the io thread:
+/// the same arms::ArmTracker that footing-eval runs. A Wiimote is held so that it points forward
+/// with its buttons up in the T-pose.
+///
+/// The gyroscope's own bias of the T-pose is taken off, not what footingd holds for it: a hand that
+/// turns slowly and evenly looks like one at rest to footingd. A Wiimote that is not heard for
+/// longer than kTimeoutS may have turned anywhere: it tells nothing until the next T-pose.
+class PoseArms {
+ public:
+  static constexpr double kTimeoutS = 0.2;
+
+  /// Without a model nothing is told.
+  explicit PoseArms(std::optional<arms::ArmModel> model);
+
+  /// Whether the rig has a Wiimote in that hand, and which device it is.
+  void Bind(std::size_t side, std::optional<std::uint32_t> device);
+  void Take(const v1::MotionSample& sample, std::int64_t now_ns);
+  /// What the engine says of its T-pose.
+  void Follow(bool calibrated, double calibration_progress);
+  /// Puts the arms and what is wrong with them into the inputs; times go forward.
+  void Tell(std::int64_t now_ns, PoseInputs& inputs);
+
+ private:
+  struct Hand {
+    std::optional<std::uint32_t> device;
+    bool seen = false, turns = false;  ///< A sample has come; one with an angular velocity.
+    std::int64_t seen_ns = 0, turned_ns = 0;
+    std::int64_t sampled_ns = 0;  ///< Of the last one with an angular velocity.
+    bool simulated = false;
+  };
+  HandTrouble TroubleOf(std::size_t side, std::int64_t now_ns) const;
+
+  std::optional<arms::ArmModel> model_;
+  std::optional<arms::ArmTracker> tracker_;
+  std::array<Hand, arms::kArms> hands_{};
+  bool calibrated_ = false;
+  double progress_ = 0;
+  std::int64_t told_ns_ = 0;
+};
+
+}  // namespace footing::pose_service

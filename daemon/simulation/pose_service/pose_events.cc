@@ -1,0 +1,80 @@
+#include "daemon/simulation/pose_service/pose_events.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "daemon/simulation/pose_service/pose_note.h"
+
+namespace footing::pose_service {
+namespace {
+
+void Add(v1::Events& events, v1::Event::Kind kind, std::int64_t now_ns, const std::string& text) {
+  v1::Event& event = *events.add_events();
+  event.set_kind(kind);
+  event.set_host_ns(now_ns);
+  event.set_character(1);
+  event.set_text(text);
+}
+
+std::string Kilograms(double mass_kg) {
+  const auto tenths = std::llround(10 * mass_kg);
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " kg";
+}
+
+}  // namespace
+
+/// Of Wiimotes alone: trackers lose hands and find them all the time.
+void PoseEvents::AddHands(const PoseFrame& frame, std::int64_t now_ns, v1::Events& events) {
+  for (std::size_t side = 0; side < hand_trouble_.size(); ++side) {
+    const HandTrouble now = frame.hand_trouble[side];
+    const HandTrouble before = std::exchange(hand_trouble_[side], now);
+    if (!frame.calibrated || now == before) continue;
+    const std::string name = side == 0 ? "left" : "right";
+    if (now == HandTrouble::kNone) {
+      Add(events, v1::Event::KIND_STREAM_BACK, now_ns,
+          "the " + name + " Wiimote reports its arm again");
+    } else {
+      Add(events, v1::Event::KIND_STREAM_LOST, now_ns, HandWords(now, name));
+    }
+  }
+}
+
+v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
+                               std::int64_t now_ns) {
+  v1::Events events;
+  const bool told = frame.feet_told[0] && frame.feet_told[1];
+  const bool worn = frame.source == PoseSource::kInsoles;
+  const bool next_subject = has_last_ && frame.subject_number != subject_number_;
+  const std::string source = worn ? "insole" : "board";
+  if (has_last_ && frame.source != source_) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "the pose follows the " + source + "s");
+  }
+  if (told != told_) {
+    Add(events, told ? v1::Event::KIND_STREAM_BACK : v1::Event::KIND_STREAM_LOST, now_ns,
+        told ? "both " + source + "s are there"
+             : (worn ? "an " : "a ") + source + " is lost: the pose coasts");
+  }
+  if (next_subject) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns,
+        "next subject: " + subject.code + "; their T-pose is awaited");
+  } else if (calibrated_ && !frame.calibrated) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "the T-pose is to be taken again");
+  }
+  if (!calibrated_ && frame.calibrated) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "T-pose taken: " + Kilograms(frame.mass_kg));
+  }
+  if (has_last_ && !next_subject && frame.resets > resets_) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns, "the filters were reset");
+  }
+  AddHands(frame, now_ns, events);
+  has_last_ = true;
+  told_ = told;
+  source_ = frame.source;
+  calibrated_ = frame.calibrated;
+  subject_number_ = frame.subject_number;
+  resets_ = frame.resets;
+  return events;
+}
+
+}  // namespace footing::pose_service

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/board/impulse.h"
+#include "common/stream/character.h"
+#include "daemon/simulation/momentum/estimate.h"
+#include "daemon/simulation/reconstruction/insole_walk.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
+
+namespace footing::pose_service {
+
+/// What the pose follows.
+enum class PoseSource { kBoards, kInsoles };
+
+/// Why a Wiimote that is there does not tell how its arm is held.
+enum class HandTrouble {
+  kNone,
+  kNoModel,      ///< No arm.fmodel.
+  kNoGyroscope,  ///< No MotionPlus in it.
+  kSilent,       ///< Nothing comes from it.
+  kAwaitsTPose,  ///< It was not heard for a while: how it has turned is not known.
+};
+
+/// What the pose engine is told, with where it came from. Fixed size.
+struct PoseInputs {
+  reconstruction::Inputs sensors;  ///< Its time is set by the engine's own steps.
+  /// Of the boards: what `sensors` has is their newest samples. Where both are valid, these count.
+  std::array<board::BoardImpulse, momentum::kFeet> impulses;
+  /// Cells in the shoes, where there are any. While one of them tells anything, they are followed
+  /// instead of the boards.
+  std::array<reconstruction::InsoleFoot, momentum::kFeet> insoles;
+  std::array<HandTrouble, reconstruction::kHands> hand_trouble{};  ///< For people only.
+  bool simulated = false;  ///< A stand-in is behind any of it.
+  std::uint64_t sensor_epoch = 0;
+  std::uint64_t sensor_sequence = 0;
+  std::uint64_t calibrate_number = 0;  ///< T-poses asked for so far.
+  std::uint64_t subject_number = 0;    ///< Subjects so far.
+};
+
+/// Inputs as they took effect: from this step on.
+struct PoseApplied {
+  std::uint64_t step = 0;
+  PoseInputs inputs;
+};
+
+inline constexpr std::size_t kMaxLinks = 96;
+inline constexpr int kMaxPoseApplied = 4;
+
+/// What the simulation thread hands over at every frame of the pose engine. Fixed size: filling and
+/// moving it allocates nothing. The links of a frame are those of its subject's skeleton.
+struct PoseFrame {
+  std::uint64_t step = 0;
+  double time_s = 0;
+  std::uint64_t overruns = 0;
+  std::uint64_t subject_number = 0;
+  std::uint64_t state_hash = 0;  ///< Of the pose's coordinates, bit for bit.
+  bool simulated = false;
+
+  PoseSource source = PoseSource::kBoards;
+  bool insoles_idle = false;  ///< They tell, but this mode or lag cannot follow them.
+  std::array<bool, momentum::kFeet> feet_told{};           ///< The source tells of this foot now.
+  std::array<double, momentum::kFeet> load_n{};            ///< By the source, calibrated or not.
+  std::array<bool, reconstruction::kHands> hands_valid{};  ///< Their places are told,
+  std::array<bool, reconstruction::kHands> arms_valid{};   ///< or how their arms are held.
+  std::array<HandTrouble, reconstruction::kHands> hand_trouble{};
+
+  bool valid = false;
+  bool calibrated = false;
+  double calibration_progress = 0;
+  std::uint32_t calibration_restarts = 0;
+  double lag_s = 0;
+  std::uint32_t resets = 0;
+  double mass_kg = 0;
+  momentum::Estimate momentum;
+  std::size_t link_count = 0;
+  std::array<stream::LinkPose, kMaxLinks> links;
+  std::array<double, kMaxLinks> link_sd_m{};
+  double solve_us = 0;  ///< CPU time of the newest step.
+
+  std::array<PoseApplied, kMaxPoseApplied> applied;  ///< Since the last frame.
+  int applied_count = 0;
+};
+
+}  // namespace footing::pose_service

@@ -1,0 +1,152 @@
+#include "daemon/simulation/pose_service/pose_line.h"
+
+#include <utility>
+
+#include "common/wire/wire.h"
+#include "daemon/simulation/pose_service/pose_models.h"
+#include "daemon/simulation/pose_service/pose_publish.h"
+#include "daemon/simulation/serving/channel_bytes.h"
+
+namespace footing::pose_service {
+namespace {
+
+v1::CommandResult Answer(bool ok, const std::string& message) {
+  v1::CommandResult result;
+  result.set_ok(ok);
+  result.set_message(message);
+  return result;
+}
+
+Result<std::unique_ptr<SubjectRun>> MakeRun(std::uint64_t number, const body::Body& body,
+                                            const reconstruction::Models& models,
+                                            const reconstruction::Options& options) {
+  auto made = reconstruction::Reconstruction::Create(body, models, options);
+  if (!made) return made.error();
+  if (made->body().skeleton.joints.size() > kMaxLinks) {
+    return InvalidData("the skeleton has more joints than a frame can hold");
+  }
+  auto run = std::make_unique<SubjectRun>(SubjectRun{number, std::move(made).value()});
+  if (auto walk = reconstruction::InsoleWalk::Create(body, models, options)) {
+    run->walk = std::move(walk).value();
+  }
+  return run;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& config,
+                                                   int wake_descriptor) {
+  Subject first = subject::UnnamedSubject();
+  if (!config.subject.empty()) {
+    auto read = subject::ReadSubject(config.subject);
+    if (!read) return read.error();
+    first = *read;
+  }
+  const auto body = MakeSubjectBody(first);
+  if (!body) return body.error();
+  reconstruction::Options options;
+  options.mode =
+      config.mode == "paper" ? reconstruction::Mode::kPaper : reconstruction::Mode::kBest;
+  options.rate_hz = kRateHz;
+  options.lag_s = 1e-3 * static_cast<double>(config.lag_ms);
+  auto models = LoadPoseModels(config);
+  if (!models) return models.error();
+  auto run = MakeRun(1, *body, *models, options);
+  if (!run) return run.error();
+  return std::unique_ptr<PoseLine>(new PoseLine(config, std::move(models).value(), options,
+                                                {1, first, *body}, std::move(run).value(),
+                                                wake_descriptor));
+}
+
+PoseLine::PoseLine(const serving::Config& config, reconstruction::Models models,
+                   reconstruction::Options options, Known first, std::unique_ptr<SubjectRun> run,
+                   int wake_descriptor)
+    : mode_(config.mode),
+      models_(std::move(models)),
+      options_(options),
+      known_{std::move(first)},
+      shown_number_(known_.front().number),
+      thread_(PoseRun(std::move(run), kRateHz, subjects_), 1 / kRateHz, 1, wake_descriptor),
+      sensors_(config.rig, thread_.inputs(), models_.arm) {
+  sensors_.TakeSubject(shown_number_);
+}
+
+std::vector<transport::Channel> PoseLine::Channels() {
+  return {{"skeletons", serving::kSkeletons, true},
+          {"characters", serving::kCharacters, false},
+          {"events", serving::kEvents, false},
+          {"inputs", serving::kInputs, false}};
+}
+
+const PoseLine::Known& PoseLine::Of(std::uint64_t number) const {
+  for (const Known& known : known_) {
+    if (known.number == number) return known;
+  }
+  return known_.front();
+}
+
+std::vector<transport::ChannelBytes> PoseLine::Retained() const {
+  v1::Skeletons skeletons;
+  skeletons.set_world(world_);
+  *skeletons.add_skeletons() = wire::ToProto(ToSkeleton(Of(shown_number_).body));
+  return {serving::Bytes(serving::kSkeletons, skeletons)};
+}
+
+v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {
+  const Subject next{message.code(), message.height_m(), message.mass_kg(),
+                     message.foot_length_m()};
+  if (const auto ok = subject::CheckSubject(next, "set_subject"); !ok) {
+    return Answer(false, ok.error().message);
+  }
+  if (known_.size() >= SubjectExchange::kMost) {
+    return Answer(false, "set_subject: the subject before is not in place yet; try again");
+  }
+  const auto body = MakeSubjectBody(next);
+  if (!body) return Answer(false, "set_subject: " + body.error().message);
+  const std::uint64_t number = known_.back().number + 1;
+  auto run = MakeRun(number, *body, models_, options_);
+  if (!run) return Answer(false, "set_subject: " + run.error().message);
+  if (!subjects_.next.Push(std::move(run).value())) {
+    return Answer(false, "set_subject: the subject before is not in place yet; try again");
+  }
+  known_.push_back({number, next, *body});
+  sensors_.TakeSubject(number);
+  return Answer(true, "");
+}
+
+v1::CommandResult PoseLine::OnCommand(const v1::Command& command) {
+  if (command.has_set_subject()) return TakeSubject(command.set_subject());
+  if (command.has_calibrate_t_pose()) {
+    sensors_.Calibrate();
+    return Answer(true, "");
+  }
+  return Answer(false, "footing-sim --engine pose takes calibrate_t_pose and set_subject");
+}
+
+std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
+                                                       std::int64_t now_ns) {
+  std::unique_ptr<SubjectRun> done;
+  while (subjects_.done.Pop(done)) done.reset();
+  sensors_.Follow(frame);
+  while (known_.size() > 1 && known_.front().number < frame.subject_number) known_.pop_front();
+  const Known& known = Of(frame.subject_number);
+  std::vector<transport::ChannelBytes> channels;
+  if (frame.subject_number != shown_number_) {
+    shown_number_ = frame.subject_number;
+    channels = Retained();
+  }
+  channels.push_back(serving::Bytes(
+      serving::kCharacters,
+      ToCharacterFrame(frame, known.subject, mode_, world_, sensors_.rig(), sensors_.tracker())));
+  const v1::Events events = events_.Between(frame, known.subject, now_ns);
+  if (events.events_size() > 0) channels.push_back(serving::Bytes(serving::kEvents, events));
+  v1::AppliedInputs inputs;
+  for (int i = 0; i < frame.applied_count; ++i) {
+    const PoseApplied& applied = frame.applied[static_cast<std::size_t>(i)];
+    *inputs.add_inputs() = ToAppliedInput(applied, Of(applied.inputs.subject_number).subject);
+  }
+  if (inputs.inputs_size() > 0) channels.push_back(serving::Bytes(serving::kInputs, inputs));
+  return channels;
+}
+
+}  // namespace footing::pose_service

@@ -1,0 +1,140 @@
+#include "daemon/simulation/pose_service/pose_note.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "common/units/units.h"
+#include "daemon/simulation/momentum/calibration.h"
+
+namespace footing::pose_service {
+namespace {
+
+using momentum::TPoseCalibration;
+
+/// A foot that stepped off is told after so long: steps and kicks are none of our business.
+constexpr double kAwayS = 0.5;
+constexpr std::array<const char*, 2> kSides{"left", "right"};
+
+std::string Text(double value, int decimals) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, value);
+  return buffer.data();
+}
+
+void Add(std::string& note, const std::string& words) {
+  if (!note.empty()) note += "; ";
+  note += words;
+}
+
+bool IsWorn(const PoseFrame& frame) { return frame.source == PoseSource::kInsoles; }
+
+std::string LostSource(const PoseFrame& frame) {
+  if (!frame.feet_told[0] && !frame.feet_told[1]) {
+    return IsWorn(frame)
+               ? "nothing comes from the insoles: are both on? the feet are guessed, less by the "
+                 "second"
+               : "nothing comes from the boards: are both on, and assigned as left and right?";
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!frame.feet_told[side]) {
+      return std::string("nothing comes from the ") + kSides[side] +
+             (IsWorn(frame) ? " insole" : " board");
+    }
+  }
+  return "";
+}
+
+std::string Awaited(const PoseFrame& frame) {
+  const double total_n = frame.load_n[0] + frame.load_n[1];
+  if (total_n < KilogramsToNewtons(TPoseCalibration::kLeastMassKg)) {
+    return IsWorn(frame) ? "stand on both feet" : "step on, one foot on each board";
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (frame.load_n[side] < TPoseCalibration::kLeastFootShare * total_n) {
+      return std::string("put weight on the ") + kSides[side] + " foot";
+    }
+  }
+  const double left_s = (1 - frame.calibration_progress) * TPoseCalibration::kSeconds;
+  if (frame.calibration_progress > 0.04) {
+    return "T-pose: hold still, " + Text(left_s, 1) + " s more";
+  }
+  return frame.calibration_restarts > 0 ? "you moved: stand still, arms out to the sides"
+                                        : "stand still, arms out to the sides";
+}
+
+void AddFeet(const PoseFrame& frame, std::string& note) {
+  const auto& feet = frame.momentum.feet;
+  const auto away = [](const momentum::FootEstimate& foot) {
+    return !foot.contact && foot.airborne_s > kAwayS;
+  };
+  if (away(feet[0]) && away(feet[1])) {
+    return Add(note, IsWorn(frame) ? "both feet are in the air" : "nobody stands on the boards");
+  }
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!away(feet[side])) continue;
+    Add(note, std::string("the ") + kSides[side] + " foot is off " +
+                  (IsWorn(frame) ? "the ground for " : "its board for ") +
+                  Text(feet[side].airborne_s, 1) + " s: its place is a guess");
+  }
+}
+
+/// Which hands nothing tells of, and why.
+void AddHands(const PoseFrame& frame, std::string& note) {
+  const auto told = [&](std::size_t side) {
+    return frame.hands_valid[side] || frame.arms_valid[side];
+  };
+  const auto& trouble = frame.hand_trouble;
+  const bool wiimotes = trouble[0] != HandTrouble::kNone || trouble[1] != HandTrouble::kNone;
+  if (!told(0) && !told(1) && !wiimotes) return Add(note, "no hand is seen");
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    if (!told(side)) Add(note, HandWords(trouble[side], kSides[side]));
+  }
+}
+
+void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) {
+  if (subject.mass_kg <= 0 || frame.mass_kg <= 0) return;
+  const double difference = frame.mass_kg / subject.mass_kg - 1;
+  if (std::abs(difference) <= kMassTolerance) return;
+  Add(note, std::string("the ") + (IsWorn(frame) ? "insoles" : "boards") + " say " +
+                Text(frame.mass_kg, 1) + " kg, the subject's file " + Text(subject.mass_kg, 1) +
+                " kg: is it " + subject.code +
+                (IsWorn(frame) ? "?" : ", and are both boards tared?"));
+}
+
+}  // namespace
+
+std::string HandWords(HandTrouble trouble, const std::string& side) {
+  switch (trouble) {
+    case HandTrouble::kNone:
+      return "the " + side + " hand is not seen";
+    case HandTrouble::kNoModel:
+      return "the " + side + " Wiimote is not followed: there is no arm.fmodel (docs/models.md)";
+    case HandTrouble::kNoGyroscope:
+      return "the " + side + " Wiimote reports no rotation: is a MotionPlus in it?";
+    case HandTrouble::kSilent:
+      return "nothing comes from the " + side + " Wiimote: its arm is guessed";
+    case HandTrouble::kAwaitsTPose:
+      return "the " + side + " Wiimote was lost and has no heading: take the T-pose again";
+  }
+  return "";
+}
+
+std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
+  std::string note = LostSource(frame);
+  const bool told = note.empty();
+  if (frame.insoles_idle)
+    Add(note, "insoles need the best mode without lag: they are not followed");
+  if (!frame.calibrated) {
+    if (told) Add(note, Awaited(frame));
+    return note;
+  }
+  if (told) AddFeet(frame, note);
+  if (told && frame.momentum.valid && !frame.valid)
+    Add(note, "what is measured fits no pose that the model knows: this one is a guess");
+  AddHands(frame, note);
+  AddMass(frame, subject, note);
+  return note;
+}
+
+}  // namespace footing::pose_service

@@ -1,0 +1,147 @@
+#include "daemon/simulation/pose_service/pose_run.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "common/clock/clock.h"
+
+namespace footing::pose_service {
+namespace {
+
+/// Where there is enough to play, the boards' cells get their mean loads of the next step in place
+/// of their newest samples.
+void PlayLoads(double step_s, board::LoadPlayer& player,
+               std::array<momentum::FootLoads, momentum::kFeet>& feet) {
+  if (feet[0].count != board::kCorners || feet[1].count != board::kCorners) {
+    player.Restart();
+    return;
+  }
+  const auto loads_n = player.Advance(step_s);
+  for (std::size_t f = 0; loads_n && f < feet.size(); ++f) {
+    for (std::size_t i = 0; i < board::kCorners; ++i) feet[f].cells[i].load_n = (*loads_n)[f][i];
+  }
+}
+
+/// FNV-1a over the bits of a pose.
+std::uint64_t HashOf(const Eigen::VectorXd& q) {
+  std::uint64_t hash = 14695981039346656037ull;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &q[i], sizeof(bits));
+    hash = (hash ^ bits) * 1099511628211ull;
+  }
+  return hash;
+}
+
+}  // namespace
+
+PoseRun::PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExchange& subjects)
+    : subject_(std::move(subject)), rate_hz_(rate_hz), subjects_(&subjects) {}
+
+void PoseRun::Obey(const PoseInputs& inputs) {
+  std::unique_ptr<SubjectRun> next;
+  while (subject_->number != inputs.subject_number && subjects_->next.Pop(next)) {
+    subject_.swap(next);
+    subjects_->done.Push(std::move(next));  // Room for all that are on their way.
+    calibrate_number_ = inputs.calibrate_number;
+  }
+  if (inputs.calibrate_number == calibrate_number_) return;
+  calibrate_number_ = inputs.calibrate_number;
+  subject_->reconstruction.Recalibrate();
+  if (subject_->walk) subject_->walk->Recalibrate();
+}
+
+void PoseRun::ChooseSource() {
+  const auto tells = [](const auto& feet) { return feet[0].valid || feet[1].valid; };
+  if (subject_->walk && tells(worn_.feet)) {
+    source_ = PoseSource::kInsoles;
+  } else if (!subject_->walk || tells(told_.loads.feet)) {
+    source_ = PoseSource::kBoards;
+  }
+}
+
+void PoseRun::Advance() {
+  const bool walks = source_ == PoseSource::kInsoles;
+  if (!walks || !subject_->reconstruction.output().calibrated)
+    subject_->reconstruction.Advance(told_);
+  if (subject_->walk && (walks || !subject_->walk->output().calibrated))
+    subject_->walk->Advance(worn_);
+}
+
+const reconstruction::Output& PoseRun::output() const {
+  return source_ == PoseSource::kInsoles ? subject_->walk->output()
+                                         : subject_->reconstruction.output();
+}
+
+void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
+  const std::int64_t begun_ns = clock::ThreadCpuNs();
+  ++step_;
+  if (frame.applied_count < kMaxPoseApplied && inputs.Refresh()) {
+    PoseApplied& applied = frame.applied[static_cast<std::size_t>(frame.applied_count++)];
+    applied.step = step_;
+    applied.inputs = inputs.Front();
+    quiet_steps_ = 0;
+    for (std::size_t f = 0; f < momentum::kFeet; ++f) player_.Take(f, inputs.Front().impulses[f]);
+    Obey(inputs.Front());
+  } else {
+    ++quiet_steps_;
+  }
+  told_ = inputs.Front().sensors;
+  PlayLoads(1 / rate_hz_, player_, told_.loads.feet);
+  worn_.feet = inputs.Front().insoles;
+  simulated_ = inputs.Front().simulated;
+  hand_trouble_ = inputs.Front().hand_trouble;
+  told_.loads.time_s = static_cast<double>(step_) / rate_hz_;
+  if (static_cast<double>(quiet_steps_) > kStreamLostS * rate_hz_) {
+    for (auto& foot : told_.loads.feet) foot.valid = false;
+    for (auto& foot : worn_.feet) foot.valid = false;
+    for (auto& hand : told_.hands) hand.valid = false;
+    for (auto& arm : told_.arms) arm.valid = false;
+  }
+  worn_.time_s = told_.loads.time_s;
+  worn_.hands = told_.hands;
+  worn_.arms = told_.arms;
+  ChooseSource();
+  Advance();
+  solve_ns_ = clock::ThreadCpuNs() - begun_ns;
+}
+
+void PoseRun::FillOnSimThread(Frame& frame) const {
+  const reconstruction::Output& output = this->output();
+  frame.step = step_;
+  frame.time_s = static_cast<double>(step_) / rate_hz_;
+  frame.subject_number = subject_->number;
+  frame.state_hash = HashOf(output.q);
+  frame.simulated = simulated_;
+  frame.source = source_;
+  frame.insoles_idle = !subject_->walk && (worn_.feet[0].valid || worn_.feet[1].valid);
+  const bool walks = source_ == PoseSource::kInsoles;
+  for (std::size_t side = 0; side < momentum::kFeet; ++side) {
+    frame.feet_told[side] = walks ? worn_.feet[side].valid : told_.loads.feet[side].valid;
+    frame.load_n[side] = walks ? reconstruction::TotalLoadN(worn_.feet[side])
+                               : momentum::PressureOf(told_.loads.feet[side], 1).total_n;
+    frame.hands_valid[side] = told_.hands[side].valid;
+    frame.arms_valid[side] = told_.arms[side].valid;
+  }
+  frame.hand_trouble = hand_trouble_;
+  frame.valid = output.valid;
+  frame.calibrated = output.calibrated;
+  frame.calibration_progress = output.calibration_progress;
+  frame.calibration_restarts = output.calibration_restarts;
+  frame.lag_s = output.lag_s;
+  frame.resets = output.resets;
+  frame.mass_kg = output.calibrated ? output.mass_kg : 0;  // As weighed, or nothing.
+  frame.momentum = output.momentum;
+  frame.momentum.p_WC_m = output.com_W_m;
+  frame.momentum.position_variance_m2 = output.com_variance_m2;
+  frame.link_count = std::min(output.p_WJ_m.size(), kMaxLinks);
+  for (std::size_t i = 0; i < frame.link_count; ++i) {
+    frame.links[i].position_m = output.p_WJ_m[i];
+    frame.links[i].orientation = Eigen::Quaterniond(output.R_WJ[i]);
+    frame.link_sd_m[i] = i < output.joint_sd_m.size() ? output.joint_sd_m[i] : 0;
+  }
+  frame.solve_us = static_cast<double>(solve_ns_) * 1e-3;
+}
+
+}  // namespace footing::pose_service

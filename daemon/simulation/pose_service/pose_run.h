@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "common/exchange/bounded_queue.h"
+#include "common/exchange/latest.h"
+#include "daemon/simulation/pose_service/pose_frame.h"
+
+namespace footing::pose_service {
+
+/// One subject's reconstruction: made and destroyed by the io thread, advanced by the other one.
+struct SubjectRun {
+  std::uint64_t number = 0;
+  reconstruction::Reconstruction reconstruction;
+  /// The same person in insoles; none where the mode or the lag has none.
+  std::optional<reconstruction::InsoleWalk> walk = std::nullopt;
+};
+
+/// How subjects come to the simulation thread and go back: it never allocates or frees.
+struct SubjectExchange {
+  static constexpr std::size_t kMost = 4;  ///< On their way at one time.
+
+  exchange::BoundedQueue<std::unique_ptr<SubjectRun>> next{kMost};
+  exchange::BoundedQueue<std::unique_ptr<SubjectRun>> done{kMost};
+};
+
+/// The pose engine on the simulation thread (see SimulationThread).
+///
+/// Boards and insoles have a reconstruction each. That of the source which is followed is advanced;
+/// the other one rests, but takes its T-pose along as long as it has none. Insoles that fall silent
+/// are followed on, unless boards tell something: the pose coasts.
+///
+/// A subject takes effect with the first inputs that carry its number; it was queued before them.
+class PoseRun {
+ public:
+  using Inputs = PoseInputs;
+  using Frame = PoseFrame;
+
+  /// Without new inputs for so long, all that they said has become unknown.
+  static constexpr double kStreamLostS = 0.25;
+
+  PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExchange& subjects);
+
+  void StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame);
+  void FillOnSimThread(Frame& frame) const;
+  void TakenOnSimThread(Frame& frame) const { frame.applied_count = 0; }
+
+ private:
+  void Obey(const PoseInputs& inputs);
+  void ChooseSource();
+  void Advance();
+  const reconstruction::Output& output() const;
+
+  std::unique_ptr<SubjectRun> subject_;
+  double rate_hz_;
+  SubjectExchange* subjects_;
+  std::uint64_t step_ = 0;
+  std::uint64_t quiet_steps_ = 0;  ///< Since the last inputs.
+  std::uint64_t calibrate_number_ = 0;
+  reconstruction::Inputs told_;
+  reconstruction::InsoleInputs worn_;
+  board::LoadPlayer player_;
+  PoseSource source_ = PoseSource::kBoards;
+  bool simulated_ = false;
+  std::array<HandTrouble, reconstruction::kHands> hand_trouble_{};
+  std::int64_t solve_ns_ = 0;
+};
+
+}  // namespace footing::pose_service

@@ -1,0 +1,197 @@
+#include "daemon/simulation/pose_service/pose_sensors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/board/geometry.h"
+#include "common/board/layout.h"
+#include "common/units/units.h"
+#include "common/wire/wire.h"
+
+namespace footing::pose_service {
+namespace {
+
+/// A tracker that says less of itself is not believed: no point is known better than this.
+constexpr double kLeastHandSdM = 0.002;
+constexpr double kMostHandSdM = 1;
+
+bool IsFinite(const v1::Vector3& v) {
+  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+bool IsOld(std::int64_t seen_ns, std::int64_t now_ns, double timeout_s) {
+  return NanosecondsToSeconds(now_ns - seen_ns) > timeout_s;
+}
+
+void PlaceCells(const stream::BoardPose& pose, const std::optional<stream::BoardGeometry>& geometry,
+                momentum::FootLoads& foot) {
+  const auto places = board::SensorPlaces(pose, board::GeometryOr(geometry));
+  foot.count = places.size();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    foot.cells[i].p_WS_m = {places[i].x(), places[i].y(), 0};
+  }
+}
+
+/// 0 left, 1 right; -1: another role.
+int SideOf(v1::DeviceRole role, v1::DeviceRole left, v1::DeviceRole right) {
+  return role == left ? 0 : role == right ? 1 : -1;
+}
+
+int BoardSideOf(v1::DeviceRole role) {
+  return SideOf(role, v1::DEVICE_ROLE_LEFT_BOARD, v1::DEVICE_ROLE_RIGHT_BOARD);
+}
+
+int HandSideOf(v1::DeviceRole role) {
+  return SideOf(role, v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND);
+}
+
+}  // namespace
+
+PoseSensors::PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
+                         std::optional<arms::ArmModel> arm)
+    : wanted_rig_(std::move(rig)), followed_rig_(wanted_rig_), out_(out), arms_(std::move(arm)) {
+  Place({});
+}
+
+void PoseSensors::Bind(const v1::DeviceStatusList& status) {
+  for (const v1::DeviceStatus& device : status.devices()) {
+    if (followed_rig_.empty() && BoardSideOf(device.role()) >= 0) followed_rig_ = device.rig();
+  }
+  std::array<Board, momentum::kFeet> boards{};
+  std::array<std::optional<std::uint32_t>, reconstruction::kHands> wiimotes;
+  for (const v1::DeviceStatus& device : status.devices()) {
+    if (device.rig() != followed_rig_) continue;
+    const int hand = HandSideOf(device.role());
+    if (hand >= 0 && device.kind() == v1::DEVICE_KIND_WIIMOTE) {
+      wiimotes[static_cast<std::size_t>(hand)] = device.device();
+    }
+    const int side = BoardSideOf(device.role());
+    if (side < 0) continue;
+    Board& board = boards[static_cast<std::size_t>(side)];
+    const Board& before = boards_[static_cast<std::size_t>(side)];
+    if (before.bound && before.device == device.device()) board = before;
+    board.bound = true;
+    board.device = device.device();
+  }
+  boards_ = boards;
+  for (std::size_t side = 0; side < wiimotes.size(); ++side) arms_.Bind(side, wiimotes[side]);
+}
+
+void PoseSensors::Place(const v1::SetupState& setup) {
+  stream::BoardLayout layout;
+  for (const v1::RigSetup& message : setup.rigs()) {
+    if (message.rig() == followed_rig_) layout = wire::FromProto(message).layout;
+  }
+  layout = board::LayoutOr(layout);
+  PlaceCells(layout.left, layout.left_geometry, inputs_.sensors.loads.feet[0]);
+  PlaceCells(layout.right, layout.right_geometry, inputs_.sensors.loads.feet[1]);
+}
+
+void PoseSensors::TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns) {
+  const std::array<double, 4> corners_n{sample.top_left_n(), sample.top_right_n(),
+                                        sample.bottom_left_n(), sample.bottom_right_n()};
+  for (const double corner_n : corners_n) {
+    if (!std::isfinite(corner_n)) return;
+  }
+  for (std::size_t side = 0; side < boards_.size(); ++side) {
+    Board& board = boards_[side];
+    if (!board.bound || board.device != sample.device()) continue;
+    board.seen = true;
+    board.seen_ns = now_ns;
+    board.simulated = sample.simulated();
+    board.meter.Add(NanosecondsToSeconds(sample.sampled_ns()), corners_n);
+    for (std::size_t i = 0; i < corners_n.size(); ++i) {
+      inputs_.sensors.loads.feet[side].cells[i].load_n = corners_n[i];
+    }
+  }
+}
+
+void PoseSensors::TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns) {
+  const int side = HandSideOf(sample.role());
+  if (side < 0 || sample.rig() != followed_rig_) return;
+  if (!IsFinite(sample.position_m()) || !IsFinite(sample.sd_m())) return;
+  if (!(sample.confidence() > 0)) return;
+  hands_[static_cast<std::size_t>(side)] = {true, now_ns, sample.simulated()};
+  tracker_ = sample.tracker();
+  tracks_[static_cast<std::size_t>(side)].Add(
+      NanosecondsToSeconds(now_ns) - std::max(0.0, age_s), wire::FromProto(sample.position_m()),
+      wire::FromProto(sample.sd_m()).cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM));
+}
+
+void PoseSensors::TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns) {
+  const bool left = sample.body() == v1::CONTACT_BODY_LEFT_FOOT;
+  if (!left && sample.body() != v1::CONTACT_BODY_RIGHT_FOOT) return;
+  if (followed_rig_.empty()) followed_rig_ = sample.rig();
+  if (sample.rig() != followed_rig_) return;
+  if (sample.cells_size() < 1 || sample.cells_size() > static_cast<int>(momentum::kMaxCells))
+    return;
+  for (const v1::ContactCell& cell : sample.cells()) {
+    if (!std::isfinite(cell.x_m()) || !std::isfinite(cell.y_m()) || !std::isfinite(cell.load_n()))
+      return;
+  }
+  insoles_[left ? 0 : 1] = {true, now_ns, sample.simulated()};
+  reconstruction::InsoleFoot& foot = inputs_.insoles[left ? 0 : 1];
+  foot.count = static_cast<std::size_t>(sample.cells_size());
+  for (std::size_t i = 0; i < foot.count; ++i) {
+    const v1::ContactCell& cell = sample.cells(static_cast<int>(i));
+    foot.p_S_m[i] = {cell.x_m(), cell.y_m()};
+    foot.load_n[i] = cell.load_n();
+  }
+}
+
+void PoseSensors::Judge(std::int64_t now_ns) {
+  inputs_.simulated = false;
+  for (std::size_t side = 0; side < boards_.size(); ++side) {
+    Board& board = boards_[side];
+    if (board.seen && IsOld(board.seen_ns, now_ns, kBoardTimeoutS)) board.seen = false;
+    inputs_.sensors.loads.feet[side].valid = board.seen;
+    inputs_.impulses[side] = board.seen ? board.meter.impulse() : board::BoardImpulse{};
+    inputs_.simulated |= board.seen && board.simulated;
+  }
+  const auto judge = [&](Worn& worn, double timeout_s) {
+    if (worn.seen && IsOld(worn.seen_ns, now_ns, timeout_s)) worn.seen = false;
+    inputs_.simulated |= worn.seen && worn.simulated;
+    return worn.seen;
+  };
+  for (std::size_t side = 0; side < hands_.size(); ++side) {
+    const bool seen = judge(hands_[side], kHandTimeoutS);
+    if (seen) inputs_.sensors.hands[side] = tracks_[side].At(NanosecondsToSeconds(now_ns));
+    inputs_.sensors.hands[side].valid = seen;
+    inputs_.insoles[side].valid = judge(insoles_[side], kInsoleTimeoutS);
+  }
+}
+
+void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
+  if (tick.refilled()) return;
+  const std::string rig_before = followed_rig_;
+  if (tick.has_status()) Bind(tick.status());
+  if (tick.has_setup()) setup_ = tick.setup();
+  // Which rig is followed may be known after its set-up was published.
+  if (tick.has_setup() || followed_rig_ != rig_before) Place(setup_);
+  if (tick.snapshot()) return;
+  for (const v1::BoardSample& sample : tick.boards().samples()) TakeBoard(sample, now_ns);
+  for (const v1::ContactSample& sample : tick.contacts().samples()) TakeInsole(sample, now_ns);
+  for (const v1::HandSample& sample : tick.hands().samples()) {
+    // Both times are footingd's; its clock may be another one than ours.
+    TakeHand(sample, NanosecondsToSeconds(tick.host_ns() - sample.sampled_ns()), now_ns);
+  }
+  for (const v1::MotionSample& sample : tick.motion().samples()) arms_.Take(sample, now_ns);
+  Judge(now_ns);
+  arms_.Tell(now_ns, inputs_);
+  inputs_.sensor_epoch = tick.epoch();
+  inputs_.sensor_sequence = tick.sequence();
+  out_.Write(inputs_);
+}
+
+void PoseSensors::Calibrate() {
+  ++inputs_.calibrate_number;
+  out_.Write(inputs_);
+}
+
+void PoseSensors::TakeSubject(std::uint64_t number) {
+  inputs_.subject_number = number;
+  out_.Write(inputs_);
+}
+
+}  // namespace footing::pose_service

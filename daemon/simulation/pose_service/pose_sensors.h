@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/exchange/latest.h"
+#include "daemon/simulation/pose_service/pose_arms.h"
+#include "daemon/simulation/pose_service/pose_frame.h"
+#include "daemon/simulation/reconstruction/hand_track.h"
+#include "footing/v1/command.pb.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::pose_service {
+
+/// Turns ticks of the sensor daemon into what the pose engine is told, on the io thread: the newest
+/// raw sample of the rig's left and right board with its cells' places in W and what they have felt
+/// so far, of its insoles, and of
+/// its hands as they have gone on since the tracker saw them, and how its arms are held by the
+/// Wiimotes in the fists.
+///
+/// A board or an insole without samples, or a hand not seen, for longer than its timeout is not
+/// valid, which is not the same as no load. Samples that are not finite count as none.
+class PoseSensors {
+ public:
+  static constexpr double kBoardTimeoutS = 0.2;
+  static constexpr double kHandTimeoutS = 0.15;
+  static constexpr double kInsoleTimeoutS = 0.2;
+
+  /// `rig` empty: the first rig with a board or an insole. Without an arm model Wiimotes tell
+  /// nothing.
+  PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
+              std::optional<arms::ArmModel> arm = std::nullopt);
+
+  void OnTick(const v1::Tick& tick, std::int64_t now_ns);
+  /// What the engine says of its T-pose, frame by frame: Wiimotes are aligned by it.
+  void Follow(const PoseFrame& frame) {
+    arms_.Follow(frame.calibrated, frame.calibration_progress);
+  }
+  void Calibrate();
+  void TakeSubject(std::uint64_t number);
+
+  const std::string& rig() const { return followed_rig_; }
+  const PoseInputs& inputs() const { return inputs_; }
+  /// Name of who told of a hand last; empty: it has none.
+  const std::string& tracker() const { return tracker_; }
+
+ private:
+  struct Board {
+    bool bound = false;  ///< A device has the role.
+    std::uint32_t device = 0;
+    bool seen = false;
+    std::int64_t seen_ns = 0;
+    bool simulated = false;
+    board::ImpulseMeter meter;
+  };
+  /// A hand or an insole.
+  struct Worn {
+    bool seen = false;
+    std::int64_t seen_ns = 0;
+    bool simulated = false;
+  };
+
+  void Bind(const v1::DeviceStatusList& status);
+  /// Puts the cells where the followed rig's boards have them.
+  void Place(const v1::SetupState& setup);
+  void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
+  /// `age_s` of its exposure.
+  void TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
+  void TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns);
+  void Judge(std::int64_t now_ns);
+
+  const std::string wanted_rig_;
+  std::string followed_rig_;
+  exchange::Latest<PoseInputs>& out_;
+  std::array<Board, momentum::kFeet> boards_{};
+  std::array<Worn, 2> hands_{};
+  std::array<reconstruction::HandTrack, reconstruction::kHands> tracks_;
+  std::array<Worn, momentum::kFeet> insoles_{};
+  std::string tracker_;
+  v1::SetupState setup_;  ///< As published last.
+  PoseArms arms_;
+  PoseInputs inputs_;
+};
+
+}  // namespace footing::pose_service

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "common/transport/server.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::serving {
+
+inline constexpr std::uint32_t kSkeletons = v1::Tick::kSkeletonsFieldNumber;
+inline constexpr std::uint32_t kTrack = v1::Tick::kTrackFieldNumber;
+inline constexpr std::uint32_t kCharacters = v1::Tick::kCharactersFieldNumber;
+inline constexpr std::uint32_t kEvents = v1::Tick::kEventsFieldNumber;
+inline constexpr std::uint32_t kInputs = v1::Tick::kInputsFieldNumber;
+
+/// One channel of a tick.
+inline transport::ChannelBytes Bytes(std::uint32_t field,
+                                     const google::protobuf::MessageLite& message) {
+  return {field, message.SerializeAsString()};
+}
+
+}  // namespace footing::serving

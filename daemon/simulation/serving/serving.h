@@ -1,0 +1,135 @@
+#pragma once
+
+#include <sys/eventfd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <cerrno>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/log/log.h"
+#include "common/result/result.h"
+#include "common/transport/client.h"
+#include "common/transport/server.h"
+#include "daemon/simulation/serving/config.h"
+
+namespace footing::serving {
+
+/// Sockets around one engine's line: ticks of footingd to it, its frames to the clients.
+template <typename Line>
+class Serving : public std::enable_shared_from_this<Serving<Line>> {
+ public:
+  Serving(boost::asio::io_context& io, std::unique_ptr<Line> line, const std::string& version,
+          int wake_descriptor)
+      : line_(std::move(line)),
+        wake_(io, wake_descriptor),
+        server_(io, MakeServerOptions(*line_, version),
+                {[this](const transport::SessionInfo&, const v1::Command& command) {
+                   return line_->OnCommand(command);
+                 },
+                 {}}) {}
+
+  Result<void> Open(boost::asio::io_context& io, const Config& config) {
+    auto addresses = config.listen;
+    if (addresses.empty()) {
+      addresses.push_back(transport::DefaultAddress("simulation", true).Text());
+    }
+    for (const std::string& text : addresses) {
+      const auto address = transport::ParseAddress(text);
+      if (!address) return address.error();
+      if (const auto listening = server_.Listen(*address); !listening) return listening;
+      log::Info("listening on " + address->Text());
+    }
+    transport::ClientOptions options;
+    options.address = transport::DefaultAddress("sensor");
+    if (!config.sensor.empty()) {
+      const auto address = transport::ParseAddress(config.sensor);
+      if (!address) return address.error();
+      options.address = *address;
+    }
+    options.client_name = "footing-sim";
+    options.channels = Line::SensorChannels();
+    options.policy = Line::kSensorPolicy;
+    transport::ClientHandlers handlers;
+    handlers.on_tick = [this](const v1::Tick& tick) { line_->OnTick(tick, clock::MonotonicNs()); };
+    handlers.on_state = [](transport::LinkState, const std::string& why) {
+      log::Info("sensor stream: " + why);
+    };
+    client_ = std::make_unique<transport::Client>(io, options, std::move(handlers));
+    return {};
+  }
+
+  void Start() {
+    server_.Publish(clock::MonotonicNs(), line_->Retained());
+    client_->Start();
+    line_->thread().Start();
+    WaitForFrame();
+  }
+
+  void Stop(const std::string& reason) {
+    client_->Stop();
+    line_->thread().Stop();
+    boost::system::error_code ignored;
+    wake_.close(ignored);
+    server_.Stop(reason);
+  }
+
+ private:
+  static transport::ServerOptions MakeServerOptions(const Line& line, const std::string& version) {
+    transport::ServerOptions options;
+    options.server_id = "footing-sim";
+    options.version = version;
+    options.channels = Line::Channels();
+    options.tick_rate_hz = line.frame_rate_hz();
+    options.capabilities = Line::Capabilities();
+    return options;
+  }
+
+  void WaitForFrame() {
+    wake_.async_read_some(
+        boost::asio::buffer(&wakes_, sizeof(wakes_)),
+        [self = this->shared_from_this()](boost::system::error_code error, std::size_t) {
+          if (error) return;
+          self->PublishFrames();
+          self->WaitForFrame();
+        });
+  }
+
+  void PublishFrames() {
+    while (line_->thread().frames().Pop(frame_)) {
+      const std::int64_t now_ns = clock::MonotonicNs();
+      server_.Publish(now_ns, line_->OnFrame(frame_, now_ns));
+    }
+  }
+
+  std::unique_ptr<Line> line_;
+  boost::asio::posix::stream_descriptor wake_;
+  std::uint64_t wakes_ = 0;
+  typename Line::Run::Frame frame_;
+  transport::Server server_;
+  std::unique_ptr<transport::Client> client_;
+};
+
+/// Starts the line and returns how to stop it.
+template <typename Line>
+Result<std::function<void(const std::string&)>> StartServing(boost::asio::io_context& io,
+                                                             const Config& config,
+                                                             const std::string& version) {
+  const int wake_descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (wake_descriptor < 0) return Failure(std::string("eventfd: ") + std::strerror(errno));
+  auto line = Line::Create(config, wake_descriptor);
+  if (!line) return line.error();
+  auto serving =
+      std::make_shared<Serving<Line>>(io, std::move(line).value(), version, wake_descriptor);
+  if (const auto open = serving->Open(io, config); !open) return open.error();
+  serving->Start();
+  return std::function<void(const std::string&)>(
+      [serving](const std::string& reason) { serving->Stop(reason); });
+}
+
+}  // namespace footing::serving

@@ -1,0 +1,169 @@
+#include "daemon/simulation/pose_service/pose_note.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/simulation/pose_service/pose_events.h"
+
+namespace footing::pose_service {
+namespace {
+
+using testing::HasSubstr;
+
+/// 70 kg on both boards, T-pose taken, hands seen.
+PoseFrame Well() {
+  PoseFrame frame;
+  frame.feet_told = {true, true};
+  frame.hands_valid = {true, true};
+  frame.load_n = {343, 343};
+  frame.calibrated = true;
+  frame.valid = true;
+  frame.mass_kg = 70;
+  for (auto& foot : frame.momentum.feet) foot.contact = foot.valid = true;
+  return frame;
+}
+
+const Subject kSubject{"p07", 1.75, 70, 0};
+
+TEST(PoseNote, SaysNothingWhenAllIsWell) { EXPECT_EQ(PoseNote(Well(), kSubject), ""); }
+
+TEST(PoseNote, SaysThatWhatIsMeasuredFitsNoPose) {
+  PoseFrame frame = Well();
+  frame.valid = false;
+  frame.momentum.valid = true;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("fits no pose"));
+  frame.momentum.valid = false;  // The boards are what is wrong.
+  EXPECT_EQ(PoseNote(frame, kSubject), "");
+}
+
+TEST(PoseNote, LeadsThroughTheTPose) {
+  PoseFrame frame = Well();
+  frame.calibrated = false;
+  frame.load_n = {0, 0};
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("step on"));
+  frame.load_n = {600, 86};
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("weight on the right foot"));
+  frame.load_n = {343, 343};
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("arms out to the sides"));
+  frame.calibration_progress = 0.5;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("hold still, 2.5 s more"));
+  frame.calibration_progress = 0;
+  frame.calibration_restarts = 1;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("you moved"));
+}
+
+TEST(PoseNote, NamesTheBoardThatIsLost) {
+  PoseFrame frame = Well();
+  frame.feet_told[1] = false;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right board"));
+  frame.feet_told[0] = false;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("are both on"));
+}
+
+TEST(PoseNote, NamesTheFootThatIsOffAndTheHandThatIsNotSeen) {
+  PoseFrame frame = Well();
+  frame.momentum.feet[0].contact = false;
+  frame.momentum.feet[0].airborne_s = 0.3;
+  EXPECT_EQ(PoseNote(frame, kSubject), "") << "a step is no fault";
+  frame.momentum.feet[0].airborne_s = 1.2;
+  frame.hands_valid[1] = false;
+  const std::string note = PoseNote(frame, kSubject);
+  EXPECT_THAT(note, HasSubstr("left foot is off its board for 1.2 s"));
+  EXPECT_THAT(note, HasSubstr("right hand is not seen"));
+}
+
+TEST(PoseNote, SaysWhatAWiimoteLacksAndWhatToDo) {
+  PoseFrame frame = Well();
+  frame.hands_valid = {false, false};
+  EXPECT_EQ(PoseNote(frame, kSubject), "no hand is seen");
+  frame.arms_valid = {true, true};
+  EXPECT_EQ(PoseNote(frame, kSubject), "");
+  frame.arms_valid[0] = false;
+  frame.hand_trouble[0] = HandTrouble::kSilent;
+  EXPECT_EQ(PoseNote(frame, kSubject), "nothing comes from the left Wiimote: its arm is guessed");
+  frame.hand_trouble[0] = HandTrouble::kAwaitsTPose;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("take the T-pose again"));
+  frame.arms_valid[1] = false;
+  frame.hand_trouble = {HandTrouble::kNoGyroscope, HandTrouble::kNoModel};
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("is a MotionPlus in it?"));
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right Wiimote is not followed"));
+  frame.hands_valid = {true, true};
+  EXPECT_EQ(PoseNote(frame, kSubject), "") << "a tracker sees both";
+}
+
+TEST(PoseNote, SpeaksOfInsolesToWhoWalksInThem) {
+  PoseFrame frame = Well();
+  frame.source = PoseSource::kInsoles;
+  EXPECT_EQ(PoseNote(frame, kSubject), "");
+  frame.feet_told[1] = false;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right insole"));
+  frame.feet_told[0] = false;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("nothing comes from the insoles"));
+  frame = Well();
+  frame.insoles_idle = true;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("best mode without lag"));
+}
+
+TEST(PoseNote, AnotherPersonsWeightIsToldFromThreePercentOn) {
+  PoseFrame frame = Well();
+  frame.mass_kg = 71.9;
+  EXPECT_EQ(PoseNote(frame, kSubject), "");
+  frame.mass_kg = 72.3;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("72.3 kg"));
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("is it p07"));
+}
+
+TEST(PoseEvents, ABoardLostAndBackIsToldOnceEach) {
+  PoseEvents events;
+  PoseFrame frame = Well();
+  events.Between(frame, kSubject, 1);
+  EXPECT_EQ(events.Between(frame, kSubject, 2).events_size(), 0);
+  frame.feet_told[0] = false;
+  const v1::Events lost = events.Between(frame, kSubject, 3);
+  ASSERT_EQ(lost.events_size(), 1);
+  EXPECT_EQ(lost.events(0).kind(), v1::Event::KIND_STREAM_LOST);
+  EXPECT_EQ(events.Between(frame, kSubject, 4).events_size(), 0);
+  frame.feet_told[0] = true;
+  EXPECT_EQ(events.Between(frame, kSubject, 5).events(0).kind(), v1::Event::KIND_STREAM_BACK);
+}
+
+TEST(PoseEvents, TheSourceThatIsFollowedIsNamed) {
+  PoseEvents events;
+  PoseFrame frame = Well();
+  events.Between(frame, kSubject, 1);
+  frame.source = PoseSource::kInsoles;
+  EXPECT_THAT(events.Between(frame, kSubject, 2).events(0).text(),
+              HasSubstr("follows the insoles"));
+  frame.feet_told = {false, true};
+  EXPECT_THAT(events.Between(frame, kSubject, 3).events(0).text(), HasSubstr("an insole is lost"));
+}
+
+TEST(PoseEvents, AWiimoteLostAndBackIsToldOnceEach) {
+  PoseEvents events;
+  PoseFrame frame = Well();
+  events.Between(frame, kSubject, 1);
+  frame.hand_trouble[1] = HandTrouble::kSilent;
+  const v1::Events lost = events.Between(frame, kSubject, 2);
+  ASSERT_EQ(lost.events_size(), 1);
+  EXPECT_EQ(lost.events(0).kind(), v1::Event::KIND_STREAM_LOST);
+  EXPECT_THAT(lost.events(0).text(), HasSubstr("the right Wiimote"));
+  EXPECT_EQ(events.Between(frame, kSubject, 3).events_size(), 0);
+  frame.hand_trouble[1] = HandTrouble::kNone;
+  EXPECT_EQ(events.Between(frame, kSubject, 4).events(0).kind(), v1::Event::KIND_STREAM_BACK);
+}
+
+TEST(PoseEvents, TheNextSubjectIsNamed) {
+  PoseEvents events;
+  PoseFrame frame = Well();
+  events.Between(frame, kSubject, 1);
+  frame.subject_number = 2;
+  frame.calibrated = false;
+  const v1::Events next = events.Between(frame, {"p08", 1.6, 0, 0}, 2);
+  ASSERT_EQ(next.events_size(), 1);
+  EXPECT_THAT(next.events(0).text(), HasSubstr("p08"));
+  frame.calibrated = true;
+  EXPECT_THAT(events.Between(frame, {"p08", 1.6, 0, 0}, 3).events(0).text(), HasSubstr("70.0 kg"));
+}
+
+}  // namespace
+}  // namespace footing::pose_service
