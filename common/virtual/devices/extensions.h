@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/units/units.h"
+
 /// What is plugged into a Wiimote, as its registers and six data bytes: Nunchuk, Classic
 /// Controller, MotionPlus.
 namespace footing::virtual_devices {
@@ -19,7 +21,7 @@ struct NunchukSensors {
   double stick_y = 0;  ///< -1 back to 1 front.
   bool c = false;
   bool z = false;
-  Eigen::Vector3d specific_force_S_mps2{0, 0, -9.80665};
+  Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
 };
 
 using NunchukBlock = std::array<std::uint8_t, 16>;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "common/units/units.h"
 #include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/identity.h"
 
@@ -19,7 +20,7 @@ enum class MoveModel {
 
 /// What a Move feels. S: x left, y front (to the sphere), z down (away from the buttons).
 struct MoveSensors {
-  Eigen::Vector3d specific_force_S_mps2{0, 0, -9.80665};
+  Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();  ///< Right-handed.
   Eigen::Vector3d magnetic_field_S_counts = Eigen::Vector3d::Zero();   ///< +-2047.
   double trigger = 0;                                                  ///< 0 to 1.

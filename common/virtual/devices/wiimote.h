@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "common/units/units.h"
 #include "common/virtual/devices/controller.h"
 #include "common/virtual/devices/extensions.h"
 #include "common/virtual/devices/identity.h"
@@ -28,7 +29,7 @@ struct WiimoteOptions {
 
 /// What a Wiimote and what is plugged into it feel. S of the Wiimote: x left, y front, z down.
 struct WiimoteSensors {
-  Eigen::Vector3d specific_force_S_mps2{0, 0, -9.80665};
+  Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
   std::uint16_t buttons = 0;  ///< First button byte in bits 8 to 15.
   std::array<std::optional<CameraPoint>, 4> camera;
   NunchukSensors nunchuk;

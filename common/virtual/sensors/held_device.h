@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "common/body/body.h"
+#include "common/units/units.h"
 #include "common/virtual/motion/motion.h"
 #include "common/virtual/noise/random.h"
 
@@ -25,8 +26,8 @@ HeldCourse FollowFist(const body::Body& body, const motion::Motion& motion, int 
 /// said otherwise. Noises, counts and ranges are the devices' (docs/hands.md).
 struct HeldErrorConfig {
   double force_noise_mps2 = 0.06;
-  double force_count_mps2 = 9.80665 / 104;
-  double force_range_mps2 = 3.6 * 9.80665;  ///< Ends there.
+  double force_count_mps2 = kStandardGravityMps2 / 104;
+  double force_range_mps2 = 3.6 * kStandardGravityMps2;  ///< Ends there.
   double force_bias_mps2 = 0.1;
   double turn_noise_radps = 0.006;
   double turn_count_radps = 0.00127;     ///< 595 degrees/s / 8192.

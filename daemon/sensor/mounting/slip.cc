@@ -3,13 +3,14 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "common/units/units.h"
+
 namespace footing::mounting {
 namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kPauseNs = 250'000'000;
 constexpr int kLeastSamples = 40;
-constexpr double kGravityMps2 = 9.80665;
 constexpr double kGravityToleranceMps2 = 1.5;
 
 }  // namespace
@@ -40,7 +41,7 @@ void SlipWatch::JudgeSecond() {
   const Eigen::Vector3d mean = sum_ / count_;
   const Eigen::Matrix3d covariance = squares_ / count_ - mean * mean.transpose();
   if (std::sqrt(std::max(0.0, covariance.trace())) < config_.rest_sd_mps2) {
-    if (std::abs(mean.norm() - kGravityMps2) > kGravityToleranceMps2) return;
+    if (std::abs(mean.norm() - kStandardGravityMps2) > kGravityToleranceMps2) return;
     const double lean_rad = std::atan2(mean.head<2>().norm(), -mean.z());
     const bool leg =
         role_ == stream::DeviceRole::kLeftLeg || role_ == stream::DeviceRole::kRightLeg;

@@ -3,13 +3,14 @@
 #include <cstdint>
 
 #include "common/board/plate.h"
+#include "common/units/units.h"
 
 namespace footing::tare {
 
 struct DisplacementConfig {
   /// A board in the air hangs on its feet: its plate's some 3 kg leave the sensors; with one edge
   /// up it is about half of that. Under -1 kg for this long it is in somebody's hands.
-  double lifted_n = -9.80665;
+  double lifted_n = -KilogramsToNewtons(1);
   double lifted_s = 0.5;
   /// Empty and at rest, a corner that is off by more than this while the total is not: the board
   /// stands on another floor than at its tare.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/units/units.h"
+
 namespace footing::tare {
 namespace {
 
@@ -66,7 +68,8 @@ Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareC
   }
   tare.residual_n = std::sqrt(squares / n);
   if (std::abs(mean_n) > config.most_total_n) {
-    return Refused("the load is " + OneDecimal(mean_n) + " N (" + OneDecimal(mean_n / 9.80665) +
+    return Refused("the load is " + OneDecimal(mean_n) + " N (" +
+                   OneDecimal(NewtonsToKilograms(mean_n)) +
                    " kg), too much for an empty board; step off");
   }
   if (tare.residual_n > config.most_sd_n) {
