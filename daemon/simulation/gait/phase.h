@@ -19,7 +19,9 @@ const char* Name(RunningPhase phase);
 
 /// What the walking machine asks of the state.
 struct WalkingCues {
-  bool double_support_over = false;  ///< The rear leg is unloaded; it may be picked up.
+  /// Its time is over and the front foot touches, or has had 0.1 s more: the rear leg is picked up,
+  /// whatever load it still has.
+  bool double_support_over = false;
   bool half_swing_over = false;
   bool swing_foot_landed = false;
 };
@@ -45,7 +47,7 @@ struct Arrow {
 /// The arrows of Figure 5. Of one phase's arrows the first one whose cue holds is taken.
 inline constexpr std::array<Arrow<WalkingPhase, WalkingCues>, 3> kWalkingArrows{{
     {WalkingPhase::kDoubleSupport, &WalkingCues::double_support_over, WalkingPhase::kRise,
-     "rear leg unloaded"},
+     "double support time over, front foot loaded"},
     {WalkingPhase::kRise, &WalkingCues::half_swing_over, WalkingPhase::kFall,
      "half the swing is over"},
     {WalkingPhase::kFall, &WalkingCues::swing_foot_landed, WalkingPhase::kDoubleSupport,
