@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,6 +11,25 @@
 namespace footing::stream {
 
 enum class Gait { kUnspecified = 0, kStep = 1, kWalk = 2, kRun = 3, kJump = 4 };
+
+/// All gaits, in the order of their numbers: what has a place for each gait is as long as this.
+inline constexpr std::array kGaits{Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
+
+/// A gait's place in kGaits; kUnspecified has the first.
+constexpr std::size_t IndexOf(Gait gait) {
+  for (std::size_t i = 0; i < kGaits.size(); ++i) {
+    if (kGaits[i] == gait) return i;
+  }
+  return 0;
+}
+
+/// The gait of a number of the protocol; kUnspecified for one that is not known.
+constexpr Gait GaitNumbered(int number) {
+  for (const Gait gait : kGaits) {
+    if (static_cast<int>(gait) == number) return gait;
+  }
+  return Gait::kUnspecified;
+}
 
 /// "step", "walk", "run", "jump".
 const char* Name(Gait gait);
@@ -57,6 +78,15 @@ struct Contact {
   double normal_force_n = 0;
 };
 
+/// Failures by cause, as the gait paper counts them (section 8.2).
+struct FailureCounts {
+  std::uint64_t simulation = 0;  ///< The character fell on ground that it could stand on.
+  std::uint64_t curve = 0;       ///< It left the ribbon.
+  std::uint64_t jump = 0;        ///< A foot went into a pit.
+
+  friend bool operator==(const FailureCounts&, const FailureCounts&) = default;
+};
+
 struct GaitState {
   Gait gait = Gait::kStep;
   Gait commanded_gait = Gait::kStep;
@@ -68,7 +98,9 @@ struct GaitState {
   double speed_mps = 0;
   double heading_rad = 0;
   std::uint64_t steps = 0;
-  std::uint64_t falls = 0;
+  std::uint64_t falls = 0;  ///< Failures of every cause and operator put-backs.
+  FailureCounts failures;
+  std::uint64_t operator_put_backs = 0;  ///< By a command while it stood: not a failure.
   double distance_m = 0;
   bool commanded_by_stream = false;
   Eigen::Vector2d next_foothold_m = Eigen::Vector2d::Zero();

@@ -20,7 +20,8 @@ constexpr std::array kExtensions = {"unknown",
                                     "motion_plus_nunchuk",
                                     "motion_plus_classic",
                                     "other"};
-constexpr std::array kGaits = {"unknown", "step", "walk", "run", "jump"};
+constexpr std::array kGaitNames = {"unknown", "step", "walk", "run", "jump"};
+static_assert(kGaitNames.size() == kGaits.size() + 1, "name every gait");
 
 template <std::size_t N, typename E>
 const char* At(const std::array<const char*, N>& names, E value) {
@@ -43,9 +44,9 @@ const char* Name(DeviceRole role) { return At(kRoles, role); }
 const char* Name(DeviceState state) { return At(kStates, state); }
 const char* Name(CalibrationOrigin origin) { return At(kOrigins, origin); }
 const char* Name(Extension extension) { return At(kExtensions, extension); }
-const char* Name(Gait gait) { return At(kGaits, gait); }
+const char* Name(Gait gait) { return At(kGaitNames, gait); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
-Gait GaitNamed(const std::string& name) { return Named<Gait>(kGaits, name); }
+Gait GaitNamed(const std::string& name) { return Named<Gait>(kGaitNames, name); }
 
 std::uint32_t LedsOf(DeviceRole role) {
   switch (role) {

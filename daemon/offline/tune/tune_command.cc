@@ -89,8 +89,7 @@ class Tuning {
     for (const gait::GainField& field : gait::GainFields()) columns.push_back(&field);
     RunKey key{options_.gait,   options_.speeds_mps, options_.seed,
                options_.method, options_.trials,     ""};
-    for (const stream::Gait gait :
-         {stream::Gait::kStep, stream::Gait::kWalk, stream::Gait::kRun, stream::Gait::kJump}) {
+    for (const stream::Gait gait : stream::kGaits) {
       key.from += gait::WriteGains(gait, table_.SetsOf(gait), columns, "");
     }
     return key;

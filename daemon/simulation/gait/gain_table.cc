@@ -16,21 +16,6 @@ constexpr std::string_view kFirstUnits[] = {"-", "-", "m/s"};
 constexpr std::size_t kFirst = 3;
 constexpr double kFastestMps = 20;
 
-std::size_t IndexOf(Gait gait) {
-  switch (gait) {
-    case Gait::kWalk:
-      return 1;
-    case Gait::kRun:
-      return 2;
-    case Gait::kJump:
-      return 3;
-    case Gait::kStep:
-    case Gait::kUnspecified:
-      return 0;
-  }
-  return 0;
-}
-
 using Cells = std::vector<std::string_view>;
 
 Cells Split(std::string_view line) {
@@ -59,7 +44,7 @@ class Reader {
  public:
   explicit Reader(std::string origin) : origin_(std::move(origin)) {}
 
-  Result<void> Read(std::string_view text, std::array<std::vector<GainSet>, 4>& sets) {
+  Result<void> Read(std::string_view text, GainSets& sets) {
     int rows = 0;
     while (!text.empty()) {
       const std::size_t end = text.find('\n');
@@ -134,7 +119,7 @@ class Reader {
     return value;
   }
 
-  Result<void> ReadSet(const Cells& cells, std::array<std::vector<GainSet>, 4>& sets) const {
+  Result<void> ReadSet(const Cells& cells, GainSets& sets) const {
     const Gait gait = stream::GaitNamed(std::string(cells[0]));
     if (gait == Gait::kUnspecified) {
       return Wrong("gait is " + Quoted(cells[0]) + ", must be step, walk, run or jump");
@@ -145,7 +130,7 @@ class Reader {
     const Result<double> speed = Number(cells[2], "speed_mps", 0, kFastestMps);
     if (!speed) return speed.error();
     set.speed_mps = *speed;
-    std::vector<GainSet>& of_gait = sets[IndexOf(gait)];
+    std::vector<GainSet>& of_gait = sets[stream::IndexOf(gait)];
     if (!of_gait.empty() && set.speed_mps <= of_gait.back().speed_mps) {
       return Wrong("speed_mps is " + std::string(cells[2]) + " after " +
                    Text(of_gait.back().speed_mps) + "; a gait's speeds must rise");
@@ -184,7 +169,7 @@ Gains Interpolated(const std::vector<GainSet>& sets, double speed_mps) {
 }  // namespace
 
 Result<void> GainTable::Add(std::string_view text, const std::string& origin) {
-  std::array<std::vector<GainSet>, 4> read;
+  GainSets read;
   if (const Result<void> done = Reader(origin).Read(text, read); !done) return done;
   for (std::size_t i = 0; i < sets_.size(); ++i) {
     if (!read[i].empty()) sets_[i] = std::move(read[i]);
@@ -193,10 +178,12 @@ Result<void> GainTable::Add(std::string_view text, const std::string& origin) {
 }
 
 void GainTable::Set(Gait gait, std::vector<GainSet> sets) {
-  sets_[IndexOf(gait)] = std::move(sets);
+  sets_[stream::IndexOf(gait)] = std::move(sets);
 }
 
-const std::vector<GainSet>& GainTable::SetsOf(Gait gait) const { return sets_[IndexOf(gait)]; }
+const std::vector<GainSet>& GainTable::SetsOf(Gait gait) const {
+  return sets_[stream::IndexOf(gait)];
+}
 
 Gains GainTable::At(Gait gait, double desired_speed_mps) const {
   Gains gains = Interpolated(SetsOf(gait), desired_speed_mps);

@@ -19,6 +19,9 @@ struct GainSet {
   Gains gains;
 };
 
+/// The sets of each gait, in the order of stream::kGaits.
+using GainSets = std::array<std::vector<GainSet>, stream::kGaits.size()>;
+
 /// The sets of every gait. A gait without any has the defaults of gains.h.
 class GainTable {
  public:
@@ -38,7 +41,7 @@ class GainTable {
   Gains At(stream::Gait gait, double desired_speed_mps) const;
 
  private:
-  std::array<std::vector<GainSet>, 4> sets_;  ///< Step, walk, run, jump.
+  GainSets sets_;
 };
 
 /// A table's text, with `comment` (lines without #) before it and these columns only.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace footing::gait {
 namespace {
@@ -15,6 +16,7 @@ struct StableRange {
 
 constexpr StableRange kStableRanges[] = {
     {Gait::kStep, 0}, {Gait::kWalk, 1.75}, {Gait::kRun, 6.0}, {Gait::kJump, 2.0}};
+static_assert(std::size(kStableRanges) == stream::kGaits.size(), "a range for every gait");
 constexpr double kHeightMinM = 0.05;
 constexpr double kHeightMaxM = 0.7;
 /// Forward faster than the first, jumps are lower: down to the second height at 2 m/s.

@@ -34,10 +34,9 @@ void MeasureSupport(double duration_s, GaitMemory& memory) {
 bool IsDirect(Gait from, Gait to) { return !(from == Gait::kJump && to == Gait::kRun); }
 
 std::string DrawGaitChanges() {
-  constexpr Gait kGaits[] = {Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
   std::string text = "stateDiagram-v2\n";
-  for (const Gait from : kGaits) {
-    for (const Gait to : kGaits) {
+  for (const Gait from : stream::kGaits) {
+    for (const Gait to : stream::kGaits) {
       if (from == to || !IsDirect(from, to)) continue;
       text += std::string("  ") + stream::Name(from) + " --> " + stream::Name(to) + "\n";
     }

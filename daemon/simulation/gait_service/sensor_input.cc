@@ -29,6 +29,15 @@ v1::CommandResult Answer(bool ok, const std::string& message) {
 
 constexpr double kMaxPushNs = 200;
 
+std::string GaitNames() {
+  std::string names;
+  for (const stream::Gait gait : stream::kGaits) {
+    if (!names.empty()) names += ", ";
+    names += stream::Name(gait);
+  }
+  return names;
+}
+
 }  // namespace
 
 SensorInput::SensorInput(std::string rig, exchange::Latest<Inputs>& out, Responses& responses)
@@ -86,12 +95,12 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
         if (!std::isfinite(number))
           return Answer(false, "direct_gait: every number must be finite");
       }
-      if (!direct.release() && (direct.gait() < v1::GAIT_STEP || direct.gait() > v1::GAIT_JUMP)) {
-        return Answer(false, "direct_gait: the gait must be step, walk, run or jump");
+      const stream::Gait gait = stream::GaitNumbered(direct.gait());
+      if (!direct.release() && gait == stream::Gait::kUnspecified) {
+        return Answer(false, "direct_gait: unknown gait; there are: " + GaitNames());
       }
       engine.direct = !direct.release();
-      engine.direct_command = {static_cast<stream::Gait>(direct.gait()), direct.speed_mps(),
-                               direct.height_m(), direct.turn_rad()};
+      engine.direct_command = {gait, direct.speed_mps(), direct.height_m(), direct.turn_rad()};
       break;
     }
     case v1::Command::kPush: {

@@ -18,7 +18,7 @@ namespace {
 using stream::Gait;
 using tracking::Tracking;
 
-constexpr std::array kGaits{Gait::kStep, Gait::kWalk, Gait::kRun, Gait::kJump};
+using stream::kGaits;
 
 struct MonkeyOptions {
   double seconds = 600;
@@ -30,7 +30,7 @@ struct MonkeyOptions {
 struct Outcome {
   double simulated_s = 0;
   int falls = 0;
-  std::array<int, 4> falls_by_gait{};
+  std::array<int, kGaits.size()> falls_by_gait{};
   std::array<int, tracking::kTrackings> commands{};  ///< By what became of them.
 
   int of(Tracking became) const { return commands[static_cast<std::size_t>(became)]; }
@@ -39,7 +39,7 @@ struct Outcome {
 /// Gentle: run to 3 m/s and walk to 1, instead of 4 and 1.3.
 biped::GaitCommand DrawCommand(bool gentle, Random& random) {
   biped::GaitCommand command;
-  command.gait = kGaits[static_cast<std::size_t>(random.Uniform(0, 3.999))];
+  command.gait = kGaits[static_cast<std::size_t>(random.Uniform(0, kGaits.size() - 0.001))];
   const double part = random.Uniform(0, 1);
   if (command.gait == Gait::kWalk) command.speed_mps = part * (gentle ? 1.0 : 1.3);
   if (command.gait == Gait::kRun) command.speed_mps = 1 + part * (gentle ? 2.0 : 3.0);
@@ -78,7 +78,7 @@ Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, Outcome&
       const engine::EngineEvent& event = output.events[static_cast<std::size_t>(i)];
       if (event.kind != engine::EventKind::kFall) continue;
       ++outcome.falls;
-      ++outcome.falls_by_gait[static_cast<std::size_t>(event.from) - 1];
+      ++outcome.falls_by_gait[stream::IndexOf(event.from)];
     }
   }
   outcome.simulated_s += options.seconds;
