@@ -88,6 +88,10 @@ v1::GaitState ToProto(const stream::GaitState& value) {
   message.set_heading_rad(Finite(value.heading_rad));
   message.set_steps(value.steps);
   message.set_falls(value.falls);
+  message.mutable_failures()->set_simulation(value.failures.simulation);
+  message.mutable_failures()->set_curve(value.failures.curve);
+  message.mutable_failures()->set_jump(value.failures.jump);
+  message.set_operator_put_backs(value.operator_put_backs);
   message.set_distance_m(Finite(value.distance_m));
   message.set_commanded_by_stream(value.commanded_by_stream);
   message.set_next_foothold_x_m(Finite(value.next_foothold_m.x()));

@@ -13,11 +13,7 @@ constexpr int kMaxParts = 256;
 
 double Finite(double value) { return std::isfinite(value) ? value : 0; }
 
-stream::Gait GaitOf(v1::Gait gait) {
-  const int number = static_cast<int>(gait);
-  return number >= 0 && number <= 4 ? static_cast<stream::Gait>(number)
-                                    : stream::Gait::kUnspecified;
-}
+stream::Gait GaitOf(v1::Gait gait) { return stream::GaitNumbered(gait); }
 
 stream::GaitState GaitOf(const v1::GaitState& from) {
   stream::GaitState gait;
@@ -31,6 +27,8 @@ stream::GaitState GaitOf(const v1::GaitState& from) {
   gait.heading_rad = Finite(from.heading_rad());
   gait.steps = from.steps();
   gait.falls = from.falls();
+  gait.failures = {from.failures().simulation(), from.failures().curve(), from.failures().jump()};
+  gait.operator_put_backs = from.operator_put_backs();
   gait.distance_m = Finite(from.distance_m());
   gait.commanded_by_stream = from.commanded_by_stream();
   gait.next_foothold_m = {Finite(from.next_foothold_x_m()), Finite(from.next_foothold_y_m())};

@@ -15,6 +15,10 @@ constexpr double kSeenS = 2.0;
 constexpr std::uint64_t kSeenSteps = 6;
 constexpr std::uint64_t kSeenJumps = 3;
 
+std::uint64_t Increase(std::uint64_t before, std::uint64_t now) {
+  return now > before ? now - before : 0;
+}
+
 }  // namespace
 
 void Latencies::Add(std::int64_t latency_ns) {
@@ -41,7 +45,11 @@ void Tally::Add(const WorldFrame& frame) {
   const stream::GaitState& now = frame.characters.front().gait;
   const bool restarted = frame.time_s < last_time_s_;
   if (frames_ > 1 && !restarted) {
-    falls_ += now.falls > last_.falls ? now.falls - last_.falls : 0;
+    falls_ += Increase(last_.falls, now.falls);
+    failures_.simulation += Increase(last_.failures.simulation, now.failures.simulation);
+    failures_.curve += Increase(last_.failures.curve, now.failures.curve);
+    failures_.jump += Increase(last_.failures.jump, now.failures.jump);
+    operator_put_backs_ += Increase(last_.operator_put_backs, now.operator_put_backs);
     distance_m_ += std::max(0.0, now.distance_m - last_.distance_m);
   }
   // A server started anew counts from 1 again.

@@ -41,6 +41,8 @@ class Tally {
   std::vector<stream::Gait> GaitsSeen() const;
   /// Since the first frame; a server started anew goes on counting.
   std::uint64_t falls() const { return falls_; }
+  const stream::FailureCounts& failures() const { return failures_; }
+  std::uint64_t operator_put_backs() const { return operator_put_backs_; }
   double distance_m() const { return distance_m_; }
 
   Latencies publish_to_view;
@@ -62,6 +64,8 @@ class Tally {
   stream::GaitState last_;
   double last_time_s_ = 0;
   std::uint64_t falls_ = 0;
+  stream::FailureCounts failures_;
+  std::uint64_t operator_put_backs_ = 0;
   double distance_m_ = 0;
   std::vector<stream::Gait> seen_;
 };

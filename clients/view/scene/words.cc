@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "common/units/units.h"
 
@@ -99,8 +100,8 @@ std::vector<std::string> CharacterLines(const CharacterPose& pose) {
                       "   turn " + Fixed(RadiansToDegrees(gait.commanded_turn_rad), 1) +
                       " deg/step";
   if (gait.pending) first += "   next: " + GaitTitle(gait.commanded_gait);
-  std::string second = "  distance " + Fixed(gait.distance_m, 1) + " m   falls " +
-                       std::to_string(gait.falls) + "   steps " + std::to_string(gait.steps);
+  std::string second = "  distance " + Fixed(gait.distance_m, 1) + " m   " + FallText(gait) +
+                       "   steps " + std::to_string(gait.steps);
   if (!gait.commanded_by_stream) second += "   no features arrive: stepping in place";
   if (pose.simulated_input) second += "   SIMULATED input";
   return {first, second};
@@ -116,6 +117,22 @@ std::string Fixed(double value, int decimals) {
   const std::string text(buffer.data(), end.ptr);
   const bool zero = text.find_first_not_of("-0.") == std::string::npos;
   return zero && text.front() == '-' ? text.substr(1) : text;
+}
+
+std::string FallText(const stream::GaitState& gait) {
+  std::string text = "falls " + std::to_string(gait.falls);
+  if (gait.falls == 0) return text;
+  const std::pair<const char*, std::uint64_t> parts[] = {
+      {"simulation", gait.failures.simulation},
+      {"curve", gait.failures.curve},
+      {"jump", gait.failures.jump},
+      {"put back by the operator", gait.operator_put_backs}};
+  std::string by_cause;
+  for (const auto& [name, count] : parts) {
+    if (count == 0) continue;
+    by_cause += (by_cause.empty() ? "" : ", ") + std::string(name) + " " + std::to_string(count);
+  }
+  return by_cause.empty() ? text : text + " (" + by_cause + ")";
 }
 
 std::string GaitTitle(stream::Gait gait) {
@@ -219,7 +236,7 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
     }
     line += "  " + GaitTitle(pose.gait.gait) + "  " + Fixed(pose.gait.speed_mps, 2) + "/" +
             Fixed(pose.gait.commanded_speed_mps, 2) + " m/s  " + Fixed(pose.gait.distance_m, 1) +
-            " m  falls " + std::to_string(pose.gait.falls);
+            " m  " + FallText(pose.gait);
   }
   line += "  devices " + std::to_string(model.devices.size()) + "  age " +
           Fixed(AgeMs(model, now_ns), 0) + " ms";

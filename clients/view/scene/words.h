@@ -12,6 +12,8 @@ namespace footing::scene {
 /// A number with that many decimals (0 to 9), as screens show it: "1.5". No locale.
 std::string Fixed(double value, int decimals);
 
+/// "falls 3 (curve 2, put back by the operator 1)": how often the character was put back, and why.
+std::string FallText(const stream::GaitState& gait);
 /// "WALK"; "-" for kUnspecified.
 std::string GaitTitle(stream::Gait gait);
 

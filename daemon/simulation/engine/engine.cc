@@ -80,10 +80,10 @@ void GaitEngine::Advance(const EngineInputs& inputs) {
   p.Command(inputs);
   if (p.state.inputs.put_back_number != inputs.put_back_number) {
     p.state.inputs.put_back_number = inputs.put_back_number;
-    if (!p.state.fallen) ++p.state.falls;
-    p.PutBack("asked for");
+    if (!p.state.fallen) ++p.state.operator_put_backs;
+    p.PutBack("by a command", true);
   } else if (p.state.fallen && p.TimeS() - p.state.fallen_time_s >= p.config.fall_shown_s) {
-    p.PutBack("after a fall");
+    p.PutBack("after a failure", false);
   }
   p.TakeAppend(inputs);
   p.PlaceGround();

@@ -35,6 +35,7 @@ inline constexpr const char* kStraightTrackFile = "tracks/straight.json";
 inline constexpr const char* kWristMappingFile = "wrist_mapping.json";
 inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gaits/run.csv",
                                        "gaits/jump.csv"};
+static_assert(kGainFiles.size() == stream::kGaits.size(), "a table of gains for every gait");
 
 struct EngineConfig {
   double step_s = 0.001;            ///< Of physics and control, (0, 0.002].
@@ -75,7 +76,7 @@ enum class EventKind {
   kAppendRefused,  ///< A segment was not added; why is in the text.
 };
 
-/// What a failure is put down to, as the gait paper counts them (section 8.2).
+/// What a failure is attributed to, as the gait paper counts them (section 8.2).
 enum class FailureCause {
   kSimulation,  ///< The character fell.
   kCurve,       ///< It left the ribbon.
@@ -91,6 +92,7 @@ struct EngineEvent {
   stream::Gait to = stream::Gait::kUnspecified;
   const char* text = "";  ///< Of static storage; why it fell or was put back.
   FailureCause cause = FailureCause::kSimulation;  ///< Of a fall.
+  bool by_operator = false;                        ///< Of a put-back: an input asked for it.
 };
 
 inline constexpr int kLinkCount = 5;  ///< body, left hip, left knee, right hip, right knee.

@@ -14,6 +14,20 @@ namespace {
 constexpr double kPushDurationS = 0.1;
 constexpr double kLargestPushNs = 1000;
 
+void Count(FailureCause cause, stream::FailureCounts& failures) {
+  switch (cause) {
+    case FailureCause::kSimulation:
+      ++failures.simulation;
+      return;
+    case FailureCause::kCurve:
+      ++failures.curve;
+      return;
+    case FailureCause::kJump:
+      ++failures.jump;
+      return;
+  }
+}
+
 }  // namespace
 
 void GaitEngine::Parts::AddEvent(const EngineEvent& event) {
@@ -33,14 +47,14 @@ void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) 
   body = biped::Read(biped, world.Observe(), TimeS());
 }
 
-void GaitEngine::Parts::PutBack(const char* why) {
+void GaitEngine::Parts::PutBack(const char* why, bool by_operator) {
   const terrain::TrackPlace place = terrain::Locate(track, body.p_WB.head<2>());
   const terrain::CentrePoint point =
       terrain::CentreBehind(track, place, config.put_back_distance_m);
   state.fallen = false;
   state.inputs.push_steps_left = 0;
   Stand(point.p_W_m, point.heading_rad);
-  AddEvent({.kind = EventKind::kPutBack, .text = why});
+  AddEvent({.kind = EventKind::kPutBack, .text = why, .by_operator = by_operator});
 }
 
 void GaitEngine::Parts::TakeFeatures(const EngineInputs& inputs) {
@@ -128,7 +142,7 @@ void GaitEngine::Parts::NoteFall() {
   if (failure.why == nullptr) return;
   state.fallen = true;
   state.fallen_time_s = TimeS();
-  ++state.falls;
+  Count(failure.cause, state.failures);
   AddEvent({.kind = EventKind::kFall,
             .from = state.gait.gait,
             .to = stream::Gait::kUnspecified,
@@ -152,7 +166,10 @@ void GaitEngine::Parts::FillOutput() {
   output.p_WC_m = body.p_WC;
   output.v_WC_mps = body.v_WC;
   output.gait = gait::Describe(body, state.command, state.gait);
-  output.gait.falls = state.falls;
+  output.gait.failures = state.failures;
+  output.gait.operator_put_backs = state.operator_put_backs;
+  output.gait.falls = state.failures.simulation + state.failures.curve + state.failures.jump +
+                      state.operator_put_backs;
   output.gait.distance_m = state.distance_m;
   output.gait.commanded_by_stream = state.inputs.fed;
   output.simulated_input = state.simulated_input;

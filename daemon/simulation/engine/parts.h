@@ -32,7 +32,7 @@ struct GaitEngine::Parts {
 
   /// Stands the character on a point of the track, feet under the hips.
   void Stand(const Eigen::Vector3d& p_W_m, double heading_rad);
-  void PutBack(const char* why);
+  void PutBack(const char* why, bool by_operator);
 
   void TakeFeatures(const EngineInputs& inputs);
   void TakePush(const EngineInputs& inputs);

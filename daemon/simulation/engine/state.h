@@ -45,7 +45,8 @@ struct EngineState {
   ResponseMemory response;
   TrackMemory track;
   std::uint64_t step = 0;
-  std::uint64_t falls = 0;
+  stream::FailureCounts failures = {};
+  std::uint64_t operator_put_backs = 0;
   double distance_m = 0;
   bool fallen = false;
   double fallen_time_s = 0;

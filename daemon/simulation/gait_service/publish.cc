@@ -27,6 +27,18 @@ v1::Event::Kind ToKind(engine::EventKind kind) {
   return v1::Event::KIND_UNSPECIFIED;
 }
 
+v1::FailureCause ToCause(engine::FailureCause cause) {
+  switch (cause) {
+    case engine::FailureCause::kSimulation:
+      return v1::FAILURE_CAUSE_SIMULATION;
+    case engine::FailureCause::kCurve:
+      return v1::FAILURE_CAUSE_CURVE;
+    case engine::FailureCause::kJump:
+      return v1::FAILURE_CAUSE_JUMP;
+  }
+  return v1::FAILURE_CAUSE_UNSPECIFIED;
+}
+
 std::string ToText(const engine::EngineEvent& event) {
   const std::string gaits = std::string(stream::Name(event.from)) + " to " + stream::Name(event.to);
   switch (event.kind) {
@@ -37,7 +49,9 @@ std::string ToText(const engine::EngineEvent& event) {
     case engine::EventKind::kGaitChanged:
       return "changed: " + gaits;
     case engine::EventKind::kFall:
+      return std::string("failure (") + engine::Name(event.cause) + "): " + event.text;
     case engine::EventKind::kPutBack:
+      return std::string("put back ") + event.text;
     case engine::EventKind::kStreamLost:
     case engine::EventKind::kStreamBack:
     case engine::EventKind::kAppendRefused:
@@ -101,6 +115,8 @@ v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns) {
   message.set_character(1);
   message.set_text(ToText(event));
   message.set_gait(static_cast<v1::Gait>(event.to));
+  if (event.kind == engine::EventKind::kFall) message.set_failure_cause(ToCause(event.cause));
+  message.set_by_operator(event.by_operator);
   return message;
 }
 
@@ -151,7 +167,7 @@ Applied FromAppliedInput(const v1::AppliedInput& message) {
   inputs.features.phase_rad = message.phase_rad();
   inputs.features.simulated = message.simulated();
   inputs.direct = message.direct();
-  inputs.direct_command.gait = static_cast<stream::Gait>(message.direct_gait());
+  inputs.direct_command.gait = stream::GaitNumbered(message.direct_gait());
   inputs.direct_command.speed_mps = message.direct_speed_mps();
   inputs.direct_command.height_m = message.direct_height_m();
   inputs.direct_command.turn_per_step_rad = message.direct_turn_rad();

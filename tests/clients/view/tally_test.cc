@@ -97,6 +97,23 @@ TEST(Tally, ThreeJumpsAreThreeCycles) {
   EXPECT_EQ(tally.GaitsSeen(), std::vector{stream::Gait::kJump});
 }
 
+TEST(Tally, FailuresByCauseAndOperatorPutBacksCountOverARestart) {
+  Tally tally;
+  WorldFrame frame = FrameOf(100, stream::Gait::kWalk, 0, 9);
+  const auto add = [&](double time_s, stream::FailureCounts failures, std::uint64_t put_backs) {
+    frame.time_s = time_s;
+    frame.characters[0].gait.failures = failures;
+    frame.characters[0].gait.operator_put_backs = put_backs;
+    tally.Add(frame);
+  };
+  add(100, {3, 2, 1}, 3);
+  add(101, {4, 2, 3}, 4);
+  add(0.01, {0, 0, 0}, 0);
+  add(1, {0, 5, 0}, 1);
+  EXPECT_EQ(tally.failures(), (stream::FailureCounts{1, 5, 2}));
+  EXPECT_EQ(tally.operator_put_backs(), 2u);
+}
+
 TEST(Tally, FallsAndDistanceCountFromTheFirstFrameAndOverARestart) {
   Tally tally;
   tally.Add(FrameOf(100, stream::Gait::kWalk, 0, 3, 50));

@@ -66,6 +66,18 @@ TEST(StatusScreen, NamesGaitSpeedDevicesAndThatTheInputIsSimulated) {
   EXPECT_THAT(lines, Contains(HasSubstr("age 1 ms")));
 }
 
+TEST(StatusScreen, CountsFallsByCauseApartFromWhatTheOperatorPutBack) {
+  const Model model = made::ModelAfter(3, {});
+  stream::GaitState gait;
+  gait.falls = 5;
+  gait.failures = {.simulation = 0, .curve = 3, .jump = 1};
+  gait.operator_put_backs = 1;
+  EXPECT_EQ(FallText(gait), "falls 5 (curve 3, jump 1, put back by the operator 1)");
+  gait.falls = 0;
+  EXPECT_EQ(FallText(gait), "falls 0");
+  EXPECT_THAT(StatusScreen(model, made::ClockAt(3)), Contains(HasSubstr("falls 0")));
+}
+
 TEST(StatusScreen, RealDevicesCarryNoStamp) {
   made::Wish real;
   real.simulated = false;

@@ -94,6 +94,8 @@ TEST(Engine, APutBackOnRequestIsCountedAndDoneOnce) {
   EXPECT_NEAR(engine.Output().links[0].position_m.x(), x_m - 3, 0.1);
   Simulate(engine, inputs, 3);
   EXPECT_EQ(engine.Output().gait.falls, 1u);
+  EXPECT_EQ(engine.Output().gait.operator_put_backs, 1u);
+  EXPECT_EQ(engine.Output().gait.failures, stream::FailureCounts{});
 }
 
 TEST(Engine, NonsenseCommandsMeanSteppingAndPublishNothingThatIsNotFinite) {

@@ -34,6 +34,10 @@ TEST(Failure, WalkingOverTheEdgeOfALevelTrackIsTheCurves) {
   const EngineEvent failure = FirstFailure(engine, inputs, 12);
   EXPECT_EQ(failure.cause, FailureCause::kCurve) << failure.text;
   EXPECT_STREQ(failure.text, "the body is beside the track");
+  EXPECT_GE(engine.Output().gait.failures.curve, 1u);
+  EXPECT_EQ(engine.Output().gait.failures.simulation, 0u);
+  EXPECT_EQ(engine.Output().gait.falls, engine.Output().gait.failures.curve);
+  EXPECT_EQ(engine.Output().gait.operator_put_backs, 0u);
 }
 
 TEST(Failure, AnOpenTrackMayBeLeft) {

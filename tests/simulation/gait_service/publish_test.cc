@@ -39,6 +39,45 @@ TEST(Publish, AppliedInputsComeBackBitForBit) {
   EXPECT_TRUE(back.inputs.engine.appends[1].pit);
 }
 
+TEST(Publish, AFailureSaysItsCauseAndAPutBackWhoAskedForIt) {
+  engine::EngineEvent event;
+  event.kind = engine::EventKind::kFall;
+  event.text = "the body is beside the track";
+  for (const auto& [cause, number] :
+       {std::pair(engine::FailureCause::kSimulation, v1::FAILURE_CAUSE_SIMULATION),
+        std::pair(engine::FailureCause::kCurve, v1::FAILURE_CAUSE_CURVE),
+        std::pair(engine::FailureCause::kJump, v1::FAILURE_CAUSE_JUMP)}) {
+    event.cause = cause;
+    const v1::Event message = ToEvent(event, 5);
+    EXPECT_EQ(message.kind(), v1::Event::KIND_FALL);
+    EXPECT_EQ(message.failure_cause(), number);
+    EXPECT_EQ(message.text(),
+              std::string("failure (") + engine::Name(cause) + "): the body is beside the track");
+    EXPECT_FALSE(message.by_operator());
+  }
+  event.kind = engine::EventKind::kPutBack;
+  event.text = "by a command";
+  event.by_operator = true;
+  const v1::Event put_back = ToEvent(event, 5);
+  EXPECT_EQ(put_back.failure_cause(), v1::FAILURE_CAUSE_UNSPECIFIED);
+  EXPECT_TRUE(put_back.by_operator());
+  EXPECT_EQ(put_back.text(), "put back by a command");
+}
+
+TEST(Publish, FailuresAreCountedByCauseApartFromOperatorPutBacks) {
+  Frame frame;
+  frame.output.gait.falls = 10;
+  frame.output.gait.failures = {1, 2, 3};
+  frame.output.gait.operator_put_backs = 4;
+  const v1::CharacterFrame message = ToCharacterFrame(frame, "straight", "one");
+  const v1::GaitState& gait = message.characters(0).gait();
+  EXPECT_EQ(gait.failures().simulation(), 1u);
+  EXPECT_EQ(gait.failures().curve(), 2u);
+  EXPECT_EQ(gait.failures().jump(), 3u);
+  EXPECT_EQ(gait.operator_put_backs(), 4u);
+  EXPECT_EQ(gait.falls(), 10u);
+}
+
 TEST(Publish, AFrameCarriesEveryLinkAndContact) {
   Frame frame;
   frame.output.step = 10;
