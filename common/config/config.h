@@ -40,6 +40,8 @@ class Binder {
   /// Both in their order: `file` where it is not empty, then each of `settings`.
   Result<void> Apply(const std::string& file, const std::vector<std::string>& settings);
 
+  bool Has(const std::string& key) const { return Find(key) != nullptr; }
+
   /// The effective config as a JSON object, in the order bound.
   std::string Print() const;
   /// One line a key: key, range, default, documentation.

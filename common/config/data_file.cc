@@ -4,14 +4,36 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <vector>
 
 namespace footing::config {
+namespace {
+
+std::vector<std::string> DataFolders(const std::string& folder) {
+  if (!folder.empty()) return {folder};
+  return {FOOTING_INSTALL_DATA_DIR, FOOTING_SOURCE_DATA_DIR};
+}
+
+/// Names of the JSON files of `folder` in the first data folder that has it, "1, 2, straight".
+std::string BuiltInNames(const std::string& folder, const std::string& data_folder) {
+  std::set<std::string> names;
+  for (const std::string& place : DataFolders(data_folder)) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(place + "/" + folder, error)) {
+      if (entry.path().extension() == ".json") names.insert(entry.path().stem().string());
+    }
+    if (!names.empty()) break;
+  }
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+}  // namespace
 
 Result<std::string> FindDataFile(const std::string& name, const std::string& folder) {
-  const std::vector<std::string> places =
-      folder.empty() ? std::vector<std::string>{FOOTING_INSTALL_DATA_DIR, FOOTING_SOURCE_DATA_DIR}
-                     : std::vector<std::string>{folder};
+  const std::vector<std::string> places = DataFolders(folder);
   std::string tried;
   for (const std::string& place : places) {
     const std::string path = place + "/" + name;
@@ -49,8 +71,14 @@ Result<std::string> ReadNamedOrPath(const std::string& name_or_path, const std::
                                     const std::string& data_folder) {
   const bool is_path = name_or_path.find('/') != std::string::npos ||
                        name_or_path.find(".json") != std::string::npos;
-  return is_path ? ReadTextFile(name_or_path)
-                 : ReadDataFile(folder + "/" + name_or_path + ".json", data_folder);
+  if (is_path) return ReadTextFile(name_or_path);
+  const std::string file = folder + "/" + name_or_path + ".json";
+  const std::string names = BuiltInNames(folder, data_folder);
+  if (!FindDataFile(file, data_folder) && !names.empty()) {
+    return Failure("cannot find " + file + ": \"" + name_or_path +
+                   "\" is not built in; there are: " + names + "; or give the path of a JSON file");
+  }
+  return ReadDataFile(file, data_folder);
 }
 
 }  // namespace footing::config

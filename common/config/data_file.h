@@ -6,7 +6,7 @@
 
 namespace footing::config {
 
-/// Where a file that the product carries is: `folder` if given, then the install folder
+/// Where a built-in file is: `folder` if given, then the install folder
 /// (PREFIX/share/footing), then the source tree (daemon/simulation/data). An error names all
 /// places.
 Result<std::string> FindDataFile(const std::string& name, const std::string& folder = "");
@@ -15,7 +15,7 @@ Result<std::string> FindDataFile(const std::string& name, const std::string& fol
 Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes = 4u << 20);
 
 /// The file at a path (it has a / or ends in .json), otherwise the built-in file
-/// "FOLDER/NAME.json".
+/// "FOLDER/NAME.json". The error for an unknown name lists the names that there are.
 Result<std::string> ReadNamedOrPath(const std::string& name_or_path, const std::string& folder,
                                     const std::string& data_folder = "");
 

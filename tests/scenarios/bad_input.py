@@ -35,6 +35,12 @@ def wrong_starts(stage):
     expect(stage, USAGE, "beyond this host", "footingd", "--listen", "tcp:0.0.0.0:0")
     expect(stage, USAGE, "there are: gait, pose", "footing-sim", "--engine", "walkies")
     expect(stage, USAGE, "there is: wrist", "footing-sim", "--interface", "boards")
+    expect(stage, USAGE, "subject does not apply to --engine gait", "footing-sim", "--engine", "gait",
+           "--subject", "p07.json")
+    expect(stage, USAGE, "track does not apply to --engine pose", "footing-sim", "--engine", "pose",
+           "--track", "1")
+    expect(stage, FAILURE, "there are: 1, 2, 3, 4, build, straight", "footing-sim", "--track", "9",
+           "--listen", f"unix:{stage.folder}/unused.sock")
     expect(stage, USAGE, "demo", "footing-stream", "user", "--script", "dance")
     expect(stage, FAILURE, "/nonexistent.csv", "footing-stream", "accel", "--left",
            "/nonexistent.csv", "--rate-hz", 100)

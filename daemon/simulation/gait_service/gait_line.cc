@@ -11,10 +11,10 @@
 
 namespace footing::gait_service {
 
-Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& config,
-                                                   int wake_descriptor) {
+Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common,
+                                                   const Config& config, int wake_descriptor) {
   const auto texts =
-      engine_files::ReadTexts({.track = config.track, .data_folder = config.data_folder});
+      engine_files::ReadTexts({.track = config.track, .data_folder = common.data_folder});
   if (!texts) return texts.error();
   engine::EngineConfig engine_config;
   engine_config.fall_shown_s = config.fall_shown_s;
@@ -22,19 +22,19 @@ Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& config
   engine_config.features_timeout_s = config.features_timeout_s;
   auto engine = engine::GaitEngine::Create(*texts, engine_config);
   if (!engine) return engine.error();
-  return std::unique_ptr<GaitLine>(
-      new GaitLine(config, std::move(engine).value(), engine_config.step_s, wake_descriptor));
+  return std::unique_ptr<GaitLine>(new GaitLine(common.rig, config, std::move(engine).value(),
+                                                engine_config.step_s, wake_descriptor));
 }
 
-GaitLine::GaitLine(const serving::Config& config, engine::GaitEngine engine, double step_s,
-                   int wake_descriptor)
+GaitLine::GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
+                   double step_s, int wake_descriptor)
     : world_(config.track),
       frame_rate_hz_(config.frame_rate_hz),
       thread_(std::move(engine), step_s,
               static_cast<int>(std::lround(1.0 / (step_s * config.frame_rate_hz))),
               wake_descriptor),
       track_(thread_.run().engine().track()),
-      input_(config.rig, thread_.inputs(), responses_) {}
+      input_(rig, thread_.inputs(), responses_) {}
 
 std::vector<transport::Channel> GaitLine::Channels() {
   return {{"skeletons", serving::kSkeletons, true},

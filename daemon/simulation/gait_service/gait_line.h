@@ -7,6 +7,7 @@
 #include "common/result/result.h"
 #include "common/stream/character.h"
 #include "common/transport/server.h"
+#include "daemon/simulation/gait_service/config.h"
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "daemon/simulation/gait_service/sensor_input.h"
@@ -21,8 +22,8 @@ class GaitLine {
   using Run = GaitRun;
 
   /// Reads the data files and builds the engine.
-  static Result<std::unique_ptr<GaitLine>> Create(const serving::Config& config,
-                                                  int wake_descriptor);
+  static Result<std::unique_ptr<GaitLine>> Create(const serving::Config& common,
+                                                  const Config& config, int wake_descriptor);
 
   static std::vector<transport::Channel> Channels();
   static std::vector<std::string> Capabilities() { return {"gait", "wrist"}; }
@@ -37,7 +38,7 @@ class GaitLine {
   std::vector<transport::ChannelBytes> OnFrame(const Frame& frame, std::int64_t now_ns);
 
  private:
-  GaitLine(const serving::Config& config, engine::GaitEngine engine, double step_s,
+  GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine, double step_s,
            int wake_descriptor);
   v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);
 

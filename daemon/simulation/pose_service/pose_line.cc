@@ -34,8 +34,8 @@ Result<std::unique_ptr<SubjectRun>> MakeRun(std::uint64_t number, const body::Bo
 
 }  // namespace
 
-Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& config,
-                                                   int wake_descriptor) {
+Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common,
+                                                   const Config& config, int wake_descriptor) {
   Subject first = subject::UnnamedSubject();
   if (!config.subject.empty()) {
     auto read = subject::ReadSubject(config.subject);
@@ -49,16 +49,16 @@ Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& config
       config.mode == "paper" ? reconstruction::Mode::kPaper : reconstruction::Mode::kBest;
   options.rate_hz = kRateHz;
   options.lag_s = 1e-3 * static_cast<double>(config.lag_ms);
-  auto models = LoadPoseModels(config);
+  auto models = LoadPoseModels(common.data_folder, options.mode);
   if (!models) return models.error();
   auto run = MakeRun(1, *body, *models, options);
   if (!run) return run.error();
-  return std::unique_ptr<PoseLine>(new PoseLine(config, std::move(models).value(), options,
-                                                {1, first, *body}, std::move(run).value(),
+  return std::unique_ptr<PoseLine>(new PoseLine(common.rig, config, std::move(models).value(),
+                                                options, {1, first, *body}, std::move(run).value(),
                                                 wake_descriptor));
 }
 
-PoseLine::PoseLine(const serving::Config& config, reconstruction::Models models,
+PoseLine::PoseLine(const std::string& rig, const Config& config, reconstruction::Models models,
                    reconstruction::Options options, Known first, std::unique_ptr<SubjectRun> run,
                    int wake_descriptor)
     : mode_(config.mode),
@@ -67,7 +67,7 @@ PoseLine::PoseLine(const serving::Config& config, reconstruction::Models models,
       known_{std::move(first)},
       shown_number_(known_.front().number),
       thread_(PoseRun(std::move(run), kRateHz, subjects_), 1 / kRateHz, 1, wake_descriptor),
-      sensors_(config.rig, thread_.inputs(), models_.arm) {
+      sensors_(rig, thread_.inputs(), models_.arm) {
   sensors_.TakeSubject(shown_number_);
 }
 

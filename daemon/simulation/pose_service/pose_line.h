@@ -9,6 +9,7 @@
 #include "common/body/body.h"
 #include "common/result/result.h"
 #include "common/transport/server.h"
+#include "daemon/simulation/pose_service/config.h"
 #include "daemon/simulation/pose_service/pose_events.h"
 #include "daemon/simulation/pose_service/pose_run.h"
 #include "daemon/simulation/pose_service/pose_sensors.h"
@@ -26,8 +27,8 @@ class PoseLine {
   static constexpr double kRateHz = 120;
 
   /// Reads the models and the subject file and builds the engine.
-  static Result<std::unique_ptr<PoseLine>> Create(const serving::Config& config,
-                                                  int wake_descriptor);
+  static Result<std::unique_ptr<PoseLine>> Create(const serving::Config& common,
+                                                  const Config& config, int wake_descriptor);
 
   static std::vector<transport::Channel> Channels();
   static std::vector<std::string> Capabilities() { return {"pose"}; }
@@ -52,7 +53,7 @@ class PoseLine {
     body::Body body;
   };
 
-  PoseLine(const serving::Config& config, reconstruction::Models models,
+  PoseLine(const std::string& rig, const Config& config, reconstruction::Models models,
            reconstruction::Options options, Known first, std::unique_ptr<SubjectRun> run,
            int wake_descriptor);
   v1::CommandResult TakeSubject(const v1::SetSubject& message);

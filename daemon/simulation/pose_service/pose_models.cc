@@ -10,8 +10,8 @@
 namespace footing::pose_service {
 namespace {
 
-Result<reconstruction::NamedModel> Load(const char* name, const serving::Config& config) {
-  const auto path = config::FindDataFile(name, config.data_folder);
+Result<reconstruction::NamedModel> Load(const char* name, const std::string& data_folder) {
+  const auto path = config::FindDataFile(name, data_folder);
   if (!path) {
     return Failure(path.error().message +
                    " with --set data_folder=..., or make it with footing-train (docs/models.md)");
@@ -25,13 +25,14 @@ Result<reconstruction::NamedModel> Load(const char* name, const serving::Config&
 
 }  // namespace
 
-Result<reconstruction::Models> LoadPoseModels(const serving::Config& config) {
+Result<reconstruction::Models> LoadPoseModels(const std::string& data_folder,
+                                              reconstruction::Mode mode) {
   std::vector<reconstruction::NamedModel> models;
   std::vector<const char*> names{kPoseFile};
-  if (config.mode == "paper") names.push_back(kComFile);
-  if (config::FindDataFile(kArmFile, config.data_folder)) names.push_back(kArmFile);
+  if (mode == reconstruction::Mode::kPaper) names.push_back(kComFile);
+  if (config::FindDataFile(kArmFile, data_folder)) names.push_back(kArmFile);
   for (const char* name : names) {
-    auto model = Load(name, config);
+    auto model = Load(name, data_folder);
     if (!model) return model.error();
     models.push_back(std::move(model).value());
   }

@@ -115,21 +115,22 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   std::unique_ptr<transport::Client> client_;
 };
 
-/// Starts the line and returns how to stop it.
-template <typename Line>
-Result<std::function<void(const std::string&)>> StartServing(boost::asio::io_context& io,
-                                                             const Config& config,
-                                                             const std::string& version) {
+/// Says goodbye to every client, with the reason, and stops the simulation thread.
+using StopServing = std::function<void(const std::string& reason)>;
+
+/// Makes the line with `make_line(wake_descriptor)`, starts it and returns how to stop it.
+template <typename Line, typename MakeLine>
+Result<StopServing> StartServing(boost::asio::io_context& io, const Config& config,
+                                 const std::string& version, const MakeLine& make_line) {
   const int wake_descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake_descriptor < 0) return Failure(std::string("eventfd: ") + std::strerror(errno));
-  auto line = Line::Create(config, wake_descriptor);
+  Result<std::unique_ptr<Line>> line = make_line(wake_descriptor);
   if (!line) return line.error();
   auto serving =
       std::make_shared<Serving<Line>>(io, std::move(line).value(), version, wake_descriptor);
   if (const auto open = serving->Open(io, config); !open) return open.error();
   serving->Start();
-  return std::function<void(const std::string&)>(
-      [serving](const std::string& reason) { serving->Stop(reason); });
+  return StopServing([serving](const std::string& reason) { serving->Stop(reason); });
 }
 
 }  // namespace footing::serving

@@ -1,0 +1,90 @@
+#include "daemon/simulation/footing_sim/command_line.h"
+
+#include <array>
+#include <iostream>
+
+#include "common/cli/cli.h"
+#include "common/log/log.h"
+
+namespace footing::footing_sim {
+namespace {
+
+constexpr const char* kExamples =
+    "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n"
+    "  footing-sim --engine pose --lag-ms 100\n";
+
+/// An option that sets one key of the config.
+struct KeyOption {
+  const char* name;
+  const char* key;
+  const char* help;
+};
+constexpr std::array kKeyOptions{
+    KeyOption{"--engine", "engine", "Engine: gait or pose (default: gait)"},
+    KeyOption{"--sensor", "sensor", "Address of footingd"},
+    KeyOption{"--interface", "interface",
+              "User interface of the gait engine: wrist (default: wrist)"},
+    KeyOption{"--track", "track",
+              "Track of the gait engine: a built-in name, or a JSON file (default: straight)"},
+    KeyOption{"--subject", "subject", "Subject file of the pose engine, JSON"},
+    KeyOption{"--mode", "mode",
+              "Reconstruction mode of the pose engine: best or paper (default: best)"},
+    KeyOption{"--lag-ms", "lag_ms",
+              "Output delay of the pose engine, ms: 0, 100 or 200; longer is more accurate "
+              "(default: 0)"},
+};
+
+struct Given {
+  std::string file;
+  std::vector<std::string> settings, listen;
+  std::array<std::string, kKeyOptions.size()> values;
+  bool print = false, check = false, quiet = false;
+};
+
+std::unique_ptr<CLI::App> NewParser(Given& given) {
+  auto app = cli::NewApp("footing-sim",
+                         "Simulation server: drives a walking biped by features, or reconstructs a "
+                         "body from boards.",
+                         kExamples);
+  app->add_option("--config", given.file, "Config file, JSON");
+  app->add_option("--set", given.settings,
+                  "Setting, key=value; may be repeated; overrides the config file");
+  app->add_option("--listen", given.listen,
+                  "Address for clients, unix:PATH or tcp:HOST:PORT; may be repeated");
+  for (std::size_t i = 0; i < kKeyOptions.size(); ++i) {
+    app->add_option(kKeyOptions[i].name, given.values[i], kKeyOptions[i].help);
+  }
+  app->add_flag("--print-config", given.print, "Print the effective config and exit");
+  app->add_flag("--check-config", given.check, "Check the config and exit");
+  app->add_flag("-q,--quiet", given.quiet, "Log only warnings and errors");
+  return app;
+}
+
+}  // namespace
+
+std::optional<int> ReadCommandLine(int argc, char** argv, Config& config) {
+  Given given;
+  const auto app = NewParser(given);
+  if (const auto code = cli::Parse(*app, argc, argv)) return code;
+  log::Start("footing-sim", given.quiet);
+
+  for (std::size_t i = 0; i < kKeyOptions.size(); ++i) {
+    const std::string key = kKeyOptions[i].key;
+    if (!given.values[i].empty()) given.settings.push_back(key + "=" + given.values[i]);
+  }
+  config::Binder binder;
+  config.Bind(binder);
+  if (const auto done = binder.Apply(given.file, given.settings); !done) {
+    return cli::Report(done.error());
+  }
+  if (!given.listen.empty()) config.serving.listen = given.listen;
+  if (const auto checked = Check(config); !checked) return cli::Report(checked.error());
+  if (const auto apply = CheckApply(config, given.settings); !apply) {
+    return cli::Report(apply.error());
+  }
+  if (given.print) std::cout << binder.Print() << std::endl;
+  if (given.print || given.check) return 0;
+  return std::nullopt;
+}
+
+}  // namespace footing::footing_sim
