@@ -65,6 +65,8 @@ struct PoseFrame {
   std::array<bool, reconstruction::kHands> hands_valid{};  ///< Their places are told,
   std::array<bool, reconstruction::kHands> arms_valid{};   ///< or how their arms are held.
   std::array<HandTrouble, reconstruction::kHands> hand_trouble{};
+  /// Tracked, and not where a T-pose has them: it is not taken while one of them is.
+  std::array<bool, reconstruction::kHands> hands_off_t_pose{};
 
   bool valid = false;
   bool calibrated = false;

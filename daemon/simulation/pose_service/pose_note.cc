@@ -55,6 +55,14 @@ std::string Awaited(const PoseFrame& frame) {
       return std::string("put weight on the ") + kSides[side] + " foot";
     }
   }
+  const auto& off = frame.hands_off_t_pose;
+  if (off[0] || off[1]) {
+    const std::string arms = off[0] && off[1] ? "both arms"
+                             : off[0]         ? "the left arm"
+                                              : "the right arm";
+    return "the tracked hands are not in the T-pose: raise " + arms +
+           " straight out to the sides, at shoulder height";
+  }
   const double left_s = (1 - frame.calibration_progress) * TPoseCalibration::kSeconds;
   if (frame.calibration_progress > 0.04) {
     return "T-pose: hold still, " + Text(left_s, 1) + " s more";

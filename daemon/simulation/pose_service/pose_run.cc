@@ -34,6 +34,16 @@ std::uint64_t HashOf(const Eigen::VectorXd& q) {
   return hash;
 }
 
+reconstruction::Inputs WithoutFeet(reconstruction::Inputs inputs) {
+  for (auto& foot : inputs.loads.feet) foot.valid = false;
+  return inputs;
+}
+
+reconstruction::InsoleInputs WithoutFeet(reconstruction::InsoleInputs inputs) {
+  for (auto& foot : inputs.feet) foot.valid = false;
+  return inputs;
+}
+
 }  // namespace
 
 PoseRun::PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExchange& subjects)
@@ -62,11 +72,21 @@ void PoseRun::ChooseSource() {
 }
 
 void PoseRun::Advance() {
+  hands_off_t_pose_ = HandsOffTPose(subject_->t_pose, told_.hands);
+  const bool awaits = hands_off_t_pose_[0] || hands_off_t_pose_[1];
   const bool walks = source_ == PoseSource::kInsoles;
-  if (!walks || !subject_->reconstruction.output().calibrated)
-    subject_->reconstruction.Advance(told_);
-  if (subject_->walk && (walks || !subject_->walk->output().calibrated))
+  reconstruction::Reconstruction& boards = subject_->reconstruction;
+  if (!boards.output().calibrated) {
+    boards.Advance(awaits ? WithoutFeet(told_) : told_);
+  } else if (!walks) {
+    boards.Advance(told_);
+  }
+  if (!subject_->walk) return;
+  if (!subject_->walk->output().calibrated) {
+    subject_->walk->Advance(awaits ? WithoutFeet(worn_) : worn_);
+  } else if (walks) {
     subject_->walk->Advance(worn_);
+  }
 }
 
 const reconstruction::Output& PoseRun::output() const {
@@ -125,6 +145,7 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
     frame.arms_valid[side] = told_.arms[side].valid;
   }
   frame.hand_trouble = hand_trouble_;
+  frame.hands_off_t_pose = hands_off_t_pose_;
   frame.valid = output.valid;
   frame.calibrated = output.calibrated;
   frame.calibration_progress = output.calibration_progress;

@@ -3,19 +3,29 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "common/exchange/bounded_queue.h"
 #include "common/exchange/latest.h"
 #include "daemon/simulation/pose_service/pose_frame.h"
+#include "daemon/simulation/pose_service/t_pose_check.h"
 
 namespace footing::pose_service {
 
 /// One subject's reconstruction: made and destroyed by the io thread, advanced by the other one.
 struct SubjectRun {
-  std::uint64_t number = 0;
+  SubjectRun(std::uint64_t subject_number, reconstruction::Reconstruction on_boards,
+             std::optional<reconstruction::InsoleWalk> in_insoles = std::nullopt)
+      : number(subject_number),
+        reconstruction(std::move(on_boards)),
+        walk(std::move(in_insoles)),
+        t_pose(TPoseHandsOf(reconstruction.body())) {}
+
+  std::uint64_t number;
   reconstruction::Reconstruction reconstruction;
   /// The same person in insoles; none where the mode or the lag has none.
-  std::optional<reconstruction::InsoleWalk> walk = std::nullopt;
+  std::optional<reconstruction::InsoleWalk> walk;
+  TPoseHands t_pose;
 };
 
 /// How subjects come to the simulation thread and go back: it never allocates or frees.
@@ -31,6 +41,9 @@ struct SubjectExchange {
 /// Boards and insoles have a reconstruction each. That of the source which is followed is advanced;
 /// the other one rests, but takes its T-pose along as long as it has none. Insoles that fall silent
 /// are followed on, unless boards tell something: the pose coasts.
+///
+/// No T-pose is taken while a tracked hand is elsewhere than it has it: with hanging arms, every
+/// pose after it would be wrong.
 ///
 /// A subject takes effect with the first inputs that carry its number; it was queued before them.
 class PoseRun {
@@ -65,6 +78,7 @@ class PoseRun {
   PoseSource source_ = PoseSource::kBoards;
   bool simulated_ = false;
   std::array<HandTrouble, reconstruction::kHands> hand_trouble_{};
+  std::array<bool, reconstruction::kHands> hands_off_t_pose_{};
   std::int64_t solve_ns_ = 0;
 };
 

@@ -45,6 +45,11 @@ TEST(PoseNote, LeadsThroughTheTPose) {
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("weight on the right foot"));
   frame.load_n = {343, 343};
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("arms out to the sides"));
+  frame.hands_off_t_pose = {true, true};
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("raise both arms"));
+  frame.hands_off_t_pose = {false, true};
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("raise the right arm"));
+  frame.hands_off_t_pose = {};
   frame.calibration_progress = 0.5;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("hold still, 2.5 s more"));
   frame.calibration_progress = 0;

@@ -139,6 +139,43 @@ TEST(PoseRun, BoardsLostAndBackLeaveAFinitePose) {
   EXPECT_TRUE(line.frame.feet_told[0]);
 }
 
+TEST(PoseRun, HangingArmsAreNotTakenForATPose) {
+  Line line;
+  const auto step = [&line](std::size_t i, double lowered_m, double closer) {
+    line.told.sensors = line.measured[i];
+    for (auto& hand : line.told.sensors.hands) {
+      ASSERT_TRUE(hand.valid);
+      hand.p_W_m.z() -= lowered_m;
+      hand.p_W_m.head<2>() *= closer;
+    }
+    line.inputs.Write(line.told);
+    line.Quiet();
+  };
+  for (std::size_t i = 0; i < 340; ++i) step(i, 0.6, 0.3);  // More than the five seconds.
+  EXPECT_FALSE(line.frame.calibrated);
+  EXPECT_EQ(line.frame.calibration_progress, 0);
+  EXPECT_EQ(line.frame.hands_off_t_pose, (std::array{true, true}));
+  EXPECT_TRUE(line.frame.feet_told[0]);
+  EXPECT_NEAR(line.frame.load_n[0] + line.frame.load_n[1], 70 * 9.80665, 30);
+  for (std::size_t i = 0; i < 100; ++i) step(i, 0, 0.3);  // Forward: the height alone is right.
+  EXPECT_EQ(line.frame.hands_off_t_pose, (std::array{true, true}));
+  EXPECT_EQ(line.frame.calibration_progress, 0);
+  for (std::size_t i = 0; i < 310; ++i) step(i, 0, 1);
+  EXPECT_EQ(line.frame.hands_off_t_pose, (std::array{false, false}));
+  EXPECT_TRUE(line.frame.calibrated);
+}
+
+TEST(PoseRun, HandsThatAreNotTrackedDoNotDelayTheTPose) {
+  Line line;
+  for (std::size_t i = 0; i < 310; ++i) {
+    line.told.sensors = line.measured[i];
+    for (auto& hand : line.told.sensors.hands) hand = {};
+    line.inputs.Write(line.told);
+    line.Quiet();
+  }
+  EXPECT_TRUE(line.frame.calibrated);
+}
+
 TEST(PoseRun, ACalibrationThatIsAskedForForgetsTheTPose) {
   Line line;
   for (std::size_t i = 0; i < 400; ++i) line.Step(i);
