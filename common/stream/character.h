@@ -35,6 +35,8 @@ constexpr Gait GaitNumbered(int number) {
 const char* Name(Gait gait);
 /// The gait of that name; kUnspecified when there is none.
 Gait GaitNamed(const std::string& name);
+/// "step, walk, run, jump": for errors.
+std::string GaitNames();
 
 struct Link {
   std::string name;

@@ -46,6 +46,11 @@ const char* Name(CalibrationOrigin origin) { return At(kOrigins, origin); }
 const char* Name(Extension extension) { return At(kExtensions, extension); }
 const char* Name(Gait gait) { return At(kGaitNames, gait); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
+std::string GaitNames() {
+  std::string names;
+  for (const Gait gait : kGaits) names += (names.empty() ? "" : ", ") + std::string(Name(gait));
+  return names;
+}
 Gait GaitNamed(const std::string& name) { return Named<Gait>(kGaitNames, name); }
 
 std::uint32_t LedsOf(DeviceRole role) {

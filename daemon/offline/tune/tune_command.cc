@@ -186,7 +186,7 @@ class Tuning {
 
 Result<void> Check(const Options& options) {
   if (stream::GaitNamed(options.gait) == stream::Gait::kUnspecified) {
-    return UsageError("--gait " + options.gait + ": must be step, walk, run or jump");
+    return UsageError("--gait " + options.gait + ": must be one of " + stream::GaitNames());
   }
   if (options.out.empty() && options.iterations > 0) {
     return UsageError("--out is missing; only --iterations 0 does without");

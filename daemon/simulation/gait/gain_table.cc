@@ -122,7 +122,7 @@ class Reader {
   Result<void> ReadSet(const Cells& cells, GainSets& sets) const {
     const Gait gait = stream::GaitNamed(std::string(cells[0]));
     if (gait == Gait::kUnspecified) {
-      return Wrong("gait is " + Quoted(cells[0]) + ", must be step, walk, run or jump");
+      return Wrong("gait is " + Quoted(cells[0]) + ", must be one of " + stream::GaitNames());
     }
     GainSet set;
     set.name = cells[1];

@@ -29,15 +29,6 @@ v1::CommandResult Answer(bool ok, const std::string& message) {
 
 constexpr double kMaxPushNs = 200;
 
-std::string GaitNames() {
-  std::string names;
-  for (const stream::Gait gait : stream::kGaits) {
-    if (!names.empty()) names += ", ";
-    names += stream::Name(gait);
-  }
-  return names;
-}
-
 }  // namespace
 
 SensorInput::SensorInput(std::string rig, exchange::Latest<Inputs>& out, Responses& responses)
@@ -97,7 +88,7 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
       }
       const stream::Gait gait = stream::GaitNumbered(direct.gait());
       if (!direct.release() && gait == stream::Gait::kUnspecified) {
-        return Answer(false, "direct_gait: unknown gait; there are: " + GaitNames());
+        return Answer(false, "direct_gait: unknown gait; there are: " + stream::GaitNames());
       }
       engine.direct = !direct.release();
       engine.direct_command = {gait, direct.speed_mps(), direct.height_m(), direct.turn_rad()};

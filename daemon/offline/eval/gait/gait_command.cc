@@ -219,7 +219,8 @@ int RunSweep(const GaitOptions& options, std::uint64_t seed, bool json) {
 
 int Run(const GaitOptions& options, bool json) {
   if (stream::GaitNamed(options.gait) == stream::Gait::kUnspecified) {
-    return cli::Report(UsageError("--gait " + options.gait + ": must be step, walk, run or jump"));
+    return cli::Report(
+        UsageError("--gait " + options.gait + ": must be one of " + stream::GaitNames()));
   }
   if (options.trials < 1 || !(options.seconds > 0)) {
     return cli::Report(UsageError("--trials and --seconds must be positive"));

@@ -33,7 +33,7 @@ int RunTransitions(const TransitionOptions& options, bool json) {
   const stream::Gait to = stream::GaitNamed(options.to);
   if (from == stream::Gait::kUnspecified || to == stream::Gait::kUnspecified || from == to) {
     return cli::Report(UsageError("--from " + options.from + " --to " + options.to +
-                                  ": must be two different ones of step, walk, run, jump"));
+                                  ": must be two different ones of " + stream::GaitNames()));
   }
   const Result<std::uint64_t> seed = ParseSeed(options.seed);
   if (!seed) return cli::Report(seed.error());
