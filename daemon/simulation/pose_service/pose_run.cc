@@ -49,7 +49,7 @@ reconstruction::InsoleInputs WithoutFeet(reconstruction::InsoleInputs inputs) {
 PoseRun::PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExchange& subjects)
     : subject_(std::move(subject)), rate_hz_(rate_hz), subjects_(&subjects) {}
 
-void PoseRun::Obey(const PoseInputs& inputs) {
+void PoseRun::ApplyRequests(const PoseInputs& inputs) {
   std::unique_ptr<SubjectRun> next;
   while (subject_->number != inputs.subject_number && subjects_->next.Pop(next)) {
     subject_.swap(next);
@@ -63,29 +63,29 @@ void PoseRun::Obey(const PoseInputs& inputs) {
 }
 
 void PoseRun::ChooseSource() {
-  const auto tells = [](const auto& feet) { return feet[0].valid || feet[1].valid; };
-  if (subject_->walk && tells(worn_.feet)) {
+  const auto measures = [](const auto& feet) { return feet[0].valid || feet[1].valid; };
+  if (subject_->walk && measures(insoles_.feet)) {
     source_ = PoseSource::kInsoles;
-  } else if (!subject_->walk || tells(told_.loads.feet)) {
+  } else if (!subject_->walk || measures(sensors_.loads.feet)) {
     source_ = PoseSource::kBoards;
   }
 }
 
 void PoseRun::Advance() {
-  hands_off_t_pose_ = HandsOffTPose(subject_->t_pose, told_.hands);
+  hands_off_t_pose_ = HandsOffTPose(subject_->t_pose, sensors_.hands);
   const bool awaits = hands_off_t_pose_[0] || hands_off_t_pose_[1];
   const bool walks = source_ == PoseSource::kInsoles;
   reconstruction::Reconstruction& boards = subject_->reconstruction;
   if (!boards.output().calibrated) {
-    boards.Advance(awaits ? WithoutFeet(told_) : told_);
+    boards.Advance(awaits ? WithoutFeet(sensors_) : sensors_);
   } else if (!walks) {
-    boards.Advance(told_);
+    boards.Advance(sensors_);
   }
   if (!subject_->walk) return;
   if (!subject_->walk->output().calibrated) {
-    subject_->walk->Advance(awaits ? WithoutFeet(worn_) : worn_);
+    subject_->walk->Advance(awaits ? WithoutFeet(insoles_) : insoles_);
   } else if (walks) {
-    subject_->walk->Advance(worn_);
+    subject_->walk->Advance(insoles_);
   }
 }
 
@@ -103,25 +103,25 @@ void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
     applied.inputs = inputs.Front();
     quiet_steps_ = 0;
     for (std::size_t f = 0; f < momentum::kFeet; ++f) player_.Take(f, inputs.Front().impulses[f]);
-    Obey(inputs.Front());
+    ApplyRequests(inputs.Front());
   } else {
     ++quiet_steps_;
   }
-  told_ = inputs.Front().sensors;
-  PlayLoads(1 / rate_hz_, player_, told_.loads.feet);
-  worn_.feet = inputs.Front().insoles;
+  sensors_ = inputs.Front().sensors;
+  PlayLoads(1 / rate_hz_, player_, sensors_.loads.feet);
+  insoles_.feet = inputs.Front().insoles;
   simulated_ = inputs.Front().simulated;
   hand_trouble_ = inputs.Front().hand_trouble;
-  told_.loads.time_s = static_cast<double>(step_) / rate_hz_;
+  sensors_.loads.time_s = static_cast<double>(step_) / rate_hz_;
   if (static_cast<double>(quiet_steps_) > kStreamLostS * rate_hz_) {
-    for (auto& foot : told_.loads.feet) foot.valid = false;
-    for (auto& foot : worn_.feet) foot.valid = false;
-    for (auto& hand : told_.hands) hand.valid = false;
-    for (auto& arm : told_.arms) arm.valid = false;
+    for (auto& foot : sensors_.loads.feet) foot.valid = false;
+    for (auto& foot : insoles_.feet) foot.valid = false;
+    for (auto& hand : sensors_.hands) hand.valid = false;
+    for (auto& arm : sensors_.arms) arm.valid = false;
   }
-  worn_.time_s = told_.loads.time_s;
-  worn_.hands = told_.hands;
-  worn_.arms = told_.arms;
+  insoles_.time_s = sensors_.loads.time_s;
+  insoles_.hands = sensors_.hands;
+  insoles_.arms = sensors_.arms;
   ChooseSource();
   Advance();
   solve_ns_ = clock::ThreadCpuNs() - begun_ns;
@@ -135,14 +135,14 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
   frame.state_hash = HashOf(output.q);
   frame.simulated = simulated_;
   frame.source = source_;
-  frame.insoles_idle = !subject_->walk && (worn_.feet[0].valid || worn_.feet[1].valid);
+  frame.insoles_idle = !subject_->walk && (insoles_.feet[0].valid || insoles_.feet[1].valid);
   const bool walks = source_ == PoseSource::kInsoles;
   for (std::size_t side = 0; side < momentum::kFeet; ++side) {
-    frame.feet_told[side] = walks ? worn_.feet[side].valid : told_.loads.feet[side].valid;
-    frame.load_n[side] = walks ? reconstruction::TotalLoadN(worn_.feet[side])
-                               : momentum::PressureOf(told_.loads.feet[side], 1).total_n;
-    frame.hands_valid[side] = told_.hands[side].valid;
-    frame.arms_valid[side] = told_.arms[side].valid;
+    frame.feet_told[side] = walks ? insoles_.feet[side].valid : sensors_.loads.feet[side].valid;
+    frame.load_n[side] = walks ? reconstruction::TotalLoadN(insoles_.feet[side])
+                               : momentum::PressureOf(sensors_.loads.feet[side], 1).total_n;
+    frame.hands_valid[side] = sensors_.hands[side].valid;
+    frame.arms_valid[side] = sensors_.arms[side].valid;
   }
   frame.hand_trouble = hand_trouble_;
   frame.hands_off_t_pose = hands_off_t_pose_;

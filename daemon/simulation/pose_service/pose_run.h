@@ -61,7 +61,7 @@ class PoseRun {
   void TakenOnSimThread(Frame& frame) const { frame.applied_count = 0; }
 
  private:
-  void Obey(const PoseInputs& inputs);
+  void ApplyRequests(const PoseInputs& inputs);
   void ChooseSource();
   void Advance();
   const reconstruction::Output& output() const;
@@ -72,8 +72,8 @@ class PoseRun {
   std::uint64_t step_ = 0;
   std::uint64_t quiet_steps_ = 0;  ///< Since the last inputs.
   std::uint64_t calibrate_number_ = 0;
-  reconstruction::Inputs told_;
-  reconstruction::InsoleInputs worn_;
+  reconstruction::Inputs sensors_;
+  reconstruction::InsoleInputs insoles_;
   board::LoadPlayer player_;
   PoseSource source_ = PoseSource::kBoards;
   bool simulated_ = false;
