@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "daemon/sensor/reports/product_ids.h"
 
 namespace footing::devices {
 namespace {
@@ -99,7 +100,8 @@ void HidSearch::Look(std::int64_t now_ns) {
   }
   std::set<std::string> seen;
   for (const HidNode& node : monitor_.Nodes()) {
-    if (!IsKnownDevice(node.vendor, node.product) || open_paths_.contains(node.path)) continue;
+    if (!reports::IsKnownDevice(node.vendor, node.product) || open_paths_.contains(node.path))
+      continue;
     seen.insert(node.path);
     Open(node, now_ns);
   }

@@ -10,6 +10,7 @@
 #include "common/stream/device.h"
 #include "common/stream/hands.h"
 #include "daemon/sensor/reports/output_report.h"
+#include "daemon/sensor/reports/product_ids.h"
 
 /// Where devices come from. Above this line nothing knows whether a device is real.
 namespace footing::devices {
@@ -17,18 +18,12 @@ namespace footing::devices {
 /// A device of one source, from its attachment to its detachment; never used twice.
 using DeviceHandle = std::uint64_t;
 
-inline constexpr std::uint32_t kVendorNintendo = 0x057e;
-inline constexpr std::uint32_t kProductFirst = 0x0306;  ///< Wiimote, and every Balance Board.
-inline constexpr std::uint32_t kProductTr = 0x0330;     ///< Wiimote with MotionPlus inside.
-
-inline constexpr std::uint32_t kVendorSony = 0x054c;
-inline constexpr std::uint32_t kProductZcm1 = 0x03d5;  ///< PS Move, over USB and over Bluetooth.
-inline constexpr std::uint32_t kProductZcm2 = 0x0c5e;
-
-inline bool IsKnownDevice(std::uint32_t vendor, std::uint32_t product) {
-  return (vendor == kVendorNintendo && (product == kProductFirst || product == kProductTr)) ||
-         (vendor == kVendorSony && (product == kProductZcm1 || product == kProductZcm2));
-}
+using reports::kProductFirst;
+using reports::kProductTr;
+using reports::kProductZcm1;
+using reports::kProductZcm2;
+using reports::kVendorNintendo;
+using reports::kVendorSony;
 
 /// As the kernel's input.h numbers them.
 enum class Bus : std::uint32_t { kUnknown = 0, kUsb = 3, kBluetooth = 5 };

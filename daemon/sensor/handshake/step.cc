@@ -1,7 +1,6 @@
 #include "daemon/sensor/handshake/step.h"
 
 #include "daemon/sensor/calibration/acceleration.h"
-#include "daemon/sensor/calibration/board.h"
 #include "daemon/sensor/calibration/motion_plus.h"
 #include "daemon/sensor/calibration/nunchuk.h"
 
@@ -50,12 +49,6 @@ std::optional<MemoryRead> ReadOf(Step step) {
     case Step::kNunchukBlock:
       return MemoryRead(Space::kRegisters, calibration::kNunchukBlockAddress,
                         2 * calibration::kNunchukBlockBytes);
-    case Step::kBoardBlock:
-      return MemoryRead(Space::kRegisters, calibration::kBoardBlockAddress,
-                        calibration::kBoardBlockBytes);
-    case Step::kBoardTemperature:
-      return MemoryRead(Space::kRegisters, calibration::kBoardTemperatureAddress,
-                        calibration::kBoardTemperatureBytes);
     case Step::kMotionPlusIdentity:
       return MemoryRead(Space::kRegisters, kMotionPlusIdentityRegister, kIdentityBytes);
     case Step::kMotionPlusBlock:
@@ -74,6 +67,7 @@ std::optional<MemoryRead> ReadOf(Step step) {
     case Step::kCameraFormat:
     case Step::kCameraGo:
     case Step::kMode:
+    case Step::kOwnBlock:
     case Step::kLive:
       break;
   }
@@ -105,8 +99,7 @@ OutputReport FixedOutput(Step step) {
     case Step::kAccelerationBlocks:
     case Step::kExtensionIdentity:
     case Step::kNunchukBlock:
-    case Step::kBoardBlock:
-    case Step::kBoardTemperature:
+    case Step::kOwnBlock:
     case Step::kMotionPlusIdentity:
     case Step::kMotionPlusBlock:
     case Step::kMotionPlusActivate:
@@ -120,7 +113,7 @@ OutputReport FixedOutput(Step step) {
 }
 
 bool EndsWithAcknowledgement(Step step) {
-  return step != Step::kStatus && step != Step::kLive && !ReadOf(step);
+  return step != Step::kStatus && step != Step::kOwnBlock && step != Step::kLive && !ReadOf(step);
 }
 
 std::uint8_t AcknowledgedReport(Step step) {

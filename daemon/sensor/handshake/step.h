@@ -17,8 +17,7 @@ enum class Step {
   kExtensionPlain,
   kExtensionIdentity,
   kNunchukBlock,
-  kBoardBlock,
-  kBoardTemperature,
+  kOwnBlock,  ///< One of the plan's blocks.
   // MotionPlus: found and read while inactive, since it hides what it was plugged over.
   kMotionPlusKey,
   kMotionPlusIdentity,

@@ -6,7 +6,7 @@
 namespace footing::sensor {
 namespace {
 
-using stream::DeviceKind;
+using decode::Placement;
 using stream::DeviceRole;
 
 constexpr std::size_t kMaxRigBytes = 64;
@@ -15,6 +15,16 @@ constexpr DeviceRole kWornRoles[] = {DeviceRole::kLeftHand, DeviceRole::kRightHa
                                      DeviceRole::kLeftLeg, DeviceRole::kRightLeg,
                                      DeviceRole::kHead};
 constexpr DeviceRole kBoardRoles[] = {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
+
+std::span<const DeviceRole> RolesOf(Placement placement) {
+  switch (placement) {
+    case Placement::kOnBody:
+      return kWornRoles;
+    case Placement::kUnderFeet:
+      return kBoardRoles;
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -33,20 +43,18 @@ Result<Binding> ParseBinding(const std::string& text) {
   return Binding{text.substr(0, slash), role};
 }
 
-DeviceRole FirstFreeRole(DeviceKind kind, const std::string& rig,
+DeviceRole FirstFreeRole(Placement placement, const std::string& rig,
                          const std::vector<Binding>& taken) {
-  const auto roles = kind == DeviceKind::kBalanceBoard ? std::span<const DeviceRole>(kBoardRoles)
-                                                       : std::span<const DeviceRole>(kWornRoles);
-  for (const DeviceRole role : roles) {
+  for (const DeviceRole role : RolesOf(placement)) {
     if (std::find(taken.begin(), taken.end(), Binding{rig, role}) == taken.end()) return role;
   }
   return DeviceRole::kUnspecified;
 }
 
-bool RoleFits(DeviceKind kind, DeviceRole role) {
+bool RoleFits(Placement placement, DeviceRole role) {
   if (role == DeviceRole::kUnspecified) return true;
   const bool of_board = role == DeviceRole::kLeftBoard || role == DeviceRole::kRightBoard;
-  return of_board == (kind == DeviceKind::kBalanceBoard);
+  return of_board == (placement == Placement::kUnderFeet);
 }
 
 }  // namespace footing::sensor

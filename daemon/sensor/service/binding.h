@@ -5,6 +5,7 @@
 
 #include "common/result/result.h"
 #include "common/stream/device.h"
+#include "daemon/sensor/decode/kind_options.h"
 
 namespace footing::sensor {
 
@@ -19,12 +20,12 @@ struct Binding {
 /// From "rig/role", e.g. "main/left_hand".
 Result<Binding> ParseBinding(const std::string& text);
 
-/// The first role for a device of this kind that is free on the rig: hands, legs and head for
-/// Wiimotes, left then right for boards; kUnspecified when all are taken.
-stream::DeviceRole FirstFreeRole(stream::DeviceKind kind, const std::string& rig,
+/// The first role for a device of this placement that is free on the rig: hands, legs and head on
+/// the body, left then right for boards; kUnspecified when all are taken.
+stream::DeviceRole FirstFreeRole(decode::Placement placement, const std::string& rig,
                                  const std::vector<Binding>& taken);
 
-/// A board cannot be a hand, nor a Wiimote a board.
-bool RoleFits(stream::DeviceKind kind, stream::DeviceRole role);
+/// A board cannot be a hand, nor a remote a board.
+bool RoleFits(decode::Placement placement, stream::DeviceRole role);
 
 }  // namespace footing::sensor

@@ -1,42 +1,14 @@
 #include "daemon/sensor/service/device.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace footing::sensor {
-namespace {
-
-using stream::DeviceKind;
-
-constexpr double kWiimotePeriodS = 0.01;
-constexpr double kBoardPeriodS = 1 / 83.6;  // As recorded on a good link.
-constexpr double kBoardSensorPeriodS = 1 / 60.0;
-constexpr double kMovePeriodS = 1 / 88.0;  // psmoveapi.
-constexpr double kMoveLowBattery = 0.21;   // One bar of five.
-
-bool IsMove(const devices::DeviceIdentity& identity) {
-  return identity.vendor == devices::kVendorSony;
-}
-
-}  // namespace
-
-DeviceKind Device::kind() const { return move_ ? DeviceKind::kPsMove : handshake_.kind(); }
 
 void Device::Attach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity,
                     const Stored& stored) {
-  attached_ = true;
-  detach_reason_.clear();
-  handle_ = handle;
-  identity_ = identity;
-  second_.reset();
-  move_.reset();
-  if (IsMove(identity)) {
-    const auto model = identity.product == devices::kProductZcm2 ? reports::MoveModel::kZcm2
-                                                                 : reports::MoveModel::kZcm1;
-    move_ = Move{handshake::MoveHandshake(model, stored), decode::PsMove(model)};
-  }
+  links_.Attach(handle, identity);
+  kind_ = kinds::Kind(options_.kind, {identity.vendor, identity.product, identity.name}, stored);
   fresh_calibration_.reset();
-  handshake_ = handshake::Handshake(options_.handshake, identity.name);
   outputs_.clear();
   ShowBinding();
   Restart();
@@ -55,72 +27,24 @@ void Device::ShowBinding() {
                                              : 1u << ((number_ - 1) % 4));  // As a player's number.
 }
 
-void Device::RestartClock() {
-  period_s_ = move_                                 ? kMovePeriodS
-              : kind() == DeviceKind::kBalanceBoard ? kBoardPeriodS
-                                                    : kWiimotePeriodS;
-  link::DeviceClockConfig clock_config;
-  clock_config.nominal_period_s = period_s_;
-  clock_config.sensor_period_s =
-      kind() == DeviceKind::kBalanceBoard ? kBoardSensorPeriodS : period_s_;
-  clock_ = link::DeviceClock(clock_config);
-  statistics_ = link::LinkStatistics(period_s_);
-}
-
 /// Everything that belongs to one uninterrupted stream.
 void Device::Restart() {
-  RestartClock();
+  timing_.Restart(kind_.timing());
   outbox_ = link::Outbox();
-  wiimote_ = decode::Wiimote();
-  board_ = decode::BalanceBoard(options_.local_gravity_mps2);
-  filter_ = signal::KalmanFilter();
-  gyroscope_bias_ = calibration::GyroscopeBias();
+  kind_.Restart();
+  motion_ = MotionChain();
   chain_.Restart();
   worn_.Restart();
 }
 
 void Device::AttachSecond(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
-  second_ = handle;
-  second_identity_ = identity;
-  if (identity.bus != devices::Bus::kUsb) {
-    std::swap(*second_, handle_);
-    std::swap(second_identity_, identity_);
-    Restart();
-  }
-  if (move_) move_->handshake.AskAgain();
-}
-
-void Device::Detach(devices::DeviceHandle handle, const std::string& reason) {
-  if (second_) {
-    if (handle == handle_) {
-      handle_ = *second_;
-      identity_ = second_identity_;
-    }
-    second_.reset();
-    return;
-  }
-  attached_ = false;
-  detach_reason_ = reason;
+  if (links_.AttachSecond(handle, identity)) Restart();
+  kind_.TakeSecondLink();
 }
 
 void Device::SetLeds(std::uint8_t leds) {
   leds_ = leds & 0x0f;
-  if (!move_) outbox_.Push(reports::SetLeds(leds_));
-}
-
-bool Device::SetSphere(std::uint32_t rgb) {
-  if (move_) move_->handshake.set_sphere(rgb);
-  return move_.has_value();
-}
-
-bool Device::SetCamera(bool on) {
-  if (kind() != DeviceKind::kWiimote) return false;
-  handshake_.SetCamera(on);
-  return true;
-}
-
-bool Device::RequestStatus(std::int64_t now_ns) {
-  return !move_ && handshake_.RequestStatus(now_ns);
+  if (kind_.has_lamps()) outbox_.Push(reports::SetLeds(leds_));
 }
 
 void Device::PushOutputs() {
@@ -129,222 +53,150 @@ void Device::PushOutputs() {
 }
 
 void Device::Advance(std::int64_t now_ns) {
-  if (!attached_ || move_) return;
-  handshake_.Advance(now_ns, outputs_);
+  if (!attached()) return;
+  kind_.Advance(now_ns, outputs_);
   PushOutputs();
-  if (handshake_.live() && !leds_set_) {
+  if (kind_.live() && !leds_set_) {
     leds_set_ = true;
     SetLeds(leds_);
   }
 }
 
 std::optional<reports::OutputReport> Device::NextOutput(std::int64_t now_ns) {
-  if (!attached_) return std::nullopt;
-  return move_ ? move_->handshake.NextOutput(now_ns, outbox_.rumble()) : outbox_.Next(now_ns);
+  return attached() ? kind_.NextOutput(now_ns, outbox_) : std::nullopt;
 }
 
-std::optional<Device::FeatureRequest> Device::NextFeature(std::int64_t now_ns) {
-  if (!attached_ || !move_ || !move_->handshake.WantsFeature(now_ns)) return std::nullopt;
-  return FeatureRequest{second_.value_or(handle_), reports::kMoveCalibrationFeature,
-                        reports::kMoveCalibrationFeatureBytes};
+std::optional<decode::FeatureRequest> Device::NextFeature(std::int64_t now_ns) {
+  return attached() ? kind_.NextFeature(now_ns) : std::nullopt;
 }
 
 Device::Stored Device::TakeFreshCalibration() { return std::exchange(fresh_calibration_, {}); }
 
 void Device::Take(devices::DeviceHandle handle, const devices::IncomingReport& report,
                   TickContent& content) {
-  if (handle == handle_) {
-    queue_drops_ = report.dropped;
-    writes_failed_ = report.writes_failed;
+  if (handle == links_.handle()) {
+    counters_.queue_drops = report.dropped;
+    counters_.writes_failed = report.writes_failed;
   }
   if (report.feature) {
-    if (move_ && move_->handshake.TakeFeature(report.bytes)) {
-      fresh_calibration_ = move_->handshake.blob();
-    }
+    if (auto whole = kind_.TakeFeature(report.bytes)) fresh_calibration_ = std::move(whole);
     return;
   }
-  if (handle != handle_) return;
-  if (move_) {
-    TakeMove(report, content);
-    return;
-  }
-  const reports::InputReport decoded = reports::Decode(report.bytes);
-  if (std::holds_alternative<reports::Undecodable>(decoded.body)) {
-    ++undecodable_;
-    return;
-  }
-  const DeviceKind before = kind();
-  handshake_.Take(report.received_ns, decoded, outputs_);
+  if (handle != links_.handle()) return;
+  const stream::DeviceKind before = kind();
+  auto decoded = kind_.Take(report.received_ns, report.bytes, outputs_);
   PushOutputs();
-  if (kind() != before) RestartClock();
-  if (!handshake_.live()) return;
-  if (kind() == DeviceKind::kBalanceBoard) {
-    const auto* data = std::get_if<reports::Data>(&decoded.body);
-    if (data == nullptr) return;
-    const auto reading = board_.Take(handshake_.board(), data->extension());
-    if (reading) TakeBoard(report, *reading, content);
-    return;
-  }
-  const decode::WiimoteSetup setup = {
-      handshake_.acceleration(), handshake_.nunchuk(), handshake_.motion_plus(),
-      handshake_.extension_ready() ? handshake_.extension() : stream::Extension::kUnspecified,
-      handshake_.extension_epoch()};
-  decode::Decoded samples = wiimote_.Take(setup, decoded);
-  if (!samples.empty()) TakeDecoded(report, samples, content);
-}
-
-void Device::TakeMove(const devices::IncomingReport& report, TickContent& content) {
-  if (!move_->handshake.live()) return;
-  auto decoded = move_->decoder.Take(move_->handshake.calibration(), report.bytes);
-  if (decoded) {
+  if (kind() != before) timing_.Restart(kind_.timing());
+  if (!decoded) {
+    ++counters_.undecodable;
+  } else if (!decoded->empty()) {
     TakeDecoded(report, *decoded, content);
-  } else {
-    ++undecodable_;
   }
 }
 
 bool Device::HasRoom(const TickContent& content) {
   if (content.motion.size() + content.boards.size() < kMaxSamplesPerTick) return true;
-  ++flooded_;
+  ++counters_.flooded;
   return false;
+}
+
+template <typename Sample>
+void Device::Stamp(const devices::IncomingReport& report, Sample& sample) const {
+  sample.device = number_;
+  sample.received_ns = report.received_ns;
+  sample.sampled_ns = timing_.sampled_ns();
+  sample.simulated = simulated();
 }
 
 void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded& decoded,
                          TickContent& content) {
   if (!HasRoom(content)) return;
-  const std::int64_t before_ns = sampled_ns_;
-  if (!decoded.buttons_only) {
-    statistics_.Advance(report.received_ns);
-    sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns, decoded.changed));
-  }
-  const auto half_ns = static_cast<std::int64_t>(period_s_ * 0.5e9);
-  for (std::size_t i = 0; i < decoded.motion_count; ++i) {
-    stream::MotionSample& sample = decoded.motion[i];
-    const bool older = i + 1 < decoded.motion_count;
-    sample.received_ns = report.received_ns;
-    sample.sampled_ns =
-        older ? std::clamp(sampled_ns_ - half_ns, before_ns, sampled_ns_) : sampled_ns_;
-    TakeMotion(sample, !decoded.buttons_only, content);
-  }
-  const auto stamp = [&](auto& sample) {
-    sample.device = number_;
-    sample.received_ns = report.received_ns;
-    sample.sampled_ns = sampled_ns_;
-    sample.simulated = simulated();
-  };
+  const std::int64_t before_ns = timing_.sampled_ns();
+  if (!decoded.buttons_only) timing_.Take(report.received_ns, decoded.changed);
+  TakeMotion(report, decoded, before_ns, content);
+  if (decoded.board) TakeBoard(report, *decoded.board, content);
   if (decoded.nunchuk) {
-    stamp(*decoded.nunchuk);
-    decoded.nunchuk->report_count = statistics_.reports();
+    Stamp(report, *decoded.nunchuk);
+    decoded.nunchuk->report_count = timing_.statistics().reports();
     content.nunchuks.push_back(*decoded.nunchuk);
   }
   if (decoded.camera) {
-    stamp(*decoded.camera);
+    Stamp(report, *decoded.camera);
     content.cameras.push_back(std::move(*decoded.camera));
   }
 }
 
-void Device::TakeMotion(stream::MotionSample& sample, bool measured, TickContent& content) {
-  sample.device = number_;
-  sample.report_count = statistics_.reports();
-  sample.simulated = simulated();
-  if (measured) filtered_mps2_ = filter_.Advance(sample.sampled_ns, sample.specific_force_mps2);
-  sample.filtered_mps2 = filtered_mps2_;
-  if (sample.has_angular_velocity) {
-    gyroscope_bias_.Take(sample.sampled_ns, sample.specific_force_mps2,
-                         sample.angular_velocity_radps);
-    sample.gyroscope_bias_radps = gyroscope_bias_.bias_radps();
-    sample.angular_velocity_radps -= sample.gyroscope_bias_radps;
+void Device::TakeMotion(const devices::IncomingReport& report, decode::Decoded& decoded,
+                        std::int64_t before_ns, TickContent& content) {
+  const bool measured = !decoded.buttons_only;
+  for (std::size_t i = 0; i < decoded.motion_count; ++i) {
+    stream::MotionSample& sample = decoded.motion[i];
+    Stamp(report, sample);
+    if (i + 1 < decoded.motion_count) sample.sampled_ns = timing_.HalfEarlierNs(before_ns);
+    sample.report_count = timing_.statistics().reports();
+    motion_.Take(sample, measured);
+    counters_.repeats += sample.repeated && measured ? 1 : 0;
+    counters_.clipped += sample.clipped_axes != 0 ? 1 : 0;
+    content.motion.push_back(sample);
   }
-  repeats_ += sample.repeated && measured ? 1 : 0;
-  clipped_ += sample.clipped_axes != 0 ? 1 : 0;
-  content.motion.push_back(sample);
 }
 
-void Device::TakeBoard(const devices::IncomingReport& report, const decode::BoardReading& measured,
+void Device::TakeBoard(const devices::IncomingReport& report, const decode::BoardReading& reading,
                        TickContent& content) {
-  if (!HasRoom(content)) return;
-  statistics_.Advance(report.received_ns);
-  sampled_ns_ = std::max(sampled_ns_, clock_.Advance(report.received_ns, measured.changed));
   stream::BoardSample sample;
-  sample.device = number_;
-  sample.report_count = statistics_.reports();
-  sample.received_ns = report.received_ns;
-  sample.sampled_ns = sampled_ns_;
-  sample.uncalibrated = handshake_.board().origin == stream::CalibrationOrigin::kDefaults;
-  sample.simulated = simulated();
-  chain_.Take(measured.forces, sample);
-  repeats_ += sample.repeated ? 1 : 0;
+  Stamp(report, sample);
+  sample.report_count = timing_.statistics().reports();
+  sample.uncalibrated = reading.uncalibrated;
+  chain_.Take(reading.forces, sample);
+  counters_.repeats += sample.repeated ? 1 : 0;
   content.boards.push_back(sample);
-}
-
-std::string Device::Note(std::int64_t now_ns) const {
-  if (move_) return move_->handshake.calibration().problem;
-  std::string note = handshake_.Note(now_ns);
-  if (note.empty() && kind() == DeviceKind::kBalanceBoard) note = board_.Note();
-  return note;
 }
 
 stream::DeviceStatus Device::Status(std::int64_t now_ns, double stale_after_s) const {
   stream::DeviceStatus status;
   status.device = number_;
-  status.serial = identity_.serial;
-  status.kind = kind();
+  status.serial = identity().serial;
   status.rig = binding_.rig;
   status.role = binding_.role;
   status.simulated = simulated();
-  status.name = identity_.name;
-  status.driver = identity_.driver;
-  status.place = identity_.place;
-  status.reports = statistics_.reports();
-  status.gaps = statistics_.gaps();
-  status.repeats = repeats_;
-  status.clipped = clipped_;
-  status.undecodable = undecodable_;
-  status.queue_drops = queue_drops_;
-  status.writes_failed = writes_failed_;
+  status.name = identity().name;
+  status.driver = identity().driver;
+  status.place = identity().place;
+  status.reports = timing_.statistics().reports();
+  status.gaps = timing_.statistics().gaps();
+  status.repeats = counters_.repeats;
+  status.clipped = counters_.clipped;
+  status.undecodable = counters_.undecodable;
+  status.queue_drops = counters_.queue_drops;
+  status.writes_failed = counters_.writes_failed;
   status.rumble = outbox_.rumble();
-  status.last_report_ns = statistics_.last_ns();
-  status.tared = chain_.tared() && kind() == DeviceKind::kBalanceBoard;
+  if (kind_.has_lamps()) status.leds = leds_;
+  status.last_report_ns = timing_.statistics().last_ns();
+  status.tared = chain_.tared() && placement() == decode::Placement::kUnderFeet;
   status.mounted = worn_.rotation_MS().has_value();
-  if (move_) {
-    status.calibration = status.gyroscope_calibration = move_->handshake.calibration().origin;
-    status.battery_fraction = move_->decoder.battery_fraction();
-    status.battery_low = status.battery_fraction >= 0 && status.battery_fraction < kMoveLowBattery;
-    status.sphere_rgb = move_->handshake.sphere_rgb();
-    status.extension = stream::Extension::kNone;
-  } else {
-    status.calibration = handshake_.calibration_origin();
-    status.extension = handshake_.extension();
-    status.extension_calibration = handshake_.extension_origin();
-    status.gyroscope_calibration = handshake_.gyroscope_origin();
-    status.extension_changes = handshake_.extension_changes();
-    status.mode_reasserts = handshake_.mode_reasserts();
-    status.leds = leds_;
-  }
-  if (kind() == DeviceKind::kBalanceBoard) {
-    // A board's status report says nothing about its battery.
-    status.battery_fraction = board_.battery_fraction();
-    status.battery_low = board_.battery_low();
-  } else if (!move_ && handshake_.status()) {
-    status.battery_low = handshake_.status()->battery_low;
-    status.battery_fraction = reports::BatteryFraction(handshake_.status()->battery);
-  }
-  const double silent_s = static_cast<double>(now_ns - statistics_.last_ns()) * 1e-9;
-  if (!attached_) {
+  kind_.AddTo(status);
+  AddState(now_ns, stale_after_s, status);
+  return status;
+}
+
+void Device::AddState(std::int64_t now_ns, double stale_after_s,
+                      stream::DeviceStatus& status) const {
+  const link::LinkStatistics& link = timing_.statistics();
+  if (!attached()) {
     status.state = stream::DeviceState::kLost;
-    status.note = detach_reason_;
-    return status;
+    status.note = links_.reason();
+    return;
   }
-  status.report_rate_hz = statistics_.RateHz(now_ns);
-  status.jitter_ms = statistics_.JitterMs();
-  status.state = !live()                    ? stream::DeviceState::kConnecting
+  const double silent_s = static_cast<double>(now_ns - link.last_ns()) * 1e-9;
+  status.report_rate_hz = link.RateHz(now_ns);
+  status.jitter_ms = link.JitterMs();
+  status.state = !kind_.live()              ? stream::DeviceState::kConnecting
                  : silent_s > stale_after_s ? stream::DeviceState::kStale
                                             : stream::DeviceState::kLive;
-  status.note = Note(now_ns);
-  if (status.note.empty() && flooded_ > 0) {
-    status.note = std::to_string(flooded_) + " samples dropped: it sends too many";
+  status.note = kind_.Note(now_ns);
+  if (status.note.empty() && counters_.flooded > 0) {
+    status.note = std::to_string(counters_.flooded) + " samples dropped: it sends too many";
   }
-  return status;
 }
 
 }  // namespace footing::sensor

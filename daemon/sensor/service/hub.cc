@@ -3,18 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "daemon/sensor/reports/move_report.h"
-
 namespace footing::sensor {
 namespace {
 
-using stream::DeviceKind;
-using stream::DeviceRole;
-
 constexpr std::int64_t kStatusIntervalNs = 200'000'000;
-constexpr double kDefaultLeaseS = 1;
-constexpr double kMaxLeaseS = 10;
-constexpr std::size_t kMaxRigMembers = 8;  // Of RigFeatureExtractor.
 
 }  // namespace
 
@@ -66,10 +58,10 @@ Device* Hub::MakeRoom() {
   }
   DeviceOptions options;
   options.plate = config_.plate;
-  options.local_gravity_mps2 = config_.local_gravity_mps2;
-  options.handshake.motion_plus = config_.motion_plus;
-  options.handshake.camera = config_.camera;
-  options.handshake.status_interval_s = config_.status_interval_s;
+  options.kind.local_gravity_mps2 = config_.local_gravity_mps2;
+  options.kind.handshake.motion_plus = config_.motion_plus;
+  options.kind.handshake.camera = config_.camera;
+  options.kind.handshake.status_interval_s = config_.status_interval_s;
   devices_.push_back(std::make_unique<Device>(++last_number_, options));
   return devices_.back().get();
 }
@@ -81,7 +73,7 @@ void Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& 
                " is ignored");
     return;
   }
-  if (device != nullptr && device->attached() && device->kind() == DeviceKind::kPsMove &&
+  if (device != nullptr && device->attached() && device->has_second_link() &&
       device->identity().bus != identity.bus) {
     device->AttachSecond(handle, identity);
     status_due_ = true;
@@ -119,74 +111,6 @@ void Hub::OnDetach(devices::DeviceHandle handle, const std::string& reason) {
              ") lost: " + reason);
 }
 
-Binding Hub::ChooseBinding(const Device& device) const {
-  const devices::DeviceIdentity& identity = device.identity();
-  const auto assigned = assigned_.find(identity.serial);
-  if (assigned != assigned_.end() && RoleFits(device.kind(), assigned->second.role)) {
-    return assigned->second;
-  }
-  std::vector<Binding> taken;
-  for (const auto& other : devices_) {
-    if (other.get() != &device && other->attached()) taken.push_back(other->binding());
-  }
-  const auto is_free = [&taken](const Binding& binding) {
-    return std::find(taken.begin(), taken.end(), binding) == taken.end();
-  };
-  // One that comes back keeps its role.
-  const Binding& before = device.binding();
-  if (before.role != DeviceRole::kUnspecified && RoleFits(device.kind(), before.role) &&
-      is_free(before)) {
-    return before;
-  }
-  Binding wish = {identity.wished_rig.empty() ? config_.default_rig : identity.wished_rig,
-                  identity.wished_role};
-  if (wish.role == DeviceRole::kUnspecified || !RoleFits(device.kind(), wish.role) ||
-      !is_free(wish)) {
-    wish.role = FirstFreeRole(device.kind(), wish.rig, taken);
-  }
-  return wish;
-}
-
-void Hub::Bind(Device& device) { Rebind(device, ChooseBinding(device)); }
-
-void Hub::Rebind(Device& device, const Binding& binding) {
-  device.set_binding(binding);
-  status_due_ = true;
-  ApplySetup(device);
-  RebuildRigs();
-}
-
-/// Rigs whose members stayed as they are keep their features. A lost device stays a member of its
-/// rig until its role goes to another.
-void Hub::RebuildRigs() {
-  std::map<std::string, std::vector<features::Member>> members;
-  for (const auto& device : devices_) {
-    const Binding& binding = device->binding();
-    if (device->kind() == DeviceKind::kBalanceBoard || binding.role == DeviceRole::kUnspecified) {
-      continue;
-    }
-    auto& rig = members[binding.rig];
-    const auto holder = std::find_if(rig.begin(), rig.end(), [&binding](const auto& member) {
-      return member.role == binding.role;
-    });
-    if (holder != rig.end()) {
-      if (device->attached()) holder->device = device->number();
-    } else if (rig.size() < kMaxRigMembers) {
-      rig.push_back({device->number(), binding.role});
-    }
-  }
-  std::erase_if(rigs_, [&members](const auto& rig) { return !members.contains(rig.first); });
-  for (auto& [name, wanted] : members) {
-    Rig& rig = rigs_[name];
-    const bool same = std::equal(
-        rig.members.begin(), rig.members.end(), wanted.begin(), wanted.end(),
-        [](const auto& a, const auto& b) { return a.device == b.device && a.role == b.role; });
-    if (same) continue;
-    rig.members = wanted;
-    rig.extractor = std::make_unique<features::RigFeatureExtractor>(name, wanted);
-  }
-}
-
 void Hub::TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
                   bool to_device, std::int64_t true_ns) {
   if (content_.raw.size() >= kMaxSamplesPerTick || bytes.size() > 64) return;
@@ -211,7 +135,7 @@ void Hub::OnReport(devices::DeviceHandle handle, const devices::IncomingReport& 
   Device* device = Find(handle);
   if (device == nullptr) return;
   TakeRaw(*device, report.received_ns, report.bytes, false, report.true_ns);
-  const DeviceKind kind = device->kind();
+  const stream::DeviceKind kind = device->kind();
   const std::size_t before = content_.motion.size();
   device->Take(handle, report, content_);
   if (const auto fresh = device->TakeFreshCalibration(); fresh && ports_.save_calibration) {
@@ -230,7 +154,7 @@ void Hub::Flush(Device& device) {
   const std::int64_t now_ns = ports_.now_ns();
   if (ports_.request_feature) {
     if (const auto feature = device.NextFeature(now_ns)) {
-      ports_.request_feature(feature->handle, feature->id, feature->size);
+      ports_.request_feature(device.feature_handle(), feature->id, feature->size);
     }
   }
   const auto report = device.NextOutput(now_ns);
@@ -239,23 +163,12 @@ void Hub::Flush(Device& device) {
   TakeRaw(device, now_ns, *report, true, 0);
 }
 
-void Hub::EndLeases(std::int64_t now_ns) {
-  for (auto it = leases_.begin(); it != leases_.end();) {
-    if (now_ns < it->second.until_ns) {
-      ++it;
-      continue;
-    }
-    if (Device* device = Numbered(it->first)) device->outbox().SetRumble(false);
-    it = leases_.erase(it);
-  }
-}
-
 void Hub::PublishStatus(std::int64_t now_ns) {
   std::vector<stream::DeviceState> states;
   std::vector<stream::DeviceStatus> status;
   for (const auto& device : devices_) {
     status.push_back(device->Status(now_ns, config_.stale_after_s));
-    AddSetupTo(status.back());
+    AddSetupTo(device->placement(), status.back());
     states.push_back(status.back().state);
   }
   if (!status_due_ && states == last_states_ && now_ns - status_ns_ < kStatusIntervalNs) return;
@@ -295,108 +208,6 @@ TickContent Hub::Tick(std::int64_t now_ns) {
   WatchSetup();
   PublishStatus(now_ns);
   return std::exchange(content_, {});
-}
-
-Result<Device*> Hub::Attached(std::uint32_t number) {
-  Device* found = Numbered(number);
-  if (found == nullptr || !found->attached()) {
-    return NoDevice("device " + std::to_string(number) + " is not attached");
-  }
-  return found;
-}
-
-Result<void> Hub::SetRumble(std::uint64_t session, std::uint32_t device, bool on, double lease_s) {
-  const auto attached = Attached(device);
-  if (!attached) return attached.error();
-  Device* const found = *attached;
-  found->outbox().SetRumble(on);
-  status_due_ = true;
-  if (!on) {
-    leases_.erase(device);
-  } else {
-    const double granted_s = lease_s > 0 ? std::min(lease_s, kMaxLeaseS) : kDefaultLeaseS;
-    leases_[device] = {session, ports_.now_ns() + static_cast<std::int64_t>(granted_s * 1e9)};
-  }
-  Flush(*found);
-  return {};
-}
-
-Result<void> Hub::SetLeds(std::uint32_t device, std::uint8_t leds) {
-  const auto found = Attached(device);
-  if (!found) return found.error();
-  (*found)->SetLeds(leds);
-  status_due_ = true;
-  Flush(**found);
-  return {};
-}
-
-Result<void> Hub::SetSphere(std::uint32_t device, std::uint32_t rgb) {
-  const auto found = Attached(device);
-  if (!found) return found.error();
-  if (!(*found)->SetSphere(rgb)) {
-    return UsageError("device " + std::to_string(device) + " has no sphere: it is not a PS Move");
-  }
-  status_due_ = true;
-  Flush(**found);
-  return {};
-}
-
-Result<void> Hub::SetCamera(std::uint32_t device, bool on) {
-  const auto found = Attached(device);
-  if (!found) return found.error();
-  if (!(*found)->SetCamera(on)) {
-    return UsageError("device " + std::to_string(device) + " has no camera: it is not a Wiimote");
-  }
-  return {};
-}
-
-Result<void> Hub::RequestDeviceStatus(std::uint32_t device) {
-  const auto found = Attached(device);
-  if (!found) return found.error();
-  if (!(*found)->RequestStatus(ports_.now_ns())) {
-    return UsageError("device " + std::to_string(device) +
-                      " was asked less than a second ago, or has no status report");
-  }
-  return {};
-}
-
-Result<void> Hub::AssignRole(const std::string& serial, const Binding& binding) {
-  Device* const found = WithSerial(serial);
-  if (found == nullptr) return NoDevice("no device with serial " + serial + " was seen");
-  Device& device = *found;
-  if (!RoleFits(device.kind(), binding.role)) {
-    return UsageError(std::string("a ") + stream::Name(device.kind()) + " cannot be " +
-                      stream::Name(binding.role));
-  }
-  const Binding before = device.binding();
-  for (const auto& other : devices_) {
-    if (other.get() == &device || other->binding() != binding) continue;
-    KeepRole(other->identity().serial, before);
-    Rebind(*other, before);
-  }
-  KeepRole(serial, binding);
-  Rebind(device, binding);
-  return {};
-}
-
-void Hub::EndSession(std::uint64_t session) {
-  for (auto it = leases_.begin(); it != leases_.end();) {
-    if (it->second.session != session) {
-      ++it;
-      continue;
-    }
-    if (Device* device = Numbered(it->first)) device->outbox().SetRumble(false);
-    it = leases_.erase(it);
-  }
-}
-
-void Hub::StopMotors() {
-  for (const auto& device : devices_) {
-    if (!device->attached() || !device->outbox().rumble()) continue;
-    device->outbox().SetRumble(false);
-    ports_.send(device->handle(), device->kind() == DeviceKind::kPsMove ? reports::MoveLights(0, 0)
-                                                                        : reports::RumbleOnly());
-  }
 }
 
 }  // namespace footing::sensor

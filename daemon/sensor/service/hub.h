@@ -116,10 +116,10 @@ class Hub {
   void ApplySetup(Device& device);
   void ApplySetupToAll();
   void WatchSetup();
+  void AddSetupTo(decode::Placement placement, stream::DeviceStatus& status) const;
+  std::string BoardNote(const stream::DeviceStatus& status) const;
   std::set<std::string> RigsWithBoards() const;
   std::vector<stream::RigSetup> SetupInForce() const;
-  void AddSetupTo(stream::DeviceStatus& status) const;
-  std::string BoardNote(const stream::DeviceStatus& status) const;
   void AddToRig(const Device& device, const stream::MotionSample& sample);
   void TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
                bool to_device, std::int64_t true_ns);

@@ -10,7 +10,7 @@
 namespace footing::sensor {
 namespace {
 
-using stream::DeviceKind;
+using decode::Placement;
 using stream::DeviceRole;
 
 constexpr double kTareWindowS = 2;
@@ -85,7 +85,7 @@ void Hub::ApplySetupToAll() {
 std::set<std::string> Hub::RigsWithBoards() const {
   std::set<std::string> rigs;
   for (const auto& device : devices_) {
-    if (device->kind() == DeviceKind::kBalanceBoard) rigs.insert(device->binding().rig);
+    if (device->placement() == Placement::kUnderFeet) rigs.insert(device->binding().rig);
   }
   return rigs;
 }
@@ -129,8 +129,8 @@ void Hub::WatchSetup() {
   }
 }
 
-void Hub::AddSetupTo(stream::DeviceStatus& status) const {
-  if (status.kind == DeviceKind::kBalanceBoard) {
+void Hub::AddSetupTo(Placement placement, stream::DeviceStatus& status) const {
+  if (placement == Placement::kUnderFeet) {
     status.moved = book_.Moved(status.serial);
     if (status.note.empty()) status.note = BoardNote(status);
     return;
@@ -145,7 +145,7 @@ std::string Hub::BoardNote(const stream::DeviceStatus& status) const {
   if (book_.LayoutOf(status.rig).preset == "single") return "";
   const bool alone = std::none_of(devices_.begin(), devices_.end(), [&status](const auto& other) {
     return other->number() != status.device && other->attached() &&
-           other->kind() == DeviceKind::kBalanceBoard && other->binding().rig == status.rig;
+           other->placement() == Placement::kUnderFeet && other->binding().rig == status.rig;
   });
   return alone ? "one board alone: weight beside it is not measured; switch the other on, or say "
                  "that there is none: footing-ctl layout --preset single"
@@ -166,7 +166,7 @@ Result<Hub::Measured> Hub::Tare(const std::string& serial, double window_s, bool
   }
   const auto found = Attached(serial);
   if (!found) return found.error();
-  if ((*found)->kind() != DeviceKind::kBalanceBoard) {
+  if ((*found)->placement() != Placement::kUnderFeet) {
     return UsageError(serial + " is a " + stream::Name((*found)->kind()) +
                       "; only boards are tared");
   }
@@ -185,7 +185,7 @@ Result<Device*> Hub::AttachedWorn(const std::string& serial) {
   auto found = Attached(serial);
   if (!found) return found;
   const Device& device = **found;
-  if (device.kind() == DeviceKind::kBalanceBoard || !IsWorn(device.binding().role)) {
+  if (device.placement() != Placement::kOnBody || !IsWorn(device.binding().role)) {
     return UsageError(
         serial + " is " + Text(device.binding()) +
         "; only devices on hands, legs and head have a mounting (footing-ctl assign)");
@@ -257,7 +257,7 @@ Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& i
   if (item.name != "layout" || !item.passed || item.stale) return {};
   // Checked where they lie now.
   for (const auto& device : devices_) {
-    if (device->kind() != DeviceKind::kBalanceBoard || device->binding().rig != name) continue;
+    if (device->placement() != Placement::kUnderFeet || device->binding().rig != name) continue;
     book_.SetMoved(device->identity().serial, false);
     device->chain().WatchAnew();
   }

@@ -14,6 +14,7 @@
 #include "common/wire/wire.h"
 #include "daemon/sensor/devices/hid_source.h"
 #include "daemon/sensor/devices/socket_source.h"
+#include "daemon/sensor/service/answer.h"
 #include "daemon/sensor/service/hub.h"
 #include "daemon/sensor/service/publish.h"
 #include "daemon/sensor/setup/state_directory.h"
@@ -39,24 +40,6 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
                           "assign",   "nunchuk",  "camera", "sphere", "setup",
                           "tare",     "mounting", "layout", "hands",  "contacts"};
   return options;
-}
-
-v1::CommandResult Answer(const v1::Command& command, const Result<void>& done) {
-  v1::CommandResult result;
-  result.set_id(command.id());
-  result.set_ok(done.ok());
-  if (!done) result.set_message(done.error().message);
-  return result;
-}
-
-v1::CommandResult AnswerMeasured(const v1::Command& command,
-                                 const Result<Hub::Measured>& measured) {
-  if (!measured) return Answer(command, Result<void>(measured.error()));
-  v1::CommandResult result = Answer(command, Result<void>());
-  result.set_message(measured->message);
-  result.set_residual(measured->residual);
-  result.set_unit(measured->unit);
-  return result;
 }
 
 /// The directory as the book's shelf; none when nothing is to be kept.
@@ -239,30 +222,37 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       case v1::Command::kCalibrateTPose:
       case v1::Command::kSetSubject:
         return Answer(command, UsageError("that is a command for footing-sim"));
-      case v1::Command::kTare: {
-        const v1::Tare& tare = command.tare();
-        return AnswerMeasured(command, hub_.Tare(tare.serial(), tare.window_s(), tare.clear()));
-      }
-      case v1::Command::kSolveMounting: {
-        const v1::SolveMounting& solve = command.solve_mounting();
-        if (solve.clear()) return AnswerMeasured(command, hub_.ClearMounting(solve.serial()));
-        return AnswerMeasured(
-            command,
-            hub_.SolveMounting(solve.serial(), {solve.still_from_ns(), solve.still_to_ns(),
-                                                solve.steps_from_ns(), solve.steps_to_ns()}));
-      }
+      case v1::Command::kTare:
+      case v1::Command::kSolveMounting:
       case v1::Command::kSetBoardLayout:
-        return AnswerMeasured(
-            command, hub_.SetBoardLayout(wire::FromProto(command.set_board_layout().layout())));
-      case v1::Command::kRecordSetup: {
-        const v1::RecordSetup& record = command.record_setup();
-        return Answer(command, hub_.RecordSetup(record.rig(), wire::FromProto(record.item()),
-                                                record.forget()));
-      }
+      case v1::Command::kRecordSetup:
+        return OnSetupCommand(command);
       case v1::Command::ACTION_NOT_SET:
         return Answer(command, UsageError("the command has no action that footingd knows"));
     }
     return Answer(command, UsageError("the command has no action that footingd knows"));
+  }
+
+  v1::CommandResult OnSetupCommand(const v1::Command& command) {
+    if (command.has_tare()) {
+      const v1::Tare& tare = command.tare();
+      return AnswerMeasured(command, hub_.Tare(tare.serial(), tare.window_s(), tare.clear()));
+    }
+    if (command.has_solve_mounting()) {
+      const v1::SolveMounting& solve = command.solve_mounting();
+      if (solve.clear()) return AnswerMeasured(command, hub_.ClearMounting(solve.serial()));
+      return AnswerMeasured(
+          command,
+          hub_.SolveMounting(solve.serial(), {solve.still_from_ns(), solve.still_to_ns(),
+                                              solve.steps_from_ns(), solve.steps_to_ns()}));
+    }
+    if (command.has_set_board_layout()) {
+      return AnswerMeasured(
+          command, hub_.SetBoardLayout(wire::FromProto(command.set_board_layout().layout())));
+    }
+    const v1::RecordSetup& record = command.record_setup();
+    return Answer(command,
+                  hub_.RecordSetup(record.rig(), wire::FromProto(record.item()), record.forget()));
   }
 
   boost::asio::io_context& io_;

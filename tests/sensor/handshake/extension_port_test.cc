@@ -1,7 +1,6 @@
 // What comes and goes at the extension port, before and while data flow.
 #include <gtest/gtest.h>
 
-#include "daemon/sensor/handshake/handshake.h"
 #include "tests/sensor/handshake/fixture.h"
 #include "tests/sensor/handshake/port_model.h"
 
@@ -39,9 +38,10 @@ TEST(ExtensionPort, ANunchukIsLiveWithItsOwnCalibration) {
   Talk talk = With(Child::kNunchuk, false);
   talk.Advance(0.5);
   EXPECT_EQ(talk.handshake().extension(), Extension::kNunchuk);
-  EXPECT_TRUE(talk.handshake().extension_ready());
+  EXPECT_TRUE(talk.handshake().port().ready());
   EXPECT_EQ(talk.handshake().extension_origin(), CalibrationOrigin::kDevice);
-  EXPECT_EQ(talk.handshake().nunchuk().zero_counts[0], 0x7d << 2);  // Low bits 0a: x 0, y 2, z 2.
+  EXPECT_EQ(talk.handshake().port().nunchuk.zero_counts[0],
+            0x7d << 2);  // Low bits 0a: x 0, y 2, z 2.
   EXPECT_EQ(talk.device().controller().mode(), 0x35);
 }
 
@@ -50,7 +50,7 @@ TEST(ExtensionPort, AMotionPlusIsSwitchedOnWithItsOwnCalibration) {
   talk.Advance(1);
   EXPECT_EQ(talk.handshake().extension(), Extension::kMotionPlus);
   EXPECT_EQ(talk.handshake().gyroscope_origin(), CalibrationOrigin::kDevice);
-  EXPECT_EQ(talk.handshake().motion_plus().slow.zero[0], 0x760f);
+  EXPECT_EQ(talk.handshake().motion_plus().calibration.slow.zero[0], 0x760f);
   EXPECT_EQ(talk.device().active_mode(), 0x04);
   EXPECT_EQ(talk.device().controller().mode(), 0x35);
 }
@@ -84,7 +84,7 @@ TEST(ExtensionPort, AMotionPlusThatAnotherKeepsSwitchingOffIsLeftAlone) {
     talk.Advance(0.5);
   }
   EXPECT_FALSE(talk.device().active());
-  EXPECT_NE(talk.handshake().Note(talk.now_ns()).find("ignore_special_drivers"), std::string::npos);
+  EXPECT_NE(talk.Note().find("ignore_special_drivers"), std::string::npos);
   const int activations = talk.device().activations();
   EXPECT_LE(activations, 6);
   EXPECT_GE(CoreReports(talk, 20), 3990);  // 200 a second here.
@@ -99,29 +99,29 @@ TEST(ExtensionPort, AMotionPlusThatIsSwitchedOffNowAndThenComesBack) {
     talk.Advance(15);
     ASSERT_TRUE(talk.device().active()) << i;
   }
-  EXPECT_EQ(talk.handshake().Note(talk.now_ns()), "");
+  EXPECT_EQ(talk.Note(), "");
 }
 
 TEST(ExtensionPort, WithoutTheConfigAMotionPlusIsLeftAlone) {
-  HandshakeConfig config;
-  config.motion_plus = false;
-  Handshake handshake(config, "Nintendo RVL-CNT-01");
+  decode::KindOptions options;
+  options.handshake.motion_plus = false;
+  kinds::Kind kind(options, {0, 0, "Nintendo RVL-CNT-01"}, {});
   PortModel model(Child::kNone, true);
   for (int i = 1; i < 3000; ++i) {
-    Handshake::Outputs outputs;
-    handshake.Advance(i * 10'000'000LL, outputs);
+    kinds::Outputs outputs;
+    kind.Advance(i * 10'000'000LL, outputs);
     if (auto report = model.Sample()) {
-      handshake.Take(i * 10'000'000LL, reports::Decode(*report), outputs);
+      (void)kind.Take(i * 10'000'000LL, *report, outputs);
     }
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       const auto output = outputs[k];
       EXPECT_FALSE(output[0] == 0x16 && output[2] == 0xa6);
       for (auto& answer : model.HandleOutput(output)) {
-        handshake.Take(i * 10'000'000LL, reports::Decode(answer), outputs);
+        (void)kind.Take(i * 10'000'000LL, answer, outputs);
       }
     }
   }
-  EXPECT_TRUE(handshake.live());
+  EXPECT_TRUE(kind.live());
   EXPECT_FALSE(model.active());
 }
 
@@ -129,7 +129,7 @@ TEST(ExtensionPort, TheDeadWindowOfAnActivationIsNoPull) {
   Talk talk = With(Child::kNone, true);
   talk.Advance(20);
   EXPECT_EQ(talk.device().activations(), 1);
-  EXPECT_EQ(talk.handshake().extension_changes(), 0u);
+  EXPECT_EQ(talk.handshake().port().changes(), 0u);
 }
 
 TEST(ExtensionPort, PlugsInMidStreamHardlyCostCoreData) {
@@ -141,12 +141,12 @@ TEST(ExtensionPort, PlugsInMidStreamHardlyCostCoreData) {
     EXPECT_EQ(talk.handshake().extension(), Extension::kNunchuk);
     EXPECT_EQ(talk.handshake().extension_origin(), CalibrationOrigin::kDevice);
     Say(talk, talk.device().SetChild(Child::kNone));
-    EXPECT_FALSE(talk.handshake().extension_ready());  // Its bytes are rubbish from now on.
+    EXPECT_FALSE(talk.handshake().port().ready());  // Its bytes are rubbish from now on.
     EXPECT_GE(CoreReports(talk, 15), 15 * 200 - 8);
     EXPECT_EQ(talk.handshake().extension(), Extension::kNone);
     EXPECT_EQ(talk.device().controller().mode(), 0x31);
   }
-  EXPECT_EQ(talk.handshake().extension_changes(), 6u);
+  EXPECT_EQ(talk.handshake().port().changes(), 6u);
 }
 
 TEST(ExtensionPort, AChildThatComesOrGoesUnderAMotionPlusShowsInItsPackets) {
@@ -224,14 +224,14 @@ TEST(ExtensionPort, TheCameraIsSwitchedOnInTheFormatOfItsMode) {
   for (const Child child : {Child::kNone, Child::kNunchuk}) {
     Talk talk = With(child, false);
     talk.Advance(1);
-    talk.handshake().SetCamera(true);
+    talk.kind().SetCamera(true);
     talk.Advance(1);
     const bool nunchuk = child == Child::kNunchuk;
     EXPECT_EQ(talk.device().controller().mode(), nunchuk ? 0x37 : 0x33);
     EXPECT_EQ(talk.device().camera_register(0x33), nunchuk ? 1 : 3);
     EXPECT_EQ(talk.device().camera_register(0x30), 0x08);
     EXPECT_EQ(talk.device().camera_register(0x1a), 0x63);
-    talk.handshake().SetCamera(false);
+    talk.kind().SetCamera(false);
     talk.Advance(1);
     EXPECT_EQ(talk.device().controller().mode(), nunchuk ? 0x35 : 0x31);
   }

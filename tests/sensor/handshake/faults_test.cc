@@ -8,7 +8,6 @@
 
 #include "common/virtual/devices/balance_board.h"
 #include "common/virtual/devices/wiimote.h"
-#include "daemon/sensor/handshake/handshake.h"
 #include "tests/sensor/handshake/fixture.h"
 
 namespace footing::handshake {
@@ -19,42 +18,42 @@ using virtual_devices::BalanceBoard;
 using virtual_devices::Report;
 using virtual_devices::Wiimote;
 
-using Talk = Conversation<Wiimote>;
+using WiimoteTalk = Conversation<Wiimote>;
 
-void SetEeprom(Talk& talk, std::size_t at, std::size_t size, std::uint8_t value) {
+void SetEeprom(WiimoteTalk& talk, std::size_t at, std::size_t size, std::uint8_t value) {
   const auto bytes = talk.device().controller().memory().eeprom().subspan(at, size);
   std::fill(bytes.begin(), bytes.end(), value);
 }
 
 struct Fault {
   const char* name;
-  std::function<void(Talk&)> put_in;
+  std::function<void(WiimoteTalk&)> put_in;
   CalibrationOrigin origin;
 };
 
 const Fault kFaults[] = {
-    {"none", [](Talk&) {}, CalibrationOrigin::kDevice},
+    {"none", [](WiimoteTalk&) {}, CalibrationOrigin::kDevice},
     {"data before the handshake",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        for (int i = 0; i < 50; ++i) talk.Receive({0x31, 0, 0, 0x80, 0x80, 0x9a});
      },
      CalibrationOrigin::kDevice},
     {"a burst of 64 reports",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        for (int i = 0; i < 64; ++i) talk.Receive({0x30, 0, 0x08});
      },
      CalibrationOrigin::kDevice},
     {"no acknowledgement ever",
-     [](Talk& talk) { talk.on_input = [](Report& report) { return report[0] != 0x22; }; },
+     [](WiimoteTalk& talk) { talk.on_input = [](Report& report) { return report[0] != 0x22; }; },
      CalibrationOrigin::kDevice},
     {"no status ever",
-     [](Talk& talk) { talk.on_input = [](Report& report) { return report[0] != 0x20; }; },
+     [](WiimoteTalk& talk) { talk.on_input = [](Report& report) { return report[0] != 0x20; }; },
      CalibrationOrigin::kDevice},
     {"no memory ever",
-     [](Talk& talk) { talk.on_input = [](Report& report) { return report[0] != 0x21; }; },
+     [](WiimoteTalk& talk) { talk.on_input = [](Report& report) { return report[0] != 0x21; }; },
      CalibrationOrigin::kDefaults},
     {"the first piece of memory is lost",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        talk.on_input = [lost = false](Report& report) mutable {
          const bool first = report[0] == 0x21 && !lost;
          lost = lost || first;
@@ -63,7 +62,7 @@ const Fault kFaults[] = {
      },
      CalibrationOrigin::kDevice},
     {"every memory reply comes twice",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        talk.on_input = [&talk, inside = false](Report& report) mutable {
          if (report[0] == 0x21 && !inside) {
            inside = true;
@@ -75,7 +74,7 @@ const Fault kFaults[] = {
      },
      CalibrationOrigin::kDevice},
     {"replies of the kernel driver's own reads",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        talk.on_input = [&talk, inside = false](Report& report) mutable {
          if (report[0] == 0x21 && !inside) {
            inside = true;
@@ -92,7 +91,7 @@ const Fault kFaults[] = {
      },
      CalibrationOrigin::kDevice},
     {"memory error 8",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        talk.on_input = [](Report& report) {
          if (report[0] == 0x21) report[3] = 0xf8;
          return true;
@@ -100,7 +99,7 @@ const Fault kFaults[] = {
      },
      CalibrationOrigin::kDefaults},
     {"a short last piece",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        talk.on_input = [](Report& report) {
          if (report[0] == 0x21 && report[3] != 0xf0) report.resize(8);
          return true;
@@ -108,24 +107,24 @@ const Fault kFaults[] = {
      },
      CalibrationOrigin::kDefaults},
     {"acknowledgement with error 2",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        talk.on_input = [](Report& report) {
          if (report[0] == 0x22) report[4] = 2;
          return true;
        };
      },
      CalibrationOrigin::kDevice},
-    {"block 1 broken", [](Talk& talk) { SetEeprom(talk, 0x1f, 1, 0xaa); },
+    {"block 1 broken", [](WiimoteTalk& talk) { SetEeprom(talk, 0x1f, 1, 0xaa); },
      CalibrationOrigin::kDeviceCopy},
-    {"both blocks FF", [](Talk& talk) { SetEeprom(talk, 0x16, 20, 0xff); },
+    {"both blocks FF", [](WiimoteTalk& talk) { SetEeprom(talk, 0x16, 20, 0xff); },
      CalibrationOrigin::kDefaults},
-    {"both blocks 00", [](Talk& talk) { SetEeprom(talk, 0x16, 20, 0x00); },
+    {"both blocks 00", [](WiimoteTalk& talk) { SetEeprom(talk, 0x16, 20, 0x00); },
      CalibrationOrigin::kDefaults},
     {"every output is lost",
-     [](Talk& talk) { talk.on_output = [](reports::OutputReport&) { return false; }; },
+     [](WiimoteTalk& talk) { talk.on_output = [](reports::OutputReport&) { return false; }; },
      CalibrationOrigin::kDefaults},
     {"undecodable reports in between",
-     [](Talk& talk) {
+     [](WiimoteTalk& talk) {
        talk.on_input = [&talk, inside = false](Report&) mutable {
          if (!inside) {
            inside = true;
@@ -142,12 +141,12 @@ const Fault kFaults[] = {
 class HandshakeFault : public testing::TestWithParam<Fault> {};
 
 TEST_P(HandshakeFault, EndLive) {
-  Talk talk(Wiimote(2), "Nintendo RVL-CNT-01");
+  WiimoteTalk talk(Wiimote(2), "Nintendo RVL-CNT-01");
   talk.sample = [](Wiimote& wiimote) { return wiimote.Sample({0, 0, -9.81}); };
   GetParam().put_in(talk);
   talk.Advance(6);
   ASSERT_TRUE(talk.handshake().live());
-  EXPECT_EQ(talk.handshake().calibration_origin(), GetParam().origin);
+  EXPECT_EQ(talk.status().calibration, GetParam().origin);
   const auto sample =
       calibration::Calibrate(talk.handshake().acceleration(), {0x200, 0x200, 0x268});
   EXPECT_TRUE(sample.specific_force_S_mps2.allFinite());
@@ -172,8 +171,8 @@ TEST(HandshakeFaults, ABoardThatNeverShowsItsIdentityIsKnownByItsName) {
   };
   talk.Advance(5);
   EXPECT_TRUE(talk.handshake().live());
-  EXPECT_EQ(talk.handshake().kind(), stream::DeviceKind::kBalanceBoard);
-  EXPECT_EQ(talk.handshake().calibration_origin(), CalibrationOrigin::kDevice);
+  EXPECT_EQ(talk.kind().kind(), stream::DeviceKind::kBalanceBoard);
+  EXPECT_EQ(talk.status().calibration, CalibrationOrigin::kDevice);
 }
 
 TEST(HandshakeFaults, AnIdentityThatIsReadyOnlyTheSecondTimeIsUsed) {
@@ -187,11 +186,11 @@ TEST(HandshakeFaults, AnIdentityThatIsReadyOnlyTheSecondTimeIsUsed) {
   };
   talk.Advance(5);
   EXPECT_TRUE(talk.handshake().live());
-  EXPECT_EQ(talk.handshake().kind(), stream::DeviceKind::kBalanceBoard);
+  EXPECT_EQ(talk.kind().kind(), stream::DeviceKind::kBalanceBoard);
 }
 
 TEST(HandshakeFaults, RandomReportsNeverStopItNorFloodTheDevice) {
-  Talk talk(Wiimote(2), "Nintendo RVL-CNT-01");
+  WiimoteTalk talk(Wiimote(2), "Nintendo RVL-CNT-01");
   std::mt19937 random(11);
   int sent = 0;
   talk.on_output = [&sent](reports::OutputReport&) { return ++sent > 0; };

@@ -6,16 +6,17 @@
 #include <vector>
 
 #include "common/virtual/devices/controller.h"
-#include "daemon/sensor/handshake/handshake.h"
+#include "daemon/sensor/kinds/registry/kind.h"
 
 namespace footing::handshake {
 
-/// A handshake with a device model at the other end, 5 ms a step; faults are put in between.
+/// One device as what it is, with a device model at the other end, 5 ms a step; faults are put in
+/// between.
 template <typename Device>
 class Conversation {
  public:
   Conversation(Device device, const std::string& name)
-      : device_(std::move(device)), handshake_({}, name) {}
+      : device_(std::move(device)), kind_({}, {0, 0, name}, {}) {}
 
   /// What the host sends and what arrives from the device may be changed or dropped (false).
   std::function<bool(reports::OutputReport&)> on_output;
@@ -26,8 +27,8 @@ class Conversation {
   void Advance(double seconds) {
     for (int step = 0; step < static_cast<int>(seconds / kStepS); ++step) {
       now_ns_ += static_cast<std::int64_t>(kStepS * 1e9);
-      Handshake::Outputs outputs;
-      handshake_.Advance(now_ns_, outputs);
+      kinds::Outputs outputs;
+      kind_.Advance(now_ns_, outputs);
       for (auto& output : outputs) Send(output);
       if (!sample) continue;
       if (auto report = sample(device_)) Receive(*report);
@@ -36,15 +37,22 @@ class Conversation {
 
   void Receive(virtual_devices::Report report) {
     if (on_input && !on_input(report)) return;
-    Handshake::Outputs outputs;
-    handshake_.Take(now_ns_, reports::Decode(report), outputs);
+    kinds::Outputs outputs;
+    (void)kind_.Take(now_ns_, report, outputs);
     for (auto& output : outputs) Send(output);
   }
 
   /// Time passes unseen, as in a suspension.
   void Jump(double seconds) { now_ns_ += static_cast<std::int64_t>(seconds * 1e9); }
 
-  Handshake& handshake() { return handshake_; }
+  const HandshakeSequencer& handshake() const { return *kind_.sequencer(); }
+  kinds::Kind& kind() { return kind_; }
+  stream::DeviceStatus status() const {
+    stream::DeviceStatus status;
+    kind_.AddTo(status);
+    return status;
+  }
+  std::string Note() const { return kind_.Note(now_ns_); }
   Device& device() { return device_; }
   std::int64_t now_ns() const { return now_ns_; }
   /// Everything sent to the device, by id.
@@ -64,7 +72,7 @@ class Conversation {
   }
 
   Device device_;
-  Handshake handshake_;
+  kinds::Kind kind_;
   std::vector<reports::OutputReport> sent_;
   std::int64_t now_ns_ = 0;
 };

@@ -4,7 +4,6 @@
 
 #include <random>
 
-#include "daemon/sensor/handshake/handshake.h"
 #include "tests/sensor/handshake/fixture.h"
 #include "tests/sensor/handshake/port_model.h"
 
@@ -71,7 +70,7 @@ TEST(KeepAlive, TheKernelsDriverLosesEveryTime) {
   };
   int data = 0;
   for (int i = 0; i < 6; ++i) {  // 30 s, a status request every 5 s.
-    ASSERT_TRUE(talk.handshake().RequestStatus(talk.now_ns()));
+    ASSERT_TRUE(talk.kind().RequestStatus(talk.now_ns()));
     for (int step = 0; step < 1000; ++step) {
       talk.Advance(0.005);
       data += talk.device().controller().mode() == 0x31 ? 1 : 0;
@@ -84,7 +83,7 @@ TEST(KeepAlive, TheStatusIsAskedForAtMostOnceASecond) {
   Talk talk = Live();
   const int before = talk.Sent(0x15);
   for (int i = 0; i < 500; ++i) {
-    talk.handshake().RequestStatus(talk.now_ns());
+    talk.kind().RequestStatus(talk.now_ns());
     talk.Advance(0.01);
   }
   EXPECT_GE(talk.Sent(0x15) - before, 4);
@@ -97,7 +96,7 @@ TEST(KeepAlive, AnHourThatPassesUnseenIsNoSilence) {
   talk.Jump(3600);
   talk.Advance(2);
   EXPECT_TRUE(talk.handshake().live());
-  EXPECT_EQ(talk.handshake().Note(talk.now_ns()), "");
+  EXPECT_EQ(talk.Note(), "");
   EXPECT_LE(talk.Sent(0x12) - modes, 2);
 }
 

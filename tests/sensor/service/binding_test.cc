@@ -5,7 +5,7 @@
 namespace footing::sensor {
 namespace {
 
-using stream::DeviceKind;
+using decode::Placement;
 using stream::DeviceRole;
 
 TEST(Binding, IsRigAndRole) {
@@ -21,19 +21,19 @@ TEST(Binding, RolesAreGivenInOrderOnEachRig) {
   std::vector<Binding> taken;
   for (const DeviceRole role : {DeviceRole::kLeftHand, DeviceRole::kRightHand, DeviceRole::kLeftLeg,
                                 DeviceRole::kRightLeg, DeviceRole::kHead}) {
-    EXPECT_EQ(FirstFreeRole(DeviceKind::kWiimote, "main", taken), role);
+    EXPECT_EQ(FirstFreeRole(Placement::kOnBody, "main", taken), role);
     taken.push_back({"main", role});
   }
-  EXPECT_EQ(FirstFreeRole(DeviceKind::kWiimote, "main", taken), DeviceRole::kUnspecified);
-  EXPECT_EQ(FirstFreeRole(DeviceKind::kWiimote, "other", taken), DeviceRole::kLeftHand);
-  EXPECT_EQ(FirstFreeRole(DeviceKind::kBalanceBoard, "main", taken), DeviceRole::kLeftBoard);
+  EXPECT_EQ(FirstFreeRole(Placement::kOnBody, "main", taken), DeviceRole::kUnspecified);
+  EXPECT_EQ(FirstFreeRole(Placement::kOnBody, "other", taken), DeviceRole::kLeftHand);
+  EXPECT_EQ(FirstFreeRole(Placement::kUnderFeet, "main", taken), DeviceRole::kLeftBoard);
 }
 
 TEST(Binding, ABoardIsNoHandAndAWiimoteNoBoard) {
-  EXPECT_TRUE(RoleFits(DeviceKind::kWiimote, DeviceRole::kEditor));
-  EXPECT_TRUE(RoleFits(DeviceKind::kBalanceBoard, DeviceRole::kRightBoard));
-  EXPECT_FALSE(RoleFits(DeviceKind::kBalanceBoard, DeviceRole::kLeftHand));
-  EXPECT_FALSE(RoleFits(DeviceKind::kWiimote, DeviceRole::kLeftBoard));
+  EXPECT_TRUE(RoleFits(Placement::kOnBody, DeviceRole::kEditor));
+  EXPECT_TRUE(RoleFits(Placement::kUnderFeet, DeviceRole::kRightBoard));
+  EXPECT_FALSE(RoleFits(Placement::kUnderFeet, DeviceRole::kLeftHand));
+  EXPECT_FALSE(RoleFits(Placement::kOnBody, DeviceRole::kLeftBoard));
 }
 
 }  // namespace

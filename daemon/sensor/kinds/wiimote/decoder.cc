@@ -1,10 +1,11 @@
-#include "daemon/sensor/decode/wiimote.h"
+#include "daemon/sensor/kinds/wiimote/decoder.h"
 
 #include "daemon/sensor/reports/camera.h"
 
-namespace footing::decode {
+namespace footing::wiimote {
 namespace {
 
+using decode::Decoded;
 using reports::MotionPlusCounts;
 using reports::NunchukCounts;
 using stream::CalibrationOrigin;
@@ -28,7 +29,7 @@ bool Same(const MotionPlusCounts& a, const MotionPlusCounts& b) {
 
 }  // namespace
 
-Decoded Wiimote::Take(const WiimoteSetup& setup, const reports::InputReport& report) {
+Decoded Decoder::Take(const Setup& setup, const reports::InputReport& report) {
   const auto* body = std::get_if<reports::Data>(&report.body);
   const auto data = body == nullptr ? std::nullopt : interleaver_.Take(*body);
   if (!data || !data->has_acceleration) {
@@ -57,7 +58,7 @@ Decoded Wiimote::Take(const WiimoteSetup& setup, const reports::InputReport& rep
   return decoded;
 }
 
-void Wiimote::TakeExtension(const WiimoteSetup& setup, reports::Bytes bytes, Decoded& decoded) {
+void Decoder::TakeExtension(const Setup& setup, reports::Bytes bytes, Decoded& decoded) {
   if (setup.extension_epoch != extension_epoch_) {
     extension_epoch_ = setup.extension_epoch;
     packets_to_drop_ = IsMotionPlus(setup.extension) ? kFirstPackets : 0;
@@ -93,8 +94,7 @@ void Wiimote::TakeExtension(const WiimoteSetup& setup, reports::Bytes bytes, Dec
   last_gyroscope_ = counts;
 }
 
-void Wiimote::TakeNunchuk(const WiimoteSetup& setup, const NunchukCounts& counts,
-                          Decoded& decoded) {
+void Decoder::TakeNunchuk(const Setup& setup, const NunchukCounts& counts, Decoded& decoded) {
   const auto reading = calibration::Calibrate(setup.nunchuk, counts);
   stream::NunchukSample& sample = decoded.nunchuk.emplace();
   sample.stick_x = reading.stick_x;
@@ -108,7 +108,7 @@ void Wiimote::TakeNunchuk(const WiimoteSetup& setup, const NunchukCounts& counts
   last_nunchuk_ = counts;
 }
 
-Decoded Wiimote::TakeButtons(std::uint16_t buttons) {
+Decoded Decoder::TakeButtons(std::uint16_t buttons) {
   Decoded decoded;
   if (!has_last_ || buttons == last_.buttons) return decoded;
   last_.buttons = buttons;
@@ -121,4 +121,4 @@ Decoded Wiimote::TakeButtons(std::uint16_t buttons) {
   return decoded;
 }
 
-}  // namespace footing::decode
+}  // namespace footing::wiimote

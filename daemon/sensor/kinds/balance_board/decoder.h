@@ -8,33 +8,29 @@
 #include "common/board/plate.h"
 #include "common/units/units.h"
 #include "daemon/sensor/calibration/board.h"
+#include "daemon/sensor/decode/decoded.h"
 #include "daemon/sensor/reports/extension.h"
 
-namespace footing::decode {
-
-struct BoardReading {
-  board::CornerForces forces;  ///< As measured: neither tared nor clamped.
-  bool changed = false;        ///< Other counts than in the report before.
-};
+namespace footing::balance_board {
 
 /// A Balance Board's extension bytes to forces; watches for sensors that can't be right. A plain
 /// value.
-class BalanceBoard {
+class Decoder {
  public:
   /// What one cell and the whole board are made for. More is passed on and said so.
   static constexpr double kCellRangeKg = 34;
   static constexpr double kTotalRangeKg = 150;
-  /// A corner that stays on one count while another changes so often is stuck.
+  /// A corner that stays on one count while the others change this often is stuck.
   static constexpr int kStuckChanges = 500;
 
-  explicit BalanceBoard(double local_gravity_mps2 = kStandardGravityMps2)
+  explicit Decoder(double local_gravity_mps2 = kStandardGravityMps2)
       : local_gravity_mps2_(local_gravity_mps2) {}
 
   /// None for reports that are too short for four corners.
-  std::optional<BoardReading> Take(const calibration::BoardCalibration& calibration,
-                                   reports::Bytes extension);
+  std::optional<decode::Decoded> Take(const calibration::BoardCalibration& calibration,
+                                      reports::Bytes extension);
 
-  /// 0 to 1 from byte 10; -1 as long as no report had it.
+  /// 0 to 1 from byte 10; -1 until a report had it.
   double battery_fraction() const { return battery_fraction_; }
   bool battery_low() const { return battery_low_; }
   /// Which sensor is stuck or over its range in the newest report; empty when none.
@@ -52,4 +48,4 @@ class BalanceBoard {
   bool battery_low_ = false;
 };
 
-}  // namespace footing::decode
+}  // namespace footing::balance_board

@@ -7,12 +7,12 @@
 #include "daemon/sensor/calibration/move.h"
 #include "daemon/sensor/reports/move_report.h"
 
-namespace footing::handshake {
+namespace footing::ps_move {
 
 /// Finds a PS Move's calibration (stored by serial, else asked for by feature reports, which some
 /// kernels answer over USB only) and keeps its sphere alight. A Move needs no more: it sends its
 /// data as soon as it is there. Time is an argument.
-class MoveHandshake {
+class CalibrationHandshake {
  public:
   static constexpr std::int64_t kTimeoutNs = 500'000'000;
   static constexpr int kMaxRefusals = 3;
@@ -21,7 +21,8 @@ class MoveHandshake {
   static constexpr std::int64_t kSpacingNs = 120'000'000;
 
   /// `stored`: the blob kept from an earlier time, if any.
-  MoveHandshake(reports::MoveModel model, const std::optional<std::vector<std::uint8_t>>& stored);
+  CalibrationHandshake(reports::MoveModel model,
+                       const std::optional<std::vector<std::uint8_t>>& stored);
 
   /// Data may be decoded: the calibration is settled.
   bool live() const { return settled_; }
@@ -59,4 +60,4 @@ class MoveHandshake {
   bool sent_rumble_ = false;
 };
 
-}  // namespace footing::handshake
+}  // namespace footing::ps_move

@@ -1,10 +1,10 @@
-#include "daemon/sensor/decode/balance_board.h"
+#include "daemon/sensor/kinds/balance_board/decoder.h"
 
 #include <algorithm>
 
 #include "common/units/units.h"
 
-namespace footing::decode {
+namespace footing::balance_board {
 namespace {
 
 constexpr const char* kCornerNames[] = {"top right", "bottom right", "top left", "bottom left"};
@@ -13,15 +13,17 @@ constexpr std::uint8_t kLowBattery = 0x6a;
 
 }  // namespace
 
-std::optional<BoardReading> BalanceBoard::Take(const calibration::BoardCalibration& calibration,
-                                               reports::Bytes extension) {
+std::optional<decode::Decoded> Decoder::Take(const calibration::BoardCalibration& calibration,
+                                             reports::Bytes extension) {
   const auto counts = reports::DecodeBoard(extension);
   if (!counts) return std::nullopt;
   const auto corners = calibration::CornerForces(calibration, *counts, local_gravity_mps2_);
-  BoardReading reading;
+  decode::Decoded decoded;
+  decode::BoardReading& reading = decoded.board.emplace();
   reading.forces = {corners[reports::kTopLeft], corners[reports::kTopRight],
                     corners[reports::kBottomLeft], corners[reports::kBottomRight]};
-  reading.changed = !started_ || counts->corners != last_;
+  reading.uncalibrated = calibration.origin == stream::CalibrationOrigin::kDefaults;
+  decoded.changed = !started_ || counts->corners != last_;
   Watch(*counts);
   double total_n = 0;
   bool cell_over = false;
@@ -34,10 +36,10 @@ std::optional<BoardReading> BalanceBoard::Take(const calibration::BoardCalibrati
     battery_fraction_ = reports::BoardBatteryFraction(counts->battery);
     battery_low_ = counts->battery < kLowBattery;
   }
-  return reading;
+  return decoded;
 }
 
-void BalanceBoard::Watch(const reports::BoardCounts& counts) {
+void Decoder::Watch(const reports::BoardCounts& counts) {
   if (started_ && counts.corners != last_) {
     for (std::size_t i = 0; i < reports::kCorners; ++i) {
       still_[i] = counts.corners[i] == last_[i] ? std::min(still_[i] + 1, kStuckChanges) : 0;
@@ -47,7 +49,7 @@ void BalanceBoard::Watch(const reports::BoardCounts& counts) {
   last_ = counts.corners;
 }
 
-std::string BalanceBoard::Note() const {
+std::string Decoder::Note() const {
   for (std::size_t i = 0; i < reports::kCorners; ++i) {
     if (still_[i] < kStuckChanges) continue;
     return std::string("the ") + kCornerNames[i] +
@@ -59,4 +61,4 @@ std::string BalanceBoard::Note() const {
   return "";
 }
 
-}  // namespace footing::decode
+}  // namespace footing::balance_board

@@ -1,6 +1,6 @@
-#include "daemon/sensor/handshake/move_handshake.h"
+#include "daemon/sensor/kinds/ps_move/calibration_handshake.h"
 
-namespace footing::handshake {
+namespace footing::ps_move {
 namespace {
 
 constexpr std::uint8_t kRumble = 0xc0;
@@ -9,8 +9,8 @@ constexpr int kRounds = 2;
 
 }  // namespace
 
-MoveHandshake::MoveHandshake(reports::MoveModel model,
-                             const std::optional<std::vector<std::uint8_t>>& stored)
+CalibrationHandshake::CalibrationHandshake(reports::MoveModel model,
+                                           const std::optional<std::vector<std::uint8_t>>& stored)
     : model_(model), calibration_(calibration::DefaultMove(model)), blob_(model) {
   if (!stored) return;
   calibration_ = calibration::ParseMove(model, *stored);
@@ -20,7 +20,7 @@ MoveHandshake::MoveHandshake(reports::MoveModel model,
   asking_ = false;
 }
 
-void MoveHandshake::AskAgain() {
+void CalibrationHandshake::AskAgain() {
   if (calibration_.origin == stream::CalibrationOrigin::kDevice) return;
   blob_ = calibration::MoveBlob(model_);
   asking_ = true;
@@ -28,7 +28,7 @@ void MoveHandshake::AskAgain() {
   refusals_ = answers_ = 0;
 }
 
-bool MoveHandshake::WantsFeature(std::int64_t now_ns) {
+bool CalibrationHandshake::WantsFeature(std::int64_t now_ns) {
   if (!asking_) return false;
   if (asked_) {
     if (now_ns - asked_ns_ < kTimeoutNs) return false;
@@ -40,7 +40,7 @@ bool MoveHandshake::WantsFeature(std::int64_t now_ns) {
   return true;
 }
 
-void MoveHandshake::Refuse() {
+void CalibrationHandshake::Refuse() {
   asked_ = false;
   if (++refusals_ < kMaxRefusals) return;
   asking_ = false;
@@ -50,7 +50,7 @@ void MoveHandshake::Refuse() {
   }
 }
 
-bool MoveHandshake::TakeFeature(reports::Bytes feature) {
+bool CalibrationHandshake::TakeFeature(reports::Bytes feature) {
   if (!asking_ || !asked_) return false;
   if (feature.empty() || !blob_.Take(feature)) {
     Refuse();
@@ -73,7 +73,8 @@ bool MoveHandshake::TakeFeature(reports::Bytes feature) {
   return good;
 }
 
-std::optional<reports::OutputReport> MoveHandshake::NextOutput(std::int64_t now_ns, bool rumble) {
+std::optional<reports::OutputReport> CalibrationHandshake::NextOutput(std::int64_t now_ns,
+                                                                      bool rumble) {
   const bool other = !sent_ || sphere_rgb_ != sent_rgb_ || rumble != sent_rumble_;
   const bool lit = sphere_rgb_ != 0 || rumble;
   const std::int64_t since_ns = now_ns - sent_ns_;
@@ -86,4 +87,4 @@ std::optional<reports::OutputReport> MoveHandshake::NextOutput(std::int64_t now_
   return reports::MoveLights(sphere_rgb_, rumble ? kRumble : 0);
 }
 
-}  // namespace footing::handshake
+}  // namespace footing::ps_move

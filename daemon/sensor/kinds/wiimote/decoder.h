@@ -12,31 +12,31 @@
 #include "daemon/sensor/reports/extension.h"
 #include "daemon/sensor/reports/input_report.h"
 
-namespace footing::decode {
+namespace footing::wiimote {
 
-/// What a handshake found out about a Wiimote.
-struct WiimoteSetup {
+/// What the handshake found out about a Wiimote.
+struct Setup {
   const calibration::AccelerationCalibration& acceleration;
   const calibration::NunchukCalibration& nunchuk;
   const calibration::MotionPlusCalibration& motion_plus;
   /// What the extension bytes are; kUnspecified while nobody knows.
   stream::Extension extension = stream::Extension::kUnspecified;
-  std::uint64_t extension_epoch = 0;  ///< Changes when the extension starts anew.
+  std::uint64_t extension_epoch = 0;  ///< Changes when the extension starts again.
 };
 
-/// Wiimote with Nunchuk, MotionPlus (packets in turn with its child's, so each at half the rate)
-/// and camera. A plain value.
-class Wiimote {
+/// Reports of a Wiimote with Nunchuk, MotionPlus (packets in turn with its child's, so each at half
+/// the rate) and camera. A plain value.
+class Decoder {
  public:
   /// Any input report. Those without acceleration give a sample only when they show other buttons,
   /// so that no edge is lost in a status or memory reply.
-  Decoded Take(const WiimoteSetup& setup, const reports::InputReport& report);
+  decode::Decoded Take(const Setup& setup, const reports::InputReport& report);
 
  private:
-  void TakeExtension(const WiimoteSetup& setup, reports::Bytes bytes, Decoded& decoded);
-  void TakeNunchuk(const WiimoteSetup& setup, const reports::NunchukCounts& counts,
-                   Decoded& decoded);
-  Decoded TakeButtons(std::uint16_t buttons);
+  void TakeExtension(const Setup& setup, reports::Bytes bytes, decode::Decoded& decoded);
+  void TakeNunchuk(const Setup& setup, const reports::NunchukCounts& counts,
+                   decode::Decoded& decoded);
+  decode::Decoded TakeButtons(std::uint16_t buttons);
 
   reports::Interleaver interleaver_;
   std::uint64_t extension_epoch_ = 0;
@@ -48,4 +48,4 @@ class Wiimote {
   std::optional<reports::NunchukCounts> last_nunchuk_;
 };
 
-}  // namespace footing::decode
+}  // namespace footing::wiimote

@@ -1,20 +1,20 @@
-#include "daemon/sensor/decode/ps_move.h"
+#include "daemon/sensor/kinds/ps_move/decoder.h"
 
-namespace footing::decode {
+namespace footing::ps_move {
 namespace {
 
-bool Same(const reports::MoveSample& a, const reports::MoveSample& b) {
+bool SameReading(const reports::MoveSample& a, const reports::MoveSample& b) {
   return a.acceleration == b.acceleration && a.angular_velocity == b.angular_velocity &&
          a.trigger == b.trigger;
 }
 
 }  // namespace
 
-std::optional<Decoded> PsMove::Take(const calibration::MoveCalibration& calibration,
-                                    reports::Bytes bytes) {
+std::optional<decode::Decoded> Decoder::Take(const calibration::MoveCalibration& calibration,
+                                             reports::Bytes bytes) {
   const auto report = reports::DecodeMove(model_, bytes);
   if (!report) return std::nullopt;
-  Decoded decoded;
+  decode::Decoded decoded;
   decoded.motion_count = report->sample_count;
   for (std::size_t half = 0; half < report->sample_count; ++half) {
     const calibration::MoveReading reading = calibration::Calibrate(calibration, *report, half);
@@ -31,7 +31,7 @@ std::optional<Decoded> PsMove::Take(const calibration::MoveCalibration& calibrat
     sample.has_magnetic_field = report->has_magnetic_field;
     sample.magnetic_field = calibration::MagneticField(*report);
     sample.temperature_c = reports::MoveTemperature(report->temperature);
-    const bool same = last_ && Same(*last_, report->samples[half]);
+    const bool same = last_ && SameReading(*last_, report->samples[half]);
     sample.repeated = same && report->buttons == last_buttons_;
     decoded.changed = decoded.changed || !same;
     last_ = report->samples[half];
@@ -41,4 +41,4 @@ std::optional<Decoded> PsMove::Take(const calibration::MoveCalibration& calibrat
   return decoded;
 }
 
-}  // namespace footing::decode
+}  // namespace footing::ps_move

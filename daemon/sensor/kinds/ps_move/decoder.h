@@ -7,16 +7,16 @@
 #include "daemon/sensor/decode/decoded.h"
 #include "daemon/sensor/reports/move_report.h"
 
-namespace footing::decode {
+namespace footing::ps_move {
 
 /// A PS Move's input reports: a ZCM1's give two motion samples, half a report apart. A plain value.
-class PsMove {
+class Decoder {
  public:
-  explicit PsMove(reports::MoveModel model) : model_(model) {}
+  explicit Decoder(reports::MoveModel model) : model_(model) {}
 
   /// None when it is no input report of this model.
-  std::optional<Decoded> Take(const calibration::MoveCalibration& calibration,
-                              reports::Bytes report);
+  std::optional<decode::Decoded> Take(const calibration::MoveCalibration& calibration,
+                                      reports::Bytes report);
 
   /// 0 to 1; -1 while charging or unknown.
   double battery_fraction() const { return battery_fraction_; }
@@ -28,4 +28,4 @@ class PsMove {
   double battery_fraction_ = -1;
 };
 
-}  // namespace footing::decode
+}  // namespace footing::ps_move

@@ -1,8 +1,8 @@
-#include "daemon/sensor/handshake/move_handshake.h"
+#include "daemon/sensor/kinds/ps_move/calibration_handshake.h"
 
 #include <gtest/gtest.h>
 
-namespace footing::handshake {
+namespace footing::ps_move {
 namespace {
 
 using reports::MoveModel;
@@ -10,34 +10,34 @@ using stream::CalibrationOrigin;
 
 constexpr std::int64_t kMs = 1'000'000;
 
-TEST(MoveHandshake, ARefusedCalibrationEndsLiveWithDefaultsAndSaysWhatToDo) {
-  MoveHandshake move(MoveModel::kZcm1, {});
+TEST(PsMoveCalibration, ARefusedCalibrationEndsLiveWithDefaultsAndSaysWhatToDo) {
+  CalibrationHandshake move(MoveModel::kZcm1, {});
   int asked = 0;
   for (std::int64_t ms = 0; ms < 3000; ms += 10) {
     if (!move.WantsFeature(ms * kMs)) continue;
     ++asked;
     EXPECT_FALSE(move.TakeFeature({}));
   }
-  EXPECT_EQ(asked, MoveHandshake::kMaxRefusals);
+  EXPECT_EQ(asked, CalibrationHandshake::kMaxRefusals);
   EXPECT_TRUE(move.live());
   EXPECT_EQ(move.calibration().origin, CalibrationOrigin::kDefaults);
   EXPECT_NE(move.calibration().problem.find("USB"), std::string::npos);
 }
 
-TEST(MoveHandshake, AnUnansweredCalibrationEndsLiveWithinTwoSeconds) {
-  MoveHandshake move(MoveModel::kZcm2, {});
+TEST(PsMoveCalibration, AnUnansweredCalibrationEndsLiveWithinTwoSeconds) {
+  CalibrationHandshake move(MoveModel::kZcm2, {});
   for (std::int64_t ms = 0; ms < 2000; ms += 10) (void)move.WantsFeature(ms * kMs);
   EXPECT_TRUE(move.live());
 }
 
-TEST(MoveHandshake, AStoredBlobThatMakesNoSenseIsAskedForAgain) {
-  MoveHandshake move(MoveModel::kZcm1, std::vector<std::uint8_t>(20, 0));
+TEST(PsMoveCalibration, AStoredBlobThatMakesNoSenseIsAskedForAgain) {
+  CalibrationHandshake move(MoveModel::kZcm1, std::vector<std::uint8_t>(20, 0));
   EXPECT_FALSE(move.live());
   EXPECT_TRUE(move.WantsFeature(0));
 }
 
-TEST(MoveHandshake, TheSphereIsRepeatedInTimeAndNeverTooFast) {
-  MoveHandshake move(MoveModel::kZcm1, {});
+TEST(PsMoveCalibration, TheSphereIsRepeatedInTimeAndNeverTooFast) {
+  CalibrationHandshake move(MoveModel::kZcm1, {});
   move.set_sphere(0xff8000);
   std::vector<std::int64_t> sent_ms;
   for (std::int64_t ms = 0; ms < 20'000; ++ms) {
@@ -51,8 +51,8 @@ TEST(MoveHandshake, TheSphereIsRepeatedInTimeAndNeverTooFast) {
   }
 }
 
-TEST(MoveHandshake, ADarkMoveAtRestIsLeftInPeace) {
-  MoveHandshake move(MoveModel::kZcm1, {});
+TEST(PsMoveCalibration, ADarkMoveAtRestIsLeftInPeace) {
+  CalibrationHandshake move(MoveModel::kZcm1, {});
   int sent = 0;
   for (std::int64_t ms = 0; ms < 20'000; ms += 10) sent += move.NextOutput(ms * kMs, false) ? 1 : 0;
   EXPECT_EQ(sent, 1);
@@ -60,4 +60,4 @@ TEST(MoveHandshake, ADarkMoveAtRestIsLeftInPeace) {
 }
 
 }  // namespace
-}  // namespace footing::handshake
+}  // namespace footing::ps_move

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+/// Vendors and products as the kernel shows them.
+namespace footing::reports {
+
+inline constexpr std::uint32_t kVendorNintendo = 0x057e;
+inline constexpr std::uint32_t kProductFirst = 0x0306;  ///< Wiimote, and every Balance Board.
+inline constexpr std::uint32_t kProductTr = 0x0330;     ///< Wiimote with MotionPlus inside.
+
+inline constexpr std::uint32_t kVendorSony = 0x054c;
+inline constexpr std::uint32_t kProductZcm1 = 0x03d5;  ///< PS Move, over USB and over Bluetooth.
+inline constexpr std::uint32_t kProductZcm2 = 0x0c5e;
+
+inline bool IsKnownDevice(std::uint32_t vendor, std::uint32_t product) {
+  return (vendor == kVendorNintendo && (product == kProductFirst || product == kProductTr)) ||
+         (vendor == kVendorSony && (product == kProductZcm1 || product == kProductZcm2));
+}
+
+}  // namespace footing::reports

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "common/result/result.h"
+#include "daemon/sensor/service/hub.h"
+#include "footing/v1/command.pb.h"
+
+namespace footing::sensor {
+
+/// The answer to a command that was done, or the reason why not.
+inline v1::CommandResult Answer(const v1::Command& command, const Result<void>& done) {
+  v1::CommandResult result;
+  result.set_id(command.id());
+  result.set_ok(done.ok());
+  if (!done) result.set_message(done.error().message);
+  return result;
+}
+
+/// The same with what the command measured.
+inline v1::CommandResult AnswerMeasured(const v1::Command& command,
+                                 const Result<Hub::Measured>& measured) {
+  if (!measured) return Answer(command, Result<void>(measured.error()));
+  v1::CommandResult result = Answer(command, Result<void>());
+  result.set_message(measured->message);
+  result.set_residual(measured->residual);
+  result.set_unit(measured->unit);
+  return result;
+}
+
+}  // namespace footing::sensor
