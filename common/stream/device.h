@@ -7,7 +7,13 @@
 /// What crosses a process border, as plain structs: proto/footing/v1 says what each field means.
 namespace footing::stream {
 
-enum class DeviceKind { kUnspecified = 0, kWiimote = 1, kBalanceBoard = 2, kPsMove = 3 };
+enum class DeviceKind {
+  kUnspecified = 0,
+  kWiimote = 1,
+  kBalanceBoard = 2,
+  kPsMove = 3,
+  kProController = 4,
+};
 
 enum class Extension {
   kUnspecified = 0,

@@ -7,7 +7,7 @@
 namespace footing::stream {
 namespace {
 
-constexpr std::array kKinds = {"unknown", "wiimote", "balance_board", "ps_move"};
+constexpr std::array kKinds = {"unknown", "wiimote", "balance_board", "ps_move", "pro_controller"};
 constexpr std::array kRoles = {"none", "left_hand",  "right_hand",  "left_leg", "right_leg",
                                "head", "left_board", "right_board", "editor"};
 constexpr std::array kStates = {"unknown", "connecting", "live", "stale", "lost"};

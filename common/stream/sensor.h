@@ -51,6 +51,45 @@ struct NunchukSample {
   bool simulated = false;
 };
 
+/// Bits of GamepadSample::buttons.
+enum GamepadButton : std::uint32_t {
+  kGamepadA = 0x1,
+  kGamepadB = 0x2,
+  kGamepadX = 0x4,
+  kGamepadY = 0x8,
+  kGamepadL = 0x10,
+  kGamepadR = 0x20,
+  kGamepadZl = 0x40,
+  kGamepadZr = 0x80,
+  kGamepadMinus = 0x100,
+  kGamepadPlus = 0x200,
+  kGamepadHome = 0x400,
+  kGamepadUp = 0x800,
+  kGamepadDown = 0x1000,
+  kGamepadLeft = 0x2000,
+  kGamepadRight = 0x4000,
+  kGamepadLeftStick = 0x8000,
+  kGamepadRightStick = 0x10000,
+};
+
+/// One sample of a Classic Controller or a Wii U Pro Controller.
+struct GamepadSample {
+  std::uint32_t device = 0;
+  std::uint64_t report_count = 0;
+  std::int64_t received_ns = 0;
+  std::int64_t sampled_ns = 0;
+  double left_x = 0;  ///< Sticks: -1 left to 1 right, -1 back to 1 front.
+  double left_y = 0;
+  double right_x = 0;
+  double right_y = 0;
+  double left_trigger = 0;  ///< 0 to 1.
+  double right_trigger = 0;
+  std::uint32_t buttons = 0;
+  bool repeated = false;
+  bool uncalibrated = false;
+  bool simulated = false;
+};
+
 /// A bright point as a Wiimote's camera counts: x 0 to 1023, y 0 to 767.
 struct CameraPoint {
   std::uint32_t x = 0;

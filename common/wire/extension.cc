@@ -39,6 +39,44 @@ stream::NunchukSample FromProto(const v1::NunchukSample& message) {
   return value;
 }
 
+v1::GamepadSample ToProto(const stream::GamepadSample& value) {
+  v1::GamepadSample message;
+  message.set_device(value.device);
+  message.set_report_count(value.report_count);
+  message.set_received_ns(value.received_ns);
+  message.set_sampled_ns(value.sampled_ns);
+  message.set_left_x(Finite(value.left_x));
+  message.set_left_y(Finite(value.left_y));
+  message.set_right_x(Finite(value.right_x));
+  message.set_right_y(Finite(value.right_y));
+  message.set_left_trigger(Finite(value.left_trigger));
+  message.set_right_trigger(Finite(value.right_trigger));
+  message.set_buttons(value.buttons);
+  message.set_repeated(value.repeated);
+  message.set_uncalibrated(value.uncalibrated);
+  message.set_simulated(value.simulated);
+  return message;
+}
+
+stream::GamepadSample FromProto(const v1::GamepadSample& message) {
+  stream::GamepadSample value;
+  value.device = message.device();
+  value.report_count = message.report_count();
+  value.received_ns = message.received_ns();
+  value.sampled_ns = message.sampled_ns();
+  value.left_x = Finite(message.left_x());
+  value.left_y = Finite(message.left_y());
+  value.right_x = Finite(message.right_x());
+  value.right_y = Finite(message.right_y());
+  value.left_trigger = Finite(message.left_trigger());
+  value.right_trigger = Finite(message.right_trigger());
+  value.buttons = message.buttons();
+  value.repeated = message.repeated();
+  value.uncalibrated = message.uncalibrated();
+  value.simulated = message.simulated();
+  return value;
+}
+
 v1::CameraPoint ToProto(const stream::CameraPoint& value) {
   v1::CameraPoint message;
   message.set_x(value.x);

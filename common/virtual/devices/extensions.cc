@@ -138,10 +138,25 @@ ExtensionBytes NunchukBytes(const NunchukBlock& block, const NunchukSensors& sen
   return out;
 }
 
-ExtensionBytes ClassicBytes() {
-  // Left stick 32 of 6 bits, right stick 16 of 5 bits in three pieces, triggers 0; buttons are 0
-  // when pressed.
-  return {0x80 | 0x20, 0x20, 0x10, 0x00, 0xff, 0xff};
+ExtensionBytes ClassicBytes(const GamepadSensors& sensors) {
+  const auto stick = [](double value, int middle) {
+    return static_cast<int>(
+        std::clamp(std::round(middle + FiniteOrZero(value) * (middle - 1)), 0.0, 2.0 * middle - 1));
+  };
+  const auto trigger = [](double value) {
+    return static_cast<int>(std::clamp(std::round(31 * FiniteOrZero(value)), 0.0, 31.0));
+  };
+  const int left_x = stick(sensors.left_x, 32), left_y = stick(sensors.left_y, 32);
+  const int right_x = stick(sensors.right_x, 16), right_y = stick(sensors.right_y, 16);
+  const int left = trigger(sensors.left_trigger), right = trigger(sensors.right_trigger);
+  // Buttons are 0 when pressed; bit 0 of byte 4 is always 1.
+  const int released = ~static_cast<int>(sensors.buttons);
+  return {static_cast<std::uint8_t>((right_x >> 3) << 6 | left_x),
+          static_cast<std::uint8_t>((right_x >> 1 & 3) << 6 | left_y),
+          static_cast<std::uint8_t>((right_x & 1) << 7 | (left >> 3) << 5 | right_y),
+          static_cast<std::uint8_t>((left & 7) << 5 | right),
+          static_cast<std::uint8_t>((released >> 8 & 0xff) | 1),
+          static_cast<std::uint8_t>(released & 0xff)};
 }
 
 ExtensionBytes PassedNunchuk(const ExtensionBytes& plain) {

@@ -24,6 +24,18 @@ struct NunchukSensors {
   Eigen::Vector3d specific_force_S_mps2{0, 0, -kStandardGravityMps2};
 };
 
+/// What a gamepad's user does; bits of `buttons` as in the data bytes: byte 4 of a Classic
+/// Controller in bits 8 to 15, byte 5 in bits 0 to 7, 1 pressed.
+struct GamepadSensors {
+  double left_x = 0;  ///< -1 left to 1 right, -1 back to 1 front.
+  double left_y = 0;
+  double right_x = 0;
+  double right_y = 0;
+  double left_trigger = 0;  ///< 0 to 1.
+  double right_trigger = 0;
+  std::uint16_t buttons = 0;
+};
+
 using NunchukBlock = std::array<std::uint8_t, 16>;
 using MotionPlusBlock = std::array<std::uint8_t, 32>;
 
@@ -42,8 +54,8 @@ std::vector<std::uint8_t> MotionPlusPage(const MotionPlusBlock& block, bool insi
 
 /// What it sends, by its own calibration; ends at the range of the counts.
 ExtensionBytes NunchukBytes(const NunchukBlock& block, const NunchukSensors& sensors);
-/// Sticks in the middle, no button pressed.
-ExtensionBytes ClassicBytes();
+/// By nominal ranges: 6 bits of the left stick, 5 of the right one and the triggers.
+ExtensionBytes ClassicBytes(const GamepadSensors& sensors = {});
 
 /// The same behind an active MotionPlus, which takes the lowest bits for its own marks.
 ExtensionBytes PassedNunchuk(const ExtensionBytes& plain);

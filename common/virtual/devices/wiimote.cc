@@ -227,7 +227,7 @@ ExtensionBytes Wiimote::ExtensionPacket(const WiimoteSensors& sensors) {
   if (memory.motion_plus_mode() != 0) return PassedPacket(sensors);
   if (!memory.extension_plain()) return kNoAnswer;
   if (child_ == Accessory::kNunchuk) return NunchukBytes(nunchuk_, sensors.nunchuk);
-  if (child_ == Accessory::kClassic) return ClassicBytes();
+  if (child_ == Accessory::kClassic) return ClassicBytes(sensors.classic);
   return {};
 }
 
@@ -243,7 +243,7 @@ ExtensionBytes Wiimote::PassedPacket(const WiimoteSensors& sensors) {
                            child_ != Accessory::kNone);
   }
   return mode == 5 ? PassedNunchuk(NunchukBytes(nunchuk_, sensors.nunchuk))
-                   : PassedClassic(ClassicBytes());
+                   : PassedClassic(ClassicBytes(sensors.classic));
 }
 
 }  // namespace footing::virtual_devices

@@ -33,6 +33,7 @@ struct WiimoteSensors {
   std::uint16_t buttons = 0;  ///< First button byte in bits 8 to 15.
   std::array<std::optional<CameraPoint>, 4> camera;
   NunchukSensors nunchuk;
+  GamepadSensors classic;
   Eigen::Vector3d angular_velocity_S_radps = Eigen::Vector3d::Zero();  ///< Right-handed.
 };
 

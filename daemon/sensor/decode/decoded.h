@@ -23,13 +23,14 @@ struct Decoded {
   std::size_t motion_count = 0;
   std::optional<BoardReading> board;
   std::optional<stream::NunchukSample> nunchuk;
+  std::optional<stream::GamepadSample> gamepad;
   std::optional<stream::CameraSample> camera;
   /// The samples are those of the report before, with other buttons: no new measurement.
   bool buttons_only = false;
   /// The device took a new measurement: some sample differs from the report before.
   bool changed = false;
 
-  bool empty() const { return motion_count == 0 && !board && !nunchuk && !camera; }
+  bool empty() const { return motion_count == 0 && !board && !nunchuk && !gamepad && !camera; }
 };
 
 }  // namespace footing::decode

@@ -22,8 +22,9 @@ struct Product {
 
 /// Where a kind of device is used, which decides the roles it can have.
 enum class Placement {
-  kOnBody,     ///< Worn or held: hands, legs, head.
-  kUnderFeet,  ///< A board.
+  kOnBody,       ///< Worn or held: hands, legs, head.
+  kUnderFeet,    ///< A board.
+  kInBothHands,  ///< A gamepad: says nothing about the body.
 };
 
 /// Typical intervals of a kind, before they are estimated.

@@ -22,6 +22,8 @@ std::span<const DeviceRole> RolesOf(Placement placement) {
       return kWornRoles;
     case Placement::kUnderFeet:
       return kBoardRoles;
+    case Placement::kInBothHands:
+      break;
   }
   return {};
 }
@@ -53,6 +55,7 @@ DeviceRole FirstFreeRole(Placement placement, const std::string& rig,
 
 bool RoleFits(Placement placement, DeviceRole role) {
   if (role == DeviceRole::kUnspecified) return true;
+  if (placement == Placement::kInBothHands) return role == DeviceRole::kEditor;
   const bool of_board = role == DeviceRole::kLeftBoard || role == DeviceRole::kRightBoard;
   return of_board == (placement == Placement::kUnderFeet);
 }

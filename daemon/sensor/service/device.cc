@@ -95,7 +95,8 @@ void Device::Take(devices::DeviceHandle handle, const devices::IncomingReport& r
 }
 
 bool Device::HasRoom(const TickContent& content) {
-  if (content.motion.size() + content.boards.size() < kMaxSamplesPerTick) return true;
+  if (content.motion.size() + content.boards.size() + content.gamepads.size() < kMaxSamplesPerTick)
+    return true;
   ++counters_.flooded;
   return false;
 }
@@ -119,6 +120,11 @@ void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded&
     Stamp(report, *decoded.nunchuk);
     decoded.nunchuk->report_count = timing_.statistics().reports();
     content.nunchuks.push_back(*decoded.nunchuk);
+  }
+  if (decoded.gamepad) {
+    Stamp(report, *decoded.gamepad);
+    decoded.gamepad->report_count = timing_.statistics().reports();
+    content.gamepads.push_back(*decoded.gamepad);
   }
   if (decoded.camera) {
     Stamp(report, *decoded.camera);

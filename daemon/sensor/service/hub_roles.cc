@@ -56,7 +56,8 @@ void Hub::RebuildRigs() {
   std::map<std::string, std::vector<features::Member>> members;
   for (const auto& device : devices_) {
     const Binding& binding = device->binding();
-    if (device->placement() != decode::Placement::kOnBody || binding.role == DeviceRole::kUnspecified) {
+    if (device->placement() != decode::Placement::kOnBody ||
+        binding.role == DeviceRole::kUnspecified) {
       continue;
     }
     auto& rig = members[binding.rig];

@@ -28,7 +28,8 @@ std::vector<transport::Channel> Channels() {
           {"setup", Tick::kSetupFieldNumber, true},
           {"hands", Tick::kHandsFieldNumber, false},
           {"reference", Tick::kReferenceFieldNumber, false},
-          {"contacts", Tick::kContactsFieldNumber, false}};
+          {"contacts", Tick::kContactsFieldNumber, false},
+          {"gamepad", Tick::kGamepadFieldNumber, false}};
 }
 
 std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
@@ -62,6 +63,11 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
     v1::NunchukSamples list;
     for (const auto& sample : content.nunchuks) *list.add_samples() = wire::ToProto(sample);
     Append(channels, Tick::kNunchukFieldNumber, list);
+  }
+  if (!content.gamepads.empty()) {
+    v1::GamepadSamples list;
+    for (const auto& sample : content.gamepads) *list.add_samples() = wire::ToProto(sample);
+    Append(channels, Tick::kGamepadFieldNumber, list);
   }
   if (!content.cameras.empty()) {
     v1::CameraSamples list;

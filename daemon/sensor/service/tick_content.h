@@ -15,6 +15,7 @@ struct TickContent {
   std::vector<stream::MotionSample> motion;
   std::vector<stream::BoardSample> boards;
   std::vector<stream::NunchukSample> nunchuks;
+  std::vector<stream::GamepadSample> gamepads;
   std::vector<stream::CameraSample> cameras;
   std::vector<stream::HandSample> hands;
   std::vector<stream::ReferencePose> reference;

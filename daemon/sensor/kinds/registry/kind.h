@@ -10,6 +10,7 @@
 #include "daemon/sensor/decode/decoded.h"
 #include "daemon/sensor/decode/kind_options.h"
 #include "daemon/sensor/kinds/balance_board/balance_board.h"
+#include "daemon/sensor/kinds/pro_controller/pro_controller.h"
 #include "daemon/sensor/kinds/ps_move/ps_move.h"
 #include "daemon/sensor/kinds/wiimote/wiimote.h"
 #include "daemon/sensor/link/outbox.h"
@@ -26,7 +27,8 @@ using Stored = std::optional<std::vector<std::uint8_t>>;
 /// that speaks the Wiimote's protocol also a kPlan and a sequencer(). What only some can do (a
 /// sphere, a camera, a calibration in feature reports, a second link) is a member that only they
 /// have.
-using Alternatives = std::variant<balance_board::BalanceBoard, ps_move::PsMove, wiimote::Wiimote>;
+using Alternatives = std::variant<balance_board::BalanceBoard, pro_controller::ProController,
+                                  ps_move::PsMove, wiimote::Wiimote>;
 
 /// The plans of all kinds that speak the Wiimote's protocol.
 std::span<const handshake::Plan* const> Plans();

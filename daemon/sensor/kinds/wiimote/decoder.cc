@@ -1,5 +1,6 @@
 #include "daemon/sensor/kinds/wiimote/decoder.h"
 
+#include "daemon/sensor/decode/gamepad.h"
 #include "daemon/sensor/reports/camera.h"
 
 namespace footing::wiimote {
@@ -64,9 +65,14 @@ void Decoder::TakeExtension(const Setup& setup, reports::Bytes bytes, Decoded& d
     packets_to_drop_ = IsMotionPlus(setup.extension) ? kFirstPackets : 0;
     last_gyroscope_.reset();
     last_nunchuk_.reset();
+    last_gamepad_.reset();
   }
   if (setup.extension == Extension::kNunchuk) {
     if (const auto counts = reports::DecodeNunchuk(bytes)) TakeNunchuk(setup, *counts, decoded);
+    return;
+  }
+  if (setup.extension == Extension::kClassic) {
+    TakeClassic(reports::DecodeClassic(bytes), decoded);
     return;
   }
   if (!IsMotionPlus(setup.extension)) return;
@@ -80,6 +86,10 @@ void Decoder::TakeExtension(const Setup& setup, reports::Bytes bytes, Decoded& d
     if (const auto counts = reports::DecodePassedNunchuk(bytes)) {
       TakeNunchuk(setup, *counts, decoded);
     }
+  }
+  if (packet == reports::PassedPacket::kExtension &&
+      setup.extension == Extension::kMotionPlusClassic) {
+    TakeClassic(reports::DecodePassedClassic(bytes), decoded);
   }
   const auto counts = reports::DecodeMotionPlus(bytes);
   if (!counts) return;
@@ -106,6 +116,13 @@ void Decoder::TakeNunchuk(const Setup& setup, const NunchukCounts& counts, Decod
   sample.repeated = last_nunchuk_ && Same(*last_nunchuk_, counts);
   sample.uncalibrated = setup.nunchuk.origin == CalibrationOrigin::kDefaults;
   last_nunchuk_ = counts;
+}
+
+void Decoder::TakeClassic(const std::optional<reports::ClassicCounts>& counts, Decoded& decoded) {
+  if (!counts) return;
+  stream::GamepadSample& sample = decoded.gamepad.emplace(decode::ToGamepad(*counts));
+  sample.repeated = last_gamepad_ && decode::SameReading(*last_gamepad_, sample);
+  last_gamepad_ = sample;
 }
 
 Decoded Decoder::TakeButtons(std::uint16_t buttons) {

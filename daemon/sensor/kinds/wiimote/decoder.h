@@ -24,8 +24,8 @@ struct Setup {
   std::uint64_t extension_epoch = 0;  ///< Changes when the extension starts again.
 };
 
-/// Reports of a Wiimote with Nunchuk, MotionPlus (packets in turn with its child's, so each at half
-/// the rate) and camera. A plain value.
+/// Reports of a Wiimote with Nunchuk, Classic Controller, MotionPlus (packets in turn with its
+/// child's, so each at half the rate) and camera. A plain value.
 class Decoder {
  public:
   /// Any input report. Those without acceleration give a sample only when they show other buttons,
@@ -36,6 +36,7 @@ class Decoder {
   void TakeExtension(const Setup& setup, reports::Bytes bytes, decode::Decoded& decoded);
   void TakeNunchuk(const Setup& setup, const reports::NunchukCounts& counts,
                    decode::Decoded& decoded);
+  void TakeClassic(const std::optional<reports::ClassicCounts>& counts, decode::Decoded& decoded);
   decode::Decoded TakeButtons(std::uint16_t buttons);
 
   reports::Interleaver interleaver_;
@@ -46,6 +47,7 @@ class Decoder {
   stream::MotionSample last_;
   std::optional<reports::MotionPlusCounts> last_gyroscope_;
   std::optional<reports::NunchukCounts> last_nunchuk_;
+  std::optional<stream::GamepadSample> last_gamepad_;
 };
 
 }  // namespace footing::wiimote

@@ -4,10 +4,9 @@ namespace footing::wiimote {
 
 decode::Decoded Wiimote::Take(const reports::InputReport& report) {
   const handshake::ExtensionPort& port = sequencer_.port();
-  const Setup setup = {sequencer_.acceleration(), port.nunchuk,
-                       sequencer_.motion_plus().calibration,
-                       port.ready() ? sequencer_.extension() : stream::Extension::kUnspecified,
-                       port.epoch()};
+  const Setup setup = {
+      sequencer_.acceleration(), port.nunchuk, sequencer_.motion_plus().calibration,
+      port.ready() ? sequencer_.extension() : stream::Extension::kUnspecified, port.epoch()};
   return decoder_.Take(setup, report);
 }
 
