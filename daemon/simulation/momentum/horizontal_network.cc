@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/board/geometry.h"
 #include "common/result/result.h"
 #include "common/units/units.h"
 
 namespace footing::momentum {
 namespace {
 
-// Half the distances between a board's sensors (Leach et al. 2014), and from the middle of two
-// boards that touch to that of one.
-constexpr double kHalfLengthM = 0.2165;
-constexpr double kHalfWidthM = 0.119;
-constexpr double kBoardM = 0.158;
+// Half the distances between a board's sensors, and from the middle of two boards that touch to
+// that of one: the places that the network is trained with, whatever boards are in use.
+constexpr double kHalfLengthM = board::kBalanceBoard.sensor_distance_x_m / 2;
+constexpr double kHalfWidthM = board::kBalanceBoard.sensor_distance_y_m / 2;
+constexpr double kBoardM = board::kBalanceBoard.plate_y_m / 2;
 
 constexpr std::array<double, 4> kFront{1, 1, -1, -1};
 constexpr std::array<double, 4> kLeft{1, -1, 1, -1};
