@@ -12,6 +12,9 @@ std::int64_t Nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 constexpr double kPeriodRange = 2;
 /// A tick that was this share of a period off (1/8) is taken to have come.
 constexpr std::int64_t kEarlyShare = 8;
+/// Steps of the loop after which the variance of its errors is an estimate.
+constexpr int kSteadySteps = 100;
+constexpr double kVarianceGain = 0.01;
 
 SampleTicksConfig TicksOf(const DeviceClockConfig& config) {
   SampleTicksConfig ticks;
@@ -44,6 +47,19 @@ std::int64_t DeviceClock::Advance(std::int64_t received_ns, bool changed) {
   return sampled_ns_;
 }
 
+double DeviceClock::sampled_sd_s() const {
+  if (loop_steps_ < kSteadySteps) return -1;
+  // A report nearer to a tick than the phase is known may be given the sample of the tick beside
+  // it, which is a period off: variance = period^2 * (phase sd / period).
+  if (ticks_.known()) return std::sqrt(ticks_.period_s() * ticks_.phase_sd_s());
+  // A sensor that holds its samples sends one of any age up to its period; the loop's own phase has
+  // the variance of a first-order loop of that gain.
+  const double period_s =
+      config_.sensor_period_s > 0 ? config_.sensor_period_s : config_.nominal_period_s;
+  const double gain = (config_.early_gain + config_.late_gain) / 2;
+  return std::sqrt(period_s * period_s / 12 + loop_variance_s2_ * gain / (2 - gain));
+}
+
 DeviceClock DeviceClock::Restarted() const {
   DeviceClock clock(config_);
   clock.sampled_ns_ = sampled_ns_;
@@ -55,11 +71,16 @@ void DeviceClock::AdvanceLoop(std::int64_t received_ns) {
   received_ns_ = received_ns;
   if (!started_ || pause_ns > Nanoseconds(config_.restart_s)) {
     started_ = true;
+    loop_steps_ = 0;
+    loop_variance_s2_ = 0;
     loop_ns_ = received_ns;
     return;
   }
   const std::int64_t predicted_ns = loop_ns_ + Nanoseconds(period_s_);
   const double error_s = static_cast<double>(received_ns - predicted_ns) * 1e-9;
+  loop_steps_ = std::min(loop_steps_ + 1, kSteadySteps);
+  loop_variance_s2_ +=
+      std::max(kVarianceGain, 1.0 / loop_steps_) * (error_s * error_s - loop_variance_s2_);
   const double gain = error_s < 0 ? config_.early_gain : config_.late_gain;
   std::int64_t estimate_ns = predicted_ns + Nanoseconds(gain * error_s);
   estimate_ns = std::clamp(estimate_ns, received_ns - Nanoseconds(config_.max_lag_s), received_ns);

@@ -36,6 +36,9 @@ class DeviceClock {
   double period_s() const { return ticks_.known() ? ticks_.period_s() : period_s_; }
   /// Whether the ticks of the sensor are known.
   bool held() const { return ticks_.known(); }
+  /// Standard deviation of the estimated sample times about the true ones, a constant delay apart,
+  /// s; negative until there are enough reports to say so.
+  double sampled_sd_s() const;
 
  private:
   void AdvanceLoop(std::int64_t received_ns);
@@ -48,6 +51,8 @@ class DeviceClock {
   std::int64_t received_ns_ = 0;
   std::int64_t loop_ns_ = 0;  ///< The loop's own estimate.
   std::int64_t sampled_ns_ = 0;
+  int loop_steps_ = 0;           ///< Since the loop started, at most kSteadySteps.
+  double loop_variance_s2_ = 0;  ///< Of the loop's timing error, over about a second.
 };
 
 }  // namespace footing::link

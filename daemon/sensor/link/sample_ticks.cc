@@ -103,6 +103,7 @@ SampleTicks::Fit SampleTicks::At(double period_s, double window_s) const {
   while (high - low < kBins && as_good(low - 1)) --low;
   while (high - low < kBins && as_good(high + 1)) ++high;
   fit.phase = Fraction((0.5 * (low + high) + 0.5) / kBins);
+  fit.phase_range = static_cast<double>(high - low + 1) / kBins;
   fit.significance = variance > 0 ? (fit.score - expected) / std::sqrt(variance) : 0;
   return fit;
 }
@@ -162,8 +163,11 @@ void SampleTicks::Refit() {
   known_ = true;
   proved_ns_ = last_ns_;
   period_s_ = fit.period_s;
+  phase_range_ = fit.phase_range;
   tick_ns_ = last_ns_ + std::llround((fit.phase - 1) * fit.period_s * 1e9);
 }
+
+double SampleTicks::phase_sd_s() const { return phase_range_ * period_s_ / std::sqrt(12); }
 
 std::int64_t SampleTicks::TickBefore(std::int64_t at_ns) const {
   const double periods = std::floor(Seconds(at_ns - tick_ns_) / period_s_);

@@ -40,6 +40,9 @@ class SampleTicks {
   /// The last tick at or before `at_ns`. Asked only when known.
   std::int64_t TickBefore(std::int64_t at_ns) const;
   double period_s() const { return period_s_; }
+  /// Standard deviation of the ticks' phase, s: the phases that explain the reports equally well
+  /// are taken as equally likely. Asked only when known.
+  double phase_sd_s() const;
 
  private:
   static constexpr int kBins = 256;
@@ -56,6 +59,7 @@ class SampleTicks {
     double score = 0;         ///< Pairs that speak for it, less those against.
     double significance = 0;  ///< Standard deviations above the score of any phase.
     int changes = 0;
+    double phase_range = 0;  ///< Width of the phases that score as high as the best, in periods.
   };
 
   void Refit();
@@ -72,6 +76,7 @@ class SampleTicks {
   std::int64_t fitted_ns_ = 0;
   bool known_ = false;
   double period_s_;
+  double phase_range_ = 0;      // Of the last good fit, in periods.
   std::int64_t tick_ns_ = 0;    // One of the ticks.
   std::int64_t proved_ns_ = 0;  // When the last good fit was.
 };

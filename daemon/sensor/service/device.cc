@@ -35,6 +35,8 @@ void Device::Restart() {
   motion_ = MotionChain();
   chain_.Restart();
   worn_.Restart();
+  // These are shares of the reports, which count from the attach as well.
+  counters_.repeats = counters_.clipped = counters_.undecodable = 0;
 }
 
 void Device::AttachSecond(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
@@ -196,6 +198,8 @@ void Device::AddState(std::int64_t now_ns, double stale_after_s,
   const double silent_s = static_cast<double>(now_ns - link.last_ns()) * 1e-9;
   status.report_rate_hz = link.RateHz(now_ns);
   status.jitter_ms = link.JitterMs();
+  const double clock_sd_s = timing_.sampled_sd_s();
+  status.clock_offset_sd_ms = clock_sd_s < 0 ? -1 : clock_sd_s * 1e3;
   status.state = !kind_.live()              ? stream::DeviceState::kConnecting
                  : silent_s > stale_after_s ? stream::DeviceState::kStale
                                             : stream::DeviceState::kLive;

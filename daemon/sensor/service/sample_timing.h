@@ -22,6 +22,8 @@ class SampleTiming {
   /// newest sample of the report before.
   std::int64_t HalfEarlierNs(std::int64_t before_ns) const;
 
+  /// How well sample times are known (link::DeviceClock::sampled_sd_s), s; negative: not yet.
+  double sampled_sd_s() const { return clock_.sampled_sd_s(); }
   const link::LinkStatistics& statistics() const { return statistics_; }
 
  private:

@@ -31,6 +31,7 @@ DeviceClockConfig ClockOf(const LinkConfig& link) {
 struct Course {
   double seconds = 120;
   double clock_error_ppm = 0;                                ///< Of the sensor.
+  bool arrivals_alone = false;                               ///< Every report counts as changed.
   std::function<bool()> reads_alike = [] { return false; };  ///< A new sample, as the last.
   std::function<bool(std::int64_t arrives_ns)> lost = [](std::int64_t) { return false; };
 };
@@ -38,6 +39,9 @@ struct Course {
 struct Outcome {
   SampledTimeError settled;
   bool held = false;
+  double sd_ms = -1;            ///< As the clock reports it at the end.
+  SampledTimeError searching;   ///< Before the ticks are known.
+  double searching_sd_ms = -1;  ///< The last one reported then.
 };
 
 Outcome Follow(LinkConfig link, const Course& course) {
@@ -53,7 +57,8 @@ Outcome Follow(LinkConfig link, const Course& course) {
   for (LinkModel::Arrival arrival = model.Next(); arrival.arrives_ns < end_ns;
        arrival = model.Next()) {
     if (course.lost(arrival.arrives_ns)) continue;
-    const bool changed = arrival.sampled_ns != held_ns && !course.reads_alike();
+    const bool changed =
+        course.arrivals_alone || (arrival.sampled_ns != held_ns && !course.reads_alike());
     held_ns = arrival.sampled_ns;
     const std::int64_t sampled_ns = clock.Advance(arrival.arrives_ns, changed);
     EXPECT_GE(sampled_ns, before_ns);
@@ -61,9 +66,14 @@ Outcome Follow(LinkConfig link, const Course& course) {
     before_ns = sampled_ns;
     if (arrival.arrives_ns - received_ns > 100 * kSecondNs) begun_ns = arrival.arrives_ns;
     received_ns = arrival.arrives_ns;
+    if (!clock.held() && clock.sampled_sd_s() >= 0) {
+      outcome.searching.Add(sampled_ns, arrival.sampled_ns);
+      outcome.searching_sd_ms = 1e3 * clock.sampled_sd_s();
+    }
     if (received_ns - begun_ns > kSettledNs) outcome.settled.Add(sampled_ns, arrival.sampled_ns);
   }
   outcome.held = clock.held();
+  outcome.sd_ms = 1e3 * clock.sampled_sd_s();
   return outcome;
 }
 
@@ -96,6 +106,29 @@ TEST_P(EverySeed, ASensorThatIsFourPercentOffIsFound) {
   course.clock_error_ppm = GetParam() % 2 == 0 ? 40'000 : -40'000;
   ExpectGood(Follow(virtual_devices::WiimoteLink(LinkQuality::kGood, GetParam()), course));
   ExpectGood(Follow(virtual_devices::BoardLink(LinkQuality::kGood, GetParam()), course));
+}
+
+TEST_P(EverySeed, TheReportedStandardDeviationIsOfTheSizeOfTheErrors) {
+  for (const LinkQuality quality : {LinkQuality::kGood, LinkQuality::kPoor}) {
+    for (const LinkConfig& link : {virtual_devices::WiimoteLink(quality, GetParam()),
+                                   virtual_devices::BoardLink(quality, GetParam())}) {
+      const Outcome outcome = Follow(link, {});
+      EXPECT_GT(outcome.sd_ms, 0);
+      EXPECT_LT(outcome.sd_ms, 3);
+      EXPECT_LT(outcome.settled.rms_ms(), 3 * outcome.sd_ms + 0.2);
+    }
+  }
+}
+
+TEST_P(EverySeed, AClockWithoutTicksReportsTheLargerDeviationOfArrivals) {
+  Course course;  // Every report brings a new value, as from a sensor that nothing holds.
+  course.seconds = 60;
+  course.arrivals_alone = true;
+  const Outcome outcome =
+      Follow(virtual_devices::BoardLink(LinkQuality::kGood, GetParam()), course);
+  EXPECT_FALSE(outcome.held);
+  EXPECT_GT(outcome.searching_sd_ms, outcome.searching.rms_ms() / 2);
+  EXPECT_LT(outcome.searching_sd_ms, outcome.searching.rms_ms() * 2);
 }
 
 TEST_P(EverySeed, AThirdOfTheReportsLostCostsNothing) {

@@ -188,6 +188,30 @@ TEST(HubBoards, RepeatsAreFlaggedAndCountedAndNewsAreNot) {
   EXPECT_GE(bench.StatusOf("a").repeats, before + 20);
 }
 
+TEST(HubBoards, CountsStartAgainWhenADeviceIsAttachedAgain) {
+  Bench bench;
+  const auto handle = bench.Attach(BalanceBoard(1), "a");
+  bench.Advance(5);  // Nothing changes: all but the first report repeat.
+  EXPECT_GT(bench.StatusOf("a").repeats, 400u);
+  bench.Detach(handle);
+  bench.Attach(BalanceBoard(1), "a");
+  bench.Advance(1);
+  const auto status = bench.StatusOf("a");
+  EXPECT_GT(status.repeats, 0u);
+  EXPECT_LE(status.repeats, status.reports);
+}
+
+TEST(HubBoards, TheStatusSaysHowWellSampleTimesAreKnown) {
+  Bench bench;
+  bench.Attach(BalanceBoard(1), "a");
+  bench.Advance(0.3);
+  EXPECT_LT(bench.StatusOf("a").clock_offset_sd_ms, 0);  // Too few reports to say.
+  bench.Advance(3);
+  EXPECT_GE(bench.StatusOf("a").clock_offset_sd_ms, 0);
+  // A sample held for up to 1/60 s: no worse than its period over the square root of 12.
+  EXPECT_LT(bench.StatusOf("a").clock_offset_sd_ms, 1e3 / 60 / std::sqrt(12) + 0.5);
+}
+
 TEST(HubBoards, UnderTheThresholdThereIsNoCentreOfPressure) {
   Bench bench;
   bench.Attach(BalanceBoard(1), "a");
