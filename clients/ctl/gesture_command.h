@@ -10,7 +10,7 @@ namespace footing::ctl {
 /// Roles of --worn. UsageError when one is none, is a board's, or comes twice.
 Result<std::vector<stream::DeviceRole>> WornRoles(const std::vector<std::string>& names);
 
-/// `assign --gesture`: "step on the left board now", "shake the left wrist one". The session needs
+/// `assign --gesture`: "Step on the left board now.", "Shake the left wrist now." The session needs
 /// GuidedChannels().
 Result<void> AssignByGesture(Session& session, const std::string& rig,
                              const std::vector<stream::DeviceRole>& worn, bool script,

@@ -13,8 +13,11 @@ using stream::DeviceStatus;
 constexpr std::uint64_t kEnoughReports = 300;  // Three seconds: statistics mean nothing before.
 constexpr double kPoorRateHz = 50;             // All of our devices send 60 or more.
 constexpr double kPoorJitterMs = 15;           // A good link has 6, a free hop 2.3.
-constexpr double kPoorGapsShare = 1e-3;        // Of the intervals.
-constexpr double kManyReassertsShare = 2e-3;   // One in 5 s at 100 Hz.
+// Of the intervals: of 1000, a good link has at most one longer than 50 ms, a poor one 30 to 45.
+constexpr double kPoorGapsShare = 5e-3;
+constexpr double kSomeGapsShare = 1e-3;
+constexpr std::uint64_t kStrayGaps = 5;       // Fewer are stalls of the host.
+constexpr double kManyReassertsShare = 2e-3;  // One in 5 s at 100 Hz.
 constexpr double kPoorClockMs = 5;
 constexpr std::uint64_t kManyPlugs = 20;
 
@@ -102,24 +105,24 @@ std::vector<Symptom> Uncalibrated(const Facts& facts) {
       });
 }
 
+bool HasPoorLink(const DeviceStatus& device) {
+  if (device.state != DeviceState::kLive || device.reports < kEnoughReports) return false;
+  if (device.report_rate_hz < kPoorRateHz) return true;
+  if (device.gaps < kStrayGaps) return false;
+  const double gaps = Share(device.gaps, device);
+  return gaps > kPoorGapsShare || (gaps > kSomeGapsShare && device.jitter_ms > kPoorJitterMs);
+}
+
 std::vector<Symptom> PoorLink(const Facts& facts) {
-  return Each(
-      facts,
-      [](const DeviceStatus& device) {
-        return device.state == DeviceState::kLive && device.reports >= kEnoughReports &&
-               (device.report_rate_hz < kPoorRateHz || device.jitter_ms > kPoorJitterMs ||
-                Share(device.gaps, device) > kPoorGapsShare);
-      },
-      [](const DeviceStatus& device) {
-        return Symptom{
-            Severity::kWarning,
-            "its link is poor: " + std::to_string(static_cast<int>(device.report_rate_hz)) +
-                " reports/s, jitter " + std::to_string(static_cast<int>(device.jitter_ms)) +
-                " ms, " + std::to_string(device.gaps) + " gaps",
-            "",
-            "bring the adapter nearer (a USB extension, away from Wi-Fi and USB 3 plugs), "
-            "or move Wi-Fi to 5 GHz"};
-      });
+  return Each(facts, HasPoorLink, [](const DeviceStatus& device) {
+    return Symptom{Severity::kWarning,
+                   "its link is poor: " + std::to_string(static_cast<int>(device.report_rate_hz)) +
+                       " reports/s, jitter " + std::to_string(static_cast<int>(device.jitter_ms)) +
+                       " ms, " + std::to_string(device.gaps) + " gaps",
+                   "",
+                   "bring the adapter nearer (a USB extension, away from Wi-Fi and USB 3 plugs), "
+                   "or move Wi-Fi to 5 GHz"};
+  });
 }
 
 std::vector<Symptom> ModeStolen(const Facts& facts) {

@@ -120,7 +120,8 @@ void Acceptance::Take(const std::vector<stream::DeviceStatus>& devices, std::int
     }
     if (device.state == stream::DeviceState::kLost) continue;
     serial_of_[device.device] = device.serial;
-    record.last = device;
+    // What a device reports of its link just after a replug says nothing about the run.
+    if (fresh || phase != Phase::kReplug) record.last = device;
     record.battery_low = record.battery_low || device.battery_low;
     record.slipped = record.slipped || device.slipped;
     record.moved = record.moved || device.moved;

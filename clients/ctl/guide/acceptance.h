@@ -65,7 +65,7 @@ class Acceptance {
 
  private:
   struct DeviceRecord {
-    stream::DeviceStatus last;  ///< Newest status while it was attached.
+    stream::DeviceStatus last;  ///< Newest status while it was attached, before the replug phase.
     std::uint64_t gaps_first = 0;
     std::uint64_t gaps_last = 0;  ///< Before the replug phase.
     std::uint64_t samples = 0;    ///< Outside the replug phase.

@@ -64,11 +64,13 @@ void Acceptance::CheckDevice(const DeviceRecord& device, std::vector<Check>& che
       AtLeast("calibration " + serial, calibrated ? 1 : 0, 1, "", stream::Name(last.calibration)));
   checks.push_back({"battery " + serial, !device.battery_low, last.battery_fraction, 0, "",
                     device.battery_low          ? "battery low: change the batteries now"
-                    : last.battery_fraction < 0 ? "not told by the device"
+                    : last.battery_fraction < 0 ? "the device reports no level"
                                                 : "share that is left"});
-  checks.push_back(
-      AtMost("clock " + serial, last.clock_offset_sd_ms, kClockSdMs, "ms",
-             last.clock_offset_sd_ms < 0 ? "not known" : "how well the sampling time is known"));
+  const bool clock_known = last.clock_offset_sd_ms >= 0;
+  checks.push_back(AtMost("clock " + serial, last.clock_offset_sd_ms, kClockSdMs, "ms",
+                          clock_known ? "standard deviation of the sampling times"
+                                      : "not measured: too few reports; repeat with more minutes"));
+  if (!clock_known) checks.back().passed = false;
   if (IsBoard(last)) {
     checks.push_back(AtMost("moved " + serial, device.moved ? 1 : 0, 0, "",
                             device.moved ? "the board was moved: footing-ctl setup --only layout"

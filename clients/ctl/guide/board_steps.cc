@@ -170,8 +170,10 @@ Progress LayoutStep::Advance(const Situation& now, const Wishes& wishes) {
 
 Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
   Progress progress;
-  progress.prompt = "Step off the boards and leave them empty.";
   const auto boards = now.recent->Boards(wishes.rig);
+  progress.finished = boards.empty();
+  if (boards.empty()) return progress;
+  progress.prompt = "Step off the boards and leave them empty.";
   for (const Answer& answer : now.answers) {
     if (!asked_ || !answer.key.starts_with("tare ")) continue;
     results_.push_back(Outcome(Item::kTare, answer.key.substr(5), answer.ok, answer.residual,
@@ -182,7 +184,6 @@ Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
       return progress;
     }
   }
-  progress.finished = boards.empty();
   if (asked_) return progress;
   const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kEmptyForS);
   for (const auto& board : boards) {
@@ -200,7 +201,7 @@ Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
     tare.window_s = kTareWindowS;
     progress.actions.push_back(tare);
   }
-  asked_ = !boards.empty();
+  asked_ = true;
   waiting_ = boards.size();
   return progress;
 }
@@ -208,10 +209,10 @@ Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
 Progress WeighStep::Advance(const Situation& now, const Wishes& wishes) {
   Progress progress;
   const auto boards = now.recent->Boards(wishes.rig);
-  progress.prompt =
-      boards.size() > 1 ? "Stand still, one foot on each board." : "Stand still on the board.";
   progress.finished = boards.empty();
   if (boards.empty()) return progress;
+  progress.prompt =
+      boards.size() > 1 ? "Stand still, one foot on each board." : "Stand still on the board.";
   const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(kWeighForS);
   std::vector<Load> loads;
   for (const auto& board : boards) {

@@ -30,21 +30,21 @@ bool IsBoardRole(stream::DeviceRole role) {
 std::string Spoken(stream::DeviceRole role) {
   switch (role) {
     case stream::DeviceRole::kLeftHand:
-      return "the left wrist one";
+      return "the left wrist";
     case stream::DeviceRole::kRightHand:
-      return "the right wrist one";
+      return "the right wrist";
     case stream::DeviceRole::kLeftLeg:
-      return "the left shin one";
+      return "the left shin";
     case stream::DeviceRole::kRightLeg:
-      return "the right shin one";
+      return "the right shin";
     case stream::DeviceRole::kHead:
-      return "the head one";
+      return "the head";
     case stream::DeviceRole::kLeftBoard:
       return "the left board";
     case stream::DeviceRole::kRightBoard:
       return "the right board";
     case stream::DeviceRole::kEditor:
-      return "the editor's one";
+      return "the editor remote";
     case stream::DeviceRole::kUnspecified:
       return "a device without a role";
   }

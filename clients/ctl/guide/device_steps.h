@@ -26,7 +26,7 @@ class PairingStep {
   std::int64_t since_ns_ = 0;
 };
 
-/// Which device is which: "step on the left board now", "shake the left wrist one".
+/// Which device is which: "Step on the left board now.", "Shake the left wrist now."
 class RolesStep {
  public:
   Progress Advance(const Situation& now, const Wishes& wishes);
@@ -62,7 +62,7 @@ class ChecksStep {
 /// second (a poor link brings 58), controllers 60 (100 is usual).
 std::string WrongWith(const stream::DeviceStatus& device);
 
-/// "the left board", "the left wrist one", "the right shin one", ...
+/// "the left board", "the left wrist", "the right shin", ...
 std::string Spoken(stream::DeviceRole role);
 
 }  // namespace footing::guide

@@ -6,6 +6,9 @@
 #include <functional>
 #include <set>
 
+#include "common/virtual/devices/link_model.h"
+#include "daemon/sensor/link/link_statistics.h"
+
 namespace footing::ctl::doctor {
 namespace {
 
@@ -199,6 +202,46 @@ TEST(Doctor, HasATestOfEveryCheck) {
   for (const Case& one : Cases()) tested.insert(one.id);
   for (const std::string& id : CheckIds()) EXPECT_EQ(tested.count(id), 1u) << id;
   EXPECT_EQ(tested.size(), CheckIds().size());
+}
+
+/// How often, of the looks taken every half second, the doctor calls a simulated link poor.
+/// `stall_s`: one pause of the host in the tenth second.
+double ShareCalledPoor(const virtual_devices::LinkConfig& config, double stall_s) {
+  virtual_devices::LinkModel link(config, 0);
+  link::LinkStatistics statistics(1 / config.nominal_rate_hz);
+  Facts facts = HealthyHost();
+  stream::DeviceStatus& device = facts.devices[0];
+  int looks = 0, poor = 0;
+  std::int64_t next_look_ns = 4'000'000'000;
+  while (next_look_ns < 120'000'000'000) {
+    const std::int64_t arrives_ns = link.Next().arrives_ns;
+    const bool stalled =
+        arrives_ns > 10'000'000'000 && static_cast<double>(arrives_ns) < 1e10 + 1e9 * stall_s;
+    if (stalled) continue;
+    statistics.Advance(arrives_ns);
+    if (arrives_ns < next_look_ns) continue;
+    next_look_ns = arrives_ns + 500'000'000;
+    device.reports = statistics.reports();
+    device.gaps = statistics.gaps();
+    device.report_rate_hz = statistics.RateHz(arrives_ns);
+    device.jitter_ms = statistics.JitterMs();
+    ++looks;
+    poor += Find(Examine(facts), "poor_link") != nullptr ? 1 : 0;
+  }
+  return static_cast<double>(poor) / looks;
+}
+
+TEST(Doctor, CallsASimulatedGoodLinkGoodAndAPoorOnePoor) {
+  using virtual_devices::LinkQuality;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (const double stall_s : {0.0, 0.4}) {
+      EXPECT_EQ(ShareCalledPoor(WiimoteLink(LinkQuality::kIdeal, seed), stall_s), 0) << seed;
+      EXPECT_EQ(ShareCalledPoor(WiimoteLink(LinkQuality::kGood, seed), stall_s), 0) << seed;
+      EXPECT_EQ(ShareCalledPoor(BoardLink(LinkQuality::kGood, seed), stall_s), 0) << seed;
+    }
+    EXPECT_GT(ShareCalledPoor(WiimoteLink(LinkQuality::kPoor, seed), 0), 0.95) << seed;
+    EXPECT_GT(ShareCalledPoor(BoardLink(LinkQuality::kPoor, seed), 0), 0.95) << seed;
+  }
 }
 
 TEST(Doctor, PutsErrorsFirst) {

@@ -22,6 +22,7 @@ stream::DeviceStatus Device(std::uint32_t device, stream::DeviceKind kind,
   status.calibration = stream::CalibrationOrigin::kDevice;
   status.jitter_ms = 8;
   status.battery_fraction = 0.8;
+  status.clock_offset_sd_ms = 2;
   return status;
 }
 
@@ -38,7 +39,8 @@ struct Minute {
   double jump_phase_rad = 0.1;
   int motion_every = 1;  ///< Of the ticks.
   bool replug = true;
-  double heavier_n = 0;  ///< In the second half of standing.
+  bool unsettled_after_replug = false;  ///< Clock and jitter start again.
+  double heavier_n = 0;                 ///< In the second half of standing.
 
   std::vector<Check> Run() {
     Acceptance acceptance("main", *board::LayoutNamed("one_foot_each", 20));
@@ -64,6 +66,10 @@ struct Minute {
       }
       if (replug && phase == Phase::kReplug && i > ticks / 3 && i < 2 * ticks / 3) {
         shown[3].state = stream::DeviceState::kLost;
+      }
+      if (unsettled_after_replug && phase == Phase::kReplug && i >= 2 * ticks / 3) {
+        shown[3].clock_offset_sd_ms = -1;
+        shown[3].jitter_ms = 90;
       }
       acceptance.Take(shown, now_ns);
     }
@@ -163,6 +169,22 @@ TEST(Acceptance, FindsAnExhaustedBatteryAndASlip) {
   const auto checks = minute.Run();
   EXPECT_EQ(Failed(checks), "battery serial-3, mounting serial-4");
   EXPECT_NE(Named(checks, "mounting serial-4").note.find("--only mounting"), std::string::npos);
+}
+
+TEST(Acceptance, AClockThatWasNotMeasuredDoesNotPass) {
+  Minute minute;
+  minute.devices[2].clock_offset_sd_ms = -1;
+  minute.devices[3].clock_offset_sd_ms = 7;
+  const auto checks = minute.Run();
+  EXPECT_EQ(Failed(checks), "clock serial-3, clock serial-4");
+  EXPECT_NE(Named(checks, "clock serial-3").note.find("not measured"), std::string::npos);
+  EXPECT_FALSE(Passed(checks));
+}
+
+TEST(Acceptance, AReplugDoesNotSpoilTheMeasuredClock) {
+  Minute minute;
+  minute.unsettled_after_replug = true;
+  EXPECT_EQ(Failed(minute.Run()), "");
 }
 
 TEST(Acceptance, FindsASlowDevice) {

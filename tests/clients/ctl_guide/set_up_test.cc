@@ -183,6 +183,19 @@ TEST(SetUp, LeadsFromTheBoxToAReadyRig) {
   EXPECT_EQ(Find(results, "weigh")->note, "70.2 kg");  // 70 kg and 1 N on each board.
 }
 
+TEST(SetUp, WithoutBoardsAsksForNothingAboutBoards) {
+  Person person;
+  person.devices.erase(person.devices.begin(), person.devices.begin() + 2);
+  const auto results = person.Do({});
+  for (const std::string& prompt : person.prompts) {
+    EXPECT_EQ(prompt.find("board"), std::string::npos) << prompt;
+  }
+  EXPECT_TRUE(person.prompts.contains("Shake the left shin now.")) << person.prompts.size();
+  for (const char* item : {"layout", "tare", "weigh"}) EXPECT_EQ(Find(results, item), nullptr);
+  for (auto& device : person.devices) device.mounted = true;
+  EXPECT_TRUE(Ready(Merged({}, results, person.devices), person.devices, nullptr));
+}
+
 TEST(SetUp, GivesEachDeviceTheRoleOfTheGesture) {
   Person person;  // Roles begin crossed; the gestures put them right.
   person.SetRoles({stream::DeviceRole::kRightBoard, stream::DeviceRole::kLeftBoard,
