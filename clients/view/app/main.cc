@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   app->add_option("--height", options.height, "Pixels")->check(CLI::Range(180, 8192));
   app->add_flag("--subject", options.subject, "The world alone, without panels");
   app->add_flag("--overlay-reference", options.overlay_reference,
-                "A stand-in's true pose over the body, not beside it");
+                "Show a simulated body's true pose over the estimate, not beside it");
   app->add_option("--next-subject", subjects,
                   "Subject file (JSON) for the key N; as often as wanted");
   app->add_flag("--forces", options.forces, "Force arrows at the feet");

@@ -19,7 +19,7 @@ namespace {
 constexpr double kStepS = 1.0 / 60;
 constexpr double kRecordS = 10;  // Without --seconds.
 
-/// The chain of one off-screen run; its members' order is their order of making.
+/// The chain of one off-screen run; its members' order is their order of construction.
 struct Studio {
   const Options& options;
   render::Target& target;
@@ -45,8 +45,9 @@ struct Studio {
     target.Bind();
     render::HudOptions hud;
     hud.hidden = options.subject;
-    screen.Draw(shot.picture, show.model(), shot.frame, clock::MonotonicNs(), hud, target.width(),
-                target.height());
+    screen.Draw(
+        {shot.picture, show.model(), shot.frame, clock::MonotonicNs(), shot.past, shot.past_ns},
+        hud, target.width(), target.height());
     return render::WritePng(target.Read(), path);
   }
 
@@ -104,7 +105,7 @@ Result<void> RunOffScreen(const Options& options) {
   if (!context) return context.error();
   auto target = render::Target::Create(options.width, options.height, options.samples);
   if (!target) return target.error();
-  auto screen = render::Screen::Create(options.scale());
+  auto screen = render::Screen::Create();
   if (!screen) return screen.error();
   Background background(options);
   Studio studio{options, *target, **screen, background, {}};

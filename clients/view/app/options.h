@@ -30,7 +30,6 @@ struct Options {
   int width = 1280;
   int height = 720;
 
-  float scale() const { return static_cast<float>(height) / 720; }
   bool off_screen() const { return !screenshot.empty() || !record_folder.empty(); }
 };
 

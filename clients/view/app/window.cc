@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -48,6 +49,13 @@ Window Open(const Options& options) {
   return Window(glfwCreateWindow(options.width, options.height, "Footing", nullptr, nullptr));
 }
 
+/// How many pixels of the picture stand for one of a common monitor.
+float DisplayScale(GLFWwindow* window) {
+  float across = 1, up = 1;
+  glfwGetWindowContentScale(window, &across, &up);
+  return std::max(across, up);
+}
+
 void OnKey(GLFWwindow* window, int key, int, int action, int) {
   if (action != GLFW_PRESS) return;
   auto& hud = *static_cast<render::HudOptions*>(glfwGetWindowUserPointer(window));
@@ -87,10 +95,12 @@ void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
       next_subject %= options.next_subjects.size();
     }
     const auto shot = show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference});
+    screen.set_display_scale(DisplayScale(window));
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    screen.Draw(shot.picture, show.model(), shot.frame, now_ns, hud, width, height);
+    screen.Draw({shot.picture, show.model(), shot.frame, now_ns, shot.past, shot.past_ns}, hud,
+                width, height);
     glfwSwapBuffers(window);
     // Minimised, or on a display without vertical sync, the loop must not spin.
     clock::SleepUntil(now_ns + SecondsToNanoseconds(1.0 / 125));
@@ -113,7 +123,7 @@ Result<void> RunWindow(const Options& options) {
   if (window == nullptr) return NoWindow("no window with OpenGL 3.3 can be opened");
   glfwMakeContextCurrent(window.get());
   glfwSwapInterval(1);
-  auto screen = render::Screen::Create(options.scale());
+  auto screen = render::Screen::Create();
   if (!screen) return screen.error();
   render::HudOptions hud;
   hud.hidden = options.subject;

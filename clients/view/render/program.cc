@@ -7,7 +7,7 @@ namespace {
 
 /// The driver's log of a shader or a program.
 template <typename GetLog>
-std::string DriverWords(GLuint name, GetLog get_log) {
+std::string DriverLog(GLuint name, GetLog get_log) {
   std::array<char, 2048> text{};
   GLsizei length = 0;
   get_log(name, static_cast<GLsizei>(text.size()), &length, text.data());
@@ -22,7 +22,7 @@ Result<GLuint> Compile(const std::string& name, GLenum stage, const std::string&
   GLint compiled = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
   if (compiled == GL_TRUE) return shader;
-  const std::string words = DriverWords(shader, glGetShaderInfoLog);
+  const std::string words = DriverLog(shader, glGetShaderInfoLog);
   glDeleteShader(shader);
   return Failure("the graphics driver cannot compile the shader '" + name + "': " + words);
 }
@@ -45,7 +45,7 @@ Result<Program> Program::Create(const std::string& name, const std::string& vert
   glGetProgramiv(program.program_, GL_LINK_STATUS, &linked);
   if (linked == GL_TRUE) return program;
   return Failure("the graphics driver cannot link the shader '" + name +
-                 "': " + DriverWords(program.program_, glGetProgramInfoLog));
+                 "': " + DriverLog(program.program_, glGetProgramInfoLog));
 }
 
 Program::~Program() {

@@ -3,30 +3,34 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <cmath>
 #include <utility>
+
+#include "clients/view/render/hud/hud_layout.h"
 
 namespace footing::render {
 namespace {
 
 // The panels move by themselves: ImGui's own clock only has to run.
 constexpr float kNominalFrameS = 1.0f / 60;
+// A smaller change of the scale is not worth drawing the letters again.
+constexpr float kLeastChange = 0.01f;
 
 }  // namespace
 
-Result<std::unique_ptr<Screen>> Screen::Create(float scale) {
+Result<std::unique_ptr<Screen>> Screen::Create() {
   auto world = World::Create();
   if (!world) return world.error();
-  std::unique_ptr<Screen> screen(new Screen(std::move(*world), scale));
+  std::unique_ptr<Screen> screen(new Screen(std::move(*world)));
   if (!ImGui_ImplOpenGL3_Init("#version 330 core")) {
     return Failure("the panels cannot use this graphics driver's OpenGL");
   }
   return screen;
 }
 
-Screen::Screen(World world, float scale) : world_(std::move(world)), scale_(scale) {
+Screen::Screen(World world) : world_(std::move(world)) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // The viewer leaves no files behind.
-  fonts_ = LoadFonts(scale);
 }
 
 Screen::~Screen() {
@@ -34,17 +38,28 @@ Screen::~Screen() {
   ImGui::DestroyContext();
 }
 
-void Screen::Draw(const scene::Picture& picture, const scene::Model& model,
-                  const scene::WorldFrame& frame, std::int64_t now_ns, const HudOptions& options,
-                  int width, int height) {
-  world_.Draw(picture, model.track, model.track_version, width, height);
+void Screen::LoadFontsAt(float scale) {
+  if (std::abs(scale - scale_) < kLeastChange) return;
+  const bool uploaded = scale_ > 0;  // The first upload is the backend's own.
+  scale_ = scale;
+  ImGui::GetIO().Fonts->Clear();
+  fonts_ = LoadFonts(scale);
+  if (!uploaded) return;
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void Screen::Draw(const HudContent& content, const HudOptions& options, int width, int height) {
+  const scene::Model& model = content.model;
+  world_.Draw(content.picture, model.track, model.track_version, width, height);
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = ImVec2(static_cast<float>(width), static_cast<float>(height));
   io.DeltaTime = kNominalFrameS;
+  LoadFontsAt(HudScale(io.DisplaySize, display_scale_));
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
   const Paint paint{ImGui::GetBackgroundDrawList(), fonts_, scale_};
-  DrawHud(paint, picture, model, frame, now_ns, options, io.DisplaySize);
+  DrawHud(paint, content, options, io.DisplaySize);
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }

@@ -11,23 +11,24 @@ namespace footing::render {
 /// World and panels in one picture. Needs its OpenGL context current in every call; one a process.
 class Screen {
  public:
-  /// `scale` 1 suits a picture 720 pixels high.
-  static Result<std::unique_ptr<Screen>> Create(float scale);
+  static Result<std::unique_ptr<Screen>> Create();
   ~Screen();
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  /// Draws into the bound framebuffer.
-  void Draw(const scene::Picture& picture, const scene::Model& model,
-            const scene::WorldFrame& frame, std::int64_t now_ns, const HudOptions& options,
-            int width, int height);
+  /// Draws into the bound framebuffer, the panels as large as the picture asks for (HudScale).
+  void Draw(const HudContent& content, const HudOptions& options, int width, int height);
+  /// The display's own factor: 1 on a common monitor, 2 on one with twice the pixels an inch.
+  void set_display_scale(float display_scale) { display_scale_ = display_scale; }
   World& world() { return world_; }
 
  private:
-  Screen(World world, float scale);
+  explicit Screen(World world);
+  void LoadFontsAt(float scale);
 
   World world_;
-  float scale_;
+  float display_scale_ = 1;
+  float scale_ = 0;  ///< Of the fonts; 0 before the first picture.
   Fonts fonts_;
 };
 

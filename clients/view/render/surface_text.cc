@@ -100,7 +100,7 @@ vec3 Clay() {
   float tick = Line(AwayFromLines(along, 1.0), 0.02, pixel_along) * inside * step(from_edge, 0.42);
   float five = Line(AwayFromLines(along, 5.0), 0.025, pixel_along) * 0.40 * inside;
   float ten = Line(AwayFromLines(along, 10.0), 0.045, pixel_along) * 0.85 * inside;
-  // Two tones a metre apart, hardly seen, that tell the speed.
+  // Two tones a metre apart, hardly seen, that show the speed.
   float tone = 0.97 + 0.06 * step(0.5, fract(along * 0.5));
   return mix(vec3(0.470, 0.150, 0.078) * mix(tone, 1.0, min(1.0, 2.0 * pixel_along)),
              vec3(0.88, 0.86, 0.82), max(max(edge, lane), max(tick * 0.8, max(five, ten))));

@@ -1,10 +1,8 @@
 #include "clients/view/render/world.h"
 
 #include <algorithm>
-#include <cstddef>
 
 #include "clients/view/render/shader_text.h"
-#include "clients/view/scene/mesh.h"
 #include "clients/view/scene/ribbon.h"
 #include "clients/view/scene/sky.h"
 
@@ -15,21 +13,8 @@ constexpr float kStudioLamp = 0.55f;
 constexpr float kGhostOpacity = 0.55f;
 constexpr float kClearOpacity = 0.38f;
 constexpr float kHiddenOpacity = 0.55f;
-constexpr int kShadowPixels = 512;
 // The shadow of a bird falls this far beside it: its middle is 0.9 m high.
 const Eigen::Vector3f kToShadowM(0.45f, -0.60f, 0);
-
-template <typename T>
-void Fill(GLenum target, const Buffer& buffer, const std::vector<T>& items, GLenum usage) {
-  glBindBuffer(target, buffer.name());
-  glBufferData(target, static_cast<GLsizeiptr>(items.size() * sizeof(T)), items.data(), usage);
-}
-
-void Attribute(GLuint location, GLint size, std::size_t stride, std::size_t offset) {
-  glEnableVertexAttribArray(location);
-  glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
-                        reinterpret_cast<const void*>(offset));
-}
 
 Eigen::Matrix4f ClipFromWorld(const scene::Picture& picture, int width, int height) {
   const double aspect = static_cast<double>(width) / std::max(height, 1);
@@ -58,99 +43,23 @@ Result<World> World::Create() {
                 std::move(*ribbon), std::move(*mark), std::move(*sky)});
 }
 
-World::World(Programs programs) : programs_(std::move(programs)) {
-  const auto load = [](Shape& shape, const scene::Mesh& mesh, bool rod) {
-    static_assert(sizeof(scene::MeshVertex) == 24 && sizeof(scene::Part) == 96);
-    shape.rod = rod;
-    shape.index_count = static_cast<GLsizei>(mesh.indices.size());
-    glBindVertexArray(shape.array.name());
-    Fill(GL_ARRAY_BUFFER, shape.vertices, mesh.vertices, GL_STATIC_DRAW);
-    Attribute(0, 3, sizeof(scene::MeshVertex), 0);
-    Attribute(1, 3, sizeof(scene::MeshVertex), 12);
-    Fill(GL_ELEMENT_ARRAY_BUFFER, shape.indices, mesh.indices, GL_STATIC_DRAW);
-    glBindBuffer(GL_ARRAY_BUFFER, shape.instances.name());
-    for (GLuint i = 0; i < 6; ++i) {
-      Attribute(2 + i, 4, sizeof(scene::Part), 16 * i);
-      glVertexAttribDivisor(2 + i, 1);
-    }
-  };
-  load(ball_, scene::UnitBall(24, 14), false);
-  load(bead_, scene::UnitBall(12, 6), false);
-  load(rod_, scene::UnitRod(12), true);
-  load(box_, scene::UnitBox(), false);
-  LoadSky();
-
-  glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowPixels, kShadowPixels, 0, GL_RED, GL_UNSIGNED_BYTE,
-               nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  GLint before = 0;
-  glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
-  glBindFramebuffer(GL_FRAMEBUFFER, shadow_.name());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shadow_map_.name(),
-                         0);
-  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
-}
-
-void World::LoadSky() {
-  static_assert(sizeof(scene::SkyVertex) == 24);
-  const scene::SkyMesh mesh = scene::BuildSky();
-  sky_.index_count = static_cast<GLsizei>(mesh.indices.size());
-  glBindVertexArray(sky_.array.name());
-  Fill(GL_ARRAY_BUFFER, sky_.vertices, mesh.vertices, GL_STATIC_DRAW);
-  Attribute(0, 3, sizeof(scene::SkyVertex), 0);
-  Attribute(1, 3, sizeof(scene::SkyVertex), 12);
-  Fill(GL_ELEMENT_ARRAY_BUFFER, sky_.indices, mesh.indices, GL_STATIC_DRAW);
-}
+World::World(Programs programs) : programs_(std::move(programs)) { sky_.Upload(scene::BuildSky()); }
 
 void World::DrawSky(const Eigen::Vector3f& eye, const Eigen::Matrix4f& clip_from_world) {
   programs_.sky.Use();
   programs_.sky.Set("u_eye", eye);
   programs_.sky.Set("u_clip_from_world", clip_from_world);
-  glBindVertexArray(sky_.array.name());
-  glDrawElements(GL_TRIANGLES, sky_.index_count, GL_UNSIGNED_INT, nullptr);
-}
-
-void World::LoadTrack(const stream::Track& track, std::uint64_t version) {
-  if (version == ribbon_.version) return;
-  static_assert(sizeof(scene::RibbonVertex) == 40);
-  ribbon_.version = version;
-  const scene::RibbonMesh mesh = scene::BuildRibbon(track);
-  ribbon_.index_count = static_cast<GLsizei>(mesh.indices.size());
-  glBindVertexArray(ribbon_.array.name());
-  Fill(GL_ARRAY_BUFFER, ribbon_.vertices, mesh.vertices, GL_STATIC_DRAW);
-  Attribute(0, 3, sizeof(scene::RibbonVertex), 0);
-  Attribute(1, 3, sizeof(scene::RibbonVertex), 12);
-  Attribute(2, 4, sizeof(scene::RibbonVertex), 24);
-  Fill(GL_ELEMENT_ARRAY_BUFFER, ribbon_.indices, mesh.indices, GL_STATIC_DRAW);
-}
-
-void World::DrawParts(const Program& program, const scene::PartList& parts, bool coarse) {
-  const auto draw = [&program](Shape& shape, const std::vector<scene::Part>& instances) {
-    if (instances.empty()) return;
-    glBindVertexArray(shape.array.name());
-    Fill(GL_ARRAY_BUFFER, shape.instances, instances, GL_STREAM_DRAW);
-    program.Set("u_is_rod", shape.rod ? 1 : 0);
-    glDrawElementsInstanced(GL_TRIANGLES, shape.index_count, GL_UNSIGNED_INT, nullptr,
-                            static_cast<GLsizei>(instances.size()));
-  };
-  draw(coarse ? bead_ : ball_, parts.balls);
-  draw(bead_, parts.beads);
-  draw(rod_, parts.rods);
-  draw(box_, parts.boxes);
+  sky_.Draw();
 }
 
 void World::DrawGhosts(const scene::PartList& parts, float opacity) {
   programs_.part.Set("u_opacity", opacity);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  DrawParts(programs_.part, parts, false);
+  shapes_.Draw(programs_.part, parts, false);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  DrawParts(programs_.part, parts, false);
+  shapes_.Draw(programs_.part, parts, false);
   glDisable(GL_BLEND);
   programs_.part.Set("u_opacity", 1.0f);
 }
@@ -161,7 +70,7 @@ void World::DrawClear(const scene::PartList& parts) {
   glDepthMask(GL_FALSE);
   programs_.part.Set("u_opacity", kClearOpacity);
   programs_.part.Set("u_plain", 1.0f);
-  DrawParts(programs_.part, parts, false);
+  shapes_.Draw(programs_.part, parts, false);
   programs_.part.Set("u_plain", 0.0f);
   programs_.part.Set("u_opacity", 1.0f);
   glDepthMask(GL_TRUE);
@@ -170,36 +79,18 @@ void World::DrawClear(const scene::PartList& parts) {
 
 void World::DrawSigns(const scene::PartList& parts) {
   programs_.part.Set("u_plain", 0.6f);
-  DrawParts(programs_.part, parts, true);
+  shapes_.Draw(programs_.part, parts, true);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
   programs_.part.Set("u_opacity", kHiddenOpacity);
-  DrawParts(programs_.part, parts, true);
+  shapes_.Draw(programs_.part, parts, true);
   programs_.part.Set("u_opacity", 1.0f);
   programs_.part.Set("u_plain", 0.0f);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LEQUAL);
   glDisable(GL_BLEND);
-}
-
-void World::DrawShadow(const scene::Picture& picture, const Eigen::Vector3f& centre) {
-  GLint before = 0;
-  std::array<GLint, 4> viewport{};
-  glGetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
-  glGetIntegerv(GL_VIEWPORT, viewport.data());
-  glBindFramebuffer(GL_FRAMEBUFFER, shadow_.name());
-  glViewport(0, 0, kShadowPixels, kShadowPixels);
-  glDisable(GL_DEPTH_TEST);
-  glClearColor(0, 0, 0, 0);
-  glClear(GL_COLOR_BUFFER_BIT);
-  programs_.shadow.Use();
-  programs_.shadow.Set("u_centre", centre);
-  programs_.shadow.Set("u_span", kMarkSpanM);
-  DrawParts(programs_.shadow, picture.figures, true);
-  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
-  glViewport(viewport[0], viewport[1], viewport[2], viewport[3]);
 }
 
 // Over the finished ground, where the birds are: a software renderer pays for every pixel.
@@ -218,7 +109,7 @@ void World::DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
     const Eigen::Vector3f beside(kToShadowM.x(), kToShadowM.y(),
                                  kToShadowM.head<2>().dot(spot.slope));
     const Eigen::Vector3f centre = spot.centre_m + beside;
-    DrawShadow(picture, centre);
+    shadow_map_.Draw(programs_.shadow, shapes_, picture.figures, centre);
     const Program& program = programs_.mark;
     program.Use();
     program.Set("u_clip_from_world", clip_from_world);
@@ -231,8 +122,7 @@ void World::DrawMarks(const scene::Picture& picture, const Eigen::Vector3f& eye,
     program.Set("u_blob_count", static_cast<int>(blobs.size()));
     program.Set("u_rings", rings);
     program.Set("u_ring_count", static_cast<int>(rings.size()));
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, shadow_map_.name());
+    shadow_map_.Bind();
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
@@ -251,9 +141,7 @@ void World::DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& c
     program->Set("u_clip_from_world", clip_from_world);
     program->Set("u_eye", eye);
     if (program == &programs_.ribbon) {
-      if (ribbon_.index_count == 0) continue;
-      glBindVertexArray(ribbon_.array.name());
-      glDrawElements(GL_TRIANGLES, ribbon_.index_count, GL_UNSIGNED_INT, nullptr);
+      if (!track_.empty()) track_.Draw();
     } else {
       program->Set("u_ground", picture.ground_m);
       program->Set("u_studio", picture.studio ? 1 : 0);
@@ -265,7 +153,10 @@ void World::DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& c
 
 void World::Draw(const scene::Picture& picture, const stream::Track& track,
                  std::uint64_t track_version, int width, int height) {
-  LoadTrack(track, track_version);
+  if (track_version != track_version_) {
+    track_version_ = track_version;
+    track_.Upload(scene::BuildRibbon(track));
+  }
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
@@ -284,8 +175,8 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   programs_.part.Set("u_opacity", 1.0f);
   programs_.part.Set("u_plain", 0.0f);
   programs_.part.Set("u_lamp", picture.studio ? kStudioLamp : 0.0f);
-  DrawParts(programs_.part, picture.figures, false);
-  DrawParts(programs_.part, picture.forces, true);
+  shapes_.Draw(programs_.part, picture.figures, false);
+  shapes_.Draw(programs_.part, picture.forces, true);
   DrawSurfaces(picture, clip_from_world);
   DrawSky(eye, clip_from_world);
   DrawMarks(picture, eye, clip_from_world);
@@ -306,9 +197,9 @@ void World::DrawIds(const scene::Picture& picture, int width, int height) {
   programs_.part_id.Use();
   programs_.part_id.Set("u_clip_from_world", ClipFromWorld(picture, width, height));
   programs_.part_id.Set("u_id", static_cast<int>(scene::PartId::kBird));
-  DrawParts(programs_.part_id, picture.figures, true);
+  shapes_.Draw(programs_.part_id, picture.figures, true);
   programs_.part_id.Set("u_id", static_cast<int>(scene::PartId::kForce));
-  DrawParts(programs_.part_id, picture.forces, true);
+  shapes_.Draw(programs_.part_id, picture.forces, true);
   glDisable(GL_DEPTH_TEST);
 }
 

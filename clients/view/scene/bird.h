@@ -10,7 +10,7 @@ struct Plumage {
   Colour back, belly, wing, tail, crest, skin, beak;
 };
 
-/// One plumage a character, so that two players can tell their birds apart.
+/// One plumage a character, so that two players can distinguish their birds.
 Plumage PlumageOf(std::uint32_t character);
 
 /// The bird over a biped's pose; its toes bend on the floor of that height. Adds nothing when the

@@ -33,7 +33,7 @@ struct ComTrail {
   };
   std::deque<Point> points;
 
-  /// Keeps the last 4 s of simulation time; a step back in time begins it anew.
+  /// Keeps the last 4 s of simulation time; a step back in time restarts it.
   void Add(double time_s, const Eigen::Vector3d& com_m);
 };
 

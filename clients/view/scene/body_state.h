@@ -39,11 +39,11 @@ struct BodyState {
   std::string note;
   double solve_us = 0;
   std::array<bool, 2> hands_seen{};
-  std::string hands_source;    ///< "wiimote", a tracker's name; empty: nothing tells of the hands.
+  std::string hands_source;    ///< "wiimote", a tracker's name; empty: no source reports the hands.
   std::string contact_source;  ///< "boards" or "insoles"; empty of a server that does not say.
 };
 
-/// What a stand-in's body really does.
+/// The true pose of a simulated body.
 struct ReferencePose {
   std::int64_t received_ns = 0;  ///< On the viewer's clock, like the next.
   std::int64_t sampled_ns = 0;

@@ -19,7 +19,7 @@ class FallReplay {
   static constexpr double kAfterS = 1.5;
   static constexpr double kPace = 0.25;  ///< Seconds of the clip a second of the viewer.
 
-  /// Every frame, in the order of coming. A step back in simulation time is a server started anew:
+  /// Every frame, in the order of coming. A step back in simulation time means a restarted server:
   /// what was kept is dropped.
   void Push(const WorldFrame& frame);
 

@@ -71,7 +71,7 @@ struct Model {
 /// Takes one tick in. Plain data in, plain data out: no clock is read.
 void Apply(Model& model, const Update& update);
 
-/// True when any character or device is fed by a stand-in, which every screen must show.
+/// True when any character or device is simulated, which every screen must show.
 bool IsSimulated(const Model& model);
 
 /// Age of the newest data, ms.

@@ -12,7 +12,7 @@ enum class Shape : std::uint32_t {
   kRod,   ///< Unit radius about z, from z = 0 to 1, its top scaled by the part's taper.
 };
 
-/// What a pixel of the id picture tells; tests count them.
+/// What a pixel of the id picture shows; tests count them.
 enum class PartId : std::uint32_t { kNothing = 0, kBird = 1, kForce = 2 };
 
 using Colour = Eigen::Vector3f;  ///< Linear red, green, blue, 0 to 1.

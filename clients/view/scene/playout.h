@@ -22,12 +22,14 @@ WorldFrame Between(const WorldFrame& a, const WorldFrame& b, double share);
 /// delay within the last 1.5 s; if frames stop, the newest one stands.
 class Playout {
  public:
-  /// A frame that the socket gave at `received_ns`. A step back in simulation time is a server
-  /// started anew: what was kept is dropped.
+  /// A frame that the socket gave at `received_ns`. A step back in simulation time means a
+  /// restarted server: what was kept is dropped.
   void Push(WorldFrame frame, std::int64_t received_ns);
 
   bool empty() const { return frames_.empty(); }
   const WorldFrame& Newest() const { return frames_.back().frame; }
+  /// When the newest frame came, on the viewer's clock; 0 without one.
+  std::int64_t newest_ns() const { return frames_.empty() ? 0 : frames_.back().received_ns; }
   /// What to show at `now_ns`. Not to be called while empty.
   WorldFrame At(std::int64_t now_ns) const;
 

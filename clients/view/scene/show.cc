@@ -28,9 +28,14 @@ void Show::ToggleReplay(std::int64_t now_ns) {
 Show::Shot Show::At(std::int64_t now_ns, bool frozen, const StageOptions& options) {
   const double passed_s = last_ns_ == 0 ? 0 : NanosecondsToSeconds(now_ns - last_ns_);
   last_ns_ = now_ns;
-  if (!frozen) frame_ = FrameAt(now_ns);
+  if (frozen && !frozen_) frozen_ = std::make_unique<const Frozen>(Frozen{model_, now_ns});
+  if (!frozen) {
+    frozen_.reset();
+    frame_ = FrameAt(now_ns);
+  }
   ++model_.tally.frames_drawn;
-  return {frame_, stage_.Advance(model_, frame_, now_ns, frozen ? 0 : passed_s, options)};
+  return {frame_, stage_.Advance(model_, frame_, now_ns, frozen ? 0 : passed_s, options),
+          frozen_ ? frozen_->model : model_, frozen_ ? frozen_->at_ns : now_ns};
 }
 
 }  // namespace footing::scene

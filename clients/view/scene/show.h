@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/stage.h"
@@ -13,6 +14,8 @@ class Show {
   struct Shot {
     WorldFrame frame;  ///< Empty until the first character came.
     Picture picture;
+    const Model& past;         ///< The model as it was when the scene was frozen, else that of now.
+    std::int64_t past_ns = 0;  ///< When that was, else now.
   };
 
   Model& model() { return model_; }
@@ -26,15 +29,22 @@ class Show {
   /// Shows the last fall again in slow motion, or ends that.
   void ToggleReplay(std::int64_t now_ns);
 
-  /// What to draw at `now_ns`, which never runs back. Frozen, the world stands still.
+  /// What to draw at `now_ns`, which never runs back. Frozen, the world and all that slides with
+  /// time stand still.
   Shot At(std::int64_t now_ns, bool frozen, const StageOptions& options);
 
  private:
   WorldFrame FrameAt(std::int64_t now_ns);
 
+  struct Frozen {
+    Model model;
+    std::int64_t at_ns = 0;
+  };
+
   Model model_;
   Stage stage_;
   WorldFrame frame_;
+  std::unique_ptr<const Frozen> frozen_;
   std::int64_t last_ns_ = 0;
   bool replays_falls_ = false;
   std::uint64_t replayed_ = 0;  ///< Clips that were there at the last look.

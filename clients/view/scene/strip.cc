@@ -49,7 +49,13 @@ void Strip::Add(std::int64_t time_ns, double value) {
   }
 }
 
+std::int64_t ShownTime(std::int64_t newest_ns, std::int64_t now_ns) {
+  // A little more, so that the values there count as old.
+  return std::min(now_ns, newest_ns + kCurrentNs + kCurrentNs / 5);
+}
+
 void StripSet::Add(const Update& update) {
+  if (!update.motion.empty() || !update.features.empty()) newest_ns = update.received_ns;
   const auto strips_of = [this, &update](std::uint32_t device) -> DeviceStrips* {
     const std::pair key(update.source, device);
     if (devices.count(key) == 0 && devices.size() >= kMaxDevices) return nullptr;

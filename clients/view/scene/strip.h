@@ -12,6 +12,12 @@ namespace footing::scene {
 
 /// How much of the past the sliding strips show.
 inline constexpr std::int64_t kStripNs = 10'000'000'000;
+/// An older value is no longer the present one.
+inline constexpr std::int64_t kCurrentNs = 500'000'000;
+
+/// The instant up to which sliding curves are drawn: now, but where nothing has come since
+/// `newest_ns` for longer than kCurrentNs they stand still, as the scene does.
+std::int64_t ShownTime(std::int64_t newest_ns, std::int64_t now_ns);
 
 /// One curve over the last 10 s.
 class Strip {
@@ -49,6 +55,7 @@ struct DeviceStrips {
 struct StripSet {
   std::map<std::pair<int, std::uint32_t>, DeviceStrips> devices;  ///< By {source, device}.
   std::map<std::string, Strip> phases_rad;                        ///< By rig.
+  std::int64_t newest_ns = 0;                                     ///< When the last values came.
 
   void Add(const Update& update);
 };

@@ -52,7 +52,7 @@ void Tally::Add(const WorldFrame& frame) {
     operator_put_backs_ += Increase(last_.operator_put_backs, now.operator_put_backs);
     distance_m_ += std::max(0.0, now.distance_m - last_.distance_m);
   }
-  // A server started anew counts from 1 again.
+  // A restarted server counts from 1 again.
   frames_published_ += frame.sequence > last_sequence_ && frames_ > 1 && !restarted
                            ? frame.sequence - last_sequence_
                            : 1;

@@ -39,7 +39,7 @@ class Tally {
   /// Published by the server from the first frame to the last, received or not.
   std::uint64_t frames_published() const { return frames_published_; }
   std::vector<stream::Gait> GaitsSeen() const;
-  /// Since the first frame; a server started anew goes on counting.
+  /// Since the first frame; a restarted server goes on counting.
   std::uint64_t falls() const { return falls_; }
   const stream::FailureCounts& failures() const { return failures_; }
   std::uint64_t operator_put_backs() const { return operator_put_backs_; }

@@ -46,7 +46,7 @@ std::string DeviceLine(const stream::DeviceStatus& device) {
   return line;
 }
 
-std::string FootWords(const BodyFoot& foot) {
+std::string FootText(const BodyFoot& foot) {
   if (!foot.valid) return "unknown";
   const double spread_m = 2 * std::sqrt(std::max(0.0, foot.variance_m2.head<2>().maxCoeff()));
   const std::string spread = " +-" + Fixed(100 * spread_m, 1) + " cm";
@@ -62,8 +62,8 @@ std::vector<std::string> BodyLines(const CharacterPose& pose) {
       std::to_string(body.resets) + "   solved in " + Fixed(1e-3 * body.solve_us, 2) + " ms"};
   if (body.calibrated) {
     lines.push_back("  " + Fixed(body.mass_kg, 1) + " kg   COM height " + Fixed(pose.com_m.z(), 2) +
-                    " m   left foot " + FootWords(body.feet[0]) + "   right foot " +
-                    FootWords(body.feet[1]));
+                    " m   left foot " + FootText(body.feet[0]) + "   right foot " +
+                    FootText(body.feet[1]));
   } else {
     lines.push_back("  T-pose " + Fixed(100 * body.calibration_progress, 0) + " %   broken off " +
                     std::to_string(body.calibration_restarts) + " times");
@@ -80,12 +80,12 @@ std::vector<std::string> BodyLines(const CharacterPose& pose) {
 }
 
 /// One line of a log.
-std::string BodyWords(const CharacterPose& pose) {
+std::string BodyText(const CharacterPose& pose) {
   const BodyState& body = *pose.body;
-  std::string words =
-      body.calibrated ? Fixed(body.mass_kg, 1) + " kg  COM " + Fixed(pose.com_m.z(), 2) +
-                            " m  feet " + FootWords(body.feet[0]) + ", " + FootWords(body.feet[1])
-                      : "T-pose " + Fixed(100 * body.calibration_progress, 0) + " %";
+  std::string words = body.calibrated
+                          ? Fixed(body.mass_kg, 1) + " kg  COM " + Fixed(pose.com_m.z(), 2) +
+                                " m  feet " + FootText(body.feet[0]) + ", " + FootText(body.feet[1])
+                          : "T-pose " + Fixed(100 * body.calibration_progress, 0) + " %";
   if (!body.contact_source.empty()) words += "  on " + body.contact_source;
   words += "  hands " + (body.hands_source.empty() ? std::string("none") : body.hands_source);
   if (!body.note.empty()) words += "  (" + body.note + ")";
@@ -231,7 +231,7 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
   std::string line = "t " + Fixed(frame.time_s, 1) + " s";
   for (const CharacterPose& pose : frame.characters) {
     if (pose.body) {
-      line += "  " + BodyWords(pose);
+      line += "  " + BodyText(pose);
       continue;
     }
     line += "  " + GaitTitle(pose.gait.gait) + "  " + Fixed(pose.gait.speed_mps, 2) + "/" +

@@ -17,7 +17,7 @@ bool IsShirt(int r, int g, int b) { return b > r + 35 && g > r + 35 && std::abs(
 bool IsYellow(int r, int g, int b) { return r > b + 50 && g > b + 35 && r >= g; }
 bool IsGrass(int r, int g, int b) { return g > r + 12 && g > b + 25; }
 
-class PersonPictureTest : public PictureFixture<1280, 720, 100> {
+class PersonPictureTest : public PictureFixture {
  protected:
   Image Draw(const PersonWish& wish, const scene::StageOptions& options, const HudOptions& hud,
              const std::string& name) {

@@ -44,11 +44,10 @@ inline double ShareOf(const Image& image, const Is& is, const Region& region = {
 }
 
 /// Pictures off screen. One context for all cases, as one process has one screen.
-template <int width, int height, int scale_percent>
 class PictureFixture : public ::testing::Test {
  protected:
-  static constexpr int kWidth = width;
-  static constexpr int kHeight = height;
+  static constexpr int kWidth = 1280;
+  static constexpr int kHeight = 720;
 
   static void SetUpTestSuite() {
     auto context = OffScreen::Create();
@@ -57,14 +56,13 @@ class PictureFixture : public ::testing::Test {
       return;
     }
     context_ = std::make_unique<OffScreen>(std::move(*context));
-    auto target = Target::Create(kWidth, kHeight, 0);
-    auto screen = Screen::Create(0.01f * scale_percent);
-    if (!target || !screen) {
-      why_ = target ? screen.error().message : target.error().message;
+    auto screen = Screen::Create();
+    if (!screen) {
+      why_ = screen.error().message;
       return;
     }
-    target_ = std::make_unique<Target>(std::move(*target));
     screen_ = std::move(*screen);
+    Resize(kWidth, kHeight);
   }
   static void TearDownTestSuite() {
     screen_.reset();
@@ -73,12 +71,20 @@ class PictureFixture : public ::testing::Test {
   }
   void SetUp() override { ASSERT_NE(screen_, nullptr) << why_; }
 
+  /// The next pictures have that size.
+  static void Resize(int width, int height) {
+    auto target = Target::Create(width, height, 0);
+    ASSERT_TRUE(target) << target.error().message;
+    target_ = std::make_unique<Target>(std::move(*target));
+  }
+
   /// FOOTING_PICTURES=FOLDER keeps the picture as NAME.png, to look at.
   static Image Show(const scene::Picture& picture, const scene::Model& model,
                     const scene::WorldFrame& frame, std::int64_t now_ns, const HudOptions& hud,
                     const std::string& name) {
     target_->Bind();
-    screen_->Draw(picture, model, frame, now_ns, hud, kWidth, kHeight);
+    screen_->Draw({picture, model, frame, now_ns, model, now_ns}, hud, target_->width(),
+                  target_->height());
     Image image = target_->Read();
     if (const char* folder = std::getenv("FOOTING_PICTURES")) {
       EXPECT_TRUE(WritePng(image, std::string(folder) + "/" + name + ".png"));

@@ -22,7 +22,7 @@ double MeanDifference(const Image& a, const Image& b) {
   return sum / static_cast<double>(a.rgb.size());
 }
 
-class PictureTest : public PictureFixture<640, 360, 50> {
+class PictureTest : public PictureFixture {
  protected:
   /// The picture of a model at a time of the made stream, after its camera has settled.
   Image Draw(const scene::Model& model, double time_s, const scene::made::Wish& wish,

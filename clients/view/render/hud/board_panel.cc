@@ -10,13 +10,13 @@ namespace footing::render {
 namespace {
 
 /// One plate seen from above, front up, with the trace of the last 10 s fading away.
-void DrawPlate(const Paint& p, const Box& room, const stream::BoardGeometry& geometry,
+void DrawPlate(const Paint& p, const Box& space, const stream::BoardGeometry& geometry,
                const scene::BoardTrace& board, std::int64_t now_ns) {
   const float s = p.scale;
   const auto wide_m = static_cast<float>(geometry.plate_x_m),
              deep_m = static_cast<float>(geometry.plate_y_m);
-  const float pixels_per_m = std::min(room.width() / wide_m, room.height() / deep_m);
-  const ImVec2 centre((room.low.x + room.high.x) / 2, (room.low.y + room.high.y) / 2);
+  const float pixels_per_m = std::min(space.width() / wide_m, space.height() / deep_m);
+  const ImVec2 centre((space.low.x + space.high.x) / 2, (space.low.y + space.high.y) / 2);
   const ImVec2 half(wide_m / 2 * pixels_per_m, deep_m / 2 * pixels_per_m);
   const auto at = [&](float x_m, float y_m) {
     return ImVec2(centre.x + x_m * pixels_per_m, centre.y - y_m * pixels_per_m);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "clients/view/scene/words.h"
 #include "common/units/units.h"
@@ -9,10 +11,10 @@
 namespace footing::render {
 namespace {
 
-constexpr float kBodyPanelWidth = 300;
-constexpr float kBodyPanelHeight = 316;
+constexpr float kLeastBodyHeight = 276;
+constexpr float kRemarkRow = 20;   // Of what only a high enough panel shows.
 constexpr double kSureM = 0.03;    // Two standard deviations of a foot that stands.
-constexpr double kUnsureM = 0.15;  // Of one that is only guessed.
+constexpr double kUnsureM = 0.15;  // Of one that no sensor sees.
 constexpr ImU32 kDark = IM_COL32(14, 20, 26, 255);
 
 void DrawNumbers(const Paint& p, const Box& box, const scene::BodyState& body) {
@@ -35,7 +37,7 @@ void DrawNumbers(const Paint& p, const Box& box, const scene::BodyState& body) {
   write(2, 1, "solved in", scene::Fixed(1e-3 * body.solve_us, 2) + " ms", colour::kText);
 }
 
-/// One foot: load as a bar, and how well its place is known.
+/// One foot: load as a bar, and the standard deviation of its position.
 void DrawFoot(const Paint& p, const Box& box, const scene::BodyFoot& foot, const char* name,
               ImU32 ink, double weight_n) {
   const float s = p.scale;
@@ -63,7 +65,7 @@ void DrawFoot(const Paint& p, const Box& box, const scene::BodyFoot& foot, const
 void DrawHands(const Paint& p, const Box& box, const scene::BodyState& body) {
   const float s = p.scale;
   p.Write(p.fonts.small, {box.low.x, box.low.y + 3 * s}, colour::kFaint, "hands");
-  float x = box.low.x + 74 * s;
+  float x = box.low.x + std::min(74 * s, box.width() - 186 * s);
   for (std::size_t side = 0; side < 2; ++side) {
     const bool seen = body.hands_seen[side];
     const std::string text =
@@ -74,15 +76,31 @@ void DrawHands(const Paint& p, const Box& box, const scene::BodyState& body) {
   }
 }
 
-}  // namespace
+/// A line and its colour.
+struct Remark {
+  ImU32 ink = 0;
+  std::string text;
+};
 
-float DrawBodyPanel(const Paint& p, ImVec2 at, const scene::CharacterPose& pose,
-                    const scene::Picture& picture) {
+bool HasReference(const scene::CharacterPose& pose, const scene::Picture& picture) {
+  return !picture.ghosts.balls.empty() && pose.body->calibrated;
+}
+
+std::vector<Remark> RemarksOf(const scene::CharacterPose& pose, const scene::Picture& picture) {
+  std::vector<Remark> remarks{
+      {colour::kFaint, "T  T-pose    N  next subject    ?  keys"},
+      {IM_COL32(199, 125, 255, 255),
+       "angular momentum " + scene::Fixed(pose.body->angular_momentum_kgm2ps.norm(), 1) +
+           " kg m\xc2\xb2/s"}};
+  if (HasReference(pose, picture)) {
+    remarks.push_back({IM_COL32(255, 200, 97, 255), "yellow: the simulated body's true pose"});
+  }
+  return remarks;
+}
+
+void DrawHeading(const Paint& p, const Box& in, const scene::CharacterPose& pose) {
   const float s = p.scale;
   const scene::BodyState& body = *pose.body;
-  const bool ghost = !picture.ghosts.balls.empty() && body.calibrated;
-  const float height = (kBodyPanelHeight + (ghost ? 22 : 0)) * s;
-  const Box in = p.Panel({at, {at.x + kBodyPanelWidth * s, at.y + height}});
   const std::string who = body.subject.empty() ? "no subject file" : body.subject;
   p.Write(p.fonts.heading, {in.low.x, in.low.y - 2 * s},
           body.subject.empty() ? colour::kFaint : colour::kText,
@@ -96,6 +114,20 @@ float DrawBodyPanel(const Paint& p, ImVec2 at, const scene::CharacterPose& pose,
                body.calibrated ? "T-pose taken" : "awaiting the T-pose") +
        6 * s;
   if (!pose.valid && body.calibrated) p.Label({x, row}, colour::kBad, kDark, "coasting");
+}
+
+}  // namespace
+
+PanelHeight BodyPanelHeight(const scene::CharacterPose& pose, const scene::Picture& picture) {
+  return {kLeastBodyHeight, kLeastBodyHeight + kRemarkRow * (HasReference(pose, picture) ? 3 : 2)};
+}
+
+void DrawBodyPanel(const Paint& p, const Box& box, const scene::CharacterPose& pose,
+                   const scene::Picture& picture) {
+  const float s = p.scale;
+  const scene::BodyState& body = *pose.body;
+  const Box in = p.Panel(box);
+  DrawHeading(p, in, pose);
   DrawNumbers(p, {{in.low.x, in.low.y + 62 * s}, in.high}, body);
   const double weight_n = KilogramsToNewtons(std::max(body.mass_kg, 30.0));
   DrawFoot(p, {{in.low.x, in.low.y + 148 * s}, in.high}, body.feet[0], "left foot", colour::kAccent,
@@ -103,16 +135,13 @@ float DrawBodyPanel(const Paint& p, ImVec2 at, const scene::CharacterPose& pose,
   DrawFoot(p, {{in.low.x, in.low.y + 184 * s}, in.high}, body.feet[1], "right foot",
            colour::kSecond, weight_n);
   DrawHands(p, {{in.low.x, in.low.y + 224 * s}, in.high}, body);
-  p.Write(p.fonts.small, {in.low.x, in.low.y + 252 * s}, colour::kFaint,
-          "T  T-pose anew     N  next subject     ?  keys");
-  const Eigen::Vector3d& angular = body.angular_momentum_kgm2ps;
-  p.Write(p.fonts.small, {in.low.x, in.low.y + 272 * s}, IM_COL32(199, 125, 255, 255),
-          "angular momentum " + scene::Fixed(angular.norm(), 1) + " kg m\xc2\xb2/s");
-  if (ghost) {
-    p.Write(p.fonts.small, {in.low.x, in.low.y + 292 * s}, IM_COL32(255, 200, 97, 255),
-            "yellow: what the stand-in's body really does");
+  float y = in.low.y + 252 * s;
+  for (const Remark& remark : RemarksOf(pose, picture)) {
+    if (y + 14 * s > in.high.y) break;
+    p.Write(p.fonts.small, {in.low.x, y}, remark.ink,
+            p.Fitting(p.fonts.small, remark.text, in.width()));
+    y += kRemarkRow * s;
   }
-  return at.y + height;
 }
 
 }  // namespace footing::render

@@ -10,9 +10,8 @@
 namespace footing::render {
 namespace {
 
-constexpr float kCharacterPanelWidth = 300;
 constexpr float kCharacterPanelHeight = 196;
-constexpr float kPhaseHeight = 70;
+constexpr float kCharacterPhaseHeight = 70;
 constexpr double kFullSpeedMps = 4;
 constexpr double kFullTurnRad = DegreesToRadians(15);
 constexpr std::int64_t kPhaseStripNs = 4'000'000'000;
@@ -93,8 +92,9 @@ void DrawPhases(const Paint& p, const Box& box, const scene::Model& model,
     x += p.Label({x, y}, now ? ink_of(phase) : colour::kGroove, ink, name) + 5 * s;
   }
   const float top = box.low.y + 47 * s, bottom = box.low.y + 55 * s;
+  const std::int64_t shown_ns = scene::ShownTime(model.playout.newest_ns(), now_ns);
   const auto x_at = [&](std::int64_t time_ns) {
-    const double age = static_cast<double>(now_ns - time_ns) / static_cast<double>(kPhaseStripNs);
+    const double age = static_cast<double>(shown_ns - time_ns) / static_cast<double>(kPhaseStripNs);
     return box.high.x - static_cast<float>(std::clamp(age, 0.0, 1.0)) * box.width();
   };
   for (std::size_t i = 0; i < model.phase_spans.size(); ++i) {
@@ -109,12 +109,17 @@ void DrawPhases(const Paint& p, const Box& box, const scene::Model& model,
 
 }  // namespace
 
-float DrawCharacterPanel(const Paint& p, ImVec2 at, const scene::Model& model,
-                         const scene::CharacterPose& pose, bool phases, std::int64_t now_ns) {
+PanelHeight CharacterPanelHeight(bool phases) {
+  return {kCharacterPanelHeight, kCharacterPanelHeight + (phases ? kCharacterPhaseHeight : 0)};
+}
+
+void DrawCharacterPanel(const Paint& p, const Box& box, const scene::Model& model,
+                        const scene::CharacterPose& pose, std::int64_t now_ns) {
   const float s = p.scale;
   const stream::GaitState& gait = pose.gait;
-  const float height = (kCharacterPanelHeight + (phases ? kPhaseHeight : 0)) * s;
-  const Box in = p.Panel({at, {at.x + kCharacterPanelWidth * s, at.y + height}});
+  const bool phases = box.height() > (kCharacterPanelHeight + kCharacterPhaseHeight - 1) * s;
+  const float height = (kCharacterPanelHeight + (phases ? kCharacterPhaseHeight : 0)) * s;
+  const Box in = p.Panel({box.low, {box.high.x, box.low.y + height}});
   const ImU32 ink = ColourOf(gait.gait);
   p.Write(p.fonts.title, {in.low.x, in.low.y - 8 * s}, ink, scene::GaitTitle(gait.gait));
   DrawTurn(p, {in.high.x - 44 * s, in.low.y + 42 * s}, 38 * s, gait.commanded_turn_rad);
@@ -133,7 +138,6 @@ float DrawCharacterPanel(const Paint& p, ImVec2 at, const scene::Model& model,
   if (phases) {
     DrawPhases(p, {{in.low.x, in.low.y + 178 * s}, {in.high.x, in.high.y}}, model, pose, now_ns);
   }
-  return at.y + height;
 }
 
 }  // namespace footing::render

@@ -8,11 +8,13 @@
 namespace footing::render {
 namespace {
 
-constexpr float kDevicePanelWidth = 292;
+constexpr float kDevicePanelMargins = 28;
+constexpr float kAboveDevices = 8;
 constexpr float kLinkRow = 20;
 constexpr float kDeviceRow = 40;
+constexpr float kShortDeviceRow = 22;
 constexpr float kResponseRow = 52;
-constexpr std::size_t kMaxDevices = 8;
+constexpr std::size_t kMaxListedDevices = 8;
 
 void DrawLink(const Paint& p, const Box& in, float y, const scene::LinkReport& link) {
   const float s = p.scale;
@@ -80,7 +82,8 @@ void DrawBattery(const Paint& p, ImVec2 at, const stream::DeviceStatus& device) 
                         low ? colour::kBad : colour::kGood, s);
 }
 
-void DrawDevice(const Paint& p, const Box& in, float y, const stream::DeviceStatus& device) {
+void DrawDevice(const Paint& p, const Box& in, float y, const stream::DeviceStatus& device,
+                bool second_line) {
   const float s = p.scale;
   p.Dot({in.low.x + 4 * s, y + 9 * s}, 4, ColourOf(device.state));
   std::string role = stream::Name(device.role);
@@ -90,6 +93,7 @@ void DrawDevice(const Paint& p, const Box& in, float y, const stream::DeviceStat
   DrawBattery(p, {in.high.x - 24 * s, y + 4 * s}, device);
   p.WriteRight(p.fonts.small, {in.high.x - 34 * s, y + 1 * s}, colour::kText,
                scene::Fixed(device.report_rate_hz, 0) + " Hz");
+  if (!second_line) return;
   const std::string second =
       device.note.empty() ? device.serial + "  " + stream::Name(device.state) : device.note;
   const float stamp = device.simulated ? 92 * s : 0;
@@ -100,34 +104,61 @@ void DrawDevice(const Paint& p, const Box& in, float y, const stream::DeviceStat
   p.WriteRight(p.fonts.small, {in.high.x, y + 18 * s}, colour::kSecond, "SIMULATED");
 }
 
+/// What of the panel is shown.
+struct Extent {
+  bool response = false;
+  float device_row = kShortDeviceRow;
+  std::size_t devices = 0;
+};
+
+float DeviceRowsHeight(const scene::Model& model, const Extent& extent) {
+  const auto rows = static_cast<float>(model.links.size() + (scene::IsWaiting(model) ? 0 : 1));
+  return kDevicePanelMargins + kLinkRow * rows + (extent.response ? kResponseRow : 0) +
+         (extent.devices > 0 ? kAboveDevices : 0) +
+         extent.device_row * static_cast<float>(extent.devices);
+}
+
+Extent FullExtent(const scene::Model& model) {
+  return {model.last_response.has_value(), kDeviceRow,
+          std::min(model.devices.size(), kMaxListedDevices)};
+}
+
+Extent FittingExtent(const scene::Model& model, float height) {
+  Extent extent = FullExtent(model);
+  if (DeviceRowsHeight(model, extent) > height) extent.response = false;
+  if (DeviceRowsHeight(model, extent) > height) extent.device_row = kShortDeviceRow;
+  while (extent.devices > 0 && DeviceRowsHeight(model, extent) > height) --extent.devices;
+  return extent;
+}
+
 }  // namespace
 
-void DrawDevicePanel(const Paint& p, ImVec2 at, const scene::Model& model, std::int64_t now_ns) {
+PanelHeight DevicePanelHeight(const scene::Model& model) {
+  return {DeviceRowsHeight(model, {}), DeviceRowsHeight(model, FullExtent(model))};
+}
+
+void DrawDevicePanel(const Paint& p, const Box& box, const scene::Model& model,
+                     std::int64_t now_ns) {
   const float s = p.scale;
-  const std::size_t devices = std::min(model.devices.size(), kMaxDevices);
-  const bool data = !scene::IsWaiting(model);
-  const float height = (28 + kLinkRow * static_cast<float>(model.links.size() + (data ? 1 : 0)) +
-                        (model.last_response ? kResponseRow : 0) +
-                        kDeviceRow * static_cast<float>(devices) + (devices > 0 ? 8 : 0)) *
-                       s;
-  const Box in = p.Panel({{at.x - kDevicePanelWidth * s, at.y}, {at.x, at.y + height}});
+  const Extent extent = FittingExtent(model, box.height() / s + 0.5f);
+  const Box in = p.Panel({box.low, {box.high.x, box.low.y + DeviceRowsHeight(model, extent) * s}});
   float y = in.low.y;
   for (const scene::LinkReport& link : model.links) {
     DrawLink(p, in, y, link);
     y += kLinkRow * s;
   }
-  if (data) {
+  if (!scene::IsWaiting(model)) {
     DrawAge(p, in, y, model, now_ns);
     y += kLinkRow * s;
   }
-  if (model.last_response) {
+  if (extent.response) {
     DrawResponse(p, in, y + 4 * s, *model.last_response);
     y += kResponseRow * s;
   }
-  y += 8 * s;
-  for (std::size_t i = 0; i < devices; ++i) {
-    DrawDevice(p, in, y, model.devices[i].status);
-    y += kDeviceRow * s;
+  y += kAboveDevices * s;
+  for (std::size_t i = 0; i < extent.devices; ++i) {
+    DrawDevice(p, in, y, model.devices[i].status, extent.device_row == kDeviceRow);
+    y += extent.device_row * s;
   }
 }
 

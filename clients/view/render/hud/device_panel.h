@@ -2,13 +2,16 @@
 
 #include <cstdint>
 
-#include "clients/view/render/hud/paint.h"
+#include "clients/view/render/hud/hud_layout.h"
 #include "clients/view/scene/model.h"
 
 namespace footing::render {
 
-/// Connections, age of the data, the last response by stage, and every device's health. `at` is the
-/// panel's upper right corner.
-void DrawDevicePanel(const Paint& paint, ImVec2 at, const scene::Model& model, std::int64_t now_ns);
+PanelHeight DevicePanelHeight(const scene::Model& model);
+
+/// Connections, age of the data, the last response by stage, and every device's health. In a low
+/// box without the response, then with one line a device, then with fewer devices.
+void DrawDevicePanel(const Paint& paint, const Box& box, const scene::Model& model,
+                     std::int64_t now_ns);
 
 }  // namespace footing::render

@@ -4,6 +4,7 @@
 #include "clients/view/render/hud/body_panel.h"
 #include "clients/view/render/hud/character_panel.h"
 #include "clients/view/render/hud/device_panel.h"
+#include "clients/view/render/hud/hud_layout.h"
 #include "clients/view/render/hud/labels.h"
 #include "clients/view/render/hud/layout_panel.h"
 #include "clients/view/render/hud/overlay.h"
@@ -13,53 +14,72 @@
 namespace footing::render {
 namespace {
 
-constexpr float kEdge = 18;
-constexpr float kColumnWidth = 300;
-constexpr float kBoardWidth = 292;
-constexpr float kBoardHeight = 236;
+constexpr PanelHeight kBoardPanelHeight{150, 236};
+
+const scene::CharacterPose* FirstCharacter(const HudContent& content) {
+  return content.frame.characters.empty() ? nullptr : &content.frame.characters.front();
+}
+
+bool IsPerson(const scene::CharacterPose* pose) { return pose != nullptr && pose->body; }
+
+HudNeeds NeedsOf(const HudContent& content, const HudOptions& options) {
+  HudNeeds needs;
+  if (options.hidden || scene::IsWaiting(content.model)) return needs;
+  const scene::CharacterPose* pose = FirstCharacter(content);
+  const bool person = IsPerson(pose);
+  if (person) {
+    needs.character = BodyPanelHeight(*pose, content.picture);
+  } else if (pose != nullptr) {
+    needs.character = CharacterPanelHeight(options.phases);
+  }
+  if (!person) needs.strips = StripPanelHeight(content.past.strips);
+  needs.devices = DevicePanelHeight(content.model);
+  if (person || !content.model.boards.empty()) needs.boards = kBoardPanelHeight;
+  return needs;
+}
+
+void DrawColumns(const Paint& p, const HudContent& content, const HudBoxes& boxes) {
+  const scene::CharacterPose* pose = FirstCharacter(content);
+  if (boxes.character && IsPerson(pose)) {
+    DrawBodyPanel(p, *boxes.character, *pose, content.picture);
+  } else if (boxes.character && pose != nullptr) {
+    DrawCharacterPanel(p, *boxes.character, content.past, *pose, content.past_ns);
+  }
+  if (boxes.strips) DrawStripPanel(p, *boxes.strips, content.past.strips, content.past_ns);
+  if (boxes.devices) DrawDevicePanel(p, *boxes.devices, content.model, content.now_ns);
+  if (boxes.boards && IsPerson(pose)) {
+    DrawLayoutPanel(p, *boxes.boards, content.past, *pose, content.past_ns);
+  } else if (boxes.boards) {
+    DrawBoardPanel(p, *boxes.boards, content.past, content.past_ns);
+  }
+}
 
 }  // namespace
 
-void DrawHud(const Paint& p, const scene::Picture& picture, const scene::Model& model,
-             const scene::WorldFrame& frame, std::int64_t now_ns, const HudOptions& options,
-             ImVec2 size) {
-  // A stand-in's data is never shown unstamped, in subject mode either.
-  if (scene::IsSimulated(model)) DrawSimulated(p, size);
-  DrawReplay(p, model, now_ns, size);
+HudBoxes BoxesOf(const HudContent& content, const HudOptions& options, ImVec2 size, float scale) {
+  return LayOut(size, scale, NeedsOf(content, options));
+}
+
+void DrawHud(const Paint& p, const HudContent& content, const HudOptions& options, ImVec2 size) {
+  const scene::Model& model = content.model;
+  const HudBoxes boxes = BoxesOf(content, options, size, p.scale);
+  // Simulated input is stamped at all times, in subject mode too.
+  if (scene::IsSimulated(model)) DrawSimulated(p, boxes.stamp);
+  Box notes = boxes.middle;
+  DrawReplay(p, model, content.now_ns, notes);
   if (options.hidden) return;
-  const float s = p.scale, edge = kEdge * s;
   if (scene::IsWaiting(model)) {
-    DrawWaiting(p, model, size);
+    DrawWaiting(p, model, boxes.middle);
   } else {
-    float y = edge;
-    const bool person = !frame.characters.empty() && frame.characters.front().body;
-    if (person) {
-      DrawLabels(p, picture, size);
-      y = DrawBodyPanel(p, {edge, edge}, frame.characters.front(), picture) + 8 * s;
-      DrawTPosePanel(p, model, frame.characters.front(), size);
-    } else if (!frame.characters.empty()) {
-      y = DrawCharacterPanel(p, {edge, edge}, model, frame.characters.front(), options.phases,
-                             now_ns) +
-          8 * s;
-    }
-    if (!person) {
-      DrawStripPanel(p, {{edge, y}, {edge + kColumnWidth * s, size.y - edge}}, model.strips,
-                     now_ns);
-    }
-    DrawDevicePanel(p, {size.x - edge, edge}, model, now_ns);
-    const Box boards{{size.x - edge - kBoardWidth * s, size.y - edge - kBoardHeight * s},
-                     {size.x - edge, size.y - edge}};
-    if (person) {
-      DrawLayoutPanel(p, boards, model, frame.characters.front(), now_ns);
-    } else {
-      DrawBoardPanel(p, boards, model, now_ns);
-    }
-    DrawWaitingLines(p, model, {edge + (kColumnWidth + 12) * s, size.y - edge});
-    DrawNote(p, model, now_ns, size);
+    const scene::CharacterPose* pose = FirstCharacter(content);
+    if (IsPerson(pose)) DrawLabels(p, content.picture, boxes, size);
+    DrawColumns(p, content, boxes);
+    DrawNote(p, model, content.now_ns, notes);
+    Box messages = boxes.middle;
+    DrawWaitingLines(p, model, messages);
+    if (IsPerson(pose)) DrawTPosePanel(p, model, *pose, messages);
   }
-  if (options.frozen) {
-    p.Label({size.x / 2 - 30 * s, 128 * s}, colour::kText, IM_COL32(20, 20, 20, 255), "frozen");
-  }
+  if (options.frozen) DrawFrozen(p, notes);
   if (options.keys) DrawKeys(p, size);
 }
 

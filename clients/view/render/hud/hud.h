@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "clients/view/render/hud/paint.h"
+#include "clients/view/render/hud/hud_layout.h"
 #include "clients/view/scene/model.h"
 #include "clients/view/scene/stage.h"
 
@@ -16,14 +16,27 @@ struct HudOptions {
   bool forces = false;
   bool overlay_reference = false;
   bool frozen = false;
-  bool replay_asked = false;  ///< Key presses not yet carried out.
+  bool replay_asked = false;  ///< Key presses that wait for their action.
   bool t_pose_asked = false;
   bool next_subject_asked = false;
 };
 
+/// What the panels show.
+struct HudContent {
+  const scene::Picture& picture;
+  const scene::Model& model;
+  const scene::WorldFrame& frame;
+  std::int64_t now_ns = 0;
+  /// What slides with time (strips, traces, phase bands): the model and the time at which the
+  /// scene was frozen, else those of now.
+  const scene::Model& past;
+  std::int64_t past_ns = 0;
+};
+
+/// Where the panels go that this content has.
+HudBoxes BoxesOf(const HudContent& content, const HudOptions& options, ImVec2 size, float scale);
+
 /// All panels over the picture.
-void DrawHud(const Paint& paint, const scene::Picture& picture, const scene::Model& model,
-             const scene::WorldFrame& frame, std::int64_t now_ns, const HudOptions& options,
-             ImVec2 size);
+void DrawHud(const Paint& paint, const HudContent& content, const HudOptions& options, ImVec2 size);
 
 }  // namespace footing::render

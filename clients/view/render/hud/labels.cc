@@ -30,9 +30,12 @@ bool Overlap(const Box& a, const Box& b) {
 
 }  // namespace
 
-void DrawLabels(const Paint& p, const scene::Picture& picture, ImVec2 size) {
+void DrawLabels(const Paint& p, const scene::Picture& picture, const HudBoxes& boxes, ImVec2 size) {
   const float s = p.scale, height = 20 * s;
-  std::vector<Box> taken;
+  std::vector<Box> panels, taken;
+  for (const auto& panel : {boxes.character, boxes.strips, boxes.devices, boxes.boards}) {
+    if (panel) panels.push_back(*panel);
+  }
   for (const scene::Label& label : picture.labels) {
     const auto at = OnScreen(picture.camera, label.at_m, size);
     if (!at) continue;
@@ -43,6 +46,7 @@ void DrawLabels(const Paint& p, const scene::Picture& picture, ImVec2 size) {
       box.low.y -= height + 2 * s;
       box.high.y -= height + 2 * s;
     }
+    if (std::any_of(panels.begin(), panels.end(), meets)) continue;
     taken.push_back(box);
     p.list->AddRectFilled(box.low, box.high, IM_COL32(14, 20, 27, 200), 6 * s);
     p.Write(p.fonts.small, {box.low.x + 6 * s, box.low.y + 2.5f * s}, Ink(label.colour),

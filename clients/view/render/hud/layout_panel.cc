@@ -32,7 +32,7 @@ std::array<Eigen::Vector2d, 4> CornersOf(const scene::PlacedBoard& board) {
   return {board.InWorld(-x, -y), board.InWorld(x, -y), board.InWorld(x, y), board.InWorld(-x, y)};
 }
 
-Plan FitPlan(const std::array<scene::PlacedBoard, 2>& boards, const Box& room) {
+Plan FitPlan(const std::array<scene::PlacedBoard, 2>& boards, const Box& space) {
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
   for (const scene::PlacedBoard& board : boards) {
     for (const Eigen::Vector2d& corner : CornersOf(board)) {
@@ -41,11 +41,11 @@ Plan FitPlan(const std::array<scene::PlacedBoard, 2>& boards, const Box& room) {
     }
   }
   Plan plan;
-  plan.centre = {(room.low.x + room.high.x) / 2, (room.low.y + room.high.y) / 2};
+  plan.centre = {(space.low.x + space.high.x) / 2, (space.low.y + space.high.y) / 2};
   plan.middle_m = 0.5 * (low + high);
   const Eigen::Vector2d span = high - low + Eigen::Vector2d::Constant(kMarginM);
-  plan.pixels_per_m = std::min(static_cast<double>(room.width()) / std::max(span.y(), 0.1),
-                               static_cast<double>(room.height()) / std::max(span.x(), 0.1));
+  plan.pixels_per_m = std::min(static_cast<double>(space.width()) / std::max(span.y(), 0.1),
+                               static_cast<double>(space.height()) / std::max(span.x(), 0.1));
   return plan;
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "clients/view/scene/words.h"
 #include "common/units/units.h"
@@ -12,22 +15,55 @@ namespace {
 constexpr double kNoteS = 3;
 constexpr double kNoteFadeS = 1;
 
+/// A rounded banner of as many lines as the text needs, from the top of `space`.
+void DrawBanner(const Paint& p, Box& space, const std::string& text, ImFont* font, ImU32 fill,
+                ImU32 ink) {
+  const float s = p.scale, side = 16 * s, line_height = font->FontSize + 3 * s;
+  const auto lines = p.Wrapped(font, text, space.width() - 2 * side);
+  float width = 0;
+  for (const std::string& line : lines) width = std::max(width, p.WidthOf(font, line));
+  const float middle = (space.low.x + space.high.x) / 2;
+  const float height = line_height * static_cast<float>(lines.size()) + 10 * s;
+  const ImVec2 low(middle - width / 2 - side, space.low.y);
+  p.list->AddRectFilled(low, {middle + width / 2 + side, low.y + height}, fill, 14 * s);
+  float y = low.y + 5 * s;
+  for (const std::string& line : lines) {
+    p.WriteCentred(font, {middle, y}, ink, line);
+    y += line_height;
+  }
+  space.low.y += height + 6 * s;
+}
+
+/// What each connection waits for, in lines of at most that width, the first one apart.
+std::vector<std::vector<std::string>> WaitingTexts(const Paint& p, const scene::Model& model,
+                                                   ImFont* font, float width) {
+  std::vector<std::vector<std::string>> texts;
+  for (const scene::LinkReport& link : model.links) {
+    std::vector<std::string> lines;
+    for (const std::string& line : scene::WaitingLines(link)) {
+      for (std::string& part : p.Wrapped(font, line, width)) lines.push_back(std::move(part));
+    }
+    if (!lines.empty()) texts.push_back(std::move(lines));
+  }
+  return texts;
+}
+
 }  // namespace
 
-void DrawWaiting(const Paint& p, const scene::Model& model, ImVec2 size) {
-  const float s = p.scale;
-  std::vector<std::vector<std::string>> texts;
-  float width = 380 * s;
-  for (const scene::LinkReport& link : model.links) {
-    texts.push_back(scene::WaitingLines(link));
-    for (const std::string& line : texts.back()) {
-      width = std::max(width, p.WidthOf(p.fonts.text, line) + 60 * s);
+void DrawWaiting(const Paint& p, const scene::Model& model, const Box& box) {
+  const float s = p.scale, side = 26 * s;
+  const auto texts = WaitingTexts(p, model, p.fonts.text, box.width() - 2 * side);
+  float width = std::min(380 * s, box.width()), height = 70 * s;
+  for (const auto& lines : texts) {
+    for (const std::string& line : lines) {
+      width = std::max(width, p.WidthOf(p.fonts.text, line) + 2 * side);
     }
+    height += (14 + 22 * static_cast<float>(lines.size())) * s;
   }
-  const float height = (84 + 58 * static_cast<float>(texts.size())) * s;
-  const ImVec2 low((size.x - width) / 2, size.y * 0.40f - height / 2);
+  const ImVec2 low((box.low.x + box.high.x - width) / 2,
+                   std::max(box.low.y, box.low.y + 0.38f * (box.height() - height)));
   const Box in = p.Panel({low, {low.x + width, low.y + height}});
-  const float left = in.low.x + 12 * s;
+  const float left = low.x + side;
   p.Write(p.fonts.heading, {left, in.low.y + 6 * s}, colour::kText, "Nothing to show yet");
   float y = in.low.y + 48 * s;
   for (const auto& lines : texts) {
@@ -39,16 +75,19 @@ void DrawWaiting(const Paint& p, const scene::Model& model, ImVec2 size) {
   }
 }
 
-void DrawWaitingLines(const Paint& p, const scene::Model& model, ImVec2 at) {
-  float y = at.y - 22 * p.scale;
-  for (const scene::LinkReport& link : model.links) {
-    const auto lines = scene::WaitingLines(link);
-    if (lines.empty()) continue;
-    const std::string text = lines[0] + "   " + lines[1];
-    const float s = p.scale, width = p.WidthOf(p.fonts.small, text) + 20 * s;
-    p.list->AddRectFilled({at.x, y}, {at.x + width, y + 22 * s}, colour::kPanel, 8 * s);
-    p.Write(p.fonts.small, {at.x + 10 * s, y + 4 * s}, colour::kWarning, text);
-    y -= 26 * s;
+void DrawWaitingLines(const Paint& p, const scene::Model& model, Box& space) {
+  const float s = p.scale, line_height = 17 * s;
+  for (const auto& lines : WaitingTexts(p, model, p.fonts.small, space.width() - 20 * s)) {
+    float width = 0;
+    for (const std::string& line : lines) width = std::max(width, p.WidthOf(p.fonts.small, line));
+    const float height = line_height * static_cast<float>(lines.size()) + 6 * s;
+    const ImVec2 low(space.low.x, space.high.y - height);
+    p.list->AddRectFilled(low, {low.x + width + 20 * s, space.high.y}, colour::kPanel, 8 * s);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      p.Write(p.fonts.small, {low.x + 10 * s, low.y + 3 * s + line_height * static_cast<float>(i)},
+              colour::kWarning, lines[i]);
+    }
+    space.high.y -= height + 6 * s;
   }
 }
 
@@ -57,12 +96,12 @@ void DrawKeys(const Paint& p, ImVec2 size) {
       {"?", "show or hide this list"},
       {"F", "force arrows at the feet"},
       {"P", "states of the gait controller"},
-      {"R", "the last fall again, in slow motion"},
-      {"T", "take the T-pose anew"},
+      {"R", "replay the last fall in slow motion"},
+      {"T", "take the T-pose again"},
       {"N", "the next subject"},
       {"O", "the reference beside the body, or over it"},
       {"space", "freeze the picture"},
-      {"Esc, Q", "leave"},
+      {"Esc, Q", "quit"},
   }};
   const float s = p.scale, width = 340 * s;
   const float height = (70 + 26 * static_cast<float>(kKeys.size())) * s;
@@ -77,38 +116,30 @@ void DrawKeys(const Paint& p, ImVec2 size) {
   }
 }
 
-void DrawSimulated(const Paint& p, ImVec2 size) {
-  const float s = p.scale;
-  const char* text = "SIMULATED INPUT";
-  const float width = p.WidthOf(p.fonts.strong, text) + 32 * s;
-  const ImVec2 low((size.x - width) / 2, 20 * s), high((size.x + width) / 2, 48 * s);
-  p.list->AddRectFilled(low, high, colour::kSecond, 14 * s);
-  p.WriteCentred(p.fonts.strong, {size.x / 2, low.y + 5 * s}, IM_COL32(40, 26, 0, 255), text);
+void DrawSimulated(const Paint& p, const Box& row) {
+  Box space = row;
+  DrawBanner(p, space, "SIMULATED INPUT", p.fonts.strong, colour::kSecond,
+             IM_COL32(40, 26, 0, 255));
 }
 
-void DrawReplay(const Paint& p, const scene::Model& model, std::int64_t now_ns, ImVec2 size) {
+void DrawReplay(const Paint& p, const scene::Model& model, std::int64_t now_ns, Box& space) {
   if (!model.replay.At(now_ns)) return;
-  const float s = p.scale;
-  const std::string text = scene::ReplayLine(model.replay.FromFallS(now_ns));
-  const float width = p.WidthOf(p.fonts.strong, text) + 32 * s;
-  const ImVec2 low((size.x - width) / 2, 92 * s), high((size.x + width) / 2, 120 * s);
-  p.list->AddRectFilled(low, high, colour::kAccent, 14 * s);
-  p.WriteCentred(p.fonts.strong, {size.x / 2, low.y + 5 * s}, IM_COL32(20, 20, 20, 255), text);
+  DrawBanner(p, space, scene::ReplayLine(model.replay.FromFallS(now_ns)), p.fonts.strong,
+             colour::kAccent, IM_COL32(20, 20, 20, 255));
 }
 
-void DrawNote(const Paint& p, const scene::Model& model, std::int64_t now_ns, ImVec2 size) {
+void DrawNote(const Paint& p, const scene::Model& model, std::int64_t now_ns, Box& space) {
   if (!model.last_note) return;
   const double age_s = NanosecondsToSeconds(now_ns - model.last_note_ns);
   if (age_s > kNoteS) return;
   const auto opacity = static_cast<float>(std::clamp((kNoteS - age_s) / kNoteFadeS, 0.0, 1.0));
-  const float s = p.scale;
-  const std::string& text = model.last_note->text;
-  const float width = p.WidthOf(p.fonts.text, text) + 32 * s;
-  const ImVec2 low((size.x - width) / 2, 58 * s), high((size.x + width) / 2, 86 * s);
-  p.list->AddRectFilled(low, high, Faded(colour::kPanel, 0.7f * opacity), 14 * s);
   const bool fall = model.last_note->kind == scene::NoteKind::kFall;
-  p.WriteCentred(p.fonts.text, {size.x / 2, low.y + 5 * s},
-                 Faded(fall ? colour::kBad : colour::kText, opacity), text);
+  DrawBanner(p, space, model.last_note->text, p.fonts.text, Faded(colour::kPanel, 0.7f * opacity),
+             Faded(fall ? colour::kBad : colour::kText, opacity));
+}
+
+void DrawFrozen(const Paint& p, Box& space) {
+  DrawBanner(p, space, "frozen", p.fonts.small, colour::kText, IM_COL32(20, 20, 20, 255));
 }
 
 }  // namespace footing::render

@@ -5,16 +5,20 @@
 namespace footing::render {
 
 /// What the viewer waits for and how to start it; shown until something comes.
-void DrawWaiting(const Paint& paint, const scene::Model& model, ImVec2 size);
-/// One small line for each connection that is not live; `at` is the lower left corner.
-void DrawWaitingLines(const Paint& paint, const scene::Model& model, ImVec2 at);
+void DrawWaiting(const Paint& paint, const scene::Model& model, const Box& box);
+/// A few small lines for each connection that is not live, from the bottom of `space` upwards;
+/// takes away from `space` what they fill.
+void DrawWaitingLines(const Paint& paint, const scene::Model& model, Box& space);
 /// The list of keys.
 void DrawKeys(const Paint& paint, ImVec2 size);
-/// "SIMULATED" in the top middle.
-void DrawSimulated(const Paint& paint, ImVec2 size);
-/// Which moment of the last fall is shown again; nothing while none is.
-void DrawReplay(const Paint& paint, const scene::Model& model, std::int64_t now_ns, ImVec2 size);
+/// "SIMULATED INPUT" in the middle of a row.
+void DrawSimulated(const Paint& paint, const Box& row);
+/// Which moment of the last fall is shown again; nothing while none is. This and what follows is a
+/// banner from the top of `space`, and takes away from `space` what it fills.
+void DrawReplay(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
 /// The last event, fading after 3 s.
-void DrawNote(const Paint& paint, const scene::Model& model, std::int64_t now_ns, ImVec2 size);
+void DrawNote(const Paint& paint, const scene::Model& model, std::int64_t now_ns, Box& space);
+/// That the picture is frozen.
+void DrawFrozen(const Paint& paint, Box& space);
 
 }  // namespace footing::render

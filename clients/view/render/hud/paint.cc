@@ -41,6 +41,26 @@ std::string Paint::Fitting(ImFont* font, const std::string& text, float width) c
   return cut + "...";
 }
 
+std::vector<std::string> Paint::Wrapped(ImFont* font, const std::string& text, float width) const {
+  std::vector<std::string> lines;
+  std::string line;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    at = end + 1;
+    if (word.empty()) continue;
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (line.empty() || WidthOf(font, longer) <= width) {
+      line = longer;
+      continue;
+    }
+    lines.push_back(Fitting(font, line, width));
+    line = word;
+  }
+  if (!line.empty()) lines.push_back(Fitting(font, line, width));
+  return lines;
+}
+
 float Paint::Label(ImVec2 at, ImU32 fill, ImU32 letters, std::string_view text) const {
   const float side = 7 * scale, above = 2.5f * scale;
   const float width = WidthOf(fonts.small, text) + 2 * side;

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "clients/view/render/hud/theme.h"
 
@@ -18,8 +19,8 @@ struct Box {
   float height() const { return high.y - low.y; }
 };
 
-/// Draws on one list with one set of letters. All lengths below are in units of a picture 720
-/// units high; `scale` turns them into pixels.
+/// Draws on one list with one set of letters. Lengths are in units (HudScale); `scale` turns them
+/// into pixels.
 struct Paint {
   ImDrawList* list = nullptr;
   Fonts fonts;
@@ -35,6 +36,8 @@ struct Paint {
   float WidthOf(ImFont* font, std::string_view text) const;
   /// The text cut to fit, with an ellipsis.
   std::string Fitting(ImFont* font, const std::string& text, float width) const;
+  /// The text in lines of at most that width, broken at blanks.
+  std::vector<std::string> Wrapped(ImFont* font, const std::string& text, float width) const;
   /// A filled rounded label; returns its width.
   float Label(ImVec2 at, ImU32 fill, ImU32 letters, std::string_view text) const;
   /// A groove with a filled share in [0, 1].

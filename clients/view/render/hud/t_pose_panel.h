@@ -5,9 +5,9 @@
 
 namespace footing::render {
 
-/// The T-pose wizard: what to do in words, a ring that fills in five seconds. Once the pose is
-/// taken only what is wrong is told.
+/// The T-pose wizard at the bottom of `space`: what to do, and a ring that fills in five seconds.
+/// Once the pose is taken, only what is wrong.
 void DrawTPosePanel(const Paint& paint, const scene::Model& model, const scene::CharacterPose& pose,
-                    ImVec2 size);
+                    const Box& space);
 
 }  // namespace footing::render

@@ -27,8 +27,8 @@ ImFont* Load(const char* path, float pixels) {
 }  // namespace
 
 Fonts LoadFonts(float scale) {
-  return {Load(kPlain, 12.5f * scale), Load(kPlain, 15 * scale), Load(kBold, 15 * scale),
-          Load(kBold, 21 * scale), Load(kBold, 40 * scale)};
+  return {Load(kPlain, 10.5f * scale), Load(kPlain, 12.5f * scale), Load(kPlain, 15 * scale),
+          Load(kBold, 15 * scale),     Load(kBold, 21 * scale),     Load(kBold, 40 * scale)};
 }
 
 ImU32 ColourOf(stream::Gait gait) {

@@ -9,6 +9,7 @@ namespace footing::render {
 
 /// Letters, in pixels of the picture.
 struct Fonts {
+  ImFont* tiny = nullptr;  ///< Of axes.
   ImFont* small = nullptr;
   ImFont* text = nullptr;
   ImFont* strong = nullptr;

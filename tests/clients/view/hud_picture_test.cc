@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/clients/view/made_person.h"
+#include "tests/clients/view/made_stream.h"
+#include "tests/clients/view/picture_fixture.h"
+
+// The panels at several sizes of the picture: none draws outside its own box.
+namespace footing::render {
+namespace {
+
+struct Size {
+  int width = 0, height = 0;
+};
+constexpr Size kPictureSizes[] = {{640, 400}, {1280, 720}, {2560, 1440}};
+
+std::string SizedName(const std::string& name, const Size& size) {
+  return name + "_" + std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+class HudPictureTest : public PictureFixture {
+ protected:
+  void TearDown() override { Resize(kWidth, kHeight); }
+
+  /// Pixels that the panels change outside of every box. The stamp and the middle count as boxes.
+  static int Strays(const scene::Picture& picture, const scene::Model& model,
+                    const scene::WorldFrame& frame, std::int64_t now_ns, const Size& size,
+                    const std::string& name) {
+    Resize(size.width, size.height);
+    HudOptions subject;
+    subject.hidden = true;
+    const Image with = Show(picture, model, frame, now_ns, {}, SizedName(name, size));
+    const Image without =
+        Show(picture, model, frame, now_ns, subject, SizedName(name + "_bare", size));
+    const ImVec2 pixels(static_cast<float>(size.width), static_cast<float>(size.height));
+    const HudBoxes boxes =
+        BoxesOf({picture, model, frame, now_ns, model, now_ns}, {}, pixels, HudScale(pixels, 1));
+    std::vector<Box> all{boxes.stamp, boxes.middle};
+    for (const auto& box : {boxes.character, boxes.strips, boxes.devices, boxes.boards}) {
+      if (box) all.push_back(*box);
+    }
+    int strays = 0;
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        const auto i = static_cast<std::size_t>(3 * (y * size.width + x));
+        if (std::abs(with.rgb[i] - without.rgb[i]) <= 2) continue;
+        strays += std::none_of(all.begin(), all.end(), [x, y](const Box& box) {
+          return x >= box.low.x - 2 && x < box.high.x + 2 && y >= box.low.y - 2 &&
+                 y < box.high.y + 2;
+        });
+      }
+    }
+    return strays;
+  }
+};
+
+TEST_F(HudPictureTest, ThePanelsOfTheBirdStayInTheirBoxesAtEverySize) {
+  const scene::made::Wish wish;
+  const scene::Model model = scene::made::ModelAfter(12, wish);
+  scene::Stage stage;
+  const scene::WorldFrame frame = scene::made::TickAt(12, wish).frame.value();
+  const scene::Picture picture = stage.Advance(model, frame, scene::made::ClockAt(12), 0.01, {});
+  for (const Size& size : kPictureSizes) {
+    EXPECT_EQ(Strays(picture, model, frame, scene::made::ClockAt(12), size, "bird"), 0)
+        << size.width;
+  }
+}
+
+TEST_F(HudPictureTest, TheTPosePromptStaysOutOfThePanelsHoweverLongItIs) {
+  scene::made::PersonWish wish;
+  wish.calibrated = false;
+  scene::Model model = scene::made::PersonModelAfter(2, wish);
+  scene::WorldFrame frame = scene::made::PersonTickAt(2, wish).frame.value();
+  frame.characters.front().body->note =
+      "Step onto both boards, one foot on each, raise both arms to the side up to the shoulders, "
+      "and then stand still";
+  scene::Stage stage;
+  const scene::Picture picture = stage.Advance(model, frame, scene::made::ClockAt(2), 0.01, {});
+  for (const Size& size : kPictureSizes) {
+    EXPECT_EQ(Strays(picture, model, frame, scene::made::ClockAt(2), size, "t_pose"), 0)
+        << size.width;
+  }
+}
+
+TEST_F(HudPictureTest, ThePanelsOfAPersonStayInTheirBoxesAtEverySize) {
+  const scene::made::PersonWish wish;
+  const scene::Model model = scene::made::PersonModelAfter(2, wish);
+  const scene::WorldFrame frame = scene::made::PersonTickAt(2, wish).frame.value();
+  scene::Stage stage;
+  const scene::Picture picture = stage.Advance(model, frame, scene::made::ClockAt(2), 0.01, {});
+  for (const Size& size : kPictureSizes) {
+    EXPECT_EQ(Strays(picture, model, frame, scene::made::ClockAt(2), size, "person"), 0)
+        << size.width;
+  }
+}
+
+TEST_F(HudPictureTest, StripsHaveLabelsBesideAndUnderThem) {
+  const scene::made::Wish wish;
+  const scene::Model model = scene::made::ModelAfter(12, wish);
+  const scene::WorldFrame frame = scene::made::TickAt(12, wish).frame.value();
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+  const Image image = Show(picture, model, frame, now_ns, {}, "axes");
+  const HudBoxes boxes =
+      BoxesOf({picture, model, frame, now_ns, model, now_ns}, {}, {kWidth, kHeight}, 1);
+  ASSERT_TRUE(boxes.strips);
+  const Box& strips = *boxes.strips;
+  const auto letters = [](int r, int g, int b) { return r > 120 && g > 120 && b > 120; };
+  const auto share = [&](float left, float right, float top, float bottom) {
+    return ShareOf(image, letters,
+                   {left / kWidth, right / kWidth, top / kHeight, bottom / kHeight});
+  };
+  // Left of the curves, 14 units of margin and 30 of labels; the seconds in the lowest row.
+  EXPECT_GT(share(strips.low.x + 14, strips.low.x + 42, strips.low.y + 40, strips.high.y - 30),
+            0.01);
+  EXPECT_GT(share(strips.low.x + 44, strips.high.x - 14, strips.high.y - 26, strips.high.y - 13),
+            0.01);
+}
+
+}  // namespace
+}  // namespace footing::render
