@@ -4,6 +4,7 @@
 #include "clients/stream/boards_command.h"
 #include "clients/stream/dialer.h"
 #include "clients/stream/plan.h"
+#include "clients/stream/samples.h"
 #include "common/cli/cli.h"
 #include "common/log/log.h"
 
@@ -43,13 +44,14 @@ int main(int argc, char** argv) {
   auto app = cli::NewApp(
       "footing-stream", "Simulates devices at the level of raw HID reports, over a socket.",
       "  footing-stream user --script demo --interface wrist\n"
+      "  footing-stream sample .     # writes the files that the examples below read\n"
       "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
-      "  footing-stream corners --left board.csv --link poor --seconds 60\n"
+      "  footing-stream corners --left corners.csv --link poor --seconds 60\n"
       "  footing-stream boards --motion demo --hands move\n"
       "  footing-stream boards --motion demo --hands wiimote --lose-hand left "
       "--lose-from-s 12 --lose-for-s 2\n"
-      "  footing-stream boards --motion 14_14.amc --skeleton 14.asf --place-boards\n"
-      "  footing-stream insoles --motion walk.amc --skeleton walk.asf --hands move\n");
+      "  footing-stream boards --motion clip.bvh --place-boards\n"
+      "  footing-stream insoles --motion clip.bvh --hands move\n");
   stream_client::Common common;
   bool quiet = false;
   app->add_option("--to", common.to,
@@ -85,6 +87,10 @@ int main(int argc, char** argv) {
   auto* boards = stream_client::AddBoardsCommand(*app, under);
   stream_client::InsolesOptions worn;
   auto* insoles = stream_client::AddInsolesCommand(*app, worn);
+  std::string sample_folder = ".";
+  auto* sample = app->add_subcommand(
+      "sample", "Write small sample files for the examples of every program, and end");
+  sample->add_option("FOLDER", sample_folder, "Folder to write into (default: this one)");
   auto* replay = app->add_subcommand("replay", "Not built yet")->group("");
   replay->fallthrough(false)->prefix_command();
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
@@ -93,6 +99,10 @@ int main(int argc, char** argv) {
   if (*replay) {
     return cli::Report(
         UsageError("replay is not built; there are: user, accel, corners, boards, insoles"));
+  }
+  if (*sample) {
+    const auto written = stream_client::WriteSampleFiles(sample_folder);
+    return written ? 0 : cli::Report(written.error());
   }
   if (*user) return Run(stream_client::PlanUser(script, interface, common, ports), common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);

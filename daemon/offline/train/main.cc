@@ -16,8 +16,8 @@ int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
       "footing-train", "Trains the models that the pose engine runs.",
       "  footing-train cascade --data sway.csv --inputs 20 --out sway.fmodel --seed 1 --json\n"
-      "  footing-train cascade --data sway.csv --inputs 20 --out sway.fmodel \\\n"
-      "                        --feedback c2,c1,c0 --feedback other --noise 0.01\n"
+      "  footing-train cascade --data sway.csv --inputs 20 --out noisy.fmodel \\\n"
+      "                        --feedback x2,x1,x0 --feedback x3 --noise 0.01\n"
       "  footing-train com --motions mocap/ --exclude 14 --out com.fmodel --json\n"
       "  footing-train basis --motions mocap/ --out basis.fmodel\n"
       "  footing-train pose --motions mocap/ --exclude 14 --out pose.fmodel\n"

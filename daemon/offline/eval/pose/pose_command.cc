@@ -246,7 +246,7 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
   AddFlags(*command, *flags);
   command->footer(
       "Examples:\n"
-      "  footing-eval pose --motion 14_14.amc --skeleton 14.asf --model pose.fmodel --json\n"
+      "  footing-eval pose --motion clip.bvh --json\n"
       "  footing-eval pose --motion clip.bvh --loop-minutes 5 --activities labels.csv\n"
       "  footing-eval pose --motion squats.trc --still static.trc --boards forces "
       "--forces squats_grf.mot --mass-kg 60");

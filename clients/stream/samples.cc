@@ -1,0 +1,151 @@
+#include "clients/stream/samples.h"
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "clients/stream/script.h"
+#include "common/units/units.h"
+#include "common/virtual/choreography/legs.h"
+#include "common/virtual/choreography/perform.h"
+#include "common/virtual/choreography/posture.h"
+#include "common/virtual/motion/bvh.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/sensors/board_cells.h"
+#include "common/virtual/wrists/accelerometer.h"
+
+namespace footing::stream_client {
+namespace {
+
+constexpr double kSampleHeightM = 1.75;
+constexpr double kSampleMassKg = 70;
+constexpr double kSampleCornerRateHz = 60;
+constexpr double kSampleCornerSeconds = 30;
+constexpr double kSampleSwayM = 0.004;
+constexpr int kSampleSwayInputs = 20;
+constexpr int kSampleSwayRows = 600;
+
+/// A T-pose, a squat with raised arms, and both arms down: 12 s.
+constexpr const char* kSampleClip = R"({"sway_mm": 2, "keys": [
+  {"seconds": 6},
+  {"seconds": 1.2, "both_raise_deg": -75, "both_elbow_deg": 10},
+  {"seconds": 1.2, "crouch_m": 0.2, "bow_deg": 24, "both_front_deg": 70, "both_raise_deg": -10},
+  {"seconds": 0.6},
+  {"seconds": 1.2, "crouch_m": 0, "bow_deg": 0, "both_front_deg": 0, "both_raise_deg": -75},
+  {"seconds": 1.8}]})";
+constexpr const char* kSampleLabels =
+    "begin_s,end_s,activity\n0,6,T-pose\n7.2,10.2,squat\n10.2,12,standing\n";
+
+std::string SampleSubject(const char* code, double height_m, double mass_kg) {
+  std::ostringstream text;
+  text << "{\"code\": \"" << code << "\", \"height_m\": " << height_m
+       << ", \"mass_kg\": " << mass_kg << "}\n";
+  return text.str();
+}
+
+/// The accelerations that both wrists of the user of the script "demo" feel.
+Result<std::array<std::string, 2>> SampleAccelerations() {
+  const auto script = ScriptNamed("demo");
+  if (!script) return script.error();
+  constexpr double kBlendS = 0.15;
+  const wrists::HandMotion motion(*script, wrists::WristShape(), kBlendS);
+  std::array<std::ostringstream, 2> texts;
+  for (auto& text : texts) text << "ax,ay,az\n";
+  for (const wrists::TimedReading& reading : wrists::Record(motion, {}, 1)) {
+    const Eigen::Vector3d* forces[] = {&reading.left.specific_force_mps2,
+                                       &reading.right.specific_force_mps2};
+    for (std::size_t side = 0; side < 2; ++side) {
+      texts[side] << forces[side]->x() << "," << forces[side]->y() << "," << forces[side]->z()
+                  << "\n";
+    }
+  }
+  return std::array{texts[0].str(), texts[1].str()};
+}
+
+std::string SampleCorners() {
+  std::ostringstream text;
+  text << "time_s,tl_kg,tr_kg,bl_kg,br_kg\n";
+  noise::Random random(1);
+  for (int i = 0; i < static_cast<int>(kSampleCornerSeconds * kSampleCornerRateHz); ++i) {
+    const double t_s = i / kSampleCornerRateHz;
+    virtual_sensors::FootForce person;
+    person.load_n = KilogramsToNewtons(kSampleMassKg);
+    person.cop_m = choreography::Sway(kSampleSwayM, t_s);
+    const auto load = virtual_sensors::LoadBoard({}, person);
+    text << t_s;
+    for (const double corner_n : load.corners_n) {
+      constexpr double kNoiseKg = 0.01;
+      text << "," << NewtonsToKilograms(corner_n) + kNoiseKg * random.Normal();
+    }
+    text << "\n";
+  }
+  return text.str();
+}
+
+Result<std::string> SampleClip() {
+  const auto script = choreography::ParseScript(kSampleClip, "the sample clip");
+  if (!script) return script.error();
+  const auto performer = choreography::Performer(kSampleHeightM, kSampleMassKg);
+  if (!performer) return performer.error();
+  constexpr double kRateHz = 60;
+  return motion::WriteBvh(choreography::Perform(*script, *performer, kRateHz).motion);
+}
+
+/// The sway of a standing person and what it will be in half a second: a table to train on.
+std::string SampleSwayTable() {
+  constexpr double kStepS = 0.05;
+  constexpr int kAhead = 10;
+  std::ostringstream text;
+  for (int i = 0; i < kSampleSwayInputs; ++i) text << "x" << i << ",";
+  text << "x_ahead\n";
+  for (int row = 0; row < kSampleSwayRows; ++row) {
+    const auto at = [row](int step) { return choreography::Sway(1, kStepS * (row + step)).x(); };
+    for (int i = 0; i < kSampleSwayInputs; ++i) text << at(i) << ",";
+    text << at(kSampleSwayInputs - 1 + kAhead) << "\n";
+  }
+  return text.str();
+}
+
+}  // namespace
+
+Result<std::vector<SampleFile>> SampleFiles() {
+  auto accelerations = SampleAccelerations();
+  if (!accelerations) return accelerations.error();
+  auto clip = SampleClip();
+  if (!clip) return clip.error();
+  return std::vector<SampleFile>{{"left.csv", (*accelerations)[0]},
+                                 {"right.csv", (*accelerations)[1]},
+                                 {"corners.csv", SampleCorners()},
+                                 {"p07.json", SampleSubject("p07", 1.81, 74)},
+                                 {"p08.json", SampleSubject("p08", 1.68, 61)},
+                                 {"p09.json", SampleSubject("p09", 1.75, 80)},
+                                 {"clip.bvh", std::move(*clip)},
+                                 {"labels.csv", kSampleLabels},
+                                 {"sway.csv", SampleSwayTable()}};
+}
+
+Result<void> WriteSampleFiles(const std::string& folder) {
+  const auto files = SampleFiles();
+  if (!files) return files.error();
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return Failure("cannot create the folder " + folder + ": " + error.message() +
+                   "; name one that you may write to");
+  }
+  for (const SampleFile& file : *files) {
+    const std::string path = folder + "/" + file.name;
+    std::ofstream out(path, std::ios::binary);
+    out << file.text;
+    if (!out.flush()) {
+      return Failure("cannot write " + path + ": " + std::generic_category().message(errno) +
+                     "; free some space or name another folder");
+    }
+  }
+  return {};
+}
+
+}  // namespace footing::stream_client

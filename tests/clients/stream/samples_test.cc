@@ -1,0 +1,64 @@
+#include "clients/stream/samples.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "clients/stream/table.h"
+#include "common/virtual/motion/bvh.h"
+
+namespace footing::stream_client {
+namespace {
+
+class Samples : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { files_ = SampleFiles().value(); }
+  static const std::string& Text(const std::string& name) {
+    const auto found = std::find_if(files_.begin(), files_.end(),
+                                    [&](const SampleFile& file) { return file.name == name; });
+    EXPECT_NE(found, files_.end()) << name;
+    return found->text;
+  }
+  inline static std::vector<SampleFile> files_;
+};
+
+TEST_F(Samples, AccelerationsAreTablesOfThreeAxes) {
+  for (const char* name : {"left.csv", "right.csv"}) {
+    const auto table = ParseTable(Text(name), 3, name);
+    ASSERT_TRUE(table) << table.error().message;
+    EXPECT_GT(table->rows.size(), 1000u);  // More than 10 s at 100 Hz.
+  }
+  EXPECT_NE(Text("left.csv"), Text("right.csv"));
+}
+
+TEST_F(Samples, TheCornersCarryAPersonOfSeventyKilograms) {
+  const auto table = ParseTable(Text("corners.csv"), 5, "corners.csv");
+  ASSERT_TRUE(table) << table.error().message;
+  for (const auto& row : table->rows) {
+    EXPECT_NEAR(row[1] + row[2] + row[3] + row[4], 70, 0.2);
+  }
+}
+
+TEST_F(Samples, TheClipIsAMotionThatBeginsInATPose) {
+  const auto motion = motion::ParseBvh(Text("clip.bvh"), "clip.bvh");
+  ASSERT_TRUE(motion) << motion.error().message;
+  EXPECT_GT(motion->duration_s(), 10);
+  EXPECT_LT(Text("clip.bvh").size(), 1u << 20);
+}
+
+TEST_F(Samples, TheTrainingTableHasTwentyInputsAndOneOutput) {
+  const auto table = ParseTable(Text("sway.csv"), 21, "sway.csv");
+  EXPECT_TRUE(table) << table.error().message;
+}
+
+TEST_F(Samples, AFolderThatCannotBeMadeIsNamed) {
+  const auto written = WriteSampleFiles("/proc/nowhere");
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().message.find("/proc/nowhere"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace footing::stream_client
