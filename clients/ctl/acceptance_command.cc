@@ -39,7 +39,7 @@ Result<void> Show(const AcceptanceVerdict& verdict, const Shared& shared) {
   return {};
 }
 
-struct Words {
+struct AcceptanceArguments {
   AcceptanceOptions options;
   std::string replay;
 };
@@ -47,31 +47,34 @@ struct Words {
 }  // namespace
 
 void AddAcceptanceCommand(CLI::App& app, Shared& shared) {
-  const auto words = std::make_shared<Words>();
-  CLI::App* command = app.add_subcommand(
-      "acceptance", "Guided minutes with the devices that end in a recording and a verdict");
-  command->add_option("--minutes", words->options.minutes, "How long in all (10)")
+  const auto arguments = std::make_shared<AcceptanceArguments>();
+  CLI::App* command =
+      app.add_subcommand("acceptance", "Guided test of a rig: ends in a recording and a verdict");
+  command->add_option("--minutes", arguments->options.minutes, "Duration, min (default 10)")
       ->check(CLI::Range(0.1, 120.0));
-  command->add_option("--out", words->options.out, "The recording (acceptance.mcap)");
-  command->add_flag("--force", words->options.replace, "Overwrite an existing recording");
-  command->add_option("--rig", words->options.rig, "What one person wears or stands on");
-  command->add_flag("--script", words->options.script, "Prompts as lines PROMPT: ...");
-  command->add_option("--replay", words->replay,
-                      "Compute the verdict again from such a recording; needs no device");
+  command->add_option("--out", arguments->options.out,
+                      "Recording to write (default acceptance.mcap)");
+  command->add_flag("--force", arguments->options.replace, "Overwrite an existing recording");
+  command->add_option("--rig", arguments->options.rig,
+                      "Rig: the devices of one person (default main)");
+  command->add_flag("--script", arguments->options.script,
+                    "Print prompts as lines PROMPT: ... on standard error");
+  command->add_option("--replay", arguments->replay,
+                      "Recording of an acceptance: compute its verdict again; needs no device");
   command->footer(
       "Examples:\n  footing-ctl acceptance --out first.mcap\n"
       "  footing-ctl acceptance --replay first.mcap --json");
-  command->callback([words, &shared] {
-    if (!words->replay.empty()) {
-      const auto verdict = ReplayAcceptance(words->replay);
+  command->callback([arguments, &shared] {
+    if (!arguments->replay.empty()) {
+      const auto verdict = ReplayAcceptance(arguments->replay);
       const Result<void> shown = verdict ? Show(*verdict, shared) : Result<void>(verdict.error());
       if (!shown) shared.exit_code = cli::Report(shown.error());
       return;
     }
-    if (words->options.out.empty()) words->options.out = "acceptance.mcap";
+    if (arguments->options.out.empty()) arguments->options.out = "acceptance.mcap";
     // Everything, so that the recording can be run again.
     WithSession(shared, {}, [&](Session& session) -> Result<void> {
-      const auto verdict = RunAcceptance(session, words->options);
+      const auto verdict = RunAcceptance(session, arguments->options);
       if (!verdict) return verdict.error();
       return Show(*verdict, shared);
     });

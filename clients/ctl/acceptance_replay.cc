@@ -38,7 +38,7 @@ Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path) {
   const auto metadata = KeptPlan(*session);
   if (!metadata) {
     return InvalidData(path +
-                       " is not a recording of an acceptance; make one with: footing-ctl "
+                       " does not hold an acceptance; record one with: footing-ctl "
                        "acceptance --out FILE.mcap");
   }
   const auto plan = ReadAcceptanceMetadata(*metadata);

@@ -146,11 +146,11 @@ class Run {
 
 Result<AcceptanceVerdict> RunAcceptance(Session& session, const AcceptanceOptions& options) {
   std::size_t boards = 0;
-  std::size_t worn = 0;
+  std::size_t body_devices = 0;
   for (const auto& device : DevicesOf(session, options.rig)) {
-    ++(device.kind == stream::DeviceKind::kBalanceBoard ? boards : worn);
+    ++(device.kind == stream::DeviceKind::kBalanceBoard ? boards : body_devices);
   }
-  if (boards + worn == 0) {
+  if (boards + body_devices == 0) {
     return NoDevice("rig " + options.rig + " has no device; see footing-ctl devices");
   }
   stream::BoardLayout layout =
@@ -164,7 +164,7 @@ Result<AcceptanceVerdict> RunAcceptance(Session& session, const AcceptanceOption
   auto writer = recording::RecordingWriter::Create(options.out, settings);
   if (!writer) return writer.error();
   return Run(session, options, layout, std::move(*writer))
-      .Go(guide::PlanOf(options.minutes, worn > 0, boards > 0));
+      .Go(guide::PlanOf(options.minutes, body_devices > 0, boards > 0));
 }
 
 }  // namespace footing::ctl

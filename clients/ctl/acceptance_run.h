@@ -25,7 +25,7 @@ struct AcceptanceVerdict {
 /// in the recording's metadata "acceptance".
 Result<AcceptanceVerdict> RunAcceptance(Session& session, const AcceptanceOptions& options);
 
-/// Computes the checks anew from a recording that RunAcceptance made. InvalidData when it is none.
+/// Computes the checks again from a recording that RunAcceptance made. InvalidData when it is none.
 Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path);
 
 }  // namespace footing::ctl

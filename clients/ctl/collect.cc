@@ -86,7 +86,7 @@ void CollectUser(const fs::path& root, Facts& facts) {
   }
 }
 
-/// A footingd whose command line names stand-ins only leaves the real devices alone.
+/// A footingd whose command line names simulated devices only leaves the real devices alone.
 bool OwnsDevices(const std::string& command_line) {
   const std::string words = '\0' + command_line + '\0';
   const std::string source("\0--source\0", 10);
@@ -146,7 +146,7 @@ void CollectModules(const fs::path& root, Facts& facts) {
                                             "usr/lib/modprobe.d"};
   facts.blacklists = FilesWith(root, folders, ".conf", doctor::BlacklistsWiimote);
   const std::string now = FirstLine(root / "sys/module/hid/parameters/ignore_special_drivers");
-  // Before hid is loaded the options of its loading tell.
+  // Before hid is loaded the options of its loading decide.
   facts.ignore_special_drivers =
       now.empty() ? !FilesWith(root, folders, ".conf", doctor::IgnoresSpecialDrivers).empty()
                   : now == "1" || now == "Y";

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/words/device_words.h"
-#include "clients/ctl/words/find_device.h"
+#include "clients/ctl/display/device_table.h"
+#include "clients/ctl/display/find_device.h"
 #include "common/cli/cli.h"
 
 namespace footing::ctl {
@@ -14,7 +14,8 @@ namespace {
 using nlohmann::ordered_json;
 using stream::DeviceStatus;
 
-constexpr std::uint32_t kLeaseMs = 500;  // Renewed at half its time; so long it runs on after us.
+constexpr std::uint32_t kLeaseMs =
+    500;  // Renewed at half its time; the rumble ends that long after this program at the latest.
 constexpr double kTareWithinS = 10;  // It looks at the last seconds only; generous for a busy host.
 constexpr double kShownWithinS = 2;
 
@@ -115,7 +116,7 @@ Result<void> Tare(Session& session, const std::string& name, bool clear, const S
     const auto device = session.Find(name);
     if (!device) return device.error();
     if (device->kind != stream::DeviceKind::kBalanceBoard) {
-      return UsageError(device->serial + " is no Balance Board but a " +
+      return UsageError(device->serial + " is not a Balance Board but a " +
                         stream::Name(device->kind));
     }
     boards.push_back(*device);
@@ -138,7 +139,7 @@ Result<void> Tare(Session& session, const std::string& name, bool clear, const S
 
 Result<void> Assign(Session& session, const std::string& name, const std::string& rig_role,
                     const Shared& shared) {
-  const auto binding = words::ParseRigRole(rig_role);
+  const auto binding = display::ParseRigRole(rig_role);
   if (!binding) return binding.error();
   const auto device = session.Find(name);
   if (!device) return device.error();
@@ -167,50 +168,53 @@ Result<void> Assign(Session& session, const std::string& name, const std::string
          {"serial", one->serial},
          {"rig", one->rig},
          {"role", stream::Name(one->role)}},
-        one->serial + " is now " + words::RigRole(*one), shared);
+        one->serial + " is now " + display::RigRole(*one), shared);
   return {};
 }
 
 void AddControlCommands(CLI::App& app, Shared& shared) {
-  struct Words {
+  struct Arguments {
     std::string device, light;
     double seconds = 1;
   };
-  const auto words = std::make_shared<Words>();
+  const auto arguments = std::make_shared<Arguments>();
   CLI::App* rumble = app.add_subcommand("rumble", "Let a device's motor run");
-  rumble->add_option("DEVICE", words->device, "Serial, number, RIG/ROLE or ROLE")->required();
-  rumble->add_option("--seconds", words->seconds, "So long; 1 when left out")
+  rumble->add_option("DEVICE", arguments->device, "Serial, number, RIG/ROLE or ROLE")->required();
+  rumble->add_option("--seconds", arguments->seconds, "Duration, s (default 1)")
       ->check(CLI::Range(0.05, 30.0));
   rumble->footer("Example:\n  footing-ctl rumble left_hand --seconds 2");
-  rumble->callback([words, &shared] {
+  rumble->callback([arguments, &shared] {
     WithSession(shared, {"status"}, [&](Session& session) {
-      return Rumble(session, words->device, words->seconds, shared);
+      return Rumble(session, arguments->device, arguments->seconds, shared);
     });
   });
 
   CLI::App* led = app.add_subcommand("led", "Set a device's lamps, or a PS Move's colour");
-  led->add_option("DEVICE", words->device, "Serial, number, RIG/ROLE or ROLE")->required();
-  led->add_option("LIGHT", words->light, "Four lamps, 1010, or a colour, #00ff40")->required();
+  led->add_option("DEVICE", arguments->device, "Serial, number, RIG/ROLE or ROLE")->required();
+  led->add_option("LIGHT", arguments->light,
+                  "Four lamps, such as 1010, or a colour, such as #00ff40")
+      ->required();
   led->footer(
       "Examples:\n  footing-ctl led 00:1f:32:aa:bb:cc 1010\n  footing-ctl led head #00ff40");
-  led->callback([words, &shared] {
-    if (const auto light = CheckLight(words->light); !light) {
+  led->callback([arguments, &shared] {
+    if (const auto light = CheckLight(arguments->light); !light) {
       shared.exit_code = cli::Report(light.error());
       return;
     }
     WithSession(shared, {"status"}, [&](Session& session) {
-      return Led(session, words->device, words->light, shared);
+      return Led(session, arguments->device, arguments->light, shared);
     });
   });
 
   const auto clear = std::make_shared<bool>(false);
   CLI::App* tare = app.add_subcommand("tare", "Take a board's empty weight as its zero");
-  tare->add_option("BOARD", words->device, "Serial, number, RIG/ROLE or ROLE; or all")->required();
-  tare->add_flag("--clear", *clear, "Forget it instead");
+  tare->add_option("BOARD", arguments->device, "Serial, number, RIG/ROLE or ROLE; or all")
+      ->required();
+  tare->add_flag("--clear", *clear, "Remove the tare");
   tare->footer("Examples:\n  footing-ctl tare all\n  footing-ctl tare left_board --clear");
-  tare->callback([words, clear, &shared] {
+  tare->callback([arguments, clear, &shared] {
     WithSession(shared, {"status"},
-                [&](Session& session) { return Tare(session, words->device, *clear, shared); });
+                [&](Session& session) { return Tare(session, arguments->device, *clear, shared); });
   });
 }
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/words/device_words.h"
-#include "clients/ctl/words/live.h"
+#include "clients/ctl/display/device_table.h"
+#include "clients/ctl/display/live_screen.h"
 #include "common/cli/cli.h"
 #include "common/wire/wire.h"
 
@@ -22,7 +22,7 @@ constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
 
 Result<void> Devices(Session& session, const Shared& shared) {
   const auto& devices = session.status();
-  Print({{"devices", words::DevicesToJson(devices)}}, words::DeviceTable(devices), shared);
+  Print({{"devices", display::DevicesToJson(devices)}}, display::DeviceTable(devices), shared);
   if (devices.empty()) return NoDevice("footingd has no device: footing-ctl pair, or doctor");
   return {};
 }
@@ -53,17 +53,17 @@ Result<void> Status(Session& session, const Shared& shared) {
                            {"max_queue_ticks", limits.max_queue_ticks()},
                            {"max_message_in_bytes", limits.max_message_in_bytes()},
                            {"max_message_out_bytes", limits.max_message_out_bytes()}}},
-                         {"setup", words::SetupToJson(session.setup())},
+                         {"setup", display::SetupToJson(session.setup())},
                          {"devices", std::move(devices)}};
   Print(out,
         session.link() + ", " + ordered_json(limits.tick_rate_hz()).dump() + " ticks a second\n\n" +
-            words::DeviceTable(session.status()) + "\n" + words::SetupTable(session.setup()),
+            display::DeviceTable(session.status()) + "\n" + display::SetupTable(session.setup()),
         shared);
   return {};
 }
 
 Result<void> Watch(Session& session, double seconds, const Shared& shared) {
-  words::Live live;
+  display::Live live;
   session.set_on_tick([&](const v1::Tick& tick) {
     for (const auto& sample : tick.motion().samples()) live.Take(wire::FromProto(sample));
     for (const auto& sample : tick.nunchuk().samples()) live.Take(wire::FromProto(sample));
@@ -81,13 +81,13 @@ Result<void> Watch(Session& session, double seconds, const Shared& shared) {
     live.devices = session.status();
     live.link = session.link();
     if (screen) {
-      std::cout << kHomeAndClear << words::LiveScreen(live) << "\nCtrl-C leaves." << std::endl;
+      std::cout << kHomeAndClear << display::LiveScreen(live) << "\nCtrl-C leaves." << std::endl;
     } else if (!shared.json) {
-      std::cout << words::LiveLine(live) << std::endl;
+      std::cout << display::LiveLine(live) << std::endl;
     }
   }
   session.set_on_tick({});
-  if (shared.json) Print(words::LiveToJson(live, passed_s), "", shared);
+  if (shared.json) Print(display::LiveToJson(live, passed_s), "", shared);
   return {};
 }
 
@@ -109,7 +109,7 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
 
   const auto seconds = std::make_shared<double>(0);
   CLI::App* watch = app.add_subcommand("watch", "Live: rates, batteries, forces");
-  watch->add_option("--seconds", *seconds, "Ends after so long; left out: with Ctrl-C")
+  watch->add_option("--seconds", *seconds, "Duration, s (default: until Ctrl-C)")
       ->check(CLI::Range(0.1, 1e5));
   watch->footer("Examples:\n  footing-ctl watch\n  footing-ctl watch --seconds 5 --json");
   watch->callback([seconds, &shared] {

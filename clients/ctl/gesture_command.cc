@@ -6,14 +6,14 @@
 
 namespace footing::ctl {
 
-Result<std::vector<stream::DeviceRole>> WornRoles(const std::vector<std::string>& names) {
+Result<std::vector<stream::DeviceRole>> BodyRoles(const std::vector<std::string>& names) {
   std::vector<stream::DeviceRole> roles;
   for (const std::string& name : names) {
     const stream::DeviceRole role = stream::RoleNamed(name);
     if (role == stream::DeviceRole::kLeftBoard || role == stream::DeviceRole::kRightBoard ||
         role == stream::DeviceRole::kUnspecified) {
       return UsageError("--worn " + name +
-                        ": nothing is worn so; there are: left_hand right_hand left_leg "
+                        ": not a role of a remote; there are: left_hand right_hand left_leg "
                         "right_leg head editor");
     }
     if (std::find(roles.begin(), roles.end(), role) != roles.end()) {
@@ -25,12 +25,12 @@ Result<std::vector<stream::DeviceRole>> WornRoles(const std::vector<std::string>
 }
 
 Result<void> AssignByGesture(Session& session, const std::string& rig,
-                             const std::vector<stream::DeviceRole>& worn, bool script,
+                             const std::vector<stream::DeviceRole>& body_roles, bool script,
                              const Shared& shared) {
-  guide::Wishes wishes;
-  wishes.rig = rig;
-  wishes.worn = worn;
-  const auto results = RunGuided(session, wishes, {guide::Item::kRoles}, Talk{script});
+  guide::SetUpOptions options;
+  options.rig = rig;
+  options.body_roles = body_roles;
+  const auto results = RunGuided(session, options, {guide::Item::kRoles}, PromptOptions{script});
   if (!results) return results.error();
   if (results->empty()) return NoDevice("rig " + rig + " has no device: footing-ctl devices");
   nlohmann::ordered_json out{{"rig", rig}, {"items", nlohmann::ordered_json::array()}};

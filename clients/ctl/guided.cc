@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kGuideStepS = 0.05;
 constexpr double kSolveWithinS = 10;
-constexpr double kFarewellS = 3;  // Without a tick for so long: footingd is gone.
+constexpr double kSilenceTimeoutS = 3;  // Without a tick in this time, footingd is gone.
 
 std::vector<std::string> Adapters() {
   std::vector<std::string> adapters;
@@ -80,13 +80,13 @@ guide::Answer Do(Session& session, const guide::Action& action, const std::strin
   return answer;
 }
 
-/// Says each new prompt once, and on a terminal what is seen, in place.
-class Voice {
+/// Prints each new prompt once, and on a terminal the feedback below it, in place.
+class PromptPrinter {
  public:
-  explicit Voice(const Talk& talk)
-      : script_(talk.script), screen_(!talk.script && isatty(STDERR_FILENO) == 1) {}
+  explicit PromptPrinter(const PromptOptions& prompts)
+      : script_(prompts.script), screen_(!prompts.script && isatty(STDERR_FILENO) == 1) {}
 
-  void Say(const guide::Progress& progress) {
+  void Show(const guide::Progress& progress) {
     if (!progress.prompt.empty() && progress.prompt != prompt_) {
       Break();
       prompt_ = progress.prompt;
@@ -102,7 +102,7 @@ class Voice {
     }
   }
 
-  void Tell(const stream::SetupItem& item) {
+  void Report(const stream::SetupItem& item) {
     Break();
     std::cerr << (script_ ? "DONE: " : "  ") << ToText(item) << std::endl;
   }
@@ -153,14 +153,15 @@ std::vector<stream::DeviceStatus> DevicesOf(const Session& session, const std::s
   return devices;
 }
 
-Result<std::vector<stream::SetupItem>> RunGuided(Session& session, const guide::Wishes& wishes,
+Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
+                                                 const guide::SetUpOptions& options,
                                                  const std::vector<guide::Item>& items,
-                                                 const Talk& talk) {
-  guide::SetUp set_up(wishes, items);
+                                                 const PromptOptions& prompts) {
+  guide::SetUp set_up(options, items);
   guide::Recent recent;
   recent.SetDevices(session.status());
   session.set_on_tick([&](const v1::Tick& tick) { TakeTick(tick, recent); });
-  Voice voice(talk);
+  PromptPrinter printer(prompts);
   std::vector<stream::SetupItem> found;
   std::vector<guide::Answer> answers;
   std::int64_t last_ns = session.server_ns();
@@ -170,7 +171,7 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session, const guide::
     if (session.RunFor(kGuideStepS) == Waited::kInterrupted) outcome = Failure("stopped");
     silent_s = session.server_ns() == last_ns ? silent_s + kGuideStepS : 0;
     last_ns = session.server_ns();
-    if (silent_s > kFarewellS) outcome = NoDevice("footingd is gone: " + session.link());
+    if (silent_s > kSilenceTimeoutS) outcome = NoDevice("footingd is gone: " + session.link());
     if (!outcome || silent_s > 0) continue;
     guide::Situation now;
     now.now_ns = last_ns;
@@ -178,20 +179,21 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session, const guide::
     now.setup = &session.setup();
     now.adapters = Adapters();
     now.answers = std::exchange(answers, {});
-    now.enter = !talk.script && EnterPressed();
+    now.enter = !prompts.script && EnterPressed();
     const guide::Progress progress = set_up.Advance(now);
-    voice.Say(progress);
+    printer.Show(progress);
     for (const auto& action : progress.actions) {
-      answers.push_back(Do(session, action, wishes.rig));
+      answers.push_back(Do(session, action, options.rig));
     }
     while (found.size() < set_up.results().size()) {
       stream::SetupItem item = set_up.results()[found.size()];
       item.wall_time_ns = clock::WallNs();
-      voice.Tell(item);
-      // A set-up that cannot be kept is still gone through; the person is told at once.
-      if (const auto kept = Record(session, wishes.rig, item); !kept) {
+      printer.Report(item);
+      // A set-up whose results cannot be recorded still runs to its end; the person is warned at
+      // once.
+      if (const auto kept = Record(session, options.rig, item); !kept) {
         std::cerr << "warning: " << kept.error().message << std::endl;
-        item.note += (item.note.empty() ? "" : "; ") + std::string("not kept by footingd");
+        item.note += (item.note.empty() ? "" : "; ") + std::string("not recorded by footingd");
       }
       found.push_back(std::move(item));
     }

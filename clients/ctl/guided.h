@@ -11,7 +11,7 @@
 namespace footing::ctl {
 
 /// How prompts reach the person, or the script that drives devices in a person's place.
-struct Talk {
+struct PromptOptions {
   bool script = false;  ///< Lines "PROMPT: ..." and "DONE: ..." only, and nobody presses Enter.
 };
 
@@ -26,9 +26,10 @@ std::vector<stream::DeviceStatus> DevicesOf(const Session& session, const std::s
 
 /// Runs items of the set-up with footingd and the person, and records each result there. What was
 /// found is returned with its date; Failure when it was interrupted or footingd went away.
-Result<std::vector<stream::SetupItem>> RunGuided(Session& session, const guide::Wishes& wishes,
+Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
+                                                 const guide::SetUpOptions& options,
                                                  const std::vector<guide::Item>& items,
-                                                 const Talk& talk);
+                                                 const PromptOptions& prompts);
 
 /// The rig's items as footingd keeps them, with `results` on top.
 std::vector<stream::SetupItem> ItemsOf(const Session& session, const std::string& rig,

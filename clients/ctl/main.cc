@@ -2,16 +2,18 @@
 #include "common/cli/cli.h"
 
 int main(int argc, char** argv) {
-  auto app = footing::cli::NewApp(
-      "footing-ctl", "The person at the console: devices, their set-up and their faults.",
-      "  footing-ctl setup               # the guided path, from the box to a ready rig\n"
-      "  footing-ctl doctor              # what is wrong, and what helps\n"
-      "  footing-ctl watch               # live\n"
-      "  footing-ctl led left_hand 1010");
+  auto app =
+      footing::cli::NewApp("footing-ctl", "Console: devices, their set-up and their faults.",
+                           "  footing-ctl setup               # guided set-up of all devices\n"
+                           "  footing-ctl doctor              # faults and their remedies\n"
+                           "  footing-ctl watch               # live values\n"
+                           "  footing-ctl led left_hand 1010");
   footing::ctl::Shared shared;
-  app->add_option("--connect", shared.connect, "footingd: unix:PATH or tcp:HOST:PORT");
+  app->add_option(
+      "--connect", shared.connect,
+      "Address of footingd, unix:PATH or tcp:HOST:PORT (default: footingd of this user)");
   app->add_flag("--json", shared.json, "One JSON object on standard output");
-  app->require_subcommand(0, 1);  // A word that is no command is then told by its name.
+  app->require_subcommand(0, 1);  // An unknown command is then reported by its name.
   app->fallthrough();
   footing::ctl::AddDeviceCommands(*app, shared);
   footing::ctl::AddControlCommands(*app, shared);

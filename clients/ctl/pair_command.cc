@@ -4,9 +4,9 @@
 
 #include "clients/ctl/collect.h"
 #include "clients/ctl/commands.h"
+#include "clients/ctl/display/device_table.h"
 #include "clients/ctl/doctor/doctor.h"
 #include "clients/ctl/pairing/pairing.h"
-#include "clients/ctl/words/device_words.h"
 #include "common/cli/cli.h"
 
 namespace footing::ctl {
@@ -59,11 +59,11 @@ Result<void> WaitForNew(Session& session, pairing::Kind kind, double within_s) {
   if (waited == Waited::kInterrupted) return Failure("stopped");
   if (waited == Waited::kTimeUp) {
     return NoDevice(std::string("no new ") + pairing::Name(kind) +
-                    " came: footing-ctl doctor tells what is in the way");
+                    " came: footing-ctl doctor names the obstacle");
   }
   const auto device = session.Find(found);
   if (!device) return device.error();
-  std::cout << "It is there: " << found << ", " << words::RigRole(*device)
+  std::cout << "It is there: " << found << ", " << display::RigRole(*device)
             << ". Another role: footing-ctl assign " << found << " main/ROLE" << std::endl;
   return {};
 }
@@ -87,21 +87,22 @@ void Pair(const std::string& name, bool print, double within_s, const std::strin
 }  // namespace
 
 void AddPairCommand(CLI::App& app, Shared& shared) {
-  struct Words {
+  struct Arguments {
     std::string device, root = "/";
     bool print = false;
     double within_s = 180;
   };
-  const auto words = std::make_shared<Words>();
+  const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("pair", "From the box to footingd, step by step");
-  command->add_option("DEVICE", words->device, "wiimote, board or move")->required();
-  command->add_flag("--print", words->print, "Only print the steps");
-  command->add_option("--seconds", words->within_s, "Waits so long for the device; 180")
+  command->add_option("DEVICE", arguments->device, "Kind of device: wiimote, board or move")
+      ->required();
+  command->add_flag("--print", arguments->print, "Only print the steps");
+  command->add_option("--seconds", arguments->within_s, "Timeout, s (default 180)")
       ->check(CLI::Range(0.1, 3600.0));
-  command->add_option("--root", words->root, "Look at a host below this folder")->group("");
+  command->add_option("--root", arguments->root, "Look at a host below this folder")->group("");
   command->footer("Examples:\n  footing-ctl pair wiimote\n  footing-ctl pair board --json");
-  command->callback([words, &shared] {
-    Pair(words->device, words->print, words->within_s, words->root, shared);
+  command->callback([arguments, &shared] {
+    Pair(arguments->device, arguments->print, arguments->within_s, arguments->root, shared);
   });
 }
 

@@ -10,7 +10,7 @@ namespace footing::ctl {
 namespace {
 
 /// Sends one command to footing-sim, which publishes its skeletons to whoever comes.
-Result<void> Tell(const Shared& shared, v1::Command command) {
+Result<void> Send(const Shared& shared, v1::Command command) {
   Shared simulation = shared;
   if (simulation.connect.empty()) {
     simulation.connect = transport::DefaultAddress("simulation").Text();
@@ -27,8 +27,8 @@ Result<void> Tell(const Shared& shared, v1::Command command) {
 Result<void> TakeTPose(const Shared& shared) {
   v1::Command command;
   command.mutable_calibrate_t_pose()->set_character(1);
-  if (const auto told = Tell(shared, std::move(command)); !told) return told;
-  Print({{"t_pose", "awaited"}}, "the T-pose is to be taken anew: five seconds, standing still",
+  if (const auto sent = Send(shared, std::move(command)); !sent) return sent;
+  Print({{"t_pose", "awaited"}}, "taking the T-pose again: stand still in it for five seconds",
         shared);
   return {};
 }
@@ -42,7 +42,7 @@ Result<void> NextSubject(const std::string& file, const Shared& shared) {
   set.set_height_m(subject->height_m);
   set.set_mass_kg(subject->mass_kg);
   set.set_foot_length_m(subject->foot_length_m);
-  if (const auto told = Tell(shared, std::move(command)); !told) return told;
+  if (const auto sent = Send(shared, std::move(command)); !sent) return sent;
   Print({{"subject", subject->code}, {"t_pose", "awaited"}},
         subject->code + " is next: step on and stand in a T-pose for five seconds", shared);
   return {};
@@ -55,14 +55,15 @@ void Keep(const Result<void>& done, Shared& shared) {
 }  // namespace
 
 void AddPoseCommands(CLI::App& app, Shared& shared) {
-  CLI::App* t_pose = app.add_subcommand("t-pose", "Take the T-pose of the pose engine anew");
-  t_pose->footer("Example:\n  footing-ctl t-pose   # --connect names footing-sim");
+  CLI::App* t_pose = app.add_subcommand("t-pose", "Take the T-pose of the pose engine again");
+  t_pose->footer("Example:\n  footing-ctl t-pose   # connects to footing-sim");
   t_pose->callback([&shared] { Keep(TakeTPose(shared), shared); });
 
   const auto file = std::make_shared<std::string>();
-  CLI::App* next = app.add_subcommand("subject", "Put the next person before the pose engine");
-  next->add_option("FILE", *file, "JSON: code, height_m, mass_kg, foot_length_m")->required();
-  next->footer("Example:\n  footing-ctl subject p08.json   # --connect names footing-sim");
+  CLI::App* next = app.add_subcommand("subject", "Start the next subject of the pose engine");
+  next->add_option("FILE", *file, "Subject file, JSON: code, height_m, mass_kg, foot_length_m")
+      ->required();
+  next->footer("Example:\n  footing-ctl subject p08.json   # connects to footing-sim");
   next->callback([file, &shared] { Keep(NextSubject(*file, shared), shared); });
 }
 

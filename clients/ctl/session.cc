@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "clients/ctl/words/find_device.h"
+#include "clients/ctl/display/find_device.h"
 #include "common/clock/clock.h"
 #include "common/transport/client.h"
 #include "common/units/units.h"
@@ -157,7 +157,7 @@ Waited Session::RunUntil(const std::function<bool()>& condition, double within_s
 }
 
 Result<stream::DeviceStatus> Session::Find(const std::string& name) const {
-  return words::FindDevice(status(), name);
+  return display::FindDevice(status(), name);
 }
 
 }  // namespace footing::ctl

@@ -53,10 +53,10 @@ class Session {
   /// Called for every tick while a call waits; the tick holds the channels asked for.
   void set_on_tick(std::function<void(const v1::Tick&)> on_tick);
 
-  /// Sends a command and waits for the answer. A refusal is an error with footingd's words.
+  /// Sends a command and waits for the answer. A refusal is an error with footingd's message.
   Result<v1::CommandResult> Call(v1::Command command, double within_s = 3);
 
-  /// Handles ticks for so long. `condition` is asked after every tick.
+  /// Handles ticks for that time. `condition` is asked after every tick.
   Waited RunFor(double duration_s);
   Waited RunUntil(const std::function<bool()>& condition, double within_s);
   bool interrupted() const;

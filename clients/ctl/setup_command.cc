@@ -9,10 +9,10 @@
 namespace footing::ctl {
 namespace {
 
-struct Words {
-  guide::Wishes wishes;
+struct SetUpArguments {
+  guide::SetUpOptions options;
   std::vector<std::string> only;
-  std::vector<std::string> worn;
+  std::vector<std::string> body_roles;
   double mass_kg = 0;
   bool yes = false;
   bool script = false;
@@ -21,10 +21,10 @@ struct Words {
 constexpr double kScriptSettleS = 2;
 constexpr double kEffectsSeenS = 1.2;
 
-/// What the words ask for; UsageError when they make no sense.
-Result<std::vector<guide::Item>> Understand(Words& words) {
+/// The items that the arguments name; UsageError when they contradict each other.
+Result<std::vector<guide::Item>> Validate(SetUpArguments& arguments) {
   std::vector<guide::Item> items;
-  for (const std::string& name : words.only) {
+  for (const std::string& name : arguments.only) {
     const auto item = guide::ItemNamed(name);
     if (!item) {
       std::string known;
@@ -33,27 +33,29 @@ Result<std::vector<guide::Item>> Understand(Words& words) {
     }
     items.push_back(*item);
   }
-  auto worn = WornRoles(words.worn);
-  if (!worn) return worn.error();
-  words.wishes.worn = std::move(worn).value();
-  if (!words.wishes.preset.empty() && !board::LayoutNamed(words.wishes.preset, 0)) {
-    return UsageError("--preset " + words.wishes.preset +
+  auto roles = BodyRoles(arguments.body_roles);
+  if (!roles) return roles.error();
+  arguments.options.body_roles = std::move(roles).value();
+  if (!arguments.options.preset.empty() && !board::LayoutNamed(arguments.options.preset, 0)) {
+    return UsageError("--preset " + arguments.options.preset +
                       ": no such layout; there are: one_foot_each side_by_side single");
   }
-  if (words.mass_kg > 0) words.wishes.mass_kg = words.mass_kg;
-  if (words.script || words.yes) words.wishes.settle_s = kScriptSettleS;
+  if (arguments.mass_kg > 0) arguments.options.mass_kg = arguments.mass_kg;
+  if (arguments.script || arguments.yes) arguments.options.settle_s = kScriptSettleS;
   return items;
 }
 
-Result<void> Setup(Session& session, const Words& words, const std::vector<guide::Item>& items,
-                   const Shared& shared) {
-  const auto results = RunGuided(session, words.wishes, items, Talk{words.script});
+Result<void> Setup(Session& session, const SetUpArguments& arguments,
+                   const std::vector<guide::Item>& items, const Shared& shared) {
+  const auto results =
+      RunGuided(session, arguments.options, items, PromptOptions{arguments.script});
   if (!results) return results.error();
   // So that the last answers' effects on the devices are seen.
   session.RunFor(kEffectsSeenS);
-  const auto list = ItemsOf(session, words.wishes.rig, *results);
+  const auto list = ItemsOf(session, arguments.options.rig, *results);
   const bool whole = items.empty();
-  if (const auto printed = PrintItems(session, words.wishes.rig, list, whole, shared); !printed) {
+  if (const auto printed = PrintItems(session, arguments.options.rig, list, whole, shared);
+      !printed) {
     return printed;
   }
   for (const auto& result : *results) {
@@ -65,48 +67,58 @@ Result<void> Setup(Session& session, const Words& words, const std::vector<guide
 }  // namespace
 
 void AddSetupCommand(CLI::App& app, Shared& shared) {
-  const auto words = std::make_shared<Words>();
-  CLI::App* command = app.add_subcommand(
-      "setup",
-      "Guides from the box to a ready rig: adapter, pairing, roles, layout, tare, "
-      "mounting, weigh, checks");
-  command->add_option("--rig", words->wishes.rig, "What one person wears or stands on");
-  command->add_option("--only", words->only, "Do this item alone; may be repeated")
+  const auto arguments = std::make_shared<SetUpArguments>();
+  CLI::App* command =
+      app.add_subcommand("setup",
+                         "Guided set-up of a rig: adapter, pairing, roles, layout, tare, "
+                         "mounting, weigh, checks");
+  command->add_option("--rig", arguments->options.rig,
+                      "Rig: the devices of one person (default main)");
+  command
+      ->add_option("--only", arguments->only, "Item to run; may be repeated (default: all items)")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
-      ->add_option("--worn", words->worn,
-                   "What the remotes are worn as, e.g. left_leg,right_leg; left out: as they are")
+      ->add_option(
+          "--worn", arguments->body_roles,
+          "Roles of the remotes, such as left_leg,right_leg (default: their present roles)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--preset", words->wishes.preset,
-                      "Layout of the boards: one_foot_each, side_by_side or single");
-  command->add_option("--gap-mm", words->wishes.gap_mm, "Between the boards")
+  command->add_option(
+      "--preset", arguments->options.preset,
+      "Layout of the boards: one_foot_each, side_by_side or single (default: the recorded one)");
+  command
+      ->add_option("--gap-mm", arguments->options.gap_mm, "Gap between the boards, mm (default 20)")
       ->check(CLI::Range(0.0, 2000.0));
-  command->add_option("--mass-kg", words->mass_kg, "The person's mass, to compare with")
+  command
+      ->add_option("--mass-kg", arguments->mass_kg,
+                   "Mass of the person, kg: the weighing is compared with it")
       ->check(CLI::Range(10.0, 200.0));
   command
-      ->add_option("--patience", words->wishes.patience_s, "Give an item up after so many seconds")
+      ->add_option("--patience", arguments->options.patience_s,
+                   "Timeout of an item, s (default 60)")
       ->check(CLI::Range(1.0, 3600.0));
-  command->add_option("--tries", words->wishes.tries, "How often an item that fails is tried")
+  command->add_option("--tries", arguments->options.tries, "Attempts for each item (default 2)")
       ->check(CLI::Range(1, 10));
-  command->add_flag("--yes", words->yes, "Do not wait for Enter where nothing can be sensed");
-  command->add_flag("--script", words->script,
-                    "Prompts as lines PROMPT: ... on standard error, for a program that drives "
-                    "the devices");
+  command->add_flag("--yes", arguments->yes,
+                    "Do not wait for Enter where no sensor can see the answer");
+  command->add_flag(
+      "--script", arguments->script,
+      "Print prompts as lines PROMPT: ... on standard error, for a program that drives "
+      "the devices");
   command->footer(
       "Items, in order: adapter pairing roles layout tare mounting weigh checks\n"
       "Examples:\n  footing-ctl setup --worn left_leg,right_leg\n"
-      "  footing-ctl setup --only layout --only tare      # some items alone\n"
+      "  footing-ctl setup --only layout --only tare      # two items alone\n"
       "  footing-ctl setup --mass-kg 70 --json");
-  command->callback([words, &shared] {
-    const auto items = Understand(*words);
+  command->callback([arguments, &shared] {
+    const auto items = Validate(*arguments);
     if (!items) {
       shared.exit_code = cli::Report(items.error());
       return;
     }
     WithSession(shared, GuidedChannels(),
-                [&](Session& session) { return Setup(session, *words, *items, shared); });
+                [&](Session& session) { return Setup(session, *arguments, *items, shared); });
   });
 }
 

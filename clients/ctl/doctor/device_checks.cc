@@ -28,13 +28,13 @@ double Share(std::uint64_t part, const DeviceStatus& device) {
 
 bool IsBoard(const DeviceStatus& device) { return device.kind == DeviceKind::kBalanceBoard; }
 
-/// A symptom a device for which `bad` holds.
-template <typename Bad, typename Tell>
-std::vector<Symptom> Each(const Facts& facts, Bad bad, Tell tell) {
+/// One symptom for each device for which `bad` holds.
+template <typename Bad, typename Describe>
+std::vector<Symptom> Each(const Facts& facts, Bad bad, Describe describe) {
   std::vector<Symptom> found;
   for (const DeviceStatus& device : facts.devices) {
     if (!bad(device)) continue;
-    Symptom symptom = tell(device);
+    Symptom symptom = describe(device);
     symptom.where = Place(device);
     found.push_back(std::move(symptom));
   }

@@ -39,7 +39,7 @@ struct Adapter {
   int links = 0;                ///< Active connections.
 };
 
-/// A device that BlueZ knows, as bluetoothctl tells it.
+/// A device that BlueZ knows, as bluetoothctl reports it.
 struct KnownDevice {
   std::string address;
   std::string name;

@@ -21,7 +21,7 @@ std::string Lower(std::string text) {
   return text;
 }
 
-/// The lines that are no comment, trimmed.
+/// The lines that are not comments, trimmed.
 std::vector<std::string> Lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -32,7 +32,7 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
-std::vector<std::string> Words(const std::string& line, char separator) {
+std::vector<std::string> Tokens(const std::string& line, char separator) {
   std::vector<std::string> words;
   std::string word;
   for (const char c : line + separator) {
@@ -82,7 +82,7 @@ std::map<std::string, std::string> ParseIni(const std::string& text) {
 std::vector<KnownDevice> ParseDevices(const std::string& text) {
   std::vector<KnownDevice> devices;
   for (const std::string& line : Lines(text)) {
-    const std::vector<std::string> words = Words(line, ' ');
+    const std::vector<std::string> words = Tokens(line, ' ');
     if (words.size() < 3 || words[0] != "Device" || !IsAddress(words[1])) continue;
     const std::string name = line.substr(line.find(words[1]) + words[1].size() + 1);
     const bool ours = name.rfind("Nintendo RVL", 0) == 0 || name.rfind("Motion Controller", 0) == 0;
@@ -108,7 +108,7 @@ void AddInfo(const std::string& text, KnownDevice& device) {
 
 bool BlacklistsWiimote(const std::string& text) {
   for (const std::string& line : Lines(text)) {
-    const std::vector<std::string> words = Words(line, ' ');
+    const std::vector<std::string> words = Tokens(line, ' ');
     if (words.size() < 2 || !IsWiimoteModule(words[1])) continue;
     if (words[0] == "blacklist" || words[0] == "install") return true;
   }
@@ -117,7 +117,7 @@ bool BlacklistsWiimote(const std::string& text) {
 
 bool IgnoresSpecialDrivers(const std::string& text) {
   for (const std::string& line : Lines(text)) {
-    const std::vector<std::string> words = Words(line, ' ');
+    const std::vector<std::string> words = Tokens(line, ' ');
     if (words.size() < 3 || words[0] != "options" || words[1] != "hid") continue;
     for (const std::string& word : words) {
       if (word == "ignore_special_drivers=1" || word == "ignore_special_drivers=Y") return true;
@@ -147,7 +147,7 @@ User ParseProcess(const std::string& status) {
   const auto numbers = [&](const char* key) {
     std::string value = ValueOf(status, key);
     std::replace(value.begin(), value.end(), '\t', ' ');
-    return Words(value, ' ');
+    return Tokens(value, ' ');
   };
   // Real, effective, saved, file system.
   if (const auto uids = numbers("Uid"); uids.size() > 1) user.uid = Number(uids[1]);
@@ -159,10 +159,10 @@ User ParseProcess(const std::string& status) {
 bool ParseGroup(const std::string& text, const std::string& name, std::uint32_t& gid,
                 std::vector<std::string>& members) {
   for (const std::string& line : Lines(text)) {
-    const std::vector<std::string> parts = Words(line, ':');
+    const std::vector<std::string> parts = Tokens(line, ':');
     if (parts.size() < 4 || parts[0] != name) continue;
     gid = Number(parts[2]);
-    members = Words(parts[3], ',');
+    members = Tokens(parts[3], ',');
     return true;
   }
   return false;

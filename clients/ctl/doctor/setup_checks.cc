@@ -14,14 +14,14 @@ std::string Redo(const stream::RigSetup& rig, const stream::SetupItem& item) {
 }
 
 template <typename Bad>
-std::vector<Symptom> Items(const Facts& facts, Bad bad, const char* words) {
+std::vector<Symptom> Items(const Facts& facts, Bad bad, const char* state) {
   std::vector<Symptom> found;
   for (const stream::RigSetup& rig : facts.setup) {
     for (const stream::SetupItem& item : rig.items) {
       if (!bad(item)) continue;
       found.push_back(
           {Severity::kWarning,
-           "set-up: " + item.name + " " + words + (item.note.empty() ? "" : ": " + item.note),
+           "set-up: " + item.name + " " + state + (item.note.empty() ? "" : ": " + item.note),
            item.serial.empty() ? rig.rig : rig.rig + " " + item.serial, Redo(rig, item)});
     }
   }
@@ -54,11 +54,11 @@ std::vector<Symptom> NoLayout(const Facts& facts) {
   for (const stream::RigSetup& rig : facts.setup) {
     if (!rig.layout.preset.empty()) laid.insert(rig.rig);
   }
-  std::set<std::string> told;
+  std::set<std::string> reported;
   std::vector<Symptom> found;
   for (const DeviceStatus& device : facts.devices) {
     if (device.kind != DeviceKind::kBalanceBoard || !IsThere(device)) continue;
-    if (laid.count(device.rig) > 0 || !told.insert(device.rig).second) continue;
+    if (laid.count(device.rig) > 0 || !reported.insert(device.rig).second) continue;
     found.push_back({Severity::kWarning, "nobody has said where the boards lie", device.rig,
                      "footing-ctl layout --rig " + device.rig + " --check"});
   }
@@ -86,11 +86,11 @@ std::vector<Symptom> Slipped(const Facts& facts) {
 }
 
 std::vector<Symptom> NotMounted(const Facts& facts) {
-  static const std::set<stream::DeviceRole> worn = {
+  static const std::set<stream::DeviceRole> mounted_roles = {
       stream::DeviceRole::kLeftLeg, stream::DeviceRole::kRightLeg, stream::DeviceRole::kHead};
   std::vector<Symptom> found;
   for (const DeviceStatus& device : facts.devices) {
-    if (!IsThere(device) || device.mounted || worn.count(device.role) == 0) continue;
+    if (!IsThere(device) || device.mounted || mounted_roles.count(device.role) == 0) continue;
     found.push_back({Severity::kWarning, "nobody has measured how it sits on its wearer",
                      Place(device), "footing-ctl setup --rig " + device.rig + " --only mounting"});
   }

@@ -15,7 +15,7 @@ struct Row {
   Phase phase;
   const char* name;
   double share;  // Of the whole time; scaled to the phases that there are.
-  bool worn;
+  bool body_devices;
   bool boards;
   const char* prompt;
 };
@@ -53,11 +53,11 @@ std::optional<Phase> PhaseNamed(const std::string& name) {
   return std::nullopt;
 }
 
-std::vector<Planned> PlanOf(double minutes, bool worn, bool boards) {
+std::vector<Planned> PlanOf(double minutes, bool body_devices, bool boards) {
   std::vector<Planned> plan;
   double shares = 0;
   for (const Row& row : kRows) {
-    if (!(worn && row.worn) && !(boards && row.boards)) continue;
+    if (!(body_devices && row.body_devices) && !(boards && row.boards)) continue;
     plan.push_back({row.phase, row.share});
     shares += row.share;
   }
@@ -107,7 +107,7 @@ void Acceptance::Take(const std::vector<stream::DeviceStatus>& devices, std::int
   for (const stream::DeviceStatus& device : devices) {
     if (device.rig != rig_) continue;
     const bool fresh = devices_.count(device.serial) == 0;
-    // One that was lost before it all began is no part of this.
+    // One that was lost before the start does not count.
     if (fresh && device.state == stream::DeviceState::kLost) continue;
     DeviceRecord& record = devices_[device.serial];
     if (fresh) record.gaps_first = device.gaps;

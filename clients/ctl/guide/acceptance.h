@@ -27,8 +27,8 @@ struct Planned {
   double duration_s = 0;
 };
 
-/// Phases for what there is, together so many minutes long.
-std::vector<Planned> PlanOf(double minutes, bool worn, bool boards);
+/// Phases for the devices that there are; `minutes` is their total.
+std::vector<Planned> PlanOf(double minutes, bool body_devices, bool boards);
 
 struct Check {
   std::string name;  ///< With the serial behind it, where it is about one device.

@@ -159,7 +159,7 @@ void Acceptance::CheckBoards(std::vector<Check>& checks) const {
                       LoadIn(Phase::kQuiet, stream::DeviceRole::kRightBoard)};
   observed.forward = {LoadIn(Phase::kLean, stream::DeviceRole::kLeftBoard),
                       LoadIn(Phase::kLean, stream::DeviceRole::kRightBoard)};
-  const LayoutVerdict verdict = JudgeLayout(layout_, observed);
+  const LayoutVerdict verdict = CheckLayout(layout_, observed);
   checks.push_back({"layout", verdict.passed(), verdict.residual_mm, 0, "mm", verdict.note});
 }
 

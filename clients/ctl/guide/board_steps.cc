@@ -46,9 +46,9 @@ std::string Loads(const Stance& stance, bool two) {
 
 }  // namespace
 
-Stance LayoutStep::Stand(const Situation& now, const Wishes& wishes, double window_s) const {
+Stance LayoutStep::Stand(const Situation& now, const SetUpOptions& options, double window_s) const {
   const std::int64_t from_ns = now.now_ns - SecondsToNanoseconds(window_s);
-  const auto boards = now.recent->Boards(wishes.rig);
+  const auto boards = now.recent->Boards(options.rig);
   Stance stance;
   // In the order of their roles: left before right. A lone board stands in the left one's place.
   if (!boards.empty()) {
@@ -60,25 +60,26 @@ Stance LayoutStep::Stand(const Situation& now, const Wishes& wishes, double wind
   return stance;
 }
 
-void LayoutStep::Begin(const Situation& now, const Wishes& wishes) {
-  const auto boards = now.recent->Boards(wishes.rig);
+void LayoutStep::Begin(const Situation& now, const SetUpOptions& options) {
+  const auto boards = now.recent->Boards(options.rig);
   if (boards.empty()) {
     phase_ = Phase::kEnd;
     return;
   }
   two_ = boards.size() > 1;
-  const double gap_mm = wishes.gap_mm == Wishes::kNoGapMm ? board::kUsualGapMm : wishes.gap_mm;
+  const double gap_mm =
+      options.gap_mm == SetUpOptions::kNoGapMm ? board::kUsualGapMm : options.gap_mm;
   const auto usual = board::LayoutNamed(two_ ? "one_foot_each" : "single", gap_mm);
   layout_ = *usual;
-  if (!wishes.preset.empty()) {
-    layout_ = board::LayoutNamed(wishes.preset, gap_mm).value_or(*usual);
+  if (!options.preset.empty()) {
+    layout_ = board::LayoutNamed(options.preset, gap_mm).value_or(*usual);
   } else if (two_) {
     for (const auto& rig : *now.setup) {
       const std::string& preset = rig.layout.preset;
-      if (rig.rig == wishes.rig && !preset.empty() && preset != "single") layout_ = rig.layout;
+      if (rig.rig == options.rig && !preset.empty() && preset != "single") layout_ = rig.layout;
     }
   }
-  layout_.rig = wishes.rig;
+  layout_.rig = options.rig;
   phase_ = Phase::kSetting;
 }
 
@@ -92,13 +93,13 @@ Progress LayoutStep::Set() {
   return progress;
 }
 
-Progress LayoutStep::One(const Situation& now, const Wishes& wishes) {
+Progress LayoutStep::One(const Situation& now, const SetUpOptions& options) {
   Progress progress;
   const bool left = phase_ == Phase::kLeft;
   progress.prompt = std::string("Stand on the ") + (left ? "left" : "right") +
                     " board alone, with both feet, and keep still.";
   if (left) progress.picture = LayoutPicture(layout_.preset);
-  const Stance stance = Stand(now, wishes, kStandForS);
+  const Stance stance = Stand(now, options, kStandForS);
   progress.feedback = Loads(stance, true);
   const bool on_left = StoodOn(stance.left) && stance.right.samples > 0 &&
                        stance.right.mean_n < kFreeN && Steady(stance.right);
@@ -118,10 +119,10 @@ Progress LayoutStep::One(const Situation& now, const Wishes& wishes) {
   return progress;
 }
 
-Progress LayoutStep::Both(const Situation& now, const Wishes& wishes) {
+Progress LayoutStep::Both(const Situation& now, const SetUpOptions& options) {
   Progress progress;
   const bool upright = phase_ == Phase::kUpright;
-  const Stance stance = Stand(now, wishes, upright ? kStandForS : kLeanForS);
+  const Stance stance = Stand(now, options, upright ? kStandForS : kLeanForS);
   progress.feedback = Loads(stance, two_);
   const bool steady = Upright(stance.left) && (!two_ || Upright(stance.right));
   if (upright) {
@@ -140,16 +141,16 @@ Progress LayoutStep::Both(const Situation& now, const Wishes& wishes) {
   if (two_) progress.feedback += " and " + std::to_string(std::lround(right_m * 1e3)) + " mm";
   if (!steady || std::min(left_m, right_m) < kLeastLeanM) return progress;
   observed_.forward = stance;
-  const LayoutVerdict verdict = JudgeLayout(layout_, observed_);
+  const LayoutVerdict verdict = CheckLayout(layout_, observed_);
   results_ = {Outcome(Item::kLayout, "", verdict.passed(), verdict.residual_mm, "mm",
                       layout_.preset + ": " + verdict.note)};
   phase_ = Phase::kEnd;
   return progress;
 }
 
-Progress LayoutStep::Advance(const Situation& now, const Wishes& wishes) {
+Progress LayoutStep::Advance(const Situation& now, const SetUpOptions& options) {
   if (phase_ == Phase::kBegin) {
-    Begin(now, wishes);
+    Begin(now, options);
     if (phase_ == Phase::kSetting) return Set();
   }
   if (phase_ == Phase::kSetting) {
@@ -160,17 +161,17 @@ Progress LayoutStep::Advance(const Situation& now, const Wishes& wishes) {
     }
     if (phase_ == Phase::kSetting) return {};
   }
-  if (phase_ == Phase::kLeft || phase_ == Phase::kRight) return One(now, wishes);
-  if (phase_ != Phase::kEnd) return Both(now, wishes);
+  if (phase_ == Phase::kLeft || phase_ == Phase::kRight) return One(now, options);
+  if (phase_ != Phase::kEnd) return Both(now, options);
   Progress progress;
   progress.results = results_;
   progress.finished = true;
   return progress;
 }
 
-Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
+Progress TareStep::Advance(const Situation& now, const SetUpOptions& options) {
   Progress progress;
-  const auto boards = now.recent->Boards(wishes.rig);
+  const auto boards = now.recent->Boards(options.rig);
   progress.finished = boards.empty();
   if (boards.empty()) return progress;
   progress.prompt = "Step off the boards and leave them empty.";
@@ -206,9 +207,9 @@ Progress TareStep::Advance(const Situation& now, const Wishes& wishes) {
   return progress;
 }
 
-Progress WeighStep::Advance(const Situation& now, const Wishes& wishes) {
+Progress WeighStep::Advance(const Situation& now, const SetUpOptions& options) {
   Progress progress;
-  const auto boards = now.recent->Boards(wishes.rig);
+  const auto boards = now.recent->Boards(options.rig);
   progress.finished = boards.empty();
   if (boards.empty()) return progress;
   progress.prompt =
@@ -218,7 +219,7 @@ Progress WeighStep::Advance(const Situation& now, const Wishes& wishes) {
   for (const auto& board : boards) {
     loads.push_back(now.recent->BoardLoad(board.device, from_ns, now.now_ns));
   }
-  const Weight weight = Weigh(loads, wishes.mass_kg);
+  const Weight weight = Weigh(loads, options.mass_kg);
   progress.feedback = weight.note;
   if (!weight.done) return progress;
   const std::string note = boards.size() > 1 ? weight.note : weight.note + " on one board alone";

@@ -13,15 +13,15 @@ namespace footing::guide {
 /// Sets the layout and proves it: stand left, stand right, both, lean forward.
 class LayoutStep {
  public:
-  Progress Advance(const Situation& now, const Wishes& wishes);
+  Progress Advance(const Situation& now, const SetUpOptions& options);
 
  private:
   enum class Phase { kBegin, kSetting, kLeft, kRight, kUpright, kForward, kEnd };
-  void Begin(const Situation& now, const Wishes& wishes);
+  void Begin(const Situation& now, const SetUpOptions& options);
   Progress Set();
-  Progress One(const Situation& now, const Wishes& wishes);
-  Progress Both(const Situation& now, const Wishes& wishes);
-  Stance Stand(const Situation& now, const Wishes& wishes, double window_s) const;
+  Progress One(const Situation& now, const SetUpOptions& options);
+  Progress Both(const Situation& now, const SetUpOptions& options);
+  Stance Stand(const Situation& now, const SetUpOptions& options, double window_s) const;
 
   Phase phase_ = Phase::kBegin;
   bool two_ = false;
@@ -34,7 +34,7 @@ class LayoutStep {
 /// Takes each empty board's zero.
 class TareStep {
  public:
-  Progress Advance(const Situation& now, const Wishes& wishes);
+  Progress Advance(const Situation& now, const SetUpOptions& options);
 
  private:
   bool asked_ = false;
@@ -45,7 +45,7 @@ class TareStep {
 /// Weighs the person who stands on all boards.
 class WeighStep {
  public:
-  Progress Advance(const Situation& now, const Wishes& wishes);
+  Progress Advance(const Situation& now, const SetUpOptions& options);
 };
 
 }  // namespace footing::guide

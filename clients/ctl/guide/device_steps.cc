@@ -15,9 +15,9 @@ constexpr double kCheckForS = 2;
 constexpr std::int64_t kGestureNs = 1'000'000'000;  // Looked at for a gesture.
 constexpr std::int64_t kRestNs = 500'000'000;       // Between two gestures.
 
-std::vector<stream::DeviceStatus> Everything(const Situation& now, const Wishes& wishes) {
-  std::vector<stream::DeviceStatus> all = now.recent->Boards(wishes.rig);
-  for (const auto& device : now.recent->Worn(wishes.rig)) all.push_back(device);
+std::vector<stream::DeviceStatus> AllDevices(const Situation& now, const SetUpOptions& options) {
+  std::vector<stream::DeviceStatus> all = now.recent->Boards(options.rig);
+  for (const auto& device : now.recent->BodyDevices(options.rig)) all.push_back(device);
   return all;
 }
 
@@ -27,7 +27,7 @@ bool IsBoardRole(stream::DeviceRole role) {
 
 }  // namespace
 
-std::string Spoken(stream::DeviceRole role) {
+std::string RoleText(stream::DeviceRole role) {
   switch (role) {
     case stream::DeviceRole::kLeftHand:
       return "the left wrist";
@@ -51,7 +51,7 @@ std::string Spoken(stream::DeviceRole role) {
   return "";
 }
 
-std::string WrongWith(const stream::DeviceStatus& device) {
+std::string FaultOf(const stream::DeviceStatus& device) {
   const bool board = device.kind == stream::DeviceKind::kBalanceBoard;
   if (device.state != stream::DeviceState::kLive) {
     return std::string("is ") + stream::Name(device.state) + ": press its button, or replug it";
@@ -70,14 +70,14 @@ std::string WrongWith(const stream::DeviceStatus& device) {
   return "";
 }
 
-Progress AdapterStep::Advance(const Situation& now, const Wishes& wishes) {
+Progress AdapterStep::Advance(const Situation& now, const SetUpOptions& options) {
   Progress progress;
-  const auto devices = Everything(now, wishes);
-  const bool stand_ins = std::any_of(devices.begin(), devices.end(),
+  const auto devices = AllDevices(now, options);
+  const bool simulated = std::any_of(devices.begin(), devices.end(),
                                      [](const auto& device) { return device.simulated; });
   if (!now.adapters.empty() || !devices.empty()) {
     const auto count = static_cast<double>(now.adapters.size());
-    std::string note = stand_ins ? "stand-ins need no adapter" : "devices are attached";
+    std::string note = simulated ? "simulated devices need no adapter" : "devices are attached";
     if (!now.adapters.empty()) note = "Bluetooth adapter " + now.adapters.front();
     progress.results = {Outcome(Item::kAdapter, "", true, count, "adapters", note)};
     progress.finished = true;
@@ -88,12 +88,12 @@ Progress AdapterStep::Advance(const Situation& now, const Wishes& wishes) {
   return progress;
 }
 
-Progress PairingStep::Advance(const Situation& now, const Wishes& wishes) {
+Progress PairingStep::Advance(const Situation& now, const SetUpOptions& options) {
   Progress progress;
   progress.prompt =
       "Switch on every device of this rig (pair new ones in another terminal: footing-ctl pair). "
       "Enter when all are there.";
-  const auto devices = Everything(now, wishes);
+  const auto devices = AllDevices(now, options);
   std::size_t live = 0;
   for (const auto& device : devices) live += device.state == stream::DeviceState::kLive;
   if (live != seen_ || since_ns_ == 0) {
@@ -102,12 +102,12 @@ Progress PairingStep::Advance(const Situation& now, const Wishes& wishes) {
   }
   progress.feedback =
       std::to_string(live) + " of " + std::to_string(devices.size()) + " attached devices live";
-  const bool settled = now.now_ns - since_ns_ >= SecondsToNanoseconds(wishes.settle_s);
+  const bool settled = now.now_ns - since_ns_ >= SecondsToNanoseconds(options.settle_s);
   if (live == 0 || live < devices.size() || (!settled && !now.enter)) return progress;
   for (const auto& device : devices) {
     progress.results.push_back(
         Outcome(Item::kPairing, device.serial, true, device.report_rate_hz, "Hz",
-                std::string(stream::Name(device.kind)) + (device.simulated ? ", stand-in" : "")));
+                std::string(stream::Name(device.kind)) + (device.simulated ? ", simulated" : "")));
   }
   progress.finished = true;
   return progress;
@@ -126,7 +126,7 @@ void RolesStep::BeginWith(const std::vector<stream::DeviceStatus>& devices,
   if (devices.size() == 1 && roles.size() == 1) alone_.insert(roles.front());
 }
 
-void RolesStep::Begin(const Situation& now, const Wishes& wishes) {
+void RolesStep::Begin(const Situation& now, const SetUpOptions& options) {
   const auto own = [](const std::vector<stream::DeviceStatus>& devices) {
     std::vector<stream::DeviceRole> roles;
     for (const auto& device : devices) {
@@ -134,20 +134,20 @@ void RolesStep::Begin(const Situation& now, const Wishes& wishes) {
     }
     return roles;
   };
-  const auto boards = now.recent->Boards(wishes.rig);
-  const auto worn = now.recent->Worn(wishes.rig);
+  const auto boards = now.recent->Boards(options.rig);
+  const auto body_devices = now.recent->BodyDevices(options.rig);
   BeginWith(boards, own(boards));
-  BeginWith(worn, wishes.worn.empty() ? own(worn) : wishes.worn);
+  BeginWith(body_devices, options.body_roles.empty() ? own(body_devices) : options.body_roles);
   phase_ = wanted_.empty() ? Phase::kEnd : Phase::kRest;
 }
 
-bool RolesStep::Resting(const Situation& now, const Wishes& wishes) const {
+bool RolesStep::Resting(const Situation& now, const SetUpOptions& options) const {
   const std::int64_t from_ns = now.now_ns - kRestNs;
-  for (const auto& device : now.recent->Boards(wishes.rig)) {
+  for (const auto& device : now.recent->Boards(options.rig)) {
     const Load load = now.recent->BoardLoad(device.device, from_ns, now.now_ns);
     if (load.samples == 0 || load.mean_n > kFreeN) return false;
   }
-  for (const auto& device : now.recent->Worn(wishes.rig)) {
+  for (const auto& device : now.recent->BodyDevices(options.rig)) {
     const Motion motion = now.recent->DeviceMotion(device.device, from_ns, now.now_ns);
     if (motion.samples == 0 || motion.shake_mps2 > kShakenMps2 / 2) return false;
   }
@@ -165,16 +165,16 @@ Progress RolesStep::Assign(const stream::DeviceStatus& device, const Pick& pick)
   progress.actions = {assign};
   named_.insert(device.serial);
   results_.push_back(Outcome(Item::kRoles, device.serial, true, pick.lead,
-                             pick.lead > 0 ? "ratio" : "", Spoken(role) + pick.note));
+                             pick.lead > 0 ? "ratio" : "", RoleText(role) + pick.note));
   phase_ = Phase::kAssigning;
   return progress;
 }
 
-Progress RolesStep::Ask(const Situation& now, const Wishes& wishes) {
+Progress RolesStep::Ask(const Situation& now, const SetUpOptions& options) {
   Progress progress;
   const stream::DeviceRole role = wanted_.front();
   const auto devices =
-      IsBoardRole(role) ? now.recent->Boards(wishes.rig) : now.recent->Worn(wishes.rig);
+      IsBoardRole(role) ? now.recent->Boards(options.rig) : now.recent->BodyDevices(options.rig);
   if (alone_.count(role) > 0 && devices.size() == 1) {
     Pick only;
     only.note = ", the only one of its kind";
@@ -205,14 +205,14 @@ Progress RolesStep::Ask(const Situation& now, const Wishes& wishes) {
       pick.note = " " + pick.note;
       return Assign(device, pick);
     }
-    progress.feedback = "this one is named already: take another";
+    progress.feedback = "this device has a role already: take another";
   }
   return progress;
 }
 
-Progress RolesStep::Advance(const Situation& now, const Wishes& wishes) {
+Progress RolesStep::Advance(const Situation& now, const SetUpOptions& options) {
   Progress progress;
-  if (phase_ == Phase::kBegin) Begin(now, wishes);
+  if (phase_ == Phase::kBegin) Begin(now, options);
   for (const Answer& answer : now.answers) {
     if (answer.key != "assign" || phase_ != Phase::kAssigning) continue;
     if (!answer.ok) {
@@ -223,56 +223,56 @@ Progress RolesStep::Advance(const Situation& now, const Wishes& wishes) {
     phase_ = wanted_.empty() ? Phase::kEnd : Phase::kRest;
   }
   if (phase_ == Phase::kRest) {
-    const bool boards = !now.recent->Boards(wishes.rig).empty();
-    const bool one = alone_.count(wanted_.front()) > 0;  // Nothing to tell it from.
+    const bool boards = !now.recent->Boards(options.rig).empty();
+    const bool one = alone_.count(wanted_.front()) > 0;  // The only one of its kind.
     progress.prompt =
         boards ? "Step off the boards and hold everything still." : "Hold everything still.";
     if (one) progress.prompt.clear();
-    if (one || Resting(now, wishes)) {
+    if (one || Resting(now, options)) {
       phase_ = Phase::kAsk;
       rest_since_ns_ = now.now_ns - kRestNs;
     }
   }
   if (phase_ == Phase::kAsk) {
     const stream::DeviceRole role = wanted_.front();
-    progress = Ask(now, wishes);
+    progress = Ask(now, options);
     if (alone_.count(role) == 0) {
-      progress.prompt = (IsBoardRole(role) ? "Step on " : "Shake ") + Spoken(role) + " now.";
+      progress.prompt = (IsBoardRole(role) ? "Step on " : "Shake ") + RoleText(role) + " now.";
     }
   }
   if (phase_ == Phase::kEnd) {
-    AddTheRest(now, wishes);
+    AddTheRest(now, options);
     progress.results = results_;
     progress.finished = true;
   }
   return progress;
 }
 
-/// Devices that nobody was asked about keep what they are.
-void RolesStep::AddTheRest(const Situation& now, const Wishes& wishes) {
-  for (const auto& device : Everything(now, wishes)) {
-    const bool told = std::any_of(results_.begin(), results_.end(), [&](const auto& result) {
+/// Devices that no prompt asked about keep their roles.
+void RolesStep::AddTheRest(const Situation& now, const SetUpOptions& options) {
+  for (const auto& device : AllDevices(now, options)) {
+    const bool reported = std::any_of(results_.begin(), results_.end(), [&](const auto& result) {
       return result.serial == device.serial;
     });
-    if (told) continue;
+    if (reported) continue;
     const bool has_one = device.role != stream::DeviceRole::kUnspecified;
     results_.push_back(
         Outcome(Item::kRoles, device.serial, has_one, 0, "",
-                has_one ? Spoken(device.role) + ", not asked for"
+                has_one ? RoleText(device.role) + ", not asked for"
                         : "has no role: footing-ctl assign " + device.serial + " left_leg"));
   }
 }
 
-Progress ChecksStep::Advance(const Situation& now, const Wishes& wishes) {
+Progress ChecksStep::Advance(const Situation& now, const SetUpOptions& options) {
   Progress progress;
-  progress.prompt = "The devices are looked over; nothing to do.";
+  progress.prompt = "Checking the devices; nothing to do.";
   if (since_ns_ == 0) since_ns_ = now.now_ns;
   if (now.now_ns - since_ns_ < SecondsToNanoseconds(kCheckForS)) return progress;
-  for (const auto& device : Everything(now, wishes)) {
-    const std::string wrong = WrongWith(device);
+  for (const auto& device : AllDevices(now, options)) {
+    const std::string wrong = FaultOf(device);
     progress.results.push_back(Outcome(Item::kChecks, device.serial, wrong.empty(),
                                        device.report_rate_hz, "Hz",
-                                       wrong.empty() ? Spoken(device.role) : wrong));
+                                       wrong.empty() ? RoleText(device.role) : wrong));
   }
   progress.finished = !progress.results.empty();
   return progress;

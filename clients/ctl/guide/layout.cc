@@ -42,7 +42,7 @@ std::optional<Eigen::Vector2d> Moved(const stream::BoardPose& pose, const Load& 
   return board::InWorld(turned, to.cop_x_m - from.cop_x_m, to.cop_y_m - from.cop_y_m);
 }
 
-/// Stood the wrong way: the other board carried the load that this one should have had.
+/// Stood the wrong way: the other board had the load that this one should have had.
 bool Swapped(const LayoutObserved& observed) {
   if (!observed.left_alone || !observed.right_alone) return false;
   return observed.left_alone->right.mean_n > observed.left_alone->left.mean_n &&
@@ -71,7 +71,7 @@ std::string LayoutPicture(const std::string& preset) {
   return preset == "single" ? kSingle : "";
 }
 
-LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserved& observed) {
+LayoutVerdict CheckLayout(const stream::BoardLayout& layout, const LayoutObserved& observed) {
   LayoutVerdict verdict;
   verdict.degraded = observed.forward.left.samples == 0 || observed.forward.right.samples == 0;
   if (observed.left_alone && observed.right_alone) {

@@ -37,8 +37,8 @@ struct LayoutVerdict {
 };
 
 /// Leaning forward must move each board's COP forward in W; standing left must load the left one.
-LayoutVerdict JudgeLayout(const stream::BoardLayout& layout, const LayoutObserved& observed);
+LayoutVerdict CheckLayout(const stream::BoardLayout& layout, const LayoutObserved& observed);
 
-inline constexpr double kLeastLeanM = 0.015;  ///< Less movement than this is no lean.
+inline constexpr double kLeastLeanM = 0.015;  ///< Less movement than this does not count as a lean.
 
 }  // namespace footing::guide

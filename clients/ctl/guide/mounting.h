@@ -10,22 +10,22 @@ namespace footing::guide {
 
 /// It is fastened to a limb, so its directions have to be found.
 bool NeedsMounting(stream::DeviceRole role);
-/// How a device is worn, drawn for a terminal: shin outside, head band, wrist. Empty for boards.
+/// How a device is mounted, drawn for a terminal: shin outside, head band, wrist. Empty for boards.
 std::string Picture(stream::DeviceRole role);
 /// The same in a sentence.
 std::string Wearing(stream::DeviceRole role);
 
 inline constexpr double kStillForS = 2;
 
-/// What the worn devices show of "two seconds still, then three steps": where each stretch lies.
+/// What the mounted devices show of "two seconds still, then three steps": where each stretch lies.
 /// The steps begin half a second before a movement shows, so that its very first way is among them.
 /// A plain value that is asked again and again.
 class StillThenSteps {
  public:
   enum class Phase { kStill, kSteps, kDone };
 
-  /// `moving` is the largest shake of all worn devices during the last half second; not known (no
-  /// samples) counts as moving.
+  /// `moving` is the largest shake of all mounted devices during the last half second; not known
+  /// (no samples) counts as moving.
   void Advance(std::int64_t now_ns, double moving_mps2);
 
   Phase phase() const { return phase_; }

@@ -15,9 +15,9 @@ std::string Tenths(double value) {
 }
 
 /// Devices that are fastened to somebody; an editor's lies on the table.
-std::vector<stream::DeviceStatus> Fastened(const Situation& now, const Wishes& wishes) {
+std::vector<stream::DeviceStatus> Fastened(const Situation& now, const SetUpOptions& options) {
   std::vector<stream::DeviceStatus> fastened;
-  for (const auto& device : now.recent->Worn(wishes.rig)) {
+  for (const auto& device : now.recent->BodyDevices(options.rig)) {
     if (NeedsMounting(device.role)) fastened.push_back(device);
   }
   return fastened;
@@ -25,9 +25,9 @@ std::vector<stream::DeviceStatus> Fastened(const Situation& now, const Wishes& w
 
 }  // namespace
 
-Progress MountingStep::Solve(const Situation& now, const Wishes& wishes) {
+Progress MountingStep::Solve(const Situation& now, const SetUpOptions& options) {
   Progress progress;
-  for (const auto& device : Fastened(now, wishes)) {
+  for (const auto& device : Fastened(now, options)) {
     Action solve;
     solve.kind = Action::Kind::kSolveMounting;
     solve.key = "mounting " + device.serial;
@@ -43,11 +43,11 @@ Progress MountingStep::Solve(const Situation& now, const Wishes& wishes) {
   return progress;
 }
 
-Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
+Progress MountingStep::Advance(const Situation& now, const SetUpOptions& options) {
   Progress progress;
-  const auto worn = Fastened(now, wishes);
-  progress.finished = worn.empty();
-  if (worn.empty()) return progress;
+  const auto mounted = Fastened(now, options);
+  progress.finished = mounted.empty();
+  if (mounted.empty()) return progress;
   for (const Answer& answer : now.answers) {
     if (!asked_ || !answer.key.starts_with("mounting ")) continue;
     const bool passed = answer.ok && answer.residual <= kMountingBarDeg;
@@ -62,7 +62,7 @@ Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
   }
   if (asked_) return progress;
   double moving_mps2 = 0;
-  for (const auto& device : worn) {
+  for (const auto& device : mounted) {
     const Motion motion =
         now.recent->DeviceMotion(device.device, now.now_ns - kMovingNs, now.now_ns);
     moving_mps2 = std::max(moving_mps2, motion.samples == 0 ? kNotKnownMps2 : motion.shake_mps2);
@@ -73,7 +73,7 @@ Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
     case StillThenSteps::Phase::kStill:
       progress.prompt = "Put the devices on as shown, then stand still for two seconds.";
       progress.feedback += ", still for " + Tenths(stretches_.still_s(now.now_ns)) + " s";
-      for (const auto& device : worn) {
+      for (const auto& device : mounted) {
         if (progress.picture.find(Picture(device.role)) == std::string::npos) {
           progress.picture += Picture(device.role);
         }
@@ -85,7 +85,7 @@ Progress MountingStep::Advance(const Situation& now, const Wishes& wishes) {
           "Now take three steps forward, starting with the left foot, and stand again.";
       break;
     case StillThenSteps::Phase::kDone:
-      return Solve(now, wishes);
+      return Solve(now, options);
   }
   return progress;
 }

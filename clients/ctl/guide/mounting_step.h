@@ -7,14 +7,14 @@
 
 namespace footing::guide {
 
-/// Finds the rotation of every worn device by two seconds still and three steps. A rig without one
-/// finishes at once, without a result.
+/// Finds the rotation of every mounted device by two seconds still and three steps. A rig without
+/// one finishes at once, without a result.
 class MountingStep {
  public:
-  Progress Advance(const Situation& now, const Wishes& wishes);
+  Progress Advance(const Situation& now, const SetUpOptions& options);
 
  private:
-  Progress Solve(const Situation& now, const Wishes& wishes);
+  Progress Solve(const Situation& now, const SetUpOptions& options);
 
   StillThenSteps stretches_;
   bool asked_ = false;

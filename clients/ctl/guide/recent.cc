@@ -112,7 +112,7 @@ std::vector<stream::DeviceStatus> Recent::Boards(const std::string& rig) const {
   return Attached(devices_, rig, true);
 }
 
-std::vector<stream::DeviceStatus> Recent::Worn(const std::string& rig) const {
+std::vector<stream::DeviceStatus> Recent::BodyDevices(const std::string& rig) const {
   return Attached(devices_, rig, false);
 }
 

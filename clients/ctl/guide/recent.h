@@ -42,9 +42,9 @@ class Recent {
   void Add(const stream::BoardSample& sample);
 
   const std::vector<stream::DeviceStatus>& devices() const { return devices_; }
-  /// Attached devices of a rig: boards, or those worn and held. In the order of their roles.
+  /// Attached devices of a rig: boards, or those mounted or held. In the order of their roles.
   std::vector<stream::DeviceStatus> Boards(const std::string& rig) const;
-  std::vector<stream::DeviceStatus> Worn(const std::string& rig) const;
+  std::vector<stream::DeviceStatus> BodyDevices(const std::string& rig) const;
   std::optional<stream::DeviceStatus> Holding(const std::string& rig,
                                               stream::DeviceRole role) const;
 

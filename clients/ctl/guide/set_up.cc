@@ -28,8 +28,8 @@ SetUp::Step SetUp::StepOf(Item item) {
   return AdapterStep();
 }
 
-SetUp::SetUp(Wishes wishes, std::vector<Item> items)
-    : wishes_(std::move(wishes)), items_(std::move(items)) {
+SetUp::SetUp(SetUpOptions options, std::vector<Item> items)
+    : options_(std::move(options)), items_(std::move(items)) {
   if (items_.empty()) items_ = AllItems();
   step_ = StepOf(items_.front());
 }
@@ -46,16 +46,16 @@ Progress SetUp::Advance(const Situation& now) {
     progress.finished = true;
     return progress;
   }
-  progress = std::visit([&](auto& step) { return step.Advance(now, wishes_); }, step_);
+  progress = std::visit([&](auto& step) { return step.Advance(now, options_); }, step_);
   if (progress_ns_ == 0 || progress.prompt != asked_ || !progress.actions.empty()) {
     progress_ns_ = now.now_ns;
     asked_ = progress.prompt;
   }
   const bool given_up =
-      !progress.finished && now.now_ns - progress_ns_ > SecondsToNanoseconds(wishes_.patience_s);
+      !progress.finished && now.now_ns - progress_ns_ > SecondsToNanoseconds(options_.patience_s);
   if (given_up) {
     progress.results = {Outcome(items_[index_], "", false, 0, "",
-                                "given up waiting: " + asked_ + " " + progress.feedback)};
+                                "timed out: " + asked_ + " " + progress.feedback)};
   } else if (!progress.finished) {
     if (!refused_.empty() && !progress.prompt.empty()) {
       progress.prompt += " (Again, because " + refused_ + ")";
@@ -64,7 +64,7 @@ Progress SetUp::Advance(const Situation& now) {
   }
   const auto bad = std::find_if(progress.results.begin(), progress.results.end(),
                                 [](const auto& result) { return !result.passed; });
-  if (bad != progress.results.end() && !given_up && ++tried_ < wishes_.tries) {
+  if (bad != progress.results.end() && !given_up && ++tried_ < options_.tries) {
     refused_ = bad->note;
     progress.results.clear();
     Begin();

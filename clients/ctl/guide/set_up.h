@@ -16,7 +16,7 @@ namespace footing::guide {
 /// given up when it gets nowhere. A plain value.
 class SetUp {
  public:
-  SetUp(Wishes wishes, std::vector<Item> items);
+  SetUp(SetUpOptions options, std::vector<Item> items);
 
   /// Call some twenty times a second with what is known. `results` of the answer are final and to
   /// be recorded; finished means that all items are through.
@@ -33,7 +33,7 @@ class SetUp {
   static Step StepOf(Item item);
   void Begin();
 
-  Wishes wishes_;
+  SetUpOptions options_;
   std::vector<Item> items_;
   std::size_t index_ = 0;
   Step step_;

@@ -27,7 +27,7 @@ std::string Contradiction(const stream::SetupItem& item,
       if (device.moved) return "a board was moved";
       const auto* roles = Find(items, Item::kRoles, device.serial);
       if (roles != nullptr && roles->wall_time_ns > item.wall_time_ns) {
-        return "a board was given its role anew";
+        return "a board has a new role";
       }
     }
     return "";

@@ -17,19 +17,19 @@ const char* Name(Item item);
 std::optional<Item> ItemNamed(const std::string& name);
 const std::vector<Item>& AllItems();
 
-/// What the person chose on the command line.
-struct Wishes {
+/// Options of the command line.
+struct SetUpOptions {
   std::string rig = "main";
   std::string preset;  ///< Empty: the rig's own layout, else one_foot_each (or single).
   double gap_mm = kNoGapMm;
-  /// What the hand devices are worn as, each once; empty: as their roles are now.
-  std::vector<stream::DeviceRole> worn;
+  /// Roles of the hand devices, each once; empty: their present roles.
+  std::vector<stream::DeviceRole> body_roles;
   std::optional<double> mass_kg;
-  double patience_s = 60;  ///< An item that gets nowhere for so long has failed.
-  double settle_s = 4;     ///< No new device for so long: all are there.
+  double patience_s = 60;  ///< Timeout of an item that makes no progress.
+  double settle_s = 4;     ///< Without a new device in this time, all are there.
   int tries = 2;
 
-  static constexpr double kNoGapMm = -1;  ///< The usual one.
+  static constexpr double kNoGapMm = -1;  ///< The default one.
 };
 
 /// Something that footingd is asked to do. Its answer comes back under the same key.

@@ -7,13 +7,13 @@ namespace {
 
 constexpr std::array kNames = {"wiimote", "board", "move"};
 
-struct NintendoWords {
+struct NintendoText {
   const char* button;  ///< Where the red button is.
   const char* name;    ///< As bluetoothctl shows it.
   const char* asleep;  ///< How it is woken later.
 };
 
-NintendoWords WordsOf(Kind kind) {
+NintendoText TextOf(Kind kind) {
   if (kind == Kind::kBoard) {
     return {"Turn the board over and open the lid of its batteries: the red button is in there",
             "Nintendo RVL-WBC-01", "its power button, at the front edge"};
@@ -43,7 +43,7 @@ void AddHost(const Host& host, std::vector<Step>& steps) {
 }
 
 std::vector<Step> NintendoSteps(Kind kind, const Host& host) {
-  const NintendoWords words = WordsOf(kind);
+  const NintendoText text = TextOf(kind);
   std::vector<Step> steps;
   AddHost(host, steps);
   steps.push_back({"Start bluetoothctl in a second terminal. What follows is typed there.",
@@ -51,11 +51,11 @@ std::vector<Step> NintendoSteps(Kind kind, const Host& host) {
   steps.push_back({"Power on, with an agent, and look for devices.",
                    "power on\nagent on\ndefault-agent\nscan on", "Discovery started"});
   steps.push_back(
-      {std::string(words.button) +
+      {std::string(text.button) +
            ". Press it once; four lamps blink for 20 s. Only this button makes a bond, so "
            "that the device comes back by itself; with 1+2 held it is lost again at the "
            "next switch-off.",
-       "", std::string("[NEW] Device ADDRESS ") + words.name});
+       "", std::string("[NEW] Device ADDRESS ") + text.name});
   steps.push_back(
       {"Pair while it blinks. No PIN is to be typed: BlueZ gives it (the adapter's own "
        "address, backwards). If it asks for one press the red button again and repeat.",
@@ -64,7 +64,7 @@ std::vector<Step> NintendoSteps(Kind kind, const Host& host) {
       {"Connect at once: only then the device keeps the bond. And trust it, so that it may "
        "come back.",
        "connect ADDRESS\ntrust ADDRESS", "Connection successful"});
-  steps.push_back({"Leave bluetoothctl. Later " + std::string(words.asleep) + " wakes it.",
+  steps.push_back({"Leave bluetoothctl. Later " + std::string(text.asleep) + " wakes it.",
                    "scan off\nquit", ""});
   return steps;
 }
@@ -79,7 +79,7 @@ std::vector<Step> MoveSteps(const Host& host) {
   steps.push_back(
       {"Write the adapter's address into the Move, over the same cable. BlueZ has no way to "
        "do that for a Move (https://github.com/thp/psmoveapi/issues/489); the program psmove "
-       "of the PS Move API has: it writes feature report 5 and tells BlueZ of the Move.",
+       "of the PS Move API has: it writes feature report 5 and registers the Move with BlueZ.",
        "sudo psmove pair", "the address of the Move"});
   steps.push_back({"Start bluetoothctl in a second terminal, and let the Move in.",
                    "bluetoothctl\npower on\nagent on\ndefault-agent\ntrust ADDRESS",

@@ -1,8 +1,8 @@
-#include "clients/ctl/words/find_device.h"
+#include "clients/ctl/display/find_device.h"
 
 #include <gmock/gmock.h>
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 namespace {
 
 using ::testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(ParseRigRole, ListsTheRolesForAnythingElse) {
 }
 
 }  // namespace
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

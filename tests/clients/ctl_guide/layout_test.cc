@@ -30,7 +30,7 @@ Load At(double force_n, double yaw_rad, double forward_m, double left_m) {
 }
 
 /// Somebody does as asked on two boards that lie at these yaws in truth.
-LayoutObserved Person(double left_yaw_rad, double right_yaw_rad, double lean_m = 0.05) {
+LayoutObserved PersonOnBoards(double left_yaw_rad, double right_yaw_rad, double lean_m = 0.05) {
   LayoutObserved observed;
   observed.left_alone = Stance{At(700, left_yaw_rad, 0, 0), Standing(2, 0, 0)};
   observed.right_alone = Stance{Standing(3, 0, 0), At(700, right_yaw_rad, 0, 0)};
@@ -44,46 +44,48 @@ const stream::BoardLayout kOneFootEach = *board::LayoutNamed("one_foot_each", 20
 constexpr double kOut = kPi / 2;
 
 TEST(Layout, PassesWhenTheBoardsLieAsTheyShould) {
-  const LayoutVerdict verdict = JudgeLayout(kOneFootEach, Person(-kOut, kOut));
+  const LayoutVerdict verdict = CheckLayout(kOneFootEach, PersonOnBoards(-kOut, kOut));
   EXPECT_TRUE(verdict.passed()) << verdict.note;
   EXPECT_NEAR(verdict.residual_mm, 4, 1e-6);
   EXPECT_NEAR(verdict.rest_n, 3, 1e-9);
-  EXPECT_TRUE(JudgeLayout(*board::LayoutNamed("side_by_side", 20), Person(0, 0)).passed());
+  EXPECT_TRUE(CheckLayout(*board::LayoutNamed("side_by_side", 20), PersonOnBoards(0, 0)).passed());
 }
 
 TEST(Layout, TellsATurnedBoardAndWhichOne) {
-  EXPECT_EQ(JudgeLayout(kOneFootEach, Person(kOut, kOut)).fault, LayoutFault::kLeftTurned);
-  EXPECT_EQ(JudgeLayout(kOneFootEach, Person(-kOut, -kOut)).fault, LayoutFault::kRightTurned);
-  EXPECT_EQ(JudgeLayout(kOneFootEach, Person(kOut, -kOut)).fault, LayoutFault::kBothTurned);
-  EXPECT_NE(JudgeLayout(kOneFootEach, Person(kOut, kOut)).note.find("half a turn"),
+  EXPECT_EQ(CheckLayout(kOneFootEach, PersonOnBoards(kOut, kOut)).fault, LayoutFault::kLeftTurned);
+  EXPECT_EQ(CheckLayout(kOneFootEach, PersonOnBoards(-kOut, -kOut)).fault,
+            LayoutFault::kRightTurned);
+  EXPECT_EQ(CheckLayout(kOneFootEach, PersonOnBoards(kOut, -kOut)).fault, LayoutFault::kBothTurned);
+  EXPECT_NE(CheckLayout(kOneFootEach, PersonOnBoards(kOut, kOut)).note.find("half a turn"),
             std::string::npos);
 }
 
 TEST(Layout, TellsAQuarterTurn) {
-  const LayoutVerdict verdict = JudgeLayout(kOneFootEach, Person(0, kOut));
+  const LayoutVerdict verdict = CheckLayout(kOneFootEach, PersonOnBoards(0, kOut));
   EXPECT_EQ(verdict.fault, LayoutFault::kLeftTurned);
   EXPECT_NE(verdict.note.find("quarter"), std::string::npos) << verdict.note;
 }
 
 TEST(Layout, TellsSwappedBoards) {
-  LayoutObserved observed = Person(-kOut, kOut);
+  LayoutObserved observed = PersonOnBoards(-kOut, kOut);
   std::swap(observed.left_alone->left, observed.left_alone->right);
   std::swap(observed.right_alone->left, observed.right_alone->right);
-  EXPECT_EQ(JudgeLayout(kOneFootEach, observed).fault, LayoutFault::kSwapped);
+  EXPECT_EQ(CheckLayout(kOneFootEach, observed).fault, LayoutFault::kSwapped);
 }
 
 TEST(Layout, TakesNoLeanForNoVerdict) {
-  EXPECT_EQ(JudgeLayout(kOneFootEach, Person(-kOut, kOut, 0.005)).fault, LayoutFault::kNoContact);
+  EXPECT_EQ(CheckLayout(kOneFootEach, PersonOnBoards(-kOut, kOut, 0.005)).fault,
+            LayoutFault::kNoContact);
 }
 
 TEST(Layout, TellsABoardThatFeelsNobody) {
-  LayoutObserved observed = Person(-kOut, kOut);
+  LayoutObserved observed = PersonOnBoards(-kOut, kOut);
   observed.right_alone->right = Standing(10, 0, 0);
   observed.right_alone->left = Standing(5, 0, 0);
-  EXPECT_EQ(JudgeLayout(kOneFootEach, observed).fault, LayoutFault::kNoContact);
-  observed = Person(-kOut, kOut);
+  EXPECT_EQ(CheckLayout(kOneFootEach, observed).fault, LayoutFault::kNoContact);
+  observed = PersonOnBoards(-kOut, kOut);
   observed.forward.right = Standing(20, 0, 0);
-  EXPECT_EQ(JudgeLayout(kOneFootEach, observed).fault, LayoutFault::kNoContact);
+  EXPECT_EQ(CheckLayout(kOneFootEach, observed).fault, LayoutFault::kNoContact);
 }
 
 TEST(Layout, ChecksASingleBoardByTheLeanAlone) {
@@ -91,11 +93,11 @@ TEST(Layout, ChecksASingleBoardByTheLeanAlone) {
   observed.upright.left = At(700, 0, 0, 0);
   observed.forward.left = At(700, 0, 0.06, 0.001);
   const auto single = *board::LayoutNamed("single", 0);
-  const LayoutVerdict right_way = JudgeLayout(single, observed);
+  const LayoutVerdict right_way = CheckLayout(single, observed);
   EXPECT_TRUE(right_way.passed()) << right_way.note;
   EXPECT_TRUE(right_way.degraded);
   observed.forward.left = At(700, 0, -0.06, 0);
-  EXPECT_EQ(JudgeLayout(single, observed).fault, LayoutFault::kLeftTurned);
+  EXPECT_EQ(CheckLayout(single, observed).fault, LayoutFault::kLeftTurned);
 }
 
 TEST(Layout, EveryPresetHasAPicture) {

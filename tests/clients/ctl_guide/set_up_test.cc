@@ -39,11 +39,11 @@ class Person {
 
   /// Runs a set-up to its end, at most two minutes of its own time.
   std::vector<stream::SetupItem> Do(std::vector<Item> items,
-                                    std::vector<stream::DeviceRole> worn = {}) {
-    Wishes wishes;
-    wishes.patience_s = 20;
-    wishes.worn = std::move(worn);
-    SetUp set_up(wishes, std::move(items));
+                                    std::vector<stream::DeviceRole> body_roles = {}) {
+    SetUpOptions options;
+    options.patience_s = 20;
+    options.body_roles = std::move(body_roles);
+    SetUp set_up(options, std::move(items));
     for (int i = 0; i < 20 * 120; ++i) {
       Live();
       Situation now;
@@ -79,7 +79,7 @@ class Person {
     heard_ns_ = now_ns_;
   }
 
-  bool Asked(const char* words) const { return !deaf && heard_.find(words) != std::string::npos; }
+  bool Asked(const char* text) const { return !deaf && heard_.find(text) != std::string::npos; }
 
   /// A twentieth of a second of samples.
   void Live() {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
-#include "clients/ctl/words/device_words.h"
-#include "clients/ctl/words/live.h"
-#include "clients/ctl/words/text.h"
+#include "clients/ctl/display/device_table.h"
+#include "clients/ctl/display/format.h"
+#include "clients/ctl/display/live_screen.h"
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 namespace {
 
 constexpr double kKilogramN = 9.80665;  // Standard gravity.
@@ -205,4 +205,4 @@ TEST(LiveJson, CountsSamplesAndGivesTheNewest) {
 }
 
 }  // namespace
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

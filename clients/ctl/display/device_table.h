@@ -7,7 +7,7 @@
 #include "common/stream/device.h"
 #include "common/stream/setup.h"
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 
 /// All that is known of a device. battery_fraction and clock_offset_sd_ms are null while unknown;
 /// leds is text such as "1000", sphere such as "#00ff40".
@@ -26,4 +26,4 @@ nlohmann::ordered_json SetupToJson(const std::vector<stream::RigSetup>& rigs);
 /// Every item with its date, residual and whether it is to be redone.
 std::string SetupTable(const std::vector<stream::RigSetup>& rigs);
 
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

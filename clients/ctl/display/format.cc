@@ -1,4 +1,4 @@
-#include "clients/ctl/words/text.h"
+#include "clients/ctl/display/format.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "common/text/number.h"
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 namespace {
 
 std::string TwoDigits(unsigned value) {
@@ -73,4 +73,4 @@ std::string Lamps(std::uint32_t leds) {
   return text;
 }
 
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

@@ -1,9 +1,9 @@
-#include "clients/ctl/words/find_device.h"
+#include "clients/ctl/display/find_device.h"
 
 #include <algorithm>
 #include <cctype>
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 namespace {
 
 using stream::DeviceStatus;
@@ -59,9 +59,9 @@ Result<std::pair<std::string, stream::DeviceRole>> ParseRigRole(const std::strin
     for (int i = 1; i <= static_cast<int>(stream::DeviceRole::kEditor); ++i) {
       roles += std::string(" ") + stream::Name(static_cast<stream::DeviceRole>(i));
     }
-    return UsageError(text + " is no RIG/ROLE such as main/left_hand; roles are:" + roles);
+    return UsageError(text + " is not a RIG/ROLE such as main/left_hand; roles are:" + roles);
   }
   return std::make_pair(rig, role);
 }
 
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

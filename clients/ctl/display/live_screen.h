@@ -10,7 +10,7 @@
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 
 /// What watch shows: the newest status and samples of every device. A plain value.
 struct Live {
@@ -36,4 +36,4 @@ std::string LiveLine(const Live& live);
 /// {seconds, devices: [...]}, each with its newest sample as "motion", "nunchuk" or "board".
 nlohmann::ordered_json LiveToJson(const Live& live, double seconds);
 
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

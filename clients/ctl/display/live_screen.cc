@@ -1,12 +1,12 @@
-#include "clients/ctl/words/live.h"
+#include "clients/ctl/display/live_screen.h"
 
 #include <cmath>
 
-#include "clients/ctl/words/device_words.h"
-#include "clients/ctl/words/text.h"
+#include "clients/ctl/display/device_table.h"
+#include "clients/ctl/display/format.h"
 #include "common/units/units.h"
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 namespace {
 
 using nlohmann::ordered_json;
@@ -174,4 +174,4 @@ ordered_json LiveToJson(const Live& live, double seconds) {
   return {{"seconds", seconds}, {"link", live.link}, {"devices", std::move(devices)}};
 }
 
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

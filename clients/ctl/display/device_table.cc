@@ -1,10 +1,10 @@
-#include "clients/ctl/words/device_words.h"
+#include "clients/ctl/display/device_table.h"
 
 #include <array>
 
-#include "clients/ctl/words/text.h"
+#include "clients/ctl/display/format.h"
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 namespace {
 
 using nlohmann::ordered_json;
@@ -149,4 +149,4 @@ std::string SetupTable(const std::vector<stream::RigSetup>& rigs) {
   return rows.size() == 1 ? "nothing is set up yet: footing-ctl setup\n" : Table(rows);
 }
 
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

@@ -8,7 +8,7 @@
 #include "common/result/result.h"
 #include "common/stream/device.h"
 
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 
 /// The device that a person names: by serial (any case), by its number, by RIG/ROLE, or by ROLE
 /// alone where only one rig has it. A device that is lost counts only by its serial or number.
@@ -19,4 +19,4 @@ Result<stream::DeviceStatus> FindDevice(const std::vector<stream::DeviceStatus>&
 /// "main/left_hand" into its two parts. Usage error with the roles that there are otherwise.
 Result<std::pair<std::string, stream::DeviceRole>> ParseRigRole(const std::string& text);
 
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display

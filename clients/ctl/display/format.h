@@ -5,7 +5,7 @@
 #include <vector>
 
 /// Small pieces of text for a terminal. No locale.
-namespace footing::ctl::words {
+namespace footing::ctl::display {
 
 /// "1.5"; decimals 0 to 9. What is not finite is "-".
 std::string Fixed(double value, int decimals);
@@ -23,4 +23,4 @@ std::string Bar(double value, double full, int cells);
 /// Bits 0 to 3 as "1010", first lamp first.
 std::string Lamps(std::uint32_t leds);
 
-}  // namespace footing::ctl::words
+}  // namespace footing::ctl::display
