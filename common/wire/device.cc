@@ -1,109 +1,48 @@
-#include "common/wire/scalar.h"
-#include "common/wire/wire.h"
+#include "common/wire/fields.h"
 
 namespace footing::wire {
-namespace {
 
-/// The same number on the other side; the enum's zero for a number that its .proto does not know.
-template <typename To, typename From>
-To Known(From value, bool known) {
-  return known ? static_cast<To>(static_cast<int>(value)) : static_cast<To>(0);
+template <typename Way>
+void Fields(Way way, const stream::DeviceStatus&) {
+  FOOTING_FIELD(device);
+  FOOTING_FIELD(serial);
+  FOOTING_ENUM(DeviceKind, kind);
+  FOOTING_ENUM(DeviceState, state);
+  FOOTING_FIELD(rig);
+  FOOTING_ENUM(DeviceRole, role);
+  FOOTING_FIELD(simulated);
+  FOOTING_ENUM(CalibrationOrigin, calibration);
+  FOOTING_FIELD(report_rate_hz);
+  FOOTING_FIELD(jitter_ms);
+  FOOTING_FIELD(reports);
+  FOOTING_FIELD(gaps);
+  FOOTING_FIELD(repeats);
+  FOOTING_FIELD(clipped);
+  FOOTING_FIELD(undecodable);
+  FOOTING_FIELD(battery_fraction);
+  FOOTING_FIELD(battery_low);
+  FOOTING_FIELD(leds);
+  FOOTING_FIELD(rumble);
+  FOOTING_FIELD(note);
+  FOOTING_FIELD(name);
+  FOOTING_FIELD(last_report_ns);
+  FOOTING_ENUM(Extension, extension);
+  FOOTING_ENUM(CalibrationOrigin, extension_calibration);
+  FOOTING_ENUM(CalibrationOrigin, gyroscope_calibration);
+  FOOTING_FIELD(driver);
+  FOOTING_FIELD(place);
+  FOOTING_FIELD(mode_reasserts);
+  FOOTING_FIELD(queue_drops);
+  FOOTING_FIELD(writes_failed);
+  FOOTING_FIELD(extension_changes);
+  FOOTING_FIELD(tared);
+  FOOTING_FIELD(mounted);
+  FOOTING_FIELD(slipped);
+  FOOTING_FIELD(moved);
+  FOOTING_FIELD(clock_offset_sd_ms);
+  FOOTING_FIELD(sphere_rgb);
 }
-
-}  // namespace
-
-v1::DeviceStatus ToProto(const stream::DeviceStatus& value) {
-  v1::DeviceStatus message;
-  message.set_device(value.device);
-  message.set_serial(Utf8(value.serial));
-  message.set_kind(static_cast<v1::DeviceKind>(value.kind));
-  message.set_state(static_cast<v1::DeviceState>(value.state));
-  message.set_rig(Utf8(value.rig));
-  message.set_role(static_cast<v1::DeviceRole>(value.role));
-  message.set_simulated(value.simulated);
-  message.set_calibration(static_cast<v1::CalibrationOrigin>(value.calibration));
-  message.set_report_rate_hz(Finite(value.report_rate_hz));
-  message.set_jitter_ms(Finite(value.jitter_ms));
-  message.set_reports(value.reports);
-  message.set_gaps(value.gaps);
-  message.set_repeats(value.repeats);
-  message.set_clipped(value.clipped);
-  message.set_undecodable(value.undecodable);
-  message.set_battery_fraction(Finite(value.battery_fraction));
-  message.set_battery_low(value.battery_low);
-  message.set_leds(value.leds);
-  message.set_rumble(value.rumble);
-  message.set_note(Utf8(value.note));
-  message.set_name(Utf8(value.name));
-  message.set_last_report_ns(value.last_report_ns);
-  message.set_extension(static_cast<v1::Extension>(value.extension));
-  message.set_extension_calibration(
-      static_cast<v1::CalibrationOrigin>(value.extension_calibration));
-  message.set_gyroscope_calibration(
-      static_cast<v1::CalibrationOrigin>(value.gyroscope_calibration));
-  message.set_driver(Utf8(value.driver));
-  message.set_place(Utf8(value.place));
-  message.set_mode_reasserts(value.mode_reasserts);
-  message.set_queue_drops(value.queue_drops);
-  message.set_writes_failed(value.writes_failed);
-  message.set_extension_changes(value.extension_changes);
-  message.set_tared(value.tared);
-  message.set_mounted(value.mounted);
-  message.set_slipped(value.slipped);
-  message.set_moved(value.moved);
-  message.set_clock_offset_sd_ms(Finite(value.clock_offset_sd_ms));
-  message.set_sphere_rgb(value.sphere_rgb);
-  return message;
-}
-
-stream::DeviceStatus FromProto(const v1::DeviceStatus& message) {
-  stream::DeviceStatus value;
-  value.device = message.device();
-  value.serial = message.serial();
-  value.kind = Known<stream::DeviceKind>(message.kind(), v1::DeviceKind_IsValid(message.kind()));
-  value.state =
-      Known<stream::DeviceState>(message.state(), v1::DeviceState_IsValid(message.state()));
-  value.rig = message.rig();
-  value.role = Known<stream::DeviceRole>(message.role(), v1::DeviceRole_IsValid(message.role()));
-  value.simulated = message.simulated();
-  value.calibration = Known<stream::CalibrationOrigin>(
-      message.calibration(), v1::CalibrationOrigin_IsValid(message.calibration()));
-  value.report_rate_hz = Finite(message.report_rate_hz());
-  value.jitter_ms = Finite(message.jitter_ms());
-  value.reports = message.reports();
-  value.gaps = message.gaps();
-  value.repeats = message.repeats();
-  value.clipped = message.clipped();
-  value.undecodable = message.undecodable();
-  value.battery_fraction = Finite(message.battery_fraction());
-  value.battery_low = message.battery_low();
-  value.leds = message.leds();
-  value.rumble = message.rumble();
-  value.note = message.note();
-  value.name = message.name();
-  value.last_report_ns = message.last_report_ns();
-  value.extension =
-      Known<stream::Extension>(message.extension(), v1::Extension_IsValid(message.extension()));
-  value.extension_calibration = Known<stream::CalibrationOrigin>(
-      message.extension_calibration(),
-      v1::CalibrationOrigin_IsValid(message.extension_calibration()));
-  value.gyroscope_calibration = Known<stream::CalibrationOrigin>(
-      message.gyroscope_calibration(),
-      v1::CalibrationOrigin_IsValid(message.gyroscope_calibration()));
-  value.driver = message.driver();
-  value.place = message.place();
-  value.mode_reasserts = message.mode_reasserts();
-  value.queue_drops = message.queue_drops();
-  value.writes_failed = message.writes_failed();
-  value.extension_changes = message.extension_changes();
-  value.tared = message.tared();
-  value.mounted = message.mounted();
-  value.slipped = message.slipped();
-  value.moved = message.moved();
-  value.clock_offset_sd_ms = Finite(message.clock_offset_sd_ms());
-  value.sphere_rgb = message.sphere_rgb();
-  return value;
-}
+FOOTING_BOTH_WAYS(DeviceStatus)
 
 v1::RawReport ToProto(const stream::RawReport& value) {
   v1::RawReport message;

@@ -1,9 +1,9 @@
 #include <limits>
 
-#include "common/wire/scalar.h"
-#include "common/wire/wire.h"
+#include "common/wire/fields.h"
 
 namespace footing::wire {
+
 namespace {
 
 stream::DeviceRole RoleOf(v1::DeviceRole role) {
@@ -81,33 +81,19 @@ stream::ReferenceFrame FromProto(const v1::ReferenceFrame& message) {
   return value;
 }
 
-v1::HandSample ToProto(const stream::HandSample& value) {
-  v1::HandSample message;
-  message.set_rig(Utf8(value.rig));
-  message.set_role(static_cast<v1::DeviceRole>(value.role));
-  message.set_received_ns(value.received_ns);
-  message.set_sampled_ns(value.sampled_ns);
-  *message.mutable_position_m() = ToProto(value.position_m);
-  *message.mutable_sd_m() = ToProto(value.sd_m);
-  message.set_confidence(Finite(value.confidence));
-  message.set_simulated(value.simulated);
-  message.set_tracker(Utf8(value.tracker));
-  return message;
+template <typename Way>
+void Fields(Way way, const stream::HandSample&) {
+  FOOTING_FIELD(rig);
+  FOOTING_ENUM(DeviceRole, role);
+  FOOTING_FIELD(received_ns);
+  FOOTING_FIELD(sampled_ns);
+  FOOTING_MESSAGE(position_m);
+  FOOTING_MESSAGE(sd_m);
+  FOOTING_FIELD(confidence);
+  FOOTING_FIELD(simulated);
+  FOOTING_FIELD(tracker);
 }
-
-stream::HandSample FromProto(const v1::HandSample& message) {
-  stream::HandSample value;
-  value.rig = message.rig();
-  value.role = RoleOf(message.role());
-  value.received_ns = message.received_ns();
-  value.sampled_ns = message.sampled_ns();
-  value.position_m = FromProto(message.position_m());
-  value.sd_m = FromProto(message.sd_m());
-  value.confidence = Finite(message.confidence());
-  value.simulated = message.simulated();
-  value.tracker = message.tracker();
-  return value;
-}
+FOOTING_BOTH_WAYS(HandSample)
 
 v1::ReferencePose ToProto(const stream::ReferencePose& value) {
   v1::ReferencePose message;
