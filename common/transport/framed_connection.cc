@@ -146,12 +146,12 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   }
 
   void Fill() {
-    while (!queue_.empty() && batch_->room() > 0) {
+    while (!queue_.empty() && batch_->free_buffers() > 0) {
       queued_bytes_ -= queue_.front().size() - kLengthBytes;
       batch_->AddOwned(std::move(queue_.front()));
       queue_.pop_front();
     }
-    if (state_ == State::kOpen && batch_->room() > 0 && handlers_.on_writable) {
+    if (state_ == State::kOpen && batch_->free_buffers() > 0 && handlers_.on_writable) {
       handlers_.on_writable(*batch_);
     }
   }

@@ -123,7 +123,7 @@ void Session::AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reaso
 
 void Session::Fill(WriteBatch& batch) {
   // A tick and a Gap in front of it.
-  while (batch.room() > kBuffersPerTick) {
+  while (batch.free_buffers() > kBuffersPerTick) {
     if (!FillLive(batch) && !FillCatchUp(batch) && !FillRefill(batch)) return;
   }
 }

@@ -5,14 +5,14 @@
 namespace footing::transport {
 namespace {
 
-void Set(std::vector<CarriedField>& carried, std::uint32_t field, const SharedTick& tick) {
-  for (CarriedField& one : carried) {
+void Set(std::vector<RetainedField>& retained, std::uint32_t field, const SharedTick& tick) {
+  for (RetainedField& one : retained) {
     if (one.field == field) {
       one.tick = tick;
       return;
     }
   }
-  carried.push_back({field, tick});
+  retained.push_back({field, tick});
 }
 
 }  // namespace
@@ -22,13 +22,13 @@ TickQueue::TickQueue(QueueRule rule, std::size_t capacity, std::set<std::uint32_
       capacity_(rule == QueueRule::kLatest ? 1 : std::max<std::size_t>(1, capacity)),
       retained_(std::move(retained)) {}
 
-void TickQueue::Carry(const SharedTick& tick, std::vector<CarriedField>& carried) const {
+void TickQueue::Retain(const SharedTick& tick, std::vector<RetainedField>& retained) const {
   for (const Slice& slice : tick->slices) {
-    if (retained_.count(slice.field) > 0) Set(carried, slice.field, tick);
+    if (retained_.count(slice.field) > 0) Set(retained, slice.field, tick);
   }
 }
 
-void TickQueue::Skip(const SharedTick& tick) { Carry(tick, for_next_); }
+void TickQueue::Skip(const SharedTick& tick) { Retain(tick, for_next_); }
 
 bool TickQueue::Push(SharedTick tick) {
   if (entries_.size() >= capacity_) {
@@ -49,11 +49,11 @@ void TickQueue::DropOldest() {
   dropped_ = Dropped{dropped_ ? dropped_->from : sequence, sequence};
   ++dropped_ticks_;
   // What the dropped one contained, then its own, then what its heir has already: the newest stays.
-  std::vector<CarriedField> carried = std::move(oldest.carried);
-  Carry(oldest.tick, carried);
+  std::vector<RetainedField> retained = std::move(oldest.retained);
+  Retain(oldest.tick, retained);
   Entry& heir = entries_.front();
-  for (const CarriedField& one : heir.carried) Set(carried, one.field, one.tick);
-  heir.carried = std::move(carried);
+  for (const RetainedField& one : heir.retained) Set(retained, one.field, one.tick);
+  heir.retained = std::move(retained);
 }
 
 bool TickQueue::Pop(Entry& entry) {

@@ -16,7 +16,7 @@ namespace footing::transport {
 enum class QueueRule { kLatest = 1, kDropOldest = 2, kReliable = 3 };
 
 /// A channel's field out of another tick than the one it goes along with.
-struct CarriedField {
+struct RetainedField {
   std::uint32_t field = 0;
   SharedTick tick;
 };
@@ -35,7 +35,7 @@ class TickQueue {
  public:
   struct Entry {
     SharedTick tick;
-    std::vector<CarriedField> carried;
+    std::vector<RetainedField> retained;
   };
 
   TickQueue() = default;
@@ -57,13 +57,13 @@ class TickQueue {
 
  private:
   void DropOldest();
-  void Carry(const SharedTick& tick, std::vector<CarriedField>& carried) const;
+  void Retain(const SharedTick& tick, std::vector<RetainedField>& retained) const;
 
   QueueRule rule_ = QueueRule::kDropOldest;
   std::size_t capacity_ = 1;
   std::set<std::uint32_t> retained_;
   std::deque<Entry> entries_;
-  std::vector<CarriedField> for_next_;  ///< Retained fields of ticks skipped since the last Push.
+  std::vector<RetainedField> for_next_;  ///< Retained fields of ticks skipped since the last Push.
   std::optional<Dropped> dropped_;
   std::uint64_t dropped_ticks_ = 0;
 };

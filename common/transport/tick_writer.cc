@@ -29,13 +29,13 @@ std::vector<Piece> PiecesOf(const TickQueue::Entry& entry, const Subscription& s
     if (subscription.fields.count(slice.field) > 0) Add(entry.tick, slice, pieces);
   }
   std::size_t size = entry.tick->bytes.size();
-  for (const CarriedField& carried : entry.carried) {
-    const bool wanted = subscription.fields.count(carried.field) > 0;
-    if (!wanted || entry.tick->Find(carried.field) != nullptr) continue;
-    const Slice& slice = *carried.tick->Find(carried.field);
+  for (const RetainedField& retained : entry.retained) {
+    const bool wanted = subscription.fields.count(retained.field) > 0;
+    if (!wanted || entry.tick->Find(retained.field) != nullptr) continue;
+    const Slice& slice = *retained.tick->Find(retained.field);
     if (size + slice.size > subscription.max_channel_bytes) continue;
     size += slice.size;
-    Add(carried.tick, slice, pieces);
+    Add(retained.tick, slice, pieces);
   }
   return pieces;
 }
@@ -52,7 +52,7 @@ void AddTick(const TickQueue::Entry& entry, const Subscription& subscription, Ti
   static_assert(kMaxTickHeadBytes <= WriteBatch::kHeadBytes);
   head.sequence = entry.tick->sequence;
   head.host_ns = entry.tick->host_ns;
-  if (subscription.all && entry.carried.empty()) {  // The usual case.
+  if (subscription.all && entry.retained.empty()) {  // The usual case.
     AddHead(head, entry.tick->bytes.size(), batch);
     if (!entry.tick->bytes.empty()) {
       batch.AddShared(entry.tick, entry.tick->bytes.data(), entry.tick->bytes.size());

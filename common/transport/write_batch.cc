@@ -8,7 +8,7 @@
 namespace footing::transport {
 
 void WriteBatch::AddOwned(std::string bytes) {
-  FOOTING_CHECK(room() > 0);
+  FOOTING_CHECK(free_buffers() > 0);
   if (bytes.size() <= kHeadBytes) {
     AddHead(bytes.data(), bytes.size());
     return;
@@ -18,14 +18,14 @@ void WriteBatch::AddOwned(std::string bytes) {
 }
 
 void WriteBatch::AddHead(const char* bytes, std::size_t size) {
-  FOOTING_CHECK(room() > 0 && size <= kHeadBytes);
+  FOOTING_CHECK(free_buffers() > 0 && size <= kHeadBytes);
   auto& head = heads_[heads_used_++];
   std::copy(bytes, bytes + size, head.begin());
   buffers_.emplace_back(head.data(), size);
 }
 
 void WriteBatch::AddShared(std::shared_ptr<const void> owner, const char* bytes, std::size_t size) {
-  FOOTING_CHECK(room() > 0);
+  FOOTING_CHECK(free_buffers() > 0);
   if (shared_.empty() || shared_.back() != owner) shared_.push_back(std::move(owner));
   buffers_.emplace_back(bytes, size);
 }

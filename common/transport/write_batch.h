@@ -23,7 +23,7 @@ class WriteBatch {
   WriteBatch& operator=(const WriteBatch&) = delete;
 
   bool empty() const { return first_ == buffers_.size(); }
-  std::size_t room() const { return kMaxBuffers - buffers_.size(); }
+  std::size_t free_buffers() const { return kMaxBuffers - buffers_.size(); }
 
   /// Bytes that belong to this batch alone.
   void AddOwned(std::string bytes);

@@ -22,7 +22,7 @@ constexpr double kReachSoftM = 0.004;  // How softly the longer leg pulls the hi
 constexpr double kSwayFadeS = 2;
 
 /// What a script asks of each frame.
-struct Wish {
+struct Target {
   Values values;
   Eigen::Vector2d pressure_m;
 };
@@ -36,14 +36,14 @@ class Dancer {
         at_(body.skeleton) {
     const double end_s = script.duration_s();
     for (const Values& values : Sample(script, rate_hz)) {
-      const double t_s = static_cast<double>(wishes_.size()) / rate_hz;
+      const double t_s = static_cast<double>(targets_.size()) / rate_hz;
       const double fade = std::clamp(std::min(t_s, end_s - t_s) / kSwayFadeS, 0.0, 1.0);
-      wishes_.push_back({values, posture_.PressureOf(values) +
-                                     fade * fade * (3 - 2 * fade) * Sway(script.sway_m, t_s)});
+      targets_.push_back({values, posture_.PressureOf(values) +
+                                      fade * fade * (3 - 2 * fade) * Sway(script.sway_m, t_s)});
     }
     motion_.skeleton = body.skeleton;
     motion_.rate_hz = rate_hz;
-    motion_.q.resize(body.skeleton.dof, static_cast<Eigen::Index>(wishes_.size()));
+    motion_.q.resize(body.skeleton.dof, static_cast<Eigen::Index>(targets_.size()));
     motion_.q.colwise() = posture_.t_pose();
     // The knee that bends to the back, of the two that reach as far.
     for (const LegSolver& leg : legs_) motion_.q(leg.knee_dof(), 0) = kFirstKneeRad;
@@ -54,17 +54,17 @@ class Dancer {
   /// Every frame with its centre of mass over `com_m` (a column a frame).
   void Move(const Eigen::Matrix2Xd& com_m) {
     foot_error_m_ = 0;
-    for (std::size_t i = 0; i < wishes_.size(); ++i) {
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
       const auto frame = static_cast<Eigen::Index>(i);
       auto q = motion_.q.col(frame);
       // Angles begin at the frame before, so that none jumps by a turn.
       if (i > 0) q.tail(q.size() - 3) = motion_.q.col(frame - 1).tail(q.size() - 3);
-      posture_.PlaceUpperBody(wishes_[i].values, q);
+      posture_.PlaceUpperBody(targets_[i].values, q);
       for (int round = 0; round < kCentrings; ++round) {
-        PlaceHips(wishes_[i].values, q);
+        PlaceHips(targets_[i].values, q);
         for (int foot = 0; foot < 2; ++foot) {
           const double rest = legs_[static_cast<std::size_t>(foot)].Solve(
-              posture_.FootOf(wishes_[i].values, foot), q);
+              posture_.FootOf(targets_[i].values, foot), q);
           if (round == kCentrings - 1) foot_error_m_ = std::max(foot_error_m_, rest);
         }
         if (round == kCentrings - 1) break;
@@ -75,9 +75,9 @@ class Dancer {
   }
 
   Eigen::Matrix2Xd WishedPressure() const {
-    Eigen::Matrix2Xd out(2, static_cast<Eigen::Index>(wishes_.size()));
-    for (std::size_t i = 0; i < wishes_.size(); ++i)
-      out.col(static_cast<Eigen::Index>(i)) = wishes_[i].pressure_m;
+    Eigen::Matrix2Xd out(2, static_cast<Eigen::Index>(targets_.size()));
+    for (std::size_t i = 0; i < targets_.size(); ++i)
+      out.col(static_cast<Eigen::Index>(i)) = targets_[i].pressure_m;
     return out;
   }
   const motion::Motion& motion() const { return motion_; }
@@ -105,7 +105,7 @@ class Dancer {
   Posture posture_;
   std::array<LegSolver, 2> legs_;
   body::Kinematics at_;
-  std::vector<Wish> wishes_;
+  std::vector<Target> targets_;
   motion::Motion motion_;
   double reach_m_ = 0;
   double foot_error_m_ = 0;

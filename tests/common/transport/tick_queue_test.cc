@@ -62,10 +62,10 @@ TEST(TickQueue, ARetainedValueOutlivesTheTickItWasDroppedWith) {
   TickQueue::Entry entry;
   ASSERT_TRUE(queue.Pop(entry));
   EXPECT_EQ(entry.tick->sequence, 5u);
-  ASSERT_EQ(entry.carried.size(), 1u);
-  EXPECT_EQ(entry.carried[0].tick, newest);
+  ASSERT_EQ(entry.retained.size(), 1u);
+  EXPECT_EQ(entry.retained[0].tick, newest);
   ASSERT_TRUE(queue.Pop(entry));
-  EXPECT_TRUE(entry.carried.empty());
+  EXPECT_TRUE(entry.retained.empty());
 }
 
 TEST(TickQueue, ASkippedTickLeavesItsRetainedValueToTheNextOne) {
@@ -75,10 +75,10 @@ TEST(TickQueue, ASkippedTickLeavesItsRetainedValueToTheNextOne) {
   queue.Push(MakeTick(3));
   TickQueue::Entry entry;
   queue.Pop(entry);
-  EXPECT_TRUE(entry.carried.empty());  // It is older than the value.
+  EXPECT_TRUE(entry.retained.empty());  // It is older than the value.
   queue.Pop(entry);
-  ASSERT_EQ(entry.carried.size(), 1u);
-  EXPECT_EQ(entry.carried[0].tick->sequence, 2u);
+  ASSERT_EQ(entry.retained.size(), 1u);
+  EXPECT_EQ(entry.retained[0].tick->sequence, 2u);
   EXPECT_FALSE(queue.TakeDropped().has_value());  // Decimation is no Gap.
 }
 
@@ -89,8 +89,8 @@ TEST(TickQueue, ASkippedValueIsNewerThanADroppedOne) {
   queue.Push(MakeTick(3));
   TickQueue::Entry entry;
   ASSERT_TRUE(queue.Pop(entry));
-  ASSERT_EQ(entry.carried.size(), 1u);
-  EXPECT_EQ(entry.carried[0].tick->sequence, 2u);
+  ASSERT_EQ(entry.retained.size(), 1u);
+  EXPECT_EQ(entry.retained[0].tick->sequence, 2u);
 }
 
 }  // namespace
