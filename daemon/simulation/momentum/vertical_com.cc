@@ -16,9 +16,8 @@ constexpr int kGroups = VerticalInput::kGroups;
 constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
 constexpr double kLevelTimeS = 0.5;          // Of the acceleration that is kept.
 constexpr double kCopTimeS = 0.1;            // Smoothing of the COP, and again of its speed.
-constexpr double kStillAfterS = 0.2;
-constexpr double kStillLookS = 0.1;   // Time between zero-velocity measurements.
-constexpr double kLoadedShare = 0.5;  // Of the weight: with less, the body may fly.
+constexpr double kStillLookS = 0.1;          // Time between zero-velocity measurements.
+constexpr double kLoadedShare = 0.5;         // Of the weight: with less, the body may fly.
 constexpr double kScoreTimeS = 30;
 constexpr double kLeastLogDensity = -20;  // One event alone condemns nothing.
 constexpr double kCoastMps2 = 20;         // Of a velocity that nobody watches, per root frame.
@@ -96,7 +95,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
   }
   filter_.Predict(a_, u_, q_);
   Watch(input, raw);
-  if (still_) {
+  if (still()) {
     since_still_look_s_ += h;
     if (since_still_look_s_ >= kStillLookS) {
       since_still_look_s_ = 0;
@@ -131,7 +130,6 @@ void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
   const bool calm = mean_acceleration_mps2_ < config_.still_acceleration_mps2 &&
                     cop_speed_mps_ < config_.still_cop_mps;
   still_s_ = calm ? still_s_ + step_s_ : 0;
-  still_ = still_s_ >= kStillAfterS;
 }
 
 void VerticalCom::Anchor(bool loaded) {
@@ -181,7 +179,6 @@ void VerticalCom::Coast() {
   filter_.Predict(a, u_, q);
   started_ = false;
   still_s_ = 0;
-  still_ = false;
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }
 

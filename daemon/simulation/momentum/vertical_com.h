@@ -52,6 +52,7 @@ class VerticalCom {
  public:
   static constexpr int kStates = 3 + VerticalInput::kGroups;
   static constexpr int kSlots = 25;
+  static constexpr double kStillAfterS = 0.2;
   using Filter = LinearFilter<kStates, kSlots>;
 
   VerticalCom(const VerticalConfig& config, double mass_kg, double step_s);
@@ -65,7 +66,7 @@ class VerticalCom {
   Filter::Scalar Height(int lag_steps) const { return filter_.Delayed(lag_steps); }
   Filter::Scalar Velocity() const { return filter_.Of(Filter::Row::Unit(1)); }
   double acceleration_mps2() const { return acceleration_mps2_; }  ///< Corrected, of this frame.
-  bool still() const { return still_; }
+  bool still() const { return still_s_ >= kStillAfterS; }
   /// What the cells tell too much beside the mass, as a part of the weight, with the T-pose's
   /// loads.
   Filter::Scalar Overweight() const { return filter_.Of(overweight_); }
@@ -110,7 +111,6 @@ class VerticalCom {
   Eigen::Vector2d mean_cop_m_ = Eigen::Vector2d::Zero();
   double cop_speed_mps_ = 0;
   double still_s_ = 0;
-  bool still_ = false;
   double since_still_look_s_ = 0;
   double since_look_s_ = 0;
   double score_ = 0;
