@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "common/clock/clock.h"
@@ -31,10 +32,11 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
         on_end_(std::move(on_end)),
         redial_(io),
         devices_(std::move(plan.devices)),
-        fresh_tellings_(std::move(plan.tellings)),
+        fresh_sources_(std::move(plan.tellings)),
         silences_(std::move(plan.silences)) {
     sequences_.assign(devices_.size(), 0);
-    for (std::size_t i = 0; i < devices_.size() + fresh_tellings_.size(); ++i)
+    // One for each, and one for the end.
+    for (std::size_t i = 0; i < devices_.size() + fresh_sources_.size() + 1; ++i)
       clocks_.push_back(std::make_unique<boost::asio::steady_timer>(io));
   }
 
@@ -55,12 +57,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     redial_.cancel();
     StopClocks();
     if (!connection_) return;
-    for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
-      v1::DeviceEnvelope envelope;
-      envelope.mutable_detach()->set_slot(static_cast<std::uint32_t>(slot));
-      envelope.mutable_detach()->set_reason(reason);
-      Send(envelope);
-    }
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot) SendDetach(slot, reason);
     connection_->Finish({}, reason);
   }
 
@@ -90,19 +87,24 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
                                                                 std::move(handlers));
     connection_->Start();
     const std::string what = devices_.empty()
-                                 ? std::to_string(fresh_tellings_.size()) + " simulated sources"
+                                 ? std::to_string(fresh_sources_.size()) + " simulated sources"
                                  : std::to_string(devices_.size()) + " simulated devices";
     log::Info("attached " + what + " to " + options_.to.Text());
     start_ns_ = clock::MonotonicNs();
     start_ = std::chrono::steady_clock::now();
     for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
-      SendAttach(slot);
       devices_[slot].Restart();
-      Schedule(slot);
+      if (devices_[slot].attaches_s() > 0) {
+        AttachLater(slot);
+      } else {
+        SendAttach(slot);
+        Schedule(slot);
+      }
     }
-    tellings_ = fresh_tellings_;
-    told_.assign(tellings_.size(), 0);
-    for (std::size_t i = 0; i < tellings_.size(); ++i) ScheduleTelling(i);
+    ScheduleEnd();
+    sources_ = fresh_sources_;
+    sent_.assign(sources_.size(), 0);
+    for (std::size_t i = 0; i < sources_.size(); ++i) ScheduleSource(i);
   }
 
   void OnClose(const std::string& reason) {
@@ -113,6 +115,37 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
 
   void StopClocks() {
     for (auto& timer : clocks_) timer->cancel();
+  }
+
+  void AttachLater(std::size_t slot) {
+    At(slot, devices_[slot].attaches_s() / options_.rate_scale, [this, slot] {
+      SendAttach(slot);
+      Schedule(slot);
+    });
+  }
+
+  /// A device that has nothing more to send stays until it is lost.
+  void DetachLater(std::size_t slot) {
+    const double time_s = devices_[slot].detaches_s() / options_.rate_scale;
+    if (std::isinf(time_s)) return;
+    At(slot, time_s, [this, slot] { SendDetach(slot, "lost in the recording"); });
+  }
+
+  void SendDetach(std::size_t slot, const std::string& reason) {
+    v1::DeviceEnvelope envelope;
+    envelope.mutable_detach()->set_slot(static_cast<std::uint32_t>(slot));
+    envelope.mutable_detach()->set_reason(reason);
+    Send(envelope);
+  }
+
+  /// Does something at a time of the motion, by the clock of a slot.
+  void At(std::size_t slot, double time_s, std::function<void()> action) {
+    clocks_[slot]->expires_at(start_ + std::chrono::nanoseconds(SecondsToNanoseconds(time_s)));
+    clocks_[slot]->async_wait(
+        [weak = weak_from_this(), action = std::move(action)](boost::system::error_code error) {
+          const auto self = weak.lock();
+          if (self && !error && self->connection_ && !self->stopped_) action();
+        });
   }
 
   void SendAttach(std::size_t slot) {
@@ -156,13 +189,8 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     StandIn::Arrival next = devices_[slot].Next();
     next.arrives_s /= options_.rate_scale;
     next.sampled_s /= options_.rate_scale;
-    clocks_[slot]->expires_at(start_ +
-                              std::chrono::nanoseconds(SecondsToNanoseconds(next.arrives_s)));
-    clocks_[slot]->async_wait(
-        [weak = weak_from_this(), slot, next](boost::system::error_code error) {
-          const auto self = weak.lock();
-          if (self && !error && self->connection_ && !self->stopped_) self->Deliver(slot, next);
-        });
+    if (std::isinf(next.arrives_s)) return DetachLater(slot);
+    At(slot, next.arrives_s, [this, slot, next] { Deliver(slot, next); });
   }
 
   bool IsSilent(std::size_t slot, double time_s) const {
@@ -171,7 +199,13 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     });
   }
 
-  /// The motion has come to its end, which is told once.
+  /// A recording may end with its devices silent: the end does not wait for their reports.
+  void ScheduleEnd() {
+    if (duration_s_ <= 0) return;
+    At(clocks_.size() - 1, duration_s_, [this] { IsOver(duration_s_); });
+  }
+
+  /// The motion has come to its end, which is reported once.
   bool IsOver(double time_s) {
     if (duration_s_ <= 0 || time_s < duration_s_) return false;
     if (!ended_) on_end_();
@@ -188,21 +222,21 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     Schedule(slot);
   }
 
-  void ScheduleTelling(std::size_t index) {
-    const double due_s = static_cast<double>(told_[index]) / tellings_[index].rate_hz;
+  void ScheduleSource(std::size_t index) {
+    const double due_s = static_cast<double>(sent_[index]) / sources_[index].rate_hz;
     auto& timer = *clocks_[devices_.size() + index];
     timer.expires_at(
-        start_ + std::chrono::nanoseconds(SecondsToNanoseconds(due_s + tellings_[index].late_s)));
+        start_ + std::chrono::nanoseconds(SecondsToNanoseconds(due_s + sources_[index].late_s)));
     timer.async_wait([weak = weak_from_this(), index, due_s](boost::system::error_code error) {
       const auto self = weak.lock();
-      if (self && !error && self->connection_ && !self->stopped_) self->Tell(index, due_s);
+      if (self && !error && self->connection_ && !self->stopped_) self->SendDue(index, due_s);
     });
   }
 
   /// Sends what was so at `due_s`; it is as old as this comes late.
-  void Tell(std::size_t index, double due_s) {
+  void SendDue(std::size_t index, double due_s) {
     if (devices_.empty() && IsOver(due_s)) return;
-    Telling& telling = tellings_[index];
+    Telling& telling = sources_[index];
     const std::int64_t age_ns =
         std::max<std::int64_t>(0, clock::MonotonicNs() - start_ns_ - SecondsToNanoseconds(due_s));
     v1::DeviceEnvelope envelope;
@@ -220,8 +254,8 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
       *envelope.mutable_reference_frame() = wire::ToProto(frame);
     }
     Send(envelope);
-    ++told_[index];
-    ScheduleTelling(index);
+    ++sent_[index];
+    ScheduleSource(index);
   }
 
   void SendReport(std::size_t slot, const virtual_devices::Report& report, std::int64_t true_ns,
@@ -246,10 +280,10 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   const std::function<void()> on_end_;
   boost::asio::steady_timer redial_;
   std::vector<StandIn> devices_;
-  const std::vector<Telling> fresh_tellings_;
+  const std::vector<Telling> fresh_sources_;
   const std::vector<Silence> silences_;
-  std::vector<Telling> tellings_;
-  std::vector<std::uint64_t> told_;  // How often each was.
+  std::vector<Telling> sources_;
+  std::vector<std::uint64_t> sent_;  // How often each was.
   std::vector<std::unique_ptr<boost::asio::steady_timer>> clocks_;
   std::chrono::steady_clock::time_point start_;
   std::vector<std::uint64_t> sequences_;

@@ -4,6 +4,7 @@
 #include "clients/stream/boards_command.h"
 #include "clients/stream/dialer.h"
 #include "clients/stream/plan.h"
+#include "clients/stream/replay.h"
 #include "clients/stream/samples.h"
 #include "common/cli/cli.h"
 #include "common/log/log.h"
@@ -51,7 +52,8 @@ int main(int argc, char** argv) {
       "  footing-stream boards --motion demo --hands wiimote --lose-hand left "
       "--lose-from-s 12 --lose-for-s 2\n"
       "  footing-stream boards --motion clip.bvh --place-boards\n"
-      "  footing-stream insoles --motion clip.bvh --hands move\n");
+      "  footing-stream insoles --motion clip.bvh --hands move\n"
+      "  footing-stream replay walk.mcap\n");
   stream_client::Common common;
   bool quiet = false;
   app->add_option("--to", common.to,
@@ -91,19 +93,17 @@ int main(int argc, char** argv) {
   auto* sample = app->add_subcommand(
       "sample", "Write small sample files for the examples of every program, and end");
   sample->add_option("FOLDER", sample_folder, "Folder to write into (default: this one)");
-  auto* replay = app->add_subcommand("replay", "Not built yet")->group("");
-  replay->fallthrough(false)->prefix_command();
+  std::string recording;
+  auto* replay = app->add_subcommand("replay", "The devices of a recording, with its raw reports");
+  replay->add_option("FILE", recording, "Recording, MCAP file")->required();
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   log::Start("footing-stream", quiet);
 
-  if (*replay) {
-    return cli::Report(
-        UsageError("replay is not built; there are: user, accel, corners, boards, insoles"));
-  }
   if (*sample) {
     const auto written = stream_client::WriteSampleFiles(sample_folder);
     return written ? 0 : cli::Report(written.error());
   }
+  if (*replay) return Run(stream_client::PlanReplay(recording, common), common);
   if (*user) return Run(stream_client::PlanUser(script, interface, common, ports), common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
   if (*insoles) return Run(stream_client::PlanInsoles(worn, common), common);

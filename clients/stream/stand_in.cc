@@ -1,6 +1,7 @@
 #include "clients/stream/stand_in.h"
 
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "common/units/units.h"
@@ -10,6 +11,9 @@ namespace footing::stream_client {
 using virtual_devices::Report;
 
 namespace {
+
+/// What the host sets is not looked at.
+StandIn::Shown Show(const RecordedDevice&, std::int64_t) { return {}; }
 
 template <typename Remote>
 StandIn::Shown Show(const Remote& remote, std::int64_t) {
@@ -57,6 +61,9 @@ StandIn::StandIn(virtual_devices::PsMove move, MoveMotion motion, stream::Device
                  const virtual_devices::LinkConfig& link)
     : StandIn(Device(Move{std::move(move), std::move(motion)}), role, link) {}
 
+StandIn::StandIn(RecordedDevice recorded, stream::DeviceRole role)
+    : StandIn(Device(Recorded{std::move(recorded)}), role, {}) {}
+
 const virtual_devices::Identity& StandIn::identity() const {
   return std::visit(
       [](const auto& felt) -> const auto& { return felt.device.identity(); }, device_);
@@ -68,22 +75,44 @@ std::vector<Report> StandIn::HandleOutput(double now_s, std::span<const std::uin
 }
 
 Report StandIn::Feature(std::uint8_t id, std::size_t size) {
+  if (auto* recorded = std::get_if<Recorded>(&device_)) return recorded->device.Feature(id, size);
   auto* move = std::get_if<Move>(&device_);
   return move == nullptr ? Report() : move->device.Feature(id, size).value_or(Report());
 }
 
+double StandIn::attaches_s() const {
+  const auto* recorded = std::get_if<Recorded>(&device_);
+  return recorded == nullptr ? 0 : recorded->device.attaches_s();
+}
+
+double StandIn::detaches_s() const {
+  const auto* recorded = std::get_if<Recorded>(&device_);
+  return recorded == nullptr ? std::numeric_limits<double>::infinity()
+                             : recorded->device.detaches_s();
+}
+
 StandIn::Arrival StandIn::Next() {
+  if (const auto* recorded = std::get_if<Recorded>(&device_)) {
+    const double time_s =
+        recorded->device.NextTime().value_or(std::numeric_limits<double>::infinity());
+    return {time_s, time_s};
+  }
   const virtual_devices::LinkModel::Arrival arrival = link_.Next();
   return {NanosecondsToSeconds(arrival.arrives_ns), NanosecondsToSeconds(arrival.sampled_ns)};
 }
 
 std::vector<Report> StandIn::Deliver(double sampled_s) {
+  if (auto* recorded = std::get_if<Recorded>(&device_)) return {recorded->device.Take()};
   const bool fresh = sampled_s != held_s_;
   held_s_ = sampled_s;
   return std::visit(
-      [=](auto& felt) {
-        if (fresh) felt.held = felt.motion(sampled_s);
-        return Sample(felt.device, SecondsToNanoseconds(sampled_s), felt.held);
+      [=](auto& felt) -> std::vector<Report> {
+        if constexpr (requires { felt.motion; }) {
+          if (fresh) felt.held = felt.motion(sampled_s);
+          return Sample(felt.device, SecondsToNanoseconds(sampled_s), felt.held);
+        } else {
+          return {};
+        }
       },
       device_);
 }

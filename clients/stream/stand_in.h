@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "clients/stream/recorded_device.h"
 #include "common/stream/device.h"
 #include "common/virtual/devices/balance_board.h"
 #include "common/virtual/devices/link_model.h"
@@ -29,6 +30,8 @@ class StandIn {
           const virtual_devices::LinkConfig& link);
   StandIn(virtual_devices::PsMove move, MoveMotion motion, stream::DeviceRole role,
           const virtual_devices::LinkConfig& link);
+  /// Its reports, and when they come, are those of the recording.
+  StandIn(RecordedDevice recorded, stream::DeviceRole role);
 
   const virtual_devices::Identity& identity() const;
   stream::DeviceRole role() const { return role_; }
@@ -43,8 +46,11 @@ class StandIn {
     double arrives_s = 0;
     double sampled_s = 0;  ///< When the sensor took the value that arrives.
   };
-  /// The next delivery; later than the one before.
+  /// The next delivery; later than the one before. Infinitely late when a recording has no more.
   Arrival Next();
+  /// When the device appears and when it is gone: 0 and never, but for those of a recording.
+  double attaches_s() const;
+  double detaches_s() const;
   /// The reports with the value of `sampled_s`; none while a mode is wanted and the host has set
   /// none.
   std::vector<virtual_devices::Report> Deliver(double sampled_s);
@@ -72,7 +78,10 @@ class StandIn {
   using Wiimote = Felt<virtual_devices::Wiimote, virtual_devices::WiimoteSensors>;
   using Board = Felt<virtual_devices::BalanceBoard, virtual_devices::CornerForces>;
   using Move = Felt<virtual_devices::PsMove, virtual_devices::MoveSensors>;
-  using Device = std::variant<Wiimote, Board, Move>;
+  struct Recorded {
+    RecordedDevice device;
+  };
+  using Device = std::variant<Wiimote, Board, Move, Recorded>;
 
   StandIn(Device device, stream::DeviceRole role, const virtual_devices::LinkConfig& link);
 

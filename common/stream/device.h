@@ -100,6 +100,10 @@ struct DeviceStatus {
   bool moved = false;
   double clock_offset_sd_ms = -1;
   std::uint32_t sphere_rgb = 0;
+  std::uint32_t bus = 0;
+  std::uint32_t vendor = 0;
+  std::uint32_t product = 0;
+  std::vector<std::uint8_t> stored_calibration;
 };
 
 struct RawReport {

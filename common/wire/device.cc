@@ -41,6 +41,16 @@ void Fields(Way way, const stream::DeviceStatus&) {
   FOOTING_FIELD(moved);
   FOOTING_FIELD(clock_offset_sd_ms);
   FOOTING_FIELD(sphere_rgb);
+  FOOTING_FIELD(bus);
+  FOOTING_FIELD(vendor);
+  FOOTING_FIELD(product);
+  if constexpr (Way::kOut) {
+    const auto& stored = way.value.stored_calibration;
+    way.message.set_stored_calibration(stored.data(), stored.size());
+  } else {
+    const std::string& stored = way.message.stored_calibration();
+    way.value.stored_calibration.assign(stored.begin(), stored.end());
+  }
 }
 FOOTING_BOTH_WAYS(DeviceStatus)
 

@@ -8,6 +8,7 @@ void Device::Attach(devices::DeviceHandle handle, const devices::DeviceIdentity&
                     const Stored& stored) {
   links_.Attach(handle, identity);
   kind_ = kinds::Kind(options_.kind, {identity.vendor, identity.product, identity.name}, stored);
+  stored_calibration_ = stored.value_or(std::vector<std::uint8_t>());
   fresh_calibration_.reset();
   outputs_.clear();
   ShowBinding();
@@ -164,6 +165,9 @@ stream::DeviceStatus Device::Status(std::int64_t now_ns, double stale_after_s) c
   stream::DeviceStatus status;
   status.device = number_;
   status.serial = identity().serial;
+  status.bus = static_cast<std::uint32_t>(identity().bus);
+  status.vendor = identity().vendor;
+  status.product = identity().product;
   status.rig = binding_.rig;
   status.role = binding_.role;
   status.simulated = simulated();
@@ -183,6 +187,9 @@ stream::DeviceStatus Device::Status(std::int64_t now_ns, double stale_after_s) c
   status.tared = chain_.tared() && placement() == decode::Placement::kUnderFeet;
   status.mounted = worn_.rotation_MS().has_value();
   kind_.AddTo(status);
+  if (status.calibration == stream::CalibrationOrigin::kStored) {
+    status.stored_calibration = stored_calibration_;
+  }
   AddState(now_ns, stale_after_s, status);
   return status;
 }

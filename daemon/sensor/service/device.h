@@ -119,6 +119,7 @@ class Device {
   kinds::Kind kind_{{}, {}, {}};
   kinds::Outputs outputs_;
   Stored fresh_calibration_;
+  std::vector<std::uint8_t> stored_calibration_;  ///< As it was when the device attached.
   link::Outbox outbox_;
   SampleTiming timing_;
   MotionChain motion_;

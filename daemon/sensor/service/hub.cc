@@ -112,13 +112,14 @@ void Hub::OnDetach(devices::DeviceHandle handle, const std::string& reason) {
 }
 
 void Hub::TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
-                  bool to_device, std::int64_t true_ns) {
+                  bool to_device, std::int64_t true_ns, bool feature) {
   if (content_.raw.size() >= kMaxSamplesPerTick || bytes.size() > 64) return;
   stream::RawReport raw;
   raw.device = device.number();
   raw.received_ns = at_ns;
   raw.report.assign(bytes.begin(), bytes.end());
   raw.to_device = to_device;
+  raw.feature = feature;
   raw.simulated = device.simulated();
   raw.true_ns = true_ns;
   content_.raw.push_back(std::move(raw));
@@ -134,7 +135,7 @@ void Hub::AddToRig(const Device& device, const stream::MotionSample& sample) {
 void Hub::OnReport(devices::DeviceHandle handle, const devices::IncomingReport& report) {
   Device* device = Find(handle);
   if (device == nullptr) return;
-  TakeRaw(*device, report.received_ns, report.bytes, false, report.true_ns);
+  TakeRaw(*device, report.received_ns, report.bytes, false, report.true_ns, report.feature);
   const stream::DeviceKind kind = device->kind();
   const std::size_t before = content_.motion.size();
   device->Take(handle, report, content_);
@@ -155,6 +156,7 @@ void Hub::Flush(Device& device) {
   if (ports_.request_feature) {
     if (const auto feature = device.NextFeature(now_ns)) {
       ports_.request_feature(device.feature_handle(), feature->id, feature->size);
+      TakeRaw(device, now_ns, std::span(&feature->id, 1), true, 0, true);
     }
   }
   const auto report = device.NextOutput(now_ns);

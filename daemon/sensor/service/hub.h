@@ -122,7 +122,7 @@ class Hub {
   std::vector<stream::RigSetup> SetupInForce() const;
   void AddToRig(const Device& device, const stream::MotionSample& sample);
   void TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,
-               bool to_device, std::int64_t true_ns);
+               bool to_device, std::int64_t true_ns, bool feature = false);
   void Flush(Device& device);
   void Refuse(const std::string& what, const std::string& why);
   void EndLeases(std::int64_t now_ns);

@@ -1,9 +1,11 @@
 #include "daemon/offline/eval/replay/replay.h"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 
+#include "common/recording/recorded_identity.h"
 #include "common/wire/wire.h"
 #include "daemon/sensor/service/hub.h"
 #include "daemon/simulation/gait_service/publish.h"
@@ -18,7 +20,12 @@ class HubReplay {
  public:
   explicit HubReplay(const std::vector<v1::Tick>& ticks)
       : hub_(sensor::Config{}, {[](devices::DeviceHandle, const reports::OutputReport&) {},
-                                [](const std::string&) {}, [this] { return NowNs(); }}) {
+                                [](const std::string&) {},
+                                [this] { return NowNs(); },
+                                [](devices::DeviceHandle, std::uint8_t, std::size_t) {},
+                                [this](const std::string& serial) { return StoredOf(serial); },
+                                {},
+                                {}}) {
     for (const v1::Tick& tick : ticks) {
       for (const v1::DeviceStatus& status : tick.status().devices()) {
         statuses_.emplace(status.device(), status);
@@ -42,7 +49,10 @@ class HubReplay {
       now_ns_ = report.received_ns();
       AttachIfNew(report.device());
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(report.report().data());
-      hub_.OnReport(report.device(), {report.received_ns(), {bytes, report.report().size()}, 0});
+      hub_.OnReport(report.device(), {report.received_ns(),
+                                      {bytes, report.report().size()},
+                                      0,
+                                      recording::IsFeature(report, statuses_[report.device()])});
     }
     now_ns_ = tick.host_ns();
     for (const v1::DeviceStatus& status : tick.status().devices()) {
@@ -60,6 +70,16 @@ class HubReplay {
     const bool writes_next =
         raw_ != nullptr && next_ < raw_->reports_size() && raw_->reports(next_).to_device();
     return writes_next ? raw_->reports(next_).received_ns() : now_ns_;
+  }
+
+  /// The calibration that footingd had kept of a device.
+  std::optional<std::vector<std::uint8_t>> StoredOf(const std::string& serial) const {
+    for (const auto& [device, status] : statuses_) {
+      const std::string& stored = status.stored_calibration();
+      if (status.serial() == serial && !stored.empty())
+        return std::vector<std::uint8_t>(stored.begin(), stored.end());
+    }
+    return std::nullopt;
   }
 
   void TakeSetup(const v1::SetupState& setup) {
@@ -82,10 +102,12 @@ class HubReplay {
     if (!attached_.insert(device).second) return;
     const v1::DeviceStatus& status = statuses_[device];
     devices::DeviceIdentity identity;
-    identity.vendor = devices::kVendorNintendo;
-    identity.product = devices::kProductFirst;
-    identity.name = status.name();
-    identity.serial = status.serial();
+    const recording::RecordedIdentity recorded = recording::IdentityOf(status);
+    identity.bus = static_cast<devices::Bus>(recorded.bus);
+    identity.vendor = recorded.vendor;
+    identity.product = recorded.product;
+    identity.name = recorded.name;
+    identity.serial = recorded.serial;
     identity.simulated = status.simulated();
     identity.wished_rig = status.rig();
     identity.wished_role = static_cast<stream::DeviceRole>(status.role());

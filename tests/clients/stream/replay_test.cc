@@ -1,0 +1,345 @@
+#include "clients/stream/replay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <queue>
+#include <tuple>
+
+#include "common/recording/recorded_session.h"
+#include "common/recording/stream_recorder.h"
+#include "common/units/units.h"
+#include "daemon/sensor/service/hub.h"
+#include "daemon/sensor/service/publish.h"
+#include "tests/common/temporary_folder.h"
+
+namespace footing::stream_client {
+namespace {
+
+constexpr std::int64_t kStartNs = 1'000'000'000'000;
+constexpr std::int64_t kTickNs = 10'000'000;
+constexpr std::int64_t kAnswerNs = 4'000'000;  // From a request to its answer.
+
+/// footingd's hub and the devices that talk to it, in time that only they advance.
+class VirtualLine {
+ public:
+  explicit VirtualLine(std::vector<StandIn> devices)
+      : devices_(std::move(devices)),
+        hub_(sensor::Config{},
+             {[this](devices::DeviceHandle device, const reports::OutputReport& report) {
+                const double time_s = NanosecondsToSeconds(now_ns_ - kStartNs);
+                for (auto& answer : devices_[device - 1].HandleOutput(time_s, report)) {
+                  answers_.push({now_ns_ + kAnswerNs, ++order_, device, std::move(answer), false});
+                }
+              },
+              [](const std::string&) {}, [this] { return now_ns_; },
+              [this](devices::DeviceHandle device, std::uint8_t id, std::size_t size) {
+                answers_.push({now_ns_ + kAnswerNs, ++order_, device,
+                               devices_[device - 1].Feature(id, size), true});
+              }}) {}
+
+  std::vector<v1::Tick> Run(double seconds) {
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+      now_ns_ = kStartNs;
+      const virtual_devices::Identity& identity = devices_[i].identity();
+      devices::DeviceIdentity who;
+      who.bus = static_cast<devices::Bus>(identity.bus);
+      who.vendor = identity.vendor;
+      who.product = identity.product;
+      who.name = identity.name;
+      who.serial = identity.serial;
+      who.simulated = true;
+      who.wished_role = devices_[i].role();
+      hub_.OnAttach(i + 1, who);
+      next_.push_back(devices_[i].Next());
+    }
+    std::vector<v1::Tick> ticks;
+    for (std::int64_t tick_ns = kStartNs + kTickNs;
+         tick_ns <= kStartNs + SecondsToNanoseconds(seconds); tick_ns += kTickNs) {
+      while (DeliverBefore(tick_ns)) {
+      }
+      now_ns_ = tick_ns;
+      ticks.push_back(ToTick(hub_.Tick(tick_ns), tick_ns, ticks.size() + 1));
+    }
+    return ticks;
+  }
+
+ private:
+  struct Answer {
+    std::int64_t time_ns = 0;
+    std::uint64_t order = 0;
+    devices::DeviceHandle device = 0;
+    virtual_devices::Report bytes;
+    bool feature = false;
+    bool operator<(const Answer& other) const {  // The earliest is on top.
+      return std::tie(time_ns, order) > std::tie(other.time_ns, other.order);
+    }
+  };
+
+  /// The next report of all that are due; false when none is.
+  bool DeliverBefore(std::int64_t until_ns) {
+    std::size_t first = devices_.size();
+    std::int64_t first_ns = until_ns;
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+      if (std::isinf(next_[i].arrives_s)) continue;
+      const std::int64_t due_ns = kStartNs + SecondsToNanoseconds(next_[i].arrives_s);
+      if (due_ns < first_ns) {
+        first_ns = due_ns;
+        first = i;
+      }
+    }
+    if (!answers_.empty() && answers_.top().time_ns < first_ns) {
+      const Answer answer = answers_.top();
+      answers_.pop();
+      now_ns_ = answer.time_ns;
+      hub_.OnReport(answer.device, {answer.time_ns, answer.bytes, 0, answer.feature});
+      return true;
+    }
+    if (first == devices_.size()) return false;
+    now_ns_ = first_ns;
+    for (const auto& report : devices_[first].Deliver(next_[first].sampled_s)) {
+      hub_.OnReport(first + 1, {first_ns, report, 0});
+    }
+    next_[first] = devices_[first].Next();
+    return true;
+  }
+
+  static v1::Tick ToTick(const sensor::TickContent& content, std::int64_t host_ns,
+                         std::uint64_t sequence) {
+    const auto channels = sensor::ToChannels(content);
+    recording::RecordedTick recorded;
+    recorded.host_ns = host_ns;
+    recorded.sequence = static_cast<std::uint32_t>(sequence);
+    for (const auto& channel : channels) {
+      recorded.channels.push_back({channel.field, channel.bytes});
+    }
+    return recording::ReadTick(recorded).value();
+  }
+
+  std::vector<StandIn> devices_;
+  std::vector<StandIn::Arrival> next_;
+  std::priority_queue<Answer> answers_;
+  std::uint64_t order_ = 0;
+  std::int64_t now_ns_ = kStartNs;
+  sensor::Hub hub_;
+};
+
+/// A Wiimote that is swung, a board that is leant on, a PS Move that turns.
+std::vector<StandIn> MakeDevices() {
+  std::vector<StandIn> devices;
+  devices.emplace_back(
+      virtual_devices::Wiimote(4),
+      [](double t_s) {
+        virtual_devices::WiimoteSensors felt;
+        felt.specific_force_S_mps2.x() = 8 * std::sin(2 * std::numbers::pi * 1.5 * t_s);
+        return felt;
+      },
+      stream::DeviceRole::kLeftHand,
+      virtual_devices::WiimoteLink(virtual_devices::LinkQuality::kGood, 2));
+  devices.emplace_back(
+      virtual_devices::BalanceBoard(7),
+      [](double t_s) {
+        const double shift_n = 40 * std::sin(2 * std::numbers::pi * 0.4 * t_s);
+        return virtual_devices::CornerForces{150 + shift_n, 150 - shift_n, 160, 170};
+      },
+      stream::DeviceRole::kLeftBoard,
+      virtual_devices::BoardLink(virtual_devices::LinkQuality::kGood, 3));
+  devices.emplace_back(
+      virtual_devices::PsMove(9, virtual_devices::MoveModel::kZcm1),
+      [](double t_s) {
+        virtual_devices::MoveSensors felt;
+        felt.angular_velocity_S_radps.z() = std::sin(3 * t_s);
+        felt.specific_force_S_mps2.y() = 6 * std::sin(2 * std::numbers::pi * 1.2 * t_s);
+        return felt;
+      },
+      stream::DeviceRole::kRightHand,
+      virtual_devices::WiimoteLink(virtual_devices::LinkQuality::kGood, 5));
+  return devices;
+}
+
+void Write(const std::string& path, const std::vector<v1::Tick>& ticks, bool with_identity) {
+  auto writer = recording::RecordingWriter::Create(path, {"test", true, {}});
+  ASSERT_TRUE(writer.ok());
+  recording::StreamRecorder recorder(*writer, "unix:/x", [](const std::string& id) { return id; });
+  v1::Welcome welcome;
+  welcome.set_server_id("footingd");
+  ASSERT_TRUE(recorder.OnWelcome(welcome, 0).ok());
+  for (v1::Tick tick : ticks) {
+    for (v1::DeviceStatus& status : *tick.mutable_status()->mutable_devices()) {
+      if (with_identity) break;
+      status.clear_bus();
+      status.clear_vendor();
+      status.clear_product();
+    }
+    for (v1::RawReport& raw : *tick.mutable_raw()->mutable_reports()) {
+      if (!with_identity) raw.clear_feature();
+    }
+    ASSERT_TRUE(recorder.OnTick(tick, tick.host_ns()).ok());
+  }
+  ASSERT_TRUE(writer->Finish().ok());
+}
+
+/// Every measured value with when it was received, by serial.
+struct Measured {
+  std::map<std::string, std::map<std::int64_t, std::vector<double>>> samples;
+  std::map<std::string, v1::DeviceStatus> status;
+  v1::FeatureFrame last_features;
+};
+
+Measured Measure(const std::vector<v1::Tick>& ticks) {
+  Measured measured;
+  std::map<std::uint32_t, std::string> serials;
+  for (const v1::Tick& tick : ticks) {
+    for (const auto& status : tick.status().devices()) {
+      serials[status.device()] = status.serial();
+      measured.status[status.serial()] = status;
+    }
+  }
+  for (const v1::Tick& tick : ticks) {
+    for (const auto& one : tick.motion().samples()) {
+      measured.samples[serials[one.device()]][one.received_ns()] = {
+          one.specific_force_mps2().x(), one.specific_force_mps2().y(),
+          one.specific_force_mps2().z(), one.magnetic_field().x()};
+    }
+    for (const auto& one : tick.boards().samples()) {
+      measured.samples[serials[one.device()]][one.received_ns()] = {
+          one.top_left_n(), one.top_right_n(), one.bottom_left_n(), one.bottom_right_n()};
+    }
+    if (tick.features().rigs_size() > 0) measured.last_features = tick.features();
+  }
+  return measured;
+}
+
+void ExpectSame(const Measured& before, const Measured& after) {
+  ASSERT_EQ(before.samples.size(), 3u);
+  for (const auto& [serial, samples] : before.samples) {
+    ASSERT_EQ(after.samples.count(serial), 1u) << serial;
+    const auto& again = after.samples.at(serial);
+    std::size_t compared = 0;
+    for (const auto& [received_ns, values] : samples) {
+      if (received_ns < kStartNs + SecondsToNanoseconds(1.5)) continue;  // While it is set up.
+      const auto found = again.lower_bound(received_ns - 1000);
+      ASSERT_TRUE(found != again.end() && found->first < received_ns + 1000)
+          << serial << " at " << received_ns;
+      EXPECT_EQ(found->second, values) << serial;
+      ++compared;
+    }
+    EXPECT_GT(compared, 300u) << serial;
+    const v1::DeviceStatus &a = before.status.at(serial), &b = after.status.at(serial);
+    EXPECT_EQ(a.kind(), b.kind());
+    EXPECT_EQ(a.role(), b.role());
+    EXPECT_EQ(a.calibration(), v1::CALIBRATION_ORIGIN_DEVICE);
+    EXPECT_EQ(b.calibration(), v1::CALIBRATION_ORIGIN_DEVICE);
+    EXPECT_EQ(a.product(), b.product());
+  }
+  const auto &a = before.last_features.rigs(0), &b = after.last_features.rigs(0);
+  ASSERT_EQ(a.devices_size(), 2);
+  ASSERT_EQ(b.devices_size(), 2);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(a.devices(i).frequency_valid());
+    EXPECT_EQ(a.devices(i).frequency_valid(), b.devices(i).frequency_valid());
+    EXPECT_NEAR(a.devices(i).frequency_hz(), b.devices(i).frequency_hz(), 1e-6);
+    EXPECT_NEAR(a.devices(i).amplitude_mps2(), b.devices(i).amplitude_mps2(), 1e-6);
+    EXPECT_NEAR(a.devices(i).roll_rad(), b.devices(i).roll_rad(), 1e-3);
+  }
+}
+
+class Replay : public testing::Test {
+ protected:
+  std::vector<v1::Tick> original_ = VirtualLine(MakeDevices()).Run(8);
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_.Path("a.mcap");
+};
+
+TEST_F(Replay, EveryKindOfDeviceMeasuresTheSameAgain) {
+  Write(path_, original_, true);
+  auto plan = PlanReplay(path_, {});
+  ASSERT_TRUE(plan.ok()) << plan.error().message;
+  ASSERT_EQ(plan->devices.size(), 3u);
+  EXPECT_NEAR(plan->duration_s, 8, 0.3);
+  ExpectSame(Measure(original_), Measure(VirtualLine(std::move(plan->devices)).Run(8)));
+}
+
+TEST_F(Replay, ARecordingWithoutIdentitiesReplaysByTheKindsOfItsDevices) {
+  Write(path_, original_, false);
+  auto plan = PlanReplay(path_, {});
+  ASSERT_TRUE(plan.ok()) << plan.error().message;
+  ExpectSame(Measure(original_), Measure(VirtualLine(std::move(plan->devices)).Run(8)));
+}
+
+TEST_F(Replay, ADeviceThatComesLaterAndIsLostAttachesAndDetachesThen) {
+  std::vector<v1::Tick> ticks;
+  for (const v1::Tick& tick : original_) {
+    v1::Tick one = tick;
+    auto& reports = *one.mutable_raw()->mutable_reports();
+    const double time_s = NanosecondsToSeconds(one.host_ns() - kStartNs);
+    // Of device 1 only what came between 2 s and 5 s.
+    for (int i = reports.size(); i-- > 0;) {
+      if (reports[i].device() == 1 && (time_s < 2 || time_s > 5)) reports.DeleteSubrange(i, 1);
+    }
+    for (v1::DeviceStatus& status : *one.mutable_status()->mutable_devices()) {
+      if (status.device() == 1 && time_s > 5) status.set_state(v1::DEVICE_STATE_LOST);
+    }
+    ticks.push_back(one);
+  }
+  Write(path_, ticks, true);
+  const auto plan = PlanReplay(path_, {});
+  ASSERT_TRUE(plan.ok()) << plan.error().message;
+  for (const StandIn& device : plan->devices) {
+    const bool wiimote = device.identity().name == "Nintendo RVL-CNT-01";
+    EXPECT_NEAR(device.attaches_s(), wiimote ? 2 : 0, 0.1);
+    EXPECT_NEAR(wiimote ? device.detaches_s() : 5, 5, 0.1);
+    EXPECT_EQ(std::isinf(device.detaches_s()), !wiimote);
+  }
+}
+
+TEST_F(Replay, WithoutRawReportsItIsRefused) {
+  std::vector<v1::Tick> ticks = original_;
+  for (v1::Tick& tick : ticks) tick.clear_raw();
+  Write(path_, ticks, true);
+  const auto plan = PlanReplay(path_, {});
+  ASSERT_FALSE(plan.ok());
+  EXPECT_EQ(plan.error().kind, ErrorKind::kInvalidData);
+}
+
+TEST(RecordedDevice, AReadThatWasNeverRecordedIsRefused) {
+  RecordedDevice device({}, 0, 1, {}, {});
+  const virtual_devices::Report read = {0x17, 0x04, 0xa4, 0x00, 0xfa, 0x00, 0x06};
+  const auto answers = device.HandleOutput(0, read);
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0][0], 0x21);
+  EXPECT_EQ(answers[0][3] & 0x0f, 7);
+  EXPECT_EQ(answers[0][4], 0x00);
+  EXPECT_EQ(answers[0][5], 0xfa);
+  EXPECT_FALSE(device.has_handshake());
+}
+
+TEST(RecordedDevice, RepeatedRequestsGetTheirAnswersInOrder) {
+  const virtual_devices::Report status = {0x15, 0x00}, mode = {0x12, 0x04, 0x31};
+  std::vector<RecordedReport> reports;
+  const auto add = [&](double time_s, virtual_devices::Report bytes, bool to_device) {
+    reports.push_back({time_s, std::move(bytes), to_device, false});
+  };
+  add(0, status, true);
+  add(0.01, {0x20, 0, 0, 1}, false);
+  add(0.02, mode, true);
+  add(0.03, {0x22, 0, 0, 0x12, 0}, false);
+  add(0.04, {0x31, 0, 0, 1, 2, 3}, false);
+  add(0.05, status, true);
+  add(0.06, {0x20, 0, 0, 2}, false);
+  add(0.07, {0x20, 0, 0, 3}, false);  // Unasked.
+  RecordedDevice device({}, 0, 1, reports, {});
+  EXPECT_EQ(device.HandleOutput(0, status)[0][3], 1);
+  EXPECT_EQ(device.HandleOutput(0, mode)[0][0], 0x22);
+  EXPECT_EQ(device.HandleOutput(0, virtual_devices::Report{0x15, 0x01})[0][3], 2);  // Motor on.
+  EXPECT_EQ(device.HandleOutput(0, status)[0][3], 2);
+  EXPECT_EQ(device.NextTime(), 0.04);
+  EXPECT_EQ(device.Take()[0], 0x31);
+  EXPECT_EQ(device.Take()[3], 3);
+  EXPECT_FALSE(device.NextTime().has_value());
+}
+
+}  // namespace
+}  // namespace footing::stream_client
