@@ -12,6 +12,7 @@
 #include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/trc.h"
 #include "daemon/offline/eval/chain/features_chain.h"
+#include "daemon/offline/eval/mounting/stride_loop.h"
 #include "daemon/offline/eval/mounting/walk.h"
 
 namespace footing::eval {
@@ -19,31 +20,14 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Track = std::vector<Vector3d>;
 
-constexpr int kSmooth = 2;  // Frames either side, twice: 50 ms in all, against the markers' noise.
 constexpr double kShortestStrideS = 0.8;
 constexpr double kStandS = 4;
 constexpr double kStandAgainS = 2;
 constexpr double kWalkS = 9;
 constexpr double kSettledS = 3.5;
 constexpr double kBlendS = 0.1;
-constexpr std::size_t kLeastOverlap = 6;  // Frames of the next stride that show the period.
-constexpr double kNever = 1e9;
 const Vector3d kUp_W = Vector3d::UnitY();  // TRC: y is up.
-
-Track Smoothed(const Track& track) {
-  Track smoothed;
-  const int size = static_cast<int>(track.size());
-  for (int i = 0; i < size; ++i) {
-    Vector3d sum = Vector3d::Zero();
-    const int from = std::max(0, i - kSmooth);
-    const int to = std::min(size - 1, i + kSmooth);
-    for (int j = from; j <= to; ++j) sum += track[static_cast<std::size_t>(j)];
-    smoothed.push_back(sum / (to - from + 1));
-  }
-  return smoothed;
-}
 
 struct Shin {
   Track place_W;                 // Middle of its markers.
@@ -94,7 +78,7 @@ Result<Shin> ShinOf(const motion::MarkerTracks& tracks, const std::string& side)
     shin.place_W.push_back(((*knee)[i] + (*ankle)[i] + (*front)[i]) / 3);
   }
   // At its ends smoothing is one-sided, which looks like acceleration.
-  constexpr std::size_t kEdge = 2 * kSmooth + 1;
+  constexpr std::size_t kEdge = 2 * kSmoothFrames + 1;
   for (std::size_t i = kEdge; i + kEdge < Frames(tracks); ++i) {
     const Vector3d acceleration =
         (shin.place_W[i + 1] - 2 * shin.place_W[i] + shin.place_W[i - 1]) * tracks.rate_hz *
@@ -122,53 +106,6 @@ Matrix3d PerfectMounting(const Shin& standing, const Vector3d& front_W) {
   Matrix3d axes_WM;
   axes_WM << kUp_W.cross(front_W), front_W, -kUp_W;
   return axes_WM.transpose() * standing.axes_W[standing.axes_W.size() / 2];
-}
-
-double Mismatch(const Track& track, std::size_t period) {
-  double sum = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i + period < track.size(); ++i, ++count) {
-    sum += (track[i + period] - track[i]).squaredNorm();
-  }
-  return count < kLeastOverlap ? kNever : sum / static_cast<double>(count);
-}
-
-/// One stride as a loop: where the recording goes on beyond it, end and beginning are blended.
-Track Loop(const Track& track, std::size_t period) {
-  Track loop(track.begin(), track.begin() + static_cast<std::ptrdiff_t>(period));
-  const std::size_t overlap = track.size() - period;
-  for (std::size_t i = 0; i < overlap; ++i) {
-    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(overlap);
-    loop[i] = share * track[i] + (1 - share) * track[i + period];
-  }
-  return loop;
-}
-
-Vector3d At(const Track& loop, double index) {
-  const double size = static_cast<double>(loop.size());
-  const double wrapped = index - size * std::floor(index / size);
-  const auto low = static_cast<std::size_t>(wrapped) % loop.size();
-  const double share = wrapped - std::floor(wrapped);
-  return (1 - share) * loop[low] + share * loop[(low + 1) % loop.size()];
-}
-
-/// The frame of the stride in which the shin feels most nearly what it feels standing, from 0.3 s
-/// on: mid-stance.
-std::size_t MidStance(const Track& loop, const Vector3d& standing, double rate_hz) {
-  const int half = static_cast<int>(0.06 * rate_hz);
-  std::size_t best = 0;
-  double least = kNever;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    double sum = 0;
-    for (int off = -half; off <= half; ++off) {
-      sum += (At(loop, static_cast<double>(i) + off) - standing).squaredNorm();
-    }
-    if (sum < least) {
-      least = sum;
-      best = i;
-    }
-  }
-  return best;
 }
 
 struct Leg {
@@ -231,7 +168,7 @@ Result<Recording> ReadRecording(const std::string& standing_path, const std::str
   for (std::size_t frames = shortest; frames < walks[0].size(); ++frames) {
     if (mismatch(frames) < mismatch(period)) period = frames;
   }
-  if (mismatch(period) >= kNever) {
+  if (mismatch(period) >= kWorstMismatch) {
     return InvalidData(walking_path + ": no whole stride in it");
   }
   for (int side = 0; side < 2; ++side) {
@@ -276,7 +213,7 @@ Result<MountingWalk> RecordedWalk(const std::string& standing, const std::string
       return Stepping(*recording, side, t_s, kStandS + later_s,
                       kStandS + later_s + strides * stride_s);
     }
-    return Stepping(*recording, side, t_s, walk_from_s + later_s, kNever);
+    return Stepping(*recording, side, t_s, walk_from_s + later_s, kWorstMismatch);
   };
   // Features of the same walk without noise and counts, every 10 ms.
   auto truths = std::make_shared<std::vector<WalkTruth>>();
