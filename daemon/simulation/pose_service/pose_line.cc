@@ -17,21 +17,6 @@ v1::CommandResult Answer(bool ok, const std::string& message) {
   return result;
 }
 
-Result<std::unique_ptr<SubjectRun>> MakeRun(std::uint64_t number, const body::Body& body,
-                                            const reconstruction::Models& models,
-                                            const reconstruction::Options& options) {
-  auto made = reconstruction::Reconstruction::Create(body, models, options);
-  if (!made) return made.error();
-  if (made->body().skeleton.joints.size() > kMaxLinks) {
-    return InvalidData("the skeleton has more joints than a frame can hold");
-  }
-  auto run = std::make_unique<SubjectRun>(SubjectRun{number, std::move(made).value()});
-  if (auto walk = reconstruction::InsoleWalk::Create(body, models, options)) {
-    run->walk = std::move(walk).value();
-  }
-  return run;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common,
@@ -51,7 +36,7 @@ Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common
   options.lag_s = 1e-3 * static_cast<double>(config.lag_ms);
   auto models = LoadPoseModels(common.data_folder, options.mode);
   if (!models) return models.error();
-  auto run = MakeRun(1, *body, *models, options);
+  auto run = MakeSubjectRun(1, *body, *models, options);
   if (!run) return run.error();
   return std::unique_ptr<PoseLine>(new PoseLine(common.rig, config, std::move(models).value(),
                                                 options, {1, first, *body}, std::move(run).value(),
@@ -104,7 +89,7 @@ v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {
   const auto body = MakeSubjectBody(next);
   if (!body) return Answer(false, "set_subject: " + body.error().message);
   const std::uint64_t number = known_.back().number + 1;
-  auto run = MakeRun(number, *body, models_, options_);
+  auto run = MakeSubjectRun(number, *body, models_, options_);
   if (!run) return Answer(false, "set_subject: " + run.error().message);
   if (!subjects_.next.Push(std::move(run).value())) {
     return Answer(false, "set_subject: the subject before is not in place yet; try again");

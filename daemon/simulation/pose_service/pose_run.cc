@@ -46,6 +46,21 @@ reconstruction::InsoleInputs WithoutFeet(reconstruction::InsoleInputs inputs) {
 
 }  // namespace
 
+Result<std::unique_ptr<SubjectRun>> MakeSubjectRun(std::uint64_t number, const body::Body& body,
+                                                   const reconstruction::Models& models,
+                                                   const reconstruction::Options& options) {
+  auto made = reconstruction::Reconstruction::Create(body, models, options);
+  if (!made) return made.error();
+  if (made->body().skeleton.joints.size() > kMaxLinks) {
+    return InvalidData("the skeleton has more joints than a frame can hold");
+  }
+  auto run = std::make_unique<SubjectRun>(SubjectRun{number, std::move(made).value()});
+  if (auto walk = reconstruction::InsoleWalk::Create(body, models, options)) {
+    run->walk = std::move(walk).value();
+  }
+  return run;
+}
+
 PoseRun::PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExchange& subjects)
     : subject_(std::move(subject)), rate_hz_(rate_hz), subjects_(&subjects) {}
 

@@ -28,6 +28,12 @@ struct SubjectRun {
   TPoseHands t_pose;
 };
 
+/// The subject's reconstruction, and the one in insoles where the options have it. InvalidData when
+/// the body has more joints than a frame can hold.
+Result<std::unique_ptr<SubjectRun>> MakeSubjectRun(std::uint64_t number, const body::Body& body,
+                                                   const reconstruction::Models& models,
+                                                   const reconstruction::Options& options);
+
 /// How subjects come to the simulation thread and go back: it never allocates or frees.
 struct SubjectExchange {
   static constexpr std::size_t kMost = 4;  ///< On their way at one time.

@@ -152,15 +152,20 @@ FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks) {
   return result;
 }
 
-Result<BipedReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::GaitEngine engine) {
+Result<void> CheckFirstStep(std::uint64_t first_step) {
+  constexpr std::uint64_t kLatestFirstStep = 100;  // No input can have come before.
+  if (first_step <= kLatestFirstStep) return {};
+  return InvalidData("the recording begins at step " + std::to_string(first_step) +
+                     " of the simulation; only one from its first step can be run again (start "
+                     "footing-log within 30 s of footing-sim)");
+}
+
+Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::GaitEngine engine) {
   std::map<std::uint64_t, engine::EngineInputs> inputs;
   std::map<std::uint64_t, std::uint64_t> hashes;
   std::uint64_t first_step = 0;
   for (const v1::Tick& tick : ticks) {
     for (const v1::AppliedInput& message : tick.inputs().inputs()) {
-      if (message.has_pose()) {
-        return InvalidData("the recording is one of the pose engine, which is not run again yet");
-      }
       const gait_service::Applied applied = gait_service::FromAppliedInput(message);
       inputs[applied.step] = applied.inputs.engine;
     }
@@ -169,12 +174,8 @@ Result<BipedReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::Gait
     hashes[tick.characters().step()] = tick.characters().state_hash();
   }
   if (inputs.size() > kMaxInputs) return InvalidData("the recording holds too many inputs");
-  if (!hashes.empty() && first_step > 100) {
-    return InvalidData("the recording begins at step " + std::to_string(first_step) +
-                       " of the simulation; only one from its first step can be run again (start "
-                       "footing-log within 30 s of footing-sim)");
-  }
-  BipedReplay result;
+  if (const auto whole = CheckFirstStep(first_step); !whole) return whole.error();
+  EngineReplay result;
   engine::EngineInputs current;
   for (const auto& [frame_step, hash] : hashes) {
     while (result.last_step < frame_step) {

@@ -17,7 +17,8 @@ struct FeaturesReplay {
   std::uint64_t first_difference_sequence = 0;  ///< 0: none.
 };
 
-struct BipedReplay {
+/// The engine of footing-sim, run a second time.
+struct EngineReplay {
   std::uint64_t frames = 0;
   std::uint64_t equal = 0;
   std::uint64_t first_difference_step = 0;  ///< 0: none.
@@ -25,11 +26,15 @@ struct BipedReplay {
   std::uint64_t state_hash = 0;  ///< Of the second run after its last step.
 };
 
+/// InvalidData when the first recorded frame is too late for the engine's first inputs to be in the
+/// recording.
+Result<void> CheckFirstStep(std::uint64_t first_step);
+
 /// Feeds the raw reports of footingd's ticks to the same code that published them.
 FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks);
 
 /// Feeds the applied inputs of footing-sim's ticks to a new engine. InvalidData when the recording
 /// does not begin with the simulation's first step.
-Result<BipedReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::GaitEngine engine);
+Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::GaitEngine engine);
 
 }  // namespace footing::eval

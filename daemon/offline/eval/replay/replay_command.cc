@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "daemon/offline/eval/replay/pose_replay.h"
 #include "daemon/offline/eval/replay/recorded.h"
 #include "daemon/offline/eval/replay/replay.h"
 #include "daemon/simulation/engine_files/engine_files.h"
@@ -12,13 +13,27 @@
 namespace footing::eval {
 namespace {
 
+struct Options {
+  std::string file;
+  std::string track = "straight";
+  std::string data_folder;
+};
+
 Result<engine::GaitEngine> MakeEngine(const std::string& track) {
   const auto texts = engine_files::ReadTexts({.track = track});
   if (!texts) return texts.error();
   return engine::GaitEngine::Create(*texts);
 }
 
-int Run(const std::string& path, const std::string& track) {
+Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks, const Options& options) {
+  if (IsPoseRecording(ticks)) return ReplayPose(ticks, options.data_folder);
+  auto engine = MakeEngine(options.track);
+  if (!engine) return engine.error();
+  return ReplayBiped(ticks, std::move(engine).value());
+}
+
+int Run(const Options& options) {
+  const std::string& path = options.file;
   const auto recorded = ReadRecorded(path);
   if (!recorded) return cli::Report(recorded.error());
   if (recorded->sensor.empty() && recorded->simulation.empty()) {
@@ -30,30 +45,24 @@ int Run(const std::string& path, const std::string& track) {
   json["features_compared"] = features.compared;
   json["features_equal"] = features.equal;
   json["first_difference_sequence"] = features.first_difference_sequence;
-  BipedReplay biped;
+  EngineReplay engine;
   if (!recorded->simulation.empty()) {
-    auto engine = MakeEngine(track);
-    if (!engine) return cli::Report(engine.error());
-    const auto replayed = ReplayBiped(recorded->simulation, std::move(engine).value());
+    const auto replayed = ReplayEngine(recorded->simulation, options);
     if (!replayed) return cli::Report(replayed.error());
-    biped = *replayed;
+    engine = *replayed;
   }
-  json["frames_compared"] = biped.frames;
-  json["frames_equal"] = biped.equal;
-  json["first_difference_step"] = biped.first_difference_step;
-  json["last_step"] = biped.last_step;
-  json["state_hash"] = std::to_string(biped.state_hash);
+  json["frames_compared"] = engine.frames;
+  json["frames_equal"] = engine.equal;
+  json["first_difference_step"] = engine.first_difference_step;
+  json["last_step"] = engine.last_step;
+  json["state_hash"] = std::to_string(engine.state_hash);
   std::cout << json.dump() << std::endl;
-  return features.equal == features.compared && biped.equal == biped.frames ? 0 : 1;
+  return features.equal == features.compared && engine.equal == engine.frames ? 0 : 1;
 }
 
 }  // namespace
 
 void AddReplayCommand(CLI::App& app, Shared& shared) {
-  struct Options {
-    std::string file;
-    std::string track = "straight";
-  };
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("replay",
                                      "Replay of a recording through the same code; compares "
@@ -61,7 +70,9 @@ void AddReplayCommand(CLI::App& app, Shared& shared) {
   command->add_option("file", options->file, "Recording, MCAP file of footing-log")->required();
   command->add_option("--track", options->track,
                       "Track of the recorded simulation: a name, or a JSON file");
-  command->callback([options, &shared] { shared.exit_code = Run(options->file, options->track); });
+  command->add_option("--data-folder", options->data_folder,
+                      "Folder of the pose engine's models (default: the installed ones)");
+  command->callback([options, &shared] { shared.exit_code = Run(*options); });
 }
 
 }  // namespace footing::eval

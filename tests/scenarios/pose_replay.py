@@ -1,0 +1,41 @@
+"""A recording of the pose engine runs again to the same frames, bit for bit.
+
+Usage: pose_replay.py BINARY_FOLDER
+"""
+import sys
+
+from harness import Stage
+
+
+def main(binaries):
+    with Stage(binaries) as stage:
+        stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
+        stage.wait_for_socket(stage.sensor)
+        stage.wait_for_socket(stage.devices)
+        stage.start("footing-sim", "--engine", "pose", "--sensor", stage.sensor, "--listen",
+                    stage.simulation)
+        stage.wait_for_socket(stage.simulation)
+        stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "move", "--to",
+                    stage.devices)
+        recording = stage.folder / "recording.mcap"
+        logger = stage.start("footing-log", "record", "--connect", stage.sensor, "--connect",
+                             stage.simulation, "--out", recording, "--seconds", 14)
+        stage.wait_for(lambda: "footing-sim" in (stage.folder / "footing-log.log").read_text(),
+                       "the logger to be connected")
+        # A T-pose, then a second subject in the middle of the motion.
+        done = stage.run("footing-view", "--connect", stage.simulation, "--text", "--seconds", 8)
+        assert done.returncode == 0, done
+        subject = stage.folder / "p02.json"
+        subject.write_text('{"code": "p02", "height_m": 1.62}')
+        done = stage.run("footing-ctl", "--connect", stage.simulation, "subject", subject)
+        assert done.returncode == 0, done
+        assert logger.wait(30) == 0
+        result = stage.run_json("footing-eval", "replay", recording)
+        print(result)
+        assert result["frames_compared"] > 600, result
+        assert result["frames_equal"] == result["frames_compared"], result
+        assert result["features_equal"] == result["features_compared"], result
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
