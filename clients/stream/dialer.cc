@@ -138,7 +138,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     Send(envelope);
   }
 
-  /// Does something at a time of the motion, by the clock of a slot.
+  /// Does something at a time of the motion, by one of the clocks: of a slot, a source or the end.
   void At(std::size_t slot, double time_s, std::function<void()> action) {
     clocks_[slot]->expires_at(start_ + std::chrono::nanoseconds(SecondsToNanoseconds(time_s)));
     clocks_[slot]->async_wait(
@@ -169,7 +169,8 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     const std::string& bytes = envelope.output().report();
     const std::size_t slot = envelope.output().slot();
     const std::int64_t now_ns = clock::MonotonicNs();
-    if (IsSilent(slot, NanosecondsToSeconds(now_ns - start_ns_))) return;
+    const double now_s = NanosecondsToSeconds(now_ns - start_ns_);
+    if (IsSilent(slot, now_s)) return;
     StandIn& device = devices_[slot];
     if (envelope.output().channel() == v1::DeviceOutput::CHANNEL_FEATURE_GET) {
       if (bytes.empty()) return;
@@ -178,7 +179,6 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
       return;
     }
     const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-    const double now_s = NanosecondsToSeconds(now_ns - start_ns_);
     for (const auto& report : device.HandleOutput(now_s, {first, bytes.size()})) {
       SendReport(slot, report, now_ns);
     }
@@ -224,16 +224,11 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
 
   void ScheduleSource(std::size_t index) {
     const double due_s = static_cast<double>(sent_[index]) / sources_[index].rate_hz;
-    auto& timer = *clocks_[devices_.size() + index];
-    timer.expires_at(
-        start_ + std::chrono::nanoseconds(SecondsToNanoseconds(due_s + sources_[index].late_s)));
-    timer.async_wait([weak = weak_from_this(), index, due_s](boost::system::error_code error) {
-      const auto self = weak.lock();
-      if (self && !error && self->connection_ && !self->stopped_) self->SendDue(index, due_s);
-    });
+    At(devices_.size() + index, due_s + sources_[index].late_s,
+       [this, index, due_s] { SendDue(index, due_s); });
   }
 
-  /// Sends what was so at `due_s`; it is as old as this comes late.
+  /// Sends the value at `due_s`; its age is how late this is.
   void SendDue(std::size_t index, double due_s) {
     if (devices_.empty() && IsOver(due_s)) return;
     Telling& telling = sources_[index];

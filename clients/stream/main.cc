@@ -39,21 +39,24 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
   return 0;
 }
 
+constexpr char kExamples[] =
+    "  footing-stream user --script demo --interface wrist\n"
+    "  footing-stream sample .     # writes the files that the examples below read\n"
+    "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
+    "  footing-stream corners --left corners.csv --link poor --seconds 60\n"
+    "  footing-stream boards --motion demo --hands move\n"
+    "  footing-stream boards --motion demo --hands wiimote --lose-hand left "
+    "--lose-from-s 12 --lose-for-s 2\n"
+    "  footing-stream boards --motion clip.bvh --place-boards\n"
+    "  footing-stream insoles --motion clip.bvh --hands move\n"
+    "  footing-stream replay walk.mcap\n";
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  auto app = cli::NewApp(
-      "footing-stream", "Simulates devices at the level of raw HID reports, over a socket.",
-      "  footing-stream user --script demo --interface wrist\n"
-      "  footing-stream sample .     # writes the files that the examples below read\n"
-      "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
-      "  footing-stream corners --left corners.csv --link poor --seconds 60\n"
-      "  footing-stream boards --motion demo --hands move\n"
-      "  footing-stream boards --motion demo --hands wiimote --lose-hand left "
-      "--lose-from-s 12 --lose-for-s 2\n"
-      "  footing-stream boards --motion clip.bvh --place-boards\n"
-      "  footing-stream insoles --motion clip.bvh --hands move\n"
-      "  footing-stream replay walk.mcap\n");
+  auto app =
+      cli::NewApp("footing-stream",
+                  "Simulates devices at the level of raw HID reports, over a socket.", kExamples);
   stream_client::Common common;
   bool quiet = false;
   app->add_option("--to", common.to,

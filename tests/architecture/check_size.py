@@ -24,16 +24,10 @@ EXCEPTIONS = {
     "common/virtual/motion/c3d.cc:ParseC3d": (61, SPLIT),
     "common/virtual/motion/marker_fit.cc:FitMarkers": (68, SPLIT),
     "common/virtual/motion/marker_skeleton.cc:FitLengths": (84, SPLIT),
-    "clients/stream/main.cc:main": (61, SPLIT),
-    "clients/view/render/world.cc": (315, SPLIT),
     "daemon/offline/bench/publish_to_client.cc:PublishToClient": (77, SPLIT),
     "daemon/offline/eval/momentum/momentum_command.cc:Evaluate": (90, SPLIT),
     "daemon/offline/eval/pose/pose_command.cc:AddFlags": (91, "a table of options"),
     "daemon/offline/learning/cascade.cc:TrainCascade": (78, SPLIT),
-    "daemon/sensor/handshake/handshake.cc": (343, SPLIT),
-    "daemon/sensor/service/device.cc": (360, SPLIT),
-    "daemon/sensor/service/device.cc:Device::Status": (62, SPLIT),
-    "daemon/sensor/service/hub.cc": (402, SPLIT),
     "daemon/sensor/setup/book.cc": (326, SPLIT),
 }
 

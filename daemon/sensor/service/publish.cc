@@ -15,6 +15,16 @@ void Append(std::vector<transport::ChannelBytes>& channels, int field, const Lis
   channels.push_back({static_cast<std::uint32_t>(field), list.SerializeAsString()});
 }
 
+/// A channel of one repeated message; none when there is nothing in it.
+template <typename Values, typename List, typename Element>
+void AppendList(std::vector<transport::ChannelBytes>& channels, int field, const Values& values,
+                Element* (List::*add)()) {
+  if (values.empty()) return;
+  List list;
+  for (const auto& value : values) *(list.*add)() = wire::ToProto(value);
+  Append(channels, field, list);
+}
+
 }  // namespace
 
 std::vector<transport::Channel> Channels() {
@@ -39,61 +49,25 @@ std::vector<transport::ChannelBytes> ToChannels(const TickContent& content) {
     for (const auto& status : content.status) *list.add_devices() = wire::ToProto(status);
     Append(channels, Tick::kStatusFieldNumber, list);
   }
-  if (!content.motion.empty()) {
-    v1::MotionSamples list;
-    for (const auto& sample : content.motion) *list.add_samples() = wire::ToProto(sample);
-    Append(channels, Tick::kMotionFieldNumber, list);
-  }
-  if (!content.features.empty()) {
-    v1::FeatureFrame frame;
-    for (const auto& rig : content.features) *frame.add_rigs() = wire::ToProto(rig);
-    Append(channels, Tick::kFeaturesFieldNumber, frame);
-  }
-  if (!content.boards.empty()) {
-    v1::BoardSamples list;
-    for (const auto& sample : content.boards) *list.add_samples() = wire::ToProto(sample);
-    Append(channels, Tick::kBoardsFieldNumber, list);
-  }
+  AppendList(channels, Tick::kMotionFieldNumber, content.motion, &v1::MotionSamples::add_samples);
+  AppendList(channels, Tick::kFeaturesFieldNumber, content.features, &v1::FeatureFrame::add_rigs);
+  AppendList(channels, Tick::kBoardsFieldNumber, content.boards, &v1::BoardSamples::add_samples);
   if (content.has_setup) {
     v1::SetupState state;
     for (const auto& rig : content.setup) *state.add_rigs() = wire::ToProto(rig);
     Append(channels, Tick::kSetupFieldNumber, state);
   }
-  if (!content.nunchuks.empty()) {
-    v1::NunchukSamples list;
-    for (const auto& sample : content.nunchuks) *list.add_samples() = wire::ToProto(sample);
-    Append(channels, Tick::kNunchukFieldNumber, list);
-  }
-  if (!content.gamepads.empty()) {
-    v1::GamepadSamples list;
-    for (const auto& sample : content.gamepads) *list.add_samples() = wire::ToProto(sample);
-    Append(channels, Tick::kGamepadFieldNumber, list);
-  }
-  if (!content.cameras.empty()) {
-    v1::CameraSamples list;
-    for (const auto& sample : content.cameras) *list.add_samples() = wire::ToProto(sample);
-    Append(channels, Tick::kCameraFieldNumber, list);
-  }
-  if (!content.hands.empty()) {
-    v1::HandSamples list;
-    for (const auto& sample : content.hands) *list.add_samples() = wire::ToProto(sample);
-    Append(channels, Tick::kHandsFieldNumber, list);
-  }
-  if (!content.reference.empty()) {
-    v1::ReferencePoses list;
-    for (const auto& pose : content.reference) *list.add_poses() = wire::ToProto(pose);
-    Append(channels, Tick::kReferenceFieldNumber, list);
-  }
-  if (!content.contacts.empty()) {
-    v1::ContactSamples list;
-    for (const auto& sample : content.contacts) *list.add_samples() = wire::ToProto(sample);
-    Append(channels, Tick::kContactsFieldNumber, list);
-  }
-  if (!content.raw.empty()) {
-    v1::RawReports list;
-    for (const auto& raw : content.raw) *list.add_reports() = wire::ToProto(raw);
-    Append(channels, Tick::kRawFieldNumber, list);
-  }
+  AppendList(channels, Tick::kNunchukFieldNumber, content.nunchuks,
+             &v1::NunchukSamples::add_samples);
+  AppendList(channels, Tick::kGamepadFieldNumber, content.gamepads,
+             &v1::GamepadSamples::add_samples);
+  AppendList(channels, Tick::kCameraFieldNumber, content.cameras, &v1::CameraSamples::add_samples);
+  AppendList(channels, Tick::kHandsFieldNumber, content.hands, &v1::HandSamples::add_samples);
+  AppendList(channels, Tick::kReferenceFieldNumber, content.reference,
+             &v1::ReferencePoses::add_poses);
+  AppendList(channels, Tick::kContactsFieldNumber, content.contacts,
+             &v1::ContactSamples::add_samples);
+  AppendList(channels, Tick::kRawFieldNumber, content.raw, &v1::RawReports::add_reports);
   return channels;
 }
 

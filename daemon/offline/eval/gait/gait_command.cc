@@ -1,7 +1,6 @@
 #include "daemon/offline/eval/gait/gait_command.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -156,9 +155,9 @@ Result<Trials> RunTrials(const GaitOptions& options, std::uint64_t seed) {
 }
 
 std::string Hex(std::uint64_t value) {
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
-  return text.data();
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
 }
 
 nlohmann::ordered_json Report(const GaitOptions& options, std::uint64_t seed, const Trials& trials,
