@@ -15,12 +15,6 @@
 #include "footing/v1/device.pb.h"
 
 namespace footing::stream_client {
-namespace {
-
-constexpr auto kRedial = std::chrono::milliseconds(250);
-constexpr std::uint32_t kMaxEnvelopeBytes = 1024;
-
-}  // namespace
 
 class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Implementation> {
  public:
@@ -62,6 +56,9 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   }
 
  private:
+  static constexpr auto kRedial = std::chrono::milliseconds(250);
+  static constexpr std::uint32_t kMaxEnvelopeBytes = 1024;
+
   void WaitFor(const std::string& why) {
     if (why != waits_for_) {
       log::Info("waiting for footingd: " + why +

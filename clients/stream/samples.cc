@@ -9,6 +9,7 @@
 
 #include "clients/stream/script.h"
 #include "common/units/units.h"
+#include "common/virtual/choreography/course.h"
 #include "common/virtual/choreography/legs.h"
 #include "common/virtual/choreography/perform.h"
 #include "common/virtual/choreography/posture.h"

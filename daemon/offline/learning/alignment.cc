@@ -28,7 +28,7 @@ void Unwrap(const body::Skeleton& skeleton, Eigen::MatrixXd& q) {
 
 double Quantile(const Eigen::VectorXd& values, double share) {
   FOOTING_CHECK(values.size() > 0);
-  return text::Quantile({values.begin(), values.end()}, share);
+  return text::Quantile(std::vector<double>(values.data(), values.data() + values.size()), share);
 }
 
 motion::Motion Aligned(const motion::Motion& motion, const body::Landmarks& landmarks) {
