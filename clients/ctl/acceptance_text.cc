@@ -9,16 +9,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json ToJson(const stream::BoardPose& pose) {
-  return {{"x_m", pose.x_m}, {"y_m", pose.y_m}, {"yaw_rad", pose.yaw_rad}};
-}
-
 stream::BoardPose PoseOf(const ordered_json& json) {
   return {json.at("x_m").get<double>(), json.at("y_m").get<double>(),
           json.at("yaw_rad").get<double>()};
 }
 
 }  // namespace
+
+ordered_json BoardPoseJson(const stream::BoardPose& pose) {
+  return {{"x_m", pose.x_m}, {"y_m", pose.y_m}, {"yaw_rad", pose.yaw_rad}};
+}
 
 void TakeTick(const v1::Tick& tick, guide::Acceptance& acceptance) {
   if (tick.has_status()) {
@@ -57,8 +57,8 @@ std::map<std::string, std::string> AcceptanceMetadata(const std::string& rig,
   }
   const ordered_json lies{{"preset", layout.preset},
                           {"gap_mm", layout.gap_mm},
-                          {"left", ToJson(layout.left)},
-                          {"right", ToJson(layout.right)}};
+                          {"left", BoardPoseJson(layout.left)},
+                          {"right", BoardPoseJson(layout.right)}};
   return {{"rig", rig},
           {"layout", lies.dump()},
           {"phases", phases.dump()},

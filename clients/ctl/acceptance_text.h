@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "footing/v1/session.pb.h"
 
 namespace footing::ctl {
+
+/// {x_m, y_m, yaw_rad}
+nlohmann::ordered_json BoardPoseJson(const stream::BoardPose& pose);
 
 /// Hands a tick's content to the measurement; the same live and out of a recording.
 void TakeTick(const v1::Tick& tick, guide::Acceptance& acceptance);

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <memory>
 
+#include "clients/ctl/acceptance_text.h"
 #include "clients/ctl/commands.h"
 #include "clients/ctl/guided.h"
 #include "common/board/layout.h"
@@ -23,11 +24,7 @@ struct LayoutArguments {
 
 std::string Millimetres(double metres) { return std::to_string(std::lround(metres * 1e3)) + " mm"; }
 
-ordered_json BoardPoseJson(const stream::BoardPose& pose) {
-  return {{"x_m", pose.x_m}, {"y_m", pose.y_m}, {"yaw_rad", pose.yaw_rad}};
-}
-
-std::string ToText(const stream::BoardPose& pose) {
+std::string PoseText(const stream::BoardPose& pose) {
   return Millimetres(pose.x_m) + " forward, " + Millimetres(pose.y_m) + " left, turned by " +
          std::to_string(std::lround(RadiansToDegrees(pose.yaw_rad))) + " degrees";
 }
@@ -54,8 +51,8 @@ Result<void> Layout(Session& session, const LayoutArguments& arguments, const Sh
                    {"left", BoardPoseJson(layout.left)},
                    {"right", BoardPoseJson(layout.right)}};
   std::string text =
-      "rig " + arguments.rig + ": " + layout.preset + "\n  left board:  " + ToText(layout.left);
-  if (layout.preset != "single") text += "\n  right board: " + ToText(layout.right);
+      "rig " + arguments.rig + ": " + layout.preset + "\n  left board:  " + PoseText(layout.left);
+  if (layout.preset != "single") text += "\n  right board: " + PoseText(layout.right);
   Result<void> verdict;
   if (arguments.check) {
     guide::SetUpOptions options;
@@ -67,7 +64,7 @@ Result<void> Layout(Session& session, const LayoutArguments& arguments, const Sh
     if (!results) return results.error();
     if (results->empty()) return NoDevice("rig " + arguments.rig + " has no board");
     out["check"] = ToJson(results->back());
-    text += "\n" + ctl::ToText(results->back());
+    text += "\n" + ToText(results->back());
     if (!results->back().passed) verdict = Failure(results->back().note);
   }
   Print(out, text, shared);

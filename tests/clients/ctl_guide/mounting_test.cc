@@ -8,13 +8,13 @@
 namespace footing::guide {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::int64_t kMountingSecondNs = 1'000'000'000;
 
 /// Runs for so long at 20 Hz with a shake that depends on the time, s.
 StillThenSteps Watch(double seconds, const std::function<double(double)>& moving_mps2) {
   StillThenSteps still;
   for (int i = 0; i < seconds * 20; ++i) {
-    still.Advance(10 * kSecondNs + i * kSecondNs / 20, moving_mps2(i / 20.0));
+    still.Advance(10 * kMountingSecondNs + i * kMountingSecondNs / 20, moving_mps2(i / 20.0));
   }
   return still;
 }
@@ -25,8 +25,10 @@ TEST(StillThenSteps, FindsTheStillnessAndTheStepsAfterIt) {
     return t < 3 ? 3.0 : t < 8 ? 0.2 : t < 10 ? 5.0 : 0.2;
   });
   ASSERT_EQ(found.phase(), StillThenSteps::Phase::kDone);
-  const auto at = [](double s) { return 10 * kSecondNs + static_cast<std::int64_t>(s * 1e9); };
-  EXPECT_GE(found.still_to_ns() - found.still_from_ns(), 2 * kSecondNs);
+  const auto at = [](double s) {
+    return 10 * kMountingSecondNs + static_cast<std::int64_t>(s * 1e9);
+  };
+  EXPECT_GE(found.still_to_ns() - found.still_from_ns(), 2 * kMountingSecondNs);
   EXPECT_LE(found.still_to_ns(), at(7.5));
   EXPECT_GE(found.still_from_ns(), at(2.5));
   // The shake of half a second: movement may have begun so long before it shows.

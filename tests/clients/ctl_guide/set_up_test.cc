@@ -10,7 +10,7 @@
 namespace footing::guide {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::int64_t kSetUpSecondNs = 1'000'000'000;
 constexpr double kWeightN = 70 * 9.80665;
 
 /// Somebody with two boards and two shin devices who does what the prompts say, and a footingd that
@@ -98,14 +98,14 @@ class Person {
     if (clumsy && Asked("Shake")) shake[0] = shake[1] = 12;
     if (Asked("three steps") && s < 2.5) shake[0] = shake[1] = 8;
     for (int i = 0; i < 5; ++i) {
-      now_ns_ += kSecondNs / 100;
+      now_ns_ += kSetUpSecondNs / 100;
       Put(1, left, left_yaw_rad, lean_m);
       Put(2, right, right_yaw_rad, lean_m);
       for (std::uint32_t j = 0; j < 2; ++j) {
         stream::MotionSample sample;
         sample.device = 3 + j;
         sample.received_ns = now_ns_;
-        const double phase = 2 * kPi * 5 * NanosecondsToSeconds(now_ns_ % kSecondNs);
+        const double phase = 2 * kPi * 5 * NanosecondsToSeconds(now_ns_ % kSetUpSecondNs);
         sample.specific_force_mps2 = {shake[j] * std::sqrt(2) * std::sin(phase), 0, -9.81};
         recent_.Add(sample);
       }
@@ -132,8 +132,8 @@ class Person {
     if (action.kind == Action::Kind::kTare) answer.residual = 0.7;
     if (action.kind == Action::Kind::kSolveMounting) {
       answer.residual = mounting_deg;
-      EXPECT_GE(action.still_to_ns - action.still_from_ns, 2 * kSecondNs);
-      EXPECT_GT(action.steps_to_ns, action.steps_from_ns + 2 * kSecondNs);
+      EXPECT_GE(action.still_to_ns - action.still_from_ns, 2 * kSetUpSecondNs);
+      EXPECT_GT(action.steps_to_ns, action.steps_from_ns + 2 * kSetUpSecondNs);
     }
     if (action.kind == Action::Kind::kAssign) {  // A role that is taken is swapped.
       stream::DeviceStatus* one = nullptr;
@@ -149,7 +149,7 @@ class Person {
     answers_.push_back(answer);
   }
 
-  std::int64_t now_ns_ = 100 * kSecondNs;
+  std::int64_t now_ns_ = 100 * kSetUpSecondNs;
   std::int64_t heard_ns_ = 0;
   std::string heard_;
   Recent recent_;

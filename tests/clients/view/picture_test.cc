@@ -12,7 +12,7 @@ namespace footing::render {
 namespace {
 
 bool IsSky(int r, int g, int b) { return b > 150 && b > g && g > r; }
-bool IsGrass(int r, int g, int b) { return g > r + 12 && g > b + 25; }
+bool PictureIsGrass(int r, int g, int b) { return g > r + 12 && g > b + 25; }
 bool IsClay(int r, int g, int b) { return r > g + 30 && r > b + 30; }
 bool IsFeather(int r, int g, int b) { return b > r + 40 && b > 60 && g > r; }
 
@@ -52,7 +52,7 @@ TEST_F(PictureTest, SkyIsAboveGrassAndTrackAndTheBirdIsBetween) {
   const Image image = Draw(scene::made::ModelAfter(3, wish), 3, wish, subject, "subject");
   EXPECT_GT(ShareOf(image, IsSky, {0, 1, 0, 0.2}), 0.5);
   EXPECT_LT(ShareOf(image, IsSky, {0, 1, 0.6, 1}), 0.02);
-  EXPECT_GT(ShareOf(image, IsGrass, {0, 1, 0.5, 1}), 0.15);
+  EXPECT_GT(ShareOf(image, PictureIsGrass, {0, 1, 0.5, 1}), 0.15);
   EXPECT_GT(ShareOf(image, IsClay, {0, 1, 0.5, 1}), 0.25);
   EXPECT_GT(ShareOf(image, IsFeather, {0, 1, 0.4, 0.9}), 0.01);
 }
@@ -120,7 +120,7 @@ TEST_F(PictureTest, BeforeAnyServerTheGroundAndAWaitingPanelAreThere) {
   HudOptions subject;
   subject.hidden = true;
   const Image bare = Draw(model, 0, {}, subject, "empty_ground");
-  EXPECT_GT(ShareOf(bare, IsGrass, {0, 1, 0.6, 1}), 0.6);
+  EXPECT_GT(ShareOf(bare, PictureIsGrass, {0, 1, 0.6, 1}), 0.6);
   const auto letters = [](int r, int g, int b) { return r > 140 && g > 140 && b > 140; };
   EXPECT_GT(ShareOf(waiting, letters, {0, 1, 0.36, 0.52}),
             ShareOf(bare, letters, {0, 1, 0.36, 0.52}) + 0.002);

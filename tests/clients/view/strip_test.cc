@@ -9,12 +9,12 @@
 namespace footing::scene {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kStripMs = 1'000'000;
 
 TEST(Strip, KeepsTenSecondsAndNoMore) {
   Strip strip;
-  for (int i = 0; i < 2000; ++i) strip.Add(10 * kMs * i, i);
-  EXPECT_EQ(strip.points().front().time_ns, 10 * kMs * 1999 - kStripNs);
+  for (int i = 0; i < 2000; ++i) strip.Add(10 * kStripMs * i, i);
+  EXPECT_EQ(strip.points().front().time_ns, 10 * kStripMs * 1999 - kStripNs);
   EXPECT_EQ(strip.points().back().value, 1999);
 }
 
@@ -22,10 +22,10 @@ TEST(Strip, WhatIsNotKnownLeavesAGapAndNoZero) {
   Strip strip;
   strip.Add(0, 1);
   strip.Break();
-  strip.Add(20 * kMs, 2);
-  strip.Add(30 * kMs, std::numeric_limits<double>::quiet_NaN());
-  strip.Add(40 * kMs, 3);
-  strip.Add(50 * kMs, 4);
+  strip.Add(20 * kStripMs, 2);
+  strip.Add(30 * kStripMs, std::numeric_limits<double>::quiet_NaN());
+  strip.Add(40 * kStripMs, 3);
+  strip.Add(50 * kStripMs, 4);
   ASSERT_EQ(strip.points().size(), 4u);
   EXPECT_FALSE(strip.points()[1].joined);
   EXPECT_FALSE(strip.points()[2].joined);

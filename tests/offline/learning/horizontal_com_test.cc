@@ -9,7 +9,7 @@
 namespace footing::learning {
 namespace {
 
-LoadClip Numbered(int frames) {
+LoadClip HorizontalComNumbered(int frames) {
   LoadClip clip(static_cast<std::size_t>(frames));
   for (int t = 0; t < frames; ++t) {
     auto& frame = clip[static_cast<std::size_t>(t)];
@@ -21,7 +21,8 @@ LoadClip Numbered(int frames) {
 }
 
 TEST(HorizontalExamples, AreThePapersInputsAndOutputOfEachAxis) {
-  const std::vector<LoadClip> clips = {Numbered(5), Numbered(3), Numbered(4)};
+  const std::vector<LoadClip> clips = {HorizontalComNumbered(5), HorizontalComNumbered(3),
+                                       HorizontalComNumbered(4)};
   const Examples x = HorizontalExamples(clips, 0), y = HorizontalExamples(clips, 1);
   ASSERT_EQ(x.rows(), 2 + 0 + 1);  // No row reaches from one clip into the next.
   ASSERT_EQ(x.inputs.cols(), 20);

@@ -9,7 +9,7 @@
 namespace footing::learning {
 namespace {
 
-Eigen::MatrixXd Drawn(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
+Eigen::MatrixXd LeastSquaresDrawn(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
   noise::Random random(seed);
   Eigen::MatrixXd values(rows, columns);
   for (double& value : values.reshaped()) value = random.Normal();
@@ -17,8 +17,8 @@ Eigen::MatrixXd Drawn(Eigen::Index rows, Eigen::Index columns, std::uint64_t see
 }
 
 TEST(LeastSquares, AgreesWithHouseholdersAfterEveryColumn) {
-  const Eigen::MatrixXd columns = Drawn(60, 6, 1);
-  const Eigen::MatrixXd targets = Drawn(60, 2, 2);
+  const Eigen::MatrixXd columns = LeastSquaresDrawn(60, 6, 1);
+  const Eigen::MatrixXd targets = LeastSquaresDrawn(60, 2, 2);
   LeastSquares solver(targets, 6);
   for (Eigen::Index count = 1; count <= 6; ++count) {
     solver.Add(columns.col(count - 1));
@@ -30,8 +30,8 @@ TEST(LeastSquares, AgreesWithHouseholdersAfterEveryColumn) {
 }
 
 TEST(LeastSquares, TellsColumnsApartThatDifferByAMillionth) {
-  const Eigen::VectorXd a = Drawn(80, 1, 3);
-  const Eigen::VectorXd b = a + 1e-6 * Drawn(80, 1, 4);
+  const Eigen::VectorXd a = LeastSquaresDrawn(80, 1, 3);
+  const Eigen::VectorXd b = a + 1e-6 * LeastSquaresDrawn(80, 1, 4);
   LeastSquares solver(2 * a - 5 * b, 2);
   solver.Add(a);
   solver.Add(b);
@@ -39,7 +39,7 @@ TEST(LeastSquares, TellsColumnsApartThatDifferByAMillionth) {
 }
 
 TEST(LeastSquares, AColumnThatTheOthersExplainGetsNoWeight) {
-  const Eigen::MatrixXd columns = Drawn(40, 2, 5);
+  const Eigen::MatrixXd columns = LeastSquaresDrawn(40, 2, 5);
   LeastSquares solver(columns.col(0) - columns.col(1), 4);
   solver.Add(columns.col(0));
   solver.Add(columns.col(0) * 3);

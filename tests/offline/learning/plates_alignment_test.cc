@@ -14,7 +14,7 @@ namespace footing::learning {
 namespace {
 
 constexpr double kMassKg = 60;
-constexpr double kWeightN = kMassKg * kStandardGravityMps2;
+constexpr double kPlatesAlignmentWeightN = kMassKg * kStandardGravityMps2;
 
 struct Traces {
   ForceTrace plates, moved;
@@ -23,7 +23,7 @@ struct Traces {
 ForceTrace Empty(const std::string& name) {
   ForceTrace trace;
   trace.name = name;
-  trace.weight_n = kWeightN;
+  trace.weight_n = kPlatesAlignmentWeightN;
   trace.load_n.resize(2, 0);
   return trace;
 }
@@ -58,7 +58,7 @@ void AddTrial(const std::string& trial, Traces& traces) {
     Eigen::Vector2d load_n = Eigen::Vector2d::Zero();
     for (std::size_t plate = 0; plate < forces->plates.size(); ++plate)
       load_n(plate == 0 ? 0 : 1) += forces->plates[plate].force_W(2, k);
-    if (!landed && load_n.sum() > 0.1 * kWeightN) {
+    if (!landed && load_n.sum() > 0.1 * kPlatesAlignmentWeightN) {
       landed = true;
       const auto before = std::min<std::ptrdiff_t>(45, std::ssize(traces.plates.valid));
       if (i >= before)

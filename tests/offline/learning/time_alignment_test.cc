@@ -13,7 +13,7 @@
 namespace footing::learning {
 namespace {
 
-constexpr double kWeightN = 700;
+constexpr double kTimeAlignmentWeightN = 700;
 
 /// Somebody who bends the knees without a rule, steps from foot to foot and stomps: forces at any
 /// time of the motion's clock.
@@ -49,7 +49,7 @@ struct Mover {
       if (t_s > -0.55 && t_s < -0.03) right = 0;
       total += 0.6 * std::exp(-0.5 * t_s * t_s / (0.03 * 0.03));
     }
-    return {kWeightN * total * (1 - right), kWeightN * total * right};
+    return {kTimeAlignmentWeightN * total * (1 - right), kTimeAlignmentWeightN * total * right};
   }
 };
 
@@ -58,7 +58,7 @@ ForceTrace Moved(const Mover& mover, double seconds) {
   ForceTrace trace;
   trace.name = "me.bvh";
   trace.rate_hz = 120;
-  trace.weight_n = kWeightN;
+  trace.weight_n = kTimeAlignmentWeightN;
   trace.load_n.resize(2, static_cast<Eigen::Index>(seconds * trace.rate_hz));
   trace.valid.assign(static_cast<std::size_t>(trace.load_n.cols()), true);
   for (Eigen::Index i = 0; i < trace.load_n.cols(); ++i) {
@@ -90,7 +90,7 @@ ForceTrace Recorded(const Mover& mover, double seconds, double offset_s, double 
       session.boards[side].push_back(reading);
     }
   }
-  return TraceOf(session, kWeightN);
+  return TraceOf(session, kTimeAlignmentWeightN);
 }
 
 /// The greatest error of the motion's time on the recording's clock.

@@ -8,10 +8,10 @@ namespace {
 using body::Landmark;
 
 /// Frames of somebody on both feet; the first one is in the T-pose.
-struct Stage {
+struct CrouchStage {
   PoseRun run;
 
-  Stage() {
+  CrouchStage() {
     const body::Skeleton skeleton = body::StandardPerson(1.75);
     run.body = body::MakeBody(skeleton, {}).value();
     Add();
@@ -36,7 +36,7 @@ struct Stage {
 };
 
 TEST(DeepestCrouch, BendsEveryKneeAndHip) {
-  Stage stage;
+  CrouchStage stage;
   stage.Squat(stage.Add(), 50);
   stage.Squat(stage.Add(), 70);
   stage.Squat(stage.Add(), 60);
@@ -47,7 +47,7 @@ TEST(DeepestCrouch, BendsEveryKneeAndHip) {
 }
 
 TEST(DeepestCrouch, IsNeitherABowNorARaisedKneeNorAJump) {
-  Stage stage;
+  CrouchStage stage;
   Frame& bow = stage.Add();
   bow.com_m.z() = 0.1;
   for (const Landmark hip : {Landmark::kLeftHip, Landmark::kRightHip}) stage.Turn(bow, hip, -90);
@@ -61,7 +61,7 @@ TEST(DeepestCrouch, IsNeitherABowNorARaisedKneeNorAJump) {
 }
 
 TEST(DeepestCrouch, IsLookedForFromTheGivenFrameOn) {
-  Stage stage;
+  CrouchStage stage;
   stage.Squat(stage.Add(), 90);
   stage.Squat(stage.Add(), 60);
   EXPECT_EQ(DeepestCrouch(stage.run, 2).frame, 2u);

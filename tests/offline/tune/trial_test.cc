@@ -11,12 +11,12 @@
 namespace footing::tune {
 namespace {
 
-const Task kWalk{stream::Gait::kWalk, 0.8};
+const Task kTrialWalk{stream::Gait::kWalk, 0.8};
 
 Team NewTeam(int threads) {
   auto team = Team::Create(threads);
   EXPECT_TRUE(team.ok());
-  EXPECT_TRUE(team->Prepare(kWalk, *TableOf(*engine_files::ReadTexts(), {}), 3).ok());
+  EXPECT_TRUE(team->Prepare(kTrialWalk, *TableOf(*engine_files::ReadTexts(), {}), 3).ok());
   return std::move(team).value();
 }
 
@@ -52,7 +52,7 @@ TEST(Trials, BeginWalkingAtTheirSpeed) {
   auto texts = engine_files::ReadTexts();
   auto engine = engine::GaitEngine::Create(*texts);
   ASSERT_TRUE(engine.ok());
-  const auto states = SettledStates(*engine, kWalk, 3, 5);
+  const auto states = SettledStates(*engine, kTrialWalk, 3, 5);
   ASSERT_TRUE(states.ok());
   std::set<std::uint64_t> moments;
   for (const auto& state : *states) {

@@ -15,20 +15,21 @@
 namespace footing::calibration {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using GoldenVectorsBytes = std::vector<std::uint8_t>;
 
 TEST(GoldenVectors, AccelerationBlocksOfThreeRemotesEndInTheirChecksum) {
   // Dolphin's old default (a real remote), the idealised one, rnconrad/WiimoteEmulator.
-  for (const Bytes& block : {Bytes{0x82, 0x82, 0x82, 0x15, 0x9c, 0x9c, 0x9e, 0x38, 0x40, 0x3e},
-                             Bytes{0x80, 0x80, 0x80, 0x00, 0x9a, 0x9a, 0x9a, 0x00, 0x40, 0xe3},
-                             Bytes{0x85, 0x85, 0x85, 0x00, 0xa0, 0xa0, 0xa0, 0x00, 0x40, 0x04}}) {
+  for (const GoldenVectorsBytes& block :
+       {GoldenVectorsBytes{0x82, 0x82, 0x82, 0x15, 0x9c, 0x9c, 0x9e, 0x38, 0x40, 0x3e},
+        GoldenVectorsBytes{0x80, 0x80, 0x80, 0x00, 0x9a, 0x9a, 0x9a, 0x00, 0x40, 0xe3},
+        GoldenVectorsBytes{0x85, 0x85, 0x85, 0x00, 0xa0, 0xa0, 0xa0, 0x00, 0x40, 0x04}}) {
     EXPECT_TRUE(EndsInSumChecksum(block));
     EXPECT_EQ(ParseAcceleration(block).origin, stream::CalibrationOrigin::kDevice);
   }
 }
 
 TEST(GoldenVectors, TheCamerasBlockEndsInItsChecksum) {
-  Bytes block = {0xa1, 0xaa, 0x8b, 0x99, 0xae, 0x9e, 0x78, 0x30, 0xa7, 0x74, 0xd3};
+  GoldenVectorsBytes block = {0xa1, 0xaa, 0x8b, 0x99, 0xae, 0x9e, 0x78, 0x30, 0xa7, 0x74, 0xd3};
   EXPECT_TRUE(EndsInSumChecksum(block));
   block[4] ^= 0x01;
   EXPECT_FALSE(EndsInSumChecksum(block));
@@ -37,8 +38,8 @@ TEST(GoldenVectors, TheCamerasBlockEndsInItsChecksum) {
 
 TEST(GoldenVectors, ABoardsReport) {
   // wiiuse issue 42.
-  Bytes report = {0x34, 0x00, 0x00, 0x03, 0xd0, 0x19, 0x1a, 0x00,
-                  0x17, 0x15, 0x23, 0x19, 0x00, 0x6e, 0x00};
+  GoldenVectorsBytes report = {0x34, 0x00, 0x00, 0x03, 0xd0, 0x19, 0x1a, 0x00,
+                               0x17, 0x15, 0x23, 0x19, 0x00, 0x6e, 0x00};
   report.resize(22);
   const auto decoded = reports::Decode(report);
   EXPECT_EQ(decoded.buttons, 0);
@@ -51,7 +52,8 @@ TEST(GoldenVectors, ABoardsReport) {
 
 TEST(GoldenVectors, ABoardsStatus) {
   // takeru/Wiimote issue 2, without the Bluetooth header.
-  const auto decoded = reports::Decode(Bytes{0x20, 0x00, 0x00, 0x02, 0x00, 0x00, 0xd5});
+  const auto decoded =
+      reports::Decode(GoldenVectorsBytes{0x20, 0x00, 0x00, 0x02, 0x00, 0x00, 0xd5});
   const auto& status = std::get<reports::Status>(decoded.body);
   EXPECT_EQ(status.leds, 0);
   EXPECT_TRUE(status.extension);
@@ -64,12 +66,12 @@ TEST(GoldenVectors, ACorruptBoardBlockIsRefused) {
   // alxn1/wjoy issue 35: points that do not rise.
   const int points[] = {26880, 0,     56076, 10761, 26902, 26630,
                         23315, 55311, 61212, 28941, 60953, 36630};
-  Bytes block(32);
+  GoldenVectorsBytes block(32);
   for (std::size_t i = 0; i < 12; ++i) {
     block[4 + 2 * i] = static_cast<std::uint8_t>(points[i] >> 8);
     block[5 + 2 * i] = static_cast<std::uint8_t>(points[i]);
   }
-  const auto calibration = ParseBoard(block, Bytes{0x19, 0x01});
+  const auto calibration = ParseBoard(block, GoldenVectorsBytes{0x19, 0x01});
   EXPECT_EQ(calibration.origin, stream::CalibrationOrigin::kDefaults);
   EXPECT_NE(calibration.problem.find("rise"), std::string::npos);
 }
@@ -88,19 +90,20 @@ TEST(GoldenVectors, AnEmptyBoardsOffsetsAreReadFarApart) {
 
 TEST(GoldenVectors, ABlockOfFfFromAnUnlockedMotionPlusIsRefused) {
   // wiiuse issue 32.
-  EXPECT_EQ(ParseMotionPlus(Bytes(32, 0xff)).origin, stream::CalibrationOrigin::kDefaults);
+  EXPECT_EQ(ParseMotionPlus(GoldenVectorsBytes(32, 0xff)).origin,
+            stream::CalibrationOrigin::kDefaults);
 }
 
 TEST(GoldenVectors, ASilentPortIsNotReady) {
-  EXPECT_EQ(reports::IdentifyExtension(Bytes{0xff, 0x00, 0xff, 0xff, 0xff, 0xff}),
+  EXPECT_EQ(reports::IdentifyExtension(GoldenVectorsBytes{0xff, 0x00, 0xff, 0xff, 0xff, 0xff}),
             reports::Extension::kNotReady);
-  EXPECT_EQ(reports::IdentifyExtension(Bytes(6, 0xff)), reports::Extension::kNotReady);
+  EXPECT_EQ(reports::IdentifyExtension(GoldenVectorsBytes(6, 0xff)), reports::Extension::kNotReady);
 }
 
 TEST(GoldenVectors, ErrorTwoIsARefusalAndNoData) {
   // wiiuse issue 105, a -TR: 0x15 and 0x17 refused.
   for (const std::uint8_t refused : {0x15, 0x17}) {
-    const auto decoded = reports::Decode(Bytes{0x22, 0x00, 0x00, refused, 0x02});
+    const auto decoded = reports::Decode(GoldenVectorsBytes{0x22, 0x00, 0x00, refused, 0x02});
     const auto& acknowledgement = std::get<reports::Acknowledgement>(decoded.body);
     EXPECT_EQ(acknowledgement.report, refused);
     EXPECT_EQ(acknowledgement.error, 2);

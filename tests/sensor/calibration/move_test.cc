@@ -16,12 +16,12 @@ namespace {
 using reports::MoveModel;
 using stream::CalibrationOrigin;
 using testing::HasSubstr;
-using Bytes = std::vector<std::uint8_t>;
+using MoveBytes = std::vector<std::uint8_t>;
 
-constexpr double kG = kStandardGravityMps2;
+constexpr double kMoveG = kStandardGravityMps2;
 
 // Real units, from the moveonpc wiki ("Calibration data", "Calibration data CECH-ZCM2").
-const std::vector<Bytes> kZcm1 = {
+const std::vector<MoveBytes> kZcm1 = {
     {0x10, 0x00, 0x46, 0x07, 0x73, 0x7f, 0x9f, 0x7f, 0xe8, 0x8f, 0x85, 0x6e, 0xca,
      0x7f, 0xf4, 0x7e, 0x55, 0x7f, 0xf1, 0x7f, 0x1a, 0x6e, 0x98, 0x90, 0x0a, 0x80,
      0x5b, 0x7f, 0x67, 0x7f, 0xc9, 0x90, 0x4c, 0x7f, 0xb7, 0x7f, 0xe6, 0x6e, 0x06,
@@ -34,7 +34,7 @@ const std::vector<Bytes> kZcm1 = {
      0x13, 0x7d, 0x3f, 0x93, 0x5b, 0x81, 0x3f, 0x70, 0xea, 0x76, 0x3f, 0xff, 0x80,
      0x4f, 0x3f, 0xc6, 0xea, 0x9c, 0x3d, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
      0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}};
-const std::vector<Bytes> kZcm2 = {
+const std::vector<MoveBytes> kZcm2 = {
     {0x10, 0x00, 0x22, 0x10, 0xfd, 0xff, 0x3c, 0x00, 0x1b, 0xf0, 0x07, 0x00, 0xd3,
      0xff, 0x2a, 0x00, 0x07, 0x10, 0xe2, 0xff, 0x15, 0x00, 0x04, 0xf0, 0x11, 0x00,
      0xf9, 0xff, 0x0a, 0x00, 0xfe, 0x0f, 0x46, 0x00, 0xdc, 0xff, 0xd6, 0xef, 0xfb,
@@ -44,9 +44,9 @@ const std::vector<Bytes> kZcm2 = {
      0x00, 0x63, 0xe5, 0xef, 0xff, 0x81, 0x00, 0x06, 0x00, 0x62, 0xe5, 0x1c, 0x02,
      0x1c, 0x02, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}};
 
-Bytes Join(MoveModel model, const std::vector<Bytes>& pieces) {
+MoveBytes Join(MoveModel model, const std::vector<MoveBytes>& pieces) {
   MoveBlob blob(model);
-  for (const Bytes& piece : pieces) EXPECT_TRUE(blob.Take(piece));
+  for (const MoveBytes& piece : pieces) EXPECT_TRUE(blob.Take(piece));
   EXPECT_TRUE(blob.complete());
   return blob.bytes();
 }
@@ -67,11 +67,11 @@ TEST(MoveBlob, TakesPiecesInAnyOrderAndAgain) {
 
 TEST(MoveBlob, LeavesAsideWhatIsNoPiece) {
   MoveBlob blob(MoveModel::kZcm2);
-  EXPECT_FALSE(blob.Take(Bytes{}));
-  EXPECT_FALSE(blob.Take(Bytes(kZcm2[0].begin(), kZcm2[0].begin() + 48)));
+  EXPECT_FALSE(blob.Take(MoveBytes{}));
+  EXPECT_FALSE(blob.Take(MoveBytes(kZcm2[0].begin(), kZcm2[0].begin() + 48)));
   EXPECT_FALSE(blob.Take(kZcm1[1])) << "middle piece of the other model";
   EXPECT_FALSE(blob.Take(kZcm1[2])) << "last piece of the other model";
-  Bytes other = kZcm2[0];
+  MoveBytes other = kZcm2[0];
   other[0] = 0x11;
   EXPECT_FALSE(blob.Take(other));
   EXPECT_TRUE(blob.bytes().empty());
@@ -83,9 +83,9 @@ TEST(MoveCalibration, ReadsARealBlobOfTheFirstModel) {
   EXPECT_EQ(calibration.problem, "");
   // x: 0x6e85 and 0x9098, y: 0x6ee6 and 0x90c9, z: 0x6e1a and 0x8fe8; each less 0x8000.
   EXPECT_DOUBLE_EQ(calibration.acceleration_zero_counts[0], (-4475 + 4248) / 2.0);
-  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[0], 2 * kG / (4248 + 4475));
-  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[1], 2 * kG / (4297 + 4378));
-  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[2], 2 * kG / (4072 + 4582));
+  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[0], 2 * kMoveG / (4248 + 4475));
+  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[1], 2 * kMoveG / (4297 + 4378));
+  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[2], 2 * kMoveG / (4072 + 4582));
   // x: 0x94e5 - 0x8000 = 5349 at 80 rpm, bias 0x7fa5 - 0x8000 = -91 times 0.98858.
   EXPECT_NEAR(calibration.gyroscope_gain_radps[0], 80 * 2 * kPi / 60 / (5349 + 91 * 0.98858), 1e-8);
   EXPECT_DOUBLE_EQ(calibration.gyroscope_zero_counts[0], 0);
@@ -94,15 +94,15 @@ TEST(MoveCalibration, ReadsARealBlobOfTheFirstModel) {
 TEST(MoveCalibration, ReadsARealBlobOfTheSecondModel) {
   const auto calibration = ParseMove(MoveModel::kZcm2, Join(MoveModel::kZcm2, kZcm2));
   EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
-  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[0], 2 * kG / (4130 + 4069));
-  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[2], 2 * kG / (4094 + 4138));
+  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[0], 2 * kMoveG / (4130 + 4069));
+  EXPECT_DOUBLE_EQ(calibration.acceleration_gain_mps2[2], 2 * kMoveG / (4094 + 4138));
   EXPECT_EQ(calibration.gyroscope_zero_counts, (std::array<double, 3>{-5, 7, -1}));
   // y: 0x1aac = 6828 forth, 0xe563 = -6813 back.
   EXPECT_NEAR(calibration.gyroscope_gain_radps[1], 90 * 2 * kPi / 60 / 6820.5, 1e-9);
 }
 
 TEST(MoveCalibration, ABiasFactorThatIsNoNumberIsLeftOut) {
-  Bytes blob = Join(MoveModel::kZcm1, kZcm1);
+  MoveBytes blob = Join(MoveModel::kZcm1, kZcm1);
   for (const float factor : {std::numeric_limits<float>::quiet_NaN(),
                              std::numeric_limits<float>::infinity(), 0.f, -1.f, 1e30f}) {
     std::memcpy(blob.data() + 0x6a, &factor, sizeof factor);
@@ -112,7 +112,7 @@ TEST(MoveCalibration, ABiasFactorThatIsNoNumberIsLeftOut) {
 }
 
 TEST(MoveCalibration, UnusableBlobsGiveTypicalValuesAndTheReason) {
-  const auto refuse = [](MoveModel model, const Bytes& blob, const char* why) {
+  const auto refuse = [](MoveModel model, const MoveBytes& blob, const char* why) {
     const auto calibration = ParseMove(model, blob);
     EXPECT_EQ(calibration.origin, CalibrationOrigin::kDefaults);
     EXPECT_THAT(calibration.problem, HasSubstr(why));
@@ -121,18 +121,18 @@ TEST(MoveCalibration, UnusableBlobsGiveTypicalValuesAndTheReason) {
       EXPECT_GT(calibration.gyroscope_gain_radps[i], 0);
     }
   };
-  const Bytes first = Join(MoveModel::kZcm1, kZcm1);
-  const Bytes second = Join(MoveModel::kZcm2, kZcm2);
+  const MoveBytes first = Join(MoveModel::kZcm1, kZcm1);
+  const MoveBytes second = Join(MoveModel::kZcm2, kZcm2);
   refuse(MoveModel::kZcm1, {}, "not read");
   refuse(MoveModel::kZcm1, second, "cut short");
   refuse(MoveModel::kZcm2, first, "another model");
-  refuse(MoveModel::kZcm1, Bytes(143, 0x00), "all 00");
-  refuse(MoveModel::kZcm1, Bytes(143, 0xff), "all FF");
-  Bytes flat = first;
+  refuse(MoveModel::kZcm1, MoveBytes(143, 0x00), "all 00");
+  refuse(MoveModel::kZcm1, MoveBytes(143, 0xff), "all FF");
+  MoveBytes flat = first;
   flat[0x0a] = flat[0x16];  // -1 g of x is +1 g of x.
   flat[0x0b] = flat[0x17];
   refuse(MoveModel::kZcm1, flat, "1 g");
-  Bytes still = second;
+  MoveBytes still = second;
   still[0x42] = still[0x30];  // Back is forth about x.
   still[0x43] = still[0x31];
   refuse(MoveModel::kZcm2, still, "gyroscope");
@@ -145,7 +145,7 @@ TEST(Move, ARealReportAtRestReadsOneGAndHardlyTurns) {
   report.samples[0].acceleration = {0x092d, -0x0058, 0x0d77};
   report.samples[0].angular_velocity = {-8, 2, -5};
   const auto reading = Calibrate(DefaultMove(MoveModel::kZcm1), report, 0);
-  EXPECT_NEAR(reading.specific_force_S_mps2.norm(), kG, 0.5);
+  EXPECT_NEAR(reading.specific_force_S_mps2.norm(), kMoveG, 0.5);
   EXPECT_LT(reading.specific_force_S_mps2.z(), 0) << "buttons up";
   EXPECT_LT(reading.angular_velocity_S_radps.norm(), 0.02);
 }
@@ -159,9 +159,9 @@ TEST(Move, IsInTheSensorFrame) {
     report.samples[0].angular_velocity = {x, y, z};
     return Calibrate(calibration, report, 0);
   };
-  EXPECT_TRUE(force(0, 0, 4096).specific_force_S_mps2.isApprox(Eigen::Vector3d(0, 0, -kG)));
-  EXPECT_TRUE(force(0, 4096, 0).specific_force_S_mps2.isApprox(Eigen::Vector3d(0, kG, 0)));
-  EXPECT_TRUE(force(4096, 0, 0).specific_force_S_mps2.isApprox(Eigen::Vector3d(-kG, 0, 0)));
+  EXPECT_TRUE(force(0, 0, 4096).specific_force_S_mps2.isApprox(Eigen::Vector3d(0, 0, -kMoveG)));
+  EXPECT_TRUE(force(0, 4096, 0).specific_force_S_mps2.isApprox(Eigen::Vector3d(0, kMoveG, 0)));
+  EXPECT_TRUE(force(4096, 0, 0).specific_force_S_mps2.isApprox(Eigen::Vector3d(-kMoveG, 0, 0)));
   EXPECT_GT(force(0, 4096, 0).angular_velocity_S_radps.y(), 0);
   EXPECT_LT(force(4096, 0, 4096).angular_velocity_S_radps.x(), 0);
   EXPECT_LT(force(4096, 0, 4096).angular_velocity_S_radps.z(), 0);

@@ -12,21 +12,21 @@ namespace {
 
 using stream::CalibrationOrigin;
 using testing::HasSubstr;
-using Block = std::vector<std::uint8_t>;
+using NunchukBlock = std::vector<std::uint8_t>;
 
-constexpr double kG = kStandardGravityMps2;
+constexpr double kNunchukG = kStandardGravityMps2;
 
 // A real Nunchuk's (Adafruit_CircuitPython_Nunchuk issue 12).
-const Block kReal = {0x7d, 0x7a, 0x7e, 0x0a, 0xb0, 0xaf, 0xb1, 0x12,
-                     0xe5, 0x21, 0x7c, 0xe7, 0x23, 0x7a, 0xfc, 0x51};
+const NunchukBlock kNunchukReal = {0x7d, 0x7a, 0x7e, 0x0a, 0xb0, 0xaf, 0xb1, 0x12,
+                                   0xe5, 0x21, 0x7c, 0xe7, 0x23, 0x7a, 0xfc, 0x51};
 
-Block Two(const Block& first, const Block& second) {
-  Block both = first;
+NunchukBlock NunchukTwo(const NunchukBlock& first, const NunchukBlock& second) {
+  NunchukBlock both = first;
   both.insert(both.end(), second.begin(), second.end());
   return both;
 }
 
-Block WithChecksums(Block block) {
+NunchukBlock WithChecksums(NunchukBlock block) {
   std::uint8_t sum = 0x55;
   for (std::size_t i = 0; i < 14; ++i) sum = static_cast<std::uint8_t>(sum + block[i]);
   block[14] = sum;
@@ -34,7 +34,7 @@ Block WithChecksums(Block block) {
   return block;
 }
 
-reports::NunchukCounts Counts(std::uint16_t x, std::uint16_t y, std::uint16_t z) {
+reports::NunchukCounts CountsOfNunchuk(std::uint16_t x, std::uint16_t y, std::uint16_t z) {
   reports::NunchukCounts counts;
   counts.stick_x = 0x7c;
   counts.stick_y = 0x7a;
@@ -43,7 +43,7 @@ reports::NunchukCounts Counts(std::uint16_t x, std::uint16_t y, std::uint16_t z)
 }
 
 TEST(NunchukCalibration, ReadsARealBlock) {
-  const auto calibration = ParseNunchuk(Two(kReal, kReal));
+  const auto calibration = ParseNunchuk(NunchukTwo(kNunchukReal, kNunchukReal));
   EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
   EXPECT_EQ(calibration.problem, "");
   // 0x0a = 00'10'10: x 0, y 2, z 2; 0x12 = 01'00'10: x 1, y 0, z 2.
@@ -58,24 +58,25 @@ TEST(NunchukCalibration, ReadsARealBlock) {
 }
 
 TEST(NunchukCalibration, TheMotionPlusCopyHasOneBlock) {
-  EXPECT_EQ(ParseNunchuk(kReal).origin, CalibrationOrigin::kDevice);
+  EXPECT_EQ(ParseNunchuk(kNunchukReal).origin, CalibrationOrigin::kDevice);
 }
 
 TEST(NunchukCalibration, EitherChecksumCounts) {
   for (const std::size_t at : {14u, 15u}) {
-    Block bad = kReal;
+    NunchukBlock bad = kNunchukReal;
     bad[at] ^= 1;
-    const auto calibration = ParseNunchuk(Two(bad, kReal));
+    const auto calibration = ParseNunchuk(NunchukTwo(bad, kNunchukReal));
     EXPECT_EQ(calibration.origin, CalibrationOrigin::kDeviceCopy);
     EXPECT_THAT(calibration.problem, HasSubstr("checksum"));
   }
 }
 
 TEST(NunchukCalibration, UnusableBlocksGiveTypicalValues) {
-  Block equal = kReal;
+  NunchukBlock equal = kNunchukReal;
   for (std::size_t i = 0; i < 4; ++i) equal[4 + i] = equal[i];  // 1 g == 0 g.
-  for (const Block& bad : {Block(32, 0x00), Block(32, 0xff), Block{}, Block(15, 0x80),
-                           Two(WithChecksums(equal), WithChecksums(equal))}) {
+  for (const NunchukBlock& bad :
+       {NunchukBlock(32, 0x00), NunchukBlock(32, 0xff), NunchukBlock{}, NunchukBlock(15, 0x80),
+        NunchukTwo(WithChecksums(equal), WithChecksums(equal))}) {
     const auto calibration = ParseNunchuk(bad);
     EXPECT_EQ(calibration.origin, CalibrationOrigin::kDefaults);
     EXPECT_NE(calibration.problem, "");
@@ -86,7 +87,7 @@ TEST(NunchukCalibration, UnusableBlocksGiveTypicalValues) {
 }
 
 TEST(NunchukCalibration, AnImpossibleStickLeavesTheAccelerometer) {
-  Block bad = kReal;
+  NunchukBlock bad = kNunchukReal;
   bad[8] = bad[10];  // Upper end at the middle.
   const auto calibration = ParseNunchuk(WithChecksums(bad));
   EXPECT_EQ(calibration.origin, CalibrationOrigin::kDevice);
@@ -96,19 +97,19 @@ TEST(NunchukCalibration, AnImpossibleStickLeavesTheAccelerometer) {
 }
 
 TEST(Nunchuk, AccelerationIsInTheSensorFrame) {
-  const auto calibration = ParseNunchuk(kReal);
+  const auto calibration = ParseNunchuk(kNunchukReal);
   // Held still, stick up; then left side up; then rear up.
-  EXPECT_TRUE(Calibrate(calibration, Counts(500, 490, 710))
-                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(0, 0, -kG)));
-  EXPECT_TRUE(Calibrate(calibration, Counts(705, 490, 506))
-                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(kG, 0, 0)));
-  EXPECT_TRUE(Calibrate(calibration, Counts(500, 700, 506))
-                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(0, -kG, 0)));
+  EXPECT_TRUE(Calibrate(calibration, CountsOfNunchuk(500, 490, 710))
+                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(0, 0, -kNunchukG)));
+  EXPECT_TRUE(Calibrate(calibration, CountsOfNunchuk(705, 490, 506))
+                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(kNunchukG, 0, 0)));
+  EXPECT_TRUE(Calibrate(calibration, CountsOfNunchuk(500, 700, 506))
+                  .specific_force_S_mps2.isApprox(Eigen::Vector3d(0, -kNunchukG, 0)));
 }
 
 TEST(Nunchuk, StickReachesOneAtItsEndsAndNotBeyond) {
-  const auto calibration = ParseNunchuk(kReal);
-  auto counts = Counts(500, 490, 506);
+  const auto calibration = ParseNunchuk(kNunchukReal);
+  auto counts = CountsOfNunchuk(500, 490, 506);
   EXPECT_DOUBLE_EQ(Calibrate(calibration, counts).stick_x, 0);
   EXPECT_DOUBLE_EQ(Calibrate(calibration, counts).stick_y, 0);
   counts.stick_x = 0xe5;
@@ -122,7 +123,8 @@ TEST(Nunchuk, StickReachesOneAtItsEndsAndNotBeyond) {
 }
 
 TEST(Nunchuk, TellsClippedAxes) {
-  EXPECT_EQ(Calibrate(ParseNunchuk(kReal), Counts(1023, 490, 2)).clipped_axes, 0b101u);
+  EXPECT_EQ(Calibrate(ParseNunchuk(kNunchukReal), CountsOfNunchuk(1023, 490, 2)).clipped_axes,
+            0b101u);
 }
 
 }  // namespace

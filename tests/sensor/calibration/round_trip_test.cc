@@ -22,7 +22,7 @@ namespace {
 using stream::CalibrationOrigin;
 using virtual_devices::Report;
 
-constexpr double kG = kStandardGravityMps2;
+constexpr double kRoundTripG = kStandardGravityMps2;
 constexpr int kUnits = 40;
 constexpr int kMotions = 50;
 
@@ -37,8 +37,8 @@ reports::Data DataOf(const Report& report) {
   return std::get<reports::Data>(reports::Decode(report).body);
 }
 
-std::vector<std::uint8_t> Bytes(std::span<const std::uint8_t> page, std::size_t at,
-                                std::size_t size) {
+std::vector<std::uint8_t> RoundTripBytes(std::span<const std::uint8_t> page, std::size_t at,
+                                         std::size_t size) {
   return {page.begin() + static_cast<std::ptrdiff_t>(at),
           page.begin() + static_cast<std::ptrdiff_t>(at + size)};
 }
@@ -48,19 +48,19 @@ TEST(RoundTrip, WiimoteAccelerationComesBackWithinACount) {
   for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
     virtual_devices::Wiimote wiimote(seed);
     const auto calibration =
-        ParseAcceleration(Bytes(wiimote.controller().memory().eeprom(), 0x16, 20));
+        ParseAcceleration(RoundTripBytes(wiimote.controller().memory().eeprom(), 0x16, 20));
     ASSERT_EQ(calibration.origin, CalibrationOrigin::kDevice) << calibration.problem;
     for (const std::uint8_t mode : {0x31, 0x33, 0x35, 0x37, 0x3e}) {
       wiimote.HandleOutput(0, Report{0x12, 0x04, mode});
       for (int i = 0; i < kMotions; ++i) {
         virtual_devices::WiimoteSensors sensors;
-        sensors.specific_force_S_mps2 = DrawVector(random, 3.5 * kG);
+        sensors.specific_force_S_mps2 = DrawVector(random, 3.5 * kRoundTripG);
         reports::Interleaver interleaver;
         std::optional<reports::Data> data;
         while (!data) data = interleaver.Take(DataOf(wiimote.Sample(0, sensors).at(0)));
         const auto back = Calibrate(calibration, data->acceleration_counts);
         // Half of 2 counts; of an interleaved pair all of 4. A g has at least 103.
-        const double bound = (mode == 0x3e ? 4.0 : 1.0) / 103 * kG;
+        const double bound = (mode == 0x3e ? 4.0 : 1.0) / 103 * kRoundTripG;
         EXPECT_LE(
             (back.specific_force_S_mps2 - sensors.specific_force_S_mps2).cwiseAbs().maxCoeff(),
             bound + 1e-9);
@@ -121,11 +121,11 @@ TEST(RoundTrip, NunchukComesBackWithinACountAlsoThroughAMotionPlus) {
   for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
     const auto block = virtual_devices::DrawNunchukBlock(seed);
     const auto page = virtual_devices::NunchukPage(block);
-    const auto calibration = ParseNunchuk(Bytes(page, 0x20, 32));
+    const auto calibration = ParseNunchuk(RoundTripBytes(page, 0x20, 32));
     ASSERT_EQ(calibration.origin, CalibrationOrigin::kDevice) << calibration.problem;
     for (int i = 0; i < kMotions; ++i) {
       virtual_devices::NunchukSensors sensors;
-      sensors.specific_force_S_mps2 = DrawVector(random, 2 * kG);
+      sensors.specific_force_S_mps2 = DrawVector(random, 2 * kRoundTripG);
       sensors.stick_x = Draw(random, 1);
       sensors.stick_y = Draw(random, 1);
       sensors.c = random() % 2;
@@ -144,7 +144,7 @@ TEST(RoundTrip, NunchukComesBackWithinACountAlsoThroughAMotionPlus) {
         // Half a count, and the lowest bit when it is lost; a g has at least 196.
         EXPECT_LE(
             (back.specific_force_S_mps2 - sensors.specific_force_S_mps2).cwiseAbs().maxCoeff(),
-            (through ? 1.5 : 0.5) / 196 * kG + 1e-9);
+            (through ? 1.5 : 0.5) / 196 * kRoundTripG + 1e-9);
       }
     }
   }
@@ -189,8 +189,8 @@ TEST(RoundTrip, BoardForcesComeBackWithinACountInWarmAndCold) {
     (void)memory.Write(true, 0xa400f0, {{0x55}});
     (void)memory.Write(true, 0xa400fb, {{0x00}});
     board.HandleOutput(Report{0x12, 0x04, 0x34});
-    const auto calibration =
-        ParseBoard(Bytes(memory.extension(), 0x20, 32), Bytes(memory.extension(), 0x60, 2));
+    const auto calibration = ParseBoard(RoundTripBytes(memory.extension(), 0x20, 32),
+                                        RoundTripBytes(memory.extension(), 0x60, 2));
     ASSERT_EQ(calibration.origin, CalibrationOrigin::kDevice) << calibration.problem;
     for (int i = 0; i < kMotions; ++i) {
       board.set_temperature(static_cast<std::uint8_t>(1 + random() % 60));
@@ -203,7 +203,8 @@ TEST(RoundTrip, BoardForcesComeBackWithinACountInWarmAndCold) {
       const auto counts = reports::DecodeBoard(DataOf(board.Sample(forces).value()).extension());
       ASSERT_TRUE(counts);
       const auto back = CornerForces(calibration, *counts);
-      const double bound_n = 0.5 * 0.0116 * kG * 1.05;  // Half of a count of at most 11.6 g.
+      const double bound_n =
+          0.5 * 0.0116 * kRoundTripG * 1.05;  // Half of a count of at most 11.6 g.
       EXPECT_NEAR(back[reports::kTopRight], forces.top_right_n, bound_n);
       EXPECT_NEAR(back[reports::kBottomRight], forces.bottom_right_n, bound_n);
       EXPECT_NEAR(back[reports::kTopLeft], forces.top_left_n, bound_n);
@@ -218,15 +219,15 @@ TEST(RoundTrip, SixtyKilogramsAreSixtyAtTheEquator) {
   (void)memory.Write(true, 0xa400f0, {{0x55}});
   (void)memory.Write(true, 0xa400fb, {{0x00}});
   board.HandleOutput(Report{0x12, 0x04, 0x34});
-  const auto calibration =
-      ParseBoard(Bytes(memory.extension(), 0x20, 32), Bytes(memory.extension(), 0x60, 2));
+  const auto calibration = ParseBoard(RoundTripBytes(memory.extension(), 0x20, 32),
+                                      RoundTripBytes(memory.extension(), 0x60, 2));
   constexpr double kEquatorMps2 = 9.780;
   const double corner_n = 15 * kEquatorMps2;
   const auto counts = reports::DecodeBoard(
       DataOf(board.Sample({corner_n, corner_n, corner_n, corner_n}).value()).extension());
   double sum_n = 0;
   for (const double force_n : CornerForces(calibration, *counts, kEquatorMps2)) sum_n += force_n;
-  EXPECT_NEAR(sum_n / kG, 60, 4 * 0.006);
+  EXPECT_NEAR(sum_n / kRoundTripG, 60, 4 * 0.006);
 }
 
 TEST(RoundTrip, MoveComesBackWithinACountInBothHalves) {
@@ -246,7 +247,7 @@ TEST(RoundTrip, MoveComesBackWithinACountInBothHalves) {
       std::optional<virtual_devices::MoveSensors> last;
       for (int i = 0; i < kMotions; ++i) {
         virtual_devices::MoveSensors sensors;
-        sensors.specific_force_S_mps2 = DrawVector(random, 4 * kG);
+        sensors.specific_force_S_mps2 = DrawVector(random, 4 * kRoundTripG);
         sensors.angular_velocity_S_radps = DrawVector(random, 20);
         sensors.magnetic_field_S_counts = DrawVector(random, 2000);
         sensors.trigger = std::abs(Draw(random, 1));
@@ -261,7 +262,7 @@ TEST(RoundTrip, MoveComesBackWithinACountInBothHalves) {
         ASSERT_EQ(report->sample_count, first ? 2u : 1u);
         const std::size_t newest = report->sample_count - 1;
         const auto back = Calibrate(calibration, *report, newest);
-        const double force_bound = 0.5 / 4060 * kG + 1e-9;
+        const double force_bound = 0.5 / 4060 * kRoundTripG + 1e-9;
         // A ZCM1's 80 rpm have at least 5170 counts, a ZCM2's 90 rpm 6600.
         const double turn_bound = 0.5 / (first ? 5150 / 8.378 : 6600 / 9.425);
         EXPECT_LE(

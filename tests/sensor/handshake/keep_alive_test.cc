@@ -11,7 +11,7 @@ namespace footing::handshake {
 namespace {
 
 using virtual_devices::Report;
-using Talk = Conversation<PortModel>;
+using KeepAliveTalk = Conversation<PortModel>;
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -53,8 +53,8 @@ TEST(KeepAlive, SilenceBringsTheModeThenTheStatus) {
   EXPECT_LE(set, 10);
 }
 
-Talk Live() {
-  Talk talk(PortModel(), "Nintendo RVL-CNT-01");
+KeepAliveTalk Live() {
+  KeepAliveTalk talk(PortModel(), "Nintendo RVL-CNT-01");
   talk.sample = [](PortModel& model) { return model.Sample(); };
   talk.Advance(1);
   return talk;
@@ -62,7 +62,7 @@ Talk Live() {
 
 TEST(KeepAlive, TheKernelsDriverLosesEveryTime) {
   // It sends 12 00 30 right after every status report, also after one that we asked for.
-  Talk talk = Live();
+  KeepAliveTalk talk = Live();
   talk.Advance(1);
   talk.on_input = [&talk](Report& report) {
     if (report[0] == 0x20) talk.device().HandleOutput(Report{0x12, 0x00, 0x30});
@@ -80,7 +80,7 @@ TEST(KeepAlive, TheKernelsDriverLosesEveryTime) {
 }
 
 TEST(KeepAlive, TheStatusIsAskedForAtMostOnceASecond) {
-  Talk talk = Live();
+  KeepAliveTalk talk = Live();
   const int before = talk.Sent(0x15);
   for (int i = 0; i < 500; ++i) {
     talk.kind().RequestStatus(talk.now_ns());
@@ -91,7 +91,7 @@ TEST(KeepAlive, TheStatusIsAskedForAtMostOnceASecond) {
 }
 
 TEST(KeepAlive, AnHourThatPassesUnseenIsNoSilence) {
-  Talk talk = Live();
+  KeepAliveTalk talk = Live();
   const int modes = talk.Sent(0x12);
   talk.Jump(3600);
   talk.Advance(2);
@@ -102,7 +102,7 @@ TEST(KeepAlive, AnHourThatPassesUnseenIsNoSilence) {
 
 TEST(KeepAlive, WhateverComesInOutputsAreBounded) {
   for (const int kind : {0, 1, 2, 3}) {
-    Talk talk = Live();
+    KeepAliveTalk talk = Live();
     std::mt19937 random(static_cast<unsigned>(7 + kind));
     int sent = 0;
     talk.on_output = [&sent](reports::OutputReport&) { return ++sent > 0; };

@@ -9,18 +9,18 @@
 namespace footing::reports {
 namespace {
 
-using Report = std::vector<std::uint8_t>;
+using InterleaverReport = std::vector<std::uint8_t>;
 
 /// A half with buttons b0 b1, an acceleration byte and 18 camera bytes that count up.
-Report HalfReport(std::uint8_t id, std::uint8_t b0, std::uint8_t b1, std::uint8_t axis,
-                  std::uint8_t first_camera_byte) {
-  Report report = {id, b0, b1, axis};
+InterleaverReport HalfReport(std::uint8_t id, std::uint8_t b0, std::uint8_t b1, std::uint8_t axis,
+                             std::uint8_t first_camera_byte) {
+  InterleaverReport report = {id, b0, b1, axis};
   report.resize(22);
   std::iota(report.begin() + 4, report.end(), first_camera_byte);
   return report;
 }
 
-Data DataOf(const Report& report) { return std::get<Data>(Decode(report).body); }
+Data DataOf(const InterleaverReport& report) { return std::get<Data>(Decode(report).body); }
 
 TEST(Interleaver, JoinsAPair) {
   Interleaver interleaver;
@@ -54,7 +54,7 @@ TEST(Interleaver, ALoneHalfGivesNothing) {
 TEST(Interleaver, AnotherReportInBetweenPassesAndBreaksThePair) {
   Interleaver interleaver;
   EXPECT_FALSE(interleaver.Take(DataOf(HalfReport(0x3e, 0, 0, 0x80, 0))));
-  const auto passed = interleaver.Take(DataOf(Report{0x31, 0, 0, 0x80, 0x80, 0x9a}));
+  const auto passed = interleaver.Take(DataOf(InterleaverReport{0x31, 0, 0, 0x80, 0x80, 0x9a}));
   ASSERT_TRUE(passed);
   EXPECT_EQ(passed->id, 0x31);
   EXPECT_FALSE(interleaver.Take(DataOf(HalfReport(0x3f, 0, 0, 0x80, 18))));
@@ -63,7 +63,7 @@ TEST(Interleaver, AnotherReportInBetweenPassesAndBreaksThePair) {
 TEST(Interleaver, HalvesCutShortJoinNothing) {
   for (std::size_t size = 3; size < 22; ++size) {
     Interleaver interleaver;
-    Report cut = HalfReport(0x3e, 0, 0, 0x80, 0);
+    InterleaverReport cut = HalfReport(0x3e, 0, 0, 0x80, 0);
     cut.resize(size);
     EXPECT_FALSE(interleaver.Take(DataOf(cut))) << size;
     EXPECT_FALSE(interleaver.Take(DataOf(HalfReport(0x3f, 0, 0, 0x80, 18)))) << size;
@@ -79,7 +79,7 @@ TEST(CameraBytes, AreWhereEachReportHasThem) {
   // Counted from the id byte.
   for (const Case& c : {Case{0x33, 6, 12}, Case{0x36, 3, 10}, Case{0x37, 6, 10}, Case{0x3e, 4, 18},
                         Case{0x3f, 4, 18}}) {
-    Report report(22);
+    InterleaverReport report(22);
     std::iota(report.begin(), report.end(), std::uint8_t{0});
     report[0] = c.id;
     if (c.id == 0x33) report.resize(18);
@@ -95,7 +95,7 @@ TEST(CameraBytes, AreWhereEachReportHasThem) {
 TEST(ShortForms, OfEveryDataReportCarryButtonsOnly) {
   // The kernel takes ids 0x30 to 0x3f with two bytes of payload; only 0x3d has no buttons.
   for (const std::uint8_t id : {0x30, 0x31, 0x32, 0x33, 0x34, 0x35, 0x36, 0x37, 0x3e, 0x3f}) {
-    const InputReport report = Decode(Report{id, 0xff, 0xff});
+    const InputReport report = Decode(InterleaverReport{id, 0xff, 0xff});
     EXPECT_EQ(report.buttons, 0x1f9f) << int{id};
     const Data& data = std::get<Data>(report.body);
     EXPECT_FALSE(data.has_acceleration);

@@ -5,14 +5,15 @@
 namespace footing::reports {
 namespace {
 
-using Report = std::vector<std::uint8_t>;
-using Axes = std::array<std::int16_t, 3>;
+using MoveReportReport = std::vector<std::uint8_t>;
+using MoveReportAxes = std::array<std::int16_t, 3>;
 
 // A real ZCM1's report, from the moveonpc wiki ("Input report").
-const Report kReal = {0x01, 0x00, 0x00, 0x00, 0x06, 0x00, 0x00, 0x7f, 0x7f, 0x7f, 0x7f, 0xc0, 0x05,
-                      0x2d, 0x89, 0xa8, 0x7f, 0x77, 0x8d, 0x1e, 0x89, 0xa0, 0x7f, 0x6f, 0x8d, 0xf8,
-                      0x7f, 0x02, 0x80, 0xfb, 0x7f, 0xf8, 0x7f, 0x03, 0x80, 0xfb, 0x7f, 0x7d, 0x10,
-                      0x9e, 0xfa, 0x10, 0x55, 0x0a, 0x00, 0x00, 0x00, 0x00, 0x00};
+const MoveReportReport kReal = {0x01, 0x00, 0x00, 0x00, 0x06, 0x00, 0x00, 0x7f, 0x7f, 0x7f,
+                                0x7f, 0xc0, 0x05, 0x2d, 0x89, 0xa8, 0x7f, 0x77, 0x8d, 0x1e,
+                                0x89, 0xa0, 0x7f, 0x6f, 0x8d, 0xf8, 0x7f, 0x02, 0x80, 0xfb,
+                                0x7f, 0xf8, 0x7f, 0x03, 0x80, 0xfb, 0x7f, 0x7d, 0x10, 0x9e,
+                                0xfa, 0x10, 0x55, 0x0a, 0x00, 0x00, 0x00, 0x00, 0x00};
 
 TEST(Move, ReadsARealReportOfTheFirstModel) {
   ASSERT_EQ(kReal.size(), MoveReportBytes(MoveModel::kZcm1));
@@ -23,17 +24,17 @@ TEST(Move, ReadsARealReportOfTheFirstModel) {
   EXPECT_EQ(report->timestamp, 0xc00a);
   EXPECT_EQ(report->battery, 5);
   ASSERT_EQ(report->sample_count, 2u);
-  EXPECT_EQ(report->samples[0].acceleration, (Axes{0x092d, -0x0058, 0x0d77}));
-  EXPECT_EQ(report->samples[1].acceleration, (Axes{0x091e, -0x0060, 0x0d6f}));
-  EXPECT_EQ(report->samples[0].angular_velocity, (Axes{-8, 2, -5}));
-  EXPECT_EQ(report->samples[1].angular_velocity, (Axes{-8, 3, -5}));
+  EXPECT_EQ(report->samples[0].acceleration, (MoveReportAxes{0x092d, -0x0058, 0x0d77}));
+  EXPECT_EQ(report->samples[1].acceleration, (MoveReportAxes{0x091e, -0x0060, 0x0d6f}));
+  EXPECT_EQ(report->samples[0].angular_velocity, (MoveReportAxes{-8, 2, -5}));
+  EXPECT_EQ(report->samples[1].angular_velocity, (MoveReportAxes{-8, 3, -5}));
   EXPECT_EQ(report->temperature, 0x7d1);
   ASSERT_TRUE(report->has_magnetic_field);
-  EXPECT_EQ(report->magnetic_field, (Axes{0x09e, 0xfa1 - 0x1000, 0x055}));
+  EXPECT_EQ(report->magnetic_field, (MoveReportAxes{0x09e, 0xfa1 - 0x1000, 0x055}));
 }
 
 TEST(Move, TheSecondModelHasTwosComplementAndOneSample) {
-  Report bytes(MoveReportBytes(MoveModel::kZcm2));
+  MoveReportReport bytes(MoveReportBytes(MoveModel::kZcm2));
   bytes[0x00] = 0x01;
   bytes[0x05] = 0x80;
   bytes[0x0b] = 0x12;
@@ -48,8 +49,8 @@ TEST(Move, TheSecondModelHasTwosComplementAndOneSample) {
   ASSERT_TRUE(report);
   EXPECT_EQ(report->sample_count, 1u);
   EXPECT_EQ(report->timestamp, 0x1234);
-  EXPECT_EQ(report->samples[0].acceleration, (Axes{0x1022, -0x0fe5, 0}));
-  EXPECT_EQ(report->samples[0].angular_velocity, (Axes{0, 0, -1}));
+  EXPECT_EQ(report->samples[0].acceleration, (MoveReportAxes{0x1022, -0x0fe5, 0}));
+  EXPECT_EQ(report->samples[0].angular_velocity, (MoveReportAxes{0, 0, -1}));
   EXPECT_EQ(report->samples[0].trigger, 0x80);
   EXPECT_FALSE(report->has_magnetic_field);
 }
@@ -64,7 +65,7 @@ TEST(Move, EachButtonHasItsBit) {
        {Case{1, 0x01, kMoveSelect}, Case{1, 0x08, kMoveStart}, Case{2, 0x10, kMoveTriangle},
         Case{2, 0x20, kMoveCircle}, Case{2, 0x40, kMoveCross}, Case{2, 0x80, kMoveSquare},
         Case{3, 0x01, kMovePs}, Case{4, 0x40, kMoveMove}, Case{4, 0x80, kMoveTrigger}}) {
-    Report bytes = kReal;
+    MoveReportReport bytes = kReal;
     bytes[c.at] = static_cast<std::uint8_t>(bytes[c.at] | c.bit);
     EXPECT_EQ(DecodeMove(MoveModel::kZcm1, bytes)->buttons, c.button);
   }
@@ -75,7 +76,7 @@ TEST(Move, RefusesWhatIsShortOrAnother) {
     EXPECT_FALSE(DecodeMove(MoveModel::kZcm1, Bytes(kReal).first(size))) << size;
   }
   EXPECT_TRUE(DecodeMove(MoveModel::kZcm1, Bytes(kReal).first(0x2c)));
-  Report other = kReal;
+  MoveReportReport other = kReal;
   other[0] = 0x02;
   EXPECT_FALSE(DecodeMove(MoveModel::kZcm1, other));
 }

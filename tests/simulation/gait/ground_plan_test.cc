@@ -20,7 +20,7 @@ stream::Track TrackOf(const std::string& segments) {
 }
 
 /// A body that runs along x at 3 m/s, over its left foot at the origin's height.
-struct Scene {
+struct GroundPlanScene {
   stream::Track track;
   biped::BipedParameters biped = test::Biped();
   Gains gains;
@@ -28,7 +28,7 @@ struct Scene {
   biped::GaitCommand goal{stream::Gait::kRun, 3};
   GaitMemory memory;
 
-  Scene(const std::string& segments, double x_m) : track(TrackOf(segments)) {
+  GroundPlanScene(const std::string& segments, double x_m) : track(TrackOf(segments)) {
     memory.gait = stream::Gait::kRun;
     memory.desired_speed_mps = 3;
     body.p_WC = {x_m, 0, 0.85};
@@ -50,7 +50,7 @@ const char* const kDownAtFive = R"({"length_m":5},{"length_m":50,"step_m":-0.1})
 const char* const kUphill = R"({"length_m":50,"slope_deg":5})";
 
 TEST(ShiftOffEdge, KeepsFeetOutOfABandAroundTheEdge) {
-  const Scene up(kUpAtFive, 4);
+  const GroundPlanScene up(kUpAtFive, 4);
   const auto shift = [&up](double x_m, double towards) {
     return ShiftOffEdge(up.context(), 0, {x_m, 0, 0}, towards);
   };
@@ -60,14 +60,14 @@ TEST(ShiftOffEdge, KeepsFeetOutOfABandAroundTheEdge) {
   EXPECT_NEAR(shift(4.99, 0), gains.high_margin_m + 0.01, 1e-9);  // The nearer way out.
   EXPECT_NEAR(shift(4.97, 0), -(gains.low_margin_m - 0.03), 1e-9);
   EXPECT_NEAR(shift(4.99, -1), -(gains.low_margin_m - 0.01), 1e-9);  // Decided before.
-  const Scene down(kDownAtFive, 4);
+  const GroundPlanScene down(kDownAtFive, 4);
   EXPECT_NEAR(ShiftOffEdge(down.context(), 0, {4.98, 0, 0}, 0), -(gains.high_margin_m - 0.02),
               1e-9);
 }
 
 TEST(PlanClimb, LiftsOffFasterBeforeAStepUpAndSlowerBeforeOneDown) {
-  Scene level(kLevel, 4.3), up(kUpAtFive, 4.3), down(kDownAtFive, 4.3);
-  for (Scene* scene : {&level, &up, &down}) {
+  GroundPlanScene level(kLevel, 4.3), up(kUpAtFive, 4.3), down(kDownAtFive, 4.3);
+  for (GroundPlanScene* scene : {&level, &up, &down}) {
     PlanClimb(scene->context(), scene->gains.hopping.run_lift_off_mps, scene->memory);
   }
   EXPECT_NEAR(level.memory.ground.climb_mps, 0, 1e-12);
@@ -77,7 +77,7 @@ TEST(PlanClimb, LiftsOffFasterBeforeAStepUpAndSlowerBeforeOneDown) {
 }
 
 TEST(PlanClimb, LeavesABlindCharacterAlone) {
-  Scene up(kUpAtFive, 4.3);
+  GroundPlanScene up(kUpAtFive, 4.3);
   PlanClimb(up.context(false), 1.3, up.memory);
   PlanLanding(up.context(false), up.memory);
   EXPECT_EQ(up.memory.ground.climb_mps, 0);
@@ -86,7 +86,7 @@ TEST(PlanClimb, LeavesABlindCharacterAlone) {
 }
 
 TEST(PlanClimb, MakesASlopesHopTheLevelOneSheared) {
-  Scene uphill(kUphill, 4);
+  GroundPlanScene uphill(kUphill, 4);
   const double slope = std::tan(5 * M_PI / 180);
   for (int i = 0; i < 2; ++i) uphill.body.legs[i].p_WF.z() += 4 * slope;
   PlanClimb(uphill.context(), 1.3, uphill.memory);
@@ -97,7 +97,7 @@ TEST(PlanClimb, MakesASlopesHopTheLevelOneSheared) {
 }
 
 TEST(TouchdownLength, IsShorterForAFootUphill) {
-  Scene uphill(kUphill, 4);
+  GroundPlanScene uphill(kUphill, 4);
   uphill.memory.ground.slope = 0.1;
   const double level_m = uphill.gains.hopping.touchdown_length_m;
   const double height_m = std::sqrt(level_m * level_m - 0.3 * 0.3);
@@ -107,7 +107,7 @@ TEST(TouchdownLength, IsShorterForAFootUphill) {
 }
 
 TEST(RelativeToSlope, GivesLengthWhoseRateIsItsChange) {
-  Scene uphill(kUphill, 4);
+  GroundPlanScene uphill(kUphill, 4);
   uphill.memory.ground.slope = 0.1;
   biped::LegState& leg = uphill.body.legs[0];
   uphill.body.v_WC = {3, 0.2, -0.4};
@@ -125,7 +125,7 @@ TEST(RelativeToSlope, GivesLengthWhoseRateIsItsChange) {
 }
 
 TEST(Cleared, HoldsALowFootBackAtARiserAndPullsItUpOverTheEdge) {
-  Scene up(kUpAtFive, 4.9);
+  GroundPlanScene up(kUpAtFive, 4.9);
   up.memory.ground.behind = {.there = true, .p_W_m = {5, 0, 0.1}, .height_m = 0.1};
   const Vector3d ahead(0.3, 0, -0.90);  // Would put the foot at 5.2 m, 0.05 m high.
   const Vector3d low = Cleared(up.context(), up.memory, 0, ahead);

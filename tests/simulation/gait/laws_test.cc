@@ -12,14 +12,14 @@ namespace {
 using Eigen::Vector3d;
 
 /// A body over its support foot, for laws that ask for little more.
-struct Scene {
+struct LawsScene {
   biped::BipedParameters biped = test::Biped();
   Gains gains;
   biped::BodyState body;
   biped::GaitCommand goal;
   GaitMemory memory;
 
-  Scene() {
+  LawsScene() {
     body.p_WC = {0, 0, 0.92};
     for (int i = 0; i < 2; ++i) {
       const double y = biped::Side(i) * biped.hip_half_spacing_m;
@@ -33,7 +33,7 @@ struct Scene {
 /// The pendulum of equation (1): height 0.9 m, walked by the law until it repeats.
 TEST(Equation1, MakesAnInvertedPendulumWalkAtTheDesiredSpeed) {
   for (const double speed_mps : {0.0, 0.5, 1.2}) {
-    Scene scene;
+    LawsScene scene;
     scene.memory.desired_speed_mps = speed_mps;
     const double w = std::sqrt(kGravityMps2 / 0.9);
     const double step_s =
@@ -65,14 +65,14 @@ TEST(Equation1, MakesAnInvertedPendulumWalkAtTheDesiredSpeed) {
 }
 
 TEST(Equation1, AStepThatWouldCrossTooFarHurries) {
-  Scene scene;
+  LawsScene scene;
   EXPECT_EQ(PlanWalkingFoothold(scene.context(), scene.memory).hurry, 0);
   scene.body.v_WC.y() = 0.9;  // Over the left, supporting foot: the right one must cross.
   EXPECT_GT(PlanWalkingFoothold(scene.context(), scene.memory).hurry, 0);
 }
 
 TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {
-  Scene scene;
+  LawsScene scene;
   scene.goal.gait = stream::Gait::kRun;
   scene.memory.gait = stream::Gait::kRun;
   scene.memory.support_time_s = 0.2;
@@ -86,7 +86,7 @@ TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {
 }
 
 TEST(Equation2, BrakesHarderInARunThatIsToEnd) {
-  Scene scene;
+  LawsScene scene;
   scene.memory.gait = stream::Gait::kRun;
   scene.memory.desired_speed_mps = 2;
   scene.body.v_WC = {3, 0, 1};
@@ -103,7 +103,7 @@ TEST(Equation2, BrakesHarderInARunThatIsToEnd) {
 }
 
 TEST(Equation2, TurnsWithTheHeading) {
-  Scene scene;
+  LawsScene scene;
   scene.memory.gait = stream::Gait::kRun;
   scene.body.v_WC = {2, 0, 0};
   scene.memory.desired_speed_mps = 2;
@@ -127,7 +127,7 @@ TEST(Mirrored, SwingsAsideBesides) {
 }
 
 TEST(Turning, PutsTheFootSoThatItsForceTurnsTheVelocity) {
-  Scene scene;
+  LawsScene scene;
   scene.memory.gait = stream::Gait::kRun;
   scene.body.v_WC = {3, 0, 0};
   scene.memory.desired_speed_mps = 3;
@@ -144,7 +144,7 @@ TEST(Turning, PutsTheFootSoThatItsForceTurnsTheVelocity) {
 }
 
 TEST(Turning, HoldsARunBankedAndTurningAsItsHeadingDoes) {
-  Scene scene;
+  LawsScene scene;
   scene.memory.desired_speed_mps = 4;
   scene.memory.turning_radps = 0.2;
   Targets targets;

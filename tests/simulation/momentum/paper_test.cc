@@ -8,13 +8,13 @@
 namespace footing::momentum {
 namespace {
 
-constexpr double kWeightN = kMadeMassKg * kStandardGravityMps2;
+constexpr double kPaperWeightN = kMadeMassKg * kStandardGravityMps2;
 
 TEST(PaperVertical, IntegratesAForceTwice) {
   DecayRule off;
   off.enabled = false;
   PaperVertical height(off, {1e6, 1e-3}, kMadeMassKg, 1.0);  // A filter that believes the load.
-  for (int i = 0; i < 60; ++i) height.Advance(kWeightN + 70, kMadeStepS);
+  for (int i = 0; i < 60; ++i) height.Advance(kPaperWeightN + 70, kMadeStepS);
   EXPECT_NEAR(height.velocity_mps(), 1.0, 1e-6);  // 70 N on 70 kg for one second.
   EXPECT_NEAR(height.height_m(), 1.5, 0.01 + 0.5 * kMadeStepS);
 }
@@ -26,7 +26,7 @@ TEST(PaperVertical, DecayTakesAwayWhatOneOutlierLeft) {
     PaperVertical height(rule, {1e6, 1e-3}, kMadeMassKg, 1.0);
     for (int i = 0; i < 600; ++i) {
       const double outlier = i == 100 ? 10 * kMadeMassKg : 0;  // 10 m/s² for one frame.
-      height.Advance(kWeightN + outlier, kMadeStepS);
+      height.Advance(kPaperWeightN + outlier, kMadeStepS);
     }
     // Without it 1/6 m/s go on for 500 frames; with it they end in 1 / (1 - 0.9) frames.
     if (decay) {

@@ -9,7 +9,7 @@
 namespace footing::reconstruction {
 namespace {
 
-constexpr double kStepS = 1.0 / 30;
+constexpr double kHandTrackStepS = 1.0 / 30;
 const Eigen::Vector3d kSdM = Eigen::Vector3d::Constant(0.02);
 
 TEST(HandTrack, IsInvalidBeforeTheFirstPlaceAndThenThere) {
@@ -26,8 +26,8 @@ TEST(HandTrack, CarriesASteadyHandOnOverTheDelay) {
   HandTrack track;
   const Eigen::Vector3d speed_mps(1, -0.5, 0.2);
   double t_s = 0;
-  for (; t_s < 1; t_s += kStepS) track.Add(t_s, t_s * speed_mps, kSdM);
-  t_s -= kStepS;
+  for (; t_s < 1; t_s += kHandTrackStepS) track.Add(t_s, t_s * speed_mps, kSdM);
+  t_s -= kHandTrackStepS;
   const HandInput now = track.At(t_s + 0.08);
   // Of 9 cm; it is thought to slow down.
   EXPECT_LT((now.p_W_m - (t_s + 0.08) * speed_mps).norm(), 0.03);
@@ -43,7 +43,7 @@ TEST(HandTrack, OfADelaysErrorInASwingLittleMoreThanHalfIsLeft) {
   constexpr double kLateS = 0.083, kOmega = 2 * 3.14159265358979 * 0.8;
   double carried = 0, left = 0;
   for (int i = 0; i < 3000; ++i) {
-    const double t_s = i * kStepS;
+    const double t_s = i * kHandTrackStepS;
     const Eigen::Vector3d told(0.3 * std::sin(kOmega * t_s) + 0.015 * random.Normal(), 0, 1);
     track.Add(t_s, told, Eigen::Vector3d::Constant(0.043));
     const double truth_m = 0.3 * std::sin(kOmega * (t_s + kLateS));
@@ -55,7 +55,7 @@ TEST(HandTrack, OfADelaysErrorInASwingLittleMoreThanHalfIsLeft) {
 
 TEST(HandTrack, BeginsAnewAfterAPauseAndIgnoresWhatComesOutOfOrder) {
   HandTrack track;
-  for (int i = 0; i < 10; ++i) track.Add(i * kStepS, {0.1 * i, 0, 0}, kSdM);
+  for (int i = 0; i < 10; ++i) track.Add(i * kHandTrackStepS, {0.1 * i, 0, 0}, kSdM);
   track.Add(0.2, {9, 9, 9}, kSdM);
   EXPECT_LT(track.At(0.3).p_W_m.norm(), 2);
   track.Add(5, {1, 2, 3}, kSdM);

@@ -13,7 +13,7 @@ namespace footing::reconstruction {
 namespace {
 
 constexpr double kSpeedMps = 1;
-constexpr double kStepS = 0.55;
+constexpr double kInsoleWalkStepS = 0.55;
 
 class Walker {
  public:
@@ -31,7 +31,7 @@ class Walker {
     InsoleInputs inputs;
     inputs.time_s = t_s;
     const double walked_s = std::max(0.0, t_s - kMadeStandS);
-    const bool left = std::fmod(walked_s, 2 * kStepS) < kStepS;
+    const bool left = std::fmod(walked_s, 2 * kInsoleWalkStepS) < kInsoleWalkStepS;
     for (std::size_t f = 0; f < 2; ++f) {
       const double share = walked_s == 0 ? 0.5 : (f == 0) == left ? 1 : 0;
       inputs.feet[f].valid = true;
@@ -142,7 +142,7 @@ TEST(InsoleWalk, ASwingingFootThatBrushesTheGroundHasNotLanded) {
   for (double t_s = 0; t_s < 14; t_s += 1 / kMadeRateHz) {
     InsoleInputs inputs = walker.At(t_s);
     walker.walk().Advance(inputs);
-    const double into_s = std::fmod(std::max(0.0, t_s - kMadeStandS), kStepS);
+    const double into_s = std::fmod(std::max(0.0, t_s - kMadeStandS), kInsoleWalkStepS);
     if (t_s > 8 && into_s > 0.2 && into_s < 0.3) {
       for (InsoleFoot& foot : inputs.feet) foot.load_n[0] = std::max(foot.load_n[0], 90.0);
     }

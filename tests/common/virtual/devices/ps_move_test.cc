@@ -8,7 +8,7 @@
 namespace footing::virtual_devices {
 namespace {
 
-constexpr double kG = 9.80665;
+constexpr double kPsMoveG = 9.80665;
 constexpr std::int64_t kMs = 1'000'000;
 constexpr double kRpm = 2 * std::numbers::pi / 60;
 
@@ -68,10 +68,11 @@ TEST(PsMove, ARealZcm1ReadsItsOwnCalibrationWhenHeldThatWay) {
   ASSERT_EQ(report.size(), 49u);
   EXPECT_EQ(Words(report, 0x13)[2], 0x8fe8);
   EXPECT_EQ(Words(report, 0x1f), (std::array<int, 3>{0x8000, 0x8000, 0x8000}));
-  sensors.specific_force_S_mps2 = {-kG, kG, kG};  // Right up, sphere up, buttons down.
+  sensors.specific_force_S_mps2 = {-kPsMoveG, kPsMoveG,
+                                   kPsMoveG};  // Right up, sphere up, buttons down.
   report = move.Sample(10 * kMs, sensors).at(0);
   EXPECT_EQ(Words(report, 0x13), (std::array<int, 3>{0x9098, 0x90c9, 0x6e1a}));
-  sensors.specific_force_S_mps2 = {kG, -kG, 0};
+  sensors.specific_force_S_mps2 = {kPsMoveG, -kPsMoveG, 0};
   report = move.Sample(20 * kMs, sensors).at(0);
   EXPECT_EQ(Words(report, 0x13)[0], 0x6e85);
   EXPECT_EQ(Words(report, 0x13)[1], 0x6ee6);
@@ -85,7 +86,7 @@ TEST(PsMove, ARealZcm1ReadsItsOwnCalibrationWhenHeldThatWay) {
 TEST(PsMove, ARealZcm2ReadsItsOwnCalibrationWhenHeldThatWay) {
   PsMove move = Real(MoveModel::kZcm2);
   MoveSensors sensors;
-  sensors.specific_force_S_mps2 = {-kG, kG, -kG};
+  sensors.specific_force_S_mps2 = {-kPsMoveG, kPsMoveG, -kPsMoveG};
   Report report = move.Sample(0, sensors).at(0);
   ASSERT_EQ(report.size(), 44u);
   EXPECT_EQ(Words(report, 0x0d), (std::array<int, 3>{0x1022, 0x1007, 0x0ffe}));

@@ -11,7 +11,7 @@
 namespace footing::virtual_devices {
 namespace {
 
-constexpr double kG = 9.80665;
+constexpr double kWiimoteG = 9.80665;
 
 Report SampleOf(Wiimote& wiimote, const Eigen::Vector3d& force) {
   wiimote.HandleOutput(Report{0x12, 0x04, 0x31});
@@ -46,7 +46,7 @@ TEST(Wiimote, CalibrationsDifferBetweenSeedsAndRepeatForOne) {
 
 TEST(Wiimote, FaceUpAtRestReadsOneGInRawZ) {
   Wiimote wiimote(3);
-  const auto counts = CountsOf(SampleOf(wiimote, {0, 0, -kG}));
+  const auto counts = CountsOf(SampleOf(wiimote, {0, 0, -kWiimoteG}));
   EXPECT_EQ(counts[0], wiimote.axes()[0].zero_counts);
   EXPECT_NEAR(counts[1], wiimote.axes()[1].zero_counts, 1);
   EXPECT_NEAR(counts[2], wiimote.axes()[2].one_g_counts, 1);
@@ -54,9 +54,10 @@ TEST(Wiimote, FaceUpAtRestReadsOneGInRawZ) {
 
 TEST(Wiimote, LeftUpIsRawPlusXAndFrontUpIsRawMinusY) {
   Wiimote wiimote(3);
-  EXPECT_EQ(CountsOf(SampleOf(wiimote, {kG, 0, 0}))[0], wiimote.axes()[0].one_g_counts);
+  EXPECT_EQ(CountsOf(SampleOf(wiimote, {kWiimoteG, 0, 0}))[0], wiimote.axes()[0].one_g_counts);
   const auto& y = wiimote.axes()[1];
-  EXPECT_NEAR(CountsOf(SampleOf(wiimote, {0, kG, 0}))[1], 2 * y.zero_counts - y.one_g_counts, 1);
+  EXPECT_NEAR(CountsOf(SampleOf(wiimote, {0, kWiimoteG, 0}))[1], 2 * y.zero_counts - y.one_g_counts,
+              1);
 }
 
 TEST(Wiimote, ClipsAtTheEndsOfTheCounts) {
@@ -73,8 +74,8 @@ TEST(Wiimote, AForceThatIsNotFiniteReadsZero) {
   EXPECT_EQ(CountsOf(SampleOf(wiimote, {nan, nan, nan}))[0], wiimote.axes()[0].zero_counts);
 }
 
-constexpr std::int64_t kMs = 1'000'000;
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::int64_t kWiimoteMs = 1'000'000;
+constexpr double kWiimoteDegree = std::numbers::pi / 180;
 
 /// Extension bit of a status report; -1 of another report.
 int ExtensionBit(const Report& report) { return report.at(0) == 0x20 ? report.at(3) >> 1 & 1 : -1; }
@@ -108,7 +109,8 @@ TEST(Wiimote, ARealUnitsBlockGivesTheCountsOfThatUnit) {
   // Zero 521, 521, 521; 1 g 627, 626, 632.
   const AccelerationBlock kReal = {0x82, 0x82, 0x82, 0x15, 0x9c, 0x9c, 0x9e, 0x38, 0x40, 0x3e};
   Wiimote wiimote(3, {.acceleration = kReal});
-  EXPECT_EQ(CountsOf(SampleOf(wiimote, {kG, -kG, -kG})), (std::array<int, 3>{627, 626, 632}));
+  EXPECT_EQ(CountsOf(SampleOf(wiimote, {kWiimoteG, -kWiimoteG, -kWiimoteG})),
+            (std::array<int, 3>{627, 626, 632}));
   const auto still = CountsOf(SampleOf(wiimote, {0, 0, 0}));
   EXPECT_EQ(still[0], 521);
   EXPECT_NEAR(still[1], 521, 1);
@@ -144,30 +146,30 @@ TEST(Wiimote, WhatComesAndGoesIsToldUnaskedAndStopsTheData) {
   EXPECT_EQ(wiimote.Sample(0, {}).size(), 1u);
   for (const Accessory accessory :
        {Accessory::kNunchuk, Accessory::kClassic, Accessory::kUnknown}) {
-    const auto plugged = wiimote.Plug(accessory, kMs);
+    const auto plugged = wiimote.Plug(accessory, kWiimoteMs);
     ASSERT_EQ(plugged.size(), 1u);
     EXPECT_EQ(ExtensionBit(plugged[0]), 1);
-    EXPECT_TRUE(wiimote.Sample(2 * kMs, {}).empty());
-    SetMode(wiimote, 3 * kMs, 0x35);
-    EXPECT_EQ(wiimote.Sample(3 * kMs, {}).size(), 1u);
-    const auto pulled = wiimote.Pull(4 * kMs);
+    EXPECT_TRUE(wiimote.Sample(2 * kWiimoteMs, {}).empty());
+    SetMode(wiimote, 3 * kWiimoteMs, 0x35);
+    EXPECT_EQ(wiimote.Sample(3 * kWiimoteMs, {}).size(), 1u);
+    const auto pulled = wiimote.Pull(4 * kWiimoteMs);
     ASSERT_EQ(pulled.size(), 1u);
     EXPECT_EQ(ExtensionBit(pulled[0]), 0);
-    EXPECT_TRUE(wiimote.Sample(5 * kMs, {}).empty());
-    SetMode(wiimote, 6 * kMs, 0x35);
+    EXPECT_TRUE(wiimote.Sample(5 * kWiimoteMs, {}).empty());
+    SetMode(wiimote, 6 * kWiimoteMs, 0x35);
   }
-  EXPECT_TRUE(wiimote.Pull(7 * kMs).empty());
+  EXPECT_TRUE(wiimote.Pull(7 * kWiimoteMs).empty());
 }
 
 TEST(Wiimote, ANunchukSendsAfterTheKeyWasWritten) {
   Wiimote wiimote(3);
   wiimote.Plug(Accessory::kNunchuk, 0);
   SetMode(wiimote, 0, 0x35);
-  EXPECT_EQ(PacketOf(wiimote, kMs)[0], 0xff);
-  Key(wiimote, 2 * kMs);
+  EXPECT_EQ(PacketOf(wiimote, kWiimoteMs)[0], 0xff);
+  Key(wiimote, 2 * kWiimoteMs);
   WiimoteSensors sensors;
   sensors.nunchuk.stick_x = 1;
-  EXPECT_EQ(PacketOf(wiimote, 3 * kMs, sensors),
+  EXPECT_EQ(PacketOf(wiimote, 3 * kWiimoteMs, sensors),
             NunchukBytes(wiimote.nunchuk_block(), sensors.nunchuk));
 }
 
@@ -188,24 +190,27 @@ TEST(Wiimote, SwitchingTheMotionPlusOnTakesThePortAwayForTwentyMilliseconds) {
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_EQ(answers[0], (Report{0x22, 0, 0, 0x16, 0}));
   EXPECT_EQ(ExtensionBit(answers[1]), 0);
-  EXPECT_TRUE(wiimote.Sample(10 * kMs, {}).empty());
-  EXPECT_EQ(wiimote.HandleOutput(19 * kMs, ReadRequest(true, 0xa400fa, 6)).at(0)[3], 0xf7);
-  EXPECT_EQ(wiimote.HandleOutput(19 * kMs, WriteRequest(true, 0xa400f0, {0x55})).at(0)[4], 7);
-  const auto back = wiimote.Sample(20 * kMs, {});
+  EXPECT_TRUE(wiimote.Sample(10 * kWiimoteMs, {}).empty());
+  EXPECT_EQ(wiimote.HandleOutput(19 * kWiimoteMs, ReadRequest(true, 0xa400fa, 6)).at(0)[3], 0xf7);
+  EXPECT_EQ(wiimote.HandleOutput(19 * kWiimoteMs, WriteRequest(true, 0xa400f0, {0x55})).at(0)[4],
+            7);
+  const auto back = wiimote.Sample(20 * kWiimoteMs, {});
   ASSERT_EQ(back.size(), 1u);
   EXPECT_EQ(ExtensionBit(back[0]), 1);
-  const Report identity = wiimote.HandleOutput(21 * kMs, ReadRequest(true, 0xa400fa, 6)).at(0);
+  const Report identity =
+      wiimote.HandleOutput(21 * kWiimoteMs, ReadRequest(true, 0xa400fa, 6)).at(0);
   EXPECT_EQ(Report(identity.begin() + 6, identity.begin() + 12),
             (Report{0x01, 0x00, 0xa4, 0x20, 0x04, 0x05}));
-  EXPECT_TRUE(wiimote.Sample(22 * kMs, {}).empty());  // No mode is set.
+  EXPECT_TRUE(wiimote.Sample(22 * kWiimoteMs, {}).empty());  // No mode is set.
 }
 
 TEST(Wiimote, TheFirstTwoPacketsOfAMotionPlusAreRubbish) {
   Wiimote wiimote(3, {.motion_plus_inside = true});
-  Activate(wiimote, 20 * kMs, 4);
-  EXPECT_EQ(PacketOf(wiimote, 30 * kMs), (ExtensionBytes{0xff, 0xff, 0xff, 0xff, 0xff, 0xff}));
-  EXPECT_EQ(PacketOf(wiimote, 40 * kMs), (ExtensionBytes{}));
-  EXPECT_EQ(PacketOf(wiimote, 50 * kMs),
+  Activate(wiimote, 20 * kWiimoteMs, 4);
+  EXPECT_EQ(PacketOf(wiimote, 30 * kWiimoteMs),
+            (ExtensionBytes{0xff, 0xff, 0xff, 0xff, 0xff, 0xff}));
+  EXPECT_EQ(PacketOf(wiimote, 40 * kWiimoteMs), (ExtensionBytes{}));
+  EXPECT_EQ(PacketOf(wiimote, 50 * kWiimoteMs),
             MotionPlusBytes(wiimote.motion_plus_block(), {0, 0, 0}, false));
 }
 
@@ -217,15 +222,15 @@ TEST(Wiimote, PassThroughSendsBothInTurn) {
   for (const auto& way : kWays) {
     Wiimote wiimote(3, {.motion_plus_inside = true});
     wiimote.Plug(way.accessory, 0);
-    Activate(wiimote, 20 * kMs, way.way);
+    Activate(wiimote, 20 * kWiimoteMs, way.way);
     WiimoteSensors sensors;
     sensors.nunchuk.stick_y = 0.5;
     sensors.angular_velocity_S_radps = {1, 2, 3};
-    for (int i = 0; i < 2; ++i) PacketOf(wiimote, 30 * kMs);
+    for (int i = 0; i < 2; ++i) PacketOf(wiimote, 30 * kWiimoteMs);
     int own = 0;
     std::uint8_t last = 0;
     for (int i = 0; i < 20; ++i) {
-      const ExtensionBytes packet = PacketOf(wiimote, (40 + 10 * i) * kMs, sensors);
+      const ExtensionBytes packet = PacketOf(wiimote, (40 + 10 * i) * kWiimoteMs, sensors);
       EXPECT_EQ(packet[5] & 1, 0);
       EXPECT_EQ(packet[4] & 1, 1);
       EXPECT_TRUE(i == 0 || (packet[5] & 2) != last);
@@ -239,56 +244,56 @@ TEST(Wiimote, PassThroughSendsBothInTurn) {
 TEST(Wiimote, BehindAnActiveMotionPlusAChangeShowsInABitOnly) {
   Wiimote wiimote(3, {.motion_plus_inside = true});
   wiimote.Plug(Accessory::kNunchuk, 0);
-  Activate(wiimote, 20 * kMs, 5);
-  for (int i = 0; i < 4; ++i) PacketOf(wiimote, 30 * kMs);
-  EXPECT_TRUE(wiimote.Pull(40 * kMs).empty());
+  Activate(wiimote, 20 * kWiimoteMs, 5);
+  for (int i = 0; i < 4; ++i) PacketOf(wiimote, 30 * kWiimoteMs);
+  EXPECT_TRUE(wiimote.Pull(40 * kWiimoteMs).empty());
   for (int i = 0; i < 4; ++i) {
-    const ExtensionBytes packet = PacketOf(wiimote, 50 * kMs);
+    const ExtensionBytes packet = PacketOf(wiimote, 50 * kWiimoteMs);
     EXPECT_EQ(packet[4] & 1, 0);
     EXPECT_EQ(packet[5] & 2, 2);  // There is no child to take turns with.
   }
-  EXPECT_TRUE(wiimote.Plug(Accessory::kNunchuk, 60 * kMs).empty());
-  EXPECT_EQ(PacketOf(wiimote, 70 * kMs)[4] & 1, 1);
+  EXPECT_TRUE(wiimote.Plug(Accessory::kNunchuk, 60 * kWiimoteMs).empty());
+  EXPECT_EQ(PacketOf(wiimote, 70 * kWiimoteMs)[4] & 1, 1);
 }
 
 TEST(Wiimote, TheKeySwitchesTheMotionPlusOffAndBeginsTheChildsInitialisation) {
   Wiimote wiimote(3, {.motion_plus_inside = true});
   wiimote.Plug(Accessory::kNunchuk, 0);
-  Activate(wiimote, 20 * kMs, 5);
-  const auto answers = wiimote.HandleOutput(100 * kMs, WriteRequest(true, 0xa400f0, {0x55}));
+  Activate(wiimote, 20 * kWiimoteMs, 5);
+  const auto answers = wiimote.HandleOutput(100 * kWiimoteMs, WriteRequest(true, 0xa400f0, {0x55}));
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_EQ(ExtensionBit(answers[1]), 0);
   EXPECT_FALSE(wiimote.motion_plus_active());
-  const auto back = wiimote.Sample(120 * kMs, {});
+  const auto back = wiimote.Sample(120 * kWiimoteMs, {});
   ASSERT_EQ(back.size(), 1u);
   EXPECT_EQ(ExtensionBit(back[0]), 1);  // The Nunchuk.
-  wiimote.HandleOutput(130 * kMs, WriteRequest(true, 0xa400fb, {0x00}));
-  SetMode(wiimote, 130 * kMs, 0x35);
-  EXPECT_EQ(PacketOf(wiimote, 140 * kMs), NunchukBytes(wiimote.nunchuk_block(), {}));
+  wiimote.HandleOutput(130 * kWiimoteMs, WriteRequest(true, 0xa400fb, {0x00}));
+  SetMode(wiimote, 130 * kWiimoteMs, 0x35);
+  EXPECT_EQ(PacketOf(wiimote, 140 * kWiimoteMs), NunchukBytes(wiimote.nunchuk_block(), {}));
 }
 
 TEST(Wiimote, AMotionPlusThatIsPulledTakesItsChildAlong) {
   Wiimote wiimote(3);
   wiimote.Plug(Accessory::kMotionPlus, 0);
   wiimote.Plug(Accessory::kNunchuk, 0);
-  Activate(wiimote, 20 * kMs, 5);
-  const auto pulled = wiimote.PullMotionPlus(30 * kMs);
+  Activate(wiimote, 20 * kWiimoteMs, 5);
+  const auto pulled = wiimote.PullMotionPlus(30 * kWiimoteMs);
   ASSERT_EQ(pulled.size(), 1u);
   EXPECT_EQ(ExtensionBit(pulled[0]), 0);
   EXPECT_FALSE(wiimote.has_motion_plus());
   EXPECT_EQ(wiimote.accessory(), Accessory::kNone);
-  EXPECT_EQ(wiimote.HandleOutput(40 * kMs, ReadRequest(true, 0xa600fa, 6)).at(0)[3], 0xf7);
+  EXPECT_EQ(wiimote.HandleOutput(40 * kWiimoteMs, ReadRequest(true, 0xa600fa, 6)).at(0)[3], 0xf7);
 }
 
 TEST(Wiimote, TheRangeFlipsPerAxisInTheMiddleOfAMotion) {
   Wiimote wiimote(3, {.motion_plus_inside = true});
-  Activate(wiimote, 20 * kMs, 4);
-  for (int i = 0; i < 2; ++i) PacketOf(wiimote, 30 * kMs);
+  Activate(wiimote, 20 * kWiimoteMs, 4);
+  for (int i = 0; i < 2; ++i) PacketOf(wiimote, 30 * kWiimoteMs);
   WiimoteSensors sensors;
-  sensors.angular_velocity_S_radps.z() = 100 * kDegree;
-  EXPECT_EQ(PacketOf(wiimote, 40 * kMs, sensors)[3] & 3, 3);  // Yaw and pitch are slow.
-  sensors.angular_velocity_S_radps.z() = 1500 * kDegree;
-  EXPECT_EQ(PacketOf(wiimote, 50 * kMs, sensors)[3] & 3, 1);  // Pitch alone.
+  sensors.angular_velocity_S_radps.z() = 100 * kWiimoteDegree;
+  EXPECT_EQ(PacketOf(wiimote, 40 * kWiimoteMs, sensors)[3] & 3, 3);  // Yaw and pitch are slow.
+  sensors.angular_velocity_S_radps.z() = 1500 * kWiimoteDegree;
+  EXPECT_EQ(PacketOf(wiimote, 50 * kWiimoteMs, sensors)[3] & 3, 1);  // Pitch alone.
 }
 
 TEST(Wiimote, EveryModeThatCarriesAnExtensionHasTheSamePacket) {
@@ -300,7 +305,7 @@ TEST(Wiimote, EveryModeThatCarriesAnExtensionHasTheSamePacket) {
   const ExtensionBytes packet = NunchukBytes(wiimote.nunchuk_block(), {});
   for (const auto& [mode, at] : kModes) {
     SetMode(wiimote, 0, mode);
-    const Report report = wiimote.Sample(kMs, {}).at(0);
+    const Report report = wiimote.Sample(kWiimoteMs, {}).at(0);
     EXPECT_TRUE(
         std::equal(packet.begin(), packet.end(), report.begin() + static_cast<std::ptrdiff_t>(at)))
         << int{mode};
@@ -322,7 +327,7 @@ TEST(Wiimote, RubbishFromTheHostBreaksNothing) {
       report[4] = static_cast<std::uint8_t>(0xf0 | report[4]);
       report[5] = 1;
     }
-    const std::int64_t now_ns = trial * kMs;
+    const std::int64_t now_ns = trial * kWiimoteMs;
     for (const Report& answer : wiimote.HandleOutput(now_ns, report)) {
       ASSERT_GE(answer.at(0), 0x20);
       ASSERT_LE(answer.size(), 22u);

@@ -34,7 +34,7 @@ Frame Time: 0.0083333
 5 91 -7 0 0 90 90 0 0
 )";
 
-std::string With(std::string text, const std::string& from, const std::string& to) {
+std::string BvhWith(std::string text, const std::string& from, const std::string& to) {
   text.replace(text.find(from), from.size(), to);
   return text;
 }
@@ -91,13 +91,13 @@ TEST(Bvh, KeepsTheOrderOfRotationsItReads) {
 
 TEST(Bvh, PositionChannelsOfAJointMayOnlyRepeatWhereItIs) {
   const std::string six =
-      With(kArm, "CHANNELS 3 Zrotation", "CHANNELS 6 Xposition Yposition Zposition Zrotation");
-  const std::string still = With(With(six, "0 90 0 0 0 0 0 0 0", "0 90 0 0 0 0 12 0 0 0 0 0"),
-                                 "5 91 -7 0 0 90 90 0 0", "5 91 -7 0 0 90 12 0 0 90 0 0");
+      BvhWith(kArm, "CHANNELS 3 Zrotation", "CHANNELS 6 Xposition Yposition Zposition Zrotation");
+  const std::string still = BvhWith(BvhWith(six, "0 90 0 0 0 0 0 0 0", "0 90 0 0 0 0 12 0 0 0 0 0"),
+                                    "5 91 -7 0 0 90 90 0 0", "5 91 -7 0 0 90 12 0 0 90 0 0");
   const auto motion = ParseBvh(still, "six.bvh");
   ASSERT_TRUE(motion.ok()) << motion.error().message;
   EXPECT_TRUE(motion->skeleton.joint(1).offset_m.isApprox(Eigen::Vector3d(0, 0.12, 0)));
-  const auto moving = ParseBvh(With(still, "90 12 0 0 90 0 0", "90 13 0 0 90 0 0"), "six.bvh");
+  const auto moving = ParseBvh(BvhWith(still, "90 12 0 0 90 0 0", "90 13 0 0 90 0 0"), "six.bvh");
   EXPECT_THAT(moving.error().message, HasSubstr("joint Arm moves on its parent"));
 }
 
@@ -106,19 +106,19 @@ TEST(Bvh, ErrorsSayFileLineAndWhatWasExpected) {
     std::string text, message;
   } kRows[] = {
       {"", "expected HIERARCHY, found the end of the file"},
-      {With(kArm, "ROOT", "BOOT"), "arm.bvh, line 2: expected ROOT"},
-      {With(kArm, "OFFSET 10 0 0", "OFFSET 10 0"), "line 9: expected a number of OFFSET"},
-      {With(kArm, "3 Zrotation", "3 Wrotation"), "expected a channel such as"},
-      {With(kArm, "3 Zrotation Xrotation", "3 Zrotation Zrotation"), "stands twice"},
-      {With(kArm, "6 Xposition Yposition", "5 Yposition"), "the root needs"},
-      {With(kArm, "Frames: 2", "Frames: 3"), "announced"},
-      {With(kArm, "Frames: 2", "Frames: 1"), "more frames than the 1 announced"},
-      {With(kArm, "Frames: 2", "Frames: 4000000000"), "too short"},
-      {With(kArm, "0.0083333", "0"), "expected a frame time"},
-      {With(kArm, "5 91 -7 0 0 90 90 0 0", "5 91 -7 0 0 90 90 0"),
+      {BvhWith(kArm, "ROOT", "BOOT"), "arm.bvh, line 2: expected ROOT"},
+      {BvhWith(kArm, "OFFSET 10 0 0", "OFFSET 10 0"), "line 9: expected a number of OFFSET"},
+      {BvhWith(kArm, "3 Zrotation", "3 Wrotation"), "expected a channel such as"},
+      {BvhWith(kArm, "3 Zrotation Xrotation", "3 Zrotation Zrotation"), "stands twice"},
+      {BvhWith(kArm, "6 Xposition Yposition", "5 Yposition"), "the root needs"},
+      {BvhWith(kArm, "Frames: 2", "Frames: 3"), "announced"},
+      {BvhWith(kArm, "Frames: 2", "Frames: 1"), "more frames than the 1 announced"},
+      {BvhWith(kArm, "Frames: 2", "Frames: 4000000000"), "too short"},
+      {BvhWith(kArm, "0.0083333", "0"), "expected a frame time"},
+      {BvhWith(kArm, "5 91 -7 0 0 90 90 0 0", "5 91 -7 0 0 90 90 0"),
        "line 20: frame 2: expected number 9 of 9, found the end of the line"},
-      {With(kArm, "5 91 -7", "5 91 nan"), "found 'nan'"},
-      {With(kArm, "90 90 0 0", "90 90 0 0 1"), "more than the 9"},
+      {BvhWith(kArm, "5 91 -7", "5 91 nan"), "found 'nan'"},
+      {BvhWith(kArm, "90 90 0 0", "90 90 0 0 1"), "more than the 9"},
   };
   for (const auto& row : kRows) {
     const auto motion = ParseBvh(row.text, "arm.bvh");

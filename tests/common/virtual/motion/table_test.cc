@@ -14,7 +14,7 @@ constexpr const char* kMot =
     "0\t1\t700\t2\t0.1\t0\t0.3\t0\t5\t0\n"
     "0.01\t1\t701\t2\t0.1\t0\t0.3\t0\t5\t0\n";
 
-std::string With(std::string text, const std::string& from, const std::string& to) {
+std::string TableWith(std::string text, const std::string& from, const std::string& to) {
   text.replace(text.find(from), from.size(), to);
   return text;
 }
@@ -49,7 +49,7 @@ TEST(Table, ForcesStandInTheWorld) {
 
 TEST(Table, PlacesInMillimetresAreSeenAsThat) {
   const auto forces = ToGroundForces(
-      ParseTable(With(kMot, "\t0.1\t0\t0.3\t", "\t100\t0\t300\t"), "g.mot").value(), "g.mot");
+      ParseTable(TableWith(kMot, "\t0.1\t0\t0.3\t", "\t100\t0\t300\t"), "g.mot").value(), "g.mot");
   EXPECT_TRUE(forces->plates[0].cop_W.col(0).isApprox(Eigen::Vector3d(0.1, -0.3, 0)));
 }
 
@@ -58,18 +58,18 @@ TEST(Table, ErrorsSayFileLineAndWhatWasExpected) {
     std::string text, message;
   } kRows[] = {
       {"", "expected 'endheader'"},
-      {With(kMot, "nColumns=10", "nColumns=11"), "11 columns are announced, 10 named"},
-      {With(kMot, "nRows=2", "nRows=3"), "3 rows are announced, the file has 2"},
-      {With(kMot, "701", "nan"), "g.mot, line 9: column g_force_vy: expected a number"},
-      {With(kMot, "0.01\t1\t701\t2", "0.01\t1\t701"), "the end of the line"},
-      {With(kMot, "\t5\t0\n", "\t5\t0\t1\n"), "more numbers than columns"},
+      {TableWith(kMot, "nColumns=10", "nColumns=11"), "11 columns are announced, 10 named"},
+      {TableWith(kMot, "nRows=2", "nRows=3"), "3 rows are announced, the file has 2"},
+      {TableWith(kMot, "701", "nan"), "g.mot, line 9: column g_force_vy: expected a number"},
+      {TableWith(kMot, "0.01\t1\t701\t2", "0.01\t1\t701"), "the end of the line"},
+      {TableWith(kMot, "\t5\t0\n", "\t5\t0\t1\n"), "more numbers than columns"},
   };
   for (const auto& row : kRows) {
     const auto table = ParseTable(row.text, "g.mot");
     ASSERT_FALSE(table.ok()) << row.message;
     EXPECT_THAT(table.error().message, HasSubstr(row.message));
   }
-  const Table back = ParseTable(With(kMot, "\n0.01\t", "\n-1\t"), "g.mot").value();
+  const Table back = ParseTable(TableWith(kMot, "\n0.01\t", "\n-1\t"), "g.mot").value();
   EXPECT_THAT(ToGroundForces(back, "g.mot").error().message, HasSubstr("do not rise"));
 }
 

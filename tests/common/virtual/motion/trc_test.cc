@@ -17,7 +17,7 @@ constexpr const char* kTrc =
     "1\t1.5\t100\t1500\t-200\t1\t2\t3\n"
     "2\t1.51\t101\t1501\t-201\t\t\t\n";
 
-std::string With(std::string text, const std::string& from, const std::string& to) {
+std::string TrcWith(std::string text, const std::string& from, const std::string& to) {
   text.replace(text.find(from), from.size(), to);
   return text;
 }
@@ -48,10 +48,10 @@ TEST(Trc, OurOwnOutputIsReadAndWrittenAgainByteForByte) {
 }
 
 TEST(Trc, NaNInAFieldAndZerosAreGaps) {
-  const auto nan = ParseTrc(With(kTrc, "1\t2\t3\n", "NaN\tNaN\tNaN\n"), "x.trc");
+  const auto nan = ParseTrc(TrcWith(kTrc, "1\t2\t3\n", "NaN\tNaN\tNaN\n"), "x.trc");
   ASSERT_TRUE(nan.ok());
   EXPECT_FALSE(Seen(nan->p[1].col(0)));
-  const auto zero = ParseTrc(With(kTrc, "1\t2\t3\n", "0\t0\t0\n"), "x.trc");
+  const auto zero = ParseTrc(TrcWith(kTrc, "1\t2\t3\n", "0\t0\t0\n"), "x.trc");
   EXPECT_FALSE(Seen(zero->p[1].col(0)));
 }
 
@@ -60,10 +60,10 @@ TEST(Trc, ErrorsSayFileLineAndWhatWasExpected) {
     std::string text, message;
   } kRows[] = {
       {"", "no TRC file"},
-      {With(kTrc, "\tmm\n", "\tinch\n"), "x.trc, line 3: expected Units"},
-      {With(kTrc, "100\t100", "0\t100"), "expected DataRate"},
-      {With(kTrc, "1501", "15o1"), "line 8: marker C7: expected a number, found '15o1'"},
-      {With(kTrc, "2\t1.51", "2\tx"), "expected a frame number and a time"},
+      {TrcWith(kTrc, "\tmm\n", "\tinch\n"), "x.trc, line 3: expected Units"},
+      {TrcWith(kTrc, "100\t100", "0\t100"), "expected DataRate"},
+      {TrcWith(kTrc, "1501", "15o1"), "line 8: marker C7: expected a number, found '15o1'"},
+      {TrcWith(kTrc, "2\t1.51", "2\tx"), "expected a frame number and a time"},
       {std::string(kTrc).substr(0, std::string(kTrc).find("\n1\t1.5")), "no frame"},
   };
   for (const auto& row : kRows) {

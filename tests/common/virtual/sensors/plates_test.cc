@@ -11,7 +11,7 @@
 namespace footing::virtual_sensors {
 namespace {
 
-constexpr double kMassKg = 60;  // By the same plates under the standing subject (static1).
+constexpr double kPlatesMassKg = 60;  // By the same plates under the standing subject (static1).
 
 /// What the plates of a trial felt together around one instant of the motion.
 struct Felt {
@@ -47,7 +47,7 @@ Result<Trial> Read(const std::string& name) {
   const auto forces = motion_files::LoadForces(folder + "ID/" + name + "_grf.mot");
   if (!forces) return forces.error();
   body::PersonParameters person;
-  person.mass_kg = kMassKg;
+  person.mass_kg = kPlatesMassKg;
   person.height_m = loaded->height_m;
   const auto body = body::MakeBody(loaded->motion.skeleton, person);
   if (!body) return body.error();
@@ -75,7 +75,7 @@ Off Compare(const Trial& trial, Eigen::Index begin, Eigen::Index end) {
     square += off.cwiseAbs2();
   }
   const Eigen::Vector2d mean = sum / count;
-  return {std::sqrt(load / count) / (kMassKg * kStandardGravityMps2), mean,
+  return {std::sqrt(load / count) / (kPlatesMassKg * kStandardGravityMps2), mean,
           (square / count - mean.cwiseAbs2()).cwiseSqrt()};
 }
 
