@@ -98,6 +98,8 @@ TEST(Wire, ContactAndGaitStateCarryEveryField) {
                           5,
                           6,
                           7,
+                          {11, 12, 13},
+                          14,
                           8,
                           true,
                           {9, 10}};
