@@ -8,11 +8,11 @@ namespace footing::pose_run {
 namespace {
 
 /// Frames of somebody in a T-pose on both feet, at 100 Hz; the first ones stand still.
-struct Stage {
+struct ActivityStage {
   PoseRun run;
   Frame still;
 
-  Stage() {
+  ActivityStage() {
     const body::Skeleton skeleton = body::StandardPerson(1.75);
     run.body = body::MakeBody(skeleton, {}).value();
     run.rate_hz = 100;
@@ -40,7 +40,7 @@ struct Stage {
 };
 
 TEST(RuledActivities, BeginStill) {
-  const Stage stage;
+  const ActivityStage stage;
   const Activities told = RuledActivities(stage.run);
   ASSERT_EQ(told.of_frame.size(), stage.run.frames.size());
   EXPECT_EQ(stage.LastName(), "still");
@@ -48,7 +48,7 @@ TEST(RuledActivities, BeginStill) {
 
 TEST(RuledActivities, GoByTheFeetFirst) {
   for (const bool both : {false, true}) {
-    Stage stage;
+    ActivityStage stage;
     Frame up = stage.still;
     up.com_m.z() = 0.5;  // Whatever else it does.
     up.feet[0].load_n = 15;
@@ -60,14 +60,14 @@ TEST(RuledActivities, GoByTheFeetFirst) {
 
 TEST(RuledActivities, TellABendFromASquat) {
   for (const double deg : {30.0, 40.0}) {
-    Stage stage;
+    ActivityStage stage;
     Frame low = stage.still;
     low.com_m.z() = 0.8;
     stage.Turn(low, 0, body::Axis::kY, DegreesToRadians(deg));
     stage.Add(low, 20);
     EXPECT_EQ(stage.LastName(), deg > 35 ? "bent" : "crouched");
   }
-  Stage stage;
+  ActivityStage stage;
   Frame slack = stage.still;
   slack.com_m.z() = 0.91;
   stage.Add(slack, 20);
@@ -76,7 +76,7 @@ TEST(RuledActivities, TellABendFromASquat) {
 
 TEST(RuledActivities, SeeArmsAndBodiesMove) {
   // Arms of some 55 cm: 0.02 rad a frame are 1.1 m/s.
-  Stage arms;
+  ActivityStage arms;
   for (int i = 0; i < 30; ++i) {
     Frame frame = arms.still;
     arms.Turn(frame, arms.Joint(body::Landmark::kLeftShoulder), body::Axis::kX, 0.02 * i);
@@ -87,7 +87,7 @@ TEST(RuledActivities, SeeArmsAndBodiesMove) {
 
   // A body that glides takes its arms with it.
   for (const double mps : {0.05, 0.3, 1.0}) {
-    Stage glide;
+    ActivityStage glide;
     for (int i = 0; i < 30; ++i) {
       Frame frame = glide.still;
       frame.q(0) += mps * i / 100;
@@ -99,7 +99,7 @@ TEST(RuledActivities, SeeArmsAndBodiesMove) {
 }
 
 TEST(LabelledActivities, AreOfTheMotionsOwnClock) {
-  Stage stage;
+  ActivityStage stage;
   stage.run.clock_offset_s = -0.2;  // The clip begins in frame 20.
   const auto spans = ParseActivities("begin_s,end_s,activity\n0,0.1,squat\n0.2,0.25,bend\n", "a");
   ASSERT_TRUE(spans.ok());

@@ -58,7 +58,7 @@ TEST(Trials, BeginWalkingAtTheirSpeed) {
   for (const auto& state : *states) {
     EXPECT_EQ(state.gait.gait, stream::Gait::kWalk);
     EXPECT_NEAR(state.gait.desired_speed_mps, 0.8, 1e-6);
-    EXPECT_EQ(state.falls, 0u);
+    EXPECT_EQ(state.failures, stream::FailureCounts());
     moments.insert(state.step);
   }
   EXPECT_EQ(moments.size(), 3u);
