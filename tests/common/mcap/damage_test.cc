@@ -73,9 +73,9 @@ TEST(McapDamage, NoSingleWrongByteBreaksTheWalkOrInventsMessages) {
   }
 }
 
-TEST(McapDamage, SomethingElseIsNoMcapFile) {
+TEST(McapDamage, SomethingElseIsNotAnMcapFile) {
   const Seen seen = WalkAll("time_s,x_mm,y_mm\n0,0,0\n", WalkMode::kStrict);
-  EXPECT_THAT(seen.end.problem, HasSubstr("no MCAP file"));
+  EXPECT_THAT(seen.end.problem, HasSubstr("not an MCAP file"));
   EXPECT_FALSE(seen.end.cut);
 }
 

@@ -203,7 +203,7 @@ TEST_F(ClientTest, AServerThatTalksNonsenseIsLeftAndTriedAgain) {
   ASSERT_TRUE(listener.ok());
   StartClient(ClientOn(UnixAddress()));
   ASSERT_TRUE(RunUntil([&] { return accepted.size() == 3; }));
-  EXPECT_NE(states_.back().second.find("no message of Footing's protocol"), std::string::npos);
+  EXPECT_NE(states_.back().second.find("not a message of Footing's protocol"), std::string::npos);
 }
 
 TEST_F(ClientTest, StoppedInsideItsOwnHandlerItIsQuiet) {
