@@ -74,7 +74,8 @@ class Line(Stage):
     def start_devices(self):
         """Two Wiimotes and a board."""
         self.start("footing-stream", "user", name="user")
-        self.start("footing-stream", "corners", "--left", self.folder / "corners.csv", name="board")
+        self.start("footing-stream", "corners", "--left", self.folder / "corners.csv",
+                   "--seed", "2", name="board")
         self.wait_for(lambda: self.run("footing-ctl", "devices", "--json").stdout.count('"live"') == 3,
                       "three live devices", 30)
 

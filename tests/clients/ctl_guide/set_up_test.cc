@@ -308,7 +308,7 @@ TEST(SetUp, GivesUpOnAnItemThatGetsNowhere) {
   const auto results = person.Do({Item::kLayout, Item::kChecks});
   ASSERT_GE(results.size(), 2u);
   EXPECT_FALSE(results[0].passed);
-  EXPECT_NE(results[0].note.find("given up"), std::string::npos);
+  EXPECT_NE(results[0].note.find("timed out"), std::string::npos);
 }
 
 TEST(SetUp, WorksWithOneBoardAloneAndSaysSo) {
