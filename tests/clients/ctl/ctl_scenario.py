@@ -158,7 +158,7 @@ def check_assign(console, devices):
 
 def check_refusals(console):
     console.refused(3, "tare", "all", says="no board")
-    console.refused(2, "tare", "left_hand", says="is no Balance Board")
+    console.refused(2, "tare", "left_hand", says="is not a Balance Board")
     console.refused(2, "pair", "joycon", says="wiimote, board or move")
 
 
