@@ -195,7 +195,7 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
                   "Four lamps, such as 1010, or a colour, such as #00ff40")
       ->required();
   led->footer(
-      "Examples:\n  footing-ctl led 00:1f:32:aa:bb:cc 1010\n  footing-ctl led head #00ff40");
+      "Examples:\n  footing-ctl led 00:1f:32:aa:bb:cc 1010\n  footing-ctl led head '#00ff40'");
   led->callback([arguments, &shared] {
     if (const auto light = CheckLight(arguments->light); !light) {
       shared.exit_code = cli::Report(light.error());
