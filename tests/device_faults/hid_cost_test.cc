@@ -40,7 +40,7 @@ TEST_F(HidCost, DrainLoopsOfEightDevicesCostAtMostThreeBareReadLoops) {
   ASSERT_TRUE(bench.Start());
   for (Device* device : devices) ASSERT_TRUE(bench.UntilLive(*device));
   // Both read the same nodes at the same time: each opening gets a copy of every report.
-  std::vector<std::string> command = {"../tests/bench_bare_reader"};
+  std::vector<std::string> command = {"../tests/bare_reader"};
   std::vector<std::uint32_t> none, ours, bare;
   for (Device* device : devices) {
     command.push_back("/dev/hidraw" + std::to_string(device->number()));
