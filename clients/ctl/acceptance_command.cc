@@ -48,8 +48,8 @@ struct AcceptanceArguments {
 
 void AddAcceptanceCommand(CLI::App& app, Shared& shared) {
   const auto arguments = std::make_shared<AcceptanceArguments>();
-  CLI::App* command =
-      app.add_subcommand("acceptance", "Guided test of a rig: ends in a recording and a verdict");
+  CLI::App* command = app.add_subcommand(
+      "acceptance", "Guided acceptance test of a rig: writes a recording and prints the verdict");
   command->add_option("--minutes", arguments->options.minutes, "Duration, min (default 10)")
       ->check(CLI::Range(0.1, 120.0));
   command->add_option("--out", arguments->options.out,

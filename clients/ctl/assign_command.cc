@@ -17,7 +17,7 @@ void AddAssignCommand(CLI::App& app, Shared& shared) {
     bool script = false;
   };
   const auto given = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("assign", "Say what a device is: its rig and role");
+  CLI::App* command = app.add_subcommand("assign", "Assign a device to a rig and a role");
   command->add_option("DEVICE", given->device, "Serial, number, RIG/ROLE or ROLE");
   command->add_option("ROLE", given->rig_role, "RIG/ROLE, or ROLE in the default rig");
   command->add_flag("--gesture", given->gesture,

@@ -178,7 +178,7 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
     double seconds = 1;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* rumble = app.add_subcommand("rumble", "Let a device's motor run");
+  CLI::App* rumble = app.add_subcommand("rumble", "Run the vibration motor of a device");
   rumble->add_option("DEVICE", arguments->device, "Serial, number, RIG/ROLE or ROLE")->required();
   rumble->add_option("--seconds", arguments->seconds, "Duration, s (default 1)")
       ->check(CLI::Range(0.05, 30.0));
@@ -189,7 +189,7 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
     });
   });
 
-  CLI::App* led = app.add_subcommand("led", "Set a device's lamps, or a PS Move's colour");
+  CLI::App* led = app.add_subcommand("led", "Set the LEDs of a device, or the colour of a PS Move");
   led->add_option("DEVICE", arguments->device, "Serial, number, RIG/ROLE or ROLE")->required();
   led->add_option("LIGHT", arguments->light,
                   "Four lamps, such as 1010, or a colour, such as #00ff40")

@@ -94,13 +94,14 @@ Result<void> Watch(Session& session, double seconds, const Shared& shared) {
 }  // namespace
 
 void AddDeviceCommands(CLI::App& app, Shared& shared) {
-  CLI::App* devices = app.add_subcommand("devices", "Every device that footingd has");
+  CLI::App* devices = app.add_subcommand("devices", "List the devices of footingd");
   devices->footer("Examples:\n  footing-ctl devices\n  footing-ctl devices --json");
   devices->callback([&shared] {
     WithSession(shared, {"status"}, [&](Session& session) { return Devices(session, shared); });
   });
 
-  CLI::App* status = app.add_subcommand("status", "footingd, its devices and their set-up");
+  CLI::App* status =
+      app.add_subcommand("status", "Print the state of footingd, its devices and their setup");
   status->footer("Example:\n  footing-ctl status --json");
   status->callback([&shared] {
     WithSession(shared, {"status", "setup"},

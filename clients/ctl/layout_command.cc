@@ -75,7 +75,7 @@ Result<void> Layout(Session& session, const LayoutArguments& arguments, const Sh
 
 void AddLayoutCommand(CLI::App& app, Shared& shared) {
   const auto arguments = std::make_shared<LayoutArguments>();
-  CLI::App* command = app.add_subcommand("layout", "How the boards lie: shows, sets or checks it");
+  CLI::App* command = app.add_subcommand("layout", "Show, set or check the layout of the boards");
   command->add_option("--preset", arguments->preset,
                       "Layout: one_foot_each, side_by_side or single");
   command

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   app->add_option(
       "--connect", shared.connect,
       "Address of footingd, unix:PATH or tcp:HOST:PORT (default: footingd of this user)");
-  app->add_flag("--json", shared.json, "One JSON object on standard output");
+  app->add_flag("--json", shared.json, "Print one JSON object on standard output");
   app->require_subcommand(0, 1);  // An unknown command is then reported by its name.
   app->fallthrough();
   footing::ctl::AddDeviceCommands(*app, shared);

@@ -93,7 +93,7 @@ void AddPairCommand(CLI::App& app, Shared& shared) {
     double within_s = 180;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("pair", "From the box to footingd, step by step");
+  CLI::App* command = app.add_subcommand("pair", "Pair a new device, step by step");
   command->add_option("DEVICE", arguments->device, "Kind of device: wiimote, board or move")
       ->required();
   command->add_flag("--print", arguments->print, "Only print the steps");

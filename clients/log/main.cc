@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
       "  footing-log repair cut.mcap --out whole.mcap\n"
       "  footing-log serve a.mcap --listen unix:/tmp/replay.sock");
   footing::log_client::Shared shared;
-  app->add_flag("--json", shared.json, "One JSON object on standard output");
+  app->add_flag("--json", shared.json, "Print one JSON object on standard output");
   app->require_subcommand(1);
   app->fallthrough();
   footing::log_client::AddRecordCommand(*app, shared);

@@ -88,7 +88,7 @@ Result<nlohmann::ordered_json> RunServe(const ServeOptions& options) {
 
 void AddServeCommand(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand(
-      "serve", "Serve a recording in the place of the server that it is of, at its own pace");
+      "serve", "Serve a recording in place of the recorded server, at its recorded times");
   const auto options = std::make_shared<ServeOptions>();
   command->add_option("FILE", options->file, "Recording, MCAP file")->required();
   command->add_option("--listen", options->addresses,

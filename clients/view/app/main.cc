@@ -46,43 +46,48 @@ footing::Result<void> Run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  auto app = footing::cli::NewApp("footing-view",
-                                  "Shows the bird and its track, or the reconstructed body, live.",
-                                  "  footing-view\n"
-                                  "  footing-view --connect tcp:127.0.0.1:4711 --subject\n"
-                                  "  footing-view --recording walk.mcap\n"
-                                  "  footing-view --screenshot bird.png --at 5\n"
-                                  "  footing-view --next-subject p08.json --next-subject p09.json\n"
-                                  "  footing-view --text --seconds 30 --json");
+  auto app = footing::cli::NewApp(
+      "footing-view",
+      "Viewer: shows the biped on its track, or the reconstructed body, live or from a recording.",
+      "  footing-view\n"
+      "  footing-view --connect tcp:127.0.0.1:4711 --subject\n"
+      "  footing-view --recording walk.mcap\n"
+      "  footing-view --screenshot bird.png --at 5\n"
+      "  footing-view --next-subject p08.json --next-subject p09.json\n"
+      "  footing-view --text --seconds 30 --json");
   Options options;
   std::vector<std::string> connect, subjects;
   std::string recording;
   app->add_option("--connect", connect,
-                  "unix:PATH or tcp:HOST:PORT, as often as wanted; default "
-                  "are this user's simulation and sensor servers");
-  app->add_option("--recording", recording, "Recording to play in place of servers, MCAP file")
+                  "Address of a server, unix:PATH or tcp:HOST:PORT; may be repeated "
+                  "(default: footing-sim and footingd of this user)");
+  app->add_option("--recording", recording, "Recording to play instead of connecting, MCAP file")
       ->excludes("--connect");
-  app->add_option("--screenshot", options.screenshot, "Draw one picture to this PNG and end");
-  app->add_option("--at", options.at_s, "Seconds after connecting (screenshot)")
+  app->add_option("--screenshot", options.screenshot,
+                  "PNG file to draw one picture into; then end");
+  app->add_option("--at", options.at_s, "Time of the screenshot after connecting, s")
       ->check(CLI::Range(0.0, 86400.0));
-  app->add_option("--record", options.record_folder, "Draw numbered PNGs into this folder");
-  app->add_option("--record-hz", options.record_hz, "Pictures a second (record)")
+  app->add_option("--record", options.record_folder, "Folder to draw numbered PNG files into");
+  app->add_option("--record-hz", options.record_hz, "Rate of the pictures of --record, Hz")
       ->check(CLI::Range(0.1, 60.0));
-  app->add_option("--seconds", options.seconds, "End by itself")->check(CLI::Range(0.0, 1e6));
-  app->add_option("--msaa", options.samples, "Smooth edges with 2, 4 or 8 samples a pixel")
+  app->add_option("--seconds", options.seconds, "Duration, s (0: until the window is closed)")
+      ->check(CLI::Range(0.0, 1e6));
+  app->add_option("--msaa", options.samples, "Samples per pixel for smooth edges: 0, 2, 4 or 8")
       ->check(CLI::IsMember({0, 2, 4, 8}));
-  app->add_option("--width", options.width, "Pixels")->check(CLI::Range(320, 8192));
-  app->add_option("--height", options.height, "Pixels")->check(CLI::Range(180, 8192));
-  app->add_flag("--subject", options.subject, "The world alone, without panels");
+  app->add_option("--width", options.width, "Width of the window or picture, pixels")
+      ->check(CLI::Range(320, 8192));
+  app->add_option("--height", options.height, "Height of the window or picture, pixels")
+      ->check(CLI::Range(180, 8192));
+  app->add_flag("--subject", options.subject,
+                "Show the world without panels, as for the subject's screen");
   app->add_flag("--overlay-reference", options.overlay_reference,
-                "Show a simulated body's true pose over the estimate, not beside it");
-  app->add_option("--next-subject", subjects,
-                  "Subject file (JSON) for the key N; as often as wanted");
-  app->add_flag("--forces", options.forces, "Force arrows at the feet");
+                "Draw the true pose of a simulated body over the estimate, not beside it");
+  app->add_option("--next-subject", subjects, "Subject file for the key N, JSON; may be repeated");
+  app->add_flag("--forces", options.forces, "Draw force arrows at the feet");
   app->add_flag("--replay-falls", options.replay_falls,
-                "Show every fall's last 5 s again in slow motion");
-  app->add_flag("--text", options.text, "Show the state in the terminal");
-  app->add_flag("--json", options.json, "At the end one JSON object on standard output");
+                "Replay the last 5 s before each fall in slow motion");
+  app->add_flag("--text", options.text, "Show the state as text in the terminal");
+  app->add_flag("--json", options.json, "Print one JSON object on standard output at the end");
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
 
   footing::log::Start("footing-view", false);
