@@ -67,6 +67,7 @@ Result<void> Watch(Session& session, double seconds, const Shared& shared) {
   session.set_on_tick([&](const v1::Tick& tick) {
     for (const auto& sample : tick.motion().samples()) live.Take(wire::FromProto(sample));
     for (const auto& sample : tick.nunchuk().samples()) live.Take(wire::FromProto(sample));
+    for (const auto& sample : tick.gamepad().samples()) live.Take(wire::FromProto(sample));
     for (const auto& sample : tick.boards().samples()) live.Take(wire::FromProto(sample));
   });
   const bool screen = !shared.json && isatty(STDOUT_FILENO) == 1;
@@ -114,7 +115,7 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.1, 1e5));
   watch->footer("Examples:\n  footing-ctl watch\n  footing-ctl watch --seconds 5 --json");
   watch->callback([seconds, &shared] {
-    WithSession(shared, {"status", "motion", "nunchuk", "boards"},
+    WithSession(shared, {"status", "motion", "nunchuk", "gamepad", "boards"},
                 [&](Session& session) { return Watch(session, *seconds, shared); });
   });
 }

@@ -62,10 +62,47 @@ std::string MotionLine(const stream::MotionSample& motion) {
   return line + "\n";
 }
 
+std::string Stick(double x, double y) { return "(" + Fixed(x, 2) + ", " + Fixed(y, 2) + ")"; }
+
 std::string NunchukLine(const stream::NunchukSample& nunchuk) {
-  return "  nunchuk stick (" + Fixed(nunchuk.stick_x, 2) + ", " + Fixed(nunchuk.stick_y, 2) + ")" +
-         (nunchuk.c ? " C" : "") + (nunchuk.z ? " Z" : "") + " " +
-         Axes(nunchuk.specific_force_mps2, 1) + " m/s2\n";
+  return "  nunchuk stick " + Stick(nunchuk.stick_x, nunchuk.stick_y) + (nunchuk.c ? " C" : "") +
+         (nunchuk.z ? " Z" : "") + " " + Axes(nunchuk.specific_force_mps2, 1) + " m/s2\n";
+}
+
+struct ButtonName {
+  stream::GamepadButton button;
+  const char* name;
+};
+constexpr ButtonName kButtonNames[] = {
+    {stream::kGamepadA, "A"},
+    {stream::kGamepadB, "B"},
+    {stream::kGamepadX, "X"},
+    {stream::kGamepadY, "Y"},
+    {stream::kGamepadL, "L"},
+    {stream::kGamepadR, "R"},
+    {stream::kGamepadZl, "ZL"},
+    {stream::kGamepadZr, "ZR"},
+    {stream::kGamepadMinus, "minus"},
+    {stream::kGamepadPlus, "plus"},
+    {stream::kGamepadHome, "home"},
+    {stream::kGamepadUp, "up"},
+    {stream::kGamepadDown, "down"},
+    {stream::kGamepadLeft, "left"},
+    {stream::kGamepadRight, "right"},
+    {stream::kGamepadLeftStick, "left stick"},
+    {stream::kGamepadRightStick, "right stick"},
+};
+
+std::string GamepadLine(const stream::GamepadSample& gamepad) {
+  std::string line = "  sticks " + Stick(gamepad.left_x, gamepad.left_y) + " " +
+                     Stick(gamepad.right_x, gamepad.right_y) + "  triggers " +
+                     Fixed(gamepad.left_trigger, 2) + " " + Fixed(gamepad.right_trigger, 2);
+  std::string pressed;
+  for (const ButtonName& one : kButtonNames) {
+    if ((gamepad.buttons & one.button) != 0)
+      pressed += std::string(pressed.empty() ? "  " : ", ") + one.name;
+  }
+  return line + pressed + (gamepad.uncalibrated ? "  UNCALIBRATED" : "") + "\n";
 }
 
 std::string Title(const DeviceStatus& device) {
@@ -104,6 +141,15 @@ ordered_json NewestToJson(const Live::Newest& newest) {
                       {"c", newest.nunchuk->c},
                       {"z", newest.nunchuk->z}};
   }
+  if (newest.gamepad) {
+    out["gamepad"] = {{"left_x", newest.gamepad->left_x},
+                      {"left_y", newest.gamepad->left_y},
+                      {"right_x", newest.gamepad->right_x},
+                      {"right_y", newest.gamepad->right_y},
+                      {"left_trigger", newest.gamepad->left_trigger},
+                      {"right_trigger", newest.gamepad->right_trigger},
+                      {"buttons", newest.gamepad->buttons}};
+  }
   if (newest.board) out["board"] = BoardToJson(*newest.board);
   return out;
 }
@@ -116,6 +162,12 @@ void Live::Take(const stream::MotionSample& sample) {
 }
 
 void Live::Take(const stream::NunchukSample& sample) { newest[sample.device].nunchuk = sample; }
+
+void Live::Take(const stream::GamepadSample& sample) {
+  Newest& of_device = newest[sample.device];
+  of_device.gamepad = sample;
+  if (!of_device.motion) ++of_device.samples;
+}
 
 void Live::Take(const stream::BoardSample& sample) {
   newest[sample.device].board = sample;
@@ -142,6 +194,7 @@ std::string LiveScreen(const Live& live) {
     if (found->second.board) below += BoardLines(*found->second.board);
     if (found->second.motion) below += MotionLine(*found->second.motion);
     if (found->second.nunchuk) below += NunchukLine(*found->second.nunchuk);
+    if (found->second.gamepad) below += GamepadLine(*found->second.gamepad);
   }
   if (live.devices.empty()) below = "no device yet: footing-ctl pair, then press a button on it\n";
   return live.link + "\n\n" + Table(rows) + below;

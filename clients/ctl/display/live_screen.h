@@ -17,8 +17,9 @@ struct Live {
   struct Newest {
     std::optional<stream::MotionSample> motion;
     std::optional<stream::NunchukSample> nunchuk;
+    std::optional<stream::GamepadSample> gamepad;
     std::optional<stream::BoardSample> board;
-    std::uint64_t samples = 0;  ///< Of motion and boards, since the watch began.
+    std::uint64_t samples = 0;  ///< Since the watch began; of a gamepad where it has no motion.
   };
   std::vector<stream::DeviceStatus> devices;
   std::map<std::uint32_t, Newest> newest;  ///< By device number.
@@ -26,6 +27,7 @@ struct Live {
 
   void Take(const stream::MotionSample& sample);
   void Take(const stream::NunchukSample& sample);
+  void Take(const stream::GamepadSample& sample);
   void Take(const stream::BoardSample& sample);
 };
 
@@ -33,7 +35,8 @@ struct Live {
 std::string LiveScreen(const Live& live);
 /// One line, for a log.
 std::string LiveLine(const Live& live);
-/// {seconds, devices: [...]}, each with its newest sample as "motion", "nunchuk" or "board".
+/// {seconds, devices: [...]}, each with its newest sample as "motion", "nunchuk", "gamepad" or
+/// "board".
 nlohmann::ordered_json LiveToJson(const Live& live, double seconds);
 
 }  // namespace footing::ctl::display

@@ -190,6 +190,23 @@ TEST(LiveScreen, ShowsNoForcesOfASilentDevice) {
   EXPECT_NE(screen.find("asleep"), std::string::npos);
 }
 
+TEST(LiveScreen, DrawsAGamepadsSticksTriggersAndButtons) {
+  Live live = LiveBoard();
+  live.devices[0].kind = stream::DeviceKind::kWiimote;
+  stream::GamepadSample sample;
+  sample.device = live.devices[0].device;
+  sample.left_x = -0.5;
+  sample.right_y = 1;
+  sample.left_trigger = 0.25;
+  sample.buttons = stream::kGamepadA | stream::kGamepadZr | stream::kGamepadRightStick;
+  live.Take(sample);
+  const std::string screen = LiveScreen(live);
+  EXPECT_NE(screen.find("  sticks (-0.50, 0.00) (0.00, 1.00)  triggers 0.25 0.00"
+                        "  A, ZR, right stick\n"),
+            std::string::npos)
+      << screen;
+}
+
 TEST(LiveLine, NamesEveryDeviceInOneLine) {
   EXPECT_EQ(LiveLine(LiveBoard()),
             "2 main/left_board live 61.2 Hz, jitter 5.0 ms, gaps 0, repeats 18.7 %, battery "
@@ -202,6 +219,26 @@ TEST(LiveJson, CountsSamplesAndGivesTheNewest) {
   EXPECT_EQ(out["devices"][0]["samples"], 1);
   EXPECT_DOUBLE_EQ(out["devices"][0]["board"]["top_left_kg"], 20);
   EXPECT_NEAR(out["devices"][0]["board"]["cop_x_mm"], -45.6, 1e-9);
+}
+
+TEST(LiveJson, CountsAGamepadsSamplesWhereItHasNoMotion) {
+  Live live;
+  live.devices.resize(1);
+  live.devices[0].device = 1;
+  stream::GamepadSample gamepad;
+  gamepad.device = 1;
+  gamepad.buttons = stream::kGamepadB;
+  live.Take(gamepad);
+  live.Take(gamepad);
+  auto one = LiveToJson(live, 1)["devices"][0];
+  EXPECT_EQ(one["samples"], 2);
+  EXPECT_EQ(one["gamepad"]["buttons"], 2);
+  stream::MotionSample motion;
+  motion.device = 1;
+  live.Take(motion);  // A Classic Controller on a Wiimote: its motion is counted.
+  live.Take(gamepad);
+  one = LiveToJson(live, 1)["devices"][0];
+  EXPECT_EQ(one["samples"], 3);
 }
 
 }  // namespace
