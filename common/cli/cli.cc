@@ -2,9 +2,13 @@
 
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 namespace footing::cli {
 namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 ok, 1 failure, 2 usage, 3 no device, 4 invalid data.";
 
 /// Help prints every default, but an empty list has none, and a description may state its own.
 void HideEmptyDefaults(CLI::App& app) {
@@ -14,6 +18,30 @@ void HideEmptyDefaults(CLI::App& app) {
   }
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
     HideEmptyDefaults(*command);
+  }
+}
+
+/// The lines of `examples` that run `command`, each with the lines that continue it.
+std::string ExamplesOf(const std::string& examples, const std::string& command) {
+  std::istringstream lines(examples);
+  std::string of_command;
+  bool continues = false, taken = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (!continues) taken = (line + " ").starts_with("  " + command + " ");
+    if (taken) of_command += line + "\n";
+    continues = line.ends_with('\\');
+  }
+  return of_command;
+}
+
+/// A subcommand takes its parent's footer over, with the examples of all its siblings; it shows its
+/// own ones, or none.
+void NarrowExamples(CLI::App& app) {
+  const std::string footer = app.get_footer();
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    if (command->get_footer() != footer) continue;
+    const std::string own = ExamplesOf(footer, app.get_name() + " " + command->get_name());
+    command->footer((own.empty() ? "" : "Examples:\n" + own) + kExitCodes);
   }
 }
 
@@ -33,13 +61,13 @@ std::unique_ptr<CLI::App> NewApp(const std::string& name, const std::string& wha
   auto app = std::make_unique<CLI::App>(what, name);
   app->option_defaults()->always_capture_default();
   app->set_version_flag("--version", name + " " + Version());
-  app->footer("Examples:\n" + examples +
-              "\nExit codes: 0 ok, 1 failure, 2 usage, 3 no device, 4 invalid data.");
+  app->footer("Examples:\n" + examples + (examples.ends_with('\n') ? "" : "\n") + kExitCodes);
   return app;
 }
 
 std::optional<int> Parse(CLI::App& app, int argc, char** argv) {
   HideEmptyDefaults(app);
+  NarrowExamples(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

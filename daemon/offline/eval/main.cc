@@ -16,9 +16,19 @@
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
       "footing-eval", "Runs the pure code of the daemons offline, faster than real time.",
+      "  footing-stream sample .     # writes the files that these examples read\n"
       "  footing-eval features --left left.csv --right right.csv --rate-hz 100 --json\n"
       "  footing-eval board --corners corners.csv --json\n"
-      "  footing-eval gait --gait walk --speed 1 --seconds 60 --trials 1 --seed 1 --json");
+      "  footing-eval clock --link poor --json\n"
+      "  footing-eval gait --gait walk --speed 1 --seconds 60 --trials 1 --seed 1 --json\n"
+      "  footing-eval transitions --from walk --to run --trials 20 --seed 1 --json\n"
+      "  footing-eval monkey --seconds 60 --trials 2 --seed 1 --json\n"
+      "  footing-eval tracks --interface wrist --track straight --trials 2 --seed 1 --json\n"
+      "  footing-eval momentum --motion clip.bvh --json\n"
+      "  footing-eval pose --motion clip.bvh --json\n"
+      "  footing-eval arm --motion clip.bvh --json\n"
+      "  footing-eval replay walk.mcap --json     # recorded by footing-log record --out "
+      "walk.mcap");
   footing::eval::Shared shared;
   app->add_flag("--json", shared.json, "One JSON object on standard output");
   app->add_option_function<std::vector<std::string>>(

@@ -6,7 +6,7 @@ int main(int argc, char** argv) {
       "footing-tune", "Tunes a gait's gains by search over simulated trials (docs/tuning.md).",
       "  footing-tune --gait walk --speeds 0.5,1.5 --out walk.csv\n"
       "  footing-tune --gait run --speeds 2,5 --out run.csv --method cmaes --iterations 20\n"
-      "  footing-tune --gait walk --speeds 0.5 --from mine.csv --iterations 0 --trials 400 "
+      "  footing-tune --gait walk --speeds 0.5 --from walk.csv --iterations 0 --trials 400 "
       "--seed 7 --json");
   footing::tune::Options options;
   app->add_option("--gait", options.gait, "Gait: step, walk, run or jump")->required();

@@ -27,11 +27,15 @@ struct Program {
     run->add_option("--trials", options.trials, "Number of trials");
     run->add_option("--seconds", options.seconds, "Duration, s (default: until SIGINT)");
     run->add_option("--listen", options.listen, "Address; may be repeated");
+    app->add_subcommand("list", "List the trials");
     app->require_subcommand(1);
   }
 
   Options options;
-  std::unique_ptr<CLI::App> app = NewApp("footing-test", "A program.", "  footing-test run\n");
+  std::unique_ptr<CLI::App> app = NewApp("footing-test", "A program.",
+                                         "  footing-test run --trials 2 \\\n"
+                                         "                   --seconds 1\n"
+                                         "  footing-test list");
 };
 
 /// The exit code that Parse asks for; 0 when the program may go on.
@@ -49,6 +53,16 @@ TEST(Help, PrintsDefaultsButNoEmptyOrStatedOnes) {
   EXPECT_THAT(help, HasSubstr("--trials INT=3"));
   EXPECT_THAT(help, Not(HasSubstr("=[]")));
   EXPECT_THAT(help, Not(HasSubstr("--seconds FLOAT=0")));
+}
+
+TEST(Help, ShowsACommandItsOwnExamplesOnly) {
+  Program program;
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(ExitCode(program, {"run", "--help"}), 0);
+  const std::string help = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(help, HasSubstr("Examples:\n  footing-test run --trials 2 \\\n"
+                              "                   --seconds 1\nExit codes: 0 ok"));
+  EXPECT_THAT(help, Not(HasSubstr("footing-test list")));
 }
 
 TEST(Parse, NamesAnUnknownOptionAndWhereHelpIs) {
