@@ -1,4 +1,4 @@
-#include "daemon/offline/learning/standard_layout.h"
+#include "common/virtual/motion/standard_layout.h"
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,7 @@
 #include "common/body/landmarks.h"
 #include "common/virtual/motion/marker_fit.h"
 
-namespace footing::learning {
+namespace footing::motion {
 namespace {
 
 using body::Landmark;
@@ -82,7 +82,7 @@ class Placer {
     Add(one, carrier, At(joint) + aside_m);
     Add(other, carrier, At(joint) - aside_m);
   }
-  /// Where Harrington's regression (motion::JointCentres) finds the hips again.
+  /// Where Harrington's regression (JointCentres) finds the hips again.
   void PlacePelvis() {
     const Eigen::Vector3d left = At(Landmark::kLeftHip), right = At(Landmark::kRightHip);
     const double width_m = std::max(0.05, (0.5 * (left - right).norm() - 0.0073) / 0.33);
@@ -105,16 +105,16 @@ class Placer {
 
 }  // namespace
 
-bool HasStandardLayout(const motion::Motion& motion) {
+bool HasStandardLayout(const Motion& motion) {
   static const std::vector<std::string> kStandard = body::DofNames(body::StandardPerson(1.7));
   return body::DofNames(motion.skeleton) == kStandard;
 }
 
-Result<StandardMotion> ToStandardLayout(const motion::Motion& motion) {
+Result<StandardMotion> ToStandardLayout(const Motion& motion) {
   const auto landmarks = body::FindLandmarks(motion.skeleton);
   if (!landmarks) return landmarks.error();
   const std::vector<Marker> markers = Placer(motion.skeleton, *landmarks).Place();
-  motion::MarkerTracks tracks;
+  MarkerTracks tracks;
   tracks.rate_hz = motion.rate_hz;
   tracks.start_s = motion.start_s;
   for (const Marker& marker : markers) tracks.names.push_back(marker.name);
@@ -126,9 +126,9 @@ Result<StandardMotion> ToStandardLayout(const motion::Motion& motion) {
       tracks.p[k].col(i) = at.p_WJ[markers[k].joint] + at.R_WJ[markers[k].joint] * markers[k].p_J_m;
     }
   }
-  auto fit = motion::FitMarkers(tracks, {.set = "plug-in-gait"});
+  auto fit = FitMarkers(tracks, {.set = "plug-in-gait"});
   if (!fit) return fit.error();
   return StandardMotion{std::move(fit->motion), fit->height_m, fit->rms_m};
 }
 
-}  // namespace footing::learning
+}  // namespace footing::motion

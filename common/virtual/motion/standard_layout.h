@@ -3,21 +3,21 @@
 #include "common/result/result.h"
 #include "common/virtual/motion/motion.h"
 
-namespace footing::learning {
+namespace footing::motion {
 
 /// A motion of the standard person's layout (body::StandardPerson), which is what the engine runs.
 struct StandardMotion {
-  motion::Motion motion;
+  Motion motion;
   double height_m = 0;  ///< Estimated from the lengths.
   double rms_m = 0;     ///< Of the markers below.
 };
 
 /// True when the motion's degrees of freedom are the standard person's, by number and name.
-bool HasStandardLayout(const motion::Motion& motion);
+bool HasStandardLayout(const Motion& motion);
 
 /// Another skeleton's motion as the standard person's: markers are put about its joints and fitted
-/// (motion::FitMarkers), so that lengths and joint centres stay. An error says which landmark is
+/// (FitMarkers), so that lengths and joint centres stay. An error says which landmark is
 /// missing.
-Result<StandardMotion> ToStandardLayout(const motion::Motion& motion);
+Result<StandardMotion> ToStandardLayout(const Motion& motion);
 
-}  // namespace footing::learning
+}  // namespace footing::motion

@@ -9,8 +9,8 @@
 
 #include "common/log/log.h"
 #include "common/units/units.h"
+#include "common/virtual/motion/standard_layout.h"
 #include "daemon/offline/learning/alignment.h"
-#include "daemon/offline/learning/standard_layout.h"
 #include "daemon/offline/train/recording_reader.h"
 
 namespace footing::train {
@@ -50,12 +50,12 @@ void Tell(const OwnRecording& own) {
 /// The engine runs the standard person's layout; another is fitted to it, unless the others'
 /// motions are of the same. Returns the residual, m.
 Result<double> MakeStandard(const std::vector<Clip>& others, Clip& clip) {
-  if (learning::HasStandardLayout(clip.motion)) return 0.0;
+  if (motion::HasStandardLayout(clip.motion)) return 0.0;
   if (!others.empty() &&
       body::DofNames(others.front().motion.skeleton) == body::DofNames(clip.motion.skeleton)) {
     return 0.0;
   }
-  auto standard = learning::ToStandardLayout(clip.motion);
+  auto standard = motion::ToStandardLayout(clip.motion);
   if (!standard) return InvalidData(clip.name + ": " + standard.error().message);
   body::PersonParameters person;
   person.height_m = standard->height_m;

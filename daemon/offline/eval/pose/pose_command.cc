@@ -81,6 +81,8 @@ Result<ordered_json> Evaluate(Flags flags) {
     if (!run) return run.error();
     return ordered_json{{"claims", JudgeClaims(*run)}};
   }
+  // A basis of the user's own may be of another layout.
+  flags.scene.standard_layout = flags.models.empty();
   const auto models = ReadPoseModels(flags.models, flags.scene.motion, flags.same_person);
   if (!models) return models.error();
   if (flags.boards == "insoles") {
@@ -247,7 +249,7 @@ void AddPoseCommand(CLI::App& app, Shared& shared) {
   command->footer(
       "Examples:\n"
       "  footing-eval pose --motion clip.bvh --json\n"
-      "  footing-eval pose --motion clip.bvh --loop-minutes 5 --activities labels.csv\n"
+      "  footing-eval pose --motion clip.bvh --activities labels.csv --json\n"
       "  footing-eval pose --motion squats.trc --still static.trc --boards forces "
       "--forces squats_grf.mot --mass-kg 60");
   command->callback([flags, &shared] {

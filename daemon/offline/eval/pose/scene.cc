@@ -1,9 +1,13 @@
 #include "daemon/offline/eval/pose/scene.h"
 
+#include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "common/config/data_file.h"
 #include "common/model/model.h"
+#include "common/virtual/motion/edit.h"
+#include "common/virtual/motion/standard_layout.h"
 #include "common/virtual/motion_files/load.h"
 #include "common/wire/model_file.h"
 #include "daemon/offline/pose_run/activity.h"
@@ -51,7 +55,18 @@ Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
   motion_files::LoadOptions load;
   load.skeleton = options.skeleton;
   load.still = options.still;
-  return motion_files::LoadMotion(options.motion, load);
+  auto loaded = motion_files::LoadMotion(options.motion, load);
+  if (!loaded || !options.standard_layout) return loaded;
+  const auto kept = motion::WithLandmarksOnly(loaded->motion);
+  if (!kept) return InvalidData(options.motion + ": " + kept.error().message);
+  if (motion::HasStandardLayout(*kept)) return loaded;
+  auto standard = motion::ToStandardLayout(*kept);
+  if (!standard) return InvalidData(options.motion + ": " + standard.error().message);
+  std::fprintf(stderr, "%s: another skeleton, fitted to the standard layout within %.1f mm\n",
+               options.motion.c_str(), 1e3 * standard->rms_m);
+  loaded->motion = std::move(standard->motion);
+  loaded->height_m = standard->height_m;
+  return loaded;
 }
 
 pose_run::Settings WithHeight(const PoseSceneOptions& options,

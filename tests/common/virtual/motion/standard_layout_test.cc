@@ -1,4 +1,4 @@
-#include "daemon/offline/learning/standard_layout.h"
+#include "common/virtual/motion/standard_layout.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include "common/virtual/motion_files/load.h"
 #include "tests/common/virtual/motion/shared_data.h"
 
-namespace footing::learning {
+namespace footing::motion {
 namespace {
 
 /// Mean distance of the joints of the limbs in both motions, m.
-double JointsApart(const motion::Motion& a, const motion::Motion& b) {
+double JointsApart(const Motion& a, const Motion& b) {
   const auto in_a = body::FindLandmarks(a.skeleton).value();
   const auto in_b = body::FindLandmarks(b.skeleton).value();
   body::Kinematics at_a(a.skeleton), at_b(b.skeleton);
@@ -37,10 +37,9 @@ double JointsApart(const motion::Motion& a, const motion::Motion& b) {
 TEST(ToStandardLayout, KeepsTheJointsOfAnotherSkeletonsMotion) {
   // GIVEN a character of an animation program, of 84 degrees of freedom and another axis for all.
   SKIP_WITHOUT_SHARED_DATA();
-  const auto loaded =
-      motion_files::LoadMotion(motion::test::SharedData() + "/mocap/cmu_bvh/002_04.bvh");
+  const auto loaded = motion_files::LoadMotion(test::SharedData() + "/mocap/cmu_bvh/002_04.bvh");
   ASSERT_TRUE(loaded);
-  const auto motion = motion::WithLandmarksOnly(loaded->motion).value();
+  const auto motion = WithLandmarksOnly(loaded->motion).value();
   ASSERT_FALSE(HasStandardLayout(motion));
   const auto standard = ToStandardLayout(motion);
   ASSERT_TRUE(standard) << standard.error().message;
@@ -51,4 +50,4 @@ TEST(ToStandardLayout, KeepsTheJointsOfAnotherSkeletonsMotion) {
 }
 
 }  // namespace
-}  // namespace footing::learning
+}  // namespace footing::motion
