@@ -97,8 +97,8 @@ void GaitEngine::Parts::Command(const EngineInputs& inputs) {
 }
 
 void GaitEngine::Parts::ChooseGains() {
-  const stream::Gait gait = state.gait.thrusting ? stream::Gait::kRun : state.gait.gait;
-  const double speed_mps = state.gait.desired_speed_mps;
+  const stream::Gait gait = state.gait.transition.thrusting ? stream::Gait::kRun : state.gait.gait;
+  const double speed_mps = state.gait.speed.desired_mps;
   if (gait == gains_gait && speed_mps == gains_speed_mps) return;
   gains = gain_table.At(gait, speed_mps);
   gains_gait = gait;

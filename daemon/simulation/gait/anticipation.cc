@@ -6,7 +6,7 @@ namespace footing::gait {
 
 double AnticipatedLean(const Context& context, const GaitMemory& memory) {
   const AnticipationGains& gains = context.gains.anticipation;
-  const double missing_mps = context.goal.speed_mps - memory.desired_speed_mps;
+  const double missing_mps = context.goal.speed_mps - memory.speed.desired_mps;
   return std::clamp(gains.lean_rad_per_mps * missing_mps, -gains.lean_limit_rad,
                     gains.lean_limit_rad);
 }

@@ -8,14 +8,14 @@
 namespace footing::gait {
 
 double BankAngle(const GaitMemory& memory, const AttitudeGains& gains) {
-  return -gains.bank_share * memory.desired_speed_mps * memory.turning_radps / kGravityMps2;
+  return -gains.bank_share * memory.speed.desired_mps * memory.turning_radps / kGravityMps2;
 }
 
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,
                            const Targets& targets, const AttitudeGains& gains) {
   const double lean_rad =
       targets.lean_rad +
-      (targets.jumping ? gains.jump_lean_rad_per_mps * memory.desired_speed_mps : 0);
+      (targets.jumping ? gains.jump_lean_rad_per_mps * memory.speed.desired_mps : 0);
   const bool running = targets.hopping && !targets.jumping;
   const double bank_rad = running ? BankAngle(memory, gains) : 0;
   const Eigen::Matrix3d desired_R_WB =

@@ -5,7 +5,8 @@
 namespace footing::gait {
 
 double SwingTime(const Context& context, const GaitMemory& memory) {
-  return memory.swing_time_s > 0 ? memory.swing_time_s : context.gains.walking.swing_time_s;
+  return memory.walking_step.swing_time_s > 0 ? memory.walking_step.swing_time_s
+                                              : context.gains.walking.swing_time_s;
 }
 
 double CommandedSwingTime(const Context& context) {
@@ -19,7 +20,7 @@ double CommandedSwingTime(const Context& context) {
 double RunLiftOffSpeed(const Context& context, const GaitMemory& memory) {
   const CadenceGains& limits = context.gains.cadence;
   if (!(context.goal.cadence_hz > 0)) return context.gains.hopping.run_lift_off_mps;
-  const double flight_s = 1 / context.goal.cadence_hz - memory.support_time_s;
+  const double flight_s = 1 / context.goal.cadence_hz - memory.hop.support_time_s;
   return std::clamp(kGravityMps2 * flight_s / 2, limits.run_lift_off_min_mps,
                     limits.run_lift_off_max_mps);
 }

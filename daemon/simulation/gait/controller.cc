@@ -16,7 +16,7 @@ namespace {
 /// Walking may begin a thrust and an absorbing Compression may end: then the other machine goes on
 /// in the same step.
 Targets AdvanceMachines(const Context& context, GaitMemory& memory) {
-  const auto hops = [&memory] { return IsHopping(memory.gait) || memory.thrusting; };
+  const auto hops = [&memory] { return IsHopping(memory.gait) || memory.transition.thrusting; };
   const bool hopped = hops();
   const Targets targets =
       hopped ? AdvanceRunning(context, memory) : AdvanceWalking(context, memory);

@@ -44,11 +44,11 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const double step_time_s = SwingTime(context, memory) + gains.double_support_time_s;
   const double growth = std::exp(rate * step_time_s);
 
-  const double back_m = memory.desired_speed_mps * step_time_s / (growth - 1);
+  const double back_m = memory.speed.desired_mps * step_time_s / (growth - 1);
   const double aside_m = side * gains.step_width_m / (1 + growth);
   // The offset belongs to the coming step, which goes along the turned heading.
   const Vector3d offset_H = ToWorld(context.goal.turn_per_step_rad, Vector3d(-back_m, aside_m, 0));
-  const double ahead_m = std::clamp(capture_H.x() + offset_H.x() + memory.integrators.walk_m,
+  const double ahead_m = std::clamp(capture_H.x() + offset_H.x() + memory.speed.integrators.walk_m,
                                     -kBackwardLimitM, gains.step_length_limit_m);
   const double outward_m = side * (capture_H.y() + offset_H.y());
 
@@ -77,7 +77,7 @@ double TurningOffset(const Context& context, const GaitMemory& memory, double ah
   const double turn_rad = context.goal.turn_per_step_rad;
   const double lean_m = context.gains.hopping.touchdown_length_m * ahead_mps * turn_rad /
                         (kGravityMps2 * memory.step_time_s);
-  return ahead_mps * memory.support_time_s / 2 * turn_rad / 2 - lean_m;
+  return ahead_mps * memory.hop.support_time_s / 2 * turn_rad / 2 - lean_m;
 }
 
 /// Pushed aside, a jump lands with spread legs: the leg on that side goes out, the other stays.
@@ -91,26 +91,26 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
   const HoppingGains& gains = context.gains.hopping;
   const bool jumping = memory.gait == stream::Gait::kJump;
   const Vector3d v_H = ToHeading(memory.heading_rad, context.body.v_WC);
-  const double faster_mps = std::clamp(v_H.x() - memory.desired_speed_mps, -gains.slower_limit_mps,
+  const double faster_mps = std::clamp(v_H.x() - memory.speed.desired_mps, -gains.slower_limit_mps,
                                        gains.faster_limit_mps);
   const double learned_m =
-      jumping ? memory.integrators.jump_m
-              : memory.integrators.run_m + gains.speed_gain_s * memory.desired_speed_mps;
+      jumping ? memory.speed.integrators.jump_m
+              : memory.speed.integrators.run_m + gains.speed_gain_s * memory.speed.desired_mps;
   const double velocity_gain_s = jumping ? gains.jump_velocity_gain_s : gains.run_velocity_gain_s;
   const bool brakes = LeavesRun(context.goal, memory) && faster_mps > 0;
   const double gain_s = brakes ? context.gains.transition.leaving_run_gain_s : velocity_gain_s;
-  double ahead_m = v_H.x() * memory.support_time_s / 2 + gain_s * faster_mps + learned_m;
+  double ahead_m = v_H.x() * memory.hop.support_time_s / 2 + gain_s * faster_mps + learned_m;
 
-  const bool landing = memory.preparing_landing && !jumping;
+  const bool landing = memory.transition.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
   ahead_m += memory.pit.shift_m + memory.ground.shift_m;
-  const bool preparing = memory.preparing_jump && !jumping;
+  const bool preparing = memory.transition.preparing_jump && !jumping;
   const double side_gain_s =
       preparing ? context.gains.transition.preparation_gain_s : velocity_gain_s;
   const double spacing_m = jumping     ? context.biped.hip_half_spacing_m
                            : preparing ? 0
                                        : gains.run_foot_spacing_m;
-  double aside_m = v_H.y() * memory.support_time_s / 2 + side_gain_s * v_H.y();
+  double aside_m = v_H.y() * memory.hop.support_time_s / 2 + side_gain_s * v_H.y();
   if (jumping) aside_m *= SpreadShare(context.gains.recovery, v_H.y(), leg);
   const double left_m =
       aside_m + biped::Side(leg) * spacing_m + TurningOffset(context, memory, v_H.x());

@@ -7,10 +7,10 @@
 /// | paper           | here                                      | unit, frame           |
 /// |-----------------|-------------------------------------------|-----------------------|
 /// | v               | v_WC seen from the heading frame          | m/s, H                |
-/// | v_d             | GaitMemory::desired_speed_mps             | m/s, along H's x      |
+/// | v_d             | GaitMemory::speed, desired_mps            | m/s, along H's x      |
 /// | phi_W_d, phi_R_d| horizontal offset of the foothold         | m, H                  |
 /// | phi_o, k_W      | equation (1), from step time and width    | m, s                  |
-/// | T               | GaitMemory::support_time_s                | s                     |
+/// | T               | GaitMemory::hop, support_time_s           | s                     |
 /// | k_R             | HoppingGains::velocity_gain_s             | s                     |
 ///
 /// The paper writes angles of the leg; an offset divided by the leg's length is that angle.

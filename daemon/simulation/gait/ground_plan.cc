@@ -127,7 +127,7 @@ void PlanClimb(const Context& context, double lift_off_mps, GaitMemory& memory) 
   const SteppingGains& gains = context.gains.stepping;
   const Vector3d ahead_W = Ahead(memory.heading_rad);
   const double v_mps = context.body.v_WC.dot(ahead_W);
-  const double half_m = v_mps * memory.support_time_s / 2;
+  const double half_m = v_mps * memory.hop.support_time_s / 2;
   const Vector3d& p_WF = context.body.legs[memory.support_leg].p_WF;
   const terrain::Spot from = SpotAt(context, p_WF);
   if (from.pit) return;

@@ -23,6 +23,40 @@ struct SpeedIntegrators {
   double jump_m = 0;
 };
 
+/// v_d and what keeps the speed at it.
+struct SpeedTracking {
+  double desired_mps = 0;  ///< v_d, slewed towards target_mps.
+  double target_mps = 0;
+  SpeedIntegrators integrators;
+};
+
+/// Changes of gait that are under way (transition.h).
+struct GaitTransition {
+  bool thrusting = false;          ///< In Fall: the supporting leg extends for a flight phase.
+  bool absorbing = false;          ///< In Compression: landing into walking or stepping.
+  bool preparing_landing = false;  ///< Running's last step before walking or stepping.
+  bool preparing_jump = false;     ///< Running's last step before a jump.
+  bool after_jump = false;         ///< Stepping that came from a jump.
+};
+
+/// The present step of walking or stepping.
+struct WalkingStep {
+  Eigen::Vector3d swing_start_W_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d landed_W_m = Eigen::Vector3d::Zero();  ///< Where the supporting foot touched.
+  double swing_time_s = 0;                               ///< Of this step; 0: the gait's own.
+  double support_height_m = 0;  ///< Ground's height that the hip goes by, foot ball's centre.
+};
+
+/// The supports of running and jumping: their duration, and the thrust that ends them.
+struct HopSupport {
+  double support_time_s = 0.2;  ///< T of equation (2), low-passed.
+  double touchdown_time_s = 0;
+  double energy_loss_j = 15;           ///< A hop loses this; learned from the lift-off speed.
+  std::array<double, 2> leg_loss_j{};  ///< Running, a step on this leg loses so much besides.
+  double thrust_length_m = 0.95;
+  int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
+};
+
 /// The last touchdown, for the speed over one step.
 struct LastStep {
   bool known = false;
@@ -32,21 +66,18 @@ struct LastStep {
   int steps_in_gait = 0;
 };
 
-/// The pit ahead and the last hop's measures, from which the hops up to it are planned
-/// (pit_sight.h). Lengths along the heading.
-struct PitMemory {
+/// The nearest pit on the path.
+struct PitSighting {
   bool ahead = false;
   Eigen::Vector2d near_W_m = Eigen::Vector2d::Zero();  ///< A point of the near edge.
   Eigen::Vector2d along_W = Eigen::Vector2d::UnitX();  ///< Across the edges.
   double length_m = 0;                                 ///< From edge to edge.
   double rise_m = 0;                                   ///< Of the ground behind it.
+};
 
-  bool planned = false;        ///< The pit is near enough to plan for.
-  bool last_foothold = false;  ///< The coming foothold is the last one before it.
-  bool leaping = false;        ///< This hop crosses it.
-  double lift_off_mps = 0;  ///< Vertical, of this support when the pit wants another than the gait.
-  double shift_m = 0;       ///< By which the foothold in flight is moved.
-
+/// The last hop and the support in progress, for the next hop's prediction. Lengths along the
+/// heading.
+struct HopMeasures {
   double flight_mps = 0;
   double foot_ahead_m = 0;  ///< Of the COM at touchdown.
   double com_ahead_m = 0;   ///< Of the foot at lift-off.
@@ -58,6 +89,18 @@ struct PitMemory {
   double extension_time_s = 0.09;
   double bottom_height_m = 0;    ///< COM over the foot where the extension began.
   double rise_offset_m = -0.04;  ///< What it rises until lift-off, less a share of the extension.
+};
+
+/// The pit ahead and the plan of the hops up to it (pit_sight.h).
+struct PitMemory {
+  PitSighting sighting;
+  HopMeasures last_hop;
+
+  bool planned = false;        ///< The pit is near enough to plan for.
+  bool last_foothold = false;  ///< The coming foothold is the last one before it.
+  bool leaping = false;        ///< This hop crosses it.
+  double lift_off_mps = 0;  ///< Vertical, of this support when the pit wants another than the gait.
+  double shift_m = 0;       ///< By which the foothold in flight is moved along the heading.
 };
 
 /// A step of the ground that feet in flight keep clear of.
@@ -85,35 +128,18 @@ struct GaitMemory {
   double phase_start_s = 0;
 
   double heading_rad = 0;
-  double step_time_s = 0.4;      ///< From touchdown to touchdown, low-passed.
-  double turning_radps = 0;      ///< Mean rate at which the heading turns in this step.
-  double desired_speed_mps = 0;  ///< v_d, slewed towards target_speed_mps.
-  double target_speed_mps = 0;
+  double turning_radps = 0;  ///< Mean rate at which the heading turns in this step.
+  double step_time_s = 0.4;  ///< From touchdown to touchdown, low-passed.
+  std::uint64_t steps = 0;
+  LastStep last_step;
 
-  bool thrusting = false;          ///< In Fall: the supporting leg extends for a flight phase.
-  bool absorbing = false;          ///< In Compression: landing into walking or stepping.
-  bool preparing_landing = false;  ///< Running's last step before walking or stepping.
-  bool preparing_jump = false;     ///< Running's last step before a jump.
-  bool after_jump = false;         ///< Stepping that came from a jump.
-
-  Eigen::Vector3d swing_start_W_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d foothold_W_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d landed_W_m = Eigen::Vector3d::Zero();  ///< Where the supporting foot touched.
-  double swing_time_s = 0;                               ///< Of this step; 0: the gait's own.
-  double support_height_m = 0;  ///< Ground's height that the hip goes by, foot ball's centre.
-
-  double support_time_s = 0.2;  ///< T of equation (2), low-passed.
-  double touchdown_time_s = 0;
-  double energy_loss_j = 15;           ///< A hop loses this; learned from the lift-off speed.
-  std::array<double, 2> leg_loss_j{};  ///< Running, a step on this leg loses so much besides.
-  double thrust_length_m = 0.95;
-  int off_steps = 0;  ///< Consecutive simulation steps that looked like lift-off.
-
+  Eigen::Vector3d foothold_W_m = Eigen::Vector3d::Zero();  ///< Of the foot in flight.
+  SpeedTracking speed;
+  GaitTransition transition;
+  WalkingStep walking_step;
+  HopSupport hop;
   PitMemory pit;
   GroundMemory ground;
-  SpeedIntegrators integrators;
-  LastStep last_step;
-  std::uint64_t steps = 0;
   ServoMemory servo;
 };
 

@@ -45,8 +45,9 @@ Vector3d FromFoot(const Context& context, const GaitMemory& memory) {
 /// behind a pit as much higher.
 Vector3d PlaceAtTouchdown(const Context& context, const GaitMemory& memory) {
   const PitMemory& seen = memory.pit;
+  const HopMeasures& last = seen.last_hop;
   const double height_m =
-      seen.foothold_z_m + seen.touchdown_height_m + (seen.leaping ? seen.rise_m : 0);
+      last.foothold_z_m + last.touchdown_height_m + (seen.leaping ? seen.sighting.rise_m : 0);
   const double vz = context.body.v_WC.z();
   const double over_m = context.body.p_WC.z() - height_m;
   const double flight_s =
@@ -56,10 +57,10 @@ Vector3d PlaceAtTouchdown(const Context& context, const GaitMemory& memory) {
 
 /// A hop as the last one was.
 Hop SteadyHop(const GaitMemory& memory, double nominal_mps) {
-  const PitMemory& seen = memory.pit;
-  return {.speed_mps = seen.flight_mps,
-          .support_m = seen.com_ahead_m + seen.foot_ahead_m,
-          .drop_m = seen.drop_m,
+  const HopMeasures& last = memory.pit.last_hop;
+  return {.speed_mps = last.flight_mps,
+          .support_m = last.com_ahead_m + last.foot_ahead_m,
+          .drop_m = last.drop_m,
           .nominal_mps = nominal_mps};
 }
 
@@ -70,7 +71,7 @@ Thrust ThrustOf(const Context& context, const GaitMemory& memory) {
               jumping ? 2 * gains.jump_leg_stiffness_n_per_m : gains.run_leg_stiffness_n_per_m,
           .mass_kg = context.biped.mass_kg(),
           .feet_kg = (jumping ? 2 : 1) * context.biped.link_mass_kg,
-          .loss_share = memory.pit.loss_share};
+          .loss_share = memory.pit.last_hop.loss_share};
 }
 
 /// Jumping's legs, drawn in, need time to come down again.
@@ -87,7 +88,7 @@ bool Plans(const PitAhead& pit, const PitPlan& plan, double sight_m) {
 }  // namespace
 
 void LookForPit(const Context& context, GaitMemory& memory) {
-  PitMemory& seen = memory.pit;
+  PitSighting& seen = memory.pit.sighting;
   seen.ahead = false;
   if (context.seen_ground == nullptr) return;
   const auto& segments = context.seen_ground->segments;
@@ -121,7 +122,7 @@ void LookForPit(const Context& context, GaitMemory& memory) {
 }
 
 std::optional<PitAhead> PitFrom(const GaitMemory& memory, const Vector3d& p_W_m) {
-  const PitMemory& seen = memory.pit;
+  const PitSighting& seen = memory.pit.sighting;
   if (!seen.ahead) return std::nullopt;
   const double cosine = std::max(kLeastCosine, seen.along_W.dot(AheadOnPath(memory.heading_rad)));
   const double near_m = (seen.near_W_m - p_W_m.head<2>()).dot(seen.along_W) / cosine;
@@ -130,31 +131,33 @@ std::optional<PitAhead> PitFrom(const GaitMemory& memory, const Vector3d& p_W_m)
 
 void NoteTouchdown(const Context& context, GaitMemory& memory) {
   PitMemory& seen = memory.pit;
+  HopMeasures& last = seen.last_hop;
   const Vector3d r_FC_H = FromFoot(context, memory);
-  seen.foothold_z_m = StanceFoot(context, memory).z();
-  seen.touchdown_height_m += kSmoothing * (r_FC_H.z() - seen.touchdown_height_m);
-  seen.foot_ahead_m = -r_FC_H.x() - seen.shift_m;
-  seen.flight_mps = ToHeading(memory.heading_rad, context.body.v_WC).x();
+  last.foothold_z_m = StanceFoot(context, memory).z();
+  last.touchdown_height_m += kSmoothing * (r_FC_H.z() - last.touchdown_height_m);
+  last.foot_ahead_m = -r_FC_H.x() - seen.shift_m;
+  last.flight_mps = ToHeading(memory.heading_rad, context.body.v_WC).x();
   seen.leaping = false;
   seen.shift_m = 0;
 }
 
 void NoteLiftOff(const Context& context, GaitMemory& memory) {
   PitMemory& seen = memory.pit;
+  HopMeasures& last = seen.last_hop;
   const Vector3d r_FC_H = FromFoot(context, memory);
-  seen.com_ahead_m = r_FC_H.x();
-  const double drop_m = r_FC_H.z() - seen.touchdown_height_m;
-  if (seen.lift_off_mps == 0) seen.drop_m += kSmoothing * (drop_m - seen.drop_m);
-  if (seen.extension_m > 0) {
+  last.com_ahead_m = r_FC_H.x();
+  const double drop_m = r_FC_H.z() - last.touchdown_height_m;
+  if (seen.lift_off_mps == 0) last.drop_m += kSmoothing * (drop_m - last.drop_m);
+  if (last.extension_m > 0) {
     const double time_s = std::clamp(context.TimeIn(memory), 0.05, 0.15);
-    seen.extension_time_s += kSmoothing * (time_s - seen.extension_time_s);
-    const double rise_m = r_FC_H.z() - seen.bottom_height_m - kRiseShare * seen.extension_m;
-    seen.rise_offset_m += kSmoothing * (std::clamp(rise_m, -0.1, 0.05) - seen.rise_offset_m);
+    last.extension_time_s += kSmoothing * (time_s - last.extension_time_s);
+    const double rise_m = r_FC_H.z() - last.bottom_height_m - kRiseShare * last.extension_m;
+    last.rise_offset_m += kSmoothing * (std::clamp(rise_m, -0.1, 0.05) - last.rise_offset_m);
     const double share =
-        ThrustOf(context, memory).LossShare(seen.extension_m, context.body.v_WC.z());
-    seen.loss_share += kSmoothing * (std::clamp(share, 0.1, 0.4) - seen.loss_share);
+        ThrustOf(context, memory).LossShare(last.extension_m, context.body.v_WC.z());
+    last.loss_share += kSmoothing * (std::clamp(share, 0.1, 0.4) - last.loss_share);
   }
-  seen.extension_m = 0;
+  last.extension_m = 0;
   seen.lift_off_mps = 0;
 }
 
@@ -162,7 +165,7 @@ void ForeseeLeap(const Context& context, double nominal_mps, GaitMemory& memory)
   PitMemory& seen = memory.pit;
   seen.planned = seen.last_foothold = false;
   LookForPit(context, memory);
-  if (!seen.ahead) return;
+  if (!seen.sighting.ahead) return;
   const Vector3d p_WF =
       PlaceAtTouchdown(context, memory) + HoppingFoothold(context, memory, memory.support_leg);
   const std::optional<PitAhead> pit = PitFrom(memory, p_WF);
@@ -171,25 +174,27 @@ void ForeseeLeap(const Context& context, double nominal_mps, GaitMemory& memory)
   const PitPlan plan = PlanPit(*pit, hop, hop, LimitsOf(gains, memory));
   seen.planned = Plans(*pit, plan, gains.sight_m);
   seen.last_foothold = seen.planned && plan.leaps;
-  if (JumpsPit(context.goal, memory)) memory.preparing_jump = JumpsFromNext(context, memory);
+  if (JumpsPit(context.goal, memory))
+    memory.transition.preparing_jump = JumpsFromNext(context, memory);
 }
 
 void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory) {
   PitMemory& seen = memory.pit;
+  HopMeasures& last = seen.last_hop;
   seen.lift_off_mps = 0;
   seen.leaping = seen.planned = false;
-  seen.bottom_height_m = FromFoot(context, memory).z();
+  last.bottom_height_m = FromFoot(context, memory).z();
   LookForPit(context, memory);
-  if (!seen.ahead) return;
+  if (!seen.sighting.ahead) return;
   const PitGains& gains = context.gains.pit;
   const std::optional<PitAhead> pit = PitFrom(memory, StanceFoot(context, memory));
   const Hop next = SteadyHop(memory, nominal_mps);
   Hop first = next;
   first.support_m =
-      FromFoot(context, memory).x() + seen.flight_mps * seen.extension_time_s + seen.foot_ahead_m;
+      FromFoot(context, memory).x() + last.flight_mps * last.extension_time_s + last.foot_ahead_m;
   first.drop_m = FromFoot(context, memory).z() +
                  kRiseShare * ThrustOf(context, memory).ExtensionFor(nominal_mps) +
-                 seen.rise_offset_m - seen.touchdown_height_m;
+                 last.rise_offset_m - last.touchdown_height_m;
   const PitPlan plan = PlanPit(*pit, first, next, LimitsOf(gains, memory));
   const bool may_leap = context.goal.gait == stream::Gait::kJump ||
                         memory.gait == stream::Gait::kJump ||
@@ -197,7 +202,7 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
   seen.planned = Plans(*pit, plan, gains.sight_m);
   seen.leaping = seen.planned && plan.leaps && may_leap;
   if (JumpsPit(context.goal, memory)) {
-    memory.preparing_jump = seen.leaping && seen.flight_mps < gains.jump_speed_max_mps;
+    memory.transition.preparing_jump = seen.leaping && last.flight_mps < gains.jump_speed_max_mps;
   }
   const bool as_ever = std::fabs(plan.lift_off_mps - nominal_mps) < kAsEverMps;
   if (seen.planned && !as_ever && (!plan.leaps || seen.leaping))
@@ -210,7 +215,7 @@ double PlannedExtension(const Context& context, const GaitMemory& memory) {
 
 bool JumpsPit(const biped::GaitCommand& goal, const GaitMemory& memory) {
   return goal.gait == stream::Gait::kJump && memory.gait == stream::Gait::kRun &&
-         memory.pit.ahead && memory.pit.planned;
+         memory.pit.sighting.ahead && memory.pit.planned;
 }
 
 bool JumpsFromNext(const Context& context, const GaitMemory& memory) {
@@ -219,7 +224,7 @@ bool JumpsFromNext(const Context& context, const GaitMemory& memory) {
 }
 
 double FootholdShift(const Context& context, const GaitMemory& memory) {
-  if (!memory.pit.ahead) return 0;
+  if (!memory.pit.sighting.ahead) return 0;
   const PitGains& gains = context.gains.pit;
   const Vector3d shifted_W = HoppingFoothold(context, memory, memory.support_leg);
   const Vector3d shift_W = ToWorld(memory.heading_rad, Vector3d(memory.pit.shift_m, 0, 0));

@@ -65,8 +65,9 @@ double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
 /// Running, each leg has a share of its own: in a curve the inner and the outer one lose
 /// differently, and one figure for both ends in high hops off the one and low hops off the other.
 double EnergyLoss(const GaitMemory& memory) {
-  if (memory.gait == Gait::kJump) return memory.energy_loss_j;
-  return memory.energy_loss_j + memory.leg_loss_j[static_cast<std::size_t>(memory.support_leg)];
+  if (memory.gait == Gait::kJump) return memory.hop.energy_loss_j;
+  return memory.hop.energy_loss_j +
+         memory.hop.leg_loss_j[static_cast<std::size_t>(memory.support_leg)];
 }
 
 /// The length the stance leg's spring is set to at the bottom, so that it stores what lift-off
@@ -94,9 +95,9 @@ void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
   const double reached_mps = RisingSpeed(context, memory);
   const double missing_j = context.biped.mass_kg() / 2 *
                            (wanted_mps * wanted_mps - reached_mps * std::fabs(reached_mps));
-  memory.energy_loss_j = std::clamp(memory.energy_loss_j + 0.3 * missing_j, -40.0, 120.0);
+  memory.hop.energy_loss_j = std::clamp(memory.hop.energy_loss_j + 0.3 * missing_j, -40.0, 120.0);
   if (memory.gait == Gait::kJump) return;
-  double& loss_j = memory.leg_loss_j[static_cast<std::size_t>(memory.support_leg)];
+  double& loss_j = memory.hop.leg_loss_j[static_cast<std::size_t>(memory.support_leg)];
   loss_j = std::clamp(loss_j + 0.5 * missing_j, -60.0, 60.0);
 }
 
@@ -105,17 +106,18 @@ void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
 void WatchExtension(const Context& context, GaitMemory& memory) {
   const VirtualLeg leg = StanceLeg(context, memory);
   const double time_s = context.TimeIn(memory);
-  const bool off = leg.length_m >= memory.thrust_length_m || !leg.touching;
+  const bool off = leg.length_m >= memory.hop.thrust_length_m || !leg.touching;
   if (!off && time_s > kStalledAfterS && leg.rate_mps < kStalledRateMps) {
-    memory.thrust_length_m = std::min(memory.thrust_length_m + kStalledGrowthMps * context.step_s,
-                                      context.gains.hopping.touchdown_length_m + 0.2);
+    memory.hop.thrust_length_m =
+        std::min(memory.hop.thrust_length_m + kStalledGrowthMps * context.step_s,
+                 context.gains.hopping.touchdown_length_m + 0.2);
   }
-  memory.off_steps = off && time_s > kShortestExtensionS ? memory.off_steps + 1 : 0;
+  memory.hop.off_steps = off && time_s > kShortestExtensionS ? memory.hop.off_steps + 1 : 0;
 }
 
 bool LandingDone(const Context& context, const GaitMemory& memory) {
   const double shortest_s = memory.gait == Gait::kJump ? kShortestJumpLandingS : kShortestLandingS;
-  return memory.absorbing && memory.running == RunningPhase::kCompression &&
+  return memory.transition.absorbing && memory.running == RunningPhase::kCompression &&
          context.TimeIn(memory) > shortest_s &&
          StanceLeg(context, memory).rate_mps > kLandedRateMps;
 }
@@ -123,18 +125,19 @@ bool LandingDone(const Context& context, const GaitMemory& memory) {
 void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
   switch (phase) {
     case RunningPhase::kCompression:
-      memory.touchdown_time_s = context.body.time_s;
+      memory.hop.touchdown_time_s = context.body.time_s;
       NoteTouchdown(context, memory);
       CountStep(context, memory);
-      memory.absorbing = memory.preparing_landing && MayLand(context, memory);
-      memory.preparing_landing = false;
+      memory.transition.absorbing = memory.transition.preparing_landing && MayLand(context, memory);
+      memory.transition.preparing_landing = false;
       break;
     case RunningPhase::kExtension:
       PlanClimb(context, LevelLiftOffSpeed(context, memory), memory);
       PlanLiftOff(context, LiftOffSpeed(context, memory), memory);
-      memory.thrust_length_m = ThrustLength(context, memory);
-      memory.pit.extension_m = memory.thrust_length_m - StanceLeg(context, memory).length_m;
-      memory.off_steps = 0;
+      memory.hop.thrust_length_m = ThrustLength(context, memory);
+      memory.pit.last_hop.extension_m =
+          memory.hop.thrust_length_m - StanceLeg(context, memory).length_m;
+      memory.hop.off_steps = 0;
       break;
     case RunningPhase::kUpwardFlight:
       LearnEnergyLoss(context, memory);
@@ -143,7 +146,7 @@ void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
       ForeseeLeap(context, LiftOffSpeed(context, memory), memory);
       break;
     case RunningPhase::kDownwardFlight:
-      memory.preparing_landing = MayLand(context, memory);
+      memory.transition.preparing_landing = MayLand(context, memory);
       break;
   }
   memory.running = phase;
@@ -158,13 +161,14 @@ RunningCues SenseRunning(const Context& context, const GaitMemory& memory) {
   return {.falling = RisingSpeed(context, memory) < 0,
           .landed_early = leg.touching && time_s > kEarliestLandingS,
           .landed = leg.touching,
-          .leg_shortest = !memory.absorbing && time_s > kShortestCompressionS &&
+          .leg_shortest = !memory.transition.absorbing && time_s > kShortestCompressionS &&
                           leg.rate_mps > kShortestRateMps,
-          .lifted_off = memory.off_steps >= kLiftOffSteps};
+          .lifted_off = memory.hop.off_steps >= kLiftOffSteps};
 }
 
 Targets AdvanceRunning(const Context& context, GaitMemory& memory) {
-  if (!memory.thrusting && context.goal.gait != Gait::kJump) memory.preparing_jump = false;
+  if (!memory.transition.thrusting && context.goal.gait != Gait::kJump)
+    memory.transition.preparing_jump = false;
   if (memory.running == RunningPhase::kExtension) WatchExtension(context, memory);
   const RunningPhase next = Next(memory.running, SenseRunning(context, memory));
   if (next != memory.running) Enter(next, context, memory);
@@ -177,7 +181,8 @@ Targets AdvanceRunning(const Context& context, GaitMemory& memory) {
   if (flying) {
     const bool early = memory.running == RunningPhase::kUpwardFlight ||
                        context.TimeIn(memory) < kPreparesUntilS || memory.pit.last_foothold;
-    memory.preparing_jump = memory.preparing_jump || (early && MayPrepareJump(context, memory));
+    memory.transition.preparing_jump =
+        memory.transition.preparing_jump || (early && MayPrepareJump(context, memory));
     PlanLanding(context, memory);
     memory.pit.shift_m = FootholdShift(context, memory);
     memory.foothold_W_m = context.body.p_WC + HoppingFoothold(context, memory, memory.support_leg);

@@ -92,11 +92,11 @@ AxialTarget RunSpring(const Context& context, const GaitMemory& memory) {
   AxialTarget spring;
   spring.min_n = 0;
   spring.length_m = memory.running == RunningPhase::kCompression ? gains.touchdown_length_m
-                                                                 : memory.thrust_length_m;
-  spring.stiffness_n_per_m =
-      memory.absorbing ? landing.run_landing_stiffness_n_per_m : gains.run_leg_stiffness_n_per_m;
-  spring.damping_ns_per_m =
-      memory.absorbing ? landing.run_landing_damping_ns_per_m : gains.run_leg_damping_ns_per_m;
+                                                                 : memory.hop.thrust_length_m;
+  spring.stiffness_n_per_m = memory.transition.absorbing ? landing.run_landing_stiffness_n_per_m
+                                                         : gains.run_leg_stiffness_n_per_m;
+  spring.damping_ns_per_m = memory.transition.absorbing ? landing.run_landing_damping_ns_per_m
+                                                        : gains.run_leg_damping_ns_per_m;
   return spring;
 }
 
@@ -118,15 +118,16 @@ AxialTarget JumpSpring(const Context& context, const GaitMemory& memory,
   AxialTarget spring;
   spring.min_n = 0;
   if (memory.running == RunningPhase::kExtension) {
-    spring.length_m = memory.thrust_length_m;
-    if (leg.length_m > memory.thrust_length_m + kOverLengthM) return spring;
+    spring.length_m = memory.hop.thrust_length_m;
+    if (leg.length_m > memory.hop.thrust_length_m + kOverLengthM) return spring;
   } else {
-    spring.length_m = gains.touchdown_length_m - (memory.absorbing ? kLandingShorterM : 0);
+    spring.length_m =
+        gains.touchdown_length_m - (memory.transition.absorbing ? kLandingShorterM : 0);
   }
-  spring.stiffness_n_per_m =
-      memory.absorbing ? landing.jump_landing_stiffness_n_per_m : gains.jump_leg_stiffness_n_per_m;
-  spring.damping_ns_per_m =
-      memory.absorbing ? landing.jump_landing_damping_ns_per_m : gains.jump_leg_damping_ns_per_m;
+  spring.stiffness_n_per_m = memory.transition.absorbing ? landing.jump_landing_stiffness_n_per_m
+                                                         : gains.jump_leg_stiffness_n_per_m;
+  spring.damping_ns_per_m = memory.transition.absorbing ? landing.jump_landing_damping_ns_per_m
+                                                        : gains.jump_leg_damping_ns_per_m;
   return spring;
 }
 
@@ -165,7 +166,7 @@ void PrepareLongFlight(const Context& context, const GaitMemory& memory, Targets
   const double roll_radps =
       -gains.leap_roll_share * legs_H.x() / context.biped.body_inertia_roll_kgm2;
   targets.rate_W_radps = ToWorld(memory.heading_rad, {roll_radps, 0, 0});
-  targets.lean_rad = gains.leap_lean_rad_per_mps * memory.desired_speed_mps;
+  targets.lean_rad = gains.leap_lean_rad_per_mps * memory.speed.desired_mps;
 }
 
 /// What a flight turns by is the momentum of body and legs together, so that is what support damps
@@ -188,8 +189,8 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
                     : jumping ? JumpingStance(context, memory)
                               : RunningStance(context, memory);
   targets.hopping = true;
-  const bool leaps =
-      memory.pit.leaping && (memory.preparing_jump || memory.pit.lift_off_mps > kLongFlightMps);
+  const bool leaps = memory.pit.leaping &&
+                     (memory.transition.preparing_jump || memory.pit.lift_off_mps > kLongFlightMps);
   if (leaps && !flying && !jumping) {
     PrepareLongFlight(context, memory, targets);
   } else if (!flying) {

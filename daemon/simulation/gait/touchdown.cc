@@ -23,7 +23,7 @@ double StepGain(stream::Gait gait, const Gains& gains) {
 
 void Learn(double error_mps, const Gains& gains, GaitMemory& memory) {
   const double change_m = StepGain(memory.gait, gains) * error_mps;
-  SpeedIntegrators& learned = memory.integrators;
+  SpeedIntegrators& learned = memory.speed.integrators;
   switch (memory.gait) {
     case stream::Gait::kRun:
       learned.run_m = std::clamp(learned.run_m + change_m, -gains.hopping.run_integral_limit_m,
@@ -62,9 +62,9 @@ void CountStep(const Context& context, GaitMemory& memory) {
   if (last.known && duration_s > kShortestStepS && last.steps_in_gait > kStepsToSettle) {
     const Eigen::Vector3d v_H =
         ToHeading(made_heading_rad, context.body.p_WC - last.p_WC) / duration_s;
-    const double error_mps = v_H.x() - memory.desired_speed_mps;
+    const double error_mps = v_H.x() - memory.speed.desired_mps;
     const bool settled =
-        std::fabs(memory.target_speed_mps - memory.desired_speed_mps) < kSettledMps;
+        std::fabs(memory.speed.target_mps - memory.speed.desired_mps) < kSettledMps;
     const bool lags = memory.gait == stream::Gait::kRun || memory.ground.slope != 0;
     const double largest_mps = lags ? kLargestErrorBehindMps : kLargestErrorMps;
     if (settled && std::fabs(error_mps) < largest_mps) {

@@ -26,7 +26,8 @@ double SpeedAlongHeading(const Context& context, const GaitMemory& memory) {
 
 /// Smoothed duration of the supports: T of equation (2).
 void MeasureSupport(double duration_s, GaitMemory& memory) {
-  memory.support_time_s = 0.7 * memory.support_time_s + 0.3 * std::clamp(duration_s, 0.1, 0.45);
+  memory.hop.support_time_s =
+      0.7 * memory.hop.support_time_s + 0.3 * std::clamp(duration_s, 0.1, 0.45);
 }
 
 }  // namespace
@@ -57,38 +58,38 @@ biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& comm
 }
 
 bool LeavesRun(const biped::GaitCommand& goal, const GaitMemory& memory) {
-  return memory.gait == Gait::kRun && goal.gait != Gait::kRun && !memory.preparing_jump &&
-         !JumpsPit(goal, memory);
+  return memory.gait == Gait::kRun && goal.gait != Gait::kRun &&
+         !memory.transition.preparing_jump && !JumpsPit(goal, memory);
 }
 
 void SlewSpeed(const Context& context, GaitMemory& memory) {
   const TransitionGains& limits = context.gains.transition;
   const bool to_ground = !Flies(context.goal.gait);
-  const bool flying = Flies(memory.gait) || memory.thrusting;
+  const bool flying = Flies(memory.gait) || memory.transition.thrusting;
   double target_mps = context.goal.speed_mps;
   if (to_ground && memory.gait == Gait::kJump) {
     target_mps = std::min(target_mps, limits.jump_speed_before_landing_mps);
   } else if (to_ground && flying) {
     target_mps = std::min(target_mps, limits.run_to_walk_mps);
   }
-  if (JumpsPit(context.goal, memory)) target_mps = std::max(target_mps, memory.desired_speed_mps);
-  memory.target_speed_mps = target_mps;
+  if (JumpsPit(context.goal, memory)) target_mps = std::max(target_mps, memory.speed.desired_mps);
+  memory.speed.target_mps = target_mps;
   // Slowing down starts from the speed there is, not from one that was not reached yet.
   const bool in_flight =
       IsHopping(memory.gait) && (memory.running == RunningPhase::kUpwardFlight ||
                                  memory.running == RunningPhase::kDownwardFlight);
   if (in_flight) {
     const double reached_mps = std::max(target_mps, SpeedAlongHeading(context, memory));
-    memory.desired_speed_mps = std::min(memory.desired_speed_mps, reached_mps);
+    memory.speed.desired_mps = std::min(memory.speed.desired_mps, reached_mps);
   }
   const double faster =
       (flying ? context.gains.hopping.acceleration_mps2 : context.gains.walking.acceleration_mps2) *
       context.step_s;
-  const bool brakes = flying && memory.desired_speed_mps > 0;
+  const bool brakes = flying && memory.speed.desired_mps > 0;
   const double braking_mps2 = LeavesRun(context.goal, memory) ? limits.leaving_run_mps2
                                                               : context.gains.hopping.braking_mps2;
   const double slower = brakes ? braking_mps2 * context.step_s : faster;
-  memory.desired_speed_mps += std::clamp(target_mps - memory.desired_speed_mps, -slower, faster);
+  memory.speed.desired_mps += std::clamp(target_mps - memory.speed.desired_mps, -slower, faster);
 }
 
 bool BeginThrust(const Context& context, GaitMemory& memory) {
@@ -104,36 +105,37 @@ bool BeginThrust(const Context& context, GaitMemory& memory) {
   const double energy_j = context.biped.mass_kg() * lift_off_mps * lift_off_mps / 2 + kThrustLossJ;
   const double extension_m =
       std::sqrt(2 * energy_j / context.gains.hopping.run_leg_stiffness_n_per_m);
-  memory.thrust_length_m = std::clamp(context.body.legs[memory.support_leg].length_m + extension_m,
-                                      0.9, context.biped.leg_length_max_m - 0.02);
-  memory.thrusting = true;
-  memory.preparing_jump = jump;
-  memory.absorbing = false;
+  memory.hop.thrust_length_m =
+      std::clamp(context.body.legs[memory.support_leg].length_m + extension_m, 0.9,
+                 context.biped.leg_length_max_m - 0.02);
+  memory.transition.thrusting = true;
+  memory.transition.preparing_jump = jump;
+  memory.transition.absorbing = false;
   memory.running = RunningPhase::kExtension;
   memory.phase_start_s = context.body.time_s;
-  memory.touchdown_time_s = context.body.time_s - kThrustSupportS;
-  memory.off_steps = 0;
-  memory.support_time_s = context.gains.hopping.first_support_time_s;
-  memory.energy_loss_j = kFirstLossJ;
+  memory.hop.touchdown_time_s = context.body.time_s - kThrustSupportS;
+  memory.hop.off_steps = 0;
+  memory.hop.support_time_s = context.gains.hopping.first_support_time_s;
+  memory.hop.energy_loss_j = kFirstLossJ;
   memory.ground = {};
-  memory.leg_loss_j = {};
+  memory.hop.leg_loss_j = {};
   return true;
 }
 
 void LiftOff(const Context& context, GaitMemory& memory) {
-  MeasureSupport(context.body.time_s - memory.touchdown_time_s, memory);
+  MeasureSupport(context.body.time_s - memory.hop.touchdown_time_s, memory);
   const bool was_jumping = memory.gait == Gait::kJump;
   const bool jump = context.goal.gait == Gait::kJump;
-  if (jump && (was_jumping || memory.preparing_jump)) {
+  if (jump && (was_jumping || memory.transition.preparing_jump)) {
     memory.gait = Gait::kJump;
-    memory.preparing_jump = false;
+    memory.transition.preparing_jump = false;
   } else {
-    memory.preparing_jump = MayPrepareJump(context, memory);
+    memory.transition.preparing_jump = MayPrepareJump(context, memory);
     if (!was_jumping) memory.gait = Gait::kRun;
   }
   if (!was_jumping) memory.support_leg = 1 - memory.support_leg;
-  memory.thrusting = false;
-  memory.after_jump = false;
+  memory.transition.thrusting = false;
+  memory.transition.after_jump = false;
   memory.running = RunningPhase::kUpwardFlight;
   memory.phase_start_s = context.body.time_s;
 }
@@ -156,19 +158,19 @@ void LandIntoWalking(const Context& context, GaitMemory& memory) {
   const Eigen::Vector3d v_H = ToHeading(memory.heading_rad, context.body.v_WC);
   if (memory.gait == Gait::kJump) {
     memory.gait = Gait::kStep;
-    memory.after_jump = true;
+    memory.transition.after_jump = true;
     memory.walking = WalkingPhase::kDoubleSupport;
     memory.support_leg = v_H.y() >= 0 ? biped::kLeft : biped::kRight;
-    memory.desired_speed_mps = std::clamp(v_H.x(), -0.5, 1.2);
+    memory.speed.desired_mps = std::clamp(v_H.x(), -0.5, 1.2);
   } else {
     memory.gait = context.goal.gait == Gait::kStep ? Gait::kStep : Gait::kWalk;
     memory.walking = WalkingPhase::kRise;
     const TransitionGains& gains = context.gains.transition;
-    memory.desired_speed_mps = std::clamp(v_H.x(), 0.0, gains.run_to_walk_mps + 0.3);
+    memory.speed.desired_mps = std::clamp(v_H.x(), 0.0, gains.run_to_walk_mps + 0.3);
   }
-  memory.absorbing = false;
+  memory.transition.absorbing = false;
   memory.phase_start_s = context.body.time_s;
-  memory.swing_start_W_m = context.body.legs[1 - memory.support_leg].p_WF;
+  memory.walking_step.swing_start_W_m = context.body.legs[1 - memory.support_leg].p_WF;
   memory.servo.followed = {};
 }
 

@@ -29,13 +29,13 @@ void Enter(WalkingPhase phase, const Context& context, GaitMemory& memory) {
     case WalkingPhase::kDoubleSupport:
       memory.support_leg = swing_leg;
       memory.phase_start_s = context.body.time_s;
-      memory.swing_time_s = CommandedSwingTime(context);
-      memory.landed_W_m = context.body.legs[swing_leg].p_WF;
+      memory.walking_step.swing_time_s = CommandedSwingTime(context);
+      memory.walking_step.landed_W_m = context.body.legs[swing_leg].p_WF;
       CountStep(context, memory);
       break;
     case WalkingPhase::kRise:
       memory.phase_start_s = context.body.time_s;
-      memory.swing_start_W_m = context.body.legs[swing_leg].p_WF;
+      memory.walking_step.swing_start_W_m = context.body.legs[swing_leg].p_WF;
       break;
     case WalkingPhase::kFall:  // The swing goes on: same clock.
       break;
@@ -48,10 +48,10 @@ void ChooseGait(const Context& context, GaitMemory& memory) {
   const stream::Gait goal = context.goal.gait;
   if (!IsHopping(goal)) {
     memory.gait = goal;
-    memory.after_jump = false;
-  } else if (memory.after_jump && goal == stream::Gait::kRun) {
+    memory.transition.after_jump = false;
+  } else if (memory.transition.after_jump && goal == stream::Gait::kRun) {
     memory.gait = stream::Gait::kWalk;
-    memory.after_jump = false;
+    memory.transition.after_jump = false;
   }
 }
 
@@ -62,11 +62,12 @@ void FollowGround(const Context& context, GaitMemory& memory) {
   if (memory.walking == WalkingPhase::kFall && context.seen_ground != nullptr) {
     wanted_m = (support_m + memory.foothold_W_m.z()) / 2;
   }
-  if (std::fabs(memory.support_height_m - wanted_m) > kGroundJumpM) {
-    memory.support_height_m = support_m;
+  if (std::fabs(memory.walking_step.support_height_m - wanted_m) > kGroundJumpM) {
+    memory.walking_step.support_height_m = support_m;
   }
   const double change_m = context.gains.walking.support_rise_mps * context.step_s;
-  memory.support_height_m += std::clamp(wanted_m - memory.support_height_m, -change_m, change_m);
+  memory.walking_step.support_height_m +=
+      std::clamp(wanted_m - memory.walking_step.support_height_m, -change_m, change_m);
 }
 
 }  // namespace

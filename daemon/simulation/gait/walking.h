@@ -12,7 +12,7 @@ WalkingCues SenseWalking(const Context& context, const GaitMemory& memory);
 Targets WalkingTargets(const Context& context, const GaitMemory& memory);
 
 /// One step of walking or stepping: cues, transition, foothold, targets. A thrust that begins is
-/// left to AdvanceRunning: then `memory.thrusting` is set and the targets are empty.
+/// left to AdvanceRunning: then `memory.transition.thrusting` is set and the targets are empty.
 Targets AdvanceWalking(const Context& context, GaitMemory& memory);
 
 }  // namespace footing::gait

@@ -32,7 +32,7 @@ double SupportLength(const Context& context, const GaitMemory& memory, int leg) 
   const WalkingGains& gains = context.gains.walking;
   const biped::LegState& state = context.body.legs[leg];
   const double height_m = gains.hip_height_m - AnticipatedCrouch(context, memory) +
-                          memory.support_height_m - state.p_WF.z();
+                          memory.walking_step.support_height_m - state.p_WF.z();
   return std::clamp(height_m / std::max(0.5, -state.u_HF_W.z()), gains.leg_length_min_m,
                     gains.leg_length_max_m);
 }
@@ -56,7 +56,7 @@ LegTarget Supporting(const Context& context, const GaitMemory& memory, int leg, 
 LegTarget WalkingLanding(const Context& context, const GaitMemory& memory, int leg) {
   LegTarget target;
   target.task = LegTask::kPlace;
-  target.r_HF_W_m = memory.landed_W_m - context.body.legs[leg].p_WH;
+  target.r_HF_W_m = memory.walking_step.landed_W_m - context.body.legs[leg].p_WH;
   target.r_HF_W_m.z() -= kLandingDepthM;
   return target;
 }
@@ -98,7 +98,8 @@ Vector3d SwingFoot(const Context& context, const GaitMemory& memory, int leg) {
   const double swing = std::clamp(time_s / swing_time_s, 0.0, 1.0);
   const double way = std::clamp(time_s / (kSwingArrives * swing_time_s), 0.0, 1.0);
   const double smooth = way * way * (3 - 2 * way);
-  Vector3d p = memory.swing_start_W_m + smooth * (memory.foothold_W_m - memory.swing_start_W_m);
+  Vector3d p = memory.walking_step.swing_start_W_m +
+               smooth * (memory.foothold_W_m - memory.walking_step.swing_start_W_m);
   p.z() += gains.clearance_m * std::sin(kPi * swing);
   if (time_s > swing_time_s) {
     p.z() = memory.foothold_W_m.z() - kLateDescentMps * (time_s - swing_time_s);

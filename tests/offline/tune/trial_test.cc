@@ -57,7 +57,7 @@ TEST(Trials, BeginWalkingAtTheirSpeed) {
   std::set<std::uint64_t> moments;
   for (const auto& state : *states) {
     EXPECT_EQ(state.gait.gait, stream::Gait::kWalk);
-    EXPECT_NEAR(state.gait.desired_speed_mps, 0.8, 1e-6);
+    EXPECT_NEAR(state.gait.speed.desired_mps, 0.8, 1e-6);
     EXPECT_EQ(state.failures, stream::FailureCounts());
     moments.insert(state.step);
   }

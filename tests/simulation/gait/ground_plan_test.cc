@@ -30,7 +30,7 @@ struct GroundPlanScene {
 
   GroundPlanScene(const std::string& segments, double x_m) : track(TrackOf(segments)) {
     memory.gait = stream::Gait::kRun;
-    memory.desired_speed_mps = 3;
+    memory.speed.desired_mps = 3;
     body.p_WC = {x_m, 0, 0.85};
     body.v_WC = {3, 0, 0};
     for (int i = 0; i < 2; ++i) {

@@ -34,7 +34,7 @@ struct LawsScene {
 TEST(Equation1, MakesAnInvertedPendulumWalkAtTheDesiredSpeed) {
   for (const double speed_mps : {0.0, 0.5, 1.2}) {
     LawsScene scene;
-    scene.memory.desired_speed_mps = speed_mps;
+    scene.memory.speed.desired_mps = speed_mps;
     const double w = std::sqrt(kGravityMps2 / 0.9);
     const double step_s =
         scene.gains.walking.swing_time_s + scene.gains.walking.double_support_time_s;
@@ -75,8 +75,8 @@ TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {
   LawsScene scene;
   scene.goal.gait = stream::Gait::kRun;
   scene.memory.gait = stream::Gait::kRun;
-  scene.memory.support_time_s = 0.2;
-  scene.memory.desired_speed_mps = 3;
+  scene.memory.hop.support_time_s = 0.2;
+  scene.memory.speed.desired_mps = 3;
   scene.body.v_WC = {3, 0, 1};
   const double neutral_m = 3 * 0.2 / 2 + scene.gains.hopping.speed_gain_s * 3;
   EXPECT_NEAR(HoppingFoothold(scene.context(), scene.memory, 0).x(), neutral_m, 1e-12);
@@ -88,7 +88,7 @@ TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {
 TEST(Equation2, BrakesHarderInARunThatIsToEnd) {
   LawsScene scene;
   scene.memory.gait = stream::Gait::kRun;
-  scene.memory.desired_speed_mps = 2;
+  scene.memory.speed.desired_mps = 2;
   scene.body.v_WC = {3, 0, 1};
   scene.goal.gait = stream::Gait::kRun;
   const double running_m = HoppingFoothold(scene.context(), scene.memory, 0).x();
@@ -106,7 +106,7 @@ TEST(Equation2, TurnsWithTheHeading) {
   LawsScene scene;
   scene.memory.gait = stream::Gait::kRun;
   scene.body.v_WC = {2, 0, 0};
-  scene.memory.desired_speed_mps = 2;
+  scene.memory.speed.desired_mps = 2;
   const Vector3d straight = HoppingFoothold(scene.context(), scene.memory, 1);
   scene.memory.heading_rad = 0.7;
   scene.body.v_WC = ToWorld(0.7, {2, 0, 0});
@@ -130,9 +130,9 @@ TEST(Turning, PutsTheFootSoThatItsForceTurnsTheVelocity) {
   LawsScene scene;
   scene.memory.gait = stream::Gait::kRun;
   scene.body.v_WC = {3, 0, 0};
-  scene.memory.desired_speed_mps = 3;
+  scene.memory.speed.desired_mps = 3;
   scene.memory.step_time_s = 0.5;
-  scene.memory.support_time_s = 0.2;
+  scene.memory.hop.support_time_s = 0.2;
   const double straight_m = HoppingFoothold(scene.context(), scene.memory, 0).y();
   scene.goal.turn_per_step_rad = 0.08;
   const double turned_m = HoppingFoothold(scene.context(), scene.memory, 0).y();
@@ -145,7 +145,7 @@ TEST(Turning, PutsTheFootSoThatItsForceTurnsTheVelocity) {
 
 TEST(Turning, HoldsARunBankedAndTurningAsItsHeadingDoes) {
   LawsScene scene;
-  scene.memory.desired_speed_mps = 4;
+  scene.memory.speed.desired_mps = 4;
   scene.memory.turning_radps = 0.2;
   Targets targets;
   targets.hopping = true;
