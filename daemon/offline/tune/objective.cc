@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/simulation/gait/context.h"
+#include "common/units/units.h"
 
 namespace footing::tune {
 namespace {
@@ -31,7 +31,7 @@ Wanted WantedOf(const Task& task, double height_m) {
       return strides(flight_s, stance_s, 2 * (flight_s + stance_s));
     }
     case Gait::kJump: {
-      const double flight_s = 2 * std::sqrt(2 * height_m / gait::kGravityMps2), stance_s = 0.18;
+      const double flight_s = 2 * std::sqrt(2 * height_m / kStandardGravityMps2), stance_s = 0.18;
       return strides(flight_s, stance_s, flight_s + stance_s);
     }
     case Gait::kStep:

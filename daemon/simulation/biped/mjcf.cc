@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "common/text/number.h"
+#include "common/units/units.h"
 #include "daemon/simulation/biped/body_state.h"
 
 namespace footing::biped {
@@ -50,8 +51,9 @@ std::string Leg(const BipedParameters& p, int leg) {
 std::string WriteMjcf(const BipedParameters& p, const std::string& ground, double step_s) {
   return "<mujoco>\n<compiler angle='radian' inertiafromgeom='false'/>\n"
          "<option timestep='" +
-         Shortest(step_s) +
-         "' integrator='Euler' cone='elliptic' gravity='0 0 -9.81' iterations='50'/>\n"
+         Shortest(step_s) + "' integrator='Euler' cone='elliptic' gravity='0 0 " +
+         Shortest(-kStandardGravityMps2) +
+         "' iterations='50'/>\n"
          "<default>\n<geom solref='0.006 1'/>\n"
          "<default class='shell'><geom contype='2' conaffinity='1'/></default>\n"
          "<default class='foot'><geom contype='2' conaffinity='1' priority='1' condim='4' "

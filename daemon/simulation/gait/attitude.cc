@@ -3,12 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/context.h"
 
 namespace footing::gait {
 
 double BankAngle(const GaitMemory& memory, const AttitudeGains& gains) {
-  return -gains.bank_share * memory.speed.desired_mps * memory.turning_radps / kGravityMps2;
+  return -gains.bank_share * memory.speed.desired_mps * memory.turning_radps / kStandardGravityMps2;
 }
 
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/units/units.h"
+
 namespace footing::gait {
 
 double SwingTime(const Context& context, const GaitMemory& memory) {
@@ -21,7 +23,7 @@ double RunLiftOffSpeed(const Context& context, const GaitMemory& memory) {
   const CadenceGains& limits = context.gains.cadence;
   if (!(context.goal.cadence_hz > 0)) return context.gains.hopping.run_lift_off_mps;
   const double flight_s = 1 / context.goal.cadence_hz - memory.hop.support_time_s;
-  return std::clamp(kGravityMps2 * flight_s / 2, limits.run_lift_off_min_mps,
+  return std::clamp(kStandardGravityMps2 * flight_s / 2, limits.run_lift_off_min_mps,
                     limits.run_lift_off_max_mps);
 }
 

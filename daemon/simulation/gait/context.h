@@ -19,6 +19,4 @@ struct Context {
   double TimeIn(const GaitMemory& memory) const { return body.time_s - memory.phase_start_s; }
 };
 
-inline constexpr double kGravityMps2 = 9.81;
-
 }  // namespace footing::gait

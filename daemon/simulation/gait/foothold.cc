@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/transition.h"
@@ -27,7 +28,7 @@ struct Pendulum {
 Pendulum SupportPendulum(const Context& context, const GaitMemory& memory) {
   const biped::BodyState& body = context.body;
   const Vector3d r_FC_W = body.p_WC - body.legs[memory.support_leg].p_WF;
-  const double rate = std::sqrt(kGravityMps2 / std::clamp(r_FC_W.z(), 0.6, 1.1));
+  const double rate = std::sqrt(kStandardGravityMps2 / std::clamp(r_FC_W.z(), 0.6, 1.1));
   // Half the double support still passes before the new foot carries.
   const double growth = std::exp(rate * 0.5 * context.gains.walking.double_support_time_s);
   const Vector3d capture_H =
@@ -76,7 +77,7 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
 double TurningOffset(const Context& context, const GaitMemory& memory, double ahead_mps) {
   const double turn_rad = context.goal.turn_per_step_rad;
   const double lean_m = context.gains.hopping.touchdown_length_m * ahead_mps * turn_rad /
-                        (kGravityMps2 * memory.step_time_s);
+                        (kStandardGravityMps2 * memory.step_time_s);
   return ahead_mps * memory.hop.support_time_s / 2 * turn_rad / 2 - lean_m;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/transition.h"
@@ -74,8 +75,8 @@ void KeepEdges(const Vector3d& foothold_W, const terrain::Spot& spot, const Vect
 
 /// Until a body that now rises at `v_mps` has come to be `down_m` lower, s.
 double FallTime(double v_mps, double down_m) {
-  const double root = v_mps * v_mps + 2 * kGravityMps2 * down_m;
-  return (v_mps + std::sqrt(std::max(0.0, root))) / kGravityMps2;
+  const double root = v_mps * v_mps + 2 * kStandardGravityMps2 * down_m;
+  return (v_mps + std::sqrt(std::max(0.0, root))) / kStandardGravityMps2;
 }
 
 }  // namespace
@@ -146,11 +147,11 @@ void PlanClimb(const Context& context, double lift_off_mps, GaitMemory& memory) 
     // COM's rise from lift-off, half_m past the one foot, to touchdown, half_m before the other.
     const double rise_m = to.height_m - from.height_m - half_m * (from.slope + to.slope);
     const double v_touchdown_mps = std::max(0.3, lift_off_mps - to.slope * v_mps);
-    const double wanted = v_touchdown_mps * v_touchdown_mps + 2 * kGravityMps2 * rise_m;
+    const double wanted = v_touchdown_mps * v_touchdown_mps + 2 * kStandardGravityMps2 * rise_m;
     // A change of flight time moves the foothold off the edge without a change of speed.
     const double later_s = std::fabs(v_mps) > gains.slowest_mps ? shift_m / v_mps : 0;
-    const double longer_mps =
-        std::clamp(kGravityMps2 * later_s / 2, -gains.shift_limit_mps, gains.shift_limit_mps);
+    const double longer_mps = std::clamp(kStandardGravityMps2 * later_s / 2, -gains.shift_limit_mps,
+                                         gains.shift_limit_mps);
     v_lift_off_mps = std::sqrt(std::max(0.0, wanted)) + longer_mps;
     const double level_mps = lift_off_mps + from.slope * v_mps;
     v_lift_off_mps = std::clamp(v_lift_off_mps, level_mps - gains.slower_limit_mps,

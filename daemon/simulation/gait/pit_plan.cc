@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/context.h"
 
 namespace footing::gait {
@@ -73,8 +74,9 @@ Costed Approach(const PitAhead& pit, int strides, const Hop& first, const Hop& n
 
 double Hop::FlightTime(double lift_off_mps, double rise_m) const {
   const double drop = drop_m + drop_per_mps * (lift_off_mps - nominal_mps) - rise_m;
-  const double landing_mps2 = lift_off_mps * lift_off_mps + 2 * kGravityMps2 * drop;
-  return std::max(0.0, (lift_off_mps + std::sqrt(std::max(0.0, landing_mps2))) / kGravityMps2);
+  const double landing_mps2 = lift_off_mps * lift_off_mps + 2 * kStandardGravityMps2 * drop;
+  return std::max(0.0,
+                  (lift_off_mps + std::sqrt(std::max(0.0, landing_mps2))) / kStandardGravityMps2);
 }
 
 double Hop::Stride(double lift_off_mps, double rise_m) const {
@@ -86,13 +88,13 @@ double Hop::LiftOffFor(double stride_m, double rise_m) const {
   if (flight_s == 0) return 0;
   // -drop = v t - g t^2 / 2, with drop linear in v.
   const double level_m =
-      kGravityMps2 * flight_s * flight_s / 2 - drop_m + drop_per_mps * nominal_mps + rise_m;
+      kStandardGravityMps2 * flight_s * flight_s / 2 - drop_m + drop_per_mps * nominal_mps + rise_m;
   return std::max(0.0, level_m / (flight_s + drop_per_mps));
 }
 
 double Thrust::ExtensionFor(double lift_off_mps) const {
   const double carried_kg = mass_kg - feet_kg;
-  const double weight_n = carried_kg * kGravityMps2;
+  const double weight_n = carried_kg * kStandardGravityMps2;
   const double useful_n_per_m = (1 - loss_share) * stiffness_n_per_m;
   const double motion_j = mass_kg * mass_kg / carried_kg * lift_off_mps * lift_off_mps / 2;
   return (weight_n + std::sqrt(weight_n * weight_n + 2 * useful_n_per_m * motion_j)) /
@@ -103,7 +105,7 @@ double Thrust::LossShare(double extension_m, double lift_off_mps) const {
   const double carried_kg = mass_kg - feet_kg;
   const double stored_j = stiffness_n_per_m * extension_m * extension_m / 2;
   const double motion_j = mass_kg * mass_kg / carried_kg * lift_off_mps * lift_off_mps / 2;
-  return (stored_j - carried_kg * kGravityMps2 * extension_m - motion_j) / stored_j;
+  return (stored_j - carried_kg * kStandardGravityMps2 * extension_m - motion_j) / stored_j;
 }
 
 PitPlan PlanPit(const PitAhead& pit, const Hop& first, const Hop& next, const PitLimits& limits) {

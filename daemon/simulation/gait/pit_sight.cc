@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 
@@ -51,7 +52,8 @@ Vector3d PlaceAtTouchdown(const Context& context, const GaitMemory& memory) {
   const double vz = context.body.v_WC.z();
   const double over_m = context.body.p_WC.z() - height_m;
   const double flight_s =
-      (vz + std::sqrt(std::max(0.0, vz * vz + 2 * kGravityMps2 * over_m))) / kGravityMps2;
+      (vz + std::sqrt(std::max(0.0, vz * vz + 2 * kStandardGravityMps2 * over_m))) /
+      kStandardGravityMps2;
   return context.body.p_WC + std::max(0.0, flight_s) * context.body.v_WC;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/ground_plan.h"
@@ -55,7 +56,7 @@ VirtualLeg StanceLeg(const Context& context, const GaitMemory& memory) {
 double LevelLiftOffSpeed(const Context& context, const GaitMemory& memory) {
   if (LeavesRun(context.goal, memory)) return context.gains.transition.leaving_run_lift_off_mps;
   if (memory.gait != Gait::kJump) return RunLiftOffSpeed(context, memory);
-  return std::sqrt(2 * kGravityMps2 * std::max(kLowestJumpM, context.goal.height_m));
+  return std::sqrt(2 * kStandardGravityMps2 * std::max(kLowestJumpM, context.goal.height_m));
 }
 
 double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
@@ -79,8 +80,9 @@ double ThrustLength(const Context& context, const GaitMemory& memory) {
   const double mass_kg = context.biped.mass_kg();
   const double speed_mps = LiftOffSpeed(context, memory);
   const double rise_m = std::max(0.0, gains.touchdown_length_m - length_m) * 0.95;
-  const double energy_j = std::max(0.0, mass_kg * speed_mps * speed_mps / 2 +
-                                            mass_kg * kGravityMps2 * rise_m + EnergyLoss(memory));
+  const double energy_j =
+      std::max(0.0, mass_kg * speed_mps * speed_mps / 2 + mass_kg * kStandardGravityMps2 * rise_m +
+                        EnergyLoss(memory));
   const double stiffness = memory.gait == Gait::kJump ? 2 * gains.jump_leg_stiffness_n_per_m
                                                       : gains.run_leg_stiffness_n_per_m;
   const double extension_m = memory.pit.lift_off_mps > 0 ? PlannedExtension(context, memory)

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/attitude.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
@@ -197,7 +198,7 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
     DampWholeRoll(context, memory, targets);
   }
   targets.jumping = jumping;
-  if (jumping) targets.flight_s = 2 * std::sqrt(2 * context.goal.height_m / kGravityMps2);
+  if (jumping) targets.flight_s = 2 * std::sqrt(2 * context.goal.height_m / kStandardGravityMps2);
   return targets;
 }
 

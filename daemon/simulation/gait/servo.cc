@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/attitude.h"
 #include "daemon/simulation/gait/context.h"
 #include "daemon/simulation/gait/support.h"
@@ -47,7 +48,7 @@ void PlaceFoot(const LegTarget& target, bool place_length, const biped::BodyStat
                           damping[j] * (rate - leg.joint_velocity[j]);
     efforts[j] = std::clamp(effort, -limit, limit);
   }
-  if (place_length) efforts[3] -= biped.link_mass_kg * kGravityMps2;
+  if (place_length) efforts[3] -= biped.link_mass_kg * kStandardGravityMps2;
   memory.joint_target[i] = desired;
 }
 

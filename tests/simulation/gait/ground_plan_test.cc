@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/terrain/track.h"
 #include "tests/simulation/test_world.h"
 
@@ -71,8 +72,9 @@ TEST(PlanClimb, LiftsOffFasterBeforeAStepUpAndSlowerBeforeOneDown) {
     PlanClimb(scene->context(), scene->gains.hopping.run_lift_off_mps, scene->memory);
   }
   EXPECT_NEAR(level.memory.ground.climb_mps, 0, 1e-12);
-  // v^2 grows by 2 g 0.1 m: sqrt(1.3^2 + 1.962) - 1.3.
-  EXPECT_NEAR(up.memory.ground.climb_mps, std::sqrt(1.69 + 1.962) - 1.3, 1e-6);
+  // v^2 grows by 2 g 0.1 m.
+  EXPECT_NEAR(up.memory.ground.climb_mps,
+              std::sqrt(1.3 * 1.3 + 2 * kStandardGravityMps2 * 0.1) - 1.3, 1e-6);
   EXPECT_NEAR(down.memory.ground.climb_mps, -down.gains.stepping.slower_limit_mps, 1e-12);
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/attitude.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
@@ -35,7 +36,7 @@ TEST(Equation1, MakesAnInvertedPendulumWalkAtTheDesiredSpeed) {
   for (const double speed_mps : {0.0, 0.5, 1.2}) {
     LawsScene scene;
     scene.memory.speed.desired_mps = speed_mps;
-    const double w = std::sqrt(kGravityMps2 / 0.9);
+    const double w = std::sqrt(kStandardGravityMps2 / 0.9);
     const double step_s =
         scene.gains.walking.swing_time_s + scene.gains.walking.double_support_time_s;
     // The law looks half a double support ahead of the touchdown; so does this pendulum.
@@ -140,7 +141,7 @@ TEST(Turning, PutsTheFootSoThatItsForceTurnsTheVelocity) {
   // turned.
   const double length_m = scene.gains.hopping.touchdown_length_m;
   EXPECT_NEAR(turned_m - straight_m,
-              -length_m * (3 * 0.08 / 0.5) / kGravityMps2 + 3 * 0.1 * 0.08 / 2, 1e-12);
+              -length_m * (3 * 0.08 / 0.5) / kStandardGravityMps2 + 3 * 0.1 * 0.08 / 2, 1e-12);
 }
 
 TEST(Turning, HoldsARunBankedAndTurningAsItsHeadingDoes) {
@@ -150,7 +151,7 @@ TEST(Turning, HoldsARunBankedAndTurningAsItsHeadingDoes) {
   Targets targets;
   targets.hopping = true;
   const double bank_rad = BankAngle(scene.memory, scene.gains.attitude);
-  EXPECT_NEAR(bank_rad, -scene.gains.attitude.bank_share * 4 * 0.2 / kGravityMps2, 1e-12);
+  EXPECT_NEAR(bank_rad, -scene.gains.attitude.bank_share * 4 * 0.2 / kStandardGravityMps2, 1e-12);
   scene.body.R_WB = Eigen::AngleAxisd(bank_rad, Vector3d::UnitX()).toRotationMatrix();
   scene.body.w_WB = {0, 0, 0.2};
   EXPECT_LT(BodyMoment(scene.body, scene.memory, targets, scene.gains.attitude).norm(), 1e-9);

@@ -1,5 +1,6 @@
 #include "daemon/simulation/gait/momentum.h"
 
+#include "common/units/units.h"
 #include "daemon/simulation/gait/controller.h"
 #include "tests/simulation/test_world.h"
 
@@ -24,14 +25,14 @@ void ExpectOnlyContactAndGravity(const biped::GaitCommand& command) {
     const biped::BodyState body = biped::Read(biped, world.Observe(), i * step_s);
     world.Step(Advance(body, biped, gains, command, nullptr, step_s, memory),
                Eigen::Vector3d::Zero());
-    const Eigen::Vector3d gravity_n(0, 0, -kGravityMps2 * world.mass_kg());
+    const Eigen::Vector3d gravity_n(0, 0, -kStandardGravityMps2 * world.mass_kg());
     impulse_ns += step_s * (world.Observe().contact_force_W_n + gravity_n);
     const Eigen::Vector3d missing = world.mass_kg() * world.Observe().v_WC - impulse_ns;
     largest_ns = std::max(largest_ns, missing.norm());
   }
   EXPECT_EQ(memory.gait, command.gait);
   // 8 s of weight are 1020 N s; the integrator's error stays below a thousandth of it.
-  EXPECT_LT(largest_ns, 1e-3 * steps * step_s * kGravityMps2 * world.mass_kg());
+  EXPECT_LT(largest_ns, 1e-3 * steps * step_s * kStandardGravityMps2 * world.mass_kg());
   EXPECT_EQ(world.root_force_max_n(), 0);
 }
 

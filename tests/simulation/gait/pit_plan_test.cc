@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "common/units/units.h"
+
 namespace footing::gait {
 namespace {
 
@@ -34,14 +36,14 @@ Followed Follow(double near_m, double width_m, const Hop& hop, const PitLimits& 
 
 TEST(Hop, FliesUntilTheComIsDownAtItsTouchdownHeight) {
   const Hop level = LevelHop();
-  EXPECT_NEAR(level.FlightTime(1.3), 2 * 1.3 / 9.81, 1e-12);
-  EXPECT_NEAR(level.Stride(1.3), 0.5 + 3 * 2 * 1.3 / 9.81, 1e-12);
+  EXPECT_NEAR(level.FlightTime(1.3), 2 * 1.3 / kStandardGravityMps2, 1e-12);
+  EXPECT_NEAR(level.Stride(1.3), 0.5 + 3 * 2 * 1.3 / kStandardGravityMps2, 1e-12);
   // From 0.1 m higher: v t - g t^2 / 2 = -0.1.
   const Hop drop{.speed_mps = 3, .support_m = 0.5, .drop_m = 0.1};
   const double t = drop.FlightTime(1.3);
-  EXPECT_NEAR(1.3 * t - 9.81 * t * t / 2, -0.1, 1e-12);
+  EXPECT_NEAR(1.3 * t - kStandardGravityMps2 * t * t / 2, -0.1, 1e-12);
   // On ground that is 0.1 m higher the same hop ends level.
-  EXPECT_NEAR(drop.FlightTime(1.3, 0.1), 2 * 1.3 / 9.81, 1e-12);
+  EXPECT_NEAR(drop.FlightTime(1.3, 0.1), 2 * 1.3 / kStandardGravityMps2, 1e-12);
 }
 
 TEST(Hop, FindsTheLiftOffForAStride) {
@@ -57,7 +59,8 @@ TEST(Thrust, StoresTheEnergyOfTheLiftOff) {
   const Thrust thrust{.stiffness_n_per_m = 3500, .mass_kg = 13, .feet_kg = 1, .loss_share = 0.25};
   const double x = thrust.ExtensionFor(1.5);
   // (1 - 0.25) k x^2 / 2 = 12 g x + 13^2 / 12 * 1.5^2 / 2
-  EXPECT_NEAR(0.75 * 3500 * x * x / 2, 12 * 9.81 * x + 169.0 / 12 * 1.5 * 1.5 / 2, 1e-9);
+  EXPECT_NEAR(0.75 * 3500 * x * x / 2, 12 * kStandardGravityMps2 * x + 169.0 / 12 * 1.5 * 1.5 / 2,
+              1e-9);
   EXPECT_NEAR(thrust.LossShare(x, 1.5), 0.25, 1e-12);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
 #include "daemon/simulation/biped/body_state.h"
 
 namespace footing::oracle {
@@ -10,8 +11,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr double kGravityMps2 = 9.81;
 
 Matrix3d Skew(const Vector3d& v) {
   Matrix3d m;
@@ -209,8 +208,8 @@ void ArticulatedBiped::Step(const physics::JointEfforts& efforts, const Vector3d
   Accelerate(efforts, push_W_n, root, joints);
   // From the spatial to the origin's own acceleration: a + w x v, in the body's frame.
   const Vector3d v_B = R_W_[0].transpose() * v_WB_;
-  v_WB_ +=
-      step_s_ * (R_W_[0] * (root.tail<3>() + w_B_.cross(v_B)) - kGravityMps2 * Vector3d::UnitZ());
+  v_WB_ += step_s_ * (R_W_[0] * (root.tail<3>() + w_B_.cross(v_B)) -
+                      kStandardGravityMps2 * Vector3d::UnitZ());
   w_B_ += step_s_ * root.head<3>();
   p_WB_ += step_s_ * v_WB_;
   const double angle_rad = step_s_ * w_B_.norm();
@@ -261,7 +260,7 @@ Vector3d ArticulatedBiped::AngularMomentum() const {
 }
 
 double ArticulatedBiped::Energy() const {
-  double energy_j = mass_kg() * kGravityMps2 * seen_.p_WC.z();
+  double energy_j = mass_kg() * kStandardGravityMps2 * seen_.p_WC.z();
   for (int i = 0; i < kBodies; ++i) {
     energy_j += twist_[i].dot(bodies_[i].inertia * twist_[i]) / 2;
     if (i > 0) energy_j += bodies_[i].armature * velocity_[i - 1] * velocity_[i - 1] / 2;

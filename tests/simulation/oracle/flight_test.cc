@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/units/units.h"
 #include "tests/simulation/oracle/articulated_body.h"
 #include "tests/simulation/test_world.h"
 
@@ -91,7 +92,7 @@ Lost Fly(double step_s, bool efforts) {
     oracle.Step(efforts ? Wriggle(i * step_s, oracle.Observe()) : physics::JointEfforts{},
                 Vector3d::Zero());
   }
-  const Vector3d expected_v_WC = v_WC - Vector3d(0, 0, 9.81);
+  const Vector3d expected_v_WC = v_WC - Vector3d(0, 0, kStandardGravityMps2);
   return {(oracle.Observe().v_WC - expected_v_WC).norm(),
           (oracle.AngularMomentum() - angular).norm(), std::fabs(oracle.Energy() - energy_j)};
 }

@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "common/units/units.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::physics {
 namespace {
-
-constexpr double kGravityMps2 = 9.81;
 
 /// Efforts that swing all joints about, different at every step.
 JointEfforts Wriggle(int step) {
@@ -34,7 +33,7 @@ double FlightError(double step_s) {
     world.Step(efforts, Eigen::Vector3d::Zero());
   }
   EXPECT_EQ(world.Observe().normal_force_n[0] + world.Observe().normal_force_n[1], 0);
-  return (world.Observe().v_WC - Eigen::Vector3d(0, 0, -kGravityMps2 * 0.5)).norm();
+  return (world.Observe().v_WC - Eigen::Vector3d(0, 0, -kStandardGravityMps2 * 0.5)).norm();
 }
 
 TEST(World, FlightConservesMomentumWhateverTheJointsDo) {

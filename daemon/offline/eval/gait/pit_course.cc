@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/units/units.h"
+
 namespace footing::eval {
 namespace {
 
@@ -66,11 +68,10 @@ biped::GaitCommand PitPilot::Command(const engine::EngineOutput& output) {
 }
 
 double SensibleHeight(double width_m, double speed_mps) {
-  constexpr double kGravityMps2 = 9.81;
   constexpr double kSpareM = 0.15;
   constexpr double kSupportS = 0.2;
   const double flight_s = (width_m + 2 * kSpareM) / std::max(speed_mps, 0.5) - kSupportS;
-  const double height_m = kGravityMps2 * flight_s * std::max(0.0, flight_s) / 8;
+  const double height_m = kStandardGravityMps2 * flight_s * std::max(0.0, flight_s) / 8;
   return std::clamp(height_m, 0.1, 0.5);
 }
 
