@@ -173,6 +173,25 @@ struct Builder {
     }
     Add(landmarks[ankle], Segment::kFoot, length_m, Place(ankle) + place, along, lateral);
   }
+
+  /// The limbs of one side: 0 left, 1 right.
+  void AddSide(int side) {
+    constexpr int kOther =
+        static_cast<int>(Landmark::kRightClavicle) - static_cast<int>(Landmark::kLeftClavicle);
+    const auto of_side = [side](Landmark left) {
+      return static_cast<Landmark>(static_cast<int>(left) + side * kOther);
+    };
+    const Landmark shoulder = of_side(Landmark::kLeftShoulder);
+    const Landmark elbow = of_side(Landmark::kLeftElbow), wrist = of_side(Landmark::kLeftWrist);
+    const Landmark hip = of_side(Landmark::kLeftHip), knee = of_side(Landmark::kLeftKnee);
+    const Landmark ankle = of_side(Landmark::kLeftAnkle);
+    AddLimb(Segment::kUpperArm, shoulder, elbow);
+    AddLimb(Segment::kForearm, elbow, wrist);
+    AddHand(elbow, wrist, of_side(Landmark::kLeftHandEnd));
+    AddLimb(Segment::kThigh, hip, knee);
+    AddLimb(Segment::kShank, knee, ankle);
+    AddFoot(knee, ankle, of_side(Landmark::kLeftToe), of_side(Landmark::kLeftToeEnd));
+  }
 };
 
 Kinematics At(const Skeleton& skeleton, const PersonParameters& person) {
@@ -182,25 +201,7 @@ Kinematics At(const Skeleton& skeleton, const PersonParameters& person) {
   return at;
 }
 
-}  // namespace
-
-double EstimateHeight(const Skeleton& skeleton, const Landmarks& landmarks,
-                      const PersonParameters& person) {
-  const Builder builder{skeleton, landmarks, person.sex, 0, 0, At(skeleton, person), {}};
-  const auto between = [&](Landmark a, Landmark b) {
-    return (builder.Place(a) - builder.Place(b)).norm();
-  };
-  const double legs_m = between(Landmark::kLeftHip, Landmark::kLeftKnee) +
-                        between(Landmark::kLeftKnee, Landmark::kLeftAnkle) +
-                        between(Landmark::kRightHip, Landmark::kRightKnee) +
-                        between(Landmark::kRightKnee, Landmark::kRightAnkle);
-  const double trunk_m = (builder.MidShoulder() - builder.MidHip()).norm();
-  return StatureOfLengths(person.sex) * (legs_m / 2 + trunk_m);
-}
-
-Result<Body> MakeBody(const Skeleton& skeleton, const PersonParameters& person) {
-  const auto landmarks = FindLandmarks(skeleton);
-  if (!landmarks) return landmarks.error();
+Result<void> CheckPerson(const Skeleton& skeleton, const PersonParameters& person) {
   if (!(person.mass_kg >= kLeastMassKg && person.mass_kg <= kMostMassKg)) {
     return InvalidData("a mass of " + std::to_string(person.mass_kg) +
                        " kg is out of range: give one from 10 to 400 kg");
@@ -209,18 +210,11 @@ Result<Body> MakeBody(const Skeleton& skeleton, const PersonParameters& person) 
     return InvalidData("the upright pose has " + std::to_string(person.upright_pose->size()) +
                        " coordinates, the skeleton " + std::to_string(skeleton.dof));
   }
-  const double height_m = person.height_m.value_or(EstimateHeight(skeleton, *landmarks, person));
-  if (!(height_m >= kLeastHeightM && height_m <= kMostHeightM)) {
-    return InvalidData("a height of " + std::to_string(height_m) +
-                       " m is out of range (0.5 to 2.6 m): is the skeleton in other units?");
-  }
-  Builder builder{skeleton,
-                  *landmarks,
-                  person.sex,
-                  person.mass_kg,
-                  height_m,
-                  At(skeleton, person),
-                  std::vector<JointMass>(skeleton.joints.size())};
+  return {};
+}
+
+/// Refuses a skeleton in which both ends of a bone, or of the trunk, are in one place.
+Result<void> CheckBones(const Builder& builder) {
   const auto nowhere = [&](Landmark a, Landmark b) {
     return !((builder.Place(a) - builder.Place(b)).norm() > 0.01);
   };
@@ -242,25 +236,45 @@ Result<Body> MakeBody(const Skeleton& skeleton, const PersonParameters& person) 
                          std::string(LandmarkName(to)) + " are in one place");
     }
   }
+  return {};
+}
+
+}  // namespace
+
+double EstimateHeight(const Skeleton& skeleton, const Landmarks& landmarks,
+                      const PersonParameters& person) {
+  const Builder builder{skeleton, landmarks, person.sex, 0, 0, At(skeleton, person), {}};
+  const auto between = [&](Landmark a, Landmark b) {
+    return (builder.Place(a) - builder.Place(b)).norm();
+  };
+  const double legs_m = between(Landmark::kLeftHip, Landmark::kLeftKnee) +
+                        between(Landmark::kLeftKnee, Landmark::kLeftAnkle) +
+                        between(Landmark::kRightHip, Landmark::kRightKnee) +
+                        between(Landmark::kRightKnee, Landmark::kRightAnkle);
+  const double trunk_m = (builder.MidShoulder() - builder.MidHip()).norm();
+  return StatureOfLengths(person.sex) * (legs_m / 2 + trunk_m);
+}
+
+Result<Body> MakeBody(const Skeleton& skeleton, const PersonParameters& person) {
+  const auto landmarks = FindLandmarks(skeleton);
+  if (!landmarks) return landmarks.error();
+  if (auto usable = CheckPerson(skeleton, person); !usable) return usable.error();
+  const double height_m = person.height_m.value_or(EstimateHeight(skeleton, *landmarks, person));
+  if (!(height_m >= kLeastHeightM && height_m <= kMostHeightM)) {
+    return InvalidData("a height of " + std::to_string(height_m) +
+                       " m is out of range (0.5 to 2.6 m): is the skeleton in other units?");
+  }
+  Builder builder{skeleton,
+                  *landmarks,
+                  person.sex,
+                  person.mass_kg,
+                  height_m,
+                  At(skeleton, person),
+                  std::vector<JointMass>(skeleton.joints.size())};
+  if (auto apart = CheckBones(builder); !apart) return apart.error();
   builder.AddTrunk();
   builder.AddHead();
-  constexpr int kOther =
-      static_cast<int>(Landmark::kRightClavicle) - static_cast<int>(Landmark::kLeftClavicle);
-  for (int side = 0; side < 2; ++side) {
-    const auto of_side = [side](Landmark left) {
-      return static_cast<Landmark>(static_cast<int>(left) + side * kOther);
-    };
-    const Landmark shoulder = of_side(Landmark::kLeftShoulder);
-    const Landmark elbow = of_side(Landmark::kLeftElbow), wrist = of_side(Landmark::kLeftWrist);
-    const Landmark hip = of_side(Landmark::kLeftHip), knee = of_side(Landmark::kLeftKnee);
-    const Landmark ankle = of_side(Landmark::kLeftAnkle);
-    builder.AddLimb(Segment::kUpperArm, shoulder, elbow);
-    builder.AddLimb(Segment::kForearm, elbow, wrist);
-    builder.AddHand(elbow, wrist, of_side(Landmark::kLeftHandEnd));
-    builder.AddLimb(Segment::kThigh, hip, knee);
-    builder.AddLimb(Segment::kShank, knee, ankle);
-    builder.AddFoot(knee, ankle, of_side(Landmark::kLeftToe), of_side(Landmark::kLeftToeEnd));
-  }
+  for (int side = 0; side < 2; ++side) builder.AddSide(side);
   return Body{skeleton, *landmarks, std::move(builder.masses), person.mass_kg, height_m};
 }
 

@@ -39,7 +39,23 @@ class PoseFit {
              Eigen::Ref<Eigen::VectorXd> q);
 
  private:
-  double Cost(const std::vector<PointTarget>& targets, const Eigen::VectorXd& q);
+  /// Where the descent has come to.
+  struct Descent {
+    double points = 0;   ///< Cost of the points, m².
+    double cost = 0;     ///< The same and what holds the coordinates.
+    double gain = 0;     ///< By which the last step lowered the cost.
+    double damping = 0;  ///< Of the next step, relative to H's diagonal.
+  };
+
+  void SetHold(const FitOptions& options, const Eigen::Ref<const Eigen::VectorXd>& q);
+  double PointCost(const std::vector<PointTarget>& targets, const Eigen::VectorXd& q);
+  double HoldCost(const Eigen::VectorXd& q) const;
+  /// Sets H_ and gradient_ at the pose.
+  void Linearise(const std::vector<PointTarget>& targets,
+                 const Eigen::Ref<const Eigen::VectorXd>& q);
+  /// Raises the damping until a step does not raise the cost, and takes it; false if none does.
+  bool Step(const std::vector<PointTarget>& targets, Descent& descent,
+            Eigen::Ref<Eigen::VectorXd> q);
 
   const Skeleton& skeleton_;
   Kinematics at_;

@@ -19,8 +19,6 @@ SPLIT = "long since before this check; to be split by what it does"
 # Path, or path:function; the most lines it may have, and why.
 EXCEPTIONS = {
     "common/body/standard_person.cc:Bones": (69, "a table of bones"),
-    "common/body/body.cc:MakeBody": (65, SPLIT),
-    "common/body/fit.cc:PoseFit::Fit": (62, SPLIT),
     "common/virtual/motion/c3d.cc:ParseC3d": (61, SPLIT),
     "common/virtual/motion/marker_fit.cc:FitMarkers": (68, SPLIT),
     "common/virtual/motion/marker_skeleton.cc:FitLengths": (84, SPLIT),
