@@ -19,9 +19,6 @@ SPLIT = "long since before this check; to be split by what it does"
 # Path, or path:function; the most lines it may have, and why.
 EXCEPTIONS = {
     "common/body/standard_person.cc:Bones": (69, "a table of bones"),
-    "common/virtual/motion/c3d.cc:ParseC3d": (61, SPLIT),
-    "common/virtual/motion/marker_fit.cc:FitMarkers": (68, SPLIT),
-    "common/virtual/motion/marker_skeleton.cc:FitLengths": (84, SPLIT),
     "daemon/offline/bench/publish_to_client.cc:PublishToClient": (77, SPLIT),
     "daemon/offline/eval/momentum/momentum_command.cc:Evaluate": (90, SPLIT),
     "daemon/offline/eval/pose/pose_command.cc:AddFlags": (91, "a table of options"),

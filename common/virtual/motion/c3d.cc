@@ -164,6 +164,40 @@ struct AnalogScale {
   }
 };
 
+/// The data section: of each frame the points, then the samples of all channels.
+Result<void> ReadFrames(const C3dReader& reader, const Layout& layout, double unit_m,
+                        const AnalogScale& analog, const std::string& file, C3d& c3d) {
+  const auto frames = static_cast<Eigen::Index>(layout.frames);
+  for (std::size_t i = 0; i < layout.points; ++i) c3d.points.p.emplace_back(3, frames);
+  c3d.analog.resize(static_cast<Eigen::Index>(layout.analog_channels),
+                    frames * static_cast<Eigen::Index>(layout.analog_per_frame));
+  std::size_t at = layout.data_begin;
+  for (Eigen::Index frame = 0; frame < frames; ++frame) {
+    for (std::size_t i = 0; i < layout.points; ++i) {
+      c3d.points.p[i].col(frame) = unit_m * PointAt(reader, layout, at);
+      at += 4 * layout.word();
+    }
+    for (std::size_t sample = 0; sample < layout.analog_per_frame; ++sample) {
+      const Eigen::Index column = frame * static_cast<Eigen::Index>(layout.analog_per_frame) +
+                                  static_cast<Eigen::Index>(sample);
+      for (std::size_t channel = 0; channel < layout.analog_channels; ++channel) {
+        const double raw = layout.floats        ? static_cast<double>(reader.Float(at))
+                           : analog.is_unsigned ? reader.Unsigned(at)
+                                                : reader.Signed(at);
+        const double value =
+            (raw - analog.offset[channel]) * analog.scale[channel] * analog.general;
+        if (!std::isfinite(value)) {
+          return InvalidData(file + ": channel " + c3d.analog_names[channel] +
+                             " has no number in frame " + std::to_string(frame + 1));
+        }
+        c3d.analog(static_cast<Eigen::Index>(channel), column) = value;
+        at += layout.word();
+      }
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<C3d> ParseC3d(std::span<const std::uint8_t> bytes, const std::string& file) {
@@ -196,34 +230,9 @@ Result<C3d> ParseC3d(std::span<const std::uint8_t> bytes, const std::string& fil
   c3d.analog_units.resize(layout->analog_channels);
   c3d.analog_rate_hz = layout->rate_hz * static_cast<double>(layout->analog_per_frame);
   c3d.plates = Plates(*parameters, unit_m, layout->analog_channels);
-  const auto frames = static_cast<Eigen::Index>(layout->frames);
-  for (std::size_t i = 0; i < layout->points; ++i) c3d.points.p.emplace_back(3, frames);
-  c3d.analog.resize(static_cast<Eigen::Index>(layout->analog_channels),
-                    frames * static_cast<Eigen::Index>(layout->analog_per_frame));
   const AnalogScale analog(*parameters, layout->analog_channels);
-  std::size_t at = layout->data_begin;
-  for (Eigen::Index frame = 0; frame < frames; ++frame) {
-    for (std::size_t i = 0; i < layout->points; ++i) {
-      c3d.points.p[i].col(frame) = unit_m * PointAt(reader, *layout, at);
-      at += 4 * layout->word();
-    }
-    for (std::size_t sample = 0; sample < layout->analog_per_frame; ++sample) {
-      const Eigen::Index column = frame * static_cast<Eigen::Index>(layout->analog_per_frame) +
-                                  static_cast<Eigen::Index>(sample);
-      for (std::size_t channel = 0; channel < layout->analog_channels; ++channel) {
-        const double raw = layout->floats       ? static_cast<double>(reader.Float(at))
-                           : analog.is_unsigned ? reader.Unsigned(at)
-                                                : reader.Signed(at);
-        const double value =
-            (raw - analog.offset[channel]) * analog.scale[channel] * analog.general;
-        if (!std::isfinite(value)) {
-          return fault("channel " + c3d.analog_names[channel] + " has no number in frame " +
-                       std::to_string(frame + 1));
-        }
-        c3d.analog(static_cast<Eigen::Index>(channel), column) = value;
-        at += layout->word();
-      }
-    }
+  if (auto read = ReadFrames(reader, *layout, unit_m, analog, file, c3d); !read) {
+    return read.error();
   }
   return c3d;
 }

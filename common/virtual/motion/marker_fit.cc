@@ -9,6 +9,7 @@
 #include "common/body/fit.h"
 #include "common/body/kinematics.h"
 #include "common/virtual/motion/joint_centres.h"
+#include "common/virtual/motion/marker_carriers.h"
 
 namespace footing::motion {
 namespace {
@@ -24,6 +25,18 @@ constexpr std::size_t kLeastMarkers = 10;        // Of a frame.
 constexpr double kHoldLimb = 0.002, kHoldSpine = 0.05;
 
 std::size_t MarkerIndex(int value) { return static_cast<std::size_t>(value); }
+
+/// Markers fixed to joints, and the track that each of them has.
+struct AttachedMarkers {
+  std::vector<FittedMarker> markers;
+  std::vector<std::size_t> tracks;
+};
+
+/// Frames of a trial, spread over it, and the pose of each.
+struct PosedFrames {
+  std::vector<Eigen::Index> frames;
+  std::vector<Eigen::VectorXd> poses;
+};
 
 class Fitter {
  public:
@@ -73,13 +86,13 @@ class Fitter {
   }
 
   /// The pose of a frame from its markers, from `q` on; false where too few were seen.
-  bool PoseOfMarkers(const MarkerTracks& tracks, const std::vector<FittedMarker>& markers,
-                     const std::vector<int>& tracks_of, Eigen::Index frame, Eigen::VectorXd& q) {
+  bool PoseOfMarkers(const MarkerTracks& tracks, const AttachedMarkers& attached,
+                     Eigen::Index frame, Eigen::VectorXd& q) {
     targets_.clear();
-    for (std::size_t i = 0; i < markers.size(); ++i) {
-      if (tracks_of[i] < 0) continue;
-      const Eigen::Vector3d p_W = tracks.p[MarkerIndex(tracks_of[i])].col(frame);
-      if (Seen(p_W)) targets_.push_back({markers[i].joint, markers[i].p_J, p_W, 1});
+    for (std::size_t i = 0; i < attached.markers.size(); ++i) {
+      const FittedMarker& marker = attached.markers[i];
+      const Eigen::Vector3d p_W = tracks.p[attached.tracks[i]].col(frame);
+      if (Seen(p_W)) targets_.push_back({marker.joint, marker.p_J, p_W, 1});
     }
     if (targets_.size() < kLeastMarkers) return false;
     neutral_ = q;
@@ -90,7 +103,7 @@ class Fitter {
     return true;
   }
 
-  /// Place of a marker in each candidate joint's frame.
+  /// A place in a joint's frame, and back.
   Eigen::Vector3d Local(int joint, const Eigen::Vector3d& p_W) const {
     return at_.R_WJ[MarkerIndex(joint)].transpose() * (p_W - at_.p_WJ[MarkerIndex(joint)]);
   }
@@ -98,58 +111,6 @@ class Fitter {
     return at_.p_WJ[MarkerIndex(joint)] + at_.R_WJ[MarkerIndex(joint)] * p_J;
   }
   void Place(const Eigen::VectorXd& q) { ComputeKinematics(skeleton_, q, at_); }
-
-  /// Joints that can carry markers of which the set does not say where they sit: segments that have
-  /// markers it does know.
-  std::vector<int> Carriers(const MarkerSet& set) const {
-    std::vector<int> carriers = {0};
-    for (Landmark l :
-         {Landmark::kChest, Landmark::kLeftShoulder, Landmark::kRightShoulder, Landmark::kLeftElbow,
-          Landmark::kRightElbow, Landmark::kLeftHip, Landmark::kRightHip, Landmark::kLeftKnee,
-          Landmark::kRightKnee, Landmark::kLeftAnkle, Landmark::kRightAnkle}) {
-      carriers.push_back(landmarks_[l]);
-    }
-    for (Landmark l : {Landmark::kLeftWrist, Landmark::kRightWrist}) {
-      carriers.push_back(skeleton_.joint(landmarks_[l]).parent);  // The forearm as it turns.
-      if (!set.hand.empty()) carriers.push_back(landmarks_[l]);
-    }
-    if (!set.head.empty()) carriers.push_back(landmarks_[Landmark::kHead]);
-    return carriers;
-  }
-
-  /// The joint that carries each marker the set knows; -1 for the others.
-  std::vector<int> KnownCarriers(const MarkerTracks& tracks, const MarkerSet& set) const {
-    std::vector<int> known(tracks.names.size(), -1);
-    for (int side = 0; side < 2; ++side) {
-      const auto of = [&](Landmark left) { return landmarks_[side == 0 ? left : Mirrored(left)]; };
-      const int forearm = skeleton_.joint(of(Landmark::kLeftWrist)).parent;
-      const std::pair<std::string_view, int> kFields[] = {
-          {set.asis, 0},
-          {set.psis, 0},
-          {set.knee_lateral, of(Landmark::kLeftHip)},
-          {set.knee_medial, of(Landmark::kLeftHip)},
-          {set.ankle_lateral, of(Landmark::kLeftKnee)},
-          {set.ankle_medial, of(Landmark::kLeftKnee)},
-          {set.heel, of(Landmark::kLeftAnkle)},
-          {set.toe, of(Landmark::kLeftAnkle)},
-          {set.fifth_metatarsal, of(Landmark::kLeftAnkle)},
-          {set.shoulder, of(Landmark::kLeftClavicle)},
-          {set.elbow_lateral, of(Landmark::kLeftShoulder)},
-          {set.elbow_medial, of(Landmark::kLeftShoulder)},
-          {set.wrist_radius, forearm},
-          {set.wrist_ulna, forearm},
-          {set.hand, of(Landmark::kLeftWrist)},
-          {set.cervicale, landmarks_[Landmark::kChest]},
-          {set.sternum, landmarks_[Landmark::kChest]},
-          {set.head, landmarks_[Landmark::kHead]},
-      };
-      for (const auto& [field, joint] : kFields) {
-        for (const int marker : MarkersOf(tracks, set, field, side))
-          known[MarkerIndex(marker)] = joint;
-      }
-    }
-    return known;
-  }
 
  private:
   void Hold(int index, double hold) {
@@ -175,15 +136,14 @@ std::vector<Eigen::Index> Spread(Eigen::Index frames, Eigen::Index most) {
 
 /// Fixes a marker to the carrier in whose frame it keeps still best over the poses.
 FittedMarker Attach(Fitter& fitter, const std::vector<int>& carriers, const std::string& name,
-                    const Eigen::Matrix3Xd& track, const std::vector<Eigen::Index>& frames,
-                    const std::vector<Eigen::VectorXd>& poses) {
+                    const Eigen::Matrix3Xd& track, const PosedFrames& posed) {
   std::vector<Eigen::Vector3d> sums(carriers.size(), Eigen::Vector3d::Zero());
   std::vector<double> squares(carriers.size(), 0.0);
   double count = 0;
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const Eigen::Vector3d p_W = track.col(frames[k]);
+  for (std::size_t k = 0; k < posed.frames.size(); ++k) {
+    const Eigen::Vector3d p_W = track.col(posed.frames[k]);
     if (!Seen(p_W)) continue;
-    fitter.Place(poses[k]);
+    fitter.Place(posed.poses[k]);
     ++count;
     for (std::size_t c = 0; c < carriers.size(); ++c) {
       const Eigen::Vector3d p_J = fitter.Local(carriers[c], p_W);
@@ -205,6 +165,68 @@ FittedMarker Attach(Fitter& fitter, const std::vector<int>& carriers, const std:
   return best;
 }
 
+/// Poses from the joint centres of the frames in which the pelvis was seen.
+PosedFrames PosesOfCentres(Fitter& fitter, const MarkerTracks& tracks, const MarkerSet& set) {
+  PosedFrames posed;
+  for (const Eigen::Index frame : Spread(tracks.frames(), kCalibrationFrames)) {
+    Eigen::VectorXd q;
+    if (!fitter.PoseOfCentres(JointCentres(tracks, set, frame), q)) continue;
+    posed.frames.push_back(frame);
+    posed.poses.push_back(std::move(q));
+  }
+  return posed;
+}
+
+/// Where the markers sit: the poses place them, then they place the poses.
+Result<AttachedMarkers> AttachMarkers(Fitter& fitter, const MarkerTracks& tracks,
+                                      const MarkerCarriers& carriers, PosedFrames& posed) {
+  AttachedMarkers attached;
+  for (int round = 0; round < kRounds; ++round) {
+    attached = {};
+    for (std::size_t i = 0; i < tracks.names.size(); ++i) {
+      FittedMarker marker = Attach(fitter, carriers.Of(i), tracks.names[i], tracks.p[i], posed);
+      if (marker.joint < 0) continue;
+      attached.markers.push_back(std::move(marker));
+      attached.tracks.push_back(i);
+    }
+    if (attached.markers.size() < kLeastMarkers) {
+      return InvalidData("fewer than ten markers were seen");
+    }
+    for (std::size_t k = 0; k < posed.frames.size(); ++k) {
+      fitter.PoseOfMarkers(tracks, attached, posed.frames[k], posed.poses[k]);
+    }
+  }
+  return attached;
+}
+
+/// The pose of every frame, each from the one before, and how far the markers are off.
+void FitMotion(Fitter& fitter, const MarkerTracks& tracks, const AttachedMarkers& attached,
+               Eigen::VectorXd q, MarkerFit& out) {
+  out.motion.q.resize(out.motion.skeleton.dof, tracks.frames());
+  out.markers = attached.markers;
+  double sum = 0, count = 0;
+  std::vector<double> counts(out.markers.size(), 0.0);
+  for (Eigen::Index frame = 0; frame < tracks.frames(); ++frame) {
+    fitter.PoseOfMarkers(tracks, attached, frame, q);
+    out.motion.q.col(frame) = q;
+    fitter.Place(q);
+    for (std::size_t i = 0; i < out.markers.size(); ++i) {
+      const Eigen::Vector3d p_W = tracks.p[attached.tracks[i]].col(frame);
+      if (!Seen(p_W)) continue;
+      const double square =
+          (p_W - fitter.World(out.markers[i].joint, out.markers[i].p_J)).squaredNorm();
+      out.markers[i].rms_m += square;
+      ++counts[i];
+      sum += square;
+      ++count;
+    }
+  }
+  for (std::size_t i = 0; i < out.markers.size(); ++i) {
+    if (counts[i] > 0) out.markers[i].rms_m = std::sqrt(out.markers[i].rms_m / counts[i]);
+  }
+  if (count > 0) out.rms_m = std::sqrt(sum / count);
+}
+
 }  // namespace
 
 Result<MarkerFit> FitMarkers(const MarkerTracks& tracks, const MarkerFitOptions& options) {
@@ -220,59 +242,12 @@ Result<MarkerFit> FitMarkers(const MarkerTracks& tracks, const MarkerFitOptions&
   const auto landmarks = body::FindLandmarks(out.motion.skeleton);
   if (!landmarks) return landmarks.error();
   Fitter fitter(out.motion.skeleton, *landmarks);
-  const std::vector<int> carriers = fitter.Carriers(*set);
-  const std::vector<int> known = fitter.KnownCarriers(tracks, *set);
-
-  // Where the markers sit: poses from the joint centres place them, then they place the poses.
-  std::vector<Eigen::Index> frames;
-  std::vector<Eigen::VectorXd> poses;
-  for (const Eigen::Index frame : Spread(tracks.frames(), kCalibrationFrames)) {
-    Eigen::VectorXd q;
-    if (!fitter.PoseOfCentres(JointCentres(tracks, *set, frame), q)) continue;
-    frames.push_back(frame);
-    poses.push_back(std::move(q));
-  }
-  if (frames.empty()) return InvalidData("no frame has all the markers of the pelvis");
-  std::vector<int> tracks_of;
-  for (int round = 0; round < kRounds; ++round) {
-    out.markers.clear();
-    tracks_of.clear();
-    for (std::size_t i = 0; i < tracks.names.size(); ++i) {
-      FittedMarker marker = Attach(fitter, known[i] < 0 ? carriers : std::vector<int>{known[i]},
-                                   tracks.names[i], tracks.p[i], frames, poses);
-      if (marker.joint < 0) continue;
-      out.markers.push_back(std::move(marker));
-      tracks_of.push_back(static_cast<int>(i));
-    }
-    if (out.markers.size() < kLeastMarkers) return InvalidData("fewer than ten markers were seen");
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      fitter.PoseOfMarkers(tracks, out.markers, tracks_of, frames[k], poses[k]);
-    }
-  }
-
-  out.motion.q.resize(out.motion.skeleton.dof, tracks.frames());
-  Eigen::VectorXd q = poses.front();
-  double sum = 0, count = 0;
-  std::vector<double> counts(out.markers.size(), 0.0);
-  for (Eigen::Index frame = 0; frame < tracks.frames(); ++frame) {
-    fitter.PoseOfMarkers(tracks, out.markers, tracks_of, frame, q);
-    out.motion.q.col(frame) = q;
-    fitter.Place(q);
-    for (std::size_t i = 0; i < out.markers.size(); ++i) {
-      const Eigen::Vector3d p_W = tracks.p[MarkerIndex(tracks_of[i])].col(frame);
-      if (!Seen(p_W)) continue;
-      const double square =
-          (p_W - fitter.World(out.markers[i].joint, out.markers[i].p_J)).squaredNorm();
-      out.markers[i].rms_m += square;
-      ++counts[i];
-      sum += square;
-      ++count;
-    }
-  }
-  for (std::size_t i = 0; i < out.markers.size(); ++i) {
-    if (counts[i] > 0) out.markers[i].rms_m = std::sqrt(out.markers[i].rms_m / counts[i]);
-  }
-  if (count > 0) out.rms_m = std::sqrt(sum / count);
+  PosedFrames posed = PosesOfCentres(fitter, tracks, *set);
+  if (posed.frames.empty()) return InvalidData("no frame has all the markers of the pelvis");
+  const auto attached = AttachMarkers(
+      fitter, tracks, FindCarriers(out.motion.skeleton, *landmarks, tracks, *set), posed);
+  if (!attached) return attached.error();
+  FitMotion(fitter, tracks, *attached, posed.poses.front(), out);
   return out;
 }
 

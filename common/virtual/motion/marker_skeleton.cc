@@ -60,10 +60,8 @@ class Lengths {
   std::vector<Centres> frames_;
 };
 
-}  // namespace
-
-Result<FittedSkeleton> FitLengths(const MarkerTracks& tracks, const MarkerSet& set, body::Sex sex) {
-  const Lengths lengths(tracks, set);
+/// Mean of both legs, m.
+double LegLength(const Lengths& lengths) {
   double legs_m = 0;
   for (int side = 0; side < 2; ++side) {
     legs_m += (lengths.Between(LandmarkOfSide(Landmark::kLeftHip, side),
@@ -72,78 +70,110 @@ Result<FittedSkeleton> FitLengths(const MarkerTracks& tracks, const MarkerSet& s
                                LandmarkOfSide(Landmark::kLeftAnkle, side))) /
               2;
   }
-  const double trunk_m = lengths.Trunk();
-  const double height_m = body::StatureOfLengths(sex) * (legs_m + trunk_m);
-  if (!(height_m > 0.5 && height_m < 2.6)) {
-    return InvalidData("the joint centres make a person of " + std::to_string(height_m) +
-                       " m: are the markers in W (z up), and of that set?");
+  return legs_m;
+}
+
+/// Gives a skeleton the lengths between the joint centres.
+class SkeletonScaling {
+ public:
+  SkeletonScaling(const Lengths& lengths, const body::Landmarks& landmarks,
+                  body::Skeleton& skeleton)
+      : lengths_(lengths), landmarks_(landmarks), skeleton_(skeleton) {}
+
+  /// The bones of arms and legs; hips and shoulders as far apart as they were seen.
+  void ScaleLimbs() {
+    const double hips_m = lengths_.Between(Landmark::kLeftHip, Landmark::kRightHip);
+    const double shoulders_m = lengths_.Between(Landmark::kLeftShoulder, Landmark::kRightShoulder);
+    for (int side = 0; side < 2; ++side) {
+      const auto here = [side](Landmark left) { return LandmarkOfSide(left, side); };
+      Stretch(here(Landmark::kLeftHip), here(Landmark::kLeftKnee));
+      Stretch(here(Landmark::kLeftKnee), here(Landmark::kLeftAnkle));
+      Stretch(here(Landmark::kLeftAnkle), here(Landmark::kLeftToe));
+      Stretch(here(Landmark::kLeftShoulder), here(Landmark::kLeftElbow));
+      Stretch(here(Landmark::kLeftElbow), here(Landmark::kLeftWrist));
+      const double sign = side == 0 ? 1 : -1;
+      Offset(landmarks_[here(Landmark::kLeftHip)]).y() = sign * hips_m / 2;
+      if (shoulders_m > 0) {
+        Offset(landmarks_[here(Landmark::kLeftShoulder)]).y() = sign * shoulders_m / 2;
+      }
+    }
   }
-  FittedSkeleton fitted{body::StandardPerson(height_m, sex), height_m};
-  std::vector<body::Joint>& joints = fitted.skeleton.joints;
-  const auto landmarks = body::FindLandmarks(fitted.skeleton);
-  if (!landmarks) return landmarks.error();
-  std::string bad;
-  const auto offset = [&](int joint) -> Eigen::Vector3d& {
-    return joints[static_cast<std::size_t>(joint)].offset_m;
-  };
-  // Stretches the bones from `of` (not itself) down to `to` by the ratio of their lengths.
-  const auto stretch = [&](Landmark of, Landmark to) {
-    const double measured_m = lengths.Between(of, to);
+
+  /// The back, so that hips and shoulders are `trunk_m` apart.
+  void ScaleBack(double trunk_m) {
+    double back_m = 0;
+    const int chest = landmarks_[Landmark::kLeftClavicle];
+    for (int i = chest; i > 0; i = skeleton_.joint(i).parent) back_m += Offset(i).z();
+    const double rest_m = Offset(landmarks_[Landmark::kLeftShoulder]).z() -
+                          Offset(landmarks_[Landmark::kLeftHip]).z();
+    if (!(trunk_m > 0 && back_m > 0)) return;
+    const double ratio = std::clamp((trunk_m - rest_m) / back_m, kLeastRatio, kMostRatio);
+    for (int i = chest; i > 0; i = skeleton_.joint(i).parent) {
+      for (body::Joint& joint : skeleton_.joints) {  // All that hang on the same bone.
+        if (joint.parent == skeleton_.joint(i).parent && joint.parent > 0 &&
+            joint.offset_m == Offset(i) &&
+            &joint != &skeleton_.joints[static_cast<std::size_t>(i)]) {
+          joint.offset_m *= ratio;
+        }
+      }
+      Offset(i) *= ratio;
+    }
+  }
+
+  /// Bones of a length that no person has, and that length; empty when there are none.
+  const std::string& impossible() const { return impossible_; }
+
+ private:
+  Eigen::Vector3d& Offset(int joint) {
+    return skeleton_.joints[static_cast<std::size_t>(joint)].offset_m;
+  }
+
+  /// Stretches the bones from `of` (not itself) down to `to` by the ratio of their lengths.
+  void Stretch(Landmark of, Landmark to) {
+    const double measured_m = lengths_.Between(of, to);
     double standard_m = 0;
-    const int from = (*landmarks)[of];
-    for (int i = (*landmarks)[to]; i != from; i = fitted.skeleton.joint(i).parent) {
-      standard_m += offset(i).norm();
+    const int from = landmarks_[of];
+    for (int i = landmarks_[to]; i != from; i = skeleton_.joint(i).parent) {
+      standard_m += Offset(i).norm();
     }
     double ratio = measured_m / standard_m;
     // A toe's marker is anywhere from the ball of the foot to the tip of the shoe.
     if (to == Landmark::kLeftToe || to == Landmark::kRightToe) ratio = std::clamp(ratio, 0.8, 1.4);
     if (measured_m == 0) return;  // Never seen: the standard one.
     if (!(ratio > kLeastRatio && ratio < kMostRatio)) {
-      bad += (bad.empty() ? "" : ", ") + std::string(LandmarkName(of)) + " to " +
-             std::string(LandmarkName(to)) + " " + std::to_string(measured_m) + " m";
+      impossible_ += (impossible_.empty() ? "" : ", ") + std::string(LandmarkName(of)) + " to " +
+                     std::string(LandmarkName(to)) + " " + std::to_string(measured_m) + " m";
       return;
     }
-    for (int i = (*landmarks)[to]; i != from; i = fitted.skeleton.joint(i).parent) {
-      offset(i) *= ratio;
-    }
-  };
-  const double hips_m = lengths.Between(Landmark::kLeftHip, Landmark::kRightHip);
-  const double shoulders_m = lengths.Between(Landmark::kLeftShoulder, Landmark::kRightShoulder);
-  for (int side = 0; side < 2; ++side) {
-    const auto here = [side](Landmark left) { return LandmarkOfSide(left, side); };
-    stretch(here(Landmark::kLeftHip), here(Landmark::kLeftKnee));
-    stretch(here(Landmark::kLeftKnee), here(Landmark::kLeftAnkle));
-    stretch(here(Landmark::kLeftAnkle), here(Landmark::kLeftToe));
-    stretch(here(Landmark::kLeftShoulder), here(Landmark::kLeftElbow));
-    stretch(here(Landmark::kLeftElbow), here(Landmark::kLeftWrist));
-    const double sign = side == 0 ? 1 : -1;
-    offset((*landmarks)[here(Landmark::kLeftHip)]).y() = sign * hips_m / 2;
-    if (shoulders_m > 0) {
-      offset((*landmarks)[here(Landmark::kLeftShoulder)]).y() = sign * shoulders_m / 2;
-    }
+    for (int i = landmarks_[to]; i != from; i = skeleton_.joint(i).parent) Offset(i) *= ratio;
   }
-  if (!bad.empty()) {
-    return InvalidData("no person has these lengths: " + bad +
+
+  const Lengths& lengths_;
+  const body::Landmarks& landmarks_;
+  body::Skeleton& skeleton_;
+  std::string impossible_;
+};
+
+}  // namespace
+
+Result<FittedSkeleton> FitLengths(const MarkerTracks& tracks, const MarkerSet& set, body::Sex sex) {
+  const Lengths lengths(tracks, set);
+  const double trunk_m = lengths.Trunk();
+  const double height_m = body::StatureOfLengths(sex) * (LegLength(lengths) + trunk_m);
+  if (!(height_m > 0.5 && height_m < 2.6)) {
+    return InvalidData("the joint centres make a person of " + std::to_string(height_m) +
+                       " m: are the markers in W (z up), and of that set?");
+  }
+  FittedSkeleton fitted{body::StandardPerson(height_m, sex), height_m};
+  const auto landmarks = body::FindLandmarks(fitted.skeleton);
+  if (!landmarks) return landmarks.error();
+  SkeletonScaling scaling(lengths, *landmarks, fitted.skeleton);
+  scaling.ScaleLimbs();
+  if (!scaling.impossible().empty()) {
+    return InvalidData("no person has these lengths: " + scaling.impossible() +
                        "; are the markers named as in set " + std::string(set.name) + "?");
   }
-  // The back is stretched so that hips and shoulders are as far apart as they were seen.
-  double back_m = 0;
-  const int chest = (*landmarks)[Landmark::kLeftClavicle];
-  for (int i = chest; i > 0; i = fitted.skeleton.joint(i).parent) back_m += offset(i).z();
-  const double rest_m = offset((*landmarks)[Landmark::kLeftShoulder]).z() -
-                        offset((*landmarks)[Landmark::kLeftHip]).z();
-  if (trunk_m > 0 && back_m > 0) {
-    const double ratio = std::clamp((trunk_m - rest_m) / back_m, kLeastRatio, kMostRatio);
-    for (int i = chest; i > 0; i = fitted.skeleton.joint(i).parent) {
-      for (body::Joint& joint : joints) {  // All that hang on the same bone.
-        if (joint.parent == fitted.skeleton.joint(i).parent && joint.parent > 0 &&
-            joint.offset_m == offset(i) && &joint != &joints[static_cast<std::size_t>(i)]) {
-          joint.offset_m *= ratio;
-        }
-      }
-      offset(i) *= ratio;
-    }
-  }
+  scaling.ScaleBack(trunk_m);
   return fitted;
 }
 
