@@ -19,10 +19,7 @@ SPLIT = "long since before this check; to be split by what it does"
 # Path, or path:function; the most lines it may have, and why.
 EXCEPTIONS = {
     "common/body/standard_person.cc:Bones": (69, "a table of bones"),
-    "daemon/offline/bench/publish_to_client.cc:PublishToClient": (77, SPLIT),
-    "daemon/offline/eval/momentum/momentum_command.cc:Evaluate": (90, SPLIT),
     "daemon/offline/eval/pose/pose_command.cc:AddFlags": (91, "a table of options"),
-    "daemon/offline/learning/cascade.cc:TrainCascade": (78, SPLIT),
     "daemon/sensor/setup/book.cc": (326, SPLIT),
 }
 

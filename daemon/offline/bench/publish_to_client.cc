@@ -99,87 +99,136 @@ class BareReader {
   std::optional<transport::Socket> socket_;
 };
 
-double MicrosecondsSince(std::int64_t stamp_ns) {
-  return static_cast<double>(clock::MonotonicNs() - stamp_ns) * 1e-3;
-}
+/// The servers that are compared, on a thread of their own.
+class Publishers {
+ public:
+  Publishers()
+      : to_viewer_(thread_.io(), ServerOptionsFor(500, 1), {}),
+        to_handler_(thread_.io(), ServerOptionsFor(500, 1), {}),
+        bare_(thread_.io()) {}
+  ~Publishers() {
+    thread_.Do([this] {
+      to_viewer_.Stop("done");
+      to_handler_.Stop("done");
+    });
+  }
+  Publishers(const Publishers&) = delete;
+  Publishers& operator=(const Publishers&) = delete;
+
+  Result<void> Listen() {
+    Result<void> listening;
+    thread_.Do([&] {
+      listening = to_viewer_.Listen(UnixAddress("ours"));
+      if (listening) listening = to_handler_.Listen(UnixAddress("handler"));
+      if (listening) listening = bare_.Listen(UnixAddress("bare"));
+    });
+    return listening;
+  }
+
+  void PublishToViewer() { Publish(to_viewer_); }
+  void PublishToHandler() { Publish(to_handler_); }
+  void PublishBare() {
+    Pace([this] { bare_.Publish(StampedFrame(payload_bytes_)); });
+  }
+  std::size_t payload_bytes() const { return payload_bytes_; }
+
+ private:
+  void Publish(transport::Server& server) {
+    Pace([&] {
+      auto serialised = channels_;  // footingd serialises them again and hands them over.
+      server.Publish(clock::MonotonicNs(), std::move(serialised));
+    });
+  }
+  void Pace(const std::function<void()>& publish) {
+    thread_.Pace(kPublishTicks, kPublishIntervalNs, publish);
+  }
+
+  const std::vector<transport::ChannelBytes> channels_ = ExampleTick();
+  const std::size_t payload_bytes_ = PayloadBytes(channels_);
+  LoopThread thread_;
+  transport::Server to_viewer_;
+  transport::Server to_handler_;
+  BareFanOut bare_;
+};
+
+/// One reader of each server, on another thread; they measure how long a tick has been under way.
+class Readers {
+ public:
+  explicit Readers(std::size_t payload_bytes) {
+    transport::ClientOptions options;
+    options.address = UnixAddress("handler");
+    transport::ClientHandlers handlers;
+    handlers.on_tick = [this](const v1::Tick& tick) {
+      if (!tick.snapshot()) AddDelaySince(tick.host_ns());
+    };
+    thread_.Do([&] {
+      client_.emplace(thread_.io(), options, handlers);
+      client_->Start();
+      viewer_.emplace(thread_.io(), UnixAddress("ours"), Viewer::Greeting::kSubscribe, true,
+                      [this](std::string_view payload) {
+                        // Welcome, Subscribed and the snapshot are shorter.
+                        if (payload.size() >= kShortestTick) AddDelaySince(HostNsOf(payload));
+                      });
+      bare_.emplace(thread_.io(), UnixAddress("bare"), payload_bytes + transport::kLengthBytes,
+                    [this](std::string_view payload) { AddDelaySince(StampOf(payload)); });
+    });
+  }
+  ~Readers() {
+    thread_.Do([this] {
+      client_.reset();
+      viewer_.reset();
+      bare_.reset();
+    });
+  }
+  Readers(const Readers&) = delete;
+  Readers& operator=(const Readers&) = delete;
+
+  bool WaitUntilConnected() {
+    return WaitUntil(thread_, [this] {
+      return client_->state() == transport::LinkState::kLive && viewer_->connected() &&
+             bare_->connected();
+    });
+  }
+
+  /// Median delay of what `publish` publishes until it returns.
+  double MedianDelayUs(const std::function<void()>& publish) {
+    thread_.Do([this] { delays_us_.clear(); });
+    publish();
+    double p50_us = 0;
+    thread_.Do([&] { p50_us = text::Quantile(delays_us_, 0.5); });
+    return p50_us;
+  }
+
+ private:
+  void AddDelaySince(std::int64_t stamp_ns) {
+    delays_us_.push_back(static_cast<double>(clock::MonotonicNs() - stamp_ns) * 1e-3);
+  }
+
+  std::vector<double> delays_us_;  // Of the thread.
+  LoopThread thread_;
+  std::optional<transport::Client> client_;
+  std::optional<Viewer> viewer_;
+  std::optional<BareReader> bare_;
+};
 
 }  // namespace
 
 Result<Rows> PublishToClient() {
-  const auto channels = ExampleTick();
-  const std::size_t payload_bytes = PayloadBytes(channels);
-  std::vector<double> delays_us;  // Of the client's thread.
-  LoopThread server_thread;
-  LoopThread client_thread;
-
-  transport::Server server(server_thread.io(), ServerOptionsFor(500, 1), {});
-  transport::Server to_handler(server_thread.io(), ServerOptionsFor(500, 1), {});
-  BareFanOut bare(server_thread.io());
-  Result<void> listening;
-  server_thread.Do([&] {
-    listening = server.Listen(UnixAddress("ours"));
-    if (listening) listening = to_handler.Listen(UnixAddress("handler"));
-    if (listening) listening = bare.Listen(UnixAddress("bare"));
-  });
-  if (!listening) return listening.error();
-
-  transport::ClientOptions options;
-  options.address = UnixAddress("handler");
-  transport::ClientHandlers handlers;
-  handlers.on_tick = [&](const v1::Tick& tick) {
-    if (!tick.snapshot()) delays_us.push_back(MicrosecondsSince(tick.host_ns()));
+  Publishers publishers;
+  if (auto listening = publishers.Listen(); !listening) return listening.error();
+  Readers readers(publishers.payload_bytes());
+  if (!readers.WaitUntilConnected()) {
+    return Failure("publish_to_client_p50: the clients did not connect");
+  }
+  const auto publish_bare = [&] {
+    return readers.MedianDelayUs([&] { publishers.PublishBare(); });
   };
-  std::optional<transport::Client> client;
-  std::optional<Viewer> viewer;
-  std::optional<BareReader> reader;
-  client_thread.Do([&] {
-    client.emplace(client_thread.io(), options, handlers);
-    client->Start();
-    viewer.emplace(client_thread.io(), UnixAddress("ours"), Viewer::Greeting::kSubscribe, true,
-                   [&](std::string_view payload) {
-                     if (payload.size() < kShortestTick) return;  // Welcome, Subscribed, snapshot.
-                     delays_us.push_back(MicrosecondsSince(HostNsOf(payload)));
-                   });
-    reader.emplace(client_thread.io(), UnixAddress("bare"), payload_bytes + transport::kLengthBytes,
-                   [&](std::string_view payload) {
-                     delays_us.push_back(MicrosecondsSince(StampOf(payload)));
-                   });
-  });
-  const bool connected = WaitUntil(client_thread, [&] {
-    return client->state() == transport::LinkState::kLive && viewer->connected() &&
-           reader->connected();
-  });
-  if (!connected) return Failure("publish_to_client_p50: the clients did not connect");
-
-  const auto run = [&](const std::function<void()>& publish) {
-    client_thread.Do([&] { delays_us.clear(); });
-    server_thread.Pace(kPublishTicks, kPublishIntervalNs, publish);
-    double p50_us = 0;
-    client_thread.Do([&] { p50_us = text::Quantile(delays_us, 0.5); });
-    return p50_us;
-  };
-  const auto publish_on = [&](transport::Server& one) {
-    return run([&] {
-      auto serialised = channels;  // footingd serialises them again and hands them over.
-      one.Publish(clock::MonotonicNs(), std::move(serialised));
-    });
-  };
-  const auto publish_bare = [&] { return run([&] { bare.Publish(StampedFrame(payload_bytes)); }); };
   const Row bytes = RunPairs(
-      "publish_to_client_p50", "us", kPublishPairs, [&] { return publish_on(server); },
-      publish_bare);
+      "publish_to_client_p50", "us", kPublishPairs,
+      [&] { return readers.MedianDelayUs([&] { publishers.PublishToViewer(); }); }, publish_bare);
   const Row parsed = RunPairs(
-      "publish_to_handler_p50", "us", kPublishPairs, [&] { return publish_on(to_handler); },
-      publish_bare);
-  client_thread.Do([&] {
-    client.reset();
-    viewer.reset();
-    reader.reset();
-  });
-  server_thread.Do([&] {
-    server.Stop("done");
-    to_handler.Stop("done");
-  });
+      "publish_to_handler_p50", "us", kPublishPairs,
+      [&] { return readers.MedianDelayUs([&] { publishers.PublishToHandler(); }); }, publish_bare);
   return Rows{bytes, parsed};
 }
 

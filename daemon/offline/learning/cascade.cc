@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "daemon/offline/learning/least_squares.h"
 #include "daemon/offline/learning/scaling.h"
@@ -94,6 +95,65 @@ double Mse(const Units& units, const Eigen::MatrixXd& weights, const Scaling& sc
   return (values - targets).squaredNorm() / static_cast<double>(targets.size());
 }
 
+/// Linear outputs learn targets of mean 0 and standard deviation 1; sigmoid ones the targets.
+Scaling ScalingOfTargets(const Eigen::MatrixXd& targets, Outputs outputs) {
+  if (outputs != Outputs::kLinear) return Scaling::None(targets.cols());
+  Scaling scaling = Scaling::Of(targets);
+  scaling.scale = (scaling.scale.array() > 0).select(scaling.scale, 1);
+  return scaling;
+}
+
+/// The network to go back to, and whether more hidden units still pay.
+class BestSoFar {
+ public:
+  /// The outputs over `hidden` units. A network that reaches the goal is taken in any case.
+  void Add(int hidden, double mse, const Eigen::MatrixXd& weights, bool goal_reached,
+           double improvement) {
+    if (mse < mse_ || goal_reached) {
+      mse_ = mse;
+      weights_ = weights;
+      hidden_ = hidden;
+    }
+    if (mse < (1 - improvement) * improved_mse_) {
+      improved_mse_ = mse;
+      improved_hidden_ = hidden;
+    }
+  }
+
+  int hidden() const { return hidden_; }
+  const Eigen::MatrixXd& weights() const { return weights_; }  ///< A column for each output.
+  /// Units added since the last improvement that was large enough to go on for.
+  int WithoutImprovement(int hidden) const { return hidden - improved_hidden_; }
+
+ private:
+  Eigen::MatrixXd weights_;
+  int hidden_ = 0;
+  double mse_ = std::numeric_limits<double>::infinity();
+  int improved_hidden_ = 0;
+  double improved_mse_ = std::numeric_limits<double>::infinity();
+};
+
+cascade::CascadeNetwork ToNetwork(const BestSoFar& best, std::vector<float> hidden_weights,
+                                  const Scaling& in, const Scaling& out, Outputs outputs) {
+  const auto inputs = static_cast<std::size_t>(in.mean.size());
+  const auto hidden = static_cast<std::size_t>(best.hidden());
+  hidden_weights.resize(cascade::HiddenWeights(inputs, hidden));
+  Result<cascade::CascadeNetwork> network = cascade::CascadeNetwork::Create(
+      {.inputs = inputs,
+       .hidden = hidden,
+       .outputs = static_cast<std::size_t>(out.mean.size()),
+       .sigmoid_outputs = outputs == Outputs::kSigmoid,
+       .input_mean = ToFloats(in.mean),
+       .input_scale = ToFloats(in.scale),
+       .hidden_weights = std::move(hidden_weights),
+       .output_weights = ToFloats(best.weights()),  // Column by column: a row of the network each.
+       .output_mean = ToFloats(out.mean),
+       .output_scale = ToFloats(out.scale.cwiseInverse())},
+      "trained cascade");
+  FOOTING_CHECK(network.ok());
+  return *network;
+}
+
 }  // namespace
 
 double MeanSquaredError(const cascade::CascadeNetwork& network, const Examples& examples) {
@@ -116,13 +176,8 @@ CascadeResult TrainCascade(const Examples& train, const Examples& validation,
                            const CascadeOptions& options, std::uint64_t seed) {
   FOOTING_CHECK(train.rows() > 0 && train.targets.rows() == train.rows());
   noise::Random random(seed);
-  const Eigen::Index outputs = train.targets.cols();
   const Scaling in = Scaling::Of(train.inputs);
-  Scaling out = Scaling::None(outputs);
-  if (options.outputs == Outputs::kLinear) {
-    out = Scaling::Of(train.targets);
-    out.scale = (out.scale.array() > 0).select(out.scale, 1);
-  }
+  const Scaling out = ScalingOfTargets(train.targets, options.outputs);
   const Eigen::Index columns_max = 1 + train.inputs.cols() + options.hidden_max;
   Units units(in.Apply(train.inputs), columns_max);
   Units held_out(
@@ -132,29 +187,19 @@ CascadeResult TrainCascade(const Examples& train, const Examples& validation,
   layer.Draw(units.columns, random);
 
   std::vector<float> hidden_weights;
-  Eigen::MatrixXd best_weights;
-  double best_mse = std::numeric_limits<double>::infinity();
-  double best_marked = best_mse;  // The last improvement that was large enough to go on for.
-  int best_hidden = 0, marked_hidden = 0, epochs = 0;
+  BestSoFar best;
+  int epochs = 0;
   bool goal_reached = false;
   for (int hidden = 0;; ++hidden) {
     epochs += layer.Train(units);
     const Eigen::MatrixXd weights = layer.Weights();
     const double train_mse = Mse(units, weights, out, train.targets, options.outputs);
-    const double judged = validation.rows() > 0
-                              ? Mse(held_out, weights, out, validation.targets, options.outputs)
-                              : train_mse;
+    const bool validates = validation.rows() > 0;
+    const double mse =
+        validates ? Mse(held_out, weights, out, validation.targets, options.outputs) : train_mse;
     goal_reached = layer.AllNear() || train_mse <= options.mse_goal;
-    if (judged < best_mse || goal_reached) {
-      best_mse = judged;
-      best_weights = weights;
-      best_hidden = hidden;
-    }
-    if (judged < (1 - options.improvement) * best_marked) {
-      best_marked = judged;
-      marked_hidden = hidden;
-    }
-    const bool stagnates = validation.rows() > 0 && hidden - marked_hidden >= options.patience;
+    best.Add(hidden, mse, weights, goal_reached, options.improvement);
+    const bool stagnates = validates && best.WithoutImprovement(hidden) >= options.patience;
     if (goal_reached || stagnates || hidden == options.hidden_max) break;
 
     const NewUnit unit = TrainCandidates(layer.Task(units), options.candidates, random);
@@ -162,33 +207,17 @@ CascadeResult TrainCascade(const Examples& train, const Examples& validation,
     const std::vector<float> row = ToFloats(unit.weights);
     hidden_weights.insert(hidden_weights.end(), row.begin(), row.end());
     units.Add(unit.weights);
-    if (validation.rows() > 0) held_out.Add(unit.weights);
+    if (validates) held_out.Add(unit.weights);
     layer.Add(unit);
   }
 
-  const auto inputs = static_cast<std::size_t>(train.inputs.cols());
-  const auto kept = static_cast<std::size_t>(best_hidden);
-  hidden_weights.resize(cascade::HiddenWeights(inputs, kept));
-  Result<cascade::CascadeNetwork> network = cascade::CascadeNetwork::Create(
-      {.inputs = inputs,
-       .hidden = kept,
-       .outputs = static_cast<std::size_t>(outputs),
-       .sigmoid_outputs = options.outputs == Outputs::kSigmoid,
-       .input_mean = ToFloats(in.mean),
-       .input_scale = ToFloats(in.scale),
-       .hidden_weights = hidden_weights,
-       .output_weights = ToFloats(best_weights),  // Column by column: a row of the network each.
-       .output_mean = ToFloats(out.mean),
-       .output_scale = ToFloats(out.scale.cwiseInverse())},
-      "trained cascade");
-  FOOTING_CHECK(network.ok());
-  CascadeResult result{.network = *network,
-                       .hidden_units = best_hidden,
-                       .epochs = epochs,
-                       .train_mse = MeanSquaredError(*network, train),
-                       .validation_mse = MeanSquaredError(*network, validation),
-                       .goal_reached = goal_reached};
-  return result;
+  const auto network = ToNetwork(best, std::move(hidden_weights), in, out, options.outputs);
+  return {.network = network,
+          .hidden_units = best.hidden(),
+          .epochs = epochs,
+          .train_mse = MeanSquaredError(network, train),
+          .validation_mse = MeanSquaredError(network, validation),
+          .goal_reached = goal_reached};
 }
 
 }  // namespace footing::learning

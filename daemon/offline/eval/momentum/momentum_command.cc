@@ -6,121 +6,85 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "daemon/offline/eval/momentum/momentum_score.h"
 #include "daemon/offline/eval/momentum/offline.h"
 #include "daemon/offline/eval/momentum/scene.h"
 #include "daemon/offline/eval/report/print_report.h"
-#include "daemon/offline/eval/scores/contact_score.h"
 #include "daemon/simulation/momentum/best_estimator.h"
 #include "daemon/simulation/momentum/paper_estimator.h"
 
 namespace footing::eval {
 namespace {
 
-using momentum::kFeet;
 using nlohmann::ordered_json;
 
-class Rms {
- public:
-  void Add(double error) {
-    sum_ += error * error;
-    ++count_;
+/// The T-pose at the scene's beginning, and the first frame after it.
+struct CalibratedStart {
+  momentum::TPose pose;
+  std::size_t frame = 0;
+};
+
+Result<CalibratedStart> Calibrate(const MomentumScene& scene, const std::string& motion) {
+  momentum::TPoseCalibration calibration;
+  for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+    if (!calibration.Advance(scene.frames[i].loads, 1 / scene.rate_hz)) continue;
+    return CalibratedStart{calibration.result(), i + 1};
   }
-  double value() const { return count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : 0; }
-  double centimetres() const { return 100 * value(); }
+  return InvalidData(motion + ": its T-pose never stood still on both boards");
+}
+
+momentum::BestConfig BestConfigOf(const MomentumOptions& options) {
+  momentum::BestConfig config;
+  config.lag_s = options.lag_s;
+  return config;
+}
+
+/// The estimator of either mode, and the time that it takes.
+class TimedEstimator {
+ public:
+  TimedEstimator(const MomentumOptions& options, const momentum::Subject& subject,
+                 const momentum::TPose& pose, double step_s)
+      : paper_mode_(options.paper),
+        best_(BestConfigOf(options), subject, pose, step_s),
+        paper_({}, subject, pose, step_s) {}
+
+  const momentum::Estimate& Advance(const momentum::ContactLoads& loads) {
+    const auto began = std::chrono::steady_clock::now();
+    const momentum::Estimate& estimate =
+        paper_mode_ ? paper_.Advance(loads, std::nullopt) : best_.Advance(loads);
+    busy_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return estimate;
+  }
+  double busy_s() const { return busy_s_; }
 
  private:
-  double sum_ = 0;
-  std::size_t count_ = 0;
+  const bool paper_mode_;
+  momentum::BestEstimator best_;
+  momentum::PaperEstimator paper_;
+  double busy_s_ = 0;
 };
 
 Result<ordered_json> Evaluate(const MomentumOptions& options, bool offline) {
   const auto scene = MakeMomentumScene(options);
   if (!scene) return scene.error();
+  const auto start = Calibrate(*scene, options.motion);
+  if (!start) return start.error();
   const double step_s = 1 / scene->rate_hz;
-  momentum::TPoseCalibration calibration;
-  std::size_t start = 0;
-  while (start < scene->frames.size() && !calibration.Advance(scene->frames[start].loads, step_s))
-    ++start;
-  if (!calibration.complete())
-    return InvalidData(options.motion + ": its T-pose never stood still on both boards");
-  ++start;
-  const momentum::TPose& pose = calibration.result();
-  momentum::BestConfig config;
-  config.lag_s = options.lag_s;
-  momentum::BestEstimator best(config, scene->subject, pose, step_s);
-  momentum::PaperEstimator paper({}, scene->subject, pose, step_s);
-
-  std::array<Eigen::Vector3d, kFeet>
-      rest;  // From the place of the COP at rest to the sole's middle.
-  for (std::size_t f = 0; f < kFeet; ++f)
-    rest[f] = scene->frames[0].feet[f].middle_m - pose.p_WP_m[f];
-  Rms forward, lateral, vertical, first_minute, last_minute, cop_forward, cop_lateral, place;
-  std::array<Rms, 3> momentum_error, momentum_true;
-  ContactScore contacts;
-  double nees = 0, busy_s = 0;
-  std::size_t judged = 0;
-  bool finite = true;
   const auto lag = static_cast<std::size_t>(std::lround(options.lag_s / step_s));
-  const auto minute = static_cast<std::size_t>(60 / step_s);
-  for (std::size_t i = start; i < scene->frames.size(); ++i) {
-    const MomentumFrame& now = scene->frames[i];
-    const auto began = std::chrono::steady_clock::now();
-    const momentum::Estimate& told =
-        options.paper ? paper.Advance(now.loads, std::nullopt) : best.Advance(now.loads);
-    busy_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    const MomentumFrame& then = scene->frames[i - lag];
-    const Eigen::Vector3d error = told.p_WC_m - then.com_m;
-    finite = finite && error.allFinite() && told.angular_momentum_kgm2ps.allFinite();
-    forward.Add(error.x());
-    lateral.Add(error.y());
-    vertical.Add(error.z());
-    if (i < start + minute) first_minute.Add(error.z());
-    if (i + minute >= scene->frames.size()) last_minute.Add(error.z());
-    nees += error.z() * error.z() / told.position_variance_m2.z();
-    ++judged;
-    const auto cop = PressureOf(now.loads, 100);
-    if (cop.cop_valid) {
-      cop_forward.Add(cop.p_WP_m.x() - now.com_m.x());
-      cop_lateral.Add(cop.p_WP_m.y() - now.com_m.y());
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      momentum_error[k].Add(told.angular_momentum_kgm2ps(axis) - now.angular_momentum(axis));
-      momentum_true[k].Add(now.angular_momentum(axis));
-    }
-    for (std::size_t f = 0; f < kFeet; ++f) {
-      contacts.Add(f, now.feet[f].load_n > kContactN, told.feet[f].contact, step_s);
-      if (contacts.true_since_s[f] > kSettledContactS)
-        place.Add((told.feet[f].p_WF_m + rest[f] - now.feet[f].middle_m).head<2>().norm());
-    }
+  TimedEstimator estimator(options, scene->subject, start->pose, step_s);
+  MomentumScore score(*scene, start->pose, start->frame);
+  for (std::size_t i = start->frame; i < scene->frames.size(); ++i) {
+    score.Add(i, i - lag, estimator.Advance(scene->frames[i].loads));
   }
   ordered_json out;
-  out["frames"] = judged;
+  out["frames"] = score.frames();
   out["rate_hz"] = scene->rate_hz;
   out["mode"] = options.paper ? "paper" : "best";
   out["lag_ms"] = 1000 * static_cast<double>(lag) * step_s;
-  out["mass_kg"] = pose.mass_kg;
-  out["finite"] = finite;
-  out["cop_outside_sensors_share"] = scene->outside_share;
-  out["com_forward_rms_cm"] = forward.centimetres();
-  out["com_lateral_rms_cm"] = lateral.centimetres();
-  out["com_horizontal_rms_cm"] = std::hypot(forward.centimetres(), lateral.centimetres());
-  out["com_vertical_rms_cm"] = vertical.centimetres();
-  out["com_vertical_first_minute_rms_cm"] = first_minute.centimetres();
-  out["com_vertical_last_minute_rms_cm"] = last_minute.centimetres();
-  out["com_vertical_nees"] = nees / static_cast<double>(judged);
-  out["cop_forward_rms_cm"] = cop_forward.centimetres();
-  out["cop_lateral_rms_cm"] = cop_lateral.centimetres();
-  out["foot_position_rms_cm"] = place.centimetres();
-  out["contact_f1"] = contacts.F1();
-  out["landings"] = contacts.landings;
-  out["landing_delay_ms"] = 1000 * contacts.mean_delay_s();
-  out["landing_delay_worst_ms"] = 1000 * contacts.worst_delay_s;
-  ordered_json& angular = out["angular_momentum_error_kgm2ps"];
-  for (std::size_t k = 0; k < 3; ++k)
-    angular.push_back({{"error", momentum_error[k].value()}, {"true", momentum_true[k].value()}});
-  out["frame_us"] = 1e6 * busy_s / static_cast<double>(judged);
-  if (offline) out["offline"] = OfflineJson(*scene, pose, start, start);
+  out["mass_kg"] = start->pose.mass_kg;
+  score.WriteTo(out);
+  out["frame_us"] = 1e6 * estimator.busy_s() / static_cast<double>(score.frames());
+  if (offline) out["offline"] = OfflineJson(*scene, start->pose, start->frame, start->frame);
   return out;
 }
 
