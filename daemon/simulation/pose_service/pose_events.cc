@@ -27,9 +27,9 @@ std::string Kilograms(double mass_kg) {
 /// Of Wiimotes alone: trackers lose hands and find them all the time.
 void PoseEvents::AddHands(const PoseFrame& frame, std::int64_t now_ns, v1::Events& events) {
   for (std::size_t side = 0; side < hand_trouble_.size(); ++side) {
-    const HandTrouble now = frame.hand_trouble[side];
+    const HandTrouble now = frame.input.hand_trouble[side];
     const HandTrouble before = std::exchange(hand_trouble_[side], now);
-    if (!frame.calibrated || now == before) continue;
+    if (!frame.t_pose.complete || now == before) continue;
     const std::string name = side == 0 ? "left" : "right";
     if (now == HandTrouble::kNone) {
       Add(events, v1::Event::KIND_STREAM_BACK, now_ns,
@@ -43,11 +43,11 @@ void PoseEvents::AddHands(const PoseFrame& frame, std::int64_t now_ns, v1::Event
 v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
                                std::int64_t now_ns) {
   v1::Events events;
-  const bool told = frame.feet_told[0] && frame.feet_told[1];
-  const bool worn = frame.source == PoseSource::kInsoles;
+  const bool told = frame.input.feet_measured[0] && frame.input.feet_measured[1];
+  const bool worn = frame.input.source == PoseSource::kInsoles;
   const bool next_subject = has_last_ && frame.subject_number != subject_number_;
   const std::string source = worn ? "insole" : "board";
-  if (has_last_ && frame.source != source_) {
+  if (has_last_ && frame.input.source != source_) {
     Add(events, v1::Event::KIND_COMMAND, now_ns, "the pose follows the " + source + "s");
   }
   if (told != told_) {
@@ -58,11 +58,12 @@ v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
   if (next_subject) {
     Add(events, v1::Event::KIND_COMMAND, now_ns,
         "next subject: " + subject.code + "; their T-pose is awaited");
-  } else if (calibrated_ && !frame.calibrated) {
+  } else if (calibrated_ && !frame.t_pose.complete) {
     Add(events, v1::Event::KIND_COMMAND, now_ns, "the T-pose is to be taken again");
   }
-  if (!calibrated_ && frame.calibrated) {
-    Add(events, v1::Event::KIND_COMMAND, now_ns, "T-pose taken: " + Kilograms(frame.mass_kg));
+  if (!calibrated_ && frame.t_pose.complete) {
+    Add(events, v1::Event::KIND_COMMAND, now_ns,
+        "T-pose taken: " + Kilograms(frame.t_pose.mass_kg));
   }
   if (has_last_ && !next_subject && frame.resets > resets_) {
     Add(events, v1::Event::KIND_COMMAND, now_ns, "the filters were reset");
@@ -70,8 +71,8 @@ v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
   AddHands(frame, now_ns, events);
   has_last_ = true;
   told_ = told;
-  source_ = frame.source;
-  calibrated_ = frame.calibrated;
+  source_ = frame.input.source;
+  calibrated_ = frame.t_pose.complete;
   subject_number_ = frame.subject_number;
   resets_ = frame.resets;
   return events;

@@ -48,37 +48,51 @@ struct PoseApplied {
 inline constexpr std::size_t kMaxLinks = 96;
 inline constexpr int kMaxPoseApplied = 4;
 
+/// Which inputs a frame has, and what is wrong with them.
+struct PoseInputStatus {
+  bool simulated = false;
+  PoseSource source = PoseSource::kBoards;
+  bool insoles_idle = false;  ///< They measure, but this mode or lag cannot follow them.
+  std::array<bool, momentum::kFeet> feet_measured{};       ///< By the source, now.
+  std::array<double, momentum::kFeet> load_n{};            ///< By the source, calibrated or not.
+  std::array<bool, reconstruction::kHands> hands_valid{};  ///< Their places are measured,
+  std::array<bool, reconstruction::kHands> arms_valid{};   ///< or how their arms are held.
+  std::array<HandTrouble, reconstruction::kHands> hand_trouble{};
+  /// Tracked, and not where a T-pose has them: it is not taken while one of them is.
+  std::array<bool, reconstruction::kHands> hands_off_t_pose{};
+};
+
+/// How far the T-pose has come.
+struct TPoseStatus {
+  bool complete = false;
+  double progress = 0;
+  std::uint32_t restarts = 0;
+  double mass_kg = 0;  ///< As weighed; 0 before.
+};
+
+/// Of the subject's skeleton.
+struct PoseLinks {
+  std::size_t count = 0;
+  std::array<stream::LinkPose, kMaxLinks> pose;
+  std::array<double, kMaxLinks> sd_m{};
+};
+
 /// What the simulation thread hands over at every frame of the pose engine. Fixed size: filling and
-/// moving it allocates nothing. The links of a frame are those of its subject's skeleton.
+/// moving it allocates nothing.
 struct PoseFrame {
   std::uint64_t step = 0;
   double time_s = 0;
   std::uint64_t overruns = 0;
   std::uint64_t subject_number = 0;
   std::uint64_t state_hash = 0;  ///< Of the pose's coordinates, bit for bit.
-  bool simulated = false;
-
-  PoseSource source = PoseSource::kBoards;
-  bool insoles_idle = false;  ///< They tell, but this mode or lag cannot follow them.
-  std::array<bool, momentum::kFeet> feet_told{};           ///< The source tells of this foot now.
-  std::array<double, momentum::kFeet> load_n{};            ///< By the source, calibrated or not.
-  std::array<bool, reconstruction::kHands> hands_valid{};  ///< Their places are told,
-  std::array<bool, reconstruction::kHands> arms_valid{};   ///< or how their arms are held.
-  std::array<HandTrouble, reconstruction::kHands> hand_trouble{};
-  /// Tracked, and not where a T-pose has them: it is not taken while one of them is.
-  std::array<bool, reconstruction::kHands> hands_off_t_pose{};
+  PoseInputStatus input;
+  TPoseStatus t_pose;
 
   bool valid = false;
-  bool calibrated = false;
-  double calibration_progress = 0;
-  std::uint32_t calibration_restarts = 0;
   double lag_s = 0;
   std::uint32_t resets = 0;
-  double mass_kg = 0;
   momentum::Estimate momentum;
-  std::size_t link_count = 0;
-  std::array<stream::LinkPose, kMaxLinks> links;
-  std::array<double, kMaxLinks> link_sd_m{};
+  PoseLinks links;
   double solve_us = 0;  ///< CPU time of the newest step.
 
   std::array<PoseApplied, kMaxPoseApplied> applied;  ///< Since the last frame.

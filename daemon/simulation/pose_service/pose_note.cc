@@ -27,17 +27,17 @@ void Add(std::string& note, const std::string& words) {
   note += words;
 }
 
-bool IsWorn(const PoseFrame& frame) { return frame.source == PoseSource::kInsoles; }
+bool IsWorn(const PoseFrame& frame) { return frame.input.source == PoseSource::kInsoles; }
 
 std::string LostSource(const PoseFrame& frame) {
-  if (!frame.feet_told[0] && !frame.feet_told[1]) {
+  if (!frame.input.feet_measured[0] && !frame.input.feet_measured[1]) {
     return IsWorn(frame)
                ? "nothing comes from the insoles: are both on? the feet are guessed, less by the "
                  "second"
                : "nothing comes from the boards: are both on, and assigned as left and right?";
   }
   for (std::size_t side = 0; side < 2; ++side) {
-    if (!frame.feet_told[side]) {
+    if (!frame.input.feet_measured[side]) {
       return std::string("nothing comes from the ") + kSides[side] +
              (IsWorn(frame) ? " insole" : " board");
     }
@@ -46,16 +46,16 @@ std::string LostSource(const PoseFrame& frame) {
 }
 
 std::string Awaited(const PoseFrame& frame) {
-  const double total_n = frame.load_n[0] + frame.load_n[1];
+  const double total_n = frame.input.load_n[0] + frame.input.load_n[1];
   if (total_n < KilogramsToNewtons(TPoseCalibration::kLeastMassKg)) {
     return IsWorn(frame) ? "stand on both feet" : "step on, one foot on each board";
   }
   for (std::size_t side = 0; side < 2; ++side) {
-    if (frame.load_n[side] < TPoseCalibration::kLeastFootShare * total_n) {
+    if (frame.input.load_n[side] < TPoseCalibration::kLeastFootShare * total_n) {
       return std::string("put weight on the ") + kSides[side] + " foot";
     }
   }
-  const auto& off = frame.hands_off_t_pose;
+  const auto& off = frame.input.hands_off_t_pose;
   if (off[0] || off[1]) {
     const std::string arms = off[0] && off[1] ? "both arms"
                              : off[0]         ? "the left arm"
@@ -63,12 +63,12 @@ std::string Awaited(const PoseFrame& frame) {
     return "the tracked hands are not in the T-pose: raise " + arms +
            " straight out to the sides, at shoulder height";
   }
-  const double left_s = (1 - frame.calibration_progress) * TPoseCalibration::kSeconds;
-  if (frame.calibration_progress > 0.04) {
+  const double left_s = (1 - frame.t_pose.progress) * TPoseCalibration::kSeconds;
+  if (frame.t_pose.progress > 0.04) {
     return "T-pose: hold still, " + Text(left_s, 1) + " s more";
   }
-  return frame.calibration_restarts > 0 ? "you moved: stand still, arms out to the sides"
-                                        : "stand still, arms out to the sides";
+  return frame.t_pose.restarts > 0 ? "you moved: stand still, arms out to the sides"
+                                   : "stand still, arms out to the sides";
 }
 
 void AddFeet(const PoseFrame& frame, std::string& note) {
@@ -90,9 +90,9 @@ void AddFeet(const PoseFrame& frame, std::string& note) {
 /// Which hands nothing tells of, and why.
 void AddHands(const PoseFrame& frame, std::string& note) {
   const auto told = [&](std::size_t side) {
-    return frame.hands_valid[side] || frame.arms_valid[side];
+    return frame.input.hands_valid[side] || frame.input.arms_valid[side];
   };
-  const auto& trouble = frame.hand_trouble;
+  const auto& trouble = frame.input.hand_trouble;
   const bool wiimotes = trouble[0] != HandTrouble::kNone || trouble[1] != HandTrouble::kNone;
   if (!told(0) && !told(1) && !wiimotes) return Add(note, "no hand is seen");
   for (std::size_t side = 0; side < kSides.size(); ++side) {
@@ -101,12 +101,12 @@ void AddHands(const PoseFrame& frame, std::string& note) {
 }
 
 void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) {
-  if (subject.mass_kg <= 0 || frame.mass_kg <= 0) return;
-  const double difference = frame.mass_kg / subject.mass_kg - 1;
+  if (subject.mass_kg <= 0 || frame.t_pose.mass_kg <= 0) return;
+  const double difference = frame.t_pose.mass_kg / subject.mass_kg - 1;
   if (std::abs(difference) <= kMassTolerance) return;
   Add(note, std::string("the ") + (IsWorn(frame) ? "insoles" : "boards") + " say " +
-                Text(frame.mass_kg, 1) + " kg, the subject's file " + Text(subject.mass_kg, 1) +
-                " kg: is it " + subject.code +
+                Text(frame.t_pose.mass_kg, 1) + " kg, the subject's file " +
+                Text(subject.mass_kg, 1) + " kg: is it " + subject.code +
                 (IsWorn(frame) ? "?" : ", and are both boards tared?"));
 }
 
@@ -131,9 +131,9 @@ std::string HandWords(HandTrouble trouble, const std::string& side) {
 std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
   std::string note = LostSource(frame);
   const bool told = note.empty();
-  if (frame.insoles_idle)
+  if (frame.input.insoles_idle)
     Add(note, "insoles need the best mode without lag: they are not followed");
-  if (!frame.calibrated) {
+  if (!frame.t_pose.complete) {
     if (told) Add(note, Awaited(frame));
     return note;
   }

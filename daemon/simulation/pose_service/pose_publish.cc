@@ -46,18 +46,19 @@ void SetFoot(const momentum::FootEstimate& foot, v1::BodyFoot& message) {
 }
 
 std::string HandsSource(const PoseFrame& frame, const std::string& tracker) {
-  if (frame.hands_valid[0] || frame.hands_valid[1]) return tracker.empty() ? "tracker" : tracker;
-  return frame.arms_valid[0] || frame.arms_valid[1] ? "wiimote" : "";
+  if (frame.input.hands_valid[0] || frame.input.hands_valid[1])
+    return tracker.empty() ? "tracker" : tracker;
+  return frame.input.arms_valid[0] || frame.input.arms_valid[1] ? "wiimote" : "";
 }
 
 void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& mode,
              const std::string& tracker, v1::BodyState& body) {
   body.set_subject(subject.code);
   body.set_mode(mode);
-  body.set_calibrated(frame.calibrated);
-  body.set_calibration_progress(frame.calibration_progress);
-  body.set_calibration_restarts(frame.calibration_restarts);
-  body.set_mass_kg(frame.mass_kg);
+  body.set_calibrated(frame.t_pose.complete);
+  body.set_calibration_progress(frame.t_pose.progress);
+  body.set_calibration_restarts(frame.t_pose.restarts);
+  body.set_mass_kg(frame.t_pose.mass_kg);
   body.set_height_m(subject.height_m);
   body.set_lag_s(frame.lag_s);
   body.set_momentum_valid(frame.momentum.valid);
@@ -68,15 +69,15 @@ void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& 
       wire::ToProto(frame.momentum.angular_momentum_variance);
   for (const auto& foot : frame.momentum.feet) SetFoot(foot, *body.add_feet());
   body.set_resets(frame.resets);
-  for (std::size_t i = 0; i < frame.link_count; ++i) body.add_link_sd_m(frame.link_sd_m[i]);
+  for (std::size_t i = 0; i < frame.links.count; ++i) body.add_link_sd_m(frame.links.sd_m[i]);
   body.set_note(PoseNote(frame, subject));
   body.set_solve_us(frame.solve_us);
   for (std::size_t side = 0; side < reconstruction::kHands; ++side) {
-    body.add_hands_seen(frame.hands_valid[side] || frame.arms_valid[side]);
+    body.add_hands_seen(frame.input.hands_valid[side] || frame.input.arms_valid[side]);
   }
   body.set_hands_source(HandsSource(frame, tracker));
-  body.set_contact_source(frame.source == PoseSource::kInsoles ? "insoles" : "boards");
-  for (const bool told : frame.feet_told) body.add_feet_told(told);
+  body.set_contact_source(frame.input.source == PoseSource::kInsoles ? "insoles" : "boards");
+  for (const bool told : frame.input.feet_measured) body.add_feet_told(told);
 }
 
 void SetFootInput(const momentum::FootLoads& foot, v1::PoseFoot& message) {
@@ -188,8 +189,8 @@ v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subje
   character.set_character(1);
   character.set_rig(rig);
   character.set_valid(frame.valid);
-  for (std::size_t i = 0; i < frame.link_count; ++i) {
-    *character.add_links() = wire::ToProto(frame.links[i]);
+  for (std::size_t i = 0; i < frame.links.count; ++i) {
+    *character.add_links() = wire::ToProto(frame.links.pose[i]);
   }
   for (const auto& foot : frame.momentum.feet) {
     *character.add_contacts() = wire::ToProto(
@@ -197,7 +198,7 @@ v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subje
   }
   *character.mutable_com_m() = wire::ToProto(frame.momentum.p_WC_m);
   *character.mutable_com_velocity_mps() = wire::ToProto(frame.momentum.v_WC_mps);
-  character.set_simulated_input(frame.simulated);
+  character.set_simulated_input(frame.input.simulated);
   SetBody(frame, subject, mode, tracker, *character.mutable_body());
   return message;
 }

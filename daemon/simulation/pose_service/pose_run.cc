@@ -148,34 +148,35 @@ void PoseRun::FillOnSimThread(Frame& frame) const {
   frame.time_s = static_cast<double>(step_) / rate_hz_;
   frame.subject_number = subject_->number;
   frame.state_hash = HashOf(output.q);
-  frame.simulated = simulated_;
-  frame.source = source_;
-  frame.insoles_idle = !subject_->walk && (insoles_.feet[0].valid || insoles_.feet[1].valid);
+  PoseInputStatus& input = frame.input;
+  input.simulated = simulated_;
+  input.source = source_;
+  input.insoles_idle = !subject_->walk && (insoles_.feet[0].valid || insoles_.feet[1].valid);
   const bool walks = source_ == PoseSource::kInsoles;
   for (std::size_t side = 0; side < momentum::kFeet; ++side) {
-    frame.feet_told[side] = walks ? insoles_.feet[side].valid : sensors_.loads.feet[side].valid;
-    frame.load_n[side] = walks ? reconstruction::TotalLoadN(insoles_.feet[side])
+    input.feet_measured[side] = walks ? insoles_.feet[side].valid : sensors_.loads.feet[side].valid;
+    input.load_n[side] = walks ? reconstruction::TotalLoadN(insoles_.feet[side])
                                : momentum::PressureOf(sensors_.loads.feet[side], 1).total_n;
-    frame.hands_valid[side] = sensors_.hands[side].valid;
-    frame.arms_valid[side] = sensors_.arms[side].valid;
+    input.hands_valid[side] = sensors_.hands[side].valid;
+    input.arms_valid[side] = sensors_.arms[side].valid;
   }
-  frame.hand_trouble = hand_trouble_;
-  frame.hands_off_t_pose = hands_off_t_pose_;
+  input.hand_trouble = hand_trouble_;
+  input.hands_off_t_pose = hands_off_t_pose_;
   frame.valid = output.valid;
-  frame.calibrated = output.calibrated;
-  frame.calibration_progress = output.calibration_progress;
-  frame.calibration_restarts = output.calibration_restarts;
+  frame.t_pose.complete = output.calibrated;
+  frame.t_pose.progress = output.calibration_progress;
+  frame.t_pose.restarts = output.calibration_restarts;
   frame.lag_s = output.lag_s;
   frame.resets = output.resets;
-  frame.mass_kg = output.calibrated ? output.mass_kg : 0;  // As weighed, or nothing.
+  frame.t_pose.mass_kg = output.calibrated ? output.mass_kg : 0;  // As weighed, or nothing.
   frame.momentum = output.momentum;
   frame.momentum.p_WC_m = output.com_W_m;
   frame.momentum.position_variance_m2 = output.com_variance_m2;
-  frame.link_count = std::min(output.p_WJ_m.size(), kMaxLinks);
-  for (std::size_t i = 0; i < frame.link_count; ++i) {
-    frame.links[i].position_m = output.p_WJ_m[i];
-    frame.links[i].orientation = Eigen::Quaterniond(output.R_WJ[i]);
-    frame.link_sd_m[i] = i < output.joint_sd_m.size() ? output.joint_sd_m[i] : 0;
+  frame.links.count = std::min(output.p_WJ_m.size(), kMaxLinks);
+  for (std::size_t i = 0; i < frame.links.count; ++i) {
+    frame.links.pose[i].position_m = output.p_WJ_m[i];
+    frame.links.pose[i].orientation = Eigen::Quaterniond(output.R_WJ[i]);
+    frame.links.sd_m[i] = i < output.joint_sd_m.size() ? output.joint_sd_m[i] : 0;
   }
   frame.solve_us = static_cast<double>(solve_ns_) * 1e-3;
 }

@@ -36,7 +36,7 @@ class PoseSensors {
   void OnTick(const v1::Tick& tick, std::int64_t now_ns);
   /// What the engine says of its T-pose, frame by frame: Wiimotes are aligned by it.
   void Follow(const PoseFrame& frame) {
-    arms_.Follow(frame.calibrated, frame.calibration_progress);
+    arms_.Follow(frame.t_pose.complete, frame.t_pose.progress);
   }
   void Calibrate();
   void TakeSubject(std::uint64_t number);

@@ -13,12 +13,12 @@ using testing::HasSubstr;
 /// 70 kg on both boards, T-pose taken, hands seen.
 PoseFrame Well() {
   PoseFrame frame;
-  frame.feet_told = {true, true};
-  frame.hands_valid = {true, true};
-  frame.load_n = {343, 343};
-  frame.calibrated = true;
+  frame.input.feet_measured = {true, true};
+  frame.input.hands_valid = {true, true};
+  frame.input.load_n = {343, 343};
+  frame.t_pose.complete = true;
   frame.valid = true;
-  frame.mass_kg = 70;
+  frame.t_pose.mass_kg = 70;
   for (auto& foot : frame.momentum.feet) foot.contact = foot.valid = true;
   return frame;
 }
@@ -38,30 +38,30 @@ TEST(PoseNote, SaysThatWhatIsMeasuredFitsNoPose) {
 
 TEST(PoseNote, LeadsThroughTheTPose) {
   PoseFrame frame = Well();
-  frame.calibrated = false;
-  frame.load_n = {0, 0};
+  frame.t_pose.complete = false;
+  frame.input.load_n = {0, 0};
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("step on"));
-  frame.load_n = {600, 86};
+  frame.input.load_n = {600, 86};
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("weight on the right foot"));
-  frame.load_n = {343, 343};
+  frame.input.load_n = {343, 343};
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("arms out to the sides"));
-  frame.hands_off_t_pose = {true, true};
+  frame.input.hands_off_t_pose = {true, true};
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("raise both arms"));
-  frame.hands_off_t_pose = {false, true};
+  frame.input.hands_off_t_pose = {false, true};
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("raise the right arm"));
-  frame.hands_off_t_pose = {};
-  frame.calibration_progress = 0.5;
+  frame.input.hands_off_t_pose = {};
+  frame.t_pose.progress = 0.5;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("hold still, 2.5 s more"));
-  frame.calibration_progress = 0;
-  frame.calibration_restarts = 1;
+  frame.t_pose.progress = 0;
+  frame.t_pose.restarts = 1;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("you moved"));
 }
 
 TEST(PoseNote, NamesTheBoardThatIsLost) {
   PoseFrame frame = Well();
-  frame.feet_told[1] = false;
+  frame.input.feet_measured[1] = false;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right board"));
-  frame.feet_told[0] = false;
+  frame.input.feet_measured[0] = false;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("are both on"));
 }
 
@@ -71,7 +71,7 @@ TEST(PoseNote, NamesTheFootThatIsOffAndTheHandThatIsNotSeen) {
   frame.momentum.feet[0].airborne_s = 0.3;
   EXPECT_EQ(PoseNote(frame, kSubject), "") << "a step is no fault";
   frame.momentum.feet[0].airborne_s = 1.2;
-  frame.hands_valid[1] = false;
+  frame.input.hands_valid[1] = false;
   const std::string note = PoseNote(frame, kSubject);
   EXPECT_THAT(note, HasSubstr("left foot is off its board for 1.2 s"));
   EXPECT_THAT(note, HasSubstr("right hand is not seen"));
@@ -79,41 +79,41 @@ TEST(PoseNote, NamesTheFootThatIsOffAndTheHandThatIsNotSeen) {
 
 TEST(PoseNote, SaysWhatAWiimoteLacksAndWhatToDo) {
   PoseFrame frame = Well();
-  frame.hands_valid = {false, false};
+  frame.input.hands_valid = {false, false};
   EXPECT_EQ(PoseNote(frame, kSubject), "no hand is seen");
-  frame.arms_valid = {true, true};
+  frame.input.arms_valid = {true, true};
   EXPECT_EQ(PoseNote(frame, kSubject), "");
-  frame.arms_valid[0] = false;
-  frame.hand_trouble[0] = HandTrouble::kSilent;
+  frame.input.arms_valid[0] = false;
+  frame.input.hand_trouble[0] = HandTrouble::kSilent;
   EXPECT_EQ(PoseNote(frame, kSubject), "nothing comes from the left Wiimote: its arm is guessed");
-  frame.hand_trouble[0] = HandTrouble::kAwaitsTPose;
+  frame.input.hand_trouble[0] = HandTrouble::kAwaitsTPose;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("take the T-pose again"));
-  frame.arms_valid[1] = false;
-  frame.hand_trouble = {HandTrouble::kNoGyroscope, HandTrouble::kNoModel};
+  frame.input.arms_valid[1] = false;
+  frame.input.hand_trouble = {HandTrouble::kNoGyroscope, HandTrouble::kNoModel};
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("is a MotionPlus in it?"));
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right Wiimote is not followed"));
-  frame.hands_valid = {true, true};
+  frame.input.hands_valid = {true, true};
   EXPECT_EQ(PoseNote(frame, kSubject), "") << "a tracker sees both";
 }
 
 TEST(PoseNote, SpeaksOfInsolesToWhoWalksInThem) {
   PoseFrame frame = Well();
-  frame.source = PoseSource::kInsoles;
+  frame.input.source = PoseSource::kInsoles;
   EXPECT_EQ(PoseNote(frame, kSubject), "");
-  frame.feet_told[1] = false;
+  frame.input.feet_measured[1] = false;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the right insole"));
-  frame.feet_told[0] = false;
+  frame.input.feet_measured[0] = false;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("nothing comes from the insoles"));
   frame = Well();
-  frame.insoles_idle = true;
+  frame.input.insoles_idle = true;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("best mode without lag"));
 }
 
 TEST(PoseNote, AnotherPersonsWeightIsToldFromThreePercentOn) {
   PoseFrame frame = Well();
-  frame.mass_kg = 71.9;
+  frame.t_pose.mass_kg = 71.9;
   EXPECT_EQ(PoseNote(frame, kSubject), "");
-  frame.mass_kg = 72.3;
+  frame.t_pose.mass_kg = 72.3;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("72.3 kg"));
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("is it p07"));
 }
@@ -123,12 +123,12 @@ TEST(PoseEvents, ABoardLostAndBackIsToldOnceEach) {
   PoseFrame frame = Well();
   events.Between(frame, kSubject, 1);
   EXPECT_EQ(events.Between(frame, kSubject, 2).events_size(), 0);
-  frame.feet_told[0] = false;
+  frame.input.feet_measured[0] = false;
   const v1::Events lost = events.Between(frame, kSubject, 3);
   ASSERT_EQ(lost.events_size(), 1);
   EXPECT_EQ(lost.events(0).kind(), v1::Event::KIND_STREAM_LOST);
   EXPECT_EQ(events.Between(frame, kSubject, 4).events_size(), 0);
-  frame.feet_told[0] = true;
+  frame.input.feet_measured[0] = true;
   EXPECT_EQ(events.Between(frame, kSubject, 5).events(0).kind(), v1::Event::KIND_STREAM_BACK);
 }
 
@@ -136,10 +136,10 @@ TEST(PoseEvents, TheSourceThatIsFollowedIsNamed) {
   PoseEvents events;
   PoseFrame frame = Well();
   events.Between(frame, kSubject, 1);
-  frame.source = PoseSource::kInsoles;
+  frame.input.source = PoseSource::kInsoles;
   EXPECT_THAT(events.Between(frame, kSubject, 2).events(0).text(),
               HasSubstr("follows the insoles"));
-  frame.feet_told = {false, true};
+  frame.input.feet_measured = {false, true};
   EXPECT_THAT(events.Between(frame, kSubject, 3).events(0).text(), HasSubstr("an insole is lost"));
 }
 
@@ -147,13 +147,13 @@ TEST(PoseEvents, AWiimoteLostAndBackIsToldOnceEach) {
   PoseEvents events;
   PoseFrame frame = Well();
   events.Between(frame, kSubject, 1);
-  frame.hand_trouble[1] = HandTrouble::kSilent;
+  frame.input.hand_trouble[1] = HandTrouble::kSilent;
   const v1::Events lost = events.Between(frame, kSubject, 2);
   ASSERT_EQ(lost.events_size(), 1);
   EXPECT_EQ(lost.events(0).kind(), v1::Event::KIND_STREAM_LOST);
   EXPECT_THAT(lost.events(0).text(), HasSubstr("the right Wiimote"));
   EXPECT_EQ(events.Between(frame, kSubject, 3).events_size(), 0);
-  frame.hand_trouble[1] = HandTrouble::kNone;
+  frame.input.hand_trouble[1] = HandTrouble::kNone;
   EXPECT_EQ(events.Between(frame, kSubject, 4).events(0).kind(), v1::Event::KIND_STREAM_BACK);
 }
 
@@ -162,11 +162,11 @@ TEST(PoseEvents, TheNextSubjectIsNamed) {
   PoseFrame frame = Well();
   events.Between(frame, kSubject, 1);
   frame.subject_number = 2;
-  frame.calibrated = false;
+  frame.t_pose.complete = false;
   const v1::Events next = events.Between(frame, {"p08", 1.6, 0, 0}, 2);
   ASSERT_EQ(next.events_size(), 1);
   EXPECT_THAT(next.events(0).text(), HasSubstr("p08"));
-  frame.calibrated = true;
+  frame.t_pose.complete = true;
   EXPECT_THAT(events.Between(frame, {"p08", 1.6, 0, 0}, 3).events(0).text(), HasSubstr("70.0 kg"));
 }
 

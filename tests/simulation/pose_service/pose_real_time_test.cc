@@ -74,8 +74,8 @@ TEST(PoseThread, AllocatesFreesLocksAndSoLogsNothingOnceItRunsThroughTPoseMotion
     }
     thread.inputs().Write(told);
     ASSERT_TRUE(next_frame());
-    calibrated |= frame.calibrated && frame.subject_number == 0;
-    calibrated_again |= frame.calibrated && frame.subject_number == 1;
+    calibrated |= frame.t_pose.complete && frame.subject_number == 0;
+    calibrated_again |= frame.t_pose.complete && frame.subject_number == 1;
   }
   EXPECT_TRUE(calibrated);
   EXPECT_TRUE(calibrated_again);

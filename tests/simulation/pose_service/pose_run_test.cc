@@ -98,16 +98,16 @@ void ExpectFinite(const v1::CharacterFrame& message) {
 TEST(PoseRun, TakesTheTPoseAndThenPublishesTheWholeBody) {
   Line line;
   for (std::size_t i = 0; i < 120; ++i) line.Step(i);
-  EXPECT_FALSE(line.frame.calibrated);
-  EXPECT_NEAR(line.frame.calibration_progress, 2.0 / 5, 0.05);
+  EXPECT_FALSE(line.frame.t_pose.complete);
+  EXPECT_NEAR(line.frame.t_pose.progress, 2.0 / 5, 0.05);
   for (std::size_t i = 120; i < line.measured.size(); ++i) {
     line.Step(i);
     ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
   }
-  EXPECT_TRUE(line.frame.calibrated);
+  EXPECT_TRUE(line.frame.t_pose.complete);
   EXPECT_TRUE(line.frame.valid);
-  EXPECT_NEAR(line.frame.mass_kg, 70, 0.5);
-  EXPECT_EQ(line.frame.link_count, line.person.skeleton.joints.size());
+  EXPECT_NEAR(line.frame.t_pose.mass_kg, 70, 0.5);
+  EXPECT_EQ(line.frame.links.count, line.person.skeleton.joints.size());
   EXPECT_DOUBLE_EQ(line.frame.time_s,
                    static_cast<double>(line.measured.size()) / made::kMadeRateHz);
 }
@@ -115,18 +115,18 @@ TEST(PoseRun, TakesTheTPoseAndThenPublishesTheWholeBody) {
 TEST(PoseRun, ASilentStreamMakesBoardsAndHandsUnknown) {
   Line line;
   for (std::size_t i = 0; i < 10; ++i) line.Step(i);
-  EXPECT_TRUE(line.frame.feet_told[0]);
+  EXPECT_TRUE(line.frame.input.feet_measured[0]);
   for (int i = 0; i < 30; ++i) line.Quiet();  // Half a second.
-  EXPECT_FALSE(line.frame.feet_told[0]);
-  EXPECT_FALSE(line.frame.hands_valid[1]);
+  EXPECT_FALSE(line.frame.input.feet_measured[0]);
+  EXPECT_FALSE(line.frame.input.hands_valid[1]);
   line.Step(10);
-  EXPECT_TRUE(line.frame.feet_told[0]);
+  EXPECT_TRUE(line.frame.input.feet_measured[0]);
 }
 
 TEST(PoseRun, BoardsLostAndBackLeaveAFinitePose) {
   Line line;
   for (std::size_t i = 0; i < 400; ++i) line.Step(i);
-  ASSERT_TRUE(line.frame.calibrated);
+  ASSERT_TRUE(line.frame.t_pose.complete);
   for (int i = 0; i < 180; ++i) {
     line.Quiet();
     ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
@@ -135,8 +135,8 @@ TEST(PoseRun, BoardsLostAndBackLeaveAFinitePose) {
     line.Step(i);
     ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
   }
-  EXPECT_TRUE(line.frame.calibrated) << "the same person is still there";
-  EXPECT_TRUE(line.frame.feet_told[0]);
+  EXPECT_TRUE(line.frame.t_pose.complete) << "the same person is still there";
+  EXPECT_TRUE(line.frame.input.feet_measured[0]);
 }
 
 TEST(PoseRun, HangingArmsAreNotTakenForATPose) {
@@ -152,17 +152,17 @@ TEST(PoseRun, HangingArmsAreNotTakenForATPose) {
     line.Quiet();
   };
   for (std::size_t i = 0; i < 340; ++i) step(i, 0.6, 0.3);  // More than the five seconds.
-  EXPECT_FALSE(line.frame.calibrated);
-  EXPECT_EQ(line.frame.calibration_progress, 0);
-  EXPECT_EQ(line.frame.hands_off_t_pose, (std::array{true, true}));
-  EXPECT_TRUE(line.frame.feet_told[0]);
-  EXPECT_NEAR(line.frame.load_n[0] + line.frame.load_n[1], 70 * 9.80665, 30);
+  EXPECT_FALSE(line.frame.t_pose.complete);
+  EXPECT_EQ(line.frame.t_pose.progress, 0);
+  EXPECT_EQ(line.frame.input.hands_off_t_pose, (std::array{true, true}));
+  EXPECT_TRUE(line.frame.input.feet_measured[0]);
+  EXPECT_NEAR(line.frame.input.load_n[0] + line.frame.input.load_n[1], 70 * 9.80665, 30);
   for (std::size_t i = 0; i < 100; ++i) step(i, 0, 0.3);  // Forward: the height alone is right.
-  EXPECT_EQ(line.frame.hands_off_t_pose, (std::array{true, true}));
-  EXPECT_EQ(line.frame.calibration_progress, 0);
+  EXPECT_EQ(line.frame.input.hands_off_t_pose, (std::array{true, true}));
+  EXPECT_EQ(line.frame.t_pose.progress, 0);
   for (std::size_t i = 0; i < 310; ++i) step(i, 0, 1);
-  EXPECT_EQ(line.frame.hands_off_t_pose, (std::array{false, false}));
-  EXPECT_TRUE(line.frame.calibrated);
+  EXPECT_EQ(line.frame.input.hands_off_t_pose, (std::array{false, false}));
+  EXPECT_TRUE(line.frame.t_pose.complete);
 }
 
 TEST(PoseRun, HandsThatAreNotTrackedDoNotDelayTheTPose) {
@@ -173,32 +173,32 @@ TEST(PoseRun, HandsThatAreNotTrackedDoNotDelayTheTPose) {
     line.inputs.Write(line.told);
     line.Quiet();
   }
-  EXPECT_TRUE(line.frame.calibrated);
+  EXPECT_TRUE(line.frame.t_pose.complete);
 }
 
 TEST(PoseRun, ACalibrationThatIsAskedForForgetsTheTPose) {
   Line line;
   for (std::size_t i = 0; i < 400; ++i) line.Step(i);
-  ASSERT_TRUE(line.frame.calibrated);
+  ASSERT_TRUE(line.frame.t_pose.complete);
   ++line.told.calibrate_number;
   line.Step(0);
-  EXPECT_FALSE(line.frame.calibrated);
+  EXPECT_FALSE(line.frame.t_pose.complete);
   for (std::size_t i = 0; i < 350; ++i) line.Step(i);
-  EXPECT_TRUE(line.frame.calibrated);
+  EXPECT_TRUE(line.frame.t_pose.complete);
 }
 
 TEST(PoseRun, TheNextSubjectHasNoStaleTPoseAndTheLastOneComesBackToBeFreed) {
   Line line;
   for (std::size_t i = 0; i < 400; ++i) line.Step(i);
-  ASSERT_TRUE(line.frame.calibrated);
+  ASSERT_TRUE(line.frame.t_pose.complete);
   ASSERT_TRUE(line.subjects.next.Push(line.Subject(2)));
   line.Step(0);
   EXPECT_EQ(line.frame.subject_number, 1u) << "not before the inputs name it";
   line.told.subject_number = 2;
   line.Step(1);
   EXPECT_EQ(line.frame.subject_number, 2u);
-  EXPECT_FALSE(line.frame.calibrated);
-  EXPECT_LT(line.frame.calibration_progress, 0.01);
+  EXPECT_FALSE(line.frame.t_pose.complete);
+  EXPECT_LT(line.frame.t_pose.progress, 0.01);
   std::unique_ptr<SubjectRun> done;
   ASSERT_TRUE(line.subjects.done.Pop(done));
   EXPECT_EQ(done->number, 1u);
@@ -252,13 +252,13 @@ TEST(PoseRun, InsolesAreFollowedWhileTheyTellAndBoardsKnowThePersonWhenTheyStop)
   const auto message = ToCharacterFrame(line.frame, {}, "best", "boards", "one");
   EXPECT_EQ(message.characters(0).body().contact_source(), "insoles");
   EXPECT_TRUE(message.characters(0).body().feet_told(1));
-  EXPECT_TRUE(line.frame.calibrated);
+  EXPECT_TRUE(line.frame.t_pose.complete);
   EXPECT_TRUE(line.frame.valid);
-  EXPECT_NEAR(line.frame.mass_kg, 70, 0.5);
+  EXPECT_NEAR(line.frame.t_pose.mass_kg, 70, 0.5);
   line.told.insoles = {};
   line.Step(400);
-  EXPECT_EQ(line.frame.source, PoseSource::kBoards);
-  EXPECT_TRUE(line.frame.calibrated) << "the T-pose was taken on both";
+  EXPECT_EQ(line.frame.input.source, PoseSource::kBoards);
+  EXPECT_TRUE(line.frame.t_pose.complete) << "the T-pose was taken on both";
 }
 
 TEST(PoseRun, InsolesThatFallSilentLeaveAPoseThatIsLessSureByTheSecond) {
@@ -271,9 +271,9 @@ TEST(PoseRun, InsolesThatFallSilentLeaveAPoseThatIsLessSureByTheSecond) {
     line.Quiet();
   };
   for (std::size_t i = 0; i < 450; ++i) walk_off(i);
-  ASSERT_TRUE(line.frame.calibrated && line.frame.valid);
+  ASSERT_TRUE(line.frame.t_pose.complete && line.frame.valid);
   const auto ankle = static_cast<std::size_t>(line.person.landmarks[body::Landmark::kLeftAnkle]);
-  const double sure_m = line.frame.link_sd_m[ankle];
+  const double sure_m = line.frame.links.sd_m[ankle];
   EXPECT_LT(sure_m, 0.1);
   for (int second = 0; second < 2; ++second) {
     for (int i = 0; i < 60; ++i) {
@@ -281,10 +281,10 @@ TEST(PoseRun, InsolesThatFallSilentLeaveAPoseThatIsLessSureByTheSecond) {
       ExpectFinite(ToCharacterFrame(line.frame, {}, "best", "boards", "one"));
     }
     // The made person's poses, of which the basis knows, are all near each other.
-    EXPECT_GT(line.frame.link_sd_m[ankle], 1.2 * sure_m) << second;
+    EXPECT_GT(line.frame.links.sd_m[ankle], 1.2 * sure_m) << second;
   }
-  EXPECT_EQ(line.frame.source, PoseSource::kInsoles) << "nothing else tells anything";
-  EXPECT_FALSE(line.frame.feet_told[0]);
+  EXPECT_EQ(line.frame.input.source, PoseSource::kInsoles) << "nothing else tells anything";
+  EXPECT_FALSE(line.frame.input.feet_measured[0]);
   EXPECT_FALSE(line.frame.valid);
   EXPECT_GT(line.frame.momentum.feet[0].variance_m2.x(), 0.25);
 }
