@@ -1,7 +1,6 @@
 #include "common/transport/client.h"
 
-#include <google/protobuf/arena.h>
-
+#include <algorithm>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <optional>
@@ -13,18 +12,12 @@
 #include "common/transport/client_messages.h"
 #include "common/transport/clock_offset.h"
 #include "common/transport/framed_connection.h"
+#include "common/transport/message_parser.h"
 #include "common/transport/pending_commands.h"
 #include "common/units/time.h"
 #include "common/units/units.h"
 
 namespace footing::transport {
-namespace {
-
-/// Enough for a tick of eight devices; a longer message takes more from the heap.
-constexpr std::size_t kArenaBytes = 32 << 10;
-
-}  // namespace
-
 class Client::Implementation : public std::enable_shared_from_this<Implementation> {
  public:
   Implementation(boost::asio::io_context& io, ClientOptions options, ClientHandlers handlers)
@@ -34,8 +27,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
         retry_(io),
         pulse_(io),
         backoff_(options_.backoff_min_s, options_.backoff_max_s),
-        random_(std::random_device()()),
-        arena_(block_.data(), block_.size()) {}
+        random_(std::random_device()()) {}
 
   void Start() {
     if (started_) return;
@@ -73,6 +65,19 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
  private:
+  /// What a new connection resumes.
+  struct ServerPosition {
+    std::string name;
+    std::uint64_t epoch = 0;
+    std::uint64_t last_sequence = 0;
+  };
+
+  /// Why the server ends a connection.
+  struct CloseReason {
+    bool refused = false;
+    std::string text;  ///< Empty: it gave none.
+  };
+
   std::int64_t NowNs() const { return options_.now_ns ? options_.now_ns() : clock::MonotonicNs(); }
 
   static std::chrono::nanoseconds Duration(double seconds) {
@@ -110,18 +115,18 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     connection_.emplace(std::move(socket), limits, std::move(handlers));
     connection_->Start();
     heard_ns_ = NowNs();
-    goodbye_.clear();
+    close_.text.clear();
     SendMessage(MakeHello(options_));
     ArmPulse();
   }
 
   void OnFrame(std::string_view payload) {
-    arena_.Reset();
-    auto& message = *google::protobuf::Arena::CreateMessage<v1::Envelope>(&arena_);
-    if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+    const v1::Envelope* const parsed = parser_.Parse(payload);
+    if (parsed == nullptr) {
       return Break("the server sent bytes that are not a message of Footing's protocol");
     }
-    if (state_ == LinkState::kStale) SetState(LinkState::kLive, live_text_);
+    const v1::Envelope& message = *parsed;
+    if (state_ == LinkState::kStale) SetState(LinkState::kLive, LiveText());
     if (!connection_) return;  // The handler stopped us.
     switch (message.body_case()) {
       case v1::Envelope::kTick:
@@ -139,11 +144,10 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
       case v1::Envelope::kSubscribed:
         return OnSubscribed();
       case v1::Envelope::kRefused:
-        refused_ = true;
-        goodbye_ = message.refused().message();
+        close_ = {true, message.refused().message()};
         return;
       case v1::Envelope::kGoodbye:
-        goodbye_ = message.goodbye().reason();
+        close_.text = message.goodbye().reason();
         return;
       default:  // Of a later minor version.
         return;
@@ -151,11 +155,12 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnWelcome(const v1::Welcome& welcome) {
-    if (welcome.epoch() != epoch_) offset_ = {};  // Perhaps another host.
-    server_ = welcome.server_id() + " " + welcome.version();
-    const auto wish = MakeSubscribe(options_, welcome.epoch(), epoch_, last_sequence_);
-    if (welcome.epoch() != epoch_) last_sequence_ = 0;
-    epoch_ = welcome.epoch();
+    if (welcome.epoch() != server_.epoch) offset_ = {};  // Perhaps another host.
+    server_.name = welcome.server_id() + " " + welcome.version();
+    const auto wish =
+        MakeSubscribe(options_, welcome.epoch(), server_.epoch, server_.last_sequence);
+    if (welcome.epoch() != server_.epoch) server_.last_sequence = 0;
+    server_.epoch = welcome.epoch();
     SendMessage(wish);
     SendPing();
     Call(handlers_.on_welcome, welcome);
@@ -164,18 +169,20 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   void OnSubscribed() {
     subscribed_ = true;
     backoff_.Reset();
-    live_text_ = "connected to " + server_ + " on " + options_.address.Text();
-    SetState(LinkState::kLive, live_text_);
+    SetState(LinkState::kLive, LiveText());
+  }
+
+  std::string LiveText() const {
+    return "connected to " + server_.name + " on " + options_.address.Text();
   }
 
   void OnTick(const v1::Tick& tick) {
-    if (!tick.snapshot() && tick.sequence() > last_sequence_) last_sequence_ = tick.sequence();
+    if (!tick.snapshot()) server_.last_sequence = std::max(server_.last_sequence, tick.sequence());
     Call(handlers_.on_tick, tick);
   }
 
   void OnPong(const v1::Pong& pong) {
-    const bool asked = pong.id() <= ping_id_;
-    if (asked) offset_.Add({pong.t0_ns(), pong.t1_ns(), pong.t2_ns(), heard_ns_});
+    if (pong.id() <= ping_id_) offset_.Add({pong.t0_ns(), pong.t1_ns(), pong.t2_ns(), heard_ns_});
   }
 
   void SendPing() { SendMessage(MakePing(++ping_id_, NowNs())); }
@@ -202,8 +209,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
       return Break(options_.address.Text() + " does not answer any more");
     }
     if (subscribed_ && silent_s > options_.stale_after_s && state_ == LinkState::kLive) {
-      SetState(LinkState::kStale,
-               "nothing comes from " + server_ + " on " + options_.address.Text() + "; waiting");
+      SetState(LinkState::kStale, "nothing comes from " + server_.name + " on " +
+                                      options_.address.Text() + "; waiting");
     }
     if (subscribed_) SendPing();
     ArmPulse();
@@ -215,8 +222,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnClose(const std::string& reason) {
-    const bool refused = std::exchange(refused_, false);
-    const std::string words = goodbye_.empty() ? reason : goodbye_;
+    const bool refused = std::exchange(close_.refused, false);
+    const std::string words = close_.text.empty() ? reason : close_.text;
     connection_.reset();
     subscribed_ = false;
     pulse_.cancel();
@@ -263,23 +270,16 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   std::mt19937_64 random_;
   bool started_ = false;
   bool subscribed_ = false;
-  bool refused_ = false;
   std::uint64_t attempt_ = 0;
   LinkState state_ = LinkState::kConnecting;
   std::string why_ = "not started";
-  std::string live_text_;
-  std::string server_;
-  std::string goodbye_;
+  ServerPosition server_;
+  CloseReason close_;
   std::int64_t heard_ns_ = 0;
-  std::uint64_t epoch_ = 0;
-  std::uint64_t last_sequence_ = 0;
   std::uint64_t ping_id_ = 0;
   PendingCommands commands_;
   ClockOffsetEstimator offset_;
-  /// Every message is parsed into one block, again and again: a tick has dozens of small parts, and
-  /// fetching them from all over the heap takes longer than parsing them.
-  std::vector<char> block_ = std::vector<char>(kArenaBytes);
-  google::protobuf::Arena arena_;
+  MessageParser parser_;
 };
 
 Client::Client(boost::asio::io_context& io, ClientOptions options, ClientHandlers handlers)
