@@ -11,11 +11,11 @@ constexpr std::int64_t kStatusIntervalNs = 200'000'000;
 }  // namespace
 
 Hub::Hub(const Config& config, Ports ports)
-    : config_(config), ports_(std::move(ports)), book_(ports_.shelf) {
+    : config_(config), ports_(std::move(ports)), store_(ports_.storage) {
   for (const auto& [serial, text] : config_.roles) {
     if (auto binding = ParseBinding(text)) assigned_[serial] = std::move(binding).value();
   }
-  for (const auto& [serial, text] : book_.roles()) {
+  for (const auto& [serial, text] : store_.roles()) {
     auto binding = ParseBinding(text);
     if (!binding) continue;
     const auto configured = assigned_.find(serial);
@@ -197,8 +197,8 @@ TickContent Hub::Tick(std::int64_t now_ns) {
     features.computed_ns = ports_.now_ns();
     content_.features.push_back(std::move(features));
   }
-  if (book_.revision() != published_revision_) {
-    published_revision_ = book_.revision();
+  if (store_.revision() != published_revision_) {
+    published_revision_ = store_.revision();
     content_.has_setup = true;
     ApplySetupToAll();
   }

@@ -15,7 +15,7 @@
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/device.h"
 #include "daemon/sensor/service/tick_content.h"
-#include "daemon/sensor/setup/book.h"
+#include "daemon/sensor/setup/setup_store.h"
 
 namespace footing::sensor {
 
@@ -35,7 +35,7 @@ class Hub {
     std::function<void(const std::string& serial, const std::vector<std::uint8_t>&)>
         save_calibration = {};
     /// Where the set-up is kept between runs; none: in memory.
-    setup::Shelf shelf = {};
+    setup::Storage storage = {};
   };
 
   /// What a command measured.
@@ -135,7 +135,7 @@ class Hub {
   std::map<std::string, Binding> assigned_;  // By serial; config first, then commands.
   std::map<std::string, Rig> rigs_;
   std::map<std::uint32_t, Lease> leases_;  // By device.
-  setup::Book book_;
+  setup::SetupStore store_;
   std::uint64_t published_revision_ = 0;
   std::set<std::string> published_board_rigs_;
   TickContent content_;

@@ -1,4 +1,4 @@
-// The set-up's commands, and what of the book holds for which device.
+// The set-up's commands, and which part of the stored set-up holds for which device.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -53,18 +53,18 @@ bool Same(const std::optional<Eigen::Quaterniond>& a, const std::optional<Eigen:
 /// Roles that a command gave outlive a restart.
 void Hub::KeepRole(const std::string& serial, const Binding& binding) {
   assigned_[serial] = binding;
-  book_.SetRole(serial, binding.role == DeviceRole::kUnspecified ? "" : Text(binding));
-  if (!book_.MountingOf(serial, Text(binding))) {
-    book_.MarkStale(binding.rig, "mounting", serial, "its role is new");
+  store_.SetRole(serial, binding.role == DeviceRole::kUnspecified ? "" : Text(binding));
+  if (!store_.MountingOf(serial, Text(binding))) {
+    store_.MarkStale(binding.rig, "mounting", serial, "its role is new");
   }
 }
 
 void Hub::ApplySetup(Device& device) {
   const std::string& serial = device.identity().serial;
   const Binding& binding = device.binding();
-  const auto tare = book_.TareOf(serial);
+  const auto tare = store_.TareOf(serial);
   device.chain().SetTare(tare ? std::optional(tare->offset) : std::nullopt);
-  const auto stored = book_.MountingOf(serial, Text(binding));
+  const auto stored = store_.MountingOf(serial, Text(binding));
   const auto rotation_MS =
       stored ? std::optional(stored->rotation_MS) : std::optional<Eigen::Quaterniond>();
   const bool anew = stored && !stored->slipped && device.worn().slipped();
@@ -93,7 +93,7 @@ std::set<std::string> Hub::RigsWithBoards() const {
 /// The set-up of every rig that has one or a board, with the geometry by which its boards' samples
 /// are computed.
 std::vector<stream::RigSetup> Hub::SetupInForce() const {
-  std::vector<stream::RigSetup> setup = book_.Rigs();
+  std::vector<stream::RigSetup> setup = store_.Rigs();
   for (const std::string& rig : RigsWithBoards()) {
     const bool has_one =
         std::any_of(setup.begin(), setup.end(), [&rig](const auto& one) { return one.rig == rig; });
@@ -105,23 +105,23 @@ std::vector<stream::RigSetup> Hub::SetupInForce() const {
   return setup;
 }
 
-/// Alarms that the devices' own watches raise; the book keeps them until that part is done again.
+/// Alarms that the devices' own watches raise; they are stored until that part is done again.
 void Hub::WatchSetup() {
   for (const auto& device : devices_) {
     const std::string& serial = device->identity().serial;
     const Binding& binding = device->binding();
-    if (device->chain().moved() && !book_.Moved(serial) && book_.LayoutChecked(binding.rig)) {
-      book_.SetMoved(serial, true);
-      book_.MarkStale(binding.rig, "layout", "", "board " + serial + " was moved");
-      book_.MarkStale(binding.rig, "tare", serial, "the board was moved");
+    if (device->chain().moved() && !store_.Moved(serial) && store_.LayoutChecked(binding.rig)) {
+      store_.SetMoved(serial, true);
+      store_.MarkStale(binding.rig, "layout", "", "board " + serial + " was moved");
+      store_.MarkStale(binding.rig, "tare", serial, "the board was moved");
       status_due_ = true;
       ports_.log("board " + serial + " was moved: footing-ctl setup --only tare --only layout");
     }
-    auto stored = book_.MountingOf(serial, Text(binding));
+    auto stored = store_.MountingOf(serial, Text(binding));
     if (stored && device->worn().slipped() && !stored->slipped) {
       stored->slipped = true;
-      book_.SetMounting(serial, stored);
-      book_.MarkStale(binding.rig, "mounting", serial, "it slipped");
+      store_.SetMounting(serial, stored);
+      store_.MarkStale(binding.rig, "mounting", serial, "it slipped");
       status_due_ = true;
       ports_.log(serial + " has slipped on the " + stream::Name(binding.role) +
                  ": footing-ctl setup --only mounting");
@@ -131,18 +131,18 @@ void Hub::WatchSetup() {
 
 void Hub::AddSetupTo(Placement placement, stream::DeviceStatus& status) const {
   if (placement == Placement::kUnderFeet) {
-    status.moved = book_.Moved(status.serial);
+    status.moved = store_.Moved(status.serial);
     if (status.note.empty()) status.note = BoardNote(status);
     return;
   }
-  const auto stored = book_.MountingOf(status.serial, Text({status.rig, status.role}));
+  const auto stored = store_.MountingOf(status.serial, Text({status.rig, status.role}));
   status.slipped = stored && stored->slipped;
 }
 
 /// A board that should be one of two is alone; empty when all is well.
 std::string Hub::BoardNote(const stream::DeviceStatus& status) const {
   if (status.state == stream::DeviceState::kLost) return "";
-  if (book_.LayoutOf(status.rig).preset == "single") return "";
+  if (store_.LayoutOf(status.rig).preset == "single") return "";
   const bool alone = std::none_of(devices_.begin(), devices_.end(), [&status](const auto& other) {
     return other->number() != status.device && other->attached() &&
            other->placement() == Placement::kUnderFeet && other->binding().rig == status.rig;
@@ -161,7 +161,7 @@ Result<Device*> Hub::Attached(const std::string& serial) {
 
 Result<Hub::Measured> Hub::Tare(const std::string& serial, double window_s, bool clear) {
   if (clear) {
-    book_.SetTare(serial, std::nullopt);
+    store_.SetTare(serial, std::nullopt);
     return Measured{0, "N", "the tare of " + serial + " is forgotten"};
   }
   const auto found = Attached(serial);
@@ -176,7 +176,7 @@ Result<Hub::Measured> Hub::Tare(const std::string& serial, double window_s, bool
   }
   const tare::Tare tare = (*found)->chain().SolveTare(ports_.now_ns(), window_s);
   if (!tare.ok) return Failure("tare of " + serial + ": " + tare.problem);
-  book_.SetTare(serial, setup::StoredTare{tare.offset, tare.residual_n});
+  store_.SetTare(serial, setup::StoredTare{tare.offset, tare.residual_n});
   return Measured{tare.residual_n, "N",
                   "empty it shows " + Number("%.1f", board::Total(tare.offset)) + " N"};
 }
@@ -209,7 +209,7 @@ Result<Hub::Measured> Hub::SolveMounting(const std::string& serial,
   stored.role = Text(binding);
   stored.rotation_MS = solved.rotation_MS;
   stored.residual_rad = solved.residual_rad;
-  book_.SetMounting(serial, stored);
+  store_.SetMounting(serial, stored);
   const double turn_rad = solved.rotation_MS.angularDistance(Eigen::Quaterniond::Identity());
   return Measured{RadiansToDegrees(solved.residual_rad), "deg",
                   "turned by " + Number("%.0f", RadiansToDegrees(turn_rad)) +
@@ -217,7 +217,7 @@ Result<Hub::Measured> Hub::SolveMounting(const std::string& serial,
 }
 
 Result<Hub::Measured> Hub::ClearMounting(const std::string& serial) {
-  book_.SetMounting(serial, std::nullopt);
+  store_.SetMounting(serial, std::nullopt);
   return Measured{0, "deg", "the mounting of " + serial + " is forgotten"};
 }
 
@@ -225,15 +225,15 @@ Result<Hub::Measured> Hub::SetBoardLayout(stream::BoardLayout layout) {
   if (layout.rig.empty()) layout.rig = config_.default_rig;
   if (layout.rig.size() > kMostNameBytes) return UsageError("layout: the rig's name is too long");
   if (auto problem = board::Problem(layout); !problem.empty()) return UsageError(problem);
-  const stream::BoardLayout before = book_.LayoutOf(layout.rig);
+  const stream::BoardLayout before = store_.LayoutOf(layout.rig);
   const auto same = [](const stream::BoardPose& a, const stream::BoardPose& b) {
     return a.x_m == b.x_m && a.y_m == b.y_m && a.yaw_rad == b.yaw_rad;
   };
   const bool changed = before.preset != layout.preset || before.gap_mm != layout.gap_mm ||
                        !same(before.left, layout.left) || !same(before.right, layout.right);
-  if (!book_.SetLayout(layout)) return Failure("layout: there are too many rigs already");
+  if (!store_.SetLayout(layout)) return Failure("layout: there are too many rigs already");
   if (changed) {
-    book_.MarkStale(layout.rig, "layout", "", "the layout was changed and not checked since");
+    store_.MarkStale(layout.rig, "layout", "", "the layout was changed and not checked since");
   }
   return Measured{0, "",
                   layout.preset == "single"
@@ -249,16 +249,16 @@ Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& i
     return UsageError("record: a name is longer than 64 bytes, or the note than 1024");
   }
   if (forget) {
-    book_.Forget(name, item.name, item.serial);
+    store_.Forget(name, item.name, item.serial);
     return {};
   }
   if (item.name.empty()) return UsageError("record: the item has no name");
-  if (!book_.Record(name, item)) return Failure("record: there are too many items already");
+  if (!store_.Record(name, item)) return Failure("record: there are too many items already");
   if (item.name != "layout" || !item.passed || item.stale) return {};
   // Checked where they lie now.
   for (const auto& device : devices_) {
     if (device->placement() != Placement::kUnderFeet || device->binding().rig != name) continue;
-    book_.SetMoved(device->identity().serial, false);
+    store_.SetMoved(device->identity().serial, false);
     device->chain().WatchAnew();
   }
   return {};
@@ -269,7 +269,7 @@ void Hub::TakeMounting(const Binding& binding, const stream::DeviceMounting& mou
   stored.role = Text(binding);
   stored.rotation_MS = mounting.rotation_MS;
   stored.residual_rad = mounting.residual_rad;
-  book_.SetMounting(mounting.serial, stored);
+  store_.SetMounting(mounting.serial, stored);
 }
 
 }  // namespace footing::sensor

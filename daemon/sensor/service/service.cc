@@ -17,6 +17,7 @@
 #include "daemon/sensor/service/answer.h"
 #include "daemon/sensor/service/hub.h"
 #include "daemon/sensor/service/publish.h"
+#include "daemon/sensor/setup/calibration_store.h"
 #include "daemon/sensor/setup/state_directory.h"
 
 namespace footing::sensor {
@@ -42,16 +43,9 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   return options;
 }
 
-/// The directory as the book's shelf; none when nothing is to be kept.
-setup::Shelf ShelfOf(setup::StateDirectory& directory, const Config& config) {
-  if (config.state_directory == "none") return {};
-  return {[&directory](const std::string& name) { return directory.Load(name); },
-          [&directory](const std::string& name, const std::string& content) {
-            directory.Save(name, content);
-          },
-          [&directory](const std::string& name, const std::string& why) {
-            directory.Refuse(name, why);
-          }};
+/// The configured state directory; none when nothing is to be kept.
+setup::Storage StorageOf(setup::StateDirectory& directory, const Config& config) {
+  return config.state_directory == "none" ? setup::Storage() : setup::StorageIn(directory);
 }
 
 }  // namespace
@@ -64,7 +58,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
         timer_(io),
         state_(setup::StatePath(config.state_directory),
                [](const std::string& line) { log::Warning(line); }),
-        calibrations_(ShelfOf(state_, config)),
+        calibrations_(StorageOf(state_, config)),
         hub_(config,
              {[this](DeviceHandle device, const reports::OutputReport& report) {
                 Send(device, report);
@@ -77,7 +71,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
               [this](const std::string& serial, const std::vector<std::uint8_t>& bytes) {
                 calibrations_.Save(serial, bytes);
               },
-              ShelfOf(state_, config)}),
+              StorageOf(state_, config)}),
         server_(
             io, MakeServerOptions(config, version),
             {[this](const transport::SessionInfo& session, const v1::Command& command) {
@@ -263,7 +257,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   std::map<DeviceHandle, std::size_t> source_of_;
   DeviceHandle last_handle_ = 0;
   setup::StateDirectory state_;
-  setup::CalibrationShelf calibrations_;
+  setup::CalibrationStore calibrations_;
   Hub hub_;
   transport::Server server_;
   std::vector<std::string> listening_on_;

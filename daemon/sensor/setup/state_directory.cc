@@ -64,6 +64,16 @@ std::string Variable(const char* name) {
 
 }  // namespace
 
+Storage StorageIn(StateDirectory& directory) {
+  return {[&directory](const std::string& name) { return directory.Load(name); },
+          [&directory](const std::string& name, const std::string& content) {
+            directory.Save(name, content);
+          },
+          [&directory](const std::string& name, const std::string& why) {
+            directory.Refuse(name, why);
+          }};
+}
+
 std::string StatePath(const std::string& configured) {
   if (!configured.empty()) return configured;
   const std::string systemd = Variable("STATE_DIRECTORY");

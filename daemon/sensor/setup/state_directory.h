@@ -4,13 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "daemon/sensor/setup/storage.h"
+
 namespace footing::setup {
 
 /// What footingd remembers between its runs: one small JSON file per concern ("roles", "tares",
 /// ...) with its version, its own name or serial, and a CRC-32 of its content. A file that is
 /// truncated, damaged, of another version, or of another name is named in one line and moved aside
-/// to
-/// *.damaged; a directory that cannot be written is said once, and footingd goes on in memory.
+/// to *.damaged; a directory that cannot be written is said once, and footingd goes on in memory.
 /// Nothing here is ever fatal.
 class StateDirectory {
  public:
@@ -34,6 +35,9 @@ class StateDirectory {
   Say say_;
   bool unwritable_said_ = false;
 };
+
+/// The directory as a storage; it must outlive what is returned.
+Storage StorageIn(StateDirectory& directory);
 
 /// Where the state lies: `configured` if not empty, else $STATE_DIRECTORY (set by systemd), else
 /// $XDG_STATE_HOME/footing, else ~/.local/state/footing. Empty if there is no home either.

@@ -23,12 +23,12 @@ class Bench {
  public:
   using Model = std::variant<virtual_devices::Wiimote, virtual_devices::BalanceBoard>;
 
-  explicit Bench(const Config& config = {}, const setup::Shelf& shelf = {})
+  explicit Bench(const Config& config = {}, const setup::Storage& storage = {})
       : hub_(config, {[this](devices::DeviceHandle handle, const reports::OutputReport& report) {
                         Answer(handle, report);
                       },
                       [this](const std::string& line) { log.push_back(line); },
-                      [this] { return now_ns_; }, nullptr, nullptr, nullptr, shelf}) {}
+                      [this] { return now_ns_; }, nullptr, nullptr, nullptr, storage}) {}
 
   devices::DeviceHandle Attach(Model model, const std::string& serial = "", bool simulated = true) {
     const auto& own = std::visit(

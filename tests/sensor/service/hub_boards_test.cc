@@ -17,7 +17,7 @@ using virtual_devices::Wiimote;
 TEST(HubTare, TakesTheEmptyWeightOffWithoutClampingAndIsKept) {
   Kept kept;
   {
-    Bench bench({}, kept.shelf());
+    Bench bench({}, kept.storage());
     bench.Attach(BalanceBoard(1), "a");
     bench.corners = {5, -4, 3, -2};
     bench.Advance(3);
@@ -35,7 +35,7 @@ TEST(HubTare, TakesTheEmptyWeightOffWithoutClampingAndIsKept) {
     bench.Advance(0.1);
     EXPECT_NEAR(bench.content.boards.back().total_n, -8, 0.5);
   }
-  Bench again({}, kept.shelf());
+  Bench again({}, kept.storage());
   again.Attach(BalanceBoard(1), "a");
   again.corners = {5, -4, 3, -2};
   again.Advance(0.5);
@@ -266,7 +266,7 @@ class MovedBoard : public testing::Test {
     bench_.Advance(0.5);
   }
   Kept kept_;
-  Bench bench_{{}, kept_.shelf()};
+  Bench bench_{{}, kept_.storage()};
 };
 
 TEST_F(MovedBoard, IsToldOverARestartUntilTheLayoutIsCheckedAgain) {
@@ -280,7 +280,7 @@ TEST_F(MovedBoard, IsToldOverARestartUntilTheLayoutIsCheckedAgain) {
   EXPECT_TRUE(ItemOf(bench_, "tare").stale);
   EXPECT_THAT(bench_.log, testing::Contains(HasSubstr("was moved")));
 
-  Bench again({}, kept_.shelf());
+  Bench again({}, kept_.storage());
   again.Attach(BalanceBoard(1), "a");
   again.corners = {0, 0, 0, 0};
   again.Advance(1);

@@ -51,7 +51,7 @@ class MountedLeg : public testing::Test {
   double steps_from_s_ = 0;
   double steps_to_s_ = 0;
   double roll_rad_ = 0;
-  Bench bench_{{}, kept_.shelf()};
+  Bench bench_{{}, kept_.storage()};
 };
 
 TEST_F(MountedLeg, IsSolvedAndItsFeaturesAreThoseOfAPerfectMounting) {
@@ -78,7 +78,7 @@ TEST_F(MountedLeg, IsSolvedAndItsFeaturesAreThoseOfAPerfectMounting) {
 
 TEST_F(MountedLeg, IsKeptOverARestartForThisRoleOnly) {
   ASSERT_TRUE(Solve());
-  Bench again({}, kept_.shelf());
+  Bench again({}, kept_.storage());
   again.wish = DeviceRole::kLeftLeg;
   Attach(again);
   again.Advance(0.5);
@@ -105,7 +105,7 @@ TEST_F(MountedLeg, ThatSlipsIsToldOverARestartUntilItIsSolvedAgain) {
   EXPECT_TRUE(bench_.StatusOf("a").slipped);
   EXPECT_TRUE(ItemOf(bench_, "mounting").stale);
   {
-    Bench again({}, kept_.shelf());
+    Bench again({}, kept_.storage());
     again.wish = DeviceRole::kLeftLeg;
     Attach(again);
     again.Advance(0.5);

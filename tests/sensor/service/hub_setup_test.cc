@@ -4,7 +4,7 @@
 
 #include "common/units/units.h"
 #include "common/virtual/devices/ps_move.h"
-#include "daemon/sensor/setup/book.h"
+#include "daemon/sensor/setup/calibration_store.h"
 #include "tests/sensor/service/kept.h"
 
 namespace footing::sensor {
@@ -18,7 +18,7 @@ using virtual_devices::Wiimote;
 TEST(HubLayout, IsCheckedKeptAndPublished) {
   Kept kept;
   {
-    Bench bench({}, kept.shelf());
+    Bench bench({}, kept.storage());
     ASSERT_TRUE(bench.hub().SetBoardLayout(OneFootEach()));
     ASSERT_TRUE(bench.hub().RecordSetup("", Passed("layout"), false));
     auto wider = OneFootEach();
@@ -29,7 +29,7 @@ TEST(HubLayout, IsCheckedKeptAndPublished) {
     bench.Advance(0.1);
     EXPECT_TRUE(ItemOf(bench, "layout").stale) << "set anew, not checked";
   }
-  Bench again({}, kept.shelf());
+  Bench again({}, kept.storage());
   again.Advance(0.1);
   ASSERT_EQ(again.content.setup.size(), 1u);
   EXPECT_EQ(again.content.setup[0].rig, "main");
@@ -54,13 +54,13 @@ TEST(HubRoles, GivenByCommandOutliveARestartAndTheConfig) {
   Config config;
   config.roles["a"] = "main/left_hand";
   {
-    Bench bench(config, kept.shelf());
+    Bench bench(config, kept.storage());
     bench.Attach(Wiimote(1), "a");
     bench.Attach(Wiimote(2), "b");
     bench.Advance(0.3);
     ASSERT_TRUE(bench.hub().AssignRole("a", {"main", DeviceRole::kRightHand}));
   }
-  Bench again(config, kept.shelf());
+  Bench again(config, kept.storage());
   EXPECT_THAT(again.log, testing::Contains(HasSubstr("no longer main/left_hand")));
   again.Attach(Wiimote(2), "b");
   again.Attach(Wiimote(1), "a");
@@ -83,10 +83,12 @@ class StoredMove : public testing::Test {
       auto piece = readable ? move_.Feature(id, size) : std::nullopt;
       features_.emplace_back(handle, piece.value_or(virtual_devices::Report()));
     };
-    ports.load_calibration = [this](const std::string& serial) { return shelf_.Load(serial); };
+    ports.load_calibration = [this](const std::string& serial) {
+      return calibrations_.Load(serial);
+    };
     ports.save_calibration = [this](const std::string& serial,
                                     const std::vector<std::uint8_t>& bytes) {
-      shelf_.Save(serial, bytes);
+      calibrations_.Save(serial, bytes);
     };
     return Hub({}, ports);
   }
@@ -110,7 +112,7 @@ class StoredMove : public testing::Test {
   }
 
   Kept kept_;
-  setup::CalibrationShelf shelf_{kept_.shelf()};
+  setup::CalibrationStore calibrations_{kept_.storage()};
   PsMove move_{1, virtual_devices::MoveModel::kZcm1};
   std::vector<std::pair<devices::DeviceHandle, virtual_devices::Report>> features_;
   std::int64_t now_ns_ = 1'000'000'000;

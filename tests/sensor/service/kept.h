@@ -13,7 +13,7 @@ namespace footing::sensor {
 /// What is kept between two benches, as on a disk.
 class Kept {
  public:
-  setup::Shelf shelf() {
+  setup::Storage storage() {
     return {[this](const std::string& name) {
               const auto found = pieces_.find(name);
               return found == pieces_.end() ? std::nullopt : std::optional(found->second);

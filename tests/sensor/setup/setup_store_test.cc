@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/sensor/setup/book.h"
+#include "daemon/sensor/setup/calibration_store.h"
+#include "daemon/sensor/setup/setup_store.h"
 #include "daemon/sensor/setup/state_directory.h"
 
 namespace footing::setup {
@@ -28,15 +29,6 @@ class SetupTest : public testing::Test {
     return StateDirectory(folder_ / "state",
                           [this](const std::string& line) { said_.push_back(line); });
   }
-  static Shelf ShelfOf(StateDirectory& directory) {
-    return {[&directory](const std::string& name) { return directory.Load(name); },
-            [&directory](const std::string& name, const std::string& content) {
-              directory.Save(name, content);
-            },
-            [&directory](const std::string& name, const std::string& why) {
-              directory.Refuse(name, why);
-            }};
-  }
   std::string Read(const fs::path& path) {
     std::ifstream file(path);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -49,17 +41,17 @@ class SetupTest : public testing::Test {
 TEST_F(SetupTest, EverythingSurvivesARestart) {
   auto directory = Directory();
   {
-    Book book(ShelfOf(directory));
-    book.SetRole("aa:01", "main/left_leg");
-    book.SetTare("bb:02", StoredTare{{1, -2, 3, -4}, 0.5});
+    SetupStore store(StorageIn(directory));
+    store.SetRole("aa:01", "main/left_leg");
+    store.SetTare("bb:02", StoredTare{{1, -2, 3, -4}, 0.5});
     StoredMounting mounting{"main/left_leg", Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), 0.02};
-    book.SetMounting("aa:01", mounting);
+    store.SetMounting("aa:01", mounting);
     stream::BoardLayout layout;
     layout.rig = "main";
     layout.gap_mm = 40;
     layout.left = {0, 0.25, 0.1};
     layout.preset = "one_foot_each";
-    book.SetLayout(layout);
+    store.SetLayout(layout);
     stream::SetupItem item;
     item.name = "tare";
     item.serial = "bb:02";
@@ -67,32 +59,32 @@ TEST_F(SetupTest, EverythingSurvivesARestart) {
     item.wall_time_ns = 1'700'000'000'000'000'000;
     item.residual = 0.5;
     item.unit = "N";
-    book.Record("main", item);
-    book.SetMoved("bb:02", true);
+    store.Record("main", item);
+    store.SetMoved("bb:02", true);
   }
-  const Book book(ShelfOf(directory));
-  EXPECT_EQ(book.roles().at("aa:01"), "main/left_leg");
-  EXPECT_EQ(book.TareOf("bb:02")->offset, (board::CornerForces{1, -2, 3, -4}));
-  EXPECT_NEAR(book.MountingOf("aa:01", "main/left_leg")->rotation_MS.y(), -0.5, 1e-12);
-  EXPECT_FALSE(book.MountingOf("aa:01", "main/right_leg")) << "found for another role";
-  ASSERT_EQ(book.Rigs().size(), 1u);
-  EXPECT_EQ(book.Rigs()[0].layout.gap_mm, 40);
-  EXPECT_EQ(book.Rigs()[0].items.at(0).wall_time_ns, 1'700'000'000'000'000'000);
-  EXPECT_TRUE(book.Moved("bb:02"));
+  const SetupStore store(StorageIn(directory));
+  EXPECT_EQ(store.roles().at("aa:01"), "main/left_leg");
+  EXPECT_EQ(store.TareOf("bb:02")->offset, (board::CornerForces{1, -2, 3, -4}));
+  EXPECT_NEAR(store.MountingOf("aa:01", "main/left_leg")->rotation_MS.y(), -0.5, 1e-12);
+  EXPECT_FALSE(store.MountingOf("aa:01", "main/right_leg")) << "found for another role";
+  ASSERT_EQ(store.Rigs().size(), 1u);
+  EXPECT_EQ(store.Rigs()[0].layout.gap_mm, 40);
+  EXPECT_EQ(store.Rigs()[0].items.at(0).wall_time_ns, 1'700'000'000'000'000'000);
+  EXPECT_TRUE(store.Moved("bb:02"));
   EXPECT_TRUE(said_.empty());
 }
 
 TEST_F(SetupTest, ATruncatedFileIsNamedMovedAsideAndNotUsed) {
   auto directory = Directory();
-  Book(ShelfOf(directory)).SetRole("aa:01", "main/left_leg");
+  SetupStore(StorageIn(directory)).SetRole("aa:01", "main/left_leg");
   const fs::path file = folder_ / "state" / "roles.json";
   const auto whole = fs::file_size(file);
   for (const auto size : {std::uintmax_t{0}, whole / 2, whole - 3}) {
-    Book(ShelfOf(directory)).SetRole("aa:01", "main/left_leg");
+    SetupStore(StorageIn(directory)).SetRole("aa:01", "main/left_leg");
     fs::resize_file(file, size);
     said_.clear();
-    const Book book(ShelfOf(directory));
-    EXPECT_TRUE(book.roles().empty());
+    const SetupStore store(StorageIn(directory));
+    EXPECT_TRUE(store.roles().empty());
     ASSERT_EQ(said_.size(), 1u);
     EXPECT_NE(said_[0].find("roles"), std::string::npos) << said_[0];
     EXPECT_FALSE(fs::exists(file));
@@ -102,16 +94,16 @@ TEST_F(SetupTest, ATruncatedFileIsNamedMovedAsideAndNotUsed) {
 
 TEST_F(SetupTest, ACalibrationOfAnotherDeviceIsRefused) {
   auto directory = Directory();
-  const CalibrationShelf shelf(ShelfOf(directory));
+  const CalibrationStore calibrations(StorageIn(directory));
   const std::vector<std::uint8_t> bytes = {0x10, 0x00, 0xff, 0x7a};
-  shelf.Save("00:11", bytes);
-  EXPECT_EQ(shelf.Load("00:11"), bytes);
-  EXPECT_FALSE(shelf.Load("00:22"));
+  calibrations.Save("00:11", bytes);
+  EXPECT_EQ(calibrations.Load("00:11"), bytes);
+  EXPECT_FALSE(calibrations.Load("00:22"));
   fs::copy_file(folder_ / "state/calibration-00-11.json", folder_ / "state/calibration-00-22.json");
-  EXPECT_FALSE(shelf.Load("00:22"));
+  EXPECT_FALSE(calibrations.Load("00:22"));
   ASSERT_EQ(said_.size(), 1u);
   EXPECT_NE(said_[0].find("00:11"), std::string::npos) << said_[0];
-  EXPECT_EQ(shelf.Load("00:11"), bytes);
+  EXPECT_EQ(calibrations.Load("00:11"), bytes);
 }
 
 TEST_F(SetupTest, AChangedByteAndAnUnknownVersionAreRefused) {
@@ -119,13 +111,13 @@ TEST_F(SetupTest, AChangedByteAndAnUnknownVersionAreRefused) {
   const fs::path file = folder_ / "state" / "roles.json";
   for (const auto& [from, to] :
        {std::pair{"left_leg", "left_log"}, {"\"version\": 1", "\"version\": 9"}}) {
-    Book(ShelfOf(directory)).SetRole("aa:01", "main/left_leg");
+    SetupStore(StorageIn(directory)).SetRole("aa:01", "main/left_leg");
     std::string text = Read(file);
     const auto at = text.find(from);
     ASSERT_NE(at, std::string::npos);
     std::ofstream(file) << text.replace(at, std::string(from).size(), to);
     said_.clear();
-    EXPECT_TRUE(Book(ShelfOf(directory)).roles().empty());
+    EXPECT_TRUE(SetupStore(StorageIn(directory)).roles().empty());
     EXPECT_EQ(said_.size(), 1u);
   }
 }
@@ -133,37 +125,37 @@ TEST_F(SetupTest, AChangedByteAndAnUnknownVersionAreRefused) {
 TEST_F(SetupTest, ContentOfAnotherFormIsRefusedAsAWhole) {
   auto directory = Directory();
   directory.Save("tares", R"({"aa:01": {"top_left_n": "much"}})");
-  const Book book(ShelfOf(directory));
-  EXPECT_FALSE(book.TareOf("aa:01"));
+  const SetupStore store(StorageIn(directory));
+  EXPECT_FALSE(store.TareOf("aa:01"));
   EXPECT_EQ(said_.size(), 1u);
 }
 
 TEST_F(SetupTest, ADirectoryThatCannotBeWrittenIsSaidOnceAndMemoryGoesOn) {
   std::ofstream(folder_ / "state") << "a file is in the way";
   auto directory = Directory();
-  Book book(ShelfOf(directory));
-  book.SetRole("aa:01", "main/left_leg");
-  book.SetRole("aa:02", "main/right_leg");
+  SetupStore store(StorageIn(directory));
+  store.SetRole("aa:01", "main/left_leg");
+  store.SetRole("aa:02", "main/right_leg");
   EXPECT_EQ(said_.size(), 1u);
-  EXPECT_EQ(book.roles().size(), 2u);
+  EXPECT_EQ(store.roles().size(), 2u);
 }
 
 TEST_F(SetupTest, StaleItemsStayWithTheirReasonUntilTheyAreDoneAgain) {
-  Book book({});
+  SetupStore store({});
   stream::SetupItem item;
   item.name = "layout";
   item.passed = true;
-  book.Record("main", item);
-  const auto before = book.revision();
-  book.MarkStale("main", "layout", "", "the board was moved");
-  EXPECT_GT(book.revision(), before);
-  EXPECT_TRUE(book.Rigs()[0].items[0].stale);
-  EXPECT_EQ(book.Rigs()[0].items[0].note, "the board was moved");
-  book.Record("main", item);
-  EXPECT_FALSE(book.Rigs()[0].items[0].stale);
-  EXPECT_EQ(book.Rigs()[0].items.size(), 1u);
-  book.Forget("main", "layout", "");
-  EXPECT_TRUE(book.Rigs().empty());
+  store.Record("main", item);
+  const auto before = store.revision();
+  store.MarkStale("main", "layout", "", "the board was moved");
+  EXPECT_GT(store.revision(), before);
+  EXPECT_TRUE(store.Rigs()[0].items[0].stale);
+  EXPECT_EQ(store.Rigs()[0].items[0].note, "the board was moved");
+  store.Record("main", item);
+  EXPECT_FALSE(store.Rigs()[0].items[0].stale);
+  EXPECT_EQ(store.Rigs()[0].items.size(), 1u);
+  store.Forget("main", "layout", "");
+  EXPECT_TRUE(store.Rigs().empty());
 }
 
 TEST(StatePath, IsTheConfiguredOneFirst) { EXPECT_EQ(StatePath("/somewhere"), "/somewhere"); }
