@@ -1,71 +1,54 @@
-#include "common/wire/scalar.h"
-#include "common/wire/wire.h"
+#include "common/wire/fields.h"
 
 namespace footing::wire {
 
-v1::Skeleton ToProto(const stream::Skeleton& value) {
-  v1::Skeleton message;
-  message.set_character(value.character);
-  message.set_name(Utf8(value.name));
-  for (const auto& link : value.links) {
-    v1::Link& out = *message.add_links();
-    out.set_name(Utf8(link.name));
-    out.set_parent(link.parent);
-    *out.mutable_size_m() = ToProto(link.size_m);
+template <typename Way>
+void Fields(Way way, const stream::Link&) {
+  FOOTING_FIELD(name);
+  FOOTING_FIELD(parent);
+  FOOTING_MESSAGE(size_m);
+}
+FOOTING_BOTH_WAYS(Link)
+
+template <typename Way>
+void Fields(Way way, const stream::TrackSegment&) {
+  FOOTING_MESSAGE(start_m);
+  FOOTING_FIELD(heading_rad);
+  FOOTING_FIELD(slope_rad);
+  FOOTING_FIELD(length_m);
+  FOOTING_FIELD(width_m);
+  FOOTING_FIELD(pit);
+}
+FOOTING_BOTH_WAYS(TrackSegment)
+
+template <typename Way>
+void Fields(Way way, const stream::Skeleton&) {
+  FOOTING_FIELD(character);
+  FOOTING_FIELD(name);
+  FOOTING_REPEATED(links);
+  if constexpr (Way::kOut) {
+    for (const auto& point : way.value.contact_points) way.message.add_contact_points(Utf8(point));
+  } else {
+    const auto& points = way.message.contact_points();
+    way.value.contact_points.assign(points.begin(), points.end());
   }
-  for (const auto& point : value.contact_points) message.add_contact_points(Utf8(point));
-  return message;
 }
+FOOTING_BOTH_WAYS(Skeleton)
 
-stream::Skeleton FromProto(const v1::Skeleton& message) {
-  stream::Skeleton value;
-  value.character = message.character();
-  value.name = message.name();
-  for (const auto& link : message.links()) {
-    value.links.push_back({link.name(), link.parent(), FromProto(link.size_m())});
-  }
-  value.contact_points.assign(message.contact_points().begin(), message.contact_points().end());
-  return value;
+template <typename Way>
+void Fields(Way way, const stream::Track&) {
+  FOOTING_FIELD(name);
+  FOOTING_REPEATED(segments);
+  FOOTING_FIELD(revision);
 }
+FOOTING_BOTH_WAYS(Track)
 
-v1::Track ToProto(const stream::Track& value) {
-  v1::Track message;
-  message.set_name(Utf8(value.name));
-  for (const auto& segment : value.segments) {
-    v1::TrackSegment& out = *message.add_segments();
-    *out.mutable_start_m() = ToProto(segment.start_m);
-    out.set_heading_rad(Finite(segment.heading_rad));
-    out.set_slope_rad(Finite(segment.slope_rad));
-    out.set_length_m(Finite(segment.length_m));
-    out.set_width_m(Finite(segment.width_m));
-    out.set_pit(segment.pit);
-  }
-  message.set_revision(value.revision);
-  return message;
+template <typename Way>
+void Fields(Way way, const stream::LinkPose&) {
+  FOOTING_MESSAGE(position_m);
+  FOOTING_MESSAGE(orientation);
 }
-
-stream::Track FromProto(const v1::Track& message) {
-  stream::Track value;
-  value.name = message.name();
-  for (const auto& segment : message.segments()) {
-    value.segments.push_back({FromProto(segment.start_m()), Finite(segment.heading_rad()),
-                              Finite(segment.slope_rad()), Finite(segment.length_m()),
-                              Finite(segment.width_m()), segment.pit()});
-  }
-  value.revision = message.revision();
-  return value;
-}
-
-v1::LinkPose ToProto(const stream::LinkPose& value) {
-  v1::LinkPose message;
-  *message.mutable_position_m() = ToProto(value.position_m);
-  *message.mutable_orientation() = ToProto(value.orientation);
-  return message;
-}
-
-stream::LinkPose FromProto(const v1::LinkPose& message) {
-  return {FromProto(message.position_m()), FromProto(message.orientation())};
-}
+FOOTING_BOTH_WAYS(LinkPose)
 
 v1::Contact ToProto(const stream::Contact& value) {
   v1::Contact message;

@@ -44,38 +44,20 @@ void Fields(Way way, const stream::DeviceStatus&) {
   FOOTING_FIELD(bus);
   FOOTING_FIELD(vendor);
   FOOTING_FIELD(product);
-  if constexpr (Way::kOut) {
-    const auto& stored = way.value.stored_calibration;
-    way.message.set_stored_calibration(stored.data(), stored.size());
-  } else {
-    const std::string& stored = way.message.stored_calibration();
-    way.value.stored_calibration.assign(stored.begin(), stored.end());
-  }
+  FOOTING_BYTES(stored_calibration);
 }
 FOOTING_BOTH_WAYS(DeviceStatus)
 
-v1::RawReport ToProto(const stream::RawReport& value) {
-  v1::RawReport message;
-  message.set_device(value.device);
-  message.set_received_ns(value.received_ns);
-  message.set_report(value.report.data(), value.report.size());
-  message.set_to_device(value.to_device);
-  message.set_simulated(value.simulated);
-  message.set_true_ns(value.true_ns);
-  message.set_feature(value.feature);
-  return message;
+template <typename Way>
+void Fields(Way way, const stream::RawReport&) {
+  FOOTING_FIELD(device);
+  FOOTING_FIELD(received_ns);
+  FOOTING_BYTES(report);
+  FOOTING_FIELD(to_device);
+  FOOTING_FIELD(simulated);
+  FOOTING_FIELD(true_ns);
+  FOOTING_FIELD(feature);
 }
-
-stream::RawReport FromProto(const v1::RawReport& message) {
-  stream::RawReport value;
-  value.device = message.device();
-  value.received_ns = message.received_ns();
-  value.report.assign(message.report().begin(), message.report().end());
-  value.to_device = message.to_device();
-  value.simulated = message.simulated();
-  value.true_ns = message.true_ns();
-  value.feature = message.feature();
-  return value;
-}
+FOOTING_BOTH_WAYS(RawReport)
 
 }  // namespace footing::wire

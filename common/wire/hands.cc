@@ -3,13 +3,7 @@
 #include "common/wire/fields.h"
 
 namespace footing::wire {
-
 namespace {
-
-stream::DeviceRole RoleOf(v1::DeviceRole role) {
-  return v1::DeviceRole_IsValid(role) ? static_cast<stream::DeviceRole>(role)
-                                      : stream::DeviceRole::kUnspecified;
-}
 
 /// Three numbers from `first` on; what is missing is NaN, so that a check finds it.
 template <typename Numbers>
@@ -22,40 +16,37 @@ Eigen::Vector3d Triple(const Numbers& numbers, int first) {
 
 }  // namespace
 
-v1::HandFrame ToProto(const stream::HandFrame& value) {
-  v1::HandFrame message;
-  message.set_tracker(Utf8(value.tracker));
-  message.set_rig(Utf8(value.rig));
-  message.set_age_ns(value.age_ns);
-  for (const stream::TrackedPoint& point : value.points) {
-    v1::TrackedPoint& out = *message.add_points();
-    out.set_role(static_cast<v1::DeviceRole>(point.role));
-    out.set_x_m(Finite(point.position_m.x()));
-    out.set_y_m(Finite(point.position_m.y()));
-    out.set_z_m(Finite(point.position_m.z()));
-    out.set_sd_x_m(Finite(point.sd_m.x()));
-    out.set_sd_y_m(Finite(point.sd_m.y()));
-    out.set_sd_z_m(Finite(point.sd_m.z()));
-    out.set_confidence(Finite(point.confidence));
-  }
-  message.set_simulated(value.simulated);
-  return message;
+template <typename Way>
+void Fields(Way way, const stream::TrackedPoint&) {
+  FOOTING_ENUM(DeviceRole, role);
+  FOOTING_FIELD_OF(position_m.x(), x_m);
+  FOOTING_FIELD_OF(position_m.y(), y_m);
+  FOOTING_FIELD_OF(position_m.z(), z_m);
+  FOOTING_FIELD_OF(sd_m.x(), sd_x_m);
+  FOOTING_FIELD_OF(sd_m.y(), sd_y_m);
+  FOOTING_FIELD_OF(sd_m.z(), sd_z_m);
+  FOOTING_FIELD(confidence);
 }
+FOOTING_BOTH_WAYS(TrackedPoint)
 
-stream::HandFrame FromProto(const v1::HandFrame& message) {
-  stream::HandFrame value;
-  value.tracker = message.tracker();
-  value.rig = message.rig();
-  value.age_ns = message.age_ns();
-  for (const v1::TrackedPoint& point : message.points()) {
-    value.points.push_back({RoleOf(point.role()),
-                            {point.x_m(), point.y_m(), point.z_m()},
-                            {point.sd_x_m(), point.sd_y_m(), point.sd_z_m()},
-                            point.confidence()});
+template <typename Way>
+void Fields(Way way, const stream::HandFrame&) {
+  FOOTING_FIELD(tracker);
+  FOOTING_FIELD(rig);
+  FOOTING_FIELD(age_ns);
+  if constexpr (Way::kOut) {
+    for (const auto& point : way.value.points) *way.message.add_points() = ToProto(point);
+  } else {
+    for (const v1::TrackedPoint& point : way.message.points()) {
+      stream::TrackedPoint& one = way.value.points.emplace_back(FromProto(point));
+      one.position_m = {point.x_m(), point.y_m(), point.z_m()};  // With what is not finite.
+      one.sd_m = {point.sd_x_m(), point.sd_y_m(), point.sd_z_m()};
+      one.confidence = point.confidence();
+    }
   }
-  value.simulated = message.simulated();
-  return value;
+  FOOTING_FIELD(simulated);
 }
+FOOTING_BOTH_WAYS(HandFrame)
 
 v1::ReferenceFrame ToProto(const stream::ReferenceFrame& value) {
   v1::ReferenceFrame message;

@@ -44,30 +44,21 @@ void Fields(Way way, const stream::SetupItem&) {
 }
 FOOTING_BOTH_WAYS(SetupItem)
 
-v1::RigSetup ToProto(const stream::RigSetup& value) {
-  v1::RigSetup message;
-  message.set_rig(Utf8(value.rig));
-  *message.mutable_layout() = ToProto(value.layout);
-  for (const auto& one : value.items) *message.add_items() = ToProto(one);
-  for (const auto& one : value.mountings) {
-    v1::DeviceMounting& mounting = *message.add_mountings();
-    mounting.set_serial(Utf8(one.serial));
-    *mounting.mutable_rotation() = ToProto(one.rotation_MS);
-    mounting.set_residual_rad(Finite(one.residual_rad));
-  }
-  return message;
+template <typename Way>
+void Fields(Way way, const stream::DeviceMounting&) {
+  FOOTING_FIELD(serial);
+  FOOTING_MESSAGE_OF(rotation_MS, rotation);
+  FOOTING_FIELD(residual_rad);
 }
+FOOTING_BOTH_WAYS(DeviceMounting)
 
-stream::RigSetup FromProto(const v1::RigSetup& message) {
-  stream::RigSetup value;
-  value.rig = message.rig();
-  value.layout = FromProto(message.layout());
-  for (const auto& one : message.items()) value.items.push_back(FromProto(one));
-  for (const auto& one : message.mountings()) {
-    value.mountings.push_back(
-        {one.serial(), FromProto(one.rotation()), Finite(one.residual_rad())});
-  }
-  return value;
+template <typename Way>
+void Fields(Way way, const stream::RigSetup&) {
+  FOOTING_FIELD(rig);
+  FOOTING_MESSAGE(layout);
+  FOOTING_REPEATED(items);
+  FOOTING_REPEATED(mountings);
 }
+FOOTING_BOTH_WAYS(RigSetup)
 
 }  // namespace footing::wire
