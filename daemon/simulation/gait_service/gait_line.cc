@@ -7,6 +7,7 @@
 #include "daemon/simulation/engine_files/engine_files.h"
 #include "daemon/simulation/gait_service/publish.h"
 #include "daemon/simulation/serving/channel_bytes.h"
+#include "daemon/simulation/serving/messages.h"
 #include "daemon/simulation/terrain/append.h"
 
 namespace footing::gait_service {
@@ -45,10 +46,8 @@ std::vector<transport::Channel> GaitLine::Channels() {
 }
 
 std::vector<transport::ChannelBytes> GaitLine::Retained() const {
-  v1::Skeletons skeletons;
-  skeletons.set_world(world_);
-  *skeletons.add_skeletons() = wire::ToProto(thread_.run().engine().skeleton());
-  return {serving::Bytes(serving::kSkeletons, skeletons),
+  return {serving::Bytes(serving::kSkeletons,
+                         serving::MakeSkeletons(world_, thread_.run().engine().skeleton())),
           serving::Bytes(serving::kTrack, wire::ToProto(track_))};
 }
 
@@ -60,9 +59,7 @@ v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
   v1::ResponseStages stages;
   if (!responses_.Complete(frame, now_ns, stages)) return events;
   v1::Event& event = *events.add_events();
-  event.set_kind(v1::Event::KIND_RESPONSE);
-  event.set_host_ns(now_ns);
-  event.set_character(1);
+  event = serving::MakeEvent(v1::Event::KIND_RESPONSE, now_ns);
   event.set_gait(stages.to());
   *event.mutable_response() = stages;
   return events;
@@ -76,15 +73,12 @@ std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::
   }
   if (frame.added_count > 0)
     channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(track_)));
-  channels.push_back(
-      serving::Bytes(serving::kCharacters, ToCharacterFrame(frame, world_, input_.rig())));
-  const v1::Events events = EventsOf(frame, now_ns);
-  if (events.events_size() > 0) channels.push_back(serving::Bytes(serving::kEvents, events));
   v1::AppliedInputs inputs;
   for (int i = 0; i < frame.applied_count; ++i) {
     *inputs.add_inputs() = ToAppliedInput(frame.applied[static_cast<std::size_t>(i)]);
   }
-  if (inputs.inputs_size() > 0) channels.push_back(serving::Bytes(serving::kInputs, inputs));
+  serving::AddFrame(ToCharacterFrame(frame, world_, input_.rig()), EventsOf(frame, now_ns), inputs,
+                    channels);
   return channels;
 }
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "common/wire/wire.h"
+#include "common/wire/fields.h"
+#include "daemon/simulation/serving/messages.h"
 
 namespace footing::gait_service {
 namespace {
@@ -60,128 +61,102 @@ std::string ToText(const engine::EngineEvent& event) {
   return event.text;
 }
 
-void SetHand(const mapping::HandFeatures& hand, v1::HandInput& message) {
-  message.set_present(hand.present);
-  message.set_moving(hand.moving);
-  message.set_frequency_valid(hand.frequency_valid);
-  message.set_frequency_hz(hand.frequency_hz);
-  message.set_amplitude_valid(hand.amplitude_valid);
-  message.set_amplitude_mps2(hand.amplitude_mps2);
-  message.set_inclination_valid(hand.inclination_valid);
-  message.set_roll_rad(hand.roll_rad);
+using wire::FromProto;
+using wire::ToProto;
+
+template <typename Way>
+void Fields(Way way, const mapping::HandFeatures&) {
+  FOOTING_FIELD(present);
+  FOOTING_FIELD(moving);
+  FOOTING_FIELD(frequency_valid);
+  FOOTING_FIELD(frequency_hz);
+  FOOTING_FIELD(amplitude_valid);
+  FOOTING_FIELD(amplitude_mps2);
+  FOOTING_FIELD(inclination_valid);
+  FOOTING_FIELD(roll_rad);
+}
+FOOTING_BOTH_WAYS_OF(mapping::HandFeatures, v1::HandInput)
+
+template <typename Way>
+void Fields(Way way, const terrain::NewSegment&) {
+  FOOTING_FIELD(length_m);
+  FOOTING_FIELD(slope_rad);
+  FOOTING_FIELD(curve_rad);
+  FOOTING_FIELD(step_m);
+  FOOTING_FIELD(pit);
+}
+FOOTING_BOTH_WAYS_OF(terrain::NewSegment, v1::AppendedSegment)
+
+template <typename Way>
+void Fields(Way way, const engine::EngineInputs&) {
+  FOOTING_FIELD(features_number);
+  FOOTING_MESSAGE_OF(features.left, left);
+  FOOTING_MESSAGE_OF(features.right, right);
+  FOOTING_FIELD_OF(features.phase_valid, phase_valid);
+  FOOTING_FIELD_OF(features.phase_rad, phase_rad);
+  FOOTING_FIELD_OF(features.simulated, simulated);
+  FOOTING_FIELD(direct);
+  FOOTING_ENUM_OF(Gait, direct_command.gait, direct_gait);
+  FOOTING_FIELD_OF(direct_command.speed_mps, direct_speed_mps);
+  FOOTING_FIELD_OF(direct_command.height_m, direct_height_m);
+  FOOTING_FIELD_OF(direct_command.turn_per_step_rad, direct_turn_rad);
+  FOOTING_FIELD(push_number);
+  FOOTING_FIELD_OF(push_impulse_W_ns.x(), push_x_ns);
+  FOOTING_FIELD_OF(push_impulse_W_ns.y(), push_y_ns);
+  FOOTING_FIELD(put_back_number);
+  FOOTING_FIELD(append_number);
+  if constexpr (Way::kOut) {
+    for (int i = 0; i < way.value.append_count; ++i) {
+      *way.message.add_appends() = ToProto(way.value.appends[static_cast<std::size_t>(i)]);
+    }
+  } else {
+    way.value.append_count = std::min(way.message.appends_size(), engine::kMaxAppends);
+    for (int i = 0; i < way.value.append_count; ++i) {
+      way.value.appends[static_cast<std::size_t>(i)] = FromProto(way.message.appends(i));
+    }
+  }
 }
 
-mapping::HandFeatures GetHand(const v1::HandInput& message) {
-  mapping::HandFeatures hand;
-  hand.present = message.present();
-  hand.moving = message.moving();
-  hand.frequency_valid = message.frequency_valid();
-  hand.frequency_hz = message.frequency_hz();
-  hand.amplitude_valid = message.amplitude_valid();
-  hand.amplitude_mps2 = message.amplitude_mps2();
-  hand.inclination_valid = message.inclination_valid();
-  hand.roll_rad = message.roll_rad();
-  return hand;
+template <typename Way>
+void Fields(Way way, const Applied&) {
+  FOOTING_FIELD(step);
+  FOOTING_FIELD_OF(inputs.sensor_epoch, sensor_epoch);
+  FOOTING_FIELD_OF(inputs.sensor_sequence, sensor_sequence);
+  FOOTING_PART(inputs.engine);
 }
+FOOTING_BOTH_WAYS_OF(Applied, v1::AppliedInput)
 
 }  // namespace
 
 v1::CharacterFrame ToCharacterFrame(const Frame& frame, const std::string& world,
                                     const std::string& rig) {
   const engine::EngineOutput& output = frame.output;
-  v1::CharacterFrame message;
-  message.set_world(world);
-  message.set_step(output.step);
-  message.set_time_s(output.time_s);
-  message.set_overruns(frame.overruns);
-  message.set_state_hash(output.state_hash);
-  v1::Character& character = *message.add_characters();
-  character.set_character(1);
-  character.set_rig(rig);
-  character.set_valid(true);
-  for (const auto& pose : output.links) *character.add_links() = wire::ToProto(pose);
-  for (const auto& contact : output.contacts) *character.add_contacts() = wire::ToProto(contact);
-  *character.mutable_com_m() = wire::ToProto(output.p_WC_m);
-  *character.mutable_com_velocity_mps() = wire::ToProto(output.v_WC_mps);
-  *character.mutable_gait() = wire::ToProto(output.gait);
-  character.set_simulated_input(output.simulated_input);
+  v1::CharacterFrame message = serving::MakeFrame({.step = output.step,
+                                                   .time_s = output.time_s,
+                                                   .overruns = frame.overruns,
+                                                   .state_hash = output.state_hash,
+                                                   .valid = true,
+                                                   .p_WC_m = output.p_WC_m,
+                                                   .v_WC_mps = output.v_WC_mps,
+                                                   .simulated_input = output.simulated_input},
+                                                  world, rig);
+  v1::Character& character = *message.mutable_characters(0);
+  for (const auto& pose : output.links) *character.add_links() = ToProto(pose);
+  for (const auto& contact : output.contacts) *character.add_contacts() = ToProto(contact);
+  *character.mutable_gait() = ToProto(output.gait);
   return message;
 }
 
 v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns) {
-  v1::Event message;
-  message.set_kind(ToKind(event.kind));
-  message.set_host_ns(host_ns);
-  message.set_character(1);
-  message.set_text(ToText(event));
+  v1::Event message = serving::MakeEvent(ToKind(event.kind), host_ns, ToText(event));
   message.set_gait(static_cast<v1::Gait>(event.to));
   if (event.kind == engine::EventKind::kFall) message.set_failure_cause(ToCause(event.cause));
   message.set_by_operator(event.by_operator);
   return message;
 }
 
-v1::AppliedInput ToAppliedInput(const Applied& applied) {
-  const engine::EngineInputs& inputs = applied.inputs.engine;
-  v1::AppliedInput message;
-  message.set_step(applied.step);
-  message.set_sensor_epoch(applied.inputs.sensor_epoch);
-  message.set_sensor_sequence(applied.inputs.sensor_sequence);
-  message.set_features_number(inputs.features_number);
-  SetHand(inputs.features.left, *message.mutable_left());
-  SetHand(inputs.features.right, *message.mutable_right());
-  message.set_phase_valid(inputs.features.phase_valid);
-  message.set_phase_rad(inputs.features.phase_rad);
-  message.set_simulated(inputs.features.simulated);
-  message.set_direct(inputs.direct);
-  message.set_direct_gait(static_cast<v1::Gait>(inputs.direct_command.gait));
-  message.set_direct_speed_mps(inputs.direct_command.speed_mps);
-  message.set_direct_height_m(inputs.direct_command.height_m);
-  message.set_direct_turn_rad(inputs.direct_command.turn_per_step_rad);
-  message.set_push_number(inputs.push_number);
-  message.set_push_x_ns(inputs.push_impulse_W_ns.x());
-  message.set_push_y_ns(inputs.push_impulse_W_ns.y());
-  message.set_put_back_number(inputs.put_back_number);
-  message.set_append_number(inputs.append_number);
-  for (int i = 0; i < inputs.append_count; ++i) {
-    const terrain::NewSegment& segment = inputs.appends[static_cast<std::size_t>(i)];
-    v1::AppendedSegment& append = *message.add_appends();
-    append.set_length_m(segment.length_m);
-    append.set_slope_rad(segment.slope_rad);
-    append.set_curve_rad(segment.curve_rad);
-    append.set_step_m(segment.step_m);
-    append.set_pit(segment.pit);
-  }
-  return message;
-}
+v1::AppliedInput ToAppliedInput(const Applied& applied) { return ToProto(applied); }
 
-Applied FromAppliedInput(const v1::AppliedInput& message) {
-  Applied applied;
-  applied.step = message.step();
-  applied.inputs.sensor_epoch = message.sensor_epoch();
-  applied.inputs.sensor_sequence = message.sensor_sequence();
-  engine::EngineInputs& inputs = applied.inputs.engine;
-  inputs.features_number = message.features_number();
-  inputs.features.left = GetHand(message.left());
-  inputs.features.right = GetHand(message.right());
-  inputs.features.phase_valid = message.phase_valid();
-  inputs.features.phase_rad = message.phase_rad();
-  inputs.features.simulated = message.simulated();
-  inputs.direct = message.direct();
-  inputs.direct_command.gait = stream::GaitNumbered(message.direct_gait());
-  inputs.direct_command.speed_mps = message.direct_speed_mps();
-  inputs.direct_command.height_m = message.direct_height_m();
-  inputs.direct_command.turn_per_step_rad = message.direct_turn_rad();
-  inputs.push_number = message.push_number();
-  inputs.push_impulse_W_ns = {message.push_x_ns(), message.push_y_ns()};
-  inputs.put_back_number = message.put_back_number();
-  inputs.append_number = message.append_number();
-  inputs.append_count = std::min(message.appends_size(), engine::kMaxAppends);
-  for (int i = 0; i < inputs.append_count; ++i) {
-    const v1::AppendedSegment& append = message.appends(i);
-    inputs.appends[static_cast<std::size_t>(i)] = {
-        append.length_m(), append.slope_rad(), append.curve_rad(), append.step_m(), append.pit()};
-  }
-  return applied;
-}
+Applied FromAppliedInput(const v1::AppliedInput& message) { return FromProto(message); }
 
 }  // namespace footing::gait_service

@@ -6,9 +6,12 @@
 
 #include "common/wire/wire.h"
 #include "daemon/simulation/mapping/wrist_features.h"
+#include "daemon/simulation/serving/messages.h"
 
 namespace footing::gait_service {
 namespace {
+
+using serving::Answer;
 
 bool HasHands(const stream::RigFeatures& rig) {
   for (const auto& device : rig.devices) {
@@ -18,13 +21,6 @@ bool HasHands(const stream::RigFeatures& rig) {
     }
   }
   return false;
-}
-
-v1::CommandResult Answer(bool ok, const std::string& message) {
-  v1::CommandResult result;
-  result.set_ok(ok);
-  result.set_message(message);
-  return result;
 }
 
 constexpr double kMaxPushNs = 200;

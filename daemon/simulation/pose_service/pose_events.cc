@@ -5,16 +5,13 @@
 #include <utility>
 
 #include "daemon/simulation/pose_service/pose_note.h"
+#include "daemon/simulation/serving/messages.h"
 
 namespace footing::pose_service {
 namespace {
 
 void Add(v1::Events& events, v1::Event::Kind kind, std::int64_t now_ns, const std::string& text) {
-  v1::Event& event = *events.add_events();
-  event.set_kind(kind);
-  event.set_host_ns(now_ns);
-  event.set_character(1);
-  event.set_text(text);
+  *events.add_events() = serving::MakeEvent(kind, now_ns, text);
 }
 
 std::string Kilograms(double mass_kg) {

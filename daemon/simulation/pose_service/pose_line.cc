@@ -2,22 +2,14 @@
 
 #include <utility>
 
-#include "common/wire/wire.h"
 #include "daemon/simulation/pose_service/pose_models.h"
 #include "daemon/simulation/pose_service/pose_publish.h"
 #include "daemon/simulation/serving/channel_bytes.h"
+#include "daemon/simulation/serving/messages.h"
 
 namespace footing::pose_service {
-namespace {
 
-v1::CommandResult Answer(bool ok, const std::string& message) {
-  v1::CommandResult result;
-  result.set_ok(ok);
-  result.set_message(message);
-  return result;
-}
-
-}  // namespace
+using serving::Answer;
 
 Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common,
                                                    const Config& config, int wake_descriptor) {
@@ -71,10 +63,8 @@ const PoseLine::Known& PoseLine::Of(std::uint64_t number) const {
 }
 
 std::vector<transport::ChannelBytes> PoseLine::Retained() const {
-  v1::Skeletons skeletons;
-  skeletons.set_world(world_);
-  *skeletons.add_skeletons() = wire::ToProto(ToSkeleton(Of(shown_number_).body));
-  return {serving::Bytes(serving::kSkeletons, skeletons)};
+  return {serving::Bytes(serving::kSkeletons,
+                         serving::MakeSkeletons(world_, ToSkeleton(Of(shown_number_).body)))};
 }
 
 v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {
@@ -120,17 +110,14 @@ std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
     shown_number_ = frame.subject_number;
     channels = Retained();
   }
-  channels.push_back(serving::Bytes(
-      serving::kCharacters,
-      ToCharacterFrame(frame, known.subject, mode_, world_, sensors_.rig(), sensors_.tracker())));
-  const v1::Events events = events_.Between(frame, known.subject, now_ns);
-  if (events.events_size() > 0) channels.push_back(serving::Bytes(serving::kEvents, events));
   v1::AppliedInputs inputs;
   for (int i = 0; i < frame.applied_count; ++i) {
     const PoseApplied& applied = frame.applied[static_cast<std::size_t>(i)];
     *inputs.add_inputs() = ToAppliedInput(applied, Of(applied.inputs.subject_number).subject);
   }
-  if (inputs.inputs_size() > 0) channels.push_back(serving::Bytes(serving::kInputs, inputs));
+  serving::AddFrame(
+      ToCharacterFrame(frame, known.subject, mode_, world_, sensors_.rig(), sensors_.tracker()),
+      events_.Between(frame, known.subject, now_ns), inputs, channels);
   return channels;
 }
 

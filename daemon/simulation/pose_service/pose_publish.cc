@@ -4,13 +4,16 @@
 #include <array>
 
 #include "common/body/landmarks.h"
-#include "common/wire/wire.h"
+#include "common/wire/fields.h"
 #include "daemon/simulation/pose_service/pose_note.h"
+#include "daemon/simulation/serving/messages.h"
 
 namespace footing::pose_service {
 namespace {
 
 using body::Landmark;
+using wire::FromProto;
+using wire::ToProto;
 
 /// Thickness of a body at its joints over its height, by eye from anatomical proportions.
 struct Thickness {
@@ -37,11 +40,11 @@ constexpr double kElseOfHeight = 0.03;
 void SetFoot(const momentum::FootEstimate& foot, v1::BodyFoot& message) {
   message.set_contact(foot.contact);
   message.set_valid(foot.valid);
-  *message.mutable_position_m() = wire::ToProto(foot.p_WF_m);
-  *message.mutable_variance_m2() = wire::ToProto(foot.variance_m2);
+  *message.mutable_position_m() = ToProto(foot.p_WF_m);
+  *message.mutable_variance_m2() = ToProto(foot.variance_m2);
   message.set_load_n(foot.load_n);
   message.set_cop_valid(foot.cop_valid);
-  *message.mutable_cop_m() = wire::ToProto(foot.p_WP_m);
+  *message.mutable_cop_m() = ToProto(foot.p_WP_m);
   message.set_airborne_s(foot.airborne_s);
 }
 
@@ -62,11 +65,10 @@ void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& 
   body.set_height_m(subject.height_m);
   body.set_lag_s(frame.lag_s);
   body.set_momentum_valid(frame.momentum.valid);
-  *body.mutable_com_variance_m2() = wire::ToProto(frame.momentum.position_variance_m2);
-  *body.mutable_com_acceleration_mps2() = wire::ToProto(frame.momentum.a_WC_mps2);
-  *body.mutable_angular_momentum_kgm2ps() = wire::ToProto(frame.momentum.angular_momentum_kgm2ps);
-  *body.mutable_angular_momentum_variance() =
-      wire::ToProto(frame.momentum.angular_momentum_variance);
+  *body.mutable_com_variance_m2() = ToProto(frame.momentum.position_variance_m2);
+  *body.mutable_com_acceleration_mps2() = ToProto(frame.momentum.a_WC_mps2);
+  *body.mutable_angular_momentum_kgm2ps() = ToProto(frame.momentum.angular_momentum_kgm2ps);
+  *body.mutable_angular_momentum_variance() = ToProto(frame.momentum.angular_momentum_variance);
   for (const auto& foot : frame.momentum.feet) SetFoot(foot, *body.add_feet());
   body.set_resets(frame.resets);
   for (std::size_t i = 0; i < frame.links.count; ++i) body.add_link_sd_m(frame.links.sd_m[i]);
@@ -80,98 +82,119 @@ void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& 
   for (const bool told : frame.input.feet_measured) body.add_feet_told(told);
 }
 
-void SetFootInput(const momentum::FootLoads& foot, v1::PoseFoot& message) {
-  message.set_valid(foot.valid);
-  for (std::size_t i = 0; i < foot.count; ++i) {
-    v1::PoseCell& cell = *message.add_cells();
-    *cell.mutable_position_m() = wire::ToProto(foot.cells[i].p_WS_m);
-    cell.set_load_n(foot.cells[i].load_n);
+template <typename Way>
+void Fields(Way way, const momentum::Cell&) {
+  FOOTING_MESSAGE_OF(p_WS_m, position_m);
+  FOOTING_FIELD(load_n);
+}
+FOOTING_BOTH_WAYS_OF(momentum::Cell, v1::PoseCell)
+
+template <typename Way>
+void Fields(Way way, const momentum::FootLoads&) {
+  FOOTING_FIELD(valid);
+  if constexpr (Way::kOut) {
+    for (std::size_t i = 0; i < way.value.count; ++i) {
+      *way.message.add_cells() = ToProto(way.value.cells[i]);
+    }
+  } else {
+    const auto& cells = way.message.cells();
+    way.value.count = std::min(static_cast<std::size_t>(cells.size()), momentum::kMaxCells);
+    for (std::size_t i = 0; i < way.value.count; ++i) {
+      way.value.cells[i] = FromProto(cells.Get(static_cast<int>(i)));
+    }
   }
 }
 
-void SetImpulse(const board::BoardImpulse& impulse, v1::PoseFoot& message) {
-  if (!impulse.valid) return;
-  message.set_sampled_s(impulse.sampled_s);
-  for (const double impulse_ns : impulse.impulse_ns) message.add_impulse_ns(impulse_ns);
+/// Valid where there is an impulse for each corner.
+template <typename Way>
+void Fields(Way way, const board::BoardImpulse&) {
+  if constexpr (Way::kOut) {
+    if (!way.value.valid) return;
+    for (const double impulse_ns : way.value.impulse_ns) way.message.add_impulse_ns(impulse_ns);
+  } else {
+    const auto& impulses = way.message.impulse_ns();
+    way.value.valid = impulses.size() == static_cast<int>(board::kCorners);
+    if (!way.value.valid) return;
+    std::copy(impulses.begin(), impulses.end(), way.value.impulse_ns.begin());
+  }
+  FOOTING_FIELD(sampled_s);
 }
 
-board::BoardImpulse ImpulseFrom(const v1::PoseFoot& message) {
-  board::BoardImpulse impulse;
-  impulse.valid = message.impulse_ns_size() == static_cast<int>(board::kCorners);
-  if (!impulse.valid) return impulse;
-  impulse.sampled_s = message.sampled_s();
-  std::copy(message.impulse_ns().begin(), message.impulse_ns().end(), impulse.impulse_ns.begin());
-  return impulse;
-}
-
-void SetInsoleInput(const reconstruction::InsoleFoot& foot, v1::PoseFoot& message) {
-  for (std::size_t i = 0; foot.valid && i < foot.count; ++i) {
-    v1::PoseCell& cell = *message.add_insole_cells();
-    cell.mutable_position_m()->set_x(foot.p_S_m[i].x());
-    cell.mutable_position_m()->set_y(foot.p_S_m[i].y());
-    cell.set_load_n(foot.load_n[i]);
+/// Valid where there are cells.
+template <typename Way>
+void Fields(Way way, const reconstruction::InsoleFoot&) {
+  if constexpr (Way::kOut) {
+    for (std::size_t i = 0; way.value.valid && i < way.value.count; ++i) {
+      const Eigen::Vector2d& p_S_m = way.value.p_S_m[i];
+      *way.message.add_insole_cells() =
+          ToProto(momentum::Cell{{p_S_m.x(), p_S_m.y(), 0}, way.value.load_n[i]});
+    }
+  } else {
+    const auto& cells = way.message.insole_cells();
+    way.value.count = std::min(static_cast<std::size_t>(cells.size()), momentum::kMaxCells);
+    way.value.valid = way.value.count > 0;
+    for (std::size_t i = 0; i < way.value.count; ++i) {
+      const momentum::Cell cell = FromProto(cells.Get(static_cast<int>(i)));
+      way.value.p_S_m[i] = cell.p_WS_m.head<2>();
+      way.value.load_n[i] = cell.load_n;
+    }
   }
 }
 
-reconstruction::InsoleFoot InsoleFrom(const v1::PoseFoot& message) {
-  reconstruction::InsoleFoot foot;
-  foot.count = std::min(static_cast<std::size_t>(message.insole_cells_size()), momentum::kMaxCells);
-  foot.valid = foot.count > 0;
-  for (std::size_t i = 0; i < foot.count; ++i) {
-    const v1::PoseCell& cell = message.insole_cells(static_cast<int>(i));
-    foot.p_S_m[i] = wire::FromProto(cell.position_m()).head<2>();
-    foot.load_n[i] = cell.load_n();
-  }
-  return foot;
+template <typename Way>
+void Fields(Way way, const reconstruction::HandInput&) {
+  FOOTING_FIELD(valid);
+  FOOTING_MESSAGE_OF(p_W_m, position_m);
+  FOOTING_MESSAGE(sd_m);
 }
 
-momentum::FootLoads FootFrom(const v1::PoseFoot& message) {
-  momentum::FootLoads foot;
-  foot.valid = message.valid();
-  foot.count = std::min(static_cast<std::size_t>(message.cells_size()), momentum::kMaxCells);
-  for (std::size_t i = 0; i < foot.count; ++i) {
-    const v1::PoseCell& cell = message.cells(static_cast<int>(i));
-    foot.cells[i] = {wire::FromProto(cell.position_m()), cell.load_n()};
-  }
-  return foot;
+template <typename Way>
+void Fields(Way way, const arms::ArmEstimate&) {
+  FOOTING_MESSAGE_OF(directions.upper, upper);
+  FOOTING_MESSAGE_OF(directions.hinge, hinge);
+  FOOTING_MESSAGE_OF(directions.forearm, forearm);
+  FOOTING_MESSAGE(upper_sd);
+  FOOTING_MESSAGE(hinge_sd);
+  FOOTING_MESSAGE(forearm_sd);
+}
+FOOTING_BOTH_WAYS_OF(arms::ArmEstimate, v1::PoseArm)
+
+template <typename Way>
+void Fields(Way way, const Subject&) {
+  FOOTING_FIELD_OF(code, subject_code);
+  FOOTING_FIELD_OF(height_m, subject_height_m);
+  FOOTING_FIELD_OF(mass_kg, subject_mass_kg);
+  FOOTING_FIELD_OF(foot_length_m, subject_foot_length_m);
 }
 
-void SetHandInput(const reconstruction::HandInput& hand, v1::PoseHand& message) {
-  message.set_valid(hand.valid);
-  *message.mutable_position_m() = wire::ToProto(hand.p_W_m);
-  *message.mutable_sd_m() = wire::ToProto(hand.sd_m);
+template <typename Value, typename Message>
+void Set(const Value& value, Message& message) {
+  Fields(wire::Out<Value, Message>{value, message}, value);
 }
 
-void SetArmInput(const arms::ArmEstimate& arm, v1::PoseHand& message) {
-  if (!arm.valid) return;
-  v1::PoseArm& told = *message.mutable_arm();
-  *told.mutable_upper() = wire::ToProto(arm.directions.upper);
-  *told.mutable_hinge() = wire::ToProto(arm.directions.hinge);
-  *told.mutable_forearm() = wire::ToProto(arm.directions.forearm);
-  *told.mutable_upper_sd() = wire::ToProto(arm.upper_sd);
-  *told.mutable_hinge_sd() = wire::ToProto(arm.hinge_sd);
-  *told.mutable_forearm_sd() = wire::ToProto(arm.forearm_sd);
+template <typename Value, typename Message>
+void Get(const Message& message, Value& value) {
+  Fields(wire::In<Value, Message>{value, message}, value);
 }
 
-arms::ArmEstimate ArmFrom(const v1::PoseHand& message) {
-  arms::ArmEstimate arm;
-  arm.valid = message.has_arm();
-  if (!arm.valid) return arm;
-  const v1::PoseArm& told = message.arm();
-  arm.directions = {wire::FromProto(told.upper()), wire::FromProto(told.hinge()),
-                    wire::FromProto(told.forearm())};
-  arm.upper_sd = wire::FromProto(told.upper_sd());
-  arm.hinge_sd = wire::FromProto(told.hinge_sd());
-  arm.forearm_sd = wire::FromProto(told.forearm_sd());
-  return arm;
+void SetSide(const PoseInputs& inputs, std::size_t side, v1::PoseFoot& foot, v1::PoseHand& hand) {
+  Set(inputs.sensors.loads.feet[side], foot);
+  Set(inputs.impulses[side], foot);
+  Set(inputs.insoles[side], foot);
+  Set(inputs.sensors.hands[side], hand);
+  const arms::ArmEstimate& arm = inputs.sensors.arms[side];
+  if (arm.valid) *hand.mutable_arm() = ToProto(arm);
 }
 
-reconstruction::HandInput HandFrom(const v1::PoseHand& message) {
-  reconstruction::HandInput hand;
-  hand.valid = message.valid();
-  hand.p_W_m = wire::FromProto(message.position_m());
-  hand.sd_m = wire::FromProto(message.sd_m());
-  return hand;
+void GetSide(const v1::PoseFoot& foot, const v1::PoseHand& hand, std::size_t side,
+             PoseInputs& inputs) {
+  Get(foot, inputs.sensors.loads.feet[side]);
+  Get(foot, inputs.impulses[side]);
+  Get(foot, inputs.insoles[side]);
+  Get(hand, inputs.sensors.hands[side]);
+  arms::ArmEstimate& arm = inputs.sensors.arms[side];
+  if (hand.has_arm()) arm = FromProto(hand.arm());
+  arm.valid = hand.has_arm();
 }
 
 }  // namespace
@@ -179,26 +202,23 @@ reconstruction::HandInput HandFrom(const v1::PoseHand& message) {
 v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subject,
                                     const std::string& mode, const std::string& world,
                                     const std::string& rig, const std::string& tracker) {
-  v1::CharacterFrame message;
-  message.set_world(world);
-  message.set_step(frame.step);
-  message.set_time_s(frame.time_s);
-  message.set_overruns(frame.overruns);
-  message.set_state_hash(frame.state_hash);
-  v1::Character& character = *message.add_characters();
-  character.set_character(1);
-  character.set_rig(rig);
-  character.set_valid(frame.valid);
+  v1::CharacterFrame message = serving::MakeFrame({.step = frame.step,
+                                                   .time_s = frame.time_s,
+                                                   .overruns = frame.overruns,
+                                                   .state_hash = frame.state_hash,
+                                                   .valid = frame.valid,
+                                                   .p_WC_m = frame.momentum.p_WC_m,
+                                                   .v_WC_mps = frame.momentum.v_WC_mps,
+                                                   .simulated_input = frame.input.simulated},
+                                                  world, rig);
+  v1::Character& character = *message.mutable_characters(0);
   for (std::size_t i = 0; i < frame.links.count; ++i) {
-    *character.add_links() = wire::ToProto(frame.links.pose[i]);
+    *character.add_links() = ToProto(frame.links.pose[i]);
   }
   for (const auto& foot : frame.momentum.feet) {
-    *character.add_contacts() = wire::ToProto(
+    *character.add_contacts() = ToProto(
         stream::Contact{foot.contact, foot.cop_valid ? foot.p_WP_m : foot.p_WF_m, foot.load_n});
   }
-  *character.mutable_com_m() = wire::ToProto(frame.momentum.p_WC_m);
-  *character.mutable_com_velocity_mps() = wire::ToProto(frame.momentum.v_WC_mps);
-  character.set_simulated_input(frame.input.simulated);
   SetBody(frame, subject, mode, tracker, *character.mutable_body());
   return message;
 }
@@ -231,22 +251,11 @@ v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subje
   message.set_sensor_sequence(inputs.sensor_sequence);
   message.set_simulated(inputs.simulated);
   v1::PoseInput& pose = *message.mutable_pose();
-  SetFootInput(inputs.sensors.loads.feet[0], *pose.mutable_left_foot());
-  SetFootInput(inputs.sensors.loads.feet[1], *pose.mutable_right_foot());
-  SetImpulse(inputs.impulses[0], *pose.mutable_left_foot());
-  SetImpulse(inputs.impulses[1], *pose.mutable_right_foot());
-  SetInsoleInput(inputs.insoles[0], *pose.mutable_left_foot());
-  SetInsoleInput(inputs.insoles[1], *pose.mutable_right_foot());
-  SetHandInput(inputs.sensors.hands[0], *pose.mutable_left_hand());
-  SetHandInput(inputs.sensors.hands[1], *pose.mutable_right_hand());
-  SetArmInput(inputs.sensors.arms[0], *pose.mutable_left_hand());
-  SetArmInput(inputs.sensors.arms[1], *pose.mutable_right_hand());
+  SetSide(inputs, 0, *pose.mutable_left_foot(), *pose.mutable_left_hand());
+  SetSide(inputs, 1, *pose.mutable_right_foot(), *pose.mutable_right_hand());
   pose.set_calibrate_number(inputs.calibrate_number);
   pose.set_subject_number(inputs.subject_number);
-  pose.set_subject_code(subject.code);
-  pose.set_subject_height_m(subject.height_m);
-  pose.set_subject_mass_kg(subject.mass_kg);
-  pose.set_subject_foot_length_m(subject.foot_length_m);
+  Set(subject, pose);
   return message;
 }
 
@@ -258,20 +267,17 @@ PoseApplied PoseAppliedFrom(const v1::AppliedInput& message) {
   inputs.sensor_sequence = message.sensor_sequence();
   inputs.simulated = message.simulated();
   const v1::PoseInput& pose = message.pose();
-  inputs.sensors.loads.feet = {FootFrom(pose.left_foot()), FootFrom(pose.right_foot())};
-  inputs.impulses = {ImpulseFrom(pose.left_foot()), ImpulseFrom(pose.right_foot())};
-  inputs.insoles = {InsoleFrom(pose.left_foot()), InsoleFrom(pose.right_foot())};
-  inputs.sensors.hands = {HandFrom(pose.left_hand()), HandFrom(pose.right_hand())};
-  inputs.sensors.arms = {ArmFrom(pose.left_hand()), ArmFrom(pose.right_hand())};
+  GetSide(pose.left_foot(), pose.left_hand(), 0, inputs);
+  GetSide(pose.right_foot(), pose.right_hand(), 1, inputs);
   inputs.calibrate_number = pose.calibrate_number();
   inputs.subject_number = pose.subject_number();
   return applied;
 }
 
 Subject SubjectFrom(const v1::AppliedInput& message) {
-  const v1::PoseInput& pose = message.pose();
-  return {pose.subject_code(), pose.subject_height_m(), pose.subject_mass_kg(),
-          pose.subject_foot_length_m()};
+  Subject subject;
+  Get(message.pose(), subject);
+  return subject;
 }
 
 }  // namespace footing::pose_service

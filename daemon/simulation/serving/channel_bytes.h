@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "common/transport/server.h"
+#include "footing/v1/character.pb.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::serving {
@@ -16,5 +19,9 @@ inline transport::ChannelBytes Bytes(std::uint32_t field,
                                      const google::protobuf::MessageLite& message) {
   return {field, message.SerializeAsString()};
 }
+
+/// Adds what every frame publishes: the character, and events and inputs where there are any.
+void AddFrame(const v1::CharacterFrame& frame, const v1::Events& events,
+              const v1::AppliedInputs& inputs, std::vector<transport::ChannelBytes>& channels);
 
 }  // namespace footing::serving

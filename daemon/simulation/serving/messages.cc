@@ -1,0 +1,53 @@
+#include "daemon/simulation/serving/messages.h"
+
+#include "common/wire/wire.h"
+
+namespace footing::serving {
+namespace {
+
+constexpr std::uint32_t kCharacter = 1;
+
+}  // namespace
+
+v1::CharacterFrame MakeFrame(const FrameState& state, const std::string& world,
+                             const std::string& rig) {
+  v1::CharacterFrame message;
+  message.set_world(world);
+  message.set_step(state.step);
+  message.set_time_s(state.time_s);
+  message.set_overruns(state.overruns);
+  message.set_state_hash(state.state_hash);
+  v1::Character& character = *message.add_characters();
+  character.set_character(kCharacter);
+  character.set_rig(rig);
+  character.set_valid(state.valid);
+  *character.mutable_com_m() = wire::ToProto(state.p_WC_m);
+  *character.mutable_com_velocity_mps() = wire::ToProto(state.v_WC_mps);
+  character.set_simulated_input(state.simulated_input);
+  return message;
+}
+
+v1::Event MakeEvent(v1::Event::Kind kind, std::int64_t host_ns, const std::string& text) {
+  v1::Event event;
+  event.set_kind(kind);
+  event.set_host_ns(host_ns);
+  event.set_character(kCharacter);
+  event.set_text(text);
+  return event;
+}
+
+v1::Skeletons MakeSkeletons(const std::string& world, const stream::Skeleton& skeleton) {
+  v1::Skeletons skeletons;
+  skeletons.set_world(world);
+  *skeletons.add_skeletons() = wire::ToProto(skeleton);
+  return skeletons;
+}
+
+v1::CommandResult Answer(bool ok, const std::string& message) {
+  v1::CommandResult result;
+  result.set_ok(ok);
+  result.set_message(message);
+  return result;
+}
+
+}  // namespace footing::serving
