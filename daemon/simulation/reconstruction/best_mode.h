@@ -1,14 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-
 #include "daemon/simulation/momentum/horizontal_com.h"
 #include "daemon/simulation/reconstruction/best_solver.h"
 #include "daemon/simulation/reconstruction/clean_up.h"
 #include "daemon/simulation/reconstruction/delay.h"
 #include "daemon/simulation/reconstruction/measurement.h"
-#include "daemon/simulation/reconstruction/report.h"
+#include "daemon/simulation/reconstruction/mode_state.h"
 
 namespace footing::reconstruction {
 
@@ -34,21 +31,13 @@ class BestMode {
   void CleanUp(const Measurement& then, const Truth& truth);
   void Report(const Measurement& then, const Truth& truth, Output& output);
 
-  const SubjectModel* model_;
-  Options options_;
-  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< Of the basis' poses, W.
+  ModeState state_;
   BestEstimate estimate_;
   Lag<Measurement> measured_;
   Lag<Truth> truth_;
-  pose::PoseTargets targets_;
   BestSolver solver_;
   FootHold hold_;
-  pose::PoseTargets shown_feet_;
-  LegCleanUp legs_;
-  SolvedPose pose_;
-  MeanMisfit misfit_;
-  PoseSpread spread_;
-  std::uint32_t solver_resets_ = 0;
+  SolutionReport report_;
 };
 
 }  // namespace footing::reconstruction

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-
 #include "daemon/simulation/pose/gauss_newton.h"
-#include "daemon/simulation/reconstruction/clean_up.h"
 #include "daemon/simulation/reconstruction/measurement.h"
-#include "daemon/simulation/reconstruction/report.h"
+#include "daemon/simulation/reconstruction/mode_state.h"
 
 namespace footing::reconstruction {
 
@@ -25,18 +21,10 @@ class InsoleMode {
   void SetTargets(const Measurement& now, const WalkPrior& prior);
   void Report(const Measurement& now, Output& output);
 
-  const SubjectModel* model_;
-  Options options_;
-  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< Of the basis' poses, W.
+  ModeState state_;
   BestEstimate estimate_;
-  pose::PoseTargets targets_;
   pose::GaussNewton solver_;
-  pose::PoseTargets shown_feet_;
-  LegCleanUp legs_;
-  SolvedPose pose_;
-  MeanMisfit misfit_;
-  PoseSpread spread_;
-  std::uint32_t solver_resets_ = 0;
+  SolutionReport report_;
 };
 
 }  // namespace footing::reconstruction

@@ -15,51 +15,44 @@ pose::FibonacciOptions SearchOptions(const Options& options) {
 }  // namespace
 
 PaperMode::PaperMode(const SubjectModel& model, const Options& options)
-    : model_(&model),
-      options_(options),
+    : state_(model, options),
       estimate_(model, options),
-      solver_(model.body, model.basis, SearchOptions(options)),
-      legs_(model),
-      pose_{model.t_pose, model.t_pose_at} {}
+      solver_(model.body, model.basis, SearchOptions(options)) {}
 
 void PaperMode::Start(const momentum::TPose& pose) {
-  origin_m_ = BasisOrigin(*model_, pose);
-  estimate_.Start(pose, origin_m_);
+  state_.origin_m = BasisOrigin(*state_.model, pose);
+  estimate_.Start(pose, state_.origin_m);
   solver_.Reset();
 }
 
 void PaperMode::Advance(const Inputs& inputs, const Truth& truth, Output& output) {
   const Measurement now = estimate_.Advance(inputs);
-  ReportEstimate(now.momentum, solver_resets_, output);
+  ReportEstimate(now.momentum, state_.solver_resets, output);
   SetTargets(now, truth, output.mass_kg);
-  solver_.Solve(targets_);
-  pose_.q = solver_.q();
-  body::ComputeKinematics(model_->body.skeleton, pose_.q, pose_.at);
-  if (options_.clean_up) legs_.SolveBoth(shown_feet_, pose_);
-  if (!pose_.q.allFinite()) {
+  solver_.Solve(state_.targets);
+  state_.pose.q = solver_.q();
+  body::ComputeKinematics(state_.model->body.skeleton, state_.pose.q, state_.pose.at);
+  if (state_.options.clean_up) state_.legs.SolveBoth(state_.shown_feet, state_.pose);
+  if (!state_.MovePoseToWorld(output)) {
     solver_.Reset();
-    output.valid = false;
-    ++solver_resets_;
     return;
   }
-  MoveToWorld(origin_m_, pose_);
-  ReportPose(pose_.q, pose_.at, output);
+  ReportPose(state_.pose.q, state_.pose.at, output);
   ReportCom(now.momentum, output);
 }
 
 void PaperMode::SetTargets(const Measurement& now, const Truth& truth, double mass_kg) {
-  Clear(targets_);
-  AddPaperHandTargets(*model_, now, targets_);
+  Clear(state_.targets);
+  AddPaperHandTargets(*state_.model, now, state_.targets);
   if (truth.feet) {
-    AddFeetTargets(*model_, *truth.feet, targets_);
+    AddFeetTargets(*state_.model, *truth.feet, state_.targets);
   } else {
-    AddPaperFeetTargets(*model_, now, targets_);
+    AddPaperFeetTargets(*state_.model, now, state_.targets);
   }
-  ShowFeet(*model_, targets_, shown_feet_);
-  SetPaperMomentumTargets(*model_, now, mass_kg, options_, targets_);
-  OverrideMomentumTargets(truth, options_, targets_);
-  MoveOrigin(origin_m_, targets_);
-  MoveOrigin(origin_m_, shown_feet_);
+  ShowFeet(*state_.model, state_.targets, state_.shown_feet);
+  SetPaperMomentumTargets(*state_.model, now, mass_kg, state_.options, state_.targets);
+  OverrideMomentumTargets(truth, state_.options, state_.targets);
+  state_.MoveTargets();
 }
 
 }  // namespace footing::reconstruction

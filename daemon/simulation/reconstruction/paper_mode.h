@@ -1,12 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstdint>
-
 #include "daemon/simulation/pose/fibonacci.h"
-#include "daemon/simulation/reconstruction/clean_up.h"
 #include "daemon/simulation/reconstruction/measurement.h"
-#include "daemon/simulation/reconstruction/report.h"
+#include "daemon/simulation/reconstruction/mode_state.h"
 
 namespace footing::reconstruction {
 
@@ -24,16 +20,9 @@ class PaperMode {
  private:
   void SetTargets(const Measurement& now, const Truth& truth, double mass_kg);
 
-  const SubjectModel* model_;
-  Options options_;
-  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< Of the basis' poses, W.
+  ModeState state_;
   PaperEstimate estimate_;
-  pose::PoseTargets targets_;
   pose::FibonacciSearch solver_;
-  pose::PoseTargets shown_feet_;
-  LegCleanUp legs_;
-  SolvedPose pose_;
-  std::uint32_t solver_resets_ = 0;
 };
 
 }  // namespace footing::reconstruction
