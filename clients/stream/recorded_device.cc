@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "common/stream/product_ids.h"
 #include "common/virtual/devices/ps_move.h"
 
 namespace footing::stream_client {
@@ -20,8 +21,6 @@ constexpr std::uint8_t kReadReply = 0x21;
 constexpr std::uint8_t kAcknowledgement = 0x22;
 constexpr std::uint8_t kNothingThere = 0x07;  // In the low half of a read reply's fourth byte.
 constexpr std::uint8_t kMoveCalibrationFeature = 0x10;
-constexpr std::uint32_t kSony = 0x054c;
-constexpr std::uint32_t kMoveSecond = 0x0c5e;
 
 /// A request without the motor's bit, which every output report has in its second byte.
 Report RequestOf(std::span<const std::uint8_t> output) {
@@ -72,9 +71,10 @@ RecordedDevice::RecordedDevice(virtual_devices::Identity identity, double attach
                                const std::vector<std::uint8_t>& stored_calibration)
     : identity_(std::move(identity)), attaches_s_(attaches_s), detaches_s_(detaches_s) {
   Learn(reports);
-  if (stored_calibration.empty() || identity_.vendor != kSony || !features_.empty()) return;
-  const auto model = identity_.product == kMoveSecond ? virtual_devices::MoveModel::kZcm2
-                                                      : virtual_devices::MoveModel::kZcm1;
+  if (stored_calibration.empty() || identity_.vendor != stream::kVendorSony || !features_.empty())
+    return;
+  const auto model = identity_.product == stream::kProductZcm2 ? virtual_devices::MoveModel::kZcm2
+                                                               : virtual_devices::MoveModel::kZcm1;
   virtual_devices::PsMove move(0, model, stored_calibration);
   constexpr int kMostPieces = 3;
   for (int piece = 0; piece < kMostPieces; ++piece) {

@@ -1,14 +1,10 @@
 #include "common/recording/recorded_identity.h"
 
+#include "common/stream/product_ids.h"
+
 namespace footing::recording {
 namespace {
 
-constexpr std::uint32_t kBluetooth = 5;
-constexpr std::uint32_t kNintendo = 0x057e;
-constexpr std::uint32_t kWiimote = 0x0306;        // And every Balance Board.
-constexpr std::uint32_t kWiimoteInside = 0x0330;  // With MotionPlus inside: "...-TR".
-constexpr std::uint32_t kSony = 0x054c;
-constexpr std::uint32_t kMoveFirst = 0x03d5;  // The second type was never recorded without it.
 constexpr char kMoveData = 0x01;
 
 }  // namespace
@@ -19,9 +15,12 @@ RecordedIdentity IdentityOf(const v1::DeviceStatus& status) {
   if (identity.vendor != 0) return identity;
   const bool move = status.kind() == v1::DEVICE_KIND_PS_MOVE;
   const bool inside = status.name().ends_with("-TR");
-  identity.bus = kBluetooth;
-  identity.vendor = move ? kSony : kNintendo;
-  identity.product = move ? kMoveFirst : inside ? kWiimoteInside : kWiimote;
+  identity.bus = static_cast<std::uint32_t>(stream::Bus::kBluetooth);
+  identity.vendor = move ? stream::kVendorSony : stream::kVendorNintendo;
+  // A PS Move of the second type was never recorded without its product.
+  identity.product = move     ? stream::kProductZcm1
+                     : inside ? stream::kProductTr
+                              : stream::kProductFirst;
   return identity;
 }
 

@@ -2,8 +2,11 @@
 
 #include <cstdint>
 
-/// Vendors and products as the kernel shows them.
-namespace footing::reports {
+/// How devices present themselves to their host, as the kernel shows it.
+namespace footing::stream {
+
+/// As the kernel's input.h numbers them.
+enum class Bus : std::uint32_t { kUnknown = 0, kUsb = 3, kBluetooth = 5 };
 
 inline constexpr std::uint32_t kVendorNintendo = 0x057e;
 inline constexpr std::uint32_t kProductFirst = 0x0306;  ///< Wiimote, and every Balance Board.
@@ -18,4 +21,4 @@ inline bool IsKnownDevice(std::uint32_t vendor, std::uint32_t product) {
          (vendor == kVendorSony && (product == kProductZcm1 || product == kProductZcm2));
 }
 
-}  // namespace footing::reports
+}  // namespace footing::stream

@@ -3,13 +3,15 @@
 #include <cstdint>
 #include <string>
 
+#include "common/stream/product_ids.h"
+
 namespace footing::virtual_devices {
 
 /// How a device presents itself to the host.
 struct Identity {
-  std::uint32_t bus = 5;  ///< Bluetooth, as in the kernel's input.h.
-  std::uint32_t vendor = 0x057e;
-  std::uint32_t product = 0x0306;  ///< Wiimote and Balance Board alike.
+  std::uint32_t bus = static_cast<std::uint32_t>(stream::Bus::kBluetooth);
+  std::uint32_t vendor = stream::kVendorNintendo;
+  std::uint32_t product = stream::kProductFirst;
   std::string name;
   std::string serial;  ///< A Bluetooth address.
 };

@@ -24,7 +24,7 @@ void PutStick(double value, std::uint8_t* out) {
 }  // namespace
 
 ProController::ProController(std::uint64_t seed) : controller_(MakeProMemory()) {
-  identity_.product = 0x0330;
+  identity_.product = stream::kProductTr;
   identity_.name = "Nintendo RVL-CNT-01-UC";
   identity_.serial = MakeSerial(seed);
 }

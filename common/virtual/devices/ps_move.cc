@@ -130,8 +130,8 @@ PsMove::PsMove(std::uint64_t seed, MoveModel model, std::vector<std::uint8_t> bl
                             : (turn - Word(model, blob_, layout.back[i] + 2 * i)) / 2.0;
     turn_gain_[i] = span / (layout.turn_rpm * kRpmToRadps);
   }
-  identity_.vendor = 0x054c;
-  identity_.product = model == MoveModel::kZcm1 ? 0x03d5 : 0x0c5e;
+  identity_.vendor = stream::kVendorSony;
+  identity_.product = model == MoveModel::kZcm1 ? stream::kProductZcm1 : stream::kProductZcm2;
   identity_.name = "Motion Controller";
   identity_.serial = MakeSerial(seed);
 }

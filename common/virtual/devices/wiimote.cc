@@ -95,7 +95,7 @@ Wiimote::Wiimote(std::uint64_t seed, const WiimoteOptions& options)
     controller_.memory().SetMotionPlus(MotionPlusPage(motion_plus_, true));
   }
   identity_.name = options.tr ? "Nintendo RVL-CNT-01-TR" : "Nintendo RVL-CNT-01";
-  if (options.tr) identity_.product = 0x0330;
+  if (options.tr) identity_.product = stream::kProductTr;
   identity_.serial = MakeSerial(seed);
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/clock/clock.h"
-#include "daemon/sensor/reports/product_ids.h"
+#include "common/stream/product_ids.h"
 
 namespace footing::devices {
 namespace {
@@ -100,7 +100,7 @@ void HidSearch::Look(std::int64_t now_ns) {
   }
   std::set<std::string> seen;
   for (const HidNode& node : monitor_.Nodes()) {
-    if (!reports::IsKnownDevice(node.vendor, node.product) || open_paths_.contains(node.path))
+    if (!stream::IsKnownDevice(node.vendor, node.product) || open_paths_.contains(node.path))
       continue;
     seen.insert(node.path);
     Open(node, now_ns);

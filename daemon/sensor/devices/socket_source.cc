@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/stream/product_ids.h"
 #include "common/transport/framed_connection.h"
 #include "common/transport/listener.h"
 #include "common/wire/wire.h"
-#include "daemon/sensor/reports/product_ids.h"
 #include "footing/v1/device.pb.h"
 
 namespace footing::devices {
@@ -32,7 +32,7 @@ stream::DeviceRole RoleOf(v1::DeviceRole role) {
 
 /// What is wrong with an attachment, or nothing.
 std::string Check(const v1::DeviceAttach& attach) {
-  if (!reports::IsKnownDevice(attach.vendor(), attach.product()))
+  if (!stream::IsKnownDevice(attach.vendor(), attach.product()))
     return "vendor and product are unknown";
   if (attach.serial().empty()) return "serial is empty";
   if (!IsPlainText(attach.serial()) || !IsPlainText(attach.name()) || !IsPlainText(attach.rig())) {

@@ -9,8 +9,8 @@
 #include "common/stream/contacts.h"
 #include "common/stream/device.h"
 #include "common/stream/hands.h"
+#include "common/stream/product_ids.h"
 #include "daemon/sensor/reports/output_report.h"
-#include "daemon/sensor/reports/product_ids.h"
 
 /// Where devices come from. Above this line nothing knows whether a device is real.
 namespace footing::devices {
@@ -18,15 +18,13 @@ namespace footing::devices {
 /// A device of one source, from its attachment to its detachment; never used twice.
 using DeviceHandle = std::uint64_t;
 
-using reports::kProductFirst;
-using reports::kProductTr;
-using reports::kProductZcm1;
-using reports::kProductZcm2;
-using reports::kVendorNintendo;
-using reports::kVendorSony;
-
-/// As the kernel's input.h numbers them.
-enum class Bus : std::uint32_t { kUnknown = 0, kUsb = 3, kBluetooth = 5 };
+using stream::Bus;
+using stream::kProductFirst;
+using stream::kProductTr;
+using stream::kProductZcm1;
+using stream::kProductZcm2;
+using stream::kVendorNintendo;
+using stream::kVendorSony;
 
 struct DeviceIdentity {
   Bus bus = Bus::kUnknown;

@@ -1,6 +1,6 @@
 #include "daemon/sensor/kinds/ps_move/ps_move.h"
 
-#include "daemon/sensor/reports/product_ids.h"
+#include "common/stream/product_ids.h"
 
 namespace footing::ps_move {
 namespace {
@@ -8,14 +8,14 @@ namespace {
 constexpr double kLowBattery = 0.21;  // One bar of five.
 
 reports::MoveModel ModelOf(const decode::Product& product) {
-  return product.product == reports::kProductZcm2 ? reports::MoveModel::kZcm2
-                                                  : reports::MoveModel::kZcm1;
+  return product.product == stream::kProductZcm2 ? reports::MoveModel::kZcm2
+                                                 : reports::MoveModel::kZcm1;
 }
 
 }  // namespace
 
 bool PsMove::Matches(const decode::Product& product) {
-  return product.vendor == reports::kVendorSony;
+  return product.vendor == stream::kVendorSony;
 }
 
 PsMove::PsMove(const decode::Product& product,
