@@ -1,5 +1,7 @@
 #include "clients/stream/boards_command.h"
 
+#include "common/virtual/sensor_options/sensor_options.h"
+
 namespace footing::stream_client {
 namespace {
 
@@ -16,6 +18,13 @@ void AddMotion(CLI::App& command, StageOptions& stage) {
       ->check(CLI::Range(1.4, 2.1));
 }
 
+void AddHandNoise(CLI::App& command, double& hand_noise_m) {
+  command
+      .add_option("--hand-noise-m", hand_noise_m,
+                  "Standard deviation of the noise of hand positions, m")
+      ->check(CLI::Range(0.0, 0.5));
+}
+
 }  // namespace
 
 CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
@@ -28,27 +37,9 @@ CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
       ->check(CLI::Range(0.0, 1e6));
   boards->add_option("--lose-for-s", options.lost_for_s, "Duration of the loss, s")
       ->check(CLI::Range(0.0, 1e6));
-  boards
-      ->add_option("--hand-noise-m", options.hand_noise_m,
-                   "Standard deviation of the noise of hand positions, m")
-      ->check(CLI::Range(0.0, 0.5));
+  AddHandNoise(*boards, options.hand_noise_m);
   boards->add_flag("--place-boards", options.stage.place_boards, "Place the boards under the feet");
-  boards
-      ->add_option("--cell-noise-kg", options.errors.noise_kg,
-                   "Standard deviation of the noise of a sensor, kg")
-      ->check(CLI::Range(0.0, 5.0));
-  boards
-      ->add_option("--gain-error", options.errors.gain_spread,
-                   "Standard deviation of the relative gain error of a sensor; 0.01 is one percent")
-      ->check(CLI::Range(0.0, 0.2));
-  boards
-      ->add_option("--hysteresis-n", options.errors.hysteresis_n,
-                   "Half width of a sensor's hysteresis, N")
-      ->check(CLI::Range(0.0, 50.0));
-  boards
-      ->add_option("--slow-force-n", options.errors.slow_force_n,
-                   "Slowly varying force error of a board, N")
-      ->check(CLI::Range(0.0, 50.0));
+  sensor_options::AddBoardErrors(*boards, options.errors);
   return boards;
 }
 
@@ -56,18 +47,8 @@ CLI::App* AddInsolesCommand(CLI::App& app, InsolesOptions& options) {
   auto* insoles = app.add_subcommand("insoles", "Pressure insoles in the shoes of a moving body");
   AddMotion(*insoles, options.stage);
   insoles->add_option("--hands", options.hands, "Hand devices: none or move");
-  insoles
-      ->add_option("--hand-noise-m", options.hand_noise_m,
-                   "Standard deviation of the noise of hand positions, m")
-      ->check(CLI::Range(0.0, 0.5));
-  insoles
-      ->add_option("--cell-noise-kg", options.errors.noise_kg,
-                   "Standard deviation of the noise of a sensor, kg")
-      ->check(CLI::Range(0.0, 5.0));
-  insoles
-      ->add_option("--gain-error", options.errors.gain_spread,
-                   "Standard deviation of the relative gain error of a sensor; 0.01 is one percent")
-      ->check(CLI::Range(0.0, 0.2));
+  AddHandNoise(*insoles, options.hand_noise_m);
+  sensor_options::AddCellErrors(*insoles, options.errors.noise_kg, options.errors.gain_spread);
   return insoles;
 }
 

@@ -3,7 +3,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/cli/cli.h"
 #include "daemon/offline/eval/arm/trial.h"
 #include "daemon/offline/eval/pose/scene.h"
 #include "daemon/offline/eval/report/print_report.h"
@@ -49,14 +48,8 @@ void AddArmCommand(CLI::App& app, Shared& shared) {
           "--loop-minutes", flags->loop_minutes,
           "Total duration, min: the motion is played forwards and backwards until then (0: once)")
       ->check(CLI::Range(0.0, 60.0));
-  command->callback([flags, &shared] {
-    const auto out = Evaluate(*flags);
-    if (!out) {
-      shared.exit_code = cli::Report(out.error());
-    } else {
-      PrintReport(*out, shared.json);
-    }
-  });
+  command->callback(
+      [flags, &shared] { shared.exit_code = PrintResult(Evaluate(*flags), shared.json); });
 }
 
 }  // namespace footing::eval

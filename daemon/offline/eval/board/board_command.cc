@@ -214,12 +214,7 @@ void AddBoardCommand(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(UsageError("board needs --corners CSV or --cop CSV"));
       return;
     }
-    const Result<ordered_json> out = Evaluate(*options);
-    if (!out) {
-      shared.exit_code = cli::Report(out.error());
-      return;
-    }
-    PrintReport(*out, shared.json);
+    shared.exit_code = PrintResult(Evaluate(*options), shared.json);
   });
 }
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "common/cli/cli.h"
 #include "common/units/time.h"
 #include "common/units/units.h"
 #include "common/virtual/devices/link_model.h"
@@ -141,14 +140,8 @@ void AddClockCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(6.0, 86400.0))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the link model")->capture_default_str();
-  command->callback([options, &shared] {
-    const Result<ordered_json> out = Evaluate(*options);
-    if (!out) {
-      shared.exit_code = cli::Report(out.error());
-      return;
-    }
-    PrintReport(*out, shared.json);
-  });
+  command->callback(
+      [options, &shared] { shared.exit_code = PrintResult(Evaluate(*options), shared.json); });
 }
 
 }  // namespace footing::eval

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "common/virtual/sensor_options/sensor_options.h"
 #include "daemon/offline/eval/momentum/momentum_score.h"
 #include "daemon/offline/eval/momentum/offline.h"
 #include "daemon/offline/eval/momentum/scene.h"
@@ -116,22 +117,7 @@ void AddMomentumCommand(CLI::App& app, Shared& shared) {
           "--loop-minutes", options.loop_minutes,
           "Total duration, min: the motion is played forwards and backwards until then (0: once)")
       ->check(CLI::Range(0.0, 60.0));
-  command
-      ->add_option("--cell-noise-kg", options.errors.noise_kg,
-                   "Standard deviation of the noise of a sensor, kg")
-      ->check(CLI::Range(0.0, 5.0));
-  command
-      ->add_option("--gain-error", options.errors.gain_spread,
-                   "Standard deviation of the relative gain error of a sensor; 0.01 is one percent")
-      ->check(CLI::Range(0.0, 0.2));
-  command
-      ->add_option("--slow-force-n", options.errors.slow_force_n,
-                   "Slowly varying force error of a board, N")
-      ->check(CLI::Range(0.0, 50.0));
-  command
-      ->add_option("--hysteresis-n", options.errors.hysteresis_n,
-                   "Half width of a sensor's hysteresis, N")
-      ->check(CLI::Range(0.0, 50.0));
+  sensor_options::AddBoardErrors(*command, options.errors);
   command->add_option("--seed", options.errors.seed, "Seed of the sensor errors");
   command->add_flag("--unlimited", options.unlimited, "Simulate boards of unlimited size");
   command->add_flag("--offline", flags->offline, "Run the offline smoothers as well");
@@ -142,12 +128,7 @@ void AddMomentumCommand(CLI::App& app, Shared& shared) {
       shared.exit_code = cli::Report(UsageError("--lag-ms is the best mode's: paper has no lag"));
       return;
     }
-    const auto out = Evaluate(flags->options, flags->offline);
-    if (!out) {
-      shared.exit_code = cli::Report(out.error());
-      return;
-    }
-    PrintReport(*out, shared.json);
+    shared.exit_code = PrintResult(Evaluate(flags->options, flags->offline), shared.json);
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/cli/cli.h"
 #include "common/units/units.h"
+#include "common/virtual/sensor_options/sensor_options.h"
 #include "daemon/offline/eval/pose/ablations.h"
 #include "daemon/offline/eval/pose/baselines.h"
 #include "daemon/offline/eval/pose/claims.h"
@@ -182,22 +183,7 @@ void AddFlags(CLI::App& command, Flags& flags) {
       ->check(CLI::Range(30.0, 120.0));
   command.add_option("--lag-ms", flags.lag_ms, "Output delay for smoothing, ms, 0 to 200")
       ->check(CLI::Range(0.0, 200.0));
-  command
-      .add_option("--cell-noise-kg", settings.errors.noise_kg,
-                  "Standard deviation of the noise of a sensor, kg")
-      ->check(CLI::Range(0.0, 5.0));
-  command
-      .add_option("--gain-error", settings.errors.gain_spread,
-                  "Standard deviation of the relative gain error of a sensor; 0.01 is one percent")
-      ->check(CLI::Range(0.0, 0.2));
-  command
-      .add_option("--slow-force-n", settings.errors.slow_force_n,
-                  "Slowly varying force error of a board, N")
-      ->check(CLI::Range(0.0, 50.0));
-  command
-      .add_option("--hysteresis-n", settings.errors.hysteresis_n,
-                  "Half width of a sensor's hysteresis, N")
-      ->check(CLI::Range(0.0, 50.0));
+  sensor_options::AddBoardErrors(command, settings.errors);
   command.add_option("--seed", settings.errors.seed, "Seed of the errors of sensors and hands");
   command
       .add_option("--gap-error-m", settings.gap_error_m,

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "common/cli/cli.h"
+
 namespace footing::eval {
 
 void PrintReport(const nlohmann::ordered_json& report, bool json) {
@@ -13,6 +15,12 @@ void PrintReport(const nlohmann::ordered_json& report, bool json) {
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     std::printf("%-26s %s\n", name.c_str(), text.c_str());
   }
+}
+
+int PrintResult(const Result<nlohmann::ordered_json>& report, bool json) {
+  if (!report) return cli::Report(report.error());
+  PrintReport(*report, json);
+  return 0;
 }
 
 }  // namespace footing::eval

@@ -2,9 +2,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/result/result.h"
+
 namespace footing::eval {
 
 /// To standard output: one line of JSON, or a line for each field, for people.
 void PrintReport(const nlohmann::ordered_json& report, bool json);
+/// The same, or the error that there is in its place; returns the exit code.
+int PrintResult(const Result<nlohmann::ordered_json>& report, bool json);
 
 }  // namespace footing::eval

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "common/virtual/sensors/board_cells.h"
+
+/// Options of the programs that simulate load cells. What they set must outlive the parsing.
+namespace footing::sensor_options {
+
+/// --cell-noise-kg and --gain-error, of any cell.
+void AddCellErrors(CLI::App& command, double& noise_kg, double& gain_spread);
+/// The same with --slow-force-n and --hysteresis-n, of the cells of a board.
+void AddBoardErrors(CLI::App& command, virtual_sensors::CellErrorConfig& errors);
+
+}  // namespace footing::sensor_options
