@@ -1,11 +1,10 @@
 #include "clients/view/scene/words.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "common/text/number.h"
 #include "common/units/units.h"
 
 namespace footing::scene {
@@ -110,13 +109,8 @@ std::vector<std::string> CharacterLines(const CharacterPose& pose) {
 }  // namespace
 
 std::string Fixed(double value, int decimals) {
-  std::array<char, 64> buffer{};
   const double shown = std::isfinite(value) ? std::clamp(value, -1e12, 1e12) : 0;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), shown,
-                                 std::chars_format::fixed, std::clamp(decimals, 0, 9));
-  const std::string text(buffer.data(), end.ptr);
-  const bool zero = text.find_first_not_of("-0.") == std::string::npos;
-  return zero && text.front() == '-' ? text.substr(1) : text;
+  return text::Fixed(shown, std::clamp(decimals, 0, 9));
 }
 
 std::string FallText(const stream::GaitState& gait) {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/time.h"
+#include "common/units/units.h"
+
 namespace footing::link {
 namespace {
-
-std::int64_t Nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
 /// The period may differ this much from its nominal value, by a factor either way.
 constexpr double kPeriodRange = 2;
@@ -36,7 +37,7 @@ std::int64_t DeviceClock::Advance(std::int64_t received_ns, bool changed) {
   std::int64_t estimate_ns = loop_ns_;
   if (ticks_.known()) {
     estimate_ns = ticks_.TickBefore(received_ns);
-    const auto period_ns = Nanoseconds(ticks_.period_s());
+    const auto period_ns = RoundToNanoseconds(ticks_.period_s());
     // Something new with no tick since the last: the tick was just about to come.
     if (changed && estimate_ns <= sampled_ns_ &&
         estimate_ns + period_ns - received_ns < period_ns / kEarlyShare) {
@@ -69,25 +70,26 @@ DeviceClock DeviceClock::Restarted() const {
 void DeviceClock::AdvanceLoop(std::int64_t received_ns) {
   const std::int64_t pause_ns = received_ns - received_ns_;
   received_ns_ = received_ns;
-  if (!started_ || pause_ns > Nanoseconds(config_.restart_s)) {
+  if (!started_ || pause_ns > RoundToNanoseconds(config_.restart_s)) {
     started_ = true;
     loop_steps_ = 0;
     loop_variance_s2_ = 0;
     loop_ns_ = received_ns;
     return;
   }
-  const std::int64_t predicted_ns = loop_ns_ + Nanoseconds(period_s_);
-  const double error_s = static_cast<double>(received_ns - predicted_ns) * 1e-9;
+  const std::int64_t predicted_ns = loop_ns_ + RoundToNanoseconds(period_s_);
+  const double error_s = NanosecondsToSeconds(received_ns - predicted_ns);
   loop_steps_ = std::min(loop_steps_ + 1, kSteadySteps);
   loop_variance_s2_ +=
       std::max(kVarianceGain, 1.0 / loop_steps_) * (error_s * error_s - loop_variance_s2_);
   const double gain = error_s < 0 ? config_.early_gain : config_.late_gain;
-  std::int64_t estimate_ns = predicted_ns + Nanoseconds(gain * error_s);
-  estimate_ns = std::clamp(estimate_ns, received_ns - Nanoseconds(config_.max_lag_s), received_ns);
+  std::int64_t estimate_ns = predicted_ns + RoundToNanoseconds(gain * error_s);
+  estimate_ns =
+      std::clamp(estimate_ns, received_ns - RoundToNanoseconds(config_.max_lag_s), received_ns);
   loop_ns_ = std::max(estimate_ns, loop_ns_);
   // What the estimate is moved by, all bounds included, is zero on average once the period is
   // right.
-  const double moved_s = static_cast<double>(loop_ns_ - predicted_ns) * 1e-9;
+  const double moved_s = NanosecondsToSeconds(loop_ns_ - predicted_ns);
   period_s_ =
       std::clamp(period_s_ + config_.period_gain * moved_s, config_.nominal_period_s / kPeriodRange,
                  config_.nominal_period_s * kPeriodRange);

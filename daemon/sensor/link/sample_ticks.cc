@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "common/units/time.h"
+#include "common/units/units.h"
+
 namespace footing::link {
 namespace {
 
@@ -30,7 +33,6 @@ constexpr Stage kStages[] = {
     {0.2, 0, 1e-3}, {0.5, 1e-3, 2.5e-4}, {1, 2.5e-4, 6e-5}, {1, 6e-5, 1.5e-5}, {1, 1.5e-5, 5e-6}};
 constexpr std::size_t kFirstFineStage = 3;
 
-double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 double Fraction(double x) { return x - std::floor(x); }
 
 }  // namespace
@@ -46,23 +48,24 @@ void SampleTicks::Add(std::int64_t received_ns, bool changed) {
     begun_ns_ = fitted_ns_ = received_ns;
     return;
   }
-  if (Seconds(received_ns - before_ns) > config_.coast_s) {
+  if (NanosecondsToSeconds(received_ns - before_ns) > config_.coast_s) {
     known_ = false;
     pairs_.clear();
     begun_ns_ = fitted_ns_ = received_ns;
     return;
   }
-  if (Seconds(received_ns - before_ns) < kLongestPair * config_.nominal_period_s) {
+  if (NanosecondsToSeconds(received_ns - before_ns) < kLongestPair * config_.nominal_period_s) {
     pairs_.push_back({before_ns, received_ns, changed});
     // A bound against a device that floods; 200 reports a second fit into it.
     if (pairs_.size() > static_cast<std::size_t>(config_.window_s * 200)) pairs_.pop_front();
   }
-  while (!pairs_.empty() && Seconds(received_ns - pairs_.front().to_ns) > config_.window_s) {
+  while (!pairs_.empty() &&
+         NanosecondsToSeconds(received_ns - pairs_.front().to_ns) > config_.window_s) {
     pairs_.pop_front();
   }
-  const bool full = Seconds(received_ns - begun_ns_) > config_.window_s;
+  const bool full = NanosecondsToSeconds(received_ns - begun_ns_) > config_.window_s;
   const double refit_s = known_ && full ? config_.refit_s : config_.search_s;
-  if (Seconds(received_ns - fitted_ns_) < refit_s) return;
+  if (NanosecondsToSeconds(received_ns - fitted_ns_) < refit_s) return;
   fitted_ns_ = received_ns;
   Refit();
 }
@@ -74,10 +77,11 @@ SampleTicks::Fit SampleTicks::At(double period_s, double window_s) const {
   fit.period_s = period_s;
   double expected = 0, variance = 0;
   const auto bin = [&](std::int64_t at_ns) {
-    return static_cast<int>(Fraction(Seconds(at_ns - last_ns_) / period_s) * kBins) % kBins;
+    return static_cast<int>(Fraction(NanosecondsToSeconds(at_ns - last_ns_) / period_s) * kBins) %
+           kBins;
   };
   for (auto pair = pairs_.rbegin(); pair != pairs_.rend(); ++pair) {
-    if (Seconds(last_ns_ - pair->from_ns) > window_s) break;
+    if (NanosecondsToSeconds(last_ns_ - pair->from_ns) > window_s) break;
     const double weight = pair->changed ? 1 : -kRepeatWeight;
     // The tick is after the first arrival and not after the second.
     const int from = bin(pair->from_ns);
@@ -85,7 +89,8 @@ SampleTicks::Fit SampleTicks::At(double period_s, double window_s) const {
     change[static_cast<std::size_t>(from)] += weight;
     change[static_cast<std::size_t>(to) + 1] -= weight;
     if (to < from) full += weight;
-    const double share = std::min(1.0, Seconds(pair->to_ns - pair->from_ns) / period_s);
+    const double share =
+        std::min(1.0, NanosecondsToSeconds(pair->to_ns - pair->from_ns) / period_s);
     expected += weight * share;
     variance += weight * weight * share * (1 - share);
     fit.changes += pair->changed ? 1 : 0;
@@ -109,7 +114,7 @@ SampleTicks::Fit SampleTicks::At(double period_s, double window_s) const {
 }
 
 SampleTicks::Fit SampleTicks::Search(std::size_t first_stage, double period_s) const {
-  const double known_s = std::min(config_.window_s, Seconds(last_ns_ - begun_ns_));
+  const double known_s = std::min(config_.window_s, NanosecondsToSeconds(last_ns_ - begun_ns_));
   Fit best = At(period_s, known_s);
   for (std::size_t i = first_stage; i < std::size(kStages); ++i) {
     const Stage& stage = kStages[i];
@@ -131,8 +136,8 @@ bool SampleTicks::IsGood(const Fit& fit) const {
   int explained = 0;
   for (const Pair& pair : pairs_) {
     if (!pair.changed) continue;
-    const double from = Seconds(pair.from_ns - last_ns_) / fit.period_s - fit.phase;
-    const double to = Seconds(pair.to_ns - last_ns_) / fit.period_s - fit.phase;
+    const double from = NanosecondsToSeconds(pair.from_ns - last_ns_) / fit.period_s - fit.phase;
+    const double to = NanosecondsToSeconds(pair.to_ns - last_ns_) / fit.period_s - fit.phase;
     constexpr double kSlack = 1.0 / kBins;
     explained += std::floor(to + kSlack) > std::floor(from - kSlack) ? 1 : 0;
   }
@@ -145,7 +150,7 @@ void SampleTicks::Refit() {
   const auto changes =
       std::count_if(pairs_.begin(), pairs_.end(), [](const Pair& pair) { return pair.changed; });
   if (changes < kLeastChanges) {
-    known_ = known_ && Seconds(last_ns_ - proved_ns_) < config_.coast_s;
+    known_ = known_ && NanosecondsToSeconds(last_ns_ - proved_ns_) < config_.coast_s;
     return;
   }
   if (known_) {
@@ -157,21 +162,21 @@ void SampleTicks::Refit() {
     good = IsGood(fit);
   }
   if (!good) {
-    known_ = known_ && Seconds(last_ns_ - proved_ns_) < config_.coast_s;
+    known_ = known_ && NanosecondsToSeconds(last_ns_ - proved_ns_) < config_.coast_s;
     return;
   }
   known_ = true;
   proved_ns_ = last_ns_;
   period_s_ = fit.period_s;
   phase_range_ = fit.phase_range;
-  tick_ns_ = last_ns_ + std::llround((fit.phase - 1) * fit.period_s * 1e9);
+  tick_ns_ = last_ns_ + RoundToNanoseconds((fit.phase - 1) * fit.period_s);
 }
 
 double SampleTicks::phase_sd_s() const { return phase_range_ * period_s_ / std::sqrt(12); }
 
 std::int64_t SampleTicks::TickBefore(std::int64_t at_ns) const {
-  const double periods = std::floor(Seconds(at_ns - tick_ns_) / period_s_);
-  return std::min<std::int64_t>(at_ns, tick_ns_ + std::llround(periods * period_s_ * 1e9));
+  const double periods = std::floor(NanosecondsToSeconds(at_ns - tick_ns_) / period_s_);
+  return std::min<std::int64_t>(at_ns, tick_ns_ + RoundToNanoseconds(periods * period_s_));
 }
 
 }  // namespace footing::link

@@ -1,5 +1,7 @@
 #include "daemon/sensor/service/board_chain.h"
 
+#include "common/units/units.h"
+
 namespace footing::sensor {
 
 void BoardChain::Restart() {
@@ -33,7 +35,7 @@ void BoardChain::Take(const board::CornerForces& measured, stream::BoardSample& 
 }
 
 tare::Tare BoardChain::SolveTare(std::int64_t now_ns, double window_s) const {
-  const std::int64_t from_ns = now_ns - static_cast<std::int64_t>(window_s * 1e9);
+  const std::int64_t from_ns = now_ns - SecondsToNanoseconds(window_s);
   std::vector<tare::TareSample> samples;
   for (const Measured& measured : recent_.samples()) {
     if (measured.received_ns > from_ns) samples.push_back(measured.sample);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/units/units.h"
+
 namespace footing::sensor {
 
 void Device::Attach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity,
@@ -202,7 +204,7 @@ void Device::AddState(std::int64_t now_ns, double stale_after_s,
     status.note = links_.reason();
     return;
   }
-  const double silent_s = static_cast<double>(now_ns - link.last_ns()) * 1e-9;
+  const double silent_s = NanosecondsToSeconds(now_ns - link.last_ns());
   status.report_rate_hz = link.RateHz(now_ns);
   status.jitter_ms = link.JitterMs();
   const double clock_sd_s = timing_.sampled_sd_s();

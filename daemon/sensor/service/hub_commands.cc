@@ -1,6 +1,7 @@
 // Commands to one device, and the leases of motors.
 #include <algorithm>
 
+#include "common/units/units.h"
 #include "daemon/sensor/service/hub.h"
 
 namespace footing::sensor {
@@ -40,7 +41,7 @@ Result<void> Hub::SetRumble(std::uint64_t session, std::uint32_t device, bool on
     leases_.erase(device);
   } else {
     const double granted_s = lease_s > 0 ? std::min(lease_s, kMaxLeaseS) : kDefaultLeaseS;
-    leases_[device] = {session, ports_.now_ns() + static_cast<std::int64_t>(granted_s * 1e9)};
+    leases_[device] = {session, ports_.now_ns() + SecondsToNanoseconds(granted_s)};
   }
   Flush(*found);
   return {};

@@ -1,9 +1,9 @@
 // The set-up's commands, and which part of the stored set-up holds for which device.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "common/board/layout.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "daemon/sensor/service/hub.h"
 
@@ -20,12 +20,6 @@ constexpr std::size_t kMostNameBytes = 64;
 constexpr std::size_t kMostNoteBytes = 1024;
 
 std::string Text(const Binding& binding) { return binding.rig + "/" + stream::Name(binding.role); }
-
-std::string Number(const char* format, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 bool IsWorn(DeviceRole role) {
   switch (role) {
@@ -178,7 +172,7 @@ Result<Hub::Measured> Hub::Tare(const std::string& serial, double window_s, bool
   if (!tare.ok) return Failure("tare of " + serial + ": " + tare.problem);
   store_.SetTare(serial, setup::StoredTare{tare.offset, tare.residual_n});
   return Measured{tare.residual_n, "N",
-                  "empty it shows " + Number("%.1f", board::Total(tare.offset)) + " N"};
+                  "empty it shows " + text::Fixed(board::Total(tare.offset), 1) + " N"};
 }
 
 Result<Device*> Hub::AttachedWorn(const std::string& serial) {
@@ -212,7 +206,7 @@ Result<Hub::Measured> Hub::SolveMounting(const std::string& serial,
   store_.SetMounting(serial, stored);
   const double turn_rad = solved.rotation_MS.angularDistance(Eigen::Quaterniond::Identity());
   return Measured{RadiansToDegrees(solved.residual_rad), "deg",
-                  "turned by " + Number("%.0f", RadiansToDegrees(turn_rad)) +
+                  "turned by " + text::Fixed(RadiansToDegrees(turn_rad), 0) +
                       " degrees against a perfect mounting"};
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units/units.h"
+
 namespace footing::tare {
 namespace {
 
@@ -28,7 +30,7 @@ bool Displacement::Advance(std::int64_t sampled_ns, const board::CornerForces& t
       quiet && std::abs(total_n) <= config_.empty_n && Largest(tared) > config_.corner_n;
   if (!stands_otherwise) level_ns_ = sampled_ns;
   const auto since_s = [sampled_ns](std::int64_t then_ns) {
-    return static_cast<double>(sampled_ns - then_ns) * 1e-9;
+    return NanosecondsToSeconds(sampled_ns - then_ns);
   };
   moved_ =
       moved_ || since_s(grounded_ns_) >= config_.lifted_s || since_s(level_ns_) >= config_.rests_s;

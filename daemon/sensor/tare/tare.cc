@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/text/number.h"
 #include "common/units/units.h"
 
 namespace footing::tare {
@@ -15,12 +16,7 @@ Tare Refused(std::string problem) {
   return tare;
 }
 
-/// With one decimal.
-std::string OneDecimal(double value) {
-  const long tenths = std::lround(std::abs(value) * 10);
-  return (value < 0 && tenths > 0 ? "-" : "") + std::to_string(tenths / 10) + "." +
-         std::to_string(tenths % 10);
-}
+std::string OneDecimal(double value) { return text::Fixed(value, 1); }
 
 double MeanTotal(std::span<const TareSample> samples) {
   double sum = 0;
@@ -37,7 +33,7 @@ Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareC
                    " s; is the board awake, near enough, and its battery full?");
   }
   const double span_s =
-      static_cast<double>(samples.back().sampled_ns - samples.front().sampled_ns) * 1e-9;
+      NanosecondsToSeconds(samples.back().sampled_ns - samples.front().sampled_ns);
   if (span_s < window_s - config.longest_gap_s) {
     return Refused("only " + OneDecimal(span_s) + " s of samples, " + OneDecimal(window_s) +
                    " are needed; wait and try again");
@@ -45,7 +41,7 @@ Tare SolveTare(std::span<const TareSample> samples, double window_s, const TareC
   double longest_gap_s = 0;
   for (std::size_t i = 1; i < count; ++i) {
     const auto step_ns = samples[i].sampled_ns - samples[i - 1].sampled_ns;
-    longest_gap_s = std::max(longest_gap_s, static_cast<double>(step_ns) * 1e-9);
+    longest_gap_s = std::max(longest_gap_s, NanosecondsToSeconds(step_ns));
   }
   if (longest_gap_s > config.longest_gap_s) {
     return Refused("a gap of " + OneDecimal(longest_gap_s) + " s in its samples; try again");

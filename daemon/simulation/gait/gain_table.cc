@@ -1,15 +1,19 @@
 #include "daemon/simulation/gait/gain_table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "common/text/csv.h"
+#include "common/text/lines.h"
+#include "common/text/number.h"
 #include "daemon/simulation/gait/phase.h"
 
 namespace footing::gait {
 namespace {
 
 using stream::Gait;
+using text::Quoted;
+using text::Shortest;
 
 constexpr std::string_view kFirstColumns[] = {"gait", "set", "speed_mps"};
 constexpr std::string_view kFirstUnits[] = {"-", "-", "m/s"};
@@ -18,41 +22,15 @@ constexpr double kFastestMps = 20;
 
 using Cells = std::vector<std::string_view>;
 
-Cells Split(std::string_view line) {
-  Cells cells;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    std::string_view cell = line.substr(0, comma);
-    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
-    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\r')) cell.remove_suffix(1);
-    cells.push_back(cell);
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-std::string Quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
-
-std::string Text(double value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
-
-/// One file while it is read. Every error begins with the file and the line.
+/// One file while it is read.
 class Reader {
  public:
-  explicit Reader(std::string origin) : origin_(std::move(origin)) {}
+  Reader(std::string_view text, const std::string& origin) : lines_(text, origin) {}
 
-  Result<void> Read(std::string_view text, GainSets& sets) {
+  Result<void> Read(GainSets& sets) {
     int rows = 0;
-    while (!text.empty()) {
-      const std::size_t end = text.find('\n');
-      const std::string_view line = text.substr(0, end);
-      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-      ++line_;
-      if (line.empty() || line.front() == '#' || line == "\r") continue;
-      const Cells cells = Split(line);
+    for (auto line = lines_.NextRow(); line; line = lines_.NextRow(), ++rows) {
+      const Cells cells = text::Cells(*line);
       if (rows > 0 && cells.size() != kFirst + columns_.size()) {
         return Wrong(std::to_string(cells.size()) + " cells where " +
                      std::to_string(kFirst + columns_.size()) + " columns are named");
@@ -61,19 +39,17 @@ class Reader {
                                 : rows == 1 ? CheckUnits(cells)
                                             : ReadSet(cells, sets);
       if (!read) return read;
-      ++rows;
     }
     if (rows < 3) {
-      return InvalidData(origin_ + ": needs a row of names, one of units and one a set; has " +
+      return InvalidData(lines_.file() +
+                         ": needs a row of names, one of units and one a set; has " +
                          std::to_string(rows) + " rows");
     }
     return {};
   }
 
  private:
-  Error Wrong(const std::string& what) const {
-    return InvalidData(origin_ + ":" + std::to_string(line_) + ": " + what);
-  }
+  Error Wrong(const std::string& what) const { return lines_.Fault(what); }
 
   Result<void> ReadNames(const Cells& cells) {
     for (std::size_t i = 0; i < cells.size() || i < kFirst; ++i) {
@@ -106,17 +82,15 @@ class Reader {
 
   Result<double> Number(std::string_view cell, std::string_view name, double min,
                         double max) const {
-    double value = 0;
-    const char* end = cell.data() + cell.size();
-    const auto read = std::from_chars(cell.data(), end, value);
-    if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value)) {
+    const std::optional<double> value = text::ToNumber(cell);
+    if (!value) {
       return Wrong(std::string(name) + " is " + Quoted(cell) + ", which is not a number");
     }
-    if (value < min || value > max) {
-      return Wrong(std::string(name) + " is " + std::string(cell) + ", allowed is " + Text(min) +
-                   " to " + Text(max));
+    if (*value < min || *value > max) {
+      return Wrong(std::string(name) + " is " + std::string(cell) + ", allowed is " +
+                   Shortest(min) + " to " + Shortest(max));
     }
-    return value;
+    return *value;
   }
 
   Result<void> ReadSet(const Cells& cells, GainSets& sets) const {
@@ -133,7 +107,7 @@ class Reader {
     std::vector<GainSet>& of_gait = sets[stream::IndexOf(gait)];
     if (!of_gait.empty() && set.speed_mps <= of_gait.back().speed_mps) {
       return Wrong("speed_mps is " + std::string(cells[2]) + " after " +
-                   Text(of_gait.back().speed_mps) + "; a gait's speeds must rise");
+                   Shortest(of_gait.back().speed_mps) + "; a gait's speeds must rise");
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const GainField& field = *columns_[i];
@@ -145,8 +119,7 @@ class Reader {
     return {};
   }
 
-  std::string origin_;
-  int line_ = 0;
+  text::Lines lines_;
   std::vector<const GainField*> columns_;
 };
 
@@ -170,7 +143,7 @@ Gains Interpolated(const std::vector<GainSet>& sets, double speed_mps) {
 
 Result<void> GainTable::Add(std::string_view text, const std::string& origin) {
   GainSets read;
-  if (const Result<void> done = Reader(origin).Read(text, read); !done) return done;
+  if (const Result<void> done = Reader(text, origin).Read(read); !done) return done;
   for (std::size_t i = 0; i < sets_.size(); ++i) {
     if (!read[i].empty()) sets_[i] = std::move(read[i]);
   }
@@ -203,17 +176,14 @@ std::string WriteGains(Gait gait, const std::vector<GainSet>& sets,
     (units += ',') += column->unit;
   }
   for (const GainSet& set : sets) {
-    rows += std::string(stream::Name(gait)) + "," + set.name + "," + Text(set.speed_mps);
-    for (const GainField* column : columns) (rows += ',') += Text(column->Of(set.gains));
+    rows += std::string(stream::Name(gait)) + "," + set.name + "," + Shortest(set.speed_mps);
+    for (const GainField* column : columns) (rows += ',') += Shortest(column->Of(set.gains));
     rows += '\n';
   }
-  std::string text;
-  for (std::string_view rest = comment; !rest.empty();) {
-    const std::size_t end = rest.find('\n');
-    text += "# " + std::string(rest.substr(0, end)) + "\n";
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  }
-  return text + names + "\n" + units + "\n" + rows;
+  std::string table;
+  text::Lines lines(comment, "");
+  while (const auto line = lines.Next()) table += "# " + std::string(*line) + "\n";
+  return table + names + "\n" + units + "\n" + rows;
 }
 
 }  // namespace footing::gait

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "daemon/simulation/momentum/calibration.h"
 
@@ -11,16 +11,11 @@ namespace footing::pose_service {
 namespace {
 
 using momentum::TPoseCalibration;
+using text::Fixed;
 
 /// A foot that stepped off is told after so long: steps and kicks are none of our business.
 constexpr double kAwayS = 0.5;
 constexpr std::array<const char*, 2> kSides{"left", "right"};
-
-std::string Text(double value, int decimals) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, value);
-  return buffer.data();
-}
 
 void Add(std::string& note, const std::string& words) {
   if (!note.empty()) note += "; ";
@@ -65,7 +60,7 @@ std::string Awaited(const PoseFrame& frame) {
   }
   const double left_s = (1 - frame.t_pose.progress) * TPoseCalibration::kSeconds;
   if (frame.t_pose.progress > 0.04) {
-    return "T-pose: hold still, " + Text(left_s, 1) + " s more";
+    return "T-pose: hold still, " + Fixed(left_s, 1) + " s more";
   }
   return frame.t_pose.restarts > 0 ? "you moved: stand still, arms out to the sides"
                                    : "stand still, arms out to the sides";
@@ -83,7 +78,7 @@ void AddFeet(const PoseFrame& frame, std::string& note) {
     if (!away(feet[side])) continue;
     Add(note, std::string("the ") + kSides[side] + " foot is off " +
                   (IsWorn(frame) ? "the ground for " : "its board for ") +
-                  Text(feet[side].airborne_s, 1) + " s: its place is a guess");
+                  Fixed(feet[side].airborne_s, 1) + " s: its place is a guess");
   }
 }
 
@@ -105,8 +100,8 @@ void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) 
   const double difference = frame.t_pose.mass_kg / subject.mass_kg - 1;
   if (std::abs(difference) <= kMassTolerance) return;
   Add(note, std::string("the ") + (IsWorn(frame) ? "insoles" : "boards") + " say " +
-                Text(frame.t_pose.mass_kg, 1) + " kg, the subject's file " +
-                Text(subject.mass_kg, 1) + " kg: is it " + subject.code +
+                Fixed(frame.t_pose.mass_kg, 1) + " kg, the subject's file " +
+                Fixed(subject.mass_kg, 1) + " kg: is it " + subject.code +
                 (IsWorn(frame) ? "?" : ", and are both boards tared?"));
 }
 

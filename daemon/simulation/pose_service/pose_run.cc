@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/text/fnv.h"
 
 namespace footing::pose_service {
 namespace {
@@ -25,11 +26,11 @@ void PlayLoads(double step_s, board::LoadPlayer& player,
 
 /// FNV-1a over the bits of a pose.
 std::uint64_t HashOf(const Eigen::VectorXd& q) {
-  std::uint64_t hash = 14695981039346656037ull;
+  std::uint64_t hash = text::kFnvBasis;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &q[i], sizeof(bits));
-    hash = (hash ^ bits) * 1099511628211ull;
+    hash = text::AddFnv(hash, bits);
   }
   return hash;
 }

@@ -119,18 +119,19 @@ TEST(GainTable, NamesFileLineAndFaultOfWhatItCannotRead) {
   } rows[] = {
       {"", "made.csv: needs a row of names"},
       {names + units, "needs a row of names, one of units and one a set; has 2 rows"},
-      {"gait,speed_mps\n", "made.csv:1: the columns must begin with gait,set,speed_mps"},
-      {"gait,set,speed_mps,walking.step\n", "made.csv:1: unknown gain \"walking.step\""},
+      {"gait,speed_mps\n", "made.csv, line 1: the columns must begin with gait,set,speed_mps"},
+      {"gait,set,speed_mps,walking.step\n", "made.csv, line 1: unknown gain 'walking.step'"},
       {"gait,set,speed_mps,walking.step_width_m,walking.step_width_m\n", "has two columns"},
-      {names + "-,-,m/s,cm\n", "made.csv:2: the unit of walking.step_width_m is \"cm\", must be"},
-      {names + units + "walk,slow,0.5\n", "made.csv:3: 3 cells where 4 columns are named"},
+      {names + "-,-,m/s,cm\n",
+       "made.csv, line 2: the unit of walking.step_width_m is 'cm', must be"},
+      {names + units + "walk,slow,0.5\n", "made.csv, line 3: 3 cells where 4 columns are named"},
       {names + units + "hop,slow,0.5,0.2\n",
-       "made.csv:3: gait is \"hop\", must be one of step, walk, run, jump"},
+       "made.csv, line 3: gait is 'hop', must be one of step, walk, run, jump"},
       {names + units + "walk,,0.5,0.2\n", "the set has no name"},
-      {names + units + "walk,slow,fast,0.2\n", "speed_mps is \"fast\", which is not a number"},
-      {names + units + "walk,slow,0.5,nan\n", "step_width_m is \"nan\", which is not a number"},
+      {names + units + "walk,slow,fast,0.2\n", "speed_mps is 'fast', which is not a number"},
+      {names + units + "walk,slow,0.5,nan\n", "step_width_m is 'nan', which is not a number"},
       {names + units + "walk,slow,0.5,3\n", "walking.step_width_m is 3, allowed is 0 to 1"},
-      {names + units + "walk,a,1,0.2\nwalk,b,1,0.2\n", "made.csv:4: speed_mps is 1 after 1"},
+      {names + units + "walk,a,1,0.2\nwalk,b,1,0.2\n", "made.csv, line 4: speed_mps is 1 after 1"},
   };
   for (const auto& row : rows) {
     GainTable table;
