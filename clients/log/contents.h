@@ -39,7 +39,7 @@ struct Contents {
   std::uint64_t messages = 0;
   std::uint64_t start_ns = 0;
   std::uint64_t end_ns = 0;
-  /// Some device or input of a character was a stand-in; nothing when no message says.
+  /// Some device or input of a character was simulated; nothing when no message says.
   std::optional<bool> simulated;
   std::uint64_t gaps = 0;
   std::uint64_t missing_ticks = 0;
@@ -49,7 +49,7 @@ struct Contents {
 /// Reads a whole recording, cut ones as far as they go. InvalidData only when it is none at all.
 Result<Contents> ReadContents(const std::string& path);
 
-/// What to tell about a recording that is not complete; nothing when it is.
+/// What is wrong with a recording that is not complete; nothing when it is.
 std::optional<Error> Incomplete(const std::string& path, const mcap::WalkEnd& end);
 
 }  // namespace footing::log_client

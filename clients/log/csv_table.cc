@@ -52,7 +52,7 @@ void AppendEnum(const pb::EnumDescriptor& type, int number, std::string& out) {
   }
 }
 
-/// The value of a field that is no message; `index` counts in a list and is -1 elsewhere.
+/// The value of a field that is not a message; `index` counts in a list and is -1 elsewhere.
 void AppendValue(const pb::Message& message, const pb::FieldDescriptor& field, int index,
                  std::string& out) {
   const pb::Reflection& r = *message.GetReflection();

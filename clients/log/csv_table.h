@@ -25,7 +25,7 @@ class CsvTable {
  public:
   explicit CsvTable(const google::protobuf::Descriptor& type);
 
-  /// InvalidData when a list is so long that the table would have more than kMostColumns.
+  /// InvalidData when a list would give the table more than kMostColumns.
   Result<void> Learn(const google::protobuf::Message& message);
 
   /// Column names, separated by commas, without a line's end.

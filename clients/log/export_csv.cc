@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kWriteBytes = 1u << 20;
 
-/// The topic's name as a file's: what is no letter, digit or '-' becomes '_'.
+/// The topic's name as a file's: what is not a letter, a digit or '-' becomes '_'.
 std::string FileName(const std::string& topic) {
   std::string name;
   for (const char c : topic.substr(

@@ -123,7 +123,7 @@ class Recording {
     links_.push_back(std::move(link));
   }
 
-  /// Two servers of one id are told apart by a number behind it.
+  /// Two servers of one id differ by a number behind it.
   std::string NameOf(const std::string& id, const std::string& address) {
     for (int number = 1;; ++number) {
       const std::string name = number == 1 ? id : id + "_" + std::to_string(number);

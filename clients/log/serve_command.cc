@@ -21,7 +21,7 @@ struct ServeOptions {
   std::vector<std::string> addresses;
 };
 
-/// The server to stand in for: the one asked for, else footingd, else the only one.
+/// The server whose place is taken: the one asked for, else footingd, else the only one.
 Result<std::string> ChooseServer(const recording::RecordedSession& session,
                                  const std::string& wanted) {
   std::string names;

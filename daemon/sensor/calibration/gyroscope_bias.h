@@ -9,21 +9,21 @@ namespace footing::calibration {
 /// What a gyroscope reads at rest, estimated again whenever the device lies still.
 ///
 /// Still: for a whole window the specific force is near 1 g and the angular velocity hardly varies
-/// and is no larger than a bias can be. The window's mean is the bias then; otherwise the last one
+/// and is within what a bias can be. The window's mean is the bias then; otherwise the last one
 /// stays. A turn at a slow constant rate about the vertical looks the same; nobody's hand does
 /// that.
 class GyroscopeBias {
  public:
   static constexpr double kWindowS = 1;
   static constexpr int kMinSamples = 20;
-  static constexpr double kMaxGapS = 0.25;            ///< A longer one begins the window anew.
+  static constexpr double kMaxGapS = 0.25;            ///< A longer one restarts the window.
   static constexpr double kMaxForceErrorMps2 = 0.6;   ///< Of | |f| - g |, each sample.
   static constexpr double kMaxDeviationRadps = 0.02;  ///< Standard deviation of each axis.
   /// An uncalibrated MotionPlus is 300 counts off, 16 degrees/s in the slow range.
   static constexpr double kMaxBiasRadps = 0.6;
 
   /// One sample, both vectors in the same frame. Samples that are not finite or go back in time
-  /// begin the window anew.
+  /// restart the window.
   void Take(std::int64_t sampled_ns, const Eigen::Vector3d& specific_force_mps2,
             const Eigen::Vector3d& angular_velocity_radps);
 

@@ -47,7 +47,7 @@ int Count(MoveModel model, reports::Bytes blob, std::size_t at) {
   return model == MoveModel::kZcm1 ? raw - 0x8000 : static_cast<std::int16_t>(raw);
 }
 
-/// 1 when the stored one is no possible number (NaN among them).
+/// 1 when the stored one is impossible (NaN, for one).
 double BiasFactor(reports::Bytes blob, std::size_t axis) {
   const std::size_t at = kZcm1BiasFactorAt + 4 * axis;
   const std::uint32_t bits = blob[at] | blob[at + 1] << 8 | blob[at + 2] << 16 |

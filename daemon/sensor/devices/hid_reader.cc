@@ -74,7 +74,7 @@ void HidReader::WriteLast() {
   Write(last);
 }
 
-/// A write that fails is no end: the read says when the device is gone.
+/// A failed write does not end the device: the read shows when it is gone.
 void HidReader::Write(const std::vector<std::uint8_t>& report) {
   if (hid_write(device_.get(), report.data(), report.size()) < 0) ++writes_failed_;
   written_ns_ = clock::MonotonicNs();

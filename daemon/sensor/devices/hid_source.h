@@ -9,8 +9,8 @@
 namespace footing::devices {
 
 /// Real devices through hidapi's hidraw backend, as HidSearch finds them. A device that is gone and
-/// comes back attaches anew under its serial, also before the old node has ended. A device that may
-/// not be opened is said once, with the udev rule that helps.
+/// comes back attaches again under its serial, also before the old node has ended. A device that
+/// may not be opened is said once, with the udev rule that helps.
 class HidSource : public DeviceSource {
  public:
   HidSource(boost::asio::io_context& io, std::function<DeviceHandle()> new_handle,

@@ -68,7 +68,7 @@ class SocketSource::Implementation {
     output.set_slot(place->second.slot);
     output.set_channel(v1::DeviceOutput::CHANNEL_INTERRUPT);
     output.set_report(report.data(), report.size());
-    // A stand-in that does not read loses its outputs, as a device out of range does.
+    // A simulated device that does not read loses its outputs, as a device out of range does.
     connections_.at(place->second.connection).link->Send(envelope.SerializeAsString());
   }
 

@@ -9,9 +9,10 @@
 
 namespace footing::devices {
 
-/// The device socket: stand-ins dial it and speak DeviceEnvelopes, at most 1 KiB each, many devices
-/// a connection. A connection that says something senseless is closed with one line; no other
-/// connection notices. Hand and reference frames need no device; they are passed on unchecked.
+/// The device socket: device simulators dial it and speak DeviceEnvelopes, at most 1 KiB each, many
+/// devices a connection. A connection that says something senseless is closed with one line; no
+/// other connection notices. Hand and reference frames need no device; they are passed on
+/// unchecked.
 class SocketSource : public DeviceSource {
  public:
   static constexpr std::uint32_t kMaxEnvelopeBytes = 1024;

@@ -31,7 +31,7 @@ struct DeviceIdentity {
   std::uint32_t vendor = 0;
   std::uint32_t product = 0;
   std::string name;    ///< As the device gives it.
-  std::string serial;  ///< Bluetooth address; devices are told apart by it alone.
+  std::string serial;  ///< Bluetooth address; it alone identifies a device.
   std::string place;   ///< "/dev/hidraw3" or "device socket, slot 2".
   std::string driver;  ///< Of the kernel, "wiimote"; empty when unknown.
   bool simulated = false;
@@ -42,7 +42,7 @@ struct DeviceIdentity {
 struct IncomingReport {
   std::int64_t received_ns = 0;
   std::span<const std::uint8_t> bytes;  ///< Valid during the call.
-  std::int64_t true_ns = 0;             ///< A stand-in's own; for recordings only.
+  std::int64_t true_ns = 0;             ///< A simulated device's own; for recordings only.
   bool feature = false;                 ///< The answer to RequestFeature.
   std::uint64_t dropped = 0;            ///< Lost so far between the device's reader and here.
   std::uint64_t writes_failed = 0;      ///< So far.
@@ -53,7 +53,7 @@ struct SourceHandlers {
   std::function<void(DeviceHandle, const DeviceIdentity&)> on_attach;
   std::function<void(DeviceHandle, const IncomingReport&)> on_report;
   std::function<void(DeviceHandle, const std::string& reason)> on_detach;
-  /// What trackers and stand-ins say without a device, unchecked; null: nobody listens.
+  /// What trackers and simulators send without a device, unchecked; null: dropped.
   std::function<void(std::int64_t received_ns, const stream::HandFrame&)> on_hands = {};
   std::function<void(std::int64_t received_ns, const stream::ReferenceFrame&)> on_reference = {};
   std::function<void(std::int64_t received_ns, const stream::ContactFrame&)> on_contacts = {};

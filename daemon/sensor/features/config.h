@@ -66,7 +66,7 @@ struct PhaseConfig {
   /// of a cycle, which outlasts what a change of frequency fakes.
   double jump_rad = 1.5;
   double jump_persistence = 0.3;
-  /// The cycle's mean that moves by more than this share of the swing tells a twist of the wrist;
+  /// The cycle's mean that moves by more than this share of the swing shows a twist of the wrist;
   /// the swing across the way of the twist must hold this share of the whole to decide alone.
   double twist_share = 0.1;
   double least_across_share = 0.15;
@@ -94,7 +94,7 @@ struct Config {
   CycleConfig cycle;
   /// Inclination at rest is the mean over this time.
   double rest_window_s = 0.15;
-  /// A pause in the samples longer than this starts anew; shorter ones are bridged by a line.
+  /// A pause in the samples longer than this restarts; shorter ones are bridged by a line.
   double longest_pause_s = 0.25;
   /// A repeated report says nothing new about a moving hand, but after this long it says that the
   /// hand is still.

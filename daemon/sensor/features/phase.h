@@ -35,7 +35,7 @@ struct Phase {
   double lost_s = 0;           ///< How long nothing was found.
   bool jumping = false;        ///< A jump is seen that has not persisted yet;
   double candidate_rad = 0;    ///< it leads here,
-  double candidate_age_s = 0;  ///< and was seen for so long.
+  double candidate_age_s = 0;  ///< and has been seen for this time.
 };
 
 Phase Next(const Phase& before, const PhaseEstimate& estimate, double period_s, double elapsed_s,

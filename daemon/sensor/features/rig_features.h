@@ -26,7 +26,7 @@ class RigFeatureExtractor {
   RigFeatureExtractor(std::string rig, const std::vector<Member>& members,
                       const Config& config = {});
 
-  /// Takes the sample by its device; a device that is no member is ignored. Instants are
+  /// Takes the sample by its device; a device outside the rig is ignored. Instants are
   /// sampled_ns; both the raw and the filtered force must be filled in (m/s², frame S).
   void AddSample(const stream::MotionSample& sample);
 

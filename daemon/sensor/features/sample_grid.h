@@ -33,7 +33,7 @@ class SampleGrid {
 
   /// How many grid points there are, at most kGridLength.
   int size() const { return end_ - begin_; }
-  /// How often the grid has begun anew.
+  /// How often the grid was restarted.
   std::uint32_t beginnings() const { return beginnings_; }
   /// Instant of the newest sample taken; meaningless while empty.
   std::int64_t newest_ns() const { return last_ns_; }

@@ -7,8 +7,8 @@
 #include "common/stream/contacts.h"
 #include "common/stream/hands.h"
 
-/// Points of a body that trackers see, loads that insoles feel, and the true poses of stand-ins:
-/// what of them is taken.
+/// Points of a body that trackers see, loads that insoles feel, and the true poses of simulated
+/// bodies: what of them is taken.
 namespace footing::hands {
 
 inline constexpr std::size_t kMostPoints = 8;

@@ -7,7 +7,7 @@
 namespace footing::hands {
 
 /// Counts what is refused and says when a line for a person is due: at once, then at most one in
-/// ten seconds, which tells how many there were. A plain value; time is an argument.
+/// ten seconds, which says how many there were. A plain value; time is an argument.
 class Refusals {
  public:
   static constexpr std::int64_t kQuietNs = 10'000'000'000;

@@ -65,7 +65,7 @@ class ExtensionPort {
   void Publish(stream::Extension extension);
   std::uint64_t changes() const { return changes_; }
 
-  /// Its bytes made sense, or there were none to judge.
+  /// Its bytes made sense, or there were none to check.
   void TakeSense(std::int64_t now_ns) { sense_ns_ = now_ns; }
   bool Senseless(std::int64_t now_ns) const;
 

@@ -15,7 +15,7 @@ struct KeepAliveConfig {
   double silence_s = 0.2;        ///< Without data of the mode: the mode is set again.
   double reassert_min_s = 0.25;  ///< Between further tries; doubles up to max.
   double reassert_max_s = 2;
-  double ask_after_s = 5;  ///< Silent for so long: the status is asked for too.
+  double ask_after_s = 5;  ///< After this silence the status is asked for too.
 };
 
 /// Keeps a live device in its report mode: reports what arrived, says what to send. The kernel's

@@ -45,7 +45,7 @@ struct HandshakeConfig {
 /// plan's blocks instead. Once live it stays live: an extension that comes or goes starts again at
 /// "key" while data flow. One question is outstanding at a time. No answer is ever fatal: without
 /// calibration the device is live and says so. Reports that others caused (the kernel's driver
-/// talks to the same device) are tolerated. Whatever comes in, no more is sent than a bounded
+/// writes to the same device) are tolerated. Whatever comes in, no more is sent than a bounded
 /// number of reports a second.
 class HandshakeSequencer {
  public:

@@ -30,7 +30,7 @@ DeviceClock::DeviceClock(const DeviceClockConfig& config)
     : config_(config), ticks_(TicksOf(config)), period_s_(config.nominal_period_s) {}
 
 std::int64_t DeviceClock::Advance(std::int64_t received_ns, bool changed) {
-  // A clock that went back, which none should, starts all anew.
+  // A clock that went back, which none should, restarts everything.
   if (started_ && received_ns < received_ns_) *this = Restarted();
   AdvanceLoop(received_ns);
   ticks_.Add(received_ns, changed);

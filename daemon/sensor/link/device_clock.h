@@ -15,7 +15,7 @@ struct DeviceClockConfig {
   double late_gain = 0.05;
   double period_gain = 0.01;  ///< Share of each correction that the period takes on.
   double max_lag_s = 0.025;   ///< No sample is stamped further back than this.
-  double restart_s = 0.25;    ///< A longer pause starts anew.
+  double restart_s = 0.25;    ///< A longer pause restarts the estimate.
 };
 
 /// Estimates when a sample was taken from when its report arrived.
@@ -29,7 +29,7 @@ class DeviceClock {
  public:
   explicit DeviceClock(const DeviceClockConfig& config = {});
 
-  /// One report; returns its sampled_ns. `changed`: the sensor measured anew since the report
+  /// One report; returns its sampled_ns. `changed`: the sensor took a new sample since the report
   /// before.
   std::int64_t Advance(std::int64_t received_ns, bool changed = true);
   /// Of the sensor's samples, once its ticks are known; until then of the reports.

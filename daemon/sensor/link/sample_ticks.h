@@ -13,8 +13,8 @@ struct SampleTicksConfig {
   double search_s = 0.5;  ///< ... and until then.
   /// How far the sensor's period may be from its nominal value (1 = the same).
   double period_range = 0.05;
-  /// Without anything to fit to for so long, the ticks are no longer known: a period good to 10 ppm
-  /// then is 1 ms off.
+  /// Without anything to fit to for this time, the ticks are no longer known: a period good to 10
+  /// ppm then is 1 ms off.
   double coast_s = 100;
 };
 
@@ -24,7 +24,7 @@ struct SampleTicksConfig {
 /// held, whenever its turn comes. So a report that differs from the one before says that a tick
 /// lies between the two arrivals, and one that repeats it, that most likely none does (a device at
 /// rest repeats too; that is as likely at any phase, and so changes no choice). Intervals shorter
-/// than a period bound the ticks' phase, and many of them leave little room: each fit takes, of a
+/// than a period bound the ticks' phase, and many of them leave little choice: each fit takes, of a
 /// range of periods and all phases, the pair that the reports of the window speak for most. Devices
 /// that do not hold their samples speak for none, and get none.
 ///

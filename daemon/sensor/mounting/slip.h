@@ -10,17 +10,17 @@ namespace footing::mounting {
 
 struct SlipConfig {
   double rest_sd_mps2 = 0.5;  ///< Of a second; below it the sensor is at rest.
-  double rest_s = 3;          ///< So long at rest in the wrong direction.
+  double rest_s = 3;          ///< Time at rest in the wrong direction.
   double leg_rad = 0.436;     ///< 25 degrees: no standing shin leans so far.
   double head_rad = 0.873;    ///< 50 degrees: further than one looks down on a screen.
   double swing_mps2 = 1.0;    ///< Horizontal rms of a second that counts as walking.
   double ratio = 4;           ///< Variance along against across that shows a direction.
   double swing_rad = 0.698;   ///< 40 degrees between the swing and M's front.
-  double swing_s = 10;        ///< So long of walking, without a second that fits in between.
+  double swing_s = 10;        ///< Time of walking, without a second that fits in between.
 };
 
 /// Whether a mounted sensor has slipped on its limb, from samples in its frame M. A plain value;
-/// stays true until begun anew with a new mounting.
+/// stays true until restarted with a new mounting.
 ///
 /// What can be sensed, and what a posture can fake:
 /// - Legs, head: gravity at rest that departs from down. A shin is near the vertical while

@@ -63,7 +63,7 @@ std::optional<ClassicCounts> DecodeClassic(Bytes extension) {
   counts.right_y = Small(b[2] & 0x1f);
   counts.left_trigger = Small((b[2] >> 5 & 3) << 3 | b[3] >> 5);
   counts.right_trigger = Small(b[3] & 0x1f);
-  // 0 is pressed; bit 0 of byte 4 is no button.
+  // 0 is pressed; bit 0 of byte 4 is unused.
   counts.buttons = static_cast<std::uint16_t>((~b[4] & 0xfe) << 8 | (~b[5] & 0xff));
   return counts;
 }

@@ -101,8 +101,8 @@ InputReport Decode(Bytes report);
 /// Joins the halves that come in turn: 0x3e, then 0x3f.
 class Interleaver {
  public:
-  /// A report that is no half comes back as it is. A second half right after a first one gives the
-  /// pair: acceleration, 36 bytes of camera, id 0x3f, Half::kNone. Anything else gives nothing:
+  /// A report that is not a half comes back as it is. A second half right after a first one gives
+  /// the pair: acceleration, 36 bytes of camera, id 0x3f, Half::kNone. Anything else gives nothing:
   /// the first half, a half whose partner was lost, halves cut short.
   std::optional<Data> Take(const Data& data);
 

@@ -13,22 +13,22 @@
 
 namespace footing::sensor {
 
-/// Everything footingd can be told.
+/// All settings of footingd.
 struct Config {
   std::vector<std::string> listen;   ///< Empty: the default address of "sensor".
   std::vector<std::string> sources;  ///< Empty: hid, and stream: at the default of "devices".
-  /// Serial to "rig/role"; comes before what a stand-in wishes.
+  /// Serial to "rig/role"; overrides what a simulated device requests.
   std::map<std::string, std::string> roles;
   std::string default_rig = "main";
   double tick_rate_hz = 100;
-  double stale_after_s = 0.5;  ///< A live device without data for so long is stale.
+  double stale_after_s = 0.5;  ///< A live device without data for this time is stale.
   board::PlateConfig plate;
   double local_gravity_mps2 = kStandardGravityMps2;  ///< Where the boards stand.
   /// Empty: see setup::StatePath. "none": nothing is kept between runs.
   std::string state_directory;
   bool motion_plus = true;        ///< Look for MotionPlus and use it.
   bool camera = false;            ///< Switch the infrared cameras of Wiimotes on.
-  double status_interval_s = 60;  ///< Ask devices for their status so often; 0 never.
+  double status_interval_s = 60;  ///< Between requests for the status of devices; 0: never.
 
   void Bind(config::Binder& binder);
 };

@@ -48,7 +48,7 @@ Device* Hub::Numbered(std::uint32_t number) {
   return nullptr;
 }
 
-/// A new Device; null when all are attached and there is no room.
+/// A new Device; null when kMaxDevices are attached.
 Device* Hub::MakeRoom() {
   if (devices_.size() >= kMaxDevices) {
     const auto lost = std::find_if(devices_.begin(), devices_.end(),

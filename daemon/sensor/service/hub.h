@@ -45,7 +45,7 @@ class Hub {
     std::string message;
   };
 
-  /// Devices known at once, lost ones included; the longest lost makes room.
+  /// Devices known at once, lost ones included; the longest lost is dropped for a new one.
   static constexpr std::size_t kMaxDevices = 64;
 
   Hub(const Config& config, Ports ports);

@@ -1,4 +1,5 @@
-// Hands that trackers see, loads under feet that insoles feel, and the true poses of stand-ins.
+// Hands that trackers see, loads under feet that insoles feel, and the true poses of simulated
+// bodies.
 #include <utility>
 
 #include "daemon/sensor/hands/hands.h"

@@ -144,7 +144,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     const auto new_handle = [this] { return ++last_handle_; };
     if (!*address) {
       sources_.push_back(std::make_unique<devices::HidSource>(io_, new_handle, handlers));
-      // Without rights to any device stand-ins still work.
+      // Without rights to any device simulated ones still work.
       if (const auto started = sources_.back()->Start(); !started) {
         log::Warning(started.error().message);
       }

@@ -30,7 +30,7 @@ struct KalmanConfig {
   /// How fast the level may change when it is the only state, rms, in m/s³: (2π 2) 4.5 / √2.
   double level_change_mps3 = 40;
 
-  /// A longer pause than this starts anew from the next sample.
+  /// A longer pause than this restarts from the next sample.
   double longest_pause_s = 0.25;
 };
 
@@ -40,7 +40,7 @@ class KalmanFilter {
   explicit KalmanFilter(const KalmanConfig& config = {}) : config_(config) {}
 
   /// The filtered specific force at `sampled_ns`, in the frame and unit of the sample (m/s²). The
-  /// first sample, one after a pause and one from before the last pass through and start anew; one
+  /// first sample, one after a pause and one from before the last pass through and restart it; one
   /// at the same instant, or one that is not finite, changes nothing.
   Eigen::Vector3d Advance(std::int64_t sampled_ns, const Eigen::Vector3d& sample_mps2);
 

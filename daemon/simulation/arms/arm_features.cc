@@ -25,7 +25,7 @@ void ArmFeatures::Advance(const std::array<HandState, kArms>& hands, double step
       const Eigen::Vector3d mirror(1, -1, 1);
       turn = mirror.asDiagonal() * turn * mirror.asDiagonal();
       turning =
-          -MirroredWay(turning);  // A turn is no vector: its mirror image turns the other way.
+          -MirroredWay(turning);  // A turn is a pseudovector: its mirror image turns the other way.
       force = MirroredWay(force);
     }
     hand.turn = Eigen::Map<const Turn>(turn.data());

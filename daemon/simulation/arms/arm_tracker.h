@@ -8,7 +8,7 @@
 
 namespace footing::arms {
 
-/// Both arms from what the devices in the fists tell. A value that can be copied; no allocation
+/// Both arms from what the devices in the fists measure. A value that can be copied; no allocation
 /// after its making. Its past is that of the sensors, never its own estimates: it cannot run away.
 class ArmTracker {
  public:
@@ -16,12 +16,12 @@ class ArmTracker {
 
   /// A sample of one hand, `step_s` after its last.
   void Add(std::size_t arm, const HandReading& reading, double step_s);
-  /// A T-pose begins: the readings so far are no part of it. Nothing for hands that are aligned.
+  /// A T-pose begins: the readings so far do not count. Nothing for hands that are aligned.
   void BeginTPose();
   /// The T-pose is held and was for some seconds.
   void Align();
   /// A device was not heard for too long to know how it has turned. Its arm is invalid until the
-  /// next Align; the other one is told on without it.
+  /// next Align; the other one is estimated without it.
   void Lose(std::size_t arm);
   /// How the arms are held now, `step_s` after the last call. Invalid before Align.
   const std::array<ArmEstimate, kArms>& Advance(double step_s);

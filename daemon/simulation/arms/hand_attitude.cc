@@ -10,7 +10,7 @@ namespace footing::arms {
 namespace {
 
 constexpr double kMeanS = 4;       // Of the T-pose.
-constexpr double kLeastRestS = 1;  // Less of it tells nothing.
+constexpr double kLeastRestS = 1;  // Less of it shows nothing.
 constexpr double kGravityS = 1.5;  // Twice, one after the other: 3 s in all.
 constexpr double kFrozenS = 3;     // After a clipped reading.
 constexpr double kLeastForceMps2 = 1;

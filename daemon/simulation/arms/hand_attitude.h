@@ -30,7 +30,7 @@ class HandAttitude {
  public:
   /// Non-finite readings are left out.
   void Advance(const HandReading& reading, double step_s);
-  /// A T-pose begins: the readings so far are no part of it. Nothing once aligned.
+  /// A T-pose begins: the readings so far do not count. Nothing once aligned.
   void BeginTPose();
   /// The T-pose is held and was for some seconds: the mean turn is the gyroscope's bias, the mean
   /// force is up, and S's x points forward. Without a second of readings the state stays

@@ -5,7 +5,7 @@
 namespace footing::biped {
 namespace {
 
-/// Axes of the three hinges in the world: each one is carried by those before it.
+/// Axes of the three hinges in the world: each one turns with those before it.
 Eigen::Matrix3d HingeAxes(const Eigen::Matrix3d& R_WB, double yaw_rad, double roll_rad) {
   const Eigen::Matrix3d R_WY = R_WB * Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ());
   const double c = std::cos(roll_rad), s = std::sin(roll_rad);

@@ -20,8 +20,8 @@ struct Failure {
   const char* why = nullptr;
 };
 
-/// Judges a state. What touches or drops beside the ribbon is the curve's failure, with a foot in a
-/// pit the jump's, whatever else is wrong besides.
+/// Classifies a state. What touches or drops beside the ribbon is the curve's failure, with a foot
+/// in a pit the jump's, whatever else is wrong besides.
 Failure JudgeFailure(const stream::Track& track, const biped::BodyState& body,
                      const physics::Observation& seen);
 

@@ -9,9 +9,9 @@
 namespace footing::engine_files {
 
 struct Wish {
-  std::string track = "straight";  ///< Name of a carried track, or a path.
-  std::string data_folder = "";  ///< Where the carried files are; empty: where FindDataFile looks.
-  /// Gain tables to read after the carried ones; a later one replaces what an earlier one had for
+  std::string track = "straight";  ///< Name of a built-in track, or a path.
+  std::string data_folder = "";  ///< Where the built-in files are; empty: where FindDataFile looks.
+  /// Gain tables to read after the built-in ones; a later one replaces what an earlier one had for
   /// its gaits.
   std::vector<std::string> more_gains = {};
 };

@@ -12,7 +12,7 @@ constexpr double kLeastCopN = 20;
 constexpr double kFootCopShare = 0.04;  // Of the weight, for a foot's own COP.
 constexpr double kAwayS = 1.0;          // Longer than any jump.
 constexpr double kAwayShare = 0.3;      // Of the weight: nobody stands on the cells.
-constexpr double kMostSpread = 1.0;     // m, m/s: what is unknown is told as such.
+constexpr double kMostSpread = 1.0;     // m, m/s: more than this is unknown.
 
 }  // namespace
 

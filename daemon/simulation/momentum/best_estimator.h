@@ -23,7 +23,7 @@ struct BestConfig {
   HorizontalPrior lateral = LateralPrior();
   FootContactConfig contact;
   FootPlaceConfig place;
-  double lag_s = 0;               ///< 0 to 0.2: positions of C are told so much later, and better.
+  double lag_s = 0;               ///< 0 to 0.2: positions of C come this much later, and better.
   double angular_memory_s = 1.0;  ///< The angular momentum leaks away in this time.
 };
 
@@ -36,14 +36,14 @@ class BestEstimator {
 
   /// One frame, `step_s` after the one before. A source that is not valid, or values that are not
   /// finite, make the frame a gap: the estimate coasts, its covariance grows, and after a second
-  /// it begins anew when loads come again (`resets`).
+  /// it restarts when loads come again (`resets`).
   const Estimate& Advance(const ContactLoads& loads);
   /// Where C is by hands and feet alone, in the frame of the last Advance: its place along the
-  /// lateral axis is estimated anew. What is not finite, or comes in a gap, is passed over.
+  /// lateral axis is estimated again. What is not finite, or comes in a gap, is passed over.
   const Estimate& SeePosture(const Eigen::Vector3d& p_WC_m);
   const Estimate& estimate() const { return estimate_; }
   const VerticalBank& vertical() const { return vertical_; }
-  /// Weighed in the T-pose, and anew where what came after contradicts that.
+  /// Weighed in the T-pose, and again where what came after contradicts that.
   double mass_kg() const { return vertical_.mass_kg(); }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace footing::momentum {
 
-/// What a T-pose on the cells tells (section 6): weight, and where each foot stands.
+/// What a T-pose on the cells shows (section 6): weight, and where each foot stands.
 struct TPose {
   double mass_kg = 0;
   std::array<double, kFeet> load_n{};
@@ -19,7 +19,7 @@ struct TPose {
   double cell_noise_n = 0;  ///< Standard deviation of one cell from frame to frame.
 };
 
-/// Five seconds of standing still. Begins anew, and counts it, when the body moves, a foot has too
+/// Five seconds of standing still. Restarts, and counts it, when the body moves, a foot has too
 /// little load or a source is lost. A plain value.
 class TPoseCalibration {
  public:

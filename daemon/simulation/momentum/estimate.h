@@ -56,7 +56,7 @@ struct Estimate {
   Eigen::Vector3d angular_momentum_rate_nm = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum_variance = Eigen::Vector3d::Zero();
   std::array<FootEstimate, kFeet> feet{};
-  std::uint32_t resets = 0;  ///< How often the filters began anew.
+  std::uint32_t resets = 0;  ///< How often the filters were reset.
 };
 
 /// Heel and toe of a foot whose reference point is there.

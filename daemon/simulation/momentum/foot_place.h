@@ -24,7 +24,7 @@ struct FootPlaceConfig {
 
 /// Best mode's place of one foot: for each of its two axes a filter of the place and of the COP's
 /// wandering. The COP is never outside the sole, so all that it has been since the foot came down
-/// bounds the place from both sides: what is told is the filter's density between these bounds. A
+/// bounds the place from both sides: the estimate is the filter's density between these bounds. A
 /// plain value.
 class FootPlace {
  public:

@@ -29,7 +29,8 @@ struct HorizontalPrior {
   double moment_time_s = 0.1;      ///< Correlation time of e.
   double cop_noise_m = 0.002;      ///< White, at full weight; grows with the inverse of the load.
   PostureError posture;
-  /// The told deviation of c is so many times the filter's, whose parts reach further than c does.
+  /// Factor of the reported deviation of c over the filter's, whose parts reach further than c
+  /// does.
   double told_spread = 1;
 };
 

@@ -12,7 +12,7 @@ struct PaperFootConfig {
   double static_mps = 0.05;   ///< COP slower than this for static_after_s is near-static.
   double static_after_s = 0.1;
   double lift_m = 0.15;    ///< Heel and toe rise by so much while the foot is off.
-  double landing_s = 0.5;  ///< Interpolation to the new place, which the COP tells as it settles.
+  double landing_s = 0.5;  ///< Interpolation to the new place, which the COP shows as it settles.
 };
 
 /// Place of one foot by the paper's rule (section 4.4): it stays where it is until the pressure has

@@ -4,7 +4,7 @@
 
 namespace footing::momentum {
 
-/// When the paper's rule takes velocity or momentum away: the rate has been near zero for so long.
+/// When the paper's rule takes velocity or momentum away: the rate has been near zero for a while.
 struct DecayRule {
   bool enabled = true;      ///< Off: the ablation that shows what one outlier does.
   double near_zero = 0.35;  ///< Limit of the rate's size: m/s² or N m.

@@ -15,7 +15,7 @@ constexpr double kTrustAbove = 2;
 constexpr double kDoubtBelow = -4;
 constexpr double kAdoptEveryS = 5;
 // Parts of the weight: by which the T-pose's is wrong before it is doubted at all, and to which the
-// weight must be known to be told to the others.
+// weight must be known to be given to the others.
 constexpr double kLeastOverweight = 0.005, kSettledSpread = 0.001;
 constexpr double kSureSpreads = 4;  // Of what both know of it.
 

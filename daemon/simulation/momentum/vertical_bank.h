@@ -16,8 +16,8 @@ VerticalConfig UnweighedVertical(double arms_hang_m, double cell_noise_n, double
 /// Two filters of the height side by side, one that trusts the cells and one that doubts them. The
 /// one that foresaw the last minute's events better speaks; a trusting filter that lost its way is
 /// set right by the doubtful one. A third one takes nothing for granted of the weight: when it is
-/// sure that the T-pose's is wrong, it speaks until the weight is settled, then tells the others. A
-/// plain value.
+/// sure that the T-pose's is wrong, it speaks until the weight is settled, then gives it to the
+/// others. A plain value.
 class VerticalBank {
  public:
   VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n);

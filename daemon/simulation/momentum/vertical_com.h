@@ -17,7 +17,7 @@ struct VerticalConfig {
   double slow_force_time_s = 5;  ///< Its correlation time.
   double mass_error_kg = 0.05;   ///< Of the calibration.
   double weight_spread = 0;      ///< Of what all cells are wrong by alike, beside their own gains.
-  /// Still is who keeps the acceleration that the loads tell, whatever it is; else who has none.
+  /// Still is who keeps the acceleration that the loads show, whatever it is; else who has none.
   bool still_at_any_weight = false;
   // Zero-velocity events.
   double still_acceleration_mps2 = 0.12;  ///< Limit of the smoothed |acceleration|.
@@ -67,13 +67,13 @@ class VerticalCom {
   Filter::Scalar Velocity() const { return filter_.Of(Filter::Row::Unit(1)); }
   double acceleration_mps2() const { return acceleration_mps2_; }  ///< Corrected, of this frame.
   bool still() const { return still_s_ >= kStillAfterS; }
-  /// What the cells tell too much beside the mass, as a part of the weight, with the T-pose's
+  /// What the cells measure too much beside the mass, as a part of the weight, with the T-pose's
   /// loads.
   Filter::Scalar Overweight() const { return filter_.Of(overweight_); }
-  /// Takes what they tell too much into the mass.
+  /// Takes what they measure too much into the mass.
   void Reweigh();
   double mass_kg() const { return mass_kg_; }  ///< By which the loads are divided.
-  double weighed_kg() const;                   ///< The same with what they tell too much.
+  double weighed_kg() const;                   ///< The same with what they measure too much.
 
   /// How well the last minute's events were foreseen: the sum of the log densities of what was
   /// found at them, older ones forgotten.
@@ -106,7 +106,7 @@ class VerticalCom {
   VerticalInput last_;
   double last_raw_mps2_ = 0;
   double acceleration_mps2_ = 0;
-  double level_mps2_ = 0;              // What the loads tell, slowly smoothed.
+  double level_mps2_ = 0;              // What the loads show, slowly smoothed.
   double mean_acceleration_mps2_ = 0;  // Smoothed, absolute.
   Eigen::Vector2d mean_cop_m_ = Eigen::Vector2d::Zero();
   double cop_speed_mps_ = 0;

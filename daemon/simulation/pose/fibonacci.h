@@ -34,7 +34,7 @@ class FibonacciSearch {
   FibonacciSearch(const body::Body& body, const PoseBasis& basis, const FibonacciOptions& options);
 
   void Solve(const PoseTargets& targets);
-  /// The next frame begins anew.
+  /// The next frame starts at the mean.
   void Reset() { started_ = false; }
 
   const Eigen::VectorXd& q() const { return q_; }

@@ -10,18 +10,18 @@
 
 namespace footing::pose_service {
 
-/// How both arms are held by what the Wiimotes in the fists tell (docs/hands.md), on the io thread:
-/// the same arms::ArmTracker that footing-eval runs. A Wiimote is held so that it points forward
-/// with its buttons up in the T-pose.
+/// How both arms are held by what the Wiimotes in the fists measure (docs/hands.md), on the io
+/// thread: the same arms::ArmTracker that footing-eval runs. A Wiimote is held so that it points
+/// forward with its buttons up in the T-pose.
 ///
 /// The gyroscope's own bias of the T-pose is taken off, not what footingd holds for it: a hand that
 /// turns slowly and evenly looks like one at rest to footingd. A Wiimote that is not heard for
-/// longer than kTimeoutS may have turned anywhere: it tells nothing until the next T-pose.
+/// longer than kTimeoutS may have turned anywhere: it counts for nothing until the next T-pose.
 class PoseArms {
  public:
   static constexpr double kTimeoutS = 0.2;
 
-  /// Without a model nothing is told.
+  /// Without a model there is no estimate.
   explicit PoseArms(std::optional<arms::ArmModel> model);
 
   /// Whether the rig has a Wiimote in that hand, and which device it is.

@@ -8,9 +8,9 @@
 
 namespace footing::pose_service {
 
-/// What a person should be told once, from one frame to the next: boards or insoles lost and back
+/// What a person should learn once, from one frame to the next: boards or insoles lost and back
 /// and which of them is followed, Wiimotes lost and back, a T-pose asked for and taken, the next
-/// subject, filters that began anew.
+/// subject, filters that were reset.
 class PoseEvents {
  public:
   v1::Events Between(const PoseFrame& frame, const Subject& subject, std::int64_t now_ns);

@@ -14,7 +14,7 @@ namespace footing::pose_service {
 /// What the pose follows.
 enum class PoseSource { kBoards, kInsoles };
 
-/// Why a Wiimote that is there does not tell how its arm is held.
+/// Why a Wiimote that is there does not measure how its arm is held.
 enum class HandTrouble {
   kNone,
   kNoModel,      ///< No arm.fmodel.
@@ -23,16 +23,16 @@ enum class HandTrouble {
   kAwaitsTPose,  ///< It was not heard for a while: how it has turned is not known.
 };
 
-/// What the pose engine is told, with where it came from. Fixed size.
+/// Inputs of the pose engine, with where they came from. Fixed size.
 struct PoseInputs {
   reconstruction::Inputs sensors;  ///< Its time is set by the engine's own steps.
   /// Of the boards: what `sensors` has is their newest samples. Where both are valid, these count.
   std::array<board::BoardImpulse, momentum::kFeet> impulses;
-  /// Cells in the shoes, where there are any. While one of them tells anything, they are followed
+  /// Cells in the shoes, where there are any. While one of them sends anything, they are followed
   /// instead of the boards.
   std::array<reconstruction::InsoleFoot, momentum::kFeet> insoles;
   std::array<HandTrouble, reconstruction::kHands> hand_trouble{};  ///< For people only.
-  bool simulated = false;  ///< A stand-in is behind any of it.
+  bool simulated = false;  ///< A simulated device is behind any of it.
   std::uint64_t sensor_epoch = 0;
   std::uint64_t sensor_sequence = 0;
   std::uint64_t calibrate_number = 0;  ///< T-poses asked for so far.

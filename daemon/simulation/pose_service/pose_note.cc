@@ -13,7 +13,7 @@ namespace {
 using momentum::TPoseCalibration;
 using text::Fixed;
 
-/// A foot that stepped off is told after so long: steps and kicks are none of our business.
+/// A foot that stepped off is noted after this time: steps and kicks are not.
 constexpr double kAwayS = 0.5;
 constexpr std::array<const char*, 2> kSides{"left", "right"};
 
@@ -82,7 +82,7 @@ void AddFeet(const PoseFrame& frame, std::string& note) {
   }
 }
 
-/// Which hands nothing tells of, and why.
+/// Which hands have no measurement, and why.
 void AddHands(const PoseFrame& frame, std::string& note) {
   const auto told = [&](std::size_t side) {
     return frame.input.hands_valid[side] || frame.input.arms_valid[side];

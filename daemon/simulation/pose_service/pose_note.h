@@ -11,7 +11,7 @@ namespace footing::pose_service {
 /// board needs its tare.
 inline constexpr double kMassTolerance = 0.03;
 
-/// Why nothing tells of the hand of that side ("left").
+/// Why there is no measurement of the hand of that side ("left").
 std::string HandWords(HandTrouble trouble, const std::string& side);
 
 /// What is wrong and what to do about it, for a person; empty when all is well.

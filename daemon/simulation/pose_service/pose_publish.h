@@ -11,7 +11,7 @@
 namespace footing::pose_service {
 
 /// From a frame of the pose engine to the message of the protocol. `mode` is "best" or "paper",
-/// `tracker` the name of who tells of hands' places.
+/// `tracker` the name of who tracks the hands.
 v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subject,
                                     const std::string& mode, const std::string& world,
                                     const std::string& rig, const std::string& tracker = "");

@@ -69,7 +69,7 @@ void PoseRun::ApplyRequests(const PoseInputs& inputs) {
   std::unique_ptr<SubjectRun> next;
   while (subject_->number != inputs.subject_number && subjects_->next.Pop(next)) {
     subject_.swap(next);
-    subjects_->done.Push(std::move(next));  // Room for all that are on their way.
+    subjects_->done.Push(std::move(next));  // It has space for all that are on their way.
     calibrate_number_ = inputs.calibrate_number;
   }
   if (inputs.calibrate_number == calibrate_number_) return;

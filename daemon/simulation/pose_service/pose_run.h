@@ -46,7 +46,7 @@ struct SubjectExchange {
 ///
 /// Boards and insoles have a reconstruction each. That of the source which is followed is advanced;
 /// the other one rests, but takes its T-pose along as long as it has none. Insoles that fall silent
-/// are followed on, unless boards tell something: the pose coasts.
+/// are followed on, unless boards measure something: the pose coasts.
 ///
 /// No T-pose is taken while a tracked hand is elsewhere than it has it: with hanging arms, every
 /// pose after it would be wrong.
@@ -57,7 +57,7 @@ class PoseRun {
   using Inputs = PoseInputs;
   using Frame = PoseFrame;
 
-  /// Without new inputs for so long, all that they said has become unknown.
+  /// Without new inputs for this time, all that they said has become unknown.
   static constexpr double kStreamLostS = 0.25;
 
   PoseRun(std::unique_ptr<SubjectRun> subject, double rate_hz, SubjectExchange& subjects);

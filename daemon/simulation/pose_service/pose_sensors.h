@@ -14,7 +14,7 @@
 
 namespace footing::pose_service {
 
-/// Turns ticks of the sensor daemon into what the pose engine is told, on the io thread: the newest
+/// Turns ticks of the sensor daemon into inputs of the pose engine, on the io thread: the newest
 /// raw sample of the rig's left and right board with its cells' places in W and what they have felt
 /// so far, of its insoles, and of
 /// its hands as they have gone on since the tracker saw them, and how its arms are held by the
@@ -28,8 +28,8 @@ class PoseSensors {
   static constexpr double kHandTimeoutS = 0.15;
   static constexpr double kInsoleTimeoutS = 0.2;
 
-  /// `rig` empty: the first rig with a board or an insole. Without an arm model Wiimotes tell
-  /// nothing.
+  /// `rig` empty: the first rig with a board or an insole. Without an arm model Wiimotes are
+  /// not used.
   PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
               std::optional<arms::ArmModel> arm = std::nullopt);
 
@@ -43,7 +43,7 @@ class PoseSensors {
 
   const std::string& rig() const { return followed_rig_; }
   const PoseInputs& inputs() const { return inputs_; }
-  /// Name of who told of a hand last; empty: it has none.
+  /// Name of who tracked a hand last; empty: it has none.
   const std::string& tracker() const { return tracker_; }
 
  private:

@@ -18,7 +18,7 @@ TPoseHands TPoseHandsOf(const body::Body& body);
 
 /// Which tracked hands, left and right, cannot be those of a T-pose: more than 18 % of its height
 /// above or below, or both together less than 70 % of its span apart. The margins allow for a
-/// subject whose height is not known. A hand that is not tracked, or only to 10 cm, is not judged.
+/// subject whose height is not known. A hand that is not tracked, or only to 10 cm, is not checked.
 std::array<bool, reconstruction::kHands> HandsOffTPose(
     const TPoseHands& expected,
     const std::array<reconstruction::HandInput, reconstruction::kHands>& hands);

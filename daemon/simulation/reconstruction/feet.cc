@@ -72,7 +72,7 @@ void AddFootTargets(const FootGeometry& geometry, const momentum::FootEstimate& 
   const Eigen::Vector3d place =
       foot.p_WF_m +
       geometry.R_WF * Eigen::Vector3d(spread.ahead + off * spread.forward, 0, off * spread.lift);
-  // W's axes stand in for the foot's: a foot points ahead, more or less.
+  // W's axes serve as the foot's: a foot points ahead, more or less.
   const auto sd = [&](double up_m) {
     const Eigen::Array3d own(spread.along, spread.across, up_m);
     const Eigen::Array3d air(spread.air_level, spread.air_level, spread.air_up);

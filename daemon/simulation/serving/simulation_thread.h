@@ -54,7 +54,7 @@ class SimulationThread {
 
  private:
   static constexpr std::size_t kFrameQueue = 64;
-  /// Behind by more than this, the thread gives up catching up and starts anew from the present.
+  /// Behind by more than this, the thread gives up catching up and restarts from the present.
   static constexpr std::int64_t kGiveUpNs = 100'000'000;
 
   void RunOnSimThread() {

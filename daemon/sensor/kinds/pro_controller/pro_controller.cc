@@ -29,7 +29,7 @@ std::optional<Counts> DecodeCounts(reports::Bytes extension) {
   for (std::size_t axis = 0; axis < counts.sticks.size(); ++axis) {
     counts.sticks[axis] = static_cast<std::uint16_t>((b[2 * axis + 1] & 0x0f) << 8 | b[2 * axis]);
   }
-  // 0 is pressed; bit 0 of byte 8 is no button.
+  // 0 is pressed; bit 0 of byte 8 is unused.
   counts.buttons = static_cast<std::uint16_t>((~b[8] & 0xfe) << 8 | (~b[9] & 0xff));
   counts.left_stick = (b[10] & 0x02) == 0;
   counts.right_stick = (b[10] & 0x01) == 0;

@@ -24,9 +24,9 @@ struct Counts {
   std::uint8_t battery = 0;  ///< 0 empty to 4 full.
 };
 
-/// From the extension bytes of report 0x34, as the kernel's hid-wiimote has them (WiiUBrew's talk
-/// page gives the sticks' axes in another order): eight of the sticks, low byte first, then three
-/// of buttons. None when fewer than these eleven, or all FF (it does not answer).
+/// From the extension bytes of report 0x34, as the kernel's hid-wiimote has them (WiiUBrew's
+/// discussion page gives the sticks' axes in another order): eight of the sticks, low byte first,
+/// then three of buttons. None when fewer than these eleven, or all FF (it does not answer).
 std::optional<Counts> DecodeCounts(reports::Bytes extension);
 
 /// Its data reports. A plain value.

@@ -14,7 +14,7 @@ class Decoder {
  public:
   explicit Decoder(reports::MoveModel model) : model_(model) {}
 
-  /// None when it is no input report of this model.
+  /// None when it is not an input report of this model.
   std::optional<decode::Decoded> Take(const calibration::MoveCalibration& calibration,
                                       reports::Bytes report);
 
