@@ -40,7 +40,7 @@ bool IsPath(const std::string& motion) {
 
 Result<choreography::Script> ReadChoreography(const std::string& motion) {
   if (!IsPath(motion)) {
-    auto script = choreography::Carried(motion);
+    auto script = choreography::BuiltInScript(motion);
     if (script) return script;
     return UsageError("--motion: " + script.error().message +
                       " (or the path of a .json, .bvh, .amc, .trc or .c3d file)");

@@ -88,7 +88,7 @@ Telling TellKinectHands(std::shared_ptr<const Stage> stage, std::uint64_t seed) 
     stream::HandFrame frame = Fists(*stage, "kinect", KinectErrors::SdM(), t_s);
     errors.Expose();
     for (stream::TrackedPoint& point : frame.points)
-      point.position_m = errors.Told(point.position_m);
+      point.position_m = errors.Measure(point.position_m);
     return frame;
   };
   return telling;

@@ -80,30 +80,30 @@ MomentumRate ComputeMomentumRate(const Body& body, const Kinematics& at,
 }
 
 Eigen::Vector3d ComputeCentroidalMatrix(const Body& body, const Kinematics& at,
-                                        CompositeMasses& room, CentroidalMatrix& out) {
+                                        CompositeMasses& workspace, CentroidalMatrix& out) {
   const Skeleton& skeleton = body.skeleton;
   FOOTING_CHECK(out.cols() == skeleton.dof);
   const Eigen::Vector3d centre = CentreOfMass(body, at);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const JointMass& mass = body.masses[i];
-    room.mass_kg[i] = mass.mass_kg;
+    workspace.mass_kg[i] = mass.mass_kg;
     if (!(mass.mass_kg > 0)) {
-      room.first_W[i].setZero();
-      room.inertia_W[i].setZero();
+      workspace.first_W[i].setZero();
+      workspace.inertia_W[i].setZero();
       continue;
     }
     const Eigen::Vector3d d = CentreOf(mass, at, i) - centre;
-    room.first_W[i] = mass.mass_kg * d;
+    workspace.first_W[i] = mass.mass_kg * d;
     const Eigen::Matrix3d half = at.R_WJ[i] * mass.inertia_J;
-    room.inertia_W[i].noalias() = half * at.R_WJ[i].transpose();
-    room.inertia_W[i] -= mass.mass_kg * d * d.transpose();
-    room.inertia_W[i].diagonal().array() += mass.mass_kg * d.squaredNorm();
+    workspace.inertia_W[i].noalias() = half * at.R_WJ[i].transpose();
+    workspace.inertia_W[i] -= mass.mass_kg * d * d.transpose();
+    workspace.inertia_W[i].diagonal().array() += mass.mass_kg * d.squaredNorm();
   }
   for (std::size_t i = skeleton.joints.size() - 1; i > 0; --i) {
     const auto parent = static_cast<std::size_t>(skeleton.joints[i].parent);
-    room.mass_kg[parent] += room.mass_kg[i];
-    room.first_W[parent] += room.first_W[i];
-    room.inertia_W[parent] += room.inertia_W[i];
+    workspace.mass_kg[parent] += workspace.mass_kg[i];
+    workspace.first_W[parent] += workspace.first_W[i];
+    workspace.inertia_W[parent] += workspace.inertia_W[i];
   }
   out.leftCols<3>().setZero();
   out.topLeftCorner<3, 3>().diagonal().setConstant(body.mass_kg);
@@ -113,39 +113,41 @@ Eigen::Vector3d ComputeCentroidalMatrix(const Body& body, const Kinematics& at,
     const int end = joint.first_dof + static_cast<int>(joint.rotations.size());
     for (int dof = joint.first_dof; dof < end; ++dof) {
       const Eigen::Vector3d& axis = at.axis_W[static_cast<std::size_t>(dof)];
-      out.col(dof).head<3>() = axis.cross(room.first_W[i] + room.mass_kg[i] * arm);
-      out.col(dof).tail<3>() = room.inertia_W[i] * axis + room.first_W[i].cross(axis.cross(arm));
+      out.col(dof).head<3>() = axis.cross(workspace.first_W[i] + workspace.mass_kg[i] * arm);
+      out.col(dof).tail<3>() =
+          workspace.inertia_W[i] * axis + workspace.first_W[i].cross(axis.cross(arm));
     }
   }
   return centre;
 }
 
-Eigen::Vector3d ComJacobian(const Body& body, const Kinematics& at, CompositeMasses& room,
+Eigen::Vector3d ComJacobian(const Body& body, const Kinematics& at, CompositeMasses& workspace,
                             JacobianRef out) {
   const Skeleton& skeleton = body.skeleton;
   FOOTING_CHECK(out.cols() == skeleton.dof);
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const JointMass& mass = body.masses[i];
-    room.mass_kg[i] = mass.mass_kg;
-    room.first_W[i].setZero();  // From the root, as far as this function goes.
-    if (mass.mass_kg > 0) room.first_W[i] = mass.mass_kg * (CentreOf(mass, at, i) - at.p_WJ[0]);
+    workspace.mass_kg[i] = mass.mass_kg;
+    workspace.first_W[i].setZero();  // From the root, as far as this function goes.
+    if (mass.mass_kg > 0)
+      workspace.first_W[i] = mass.mass_kg * (CentreOf(mass, at, i) - at.p_WJ[0]);
   }
   for (std::size_t i = skeleton.joints.size() - 1; i > 0; --i) {
     const auto parent = static_cast<std::size_t>(skeleton.joints[i].parent);
-    room.mass_kg[parent] += room.mass_kg[i];
-    room.first_W[parent] += room.first_W[i];
+    workspace.mass_kg[parent] += workspace.mass_kg[i];
+    workspace.first_W[parent] += workspace.first_W[i];
   }
   out.leftCols<3>().setIdentity();
   for (std::size_t i = 0; i < skeleton.joints.size(); ++i) {
     const Joint& joint = skeleton.joints[i];
     const Eigen::Vector3d moment =
-        (room.first_W[i] - room.mass_kg[i] * (at.p_WJ[i] - at.p_WJ[0])) / body.mass_kg;
+        (workspace.first_W[i] - workspace.mass_kg[i] * (at.p_WJ[i] - at.p_WJ[0])) / body.mass_kg;
     const int end = joint.first_dof + static_cast<int>(joint.rotations.size());
     for (int dof = joint.first_dof; dof < end; ++dof) {
       out.col(dof) = at.axis_W[static_cast<std::size_t>(dof)].cross(moment);
     }
   }
-  return at.p_WJ[0] + room.first_W[0] / body.mass_kg;
+  return at.p_WJ[0] + workspace.first_W[0] / body.mass_kg;
 }
 
 }  // namespace footing::body

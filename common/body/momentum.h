@@ -45,10 +45,10 @@ MomentumRate ComputeMomentumRate(const Body& body, const Kinematics& at,
 /// Goswami and Lee 2013, "Centroidal dynamics of a humanoid robot"). `out` has dof columns. Returns
 /// C.
 Eigen::Vector3d ComputeCentroidalMatrix(const Body& body, const Kinematics& at,
-                                        CompositeMasses& room, CentroidalMatrix& out);
+                                        CompositeMasses& workspace, CentroidalMatrix& out);
 
 /// d p_WC / dq: the linear rows of A over the mass.
-Eigen::Vector3d ComJacobian(const Body& body, const Kinematics& at, CompositeMasses& room,
+Eigen::Vector3d ComJacobian(const Body& body, const Kinematics& at, CompositeMasses& workspace,
                             JacobianRef out);
 
 }  // namespace footing::body

@@ -55,7 +55,7 @@ std::string_view TakeWord(std::string_view& line) {
   return word;
 }
 
-std::vector<std::string_view> Words(std::string_view line) {
+std::vector<std::string_view> SplitAtBlanks(std::string_view line) {
   std::vector<std::string_view> words;
   for (auto word = TakeWord(line); !word.empty(); word = TakeWord(line)) words.push_back(word);
   return words;

@@ -38,7 +38,7 @@ class Lines {
 std::string_view Trim(std::string_view text);
 
 /// Words between blanks; fields between separators, trimmed, empty ones included.
-std::vector<std::string_view> Words(std::string_view line);
+std::vector<std::string_view> SplitAtBlanks(std::string_view line);
 std::vector<std::string_view> Fields(std::string_view line, char separator);
 
 /// Takes the next word off the front of `line`; empty at its end.

@@ -12,11 +12,11 @@ Decimator::Decimator(double max_hz, std::int64_t tick_ns)
 
 bool Decimator::Take(std::int64_t host_ns) {
   if (interval_ns_ == 0) return true;
-  const bool anew = last_ns_ == INT64_MIN || host_ns < last_ns_;
+  const bool restarted = last_ns_ == INT64_MIN || host_ns < last_ns_;
   last_ns_ = host_ns;
-  if (!anew && host_ns < due_ns_ - slack_ns_) return false;
+  if (!restarted && host_ns < due_ns_ - slack_ns_) return false;
   const std::int64_t earliest = host_ns + interval_ns_ - slack_ns_;
-  due_ns_ = anew ? host_ns + interval_ns_ : std::max(due_ns_ + interval_ns_, earliest);
+  due_ns_ = restarted ? host_ns + interval_ns_ : std::max(due_ns_ + interval_ns_, earliest);
   return true;
 }
 

@@ -20,7 +20,7 @@ constexpr std::size_t kReadBytes = 16 << 10;
 constexpr int kBatchesInARow = 8;
 
 std::string CloseReason(const error_code& error, bool inside_frame) {
-  if (error != asio::error::eof) return "the connection broke: " + Words(error);
+  if (error != asio::error::eof) return "the connection broke: " + MessageOf(error);
   return inside_frame ? "the other side closed in the middle of a message"
                       : "the other side closed the connection";
 }

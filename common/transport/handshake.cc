@@ -62,8 +62,8 @@ v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message) {
   return refused;
 }
 
-std::variant<v1::Role, v1::Refused> Judge(const v1::Hello& hello, v1::Role highest,
-                                          const std::string& server_id) {
+std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role highest,
+                                                const std::string& server_id) {
   if (hello.protocol_major() != kProtocolMajor) {
     const bool client_older = hello.protocol_major() < kProtocolMajor;
     return Refuse(v1::Refused::REASON_PROTOCOL_VERSION,

@@ -30,7 +30,7 @@ Error ListenError(const Address& address, const error_code& error) {
     return Failure(address.Text() +
                    " is in use by another program; stop that one or choose another port");
   }
-  return Failure("cannot listen on " + address.Text() + ": " + Words(error));
+  return Failure("cannot listen on " + address.Text() + ": " + MessageOf(error));
 }
 
 }  // namespace

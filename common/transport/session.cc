@@ -117,13 +117,13 @@ void Session::OnFrame(std::string_view payload) {
 }
 
 void Session::OnHello(const v1::Hello& hello) {
-  const auto judgement = Judge(hello, highest_role_, shared_.options.server_id);
-  if (const auto* refused = std::get_if<v1::Refused>(&judgement)) {
+  const auto answer = AnswerHello(hello, highest_role_, shared_.options.server_id);
+  if (const auto* refused = std::get_if<v1::Refused>(&answer)) {
     Refused(refused->reason(), refused->message());
     return;
   }
   info_.client_name = hello.client_name();
-  info_.role = std::get<v1::Role>(judgement);
+  info_.role = std::get<v1::Role>(answer);
   phase_ = Phase::kWelcomed;
   v1::Envelope message;
   *message.mutable_welcome() = MakeWelcome(shared_.options, shared_.epoch, info_.role);

@@ -53,7 +53,7 @@ void Dial(asio::io_context& io, const Address& address, std::function<void(Resul
   socket->async_connect(
       *endpoint, [socket, address, done = std::move(done)](const boost::system::error_code& error) {
         if (error) {
-          done(Failure(address.Text() + ": " + Words(error)));
+          done(Failure(address.Text() + ": " + MessageOf(error)));
           return;
         }
         done(std::move(*socket));
@@ -68,7 +68,7 @@ void Prepare(Socket& socket) {
   socket.set_option(asio::ip::tcp::no_delay(true), ignored);
 }
 
-std::string Words(const boost::system::error_code& error) {
+std::string MessageOf(const boost::system::error_code& error) {
   if (error == boost::system::errc::no_such_file_or_directory) return "no such file";
   std::string words = error.message();
   if (!words.empty()) words[0] = static_cast<char>(std::tolower(words[0]));

@@ -31,6 +31,6 @@ void Dial(boost::asio::io_context& io, const Address& address,
 void Prepare(Socket& socket);
 
 /// The system's words for an error, begun in lower case.
-std::string Words(const boost::system::error_code& error);
+std::string MessageOf(const boost::system::error_code& error);
 
 }  // namespace footing::transport

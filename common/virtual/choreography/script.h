@@ -68,8 +68,8 @@ struct Script {
 /// or steps while it carries weight.
 Result<Script> ParseScript(const std::string& text, const std::string& origin);
 
-/// Names of the scripts that the product carries, and one of them; a usage error lists the names.
-std::vector<std::string> CarriedNames();
-Result<Script> Carried(const std::string& name);
+/// Names of the built-in scripts, and one of them; a usage error lists the names.
+std::vector<std::string> BuiltInScriptNames();
+Result<Script> BuiltInScript(const std::string& name);
 
 }  // namespace footing::choreography

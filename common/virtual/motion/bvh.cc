@@ -35,9 +35,9 @@ struct Header {
 };
 
 /// Words of the header, however they are spread over lines.
-class HeaderWords {
+class HeaderTokens {
  public:
-  explicit HeaderWords(text::Lines& lines) : lines_(lines) {}
+  explicit HeaderTokens(text::Lines& lines) : lines_(lines) {}
 
   std::string_view Next() {
     for (;;) {
@@ -89,7 +89,7 @@ std::optional<Channel> ToChannel(std::string_view word) {
   return std::nullopt;
 }
 
-Result<void> ParseOffset(HeaderWords& words, double unit_m, Joint& joint) {
+Result<void> ParseOffset(HeaderTokens& words, double unit_m, Joint& joint) {
   Eigen::Vector3d offset;
   for (int axis = 0; axis < 3; ++axis) {
     const auto word = words.Next();
@@ -101,7 +101,7 @@ Result<void> ParseOffset(HeaderWords& words, double unit_m, Joint& joint) {
   return {};
 }
 
-Result<void> ParseChannels(HeaderWords& words, int joint, Header& header) {
+Result<void> ParseChannels(HeaderTokens& words, int joint, Header& header) {
   const auto count_word = words.Next();
   const auto count = text::ToCount(count_word);
   if (!count || *count > 6) return words.Expected("a number of channels up to 6", count_word);
@@ -123,7 +123,7 @@ Result<void> ParseChannels(HeaderWords& words, int joint, Header& header) {
   return {};
 }
 
-Result<Header> ParseHeader(HeaderWords& words, double unit_m) {
+Result<Header> ParseHeader(HeaderTokens& words, double unit_m) {
   auto word = words.Next();
   if (!text::EqualsIgnoringCase(word, "HIERARCHY")) return words.Expected("HIERARCHY", word);
   Header header;
@@ -192,7 +192,7 @@ Result<body::Skeleton> Place(Header& header, text::Lines& lines) {
   return skeleton;
 }
 
-Result<std::pair<std::size_t, double>> ParseMotionHead(HeaderWords& words) {
+Result<std::pair<std::size_t, double>> ParseMotionHead(HeaderTokens& words) {
   auto word = words.Next();
   if (!text::EqualsIgnoringCase(word, "MOTION")) return words.Expected("MOTION", word);
   word = words.Next();
@@ -227,7 +227,7 @@ Result<void> Hold(const Channel& channel, double value_m, bool first, const text
 
 Result<Motion> ParseBvh(std::string_view text, const std::string& file, const BvhOptions& options) {
   text::Lines lines(text, file);
-  HeaderWords words(lines);
+  HeaderTokens words(lines);
   auto header = ParseHeader(words, options.unit_m);
   if (!header) return header.error();
   auto skeleton = Place(*header, lines);

@@ -162,7 +162,7 @@ std::span<const MarkerSet> MarkerSets() { return kSets; }
 std::vector<int> MarkersOf(const MarkerTracks& tracks, const MarkerSet& set, std::string_view field,
                            int side) {
   std::vector<int> found;
-  for (const std::string_view word : text::Words(field)) {
+  for (const std::string_view word : text::SplitAtBlanks(field)) {
     if (word == "|") {
       if (!found.empty()) break;
       continue;
@@ -172,7 +172,8 @@ std::vector<int> MarkersOf(const MarkerTracks& tracks, const MarkerSet& set, std
     if (at == std::string_view::npos) {
       index = Find(tracks, word);
     } else {
-      for (const std::string_view spelling : text::Words(side == 0 ? set.left : set.right)) {
+      for (const std::string_view spelling :
+           text::SplitAtBlanks(side == 0 ? set.left : set.right)) {
         std::string name(word);
         name.replace(at, 1, spelling);
         index = Find(tracks, name);

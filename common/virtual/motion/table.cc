@@ -65,7 +65,7 @@ Result<Table> ParseTable(std::string_view text, const std::string& file) {
   Table table;
   const auto announced = ParseHead(lines, table);
   if (!announced) return announced.error();
-  const auto labels = text::Words(lines.NextFull().value_or(""));
+  const auto labels = text::SplitAtBlanks(lines.NextFull().value_or(""));
   if (labels.size() < 2) return lines.Fault("expected the names of at least two columns");
   if (labels.size() > kMostColumns) return lines.Fault("too many columns");
   if (announced->columns && *announced->columns != labels.size()) {

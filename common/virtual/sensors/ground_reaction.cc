@@ -69,12 +69,12 @@ GroundReaction React(const BodyCourse& course, double cutoff_hz) {
   out.force_n = m * both.topRows<3>();
   out.force_n.row(2).array() += m * kStandardGravityMps2;
   out.cop_m = course.com_m.topRows<2>();
-  out.carried.assign(static_cast<std::size_t>(n), false);
+  out.supported.assign(static_cast<std::size_t>(n), false);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Vector3d f = out.force_n.col(i), c = course.com_m.col(i),
                           l = both.col(i).tail<3>();
     if (f.z() < kFlightShare * m * kStandardGravityMps2) continue;
-    out.carried[static_cast<std::size_t>(i)] = true;
+    out.supported[static_cast<std::size_t>(i)] = true;
     // L'_x = (p - c)_y F_z + c_z F_y,  L'_y = -c_z F_x - (p - c)_x F_z, with p_z = 0.
     out.cop_m.col(i) << c.x() - (l.y() + c.z() * f.x()) / f.z(),
         c.y() + (l.x() - c.z() * f.y()) / f.z();
@@ -97,7 +97,7 @@ std::array<FootForce, kFeet> ShareBetweenFeet(const BodyCourse& course,
     }
   }
   const double total = reaction.force_n(2, frame);
-  if (!reaction.carried[static_cast<std::size_t>(frame)]) {
+  if (!reaction.supported[static_cast<std::size_t>(frame)]) {
     // What is left of the force in flight goes to the lower foot, at its middle.
     const bool right = height.head<kFootPoints>().sum() > height.tail<kFootPoints>().sum();
     feet[right ? 1 : 0].load_n = total;

@@ -12,10 +12,10 @@ namespace footing::virtual_sensors {
 struct GroundReaction {
   Eigen::Matrix3Xd force_n;
   /// Where a vertical force and a shear on the ground make the body's moment. Valid where
-  /// `carried`.
+  /// `supported`.
   Eigen::Matrix2Xd cop_m;
   /// False in flight: the vertical force is under 6 % of the weight.
-  std::vector<bool> carried;
+  std::vector<bool> supported;
 };
 
 /// F = m (c'' + g), and the COP from L' = (p - c) x F (equation (1) of Ha, Bai & Liu 2011). In

@@ -29,11 +29,11 @@ GroundReaction ReactToImpacts(const body::Body& body, const motion::Motion& moti
     const double here = std::max(energy(0, i), 0.0);
     const double share = here / (here + known_n * known_n);
     out.force_n.col(i) += share * apart.col(i);
-    if (hard.carried[at] && out.carried[at]) {
+    if (hard.supported[at] && out.supported[at]) {
       out.cop_m.col(i) += share * (hard.cop_m.col(i) - out.cop_m.col(i));
     } else if (share > 0.5) {
       out.cop_m.col(i) = hard.cop_m.col(i);
-      out.carried[at] = hard.carried[at];
+      out.supported[at] = hard.supported[at];
     }
   }
   return out;

@@ -20,7 +20,7 @@ class KinectErrors {
   /// The next exposure, kPeriodS after the one before.
   void Expose();
   /// A hand of this exposure where it is reported; the left one first.
-  Eigen::Vector3d Told(const Eigen::Vector3d& p_W_m);
+  Eigen::Vector3d Measure(const Eigen::Vector3d& p_W_m);
   /// Along each axis, of all errors.
   static double SdM();
 

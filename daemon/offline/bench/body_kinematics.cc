@@ -45,7 +45,7 @@ Result<Rows> BodyKinematics() {
   const Poses poses(skeleton.dof);
   body::Kinematics at(skeleton);
   body::JointVelocities velocities(skeleton);
-  body::CompositeMasses room(skeleton);
+  body::CompositeMasses workspace(skeleton);
   body::CentroidalMatrix matrix(6, skeleton.dof);
   volatile double kept = 0;  // So that nothing is left out.
   const auto momentum = [&] {
@@ -58,7 +58,7 @@ Result<Rows> BodyKinematics() {
   const auto centroidal = [&] {
     return CostUs([&](int pose) {
       body::ComputeKinematics(skeleton, poses.q.col(pose), at);
-      body::ComputeCentroidalMatrix(*body, at, room, matrix);
+      body::ComputeCentroidalMatrix(*body, at, workspace, matrix);
       kept = matrix(3, 7);
     });
   };

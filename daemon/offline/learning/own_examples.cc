@@ -65,9 +65,9 @@ Result<void> AddOwnExamples(const OwnTake& take, const reconstruction::Models& b
     }
     const auto& output = made->Advance(inputs);
     since_s = moves && output.calibrated ? since_s + 1 / settings.rate_hz : 0;
-    const bool told = inputs.loads.feet[0].valid && inputs.loads.feet[1].valid &&
-                      inputs.hands[0].valid && inputs.hands[1].valid;
-    if (since_s < settings.settled_s || !told) continue;
+    const bool measured = inputs.loads.feet[0].valid && inputs.loads.feet[1].valid &&
+                          inputs.hands[0].valid && inputs.hands[1].valid;
+    if (since_s < settings.settled_s || !measured) continue;
     pose.head<3>() = (pose.head<3>() - output.momentum.p_WC_m) / root_m;
     examples.features.push_back(made->features().values());
     examples.poses.push_back(std::move(pose));

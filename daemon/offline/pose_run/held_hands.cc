@@ -24,17 +24,17 @@ std::array<std::vector<arms::HandReading>, arms::kArms> HeldHands::Until(Eigen::
   std::array<std::vector<arms::HandReading>, arms::kArms> readings;
   for (; next_ <= column; ++next_) {
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
-      const auto told =
+      const auto reading =
           errors_[arm].Advance(courses_[arm].specific_force_S_mps2.col(next_),
                                courses_[arm].angular_velocity_S_radps.col(next_), step_s_);
       readings[arm].push_back(
-          {told.specific_force_S_mps2, told.angular_velocity_S_radps, told.clipped});
+          {reading.specific_force_S_mps2, reading.angular_velocity_S_radps, reading.clipped});
     }
   }
   return readings;
 }
 
-void TellArms(const arms::ArmModel& model, PoseRun& run) {
+void EstimateArms(const arms::ArmModel& model, PoseRun& run) {
   arms::ArmTracker tracker(model);
   const auto aligned = static_cast<std::size_t>(kAlignedS * run.rate_hz);
   for (std::size_t i = 0; i < run.frames.size(); ++i) {

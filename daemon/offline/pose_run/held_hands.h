@@ -30,7 +30,7 @@ class HeldHands {
 };
 
 /// Puts how the arms are held into the inputs, by the readings of a Wiimote in each hand.
-void TellArms(const arms::ArmModel& model, PoseRun& run);
+void EstimateArms(const arms::ArmModel& model, PoseRun& run);
 
 /// What a recorded motion would have given two Wiimotes alone, beside the truth.
 struct ArmFrame {

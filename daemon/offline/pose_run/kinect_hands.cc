@@ -12,7 +12,7 @@ KinectHands::Hands KinectHands::Advance(const Hands& truth) {
     errors_.Expose();
     Sample sample{now_s_, {}};
     for (std::size_t side = 0; side < truth.size(); ++side) {
-      sample.p_W_m[side] = errors_.Told(truth[side].p_W_m);
+      sample.p_W_m[side] = errors_.Measure(truth[side].p_W_m);
     }
     on_their_way_.push_back(sample);
     next_s_ += KinectErrors::kPeriodS;

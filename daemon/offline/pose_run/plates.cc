@@ -15,7 +15,7 @@ namespace {
 namespace sensors = virtual_sensors;
 using sensors::kFeet;
 
-constexpr double kLeastCarriedS = 0.5;
+constexpr double kLeastSupportedS = 0.5;
 /// The first frames of a clip have the forces of leaving the T-pose in them: the low-pass of the
 /// motion spreads them so far.
 constexpr double kRunInS = 0.15;
@@ -58,7 +58,7 @@ Result<motion::Motion> InCommon(const motion::Motion& clip, const motion::Ground
   const double forces_end_s = forces.start_s + (samples - 1) / forces.rate_hz;
   const double begin_s = std::max(clip.start_s, forces.start_s);
   const double end_s = std::min(LastS(clip), forces_end_s);
-  if (end_s - begin_s < kLeastCarriedS) {
+  if (end_s - begin_s < kLeastSupportedS) {
     return InvalidData(forces_origin + ": its forces (" + Seconds(forces.start_s, forces_end_s) +
                        ") and the motion of " + origin + " (" + Seconds(clip.start_s, LastS(clip)) +
                        ") have less than half a second in common: give the same trial's");
@@ -71,8 +71,8 @@ Result<motion::Motion> InCommon(const motion::Motion& clip, const motion::Ground
 }
 
 /// Frames of the clip in which the plates carry what the motion needs.
-std::vector<bool> Carried(const motion::Motion& clip, const sensors::Scene& scene,
-                          const FeltForces& felt) {
+std::vector<bool> BuiltInScript(const motion::Motion& clip, const sensors::Scene& scene,
+                                const FeltForces& felt) {
   const Eigen::Index frames = clip.frames();
   const Eigen::Index before = scene.motion.frames() - frames;
   const auto half = static_cast<Eigen::Index>(std::lround(0.5 * kMissingSpanS * clip.rate_hz));
@@ -83,26 +83,26 @@ std::vector<bool> Carried(const motion::Motion& clip, const sensors::Scene& scen
     for (std::size_t f = 0; f < kFeet; ++f) load_n += felt.Mean(f, time_s, 0).load_n;
     missing_n.push_back(scene.reaction.force_n(2, before + i) - load_n);
   }
-  std::vector<bool> carried;
+  std::vector<bool> supported;
   for (Eigen::Index i = 0; i < frames; ++i) {
     const Eigen::Index low = std::max<Eigen::Index>(i - half, 0);
     const Eigen::Index high = std::min(i + half, frames - 1);
     double sum = 0;
     for (Eigen::Index k = low; k <= high; ++k) sum += missing_n[static_cast<std::size_t>(k)];
-    carried.push_back(sum / static_cast<double>(high - low + 1) <
-                      kMissingShare * scene.course.mass_kg * kStandardGravityMps2);
+    supported.push_back(sum / static_cast<double>(high - low + 1) <
+                        kMissingShare * scene.course.mass_kg * kStandardGravityMps2);
   }
-  return carried;
+  return supported;
 }
 
 struct Stretch {
   Eigen::Index begin = 0, count = 0;
 };
 
-Stretch Longest(const std::vector<bool>& carried) {
+Stretch Longest(const std::vector<bool>& supported) {
   Stretch best, now;
-  for (std::size_t i = 0; i < carried.size(); ++i) {
-    if (!carried[i]) {
+  for (std::size_t i = 0; i < supported.size(); ++i) {
+    if (!supported[i]) {
       now = {static_cast<Eigen::Index>(i) + 1, 0};
     } else if (++now.count > best.count) {
       best = now;
@@ -170,9 +170,9 @@ class Feet {
 };
 
 void AddWarnings(double mass_kg, PlateReport& report) {
-  if (report.carried_share < 1) {
+  if (report.supported_share < 1) {
     report.warnings.push_back("the plates carry the body in " +
-                              text::Fixed(100 * report.carried_share, 0) +
+                              text::Fixed(100 * report.supported_share, 0) +
                               " % of the trial only (a chair, a box, the floor beside them?): " +
                               Seconds(report.begin_s, report.end_s) + " is performed");
   }
@@ -254,14 +254,15 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
                        " cm from the nearer foot of " + origin +
                        ": forces and motion must be of one trial, in one frame");
   }
-  const std::vector<bool> carried = Carried(*common, *scene, felt);
-  const Stretch stretch = Longest(carried);
-  if (static_cast<double>(stretch.count) < kLeastCarriedS * common->rate_hz) {
+  const std::vector<bool> supported = BuiltInScript(*common, *scene, felt);
+  const Stretch stretch = Longest(supported);
+  if (static_cast<double>(stretch.count) < kLeastSupportedS * common->rate_hz) {
     return InvalidData(forces_origin + ": never carries the body of " + origin +
                        " for half a second: give all plates and the person's --mass-kg");
   }
-  out.report.carried_share = static_cast<double>(std::count(carried.begin(), carried.end(), true)) /
-                             static_cast<double>(carried.size());
+  out.report.supported_share =
+      static_cast<double>(std::count(supported.begin(), supported.end(), true)) /
+      static_cast<double>(supported.size());
   motion::Motion part = Part(*common, stretch.begin, stretch.count);
   if (stretch.count < common->frames()) {
     scene = StageOnPlates(part, settings, origin);

@@ -19,7 +19,7 @@ struct PlateReport {
   double begin_s = 0, end_s = 0;  ///< The stretch that is performed, on the motion's clock.
   /// Of the time that motion and forces have in common: where the plates carry what the motion
   /// needs, within a quarter of the weight.
-  double carried_share = 1;
+  double supported_share = 1;
   double begin_mps = 0;    ///< Of the centre of mass where the stretch begins.
   double mass_kg = 0;      ///< Of the plates: their mean over the stretch.
   double force_rms_n = 0;  ///< Vertical: measured less inverse dynamics.

@@ -30,16 +30,16 @@ Eigen::Vector3d At(const body::Kinematics& at, const body::Point& point) {
 /// The boards, where they are and where they are configured to be.
 struct Boards {
   std::array<sensors::BoardPlace, sensors::kFeet> real = sensors::SideBySide();
-  std::array<sensors::BoardPlace, sensors::kFeet> told;
+  std::array<sensors::BoardPlace, sensors::kFeet> configured;
   std::vector<sensors::CellErrors> cells;
 
   Boards(const sensors::Scene& scene, const Settings& settings) {
     for (std::size_t f = 0; f < sensors::kFeet; ++f) {
       // Each foot begins in its board's middle.
       real[f].middle_m = sensors::SoleMiddle(scene.course, f, 0).head<2>();
-      told[f] = real[f];
-      told[f].middle_m.y() += (f == 0 ? 0.5 : -0.5) * settings.gap_error_m;
-      if (f == 1) told[f].yaw_rad -= settings.yaw_error_rad;
+      configured[f] = real[f];
+      configured[f].middle_m.y() += (f == 0 ? 0.5 : -0.5) * settings.gap_error_m;
+      if (f == 1) configured[f].yaw_rad -= settings.yaw_error_rad;
       sensors::CellErrorConfig errors = settings.errors;
       errors.seed = 2 * settings.errors.seed + f;
       cells.emplace_back(errors);
@@ -49,7 +49,7 @@ struct Boards {
   momentum::FootLoads Read(std::size_t f, const sensors::BoardLoad& load, double scale,
                            double step_s) {
     const auto read_n = cells[f].Advance(load.corners_n, step_s);
-    const auto places = sensors::SensorPlaces(told[f]);
+    const auto places = sensors::SensorPlaces(configured[f]);
     momentum::FootLoads foot;
     foot.valid = true;
     foot.count = places.size();

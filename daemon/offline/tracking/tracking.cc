@@ -15,8 +15,8 @@ double SpeedOverAStep::mean_mps() const {
   return sum_mps / static_cast<double>(last_mps_.size());
 }
 
-Tracking Judge(const GivenCommand& given, double time_s, const stream::GaitState& state,
-               double mean_mps) {
+Tracking CheckTracking(const GivenCommand& given, double time_s, const stream::GaitState& state,
+                       double mean_mps) {
   if (time_s - given.time_s < kLongCommandS) return Tracking::kShort;
   if (state.falls != given.falls_before) return Tracking::kFell;
   if (state.pending) return Tracking::kOtherGait;

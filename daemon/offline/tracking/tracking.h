@@ -39,7 +39,7 @@ inline constexpr double kLongCommandS = 3;
 inline constexpr double kTrackedMps = 0.25;
 
 /// Evaluates a command at its end, `time_s`, by the state then and the mean speed over a step.
-Tracking Judge(const GivenCommand& given, double time_s, const stream::GaitState& state,
-               double mean_mps);
+Tracking CheckTracking(const GivenCommand& given, double time_s, const stream::GaitState& state,
+                       double mean_mps);
 
 }  // namespace footing::tracking

@@ -172,8 +172,8 @@ Trained Train(const Recordings& recordings, const ComOptions& options) {
 }
 
 /// Root mean squares over whole clips: one step from the truth, the closed loop, and the COP.
-nlohmann::ordered_json Judge(const learning::Networks& networks,
-                             const std::vector<LoadClip>& clips) {
+nlohmann::ordered_json ScoreNetworks(const learning::Networks& networks,
+                                     const std::vector<LoadClip>& clips) {
   Eigen::Vector2d one_step = Eigen::Vector2d::Zero(), loop = one_step, cop = one_step;
   double frames = 0;
   for (const LoadClip& clip : clips) {
@@ -232,10 +232,10 @@ int Run(const ComOptions& options, const Shared& shared) {
                                   {"validation_mse", axes[axis].validation_mse}});
   }
   report["seconds"] = seconds;
-  report["validation"] = Judge(trained.networks(), recordings.validation);
+  report["validation"] = ScoreNetworks(trained.networks(), recordings.validation);
   if (!clips->excluded.empty()) {
     report["excluded"] =
-        Judge(trained.networks(), Loads(clips->excluded, false, options.model.seed + 1000));
+        ScoreNetworks(trained.networks(), Loads(clips->excluded, false, options.model.seed + 1000));
   }
   AppendOwn(*set, report);
   if (auto written = WriteModel(model, options.model); !written) {

@@ -32,7 +32,7 @@ Result<void> CheckPairs(const OwnOptions& options) {
   return {};
 }
 
-void Tell(const OwnRecording& own) {
+void PrintAlignment(const OwnRecording& own) {
   const learning::TimeAlignment& at = own.take.alignment;
   char text[320];
   std::snprintf(text, sizeof text,
@@ -76,7 +76,7 @@ Result<OwnRecording> ReadPair(const OwnOptions& options, std::size_t i,
   log::Info("reading " + options.recordings[i] + " and " + options.motions[i]);
   auto recording = ReadRecording(options.recordings[i], options.rig);
   if (!recording) return recording.error();
-  if (!recording->layout_told) {
+  if (!recording->has_layout) {
     log::Warning(recording->session.name +
                  ": has no layout; the boards are taken to lie one foot each, 2 cm apart");
   }
@@ -91,7 +91,7 @@ Result<OwnRecording> ReadPair(const OwnOptions& options, std::size_t i,
                                     options.motions[i]);
   if (!take) return take.error();
   OwnRecording own{*std::move(clip), *skeleton_rms_m, *std::move(take), recording->file};
-  Tell(own);
+  PrintAlignment(own);
   return own;
 }
 

@@ -234,7 +234,7 @@ Result<Recording> ReadRecording(const std::string& path, const std::string& rig)
                        std::to_string(std::lround(recording.session.duration_s / 60)) +
                        " minutes, more than two hours; record what is beside the motion capture");
   }
-  recording.layout_told = !(*chosen)->layout.preset.empty();
+  recording.has_layout = !(*chosen)->layout.preset.empty();
   recording.file = {.name = std::filesystem::path(path).filename().string(),
                     .sha256 = model::Sha256(file->bytes())};
   return recording;

@@ -11,7 +11,7 @@ namespace footing::train {
 struct Recording {
   learning::RecordedSession session;
   model::DataFile file;
-  bool layout_told = false;  ///< Else the boards are taken to lie as board::DefaultLayout.
+  bool has_layout = false;  ///< Else the boards are taken to lie as board::DefaultLayout.
 };
 
 /// The boards and hands of one rig in a recording of footingd, on the devices' own clock. `rig`

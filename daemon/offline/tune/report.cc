@@ -18,7 +18,7 @@ std::string Short(double value) {
   return text.data();
 }
 
-std::string Words(const Score& score) {
+std::string ScoreText(const Score& score) {
   return Short(score.mean.total()) + " +- " + Short(score.total_half_width);
 }
 
@@ -38,8 +38,8 @@ std::string TableText(const Options& options, const std::vector<TunedSet>& tuned
                         "\nObjective on trials of its own, 95 % intervals:\n";
   std::vector<gait::GainSet> sets;
   for (const TunedSet& one : tuned) {
-    comment += one.set.name + " " + Words(one.before) + " before, " + Words(one.after) + " after" +
-               (one.better ? "" : ", not better: the start is kept") + "\n";
+    comment += one.set.name + " " + ScoreText(one.before) + " before, " + ScoreText(one.after) +
+               " after" + (one.better ? "" : ", not better: the start is kept") + "\n";
     sets.push_back(one.set);
   }
   std::vector<const gait::GainField*> columns;

@@ -122,7 +122,7 @@ class Tuning {
       if (const auto kept = ReplaceFile(StatePath(), KeepRun(Key(), searches_)); !kept) return kept;
       ShowProgress(index, NanosecondsToSeconds(clock::MonotonicNs() - begin_ns));
     }
-    Judge(index, task, start, seed);
+    Validate(index, task, start, seed);
     return {};
   }
 
@@ -154,7 +154,7 @@ class Tuning {
   }
 
   /// On trials that no iteration saw; what is not better there is not taken.
-  void Judge(std::size_t index, const Task& task, const gait::Gains& start, std::uint64_t seed) {
+  void Validate(std::size_t index, const Task& task, const gait::Gains& start, std::uint64_t seed) {
     const bool scores_only = options_.iterations == 0;
     const gait::Gains found = GainsAt(start, dimensions_, searches_[index].point);
     const int trials = options_.trials * (scores_only ? 1 : kJudgingTimes);

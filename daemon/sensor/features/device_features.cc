@@ -71,10 +71,10 @@ void DeviceFeatureExtractor::Observe(std::int64_t now_ns) {
     Forget();
     return;
   }
-  const bool begun_anew = grid_.beginnings() != beginnings_;
-  if (begun_anew) Forget();
+  const bool restarted = grid_.beginnings() != beginnings_;
+  if (restarted) Forget();
   beginnings_ = grid_.beginnings();
-  const std::int64_t steps = begun_anew ? 1 : grid_.newest_index() - computed_index_;
+  const std::int64_t steps = restarted ? 1 : grid_.newest_index() - computed_index_;
   if (steps == 0) return;
   elapsed_s_ = kGridStepS * static_cast<double>(steps);
   computed_index_ = grid_.newest_index();

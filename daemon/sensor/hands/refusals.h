@@ -20,8 +20,8 @@ class Refusals {
 
  private:
   std::uint64_t total_ = 0;
-  std::uint64_t told_ = 0;
-  std::optional<std::int64_t> told_ns_;
+  std::uint64_t reported_ = 0;
+  std::optional<std::int64_t> reported_ns_;
 };
 
 }  // namespace footing::hands

@@ -33,11 +33,11 @@ void SlipWatch::Advance(const stream::MotionSample& sample_M) {
   sum_ += sample_M.specific_force_mps2;
   squares_ += sample_M.specific_force_mps2 * sample_M.specific_force_mps2.transpose();
   if (now_ns - begin_ns_ < kSecondNs) return;
-  if (count_ >= kLeastSamples) JudgeSecond();
+  if (count_ >= kLeastSamples) CheckSecond();
   Clear();
 }
 
-void SlipWatch::JudgeSecond() {
+void SlipWatch::CheckSecond() {
   const Eigen::Vector3d mean = sum_ / count_;
   const Eigen::Matrix3d covariance = squares_ / count_ - mean * mean.transpose();
   if (std::sqrt(std::max(0.0, covariance.trace())) < config_.rest_sd_mps2) {

@@ -41,7 +41,7 @@ class SlipWatch {
   bool slipped() const { return slipped_; }
 
  private:
-  void JudgeSecond();
+  void CheckSecond();
   void Clear();
 
   stream::DeviceRole role_;

@@ -13,7 +13,7 @@ void BoardChain::Restart() {
 void BoardChain::SetTare(const std::optional<board::CornerForces>& tare) {
   if (tare == tare_) return;
   tare_ = tare;
-  WatchAnew();
+  RestartWatch();
 }
 
 void BoardChain::Take(const board::CornerForces& measured, stream::BoardSample& sample) {

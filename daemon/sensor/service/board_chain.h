@@ -23,7 +23,7 @@ class BoardChain {
   /// None: forces are published as measured. The watch for displacement restarts.
   void SetTare(const std::optional<board::CornerForces>& tare);
   /// What has moved so far was on purpose.
-  void WatchAnew() { displacement_ = tare::Displacement(); }
+  void RestartWatch() { displacement_ = tare::Displacement(); }
 
   /// Fills in forces, total, COP, contact, repeated and tared; device, stamps and flags are there
   /// already.

@@ -37,7 +37,7 @@ void Device::Restart() {
   kind_.Restart();
   motion_ = MotionChain();
   chain_.Restart();
-  worn_.Restart();
+  mounted_sensor_.Restart();
   // These are shares of the reports, which count from the attach as well.
   counters_.repeats = counters_.clipped = counters_.undecodable = 0;
 }
@@ -99,7 +99,7 @@ void Device::Take(devices::DeviceHandle handle, const devices::IncomingReport& r
   }
 }
 
-bool Device::HasRoom(const TickContent& content) {
+bool Device::HasSpace(const TickContent& content) {
   if (content.motion.size() + content.boards.size() + content.gamepads.size() < kMaxSamplesPerTick)
     return true;
   ++counters_.flooded;
@@ -116,7 +116,7 @@ void Device::Stamp(const devices::IncomingReport& report, Sample& sample) const 
 
 void Device::TakeDecoded(const devices::IncomingReport& report, decode::Decoded& decoded,
                          TickContent& content) {
-  if (!HasRoom(content)) return;
+  if (!HasSpace(content)) return;
   const std::int64_t before_ns = timing_.sampled_ns();
   if (!decoded.buttons_only) timing_.Take(report.received_ns, decoded.changed);
   TakeMotion(report, decoded, before_ns, content);
@@ -187,7 +187,7 @@ stream::DeviceStatus Device::Status(std::int64_t now_ns, double stale_after_s) c
   if (kind_.has_lamps()) status.leds = leds_;
   status.last_report_ns = timing_.statistics().last_ns();
   status.tared = chain_.tared() && placement() == decode::Placement::kUnderFeet;
-  status.mounted = worn_.rotation_MS().has_value();
+  status.mounted = mounted_sensor_.rotation_MS().has_value();
   kind_.AddTo(status);
   if (status.calibration == stream::CalibrationOrigin::kStored) {
     status.stored_calibration = stored_calibration_;

@@ -14,9 +14,9 @@
 #include "daemon/sensor/service/board_chain.h"
 #include "daemon/sensor/service/links.h"
 #include "daemon/sensor/service/motion_chain.h"
+#include "daemon/sensor/service/mounted_sensor.h"
 #include "daemon/sensor/service/sample_timing.h"
 #include "daemon/sensor/service/tick_content.h"
-#include "daemon/sensor/service/worn.h"
 
 namespace footing::sensor {
 
@@ -83,7 +83,7 @@ class Device {
   void set_binding(Binding binding);
 
   /// Of a device on the body.
-  Worn& worn() { return worn_; }
+  MountedSensor& mounted_sensor() { return mounted_sensor_; }
   /// Of a board.
   BoardChain& chain() { return chain_; }
   const BoardChain& chain() const { return chain_; }
@@ -108,7 +108,7 @@ class Device {
                    TickContent& content);
   template <typename Sample>
   void Stamp(const devices::IncomingReport& report, Sample& sample) const;
-  bool HasRoom(const TickContent& content);
+  bool HasSpace(const TickContent& content);
   void PushOutputs();
   void AddState(std::int64_t now_ns, double stale_after_s, stream::DeviceStatus& status) const;
 
@@ -124,7 +124,7 @@ class Device {
   SampleTiming timing_;
   MotionChain motion_;
   BoardChain chain_;
-  Worn worn_;
+  MountedSensor mounted_sensor_;
   bool leds_set_ = false;
   std::uint8_t leds_ = 0;
   Counters counters_;

@@ -49,7 +49,7 @@ Device* Hub::Numbered(std::uint32_t number) {
 }
 
 /// A new Device; null when kMaxDevices are attached.
-Device* Hub::MakeRoom() {
+Device* Hub::AddDevice() {
   if (devices_.size() >= kMaxDevices) {
     const auto lost = std::find_if(devices_.begin(), devices_.end(),
                                    [](const auto& device) { return !device->attached(); });
@@ -82,7 +82,7 @@ void Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& 
     Flush(*device);
     return;
   }
-  if (device == nullptr) device = MakeRoom();
+  if (device == nullptr) device = AddDevice();
   if (device == nullptr) {
     ports_.log("more than " + std::to_string(kMaxDevices) + " devices: " + identity.serial +
                " is ignored");
@@ -144,7 +144,7 @@ void Hub::OnReport(devices::DeviceHandle handle, const devices::IncomingReport& 
   }
   if (device->kind() != kind) Bind(*device);
   for (std::size_t i = before; i < content_.motion.size(); ++i) {
-    AddToRig(*device, device->worn().Take(content_.motion[i]));
+    AddToRig(*device, device->mounted_sensor().Take(content_.motion[i]));
   }
   Flush(*device);
 }

@@ -106,8 +106,8 @@ class Hub {
   Device* WithSerial(const std::string& serial);
   Result<Device*> Attached(std::uint32_t number);
   Result<Device*> Attached(const std::string& serial);
-  Result<Device*> AttachedWorn(const std::string& serial);
-  Device* MakeRoom();
+  Result<Device*> AttachedOnBody(const std::string& serial);
+  Device* AddDevice();
   void Bind(Device& device);
   Binding ChooseBinding(const Device& device) const;
   void Rebind(Device& device, const Binding& binding);

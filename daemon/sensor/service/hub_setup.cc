@@ -21,7 +21,7 @@ constexpr std::size_t kMostNoteBytes = 1024;
 
 std::string Text(const Binding& binding) { return binding.rig + "/" + stream::Name(binding.role); }
 
-bool IsWorn(DeviceRole role) {
+bool IsOnBody(DeviceRole role) {
   switch (role) {
     case DeviceRole::kLeftHand:
     case DeviceRole::kRightHand:
@@ -61,9 +61,9 @@ void Hub::ApplySetup(Device& device) {
   const auto stored = store_.MountingOf(serial, Text(binding));
   const auto rotation_MS =
       stored ? std::optional(stored->rotation_MS) : std::optional<Eigen::Quaterniond>();
-  const bool anew = stored && !stored->slipped && device.worn().slipped();
-  if (Same(rotation_MS, device.worn().rotation_MS()) && !anew) return;
-  device.worn().SetMounting(rotation_MS, binding.role);
+  const bool remounted = stored && !stored->slipped && device.mounted_sensor().slipped();
+  if (Same(rotation_MS, device.mounted_sensor().rotation_MS()) && !remounted) return;
+  device.mounted_sensor().SetMounting(rotation_MS, binding.role);
   // What was felt before lies in another frame.
   if (const auto rig = rigs_.find(binding.rig); rig != rigs_.end()) {
     rig->second.extractor =
@@ -112,7 +112,7 @@ void Hub::WatchSetup() {
       ports_.log("board " + serial + " was moved: footing-ctl setup --only tare --only layout");
     }
     auto stored = store_.MountingOf(serial, Text(binding));
-    if (stored && device->worn().slipped() && !stored->slipped) {
+    if (stored && device->mounted_sensor().slipped() && !stored->slipped) {
       stored->slipped = true;
       store_.SetMounting(serial, stored);
       store_.MarkStale(binding.rig, "mounting", serial, "it slipped");
@@ -175,11 +175,11 @@ Result<Hub::Measured> Hub::Tare(const std::string& serial, double window_s, bool
                   "empty it shows " + text::Fixed(board::Total(tare.offset), 1) + " N"};
 }
 
-Result<Device*> Hub::AttachedWorn(const std::string& serial) {
+Result<Device*> Hub::AttachedOnBody(const std::string& serial) {
   auto found = Attached(serial);
   if (!found) return found;
   const Device& device = **found;
-  if (device.placement() != Placement::kOnBody || !IsWorn(device.binding().role)) {
+  if (device.placement() != Placement::kOnBody || !IsOnBody(device.binding().role)) {
     return UsageError(
         serial + " is " + Text(device.binding()) +
         "; only devices on hands, legs and head have a mounting (footing-ctl assign)");
@@ -189,7 +189,7 @@ Result<Device*> Hub::AttachedWorn(const std::string& serial) {
 
 Result<Hub::Measured> Hub::SolveMounting(const std::string& serial,
                                          const MountingStretches& stretches) {
-  const auto found = AttachedWorn(serial);
+  const auto found = AttachedOnBody(serial);
   if (!found) return found.error();
   if (stretches.still_to_ns <= stretches.still_from_ns ||
       stretches.steps_to_ns <= stretches.steps_from_ns ||
@@ -197,7 +197,7 @@ Result<Hub::Measured> Hub::SolveMounting(const std::string& serial,
     return UsageError("mounting: standing still must come before the steps, and each must last");
   }
   const Binding& binding = (*found)->binding();
-  const mounting::Mounting solved = (*found)->worn().Solve(binding.role, stretches);
+  const mounting::Mounting solved = (*found)->mounted_sensor().Solve(binding.role, stretches);
   if (!solved.ok) return Failure("mounting of " + serial + ": " + solved.problem);
   setup::StoredMounting stored;
   stored.role = Text(binding);
@@ -253,7 +253,7 @@ Result<void> Hub::RecordSetup(const std::string& rig, const stream::SetupItem& i
   for (const auto& device : devices_) {
     if (device->placement() != Placement::kUnderFeet || device->binding().rig != name) continue;
     store_.SetMoved(device->identity().serial, false);
-    device->chain().WatchAnew();
+    device->chain().RestartWatch();
   }
   return {};
 }

@@ -24,12 +24,12 @@ int Run(const sensor::CommandLine& line) {
   }
   service_manager::Notifier notifier(io);
   notifier.Ready("listening on " + (*service)->listening_on().front());
-  boost::asio::steady_timer farewell(io);  // Time for the goodbyes to leave.
+  boost::asio::steady_timer goodbye(io);  // Time for the goodbyes to leave.
   signals.async_wait([&](boost::system::error_code, int) {
     notifier.Stopping();
     (*service)->Stop("footingd ends");
-    farewell.expires_after(std::chrono::milliseconds(200));
-    farewell.async_wait([&io](boost::system::error_code) { io.stop(); });
+    goodbye.expires_after(std::chrono::milliseconds(200));
+    goodbye.async_wait([&io](boost::system::error_code) { io.stop(); });
   });
   io.run();
   return 0;

@@ -17,10 +17,10 @@ Eigen::Vector3d Clipped(const Eigen::Vector3d& value, double most) {
 
 void ArmFeatures::Advance(const std::array<HandState, kArms>& hands, double step_s) {
   for (std::size_t arm = 0; arm < kArms; ++arm) {
-    const HandState& told = hands[arm];
+    const HandState& state = hands[arm];
     Hand& hand = hands_[arm];
-    Eigen::Matrix3d turn = told.turn_W;
-    Eigen::Vector3d turning = told.angular_velocity_W_radps, force = told.acceleration_W_mps2;
+    Eigen::Matrix3d turn = state.turn_W;
+    Eigen::Vector3d turning = state.angular_velocity_W_radps, force = state.acceleration_W_mps2;
     if (arm == 1) {
       const Eigen::Vector3d mirror(1, -1, 1);
       turn = mirror.asDiagonal() * turn * mirror.asDiagonal();

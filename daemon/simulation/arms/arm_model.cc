@@ -28,8 +28,8 @@ Directions Stacked(const ArmDirections& arm) {
 ArmDirections Of(const Directions& stacked) {
   ArmDirections arm;
   const auto take = [&](Eigen::Index first, Eigen::Vector3d& direction) {
-    const Eigen::Vector3d told = stacked.segment<3>(first);
-    if (told.norm() > 1e-3) direction = told.normalized();
+    const Eigen::Vector3d predicted = stacked.segment<3>(first);
+    if (predicted.norm() > 1e-3) direction = predicted.normalized();
   };
   take(0, arm.upper);
   take(3, arm.hinge);

@@ -35,8 +35,8 @@ const std::array<ArmEstimate, kArms>& ArmTracker::Advance(double step_s) {
     estimates_[arm].valid = hands_[arm].state().valid;
     if (!estimates_[arm].valid) continue;
     features_.Compute(arm, values_);
-    const ArmDirections told = Of(model_.Predict(values_, hands_[1 - arm].state().valid));
-    estimates_[arm].directions = arm == 1 ? Mirrored(told) : told;
+    const ArmDirections predicted = Of(model_.Predict(values_, hands_[1 - arm].state().valid));
+    estimates_[arm].directions = arm == 1 ? Mirrored(predicted) : predicted;
   }
   return estimates_;
 }

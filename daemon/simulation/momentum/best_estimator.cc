@@ -24,7 +24,7 @@ HorizontalPrior ForwardPrior() {
   prior.moment_spread_m = 0.0029;
   prior.moment_time_s = 0.024;
   prior.cop_noise_m = 0.0005;
-  prior.told_spread = 0.65;
+  prior.spread_factor = 0.65;
   return prior;
 }
 
@@ -37,7 +37,7 @@ HorizontalPrior LateralPrior() {
   prior.moment_time_s = 0.064;
   prior.cop_noise_m = 0.0006;
   prior.posture = {1.16, 0.12, 0.25, 0.01};
-  prior.told_spread = 0.4;
+  prior.spread_factor = 0.4;
   return prior;
 }
 
@@ -132,17 +132,17 @@ void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
     input.centre_m = centre(i);
     horizontal_[static_cast<std::size_t>(i)].Advance(input);
   }
-  TellCom();
+  ReportCom();
 }
 
 const Estimate& BestEstimator::SeePosture(const Eigen::Vector3d& p_WC_m) {
   if (!estimate_.valid || !p_WC_m.allFinite()) return estimate_;
   for (int i = 0; i < 2; ++i) horizontal_[static_cast<std::size_t>(i)].SeePosture(p_WC_m(i));
-  TellCom();
+  ReportCom();
   return estimate_;
 }
 
-void BestEstimator::TellCom() {
+void BestEstimator::ReportCom() {
   for (int i = 0; i < 2; ++i) {
     const HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
     const auto position = axis.Position(lag_steps_);

@@ -50,7 +50,7 @@ class BestEstimator {
   void Begin();
   void AdvanceFeet(const ContactLoads& loads);
   void AdvanceCom(const ContactLoads& loads, bool gap);
-  void TellCom();
+  void ReportCom();
   void AdvanceAngular();
   Eigen::Vector2d Centre() const;
 

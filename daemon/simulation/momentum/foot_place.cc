@@ -13,7 +13,7 @@ constexpr double kSoleMarginM = 0.005;  // The COP's own error at the edge of th
 constexpr double kFootLimitLoadN = 60;  // Below, the COP is too coarse for a limit.
 constexpr double kMostSpreadM = 0.5;
 constexpr double kNoBoundM = 1e3;
-constexpr double kToldVarianceM2 = 1e-5;
+constexpr double kAddedVarianceM2 = 1e-5;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void FootPlace::Start(const Eigen::Vector3d& p_WF_m) {
   const std::array<double, 2> wander{config_.along_spread_m, config_.across_spread_m};
   const std::array<double, 2> at{along_.dot(p_WF_m.head<2>()), across_.dot(p_WF_m.head<2>())};
   for (std::size_t i = 0; i < 2; ++i) {
-    told_[i] = {at[i], kStartSpreadM * kStartSpreadM};
+    estimate_[i] = {at[i], kStartSpreadM * kStartSpreadM};
     axes_[i].Start(
         {at[i], 0},
         Eigen::Vector2d(kStartSpreadM * kStartSpreadM, wander[i] * wander[i]).asDiagonal());
@@ -68,7 +68,7 @@ void FootPlace::Advance(const Pressure& pressure, bool contact, bool landed, dou
     low_[i] = std::max(low_[i], cop - ahead[i] - kSoleMarginM);
     high_[i] = std::min(high_[i], cop + behind[i] + kSoleMarginM);
   }
-  for (std::size_t i = 0; i < 2; ++i) Tell(i, config_.loosen_mps * step_s);
+  for (std::size_t i = 0; i < 2; ++i) Estimate(i, config_.loosen_mps * step_s);
   if (contact && pressure.cop_valid) height_m_ = pressure.p_WP_m.z();
 }
 
@@ -78,7 +78,7 @@ void FootPlace::Unbound() {
 }
 
 /// The filter knows nothing of the bounds, so that no frame counts twice by them.
-void FootPlace::Tell(std::size_t axis, double loosen_m) {
+void FootPlace::Estimate(std::size_t axis, double loosen_m) {
   double& low = low_[axis];
   double& high = high_[axis];
   low -= loosen_m;
@@ -86,17 +86,17 @@ void FootPlace::Tell(std::size_t axis, double loosen_m) {
   if (low > high) low = high = 0.5 * (low + high);  // The foot has moved, or is longer.
   Moments inside = Below({axes_[axis].x()(0), axes_[axis].p()(0, 0)}, high);
   inside = Below({-inside.mean, inside.variance}, -low);
-  told_[axis] = {std::clamp(-inside.mean, low, high), inside.variance + kToldVarianceM2};
+  estimate_[axis] = {std::clamp(-inside.mean, low, high), inside.variance + kAddedVarianceM2};
 }
 
 Eigen::Vector3d FootPlace::position_m() const {
-  const Eigen::Vector2d p = told_[0].mean * along_ + told_[1].mean * across_;
+  const Eigen::Vector2d p = estimate_[0].mean * along_ + estimate_[1].mean * across_;
   return {p.x(), p.y(), height_m_};
 }
 
 Eigen::Vector3d FootPlace::variance_m2() const {
   const Eigen::Vector2d v =
-      told_[0].variance * along_.cwiseAbs2() + told_[1].variance * across_.cwiseAbs2();
+      estimate_[0].variance * along_.cwiseAbs2() + estimate_[1].variance * across_.cwiseAbs2();
   return {v.x(), v.y(), 1e-6};
 }
 

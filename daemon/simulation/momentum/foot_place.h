@@ -42,7 +42,7 @@ class FootPlace {
   using Filter = LinearFilter<2, 1>;
 
   void Unbound();
-  void Tell(std::size_t axis, double loosen_m);
+  void Estimate(std::size_t axis, double loosen_m);
 
   FootShape shape_;
   FootPlaceConfig config_;
@@ -50,7 +50,7 @@ class FootPlace {
   Eigen::Vector2d across_;
   std::array<Filter, 2> axes_{};          // Along, across; states: place, wandering.
   std::array<double, 2> low_{}, high_{};  // Bounds of the place, of this contact.
-  std::array<Moments, 2> told_{};
+  std::array<Moments, 2> estimate_{};
   double height_m_ = 0;
 };
 

@@ -119,7 +119,7 @@ void HorizontalCom::SeePosture(double c_m) {
 
 Filter::Scalar HorizontalCom::Position(int lag_steps) const {
   Filter::Scalar position = filter_.Delayed(lag_steps);
-  position.variance *= prior_.told_spread * prior_.told_spread;
+  position.variance *= prior_.spread_factor * prior_.spread_factor;
   return position;
 }
 

@@ -31,7 +31,7 @@ struct HorizontalPrior {
   PostureError posture;
   /// Factor of the reported deviation of c over the filter's, whose parts reach further than c
   /// does.
-  double told_spread = 1;
+  double spread_factor = 1;
 };
 
 /// One frame of what the horizontal estimator needs.

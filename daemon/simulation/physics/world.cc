@@ -20,7 +20,7 @@ void KeepQuaternion(const mjData& state, std::array<double, 4>& quaternion) {
   std::copy(state.qpos + 3, state.qpos + 7, quaternion.begin());
 }
 
-std::uint64_t HashWords(std::uint64_t hash, const mjtNum* words, int count) {
+std::uint64_t AddToHash(std::uint64_t hash, const mjtNum* words, int count) {
   for (int i = 0; i < count; ++i) {
     hash = text::AddFnv(hash, std::bit_cast<std::uint64_t>(words[i]));
   }
@@ -136,12 +136,12 @@ std::uint64_t World::StateHash() const {
   const mjModel& m = *parts_->model;
   const mjData& d = *parts_->state;
   std::uint64_t hash = text::kFnvBasis;
-  hash = HashWords(hash, d.qpos, 3);
-  hash = HashWords(hash, parts_->root_quaternion.data(), 4);
-  hash = HashWords(hash, d.qpos + 7, m.nq - 7);
-  hash = HashWords(hash, d.qvel, m.nv);
-  hash = HashWords(hash, d.act, m.na);
-  return HashWords(hash, d.qacc_warmstart, m.nv);
+  hash = AddToHash(hash, d.qpos, 3);
+  hash = AddToHash(hash, parts_->root_quaternion.data(), 4);
+  hash = AddToHash(hash, d.qpos + 7, m.nq - 7);
+  hash = AddToHash(hash, d.qvel, m.nv);
+  hash = AddToHash(hash, d.act, m.na);
+  return AddToHash(hash, d.qacc_warmstart, m.nv);
 }
 
 WorldState World::Save() const {

@@ -21,7 +21,7 @@ LegIk::LegIk(const body::Body& body, int hip, int end) : body_(&body) {
   FOOTING_CHECK(Carries(skeleton, hip, end));
   for (int joint = hip; joint < skeleton.size(); ++joint) {
     if (!Carries(skeleton, hip, joint)) continue;
-    carried_.push_back(joint);
+    moved_joints_.push_back(joint);
     if (!Carries(skeleton, joint, end)) continue;
     const body::Joint& link = skeleton.joint(joint);
     for (std::size_t i = 0; i < link.rotations.size(); ++i) {
@@ -65,14 +65,14 @@ void LegIk::Solve(const PoseTargets& targets, int iterations, Eigen::VectorXd& q
     gradient_.setZero();
     for (int i = 0; i < targets.count; ++i) {
       const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
-      if (Carries(body_->skeleton, carried_.front(), point.joint)) Add(point, at);
+      if (Carries(body_->skeleton, moved_joints_.front(), point.joint)) Add(point, at);
     }
     cholesky_.compute(normal_);
     cholesky_.solveInPlace(gradient_);
     for (std::size_t i = 0; i < dofs_.size(); ++i) {
       q(dofs_[i]) += gradient_(static_cast<Eigen::Index>(i));
     }
-    body::ComputeKinematics(body_->skeleton, q, carried_, at);
+    body::ComputeKinematics(body_->skeleton, q, moved_joints_, at);
   }
 }
 

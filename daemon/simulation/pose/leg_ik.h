@@ -28,9 +28,9 @@ class LegIk {
   void Add(const PointTarget& point, const body::Kinematics& at);
 
   const body::Body* body_;
-  std::vector<int> carried_;  ///< The hip and all that hangs on it.
-  std::vector<int> dofs_;     ///< From the hip down to the end,
-  std::vector<int> joints_;   ///< and the joint of each.
+  std::vector<int> moved_joints_;  ///< The hip and all that hangs on it.
+  std::vector<int> dofs_;          ///< From the hip down to the end,
+  std::vector<int> joints_;        ///< and the joint of each.
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian_;
   Eigen::MatrixXd normal_;
   Eigen::VectorXd gradient_;

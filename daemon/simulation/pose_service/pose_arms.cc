@@ -80,9 +80,9 @@ HandTrouble PoseArms::TroubleOf(std::size_t side, std::int64_t now_ns) const {
                                                     : HandTrouble::kNone;
 }
 
-void PoseArms::Tell(std::int64_t now_ns, PoseInputs& inputs) {
-  const double step_s = std::clamp(NanosecondsToSeconds(now_ns - told_ns_), 0.0, kLongestStepS);
-  told_ns_ = now_ns;
+void PoseArms::Report(std::int64_t now_ns, PoseInputs& inputs) {
+  const double step_s = std::clamp(NanosecondsToSeconds(now_ns - reported_ns_), 0.0, kLongestStepS);
+  reported_ns_ = now_ns;
   if (tracker_) inputs.sensors.arms = tracker_->Advance(step_s);
   for (std::size_t side = 0; side < hands_.size(); ++side) {
     const HandTrouble trouble = TroubleOf(side, now_ns);

@@ -30,7 +30,7 @@ class PoseArms {
   /// What the engine says of its T-pose.
   void Follow(bool calibrated, double calibration_progress);
   /// Puts the arms and what is wrong with them into the inputs; times go forward.
-  void Tell(std::int64_t now_ns, PoseInputs& inputs);
+  void Report(std::int64_t now_ns, PoseInputs& inputs);
 
  private:
   struct Hand {
@@ -47,7 +47,7 @@ class PoseArms {
   std::array<Hand, arms::kArms> hands_{};
   bool calibrated_ = false;
   double progress_ = 0;
-  std::int64_t told_ns_ = 0;
+  std::int64_t reported_ns_ = 0;
 };
 
 }  // namespace footing::pose_service

@@ -32,7 +32,7 @@ void PoseEvents::AddHands(const PoseFrame& frame, std::int64_t now_ns, v1::Event
       Add(events, v1::Event::KIND_STREAM_BACK, now_ns,
           "the " + name + " Wiimote reports its arm again");
     } else {
-      Add(events, v1::Event::KIND_STREAM_LOST, now_ns, HandWords(now, name));
+      Add(events, v1::Event::KIND_STREAM_LOST, now_ns, HandText(now, name));
     }
   }
 }
@@ -40,17 +40,17 @@ void PoseEvents::AddHands(const PoseFrame& frame, std::int64_t now_ns, v1::Event
 v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
                                std::int64_t now_ns) {
   v1::Events events;
-  const bool told = frame.input.feet_measured[0] && frame.input.feet_measured[1];
-  const bool worn = frame.input.source == PoseSource::kInsoles;
+  const bool measured = frame.input.feet_measured[0] && frame.input.feet_measured[1];
+  const bool on_insoles = frame.input.source == PoseSource::kInsoles;
   const bool next_subject = has_last_ && frame.subject_number != subject_number_;
-  const std::string source = worn ? "insole" : "board";
+  const std::string source = on_insoles ? "insole" : "board";
   if (has_last_ && frame.input.source != source_) {
     Add(events, v1::Event::KIND_COMMAND, now_ns, "the pose follows the " + source + "s");
   }
-  if (told != told_) {
-    Add(events, told ? v1::Event::KIND_STREAM_BACK : v1::Event::KIND_STREAM_LOST, now_ns,
-        told ? "both " + source + "s are there"
-             : (worn ? "an " : "a ") + source + " is lost: the pose coasts");
+  if (measured != measured_) {
+    Add(events, measured ? v1::Event::KIND_STREAM_BACK : v1::Event::KIND_STREAM_LOST, now_ns,
+        measured ? "both " + source + "s are there"
+                 : (on_insoles ? "an " : "a ") + source + " is lost: the pose coasts");
   }
   if (next_subject) {
     Add(events, v1::Event::KIND_COMMAND, now_ns,
@@ -67,7 +67,7 @@ v1::Events PoseEvents::Between(const PoseFrame& frame, const Subject& subject,
   }
   AddHands(frame, now_ns, events);
   has_last_ = true;
-  told_ = told;
+  measured_ = measured;
   source_ = frame.input.source;
   calibrated_ = frame.t_pose.complete;
   subject_number_ = frame.subject_number;

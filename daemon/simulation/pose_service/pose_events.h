@@ -20,7 +20,7 @@ class PoseEvents {
 
   std::array<HandTrouble, reconstruction::kHands> hand_trouble_{};
   bool has_last_ = false;
-  bool told_ = false;
+  bool measured_ = false;
   PoseSource source_ = PoseSource::kBoards;
   bool calibrated_ = false;
   std::uint64_t subject_number_ = 0;

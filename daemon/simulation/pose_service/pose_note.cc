@@ -22,11 +22,11 @@ void Add(std::string& note, const std::string& words) {
   note += words;
 }
 
-bool IsWorn(const PoseFrame& frame) { return frame.input.source == PoseSource::kInsoles; }
+bool FollowsInsoles(const PoseFrame& frame) { return frame.input.source == PoseSource::kInsoles; }
 
 std::string LostSource(const PoseFrame& frame) {
   if (!frame.input.feet_measured[0] && !frame.input.feet_measured[1]) {
-    return IsWorn(frame)
+    return FollowsInsoles(frame)
                ? "nothing comes from the insoles: are both on? the feet are guessed, less by the "
                  "second"
                : "nothing comes from the boards: are both on, and assigned as left and right?";
@@ -34,7 +34,7 @@ std::string LostSource(const PoseFrame& frame) {
   for (std::size_t side = 0; side < 2; ++side) {
     if (!frame.input.feet_measured[side]) {
       return std::string("nothing comes from the ") + kSides[side] +
-             (IsWorn(frame) ? " insole" : " board");
+             (FollowsInsoles(frame) ? " insole" : " board");
     }
   }
   return "";
@@ -43,7 +43,7 @@ std::string LostSource(const PoseFrame& frame) {
 std::string Awaited(const PoseFrame& frame) {
   const double total_n = frame.input.load_n[0] + frame.input.load_n[1];
   if (total_n < KilogramsToNewtons(TPoseCalibration::kLeastMassKg)) {
-    return IsWorn(frame) ? "stand on both feet" : "step on, one foot on each board";
+    return FollowsInsoles(frame) ? "stand on both feet" : "step on, one foot on each board";
   }
   for (std::size_t side = 0; side < 2; ++side) {
     if (frame.input.load_n[side] < TPoseCalibration::kLeastFootShare * total_n) {
@@ -72,26 +72,27 @@ void AddFeet(const PoseFrame& frame, std::string& note) {
     return !foot.contact && foot.airborne_s > kAwayS;
   };
   if (away(feet[0]) && away(feet[1])) {
-    return Add(note, IsWorn(frame) ? "both feet are in the air" : "nobody stands on the boards");
+    return Add(note,
+               FollowsInsoles(frame) ? "both feet are in the air" : "nobody stands on the boards");
   }
   for (std::size_t side = 0; side < 2; ++side) {
     if (!away(feet[side])) continue;
     Add(note, std::string("the ") + kSides[side] + " foot is off " +
-                  (IsWorn(frame) ? "the ground for " : "its board for ") +
+                  (FollowsInsoles(frame) ? "the ground for " : "its board for ") +
                   Fixed(feet[side].airborne_s, 1) + " s: its place is a guess");
   }
 }
 
 /// Which hands have no measurement, and why.
 void AddHands(const PoseFrame& frame, std::string& note) {
-  const auto told = [&](std::size_t side) {
+  const auto measured = [&](std::size_t side) {
     return frame.input.hands_valid[side] || frame.input.arms_valid[side];
   };
   const auto& trouble = frame.input.hand_trouble;
   const bool wiimotes = trouble[0] != HandTrouble::kNone || trouble[1] != HandTrouble::kNone;
-  if (!told(0) && !told(1) && !wiimotes) return Add(note, "no hand is seen");
+  if (!measured(0) && !measured(1) && !wiimotes) return Add(note, "no hand is seen");
   for (std::size_t side = 0; side < kSides.size(); ++side) {
-    if (!told(side)) Add(note, HandWords(trouble[side], kSides[side]));
+    if (!measured(side)) Add(note, HandText(trouble[side], kSides[side]));
   }
 }
 
@@ -99,15 +100,15 @@ void AddMass(const PoseFrame& frame, const Subject& subject, std::string& note) 
   if (subject.mass_kg <= 0 || frame.t_pose.mass_kg <= 0) return;
   const double difference = frame.t_pose.mass_kg / subject.mass_kg - 1;
   if (std::abs(difference) <= kMassTolerance) return;
-  Add(note, std::string("the ") + (IsWorn(frame) ? "insoles" : "boards") + " say " +
+  Add(note, std::string("the ") + (FollowsInsoles(frame) ? "insoles" : "boards") + " say " +
                 Fixed(frame.t_pose.mass_kg, 1) + " kg, the subject's file " +
                 Fixed(subject.mass_kg, 1) + " kg: is it " + subject.code +
-                (IsWorn(frame) ? "?" : ", and are both boards tared?"));
+                (FollowsInsoles(frame) ? "?" : ", and are both boards tared?"));
 }
 
 }  // namespace
 
-std::string HandWords(HandTrouble trouble, const std::string& side) {
+std::string HandText(HandTrouble trouble, const std::string& side) {
   switch (trouble) {
     case HandTrouble::kNone:
       return "the " + side + " hand is not seen";
@@ -125,15 +126,15 @@ std::string HandWords(HandTrouble trouble, const std::string& side) {
 
 std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
   std::string note = LostSource(frame);
-  const bool told = note.empty();
+  const bool measured = note.empty();
   if (frame.input.insoles_idle)
     Add(note, "insoles need the best mode without lag: they are not followed");
   if (!frame.t_pose.complete) {
-    if (told) Add(note, Awaited(frame));
+    if (measured) Add(note, Awaited(frame));
     return note;
   }
-  if (told) AddFeet(frame, note);
-  if (told && frame.momentum.valid && !frame.valid)
+  if (measured) AddFeet(frame, note);
+  if (measured && frame.momentum.valid && !frame.valid)
     Add(note, "what is measured fits no pose that the model knows: this one is a guess");
   AddHands(frame, note);
   AddMass(frame, subject, note);

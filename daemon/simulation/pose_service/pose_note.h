@@ -12,7 +12,7 @@ namespace footing::pose_service {
 inline constexpr double kMassTolerance = 0.03;
 
 /// Why there is no measurement of the hand of that side ("left").
-std::string HandWords(HandTrouble trouble, const std::string& side);
+std::string HandText(HandTrouble trouble, const std::string& side);
 
 /// What is wrong and what to do about it, for a person; empty when all is well.
 std::string PoseNote(const PoseFrame& frame, const Subject& subject);

@@ -79,7 +79,7 @@ void SetBody(const PoseFrame& frame, const Subject& subject, const std::string& 
   }
   body.set_hands_source(HandsSource(frame, tracker));
   body.set_contact_source(frame.input.source == PoseSource::kInsoles ? "insoles" : "boards");
-  for (const bool told : frame.input.feet_measured) body.add_feet_told(told);
+  for (const bool measured : frame.input.feet_measured) body.add_feet_told(measured);
 }
 
 template <typename Way>

@@ -140,7 +140,7 @@ void PoseSensors::TakeInsole(const v1::ContactSample& sample, std::int64_t now_n
   }
 }
 
-void PoseSensors::Judge(std::int64_t now_ns) {
+void PoseSensors::DropOld(std::int64_t now_ns) {
   inputs_.simulated = false;
   for (std::size_t side = 0; side < boards_.size(); ++side) {
     Board& board = boards_[side];
@@ -149,16 +149,16 @@ void PoseSensors::Judge(std::int64_t now_ns) {
     inputs_.impulses[side] = board.seen ? board.meter.impulse() : board::BoardImpulse{};
     inputs_.simulated |= board.seen && board.simulated;
   }
-  const auto judge = [&](Worn& worn, double timeout_s) {
-    if (worn.seen && IsOld(worn.seen_ns, now_ns, timeout_s)) worn.seen = false;
-    inputs_.simulated |= worn.seen && worn.simulated;
-    return worn.seen;
+  const auto is_live = [&](BodySource& source, double timeout_s) {
+    if (source.seen && IsOld(source.seen_ns, now_ns, timeout_s)) source.seen = false;
+    inputs_.simulated |= source.seen && source.simulated;
+    return source.seen;
   };
   for (std::size_t side = 0; side < hands_.size(); ++side) {
-    const bool seen = judge(hands_[side], kHandTimeoutS);
+    const bool seen = is_live(hands_[side], kHandTimeoutS);
     if (seen) inputs_.sensors.hands[side] = tracks_[side].At(NanosecondsToSeconds(now_ns));
     inputs_.sensors.hands[side].valid = seen;
-    inputs_.insoles[side].valid = judge(insoles_[side], kInsoleTimeoutS);
+    inputs_.insoles[side].valid = is_live(insoles_[side], kInsoleTimeoutS);
   }
 }
 
@@ -177,8 +177,8 @@ void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
     TakeHand(sample, NanosecondsToSeconds(tick.host_ns() - sample.sampled_ns()), now_ns);
   }
   for (const v1::MotionSample& sample : tick.motion().samples()) arms_.Take(sample, now_ns);
-  Judge(now_ns);
-  arms_.Tell(now_ns, inputs_);
+  DropOld(now_ns);
+  arms_.Report(now_ns, inputs_);
   inputs_.sensor_epoch = tick.epoch();
   inputs_.sensor_sequence = tick.sequence();
   out_.Write(inputs_);

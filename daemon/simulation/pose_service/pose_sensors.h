@@ -56,7 +56,7 @@ class PoseSensors {
     board::ImpulseMeter meter;
   };
   /// A hand or an insole.
-  struct Worn {
+  struct BodySource {
     bool seen = false;
     std::int64_t seen_ns = 0;
     bool simulated = false;
@@ -69,15 +69,15 @@ class PoseSensors {
   /// `age_s` of its exposure.
   void TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
   void TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns);
-  void Judge(std::int64_t now_ns);
+  void DropOld(std::int64_t now_ns);
 
   const std::string wanted_rig_;
   std::string followed_rig_;
   exchange::Latest<PoseInputs>& out_;
   std::array<Board, momentum::kFeet> boards_{};
-  std::array<Worn, 2> hands_{};
+  std::array<BodySource, 2> hands_{};
   std::array<reconstruction::HandTrack, reconstruction::kHands> tracks_;
-  std::array<Worn, momentum::kFeet> insoles_{};
+  std::array<BodySource, momentum::kFeet> insoles_{};
   std::string tracker_;
   v1::SetupState setup_;  ///< As published last.
   PoseArms arms_;

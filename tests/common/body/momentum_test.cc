@@ -98,19 +98,19 @@ TEST(Momentum, TheCentroidalMatrixTimesTheRatesIsTheMomentum) {
   const Moving moving(body.skeleton.dof, 6);
   Kinematics at(body.skeleton);
   JointVelocities velocities(body.skeleton);
-  CompositeMasses room(body.skeleton);
+  CompositeMasses workspace(body.skeleton);
   CentroidalMatrix A(6, body.skeleton.dof);
   ComputeKinematics(body.skeleton, moving.q, at);
   ComputeVelocities(body.skeleton, at, moving.q_dot, velocities);
   const Momentum momentum = ComputeMomentum(body, at, velocities);
-  const Eigen::Vector3d com = ComputeCentroidalMatrix(body, at, room, A);
+  const Eigen::Vector3d com = ComputeCentroidalMatrix(body, at, workspace, A);
   const Eigen::VectorXd product = A * moving.q_dot;
   EXPECT_LT((com - momentum.p_WC).norm(), 1e-12);
   EXPECT_LT((product.head<3>() - momentum.linear_W).norm(), 1e-10);
   EXPECT_LT((product.tail<3>() - momentum.angular_W).norm(), 1e-10);
 
   Eigen::Matrix3Xd J(3, body.skeleton.dof);
-  EXPECT_LT((ComJacobian(body, at, room, J) - momentum.p_WC).norm(), 1e-12);
+  EXPECT_LT((ComJacobian(body, at, workspace, J) - momentum.p_WC).norm(), 1e-12);
   EXPECT_LT((J - A.topRows<3>() / 70).norm(), 1e-12);
 }
 
@@ -118,10 +118,10 @@ TEST(Momentum, TheComJacobianIsTheDifferenceOfCentres) {
   const Body body = StandardBody();
   const Moving moving(body.skeleton.dof, 7);
   Kinematics at(body.skeleton);
-  CompositeMasses room(body.skeleton);
+  CompositeMasses workspace(body.skeleton);
   Eigen::Matrix3Xd J(3, body.skeleton.dof);
   ComputeKinematics(body.skeleton, moving.q, at);
-  ComJacobian(body, at, room, J);
+  ComJacobian(body, at, workspace, J);
   const double h = 1e-6;
   for (int dof = 0; dof < body.skeleton.dof; ++dof) {
     const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(body.skeleton.dof, dof);
@@ -179,7 +179,7 @@ TEST(Momentum, NothingAllocatesOnceTheRoomIsMade) {
   Kinematics at(body.skeleton);
   JointVelocities velocities(body.skeleton);
   JointAccelerations accelerations(body.skeleton);
-  CompositeMasses room(body.skeleton);
+  CompositeMasses workspace(body.skeleton);
   CentroidalMatrix A(6, body.skeleton.dof);
   Eigen::Matrix3Xd J(3, body.skeleton.dof);
   Eigen::VectorXd q = moving.q;
@@ -189,8 +189,8 @@ TEST(Momentum, NothingAllocatesOnceTheRoomIsMade) {
   ComputeAccelerations(body.skeleton, at, moving.q_dot, moving.q_ddot, velocities, accelerations);
   ComputeMomentum(body, at, velocities);
   ComputeMomentumRate(body, at, velocities, accelerations);
-  ComputeCentroidalMatrix(body, at, room, A);
-  ComJacobian(body, at, room, J);
+  ComputeCentroidalMatrix(body, at, workspace, A);
+  ComJacobian(body, at, workspace, J);
   PointJacobian(body.skeleton, at, 5, at.p_WJ[5], J);
   OrientationJacobian(body.skeleton, at, 5, J);
   Clamp(body.skeleton, q);

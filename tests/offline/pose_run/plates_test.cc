@@ -95,7 +95,7 @@ TEST(Plates, AreFoundUnderTheFeetWhereverTheLaboratoryIs) {
   EXPECT_NEAR(report.plates[1].loaded_s[0], 4, 0.02);
   EXPECT_LT(report.plates[0].beside_m, 0.04);  // No further than a sole is wide.
   EXPECT_NEAR(report.mass_kg, kMassKg, 1);
-  EXPECT_EQ(report.carried_share, 1);
+  EXPECT_EQ(report.supported_share, 1);
   EXPECT_TRUE(report.warnings.empty());
   // Forces that inverse dynamics made are those that it makes: within what half a step of the
   // coarser rate changes.
@@ -162,7 +162,7 @@ TEST(Plates, PerformOnlyWhatTheyCarry) {
   }
   const auto made = OnPlates(clip, forces);
   ASSERT_TRUE(made.ok()) << made.error().message;
-  EXPECT_NEAR(made->report.carried_share, 0.5, 0.03);
+  EXPECT_NEAR(made->report.supported_share, 0.5, 0.03);
   EXPECT_NEAR(made->report.begin_s, 2, 0.11);
   ASSERT_FALSE(made->report.warnings.empty());
   EXPECT_NE(made->report.warnings[0].find("chair"), std::string::npos);

@@ -105,7 +105,7 @@ TEST(PoseRun, AWiimoteTellsReadingsAndNoPlaces) {
   model.weights.setZero(arms::kDirections, arms::ArmFeatures::kCount);
   model.offset << 0, 1, 0, 0, 0, 1, 0, 1, 0;
   model.covariance.setIdentity();
-  TellArms(model, run);
+  EstimateArms(model, run);
   EXPECT_FALSE(run.frames[300].inputs.arms[0].valid);
   EXPECT_TRUE(run.frames[340].inputs.arms[0].valid);
   EXPECT_LT((run.frames[340].inputs.arms[1].directions.upper + Eigen::Vector3d::UnitY()).norm(),

@@ -16,30 +16,30 @@ stream::GaitState Running(bool pending = false, std::uint64_t falls = 1) {
 }
 
 TEST(Tracking, AShortCommandIsNotJudgedHoweverItWent) {
-  EXPECT_EQ(Judge(kRunAtTwo, 12.999, Running(), 2), Tracking::kShort);
-  EXPECT_EQ(Judge(kRunAtTwo, 12.999, Running(true, 5), 9), Tracking::kShort);
-  EXPECT_EQ(Judge(kRunAtTwo, 13, Running(), 2), Tracking::kTracked);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 12.999, Running(), 2), Tracking::kShort);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 12.999, Running(true, 5), 9), Tracking::kShort);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 13, Running(), 2), Tracking::kTracked);
 }
 
 TEST(Tracking, TheSpeedMustBeKeptToAQuarterOfAMetreASecond) {
-  EXPECT_EQ(Judge(kRunAtTwo, 14, Running(), 2.24), Tracking::kTracked);
-  EXPECT_EQ(Judge(kRunAtTwo, 14, Running(), 1.76), Tracking::kTracked);
-  EXPECT_EQ(Judge(kRunAtTwo, 14, Running(), 2.26), Tracking::kOffSpeed);
-  EXPECT_EQ(Judge(kRunAtTwo, 14, Running(), 1.74), Tracking::kOffSpeed);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 14, Running(), 2.24), Tracking::kTracked);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 14, Running(), 1.76), Tracking::kTracked);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 14, Running(), 2.26), Tracking::kOffSpeed);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 14, Running(), 1.74), Tracking::kOffSpeed);
 }
 
 TEST(Tracking, AnotherGaitAtTheRightSpeedIsNotWhatWasTold) {
-  EXPECT_EQ(Judge(kRunAtTwo, 14, Running(true), 2), Tracking::kOtherGait);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 14, Running(true), 2), Tracking::kOtherGait);
 }
 
 TEST(Tracking, AFallIsNotMadeGoodByTheRightSpeedAfterIt) {
-  EXPECT_EQ(Judge(kRunAtTwo, 14, Running(false, 2), 2), Tracking::kFell);
+  EXPECT_EQ(CheckTracking(kRunAtTwo, 14, Running(false, 2), 2), Tracking::kFell);
 }
 
 TEST(Tracking, AFallBeforeTheCommandDoesNotCount) {
   GivenCommand given = kRunAtTwo;
   given.falls_before = 7;
-  EXPECT_EQ(Judge(given, 14, Running(false, 7), 2), Tracking::kTracked);
+  EXPECT_EQ(CheckTracking(given, 14, Running(false, 7), 2), Tracking::kTracked);
 }
 
 TEST(SpeedOverAStep, IsTheMeanOfTheLastHalfSecond) {

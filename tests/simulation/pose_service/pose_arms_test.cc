@@ -55,7 +55,7 @@ struct PoseArmsTest : testing::Test {
       roll_rad += turn_radps * kPeriodS;
       if (left_too) Take(kLeft, turn_radps);
       Take(kRight, turn_radps);
-      arms.Tell(now_ns, inputs);
+      arms.Report(now_ns, inputs);
     }
   }
   void TakeTPose() {
@@ -139,14 +139,14 @@ TEST_F(PoseArmsTest, ANewTPoseMakesBothUnknownUntilItIsTaken) {
 TEST_F(PoseArmsTest, AWiimoteWithoutMotionPlusAndOneWithoutAModelAreNamed) {
   PoseArms without_model{std::nullopt};
   without_model.Bind(0, kLeft);
-  without_model.Tell(now_ns, inputs);
+  without_model.Report(now_ns, inputs);
   EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kNoModel);
   EXPECT_EQ(inputs.hand_trouble[1], HandTrouble::kNone) << "none is there";
   v1::MotionSample sample;
   sample.set_device(kLeft);
   sample.set_sampled_ns(now_ns);
   arms.Take(sample, now_ns);
-  arms.Tell(now_ns, inputs);
+  arms.Report(now_ns, inputs);
   EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kNoGyroscope);
   EXPECT_EQ(inputs.hand_trouble[1], HandTrouble::kSilent);
   EXPECT_FALSE(inputs.sensors.arms[0].valid);

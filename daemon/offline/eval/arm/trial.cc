@@ -18,11 +18,11 @@ using nlohmann::ordered_json;
 /// One way to estimate an arm, against the truth.
 class ArmScore {
  public:
-  void Add(const arms::ArmGeometry& geometry, const arms::ArmDirections& told,
+  void Add(const arms::ArmGeometry& geometry, const arms::ArmDirections& estimate,
            const arms::ArmDirections& truth, const Eigen::Vector3d& hand_m) {
-    shoulder_.Add(RadiansToDegrees(arms::ShoulderError(told, truth)));
-    elbow_.Add(RadiansToDegrees(arms::ElbowError(told, truth)));
-    hand_.Add(100 * (geometry.Hand(told) - hand_m).norm());
+    shoulder_.Add(RadiansToDegrees(arms::ShoulderError(estimate, truth)));
+    elbow_.Add(RadiansToDegrees(arms::ElbowError(estimate, truth)));
+    hand_.Add(100 * (geometry.Hand(estimate) - hand_m).norm());
   }
   ordered_json Json() const {
     return {{"shoulder_error_deg", shoulder_.mean()},
@@ -38,10 +38,10 @@ class ArmScore {
 /// How far the estimated rotation of a hand since the T-pose is off, in all and of its up alone.
 class TurnScore {
  public:
-  void Add(const Eigen::Matrix3d& told, const Eigen::Matrix3d& truth) {
-    const double cosine = ((told.transpose() * truth).trace() - 1) / 2;
+  void Add(const Eigen::Matrix3d& estimate, const Eigen::Matrix3d& truth) {
+    const double cosine = ((estimate.transpose() * truth).trace() - 1) / 2;
     all_.Add(RadiansToDegrees(std::acos(std::clamp(cosine, -1.0, 1.0))));
-    const double level = told.row(2).dot(truth.row(2));
+    const double level = estimate.row(2).dot(truth.row(2));
     inclination_.Add(RadiansToDegrees(std::acos(std::clamp(level, -1.0, 1.0))));
   }
   double mean_deg() const { return all_.mean(); }
@@ -76,10 +76,10 @@ class ArmTrial {
         }
       }
       if (i == run_.aligned) tracker_.Align();
-      const auto& told = tracker_.Advance(step_s);
+      const auto& estimates = tracker_.Advance(step_s);
       if (i < first) continue;
       body::ComputeKinematics(run_.body.skeleton, frame.q, at_);
-      for (std::size_t arm = 0; arm < arms::kArms; ++arm) Judge(arm, told[arm]);
+      for (std::size_t arm = 0; arm < arms::kArms; ++arm) Score(arm, estimates[arm]);
     }
     return Json(run_.frames.size() - first);
   }
@@ -89,28 +89,28 @@ class ArmTrial {
     return at_.R_WJ[static_cast<std::size_t>(geometry_[arm].fist.joint)];
   }
 
-  void Judge(std::size_t arm, const arms::ArmEstimate& told) {
+  void Score(std::size_t arm, const arms::ArmEstimate& estimate) {
     const arms::ArmGeometry& geometry = geometry_[arm];
     const arms::ArmDirections truth = geometry.Directions(at_);
     const auto fist = static_cast<std::size_t>(geometry.fist.joint);
     const Eigen::Vector3d hand_m = body::Place(geometry.fist, at_.R_WJ[fist], at_.p_WJ[fist]) -
                                    at_.p_WJ[static_cast<std::size_t>(geometry.shoulder)];
-    told_.Add(geometry, told.directions, truth, hand_m);
+    estimate_.Add(geometry, estimate.directions, truth, hand_m);
     still_.Add(geometry, arm == 1 ? arms::Mirrored(mean_) : mean_, truth, hand_m);
     turn_.Add(tracker_.hand(arm).turn_W, HandAt(arm) * rest_[arm]);
     const auto add = [this](const Eigen::Vector3d& error, const Eigen::Vector3d& sd) {
       nees_ += error.cwiseQuotient(sd).squaredNorm() / 9;
     };
-    add(told.directions.upper - truth.upper, told.upper_sd);
-    add(told.directions.hinge - truth.hinge, told.hinge_sd);
-    add(told.directions.forearm - truth.forearm, told.forearm_sd);
+    add(estimate.directions.upper - truth.upper, estimate.upper_sd);
+    add(estimate.directions.hinge - truth.hinge, estimate.hinge_sd);
+    add(estimate.directions.forearm - truth.forearm, estimate.forearm_sd);
     ++judged_;
-    finite_ = finite_ && arms::Stacked(told.directions).allFinite();
+    finite_ = finite_ && arms::Stacked(estimate.directions).allFinite();
   }
 
   ordered_json Json(std::size_t frames) const {
     ordered_json json = {{"frames", frames}, {"rate_hz", run_.rate_hz}};
-    json.update(told_.Json());
+    json.update(estimate_.Json());
     json["attitude_error_deg"] = turn_.mean_deg();
     json["inclination_error_deg"] = turn_.inclination_deg();
     json["clipped_share"] = static_cast<double>(clipped_) / static_cast<double>(readings_);
@@ -126,7 +126,7 @@ class ArmTrial {
   std::array<Eigen::Matrix3d, arms::kArms> rest_;
   body::Kinematics at_;
   arms::ArmDirections mean_;
-  ArmScore told_, still_;
+  ArmScore estimate_, still_;
   TurnScore turn_;
   std::size_t clipped_ = 0, readings_ = 0, judged_ = 0;
   double nees_ = 0;

@@ -142,7 +142,7 @@ Result<nlohmann::json> EvaluateMounting(const Options& options) {
     return UsageError("--standing and --walking belong together");
   }
   if (options.standing.empty()) {
-    return MeasureMounting(MadeWalk(), options.mounting_trials, options.seed);
+    return MeasureMounting(SyntheticWalk(), options.mounting_trials, options.seed);
   }
   const auto walk = RecordedWalk(options.standing, options.walking);
   if (!walk) return walk.error();

@@ -63,7 +63,7 @@ Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, Outcome&
     if (time_s >= next_s) {
       const stream::GaitState& state = engine->Output().gait;
       if (given.time_s > 0) {
-        const Tracking became = tracking::Judge(given, time_s, state, speed.mean_mps());
+        const Tracking became = tracking::CheckTracking(given, time_s, state, speed.mean_mps());
         ++outcome.commands[static_cast<std::size_t>(became)];
       }
       next_s = time_s + random.Uniform(0.5, 4);

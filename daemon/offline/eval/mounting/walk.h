@@ -36,7 +36,7 @@ struct MountingWalk {
 
 /// Two wrists by common/virtual/wrists: swings of 0.9, 1.2 and 1.6 Hz, inclined by up to 15
 /// degrees.
-MountingWalk MadeWalk();
+MountingWalk SyntheticWalk();
 
 /// Two shins of a person on motion capture: `standing` and `walking` are TRC files with the same
 /// markers (metres, y up; names as OpenCap's: L_knee, L_ankle, L_shank_antsup, r_...; L.ASIS,

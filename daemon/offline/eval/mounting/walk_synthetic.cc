@@ -7,7 +7,7 @@
 
 namespace footing::eval {
 
-MountingWalk MadeWalk() {
+MountingWalk SyntheticWalk() {
   using wrists::Segment;
   constexpr double kStillS = 2.5;
   constexpr double kStepHz = 0.9;

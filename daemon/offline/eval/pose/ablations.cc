@@ -11,21 +11,21 @@ namespace {
 using nlohmann::ordered_json;
 using reconstruction::Mode;
 
-constexpr std::array kTold{"mpjpe_cm",
-                           "mpjpe_p95_cm",
-                           "mpjpe_root_relative_cm",
-                           "mpjpe_legs_cm",
-                           "mpjpe_torso_cm",
-                           "mpjpe_arms_cm",
-                           "joint_angle_error_deg",
-                           "com_vertical_rms_cm",
-                           "com_horizontal_rms_cm",
-                           "pose_com_vertical_rms_cm",
-                           "pose_com_horizontal_rms_cm",
-                           "foot_position_rms_cm",
-                           "foot_skate_cm_per_s",
-                           "solve_us_p50",
-                           "finite"};
+constexpr std::array kReported{"mpjpe_cm",
+                               "mpjpe_p95_cm",
+                               "mpjpe_root_relative_cm",
+                               "mpjpe_legs_cm",
+                               "mpjpe_torso_cm",
+                               "mpjpe_arms_cm",
+                               "joint_angle_error_deg",
+                               "com_vertical_rms_cm",
+                               "com_horizontal_rms_cm",
+                               "pose_com_vertical_rms_cm",
+                               "pose_com_horizontal_rms_cm",
+                               "foot_position_rms_cm",
+                               "foot_skate_cm_per_s",
+                               "solve_us_p50",
+                               "finite"};
 
 struct Ablation {
   const char* without;
@@ -46,7 +46,7 @@ Result<ordered_json> Row(const pose_run::PoseRun& run, const reconstruction::Mod
   if (!trial) return trial.error();
   ordered_json row = {{"mode", options.mode == Mode::kBest ? "best" : "paper"},
                       {"without", without}};
-  for (const char* name : kTold) {
+  for (const char* name : kReported) {
     if (trial->contains(name)) row[name] = (*trial)[name];
   }
   return row;
@@ -54,7 +54,7 @@ Result<ordered_json> Row(const pose_run::PoseRun& run, const reconstruction::Mod
 
 }  // namespace
 
-Result<ordered_json> JudgeAblations(const pose_run::PoseRun& run,
+Result<ordered_json> ScoreAblations(const pose_run::PoseRun& run,
                                     const reconstruction::Models& models,
                                     const reconstruction::Options& options) {
   ordered_json rows = ordered_json::array();

@@ -19,7 +19,7 @@ double Still(const pose_run::PoseRun& run, const Eigen::VectorXd& q, std::size_t
 
 }  // namespace
 
-Result<ordered_json> JudgeBaselines(const pose_run::PoseRun& run,
+Result<ordered_json> ScoreBaselines(const pose_run::PoseRun& run,
                                     const reconstruction::Models& models,
                                     const reconstruction::Options& options, std::size_t start) {
   ordered_json json;

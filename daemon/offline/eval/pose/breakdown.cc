@@ -29,14 +29,15 @@ PoseBreakdown::PoseBreakdown(const pose_run::PoseRun& run)
   }
 }
 
-void PoseBreakdown::Add(const reconstruction::Output& told, const PoseScore& score, std::size_t i) {
+void PoseBreakdown::Add(const reconstruction::Output& estimate, const PoseScore& score,
+                        std::size_t i) {
   const pose_run::Frame& frame = run_.frames[i];
   for (std::size_t f = 0; f < legs_.size(); ++f) {
     pose_run::LegError leg;
     for (std::size_t k = 0; k < legs_[f].size(); ++k) {
       const auto joint = static_cast<std::size_t>(legs_[f][k]);
       leg.error_m[k] = score.errors_m()[joint];
-      leg.sd_m[k] = told.joint_sd_m[joint];
+      leg.sd_m[k] = estimate.joint_sd_m[joint];
     }
     lift_offs_.Add(f, frame.feet[f].load_n, frame.feet[f].ankle_m, leg);
   }
@@ -45,7 +46,7 @@ void PoseBreakdown::Add(const reconstruction::Output& told, const PoseScore& sco
   if (activity < 0) return;
   Activity& one = activities_[static_cast<std::size_t>(activity)];
   one.mpjpe_cm.Add(score.last_mpjpe_cm());
-  one.com_vertical_cm.Add(100 * (told.com_W_m.z() - frame.com_m.z()));
+  one.com_vertical_cm.Add(100 * (estimate.com_W_m.z() - frame.com_m.z()));
 }
 
 ordered_json PoseBreakdown::Json() const {

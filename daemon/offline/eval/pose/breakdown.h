@@ -18,7 +18,7 @@ class PoseBreakdown {
   explicit PoseBreakdown(const pose_run::PoseRun& run);
 
   /// The output for frame `i`; `score` has just taken it.
-  void Add(const reconstruction::Output& told, const PoseScore& score, std::size_t i);
+  void Add(const reconstruction::Output& estimate, const PoseScore& score, std::size_t i);
 
   /// Fields lift_off, aloft, kick and, where the activities are given, by_activity.
   nlohmann::ordered_json Json() const;

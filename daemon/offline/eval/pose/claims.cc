@@ -106,7 +106,7 @@ double ConstantVelocityShare(const Eigen::MatrixXd& velocity, const Eigen::Matri
                              : 0;
 }
 
-ordered_json JudgeClaims(const pose_run::PoseRun& simulated) {
+ordered_json CheckClaims(const pose_run::PoseRun& simulated) {
   const auto start = static_cast<std::size_t>(pose_run::kStandS * simulated.rate_hz);
   std::vector<double> loads_n, true_m;
   double weight_n = 0;

@@ -17,7 +17,7 @@ namespace footing::eval {
 /// `outlier`: what one frame of 50 N too much leaves in the height of equation (2) with the decay
 /// and without it, 1, 5 and 10 s later; on a body that stands still, and in the motion (as the
 /// difference from the same run without the outlier, whose own error is beside it).
-nlohmann::ordered_json JudgeClaims(const pose_run::PoseRun& simulated);
+nlohmann::ordered_json CheckClaims(const pose_run::PoseRun& simulated);
 
 /// Share of `frames` (a column each) in runs longer than `least_run_s` in which |velocity| >
 /// `least_speed` and |acceleration| < `most_acceleration`; sizes over all rows.

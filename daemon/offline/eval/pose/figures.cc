@@ -24,7 +24,7 @@ using reconstruction::Mode;
 constexpr double kWindowS = 12;
 
 /// The output of one reconstruction for every evaluated frame.
-struct Told {
+struct ReconstructedMotion {
   std::string name;
   std::vector<Eigen::VectorXd> q;
   std::vector<Eigen::Vector3d> com_m;
@@ -41,18 +41,18 @@ struct Show {
   double Time(std::size_t i) const { return static_cast<double>(i) / run.rate_hz; }
 };
 
-Result<Told> Tell(const Show& show, const std::string& name,
-                  const reconstruction::Options& options) {
+Result<ReconstructedMotion> Reconstruct(const Show& show, const std::string& name,
+                                        const reconstruction::Options& options) {
   auto made = reconstruction::Reconstruction::Create(show.run.body, show.models, options);
   if (!made) return made.error();
-  Told told{name, {}, {}};
+  ReconstructedMotion motion{name, {}, {}};
   for (std::size_t i = 0; i < show.run.frames.size(); ++i) {
     const auto& output = made->Advance(show.run.frames[i].inputs);
     if (i < show.start) continue;
-    told.q.push_back(output.q);
-    told.com_m.push_back(output.com_W_m);
+    motion.q.push_back(output.q);
+    motion.com_m.push_back(output.com_W_m);
   }
-  return told;
+  return motion;
 }
 
 struct Window {
@@ -89,11 +89,11 @@ plot::Curve CurveOf(const Show& show, const Window& window, const std::string& n
 }
 
 std::string ComPlot(const Show& show, const std::string& title, int axis,
-                    const std::vector<Told>& told) {
+                    const std::vector<ReconstructedMotion>& motions) {
   const auto truth = [&](std::size_t i) { return 100 * show.frame(i).com_m(axis); };
   const Window window = Liveliest(show, truth);
   std::vector<plot::Curve> curves{CurveOf(show, window, "motion capture", truth, true)};
-  for (const Told& one : told) {
+  for (const ReconstructedMotion& one : motions) {
     curves.push_back(CurveOf(
         show, window, one.name, [&](std::size_t i) { return 100 * one.com_m[i](axis); }, false));
   }
@@ -132,7 +132,8 @@ std::array<double, 4> ArmAngles(const body::Body& body, const Eigen::VectorXd& q
           RadiansToDegrees(turn), RadiansToDegrees(bend)};
 }
 
-std::array<std::string, 4> ArmPlots(const Show& show, const std::vector<Told>& told) {
+std::array<std::string, 4> ArmPlots(const Show& show,
+                                    const std::vector<ReconstructedMotion>& motions) {
   constexpr int kSide = 1;
   constexpr std::array kNames{"shoulder, outwards", "shoulder, forwards", "shoulder, turn",
                               "elbow, bend"};
@@ -148,7 +149,7 @@ std::array<std::string, 4> ArmPlots(const Show& show, const std::vector<Told>& t
   for (std::size_t k = 0; k < plots.size(); ++k) {
     const auto true_angle = [&](std::size_t i) { return truth[i][k]; };
     std::vector<plot::Curve> curves{CurveOf(show, window, "motion capture", true_angle, true)};
-    for (const Told& one : told) {
+    for (const ReconstructedMotion& one : motions) {
       const auto angle = [&](std::size_t i) {
         // A whole turn more is the same turn: the one nearest to the truth.
         const double raw = ArmAngles(body, one.q[i], kSide, at)[k];
@@ -181,11 +182,11 @@ plot::Sticks SticksOf(const body::Body& body, const Eigen::VectorXd& q) {
 }
 
 std::string Crouch(const Show& show, const pose_run::Crouch& crouch, const std::string& compared,
-                   const std::vector<Told>& told) {
+                   const std::vector<ReconstructedMotion>& motions) {
   const body::Body& body = show.run.body;
   const plot::Sticks truth = SticksOf(body, show.frame(crouch.frame - show.start).q);
   std::vector<plot::Panel> panels{{"motion capture", {}, truth}};
-  for (const Told& one : told) {
+  for (const ReconstructedMotion& one : motions) {
     panels.push_back({one.name, truth, SticksOf(body, one.q[crouch.frame - show.start])});
   }
   const std::string bend =
@@ -197,7 +198,7 @@ std::string Crouch(const Show& show, const pose_run::Crouch& crouch, const std::
 }
 
 struct Runs {
-  Told best, paper, without_boards, best_without_angular, paper_without_angular;
+  ReconstructedMotion best, paper, without_boards, best_without_angular, paper_without_angular;
 };
 
 Result<Runs> RunAll(const Show& show) {
@@ -214,7 +215,7 @@ Result<Runs> RunAll(const Show& show) {
   };
   Runs runs;
   const struct {
-    Told Runs::*told;
+    ReconstructedMotion Runs::*motion;
     const char* name;
     reconstruction::Options options;
   } all[] = {{&Runs::best, "best mode", best},
@@ -223,9 +224,9 @@ Result<Runs> RunAll(const Show& show) {
              {&Runs::best_without_angular, "best, without L", without_angular(best)},
              {&Runs::paper_without_angular, "paper, without L", without_angular(paper)}};
   for (const auto& one : all) {
-    auto told = Tell(show, one.name, one.options);
-    if (!told) return told.error();
-    runs.*one.told = std::move(*told);
+    auto motion = Reconstruct(show, one.name, one.options);
+    if (!motion) return motion.error();
+    runs.*one.motion = std::move(*motion);
   }
   return runs;
 }
@@ -249,7 +250,7 @@ Result<std::vector<std::string>> WriteFigures(const pose_run::PoseRun& run,
   const Show show{run, models, options, run.judged_from};
   auto runs = RunAll(show);
   if (!runs) return runs.error();
-  const std::vector<Told> modes{runs->best, runs->paper};
+  const std::vector<ReconstructedMotion> modes{runs->best, runs->paper};
   const auto arm = ArmPlots(show, {runs->best, runs->paper_without_angular});
   const pose_run::Crouch crouch = pose_run::DeepestCrouch(run, show.start);
   const std::vector<std::pair<std::string, std::string>> files{

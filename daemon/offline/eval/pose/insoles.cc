@@ -9,7 +9,7 @@ namespace footing::eval {
 
 using nlohmann::ordered_json;
 
-Result<ordered_json> JudgeInsoles(const pose_run::InsoleRun& run,
+Result<ordered_json> ScoreInsoles(const pose_run::InsoleRun& run,
                                   const reconstruction::Models& models,
                                   const reconstruction::Options& options) {
   auto made = reconstruction::InsoleWalk::Create(run.body, models, options);

@@ -10,7 +10,7 @@ namespace footing::eval {
 
 /// Runs the reconstruction over somebody who walks in insoles, from the T-pose's end on, and
 /// evaluates it root-relative; how far the root is off in W is beside it.
-Result<nlohmann::ordered_json> JudgeInsoles(const pose_run::InsoleRun& run,
+Result<nlohmann::ordered_json> ScoreInsoles(const pose_run::InsoleRun& run,
                                             const reconstruction::Models& models,
                                             const reconstruction::Options& options);
 

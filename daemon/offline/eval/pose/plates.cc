@@ -52,7 +52,7 @@ Result<ordered_json> Offline(const pose_run::PoseRun& run) {
 
 }  // namespace
 
-Result<ordered_json> JudgePlates(const pose_run::PlateRun& plates,
+Result<ordered_json> ScorePlates(const pose_run::PlateRun& plates,
                                  const reconstruction::Models& models,
                                  const reconstruction::Options& options, const Oracle& oracle) {
   const auto simulated = RunPoseTrial(plates.simulated, models, options, oracle);
@@ -60,7 +60,7 @@ Result<ordered_json> JudgePlates(const pose_run::PlateRun& plates,
   const pose_run::PlateReport& report = plates.report;
   ordered_json json = {{"begin_s", report.begin_s},
                        {"end_s", report.end_s},
-                       {"carried_share", report.carried_share},
+                       {"carried_share", report.supported_share},
                        {"mass_kg", report.mass_kg}};
   const double weight_n = plates.measured.body.mass_kg * kStandardGravityMps2;
   json["force_rms_percent"] = 100 * report.force_rms_n / weight_n;

@@ -10,7 +10,7 @@ namespace footing::eval {
 
 /// What the plates measured, the centre of mass along each axis, and the same reconstruction on
 /// simulated forces, over the same frames. Field `plates` of `pose --boards forces`.
-Result<nlohmann::ordered_json> JudgePlates(const pose_run::PlateRun& plates,
+Result<nlohmann::ordered_json> ScorePlates(const pose_run::PlateRun& plates,
                                            const reconstruction::Models& models,
                                            const reconstruction::Options& options,
                                            const Oracle& oracle);

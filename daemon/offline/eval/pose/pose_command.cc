@@ -80,7 +80,7 @@ Result<ordered_json> Evaluate(Flags flags) {
   if (flags.claims) {  // About the motion and equation (2): no models.
     const auto run = MakePoseScene(flags.scene);
     if (!run) return run.error();
-    return ordered_json{{"claims", JudgeClaims(*run)}};
+    return ordered_json{{"claims", CheckClaims(*run)}};
   }
   // A basis of the user's own may be of another layout.
   flags.scene.standard_layout = flags.models.empty();
@@ -89,7 +89,7 @@ Result<ordered_json> Evaluate(Flags flags) {
   if (flags.boards == "insoles") {
     const auto walk = MakeInsoleScene(flags.scene);
     if (!walk) return walk.error();
-    return JudgeInsoles(*walk, *models, flags.options);
+    return ScoreInsoles(*walk, *models, flags.options);
   }
   std::optional<pose_run::PlateRun> plates;
   if (flags.boards == "forces") {
@@ -103,10 +103,10 @@ Result<ordered_json> Evaluate(Flags flags) {
     if (!models->arm) {
       return UsageError("--hands wiimote: give a model of kind arm too (footing-train arm)");
     }
-    pose_run::TellArms(*models->arm, *run);
+    pose_run::EstimateArms(*models->arm, *run);
   }
   if (flags.ablations) {
-    const auto rows = JudgeAblations(*run, *models, flags.options);
+    const auto rows = ScoreAblations(*run, *models, flags.options);
     if (!rows) return Error{rows.error().kind, flags.scene.motion + ": " + rows.error().message};
     return ordered_json{{"ablations", *rows}};
   }
@@ -120,7 +120,7 @@ Result<ordered_json> Evaluate(Flags flags) {
   (*json)["boards_limited"] = flags.scene.settings.limited;
   (*json)["cop_outside_sensors_share"] = run->outside_share;
   if (plates) {
-    const auto judged = JudgePlates(*plates, *models, flags.options, oracle);
+    const auto judged = ScorePlates(*plates, *models, flags.options, oracle);
     if (!judged) return judged.error();
     (*json)["plates"] = *judged;
   }
@@ -130,7 +130,7 @@ Result<ordered_json> Evaluate(Flags flags) {
     (*json)["figures"] = *names;
   }
   if (!flags.baselines) return json;
-  const auto baselines = JudgeBaselines(*run, *models, flags.options, run->judged_from);
+  const auto baselines = ScoreBaselines(*run, *models, flags.options, run->judged_from);
   if (!baselines) return baselines.error();
   (*json)["baselines"] = *baselines;
   return json;

@@ -99,8 +99,8 @@ Result<Eigen::Vector2d> PlatesOffset(const PoseSceneOptions& options) {
                                   options.still, options.still_forces);
 }
 
-pose_run::Activities Tell(const pose_run::PoseRun& run,
-                          const std::vector<pose_run::ActivitySpan>& spans) {
+pose_run::Activities LabelActivities(const pose_run::PoseRun& run,
+                                     const std::vector<pose_run::ActivitySpan>& spans) {
   return spans.empty() ? pose_run::RuledActivities(run) : pose_run::LabelledActivities(run, spans);
 }
 
@@ -112,7 +112,7 @@ Result<pose_run::PoseRun> MakePoseScene(const PoseSceneOptions& options) {
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();
   auto run = pose_run::RunPose(loaded->motion, WithHeight(options, *loaded), options.motion);
-  if (run) run->activities = Tell(*run, *spans);
+  if (run) run->activities = LabelActivities(*run, *spans);
   return run;
 }
 
@@ -133,7 +133,7 @@ Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options) {
   auto plates = pose_run::RunOnPlates(loaded->motion, *forces, WithHeight(options, *loaded),
                                       options.motion, options.forces);
   if (!plates) return plates.error();
-  plates->measured.activities = Tell(plates->measured, *spans);
+  plates->measured.activities = LabelActivities(plates->measured, *spans);
   plates->simulated.activities = plates->measured.activities;
   return plates;
 }

@@ -27,14 +27,14 @@ constexpr double kRunOverM = 0.3;
 
 }  // namespace
 
-MadeUser::MadeUser(const stream::Track& track, const Skill& skill, Random random)
+SyntheticUser::SyntheticUser(const stream::Track& track, const Skill& skill, Random random)
     : track_(track),
       skill_(skill),
       reaction_s_(random.Uniform(0.2, 0.35)),
       favourite_mps_(std::min(skill.run_max_mps, random.Uniform(2.2, 3.0))) {}
 
 /// Steps a second as seen; before there are any, a walk's.
-double MadeUser::StepsPerSecond() const {
+double SyntheticUser::StepsPerSecond() const {
   const double time_s = seen_.back().time_s - seen_.front().time_s;
   const auto steps = static_cast<double>(seen_.back().steps - seen_.front().steps);
   return time_s > 1 && steps > 1 ? steps / time_s : 2.5;
@@ -42,7 +42,7 @@ double MadeUser::StepsPerSecond() const {
 
 /// Where the character will be when a command given now takes effect: from the old sight, with the
 /// turns wanted since.
-Sight MadeUser::Reckon(double now_s) const {
+Sight SyntheticUser::Reckon(double now_s) const {
   Sight old = seen_.front();
   for (const Sight& sight : seen_) {
     if (sight.time_s <= now_s - reaction_s_) old = sight;
@@ -65,7 +65,7 @@ Sight MadeUser::Reckon(double now_s) const {
   return old;
 }
 
-double MadeUser::CurvatureAhead(const Sight& now) const {
+double SyntheticUser::CurvatureAhead(const Sight& now) const {
   constexpr double kSpanM = 3;
   const terrain::TrackPlace place = terrain::Locate(track_, now.p_W_m);
   const double sight_m = 3 + 2.5 * std::max(0.0, now.speed_mps);
@@ -78,7 +78,7 @@ double MadeUser::CurvatureAhead(const Sight& now) const {
   return sharpest;
 }
 
-double MadeUser::Steer(const Sight& now) {
+double SyntheticUser::Steer(const Sight& now) {
   const terrain::TrackPlace place = terrain::Locate(track_, now.p_W_m);
   const double ahead_m = std::clamp(1.5 + now.speed_mps, 2.0, 5.0);
   const Eigen::Vector3d target = terrain::CentreAhead(track_, place, ahead_m).p_W_m;
@@ -93,7 +93,7 @@ double MadeUser::Steer(const Sight& now) {
 }
 
 /// True from a jump's command until the pit lies behind.
-bool MadeUser::ChooseJump(const Sight& now) {
+bool SyntheticUser::ChooseJump(const Sight& now) {
   const terrain::TrackPlace place = terrain::Locate(track_, now.p_W_m);
   const double here_m = terrain::LengthTo(track_, place);
   if (jump_until_m_ >= 0 && here_m > jump_until_m_ + 0.3) jump_until_m_ = -1;
@@ -113,7 +113,7 @@ bool MadeUser::ChooseJump(const Sight& now) {
   return false;
 }
 
-void MadeUser::ChooseGait(const Sight& now, biped::GaitCommand& command) {
+void SyntheticUser::ChooseGait(const Sight& now, biped::GaitCommand& command) {
   if (ChooseJump(now)) {
     command.gait = Gait::kJump;
     command.speed_mps = skill_.jump_mps;
@@ -137,7 +137,7 @@ void MadeUser::ChooseGait(const Sight& now, biped::GaitCommand& command) {
       std::clamp(turn_rad * kWalkStepsPerS / curvature, skill_.walk_min_mps, skill_.walk_max_mps);
 }
 
-biped::GaitCommand MadeUser::Want(const Sight& sight) {
+biped::GaitCommand SyntheticUser::Want(const Sight& sight) {
   seen_.push_back(sight);
   while (sight.time_s - seen_.front().time_s > kRememberedS) seen_.pop_front();
   while (!wanted_.empty() && sight.time_s - wanted_.front().time_s > kRememberedS) {

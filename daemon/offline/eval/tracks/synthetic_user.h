@@ -31,10 +31,10 @@ struct Sight {
 /// A user who drives along a track: sees the track 3 to 12 m ahead and the character as it was a
 /// reaction time ago, reckons with the commands given since, steers for the centre line, slows
 /// down to what a curve allows at 5 degrees a step, and jumps before pits.
-class MadeUser {
+class SyntheticUser {
  public:
   /// Draws reaction time (0.2 to 0.35 s) and favourite speed (2.2 to 3 m/s). `track` is borrowed.
-  MadeUser(const stream::Track& track, const Skill& skill, Random random);
+  SyntheticUser(const stream::Track& track, const Skill& skill, Random random);
 
   /// What the user now wants; call every 10 ms.
   biped::GaitCommand Want(const Sight& sight);

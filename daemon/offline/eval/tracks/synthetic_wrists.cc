@@ -23,17 +23,17 @@ double From(const mapping::Scaling& scaling, double to) {
 }
 
 void Approach(double to, double time_constant_s, double& value) {
-  value += (to - value) * (1 - std::exp(-MadeWrists::kReadingS / time_constant_s));
+  value += (to - value) * (1 - std::exp(-SyntheticWrists::kReadingS / time_constant_s));
 }
 
 }  // namespace
 
-MadeWrists::MadeWrists(const mapping::WristMapping& mapping, std::uint64_t seed)
+SyntheticWrists::SyntheticWrists(const mapping::WristMapping& mapping, std::uint64_t seed)
     : mapping_(mapping), chain_(true), random_(seed) {
   shape_.direction_S.normalize();
 }
 
-MadeWrists::Swing MadeWrists::For(const biped::GaitCommand& wanted) const {
+SyntheticWrists::Swing SyntheticWrists::For(const biped::GaitCommand& wanted) const {
   Swing swing = now_;
   swing.phase_rad = wanted.gait == Gait::kJump ? 0 : kPi;
   swing.amplitude_mps2 = kEverydayMps2;
@@ -58,12 +58,12 @@ MadeWrists::Swing MadeWrists::For(const biped::GaitCommand& wanted) const {
   return swing;
 }
 
-Eigen::Vector3d MadeWrists::SpecificForce(double angle_rad) const {
+Eigen::Vector3d SyntheticWrists::SpecificForce(double angle_rad) const {
   return wrists::InclinedGravity(now_.roll_rad, 0) +
          now_.amplitude_mps2 * std::sin(angle_rad) * shape_.direction_S;
 }
 
-mapping::WristFeatures MadeWrists::Advance(const biped::GaitCommand& wanted) {
+mapping::WristFeatures SyntheticWrists::Advance(const biped::GaitCommand& wanted) {
   const Swing to = For(wanted);
   Approach(to.frequency_hz, kSwingChangesS, now_.frequency_hz);
   Approach(to.phase_rad, kSwingChangesS, now_.phase_rad);

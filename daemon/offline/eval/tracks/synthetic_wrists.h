@@ -10,9 +10,9 @@ namespace footing::eval {
 
 /// Two hands that swing a controller each so that the wrist interface understands a command, their
 /// sensors, and footingd's chain from samples to features. The hands change over in 0.1 to 0.2 s.
-class MadeWrists {
+class SyntheticWrists {
  public:
-  MadeWrists(const mapping::WristMapping& mapping, std::uint64_t seed);
+  SyntheticWrists(const mapping::WristMapping& mapping, std::uint64_t seed);
 
   /// Moves on by one reading of the sensors, kReadingS, towards what `wanted` needs.
   mapping::WristFeatures Advance(const biped::GaitCommand& wanted);

@@ -50,7 +50,7 @@ class WristChannel : public Channel {
   }
 
  private:
-  MadeWrists wrists_;
+  SyntheticWrists wrists_;
 };
 
 Result<mapping::WristMapping> ReadMapping() {
@@ -125,7 +125,7 @@ Result<TrackResult> RunTrack(const std::string& track_text, Interface interface,
       channel = std::make_unique<WristChannel>(inputs, *mapping, seed);
       break;
   }
-  MadeUser user(track, skill, random);
+  SyntheticUser user(track, skill, random);
   TrackResult result;
   bool fallen = false;
   while (result.time_s < kLongestS) {

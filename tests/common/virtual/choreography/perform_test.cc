@@ -26,7 +26,7 @@ constexpr double kRateHz = 100;
 class Performed {
  public:
   explicit Performed(const std::string& name) {
-    const auto script = Carried(name);
+    const auto script = BuiltInScript(name);
     auto performer = Performer(1.75, kMassKg);
     EXPECT_TRUE(script && performer);
     performance = Perform(*script, *performer, kRateHz);

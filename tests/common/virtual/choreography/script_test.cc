@@ -12,16 +12,16 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Script, EveryCarriedNameIsAScriptThatBeginsAndEndsInTheTPose) {
-  EXPECT_THAT(CarriedNames(), testing::ElementsAre("demo", "quiet"));
-  for (const std::string& name : CarriedNames()) {
-    const auto script = Carried(name);
+  EXPECT_THAT(BuiltInScriptNames(), testing::ElementsAre("demo", "quiet"));
+  for (const std::string& name : BuiltInScriptNames()) {
+    const auto script = BuiltInScript(name);
     ASSERT_TRUE(script) << script.error().message;
     EXPECT_NEAR(script->duration_s(), 60, 6) << name;
     EXPECT_EQ(script->keys.front().values, Values{}) << name;
     EXPECT_GE(script->keys.front().seconds, 6) << name;  // Long enough to calibrate in.
     EXPECT_EQ(script->keys.back().values, Values{}) << name;
   }
-  const auto none = Carried("dance");
+  const auto none = BuiltInScript("dance");
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, ErrorKind::kUsage);
   EXPECT_THAT(none.error().message, HasSubstr("demo quiet"));

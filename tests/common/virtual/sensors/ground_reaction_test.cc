@@ -34,7 +34,7 @@ TEST(React, GivesTheWeightUnderTheCentreOfMassAtRest) {
   const GroundReaction reaction = React(course);
   EXPECT_NEAR(reaction.force_n(2, 300), kMassKg * kStandardGravityMps2, 1e-6);
   EXPECT_NEAR(reaction.cop_m(0, 300), 0.04, 1e-9);
-  EXPECT_TRUE(reaction.carried[300]);
+  EXPECT_TRUE(reaction.supported[300]);
 }
 
 TEST(React, CopOvershootsASwayingPointMassByItsFrequencySquaredOverGravity) {
@@ -65,7 +65,7 @@ TEST(React, LeavesTheForceOfFlightAsItIs) {
   }
   const GroundReaction reaction = React(course);
   EXPECT_NEAR(reaction.force_n(2, 300), -0.02 * kMassKg * kStandardGravityMps2, 0.1);
-  EXPECT_FALSE(reaction.carried[300]);
+  EXPECT_FALSE(reaction.supported[300]);
 }
 
 TEST(ShareBetweenFeet, KeepsTotalAndCop) {

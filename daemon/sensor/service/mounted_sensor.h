@@ -21,7 +21,7 @@ struct MountingStretches {
 
 /// How a device sits on its wearer: from samples as measured (frame S) to those of a perfect
 /// mounting (frame M), and whether it has slipped since. A plain value.
-class Worn {
+class MountedSensor {
  public:
   /// None: S is taken for M, as of a device held in the hand.
   void SetMounting(const std::optional<Eigen::Quaterniond>& rotation_MS, stream::DeviceRole role);

@@ -1,16 +1,16 @@
-#include "daemon/sensor/service/worn.h"
+#include "daemon/sensor/service/mounted_sensor.h"
 
 #include <vector>
 
 namespace footing::sensor {
 
-void Worn::SetMounting(const std::optional<Eigen::Quaterniond>& rotation_MS,
-                       stream::DeviceRole role) {
+void MountedSensor::SetMounting(const std::optional<Eigen::Quaterniond>& rotation_MS,
+                                stream::DeviceRole role) {
   rotation_MS_ = rotation_MS;
   slip_ = mounting::SlipWatch(role);
 }
 
-stream::MotionSample Worn::Take(const stream::MotionSample& sample_S) {
+stream::MotionSample MountedSensor::Take(const stream::MotionSample& sample_S) {
   recent_.Add(sample_S);
   if (!rotation_MS_) return sample_S;
   const stream::MotionSample sample_M = mounting::Rotated(*rotation_MS_, sample_S);
@@ -18,7 +18,8 @@ stream::MotionSample Worn::Take(const stream::MotionSample& sample_S) {
   return sample_M;
 }
 
-mounting::Mounting Worn::Solve(stream::DeviceRole role, const MountingStretches& stretches) const {
+mounting::Mounting MountedSensor::Solve(stream::DeviceRole role,
+                                        const MountingStretches& stretches) const {
   const auto between = [this](std::int64_t from_ns, std::int64_t to_ns) {
     std::vector<stream::MotionSample> samples;
     for (const stream::MotionSample& sample : recent_.samples()) {
