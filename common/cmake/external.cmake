@@ -34,6 +34,7 @@ endif()
 
 set(EXTERNAL_eigen Eigen3::Eigen)
 set(EXTERNAL_boost_headers Boost::headers)
+set(EXTERNAL_boost_math Boost::headers)
 set(EXTERNAL_asio Boost::headers Threads::Threads)
 set(EXTERNAL_protobuf protobuf::libprotobuf)
 set(EXTERNAL_json nlohmann_json::nlohmann_json)
@@ -51,7 +52,7 @@ set(EXTERNAL_threads Threads::Threads)
 set(EXTERNAL_benchmark benchmark::benchmark)
 # MuJoCo is pure in the sense meant here: the same state and inputs give the same bits.
 # zlib is named for its CRC-32 only.
-set(EXTERNAL_PURE eigen json mujoco zlib)
+set(EXTERNAL_PURE boost_math eigen json mujoco zlib)
 
 add_library(footing_cli11 INTERFACE)
 target_include_directories(footing_cli11 SYSTEM INTERFACE ${CLI11_INCLUDE})

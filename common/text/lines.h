@@ -25,6 +25,8 @@ class Lines {
 
   std::size_t bytes_left() const { return rest_.size(); }
   const std::string& file() const { return file_; }
+  /// Of the line that Next returned last, from 1; 0 before the first.
+  std::size_t number() const { return number_; }
   /// "FILE, line N: MESSAGE", of the line that Next returned last.
   Error Fault(const std::string& message) const;
 

@@ -17,6 +17,7 @@ COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 EXTERNAL = [
     (re.compile(r"^Eigen/"), {"eigen"}),
     (re.compile(r"^boost/asio"), {"asio"}),
+    (re.compile(r"^boost/math/"), {"boost_math"}),
     (re.compile(r"^boost/"), {"asio", "boost_headers"}),
     (re.compile(r"^google/protobuf/"), {"protobuf", "footing_proto"}),
     (re.compile(r"^nlohmann/"), {"json"}),

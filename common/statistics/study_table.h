@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/statistics/samples.h"
+
+namespace footing::statistics {
+
+/// What a table is read for.
+enum class TableUse {
+  kIndependent,  ///< group_index, group, value.
+  kPaired,       ///< subject, group, value; every subject in every group once.
+  kCounts,       ///< As kIndependent with whole values; exposure, where there is one.
+};
+
+struct TableRequest {
+  std::string file;     ///< For messages.
+  std::string control;  ///< Name of the control; empty: see ParseStudyTable.
+  TableUse use = TableUse::kIndependent;
+};
+
+struct StudyTable {
+  Groups groups;                               ///< The control first.
+  std::vector<std::vector<double>> exposures;  ///< As `groups`; 1 without such a column.
+  /// Where the table has a column subject and each subject one value in every group; of counts,
+  /// those per exposure.
+  std::optional<Blocks> blocks;
+};
+
+/// CSV text with a header; other columns are left alone, quotes around a cell are removed. The
+/// control is the group named in the request, otherwise the one with group_index 0. A paired table
+/// needs no group_index: its control is the group called "control", otherwise the first one. Every
+/// error is InvalidData and names file, line and what is wrong.
+Result<StudyTable> ParseStudyTable(std::string_view text, const TableRequest& request);
+
+}  // namespace footing::statistics
