@@ -1,5 +1,6 @@
 #include "clients/stream/samples.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <system_error>
 
 #include "clients/stream/script.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 #include "common/virtual/choreography/course.h"
 #include "common/virtual/choreography/legs.h"
@@ -110,6 +112,36 @@ std::string SampleSwayTable() {
   return text.str();
 }
 
+/// A measure of a synthetic study: its mean with each interface, how much subjects and single
+/// values differ, its range, and the decimals that it is recorded with.
+struct SampleMeasure {
+  std::array<double, 4> means;
+  double subject_sd, value_sd;
+  double least, greatest;
+  int decimals;
+};
+constexpr SampleMeasure kSampleRatings = {{2.9, 3.7, 3.1, 4.0}, 0.6, 0.7, 1, 5, 0};
+constexpr SampleMeasure kSampleOscillation = {{0.21, 0.14, 0.15, 0.12}, 0.03, 0.03, 0.01, 1, 4};
+constexpr SampleMeasure kSampleFailures = {{8, 3, 5, 3}, 2, 2, 0, 99, 0};
+
+std::string SampleStudy(const SampleMeasure& measure, std::uint64_t seed) {
+  constexpr const char* kInterfaces[] = {"joystick", "wrist", "arm", "leg"};
+  constexpr int kSubjects = 15;
+  noise::Random random(seed);
+  std::string text = "subject,group_index,group,value\n";
+  for (int subject = 1; subject <= kSubjects; ++subject) {
+    const double own = measure.subject_sd * random.Normal();
+    for (std::size_t i = 0; i < measure.means.size(); ++i) {
+      const double value = measure.means[i] + own + measure.value_sd * random.Normal();
+      text += (subject < 10 ? "p0" : "p") + std::to_string(subject) + "," + std::to_string(i) +
+              "," + kInterfaces[i] + ",";
+      text::AppendFixed(text, std::clamp(value, measure.least, measure.greatest), measure.decimals);
+      text += "\n";
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 Result<std::vector<SampleFile>> SampleFiles() {
@@ -125,7 +157,10 @@ Result<std::vector<SampleFile>> SampleFiles() {
                                  {"p09.json", SampleSubject("p09", 1.75, 80)},
                                  {"clip.bvh", std::move(*clip)},
                                  {"labels.csv", kSampleLabels},
-                                 {"sway.csv", SampleSwayTable()}};
+                                 {"sway.csv", SampleSwayTable()},
+                                 {"ratings.csv", SampleStudy(kSampleRatings, 1)},
+                                 {"oscillation.csv", SampleStudy(kSampleOscillation, 2)},
+                                 {"failures.csv", SampleStudy(kSampleFailures, 3)}};
 }
 
 Result<void> WriteSampleFiles(const std::string& folder) {

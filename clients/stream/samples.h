@@ -15,7 +15,9 @@ struct SampleFile {
 /// Small input files for every program, computed from the synthetic person: accelerations
 /// (left.csv, right.csv, 100 Hz), the corners of a board under a standing person (corners.csv),
 /// subjects (p07.json, p08.json, p09.json), a motion clip (clip.bvh) and its activities
-/// (labels.csv), and a table for the trainers (sway.csv). The same on every call.
+/// (labels.csv), a table for the trainers (sway.csv), and tables of a study for footing-eval stats:
+/// fifteen subjects with four interfaces (ratings.csv, oscillation.csv, failures.csv). The same on
+/// every call.
 Result<std::vector<SampleFile>> SampleFiles();
 
 /// Writes them into a folder, which it creates; files of the same names are replaced.

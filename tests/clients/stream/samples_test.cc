@@ -54,6 +54,17 @@ TEST_F(Samples, TheTrainingTableHasTwentyInputsAndOneOutput) {
   EXPECT_TRUE(table) << table.error().message;
 }
 
+TEST_F(Samples, StudyTablesHaveFifteenSubjectsWithFourInterfaces) {
+  for (const char* name : {"ratings.csv", "oscillation.csv", "failures.csv"}) {
+    const std::string& text = Text(name);
+    EXPECT_TRUE(text.starts_with("subject,group_index,group,value\np01,0,joystick,")) << name;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 15 * 4) << name;
+  }
+  // Counts and ratings are whole numbers.
+  EXPECT_EQ(Text("ratings.csv").find('.'), std::string::npos);
+  EXPECT_EQ(Text("failures.csv").find('.'), std::string::npos);
+}
+
 TEST_F(Samples, AFolderThatCannotBeMadeIsNamed) {
   const auto written = WriteSampleFiles("/proc/nowhere");
   ASSERT_FALSE(written);
