@@ -11,6 +11,7 @@
 #include "daemon/offline/eval/pose/pose_command.h"
 #include "daemon/offline/eval/replay/replay_command.h"
 #include "daemon/offline/eval/report/command.h"
+#include "daemon/offline/eval/stats/stats_command.h"
 #include "daemon/offline/eval/tracks/tracks_command.h"
 
 int main(int argc, char** argv) {
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   footing::eval::AddMonkeyCommand(*app, shared);
   footing::eval::AddPoseCommand(*app, shared);
   footing::eval::AddReplayCommand(*app, shared);
+  footing::eval::AddStatsCommand(*app, shared);
   footing::eval::AddTracksCommand(*app, shared);
   footing::eval::AddTransitionsCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
