@@ -18,6 +18,7 @@ constexpr Benchmark kBenchmarks[] = {
     {"stalled_readers", footing::bench::StalledReaders},
     {"body_kinematics", footing::bench::BodyKinematics},
     {"pose_frame", footing::bench::PoseFrame},
+    {"dunnett_test", footing::bench::DunnettTest},
 #ifdef FOOTING_HAS_FANN
     {"cascade_training", footing::bench::CascadeTraining},
 #endif

@@ -45,4 +45,8 @@ Result<Rows> PoseFrame();
 /// is installed.
 Result<Rows> CascadeTraining();
 
+/// Dunnett's test of five groups of 100 with its simultaneous intervals, equal and unequal sizes,
+/// against the same p by Gauss-Legendre nodes.
+Result<Rows> DunnettTest();
+
 }  // namespace footing::bench
