@@ -31,6 +31,7 @@ SECONDS_TO_STOP = 20
 NOT_HERE = {
     r"^footing-ctl (pair|setup|assign|acceptance|tare|layout .*--check)": "asks a person; scenarios setup_* run them",
     r"^footing-ctl led (00:|head)": "needs that device",
+    r"^footing-ctl doctor": "judges the whole machine, with the daemons of other tests; scenarios.ctl runs it",
     r"^sudo ": "as root",
     r"\.\.\.": "stands for the words before it",
     r"\b[A-Z]{2,}\b(?!=)": "has a word to fill in",
