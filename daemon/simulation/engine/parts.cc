@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/biped/limits.h"
 #include "daemon/simulation/engine/failure.h"
 #include "daemon/simulation/gait/controller.h"
-#include "daemon/simulation/gait/limits.h"
 #include "daemon/simulation/terrain/track.h"
 
 namespace footing::engine {
@@ -88,7 +88,7 @@ void GaitEngine::Parts::Command(const EngineInputs& inputs) {
   biped::GaitCommand command =
       state.inputs.fed ? state.wrist.Advance(TimeS(), inputs.features) : state.wrist.Rest();
   if (inputs.direct) command = inputs.direct_command;
-  state.command = gait::Limited(command);
+  state.command = biped::Limited(command);
   if (state.command.gait == before) return;
   state.response = {.waiting = true,
                     .commanded_step = state.step + 1,

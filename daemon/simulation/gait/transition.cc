@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/simulation/biped/limits.h"
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/pit_sight.h"
@@ -50,6 +51,9 @@ biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& comm
   biped::GaitCommand goal = command;
   if (goal.gait == Gait::kUnspecified) goal.gait = Gait::kStep;
   if (goal.gait == Gait::kStep) goal.speed_mps = 0;
+  // A run that still brakes turns as its speed allows, not as the command's does.
+  const double turn_max_rad = biped::TurnLimit(memory.gait, memory.speed.desired_mps);
+  goal.turn_per_step_rad = std::clamp(goal.turn_per_step_rad, -turn_max_rad, turn_max_rad);
   if (!IsDirect(memory.gait, goal.gait)) {
     goal.gait = Gait::kWalk;
     goal.speed_mps = std::min(goal.speed_mps, gains.jump_speed_before_landing_mps);

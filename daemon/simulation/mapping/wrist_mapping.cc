@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/units/units.h"
+#include "daemon/simulation/biped/limits.h"
 
 namespace footing::mapping {
 namespace {
@@ -44,7 +45,8 @@ auto Fields(WristMapping& m) {
       Field{"out_of_phase_above_deg", &m.out_of_phase_above_rad, 0, 180, Unit::kDegrees},
       Field{"turn_above_deg", &m.turn_above_rad, 0, 90, Unit::kDegrees},
       Field{"straight_below_deg", &m.straight_below_rad, 0, 90, Unit::kDegrees},
-      Field{"turn_per_step_deg", &m.turn_per_step_rad, 0, 10, Unit::kDegrees},
+      Field{"turn_per_step_deg", &m.turn_per_step_rad, 0, biped::kTurnPerStepMaxDeg,
+            Unit::kDegrees},
       Field{"hold_s", &m.hold_s, 0, 10},
   };
 }

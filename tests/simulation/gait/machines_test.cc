@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/config/data_file.h"
-#include "daemon/simulation/gait/limits.h"
+#include "daemon/simulation/biped/limits.h"
 #include "daemon/simulation/gait/phase.h"
 #include "daemon/simulation/gait/transition.h"
 
@@ -100,13 +100,14 @@ TEST(GaitChanges, JumpingReachesRunningByWalking) {
   EXPECT_EQ(Goal(memory, run, gains), run);
 }
 
-TEST(Limits, KeepCommandsInTheStableRange) {
-  EXPECT_EQ(Limited({.gait = Gait::kWalk, .speed_mps = 9}).speed_mps, 1.75);
-  EXPECT_EQ(Limited({.gait = Gait::kRun, .speed_mps = -1}).speed_mps, 0);
-  EXPECT_EQ(Limited({.gait = Gait::kJump, .height_m = 3}).height_m, 0.7);
-  EXPECT_EQ(Limited({.gait = Gait::kJump, .speed_mps = 2, .height_m = 3}).height_m, 0.5);
-  EXPECT_EQ(Limited({.gait = Gait::kRun, .speed_mps = NAN}).gait, Gait::kStep);
-  EXPECT_EQ(Limited({.gait = Gait::kUnspecified, .speed_mps = 1}).gait, Gait::kStep);
+TEST(GaitChanges, ABrakingRunTurnsAsItsSpeedAllows) {
+  GaitMemory memory;
+  memory.gait = Gait::kRun;
+  memory.speed.desired_mps = 6;
+  const biped::GaitCommand slow{.gait = Gait::kRun, .speed_mps = 2, .turn_per_step_rad = -0.13};
+  EXPECT_EQ(Goal(memory, slow, {}).turn_per_step_rad, -biped::TurnLimit(Gait::kRun, 6));
+  memory.speed.desired_mps = 2;
+  EXPECT_EQ(Goal(memory, slow, {}).turn_per_step_rad, -0.13);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@
 #include "daemon/offline/eval/gait/step_cost.h"
 #include "daemon/offline/eval/gait/trial.h"
 #include "daemon/offline/eval/report/print_report.h"
-#include "daemon/simulation/gait/limits.h"
+#include "daemon/simulation/biped/limits.h"
 
 namespace footing::eval {
 namespace {
@@ -63,10 +63,10 @@ double HeightOf(const GaitOptions& options) {
 }
 
 biped::GaitCommand CommandOf(const GaitOptions& options) {
-  return gait::Limited({.gait = stream::GaitNamed(options.gait),
-                        .speed_mps = options.speed_mps,
-                        .height_m = HeightOf(options),
-                        .turn_per_step_rad = DegreesToRadians(options.turn_deg)});
+  return biped::Limited({.gait = stream::GaitNamed(options.gait),
+                         .speed_mps = options.speed_mps,
+                         .height_m = HeightOf(options),
+                         .turn_per_step_rad = DegreesToRadians(options.turn_deg)});
 }
 
 /// The kick comes once the speed is reached, at a moment of the cycle that is drawn or given.
