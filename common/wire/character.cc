@@ -28,34 +28,6 @@ stream::Skeleton FromProto(const v1::Skeleton& message) {
   return value;
 }
 
-v1::Track ToProto(const stream::Track& value) {
-  v1::Track message;
-  message.set_name(Utf8(value.name));
-  for (const auto& segment : value.segments) {
-    v1::TrackSegment& out = *message.add_segments();
-    *out.mutable_start_m() = ToProto(segment.start_m);
-    out.set_heading_rad(Finite(segment.heading_rad));
-    out.set_slope_rad(Finite(segment.slope_rad));
-    out.set_length_m(Finite(segment.length_m));
-    out.set_width_m(Finite(segment.width_m));
-    out.set_pit(segment.pit);
-  }
-  message.set_revision(value.revision);
-  return message;
-}
-
-stream::Track FromProto(const v1::Track& message) {
-  stream::Track value;
-  value.name = message.name();
-  for (const auto& segment : message.segments()) {
-    value.segments.push_back({FromProto(segment.start_m()), Finite(segment.heading_rad()),
-                              Finite(segment.slope_rad()), Finite(segment.length_m()),
-                              Finite(segment.width_m()), segment.pit()});
-  }
-  value.revision = message.revision();
-  return value;
-}
-
 v1::LinkPose ToProto(const stream::LinkPose& value) {
   v1::LinkPose message;
   *message.mutable_position_m() = ToProto(value.position_m);
@@ -88,9 +60,7 @@ v1::GaitState ToProto(const stream::GaitState& value) {
   message.set_heading_rad(Finite(value.heading_rad));
   message.set_steps(value.steps);
   message.set_falls(value.falls);
-  message.mutable_failures()->set_simulation(value.failures.simulation);
-  message.mutable_failures()->set_curve(value.failures.curve);
-  message.mutable_failures()->set_jump(value.failures.jump);
+  *message.mutable_failures() = ToProto(value.failures);
   message.set_operator_put_backs(value.operator_put_backs);
   message.set_distance_m(Finite(value.distance_m));
   message.set_commanded_by_stream(value.commanded_by_stream);
