@@ -22,18 +22,21 @@ Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common
   engine_config.features_timeout_s = config.features_timeout_s;
   auto engine = engine::GaitEngine::Create(*texts, engine_config);
   if (!engine) return engine.error();
-  return std::unique_ptr<GaitLine>(new GaitLine(common.rig, config, std::move(engine).value(),
-                                                engine_config.step_s, wake_descriptor));
+  const auto biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
+  if (!biped) return biped.error();
+  return std::unique_ptr<GaitLine>(new GaitLine(
+      common.rig, config, std::move(engine).value(),
+      {config.track, common.data_folder, *biped, engine_config.step_s}, wake_descriptor));
 }
 
 GaitLine::GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
-                   double step_s, int wake_descriptor)
+                   TrialControl::Options trial_options, int wake_descriptor)
     : world_(config.track),
       frame_rate_hz_(config.frame_rate_hz),
-      thread_(std::move(engine), step_s,
-              static_cast<int>(std::lround(1.0 / (step_s * config.frame_rate_hz))),
+      thread_(GaitRun(std::move(engine), tracks_), trial_options.step_s,
+              static_cast<int>(std::lround(1.0 / (trial_options.step_s * config.frame_rate_hz))),
               wake_descriptor),
-      track_(thread_.run().engine().track()),
+      trials_(std::move(trial_options), thread_.run().engine().track(), tracks_),
       input_(rig, thread_.inputs(), responses_) {}
 
 std::vector<transport::Channel> GaitLine::Channels() {
@@ -49,13 +52,23 @@ std::vector<transport::ChannelBytes> GaitLine::Retained() const {
   skeletons.set_world(world_);
   *skeletons.add_skeletons() = wire::ToProto(thread_.run().engine().skeleton());
   return {serving::Bytes(serving::kSkeletons, skeletons),
-          serving::Bytes(serving::kTrack, wire::ToProto(track_))};
+          serving::Bytes(serving::kTrack, wire::ToProto(trials_.track()))};
+}
+
+v1::CommandResult GaitLine::OnCommand(const v1::Command& command) {
+  if (!TrialControl::Takes(command)) return input_.OnCommand(command);
+  const v1::CommandResult result = trials_.OnCommand(command);
+  if (result.ok()) input_.SetTrial(trials_.inputs());
+  return result;
 }
 
 v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
   v1::Events events;
   for (int i = 0; i < frame.event_count; ++i) {
-    *events.add_events() = ToEvent(frame.events[static_cast<std::size_t>(i)], now_ns);
+    *events.add_events() = trials_.ToEvent(frame.events[static_cast<std::size_t>(i)], now_ns);
+  }
+  for (v1::Event& event : trials_.TakeCorrections(now_ns)) {
+    *events.add_events() = std::move(event);
   }
   v1::ResponseStages stages;
   if (!responses_.Complete(frame, now_ns, stages)) return events;
@@ -71,14 +84,17 @@ v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
 std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::int64_t now_ns) {
   input_.OnFrame(frame);
   std::vector<transport::ChannelBytes> channels;
-  for (int i = 0; i < frame.added_count; ++i) {
-    terrain::Add(frame.added[static_cast<std::size_t>(i)], track_);
-  }
-  if (frame.added_count > 0)
-    channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(track_)));
-  channels.push_back(
-      serving::Bytes(serving::kCharacters, ToCharacterFrame(frame, world_, input_.rig())));
   const v1::Events events = EventsOf(frame, now_ns);
+  const bool switched = trials_.OnFrame(frame);
+  for (int i = 0; i < frame.added_count; ++i) {
+    terrain::Add(frame.added[static_cast<std::size_t>(i)], trials_.track());
+  }
+  if (switched || frame.added_count > 0) {
+    channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(trials_.track())));
+  }
+  v1::CharacterFrame characters = ToCharacterFrame(frame, world_, input_.rig());
+  trials_.Describe(frame, *characters.mutable_characters(0));
+  channels.push_back(serving::Bytes(serving::kCharacters, characters));
   if (events.events_size() > 0) channels.push_back(serving::Bytes(serving::kEvents, events));
   v1::AppliedInputs inputs;
   for (int i = 0; i < frame.applied_count; ++i) {

@@ -23,20 +23,15 @@ v1::Event::Kind ToKind(engine::EventKind kind) {
       return v1::Event::KIND_STREAM_LOST;
     case engine::EventKind::kStreamBack:
       return v1::Event::KIND_STREAM_BACK;
+    case engine::EventKind::kTrialReady:
+    case engine::EventKind::kTrialRunning:
+    case engine::EventKind::kTrialFinished:
+    case engine::EventKind::kTrialStopped:
+      return v1::Event::KIND_TRIAL;
+    case engine::EventKind::kTaskDone:
+      return v1::Event::KIND_TASK;
   }
   return v1::Event::KIND_UNSPECIFIED;
-}
-
-v1::FailureCause ToCause(engine::FailureCause cause) {
-  switch (cause) {
-    case engine::FailureCause::kSimulation:
-      return v1::FAILURE_CAUSE_SIMULATION;
-    case engine::FailureCause::kCurve:
-      return v1::FAILURE_CAUSE_CURVE;
-    case engine::FailureCause::kJump:
-      return v1::FAILURE_CAUSE_JUMP;
-  }
-  return v1::FAILURE_CAUSE_UNSPECIFIED;
 }
 
 std::string ToText(const engine::EngineEvent& event) {
@@ -49,13 +44,20 @@ std::string ToText(const engine::EngineEvent& event) {
     case engine::EventKind::kGaitChanged:
       return "changed: " + gaits;
     case engine::EventKind::kFall:
-      return std::string("failure (") + engine::Name(event.cause) + "): " + event.text;
+      return std::string("failure (") + stream::Name(event.cause) + "): " + event.text;
     case engine::EventKind::kPutBack:
       return std::string("put back ") + event.text;
     case engine::EventKind::kStreamLost:
     case engine::EventKind::kStreamBack:
     case engine::EventKind::kAppendRefused:
       return event.text;
+    case engine::EventKind::kTrialReady:
+    case engine::EventKind::kTrialRunning:
+    case engine::EventKind::kTrialFinished:
+    case engine::EventKind::kTrialStopped:
+      return std::string("trial ") + stream::Name(event.trial.phase);
+    case engine::EventKind::kTaskDone:
+      return "task done";
   }
   return event.text;
 }
@@ -115,7 +117,7 @@ v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns) {
   message.set_character(1);
   message.set_text(ToText(event));
   message.set_gait(static_cast<v1::Gait>(event.to));
-  if (event.kind == engine::EventKind::kFall) message.set_failure_cause(ToCause(event.cause));
+  message.set_failure_cause(static_cast<v1::FailureCause>(event.cause));
   message.set_by_operator(event.by_operator);
   return message;
 }
@@ -151,6 +153,10 @@ v1::AppliedInput ToAppliedInput(const Applied& applied) {
     append.set_step_m(segment.step_m);
     append.set_pit(segment.pit);
   }
+  message.set_trial_number(inputs.trial.number);
+  message.set_trial_task(static_cast<std::uint32_t>(inputs.trial.task + 1));
+  message.set_trials_stopped_below(inputs.trial.stopped_below);
+  message.set_track_number(inputs.trial.track_number);
   return message;
 }
 
@@ -181,6 +187,8 @@ Applied FromAppliedInput(const v1::AppliedInput& message) {
     inputs.appends[static_cast<std::size_t>(i)] = {
         append.length_m(), append.slope_rad(), append.curve_rad(), append.step_m(), append.pit()};
   }
+  inputs.trial = {message.trial_number(), static_cast<int>(message.trial_task()) - 1,
+                  message.trials_stopped_below(), message.track_number()};
   return applied;
 }
 
