@@ -38,4 +38,19 @@ void WithSession(Shared& shared, const std::vector<std::string>& channels,
   }
 }
 
+Result<void> SendToSimulation(const Shared& shared, v1::Command command,
+                              const std::string& start_with) {
+  Shared simulation = shared;
+  if (simulation.connect.empty()) {
+    simulation.connect = transport::DefaultAddress("simulation").Text();
+  }
+  const auto session = Open(simulation, {"skeletons"});  // Published to whoever comes.
+  if (!session) {
+    return NoDevice("no footing-sim on " + simulation.connect + "; start it with: " + start_with +
+                    ", or name it with --connect");
+  }
+  if (const auto done = (*session)->Call(std::move(command)); !done) return done.error();
+  return {};
+}
+
 }  // namespace footing::ctl

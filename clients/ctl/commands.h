@@ -29,6 +29,11 @@ void Print(const nlohmann::ordered_json& out, const std::string& text, const Sha
 void WithSession(Shared& shared, const std::vector<std::string>& channels,
                  const std::function<Result<void>(Session&)>& body);
 
+/// Sends one command to footing-sim: at --connect, else at its default address. NoDevice, with how
+/// to start it, when nothing listens there.
+Result<void> SendToSimulation(const Shared& shared, v1::Command command,
+                              const std::string& start_with);
+
 /// Gives a device a role by hand, waits until the devices show it, and prints it.
 Result<void> Assign(Session& session, const std::string& device, const std::string& rig_role,
                     const Shared& shared);
@@ -42,5 +47,6 @@ void AddSetupCommand(CLI::App& app, Shared& shared);       ///< setup
 void AddLayoutCommand(CLI::App& app, Shared& shared);      ///< layout
 void AddAcceptanceCommand(CLI::App& app, Shared& shared);  ///< acceptance
 void AddPoseCommands(CLI::App& app, Shared& shared);       ///< t-pose, subject
+void AddTrialCommands(CLI::App& app, Shared& shared);      ///< trial
 
 }  // namespace footing::ctl

@@ -4,24 +4,12 @@
 #include "clients/ctl/commands.h"
 #include "common/cli/cli.h"
 #include "common/subject/subject.h"
-#include "common/transport/address.h"
 
 namespace footing::ctl {
 namespace {
 
-/// Sends one command to footing-sim, which publishes its skeletons to whoever comes.
 Result<void> Send(const Shared& shared, v1::Command command) {
-  Shared simulation = shared;
-  if (simulation.connect.empty()) {
-    simulation.connect = transport::DefaultAddress("simulation").Text();
-  }
-  const auto session = Open(simulation, {"skeletons"});
-  if (!session) {
-    return NoDevice("no footing-sim on " + simulation.connect +
-                    "; start it with: footing-sim --engine pose, or name it with --connect");
-  }
-  if (const auto done = (*session)->Call(std::move(command)); !done) return done.error();
-  return {};
+  return SendToSimulation(shared, std::move(command), "footing-sim --engine pose");
 }
 
 Result<void> TakeTPose(const Shared& shared) {

@@ -22,6 +22,10 @@ constexpr std::array kExtensions = {"unknown",
                                     "other"};
 constexpr std::array kGaitNames = {"unknown", "step", "walk", "run", "jump"};
 static_assert(kGaitNames.size() == kGaits.size() + 1, "name every gait");
+constexpr std::array kCauseNames = {"unknown", "simulation",   "curve",
+                                    "jump",    "straightness", "transition"};
+static_assert(kCauseNames.size() == kFailureCauses.size() + 1, "name every cause");
+constexpr std::array kTrialPhaseNames = {"unknown", "ready", "running", "finished", "stopped"};
 
 template <std::size_t N, typename E>
 const char* At(const std::array<const char*, N>& names, E value) {
@@ -45,6 +49,8 @@ const char* Name(DeviceState state) { return At(kStates, state); }
 const char* Name(CalibrationOrigin origin) { return At(kOrigins, origin); }
 const char* Name(Extension extension) { return At(kExtensions, extension); }
 const char* Name(Gait gait) { return At(kGaitNames, gait); }
+const char* Name(FailureCause cause) { return At(kCauseNames, cause); }
+const char* Name(TrialPhase phase) { return At(kTrialPhaseNames, phase); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
 std::string GaitNames() {
   std::string names;

@@ -11,17 +11,6 @@ void Fields(Way way, const stream::Link&) {
 FOOTING_BOTH_WAYS(Link)
 
 template <typename Way>
-void Fields(Way way, const stream::TrackSegment&) {
-  FOOTING_MESSAGE(start_m);
-  FOOTING_FIELD(heading_rad);
-  FOOTING_FIELD(slope_rad);
-  FOOTING_FIELD(length_m);
-  FOOTING_FIELD(width_m);
-  FOOTING_FIELD(pit);
-}
-FOOTING_BOTH_WAYS(TrackSegment)
-
-template <typename Way>
 void Fields(Way way, const stream::Skeleton&) {
   FOOTING_FIELD(character);
   FOOTING_FIELD(name);
@@ -34,14 +23,6 @@ void Fields(Way way, const stream::Skeleton&) {
   }
 }
 FOOTING_BOTH_WAYS(Skeleton)
-
-template <typename Way>
-void Fields(Way way, const stream::Track&) {
-  FOOTING_FIELD(name);
-  FOOTING_REPEATED(segments);
-  FOOTING_FIELD(revision);
-}
-FOOTING_BOTH_WAYS(Track)
 
 template <typename Way>
 void Fields(Way way, const stream::LinkPose&) {
@@ -71,9 +52,7 @@ v1::GaitState ToProto(const stream::GaitState& value) {
   message.set_heading_rad(Finite(value.heading_rad));
   message.set_steps(value.steps);
   message.set_falls(value.falls);
-  message.mutable_failures()->set_simulation(value.failures.simulation);
-  message.mutable_failures()->set_curve(value.failures.curve);
-  message.mutable_failures()->set_jump(value.failures.jump);
+  *message.mutable_failures() = ToProto(value.failures);
   message.set_operator_put_backs(value.operator_put_backs);
   message.set_distance_m(Finite(value.distance_m));
   message.set_commanded_by_stream(value.commanded_by_stream);

@@ -21,6 +21,29 @@ void AddPose(const scene::PoseTally& tally, nlohmann::ordered_json& summary) {
   summary["ankles_cm"] = tally.ankles_cm();
 }
 
+nlohmann::ordered_json Failures(const stream::FailureCounts& counts) {
+  nlohmann::ordered_json failures;
+  for (const stream::FailureCause cause : stream::kFailureCauses) {
+    failures[stream::Name(cause)] = stream::CountOf(cause, counts);
+  }
+  return failures;
+}
+
+/// The trial of the first character as of the last frame.
+void AddTrial(const scene::Model& model, nlohmann::ordered_json& summary) {
+  if (model.playout.empty() || model.playout.Newest().characters.empty()) return;
+  const auto& trial = model.playout.Newest().characters.front().trial;
+  if (!trial) return;
+  summary["trial"] = {{"trial", trial->trial},
+                      {"track", trial->track},
+                      {"phase", stream::Name(trial->progress.phase)},
+                      {"time_s", trial->progress.time_s},
+                      {"distance_m", trial->progress.distance_m},
+                      {"failures", Failures(trial->progress.failures)},
+                      {"withdrawn_failures", trial->withdrawn_failures},
+                      {"operator_put_backs", trial->progress.operator_put_backs}};
+}
+
 }  // namespace
 
 std::string Summary(const scene::Model& model, double seconds) {
@@ -39,16 +62,15 @@ std::string Summary(const scene::Model& model, double seconds) {
       {"publish_to_view_p99_ms", model.tally.publish_to_view.QuantileMs(0.99)},
       {"gaits_seen", gaits},
       {"falls", model.tally.falls()},
-      {"failures",
-       {{"simulation", model.tally.failures().simulation},
-        {"curve", model.tally.failures().curve},
-        {"jump", model.tally.failures().jump}}},
+      {"failures", Failures(model.tally.failures())},
       {"operator_put_backs", model.tally.operator_put_backs()},
+      {"off_track_s", model.tally.off_track_s()},
       {"distance_m", model.tally.distance_m()},
       {"responses", model.tally.response_without_contact.count()},
       {"response_stages_p95_ms", stages},
       {"response_without_contact_p95_ms", model.tally.response_without_contact.QuantileMs(0.95)},
       {"simulated", scene::IsSimulated(model)}};
+  AddTrial(model, summary);
   if (model.pose_tally.any()) AddPose(model.pose_tally, summary);
   return summary.dump();
 }

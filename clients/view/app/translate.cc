@@ -27,7 +27,7 @@ stream::GaitState GaitOf(const v1::GaitState& from) {
   gait.heading_rad = Finite(from.heading_rad());
   gait.steps = from.steps();
   gait.falls = from.falls();
-  gait.failures = {from.failures().simulation(), from.failures().curve(), from.failures().jump()};
+  gait.failures = wire::FromProto(from.failures());
   gait.operator_put_backs = from.operator_put_backs();
   gait.distance_m = Finite(from.distance_m());
   gait.commanded_by_stream = from.commanded_by_stream();
@@ -107,6 +107,7 @@ scene::CharacterPose CharacterOf(const v1::Character& from) {
   pose.phase = from.gait().phase();
   pose.simulated_input = from.simulated_input();
   if (from.has_body()) pose.body = BodyOf(from.body());
+  if (from.has_trial()) pose.trial = wire::FromProto(from.trial());
   return pose;
 }
 

@@ -111,6 +111,7 @@ void main() {
   colour = kind > 0.5 ? vec3(0.020, 0.022, 0.028) : colour;
   colour = kind > 1.5 ? vec3(0.210, 0.068, 0.035) : colour;
   colour = kind > 2.5 ? vec3(0.86, 0.84, 0.80) : colour;
+  colour = kind > 3.5 ? vec3(0.90, 0.62, 0.05) : colour;
   o_colour = ToScreen(Lit(colour));
 }
 )";

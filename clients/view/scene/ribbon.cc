@@ -17,7 +17,12 @@ constexpr double kNumberEveryM = 10;
 constexpr float kNumberHeightM = 0.5f;
 constexpr float kPaintM = 0.004f;
 
-enum Kind { kSurface = 0, kPit = 1, kSide = 2, kNumber = 3 };
+constexpr float kLineM = 0.12f;    // Start line and middle line.
+constexpr float kMarkM = 0.35f;    // The mark, seen from afar.
+constexpr float kSquareM = 0.25f;  // Of the finish line.
+constexpr float kBorderM = 0.15f;  // Between a line across the track and its edge.
+
+enum Kind { kSurface = 0, kPit = 1, kSide = 2, kWhite = 3, kYellow = 4 };
 
 /// A segment's own frame: along its slope, to its left, square to its face.
 struct SegmentFrame {
@@ -138,9 +143,49 @@ void PaintNumbers(Painter& painter, const SegmentFrame& frame, double from_m) {
       const Eigen::Vector2f high(at + kNumberHeightM * stroke.high.y(),
                                  aside - kNumberHeightM * stroke.low.x());
       if (high.x() > frame.length) continue;
-      painter.Quad(frame, static_cast<float>(from_m), low, high, kPaintM, kNumber);
+      painter.Quad(frame, static_cast<float>(from_m), low, high, kPaintM, kWhite);
     }
   }
+}
+
+/// A line across the segment, so much of it along the track.
+void PaintAcross(Painter& painter, const SegmentFrame& frame, double from_m, float at_m,
+                 float thick_m, Kind kind) {
+  const float side = frame.half_width - kBorderM;
+  painter.Quad(frame, static_cast<float>(from_m), {at_m - thick_m / 2, -side},
+               {at_m + thick_m / 2, side}, kPaintM, kind);
+}
+
+/// Squares, every other one white, in two rows.
+void PaintFinish(Painter& painter, const SegmentFrame& frame, double from_m, float at_m) {
+  const float side = frame.half_width - kBorderM;
+  for (int row = 0; row < 2; ++row) {
+    const float low = at_m + (static_cast<float>(row) - 1) * kSquareM;
+    for (int i = row; static_cast<float>(i + 1) * kSquareM <= 2 * side; i += 2) {
+      const float left = static_cast<float>(i) * kSquareM - side;
+      painter.Quad(frame, static_cast<float>(from_m), {low, left},
+                   {low + kSquareM, left + kSquareM}, kPaintM, kWhite);
+    }
+  }
+}
+
+void PaintLines(Painter& painter, const stream::Track& track, const SegmentFrame& frame,
+                double from_m) {
+  const auto on_segment = [&](double at_m, float& local_m) {
+    local_m = static_cast<float>(at_m - from_m);
+    return local_m >= 0 && local_m < frame.length;
+  };
+  float at_m = 0;
+  if (!track.tasks.empty()) {
+    painter.Quad(frame, static_cast<float>(from_m), {0, -kLineM / 2}, {frame.length, kLineM / 2},
+                 kPaintM / 2, kWhite);
+    if (on_segment(track.mark_m, at_m)) {
+      PaintAcross(painter, frame, from_m, at_m, kMarkM, kYellow);
+    }
+  }
+  if (track.finish_m <= 0) return;
+  if (on_segment(track.start_m, at_m)) PaintAcross(painter, frame, from_m, at_m, kLineM, kWhite);
+  if (on_segment(track.finish_m, at_m)) PaintFinish(painter, frame, from_m, at_m);
 }
 
 }  // namespace
@@ -149,7 +194,7 @@ RibbonMesh BuildRibbon(const stream::Track& track) {
   RibbonMesh mesh;
   Painter painter(mesh);
   const auto ground = static_cast<float>(GroundHeight(track)) - 0.05f;
-  double from_m = 0;
+  double from_m = track.first_m;
   const std::size_t count = std::min(track.segments.size(), kMaxSegments);
   for (std::size_t i = 0; i < count; ++i) {
     const stream::TrackSegment& segment = track.segments[i];
@@ -160,6 +205,7 @@ RibbonMesh BuildRibbon(const stream::Track& track) {
     if (!segment.pit) {
       painter.Walls(frame, mitre, ground);
       PaintNumbers(painter, frame, from_m);
+      PaintLines(painter, track, frame, from_m);
     }
     from_m += segment.length_m;
   }

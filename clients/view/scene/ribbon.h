@@ -15,7 +15,7 @@ struct RibbonVertex {
   float along_m;     ///< From the track's start along its centre line.
   float sideways_m;  ///< From the centre line, left positive.
   float half_width_m;
-  float kind;  ///< 0 surface, 1 pit, 2 side, 3 painted number.
+  float kind;  ///< 0 surface, 1 pit, 2 side, 3 white paint, 4 yellow paint.
 };
 
 struct RibbonMesh {
@@ -24,7 +24,8 @@ struct RibbonMesh {
 };
 
 /// The track as triangles: top faces, pits as sunken dark floors, the sides down to the ground,
-/// and the distance painted on every tenth metre. At most 2000 segments are drawn.
+/// the distance painted on every tenth metre, and the lines of a trial: start, finish, mark and,
+/// where a track has tasks, the middle. At most 2000 segments are drawn.
 RibbonMesh BuildRibbon(const stream::Track& track);
 
 /// Height of the track under a point; `ground_m` beside it and in pits.

@@ -46,11 +46,14 @@ void Tally::Add(const WorldFrame& frame) {
   const bool restarted = frame.time_s < last_time_s_;
   if (frames_ > 1 && !restarted) {
     falls_ += Increase(last_.falls, now.falls);
-    failures_.simulation += Increase(last_.failures.simulation, now.failures.simulation);
-    failures_.curve += Increase(last_.failures.curve, now.failures.curve);
-    failures_.jump += Increase(last_.failures.jump, now.failures.jump);
+    for (const stream::FailureCause cause : stream::kFailureCauses) {
+      *stream::MutableCountOf(cause, failures_) +=
+          Increase(stream::CountOf(cause, last_.failures), stream::CountOf(cause, now.failures));
+    }
     operator_put_backs_ += Increase(last_.operator_put_backs, now.operator_put_backs);
     distance_m_ += std::max(0.0, now.distance_m - last_.distance_m);
+    const auto& trial = frame.characters.front().trial;
+    if (trial && !trial->progress.on_track) off_track_s_ += frame.time_s - last_time_s_;
   }
   // A restarted server counts from 1 again.
   frames_published_ += frame.sequence > last_sequence_ && frames_ > 1 && !restarted

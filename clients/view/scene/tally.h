@@ -43,6 +43,8 @@ class Tally {
   std::uint64_t falls() const { return falls_; }
   const stream::FailureCounts& failures() const { return failures_; }
   std::uint64_t operator_put_backs() const { return operator_put_backs_; }
+  /// Simulation time in which the first character was beside its track, s.
+  double off_track_s() const { return off_track_s_; }
   double distance_m() const { return distance_m_; }
 
   Latencies publish_to_view;
@@ -67,6 +69,7 @@ class Tally {
   stream::FailureCounts failures_;
   std::uint64_t operator_put_backs_ = 0;
   double distance_m_ = 0;
+  double off_track_s_ = 0;
   std::vector<stream::Gait> seen_;
 };
 

@@ -27,7 +27,8 @@ struct CharacterPose {
   stream::GaitState gait;  ///< Its phase stays empty: the name travels as a text of its own.
   std::string phase;
   bool simulated_input = false;
-  std::optional<BodyState> body;  ///< Of a reconstructed person.
+  std::optional<BodyState> body;            ///< Of a reconstructed person.
+  std::optional<stream::TrialState> trial;  ///< Of a character on a track.
 };
 
 struct WorldFrame {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
+#include "clients/view/scene/trial_text.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
 
@@ -91,10 +91,10 @@ std::string BodyText(const CharacterPose& pose) {
   return words;
 }
 
-std::vector<std::string> CharacterLines(const CharacterPose& pose) {
+std::vector<std::string> CharacterLines(const CharacterPose& pose, const stream::Track& track) {
   if (pose.body) return BodyLines(pose);
   const stream::GaitState& gait = pose.gait;
-  std::string first = "  " + Padded(GaitTitle(gait.gait), 6) + Padded(pose.phase, 18) +
+  std::string first = "  " + Padded(GaitTitle(gait.gait), 6) + Padded(PhaseTitle(pose.phase), 18) +
                       Fixed(gait.speed_mps, 2) + " m/s of " + Fixed(gait.commanded_speed_mps, 2) +
                       "   turn " + Fixed(RadiansToDegrees(gait.commanded_turn_rad), 1) +
                       " deg/step";
@@ -103,7 +103,10 @@ std::vector<std::string> CharacterLines(const CharacterPose& pose) {
                        "   steps " + std::to_string(gait.steps);
   if (!gait.commanded_by_stream) second += "   no features arrive: stepping in place";
   if (pose.simulated_input) second += "   SIMULATED input";
-  return {first, second};
+  std::vector<std::string> lines{first, second};
+  if (!pose.trial || !ShowsTrial(*pose.trial)) return lines;
+  for (const std::string& line : TrialLines(*pose.trial, track)) lines.push_back("  " + line);
+  return lines;
 }
 
 }  // namespace
@@ -113,21 +116,26 @@ std::string Fixed(double value, int decimals) {
   return text::Fixed(shown, std::clamp(decimals, 0, 9));
 }
 
-std::string FallText(const stream::GaitState& gait) {
-  std::string text = "falls " + std::to_string(gait.falls);
-  if (gait.falls == 0) return text;
-  const std::pair<const char*, std::uint64_t> parts[] = {
-      {"simulation", gait.failures.simulation},
-      {"curve", gait.failures.curve},
-      {"jump", gait.failures.jump},
-      {"put back by the operator", gait.operator_put_backs}};
-  std::string by_cause;
-  for (const auto& [name, count] : parts) {
+std::string CauseText(const stream::FailureCounts& failures) {
+  std::string text;
+  for (const stream::FailureCause cause : stream::kFailureCauses) {
+    const std::uint64_t count = stream::CountOf(cause, failures);
     if (count == 0) continue;
-    by_cause += (by_cause.empty() ? "" : ", ") + std::string(name) + " " + std::to_string(count);
+    text += (text.empty() ? " (" : ", ") + std::string(stream::Name(cause)) + " " +
+            std::to_string(count);
   }
-  return by_cause.empty() ? text : text + " (" + by_cause + ")";
+  return text.empty() ? text : text + ")";
 }
+
+std::string FallText(const stream::GaitState& gait) {
+  std::string text = "falls " + std::to_string(gait.falls) + CauseText(gait.failures);
+  if (gait.operator_put_backs > 0) {
+    text += ", put back by the operator " + std::to_string(gait.operator_put_backs);
+  }
+  return text;
+}
+
+std::string PhaseTitle(const std::string& phase) { return phase == "fall" ? "descend" : phase; }
 
 std::string GaitTitle(stream::Gait gait) {
   switch (gait) {
@@ -184,7 +192,7 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
   if (HasPicture(model)) {
     lines.push_back("Character");
     for (const CharacterPose& pose : model.playout.Newest().characters) {
-      for (std::string& line : CharacterLines(pose)) lines.push_back(std::move(line));
+      for (std::string& line : CharacterLines(pose, model.track)) lines.push_back(std::move(line));
     }
   }
   if (!model.devices.empty()) lines.push_back("Devices");
@@ -231,6 +239,11 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
     line += "  " + GaitTitle(pose.gait.gait) + "  " + Fixed(pose.gait.speed_mps, 2) + "/" +
             Fixed(pose.gait.commanded_speed_mps, 2) + " m/s  " + Fixed(pose.gait.distance_m, 1) +
             " m  " + FallText(pose.gait);
+    if (!pose.trial || !ShowsTrial(*pose.trial)) continue;
+    line += "  " + TrialTitle(*pose.trial);
+    if (const std::string task = TaskText(*pose.trial, model.track); !task.empty()) {
+      line += "  " + task;
+    }
   }
   line += "  devices " + std::to_string(model.devices.size()) + "  age " +
           Fixed(AgeMs(model, now_ns), 0) + " ms";

@@ -12,8 +12,14 @@ namespace footing::scene {
 /// A number with that many decimals (0 to 9), as screens show it: "1.5". No locale.
 std::string Fixed(double value, int decimals);
 
-/// "falls 3 (curve 2, put back by the operator 1)": how often the character was put back, and why.
+/// "falls 3 (curve 2, jump 1), put back by the operator 1": how often the character failed, and
+/// why.
 std::string FallText(const stream::GaitState& gait);
+/// " (curve 2, jump 1)": failures by cause; empty without any.
+std::string CauseText(const stream::FailureCounts& failures);
+/// A state of a gait controller as a screen shows it: "fall", the second half of a walking step, is
+/// "descend", since beside a count of falls it reads like one.
+std::string PhaseTitle(const std::string& phase);
 /// "WALK"; "-" for kUnspecified.
 std::string GaitTitle(stream::Gait gait);
 

@@ -12,6 +12,7 @@
 #include "daemon/offline/eval/replay/replay_command.h"
 #include "daemon/offline/eval/report/command.h"
 #include "daemon/offline/eval/stats/stats_command.h"
+#include "daemon/offline/eval/tracks/plan_command.h"
 #include "daemon/offline/eval/tracks/tracks_command.h"
 
 int main(int argc, char** argv) {
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
   footing::eval::AddGaitCommand(*app, shared);
   footing::eval::AddMomentumCommand(*app, shared);
   footing::eval::AddMonkeyCommand(*app, shared);
+  footing::eval::AddPlanCommand(*app, shared);
   footing::eval::AddPoseCommand(*app, shared);
   footing::eval::AddReplayCommand(*app, shared);
   footing::eval::AddStatsCommand(*app, shared);

@@ -31,7 +31,7 @@ struct EngineTexts {
   std::vector<GainText> gains;
 };
 inline constexpr const char* kBipedFile = "biped.json";
-inline constexpr const char* kStraightTrackFile = "tracks/straight.json";
+inline constexpr const char* kPlainTrackFile = "tracks/plain.json";
 inline constexpr const char* kWristMappingFile = "wrist_mapping.json";
 inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gaits/run.csv",
                                        "gaits/jump.csv"};
@@ -45,6 +45,14 @@ struct EngineConfig {
 };
 
 inline constexpr int kMaxAppends = 16;
+
+/// Which trial runs. A trial begins when its number is new, on the track that the engine then has.
+struct TrialInputs {
+  std::uint64_t number = 0;
+  int task = -1;                    ///< Index among the track's tasks; -1: none.
+  std::uint64_t stopped_below = 0;  ///< Trials with smaller numbers are stopped.
+  std::uint64_t track_number = 0;   ///< Of the track that it runs on (UseTrack); 0: the first one.
+};
 
 /// What the world outside wants, as of one step. Fixed size. Numbers count up: a push, a put-back
 /// or features are new when their number differs from the last step's, so the same inputs may be
@@ -62,10 +70,11 @@ struct EngineInputs {
   std::uint64_t append_number = 0;
   int append_count = 0;
   std::array<terrain::NewSegment, kMaxAppends> appends;
+  TrialInputs trial;
 };
 
 enum class EventKind {
-  kFall,
+  kFall,  ///< A failure of any cause.
   kPutBack,
   kGaitCommanded,  ///< Another gait is commanded than before.
   kGaitChanged,    ///< Another gait's controller runs than before.
@@ -74,30 +83,30 @@ enum class EventKind {
   kStreamLost,     ///< No new features for longer than the timeout.
   kStreamBack,
   kAppendRefused,  ///< A segment was not added; why is in the text.
+  kTrialReady,     ///< A trial begins; the character stands before the start line.
+  kTrialRunning,   ///< The start line was crossed.
+  kTrialFinished,  ///< The finish line was crossed.
+  kTrialStopped,
+  kTaskDone,  ///< The change of gait that the track asks for has succeeded.
 };
-
-/// What a failure is attributed to, as the gait paper counts them (section 8.2).
-enum class FailureCause {
-  kSimulation,  ///< The character fell.
-  kCurve,       ///< It left the ribbon.
-  kJump,        ///< A foot went into a pit.
-};
-
-/// "simulation", "curve", "jump".
-const char* Name(FailureCause cause);
 
 struct EngineEvent {
   EventKind kind = EventKind::kFall;
   stream::Gait from = stream::Gait::kUnspecified;
   stream::Gait to = stream::Gait::kUnspecified;
   const char* text = "";  ///< Of static storage; why it fell or was put back.
-  FailureCause cause = FailureCause::kSimulation;  ///< Of a fall.
-  bool by_operator = false;                        ///< Of a put-back: an input asked for it.
+  stream::FailureCause cause = stream::FailureCause::kUnspecified;  ///< Of a failure.
+  std::uint64_t failure_number = 0;                  ///< Of a failure: all are counted from 1.
+  bool in_trial = false;                             ///< Of a failure: the trial was going on.
+  bool by_operator = false;                          ///< Of a put-back: an input asked for it.
+  std::uint64_t trial_number = 0;                    ///< Of the trial at this step.
+  stream::TrialProgress trial = {};                  ///< Of a failure or a trial: how that stands.
+  Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();  ///< Of a failure: where.
 };
 
 inline constexpr int kLinkCount = 5;  ///< body, left hip, left knee, right hip, right knee.
 inline constexpr int kContactCount = 2;
-inline constexpr int kMaxEvents = 8;
+inline constexpr int kMaxEvents = 16;
 
 struct EngineOutput {
   std::uint64_t step = 0;
@@ -111,6 +120,9 @@ struct EngineOutput {
   std::array<double, 8> joint_efforts{};
   Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
   stream::GaitState gait;
+  stream::TrialProgress trial;
+  std::uint64_t trial_number = 0;  ///< The inputs' that this trial began with.
+  std::uint64_t track_number = 0;
   bool simulated_input = false;
   double root_force_max_n = 0;   ///< Largest hidden force on the root so far; must stay 0.
   std::uint64_t state_hash = 0;  ///< FNV-1a of the physics state: the same binary and machine only.
@@ -126,14 +138,18 @@ struct EngineOutput {
 };
 
 struct EngineState;
+struct TrackWorld;
 
-/// Physics, gait controllers, wrist mapping, and what happens at a fall.
+/// Physics, gait controllers, wrist mapping, trials, and what happens at a failure.
 ///
 /// One thread at a time. After Create nothing allocates, locks or logs.
 class GaitEngine {
  public:
   /// Fails with one line that names the file and key when a text does not parse.
   static Result<GaitEngine> Create(const EngineTexts& texts, const EngineConfig& config = {});
+  /// The same on a track that was read already; that of the texts is left alone.
+  static Result<GaitEngine> CreateOn(stream::Track track, const EngineTexts& texts,
+                                     const EngineConfig& config = {});
   GaitEngine(GaitEngine&&) noexcept;
   GaitEngine& operator=(GaitEngine&&) noexcept;
   ~GaitEngine();
@@ -146,11 +162,16 @@ class GaitEngine {
   const stream::Skeleton& skeleton() const;
   const stream::Track& track() const;
 
+  /// Goes over to another track (track_world.h) and gives the former one back in `other`. The
+  /// character stands at the start, time and counts go on; a trial begins with the next inputs that
+  /// have a new number. Allocates nothing.
+  void UseTrack(TrackWorld& other);
+
   /// Other gains from the next step on; not part of the state. Allocates.
   void UseGains(const gait::GainTable& table);
 
-  /// Everything that changes with time, as a value (state.h); Restore brings the engine back to
-  /// that step.
+  /// Everything that changes with time, as a value (state.h); Restore brings an engine on the same
+  /// track back to that step.
   EngineState Save() const;
   void Restore(const EngineState& state);
 

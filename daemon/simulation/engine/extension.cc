@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "daemon/simulation/engine/parts.h"
+#include "daemon/simulation/terrain/append.h"
+#include "daemon/simulation/terrain/endless.h"
 
 namespace footing::engine {
 namespace {
@@ -23,61 +25,78 @@ void GaitEngine::Parts::TakeAppend(const EngineInputs& inputs) {
   }
   const terrain::NewSegment& segment = inputs.appends[static_cast<std::size_t>(taken + 1 - oldest)];
   ++taken;
-  const int here = terrain::Locate(track, body.p_WB.head<2>()).segment;
-  if (const char* why = terrain::WhyNotAppended(track, segment, here); why != nullptr) {
+  if (const char* why = terrain::WhyNotAppended(on.track, segment, place.segment); why != nullptr) {
     AddEvent({.kind = EventKind::kAppendRefused, .text = why});
     return;
   }
   // The segment that was last may have to reach under the new one.
-  const std::uint64_t last = state.track.first_segment + track.segments.size() - 1;
+  const std::uint64_t last = state.track.first_segment + on.track.segments.size() - 1;
   box_holds[static_cast<std::size_t>(last % terrain::kGroundBoxes)] = 0;
-  const std::size_t before = track.segments.size();
-  terrain::Append(segment, track);
-  if (track.segments.size() == before) ++state.track.first_segment;
+  const std::size_t before = on.track.segments.size();
+  terrain::Append(segment, on.track);
+  if (on.track.segments.size() == before) ++state.track.first_segment;
+  place = terrain::Locate(on.track, body.p_WB.head<2>());
+  output.appended = true;
+}
+
+void GaitEngine::Parts::ExtendEndless() {
+  if (!on.track.endless) return;
+  const auto next =
+      terrain::EndlessSegment(on.track, place, body.p_WB.head<2>(), state.track.course);
+  if (!next) return;
+  const std::size_t before = on.track.segments.size();
+  terrain::Add(*next, on.track);
+  if (on.track.segments.size() == before) ++state.track.first_segment;
+  place = terrain::Locate(on.track, body.p_WB.head<2>());
   output.appended = true;
 }
 
 void GaitEngine::Parts::PlaceGround() {
-  if (!track.extendable) return;
-  const int here = terrain::Locate(track, body.p_WB.head<2>()).segment;
+  if (!on.track.extendable) return;
+  const int here = place.segment;
   const int from = std::max(0, here - kBoxesBehind);
-  const int to = std::min(static_cast<int>(track.segments.size()), here + kBoxesAhead);
+  const int to = std::min(static_cast<int>(on.track.segments.size()), here + kBoxesAhead);
   for (int i = from; i < to; ++i) {
     const std::uint64_t number = state.track.first_segment + static_cast<std::uint64_t>(i);
     const auto slot = static_cast<std::size_t>(number % terrain::kGroundBoxes);
     if (box_holds[slot] == number + 1) continue;
     box_holds[slot] = number + 1;
     const int index = static_cast<int>(slot);
-    const auto place = static_cast<std::size_t>(i);
-    const terrain::GroundBox box =
-        track.segments[place].pit ? terrain::WaitingBox(index) : terrain::BoxOf(track, place);
-    world.PlaceBox(index, box.centre_W_m, box.q_WS, box.half_size_m);
+    const auto index_on_track = static_cast<std::size_t>(i);
+    const terrain::GroundBox box = on.track.segments[index_on_track].pit
+                                       ? terrain::WaitingBox(index)
+                                       : terrain::BoxOf(on.track, index_on_track);
+    on.world.PlaceBox(index, box.centre_W_m, box.q_WS, box.half_size_m);
   }
 }
 
 void GaitEngine::Parts::SaveTrack(TrackMemory& memory) const {
   memory = state.track;
-  if (!track.extendable) return;
-  memory.revision = track.revision;
-  memory.count = track.segments.size();
-  std::copy(track.segments.begin(), track.segments.end(), memory.segments.begin());
+  if (!terrain::Grows(on.track)) return;
+  memory.first_m = on.track.first_m;
+  memory.revision = on.track.revision;
+  memory.count = on.track.segments.size();
+  std::copy(on.track.segments.begin(), on.track.segments.end(), memory.segments.begin());
 }
 
 void GaitEngine::Parts::RestoreTrack() {
-  if (!track.extendable) return;
+  if (!terrain::Grows(on.track)) return;
   const TrackMemory& memory = state.track;
   if (memory.count == 0) {
-    track.segments.assign(first_segments.begin(), first_segments.end());
-    track.revision = 1;
+    on.track.segments.assign(on.first_segments.begin(), on.first_segments.end());
+    on.track.revision = 1;
+    on.track.first_m = 0;
   } else {
-    track.segments.assign(memory.segments.begin(),
-                          memory.segments.begin() + static_cast<std::ptrdiff_t>(memory.count));
-    track.revision = memory.revision;
+    on.track.segments.assign(memory.segments.begin(),
+                             memory.segments.begin() + static_cast<std::ptrdiff_t>(memory.count));
+    on.track.revision = memory.revision;
+    on.track.first_m = memory.first_m;
   }
+  if (!on.track.extendable) return;
   // Boxes of another course may be left anywhere: all wait, then those that are needed come.
   for (int i = 0; i < terrain::kGroundBoxes; ++i) {
     const terrain::GroundBox box = terrain::WaitingBox(i);
-    world.PlaceBox(i, box.centre_W_m, box.q_WS, box.half_size_m);
+    on.world.PlaceBox(i, box.centre_W_m, box.q_WS, box.half_size_m);
   }
   box_holds = {};
 }

@@ -9,6 +9,8 @@
 namespace footing::engine {
 namespace {
 
+using stream::FailureCause;
+
 /// A fall is put down to what a foot is over when the foot is lower than this over the ribbon, m:
 /// legs shorten in a fall, and a foot in the air is higher.
 constexpr double kLowFootM = 0.1;
@@ -46,28 +48,12 @@ const char* WhyFallen(double ground_m, const biped::BodyState& body,
 
 }  // namespace
 
-const char* Name(FailureCause cause) {
-  switch (cause) {
-    case FailureCause::kSimulation:
-      return "simulation";
-    case FailureCause::kCurve:
-      return "curve";
-    case FailureCause::kJump:
-      return "jump";
-  }
-  return "";
-}
-
-Failure JudgeFailure(const stream::Track& track, const biped::BodyState& body,
-                     const physics::Observation& seen) {
-  const terrain::TrackPlace place = terrain::Locate(track, body.p_WB.head<2>());
+Failure FindFailure(const stream::Track& track, const terrain::TrackPlace& place,
+                    const biped::BodyState& body, const physics::Observation& seen) {
   const stream::TrackSegment& segment = track.segments[static_cast<std::size_t>(place.segment)];
   const char* why = WhyFallen(terrain::RibbonHeight(segment, place), body, seen);
+  if (terrain::HasPlane(track)) return {FailureCause::kSimulation, why};
   const bool beside = !track.open && terrain::IsOffRibbon(track, place);
-  if (terrain::IsLevel(track)) {
-    if (beside) return {FailureCause::kCurve, "the body is beside the track"};
-    return {FailureCause::kSimulation, why};
-  }
   // Both feet high and nothing wrong: no need to look what is under them.
   const double lowest_foot_m = std::min(body.legs[0].p_WF.z(), body.legs[1].p_WF.z());
   const bool sunk = lowest_foot_m < terrain::RibbonHeight(segment, place) - kSunkM;

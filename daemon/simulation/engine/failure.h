@@ -4,6 +4,7 @@
 #include "daemon/simulation/biped/body_state.h"
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/terrain/track.h"
 
 namespace footing::engine {
 
@@ -16,13 +17,14 @@ inline constexpr double kFootInPitM = 0.3;
 
 /// A failure and why, as text of static storage; null when there is none.
 struct Failure {
-  FailureCause cause = FailureCause::kSimulation;
+  stream::FailureCause cause = stream::FailureCause::kSimulation;
   const char* why = nullptr;
 };
 
-/// Classifies a state. What touches or drops beside the ribbon is the curve's failure, with a foot
-/// in a pit the jump's, whatever else is wrong besides.
-Failure JudgeFailure(const stream::Track& track, const biped::BodyState& body,
-                     const physics::Observation& seen);
+/// What is wrong with a state: simulation, curve or jump. What touches or drops beside the ribbon
+/// is the curve's failure, with a foot in a pit the jump's, whatever else is wrong besides. `place`
+/// is the body's on the track.
+Failure FindFailure(const stream::Track& track, const terrain::TrackPlace& place,
+                    const biped::BodyState& body, const physics::Observation& seen);
 
 }  // namespace footing::engine

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "daemon/simulation/biped/limits.h"
-#include "daemon/simulation/engine/failure.h"
 #include "daemon/simulation/gait/controller.h"
+#include "daemon/simulation/terrain/endless.h"
 #include "daemon/simulation/terrain/track.h"
 
 namespace footing::engine {
@@ -14,25 +14,13 @@ namespace {
 constexpr double kPushDurationS = 0.1;
 constexpr double kLargestPushNs = 1000;
 
-void Count(FailureCause cause, stream::FailureCounts& failures) {
-  switch (cause) {
-    case FailureCause::kSimulation:
-      ++failures.simulation;
-      return;
-    case FailureCause::kCurve:
-      ++failures.curve;
-      return;
-    case FailureCause::kJump:
-      ++failures.jump;
-      return;
-  }
-}
-
 }  // namespace
 
 void GaitEngine::Parts::AddEvent(const EngineEvent& event) {
   FOOTING_CHECK(output.event_count < kMaxEvents);
-  output.events[static_cast<std::size_t>(output.event_count++)] = event;
+  EngineEvent& added = output.events[static_cast<std::size_t>(output.event_count++)];
+  added = event;
+  added.trial_number = state.inputs.trial_number;
 }
 
 void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) {
@@ -40,21 +28,41 @@ void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) 
   const double height_m = biped.foot_radius_m + leg_m + biped.hip_below_body_com_m;
   std::array<double, physics::kJoints> joints{};
   joints[3] = joints[7] = leg_m - biped.leg_length_m;
-  world.Reset(p_W_m + Eigen::Vector3d(0, 0, height_m), heading_rad, joints);
+  on.world.Reset(p_W_m + Eigen::Vector3d(0, 0, height_m), heading_rad, joints);
   const std::uint64_t steps = state.gait.steps;
   state.gait = gait::Standing(heading_rad, TimeS());
   state.gait.steps = steps;
-  body = biped::Read(biped, world.Observe(), TimeS());
-}
-
-void GaitEngine::Parts::PutBack(const char* why, bool by_operator) {
-  const terrain::TrackPlace place = terrain::Locate(track, body.p_WB.head<2>());
-  const terrain::CentrePoint point =
-      terrain::CentreBehind(track, place, config.put_back_distance_m);
   state.fallen = false;
   state.inputs.push_steps_left = 0;
+  ReadBody();
+}
+
+void GaitEngine::Parts::ReadBody() {
+  body = biped::Read(biped, on.world.Observe(), TimeS());
+  place = terrain::Locate(on.track, body.p_WB.head<2>());
+}
+
+void GaitEngine::Parts::PutBack(const char* why, double to_m, bool by_operator) {
+  const terrain::CentrePoint point =
+      terrain::CentreBehind(on.track, terrain::PlaceAt(on.track, to_m), 0);
   Stand(point.p_W_m, point.heading_rad);
+  trial::TakePutBack(on.track, DistanceAlong(), state.trial);
   AddEvent({.kind = EventKind::kPutBack, .text = why, .by_operator = by_operator});
+}
+
+void GaitEngine::Parts::TakePutBack(const EngineInputs& inputs) {
+  if (state.inputs.put_back_number != inputs.put_back_number) {
+    state.inputs.put_back_number = inputs.put_back_number;
+    // Of a character that lies there it is only the end of its failure, a moment earlier.
+    if (!state.fallen) {
+      ++state.operator_put_backs;
+      if (trial::GoesOn(state.trial)) ++state.trial.operator_put_backs;
+    }
+    const double behind_m = DistanceAlong() - config.put_back_distance_m;
+    PutBack("by a command", state.fallen ? state.put_back_to_m : behind_m, true);
+  } else if (state.fallen && TimeS() - state.fallen_time_s >= config.fall_shown_s) {
+    PutBack("after a failure", state.put_back_to_m, false);
+  }
 }
 
 void GaitEngine::Parts::TakeFeatures(const EngineInputs& inputs) {
@@ -109,8 +117,8 @@ void GaitEngine::Parts::StepWorld() {
   ChooseGains();
   output.joint_efforts = {};
   if (!state.fallen) {  // A fallen character is limp.
-    output.joint_efforts = gait::Advance(body, biped, gains, state.command,
-                                         sees_ground ? &track : nullptr, config.step_s, state.gait);
+    output.joint_efforts =
+        gait::Advance(body, biped, gains, state.command, Sight(), config.step_s, state.gait);
   }
   output.push_W_n.setZero();
   if (state.inputs.push_steps_left > 0) {
@@ -118,11 +126,12 @@ void GaitEngine::Parts::StepWorld() {
     output.push_W_n = state.inputs.push_W_n;
   }
   const Eigen::Vector3d p_WC = body.p_WC;
-  world.Step(output.joint_efforts, output.push_W_n);
+  on.world.Step(output.joint_efforts, output.push_W_n);
   ++state.step;
-  body = biped::Read(biped, world.Observe(), TimeS());
+  ReadBody();
   const double c = std::cos(state.gait.heading_rad), s = std::sin(state.gait.heading_rad);
   const Eigen::Vector3d moved = body.p_WC - p_WC;
+  if (on.track.endless) terrain::FollowCourse(moved.head<2>(), state.track.course);
   state.distance_m += c * moved.x() + s * moved.y();
 }
 
@@ -136,26 +145,12 @@ void GaitEngine::Parts::NoteGait(stream::Gait before) {
   }
 }
 
-void GaitEngine::Parts::NoteFall() {
-  if (state.fallen) return;
-  const Failure failure = JudgeFailure(track, body, world.Observe());
-  if (failure.why == nullptr) return;
-  state.fallen = true;
-  state.fallen_time_s = TimeS();
-  Count(failure.cause, state.failures);
-  AddEvent({.kind = EventKind::kFall,
-            .from = state.gait.gait,
-            .to = stream::Gait::kUnspecified,
-            .text = failure.why,
-            .cause = failure.cause});
-}
-
 void GaitEngine::Parts::FillOutput() {
   output.step = state.step;
   output.time_s = TimeS();
   for (int i = 0; i < kLinkCount; ++i) {
     stream::LinkPose& pose = output.links[static_cast<std::size_t>(i)];
-    world.LinkPose(i, pose.position_m, pose.orientation);
+    on.world.LinkPose(i, pose.position_m, pose.orientation);
   }
   for (std::size_t i = 0; i < kContactCount; ++i) {
     const biped::LegState& leg = body.legs[i];
@@ -168,13 +163,15 @@ void GaitEngine::Parts::FillOutput() {
   output.gait = gait::Describe(body, state.command, state.gait);
   output.gait.failures = state.failures;
   output.gait.operator_put_backs = state.operator_put_backs;
-  output.gait.falls = state.failures.simulation + state.failures.curve + state.failures.jump +
-                      state.operator_put_backs;
+  output.gait.falls = stream::Total(state.failures);
   output.gait.distance_m = state.distance_m;
   output.gait.commanded_by_stream = state.inputs.fed;
+  output.trial = Progress();
+  output.trial_number = state.inputs.trial_number;
+  output.track_number = on.track.number;
   output.simulated_input = state.simulated_input;
-  output.root_force_max_n = world.root_force_max_n();
-  output.state_hash = world.StateHash();
+  output.root_force_max_n = on.world.root_force_max_n();
+  output.state_hash = on.world.StateHash();
   output.commanded_step = state.response.commanded_step;
   output.commanded_features_number = state.response.commanded_features_number;
   output.append_number = state.track.append_number;

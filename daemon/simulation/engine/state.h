@@ -4,6 +4,7 @@
 #include "daemon/simulation/gait/memory.h"
 #include "daemon/simulation/mapping/wrist.h"
 #include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/trial/trial.h"
 
 namespace footing::engine {
 
@@ -12,6 +13,7 @@ struct InputMemory {
   std::uint64_t features_number = 0;
   std::uint64_t push_number = 0;
   std::uint64_t put_back_number = 0;
+  std::uint64_t trial_number = 0;
   double features_time_s = 0;  ///< When features last were new.
   bool fed = false;            ///< New features arrived within the timeout.
   Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
@@ -26,16 +28,18 @@ struct ResponseMemory {
   std::uint64_t taken_over_step = 0;
 };
 
-/// The track as far as it was added to; of a track that never was, nothing.
+/// The track as far as it grew; of a track that does not grow, nothing.
 struct TrackMemory {
-  std::uint64_t append_number = 0;  ///< Taken or refused.
-  std::uint64_t first_segment = 0;  ///< Dropped so far.
-  std::uint64_t revision = 0;       ///< 0: the track is still the file's.
+  std::uint64_t append_number = 0;                   ///< Taken or refused.
+  std::uint64_t first_segment = 0;                   ///< Dropped so far.
+  double first_m = 0;                                ///< Length of those.
+  std::uint64_t revision = 0;                        ///< 0: the track is still the file's.
+  Eigen::Vector2d course = Eigen::Vector2d::Zero();  ///< Average direction of travel.
   std::size_t count = 0;
   std::array<stream::TrackSegment, terrain::kMostSegments> segments;
 };
 
-/// Everything in a GaitEngine that changes with time.
+/// Everything in a GaitEngine that changes with time on one track.
 struct EngineState {
   physics::WorldState world;
   gait::GaitMemory gait;
@@ -44,12 +48,14 @@ struct EngineState {
   InputMemory inputs;
   ResponseMemory response;
   TrackMemory track;
+  trial::TrialMemory trial;
   std::uint64_t step = 0;
   stream::FailureCounts failures = {};
   std::uint64_t operator_put_backs = 0;
   double distance_m = 0;
   bool fallen = false;
   double fallen_time_s = 0;
+  double put_back_to_m = 0;  ///< Where the put-back after the failure goes, along the track.
   bool simulated_input = false;
 };
 

@@ -25,7 +25,8 @@ constexpr std::array kKeyOptions{
     KeyOption{"--interface", "interface",
               "User interface of the gait engine: wrist (default: wrist)"},
     KeyOption{"--track", "track",
-              "Track of the gait engine: a built-in name, or a JSON file (default: straight)"},
+              "Track of the gait engine: straight, 1 to 4 or another built-in name, or a JSON file "
+              "(default: endless)"},
     KeyOption{"--subject", "subject", "Subject file of the pose engine, JSON"},
     KeyOption{"--mode", "mode",
               "Reconstruction mode of the pose engine: best or paper (default: best)"},

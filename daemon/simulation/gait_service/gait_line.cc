@@ -23,18 +23,21 @@ Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common
   engine_config.features_timeout_s = config.features_timeout_s;
   auto engine = engine::GaitEngine::Create(*texts, engine_config);
   if (!engine) return engine.error();
-  return std::unique_ptr<GaitLine>(new GaitLine(common.rig, config, std::move(engine).value(),
-                                                engine_config.step_s, wake_descriptor));
+  const auto biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
+  if (!biped) return biped.error();
+  return std::unique_ptr<GaitLine>(new GaitLine(
+      common.rig, config, std::move(engine).value(),
+      {config.track, common.data_folder, *biped, engine_config.step_s}, wake_descriptor));
 }
 
 GaitLine::GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
-                   double step_s, int wake_descriptor)
+                   TrialControl::Options trial_options, int wake_descriptor)
     : world_(config.track),
       frame_rate_hz_(config.frame_rate_hz),
-      thread_(std::move(engine), step_s,
-              static_cast<int>(std::lround(1.0 / (step_s * config.frame_rate_hz))),
+      thread_(GaitRun(std::move(engine), tracks_), trial_options.step_s,
+              static_cast<int>(std::lround(1.0 / (trial_options.step_s * config.frame_rate_hz))),
               wake_descriptor),
-      track_(thread_.run().engine().track()),
+      trials_(std::move(trial_options), thread_.run().engine().track(), tracks_),
       input_(rig, thread_.inputs(), responses_) {}
 
 std::vector<transport::Channel> GaitLine::Channels() {
@@ -48,13 +51,23 @@ std::vector<transport::Channel> GaitLine::Channels() {
 std::vector<transport::ChannelBytes> GaitLine::Retained() const {
   return {serving::Bytes(serving::kSkeletons,
                          serving::MakeSkeletons(world_, thread_.run().engine().skeleton())),
-          serving::Bytes(serving::kTrack, wire::ToProto(track_))};
+          serving::Bytes(serving::kTrack, wire::ToProto(trials_.track()))};
+}
+
+v1::CommandResult GaitLine::OnCommand(const v1::Command& command) {
+  if (!TrialControl::Takes(command)) return input_.OnCommand(command);
+  const v1::CommandResult result = trials_.OnCommand(command);
+  if (result.ok()) input_.SetTrial(trials_.inputs());
+  return result;
 }
 
 v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
   v1::Events events;
   for (int i = 0; i < frame.event_count; ++i) {
-    *events.add_events() = ToEvent(frame.events[static_cast<std::size_t>(i)], now_ns);
+    *events.add_events() = trials_.ToEvent(frame.events[static_cast<std::size_t>(i)], now_ns);
+  }
+  for (v1::Event& event : trials_.TakeCorrections(now_ns)) {
+    *events.add_events() = std::move(event);
   }
   v1::ResponseStages stages;
   if (!responses_.Complete(frame, now_ns, stages)) return events;
@@ -68,17 +81,21 @@ v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
 std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::int64_t now_ns) {
   input_.OnFrame(frame);
   std::vector<transport::ChannelBytes> channels;
+  const v1::Events events = EventsOf(frame, now_ns);
+  const bool switched = trials_.OnFrame(frame);
   for (int i = 0; i < frame.added_count; ++i) {
-    terrain::Add(frame.added[static_cast<std::size_t>(i)], track_);
+    terrain::Add(frame.added[static_cast<std::size_t>(i)], trials_.track());
   }
-  if (frame.added_count > 0)
-    channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(track_)));
+  if (switched || frame.added_count > 0) {
+    channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(trials_.track())));
+  }
+  v1::CharacterFrame characters = ToCharacterFrame(frame, world_, input_.rig());
+  trials_.Describe(frame, *characters.mutable_characters(0));
   v1::AppliedInputs inputs;
   for (int i = 0; i < frame.applied_count; ++i) {
     *inputs.add_inputs() = ToAppliedInput(frame.applied[static_cast<std::size_t>(i)]);
   }
-  serving::AddFrame(ToCharacterFrame(frame, world_, input_.rig()), EventsOf(frame, now_ns), inputs,
-                    channels);
+  serving::AddFrame(characters, events, inputs, channels);
   return channels;
 }
 

@@ -11,6 +11,8 @@
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "daemon/simulation/gait_service/sensor_input.h"
+#include "daemon/simulation/gait_service/track_exchange.h"
+#include "daemon/simulation/gait_service/trial_control.h"
 #include "daemon/simulation/serving/config.h"
 #include "daemon/simulation/serving/simulation_thread.h"
 
@@ -26,7 +28,7 @@ class GaitLine {
                                                   const Config& config, int wake_descriptor);
 
   static std::vector<transport::Channel> Channels();
-  static std::vector<std::string> Capabilities() { return {"gait", "wrist"}; }
+  static std::vector<std::string> Capabilities() { return {"gait", "wrist", "trial"}; }
   static std::vector<std::string> SensorChannels() { return {"features"}; }
   static constexpr v1::QueuePolicy kSensorPolicy = v1::QUEUE_POLICY_LATEST;
   double frame_rate_hz() const { return frame_rate_hz_; }
@@ -34,19 +36,20 @@ class GaitLine {
   serving::SimulationThread<GaitRun>& thread() { return thread_; }
   std::vector<transport::ChannelBytes> Retained() const;
   void OnTick(const v1::Tick& tick, std::int64_t now_ns) { input_.OnTick(tick, now_ns); }
-  v1::CommandResult OnCommand(const v1::Command& command) { return input_.OnCommand(command); }
+  v1::CommandResult OnCommand(const v1::Command& command);
   std::vector<transport::ChannelBytes> OnFrame(const Frame& frame, std::int64_t now_ns);
 
  private:
-  GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine, double step_s,
-           int wake_descriptor);
+  GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
+           TrialControl::Options trial_options, int wake_descriptor);
   v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);
 
   const std::string world_;
   const double frame_rate_hz_;
   Responses responses_;
+  TrackExchange tracks_;  // Before the thread, which uses it.
   serving::SimulationThread<GaitRun> thread_;
-  stream::Track track_;  ///< The engine's, as of the last frame: the engine is its thread's alone.
+  TrialControl trials_;
   SensorInput input_;
 };
 

@@ -1,8 +1,20 @@
 #include "daemon/simulation/gait_service/gait_run.h"
 
+#include <memory>
+#include <utility>
+
 #include "common/clock/clock.h"
 
 namespace footing::gait_service {
+
+void GaitRun::UseTrackOnSimThread(std::uint64_t number, Frame& frame) {
+  std::unique_ptr<engine::TrackWorld> next;
+  while (number != 0 && engine_.track().number != number && tracks_->next.Pop(next)) {
+    engine_.UseTrack(*next);
+    tracks_->done.Push(std::move(next));  // It has space for all that are on their way.
+    frame.added_count = 0;                // Those were the former track's.
+  }
+}
 
 void GaitRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
   // One input adds at most kMaxAppends segments, of which each has its place in the frame.
@@ -12,6 +24,7 @@ void GaitRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
     Applied& applied = frame.applied[static_cast<std::size_t>(frame.applied_count++)];
     applied.step = engine_.Output().step + 1;
     applied.inputs = inputs.Front();
+    UseTrackOnSimThread(inputs.Front().engine.trial.track_number, frame);
   }
   engine_.Advance(inputs.Front().engine);
   const engine::EngineOutput& output = engine_.Output();

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <utility>
 
 #include "common/exchange/latest.h"
 #include "daemon/simulation/gait_service/frame.h"
+#include "daemon/simulation/gait_service/track_exchange.h"
 
 namespace footing::gait_service {
 
@@ -13,7 +15,8 @@ class GaitRun {
   using Inputs = gait_service::Inputs;
   using Frame = gait_service::Frame;
 
-  GaitRun(engine::GaitEngine engine) : engine_(std::move(engine)) {}  // NOLINT: an engine is a run
+  GaitRun(engine::GaitEngine engine, TrackExchange& tracks)
+      : engine_(std::move(engine)), tracks_(&tracks) {}
 
   void StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame);
   void FillOnSimThread(Frame& frame) { frame.output = engine_.Output(); }
@@ -22,7 +25,10 @@ class GaitRun {
   const engine::GaitEngine& engine() const { return engine_; }
 
  private:
+  void UseTrackOnSimThread(std::uint64_t number, Frame& frame);
+
   engine::GaitEngine engine_;
+  TrackExchange* tracks_;
 };
 
 }  // namespace footing::gait_service

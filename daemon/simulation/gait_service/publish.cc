@@ -24,20 +24,15 @@ v1::Event::Kind ToKind(engine::EventKind kind) {
       return v1::Event::KIND_STREAM_LOST;
     case engine::EventKind::kStreamBack:
       return v1::Event::KIND_STREAM_BACK;
+    case engine::EventKind::kTrialReady:
+    case engine::EventKind::kTrialRunning:
+    case engine::EventKind::kTrialFinished:
+    case engine::EventKind::kTrialStopped:
+      return v1::Event::KIND_TRIAL;
+    case engine::EventKind::kTaskDone:
+      return v1::Event::KIND_TASK;
   }
   return v1::Event::KIND_UNSPECIFIED;
-}
-
-v1::FailureCause ToCause(engine::FailureCause cause) {
-  switch (cause) {
-    case engine::FailureCause::kSimulation:
-      return v1::FAILURE_CAUSE_SIMULATION;
-    case engine::FailureCause::kCurve:
-      return v1::FAILURE_CAUSE_CURVE;
-    case engine::FailureCause::kJump:
-      return v1::FAILURE_CAUSE_JUMP;
-  }
-  return v1::FAILURE_CAUSE_UNSPECIFIED;
 }
 
 std::string ToText(const engine::EngineEvent& event) {
@@ -50,13 +45,20 @@ std::string ToText(const engine::EngineEvent& event) {
     case engine::EventKind::kGaitChanged:
       return "changed: " + gaits;
     case engine::EventKind::kFall:
-      return std::string("failure (") + engine::Name(event.cause) + "): " + event.text;
+      return std::string("failure (") + stream::Name(event.cause) + "): " + event.text;
     case engine::EventKind::kPutBack:
       return std::string("put back ") + event.text;
     case engine::EventKind::kStreamLost:
     case engine::EventKind::kStreamBack:
     case engine::EventKind::kAppendRefused:
       return event.text;
+    case engine::EventKind::kTrialReady:
+    case engine::EventKind::kTrialRunning:
+    case engine::EventKind::kTrialFinished:
+    case engine::EventKind::kTrialStopped:
+      return std::string("trial ") + stream::Name(event.trial.phase);
+    case engine::EventKind::kTaskDone:
+      return "task done";
   }
   return event.text;
 }
@@ -115,6 +117,14 @@ void Fields(Way way, const engine::EngineInputs&) {
       way.value.appends[static_cast<std::size_t>(i)] = FromProto(way.message.appends(i));
     }
   }
+  FOOTING_FIELD_OF(trial.number, trial_number);
+  if constexpr (Way::kOut) {
+    way.message.set_trial_task(static_cast<std::uint32_t>(way.value.trial.task + 1));
+  } else {
+    way.value.trial.task = static_cast<int>(way.message.trial_task()) - 1;
+  }
+  FOOTING_FIELD_OF(trial.stopped_below, trials_stopped_below);
+  FOOTING_FIELD_OF(trial.track_number, track_number);
 }
 
 template <typename Way>
@@ -150,7 +160,7 @@ v1::CharacterFrame ToCharacterFrame(const Frame& frame, const std::string& world
 v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns) {
   v1::Event message = serving::MakeEvent(ToKind(event.kind), host_ns, ToText(event));
   message.set_gait(static_cast<v1::Gait>(event.to));
-  if (event.kind == engine::EventKind::kFall) message.set_failure_cause(ToCause(event.cause));
+  message.set_failure_cause(static_cast<v1::FailureCause>(event.cause));
   message.set_by_operator(event.by_operator);
   return message;
 }

@@ -105,7 +105,9 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
     case v1::Command::kAppendSegment:
       return Append(command.append_segment());
     default:
-      return Answer(false, "footing-sim takes direct_gait, push, put_back and append_segment");
+      return Answer(false,
+                    "footing-sim takes direct_gait, push, put_back, append_segment, start_trial, "
+                    "stop_trial and correct_failure");
   }
   Publish();
   return Answer(true, "");

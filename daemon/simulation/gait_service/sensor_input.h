@@ -22,6 +22,12 @@ class SensorInput {
   /// DirectGait, Push, PutBack and AppendSegment; anything else is answered with what there is.
   v1::CommandResult OnCommand(const v1::Command& command);
 
+  /// Which trial runs, from now on.
+  void SetTrial(const engine::TrialInputs& trial) {
+    inputs_.engine.trial = trial;
+    Publish();
+  }
+
   const std::string& rig() const { return followed_rig_; }
 
  private:

@@ -79,6 +79,10 @@ const char* WhyOutOfRange(const NewSegment& segment) {
 
 }  // namespace
 
+std::size_t MostSegments(const stream::Track& track) {
+  return track.endless ? kMostEndlessSegments : kMostSegments;
+}
+
 const char* WhyNotAppended(const stream::Track& track, const NewSegment& segment, int here) {
   if (!track.extendable) return "this track cannot be extended; start with the track \"build\"";
   if (const char* why = WhyOutOfRange(segment); why != nullptr) return why;
@@ -102,7 +106,10 @@ void Append(const NewSegment& segment, stream::Track& track) {
 }
 
 void Add(const stream::TrackSegment& placed, stream::Track& track) {
-  if (track.segments.size() >= kMostSegments) track.segments.erase(track.segments.begin());
+  if (track.segments.size() >= MostSegments(track)) {
+    track.first_m += track.segments.front().length_m;
+    track.segments.erase(track.segments.begin());
+  }
   track.segments.push_back(placed);
   ++track.revision;
 }

@@ -19,6 +19,9 @@ struct NewSegment {
 
 /// More segments than this are not kept: the oldest one goes for each that is added.
 inline constexpr std::size_t kMostSegments = 256;
+/// The same of an endless track, whose past nobody comes back to.
+inline constexpr std::size_t kMostEndlessSegments = 64;
+std::size_t MostSegments(const stream::Track& track);
 /// The oldest segment only goes when the character is at least so many segments further.
 inline constexpr int kKeptBehind = 12;
 
@@ -27,7 +30,7 @@ inline constexpr int kKeptBehind = 12;
 const char* WhyNotAppended(const stream::Track& track, const NewSegment& segment, int here);
 
 /// Adds a segment that may be added, counts the revision up, and drops the oldest segment beyond
-/// kMostSegments.
+/// MostSegments.
 void Append(const NewSegment& segment, stream::Track& track);
 /// The same with a segment that Append has placed on another copy of the track.
 void Add(const stream::TrackSegment& placed, stream::Track& track);

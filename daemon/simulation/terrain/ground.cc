@@ -1,6 +1,5 @@
 #include "daemon/simulation/terrain/ground.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace footing::terrain {
@@ -19,11 +18,10 @@ std::string Geom(const GroundBox& box, const std::string& name = "") {
 
 }  // namespace
 
-bool IsLevel(const stream::Track& track) {
-  return !track.extendable &&
-         std::all_of(track.segments.begin(), track.segments.end(), [](const auto& segment) {
-           return !segment.pit && segment.slope_rad == 0 && segment.start_m.z() == 0;
-         });
+bool IsLevel(const stream::Track& track) { return !track.extendable && IsFlat(track); }
+
+bool HasPlane(const stream::Track& track) {
+  return IsLevel(track) && (track.open || track.endless);
 }
 
 double RibbonHeight(const stream::TrackSegment& segment, const TrackPlace& place) {
@@ -55,7 +53,7 @@ std::string GroundMjcf(const stream::Track& track) {
     for (int i = 0; i < kGroundBoxes; ++i) boxes += Geom(WaitingBox(i), GroundBoxName(i));
     return boxes;
   }
-  if (IsLevel(track)) {
+  if (HasPlane(track)) {
     return "<geom type='plane' contype='1' conaffinity='2' size='0 0 1'/>\n";
   }
   std::string text;

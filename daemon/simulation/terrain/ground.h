@@ -11,9 +11,12 @@ namespace footing::terrain {
 /// How far below the track a pit's floor counts as, for height queries.
 inline constexpr double kPitDepthM = 2.0;
 
-/// True when the track is one level without steps and pits: its ground is the endless plane z = 0,
-/// on which a character may also leave the ribbon.
+/// True when the track is level and stays so, without steps and pits.
 bool IsLevel(const stream::Track& track);
+
+/// True when a level track's ground is the endless plane z = 0, since a character may leave the
+/// ribbon. Beside every other ribbon there is nothing to stand on.
+bool HasPlane(const stream::Track& track);
 
 /// Height of the ribbon at a place on a segment, as if pits were filled, m.
 double RibbonHeight(const stream::TrackSegment& segment, const TrackPlace& place);
@@ -30,7 +33,8 @@ GroundBox WaitingBox(int index);
 std::string GroundBoxName(int index);
 
 /// The ground as MJCF geoms of the world body: kGroundBoxes waiting ones for an extendable track,
-/// else one plane, or a box a segment that is no pit; the first one begins 3 m before its start.
+/// else one plane (HasPlane), or a box for each segment that is not a pit; the first one begins 3 m
+/// before its start.
 std::string GroundMjcf(const stream::Track& track);
 
 }  // namespace footing::terrain

@@ -70,6 +70,48 @@ TEST_F(HudPictureTest, ThePanelsOfTheBirdStayInTheirBoxesAtEverySize) {
   }
 }
 
+TEST_F(HudPictureTest, ATaskIsSeenAtEverySizeAlsoByThePersonWhoSeesTheWorldAlone) {
+  const scene::made::Wish wish;
+  const scene::Model model = scene::made::ModelAfter(12, wish);
+  const scene::WorldFrame bare = scene::made::TickAt(12, wish).frame.value();
+  scene::WorldFrame frame = bare;
+  stream::TrialState& trial = frame.characters.front().trial.emplace();
+  trial.trial = "p07-2";
+  trial.finish_m = 60;
+  trial.to_mark_m = 12;
+  trial.instruction = "walk to the line, then run";
+  trial.progress.phase = stream::TrialPhase::kRunning;
+  trial.progress.task_phase = stream::TaskPhase::kAhead;
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+  for (const Size& size : kPictureSizes) {
+    Resize(size.width, size.height);
+    const ImVec2 pixels(static_cast<float>(size.width), static_cast<float>(size.height));
+    for (const bool hidden : {false, true}) {
+      HudOptions options;
+      options.hidden = hidden;
+      const auto name = SizedName(hidden ? "task_alone" : "task", size);
+      const Image with = Show(picture, model, frame, now_ns, options, name);
+      const Image without = Show(picture, model, bare, now_ns, options, name + "_bare");
+      const Box middle = BoxesOf({picture, model, frame, now_ns, model, now_ns}, options, pixels,
+                                 HudScale(pixels, 1))
+                             .middle;
+      int inside = 0, outside = 0;
+      for (int i = 0; i < size.width * size.height; ++i) {
+        const auto first = static_cast<std::size_t>(3 * i);
+        if (std::abs(with.rgb[first] - without.rgb[first]) <= 8) continue;
+        const int x = i % size.width, y = i / size.width;
+        const bool in = x >= middle.low.x - 2 && x < middle.high.x + 2 && y >= middle.low.y - 2 &&
+                        y < middle.high.y + 2;
+        ++(in ? inside : outside);
+      }
+      EXPECT_GT(inside, 1000) << name;
+      EXPECT_EQ(outside, 0) << name;
+    }
+  }
+}
+
 TEST_F(HudPictureTest, TheTPosePromptStaysOutOfThePanelsHoweverLongItIs) {
   scene::made::PersonWish wish;
   wish.calibrated = false;

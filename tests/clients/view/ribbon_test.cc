@@ -35,6 +35,39 @@ TEST(Ribbon, EveryTenthMetreCarriesItsNumber) {
   EXPECT_EQ(painted, static_cast<long>(4 * strokes));
 }
 
+TEST(Ribbon, TheLinesOfATrialArePaintedWhereTheTrackHasThem) {
+  stream::Track track = made::StraightTrack(66);  // From x = -2.
+  track.start_m = 1;
+  track.finish_m = 60;
+  track.mark_m = 30;
+  const auto quads_at = [](const RibbonMesh& mesh, float x, float kind) {
+    int count = 0;
+    for (std::size_t i = 0; i + 3 < mesh.vertices.size(); i += 4) {
+      const RibbonVertex& low = mesh.vertices[i];
+      const float middle = (low.position.x() + mesh.vertices[i + 1].position.x()) / 2;
+      count += low.kind == kind && std::abs(middle - x) < 0.2f ? 1 : 0;
+    }
+    return count;
+  };
+  const RibbonMesh course = BuildRibbon(track);
+  EXPECT_EQ(quads_at(course, -1, 3), 1);   // The start line.
+  EXPECT_GE(quads_at(course, 58, 3), 12);  // The finish line: half of two rows of 14 squares.
+  EXPECT_EQ(quads_at(course, 28, 4), 0);   // Without a task the mark means nothing.
+  track.tasks.resize(1);
+  const RibbonMesh straight = BuildRibbon(track);
+  EXPECT_EQ(quads_at(straight, 28, 4), 1);
+  EXPECT_EQ(quads_at(straight, 31, 3), 1);  // The line to follow: one over the whole length.
+}
+
+TEST(Ribbon, NumbersGoOnWhereTheStartWasDropped) {
+  stream::Track track = made::StraightTrack(8);
+  track.first_m = 495;
+  const RibbonMesh mesh = BuildRibbon(track);
+  EXPECT_EQ(std::count_if(mesh.vertices.begin(), mesh.vertices.end(),
+                          [](const RibbonVertex& v) { return v.kind == 3; }),
+            static_cast<long>(4 * PaintNumber("500").size()));
+}
+
 TEST(Ribbon, NormalsOfTheSurfacePointUp) {
   stream::Track track = made::StraightTrack(10);
   track.segments[0].slope_rad = DegreesToRadians(5);

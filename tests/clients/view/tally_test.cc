@@ -106,12 +106,24 @@ TEST(Tally, FailuresByCauseAndOperatorPutBacksCountOverARestart) {
     frame.characters[0].gait.operator_put_backs = put_backs;
     tally.Add(frame);
   };
-  add(100, {3, 2, 1}, 3);
-  add(101, {4, 2, 3}, 4);
-  add(0.01, {0, 0, 0}, 0);
-  add(1, {0, 5, 0}, 1);
-  EXPECT_EQ(tally.failures(), (stream::FailureCounts{1, 5, 2}));
+  add(100, {3, 2, 1, 0, 7}, 3);
+  add(101, {4, 2, 3, 1, 7}, 4);
+  add(0.01, {0, 0, 0, 0, 0}, 0);
+  add(1, {0, 5, 0, 0, 2}, 1);
+  EXPECT_EQ(tally.failures(), (stream::FailureCounts{1, 5, 2, 1, 2}));
   EXPECT_EQ(tally.operator_put_backs(), 2u);
+}
+
+TEST(Tally, TimeBesideTheTrackCounts) {
+  Tally tally;
+  WorldFrame frame = FrameOf(10, stream::Gait::kWalk, 0);
+  for (int i = 0; i <= 100; ++i) {
+    frame.time_s = 10 + 0.01 * i;
+    frame.characters[0].trial.emplace();
+    frame.characters[0].trial->progress.on_track = i <= 40 || i > 65;
+    tally.Add(frame);
+  }
+  EXPECT_NEAR(tally.off_track_s(), 0.25, 1e-9);  // Frames 41 to 65.
 }
 
 TEST(Tally, FallsAndDistanceCountFromTheFirstFrameAndOverARestart) {

@@ -50,6 +50,21 @@ TEST(Translate, NumbersThatAreNotFiniteDoNotReachThePicture) {
   EXPECT_TRUE(pose.gait.next_foothold_m.allFinite());
 }
 
+TEST(Translate, ATrialComesThroughAndIsFinite) {
+  v1::Tick tick;
+  v1::TrialState& trial = *tick.mutable_characters()->add_characters()->mutable_trial();
+  trial.set_trial("p07-2");
+  trial.set_phase(v1::TrialState::PHASE_RUNNING);
+  trial.set_time_s(std::numeric_limits<double>::quiet_NaN());
+  trial.mutable_failures()->set_straightness(3);
+  const scene::CharacterPose pose = Translate(tick, 0, 0, 0).frame->characters.at(0);
+  ASSERT_TRUE(pose.trial.has_value());
+  EXPECT_EQ(pose.trial->trial, "p07-2");
+  EXPECT_EQ(pose.trial->progress.phase, stream::TrialPhase::kRunning);
+  EXPECT_EQ(pose.trial->progress.time_s, 0);
+  EXPECT_EQ(pose.trial->progress.failures.straightness, 3u);
+}
+
 TEST(Translate, AGaitOfANewerServerIsUnspecified) {
   v1::Tick tick;
   tick.mutable_characters()->add_characters()->mutable_gait()->set_gait(static_cast<v1::Gait>(77));

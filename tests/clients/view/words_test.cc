@@ -70,12 +70,23 @@ TEST(StatusScreen, CountsFallsByCauseApartFromWhatTheOperatorPutBack) {
   const Model model = made::ModelAfter(3, {});
   stream::GaitState gait;
   gait.falls = 5;
-  gait.failures = {.simulation = 0, .curve = 3, .jump = 1};
+  gait.failures = {.simulation = 0, .curve = 3, .jump = 2, .straightness = 0, .transition = 0};
   gait.operator_put_backs = 1;
-  EXPECT_EQ(FallText(gait), "falls 5 (curve 3, jump 1, put back by the operator 1)");
-  gait.falls = 0;
-  EXPECT_EQ(FallText(gait), "falls 0");
+  EXPECT_EQ(FallText(gait), "falls 5 (curve 3, jump 2), put back by the operator 1");
+  EXPECT_EQ(FallText({}), "falls 0");
   EXPECT_THAT(StatusScreen(model, made::ClockAt(3)), Contains(HasSubstr("falls 0")));
+}
+
+TEST(StatusScreen, APhaseCalledFallIsNotShownBesideACountOfFalls) {
+  EXPECT_EQ(PhaseTitle("fall"), "descend");
+  EXPECT_EQ(PhaseTitle("rise"), "rise");
+  Update update = made::TickAt(3, {});
+  update.frame->characters[0].phase = "fall";
+  Model model = made::ModelAfter(2.9, {});
+  Apply(model, update);
+  const auto lines = StatusScreen(model, made::ClockAt(3));
+  EXPECT_THAT(lines, Contains(HasSubstr("descend")));
+  EXPECT_THAT(lines, Not(Contains(HasSubstr("fall "))));
 }
 
 TEST(StatusScreen, RealDevicesCarryNoStamp) {

@@ -108,7 +108,10 @@ TEST(DataFile, AnUnknownNameListsTheBuiltInOnes) {
   const auto result = ReadNamedOrPath("9", "tracks");
   ASSERT_FALSE(result);
   EXPECT_THAT(result.error().message, HasSubstr("tracks/9.json"));
-  EXPECT_THAT(result.error().message, HasSubstr("there are: 1, 2, 3, 4, build, straight"));
+  EXPECT_THAT(
+      result.error().message,
+      HasSubstr(
+          "there are: 1, 2, 3, 4, build, corners, curves, endless, hills, pits, plain, straight"));
   EXPECT_TRUE(ReadNamedOrPath("straight", "tracks"));
 }
 

@@ -98,7 +98,7 @@ TEST(Wire, ContactAndGaitStateCarryEveryField) {
                           5,
                           6,
                           7,
-                          {11, 12, 13},
+                          {11, 12, 13, 15, 16},
                           14,
                           8,
                           true,
@@ -113,6 +113,25 @@ TEST(Wire, ContactAndGaitStateCarryEveryField) {
   EXPECT_EQ(message.speed_mps(), 4);
   EXPECT_EQ(message.distance_m(), 8);
   EXPECT_EQ(message.next_foothold_y_m(), 10);
+}
+
+TEST(Wire, ATrialCarriesEveryFieldAndTheSumOfItsFailures) {
+  v1::TrialState filled;
+  Filler().Fill(filled);
+  v1::TrialState back = ToProto(FromProto(filled));
+  EXPECT_EQ(back.failed_attempts(),
+            filled.failures().simulation() + filled.failures().curve() + filled.failures().jump() +
+                filled.failures().straightness() + filled.failures().transition());
+  back.set_failed_attempts(filled.failed_attempts());
+  EXPECT_EQ(back.DebugString(), filled.DebugString());
+}
+
+TEST(Wire, APhaseOfALaterVersionIsUnspecified) {
+  v1::TrialState message;
+  message.set_phase(static_cast<v1::TrialState::Phase>(77));
+  message.set_task_phase(static_cast<v1::TrialState::TaskPhase>(-1));
+  EXPECT_EQ(FromProto(message).progress.phase, stream::TrialPhase::kUnspecified);
+  EXPECT_EQ(FromProto(message).progress.task_phase, stream::TaskPhase::kUnspecified);
 }
 
 TEST(Wire, NothingThatIsNotFiniteIsPublished) {

@@ -59,7 +59,7 @@ TEST(Engine, SimulationTimeIsTheStepTimesH) {
   EXPECT_EQ(engine.Output().time_s, 1234 * 0.001);
 }
 
-TEST(Engine, AFallIsShownThenPutBackThreeMetresBehind) {
+TEST(Engine, AFallIsShownThenPutBackThreeMetresBehindItsPlace) {
   GaitEngine engine = NewEngine();
   EngineInputs inputs = Direct(Command(Gait::kWalk, 1));
   Simulate(engine, inputs, 9);
@@ -67,7 +67,10 @@ TEST(Engine, AFallIsShownThenPutBackThreeMetresBehind) {
   double fallen_s = 0, back_s = 0, fallen_x_m = 0;
   Simulate(engine, inputs, 8, [&](const EngineOutput& output) {
     for (const EngineEvent& event : EventsOf(output)) {
-      if (event.kind == EventKind::kFall) fallen_s = output.time_s;
+      if (event.kind == EventKind::kFall) {
+        fallen_s = output.time_s;
+        fallen_x_m = output.links[0].position_m.x();
+      }
       if (event.kind == EventKind::kPutBack) {
         back_s = output.time_s;
         EXPECT_NEAR(output.links[0].position_m.x(), fallen_x_m - 3, 0.02);
@@ -75,7 +78,6 @@ TEST(Engine, AFallIsShownThenPutBackThreeMetresBehind) {
         EXPECT_EQ(output.gait.gait, Gait::kWalk);  // From its first step it obeys again.
       }
     }
-    fallen_x_m = output.links[0].position_m.x();
   });
   ASSERT_GT(fallen_s, 9);
   EXPECT_NEAR(back_s - fallen_s, 0.7, 0.0025);
@@ -84,7 +86,7 @@ TEST(Engine, AFallIsShownThenPutBackThreeMetresBehind) {
   EXPECT_EQ(engine.Output().root_force_max_n, 0);
 }
 
-TEST(Engine, APutBackOnRequestIsCountedAndDoneOnce) {
+TEST(Engine, APutBackOnRequestIsCountedApartFromFallsAndDoneOnce) {
   GaitEngine engine = NewEngine();
   EngineInputs inputs = Direct(Command(Gait::kWalk, 1));
   Simulate(engine, inputs, 8);
@@ -93,7 +95,7 @@ TEST(Engine, APutBackOnRequestIsCountedAndDoneOnce) {
   Simulate(engine, inputs, 0.05);
   EXPECT_NEAR(engine.Output().links[0].position_m.x(), x_m - 3, 0.1);
   Simulate(engine, inputs, 3);
-  EXPECT_EQ(engine.Output().gait.falls, 1u);
+  EXPECT_EQ(engine.Output().gait.falls, 0u);
   EXPECT_EQ(engine.Output().gait.operator_put_backs, 1u);
   EXPECT_EQ(engine.Output().gait.failures, stream::FailureCounts{});
 }
@@ -140,7 +142,7 @@ TEST(Engine, SaysWhenACommandWasGivenAndWhenTakenOver) {
   std::uint64_t taken_over = 0;
   Simulate(engine, inputs, 2, [&](const EngineOutput& output) {
     for (const EngineEvent& event : EventsOf(output)) {
-      kinds.push_back(event.kind);
+      if (event.kind != EventKind::kTrialRunning) kinds.push_back(event.kind);
       if (event.kind == EventKind::kGaitTakenOver) taken_over = output.step;
     }
   });

@@ -14,7 +14,7 @@ namespace {
 engine::GaitEngine MakeEngine() {
   engine::EngineTexts texts;
   texts.biped = *config::ReadDataFile(engine::kBipedFile);
-  texts.track = *config::ReadDataFile(engine::kStraightTrackFile);
+  texts.track = *config::ReadDataFile(engine::kPlainTrackFile);
   texts.wrist_mapping = *config::ReadDataFile(engine::kWristMappingFile);
   auto engine = engine::GaitEngine::Create(texts);
   FOOTING_CHECK(engine.ok());
@@ -35,7 +35,8 @@ bool WaitForFrame(serving::SimulationThread<GaitRun>& thread, int wake_descripto
 TEST(GaitThread, AppliedInputsRunAgainToTheSameStateHash) {
   const int wake = eventfd(0, EFD_CLOEXEC);
   ASSERT_GE(wake, 0);
-  serving::SimulationThread<GaitRun> thread(MakeEngine(), 0.001, 10, wake);
+  TrackExchange tracks;
+  serving::SimulationThread<GaitRun> thread(GaitRun(MakeEngine(), tracks), 0.001, 10, wake);
   thread.Start();
   Inputs inputs;
   std::vector<Applied> applied;

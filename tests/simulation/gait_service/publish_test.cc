@@ -26,6 +26,7 @@ TEST(Publish, AppliedInputsComeBackBitForBit) {
   inputs.append_count = 2;
   inputs.appends[0] = {2.5, 0.05, -0.2, 0.1, false};
   inputs.appends[1] = {1.5, 0, 0, 0, true};
+  inputs.trial = {.number = 4, .task = 2, .stopped_below = 3, .track_number = 5};
 
   const std::string bytes = ToAppliedInput(applied).SerializeAsString();
   v1::AppliedInput message;
@@ -37,6 +38,10 @@ TEST(Publish, AppliedInputsComeBackBitForBit) {
   ASSERT_EQ(back.inputs.engine.append_count, 2);
   EXPECT_EQ(back.inputs.engine.appends[0].step_m, 0.1);
   EXPECT_TRUE(back.inputs.engine.appends[1].pit);
+  EXPECT_EQ(back.inputs.engine.trial.number, 4u);
+  EXPECT_EQ(back.inputs.engine.trial.task, 2);
+  EXPECT_EQ(back.inputs.engine.trial.stopped_below, 3u);
+  EXPECT_EQ(back.inputs.engine.trial.track_number, 5u);
 }
 
 TEST(Publish, AFailureSaysItsCauseAndAPutBackWhoAskedForIt) {
@@ -44,17 +49,20 @@ TEST(Publish, AFailureSaysItsCauseAndAPutBackWhoAskedForIt) {
   event.kind = engine::EventKind::kFall;
   event.text = "the body is beside the track";
   for (const auto& [cause, number] :
-       {std::pair(engine::FailureCause::kSimulation, v1::FAILURE_CAUSE_SIMULATION),
-        std::pair(engine::FailureCause::kCurve, v1::FAILURE_CAUSE_CURVE),
-        std::pair(engine::FailureCause::kJump, v1::FAILURE_CAUSE_JUMP)}) {
+       {std::pair(stream::FailureCause::kSimulation, v1::FAILURE_CAUSE_SIMULATION),
+        std::pair(stream::FailureCause::kCurve, v1::FAILURE_CAUSE_CURVE),
+        std::pair(stream::FailureCause::kJump, v1::FAILURE_CAUSE_JUMP),
+        std::pair(stream::FailureCause::kStraightness, v1::FAILURE_CAUSE_STRAIGHTNESS),
+        std::pair(stream::FailureCause::kTransition, v1::FAILURE_CAUSE_TRANSITION)}) {
     event.cause = cause;
     const v1::Event message = ToEvent(event, 5);
     EXPECT_EQ(message.kind(), v1::Event::KIND_FALL);
     EXPECT_EQ(message.failure_cause(), number);
     EXPECT_EQ(message.text(),
-              std::string("failure (") + engine::Name(cause) + "): the body is beside the track");
+              std::string("failure (") + stream::Name(cause) + "): the body is beside the track");
     EXPECT_FALSE(message.by_operator());
   }
+  event = {};
   event.kind = engine::EventKind::kPutBack;
   event.text = "by a command";
   event.by_operator = true;

@@ -25,7 +25,8 @@ using counted_calls::locks;
 /// A thread whose clock's step is a microsecond: it never sleeps, and is late at every step.
 class HastyThread {
  public:
-  HastyThread() : wake_(eventfd(0, EFD_CLOEXEC)), thread_(MakeEngine(), 1e-6, 10, wake_) {
+  HastyThread()
+      : wake_(eventfd(0, EFD_CLOEXEC)), thread_(GaitRun(MakeEngine(), tracks_), 1e-6, 10, wake_) {
     thread_.Start();
   }
   ~HastyThread() {
@@ -55,6 +56,7 @@ class HastyThread {
   }
 
   int wake_;
+  TrackExchange tracks_;
   serving::SimulationThread<GaitRun> thread_;
 };
 

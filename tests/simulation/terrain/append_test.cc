@@ -102,7 +102,7 @@ TEST(Append, DropsTheOldestOnlyOnceTheCharacterIsFarEnough) {
 }
 
 TEST(Append, NeedsATrackThatIsMadeForIt) {
-  const auto track = ParseTrack(test::DataFile("tracks/straight.json"), "straight").value();
+  const auto track = ParseTrack(test::DataFile("tracks/plain.json"), "plain").value();
   EXPECT_NE(Why(track, {}).find("build"), std::string::npos);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "daemon/simulation/terrain/box.h"
 #include "daemon/simulation/terrain/ground.h"
@@ -14,8 +15,8 @@ constexpr const char* kHills = R"({"version": 1, "name": "hills", "segments": [
   {"length_m": 10}, {"length_m": 10, "slope_deg": 5}, {"length_m": 2, "pit": true},
   {"length_m": 5, "curve_deg": 90, "step_m": 0.1}]})";
 
-TEST(Track, StraightOneIsFourMetresWideAndLevel) {
-  const auto track = ParseTrack(test::DataFile("tracks/straight.json"), "straight");
+TEST(Track, PlainOneIsFourMetresWideAndLevel) {
+  const auto track = ParseTrack(test::DataFile("tracks/plain.json"), "plain");
   ASSERT_TRUE(track.ok());
   EXPECT_EQ(track.value().segments.front().width_m, 4.0);  // Paper, section 8.2.
   EXPECT_TRUE(IsLevel(track.value()));
@@ -72,6 +73,19 @@ TEST(Track, PlacesAheadAndLengthsFollowTheCentreLine) {
   EXPECT_NEAR(CentreAhead(track, place, 1000).p_W_m.y(), 5, 1e-12);
 }
 
+TEST(Track, APlaceIsFoundByItsLengthAndTheOtherWayRound) {
+  auto track = ParseTrack(kHills, "hills").value();
+  for (const double length_m : {0.0, 4.0, 15.5, 21.0, 26.9}) {
+    EXPECT_NEAR(LengthTo(track, PlaceAt(track, length_m)), length_m, 1e-12);
+  }
+  EXPECT_NEAR(LengthTo(track, PlaceAt(track, -3)), 0, 1e-12);
+  EXPECT_NEAR(LengthTo(track, PlaceAt(track, 99)), 27, 1e-12);
+  track.first_m = 100;  // As much was dropped.
+  EXPECT_EQ(PlaceAt(track, 115.5).segment, 1);
+  EXPECT_NEAR(LengthTo(track, PlaceAt(track, 115.5)), 115.5, 1e-12);
+  EXPECT_NEAR(LengthTo(track, PlaceAt(track, 50)), 100, 1e-12);
+}
+
 TEST(Track, IsLeftAtItsSidesAndBeyondItsEnds) {
   const auto track = ParseTrack(kHills, "hills").value();
   EXPECT_FALSE(IsOffRibbon(track, Locate(track, {5, 1.9})));
@@ -105,7 +119,89 @@ TEST_P(CarriedTrack, NeverComesNearItselfAgain) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OneToFour, CarriedTrack, testing::Values("1", "2", "3", "4"));
+TEST_P(CarriedTrack, HasItsFinishLineFiveMetresBeforeTheEndAndHalfAMetreFromPits) {
+  const auto track =
+      ParseTrack(test::DataFile(std::string("tracks/") + GetParam() + ".json"), "").value();
+  EXPECT_EQ(track.start_m, 1);
+  EXPECT_NEAR(track.finish_m, LengthOf(track) - 5, 1e-9);
+  for (const double line_m : {track.start_m, track.finish_m}) {
+    for (const double beside_m : {-0.5, 0.5}) {
+      const CentrePoint point = CentreAhead(track, {}, line_m + beside_m);
+      const TrackPlace place = Locate(track, point.p_W_m.head<2>());
+      EXPECT_FALSE(track.segments[static_cast<std::size_t>(place.segment)].pit) << line_m;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CarriedTrack,
+                         testing::Values("1", "2", "3", "4", "curves", "corners", "pits", "hills"));
+
+class TestTrack : public testing::TestWithParam<const char*> {};
+
+TEST_P(TestTrack, HasCurvesToBothSidesAndThreePitsThatTheUserMustTime) {
+  const auto track =
+      ParseTrack(test::DataFile(std::string("tracks/") + GetParam() + ".json"), "").value();
+  EXPECT_FALSE(track.help_over_pits);
+  double left_rad = 0, right_rad = 0;
+  std::multiset<double> pits_m;
+  for (std::size_t i = 1; i < track.segments.size(); ++i) {
+    const auto& segment = track.segments[i];
+    EXPECT_EQ(segment.slope_rad, 0);
+    EXPECT_EQ(segment.start_m.z(), 0);
+    const double turn_rad = segment.heading_rad - track.segments[i - 1].heading_rad;
+    (turn_rad > 0 ? left_rad : right_rad) += std::fabs(turn_rad);
+    if (segment.pit) pits_m.insert(segment.length_m);
+  }
+  EXPECT_GT(left_rad, 0.7);
+  EXPECT_GT(right_rad, 0.7);
+  EXPECT_NEAR(left_rad + right_rad, 1.5 * std::numbers::pi, 1e-9);  // The same on all four.
+  EXPECT_EQ(pits_m, (std::multiset<double>{0.3, 0.4, 0.5}));
+}
+
+INSTANTIATE_TEST_SUITE_P(OneToFour, TestTrack, testing::Values("1", "2", "3", "4"));
+
+TEST(StraightTrack, AsksForEveryChangeOfGaitOfThePaperAtItsLine) {
+  const auto track = ParseTrack(test::DataFile("tracks/straight.json"), "straight").value();
+  EXPECT_FALSE(track.open);
+  EXPECT_EQ(track.mark_m, 30);
+  EXPECT_EQ(track.finish_m, 60);
+  EXPECT_EQ(track.segments.size(), 1u);
+  std::set<std::pair<stream::Gait, stream::Gait>> changes;
+  for (const auto& task : track.tasks) changes.insert({task.before, task.after});
+  using stream::Gait;  // Section 8.1: to jump, to stop, and to change between walking and running.
+  const std::set<std::pair<Gait, Gait>> expected{
+      {Gait::kWalk, Gait::kJump}, {Gait::kRun, Gait::kJump}, {Gait::kWalk, Gait::kStep},
+      {Gait::kRun, Gait::kStep},  {Gait::kWalk, Gait::kRun}, {Gait::kRun, Gait::kWalk}};
+  EXPECT_EQ(changes, expected);
+  EXPECT_EQ(track.tasks[0].instruction, "walk to the line, then run");
+}
+
+TEST(Track, ASegmentRepeats) {
+  const auto track = ParseTrack(
+      R"({"version": 1, "segments": [{"length_m": 2, "curve_deg": 30, "repeat": 3}]})", "arc");
+  ASSERT_TRUE(track.ok());
+  ASSERT_EQ(track.value().segments.size(), 3u);
+  EXPECT_NEAR(track.value().segments[2].heading_rad, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(LengthOf(track.value()), 6, 1e-12);
+}
+
+TEST(Track, OneThatMayBeLeftOrGrowsHasNoFinishLine) {
+  for (const char* text : {R"({"version": 1, "open": true, "segments": [{"length_m": 50}]})",
+                           R"({"version": 1, "extendable": true, "segments": [{"length_m": 50}]})",
+                           R"({"version": 1, "endless": true, "segments": [{"length_m": 50}]})"}) {
+    EXPECT_EQ(ParseTrack(text, "track").value().finish_m, 0) << text;
+  }
+  EXPECT_EQ(ParseTrack(R"({"version": 1, "segments": [{"length_m": 50}]})", "").value().finish_m,
+            45);
+}
+
+TEST(Track, OnlyGroundThatMayBeLeftIsAnEndlessPlane) {
+  const auto geoms = [](const char* text) { return GroundMjcf(ParseTrack(text, "").value()); };
+  EXPECT_NE(geoms(R"({"version": 1, "open": true, "segments": [{"length_m": 50}]})").find("plane"),
+            std::string::npos);
+  EXPECT_EQ(geoms(R"({"version": 1, "segments": [{"length_m": 50}]})").find("plane"),
+            std::string::npos);
+}
 
 bool IsIn(const GroundBox& box, const Eigen::Vector3d& p_W_m) {
   const Eigen::Array3d p_S = (box.q_WS.inverse() * (p_W_m - box.centre_W_m)).array();
@@ -163,7 +259,22 @@ TEST(Track, RefusesNumbersOutOfRangeByName) {
   for (const char* text :
        {R"({"version": 1, "segments": [{"length_m": -3}]})", R"({"version": 1, "segments": []})",
         R"({"version": 2, "segments": [{"length_m": 3}]})",
-        R"({"version": 1, "segments": [{"length_m": 3, "slope_deg": 80}]})", "[1, 2]"}) {
+        R"({"version": 1, "segments": [{"length_m": 3, "slope_deg": 80}]})", "[1, 2]",
+        R"({"version": 1, "segments": [{"length_m": 3, "repeat": 1001}]})",
+        R"({"version": 1, "segments": [{"length_m": 3, "lenght_m": 3}]})",
+        R"({"version": 1, "help_over_pit": false, "segments": [{"length_m": 3}]})",
+        R"({"version": 1, "start_m": 20, "finish_m": 10, "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "mark": {"at_m": 9}, "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "mark": {"at_m": 29, "tasks": [{"name": "a", "after": "run"}]},
+            "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "mark": {"at_m": 9, "tasks": [{"name": "a", "after": "fly"}]},
+            "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "mark": {"at_m": 9, "tasks": [{"name": "a", "before": "run",
+            "after": "run"}]}, "segments": [{"length_m": 30}]})",
+        R"({"version": 1, "endless": true, "segments": [{"length_m": 5, "slope_deg": 1}]})",
+        R"({"version": 1, "endless": true, "extendable": true, "segments": [{"length_m": 5}]})",
+        R"({"version": 1, "extendable": true, "help_over_pits": false,
+            "segments": [{"length_m": 5}]})"}) {
     const auto track = ParseTrack(text, "bad.json");
     ASSERT_FALSE(track.ok()) << text;
     EXPECT_NE(track.error().message.find("bad.json"), std::string::npos);

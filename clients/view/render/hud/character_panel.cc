@@ -83,7 +83,7 @@ void DrawPhases(const Paint& p, const Box& box, const scene::Model& model,
   for (const std::string& phase : model.phases) {
     const bool now = phase == pose.phase;
     const ImU32 ink = now ? IM_COL32(14, 20, 26, 255) : colour::kFaint;
-    const std::string name = phase.empty() ? "-" : phase;
+    const std::string name = phase.empty() ? "-" : scene::PhaseTitle(phase);
     if (x + p.WidthOf(p.fonts.small, name) + 14 * s > box.high.x) {
       x = box.low.x;
       y += 22 * s;

@@ -10,6 +10,7 @@
 #include "clients/view/render/hud/overlay.h"
 #include "clients/view/render/hud/strip_panel.h"
 #include "clients/view/render/hud/t_pose_panel.h"
+#include "clients/view/render/hud/trial_panel.h"
 
 namespace footing::render {
 namespace {
@@ -67,11 +68,12 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   if (scene::IsSimulated(model)) DrawSimulated(p, boxes.stamp);
   Box notes = boxes.middle;
   DrawReplay(p, model, content.now_ns, notes);
+  const scene::CharacterPose* pose = FirstCharacter(content);
+  if (pose != nullptr) DrawTrialPanel(p, model, *pose, options.hidden, notes);
   if (options.hidden) return;
   if (scene::IsWaiting(model)) {
     DrawWaiting(p, model, boxes.middle);
   } else {
-    const scene::CharacterPose* pose = FirstCharacter(content);
     if (IsPerson(pose)) DrawLabels(p, content.picture, boxes, size);
     DrawColumns(p, content, boxes);
     DrawNote(p, model, content.now_ns, notes);

@@ -62,7 +62,7 @@ Result<physics::World> NewWorld() {
   if (!texts) return texts.error();
   Result<biped::BipedParameters> biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
   if (!biped) return biped.error();
-  Result<stream::Track> track = terrain::ParseTrack(texts->track, engine::kStraightTrackFile);
+  Result<stream::Track> track = terrain::ParseTrack(texts->track, engine::kPlainTrackFile);
   if (!track) return track.error();
   return physics::World::FromMjcf(
       biped::WriteMjcf(*biped, terrain::GroundMjcf(*track), engine::EngineConfig{}.step_s),

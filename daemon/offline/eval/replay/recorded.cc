@@ -10,7 +10,8 @@ using v1::Tick;
 const std::vector<std::uint32_t>& ReplayedFields() {
   static const std::vector<std::uint32_t> fields = {
       Tick::kStatusFieldNumber,     Tick::kRawFieldNumber,   Tick::kFeaturesFieldNumber,
-      Tick::kCharactersFieldNumber, Tick::kSetupFieldNumber, Tick::kInputsFieldNumber};
+      Tick::kCharactersFieldNumber, Tick::kSetupFieldNumber, Tick::kInputsFieldNumber,
+      Tick::kTrackFieldNumber};
   return fields;
 }
 

@@ -8,12 +8,9 @@
 #include "common/recording/recorded_identity.h"
 #include "common/wire/wire.h"
 #include "daemon/sensor/service/hub.h"
-#include "daemon/simulation/gait_service/publish.h"
 
 namespace footing::eval {
 namespace {
-
-constexpr std::size_t kMaxInputs = 1'000'000;
 
 /// A Hub whose clock follows the recording: what was read or written next says what time it was.
 class HubReplay {
@@ -158,41 +155,6 @@ Result<void> CheckFirstStep(std::uint64_t first_step) {
   return InvalidData("the recording begins at step " + std::to_string(first_step) +
                      " of the simulation; only one from its first step can be run again (start "
                      "footing-log within 30 s of footing-sim)");
-}
-
-Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::GaitEngine engine) {
-  std::map<std::uint64_t, engine::EngineInputs> inputs;
-  std::map<std::uint64_t, std::uint64_t> hashes;
-  std::uint64_t first_step = 0;
-  for (const v1::Tick& tick : ticks) {
-    for (const v1::AppliedInput& message : tick.inputs().inputs()) {
-      const gait_service::Applied applied = gait_service::FromAppliedInput(message);
-      inputs[applied.step] = applied.inputs.engine;
-    }
-    if (!tick.has_characters()) continue;
-    if (hashes.empty()) first_step = tick.characters().step();
-    hashes[tick.characters().step()] = tick.characters().state_hash();
-  }
-  if (inputs.size() > kMaxInputs) return InvalidData("the recording holds too many inputs");
-  if (const auto whole = CheckFirstStep(first_step); !whole) return whole.error();
-  EngineReplay result;
-  engine::EngineInputs current;
-  for (const auto& [frame_step, hash] : hashes) {
-    while (result.last_step < frame_step) {
-      ++result.last_step;
-      const auto found = inputs.find(result.last_step);
-      if (found != inputs.end()) current = found->second;
-      engine.Advance(current);
-    }
-    ++result.frames;
-    result.state_hash = engine.Output().state_hash;
-    if (result.state_hash == hash) {
-      ++result.equal;
-    } else if (result.first_difference_step == 0) {
-      result.first_difference_step = frame_step;
-    }
-  }
-  return result;
 }
 
 }  // namespace footing::eval

@@ -33,8 +33,11 @@ Result<void> CheckFirstStep(std::uint64_t first_step);
 /// Feeds the raw reports of footingd's ticks to the same code that published them.
 FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks);
 
-/// Feeds the applied inputs of footing-sim's ticks to a new engine. InvalidData when the recording
-/// does not begin with the simulation's first step.
-Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks, engine::GaitEngine engine);
+/// Feeds the applied inputs of footing-sim's ticks to a new engine, on the recorded tracks.
+/// InvalidData when the recording does not begin with the simulation's first step. `texts` has the
+/// data files. Its track is used in place of the recorded first one where `named_track` is true; a
+/// recording without a whole track needs that.
+Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks,
+                                 const engine::EngineTexts& texts, bool named_track);
 
 }  // namespace footing::eval

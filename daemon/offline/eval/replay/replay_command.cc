@@ -15,21 +15,17 @@ namespace {
 
 struct Options {
   std::string file;
-  std::string track = "straight";
+  std::string track;  ///< Empty: the recorded one.
   std::string data_folder;
 };
 
-Result<engine::GaitEngine> MakeEngine(const std::string& track) {
-  const auto texts = engine_files::ReadTexts({.track = track});
-  if (!texts) return texts.error();
-  return engine::GaitEngine::Create(*texts);
-}
-
 Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks, const Options& options) {
   if (IsPoseRecording(ticks)) return ReplayPose(ticks, options.data_folder);
-  auto engine = MakeEngine(options.track);
-  if (!engine) return engine.error();
-  return ReplayBiped(ticks, std::move(engine).value());
+  const bool named_track = !options.track.empty();
+  const auto texts =
+      named_track ? engine_files::ReadTexts({.track = options.track}) : engine_files::ReadTexts();
+  if (!texts) return texts.error();
+  return ReplayBiped(ticks, *texts, named_track);
 }
 
 int Run(const Options& options) {
@@ -68,8 +64,9 @@ void AddReplayCommand(CLI::App& app, Shared& shared) {
                                      "Replay of a recording through the same code; compares "
                                      "features and state hashes bit for bit");
   command->add_option("file", options->file, "Recording, MCAP file of footing-log")->required();
-  command->add_option("--track", options->track,
-                      "Track of the recorded simulation: a name, or a JSON file");
+  command->add_option(
+      "--track", options->track,
+      "Track of the simulation in place of the recorded one: a name, or a JSON file");
   command->add_option("--data-folder", options->data_folder,
                       "Folder of the pose engine's models (default: the installed ones)");
   command->callback([options, &shared] { shared.exit_code = Run(*options); });

@@ -19,19 +19,23 @@ constexpr double kSteerAboveRad = 0.07;
 constexpr double kSteerBelowRad = 0.02;
 /// Share of the error that one step is to take away, when it can be chosen.
 constexpr double kSteerShare = 0.35;
-/// Commanded to jump, a run leaves the ground after this long, a walk after the other, about.
+/// Commanded to jump, a run leaves the ground after this long, a walk after the other, at most.
 constexpr double kRunLeadS = 0.7;
 constexpr double kWalkLeadS = 0.35;
+/// Nobody hits the same moment twice: each jump's lead is a share of those, drawn between these.
+constexpr double kLeastLead = 0.3, kMostLead = 1.0;
 /// Narrower pits are run across without a jump.
-constexpr double kRunOverM = 0.3;
+constexpr double kRunOverM = 0.25;
 
 }  // namespace
 
 SyntheticUser::SyntheticUser(const stream::Track& track, const Skill& skill, Random random)
     : track_(track),
       skill_(skill),
-      reaction_s_(random.Uniform(0.2, 0.35)),
-      favourite_mps_(std::min(skill.run_max_mps, random.Uniform(2.2, 3.0))) {}
+      random_(random),
+      reaction_s_(random_.Uniform(0.2, 0.35)),
+      favourite_mps_(std::min(skill.run_max_mps, random_.Uniform(2.2, 3.0))),
+      lead_(random_.Uniform(kLeastLead, kMostLead)) {}
 
 /// Steps a second as seen; before there are any, a walk's.
 double SyntheticUser::StepsPerSecond() const {
@@ -97,8 +101,8 @@ bool SyntheticUser::ChooseJump(const Sight& now) {
   const terrain::TrackPlace place = terrain::Locate(track_, now.p_W_m);
   const double here_m = terrain::LengthTo(track_, place);
   if (jump_until_m_ >= 0 && here_m > jump_until_m_ + 0.3) jump_until_m_ = -1;
-  if (jump_until_m_ >= 0) return here_m > jump_until_m_ - 6;  // Further back: put back, a new try.
-  const double lead_s = now.gait == Gait::kRun ? kRunLeadS : kWalkLeadS;
+  if (jump_until_m_ >= 0) return true;
+  const double lead_s = lead_ * (now.gait == Gait::kRun ? kRunLeadS : kWalkLeadS);
   double edge_m = -place.along_m;
   for (std::size_t i = static_cast<std::size_t>(place.segment); i < track_.segments.size(); ++i) {
     const stream::TrackSegment& segment = track_.segments[i];
@@ -106,6 +110,7 @@ bool SyntheticUser::ChooseJump(const Sight& now) {
     if (segment.pit && segment.length_m > kRunOverM && edge_m > 0 &&
         edge_m < lead_s * std::max(0.5, now.speed_mps)) {
       jump_until_m_ = here_m + edge_m + segment.length_m;
+      lead_ = random_.Uniform(kLeastLead, kMostLead);
       return true;
     }
     edge_m += segment.length_m;
@@ -113,7 +118,47 @@ bool SyntheticUser::ChooseJump(const Sight& now) {
   return false;
 }
 
+/// The gait of a straight track's task; false where the user may choose.
+bool SyntheticUser::ChooseTask(const Sight& now, biped::GaitCommand& command) const {
+  const auto index = static_cast<std::size_t>(now.task);
+  if (now.task < 0 || index >= track_.tasks.size()) return false;
+  if (now.task_phase == stream::TaskPhase::kDone) return false;
+  const bool crossed =
+      now.task_phase == stream::TaskPhase::kDue ||
+      terrain::LengthTo(track_, terrain::Locate(track_, now.p_W_m)) > track_.mark_m;
+  const stream::TrackTask& task = track_.tasks[index];
+  command.gait = crossed ? task.after : task.before;
+  switch (command.gait) {
+    case Gait::kUnspecified:
+      return false;
+    case Gait::kStep:
+      command.speed_mps = 0;
+      return true;
+    case Gait::kWalk:
+      command.speed_mps = skill_.walk_max_mps;
+      return true;
+    case Gait::kRun:
+      command.speed_mps = favourite_mps_;
+      return true;
+    case Gait::kJump:
+      command.speed_mps = skill_.jump_mps;
+      command.height_m = skill_.jump_height_m;
+      return true;
+  }
+  return false;
+}
+
+void SyntheticUser::StartOver(const Sight& sight) {
+  seen_.clear();
+  wanted_.clear();
+  command_ = {};
+  steering_ = false;
+  jump_until_m_ = -1;
+  put_backs_ = sight.put_backs;
+}
+
 void SyntheticUser::ChooseGait(const Sight& now, biped::GaitCommand& command) {
+  if (ChooseTask(now, command)) return;
   if (ChooseJump(now)) {
     command.gait = Gait::kJump;
     command.speed_mps = skill_.jump_mps;
@@ -138,6 +183,7 @@ void SyntheticUser::ChooseGait(const Sight& now, biped::GaitCommand& command) {
 }
 
 biped::GaitCommand SyntheticUser::Want(const Sight& sight) {
+  if (sight.put_backs != put_backs_) StartOver(sight);
   seen_.push_back(sight);
   while (sight.time_s - seen_.front().time_s > kRememberedS) seen_.pop_front();
   while (!wanted_.empty() && sight.time_s - wanted_.front().time_s > kRememberedS) {

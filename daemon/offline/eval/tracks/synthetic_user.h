@@ -26,11 +26,16 @@ struct Sight {
   double speed_mps = 0;
   std::uint64_t steps = 0;
   stream::Gait gait = stream::Gait::kStep;
+  std::uint64_t put_backs = 0;  ///< How often the character was put back so far.
+  /// Of the trial's task, as announced on the screen.
+  int task = -1;
+  stream::TaskPhase task_phase = stream::TaskPhase::kUnspecified;
 };
 
 /// A user who drives along a track: sees the track 3 to 12 m ahead and the character as it was a
 /// reaction time ago, reckons with the commands given since, steers for the centre line, slows
-/// down to what a curve allows at 5 degrees a step, and jumps before pits.
+/// down to what a curve allows at 5 degrees a step, jumps before pits and does the task of a
+/// straight track. A character that was put back is a new start: what was wanted before is over.
 class SyntheticUser {
  public:
   /// Draws reaction time (0.2 to 0.35 s) and favourite speed (2.2 to 3 m/s). `track` is borrowed.
@@ -51,17 +56,22 @@ class SyntheticUser {
   double Steer(const Sight& now);
   double StepsPerSecond() const;
   double CurvatureAhead(const Sight& now) const;
+  void StartOver(const Sight& sight);
   void ChooseGait(const Sight& now, biped::GaitCommand& command);
+  bool ChooseTask(const Sight& now, biped::GaitCommand& command) const;
   bool ChooseJump(const Sight& now);
 
   const stream::Track& track_;
   Skill skill_;
+  Random random_;
   double reaction_s_;
   double favourite_mps_;
+  double lead_;                ///< Of the next jump, as a share of the longest.
   std::deque<Sight> seen_;     ///< The last second, newest last.
   std::deque<Wanted> wanted_;  ///< The same of the own commands.
   biped::GaitCommand command_;
   bool steering_ = false;
+  std::uint64_t put_backs_ = 0;
   double jump_until_m_ = -1;  ///< Along the track; negative: not jumping.
 };
 

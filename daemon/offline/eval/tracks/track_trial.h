@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "daemon/offline/eval/gait/statistics.h"
@@ -15,14 +14,17 @@ enum class Interface {
 };
 
 struct TrackResult {
-  bool completed = false;         ///< Reached the finish, 3 m before the end and at most 100 m on.
-  double time_s = 0;              ///< From the start to there.
-  std::array<int, 3> failures{};  ///< By engine::FailureCause.
-  RootMeanSquare heading_error;   ///< Body's yaw against the heading, rad, but for falls.
-  RootMeanSquare off_centre;      ///< COM's distance from the centre line, m.
+  bool completed = false;  ///< Crossed the finish line.
+  double time_s = 0;       ///< From the start line to there.
+  std::string task;        ///< The one that was drawn; empty: none.
+  stream::FailureCounts failures;
+  RootMeanSquare heading_error;  ///< Body's yaw against the heading, rad, but for falls.
+  RootMeanSquare line_heading;   ///< Body's yaw against the centre line, rad, but for falls.
+  RootMeanSquare off_centre;     ///< COM's distance from the centre line, m.
 };
 
-/// One run along a track, put back after each failure, kicked once by 2 N s.
+/// One trial on a track, put back after each failure, kicked once by 2 N s. The seed draws the
+/// task. UsageError when the track has no finish line.
 Result<TrackResult> RunTrack(const std::string& track, Interface interface, std::uint64_t seed);
 
 }  // namespace footing::eval

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -24,9 +25,10 @@ struct Options {
 struct Trials {
   int completed = 0;
   int without_failure = 0;
-  std::array<int, 3> failures{};
+  stream::FailureCounts failures;
+  std::map<std::string, int> tasks;  ///< How often each was drawn.
   std::vector<double> times_s;
-  RootMeanSquare heading_error, off_centre;
+  RootMeanSquare heading_error, line_heading, off_centre;
 };
 
 Result<Interface> InterfaceNamed(const std::string& name) {
@@ -46,18 +48,20 @@ Result<Trials> RunTrials(const Options& options, const std::string& track, Inter
   for (int i = 0; i < options.trials; ++i) {
     const Result<TrackResult> run = RunTrack(track, interface, TrialSeed(seed, i));
     if (!run) return run.error();
-    const auto& failures = run->failures;
-    for (std::size_t cause = 0; cause < failures.size(); ++cause) {
-      trials.failures[cause] += failures[cause];
+    for (const stream::FailureCause cause : stream::kFailureCauses) {
+      *stream::MutableCountOf(cause, trials.failures) += stream::CountOf(cause, run->failures);
     }
+    if (!run->task.empty()) ++trials.tasks[run->task];
     Pool(run->heading_error, trials.heading_error);
+    Pool(run->line_heading, trials.line_heading);
     Pool(run->off_centre, trials.off_centre);
-    std::fprintf(stderr, "trial %d of %d: %s after %.1f s, failures %d\n", i + 1, options.trials,
+    std::fprintf(stderr, "trial %d of %d: %s%s%s after %.1f s, failures %d\n", i + 1,
+                 options.trials, run->task.c_str(), run->task.empty() ? "" : " ",
                  run->completed ? "finished" : "given up", run->time_s,
-                 failures[0] + failures[1] + failures[2]);
+                 static_cast<int>(stream::Total(run->failures)));
     if (!run->completed) continue;
     ++trials.completed;
-    if (failures == std::array<int, 3>{}) ++trials.without_failure;
+    if (stream::Total(run->failures) == 0) ++trials.without_failure;
     trials.times_s.push_back(run->time_s);
   }
   std::sort(trials.times_s.begin(), trials.times_s.end());
@@ -67,8 +71,8 @@ Result<Trials> RunTrials(const Options& options, const std::string& track, Inter
 nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const Trials& trials) {
   const auto& times_s = trials.times_s;
   nlohmann::ordered_json failures;
-  for (std::size_t cause = 0; cause < trials.failures.size(); ++cause) {
-    failures[engine::Name(static_cast<engine::FailureCause>(cause))] = trials.failures[cause];
+  for (const stream::FailureCause cause : stream::kFailureCauses) {
+    failures[stream::Name(cause)] = stream::CountOf(cause, trials.failures);
   }
   return {{"interface", options.interface},
           {"track", options.track},
@@ -77,8 +81,10 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
           {"completed", trials.completed},
           {"completed_without_failure", trials.without_failure},
           {"failures", failures},
+          {"tasks", trials.tasks},
           {"median_time_s", times_s.empty() ? 0 : times_s[times_s.size() / 2]},
           {"heading_error_rms_rad", trials.heading_error.value()},
+          {"line_heading_rms_rad", trials.line_heading.value()},
           {"off_centre_rms_m", trials.off_centre.value()}};
 }
 
@@ -103,7 +109,8 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
       app.add_subcommand("tracks", "Trials of a synthetic user steering along a track");
   auto options = std::make_shared<Options>();
   command->add_option("--interface", options->interface, "Interface: wrist or direct");
-  command->add_option("--track", options->track, "Track: straight, 1, 2, 3, 4, or a JSON file");
+  command->add_option("--track", options->track,
+                      "Track: straight, 1 to 4 or another built-in name, or a JSON file");
   command->add_option("--trials", options->trials, "Number of trials")
       ->check(CLI::Range(1, 100000));
   command->add_option("--seed", options->seed, "Seed: a number, or random");

@@ -1,31 +1,62 @@
-"""footing-eval tracks: made users finish the tracks without pits, and bad words are told.
+"""footing-eval tracks: synthetic users finish the tracks; what is wrong is said; plan draws them.
 
 Usage: tracks_command_test.py FOOTING_EVAL
 """
 import json
+import pathlib
 import subprocess
 import sys
+import tempfile
+
+CAUSES = ["simulation", "curve", "jump", "straightness", "transition"]
 
 
-def run(*words):
-    return subprocess.run([sys.argv[1], "tracks", *words, "--json"], timeout=60,
+def run(*words, command="tracks"):
+    return subprocess.run([sys.argv[1], command, *map(str, words), "--json"], timeout=100,
                           capture_output=True, text=True, check=False)
 
 
-for interface in ("direct", "wrist"):
-    for track in ("straight", "1", "2"):
-        done = run("--interface", interface, "--track", track, "--trials", "1", "--seed", "21")
-        assert done.returncode == 0, done.stderr
-        out = json.loads(done.stdout)
-        assert out["trials"] == out["completed"] == 1, out
-        assert out["failures"] == {"simulation": 0, "curve": 0, "jump": 0}, out
-        assert 25 < out["median_time_s"] < 120, out  # 97 to 100 m at 1 to 3.5 m/s.
+def report(*words):
+    done = run(*words)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
 
-again = [run("--interface", "wrist", "--track", "1", "--seed", "4").stdout for _ in range(2)]
+
+for interface in ("direct", "wrist"):
+    for track in ("curves", "corners"):
+        out = report("--interface", interface, "--track", track, "--trials", 1, "--seed", 21)
+        assert out["trials"] == out["completed"] == 1, out
+        assert out["failures"] == dict.fromkeys(CAUSES, 0), out
+        assert 25 < out["median_time_s"] < 120, out  # 94 to 97 m at 1 to 3.5 m/s.
+        assert out["tasks"] == {}, out
+
+# Every task of the straight track is drawn, done and paid for with few failures.
+out = report("--interface", "wrist", "--track", "straight", "--trials", 12, "--seed", 2)
+assert out["trials"] == out["completed"] == sum(out["tasks"].values()) == 12, out
+assert len(out["tasks"]) >= 4, out
+assert out["failures"]["curve"] == out["failures"]["jump"] == 0, out
+assert sum(out["failures"].values()) <= 4, out
+
+# Nobody helps over the pits of a test track: each is tried until a jump is timed well.
+out = report("--interface", "wrist", "--track", "3", "--trials", 2, "--seed", 3)
+assert out["trials"] == out["completed"] == 2, out
+assert 1 <= out["failures"]["jump"] <= 60, out
+
+again = [run("--interface", "wrist", "--track", 1, "--seed", 4).stdout for _ in range(2)]
 assert again[0] == again[1], again
 
-for words, listed in ((("--interface", "boards"), "wrist, direct"), (("--track", "9"), "tracks/9"),
-                      (("--trials", "0"), "")):
+for words, code, listed in ((("--interface", "boards"), 2, "wrist, direct"),
+                            (("--track", "9"), 1, "there are: 1, 2, 3, 4, build"),
+                            (("--track", "endless"), 2, "no finish line"),
+                            (("--trials", "0"), 2, "")):
     bad = run(*words)
-    assert bad.returncode == (1 if "--track" in words else 2), (words, bad)
+    assert bad.returncode == code, (words, bad)
     assert listed in bad.stderr and not bad.stdout, (words, bad)
+
+with tempfile.TemporaryDirectory() as folder:
+    svg = pathlib.Path(folder, "plan.svg")
+    assert run("straight", "1", "hills", "--out", svg, command="plan").returncode == 0
+    text = svg.read_text()
+    # A mark; a start and a finish line each; two steps.
+    assert text.count("fill='none'") == 1 + 3 * 2 + 2, text.count("fill='none'")
+    assert run("9", "--out", svg, command="plan").returncode == 1

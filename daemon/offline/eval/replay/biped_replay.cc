@@ -1,0 +1,123 @@
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "common/wire/wire.h"
+#include "daemon/offline/eval/replay/replay.h"
+#include "daemon/simulation/engine/track_world.h"
+#include "daemon/simulation/gait_service/publish.h"
+
+namespace footing::eval {
+namespace {
+
+constexpr std::size_t kMaxInputs = 1'000'000;
+
+/// What the recording holds of footing-sim.
+struct BipedRecording {
+  std::map<std::uint64_t, engine::EngineInputs> inputs;  ///< By step.
+  std::map<std::uint64_t, std::uint64_t> hashes;         ///< By step.
+  std::map<std::uint64_t, stream::Track> tracks;         ///< By number, as they were at first.
+};
+
+BipedRecording GatherBiped(const std::vector<v1::Tick>& ticks) {
+  BipedRecording recording;
+  for (const v1::Tick& tick : ticks) {
+    for (const v1::AppliedInput& message : tick.inputs().inputs()) {
+      const gait_service::Applied applied = gait_service::FromAppliedInput(message);
+      recording.inputs[applied.step] = applied.inputs.engine;
+    }
+    if (tick.has_track() && tick.track().number() > 0) {
+      const stream::Track track = wire::FromProto(tick.track());
+      const auto [known, fresh] = recording.tracks.emplace(track.number, track);
+      if (!fresh && track.revision < known->second.revision) known->second = track;
+    }
+    if (!tick.has_characters()) continue;
+    recording.hashes[tick.characters().step()] = tick.characters().state_hash();
+  }
+  return recording;
+}
+
+/// The gait engine, driven step by step by recorded inputs.
+class BipedRerun {
+ public:
+  BipedRerun(const BipedRecording& recording, biped::BipedParameters biped,
+             engine::GaitEngine engine)
+      : recording_(recording), biped_(biped), engine_(std::move(engine)) {}
+
+  Result<void> Step(std::uint64_t step) {
+    const auto found = recording_.inputs.find(step);
+    if (found != recording_.inputs.end()) {
+      current_ = found->second;
+      if (const auto done = UseTrack(current_.trial.track_number); !done) return done;
+    }
+    engine_.Advance(current_);
+    return {};
+  }
+
+  std::uint64_t state_hash() { return engine_.Output().state_hash; }
+
+ private:
+  Result<void> UseTrack(std::uint64_t number) {
+    if (number == 0 || engine_.track().number == number) return {};
+    const auto track = recording_.tracks.find(number);
+    if (track == recording_.tracks.end()) {
+      return InvalidData("the recording lacks track " + std::to_string(number) + " of a trial");
+    }
+    auto world = engine::MakeTrackWorld(track->second, biped_, engine::EngineConfig{}.step_s);
+    if (!world) return world.error();
+    engine_.UseTrack(**world);
+    return {};
+  }
+
+  const BipedRecording& recording_;
+  const biped::BipedParameters biped_;
+  engine::GaitEngine engine_;
+  engine::EngineInputs current_;
+};
+
+Result<engine::GaitEngine> FirstEngine(const BipedRecording& recording,
+                                       const engine::EngineTexts& texts, bool named_track) {
+  if (named_track) return engine::GaitEngine::Create(texts);
+  const auto first = recording.tracks.find(1);
+  if (first == recording.tracks.end()) {
+    return InvalidData(
+        "the recording does not hold its whole track (an older footing-sim made it); name the "
+        "track with --track");
+  }
+  return engine::GaitEngine::CreateOn(first->second, texts);
+}
+
+}  // namespace
+
+Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks,
+                                 const engine::EngineTexts& texts, bool named_track) {
+  const BipedRecording recording = GatherBiped(ticks);
+  if (recording.inputs.size() > kMaxInputs) {
+    return InvalidData("the recording holds too many inputs");
+  }
+  EngineReplay result;
+  if (recording.hashes.empty()) return result;
+  if (const auto whole = CheckFirstStep(recording.hashes.begin()->first); !whole) {
+    return whole.error();
+  }
+  const auto biped = biped::ParseBiped(texts.biped, engine::kBipedFile);
+  if (!biped) return biped.error();
+  auto engine = FirstEngine(recording, texts, named_track);
+  if (!engine) return engine.error();
+  BipedRerun rerun(recording, *biped, std::move(engine).value());
+  for (const auto& [frame_step, hash] : recording.hashes) {
+    while (result.last_step < frame_step) {
+      if (const auto done = rerun.Step(++result.last_step); !done) return done.error();
+    }
+    ++result.frames;
+    result.state_hash = rerun.state_hash();
+    if (result.state_hash == hash) {
+      ++result.equal;
+    } else if (result.first_difference_step == 0) {
+      result.first_difference_step = frame_step;
+    }
+  }
+  return result;
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,49 @@
+#include "daemon/offline/eval/tracks/plan_command.h"
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/cli/cli.h"
+#include "common/config/data_file.h"
+#include "daemon/offline/eval/report/print_report.h"
+#include "daemon/offline/eval/tracks/track_plan.h"
+#include "daemon/simulation/terrain/track.h"
+
+namespace footing::eval {
+namespace {
+
+struct PlanOptions {
+  std::vector<std::string> tracks;
+  std::string out;
+};
+
+int DrawPlan(const PlanOptions& options, bool json) {
+  std::vector<plot::PlanPanel> panels;
+  for (const std::string& name : options.tracks) {
+    const auto text = config::ReadNamedOrPath(name, "tracks");
+    if (!text) return cli::Report(text.error());
+    const auto track = terrain::ParseTrack(*text, name);
+    if (!track) return cli::Report(track.error());
+    panels.push_back(PlanOf(name, *track));
+  }
+  std::ofstream file(options.out);
+  file << plot::PlanPlot("Tracks from above", panels, PlanKeys());
+  if (!file.flush()) return cli::Report(Failure("cannot write " + options.out));
+  PrintReport({{"out", options.out}, {"tracks", options.tracks}}, json);
+  return 0;
+}
+
+}  // namespace
+
+void AddPlanCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand("plan", "Plan view of tracks, as SVG");
+  auto options = std::make_shared<PlanOptions>();
+  command->add_option("TRACK", options->tracks, "Built-in names, or JSON files")->required();
+  command->add_option("--out", options->out, "SVG file to write")->required();
+  command->callback([options, &shared] { shared.exit_code = DrawPlan(*options, shared.json); });
+}
+
+}  // namespace footing::eval

@@ -1,0 +1,37 @@
+#include "daemon/simulation/engine/track_world.h"
+
+#include <string>
+#include <utility>
+
+#include "daemon/simulation/biped/mjcf.h"
+#include "daemon/simulation/terrain/append.h"
+#include "daemon/simulation/terrain/ground.h"
+#include "daemon/simulation/terrain/track.h"
+
+namespace footing::engine {
+
+Result<std::unique_ptr<TrackWorld>> MakeTrackWorld(stream::Track track,
+                                                   const biped::BipedParameters& biped,
+                                                   double step_s) {
+  std::vector<std::string> boxes;
+  for (int i = 0; track.extendable && i < terrain::kGroundBoxes; ++i) {
+    boxes.push_back(terrain::GroundBoxName(i));
+  }
+  Result<physics::World> world = physics::World::FromMjcf(
+      biped::WriteMjcf(biped, terrain::GroundMjcf(track), step_s), biped::Names(boxes));
+  if (!world) return world.error();
+  auto made = std::make_unique<TrackWorld>(TrackWorld{.track = std::move(track),
+                                                      .sight = {},
+                                                      .sees_ground = false,
+                                                      .first_segments = {},
+                                                      .world = std::move(*world)});
+  if (!made->track.help_over_pits) made->sight = terrain::WithPitsFilled(made->track);
+  made->sees_ground = !terrain::IsLevel(made->track.help_over_pits ? made->track : made->sight);
+  if (terrain::Grows(made->track)) {
+    made->first_segments = made->track.segments;
+    made->track.segments.reserve(terrain::kMostSegments);
+  }
+  return made;
+}
+
+}  // namespace footing::engine

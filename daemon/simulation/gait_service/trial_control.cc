@@ -1,0 +1,196 @@
+#include "daemon/simulation/gait_service/trial_control.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "common/config/data_file.h"
+#include "common/wire/wire.h"
+#include "daemon/simulation/gait_service/publish.h"
+#include "daemon/simulation/terrain/track.h"
+#include "daemon/simulation/trial/trial.h"
+
+namespace footing::gait_service {
+namespace {
+
+constexpr std::size_t kMaxId = 64;
+
+bool IsId(const std::string& id) {
+  const auto allowed = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+           c == '_' || c == '.';
+  };
+  return !id.empty() && id.size() <= kMaxId && std::all_of(id.begin(), id.end(), allowed);
+}
+
+/// The task of that name; with an empty one the seed draws it.
+Result<int> TaskOf(const v1::StartTrial& message, const stream::Track& track) {
+  if (message.task().empty()) return trial::DrawTask(track, message.seed());
+  std::string names;
+  for (std::size_t i = 0; i < track.tasks.size(); ++i) {
+    if (track.tasks[i].name == message.task()) return static_cast<int>(i);
+    names += (names.empty() ? "" : ", ") + track.tasks[i].name;
+  }
+  return UsageError("start_trial: the track has no task \"" + message.task() +
+                    "\"; there are: " + (names.empty() ? "none" : names));
+}
+
+v1::CommandResult ToResult(const Result<void>& done) {
+  v1::CommandResult result;
+  result.set_ok(done.ok());
+  if (!done) result.set_message(done.error().message);
+  return result;
+}
+
+}  // namespace
+
+TrialControl::TrialControl(Options options, stream::Track first, TrackExchange& tracks)
+    : options_(std::move(options)), exchange_(tracks) {
+  tracks_.push_back({options_.track, std::move(first)});
+  trials_.push_back({0, "", options_.track, tracks_.front().track.number, 0});
+}
+
+bool TrialControl::Takes(const v1::Command& command) {
+  return command.has_start_trial() || command.has_stop_trial() || command.has_correct_failure();
+}
+
+v1::CommandResult TrialControl::OnCommand(const v1::Command& command) {
+  if (command.has_start_trial()) return ToResult(Start(command.start_trial()));
+  if (command.has_stop_trial()) return ToResult(Stop(command.stop_trial()));
+  return ToResult(failures_.Correct(command.correct_failure()));
+}
+
+/// A client may name built-in tracks; of files only the one that the server was started with.
+Result<stream::Track> TrialControl::Read(const std::string& name) const {
+  const bool path = name.find('/') != std::string::npos || name.find('.') != std::string::npos;
+  if (path && name != options_.track) {
+    return UsageError("start_trial: \"" + name +
+                      "\" is not the name of a built-in track; start footing-sim with --track for "
+                      "a file");
+  }
+  const auto text = config::ReadNamedOrPath(name, "tracks", options_.data_folder);
+  if (!text) return text.error();
+  return terrain::ParseTrack(*text, name);
+}
+
+Result<void> TrialControl::Start(const v1::StartTrial& message) {
+  if (!IsId(message.trial())) {
+    return UsageError("start_trial: trial must be 1 to 64 letters, digits, - _ and .");
+  }
+  if (tracks_.size() > TrackExchange::kMost) {
+    return Failure("start_trial: the trial before is not in place yet; try again in a moment");
+  }
+  const std::string name = message.track().empty() ? tracks_.back().name : message.track();
+  auto track = Read(name);
+  if (!track) return track.error();
+  track->number = tracks_.back().track.number + 1;
+  const auto task = TaskOf(message, *track);
+  if (!task) return task.error();
+  auto world = engine::MakeTrackWorld(*track, options_.biped, options_.step_s);
+  if (!world) return world.error();
+  if (!exchange_.next.Push(std::move(world).value())) {
+    return Failure("start_trial: the trial before is not in place yet; try again in a moment");
+  }
+  ++inputs_.number;
+  inputs_.task = *task;
+  inputs_.track_number = track->number;
+  trials_.push_back({inputs_.number, message.trial(), name, track->number, message.seed()});
+  tracks_.push_back({name, std::move(track).value()});
+  return {};
+}
+
+Result<void> TrialControl::Stop(const v1::StopTrial& message) {
+  const Trial& newest = trials_.back();
+  if (!message.trial().empty() && message.trial() != newest.id) {
+    return UsageError("stop_trial: the trial that is going on is \"" + newest.id + "\"");
+  }
+  inputs_.stopped_below = newest.number + 1;
+  return {};
+}
+
+bool TrialControl::OnFrame(const Frame& frame) {
+  std::unique_ptr<engine::TrackWorld> done;
+  while (exchange_.done.Pop(done)) done.reset();
+  while (trials_.size() > 1 && trials_.front().number < frame.output.trial_number) {
+    trials_.pop_front();
+  }
+  const std::uint64_t before = tracks_.front().track.number;
+  while (tracks_.size() > 1 && tracks_.front().track.number < frame.output.track_number) {
+    tracks_.pop_front();
+  }
+  return tracks_.front().track.number != before;
+}
+
+const TrialControl::Trial& TrialControl::TrialNumbered(std::uint64_t number) const {
+  for (const Trial& trial : trials_) {
+    if (trial.number == number) return trial;
+  }
+  return trials_.front();
+}
+
+const stream::Track& TrialControl::TrackNumbered(std::uint64_t number) const {
+  for (const Known& known : tracks_) {
+    if (known.track.number == number) return known.track;
+  }
+  return tracks_.front().track;
+}
+
+v1::TrialState TrialControl::StateOf(const Trial& trial,
+                                     const stream::TrialProgress& progress) const {
+  const stream::Track& track = TrackNumbered(trial.track_number);
+  stream::TrialState state;
+  state.progress = progress;
+  state.trial = trial.id;
+  state.number = trial.number;
+  state.track = trial.track;
+  state.seed = trial.seed;
+  state.finish_m = track.finish_m;
+  const auto task = static_cast<std::size_t>(progress.task);
+  if (progress.task >= 0 && task < track.tasks.size()) {
+    state.task = track.tasks[task].name;
+    state.instruction = track.tasks[task].instruction;
+    state.to_mark_m = track.mark_m - progress.distance_m;
+  }
+  state.withdrawn_failures = failures_.Withdrawn(trial.number);
+  v1::TrialState message = wire::ToProto(state);
+  failures_.Subtract(trial.number, *message.mutable_failures());
+  message.set_failed_attempts(stream::Total(wire::FromProto(message.failures())));
+  return message;
+}
+
+v1::Event TrialControl::ToEvent(const engine::EngineEvent& event, std::int64_t host_ns) {
+  v1::Event message = gait_service::ToEvent(event, host_ns);
+  const Trial& trial = TrialNumbered(event.trial_number);
+  switch (message.kind()) {
+    case v1::Event::KIND_FALL:
+      *message.mutable_failure() = failures_.Add(event, trial.id);
+      break;
+    case v1::Event::KIND_TRIAL:
+    case v1::Event::KIND_TASK:
+      *message.mutable_trial() = StateOf(trial, event.trial);
+      if (!trial.id.empty()) message.set_text(message.text() + " (" + trial.id + ")");
+      break;
+    default:
+      break;
+  }
+  return message;
+}
+
+std::vector<v1::Event> TrialControl::TakeCorrections(std::int64_t host_ns) {
+  std::vector<v1::Event> events = failures_.TakeCorrections();
+  for (v1::Event& event : events) {
+    event.set_host_ns(host_ns);
+    event.set_character(1);
+  }
+  return events;
+}
+
+void TrialControl::Describe(const Frame& frame, v1::Character& character) const {
+  *character.mutable_trial() =
+      StateOf(TrialNumbered(frame.output.trial_number), frame.output.trial);
+  v1::GaitState& gait = *character.mutable_gait();
+  failures_.Subtract(*gait.mutable_failures());
+  gait.set_falls(stream::Total(wire::FromProto(gait.failures())));
+}
+
+}  // namespace footing::gait_service

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/stream/character.h"
+#include "daemon/simulation/biped/parameters.h"
+#include "daemon/simulation/gait_service/failure_record.h"
+#include "daemon/simulation/gait_service/frame.h"
+#include "daemon/simulation/gait_service/track_exchange.h"
+#include "footing/v1/character.pb.h"
+#include "footing/v1/command.pb.h"
+
+namespace footing::gait_service {
+
+/// Begins and ends trials for clients, on the io thread: reads and builds their tracks, knows their
+/// ids, and publishes what the engine says of them.
+class TrialControl {
+ public:
+  struct Options {
+    std::string track;        ///< Name or path of the first track.
+    std::string data_folder;  ///< Where the built-in tracks are; empty: where they are installed.
+    biped::BipedParameters biped;
+    double step_s = 0.001;
+  };
+
+  /// `first` is the engine's present track.
+  TrialControl(Options options, stream::Track first, TrackExchange& tracks);
+
+  /// True for StartTrial, StopTrial and CorrectFailure.
+  static bool Takes(const v1::Command& command);
+  v1::CommandResult OnCommand(const v1::Command& command);
+  /// For the engine, after a command.
+  const engine::TrialInputs& inputs() const { return inputs_; }
+
+  /// Follows the engine, after the frame's events; true when it runs on another track than in the
+  /// frame before.
+  bool OnFrame(const Frame& frame);
+  /// The track of the last frame.
+  stream::Track& track() { return tracks_.front().track; }
+  const stream::Track& track() const { return tracks_.front().track; }
+
+  /// An event of the engine as it is published; a failure is remembered.
+  v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns);
+  /// Events of the corrections since the last call.
+  std::vector<v1::Event> TakeCorrections(std::int64_t host_ns);
+  /// Adds the trial to a character of the frame, and takes withdrawn failures out of its counts.
+  void Describe(const Frame& frame, v1::Character& character) const;
+
+ private:
+  struct Known {
+    std::string name;
+    stream::Track track;
+  };
+  struct Trial {
+    std::uint64_t number = 0;
+    std::string id;
+    std::string track;
+    std::uint64_t track_number = 1;
+    std::uint64_t seed = 0;
+  };
+
+  Result<void> Start(const v1::StartTrial& message);
+  Result<void> Stop(const v1::StopTrial& message);
+  Result<stream::Track> Read(const std::string& name) const;
+  const Trial& TrialNumbered(std::uint64_t number) const;
+  const stream::Track& TrackNumbered(std::uint64_t number) const;
+  v1::TrialState StateOf(const Trial& trial, const stream::TrialProgress& progress) const;
+
+  const Options options_;
+  TrackExchange& exchange_;
+  engine::TrialInputs inputs_;
+  std::deque<Known> tracks_;  ///< The one of the last frame, and those on their way to the engine.
+  std::deque<Trial> trials_;  ///< The same of trials.
+  FailureRecord failures_;
+};
+
+}  // namespace footing::gait_service
