@@ -39,7 +39,7 @@ def wrong_starts(stage):
            "--subject", "p07.json")
     expect(stage, USAGE, "track does not apply to --engine pose", "footing-sim", "--engine", "pose",
            "--track", "1")
-    expect(stage, FAILURE, "there are: 1, 2, 3, 4, build, straight", "footing-sim", "--track", "9",
+    expect(stage, FAILURE, "there are: 1, 2, 3, 4, build, corners, curves, endless, hills, pits, plain, straight", "footing-sim", "--track", "9",
            "--listen", f"unix:{stage.folder}/unused.sock")
     expect(stage, USAGE, "demo", "footing-stream", "user", "--script", "dance")
     expect(stage, FAILURE, "/nonexistent.csv", "footing-stream", "accel", "--left",

@@ -160,7 +160,7 @@ def table():
     for name, speed in GAITS:
         rows.append(Row(f"5 degrees a step, {name} {speed} m/s", "0 falls", falls,
                         gait(name, speed, "--turn", 5, "--seconds", 30), 20, 20))
-    for name in "1234":
+    for name in ("curves", "corners", "pits", "hills", "straight"):
         rows.append(Row(f"track {name}, wrist", "all, heading <= 5 deg rms", track,
                         ["tracks", "--interface", "wrist", "--track", name], 8, 2))
     for height in (0.05, 0.1, 0.3, 0.5, 0.7):

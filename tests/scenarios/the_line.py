@@ -15,7 +15,7 @@ def main(binaries):
                               stage.sensor, "--seconds", 30, "--text", timeout_s=60)
         print(seen)
         assert set(seen["gaits_seen"]) == {"step", "walk", "run", "jump"}, seen
-        assert seen["falls"] == 0, seen
+        assert seen["falls"] == 0 and seen["off_track_s"] == 0, seen
         assert seen["distance_m"] > 5, seen
         assert seen["frames_published"] > 2500, seen
         for name in ("footing-stream", "footing-sim", "footingd"):

@@ -108,6 +108,14 @@ inline constexpr int kLinkCount = 5;  ///< body, left hip, left knee, right hip,
 inline constexpr int kContactCount = 2;
 inline constexpr int kMaxEvents = 16;
 
+/// For the stages of a response: the step in which the commanded gait last changed, the features
+/// it came from, and the step in which its controller took over (0: not yet).
+struct ResponseSteps {
+  std::uint64_t commanded = 0;
+  std::uint64_t features_number = 0;
+  std::uint64_t taken_over = 0;
+};
+
 struct EngineOutput {
   std::uint64_t step = 0;
   double time_s = 0;  ///< step * step_s.
@@ -126,11 +134,7 @@ struct EngineOutput {
   bool simulated_input = false;
   double root_force_max_n = 0;   ///< Largest hidden force on the root so far; must stay 0.
   std::uint64_t state_hash = 0;  ///< FNV-1a of the physics state: the same binary and machine only.
-  /// For the stages of the response: the step in which the commanded gait last changed, the
-  /// features it came from, and the step in which its controller took over (0: not yet).
-  std::uint64_t commanded_step = 0;
-  std::uint64_t commanded_features_number = 0;
-  std::uint64_t taken_over_step = 0;
+  ResponseSteps response;
   std::uint64_t append_number = 0;             ///< Of the appends, so many were taken or refused.
   bool appended = false;                       ///< In this step: the track's last segment is new.
   std::array<EngineEvent, kMaxEvents> events;  ///< Of this step alone.

@@ -98,9 +98,9 @@ void GaitEngine::Parts::Command(const EngineInputs& inputs) {
   if (inputs.direct) command = inputs.direct_command;
   state.command = biped::Limited(command);
   if (state.command.gait == before) return;
-  state.response = {.waiting = true,
-                    .commanded_step = state.step + 1,
-                    .commanded_features_number = inputs.features_number};
+  state.response = {
+      .waiting = true,
+      .steps = {.commanded = state.step + 1, .features_number = inputs.features_number}};
   AddEvent({.kind = EventKind::kGaitCommanded, .from = before, .to = state.command.gait});
 }
 
@@ -140,7 +140,7 @@ void GaitEngine::Parts::NoteGait(stream::Gait before) {
   if (now != before) AddEvent({.kind = EventKind::kGaitChanged, .from = before, .to = now});
   if (state.response.waiting && now == state.command.gait) {
     state.response.waiting = false;
-    state.response.taken_over_step = state.step;
+    state.response.steps.taken_over = state.step;
     AddEvent({.kind = EventKind::kGaitTakenOver, .from = before, .to = now});
   }
 }
@@ -172,10 +172,8 @@ void GaitEngine::Parts::FillOutput() {
   output.simulated_input = state.simulated_input;
   output.root_force_max_n = on.world.root_force_max_n();
   output.state_hash = on.world.StateHash();
-  output.commanded_step = state.response.commanded_step;
-  output.commanded_features_number = state.response.commanded_features_number;
+  output.response = state.response.steps;
   output.append_number = state.track.append_number;
-  output.taken_over_step = state.response.taken_over_step;
 }
 
 }  // namespace footing::engine

@@ -23,9 +23,7 @@ struct InputMemory {
 /// From a command to its controller.
 struct ResponseMemory {
   bool waiting = false;
-  std::uint64_t commanded_step = 0;
-  std::uint64_t commanded_features_number = 0;
-  std::uint64_t taken_over_step = 0;
+  ResponseSteps steps;
 };
 
 /// The track as far as it grew; of a track that does not grow, nothing.

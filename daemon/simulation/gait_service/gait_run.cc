@@ -31,8 +31,8 @@ void GaitRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
   if (output.appended && frame.added_count < kMaxAdded) {
     frame.added[static_cast<std::size_t>(frame.added_count++)] = engine_.track().segments.back();
   }
-  if (output.commanded_step == output.step) frame.command_ns = clock::MonotonicNs();
-  if (output.taken_over_step == output.step) frame.contact_ns = clock::MonotonicNs();
+  if (output.response.commanded == output.step) frame.command_ns = clock::MonotonicNs();
+  if (output.response.taken_over == output.step) frame.contact_ns = clock::MonotonicNs();
   for (int i = 0; i < output.event_count && frame.event_count < kMaxFrameEvents; ++i) {
     frame.events[static_cast<std::size_t>(frame.event_count++)] =
         output.events[static_cast<std::size_t>(i)];

@@ -4,14 +4,14 @@ namespace footing::gait_service {
 
 bool Responses::Complete(const Frame& frame, std::int64_t now_ns, v1::ResponseStages& stages) {
   const engine::EngineOutput& output = frame.output;
-  if (output.taken_over_step == 0 || output.taken_over_step == shown_step_) return false;
-  shown_step_ = output.taken_over_step;
+  if (output.response.taken_over == 0 || output.response.taken_over == shown_step_) return false;
+  shown_step_ = output.response.taken_over;
   const stream::Gait from = from_;
   from_ = output.gait.gait;
-  const FeatureStamps& stamps = Slot(output.commanded_features_number);
+  const FeatureStamps& stamps = Slot(output.response.features_number);
   const bool from_features =
-      output.commanded_features_number > 0 && stamps.number == output.commanded_features_number;
-  if (!from_features || output.taken_over_step < output.commanded_step) return false;
+      output.response.features_number > 0 && stamps.number == output.response.features_number;
+  if (!from_features || output.response.taken_over < output.response.commanded) return false;
   stages.set_from(static_cast<v1::Gait>(from));
   stages.set_to(static_cast<v1::Gait>(output.gait.gait));
   stages.set_report_received_ns(stamps.report_received_ns);

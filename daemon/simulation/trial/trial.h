@@ -11,12 +11,13 @@ namespace footing::trial {
 /// After a failed transition the user gets so much of the track before the mark, and after a failed
 /// jump before the pit, to bring the character into its gait again, m.
 inline constexpr double kRunUpM = 6;
-/// A transition is done when the new gait has run for so long, s. After a jump any gait may follow.
+/// A transition is done when the new gait has run for this duration, s. After a jump any gait may
+/// follow.
 inline constexpr double kTransitionHeldS = 1.0;
 /// At a stop the body is slower than this, m/s.
 inline constexpr double kStoppedMps = 0.3;
-/// The gait before the mark must have run within so long before it, s: whoever changes a moment too
-/// early has still made the transition.
+/// The gait before the mark must have run within this duration before it, s: whoever changes a
+/// moment too early has still made the transition.
 inline constexpr double kEarlyS = 1.0;
 
 struct TrialMemory {

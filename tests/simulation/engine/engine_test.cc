@@ -148,8 +148,8 @@ TEST(Engine, SaysWhenACommandWasGivenAndWhenTakenOver) {
   });
   EXPECT_EQ(kinds, (std::vector{EventKind::kGaitCommanded, EventKind::kGaitChanged,
                                 EventKind::kGaitTakenOver}));
-  EXPECT_EQ(engine.Output().commanded_step, 2001u);
-  EXPECT_EQ(engine.Output().taken_over_step, taken_over);
+  EXPECT_EQ(engine.Output().response.commanded, 2001u);
+  EXPECT_EQ(engine.Output().response.taken_over, taken_over);
 }
 
 TEST(Engine, RefusesAWrongFileByName) {

@@ -96,7 +96,7 @@ TEST_P(EveryChange, SucceedsFromSeveralMoments) {
     EXPECT_EQ(output.gait.falls, 0u) << "moment " << moment;
     EXPECT_EQ(output.gait.gait, to);
     EXPECT_FALSE(output.gait.pending);
-    EXPECT_GE(output.taken_over_step, output.commanded_step);
+    EXPECT_GE(output.response.taken_over, output.response.commanded);
     const bool at_once =
         from != Gait::kRun && from != Gait::kJump && to != Gait::kRun && to != Gait::kJump;
     EXPECT_EQ(was_pending, !at_once);

@@ -7,9 +7,9 @@ namespace {
 
 Frame FrameAt(std::uint64_t commanded_step, std::uint64_t features, std::uint64_t taken_over_step) {
   Frame frame;
-  frame.output.commanded_step = commanded_step;
-  frame.output.commanded_features_number = features;
-  frame.output.taken_over_step = taken_over_step;
+  frame.output.response.commanded = commanded_step;
+  frame.output.response.features_number = features;
+  frame.output.response.taken_over = taken_over_step;
   frame.output.gait.gait = stream::Gait::kWalk;
   frame.command_ns = 60;
   frame.contact_ns = 70;
