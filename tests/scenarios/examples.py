@@ -8,6 +8,7 @@ footing-sim with simulated controllers and boards, as a reader would run them. A
 with 0. One that runs until Ctrl-C, or long, is interrupted after a few seconds and must not have failed until then.
 What cannot run here is listed below with its reason, and each of those reasons must still apply to a command.
 """
+import json
 import os
 import pathlib
 import re
@@ -31,6 +32,7 @@ SECONDS_TO_STOP = 20
 NOT_HERE = {
     r"^footing-ctl (pair|setup|assign|acceptance|tare|layout .*--check)": "asks a person; scenarios setup_* run them",
     r"^footing-ctl led (00:|head)": "needs that device",
+    r"^footing-ctl trial withdraw": "needs a failure; scenario trial runs it",
     r"^footing-ctl doctor": "judges the whole machine, with the daemons of other tests; scenarios.ctl runs it",
     r"^sudo ": "as root",
     r"\.\.\.": "stands for the words before it",
@@ -195,7 +197,9 @@ def main():
         stage.stop("user")
         stage.start("footing-sim", "--engine", "pose")
         stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "move")
-        time.sleep(10)
+        stage.wait_for(lambda: json.loads(subprocess.run(
+            [binaries / "footing-view", "--text", "--seconds", "2", "--json"], env=environment, check=True,
+            capture_output=True, text=True).stdout).get("calibrated"), "the T-pose", timeout_s=90)
         record(folder, environment, binaries, "session.mcap", 3)
         for command in [one for one in runnable if POSE_ENGINE.search(one)]:
             try_out(command)
