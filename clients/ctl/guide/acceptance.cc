@@ -36,6 +36,10 @@ constexpr Row kRows[] = {
      "Switch one device off (hold its power button, or take a battery out), and on again."},
 };
 
+/// The lamps change every 0.8 s, and a status reports it up to a second later: two patterns are
+/// seen within this duration on a busy computer, too.
+constexpr double kLedLeastS = 4;
+
 const Row& RowOf(Phase phase) {
   return *std::find_if(std::begin(kRows), std::end(kRows),
                        [phase](const Row& row) { return row.phase == phase; });
@@ -61,7 +65,10 @@ std::vector<Planned> PlanOf(double minutes, bool body_devices, bool boards) {
     plan.push_back({row.phase, row.share});
     shares += row.share;
   }
-  for (Planned& planned : plan) planned.duration_s *= minutes * 60 / shares;
+  for (Planned& planned : plan) {
+    planned.duration_s *= minutes * 60 / shares;
+    if (planned.phase == Phase::kLed) planned.duration_s = std::max(planned.duration_s, kLedLeastS);
+  }
   return plan;
 }
 

@@ -27,7 +27,8 @@ struct Planned {
   double duration_s = 0;
 };
 
-/// Phases for the devices that there are; `minutes` is their total.
+/// Phases for the devices that there are; `minutes` is their total, but for the lamps, which take
+/// at least 4 s.
 std::vector<Planned> PlanOf(double minutes, bool body_devices, bool boards);
 
 struct Check {

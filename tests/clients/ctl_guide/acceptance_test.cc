@@ -142,6 +142,12 @@ TEST(Acceptance, PlansOnlyWhatTheDevicesCanDo) {
   EXPECT_NEAR(whole_s, 600, 1e-6);
 }
 
+TEST(Acceptance, AShortRunLeavesTheLampsTimeForTwoPatterns) {
+  for (const Planned& planned : PlanOf(0.1, true, true)) {
+    EXPECT_GE(planned.duration_s, planned.phase == Phase::kLed ? 4.0 : 0.2);
+  }
+}
+
 TEST(Acceptance, FindsATurnedBoard) {
   Minute minute;
   minute.lean_m = -0.05;
