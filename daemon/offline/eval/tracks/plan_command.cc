@@ -1,9 +1,11 @@
 #include "daemon/offline/eval/tracks/plan_command.h"
 
+#include <cerrno>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "common/cli/cli.h"
@@ -31,7 +33,10 @@ int DrawPlan(const PlanOptions& options, bool json) {
   }
   std::ofstream file(options.out);
   file << plot::PlanPlot("Tracks from above", panels, PlanKeys());
-  if (!file.flush()) return cli::Report(Failure("cannot write " + options.out));
+  if (!file.flush()) {
+    return cli::Report(Failure("cannot write " + options.out + ": " +
+                               std::generic_category().message(errno) + "; name another file"));
+  }
   PrintReport({{"out", options.out}, {"tracks", options.tracks}}, json);
   return 0;
 }

@@ -108,7 +108,7 @@ class TrackTrial {
   }
 
   TrackResult Run() {
-    while (result_.time_s < kLongestS && !result_.completed) Look();
+    while (engine_.Output().time_s < kLongestS && !result_.completed) Look();
     const stream::TrialProgress& end = engine_.Output().trial;
     result_.failures = end.failures;
     if (end.task >= 0) {
