@@ -17,11 +17,6 @@ struct Fit {
   double degrees = 0;
 };
 
-bool AllEqual(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(),
-                     [&](double value) { return value == values.front(); });
-}
-
 double Ratio(double estimate, double standard_error) {
   if (estimate == 0) return 0;
   constexpr double kGreatest = std::numeric_limits<double>::max();
@@ -61,8 +56,7 @@ Result<Dunnett> DunnettTest(const Groups& groups, Alternative alternative, doubl
   for (const Group& group : groups) {
     FOOTING_CHECK(!group.values.empty());
     const double mean = Mean(group.values);
-    const bool constant = AllEqual(group.values);
-    for (const double value : group.values) residuals.push_back(constant ? 0 : value - mean);
+    for (const double value : group.values) residuals.push_back(value - mean);  // 0 if all equal.
     fit.means.push_back(mean);
     fit.sizes.push_back(static_cast<double>(group.values.size()));
   }

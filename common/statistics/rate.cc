@@ -107,8 +107,12 @@ RateRatio ProfileRatio(const NegativeBinomial& model, std::size_t group, Alterna
     return 2 * (peak - model.Profile(group, std::exp(log_ratio))) - z * z;
   };
   const double top = ratio == 0 || std::isinf(ratio) ? 0 : std::log(ratio);
-  if (ratio > 0) result.interval.low = std::exp(ProfileEnd(excess, top, -0.5));
-  if (!std::isinf(ratio)) result.interval.high = std::exp(ProfileEnd(excess, top, 0.5));
+  if (ratio > 0 && alternative != Alternative::kLess) {
+    result.interval.low = std::exp(ProfileEnd(excess, top, -0.5));
+  }
+  if (!std::isinf(ratio) && alternative != Alternative::kGreater) {
+    result.interval.high = std::exp(ProfileEnd(excess, top, 0.5));
+  }
   return result;
 }
 
@@ -135,13 +139,6 @@ void AdjustByHolm(std::vector<RateRow>& rows, RateRatio RateRow::*part) {
   for (std::size_t i = 0; i < rows.size(); ++i) (rows[i].*part).p = adjusted[i];
 }
 
-/// An interval of ratios: without its end for a one-sided alternative it begins at 0.
-Interval DirectedRatio(Interval interval, Alternative alternative) {
-  if (alternative == Alternative::kLess) interval.low = 0;
-  return Directed({std::max(0.0, interval.low), interval.high},
-                  alternative == Alternative::kGreater ? alternative : Alternative::kTwoSided);
-}
-
 }  // namespace
 
 Rates CompareRates(const std::vector<Counts>& groups, Alternative alternative, double confidence) {
@@ -165,7 +162,8 @@ Rates CompareRates(const std::vector<Counts>& groups, Alternative alternative, d
     row.poisson = ExactPoisson(totals[0], totals[i], alternative, tail);
     row.negative_binomial = ProfileRatio(model, i, alternative, tail);
     for (RateRatio* ratio : {&row.poisson, &row.negative_binomial}) {
-      ratio->interval = DirectedRatio(ratio->interval, alternative);
+      ratio->interval.low = std::max(0.0, ratio->interval.low);
+      ratio->interval = Directed(ratio->interval, alternative, {0, kInfinity});
     }
   }
   AdjustByHolm(result.rows, &RateRow::poisson);

@@ -11,7 +11,6 @@ namespace footing::statistics {
 
 /// Counts of events, each with its exposure: minutes, metres, attempts, or 1.
 struct Counts {
-  std::string name;
   std::vector<double> events;     ///< Whole numbers, at most kMostEvents.
   std::vector<double> exposures;  ///< Positive, as many.
 };

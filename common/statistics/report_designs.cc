@@ -11,8 +11,6 @@
 namespace footing::statistics {
 namespace {
 
-constexpr double kOpen = std::numeric_limits<double>::infinity();
-
 /// Wilcoxon's test of every treatment, with Holm's adjustment.
 void AddWilcoxon(const Blocks& blocks, const AnalysisRequest& request, Findings& findings) {
   std::vector<double> p, exact_p;
@@ -47,17 +45,15 @@ void AddEffectSizes(const Blocks& blocks, const AnalysisRequest& request, Findin
   for (std::size_t i = 1; i < blocks.groups.size(); ++i) {
     const std::vector<double> differences = Differences(blocks, i);
     ordered_json& row = findings.rows[i - 1];
-    row["hodges_lehmann"] = ToJson(
-        DirectedEffect(PairedHodgesLehmann(differences, z), request.alternative, -kOpen, kOpen));
+    row["hodges_lehmann"] =
+        ToJson(DirectedEffect(PairedHodgesLehmann(differences, z), request.alternative, {}));
     row["cliffs_delta"] =
-        ToJson(DirectedEffect(PairedDelta(differences, z), request.alternative, -1, 1));
+        ToJson(DirectedEffect(PairedDelta(differences, z), request.alternative, {-1, 1}));
   }
 }
 
 Result<void> AddFriedman(const Blocks& blocks, const AnalysisRequest& request, Findings& findings) {
-  AnalysisRequest relabelled = request;
-  if (request.method == Method::kAsymptotic) relabelled.method.reset();
-  const auto test = FriedmanTest(blocks, RelabellingOf(relabelled));
+  const auto test = FriedmanTest(blocks, RelabellingOf(request));
   if (!test) return test.error();
   findings.extra["friedman_chi2"] = test->chi_square;
   findings.extra["friedman_df"] = test->degrees;
@@ -75,17 +71,13 @@ Result<void> AddMeanTests(const StudyTable& table, const AnalysisRequest& reques
   const bool block = request.method == Method::kAsymptotic;
   const auto dunnett = BlockDunnettTest(*table.blocks, request.alternative, request.confidence);
   if (!dunnett) return dunnett.error();
-  AnalysisRequest permutation = request;
-  if (block) permutation.method.reset();
   const auto permuted =
-      PermuteWithinSubjects(*table.blocks, request.alternative, RelabellingOf(permutation));
+      PermuteWithinSubjects(*table.blocks, request.alternative, RelabellingOf(request));
   if (!permuted) return permuted.error();
   const Relabelled& relabelled = permuted->relabelled;
-  const bool exact = relabelled.method == Method::kExact;
   findings.method = NameOf(block ? Method::kAsymptotic : relabelled.method);
   findings.extra["permutation_method"] = NameOf(relabelled.method);
-  findings.extra["relabellings"] = static_cast<std::uint64_t>(relabelled.relabellings);
-  if (!exact) findings.extra["seed"] = request.seed;
+  AddRelabellings(relabelled, request, findings.extra);
   for (std::size_t i = 1; i < table.groups.size(); ++i) {
     const DunnettRow& compared = dunnett->rows[i - 1];
     const RelabelledRow& share = relabelled.rows[i - 1];
@@ -94,11 +86,9 @@ Result<void> AddMeanTests(const StudyTable& table, const AnalysisRequest& reques
     row["statistic"] = block ? compared.t : permuted->estimates[i - 1];
     row["df"] = block ? ordered_json(dunnett->degrees) : ordered_json(nullptr);
     row["p"] = block ? compared.p : share.p;
-    row["low"] = Number(compared.interval.low);
-    row["high"] = Number(compared.interval.high);
+    AddInterval(compared.interval, row);
     row["permutation_p"] = share.p;
-    if (exact) row["smallest_p"] = share.smallest_p;
-    if (!exact) row["p_standard_error"] = share.standard_error;
+    AddRelabelled(share, relabelled.method, row);
     row["block_t"] = compared.t;
     row["block_df"] = dunnett->degrees;
     row["block_dunnett_p"] = compared.p;
@@ -108,7 +98,9 @@ Result<void> AddMeanTests(const StudyTable& table, const AnalysisRequest& reques
     findings.remarks.push_back(
         "all subjects show the same differences, so block_t has no error to be compared with");
   }
-  if (exact) RemarkOnSmallestP(relabelled.rows, request, findings.remarks);
+  if (relabelled.method == Method::kExact) {
+    RemarkOnSmallestP(relabelled.rows, request, findings.remarks);
+  }
   return {};
 }
 
@@ -157,7 +149,7 @@ Result<Findings> ReportRate(const StudyTable& table, const AnalysisRequest& requ
   }
   std::vector<Counts> groups;
   for (std::size_t i = 0; i < table.groups.size(); ++i) {
-    groups.push_back({table.groups[i].name, table.groups[i].values, table.exposures[i]});
+    groups.push_back({table.groups[i].values, table.exposures[i]});
   }
   const Rates rates = CompareRates(groups, request.alternative, request.confidence);
   const bool exact = request.method == Method::kExact;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/statistics/dunnett.h"
 #include "common/statistics/many_to_one.h"
@@ -11,8 +10,6 @@
 
 namespace footing::statistics {
 namespace {
-
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 std::vector<double> Loadings(const Groups& groups) {
   std::vector<double> loadings;
@@ -25,30 +22,11 @@ std::vector<double> Loadings(const Groups& groups) {
 }
 
 EffectSize ShiftOf(const Groups& groups, std::size_t i, double z, Alternative alternative) {
-  return DirectedEffect(HodgesLehmann(groups[0].values, groups[i].values, z), alternative,
-                        -kUnbounded, kUnbounded);
+  return DirectedEffect(HodgesLehmann(groups[0].values, groups[i].values, z), alternative, {});
 }
 
 EffectSize DeltaOf(const Groups& groups, std::size_t i, double z, Alternative alternative) {
-  return DirectedEffect(CliffsDelta(groups[0].values, groups[i].values, z), alternative, -1, 1);
-}
-
-void AddInterval(const Interval& interval, ordered_json& row) {
-  row["low"] = Number(interval.low);
-  row["high"] = Number(interval.high);
-}
-
-/// What relabelling adds to a row.
-void AddRelabelled(const RelabelledRow& relabelled, Method method, ordered_json& row) {
-  row["p"] = relabelled.p;
-  if (method == Method::kExact) row["smallest_p"] = relabelled.smallest_p;
-  if (method == Method::kPermutation) row["p_standard_error"] = relabelled.standard_error;
-}
-
-void AddRelabellings(const Relabelled& relabelled, const AnalysisRequest& request,
-                     ordered_json& extra) {
-  extra["relabellings"] = static_cast<std::uint64_t>(relabelled.relabellings);
-  if (relabelled.method == Method::kPermutation) extra["seed"] = request.seed;
+  return DirectedEffect(CliffsDelta(groups[0].values, groups[i].values, z), alternative, {-1, 1});
 }
 
 /// For a method other than the exact one: what the exact p could be at least, if that is cheap.
@@ -61,8 +39,8 @@ void RemarkOnSmallSteel(const StudyTable& table, const AnalysisRequest& request,
   if (exact) RemarkOnSmallestP(exact->rows, request, remarks);
 }
 
-Result<void> AddAsymptoticSteel(const StudyTable& table, const AnalysisRequest& request,
-                                Findings& findings) {
+void AddAsymptoticSteel(const StudyTable& table, const AnalysisRequest& request,
+                        Findings& findings) {
   const auto p_with = [&](const SteelLimit& limit) {
     return SteelAsymptotic(table.groups, request.alternative, limit);
   };
@@ -79,7 +57,6 @@ Result<void> AddAsymptoticSteel(const StudyTable& table, const AnalysisRequest& 
       "the asymptotic p can be off by a factor of two in small or heavily tied groups, so prefer "
       "--method exact or permutation");
   RemarkOnSmallSteel(table, request, findings.remarks);
-  return {};
 }
 
 Result<void> AddRelabelledSteel(const StudyTable& table, const AnalysisRequest& request,
@@ -92,12 +69,13 @@ Result<void> AddRelabelledSteel(const StudyTable& table, const AnalysisRequest& 
                             ? "; p over all ways to deal the values to the groups"
                             : "; p over random ways to deal the values to the groups";
   for (std::size_t i = 0; i < relabelled->rows.size(); ++i) {
+    findings.rows[i]["p"] = relabelled->rows[i].p;
     AddRelabelled(relabelled->rows[i], relabelled->method, findings.rows[i]);
   }
   AddRelabellings(*relabelled, request, findings.extra);
   if (relabelled->method == Method::kExact) {
     RemarkOnSmallestP(relabelled->rows, request, findings.remarks);
-  } else {
+  } else if (request.method == Method::kPermutation) {  // Else the exact p was too dear already.
     RemarkOnSmallSteel(table, request, findings.remarks);
   }
   return {};
@@ -165,10 +143,11 @@ Result<Findings> ReportSteel(const StudyTable& table, const AnalysisRequest& req
     row["cliffs_delta"] = ToJson(DeltaOf(table.groups, i, z, request.alternative));
     findings.rows.push_back(std::move(row));
   }
-  const auto added = request.method == Method::kAsymptotic
-                         ? AddAsymptoticSteel(table, request, findings)
-                         : AddRelabelledSteel(table, request, findings);
-  if (!added) return added.error();
+  if (request.method == Method::kAsymptotic) {
+    AddAsymptoticSteel(table, request, findings);
+  } else if (const auto added = AddRelabelledSteel(table, request, findings); !added) {
+    return added.error();
+  }
   AddPairedP(table, request, findings.rows);
   if (constant) {
     findings.remarks.push_back(
@@ -195,25 +174,38 @@ ordered_json ToJson(const EffectSize& effect) {
           {"high", Number(effect.interval.high)}};
 }
 
+void AddInterval(const Interval& interval, ordered_json& row) {
+  row["low"] = Number(interval.low);
+  row["high"] = Number(interval.high);
+}
+
+void AddRelabelled(const RelabelledRow& relabelled, Method method, ordered_json& row) {
+  if (method == Method::kExact) row["smallest_p"] = relabelled.smallest_p;
+  if (method == Method::kPermutation) row["p_standard_error"] = relabelled.standard_error;
+}
+
+void AddRelabellings(const Relabelled& relabelled, const AnalysisRequest& request,
+                     ordered_json& extra) {
+  extra["relabellings"] = static_cast<std::uint64_t>(relabelled.relabellings);
+  if (relabelled.method == Method::kPermutation) extra["seed"] = request.seed;
+}
+
 double CriticalZ(const std::vector<double>& loadings, const AnalysisRequest& request) {
   return MaxQuantile(
       {.loadings = loadings, .two_sided = request.alternative == Alternative::kTwoSided},
       1 - request.confidence);
 }
 
-EffectSize DirectedEffect(EffectSize effect, Alternative alternative, double least,
-                          double greatest) {
-  if (alternative == Alternative::kGreater) effect.interval.high = greatest;
-  if (alternative == Alternative::kLess) effect.interval.low = least;
+EffectSize DirectedEffect(EffectSize effect, Alternative alternative, const Interval& widest) {
+  effect.interval = Directed(effect.interval, alternative, widest);
   return effect;
 }
 
 void AddPairedP(const StudyTable& table, const AnalysisRequest& request, ordered_json& rows) {
   if (!table.blocks) return;
-  AnalysisRequest permutation = request;
-  permutation.method.reset();
-  const auto paired =
-      PermuteWithinSubjects(*table.blocks, request.alternative, RelabellingOf(permutation));
+  Relabelling relabelling = RelabellingOf(request);
+  relabelling.method.reset();
+  const auto paired = PermuteWithinSubjects(*table.blocks, request.alternative, relabelling);
   if (!paired) return;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i]["paired_p"] = paired->relabelled.rows[i].p;
@@ -222,7 +214,7 @@ void AddPairedP(const StudyTable& table, const AnalysisRequest& request, ordered
 
 Relabelling RelabellingOf(const AnalysisRequest& request) {
   Relabelling relabelling;
-  relabelling.method = request.method;
+  if (request.method != Method::kAsymptotic) relabelling.method = request.method;
   relabelling.seed = request.seed;
   relabelling.permutations = request.permutations;
   return relabelling;

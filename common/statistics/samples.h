@@ -48,10 +48,10 @@ inline double Evidence(double statistic, Alternative alternative) {
   return 0;
 }
 
-/// Without the end that the alternative leaves open.
-inline Interval Directed(Interval interval, Alternative alternative) {
-  if (alternative == Alternative::kGreater) interval.high = Interval().high;
-  if (alternative == Alternative::kLess) interval.low = Interval().low;
+/// With the end that the alternative leaves open at that of `widest`.
+inline Interval Directed(Interval interval, Alternative alternative, const Interval& widest = {}) {
+  if (alternative == Alternative::kGreater) interval.high = widest.high;
+  if (alternative == Alternative::kLess) interval.low = widest.low;
   return interval;
 }
 

@@ -113,7 +113,6 @@ SignedRanks WilcoxonTest(const std::vector<double>& differences, Alternative alt
     if (difference != 0) full.push_back(difference);
   }
   SignedRanks test;
-  test.n = full.size();
   if (full.empty()) return test;
   const SizeRanks sizes = RankSizes(full);
   for (std::size_t i = 0; i < full.size(); ++i) {

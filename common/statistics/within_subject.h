@@ -32,7 +32,6 @@ Result<Friedman> FriedmanTest(const Blocks& blocks, const Relabelling& relabelli
 /// Wilcoxon's signed ranks of one list of differences.
 struct SignedRanks {
   double v = 0;        ///< Sum of the ranks of positive differences; zeros are left out.
-  std::size_t n = 0;   ///< Differences that are not zero.
   double exact_p = 1;  ///< Over all signs, with ties as they are. Normal above 200 differences.
   /// As R's wilcox.test: exact below 50 differences without ties or zeros, otherwise normal with
   /// continuity and tie corrections.
