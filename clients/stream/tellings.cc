@@ -53,11 +53,9 @@ stream::HandFrame Fists(const Stage& stage, const char* tracker, double sd_m, do
   frame.tracker = tracker;
   frame.simulated = true;
   for (const int side : {0, 1}) {
-    const body::Point fist = body::Fist(stage.scene.body, side);
-    const auto joint = static_cast<std::size_t>(fist.joint);
     stream::TrackedPoint point;
     point.role = side == 0 ? stream::DeviceRole::kLeftHand : stream::DeviceRole::kRightHand;
-    point.position_m = body::Place(fist, at.R_WJ[joint], at.p_WJ[joint]);
+    point.position_m = body::Place(body::Fist(stage.scene.body, side), at);
     point.sd_m.setConstant(sd_m);
     point.confidence = 1;
     frame.points.push_back(point);

@@ -176,11 +176,7 @@ struct Builder {
 
   /// The limbs of one side: 0 left, 1 right.
   void AddSide(int side) {
-    constexpr int kOther =
-        static_cast<int>(Landmark::kRightClavicle) - static_cast<int>(Landmark::kLeftClavicle);
-    const auto of_side = [side](Landmark left) {
-      return static_cast<Landmark>(static_cast<int>(left) + side * kOther);
-    };
+    const auto of_side = [side](Landmark left) { return OfSide(left, side); };
     const Landmark shoulder = of_side(Landmark::kLeftShoulder);
     const Landmark elbow = of_side(Landmark::kLeftElbow), wrist = of_side(Landmark::kLeftWrist);
     const Landmark hip = of_side(Landmark::kLeftHip), knee = of_side(Landmark::kLeftKnee);

@@ -56,5 +56,7 @@ Result<Landmarks> FindLandmarks(const Skeleton& skeleton);
 
 /// The same landmark of the other side; those of the middle are their own.
 Landmark Mirrored(Landmark landmark);
+/// `left` itself for side 0, its mirror image for side 1.
+inline Landmark OfSide(Landmark left, int side) { return side == 0 ? left : Mirrored(left); }
 
 }  // namespace footing::body

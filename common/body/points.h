@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "common/body/body.h"
+#include "common/body/kinematics.h"
 
 /// Points of the body that sensors measure.
 namespace footing::body {
@@ -32,6 +33,11 @@ Point ToeEnd(const Body& body, int side);
 inline Eigen::Vector3d Place(const Point& point, const Eigen::Matrix3d& R_WJ,
                              const Eigen::Vector3d& p_WJ) {
   return p_WJ + R_WJ * point.p_J_m;
+}
+/// The same where the joints are `at`.
+inline Eigen::Vector3d Place(const Point& point, const Kinematics& at) {
+  const auto joint = static_cast<std::size_t>(point.joint);
+  return Place(point, at.R_WJ[joint], at.p_WJ[joint]);
 }
 
 }  // namespace footing::body

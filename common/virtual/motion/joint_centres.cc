@@ -61,8 +61,6 @@ MaybePoint JointBetween(const MaybePoint& lateral, const MaybePoint& medial,
   return *lateral - (side == 0 ? 1 : -1) * half_width_m * across.normalized();
 }
 
-Landmark OfSide(Landmark left, int side) { return side == 0 ? left : Mirrored(left); }
-
 }  // namespace
 
 Centres JointCentres(const MarkerTracks& tracks, const MarkerSet& set, Eigen::Index frame) {

@@ -32,7 +32,7 @@ std::vector<int> KnownCarriers(const body::Skeleton& skeleton, const body::Landm
                                const MarkerTracks& tracks, const MarkerSet& set) {
   std::vector<int> known(tracks.names.size(), -1);
   for (int side = 0; side < 2; ++side) {
-    const auto of = [&](Landmark left) { return landmarks[side == 0 ? left : Mirrored(left)]; };
+    const auto of = [&](Landmark left) { return landmarks[OfSide(left, side)]; };
     const int forearm = skeleton.joint(of(Landmark::kLeftWrist)).parent;
     const std::pair<std::string_view, int> fields[] = {
         {set.asis, 0},

@@ -16,8 +16,6 @@ using body::Landmark;
 constexpr Eigen::Index kMostFrames = 400;              // Of a trial for its lengths.
 constexpr double kLeastRatio = 0.6, kMostRatio = 1.6;  // Of a length over the standard one.
 
-Landmark LandmarkOfSide(Landmark left, int side) { return side == 0 ? left : Mirrored(left); }
-
 /// Medians of distances between centres over the frames in which both are there.
 class Lengths {
  public:
@@ -64,11 +62,10 @@ class Lengths {
 double LegLength(const Lengths& lengths) {
   double legs_m = 0;
   for (int side = 0; side < 2; ++side) {
-    legs_m += (lengths.Between(LandmarkOfSide(Landmark::kLeftHip, side),
-                               LandmarkOfSide(Landmark::kLeftKnee, side)) +
-               lengths.Between(LandmarkOfSide(Landmark::kLeftKnee, side),
-                               LandmarkOfSide(Landmark::kLeftAnkle, side))) /
-              2;
+    legs_m +=
+        (lengths.Between(OfSide(Landmark::kLeftHip, side), OfSide(Landmark::kLeftKnee, side)) +
+         lengths.Between(OfSide(Landmark::kLeftKnee, side), OfSide(Landmark::kLeftAnkle, side))) /
+        2;
   }
   return legs_m;
 }
@@ -85,7 +82,7 @@ class SkeletonScaling {
     const double hips_m = lengths_.Between(Landmark::kLeftHip, Landmark::kRightHip);
     const double shoulders_m = lengths_.Between(Landmark::kLeftShoulder, Landmark::kRightShoulder);
     for (int side = 0; side < 2; ++side) {
-      const auto here = [side](Landmark left) { return LandmarkOfSide(left, side); };
+      const auto here = [side](Landmark left) { return OfSide(left, side); };
       Stretch(here(Landmark::kLeftHip), here(Landmark::kLeftKnee));
       Stretch(here(Landmark::kLeftKnee), here(Landmark::kLeftAnkle));
       Stretch(here(Landmark::kLeftAnkle), here(Landmark::kLeftToe));

@@ -37,7 +37,7 @@ class Placer {
     const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
     for (const int side : {0, 1}) {
       const std::string s = side == 0 ? "L" : "R";
-      const auto of = [side](Landmark left) { return side == 0 ? left : body::Mirrored(left); };
+      const auto of = [side](Landmark left) { return body::OfSide(left, side); };
       const Eigen::Vector3d out = (side == 0 ? 1 : -1) * Eigen::Vector3d::UnitY();
       Pair(s + "KNE", s + "KNM", of(Landmark::kLeftHip), of(Landmark::kLeftKnee), 0.055 * out);
       Pair(s + "ANK", s + "MED", of(Landmark::kLeftKnee), of(Landmark::kLeftAnkle), 0.04 * out);

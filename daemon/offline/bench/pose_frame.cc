@@ -70,11 +70,9 @@ std::vector<Inputs> Measured(const body::Body& body, const motion::Motion& motio
     }
     body::ComputeKinematics(body.skeleton, motion.q.col(i), at);
     for (int side = 0; side < 2; ++side) {
-      const body::Point fist = body::Fist(body, side);
-      const auto joint = static_cast<std::size_t>(fist.joint);
       reconstruction::HandInput& hand = inputs.hands[static_cast<std::size_t>(side)];
       hand.valid = true;
-      hand.p_W_m = body::Place(fist, at.R_WJ[joint], at.p_WJ[joint]);
+      hand.p_W_m = body::Place(body::Fist(body, side), at);
     }
   }
   return all;

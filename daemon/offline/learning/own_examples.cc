@@ -20,11 +20,9 @@ Eigen::VectorXd PoseAt(const motion::Motion& motion, double time_s) {
 
 reconstruction::HandInput FistOf(const body::Body& body, const body::Kinematics& at, int side,
                                  double noise_m, noise::Random& random) {
-  const body::Point fist = body::Fist(body, side);
-  const auto joint = static_cast<std::size_t>(fist.joint);
   reconstruction::HandInput hand;
   hand.valid = true;
-  hand.p_W_m = body::Place(fist, at.R_WJ[joint], at.p_WJ[joint]);
+  hand.p_W_m = body::Place(body::Fist(body, side), at);
   for (double& value : hand.p_W_m) value += noise_m * random.Normal();
   hand.sd_m.setConstant(std::max(noise_m, 0.001));
   return hand;

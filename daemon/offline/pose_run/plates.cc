@@ -71,8 +71,8 @@ Result<motion::Motion> InCommon(const motion::Motion& clip, const motion::Ground
 }
 
 /// Frames of the clip in which the plates carry what the motion needs.
-std::vector<bool> BuiltInScript(const motion::Motion& clip, const sensors::Scene& scene,
-                                const FeltForces& felt) {
+std::vector<bool> SupportedFrames(const motion::Motion& clip, const sensors::Scene& scene,
+                                  const FeltForces& felt) {
   const Eigen::Index frames = clip.frames();
   const Eigen::Index before = scene.motion.frames() - frames;
   const auto half = static_cast<Eigen::Index>(std::lround(0.5 * kMissingSpanS * clip.rate_hz));
@@ -254,7 +254,7 @@ Result<PlateRun> RunOnPlates(const motion::Motion& clip, const motion::GroundFor
                        " cm from the nearer foot of " + origin +
                        ": forces and motion must be of one trial, in one frame");
   }
-  const std::vector<bool> supported = BuiltInScript(*common, *scene, felt);
+  const std::vector<bool> supported = SupportedFrames(*common, *scene, felt);
   const Stretch stretch = Longest(supported);
   if (static_cast<double>(stretch.count) < kLeastSupportedS * common->rate_hz) {
     return InvalidData(forces_origin + ": never carries the body of " + origin +

@@ -22,11 +22,6 @@ namespace sensors = virtual_sensors;
 /// The calibration is over before the T-pose is.
 constexpr double kWeighedS = momentum::TPoseCalibration::kSeconds + 0.2;
 
-Eigen::Vector3d At(const body::Kinematics& at, const body::Point& point) {
-  const auto joint = static_cast<std::size_t>(point.joint);
-  return body::Place(point, at.R_WJ[joint], at.p_WJ[joint]);
-}
-
 /// The boards, where they are and where they are configured to be.
 struct Boards {
   std::array<sensors::BoardPlace, sensors::kFeet> real = sensors::SideBySide();
@@ -68,7 +63,7 @@ void MeasureHands(const body::Body& body, const body::Kinematics& at, double noi
   for (int side = 0; side < 2; ++side) {
     reconstruction::HandInput& hand = hands[static_cast<std::size_t>(side)];
     hand.valid = true;
-    hand.p_W_m = At(at, body::Fist(body, side));
+    hand.p_W_m = body::Place(body::Fist(body, side), at);
     for (double& value : hand.p_W_m) value += noise_m * random.Normal();
     hand.sd_m.setConstant(std::max(noise_m, 0.001));
   }
@@ -112,8 +107,8 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
       const auto load = sensors::LoadBoard(boards.real[f], forces[f], settings.limited);
       frame.inputs.loads.feet[f] = boards.Read(f, load, scale, step_s);
       frame.feet[f] = {forces[f].load_n, forces[f].cop_m,
-                       At(at, body::Ankle(scene.body, static_cast<int>(f))),
-                       At(at, body::Toe(scene.body, static_cast<int>(f)))};
+                       body::Place(body::Ankle(scene.body, static_cast<int>(f)), at),
+                       body::Place(body::Toe(scene.body, static_cast<int>(f)), at)};
       if (forces[f].load_n > kLoadedN) {
         ++loaded;
         outside += load.outside ? 1 : 0;

@@ -37,17 +37,15 @@ ArmGeometry::ArmGeometry(const body::Body& body, int side) : fist(body::Fist(bod
   body::Kinematics at(body.skeleton);
   body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), at);
   const auto place = [&](int joint) { return at.p_WJ[static_cast<std::size_t>(joint)]; };
-  const auto hand = static_cast<std::size_t>(fist.joint);
   hinge_J = at.R_WJ[static_cast<std::size_t>(shoulder)].transpose() * Eigen::Vector3d::UnitZ();
   upper_m = (place(elbow) - place(shoulder)).norm();
-  forearm_m = (body::Place(fist, at.R_WJ[hand], at.p_WJ[hand]) - place(elbow)).norm();
+  forearm_m = (body::Place(fist, at) - place(elbow)).norm();
 }
 
 ArmDirections ArmGeometry::Directions(const body::Kinematics& at) const {
   const auto s = static_cast<std::size_t>(shoulder), e = static_cast<std::size_t>(elbow);
-  const auto h = static_cast<std::size_t>(fist.joint);
   return {Unit(at.p_WJ[e] - at.p_WJ[s]), at.R_WJ[s] * hinge_J,
-          Unit(body::Place(fist, at.R_WJ[h], at.p_WJ[h]) - at.p_WJ[e])};
+          Unit(body::Place(fist, at) - at.p_WJ[e])};
 }
 
 double ShoulderError(const ArmDirections& a, const ArmDirections& b) {

@@ -13,9 +13,7 @@ constexpr double kLeastSpan = 0.7;      // Of the T-pose's span.
 constexpr double kMostSdM = 0.1;
 
 Eigen::Vector3d FistOf(const body::Body& body, const body::Kinematics& at, int side) {
-  const body::Point fist = body::Fist(body, side);
-  const auto joint = static_cast<std::size_t>(fist.joint);
-  return body::Place(fist, at.R_WJ[joint], at.p_WJ[joint]);
+  return body::Place(body::Fist(body, side), at);
 }
 
 bool IsJudged(const reconstruction::HandInput& hand) {

@@ -12,11 +12,6 @@ namespace {
 constexpr double kHeelBehindM = 0.045;  // Of the ankle, as the soles of common/virtual/sensors.
 constexpr double kMostSpreadM = 0.6;
 
-Eigen::Vector3d At(const body::Kinematics& at, const body::Point& point) {
-  const auto joint = static_cast<std::size_t>(point.joint);
-  return body::Place(point, at.R_WJ[joint], at.p_WJ[joint]);
-}
-
 body::Kinematics InTPose(const body::Body& body) {
   body::Kinematics at(body.skeleton);
   body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), at);
@@ -37,8 +32,8 @@ std::array<FootGeometry, momentum::kFeet> StandingFeet(const body::Body& body) {
     FootGeometry& foot = feet[static_cast<std::size_t>(side)];
     foot.ankle = body::Ankle(body, side);
     foot.toe = body::Toe(body, side);
-    const Eigen::Vector3d ankle = At(at, foot.ankle), toe = At(at, foot.toe);
-    const Eigen::Vector3d tip = At(at, body::ToeEnd(body, side));
+    const Eigen::Vector3d ankle = body::Place(foot.ankle, at), toe = body::Place(foot.toe, at);
+    const Eigen::Vector3d tip = body::Place(body::ToeEnd(body, side), at);
     const Eigen::Vector2d along = (tip - ankle).head<2>();
     momentum::FootShape& shape = foot.shape;
     if (along.norm() > 0.02) {

@@ -25,7 +25,7 @@ body::Body Person() {
 
 /// The T-pose carried through `seconds` as a whole.
 template <typename Carry>
-motion::Motion BuiltInScript(const body::Body& person, double seconds, const Carry& carry) {
+motion::Motion MovedAsAWhole(const body::Body& person, double seconds, const Carry& carry) {
   motion::Motion motion{.skeleton = person.skeleton, .rate_hz = 120, .start_s = 0, .q = {}};
   const Eigen::VectorXd pose = body::TPose(person.skeleton, person.landmarks);
   motion.q = pose.replicate(1, static_cast<Eigen::Index>(120 * seconds));
@@ -44,7 +44,7 @@ constexpr BoardLoadSettings kExact = {.noise_kg = 0, .limited = false};
 TEST(BoardLoads, OfABodyStandingStillAreItsWeightUnderItsCom) {
   const body::Body person = Person();
   const motion::Motion still = Aligned(
-      BuiltInScript(person, 1, [](double) { return Eigen::Vector3d(3, 4, 5); }), person.landmarks);
+      MovedAsAWhole(person, 1, [](double) { return Eigen::Vector3d(3, 4, 5); }), person.landmarks);
   for (const LoadFrame& frame : BoardLoads(still, person, kExact, 1)) {
     EXPECT_NEAR(Weight(frame), 1, 1e-9);
     // The sharing between the soles weighs the COP against evenness: it is met within 1 mm.
@@ -61,7 +61,7 @@ TEST(BoardLoads, FollowNewtonWhenTheBodyIsCarriedAsAWhole) {
   const auto carry = [](double t_s) {
     return Eigen::Vector3d(0.03 * std::sin(kRadps * t_s), 0, 0.05 * std::cos(kRadps * t_s));
   };
-  motion::Motion motion = BuiltInScript(person, 4, carry);
+  motion::Motion motion = MovedAsAWhole(person, 4, carry);
   const LoadClip clip = BoardLoads(motion, person, kExact, 1);
   ASSERT_GT(clip.size(), 200u);
   body::Kinematics at(person.skeleton);
@@ -78,7 +78,7 @@ TEST(BoardLoads, FollowNewtonWhenTheBodyIsCarriedAsAWhole) {
 
 TEST(BoardLoads, MirroredAreThoseOfTheMirrorImage) {
   const body::Body person = Person();
-  const motion::Motion motion = BuiltInScript(person, 3, [](double t_s) {
+  const motion::Motion motion = MovedAsAWhole(person, 3, [](double t_s) {
     return Eigen::Vector3d(0.02 * std::sin(kRadps * t_s), 0.04 * std::cos(kRadps * t_s), 0);
   });
   BoardLoadSettings settings = kExact;
@@ -98,7 +98,7 @@ TEST(BoardLoads, MirroredAreThoseOfTheMirrorImage) {
 TEST(BoardLoads, NoiseIsThatOfTheSettings) {
   const body::Body person = Person();
   const motion::Motion still =
-      BuiltInScript(person, 20, [](double) { return Eigen::Vector3d::Zero(); });
+      MovedAsAWhole(person, 20, [](double) { return Eigen::Vector3d::Zero(); });
   BoardLoadSettings settings = kExact;
   settings.noise_kg = 0.1;
   const LoadClip clean = BoardLoads(still, person, kExact, 1);
@@ -113,7 +113,7 @@ TEST(BoardLoads, NoiseIsThatOfTheSettings) {
 
 TEST(Aligned, IsTheSameHoweverTheMotionWasTurnedAndPlaced) {
   const body::Body person = Person();
-  motion::Motion motion = BuiltInScript(
+  motion::Motion motion = MovedAsAWhole(
       person, 1, [](double t_s) { return Eigen::Vector3d(0.1 * t_s, 0.05 * t_s, 0.02 * t_s); });
   motion::Motion turned = motion;
   const double yaw_rad = 2.5;
@@ -131,7 +131,7 @@ TEST(Aligned, IsTheSameHoweverTheMotionWasTurnedAndPlaced) {
 
 TEST(Aligned, UnwrapsAngles) {
   const body::Body person = Person();
-  motion::Motion motion = BuiltInScript(person, 1, [](double) { return Eigen::Vector3d::Zero(); });
+  motion::Motion motion = MovedAsAWhole(person, 1, [](double) { return Eigen::Vector3d::Zero(); });
   const int elbow = person.skeleton.dof - 1;
   for (Eigen::Index t = 0; t < motion.frames(); ++t) {
     motion.q(elbow, t) = std::remainder(0.1 * static_cast<double>(t), 2 * std::numbers::pi);

@@ -92,9 +92,8 @@ class ArmTrial {
   void Score(std::size_t arm, const arms::ArmEstimate& estimate) {
     const arms::ArmGeometry& geometry = geometry_[arm];
     const arms::ArmDirections truth = geometry.Directions(at_);
-    const auto fist = static_cast<std::size_t>(geometry.fist.joint);
-    const Eigen::Vector3d hand_m = body::Place(geometry.fist, at_.R_WJ[fist], at_.p_WJ[fist]) -
-                                   at_.p_WJ[static_cast<std::size_t>(geometry.shoulder)];
+    const Eigen::Vector3d hand_m =
+        body::Place(geometry.fist, at_) - at_.p_WJ[static_cast<std::size_t>(geometry.shoulder)];
     estimate_.Add(geometry, estimate.directions, truth, hand_m);
     still_.Add(geometry, arm == 1 ? arms::Mirrored(mean_) : mean_, truth, hand_m);
     turn_.Add(tracker_.hand(arm).turn_W, HandAt(arm) * rest_[arm]);

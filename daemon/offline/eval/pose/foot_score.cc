@@ -10,11 +10,6 @@ const Eigen::Vector3d& JointPlace(const body::Kinematics& at, int joint) {
   return at.p_WJ[static_cast<std::size_t>(joint)];
 }
 
-Eigen::Vector3d PointPlace(const body::Kinematics& at, const body::Point& point) {
-  const auto joint = static_cast<std::size_t>(point.joint);
-  return body::Place(point, at.R_WJ[joint], at.p_WJ[joint]);
-}
-
 }  // namespace
 
 FootScore::FootScore(const pose_run::PoseRun& run, std::size_t lag)
@@ -64,10 +59,10 @@ void FootScore::AddBallSpeed(const PoseScore& score, bool contact, Foot& foot) {
 void FootScore::AddSkate(const momentum::FootLoads& loads, const PoseScore& score, bool settled,
                          Foot& foot) {
   const momentum::Pressure pressure = momentum::PressureOf(loads, kContactN);
-  const SolePoints now{PointPlace(score.at(), foot.geometry.heel),
-                       PointPlace(score.at(), foot.geometry.toe)};
-  const SolePoints true_now{PointPlace(score.truth(), foot.geometry.heel),
-                            PointPlace(score.truth(), foot.geometry.toe)};
+  const SolePoints now{body::Place(foot.geometry.heel, score.at()),
+                       body::Place(foot.geometry.toe, score.at())};
+  const SolePoints true_now{body::Place(foot.geometry.heel, score.truth()),
+                            body::Place(foot.geometry.toe, score.truth())};
   const Eigen::Vector2d along = (true_now[1] - true_now[0]).head<2>();
   const double from_heel = (pressure.p_WP_m - true_now[0]).head<2>().dot(along);
   const double share = pressure.cop_valid
