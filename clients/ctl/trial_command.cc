@@ -68,7 +68,8 @@ void AddCorrections(CLI::App& trial, const std::shared_ptr<TrialOptions>& option
     command->add_option("--reason", options->reason, "Reason, for the record");
     command->callback([options, restore, &shared] { CorrectFailure(*options, restore, shared); });
   };
-  add("withdraw", "Withdraw a failure that was none; it stays in the recording", false);
+  add("withdraw", "Withdraw a failure that was counted by mistake; it stays in the recording",
+      false);
   add("restore", "Count a withdrawn failure again", true);
 }
 
@@ -87,7 +88,7 @@ void AddTrialCommands(CLI::App& app, Shared& shared) {
   CLI::App* start = trial->add_subcommand("start", "Put the character before the start line");
   start->add_option("ID", options->id, "Id of the trial: 1 to 64 letters, digits, - _ and .")
       ->required();
-  start->add_option("--track", options->track, "Built-in track (default: the present one)");
+  start->add_option("--track", options->track, "Built-in track (default: the current one)");
   start->add_option("--seed", options->seed, "Seed that draws the task of a straight track");
   start->add_option("--task", options->task, "Task, in place of the draw");
   start->callback([options, &shared] { StartTrial(*options, shared); });

@@ -1,5 +1,7 @@
 #include "common/stream/trial.h"
 
+#include <algorithm>
+
 #include "common/stream/track.h"
 
 namespace footing::stream {
@@ -32,6 +34,14 @@ std::uint64_t Total(const FailureCounts& counts) {
   std::uint64_t total = 0;
   for (const FailureCause cause : kFailureCauses) total += CountOf(cause, counts);
   return total;
+}
+
+FailureCounts Without(FailureCounts counts, const FailureCounts& others) {
+  for (const FailureCause cause : kFailureCauses) {
+    std::uint64_t& count = *MutableCountOf(cause, counts);
+    count -= std::min(count, CountOf(cause, others));
+  }
+  return counts;
 }
 
 std::string InstructionFor(Gait before, Gait after) {

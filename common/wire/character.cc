@@ -31,34 +31,34 @@ void Fields(Way way, const stream::LinkPose&) {
 }
 FOOTING_BOTH_WAYS(LinkPose)
 
-v1::Contact ToProto(const stream::Contact& value) {
-  v1::Contact message;
-  message.set_touching(value.touching);
-  *message.mutable_position_m() = ToProto(value.position_m);
-  message.set_normal_force_n(Finite(value.normal_force_n));
-  return message;
+template <typename Way>
+void Fields(Way way, const stream::Contact&) {
+  FOOTING_FIELD(touching);
+  FOOTING_MESSAGE(position_m);
+  FOOTING_FIELD(normal_force_n);
 }
+FOOTING_BOTH_WAYS(Contact)
 
-v1::GaitState ToProto(const stream::GaitState& value) {
-  v1::GaitState message;
-  message.set_gait(static_cast<v1::Gait>(value.gait));
-  message.set_commanded_gait(static_cast<v1::Gait>(value.commanded_gait));
-  message.set_pending(value.pending);
-  message.set_phase(value.phase);
-  message.set_commanded_speed_mps(Finite(value.commanded_speed_mps));
-  message.set_commanded_height_m(Finite(value.commanded_height_m));
-  message.set_commanded_turn_rad(Finite(value.commanded_turn_rad));
-  message.set_speed_mps(Finite(value.speed_mps));
-  message.set_heading_rad(Finite(value.heading_rad));
-  message.set_steps(value.steps);
-  message.set_falls(value.falls);
-  *message.mutable_failures() = ToProto(value.failures);
-  message.set_operator_put_backs(value.operator_put_backs);
-  message.set_distance_m(Finite(value.distance_m));
-  message.set_commanded_by_stream(value.commanded_by_stream);
-  message.set_next_foothold_x_m(Finite(value.next_foothold_m.x()));
-  message.set_next_foothold_y_m(Finite(value.next_foothold_m.y()));
-  return message;
+template <typename Way>
+void Fields(Way way, const stream::GaitState&) {
+  FOOTING_ENUM(Gait, gait);
+  FOOTING_ENUM(Gait, commanded_gait);
+  FOOTING_FIELD(pending);
+  if constexpr (Way::kOut) way.message.set_phase(way.value.phase);  // Of static storage: out only.
+  FOOTING_FIELD(commanded_speed_mps);
+  FOOTING_FIELD(commanded_height_m);
+  FOOTING_FIELD(commanded_turn_rad);
+  FOOTING_FIELD(speed_mps);
+  FOOTING_FIELD(heading_rad);
+  FOOTING_FIELD(steps);
+  FOOTING_FIELD(falls);
+  FOOTING_MESSAGE(failures);
+  FOOTING_FIELD(operator_put_backs);
+  FOOTING_FIELD(distance_m);
+  FOOTING_FIELD(commanded_by_stream);
+  FOOTING_FIELD_OF(next_foothold_m.x(), next_foothold_x_m);
+  FOOTING_FIELD_OF(next_foothold_m.y(), next_foothold_y_m);
 }
+FOOTING_BOTH_WAYS(GaitState)
 
 }  // namespace footing::wire

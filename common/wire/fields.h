@@ -70,14 +70,15 @@ decltype(auto) Received(const T& value) {
     way.value.member = ::footing::wire::Received(way.message.name())
 #define FOOTING_FIELD(name) FOOTING_FIELD_OF(name, name)
 
-/// An enum of this type in footing.v1 and common/stream, with the same numbers.
-#define FOOTING_ENUM_OF(Type, member, name)                                \
+/// An enum, with the same numbers in footing.v1, where it is called Wire, and common/stream.
+#define FOOTING_ENUM_AS(Wire, Type, member, name)                          \
   if constexpr (Way::kOut)                                                 \
-    way.message.set_##name(static_cast<v1::Type>(way.value.member));       \
+    way.message.set_##name(static_cast<v1::Wire>(way.value.member));       \
   else                                                                     \
-    way.value.member = v1::Type##_IsValid(way.message.name())              \
+    way.value.member = v1::Wire##_IsValid(way.message.name())              \
                            ? static_cast<stream::Type>(way.message.name()) \
                            : stream::Type::kUnspecified
+#define FOOTING_ENUM_OF(Type, member, name) FOOTING_ENUM_AS(Type, Type, member, name)
 #define FOOTING_ENUM(Type, name) FOOTING_ENUM_OF(Type, name, name)
 
 /// A vector, a quaternion or another message.

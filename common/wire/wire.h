@@ -73,6 +73,8 @@ stream::HandFrame FromProto(const v1::HandFrame& value);
 stream::ReferenceFrame FromProto(const v1::ReferenceFrame& value);
 stream::HandSample FromProto(const v1::HandSample& value);
 stream::ReferencePose FromProto(const v1::ReferencePose& value);
+stream::Contact FromProto(const v1::Contact& value);
+stream::GaitState FromProto(const v1::GaitState& value);
 stream::ContactFrame FromProto(const v1::ContactFrame& value);
 stream::ContactSample FromProto(const v1::ContactSample& value);
 

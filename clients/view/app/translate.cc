@@ -1,8 +1,8 @@
 #include "clients/view/app/translate.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "common/wire/scalar.h"
 #include "common/wire/wire.h"
 
 namespace footing::view {
@@ -11,29 +11,9 @@ namespace {
 constexpr int kMaxCharacters = 8;
 constexpr int kMaxParts = 256;
 
-double Finite(double value) { return std::isfinite(value) ? value : 0; }
+using wire::Finite;
 
 stream::Gait GaitOf(v1::Gait gait) { return stream::GaitNumbered(gait); }
-
-stream::GaitState GaitOf(const v1::GaitState& from) {
-  stream::GaitState gait;
-  gait.gait = GaitOf(from.gait());
-  gait.commanded_gait = GaitOf(from.commanded_gait());
-  gait.pending = from.pending();
-  gait.commanded_speed_mps = Finite(from.commanded_speed_mps());
-  gait.commanded_height_m = Finite(from.commanded_height_m());
-  gait.commanded_turn_rad = Finite(from.commanded_turn_rad());
-  gait.speed_mps = Finite(from.speed_mps());
-  gait.heading_rad = Finite(from.heading_rad());
-  gait.steps = from.steps();
-  gait.falls = from.falls();
-  gait.failures = wire::FromProto(from.failures());
-  gait.operator_put_backs = from.operator_put_backs();
-  gait.distance_m = Finite(from.distance_m());
-  gait.commanded_by_stream = from.commanded_by_stream();
-  gait.next_foothold_m = {Finite(from.next_foothold_x_m()), Finite(from.next_foothold_y_m())};
-  return gait;
-}
 
 scene::BodyFoot FootOf(const v1::BodyFoot& from) {
   return {from.contact(),
@@ -97,13 +77,11 @@ scene::CharacterPose CharacterOf(const v1::Character& from) {
     pose.links.push_back(wire::FromProto(from.links(i)));
   }
   for (int i = 0; i < std::min(from.contacts_size(), kMaxParts); ++i) {
-    const v1::Contact& contact = from.contacts(i);
-    pose.contacts.push_back({contact.touching(), wire::FromProto(contact.position_m()),
-                             Finite(contact.normal_force_n())});
+    pose.contacts.push_back(wire::FromProto(from.contacts(i)));
   }
   pose.com_m = wire::FromProto(from.com_m());
   pose.com_velocity_mps = wire::FromProto(from.com_velocity_mps());
-  pose.gait = GaitOf(from.gait());
+  pose.gait = wire::FromProto(from.gait());
   pose.phase = from.gait().phase();
   pose.simulated_input = from.simulated_input();
   if (from.has_body()) pose.body = BodyOf(from.body());

@@ -199,11 +199,7 @@ Result<Hub::Measured> Hub::SolveMounting(const std::string& serial,
   const Binding& binding = (*found)->binding();
   const mounting::Mounting solved = (*found)->mounted_sensor().Solve(binding.role, stretches);
   if (!solved.ok) return Failure("mounting of " + serial + ": " + solved.problem);
-  setup::StoredMounting stored;
-  stored.role = Text(binding);
-  stored.rotation_MS = solved.rotation_MS;
-  stored.residual_rad = solved.residual_rad;
-  store_.SetMounting(serial, stored);
+  TakeMounting(binding, {serial, solved.rotation_MS, solved.residual_rad});
   const double turn_rad = solved.rotation_MS.angularDistance(Eigen::Quaterniond::Identity());
   return Measured{RadiansToDegrees(solved.residual_rad), "deg",
                   "turned by " + text::Fixed(RadiansToDegrees(turn_rad), 0) +

@@ -25,18 +25,10 @@ constexpr double kHeightMaxM = 0.7;
 constexpr double kHighestUpToMps = 1.0;
 constexpr double kFastHeightMaxM = 0.5;
 
-/// Every gait turns by up to 8 degrees a step, a run only up to a speed; between two speeds the
-/// limit is linear.
-struct TurnRange {
-  Gait gait;
-  double full_up_to_mps;
-  double fastest_mps, fastest_deg;
-};
-constexpr TurnRange kTurnRanges[] = {{Gait::kStep, 0, 1, 8},
-                                     {Gait::kWalk, 1.75, 2, 8},
-                                     {Gait::kRun, 4, 6, 5},
-                                     {Gait::kJump, 2, 3, 8}};
-static_assert(std::size(kTurnRanges) == stream::kGaits.size(), "a turn for every gait");
+/// Every gait turns by up to kTurnPerStepMaxDeg a step, a run faster than this by less: linearly,
+/// down to the fastest run's.
+constexpr double kRunFullTurnMps = 4;
+constexpr double kFastestRunMps = 6, kFastestRunTurnDeg = 5;
 
 double HeightMax(double speed_mps, double speed_max_mps) {
   const double share = (speed_mps - kHighestUpToMps) / (speed_max_mps - kHighestUpToMps);
@@ -46,14 +38,11 @@ double HeightMax(double speed_mps, double speed_max_mps) {
 }  // namespace
 
 double TurnLimit(Gait gait, double speed_mps) {
-  for (const TurnRange& range : kTurnRanges) {
-    if (range.gait != gait) continue;
-    const double share =
-        (speed_mps - range.full_up_to_mps) / (range.fastest_mps - range.full_up_to_mps);
-    return DegreesToRadians(
-        std::lerp(kTurnPerStepMaxDeg, range.fastest_deg, std::clamp(share, 0.0, 1.0)));
-  }
-  return 0;
+  if (gait == Gait::kUnspecified) return 0;
+  if (gait != Gait::kRun) return DegreesToRadians(kTurnPerStepMaxDeg);
+  const double share = (speed_mps - kRunFullTurnMps) / (kFastestRunMps - kRunFullTurnMps);
+  return DegreesToRadians(
+      std::lerp(kTurnPerStepMaxDeg, kFastestRunTurnDeg, std::clamp(share, 0.0, 1.0)));
 }
 
 GaitCommand Limited(const GaitCommand& command) {

@@ -1,21 +1,15 @@
 #include "daemon/simulation/gait_service/failure_record.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
+#include "daemon/simulation/serving/messages.h"
 
 namespace footing::gait_service {
 namespace {
 
 constexpr std::size_t kMaxReason = 200;
-
-void SubtractOne(v1::FailureCause cause, v1::FailureCounts& message) {
-  stream::FailureCounts counts = wire::FromProto(message);
-  std::uint64_t* count = stream::MutableCountOf(static_cast<stream::FailureCause>(cause), counts);
-  if (count != nullptr && *count > 0) --*count;
-  message = wire::ToProto(counts);
-}
 
 }  // namespace
 
@@ -36,10 +30,10 @@ v1::Failure FailureRecord::Add(const engine::EngineEvent& event, const std::stri
 Result<void> FailureRecord::Correct(const v1::CorrectFailure& message) {
   const auto found = entries_.find(message.failure());
   if (found == entries_.end()) {
-    return UsageError("correct_failure: there is no failure " + std::to_string(message.failure()) +
-                      (entries_.empty()
-                           ? std::string("; none has happened")
-                           : "; the last one is " + std::to_string(entries_.rbegin()->first)));
+    return UsageError(
+        "correct_failure: failure " + std::to_string(message.failure()) + " is unknown" +
+        (entries_.empty() ? std::string("; none has happened")
+                          : "; the last one is " + std::to_string(entries_.rbegin()->first)));
   }
   v1::Failure& failure = found->second.failure;
   if (failure.withdrawn() != message.restore()) {
@@ -47,18 +41,17 @@ Result<void> FailureRecord::Correct(const v1::CorrectFailure& message) {
                       (message.restore() ? " counts already" : " is withdrawn already"));
   }
   failure.set_withdrawn(!message.restore());
-  v1::Event event;
-  event.set_kind(v1::Event::KIND_CORRECTION);
-  event.set_failure_cause(failure.cause());
-  *event.mutable_failure() = failure;
+  CountWithdrawn(found->second);
   std::string text = "failure " + std::to_string(failure.number()) + " (" +
                      stream::Name(static_cast<stream::FailureCause>(failure.cause())) + ") " +
                      (message.restore() ? "restored" : "withdrawn");
   if (!message.reason().empty()) {
     text += ": " + wire::Utf8(message.reason().substr(0, kMaxReason));
   }
-  event.set_text(text);
-  corrections_.push_back(event);
+  v1::Event event = serving::MakeEvent(v1::Event::KIND_CORRECTION, 0, text);
+  event.set_failure_cause(failure.cause());
+  *event.mutable_failure() = failure;
+  corrections_.push_back(std::move(event));
   return {};
 }
 
@@ -68,25 +61,20 @@ std::vector<v1::Event> FailureRecord::TakeCorrections() {
   return taken;
 }
 
-void FailureRecord::Subtract(v1::FailureCounts& counts) const {
-  for (const auto& [number, entry] : entries_) {
-    if (entry.failure.withdrawn()) SubtractOne(entry.failure.cause(), counts);
-  }
+stream::FailureCounts FailureRecord::WithdrawnOf(std::uint64_t trial_number) const {
+  const auto found = withdrawn_of_.find(trial_number);
+  return found == withdrawn_of_.end() ? stream::FailureCounts{} : found->second;
 }
 
-void FailureRecord::Subtract(std::uint64_t trial_number, v1::FailureCounts& counts) const {
-  for (const auto& [number, entry] : entries_) {
-    const bool counted = entry.in_trial && entry.trial_number == trial_number;
-    if (counted && entry.failure.withdrawn()) SubtractOne(entry.failure.cause(), counts);
-  }
-}
-
-std::uint64_t FailureRecord::Withdrawn(std::uint64_t trial_number) const {
-  return static_cast<std::uint64_t>(
-      std::count_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
-        return entry.second.in_trial && entry.second.trial_number == trial_number &&
-               entry.second.failure.withdrawn();
-      }));
+void FailureRecord::CountWithdrawn(const Entry& entry) {
+  const auto cause = static_cast<stream::FailureCause>(entry.failure.cause());
+  const auto count = [&](stream::FailureCounts& counts) {
+    std::uint64_t* of_cause = stream::MutableCountOf(cause, counts);
+    if (of_cause == nullptr) return;
+    entry.failure.withdrawn() ? ++*of_cause : --*of_cause;
+  };
+  count(withdrawn_);
+  if (entry.in_trial) count(withdrawn_of_[entry.trial_number]);
 }
 
 }  // namespace footing::gait_service

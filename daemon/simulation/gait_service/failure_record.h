@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/result/result.h"
+#include "common/stream/trial.h"
 #include "daemon/simulation/engine/engine.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/command.pb.h"
@@ -24,10 +25,9 @@ class FailureRecord {
   /// The corrections since the last call, as events without a time.
   std::vector<v1::Event> TakeCorrections();
 
-  /// Takes out of the counts what was withdrawn, of all failures or of those of one trial.
-  void Subtract(v1::FailureCounts& counts) const;
-  void Subtract(std::uint64_t trial_number, v1::FailureCounts& counts) const;
-  std::uint64_t Withdrawn(std::uint64_t trial_number) const;
+  /// The failures that are withdrawn at present: all of them, or those of one trial.
+  const stream::FailureCounts& withdrawn() const { return withdrawn_; }
+  stream::FailureCounts WithdrawnOf(std::uint64_t trial_number) const;
 
  private:
   struct Entry {
@@ -36,7 +36,12 @@ class FailureRecord {
     bool in_trial = false;
   };
 
+  /// Of an entry that was withdrawn or restored just now.
+  void CountWithdrawn(const Entry& entry);
+
   std::map<std::uint64_t, Entry> entries_;  ///< By their numbers.
+  stream::FailureCounts withdrawn_;
+  std::map<std::uint64_t, stream::FailureCounts> withdrawn_of_;  ///< By the numbers of trials.
   std::vector<v1::Event> corrections_;
 };
 

@@ -7,6 +7,7 @@
 #include "common/config/data_file.h"
 #include "common/wire/wire.h"
 #include "daemon/simulation/gait_service/publish.h"
+#include "daemon/simulation/serving/messages.h"
 #include "daemon/simulation/terrain/track.h"
 #include "daemon/simulation/trial/trial.h"
 
@@ -31,23 +32,19 @@ Result<int> TaskOf(const v1::StartTrial& message, const stream::Track& track) {
     if (track.tasks[i].name == message.task()) return static_cast<int>(i);
     names += (names.empty() ? "" : ", ") + track.tasks[i].name;
   }
-  return UsageError("start_trial: the track has no task \"" + message.task() +
-                    "\"; there are: " + (names.empty() ? "none" : names));
+  return UsageError("start_trial: the track has no task \"" + message.task() + "\"; " +
+                    (names.empty() ? "it has no tasks" : "there are: " + names));
 }
 
 v1::CommandResult ToResult(const Result<void>& done) {
-  v1::CommandResult result;
-  result.set_ok(done.ok());
-  if (!done) result.set_message(done.error().message);
-  return result;
+  return serving::Answer(done.ok(), done ? "" : done.error().message);
 }
 
 }  // namespace
 
 TrialControl::TrialControl(Options options, stream::Track first, TrackExchange& tracks)
     : options_(std::move(options)), exchange_(tracks) {
-  tracks_.push_back({options_.track, std::move(first)});
-  trials_.push_back({0, "", options_.track, tracks_.front().track.number, 0});
+  trials_.push_back({0, "", 0, options_.track, std::move(first)});
 }
 
 bool TrialControl::Takes(const v1::Command& command) {
@@ -77,13 +74,13 @@ Result<void> TrialControl::Start(const v1::StartTrial& message) {
   if (!IsId(message.trial())) {
     return UsageError("start_trial: trial must be 1 to 64 letters, digits, - _ and .");
   }
-  if (tracks_.size() > TrackExchange::kMost) {
+  if (trials_.size() > TrackExchange::kMost) {
     return Failure("start_trial: the trial before is not in place yet; try again in a moment");
   }
-  const std::string name = message.track().empty() ? tracks_.back().name : message.track();
+  const std::string name = message.track().empty() ? trials_.back().track_name : message.track();
   auto track = Read(name);
   if (!track) return track.error();
-  track->number = tracks_.back().track.number + 1;
+  track->number = trials_.back().track.number + 1;
   const auto task = TaskOf(message, *track);
   if (!task) return task.error();
   auto world = engine::MakeTrackWorld(*track, options_.biped, options_.step_s);
@@ -94,15 +91,16 @@ Result<void> TrialControl::Start(const v1::StartTrial& message) {
   ++inputs_.number;
   inputs_.task = *task;
   inputs_.track_number = track->number;
-  trials_.push_back({inputs_.number, message.trial(), name, track->number, message.seed()});
-  tracks_.push_back({name, std::move(track).value()});
+  trials_.push_back(
+      {inputs_.number, message.trial(), message.seed(), name, std::move(track).value()});
   return {};
 }
 
 Result<void> TrialControl::Stop(const v1::StopTrial& message) {
   const Trial& newest = trials_.back();
   if (!message.trial().empty() && message.trial() != newest.id) {
-    return UsageError("stop_trial: the trial that is going on is \"" + newest.id + "\"");
+    return UsageError("stop_trial: \"" + message.trial() + "\" is not the newest trial" +
+                      (newest.id.empty() ? "" : "; that is \"" + newest.id + "\""));
   }
   inputs_.stopped_below = newest.number + 1;
   return {};
@@ -111,14 +109,12 @@ Result<void> TrialControl::Stop(const v1::StopTrial& message) {
 bool TrialControl::OnFrame(const Frame& frame) {
   std::unique_ptr<engine::TrackWorld> done;
   while (exchange_.done.Pop(done)) done.reset();
-  while (trials_.size() > 1 && trials_.front().number < frame.output.trial_number) {
+  bool switched = false;
+  for (; trials_.size() > 1 && trials_.front().number < frame.output.trial_number;
+       switched = true) {
     trials_.pop_front();
   }
-  const std::uint64_t before = tracks_.front().track.number;
-  while (tracks_.size() > 1 && tracks_.front().track.number < frame.output.track_number) {
-    tracks_.pop_front();
-  }
-  return tracks_.front().track.number != before;
+  return switched;
 }
 
 const TrialControl::Trial& TrialControl::TrialNumbered(std::uint64_t number) const {
@@ -128,21 +124,17 @@ const TrialControl::Trial& TrialControl::TrialNumbered(std::uint64_t number) con
   return trials_.front();
 }
 
-const stream::Track& TrialControl::TrackNumbered(std::uint64_t number) const {
-  for (const Known& known : tracks_) {
-    if (known.track.number == number) return known.track;
-  }
-  return tracks_.front().track;
-}
-
 v1::TrialState TrialControl::StateOf(const Trial& trial,
                                      const stream::TrialProgress& progress) const {
-  const stream::Track& track = TrackNumbered(trial.track_number);
+  const stream::Track& track = trial.track;
+  const stream::FailureCounts withdrawn = failures_.WithdrawnOf(trial.number);
   stream::TrialState state;
   state.progress = progress;
+  state.progress.failures = stream::Without(progress.failures, withdrawn);
+  state.withdrawn_failures = stream::Total(withdrawn);
   state.trial = trial.id;
   state.number = trial.number;
-  state.track = trial.track;
+  state.track = trial.track_name;
   state.seed = trial.seed;
   state.finish_m = track.finish_m;
   const auto task = static_cast<std::size_t>(progress.task);
@@ -151,11 +143,7 @@ v1::TrialState TrialControl::StateOf(const Trial& trial,
     state.instruction = track.tasks[task].instruction;
     state.to_mark_m = track.mark_m - progress.distance_m;
   }
-  state.withdrawn_failures = failures_.Withdrawn(trial.number);
-  v1::TrialState message = wire::ToProto(state);
-  failures_.Subtract(trial.number, *message.mutable_failures());
-  message.set_failed_attempts(stream::Total(wire::FromProto(message.failures())));
-  return message;
+  return wire::ToProto(state);
 }
 
 v1::Event TrialControl::ToEvent(const engine::EngineEvent& event, std::int64_t host_ns) {
@@ -178,19 +166,17 @@ v1::Event TrialControl::ToEvent(const engine::EngineEvent& event, std::int64_t h
 
 std::vector<v1::Event> TrialControl::TakeCorrections(std::int64_t host_ns) {
   std::vector<v1::Event> events = failures_.TakeCorrections();
-  for (v1::Event& event : events) {
-    event.set_host_ns(host_ns);
-    event.set_character(1);
-  }
+  for (v1::Event& event : events) event.set_host_ns(host_ns);
   return events;
 }
 
 void TrialControl::Describe(const Frame& frame, v1::Character& character) const {
   *character.mutable_trial() =
       StateOf(TrialNumbered(frame.output.trial_number), frame.output.trial);
-  v1::GaitState& gait = *character.mutable_gait();
-  failures_.Subtract(*gait.mutable_failures());
-  gait.set_falls(stream::Total(wire::FromProto(gait.failures())));
+  const stream::FailureCounts counted =
+      stream::Without(frame.output.gait.failures, failures_.withdrawn());
+  *character.mutable_gait()->mutable_failures() = wire::ToProto(counted);
+  character.mutable_gait()->set_falls(stream::Total(counted));
 }
 
 }  // namespace footing::gait_service

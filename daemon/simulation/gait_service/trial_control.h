@@ -40,8 +40,8 @@ class TrialControl {
   /// frame before.
   bool OnFrame(const Frame& frame);
   /// The track of the last frame.
-  stream::Track& track() { return tracks_.front().track; }
-  const stream::Track& track() const { return tracks_.front().track; }
+  stream::Track& track() { return trials_.front().track; }
+  const stream::Track& track() const { return trials_.front().track; }
 
   /// An event of the engine as it is published; a failure is remembered.
   v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns);
@@ -51,30 +51,24 @@ class TrialControl {
   void Describe(const Frame& frame, v1::Character& character) const;
 
  private:
-  struct Known {
-    std::string name;
-    stream::Track track;
-  };
   struct Trial {
     std::uint64_t number = 0;
     std::string id;
-    std::string track;
-    std::uint64_t track_number = 1;
     std::uint64_t seed = 0;
+    std::string track_name;
+    stream::Track track;
   };
 
   Result<void> Start(const v1::StartTrial& message);
   Result<void> Stop(const v1::StopTrial& message);
   Result<stream::Track> Read(const std::string& name) const;
   const Trial& TrialNumbered(std::uint64_t number) const;
-  const stream::Track& TrackNumbered(std::uint64_t number) const;
   v1::TrialState StateOf(const Trial& trial, const stream::TrialProgress& progress) const;
 
   const Options options_;
   TrackExchange& exchange_;
   engine::TrialInputs inputs_;
-  std::deque<Known> tracks_;  ///< The one of the last frame, and those on their way to the engine.
-  std::deque<Trial> trials_;  ///< The same of trials.
+  std::deque<Trial> trials_;  ///< The one of the last frame, and those on their way to the engine.
   FailureRecord failures_;
 };
 

@@ -125,7 +125,7 @@ Result<void> ReadTask(const json& object, const std::string& where, stream::Trac
   task.name = name.is_string() ? name.get<std::string>() : "";
   const bool known = std::any_of(track.tasks.begin(), track.tasks.end(),
                                  [&](const auto& other) { return other.name == task.name; });
-  if (task.name.empty() || known) fields.Fail("name must be a text of its own");
+  if (task.name.empty() || known) fields.Fail("name must be a text that no other task has");
   task.before = fields.Gait("before");
   task.after = fields.Gait("after");
   if (task.after == stream::Gait::kUnspecified || task.after == task.before) {
