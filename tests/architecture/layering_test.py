@@ -12,6 +12,7 @@ sys.dont_write_bytecode = True
 ROOT = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ".").resolve()
 sys.path.insert(0, str(ROOT / "tests/architecture"))
 import check_includes  # noqa: E402
+from small_tree import small_tree  # noqa: E402
 
 EXTERNALS = "set(EXTERNAL_eigen \"\")\nset(EXTERNAL_asio \"\")\nset(EXTERNAL_PURE eigen)\n"
 
@@ -34,12 +35,7 @@ def configure(modules):
 
 
 def includes(files, table):
-    with tempfile.TemporaryDirectory() as folder:
-        root = pathlib.Path(folder)
-        for path, text in files.items():
-            (root / path).parent.mkdir(parents=True, exist_ok=True)
-            (root / path).write_text(text)
-        (root / "modules.txt").write_text(table)
+    with small_tree({**files, "modules.txt": table}) as root:
         return check_includes.check(root, root / "modules.txt")
 
 

@@ -4,20 +4,17 @@ Usage: members_test.py SOURCE_ROOT
 """
 import pathlib
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ".").resolve()
 sys.path.insert(0, str(ROOT / "tests/architecture"))
 import check_members  # noqa: E402
+from small_tree import small_tree  # noqa: E402
 
 
 def checked(text, tables=None):
-    with tempfile.TemporaryDirectory() as folder:
-        root = pathlib.Path(folder)
-        (root / "common/a").mkdir(parents=True)
-        (root / "common/a/a.h").write_text(text)
+    with small_tree({"common/a/a.h": text}) as root:
         return check_members.check(root, tables or {})
 
 

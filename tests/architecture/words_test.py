@@ -11,15 +11,12 @@ sys.dont_write_bytecode = True
 ROOT = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ".").resolve()
 sys.path.insert(0, str(ROOT / "tests/architecture"))
 import check_words  # noqa: E402
+from small_tree import small_tree  # noqa: E402
 
 
 def found(text, name="common/x.cc", exceptions=()):
-    with tempfile.TemporaryDirectory() as folder:
-        path = pathlib.Path(folder) / name
-        path.parent.mkdir(parents=True)
-        path.write_text(text)
-        return [(f.kind, f.line, f.words)
-                for f in check_words.check_file(pathlib.Path(folder), path, list(exceptions))]
+    with small_tree({name: text}) as root:
+        return [(f.kind, f.line, f.words) for f in check_words.check_file(root, root / name, list(exceptions))]
 
 
 class Words(unittest.TestCase):

@@ -289,16 +289,5 @@ TEST(PoseRun, InsolesThatFallSilentLeaveAPoseThatIsLessSureByTheSecond) {
   EXPECT_GT(line.frame.momentum.feet[0].variance_m2.x(), 0.25);
 }
 
-TEST(PosePublish, TheSkeletonHasALinkForEveryJointWithItsParent) {
-  const body::Body person = made::MadePerson();
-  const stream::Skeleton skeleton = ToSkeleton(person);
-  ASSERT_EQ(skeleton.links.size(), person.skeleton.joints.size());
-  for (std::size_t i = 0; i < skeleton.links.size(); ++i) {
-    EXPECT_EQ(skeleton.links[i].name, person.skeleton.joints[i].name);
-    EXPECT_EQ(skeleton.links[i].parent, person.skeleton.joints[i].parent);
-    EXPECT_GT(skeleton.links[i].size_m.minCoeff(), 0);
-  }
-}
-
 }  // namespace
 }  // namespace footing::pose_service
