@@ -128,6 +128,8 @@ def check_rumble(stage, console, devices):
     right = next(one for one in devices if one["role"] == "right_hand")
     on, off = (f"{right['serial']} rumble {word}" for word in ("on", "off"))
     console.json("rumble", right["serial"].upper(), "--seconds", "1.2")
+    # The device may get the last command a moment after the console has its answer.
+    stage.wait_for(lambda: off in log_of(stage, "footing-stream"), "the motor to stop", 2)
     log = log_of(stage, "footing-stream")
     assert log.count(on) == 1 and log.count(off) == 1, log  # Renewed without a pause.
     # Killed it can't say stop: the motor stops with the session.
