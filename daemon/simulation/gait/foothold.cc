@@ -6,7 +6,9 @@
 #include "common/units/units.h"
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/pit_sight.h"
 #include "daemon/simulation/gait/transition.h"
+#include "daemon/simulation/gait/walk_sight.h"
 #include "daemon/simulation/terrain/ground.h"
 
 namespace footing::gait {
@@ -49,8 +51,7 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
   const double aside_m = side * gains.step_width_m / (1 + growth);
   // The offset belongs to the coming step, which goes along the turned heading.
   const Vector3d offset_H = ToWorld(context.goal.turn_per_step_rad, Vector3d(-back_m, aside_m, 0));
-  const double ahead_m = std::clamp(capture_H.x() + offset_H.x() + memory.speed.integrators.walk_m,
-                                    -kBackwardLimitM, gains.step_length_limit_m);
+  const double natural_m = capture_H.x() + offset_H.x() + memory.speed.integrators.walk_m;
   const double outward_m = side * (capture_H.y() + offset_H.y());
 
   WalkingFoothold foothold;
@@ -61,6 +62,17 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
 
   const double y_m = side * std::clamp(outward_m, -gains.feet_cross_m, gains.side_step_limit_m);
   const Vector3d& p_WF = context.body.legs[memory.support_leg].p_WF;
+  double ahead_m = std::clamp(natural_m, -kBackwardLimitM, gains.step_length_limit_m);
+  const Vector3d beside_W = p_WF + ToWorld(memory.heading_rad, {0, y_m, 0});
+  if (const auto pit = PitFrom(memory, beside_W)) {
+    const double left_s = std::max(0.0, SwingTime(context, memory) - context.TimeIn(memory));
+    const double stride_m = memory.speed.desired_mps * step_time_s;
+    const WalkAhead walk{std::exp(rate * left_s) * capture_H.x(), 1 / growth, stride_m};
+    if (const auto plan = StepAtPit(context, memory, *pit, walk, ahead_m)) {
+      ahead_m = plan->foothold_m;
+      foothold.strides_to_pit = plan->strides;
+    }
+  }
   foothold.p_WF_m = p_WF + ToWorld(memory.heading_rad, {ahead_m, y_m, 0});
   if (context.seen_ground != nullptr) {
     foothold.p_WF_m.z() =

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "daemon/simulation/gait/context.h"
 
 /// Where to put the next foot: equations (1) and (2) of the gait paper.
@@ -18,7 +20,8 @@ namespace footing::gait {
 
 struct WalkingFoothold {
   Eigen::Vector3d p_WF_m = Eigen::Vector3d::Zero();
-  double hurry = 0;  ///< [0, 1): fraction by which the swing clock should gain.
+  double hurry = 0;                   ///< [0, 1): fraction by which the swing clock should gain.
+  std::optional<int> strides_to_pit;  ///< As in WalkingStep.
 };
 
 /// Equation (1), phi_W_d = phi_o + k_W (v_d - v), as a foothold relative to the supporting foot.

@@ -130,6 +130,18 @@ constexpr std::array kFields{
     GAIN(pit, leap_roll_share, "1", -1, 5),
     GAIN(pit, leap_lean_rad_per_mps, "rad s/m", -1, 1),
 
+    GAIN(pit, walk.near_margin_m, "m", 0, 0.5),
+    GAIN(pit, walk.far_margin_m, "m", 0, 0.5),
+    GAIN(pit, walk.aim_margin_m, "m", 0, 0.5),
+    GAIN(pit, walk.stride_max_m, "m", 0, 1.5),
+    GAIN(pit, walk.stride_min_m, "m", -0.5, 0.5),
+    GAIN(pit, walk_width_max_m, "m", 0, 1),
+    GAIN(pit, walk_slowest_mps, "m/s", 0, 2),
+    GAIN(pit, walk_over_mps, "m/s", 0.1, 2),
+    GAIN(pit, walk_slow_m, "m", 0, 5),
+    GAIN(pit, walk_stop_m, "m", 0, 2),
+    GAIN(pit, walk_stop_mps2, "m/s2", 0.01, 10),
+
     GAIN(recovery, outrun_mps, "m/s", 0, 10),
     GAIN(recovery, idle_yield, "1", 0, 5),
     GAIN(recovery, idle_yield_limit_rad, "rad", 0, 2),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemon/simulation/gait/pit_plan.h"
+#include "daemon/simulation/gait/walk_plan.h"
 
 /// Every number of the controllers, with its unit in its name, and its default. What differs from
 /// gait to gait, or between slow and fast, is in the tables of daemon/simulation/data/gaits
@@ -141,6 +142,13 @@ struct PitGains {
   double jump_speed_max_mps = 3.6;  ///< A faster run crosses as it is, its jump pending.
   double leap_roll_share = 1.5;     ///< Of the legs' roll momentum, against which the body turns.
   double leap_lean_rad_per_mps = -0.02;
+  WalkLimits walk;
+  double walk_width_max_m = 0.30;  ///< A walk steps over pits up to this; ...
+  double walk_slowest_mps = 0.1;   ///< ... slower it stays before them.
+  double walk_over_mps = 1.0;      ///< A faster walk slows down to this to step over one.
+  double walk_slow_m = 1.5;        ///< That far before it, where the strides are planned.
+  double walk_stop_m = 0.5;        ///< Wider ones: the COM stops this far before, ...
+  double walk_stop_mps2 = 0.4;     ///< ... braking by this.
 };
 
 /// What a push needs, beyond what the gaits need.

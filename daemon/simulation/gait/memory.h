@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "daemon/simulation/gait/phase.h"
 
@@ -44,7 +45,8 @@ struct WalkingStep {
   Eigen::Vector3d swing_start_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d landed_W_m = Eigen::Vector3d::Zero();  ///< Where the supporting foot touched.
   double swing_time_s = 0;                               ///< Of this step; 0: the gait's own.
-  double support_height_m = 0;  ///< Ground's height that the hip goes by, foot ball's centre.
+  std::optional<int> strides_to_pit;  ///< With this one; 0 steps over it; none is planned for.
+  double support_height_m = 0;        ///< Ground's height that the hip goes by, foot ball's centre.
 };
 
 /// The supports of running and jumping: their duration, and the thrust that ends them.

@@ -67,7 +67,8 @@ void CountStep(const Context& context, GaitMemory& memory) {
         std::fabs(memory.speed.target_mps - memory.speed.desired_mps) < kSettledMps;
     const bool lags = memory.gait == stream::Gait::kRun || memory.ground.slope != 0;
     const double largest_mps = lags ? kLargestErrorBehindMps : kLargestErrorMps;
-    if (settled && std::fabs(error_mps) < largest_mps) {
+    const bool at_pit = memory.walking_step.strides_to_pit.has_value();
+    if (settled && !at_pit && std::fabs(error_mps) < largest_mps) {
       Learn(error_mps, context.gains, memory);
     }
   }

@@ -7,6 +7,7 @@
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/pit_sight.h"
+#include "daemon/simulation/gait/walk_sight.h"
 
 namespace footing::gait {
 namespace {
@@ -77,6 +78,7 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
     target_mps = std::min(target_mps, limits.run_to_walk_mps);
   }
   if (JumpsPit(context.goal, memory)) target_mps = std::max(target_mps, memory.speed.desired_mps);
+  if (to_ground && !flying) target_mps = std::min(target_mps, SpeedBeforePit(context, memory));
   memory.speed.target_mps = target_mps;
   // Slowing down starts from the speed there is, not from one that was not reached yet.
   const bool in_flight =

@@ -5,6 +5,7 @@
 
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/foothold.h"
+#include "daemon/simulation/gait/pit_sight.h"
 #include "daemon/simulation/gait/touchdown.h"
 #include "daemon/simulation/gait/transition.h"
 #include "daemon/simulation/terrain/ground.h"
@@ -23,6 +24,11 @@ double SwingProgress(const Context& context, const GaitMemory& memory) {
   return std::clamp(context.TimeIn(memory) / SwingTime(context, memory), 0.0, 1.0);
 }
 
+/// What was planned for the last step, less that step.
+void CountStrideToPit(WalkingStep& step) {
+  if (step.strides_to_pit && --*step.strides_to_pit < 0) step.strides_to_pit.reset();
+}
+
 void Enter(WalkingPhase phase, const Context& context, GaitMemory& memory) {
   const int swing_leg = 1 - memory.support_leg;
   switch (phase) {
@@ -36,6 +42,8 @@ void Enter(WalkingPhase phase, const Context& context, GaitMemory& memory) {
     case WalkingPhase::kRise:
       memory.phase_start_s = context.body.time_s;
       memory.walking_step.swing_start_W_m = context.body.legs[swing_leg].p_WF;
+      CountStrideToPit(memory.walking_step);
+      LookForPit(context, memory);
       break;
     case WalkingPhase::kFall:  // The swing goes on: same clock.
       break;
@@ -91,6 +99,7 @@ Targets AdvanceWalking(const Context& context, GaitMemory& memory) {
 
   const WalkingFoothold foothold = PlanWalkingFoothold(context, memory);
   memory.foothold_W_m = foothold.p_WF_m;
+  memory.walking_step.strides_to_pit = foothold.strides_to_pit;
   const bool swinging = context.TimeIn(memory) < SwingTime(context, memory);
   if (swinging) memory.phase_start_s -= foothold.hurry * context.step_s;
   if (BeginThrust(context, memory)) return {};

@@ -110,6 +110,13 @@ Vector3d SwingFoot(const Context& context, const GaitMemory& memory, int leg) {
   return p;
 }
 
+/// A long stride's leg lags behind its target, which is further from the hip: with that length the
+/// foot would scuff. Shortened to the target's height in the direction that the leg has.
+Vector3d AtHeight(const Vector3d& r_HF_W_m, const biped::LegState& leg) {
+  const double length_m = r_HF_W_m.z() / std::min(-0.5, leg.u_HF_W.z());
+  return r_HF_W_m * std::min(1.0, length_m / r_HF_W_m.norm());
+}
+
 }  // namespace
 
 Targets WalkingTargets(const Context& context, const GaitMemory& memory) {
@@ -118,8 +125,10 @@ Targets WalkingTargets(const Context& context, const GaitMemory& memory) {
   Targets targets;
   targets.legs[memory.support_leg] = Supporting(context, memory, memory.support_leg, 1);
   targets.legs[swing_leg].task = LegTask::kPlace;
-  targets.legs[swing_leg].r_HF_W_m =
-      SwingFoot(context, memory, swing_leg) - context.body.legs[swing_leg].p_WH;
+  const biped::LegState& swinging = context.body.legs[swing_leg];
+  Vector3d& r_HF_W = targets.legs[swing_leg].r_HF_W_m;
+  r_HF_W = SwingFoot(context, memory, swing_leg) - swinging.p_WH;
+  if (memory.walking_step.strides_to_pit) r_HF_W = AtHeight(r_HF_W, swinging);
   return targets;
 }
 

@@ -62,11 +62,11 @@ TEST(Failure, SteppingOverTheEdgeOfAHillIsTheCurves) {
   EXPECT_EQ(FirstFailure(engine, inputs, 12).cause, FailureCause::kCurve);
 }
 
-TEST(Failure, WalkingIntoAPitIsTheJumps) {
+TEST(Failure, RunningIntoAPitIsTheJumps) {
   GaitEngine engine = EngineOn(
       R"({"version": 1, "segments": [{"length_m": 5}, {"length_m": 3, "pit": true},
                                      {"length_m": 5}]})");
-  const EngineInputs inputs = Direct(Command(Gait::kWalk, 1));
+  const EngineInputs inputs = Direct(Command(Gait::kRun, 2));
   EXPECT_EQ(FirstFailure(engine, inputs, 10).cause, FailureCause::kJump);
 }
 

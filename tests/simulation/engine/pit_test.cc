@@ -7,11 +7,11 @@ using stream::Gait;
 
 constexpr double kNearM = 17;
 
-GaitEngine NewEngineBeforeAPit(double width_m) {
+GaitEngine NewEngineBeforeAPit(double width_m, bool helps = true) {
   EngineTexts texts = Texts();
-  texts.track = R"({"version": 1, "segments": [{"length_m": )" + std::to_string(kNearM) +
-                R"(}, {"length_m": )" + std::to_string(width_m) +
-                R"(, "pit": true}, {"length_m": 100}]})";
+  texts.track = std::string(R"({"version": 1, "help_over_pits": )") + (helps ? "true" : "false") +
+                R"(, "segments": [{"length_m": )" + std::to_string(kNearM) + R"(}, {"length_m": )" +
+                std::to_string(width_m) + R"(, "pit": true}, {"length_m": 100}]})";
   return std::move(GaitEngine::Create(texts)).value();
 }
 
@@ -45,6 +45,29 @@ TEST(Pit, WideEndsARunThatIsNotToldToJump) {
   GaitEngine engine = NewEngineBeforeAPit(2.5);
   Simulate(engine, Direct(Command(Gait::kRun, 3)), 10);
   EXPECT_GT(engine.Output().gait.falls, 0u);
+}
+
+TEST(Pit, IsSteppedOverByAWalkAtAnySpeed) {
+  for (const double speed_mps : {0.4, 0.9, 1.5}) {
+    GaitEngine engine = NewEngineBeforeAPit(0.3);
+    Simulate(engine, Direct(Command(Gait::kWalk, speed_mps)), 4 + 20 / speed_mps);
+    EXPECT_EQ(engine.Output().gait.falls, 0u) << speed_mps;
+    EXPECT_GT(engine.Output().p_WC_m.x(), kNearM + 1) << speed_mps;
+  }
+}
+
+TEST(Pit, WideStopsAWalkBeforeIt) {
+  GaitEngine engine = NewEngineBeforeAPit(0.6);
+  Simulate(engine, Direct(Command(Gait::kWalk, 1)), 30);
+  EXPECT_EQ(engine.Output().gait.falls, 0u);
+  EXPECT_LT(engine.Output().p_WC_m.x(), kNearM);
+  EXPECT_GT(engine.Output().p_WC_m.x(), kNearM - 1.5);
+}
+
+TEST(Pit, WideEndsAWalkThatGetsNoHelp) {
+  GaitEngine engine = NewEngineBeforeAPit(0.6, false);
+  Simulate(engine, Direct(Command(Gait::kWalk, 1)), 20);
+  EXPECT_GT(engine.Output().gait.failures.jump, 0u);
 }
 
 }  // namespace
