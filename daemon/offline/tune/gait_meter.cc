@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "common/units/units.h"
+
 namespace footing::tune {
 namespace {
 
@@ -40,6 +42,10 @@ void GaitMeter::Add(const engine::EngineOutput& output, double step_s) {
   mean_speed_mps_ += step_s / kWindowS * (output.gait.speed_mps - mean_speed_mps_);
   const double error_mps = mean_speed_mps_ - task_.speed_mps;
   squared_error_.Add(error_mps * error_mps);
+  const Eigen::Vector3d ahead = output.links[0].orientation * Eigen::Vector3d::UnitX();
+  const double heading_error_rad =
+      WrapAngle(std::atan2(ahead.y(), ahead.x()) - output.gait.heading_rad);
+  squared_heading_error_.Add(heading_error_rad * heading_error_rad);
   const bool left = output.contacts[0].touching, right = output.contacts[1].touching;
   if (task_.gait == stream::Gait::kRun || task_.gait == stream::Gait::kJump) {
     Watch(contacts_[0], left || right, time_s_);
@@ -52,6 +58,7 @@ void GaitMeter::Add(const engine::EngineOutput& output, double step_s) {
 
 void GaitMeter::Report(TrialResult& result) const {
   result.speed_error_mps = std::sqrt(squared_error_.value());
+  result.heading_error_rad = std::sqrt(squared_heading_error_.value());
   result.flight_s = flight_s_.value();
   result.stance_s = stance_s_.value();
   result.stride_m = stride_m_.value();

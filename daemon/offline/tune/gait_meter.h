@@ -42,7 +42,7 @@ class GaitMeter {
   Task task_;
   double time_s_ = 0;
   double mean_speed_mps_ = 0;
-  Mean squared_error_;
+  Mean squared_error_, squared_heading_error_;
   std::array<Contact, 2> contacts_;
   Mean flight_s_, stance_s_, stride_m_;
   std::uint64_t steps_ = 0;

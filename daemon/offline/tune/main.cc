@@ -15,6 +15,10 @@ int main(int argc, char** argv) {
       ->required()
       ->delimiter(',')
       ->check(CLI::Range(0.0, 6.0));
+  app->add_option("--keep", options.keep_mps,
+                  "Speeds, m/s: A,B,...; the table has the initial table's sets there besides")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 6.0));
   app->add_option("--out", options.out,
                   "Output table, CSV; resume state and plot are written beside it. Required unless "
                   "--iterations is 0");

@@ -45,11 +45,12 @@ Wanted WantedOf(const Task& task, double height_m) {
 Cost CostOf(const Task& task, const TrialResult& result) {
   const Wanted wanted = WantedOf(task, result.height_m);
   Cost cost;
-  cost.failure = 10 * (1 - result.survived);
+  cost.failure = result.survived < 1 ? 5 + 5 * (1 - result.survived) : 0;
   cost.speed = std::min(2.0, Square(result.speed_error_mps / 0.15));
   cost.flight = Deviation(result.flight_s, wanted.flight_s);
   cost.stance = Deviation(result.stance_s, wanted.stance_s);
   if (task.speed_mps >= 0.3) cost.stride = Deviation(result.stride_m, wanted.stride_m);
+  cost.heading = std::min(2.0, Square(RadiansToDegrees(result.heading_error_rad) / 5));
   return cost;
 }
 

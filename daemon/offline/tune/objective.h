@@ -7,13 +7,14 @@ namespace footing::tune {
 /// The terms of the paper's objective (section 5, Optimization), each at least 0, lower is better.
 /// The paper names what it evaluates and gives no weights; these are ours.
 struct Cost {
-  double failure = 0;  ///< 10 (1 - fraction survived).
+  double failure = 0;  ///< Of a fall: 5 + 5 (1 - fraction survived).
   double speed = 0;    ///< (speed error / 0.15 m/s)^2, at most 2.
   double flight = 0;   ///< Flight or swing: 0.25 (relative deviation / 10 %)^2, at most 1.
   double stance = 0;   ///< As flight.
   double stride = 0;   ///< As flight; left out below 0.3 m/s, where a stride has no length.
+  double heading = 0;  ///< Turning: (heading error / 5 degrees)^2, at most 2.
 
-  double total() const { return failure + speed + flight + stance + stride; }
+  double total() const { return failure + speed + flight + stance + stride + heading; }
 };
 
 /// Durations that are aimed at.

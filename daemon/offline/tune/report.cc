@@ -27,21 +27,24 @@ ordered_json ToJson(const Score& score) {
           {"trials", score.trials},          {"survival", score.survival},
           {"failure", score.mean.failure},   {"speed", score.mean.speed},
           {"flight", score.mean.flight},     {"stance", score.mean.stance},
-          {"stride", score.mean.stride}};
+          {"stride", score.mean.stride},     {"heading", score.mean.heading}};
 }
 
 }  // namespace
 
-std::string TableText(const Options& options, const std::vector<TunedSet>& tuned) {
+std::string TableText(const Options& options, const std::vector<gait::GainSet>& kept,
+                      const std::vector<TunedSet>& tuned) {
   std::string comment = "Made by footing-tune " + std::string(cli::Version()) + ", seed " +
                         std::to_string(options.seed) + ":\n" + options.command_line +
                         "\nObjective on trials of its own, 95 % intervals:\n";
-  std::vector<gait::GainSet> sets;
+  std::vector<gait::GainSet> sets = kept;
   for (const TunedSet& one : tuned) {
     comment += one.set.name + " " + ScoreText(one.before) + " before, " + ScoreText(one.after) +
                " after" + (one.better ? "" : ", not better: the start is kept") + "\n";
     sets.push_back(one.set);
   }
+  std::sort(sets.begin(), sets.end(),
+            [](const auto& a, const auto& b) { return a.speed_mps < b.speed_mps; });
   std::vector<const gait::GainField*> columns;
   for (const gait::GainField& field : gait::GainFields()) {
     const auto differs = [&field](const gait::GainSet& set) {

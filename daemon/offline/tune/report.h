@@ -18,8 +18,9 @@ struct TunedSet {
 };
 
 /// The gait table, with seed, command line and scores in its comment; only columns that differ
-/// from gains.h.
-std::string TableText(const Options& options, const std::vector<TunedSet>& tuned);
+/// from gains.h. `kept` are sets besides the tuned ones.
+std::string TableText(const Options& options, const std::vector<gait::GainSet>& kept,
+                      const std::vector<TunedSet>& tuned);
 
 /// The objective over the iterations, as SVG.
 std::string Plot(const Options& options, const std::vector<SearchState>& searches);

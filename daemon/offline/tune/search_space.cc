@@ -35,13 +35,16 @@ const std::vector<Row> kRunning{{"attitude.run_yaw_stiffness_nm_per_rad", kCoeff
                                 {"hopping.run_leg_stiffness_n_per_m", kCoefficient},
                                 {"hopping.run_leg_damping_ns_per_m", kCoefficient},
                                 {"hopping.run_velocity_gain_s", 0.15},
-                                {"hopping.speed_gain_s", 0.003, false}};
+                                {"hopping.speed_gain_s", 0.003, false},
+                                {"hopping.run_foot_spacing_m", kCoefficient},
+                                {"recovery.idle_yield", kCoefficient}};
 const std::vector<Row> kJumping{{"attitude.jump_yaw_stiffness_nm_per_rad", kCoefficient},
                                 {"attitude.jump_yaw_damping_nms_per_rad", kCoefficient},
                                 {"hopping.jump_leg_stiffness_n_per_m", kCoefficient},
                                 {"hopping.jump_leg_damping_ns_per_m", kCoefficient},
                                 {"hopping.jump_velocity_gain_s", 0.15},
-                                {"attitude.jump_lean_rad_per_mps", 0.03, false}};
+                                {"attitude.jump_lean_rad_per_mps", 0.03, false},
+                                {"recovery.spread_mps", kCoefficient}};
 
 }  // namespace
 

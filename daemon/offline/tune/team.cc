@@ -27,6 +27,7 @@ Result<Team> Team::Create(int threads) {
   const Result<engine::EngineTexts> texts = engine_files::ReadTexts();
   if (!texts) return texts.error();
   Team team;
+  team.texts_ = *texts;
   for (int i = 0; i < threads; ++i) {
     Result<engine::GaitEngine> engine = engine::GaitEngine::Create(*texts);
     if (!engine) return engine.error();
@@ -49,6 +50,14 @@ Result<void> Team::Prepare(const Task& task, const gait::GainTable& table, std::
   return {};
 }
 
+engine::GaitEngine Team::OnTrack(std::string track) const {
+  engine::EngineTexts texts = texts_;
+  texts.track = std::move(track);
+  Result<engine::GaitEngine> engine = engine::GaitEngine::Create(texts);
+  FOOTING_CHECK(engine.ok());  // Only the track differs from the engines there are.
+  return std::move(engine).value();
+}
+
 std::vector<std::vector<Cost>> Team::Try(const std::vector<gait::Gains>& gains, int trials,
                                          std::uint64_t seed) {
   const auto per_gains = static_cast<std::size_t>(trials);
@@ -62,8 +71,14 @@ std::vector<std::vector<Cost>> Team::Try(const std::vector<gait::Gains>& gains, 
       table.Set(task_.gait, {{"tried", 0, gains[which]}});
       engine.UseGains(table);
       const engine::EngineState& start = starts_[trial % starts_.size()];
-      const TrialResult result = RunTrial(engine, start, task_, MixSeeds(seed, trial));
-      costs[which][trial] = CostOf(task_, result);
+      const Disturbance disturbance = Draw(task_, MixSeeds(seed, trial));
+      if (disturbance.pit_m == 0) {
+        costs[which][trial] = CostOf(task_, RunTrial(engine, start, task_, disturbance));
+        continue;
+      }
+      engine::GaitEngine on_pit = OnTrack(PitTrack(start, disturbance));
+      on_pit.UseGains(table);
+      costs[which][trial] = CostOf(task_, RunTrial(on_pit, start, task_, disturbance));
     }
   };
   std::vector<std::thread> others;
@@ -83,6 +98,7 @@ Score ScoreOf(const std::vector<Cost>& costs) {
     score.mean.flight += cost.flight / n;
     score.mean.stance += cost.stance / n;
     score.mean.stride += cost.stride / n;
+    score.mean.heading += cost.heading / n;
     score.survival += (cost.failure == 0 ? 1 : 0) / n;
   }
   score.total_half_width =

@@ -32,6 +32,9 @@ class Team {
 
  private:
   Team() = default;
+  engine::GaitEngine OnTrack(std::string track) const;
+
+  engine::EngineTexts texts_;
 
   std::vector<engine::GaitEngine> engines_;
   Task task_;

@@ -5,6 +5,7 @@
 #include "common/units/units.h"
 #include "common/virtual/noise/random.h"
 #include "daemon/offline/tune/gait_meter.h"
+#include "daemon/simulation/biped/limits.h"
 
 namespace footing::tune {
 namespace {
@@ -16,6 +17,14 @@ constexpr std::uint64_t kTuneSalt = 0x666f6f74696e67;  // Keeps tuning off the s
 constexpr double kSettleS = 6;
 constexpr double kBetweenStatesS = 0.61;
 
+/// Shares of the trials, added up: pushed; pushed while turning; turning. The rest come to a pit.
+constexpr double kPushed = 0.5, kPushedTurning = 0.7, kTurning = 0.85;
+constexpr double kTurnDeg = 5;
+constexpr double kSmallKickNs = 2;
+constexpr double kLowestM = 0.1;
+constexpr double kPitFromMps = 1;
+constexpr double kJumpLeadS = 0.8;
+
 struct Kick {
   double min_ns, max_ns;
 };
@@ -23,7 +32,7 @@ struct Kick {
 Kick KickOf(Gait gait) {
   switch (gait) {
     case Gait::kRun:
-      return {10, 40};
+      return {15, 40};
     case Gait::kJump:
       return {8, 28};
     case Gait::kStep:
@@ -78,30 +87,68 @@ Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engin
   return states;
 }
 
-TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& start, const Task& task,
-                     std::uint64_t seed) {
+Disturbance Draw(const Task& task, std::uint64_t seed) {
   noise::Random random(MixSeeds(seed, 1));
+  const Kick kick = KickOf(task.gait);
+  Disturbance drawn{.kick_s = random.Uniform(1.5, 2.2),
+                    .kick_ns = random.Uniform(kick.min_ns, kick.max_ns),
+                    .kick_direction_rad = random.Uniform(-kPi, kPi)};
+  const double turn_rad = DegreesToRadians(random.Uniform() < 0.5 ? kTurnDeg : -kTurnDeg);
+  const double kind = random.Uniform();
+  const bool hops = task.gait == Gait::kRun || task.gait == Gait::kJump;
+  if (task.gait == Gait::kJump) {
+    const double highest_m =
+        biped::Limited({.gait = task.gait, .speed_mps = task.speed_mps, .height_m = 1}).height_m;
+    drawn.height_m = random.Uniform(kLowestM, highest_m);
+  }
+  if (kind < kPushed) return drawn;
+  if (kind < kPushedTurning || kind < kTurning || !hops || task.speed_mps < kPitFromMps) {
+    drawn.turn_rad = turn_rad;
+    if (kind >= kPushedTurning) drawn.kick_ns = kSmallKickNs;
+    return drawn;
+  }
+  drawn.kick_ns = kSmallKickNs;
+  drawn.pit_m = task.gait == Gait::kRun ? random.Uniform(0.4, 1.2) : random.Uniform(0.3, 0.8);
+  drawn.pit_ahead_m = task.speed_mps * random.Uniform(2.4, 3.0);
+  return drawn;
+}
+
+bool ScoresHeading(const Disturbance& disturbance) {
+  return disturbance.turn_rad != 0 && disturbance.kick_ns <= kSmallKickNs;
+}
+
+std::string PitTrack(const engine::EngineState& start, const Disturbance& disturbance) {
+  const double near_m = start.world.qpos[0] + disturbance.pit_ahead_m;
+  return R"({"version": 1, "name": "pit", "segments": [{"length_m": )" + std::to_string(near_m) +
+         R"(}, {"length_m": )" + std::to_string(disturbance.pit_m) +
+         R"(, "pit": true}, {"length_m": 1000}]})";
+}
+
+TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& start, const Task& task,
+                     const Disturbance& disturbance) {
   engine::EngineInputs inputs = Inputs(task);
   inputs.features_number = start.inputs.features_number;
   inputs.push_number = start.inputs.push_number;
-  const double kick_s = random.Uniform(1.5, 2.2);
-  const double direction_rad = random.Uniform(-kPi, kPi);
-  const Kick kick = KickOf(task.gait);
-  const double kick_ns = random.Uniform(kick.min_ns, kick.max_ns);
-  const double turn_rad = DegreesToRadians(random.Uniform() < 0.5 ? 5 : -5);
-  if (random.Uniform() < 0.5) inputs.direct_command.turn_per_step_rad = turn_rad;
-  if (task.gait == Gait::kJump) inputs.direct_command.height_m = random.Uniform(0.1, 0.4);
+  inputs.direct_command.turn_per_step_rad = disturbance.turn_rad;
+  inputs.direct_command.height_m = disturbance.height_m;
+  const double near_m = start.world.qpos[0] + disturbance.pit_ahead_m;
 
   engine.Restore(start);
   GaitMeter meter(task);
   const auto steps = static_cast<int>(std::lround(kTrialS / kStepS));
-  const auto kick_step = static_cast<int>(std::lround(kick_s / kStepS));
+  const auto kick_step = static_cast<int>(std::lround(disturbance.kick_s / kStepS));
   TrialResult result;
   for (int i = 0; i < steps; ++i) {
     if (i == kick_step) {
       ++inputs.push_number;
       inputs.push_impulse_W_ns =
-          kick_ns * Eigen::Vector2d(std::cos(direction_rad), std::sin(direction_rad));
+          disturbance.kick_ns * Eigen::Vector2d(std::cos(disturbance.kick_direction_rad),
+                                                std::sin(disturbance.kick_direction_rad));
+    }
+    if (disturbance.pit_m > 0 && task.gait == Gait::kRun) {
+      const double to_edge_m = near_m - engine.Output().p_WC_m.x();
+      const bool jumps = to_edge_m < kJumpLeadS * task.speed_mps && to_edge_m > -disturbance.pit_m;
+      inputs.direct_command.gait = jumps ? Gait::kJump : Gait::kRun;
     }
     engine.Advance(inputs);
     if (Fell(engine.Output())) {
@@ -111,6 +158,7 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
     meter.Add(engine.Output(), kStepS);
   }
   meter.Report(result);
+  if (!ScoresHeading(disturbance)) result.heading_error_rad = 0;
   result.height_m = inputs.direct_command.height_m;
   return result;
 }

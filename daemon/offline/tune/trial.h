@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "common/result/result.h"
@@ -16,14 +17,39 @@ struct Task {
   double speed_mps = 0;
 };
 
+/// What a trial meets. Everything is drawn, and mixed so that no trial of footing-eval draws the
+/// same.
+struct Disturbance {
+  double kick_s = 0;  ///< From the trial's start.
+  double kick_ns = 0;
+  double kick_direction_rad = 0;
+  double turn_rad = 0;  ///< Of each step.
+  double height_m = 0.2;
+  double pit_m = 0;        ///< Width; 0: no pit.
+  double pit_ahead_m = 0;  ///< From the start to the near edge.
+};
+
+/// Half of the trials are pushes of 0.1 s from any side after 1.5 to 2.2 s (step and walk 4 to 20
+/// N s, run 15 to 40, jump 8 to 28). A fifth turns by 5 degrees a step when pushed. The others,
+/// with a push of 2 N s, turn by the largest turn of 5 degrees or less, or come to a pit, where a
+/// run is to jump. Jumps are 0.1 m to as high as they are accepted.
+Disturbance Draw(const Task& task, std::uint64_t seed);
+
+/// Whether the trial's turn is to be followed by the body: no large push disturbs it.
+bool ScoresHeading(const Disturbance& disturbance);
+
+/// A straight track with the disturbance's pit, for a trial from `start`.
+std::string PitTrack(const engine::EngineState& start, const Disturbance& disturbance);
+
 /// What was seen in one trial. A duration or length that was never seen whole is 0.
 struct TrialResult {
-  double survived = 1;         ///< Fraction of the trial before a fall.
-  double speed_error_mps = 0;  ///< Root mean square, of the speed over the last half second.
-  double flight_s = 0;         ///< Mean; running, jumping: no foot down; else one foot's swing.
-  double stance_s = 0;         ///< Mean; running, jumping: a foot down; else one foot's.
-  double stride_m = 0;         ///< Mean; from a foot's touchdown to its next.
-  double height_m = 0.2;       ///< That was commanded, of a jump.
+  double survived = 1;           ///< Fraction of the trial before a fall.
+  double speed_error_mps = 0;    ///< Root mean square, of the speed over the last half second.
+  double flight_s = 0;           ///< Mean; running, jumping: no foot down; else one foot's swing.
+  double stance_s = 0;           ///< Mean; running, jumping: a foot down; else one foot's.
+  double stride_m = 0;           ///< Mean; from a foot's touchdown to its next.
+  double height_m = 0.2;         ///< That was commanded, of a jump.
+  double heading_error_rad = 0;  ///< Root mean square; 0 where it is not scored.
 };
 
 inline constexpr double kTrialS = 5;
@@ -33,12 +59,10 @@ inline constexpr double kTrialS = 5;
 Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engine, const Task& task,
                                                        int count, std::uint64_t seed);
 
-/// One trial of kTrialS from `start`, under the gains that the engine uses: a kick of 0.1 s from
-/// any side after 1.5 to 2.2 s (step and walk 4 to 20 N s, run 10 to 40, jump 8 to 28), in every
-/// second trial 5 degrees a step to either side, jumps of 0.1 to 0.4 m. All drawn from `seed`,
-/// which is mixed so that no trial of footing-eval draws the same.
+/// One trial of kTrialS from `start`, under the gains that the engine uses. A pit needs an engine
+/// on its track.
 TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& start, const Task& task,
-                     std::uint64_t seed);
+                     const Disturbance& disturbance);
 
 /// The same number never comes of two different pairs in practice (splitmix64).
 std::uint64_t MixSeeds(std::uint64_t a, std::uint64_t b);

@@ -71,7 +71,12 @@ class Tuning {
 
   Result<void> Write() const {
     if (options_.iterations == 0) return {};
-    if (const auto done = ReplaceFile(options_.out, TableText(options_, tuned_)); !done)
+    std::vector<gait::GainSet> sets;
+    for (std::size_t i = 0; i < options_.keep_mps.size(); ++i) {
+      const double speed_mps = options_.keep_mps[i];
+      sets.push_back({"kept" + std::to_string(i + 1), speed_mps, StartOf({gait_, speed_mps})});
+    }
+    if (const auto done = ReplaceFile(options_.out, TableText(options_, sets, tuned_)); !done)
       return done;
     return ReplaceFile(PlotPath(), Plot(options_, searches_));
   }

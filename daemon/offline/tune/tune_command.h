@@ -8,6 +8,7 @@ namespace footing::tune {
 struct Options {
   std::string gait;
   std::vector<double> speeds_mps;
+  std::vector<double> keep_mps;  ///< Sets of the start that the table has besides.
   std::string out;
   std::vector<std::string> from;
   std::uint64_t seed = 1;

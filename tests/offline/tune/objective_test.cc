@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/units/units.h"
+
 namespace footing::tune {
 namespace {
 
@@ -23,12 +25,12 @@ TEST(Objective, IsNothingWhenAllIsAsWanted) {
   }
 }
 
-TEST(Objective, ChargesTenForAFallAtOnceAndLessForALaterOne) {
+TEST(Objective, ChargesTenForAFallAtOnceAndFiveForTheLatest) {
   TrialResult result = AsWanted(kWalk);
   result.survived = 0;
   EXPECT_DOUBLE_EQ(CostOf(kWalk, result).total(), 10);
   result.survived = 0.75;
-  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).failure, 2.5);
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).failure, 5 + 5 * 0.25);
 }
 
 TEST(Objective, ChargesEachTermByItself) {
@@ -43,6 +45,8 @@ TEST(Objective, ChargesEachTermByItself) {
   EXPECT_DOUBLE_EQ(CostOf(kWalk, result).stance, 1);
   result.stride_m *= 1.2;
   EXPECT_NEAR(CostOf(kWalk, result).stride, 1, 1e-12);
+  result.heading_error_rad = DegreesToRadians(2.5);
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).heading, 0.25);
 }
 
 TEST(Objective, DoesNotChargeWhatWasNeverSeen) {

@@ -64,6 +64,46 @@ TEST(Trials, BeginWalkingAtTheirSpeed) {
   EXPECT_EQ(moments.size(), 3u);
 }
 
+TEST(Disturbances, OfARunArePushesTurnsAndPits) {
+  const Task run{stream::Gait::kRun, 3};
+  int pushed = 0, turning = 0, pits = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const Disturbance drawn = Draw(run, seed);
+    EXPECT_FALSE(drawn.pit_m > 0 && drawn.turn_rad != 0);
+    EXPECT_FALSE(drawn.pit_m > 0 && ScoresHeading(drawn));
+    pushed += drawn.kick_ns >= 15 ? 1 : 0;
+    turning += ScoresHeading(drawn) ? 1 : 0;
+    pits += drawn.pit_m > 0 ? 1 : 0;
+  }
+  // Of 400: 70, 15 and 15 %, within three standard deviations.
+  EXPECT_NEAR(pushed, 280, 28);
+  EXPECT_NEAR(turning, 60, 22);
+  EXPECT_NEAR(pits, 60, 22);
+  for (std::uint64_t seed = 0; seed < 50; ++seed) EXPECT_EQ(Draw(kTrialWalk, seed).pit_m, 0);
+}
+
+TEST(Disturbances, JumpsAreAsHighAsTheyAreAccepted) {
+  double highest_m = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    highest_m = std::max(highest_m, Draw({stream::Gait::kJump, 2}, seed).height_m);
+  }
+  EXPECT_LE(highest_m, 0.5);
+  EXPECT_GT(highest_m, 0.48);
+}
+
+TEST(Trials, APitTooWideToJumpEndsOne) {
+  auto texts = engine_files::ReadTexts();
+  auto engine = engine::GaitEngine::Create(*texts);
+  ASSERT_TRUE(engine.ok());
+  const auto states = SettledStates(*engine, {stream::Gait::kRun, 3}, 1, 5);
+  ASSERT_TRUE(states.ok());
+  const Disturbance wide{.kick_s = 9, .pit_m = 4, .pit_ahead_m = 6};
+  texts->track = PitTrack(states->front(), wide);
+  auto on_pit = engine::GaitEngine::Create(*texts);
+  ASSERT_TRUE(on_pit.ok());
+  EXPECT_LT(RunTrial(*on_pit, states->front(), {stream::Gait::kRun, 3}, wide).survived, 1);
+}
+
 TEST(Score, HasTheMeanAndItsInterval) {
   // 0 and 2 in equal parts of 100: standard deviation 1.005, half width 1.96 of a tenth of it.
   std::vector<Cost> costs(100);

@@ -33,6 +33,11 @@ with tempfile.TemporaryDirectory() as folder:
     assert broken.with_suffix(".svg").read_text().count("<polyline") == 2
     assert json.loads(second.stdout)["sets"][0]["before"]["trials"] == 8
 
+    kept = tune(pathlib.Path(folder, "c.csv"), 1, "--keep", "0.5")
+    assert kept.returncode == 0, kept.stderr
+    rows = [line.split(",")[:3] for line in without_comment(pathlib.Path(folder, "c.csv"))[2:]]
+    assert rows == [["step", "all", "0"], ["step", "kept1", "0.5"]], rows
+
     refused = run(TUNE, "--gait", "step", "--speeds", "0", "--trials", "1", "--seed", "6", "--out",
                   str(broken))
     assert refused.returncode == 4 and "another seed" in refused.stderr, refused.stderr
