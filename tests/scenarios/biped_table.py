@@ -146,6 +146,12 @@ def table():
     for width, bar in ((1.0, 1), (1.5, 0.95)):
         rows.append(Row(f"pits of {width} m, run 3 m/s", f"{100 * bar:.0f} %", course("pits", bar),
                         gait("run", 3, "--pit", width, "--seconds", 60), 16, 4))
+    for width in (0.1, 0.3):
+        for speed in (0.25, 0.8, 1.75):
+            rows.append(Row(f"pits of {width} m, walk {speed} m/s", "all", course("pits", 1),
+                            gait("walk", speed, "--pit", width, "--seconds", round(45 / speed)), 20, 5))
+    rows.append(Row("pits of 0.5 m, walk 1.75 m/s: stops", "0 falls", falls,
+                    gait("walk", 1.75, "--pit", 0.5, "--seconds", 26), 20, 10))
     for name, speed in (("walk", 0.25), ("walk", 1), ("walk", 1.75), ("run", 1), ("run", 2), ("run", 3),
                         ("jump", 0.5), ("jump", 1), ("jump", 2)):
         rows.append(Row(f"steps of 0.1 m, {name} {speed} m/s", "1000 of 1000", course("steps", 1),
