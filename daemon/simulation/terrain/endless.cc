@@ -43,12 +43,13 @@ std::optional<stream::TrackSegment> EndlessSegment(const stream::Track& track,
   stream::TrackSegment next = Following(track.segments.back());
   next.length_m = kSegmentM;
   next.width_m = track.segments.back().width_m;
-  if (course.norm() < kLeastCourse) return next;
+  const bool has_course = course.norm() >= kLeastCourse;
   if (off) {
     next.start_m.head<2>() = p_W_m;
-    next.heading_rad = std::atan2(course.y(), course.x());
+    if (has_course) next.heading_rad = std::atan2(course.y(), course.x());
     return next;
   }
+  if (!has_course) return next;
   const Eigen::Vector2d end_m = next.start_m.head<2>();
   const Eigen::Vector2d aim_m = p_W_m + ((end_m - p_W_m).norm() + kAimM) * course.normalized();
   const Eigen::Vector2d way_m = aim_m - end_m;

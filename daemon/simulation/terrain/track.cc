@@ -28,13 +28,30 @@ stream::TrackSegment Following(const stream::TrackSegment& last) {
   return next;
 }
 
+namespace {
+
+/// Segments that are this much further are as near: where two meet the earlier one counts.
+constexpr double kRoundingM = 1e-9;
+
+/// Distance from the nearest start of a segment, m. The centre line is not further.
+double NearestStart(const stream::Track& track, const Eigen::Vector2d& p_W_m) {
+  double squared_m2 = INFINITY;
+  for (const stream::TrackSegment& segment : track.segments) {
+    squared_m2 = std::min(squared_m2, (p_W_m - segment.start_m.head<2>()).squaredNorm());
+  }
+  return std::sqrt(squared_m2);
+}
+
+}  // namespace
+
 TrackPlace Locate(const stream::Track& track, const Eigen::Vector2d& p_W_m) {
+  const double nearest_start_m = NearestStart(track, p_W_m);
   TrackPlace nearest;
   nearest.distance_m = INFINITY;
   for (std::size_t i = 0; i < track.segments.size(); ++i) {
     const stream::TrackSegment& segment = track.segments[i];
     const Eigen::Vector2d offset = p_W_m - segment.start_m.head<2>();
-    const double reach_m = segment.length_m + nearest.distance_m;
+    const double reach_m = segment.length_m + nearest_start_m + kRoundingM;
     if (offset.squaredNorm() > reach_m * reach_m) continue;  // Saves the sines of far segments.
     const Eigen::Vector2d ahead(std::cos(segment.heading_rad), std::sin(segment.heading_rad));
     const Eigen::Vector2d left(-ahead.y(), ahead.x());

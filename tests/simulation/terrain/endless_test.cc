@@ -80,6 +80,18 @@ TEST(EndlessTrack, BeginsAgainUnderWhoeverLeftIt) {
   EXPECT_FALSE(IsOffRibbon(track, Locate(track, p_m)));
 }
 
+TEST(EndlessTrack, BeginsAgainOnceUnderWhoeverStandsBesideIt) {
+  stream::Track track = Endless();
+  const Eigen::Vector2d p_m(4, 10), no_course = Eigen::Vector2d::Zero();
+  const double heading_rad = track.segments.back().heading_rad;
+  const auto next = EndlessSegment(track, Locate(track, p_m), p_m, no_course);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->start_m.head<2>(), p_m);
+  EXPECT_EQ(next->heading_rad, heading_rad);
+  Add(*next, track);
+  EXPECT_FALSE(IsOffRibbon(track, Locate(track, p_m)));
+}
+
 TEST(EndlessTrack, KeepsSixtyFourSegmentsAndTheDistanceOfThoseThatWent) {
   Wanderer wanderer;
   wanderer.Go(500);

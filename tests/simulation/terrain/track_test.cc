@@ -15,6 +15,10 @@ constexpr const char* kHills = R"({"version": 1, "name": "hills", "segments": [
   {"length_m": 10}, {"length_m": 10, "slope_deg": 5}, {"length_m": 2, "pit": true},
   {"length_m": 5, "curve_deg": 90, "step_m": 0.1}]})";
 
+stream::Track Carried(const std::string& name) {
+  return ParseTrack(test::DataFile("tracks/" + name + ".json"), name).value();
+}
+
 TEST(Track, PlainOneIsFourMetresWideAndLevel) {
   const auto track = ParseTrack(test::DataFile("tracks/plain.json"), "plain");
   ASSERT_TRUE(track.ok());
@@ -58,6 +62,34 @@ TEST(Track, PutsBackOnTheCentreLineAndNeverIntoAPit) {
   const CentrePoint behind_pit = CentreBehind(track, {3, 0.2, 0}, 0);
   EXPECT_GE(behind_pit.p_W_m.y(), last.start_m.y() + 0.49);
   EXPECT_LT(before_pit.p_W_m.x(), last.start_m.x());
+}
+
+/// The nearest of points 1 mm apart on every segment's centre line.
+double DistanceBySearch(const stream::Track& track, const Eigen::Vector2d& p_W_m) {
+  double distance_m = INFINITY;
+  for (std::size_t i = 0; i < track.segments.size(); ++i) {
+    const stream::TrackSegment& segment = track.segments[i];
+    const double level_m = segment.length_m * std::cos(segment.slope_rad);
+    const Eigen::Vector2d ahead(std::cos(segment.heading_rad), std::sin(segment.heading_rad));
+    for (double along_m = 0; along_m <= level_m; along_m += 1e-3) {
+      const Eigen::Vector2d on_m = segment.start_m.head<2>() + along_m * ahead;
+      distance_m = std::min(distance_m, (p_W_m - on_m).norm());
+    }
+  }
+  return distance_m;
+}
+
+TEST(Track, FindsTheNearestPlaceFromAnywhere) {
+  for (const char* name : {"3", "hills", "corners"}) {
+    const stream::Track track = Carried(name);
+    for (int x_m = -20; x_m <= 100; x_m += 17) {
+      for (int y_m = -60; y_m <= 60; y_m += 13) {
+        const Eigen::Vector2d p_m(x_m, y_m);
+        EXPECT_NEAR(Locate(track, p_m).distance_m, DistanceBySearch(track, p_m), 1e-3)
+            << name << " " << p_m.transpose();
+      }
+    }
+  }
 }
 
 TEST(Track, PlacesAheadAndLengthsFollowTheCentreLine) {
@@ -106,8 +138,7 @@ TEST_P(CarriedTrack, IsARibbonOfFourMetresAndEightyToAHundredAndTwenty) {
 }
 
 TEST_P(CarriedTrack, NeverComesNearItselfAgain) {
-  const auto track =
-      ParseTrack(test::DataFile(std::string("tracks/") + GetParam() + ".json"), "").value();
+  const auto track = Carried(GetParam());
   for (double s_m = 0; s_m < LengthOf(track); s_m += 0.5) {
     const CentrePoint here = CentreAhead(track, {}, s_m);
     // The nearest place is where one is: no other pass of the track is nearer.
@@ -120,8 +151,7 @@ TEST_P(CarriedTrack, NeverComesNearItselfAgain) {
 }
 
 TEST_P(CarriedTrack, HasItsFinishLineFiveMetresBeforeTheEndAndHalfAMetreFromPits) {
-  const auto track =
-      ParseTrack(test::DataFile(std::string("tracks/") + GetParam() + ".json"), "").value();
+  const auto track = Carried(GetParam());
   EXPECT_EQ(track.start_m, 1);
   EXPECT_NEAR(track.finish_m, LengthOf(track) - 5, 1e-9);
   for (const double line_m : {track.start_m, track.finish_m}) {
@@ -139,8 +169,7 @@ INSTANTIATE_TEST_SUITE_P(All, CarriedTrack,
 class TestTrack : public testing::TestWithParam<const char*> {};
 
 TEST_P(TestTrack, HasCurvesToBothSidesAndThreePitsThatTheUserMustTime) {
-  const auto track =
-      ParseTrack(test::DataFile(std::string("tracks/") + GetParam() + ".json"), "").value();
+  const auto track = Carried(GetParam());
   EXPECT_FALSE(track.help_over_pits);
   double left_rad = 0, right_rad = 0;
   std::multiset<double> pits_m;
@@ -161,7 +190,7 @@ TEST_P(TestTrack, HasCurvesToBothSidesAndThreePitsThatTheUserMustTime) {
 INSTANTIATE_TEST_SUITE_P(OneToFour, TestTrack, testing::Values("1", "2", "3", "4"));
 
 TEST(StraightTrack, AsksForEveryChangeOfGaitOfThePaperAtItsLine) {
-  const auto track = ParseTrack(test::DataFile("tracks/straight.json"), "straight").value();
+  const auto track = Carried("straight");
   EXPECT_FALSE(track.open);
   EXPECT_EQ(track.mark_m, 30);
   EXPECT_EQ(track.finish_m, 60);
