@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "clients/stream/tellings.h"
+#include "clients/stream/feeds.h"
 #include "common/body/held_frame.h"
 #include "common/virtual/sensors/held_device.h"
 
@@ -14,9 +14,9 @@ namespace {
 using stream::DeviceRole;
 namespace sensors = virtual_sensors;
 
-/// What the cells of one board read; a copy begins anew.
-StandIn::CornerForces UnderFoot(std::shared_ptr<const Stage> stage, std::size_t foot,
-                                sensors::CellErrorConfig errors, std::uint64_t seed) {
+/// What the cells of one board read; a copy starts from the beginning.
+SimulatedDevice::CornerForces UnderFoot(std::shared_ptr<const Stage> stage, std::size_t foot,
+                                        sensors::CellErrorConfig errors, std::uint64_t seed) {
   errors.seed = seed;
   return [stage, foot, cells = sensors::CellErrors(errors), last_s = 0.0](double t_s) mutable {
     const auto load = sensors::LoadBoard(stage->boards[foot], stage->FootAt(foot, t_s));
@@ -36,7 +36,8 @@ sensors::HeldErrors ErrorsInFist(std::uint64_t seed) {
 
 }  // namespace
 
-StandIn::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side, std::uint64_t seed) {
+SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
+                                      std::uint64_t seed) {
   const auto course = std::make_shared<const sensors::HeldCourse>(
       sensors::FollowFist(stage->scene.body, stage->scene.motion, side));
   return [stage, course, errors = ErrorsInFist(seed), last_s = 0.0](double t_s) mutable {
@@ -44,12 +45,12 @@ StandIn::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side, std:
     const auto between = [&at](const Eigen::Matrix3Xd& values) -> Eigen::Vector3d {
       return (1 - at.share) * values.col(at.frame) + at.share * values.col(at.frame + 1);
     };
-    const auto told = errors.Advance(between(course->specific_force_S_mps2),
-                                     between(course->angular_velocity_S_radps),
-                                     std::max(0.0, t_s - std::exchange(last_s, t_s)));
+    const auto measured = errors.Advance(between(course->specific_force_S_mps2),
+                                         between(course->angular_velocity_S_radps),
+                                         std::max(0.0, t_s - std::exchange(last_s, t_s)));
     virtual_devices::WiimoteSensors felt;
-    felt.specific_force_S_mps2 = body::AsHeld(told.specific_force_S_mps2);
-    felt.angular_velocity_S_radps = body::AsHeld(told.angular_velocity_S_radps);
+    felt.specific_force_S_mps2 = body::AsHeld(measured.specific_force_S_mps2);
+    felt.angular_velocity_S_radps = body::AsHeld(measured.angular_velocity_S_radps);
     return felt;
   };
 }
@@ -80,9 +81,9 @@ void LoseHand(const BoardsOptions& options, Plan& plan) {
   for (; silence.device < plan.devices.size(); ++silence.device) {
     if (plan.devices[silence.device].role() == role) plan.silences.push_back(silence);
   }
-  for (Telling& telling : plan.tellings) {
-    if (!telling.hands) continue;
-    telling.hands = [seen = std::move(telling.hands), role, silence](double t_s) mutable {
+  for (Feed& feed : plan.feeds) {
+    if (!feed.hands) continue;
+    feed.hands = [seen = std::move(feed.hands), role, silence](double t_s) mutable {
       stream::HandFrame frame = seen(t_s);
       std::erase_if(frame.points, [&](const stream::TrackedPoint& point) {
         return point.role == role && silence.Covers(t_s);
@@ -119,7 +120,7 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
           InFist(stage, side, DeviceSeed(common, device) + 700), {true, false}));
     }
   }
-  TellTheBody(stage, options.hands, options.hand_noise_m, common, plan);
+  AddBodyFeeds(stage, options.hands, options.hand_noise_m, common, plan);
   LoseHand(options, plan);
   return plan;
 }

@@ -26,7 +26,8 @@ struct BoardsOptions {
 /// the errors of virtual_sensors::HeldErrors.
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common);
 
-/// What a Wiimote in the fist of side 0 (left) or 1 feels. A copy begins anew.
-StandIn::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side, std::uint64_t seed);
+/// What a Wiimote in the fist of side 0 (left) or 1 feels. A copy starts from the beginning.
+SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
+                                      std::uint64_t seed);
 
 }  // namespace footing::stream_client

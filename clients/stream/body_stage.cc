@@ -20,9 +20,9 @@ namespace sensors = virtual_sensors;
 using sensors::kFeet;
 
 constexpr double kLoadedN = 20;
-constexpr double kOutsideWorthTelling = 0.02;
+constexpr double kReportedOutsideShare = 0.02;
 constexpr double kEdge = 0.02;  // Of the loaded samples lie beyond each end of a range.
-constexpr double kWorthTellingM = 0.0005;
+constexpr double kReportedOffsetM = 0.0005;
 constexpr double kLongestS = 3600;
 
 std::string Text(const char* format, double value) {
@@ -157,7 +157,7 @@ void FitBoards(Stage& stage) {
   stage.boards = sensors::OneFootEach(stage.gap_m);
 }
 
-void Tell(const Stage& stage, bool placed) {
+void LogPlacement(const Stage& stage, bool placed) {
   const std::string gap = Text("%.0f", 1000 * stage.gap_m);
   const std::string outside = Text("%.1f %%", 100 * stage.outside_share);
   if (placed) {
@@ -166,7 +166,7 @@ void Tell(const Stage& stage, bool placed) {
         " mm apart; set this in footingd: footing-ctl layout --preset one_foot_each --gap-mm " +
         gap);
   }
-  if (stage.outside_share <= kOutsideWorthTelling) return;
+  if (stage.outside_share <= kReportedOutsideShare) return;
   log::Warning(outside +
                " of the loaded samples have a foot beyond its board's sensors; their COP is "
                "limited to the edge" +
@@ -210,7 +210,7 @@ Result<Stage> MakeStage(const StageOptions& options) {
   const Eigen::Vector2d start =
       0.5 * (SoleMiddle(stage.scene.course, 0, 0) + SoleMiddle(stage.scene.course, 1, 0)).head<2>();
   Move(-start, stage);
-  if (start.norm() > kWorthTellingM) {
+  if (start.norm() > kReportedOffsetM) {
     log::Info("moved by" + Text(" %.3f m ahead", -start.x()) +
               Text(", %.3f m to the left", -start.y()) + ", so that its feet start " +
               (options.on_boards ? "on the boards" : "about the origin"));
@@ -219,7 +219,7 @@ Result<Stage> MakeStage(const StageOptions& options) {
   if (!options.on_boards) return stage;
   if (options.place_boards) FitBoards(stage);
   stage.outside_share = OutsideShare(stage);
-  Tell(stage, options.place_boards);
+  LogPlacement(stage, options.place_boards);
   return stage;
 }
 

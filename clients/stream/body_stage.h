@@ -12,13 +12,13 @@ namespace footing::stream_client {
 
 /// Which movement, and where it stands.
 struct StageOptions {
-  std::string motion;    ///< A carried name, or a path: .json, .bvh, .amc, .trc, .c3d.
+  std::string motion;    ///< A built-in name, or a path: .json, .bvh, .amc, .trc, .c3d.
   std::string skeleton;  ///< ASF of an AMC.
   double mass_kg = 75;
   double height_m = 1.75;     ///< Of who performs a script; recordings have their own.
   bool on_boards = true;      ///< False: it may walk anywhere, and nothing is said of boards.
   bool place_boards = false;  ///< Lay the boards under the feet instead of 20 mm apart.
-  double seconds = 0;         ///< A recording goes forwards and backwards until so long; 0: once.
+  double seconds = 0;         ///< A recording plays forwards and backwards for this time; 0: once.
 };
 
 /// A body in motion over two boards, ready to be felt. Immutable once made.

@@ -26,7 +26,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
         on_end_(std::move(on_end)),
         redial_(io),
         devices_(std::move(plan.devices)),
-        fresh_sources_(std::move(plan.tellings)),
+        fresh_sources_(std::move(plan.feeds)),
         silences_(std::move(plan.silences)) {
     sequences_.assign(devices_.size(), 0);
     // One for each, and one for the end.
@@ -168,7 +168,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     const std::int64_t now_ns = clock::MonotonicNs();
     const double now_s = NanosecondsToSeconds(now_ns - start_ns_);
     if (IsSilent(slot, now_s)) return;
-    StandIn& device = devices_[slot];
+    SimulatedDevice& device = devices_[slot];
     if (envelope.output().channel() == v1::DeviceOutput::CHANNEL_FEATURE_GET) {
       if (bytes.empty()) return;
       const auto id = static_cast<std::uint8_t>(bytes[0]);
@@ -183,7 +183,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   }
 
   void Schedule(std::size_t slot) {
-    StandIn::Arrival next = devices_[slot].Next();
+    SimulatedDevice::Arrival next = devices_[slot].Next();
     next.arrives_s /= options_.rate_scale;
     next.sampled_s /= options_.rate_scale;
     if (std::isinf(next.arrives_s)) return DetachLater(slot);
@@ -210,7 +210,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     return true;
   }
 
-  void Deliver(std::size_t slot, const StandIn::Arrival& arrival) {
+  void Deliver(std::size_t slot, const SimulatedDevice::Arrival& arrival) {
     if (IsOver(arrival.arrives_s)) return;
     for (const auto& report : devices_[slot].Deliver(arrival.sampled_s)) {
       if (IsSilent(slot, arrival.arrives_s)) continue;
@@ -228,20 +228,20 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   /// Sends the value at `due_s`; its age is how late this is.
   void SendDue(std::size_t index, double due_s) {
     if (devices_.empty() && IsOver(due_s)) return;
-    Telling& telling = sources_[index];
+    Feed& feed = sources_[index];
     const std::int64_t age_ns =
         std::max<std::int64_t>(0, clock::MonotonicNs() - start_ns_ - SecondsToNanoseconds(due_s));
     v1::DeviceEnvelope envelope;
-    if (telling.hands) {
-      stream::HandFrame frame = telling.hands(due_s);
+    if (feed.hands) {
+      stream::HandFrame frame = feed.hands(due_s);
       frame.age_ns = age_ns;
       *envelope.mutable_hand_frame() = wire::ToProto(frame);
-    } else if (telling.contacts) {
-      stream::ContactFrame frame = telling.contacts(due_s);
+    } else if (feed.contacts) {
+      stream::ContactFrame frame = feed.contacts(due_s);
       frame.age_ns = age_ns;
       *envelope.mutable_contact_frame() = wire::ToProto(frame);
     } else {
-      stream::ReferenceFrame frame = telling.reference(due_s);
+      stream::ReferenceFrame frame = feed.reference(due_s);
       frame.age_ns = age_ns;
       *envelope.mutable_reference_frame() = wire::ToProto(frame);
     }
@@ -271,10 +271,10 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   const double duration_s_;  // Of motion; 0 goes on until stopped.
   const std::function<void()> on_end_;
   boost::asio::steady_timer redial_;
-  std::vector<StandIn> devices_;
-  const std::vector<Telling> fresh_sources_;
+  std::vector<SimulatedDevice> devices_;
+  const std::vector<Feed> fresh_sources_;
   const std::vector<Silence> silences_;
-  std::vector<Telling> sources_;
+  std::vector<Feed> sources_;
   std::vector<std::uint64_t> sent_;  // How often each was.
   std::vector<std::unique_ptr<boost::asio::steady_timer>> clocks_;
   std::chrono::steady_clock::time_point start_;

@@ -16,9 +16,9 @@ struct DialerOptions {
   double rate_scale = 1;  ///< The devices' clocks run this much faster than nominal.
 };
 
-/// Attaches the stand-ins to footingd's device socket, delivers their reports in real time and
-/// passes its output reports to them; what is told without a device is sent besides. Dials again
-/// whenever the connection is lost; the motion then begins anew, as a device that reconnects does.
+/// Attaches the simulated devices to footingd's device socket, delivers their reports in real time,
+/// passes its output reports to them, and sends the feeds. Dials again whenever the connection is
+/// lost; the motion then starts from the beginning, as with a device that reconnects.
 class Dialer {
  public:
   /// `on_end` is called when the motion has come to its end.

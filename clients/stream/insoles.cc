@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "clients/stream/tellings.h"
+#include "clients/stream/feeds.h"
 #include "common/units/units.h"
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/insole_cells.h"
@@ -17,17 +17,17 @@ constexpr double kInsoleRateHz = 100;
 
 }  // namespace
 
-Telling TellInsole(std::shared_ptr<const Stage> stage, std::size_t foot, const InsoleErrors& errors,
-                   std::uint64_t seed) {
+Feed InsoleFeed(std::shared_ptr<const Stage> stage, std::size_t foot, const InsoleErrors& errors,
+                std::uint64_t seed) {
   const auto places =
       sensors::InsolePlaces(sensors::PlaceOfSole(stage->scene.course, foot, 0).length_m);
   noise::Random random(seed);
   std::array<double, sensors::kInsoleCells> gains{};
   for (double& gain : gains) gain = 1 + errors.gain_spread * random.Normal();
   const double noise_n = KilogramsToNewtons(errors.noise_kg);
-  Telling telling;
-  telling.rate_hz = kInsoleRateHz;
-  telling.contacts = [=](double t_s) mutable {
+  Feed feed;
+  feed.rate_hz = kInsoleRateHz;
+  feed.contacts = [=](double t_s) mutable {
     const Stage::Instant at = stage->At(t_s);
     const sensors::SolePlace sole =
         sensors::PlaceOfSole(stage->scene.course, foot, at.share < 0.5 ? at.frame : at.frame + 1);
@@ -42,7 +42,7 @@ Telling TellInsole(std::shared_ptr<const Stage> stage, std::size_t foot, const I
     }
     return frame;
   };
-  return telling;
+  return feed;
 }
 
 Result<Plan> PlanInsoles(const InsolesOptions& options, const Common& common) {
@@ -57,10 +57,10 @@ Result<Plan> PlanInsoles(const InsolesOptions& options, const Common& common) {
   const auto stage = std::make_shared<const Stage>(*std::move(made));
   Plan plan;
   for (const std::size_t foot : {0u, 1u}) {
-    plan.tellings.push_back(
-        TellInsole(stage, foot, options.errors, DeviceSeed(common, foot + 1) + 700));
+    plan.feeds.push_back(
+        InsoleFeed(stage, foot, options.errors, DeviceSeed(common, foot + 1) + 700));
   }
-  TellTheBody(stage, options.hands, options.hand_noise_m, common, plan);
+  AddBodyFeeds(stage, options.hands, options.hand_noise_m, common, plan);
   return plan;
 }
 

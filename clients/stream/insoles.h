@@ -28,7 +28,7 @@ Result<Plan> PlanInsoles(const InsolesOptions& options, const Common& common);
 
 /// The cells under one foot, 100 times a second: virtual_sensors::LoadInsole of the motion, with
 /// errors.
-Telling TellInsole(std::shared_ptr<const Stage> stage, std::size_t foot, const InsoleErrors& errors,
-                   std::uint64_t seed);
+Feed InsoleFeed(std::shared_ptr<const Stage> stage, std::size_t foot, const InsoleErrors& errors,
+                std::uint64_t seed);
 
 }  // namespace footing::stream_client

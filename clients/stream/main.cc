@@ -15,7 +15,7 @@ using namespace footing;  // NOLINT: main is wiring
 
 int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
   if (!plan) return cli::Report(plan.error());
-  if (plan->devices.empty() && plan->tellings.empty())
+  if (plan->devices.empty() && plan->feeds.empty())
     return cli::Report(UsageError("name --left FILE, --right FILE or both"));
   auto to = common.to.empty() ? Result<transport::Address>(transport::DefaultAddress("devices"))
                               : transport::ParseAddress(common.to);
@@ -90,8 +90,8 @@ int main(int argc, char** argv) {
   accel->add_option("--rate-hz", rate_hz, "Sample rate of the CSV files, Hz")->required();
   stream_client::BoardsOptions under;
   auto* boards = stream_client::AddBoardsCommand(*app, under);
-  stream_client::InsolesOptions worn;
-  auto* insoles = stream_client::AddInsolesCommand(*app, worn);
+  stream_client::InsolesOptions insoles_options;
+  auto* insoles = stream_client::AddInsolesCommand(*app, insoles_options);
   std::string sample_folder = ".";
   auto* sample = app->add_subcommand(
       "sample", "Write small sample files for the examples of every program, and end");
@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
   if (*replay) return Run(stream_client::PlanReplay(recording, common), common);
   if (*user) return Run(stream_client::PlanUser(script, interface, common, ports), common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
-  if (*insoles) return Run(stream_client::PlanInsoles(worn, common), common);
+  if (*insoles) return Run(stream_client::PlanInsoles(insoles_options, common), common);
   if (*boards) return Run(stream_client::PlanBoards(under, common), common);
   return Run(stream_client::PlanCorners(left, right, common), common);
 }

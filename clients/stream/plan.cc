@@ -27,7 +27,7 @@ constexpr double kBlendS = 0.15;
 
 using Force = std::function<Eigen::Vector3d(double t_s)>;
 
-/// What a real accelerometer adds to a made motion.
+/// What a real accelerometer adds to a synthetic motion.
 Force WithNoise(std::uint64_t seed, Force force) {
   return [random = noise::Random(seed), force](double t_s) mutable {
     const double sd_mps2 = wrists::SensorModel().noise_mps2;
@@ -53,7 +53,7 @@ Force Repeated(Force force, double duration_s) {
   return [force, duration_s](double t_s) { return force(std::fmod(t_s, duration_s)); };
 }
 
-StandIn::WiimoteMotion Felt(Force force, Force turn = nullptr) {
+SimulatedDevice::WiimoteMotion Felt(Force force, Force turn = nullptr) {
   return [force, turn](double t_s) {
     virtual_devices::WiimoteSensors sensors;
     sensors.specific_force_S_mps2 = force(t_s);
@@ -73,7 +73,7 @@ Force PlayAccelerations(std::shared_ptr<const Table> table, double rate_hz) {
 }
 
 /// Each row holds from its time to the next row's.
-StandIn::CornerForces PlayCorners(std::shared_ptr<const Table> table) {
+SimulatedDevice::CornerForces PlayCorners(std::shared_ptr<const Table> table) {
   return [table](double t_s) {
     const double time_s = table->rows.front()[0] + t_s;
     auto next = std::upper_bound(table->rows.begin(), table->rows.end(), time_s,
@@ -174,8 +174,9 @@ std::uint64_t DeviceSeed(const Common& common, std::uint64_t device) {
   return common.seed * 1000 + device;
 }
 
-StandIn MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device, DeviceRole role,
-                    StandIn::WiimoteMotion motion, const Ports& ports) {
+SimulatedDevice MakeWiimote(const Common& common, LinkQuality link, std::uint64_t device,
+                            DeviceRole role, SimulatedDevice::WiimoteMotion motion,
+                            const Ports& ports) {
   const std::uint64_t seed = DeviceSeed(common, device);
   virtual_devices::Wiimote wiimote(seed);
   if (ports.motion_plus) wiimote.Plug(virtual_devices::Accessory::kMotionPlus, 0);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/stream/stand_in.h"
+#include "clients/stream/simulated_device.h"
 #include "common/result/result.h"
 #include "common/stream/contacts.h"
 #include "common/stream/hands.h"
@@ -27,11 +27,11 @@ struct Ports {
   bool nunchuk = false;
 };
 
-/// What is told at a rate without a device. One of the functions is set; times are seconds
-/// since the motion began and go forward. A copy begins anew.
-struct Telling {
+/// Frames sent at a fixed rate, not measured by a device. One of the functions is set; times are
+/// seconds since the start of the motion and increase. A copy starts from the beginning.
+struct Feed {
   double rate_hz = 60;
-  double late_s = 0;  ///< Each is sent so long after its time.
+  double late_s = 0;  ///< Delay between a frame's time and its sending.
   std::function<stream::HandFrame(double t_s)> hands;
   std::function<stream::ReferenceFrame(double t_s)> reference;
   std::function<stream::ContactFrame(double t_s)> contacts;
@@ -45,18 +45,18 @@ struct Silence {
   bool Covers(double t_s) const { return t_s >= from_s && t_s < to_s; }
 };
 
-/// Stand-ins and how long their motion lasts (0: without end).
+/// Simulated devices and the duration of their motion (0: endless).
 struct Plan {
-  std::vector<StandIn> devices;
-  std::vector<Telling> tellings;
+  std::vector<SimulatedDevice> devices;
+  std::vector<Feed> feeds;
   std::vector<Silence> silences;
   double duration_s = 0;
 };
 
-/// A made user; `script` a carried name or a path. `interface` "wrist": two Wiimotes that are
-/// swung. "joystick": one Wiimote whose Nunchuk's stick walks, runs and turns, and whose button A
-/// jumps (gait paper, section 7); it stands in for the right hand. A MotionPlus tells how the
-/// inclination turns.
+/// A synthetic user; `script` is a built-in name or a path. `interface` "wrist": two Wiimotes that
+/// are swung. "joystick": one Wiimote in the right hand, whose Nunchuk's stick walks, runs and
+/// turns, and whose button A jumps (gait paper, section 7). A MotionPlus measures the rate of
+/// inclination.
 Result<Plan> PlanUser(const std::string& script, const std::string& interface, const Common& common,
                       const Ports& ports = {});
 
@@ -71,8 +71,8 @@ Result<Plan> PlanCorners(const std::string& left, const std::string& right, cons
 /// share their random numbers, a Wiimote with what is in its port.
 Result<virtual_devices::LinkQuality> ParseLink(const std::string& name);
 std::uint64_t DeviceSeed(const Common& common, std::uint64_t device);
-StandIn MakeWiimote(const Common& common, virtual_devices::LinkQuality link, std::uint64_t device,
-                    stream::DeviceRole role, StandIn::WiimoteMotion motion,
-                    const Ports& ports = {});
+SimulatedDevice MakeWiimote(const Common& common, virtual_devices::LinkQuality link,
+                            std::uint64_t device, stream::DeviceRole role,
+                            SimulatedDevice::WiimoteMotion motion, const Ports& ports = {});
 
 }  // namespace footing::stream_client

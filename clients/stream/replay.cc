@@ -75,7 +75,7 @@ class StayCollector {
   std::map<std::uint32_t, v1::DeviceStatus> statuses_;
 };
 
-StandIn MakeDevice(Stay& stay, std::int64_t start_ns) {
+SimulatedDevice MakeDevice(Stay& stay, std::int64_t start_ns) {
   const double start_s = NanosecondsToSeconds(start_ns);
   for (RecordedReport& report : stay.reports) {
     v1::RawReport raw;
@@ -96,7 +96,7 @@ StandIn MakeDevice(Stay& stay, std::int64_t start_ns) {
     log::Warning("the recording begins after " + recorded.serial +
                  " was set up: its calibration is not in it");
   }
-  return StandIn(std::move(device), static_cast<stream::DeviceRole>(stay.status.role()));
+  return SimulatedDevice(std::move(device), static_cast<stream::DeviceRole>(stay.status.role()));
 }
 
 }  // namespace

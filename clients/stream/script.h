@@ -8,10 +8,10 @@
 
 namespace footing::stream_client {
 
-/// Names of the scripts that footing-stream carries.
+/// Names of the built-in scripts.
 std::vector<std::string> ScriptNames();
 
-/// The carried script of that name; a usage error that lists the names when there is none.
+/// The built-in script of that name; a usage error that lists the names when there is none.
 Result<std::vector<wrists::Segment>> ScriptNamed(const std::string& name);
 
 /// A script from JSON: a list of objects {duration_s, frequency_hz, phase_deg, amplitude_mps2,

@@ -13,10 +13,10 @@ struct StickState {
   bool jump = false;
 };
 
-/// The script of the wrists, told by stick and button (gait paper, section 7, "Joystick Interface"
-/// and figure 11): inside a radius of 0.6 of 1.0 the character walks, outside it runs; to the side
-/// it turns; a button makes it jump. Hands that swing in phase become one press a cycle, an
-/// inclination to the right (left side up) the stick pushed to the right.
+/// The script of the wrists, performed with stick and button (gait paper, section 7, "Joystick
+/// Interface" and figure 11): inside a radius of 0.6 of 1.0 the character walks, outside it runs;
+/// to the side it turns; a button makes it jump. Hands that swing in phase become one press a
+/// cycle, an inclination to the right (left side up) the stick pushed to the right.
 class StickMotion {
  public:
   /// The stick needs `blend_s` to get to its new place. `segments` not empty.

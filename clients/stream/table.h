@@ -13,7 +13,7 @@ struct Table {
 };
 
 /// Parses it. Errors name `origin`, the line and what is wrong with it: a column too few or too
-/// many, a text that is no finite number.
+/// many, a text that is not a finite number.
 Result<Table> ParseTable(const std::string& text, std::size_t columns, const std::string& origin);
 
 }  // namespace footing::stream_client

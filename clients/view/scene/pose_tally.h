@@ -10,9 +10,9 @@
 
 namespace footing::scene {
 
-/// What a run has seen of a reconstructed body, and how far it was from what the stand-in's body
-/// really did. Each pose is held against the reference that was sampled nearest to when the pose is
-/// of (its publication less its lag), so all latencies count as errors.
+/// What a run has seen of a reconstructed body, and how far it was from what the simulated person's
+/// body really did. Each pose is held against the reference that was sampled nearest to when the
+/// pose is of (its publication less its lag), so all latencies count as errors.
 class PoseTally {
  public:
   /// The first character of a frame that was published at `host_ns` (the viewer's clock).

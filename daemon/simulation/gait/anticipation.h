@@ -2,7 +2,7 @@
 
 #include "daemon/simulation/gait/context.h"
 
-/// What shows of a command before physics can obey it: "a visible anticipation at once". Both are
+/// What shows of a command before physics can follow it: "a visible anticipation at once". Both are
 /// set-points of servos that run anyway, small enough not to disturb the balance.
 namespace footing::gait {
 

@@ -44,7 +44,7 @@ constexpr std::array kFields{
     GAIN(walking, hip_height_m, "m", 0.6, 1.1),
     GAIN(walking, leg_stiffness_n_per_m, "N/m", 100, 50000),
     GAIN(walking, leg_damping_ns_per_m, "N s/m", 0, 1000),
-    GAIN(walking, carried_mass_kg, "kg", 0, 50),
+    GAIN(walking, supported_mass_kg, "kg", 0, 50),
     GAIN(walking, leg_length_min_m, "m", 0.3, 1.5),
     GAIN(walking, leg_length_max_m, "m", 0.3, 1.5),
     GAIN(walking, step_width_m, "m", 0, 1),

@@ -50,7 +50,7 @@ struct WalkingGains {
   double hip_height_m = 0.93;  ///< Over the supporting foot.
   double leg_stiffness_n_per_m = 8000;
   double leg_damping_ns_per_m = 250;
-  double carried_mass_kg = 11.5;  ///< Feed-forward weight on the supporting leg.
+  double supported_mass_kg = 11.5;  ///< Feed-forward weight on the supporting leg.
   double leg_length_min_m = 0.62;
   double leg_length_max_m = 1.08;
   double step_width_m = 0.20;

@@ -207,8 +207,8 @@ Vector3d Cleared(const Context& context, const GaitMemory& memory, int leg,
     r_W.z() = std::max(r_W.z(), lowest_m - state.p_WH.z());
     if (past_m > 0 || state.p_WF.z() > edge->height_m + context.biped.foot_radius_m) continue;
     // Still lower than the riser's top: up first, then over it.
-    const double room_m = (edge->p_W_m - state.p_WH).dot(ahead_W) - gains.riser_margin_m;
-    r_W -= std::max(0.0, r_W.dot(ahead_W) - room_m) * ahead_W;
+    const double clearance_m = (edge->p_W_m - state.p_WH).dot(ahead_W) - gains.riser_margin_m;
+    r_W -= std::max(0.0, r_W.dot(ahead_W) - clearance_m) * ahead_W;
   }
   r_W.z() = std::min(r_W.z(), std::max(r_HF_W_m.z(), -gains.shortest_leg_m));
   return r_W;

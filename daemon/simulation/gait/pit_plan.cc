@@ -93,19 +93,19 @@ double Hop::LiftOffFor(double stride_m, double rise_m) const {
 }
 
 double Thrust::ExtensionFor(double lift_off_mps) const {
-  const double carried_kg = mass_kg - feet_kg;
-  const double weight_n = carried_kg * kStandardGravityMps2;
+  const double supported_kg = mass_kg - feet_kg;
+  const double weight_n = supported_kg * kStandardGravityMps2;
   const double useful_n_per_m = (1 - loss_share) * stiffness_n_per_m;
-  const double motion_j = mass_kg * mass_kg / carried_kg * lift_off_mps * lift_off_mps / 2;
+  const double motion_j = mass_kg * mass_kg / supported_kg * lift_off_mps * lift_off_mps / 2;
   return (weight_n + std::sqrt(weight_n * weight_n + 2 * useful_n_per_m * motion_j)) /
          useful_n_per_m;
 }
 
 double Thrust::LossShare(double extension_m, double lift_off_mps) const {
-  const double carried_kg = mass_kg - feet_kg;
+  const double supported_kg = mass_kg - feet_kg;
   const double stored_j = stiffness_n_per_m * extension_m * extension_m / 2;
-  const double motion_j = mass_kg * mass_kg / carried_kg * lift_off_mps * lift_off_mps / 2;
-  return (stored_j - carried_kg * kStandardGravityMps2 * extension_m - motion_j) / stored_j;
+  const double motion_j = mass_kg * mass_kg / supported_kg * lift_off_mps * lift_off_mps / 2;
+  return (stored_j - supported_kg * kStandardGravityMps2 * extension_m - motion_j) / stored_j;
 }
 
 PitPlan PlanPit(const PitAhead& pit, const Hop& first, const Hop& next, const PitLimits& limits) {

@@ -13,8 +13,8 @@ constexpr double kLongestStepS = 1.2;
 constexpr int kStepsToSettle = 2;
 constexpr double kSettledMps = 0.05;
 constexpr double kLargestErrorMps = 0.8;
-/// Running, and on a slope, speeding up takes longer than v_d does: that is no error to learn from,
-/// and the speed would overshoot by what was learned.
+/// Running, and on a slope, speeding up takes longer than v_d does: that is not an error to learn
+/// from, and the speed would overshoot by what was learned.
 constexpr double kLargestErrorBehindMps = 0.3;
 
 double StepGain(stream::Gait gait, const Gains& gains) {

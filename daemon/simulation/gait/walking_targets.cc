@@ -45,7 +45,7 @@ LegTarget Supporting(const Context& context, const GaitMemory& memory, int leg, 
   target.axial.follow_rate = true;
   target.axial.stiffness_n_per_m = gains.leg_stiffness_n_per_m;
   target.axial.damping_ns_per_m = gains.leg_damping_ns_per_m;
-  target.axial.feed_forward_n = gains.carried_mass_kg * kStandardGravityMps2 *
+  target.axial.feed_forward_n = gains.supported_mass_kg * kStandardGravityMps2 *
                                 std::max(0.3, -context.body.legs[leg].u_HF_W.z());
   target.axial.min_n = 0;
   target.axial.share = share;

@@ -22,7 +22,7 @@ struct Spot {
   Edge behind, ahead;      ///< Of this segment; infinitely far where the ground goes on.
 };
 
-/// Smaller changes of height are no edges.
+/// Smaller changes of height do not count as edges.
 inline constexpr double kLowestEdgeM = 0.01;
 
 /// Looks at one segment and its two neighbours. Beside the ribbon as at the nearest place.

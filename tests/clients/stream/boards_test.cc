@@ -7,7 +7,7 @@
 #include <fstream>
 #include <memory>
 
-#include "clients/stream/tellings.h"
+#include "clients/stream/feeds.h"
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
 #include "common/body/points.h"
@@ -41,11 +41,11 @@ TEST_F(BoardsTest, TwoBoardsAndTheTruePoseAreThereAndHandsWhenAskedFor) {
   ASSERT_EQ(plan->devices.size(), 2u);
   EXPECT_EQ(plan->devices[0].role(), stream::DeviceRole::kLeftBoard);
   EXPECT_EQ(plan->devices[1].role(), stream::DeviceRole::kRightBoard);
-  ASSERT_EQ(plan->tellings.size(), 1u);
-  EXPECT_TRUE(plan->tellings[0].reference);
+  ASSERT_EQ(plan->feeds.size(), 1u);
+  EXPECT_TRUE(plan->feeds[0].reference);
   EXPECT_EQ(plan->duration_s, 0);  // A script again and again.
   options_.hands = "move";
-  EXPECT_EQ(PlanBoards(options_, {})->tellings.size(), 2u);
+  EXPECT_EQ(PlanBoards(options_, {})->feeds.size(), 2u);
   options_.hands = "wiimote";
   EXPECT_EQ(PlanBoards(options_, {})->devices.size(), 4u);
 }
@@ -66,7 +66,7 @@ TEST_F(BoardsTest, ALostHandIsASilentWiimoteOrAPointThatIsNotSeen) {
   auto seen = PlanBoards(options_, {});
   ASSERT_TRUE(seen);
   EXPECT_TRUE(seen->silences.empty());
-  Telling& kinect = seen->tellings[0];
+  Feed& kinect = seen->feeds[0];
   EXPECT_NEAR(kinect.rate_hz, 30, 1e-9);
   EXPECT_NEAR(kinect.late_s, 2.0 / 30, 1e-9);
   EXPECT_EQ(kinect.hands(1.9).points.size(), 2u);
@@ -150,8 +150,8 @@ TEST_F(BoardsTest, HandsAreSeenWhereTheFistsAreWithTheNoiseAskedFor) {
   auto made = MakeStage(options_.stage);
   ASSERT_TRUE(made);
   const auto stage = std::make_shared<const Stage>(*std::move(made));
-  const Telling telling = TellHands(stage, 0.02, 7);
-  Telling first = telling, second = telling;
+  const Feed feed = HandFeed(stage, 0.02, 7);
+  Feed first = feed, second = feed;
   double square = 0;
   body::Kinematics at(stage->scene.body.skeleton);
   body::ComputeKinematics(stage->scene.body.skeleton, stage->scene.motion.q.col(0), at);
@@ -180,7 +180,7 @@ TEST_F(BoardsTest, TheReferenceIsTheWholePoseAndFitsIntoAMessage) {
   auto made = MakeStage(options_.stage);
   ASSERT_TRUE(made);
   const auto stage = std::make_shared<const Stage>(*std::move(made));
-  const stream::ReferenceFrame frame = TellPose(stage).reference(3.02);
+  const stream::ReferenceFrame frame = PoseFeed(stage).reference(3.02);
   const auto& skeleton = stage->scene.body.skeleton;
   ASSERT_EQ(static_cast<int>(frame.parents.size()), skeleton.size());
   EXPECT_LE(frame.parents.size(), 64u);
@@ -220,7 +220,7 @@ TEST_F(BoardsTest, AWiimoteInTheFistFeelsGravityAndTurnsWithTheArm) {
   double felt_mps2 = 0;
   for (int device = 0; device < kDevices; ++device) {
     const int side = device % 2;
-    StandIn::WiimoteMotion motion = InFist(stage, side, static_cast<std::uint64_t>(device));
+    SimulatedDevice::WiimoteMotion motion = InFist(stage, side, static_cast<std::uint64_t>(device));
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), turned = Eigen::Vector3d::Zero();
     Eigen::Vector3d bias = Eigen::Vector3d::Zero();
     for (int i = 0; i < 270; ++i) {
@@ -243,11 +243,11 @@ TEST_F(BoardsTest, AWiimoteInTheFistFeelsGravityAndTurnsWithTheArm) {
 TEST_F(BoardsTest, ACopyOfAWiimotesMotionBeginsAnew) {
   auto made = MakeStage(options_.stage);
   ASSERT_TRUE(made);
-  const StandIn::WiimoteMotion motion = InFist(std::make_shared<const Stage>(*made), 0, 5);
-  StandIn::WiimoteMotion one = motion, other = motion;
+  const SimulatedDevice::WiimoteMotion motion = InFist(std::make_shared<const Stage>(*made), 0, 5);
+  SimulatedDevice::WiimoteMotion one = motion, other = motion;
   for (int i = 0; i < 5; ++i) one(0.01 * i);
   EXPECT_NE(one(0.05).specific_force_S_mps2, other(0.05).specific_force_S_mps2);
-  StandIn::WiimoteMotion first = motion, again = motion;
+  SimulatedDevice::WiimoteMotion first = motion, again = motion;
   EXPECT_EQ(first(0.1).specific_force_S_mps2, again(0.1).specific_force_S_mps2);
 }
 

@@ -34,12 +34,12 @@ TEST_F(InsolesTest, BothInsolesAndTheTruePoseAreToldAndNoDeviceIsThere) {
   auto plan = PlanInsoles(options_, {});
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_TRUE(plan->devices.empty());
-  ASSERT_EQ(plan->tellings.size(), 3u);
-  EXPECT_EQ(plan->tellings[0].contacts(0).body, stream::ContactBody::kLeftFoot);
-  EXPECT_EQ(plan->tellings[1].contacts(0).body, stream::ContactBody::kRightFoot);
-  EXPECT_TRUE(plan->tellings[2].reference);
+  ASSERT_EQ(plan->feeds.size(), 3u);
+  EXPECT_EQ(plan->feeds[0].contacts(0).body, stream::ContactBody::kLeftFoot);
+  EXPECT_EQ(plan->feeds[1].contacts(0).body, stream::ContactBody::kRightFoot);
+  EXPECT_TRUE(plan->feeds[2].reference);
   options_.hands = "move";
-  EXPECT_EQ(PlanInsoles(options_, {})->tellings.size(), 4u);
+  EXPECT_EQ(PlanInsoles(options_, {})->feeds.size(), 4u);
   options_.hands = "wiimote";
   EXPECT_THAT(PlanInsoles(options_, {}).error().message, HasSubstr("none and move"));
 }
@@ -50,9 +50,9 @@ TEST_F(InsolesTest, TheCellsCarryTheFootsLoadAtItsCop) {
   ASSERT_TRUE(made);
   const auto stage = std::make_shared<const Stage>(*std::move(made));
   for (const std::size_t foot : {0u, 1u}) {
-    Telling telling = TellInsole(stage, foot, {}, 1);
+    Feed feed = InsoleFeed(stage, foot, {}, 1);
     for (double t_s = 0.05; t_s < stage->duration_s(); t_s += 0.31) {
-      const stream::ContactFrame frame = telling.contacts(t_s);
+      const stream::ContactFrame frame = feed.contacts(t_s);
       EXPECT_TRUE(frame.simulated);
       double total_n = 0;
       Eigen::Vector3d moment = Eigen::Vector3d::Zero();
@@ -75,9 +75,9 @@ TEST_F(InsolesTest, NoiseAndGainsAreAsAskedForAndTheSameForASeed) {
   auto made = MakeStage(options_.stage);
   ASSERT_TRUE(made);
   const auto stage = std::make_shared<const Stage>(*std::move(made));
-  Telling exact = TellInsole(stage, 0, {}, 1);
-  Telling noisy = TellInsole(stage, 0, {0.1, 0}, 5);
-  Telling again = TellInsole(stage, 0, {0.1, 0}, 5);
+  Feed exact = InsoleFeed(stage, 0, {}, 1);
+  Feed noisy = InsoleFeed(stage, 0, {0.1, 0}, 5);
+  Feed again = InsoleFeed(stage, 0, {0.1, 0}, 5);
   double square = 0;
   constexpr int kFrames = 500;
   const stream::ContactFrame truth = exact.contacts(0);
@@ -90,7 +90,7 @@ TEST_F(InsolesTest, NoiseAndGainsAreAsAskedForAndTheSameForASeed) {
   }
   const double count = kFrames * static_cast<double>(truth.cells.size());
   EXPECT_NEAR(std::sqrt(square / count), KilogramsToNewtons(0.1), 0.03);
-  Telling spread = TellInsole(stage, 0, {0, 0.05}, 5);
+  Feed spread = InsoleFeed(stage, 0, {0, 0.05}, 5);
   const stream::ContactFrame read = spread.contacts(0);
   EXPECT_GT(std::abs(read.cells[0].load_n / truth.cells[0].load_n -
                      read.cells[1].load_n / truth.cells[1].load_n),

@@ -25,7 +25,7 @@ constexpr std::int64_t kAnswerNs = 4'000'000;  // From a request to its answer.
 /// footingd's hub and the devices that talk to it, in time that only they advance.
 class VirtualLine {
  public:
-  explicit VirtualLine(std::vector<StandIn> devices)
+  explicit VirtualLine(std::vector<SimulatedDevice> devices)
       : devices_(std::move(devices)),
         hub_(sensor::Config{},
              {[this](devices::DeviceHandle device, const reports::OutputReport& report) {
@@ -118,8 +118,8 @@ class VirtualLine {
     return recording::ReadTick(recorded).value();
   }
 
-  std::vector<StandIn> devices_;
-  std::vector<StandIn::Arrival> next_;
+  std::vector<SimulatedDevice> devices_;
+  std::vector<SimulatedDevice::Arrival> next_;
   std::priority_queue<Answer> answers_;
   std::uint64_t order_ = 0;
   std::int64_t now_ns_ = kStartNs;
@@ -127,8 +127,8 @@ class VirtualLine {
 };
 
 /// A Wiimote that is swung, a board that is leant on, a PS Move that turns.
-std::vector<StandIn> MakeDevices() {
-  std::vector<StandIn> devices;
+std::vector<SimulatedDevice> MakeDevices() {
+  std::vector<SimulatedDevice> devices;
   devices.emplace_back(
       virtual_devices::Wiimote(4),
       [](double t_s) {
@@ -287,7 +287,7 @@ TEST_F(Replay, ADeviceThatComesLaterAndIsLostAttachesAndDetachesThen) {
   Write(path_, ticks, true);
   const auto plan = PlanReplay(path_, {});
   ASSERT_TRUE(plan.ok()) << plan.error().message;
-  for (const StandIn& device : plan->devices) {
+  for (const SimulatedDevice& device : plan->devices) {
     const bool wiimote = device.identity().name == "Nintendo RVL-CNT-01";
     EXPECT_NEAR(device.attaches_s(), wiimote ? 2 : 0, 0.1);
     EXPECT_NEAR(wiimote ? device.detaches_s() : 5, 5, 0.1);

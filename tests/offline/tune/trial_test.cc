@@ -42,7 +42,7 @@ TEST(Trials, LegsThatCannotCarryFailInEveryTrial) {
   Team team = NewTeam(2);
   gait::Gains weak;
   weak.walking.leg_stiffness_n_per_m = 100;
-  weak.walking.carried_mass_kg = 1;
+  weak.walking.supported_mass_kg = 1;
   const Score score = ScoreOf(team.Try({weak}, 4, 1).front());
   EXPECT_EQ(score.survival, 0);
   EXPECT_GT(score.mean.failure, 5);

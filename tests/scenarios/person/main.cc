@@ -25,7 +25,7 @@ using namespace footing;  // NOLINT: a program of one file
 namespace asio = boost::asio;
 using stream::DeviceRole;
 using stream_client::Dialer;
-using stream_client::StandIn;
+using stream_client::SimulatedDevice;
 using virtual_devices::LinkQuality;
 
 constexpr std::uint8_t kExhausted = 0x08;  // Of a Wiimote's battery; full is 0xc8.
@@ -46,7 +46,7 @@ class Person {
   }
 
  private:
-  StandIn Board(int side, std::uint64_t seed) {
+  SimulatedDevice Board(int side, std::uint64_t seed) {
     const bool left = (side == 0) != options_.jumbled;
     return {virtual_devices::BalanceBoard(seed),
             [this, side](double t_s) { return body_.Board(side, t_s); },
@@ -54,7 +54,7 @@ class Person {
             virtual_devices::BoardLink(LinkQuality::kGood, seed)};
   }
 
-  StandIn Remote(int side, std::uint64_t seed) {
+  SimulatedDevice Remote(int side, std::uint64_t seed) {
     virtual_devices::Wiimote wiimote(seed);
     if (options_.low_battery && side == 1) wiimote.controller().set_battery(kExhausted);
     const auto feels = [this, side](double t_s) {

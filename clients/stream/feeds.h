@@ -9,21 +9,21 @@
 namespace footing::stream_client {
 
 /// Both fists 60 times a second as a tracker with white noise sees them.
-Telling TellHands(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed);
+Feed HandFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed);
 
-/// Both fists as a Kinect's skeleton tracker tells them (virtual_sensors::KinectErrors).
-Telling TellKinectHands(std::shared_ptr<const Stage> stage, std::uint64_t seed);
+/// Both fists as a Kinect's skeleton tracker measures them (virtual_sensors::KinectErrors).
+Feed KinectHandFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed);
 
 /// The true pose 60 times a second: all joints, or of a skeleton of more than 64 those on the way
 /// to a landmark.
-Telling TellPose(std::shared_ptr<const Stage> stage);
+Feed PoseFeed(std::shared_ptr<const Stage> stage);
 
 /// Ends a plan of what is under the feet: the fists where `hands` is "move" or "kinect", the true
 /// pose, and how long it takes.
-void TellTheBody(const std::shared_ptr<const Stage>& stage, const std::string& hands,
-                 double hand_noise_m, const Common& common, Plan& plan);
+void AddBodyFeeds(const std::shared_ptr<const Stage>& stage, const std::string& hands,
+                  double hand_noise_m, const Common& common, Plan& plan);
 
-/// Joints of a skeleton that a reference frame has room for, parents first.
+/// Joints of a skeleton that fit into a reference frame, parents first.
 std::vector<int> ShownJoints(const body::Body& body);
 
 }  // namespace footing::stream_client

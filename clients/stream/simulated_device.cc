@@ -1,4 +1,4 @@
-#include "clients/stream/stand_in.h"
+#include "clients/stream/simulated_device.h"
 
 #include <cstdio>
 #include <limits>
@@ -13,14 +13,14 @@ using virtual_devices::Report;
 namespace {
 
 /// What the host sets is not looked at.
-StandIn::Shown Show(const RecordedDevice&, std::int64_t) { return {}; }
+SimulatedDevice::Shown Show(const RecordedDevice&, std::int64_t) { return {}; }
 
 template <typename Remote>
-StandIn::Shown Show(const Remote& remote, std::int64_t) {
+SimulatedDevice::Shown Show(const Remote& remote, std::int64_t) {
   return {" LEDs " + std::to_string(remote.leds()), remote.rumble()};
 }
 
-StandIn::Shown Show(const virtual_devices::PsMove& move, std::int64_t now_ns) {
+SimulatedDevice::Shown Show(const virtual_devices::PsMove& move, std::int64_t now_ns) {
   char sphere[32];
   std::snprintf(sphere, sizeof sphere, " sphere #%06x", move.sphere_rgb(now_ns));
   return {sphere, move.rumble(now_ns) != 0};
@@ -44,54 +44,56 @@ std::vector<Report> Sample(virtual_devices::PsMove& move, std::int64_t now_ns,
 
 }  // namespace
 
-StandIn::StandIn(Device device, stream::DeviceRole role, const virtual_devices::LinkConfig& link)
+SimulatedDevice::SimulatedDevice(Device device, stream::DeviceRole role,
+                                 const virtual_devices::LinkConfig& link)
     : fresh_(std::move(device)), device_(fresh_), role_(role), link_config_(link), link_(link, 0) {
   Restart();
 }
 
-StandIn::StandIn(virtual_devices::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
-                 const virtual_devices::LinkConfig& link)
-    : StandIn(Device(Wiimote{std::move(wiimote), std::move(motion)}), role, link) {}
+SimulatedDevice::SimulatedDevice(virtual_devices::Wiimote wiimote, WiimoteMotion motion,
+                                 stream::DeviceRole role, const virtual_devices::LinkConfig& link)
+    : SimulatedDevice(Device(Wiimote{std::move(wiimote), std::move(motion)}), role, link) {}
 
-StandIn::StandIn(virtual_devices::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
-                 const virtual_devices::LinkConfig& link)
-    : StandIn(Device(Board{std::move(board), std::move(forces)}), role, link) {}
+SimulatedDevice::SimulatedDevice(virtual_devices::BalanceBoard board, CornerForces forces,
+                                 stream::DeviceRole role, const virtual_devices::LinkConfig& link)
+    : SimulatedDevice(Device(Board{std::move(board), std::move(forces)}), role, link) {}
 
-StandIn::StandIn(virtual_devices::PsMove move, MoveMotion motion, stream::DeviceRole role,
-                 const virtual_devices::LinkConfig& link)
-    : StandIn(Device(Move{std::move(move), std::move(motion)}), role, link) {}
+SimulatedDevice::SimulatedDevice(virtual_devices::PsMove move, MoveMotion motion,
+                                 stream::DeviceRole role, const virtual_devices::LinkConfig& link)
+    : SimulatedDevice(Device(Move{std::move(move), std::move(motion)}), role, link) {}
 
-StandIn::StandIn(RecordedDevice recorded, stream::DeviceRole role)
-    : StandIn(Device(Recorded{std::move(recorded)}), role, {}) {}
+SimulatedDevice::SimulatedDevice(RecordedDevice recorded, stream::DeviceRole role)
+    : SimulatedDevice(Device(Recorded{std::move(recorded)}), role, {}) {}
 
-const virtual_devices::Identity& StandIn::identity() const {
+const virtual_devices::Identity& SimulatedDevice::identity() const {
   return std::visit(
       [](const auto& felt) -> const auto& { return felt.device.identity(); }, device_);
 }
 
-std::vector<Report> StandIn::HandleOutput(double now_s, std::span<const std::uint8_t> output) {
+std::vector<Report> SimulatedDevice::HandleOutput(double now_s,
+                                                  std::span<const std::uint8_t> output) {
   const std::int64_t now_ns = SecondsToNanoseconds(now_s);
   return std::visit([=](auto& felt) { return felt.device.HandleOutput(now_ns, output); }, device_);
 }
 
-Report StandIn::Feature(std::uint8_t id, std::size_t size) {
+Report SimulatedDevice::Feature(std::uint8_t id, std::size_t size) {
   if (auto* recorded = std::get_if<Recorded>(&device_)) return recorded->device.Feature(id, size);
   auto* move = std::get_if<Move>(&device_);
   return move == nullptr ? Report() : move->device.Feature(id, size).value_or(Report());
 }
 
-double StandIn::attaches_s() const {
+double SimulatedDevice::attaches_s() const {
   const auto* recorded = std::get_if<Recorded>(&device_);
   return recorded == nullptr ? 0 : recorded->device.attaches_s();
 }
 
-double StandIn::detaches_s() const {
+double SimulatedDevice::detaches_s() const {
   const auto* recorded = std::get_if<Recorded>(&device_);
   return recorded == nullptr ? std::numeric_limits<double>::infinity()
                              : recorded->device.detaches_s();
 }
 
-StandIn::Arrival StandIn::Next() {
+SimulatedDevice::Arrival SimulatedDevice::Next() {
   if (const auto* recorded = std::get_if<Recorded>(&device_)) {
     const double time_s =
         recorded->device.NextTime().value_or(std::numeric_limits<double>::infinity());
@@ -101,7 +103,7 @@ StandIn::Arrival StandIn::Next() {
   return {NanosecondsToSeconds(arrival.arrives_ns), NanosecondsToSeconds(arrival.sampled_ns)};
 }
 
-std::vector<Report> StandIn::Deliver(double sampled_s) {
+std::vector<Report> SimulatedDevice::Deliver(double sampled_s) {
   if (auto* recorded = std::get_if<Recorded>(&device_)) return {recorded->device.Take()};
   const bool fresh = sampled_s != held_s_;
   held_s_ = sampled_s;
@@ -117,20 +119,20 @@ std::vector<Report> StandIn::Deliver(double sampled_s) {
       device_);
 }
 
-void StandIn::Restart() {
+void SimulatedDevice::Restart() {
   device_ = fresh_;
   link_ = virtual_devices::LinkModel(link_config_, 0);
   held_s_ = -1;
   shown_ = Show(0);
 }
 
-StandIn::Shown StandIn::Show(double now_s) const {
+SimulatedDevice::Shown SimulatedDevice::Show(double now_s) const {
   const std::int64_t now_ns = SecondsToNanoseconds(now_s);
   return std::visit([=](const auto& felt) { return stream_client::Show(felt.device, now_ns); },
                     device_);
 }
 
-std::string StandIn::Changes(double now_s) {
+std::string SimulatedDevice::Changes(double now_s) {
   const Shown shown = Show(now_s);
   std::string line;
   if (shown.lights != shown_.lights) line += shown.lights;

@@ -16,22 +16,22 @@
 
 namespace footing::stream_client {
 
-/// One device stand-in: a device model, what its sensor feels, and the link it is heard over. It
-/// knows no clock; times are seconds since its motion began.
-class StandIn {
+/// One simulated device: a device model, what its sensor feels, and the link it is heard over. It
+/// has no clock; times are seconds since its motion began.
+class SimulatedDevice {
  public:
   using WiimoteMotion = std::function<virtual_devices::WiimoteSensors(double t_s)>;
   using CornerForces = std::function<virtual_devices::CornerForces(double t_s)>;
   using MoveMotion = std::function<virtual_devices::MoveSensors(double t_s)>;
 
-  StandIn(virtual_devices::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
-          const virtual_devices::LinkConfig& link);
-  StandIn(virtual_devices::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
-          const virtual_devices::LinkConfig& link);
-  StandIn(virtual_devices::PsMove move, MoveMotion motion, stream::DeviceRole role,
-          const virtual_devices::LinkConfig& link);
+  SimulatedDevice(virtual_devices::Wiimote wiimote, WiimoteMotion motion, stream::DeviceRole role,
+                  const virtual_devices::LinkConfig& link);
+  SimulatedDevice(virtual_devices::BalanceBoard board, CornerForces forces, stream::DeviceRole role,
+                  const virtual_devices::LinkConfig& link);
+  SimulatedDevice(virtual_devices::PsMove move, MoveMotion motion, stream::DeviceRole role,
+                  const virtual_devices::LinkConfig& link);
   /// Its reports, and when they come, are those of the recording.
-  StandIn(RecordedDevice recorded, stream::DeviceRole role);
+  SimulatedDevice(RecordedDevice recorded, stream::DeviceRole role);
 
   const virtual_devices::Identity& identity() const;
   stream::DeviceRole role() const { return role_; }
@@ -54,8 +54,7 @@ class StandIn {
   /// The reports with the value of `sampled_s`; none while a mode is wanted and the host has set
   /// none.
   std::vector<virtual_devices::Report> Deliver(double sampled_s);
-  /// The motion begins anew at time 0, with the device fresh from its box, as after a new
-  /// connection.
+  /// The motion restarts at time 0 with the device in its initial state, as after a new connection.
   void Restart();
 
   /// A line for the log when lights or rumble changed since the last call; empty otherwise.
@@ -83,7 +82,7 @@ class StandIn {
   };
   using Device = std::variant<Wiimote, Board, Move, Recorded>;
 
-  StandIn(Device device, stream::DeviceRole role, const virtual_devices::LinkConfig& link);
+  SimulatedDevice(Device device, stream::DeviceRole role, const virtual_devices::LinkConfig& link);
 
   Shown Show(double now_s) const;
 
@@ -93,7 +92,7 @@ class StandIn {
   virtual_devices::LinkConfig link_config_;
   virtual_devices::LinkModel link_;
   double held_s_ = -1;
-  Shown shown_;  ///< As told last.
+  Shown shown_;  ///< As reported last.
 };
 
 }  // namespace footing::stream_client

@@ -1,4 +1,4 @@
-#include "clients/stream/tellings.h"
+#include "clients/stream/feeds.h"
 
 #include <algorithm>
 #include <utility>
@@ -65,34 +65,34 @@ stream::HandFrame Fists(const Stage& stage, const char* tracker, double sd_m, do
 
 }  // namespace
 
-Telling TellHands(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed) {
-  Telling telling;
-  telling.rate_hz = kTruthRateHz;
-  telling.hands = [stage, noise_m, random = noise::Random(seed)](double t_s) mutable {
+Feed HandFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed) {
+  Feed feed;
+  feed.rate_hz = kTruthRateHz;
+  feed.hands = [stage, noise_m, random = noise::Random(seed)](double t_s) mutable {
     stream::HandFrame frame = Fists(*stage, "move", std::max(noise_m, kLeastSdM), t_s);
     for (stream::TrackedPoint& point : frame.points)
       for (double& value : point.position_m) value += noise_m * random.Normal();
     return frame;
   };
-  return telling;
+  return feed;
 }
 
-Telling TellKinectHands(std::shared_ptr<const Stage> stage, std::uint64_t seed) {
+Feed KinectHandFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed) {
   using virtual_sensors::KinectErrors;
-  Telling telling;
-  telling.rate_hz = 1 / KinectErrors::kPeriodS;
-  telling.late_s = KinectErrors::kLateS;
-  telling.hands = [stage, errors = KinectErrors(seed)](double t_s) mutable {
+  Feed feed;
+  feed.rate_hz = 1 / KinectErrors::kPeriodS;
+  feed.late_s = KinectErrors::kLateS;
+  feed.hands = [stage, errors = KinectErrors(seed)](double t_s) mutable {
     stream::HandFrame frame = Fists(*stage, "kinect", KinectErrors::SdM(), t_s);
     errors.Expose();
     for (stream::TrackedPoint& point : frame.points)
       point.position_m = errors.Measure(point.position_m);
     return frame;
   };
-  return telling;
+  return feed;
 }
 
-Telling TellPose(std::shared_ptr<const Stage> stage) {
+Feed PoseFeed(std::shared_ptr<const Stage> stage) {
   const std::vector<int> joints = ShownJoints(stage->scene.body);
   std::vector<int> parents;
   for (const int joint : joints) {
@@ -100,9 +100,9 @@ Telling TellPose(std::shared_ptr<const Stage> stage) {
     const auto found = std::find(joints.begin(), joints.end(), parent);
     parents.push_back(found == joints.end() ? -1 : static_cast<int>(found - joints.begin()));
   }
-  Telling telling;
-  telling.rate_hz = kTruthRateHz;
-  telling.reference = [stage, joints, parents](double t_s) {
+  Feed feed;
+  feed.rate_hz = kTruthRateHz;
+  feed.reference = [stage, joints, parents](double t_s) {
     const body::Kinematics at = KinematicsAt(*stage, t_s);
     stream::ReferenceFrame frame;
     frame.parents = parents;
@@ -111,17 +111,17 @@ Telling TellPose(std::shared_ptr<const Stage> stage) {
     frame.com_m = body::CentreOfMass(stage->scene.body, at);
     return frame;
   };
-  return telling;
+  return feed;
 }
 
-void TellTheBody(const std::shared_ptr<const Stage>& stage, const std::string& hands,
-                 double hand_noise_m, const Common& common, Plan& plan) {
+void AddBodyFeeds(const std::shared_ptr<const Stage>& stage, const std::string& hands,
+                  double hand_noise_m, const Common& common, Plan& plan) {
   if (hands == "move") {
-    plan.tellings.push_back(TellHands(stage, hand_noise_m, DeviceSeed(common, 3) + 700));
+    plan.feeds.push_back(HandFeed(stage, hand_noise_m, DeviceSeed(common, 3) + 700));
   } else if (hands == "kinect") {
-    plan.tellings.push_back(TellKinectHands(stage, DeviceSeed(common, 3) + 700));
+    plan.feeds.push_back(KinectHandFeed(stage, DeviceSeed(common, 3) + 700));
   }
-  plan.tellings.push_back(TellPose(stage));
+  plan.feeds.push_back(PoseFeed(stage));
   plan.duration_s = common.seconds > 0 ? common.seconds : stage->repeats ? 0 : stage->duration_s();
 }
 

@@ -1,4 +1,4 @@
-#include "clients/stream/stand_in.h"
+#include "clients/stream/simulated_device.h"
 
 #include <gtest/gtest.h>
 
@@ -30,17 +30,17 @@ Report Write(std::uint32_t address, std::uint8_t value) {
 }
 
 /// The extension's bytes of report 0x35.
-std::vector<std::uint8_t> PacketOf(StandIn& device, double t_s) {
+std::vector<std::uint8_t> PacketOf(SimulatedDevice& device, double t_s) {
   const auto reports = device.Deliver(t_s);
   if (reports.size() != 1 || reports[0][0] != 0x35) return {};
   return {reports[0].begin() + 6, reports[0].begin() + 12};
 }
 
-TEST(StandIn, TheJoystickUsersNunchukStandsInFrontWhileWalking) {
+TEST(SimulatedDevice, TheJoystickUsersNunchukStandsInFrontWhileWalking) {
   auto plan = PlanUser("walk", "joystick", Ideal());
   ASSERT_TRUE(plan);
   ASSERT_EQ(plan->devices.size(), 1u);
-  StandIn& device = plan->devices[0];
+  SimulatedDevice& device = plan->devices[0];
   EXPECT_TRUE(device.Deliver(0).empty());  // No mode is set.
   device.HandleOutput(0, Write(0xa400f0, 0x55));
   device.HandleOutput(0, Write(0xa400fb, 0x00));
@@ -53,7 +53,7 @@ TEST(StandIn, TheJoystickUsersNunchukStandsInFrontWhileWalking) {
   EXPECT_GT(walking[1], resting[1] + 30);
 }
 
-TEST(StandIn, TheJoystickUserJumpsByButtonA) {
+TEST(SimulatedDevice, TheJoystickUserJumpsByButtonA) {
   auto plan = PlanUser("jump", "joystick", Ideal());
   ASSERT_TRUE(plan);
   plan->devices[0].HandleOutput(0, Report{0x12, 0x04, 0x30});
@@ -66,7 +66,7 @@ TEST(StandIn, TheJoystickUserJumpsByButtonA) {
   EXPECT_LT(pressed, 40);
 }
 
-TEST(StandIn, AMotionPlusIsThereWhenAskedForAndTurnsWithTheInclination) {
+TEST(SimulatedDevice, AMotionPlusIsThereWhenAskedForAndTurnsWithTheInclination) {
   EXPECT_EQ(PlanUser("turn", "wrist", Ideal())
                 .value()
                 .devices[0]
@@ -74,7 +74,7 @@ TEST(StandIn, AMotionPlusIsThereWhenAskedForAndTurnsWithTheInclination) {
             0xf7);
   auto plan = PlanUser("turn", "wrist", Ideal(), {.motion_plus = true});
   ASSERT_TRUE(plan);
-  StandIn& device = plan->devices[0];
+  SimulatedDevice& device = plan->devices[0];
   device.HandleOutput(0, Write(0xa600fe, 0x04));
   EXPECT_EQ(device.Deliver(0.1).size(), 1u);  // It is there: an unasked status.
   device.HandleOutput(0.1, Report{0x12, 0x04, 0x35});
@@ -91,9 +91,9 @@ TEST(StandIn, AMotionPlusIsThereWhenAskedForAndTurnsWithTheInclination) {
   EXPECT_NEAR(roll(10), still, 1);
 }
 
-TEST(StandIn, AfterARestartItIsFreshFromItsBox) {
+TEST(SimulatedDevice, AfterARestartItIsFreshFromItsBox) {
   auto plan = PlanUser("walk", "wrist", Ideal());
-  StandIn& device = plan.value().devices[0];
+  SimulatedDevice& device = plan.value().devices[0];
   device.HandleOutput(0, Report{0x12, 0x04, 0x31});
   device.HandleOutput(0, Report{0x11, 0x31});
   EXPECT_EQ(device.Changes(0), device.identity().serial + " LEDs 3 rumble on");
@@ -104,10 +104,10 @@ TEST(StandIn, AfterARestartItIsFreshFromItsBox) {
   EXPECT_EQ(device.Changes(0), "");
 }
 
-TEST(StandIn, AMoveNeedsNoModeAnswersFeaturesAndGoesDark) {
+TEST(SimulatedDevice, AMoveNeedsNoModeAnswersFeaturesAndGoesDark) {
   const virtual_devices::LinkConfig link =
       virtual_devices::WiimoteLink(virtual_devices::LinkQuality::kIdeal, 1);
-  StandIn device(
+  SimulatedDevice device(
       virtual_devices::PsMove(1, virtual_devices::MoveModel::kZcm1),
       [](double) { return virtual_devices::MoveSensors(); }, stream::DeviceRole::kRightHand, link);
   ASSERT_EQ(device.Deliver(0).size(), 1u);
