@@ -14,7 +14,7 @@ Result<std::vector<stream::DeviceRole>> BodyRoles(const std::vector<std::string>
         role == stream::DeviceRole::kUnspecified) {
       return UsageError("--worn " + name +
                         ": not a role of a remote; there are: left_hand right_hand left_leg "
-                        "right_leg head editor");
+                        "right_leg head trunk editor");
     }
     if (std::find(roles.begin(), roles.end(), role) != roles.end()) {
       return UsageError("--worn names " + name + " twice");

@@ -36,6 +36,7 @@ enum class DeviceRole {
   kLeftBoard = 6,
   kRightBoard = 7,
   kEditor = 8,
+  kTrunk = 9,
 };
 
 enum class DeviceState { kUnspecified = 0, kConnecting = 1, kLive = 2, kStale = 3, kLost = 4 };
@@ -56,10 +57,12 @@ const char* Name(CalibrationOrigin origin);
 const char* Name(Extension extension);
 /// The role of that name; kUnspecified when there is none.
 DeviceRole RoleNamed(const std::string& name);
+/// All roles: "left_hand, right_hand, ...", for errors.
+std::string RoleNames();
 
 /// The lamps that show a role, bits 0 to 3: left hand 1, right hand 2, left leg 3, right leg 4,
-/// head 1 and 4, editor 2 and 3. A board has the first lamp alone: lit on the left one, dark on the
-/// right one. 0 without a role.
+/// head 1 and 4, trunk 1 and 3, editor 2 and 3. A board has the first lamp alone: lit on the left
+/// one, dark on the right one. 0 without a role.
 std::uint32_t LedsOf(DeviceRole role);
 
 struct DeviceStatus {

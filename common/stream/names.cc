@@ -3,13 +3,14 @@
 
 #include "common/stream/character.h"
 #include "common/stream/device.h"
+#include "common/stream/user_interface.h"
 
 namespace footing::stream {
 namespace {
 
 constexpr std::array kKinds = {"unknown", "wiimote", "balance_board", "ps_move", "pro_controller"};
 constexpr std::array kRoles = {"none", "left_hand",  "right_hand",  "left_leg", "right_leg",
-                               "head", "left_board", "right_board", "editor"};
+                               "head", "left_board", "right_board", "editor",   "trunk"};
 constexpr std::array kStates = {"unknown", "connecting", "live", "stale", "lost"};
 constexpr std::array kOrigins = {"unknown", "device", "device_copy", "defaults", "stored"};
 constexpr std::array kExtensions = {"unknown",
@@ -22,6 +23,9 @@ constexpr std::array kExtensions = {"unknown",
                                     "other"};
 constexpr std::array kGaitNames = {"unknown", "step", "walk", "run", "jump"};
 static_assert(kGaitNames.size() == kGaits.size() + 1, "name every gait");
+constexpr std::array kInterfaces = {"unknown", "wrist", "arm", "leg", "joystick", "boards"};
+static_assert(kInterfaces.size() == kUserInterfaces.size() + 1, "name every interface");
+constexpr std::array kTurnSources = {"unknown", "hands", "head", "feet", "trunk", "stick", "lean"};
 constexpr std::array kCauseNames = {"unknown", "simulation",   "curve",
                                     "jump",    "straightness", "transition"};
 static_assert(kCauseNames.size() == kFailureCauses.size() + 1, "name every cause");
@@ -41,6 +45,14 @@ E Named(const std::array<const char*, N>& names, const std::string& name) {
   return E::kUnspecified;
 }
 
+/// All names but the first, which is that of kUnspecified.
+template <std::size_t N>
+std::string Joined(const std::array<const char*, N>& names) {
+  std::string joined;
+  for (std::size_t i = 1; i < N; ++i) joined += (i == 1 ? "" : ", ") + std::string(names[i]);
+  return joined;
+}
+
 }  // namespace
 
 const char* Name(DeviceKind kind) { return At(kKinds, kind); }
@@ -51,13 +63,16 @@ const char* Name(Extension extension) { return At(kExtensions, extension); }
 const char* Name(Gait gait) { return At(kGaitNames, gait); }
 const char* Name(FailureCause cause) { return At(kCauseNames, cause); }
 const char* Name(TrialPhase phase) { return At(kTrialPhaseNames, phase); }
+const char* Name(UserInterface interface) { return At(kInterfaces, interface); }
+const char* Name(TurnSource source) { return At(kTurnSources, source); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
-std::string GaitNames() {
-  std::string names;
-  for (const Gait gait : kGaits) names += (names.empty() ? "" : ", ") + std::string(Name(gait));
-  return names;
-}
+std::string RoleNames() { return Joined(kRoles); }
+std::string GaitNames() { return Joined(kGaitNames); }
 Gait GaitNamed(const std::string& name) { return Named<Gait>(kGaitNames, name); }
+std::string UserInterfaceNames() { return Joined(kInterfaces); }
+UserInterface UserInterfaceNamed(const std::string& name) {
+  return Named<UserInterface>(kInterfaces, name);
+}
 
 std::uint32_t LedsOf(DeviceRole role) {
   switch (role) {
@@ -71,6 +86,8 @@ std::uint32_t LedsOf(DeviceRole role) {
       return 0b1000;
     case DeviceRole::kHead:
       return 0b1001;
+    case DeviceRole::kTrunk:
+      return 0b0101;
     case DeviceRole::kLeftBoard:
       return 0b0001;
     case DeviceRole::kEditor:

@@ -119,6 +119,8 @@ struct DeviceFeatures {
   double pitch_rad = 0;  ///< Front higher is positive.
   bool held = false;     ///< Held from before, because samples clip.
   bool simulated = false;
+  bool swing_valid = false;  ///< The horizontal swing of the last cycle has a direction.
+  double swing_rad = 0;      ///< It, from the front; left positive, in (-pi/2, pi/2].
 };
 
 /// Right minus left, in (-pi, pi].
@@ -127,6 +129,7 @@ struct PairFeatures {
   std::uint32_t right_device = 0;
   bool phase_valid = false;
   double phase_rad = 0;
+  bool phase_held = false;  ///< From before: the newest cycle shows none, or not yet for sure.
 };
 
 struct RigFeatures {

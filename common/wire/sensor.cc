@@ -16,6 +16,8 @@ void Fields(Way way, const stream::DeviceFeatures&) {
   FOOTING_FIELD(pitch_rad);
   FOOTING_FIELD(held);
   FOOTING_FIELD(simulated);
+  FOOTING_FIELD(swing_valid);
+  FOOTING_FIELD(swing_rad);
 }
 FOOTING_BOTH_WAYS(DeviceFeatures)
 
@@ -25,6 +27,7 @@ void Fields(Way way, const stream::PairFeatures&) {
   FOOTING_FIELD(right_device);
   FOOTING_FIELD(phase_valid);
   FOOTING_FIELD(phase_rad);
+  FOOTING_FIELD(phase_held);
 }
 FOOTING_BOTH_WAYS(PairFeatures)
 

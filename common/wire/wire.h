@@ -6,6 +6,7 @@
 #include "common/stream/hands.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
+#include "common/stream/user_interface.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/device.pb.h"
 #include "footing/v1/sensor.pb.h"
@@ -41,6 +42,7 @@ v1::TrialState ToProto(const stream::TrialState& value);
 v1::LinkPose ToProto(const stream::LinkPose& value);
 v1::Contact ToProto(const stream::Contact& value);
 v1::GaitState ToProto(const stream::GaitState& value);
+v1::InterfaceState ToProto(const stream::InterfaceState& value);
 v1::HandFrame ToProto(const stream::HandFrame& value);
 v1::ReferenceFrame ToProto(const stream::ReferenceFrame& value);
 v1::HandSample ToProto(const stream::HandSample& value);
@@ -69,6 +71,7 @@ stream::Track FromProto(const v1::Track& value);
 stream::FailureCounts FromProto(const v1::FailureCounts& value);
 stream::TrialState FromProto(const v1::TrialState& value);
 stream::LinkPose FromProto(const v1::LinkPose& value);
+stream::InterfaceState FromProto(const v1::InterfaceState& value);
 stream::HandFrame FromProto(const v1::HandFrame& value);
 stream::ReferenceFrame FromProto(const v1::ReferenceFrame& value);
 stream::HandSample FromProto(const v1::HandSample& value);

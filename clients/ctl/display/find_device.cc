@@ -55,11 +55,8 @@ Result<std::pair<std::string, stream::DeviceRole>> ParseRigRole(const std::strin
   const std::string name = slash == std::string::npos ? text : text.substr(slash + 1);
   const stream::DeviceRole role = stream::RoleNamed(name);
   if (role == stream::DeviceRole::kUnspecified || (slash != std::string::npos && rig.empty())) {
-    std::string roles;
-    for (int i = 1; i <= static_cast<int>(stream::DeviceRole::kEditor); ++i) {
-      roles += std::string(" ") + stream::Name(static_cast<stream::DeviceRole>(i));
-    }
-    return UsageError(text + " is not a RIG/ROLE such as main/left_hand; roles are:" + roles);
+    return UsageError(
+        text + " is not a RIG/ROLE such as main/left_hand; roles are: " + stream::RoleNames());
   }
   return std::make_pair(rig, role);
 }

@@ -87,7 +87,8 @@ std::vector<Symptom> Slipped(const Facts& facts) {
 
 std::vector<Symptom> NotMounted(const Facts& facts) {
   static const std::set<stream::DeviceRole> mounted_roles = {
-      stream::DeviceRole::kLeftLeg, stream::DeviceRole::kRightLeg, stream::DeviceRole::kHead};
+      stream::DeviceRole::kLeftLeg, stream::DeviceRole::kRightLeg, stream::DeviceRole::kHead,
+      stream::DeviceRole::kTrunk};
   std::vector<Symptom> found;
   for (const DeviceStatus& device : facts.devices) {
     if (!IsThere(device) || device.mounted || mounted_roles.count(device.role) == 0) continue;

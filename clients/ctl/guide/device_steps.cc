@@ -39,6 +39,8 @@ std::string RoleText(stream::DeviceRole role) {
       return "the right shin";
     case stream::DeviceRole::kHead:
       return "the head";
+    case stream::DeviceRole::kTrunk:
+      return "the chest";
     case stream::DeviceRole::kLeftBoard:
       return "the left board";
     case stream::DeviceRole::kRightBoard:

@@ -41,6 +41,16 @@ constexpr const char* kHead = R"(
            |          |
 )";
 
+constexpr const char* kTrunk = R"(
+            .--.         .--.
+           /    '-------'    \
+          |      .-----.      |   front (camera) up
+          |======|[_]  |======|   <- strap
+          |      | +   |      |
+          |      |(A)  |      |   buttons away from the chest
+          |      '-----'      |
+)";
+
 constexpr const char* kWrist = R"(
         front (camera) to the fingers  ==>
                                  ___
@@ -65,6 +75,8 @@ std::string Picture(stream::DeviceRole role) {
       return kShin;
     case stream::DeviceRole::kHead:
       return kHead;
+    case stream::DeviceRole::kTrunk:
+      return kTrunk;
     case stream::DeviceRole::kLeftHand:
     case stream::DeviceRole::kRightHand:
       return kWrist;
@@ -85,6 +97,8 @@ std::string Wearing(stream::DeviceRole role) {
       return "right leg: outside of the shin, buttons outwards, front up";
     case stream::DeviceRole::kHead:
       return "head: on top under the band, buttons up, front where you look";
+    case stream::DeviceRole::kTrunk:
+      return "trunk: on the breastbone under the strap, buttons outwards, front up";
     case stream::DeviceRole::kLeftHand:
       return "left wrist: buttons up, front along the fingers";
     case stream::DeviceRole::kRightHand:

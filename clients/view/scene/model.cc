@@ -159,6 +159,7 @@ Stance StanceOf(const Model& model) {
       case stream::DeviceRole::kLeftLeg:
       case stream::DeviceRole::kRightLeg:
       case stream::DeviceRole::kHead:
+      case stream::DeviceRole::kTrunk:
       case stream::DeviceRole::kEditor:
         left_n += left_cells_n;
         right_n += right_cells_n;

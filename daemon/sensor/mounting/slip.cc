@@ -45,8 +45,9 @@ void SlipWatch::CheckSecond() {
     const double lean_rad = std::atan2(mean.head<2>().norm(), -mean.z());
     const bool leg =
         role_ == stream::DeviceRole::kLeftLeg || role_ == stream::DeviceRole::kRightLeg;
-    const bool head = role_ == stream::DeviceRole::kHead;
-    const bool wrong = (leg && lean_rad > config_.leg_rad) || (head && lean_rad > config_.head_rad);
+    const bool upper = role_ == stream::DeviceRole::kHead || role_ == stream::DeviceRole::kTrunk;
+    const bool wrong =
+        (leg && lean_rad > config_.leg_rad) || (upper && lean_rad > config_.upper_rad);
     wrong_rest_s_ = wrong ? wrong_rest_s_ + 1 : 0;
     slipped_ = slipped_ || wrong_rest_s_ >= config_.rest_s;
     return;

@@ -12,7 +12,7 @@ struct SlipConfig {
   double rest_sd_mps2 = 0.5;  ///< Of a second; below it the sensor is at rest.
   double rest_s = 3;          ///< Time at rest in the wrong direction.
   double leg_rad = 0.436;     ///< 25 degrees: no standing shin leans so far.
-  double head_rad = 0.873;    ///< 50 degrees: further than one looks down on a screen.
+  double upper_rad = 0.873;   ///< Head, trunk; 50 degrees: more than looking down on a screen.
   double swing_mps2 = 1.0;    ///< Horizontal rms of a second that counts as walking.
   double ratio = 4;           ///< Variance along against across that shows a direction.
   double swing_rad = 0.698;   ///< 40 degrees between the swing and M's front.
@@ -23,9 +23,9 @@ struct SlipConfig {
 /// stays true until restarted with a new mounting.
 ///
 /// What can be sensed, and what a posture can fake:
-/// - Legs, head: gravity at rest that departs from down. A shin is near the vertical while
+/// - Legs, head, trunk: gravity at rest that departs from down. A shin is near the vertical while
 ///   standing and sitting; kneeling, lying and legs laid up for 3 s are taken for a slip, and so is
-///   a head held down by 50 degrees.
+///   a head or a trunk held down by 50 degrees.
 /// - Wrists: an arm may be held anywhere, so gravity at rest says nothing and is not used.
 /// - All: the way of the swing. A band that has turned about the limb swings across its front; an
 ///   arm that is bent or raised does not leave the plane of front and down. Ten seconds that swing

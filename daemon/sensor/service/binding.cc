@@ -12,8 +12,8 @@ using stream::DeviceRole;
 constexpr std::size_t kMaxRigBytes = 64;
 
 constexpr DeviceRole kWornRoles[] = {DeviceRole::kLeftHand, DeviceRole::kRightHand,
-                                     DeviceRole::kLeftLeg, DeviceRole::kRightLeg,
-                                     DeviceRole::kHead};
+                                     DeviceRole::kLeftLeg,  DeviceRole::kRightLeg,
+                                     DeviceRole::kHead,     DeviceRole::kTrunk};
 constexpr DeviceRole kBoardRoles[] = {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
 
 std::span<const DeviceRole> RolesOf(Placement placement) {
@@ -37,10 +37,8 @@ Result<Binding> ParseBinding(const std::string& text) {
   }
   const DeviceRole role = stream::RoleNamed(text.substr(slash + 1));
   if (role == DeviceRole::kUnspecified) {
-    return UsageError(
-        "role \"" + text.substr(slash + 1) +
-        "\" does not exist; there are left_hand, right_hand, left_leg, right_leg, head, "
-        "left_board, right_board, editor");
+    return UsageError("role \"" + text.substr(slash + 1) + "\" does not exist; there are " +
+                      stream::RoleNames());
   }
   return Binding{text.substr(0, slash), role};
 }

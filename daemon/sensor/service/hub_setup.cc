@@ -28,6 +28,7 @@ bool IsOnBody(DeviceRole role) {
     case DeviceRole::kLeftLeg:
     case DeviceRole::kRightLeg:
     case DeviceRole::kHead:
+    case DeviceRole::kTrunk:
       return true;
     case DeviceRole::kUnspecified:
     case DeviceRole::kLeftBoard:

@@ -154,7 +154,7 @@ def check_assign(console, devices):
     assert console.roles() == {left: "right_hand", right: "left_hand"}
     console.json("assign", "main/right_hand", "left_hand")
     assert console.roles() == {left: "left_hand", right: "right_hand"}
-    console.refused(2, "assign", left, "main/foot", says="left_hand right_hand")
+    console.refused(2, "assign", left, "main/foot", says="left_hand, right_hand")
     console.refused(3, "assign", "00:00:00:00:00:00", "head", says="no device")
 
 

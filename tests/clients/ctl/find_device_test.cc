@@ -67,7 +67,7 @@ TEST(ParseRigRole, ListsTheRolesForAnythingElse) {
     const auto parsed = ParseRigRole(text);
     ASSERT_FALSE(parsed.ok()) << text;
     EXPECT_EQ(parsed.error().kind, ErrorKind::kUsage);
-    EXPECT_THAT(parsed.error().message, HasSubstr("left_hand right_hand"));
+    EXPECT_THAT(parsed.error().message, HasSubstr("left_hand, right_hand"));
   }
 }
 

@@ -52,7 +52,7 @@ TEST(StillThenSteps, BeginsAnewAfterATwitch) {
 TEST(Mounting, EveryWornRoleHasAPicture) {
   for (const auto role :
        {stream::DeviceRole::kLeftHand, stream::DeviceRole::kRightHand, stream::DeviceRole::kLeftLeg,
-        stream::DeviceRole::kRightLeg, stream::DeviceRole::kHead}) {
+        stream::DeviceRole::kRightLeg, stream::DeviceRole::kHead, stream::DeviceRole::kTrunk}) {
     EXPECT_GT(Picture(role).size(), 100u) << stream::Name(role);
     EXPECT_FALSE(Wearing(role).empty()) << stream::Name(role);
   }

@@ -59,7 +59,8 @@ TEST(Mounting, AnyRotationIsFoundForEveryRole) {
                                     {DeviceRole::kRightHand, 1.0},
                                     {DeviceRole::kLeftLeg, 1.0},
                                     {DeviceRole::kRightLeg, 1.0},
-                                    {DeviceRole::kHead, 1.0}}) {
+                                    {DeviceRole::kHead, 1.0},
+                                    {DeviceRole::kTrunk, 1.0}}) {
     for (std::uint64_t i = 0; i < 40; ++i) {
       const auto truth = RandomRotation(random);
       const auto found = SolveMounting(role, Record(Still, truth, 2.1, i),

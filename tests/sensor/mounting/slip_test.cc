@@ -46,10 +46,12 @@ TEST_F(SlipTest, AnArmHeldUpHasNotSlipped) {
   EXPECT_FALSE(Feel(watch, 60, 120));
 }
 
-TEST_F(SlipTest, AHeadMayLookDown) {
-  SlipWatch watch(DeviceRole::kHead);
-  EXPECT_FALSE(Feel(watch, 60, 40));
-  EXPECT_TRUE(Feel(watch, 5, 80));
+TEST_F(SlipTest, AHeadMayLookDownAndATrunkLean) {
+  for (const DeviceRole role : {DeviceRole::kHead, DeviceRole::kTrunk}) {
+    SlipWatch watch(role);
+    EXPECT_FALSE(Feel(watch, 60, 40));
+    EXPECT_TRUE(Feel(watch, 5, 80));
+  }
 }
 
 TEST_F(SlipTest, ABandThatTurnedAboutTheWristSwingsSideways) {

@@ -20,7 +20,7 @@ TEST(Binding, IsRigAndRole) {
 TEST(Binding, RolesAreGivenInOrderOnEachRig) {
   std::vector<Binding> taken;
   for (const DeviceRole role : {DeviceRole::kLeftHand, DeviceRole::kRightHand, DeviceRole::kLeftLeg,
-                                DeviceRole::kRightLeg, DeviceRole::kHead}) {
+                                DeviceRole::kRightLeg, DeviceRole::kHead, DeviceRole::kTrunk}) {
     EXPECT_EQ(FirstFreeRole(Placement::kOnBody, "main", taken), role);
     taken.push_back({"main", role});
   }
