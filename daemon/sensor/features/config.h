@@ -48,6 +48,10 @@ struct CadenceConfig {
   /// for this part of the one before, which outlasts the half period that a reversal fakes.
   double jump_share = 0.25;
   double jump_persistence = 0.25;
+  /// The means of the cycles that spread by more than this share of the swing show a twist of the
+  /// wrist; the swing across it must hold this share of the whole to decide alone.
+  double twist_share = 0.1;
+  double least_across_share = 0.15;
   /// How long the last period is kept when none is found, in cycles.
   double hold_cycles = 1.0;
   /// While the other hand still shows the last period within this share, this one keeps it as well,
@@ -72,6 +76,14 @@ struct PhaseConfig {
   double least_across_share = 0.15;
   /// And the cycle before must have held this share of the newest one's energy.
   double least_before_share = 0.3;
+  /// Only hands whose periods differ by no more than this share of the longer one have a phase:
+  /// within it the phase moves by less than a seventh of a cycle in one.
+  double agree_share = 0.15;
+  /// For this many cycles after they agreed, one of them may show another period: its phase jumps.
+  double disagree_cycles = 1.25;
+  /// Controllers that swing further than this off their fronts are not compared in the axes of
+  /// their swings: to which end of the line the front belongs would be a guess. 60 degrees.
+  double most_turned_rad = 1.05;
 };
 
 /// 4) Amplitude and 5) inclination in motion.
@@ -85,6 +97,12 @@ struct CycleConfig {
   double second_prior = 0.03;
   double third_prior = 0.3;
   int fit_rounds = 3;
+  /// The horizontal swing has a direction when its rms is this and its variance along that
+  /// direction this many times that across it; S's left-right axis must keep this share of its
+  /// length in the horizontal plane.
+  double least_swing_mps2 = 1.0;
+  double swing_ratio = 2.5;
+  double least_level = 0.3;
 };
 
 struct Config {

@@ -88,6 +88,13 @@ Eigen::ArrayXd CycleWeights(double steps) {
   return weights;
 }
 
+Eigen::RowVector3d CycleMean(const SampleGrid& grid, int late, double steps) {
+  const Eigen::ArrayXd weights = CycleWeights(steps);
+  const int count = static_cast<int>(weights.size());
+  return (weights / weights.sum()).matrix().transpose() *
+         grid.Filtered(count + late).topRows(count);
+}
+
 Cycle NewestCycle(const SampleGrid& grid, double period_s, const CycleConfig& config) {
   Cycle cycle;
   const Eigen::ArrayXd weights = CycleWeights(period_s * kGridHz);
@@ -104,8 +111,32 @@ Cycle NewestCycle(const SampleGrid& grid, double period_s, const CycleConfig& co
   }
   const Eigen::Vector3d mean = samples.transpose() * (weights / weights.sum()).matrix();
   cycle.amplitude_mps2 = HalfPeakToPeak(samples, mean);
-  if (!cycle.clipped) cycle.mean_mps2 = mean;
+  if (cycle.clipped) return cycle;
+  cycle.mean_mps2 = mean;
+  cycle.swing = FindSwing(samples, mean, config);
   return cycle;
+}
+
+SwingLine FindSwing(const Block& samples, const Eigen::Vector3d& mean_mps2,
+                    const CycleConfig& config) {
+  const Eigen::Vector3d up = mean_mps2.normalized();
+  const Eigen::Vector3d level = Eigen::Vector3d::UnitX() - up.x() * up;
+  if (!up.allFinite() || level.norm() < config.least_level) return {};
+  const Eigen::Vector3d left = level.normalized();
+  const Eigen::Vector3d front = left.cross(up);
+  const Block centred = samples.rowwise() - mean_mps2.transpose();
+  const Eigen::ArrayXd along_left = centred * left, along_front = centred * front;
+  const auto count = static_cast<double>(samples.rows());
+  const double left_squares = along_left.square().sum() / count;
+  const double front_squares = along_front.square().sum() / count;
+  const double product = (along_left * along_front).sum() / count;
+  // The eigenvalues of the horizontal covariance are half the sum plus and minus the spread.
+  const double sum = left_squares + front_squares;
+  const double spread = std::hypot(left_squares - front_squares, 2 * product);
+  if (std::sqrt(sum) < config.least_swing_mps2) return {};
+  if (sum + spread < config.swing_ratio * (sum - spread)) return {};
+  const double angle_rad = 0.5 * std::atan2(2 * product, front_squares - left_squares);
+  return {true, angle_rad, std::cos(angle_rad) * front + std::sin(angle_rad) * left, up};
 }
 
 Inclination InclinationOf(const Eigen::Vector3d& gravity_mps2) {

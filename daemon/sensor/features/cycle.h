@@ -7,6 +7,15 @@
 
 namespace footing::features {
 
+/// The direction of the horizontal part of a swing. Ours: it shows a twist of a limb that hangs,
+/// which keeps its inclination.
+struct SwingLine {
+  bool valid = false;
+  double angle_rad = 0;  ///< From S's front, left positive, in (-pi/2, pi/2].
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< The same as a unit vector in S,
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();     ///< and the vertical one.
+};
+
 /// What the newest whole cycle of raw samples says (section 6, features 4 and 5).
 struct Cycle {
   bool valid = false;  ///< There is a whole cycle.
@@ -17,7 +26,13 @@ struct Cycle {
   double amplitude_mps2 = 0;
   /// Mean over exactly one cycle in S: gravity, as long as the motion is cyclic and not too fast.
   Eigen::Vector3d mean_mps2 = Eigen::Vector3d::Zero();
+  SwingLine swing;
 };
+
+/// Which way the samples (m/s², one a row) swing across `mean_mps2`, which points up. Not valid
+/// when they hardly do, or not along a line, or when S's left-right axis is near the vertical.
+SwingLine FindSwing(const Eigen::Matrix<double, Eigen::Dynamic, 3>& samples,
+                    const Eigen::Vector3d& mean_mps2, const CycleConfig& config);
 
 /// `period_s` > 0. Clipped samples are replaced by a fit of mean, fundamental and two harmonics
 /// to the others, never nearer to zero than the end of the range.
@@ -34,5 +49,9 @@ Inclination InclinationOf(const Eigen::Vector3d& gravity_mps2);
 /// Weights of the newest points for an integral over exactly `steps` grid steps that ends at the
 /// newest: the trapezoidal rule with a cut last interval. They add up to `steps`; oldest first.
 Eigen::ArrayXd CycleWeights(double steps);
+
+/// Mean of the filtered points over exactly `steps`, ending `late` grid points before the newest.
+/// The grid must hold late + floor(steps) + 2 points.
+Eigen::RowVector3d CycleMean(const SampleGrid& grid, int late, double steps);
 
 }  // namespace footing::features

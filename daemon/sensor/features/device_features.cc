@@ -26,14 +26,14 @@ void DeviceFeatureExtractor::Forget() {
   cadence_ = {};
   estimate_ = {};
   features_.moving = features_.frequency_valid = features_.amplitude_valid = false;
-  features_.inclination_valid = features_.held = false;
+  features_.inclination_valid = features_.held = features_.swing_valid = false;
   features_.frequency_hz = features_.amplitude_mps2 = 0;
-  features_.roll_rad = features_.pitch_rad = 0;
+  features_.roll_rad = features_.pitch_rad = features_.swing_rad = 0;
 }
 
 void DeviceFeatureExtractor::MeasureRest() {
-  features_.held = features_.amplitude_valid = false;
-  features_.amplitude_mps2 = 0;
+  features_.held = features_.amplitude_valid = features_.swing_valid = false;
+  features_.amplitude_mps2 = features_.swing_rad = 0;
   const int count =
       std::min(grid_.size(), static_cast<int>(std::lround(config_.rest_window_s * kGridHz)));
   const Eigen::Vector3d gravity = grid_.Filtered(count).colwise().mean().transpose();
@@ -45,8 +45,8 @@ void DeviceFeatureExtractor::MeasureRest() {
 
 void DeviceFeatureExtractor::MeasureCycle() {
   if (!cadence_.valid) {
-    features_.held = features_.amplitude_valid = false;
-    features_.amplitude_mps2 = 0;
+    features_.held = features_.amplitude_valid = features_.swing_valid = false;
+    features_.amplitude_mps2 = features_.swing_rad = 0;
     return;  // The inclination from before motion stays: nothing better is known yet.
   }
   const Cycle cycle = NewestCycle(grid_, cadence_.period_s, config_.cycle);
@@ -58,6 +58,8 @@ void DeviceFeatureExtractor::MeasureCycle() {
                                  : cycle.amplitude_mps2;
   features_.amplitude_valid = true;
   if (cycle.clipped) return;
+  features_.swing_valid = cycle.swing.valid;
+  features_.swing_rad = cycle.swing.angle_rad;
   const Inclination inclination = InclinationOf(cycle.mean_mps2);
   features_.inclination_valid = true;
   features_.roll_rad = inclination.roll_rad;

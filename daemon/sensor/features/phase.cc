@@ -14,14 +14,7 @@ namespace {
 constexpr int kHarmonics = 3;
 constexpr int kTrials = 72;
 using Spectrum = std::array<Eigen::Vector3cd, kHarmonics>;
-
-/// Mean of the cycle that ends `late` grid points before the newest.
-Eigen::RowVector3d CycleMean(const SampleGrid& grid, int late, double steps) {
-  const Eigen::ArrayXd weights = CycleWeights(steps);
-  const int count = static_cast<int>(weights.size());
-  return (weights / weights.sum()).matrix().transpose() *
-         grid.Filtered(count + late).topRows(count);
-}
+using Cross = std::array<std::complex<double>, kHarmonics>;
 
 /// Fourier coefficients of the cycle that ends `late` grid points before the newest.
 Spectrum CycleSpectrum(const SampleGrid& grid, int late, double steps) {
@@ -68,8 +61,7 @@ Spectrum WithoutTwist(const Spectrum& spectrum, const SampleGrid& grid, int late
 }
 
 /// Rc at the lag at which the left one's angle is `phase_rad`.
-double CrossCorrelation(const std::array<std::complex<double>, kHarmonics>& cross,
-                        double phase_rad) {
+double CrossCorrelation(const Cross& cross, double phase_rad) {
   double sum = 0;
   for (int h = 0; h < kHarmonics; ++h) {
     sum += (cross[h] * std::polar(1.0, -(h + 1) * phase_rad)).real();
@@ -78,7 +70,7 @@ double CrossCorrelation(const std::array<std::complex<double>, kHarmonics>& cros
 }
 
 /// The angle of the highest value: the best of evenly spaced ones, then by parabolas around it.
-double PeakAngle(const std::array<std::complex<double>, kHarmonics>& cross) {
+double PeakAngle(const Cross& cross) {
   double step = 2 * kPi / kTrials;
   double best = 0;
   for (int i = 1; i < kTrials; ++i) {
@@ -95,10 +87,37 @@ double PeakAngle(const std::array<std::complex<double>, kHarmonics>& cross) {
   return WrapAngle(best);
 }
 
+/// Rc of two spectra of this common size, at its peak.
+PhaseEstimate PeakOf(const Spectrum& left, const Spectrum& right, const PhaseConfig& config) {
+  const double size = std::sqrt(Energy(left) * Energy(right));
+  if (!(size > 0)) return {};
+  Cross cross;
+  // Eigen's dot conjugates its left side: the angle of `cross` is right minus left.
+  for (int h = 0; h < kHarmonics; ++h) cross[h] = left[h].dot(right[h]) / size;
+  const double phase_rad = PeakAngle(cross);
+  const double correlation = CrossCorrelation(cross, phase_rad);
+  return {correlation >= config.least_correlation, phase_rad, std::min(1.0, correlation)};
+}
+
+/// The spectrum in the axes along the horizontal swing, across it and up: however the controller
+/// is turned about the vertical, within most_turned_rad, or inclined. False when the swing has no
+/// such direction.
+bool Align(const SampleGrid& grid, int late, double steps, const PhaseConfig& config,
+           const CycleConfig& cycle, Spectrum& spectrum) {
+  const int count = static_cast<int>(std::floor(steps)) + 2;
+  const Eigen::Vector3d mean = CycleMean(grid, late, steps).transpose();
+  const SwingLine swing = FindSwing(grid.Filtered(count + late).topRows(count), mean, cycle);
+  if (!swing.valid || std::abs(swing.angle_rad) > config.most_turned_rad) return false;
+  Eigen::Matrix3d axes;
+  axes << swing.along.transpose(), swing.up.cross(swing.along).transpose(), swing.up.transpose();
+  for (auto& harmonic : spectrum) harmonic = axes.cast<std::complex<double>>() * harmonic;
+  return true;
+}
+
 }  // namespace
 
 PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double period_s,
-                        const PhaseConfig& config) {
+                        const PhaseConfig& config, const CycleConfig& cycle) {
   const double steps = period_s * kGridHz;
   const auto common = std::min(left.newest_index(), right.newest_index());
   const auto late_left =
@@ -107,20 +126,17 @@ PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double 
       static_cast<int>(std::min<std::int64_t>(right.newest_index() - common, kGridLength));
   const int needed = static_cast<int>(std::floor(steps)) + 2;
   if (needed + late_left > left.size() || needed + late_right > right.size()) return {};
-  const Spectrum left_spectrum =
+  Spectrum left_spectrum =
       WithoutTwist(CycleSpectrum(left, late_left, steps), left, late_left, steps, config);
-  const Spectrum right_spectrum =
+  Spectrum right_spectrum =
       WithoutTwist(CycleSpectrum(right, late_right, steps), right, late_right, steps, config);
-  const double size = std::sqrt(Energy(left_spectrum) * Energy(right_spectrum));
-  if (!(size > 0)) return {};
-  std::array<std::complex<double>, kHarmonics> cross;
-  for (int h = 0; h < kHarmonics; ++h) {
-    // Eigen's dot conjugates its left side: the angle of `cross` is right minus left.
-    cross[h] = left_spectrum[h].dot(right_spectrum[h]) / size;
+  const PhaseEstimate estimate = PeakOf(left_spectrum, right_spectrum, config);
+  if (estimate.found) return estimate;
+  if (!Align(left, late_left, steps, config, cycle, left_spectrum) ||
+      !Align(right, late_right, steps, config, cycle, right_spectrum)) {
+    return {};
   }
-  const double phase_rad = PeakAngle(cross);
-  const double correlation = CrossCorrelation(cross, phase_rad);
-  return {correlation >= config.least_correlation, phase_rad, std::min(1.0, correlation)};
+  return PeakOf(left_spectrum, right_spectrum, config);
 }
 
 Phase Next(const Phase& before, const PhaseEstimate& estimate, double period_s, double elapsed_s,

@@ -24,9 +24,10 @@ struct PhaseEstimate {
 };
 
 /// `period_s` > 0 is common to both. Not found: no whole common cycle, one stands still, or the two
-/// do not swing alike.
+/// do not swing alike. Controllers that swing alike but are turned against each other are compared
+/// in the axes of their swings.
 PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double period_s,
-                        const PhaseConfig& config);
+                        const PhaseConfig& config, const CycleConfig& cycle);
 
 /// The phase that is published: jumps must persist, a loss is bridged for a while.
 struct Phase {

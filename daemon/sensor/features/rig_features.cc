@@ -10,6 +10,15 @@ namespace footing::features {
 namespace {
 
 constexpr std::size_t kMostMembers = 8;
+/// A period that differs by more than this share is another one.
+constexpr double kShownShare = 0.25;
+
+/// Whether the newest samples of the controller show about that period, so that it is not merely
+/// held.
+bool Shows(const DeviceFeatureExtractor& device, double period_s) {
+  const PeriodEstimate& estimate = device.estimate();
+  return estimate.found && std::abs(estimate.period_s - period_s) <= kShownShare * period_s;
+}
 
 }  // namespace
 
@@ -44,13 +53,17 @@ void RigFeatureExtractor::AddSample(const stream::MotionSample& sample) {
   }
 }
 
-double RigFeatureExtractor::CommonPeriod(double known_s, const stream::DeviceFeatures& left,
-                                         const stream::DeviceFeatures& right) {
-  if (!left.frequency_valid && !right.frequency_valid) return 0;
-  if (!left.frequency_valid) return 1 / right.frequency_hz;
-  if (!right.frequency_valid) return 1 / left.frequency_hz;
+double RigFeatureExtractor::CommonPeriod(const stream::DeviceFeatures& left,
+                                         const stream::DeviceFeatures& right, double elapsed_s,
+                                         Pair& pair) const {
+  if (!left.frequency_valid || !right.frequency_valid) return 0;
   const double left_s = 1 / left.frequency_hz;
   const double right_s = 1 / right.frequency_hz;
+  const double known_s = pair.period_s;
+  const bool agree =
+      std::abs(left_s - right_s) <= config_.phase.agree_share * std::max(left_s, right_s);
+  pair.disagree_s = agree ? 0 : pair.disagree_s + elapsed_s;
+  if (!agree && pair.disagree_s > config_.phase.disagree_cycles * known_s) return 0;
   // A hand whose phase jumps shows a wrong period for a moment; the other one keeps the known one.
   if (known_s > 0 && std::abs(left_s - right_s) > 0.1 * known_s) {
     return std::abs(left_s - known_s) <= std::abs(right_s - known_s) ? left_s : right_s;
@@ -68,19 +81,22 @@ stream::PairFeatures RigFeatureExtractor::ComputePair(
   pair.computed_index = index;
   if (!left.moving || !right.moving) {
     pair.phase = {};
-    pair.period_s = 0;
+    pair.period_s = pair.disagree_s = 0;
   } else {
-    const double period_s = CommonPeriod(pair.period_s, left, right);
+    const double elapsed_s = kGridStepS * static_cast<double>(steps);
+    const double period_s = CommonPeriod(left, right, elapsed_s, pair);
+    const DeviceFeatureExtractor &one = devices_[pair.left], &other = devices_[pair.right];
+    // While both periods are merely held, the newest cycle is none of theirs.
+    const bool shown = period_s > 0 && (Shows(one, period_s) || Shows(other, period_s));
     const PhaseEstimate estimate =
-        period_s > 0 ? FindPhase(devices_[pair.left].grid(), devices_[pair.right].grid(), period_s,
-                                 config_.phase)
-                     : PhaseEstimate{};
+        shown ? FindPhase(one.grid(), other.grid(), period_s, config_.phase, config_.cycle)
+              : PhaseEstimate{};
     if (period_s > 0) pair.period_s = period_s;
-    pair.phase = Next(pair.phase, estimate, pair.period_s, kGridStepS * static_cast<double>(steps),
-                      config_.phase);
+    pair.phase = Next(pair.phase, estimate, pair.period_s, elapsed_s, config_.phase);
   }
-  return {left.device, right.device, pair.phase.valid,
-          pair.phase.valid ? pair.phase.phase_rad : 0.0};
+  const Phase& phase = pair.phase;
+  return {left.device, right.device, phase.valid, phase.valid ? phase.phase_rad : 0.0,
+          phase.valid && (phase.lost_s > 0 || phase.jumping)};
 }
 
 stream::RigFeatures RigFeatureExtractor::Compute(std::int64_t now_ns) {

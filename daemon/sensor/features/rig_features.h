@@ -40,11 +40,12 @@ class RigFeatureExtractor {
     std::size_t right = 0;
     Phase phase;
     std::int64_t computed_index = 0;
-    double period_s = 0;
+    double period_s = 0;    ///< That the two had in common last.
+    double disagree_s = 0;  ///< How long they have had none.
   };
-  /// The period that the two share; 0 while neither has one.
-  static double CommonPeriod(double known_s, const stream::DeviceFeatures& left,
-                             const stream::DeviceFeatures& right);
+  /// The period that the two share; 0 while they do not agree on one.
+  double CommonPeriod(const stream::DeviceFeatures& left, const stream::DeviceFeatures& right,
+                      double elapsed_s, Pair& pair) const;
   void AddPair(stream::DeviceRole left, stream::DeviceRole right);
   stream::PairFeatures ComputePair(Pair& pair, const std::vector<stream::DeviceFeatures>& devices);
 

@@ -101,25 +101,5 @@ TEST(SlowTilt, IsNotMotion) {
   }
 }
 
-TEST(Twist, HandsThatSwingInTurnsAreNeverSeenTogetherWhileBothTwist) {
-  for (const double f : {1.0, 1.3, 2.0, 3.0}) {
-    for (const double blend_s : {0.15, 0.3, 0.6}) {
-      std::vector<Segment> segments;
-      for (const double roll_deg : {0.0, 20.0, -20.0, 0.0}) {
-        Segment swing = Swing(f, kPi, 0, 7);
-        swing.duration_s = 2;
-        swing.roll_rad = DegreesToRadians(roll_deg);
-        segments.push_back(swing);
-      }
-      const HandMotion motion(segments, wrists::WristShape(), blend_s);
-      for (const auto& instant : RunChain(motion)) {
-        if (instant.t_s < 1.9 || !instant.rig.pairs[0].phase_valid) continue;
-        EXPECT_GT(std::abs(instant.rig.pairs[0].phase_rad), DegreesToRadians(80))
-            << f << " Hz, twist in " << blend_s << " s, at " << instant.t_s;
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace footing::features
