@@ -34,7 +34,7 @@ def wrong_starts(stage):
         assert "Examples:" in stage.run(program, "--help").stdout
     expect(stage, USAGE, "beyond this host", "footingd", "--listen", "tcp:0.0.0.0:0")
     expect(stage, USAGE, "there are: gait, pose", "footing-sim", "--engine", "walkies")
-    expect(stage, USAGE, "there is: wrist", "footing-sim", "--interface", "boards")
+    expect(stage, USAGE, "wrist, arm, leg, joystick, boards", "footing-sim", "--interface", "telepathy")
     expect(stage, USAGE, "subject does not apply to --engine gait", "footing-sim", "--engine", "gait",
            "--subject", "p07.json")
     expect(stage, USAGE, "track does not apply to --engine pose", "footing-sim", "--engine", "pose",

@@ -28,9 +28,9 @@ Result<GaitEngine> GaitEngine::CreateOn(stream::Track track, const EngineTexts& 
   }
   Result<biped::BipedParameters> biped = biped::ParseBiped(texts.biped, kBipedFile);
   if (!biped) return biped.error();
-  Result<mapping::WristMapping> mapping =
-      mapping::ParseWristMapping(texts.wrist_mapping, kWristMappingFile);
-  if (!mapping) return mapping.error();
+  Result<mapping::AnyInterface> interface =
+      mapping::AnyInterface::Create(config.interface, texts.mapping);
+  if (!interface) return interface.error();
   gait::GainTable gain_table;
   for (const GainText& gains : texts.gains) {
     if (const auto added = gain_table.Add(gains.text, gains.origin); !added) return added.error();
@@ -46,7 +46,7 @@ Result<GaitEngine> GaitEngine::CreateOn(stream::Track track, const EngineTexts& 
                                              .on = std::move(**on),
                                              .state = {.world = {},
                                                        .gait = {},
-                                                       .wrist = mapping::WristInterface(*mapping),
+                                                       .interface = *interface,
                                                        .command = {},
                                                        .inputs = {},
                                                        .response = {},
@@ -63,7 +63,7 @@ Result<GaitEngine> GaitEngine::CreateOn(stream::Track track, const EngineTexts& 
 void GaitEngine::Advance(const EngineInputs& inputs) {
   Parts& p = *parts_;
   p.output.event_count = 0;
-  p.output.appended = false;
+  p.output.append.added = false;
   p.output_stale = true;
   const stream::Gait gait_before = p.state.gait.gait;
   p.TakeFeatures(inputs);
@@ -116,7 +116,7 @@ void GaitEngine::Restore(const EngineState& state) {
   p.on.world.Restore(state.world);
   p.ReadBody();
   p.output.event_count = 0;
-  p.output.appended = false;
+  p.output.append.added = false;
   p.output_stale = true;
 }
 

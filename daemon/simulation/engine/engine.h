@@ -11,7 +11,7 @@
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/command.h"
 #include "daemon/simulation/gait/gain_table.h"
-#include "daemon/simulation/mapping/wrist_features.h"
+#include "daemon/simulation/mapping/any_interface.h"
 #include "daemon/simulation/terrain/append.h"
 
 /// The gait engine: received features in, a walking biped out, one fixed step at a time.
@@ -23,16 +23,15 @@ struct GainText {
   std::string text;
 };
 struct EngineTexts {
-  std::string biped;          ///< kBipedFile
-  std::string track;          ///< "tracks/NAME.json"
-  std::string wrist_mapping;  ///< kWristMappingFile
+  std::string biped;    ///< kBipedFile
+  std::string track;    ///< "tracks/NAME.json"
+  std::string mapping;  ///< mapping::MappingFileOf(EngineConfig::interface.interface)
   /// kGainFiles, and more: a later one replaces what an earlier one had for its gaits. None: the
   /// defaults of gains.h.
   std::vector<GainText> gains;
 };
 inline constexpr const char* kBipedFile = "biped.json";
 inline constexpr const char* kPlainTrackFile = "tracks/plain.json";
-inline constexpr const char* kWristMappingFile = "wrist_mapping.json";
 inline constexpr std::array kGainFiles{"gaits/step.csv", "gaits/walk.csv", "gaits/run.csv",
                                        "gaits/jump.csv"};
 static_assert(kGainFiles.size() == stream::kGaits.size(), "a table of gains for every gait");
@@ -42,6 +41,7 @@ struct EngineConfig {
   double fall_shown_s = 0.7;        ///< From a fall to the put-back.
   double put_back_distance_m = 3;   ///< Along the track's centre line, backwards.
   double features_timeout_s = 0.5;  ///< Without new features: stepping in place.
+  mapping::InterfaceOptions interface = {};
 };
 
 inline constexpr int kMaxAppends = 16;
@@ -59,8 +59,8 @@ struct TrialInputs {
 /// given again and again, and nothing is carried out twice.
 struct EngineInputs {
   std::uint64_t features_number = 0;  ///< 0: none received so far.
-  mapping::WristFeatures features;
-  bool direct = false;  ///< Follow direct_command in place of the features.
+  mapping::Inputs features;           ///< Of the controllers and boards.
+  bool direct = false;                ///< Follow direct_command in place of the features.
   biped::GaitCommand direct_command;
   std::uint64_t push_number = 0;
   Eigen::Vector2d push_impulse_W_ns = Eigen::Vector2d::Zero();  ///< On the body's COM, over 0.1 s.
@@ -116,6 +116,12 @@ struct ResponseSteps {
   std::uint64_t taken_over = 0;
 };
 
+/// How far the inputs' appends are.
+struct AppendProgress {
+  std::uint64_t number = 0;  ///< So many were taken or refused.
+  bool added = false;        ///< In this step: the track's last segment is new.
+};
+
 struct EngineOutput {
   std::uint64_t step = 0;
   double time_s = 0;  ///< step * step_s.
@@ -128,6 +134,7 @@ struct EngineOutput {
   std::array<double, 8> joint_efforts{};
   Eigen::Vector3d push_W_n = Eigen::Vector3d::Zero();
   stream::GaitState gait;
+  stream::InterfaceState interface;  ///< What the interface believes that the person does.
   stream::TrialProgress trial;
   std::uint64_t trial_number = 0;  ///< The inputs' that this trial began with.
   std::uint64_t track_number = 0;
@@ -135,8 +142,7 @@ struct EngineOutput {
   double root_force_max_n = 0;   ///< Largest hidden force on the root so far; must stay 0.
   std::uint64_t state_hash = 0;  ///< FNV-1a of the physics state: the same binary and machine only.
   ResponseSteps response;
-  std::uint64_t append_number = 0;             ///< Of the appends, so many were taken or refused.
-  bool appended = false;                       ///< In this step: the track's last segment is new.
+  AppendProgress append;
   std::array<EngineEvent, kMaxEvents> events;  ///< Of this step alone.
   int event_count = 0;
 };
@@ -144,7 +150,7 @@ struct EngineOutput {
 struct EngineState;
 struct TrackWorld;
 
-/// Physics, gait controllers, wrist mapping, trials, and what happens at a failure.
+/// Physics, gait controllers, user interface, trials, and what happens at a failure.
 ///
 /// One thread at a time. After Create nothing allocates, locks or logs.
 class GaitEngine {

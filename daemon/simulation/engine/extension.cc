@@ -36,7 +36,7 @@ void GaitEngine::Parts::TakeAppend(const EngineInputs& inputs) {
   terrain::Append(segment, on.track);
   if (on.track.segments.size() == before) ++state.track.first_segment;
   place = terrain::Locate(on.track, body.p_WB.head<2>());
-  output.appended = true;
+  output.append.added = true;
 }
 
 void GaitEngine::Parts::ExtendEndless() {
@@ -48,7 +48,7 @@ void GaitEngine::Parts::ExtendEndless() {
   terrain::Add(*next, on.track);
   if (on.track.segments.size() == before) ++state.track.first_segment;
   place = terrain::Locate(on.track, body.p_WB.head<2>());
-  output.appended = true;
+  output.append.added = true;
 }
 
 void GaitEngine::Parts::PlaceGround() {

@@ -93,8 +93,9 @@ void GaitEngine::Parts::TakePush(const EngineInputs& inputs) {
 
 void GaitEngine::Parts::Command(const EngineInputs& inputs) {
   const stream::Gait before = state.command.gait;
-  biped::GaitCommand command =
-      state.inputs.fed ? state.wrist.Advance(TimeS(), inputs.features) : state.wrist.Rest();
+  mapping::Inputs person = state.inputs.fed ? inputs.features : mapping::Inputs{};
+  person.running = state.gait.gait;
+  biped::GaitCommand command = state.interface.Advance(TimeS(), person);
   if (inputs.direct) command = inputs.direct_command;
   state.command = biped::Limited(command);
   if (state.command.gait == before) return;
@@ -166,6 +167,7 @@ void GaitEngine::Parts::FillOutput() {
   output.gait.falls = stream::Total(state.failures);
   output.gait.distance_m = state.distance_m;
   output.gait.commanded_by_stream = state.inputs.fed;
+  output.interface = state.interface.state();
   output.trial = Progress();
   output.trial_number = state.inputs.trial_number;
   output.track_number = on.track.number;
@@ -173,7 +175,7 @@ void GaitEngine::Parts::FillOutput() {
   output.root_force_max_n = on.world.root_force_max_n();
   output.state_hash = on.world.StateHash();
   output.response = state.response.steps;
-  output.append_number = state.track.append_number;
+  output.append.number = state.track.append_number;
 }
 
 }  // namespace footing::engine

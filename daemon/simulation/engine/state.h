@@ -2,7 +2,7 @@
 
 #include "daemon/simulation/engine/engine.h"
 #include "daemon/simulation/gait/memory.h"
-#include "daemon/simulation/mapping/wrist.h"
+#include "daemon/simulation/mapping/any_interface.h"
 #include "daemon/simulation/physics/world.h"
 #include "daemon/simulation/trial/trial.h"
 
@@ -41,7 +41,7 @@ struct TrackMemory {
 struct EngineState {
   physics::WorldState world;
   gait::GaitMemory gait;
-  mapping::WristInterface wrist;
+  mapping::AnyInterface interface;
   biped::GaitCommand command;
   InputMemory inputs;
   ResponseMemory response;

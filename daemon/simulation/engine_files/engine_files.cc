@@ -10,12 +10,13 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
   engine::EngineTexts texts;
   auto biped = config::ReadDataFile(engine::kBipedFile, wish.data_folder);
   if (!biped) return biped.error();
-  auto mapping = config::ReadDataFile(engine::kWristMappingFile, wish.data_folder);
-  if (!mapping) return mapping.error();
+  auto mapping_table =
+      config::ReadDataFile(mapping::MappingFileOf(wish.interface), wish.data_folder);
+  if (!mapping_table) return mapping_table.error();
   auto track = config::ReadNamedOrPath(wish.track, "tracks", wish.data_folder);
   if (!track) return track.error();
   texts.biped = std::move(*biped);
-  texts.wrist_mapping = std::move(*mapping);
+  texts.mapping = std::move(*mapping_table);
   texts.track = std::move(*track);
   for (const char* name : engine::kGainFiles) {
     auto gains = config::ReadDataFile(name, wish.data_folder);

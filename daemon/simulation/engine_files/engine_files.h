@@ -9,7 +9,8 @@
 namespace footing::engine_files {
 
 struct Wish {
-  std::string track = "plain";   ///< Name of a built-in track, or a path.
+  std::string track = "plain";  ///< Name of a built-in track, or a path.
+  stream::UserInterface interface = stream::UserInterface::kWrist;
   std::string data_folder = "";  ///< Where the built-in files are; empty: where FindDataFile looks.
   /// Gain tables to read after the built-in ones; a later one replaces what an earlier one had for
   /// its gaits.

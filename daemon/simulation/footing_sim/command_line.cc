@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* kExamples =
     "  footing-sim\n  footing-sim --sensor tcp:127.0.0.1:7710 --track straight\n"
+    "  footing-sim --interface leg --set turn_by=trunk\n"
     "  footing-sim --engine pose --lag-ms 100\n";
 
 /// An option that sets one key of the config.
@@ -23,7 +24,8 @@ constexpr std::array kKeyOptions{
     KeyOption{"--engine", "engine", "Engine: gait or pose (default: gait)"},
     KeyOption{"--sensor", "sensor", "Address of footingd"},
     KeyOption{"--interface", "interface",
-              "User interface of the gait engine: wrist (default: wrist)"},
+              "User interface of the gait engine: wrist, arm, leg, joystick or boards (default: "
+              "wrist)"},
     KeyOption{"--track", "track",
               "Track of the gait engine: straight, 1 to 4 or another built-in name, or a JSON file "
               "(default: endless)"},

@@ -1,9 +1,27 @@
 #include "daemon/simulation/gait_service/config.h"
 
 namespace footing::gait_service {
+namespace {
+
+/// kUnspecified unless it can turn with the interface leg.
+stream::TurnSource TurnSourceNamed(const std::string& name) {
+  for (const auto source :
+       {stream::TurnSource::kHead, stream::TurnSource::kFeet, stream::TurnSource::kTrunk}) {
+    if (name == stream::Name(source)) return source;
+  }
+  return stream::TurnSource::kUnspecified;
+}
+
+}  // namespace
 
 void Config::Bind(config::Binder& binder) {
-  binder.Text("interface", interface, "User interface of the gait engine: wrist");
+  binder.Text("interface", interface,
+              "User interface of the gait engine: " + stream::UserInterfaceNames());
+  binder.Text("turn_by", turn_by, "What turns with the interface leg: head, feet or trunk");
+  binder.Flag("camera_roll", camera_roll, "Roll the picture with the head, with the interface leg");
+  binder.Flag("boards_may_be_left", boards_may_be_left,
+              "Let both feet leave the boards in a jump, with the interface boards; the person may "
+              "fall beside a board");
   binder.Text("track", track, "Track of the gait engine: a built-in name, or a JSON file");
   binder.Number("frame_rate_hz", frame_rate_hz, 10, 200, "Rate of character frames, Hz");
   binder.Number("features_timeout_s", features_timeout_s, 0.1, 5,
@@ -15,10 +33,20 @@ void Config::Bind(config::Binder& binder) {
 }
 
 Result<void> Check(const Config& config) {
-  if (config.interface != "wrist") {
-    return UsageError("unknown --interface " + config.interface + "; there is: wrist");
+  if (stream::UserInterfaceNamed(config.interface) == stream::UserInterface::kUnspecified) {
+    return UsageError("unknown --interface " + config.interface +
+                      "; there are: " + stream::UserInterfaceNames());
+  }
+  if (TurnSourceNamed(config.turn_by) == stream::TurnSource::kUnspecified) {
+    return UsageError("unknown turn_by " + config.turn_by + "; there are: head, feet, trunk");
   }
   return {};
+}
+
+mapping::InterfaceOptions OptionsOf(const Config& config) {
+  return {.interface = stream::UserInterfaceNamed(config.interface),
+          .leg = {.turn_by = TurnSourceNamed(config.turn_by), .camera_roll = config.camera_roll},
+          .boards_may_be_left = config.boards_may_be_left};
 }
 
 }  // namespace footing::gait_service

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "common/log/log.h"
 #include "common/wire/wire.h"
 #include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/gait_service/applied_input.h"
 #include "daemon/simulation/gait_service/publish.h"
 #include "daemon/simulation/serving/channel_bytes.h"
 #include "daemon/simulation/serving/messages.h"
@@ -14,13 +16,20 @@ namespace footing::gait_service {
 
 Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common,
                                                    const Config& config, int wake_descriptor) {
-  const auto texts =
-      engine_files::ReadTexts({.track = config.track, .data_folder = common.data_folder});
+  const mapping::InterfaceOptions interface = OptionsOf(config);
+  if (interface.interface == stream::UserInterface::kBoards && interface.boards_may_be_left) {
+    log::Warning(
+        "boards_may_be_left: whoever jumps off a board can fall beside it; keep the floor around "
+        "it free, and somebody near");
+  }
+  const auto texts = engine_files::ReadTexts(
+      {.track = config.track, .interface = interface.interface, .data_folder = common.data_folder});
   if (!texts) return texts.error();
   engine::EngineConfig engine_config;
   engine_config.fall_shown_s = config.fall_shown_s;
   engine_config.put_back_distance_m = config.put_back_distance_m;
   engine_config.features_timeout_s = config.features_timeout_s;
+  engine_config.interface = interface;
   auto engine = engine::GaitEngine::Create(*texts, engine_config);
   if (!engine) return engine.error();
   const auto biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
@@ -33,12 +42,28 @@ Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common
 GaitLine::GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
                    TrialControl::Options trial_options, int wake_descriptor)
     : world_(config.track),
+      interface_(OptionsOf(config)),
       frame_rate_hz_(config.frame_rate_hz),
       thread_(GaitRun(std::move(engine), tracks_), trial_options.step_s,
               static_cast<int>(std::lround(1.0 / (trial_options.step_s * config.frame_rate_hz))),
               wake_descriptor),
       trials_(std::move(trial_options), thread_.run().engine().track(), tracks_),
-      input_(rig, thread_.inputs(), responses_) {}
+      input_(rig, interface_, thread_.inputs(), responses_) {}
+
+std::vector<std::string> GaitLine::SensorChannels() const {
+  switch (interface_.interface) {
+    case stream::UserInterface::kJoystick:
+      return {"status", "motion", "nunchuk"};
+    case stream::UserInterface::kBoards:
+      return {"status", "setup", "boards"};
+    case stream::UserInterface::kUnspecified:
+    case stream::UserInterface::kWrist:
+    case stream::UserInterface::kArm:
+    case stream::UserInterface::kLeg:
+      return {"status", "features"};
+  }
+  return {"status", "features"};
+}
 
 std::vector<transport::Channel> GaitLine::Channels() {
   return {{"skeletons", serving::kSkeletons, true},
@@ -93,7 +118,9 @@ std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::
   trials_.Describe(frame, *characters.mutable_characters(0));
   v1::AppliedInputs inputs;
   for (int i = 0; i < frame.applied_count; ++i) {
-    *inputs.add_inputs() = ToAppliedInput(frame.applied[static_cast<std::size_t>(i)]);
+    v1::AppliedInput& input = *inputs.add_inputs();
+    input = ToAppliedInput(frame.applied[static_cast<std::size_t>(i)]);
+    SetInterface(interface_, input);
   }
   serving::AddFrame(characters, events, inputs, channels);
   return channels;

@@ -28,9 +28,12 @@ class GaitLine {
                                                   const Config& config, int wake_descriptor);
 
   static std::vector<transport::Channel> Channels();
-  static std::vector<std::string> Capabilities() { return {"gait", "wrist", "trial"}; }
-  static std::vector<std::string> SensorChannels() { return {"features"}; }
-  static constexpr v1::QueuePolicy kSensorPolicy = v1::QUEUE_POLICY_LATEST;
+  /// The engine, the interface in force, and trials.
+  std::vector<std::string> Capabilities() const {
+    return {"gait", stream::Name(interface_.interface), "trial"};
+  }
+  std::vector<std::string> SensorChannels() const;
+  static constexpr v1::QueuePolicy kSensorPolicy = v1::QUEUE_POLICY_DROP_OLDEST;
   double frame_rate_hz() const { return frame_rate_hz_; }
 
   serving::SimulationThread<GaitRun>& thread() { return thread_; }
@@ -45,6 +48,7 @@ class GaitLine {
   v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);
 
   const std::string world_;
+  const mapping::InterfaceOptions interface_;
   const double frame_rate_hz_;
   Responses responses_;
   TrackExchange tracks_;  // Before the thread, which uses it.

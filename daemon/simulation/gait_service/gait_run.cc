@@ -28,7 +28,7 @@ void GaitRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
   }
   engine_.Advance(inputs.Front().engine);
   const engine::EngineOutput& output = engine_.Output();
-  if (output.appended && frame.added_count < kMaxAdded) {
+  if (output.append.added && frame.added_count < kMaxAdded) {
     frame.added[static_cast<std::size_t>(frame.added_count++)] = engine_.track().segments.back();
   }
   if (output.response.commanded == output.step) frame.command_ns = clock::MonotonicNs();

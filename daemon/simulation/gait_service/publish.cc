@@ -1,8 +1,6 @@
 #include "daemon/simulation/gait_service/publish.h"
 
-#include <algorithm>
-
-#include "common/wire/fields.h"
+#include "common/wire/wire.h"
 #include "daemon/simulation/serving/messages.h"
 
 namespace footing::gait_service {
@@ -63,79 +61,6 @@ std::string ToText(const engine::EngineEvent& event) {
   return event.text;
 }
 
-using wire::FromProto;
-using wire::ToProto;
-
-template <typename Way>
-void Fields(Way way, const mapping::HandFeatures&) {
-  FOOTING_FIELD(present);
-  FOOTING_FIELD(moving);
-  FOOTING_FIELD(frequency_valid);
-  FOOTING_FIELD(frequency_hz);
-  FOOTING_FIELD(amplitude_valid);
-  FOOTING_FIELD(amplitude_mps2);
-  FOOTING_FIELD(inclination_valid);
-  FOOTING_FIELD(roll_rad);
-}
-FOOTING_BOTH_WAYS_OF(mapping::HandFeatures, v1::HandInput)
-
-template <typename Way>
-void Fields(Way way, const terrain::NewSegment&) {
-  FOOTING_FIELD(length_m);
-  FOOTING_FIELD(slope_rad);
-  FOOTING_FIELD(curve_rad);
-  FOOTING_FIELD(step_m);
-  FOOTING_FIELD(pit);
-}
-FOOTING_BOTH_WAYS_OF(terrain::NewSegment, v1::AppendedSegment)
-
-template <typename Way>
-void Fields(Way way, const engine::EngineInputs&) {
-  FOOTING_FIELD(features_number);
-  FOOTING_MESSAGE_OF(features.left, left);
-  FOOTING_MESSAGE_OF(features.right, right);
-  FOOTING_FIELD_OF(features.phase_valid, phase_valid);
-  FOOTING_FIELD_OF(features.phase_rad, phase_rad);
-  FOOTING_FIELD_OF(features.simulated, simulated);
-  FOOTING_FIELD(direct);
-  FOOTING_ENUM_OF(Gait, direct_command.gait, direct_gait);
-  FOOTING_FIELD_OF(direct_command.speed_mps, direct_speed_mps);
-  FOOTING_FIELD_OF(direct_command.height_m, direct_height_m);
-  FOOTING_FIELD_OF(direct_command.turn_per_step_rad, direct_turn_rad);
-  FOOTING_FIELD(push_number);
-  FOOTING_FIELD_OF(push_impulse_W_ns.x(), push_x_ns);
-  FOOTING_FIELD_OF(push_impulse_W_ns.y(), push_y_ns);
-  FOOTING_FIELD(put_back_number);
-  FOOTING_FIELD(append_number);
-  if constexpr (Way::kOut) {
-    for (int i = 0; i < way.value.append_count; ++i) {
-      *way.message.add_appends() = ToProto(way.value.appends[static_cast<std::size_t>(i)]);
-    }
-  } else {
-    way.value.append_count = std::min(way.message.appends_size(), engine::kMaxAppends);
-    for (int i = 0; i < way.value.append_count; ++i) {
-      way.value.appends[static_cast<std::size_t>(i)] = FromProto(way.message.appends(i));
-    }
-  }
-  FOOTING_FIELD_OF(trial.number, trial_number);
-  if constexpr (Way::kOut) {
-    way.message.set_trial_task(static_cast<std::uint32_t>(way.value.trial.task + 1));
-  } else {
-    way.value.trial.task = static_cast<int>(way.message.trial_task()) - 1;
-  }
-  FOOTING_FIELD_OF(trial.stopped_below, trials_stopped_below);
-  FOOTING_FIELD_OF(trial.track_number, track_number);
-}
-
-template <typename Way>
-void Fields(Way way, const Applied&) {
-  FOOTING_FIELD(step);
-  FOOTING_FIELD_OF(inputs.sensor_epoch, sensor_epoch);
-  FOOTING_FIELD_OF(inputs.sensor_sequence, sensor_sequence);
-  FOOTING_PART(inputs.engine);
-}
-FOOTING_BOTH_WAYS_OF(Applied, v1::AppliedInput)
-
 }  // namespace
 
 v1::CharacterFrame ToCharacterFrame(const Frame& frame, const std::string& world,
@@ -151,9 +76,10 @@ v1::CharacterFrame ToCharacterFrame(const Frame& frame, const std::string& world
                                                    .simulated_input = output.simulated_input},
                                                   world, rig);
   v1::Character& character = *message.mutable_characters(0);
-  for (const auto& pose : output.links) *character.add_links() = ToProto(pose);
-  for (const auto& contact : output.contacts) *character.add_contacts() = ToProto(contact);
-  *character.mutable_gait() = ToProto(output.gait);
+  for (const auto& pose : output.links) *character.add_links() = wire::ToProto(pose);
+  for (const auto& contact : output.contacts) *character.add_contacts() = wire::ToProto(contact);
+  *character.mutable_gait() = wire::ToProto(output.gait);
+  *character.mutable_interface() = wire::ToProto(output.interface);
   return message;
 }
 
@@ -164,9 +90,5 @@ v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns) {
   message.set_by_operator(event.by_operator);
   return message;
 }
-
-v1::AppliedInput ToAppliedInput(const Applied& applied) { return ToProto(applied); }
-
-Applied FromAppliedInput(const v1::AppliedInput& message) { return FromProto(message); }
 
 }  // namespace footing::gait_service

@@ -11,8 +11,5 @@ namespace footing::gait_service {
 v1::CharacterFrame ToCharacterFrame(const Frame& frame, const std::string& world,
                                     const std::string& rig);
 v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns);
-v1::AppliedInput ToAppliedInput(const Applied& applied);
-/// The other way round, for replays.
-Applied FromAppliedInput(const v1::AppliedInput& message);
 
 }  // namespace footing::gait_service

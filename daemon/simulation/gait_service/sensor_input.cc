@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "common/wire/wire.h"
-#include "daemon/simulation/mapping/wrist_features.h"
 #include "daemon/simulation/serving/messages.h"
 
 namespace footing::gait_service {
@@ -13,39 +11,25 @@ namespace {
 
 using serving::Answer;
 
-bool HasHands(const stream::RigFeatures& rig) {
-  for (const auto& device : rig.devices) {
-    if (device.role == stream::DeviceRole::kLeftHand ||
-        device.role == stream::DeviceRole::kRightHand) {
-      return true;
-    }
-  }
-  return false;
-}
-
 constexpr double kMaxPushNs = 200;
 
 }  // namespace
 
-SensorInput::SensorInput(std::string rig, exchange::Latest<Inputs>& out, Responses& responses)
-    : wanted_rig_(std::move(rig)), out_(out), responses_(responses) {}
+SensorInput::SensorInput(std::string rig, const mapping::InterfaceOptions& options,
+                         exchange::Latest<Inputs>& out, Responses& responses)
+    : collector_(std::move(rig), options), out_(out), responses_(responses) {}
 
 void SensorInput::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
-  if (tick.snapshot() || tick.refilled() || !tick.has_features()) return;
-  for (const v1::RigFeatures& message : tick.features().rigs()) {
-    if (!wanted_rig_.empty() && message.rig() != wanted_rig_) continue;
-    const stream::RigFeatures rig = wire::FromProto(message);
-    if (!HasHands(rig)) continue;
-    followed_rig_ = rig.rig;
-    inputs_.engine.features = mapping::ToWristFeatures(rig);
-    ++inputs_.engine.features_number;
-    inputs_.sensor_epoch = tick.epoch();
-    inputs_.sensor_sequence = tick.sequence();
-    responses_.Received({inputs_.engine.features_number, rig.newest_received_ns, rig.decoded_ns,
-                         rig.computed_ns, now_ns});
-    Publish();
-    return;
-  }
+  if (tick.refilled() || !collector_.Take(tick, now_ns)) return;
+  inputs_.engine.features = collector_.inputs();
+  ++inputs_.engine.features_number;
+  inputs_.sensor_epoch = tick.epoch();
+  inputs_.sensor_sequence = tick.sequence();
+  FeatureStamps stamps = collector_.stamps();
+  stamps.number = inputs_.engine.features_number;
+  stamps.received_ns = now_ns;
+  responses_.Received(stamps);
+  Publish();
 }
 
 /// The engine takes one segment a step, so those not yet taken wait in the inputs.

@@ -4,6 +4,7 @@
 
 #include "common/exchange/latest.h"
 #include "daemon/simulation/gait_service/frame.h"
+#include "daemon/simulation/gait_service/input_collector.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "footing/v1/command.pb.h"
 #include "footing/v1/session.pb.h"
@@ -13,12 +14,13 @@ namespace footing::gait_service {
 /// Turns sensor ticks and commands into engine inputs, on the io thread.
 class SensorInput {
  public:
-  /// `rig` empty: the first rig with a left or right hand.
-  SensorInput(std::string rig, exchange::Latest<Inputs>& out, Responses& responses);
+  /// `rig` empty: the first rig with a device that the interface uses.
+  SensorInput(std::string rig, const mapping::InterfaceOptions& options,
+              exchange::Latest<Inputs>& out, Responses& responses);
 
   void OnTick(const v1::Tick& tick, std::int64_t now_ns);
   /// What the engine has done with the inputs so far.
-  void OnFrame(const Frame& frame) { appends_taken_ = frame.output.append_number; }
+  void OnFrame(const Frame& frame) { appends_taken_ = frame.output.append.number; }
   /// DirectGait, Push, PutBack and AppendSegment; anything else is answered with what there is.
   v1::CommandResult OnCommand(const v1::Command& command);
 
@@ -28,14 +30,13 @@ class SensorInput {
     Publish();
   }
 
-  const std::string& rig() const { return followed_rig_; }
+  const std::string& rig() const { return collector_.rig(); }
 
  private:
   v1::CommandResult Append(const v1::AppendSegment& message);
   void Publish() { out_.Write(inputs_); }
 
-  const std::string wanted_rig_;
-  std::string followed_rig_;
+  InputCollector collector_;
   exchange::Latest<Inputs>& out_;
   Responses& responses_;
   Inputs inputs_;

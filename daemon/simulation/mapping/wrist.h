@@ -1,10 +1,20 @@
 #pragma once
 
-#include "daemon/simulation/biped/command.h"
-#include "daemon/simulation/mapping/wrist_features.h"
-#include "daemon/simulation/mapping/wrist_mapping.h"
+#include "daemon/simulation/mapping/swing_gait.h"
+#include "daemon/simulation/mapping/turn.h"
 
 namespace footing::mapping {
+
+/// The table of wrist_mapping.json.
+struct WristMapping {
+  SwingMapping swing;
+  FrequencyBorder border;
+  TurnMapping turn;
+};
+
+inline constexpr const char* kWristMappingFile = "wrist_mapping.json";
+/// Every key, nothing unknown, all in range. `origin` names the file.
+Result<WristMapping> ParseWristMapping(const std::string& text, const std::string& origin);
 
 /// The wrist interface of the gait paper, section 7: two controllers swung from the wrists.
 ///
@@ -17,24 +27,21 @@ namespace footing::mapping {
 /// | inclined beyond the dead band | besides, 5 degrees a step towards the lower side          |
 ///
 /// Left side higher (positive roll) leans to the right, so it turns right, which is negative.
-/// Every border has hysteresis. While features of moving hands are not valid the last command
-/// goes on, for at most hold_s. A plain value.
+/// A plain value.
 class WristInterface {
  public:
-  explicit WristInterface(const WristMapping& mapping) : mapping_(mapping) {}
+  explicit WristInterface(const WristMapping& mapping)
+      : mapping_(mapping), gait_(mapping.swing), turn_(mapping.turn) {}
 
-  /// The command for new features at `time_s`; times must not decrease.
-  biped::GaitCommand Advance(double time_s, const WristFeatures& features);
-  /// Without new features: as if the hands rested.
-  biped::GaitCommand Rest();
+  /// The command for new inputs at `time_s`; times must not decrease.
+  biped::GaitCommand Advance(double time_s, const Inputs& inputs);
+  const stream::InterfaceState& state() const { return state_; }
 
  private:
-  stream::Gait GaitOf(double phase_rad, double frequency_hz) const;
-  double TurnOf(const WristFeatures& features) const;
-
   WristMapping mapping_;
-  biped::GaitCommand command_;
-  double valid_time_s_ = 0;
+  SwingGait gait_;
+  Turn turn_;
+  stream::InterfaceState state_;
 };
 
 }  // namespace footing::mapping

@@ -7,7 +7,7 @@ void Config::Bind(config::Binder& binder) {
   binder.TextList("listen", listen, "Addresses for clients, unix:PATH or tcp:HOST:PORT");
   binder.Text("rig", rig, "Rig to follow (empty: the first with hand devices, or with boards)");
   binder.Text("data_folder", data_folder,
-              "Folder with biped.json, wrist_mapping.json, the models and the tracks");
+              "Folder with biped.json, the mappings, the models and the tracks");
 }
 
 }  // namespace footing::serving

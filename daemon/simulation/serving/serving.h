@@ -53,7 +53,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
       options.address = *address;
     }
     options.client_name = "footing-sim";
-    options.channels = Line::SensorChannels();
+    options.channels = line_->SensorChannels();
     options.policy = Line::kSensorPolicy;
     transport::ClientHandlers handlers;
     handlers.on_tick = [this](const v1::Tick& tick) { line_->OnTick(tick, clock::MonotonicNs()); };
@@ -86,7 +86,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     options.version = version;
     options.channels = Line::Channels();
     options.tick_rate_hz = line.frame_rate_hz();
-    options.capabilities = Line::Capabilities();
+    options.capabilities = line.Capabilities();
     return options;
   }
 

@@ -10,7 +10,7 @@ namespace footing::engine {
 inline EngineTexts Texts() {
   EngineTexts texts{.biped = test::DataFile(kBipedFile),
                     .track = test::DataFile(kPlainTrackFile),
-                    .wrist_mapping = test::DataFile(kWristMappingFile),
+                    .mapping = test::DataFile(mapping::kWristMappingFile),
                     .gains = {}};
   for (const char* name : kGainFiles) texts.gains.push_back({name, test::DataFile(name)});
   return texts;

@@ -45,7 +45,7 @@ TEST(Extension, ABadSegmentIsRefusedAndTheTrackStaysAsItWas) {
   });
   EXPECT_NE(why.find("2 to 4 m"), std::string::npos);
   EXPECT_EQ(engine.track().segments.size(), 4u);
-  EXPECT_EQ(engine.Output().append_number, 1u);
+  EXPECT_EQ(engine.Output().append.number, 1u);
 }
 
 TEST(Extension, AListOfSegmentsIsTakenOneAStepInTheirOrder) {
@@ -55,7 +55,7 @@ TEST(Extension, AListOfSegmentsIsTakenOneAStepInTheirOrder) {
   inputs.append_count = 3;
   for (int i = 0; i < 3; ++i) inputs.appends[static_cast<std::size_t>(i)].length_m = 2 + 0.5 * i;
   engine.Advance(inputs);
-  EXPECT_TRUE(engine.Output().appended);
+  EXPECT_TRUE(engine.Output().append.added);
   EXPECT_EQ(engine.track().segments.size(), 5u);
   Simulate(engine, inputs, 0.01);
   ASSERT_EQ(engine.track().segments.size(), 7u);

@@ -7,14 +7,16 @@ namespace {
 
 using stream::Gait;
 
-mapping::WristFeatures Swing(double frequency_hz, double phase_rad) {
-  const mapping::HandFeatures hand{.present = true,
+mapping::Inputs Swing(double frequency_hz, double phase_rad) {
+  const mapping::LimbFeatures hand{.present = true,
                                    .moving = true,
                                    .frequency_valid = true,
                                    .frequency_hz = frequency_hz,
                                    .amplitude_valid = true,
                                    .amplitude_mps2 = 12};
-  return {.left = hand, .right = hand, .phase_valid = true, .phase_rad = phase_rad};
+  mapping::Inputs inputs;
+  inputs.hands = {.left = hand, .right = hand, .phase_valid = true, .phase_rad = phase_rad};
+  return inputs;
 }
 
 /// New features every 10 ms, as footingd sends them.
@@ -38,7 +40,7 @@ TEST(SensorStream, CommandsAllGaits) {
     EXPECT_EQ(engine.Output().gait.gait, row.gait);
     EXPECT_TRUE(engine.Output().gait.commanded_by_stream);
   }
-  inputs.features.left.moving = inputs.features.right.moving = false;
+  inputs.features.hands.left.moving = inputs.features.hands.right.moving = false;
   SimulateFed(engine, inputs, 4);
   EXPECT_EQ(engine.Output().gait.gait, Gait::kStep);
   EXPECT_EQ(engine.Output().gait.falls, 0u);

@@ -21,8 +21,8 @@ TEST(FootingSimConfig, SettingsOfTheOtherEngineAreRefusedNotIgnored) {
   }
   config.engine = "pose";
   EXPECT_TRUE(CheckApply(config, {"subject=p07.json", "mode=paper", "lag_ms=100", "rig=one"}));
-  for (const char* setting : {"interface=wrist", "track=1", "frame_rate_hz=50", "fall_shown_s=1",
-                              "features_timeout_s=1", "put_back_distance_m=2"}) {
+  for (const char* setting : {"interface=wrist", "turn_by=feet", "track=1", "frame_rate_hz=50",
+                              "fall_shown_s=1", "features_timeout_s=1", "put_back_distance_m=2"}) {
     EXPECT_FALSE(CheckApply(config, {setting})) << setting;
   }
 }
@@ -37,6 +37,17 @@ TEST(FootingSimConfig, AFileMayHoldTheSettingsOfBothEngines) {
   EXPECT_TRUE(Check(config));
 }
 
+TEST(FootingSimConfig, EveryInterfaceIsKnownAndCarriesItsOptions) {
+  for (const auto interface : stream::kUserInterfaces) {
+    Config config;
+    config.gait.interface = stream::Name(interface);
+    config.gait.turn_by = "trunk";
+    EXPECT_TRUE(Check(config)) << config.gait.interface;
+    EXPECT_EQ(gait_service::OptionsOf(config.gait).interface, interface);
+    EXPECT_EQ(gait_service::OptionsOf(config.gait).leg.turn_by, stream::TurnSource::kTrunk);
+  }
+}
+
 TEST(FootingSimConfig, UnknownValuesListWhatThereIs) {
   const auto message = [](auto change) {
     Config config;
@@ -45,7 +56,9 @@ TEST(FootingSimConfig, UnknownValuesListWhatThereIs) {
     return checked ? std::string() : checked.error().message;
   };
   EXPECT_THAT(message([](Config& c) { c.engine = "walkies"; }), HasSubstr("gait, pose"));
-  EXPECT_THAT(message([](Config& c) { c.gait.interface = "boards"; }), HasSubstr("wrist"));
+  EXPECT_THAT(message([](Config& c) { c.gait.interface = "telepathy"; }),
+              HasSubstr("wrist, arm, leg, joystick, boards"));
+  EXPECT_THAT(message([](Config& c) { c.gait.turn_by = "tail"; }), HasSubstr("head, feet, trunk"));
   EXPECT_THAT(message([](Config& c) { c.pose.mode = "fast"; }), HasSubstr("best, paper"));
   EXPECT_THAT(message([](Config& c) { c.pose.lag_ms = 50; }), HasSubstr("0, 100, 200"));
 }

@@ -15,7 +15,7 @@ engine::GaitEngine MakeEngine() {
   engine::EngineTexts texts;
   texts.biped = *config::ReadDataFile(engine::kBipedFile);
   texts.track = *config::ReadDataFile(engine::kPlainTrackFile);
-  texts.wrist_mapping = *config::ReadDataFile(engine::kWristMappingFile);
+  texts.mapping = *config::ReadDataFile(mapping::kWristMappingFile);
   auto engine = engine::GaitEngine::Create(texts);
   FOOTING_CHECK(engine.ok());
   return std::move(engine).value();

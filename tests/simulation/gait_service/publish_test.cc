@@ -5,45 +5,6 @@
 namespace footing::gait_service {
 namespace {
 
-TEST(Publish, AppliedInputsComeBackBitForBit) {
-  Applied applied;
-  applied.step = 1234;
-  applied.inputs.sensor_epoch = 5;
-  applied.inputs.sensor_sequence = 6;
-  engine::EngineInputs& inputs = applied.inputs.engine;
-  inputs.features_number = 7;
-  inputs.features.left = {true, true, true, 1.0 / 3, true, 7.7, true, -0.1};
-  inputs.features.right = {true, false, false, 0, false, 0, true, 0.2};
-  inputs.features.phase_valid = true;
-  inputs.features.phase_rad = 3.14159;
-  inputs.features.simulated = true;
-  inputs.direct = true;
-  inputs.direct_command = {stream::Gait::kJump, 0.7, 0.3, -0.087};
-  inputs.push_number = 2;
-  inputs.push_impulse_W_ns = {1.5, -2.5};
-  inputs.put_back_number = 3;
-  inputs.append_number = 9;
-  inputs.append_count = 2;
-  inputs.appends[0] = {2.5, 0.05, -0.2, 0.1, false};
-  inputs.appends[1] = {1.5, 0, 0, 0, true};
-  inputs.trial = {.number = 4, .task = 2, .stopped_below = 3, .track_number = 5};
-
-  const std::string bytes = ToAppliedInput(applied).SerializeAsString();
-  v1::AppliedInput message;
-  ASSERT_TRUE(message.ParseFromString(bytes));
-  const Applied back = FromAppliedInput(message);
-  EXPECT_EQ(ToAppliedInput(back).SerializeAsString(), bytes);
-  EXPECT_EQ(back.inputs.engine.features.left.frequency_hz, 1.0 / 3);
-  EXPECT_EQ(back.inputs.engine.direct_command, inputs.direct_command);
-  ASSERT_EQ(back.inputs.engine.append_count, 2);
-  EXPECT_EQ(back.inputs.engine.appends[0].step_m, 0.1);
-  EXPECT_TRUE(back.inputs.engine.appends[1].pit);
-  EXPECT_EQ(back.inputs.engine.trial.number, 4u);
-  EXPECT_EQ(back.inputs.engine.trial.task, 2);
-  EXPECT_EQ(back.inputs.engine.trial.stopped_below, 3u);
-  EXPECT_EQ(back.inputs.engine.trial.track_number, 5u);
-}
-
 TEST(Publish, AFailureSaysItsCauseAndAPutBackWhoAskedForIt) {
   engine::EngineEvent event;
   event.kind = engine::EventKind::kFall;
@@ -84,6 +45,20 @@ TEST(Publish, FailuresAreCountedByCauseApartFromOperatorPutBacks) {
   EXPECT_EQ(gait.failures().jump(), 3u);
   EXPECT_EQ(gait.operator_put_backs(), 4u);
   EXPECT_EQ(gait.falls(), 10u);
+}
+
+TEST(Publish, AFrameNamesTheInterfaceAndWhatItBelieves) {
+  Frame frame;
+  frame.output.interface.interface = stream::UserInterface::kLeg;
+  frame.output.interface.activity = stream::Activity::kAlternate;
+  frame.output.interface.turn.source = stream::TurnSource::kTrunk;
+  frame.output.interface.turn.share = -1.5;
+  const v1::CharacterFrame message = ToCharacterFrame(frame, "straight", "one");
+  const v1::InterfaceState& state = message.characters(0).interface();
+  EXPECT_EQ(state.interface(), v1::USER_INTERFACE_LEG);
+  EXPECT_EQ(state.activity(), v1::ACTIVITY_ALTERNATE);
+  EXPECT_EQ(state.turn_source(), v1::TURN_SOURCE_TRUNK);
+  EXPECT_EQ(state.turn_share(), -1.5);
 }
 
 TEST(Publish, AFrameCarriesEveryLinkAndContact) {

@@ -30,7 +30,7 @@ struct Fixture : testing::Test {
 using SensorInputTest = Fixture;
 
 TEST_F(SensorInputTest, FollowsTheFirstRigThatHasHands) {
-  SensorInput input("", inputs, responses);
+  SensorInput input("", {}, inputs, responses);
   v1::Tick tick;
   tick.set_epoch(9);
   tick.set_sequence(41);
@@ -42,11 +42,11 @@ TEST_F(SensorInputTest, FollowsTheFirstRigThatHasHands) {
   EXPECT_EQ(inputs.Front().engine.features_number, 1u);
   EXPECT_EQ(inputs.Front().sensor_sequence, 41u);
   EXPECT_EQ(inputs.Front().sensor_epoch, 9u);
-  EXPECT_DOUBLE_EQ(inputs.Front().engine.features.right.frequency_hz, 1.5);
+  EXPECT_DOUBLE_EQ(inputs.Front().engine.features.hands.right.frequency_hz, 1.5);
 }
 
 TEST_F(SensorInputTest, FollowsOnlyTheRigThatWasNamed) {
-  SensorInput input("two", inputs, responses);
+  SensorInput input("two", {}, inputs, responses);
   v1::Tick tick;
   AddRig(tick, "one", v1::DEVICE_ROLE_LEFT_HAND);
   input.OnTick(tick, 1);
@@ -54,7 +54,7 @@ TEST_F(SensorInputTest, FollowsOnlyTheRigThatWasNamed) {
 }
 
 TEST_F(SensorInputTest, SnapshotsAndRefilledTicksAreThePastAndCommandNothing) {
-  SensorInput input("", inputs, responses);
+  SensorInput input("", {}, inputs, responses);
   v1::Tick tick;
   AddRig(tick, "one", v1::DEVICE_ROLE_LEFT_HAND);
   tick.set_snapshot(true);
@@ -66,7 +66,7 @@ TEST_F(SensorInputTest, SnapshotsAndRefilledTicksAreThePastAndCommandNothing) {
 }
 
 TEST_F(SensorInputTest, DirectGaitTakesOverAndIsReleased) {
-  SensorInput input("", inputs, responses);
+  SensorInput input("", {}, inputs, responses);
   v1::Command command;
   command.mutable_direct_gait()->set_gait(v1::GAIT_RUN);
   command.mutable_direct_gait()->set_speed_mps(2);
@@ -81,7 +81,7 @@ TEST_F(SensorInputTest, DirectGaitTakesOverAndIsReleased) {
 }
 
 TEST_F(SensorInputTest, CommandsThatMakeNoSenseAreRefusedAndChangeNothing) {
-  SensorInput input("", inputs, responses);
+  SensorInput input("", {}, inputs, responses);
   v1::Command no_gait;
   no_gait.mutable_direct_gait();
   EXPECT_FALSE(input.OnCommand(no_gait).ok());
@@ -99,7 +99,7 @@ TEST_F(SensorInputTest, CommandsThatMakeNoSenseAreRefusedAndChangeNothing) {
 }
 
 TEST_F(SensorInputTest, EachPushHasItsOwnNumber) {
-  SensorInput input("", inputs, responses);
+  SensorInput input("", {}, inputs, responses);
   v1::Command push;
   push.mutable_push()->set_impulse_y_ns(5);
   EXPECT_TRUE(input.OnCommand(push).ok());
@@ -116,7 +116,7 @@ v1::Command AppendOf(double length_m) {
 }
 
 TEST_F(SensorInputTest, SegmentsWaitInOrderUntilTheEngineHasTakenThem) {
-  SensorInput input("", inputs, responses);
+  SensorInput input("", {}, inputs, responses);
   for (int i = 0; i < engine::kMaxAppends; ++i) {
     EXPECT_TRUE(input.OnCommand(AppendOf(2 + 0.1 * i)).ok());
   }
@@ -125,7 +125,7 @@ TEST_F(SensorInputTest, SegmentsWaitInOrderUntilTheEngineHasTakenThem) {
   EXPECT_THAT(full.message(), HasSubstr("try again"));
 
   Frame frame;
-  frame.output.append_number = 5;
+  frame.output.append.number = 5;
   input.OnFrame(frame);
   EXPECT_TRUE(input.OnCommand(AppendOf(4)).ok());
   ASSERT_TRUE(inputs.Refresh());
@@ -137,7 +137,7 @@ TEST_F(SensorInputTest, SegmentsWaitInOrderUntilTheEngineHasTakenThem) {
 }
 
 TEST_F(SensorInputTest, ASegmentMustBeFinite) {
-  SensorInput input("", inputs, responses);
+  SensorInput input("", {}, inputs, responses);
   EXPECT_FALSE(input.OnCommand(AppendOf(std::numeric_limits<double>::quiet_NaN())).ok());
   EXPECT_FALSE(inputs.Refresh());
 }

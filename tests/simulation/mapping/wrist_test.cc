@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 
+#include "tests/simulation/mapping/settled.h"
 #include "tests/simulation/test_world.h"
 
 namespace footing::mapping {
@@ -15,9 +16,9 @@ WristMapping Mapping() {
   return ParseWristMapping(test::DataFile("wrist_mapping.json"), "wrist_mapping.json").value();
 }
 
-WristFeatures Swing(double frequency_hz, double phase_rad, double amplitude_mps2 = 10,
-                    double roll_rad = 0) {
-  const HandFeatures hand{.present = true,
+Inputs Swing(double frequency_hz, double phase_rad, double amplitude_mps2 = 10,
+             double roll_rad = 0) {
+  const LimbFeatures hand{.present = true,
                           .moving = true,
                           .frequency_valid = true,
                           .frequency_hz = frequency_hz,
@@ -25,7 +26,9 @@ WristFeatures Swing(double frequency_hz, double phase_rad, double amplitude_mps2
                           .amplitude_mps2 = amplitude_mps2,
                           .inclination_valid = true,
                           .roll_rad = roll_rad};
-  return {.left = hand, .right = hand, .phase_valid = true, .phase_rad = phase_rad};
+  Inputs inputs;
+  inputs.hands = {.left = hand, .right = hand, .phase_valid = true, .phase_rad = phase_rad};
+  return inputs;
 }
 
 TEST(Wrist, GaitFollowsPhaseAndFrequency) {
@@ -40,7 +43,7 @@ TEST(Wrist, GaitFollowsPhaseAndFrequency) {
                     {1.75, 0.2, Gait::kJump, 0.5},  {1.75, -0.9, Gait::kJump, 0.5}};
   for (const auto& row : rows) {
     WristInterface wrist(Mapping());
-    const auto command = wrist.Advance(0, Swing(row.frequency_hz, row.phase_rad));
+    const auto command = Settled(wrist, 0, Swing(row.frequency_hz, row.phase_rad));
     EXPECT_EQ(command.gait, row.gait) << row.frequency_hz << " Hz, phase " << row.phase_rad;
     EXPECT_NEAR(command.speed_mps, row.speed_mps, 1e-9) << row.frequency_hz;
   }
@@ -48,34 +51,34 @@ TEST(Wrist, GaitFollowsPhaseAndFrequency) {
 
 TEST(Wrist, AmplitudeSetsTheHeightOfAJump) {
   WristInterface wrist(Mapping());
-  EXPECT_NEAR(wrist.Advance(0, Swing(2, 0, 4)).height_m, 0.08, 1e-9);
-  EXPECT_NEAR(wrist.Advance(0, Swing(2, 0, 14.5)).height_m, 0.215, 1e-9);  // Middle of both.
-  EXPECT_NEAR(wrist.Advance(0, Swing(2, 0, 60)).height_m, 0.35, 1e-9);
+  EXPECT_NEAR(Settled(wrist, 0, Swing(2, 0, 4)).height_m, 0.08, 1e-9);
+  EXPECT_NEAR(Settled(wrist, 2, Swing(2, 0, 14.5)).height_m, 0.215, 1e-9);  // Middle of both.
+  EXPECT_NEAR(Settled(wrist, 4, Swing(2, 0, 60)).height_m, 0.35, 1e-9);
 }
 
 TEST(Wrist, RestingHandsStepInPlace) {
   WristInterface wrist(Mapping());
-  wrist.Advance(0, Swing(1, kPi));
-  WristFeatures rest = Swing(1, kPi);
-  rest.left.moving = rest.right.moving = false;
-  EXPECT_EQ(wrist.Advance(0.1, rest).gait, Gait::kStep);
-  wrist.Advance(0.2, Swing(1, kPi));
-  WristFeatures one = Swing(1, kPi);
-  one.left.present = false;
-  EXPECT_EQ(wrist.Advance(0.3, one).gait, Gait::kStep);
+  EXPECT_EQ(Settled(wrist, 0, Swing(1, kPi)).gait, Gait::kWalk);
+  Inputs rest = Swing(1, kPi);
+  rest.hands.left.moving = rest.hands.right.moving = false;
+  EXPECT_EQ(Settled(wrist, 2, rest).gait, Gait::kStep);
+  EXPECT_EQ(Settled(wrist, 4, Swing(1, kPi)).gait, Gait::kWalk);
+  Inputs one = Swing(1, kPi);
+  one.hands.left = {};
+  EXPECT_EQ(wrist.Advance(6, one).gait, Gait::kStep);
 }
 
 TEST(Wrist, BordersHaveHysteresis) {
   WristInterface wrist(Mapping());
-  EXPECT_EQ(wrist.Advance(0, Swing(1.95, kPi)).gait, Gait::kWalk);
-  EXPECT_EQ(wrist.Advance(1, Swing(2.05, kPi)).gait, Gait::kWalk);
-  EXPECT_EQ(wrist.Advance(2, Swing(2.10, kPi)).gait, Gait::kRun);
-  EXPECT_EQ(wrist.Advance(3, Swing(1.95, kPi)).gait, Gait::kRun);
-  EXPECT_EQ(wrist.Advance(4, Swing(1.90, kPi)).gait, Gait::kWalk);
-  EXPECT_EQ(wrist.Advance(5, Swing(1.5, kPi / 2)).gait, Gait::kWalk);
-  EXPECT_EQ(wrist.Advance(6, Swing(1.5, 1.2)).gait, Gait::kJump);
-  EXPECT_EQ(wrist.Advance(7, Swing(1.5, -kPi / 2)).gait, Gait::kJump);
-  EXPECT_EQ(wrist.Advance(8, Swing(1.5, -1.9)).gait, Gait::kWalk);
+  EXPECT_EQ(Settled(wrist, 0, Swing(1.95, kPi)).gait, Gait::kWalk);
+  EXPECT_EQ(Settled(wrist, 2, Swing(2.05, kPi)).gait, Gait::kWalk);
+  EXPECT_EQ(Settled(wrist, 4, Swing(2.10, kPi)).gait, Gait::kRun);
+  EXPECT_EQ(Settled(wrist, 6, Swing(1.95, kPi)).gait, Gait::kRun);
+  EXPECT_EQ(Settled(wrist, 8, Swing(1.90, kPi)).gait, Gait::kWalk);
+  EXPECT_EQ(Settled(wrist, 10, Swing(1.5, kPi / 2)).gait, Gait::kWalk);
+  EXPECT_EQ(Settled(wrist, 12, Swing(1.5, 1.2)).gait, Gait::kJump);
+  EXPECT_EQ(Settled(wrist, 14, Swing(1.5, -kPi / 2)).gait, Gait::kJump);
+  EXPECT_EQ(Settled(wrist, 16, Swing(1.5, -1.9)).gait, Gait::kWalk);
 }
 
 TEST(Wrist, LeaningTurnsTowardsTheLowerSide) {
@@ -91,17 +94,43 @@ TEST(Wrist, LeaningTurnsTowardsTheLowerSide) {
 
 TEST(Wrist, FeaturesNotYetValidHoldTheGaitForAWhile) {
   WristInterface wrist(Mapping());
-  wrist.Advance(0, Swing(3, kPi));
-  WristFeatures unsure = Swing(3, kPi);
-  unsure.phase_valid = false;
-  EXPECT_EQ(wrist.Advance(1, unsure).gait, Gait::kRun);
-  EXPECT_EQ(wrist.Advance(2.9, unsure).gait, Gait::kRun);
-  EXPECT_EQ(wrist.Advance(3.1, unsure).gait, Gait::kStep);  // hold_s is 3.
+  Settled(wrist, 0, Swing(3, kPi));
+  Inputs unsure = Swing(3, kPi);
+  unsure.hands.phase_valid = false;
+  EXPECT_EQ(wrist.Advance(2, unsure).gait, Gait::kRun);
+  EXPECT_EQ(wrist.Advance(4.9, unsure).gait, Gait::kRun);
+  EXPECT_EQ(wrist.Advance(5.1, unsure).gait, Gait::kStep);  // hold_s is 3.
   WristInterface fresh(Mapping());
   EXPECT_EQ(fresh.Advance(0, unsure).gait, Gait::kStep);
 }
 
-TEST(WristFeatures, AreTakenFromTheHandsAndTheirPair) {
+TEST(Wrist, TheTurnFollowsTheHandsWhileTheirPhaseIsNotKnown) {
+  WristInterface wrist(Mapping());
+  EXPECT_LT(Settled(wrist, 0, Swing(1, kPi, 10, 0.5)).turn_per_step_rad, 0);
+  Inputs unsure = Swing(1, kPi, 10, 0);
+  unsure.hands.phase_valid = false;
+  EXPECT_EQ(wrist.Advance(2, unsure).turn_per_step_rad, 0);
+}
+
+TEST(Wrist, WithoutItsControllersTheCharacterStopsAndTurnsNoMore) {
+  WristInterface wrist(Mapping());
+  Settled(wrist, 0, Swing(1, kPi, 10, 0.5));
+  // As footingd reports controllers that it has not heard of for half a second.
+  stream::RigFeatures rig;
+  rig.devices.resize(2);
+  rig.devices[0].role = stream::DeviceRole::kLeftHand;
+  rig.devices[1].role = stream::DeviceRole::kRightHand;
+  Inputs gone;
+  TakeFeatures(rig, 0, gone);
+  const auto command = wrist.Advance(2, gone);
+  EXPECT_EQ(command.gait, Gait::kStep);
+  EXPECT_EQ(command.turn_per_step_rad, 0);
+  EXPECT_EQ(wrist.state().activity, stream::Activity::kAbsent);
+  EXPECT_EQ(wrist.state().missing_roles, stream::RoleBit(stream::DeviceRole::kLeftHand) |
+                                             stream::RoleBit(stream::DeviceRole::kRightHand));
+}
+
+TEST(Inputs, HandsAreTakenWithThePairTheyForm) {
   stream::RigFeatures rig;
   rig.devices.resize(3);
   rig.devices[0].device = 7;
@@ -114,11 +143,13 @@ TEST(WristFeatures, AreTakenFromTheHandsAndTheirPair) {
   rig.devices[2].role = stream::DeviceRole::kLeftHand;
   rig.devices[2].moving = true;
   rig.pairs = {{9, 7, true, 2.0}, {7, 4, true, 0.5}};
-  const WristFeatures features = ToWristFeatures(rig);
-  EXPECT_TRUE(features.left.present && features.left.moving);
-  EXPECT_FALSE(features.right.frequency_valid);
-  EXPECT_TRUE(features.phase_valid);
-  EXPECT_EQ(features.phase_rad, -0.5);  // That pair was given the other way round.
+  Inputs inputs;
+  TakeFeatures(rig, stream::RoleBit(stream::DeviceRole::kLeftHand), inputs);
+  EXPECT_TRUE(inputs.hands.left.present && inputs.hands.left.moving);
+  EXPECT_TRUE(inputs.hands.left.mounted);
+  EXPECT_FALSE(inputs.hands.right.frequency_valid || inputs.hands.right.mounted);
+  EXPECT_TRUE(inputs.hands.phase_valid);
+  EXPECT_EQ(inputs.hands.phase_rad, -0.5);  // That pair was given the other way round.
 }
 
 TEST(WristMapping, RefusesRangesThatDoNotRise) {

@@ -5,7 +5,7 @@
 #include "common/wire/wire.h"
 #include "daemon/offline/eval/replay/replay.h"
 #include "daemon/simulation/engine/track_world.h"
-#include "daemon/simulation/gait_service/publish.h"
+#include "daemon/simulation/gait_service/applied_input.h"
 
 namespace footing::eval {
 namespace {
@@ -76,21 +76,23 @@ class BipedRerun {
 };
 
 Result<engine::GaitEngine> FirstEngine(const BipedRecording& recording,
-                                       const engine::EngineTexts& texts, bool named_track) {
-  if (named_track) return engine::GaitEngine::Create(texts);
+                                       const engine::EngineTexts& texts,
+                                       const engine::EngineConfig& config, bool named_track) {
+  if (named_track) return engine::GaitEngine::Create(texts, config);
   const auto first = recording.tracks.find(1);
   if (first == recording.tracks.end()) {
     return InvalidData(
         "the recording does not hold its whole track (an older footing-sim made it); name the "
         "track with --track");
   }
-  return engine::GaitEngine::CreateOn(first->second, texts);
+  return engine::GaitEngine::CreateOn(first->second, texts, config);
 }
 
 }  // namespace
 
 Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks,
-                                 const engine::EngineTexts& texts, bool named_track) {
+                                 const engine::EngineTexts& texts,
+                                 const engine::EngineConfig& config, bool named_track) {
   const BipedRecording recording = GatherBiped(ticks);
   if (recording.inputs.size() > kMaxInputs) {
     return InvalidData("the recording holds too many inputs");
@@ -102,7 +104,7 @@ Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks,
   }
   const auto biped = biped::ParseBiped(texts.biped, engine::kBipedFile);
   if (!biped) return biped.error();
-  auto engine = FirstEngine(recording, texts, named_track);
+  auto engine = FirstEngine(recording, texts, config, named_track);
   if (!engine) return engine.error();
   BipedRerun rerun(recording, *biped, std::move(engine).value());
   for (const auto& [frame_step, hash] : recording.hashes) {

@@ -35,9 +35,10 @@ FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks);
 
 /// Feeds the applied inputs of footing-sim's ticks to a new engine, on the recorded tracks.
 /// InvalidData when the recording does not begin with the simulation's first step. `texts` has the
-/// data files. Its track is used in place of the recorded first one where `named_track` is true; a
-/// recording without a whole track needs that.
+/// data files, `config` the interface. Their track is used in place of the recorded first one where
+/// `named_track` is true; a recording without a whole track needs that.
 Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks,
-                                 const engine::EngineTexts& texts, bool named_track);
+                                 const engine::EngineTexts& texts,
+                                 const engine::EngineConfig& config, bool named_track);
 
 }  // namespace footing::eval

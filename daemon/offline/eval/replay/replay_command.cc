@@ -9,6 +9,7 @@
 #include "daemon/offline/eval/replay/recorded.h"
 #include "daemon/offline/eval/replay/replay.h"
 #include "daemon/simulation/engine_files/engine_files.h"
+#include "daemon/simulation/gait_service/applied_input.h"
 
 namespace footing::eval {
 namespace {
@@ -19,13 +20,23 @@ struct Options {
   std::string data_folder;
 };
 
+/// The interface that the recorded inputs name.
+mapping::InterfaceOptions InterfaceOf(const std::vector<v1::Tick>& ticks) {
+  for (const v1::Tick& tick : ticks) {
+    if (tick.inputs().inputs_size() > 0) return gait_service::InterfaceOf(tick.inputs().inputs(0));
+  }
+  return {};
+}
+
 Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks, const Options& options) {
   if (IsPoseRecording(ticks)) return ReplayPose(ticks, options.data_folder);
+  const mapping::InterfaceOptions interface = InterfaceOf(ticks);
+  engine_files::Wish wish{.interface = interface.interface};
   const bool named_track = !options.track.empty();
-  const auto texts =
-      named_track ? engine_files::ReadTexts({.track = options.track}) : engine_files::ReadTexts();
+  if (named_track) wish.track = options.track;
+  const auto texts = engine_files::ReadTexts(wish);
   if (!texts) return texts.error();
-  return ReplayBiped(ticks, *texts, named_track);
+  return ReplayBiped(ticks, *texts, {.interface = interface}, named_track);
 }
 
 int Run(const Options& options) {

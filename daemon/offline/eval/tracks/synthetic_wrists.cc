@@ -38,17 +38,17 @@ SyntheticWrists::Swing SyntheticWrists::For(const biped::GaitCommand& wanted) co
   swing.phase_rad = wanted.gait == Gait::kJump ? 0 : kPi;
   swing.amplitude_mps2 = kEverydayMps2;
   const double turn = wanted.turn_per_step_rad;
-  swing.roll_rad = turn == 0 ? 0 : -std::copysign(kTiltBeyond * mapping_.turn_above_rad, turn);
+  swing.roll_rad = turn == 0 ? 0 : -std::copysign(kTiltBeyond * mapping_.turn.turn_above, turn);
   switch (wanted.gait) {
     case Gait::kWalk:
-      swing.frequency_hz = From(mapping_.walk_mps_from_hz, wanted.speed_mps);
+      swing.frequency_hz = From(mapping_.swing.walk_mps_from_hz, wanted.speed_mps);
       break;
     case Gait::kRun:
-      swing.frequency_hz = From(mapping_.run_mps_from_hz, wanted.speed_mps);
+      swing.frequency_hz = From(mapping_.swing.run_mps_from_hz, wanted.speed_mps);
       break;
     case Gait::kJump:
-      swing.frequency_hz = From(mapping_.jump_mps_from_hz, wanted.speed_mps);
-      swing.amplitude_mps2 = From(mapping_.jump_m_from_mps2, wanted.height_m);
+      swing.frequency_hz = From(mapping_.swing.jump_mps_from_hz, wanted.speed_mps);
+      swing.amplitude_mps2 = From(mapping_.swing.jump_m_from_mps2, wanted.height_m);
       break;
     case Gait::kStep:
     case Gait::kUnspecified:
@@ -63,7 +63,7 @@ Eigen::Vector3d SyntheticWrists::SpecificForce(double angle_rad) const {
          now_.amplitude_mps2 * std::sin(angle_rad) * shape_.direction_S;
 }
 
-mapping::WristFeatures SyntheticWrists::Advance(const biped::GaitCommand& wanted) {
+mapping::Inputs SyntheticWrists::Advance(const biped::GaitCommand& wanted) {
   const Swing to = For(wanted);
   Approach(to.frequency_hz, kSwingChangesS, now_.frequency_hz);
   Approach(to.phase_rad, kSwingChangesS, now_.phase_rad);
@@ -75,7 +75,9 @@ mapping::WristFeatures SyntheticWrists::Advance(const biped::GaitCommand& wanted
   const auto right = wrists::Read(sensor_, SpecificForce(angle_rad_ + now_.phase_rad), random_);
   chain_.Add(kLeftDevice, now_ns, left.specific_force_mps2, left.clipped_axes);
   chain_.Add(kRightDevice, now_ns, right.specific_force_mps2, right.clipped_axes);
-  return mapping::ToWristFeatures(chain_.Compute(now_ns));
+  mapping::Inputs inputs;
+  mapping::TakeFeatures(chain_.Compute(now_ns), 0, inputs);
+  return inputs;
 }
 
 }  // namespace footing::eval

@@ -3,8 +3,7 @@
 #include "common/virtual/wrists/accelerometer.h"
 #include "daemon/offline/eval/chain/features_chain.h"
 #include "daemon/simulation/biped/command.h"
-#include "daemon/simulation/mapping/wrist_features.h"
-#include "daemon/simulation/mapping/wrist_mapping.h"
+#include "daemon/simulation/mapping/wrist.h"
 
 namespace footing::eval {
 
@@ -15,7 +14,7 @@ class SyntheticWrists {
   SyntheticWrists(const mapping::WristMapping& mapping, std::uint64_t seed);
 
   /// Moves on by one reading of the sensors, kReadingS, towards what `wanted` needs.
-  mapping::WristFeatures Advance(const biped::GaitCommand& wanted);
+  mapping::Inputs Advance(const biped::GaitCommand& wanted);
 
   static constexpr double kReadingS = 0.01;
 

@@ -52,20 +52,20 @@ class WristChannel : public Channel {
 };
 
 Result<mapping::WristMapping> ReadMapping() {
-  const Result<std::string> text = config::ReadDataFile(engine::kWristMappingFile);
+  const Result<std::string> text = config::ReadDataFile(mapping::kWristMappingFile);
   if (!text) return text.error();
-  return mapping::ParseWristMapping(*text, engine::kWristMappingFile);
+  return mapping::ParseWristMapping(*text, mapping::kWristMappingFile);
 }
 
 /// The wrists' range is the mapping's; a change of the swing is felt after about one cycle.
 Skill WristSkill(const mapping::WristMapping& mapping) {
-  return {.walk_min_mps = mapping.walk_mps_from_hz.to_min,
-          .walk_max_mps = mapping.walk_mps_from_hz.to_max - 0.1,
-          .run_min_mps = mapping.run_mps_from_hz.to_min + 0.15,
-          .run_max_mps = mapping.run_mps_from_hz.to_max,
-          .jump_mps = mapping.jump_mps_from_hz.to_max,
-          .jump_height_m = mapping.jump_m_from_mps2.to_max,
-          .turn_per_step_rad = mapping.turn_per_step_rad,
+  return {.walk_min_mps = mapping.swing.walk_mps_from_hz.to_min,
+          .walk_max_mps = mapping.swing.walk_mps_from_hz.to_max - 0.1,
+          .run_min_mps = mapping.swing.run_mps_from_hz.to_min + 0.15,
+          .run_max_mps = mapping.swing.run_mps_from_hz.to_max,
+          .jump_mps = mapping.swing.jump_mps_from_hz.to_max,
+          .jump_height_m = mapping.swing.jump_m_from_mps2.to_max,
+          .turn_per_step_rad = mapping.turn.turn_per_step_rad,
           .turns_by_degrees = false,
           .delay_s = 0.25};
 }

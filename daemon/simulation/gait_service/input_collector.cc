@@ -1,0 +1,168 @@
+#include "daemon/simulation/gait_service/input_collector.h"
+
+#include <cmath>
+#include <utility>
+
+#include "common/board/geometry.h"
+#include "common/board/layout.h"
+#include "common/units/units.h"
+#include "common/wire/wire.h"
+
+namespace footing::gait_service {
+namespace {
+
+using stream::DeviceRole;
+using stream::UserInterface;
+
+/// Of a Wiimote's two button bytes, as MotionSample has them.
+constexpr std::uint32_t kButtonA = 0x0008;
+
+DeviceRole RoleIn(v1::DeviceRole role) {
+  return v1::DeviceRole_IsValid(role) ? static_cast<DeviceRole>(role) : DeviceRole::kUnspecified;
+}
+
+bool IsFinite(const v1::BoardSample& sample) {
+  return std::isfinite(sample.top_left_n()) && std::isfinite(sample.top_right_n()) &&
+         std::isfinite(sample.bottom_left_n()) && std::isfinite(sample.bottom_right_n()) &&
+         std::isfinite(sample.cop_x_m()) && std::isfinite(sample.cop_y_m());
+}
+
+}  // namespace
+
+InputCollector::InputCollector(std::string rig, const mapping::InterfaceOptions& options)
+    : wanted_rig_(std::move(rig)), options_(options), rig_(wanted_rig_) {}
+
+bool InputCollector::Follows(const std::string& rig, DeviceRole role) {
+  if (rig_.empty() && mapping::Uses(options_, role)) rig_ = rig;
+  return !rig_.empty() && rig == rig_;
+}
+
+DeviceRole InputCollector::RoleOf(std::uint32_t device) const {
+  const auto found = bound_.find(device);
+  return found == bound_.end() ? DeviceRole::kUnspecified : found->second.role;
+}
+
+void InputCollector::Bind(const v1::DeviceStatusList& status) {
+  bound_.clear();
+  for (const v1::DeviceStatus& device : status.devices()) {
+    const DeviceRole role = RoleIn(device.role());
+    if (Follows(device.rig(), role)) bound_[device.device()] = {role, device.mounted()};
+  }
+}
+
+bool InputCollector::TakeFeatures(const v1::FeatureFrame& frame) {
+  for (const v1::RigFeatures& message : frame.rigs()) {
+    const stream::RigFeatures rig = wire::FromProto(message);
+    bool follows = false;
+    for (const auto& device : rig.devices) follows |= Follows(rig.rig, device.role);
+    if (!follows) continue;
+    std::uint32_t mounted_roles = 0;
+    for (const auto& [device, bound] : bound_) {
+      if (bound.mounted) mounted_roles |= stream::RoleBit(bound.role);
+    }
+    mapping::TakeFeatures(rig, mounted_roles, inputs_);
+    stamps_ = {0, rig.newest_received_ns, rig.decoded_ns, rig.computed_ns, 0};
+    return true;
+  }
+  return false;
+}
+
+/// The stick of the rig's first hand that has one; its Wiimote's buttons come as samples of their
+/// own, and each press counts, also when it is over within one tick.
+bool InputCollector::TakeStick(const v1::Tick& tick, std::int64_t now_ns) {
+  mapping::StickInput& stick = inputs_.stick;
+  bool taken = false;
+  for (const v1::NunchukSample& sample : tick.nunchuk().samples()) {
+    if (!mapping::Uses(options_, RoleOf(sample.device()))) continue;
+    if (!std::isfinite(sample.stick_x()) || !std::isfinite(sample.stick_y())) continue;
+    if (stick.present && sample.device() != stick_device_) continue;
+    stick_device_ = sample.device();
+    stick.present = true;
+    stick.x = sample.stick_x();
+    stick.y = sample.stick_y();
+    stick_ = {now_ns, sample.simulated()};
+    stamps_ = {0, sample.received_ns(), 0, 0, 0};
+    taken = true;
+  }
+  for (const v1::MotionSample& sample : tick.motion().samples()) {
+    if (!stick.present || sample.device() != stick_device_) continue;
+    const bool pressed = (sample.buttons() & kButtonA) != 0;
+    if (pressed && !stick.pressed) ++stick.presses;
+    stick.pressed = pressed;
+    taken = true;
+  }
+  return taken;
+}
+
+bool InputCollector::TakeBoards(const v1::BoardSamples& boards, std::int64_t now_ns) {
+  bool taken = false;
+  for (const v1::BoardSample& sample : boards.samples()) {
+    const DeviceRole role = RoleOf(sample.device());
+    if (!mapping::Uses(options_, role) || !IsFinite(sample)) continue;
+    stream::BoardLayout layout;
+    for (const v1::RigSetup& message : setup_.rigs()) {
+      if (message.rig() == rig_) layout = wire::FromProto(message).layout;
+    }
+    layout = board::LayoutOr(layout);
+    const bool left = role == DeviceRole::kLeftBoard;
+    const Eigen::Vector2d cop_W_m =
+        board::InWorld(left ? layout.left : layout.right, sample.cop_x_m(), sample.cop_y_m());
+    (left ? inputs_.left_board : inputs_.right_board) = {
+        .present = true,
+        .corners_n = {sample.top_left_n(), sample.top_right_n(), sample.bottom_left_n(),
+                      sample.bottom_right_n()},
+        .cop_valid = sample.cop_valid(),
+        .cop_x_m = cop_W_m.x(),
+        .cop_y_m = cop_W_m.y()};
+    (left ? left_board_ : right_board_) = {now_ns, sample.simulated()};
+    stamps_ = {0, sample.received_ns(), 0, 0, 0};
+    taken = true;
+  }
+  return taken;
+}
+
+bool InputCollector::Expire(std::int64_t now_ns) {
+  bool ended = false;
+  const auto expire = [&](const Age& age, auto& input) {
+    if (!input.present || NanosecondsToSeconds(now_ns - age.seen_ns) <= kTimeoutS) return;
+    input = {};
+    ended = true;
+  };
+  const std::uint64_t presses = inputs_.stick.presses;
+  expire(stick_, inputs_.stick);
+  inputs_.stick.presses = presses;
+  expire(left_board_, inputs_.left_board);
+  expire(right_board_, inputs_.right_board);
+  return ended;
+}
+
+bool InputCollector::Take(const v1::Tick& tick, std::int64_t now_ns) {
+  if (tick.epoch() != epoch_) {
+    epoch_ = tick.epoch();
+    rig_ = wanted_rig_;
+    bound_.clear();
+  }
+  if (tick.has_status()) Bind(tick.status());
+  if (tick.has_setup()) setup_ = tick.setup();
+  if (tick.snapshot()) return false;
+  switch (options_.interface) {
+    case UserInterface::kUnspecified:
+    case UserInterface::kWrist:
+    case UserInterface::kArm:
+    case UserInterface::kLeg:
+      return tick.has_features() && TakeFeatures(tick.features());
+    case UserInterface::kJoystick:
+    case UserInterface::kBoards:
+      break;
+  }
+  const bool taken = options_.interface == UserInterface::kJoystick
+                         ? TakeStick(tick, now_ns)
+                         : TakeBoards(tick.boards(), now_ns);
+  const bool ended = Expire(now_ns);
+  inputs_.simulated = (inputs_.stick.present && stick_.simulated) ||
+                      (inputs_.left_board.present && left_board_.simulated) ||
+                      (inputs_.right_board.present && right_board_.simulated);
+  return taken || ended;
+}
+
+}  // namespace footing::gait_service

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "common/stream/setup.h"
+#include "daemon/simulation/gait_service/responses.h"
+#include "daemon/simulation/mapping/any_interface.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::gait_service {
+
+/// Collects what one rig's controllers and boards send into the inputs of a user interface, on the
+/// io thread. A stick or a board without samples for longer than kTimeoutS is not present. Samples
+/// that are not finite count as none.
+class InputCollector {
+ public:
+  static constexpr double kTimeoutS = 0.25;
+
+  /// `rig` empty: the first rig with a device that the interface uses.
+  InputCollector(std::string rig, const mapping::InterfaceOptions& options);
+
+  /// Takes a live tick or a snapshot in; true when it brought, or ended, something of the rig.
+  bool Take(const v1::Tick& tick, std::int64_t now_ns);
+
+  const std::string& rig() const { return rig_; }
+  const mapping::Inputs& inputs() const { return inputs_; }
+  /// When the newest of it was made; its number is not filled in.
+  const FeatureStamps& stamps() const { return stamps_; }
+
+ private:
+  struct Bound {
+    stream::DeviceRole role = stream::DeviceRole::kUnspecified;
+    bool mounted = false;
+  };
+  struct Age {
+    std::int64_t seen_ns = 0;
+    bool simulated = false;
+  };
+
+  /// Whether the rig is followed; the first one that can be is, until the server restarts.
+  bool Follows(const std::string& rig, stream::DeviceRole role);
+  void Bind(const v1::DeviceStatusList& status);
+  bool TakeFeatures(const v1::FeatureFrame& frame);
+  bool TakeStick(const v1::Tick& tick, std::int64_t now_ns);
+  bool TakeBoards(const v1::BoardSamples& boards, std::int64_t now_ns);
+  /// What has not been heard of for too long; true when that is new.
+  bool Expire(std::int64_t now_ns);
+  stream::DeviceRole RoleOf(std::uint32_t device) const;
+
+  const std::string wanted_rig_;
+  const mapping::InterfaceOptions options_;
+  std::string rig_;
+  std::uint64_t epoch_ = 0;
+  std::map<std::uint32_t, Bound> bound_;  ///< Devices of the rig.
+  v1::SetupState setup_;
+  mapping::Inputs inputs_;
+  FeatureStamps stamps_;
+  std::uint32_t stick_device_ = 0;
+  Age stick_, left_board_, right_board_;
+};
+
+}  // namespace footing::gait_service

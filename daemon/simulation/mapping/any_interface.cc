@@ -1,0 +1,86 @@
+#include "daemon/simulation/mapping/any_interface.h"
+
+namespace footing::mapping {
+
+using stream::DeviceRole;
+using stream::UserInterface;
+
+const char* MappingFileOf(UserInterface interface) {
+  switch (interface) {
+    case UserInterface::kUnspecified:
+    case UserInterface::kWrist:
+      return kWristMappingFile;
+    case UserInterface::kArm:
+      return kArmMappingFile;
+    case UserInterface::kLeg:
+      return kLegMappingFile;
+    case UserInterface::kJoystick:
+      return kJoystickMappingFile;
+    case UserInterface::kBoards:
+      return kBoardsMappingFile;
+  }
+  return kWristMappingFile;
+}
+
+bool Uses(const InterfaceOptions& options, DeviceRole role) {
+  switch (options.interface) {
+    case UserInterface::kUnspecified:
+      return false;
+    case UserInterface::kWrist:
+    case UserInterface::kArm:
+    case UserInterface::kJoystick:
+      return role == DeviceRole::kLeftHand || role == DeviceRole::kRightHand;
+    case UserInterface::kLeg:
+      return role == DeviceRole::kLeftLeg || role == DeviceRole::kRightLeg;
+    case UserInterface::kBoards:
+      return role == DeviceRole::kLeftBoard || role == DeviceRole::kRightBoard;
+  }
+  return false;
+}
+
+Result<AnyInterface> AnyInterface::Create(const InterfaceOptions& options,
+                                          const std::string& table) {
+  const std::string origin = MappingFileOf(options.interface);
+  switch (options.interface) {
+    case UserInterface::kUnspecified:
+      break;
+    case UserInterface::kWrist: {
+      const auto mapping = ParseWristMapping(table, origin);
+      if (!mapping) return mapping.error();
+      return AnyInterface(WristInterface(*mapping));
+    }
+    case UserInterface::kArm: {
+      const auto mapping = ParseArmMapping(table, origin);
+      if (!mapping) return mapping.error();
+      return AnyInterface(ArmInterface(*mapping));
+    }
+    case UserInterface::kLeg: {
+      const auto mapping = ParseLegMapping(table, origin);
+      if (!mapping) return mapping.error();
+      return AnyInterface(LegInterface(*mapping, options.leg));
+    }
+    case UserInterface::kJoystick: {
+      const auto mapping = ParseJoystickMapping(table, origin);
+      if (!mapping) return mapping.error();
+      return AnyInterface(JoystickInterface(*mapping));
+    }
+    case UserInterface::kBoards: {
+      const auto mapping = ParseBoardsMapping(table, origin);
+      if (!mapping) return mapping.error();
+      return AnyInterface(BoardsInterface(*mapping, options.boards_may_be_left));
+    }
+  }
+  return UsageError("unknown interface; there are: " + stream::UserInterfaceNames());
+}
+
+biped::GaitCommand AnyInterface::Advance(double time_s, const Inputs& inputs) {
+  return std::visit([&](auto& interface) { return interface.Advance(time_s, inputs); }, interface_);
+}
+
+const stream::InterfaceState& AnyInterface::state() const {
+  return std::visit(
+      [](const auto& interface) -> const stream::InterfaceState& { return interface.state(); },
+      interface_);
+}
+
+}  // namespace footing::mapping

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "daemon/simulation/mapping/arm.h"
+#include "daemon/simulation/mapping/boards.h"
+#include "daemon/simulation/mapping/joystick.h"
+#include "daemon/simulation/mapping/leg.h"
+#include "daemon/simulation/mapping/wrist.h"
+
+namespace footing::mapping {
+
+/// Which interface, and what of it a study chooses.
+struct InterfaceOptions {
+  stream::UserInterface interface = stream::UserInterface::kWrist;
+  LegOptions leg = {};
+  bool boards_may_be_left = false;
+};
+
+/// The file of an interface's table under daemon/simulation/data.
+const char* MappingFileOf(stream::UserInterface interface);
+
+/// Whether a controller or board with this role is part of the interface.
+bool Uses(const InterfaceOptions& options, stream::DeviceRole role);
+
+/// One of the interfaces. A plain value.
+class AnyInterface {
+ public:
+  /// `table` is the text of MappingFileOf(options.interface). Fails with one line that names the
+  /// file and the key.
+  static Result<AnyInterface> Create(const InterfaceOptions& options, const std::string& table);
+
+  /// The command for new inputs at `time_s`; times must not decrease.
+  biped::GaitCommand Advance(double time_s, const Inputs& inputs);
+  /// Without inputs: as if every device were missing.
+  biped::GaitCommand Rest(double time_s) { return Advance(time_s, {}); }
+  /// What it believes that the person does, as of the last Advance.
+  const stream::InterfaceState& state() const;
+
+ private:
+  using Variant =
+      std::variant<WristInterface, ArmInterface, LegInterface, JoystickInterface, BoardsInterface>;
+  explicit AnyInterface(const Variant& interface) : interface_(interface) {}
+  Variant interface_;
+};
+
+}  // namespace footing::mapping

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "daemon/simulation/mapping/swing_gait.h"
+#include "daemon/simulation/mapping/turn.h"
+
+namespace footing::mapping {
+
+/// The table of arm_mapping.json.
+struct ArmMapping {
+  SwingMapping swing;
+  /// Elevation of the forearms above which straight arms become bent ones, and below which bent
+  /// arms become straight ones.
+  double bent_above_rad = 0;
+  double straight_arm_below_rad = 0;
+  TurnMapping turn;
+};
+
+inline constexpr const char* kArmMappingFile = "arm_mapping.json";
+/// Every key, nothing unknown, all in range. `origin` names the file.
+Result<ArmMapping> ParseArmMapping(const std::string& text, const std::string& origin);
+
+/// Elevation of a forearm over the horizontal: -pi/2 hanging, 0 bent to the front. Not known: none.
+///
+/// It does not depend on a rotation of the controller about the forearm. Without a mounting the
+/// controller's front points along the forearm to the fingers: the elevation is its pitch. With
+/// one, down in M is along the forearm to the fingers, and the angle between that and gravity
+/// follows from both inclinations; a forearm above the horizontal counts as one as far below it.
+std::optional<double> ForearmElevation(const LimbFeatures& hand);
+
+/// The arm interface of the gait paper, section 7: two controllers in the hands of swinging arms.
+///
+/// | motion                        | command                                                   |
+/// |-------------------------------|-----------------------------------------------------------|
+/// | an arm rests or is missing    | stepping in place                                         |
+/// | in phase                      | jump; height by amplitude, speed by frequency             |
+/// | out of phase, straight        | walk, speed by frequency                                  |
+/// | out of phase, bent            | run, speed by frequency                                   |
+/// | straight arms twisted         | besides, 5 degrees a step to the side of the twist        |
+/// | bent arms inclined sideways   | besides, 5 degrees a step towards the lower side          |
+///
+/// A hanging forearm that is twisted keeps its gravity, so the twist of straight arms is taken from
+/// the direction of their swing against the controllers, which bent arms leave to the inclination.
+/// Both need both hands: grips that are mirror images of each other cancel. A plain value.
+class ArmInterface {
+ public:
+  explicit ArmInterface(const ArmMapping& mapping)
+      : mapping_(mapping), gait_(mapping.swing), turn_(mapping.turn) {}
+
+  /// The command for new inputs at `time_s`; times must not decrease.
+  biped::GaitCommand Advance(double time_s, const Inputs& inputs);
+  const stream::InterfaceState& state() const { return state_; }
+
+ private:
+  std::optional<double> TurnRight(const LimbPair& hands) const;
+
+  ArmMapping mapping_;
+  SwingGait gait_;
+  Turn turn_;
+  bool bent_ = false;
+  stream::InterfaceState state_;
+};
+
+}  // namespace footing::mapping

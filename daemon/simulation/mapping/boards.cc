@@ -1,0 +1,212 @@
+#include "daemon/simulation/mapping/boards.h"
+
+#include <algorithm>
+
+namespace footing::mapping {
+namespace {
+
+using stream::Activity;
+using stream::DeviceRole;
+using stream::Gait;
+
+constexpr double kWalkStepsPerCycle = 2;
+constexpr double kRunStepsPerCycle = 1;
+/// The weight is the mean load over this time.
+constexpr double kWeighingS = 3;
+/// Below this share of the weight both feet are off, once it lasts; they are back after a while.
+constexpr double kOffShare = 0.25;
+constexpr double kOffS = 0.1;
+constexpr double kBackS = 0.5;
+/// After this time off the boards it may be somebody else who comes back.
+constexpr double kGoneS = 1;
+/// A rise's push is over this time after it was recognised.
+constexpr double kPushS = 0.15;
+/// A change between walking and running must last one step.
+constexpr double kChangeCycles = 0.5;
+
+/// Load and COP of both boards together.
+struct Stance {
+  double load_n = 0;
+  double left_share = 0.5;
+  double forward_m = 0;
+};
+
+Stance StanceOn(const Inputs& inputs) {
+  const double left_n = std::max(0.0, inputs.left_board.LoadN());
+  const double right_n = std::max(0.0, inputs.right_board.LoadN());
+  Stance stance;
+  stance.load_n = left_n + right_n;
+  if (stance.load_n <= 0) return stance;
+  stance.left_share = left_n / stance.load_n;
+  double moment_nm = 0, load_n = 0;
+  for (const BoardInput* board : {&inputs.left_board, &inputs.right_board}) {
+    if (!board->cop_valid) continue;
+    moment_nm += board->LoadN() * board->cop_x_m;
+    load_n += board->LoadN();
+  }
+  if (load_n > 0) stance.forward_m = moment_nm / load_n;
+  return stance;
+}
+
+}  // namespace
+
+Result<BoardsMapping> ParseBoardsMapping(const std::string& text, const std::string& origin) {
+  BoardsMapping m;
+  TableFields fields{
+      {"jump_speed_max_mps", &m.jump_speed_max_mps, 0, 2},
+      {"jump_after_s", &m.jump_after_s, 0.1, 5},
+      {"standing_load_n", &m.standing_load_n, 50, 500},
+      {"stance_above", &m.steps.stance_above, 0.55, 0.95},
+      {"longest_step_s", &m.steps.longest_step_s, 0.2, 5},
+      {"heel_rise_forward_m", &m.heel_rise.forward_m, 0.01, 0.15},
+      {"heel_rise_overshoot", &m.heel_rise.overshoot, 0.02, 1},
+      {"heel_rise_together_s", &m.heel_rise.together_s, 0.05, 1},
+      {"heel_rise_standing_s", &m.heel_rise.standing_s, 0.05, 2},
+      {"standing_turn_above", &m.standing_turn_above, 0.01, 1},
+  };
+  AddFields({"walk_frequency_min_hz", "walk_frequency_max_hz", "walk_speed_min_mps",
+             "walk_speed_max_mps", 0.1, 10, 0, 1.75},
+            m.walk_mps_from_hz, fields);
+  AddFields({"run_frequency_min_hz", "run_frequency_max_hz", "run_speed_min_mps",
+             "run_speed_max_mps", 0.1, 10, 0, 6},
+            m.run_mps_from_hz, fields);
+  AddFields({"jump_overshoot_min", "jump_overshoot_max", "jump_height_min_m", "jump_height_max_m",
+             0, 3, 0.02, 0.5},
+            m.jump_m_from_overshoot, fields);
+  AddFields(m.border, fields);
+  AddFields(m.turn, true, fields);
+  if (const auto read = ReadTable(text, origin, fields); !read) return read.error();
+  const bool ordered = m.walk_mps_from_hz.Rises() && m.run_mps_from_hz.Rises() &&
+                       m.jump_m_from_overshoot.Rises() && m.turn.IsOrdered();
+  if (!ordered) return NotOrdered(origin);
+  return m;
+}
+
+BoardsInterface::BoardsInterface(const BoardsMapping& mapping, bool may_be_left)
+    : mapping_(mapping),
+      may_be_left_(may_be_left),
+      steps_(mapping.steps),
+      heel_rise_(mapping.heel_rise),
+      turn_(mapping.turn),
+      held_jump_(mapping.jump_after_s) {}
+
+/// The first seconds count in full, so that a weight is known at once.
+void BoardsInterface::Weigh(double load_n, double elapsed_s) {
+  weighed_s_ = std::min(kWeighingS, weighed_s_ + elapsed_s);
+  const double share = weighed_s_ > elapsed_s ? elapsed_s / weighed_s_ : 1;
+  weight_n_ += share * (load_n - weight_n_);
+}
+
+bool BoardsInterface::Leaves(double load_n, double elapsed_s) {
+  const double on_n = std::max(mapping_.standing_load_n, kOffShare * weight_n_);
+  gone_s_ = load_n < on_n ? gone_s_ + elapsed_s : 0;
+  back_s_ = load_n < on_n ? 0 : back_s_ + elapsed_s;
+  if (gone_s_ > kGoneS) weight_n_ = 0;
+  const bool leaves = !off_ && gone_s_ > kOffS;
+  if (leaves) off_ = true;
+  if (off_ && back_s_ > kBackS) {
+    off_ = false;
+    weighed_s_ = 0;
+  }
+  if (!off_) return false;
+  steps_.Reset();
+  heel_rise_.Reset();
+  return leaves;
+}
+
+biped::GaitCommand BoardsInterface::StepCommand(double time_s) {
+  biped::GaitCommand command;
+  if (off_ || !steps_.stepping()) {
+    settled_.Reset(Gait::kStep);
+    return command;
+  }
+  const double frequency_hz = steps_.frequency_hz();
+  const Gait now = settled_.gait();
+  const Gait seen = mapping_.border.IsRun(frequency_hz, now) ? Gait::kRun : Gait::kWalk;
+  const double lasting_s = now == Gait::kStep ? 0 : kChangeCycles / frequency_hz;
+  command.gait = settled_.Advance(time_s, seen, lasting_s);
+  const bool run = command.gait == Gait::kRun;
+  command.speed_mps =
+      run ? mapping_.run_mps_from_hz(frequency_hz) : mapping_.walk_mps_from_hz(frequency_hz);
+  command.cadence_hz = (run ? kRunStepsPerCycle : kWalkStepsPerCycle) * frequency_hz;
+  return command;
+}
+
+void BoardsInterface::StartJump(double time_s, double speed_mps, double overshoot) {
+  rose_s_ = time_s;
+  held_jump_.Start(time_s);
+  jump_ = {.gait = Gait::kJump,
+           .speed_mps = std::min(speed_mps, mapping_.jump_speed_max_mps),
+           .height_m = mapping_.jump_m_from_overshoot(overshoot)};
+}
+
+double BoardsInterface::TurnOf(double time_s) {
+  if (off_) {
+    turn_.Rest();
+    return 0;
+  }
+  auto right = steps_.lean_right();
+  if (right && !steps_.stepping()) {
+    *right *= mapping_.turn.turn_above / mapping_.standing_turn_above;
+  }
+  return turn_.Advance(time_s, right);
+}
+
+biped::GaitCommand BoardsInterface::Advance(double time_s, const Inputs& inputs) {
+  const double elapsed_s = std::clamp(time_s - time_s_, 0.0, 0.1);
+  time_s_ = time_s;
+  if (!inputs.left_board.present || !inputs.right_board.present) {
+    *this = BoardsInterface(mapping_, may_be_left_);
+    time_s_ = time_s;
+    Describe(inputs, 0.5);
+    return command_;
+  }
+  const Stance stance = StanceOn(inputs);
+  const double push = heel_rise_.overshoot();
+  const bool leaves = Leaves(stance.load_n, elapsed_s);
+  bool rises = false;
+  if (!off_) {
+    Weigh(stance.load_n, elapsed_s);
+    steps_.Advance(time_s, stance.left_share);
+    rises =
+        heel_rise_.Advance(time_s, stance.load_n / weight_n_, stance.forward_m, steps_.even_s());
+  }
+  biped::GaitCommand command = StepCommand(time_s);
+  if (rises) StartJump(time_s, command.speed_mps, heel_rise_.overshoot());
+  if (time_s - rose_s_ < kPushS) {  // The push goes on for a moment.
+    jump_.height_m =
+        std::max(jump_.height_m, mapping_.jump_m_from_overshoot(heel_rise_.overshoot()));
+  }
+  if (leaves && may_be_left_) StartJump(time_s, command_.speed_mps, push);
+  if (held_jump_.Advance(time_s, inputs.running, false)) command = jump_;
+  command.turn_per_step_rad = TurnOf(time_s);
+  command_ = command;
+  Describe(inputs, stance.left_share);
+  return command;
+}
+
+void BoardsInterface::Describe(const Inputs& inputs, double left_share) {
+  const bool absent = !inputs.left_board.present || !inputs.right_board.present;
+  const bool stepping = !absent && !off_ && steps_.stepping();
+  const bool jumps = held_jump_.active();
+  state_ = {
+      .interface = stream::UserInterface::kBoards,
+      .activity = absent     ? Activity::kAbsent
+                  : jumps    ? Activity::kHeelRise
+                  : off_     ? Activity::kOffBoards
+                  : stepping ? Activity::kAlternate
+                             : Activity::kRest,
+      .gait = command_.gait,
+      .next_gait = settled_.next(),
+      .next_share = settled_.share(),
+      .frequency_valid = stepping,
+      .frequency_hz = stepping ? steps_.frequency_hz() : 0,
+      .border_hz = mapping_.border.border_hz,
+      .load_valid = !absent && !off_,
+      .left_share = left_share,
+      .turn = {.valid = turn_.valid(), .source = stream::TurnSource::kLean, .share = turn_.share()},
+      .missing_roles = (inputs.left_board.present ? 0 : stream::RoleBit(DeviceRole::kLeftBoard)) |
+                       (inputs.right_board.present ? 0 : stream::RoleBit(DeviceRole::kRightBoard))};
+}
+
+}  // namespace footing::mapping

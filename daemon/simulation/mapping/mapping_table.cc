@@ -1,0 +1,63 @@
+#include "daemon/simulation/mapping/mapping_table.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/units/units.h"
+
+namespace footing::mapping {
+namespace {
+
+using nlohmann::json;
+
+Result<void> ReadField(const json& root, const TableField& field, const std::string& origin) {
+  if (!root.contains(field.key)) return InvalidData(origin + ": " + field.key + " is missing");
+  const json& value = root[field.key];
+  if (!value.is_number() || value < field.min || value > field.max) {
+    return InvalidData(origin + ": " + field.key + " is " + value.dump() + ", allowed is " +
+                       std::to_string(field.min) + " to " + std::to_string(field.max));
+  }
+  const double number = value.get<double>();
+  *field.value = field.unit == Unit::kDegrees ? DegreesToRadians(number) : number;
+  return {};
+}
+
+}  // namespace
+
+double Scaling::operator()(double from) const {
+  const double part = std::clamp((from - from_min) / (from_max - from_min), 0.0, 1.0);
+  return to_min + part * (to_max - to_min);
+}
+
+Result<void> ReadTable(const std::string& text, const std::string& origin,
+                       const TableFields& fields) {
+  const json root = json::parse(text, nullptr, false, true);
+  if (!root.is_object()) return InvalidData(origin + ": not a JSON object");
+  if (!root.contains("version") || root["version"] != 1) {
+    return InvalidData(origin + ": version must be 1, the only one known");
+  }
+  for (const auto& item : root.items()) {
+    const std::string& key = item.key();
+    const bool known =
+        key == "version" || key == "how_found" ||
+        std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return f.key == key; });
+    if (!known) return InvalidData(origin + ": unknown key " + key);
+  }
+  for (const TableField& field : fields) {
+    if (auto read = ReadField(root, field, origin); !read) return read.error();
+  }
+  return {};
+}
+
+Error NotOrdered(const std::string& origin) {
+  return InvalidData(origin + ": every _min and _below must lie under its partner");
+}
+
+void AddFields(const ScalingKeys& keys, Scaling& scaling, TableFields& fields) {
+  fields.push_back({keys.from_min, &scaling.from_min, keys.least_from, keys.most_from});
+  fields.push_back({keys.from_max, &scaling.from_max, keys.least_from, keys.most_from});
+  fields.push_back({keys.to_min, &scaling.to_min, keys.least_to, keys.most_to});
+  fields.push_back({keys.to_max, &scaling.to_max, keys.least_to, keys.most_to});
+}
+
+}  // namespace footing::mapping

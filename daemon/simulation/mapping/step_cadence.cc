@@ -1,0 +1,71 @@
+#include "daemon/simulation/mapping/step_cadence.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace footing::mapping {
+namespace {
+
+/// Share of the load from which a foot takes part in standing.
+constexpr double kLoadedShare = 0.1;
+/// Both carry about alike between this share and its complement.
+constexpr double kEvenShare = 0.3;
+constexpr double kStandingLeanS = 0.4;
+/// Who has leaned on one foot for this time, and lifted none, stands.
+constexpr double kLeansS = 0.7;
+/// A step that takes longer than this times the last ones ends stepping.
+constexpr double kOverdue = 2;
+
+}  // namespace
+
+/// The first change may follow a long stand on one foot: the second one measures the first step.
+void StepCadence::ChangeFoot(double time_s, int foot) {
+  const double took_s = time_s - changed_s_;
+  if (steps_ >= 1) {
+    steps_ = std::min(steps_ + 1, 3);
+    step_s_ = steps_ >= 3 ? (took_s + last_step_s_) / 2 : took_s;
+    stepping_lean_ = (lean_now_s_ + lean_before_s_) / (took_s + last_step_s_);
+    last_step_s_ = took_s;
+    lean_before_s_ = lean_now_s_;
+  } else {
+    steps_ = 1;
+    last_step_s_ = lean_before_s_ = 0;
+  }
+  lean_now_s_ = 0;
+  foot_ = foot;
+  changed_s_ = time_s;
+}
+
+void StepCadence::Advance(double time_s, double left_share) {
+  const double elapsed_s = started_ ? time_s - time_s_ : 0;
+  started_ = true;
+  time_s_ = time_s;
+  const double lean = 1 - 2 * left_share;  // To the right.
+  lean_now_s_ += lean * elapsed_s;
+  const bool even = left_share > kEvenShare && left_share < 1 - kEvenShare;
+  even_s_ = even ? even_s_ + elapsed_s : 0;
+  const bool both = left_share > kLoadedShare && left_share < 1 - kLoadedShare;
+  both_s_ = both ? both_s_ + elapsed_s : 0;
+  const int foot = left_share > mapping_.stance_above       ? -1
+                   : left_share < 1 - mapping_.stance_above ? 1
+                   : steps_ == 0 && even                    ? 0
+                                                            : foot_;
+  if (foot == 0) {
+    foot_ = 0;
+  } else if (foot != foot_) {
+    ChangeFoot(time_s, foot);
+  }
+  const double longest_s =
+      stepping() ? std::min(mapping_.longest_step_s, kOverdue * step_s_) : mapping_.longest_step_s;
+  if (time_s - changed_s_ > longest_s) steps_ = 0;
+  standing_lean_ += (lean - standing_lean_) * (1 - std::exp(-elapsed_s / kStandingLeanS));
+}
+
+std::optional<double> StepCadence::lean_right() const {
+  if (stepping()) return steps_ >= 3 ? std::optional(stepping_lean_) : std::nullopt;
+  const bool stands = steps_ == 0 || time_s_ - changed_s_ > kLeansS;
+  if (!stands || both_s_ < kStandingLeanS) return std::nullopt;
+  return standing_lean_;
+}
+
+}  // namespace footing::mapping

@@ -1,0 +1,160 @@
+#include "daemon/simulation/gait_service/input_collector.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace footing::gait_service {
+namespace {
+
+using stream::UserInterface;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+void AddDevice(v1::Tick& tick, std::uint32_t number, const std::string& rig, v1::DeviceRole role,
+               bool mounted = false) {
+  v1::DeviceStatus& device = *tick.mutable_status()->add_devices();
+  device.set_device(number);
+  device.set_rig(rig);
+  device.set_role(role);
+  device.set_mounted(mounted);
+}
+
+void AddStick(v1::Tick& tick, std::uint32_t device, double x, double y) {
+  v1::NunchukSample& sample = *tick.mutable_nunchuk()->add_samples();
+  sample.set_device(device);
+  sample.set_stick_x(x);
+  sample.set_stick_y(y);
+  sample.set_simulated(true);
+}
+
+void AddButtons(v1::Tick& tick, std::uint32_t device, std::uint32_t buttons) {
+  v1::MotionSample& sample = *tick.mutable_motion()->add_samples();
+  sample.set_device(device);
+  sample.set_buttons(buttons);
+}
+
+void AddBoard(v1::Tick& tick, std::uint32_t device, double corner_n, double cop_y_m) {
+  v1::BoardSample& sample = *tick.mutable_boards()->add_samples();
+  sample.set_device(device);
+  sample.set_top_left_n(corner_n);
+  sample.set_top_right_n(corner_n);
+  sample.set_bottom_left_n(corner_n);
+  sample.set_bottom_right_n(corner_n);
+  sample.set_cop_valid(true);
+  sample.set_cop_y_m(cop_y_m);
+}
+
+v1::Tick StickTick() {
+  v1::Tick tick;
+  AddDevice(tick, 3, "main", v1::DEVICE_ROLE_RIGHT_HAND);
+  AddDevice(tick, 4, "main", v1::DEVICE_ROLE_LEFT_LEG);
+  return tick;
+}
+
+TEST(InputCollector, TheStickIsThatOfTheRigsHand) {
+  InputCollector collector("", {.interface = UserInterface::kJoystick});
+  v1::Tick tick = StickTick();
+  AddStick(tick, 4, -1, -1);  // Plugged into a shin's Wiimote.
+  AddStick(tick, 3, 0.3, 0.7);
+  AddStick(tick, 9, 1, 1);  // Of another rig.
+  EXPECT_TRUE(collector.Take(tick, kMs));
+  EXPECT_EQ(collector.rig(), "main");
+  EXPECT_TRUE(collector.inputs().stick.present);
+  EXPECT_EQ(collector.inputs().stick.x, 0.3);
+  EXPECT_TRUE(collector.inputs().simulated);
+}
+
+TEST(InputCollector, APressWithinOneTickCounts) {
+  InputCollector collector("", {.interface = UserInterface::kJoystick});
+  v1::Tick tick = StickTick();
+  AddStick(tick, 3, 0, 0);
+  for (const std::uint32_t buttons : {0x0u, 0x8u, 0x0u, 0x4u, 0x8u}) AddButtons(tick, 3, buttons);
+  AddButtons(tick, 4, 0x8);
+  collector.Take(tick, kMs);
+  EXPECT_EQ(collector.inputs().stick.presses, 2u);
+  EXPECT_TRUE(collector.inputs().stick.pressed);
+}
+
+TEST(InputCollector, AStickThatIsSilentIsGone) {
+  InputCollector collector("", {.interface = UserInterface::kJoystick});
+  v1::Tick tick = StickTick();
+  AddStick(tick, 3, 0, 1);
+  AddButtons(tick, 3, 0x8);
+  collector.Take(tick, kMs);
+  EXPECT_FALSE(collector.Take({}, 200 * kMs)) << "nothing new";
+  EXPECT_TRUE(collector.inputs().stick.present);
+  EXPECT_TRUE(collector.Take({}, 260 * kMs)) << "its end is new";
+  EXPECT_FALSE(collector.inputs().stick.present);
+  EXPECT_EQ(collector.inputs().stick.presses, 1u);
+}
+
+TEST(InputCollector, BoardsHaveTheirCopInTheWorldAsTheyLie) {
+  InputCollector collector("", {.interface = UserInterface::kBoards});
+  v1::Tick snapshot;
+  snapshot.set_snapshot(true);
+  AddDevice(snapshot, 1, "main", v1::DEVICE_ROLE_LEFT_BOARD);
+  AddDevice(snapshot, 2, "main", v1::DEVICE_ROLE_RIGHT_BOARD);
+  v1::BoardLayout& layout = *snapshot.mutable_setup()->add_rigs()->mutable_layout();
+  snapshot.mutable_setup()->mutable_rigs(0)->set_rig("main");
+  layout.set_preset("custom");
+  layout.mutable_left()->set_x_m(0.5);
+  layout.mutable_left()->set_y_m(0.3);
+  EXPECT_FALSE(collector.Take(snapshot, kMs));
+  v1::Tick tick;
+  AddBoard(tick, 1, 25, 0.1);  // Towards its front edge, which faces forward at yaw 0.
+  EXPECT_TRUE(collector.Take(tick, 2 * kMs));
+  const mapping::BoardInput& board = collector.inputs().left_board;
+  EXPECT_TRUE(board.present && board.cop_valid);
+  EXPECT_EQ(board.LoadN(), 100);
+  EXPECT_NEAR(board.cop_x_m, 0.6, 1e-12);
+  EXPECT_NEAR(board.cop_y_m, 0.3, 1e-12);
+  EXPECT_FALSE(collector.inputs().right_board.present);
+}
+
+TEST(InputCollector, WhatIsNotFiniteIsNotTaken) {
+  InputCollector boards("", {.interface = UserInterface::kBoards});
+  v1::Tick tick;
+  AddDevice(tick, 1, "main", v1::DEVICE_ROLE_LEFT_BOARD);
+  AddBoard(tick, 1, std::numeric_limits<double>::quiet_NaN(), 0);
+  EXPECT_FALSE(boards.Take(tick, kMs));
+  InputCollector stick("", {.interface = UserInterface::kJoystick});
+  v1::Tick other = StickTick();
+  AddStick(other, 3, std::numeric_limits<double>::infinity(), 0);
+  EXPECT_FALSE(stick.Take(other, kMs));
+}
+
+TEST(InputCollector, LegsHeadAndTrunkCarryWhetherTheyAreMounted) {
+  InputCollector collector("", {.interface = UserInterface::kLeg});
+  v1::Tick tick;
+  AddDevice(tick, 1, "main", v1::DEVICE_ROLE_LEFT_LEG, true);
+  AddDevice(tick, 2, "main", v1::DEVICE_ROLE_TRUNK, false);
+  v1::RigFeatures& rig = *tick.mutable_features()->add_rigs();
+  rig.set_rig("main");
+  for (const auto role : {v1::DEVICE_ROLE_LEFT_LEG, v1::DEVICE_ROLE_TRUNK}) {
+    v1::DeviceFeatures& device = *rig.add_devices();
+    device.set_role(role);
+    device.set_moving(true);
+  }
+  EXPECT_TRUE(collector.Take(tick, kMs));
+  EXPECT_TRUE(collector.inputs().legs.left.mounted);
+  EXPECT_TRUE(collector.inputs().trunk.present);
+  EXPECT_FALSE(collector.inputs().trunk.mounted);
+}
+
+TEST(InputCollector, ARestartedServerMayHaveAnotherRig) {
+  InputCollector collector("", {.interface = UserInterface::kJoystick});
+  v1::Tick tick = StickTick();
+  tick.set_epoch(1);
+  AddStick(tick, 3, 0, 0);
+  collector.Take(tick, kMs);
+  v1::Tick later;
+  later.set_epoch(2);
+  AddDevice(later, 1, "other", v1::DEVICE_ROLE_LEFT_HAND);
+  AddStick(later, 1, 0, 1);
+  EXPECT_TRUE(collector.Take(later, 400 * kMs));
+  EXPECT_EQ(collector.rig(), "other");
+}
+
+}  // namespace
+}  // namespace footing::gait_service

@@ -1,0 +1,49 @@
+#include "daemon/simulation/mapping/any_interface.h"
+
+#include "tests/simulation/test_world.h"
+
+namespace footing::mapping {
+namespace {
+
+using stream::UserInterface;
+
+TEST(AnyInterface, EachHasItsCommittedTableAndRestsWithoutInputs) {
+  for (const UserInterface interface : stream::kUserInterfaces) {
+    const std::string table = test::DataFile(MappingFileOf(interface));
+    auto made = AnyInterface::Create({.interface = interface}, table);
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    EXPECT_EQ(made->Rest(1), biped::GaitCommand{}) << stream::Name(interface);
+    EXPECT_EQ(made->state().interface, interface);
+    EXPECT_EQ(made->state().activity, stream::Activity::kAbsent);
+    EXPECT_NE(made->state().missing_roles, 0u);
+  }
+}
+
+TEST(AnyInterface, ATablesErrorNamesTheFileAndTheKey) {
+  for (const UserInterface interface : stream::kUserInterfaces) {
+    std::string table = test::DataFile(MappingFileOf(interface));
+    const std::string key = "\"turn_per_step_deg\": 5.0";
+    table.replace(table.find(key), key.size(), "\"turn_per_step_deg\": 50.0");
+    const auto made = AnyInterface::Create({.interface = interface}, table);
+    ASSERT_FALSE(made.ok()) << stream::Name(interface);
+    EXPECT_NE(made.error().message.find(MappingFileOf(interface)), std::string::npos);
+    EXPECT_NE(made.error().message.find("turn_per_step_deg"), std::string::npos);
+  }
+}
+
+TEST(AnyInterface, ATableOfAnotherInterfaceIsRefused) {
+  const std::string table = test::DataFile(MappingFileOf(UserInterface::kJoystick));
+  EXPECT_FALSE(AnyInterface::Create({.interface = UserInterface::kWrist}, table).ok());
+}
+
+TEST(AnyInterface, UsesTheRolesOfItsLimbs) {
+  using stream::DeviceRole;
+  EXPECT_TRUE(Uses({.interface = UserInterface::kArm}, DeviceRole::kLeftHand));
+  EXPECT_TRUE(Uses({.interface = UserInterface::kLeg}, DeviceRole::kRightLeg));
+  EXPECT_TRUE(Uses({.interface = UserInterface::kBoards}, DeviceRole::kLeftBoard));
+  EXPECT_FALSE(Uses({.interface = UserInterface::kLeg}, DeviceRole::kLeftHand));
+  EXPECT_FALSE(Uses({.interface = UserInterface::kWrist}, DeviceRole::kEditor));
+}
+
+}  // namespace
+}  // namespace footing::mapping

@@ -1,0 +1,138 @@
+#include "daemon/simulation/mapping/arm.h"
+
+#include <vector>
+
+#include "tests/simulation/mapping/arm_motion.h"
+#include "tests/simulation/test_world.h"
+
+namespace footing::mapping {
+namespace {
+
+using stream::Gait;
+
+constexpr double kTwistStepRad = DegreesToRadians(5);
+
+ArmInterface NewArm() {
+  return ArmInterface(ParseArmMapping(test::DataFile(kArmMappingFile), kArmMappingFile).value());
+}
+
+ArmSwing Walking() { return {.frequency_hz = 1.0}; }
+ArmSwing Running() { return {.frequency_hz = 1.8, .swing_rad = 0.35, .elbow_rad = kPi / 2}; }
+
+/// The command after 5 s of the same motion from rest.
+biped::GaitCommand After5S(const ArmSwing& motion, bool mounted,
+                           stream::InterfaceState* state = nullptr) {
+  Arms arms(mounted);
+  ArmInterface arm = NewArm();
+  biped::GaitCommand command;
+  while (arms.time_s() < 5) {
+    const Inputs inputs = arms.Advance(motion);
+    command = arm.Advance(arms.time_s(), inputs);
+  }
+  if (state != nullptr) *state = arm.state();
+  return command;
+}
+
+TEST(Arm, StraightArmsWalkAndBentArmsRunWhateverTheGrip) {
+  for (const bool mounted : {false, true}) {
+    for (const double left_deg : {-45.0, 0.0, 45.0}) {
+      for (const double right_deg : {-45.0, 0.0, 45.0}) {
+        ArmSwing walking = Walking(), running = Running();
+        walking.grip_left_rad = running.grip_left_rad = DegreesToRadians(left_deg);
+        walking.grip_right_rad = running.grip_right_rad = DegreesToRadians(right_deg);
+        EXPECT_EQ(After5S(walking, mounted).gait, Gait::kWalk) << left_deg << ", " << right_deg;
+        EXPECT_EQ(After5S(running, mounted).gait, Gait::kRun) << left_deg << ", " << right_deg;
+      }
+    }
+  }
+}
+
+TEST(Arm, GripsThatMirrorEachOtherDoNotTurn) {
+  for (const bool mounted : {false, true}) {
+    for (const ArmSwing& swing : {Walking(), Running()}) {
+      ArmSwing motion = swing;
+      motion.grip_left_rad = DegreesToRadians(45);
+      motion.grip_right_rad = DegreesToRadians(-45);
+      EXPECT_EQ(After5S(motion, mounted).turn_per_step_rad, 0) << motion.elbow_rad;
+    }
+  }
+}
+
+TEST(Arm, TwistedStraightArmsAndInclinedBentOnesTurnToTheirSide) {
+  for (const bool mounted : {false, true}) {
+    for (const ArmSwing& swing : {Walking(), Running()}) {
+      for (const double twist_deg : {-35.0, 0.0, 35.0}) {
+        for (const double grip_deg : {0.0, 40.0}) {
+          ArmSwing motion = swing;
+          motion.twist_rad = DegreesToRadians(twist_deg);
+          motion.grip_left_rad = DegreesToRadians(grip_deg);
+          motion.grip_right_rad = DegreesToRadians(-grip_deg);
+          const double turn = twist_deg > 0 ? -kTwistStepRad : twist_deg < 0 ? kTwistStepRad : 0;
+          EXPECT_NEAR(After5S(motion, mounted).turn_per_step_rad, turn, 1e-9)
+              << twist_deg << " degrees, grip " << grip_deg << ", elbow " << swing.elbow_rad;
+        }
+      }
+    }
+  }
+}
+
+TEST(Arm, ArmsThatSwingTogetherJump) {
+  for (ArmSwing motion : {Walking(), Running()}) {
+    motion.phase_rad = 0;
+    const auto command = After5S(motion, false);
+    EXPECT_EQ(command.gait, Gait::kJump);
+    EXPECT_GT(command.height_m, 0.08);
+  }
+}
+
+TEST(Arm, TheFrequencySetsTheSpeedWithinAGait) {
+  ArmSwing slow = Walking(), fast = Walking();
+  slow.frequency_hz = 0.9;
+  fast.frequency_hz = 1.4;
+  const double slow_mps = After5S(slow, false).speed_mps, fast_mps = After5S(fast, false).speed_mps;
+  EXPECT_NEAR(slow_mps, 0.2 + 0.2 / 0.9 * 1.2, 0.03);  // 0.7 to 1.6 Hz are 0.2 to 1.4 m/s.
+  EXPECT_NEAR(fast_mps, 0.2 + 0.7 / 0.9 * 1.2, 0.03);
+}
+
+TEST(Arm, BendingAndStretchingHaveHysteresis) {
+  ArmInterface arm = NewArm();
+  const auto gait_at = [&](double from_s, double elevation_deg) {
+    LimbFeatures hand{.present = true, .moving = true, .frequency_valid = true, .frequency_hz = 1};
+    hand.inclination_valid = true;
+    hand.pitch_rad = DegreesToRadians(elevation_deg);
+    Inputs inputs;
+    inputs.hands = {.left = hand, .right = hand, .phase_valid = true, .phase_rad = kPi};
+    biped::GaitCommand command;
+    for (int i = 0; i < 200; ++i) command = arm.Advance(from_s + 0.01 * i, inputs);
+    return command.gait;
+  };
+  EXPECT_EQ(gait_at(0, -80), Gait::kWalk);
+  EXPECT_EQ(gait_at(2, -45), Gait::kWalk);
+  EXPECT_EQ(gait_at(4, -30), Gait::kRun);
+  EXPECT_EQ(gait_at(6, -45), Gait::kRun);
+  EXPECT_EQ(gait_at(8, -60), Gait::kWalk);
+}
+
+TEST(Arm, ItsBeliefShowsTheForearmsAndWhatIsMissing) {
+  stream::InterfaceState state;
+  After5S(Running(), true, &state);
+  EXPECT_EQ(state.interface, stream::UserInterface::kArm);
+  EXPECT_EQ(state.activity, stream::Activity::kAlternate);
+  EXPECT_EQ(state.gait, Gait::kRun);
+  ASSERT_TRUE(state.forearms.valid);
+  EXPECT_GT(state.forearms.elevation_rad, DegreesToRadians(-25));
+  EXPECT_EQ(state.missing_roles, 0u);
+  ArmInterface arm = NewArm();
+  EXPECT_EQ(arm.Advance(0, {}).turn_per_step_rad, 0);
+  EXPECT_EQ(arm.state().activity, stream::Activity::kAbsent);
+}
+
+TEST(ArmMapping, RefusesBordersThatCross) {
+  std::string text = test::DataFile(kArmMappingFile);
+  const std::string key = "\"straight_arm_below_deg\": -50.0";
+  text.replace(text.find(key), key.size(), "\"straight_arm_below_deg\": -30.0");
+  EXPECT_FALSE(ParseArmMapping(text, kArmMappingFile).ok());
+}
+
+}  // namespace
+}  // namespace footing::mapping

@@ -1,0 +1,233 @@
+#include "daemon/simulation/mapping/boards.h"
+
+#include <functional>
+
+#include "tests/simulation/mapping/boards_motion.h"
+#include "tests/simulation/test_world.h"
+
+namespace footing::mapping {
+namespace {
+
+using stream::Activity;
+using stream::Gait;
+
+constexpr double kLeanStepRad = DegreesToRadians(5);
+
+BoardsInterface NewBoards(bool may_be_left = false) {
+  return BoardsInterface(
+      ParseBoardsMapping(test::DataFile(kBoardsMappingFile), kBoardsMappingFile).value(),
+      may_be_left);
+}
+
+using See = std::function<void(const biped::GaitCommand&)>;
+
+/// Lets the person go on; the interface is advanced every millisecond, as the engine does it.
+biped::GaitCommand For(double seconds, BoardPerson& person, BoardsInterface& boards,
+                       const See& see = nullptr) {
+  biped::GaitCommand command;
+  for (int reading = 0; reading < std::lround(seconds * 60); ++reading) {
+    const double from_s = person.time_s();
+    Inputs inputs = person.Advance();
+    inputs.running = command.gait;  // This character takes everything over at once.
+    for (int i = 1; i <= 16; ++i) {
+      command = boards.Advance(from_s + 0.001 * i, inputs);
+      if (see) see(command);
+    }
+  }
+  return command;
+}
+
+/// The heels rise: the push comes first, then it lacks as much while the body slows down.
+void Rise(BoardPerson& person, BoardsInterface& boards, double push, const See& see = nullptr) {
+  person.push = push;
+  for (int i = 1; i <= 8; ++i) {
+    person.rise_m = 0.01 * i;
+    For(1.0 / 60, person, boards, see);
+  }
+  person.push = -push;
+  For(0.13, person, boards, see);
+  person.push = 0;
+  person.rise_m = 0;
+}
+
+TEST(Boards, SteppingWalksAndRunsByTheFrequencyOfAFoot) {
+  for (const double mass_kg : {28.0, 75.0, 120.0}) {
+    BoardPerson person(mass_kg);
+    BoardsInterface boards = NewBoards();
+    EXPECT_EQ(For(2, person, boards).gait, Gait::kStep);
+    person.step_hz = 1.6;
+    const auto walk = For(4, person, boards);
+    EXPECT_EQ(walk.gait, Gait::kWalk) << mass_kg;
+    EXPECT_NEAR(walk.speed_mps, 0.8, 0.05);  // 0.8 Hz is half way from 0.4 to 1.2 Hz.
+    EXPECT_NEAR(walk.cadence_hz, 1.6, 0.06);
+    person.step_hz = 3.4;
+    const auto run = For(4, person, boards);
+    EXPECT_EQ(run.gait, Gait::kRun) << mass_kg;
+    EXPECT_NEAR(run.speed_mps, 3, 0.3);  // 1.7 Hz is half way from 1.2 to 2.2 Hz.
+    EXPECT_EQ(run.turn_per_step_rad, 0);
+    person.step_hz = 0;
+    EXPECT_EQ(For(2, person, boards).gait, Gait::kStep);
+  }
+}
+
+TEST(Boards, AWalkBeginsWithTheSecondStepAndEndsWithinTwoStepsOfTheLast) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  For(2, person, boards);
+  const double from_s = person.time_s();
+  person.step_hz = 2;
+  double began_s = 0;
+  For(3, person, boards, [&](const auto& command) {
+    if (began_s == 0 && command.gait == Gait::kWalk) began_s = person.time_s();
+  });
+  EXPECT_LT(began_s - from_s, 1.1);
+  person.step_hz = 0;
+  const double stopped_s = person.time_s();
+  double rested_s = 0;
+  For(3, person, boards, [&](const auto& command) {
+    if (rested_s == 0 && command.gait == Gait::kStep) rested_s = person.time_s();
+  });
+  EXPECT_GT(rested_s, 0);
+  EXPECT_LT(rested_s - stopped_s, 1.1);
+}
+
+TEST(Boards, SteppingNeverJumps) {
+  for (const double step_hz : {1.0, 1.6, 2.4, 3.4, 4.2}) {
+    BoardPerson person(70);
+    BoardsInterface boards = NewBoards();
+    For(2, person, boards);
+    person.step_hz = step_hz;
+    bool jumped = false;
+    const See see = [&](const auto& command) { jumped |= command.gait == Gait::kJump; };
+    For(10, person, boards, see);
+    person.step_hz = 0;
+    For(2, person, boards, see);
+    EXPECT_FALSE(jumped) << step_hz << " steps a second";
+  }
+}
+
+TEST(Boards, AQuickHeelRiseJumpsAndASlowOneDoesNot) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  For(2, person, boards);
+  double height_m = 0, jumped_s = 0;
+  const See see = [&](const biped::GaitCommand& command) {
+    if (command.gait != Gait::kJump) return;
+    height_m = command.height_m;
+    jumped_s += 0.001;
+  };
+  Rise(person, boards, 0.02, see);
+  For(2, person, boards, see);
+  EXPECT_EQ(jumped_s, 0) << "slow";
+  Rise(person, boards, 0.36, see);
+  For(2, person, boards, see);
+  EXPECT_NEAR(height_m, 0.08 + 0.24 / 0.48 * 0.27, 0.03);
+  EXPECT_NEAR(jumped_s, 0.4, 0.1);  // jump_after_s.
+  EXPECT_EQ(boards.state().gait, Gait::kStep);
+}
+
+TEST(Boards, AJumpKeepsTheSpeedOfTheWalkBeforeIt) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  For(2, person, boards);
+  person.step_hz = 1.6;
+  For(4, person, boards);
+  person.step_hz = 0;
+  For(0.3, person, boards);
+  double speed_mps = 0;
+  const See see = [&](const biped::GaitCommand& command) {
+    if (command.gait == Gait::kJump) speed_mps = command.speed_mps;
+  };
+  Rise(person, boards, 0.4, see);
+  For(0.2, person, boards, see);
+  EXPECT_NEAR(speed_mps, 0.8, 0.1);
+}
+
+TEST(Boards, LeaningTurnsToThatSideWhileSteppingAndWhileStanding) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  For(2, person, boards);
+  for (const double side : {1.0, -1.0}) {
+    person.step_hz = 0;
+    person.lean = 0.2 * side;  // As people stand without meaning it.
+    EXPECT_EQ(For(2, person, boards).turn_per_step_rad, 0);
+    person.lean = 0.55 * side;
+    const auto standing = For(2, person, boards);
+    EXPECT_EQ(standing.gait, Gait::kStep);
+    EXPECT_NEAR(standing.turn_per_step_rad, -side * kLeanStepRad, 1e-12);
+    person.lean = 0;
+    EXPECT_EQ(For(2, person, boards).turn_per_step_rad, 0);
+    person.step_hz = 1.8;
+    person.step_lean = 0.05 * side;
+    EXPECT_EQ(For(4, person, boards).turn_per_step_rad, 0);
+    person.step_lean = 0.3 * side;
+    const auto walking = For(4, person, boards);
+    EXPECT_EQ(walking.gait, Gait::kWalk);
+    EXPECT_NEAR(walking.turn_per_step_rad, -side * kLeanStepRad, 1e-12);
+    person.step_lean = 0;
+  }
+}
+
+TEST(Boards, TheFirstStepDoesNotTurn) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  For(2, person, boards);
+  person.step_hz = 1;
+  bool turned = false;
+  For(3, person, boards, [&](const auto& command) { turned |= command.turn_per_step_rad != 0; });
+  EXPECT_FALSE(turned);
+}
+
+TEST(Boards, BothFeetOffStopTheCharacterUnlessTheStudyAllowsIt) {
+  for (const bool may_be_left : {false, true}) {
+    BoardPerson person(70);
+    BoardsInterface boards = NewBoards(may_be_left);
+    For(2, person, boards);
+    person.step_hz = 1.6;
+    For(4, person, boards);
+    bool jumped = false;
+    person.on_boards = false;
+    For(0.3, person, boards, [&](const auto& command) { jumped |= command.gait == Gait::kJump; });
+    EXPECT_EQ(jumped, may_be_left);
+    EXPECT_EQ(boards.state().activity == Activity::kOffBoards, !may_be_left);
+    For(2, person, boards);
+    EXPECT_EQ(boards.state().gait, Gait::kStep);
+    person.on_boards = true;
+    person.step_hz = 0;
+    For(1, person, boards);
+    EXPECT_EQ(boards.state().activity, Activity::kRest);
+  }
+}
+
+TEST(Boards, SteppingOnWalksNowhereAndDoesNotJump) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  person.on_boards = false;
+  For(1, person, boards);
+  person.on_boards = true;
+  person.lean = -1;  // The left foot first.
+  bool moved = false;
+  const See see = [&](const auto& command) { moved |= command.gait != Gait::kStep; };
+  For(0.5, person, boards, see);
+  person.lean = 0;
+  For(3, person, boards, see);
+  EXPECT_FALSE(moved);
+}
+
+TEST(Boards, WithoutABoardTheCharacterStopsAndTurnsNoMore) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  For(2, person, boards);
+  person.step_hz = 1.6;
+  person.step_lean = 0.4;
+  For(4, person, boards);
+  Inputs inputs = person.Advance();
+  inputs.right_board = {};
+  const auto command = boards.Advance(person.time_s(), inputs);
+  EXPECT_EQ(command, biped::GaitCommand{});
+  EXPECT_EQ(boards.state().activity, Activity::kAbsent);
+  EXPECT_EQ(boards.state().missing_roles, stream::RoleBit(stream::DeviceRole::kRightBoard));
+}
+
+}  // namespace
+}  // namespace footing::mapping
