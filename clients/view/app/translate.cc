@@ -83,6 +83,7 @@ scene::CharacterPose CharacterOf(const v1::Character& from) {
   pose.com_velocity_mps = wire::FromProto(from.com_velocity_mps());
   pose.gait = wire::FromProto(from.gait());
   pose.phase = from.gait().phase();
+  pose.interface = wire::FromProto(from.interface());
   pose.simulated_input = from.simulated_input();
   if (from.has_body()) pose.body = BodyOf(from.body());
   if (from.has_trial()) pose.trial = wire::FromProto(from.trial());

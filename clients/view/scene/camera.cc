@@ -33,7 +33,9 @@ constexpr double kNearBoardsM = 0.6;  // So far the camera does not move.
 
 Eigen::Matrix4f Camera::View() const {
   const Eigen::Vector3d backward = (eye_m - target_m).normalized();
-  const Eigen::Vector3d right = Eigen::Vector3d::UnitZ().cross(backward).normalized();
+  const Eigen::Vector3d level = Eigen::Vector3d::UnitZ().cross(backward).normalized();
+  // A camera that rolls to the left turns the picture to the right.
+  const Eigen::Vector3d right = Eigen::AngleAxisd(roll_rad, backward) * level;
   const Eigen::Vector3d up = backward.cross(right);
   Eigen::Matrix4d X = Eigen::Matrix4d::Identity();
   X.block<1, 3>(0, 0) = right.transpose();

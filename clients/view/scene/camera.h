@@ -9,8 +9,9 @@ struct Camera {
   Eigen::Vector3d eye_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d target_m = Eigen::Vector3d(1, 0, 0);
   double vertical_field_rad = 0.80;
+  double roll_rad = 0;  ///< Of the picture, clockwise positive.
 
-  /// World to camera: x right, y up, looking along -z. The horizon stays level: up is W's z.
+  /// World to camera: x right, y up, looking along -z. Without a roll the horizon is level.
   Eigen::Matrix4f View() const;
   /// `aspect` is width over height.
   Eigen::Matrix4f Projection(double aspect) const;

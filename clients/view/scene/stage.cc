@@ -15,6 +15,8 @@ namespace {
 constexpr double kEmptyHipHeightM = 1.0;
 constexpr double kSlopeHalfM = 0.3;
 constexpr double kSteepest = 0.6;
+/// The picture follows a head within this time, without its tremor.
+constexpr double kRollS = 0.15;
 
 /// The higher a thing, the wider and paler its spot.
 Blob BlobUnder(const Eigen::Vector3d& p_m, double floor_m, double radius_m, double darkness) {
@@ -115,15 +117,19 @@ Picture Stage::Advance(const Model& model, const WorldFrame& frame, std::int64_t
   picture.ground_m = static_cast<float>(GroundHeight(model.track));
   Subject subject;
   subject.position_m.z() = kEmptyHipHeightM;
+  double roll_rad = 0;
   bool first = true;
   for (const CharacterPose& pose : frame.characters) {
     if (!pose.valid) continue;
     AddCharacter(model, pose, dt_s, options, picture);
     if (first) subject = SubjectOf(model, pose);
+    if (first) roll_rad = pose.interface.view_roll_rad;
     first = false;
   }
   camera_.Advance(subject, dt_s);
   picture.camera = camera_.Look();
+  roll_rad_ += (roll_rad - roll_rad_) * (1 - std::exp(-std::clamp(dt_s, 0.0, 1.0) / kRollS));
+  picture.camera.roll_rad = roll_rad_;
 
   picture.floor_m = static_cast<float>(
       HeightAt(model.track, subject.position_m.head<2>(), static_cast<double>(picture.ground_m)));

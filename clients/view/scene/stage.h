@@ -67,6 +67,7 @@ class Stage {
                         double dt_s, const StageOptions& options);
 
   ChaseCamera camera_;
+  double roll_rad_ = 0;  ///< Of the picture, as it follows a person's head.
   FrontCamera front_;
   std::map<std::uint32_t, ComTrail> trails_;
   std::map<std::uint32_t, BirdMotion> motions_;

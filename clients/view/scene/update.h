@@ -11,6 +11,7 @@
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
+#include "common/stream/user_interface.h"
 
 /// What one tick of a server brings, as plain structs. World frame W: x forward, y left, z up; SI.
 namespace footing::scene {
@@ -26,6 +27,7 @@ struct CharacterPose {
   Eigen::Vector3d com_velocity_mps = Eigen::Vector3d::Zero();
   stream::GaitState gait;  ///< Its phase stays empty: the name travels as a text of its own.
   std::string phase;
+  stream::InterfaceState interface;  ///< Of the gait engine.
   bool simulated_input = false;
   std::optional<BodyState> body;            ///< Of a reconstructed person.
   std::optional<stream::TrialState> trial;  ///< Of a character on a track.

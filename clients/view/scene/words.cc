@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/view/scene/interface_text.h"
 #include "clients/view/scene/trial_text.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
@@ -104,6 +105,9 @@ std::vector<std::string> CharacterLines(const CharacterPose& pose, const stream:
   if (!gait.commanded_by_stream) second += "   no features arrive: stepping in place";
   if (pose.simulated_input) second += "   SIMULATED input";
   std::vector<std::string> lines{first, second};
+  if (const std::string third = InterfaceText(pose.interface); !third.empty()) {
+    lines.push_back("  " + third);
+  }
   if (!pose.trial || !ShowsTrial(*pose.trial)) return lines;
   for (const std::string& line : TrialLines(*pose.trial, track)) lines.push_back("  " + line);
   return lines;
@@ -239,6 +243,8 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
     line += "  " + GaitTitle(pose.gait.gait) + "  " + Fixed(pose.gait.speed_mps, 2) + "/" +
             Fixed(pose.gait.commanded_speed_mps, 2) + " m/s  " + Fixed(pose.gait.distance_m, 1) +
             " m  " + FallText(pose.gait);
+    const std::string interface = InterfaceText(pose.interface);
+    if (!interface.empty()) line += "  " + interface;
     if (!pose.trial || !ShowsTrial(*pose.trial)) continue;
     line += "  " + TrialTitle(*pose.trial);
     if (const std::string task = TaskText(*pose.trial, model.track); !task.empty()) {

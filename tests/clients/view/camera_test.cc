@@ -44,6 +44,16 @@ TEST(Camera, WhatItLooksAtIsInTheMiddleOfThePicture) {
   EXPECT_GT(clip.w(), 0);
 }
 
+TEST(Camera, ARollTurnsThePictureClockwise) {
+  Camera camera;
+  camera.eye_m = {0, 0, 1};
+  camera.target_m = {5, 0, 1};
+  camera.roll_rad = DegreesToRadians(20);
+  const Eigen::Vector4f above = Clip(camera, {5, 0, 2});
+  // What stands upright leans to the right.
+  EXPECT_NEAR(std::atan2(above.x() * 16 / 9, above.y()), DegreesToRadians(20), 1e-4);
+}
+
 TEST(Camera, NeverRolls) {
   for (const double heading_rad : {-3.0, -1.0, 0.0, 0.5, 2.0}) {
     const Eigen::Matrix4f view = Settled(heading_rad, 2).Look().View();

@@ -17,6 +17,7 @@ std::vector<NamedBox> All(const HudBoxes& boxes) {
   if (boxes.character) all.push_back({"character", *boxes.character});
   if (boxes.strips) all.push_back({"strips", *boxes.strips});
   if (boxes.devices) all.push_back({"devices", *boxes.devices});
+  if (boxes.interface) all.push_back({"interface", *boxes.interface});
   if (boxes.boards) all.push_back({"boards", *boxes.boards});
   return all;
 }
@@ -28,9 +29,9 @@ bool Overlap(const Box& a, const Box& b) {
 const std::vector<ImVec2> kLayoutSizes{{320, 180},   {400, 600},   {640, 360},   {640, 400},
                                        {800, 600},   {1024, 768},  {1280, 720},  {1280, 1024},
                                        {1920, 1080}, {2560, 1440}, {3440, 1440}, {3840, 2160}};
-const HudNeeds kGait{{196, 266}, {190, 550}, {88, 330}, {150, 236}};
-const HudNeeds kPose{{276, 336}, {}, {88, 330}, {150, 236}};
-const HudNeeds kBare{{196, 266}, {}, {68, 68}, {}};
+const HudNeeds kGait{{196, 266}, {190, 550}, {88, 330}, {152, 152}, {150, 236}};
+const HudNeeds kPose{{276, 336}, {}, {88, 330}, {}, {150, 236}};
+const HudNeeds kBare{{196, 266}, {}, {68, 68}, {}, {}};
 
 TEST(HudLayout, NoTwoPanelsOverlapAndAllStayInThePicture) {
   for (const ImVec2& size : kLayoutSizes) {
@@ -62,7 +63,7 @@ TEST(HudLayout, SmallPicturesKeepEveryPanelAndLettersOfTenPixels) {
   const float scale = HudScale(size, 1);
   EXPECT_GE(12.5f * scale, 10);  // The letters of most lines are 12.5 units high.
   const HudBoxes gait = LayOut(size, scale, kGait);
-  EXPECT_TRUE(gait.character && gait.strips && gait.devices && gait.boards);
+  EXPECT_TRUE(gait.character && gait.strips && gait.devices && gait.interface && gait.boards);
   const HudBoxes pose = LayOut(size, scale, kPose);
   EXPECT_TRUE(pose.character && pose.devices && pose.boards);
   EXPECT_GT(gait.middle.width(), 0.2f * size.x);  // The figure can still be seen.

@@ -40,7 +40,8 @@ class HudPictureTest : public PictureFixture {
     const HudBoxes boxes =
         BoxesOf({picture, model, frame, now_ns, model, now_ns}, {}, pixels, HudScale(pixels, 1));
     std::vector<Box> all{boxes.stamp, boxes.middle};
-    for (const auto& box : {boxes.character, boxes.strips, boxes.devices, boxes.boards}) {
+    for (const auto& box :
+         {boxes.character, boxes.strips, boxes.devices, boxes.interface, boxes.boards}) {
       if (box) all.push_back(*box);
     }
     int strays = 0;
@@ -109,6 +110,23 @@ TEST_F(HudPictureTest, ATaskIsSeenAtEverySizeAlsoByThePersonWhoSeesTheWorldAlone
       EXPECT_GT(inside, 1000) << name;
       EXPECT_EQ(outside, 0) << name;
     }
+  }
+}
+
+TEST_F(HudPictureTest, TheInterfacePanelStaysInItsBoxForEveryInterface) {
+  for (const auto interface : stream::kUserInterfaces) {
+    scene::made::Wish wish;
+    wish.interface = interface;
+    const scene::Model model = scene::made::ModelAfter(3, wish);
+    scene::Stage stage;
+    const std::int64_t now_ns = scene::made::ClockAt(3);
+    const scene::WorldFrame frame = scene::made::TickAt(3, wish).frame.value();
+    const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+    const std::string name = stream::Name(interface);
+    EXPECT_EQ(Strays(picture, model, frame, now_ns, {1280, 720}, name), 0) << name;
+    const HudBoxes boxes =
+        BoxesOf({picture, model, frame, now_ns, model, now_ns}, {}, {1280, 720}, 1);
+    EXPECT_TRUE(boxes.interface) << name;
   }
 }
 

@@ -25,6 +25,30 @@ Leg FootAt(double cycles, double stride_m) {
   return {stride_m * (swing - 0.5), 0.02 + 0.22 * std::sin(kPi * swing), false};
 }
 
+/// A belief with something on every gauge.
+stream::InterfaceState BeliefAt(double time_s, const Wish& wish) {
+  stream::InterfaceState state;
+  state.interface = wish.interface;
+  state.activity = stream::Activity::kAlternate;
+  state.gait = wish.gait;
+  state.frequency_valid = state.phase_valid = state.turn.valid = true;
+  state.frequency_hz = 2 * kCadenceHz;
+  state.border_hz = 2;
+  state.phase_rad = kPi - 0.2 + 0.15 * std::sin(time_s);
+  state.together_rad = DegreesToRadians(75);
+  state.forearms.valid = wish.interface == stream::UserInterface::kArm;
+  state.forearms.elevation_rad = DegreesToRadians(-12);
+  state.forearms.bent_rad = DegreesToRadians(-38);
+  state.stick.valid = wish.interface == stream::UserInterface::kJoystick;
+  state.stick.x = 0.5;
+  state.stick.y = 0.7;
+  state.load_valid = wish.interface == stream::UserInterface::kBoards;
+  state.left_share = 0.8;
+  state.turn.source = stream::TurnSource::kHands;
+  state.turn.share = 1.3;
+  return state;
+}
+
 CharacterPose PoseAt(double time_s, const Wish& wish) {
   CharacterPose pose;
   pose.character = 1;
@@ -59,6 +83,7 @@ CharacterPose PoseAt(double time_s, const Wish& wish) {
   pose.gait.steps = static_cast<std::uint64_t>(2 * cycles);
   pose.gait.distance_m = x_m;
   pose.gait.commanded_by_stream = true;
+  pose.interface = BeliefAt(time_s, wish);
   pose.gait.next_foothold_m = {x_m + 0.75, -kHalfHipM};
   static constexpr const char* kPhases[] = {"COMP", "EXT", "UP", "DOWN"};
   pose.phase = kPhases[static_cast<int>(8 * cycles) % 4];

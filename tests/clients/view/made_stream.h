@@ -13,6 +13,7 @@ struct Wish {
   double speed_mps = 2;
   bool board = true;
   bool simulated = true;
+  stream::UserInterface interface = stream::UserInterface::kWrist;
 };
 
 /// Foot and hip heights of the made body: hips at 0.95 m, feet on the ground while they stand.

@@ -51,6 +51,19 @@ CharacterPose Turned(double yaw_rad, bool touching) {
   return pose;
 }
 
+TEST(Stage, ThePictureFollowsThePersonsHead) {
+  const Model model = made::ModelAfter(1, {});
+  WorldFrame frame = made::TickAt(1, {}).frame.value();
+  frame.characters.front().interface.view_roll_rad = 0.3;
+  Stage stage;
+  Picture picture;
+  for (int i = 0; i < 100; ++i) picture = stage.Advance(model, frame, 0, 0.02, {});
+  EXPECT_NEAR(picture.camera.roll_rad, 0.3, 1e-3);
+  frame.characters.front().interface.view_roll_rad = 0;
+  for (int i = 0; i < 100; ++i) picture = stage.Advance(model, frame, 0, 0.02, {});
+  EXPECT_NEAR(picture.camera.roll_rad, 0, 1e-3);
+}
+
 TEST(BirdMotion, TheHeadFollowsATurnByAFilterOfAFifthOfASecond) {
   const BirdSkeleton skeleton = FindParts(made::Biped());
   BirdMotion motion = Advance({}, skeleton, Turned(0, true), 0);

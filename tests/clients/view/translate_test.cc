@@ -65,6 +65,21 @@ TEST(Translate, ATrialComesThroughAndIsFinite) {
   EXPECT_EQ(pose.trial->progress.failures.straightness, 3u);
 }
 
+TEST(Translate, TheInterfaceInForceComesThrough) {
+  v1::Tick tick;
+  v1::InterfaceState& state = *tick.mutable_characters()->add_characters()->mutable_interface();
+  state.set_interface(v1::USER_INTERFACE_BOARDS);
+  state.set_activity(v1::ACTIVITY_HEEL_RISE);
+  state.set_left_share(std::numeric_limits<double>::quiet_NaN());
+  state.set_view_roll_rad(0.2);
+  const scene::Update update = Translate(tick, 0, 1, 0);
+  const stream::InterfaceState& shown = update.frame->characters.front().interface;
+  EXPECT_EQ(shown.interface, stream::UserInterface::kBoards);
+  EXPECT_EQ(shown.activity, stream::Activity::kHeelRise);
+  EXPECT_EQ(shown.left_share, 0);
+  EXPECT_EQ(shown.view_roll_rad, 0.2);
+}
+
 TEST(Translate, AGaitOfANewerServerIsUnspecified) {
   v1::Tick tick;
   tick.mutable_characters()->add_characters()->mutable_gait()->set_gait(static_cast<v1::Gait>(77));

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "clients/view/scene/interface_text.h"
 #include "tests/clients/view/made_stream.h"
 
 namespace footing::scene {
@@ -101,6 +102,30 @@ TEST(StatusLine, SaysWhatItWaitsForBeforeAnythingCame) {
   Model model;
   model.links = {{"unix:/tmp/simulation.sock", "", LinkState::kConnecting, ""}};
   EXPECT_THAT(StatusLine(model, 0), HasSubstr("Waiting for a simulation server on unix:/tmp"));
+}
+
+TEST(InterfaceText, NamesTheInterfaceItsBeliefAndWhatItMisses) {
+  stream::InterfaceState state;
+  EXPECT_EQ(InterfaceText(state), "");
+  state.interface = stream::UserInterface::kLeg;
+  state.activity = stream::Activity::kAlternate;
+  state.gait = stream::Gait::kWalk;
+  state.next_gait = stream::Gait::kRun;
+  state.frequency_valid = true;
+  state.frequency_hz = 1.5;
+  state.turn.source = stream::TurnSource::kHead;
+  state.turn.share = -1.2;
+  EXPECT_EQ(InterfaceText(state), "leg: stepping, 1.50 Hz -> WALK (RUN?), turn left by head");
+  state.missing_roles =
+      stream::RoleBit(stream::DeviceRole::kHead) | stream::RoleBit(stream::DeviceRole::kLeftLeg);
+  EXPECT_THAT(InterfaceText(state), HasSubstr("missing: left leg, head"));
+}
+
+TEST(InterfaceText, IsOnTheScreenAndInTheLog) {
+  const Model model = made::ModelAfter(3, {});
+  EXPECT_THAT(StatusScreen(model, made::ClockAt(3)),
+              Contains(HasSubstr("wrist: hands swing alternately, 2.60 Hz")));
+  EXPECT_THAT(StatusLine(model, made::ClockAt(3)), HasSubstr("wrist: hands swing alternately"));
 }
 
 }  // namespace

@@ -131,7 +131,9 @@ void DrawCharacterPanel(const Paint& p, const Box& box, const scene::Model& mode
   } else if (!gait.commanded_by_stream) {
     p.Label({in.low.x, row}, colour::kGroove, colour::kWarning, "no sensor input");
   } else {
-    p.Label({in.low.x, row}, colour::kGroove, colour::kFaint, "follows the controllers");
+    const bool missing = pose.interface.activity == stream::Activity::kAbsent;
+    p.Label({in.low.x, row}, colour::kGroove, missing ? colour::kWarning : colour::kFaint,
+            missing ? "devices are missing" : "follows the person");
   }
   DrawSpeed(p, {{in.low.x, in.low.y + 78 * s}, {in.high.x, in.low.y + 110 * s}}, gait, ink);
   DrawCounts(p, {{in.low.x, in.low.y + 128 * s}, {in.high.x, in.high.y}}, gait);

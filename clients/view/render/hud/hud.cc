@@ -5,6 +5,7 @@
 #include "clients/view/render/hud/character_panel.h"
 #include "clients/view/render/hud/device_panel.h"
 #include "clients/view/render/hud/hud_layout.h"
+#include "clients/view/render/hud/interface_panel.h"
 #include "clients/view/render/hud/labels.h"
 #include "clients/view/render/hud/layout_panel.h"
 #include "clients/view/render/hud/overlay.h"
@@ -32,6 +33,7 @@ HudNeeds NeedsOf(const HudContent& content, const HudOptions& options) {
     needs.character = BodyPanelHeight(*pose, content.picture);
   } else if (pose != nullptr) {
     needs.character = CharacterPanelHeight(options.phases);
+    needs.interface = InterfacePanelHeight(pose->interface);
   }
   if (!person) needs.strips = StripPanelHeight(content.past.strips);
   needs.devices = DevicePanelHeight(content.model);
@@ -48,6 +50,9 @@ void DrawColumns(const Paint& p, const HudContent& content, const HudBoxes& boxe
   }
   if (boxes.strips) DrawStripPanel(p, *boxes.strips, content.past.strips, content.past_ns);
   if (boxes.devices) DrawDevicePanel(p, *boxes.devices, content.model, content.now_ns);
+  if (boxes.interface && pose != nullptr) {
+    DrawInterfacePanel(p, *boxes.interface, pose->interface);
+  }
   if (boxes.boards && IsPerson(pose)) {
     DrawLayoutPanel(p, *boxes.boards, content.past, *pose, content.past_ns);
   } else if (boxes.boards) {

@@ -19,9 +19,10 @@ constexpr float kStampWidth = 240, kStampHeight = 28;
 
 /// Stacks panels from the top into a column; one that does not fit is left out. What is left over
 /// goes to the first panels first. `last_at_bottom`: the last one stands at the column's end.
-std::array<std::optional<Box>, 2> Stack(const std::array<PanelHeight, 2>& needs, const Box& column,
+template <std::size_t N>
+std::array<std::optional<Box>, N> Stack(const std::array<PanelHeight, N>& needs, const Box& column,
                                         bool last_at_bottom) {
-  std::array<float, 2> heights{};
+  std::array<float, N> heights{};
   float left = column.height();
   for (std::size_t i = 0; i < needs.size(); ++i) {
     const float gap = left < column.height() ? kPanelGap : 0;
@@ -35,7 +36,7 @@ std::array<std::optional<Box>, 2> Stack(const std::array<PanelHeight, 2>& needs,
     heights[i] += more;
     left -= more;
   }
-  std::array<std::optional<Box>, 2> boxes;
+  std::array<std::optional<Box>, N> boxes;
   float y = column.low.y;
   for (std::size_t i = 0; i < needs.size(); ++i) {
     if (heights[i] <= 0) continue;
@@ -79,18 +80,19 @@ HudBoxes LayOut(ImVec2 size, float scale, const HudNeeds& needs) {
   const float left_end = edge + column, right_start = units.x - edge - column;
   if (one) {
     const auto stacked =
-        Stack({needs.character, needs.strips}, {{edge, top}, {left_end, bottom}}, false);
+        Stack<2>({needs.character, needs.strips}, {{edge, top}, {left_end, bottom}}, false);
     boxes.character = Scaled(stacked[0], scale);
     boxes.strips = Scaled(stacked[1], scale);
   }
   if (two) {
-    const auto stacked =
-        Stack({needs.devices, needs.boards}, {{right_start, top}, {units.x - edge, bottom}}, true);
+    const auto stacked = Stack<3>({needs.devices, needs.interface, needs.boards},
+                                  {{right_start, top}, {units.x - edge, bottom}}, true);
     boxes.devices = Scaled(stacked[0], scale);
-    boxes.boards = Scaled(stacked[1], scale);
+    boxes.interface = Scaled(stacked[1], scale);
+    boxes.boards = Scaled(stacked[2], scale);
   }
   const bool left_free = !boxes.character && !boxes.strips;
-  const bool right_free = !boxes.devices && !boxes.boards;
+  const bool right_free = !boxes.devices && !boxes.interface && !boxes.boards;
   const float from = left_free ? edge : left_end + kPanelGap;
   const float to = std::max(from, right_free ? units.x - edge : right_start - kPanelGap);
   boxes.stamp = own_row ? Scaled({{edge, edge}, {units.x - edge, edge + kStampHeight}}, scale)

@@ -19,14 +19,14 @@ struct PanelHeight {
 
 /// The panels of both columns, from the top.
 struct HudNeeds {
-  PanelHeight character, strips;  ///< Left.
-  PanelHeight devices, boards;    ///< Right.
+  PanelHeight character, strips;           ///< Left.
+  PanelHeight devices, interface, boards;  ///< Right.
 };
 
 /// Where everything goes, in pixels. No two boxes overlap. A panel without a box is left out: the
 /// picture is too small for it.
 struct HudBoxes {
-  std::optional<Box> character, strips, devices, boards;
+  std::optional<Box> character, strips, devices, interface, boards;
   Box stamp;   ///< One row; what must always be seen.
   Box middle;  ///< Between the columns, under the stamp: messages to the person.
 };
