@@ -93,13 +93,14 @@ class Stage:
         path = pathlib.Path(address.removeprefix("unix:"))
         self.wait_for(path.is_socket, f"{address} to open", timeout_s)
 
-    def start_servers(self):
+    def start_servers(self, interface="wrist"):
         self.start("footingd", "--listen", self.sensor, "--source", f"stream:{self.devices}")
         self.wait_for_socket(self.sensor)
         self.wait_for_socket(self.devices)
-        self.start("footing-sim", "--sensor", self.sensor, "--listen", self.simulation)
+        self.start("footing-sim", "--sensor", self.sensor, "--listen", self.simulation,
+                   "--interface", interface)
         self.wait_for_socket(self.simulation)
 
-    def start_user(self, script, *words, seed=1):
-        return self.start("footing-stream", "user", "--script", script, "--interface", "wrist",
+    def start_user(self, script, *words, seed=1, interface="wrist"):
+        return self.start("footing-stream", "user", "--script", script, "--interface", interface,
                           "--to", self.devices, "--seed", seed, *words)

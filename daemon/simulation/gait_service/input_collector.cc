@@ -81,7 +81,7 @@ bool InputCollector::TakeStick(const v1::Tick& tick, std::int64_t now_ns) {
     stick.x = sample.stick_x();
     stick.y = sample.stick_y();
     stick_ = {now_ns, sample.simulated()};
-    stamps_ = {0, sample.received_ns(), 0, 0, 0};
+    stamps_ = {0, sample.received_ns(), tick.host_ns(), tick.host_ns(), 0};
     taken = true;
   }
   for (const v1::MotionSample& sample : tick.motion().samples()) {
@@ -94,9 +94,9 @@ bool InputCollector::TakeStick(const v1::Tick& tick, std::int64_t now_ns) {
   return taken;
 }
 
-bool InputCollector::TakeBoards(const v1::BoardSamples& boards, std::int64_t now_ns) {
+bool InputCollector::TakeBoards(const v1::Tick& tick, std::int64_t now_ns) {
   bool taken = false;
-  for (const v1::BoardSample& sample : boards.samples()) {
+  for (const v1::BoardSample& sample : tick.boards().samples()) {
     const DeviceRole role = RoleOf(sample.device());
     if (!mapping::Uses(options_, role) || !IsFinite(sample)) continue;
     stream::BoardLayout layout;
@@ -115,7 +115,7 @@ bool InputCollector::TakeBoards(const v1::BoardSamples& boards, std::int64_t now
         .cop_x_m = cop_W_m.x(),
         .cop_y_m = cop_W_m.y()};
     (left ? left_board_ : right_board_) = {now_ns, sample.simulated()};
-    stamps_ = {0, sample.received_ns(), 0, 0, 0};
+    stamps_ = {0, sample.received_ns(), tick.host_ns(), tick.host_ns(), 0};
     taken = true;
   }
   return taken;
@@ -155,9 +155,8 @@ bool InputCollector::Take(const v1::Tick& tick, std::int64_t now_ns) {
     case UserInterface::kBoards:
       break;
   }
-  const bool taken = options_.interface == UserInterface::kJoystick
-                         ? TakeStick(tick, now_ns)
-                         : TakeBoards(tick.boards(), now_ns);
+  const bool taken = options_.interface == UserInterface::kJoystick ? TakeStick(tick, now_ns)
+                                                                    : TakeBoards(tick, now_ns);
   const bool ended = Expire(now_ns);
   inputs_.simulated = (inputs_.stick.present && stick_.simulated) ||
                       (inputs_.left_board.present && left_board_.simulated) ||

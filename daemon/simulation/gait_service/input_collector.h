@@ -26,7 +26,8 @@ class InputCollector {
 
   const std::string& rig() const { return rig_; }
   const mapping::Inputs& inputs() const { return inputs_; }
-  /// When the newest of it was made; its number is not filled in.
+  /// When the newest of it was made; its number is not filled in. Of a stick and a board only
+  /// the sample's and the tick's stamps are known.
   const FeatureStamps& stamps() const { return stamps_; }
 
  private:
@@ -44,7 +45,7 @@ class InputCollector {
   void Bind(const v1::DeviceStatusList& status);
   bool TakeFeatures(const v1::FeatureFrame& frame);
   bool TakeStick(const v1::Tick& tick, std::int64_t now_ns);
-  bool TakeBoards(const v1::BoardSamples& boards, std::int64_t now_ns);
+  bool TakeBoards(const v1::Tick& tick, std::int64_t now_ns);
   /// What has not been heard of for too long; true when that is new.
   bool Expire(std::int64_t now_ns);
   stream::DeviceRole RoleOf(std::uint32_t device) const;
