@@ -48,5 +48,6 @@ void AddLayoutCommand(CLI::App& app, Shared& shared);      ///< layout
 void AddAcceptanceCommand(CLI::App& app, Shared& shared);  ///< acceptance
 void AddPoseCommands(CLI::App& app, Shared& shared);       ///< t-pose, subject
 void AddTrialCommands(CLI::App& app, Shared& shared);      ///< trial
+void AddInterfaceCommand(CLI::App& app, Shared& shared);   ///< interface
 
 }  // namespace footing::ctl

@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddAcceptanceCommand(*app, shared);
   footing::ctl::AddPoseCommands(*app, shared);
   footing::ctl::AddTrialCommands(*app, shared);
+  footing::ctl::AddInterfaceCommand(*app, shared);
   for (CLI::App* command : app->get_subcommands({})) {
     command->footer(command->get_footer() +
                     "\nAlso: --json and --connect, as in footing-ctl --help.");

@@ -32,6 +32,7 @@ SECONDS_TO_STOP = 20
 NOT_HERE = {
     r"^footing-ctl (pair|setup|assign|acceptance|tare|layout .*--check)": "asks a person; scenarios setup_* run them",
     r"^footing-ctl led (00:|head)": "needs that device",
+    r"^footing-ctl interface leg": "needs remotes on the legs; scenario joystick_line changes interfaces",
     r"^footing-ctl trial withdraw": "needs a failure; scenario trial runs it",
     r"^footing-ctl doctor": "judges the whole machine, with the daemons of other tests; scenarios.ctl runs it",
     r"^sudo ": "as root",

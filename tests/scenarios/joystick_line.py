@@ -1,5 +1,6 @@
 """A simulated stick to the screen: every gait is seen, the viewer names the interface, a recording
-runs again bit for bit, and without the controller the character rests.
+runs again bit for bit, and without the controller the character rests. Then a person changes from
+one interface to another between two trials.
 
 Usage: joystick_line.py BINARY_FOLDER
 """
@@ -13,6 +14,41 @@ def last_line(stage):
                      "--seconds", 2, "--text")
     assert done.returncode == 0, done.stderr
     return done.stdout.strip().splitlines()[-1]
+
+
+def replays(stage, recording):
+    result = stage.run_json("footing-eval", "replay", recording)
+    print(result)
+    assert result["frames_compared"] > 400, result
+    assert result["frames_equal"] == result["frames_compared"], result
+
+
+def refused(stage, name, *words):
+    done = stage.run("footing-ctl", "--connect", stage.simulation, "interface", name)
+    assert done.returncode == 1 and all(word in done.stderr for word in words), done
+
+
+def changes(stage):
+    """Another interface between trials: not within one, and not without its devices."""
+    stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation, "--track",
+                "straight", name="second")
+    stage.wait_for_socket(stage.simulation)
+    recording = stage.folder / "changes.mcap"
+    stage.start("footing-log", "record", "--connect", stage.simulation, "--out", recording)
+    stage.start_user("demo", "--link", "good")
+    stage.wait_for(lambda: "wrist: hands" in last_line(stage), "the hands", 20)
+    console = ("footing-ctl", "--connect", stage.simulation)
+    refused(stage, "boards", "left_board, right_board")
+    assert stage.run(*console, "trial", "start", "p1", "--track", "1").returncode == 0
+    refused(stage, "arm", "trial (p1)")
+    assert stage.run(*console, "trial", "stop").returncode == 0
+    assert stage.run(*console, "interface", "telepathy").returncode == 2
+    assert stage.run_json(*console, "interface", "arm") == {"interface": "arm"}
+    stage.wait_for(lambda: "arm: arms" in last_line(stage), "the arms", 20)
+    assert stage.run(*console, "trial", "start", "p2", "--track", "2").returncode == 0
+    assert "arm: " in last_line(stage)
+    assert stage.stop("footing-log") == 0
+    replays(stage, recording)
 
 
 def main(binaries):
@@ -33,13 +69,12 @@ def main(binaries):
         assert seen["falls"] == 0, seen
         assert seen["responses"] >= 3, seen
         assert "joystick: " in last_line(stage)
-        result = stage.run_json("footing-eval", "replay", recording)
-        print(result)
-        assert result["frames_compared"] > 400, result
-        assert result["frames_equal"] == result["frames_compared"], result
+        replays(stage, recording)
         assert stage.stop("footing-stream") == 0
         line = last_line(stage)
         assert "joystick: no devices -> STEP; missing: right hand" in line, line
+        assert stage.stop("footing-sim") == 0
+        changes(stage)
 
 
 if __name__ == "__main__":

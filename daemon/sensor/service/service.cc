@@ -218,6 +218,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       case v1::Command::kStartTrial:
       case v1::Command::kStopTrial:
       case v1::Command::kCorrectFailure:
+      case v1::Command::kSetInterface:
         return Answer(command, UsageError("that is a command for footing-sim"));
       case v1::Command::kTare:
       case v1::Command::kSolveMounting:

@@ -67,6 +67,7 @@ void GaitEngine::Advance(const EngineInputs& inputs) {
   p.output_stale = true;
   const stream::Gait gait_before = p.state.gait.gait;
   p.TakeFeatures(inputs);
+  p.TakeInterface(inputs);
   p.TakePush(inputs);
   p.Command(inputs);
   p.TakeTrial(inputs);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,13 @@ struct EngineConfig {
 
 inline constexpr int kMaxAppends = 16;
 
+/// Which user interface the person has. Another one takes effect when its number is new.
+struct InterfaceInputs {
+  std::uint64_t number = 0;  ///< 0: the one of EngineConfig.
+  mapping::InterfaceOptions options = {};
+  std::optional<mapping::AnyInterface> made = {};  ///< Of the options; not read with number 0.
+};
+
 /// Which trial runs. A trial begins when its number is new, on the track that the engine then has.
 struct TrialInputs {
   std::uint64_t number = 0;
@@ -60,7 +68,8 @@ struct TrialInputs {
 struct EngineInputs {
   std::uint64_t features_number = 0;  ///< 0: none received so far.
   mapping::Inputs features;           ///< Of the controllers and boards.
-  bool direct = false;                ///< Follow direct_command in place of the features.
+  InterfaceInputs interface;
+  bool direct = false;  ///< Follow direct_command in place of the features.
   biped::GaitCommand direct_command;
   std::uint64_t push_number = 0;
   Eigen::Vector2d push_impulse_W_ns = Eigen::Vector2d::Zero();  ///< On the body's COM, over 0.1 s.

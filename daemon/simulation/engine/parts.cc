@@ -80,6 +80,13 @@ void GaitEngine::Parts::TakeFeatures(const EngineInputs& inputs) {
   }
 }
 
+void GaitEngine::Parts::TakeInterface(const EngineInputs& inputs) {
+  const InterfaceInputs& wanted = inputs.interface;
+  if (state.inputs.interface_number == wanted.number || !wanted.made) return;
+  state.inputs.interface_number = wanted.number;
+  state.interface = *wanted.made;
+}
+
 void GaitEngine::Parts::TakePush(const EngineInputs& inputs) {
   InputMemory& taken = state.inputs;
   if (taken.push_number == inputs.push_number) return;

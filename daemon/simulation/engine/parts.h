@@ -46,6 +46,7 @@ struct GaitEngine::Parts {
   double DistanceAlong() const { return terrain::LengthTo(on.track, place); }
 
   void TakeFeatures(const EngineInputs& inputs);
+  void TakeInterface(const EngineInputs& inputs);
   void TakePush(const EngineInputs& inputs);
   void Command(const EngineInputs& inputs);
   /// Follows the gait that runs and its desired speed; the table is looked up when they change.

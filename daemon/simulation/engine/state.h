@@ -11,6 +11,7 @@ namespace footing::engine {
 /// What the engine has taken of its inputs so far.
 struct InputMemory {
   std::uint64_t features_number = 0;
+  std::uint64_t interface_number = 0;
   std::uint64_t push_number = 0;
   std::uint64_t put_back_number = 0;
   std::uint64_t trial_number = 0;

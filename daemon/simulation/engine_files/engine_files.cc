@@ -31,4 +31,11 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
   return texts;
 }
 
+Result<mapping::AnyInterface> ReadInterface(const mapping::InterfaceOptions& options,
+                                            const std::string& data_folder) {
+  const auto table = config::ReadDataFile(mapping::MappingFileOf(options.interface), data_folder);
+  if (!table) return table.error();
+  return mapping::AnyInterface::Create(options, *table);
+}
+
 }  // namespace footing::engine_files

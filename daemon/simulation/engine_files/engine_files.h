@@ -20,4 +20,8 @@ struct Wish {
 /// The texts of the files that the engine runs on. Fails with one line that names the file.
 Result<engine::EngineTexts> ReadTexts(const Wish& wish = {});
 
+/// An interface with its table. Fails with one line that names the file.
+Result<mapping::AnyInterface> ReadInterface(const mapping::InterfaceOptions& options,
+                                            const std::string& data_folder = "");
+
 }  // namespace footing::engine_files

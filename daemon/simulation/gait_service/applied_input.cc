@@ -97,9 +97,22 @@ void Fields(Way way, const terrain::NewSegment&) {
 FOOTING_BOTH_WAYS_OF(terrain::NewSegment, v1::AppendedSegment)
 
 template <typename Way>
+void Fields(Way way, const engine::InterfaceInputs&) {
+  FOOTING_FIELD_OF(number, interface_number);
+  FOOTING_ENUM_OF(UserInterface, options.interface, interface);
+  FOOTING_ENUM_OF(TurnSource, options.leg.turn_by, turn_by);
+  FOOTING_FIELD_OF(options.boards_may_be_left, boards_may_be_left);
+  if constexpr (!Way::kOut) {
+    const bool named = way.value.options.interface != stream::UserInterface::kUnspecified;
+    if (!named) way.value.options = {};
+  }
+}
+
+template <typename Way>
 void Fields(Way way, const engine::EngineInputs&) {
   FOOTING_FIELD(features_number);
   FOOTING_PART(features);
+  FOOTING_PART(interface);
   FOOTING_FIELD(direct);
   FOOTING_ENUM_OF(Gait, direct_command.gait, direct_gait);
   FOOTING_FIELD_OF(direct_command.speed_mps, direct_speed_mps);
@@ -144,24 +157,5 @@ FOOTING_BOTH_WAYS_OF(Applied, v1::AppliedInput)
 v1::AppliedInput ToAppliedInput(const Applied& applied) { return ToProto(applied); }
 
 Applied FromAppliedInput(const v1::AppliedInput& message) { return FromProto(message); }
-
-void SetInterface(const mapping::InterfaceOptions& options, v1::AppliedInput& message) {
-  message.set_interface(static_cast<v1::UserInterface>(options.interface));
-  message.set_turn_by(static_cast<v1::TurnSource>(options.leg.turn_by));
-  message.set_boards_may_be_left(options.boards_may_be_left);
-}
-
-mapping::InterfaceOptions InterfaceOf(const v1::AppliedInput& message) {
-  mapping::InterfaceOptions options;
-  if (message.interface() == v1::USER_INTERFACE_UNSPECIFIED) return options;
-  if (v1::UserInterface_IsValid(message.interface())) {
-    options.interface = static_cast<stream::UserInterface>(message.interface());
-  }
-  if (v1::TurnSource_IsValid(message.turn_by())) {
-    options.leg.turn_by = static_cast<stream::TurnSource>(message.turn_by());
-  }
-  options.boards_may_be_left = message.boards_may_be_left();
-  return options;
-}
 
 }  // namespace footing::gait_service

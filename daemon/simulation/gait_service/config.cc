@@ -1,12 +1,16 @@
 #include "daemon/simulation/gait_service/config.h"
 
+#include <array>
+
 namespace footing::gait_service {
 namespace {
 
+constexpr std::array kLegTurnSources{stream::TurnSource::kHead, stream::TurnSource::kFeet,
+                                     stream::TurnSource::kTrunk};
+
 /// kUnspecified unless it can turn with the interface leg.
 stream::TurnSource TurnSourceNamed(const std::string& name) {
-  for (const auto source :
-       {stream::TurnSource::kHead, stream::TurnSource::kFeet, stream::TurnSource::kTrunk}) {
+  for (const auto source : kLegTurnSources) {
     if (name == stream::Name(source)) return source;
   }
   return stream::TurnSource::kUnspecified;
@@ -41,6 +45,13 @@ Result<void> Check(const Config& config) {
     return UsageError("unknown turn_by " + config.turn_by + "; there are: head, feet, trunk");
   }
   return {};
+}
+
+stream::TurnSource LegTurnSource(int number) {
+  for (const auto source : kLegTurnSources) {
+    if (number == static_cast<int>(source)) return source;
+  }
+  return stream::TurnSource::kUnspecified;
 }
 
 mapping::InterfaceOptions OptionsOf(const Config& config) {

@@ -25,6 +25,9 @@ struct Config {
 /// Usage error that lists what there is when the interface or what turns is unknown.
 Result<void> Check(const Config& config);
 
+/// What may turn with the interface leg, by its number in the protocol; kUnspecified for others.
+stream::TurnSource LegTurnSource(int number);
+
 /// The interface that a checked config asks for.
 mapping::InterfaceOptions OptionsOf(const Config& config);
 

@@ -42,27 +42,19 @@ Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common
 GaitLine::GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
                    TrialControl::Options trial_options, int wake_descriptor)
     : world_(config.track),
-      interface_(OptionsOf(config)),
+      data_folder_(trial_options.data_folder),
       frame_rate_hz_(config.frame_rate_hz),
       thread_(GaitRun(std::move(engine), tracks_), trial_options.step_s,
               static_cast<int>(std::lround(1.0 / (trial_options.step_s * config.frame_rate_hz))),
               wake_descriptor),
       trials_(std::move(trial_options), thread_.run().engine().track(), tracks_),
-      input_(rig, interface_, thread_.inputs(), responses_) {}
+      input_(rig, OptionsOf(config), thread_.inputs(), responses_) {}
 
-std::vector<std::string> GaitLine::SensorChannels() const {
-  switch (interface_.interface) {
-    case stream::UserInterface::kJoystick:
-      return {"status", "motion", "nunchuk"};
-    case stream::UserInterface::kBoards:
-      return {"status", "setup", "boards"};
-    case stream::UserInterface::kUnspecified:
-    case stream::UserInterface::kWrist:
-    case stream::UserInterface::kArm:
-    case stream::UserInterface::kLeg:
-      return {"status", "features"};
-  }
-  return {"status", "features"};
+std::vector<std::string> GaitLine::Capabilities() {
+  std::vector<std::string> names{"gait"};
+  for (const auto interface : stream::kUserInterfaces) names.push_back(stream::Name(interface));
+  names.push_back("trial");
+  return names;
 }
 
 std::vector<transport::Channel> GaitLine::Channels() {
@@ -79,7 +71,28 @@ std::vector<transport::ChannelBytes> GaitLine::Retained() const {
           serving::Bytes(serving::kTrack, wire::ToProto(trials_.track()))};
 }
 
+Result<void> GaitLine::SetInterface(const v1::SetInterface& message) {
+  mapping::InterfaceOptions options = input_.interface();
+  options.interface = v1::UserInterface_IsValid(message.interface())
+                          ? static_cast<stream::UserInterface>(message.interface())
+                          : stream::UserInterface::kUnspecified;
+  if (message.turn_by() != v1::TURN_SOURCE_UNSPECIFIED) {
+    options.leg.turn_by = LegTurnSource(message.turn_by());
+  }
+  if (options.leg.turn_by == stream::TurnSource::kUnspecified) {
+    return UsageError("unknown turn_by; there are: head, feet, trunk");
+  }
+  if (const auto none = trials_.CheckNoneGoesOn(); !none) return none;
+  const auto made = engine_files::ReadInterface(options, data_folder_);
+  if (!made) return made.error();
+  return input_.SetInterface(options, *made);
+}
+
 v1::CommandResult GaitLine::OnCommand(const v1::Command& command) {
+  if (command.has_set_interface()) {
+    const Result<void> done = SetInterface(command.set_interface());
+    return serving::Answer(done.ok(), done ? "" : "set_interface: " + done.error().message);
+  }
   if (!TrialControl::Takes(command)) return input_.OnCommand(command);
   const v1::CommandResult result = trials_.OnCommand(command);
   if (result.ok()) input_.SetTrial(trials_.inputs());
@@ -118,9 +131,7 @@ std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::
   trials_.Describe(frame, *characters.mutable_characters(0));
   v1::AppliedInputs inputs;
   for (int i = 0; i < frame.applied_count; ++i) {
-    v1::AppliedInput& input = *inputs.add_inputs();
-    input = ToAppliedInput(frame.applied[static_cast<std::size_t>(i)]);
-    SetInterface(interface_, input);
+    *inputs.add_inputs() = ToAppliedInput(frame.applied[static_cast<std::size_t>(i)]);
   }
   serving::AddFrame(characters, events, inputs, channels);
   return channels;

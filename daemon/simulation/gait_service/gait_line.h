@@ -28,11 +28,12 @@ class GaitLine {
                                                   const Config& config, int wake_descriptor);
 
   static std::vector<transport::Channel> Channels();
-  /// The engine, the interface in force, and trials.
-  std::vector<std::string> Capabilities() const {
-    return {"gait", stream::Name(interface_.interface), "trial"};
+  /// The engine, its interfaces, and trials.
+  static std::vector<std::string> Capabilities();
+  /// Those of all interfaces: another may be chosen at any time.
+  static std::vector<std::string> SensorChannels() {
+    return {"status", "setup", "features", "motion", "nunchuk", "boards"};
   }
-  std::vector<std::string> SensorChannels() const;
   static constexpr v1::QueuePolicy kSensorPolicy = v1::QUEUE_POLICY_DROP_OLDEST;
   double frame_rate_hz() const { return frame_rate_hz_; }
 
@@ -45,10 +46,11 @@ class GaitLine {
  private:
   GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
            TrialControl::Options trial_options, int wake_descriptor);
+  Result<void> SetInterface(const v1::SetInterface& message);
   v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);
 
   const std::string world_;
-  const mapping::InterfaceOptions interface_;
+  const std::string data_folder_;
   const double frame_rate_hz_;
   Responses responses_;
   TrackExchange tracks_;  // Before the thread, which uses it.

@@ -42,9 +42,44 @@ DeviceRole InputCollector::RoleOf(std::uint32_t device) const {
   return found == bound_.end() ? DeviceRole::kUnspecified : found->second.role;
 }
 
-void InputCollector::Bind(const v1::DeviceStatusList& status) {
+Result<std::string> InputCollector::RigFor(const mapping::InterfaceOptions& options) const {
+  std::map<std::string, std::uint32_t> roles;  // Of each rig.
+  if (!rig_.empty()) roles[rig_] = 0;
+  for (const v1::DeviceStatus& device : status_.devices()) {
+    const bool usable = device.state() != v1::DEVICE_STATE_LOST;
+    if (usable && (wanted_rig_.empty() || device.rig() == wanted_rig_)) {
+      roles[device.rig()] |= stream::RoleBit(RoleIn(device.role()));
+    }
+  }
+  const std::uint32_t missing = mapping::MissingRoles(options, rig_.empty() ? 0 : roles[rig_]);
+  if (missing == 0) return rig_;
+  for (const auto& [rig, present] : roles) {
+    if (mapping::MissingRoles(options, present) == 0) return rig;
+  }
+  std::string names;
+  for (unsigned number = 1; number < 32; ++number) {
+    const auto role = static_cast<DeviceRole>(number);
+    if ((missing & stream::RoleBit(role)) == 0) continue;
+    names += (names.empty() ? "" : ", ") + std::string(stream::Name(role));
+  }
+  return Failure((rig_.empty() ? "there is no " : "the rig " + rig_ + " lacks ") + names +
+                 "; connect the devices, or give them these roles (footing-ctl assign)");
+}
+
+Result<void> InputCollector::Use(const mapping::InterfaceOptions& options) {
+  const Result<std::string> rig = RigFor(options);
+  if (!rig) return rig.error();
+  options_ = options;
+  rig_ = *rig;
+  inputs_ = {};
+  stamps_ = {};
+  Bind();
+  return {};
+}
+
+void InputCollector::Bind() {
   bound_.clear();
-  for (const v1::DeviceStatus& device : status.devices()) {
+  for (const v1::DeviceStatus& device : status_.devices()) {
     const DeviceRole role = RoleIn(device.role());
     if (Follows(device.rig(), role)) bound_[device.device()] = {role, device.mounted()};
   }
@@ -140,9 +175,13 @@ bool InputCollector::Take(const v1::Tick& tick, std::int64_t now_ns) {
   if (tick.epoch() != epoch_) {
     epoch_ = tick.epoch();
     rig_ = wanted_rig_;
+    status_.Clear();
     bound_.clear();
   }
-  if (tick.has_status()) Bind(tick.status());
+  if (tick.has_status()) {
+    status_ = tick.status();
+    Bind();
+  }
   if (tick.has_setup()) setup_ = tick.setup();
   if (tick.snapshot()) return false;
   switch (options_.interface) {

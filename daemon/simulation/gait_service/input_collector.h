@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "common/result/result.h"
 #include "common/stream/setup.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "daemon/simulation/mapping/any_interface.h"
@@ -21,10 +22,16 @@ class InputCollector {
   /// `rig` empty: the first rig with a device that the interface uses.
   InputCollector(std::string rig, const mapping::InterfaceOptions& options);
 
+  /// Goes over to another interface: on the rig that it follows or, where the constructor named
+  /// none, on the first one that has the roles for it. Fails, and names what is missing, when none
+  /// does; the interface before then stays.
+  Result<void> Use(const mapping::InterfaceOptions& options);
+
   /// Takes a live tick or a snapshot in; true when it brought, or ended, something of the rig.
   bool Take(const v1::Tick& tick, std::int64_t now_ns);
 
   const std::string& rig() const { return rig_; }
+  const mapping::InterfaceOptions& options() const { return options_; }
   const mapping::Inputs& inputs() const { return inputs_; }
   /// When the newest of it was made; its number is not filled in. Of a stick and a board only
   /// the sample's and the tick's stamps are known.
@@ -42,7 +49,9 @@ class InputCollector {
 
   /// Whether the rig is followed; the first one that can be is, until the server restarts.
   bool Follows(const std::string& rig, stream::DeviceRole role);
-  void Bind(const v1::DeviceStatusList& status);
+  void Bind();
+  /// The rig for an interface, by its devices; else what is missing.
+  Result<std::string> RigFor(const mapping::InterfaceOptions& options) const;
   bool TakeFeatures(const v1::FeatureFrame& frame);
   bool TakeStick(const v1::Tick& tick, std::int64_t now_ns);
   bool TakeBoards(const v1::Tick& tick, std::int64_t now_ns);
@@ -51,10 +60,11 @@ class InputCollector {
   stream::DeviceRole RoleOf(std::uint32_t device) const;
 
   const std::string wanted_rig_;
-  const mapping::InterfaceOptions options_;
+  mapping::InterfaceOptions options_;
   std::string rig_;
   std::uint64_t epoch_ = 0;
   std::map<std::uint32_t, Bound> bound_;  ///< Devices of the rig.
+  v1::DeviceStatusList status_;
   v1::SetupState setup_;
   mapping::Inputs inputs_;
   FeatureStamps stamps_;

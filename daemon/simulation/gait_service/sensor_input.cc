@@ -17,7 +17,9 @@ constexpr double kMaxPushNs = 200;
 
 SensorInput::SensorInput(std::string rig, const mapping::InterfaceOptions& options,
                          exchange::Latest<Inputs>& out, Responses& responses)
-    : collector_(std::move(rig), options), out_(out), responses_(responses) {}
+    : collector_(std::move(rig), options), out_(out), responses_(responses) {
+  inputs_.engine.interface.options = options;
+}
 
 void SensorInput::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   if (tick.refilled() || !collector_.Take(tick, now_ns)) return;
@@ -30,6 +32,16 @@ void SensorInput::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   stamps.received_ns = now_ns;
   responses_.Received(stamps);
   Publish();
+}
+
+Result<void> SensorInput::SetInterface(const mapping::InterfaceOptions& options,
+                                       const mapping::AnyInterface& made) {
+  if (const auto fits = collector_.Use(options); !fits) return fits;
+  engine::InterfaceInputs& interface = inputs_.engine.interface;
+  interface = {interface.number + 1, options, made};
+  inputs_.engine.features = collector_.inputs();
+  Publish();
+  return {};
 }
 
 /// The engine takes one segment a step, so those not yet taken wait in the inputs.
@@ -91,7 +103,7 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
     default:
       return Answer(false,
                     "footing-sim takes direct_gait, push, put_back, append_segment, start_trial, "
-                    "stop_trial and correct_failure");
+                    "stop_trial, correct_failure and set_interface");
   }
   Publish();
   return Answer(true, "");

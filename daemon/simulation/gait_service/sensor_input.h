@@ -24,6 +24,9 @@ class SensorInput {
   /// DirectGait, Push, PutBack and AppendSegment; anything else is answered with what there is.
   v1::CommandResult OnCommand(const v1::Command& command);
 
+  /// Another interface, from now on. Refused, with the reason, where the devices do not fit.
+  Result<void> SetInterface(const mapping::InterfaceOptions& options,
+                            const mapping::AnyInterface& made);
   /// Which trial runs, from now on.
   void SetTrial(const engine::TrialInputs& trial) {
     inputs_.engine.trial = trial;
@@ -31,6 +34,7 @@ class SensorInput {
   }
 
   const std::string& rig() const { return collector_.rig(); }
+  const mapping::InterfaceOptions& interface() const { return collector_.options(); }
 
  private:
   v1::CommandResult Append(const v1::AppendSegment& message);

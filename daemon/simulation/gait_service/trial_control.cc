@@ -106,7 +106,17 @@ Result<void> TrialControl::Stop(const v1::StopTrial& message) {
   return {};
 }
 
+Result<void> TrialControl::CheckNoneGoesOn() const {
+  const Trial& newest = trials_.back();
+  const bool running = trials_.size() > 1 || phase_ == stream::TrialPhase::kRunning;
+  const bool ready = phase_ == stream::TrialPhase::kReady && !newest.id.empty();
+  if (newest.number < inputs_.stopped_below || !(running || ready)) return {};
+  return Failure("a trial" + (newest.id.empty() ? "" : " (" + newest.id + ")") +
+                 " goes on; stop it first (stop_trial)");
+}
+
 bool TrialControl::OnFrame(const Frame& frame) {
+  phase_ = frame.output.trial.phase;
   std::unique_ptr<engine::TrackWorld> done;
   while (exchange_.done.Pop(done)) done.reset();
   bool switched = false;

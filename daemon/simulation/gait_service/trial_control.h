@@ -33,6 +33,9 @@ class TrialControl {
   /// True for StartTrial, StopTrial and CorrectFailure.
   static bool Takes(const v1::Command& command);
   v1::CommandResult OnCommand(const v1::Command& command);
+  /// Fails, with the reason, while a trial is on its way, ready or running; a server's first one,
+  /// which has no id, from its start line on.
+  Result<void> CheckNoneGoesOn() const;
   /// For the engine, after a command.
   const engine::TrialInputs& inputs() const { return inputs_; }
 
@@ -68,6 +71,7 @@ class TrialControl {
   const Options options_;
   TrackExchange& exchange_;
   engine::TrialInputs inputs_;
+  stream::TrialPhase phase_ = stream::TrialPhase::kUnspecified;  ///< Of the last frame's trial.
   std::deque<Trial> trials_;  ///< The one of the last frame, and those on their way to the engine.
   FailureRecord failures_;
 };

@@ -38,6 +38,24 @@ bool Uses(const InterfaceOptions& options, DeviceRole role) {
   return false;
 }
 
+std::uint32_t MissingRoles(const InterfaceOptions& options, std::uint32_t present) {
+  std::uint32_t needed = 0;
+  for (unsigned number = 1; number <= static_cast<unsigned>(DeviceRole::kTrunk); ++number) {
+    const auto role = static_cast<DeviceRole>(number);
+    if (Uses(options, role)) needed |= stream::RoleBit(role);
+  }
+  const bool leg = options.interface == UserInterface::kLeg;
+  if (leg && options.leg.turn_by == stream::TurnSource::kHead) {
+    needed |= stream::RoleBit(DeviceRole::kHead);
+  }
+  if (leg && options.leg.turn_by == stream::TurnSource::kTrunk) {
+    needed |= stream::RoleBit(DeviceRole::kTrunk);
+  }
+  // The stick may be on either hand's Wiimote.
+  const bool stick = options.interface == UserInterface::kJoystick && (needed & present) != 0;
+  return stick ? 0 : needed & ~present;
+}
+
 Result<AnyInterface> AnyInterface::Create(const InterfaceOptions& options,
                                           const std::string& table) {
   const std::string origin = MappingFileOf(options.interface);

@@ -24,6 +24,9 @@ const char* MappingFileOf(stream::UserInterface interface);
 /// Whether a controller or board with this role is part of the interface.
 bool Uses(const InterfaceOptions& options, stream::DeviceRole role);
 
+/// Bits (stream::RoleBit) of the roles that the interface needs and that are not among `present`.
+std::uint32_t MissingRoles(const InterfaceOptions& options, std::uint32_t present);
+
 /// One of the interfaces. A plain value.
 class AnyInterface {
  public:

@@ -80,6 +80,29 @@ TEST(Interfaces, WithoutItsControllersTheCharacterStopsTurningAndRests) {
   EXPECT_NEAR(engine.Output().gait.speed_mps, 0, 0.1);
 }
 
+TEST(Interfaces, AnotherOneTakesOverWhenItsNumberIsNewAndBeginsAtRest) {
+  GaitEngine engine = NewEngineOf(UserInterface::kJoystick);
+  EngineInputs inputs;
+  inputs.features.stick = {.present = true, .y = 0.5};
+  Feed(engine, inputs, 3);
+  ASSERT_EQ(engine.Output().gait.gait, Gait::kWalk);
+  inputs.interface = {.number = 1, .options = {.interface = UserInterface::kWrist}};
+  inputs.interface.made = mapping::AnyInterface::Create(inputs.interface.options,
+                                                        test::DataFile(mapping::kWristMappingFile))
+                              .value();
+  Feed(engine, inputs, 0.01);
+  EXPECT_EQ(engine.Output().interface.interface, UserInterface::kWrist);
+  EXPECT_EQ(engine.Output().interface.activity, stream::Activity::kAbsent);
+  EXPECT_EQ(engine.Output().gait.commanded_gait, Gait::kStep);
+  // The same number again changes nothing: the hands' gait goes on.
+  mapping::LimbFeatures hand{
+      .present = true, .moving = true, .frequency_valid = true, .frequency_hz = 1.3};
+  inputs.features.hands = {.left = hand, .right = hand, .phase_valid = true, .phase_rad = M_PI};
+  Feed(engine, inputs, 3);
+  EXPECT_EQ(engine.Output().gait.commanded_gait, Gait::kWalk);
+  EXPECT_EQ(engine.Output().gait.falls, 0u);
+}
+
 TEST(Interfaces, SavingAndRestoringRepeatsBitForBit) {
   for (const UserInterface interface : {UserInterface::kLeg, UserInterface::kBoards}) {
     GaitEngine engine = NewEngineOf(interface);

@@ -66,16 +66,24 @@ TEST(AppliedInput, WhatIsNotThereTakesNoSpace) {
 }
 
 TEST(AppliedInput, NamesItsInterface) {
-  const mapping::InterfaceOptions options{.interface = stream::UserInterface::kBoards,
-                                          .leg = {.turn_by = stream::TurnSource::kFeet},
-                                          .boards_may_be_left = true};
-  v1::AppliedInput message;
-  EXPECT_EQ(InterfaceOf(message).interface, stream::UserInterface::kWrist) << "of an old recording";
-  SetInterface(options, message);
-  const mapping::InterfaceOptions back = InterfaceOf(message);
-  EXPECT_EQ(back.interface, options.interface);
-  EXPECT_EQ(back.leg.turn_by, options.leg.turn_by);
-  EXPECT_TRUE(back.boards_may_be_left);
+  Applied applied;
+  engine::InterfaceInputs& sent = applied.inputs.engine.interface;
+  sent.number = 3;
+  sent.options = {.interface = stream::UserInterface::kBoards,
+                  .leg = {.turn_by = stream::TurnSource::kFeet},
+                  .boards_may_be_left = true};
+  const engine::InterfaceInputs back =
+      FromAppliedInput(ToAppliedInput(applied)).inputs.engine.interface;
+  EXPECT_EQ(back.number, 3u);
+  EXPECT_EQ(back.options.interface, stream::UserInterface::kBoards);
+  EXPECT_EQ(back.options.leg.turn_by, stream::TurnSource::kFeet);
+  EXPECT_TRUE(back.options.boards_may_be_left);
+}
+
+TEST(AppliedInput, OfAnOldRecordingIsOfTheWrists) {
+  const engine::InterfaceInputs old = FromAppliedInput({}).inputs.engine.interface;
+  EXPECT_EQ(old.options.interface, stream::UserInterface::kWrist);
+  EXPECT_EQ(old.options.leg.turn_by, stream::TurnSource::kHead);
 }
 
 }  // namespace

@@ -156,5 +156,55 @@ TEST(InputCollector, ARestartedServerMayHaveAnotherRig) {
   EXPECT_EQ(collector.rig(), "other");
 }
 
+TEST(InputCollector, GoesOverToAnInterfaceOfWhichARigHasTheRoles) {
+  InputCollector collector("", {.interface = UserInterface::kJoystick});
+  v1::Tick tick = StickTick();
+  AddDevice(tick, 5, "boards", v1::DEVICE_ROLE_LEFT_BOARD);
+  AddDevice(tick, 6, "boards", v1::DEVICE_ROLE_RIGHT_BOARD);
+  AddStick(tick, 3, 0.3, 0.7);
+  ASSERT_TRUE(collector.Take(tick, kMs));
+  ASSERT_TRUE(collector.Use({.interface = UserInterface::kBoards}).ok());
+  EXPECT_EQ(collector.rig(), "boards");
+  EXPECT_EQ(collector.inputs(), mapping::Inputs{}) << "nothing of the stick is left";
+  v1::Tick next;
+  AddStick(next, 3, 1, 1);
+  AddBoard(next, 5, 100, 0);
+  ASSERT_TRUE(collector.Take(next, 2 * kMs));
+  EXPECT_TRUE(collector.inputs().left_board.present);
+  EXPECT_FALSE(collector.inputs().stick.present);
+}
+
+TEST(InputCollector, StaysAndNamesWhatIsMissingWhereNoRigFits) {
+  InputCollector collector("", {.interface = UserInterface::kJoystick});
+  EXPECT_NE(collector.Use({.interface = UserInterface::kWrist}).error().message.find("left_hand"),
+            std::string::npos);
+  v1::Tick tick = StickTick();
+  AddDevice(tick, 5, "main", v1::DEVICE_ROLE_LEFT_HAND);
+  tick.mutable_status()->mutable_devices(2)->set_state(v1::DEVICE_STATE_LOST);
+  AddStick(tick, 3, 0.3, 0.7);
+  ASSERT_TRUE(collector.Take(tick, kMs));
+  const auto refused = collector.Use({.interface = UserInterface::kArm});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message,
+            "the rig main lacks left_hand; connect the devices, or give them these roles "
+            "(footing-ctl assign)");
+  EXPECT_EQ(collector.options().interface, UserInterface::kJoystick);
+  EXPECT_TRUE(collector.inputs().stick.present);
+  tick.mutable_status()->mutable_devices(2)->set_state(v1::DEVICE_STATE_LIVE);
+  ASSERT_TRUE(collector.Take(tick, 2 * kMs));
+  EXPECT_TRUE(collector.Use({.interface = UserInterface::kArm}).ok());
+}
+
+TEST(InputCollector, AnInterfaceStaysOnTheRigThatWasNamed) {
+  InputCollector collector("main", {.interface = UserInterface::kJoystick});
+  v1::Tick tick = StickTick();
+  AddDevice(tick, 5, "boards", v1::DEVICE_ROLE_LEFT_BOARD);
+  AddDevice(tick, 6, "boards", v1::DEVICE_ROLE_RIGHT_BOARD);
+  AddStick(tick, 3, 0.3, 0.7);
+  ASSERT_TRUE(collector.Take(tick, kMs));
+  EXPECT_FALSE(collector.Use({.interface = UserInterface::kBoards}).ok());
+  EXPECT_EQ(collector.rig(), "main");
+}
+
 }  // namespace
 }  // namespace footing::gait_service

@@ -184,6 +184,32 @@ TEST(TrialControl, StopsTheTrialThatIsNamedOrWhicheverGoesOn) {
   EXPECT_EQ(marks[2].trial().trial(), "t2");
 }
 
+TEST(TrialControl, KnowsWhetherATrialGoesOn) {
+  Line line("straight");
+  line.Run(1);
+  EXPECT_TRUE(line.control().CheckNoneGoesOn().ok()) << "the server's first one waits";
+  ASSERT_TRUE(line.Start("t1", "").ok());
+  EXPECT_FALSE(line.control().CheckNoneGoesOn().ok()) << "on its way";
+  line.Run(3);
+  const auto ready = line.control().CheckNoneGoesOn();
+  ASSERT_FALSE(ready.ok());
+  EXPECT_THAT(ready.error().message, HasSubstr("a trial (t1) goes on"));
+  ASSERT_TRUE(line.Stop("t1").ok());
+  EXPECT_TRUE(line.control().CheckNoneGoesOn().ok());
+  line.Run(3);
+  EXPECT_TRUE(line.control().CheckNoneGoesOn().ok());
+}
+
+TEST(TrialControl, TheFirstTrialGoesOnFromItsStartLine) {
+  Line line("straight");
+  line.inputs().direct = true;
+  line.inputs().direct_command = {stream::Gait::kRun, 3, 0, 0};
+  for (int i = 0; i < 100 && line.Run(5).trial().phase() == v1::TrialState::PHASE_READY; ++i) {
+  }
+  ASSERT_EQ(line.Run(1).trial().phase(), v1::TrialState::PHASE_RUNNING);
+  EXPECT_THAT(line.control().CheckNoneGoesOn().error().message, HasSubstr("a trial goes on"));
+}
+
 TEST(TrialControl, AFailureIsPublishedWithItsTrialPlaceAndNumber) {
   Line line("1");
   ASSERT_TRUE(line.Start("t1", "1").ok());

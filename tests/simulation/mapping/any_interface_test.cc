@@ -36,6 +36,28 @@ TEST(AnyInterface, ATableOfAnotherInterfaceIsRefused) {
   EXPECT_FALSE(AnyInterface::Create({.interface = UserInterface::kWrist}, table).ok());
 }
 
+TEST(AnyInterface, SaysWhichRolesItLacks) {
+  using stream::DeviceRole;
+  using stream::RoleBit;
+  const std::uint32_t hands = RoleBit(DeviceRole::kLeftHand) | RoleBit(DeviceRole::kRightHand);
+  const std::uint32_t legs = RoleBit(DeviceRole::kLeftLeg) | RoleBit(DeviceRole::kRightLeg);
+  const std::uint32_t head = RoleBit(DeviceRole::kHead), trunk = RoleBit(DeviceRole::kTrunk);
+  EXPECT_EQ(MissingRoles({.interface = UserInterface::kWrist}, hands), 0u);
+  EXPECT_EQ(MissingRoles({.interface = UserInterface::kArm}, RoleBit(DeviceRole::kLeftHand)),
+            RoleBit(DeviceRole::kRightHand));
+  EXPECT_EQ(MissingRoles({.interface = UserInterface::kJoystick}, RoleBit(DeviceRole::kLeftHand)),
+            0u);
+  EXPECT_EQ(MissingRoles({.interface = UserInterface::kJoystick}, legs), hands);
+  EXPECT_EQ(MissingRoles({.interface = UserInterface::kBoards}, hands | legs),
+            RoleBit(DeviceRole::kLeftBoard) | RoleBit(DeviceRole::kRightBoard));
+  InterfaceOptions leg{.interface = UserInterface::kLeg};
+  EXPECT_EQ(MissingRoles(leg, legs | trunk), head);
+  leg.leg.turn_by = stream::TurnSource::kTrunk;
+  EXPECT_EQ(MissingRoles(leg, legs | trunk), 0u);
+  leg.leg.turn_by = stream::TurnSource::kFeet;
+  EXPECT_EQ(MissingRoles(leg, legs), 0u);
+}
+
 TEST(AnyInterface, UsesTheRolesOfItsLimbs) {
   using stream::DeviceRole;
   EXPECT_TRUE(Uses({.interface = UserInterface::kArm}, DeviceRole::kLeftHand));

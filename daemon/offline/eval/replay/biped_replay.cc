@@ -5,6 +5,7 @@
 #include "common/wire/wire.h"
 #include "daemon/offline/eval/replay/replay.h"
 #include "daemon/simulation/engine/track_world.h"
+#include "daemon/simulation/engine_files/engine_files.h"
 #include "daemon/simulation/gait_service/applied_input.h"
 
 namespace footing::eval {
@@ -49,6 +50,7 @@ class BipedRerun {
     if (found != recording_.inputs.end()) {
       current_ = found->second;
       if (const auto done = UseTrack(current_.trial.track_number); !done) return done;
+      if (const auto done = UseInterface(current_.interface); !done) return done;
     }
     engine_.Advance(current_);
     return {};
@@ -69,10 +71,20 @@ class BipedRerun {
     return {};
   }
 
+  Result<void> UseInterface(engine::InterfaceInputs& wanted) {
+    if (wanted.number == interface_number_) return {};
+    interface_number_ = wanted.number;
+    const auto made = engine_files::ReadInterface(wanted.options);
+    if (!made) return made.error();
+    wanted.made = *made;
+    return {};
+  }
+
   const BipedRecording& recording_;
   const biped::BipedParameters biped_;
   engine::GaitEngine engine_;
   engine::EngineInputs current_;
+  std::uint64_t interface_number_ = 0;
 };
 
 Result<engine::GaitEngine> FirstEngine(const BipedRecording& recording,

@@ -20,10 +20,11 @@ struct Options {
   std::string data_folder;
 };
 
-/// The interface that the recorded inputs name.
+/// The interface that the first recorded inputs name.
 mapping::InterfaceOptions InterfaceOf(const std::vector<v1::Tick>& ticks) {
   for (const v1::Tick& tick : ticks) {
-    if (tick.inputs().inputs_size() > 0) return gait_service::InterfaceOf(tick.inputs().inputs(0));
+    if (tick.inputs().inputs_size() == 0) continue;
+    return gait_service::FromAppliedInput(tick.inputs().inputs(0)).inputs.engine.interface.options;
   }
   return {};
 }

@@ -1,0 +1,66 @@
+#include <memory>
+#include <utility>
+
+#include "clients/ctl/commands.h"
+#include "common/cli/cli.h"
+#include "common/stream/user_interface.h"
+
+namespace footing::ctl {
+namespace {
+
+struct InterfaceOptions {
+  std::string name, turn_by;
+};
+
+Result<v1::Command> CommandOf(const InterfaceOptions& options) {
+  const stream::UserInterface interface = stream::UserInterfaceNamed(options.name);
+  if (interface == stream::UserInterface::kUnspecified) {
+    return UsageError("unknown interface " + options.name +
+                      "; there are: " + stream::UserInterfaceNames());
+  }
+  v1::Command command;
+  v1::SetInterface& set = *command.mutable_set_interface();
+  set.set_character(1);
+  set.set_interface(static_cast<v1::UserInterface>(interface));
+  if (options.turn_by.empty()) return command;
+  for (const auto source :
+       {stream::TurnSource::kHead, stream::TurnSource::kFeet, stream::TurnSource::kTrunk}) {
+    if (options.turn_by == stream::Name(source)) {
+      set.set_turn_by(static_cast<v1::TurnSource>(source));
+      return command;
+    }
+  }
+  return UsageError("unknown --turn-by " + options.turn_by + "; there are: head, feet, trunk");
+}
+
+Result<void> ChangeInterface(const InterfaceOptions& options, const Shared& shared) {
+  auto command = CommandOf(options);
+  if (!command) return command.error();
+  const auto sent = SendToSimulation(shared, std::move(command).value(), "footing-sim");
+  if (!sent) return sent;
+  Print({{"interface", options.name}}, "the interface is " + options.name, shared);
+  return {};
+}
+
+}  // namespace
+
+void AddInterfaceCommand(CLI::App& app, Shared& shared) {
+  const auto options = std::make_shared<InterfaceOptions>();
+  CLI::App* command = app.add_subcommand("interface", "Change the user interface between trials");
+  command->add_option("NAME", options->name, "Interface: " + stream::UserInterfaceNames())
+      ->required();
+  command->add_option(
+      "--turn-by", options->turn_by,
+      "What turns with the interface leg: head, feet or trunk (default: as before)");
+  command->footer(
+      "Examples (connect to footing-sim):\n"
+      "  footing-ctl interface arm\n"
+      "  footing-ctl interface leg --turn-by trunk");
+  command->callback([options, &shared] {
+    if (const auto done = ChangeInterface(*options, shared); !done) {
+      shared.exit_code = cli::Report(done.error());
+    }
+  });
+}
+
+}  // namespace footing::ctl
