@@ -1,5 +1,6 @@
 #include "daemon/sensor/features/phase.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

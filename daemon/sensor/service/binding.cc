@@ -11,7 +11,7 @@ using stream::DeviceRole;
 
 constexpr std::size_t kMaxRigBytes = 64;
 
-constexpr DeviceRole kWornRoles[] = {DeviceRole::kLeftHand, DeviceRole::kRightHand,
+constexpr DeviceRole kBodyRoles[] = {DeviceRole::kLeftHand, DeviceRole::kRightHand,
                                      DeviceRole::kLeftLeg,  DeviceRole::kRightLeg,
                                      DeviceRole::kHead,     DeviceRole::kTrunk};
 constexpr DeviceRole kBoardRoles[] = {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
@@ -19,7 +19,7 @@ constexpr DeviceRole kBoardRoles[] = {DeviceRole::kLeftBoard, DeviceRole::kRight
 std::span<const DeviceRole> RolesOf(Placement placement) {
   switch (placement) {
     case Placement::kOnBody:
-      return kWornRoles;
+      return kBodyRoles;
     case Placement::kUnderFeet:
       return kBoardRoles;
     case Placement::kInBothHands:

@@ -18,9 +18,9 @@ void GaitRun::UseTrackOnSimThread(std::uint64_t number, Frame& frame) {
 
 void GaitRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
   // One input adds at most kMaxAppends segments, of which each has its place in the frame.
-  const bool room =
+  const bool fits =
       frame.applied_count < kMaxApplied && frame.added_count + engine::kMaxAppends <= kMaxAdded;
-  if (room && inputs.Refresh()) {
+  if (fits && inputs.Refresh()) {
     Applied& applied = frame.applied[static_cast<std::size_t>(frame.applied_count++)];
     applied.step = engine_.Output().step + 1;
     applied.inputs = inputs.Front();
