@@ -15,7 +15,7 @@ void AddIf(Strip& strip, bool valid, std::int64_t time_ns, double value) {
   if (valid) {
     strip.Add(time_ns, value);
   } else {
-    strip.Break();
+    strip.Break(time_ns);
   }
 }
 
@@ -40,13 +40,21 @@ void AddFeatures(const stream::DeviceFeatures& features, std::int64_t time_ns,
 }  // namespace
 
 void Strip::Add(std::int64_t time_ns, double value) {
-  if (!std::isfinite(value)) return Break();
+  if (!std::isfinite(value)) return Break(time_ns);
   const bool late = !points_.empty() && time_ns - points_.back().time_ns > kLineBreakNs;
   points_.push_back({time_ns, static_cast<float>(value), !broken_ && !late});
   broken_ = false;
-  while (points_.size() > kMaxPoints || points_.front().time_ns < time_ns - kStripNs) {
-    points_.pop_front();
-  }
+  if (points_.size() > kMaxPoints) points_.pop_front();
+  DropBefore(time_ns - kStripNs);
+}
+
+void Strip::Break(std::int64_t time_ns) {
+  broken_ = true;
+  DropBefore(time_ns - kStripNs);
+}
+
+void Strip::DropBefore(std::int64_t time_ns) {
+  while (!points_.empty() && points_.front().time_ns < time_ns) points_.pop_front();
 }
 
 std::int64_t ShownTime(std::int64_t newest_ns, std::int64_t now_ns) {

@@ -30,11 +30,13 @@ class Strip {
 
   /// A value that is not finite is left out. Points come in the order of time.
   void Add(std::int64_t time_ns, double value);
-  /// The value is unknown from here on: the next point starts a new line.
-  void Break() { broken_ = true; }
+  /// The value is unknown at `time_ns`: the next point starts a new line.
+  void Break(std::int64_t time_ns);
   const std::deque<Point>& points() const { return points_; }
 
  private:
+  void DropBefore(std::int64_t time_ns);
+
   std::deque<Point> points_;
   bool broken_ = true;
 };

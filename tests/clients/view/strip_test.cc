@@ -21,7 +21,7 @@ TEST(Strip, KeepsTenSecondsAndNoMore) {
 TEST(Strip, WhatIsNotKnownLeavesAGapAndNoZero) {
   Strip strip;
   strip.Add(0, 1);
-  strip.Break();
+  strip.Break(10 * kStripMs);
   strip.Add(20 * kStripMs, 2);
   strip.Add(30 * kStripMs, std::numeric_limits<double>::quiet_NaN());
   strip.Add(40 * kStripMs, 3);
@@ -30,6 +30,16 @@ TEST(Strip, WhatIsNotKnownLeavesAGapAndNoZero) {
   EXPECT_FALSE(strip.points()[1].joined);
   EXPECT_FALSE(strip.points()[2].joined);
   EXPECT_TRUE(strip.points()[3].joined);
+}
+
+TEST(Strip, WhatHasLeftTheStripGoesAlsoWhileNothingIsKnown) {
+  Strip strip;
+  strip.Add(0, 1);
+  strip.Add(1000 * kStripMs, 2);
+  strip.Break(kStripNs + 500 * kStripMs);
+  ASSERT_EQ(strip.points().size(), 1u);
+  strip.Break(kStripNs + 1500 * kStripMs);
+  EXPECT_TRUE(strip.points().empty());
 }
 
 TEST(StripSet, AStreamOfManyDevicesStaysBounded) {
