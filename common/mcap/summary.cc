@@ -4,6 +4,7 @@
 
 #include "common/mcap/crc.h"
 #include "common/mcap/decode.h"
+#include "common/mcap/seek.h"
 
 namespace footing::mcap {
 namespace {
@@ -52,7 +53,7 @@ bool Take(std::uint8_t opcode, std::string_view body, Summary& summary) {
 
 }  // namespace
 
-Result<Summary> ReadSummary(std::string_view file) {
+Result<Summary> ReadSummary(std::string_view file, std::uint64_t most_bytes) {
   const std::size_t tail = kFooterBytes + kMagic.size();
   if (file.size() < kMagic.size() + tail || file.substr(0, kMagic.size()) != kMagic) {
     return At(0, "this is not a complete MCAP file");
@@ -67,6 +68,10 @@ Result<Summary> ReadSummary(std::string_view file) {
     return At(footer_offset, "the footer names no summary");
   }
   const std::uint64_t start = footer->summary_start;
+  if (footer_offset - start > most_bytes) {
+    return At(start, "an index of " + std::to_string(footer_offset - start) + " bytes; at most " +
+                         std::to_string(most_bytes) + " are read");
+  }
   const std::uint64_t covered = footer_offset + kRecordHeadBytes + 16 - start;
   if (footer->summary_crc != 0 && footer->summary_crc != Crc32(0, file.substr(start, covered))) {
     return At(start, "the CRC of the summary is wrong");
@@ -90,23 +95,10 @@ Result<void> VisitMessages(std::string_view file, const Summary& summary, std::u
                            const std::function<void(const Message&)>& handler) {
   for (const ChunkIndex& index : summary.chunks) {
     if (index.end_time_ns < start_ns || index.start_time_ns >= end_ns) continue;
-    const auto body = Body(file, index.chunk_offset, Opcode::kChunk);
-    const std::optional<Chunk> chunk = body ? DecodeChunk(*body) : std::nullopt;
-    if (!chunk || !chunk->compression.empty() ||
-        (chunk->uncompressed_crc != 0 && chunk->uncompressed_crc != Crc32(0, chunk->records))) {
-      return At(index.chunk_offset, "a damaged chunk, or a compressed one");
-    }
-    for (std::uint64_t offset = 0; offset < chunk->records.size();) {
-      Cursor head(chunk->records.substr(offset));
-      const std::uint8_t opcode = head.U8();
-      const std::string_view record = head.Take(head.U64());
-      if (!head.ok()) return At(index.chunk_offset, "a chunk with a damaged record");
-      offset += kRecordHeadBytes + record.size();
-      if (opcode != static_cast<std::uint8_t>(Opcode::kMessage)) continue;
-      const std::optional<Message> message = DecodeMessage(record);
-      if (!message) return At(index.chunk_offset, "a chunk with a damaged message");
-      if (message->log_time_ns >= start_ns && message->log_time_ns < end_ns) handler(*message);
-    }
+    const Result<void> visited = VisitChunk(file, index, [&](const Message& message) {
+      if (message.log_time_ns >= start_ns && message.log_time_ns < end_ns) handler(message);
+    });
+    if (!visited) return visited;
   }
   return {};
 }

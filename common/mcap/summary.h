@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <vector>
@@ -22,8 +23,9 @@ struct Summary {
 };
 
 /// Reads the index through the footer. InvalidData with the byte offset when the file is cut short,
-/// has none, or it is damaged.
-Result<Summary> ReadSummary(std::string_view file);
+/// has none, or it is damaged or longer than `most_bytes`.
+Result<Summary> ReadSummary(std::string_view file,
+                            std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 /// Visits the messages with start_ns <= log time < end_ns through the index, chunk after chunk in
 /// the order of the file. InvalidData with the byte offset at the first damaged chunk.

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "common/mcap/summary.h"
+
+/// Reading a file from any place. What is not read is not touched.
+namespace footing::mcap {
+
+/// Visits the messages of one chunk, in its order. InvalidData with the byte offset when it is
+/// damaged or compressed.
+Result<void> VisitChunk(std::string_view file, const ChunkIndex& index,
+                        const std::function<void(const Message&)>& handler);
+
+/// Visits the messages of one channel of one chunk, found through the chunk's message index; the
+/// chunk's CRC is not checked then. Where the file has no such index, the whole chunk is read.
+Result<void> VisitChannel(std::string_view file, const ChunkIndex& index, std::uint16_t channel,
+                          const std::function<void(const Message&)>& handler);
+
+/// The index of a file that has none.
+struct RebuiltIndex {
+  Summary summary;               ///< Of `chunks`, each with its channels; their offsets are 0.
+  std::uint64_t end_offset = 0;  ///< Behind the last complete record.
+  std::string problem;           ///< Why the file ends there, or what was left out; empty: nothing.
+};
+
+/// Reads every record's head, from the file's start to its end or to the first record that is cut.
+/// Damaged chunks and messages outside chunks are left out. InvalidData when the file is not MCAP,
+/// or has more than `most_chunks` chunks.
+Result<RebuiltIndex> RebuildIndex(std::string_view file, std::size_t most_chunks);
+
+}  // namespace footing::mcap
