@@ -1,0 +1,273 @@
+#include "common/playback/seekable_recording.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/mcap/decode.h"
+#include "common/mcap/seek.h"
+#include "common/text/number.h"
+
+namespace footing::playback {
+namespace {
+
+namespace pb = google::protobuf;
+
+/// Of one file, 36 hours: what is kept of them takes some 90 MB.
+constexpr std::size_t kMostChunks = 131'072;
+constexpr std::uint64_t kMostIndexBytes = 64ull << 20;
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+std::string TextOf(const mcap::TextMap& values, const std::string& key) {
+  const auto found = values.find(key);
+  return found == values.end() ? "" : found->second;
+}
+
+/// A whole number, 0 where there is none.
+std::int64_t WholeOf(const mcap::TextMap& values, const std::string& key) {
+  const std::string word = TextOf(values, key);
+  const bool negative = !word.empty() && word[0] == '-';
+  const auto count = text::ToCount(std::string_view(word).substr(negative ? 1 : 0));
+  if (!count || *count > static_cast<std::size_t>(kNever)) return 0;
+  return (negative ? -1 : 1) * static_cast<std::int64_t>(*count);
+}
+
+/// Parses the message into its field of the tick; false when it makes no sense.
+bool Parse(std::uint32_t field, std::string_view bytes, v1::Tick& tick) {
+  const pb::FieldDescriptor* descriptor =
+      v1::Tick::descriptor()->FindFieldByNumber(static_cast<int>(field));
+  pb::Message* message = tick.GetReflection()->MutableMessage(&tick, descriptor);
+  return message->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
+}
+
+}  // namespace
+
+Result<SeekableRecording> SeekableRecording::Open(const std::string& path,
+                                                  const std::vector<std::string>& names,
+                                                  const std::set<std::string>& channels) {
+  Result<recording::MappedFile> file = recording::MappedFile::Open(path);
+  if (!file) return file.error();
+  SeekableRecording opened(path, std::move(*file));
+  for (const std::string& name : names) opened.servers_.push_back({name, 0, {}, {}});
+  if (const Result<void> read = opened.ReadIndex(); !read) {
+    return InvalidData(path + ": " + read.error().message);
+  }
+  opened.PlaceChannels(channels);
+  opened.ReadMetadata();
+  opened.FindEnds();
+  if (opened.first_ns_ > opened.last_ns_) {
+    std::string of;
+    for (const std::string& name : names) of += (of.empty() ? "" : " or ") + name;
+    const std::string limits = opened.Limits();
+    return InvalidData(path + " holds no ticks of " + of + (limits.empty() ? "" : "; " + limits));
+  }
+  return opened;
+}
+
+Result<void> SeekableRecording::ReadIndex() {
+  Result<mcap::Summary> summary = mcap::ReadSummary(file_.bytes(), kMostIndexBytes);
+  if (summary && summary->chunks.size() <= kMostChunks &&
+      (!summary->chunks.empty() || summary->statistics.message_count == 0)) {
+    summary_ = std::move(*summary);
+    return {};
+  }
+  Result<mcap::RebuiltIndex> rebuilt = mcap::RebuildIndex(file_.bytes(), kMostChunks);
+  if (!rebuilt) return rebuilt.error();
+  summary_ = std::move(rebuilt->summary);
+  problem_ = rebuilt->problem.empty() ? "it has no index" : rebuilt->problem;
+  return {};
+}
+
+void SeekableRecording::PlaceChannels(const std::set<std::string>& channels) {
+  for (const auto& [id, channel] : summary_.channels) {
+    const std::size_t slash = channel.topic.rfind('/');
+    if (slash == std::string::npos || slash == 0 || channel.topic[0] != '/') continue;
+    const std::string name = channel.topic.substr(slash + 1);
+    const pb::FieldDescriptor* field = v1::Tick::descriptor()->FindFieldByName(name);
+    if (field == nullptr || field->message_type() == nullptr || channels.count(name) == 0) continue;
+    for (std::size_t i = 0; i < servers_.size(); ++i) {
+      if (servers_[i].name != channel.topic.substr(1, slash - 1)) continue;
+      channels_[id] = {i, static_cast<std::uint32_t>(field->number())};
+      servers_[i].channels[name] = id;
+    }
+  }
+}
+
+void SeekableRecording::ReadMetadata() {
+  for (const mcap::MetadataIndex& index : summary_.metadata) {
+    if (index.name != "session" && index.name != "clock") continue;
+    if (index.offset > file_.bytes().size()) continue;
+    mcap::Cursor head(file_.bytes().substr(index.offset));
+    const auto opcode = static_cast<mcap::Opcode>(head.U8());
+    const std::string_view body = head.Take(head.U64());
+    if (!head.ok() || opcode != mcap::Opcode::kMetadata) continue;
+    if (const auto metadata = mcap::DecodeMetadata(body)) TakeMetadata(*metadata);
+  }
+}
+
+void SeekableRecording::TakeMetadata(const mcap::Metadata& metadata) {
+  const std::string name = TextOf(metadata.values, "server");
+  const auto server = std::find_if(servers_.begin(), servers_.end(),
+                                   [&name](const ServerPlace& one) { return one.name == name; });
+  if (server == servers_.end()) return;
+  if (metadata.name == "clock") {
+    // On one host both read the same clock: an estimate could only add its own error.
+    const bool same_host = TextOf(metadata.values, "address").rfind("unix:", 0) == 0;
+    const bool valid = TextOf(metadata.values, "valid") == "true";
+    if (valid && !same_host) {
+      server->offset_ns = WholeOf(metadata.values, "server_minus_recorder_ns");
+    }
+    return;
+  }
+  const std::int64_t server_ns = WholeOf(metadata.values, "server_host_ns");
+  const std::int64_t recorder_ns = WholeOf(metadata.values, "recorder_host_ns");
+  const std::int64_t wall_ns = WholeOf(metadata.values, "server_wall_time_ns");
+  server->welcomes.push_back({server_ns, recorder_ns});
+  if (!wall_minus_clock_ns_ && wall_ns != 0) wall_minus_clock_ns_ = wall_ns - recorder_ns;
+}
+
+void SeekableRecording::FindEnds() {
+  first_ns_ = kNever;
+  last_ns_ = std::numeric_limits<std::int64_t>::min();
+  const auto take = [this](const mcap::Message& message) {
+    first_ns_ = std::min(first_ns_, TimeOf(message));
+    last_ns_ = std::max(last_ns_, TimeOf(message));
+  };
+  const auto& chunks = summary_.chunks;
+  for (const auto& [id, place] : channels_) {
+    const auto has = [id = id](const mcap::ChunkIndex& chunk) {
+      return chunk.message_index_offsets.count(id) > 0;
+    };
+    const auto first = std::find_if(chunks.begin(), chunks.end(), has);
+    if (first == chunks.end()) continue;
+    ReadChannel(*first, id, take);
+    ReadChannel(*std::find_if(chunks.rbegin(), chunks.rend(), has), id, take);
+  }
+}
+
+std::string SeekableRecording::Limits() const {
+  std::string limits = problem_;
+  if (!damaged_chunks_.empty()) {
+    limits += (limits.empty() ? "" : ", ") + std::to_string(damaged_chunks_.size()) +
+              " damaged chunks are left out";
+  }
+  if (limits.empty()) return "";
+  return "the recording is not whole: " + limits + "; repair it with: footing-log repair " + path_ +
+         " --out FILE";
+}
+
+std::int64_t SeekableRecording::TimeOf(const mcap::Message& message) const {
+  const ServerPlace& server = servers_[channels_.at(message.channel_id).server];
+  return static_cast<std::int64_t>(message.log_time_ns) - server.offset_ns;
+}
+
+PlacedTick SeekableRecording::Place(const mcap::Message& message) const {
+  PlacedTick placed;
+  placed.server = channels_.at(message.channel_id).server;
+  const ServerPlace& server = servers_[placed.server];
+  const auto host_ns = static_cast<std::int64_t>(message.log_time_ns);
+  const auto recorded_ns = static_cast<std::int64_t>(message.publish_time_ns);
+  placed.offset_ns = server.offset_ns;
+  placed.time_ns = host_ns - server.offset_ns;
+  placed.live =
+      std::none_of(server.welcomes.begin(), server.welcomes.end(), [&](const Welcome& welcome) {
+        return host_ns < welcome.server_ns && recorded_ns >= welcome.recorder_ns;
+      });
+  if (placed.live) placed.delay_ns = std::max<std::int64_t>(0, recorded_ns - placed.time_ns);
+  placed.tick.set_host_ns(host_ns);
+  placed.tick.set_sequence(message.sequence);
+  return placed;
+}
+
+void SeekableRecording::ReadChannel(const mcap::ChunkIndex& chunk, std::uint16_t channel,
+                                    const std::function<void(const mcap::Message&)>& handler) {
+  if (!mcap::VisitChannel(file_.bytes(), chunk, channel, handler)) {
+    damaged_chunks_.insert(chunk.chunk_offset);
+  }
+}
+
+std::vector<PlacedTick> SeekableRecording::Ticks(std::int64_t from_ns, std::int64_t to_ns) {
+  std::vector<PlacedTick> ticks;
+  std::map<std::pair<std::int64_t, std::pair<std::size_t, std::uint64_t>>, std::size_t> places;
+  const auto take = [&](const mcap::Message& message) {
+    const auto channel = channels_.find(message.channel_id);
+    if (channel == channels_.end()) return;
+    const std::int64_t time_ns = TimeOf(message);
+    if (time_ns < from_ns || time_ns >= to_ns) return;
+    const auto [place, fresh] = places.emplace(
+        std::pair{time_ns, std::pair{channel->second.server, message.sequence}}, ticks.size());
+    if (fresh) ticks.push_back(Place(message));
+    v1::Tick& tick = ticks[place->second].tick;
+    const pb::FieldDescriptor* field =
+        v1::Tick::descriptor()->FindFieldByNumber(static_cast<int>(channel->second.field));
+    // What a resume sends again is here already.
+    if (tick.GetReflection()->HasField(tick, field)) return;
+    if (!Parse(channel->second.field, message.data, tick)) {
+      tick.GetReflection()->ClearField(&tick, field);
+    }
+  };
+  for (const mcap::ChunkIndex& chunk : summary_.chunks) {
+    const bool meets = std::any_of(servers_.begin(), servers_.end(), [&](const auto& server) {
+      return static_cast<std::int64_t>(chunk.end_time_ns) - server.offset_ns >= from_ns &&
+             static_cast<std::int64_t>(chunk.start_time_ns) - server.offset_ns < to_ns;
+    });
+    if (!meets || damaged_chunks_.count(chunk.chunk_offset) > 0) continue;
+    if (!mcap::VisitChunk(file_.bytes(), chunk, take)) damaged_chunks_.insert(chunk.chunk_offset);
+  }
+  std::stable_sort(ticks.begin(), ticks.end(),
+                   [](const PlacedTick& a, const PlacedTick& b) { return a.time_ns < b.time_ns; });
+  return ticks;
+}
+
+std::optional<PlacedTick> SeekableRecording::LastOf(std::size_t server, const std::string& channel,
+                                                    std::int64_t at_ns, bool or_next) {
+  const auto id = servers_[server].channels.find(channel);
+  if (id == servers_[server].channels.end()) return std::nullopt;
+  std::optional<mcap::Message> last, next;
+  const auto time_of = [this](const std::optional<mcap::Message>& message) {
+    return message ? TimeOf(*message) : kNever;
+  };
+  const auto take = [&](const mcap::Message& message) {
+    const std::int64_t time_ns = TimeOf(message);
+    if (time_ns <= at_ns && (!last || time_ns > time_of(last))) last = message;
+    if (time_ns > at_ns && time_ns < time_of(next)) next = message;
+  };
+  const std::int64_t offset_ns = servers_[server].offset_ns;
+  for (auto chunk = summary_.chunks.rbegin(); chunk != summary_.chunks.rend(); ++chunk) {
+    if (chunk->message_index_offsets.count(id->second) == 0) continue;
+    const std::int64_t start_ns = static_cast<std::int64_t>(chunk->start_time_ns) - offset_ns;
+    const std::int64_t end_ns = static_cast<std::int64_t>(chunk->end_time_ns) - offset_ns;
+    if (start_ns <= at_ns && (!last || end_ns > time_of(last))) {
+      ReadChannel(*chunk, id->second, take);
+    }
+  }
+  for (auto chunk = summary_.chunks.begin(); or_next && !last && chunk != summary_.chunks.end();
+       ++chunk) {
+    if (chunk->message_index_offsets.count(id->second) == 0) continue;
+    const std::int64_t start_ns = static_cast<std::int64_t>(chunk->start_time_ns) - offset_ns;
+    if (start_ns < time_of(next)) ReadChannel(*chunk, id->second, take);
+  }
+  const std::optional<mcap::Message>& found = last ? last : next;
+  if (!found || (!last && !or_next)) return std::nullopt;
+  PlacedTick placed = Place(*found);
+  if (!Parse(channels_.at(id->second).field, found->data, placed.tick)) return std::nullopt;
+  return placed;
+}
+
+void SeekableRecording::Visit(std::size_t server, const std::string& channel,
+                              const std::function<void(const PlacedTick&)>& handler) {
+  const auto id = servers_[server].channels.find(channel);
+  if (id == servers_[server].channels.end()) return;
+  for (const mcap::ChunkIndex& chunk : summary_.chunks) {
+    if (chunk.message_index_offsets.count(id->second) == 0) continue;
+    ReadChannel(chunk, id->second, [&](const mcap::Message& message) {
+      PlacedTick placed = Place(message);
+      if (Parse(channels_.at(id->second).field, message.data, placed.tick)) handler(placed);
+    });
+  }
+}
+
+}  // namespace footing::playback
