@@ -41,6 +41,7 @@ NOT_HERE = {
     r"mocap|\.asf|\.trc|me\.mcap|me\.bvh": "reads motion capture of one's own; tests/offline runs it on recordings",
     r"tcp:": "needs a server on another address",
     r"/run/footing": "needs the system service",
+    r"study\.mcap": "reads recorded trials; scenario playback runs it",
     r"first\.mcap|body\.mcap": "reads what a command above would have recorded",
 }
 # Those that connect to a pose engine, or read what was recorded of one.

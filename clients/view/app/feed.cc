@@ -1,15 +1,10 @@
 #include "clients/view/app/feed.h"
 
-#include <array>
-
 #include "clients/view/app/translate.h"
 #include "common/clock/clock.h"
 
 namespace footing::view {
 namespace {
-
-/// The servers of a recording that are shown, in the order of the default addresses.
-constexpr std::array<const char*, 2> kPlayedServers = {"footing-sim", "footingd"};
 
 scene::LinkState StateOf(transport::LinkState state) {
   switch (state) {
@@ -29,11 +24,6 @@ scene::LinkState StateOf(transport::LinkState state) {
 
 std::vector<scene::LinkReport> Feed::InitialReports(const Options& options) {
   std::vector<scene::LinkReport> reports;
-  if (options.recording) {
-    for (const char* const name : kPlayedServers) {
-      reports.push_back({options.recording->path(), name, scene::LinkState::kLive, ""});
-    }
-  }
   for (const transport::Address& address : options.addresses) {
     reports.push_back({address.Text(), "", scene::LinkState::kConnecting, ""});
   }
@@ -43,35 +33,11 @@ std::vector<scene::LinkReport> Feed::InitialReports(const Options& options) {
 Feed::Feed(boost::asio::io_context& io, const Options& options, Handlers handlers)
     : handlers_(std::move(handlers)) {
   const auto reports = InitialReports(options);
-  if (options.recording) {
-    for (const scene::LinkReport& report : reports) sources_.push_back({report, true, nullptr});
-    player_ = Play(io, *options.recording);
-    return;
-  }
   for (std::size_t i = 0; i < options.addresses.size(); ++i) {
     const transport::Address& address = options.addresses[i];
     const bool same_host = address.kind == transport::Address::Kind::kUnix;
     sources_.push_back({reports[i], same_host, Connect(io, static_cast<int>(i), address)});
   }
-}
-
-std::unique_ptr<playback::TickPlayer> Feed::Play(boost::asio::io_context& io,
-                                                 const recording::RecordedSession& session) {
-  playback::TickPlayer::Handlers handlers;
-  handlers.on_tick = [this](std::size_t source, const v1::Tick& tick) {
-    handlers_.on_update(Translate(tick, static_cast<int>(source), clock::MonotonicNs(), 0));
-  };
-  handlers.on_end = [this](const Result<void>& ended) {
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-      sources_[i].report.state = scene::LinkState::kStale;
-      sources_[i].report.why = ended ? "the recording has ended" : ended.error().message;
-      handlers_.on_link(static_cast<int>(i), sources_[i].report);
-    }
-    if (handlers_.on_end) handlers_.on_end();
-  };
-  return std::make_unique<playback::TickPlayer>(
-      io, session, std::vector<std::string>{kPlayedServers.begin(), kPlayedServers.end()},
-      std::move(handlers));
 }
 
 std::unique_ptr<transport::Client> Feed::Connect(boost::asio::io_context& io, int source,
@@ -126,12 +92,10 @@ void Feed::SendToSimulation(const v1::Command& command) {
 }
 
 void Feed::Start() {
-  if (player_) return player_->Start();
   for (Source& source : sources_) source.client->Start();
 }
 
 void Feed::Stop() {
-  if (player_) return player_->Stop();
   for (Source& source : sources_) source.client->Stop();
 }
 

@@ -7,20 +7,17 @@
 
 #include "clients/view/app/options.h"
 #include "clients/view/scene/update.h"
-#include "common/playback/tick_player.h"
 #include "common/transport/address.h"
 #include "common/transport/client.h"
 
 namespace footing::view {
 
-/// Listens to any number of servers, or plays a recording of them. Everything runs on the
-/// io_context's one thread.
+/// Listens to any number of servers. Everything runs on the io_context's one thread.
 class Feed {
  public:
   struct Handlers {
     std::function<void(scene::Update)> on_update;
     std::function<void(int source, const scene::LinkReport&)> on_link;
-    std::function<void()> on_end = {};  ///< The recording has ended.
   };
 
   Feed(boost::asio::io_context& io, const Options& options, Handlers handlers);
@@ -41,13 +38,10 @@ class Feed {
   };
   std::unique_ptr<transport::Client> Connect(boost::asio::io_context& io, int source,
                                              const transport::Address& address);
-  std::unique_ptr<playback::TickPlayer> Play(boost::asio::io_context& io,
-                                             const recording::RecordedSession& session);
   std::int64_t OffsetOf(const Source& source) const;
 
   Handlers handlers_;
   std::vector<Source> sources_;
-  std::unique_ptr<playback::TickPlayer> player_;  ///< Of a recording, in place of clients.
 };
 
 }  // namespace footing::view

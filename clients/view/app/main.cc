@@ -1,5 +1,7 @@
 #include "clients/view/app/off_screen_view.h"
 #include "clients/view/app/options.h"
+#include "clients/view/app/play_session.h"
+#include "clients/view/app/play_view.h"
 #include "clients/view/app/subjects.h"
 #include "clients/view/app/text_view.h"
 #include "clients/view/app/window.h"
@@ -10,19 +12,24 @@ namespace {
 
 using footing::view::Options;
 
-footing::Result<void> Resolve(const std::vector<std::string>& connect, const std::string& recording,
-                              Options& options) {
+/// What only playback has, as it was written.
+struct PlayArguments {
+  std::string align = "start";
+  std::optional<double> from_s;
+};
+
+footing::Result<void> Resolve(const std::vector<std::string>& connect,
+                              const PlayArguments& arguments, Options& options) {
   namespace transport = footing::transport;
-  if (!recording.empty()) {
-    auto session = footing::recording::RecordedSession::Open(recording);
-    if (!session) return session.error();
-    if (session->Find("footing-sim") == nullptr && session->Find("footingd") == nullptr) {
-      return footing::InvalidData(recording + " holds no ticks of footing-sim or footingd");
-    }
-    options.recording =
-        std::make_shared<footing::recording::RecordedSession>(std::move(session).value());
+  if (!options.play.recording.empty()) {
+    const auto alignment = footing::view::AlignmentNamed(arguments.align);
+    if (!alignment) return alignment.error();
+    options.play.alignment = *alignment;
+    options.play.from_s = options.at_s ? options.at_s : arguments.from_s;
     return {};
   }
+  if (options.at_s && *options.at_s < 0)
+    return footing::UsageError("--at: a live view has no past");
   for (const std::string& text : connect) {
     auto address = transport::ParseAddress(text);
     if (!address) return address.error();
@@ -36,11 +43,32 @@ footing::Result<void> Resolve(const std::vector<std::string>& connect, const std
 }
 
 footing::Result<void> Run(const Options& options) {
+  if (!options.play.recording.empty()) return RunPlayback(options);
   if (options.off_screen()) return RunOffScreen(options);
   if (options.text) return RunTextView(options);
   if (footing::view::HasDisplay()) return RunWindow(options);
   footing::log::Info("no display: showing the state as text (--screenshot draws without one)");
   return RunTextView(options);
+}
+
+void AddPlayOptions(CLI::App& app, Options& options, PlayArguments& arguments) {
+  CLI::Option* const recording = app.add_option(
+      "--recording", options.play.recording, "Recording to play instead of connecting, MCAP file");
+  recording->excludes("--connect");
+  app.add_option("--trial", options.play.trial,
+                 "Play this trial only: its id, or #NUMBER; 0 s is its start line")
+      ->needs(recording);
+  app.add_option("--beside", options.play.beside,
+                 "Second recording beside the first, FILE or FILE:TRIAL (default: first trials)")
+      ->needs(recording);
+  app.add_option("--align", arguments.align,
+                 "What is at 0 s of both: start, finish or wall (time of day)")
+      ->needs("--beside");
+  app.add_option("--speed", options.play.speed, "Speed of playback, 0.1 to 8 (default 1)")
+      ->needs(recording)
+      ->check(CLI::Range(0.1, 8.0));
+  app.add_option("--from", arguments.from_s, "Position to begin at, s (default: the beginning)")
+      ->needs(recording);
 }
 
 }  // namespace
@@ -52,21 +80,23 @@ int main(int argc, char** argv) {
       "  footing-view\n"
       "  footing-view --connect tcp:127.0.0.1:4711 --subject\n"
       "  footing-view --recording walk.mcap\n"
+      "  footing-view --recording study.mcap --trial p07-1 --beside study.mcap:p07-2\n"
       "  footing-view --screenshot bird.png --at 5\n"
       "  footing-view --next-subject p08.json --next-subject p09.json\n"
       "  footing-view --text --seconds 30 --json");
   Options options;
   std::vector<std::string> connect, subjects;
-  std::string recording;
   app->add_option("--connect", connect,
                   "Address of a server, unix:PATH or tcp:HOST:PORT; may be repeated "
                   "(default: footing-sim and footingd of this user)");
-  app->add_option("--recording", recording, "Recording to play instead of connecting, MCAP file")
-      ->excludes("--connect");
+  PlayArguments play;
+  AddPlayOptions(*app, options, play);
   app->add_option("--screenshot", options.screenshot,
                   "PNG file to draw one picture into; then end");
-  app->add_option("--at", options.at_s, "Time of the screenshot after connecting, s")
-      ->check(CLI::Range(0.0, 86400.0));
+  app->add_option("--at", options.at_s,
+                  "Time of the screenshot: after connecting, or position in the recording, s "
+                  "(default 1)")
+      ->check(CLI::Range(-86400.0, 1e6));
   app->add_option("--record", options.record_folder, "Folder to draw numbered PNG files into");
   app->add_option("--record-hz", options.record_hz, "Rate of the pictures of --record, Hz")
       ->check(CLI::Range(0.1, 60.0));
@@ -91,7 +121,7 @@ int main(int argc, char** argv) {
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
 
   footing::log::Start("footing-view", false);
-  if (const auto resolved = Resolve(connect, recording, options); !resolved) {
+  if (const auto resolved = Resolve(connect, play, options); !resolved) {
     return footing::cli::Report(resolved.error());
   }
   auto commands = footing::view::SubjectCommands(subjects);

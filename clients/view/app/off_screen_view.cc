@@ -1,10 +1,9 @@
 #include "clients/view/app/off_screen_view.h"
 
-#include <filesystem>
 #include <iostream>
-#include <system_error>
 
 #include "clients/view/app/background.h"
+#include "clients/view/app/pictures.h"
 #include "clients/view/app/summary.h"
 #include "clients/view/render/off_screen.h"
 #include "clients/view/render/screen.h"
@@ -17,6 +16,7 @@ namespace footing::view {
 namespace {
 
 constexpr double kStepS = 1.0 / 60;
+constexpr double kAtS = 1;       // Without --at.
 constexpr double kRecordS = 10;  // Without --seconds.
 
 /// The chain of one off-screen run; its members' order is their order of construction.
@@ -29,6 +29,8 @@ struct Studio {
   std::int64_t started_ns = clock::MonotonicNs();
 
   double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns); }
+
+  double AtS() const { return options.at_s.value_or(kAtS); }
 
   /// Lets the camera and the head follow until that instant of the viewer's clock.
   scene::Show::Shot FollowUntil(std::int64_t until_ns) {
@@ -53,7 +55,7 @@ struct Studio {
 
   /// Until the first tick, or until the time is over without one.
   std::int64_t WaitForData() {
-    const std::int64_t given_up_ns = started_ns + SecondsToNanoseconds(options.at_s);
+    const std::int64_t given_up_ns = started_ns + SecondsToNanoseconds(AtS());
     while (scene::IsWaiting(show.model()) && clock::MonotonicNs() < given_up_ns &&
            !background.stop_asked()) {
       FollowUntil(clock::MonotonicNs() + SecondsToNanoseconds(kStepS));
@@ -64,7 +66,7 @@ struct Studio {
 
 Result<void> TakeScreenshot(Studio& studio) {
   const std::int64_t from_ns = studio.WaitForData();
-  const auto shot = studio.FollowUntil(from_ns + SecondsToNanoseconds(studio.options.at_s));
+  const auto shot = studio.FollowUntil(from_ns + SecondsToNanoseconds(studio.AtS()));
   const auto written = studio.Shoot(shot, studio.options.screenshot);
   if (written) log::Info("wrote " + studio.options.screenshot);
   return written;
@@ -72,11 +74,7 @@ Result<void> TakeScreenshot(Studio& studio) {
 
 Result<void> Record(Studio& studio) {
   const Options& options = studio.options;
-  std::error_code error;
-  std::filesystem::create_directories(options.record_folder, error);
-  if (error) {
-    return Failure("cannot make the folder " + options.record_folder + ": " + error.message());
-  }
+  if (const auto made = MakePictureFolder(options.record_folder); !made) return made;
   const double seconds = options.seconds > 0 ? options.seconds : kRecordS;
   const auto count = static_cast<int>(seconds * options.record_hz);
   int late = 0;
@@ -84,10 +82,8 @@ Result<void> Record(Studio& studio) {
     const std::int64_t due_ns =
         studio.started_ns + SecondsToNanoseconds((i + 1) / options.record_hz);
     if (clock::MonotonicNs() > due_ns + SecondsToNanoseconds(1 / options.record_hz)) ++late;
-    std::string number = std::to_string(i);
-    number.insert(0, 6 - std::min<std::size_t>(6, number.size()), '0');
     const auto written =
-        studio.Shoot(studio.FollowUntil(due_ns), options.record_folder + "/" + number + ".png");
+        studio.Shoot(studio.FollowUntil(due_ns), NumberedPicture(options.record_folder, i));
     if (!written) return written;
   }
   log::Info("wrote pictures to " + options.record_folder);

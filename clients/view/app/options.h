@@ -1,21 +1,31 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "common/recording/recorded_session.h"
+#include "clients/view/timeline/align.h"
 #include "common/transport/address.h"
 #include "footing/v1/command.pb.h"
 
 namespace footing::view {
 
+/// What is played in place of servers.
+struct PlayOptions {
+  std::string recording;         ///< A file; empty: servers are shown.
+  std::string trial;             ///< Only this one; empty: all.
+  std::string beside;            ///< FILE or FILE:TRIAL to compare with; empty: none.
+  double speed = 1;              ///< Recorded seconds a second.
+  std::optional<double> from_s;  ///< Position to begin at; nothing: the beginning.
+  timeline::Alignment alignment = timeline::Alignment::kStart;
+};
+
 /// What the command line asks for.
 struct Options {
   std::vector<transport::Address> addresses;
-  std::shared_ptr<const recording::RecordedSession> recording;  ///< In place of servers.
-  std::string screenshot;                                       ///< A PNG file; empty for none.
-  double at_s = 1;                         ///< When to take it, after connecting.
+  PlayOptions play;
+  std::string screenshot;                  ///< A PNG file; empty for none.
+  std::optional<double> at_s;              ///< When to take it, after connecting, or the position.
   std::string record_folder;               ///< For numbered PNG files; empty for none.
   double record_hz = 10;                   ///< Pictures a second.
   double seconds = 0;                      ///< Ends by itself; 0 runs on.

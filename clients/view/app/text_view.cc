@@ -18,8 +18,6 @@
 namespace footing::view {
 namespace {
 
-constexpr double kScreenEveryS = 0.25;
-constexpr double kLineEveryS = 1;
 constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
 
 /// Everything on one thread: a tick counts as seen when its handler runs.
@@ -28,15 +26,14 @@ class TextView {
   explicit TextView(const Options& options)
       : options_(options),
         started_ns_(clock::MonotonicNs()),
-        screen_(!options.json && isatty(STDOUT_FILENO) == 1),
+        screen_(WantsScreen(options)),
         timer_(io_),
         signals_(io_, SIGINT, SIGTERM),
         feed_(io_, options,
               {[this](const scene::Update& update) { show_.Take(update, clock::MonotonicNs()); },
                [this](int source, const scene::LinkReport& report) {
                  show_.model().links[static_cast<std::size_t>(source)] = report;
-               },
-               [this] { Stop(); }}) {
+               }}) {
     show_.model().links = Feed::InitialReports(options);
   }
 
@@ -74,9 +71,7 @@ class TextView {
       out << scene::StatusLine(show_.model(), now_ns) << std::endl;
       return;
     }
-    std::string text = kHomeAndClear;
-    for (const std::string& line : scene::StatusScreen(show_.model(), now_ns)) text += line + "\n";
-    std::cout << text << "Ctrl-C leaves." << std::endl;
+    std::cout << ScreenText(scene::StatusScreen(show_.model(), now_ns)) << std::endl;
   }
 
   void Stop() {
@@ -95,6 +90,14 @@ class TextView {
 };
 
 }  // namespace
+
+bool WantsScreen(const Options& options) { return !options.json && isatty(STDOUT_FILENO) == 1; }
+
+std::string ScreenText(const std::vector<std::string>& lines) {
+  std::string text = kHomeAndClear;
+  for (const std::string& line : lines) text += line + "\n";
+  return text + "Ctrl-C leaves.";
+}
 
 Result<void> RunTextView(const Options& options) {
   TextView(options).Run();

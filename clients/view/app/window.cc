@@ -1,60 +1,19 @@
 #include "clients/view/app/window.h"
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-
-#include <algorithm>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 #include <utility>
 
 #include "clients/view/app/background.h"
+#include "clients/view/app/glfw_window.h"
 #include "clients/view/app/subjects.h"
 #include "clients/view/app/summary.h"
-#include "clients/view/render/gl.h"
 #include "clients/view/render/screen.h"
 #include "common/clock/clock.h"
 #include "common/units/units.h"
 
 namespace footing::view {
 namespace {
-
-/// GLFW's process-wide state.
-struct Library {
-  Library() : ready(glfwInit() == GLFW_TRUE) {}
-  ~Library() { glfwTerminate(); }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
-  bool ready;
-};
-
-struct CloseWindow {
-  void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
-};
-using Window = std::unique_ptr<GLFWwindow, CloseWindow>;
-
-Error NoWindow(const std::string& what) {
-  const char* words = nullptr;
-  glfwGetError(&words);
-  return Failure(what + ": " + (words != nullptr ? words : "GLFW gives no reason") +
-                 "; --text shows the state in the terminal, --screenshot draws without a display");
-}
-
-Window Open(const Options& options) {
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_SAMPLES, options.samples);
-  return Window(glfwCreateWindow(options.width, options.height, "Footing", nullptr, nullptr));
-}
-
-/// How many pixels of the picture stand for one of a common monitor.
-float DisplayScale(GLFWwindow* window) {
-  float across = 1, up = 1;
-  glfwGetWindowContentScale(window, &across, &up);
-  return std::max(across, up);
-}
 
 void OnKey(GLFWwindow* window, int key, int, int action, int) {
   if (action != GLFW_PRESS) return;
@@ -96,14 +55,10 @@ void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
     }
     const auto shot = show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference});
     screen.set_display_scale(DisplayScale(window));
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(window, &width, &height);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    const PixelSize size = BeginPicture(window);
     screen.Draw({shot.picture, show.model(), shot.frame, now_ns, shot.past, shot.past_ns}, hud,
-                width, height);
-    glfwSwapBuffers(window);
-    // Minimised, or on a display without vertical sync, the loop must not spin.
-    clock::SleepUntil(now_ns + SecondsToNanoseconds(1.0 / 125));
+                size.width, size.height);
+    EndPicture(window, now_ns);
     passed_s = NanosecondsToSeconds(clock::MonotonicNs() - started_ns);
   }
   if (options.json) std::cout << Summary(show.model(), passed_s) << std::endl;
@@ -117,22 +72,20 @@ bool HasDisplay() {
 }
 
 Result<void> RunWindow(const Options& options) {
-  Library library;
-  if (!library.ready) return NoWindow("no display can be opened");
-  const Window window = Open(options);
-  if (window == nullptr) return NoWindow("no window with OpenGL 3.3 can be opened");
-  glfwMakeContextCurrent(window.get());
-  glfwSwapInterval(1);
+  const GlfwLibrary library;
+  const auto opened = OpenWindow(library, options);
+  if (!opened) return opened.error();
+  GLFWwindow* const window = opened->get();
   auto screen = render::Screen::Create();
   if (!screen) return screen.error();
   render::HudOptions hud;
   hud.hidden = options.subject;
   hud.forces = options.forces;
   hud.overlay_reference = options.overlay_reference;
-  glfwSetWindowUserPointer(window.get(), &hud);
-  glfwSetKeyCallback(window.get(), OnKey);
-  glfwSetCharCallback(window.get(), OnLetter);
-  Loop(window.get(), options, **screen, hud);
+  glfwSetWindowUserPointer(window, &hud);
+  glfwSetKeyCallback(window, OnKey);
+  glfwSetCharCallback(window, OnLetter);
+  Loop(window, options, **screen, hud);
   return {};
 }
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "clients/view/render/hud/hud_layout.h"
-
 namespace footing::render {
 namespace {
 
@@ -28,7 +26,8 @@ Result<std::unique_ptr<Screen>> Screen::Create() {
   return screen;
 }
 
-Screen::Screen(World world) : world_(std::move(world)) {
+Screen::Screen(World world) {
+  worlds_.push_back(std::move(world));
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // The viewer leaves no files behind.
 }
@@ -49,19 +48,34 @@ void Screen::LoadFontsAt(float scale) {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-void Screen::Draw(const HudContent& content, const HudOptions& options, int width, int height) {
-  const scene::Model& model = content.model;
-  world_.Draw(content.picture, model.track, model.track_version, width, height);
+Result<void> Screen::AddWorld() {
+  auto world = World::Create();
+  if (!world) return world.error();
+  worlds_.push_back(std::move(*world));
+  return {};
+}
+
+Paint Screen::BeginPanels(int width, int height) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = ImVec2(static_cast<float>(width), static_cast<float>(height));
   io.DeltaTime = kNominalFrameS;
-  LoadFontsAt(HudScale(io.DisplaySize, display_scale_));
+  LoadFontsAt(ScaleOf(io.DisplaySize));
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
-  const Paint paint{ImGui::GetBackgroundDrawList(), fonts_, scale_};
-  DrawHud(paint, content, options, io.DisplaySize);
+  return {ImGui::GetBackgroundDrawList(), fonts_, scale_};
+}
+
+void Screen::EndPanels() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Screen::Draw(const HudContent& content, const HudOptions& options, int width, int height) {
+  const scene::Model& model = content.model;
+  world().Draw(content.picture, model.track, model.track_version, width, height);
+  const Paint paint = BeginPanels(width, height);
+  DrawHud(paint, content, options, ImGui::GetIO().DisplaySize);
+  EndPanels();
 }
 
 }  // namespace footing::render

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "clients/view/render/hud/hud.h"
+#include "clients/view/render/hud/hud_layout.h"
 #include "clients/view/render/world.h"
 
 namespace footing::render {
@@ -20,13 +22,20 @@ class Screen {
   void Draw(const HudContent& content, const HudOptions& options, int width, int height);
   /// The display's own factor: 1 on a common monitor, 2 on one with twice the pixels an inch.
   void set_display_scale(float display_scale) { display_scale_ = display_scale; }
-  World& world() { return world_; }
+  World& world(std::size_t index = 0) { return worlds_[index]; }
+  /// A further one, for a picture of its own track.
+  Result<void> AddWorld();
+
+  /// Panels of another making, over what is in the framebuffer: drawn between these two.
+  Paint BeginPanels(int width, int height);
+  void EndPanels();
+  float ScaleOf(ImVec2 size) const { return HudScale(size, display_scale_); }
 
  private:
   explicit Screen(World world);
   void LoadFontsAt(float scale);
 
-  World world_;
+  std::vector<World> worlds_;
   float display_scale_ = 1;
   float scale_ = 0;  ///< Of the fonts; 0 before the first picture.
   Fonts fonts_;

@@ -152,7 +152,7 @@ void World::DrawSurfaces(const scene::Picture& picture, const Eigen::Matrix4f& c
 }
 
 void World::Draw(const scene::Picture& picture, const stream::Track& track,
-                 std::uint64_t track_version, int width, int height) {
+                 std::uint64_t track_version, int width, int height, int left, int bottom) {
   if (track_version != track_version_) {
     track_version_ = track_version;
     track_.Upload(scene::BuildRibbon(track));
@@ -160,7 +160,7 @@ void World::Draw(const scene::Picture& picture, const stream::Track& track,
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
-  glViewport(0, 0, width, height);
+  glViewport(left, bottom, width, height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   glClear(GL_DEPTH_BUFFER_BIT);

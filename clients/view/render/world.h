@@ -17,9 +17,10 @@ class World {
  public:
   static Result<World> Create();
 
-  /// Draws into the bound framebuffer. A new `track_version` says that the track has changed.
+  /// Draws into the bound framebuffer, into the rectangle of that size whose lower left corner is
+  /// given. A new `track_version` says that the track has changed.
   void Draw(const scene::Picture& picture, const stream::Track& track, std::uint64_t track_version,
-            int width, int height);
+            int width, int height, int left = 0, int bottom = 0);
   /// Draws only ids (scene::PartId in the red channel) on black: for tests.
   void DrawIds(const scene::Picture& picture, int width, int height);
 

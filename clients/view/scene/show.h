@@ -33,8 +33,16 @@ class Show {
   /// time stand still.
   Shot At(std::int64_t now_ns, bool frozen, const StageOptions& options);
 
+  /// Playback moves on in steps of its own, so that what is shown depends on the time alone and not
+  /// on when it was drawn: Step moves the camera and all that is filtered to `now_ns`, Peek shows
+  /// an instant at or behind the last step and leaves that step as it is.
+  void Step(std::int64_t now_ns, const StageOptions& options);
+  Shot Peek(std::int64_t now_ns, const StageOptions& options);
+
  private:
   WorldFrame FrameAt(std::int64_t now_ns);
+  WorldFrame ShownAt(std::int64_t now_ns) const;
+  double PassedS(std::int64_t now_ns) const;
 
   struct Frozen {
     Model model;

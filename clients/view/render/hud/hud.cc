@@ -26,7 +26,7 @@ bool IsPerson(const scene::CharacterPose* pose) { return pose != nullptr && pose
 
 HudNeeds NeedsOf(const HudContent& content, const HudOptions& options) {
   HudNeeds needs;
-  if (options.hidden || scene::IsWaiting(content.model)) return needs;
+  if (options.hidden || !options.columns || scene::IsWaiting(content.model)) return needs;
   const scene::CharacterPose* pose = FirstCharacter(content);
   const bool person = IsPerson(pose);
   if (person) {
@@ -72,6 +72,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   // Simulated input is stamped at all times, in subject mode too.
   if (scene::IsSimulated(model)) DrawSimulated(p, boxes.stamp);
   Box notes = boxes.middle;
+  if (!options.title.empty()) DrawTitle(p, options.title, options.over, notes);
   DrawReplay(p, model, content.now_ns, notes);
   const scene::CharacterPose* pose = FirstCharacter(content);
   if (pose != nullptr) DrawTrialPanel(p, model, *pose, options.hidden, notes);
@@ -87,7 +88,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
     if (IsPerson(pose)) DrawTPosePanel(p, model, *pose, messages);
   }
   if (options.frozen) DrawFrozen(p, notes);
-  if (options.keys) DrawKeys(p, size);
+  if (options.keys) DrawKeys(p, size, false);
 }
 
 }  // namespace footing::render

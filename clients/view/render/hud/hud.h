@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "clients/view/render/hud/hud_layout.h"
 #include "clients/view/scene/model.h"
@@ -19,6 +20,9 @@ struct HudOptions {
   bool replay_asked = false;  ///< Key presses that wait for their action.
   bool t_pose_asked = false;
   bool next_subject_asked = false;
+  bool columns = true;  ///< The panels at both sides.
+  std::string title;    ///< Above all else; empty: none.
+  std::string over;     ///< A word below it: "finished"; empty: none.
 };
 
 /// What the panels show.

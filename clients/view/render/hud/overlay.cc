@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clients/view/scene/words.h"
+#include "clients/view/timeline/play_keys.h"
 #include "common/units/units.h"
 
 namespace footing::render {
@@ -91,28 +92,49 @@ void DrawWaitingLines(const Paint& p, const scene::Model& model, Box& space) {
   }
 }
 
-void DrawKeys(const Paint& p, ImVec2 size) {
-  static constexpr std::array<std::array<const char*, 2>, 9> kKeys{{
-      {"?", "show or hide this list"},
-      {"F", "force arrows at the feet"},
+void DrawKeys(const Paint& p, ImVec2 size, bool playback) {
+  using Line = std::array<const char*, 2>;
+  static constexpr std::array<Line, 5> kLiveKeys{{
       {"P", "states of the gait controller"},
       {"R", "replay the last fall in slow motion"},
       {"T", "take the T-pose again"},
       {"N", "the next subject"},
-      {"O", "the reference beside the body, or over it"},
       {"space", "freeze the picture"},
+  }};
+  static constexpr std::array<Line, 4> kAllKeys{{
+      {"?", "show or hide this list"},
+      {"F", "force arrows at the feet"},
+      {"O", "the reference beside the body, or over it"},
       {"Esc, Q", "quit"},
   }};
-  const float s = p.scale, width = 340 * s;
-  const float height = (70 + 26 * static_cast<float>(kKeys.size())) * s;
+  std::vector<Line> keys{kAllKeys.begin(), kAllKeys.end() - 1};
+  if (playback) {
+    keys.insert(keys.end(), timeline::kPlayKeyHelp.begin(), timeline::kPlayKeyHelp.end());
+  } else {
+    keys.insert(keys.end(), kLiveKeys.begin(), kLiveKeys.end());
+  }
+  keys.push_back(kAllKeys.back());
+  const float s = p.scale, first = 104 * s;
+  float width = 340 * s;
+  for (const Line& line : keys) {
+    width = std::max(width, first + p.WidthOf(p.fonts.text, line[1]) + 40 * s);
+  }
+  const float height = (70 + 26 * static_cast<float>(keys.size())) * s;
   const ImVec2 low((size.x - width) / 2, (size.y - height) / 2);
   const Box in = p.Panel({low, {low.x + width, low.y + height}});
   p.Write(p.fonts.strong, {in.low.x + 8 * s, in.low.y + 2 * s}, colour::kText, "Keys");
   float y = in.low.y + 36 * s;
-  for (const auto& [key, what] : kKeys) {
+  for (const auto& [key, what] : keys) {
     p.Write(p.fonts.strong, {in.low.x + 8 * s, y}, colour::kSecond, key);
-    p.Write(p.fonts.text, {in.low.x + 92 * s, y}, colour::kText, what);
+    p.Write(p.fonts.text, {in.low.x + first, y}, colour::kText, what);
     y += 26 * s;
+  }
+}
+
+void DrawTitle(const Paint& p, const std::string& title, const std::string& over, Box& space) {
+  DrawBanner(p, space, title, p.fonts.strong, colour::kPanel, colour::kText);
+  if (!over.empty()) {
+    DrawBanner(p, space, over, p.fonts.strong, colour::kText, IM_COL32(20, 20, 20, 255));
   }
 }
 

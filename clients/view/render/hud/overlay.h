@@ -9,8 +9,10 @@ void DrawWaiting(const Paint& paint, const scene::Model& model, const Box& box);
 /// A few small lines for each connection that is not live, from the bottom of `space` upwards;
 /// takes away from `space` what they fill.
 void DrawWaitingLines(const Paint& paint, const scene::Model& model, Box& space);
-/// The list of keys.
-void DrawKeys(const Paint& paint, ImVec2 size);
+/// The list of keys, of playback or of a live view.
+void DrawKeys(const Paint& paint, ImVec2 size, bool playback);
+/// What is shown of several recordings, and how it stands. A banner as those below.
+void DrawTitle(const Paint& paint, const std::string& title, const std::string& over, Box& space);
 /// "SIMULATED INPUT" in the middle of a row.
 void DrawSimulated(const Paint& paint, const Box& row);
 /// Which moment of the last fall is shown again; nothing while none is. This and what follows is a

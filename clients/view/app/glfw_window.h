@@ -1,0 +1,45 @@
+#pragma once
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cstdint>
+#include <memory>
+
+#include "clients/view/app/options.h"
+#include "common/result/result.h"
+
+namespace footing::view {
+
+/// GLFW's process-wide state.
+struct GlfwLibrary {
+  GlfwLibrary() : ready(glfwInit() == GLFW_TRUE) {}
+  ~GlfwLibrary() { glfwTerminate(); }
+  GlfwLibrary(const GlfwLibrary&) = delete;
+  GlfwLibrary& operator=(const GlfwLibrary&) = delete;
+  bool ready;
+};
+
+struct CloseWindow {
+  void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+};
+using GlfwWindow = std::unique_ptr<GLFWwindow, CloseWindow>;
+
+/// A window with OpenGL 3.3, current on this thread; `library` must outlive it. The error says what
+/// to do without a display.
+Result<GlfwWindow> OpenWindow(const GlfwLibrary& library, const Options& options);
+
+/// How many pixels of the picture stand for one of a common monitor.
+float DisplayScale(GLFWwindow* window);
+
+struct PixelSize {
+  int width = 0;
+  int height = 0;
+};
+PixelSize PictureSize(GLFWwindow* window);
+/// Binds the window's own framebuffer; returns its size.
+PixelSize BeginPicture(GLFWwindow* window);
+/// Shows the picture; waits where the display does not, so that the loop does not spin.
+void EndPicture(GLFWwindow* window, std::int64_t begun_ns);
+
+}  // namespace footing::view
