@@ -98,7 +98,7 @@ def check_seek(stage, recording, live):
                             "--seconds", 120)
     trial = sought["trial"]
     assert trial["failures"]["straightness"] + trial["withdrawn_failures"] == 2, trial
-    assert played["playback"]["position_s"] == played["playback"]["end_s"] and played["playback"]["finished"], played
+    assert played["playback"]["position_s"] == played["playback"]["end_s"] and played["playback"]["ended"], played
     assert played["frames_received"] > 1000 and played["failures"]["straightness"] == 2, played
     assert played["trial"]["trial"] == FIRST and played["trial"]["phase"] == "finished", played["trial"]
 
@@ -114,7 +114,7 @@ def check_beside(stage, recording, live):
     end_s = live["finish_s"]
     later = stage.run_json("footing-view", "--recording", recording, "--trial", FIRST, "--beside",
                            f"{recording}:{SECOND}", "--text", "--at", end_s)
-    assert later["beside"]["playback"]["finished"] and not later["playback"]["finished"], later
+    assert later["beside"]["playback"]["ended"] and not later["playback"]["ended"], later
     picture = stage.folder / "beside.png"
     done = stage.run("footing-view", "--recording", recording, "--trial", FIRST, "--beside", f"{recording}:{SECOND}",
                      "--screenshot", picture, "--at", end_s, "--width", 640, "--height", 400)

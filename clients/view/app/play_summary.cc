@@ -69,7 +69,7 @@ Json Playback(const PlaySession& session, const PlayedSide& side) {
                 {"begin_s", side.timeline.begin_s},
                 {"end_s", side.timeline.end_s},
                 {"speed", session.head().speed},
-                {"finished", state.finished},
+                {"ended", state.finished},
                 {"limits", side.show.recording().Limits()},
                 {"trial", trial == nullptr ? Json() : Json(timeline::NameOf(*trial))}};
   playback["trials"] = Trials(side.timeline);

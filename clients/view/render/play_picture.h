@@ -13,7 +13,7 @@ namespace footing::render {
 struct PlayedView {
   HudContent content;
   std::string title;  ///< Over the picture; empty: none.
-  std::string note;   ///< "finished"; empty: none.
+  std::string note;   ///< "ended"; empty: none.
 };
 
 /// One recording, or two side by side, each with its own camera and panels, over one timeline.

@@ -54,7 +54,7 @@ std::string TrialText(const Timeline& timeline, double at_s) {
 }
 
 std::string StateText(const SideState& state) {
-  if (state.finished) return "finished";
+  if (state.finished) return "ended";
   return state.before ? "not begun" : "";
 }
 

@@ -19,7 +19,7 @@ std::string PositionText(const PlayHead& head);
 /// trial.
 std::string TrialText(const Timeline& timeline, double at_s);
 
-/// "finished", "not begun", or empty while it plays.
+/// "ended", "not begun", or empty while it plays.
 std::string StateText(const SideState& state);
 
 /// One line a mark, by time, as a terminal shows them.

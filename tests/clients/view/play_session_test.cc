@@ -129,7 +129,7 @@ TEST_F(PlaySessionTest, TheSummarySaysWhereItStandsAndWhatThereIs) {
   EXPECT_EQ(playback["failures"][1]["withdrawn"], true);
   EXPECT_EQ(playback["limits"], "");
   EXPECT_EQ(summary["trial"]["failures"]["curve"], 1);
-  EXPECT_EQ(summary["beside"]["playback"]["finished"], true);
+  EXPECT_EQ(summary["beside"]["playback"]["ended"], true);
   EXPECT_TRUE(summary["beside"]["playback"]["trials"][0]["start_s"].is_null());
   EXPECT_THAT(PlayLine(*session), HasSubstr("0:40.0 of 0:46.0"));
   EXPECT_THAT(PlayScreenText(*session)[2], "trial p07-1   failed attempts 1 (curve 1)");

@@ -22,7 +22,7 @@ struct HudOptions {
   bool next_subject_asked = false;
   bool columns = true;  ///< The panels at both sides.
   std::string title;    ///< Above all else; empty: none.
-  std::string over;     ///< A word below it: "finished"; empty: none.
+  std::string over;     ///< A word below it: "ended"; empty: none.
 };
 
 /// What the panels show.
