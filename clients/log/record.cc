@@ -7,15 +7,13 @@
 #include <csignal>
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <utility>
 
 #include "common/clock/clock.h"
 #include "common/config/data_file.h"
 #include "common/recording/recording_writer.h"
-#include "common/recording/stream_recorder.h"
-#include "common/transport/client.h"
+#include "common/recording/server_recorder.h"
 
 namespace footing::log_client {
 namespace {
@@ -24,7 +22,6 @@ namespace asio = boost::asio;
 
 constexpr auto kFlushPeriod = std::chrono::milliseconds(50);
 constexpr auto kProgressPeriod = std::chrono::seconds(5);
-constexpr std::uint32_t kQueueTicks = 1024;  // 10 s at 100 Hz; behind it stands the server's ring.
 constexpr std::size_t kMostAttachmentBytes = 16u << 20;
 
 /// One recording: the file, the links to its servers, and the timers.
@@ -40,11 +37,12 @@ class Recording {
         signals_(io, SIGINT, SIGTERM) {}
 
   Result<RecordReport> Run() {
-    Keep(Describe());
+    Keep(
+        recording::DescribeRecording(writer_, "footing-log", options_.version, options_.addresses));
     for (const std::string& path : options_.attachments) Keep(Attach(path));
     if (!written_) return written_.error();
     for (const transport::Address& address : options_.addresses) Link(address);
-    for (const auto& link : links_) link->client->Start();
+    for (const auto& link : links_) link->Start();
     signals_.async_wait([this](const boost::system::error_code& error, int) {
       if (!error) End();
     });
@@ -62,27 +60,6 @@ class Recording {
   }
 
  private:
-  struct Source {
-    std::unique_ptr<recording::StreamRecorder> recorder;
-    std::unique_ptr<transport::Client> client;
-  };
-
-  Result<void> Describe() {
-    std::string addresses;
-    for (const transport::Address& address : options_.addresses) {
-      addresses += (addresses.empty() ? "" : " ") + address.Text();
-    }
-    return writer_.AddMetadata("recording",
-                               {{"program", "footing-log"},
-                                {"version", options_.version},
-                                {"protobuf_package", "footing.v1"},
-                                {"addresses", addresses},
-                                {"log_time", "CLOCK_MONOTONIC of the server, ns"},
-                                {"publish_time", "CLOCK_MONOTONIC of the recorder, ns"},
-                                {"recorder_host_ns", std::to_string(clock::MonotonicNs())},
-                                {"recorder_wall_time_ns", std::to_string(clock::WallNs())}});
-  }
-
   Result<void> Attach(const std::string& path) {
     const Result<std::string> bytes = config::ReadTextFile(path, kMostAttachmentBytes);
     if (!bytes) return bytes.error();
@@ -94,42 +71,16 @@ class Recording {
   }
 
   void Link(const transport::Address& address) {
-    auto link = std::make_unique<Source>();
-    link->recorder = std::make_unique<recording::StreamRecorder>(
-        writer_, address.Text(),
-        [this, text = address.Text()](const std::string& id) { return NameOf(id, text); });
-    recording::StreamRecorder& recorder = *link->recorder;
-    transport::ClientOptions client;
-    client.address = address;
-    client.client_name = "footing-log";
-    client.role = v1::ROLE_LOG;
-    // Reliable: when the queue is full the session ends, and resumes out of the server's ring.
-    client.policy = v1::QUEUE_POLICY_RELIABLE;
-    client.queue_ticks = kQueueTicks;
-    client.from_ring_start = true;  // So that what began just before can be run again.
-    transport::ClientHandlers handlers;
-    handlers.on_welcome = [&](const v1::Welcome& welcome) {
-      Keep(recorder.OnWelcome(welcome, clock::MonotonicNs()));
-    };
-    handlers.on_tick = [&](const v1::Tick& tick) {
-      Keep(recorder.OnTick(tick, clock::MonotonicNs()));
-    };
-    handlers.on_gap = [&](const v1::Gap& gap) { Keep(recorder.OnGap(gap, clock::MonotonicNs())); };
-    handlers.on_state = [&](transport::LinkState state, const std::string& why) {
-      Keep(recorder.OnState(state, why, clock::MonotonicNs()));
+    recording::ServerRecorderOptions server;
+    server.address = address;
+    server.client_name = "footing-log";
+    server.from_ring_start = true;  // So that what began just before can be run again.
+    server.on_written = [this](Result<void> written) { Keep(std::move(written)); };
+    server.on_link = [](const recording::StreamRecorder& recorder) {
       std::cerr << recorder.address() << ": " << recorder.link() << std::endl;
     };
-    link->client = std::make_unique<transport::Client>(io_, client, handlers);
-    links_.push_back(std::move(link));
-  }
-
-  /// Two servers of one id differ by a number behind it.
-  std::string NameOf(const std::string& id, const std::string& address) {
-    for (int number = 1;; ++number) {
-      const std::string name = number == 1 ? id : id + "_" + std::to_string(number);
-      const auto [taken, fresh] = names_.emplace(name, address);
-      if (fresh || taken->second == address) return name;
-    }
+    links_.push_back(
+        std::make_unique<recording::ServerRecorder>(io_, writer_, names_, std::move(server)));
   }
 
   /// Remembers the first failure of the file, and ends.
@@ -160,10 +111,10 @@ class Recording {
       if (error) return;
       std::cerr << writer_.path() << ": " << writer_.statistics().message_count << " messages";
       for (const auto& link : links_) {
-        std::cerr << ", " << link->recorder->address() << " " << link->recorder->ticks()
-                  << " ticks";
-        if (link->recorder->missing_ticks() > 0) {
-          std::cerr << " (" << link->recorder->missing_ticks() << " missing)";
+        const recording::StreamRecorder& recorder = link->recorder();
+        std::cerr << ", " << recorder.address() << " " << recorder.ticks() << " ticks";
+        if (recorder.missing_ticks() > 0) {
+          std::cerr << " (" << recorder.missing_ticks() << " missing)";
         }
       }
       std::cerr << std::endl;
@@ -172,7 +123,7 @@ class Recording {
   }
 
   void End() {
-    for (const auto& link : links_) link->client->Stop();
+    for (const auto& link : links_) link->Stop();
     io_.stop();
   }
 
@@ -184,11 +135,11 @@ class Recording {
     RecordReport report;
     std::string waited_for;
     for (const auto& link : links_) {
-      const Result<void> ended = link->recorder->OnEnd(link->client->clock(), clock::MonotonicNs());
-      if (!ended) return ended.error();
-      report.ticks += link->recorder->ticks();
-      report.missing_ticks += link->recorder->missing_ticks();
-      waited_for += " " + link->recorder->address() + " (" + link->recorder->link() + ")";
+      if (const Result<void> ended = link->End(); !ended) return ended.error();
+      const recording::StreamRecorder& recorder = link->recorder();
+      report.ticks += recorder.ticks();
+      report.missing_ticks += recorder.missing_ticks();
+      waited_for += " " + recorder.address() + " (" + recorder.link() + ")";
     }
     if (const Result<void> finished = writer_.Finish(); !finished) return finished.error();
     const mcap::Statistics& statistics = writer_.statistics();
@@ -205,8 +156,8 @@ class Recording {
   asio::io_context& io_;
   const RecordOptions& options_;
   recording::RecordingWriter writer_;
-  std::vector<std::unique_ptr<Source>> links_;
-  std::map<std::string, std::string> names_;
+  recording::ServerNames names_;
+  std::vector<std::unique_ptr<recording::ServerRecorder>> links_;
   Result<void> written_;
   std::int64_t written_down_ns_ = clock::MonotonicNs();
   asio::steady_timer flush_;

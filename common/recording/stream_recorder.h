@@ -19,8 +19,7 @@ inline constexpr std::int64_t kLongestUnwrittenNs = 800'000'000;
 /// recording come from one thread; the local time is an argument.
 class StreamRecorder {
  public:
-  /// `name_of` gives servers of the same id different names: the second is /SERVER_2, as named by
-  /// the owner.
+  /// `name_of` gives servers of the same id different names, such as ServerNames::Of.
   StreamRecorder(RecordingWriter& writer, std::string address,
                  std::function<std::string(const std::string& server_id)> name_of);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/recording/recorded_session.h"
+#include "common/recording/server_recorder.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::recording {
@@ -53,6 +54,15 @@ TEST_F(StreamRecorderTest, TwoServersShareARecordingUnderTheirOwnTopics) {
   EXPECT_EQ(session.servers()[0].name, "footingd");
   EXPECT_EQ(session.servers()[1].name, "footingd_2");
   EXPECT_EQ(session.servers()[1].server_id, "footingd");
+}
+
+TEST(ServerNames, NumberTheServersOfOneId) {
+  ServerNames names;
+  EXPECT_EQ(names.Of("footing-sim", "unix:a"), "footing-sim");
+  EXPECT_EQ(names.Of("footing-sim", "unix:b"), "footing-sim_2");
+  EXPECT_EQ(names.Of("footingd", "unix:c"), "footingd");
+  EXPECT_EQ(names.Of("footing-sim", "unix:a"), "footing-sim");  // It came back.
+  EXPECT_EQ(names.Of("footing-sim", "unix:b"), "footing-sim_2");
 }
 
 TEST_F(StreamRecorderTest, StampsAreTheTicksTimeAndTheArrival) {
