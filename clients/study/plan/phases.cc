@@ -1,0 +1,143 @@
+#include "clients/study/plan/phases.h"
+
+#include <algorithm>
+
+#include "clients/study/plan/draw.h"
+#include "clients/study/plan/order.h"
+
+namespace footing::study::plan {
+namespace {
+
+/// Gives out a list in random order, again and again.
+class Deck {
+ public:
+  Deck(std::vector<std::string> cards, Draw draw) : cards_(std::move(cards)), draw_(draw) {}
+
+  std::string Next() {
+    if (cards_.empty()) return "";
+    if (next_ % cards_.size() == 0) draw_.Shuffle(cards_);
+    return cards_[next_++ % cards_.size()];
+  }
+
+ private:
+  std::vector<std::string> cards_;
+  Draw draw_;
+  std::size_t next_ = 0;
+};
+
+struct Decks {
+  Deck tasks;
+  Deck tracks;
+};
+
+void AddInterface(const Protocol& protocol, const std::string& participant,
+                  const std::string& interface, bool first, Decks& decks,
+                  std::vector<Phase>& phases) {
+  const auto add = [&](PhaseKind kind, const std::string& name) -> Phase& {
+    Phase& phase = phases.emplace_back();
+    phase.id = interface + "." + name;
+    phase.kind = kind;
+    phase.interface = interface;
+    constexpr std::uint64_t kBits53 = (1ull << 53) - 1;
+    phase.seed = Draw(protocol.seed, "trial " + participant + " " + phase.id).Bits() & kBits53;
+    return phase;
+  };
+  if (!first && protocol.rest_s > 0) add(PhaseKind::kRest, "rest").duration_s = protocol.rest_s;
+  add(PhaseKind::kDemonstration, "demonstration").track = protocol.practice_track;
+  if (protocol.practice_s > 0) {
+    Phase& practice = add(PhaseKind::kPractice, "practice");
+    practice.track = protocol.practice_track;
+    practice.duration_s = protocol.practice_s;
+  }
+  for (std::uint64_t i = 1; i <= protocol.straight_trials; ++i) {
+    Phase& straight = add(PhaseKind::kStraight, "straight" + std::to_string(i));
+    straight.track = protocol.straight_track;
+    straight.task = decks.tasks.Next();
+  }
+  if (!protocol.test_tracks.empty()) {
+    add(PhaseKind::kTestTrack, "test").track = decks.tracks.Next();
+  }
+  add(PhaseKind::kSurvey, "survey");
+}
+
+Session MakeSession(const Protocol& protocol, const std::string& participant,
+                    const std::vector<std::size_t>& order) {
+  Session session;
+  session.participant = participant;
+  Decks decks{Deck(protocol.straight_tasks, Draw(protocol.seed, "tasks " + participant)),
+              Deck(protocol.test_tracks, Draw(protocol.seed, "tracks " + participant))};
+  session.phases.push_back({"consent", PhaseKind::kConsent, "", "", "", 0, 0});
+  session.phases.push_back({"device_check", PhaseKind::kDeviceCheck, "", "", "", 0, 0});
+  for (const std::size_t i : order) {
+    const std::string& interface = protocol.interfaces[i];
+    AddInterface(protocol, participant, interface, session.interfaces.empty(), decks,
+                 session.phases);
+    session.interfaces.push_back(interface);
+  }
+  session.phases.push_back({"final_survey", PhaseKind::kFinalSurvey, "", "", "", 0, 0});
+  return session;
+}
+
+}  // namespace
+
+const char* Name(PhaseKind kind) {
+  switch (kind) {
+    case PhaseKind::kConsent:
+      return "consent";
+    case PhaseKind::kDeviceCheck:
+      return "device_check";
+    case PhaseKind::kRest:
+      return "rest";
+    case PhaseKind::kDemonstration:
+      return "demonstration";
+    case PhaseKind::kPractice:
+      return "practice";
+    case PhaseKind::kStraight:
+      return "straight";
+    case PhaseKind::kTestTrack:
+      return "test_track";
+    case PhaseKind::kSurvey:
+      return "survey";
+    case PhaseKind::kFinalSurvey:
+      return "final_survey";
+  }
+  return "";
+}
+
+std::size_t Session::trial_count() const {
+  return static_cast<std::size_t>(std::count_if(
+      phases.begin(), phases.end(), [](const Phase& phase) { return phase.is_trial(); }));
+}
+
+std::vector<Session> MakeSessions(const Protocol& protocol) {
+  const std::size_t people = protocol.participants.size();
+  const std::size_t count = protocol.interfaces.size();
+  const Orders orders = protocol.order == Order::kWilliams
+                            ? BalancedOrders(count, people, protocol.seed)
+                            : RandomOrders(count, people, protocol.seed);
+  std::vector<Session> sessions;
+  for (std::size_t i = 0; i < people; ++i) {
+    sessions.push_back(MakeSession(protocol, protocol.participants[i], orders[i]));
+  }
+  return sessions;
+}
+
+std::vector<std::string> Remarks(const Protocol& protocol) {
+  std::vector<std::string> remarks;
+  const std::size_t rows = WilliamsOrders(protocol.interfaces.size()).size();
+  const std::size_t people = protocol.participants.size();
+  if (protocol.order == Order::kWilliams && people % rows != 0) {
+    remarks.push_back("the order is not fully balanced: " + std::to_string(people) +
+                      " participants, and a square has " + std::to_string(rows) +
+                      " rows; plan a multiple of " + std::to_string(rows));
+  }
+  if (protocol.test_tracks.size() > 0 && protocol.test_tracks.size() < protocol.interfaces.size()) {
+    remarks.push_back("there are fewer test tracks than interfaces: a participant meets one twice");
+  }
+  if (protocol.devices.allow_simulated) {
+    remarks.push_back("simulated devices are allowed: for trying out, not for a study");
+  }
+  return remarks;
+}
+
+}  // namespace footing::study::plan

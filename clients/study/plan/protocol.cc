@@ -1,0 +1,143 @@
+#include "clients/study/plan/protocol.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "clients/study/plan/reader.h"
+
+namespace footing::study::plan {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostCode = 16;
+constexpr std::size_t kMostTracks = 50;
+constexpr std::size_t kMostItems = 30;
+constexpr std::uint64_t kMostSeed = (1ull << 53) - 1;  // What every JSON reader keeps.
+constexpr double kMostPracticeS = 3600;
+
+/// Codes become names of folders and of trials.
+bool IsCode(const std::string& code) {
+  const auto allowed = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+           c == '_';
+  };
+  return !code.empty() && code.size() <= kMostCode &&
+         std::all_of(code.begin(), code.end(), allowed);
+}
+
+std::string Joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+bool Has(const std::vector<std::string>& list, const std::string& one) {
+  return std::find(list.begin(), list.end(), one) != list.end();
+}
+
+Result<void> ReadSurvey(Reader& outer, const std::string& key, const std::string& file,
+                        Survey& survey) {
+  const ordered_json* object = outer.Object(key);
+  if (object == nullptr) return {};
+  Reader reader(*object, file + ": " + key);
+  reader.Texts("ratings", survey.ratings, 0, kMostItems);
+  reader.Texts("questions", survey.questions, 0, kMostItems);
+  reader.Flag("exertion", survey.exertion);
+  return reader.Finish();
+}
+
+Result<void> ReadDevices(Reader& outer, const std::string& file, DeviceGate& gate) {
+  const ordered_json* object = outer.Object("devices");
+  if (object == nullptr) return {};
+  Reader reader(*object, file + ": devices");
+  reader.Number("least_battery", gate.least_battery, 0, 1);
+  reader.Number("least_rate_hz", gate.least_rate_hz, 0, 1000);
+  reader.Flag("allow_simulated", gate.allow_simulated);
+  return reader.Finish();
+}
+
+void ReadPeople(Reader& reader, Protocol& protocol) {
+  for (const char* key : {"version", "name", "participants", "interfaces", "seed"}) {
+    reader.Require(key);
+  }
+  std::uint64_t version = 1;
+  reader.Whole("version", version, 1, 1);
+  reader.Text("name", protocol.name);
+  reader.Texts("participants", protocol.participants, 1, 1000);
+  for (const std::string& code : protocol.participants) {
+    if (!IsCode(code)) {
+      reader.Fail("participants", "has \"" + code +
+                                      "\"; a code is 1 to 16 letters, digits, - and _, and never a "
+                                      "person's name");
+    }
+  }
+  reader.Texts("interfaces", protocol.interfaces, 1, InterfaceNames().size());
+  for (const std::string& interface : protocol.interfaces) {
+    if (!Has(InterfaceNames(), interface)) {
+      reader.Fail("interfaces", "has unknown interface \"" + interface +
+                                    "\"; there are: " + Joined(InterfaceNames()));
+    }
+  }
+  const bool joystick = Has(protocol.interfaces, "joystick");
+  if (!protocol.interfaces.empty()) {
+    protocol.control = joystick ? "joystick" : protocol.interfaces.front();
+  }
+  reader.Text("control", protocol.control);
+  if (!Has(protocol.interfaces, protocol.control)) {
+    reader.Fail("control", "is \"" + protocol.control + "\", which is not one of interfaces");
+  }
+  std::string order = Name(protocol.order);
+  reader.Text("order", order);
+  if (order != "williams" && order != "random") {
+    reader.Fail("order", "is \"" + order + "\"; it must be williams or random");
+  }
+  protocol.order = order == "random" ? Order::kRandom : Order::kWilliams;
+  reader.Whole("seed", protocol.seed, 0, kMostSeed);
+  reader.Text("consent", protocol.consent);
+}
+
+void ReadTrials(Reader& reader, Protocol& protocol) {
+  reader.Number("practice_s", protocol.practice_s, 0, kMostPracticeS);
+  reader.Number("rest_s", protocol.rest_s, 0, kMostPracticeS);
+  reader.Number("trial_limit_s", protocol.trial_limit_s, 1, kMostPracticeS);
+  reader.Text("practice_track", protocol.practice_track);
+  reader.Text("straight_track", protocol.straight_track);
+  reader.Whole("straight_trials", protocol.straight_trials, 0, 100);
+  reader.Texts("straight_tasks", protocol.straight_tasks, 0, kMostTracks);
+  reader.Texts("test_tracks", protocol.test_tracks, 0, kMostTracks);
+  reader.Number("disk_mb", protocol.disk_mb, 0, 1e6);
+}
+
+}  // namespace
+
+const char* Name(Order order) { return order == Order::kWilliams ? "williams" : "random"; }
+
+const std::vector<std::string>& InterfaceNames() {
+  static const std::vector<std::string> names = {"wrist", "arm", "leg", "joystick", "boards"};
+  return names;
+}
+
+Result<Protocol> ParseProtocol(const std::string& text, const std::string& file) {
+  ordered_json object;
+  try {
+    object = ordered_json::parse(text, nullptr, true, /*ignore_comments=*/true);
+  } catch (const ordered_json::exception& error) {
+    return InvalidData(file + ": not JSON: " + error.what());
+  }
+  Protocol protocol;
+  Reader reader(object, file);
+  ReadPeople(reader, protocol);
+  ReadTrials(reader, protocol);
+  if (const auto done = ReadSurvey(reader, "survey", file, protocol.survey); !done) {
+    return done.error();
+  }
+  if (const auto done = ReadSurvey(reader, "final_survey", file, protocol.final_survey); !done) {
+    return done.error();
+  }
+  if (const auto done = ReadDevices(reader, file, protocol.devices); !done) return done.error();
+  if (const auto done = reader.Finish(); !done) return done.error();
+  return protocol;
+}
+
+}  // namespace footing::study::plan

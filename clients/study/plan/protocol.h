@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+
+namespace footing::study::plan {
+
+enum class Order {
+  kWilliams,  ///< Balanced: see WilliamsOrders.
+  kRandom,    ///< An independent random order for each participant.
+};
+
+const char* Name(Order order);
+
+struct Survey {
+  /// Each is rated 1 to 5 (gait paper, section 8.1).
+  std::vector<std::string> ratings = {"fun",         "ease of use", "stress",
+                                      "familiarity", "immersion",   "like"};
+  std::vector<std::string> questions = {"good", "bad"};  ///< Free text.
+  bool exertion = true;  ///< After each interface: 0 (nothing at all) to 10, Borg's CR10 scale.
+};
+
+/// What the devices must be like before a trial begins.
+struct DeviceGate {
+  double least_battery = 0.2;  ///< Share of a full battery.
+  double least_rate_hz = 30;   ///< Of reports, from each device that has a role.
+  bool allow_simulated = false;
+};
+
+/// A study as its file says; docs/study.md describes the keys. Defaults follow the gait paper,
+/// section 8.1, where it says something.
+struct Protocol {
+  std::string name;
+  std::vector<std::string> participants;  ///< Codes, never names.
+  std::vector<std::string> interfaces;
+  std::string control;  ///< The interface that the others are compared with.
+  Order order = Order::kWilliams;
+  std::uint64_t seed = 0;
+  std::string consent = "The participant has read and signed the consent form.";
+  double practice_s = 300;
+  double rest_s = 60;          ///< Before each interface but the first.
+  double trial_limit_s = 600;  ///< A trial that takes longer is stopped.
+  std::string practice_track = "endless";
+  std::string straight_track = "straight";
+  std::uint64_t straight_trials = 2;        ///< For each interface.
+  std::vector<std::string> straight_tasks;  ///< Of the track; empty: it has none.
+  std::vector<std::string> test_tracks = {"1", "2", "3", "4"};
+  Survey survey;
+  Survey final_survey{{}, {"preferred interface", "remarks"}, false};
+  DeviceGate devices;
+  double disk_mb = 500;  ///< Free space that a session needs.
+};
+
+/// Reads a protocol; comments are allowed. `file` names it in errors, which are InvalidData and say
+/// which key has which value and what it may be.
+Result<Protocol> ParseProtocol(const std::string& text, const std::string& file);
+
+/// Names of the interfaces that a protocol may have.
+const std::vector<std::string>& InterfaceNames();
+
+}  // namespace footing::study::plan

@@ -1,0 +1,106 @@
+#include "clients/study/plan/phases.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace footing::study::plan {
+namespace {
+
+Protocol Four() {
+  Protocol protocol;
+  for (int i = 1; i <= 8; ++i) protocol.participants.push_back("P" + std::to_string(i));
+  protocol.interfaces = {"wrist", "arm", "leg", "joystick"};
+  protocol.control = "joystick";
+  protocol.straight_tasks = {"a", "b", "c", "d", "e", "f"};
+  protocol.seed = 11;
+  return protocol;
+}
+
+TEST(Sessions, FollowThePapersSequence) {
+  for (const Session& session : MakeSessions(Four())) {
+    std::vector<std::string> ids;
+    for (const Phase& phase : session.phases) ids.push_back(phase.id);
+    std::vector<std::string> expected = {"consent", "device_check"};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::string& name = session.interfaces[i];
+      if (i > 0) expected.push_back(name + ".rest");
+      for (const char* part :
+           {"demonstration", "practice", "straight1", "straight2", "test", "survey"}) {
+        expected.push_back(name + "." + part);
+      }
+    }
+    expected.push_back("final_survey");
+    EXPECT_EQ(ids, expected);
+  }
+}
+
+TEST(Sessions, HaveEachTestTrackOncePerParticipant) {
+  std::map<std::string, std::set<std::string>> met_with;  // Track to interfaces.
+  for (const Session& session : MakeSessions(Four())) {
+    std::set<std::string> tracks;
+    for (const Phase& phase : session.phases) {
+      if (phase.kind != PhaseKind::kTestTrack) continue;
+      tracks.insert(phase.track);
+      met_with[phase.track].insert(phase.interface);
+    }
+    EXPECT_EQ(tracks, (std::set<std::string>{"1", "2", "3", "4"}));
+  }
+  for (const auto& [track, interfaces] : met_with) EXPECT_GT(interfaces.size(), 1u);
+}
+
+TEST(Sessions, RepeatAStraightTaskOnlyWhenAllHadTheirTurn) {
+  for (const Session& session : MakeSessions(Four())) {
+    std::vector<std::string> tasks;
+    for (const Phase& phase : session.phases) {
+      if (phase.kind == PhaseKind::kStraight) tasks.push_back(phase.task);
+    }
+    ASSERT_EQ(tasks.size(), 8u);
+    EXPECT_EQ(std::set<std::string>(tasks.begin(), tasks.begin() + 6).size(), 6u);
+    EXPECT_NE(tasks[6], tasks[7]);
+  }
+}
+
+TEST(Sessions, DependOnTheSeedAlone) {
+  const auto tracks = [](std::uint64_t seed) {
+    Protocol protocol = Four();
+    protocol.seed = seed;
+    std::vector<std::string> found;
+    for (const Session& session : MakeSessions(protocol)) {
+      for (const Phase& phase : session.phases) {
+        found.push_back(phase.id + phase.track + phase.task + std::to_string(phase.seed));
+      }
+    }
+    return found;
+  };
+  EXPECT_EQ(tracks(5), tracks(5));
+  EXPECT_NE(tracks(5), tracks(6));
+}
+
+TEST(Sessions, GiveEveryTrialASeedOfItsOwn) {
+  std::set<std::uint64_t> seeds;
+  std::size_t trials = 0;
+  for (const Session& session : MakeSessions(Four())) {
+    for (const Phase& phase : session.phases) {
+      if (!phase.is_trial()) continue;
+      ++trials;
+      seeds.insert(phase.seed);
+      EXPECT_LT(phase.seed, 1ull << 53);
+    }
+  }
+  EXPECT_EQ(seeds.size(), trials);
+}
+
+TEST(Remarks, SayWhenASquareIsNotComplete) {
+  Protocol protocol = Four();
+  EXPECT_TRUE(Remarks(protocol).empty());
+  protocol.participants.pop_back();
+  ASSERT_EQ(Remarks(protocol).size(), 1u);
+  EXPECT_THAT(Remarks(protocol).front(), testing::HasSubstr("multiple of 4"));
+}
+
+}  // namespace
+}  // namespace footing::study::plan
