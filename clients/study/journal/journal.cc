@@ -1,0 +1,107 @@
+#include "clients/study/journal/journal.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/config/data_file.h"
+
+namespace footing::study::journal {
+namespace {
+
+constexpr std::size_t kMostBytes = 64u << 20;
+
+Error Fault(const std::string& what, const std::string& path) {
+  return Failure("cannot " + what + " " + path + ": " + std::strerror(errno));
+}
+
+/// So that the file's name survives the loss of power, too.
+void SyncFolder(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const int descriptor =
+      ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+Result<records::JournalText> ReadJournal(const std::string& path) {
+  const auto text = config::ReadTextFile(path, kMostBytes);
+  if (!text) return text.error();
+  return records::ParseJournal(*text, path);
+}
+
+Result<Journal> Journal::Create(const std::string& path) {
+  const int descriptor =
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0600);
+  if (descriptor < 0) {
+    if (errno == EEXIST) return UsageError(path + " exists and is never overwritten");
+    return Fault("create", path);
+  }
+  SyncFolder(path);
+  return Journal(path, descriptor);
+}
+
+Result<Journal> Journal::Resume(const std::string& path) {
+  auto text = ReadJournal(path);
+  if (!text) return text.error();
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (descriptor < 0) return Fault("open", path);
+  Journal journal(path, descriptor);
+  if (text->torn_bytes > 0) {
+    if (::ftruncate(descriptor, static_cast<off_t>(text->whole_bytes)) != 0) {
+      return Fault("cut the torn line of", path);
+    }
+    if (::fsync(descriptor) != 0) return Fault("write", path);
+  }
+  journal.events_ = std::move(text->events);
+  journal.torn_bytes_ = text->torn_bytes;
+  return journal;
+}
+
+Journal::Journal(Journal&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      events_(std::move(other.events_)),
+      torn_bytes_(other.torn_bytes_) {}
+
+Journal& Journal::operator=(Journal&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(events_, other.events_);
+  std::swap(torn_bytes_, other.torn_bytes_);
+  return *this;
+}
+
+Journal::~Journal() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<void> Journal::Append(records::EventKind kind, nlohmann::ordered_json fields) {
+  records::Event event;
+  event.kind = kind;
+  event.number = events_.size() + 1;
+  event.wall_ns = clock::WallNs();
+  event.fields = std::move(fields);
+  const std::string line = ToLine(event) + "\n";
+  std::string_view left = line;
+  while (!left.empty()) {
+    const ssize_t written = ::write(descriptor_, left.data(), left.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return Fault("write", path_);
+    left.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (::fsync(descriptor_) != 0) return Fault("write", path_);
+  events_.push_back(std::move(event));
+  return {};
+}
+
+}  // namespace footing::study::journal

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clients/study/records/event.h"
+#include "common/result/result.h"
+
+namespace footing::study::journal {
+
+/// The journal of one participant, one event a line. An event is on the disk when Append returns,
+/// so a program that is killed loses nothing but what it was about to append.
+class Journal {
+ public:
+  /// A new file; an existing one is a usage error.
+  static Result<Journal> Create(const std::string& path);
+  /// An existing file, to go on with it. A torn last line is cut off: see torn_bytes().
+  static Result<Journal> Resume(const std::string& path);
+
+  Journal(Journal&& other) noexcept;
+  Journal& operator=(Journal&& other) noexcept;
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+  ~Journal();
+
+  Result<void> Append(records::EventKind kind, nlohmann::ordered_json fields);
+
+  /// Those of the file and those appended.
+  const std::vector<records::Event>& events() const { return events_; }
+  std::size_t torn_bytes() const { return torn_bytes_; }
+  const std::string& path() const { return path_; }
+
+ private:
+  Journal(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+
+  std::string path_;
+  int descriptor_ = -1;
+  std::vector<records::Event> events_;
+  std::size_t torn_bytes_ = 0;
+};
+
+/// The events of a journal, without changing the file. Failure when it cannot be read.
+Result<records::JournalText> ReadJournal(const std::string& path);
+
+}  // namespace footing::study::journal

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+
+/// Where a study's files are: beside its protocol NAME.json the folder NAME, in it a folder for
+/// each participant with journal.jsonl and the recordings. All of it is readable by its owner only.
+namespace footing::study::journal {
+
+/// The folder of a protocol file: its path without .json, with ".study" at the end.
+std::string FolderOf(const std::string& protocol_path);
+std::string ParticipantFolder(const std::string& study_folder, const std::string& participant);
+std::string JournalPath(const std::string& study_folder, const std::string& participant);
+
+Result<void> MakeFolder(const std::string& path);
+bool Exists(const std::string& path);
+
+/// Bytes free for this user on the disk of an existing folder.
+Result<std::uint64_t> FreeBytes(const std::string& folder);
+/// Failure that says how much is free and how much is needed.
+Result<void> RequireSpace(const std::string& folder, double needed_mb);
+
+/// The protocol of a study must not change once a session began: the first call stores its text in
+/// the folder as protocol.json, later ones compare. Participants may be added at the end.
+Result<void> KeepProtocol(const std::string& study_folder, const std::string& text);
+
+}  // namespace footing::study::journal

@@ -1,0 +1,66 @@
+#include "clients/study/records/progress.h"
+
+#include <set>
+
+namespace footing::study::records {
+
+Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>& events) {
+  Progress progress;
+  std::set<std::string> finished;
+  for (const Event& event : events) {
+    switch (event.kind) {
+      case EventKind::kSessionStarted:
+        progress.started = true;
+        break;
+      case EventKind::kSessionFinished:
+        progress.finished = true;
+        break;
+      case EventKind::kWithdrawn:
+        progress.withdrawn = true;
+        break;
+      case EventKind::kPhaseFinished:
+        finished.insert(event.Text("phase"));
+        progress.active_s += event.Number("active_s");
+        break;
+      case EventKind::kTrialStarted:
+        ++progress.attempts[event.Text("phase")];
+        progress.interrupted_trial = event.Text("trial");
+        break;
+      case EventKind::kTrialFinished:
+        progress.interrupted_trial.clear();
+        break;
+      case EventKind::kSessionResumed:
+      case EventKind::kPhaseStarted:
+      case EventKind::kFailure:
+      case EventKind::kFailureUndone:
+      case EventKind::kFailureRestored:
+      case EventKind::kRating:
+      case EventKind::kAnswer:
+      case EventKind::kExertion:
+      case EventKind::kNote:
+        break;
+    }
+  }
+  progress.phases_finished = finished.size();
+  while (progress.next_phase < phases.size() &&
+         finished.count(phases[progress.next_phase].id) != 0) {
+    ++progress.next_phase;
+  }
+  return progress;
+}
+
+std::string Describe(const Progress& progress, const plan::Session& session) {
+  if (progress.withdrawn) return session.participant + " has withdrawn";
+  if (progress.finished) return session.participant + " has finished";
+  if (!progress.started) return session.participant + " has not begun";
+  if (progress.next_phase >= session.phases.size()) return session.participant + " is at the end";
+  const plan::Phase& phase = session.phases[progress.next_phase];
+  const auto attempts = progress.attempts.find(phase.id);
+  std::string text = session.participant + " stopped in " + phase.id;
+  if (attempts != progress.attempts.end()) {
+    text += ", attempt " + std::to_string(attempts->second);
+  }
+  return text;
+}
+
+}  // namespace footing::study::records

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "clients/study/plan/phases.h"
+#include "clients/study/records/event.h"
+
+namespace footing::study::records {
+
+/// Where a session stands after its events.
+struct Progress {
+  bool started = false;
+  bool finished = false;
+  bool withdrawn = false;
+  std::size_t next_phase = 0;  ///< The first one that is not finished; as many as phases: none.
+  std::size_t phases_finished = 0;
+  std::map<std::string, std::size_t> attempts;  ///< Trials begun, by phase.
+  double active_s = 0;  ///< Of the finished phases: how long the participant has been moving.
+  std::string interrupted_trial;  ///< Began and did not finish; empty: none.
+};
+
+Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>& events);
+
+/// The line for a person: "P07 stopped in wrist.test, attempt 2".
+std::string Describe(const Progress& progress, const plan::Session& session);
+
+}  // namespace footing::study::records

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clients/study/records/event.h"
+
+namespace footing::study::records {
+
+/// The outcome of a trial that lost a device: it does not count.
+inline constexpr const char* kDeviceLost = "device_lost";
+
+struct Failure {
+  std::uint64_t number = 0;  ///< The server's.
+  std::string kind;          ///< Name of a stream::FailureCause.
+  double trial_time_s = 0;
+  double distance_m = 0;
+  bool undone = false;
+};
+
+/// One attempt at a trial.
+struct Trial {
+  std::string participant;
+  std::string phase;
+  std::string interface;
+  std::string kind;  ///< "straight" or "test_track".
+  std::string track;
+  std::string task;
+  std::size_t position = 0;  ///< Of the interface in the participant's order, from 1.
+  std::size_t attempt = 0;
+  std::int64_t started_wall_ns = 0;
+  std::string outcome;  ///< "finished", "timed_out", "stopped", kDeviceLost; "interrupted": no end.
+  double time_s = 0;    ///< From the start line; including put-backs.
+  double distance_m = 0;
+  double heading_oscillation_rad = 0;  ///< Root mean square of the heading error; NaN: unknown.
+  std::string recording;
+  bool synthetic = false;
+  std::vector<Failure> failures;
+
+  std::size_t Count(const std::string& kind) const;  ///< Without those undone.
+  std::size_t failure_count() const;
+  /// Time over failures; the whole time where there is none, as a lower bound.
+  double mean_time_to_failure_s() const;
+  double time_to_first_failure_s() const;  ///< NaN: none.
+};
+
+struct Rating {
+  std::string participant;
+  std::string interface;  ///< Empty: of the final survey.
+  std::string item;       ///< "exertion" for the exertion.
+  double value = 0;
+  bool synthetic = false;
+};
+
+struct Answer {
+  std::string participant;
+  std::string interface;
+  std::string question;
+  std::string text;
+  bool synthetic = false;
+};
+
+/// What the journal of one participant says of results. A repeated survey replaces the earlier one.
+struct Records {
+  std::string participant;
+  std::vector<std::string> interfaces;  ///< In their order.
+  bool finished = false;
+  bool withdrawn = false;
+  bool synthetic = false;
+  std::vector<Trial> trials;  ///< All attempts, in the order in which they began.
+  std::vector<Rating> ratings;
+  std::vector<Answer> answers;
+};
+
+Records Collect(const std::vector<Event>& events);
+
+/// The attempts that count: the last one of each phase that ended and lost no device.
+std::vector<const Trial*> Counting(const Records& records);
+
+}  // namespace footing::study::records

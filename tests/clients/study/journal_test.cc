@@ -1,0 +1,133 @@
+#include "clients/study/journal/journal.h"
+
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "clients/study/journal/lock.h"
+#include "clients/study/journal/study_folder.h"
+#include "tests/common/temporary_folder.h"
+
+namespace footing::study::journal {
+namespace {
+
+using records::EventKind;
+using testing::HasSubstr;
+
+TEST(Journal, IsNeverOverwritten) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(Journal::Create(folder.Path("j")));
+  const auto again = Journal::Create(folder.Path("j"));
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().kind, ErrorKind::kUsage);
+}
+
+TEST(Journal, IsReadableByItsOwnerAlone) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(Journal::Create(folder.Path("j")));
+  struct stat file {};
+  ASSERT_EQ(stat(folder.Path("j").c_str(), &file), 0);
+  EXPECT_EQ(file.st_mode & 0777, 0600u);
+}
+
+TEST(Journal, GoesOnBehindItsLastWholeLine) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("j");
+  {
+    auto journal = Journal::Create(path);
+    ASSERT_TRUE(journal);
+    ASSERT_TRUE(journal->Append(EventKind::kSessionStarted, {{"participant", "P1"}}));
+    ASSERT_TRUE(journal->Append(EventKind::kNote, {{"text", "a"}}));
+  }
+  std::ofstream(path, std::ios::app) << R"({"number": 3, "wall_n)";
+  auto journal = Journal::Resume(path);
+  ASSERT_TRUE(journal) << journal.error().message;
+  EXPECT_EQ(journal->torn_bytes(), 21u);
+  EXPECT_EQ(journal->events().size(), 2u);
+  ASSERT_TRUE(journal->Append(EventKind::kNote, {{"text", "b"}}));
+  const auto read = ReadJournal(path);
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->events.size(), 3u);
+  EXPECT_EQ(read->events[2].Text("text"), "b");
+  EXPECT_EQ(read->torn_bytes, 0u);
+}
+
+TEST(Journal, KeepsWhatWasAppendedBeforeAKill) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("j");
+  int pipe_ends[2];
+  ASSERT_EQ(pipe(pipe_ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {  // Appends and reports each append until it is killed.
+    auto journal = Journal::Create(path);
+    for (char i = 1; journal && journal->Append(EventKind::kNote, {{"i", i}}); ++i) {
+      if (write(pipe_ends[1], &i, 1) != 1) break;
+    }
+    _exit(1);
+  }
+  char reported = 0;
+  while (reported < 20 && read(pipe_ends[0], &reported, 1) == 1) {
+  }
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  close(pipe_ends[0]);
+  close(pipe_ends[1]);
+  ASSERT_EQ(reported, 20);
+  const auto journal = Journal::Resume(path);
+  ASSERT_TRUE(journal) << journal.error().message;
+  EXPECT_GE(journal->events().size(), 20u);
+}
+
+TEST(StudyLock, NamesItsHolderAndEndsWithIt) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("lock");
+  {
+    const auto held = Lock::Take(path, "anna, footing-study 4711, participant P3");
+    ASSERT_TRUE(held);
+    const auto second = Lock::Take(path, "ben");
+    ASSERT_FALSE(second);
+    EXPECT_THAT(second.error().message, HasSubstr("anna, footing-study 4711, participant P3"));
+  }
+  EXPECT_TRUE(Lock::Take(path, "ben"));
+}
+
+TEST(DiskSpace, IsRequiredWithTheNeedStated) {
+  const test::TemporaryFolder folder;
+  EXPECT_TRUE(RequireSpace(folder.Path(""), 0));
+  const auto refused = RequireSpace(folder.Path(""), 1e12);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("needs 1000000000000 MB"));
+  EXPECT_FALSE(RequireSpace(folder.Path("missing"), 0));
+}
+
+TEST(StudyFolder, StandsBesideTheProtocol) {
+  EXPECT_EQ(FolderOf("a/b.json"), "a/b.study");
+  EXPECT_EQ(FolderOf("a/b"), "a/b.study");
+  EXPECT_EQ(JournalPath("b.study", "P1"), "b.study/P1/journal.jsonl");
+}
+
+TEST(StudyFolder, KeepsTheProtocolItBeganWithButForNewParticipants) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("s");
+  ASSERT_TRUE(MakeFolder(path));
+  ASSERT_TRUE(KeepProtocol(path, R"({"participants": ["P1"], "seed": 1})"));
+  EXPECT_TRUE(KeepProtocol(path, R"({"participants": ["P1"], "seed": 1})"));
+  EXPECT_TRUE(KeepProtocol(path, R"({"seed": 1, "participants": ["P1", "P2"]})"));
+  for (const char* changed :
+       {R"({"participants": ["P1", "P2"], "seed": 2})",
+        R"({"participants": ["P2", "P1"], "seed": 1})", R"({"participants": ["P1"], "seed": 1})"}) {
+    const auto refused = KeepProtocol(path, changed);
+    ASSERT_FALSE(refused) << changed;
+    EXPECT_EQ(refused.error().kind, ErrorKind::kInvalidData);
+  }
+}
+
+}  // namespace
+}  // namespace footing::study::journal

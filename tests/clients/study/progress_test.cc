@@ -1,0 +1,149 @@
+#include "clients/study/records/progress.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "clients/study/records/trials.h"
+
+namespace footing::study::records {
+namespace {
+
+using nlohmann::ordered_json;
+
+class Events {
+ public:
+  Events& Add(EventKind kind, ordered_json fields = ordered_json::object()) {
+    list.push_back({kind, list.size() + 1, static_cast<std::int64_t>(list.size()), fields});
+    return *this;
+  }
+  Events& Trial(const std::string& phase, int attempt) {
+    return Add(EventKind::kTrialStarted, {{"phase", phase},
+                                          {"trial", phase + std::to_string(attempt)},
+                                          {"interface", "wrist"},
+                                          {"kind", "straight"},
+                                          {"attempt", attempt}});
+  }
+  Events& Finished(double time_s) {
+    return Add(EventKind::kTrialFinished, {{"outcome", "finished"}, {"time_s", time_s}});
+  }
+  Events& Failed(int number, const std::string& kind, double time_s) {
+    return Add(EventKind::kFailure,
+               {{"failure", number}, {"kind", kind}, {"trial_time_s", time_s}});
+  }
+  std::vector<Event> list;
+};
+
+plan::Session TwoTrials() {
+  plan::Session session;
+  session.participant = "P7";
+  session.interfaces = {"wrist"};
+  session.phases = {{"consent", plan::PhaseKind::kConsent, "", "", "", 0, 0},
+                    {"wrist.straight1", plan::PhaseKind::kStraight, "wrist", "s", "", 0, 1},
+                    {"wrist.straight2", plan::PhaseKind::kStraight, "wrist", "s", "", 0, 2}};
+  return session;
+}
+
+TEST(Progress, GoesOnWithTheFirstPhaseThatIsNotFinished) {
+  const plan::Session session = TwoTrials();
+  Events events;
+  EXPECT_FALSE(Replay(session.phases, events.list).started);
+  events.Add(EventKind::kSessionStarted).Add(EventKind::kPhaseFinished, {{"phase", "consent"}});
+  EXPECT_EQ(Replay(session.phases, events.list).next_phase, 1u);
+  events.Trial("wrist.straight1", 1);
+  Progress progress = Replay(session.phases, events.list);
+  EXPECT_EQ(progress.next_phase, 1u);
+  EXPECT_EQ(progress.interrupted_trial, "wrist.straight11");
+  EXPECT_EQ(Describe(progress, session), "P7 stopped in wrist.straight1, attempt 1");
+  events.Trial("wrist.straight1", 2).Finished(9);
+  events.Add(EventKind::kPhaseFinished, {{"phase", "wrist.straight1"}});
+  progress = Replay(session.phases, events.list);
+  EXPECT_EQ(progress.next_phase, 2u);
+  EXPECT_EQ(progress.attempts.at("wrist.straight1"), 2u);
+  EXPECT_TRUE(progress.interrupted_trial.empty());
+}
+
+TEST(Progress, AddsUpTheActiveTimeOfFinishedPhases) {
+  Events events;
+  events.Add(EventKind::kPhaseFinished, {{"phase", "a"}, {"active_s", 40.5}});
+  events.Add(EventKind::kPhaseFinished, {{"phase", "b"}, {"active_s", 20}});
+  EXPECT_EQ(Replay(TwoTrials().phases, events.list).active_s, 60.5);
+}
+
+TEST(Progress, KnowsWithdrawalAndTheEnd) {
+  const plan::Session session = TwoTrials();
+  Events events;
+  events.Add(EventKind::kSessionStarted).Add(EventKind::kWithdrawn);
+  EXPECT_TRUE(Replay(session.phases, events.list).withdrawn);
+  events.Add(EventKind::kSessionFinished);
+  EXPECT_TRUE(Replay(session.phases, events.list).finished);
+}
+
+TEST(TrialRecords, CountFailuresByKindWithoutThoseUndone) {
+  Events events;
+  events.Add(EventKind::kSessionStarted, {{"participant", "P7"}, {"interfaces", {"arm", "wrist"}}});
+  events.Trial("wrist.straight1", 1).Failed(1, "jump", 2).Failed(2, "curve", 5);
+  events.Add(EventKind::kFailureUndone, {{"failure", 1}}).Failed(3, "jump", 8).Finished(12);
+  const Records records = Collect(events.list);
+  ASSERT_EQ(records.trials.size(), 1u);
+  const Trial& trial = records.trials.front();
+  EXPECT_EQ(trial.participant, "P7");
+  EXPECT_EQ(trial.position, 2u);
+  EXPECT_EQ(trial.Count("jump"), 1u);
+  EXPECT_EQ(trial.failure_count(), 2u);
+  EXPECT_EQ(trial.mean_time_to_failure_s(), 6);   // 12 s over 2 failures.
+  EXPECT_EQ(trial.time_to_first_failure_s(), 5);  // The one at 2 s was none.
+  events.Add(EventKind::kFailureRestored, {{"failure", 1}});
+  EXPECT_EQ(Collect(events.list).trials.front().failure_count(), 3u);
+}
+
+TEST(TrialRecords, UndoTheNewestFailureOfANumberWhenAServerStartedAgain) {
+  Events events;
+  events.Add(EventKind::kSessionStarted);
+  events.Trial("a", 1).Failed(1, "jump", 1).Finished(3);
+  events.Trial("b", 1).Failed(1, "jump", 1).Finished(3);
+  events.Add(EventKind::kFailureUndone, {{"failure", 1}});
+  const Records records = Collect(events.list);
+  EXPECT_EQ(records.trials[0].failure_count(), 1u);
+  EXPECT_EQ(records.trials[1].failure_count(), 0u);
+}
+
+TEST(TrialRecords, CountTheLastAttemptThatEnded) {
+  Events events;
+  events.Add(EventKind::kSessionStarted);
+  events.Trial("a", 1).Finished(3).Trial("a", 2).Finished(4).Trial("a", 3);
+  events.Trial("b", 1);
+  const Records records = Collect(events.list);
+  EXPECT_EQ(records.trials.size(), 4u);
+  EXPECT_EQ(records.trials[2].outcome, "interrupted");
+  const auto counting = Counting(records);
+  ASSERT_EQ(counting.size(), 1u);
+  EXPECT_EQ(counting.front()->time_s, 4);
+}
+
+TEST(TrialRecords, DoNotCountAnAttemptThatLostADevice) {
+  Events events;
+  events.Add(EventKind::kSessionStarted);
+  events.Trial("a", 1).Finished(3).Trial("a", 2);
+  events.Add(EventKind::kTrialFinished, {{"outcome", kDeviceLost}, {"time_s", 1}});
+  const Records records = Collect(events.list);
+  const auto counting = Counting(records);
+  ASSERT_EQ(counting.size(), 1u);
+  EXPECT_EQ(counting.front()->attempt, 1u);
+}
+
+TEST(TrialRecords, HaveOneRatingPerItemTheLastOne) {
+  Events events;
+  events.Add(EventKind::kSessionStarted, {{"participant", "P7"}});
+  for (const int value : {2, 5}) {
+    events.Add(EventKind::kRating, {{"interface", "arm"}, {"item", "fun"}, {"value", value}});
+  }
+  events.Add(EventKind::kExertion, {{"interface", "arm"}, {"value", 3}});
+  const Records records = Collect(events.list);
+  ASSERT_EQ(records.ratings.size(), 2u);
+  EXPECT_EQ(records.ratings[0].value, 5);
+  EXPECT_EQ(records.ratings[1].item, "exertion");
+}
+
+}  // namespace
+}  // namespace footing::study::records
