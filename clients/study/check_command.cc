@@ -1,0 +1,83 @@
+#include <memory>
+
+#include "clients/study/commands.h"
+#include "clients/study/plan/phases.h"
+
+namespace footing::study {
+namespace {
+
+using nlohmann::ordered_json;
+
+double PlannedS(const plan::Session& session) {
+  double planned_s = 0;
+  for (const plan::Phase& phase : session.phases) planned_s += phase.duration_s;
+  return planned_s;
+}
+
+ordered_json ToJson(const plan::Phase& phase) {
+  ordered_json json = {{"phase", phase.id}, {"kind", Name(phase.kind)}};
+  if (!phase.interface.empty()) json["interface"] = phase.interface;
+  if (!phase.track.empty()) json["track"] = phase.track;
+  if (!phase.task.empty()) json["task"] = phase.task;
+  if (phase.duration_s > 0) json["duration_s"] = phase.duration_s;
+  if (phase.is_trial()) json["seed"] = phase.seed;
+  return json;
+}
+
+/// One line for each participant: the interfaces in their order, each with its tasks and track.
+std::string Line(const plan::Session& session) {
+  std::string line = "  " + session.participant + ": ";
+  for (const std::string& interface : session.interfaces) {
+    if (interface != session.interfaces.front()) line += "; ";
+    line += interface;
+    std::string separator = " (";
+    for (const plan::Phase& phase : session.phases) {
+      if (!phase.is_trial() || phase.interface != interface) continue;
+      line += separator + (phase.task.empty() ? "track " + phase.track : phase.task);
+      separator = ", ";
+    }
+    if (separator == ", ") line += ")";
+  }
+  return line;
+}
+
+Result<Answer> Check(const ProtocolOptions& options) {
+  const auto loaded = Load(options.path, options.folder);
+  if (!loaded) return loaded.error();
+  const plan::Protocol& protocol = loaded->protocol;
+  const auto sessions = plan::MakeSessions(protocol);
+  Answer answer;
+  answer.json = {{"name", protocol.name},
+                 {"seed", protocol.seed},
+                 {"order", Name(protocol.order)},
+                 {"control", protocol.control},
+                 {"folder", loaded->folder},
+                 {"remarks", plan::Remarks(protocol)},
+                 {"sessions", ordered_json::array()}};
+  answer.text = protocol.name + ": " + std::to_string(sessions.size()) + " participants, order " +
+                Name(protocol.order) + ", seed " + std::to_string(protocol.seed) + ", control " +
+                protocol.control + "; data in " + loaded->folder + "\n";
+  for (const plan::Session& session : sessions) {
+    ordered_json phases = ordered_json::array();
+    for (const plan::Phase& phase : session.phases) phases.push_back(ToJson(phase));
+    answer.json["sessions"].push_back({{"participant", session.participant},
+                                       {"interfaces", session.interfaces},
+                                       {"phases", std::move(phases)}});
+    answer.text += Line(session) + "\n";
+  }
+  answer.text += "Practice and rests of a session: " +
+                 std::to_string(static_cast<int>(PlannedS(sessions.front()) / 60)) + " min.";
+  for (const std::string& remark : plan::Remarks(protocol)) answer.text += "\nNote: " + remark;
+  return answer;
+}
+
+}  // namespace
+
+void AddCheckCommand(CLI::App& app, Shared& shared) {
+  const auto options = std::make_shared<ProtocolOptions>();
+  CLI::App* command = app.add_subcommand("check", "Check a protocol and print its plan");
+  AddProtocolOptions(*command, *options);
+  command->callback([options, &shared] { Finish(Check(*options), shared); });
+}
+
+}  // namespace footing::study

@@ -1,0 +1,86 @@
+#include "clients/study/commands.h"
+
+#include <iostream>
+#include <set>
+#include <utility>
+
+#include "clients/study/journal/study_folder.h"
+#include "common/cli/cli.h"
+#include "common/config/data_file.h"
+
+namespace footing::study {
+namespace {
+
+/// The text of a built-in track.
+Result<std::string> ReadTrack(const std::string& key, const std::string& track,
+                              const std::string& file) {
+  if (track.find('/') != std::string::npos || track.find('.') != std::string::npos) {
+    return InvalidData(file + ": " + key + " has \"" + track +
+                       "\"; a study uses built-in tracks, by their names");
+  }
+  auto found = config::ReadNamedOrPath(track, "tracks");
+  if (found) return found;
+  return InvalidData(file + ": " + key + " has unknown track \"" + track +
+                     "\": " + found.error().message);
+}
+
+/// Each task must be one of the straight track's.
+Result<void> CheckTasks(const plan::Protocol& protocol, const std::string& track_text,
+                        const std::string& file) {
+  using nlohmann::json;
+  const json track = json::parse(track_text, nullptr, /*allow_exceptions=*/false);
+  const json none = json::object();
+  const json& mark = track.is_object() && track.contains("mark") ? track["mark"] : none;
+  std::string names;
+  std::set<std::string> known;
+  for (const json& task : mark.value("tasks", json::array())) {
+    known.insert(task.value("name", ""));
+    names += (names.empty() ? "" : ", ") + task.value("name", "");
+  }
+  for (const std::string& task : protocol.straight_tasks) {
+    if (known.count(task) != 0) continue;
+    return InvalidData(file + ": straight_tasks has \"" + task + "\", which track " +
+                       protocol.straight_track + " does not have; there are: " +
+                       (names.empty() ? "none" : names));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<LoadedProtocol> Load(const std::string& path, const std::string& folder) {
+  auto text = config::ReadTextFile(path);
+  if (!text) return text.error();
+  auto protocol = plan::ParseProtocol(*text, path);
+  if (!protocol) return protocol.error();
+  const auto practice = ReadTrack("practice_track", protocol->practice_track, path);
+  if (!practice) return practice.error();
+  const auto straight = ReadTrack("straight_track", protocol->straight_track, path);
+  if (!straight) return straight.error();
+  if (const auto done = CheckTasks(*protocol, *straight, path); !done) return done.error();
+  for (const std::string& track : protocol->test_tracks) {
+    if (const auto found = ReadTrack("test_tracks", track, path); !found) return found.error();
+  }
+  return LoadedProtocol{path, std::move(*text), std::move(*protocol),
+                        folder.empty() ? journal::FolderOf(path) : folder};
+}
+
+void Finish(const Result<Answer>& result, Shared& shared) {
+  if (!result) {
+    shared.exit_code = cli::Report(result.error());
+    return;
+  }
+  using nlohmann::ordered_json;
+  std::cout << (shared.json ? result->json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)
+                            : result->text)
+            << std::endl;
+}
+
+void AddProtocolOptions(CLI::App& command, ProtocolOptions& options) {
+  command.add_option("PROTOCOL", options.path, "Protocol file, JSON (docs/study.md)")->required();
+  command.add_option("--folder", options.folder,
+                     "Folder of the study's files (default: the protocol's path with .study in "
+                     "place of .json)");
+}
+
+}  // namespace footing::study

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "clients/study/plan/protocol.h"
+#include "common/result/result.h"
+
+namespace footing::study {
+
+/// What all subcommands share.
+struct Shared {
+  bool json = false;
+  int exit_code = 0;  ///< Set by the subcommand that ran.
+};
+
+struct LoadedProtocol {
+  std::string path;
+  std::string text;
+  plan::Protocol protocol;
+  std::string folder;  ///< Of the study's files.
+};
+
+/// Reads and checks a protocol file; its tracks must be built-in ones.
+Result<LoadedProtocol> Load(const std::string& path, const std::string& folder);
+
+/// Prints a command's answer, one JSON object or its text, or its error; keeps the exit code.
+struct Answer {
+  nlohmann::ordered_json json;
+  std::string text;
+};
+void Finish(const Result<Answer>& result, Shared& shared);
+
+/// Adds PROTOCOL and --folder.
+struct ProtocolOptions {
+  std::string path;
+  std::string folder;
+};
+void AddProtocolOptions(CLI::App& command, ProtocolOptions& options);
+
+/// Each adds subcommands to footing-study; their callbacks do the work.
+void AddCheckCommand(CLI::App& app, Shared& shared);
+void AddRunCommand(CLI::App& app, Shared& shared);
+
+}  // namespace footing::study

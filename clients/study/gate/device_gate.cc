@@ -1,0 +1,93 @@
+#include "clients/study/gate/device_gate.h"
+
+#include <cmath>
+
+#include "common/text/number.h"
+
+namespace footing::study::gate {
+namespace {
+
+using stream::DeviceRole;
+using stream::DeviceStatus;
+
+const DeviceStatus* WithRole(DeviceRole role, const std::vector<DeviceStatus>& devices) {
+  const DeviceStatus* found = nullptr;
+  for (const DeviceStatus& device : devices) {
+    if (device.role != role || device.state == stream::DeviceState::kLost) continue;
+    // Of two with one role the live one counts.
+    if (found == nullptr || device.state == stream::DeviceState::kLive) found = &device;
+  }
+  return found;
+}
+
+/// Of a role that the interface needs; null: none.
+const DeviceStatus* DeviceOf(DeviceRole role, const std::string& interface,
+                             const std::vector<DeviceStatus>& devices) {
+  const DeviceStatus* device = WithRole(role, devices);
+  if (device != nullptr || interface != "joystick") return device;
+  return WithRole(DeviceRole::kLeftHand, devices);
+}
+
+std::string Percent(double share) { return text::Fixed(std::floor(100 * share), 0) + " %"; }
+
+void Check(const plan::DeviceGate& gate, const DeviceStatus& device,
+           std::vector<std::string>& problems) {
+  const std::string name = std::string(stream::Name(device.role)) + " (" + device.serial + ")";
+  if (device.simulated && !gate.allow_simulated) {
+    problems.push_back(name +
+                       " is simulated; connect a real device, or set devices.allow_simulated");
+  }
+  if (device.state != stream::DeviceState::kLive) {
+    problems.push_back(name + " is " + stream::Name(device.state) + "; press one of its buttons");
+    return;
+  }
+  if (device.report_rate_hz < gate.least_rate_hz) {
+    problems.push_back(name + " reports " + text::Fixed(device.report_rate_hz, 0) +
+                       " times a second, and " + text::Fixed(gate.least_rate_hz, 0) +
+                       " are needed; move it closer to the computer");
+  }
+  const bool known = device.battery_fraction >= 0;
+  if (device.battery_low || (known && device.battery_fraction < gate.least_battery)) {
+    problems.push_back(
+        name + " has " + (known ? Percent(device.battery_fraction) + " of" : "a low") +
+        " battery, and " + Percent(gate.least_battery) + " is needed; change the batteries");
+  }
+  if (device.slipped || device.moved) {
+    problems.push_back(name + " has moved since its set-up; run footing-ctl setup");
+  }
+}
+
+}  // namespace
+
+std::vector<DeviceRole> RolesOf(const std::string& interface) {
+  if (interface == "leg") return {DeviceRole::kLeftLeg, DeviceRole::kRightLeg, DeviceRole::kHead};
+  if (interface == "boards") return {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
+  if (interface == "joystick") return {DeviceRole::kRightHand};
+  return {DeviceRole::kLeftHand, DeviceRole::kRightHand};
+}
+
+std::vector<std::string> Problems(const plan::DeviceGate& gate, const std::string& interface,
+                                  const std::vector<DeviceStatus>& devices) {
+  std::vector<std::string> problems;
+  for (const DeviceRole role : RolesOf(interface)) {
+    const DeviceStatus* device = DeviceOf(role, interface, devices);
+    if (device == nullptr) {
+      problems.push_back(std::string(stream::Name(role)) + " is missing, and the interface " +
+                         interface +
+                         " needs it; connect it, or give it the role: footing-ctl setup");
+      continue;
+    }
+    Check(gate, *device, problems);
+  }
+  return problems;
+}
+
+std::string Lost(const std::string& interface, const std::vector<DeviceStatus>& devices) {
+  for (const DeviceRole role : RolesOf(interface)) {
+    const DeviceStatus* device = DeviceOf(role, interface, devices);
+    if (device == nullptr || device->state != stream::DeviceState::kLive) return Name(role);
+  }
+  return "";
+}
+
+}  // namespace footing::study::gate

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/result/result.h"
+
+namespace footing::study {
+
+/// How a wait ended.
+enum class Waited { kDone, kTimeUp, kInterrupted };
+
+/// The experimenter's terminal, and the event loop of the program: everything that waits, waits
+/// here. Prompts go to standard error, answers come from standard input. While it exists SIGINT and
+/// SIGTERM end waits, not the program.
+class Console {
+ public:
+  Console();
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  boost::asio::io_context& io();
+
+  void Print(const std::string& line);
+  /// The next line that is typed. Failure when the program is interrupted or the input has ended.
+  Result<std::string> Ask(const std::string& prompt);
+
+  /// From here on single keys count, without Enter; a terminal does not show them.
+  void ReadKeys(bool on);
+  /// The oldest key that was pressed since; nothing when there is none.
+  std::optional<char> TakeKey();
+
+  /// Handles events until the condition holds, which is asked after each of them.
+  Waited RunUntil(const std::function<bool()>& condition, double within_s);
+  bool interrupted() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// What an interrupted session ends with: it can go on later.
+Error Interrupted();
+
+}  // namespace footing::study

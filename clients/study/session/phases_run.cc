@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "clients/study/gate/device_gate.h"
+#include "clients/study/journal/study_folder.h"
+#include "clients/study/records/trials.h"
+#include "clients/study/session/run_session.h"
+#include "clients/study/session/survey.h"
+#include "clients/study/session/trial_run.h"
+#include "common/clock/clock.h"
+#include "common/text/number.h"
+#include "common/units/units.h"
+
+namespace footing::study {
+namespace {
+
+using nlohmann::ordered_json;
+using records::EventKind;
+
+constexpr double kDevicesReadyS = 10;  // A rate is known a few seconds after a device attached.
+constexpr double kReminderS = 60;
+
+}  // namespace
+
+Result<void> SessionRun::RunPhase(const plan::Phase& phase) {
+  const std::string& interface =
+      phase.interface.empty() ? context_.session.interfaces.front() : phase.interface;
+  switch (phase.kind) {
+    case plan::PhaseKind::kConsent:
+      return Consent();
+    case plan::PhaseKind::kDeviceCheck:
+      return CheckDevices(interface);
+    case plan::PhaseKind::kRest:
+      return CountDown("Rest", phase.duration_s, /*may_end_early=*/false);
+    case plan::PhaseKind::kDemonstration:
+      return Demonstrate(phase);
+    case plan::PhaseKind::kPractice:
+      return Practise(phase);
+    case plan::PhaseKind::kStraight:
+    case plan::PhaseKind::kTestTrack:
+      return Trial(phase);
+    case plan::PhaseKind::kSurvey:
+      return RunSurvey(context_, context_.protocol.survey, phase.interface);
+    case plan::PhaseKind::kFinalSurvey:
+      return RunSurvey(context_, context_.protocol.final_survey, "");
+  }
+  return {};
+}
+
+Result<void> SessionRun::Consent() {
+  const auto note = [&](const std::string& text) {
+    return context_.journal.Append(EventKind::kNote,
+                                   {{"text", text}, {"synthetic", context_.options.unattended}});
+  };
+  if (context_.options.unattended)
+    return note("no person takes part: " + context_.protocol.consent);
+  const auto answer = context_.console.Ask(context_.protocol.consent +
+                                           "\nType yes to confirm, else the session ends:");
+  if (!answer) return answer.error();
+  if (*answer != "yes") return Failure("without consent there is no session; nothing was recorded");
+  return note("confirmed: " + context_.protocol.consent);
+}
+
+Result<void> SessionRun::CheckDevices(const std::string& interface) {
+  const auto servers = UseInterface(interface);
+  if (!servers) return servers.error();
+  plan::DeviceGate gate = context_.protocol.devices;
+  gate.allow_simulated = gate.allow_simulated || context_.options.unattended;
+  const auto problems = [&] { return gate::Problems(gate, interface, (*servers)->devices()); };
+  for (;;) {
+    const Waited waited =
+        context_.console.RunUntil([&] { return problems().empty(); }, kDevicesReadyS);
+    if (waited == Waited::kInterrupted) return Interrupted();
+    if (waited == Waited::kDone) return {};
+    std::string text;
+    for (const std::string& problem : problems()) text += (text.empty() ? "" : "; ") + problem;
+    if (context_.options.unattended) return NoDevice("the devices are not ready: " + text);
+    context_.console.Print("The devices are not ready: " + text);
+    const auto again = context_.console.Ask("Press Enter to check again:");
+    if (!again) return again.error();
+  }
+}
+
+Result<void> SessionRun::Demonstrate(const plan::Phase& phase) {
+  const auto servers = UseInterface(phase.interface);
+  if (!servers) return servers.error();
+  const auto placed = PlaceOnTrack(**servers, context_.session.participant + "." + phase.id, phase);
+  if (!placed || context_.options.unattended) return placed;
+  const auto done = context_.console.Ask("Interface " + phase.interface +
+                                         ": show all commands. Press Enter when done:");
+  return done ? Result<void>() : done.error();
+}
+
+Result<void> SessionRun::CountDown(const std::string& what, double duration_s, bool may_end_early) {
+  if (context_.options.unattended) return {};
+  Console& console = context_.console;
+  const std::int64_t begin_ns = clock::MonotonicNs();
+  const auto passed_s = [&] { return NanosecondsToSeconds(clock::MonotonicNs() - begin_ns); };
+  console.ReadKeys(true);
+  bool early = false;
+  const auto ended = [&] {
+    const std::optional<char> key = console.TakeKey();
+    return early = may_end_early && key == '\n';
+  };
+  while (!early && !console.interrupted() && passed_s() < duration_s) {
+    console.Print(what + ": " + text::Fixed(std::ceil(duration_s - passed_s()), 0) + " s left." +
+                  (may_end_early ? " Press Enter to end it early." : ""));
+    console.RunUntil(ended, std::min(kReminderS, duration_s - passed_s()));
+  }
+  console.ReadKeys(false);
+  if (console.interrupted()) return Interrupted();
+  if (!early) return {};
+  return context_.journal.Append(
+      EventKind::kNote,
+      {{"text", what + " ended early"}, {"planned_s", duration_s}, {"took_s", passed_s()}});
+}
+
+Result<void> SessionRun::Practise(const plan::Phase& phase) {
+  const auto servers = UseInterface(phase.interface);
+  if (!servers) return servers.error();
+  const auto placed = PlaceOnTrack(**servers, context_.session.participant + "." + phase.id, phase);
+  if (!placed) return placed;
+  return CountDown("Practice of " + phase.interface, phase.duration_s, /*may_end_early=*/true);
+}
+
+Result<void> SessionRun::Trial(const plan::Phase& phase) {
+  const bool attended = !context_.options.unattended;
+  for (;;) {
+    const auto outcome = Attempt(phase);
+    if (!outcome) return outcome.error();
+    if (*outcome == records::kDeviceLost) {
+      if (!attended) return NoDevice("a device was lost in " + phase.id);
+      context_.console.Print("A device was lost: this attempt does not count.");
+      continue;
+    }
+    if (!attended) return {};
+    const auto repeat = AskToRepeat(*servers_);
+    if (!repeat) return repeat.error();
+    if (!*repeat) return {};
+  }
+}
+
+Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
+  const auto space = journal::RequireSpace(
+      context_.options.study_folder,
+      context_.protocol.disk_mb / static_cast<double>(context_.session.trial_count()));
+  if (!space) return space.error();
+  if (!context_.options.unattended) {
+    const auto ready = context_.console.Ask("Next: " + phase.id + ", track " + phase.track +
+                                            ". Press Enter to begin:");
+    if (!ready) return ready.error();
+  }
+  if (const auto done = CheckDevices(phase.interface); !done) return done.error();
+  const auto servers = UseInterface(phase.interface);
+  if (!servers) return servers.error();
+  const auto outcome = RunTrial(context_, **servers, phase, ++progress_.attempts[phase.id]);
+  if (!outcome) return outcome.error();
+  const stream::TrialProgress& trial = (*servers)->trial().progress;
+  context_.console.Print(phase.id + ": " + *outcome + ", " + text::Fixed(trial.time_s, 1) +
+                         " s, failures: " + std::to_string(stream::Total(trial.failures)));
+  return outcome;
+}
+
+Result<bool> SessionRun::AskToRepeat(Servers& servers) {
+  for (;;) {
+    const auto next = context_.console.Ask(
+        "Press Enter to go on, type r to repeat the trial, or u NUMBER to undo a failure:");
+    if (!next) return next.error();
+    if (next->empty()) return false;
+    if (*next == "r") return true;
+    const auto number = next->starts_with("u ") ? text::ToCount(next->substr(2)) : std::nullopt;
+    if (!number) continue;
+    if (const auto undone = UndoFailure(context_, servers, *number); !undone) {
+      context_.console.Print(undone.error().message);
+    }
+  }
+}
+
+Result<Servers*> SessionRun::UseInterface(const std::string& interface) {
+  const transport::Address& simulation = SimulationOf(context_.options, interface);
+  if (servers_ && connected_to_ == simulation.Text() && servers_->live()) return servers_.get();
+  servers_.reset();
+  auto servers = Servers::Open(context_.console, context_.options.sensor, simulation, active_);
+  if (!servers) return servers.error();
+  servers_ = std::move(*servers);
+  connected_to_ = simulation.Text();
+  return servers_.get();
+}
+
+}  // namespace footing::study

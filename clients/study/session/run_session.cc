@@ -1,0 +1,141 @@
+#include "clients/study/session/run_session.h"
+
+#include <unistd.h>
+
+#include <utility>
+
+#include "clients/study/journal/lock.h"
+#include "clients/study/journal/study_folder.h"
+#include "common/text/number.h"
+
+namespace footing::study {
+namespace {
+
+using nlohmann::ordered_json;
+using records::EventKind;
+
+constexpr double kSecondsPerMinute = 60;
+
+/// Everything that must be there before an event can be appended.
+struct Opened {
+  journal::Lock lock;
+  journal::Journal journal;
+};
+
+std::string Holder(const SessionOptions& options) {
+  const char* user = ::getenv("USER");
+  return std::string(user != nullptr ? user : "uid " + std::to_string(::getuid())) +
+         ", footing-study process " + std::to_string(::getpid()) + ", participant " +
+         options.participant;
+}
+
+Result<Opened> OpenStudy(const SessionOptions& options, const plan::Protocol& protocol) {
+  const std::string& folder = options.study_folder;
+  if (const auto done = journal::MakeFolder(folder); !done) return done.error();
+  auto lock = journal::Lock::Take(folder + "/lock", Holder(options));
+  if (!lock) return lock.error();
+  if (const auto done = journal::KeepProtocol(folder, options.protocol_text); !done) {
+    return done.error();
+  }
+  if (const auto done = journal::RequireSpace(folder, protocol.disk_mb); !done) {
+    return done.error();
+  }
+  const std::string own = journal::ParticipantFolder(folder, options.participant);
+  if (const auto done = journal::MakeFolder(own); !done) return done.error();
+  const std::string path = journal::JournalPath(folder, options.participant);
+  auto journal =
+      journal::Exists(path) ? journal::Journal::Resume(path) : journal::Journal::Create(path);
+  if (!journal) return journal.error();
+  return Opened{std::move(*lock), std::move(*journal)};
+}
+
+Result<plan::Session> SessionOf(const SessionOptions& options, const plan::Protocol& protocol) {
+  for (plan::Session& session : plan::MakeSessions(protocol)) {
+    if (session.participant == options.participant) return std::move(session);
+  }
+  return UsageError("participant " + options.participant +
+                    " is not in the protocol; add the code at the end of participants");
+}
+
+Result<void> NoteStart(SessionContext& context, const records::Progress& progress) {
+  const SessionOptions& options = context.options;
+  if (!progress.started) {
+    return context.journal.Append(
+        EventKind::kSessionStarted,
+        {{"participant", options.participant},
+         {"study", context.protocol.name},
+         {"study_seed", context.protocol.seed},
+         {"interfaces", context.session.interfaces},
+         {"synthetic", options.unattended},
+         {"answer_seed", options.unattended ? ordered_json(options.answer_seed) : ordered_json()},
+         {"version", options.version}});
+  }
+  return context.journal.Append(EventKind::kSessionResumed,
+                                {{"version", options.version},
+                                 {"synthetic", options.unattended},
+                                 {"torn_bytes", context.journal.torn_bytes()},
+                                 {"interrupted_trial", progress.interrupted_trial}});
+}
+
+}  // namespace
+
+SessionRun::SessionRun(SessionContext context)
+    : context_(context),
+      progress_(records::Replay(context.session.phases, context.journal.events())) {}
+
+Result<void> SessionRun::Run() {
+  Console& console = context_.console;
+  if (progress_.finished || progress_.withdrawn) {
+    return UsageError(Describe(progress_, context_.session) + "; a session is never run again");
+  }
+  if (progress_.started) {
+    console.Print(Describe(progress_, context_.session) + "; the session goes on there");
+  }
+  if (context_.journal.torn_bytes() > 0) {
+    console.Print("the last line of " + context_.journal.path() + " was torn (" +
+                  std::to_string(context_.journal.torn_bytes()) + " bytes) and is dropped");
+  }
+  if (const auto done = NoteStart(context_, progress_); !done) return done;
+  const std::vector<plan::Phase>& phases = context_.session.phases;
+  for (std::size_t i = progress_.next_phase; i < phases.size(); ++i) {
+    ordered_json fields = {{"phase", phases[i].id}, {"kind", Name(phases[i].kind)}};
+    if (const auto done = context_.journal.Append(EventKind::kPhaseStarted, fields); !done) {
+      return done;
+    }
+    console.Print("[" + std::to_string(i + 1) + "/" + std::to_string(phases.size()) + "] " +
+                  phases[i].id + ", active so far: " +
+                  text::Fixed((progress_.active_s + active_.seconds()) / kSecondsPerMinute, 1) +
+                  " min");
+    const double active_before_s = active_.seconds();
+    if (const auto done = RunPhase(phases[i]); !done) return done;
+    if (console.interrupted()) return Interrupted();
+    fields["active_s"] = active_.seconds() - active_before_s;
+    if (const auto done = context_.journal.Append(EventKind::kPhaseFinished, fields); !done) {
+      return done;
+    }
+  }
+  return context_.journal.Append(EventKind::kSessionFinished, ordered_json::object());
+}
+
+Result<void> RunSession(const SessionOptions& options, const plan::Protocol& protocol) {
+  const auto session = SessionOf(options, protocol);
+  if (!session) return session.error();
+  auto opened = OpenStudy(options, protocol);
+  if (!opened) return opened.error();
+  Console console;
+  return SessionRun({options, protocol, *session, console, opened->journal}).Run();
+}
+
+Result<void> AppendToSession(const SessionOptions& options, const plan::Protocol& protocol,
+                             EventKind kind, ordered_json fields) {
+  if (const auto session = SessionOf(options, protocol); !session) return session.error();
+  const std::string path = journal::JournalPath(options.study_folder, options.participant);
+  if (!journal::Exists(path))
+    return UsageError("participant " + options.participant + " has no session yet: " + path +
+                      " is missing");
+  auto opened = OpenStudy(options, protocol);
+  if (!opened) return opened.error();
+  return opened->journal.Append(kind, std::move(fields));
+}
+
+}  // namespace footing::study

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "clients/study/records/progress.h"
+#include "clients/study/session/session_context.h"
+#include "common/result/result.h"
+
+namespace footing::study {
+
+/// The phases of a session in their order, from the first one that is not finished.
+class SessionRun {
+ public:
+  explicit SessionRun(SessionContext context);
+
+  /// Until the end of the session. After an error the session can go on with another run.
+  Result<void> Run();
+
+ private:
+  Result<void> RunPhase(const plan::Phase& phase);
+  Result<void> Consent();
+  Result<void> Demonstrate(const plan::Phase& phase);
+  Result<void> Practise(const plan::Phase& phase);
+  /// Until the time is up or, where that is allowed, Enter is pressed, which the journal notes.
+  Result<void> CountDown(const std::string& what, double duration_s, bool may_end_early);
+  /// Attempts of a trial until one counts.
+  Result<void> Trial(const plan::Phase& phase);
+  Result<std::string> Attempt(const plan::Phase& phase);
+  /// After an attended attempt: undoes failures as asked; true when the trial is to be repeated.
+  Result<bool> AskToRepeat(Servers& servers);
+  /// Waits until the devices of an interface are as the protocol asks.
+  Result<void> CheckDevices(const std::string& interface);
+  /// Makes an interface the one in force and connects to its servers where that is due: the only
+  /// place where a session changes the interface.
+  Result<Servers*> UseInterface(const std::string& interface);
+
+  SessionContext context_;
+  records::Progress progress_;
+  ActiveTime active_;
+  std::unique_ptr<Servers> servers_;
+  std::string connected_to_;
+};
+
+/// Runs or resumes the session of a participant: takes the study's lock, checks the disk, opens the
+/// journal. `protocol` must have the participant.
+Result<void> RunSession(const SessionOptions& options, const plan::Protocol& protocol);
+
+/// Appends an event to a participant's journal, without servers: a withdrawal or a correction.
+Result<void> AppendToSession(const SessionOptions& options, const plan::Protocol& protocol,
+                             records::EventKind kind, nlohmann::ordered_json fields);
+
+}  // namespace footing::study

@@ -1,0 +1,163 @@
+#include "clients/study/session/servers.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "common/transport/client.h"
+#include "common/wire/wire.h"
+
+namespace footing::study {
+namespace {
+
+constexpr double kConnectS = 5;
+constexpr double kAnswerS = 5;
+constexpr std::uint32_t kQueueTicks = 1024;
+
+transport::ClientOptions ClientOf(const transport::Address& address, v1::Role role,
+                                  std::vector<std::string> channels) {
+  transport::ClientOptions options;
+  options.address = address;
+  options.client_name = "footing-study";
+  options.role = role;
+  options.channels = std::move(channels);
+  // Reliable: a failure that is missed would not be counted.
+  options.policy = v1::QUEUE_POLICY_RELIABLE;
+  options.queue_ticks = kQueueTicks;
+  return options;
+}
+
+bool AnyMoves(const v1::FeatureFrame& frame) {
+  return std::any_of(frame.rigs().begin(), frame.rigs().end(), [](const v1::RigFeatures& rig) {
+    return std::any_of(rig.devices().begin(), rig.devices().end(),
+                       [](const v1::DeviceFeatures& device) { return device.moving(); });
+  });
+}
+
+}  // namespace
+
+class Servers::Implementation {
+ public:
+  struct Link {
+    std::string name;
+    transport::LinkState state = transport::LinkState::kConnecting;
+    std::string why = "not connected";
+    bool ticked = false;
+    std::optional<transport::Client> client;
+  };
+
+  Implementation(Console& console, const transport::Address& sensor,
+                 const transport::Address& simulation, ActiveTime& active)
+      : console_(console), active_(active) {
+    sensor_.name = "footingd at " + sensor.Text();
+    simulation_.name = "footing-sim at " + simulation.Text();
+    Start(sensor_, ClientOf(sensor, v1::ROLE_VIEW, {"status", "features"}));
+    Start(simulation_, ClientOf(simulation, v1::ROLE_CONTROL, {"characters", "events"}));
+  }
+
+  ~Implementation() {
+    for (Link* link : {&sensor_, &simulation_}) link->client->Stop();
+  }
+
+  void Start(Link& link, transport::ClientOptions options) {
+    transport::ClientHandlers handlers;
+    handlers.on_tick = [this, &link](const v1::Tick& tick) {
+      link.ticked = true;
+      OnTick(tick);
+    };
+    handlers.on_state = [&link](transport::LinkState state, const std::string& why) {
+      link.state = state;
+      link.why = why;
+    };
+    link.client.emplace(console_.io(), std::move(options), std::move(handlers));
+    link.client->Start();
+  }
+
+  void OnTick(const v1::Tick& tick) {
+    if (tick.has_status()) {
+      devices_.clear();
+      for (const v1::DeviceStatus& one : tick.status().devices()) {
+        devices_.push_back(wire::FromProto(one));
+      }
+    }
+    if (tick.has_features()) active_.Add(tick.host_ns(), AnyMoves(tick.features()));
+    // The snapshot repeats what was before this program came.
+    if (!tick.snapshot() && on_event_) {
+      for (const v1::Event& event : tick.events().events()) on_event_(event);
+    }
+    if (tick.has_characters() && tick.characters().characters_size() > 0) {
+      trial_ = wire::FromProto(tick.characters().characters(0).trial());
+      if (on_trial_) on_trial_(trial_);
+    }
+  }
+
+  static std::string Text(const Link& link) { return link.name + ": " + link.why; }
+
+  Console& console_;
+  ActiveTime& active_;
+  Link sensor_;
+  Link simulation_;
+  std::vector<stream::DeviceStatus> devices_;
+  stream::TrialState trial_;
+  std::function<void(const stream::TrialState&)> on_trial_;
+  std::function<void(const v1::Event&)> on_event_;
+};
+
+Servers::Servers(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+Servers::~Servers() = default;
+
+Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const transport::Address& sensor,
+                                               const transport::Address& simulation,
+                                               ActiveTime& active) {
+  auto own = std::make_unique<Implementation>(console, sensor, simulation, active);
+  const Waited waited =
+      console.RunUntil([&] { return own->sensor_.ticked && own->simulation_.ticked; }, kConnectS);
+  if (waited == Waited::kInterrupted) return Interrupted();
+  for (const Implementation::Link* link : {&own->sensor_, &own->simulation_}) {
+    if (!link->ticked) {
+      return NoDevice("no " + Implementation::Text(*link) +
+                      "; start it, or name its address (footing-study run --help)");
+    }
+  }
+  return std::unique_ptr<Servers>(new Servers(std::move(own)));
+}
+
+const std::vector<stream::DeviceStatus>& Servers::devices() const {
+  return implementation_->devices_;
+}
+const stream::TrialState& Servers::trial() const { return implementation_->trial_; }
+
+bool Servers::live() const {
+  return implementation_->sensor_.state == transport::LinkState::kLive &&
+         implementation_->simulation_.state == transport::LinkState::kLive;
+}
+
+std::string Servers::Links() const {
+  return Implementation::Text(implementation_->sensor_) + "; " +
+         Implementation::Text(implementation_->simulation_);
+}
+
+void Servers::set_on_trial(std::function<void(const stream::TrialState&)> on_trial) {
+  implementation_->on_trial_ = std::move(on_trial);
+}
+
+void Servers::set_on_event(std::function<void(const v1::Event&)> on_event) {
+  implementation_->on_event_ = std::move(on_event);
+}
+
+Result<void> Servers::Call(v1::Command command) {
+  // The answer may come after an interruption has ended this wait.
+  const auto answer = std::make_shared<std::optional<v1::CommandResult>>();
+  command.set_deadline_ms(static_cast<std::uint32_t>(kAnswerS * 1e3));
+  implementation_->simulation_.client->Send(
+      std::move(command), [answer](const v1::CommandResult& result) { *answer = result; });
+  const Waited waited =
+      implementation_->console_.RunUntil([&] { return answer->has_value(); }, 2 * kAnswerS);
+  if (waited == Waited::kInterrupted) return Interrupted();
+  if (waited == Waited::kTimeUp) return Failure("footing-sim does not answer");
+  if (!(*answer)->ok()) return Failure("footing-sim: " + (*answer)->message());
+  return {};
+}
+
+}  // namespace footing::study

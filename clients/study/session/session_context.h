@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "clients/study/journal/journal.h"
+#include "clients/study/plan/phases.h"
+#include "clients/study/plan/protocol.h"
+#include "clients/study/session/console.h"
+#include "clients/study/session/servers.h"
+#include "common/transport/address.h"
+
+namespace footing::study {
+
+struct SessionOptions {
+  std::string participant;
+  std::string study_folder;
+  std::string protocol_text;
+  bool unattended = false;        ///< Nobody is asked and nothing waits; all is marked synthetic.
+  std::uint64_t answer_seed = 1;  ///< Of unattended answers.
+  transport::Address sensor;
+  transport::Address simulation;
+  /// footing-sim of an interface, where it is not the one above.
+  std::map<std::string, transport::Address> simulation_of;
+  std::string version;
+};
+
+/// What every part of a running session works with.
+struct SessionContext {
+  const SessionOptions& options;
+  const plan::Protocol& protocol;
+  const plan::Session& session;
+  Console& console;
+  journal::Journal& journal;
+};
+
+/// The footing-sim that serves an interface.
+inline const transport::Address& SimulationOf(const SessionOptions& options,
+                                              const std::string& interface) {
+  const auto own = options.simulation_of.find(interface);
+  return own == options.simulation_of.end() ? options.simulation : own->second;
+}
+
+}  // namespace footing::study

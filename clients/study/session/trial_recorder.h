@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clients/study/session/console.h"
+#include "common/mcap/records.h"
+#include "common/result/result.h"
+#include "common/transport/address.h"
+
+namespace footing::study {
+
+/// Records everything that both servers publish during one trial, in one file (MCAP) as footing-log
+/// does. It has connections of its own: each begins with what is retained, such as the track, and a
+/// slow disk disturbs no other connection.
+class TrialRecorder {
+ public:
+  struct Options {
+    std::string path;  ///< Must not exist.
+    std::string version;
+    std::vector<transport::Address> addresses;
+    std::vector<std::pair<std::string, std::string>> attachments;  ///< Name and text.
+  };
+
+  /// Returns when something of every server has arrived. `marks` is the metadata record "trial".
+  static Result<std::unique_ptr<TrialRecorder>> Begin(Console& console, Options options,
+                                                      const mcap::TextMap& marks);
+  ~TrialRecorder();
+  TrialRecorder(const TrialRecorder&) = delete;
+  TrialRecorder& operator=(const TrialRecorder&) = delete;
+
+  /// A full disk, as soon as it is noticed.
+  const Result<void>& written() const;
+  /// Ends the file; `outcome` is the metadata record "trial_outcome".
+  Result<void> Finish(const mcap::TextMap& outcome);
+
+ private:
+  class Implementation;
+  explicit TrialRecorder(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::study

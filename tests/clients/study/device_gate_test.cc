@@ -1,0 +1,87 @@
+#include "clients/study/gate/device_gate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace footing::study::gate {
+namespace {
+
+using stream::DeviceRole;
+using stream::DeviceState;
+using stream::DeviceStatus;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+DeviceStatus Good(DeviceRole role) {
+  DeviceStatus device;
+  device.serial = "00:1f";
+  device.role = role;
+  device.state = DeviceState::kLive;
+  device.report_rate_hz = 98;
+  device.battery_fraction = 0.8;
+  return device;
+}
+
+std::vector<DeviceStatus> Hands() {
+  return {Good(DeviceRole::kLeftHand), Good(DeviceRole::kRightHand)};
+}
+
+TEST(DeviceGate, OpensForGoodDevices) {
+  EXPECT_THAT(Problems({}, "wrist", Hands()), IsEmpty());
+  EXPECT_THAT(Problems({}, "arm", Hands()), IsEmpty());
+}
+
+TEST(DeviceGate, NeedsTheRolesOfTheInterface) {
+  EXPECT_THAT(Problems({}, "leg", Hands()),
+              ElementsAre(HasSubstr("left_leg is missing"), HasSubstr("right_leg is missing"),
+                          HasSubstr("head is missing")));
+  EXPECT_THAT(Problems({}, "joystick", {Good(DeviceRole::kLeftHand)}), IsEmpty());
+  EXPECT_THAT(Problems({}, "joystick", {}), ElementsAre(HasSubstr("right_hand is missing")));
+}
+
+TEST(DeviceGate, NamesEveryFaultWithItsRemedy) {
+  const auto after = [](auto change) {
+    auto devices = Hands();
+    change(devices[1]);
+    return Problems({}, "wrist", devices);
+  };
+  EXPECT_THAT(after([](DeviceStatus& d) { d.battery_fraction = 0.19; }),
+              ElementsAre(AllOf(HasSubstr("right_hand (00:1f) has 19 % of battery, and 20 %"),
+                                HasSubstr("change the batteries"))));
+  EXPECT_THAT(after([](DeviceStatus& d) { d.battery_fraction = 0.2; }), IsEmpty());
+  EXPECT_THAT(after([](DeviceStatus& d) { d.battery_fraction = -1; }), IsEmpty());  // Unknown.
+  EXPECT_THAT(after([](DeviceStatus& d) { d.battery_low = true; }), testing::SizeIs(1));
+  EXPECT_THAT(after([](DeviceStatus& d) { d.report_rate_hz = 12; }),
+              ElementsAre(HasSubstr("reports 12 times a second, and 30")));
+  EXPECT_THAT(after([](DeviceStatus& d) { d.state = DeviceState::kStale; }),
+              ElementsAre(HasSubstr("is stale")));
+  EXPECT_THAT(after([](DeviceStatus& d) { d.slipped = true; }),
+              ElementsAre(HasSubstr("footing-ctl setup")));
+  EXPECT_THAT(after([](DeviceStatus& d) { d.state = DeviceState::kLost; }),
+              ElementsAre(HasSubstr("is missing")));
+}
+
+TEST(DeviceGate, NamesTheRoleThatIsLostInMidTrial) {
+  auto devices = Hands();
+  EXPECT_EQ(Lost("wrist", devices), "");
+  EXPECT_EQ(Lost("leg", devices), "left_leg");
+  devices[1].state = DeviceState::kStale;
+  EXPECT_EQ(Lost("wrist", devices), "right_hand");
+  devices[1].state = DeviceState::kLost;
+  EXPECT_EQ(Lost("wrist", devices), "right_hand");
+  EXPECT_EQ(Lost("joystick", devices), "");  // On the left hand's Wiimote.
+  EXPECT_EQ(Lost("joystick", {}), "right_hand");
+}
+
+TEST(DeviceGate, RefusesSimulatedDevicesUnlessTheProtocolAllowsThem) {
+  auto devices = Hands();
+  devices[0].simulated = true;
+  plan::DeviceGate gate;
+  EXPECT_THAT(Problems(gate, "wrist", devices), ElementsAre(HasSubstr("is simulated")));
+  gate.allow_simulated = true;
+  EXPECT_THAT(Problems(gate, "wrist", devices), IsEmpty());
+}
+
+}  // namespace
+}  // namespace footing::study::gate

@@ -1,0 +1,60 @@
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "clients/study/session/active_time.h"
+#include "clients/study/session/heading.h"
+#include "clients/study/session/respondent.h"
+#include "clients/study/session/survey.h"
+
+namespace footing::study {
+namespace {
+
+TEST(HeadingOscillation, IsTheStandardDeviationWithoutTheMean) {
+  HeadingOscillation heading;
+  EXPECT_TRUE(std::isnan(heading.StandardDeviation()));
+  for (const double error_rad : {0.1, 0.2, 0.3, 0.4}) heading.Add(error_rad);
+  // Deviations from 0.25: -0.15, -0.05, 0.05, 0.15; sqrt(0.05 / 3).
+  EXPECT_NEAR(heading.StandardDeviation(), std::sqrt(0.05 / 3), 1e-15);
+}
+
+TEST(ActiveTime, CountsWhatPassesBetweenTicksWhileSomethingMoves) {
+  ActiveTime active;
+  constexpr std::int64_t kStartNs = 5'000'000'000, kTickNs = 10'000'000;
+  active.Add(kStartNs, true);  // Nothing before it.
+  for (int i = 1; i <= 300; ++i) active.Add(kStartNs + i * kTickNs, i <= 200);
+  EXPECT_NEAR(active.seconds(), 2.0, 1e-9);     // 200 ticks of 10 ms.
+  active.Add(kStartNs + 1000 * kTickNs, true);  // Behind a gap of 7 s.
+  EXPECT_NEAR(active.seconds(), 2.0, 1e-9);
+  active.Add(kStartNs + 1001 * kTickNs, true);
+  EXPECT_NEAR(active.seconds(), 2.01, 1e-9);
+}
+
+TEST(Respondent, GivesTheSameAnswersForASeedAndAllRatingsAboutEquallyOften) {
+  std::map<int, int> times;
+  for (int i = 0; i < 5000; ++i) {
+    const std::string item = "item " + std::to_string(i);
+    const int rating = Respondent{3, "P1"}.Rate("wrist", item, 1, 5);
+    EXPECT_EQ(rating, (Respondent{3, "P1"}.Rate("wrist", item, 1, 5)));
+    ++times[rating];
+  }
+  ASSERT_EQ(times.size(), 5u);
+  // 1000 each, standard deviation sqrt(5000 / 5 * 4 / 5) = 28.3; five of them.
+  for (const auto& [rating, count] : times) EXPECT_NEAR(count, 1000, 142);
+  EXPECT_NE((Respondent{3, "P1"}.Answer("wrist", "good")),
+            (Respondent{4, "P1"}.Answer("wrist", "good")));
+}
+
+TEST(Rating, IsAWholeNumberOfTheScaleAndNothingElse) {
+  EXPECT_EQ(ParseRating("3", 1, 5), 3);
+  EXPECT_EQ(ParseRating(" 5 ", 1, 5), 5);
+  EXPECT_EQ(ParseRating("0", 0, 10), 0);
+  for (const char* wrong :
+       {"", " ", "0", "6", "3.5", "-1", "3 4", "three", "99999999999999999999"}) {
+    EXPECT_EQ(ParseRating(wrong, 1, 5), std::nullopt) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace footing::study
