@@ -40,8 +40,8 @@ Result<void> CheckTasks(const plan::Protocol& protocol, const std::string& track
   for (const std::string& task : protocol.straight_tasks) {
     if (known.count(task) != 0) continue;
     return InvalidData(file + ": straight_tasks has \"" + task + "\", which track " +
-                       protocol.straight_track + " does not have; there are: " +
-                       (names.empty() ? "none" : names));
+                       protocol.straight_track +
+                       " does not have; there are: " + (names.empty() ? "none" : names));
   }
   return {};
 }
@@ -71,8 +71,9 @@ void Finish(const Result<Answer>& result, Shared& shared) {
     return;
   }
   using nlohmann::ordered_json;
-  std::cout << (shared.json ? result->json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)
-                            : result->text)
+  std::cout << (shared.json
+                    ? result->json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)
+                    : result->text)
             << std::endl;
 }
 

@@ -42,5 +42,6 @@ void AddProtocolOptions(CLI::App& command, ProtocolOptions& options);
 /// Each adds subcommands to footing-study; their callbacks do the work.
 void AddCheckCommand(CLI::App& app, Shared& shared);
 void AddRunCommand(CLI::App& app, Shared& shared);
+void AddReportCommands(CLI::App& app, Shared& shared);  ///< analyze, report
 
 }  // namespace footing::study

@@ -6,13 +6,16 @@ int main(int argc, char** argv) {
       "footing-study", "Runs a user study of interfaces, from the protocol file to the report.",
       "  footing-study check study.json\n"
       "  footing-study run study.json --participant P01\n"
-      "  footing-study run study.json --participant P01 --unattended --folder trial.study\n");
+      "  footing-study run study.json --participant P01 --unattended --folder trial.study\n"
+      "  footing-study analyze study.json --folder trial.study\n"
+      "  footing-study report study.json --folder trial.study --force\n");
   footing::study::Shared shared;
   app->add_flag("--json", shared.json, "Print one JSON object on standard output");
   app->require_subcommand(1);
   app->fallthrough();
   footing::study::AddCheckCommand(*app, shared);
   footing::study::AddRunCommand(*app, shared);
+  footing::study::AddReportCommands(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

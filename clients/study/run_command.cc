@@ -26,7 +26,8 @@ Result<void> AddSimulation(const std::string& text, const plan::Protocol& protoc
                            SessionOptions& options) {
   const std::size_t equals = text.find('=');
   const std::string interface = equals == std::string::npos ? "" : text.substr(0, equals);
-  const auto address = transport::ParseAddress(text.substr(equals == std::string::npos ? 0 : equals + 1));
+  const auto address =
+      transport::ParseAddress(text.substr(equals == std::string::npos ? 0 : equals + 1));
   if (!address) return address.error();
   if (interface.empty()) {
     options.simulation = *address;
@@ -74,11 +75,10 @@ Result<Answer> Run(const RunOptions& given) {
                            {{"reason", given.reason}});
   } else if (given.undo || given.restore) {
     did = given.undo ? "failure undone" : "failure restored";
-    done = AppendToSession(*options, loaded->protocol,
-                           given.undo ? records::EventKind::kFailureUndone
-                                      : records::EventKind::kFailureRestored,
-                           {{"failure", given.undo ? *given.undo : *given.restore},
-                            {"reason", given.reason}});
+    done = AppendToSession(
+        *options, loaded->protocol,
+        given.undo ? records::EventKind::kFailureUndone : records::EventKind::kFailureRestored,
+        {{"failure", given.undo ? *given.undo : *given.restore}, {"reason", given.reason}});
   } else {
     done = RunSession(*options, loaded->protocol);
   }
@@ -99,14 +99,15 @@ void AddRunCommand(CLI::App& app, Shared& shared) {
   command->add_option("--simulation", given->simulations,
                       "Address of footing-sim, or INTERFACE=ADDRESS for one interface; may be "
                       "repeated");
-  command->add_flag("--unattended", given->unattended,
-                    "Ask nobody, wait for nothing, and answer the surveys at random, marked synthetic");
+  command->add_flag(
+      "--unattended", given->unattended,
+      "Ask nobody, wait for nothing, and answer the surveys at random, marked synthetic");
   command->add_option("--seed", given->seed, "Seed of unattended answers");
   CLI::Option* withdraw =
       command->add_flag("--withdraw", given->withdraw,
                         "Record that the participant withdraws: no analysis uses the data");
-  CLI::Option* undo = command->add_option("--undo-failure", given->undo,
-                                          "Do not count the failure of this number");
+  CLI::Option* undo =
+      command->add_option("--undo-failure", given->undo, "Do not count the failure of this number");
   CLI::Option* restore = command->add_option("--restore-failure", given->restore,
                                              "Count the failure of this number again");
   withdraw->excludes(undo)->excludes(restore);

@@ -25,7 +25,7 @@ from harness import Stage
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ["README.md", "systemd/README.md", *sorted(str(page.relative_to(ROOT)) for page in ROOT.glob("docs/*.md"))]
 PROGRAMS = ["footingd", "footing-sim", "footing-stream", "footing-view", "footing-log", "footing-ctl", "footing-eval",
-            "footing-train", "footing-tune", "footing-bench"]
+            "footing-train", "footing-tune", "footing-bench", "footing-study"]
 SECONDS_TO_WATCH = 3
 SECONDS_TO_STOP = 20
 # A pattern of commands, and why they cannot run here.
@@ -42,6 +42,7 @@ NOT_HERE = {
     r"tcp:": "needs a server on another address",
     r"/run/footing": "needs the system service",
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
+    r"^footing-study (run|analyze|report)": "needs whole sessions; tests/clients/study/study_scenario.py runs them",
     r"first\.mcap|body\.mcap": "reads what a command above would have recorded",
 }
 # Those that connect to a pose engine, or read what was recorded of one.
@@ -167,6 +168,7 @@ def main():
         os.environ.update(environment)
         # What the examples read beside the files of footing-stream sample: recordings, one of them cut, and a table.
         subprocess.run([binaries / "footing-stream", "sample", "."], cwd=folder, check=True, env=environment)
+        shutil.copy(ROOT / "docs/examples/study.json", folder)
         start_walk(stage)
         record(folder, environment, binaries, "walk.mcap", 4)
         stop_all(stage)

@@ -1,0 +1,135 @@
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "clients/study/report/analysis.h"
+#include "clients/study/report/figure.h"
+#include "clients/study/report/page.h"
+
+namespace footing::study::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+plan::Protocol Two() {
+  plan::Protocol protocol;
+  protocol.name = "a <b> study";
+  protocol.interfaces = {"wrist", "joystick"};
+  protocol.control = "joystick";
+  protocol.seed = 4;
+  return protocol;
+}
+
+records::Trial Test(const std::string& participant, const std::string& interface, double time_s,
+                    std::size_t curves) {
+  records::Trial trial;
+  trial.participant = participant;
+  trial.phase = interface + ".test";
+  trial.interface = interface;
+  trial.kind = "test_track";
+  trial.outcome = "finished";
+  trial.time_s = time_s;
+  trial.failures.resize(curves, {1, "curve", 1, 1, false});
+  return trial;
+}
+
+/// With the joystick everybody fails two times more and takes 10 s longer.
+std::vector<records::Records> People(int count) {
+  std::vector<records::Records> people;
+  for (int i = 0; i < count; ++i) {
+    records::Records& person = people.emplace_back();
+    person.participant = "P" + std::to_string(i);
+    person.finished = true;
+    const auto failures = static_cast<std::size_t>(i % 3);
+    person.trials = {Test(person.participant, "wrist", 50 + i, failures),
+                     Test(person.participant, "joystick", 60 + i, failures + 2)};
+    person.ratings = {{person.participant, "wrist", "fun", 4, false},
+                      {person.participant, "joystick", "fun", 2, false}};
+  }
+  return people;
+}
+
+const nlohmann::ordered_json& Find(const Analysis& analysis, const std::string& id) {
+  static const nlohmann::ordered_json none;
+  for (const auto& one : analysis.json["measures"]) {
+    if (one["id"] == id) return one;
+  }
+  return none;
+}
+
+TEST(StudyAnalysis, ComparesEachMeasureWithTheControl) {
+  const Analysis analysis = Analyze(Two(), People(8));
+  const auto& completion = Find(analysis, "test_time_to_completion_s");
+  ASSERT_TRUE(completion.is_object());
+  EXPECT_EQ(completion["groups"][0]["interface"], "joystick");
+  EXPECT_EQ(completion["groups"][0]["mean"], 63.5);    // 60 to 67.
+  EXPECT_EQ(completion["groups"][1]["median"], 53.5);  // 50 to 57.
+  EXPECT_EQ(completion["test"]["test"], "steel");
+  EXPECT_LT(completion["test"]["rows"][0]["p"], 0.01);
+  // All eight differences have one sign: 2 of 2^8 assignments of labels are as extreme.
+  EXPECT_NEAR(completion["paired"]["rows"][0]["p"], 2.0 / 256, 1e-12);
+  // 63.5 s on average, over 2 + 0, 1 or 2 failures.
+  const auto& between = Find(analysis, "test_mean_time_to_failure_s");
+  EXPECT_NEAR(between["groups"][0]["greatest"], 66.0 / 2, 1e-12);
+  EXPECT_TRUE(Find(analysis, "rating fun").is_object());
+}
+
+TEST(StudyAnalysis, LeavesOutWhoHasWithdrawnAndPairsOnlyWhatIsComplete) {
+  auto people = People(4);
+  people[0].withdrawn = true;
+  people[1].trials[1].outcome = "timed_out";
+  const Analysis analysis = Analyze(Two(), people);
+  EXPECT_EQ(analysis.json["withdrawn"], 1);
+  const auto& completion = Find(analysis, "test_time_to_completion_s");
+  EXPECT_EQ(completion["groups"][0]["n"], 2);  // Of P2 and P3; P1 did not arrive.
+  EXPECT_EQ(completion["groups"][1]["n"], 3);
+  EXPECT_FALSE(completion.contains("paired"));
+  EXPECT_THAT(ValuesCsv(analysis), Not(HasSubstr("P0")));
+  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("test_time_to_completion_s,P2,joystick,62\n"));
+}
+
+TEST(StudyPage, IsSelfContainedAndMarksSyntheticData) {
+  auto people = People(4);
+  EXPECT_THAT(Page(Analyze(Two(), people), Two(), people), Not(HasSubstr("Synthetic:")));
+  people[2].synthetic = true;
+  people[2].answers = {{"P2", "wrist", "good", "<script>x</script>", true}};
+  const std::string page = Page(Analyze(Two(), people), Two(), people);
+  EXPECT_THAT(page, HasSubstr("Synthetic:"));
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;x"));
+  for (const char* outside : {"http:", "https:", "<script", "src=", "url(", "a <b> study"}) {
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+  }
+}
+
+TEST(Figure, HasAPointForEachValueABoxForEachInterfaceAndALineForEachPerson) {
+  const Analysis analysis = Analyze(Two(), People(5));
+  const std::string svg = Figure(analysis.measures.front(), Two());
+  const auto count = [&](const std::string& what) {
+    std::size_t found = 0;
+    for (std::size_t at = svg.find(what); at != std::string::npos; at = svg.find(what, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count("<circle"), 10u);
+  EXPECT_EQ(count("<rect"), 2u);
+  EXPECT_EQ(count("class=\"pair\""), 5u);
+}
+
+TEST(Ticks, EncloseTheValuesInFewRoundSteps) {
+  for (const double greatest : {1e-3, 0.7, 1.0, 5.0, 63.0, 12345.0}) {
+    const auto ticks = Ticks(0, greatest);
+    EXPECT_EQ(ticks.front(), 0);
+    EXPECT_GE(ticks.back(), greatest * (1 - 1e-12));
+    EXPECT_LE(ticks.size(), 8u);
+    EXPECT_GE(ticks.size(), 2u);
+  }
+  EXPECT_EQ(Ticks(0, 5), (std::vector<double>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(Ticks(0, 0).size(), 2u);
+}
+
+}  // namespace
+}  // namespace footing::study::report

@@ -1,0 +1,162 @@
+"""footing-study with a simulated user of the wrist interface: a session that is killed and goes on, what it records, and
+what is made of its journals.
+
+Usage: study_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
+"""
+import json
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, sys.argv[1])
+from harness import Stage  # noqa: E402
+
+PROTOCOL = {
+    "version": 1, "name": "scenario", "participants": ["P01", "P02"], "interfaces": ["joystick", "wrist"],
+    "control": "joystick", "seed": 5, "practice_s": 300, "rest_s": 60, "trial_limit_s": 4,
+    "straight_tasks": ["walk_run", "walk_stop"], "straight_trials": 1, "test_tracks": ["1", "2"],
+    "disk_mb": 1,
+}
+
+
+def journal(stage, participant):
+    path = stage.folder / "s.study" / participant / "journal.jsonl"
+    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def words(stage, participant, *more):
+    return ("run", stage.folder / "s.json", "--participant", participant, "--sensor", stage.sensor, "--simulation",
+            stage.simulation, *more)
+
+
+def refused(stage, code, says, *command):
+    done = stage.run("footing-study", *command)
+    assert done.returncode == code and says in done.stderr, (command, done)
+
+
+def check_refusals(stage):
+    protocol = stage.folder / "s.json"
+    for change, says in (({"practise_s": 1}, "unknown key"), ({"test_tracks": ["9"]}, "unknown track"),
+                         ({"participants": ["P01", "P01"]}, "twice"), ({"straight_tasks": ["fly"]}, "does not have")):
+        wrong = stage.folder / "wrong.json"
+        wrong.write_text(json.dumps({**PROTOCOL, **change}))
+        refused(stage, 4, says, "check", wrong)
+    plan = stage.run_json("footing-study", "check", protocol)
+    assert [one["participant"] for one in plan["sessions"]] == PROTOCOL["participants"], plan
+    refused(stage, 2, "not in the protocol", *words(stage, "P09", "--unattended"))
+    refused(stage, 3, "no footingd", *words(stage, "P01", "--unattended"))
+
+
+def check_kill_and_resume(stage):
+    """Killed in its first trial, a session goes on with a second attempt at it; meanwhile nobody else may run it."""
+    running = stage.start("footing-study", *words(stage, "P01", "--unattended", "--seed", 3), name="study")
+    stage.wait_for(lambda: any(one["event"] == "trial_started" for one in journal(stage, "P01")), "a trial", 60)
+    refused(stage, 1, f"process {running.pid}, participant P01", *words(stage, "P02", "--unattended"))
+    stage.stop("study", signal.SIGKILL)
+    path = stage.folder / "s.study/P01/journal.jsonl"
+    with open(path, "a") as file:
+        file.write('{"number": 99, "wa')
+    before = len(path.read_text().splitlines()) - 1
+    done = stage.run("footing-study", *words(stage, "P01", "--unattended", "--seed", 3), timeout_s=120)
+    assert done.returncode == 0 and "was torn (18 bytes)" in done.stderr and "stopped in" in done.stderr, done
+    events = journal(stage, "P01")
+    assert [one["number"] for one in events] == list(range(1, len(events) + 1))
+    assert events[before]["event"] == "session_resumed" and events[before]["torn_bytes"] == 18, events[before]
+    trials = [one for one in events if one["event"] == "trial_started"]
+    assert [one["attempt"] for one in trials] == [1, 2, 1, 1, 1], trials
+    assert trials[0]["phase"] == trials[1]["phase"] and trials[1]["trial"] != trials[0]["trial"]
+    finished = [one for one in events if one["event"] == "trial_finished"]
+    assert len(finished) == 4 and all(one["outcome"] in ("timed_out", "finished") for one in finished), finished
+    # Six ratings and the exertion, for each interface, within their scales and marked.
+    ratings = [one for one in events if one["event"] in ("rating", "exertion")]
+    assert len(ratings) == 14 and all(one["synthetic"] for one in ratings), ratings
+    assert all(1 <= one["value"] <= 5 for one in ratings if one["event"] == "rating"), ratings
+    assert events[-1]["event"] == "session_finished", events[-1]
+    active_s = sum(one["active_s"] for one in events if one["event"] == "phase_finished")
+    assert 4 < active_s < 4 * 8, active_s  # In four trials of 4 s and more.
+    refused(stage, 2, "has finished", *words(stage, "P01", "--unattended"))
+    return trials, finished
+
+
+def check_recordings(stage, trials, finished):
+    for trial in trials[1:]:
+        path = stage.folder / "s.study/P01" / trial["recording"]
+        info = stage.run_json("footing-log", "info", path)
+        text = json.dumps(info)
+        assert "/footing-sim/characters" in text and "/footingd/raw" in text, text[:2000]
+        assert "/footing-sim/skeletons" in text and "protocol.json" in text, text[:2000]
+        assert trial["trial"] in path.read_bytes().decode("latin1"), trial
+        assert path.stat().st_mode & 0o777 == 0o600
+    cut = stage.folder / "s.study/P01" / trials[0]["recording"]
+    assert stage.run("footing-log", "info", cut).returncode == 4  # Of the killed attempt: kept, repairable.
+    assert all(2 <= one["wall_s"] < 8 for one in finished), finished
+
+
+def check_lost_device(stage):
+    """Without its device a trial ends as lost, and the next run attempts it again."""
+    running = stage.start("footing-study", *words(stage, "P02", "--unattended"), name="study")
+    stage.wait_for(lambda: any(one["event"] == "trial_started" for one in journal(stage, "P02")), "a trial", 60)
+    stage.stop("footing-stream")
+    assert running.wait(30) == 3
+    lost = journal(stage, "P02")[-1]
+    assert lost["event"] == "trial_finished" and lost["outcome"] == "device_lost" and "hand" in lost["device"], lost
+    stage.start_user("demo")
+    done = stage.run("footing-study", *words(stage, "P02", "--unattended"), timeout_s=120)
+    assert done.returncode == 0, done
+    attempts = [one["attempt"] for one in journal(stage, "P02") if one["event"] == "trial_started"]
+    assert attempts == [1, 2, 1, 1, 1], attempts
+
+
+def check_withdrawal(stage):
+    refused(stage, 0, "", "run", stage.folder / "s.json", "--participant", "P02", "--withdraw", "--reason", "asked")
+    assert journal(stage, "P02")[-1]["event"] == "withdrawn"
+
+
+def check_attended(stage):
+    """The experimenter's side through a pipe: no consent, no session; with it, up to the device gate."""
+    protocol = stage.folder / "a.json"
+    protocol.write_text(json.dumps(PROTOCOL))
+    command = [stage.binaries / "footing-study", "run", protocol, "--participant", "P01", "--sensor", stage.sensor,
+               "--simulation", stage.simulation]
+    done = subprocess.run(command, input="no\n", capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1 and "without consent" in done.stderr, done
+    done = subprocess.run(command, input="yes\n", capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1 and "is simulated" in done.stderr and "Press Enter to check again" in done.stderr, done
+
+
+def check_report(stage):
+    protocol = stage.folder / "s.json"
+    analysis = stage.run_json("footing-study", "analyze", protocol)
+    assert analysis["synthetic"] and analysis["participants"] == 2 and analysis["withdrawn"] == 1, analysis
+    found = {one["id"]: one for one in analysis["measures"]}
+    assert {"rating fun", "rating exertion", "test_failures_curve", "straight_oscillation_deg"} <= set(found), found
+    assert [one["interface"] for one in found["rating fun"]["groups"]] == ["joystick", "wrist"]
+    wrote = stage.run_json("footing-study", "report", protocol)
+    page, rows = (pathlib.Path(wrote[key]).read_text() for key in ("page", "csv"))
+    assert "Synthetic:" in page and "http" not in page and page.count("<svg") == len(found), page[:500]
+    points = [row.split(",") for row in rows.splitlines()[1:]]
+    assert len(points) == page.count("<circle") and all(one[1] == "P01" for one in points), rows
+    refused(stage, 2, "exists", "report", protocol)
+    assert stage.run("footing-study", "report", protocol, "--force").returncode == 0
+
+
+def main():
+    with Stage(sys.argv[2]) as stage:
+        (stage.folder / "s.json").write_text(json.dumps(PROTOCOL))
+        check_refusals(stage)
+        stage.start_servers()
+        stage.start_user("demo")
+        trials, finished = check_kill_and_resume(stage)
+        check_recordings(stage, trials, finished)
+        check_attended(stage)
+        check_lost_device(stage)
+        check_withdrawal(stage)
+        check_report(stage)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
