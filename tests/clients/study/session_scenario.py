@@ -1,7 +1,7 @@
 """footing-study with a simulated user of the wrist interface: a session that is killed and goes on, what it records, and
 what is made of its journals.
 
-Usage: study_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
+Usage: session_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
 """
 import json
 import pathlib

@@ -1,0 +1,117 @@
+"""The experimenter's side of footing-study on a terminal: consent, practice that is ended early, the stop key, the undo
+of a failure in and after a trial, a repeated trial, surveys, and the journal of it all.
+
+Usage: attended_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
+"""
+import json
+import os
+import pty
+import re
+import select
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, sys.argv[1])
+from harness import Stage  # noqa: E402
+
+PROTOCOL = {
+    "version": 1, "name": "attended", "participants": ["P01"], "interfaces": ["wrist"], "seed": 2, "practice_s": 100,
+    "straight_trials": 0, "test_tracks": ["3"], "survey": {"ratings": ["fun"], "questions": ["good"]},
+    "final_survey": {"questions": ["remarks"]}, "devices": {"allow_simulated": True}, "disk_mb": 1,
+}
+
+
+class Experimenter:
+    """Types into the terminal of footing-study and reads what it says."""
+
+    def __init__(self, stage, *command):
+        self.terminal, slave = pty.openpty()
+        self.process = subprocess.Popen([stage.binaries / "footing-study", *command], stdin=slave,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        stage.processes["attended"] = self.process
+        os.close(slave)
+        self.said = ""
+
+    def read(self, pattern, seconds=30):
+        """The match, once it has been said; what was said before it is forgotten."""
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            found = re.search(pattern, self.said)
+            if found:
+                self.said = self.said[found.end():]
+                return found
+            if select.select([self.process.stderr], [], [], 0.1)[0]:
+                more = os.read(self.process.stderr.fileno(), 4096).decode()
+                assert more, f"it ended before {pattern}: {self.said}"
+                self.said += more
+        raise AssertionError(f"not within {seconds} s: {pattern}; said: {self.said}")
+
+    def type(self, text):
+        os.write(self.terminal, text.encode())
+
+    def answer(self, pattern, text):
+        self.read(pattern)
+        self.type(text + "\n")
+
+
+def session(stage, experimenter):
+    experimenter.answer("Type yes to confirm", "yes")
+    experimenter.answer("show all commands", "")
+    experimenter.answer("Practice of wrist: 100 s left", "")
+    experimenter.answer("Press Enter to begin", "")
+    # A user who does not look at the track leaves it.
+    first = experimenter.read(r"failure (\d+): (\w+)", 90)
+    experimenter.type("u")
+    experimenter.read(f"failure {first[1]} undone")
+    second = experimenter.read(r"failure (\d+): (\w+)", 90)
+    experimenter.type("s")
+    experimenter.read(r"test: stopped, [\d.]+ s, failures: 1")
+    experimenter.answer("r to repeat", f"u {second[1]}")
+    experimenter.read(f"failure {second[1]} undone")
+    experimenter.answer("u NUMBER to undo", "u 999")
+    experimenter.read("no failure|999")
+    experimenter.type("r\n")
+    experimenter.answer("Press Enter to begin", "")
+    experimenter.read("Keys: s stops the trial")
+    experimenter.type("s")
+    experimenter.answer(r"test: stopped[^:]*failures: \d+\n.*u NUMBER", "")
+    experimenter.answer("fun, 1 to 5", "6")
+    experimenter.answer("whole number", "4")
+    experimenter.answer("exertion", "7")
+    experimenter.answer("good .one line", "it walks")
+    experimenter.answer("remarks .one line", "")
+    assert experimenter.process.wait(20) == 0
+    return int(first[1]), int(second[1])
+
+
+def check_journal(stage, first, second):
+    events = [json.loads(line) for line in (stage.folder / "a.study/P01/journal.jsonl").read_text().splitlines()]
+    of = {}
+    for event in events:
+        of.setdefault(event["event"], []).append(event)
+    assert not events[0]["synthetic"] and events[-1]["event"] == "session_finished", events
+    assert [one["text"] for one in of["note"]][1:] == ["Practice of wrist ended early"], of["note"]
+    assert of["note"][1]["planned_s"] == 100 > of["note"][1]["took_s"], of["note"]
+    assert [one["failure"] for one in of["failure_undone"]] == [first, second], of["failure_undone"]
+    assert [one["attempt"] for one in of["trial_started"]] == [1, 2], of["trial_started"]
+    assert [one["outcome"] for one in of["trial_finished"]] == ["stopped", "stopped"], of["trial_finished"]
+    assert of["trial_finished"][0]["failed_attempts"] == 1, of["trial_finished"]
+    assert (of["rating"][0]["value"], of["exertion"][0]["value"]) == (4, 7), (of["rating"], of["exertion"])
+    assert [one["text"] for one in of["answer"]] == ["it walks", ""], of["answer"]
+
+
+def main():
+    with Stage(sys.argv[2]) as stage:
+        protocol = stage.folder / "a.json"
+        protocol.write_text(json.dumps(PROTOCOL))
+        stage.start_servers()
+        stage.start_user("demo")
+        experimenter = Experimenter(stage, "run", protocol, "--participant", "P01", "--sensor", stage.sensor,
+                                    "--simulation", stage.simulation)
+        check_journal(stage, *session(stage, experimenter))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
