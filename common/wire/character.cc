@@ -61,4 +61,18 @@ void Fields(Way way, const stream::GaitState&) {
 }
 FOOTING_BOTH_WAYS(GaitState)
 
+template <typename Way>
+void Fields(Way way, const stream::ResponseStages&) {
+  FOOTING_ENUM(Gait, from);
+  FOOTING_ENUM(Gait, to);
+  FOOTING_FIELD(report_received_ns);
+  FOOTING_FIELD(decoded_ns);
+  FOOTING_FIELD(features_computed_ns);
+  FOOTING_FIELD(features_received_ns);
+  FOOTING_FIELD(command_ns);
+  FOOTING_FIELD(contact_ns);
+  FOOTING_FIELD(first_frame_ns);
+}
+FOOTING_BOTH_WAYS(ResponseStages)
+
 }  // namespace footing::wire

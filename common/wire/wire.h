@@ -4,6 +4,7 @@
 #include "common/stream/contacts.h"
 #include "common/stream/device.h"
 #include "common/stream/hands.h"
+#include "common/stream/response.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
 #include "common/stream/user_interface.h"
@@ -43,6 +44,7 @@ v1::LinkPose ToProto(const stream::LinkPose& value);
 v1::Contact ToProto(const stream::Contact& value);
 v1::GaitState ToProto(const stream::GaitState& value);
 v1::InterfaceState ToProto(const stream::InterfaceState& value);
+v1::ResponseStages ToProto(const stream::ResponseStages& value);
 v1::HandFrame ToProto(const stream::HandFrame& value);
 v1::ReferenceFrame ToProto(const stream::ReferenceFrame& value);
 v1::HandSample ToProto(const stream::HandSample& value);
@@ -78,6 +80,7 @@ stream::HandSample FromProto(const v1::HandSample& value);
 stream::ReferencePose FromProto(const v1::ReferencePose& value);
 stream::Contact FromProto(const v1::Contact& value);
 stream::GaitState FromProto(const v1::GaitState& value);
+stream::ResponseStages FromProto(const v1::ResponseStages& value);
 stream::ContactFrame FromProto(const v1::ContactFrame& value);
 stream::ContactSample FromProto(const v1::ContactSample& value);
 

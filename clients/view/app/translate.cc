@@ -13,8 +13,6 @@ constexpr int kMaxParts = 256;
 
 using wire::Finite;
 
-stream::Gait GaitOf(v1::Gait gait) { return stream::GaitNumbered(gait); }
-
 scene::BodyFoot FootOf(const v1::BodyFoot& from) {
   return {from.contact(),
           from.valid(),
@@ -102,12 +100,6 @@ scene::WorldFrame FrameOf(const v1::CharacterFrame& from, std::uint64_t sequence
   return frame;
 }
 
-scene::ResponseStages StagesOf(const v1::ResponseStages& from) {
-  return {GaitOf(from.from()), GaitOf(from.to()),           from.report_received_ns(),
-          from.decoded_ns(),   from.features_computed_ns(), from.features_received_ns(),
-          from.command_ns(),   from.contact_ns(),           from.first_frame_ns()};
-}
-
 scene::NoteKind KindOf(v1::Event::Kind kind) {
   switch (kind) {
     case v1::Event::KIND_FALL:
@@ -163,7 +155,7 @@ void AddSimulation(const v1::Tick& tick, scene::Update& update) {
   if (tick.has_characters()) update.frame = FrameOf(tick.characters(), tick.sequence());
   for (const auto& event : tick.events().events()) {
     update.notes.push_back(
-        {KindOf(event.kind()), event.host_ns(), event.text(), StagesOf(event.response())});
+        {KindOf(event.kind()), event.host_ns(), event.text(), wire::FromProto(event.response())});
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clients/view/scene/response.h"
 #include "common/text/quantile.h"
 #include "common/units/time.h"
 
@@ -74,13 +73,13 @@ void Tally::Add(const WorldFrame& frame) {
   if (std::find(seen_.begin(), seen_.end(), now.gait) == seen_.end()) seen_.push_back(now.gait);
 }
 
-void Tally::Add(const ResponseStages& response) {
+void Tally::Add(const stream::ResponseStages& response) {
   double without_contact_ms = 0;
-  const std::vector<ResponseStage> stages = ResponseTimes(response);
+  const std::vector<stream::ResponseStage> stages = stream::ResponseTimes(response);
   if (stages.empty()) return;
-  for (const ResponseStage& stage : stages) {
+  for (const stream::ResponseStage& stage : stages) {
     response_stages[stage.name].Add(static_cast<std::int64_t>(stage.ms * 1e6));
-    if (stage.name != std::string("contact")) without_contact_ms += stage.ms;
+    if (stage.name != std::string(stream::kContactStage)) without_contact_ms += stage.ms;
   }
   response_without_contact.Add(static_cast<std::int64_t>(without_contact_ms * 1e6));
 }

@@ -33,7 +33,7 @@ class Tally {
  public:
   void Add(const WorldFrame& frame);
   /// A response whose stamps say where its time went.
-  void Add(const ResponseStages& response);
+  void Add(const stream::ResponseStages& response);
 
   std::uint64_t frames() const { return frames_; }
   /// Published by the server from the first frame to the last, received or not.
@@ -48,7 +48,7 @@ class Tally {
   double distance_m() const { return distance_m_; }
 
   Latencies publish_to_view;
-  std::map<std::string, Latencies> response_stages;  ///< By the names of ResponseTimes.
+  std::map<std::string, Latencies> response_stages;  ///< By the names of stream::ResponseTimes.
   Latencies response_without_contact;  ///< All stages but the wait for the right contact.
   std::uint64_t frames_drawn = 0;
 

@@ -9,6 +9,7 @@
 #include "clients/view/scene/body_state.h"
 #include "common/stream/character.h"
 #include "common/stream/device.h"
+#include "common/stream/response.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
 #include "common/stream/user_interface.h"
@@ -41,19 +42,6 @@ struct WorldFrame {
   std::vector<CharacterPose> characters;
 };
 
-/// Stamps of one response, CLOCK_MONOTONIC of one host, in nanoseconds; 0 where unknown.
-struct ResponseStages {
-  stream::Gait from = stream::Gait::kUnspecified;
-  stream::Gait to = stream::Gait::kUnspecified;
-  std::int64_t report_received_ns = 0;
-  std::int64_t decoded_ns = 0;
-  std::int64_t features_computed_ns = 0;
-  std::int64_t features_received_ns = 0;
-  std::int64_t command_ns = 0;
-  std::int64_t contact_ns = 0;
-  std::int64_t first_frame_ns = 0;
-};
-
 enum class NoteKind { kOther, kFall, kPutBack, kGaitChanged, kResponse, kStreamLost, kStreamBack };
 
 /// An event, for a person to read.
@@ -61,7 +49,7 @@ struct Note {
   NoteKind kind = NoteKind::kOther;
   std::int64_t host_ns = 0;
   std::string text;
-  ResponseStages response;  ///< Of kResponse.
+  stream::ResponseStages response;  ///< Of kResponse.
 };
 
 /// How one connection fares.

@@ -215,7 +215,8 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
   }
   if (model.last_response) {
     std::string line = "Response   ";
-    for (const ResponseStage& stage : ResponseTimes(model.last_response->response)) {
+    for (const stream::ResponseStage& stage :
+         stream::ResponseTimes(model.last_response->response)) {
       line += std::string(" ") + stage.name + " " + Fixed(stage.ms, 1);
     }
     lines.push_back(line + " ms");

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "clients/view/scene/model.h"
-#include "clients/view/scene/response.h"
 
 namespace footing::scene {
 

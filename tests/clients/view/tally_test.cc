@@ -75,7 +75,7 @@ TEST(Tally, FramesPublishedCountThoseThatWereNotReceived) {
 
 TEST(Tally, AResponseIsSplitIntoItsStages) {
   Tally tally;
-  ResponseStages response;
+  stream::ResponseStages response;
   response.report_received_ns = 1'000'000;
   response.decoded_ns = 2'000'000;
   response.features_computed_ns = 4'000'000;
@@ -84,7 +84,7 @@ TEST(Tally, AResponseIsSplitIntoItsStages) {
   response.contact_ns = 206'000'000;
   response.first_frame_ns = 210'000'000;
   tally.Add(response);
-  tally.Add(ResponseStages());  // Without stamps it counts for nothing.
+  tally.Add(stream::ResponseStages());  // Without stamps it counts for nothing.
   EXPECT_EQ(tally.response_without_contact.count(), 1u);
   EXPECT_DOUBLE_EQ(tally.response_without_contact.QuantileMs(0.95), 9);  // 5 before, 4 behind.
   EXPECT_DOUBLE_EQ(tally.response_stages["contact"].QuantileMs(0.95), 200);

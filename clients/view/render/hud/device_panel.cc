@@ -45,9 +45,9 @@ void DrawResponse(const Paint& p, const Box& in, float y, const scene::Note& not
                                               colour::kSecond,
                                               colour::kThird};
   const float s = p.scale;
-  const auto stages = scene::ResponseTimes(note.response);
+  const auto stages = stream::ResponseTimes(note.response);
   double total_ms = 0;
-  for (const scene::ResponseStage& stage : stages) total_ms += stage.ms;
+  for (const stream::ResponseStage& stage : stages) total_ms += stage.ms;
   p.Write(p.fonts.small, {in.low.x, y}, colour::kFaint,
           "response to " + scene::GaitTitle(note.response.to));
   p.WriteRight(p.fonts.small, {in.high.x, y}, colour::kText, scene::Fixed(total_ms, 0) + " ms");

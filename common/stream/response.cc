@@ -1,11 +1,11 @@
-#include "clients/view/scene/response.h"
+#include "common/stream/response.h"
 
 #include <array>
 #include <utility>
 
 #include "common/units/time.h"
 
-namespace footing::scene {
+namespace footing::stream {
 
 std::vector<ResponseStage> ResponseTimes(const ResponseStages& r) {
   const std::array<std::pair<const char*, std::int64_t>, 7> stamps{
@@ -14,7 +14,7 @@ std::vector<ResponseStage> ResponseTimes(const ResponseStages& r) {
        {"features", r.features_computed_ns},
        {"transport", r.features_received_ns},
        {"command", r.command_ns},
-       {"contact", r.contact_ns},
+       {kContactStage, r.contact_ns},
        {"frame", r.first_frame_ns}}};
   std::vector<ResponseStage> stages;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
@@ -25,4 +25,4 @@ std::vector<ResponseStage> ResponseTimes(const ResponseStages& r) {
   return stages;
 }
 
-}  // namespace footing::scene
+}  // namespace footing::stream
