@@ -1,5 +1,6 @@
 #include "clients/study/plan/protocol.h"
 
+#include <ostream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -48,6 +49,8 @@ TEST(Protocol, ReadsItsKeysAndComments) {
 struct Fault {
   std::string text;
   std::string says;
+
+  friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.says; }
 };
 class FaultyProtocol : public testing::TestWithParam<Fault> {};
 
