@@ -29,6 +29,7 @@ enum class EventKind {
   kAnswer,
   kExertion,
   kNote,
+  kResponse,
 };
 
 const char* Name(EventKind kind);

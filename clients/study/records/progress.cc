@@ -38,6 +38,7 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
       case EventKind::kAnswer:
       case EventKind::kExertion:
       case EventKind::kNote:
+      case EventKind::kResponse:
         break;
     }
   }

@@ -29,6 +29,7 @@ Trial Begun(const Event& event, const Records& records) {
   trial.attempt = static_cast<std::size_t>(event.Number("attempt"));
   trial.started_wall_ns = event.wall_ns;
   trial.outcome = "interrupted";
+  trial.heading_oscillation_rad = trial.anticipation_s = kUnknown;
   trial.recording = event.Text("recording");
   trial.synthetic = records.synthetic;
   return trial;
@@ -39,6 +40,7 @@ void Finish(const Event& event, Trial& trial) {
   trial.time_s = event.Number("time_s");
   trial.distance_m = event.Number("distance_m");
   trial.heading_oscillation_rad = event.Number("heading_oscillation_rad", kUnknown);
+  trial.anticipation_s = event.Number("anticipation_s", kUnknown);
 }
 
 Failure ToFailure(const Event& event) {
@@ -48,6 +50,16 @@ Failure ToFailure(const Event& event) {
   failure.trial_time_s = event.Number("trial_time_s");
   failure.distance_m = event.Number("distance_m");
   return failure;
+}
+
+void TakeResponse(const Event& event, Trial& trial) {
+  const auto stages = event.fields.find("stages_ms");
+  if (stages == event.fields.end() || !stages->is_object()) return;
+  Response response;
+  for (const auto& [stage, ms] : stages->items()) {
+    if (ms.is_number()) response.push_back({stage, ms.get<double>()});
+  }
+  trial.responses.push_back(std::move(response));
 }
 
 /// Numbers start again with the server: the newest failure of that number is meant.
@@ -144,6 +156,9 @@ Records Collect(const std::vector<Event>& events) {
       case EventKind::kFailureRestored:
         MarkUndone(event, event.kind == EventKind::kFailureUndone, records);
         break;
+      case EventKind::kResponse:
+        if (in_trial) TakeResponse(event, records.trials.back());
+        break;
       case EventKind::kRating:
         TakeRating(event, event.Text("item"), records);
         break;
@@ -157,8 +172,12 @@ Records Collect(const std::vector<Event>& events) {
         // One synthetic part makes the whole session one.
         records.synthetic = records.synthetic || event.Flag("synthetic");
         break;
-      case EventKind::kPhaseStarted:
       case EventKind::kPhaseFinished:
+        if (!event.Text("interface").empty()) {
+          records.active_s[event.Text("interface")] += event.Number("active_s");
+        }
+        break;
+      case EventKind::kPhaseStarted:
       case EventKind::kNote:
         break;
     }

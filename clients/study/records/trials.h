@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct Failure {
   bool undone = false;
 };
 
+/// From the participant's motion to the frame that shows it: the stages of stream::ResponseTimes.
+struct StageTime {
+  std::string stage;
+  double ms = 0;
+};
+using Response = std::vector<StageTime>;
+
 /// One attempt at a trial.
 struct Trial {
   std::string participant;
@@ -34,10 +42,12 @@ struct Trial {
   std::string outcome;  ///< "finished", "timed_out", "stopped", kDeviceLost; "interrupted": no end.
   double time_s = 0;    ///< From the start line; including put-backs.
   double distance_m = 0;
-  double heading_oscillation_rad = 0;  ///< Root mean square of the heading error; NaN: unknown.
+  double heading_oscillation_rad = 0;  ///< Standard deviation of the heading error; NaN: unknown.
+  double anticipation_s = 0;  ///< Command before the line of the task; NaN: not done, or no task.
   std::string recording;
   bool synthetic = false;
   std::vector<Failure> failures;
+  std::vector<Response> responses;
 
   std::size_t Count(const std::string& kind) const;  ///< Without those undone.
   std::size_t failure_count() const;
@@ -69,7 +79,8 @@ struct Records {
   bool finished = false;
   bool withdrawn = false;
   bool synthetic = false;
-  std::vector<Trial> trials;  ///< All attempts, in the order in which they began.
+  std::map<std::string, double> active_s;  ///< Time in motion, by interface.
+  std::vector<Trial> trials;               ///< All attempts, in the order in which they began.
   std::vector<Rating> ratings;
   std::vector<Answer> answers;
 };

@@ -156,7 +156,7 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
   if (!servers) return servers.error();
   const auto outcome = RunTrial(context_, **servers, phase, ++progress_.attempts[phase.id]);
   if (!outcome) return outcome.error();
-  const stream::TrialProgress& trial = (*servers)->trial().progress;
+  const stream::TrialProgress& trial = (*servers)->frame().trial.progress;
   context_.console.Print(phase.id + ": " + *outcome + ", " + text::Fixed(trial.time_s, 1) +
                          " s, failures: " + std::to_string(stream::Total(trial.failures)));
   return outcome;

@@ -98,7 +98,9 @@ Result<void> SessionRun::Run() {
   if (const auto done = NoteStart(context_, progress_); !done) return done;
   const std::vector<plan::Phase>& phases = context_.session.phases;
   for (std::size_t i = progress_.next_phase; i < phases.size(); ++i) {
-    ordered_json fields = {{"phase", phases[i].id}, {"kind", Name(phases[i].kind)}};
+    ordered_json fields = {{"phase", phases[i].id},
+                           {"kind", Name(phases[i].kind)},
+                           {"interface", phases[i].interface}};
     if (const auto done = context_.journal.Append(EventKind::kPhaseStarted, fields); !done) {
       return done;
     }

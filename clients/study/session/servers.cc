@@ -52,7 +52,7 @@ class Servers::Implementation {
     sensor_.name = "footingd at " + sensor.Text();
     simulation_.name = "footing-sim at " + simulation.Text();
     Start(sensor_, ClientOf(sensor, v1::ROLE_VIEW, {"status", "features"}));
-    Start(simulation_, ClientOf(simulation, v1::ROLE_CONTROL, {"characters", "events"}));
+    Start(simulation_, ClientOf(simulation, v1::ROLE_CONTROL, {"characters", "events", "track"}));
   }
 
   ~Implementation() {
@@ -81,13 +81,16 @@ class Servers::Implementation {
       }
     }
     if (tick.has_features()) active_.Add(tick.host_ns(), AnyMoves(tick.features()));
+    if (tick.has_track()) track_ = wire::FromProto(tick.track());
     // The snapshot repeats what was before this program came.
     if (!tick.snapshot() && on_event_) {
       for (const v1::Event& event : tick.events().events()) on_event_(event);
     }
     if (tick.has_characters() && tick.characters().characters_size() > 0) {
-      trial_ = wire::FromProto(tick.characters().characters(0).trial());
-      if (on_trial_) on_trial_(trial_);
+      const v1::Character& character = tick.characters().characters(0);
+      frame_ = {tick.host_ns(), wire::FromProto(character.trial()),
+                stream::GaitNumbered(character.gait().commanded_gait())};
+      if (on_frame_) on_frame_(frame_);
     }
   }
 
@@ -98,8 +101,9 @@ class Servers::Implementation {
   Link sensor_;
   Link simulation_;
   std::vector<stream::DeviceStatus> devices_;
-  stream::TrialState trial_;
-  std::function<void(const stream::TrialState&)> on_trial_;
+  SimulationFrame frame_;
+  stream::Track track_;
+  std::function<void(const SimulationFrame&)> on_frame_;
   std::function<void(const v1::Event&)> on_event_;
 };
 
@@ -126,7 +130,8 @@ Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const transport
 const std::vector<stream::DeviceStatus>& Servers::devices() const {
   return implementation_->devices_;
 }
-const stream::TrialState& Servers::trial() const { return implementation_->trial_; }
+const SimulationFrame& Servers::frame() const { return implementation_->frame_; }
+const stream::Track& Servers::track() const { return implementation_->track_; }
 
 bool Servers::live() const {
   return implementation_->sensor_.state == transport::LinkState::kLive &&
@@ -138,8 +143,8 @@ std::string Servers::Links() const {
          Implementation::Text(implementation_->simulation_);
 }
 
-void Servers::set_on_trial(std::function<void(const stream::TrialState&)> on_trial) {
-  implementation_->on_trial_ = std::move(on_trial);
+void Servers::set_on_frame(std::function<void(const SimulationFrame&)> on_frame) {
+  implementation_->on_frame_ = std::move(on_frame);
 }
 
 void Servers::set_on_event(std::function<void(const v1::Event&)> on_event) {

@@ -9,11 +9,20 @@
 #include "clients/study/session/console.h"
 #include "common/result/result.h"
 #include "common/stream/device.h"
+#include "common/stream/gait.h"
+#include "common/stream/track.h"
 #include "common/stream/trial.h"
 #include "common/transport/address.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::study {
+
+/// What a session needs of a frame: of its first character.
+struct SimulationFrame {
+  std::int64_t host_ns = 0;  ///< Of its tick, on the clock of footing-sim.
+  stream::TrialState trial;  ///< Without an id before the first trial.
+  stream::Gait commanded_gait = stream::Gait::kUnspecified;
+};
 
 /// Connections to footingd, for the health of the devices, and to footing-sim, for trials.
 class Servers {
@@ -28,14 +37,15 @@ class Servers {
   Servers& operator=(const Servers&) = delete;
 
   const std::vector<stream::DeviceStatus>& devices() const;
-  /// Of the first character; without an id before the first trial.
-  const stream::TrialState& trial() const;
+  /// The newest frame.
+  const SimulationFrame& frame() const;
+  const stream::Track& track() const;
   bool live() const;
   /// How the connections stand, for a person.
   std::string Links() const;
 
   /// Called while the console waits.
-  void set_on_trial(std::function<void(const stream::TrialState&)> on_trial);
+  void set_on_frame(std::function<void(const SimulationFrame&)> on_frame);
   void set_on_event(std::function<void(const v1::Event&)> on_event);
 
   /// Sends a command to footing-sim and waits for the answer; a refusal is a failure with its text.

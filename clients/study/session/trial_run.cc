@@ -1,6 +1,6 @@
 #include "clients/study/session/trial_run.h"
 
-#include <cmath>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -8,10 +8,9 @@
 #include "clients/study/gate/device_gate.h"
 #include "clients/study/journal/study_folder.h"
 #include "clients/study/records/trials.h"
-#include "clients/study/session/heading.h"
+#include "clients/study/session/trial_events.h"
 #include "clients/study/session/trial_recorder.h"
 #include "common/clock/clock.h"
-#include "common/text/number.h"
 #include "common/units/units.h"
 
 namespace footing::study {
@@ -53,15 +52,14 @@ Result<void> Withdraw(Servers& servers, std::uint64_t failure) {
 class TrialRun {
  public:
   TrialRun(SessionContext& context, Servers& servers, const plan::Phase& phase, std::size_t attempt)
-      : context_(context), servers_(servers), phase_(phase), attempt_(attempt) {
-    id_ = context.session.participant + "." + phase.id + "." + std::to_string(attempt);
-    file_ = phase.id + "." + std::to_string(attempt) + ".mcap";
-  }
-  ~TrialRun() {
-    servers_.set_on_trial(nullptr);
-    servers_.set_on_event(nullptr);
-    context_.console.ReadKeys(false);
-  }
+      : context_(context),
+        servers_(servers),
+        phase_(phase),
+        attempt_(attempt),
+        id_(context.session.participant + "." + phase.id + "." + std::to_string(attempt)),
+        file_(phase.id + "." + std::to_string(attempt) + ".mcap"),
+        events_(context, servers, id_) {}
+  ~TrialRun() { context_.console.ReadKeys(false); }
   TrialRun(const TrialRun&) = delete;
   TrialRun& operator=(const TrialRun&) = delete;
 
@@ -118,8 +116,7 @@ class TrialRun {
     if (const auto done = context_.journal.Append(EventKind::kTrialStarted, Marks()); !done) {
       return done;
     }
-    servers_.set_on_event([this](const v1::Event& event) { OnEvent(event); });
-    servers_.set_on_trial([this](const stream::TrialState& trial) { OnTrial(trial); });
+    events_.Begin();
     begin_ns_ = complete_ns_ = clock::MonotonicNs();
     if (const auto done = servers_.Call(StartCommand(id_, phase_)); !done) return done;
     if (!context_.options.unattended) {
@@ -131,55 +128,6 @@ class TrialRun {
     return {};
   }
 
-  void OnTrial(const stream::TrialState& trial) {
-    if (trial.trial != id_) return;
-    if (trial.progress.phase == stream::TrialPhase::kRunning && trial.progress.on_track) {
-      heading_.Add(trial.progress.heading_error_rad);
-    }
-    if (!trial.instruction.empty() && trial.instruction != state_.instruction) {
-      context_.console.Print("Task for the participant: " + trial.instruction);
-    }
-    state_ = trial;
-  }
-
-  void OnEvent(const v1::Event& event) {
-    const v1::Failure& failure = event.failure();
-    if (failure.trial() != id_) return;
-    if (event.kind() == v1::Event::KIND_CORRECTION) OnCorrection(failure);
-    if (event.kind() == v1::Event::KIND_FALL) OnFailure(event);
-  }
-
-  /// By this program or by another console.
-  void OnCorrection(const v1::Failure& failure) {
-    Keep(context_.journal.Append(
-        failure.withdrawn() ? EventKind::kFailureUndone : EventKind::kFailureRestored,
-        {{"failure", failure.number()}}));
-    if (failure.number() == newest_failure_) newest_failure_ = 0;
-    context_.console.Print("failure " + std::to_string(failure.number()) +
-                           (failure.withdrawn() ? " undone" : " restored"));
-  }
-
-  void OnFailure(const v1::Event& event) {
-    const v1::Failure& failure = event.failure();
-    newest_failure_ = failure.number();
-    const char* kind = stream::Name(static_cast<stream::FailureCause>(failure.cause()));
-    Keep(context_.journal.Append(EventKind::kFailure,
-                                 {{"trial", id_},
-                                  {"failure", failure.number()},
-                                  {"kind", kind},
-                                  {"trial_time_s", failure.trial_time_s()},
-                                  {"distance_m", failure.distance_m()},
-                                  {"lateral_offset_m", failure.lateral_offset_m()},
-                                  {"heading_error_rad", failure.heading_error_rad()},
-                                  {"host_ns", event.host_ns()}}));
-    context_.console.Print("failure " + std::to_string(failure.number()) + ": " + kind + ", " +
-                           text::Fixed(failure.trial_time_s(), 1) + " s");
-  }
-
-  void Keep(Result<void> written) {
-    if (!written && written_) written_ = std::move(written);
-  }
-
   /// Until the finish line, the time limit, or a key.
   Result<std::string> Wait() {
     const std::int64_t end_ns = begin_ns_ + SecondsToNanoseconds(context_.protocol.trial_limit_s);
@@ -188,19 +136,19 @@ class TrialRun {
       const Waited waited = context_.console.RunUntil(
           [&] {
             if (!context_.options.unattended) key = context_.console.TakeKey();
-            return key || Over() || !written_ || !recorder_->written() || !servers_.live() ||
-                   DeviceLost();
+            return key || events_.over() || !events_.written() || !recorder_->written() ||
+                   !servers_.live() || DeviceLost();
           },
           std::max(0.0, NanosecondsToSeconds(end_ns - clock::MonotonicNs())));
       if (waited == Waited::kInterrupted) return Interrupted();
-      if (!written_) return written_.error();
+      if (!events_.written()) return events_.written().error();
       if (!recorder_->written()) return recorder_->written().error();
-      if (Over()) return std::string("finished");
+      if (events_.over()) return std::string("finished");
       if (waited == Waited::kTimeUp) return std::string("timed_out");
       if (!servers_.live()) return Failure("the trial broke off: " + servers_.Links());
       if (DeviceLost()) return std::string(records::kDeviceLost);
       if (key == 's') return std::string("stopped");
-      if (key == 'u' && newest_failure_ != 0) {
+      if (key == 'u' && events_.newest_failure() != 0) {
         if (const auto done = UndoNewest(); !done) return done.error();
       }
     }
@@ -208,9 +156,9 @@ class TrialRun {
 
   /// Returns when the correction is in the journal.
   Result<void> UndoNewest() {
-    if (const auto done = Withdraw(servers_, newest_failure_); !done) return done;
+    if (const auto done = Withdraw(servers_, events_.newest_failure()); !done) return done;
     const Waited waited =
-        context_.console.RunUntil([&] { return newest_failure_ == 0; }, kConfirmedWithinS);
+        context_.console.RunUntil([&] { return events_.newest_failure() == 0; }, kConfirmedWithinS);
     if (waited == Waited::kInterrupted) return Interrupted();
     if (waited == Waited::kTimeUp) return Failure("footing-sim has not confirmed the correction");
     return {};
@@ -224,15 +172,15 @@ class TrialRun {
     return NanosecondsToSeconds(now_ns - complete_ns_) > kDeviceBackS;
   }
 
-  bool Over() const { return state_.progress.phase == stream::TrialPhase::kFinished; }
-
   Result<void> Stop() {
     v1::Command command;
     command.mutable_stop_trial()->set_character(1);
     command.mutable_stop_trial()->set_trial(id_);
     if (const auto done = servers_.Call(std::move(command)); !done) return done;
     const Waited waited = context_.console.RunUntil(
-        [&] { return state_.progress.phase == stream::TrialPhase::kStopped || Over(); },
+        [&] {
+          return events_.state().progress.phase == stream::TrialPhase::kStopped || events_.over();
+        },
         kConfirmedWithinS);
     if (waited == Waited::kInterrupted) return Interrupted();
     return {};
@@ -241,16 +189,8 @@ class TrialRun {
   Result<void> Finish(const std::string& outcome) {
     ordered_json fields = {{"trial", id_},
                            {"outcome", outcome},
-                           {"time_s", state_.progress.time_s},
-                           {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)},
-                           {"distance_m", state_.progress.distance_m},
-                           {"failed_attempts", stream::Total(state_.progress.failures)},
-                           {"operator_put_backs", state_.progress.operator_put_backs}};
-    const double oscillation_rad = heading_.StandardDeviation();
-    if (std::isfinite(oscillation_rad)) fields["heading_oscillation_rad"] = oscillation_rad;
-    if (!phase_.task.empty()) {
-      fields["task_done"] = state_.progress.task_phase == stream::TaskPhase::kDone;
-    }
+                           {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)}};
+    fields.update(events_.Figures());
     if (outcome == records::kDeviceLost) fields["device"] = lost_role_;
     if (const auto done = recorder_->Finish(ToTextMap(fields)); !done) return done;
     return context_.journal.Append(EventKind::kTrialFinished, std::move(fields));
@@ -262,13 +202,10 @@ class TrialRun {
   std::size_t attempt_;
   std::string id_, file_;
   std::unique_ptr<TrialRecorder> recorder_;
-  stream::TrialState state_;
-  HeadingOscillation heading_;
-  std::uint64_t newest_failure_ = 0;
   std::int64_t begin_ns_ = 0;
   std::int64_t complete_ns_ = 0;  ///< When all devices were last there.
   std::string lost_role_;
-  Result<void> written_;
+  TrialEvents events_;
 };
 
 }  // namespace

@@ -132,6 +132,22 @@ TEST(TrialRecords, DoNotCountAnAttemptThatLostADevice) {
   EXPECT_EQ(counting.front()->attempt, 1u);
 }
 
+TEST(TrialRecords, KeepTheStagesOfResponsesWithTheirTrial) {
+  Events events;
+  events.Add(EventKind::kSessionStarted);
+  events.Trial("a", 1);
+  events.Add(EventKind::kResponse, {{"stages_ms", {{"decode", 0.5}, {"contact", 100}}}});
+  events.Add(EventKind::kTrialFinished, {{"outcome", "finished"}, {"anticipation_s", 0.25}});
+  events.Trial("b", 1).Finished(3);
+  const Records records = Collect(events.list);
+  ASSERT_EQ(records.trials[0].responses.size(), 1u);
+  EXPECT_EQ(records.trials[0].responses[0][1].stage, "contact");
+  EXPECT_EQ(records.trials[0].responses[0][1].ms, 100);
+  EXPECT_EQ(records.trials[0].anticipation_s, 0.25);
+  EXPECT_TRUE(records.trials[1].responses.empty());
+  EXPECT_TRUE(std::isnan(records.trials[1].anticipation_s));
+}
+
 TEST(TrialRecords, HaveOneRatingPerItemTheLastOne) {
   Events events;
   events.Add(EventKind::kSessionStarted, {{"participant", "P7"}});

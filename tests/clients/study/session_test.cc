@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "clients/study/session/active_time.h"
+#include "clients/study/session/anticipation.h"
 #include "clients/study/session/heading.h"
 #include "clients/study/session/respondent.h"
 #include "clients/study/session/survey.h"
@@ -29,6 +30,37 @@ TEST(ActiveTime, CountsWhatPassesBetweenTicksWhileSomethingMoves) {
   EXPECT_NEAR(active.seconds(), 2.0, 1e-9);
   active.Add(kStartNs + 1001 * kTickNs, true);
   EXPECT_NEAR(active.seconds(), 2.01, 1e-9);
+}
+
+TEST(Anticipation, IsTheTimeFromTheCommandToTheLine) {
+  using stream::Gait;
+  Anticipation anticipation;
+  // At 2 m/s, frames of 10 ms, the line at 3 m; the command comes at 2.4 m: (3 - 2.4) / 2 s.
+  for (int i = 0; i <= 200; ++i) {
+    const double to_mark_m = 3 - 0.02 * i;
+    anticipation.Add(1'000'000'000 + i * 10'000'000, to_mark_m, i < 120 ? Gait::kRun : Gait::kWalk,
+                     Gait::kWalk);
+    EXPECT_EQ(anticipation.seconds().has_value(), to_mark_m <= 0);
+  }
+  EXPECT_NEAR(*anticipation.seconds(), 0.3, 0.011);
+}
+
+TEST(Anticipation, IsOfTheLastAttemptAndNegativeBehindTheLine) {
+  using stream::Gait;
+  Anticipation anticipation;
+  std::int64_t now_ns = 0;
+  const auto at = [&](double to_mark_m, Gait commanded) {
+    anticipation.Add(now_ns += 100'000'000, to_mark_m, commanded, Gait::kJump);
+  };
+  at(1, Gait::kRun);
+  at(0.5, Gait::kJump);  // Too early: it fails, and is put back.
+  at(-0.1, Gait::kRun);
+  at(6, Gait::kStep);
+  at(1, Gait::kRun);
+  at(-0.1, Gait::kRun);  // Over the line ...
+  at(-0.4, Gait::kRun);
+  at(-0.7, Gait::kJump);  // ... and 0.2 s later the command.
+  EXPECT_NEAR(*anticipation.seconds(), -0.2, 1e-9);
 }
 
 TEST(Respondent, GivesTheSameAnswersForASeedAndAllRatingsAboutEquallyOften) {

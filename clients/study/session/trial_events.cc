@@ -1,0 +1,122 @@
+#include "clients/study/session/trial_events.h"
+
+#include <cmath>
+#include <utility>
+
+#include "common/stream/response.h"
+#include "common/text/number.h"
+#include "common/wire/wire.h"
+
+namespace footing::study {
+namespace {
+
+using nlohmann::ordered_json;
+using records::EventKind;
+
+/// Of the task with that name; kUnspecified: the track has none.
+stream::Gait WantedGait(const stream::Track& track, const std::string& task) {
+  for (const stream::TrackTask& one : track.tasks) {
+    if (one.name == task) return one.after;
+  }
+  return stream::Gait::kUnspecified;
+}
+
+}  // namespace
+
+TrialEvents::TrialEvents(SessionContext& context, Servers& servers, std::string id)
+    : context_(context), servers_(servers), id_(std::move(id)) {}
+
+TrialEvents::~TrialEvents() {
+  servers_.set_on_frame(nullptr);
+  servers_.set_on_event(nullptr);
+}
+
+void TrialEvents::Begin() {
+  servers_.set_on_event([this](const v1::Event& event) { OnEvent(event); });
+  servers_.set_on_frame([this](const SimulationFrame& frame) { OnFrame(frame); });
+}
+
+void TrialEvents::OnFrame(const SimulationFrame& frame) {
+  const stream::TrialState& trial = frame.trial;
+  if (trial.trial != id_) return;
+  if (trial.progress.phase == stream::TrialPhase::kRunning && trial.progress.on_track) {
+    heading_.Add(trial.progress.heading_error_rad);
+  }
+  const stream::TaskPhase task = trial.progress.task_phase;
+  if (task == stream::TaskPhase::kAhead || task == stream::TaskPhase::kDue) {
+    anticipation_.Add(frame.host_ns, trial.to_mark_m, frame.commanded_gait,
+                      WantedGait(servers_.track(), trial.task));
+  }
+  if (!trial.instruction.empty() && trial.instruction != state_.instruction) {
+    context_.console.Print("Task for the participant: " + trial.instruction);
+  }
+  state_ = trial;
+}
+
+void TrialEvents::OnEvent(const v1::Event& event) {
+  // Responses do not name a trial; while nothing has begun they belong to none.
+  if (event.kind() == v1::Event::KIND_RESPONSE && state_.trial == id_) OnResponse(event.response());
+  if (event.failure().trial() != id_) return;
+  if (event.kind() == v1::Event::KIND_CORRECTION) OnCorrection(event.failure());
+  if (event.kind() == v1::Event::KIND_FALL) OnFailure(event);
+}
+
+/// By this program or by another console.
+void TrialEvents::OnCorrection(const v1::Failure& failure) {
+  Append(failure.withdrawn() ? EventKind::kFailureUndone : EventKind::kFailureRestored,
+         {{"failure", failure.number()}});
+  if (failure.number() == newest_failure_) newest_failure_ = 0;
+  context_.console.Print("failure " + std::to_string(failure.number()) +
+                         (failure.withdrawn() ? " undone" : " restored"));
+}
+
+void TrialEvents::OnFailure(const v1::Event& event) {
+  const v1::Failure& failure = event.failure();
+  newest_failure_ = failure.number();
+  const char* kind = stream::Name(static_cast<stream::FailureCause>(failure.cause()));
+  Append(EventKind::kFailure, {{"trial", id_},
+                               {"failure", failure.number()},
+                               {"kind", kind},
+                               {"trial_time_s", failure.trial_time_s()},
+                               {"distance_m", failure.distance_m()},
+                               {"lateral_offset_m", failure.lateral_offset_m()},
+                               {"heading_error_rad", failure.heading_error_rad()},
+                               {"host_ns", event.host_ns()}});
+  context_.console.Print("failure " + std::to_string(failure.number()) + ": " + kind + ", " +
+                         text::Fixed(failure.trial_time_s(), 1) + " s");
+}
+
+void TrialEvents::OnResponse(const v1::ResponseStages& response) {
+  const stream::ResponseStages stamps = wire::FromProto(response);
+  ordered_json stages = ordered_json::object();
+  for (const stream::ResponseStage& stage : stream::ResponseTimes(stamps)) {
+    stages[stage.name] = stage.ms;
+  }
+  if (stages.empty()) return;
+  Append(EventKind::kResponse, {{"trial", id_},
+                                {"from", stream::Name(stamps.from)},
+                                {"to", stream::Name(stamps.to)},
+                                {"stages_ms", std::move(stages)}});
+}
+
+void TrialEvents::Append(EventKind kind, ordered_json fields) {
+  auto written = context_.journal.Append(kind, std::move(fields));
+  if (!written && written_) written_ = std::move(written);
+}
+
+ordered_json TrialEvents::Figures() const {
+  ordered_json fields = {{"time_s", state_.progress.time_s},
+                         {"distance_m", state_.progress.distance_m},
+                         {"failed_attempts", stream::Total(state_.progress.failures)},
+                         {"operator_put_backs", state_.progress.operator_put_backs}};
+  const double oscillation_rad = heading_.StandardDeviation();
+  if (std::isfinite(oscillation_rad)) fields["heading_oscillation_rad"] = oscillation_rad;
+  if (state_.task.empty()) return fields;
+  fields["task_done"] = state_.progress.task_phase == stream::TaskPhase::kDone;
+  // Of a task that was never done there is nothing to say.
+  const auto anticipation_s = anticipation_.seconds();
+  if (fields["task_done"] && anticipation_s) fields["anticipation_s"] = *anticipation_s;
+  return fields;
+}
+
+}  // namespace footing::study

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "clients/study/session/anticipation.h"
+#include "clients/study/session/heading.h"
+#include "clients/study/session/servers.h"
+#include "clients/study/session/session_context.h"
+#include "common/result/result.h"
+#include "common/stream/trial.h"
+
+namespace footing::study {
+
+/// What footing-sim publishes during a trial: failures, corrections and responses go into the
+/// journal as they come, the rest adds up to the figures of the trial's end.
+class TrialEvents {
+ public:
+  TrialEvents(SessionContext& context, Servers& servers, std::string id);
+  ~TrialEvents();
+  TrialEvents(const TrialEvents&) = delete;
+  TrialEvents& operator=(const TrialEvents&) = delete;
+
+  /// Listens from here on.
+  void Begin();
+
+  /// As of the newest frame of this trial.
+  const stream::TrialState& state() const { return state_; }
+  bool over() const { return state_.progress.phase == stream::TrialPhase::kFinished; }
+  /// The newest failure that is not withdrawn; 0: none.
+  std::uint64_t newest_failure() const { return newest_failure_; }
+  /// The first event that could not be written.
+  const Result<void>& written() const { return written_; }
+
+  /// For the event that ends the trial.
+  nlohmann::ordered_json Figures() const;
+
+ private:
+  void OnFrame(const SimulationFrame& frame);
+  void OnEvent(const v1::Event& event);
+  void OnCorrection(const v1::Failure& failure);
+  void OnFailure(const v1::Event& event);
+  void OnResponse(const v1::ResponseStages& response);
+  void Append(records::EventKind kind, nlohmann::ordered_json fields);
+
+  SessionContext& context_;
+  Servers& servers_;
+  std::string id_;
+  stream::TrialState state_;
+  HeadingOscillation heading_;
+  Anticipation anticipation_;
+  std::uint64_t newest_failure_ = 0;
+  Result<void> written_;
+};
+
+}  // namespace footing::study
