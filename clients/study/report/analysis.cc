@@ -1,7 +1,9 @@
 #include "clients/study/report/analysis.h"
 
 #include <algorithm>
+#include <set>
 
+#include "clients/study/report/figure.h"
 #include "common/text/number.h"
 
 namespace footing::study::report {
@@ -27,17 +29,15 @@ bool Comparable(const statistics::StudyTable& table, const std::string& control)
 ordered_json Groups(const statistics::StudyTable& table) {
   ordered_json groups = ordered_json::array();
   for (const statistics::Group& group : table.groups) {
-    std::vector<double> sorted = group.values;
-    std::sort(sorted.begin(), sorted.end());
-    const std::size_t n = sorted.size();
+    const auto [least, greatest] = std::minmax_element(group.values.begin(), group.values.end());
     double sum = 0;
-    for (const double value : sorted) sum += value;
+    for (const double value : group.values) sum += value;
     groups.push_back({{"interface", group.name},
-                      {"n", n},
-                      {"mean", sum / static_cast<double>(n)},
-                      {"median", (sorted[(n - 1) / 2] + sorted[n / 2]) / 2},
-                      {"least", sorted.front()},
-                      {"greatest", sorted.back()}});
+                      {"n", group.values.size()},
+                      {"mean", sum / static_cast<double>(group.values.size())},
+                      {"median", QuartilesOf(group.values).median},
+                      {"least", *least},
+                      {"greatest", *greatest}});
   }
   return groups;
 }
@@ -70,22 +70,52 @@ Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Reco
       if (table.blocks) {
         one["paired"] = Tested(table, statistics::TestKind::kPaired, protocol.seed);
       }
+      if (measure.id.ends_with("_failures_all") && !measure.all_zero()) {
+        one["rate"] = Tested(table, statistics::TestKind::kRate, protocol.seed);
+      }
     }
     measures.push_back(std::move(one));
+  }
+  analysis.latency = LatencyByStage(InOrder(protocol), people);
+  ordered_json latency = ordered_json::array();
+  for (const StageLatency& one : analysis.latency) {
+    latency.push_back({{"interface", one.interface},
+                       {"stage", one.stage},
+                       {"n", one.responses},
+                       {"p50_ms", one.p50_ms},
+                       {"p95_ms", one.p95_ms}});
   }
   analysis.json = {{"name", protocol.name},         {"control", protocol.control},
                    {"participants", people.size()}, {"withdrawn", withdrawn},
                    {"unfinished", unfinished},      {"synthetic", analysis.synthetic},
-                   {"measures", measures}};
+                   {"measures", measures},          {"latency", latency}};
   return analysis;
 }
 
 std::string ValuesCsv(const Analysis& analysis) {
-  std::string csv = "measure,participant,interface,value\n";
+  std::string csv = "measure,plotted,participant,interface,value\n";
+  const auto add = [&csv](const std::string& measure, const char* plotted,
+                          const std::string& participant, const std::string& interface,
+                          double value) {
+    csv += Cell(measure) + "," + plotted + "," + Cell(participant) + "," + Cell(interface) + "," +
+           text::Shortest(value) + "\n";
+  };
   for (const Measure& measure : analysis.measures) {
+    std::set<std::string> interfaces;
     for (const Value& one : measure.values) {
-      csv += Cell(measure.id) + "," + Cell(one.participant) + "," + Cell(one.interface) + "," +
-             text::Shortest(one.value) + "\n";
+      add(measure.id, "point", one.participant, one.interface, one.value);
+      interfaces.insert(one.interface);
+    }
+    for (const std::string& interface : interfaces) {
+      const Quartiles box = QuartilesOf(measure.Of(interface));
+      add(measure.id, "lower_quartile", "", interface, box.low);
+      add(measure.id, "median", "", interface, box.median);
+      add(measure.id, "upper_quartile", "", interface, box.high);
+    }
+  }
+  for (const StageLatency& one : analysis.latency) {
+    if (one.stage != kWithoutContact) {
+      add("latency_" + one.stage + "_ms", "bar", "", one.interface, one.p50_ms);
     }
   }
   return csv;

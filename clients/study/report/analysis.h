@@ -4,15 +4,18 @@
 #include <string>
 #include <vector>
 
+#include "clients/study/report/latency.h"
 #include "clients/study/report/measures.h"
 
 namespace footing::study::report {
 
 struct Analysis {
   /// {name, control, participants, withdrawn, unfinished, synthetic, measures: [{id, title, groups,
-  /// test, paired}]}; `test` and `paired` are reports of footing-eval stats, or {error}.
+  /// test, paired, rate}], latency: [{interface, stage, n, p50_ms, p95_ms}]}; `test`, `paired` and
+  /// `rate` (of all failures together) are reports of footing-eval stats, or {error}.
   nlohmann::ordered_json json;
   std::vector<Measure> measures;
+  std::vector<StageLatency> latency;
   bool synthetic = false;  ///< Any part of it does not come from a person.
 };
 
@@ -20,7 +23,8 @@ struct Analysis {
 /// random relabelling, too.
 Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Records>& people);
 
-/// A row for every value that a figure shows: measure,participant,interface,value.
+/// A row for everything that a figure shows: measure,plotted,participant,interface,value. `plotted`
+/// is point, lower_quartile, median, upper_quartile or bar.
 std::string ValuesCsv(const Analysis& analysis);
 
 }  // namespace footing::study::report

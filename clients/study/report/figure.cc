@@ -21,18 +21,16 @@ std::string Line(double x1, double y1, double x2, double y2, const std::string& 
          "\" y2=\"" + N(y2) + "\"/>";
 }
 
-std::string Label(double x, double y, const std::string& anchor, const std::string& text) {
-  return "<text x=\"" + N(x) + "\" y=\"" + N(y) + "\" text-anchor=\"" + anchor + "\">" +
-         Escaped(text) + "</text>";
-}
-
-/// Linear between the two nearest values; `sorted` has one at least.
-double Quartile(const std::vector<double>& sorted, double share) {
+/// `sorted` has one value at least.
+double Quantile(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
+
+/// The middle of a column.
+double ColumnX(std::size_t i) { return kLeft + kColumn * (static_cast<double>(i) + 0.5); }
 
 struct Axis {
   double least = 0, greatest = 1;
@@ -41,23 +39,56 @@ struct Axis {
   }
 };
 
-std::string Box(double x, const Axis& axis, std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const double low = axis.Y(Quartile(values, 0.25)), high = axis.Y(Quartile(values, 0.75));
-  const double median = axis.Y(Quartile(values, 0.5));
+std::string Box(double x, const Axis& axis, const std::vector<double>& values) {
+  const Quartiles box = QuartilesOf(values);
+  const double low = axis.Y(box.low), high = axis.Y(box.high), median = axis.Y(box.median);
   return "<rect x=\"" + N(x - kBoxWidth / 2) + "\" y=\"" + N(high) + "\" width=\"" + N(kBoxWidth) +
          "\" height=\"" + N(low - high) + "\"/>" +
          Line(x - kBoxWidth / 2, median, x + kBoxWidth / 2, median, "median");
 }
 
+struct Point {
+  double x = 0, y = 0;
+  std::string title;
+};
+
+/// By participant, then from left to right. Points that would cover each other stand side by side.
+std::map<std::string, std::vector<Point>> PointsOf(const Measure& measure, const Axis& axis,
+                                                   const std::vector<std::string>& names) {
+  std::map<std::string, std::vector<Point>> people;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::map<long, std::vector<const Value*>> at_height;
+    for (const Value& one : measure.values) {
+      if (one.interface == names[i]) at_height[std::lround(axis.Y(one.value))].push_back(&one);
+    }
+    for (const auto& [height, together] : at_height) {
+      const auto count = static_cast<double>(together.size());
+      const double apart = std::min(2 * kPointRadius, kBoxWidth / count);
+      for (std::size_t k = 0; k < together.size(); ++k) {
+        const Value& one = *together[k];
+        people[one.participant].push_back(
+            {ColumnX(i) + apart * (static_cast<double>(k) - (count - 1) / 2), axis.Y(one.value),
+             one.participant + ": " + text::Shortest(one.value)});
+      }
+    }
+  }
+  return people;
+}
+
 }  // namespace
 
-std::vector<double> Ticks(double least, double greatest) {
+Quartiles QuartilesOf(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return {Quantile(values, 0.25), Quantile(values, 0.5), Quantile(values, 0.75)};
+}
+
+std::vector<double> Ticks(double least, double greatest, bool counts) {
   const double span = std::max(greatest - least, 1e-9);
   double step = std::pow(10, std::floor(std::log10(span / kMostTicks)));
   for (const double factor : {2.0, 2.5, 2.0}) {  // 1, 2, 5, 10 times the power of ten.
     if (span / step > kMostTicks) step *= factor;
   }
+  if (counts) step = std::max(step, 1.0);
   std::vector<double> ticks;
   const double first = std::floor(least / step), last = std::ceil(greatest / step);
   for (double i = first; i <= std::max(last, first + 1); ++i) ticks.push_back(i * step);
@@ -65,45 +96,45 @@ std::vector<double> Ticks(double least, double greatest) {
 }
 
 std::string Figure(const Measure& measure, const plan::Protocol& protocol) {
-  std::vector<std::string> names = {protocol.control};
-  for (const std::string& one : protocol.interfaces) {
-    if (one != protocol.control) names.push_back(one);
-  }
+  const std::vector<std::string> names = InOrder(protocol);
   double least = 0, greatest = 0;  // Zero belongs to all of the scales.
   for (const Value& one : measure.values) {
     least = std::min(least, one.value);
     greatest = std::max(greatest, one.value);
   }
-  const std::vector<double> ticks = Ticks(least, greatest);
+  const std::vector<double> ticks = Ticks(least, greatest, measure.counts());
   const Axis axis{ticks.front(), ticks.back()};
   const double width = kLeft + kColumn * static_cast<double>(names.size());
-  std::string svg = "<svg viewBox=\"0 0 " + N(width) + " " + N(kHeight) + "\" width=\"" + N(width) +
-                    "\" role=\"img\" aria-label=\"" + Escaped(measure.title) + "\">";
+  std::string svg = OpenSvg(width, kHeight, measure.title);
   for (const double tick : ticks) {
-    svg += Line(kLeft, axis.Y(tick), width, axis.Y(tick), "grid") +
+    svg += Line(kLeft, axis.Y(tick), width, axis.Y(tick), tick == 0 ? "zero" : "grid") +
            Label(kLeft - 6, axis.Y(tick) + 4, "end", text::Shortest(std::round(tick * 1e9) / 1e9));
   }
-  std::map<std::string, double> x_of;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    x_of[names[i]] = kLeft + kColumn * (static_cast<double>(i) + 0.5);
-    svg += Label(x_of[names[i]], kHeight - 8, "middle", names[i]);
+    svg += Label(ColumnX(i), kHeight - 8, "middle", names[i]);
     const std::vector<double> values = measure.Of(names[i]);
-    if (!values.empty()) svg += Box(x_of[names[i]], axis, values);
+    if (!values.empty()) svg += Box(ColumnX(i), axis, values);
   }
-  std::map<std::string, std::map<double, double>> people;  // Participant to y over x.
-  for (const Value& one : measure.values) {
-    people[one.participant][x_of[one.interface]] = axis.Y(one.value);
-  }
-  for (const auto& [participant, points] : people) {
-    std::string path;
-    for (const auto& [x, y] : points) path += (path.empty() ? "M" : "L") + N(x) + " " + N(y);
-    svg += "<path class=\"pair\" d=\"" + path + "\"/>";
-    for (const auto& [x, y] : points) {
-      svg += "<circle cx=\"" + N(x) + "\" cy=\"" + N(y) + "\" r=\"" + N(kPointRadius) +
-             "\"><title>" + Escaped(participant) + "</title></circle>";
+  for (const auto& [participant, points] : PointsOf(measure, axis, names)) {
+    std::string path, circles;
+    for (const Point& one : points) {
+      path += (path.empty() ? "M" : "L") + N(one.x) + " " + N(one.y);
+      circles += "<circle cx=\"" + N(one.x) + "\" cy=\"" + N(one.y) + "\" r=\"" + N(kPointRadius) +
+                 "\"><title>" + Escaped(one.title) + "</title></circle>";
     }
+    svg += "<path class=\"pair\" d=\"" + path + "\"/>" + circles;
   }
   return svg + "</svg>";
+}
+
+std::string OpenSvg(double width, double height, const std::string& title) {
+  return "<svg viewBox=\"0 0 " + N(width) + " " + N(height) + "\" width=\"" + N(width) +
+         "\" role=\"img\" aria-label=\"" + Escaped(title) + "\">";
+}
+
+std::string Label(double x, double y, const std::string& anchor, const std::string& text) {
+  return "<text x=\"" + N(x) + "\" y=\"" + N(y) + "\" text-anchor=\"" + anchor + "\">" +
+         Escaped(text) + "</text>";
 }
 
 std::string Escaped(const std::string& text) {

@@ -3,68 +3,128 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
+#include <tuple>
+#include <utility>
 
+#include "clients/study/report/latency.h"
 #include "common/stream/trial.h"
+#include "common/text/quantile.h"
+#include "common/units/units.h"
 
 namespace footing::study::report {
 namespace {
 
 using records::Records;
 using records::Trial;
+using statistics::TestKind;
+using Trials = std::vector<const Trial*>;
 
-/// A value from the trials of one kind that a participant made with an interface; NaN: none.
-using FromTrials = std::function<double(const std::vector<const Trial*>&)>;
+constexpr double kSecondsPerMinute = 60;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-Measure OfTrials(const plan::Protocol& protocol, const std::vector<Records>& people,
-                 const std::string& kind, Measure measure, const FromTrials& from) {
-  for (const Records& person : people) {
-    const auto counting = records::Counting(person);
-    for (const std::string& interface : protocol.interfaces) {
-      std::vector<const Trial*> own;
-      for (const Trial* trial : counting) {
-        if (trial->interface == interface && trial->kind == kind) own.push_back(trial);
-      }
-      const double value = own.empty() ? std::nan("") : from(own);
-      if (std::isfinite(value)) measure.values.push_back({person.participant, interface, value});
-    }
-  }
-  return measure;
+/// A value from the trials that a participant made with an interface; NaN: none.
+using FromTrials = std::function<double(const Trials&)>;
+
+double TimeS(const Trials& trials) {
+  double time_s = 0;
+  for (const Trial* trial : trials) time_s += trial->time_s;
+  return time_s;
 }
 
-FromTrials CountOf(const std::string& failure) {
-  return [failure](const std::vector<const Trial*>& trials) {
-    double count = 0;
-    for (const Trial* trial : trials) count += static_cast<double>(trial->Count(failure));
-    return count;
-  };
+/// The mean of a figure over the trials that have it.
+double Mean(const Trials& trials, double Trial::*figure) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const Trial* trial : trials) {
+    if (!std::isfinite(trial->*figure)) continue;
+    sum += trial->*figure;
+    ++count;
+  }
+  return count == 0 ? kNone : sum / static_cast<double>(count);
 }
 
 /// NaN unless all of them reached the finish line.
-double CompletionS(const std::vector<const Trial*>& trials) {
-  double sum_s = 0;
+double CompletionS(const Trials& trials) {
   for (const Trial* trial : trials) {
-    if (trial->outcome != "finished") return std::nan("");
-    sum_s += trial->time_s;
+    if (trial->outcome != "finished") return kNone;
   }
-  return sum_s / static_cast<double>(trials.size());
+  return TimeS(trials) / static_cast<double>(trials.size());
 }
 
-double MeanTimeToFailureS(const std::vector<const Trial*>& trials) {
-  double time_s = 0;
+double MeanTimeToFailureS(const Trials& trials) {
   std::size_t failures = 0;
-  for (const Trial* trial : trials) {
-    time_s += trial->time_s;
-    failures += trial->failure_count();
-  }
-  return time_s / static_cast<double>(std::max<std::size_t>(1, failures));
+  for (const Trial* trial : trials) failures += trial->failure_count();
+  return TimeS(trials) / static_cast<double>(std::max<std::size_t>(1, failures));
 }
 
-double OscillationDeg(const std::vector<const Trial*>& trials) {
-  double sum_rad = 0;
-  for (const Trial* trial : trials) sum_rad += trial->heading_oscillation_rad;
-  return sum_rad / static_cast<double>(trials.size()) * 180 / std::acos(-1.0);
+double LatencyMs(const Trials& trials) {
+  std::vector<double> times_ms;
+  for (const Trial* trial : trials) {
+    for (const records::Response& one : trial->responses) times_ms.push_back(WithoutContactMs(one));
+  }
+  return times_ms.empty() ? kNone : text::Median(std::move(times_ms));
 }
+
+/// Makes the measures of trials, one after the other.
+class TrialMeasures {
+ public:
+  TrialMeasures(const plan::Protocol& protocol, const std::vector<Records>& people) {
+    for (const Records& person : people) {
+      const auto counting = records::Counting(person);
+      for (const std::string& interface : protocol.interfaces) {
+        for (const Trial* trial : counting) {
+          if (trial->interface != interface) continue;
+          trials_[{person.participant, interface, trial->kind}].push_back(trial);
+          trials_[{person.participant, interface, ""}].push_back(trial);
+        }
+      }
+    }
+  }
+
+  /// `kind` is "straight" or "test_track"; empty: both.
+  void Add(const std::string& kind, Measure measure, const FromTrials& from, bool count = false) {
+    for (const auto& [key, trials] : trials_) {
+      if (std::get<2>(key) != kind) continue;
+      const double value = from(trials);
+      if (!std::isfinite(value)) continue;
+      measure.values.push_back({std::get<0>(key), std::get<1>(key), value,
+                                count ? TimeS(trials) / kSecondsPerMinute : 0});
+    }
+    list.push_back(std::move(measure));
+  }
+
+  /// Failures by kind, and all together.
+  void AddFailures(const std::string& kind, const std::string& id, const std::string& where) {
+    const auto add = [&](const std::string& name, const std::string& title, const auto& count_of) {
+      Add(
+          kind,
+          {Section::kFailures,
+           id + "_failures_" + name,
+           where + ", " + title,
+           TestKind::kSteel,
+           {}},
+          [&count_of](const Trials& trials) {
+            double count = 0;
+            for (const Trial* trial : trials) count += static_cast<double>(count_of(*trial));
+            return count;
+          },
+          /*count=*/true);
+    };
+    add("all", "failures of every kind", [](const Trial& trial) { return trial.failure_count(); });
+    for (const stream::FailureCause cause : stream::kFailureCauses) {
+      const std::string name = stream::Name(cause);
+      add(name, "failures of kind " + name, [&](const Trial& trial) { return trial.Count(name); });
+    }
+  }
+
+  std::vector<Measure> list;
+
+ private:
+  /// By participant, interface and kind.
+  std::map<std::tuple<std::string, std::string, std::string>, Trials> trials_;
+};
 
 std::vector<Measure> OfRatings(const std::vector<Records>& people) {
   std::vector<Measure> measures;
@@ -75,19 +135,43 @@ std::vector<Measure> OfRatings(const std::vector<Records>& people) {
       const std::string id = "rating " + rating.item;
       const bool exertion = rating.item == "exertion";
       if (index.emplace(id, measures.size()).second) {
-        measures.push_back({id,
+        measures.push_back({Section::kSurvey,
+                            id,
                             rating.item + (exertion ? ", 0 to 10" : ", rating 1 to 5"),
-                            statistics::TestKind::kSteel,
+                            TestKind::kSteel,
                             {}});
       }
-      Measure& measure = measures[index.at(id)];
-      measure.values.push_back({person.participant, rating.interface, rating.value});
+      measures[index.at(id)].values.push_back({rating.participant, rating.interface, rating.value});
     }
   }
   return measures;
 }
 
+Measure OfActiveTime(const std::vector<Records>& people) {
+  Measure measure{Section::kSurvey, "active_min", "Time in motion, minutes", TestKind::kSteel, {}};
+  for (const Records& person : people) {
+    for (const auto& [interface, active_s] : person.active_s) {
+      measure.values.push_back({person.participant, interface, active_s / kSecondsPerMinute});
+    }
+  }
+  return measure;
+}
+
 }  // namespace
+
+const char* Title(Section section) {
+  switch (section) {
+    case Section::kControl:
+      return "Completion and control";
+    case Section::kFailures:
+      return "Failures";
+    case Section::kLatency:
+      return "Latency and anticipation";
+    case Section::kSurvey:
+      return "Survey and effort";
+  }
+  return "";
+}
 
 std::vector<double> Measure::Of(const std::string& interface) const {
   std::vector<double> found;
@@ -97,48 +181,85 @@ std::vector<double> Measure::Of(const std::string& interface) const {
   return found;
 }
 
+bool Measure::counts() const {
+  return std::all_of(values.begin(), values.end(),
+                     [](const Value& one) { return one.exposure_min > 0; });
+}
+
+bool Measure::all_zero() const {
+  return std::all_of(values.begin(), values.end(), [](const Value& one) { return one.value == 0; });
+}
+
 std::vector<Measure> Measures(const plan::Protocol& protocol, const std::vector<Records>& all) {
-  using statistics::TestKind;
   std::vector<Records> people;
   for (const Records& person : all) {
     if (!person.withdrawn) people.push_back(person);
   }
-  std::vector<Measure> measures;
-  const auto add = [&](const std::string& kind, const std::string& id, const std::string& title,
-                       TestKind test, const FromTrials& from) {
-    measures.push_back(OfTrials(protocol, people, kind, {id, title, test, {}}, from));
-  };
-  for (const stream::FailureCause cause : stream::kFailureCauses) {
-    const std::string name = stream::Name(cause);
-    const std::string title = "failures of kind " + name;
-    add("straight", "straight_failures_" + name, "Straight tracks, " + title, TestKind::kSteel,
-        CountOf(name));
-    add("test_track", "test_failures_" + name, "Test track, " + title, TestKind::kSteel,
-        CountOf(name));
-  }
-  add("straight", "straight_oscillation_deg", "Straight tracks, oscillation of heading, degrees",
-      TestKind::kDunnett, OscillationDeg);
-  add("test_track", "test_time_to_completion_s", "Test track, time to completion, s",
-      TestKind::kSteel, CompletionS);
-  add("test_track", "test_mean_time_to_failure_s", "Test track, mean time to failure, s",
-      TestKind::kSteel, MeanTimeToFailureS);
-  for (Measure& rating : OfRatings(people)) measures.push_back(std::move(rating));
-  std::erase_if(measures, [](const Measure& one) { return one.values.empty(); });
-  return measures;
+  TrialMeasures measures(protocol, people);
+  measures.Add("test_track",
+               {Section::kControl,
+                "test_time_to_completion_s",
+                "Test track, time to completion, s",
+                TestKind::kSteel,
+                {}},
+               CompletionS);
+  measures.Add("test_track",
+               {Section::kControl,
+                "test_mean_time_to_failure_s",
+                "Test track, mean time to failure, s",
+                TestKind::kSteel,
+                {}},
+               MeanTimeToFailureS);
+  measures.Add("straight",
+               {Section::kControl,
+                "straight_oscillation_deg",
+                "Straight tracks, oscillation of heading, degrees",
+                TestKind::kDunnett,
+                {}},
+               [](const Trials& trials) {
+                 return RadiansToDegrees(Mean(trials, &Trial::heading_oscillation_rad));
+               });
+  measures.AddFailures("straight", "straight", "Straight tracks");
+  measures.AddFailures("test_track", "test", "Test track");
+  measures.Add("",
+               {Section::kLatency,
+                "latency_without_contact_ms",
+                "Latency without the wait for contact, median, ms",
+                TestKind::kSteel,
+                {}},
+               LatencyMs);
+  measures.Add("straight",
+               {Section::kLatency,
+                "anticipation_s",
+                "Command before the line of the task, s",
+                TestKind::kSteel,
+                {}},
+               [](const Trials& trials) { return Mean(trials, &Trial::anticipation_s); });
+  measures.list.push_back(OfActiveTime(people));
+  for (Measure& rating : OfRatings(people)) measures.list.push_back(std::move(rating));
+  std::erase_if(measures.list, [](const Measure& one) { return one.values.empty(); });
+  return std::move(measures.list);
 }
 
-statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& protocol) {
-  statistics::StudyTable table;
+std::vector<std::string> InOrder(const plan::Protocol& protocol) {
   std::vector<std::string> names = {protocol.control};
   for (const std::string& interface : protocol.interfaces) {
     if (interface != protocol.control) names.push_back(interface);
   }
+  return names;
+}
+
+statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& protocol) {
+  statistics::StudyTable table;
   std::vector<std::string> kept;
-  for (const std::string& name : names) {
+  for (const std::string& name : InOrder(protocol)) {
     std::vector<double> values = measure.Of(name);
     if (values.empty()) continue;
     kept.push_back(name);
-    table.exposures.emplace_back(values.size(), 1.0);
+    std::vector<double>& exposures = table.exposures.emplace_back();
+    for (const Value& one : measure.values) {
+      if (one.interface == name) exposures.push_back(measure.counts() ? one.exposure_min : 1);
+    }
     table.groups.push_back({name, std::move(values)});
   }
   std::map<std::string, std::map<std::string, double>> by_person;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,22 @@
 
 namespace footing::study::report {
 
+/// The parts of a report, in their order.
+enum class Section { kControl, kFailures, kLatency, kSurvey };
+inline constexpr std::array kSections{Section::kControl, Section::kFailures, Section::kLatency,
+                                      Section::kSurvey};
+const char* Title(Section section);
+
 struct Value {
   std::string participant;
   std::string interface;
   double value = 0;
+  double exposure_min = 0;  ///< Of a count: the time behind it; 0: not a count.
 };
 
 /// Something that is compared between interfaces, one value for each participant and interface.
 struct Measure {
+  Section section = Section::kControl;
   std::string id;     ///< Such as "test_failures_curve".
   std::string title;  ///< For a person, with its unit.
   /// As in the gait paper: Dunnett's for the oscillation of heading, otherwise Steel's.
@@ -27,16 +36,22 @@ struct Measure {
 
   /// Of an interface, in the order of the participants.
   std::vector<double> Of(const std::string& interface) const;
+  /// Every value is a count over a time.
+  bool counts() const;
+  bool all_zero() const;
 };
 
-/// All measures of a study that have a value (gait paper, section 8.1): failures by kind, time to
-/// completion, mean time to failure, oscillation of heading, ratings. Participants who have
-/// withdrawn are left out.
+/// All measures of a study that have a value (gait paper, section 8.1): time to completion, mean
+/// time to failure, oscillation of heading, failures by kind, latency and anticipation, active
+/// minutes, ratings. Participants who have withdrawn are left out.
 std::vector<Measure> Measures(const plan::Protocol& protocol,
                               const std::vector<records::Records>& people);
 
-/// The control first. Interfaces without a value are left out; blocks where every participant with
-/// a value has one in each group.
+/// The interfaces of a protocol, the control first.
+std::vector<std::string> InOrder(const plan::Protocol& protocol);
+
+/// In their order. Interfaces without a value are left out; blocks where every participant with a
+/// value has one in each group.
 statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& protocol);
 
 }  // namespace footing::study::report

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "clients/study/report/figure.h"
-#include "common/text/number.h"
+#include "clients/study/report/tables.h"
 
 namespace footing::study::report {
 namespace {
@@ -11,79 +11,41 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kStyle =
-    "body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:60rem;margin:2rem auto;"
-    "padding:0 1rem}h1,h2{font-weight:300}table{border-collapse:collapse;margin:.5rem 0}"
+    "body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:72rem;margin:2rem auto;"
+    "padding:0 1rem}h1,h2,h3{font-weight:300}h2{margin-top:3rem;border-bottom:1px solid #ccc}"
+    "h3{margin-bottom:.3rem}table{border-collapse:collapse;margin:.5rem 0}"
     "td,th{font-weight:400;text-align:right;padding:.1rem .8rem .1rem 0;"
     "border-bottom:1px solid #e5e5e5}td:first-child,th:first-child{text-align:left}"
-    "th{color:#777}svg text{font-size:11px;fill:#555}.grid{stroke:#eee}"
-    "rect{fill:#dfe8f1;stroke:#89a}.median{stroke:#246;stroke-width:2}"
-    ".pair{fill:none;stroke:#246;opacity:.25}circle{fill:#246;opacity:.7}"
-    ".synthetic{background:#fff3cd;padding:.5rem 1rem}.note{color:#777;font-size:13px}";
+    "th{color:#777}.pair-of-columns{display:flex;flex-wrap:wrap;gap:0 2rem;align-items:flex-start}"
+    "svg{max-width:100%;height:auto}svg text{font-size:11px;fill:#555}.grid{stroke:#eee}"
+    ".zero{stroke:#999}rect{fill:#dfe8f1;stroke:#89a}.bar{stroke:none}"
+    ".median{stroke:#246;stroke-width:2}.pair{fill:none;stroke:#246;opacity:.25}"
+    "circle{fill:#246;opacity:.7}.synthetic{background:#fff3cd;padding:.5rem 1rem}"
+    ".note{color:#777;font-size:13px;max-width:60rem}.believe{border-left:3px solid #246;"
+    "padding-left:.8rem;max-width:60rem}@media print{.measure{break-inside:avoid}}";
 
-/// Four significant digits, or an en dash where there is no number.
-std::string Short(const ordered_json& object, const char* key) {
-  if (!object.contains(key) || !object[key].is_number()) return "–";
-  const double value = object[key].get<double>();
-  if (value == 0) return "0";
-  const double scale = std::pow(10, 3 - std::floor(std::log10(std::abs(value))));
-  return text::Shortest(std::round(value * scale) / scale);
-}
+constexpr const char* kHowToRead =
+    "Each point is a participant, each box reaches from the lower to the upper quartile with the "
+    "median as a line, and thin lines join the values of one participant. Each p is adjusted for "
+    "the comparisons of its measure, not for the number of measures: decide before the study "
+    "which measures it is about.";
+/// Gait paper, footnote 1.
+constexpr const char* kWhyNoRate =
+    "The gait paper ranks failure counts and fits no rate model: each failure delays the goal and "
+    "counts on until it is reached, so it takes the count as a measure of the difficulty of the "
+    "task. Ranks do not say how many times as many failures there are; the rate ratio does. It "
+    "takes the groups as independent.";
+constexpr const char* kLatencyNote =
+    "From the report of a controller to the first frame that shows the new gait. The wait for "
+    "contact belongs to a simulated character: it can answer only with the right foot on the "
+    "ground. Time that the features need to notice a change of motion lies before the first "
+    "report that is counted. Anticipation is positive where the command came before the character "
+    "reached the line.";
+constexpr const char* kSynthetic =
+    "Synthetic: simulated devices or random answers. It says nothing about people.";
 
-std::string NameOfRow(const ordered_json& row) {
-  for (const char* key : {"comparison", "group"}) {
-    if (row.contains(key) && row[key].is_string()) return row[key];
-  }
-  return "";
-}
-
-std::string Row(const std::vector<std::string>& cells, const char* tag) {
-  std::string row = "<tr>";
-  for (const std::string& cell : cells) {
-    row += std::string("<") + tag + ">" + Escaped(cell) + "</" + tag + ">";
-  }
-  return row + "</tr>";
-}
-
-std::string GroupTable(const ordered_json& groups) {
-  std::string table =
-      "<table>" + Row({"interface", "n", "mean", "median", "least", "greatest"}, "th");
-  for (const ordered_json& group : groups) {
-    table += Row({group["interface"], Short(group, "n"), Short(group, "mean"),
-                  Short(group, "median"), Short(group, "least"), Short(group, "greatest")},
-                 "td");
-  }
-  return table + "</table>";
-}
-
-std::string TestTable(const ordered_json& test) {
-  if (test.contains("error")) {
-    return "<p class=\"note\">" + Escaped(test["error"].get<std::string>()) + "</p>";
-  }
-  std::string table =
-      "<table>" + Row({"against the control", "estimate", "statistic", "p", "p, paired"}, "th");
-  for (const ordered_json& row : test["rows"]) {
-    table += Row({NameOfRow(row), Short(row, "estimate"), Short(row, "statistic"), Short(row, "p"),
-                  Short(row, "paired_p")},
-                 "td");
-  }
-  return table + "</table><p class=\"note\">" + Escaped(test.value("procedure", "")) + ". " +
-         Escaped(test.value("note", "")) + "</p>";
-}
-
-std::string Answers(const std::vector<records::Records>& people) {
-  std::string table;
-  for (const records::Records& person : people) {
-    if (person.withdrawn) continue;
-    for (const records::Answer& answer : person.answers) {
-      if (answer.text.empty()) continue;
-      table += Row({answer.interface.empty() ? "whole study" : answer.interface, answer.question,
-                    answer.text},
-                   "td");
-    }
-  }
-  if (table.empty()) return "";
-  return "<h2>Answers</h2><table>" + Row({"interface", "question", "answer"}, "th") + table +
-         "</table>";
+std::string Paragraph(const std::string& kind, const std::string& text) {
+  return "<p class=\"" + kind + "\">" + Escaped(text) + "</p>";
 }
 
 std::string Heading(const ordered_json& json) {
@@ -95,8 +57,43 @@ std::string Heading(const ordered_json& json) {
   return text + "; control: " + json["control"].get<std::string>();
 }
 
-constexpr const char* kSynthetic =
-    "Synthetic: simulated devices or random answers. It says nothing about people.";
+/// The figure beside its numbers, then the tests with the sentence on which to believe.
+std::string MeasureBlock(const Measure& measure, const ordered_json& json,
+                         const plan::Protocol& protocol) {
+  std::string block = "<div class=\"measure\"><h3>" + Escaped(measure.title) +
+                      "</h3><div class=\"pair-of-columns\">" + Figure(measure, protocol) + "<div>" +
+                      GroupTable(json["groups"]);
+  if (json.contains("test")) block += TestTable(json["test"]);
+  if (json.contains("rate")) block += RateTable(json["rate"]);
+  block += "</div></div>";
+  if (json.contains("test") && !json["test"].contains("error")) {
+    block += Paragraph("believe", json["test"].value("note", "")) +
+             Paragraph("note", json["test"].value("procedure", "") + ".");
+  }
+  return block + "</div>";
+}
+
+std::string SectionBlock(Section section, const Analysis& analysis,
+                         const plan::Protocol& protocol) {
+  std::string block, zeros;
+  for (std::size_t i = 0; i < analysis.measures.size(); ++i) {
+    const Measure& measure = analysis.measures[i];
+    if (measure.section != section) continue;
+    if (measure.counts() && measure.all_zero()) {
+      zeros += (zeros.empty() ? "None at all: " : "; ") + measure.title;
+    } else {
+      block += MeasureBlock(measure, analysis.json["measures"][i], protocol);
+    }
+  }
+  if (!zeros.empty()) block += Paragraph("note", zeros + ".");
+  if (section == Section::kFailures && !block.empty()) block += Paragraph("note", kWhyNoRate);
+  if (section == Section::kLatency && !analysis.latency.empty()) {
+    block = LatencyFigure(analysis.latency) + LatencyTable(analysis.latency) +
+            Paragraph("note", kLatencyNote) + block;
+  }
+  if (block.empty()) return "";
+  return std::string("<h2>") + Title(section) + "</h2>" + block;
+}
 
 }  // namespace
 
@@ -107,16 +104,11 @@ std::string Page(const Analysis& analysis, const plan::Protocol& protocol,
                      Escaped(protocol.name) + "</title><style>" + kStyle +
                      "</style></head><body><h1>" + Escaped(protocol.name) + "</h1><p>" +
                      Escaped(Heading(json)) + "</p>";
-  if (analysis.synthetic) {
-    page += std::string("<p class=\"synthetic\">") + kSynthetic + "</p>";
-  }
-  for (std::size_t i = 0; i < analysis.measures.size(); ++i) {
-    const ordered_json& one = json["measures"][i];
-    page += "<h2>" + Escaped(analysis.measures[i].title) + "</h2>" +
-            Figure(analysis.measures[i], protocol) + GroupTable(one["groups"]);
-    if (one.contains("test")) page += TestTable(one["test"]);
-  }
-  return page + Answers(people) + "</body></html>\n";
+  if (analysis.synthetic) page += Paragraph("synthetic", kSynthetic);
+  page +=
+      "<h2>Overview</h2>" + OverviewTable(json, InOrder(protocol)) + Paragraph("note", kHowToRead);
+  for (const Section section : kSections) page += SectionBlock(section, analysis, protocol);
+  return page + AnswerTable(people) + "</body></html>\n";
 }
 
 std::string Summary(const Analysis& analysis) {

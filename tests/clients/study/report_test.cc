@@ -88,7 +88,7 @@ TEST(StudyAnalysis, LeavesOutWhoHasWithdrawnAndPairsOnlyWhatIsComplete) {
   EXPECT_EQ(completion["groups"][1]["n"], 3);
   EXPECT_FALSE(completion.contains("paired"));
   EXPECT_THAT(ValuesCsv(analysis), Not(HasSubstr("P0")));
-  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("test_time_to_completion_s,P2,joystick,62\n"));
+  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("test_time_to_completion_s,point,P2,joystick,62\n"));
 }
 
 TEST(StudyPage, IsSelfContainedAndMarksSyntheticData) {
@@ -119,6 +119,56 @@ TEST(Figure, HasAPointForEachValueABoxForEachInterfaceAndALineForEachPerson) {
   EXPECT_EQ(count("class=\"pair\""), 5u);
 }
 
+TEST(StudyAnalysis, HasTheRateOfAllFailuresAndSkipsWhatNeverHappened) {
+  const auto people = People(6);
+  const Analysis analysis = Analyze(Two(), people);
+  const auto& all = Find(analysis, "test_failures_all");
+  ASSERT_TRUE(all.contains("rate")) << all.dump();
+  // 18 failures in 375 s against 6 in 315 s, a minute each: (6 / 315) / (18 / 375).
+  EXPECT_NEAR(all["rate"]["rows"][0]["poisson"]["estimate"].get<double>(),
+              (6.0 / 315) / (18.0 / 375), 1e-9);
+  EXPECT_FALSE(Find(analysis, "test_failures_curve").contains("rate"));
+  const std::string page = Page(analysis, Two(), people);
+  EXPECT_THAT(page, HasSubstr("None at all: Test track, failures of kind simulation; Test track, "
+                              "failures of kind jump"));
+  EXPECT_THAT(page, HasSubstr("ratio of rates"));
+}
+
+TEST(StudyPage, SaysWhichTestToBelieveBesideEachMeasure) {
+  const auto people = People(6);
+  const Analysis analysis = Analyze(Two(), people);
+  const std::string page = Page(analysis, Two(), people);
+  const std::string note = Find(analysis, "rating fun")["test"]["note"];
+  ASSERT_FALSE(note.empty());
+  EXPECT_THAT(page, HasSubstr("<p class=\"believe\">" + Escaped(note)));
+}
+
+TEST(Latency, IsByStageAndWithoutTheWaitForContact) {
+  auto people = People(1);
+  for (int i = 1; i <= 100; ++i) {
+    people[0].trials[0].responses.push_back({{"decode", 1}, {"contact", 100}, {"frame", 1.0 * i}});
+  }
+  const Analysis analysis = Analyze(Two(), people);
+  ASSERT_EQ(analysis.latency.size(), 4u);
+  EXPECT_EQ(analysis.latency[2].stage, "frame");
+  EXPECT_EQ(analysis.latency[2].responses, 100u);
+  EXPECT_EQ(analysis.latency[2].p95_ms, 96);  // Of rank floor(0.95 * 100) from 0, of 1 to 100.
+  EXPECT_EQ(analysis.latency[3].stage, kWithoutContact);
+  EXPECT_EQ(analysis.latency[3].p50_ms, 52);  // 51 of rank 50, and the decoding.
+  const auto& measure = Find(analysis, "latency_without_contact_ms");
+  EXPECT_EQ(measure["groups"][0]["interface"], "wrist");
+  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("latency_contact_ms,bar,,wrist,100\n"));
+  EXPECT_THAT(Page(analysis, Two(), people), HasSubstr("frame 51.0 ms"));
+}
+
+TEST(ValuesCsv, HasTheBoxOfEachInterface) {
+  // Of 60 to 64 s.
+  const std::string csv = ValuesCsv(Analyze(Two(), People(5)));
+  EXPECT_THAT(csv, HasSubstr("test_time_to_completion_s,lower_quartile,,joystick,61\n"
+                             "test_time_to_completion_s,median,,joystick,62\n"
+                             "test_time_to_completion_s,upper_quartile,,joystick,63\n"));
+}
+
 TEST(Ticks, EncloseTheValuesInFewRoundSteps) {
   for (const double greatest : {1e-3, 0.7, 1.0, 5.0, 63.0, 12345.0}) {
     const auto ticks = Ticks(0, greatest);
@@ -129,6 +179,7 @@ TEST(Ticks, EncloseTheValuesInFewRoundSteps) {
   }
   EXPECT_EQ(Ticks(0, 5), (std::vector<double>{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(Ticks(0, 0).size(), 2u);
+  EXPECT_EQ(Ticks(0, 2, /*counts=*/true), (std::vector<double>{0, 1, 2}));
 }
 
 }  // namespace

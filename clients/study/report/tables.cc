@@ -1,0 +1,149 @@
+#include "clients/study/report/tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clients/study/report/figure.h"
+#include "common/text/number.h"
+
+namespace footing::study::report {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kSignificant = 0.05;
+
+std::string Rounded(double value) {
+  if (value == 0) return "0";
+  const double scale = std::pow(10, 3 - std::floor(std::log10(std::abs(value))));
+  return text::Shortest(std::round(value * scale) / scale);
+}
+
+std::string Row(const std::vector<std::string>& cells, const char* tag) {
+  std::string row = "<tr>";
+  for (const std::string& cell : cells) {
+    row += std::string("<") + tag + ">" + Escaped(cell) + "</" + tag + ">";
+  }
+  return row + "</tr>";
+}
+
+/// Of a test against the control: within subjects where that is known.
+double PToBelieve(const ordered_json& measure, const std::string& interface) {
+  if (!measure.contains("test") || measure["test"].contains("error")) return 1;
+  for (const ordered_json& row : measure["test"]["rows"]) {
+    if (row.value("group", "") != interface) continue;
+    const char* key = row.contains("paired_p") && row["paired_p"].is_number() ? "paired_p" : "p";
+    return row[key].is_number() ? row[key].get<double>() : 1;
+  }
+  return 1;
+}
+
+bool AllZero(const ordered_json& measure) {
+  return std::all_of(
+      measure["groups"].begin(), measure["groups"].end(),
+      [](const ordered_json& group) { return group["least"] == 0 && group["greatest"] == 0; });
+}
+
+std::string ErrorNote(const ordered_json& test) {
+  return "<p class=\"note\">" + Escaped(test["error"].get<std::string>()) + "</p>";
+}
+
+}  // namespace
+
+std::string Short(const ordered_json& object, const char* key) {
+  if (!object.contains(key) || !object[key].is_number()) return "–";
+  return Rounded(object[key].get<double>());
+}
+
+std::string NameOfRow(const ordered_json& row) {
+  for (const char* key : {"comparison", "group"}) {
+    if (row.contains(key) && row[key].is_string()) return row[key];
+  }
+  return "";
+}
+
+std::string OverviewTable(const ordered_json& analysis, const std::vector<std::string>& interfaces) {
+  std::vector<std::string> heads = {"median; p against the control below 0.05"};
+  heads.insert(heads.end(), interfaces.begin(), interfaces.end());
+  std::string table = "<table>" + Row(heads, "th");
+  for (const ordered_json& measure : analysis["measures"]) {
+    if (AllZero(measure)) continue;
+    std::vector<std::string> cells = {measure["title"]};
+    for (const std::string& interface : interfaces) {
+      std::string cell = "–";
+      for (const ordered_json& group : measure["groups"]) {
+        if (group["interface"] == interface) cell = Short(group, "median");
+      }
+      const double p = PToBelieve(measure, interface);
+      cells.push_back(p < kSignificant ? cell + " (p " + Rounded(p) + ")" : cell);
+    }
+    table += Row(cells, "td");
+  }
+  return table + "</table>";
+}
+
+std::string GroupTable(const ordered_json& groups) {
+  std::string table =
+      "<table>" + Row({"interface", "n", "mean", "median", "least", "greatest"}, "th");
+  for (const ordered_json& group : groups) {
+    table += Row({group["interface"], Short(group, "n"), Short(group, "mean"),
+                  Short(group, "median"), Short(group, "least"), Short(group, "greatest")},
+                 "td");
+  }
+  return table + "</table>";
+}
+
+std::string TestTable(const ordered_json& test) {
+  if (test.contains("error")) return ErrorNote(test);
+  std::string table = "<table>" + Row({test.value("test", ""), "estimate", "95 % interval",
+                                       "statistic", "p", "paired_p"},
+                                      "th");
+  for (const ordered_json& row : test["rows"]) {
+    table += Row({NameOfRow(row), Short(row, "estimate"),
+                  Short(row, "low") + " to " + Short(row, "high"), Short(row, "statistic"),
+                  Short(row, "p"), Short(row, "paired_p")},
+                 "td");
+  }
+  return table + "</table>";
+}
+
+std::string RateTable(const ordered_json& rate) {
+  if (rate.contains("error")) return ErrorNote(rate);
+  std::string table =
+      "<table>" + Row({"failures a minute", "ratio of rates", "95 % interval", "p"}, "th");
+  for (const ordered_json& row : rate["rows"]) {
+    table += Row({NameOfRow(row), Short(row, "estimate"),
+                  Short(row, "low") + " to " + Short(row, "high"), Short(row, "p")},
+                 "td");
+  }
+  return table + "</table>";
+}
+
+std::string LatencyTable(const std::vector<StageLatency>& latency) {
+  std::string table =
+      "<table>" + Row({"interface", "stage", "responses", "median, ms", "95 %, ms"}, "th");
+  for (const StageLatency& one : latency) {
+    table += Row({one.interface, one.stage, std::to_string(one.responses),
+                  text::Fixed(one.p50_ms, 1), text::Fixed(one.p95_ms, 1)},
+                 "td");
+  }
+  return table + "</table>";
+}
+
+std::string AnswerTable(const std::vector<records::Records>& people) {
+  std::string table;
+  for (const records::Records& person : people) {
+    if (person.withdrawn) continue;
+    for (const records::Answer& answer : person.answers) {
+      if (answer.text.empty()) continue;
+      table += Row({answer.interface.empty() ? "whole study" : answer.interface, answer.question,
+                    answer.text},
+                   "td");
+    }
+  }
+  if (table.empty()) return "";
+  return "<h2>Answers</h2><table>" + Row({"interface", "question", "answer"}, "th") + table +
+         "</table>";
+}
+
+}  // namespace footing::study::report

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "clients/study/records/trials.h"
+#include "clients/study/report/latency.h"
+
+/// Tables of the report as HTML.
+namespace footing::study::report {
+
+/// Four significant digits, or an en dash where there is no number.
+std::string Short(const nlohmann::ordered_json& object, const char* key);
+/// What a row of a test compares.
+std::string NameOfRow(const nlohmann::ordered_json& row);
+
+/// A row for each measure of an analysis: the median of each interface, in their order, with the p
+/// to believe against the control where it is below 0.05.
+std::string OverviewTable(const nlohmann::ordered_json& analysis,
+                          const std::vector<std::string>& interfaces);
+/// The groups of a measure.
+std::string GroupTable(const nlohmann::ordered_json& groups);
+/// A report of footing-eval stats, or its error.
+std::string TestTable(const nlohmann::ordered_json& test);
+/// The same of rates.
+std::string RateTable(const nlohmann::ordered_json& rate);
+std::string LatencyTable(const std::vector<StageLatency>& latency);
+/// The free text, without codes; empty: there is none.
+std::string AnswerTable(const std::vector<records::Records>& people);
+
+}  // namespace footing::study::report
