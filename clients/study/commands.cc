@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "clients/study/journal/journal.h"
 #include "clients/study/journal/study_folder.h"
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
@@ -63,6 +64,19 @@ Result<LoadedProtocol> Load(const std::string& path, const std::string& folder) 
   }
   return LoadedProtocol{path, std::move(*text), std::move(*protocol),
                         folder.empty() ? journal::FolderOf(path) : folder};
+}
+
+Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
+  std::vector<records::Records> people;
+  for (const std::string& participant : loaded.protocol.participants) {
+    const std::string path = journal::JournalPath(loaded.folder, participant);
+    if (!journal::Exists(path)) continue;
+    const auto text = journal::ReadJournal(path);
+    if (!text) return text.error();
+    people.push_back(records::Collect(text->events));
+  }
+  if (!people.empty()) return people;
+  return Failure(loaded.folder + " has no journal yet; footing-study run makes them");
 }
 
 void Finish(const Result<Answer>& result, Shared& shared) {

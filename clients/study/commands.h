@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "clients/study/plan/protocol.h"
+#include "clients/study/records/trials.h"
 #include "common/result/result.h"
 
 namespace footing::study {
@@ -25,6 +27,9 @@ struct LoadedProtocol {
 /// Reads and checks a protocol file; its tracks must be built-in ones.
 Result<LoadedProtocol> Load(const std::string& path, const std::string& folder);
 
+/// What the journals of all participants say; a failure where there is none yet.
+Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded);
+
 /// Prints a command's answer, one JSON object or its text, or its error; keeps the exit code.
 struct Answer {
   nlohmann::ordered_json json;
@@ -43,5 +48,6 @@ void AddProtocolOptions(CLI::App& command, ProtocolOptions& options);
 void AddCheckCommand(CLI::App& app, Shared& shared);
 void AddRunCommand(CLI::App& app, Shared& shared);
 void AddReportCommands(CLI::App& app, Shared& shared);  ///< analyze, report
+void AddExportCommand(CLI::App& app, Shared& shared);
 
 }  // namespace footing::study

@@ -8,7 +8,8 @@ int main(int argc, char** argv) {
       "  footing-study run study.json --participant P01\n"
       "  footing-study run study.json --participant P01 --unattended --folder trial.study\n"
       "  footing-study analyze study.json --folder trial.study\n"
-      "  footing-study report study.json --folder trial.study --force\n");
+      "  footing-study report study.json --folder trial.study --force\n"
+      "  footing-study export study.json --folder trial.study --out trial.bids\n");
   footing::study::Shared shared;
   app->add_flag("--json", shared.json, "Print one JSON object on standard output");
   app->require_subcommand(1);
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   footing::study::AddCheckCommand(*app, shared);
   footing::study::AddRunCommand(*app, shared);
   footing::study::AddReportCommands(*app, shared);
+  footing::study::AddExportCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;
 }

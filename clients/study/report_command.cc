@@ -1,8 +1,6 @@
 #include <memory>
 
 #include "clients/study/commands.h"
-#include "clients/study/journal/journal.h"
-#include "clients/study/journal/study_folder.h"
 #include "clients/study/report/analysis.h"
 #include "clients/study/report/page.h"
 #include "common/recording/output_file.h"
@@ -15,20 +13,6 @@ struct ReportOptions {
   std::string out;
   bool force = false;
 };
-
-/// Of all participants who have a journal.
-Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
-  std::vector<records::Records> people;
-  for (const std::string& participant : loaded.protocol.participants) {
-    const std::string path = journal::JournalPath(loaded.folder, participant);
-    if (!journal::Exists(path)) continue;
-    const auto text = journal::ReadJournal(path);
-    if (!text) return text.error();
-    people.push_back(records::Collect(text->events));
-  }
-  if (!people.empty()) return people;
-  return Failure(loaded.folder + " has no journal yet; footing-study run makes them");
-}
 
 Result<void> Write(const std::string& path, const std::string& text, bool force) {
   auto file = recording::OutputFile::Create(path, force);

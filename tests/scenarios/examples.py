@@ -44,6 +44,7 @@ NOT_HERE = {
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
     r"^footing-study (run|analyze|report)": "needs whole sessions; tests/clients/study/study_scenario.py runs them",
     r"^footing-study (run|analyze|report)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",
+    r"^footing-study (run|analyze|report|export)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",
     r"first\.mcap|body\.mcap": "reads what a command above would have recorded",
 }
 # Those that connect to a pose engine, or read what was recorded of one.

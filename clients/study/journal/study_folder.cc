@@ -43,22 +43,6 @@ bool OnlyAddsParticipants(ordered_json before, ordered_json now) {
   return nlohmann::json(before) == nlohmann::json(now);  // In whatever order of keys.
 }
 
-Result<void> WriteWhole(const std::string& path, const std::string& text) {
-  const std::string draft = path + ".new";
-  const int descriptor = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (descriptor < 0) return Failure("cannot create " + draft + ": " + std::strerror(errno));
-  const bool written =
-      ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-      ::fsync(descriptor) == 0;
-  const int error = errno;
-  ::close(descriptor);
-  if (!written) return Failure("cannot write " + draft + ": " + std::strerror(error));
-  if (::rename(draft.c_str(), path.c_str()) != 0) {
-    return Failure("cannot rename " + draft + ": " + std::strerror(errno));
-  }
-  return {};
-}
-
 }  // namespace
 
 std::string FolderOf(const std::string& protocol_path) {
@@ -73,6 +57,22 @@ std::string ParticipantFolder(const std::string& study_folder, const std::string
 
 std::string JournalPath(const std::string& study_folder, const std::string& participant) {
   return ParticipantFolder(study_folder, participant) + "/journal.jsonl";
+}
+
+Result<void> ReplaceFile(const std::string& path, const std::string& text) {
+  const std::string draft = path + ".new";
+  const int descriptor = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (descriptor < 0) return Failure("cannot create " + draft + ": " + std::strerror(errno));
+  const bool written =
+      ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      ::fsync(descriptor) == 0;
+  const int error = errno;
+  ::close(descriptor);
+  if (!written) return Failure("cannot write " + draft + ": " + std::strerror(error));
+  if (::rename(draft.c_str(), path.c_str()) != 0) {
+    return Failure("cannot rename " + draft + ": " + std::strerror(errno));
+  }
+  return {};
 }
 
 Result<void> MakeFolder(const std::string& path) {
@@ -105,11 +105,11 @@ Result<void> RequireSpace(const std::string& folder, double needed_mb) {
 
 Result<void> KeepProtocol(const std::string& study_folder, const std::string& text) {
   const std::string path = study_folder + "/protocol.json";
-  if (!Exists(path)) return WriteWhole(path, text);
+  if (!Exists(path)) return ReplaceFile(path, text);
   const auto before = config::ReadTextFile(path);
   if (!before) return before.error();
   if (*before == text) return {};
-  if (OnlyAddsParticipants(Parsed(*before), Parsed(text))) return WriteWhole(path, text);
+  if (OnlyAddsParticipants(Parsed(*before), Parsed(text))) return ReplaceFile(path, text);
   return InvalidData("the protocol differs from " + path +
                      ", with which the study began; only participants may be added, at the end of "
                      "their list. Copy the protocol to a new name for a new study");

@@ -16,6 +16,9 @@ std::string FolderOf(const std::string& protocol_path);
 std::string ParticipantFolder(const std::string& study_folder, const std::string& participant);
 std::string JournalPath(const std::string& study_folder, const std::string& participant);
 
+/// Replaces a file as a whole, readable by its owner alone: after a crash it is the old or the new.
+Result<void> ReplaceFile(const std::string& path, const std::string& text);
+
 Result<void> MakeFolder(const std::string& path);
 bool Exists(const std::string& path);
 

@@ -16,7 +16,8 @@ namespace {
 using records::StageTime;
 
 // Pixels.
-constexpr double kBarHeight = 22, kRowHeight = 34, kBarLeft = 80, kBarsWidth = 560, kLegend = 26, kKey = 10;
+constexpr double kBarHeight = 22, kRowHeight = 34, kBarLeft = 80, kBarsWidth = 560, kLegend = 26,
+                 kKey = 10;
 /// Of the stages, in their order.
 constexpr std::array kColours{"#1f5fa8", "#5b93c9", "#9dbfe0", "#3d8b37", "#d9d9d9", "#c2571a"};
 
@@ -113,7 +114,8 @@ std::string LatencyFigure(const std::vector<StageLatency>& latency) {
                        one.stage + " " + text::Fixed(one.p50_ms, 1) + " ms");
       x += one.p50_ms * scale;
     }
-    svg += Label(x + 6, y + 15, "start", text::Fixed(bars.total_ms.at(bars.interfaces[row]), 0) + " ms");
+    svg += Label(x + 6, y + 15, "start",
+                 text::Fixed(bars.total_ms.at(bars.interfaces[row]), 0) + " ms");
   }
   return svg + "</svg>";
 }

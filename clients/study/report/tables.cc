@@ -62,7 +62,8 @@ std::string NameOfRow(const ordered_json& row) {
   return "";
 }
 
-std::string OverviewTable(const ordered_json& analysis, const std::vector<std::string>& interfaces) {
+std::string OverviewTable(const ordered_json& analysis,
+                          const std::vector<std::string>& interfaces) {
   std::vector<std::string> heads = {"median; p against the control below 0.05"};
   heads.insert(heads.end(), interfaces.begin(), interfaces.end());
   std::string table = "<table>" + Row(heads, "th");
@@ -99,10 +100,10 @@ std::string TestTable(const ordered_json& test) {
                                        "statistic", "p", "paired_p"},
                                       "th");
   for (const ordered_json& row : test["rows"]) {
-    table += Row({NameOfRow(row), Short(row, "estimate"),
-                  Short(row, "low") + " to " + Short(row, "high"), Short(row, "statistic"),
-                  Short(row, "p"), Short(row, "paired_p")},
-                 "td");
+    table += Row(
+        {NameOfRow(row), Short(row, "estimate"), Short(row, "low") + " to " + Short(row, "high"),
+         Short(row, "statistic"), Short(row, "p"), Short(row, "paired_p")},
+        "td");
   }
   return table + "</table>";
 }

@@ -148,6 +148,49 @@ def check_report(stage):
     assert stage.run("footing-study", "report", protocol, "--force").returncode == 0
 
 
+def check_export(stage):
+    """An anonymised data set: who has withdrawn is not in it, and neither is a code, a serial or a date."""
+    protocol, out = stage.folder / "s.json", stage.folder / "s.bids"
+    wrote = stage.run_json("footing-study", "export", protocol, "--out", out)
+    assert wrote["participants"] == 1 and wrote["trials"] == 4 and not wrote["remarks"], wrote
+    refused(stage, 2, "exists", "export", protocol, "--out", out)
+    files = {str(path.relative_to(out)): path.read_text() for path in out.rglob("*") if path.is_file()}
+    assert not any("P01" in text or "P02" in text or "synthetic answer" in text for text in files.values())
+    assert not any("P01" in name for name in files), files.keys()
+    motion = {name: text for name, text in files.items() if name.endswith("_motion.tsv")}
+    assert len(motion) == 4 * 3, sorted(motion)  # Two remotes and the character.
+    for name, text in motion.items():
+        channels = [line.split("\t") for line in files[name.replace("_motion.tsv", "_channels.tsv")].splitlines()[1:]]
+        rows = [line.split("\t") for line in text.splitlines()]
+        assert all(len(row) == len(channels) for row in rows), name
+        about = json.loads(files[name.replace(".tsv", ".json")])
+        assert about["MotionChannelCount"] == len(channels) and 40 < about["SamplingFrequency"] < 110, (name, about)
+        times_s = [float(row[0]) for row in rows]
+        assert times_s == sorted(times_s) and 0 <= times_s[0] < 0.1 and 3 < times_s[-1] < 9, (name, times_s[:2])
+        assert f"{name.split('/', 1)[1]}\t1900-01-01T00:" in files["sub-01/sub-01_scans.tsv"], name
+    events = [text for name, text in files.items() if name.endswith("_events.tsv")]
+    assert len(events) == 4 and all("trial_ready" in text for text in events), events
+    trials = [line.split("\t") for line in files["sourcedata/trials.tsv"].splitlines()]
+    assert len(trials) == 1 + 5 and set(trials[0][1:]) == set(json.loads(files["sourcedata/trials.json"])), trials
+    key = (stage.folder / "s.study/participant_key.csv")
+    assert key.read_text() == "number,code\n1,P01\n" and key.stat().st_mode & 0o777 == 0o600
+    check_faulty_recordings(stage)
+
+
+def check_faulty_recordings(stage):
+    """A recording of no trial, and one that is not there: named, and the rest is exported."""
+    folder = stage.folder / "s.study/P01"
+    marked = folder / "wrist.test.1.mcap"
+    plain = stage.folder / "plain.mcap"
+    done = stage.run("footing-log", "record", "--connect", stage.simulation, "--out", plain, "--seconds", 1)
+    assert done.returncode == 0, done
+    plain.replace(marked)
+    (folder / "joystick.test.1.mcap").unlink()
+    wrote = stage.run_json("footing-study", "export", stage.folder / "s.json", "--out", stage.folder / "t.bids")
+    assert wrote["trials"] == 2 and len(wrote["remarks"]) == 2, wrote
+    assert any("no trial marks" in one for one in wrote["remarks"]), wrote
+
+
 def main():
     with Stage(sys.argv[2]) as stage:
         (stage.folder / "s.json").write_text(json.dumps(PROTOCOL))
@@ -160,6 +203,7 @@ def main():
         check_lost_device(stage)
         check_withdrawal(stage)
         check_report(stage)
+        check_export(stage)
     return 0
 
 

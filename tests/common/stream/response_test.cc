@@ -6,9 +6,8 @@ namespace footing::stream {
 namespace {
 
 TEST(ResponseTimes, AreTheDifferencesOfTheStamps) {
-  const ResponseStages stamps{Gait::kWalk, Gait::kRun, 1'000'000,
-                              1'500'000,           3'500'000,          4'000'000,
-                              5'000'000,           105'000'000,        112'000'000};
+  const ResponseStages stamps{Gait::kWalk, Gait::kRun, 1'000'000,   1'500'000,  3'500'000,
+                              4'000'000,   5'000'000,  105'000'000, 112'000'000};
   const auto stages = ResponseTimes(stamps);
   ASSERT_EQ(stages.size(), 6u);
   EXPECT_STREQ(stages[0].name, "decode");

@@ -1,0 +1,161 @@
+#include "clients/study/bundle/bundle.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "clients/study/bundle/bids.h"
+#include "clients/study/bundle/study_tables.h"
+#include "clients/study/bundle/trial_tables.h"
+#include "clients/study/journal/study_folder.h"
+#include "common/recording/output_file.h"
+#include "common/recording/recorded_session.h"
+#include "common/units/units.h"
+
+namespace footing::study::bundle {
+namespace {
+
+using nlohmann::ordered_json;
+using records::Records;
+using records::Trial;
+
+constexpr const char* kReadme =
+    "Motion, events, ratings and results of a study of user interfaces, written by footing-study.\n"
+    "\n"
+    "A participant controls a simulated character along tracks through several interfaces. Each\n"
+    "attempt at a trial is a run of the task that names its interface and kind. The tracking system\n"
+    "sim is the simulated character (x forward along the start of the track, y left, z up, right-\n"
+    "handed; gaits: 1 step, 2 walk, 3 run, 4 jump); every other one is a device, in its own frame\n"
+    "(x left, y front, z down), named by where it was worn. The channel latency has the time of each\n"
+    "sample; several systems of a run share it, and so do the events.\n"
+    "\n"
+    "sourcedata/trials.tsv has one row for each attempt, phenotype/survey.tsv the ratings. Numbers\n"
+    "stand for participants, instants count from the start of 1900, and free text is left out unless\n"
+    "the study's owners decided otherwise.\n";
+
+class BundleWriter {
+ public:
+  BundleWriter(const ParticipantKey& key, const BundleOptions& options)
+      : key_(key), options_(options) {}
+
+  Result<BundleReport> Run(const std::vector<Records>& people) {
+    for (const Records& person : people) {
+      if (const auto done = WriteParticipant(person); !done) return done.error();
+    }
+    const auto survey = SurveyTable(people, key_, options_.with_text);
+    const auto participants = ParticipantsTable(people, key_);
+    const auto trials = TrialsTable(people, key_, file_of_);
+    const ordered_json description = {
+        {"Name", options_.study_name},
+        {"BIDSVersion", "1.9.0"},
+        {"DatasetType", "raw"},
+        {"GeneratedBy", {{{"Name", "footing-study"}, {"Version", options_.version}}}}};
+    for (const auto& [path, text] :
+         {std::pair<std::string, std::string>("dataset_description.json", Json(description)),
+          {"README", kReadme},
+          {"participants.tsv", participants.tsv},
+          {"participants.json", Json(participants.codebook)},
+          {"phenotype/survey.tsv", survey.tsv},
+          {"phenotype/survey.json", Json(survey.codebook)},
+          {"sourcedata/trials.tsv", trials.tsv},
+          {"sourcedata/trials.json", Json(trials.codebook)}}) {
+      if (const auto done = Write(path, text); !done) return done.error();
+    }
+    report_.participants = people.size();
+    return report_;
+  }
+
+ private:
+  static std::string Json(const ordered_json& json) { return json.dump(2) + "\n"; }
+
+  Result<void> Write(const std::string& path, const std::string& text) {
+    const std::filesystem::path whole = std::filesystem::path(options_.out) / path;
+    std::error_code error;
+    std::filesystem::create_directories(whole.parent_path(), error);
+    if (error) {
+      return Failure("cannot create " + whole.parent_path().string() + ": " + error.message());
+    }
+    auto file = recording::OutputFile::Create(whole.string(), /*replace=*/false);
+    if (!file) return file.error();
+    return file->Write(text);
+  }
+
+  Result<void> WriteParticipant(const Records& person) {
+    const std::string subject = key_.SubjectOf(person.participant);
+    std::vector<std::vector<std::string>> scans = {{"filename", "acq_time"}};
+    for (const Trial& trial : person.trials) {
+      if (trial.outcome == "interrupted") continue;
+      const auto written = WriteTrial(subject, trial);
+      if (!written) return written.error();
+      const double since_first_s = NanosecondsToSeconds(
+          trial.started_wall_ns - person.trials.front().started_wall_ns);
+      for (const std::string& file : *written) {
+        scans.push_back({"motion/" + file, ShiftedTime(since_first_s)});
+      }
+    }
+    if (scans.size() == 1) return {};
+    return Write(subject + "/" + subject + "_scans.tsv", Tsv(scans));
+  }
+
+  /// The names of its motion files; none when there is no recording.
+  Result<std::vector<std::string>> WriteTrial(const std::string& subject, const Trial& trial) {
+    const std::string path =
+        journal::ParticipantFolder(options_.study_folder, trial.participant) + "/" +
+        trial.recording;
+    const auto session = recording::RecordedSession::Open(path);
+    if (!session) return Skip(subject, trial, session.error());
+    const auto tables = ReadTrial(*session, trial);
+    if (!tables) return Skip(subject, trial, tables.error());
+    const std::string task = LabelOf(trial.phase);
+    const std::string about = trial.interface + ", track " + trial.track +
+                              (trial.task.empty() ? "" : ", task " + trial.task);
+    const std::string run = "_run-" + std::to_string(trial.attempt) + "_";
+    const std::string stem = subject + "_task-" + task;
+    const std::string folder = subject + "/motion/";
+    std::vector<std::string> files;
+    for (const MotionTable& table : tables->tables) {
+      const std::string name = stem + "_tracksys-" + table.tracksys + run;
+      files.push_back(name + "motion.tsv");
+      for (const auto& [end, text] :
+           {std::pair<std::string, std::string>("motion.tsv", MotionTsv(table)),
+            {"motion.json", Json(MotionJson(table, task, about))},
+            {"channels.tsv", ChannelsTsv(table)}}) {
+        if (const auto done = Write(folder + name + end, text); !done) return done.error();
+      }
+    }
+    file_of_[&trial] = stem + "_tracksys-*" + run + "motion.tsv";
+    ++report_.trials;
+    for (const auto& [end, text] :
+         {std::pair<std::string, std::string>("events.tsv", EventsTsv(tables->events)),
+          {"events.json", Json(EventsCodebook())}}) {
+      if (const auto done = Write(folder + stem + run + end, text); !done) return done.error();
+    }
+    return files;
+  }
+
+  std::vector<std::string> Skip(const std::string& subject, const Trial& trial,
+                                const Error& error) {
+    report_.remarks.push_back(subject + ", " + trial.phase + ", attempt " +
+                              std::to_string(trial.attempt) + ": " + error.message);
+    return {};
+  }
+
+  const ParticipantKey& key_;
+  const BundleOptions& options_;
+  std::map<const Trial*, std::string> file_of_;
+  BundleReport report_;
+};
+
+}  // namespace
+
+Result<BundleReport> WriteBundle(const std::vector<Records>& people, const ParticipantKey& key,
+                                 const BundleOptions& options) {
+  if (journal::Exists(options.out)) {
+    return UsageError(options.out + " exists and is never overwritten; name another folder");
+  }
+  if (const auto done = journal::MakeFolder(options.out); !done) return done.error();
+  return BundleWriter(key, options).Run(people);
+}
+
+}  // namespace footing::study::bundle

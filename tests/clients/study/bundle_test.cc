@@ -1,0 +1,145 @@
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "clients/study/bundle/anonymous.h"
+#include "clients/study/bundle/bids.h"
+#include "clients/study/bundle/study_tables.h"
+
+namespace footing::study::bundle {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Two channels and the time, at 50 Hz.
+MotionTable TwoChannels(int rows) {
+  MotionTable table{"lefthand",
+                    "wiimote",
+                    {{"latency", "n/a", "LATENCY", "n/a", "s"},
+                     {"accel_x", "x", "ACCEL", "left_hand", "m/s^2"},
+                     {"gyro_x", "x", "GYRO", "left_hand", "rad/s"}},
+                    {}};
+  for (int i = 0; i < rows; ++i) {
+    table.cells.insert(table.cells.end(), {1 + 0.02 * i, -9.81, i == 0 ? kNan : 0.5});
+  }
+  return table;
+}
+
+TEST(Bids, TablesAreTabSeparatedWithNothingThatBreaksALine) {
+  EXPECT_EQ(Tsv({{"a", ""}, {"tab\there", "line\r\nend"}}), "a\tn/a\ntab here\tline  end\n");
+}
+
+TEST(Bids, MotionHasNoHeaderAndAColumnForEachChannel) {
+  const MotionTable table = TwoChannels(3);
+  EXPECT_THAT(MotionTsv(table), testing::StartsWith("1.000000\t-9.810000\tn/a\n1.020000\t"));
+  EXPECT_NEAR(SamplingRateHz(table), 50, 1e-9);  // Two intervals in 0.04 s.
+  EXPECT_EQ(SamplingRateHz(TwoChannels(1)), 0);
+  EXPECT_THAT(ChannelsTsv(table), HasSubstr("accel_x\tx\tACCEL\tleft_hand\tm/s^2\t50.000\n"));
+  const auto json = MotionJson(table, "wriststraight1", "wrist, track straight");
+  EXPECT_EQ(json["MotionChannelCount"], 3);
+  EXPECT_EQ(json["ACCELChannelCount"], 1);
+  EXPECT_EQ(json["TrackedPointsCount"], 1);
+  EXPECT_EQ(json["TrackingSystemName"], "lefthand");
+}
+
+TEST(Bids, EventsSayWhichFailuresCount) {
+  EXPECT_EQ(EventsTsv({{1.5, "failure_jump", false}, {2, "task_done", true}}),
+            "onset\tduration\ttrial_type\tcounts\n"
+            "1.500\t0\tfailure_jump\tno\n2.000\t0\ttask_done\tyes\n");
+}
+
+TEST(Bids, LabelsHaveLettersAndDigitsAndInstantsCountFrom1900) {
+  EXPECT_EQ(LabelOf("wrist.straight1"), "wriststraight1");
+  EXPECT_EQ(ShiftedTime(0), "1900-01-01T00:00:00");
+  EXPECT_EQ(ShiftedTime(90.9), "1900-01-01T00:01:30");
+  EXPECT_EQ(ShiftedTime(31 * 86400.0), "1900-02-01T00:00:00");
+}
+
+TEST(ParticipantKey, KeepsNumbersAndAddsNewOnesInRandomOrder) {
+  const std::vector<std::string> codes = {"A", "B", "C", "D", "E", "F", "G", "H"};
+  ParticipantKey key;
+  key.Add(codes, 1);
+  std::set<std::string> subjects;
+  for (const std::string& code : codes) subjects.insert(key.SubjectOf(code));
+  EXPECT_EQ(subjects.size(), 8u);
+  EXPECT_EQ(*subjects.begin(), "sub-01");
+  EXPECT_EQ(*subjects.rbegin(), "sub-08");
+  auto read = ParticipantKey::Parse(key.Text(), "k");
+  ASSERT_TRUE(read) << read.error().message;
+  read->Add({"A", "new"}, 2);
+  for (const std::string& code : codes) EXPECT_EQ(read->SubjectOf(code), key.SubjectOf(code));
+  EXPECT_EQ(read->SubjectOf("new"), "sub-09");
+  ParticipantKey other;
+  other.Add(codes, 3);
+  EXPECT_NE(other.Text(), key.Text());  // 1 of 40320 orders.
+}
+
+TEST(ParticipantKey, NamesTheLineThatIsWrong) {
+  for (const char* wrong : {"", "code,number\n", "number,code\n1,A\n1,B\n", "number,code\n1,A\n2,A\n",
+                            "number,code\n0,A\n", "number,code\nx,A\n", "number,code\n1\n"}) {
+    const auto key = ParticipantKey::Parse(wrong, "k.csv");
+    ASSERT_FALSE(key) << wrong;
+    EXPECT_THAT(key.error().message, HasSubstr("k.csv"));
+  }
+}
+
+std::vector<records::Records> One() {
+  records::Records person;
+  person.participant = "Anna7";
+  person.interfaces = {"leg", "wrist"};
+  person.finished = true;
+  person.active_s = {{"leg", 30.5}, {"wrist", 20}};
+  person.ratings = {{"Anna7", "wrist", "ease of use", 4, false},
+                    {"Anna7", "leg", "exertion", 7, false}};
+  person.answers = {{"Anna7", "wrist", "good", "I am Anna", false}};
+  records::Trial trial;
+  trial.participant = "Anna7";
+  trial.phase = "wrist.test";
+  trial.interface = "wrist";
+  trial.outcome = "finished";
+  trial.time_s = 61.5;
+  trial.anticipation_s = trial.heading_oscillation_rad = kNan;
+  trial.failures = {{1, "jump", 9, 1, true}, {2, "curve", 12.5, 1, false}};
+  person.trials = {trial};
+  return {person};
+}
+
+TEST(StudyTables, HaveNumbersInPlaceOfCodesAndNoTextUnlessAsked) {
+  const auto people = One();
+  ParticipantKey key;
+  key.Add({"Anna7"}, 1);
+  const auto participants = ParticipantsTable(people, key);
+  EXPECT_EQ(participants.tsv,
+            "participant_id\tinterface_order\tfinished\tsynthetic\ttime_in_motion\n"
+            "sub-01\tleg wrist\tyes\tno\t50.5\n");
+  const auto survey = SurveyTable(people, key, /*with_text=*/false);
+  EXPECT_EQ(survey.tsv, "participant_id\tleg_exertion\twrist_ease_of_use\nsub-01\t7\t4\n");
+  EXPECT_THAT(survey.codebook["wrist_ease_of_use"]["Description"].get<std::string>(),
+              HasSubstr("1 (very little) to 5"));
+  EXPECT_THAT(SurveyTable(people, key, /*with_text=*/true).tsv, HasSubstr("I am Anna"));
+  const auto trials = TrialsTable(people, key, {{&people[0].trials[0], "stem"}});
+  for (const std::string& text : {participants.tsv, survey.tsv, trials.tsv}) {
+    EXPECT_THAT(text, Not(HasSubstr("Anna")));
+  }
+}
+
+TEST(StudyTables, DescribeEveryColumnOfTrials) {
+  const auto people = One();
+  ParticipantKey key;
+  key.Add({"Anna7"}, 1);
+  const auto trials = TrialsTable(people, key, {{&people[0].trials[0], "stem"}});
+  const std::string header = trials.tsv.substr(0, trials.tsv.find('\n'));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(header.begin(), header.end(), '\t')),
+            trials.codebook.size());
+  // The first failure was undone: the one at 12.5 s is the first that counts.
+  EXPECT_THAT(trials.tsv, HasSubstr("finished\tyes\t61.500\t0.000\t12.500\tn/a\tn/a\tstem\t"));
+  EXPECT_THAT(trials.tsv, testing::EndsWith("\t0\t1\t0\t0\t0\n"));  // Of five kinds: a curve.
+}
+
+}  // namespace
+}  // namespace footing::study::bundle
