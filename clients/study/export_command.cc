@@ -46,10 +46,9 @@ Result<Answer> Export(const ExportOptions& options) {
   const std::string key_path = loaded->folder + "/participant_key.csv";
   const auto key = KeepKey(key_path, *people);
   if (!key) return key.error();
-  const auto report =
-      bundle::WriteBundle(*people, *key,
-                          {loaded->protocol.name, loaded->folder, options.out, options.with_text,
-                           cli::Version()});
+  const auto report = bundle::WriteBundle(
+      *people, *key,
+      {loaded->protocol.name, loaded->folder, options.out, options.with_text, cli::Version()});
   if (!report) return report.error();
   Answer answer{{{"folder", options.out},
                  {"key", key_path},

@@ -1,6 +1,6 @@
 #include <memory>
 #include <optional>
-#include <vector>
+#include <utility>
 
 #include "clients/study/commands.h"
 #include "clients/study/session/run_session.h"
@@ -15,31 +15,11 @@ struct RunOptions {
   bool unattended = false;
   std::uint64_t seed = 1;
   std::string sensor;
-  std::vector<std::string> simulations;
+  std::string simulation;
   bool withdraw = false;
   std::optional<std::uint64_t> undo, restore;
   std::string reason;
 };
-
-/// "ADDRESS", or "INTERFACE=ADDRESS" of one interface.
-Result<void> AddSimulation(const std::string& text, const plan::Protocol& protocol,
-                           SessionOptions& options) {
-  const std::size_t equals = text.find('=');
-  const std::string interface = equals == std::string::npos ? "" : text.substr(0, equals);
-  const auto address =
-      transport::ParseAddress(text.substr(equals == std::string::npos ? 0 : equals + 1));
-  if (!address) return address.error();
-  if (interface.empty()) {
-    options.simulation = *address;
-    return {};
-  }
-  for (const std::string& one : protocol.interfaces) {
-    if (one != interface) continue;
-    options.simulation_of[interface] = *address;
-    return {};
-  }
-  return UsageError("--simulation " + text + ": the protocol has no interface " + interface);
-}
 
 Result<SessionOptions> ToSession(const RunOptions& given, const LoadedProtocol& loaded) {
   SessionOptions options;
@@ -51,13 +31,12 @@ Result<SessionOptions> ToSession(const RunOptions& given, const LoadedProtocol& 
   options.version = cli::Version();
   options.sensor = transport::DefaultAddress("sensor");
   options.simulation = transport::DefaultAddress("simulation");
-  if (!given.sensor.empty()) {
-    const auto address = transport::ParseAddress(given.sensor);
-    if (!address) return address.error();
-    options.sensor = *address;
-  }
-  for (const std::string& text : given.simulations) {
-    if (const auto done = AddSimulation(text, loaded.protocol, options); !done) return done.error();
+  for (const auto& [text, address] : {std::pair(&given.sensor, &options.sensor),
+                                      std::pair(&given.simulation, &options.simulation)}) {
+    if (text->empty()) continue;
+    const auto parsed = transport::ParseAddress(*text);
+    if (!parsed) return parsed.error();
+    *address = *parsed;
   }
   return options;
 }
@@ -96,9 +75,7 @@ void AddRunCommand(CLI::App& app, Shared& shared) {
   AddProtocolOptions(*command, given->protocol);
   command->add_option("--participant", given->participant, "Code of the participant")->required();
   command->add_option("--sensor", given->sensor, "Address of footingd");
-  command->add_option("--simulation", given->simulations,
-                      "Address of footing-sim, or INTERFACE=ADDRESS for one interface; may be "
-                      "repeated");
+  command->add_option("--simulation", given->simulation, "Address of footing-sim");
   command->add_flag(
       "--unattended", given->unattended,
       "Ask nobody, wait for nothing, and answer the surveys at random, marked synthetic");

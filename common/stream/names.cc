@@ -74,6 +74,16 @@ UserInterface UserInterfaceNamed(const std::string& name) {
   return Named<UserInterface>(kInterfaces, name);
 }
 
+std::string RoleNames(std::uint32_t roles) {
+  std::string names;
+  for (std::size_t number = 1; number < kRoles.size(); ++number) {
+    const auto role = static_cast<DeviceRole>(number);
+    if ((roles & RoleBit(role)) == 0) continue;
+    names += (names.empty() ? "" : ", ") + std::string(Name(role));
+  }
+  return names;
+}
+
 std::uint32_t LedsOf(DeviceRole role) {
   switch (role) {
     case DeviceRole::kLeftHand:

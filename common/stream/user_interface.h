@@ -106,5 +106,7 @@ struct InterfaceState {
 
 /// The bit of a role in InterfaceState.
 constexpr std::uint32_t RoleBit(DeviceRole role) { return 1u << static_cast<unsigned>(role); }
+/// The names of roles by their bits: "left_hand, head".
+std::string RoleNames(std::uint32_t roles);
 
 }  // namespace footing::stream

@@ -86,8 +86,7 @@ ordered_json MotionJson(const MotionTable& table, const std::string& task,
 std::string EventsTsv(const std::vector<TrialEvent>& events) {
   std::vector<std::vector<std::string>> rows = {{"onset", "duration", "trial_type", "counts"}};
   for (const TrialEvent& one : events) {
-    rows.push_back(
-        {text::Fixed(one.onset_s, 3), "0", one.trial_type, one.counts ? "yes" : "no"});
+    rows.push_back({text::Fixed(one.onset_s, 3), "0", one.trial_type, one.counts ? "yes" : "no"});
   }
   return Tsv(rows);
 }

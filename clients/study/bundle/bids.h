@@ -20,8 +20,8 @@ struct Channel {
 
 /// What one tracking system measured in a trial: a device, or the simulation.
 struct MotionTable {
-  std::string tracksys;       ///< Letters and digits.
-  std::string manufacturer;   ///< Kind of the device; "Footing" for the simulation.
+  std::string tracksys;      ///< Letters and digits.
+  std::string manufacturer;  ///< Kind of the device; "Footing" for the simulation.
   std::vector<Channel> channels;
   std::vector<double> cells;  ///< Row by row, as many as channels; NaN: missing.
 };

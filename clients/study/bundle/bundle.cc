@@ -24,14 +24,18 @@ constexpr const char* kReadme =
     "Motion, events, ratings and results of a study of user interfaces, written by footing-study.\n"
     "\n"
     "A participant controls a simulated character along tracks through several interfaces. Each\n"
-    "attempt at a trial is a run of the task that names its interface and kind. The tracking system\n"
+    "attempt at a trial is a run of the task that names its interface and kind. The tracking "
+    "system\n"
     "sim is the simulated character (x forward along the start of the track, y left, z up, right-\n"
     "handed; gaits: 1 step, 2 walk, 3 run, 4 jump); every other one is a device, in its own frame\n"
-    "(x left, y front, z down), named by where it was worn. The channel latency has the time of each\n"
+    "(x left, y front, z down), named by where it was worn. The channel latency has the time of "
+    "each\n"
     "sample; several systems of a run share it, and so do the events.\n"
     "\n"
-    "sourcedata/trials.tsv has one row for each attempt, phenotype/survey.tsv the ratings. Numbers\n"
-    "stand for participants, instants count from the start of 1900, and free text is left out unless\n"
+    "sourcedata/trials.tsv has one row for each attempt, phenotype/survey.tsv the ratings. "
+    "Numbers\n"
+    "stand for participants, instants count from the start of 1900, and free text is left out "
+    "unless\n"
     "the study's owners decided otherwise.\n";
 
 class BundleWriter {
@@ -88,8 +92,8 @@ class BundleWriter {
       if (trial.outcome == "interrupted") continue;
       const auto written = WriteTrial(subject, trial);
       if (!written) return written.error();
-      const double since_first_s = NanosecondsToSeconds(
-          trial.started_wall_ns - person.trials.front().started_wall_ns);
+      const double since_first_s =
+          NanosecondsToSeconds(trial.started_wall_ns - person.trials.front().started_wall_ns);
       for (const std::string& file : *written) {
         scans.push_back({"motion/" + file, ShiftedTime(since_first_s)});
       }
@@ -100,9 +104,8 @@ class BundleWriter {
 
   /// The names of its motion files; none when there is no recording.
   Result<std::vector<std::string>> WriteTrial(const std::string& subject, const Trial& trial) {
-    const std::string path =
-        journal::ParticipantFolder(options_.study_folder, trial.participant) + "/" +
-        trial.recording;
+    const std::string path = journal::ParticipantFolder(options_.study_folder, trial.participant) +
+                             "/" + trial.recording;
     const auto session = recording::RecordedSession::Open(path);
     if (!session) return Skip(subject, trial, session.error());
     const auto tables = ReadTrial(*session, trial);

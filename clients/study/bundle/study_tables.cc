@@ -130,12 +130,21 @@ DocumentedTable TrialsTable(const std::vector<Records>& people, const Participan
     for (const Trial& trial : person.trials) {
       const bool counts = std::find(counting.begin(), counting.end(), &trial) != counting.end();
       const auto file = file_of.find(&trial);
-      std::vector<std::string> row = {
-          key.SubjectOf(person.participant), trial.interface, std::to_string(trial.position),
-          trial.kind, trial.track, trial.task, std::to_string(trial.attempt), trial.outcome,
-          YesOrNo(counts), Cell(trial.time_s, 3), Cell(trial.distance_m, 3),
-          Cell(trial.time_to_first_failure_s(), 3), Cell(trial.heading_oscillation_rad, 5),
-          Cell(trial.anticipation_s, 3), file == file_of.end() ? "" : file->second};
+      std::vector<std::string> row = {key.SubjectOf(person.participant),
+                                      trial.interface,
+                                      std::to_string(trial.position),
+                                      trial.kind,
+                                      trial.track,
+                                      trial.task,
+                                      std::to_string(trial.attempt),
+                                      trial.outcome,
+                                      YesOrNo(counts),
+                                      Cell(trial.time_s, 3),
+                                      Cell(trial.distance_m, 3),
+                                      Cell(trial.time_to_first_failure_s(), 3),
+                                      Cell(trial.heading_oscillation_rad, 5),
+                                      Cell(trial.anticipation_s, 3),
+                                      file == file_of.end() ? "" : file->second};
       for (const stream::FailureCause cause : stream::kFailureCauses) {
         row.push_back(std::to_string(trial.Count(stream::Name(cause))));
       }

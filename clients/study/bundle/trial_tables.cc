@@ -51,9 +51,10 @@ MotionTable SimulationTable() {
   }
   AddVector("com_velocity", "VEL", "com", "m/s", table);
   for (const auto& [name, units] :
-       {std::pair("distance", "m"), std::pair("lateral_offset", "m"), std::pair("heading_error", "rad"),
-        std::pair("on_track", "n/a"), std::pair("gait", "n/a"), std::pair("commanded_gait", "n/a"),
-        std::pair("commanded_speed", "m/s"), std::pair("commanded_turn", "rad")}) {
+       {std::pair("distance", "m"), std::pair("lateral_offset", "m"),
+        std::pair("heading_error", "rad"), std::pair("on_track", "n/a"), std::pair("gait", "n/a"),
+        std::pair("commanded_gait", "n/a"), std::pair("commanded_speed", "m/s"),
+        std::pair("commanded_turn", "rad")}) {
     table.channels.push_back({name, "n/a", "MISC", "body", units});
   }
   return table;
@@ -100,8 +101,8 @@ void AddEvents(const Tick& tick, const TrialClock& clock, const std::set<std::ui
                std::vector<TrialEvent>& events) {
   for (const v1::Event& event : tick.events().events()) {
     const std::string type = TypeOf(event);
-    const bool counts = event.kind() != v1::Event::KIND_FALL ||
-                        undone.count(event.failure().number()) == 0;
+    const bool counts =
+        event.kind() != v1::Event::KIND_FALL || undone.count(event.failure().number()) == 0;
     if (!type.empty()) events.push_back({clock(event.host_ns()), type, counts});
   }
 }

@@ -82,12 +82,4 @@ std::vector<std::string> Problems(const plan::DeviceGate& gate, const std::strin
   return problems;
 }
 
-std::string Lost(const std::string& interface, const std::vector<DeviceStatus>& devices) {
-  for (const DeviceRole role : RolesOf(interface)) {
-    const DeviceStatus* device = DeviceOf(role, interface, devices);
-    if (device == nullptr || device->state != stream::DeviceState::kLive) return Name(role);
-  }
-  return "";
-}
-
 }  // namespace footing::study::gate

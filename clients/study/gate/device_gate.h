@@ -16,7 +16,4 @@ std::vector<stream::DeviceRole> RolesOf(const std::string& interface);
 std::vector<std::string> Problems(const plan::DeviceGate& gate, const std::string& interface,
                                   const std::vector<stream::DeviceStatus>& devices);
 
-/// The role whose device is missing or sends nothing, while a trial runs; empty: none.
-std::string Lost(const std::string& interface, const std::vector<stream::DeviceStatus>& devices);
-
 }  // namespace footing::study::gate

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/study/plan/reader.h"
+#include "common/stream/user_interface.h"
 
 namespace footing::study::plan {
 namespace {
@@ -24,12 +25,6 @@ bool IsCode(const std::string& code) {
   };
   return !code.empty() && code.size() <= kMostCode &&
          std::all_of(code.begin(), code.end(), allowed);
-}
-
-std::string Joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 bool Has(const std::vector<std::string>& list, const std::string& one) {
@@ -72,11 +67,11 @@ void ReadPeople(Reader& reader, Protocol& protocol) {
                                       "person's name");
     }
   }
-  reader.Texts("interfaces", protocol.interfaces, 1, InterfaceNames().size());
+  reader.Texts("interfaces", protocol.interfaces, 1, stream::kUserInterfaces.size());
   for (const std::string& interface : protocol.interfaces) {
-    if (!Has(InterfaceNames(), interface)) {
+    if (stream::UserInterfaceNamed(interface) == stream::UserInterface::kUnspecified) {
       reader.Fail("interfaces", "has unknown interface \"" + interface +
-                                    "\"; there are: " + Joined(InterfaceNames()));
+                                    "\"; there are: " + stream::UserInterfaceNames());
     }
   }
   const bool joystick = Has(protocol.interfaces, "joystick");
@@ -112,11 +107,6 @@ void ReadTrials(Reader& reader, Protocol& protocol) {
 }  // namespace
 
 const char* Name(Order order) { return order == Order::kWilliams ? "williams" : "random"; }
-
-const std::vector<std::string>& InterfaceNames() {
-  static const std::vector<std::string> names = {"wrist", "arm", "leg", "joystick", "boards"};
-  return names;
-}
 
 Result<Protocol> ParseProtocol(const std::string& text, const std::string& file) {
   ordered_json object;

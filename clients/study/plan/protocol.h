@@ -35,8 +35,8 @@ struct DeviceGate {
 struct Protocol {
   std::string name;
   std::vector<std::string> participants;  ///< Codes, never names.
-  std::vector<std::string> interfaces;
-  std::string control;  ///< The interface that the others are compared with.
+  std::vector<std::string> interfaces;    ///< Names of stream::UserInterface.
+  std::string control;                    ///< The interface that the others are compared with.
   Order order = Order::kWilliams;
   std::uint64_t seed = 0;
   std::string consent = "The participant has read and signed the consent form.";
@@ -57,8 +57,5 @@ struct Protocol {
 /// Reads a protocol; comments are allowed. `file` names it in errors, which are InvalidData and say
 /// which key has which value and what it may be.
 Result<Protocol> ParseProtocol(const std::string& text, const std::string& file);
-
-/// Names of the interfaces that a protocol may have.
-const std::vector<std::string>& InterfaceNames();
 
 }  // namespace footing::study::plan

@@ -63,7 +63,7 @@ Result<void> SessionRun::Consent() {
 }
 
 Result<void> SessionRun::CheckDevices(const std::string& interface) {
-  const auto servers = UseInterface(interface);
+  const auto servers = Connect();
   if (!servers) return servers.error();
   plan::DeviceGate gate = context_.protocol.devices;
   gate.allow_simulated = gate.allow_simulated || context_.options.unattended;
@@ -151,7 +151,6 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
                                             ". Press Enter to begin:");
     if (!ready) return ready.error();
   }
-  if (const auto done = CheckDevices(phase.interface); !done) return done.error();
   const auto servers = UseInterface(phase.interface);
   if (!servers) return servers.error();
   const auto outcome = RunTrial(context_, **servers, phase, ++progress_.attempts[phase.id]);
@@ -177,15 +176,22 @@ Result<bool> SessionRun::AskToRepeat(Servers& servers) {
   }
 }
 
-Result<Servers*> SessionRun::UseInterface(const std::string& interface) {
-  const transport::Address& simulation = SimulationOf(context_.options, interface);
-  if (servers_ && connected_to_ == simulation.Text() && servers_->live()) return servers_.get();
+Result<Servers*> SessionRun::Connect() {
+  if (servers_ && servers_->live()) return servers_.get();
   servers_.reset();
-  auto servers = Servers::Open(context_.console, context_.options.sensor, simulation, active_);
+  auto servers = Servers::Open(context_.console, context_.options.sensor,
+                               context_.options.simulation, active_);
   if (!servers) return servers.error();
   servers_ = std::move(*servers);
-  connected_to_ = simulation.Text();
   return servers_.get();
+}
+
+Result<Servers*> SessionRun::UseInterface(const std::string& interface) {
+  if (const auto done = CheckDevices(interface); !done) return done.error();
+  const auto servers = Connect();
+  if (!servers) return servers.error();
+  if (const auto done = (*servers)->UseInterface(interface); !done) return done.error();
+  return servers;
 }
 
 }  // namespace footing::study

@@ -33,15 +33,15 @@ class SessionRun {
   Result<bool> AskToRepeat(Servers& servers);
   /// Waits until the devices of an interface are as the protocol asks.
   Result<void> CheckDevices(const std::string& interface);
-  /// Makes an interface the one in force and connects to its servers where that is due: the only
-  /// place where a session changes the interface.
+  /// Connects to both servers where that is due.
+  Result<Servers*> Connect();
+  /// Once its devices are ready, makes an interface the one in force.
   Result<Servers*> UseInterface(const std::string& interface);
 
   SessionContext context_;
   records::Progress progress_;
   ActiveTime active_;
   std::unique_ptr<Servers> servers_;
-  std::string connected_to_;
 };
 
 /// Runs or resumes the session of a participant: takes the study's lock, checks the disk, opens the

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kConnectS = 5;
 constexpr double kAnswerS = 5;
+constexpr double kShownS = 2;
 constexpr std::uint32_t kQueueTicks = 1024;
 
 transport::ClientOptions ClientOf(const transport::Address& address, v1::Role role,
@@ -62,8 +63,9 @@ class Servers::Implementation {
   void Start(Link& link, transport::ClientOptions options) {
     transport::ClientHandlers handlers;
     handlers.on_tick = [this, &link](const v1::Tick& tick) {
-      link.ticked = true;
       OnTick(tick);
+      // The snapshot has no frame yet, and without one nothing is known of footing-sim.
+      link.ticked = link.ticked || &link == &sensor_ || tick.has_characters();
     };
     handlers.on_state = [&link](transport::LinkState state, const std::string& why) {
       link.state = state;
@@ -89,7 +91,8 @@ class Servers::Implementation {
     if (tick.has_characters() && tick.characters().characters_size() > 0) {
       const v1::Character& character = tick.characters().characters(0);
       frame_ = {tick.host_ns(), wire::FromProto(character.trial()),
-                stream::GaitNumbered(character.gait().commanded_gait())};
+                stream::GaitNumbered(character.gait().commanded_gait()),
+                wire::FromProto(character.interface())};
       if (on_frame_) on_frame_(frame_);
     }
   }
@@ -149,6 +152,26 @@ void Servers::set_on_frame(std::function<void(const SimulationFrame&)> on_frame)
 
 void Servers::set_on_event(std::function<void(const v1::Event&)> on_event) {
   implementation_->on_event_ = std::move(on_event);
+}
+
+Result<void> Servers::UseInterface(const std::string& interface) {
+  const auto wanted = stream::UserInterfaceNamed(interface);
+  const auto in_force = [&] { return frame().interface.interface == wanted; };
+  if (in_force()) return {};
+  const stream::TrialPhase phase = frame().trial.progress.phase;
+  if (phase == stream::TrialPhase::kReady || phase == stream::TrialPhase::kRunning) {
+    v1::Command stop;
+    stop.mutable_stop_trial()->set_character(1);
+    if (const auto done = Call(std::move(stop)); !done) return done;
+  }
+  v1::Command command;
+  command.mutable_set_interface()->set_character(1);
+  command.mutable_set_interface()->set_interface(static_cast<v1::UserInterface>(wanted));
+  if (const auto done = Call(std::move(command)); !done) return done;
+  const Waited waited = implementation_->console_.RunUntil(in_force, kShownS);
+  if (waited == Waited::kInterrupted) return Interrupted();
+  if (waited == Waited::kTimeUp) return Failure("footing-sim does not show interface " + interface);
+  return {};
 }
 
 Result<void> Servers::Call(v1::Command command) {

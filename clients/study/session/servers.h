@@ -12,6 +12,7 @@
 #include "common/stream/gait.h"
 #include "common/stream/track.h"
 #include "common/stream/trial.h"
+#include "common/stream/user_interface.h"
 #include "common/transport/address.h"
 #include "footing/v1/session.pb.h"
 
@@ -22,6 +23,7 @@ struct SimulationFrame {
   std::int64_t host_ns = 0;  ///< Of its tick, on the clock of footing-sim.
   stream::TrialState trial;  ///< Without an id before the first trial.
   stream::Gait commanded_gait = stream::Gait::kUnspecified;
+  stream::InterfaceState interface;
 };
 
 /// Connections to footingd, for the health of the devices, and to footing-sim, for trials.
@@ -47,6 +49,11 @@ class Servers {
   /// Called while the console waits.
   void set_on_frame(std::function<void(const SimulationFrame&)> on_frame);
   void set_on_event(std::function<void(const v1::Event&)> on_event);
+
+  /// Makes an interface the one in force: the only place where a study changes it. A trial that
+  /// goes on, such as practice or what a crash has left, is stopped. Returns when the frames show
+  /// it.
+  Result<void> UseInterface(const std::string& interface);
 
   /// Sends a command to footing-sim and waits for the answer; a refusal is a failure with its text.
   Result<void> Call(v1::Command command);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -22,8 +21,6 @@ struct SessionOptions {
   std::uint64_t answer_seed = 1;  ///< Of unattended answers.
   transport::Address sensor;
   transport::Address simulation;
-  /// footing-sim of an interface, where it is not the one above.
-  std::map<std::string, transport::Address> simulation_of;
   std::string version;
 };
 
@@ -35,12 +32,5 @@ struct SessionContext {
   Console& console;
   journal::Journal& journal;
 };
-
-/// The footing-sim that serves an interface.
-inline const transport::Address& SimulationOf(const SessionOptions& options,
-                                              const std::string& interface) {
-  const auto own = options.simulation_of.find(interface);
-  return own == options.simulation_of.end() ? options.simulation : own->second;
-}
 
 }  // namespace footing::study

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "clients/study/gate/device_gate.h"
 #include "clients/study/journal/study_folder.h"
 #include "clients/study/records/trials.h"
 #include "clients/study/session/trial_events.h"
@@ -106,8 +105,7 @@ class TrialRun {
         journal::ParticipantFolder(context_.options.study_folder, context_.session.participant) +
         "/" + file_;
     recording.version = context_.options.version;
-    recording.addresses = {context_.options.sensor,
-                           SimulationOf(context_.options, phase_.interface)};
+    recording.addresses = {context_.options.sensor, context_.options.simulation};
     recording.attachments = {{"protocol.json", context_.options.protocol_text}};
     auto recorder =
         TrialRecorder::Begin(context_.console, std::move(recording), MarksOfRecording());
@@ -166,9 +164,10 @@ class TrialRun {
 
   /// A device that the interface needs has sent nothing for a while.
   bool DeviceLost() {
-    lost_role_ = gate::Lost(phase_.interface, servers_.devices());
+    const std::uint32_t missing_roles = servers_.frame().interface.missing_roles;
     const std::int64_t now_ns = clock::MonotonicNs();
-    if (lost_role_.empty()) complete_ns_ = now_ns;
+    if (missing_roles == 0) complete_ns_ = now_ns;
+    if (missing_roles != 0) lost_roles_ = missing_roles;
     return NanosecondsToSeconds(now_ns - complete_ns_) > kDeviceBackS;
   }
 
@@ -191,7 +190,7 @@ class TrialRun {
                            {"outcome", outcome},
                            {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)}};
     fields.update(events_.Figures());
-    if (outcome == records::kDeviceLost) fields["device"] = lost_role_;
+    if (outcome == records::kDeviceLost) fields["device"] = stream::RoleNames(lost_roles_);
     if (const auto done = recorder_->Finish(ToTextMap(fields)); !done) return done;
     return context_.journal.Append(EventKind::kTrialFinished, std::move(fields));
   }
@@ -204,7 +203,7 @@ class TrialRun {
   std::unique_ptr<TrialRecorder> recorder_;
   std::int64_t begin_ns_ = 0;
   std::int64_t complete_ns_ = 0;  ///< When all devices were last there.
-  std::string lost_role_;
+  std::uint32_t lost_roles_ = 0;
   TrialEvents events_;
 };
 

@@ -29,14 +29,8 @@ std::string RestText(UserInterface interface) {
 }  // namespace
 
 std::string RolesText(std::uint32_t roles) {
-  std::string text;
-  for (unsigned number = 1; number < 32; ++number) {
-    const auto role = static_cast<stream::DeviceRole>(number);
-    if ((roles & stream::RoleBit(role)) == 0) continue;
-    std::string name = stream::Name(role);
-    std::replace(name.begin(), name.end(), '_', ' ');
-    text += (text.empty() ? "" : ", ") + name;
-  }
+  std::string text = stream::RoleNames(roles);
+  std::replace(text.begin(), text.end(), '_', ' ');
   return text;
 }
 

@@ -56,13 +56,8 @@ Result<std::string> InputCollector::RigFor(const mapping::InterfaceOptions& opti
   for (const auto& [rig, present] : roles) {
     if (mapping::MissingRoles(options, present) == 0) return rig;
   }
-  std::string names;
-  for (unsigned number = 1; number < 32; ++number) {
-    const auto role = static_cast<DeviceRole>(number);
-    if ((missing & stream::RoleBit(role)) == 0) continue;
-    names += (names.empty() ? "" : ", ") + std::string(stream::Name(role));
-  }
-  return Failure((rig_.empty() ? "there is no " : "the rig " + rig_ + " lacks ") + names +
+  return Failure((rig_.empty() ? "there is no " : "the rig " + rig_ + " lacks ") +
+                 stream::RoleNames(missing) +
                  "; connect the devices, or give them these roles (footing-ctl assign)");
 }
 

@@ -80,8 +80,9 @@ TEST(ParticipantKey, KeepsNumbersAndAddsNewOnesInRandomOrder) {
 }
 
 TEST(ParticipantKey, NamesTheLineThatIsWrong) {
-  for (const char* wrong : {"", "code,number\n", "number,code\n1,A\n1,B\n", "number,code\n1,A\n2,A\n",
-                            "number,code\n0,A\n", "number,code\nx,A\n", "number,code\n1\n"}) {
+  for (const char* wrong :
+       {"", "code,number\n", "number,code\n1,A\n1,B\n", "number,code\n1,A\n2,A\n",
+        "number,code\n0,A\n", "number,code\nx,A\n", "number,code\n1\n"}) {
     const auto key = ParticipantKey::Parse(wrong, "k.csv");
     ASSERT_FALSE(key) << wrong;
     EXPECT_THAT(key.error().message, HasSubstr("k.csv"));

@@ -62,18 +62,6 @@ TEST(DeviceGate, NamesEveryFaultWithItsRemedy) {
               ElementsAre(HasSubstr("is missing")));
 }
 
-TEST(DeviceGate, NamesTheRoleThatIsLostInMidTrial) {
-  auto devices = Hands();
-  EXPECT_EQ(Lost("wrist", devices), "");
-  EXPECT_EQ(Lost("leg", devices), "left_leg");
-  devices[1].state = DeviceState::kStale;
-  EXPECT_EQ(Lost("wrist", devices), "right_hand");
-  devices[1].state = DeviceState::kLost;
-  EXPECT_EQ(Lost("wrist", devices), "right_hand");
-  EXPECT_EQ(Lost("joystick", devices), "");  // On the left hand's Wiimote.
-  EXPECT_EQ(Lost("joystick", {}), "right_hand");
-}
-
 TEST(DeviceGate, RefusesSimulatedDevicesUnlessTheProtocolAllowsThem) {
   auto devices = Hands();
   devices[0].simulated = true;

@@ -15,8 +15,8 @@ sys.path.insert(0, sys.argv[1])
 from harness import Stage  # noqa: E402
 
 PROTOCOL = {
-    "version": 1, "name": "scenario", "participants": ["P01", "P02"], "interfaces": ["joystick", "wrist"],
-    "control": "joystick", "seed": 5, "practice_s": 300, "rest_s": 60, "trial_limit_s": 4,
+    "version": 1, "name": "scenario", "participants": ["P01", "P02"], "interfaces": ["arm", "wrist"],
+    "control": "arm", "seed": 5, "practice_s": 300, "rest_s": 60, "trial_limit_s": 4,
     "straight_tasks": ["walk_run", "walk_stop"], "straight_trials": 1, "test_tracks": ["1", "2"],
     "disk_mb": 1,
 }
@@ -133,7 +133,7 @@ def check_report(stage):
     assert analysis["synthetic"] and analysis["participants"] == 2 and analysis["withdrawn"] == 1, analysis
     found = {one["id"]: one for one in analysis["measures"]}
     assert {"rating fun", "rating exertion", "test_failures_curve", "straight_oscillation_deg"} <= set(found), found
-    assert [one["interface"] for one in found["rating fun"]["groups"]] == ["joystick", "wrist"]
+    assert [one["interface"] for one in found["rating fun"]["groups"]] == ["arm", "wrist"]
     wrote = stage.run_json("footing-study", "report", protocol)
     page, rows = (pathlib.Path(wrote[key]).read_text() for key in ("page", "csv"))
     assert "Synthetic:" in page and "http" not in page and page.count("<svg") > 8, page[:500]
@@ -185,7 +185,7 @@ def check_faulty_recordings(stage):
     done = stage.run("footing-log", "record", "--connect", stage.simulation, "--out", plain, "--seconds", 1)
     assert done.returncode == 0, done
     plain.replace(marked)
-    (folder / "joystick.test.1.mcap").unlink()
+    (folder / "arm.test.1.mcap").unlink()
     wrote = stage.run_json("footing-study", "export", stage.folder / "s.json", "--out", stage.folder / "t.bids")
     assert wrote["trials"] == 2 and len(wrote["remarks"]) == 2, wrote
     assert any("no trial marks" in one for one in wrote["remarks"]), wrote
