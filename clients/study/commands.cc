@@ -92,7 +92,7 @@ void Finish(const Result<Answer>& result, Shared& shared) {
 }
 
 void AddProtocolOptions(CLI::App& command, ProtocolOptions& options) {
-  command.add_option("PROTOCOL", options.path, "Protocol file, JSON (docs/study.md)")->required();
+  command.add_option("PROTOCOL", options.path, "Protocol file, JSON (docs/studies.md)")->required();
   command.add_option("--folder", options.folder,
                      "Folder of the study's files (default: the protocol's path with .study in "
                      "place of .json)");

@@ -42,8 +42,6 @@ NOT_HERE = {
     r"tcp:": "needs a server on another address",
     r"/run/footing": "needs the system service",
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
-    r"^footing-study (run|analyze|report)": "needs whole sessions; tests/clients/study/study_scenario.py runs them",
-    r"^footing-study (run|analyze|report)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",
     r"^footing-study (run|analyze|report|export)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",
     r"first\.mcap|body\.mcap": "reads what a command above would have recorded",
 }

@@ -30,7 +30,7 @@ struct DeviceGate {
   bool allow_simulated = false;
 };
 
-/// A study as its file says; docs/study.md describes the keys. Defaults follow the gait paper,
+/// A study as its file says; docs/studies.md describes the keys. Defaults follow the gait paper,
 /// section 8.1, where it says something.
 struct Protocol {
   std::string name;

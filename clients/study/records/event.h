@@ -34,7 +34,7 @@ enum class EventKind {
 
 const char* Name(EventKind kind);
 
-/// One line. `fields` are those of its kind; docs/study.md lists them.
+/// One line. `fields` are those of its kind; docs/studies.md lists them.
 struct Event {
   EventKind kind = EventKind::kNote;
   std::uint64_t number = 0;  ///< From 1, without gaps.

@@ -58,7 +58,7 @@ Result<void> SessionRun::Consent() {
   const auto answer = context_.console.Ask(context_.protocol.consent +
                                            "\nType yes to confirm, else the session ends:");
   if (!answer) return answer.error();
-  if (*answer != "yes") return Failure("without consent there is no session; nothing was recorded");
+  if (*answer != "yes") return Failure("without consent the session ends here");
   return note("confirmed: " + context_.protocol.consent);
 }
 
