@@ -19,6 +19,9 @@ struct TrackSegment {
   bool pit = false;
 };
 
+/// A segment without length that begins where another ends and goes on as it does, level.
+TrackSegment Following(const TrackSegment& last);
+
 /// What a user has to do where a track has its mark (gait paper, section 8.1: when the biped
 /// crosses the line it is to jump, to stop, or to change between walking and running).
 struct TrackTask {

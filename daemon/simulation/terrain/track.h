@@ -38,9 +38,6 @@ bool IsFlat(const stream::Track& track);
 /// The track as it looks to whoever does not see its pits.
 stream::Track WithPitsFilled(stream::Track track);
 
-/// A segment without length that begins where another ends and goes on as it does, level.
-stream::TrackSegment Following(const stream::TrackSegment& last);
-
 /// Where a point is relative to the track's centre line.
 struct TrackPlace {
   int segment = 0;

@@ -80,7 +80,7 @@ plot::PlanPanel PlanOf(const std::string& name, const stream::Track& track) {
   for (std::size_t i = 0; i < track.segments.size(); ++i) {
     const bool step =
         i > 0 && std::fabs(track.segments[i].start_m.z() -
-                           terrain::Following(track.segments[i - 1]).start_m.z()) > 1e-6;
+                           stream::Following(track.segments[i - 1]).start_m.z()) > 1e-6;
     if (step) AddLine(track, from_m, kStep, panel);
     from_m += track.segments[i].length_m;
   }
