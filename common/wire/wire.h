@@ -3,6 +3,7 @@
 #include "common/stream/character.h"
 #include "common/stream/contacts.h"
 #include "common/stream/device.h"
+#include "common/stream/game.h"
 #include "common/stream/hands.h"
 #include "common/stream/response.h"
 #include "common/stream/sensor.h"
@@ -10,6 +11,7 @@
 #include "common/stream/user_interface.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/device.pb.h"
+#include "footing/v1/game.pb.h"
 #include "footing/v1/sensor.pb.h"
 
 /// Between the plain structs of common/stream and the messages of the protocol. Enums have the same
@@ -38,6 +40,10 @@ v1::SetupItem ToProto(const stream::SetupItem& value);
 v1::RigSetup ToProto(const stream::RigSetup& value);
 v1::Skeleton ToProto(const stream::Skeleton& value);
 v1::Track ToProto(const stream::Track& value);
+v1::GamePlayer ToProto(const stream::GamePlayer& value);
+v1::GameRound ToProto(const stream::GameRound& value);
+v1::GameState ToProto(const stream::GameState& value);
+v1::TrackSegment ToProto(const stream::TrackSegment& value);
 v1::FailureCounts ToProto(const stream::FailureCounts& value);
 v1::TrialState ToProto(const stream::TrialState& value);
 v1::LinkPose ToProto(const stream::LinkPose& value);
@@ -70,6 +76,10 @@ stream::SetupItem FromProto(const v1::SetupItem& value);
 stream::RigSetup FromProto(const v1::RigSetup& value);
 stream::Skeleton FromProto(const v1::Skeleton& value);
 stream::Track FromProto(const v1::Track& value);
+stream::GamePlayer FromProto(const v1::GamePlayer& value);
+stream::GameRound FromProto(const v1::GameRound& value);
+stream::GameState FromProto(const v1::GameState& value);
+stream::TrackSegment FromProto(const v1::TrackSegment& value);
 stream::FailureCounts FromProto(const v1::FailureCounts& value);
 stream::TrialState FromProto(const v1::TrialState& value);
 stream::LinkPose FromProto(const v1::LinkPose& value);

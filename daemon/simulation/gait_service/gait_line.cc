@@ -54,15 +54,14 @@ std::vector<std::string> GaitLine::Capabilities() {
   std::vector<std::string> names{"gait"};
   for (const auto interface : stream::kUserInterfaces) names.push_back(stream::Name(interface));
   names.push_back("trial");
+  names.push_back("game");
   return names;
 }
 
 std::vector<transport::Channel> GaitLine::Channels() {
-  return {{"skeletons", serving::kSkeletons, true},
-          {"track", serving::kTrack, true},
-          {"characters", serving::kCharacters, false},
-          {"events", serving::kEvents, false},
-          {"inputs", serving::kInputs, false}};
+  return {{"skeletons", serving::kSkeletons, true},    {"track", serving::kTrack, true},
+          {"characters", serving::kCharacters, false}, {"events", serving::kEvents, false},
+          {"inputs", serving::kInputs, false},         {"game", serving::kGame, true}};
 }
 
 std::vector<transport::ChannelBytes> GaitLine::Retained() const {
@@ -88,7 +87,10 @@ Result<void> GaitLine::SetInterface(const v1::SetInterface& message) {
   return input_.SetInterface(options, *made);
 }
 
-v1::CommandResult GaitLine::OnCommand(const v1::Command& command) {
+v1::CommandResult GaitLine::OnCommand(const transport::SessionInfo& who,
+                                      const v1::Command& command) {
+  if (command.has_set_game()) return game_.OnSetGame(who, command.set_game());
+  if (const auto refusal = game_.Refuse(who, command)) return *refusal;
   if (command.has_set_interface()) {
     const Result<void> done = SetInterface(command.set_interface());
     return serving::Answer(done.ok(), done ? "" : "set_interface: " + done.error().message);
@@ -126,6 +128,9 @@ std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::
   }
   if (switched || frame.added_count > 0) {
     channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(trials_.track())));
+  }
+  if (const auto game = game_.TakeChange()) {
+    channels.push_back(serving::Bytes(serving::kGame, wire::ToProto(*game)));
   }
   v1::CharacterFrame characters = ToCharacterFrame(frame, world_, input_.rig());
   trials_.Describe(frame, *characters.mutable_characters(0));

@@ -9,6 +9,7 @@
 #include "common/transport/server.h"
 #include "daemon/simulation/gait_service/config.h"
 #include "daemon/simulation/gait_service/gait_run.h"
+#include "daemon/simulation/gait_service/game_relay.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "daemon/simulation/gait_service/sensor_input.h"
 #include "daemon/simulation/gait_service/track_exchange.h"
@@ -40,7 +41,8 @@ class GaitLine {
   serving::SimulationThread<GaitRun>& thread() { return thread_; }
   std::vector<transport::ChannelBytes> Retained() const;
   void OnTick(const v1::Tick& tick, std::int64_t now_ns) { input_.OnTick(tick, now_ns); }
-  v1::CommandResult OnCommand(const v1::Command& command);
+  v1::CommandResult OnCommand(const transport::SessionInfo& who, const v1::Command& command);
+  void OnSessionEnd(const transport::SessionInfo& who) { game_.OnSessionEnd(who); }
   std::vector<transport::ChannelBytes> OnFrame(const Frame& frame, std::int64_t now_ns);
 
  private:
@@ -57,6 +59,7 @@ class GaitLine {
   serving::SimulationThread<GaitRun> thread_;
   TrialControl trials_;
   SensorInput input_;
+  GameRelay game_;
 };
 
 }  // namespace footing::gait_service

@@ -88,6 +88,7 @@ v1::Event ToEvent(const engine::EngineEvent& event, std::int64_t host_ns) {
   message.set_gait(static_cast<v1::Gait>(event.to));
   message.set_failure_cause(static_cast<v1::FailureCause>(event.cause));
   message.set_by_operator(event.by_operator);
+  message.set_segment_refused(event.kind == engine::EventKind::kAppendRefused);
   return message;
 }
 

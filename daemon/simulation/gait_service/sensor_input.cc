@@ -103,7 +103,7 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
     default:
       return Answer(false,
                     "footing-sim takes direct_gait, push, put_back, append_segment, start_trial, "
-                    "stop_trial, correct_failure and set_interface");
+                    "stop_trial, correct_failure, set_interface and set_game");
   }
   Publish();
   return Answer(true, "");

@@ -89,7 +89,7 @@ v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {
   return Answer(true, "");
 }
 
-v1::CommandResult PoseLine::OnCommand(const v1::Command& command) {
+v1::CommandResult PoseLine::OnCommand(const transport::SessionInfo&, const v1::Command& command) {
   if (command.has_set_subject()) return TakeSubject(command.set_subject());
   if (command.has_calibrate_t_pose()) {
     sensors_.Calibrate();

@@ -42,7 +42,8 @@ class PoseLine {
   std::vector<transport::ChannelBytes> Retained() const;
   void OnTick(const v1::Tick& tick, std::int64_t now_ns) { sensors_.OnTick(tick, now_ns); }
   /// CalibrateTPose and SetSubject; anything else is answered with what there is.
-  v1::CommandResult OnCommand(const v1::Command& command);
+  v1::CommandResult OnCommand(const transport::SessionInfo& who, const v1::Command& command);
+  void OnSessionEnd(const transport::SessionInfo&) {}
   std::vector<transport::ChannelBytes> OnFrame(const PoseFrame& frame, std::int64_t now_ns);
 
  private:

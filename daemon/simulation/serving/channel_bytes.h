@@ -13,6 +13,7 @@ inline constexpr std::uint32_t kTrack = v1::Tick::kTrackFieldNumber;
 inline constexpr std::uint32_t kCharacters = v1::Tick::kCharactersFieldNumber;
 inline constexpr std::uint32_t kEvents = v1::Tick::kEventsFieldNumber;
 inline constexpr std::uint32_t kInputs = v1::Tick::kInputsFieldNumber;
+inline constexpr std::uint32_t kGame = v1::Tick::kGameFieldNumber;
 
 /// One channel of a tick.
 inline transport::ChannelBytes Bytes(std::uint32_t field,

@@ -29,10 +29,10 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
       : line_(std::move(line)),
         wake_(io, wake_descriptor),
         server_(io, MakeServerOptions(*line_, version),
-                {[this](const transport::SessionInfo&, const v1::Command& command) {
-                   return line_->OnCommand(command);
+                {[this](const transport::SessionInfo& who, const v1::Command& command) {
+                   return line_->OnCommand(who, command);
                  },
-                 {}}) {}
+                 [this](const transport::SessionInfo& who) { line_->OnSessionEnd(who); }}) {}
 
   Result<void> Open(boost::asio::io_context& io, const Config& config) {
     auto addresses = config.listen;

@@ -1,0 +1,61 @@
+#include "daemon/simulation/gait_service/game_relay.h"
+
+#include <utility>
+
+#include "common/wire/wire.h"
+#include "daemon/simulation/serving/messages.h"
+
+namespace footing::gait_service {
+
+using serving::Answer;
+
+v1::CommandResult GameRelay::OnSetGame(const transport::SessionInfo& who,
+                                       const v1::SetGame& message) {
+  if (leader_ != 0 && leader_ != who.session) {
+    return Answer(false, "set_game: " + game_.host +
+                             " leads a terrain game; watch it with footing-view, or end that one");
+  }
+  if (message.leave()) {
+    if (leader_ == who.session) Leave();
+    return Answer(true, "");
+  }
+  stream::GameState game = wire::FromProto(message.game());
+  if (game.host.empty()) game.host = who.client_name;
+  if (const char* why = stream::WhyNotAGame(game); why != nullptr) {
+    return Answer(false, std::string("set_game: ") + why);
+  }
+  leader_ = who.session;
+  game_ = std::move(game);
+  changed_ = true;
+  return Answer(true, "");
+}
+
+void GameRelay::OnSessionEnd(const transport::SessionInfo& who) {
+  if (leader_ != 0 && leader_ == who.session) Leave();
+}
+
+/// A game that was played to its end stays as it is.
+void GameRelay::Leave() {
+  leader_ = 0;
+  if (game_.phase != stream::GamePhase::kOver) game_.phase = stream::GamePhase::kLeft;
+  game_.ghost.reset();
+  game_.left_s = 0;
+  changed_ = true;
+}
+
+std::optional<v1::CommandResult> GameRelay::Refuse(const transport::SessionInfo& who,
+                                                   const v1::Command& command) const {
+  if (leader_ == 0 || leader_ == who.session) return std::nullopt;
+  if (!command.has_append_segment() && !command.has_start_trial() && !command.has_stop_trial()) {
+    return std::nullopt;
+  }
+  return Answer(false,
+                game_.host + " leads a terrain game: only it changes the track; end it first");
+}
+
+std::optional<stream::GameState> GameRelay::TakeChange() {
+  if (!std::exchange(changed_, false)) return std::nullopt;
+  return game_;
+}
+
+}  // namespace footing::gait_service
