@@ -1,0 +1,63 @@
+#include "clients/game/messages.h"
+
+#include "common/wire/scalar.h"
+#include "common/wire/wire.h"
+
+namespace footing::game {
+namespace {
+
+/// Of a Wiimote's two button bytes.
+constexpr std::uint32_t kButtonA = 0x0008, kButtonB = 0x0004;
+
+Fault FaultOf(const v1::Failure& failure) {
+  const auto cause = v1::FailureCause_IsValid(failure.cause())
+                         ? static_cast<stream::FailureCause>(failure.cause())
+                         : stream::FailureCause::kUnspecified;
+  return {failure.number(), cause, failure.trial(), wire::Finite(failure.distance_m()),
+          failure.withdrawn()};
+}
+
+}  // namespace
+
+void Take(const v1::Tick& tick, Collector& collector) {
+  if (tick.has_track()) collector.OnTrack(wire::FromProto(tick.track()));
+  for (const v1::Event& event : tick.events().events()) {
+    if (event.has_failure()) collector.OnFault(FaultOf(event.failure()));
+  }
+  if (tick.characters().characters_size() > 0) {
+    collector.OnTrial(wire::FromProto(tick.characters().characters(0).trial()));
+  }
+}
+
+bool Take(const v1::Tick& tick, std::uint32_t& device, Hand& hand) {
+  bool inclined = false;
+  for (const v1::RigFeatures& rig : tick.features().rigs()) {
+    for (const v1::DeviceFeatures& one : rig.devices()) {
+      if (one.role() != v1::DEVICE_ROLE_EDITOR) continue;
+      device = one.device();
+      if (!one.inclination_valid()) continue;
+      hand.roll_rad = wire::Finite(one.roll_rad());
+      hand.pitch_rad = wire::Finite(one.pitch_rad());
+      inclined = true;
+    }
+  }
+  for (const v1::MotionSample& sample : tick.motion().samples()) {
+    if (device == 0 || sample.device() != device) continue;
+    hand.a = (sample.buttons() & kButtonA) != 0;
+    hand.b = (sample.buttons() & kButtonB) != 0;
+  }
+  return inclined;
+}
+
+v1::Command ToCommand(const Piece& piece) {
+  v1::Command command;
+  v1::AppendSegment& append = *command.mutable_append_segment();
+  append.set_length_m(piece.length_m);
+  append.set_slope_rad(piece.slope_rad);
+  append.set_curve_rad(piece.curve_rad);
+  append.set_step_m(piece.step_m);
+  append.set_pit(piece.pit);
+  return command;
+}
+
+}  // namespace footing::game
