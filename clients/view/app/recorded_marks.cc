@@ -180,9 +180,10 @@ const std::vector<std::string>& PlayedServers() {
 }
 
 Result<playback::SeekableRecording> OpenForPlayback(const std::string& path) {
-  return playback::SeekableRecording::Open(path, PlayedServers(),
-                                           {"status", "motion", "features", "boards", "skeletons",
-                                            "track", "characters", "events", "setup", "reference"});
+  return playback::SeekableRecording::Open(
+      path, PlayedServers(),
+      {"status", "motion", "features", "boards", "skeletons", "track", "characters", "events",
+       "setup", "reference", "game"});
 }
 
 Result<RecordedMarks> ReadMarks(playback::SeekableRecording& recording) {

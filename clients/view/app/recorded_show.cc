@@ -121,7 +121,7 @@ std::vector<RecordedShow::Span> RecordedShow::SeekSpans(std::int64_t time_ns) {
 
 void RecordedShow::TakeRetained(std::int64_t time_ns) {
   for (std::size_t server = 0; server < PlayedServers().size(); ++server) {
-    for (const char* channel : {"status", "setup", "skeletons", "track"}) {
+    for (const char* channel : {"status", "setup", "skeletons", "track", "game"}) {
       const auto placed = recording_.LastOf(server, channel, time_ns - 1, true);
       if (!placed) continue;
       PlacedTick retained = *placed;

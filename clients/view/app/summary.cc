@@ -44,6 +44,24 @@ void AddTrial(const scene::Model& model, nlohmann::ordered_json& summary) {
                       {"operator_put_backs", trial->progress.operator_put_backs}};
 }
 
+/// The terrain game as published last.
+void AddGame(const stream::GameState& game, nlohmann::ordered_json& summary) {
+  if (game.phase == stream::GamePhase::kUnspecified) return;
+  nlohmann::ordered_json players = nlohmann::ordered_json::array();
+  for (const stream::GamePlayer& player : game.players) {
+    players.push_back({{"name", player.name}, {"points", player.points}});
+  }
+  std::uint64_t laid = 0, passed = 0;
+  for (const stream::GameRound& round : game.results) {
+    laid += round.segments_laid;
+    passed += round.segments_passed;
+  }
+  summary["game"] = {{"host", game.host},         {"phase", stream::Name(game.phase)},
+                     {"rounds", game.rounds},     {"rounds_begun", game.results.size()},
+                     {"players", players},        {"segments_laid", laid},
+                     {"segments_passed", passed}, {"segments_refused", game.refused}};
+}
+
 }  // namespace
 
 std::string Summary(const scene::Model& model, double seconds) {
@@ -71,6 +89,7 @@ std::string Summary(const scene::Model& model, double seconds) {
       {"response_without_contact_p95_ms", model.tally.response_without_contact.QuantileMs(0.95)},
       {"simulated", scene::IsSimulated(model)}};
   AddTrial(model, summary);
+  AddGame(model.game, summary);
   if (model.pose_tally.any()) AddPose(model.pose_tally, summary);
   return summary.dump();
 }

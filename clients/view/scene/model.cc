@@ -44,7 +44,7 @@ void AddNote(Model& model, const Note& note, std::int64_t received_ns) {
   }
   if (note.text.empty()) return;
   model.last_note = note;
-  model.last_note_ns = received_ns;
+  model.last_note->received_ns = received_ns;
 }
 
 void AddPhase(Model& model, const CharacterPose& pose, std::int64_t received_ns) {
@@ -92,6 +92,7 @@ void Apply(Model& model, const Update& update) {
     model.track = *update.track;
     ++model.track_version;
   }
+  if (update.game) model.game = *update.game;
   if (update.setup) model.setup = *update.setup;
   if (update.reference) AddReference(model, *update.reference);
   model.strips.Add(update);

@@ -51,13 +51,13 @@ struct Model {
   std::vector<stream::Skeleton> skeletons;
   stream::Track track;
   std::uint64_t track_version = 0;  ///< Counts the tracks received.
+  stream::GameState game;           ///< The terrain game, where one is led.
   Playout playout;
   FallReplay replay;
   StripSet strips;
   std::map<std::pair<int, std::uint32_t>, BoardTrace> boards;  ///< By {source, device}.
   std::optional<Note> last_response;
-  std::optional<Note> last_note;  ///< The last one that a person should read.
-  std::int64_t last_note_ns = 0;
+  std::optional<Note> last_note;    ///< The last one that a person should read.
   std::int64_t newest_host_ns = 0;  ///< Newest tick's stamp, on the viewer's clock.
   std::vector<std::string> phases;  ///< Of the first character's present gait, in order of coming.
   std::deque<PhaseSpan> phase_spans;  ///< The last 10 s, oldest first.

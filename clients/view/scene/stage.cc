@@ -6,6 +6,7 @@
 #include "clients/view/scene/arrows.h"
 #include "clients/view/scene/bird.h"
 #include "clients/view/scene/body_stage.h"
+#include "clients/view/scene/game_ghost.h"
 #include "clients/view/scene/ribbon.h"
 #include "common/board/geometry.h"
 
@@ -126,6 +127,7 @@ Picture Stage::Advance(const Model& model, const WorldFrame& frame, std::int64_t
     if (first) roll_rad = pose.interface.view_roll_rad;
     first = false;
   }
+  AddGhostSegment(model.game, picture.ghosts);
   camera_.Advance(subject, dt_s);
   picture.camera = camera_.Look();
   roll_rad_ += (roll_rad - roll_rad_) * (1 - std::exp(-std::clamp(dt_s, 0.0, 1.0) / kRollS));

@@ -9,6 +9,7 @@
 #include "clients/view/scene/body_state.h"
 #include "common/stream/character.h"
 #include "common/stream/device.h"
+#include "common/stream/game.h"
 #include "common/stream/response.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
@@ -50,6 +51,7 @@ struct Note {
   std::int64_t host_ns = 0;
   std::string text;
   stream::ResponseStages response;  ///< Of kResponse.
+  std::int64_t received_ns = 0;     ///< On the viewer's clock.
 };
 
 /// How one connection fares.
@@ -77,6 +79,7 @@ struct Update {
   std::optional<std::vector<stream::RigSetup>> setup;
   std::optional<ReferencePose> reference;  ///< The newest one of the tick.
   std::optional<WorldFrame> frame;
+  std::optional<stream::GameState> game;
   std::vector<Note> notes;
 };
 

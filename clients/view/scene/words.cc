@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clients/view/scene/game_text.h"
 #include "clients/view/scene/interface_text.h"
 #include "clients/view/scene/trial_text.h"
 #include "common/text/number.h"
@@ -113,6 +114,12 @@ std::vector<std::string> CharacterLines(const CharacterPose& pose, const stream:
   return lines;
 }
 
+const stream::TrialState* FirstTrial(const Model& model) {
+  if (!HasPicture(model) || model.playout.Newest().characters.empty()) return nullptr;
+  const auto& trial = model.playout.Newest().characters.front().trial;
+  return trial ? &*trial : nullptr;
+}
+
 }  // namespace
 
 std::string Fixed(double value, int decimals) {
@@ -199,6 +206,9 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
       for (std::string& line : CharacterLines(pose, model.track)) lines.push_back(std::move(line));
     }
   }
+  if (ShowsGame(model.game, FirstTrial(model))) {
+    for (std::string& line : GameLines(model.game)) lines.push_back(std::move(line));
+  }
   if (!model.devices.empty()) lines.push_back("Devices");
   for (const Device& device : model.devices) lines.push_back(DeviceLine(device.status));
   const Stance stance = StanceOf(model);
@@ -252,6 +262,7 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
       line += "  " + task;
     }
   }
+  if (ShowsGame(model.game, FirstTrial(model))) line += "  " + GameLine(model.game);
   line += "  devices " + std::to_string(model.devices.size()) + "  age " +
           Fixed(AgeMs(model, now_ns), 0) + " ms";
   return line + (IsSimulated(model) ? "  SIMULATED" : "");

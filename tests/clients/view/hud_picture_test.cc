@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tests/clients/view/made_game.h"
 #include "tests/clients/view/made_person.h"
 #include "tests/clients/view/made_stream.h"
 #include "tests/clients/view/picture_fixture.h"
@@ -57,6 +59,21 @@ class HudPictureTest : public PictureFixture {
     }
     return strays;
   }
+
+  /// Pixels that differ well between two pictures, inside a box and outside of it.
+  static std::pair<int, int> Changed(const Image& with, const Image& without, const Box& box,
+                                     const Size& size) {
+    int inside = 0, outside = 0;
+    for (int i = 0; i < size.width * size.height; ++i) {
+      const auto first = static_cast<std::size_t>(3 * i);
+      if (std::abs(with.rgb[first] - without.rgb[first]) <= 8) continue;
+      const int x = i % size.width, y = i / size.width;
+      const bool in =
+          x >= box.low.x - 2 && x < box.high.x + 2 && y >= box.low.y - 2 && y < box.high.y + 2;
+      ++(in ? inside : outside);
+    }
+    return {inside, outside};
+  }
 };
 
 TEST_F(HudPictureTest, ThePanelsOfTheBirdStayInTheirBoxesAtEverySize) {
@@ -98,15 +115,34 @@ TEST_F(HudPictureTest, ATaskIsSeenAtEverySizeAlsoByThePersonWhoSeesTheWorldAlone
       const Box middle = BoxesOf({picture, model, frame, now_ns, model, now_ns}, options, pixels,
                                  HudScale(pixels, 1))
                              .middle;
-      int inside = 0, outside = 0;
-      for (int i = 0; i < size.width * size.height; ++i) {
-        const auto first = static_cast<std::size_t>(3 * i);
-        if (std::abs(with.rgb[first] - without.rgb[first]) <= 8) continue;
-        const int x = i % size.width, y = i / size.width;
-        const bool in = x >= middle.low.x - 2 && x < middle.high.x + 2 && y >= middle.low.y - 2 &&
-                        y < middle.high.y + 2;
-        ++(in ? inside : outside);
-      }
+      const auto [inside, outside] = Changed(with, without, middle, size);
+      EXPECT_GT(inside, 1000) << name;
+      EXPECT_EQ(outside, 0) << name;
+    }
+  }
+}
+
+TEST_F(HudPictureTest, AGameIsSeenAtEverySizeAlsoWithoutThePanels) {
+  const scene::made::Wish wish;
+  const scene::Model bare = scene::made::ModelAfter(12, wish);
+  scene::Model model = bare;
+  model.game = scene::made::Game();
+  const scene::WorldFrame frame = scene::made::TickAt(12, wish).frame.value();
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  const scene::Picture picture = stage.Advance(bare, frame, now_ns, 0.01, {});
+  for (const Size& size : kPictureSizes) {
+    Resize(size.width, size.height);
+    const ImVec2 pixels(static_cast<float>(size.width), static_cast<float>(size.height));
+    for (const bool hidden : {false, true}) {
+      HudOptions options;
+      options.hidden = hidden;
+      const auto name = SizedName(hidden ? "game_alone" : "game", size);
+      const Image with = Show(picture, model, frame, now_ns, options, name);
+      const Image without = Show(picture, bare, frame, now_ns, options, name + "_bare");
+      const HudContent content{picture, model, frame, now_ns, model, now_ns};
+      const Box middle = BoxesOf(content, options, pixels, HudScale(pixels, 1)).middle;
+      const auto [inside, outside] = Changed(with, without, middle, size);
       EXPECT_GT(inside, 1000) << name;
       EXPECT_EQ(outside, 0) << name;
     }

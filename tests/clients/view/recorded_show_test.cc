@@ -79,7 +79,8 @@ void ExpectSameModel(const scene::Model& a, const scene::Model& b, std::int64_t 
   EXPECT_EQ(a.track.segments.size(), b.track.segments.size());
   ASSERT_EQ(a.last_note.has_value(), b.last_note.has_value());
   EXPECT_EQ(a.last_note.value_or(scene::Note{}).text, b.last_note.value_or(scene::Note{}).text);
-  EXPECT_EQ(a.last_note_ns, b.last_note_ns);
+  EXPECT_EQ(a.last_note.value_or(scene::Note{}).received_ns,
+            b.last_note.value_or(scene::Note{}).received_ns);
   ASSERT_EQ(a.last_response.has_value(), b.last_response.has_value());
   EXPECT_EQ(a.last_response.value_or(scene::Note{}).host_ns,
             b.last_response.value_or(scene::Note{}).host_ns);

@@ -65,6 +65,21 @@ TEST(Translate, ATrialComesThroughAndIsFinite) {
   EXPECT_EQ(pose.trial->progress.failures.straightness, 3u);
 }
 
+TEST(Translate, AGameComesThroughAndIsFinite) {
+  v1::Tick tick;
+  v1::GameState& game = *tick.mutable_game();
+  game.set_phase(v1::GameState::PHASE_ROUND);
+  game.add_players()->set_name("Ann");
+  game.mutable_players(0)->set_points(std::numeric_limits<double>::quiet_NaN());
+  game.mutable_ghost()->set_length_m(2.5);
+  const scene::Update update = Translate(tick, 0, 1, 0);
+  ASSERT_TRUE(update.game.has_value());
+  EXPECT_EQ(update.game->phase, stream::GamePhase::kRound);
+  EXPECT_EQ(update.game->players.at(0).points, 0);
+  EXPECT_EQ(update.game->ghost->length_m, 2.5);
+  EXPECT_FALSE(Translate({}, 0, 1, 0).game.has_value());
+}
+
 TEST(Translate, TheInterfaceInForceComesThrough) {
   v1::Tick tick;
   v1::InterfaceState& state = *tick.mutable_characters()->add_characters()->mutable_interface();

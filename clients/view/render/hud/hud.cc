@@ -4,6 +4,7 @@
 #include "clients/view/render/hud/body_panel.h"
 #include "clients/view/render/hud/character_panel.h"
 #include "clients/view/render/hud/device_panel.h"
+#include "clients/view/render/hud/game_panel.h"
 #include "clients/view/render/hud/hud_layout.h"
 #include "clients/view/render/hud/interface_panel.h"
 #include "clients/view/render/hud/labels.h"
@@ -12,6 +13,7 @@
 #include "clients/view/render/hud/strip_panel.h"
 #include "clients/view/render/hud/t_pose_panel.h"
 #include "clients/view/render/hud/trial_panel.h"
+#include "clients/view/scene/game_text.h"
 
 namespace footing::render {
 namespace {
@@ -75,7 +77,12 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   if (!options.title.empty()) DrawTitle(p, options.title, options.over, notes);
   DrawReplay(p, model, content.now_ns, notes);
   const scene::CharacterPose* pose = FirstCharacter(content);
-  if (pose != nullptr) DrawTrialPanel(p, model, *pose, options.hidden, notes);
+  // A round is a trial: its panel would say the same again.
+  if (scene::ShowsGame(model.game, pose != nullptr && pose->trial ? &*pose->trial : nullptr)) {
+    DrawGamePanel(p, model.game, notes);
+  } else if (pose != nullptr) {
+    DrawTrialPanel(p, model, *pose, options.hidden, notes);
+  }
   if (options.hidden) return;
   if (scene::IsWaiting(model)) {
     DrawWaiting(p, model, boxes.middle);

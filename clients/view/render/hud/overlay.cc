@@ -152,7 +152,7 @@ void DrawReplay(const Paint& p, const scene::Model& model, std::int64_t now_ns, 
 
 void DrawNote(const Paint& p, const scene::Model& model, std::int64_t now_ns, Box& space) {
   if (!model.last_note) return;
-  const double age_s = NanosecondsToSeconds(now_ns - model.last_note_ns);
+  const double age_s = NanosecondsToSeconds(now_ns - model.last_note->received_ns);
   if (age_s > kNoteS) return;
   const auto opacity = static_cast<float>(std::clamp((kNoteS - age_s) / kNoteFadeS, 0.0, 1.0));
   const bool fall = model.last_note->kind == scene::NoteKind::kFall;
