@@ -2,8 +2,11 @@
 #include <boost/asio/signal_set.hpp>
 
 #include "clients/stream/boards_command.h"
+#include "clients/stream/builder.h"
 #include "clients/stream/dialer.h"
+#include "clients/stream/live_runner.h"
 #include "clients/stream/plan.h"
+#include "clients/stream/players_command.h"
 #include "clients/stream/replay.h"
 #include "clients/stream/samples.h"
 #include "common/cli/cli.h"
@@ -13,7 +16,11 @@ namespace {
 
 using namespace footing;  // NOLINT: main is wiring
 
-int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
+/// What the io_context is for beside the devices.
+using Beside = std::function<std::unique_ptr<transport::Client>(boost::asio::io_context&)>;
+
+int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
+        const Beside& beside = nullptr) {
   if (!plan) return cli::Report(plan.error());
   if (plan->devices.empty() && plan->feeds.empty())
     return cli::Report(UsageError("name --left FILE, --right FILE or both"));
@@ -23,9 +30,11 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
   boost::asio::io_context io(1);
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   std::unique_ptr<stream_client::Dialer> dialer;
+  const auto eyes = beside ? beside(io) : nullptr;
   const auto end = [&](const std::string& why) {
     log::Info(why);
     dialer->Stop(why);
+    if (eyes) eyes->Stop();
     signals.cancel();
   };
   dialer = std::make_unique<stream_client::Dialer>(
@@ -39,6 +48,29 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common) {
   return 0;
 }
 
+int RunPlayer(const std::string& simulation, const stream_client::Common& common) {
+  const auto at = simulation.empty()
+                      ? Result<transport::Address>(transport::DefaultAddress("simulation"))
+                      : transport::ParseAddress(simulation);
+  if (!at) return cli::Report(at.error());
+  auto planned = stream_client::PlanRunner(common);
+  if (!planned) return cli::Report(planned.error());
+  return Run(std::move(planned->plan), common, [&](boost::asio::io_context& io) {
+    return stream_client::WatchSimulation(io, *at, planned->runner);
+  });
+}
+
+void AddCommon(CLI::App& app, stream_client::Common& common) {
+  app.add_option("--to", common.to,
+                 "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
+  app.add_option("--seed", common.seed, "Seed of calibrations, noise and link");
+  app.add_option("--link", common.link, "Link model: ideal, good or poor");
+  app.add_option("--rate-scale", common.rate_scale, "Ratio of the devices' clock rates to nominal")
+      ->check(CLI::Range(0.1, 10.0));
+  app.add_option("--seconds", common.seconds, "Duration, s (default: until SIGINT)")
+      ->check(CLI::Range(0.0, 1e6));
+}
+
 constexpr char kExamples[] =
     "  footing-stream user --script demo --interface wrist\n"
     "  footing-stream sample .     # writes the files that the examples below read\n"
@@ -49,6 +81,8 @@ constexpr char kExamples[] =
     "--lose-from-s 12 --lose-for-s 2\n"
     "  footing-stream boards --motion clip.bvh --place-boards\n"
     "  footing-stream insoles --motion clip.bvh --hands move\n"
+    "  footing-stream runner &     # the terrain game's two players, see footing-game\n"
+    "  footing-stream builder\n"
     "  footing-stream replay walk.mcap\n";
 
 }  // namespace
@@ -59,14 +93,7 @@ int main(int argc, char** argv) {
                   "Simulates devices at the level of raw HID reports, over a socket.", kExamples);
   stream_client::Common common;
   bool quiet = false;
-  app->add_option("--to", common.to,
-                  "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
-  app->add_option("--seed", common.seed, "Seed of calibrations, noise and link");
-  app->add_option("--link", common.link, "Link model: ideal, good or poor");
-  app->add_option("--rate-scale", common.rate_scale, "Ratio of the devices' clock rates to nominal")
-      ->check(CLI::Range(0.1, 10.0));
-  app->add_option("--seconds", common.seconds, "Duration, s (default: until SIGINT)")
-      ->check(CLI::Range(0.0, 1e6));
+  AddCommon(*app, common);
   app->add_flag("-q,--quiet", quiet, "Log only warnings and errors");
   app->require_subcommand(1);
   app->fallthrough();
@@ -96,6 +123,9 @@ int main(int argc, char** argv) {
   auto* sample = app->add_subcommand(
       "sample", "Write small sample files for the examples of every program, and end");
   sample->add_option("FOLDER", sample_folder, "Folder to write into (default: this one)");
+  stream_client::PlayersOptions players;
+  auto* runner = stream_client::AddRunnerCommand(*app, players);
+  auto* builder = stream_client::AddBuilderCommand(*app, players);
   std::string recording;
   auto* replay = app->add_subcommand("replay", "The devices of a recording, with its raw reports");
   replay->add_option("FILE", recording, "Recording, MCAP file")->required();
@@ -107,6 +137,8 @@ int main(int argc, char** argv) {
     return written ? 0 : cli::Report(written.error());
   }
   if (*replay) return Run(stream_client::PlanReplay(recording, common), common);
+  if (*runner) return RunPlayer(players.simulation, common);
+  if (*builder) return Run(stream_client::PlanBuilder(players.pits, common), common);
   if (*user) return Run(stream_client::PlanUser(script, interface, common, ports), common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
   if (*insoles) return Run(stream_client::PlanInsoles(insoles_options, common), common);
