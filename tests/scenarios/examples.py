@@ -25,7 +25,7 @@ from harness import Stage
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ["README.md", "systemd/README.md", *sorted(str(page.relative_to(ROOT)) for page in ROOT.glob("docs/*.md"))]
 PROGRAMS = ["footingd", "footing-sim", "footing-stream", "footing-view", "footing-log", "footing-ctl", "footing-eval",
-            "footing-train", "footing-tune", "footing-bench", "footing-study"]
+            "footing-train", "footing-tune", "footing-bench", "footing-study", "footing-game"]
 SECONDS_TO_WATCH = 3
 SECONDS_TO_STOP = 20
 # A pattern of commands, and why they cannot run here.
@@ -43,7 +43,7 @@ NOT_HERE = {
     r"/run/footing": "needs the system service",
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
     r"^footing-study (run|analyze|report|export)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",
-    r"first\.mcap|body\.mcap": "reads what a command above would have recorded",
+    r"first\.mcap|body\.mcap|game\.mcap": "reads what a command above would have recorded",
 }
 # Those that connect to a pose engine, or read what was recorded of one.
 POSE_ENGINE = re.compile(r"^footing-ctl (t-pose|subject)|--next-subject|session\.mcap")
