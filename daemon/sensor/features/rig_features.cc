@@ -63,9 +63,10 @@ double RigFeatureExtractor::CommonPeriod(const stream::DeviceFeatures& left,
   const bool agree =
       std::abs(left_s - right_s) <= config_.phase.agree_share * std::max(left_s, right_s);
   pair.disagree_s = agree ? 0 : pair.disagree_s + elapsed_s;
-  if (!agree && pair.disagree_s > config_.phase.disagree_cycles * known_s) return 0;
+  const bool known = known_s > 0;
+  if (!agree && (!known || pair.disagree_s > config_.phase.disagree_cycles * known_s)) return 0;
   // A hand whose phase jumps shows a wrong period for a moment; the other one keeps the known one.
-  if (known_s > 0 && std::abs(left_s - right_s) > 0.1 * known_s) {
+  if (known && std::abs(left_s - right_s) > 0.1 * known_s) {
     return std::abs(left_s - known_s) <= std::abs(right_s - known_s) ? left_s : right_s;
   }
   return 0.5 * (left_s + right_s);

@@ -17,7 +17,7 @@ namespace footing::gait_service {
 Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common,
                                                    const Config& config, int wake_descriptor) {
   const mapping::InterfaceOptions interface = OptionsOf(config);
-  if (interface.interface == stream::UserInterface::kBoards && interface.boards_may_be_left) {
+  if (interface.boards_may_be_left) {  // SetInterface may choose the boards later.
     log::Warning(
         "boards_may_be_left: whoever jumps off a board can fall beside it; keep the floor around "
         "it free, and somebody near");

@@ -95,6 +95,11 @@ biped::GaitCommand AnyInterface::Advance(double time_s, const Inputs& inputs) {
   return std::visit([&](auto& interface) { return interface.Advance(time_s, inputs); }, interface_);
 }
 
+void AnyInterface::DropJump() {
+  if (auto* joystick = std::get_if<JoystickInterface>(&interface_)) joystick->DropJump();
+  if (auto* boards = std::get_if<BoardsInterface>(&interface_)) boards->DropJump();
+}
+
 const stream::InterfaceState& AnyInterface::state() const {
   return std::visit(
       [](const auto& interface) -> const stream::InterfaceState& { return interface.state(); },

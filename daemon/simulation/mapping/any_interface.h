@@ -38,6 +38,9 @@ class AnyInterface {
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
   /// Without inputs: as if every device were missing.
   biped::GaitCommand Rest(double time_s) { return Advance(time_s, {}); }
+  /// For a character that is put somewhere else: a single jump that was commanded before, and that
+  /// it has not made, is not made any more.
+  void DropJump();
   /// What it believes that the person does, as of the last Advance.
   const stream::InterfaceState& state() const;
 

@@ -177,6 +177,7 @@ biped::GaitCommand BoardsInterface::Advance(double time_s, const Inputs& inputs)
     jump_.height_m =
         std::max(jump_.height_m, mapping_.jump_m_from_overshoot(heel_rise_.overshoot()));
   }
+  if (leaves) DropJump();  // The push of a leap looks like a heel rise.
   if (leaves && may_be_left_) StartJump(time_s, command_.speed_mps, push);
   if (held_jump_.Advance(time_s, inputs.running, false)) command = jump_;
   command.turn_per_step_rad = TurnOf(time_s);

@@ -50,6 +50,8 @@ class BoardsInterface {
 
   /// The command for new inputs at `time_s`; times must not decrease.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
+  /// A jump that was commanded is not made any more.
+  void DropJump() { held_jump_.Drop(); }
   const stream::InterfaceState& state() const { return state_; }
 
  private:

@@ -16,6 +16,8 @@ class HeldJump {
   explicit HeldJump(double after_s) : after_s_(after_s) {}
 
   void Start(double time_s);
+  /// Takes the event back.
+  void Drop() { active_ = false; }
   /// Whether to command the jump; `running` is the character's gait, `held` the event goes on.
   bool Advance(double time_s, stream::Gait running, bool held);
   bool active() const { return active_; }

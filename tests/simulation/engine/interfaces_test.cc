@@ -103,6 +103,41 @@ TEST(Interfaces, AnotherOneTakesOverWhenItsNumberIsNewAndBeginsAtRest) {
   EXPECT_EQ(engine.Output().gait.falls, 0u);
 }
 
+TEST(Interfaces, APressBeforeATrialDoesNotJumpAtItsStart) {
+  GaitEngine engine = NewEngineOf(UserInterface::kJoystick);
+  EngineInputs inputs;
+  inputs.features.stick = {.present = true};
+  Feed(engine, inputs, 2);
+  ++inputs.features.stick.presses;
+  Feed(engine, inputs, 0.01);
+  ASSERT_EQ(engine.Output().gait.commanded_gait, Gait::kJump);
+  ++inputs.trial.number;
+  for (int i = 0; i < 300; ++i) {
+    Feed(engine, inputs, 0.01);
+    ASSERT_NE(engine.Output().gait.commanded_gait, Gait::kJump) << i;
+  }
+}
+
+/// Saved while the press waits for the character: what is left of the wait is part of the state.
+TEST(Interfaces, SavingAndRestoringRepeatsAWaitingJump) {
+  GaitEngine engine = NewEngineOf(UserInterface::kJoystick);
+  EngineInputs inputs;
+  inputs.features.stick = {.present = true, .y = 0.9};
+  Feed(engine, inputs, 4);
+  ++inputs.features.stick.presses;
+  Feed(engine, inputs, 0.05);
+  ASSERT_EQ(engine.Output().gait.commanded_gait, Gait::kJump);
+  const EngineState saved = engine.Save();
+  const std::uint64_t number = inputs.features_number;
+  Feed(engine, inputs, 4);
+  ASSERT_NE(engine.Output().gait.commanded_gait, Gait::kJump);
+  const std::uint64_t hash = engine.Output().state_hash;
+  engine.Restore(saved);
+  inputs.features_number = number;
+  Feed(engine, inputs, 4);
+  EXPECT_EQ(engine.Output().state_hash, hash);
+}
+
 TEST(Interfaces, SavingAndRestoringRepeatsBitForBit) {
   for (const UserInterface interface : {UserInterface::kLeg, UserInterface::kBoards}) {
     GaitEngine engine = NewEngineOf(interface);

@@ -199,6 +199,24 @@ TEST(Boards, BothFeetOffStopTheCharacterUnlessTheStudyAllowsIt) {
   }
 }
 
+TEST(Boards, ALeapOffTheBoardsThatIsNotAllowedDoesNotJumpOnceTheFeetAreOff) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  For(3, person, boards);
+  person.push = 0.36;
+  for (int i = 1; i <= 8; ++i) {
+    person.rise_m = 0.01 * i;
+    For(1.0 / 60, person, boards);
+  }
+  ASSERT_EQ(boards.state().activity, Activity::kHeelRise);
+  person.on_boards = false;
+  For(0.15, person, boards);
+  bool jumped = false;
+  For(1, person, boards, [&](const auto& command) { jumped |= command.gait == Gait::kJump; });
+  EXPECT_FALSE(jumped);
+  EXPECT_EQ(boards.state().activity, Activity::kOffBoards);
+}
+
 TEST(Boards, SteppingOnWalksNowhereAndDoesNotJump) {
   BoardPerson person(70);
   BoardsInterface boards = NewBoards();

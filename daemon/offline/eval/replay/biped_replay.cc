@@ -41,9 +41,12 @@ BipedRecording GatherBiped(const std::vector<v1::Tick>& ticks) {
 /// The gait engine, driven step by step by recorded inputs.
 class BipedRerun {
  public:
-  BipedRerun(const BipedRecording& recording, biped::BipedParameters biped,
-             engine::GaitEngine engine)
-      : recording_(recording), biped_(biped), engine_(std::move(engine)) {}
+  BipedRerun(const BipedRecording& recording, const biped::BipedParameters& biped,
+             std::string data_folder, engine::GaitEngine engine)
+      : recording_(recording),
+        biped_(biped),
+        data_folder_(std::move(data_folder)),
+        engine_(std::move(engine)) {}
 
   Result<void> Step(std::uint64_t step) {
     const auto found = recording_.inputs.find(step);
@@ -74,7 +77,7 @@ class BipedRerun {
   Result<void> UseInterface(engine::InterfaceInputs& wanted) {
     if (wanted.number == interface_number_) return {};
     interface_number_ = wanted.number;
-    const auto made = engine_files::ReadInterface(wanted.options);
+    const auto made = engine_files::ReadInterface(wanted.options, data_folder_);
     if (!made) return made.error();
     wanted.made = *made;
     return {};
@@ -82,29 +85,28 @@ class BipedRerun {
 
   const BipedRecording& recording_;
   const biped::BipedParameters biped_;
+  const std::string data_folder_;
   engine::GaitEngine engine_;
   engine::EngineInputs current_;
   std::uint64_t interface_number_ = 0;
 };
 
 Result<engine::GaitEngine> FirstEngine(const BipedRecording& recording,
-                                       const engine::EngineTexts& texts,
-                                       const engine::EngineConfig& config, bool named_track) {
-  if (named_track) return engine::GaitEngine::Create(texts, config);
+                                       const BipedReplayOptions& options) {
+  if (options.named_track) return engine::GaitEngine::Create(options.texts, options.config);
   const auto first = recording.tracks.find(1);
   if (first == recording.tracks.end()) {
     return InvalidData(
         "the recording does not hold its whole track (an older footing-sim made it); name the "
         "track with --track");
   }
-  return engine::GaitEngine::CreateOn(first->second, texts, config);
+  return engine::GaitEngine::CreateOn(first->second, options.texts, options.config);
 }
 
 }  // namespace
 
 Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks,
-                                 const engine::EngineTexts& texts,
-                                 const engine::EngineConfig& config, bool named_track) {
+                                 const BipedReplayOptions& options) {
   const BipedRecording recording = GatherBiped(ticks);
   if (recording.inputs.size() > kMaxInputs) {
     return InvalidData("the recording holds too many inputs");
@@ -114,11 +116,11 @@ Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks,
   if (const auto whole = CheckFirstStep(recording.hashes.begin()->first); !whole) {
     return whole.error();
   }
-  const auto biped = biped::ParseBiped(texts.biped, engine::kBipedFile);
+  const auto biped = biped::ParseBiped(options.texts.biped, engine::kBipedFile);
   if (!biped) return biped.error();
-  auto engine = FirstEngine(recording, texts, config, named_track);
+  auto engine = FirstEngine(recording, options);
   if (!engine) return engine.error();
-  BipedRerun rerun(recording, *biped, std::move(engine).value());
+  BipedRerun rerun(recording, *biped, options.data_folder, std::move(engine).value());
   for (const auto& [frame_step, hash] : recording.hashes) {
     while (result.last_step < frame_step) {
       if (const auto done = rerun.Step(++result.last_step); !done) return done.error();

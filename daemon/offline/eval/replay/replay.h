@@ -33,12 +33,17 @@ Result<void> CheckFirstStep(std::uint64_t first_step);
 /// Feeds the raw reports of footingd's ticks to the same code that published them.
 FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks);
 
+struct BipedReplayOptions {
+  engine::EngineTexts texts;    ///< The data files.
+  engine::EngineConfig config;  ///< With the first interface.
+  bool named_track = false;     ///< The texts' track takes the place of the recorded first one.
+  std::string data_folder;  ///< Where the tables of later interfaces are; empty: the built-in ones.
+};
+
 /// Feeds the applied inputs of footing-sim's ticks to a new engine, on the recorded tracks.
-/// InvalidData when the recording does not begin with the simulation's first step. `texts` has the
-/// data files, `config` the interface. Their track is used in place of the recorded first one where
-/// `named_track` is true; a recording without a whole track needs that.
+/// InvalidData when the recording does not begin with the simulation's first step, or lacks a whole
+/// track and none is named.
 Result<EngineReplay> ReplayBiped(const std::vector<v1::Tick>& ticks,
-                                 const engine::EngineTexts& texts,
-                                 const engine::EngineConfig& config, bool named_track);
+                                 const BipedReplayOptions& options);
 
 }  // namespace footing::eval

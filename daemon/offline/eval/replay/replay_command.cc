@@ -32,12 +32,15 @@ mapping::InterfaceOptions InterfaceOf(const std::vector<v1::Tick>& ticks) {
 Result<EngineReplay> ReplayEngine(const std::vector<v1::Tick>& ticks, const Options& options) {
   if (IsPoseRecording(ticks)) return ReplayPose(ticks, options.data_folder);
   const mapping::InterfaceOptions interface = InterfaceOf(ticks);
-  engine_files::Wish wish{.interface = interface.interface};
+  engine_files::Wish wish{.interface = interface.interface, .data_folder = options.data_folder};
   const bool named_track = !options.track.empty();
   if (named_track) wish.track = options.track;
   const auto texts = engine_files::ReadTexts(wish);
   if (!texts) return texts.error();
-  return ReplayBiped(ticks, *texts, {.interface = interface}, named_track);
+  return ReplayBiped(ticks, {.texts = *texts,
+                             .config = {.interface = interface},
+                             .named_track = named_track,
+                             .data_folder = options.data_folder});
 }
 
 int Run(const Options& options) {
