@@ -4,6 +4,7 @@
 
 #include "common/result/result.h"
 #include "common/stream/character.h"
+#include "common/track/centre_line.h"
 
 /// Tracks as data: a ribbon of segments, 4 m wide in the paper (section 8.2).
 namespace footing::terrain {
@@ -38,39 +39,15 @@ bool IsFlat(const stream::Track& track);
 /// The track as it looks to whoever does not see its pits.
 stream::Track WithPitsFilled(stream::Track track);
 
-/// Where a point is relative to the track's centre line.
-struct TrackPlace {
-  int segment = 0;
-  double along_m = 0;     ///< From the segment's start, clamped to its length.
-  double sideways_m = 0;  ///< From the centre line, left positive.
-  double distance_m = 0;  ///< From the nearest point of the centre line.
-};
-
-/// The nearest segment's place; of two equally near the earlier one.
-TrackPlace Locate(const stream::Track& track, const Eigen::Vector2d& p_W_m);
-
-/// True beside the ribbon, or beyond its ends.
-bool IsOffRibbon(const stream::Track& track, const TrackPlace& place);
-
-/// Length of the centre line from the track's start to a place, and to its end, m. Segments that
-/// were dropped count (Track::first_m).
-double LengthTo(const stream::Track& track, const TrackPlace& place);
-double LengthOf(const stream::Track& track);
-
-/// The place on the centre line at that length, at most at its ends.
-TrackPlace PlaceAt(const stream::Track& track, double length_m);
-
-/// A point of the centre line with its heading.
-struct CentrePoint {
-  Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
-  double heading_rad = 0;
-};
-
-/// The centre line `back_m` before a place: never in a pit nor within 0.5 m of its edge (then
-/// before it), never before the start.
-CentrePoint CentreBehind(const stream::Track& track, const TrackPlace& place, double back_m);
-
-/// The centre line `ahead_m` after a place, pits included, at most its end.
-CentrePoint CentreAhead(const stream::Track& track, const TrackPlace& place, double ahead_m);
+/// The centre line's geometry.
+using track::CentreAhead;
+using track::CentreBehind;
+using track::CentrePoint;
+using track::IsOffRibbon;
+using track::LengthOf;
+using track::LengthTo;
+using track::Locate;
+using track::PlaceAt;
+using track::TrackPlace;
 
 }  // namespace footing::terrain
