@@ -21,8 +21,10 @@ constexpr double kBackS = 0.5;
 constexpr double kGoneS = 1;
 /// A rise's push is over this time after it was recognised.
 constexpr double kPushS = 0.15;
-/// A change between walking and running must last one step.
-constexpr double kChangeCycles = 0.5;
+/// A change from walking to running must last two steps, since who leans over to the other side
+/// takes two short ones; a change back one step.
+constexpr double kRunCycles = 1;
+constexpr double kWalkCycles = 0.5;
 
 /// Load and COP of both boards together.
 struct Stance {
@@ -122,8 +124,11 @@ biped::GaitCommand BoardsInterface::StepCommand(double time_s) {
   }
   const double frequency_hz = steps_.frequency_hz();
   const Gait now = settled_.gait();
-  const Gait seen = mapping_.border.IsRun(frequency_hz, now) ? Gait::kRun : Gait::kWalk;
-  const double lasting_s = now == Gait::kStep ? 0 : kChangeCycles / frequency_hz;
+  // The first step of a person who leans is short: standing people begin with a walk.
+  const bool run_seen = now != Gait::kStep && mapping_.border.IsRun(frequency_hz, now);
+  const Gait seen = run_seen ? Gait::kRun : Gait::kWalk;
+  const double cycles = now == Gait::kStep ? 0 : run_seen ? kRunCycles : kWalkCycles;
+  const double lasting_s = cycles / frequency_hz;
   command.gait = settled_.Advance(time_s, seen, lasting_s);
   const bool run = command.gait == Gait::kRun;
   command.speed_mps =

@@ -61,6 +61,11 @@ void StepCadence::Advance(double time_s, double left_share) {
   standing_lean_ += (lean - standing_lean_) * (1 - std::exp(-elapsed_s / kStandingLeanS));
 }
 
+double StepCadence::frequency_hz() const {
+  const double with_this_s = (time_s_ - changed_s_ + last_step_s_) / 2;
+  return 1 / (2 * std::max(step_s_, with_this_s));
+}
+
 std::optional<double> StepCadence::lean_right() const {
   if (stepping()) return steps_ >= 3 ? std::optional(stepping_lean_) : std::nullopt;
   const bool stands = steps_ == 0 || time_s_ - changed_s_ > kLeansS;

@@ -21,8 +21,9 @@ class StepCadence {
 
   /// Whether the person steps: the feet have taken turns, and the next change is not overdue.
   bool stepping() const { return steps_ >= 2; }
-  /// Of one foot, half the steps a second; meaningful while stepping.
-  double frequency_hz() const { return 1 / (2 * step_s_); }
+  /// Of one foot, half the steps a second; meaningful while stepping. A step that takes longer than
+  /// those before shows it before its end.
+  double frequency_hz() const;
   /// How the load leans to the right, -1 to 1: stepping, its mean over the last two steps;
   /// standing, over 0.4 s. None while a step says nothing yet.
   std::optional<double> lean_right() const;

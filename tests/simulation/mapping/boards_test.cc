@@ -247,5 +247,22 @@ TEST(Boards, WithoutABoardTheCharacterStopsAndTurnsNoMore) {
   EXPECT_EQ(boards.state().missing_roles, stream::RoleBit(stream::DeviceRole::kRightBoard));
 }
 
+/// One who leans over takes two short steps in a row, and the first one from standing may be short.
+TEST(Boards, WhoWalksAndLeansToOneSideAndTheOtherIsNeverTakenToRun) {
+  for (int moment = 0; moment < 12; ++moment) {
+    BoardsInterface boards = NewBoards();
+    BoardPerson person(70);
+    for (int i = 0; i < 120; ++i) boards.Advance(person.time_s(), person.Advance());
+    person.step_hz = 1.9;
+    double side = 0.35;
+    for (int i = 0; i < 900; ++i) {
+      if (i % 97 == 8 * moment) side = -side;
+      person.step_lean += std::clamp(side - person.step_lean, -0.03, 0.03);  // In 0.4 s.
+      const auto command = boards.Advance(person.time_s(), person.Advance());
+      ASSERT_NE(command.gait, Gait::kRun) << moment << " at " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace footing::mapping
