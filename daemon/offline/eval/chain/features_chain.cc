@@ -1,5 +1,7 @@
 #include "daemon/offline/eval/chain/features_chain.h"
 
+#include <algorithm>
+
 #include "common/units/units.h"
 
 namespace footing::eval {
@@ -13,11 +15,16 @@ std::vector<features::Member> Members(bool with_right) {
 
 }  // namespace
 
-Chain::Chain(bool with_right) : rig_("eval", Members(with_right)) {}
+Chain::Chain(const std::vector<features::Member>& members) : rig_("eval", members) {
+  for (const features::Member& member : members) last_.emplace_back().device = member.device;
+}
+
+Chain::Chain(bool with_right) : Chain(Members(with_right)) {}
 
 void Chain::Add(std::uint32_t device, std::int64_t sampled_ns,
                 const Eigen::Vector3d& specific_force_mps2, std::uint32_t clipped_axes) {
-  Last& last = last_[device == kRightDevice ? 1 : 0];
+  Last& last = *std::find_if(last_.begin(), last_.end(),
+                             [=](const Last& known) { return known.device == device; });
   stream::MotionSample sample;
   sample.device = device;
   sample.sampled_ns = sample.received_ns = sampled_ns;

@@ -17,8 +17,9 @@ std::vector<std::string>& MoreGains() {
   return paths;
 }
 
-Result<engine::EngineTexts> ReadTexts() {
-  return engine_files::ReadTexts({.more_gains = MoreGains()});
+Result<engine::EngineTexts> ReadTexts(
+    stream::UserInterface interface = stream::UserInterface::kWrist) {
+  return engine_files::ReadTexts({.interface = interface, .more_gains = MoreGains()});
 }
 
 }  // namespace
@@ -50,11 +51,11 @@ Result<engine::GaitEngine> NewEngine() {
   return engine::GaitEngine::Create(*texts);
 }
 
-Result<engine::GaitEngine> NewEngineOn(const std::string& track) {
-  Result<engine::EngineTexts> texts = ReadTexts();
+Result<engine::GaitEngine> NewEngineOn(const std::string& track, stream::UserInterface interface) {
+  Result<engine::EngineTexts> texts = ReadTexts(interface);
   if (!texts) return texts.error();
   texts->track = track;
-  return engine::GaitEngine::Create(*texts);
+  return engine::GaitEngine::Create(*texts, {.interface = {.interface = interface}});
 }
 
 Result<physics::World> NewWorld() {

@@ -36,8 +36,9 @@ void ReadGainsToo(std::vector<std::string> paths);
 
 /// An engine on the straight track, from the product's data files.
 Result<engine::GaitEngine> NewEngine();
-/// An engine on a track given as text.
-Result<engine::GaitEngine> NewEngineOn(const std::string& track);
+/// An engine on a track given as text, for a user interface.
+Result<engine::GaitEngine> NewEngineOn(
+    const std::string& track, stream::UserInterface interface = stream::UserInterface::kWrist);
 /// The world of NewEngine's engine alone.
 Result<physics::World> NewWorld();
 

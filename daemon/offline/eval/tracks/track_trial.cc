@@ -2,109 +2,96 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "common/config/data_file.h"
 #include "common/units/units.h"
-#include "daemon/offline/eval/tracks/synthetic_user.h"
-#include "daemon/offline/eval/tracks/synthetic_wrists.h"
+#include "common/virtual/users/driver.h"
+#include "common/virtual/users/person.h"
+#include "daemon/offline/eval/tracks/user_devices.h"
+#include "daemon/simulation/mapping/held_jump.h"
 #include "daemon/simulation/trial/trial.h"
 
 namespace footing::eval {
 namespace {
 
-constexpr double kLongestS = 300;
+using stream::Gait;
+using stream::UserInterface;
+
+/// Nobody is given up before: the paper's subjects all finished.
+constexpr double kLongestS = 600;
 constexpr double kKickNs = 2;
 constexpr int kStepsPerSight = 10;
+/// Time in which people change over from one motion to another (common/virtual/users/rhythm.cc).
+constexpr double kChangeOverS = 0.4;
+/// A change of the motion is followed at the pace of the slower one.
+constexpr double kPaceS = 2;
 
-/// Between a user and an engine.
-class Channel {
- public:
-  explicit Channel(engine::EngineInputs& inputs) : inputs_(inputs) {}
-  virtual ~Channel() = default;
-  virtual void Send(const biped::GaitCommand& wanted) = 0;
-
- protected:
-  engine::EngineInputs& inputs_;
-};
-
-class DirectChannel : public Channel {
- public:
-  using Channel::Channel;
-  void Send(const biped::GaitCommand& wanted) override {
-    inputs_.direct = true;
-    inputs_.direct_command = wanted;
+/// How long an interface may take to follow a change of the motion (docs/interfaces.md): limbs of
+/// the wrist, the arm and the leg interface 1.9 cycles; feet on boards two whole steps after the
+/// one in which the motion changes or, to notice a stop, 1.3 s.
+double FollowsWithin(UserInterface interface, double limb_hz) {
+  switch (interface) {
+    case UserInterface::kUnspecified:
+    case UserInterface::kWrist:
+    case UserInterface::kArm:
+    case UserInterface::kLeg:
+      return kChangeOverS + 1.9 / limb_hz;
+    case UserInterface::kJoystick:
+      return kChangeOverS;
+    case UserInterface::kBoards:
+      return kChangeOverS + std::max(1.3, 1.5 / limb_hz);
   }
-};
-
-class WristChannel : public Channel {
- public:
-  WristChannel(engine::EngineInputs& inputs, const mapping::WristMapping& mapping,
-               std::uint64_t seed)
-      : Channel(inputs), wrists_(mapping, seed) {}
-  void Send(const biped::GaitCommand& wanted) override {
-    inputs_.features = wrists_.Advance(wanted);
-    ++inputs_.features_number;
-  }
-
- private:
-  SyntheticWrists wrists_;
-};
-
-Result<mapping::WristMapping> ReadMapping() {
-  const Result<std::string> text = config::ReadDataFile(mapping::kWristMappingFile);
-  if (!text) return text.error();
-  return mapping::ParseWristMapping(*text, mapping::kWristMappingFile);
+  return kChangeOverS;
 }
 
-/// The wrists' range is the mapping's; a change of the swing is felt after about one cycle.
-Skill WristSkill(const mapping::WristMapping& mapping) {
-  return {.walk_min_mps = mapping.swing.walk_mps_from_hz.to_min,
-          .walk_max_mps = mapping.swing.walk_mps_from_hz.to_max - 0.1,
-          .run_min_mps = mapping.swing.run_mps_from_hz.to_min + 0.15,
-          .run_max_mps = mapping.swing.run_mps_from_hz.to_max,
-          .jump_mps = mapping.swing.jump_mps_from_hz.to_max,
-          .jump_height_m = mapping.swing.jump_m_from_mps2.to_max,
-          .turn_per_step_rad = mapping.turn.turn_per_step_rad,
-          .turns_by_degrees = false,
-          .delay_s = 0.25};
+users::Style StyleOf(const TrackUser& user) {
+  users::Style style = users::DrawStyle(user.seed);
+  const double side = user.seed % 2 == 0 ? 1 : -1;
+  style.left_grip_rad = side * user.grip_rad;
+  style.right_grip_rad = -side * user.grip_rad;
+  return style;
 }
 
-Sight See(const engine::EngineOutput& output, std::uint64_t put_backs) {
+users::Observation See(const engine::EngineOutput& output) {
   return {.time_s = output.time_s,
           .p_W_m = output.p_WC_m.head<2>(),
           .heading_rad = output.gait.heading_rad,
           .speed_mps = output.gait.speed_mps,
           .steps = output.gait.steps,
+          .falls = output.gait.falls,
           .gait = output.gait.gait,
-          .put_backs = put_backs,
-          .task = output.trial.task,
-          .task_phase = output.trial.task_phase};
+          .trial = output.trial};
 }
 
-bool Fell(const engine::EngineOutput& output) {
+bool Has(const engine::EngineOutput& output, engine::EventKind kind) {
   return std::any_of(output.events.begin(), output.events.begin() + output.event_count,
-                     [](const auto& event) { return event.kind == engine::EventKind::kFall; });
+                     [kind](const auto& event) { return event.kind == kind; });
 }
 
-bool WasPutBack(const engine::EngineOutput& output) {
-  return std::any_of(output.events.begin(), output.events.begin() + output.event_count,
-                     [](const auto& event) { return event.kind == engine::EventKind::kPutBack; });
-}
+/// A user's body with its devices.
+struct Embodied {
+  users::Person person;
+  UserDevices devices;
+  double slowest_hz = 1;       ///< Of the last motions.
+  double jump_meant_s = -1e9;  ///< When a jump was last meant.
+};
 
 /// One engine with its user.
 class TrackTrial {
  public:
-  TrackTrial(engine::GaitEngine engine, Interface interface, const mapping::WristMapping& mapping,
-             std::uint64_t seed)
+  TrackTrial(engine::GaitEngine engine, const TrackUser& user)
       : engine_(std::move(engine)),
-        random_(seed),
-        kick_s_(random_.Uniform(3, 20)),
-        kick_rad_(random_.Uniform(-kPi, kPi)),
-        channel_(MakeChannel(interface, mapping, seed)),
-        user_(engine_.track(), interface == Interface::kWrist ? WristSkill(mapping) : Skill{},
-              random_) {
-    inputs_.trial = {.number = 1, .task = trial::DrawTask(engine_.track(), seed)};
+        user_(user),
+        driver_(user.interface ? users::AbilityWith(*user.interface) : users::DirectAbility(),
+                StyleOf(user), user.seed) {
+    Random random(user.seed);
+    kick_s_ = random.Uniform(3, 20);
+    kick_rad_ = random.Uniform(-kPi, kPi);
+    driver_.SeeTrack(engine_.track());
+    if (user.interface) {
+      embodied_.emplace(
+          Embodied{{*user.interface, StyleOf(user), user.seed}, {*user.interface, user.seed}});
+    }
+    inputs_.trial = {.number = 1, .task = trial::DrawTask(engine_.track(), user.seed)};
   }
 
   TrackResult Run() {
@@ -118,16 +105,43 @@ class TrackTrial {
   }
 
  private:
-  std::unique_ptr<Channel> MakeChannel(Interface interface, const mapping::WristMapping& mapping,
-                                       std::uint64_t seed) {
-    if (interface == Interface::kDirect) return std::make_unique<DirectChannel>(inputs_);
-    return std::make_unique<WristChannel>(inputs_, mapping, seed);
+  void Move(double time_s, const users::Intention& wanted) {
+    if (!embodied_) {
+      inputs_.direct = true;
+      inputs_.direct_command = {.gait = wanted.gait,
+                                .speed_mps = wanted.speed_mps,
+                                .height_m = wanted.height_m,
+                                .turn_per_step_rad = wanted.turn_rad};
+      return;
+    }
+    embodied_->person.Advance(time_s, wanted);
+    inputs_.features = embodied_->devices.Take(embodied_->person.felt());
+    ++inputs_.features_number;
+    const double limb_hz = embodied_->person.limb_hz();
+    if (limb_hz <= 0) return;
+    double& slowest_hz = embodied_->slowest_hz;
+    slowest_hz = std::min(limb_hz, slowest_hz + UserDevices::kTickS / kPaceS * limb_hz);
+  }
+
+  void Compare() {
+    if (!embodied_) return;
+    const engine::EngineOutput& output = engine_.Output();
+    const Gait meant = embodied_->person.gesture(), commanded = output.gait.commanded_gait;
+    if (meant == Gait::kJump) embodied_->jump_meant_s = output.time_s;
+    const double delay_s = FollowsWithin(*user_.interface, embodied_->slowest_hz);
+    // A press or a heel rise commands a jump until the character has taken it over.
+    const bool one_jump =
+        *user_.interface == UserInterface::kJoystick || *user_.interface == UserInterface::kBoards;
+    const bool waits =
+        one_jump && commanded == Gait::kJump &&
+        output.time_s - embodied_->jump_meant_s < delay_s + mapping::HeldJump::kMostWaitS;
+    result_.agreement.Add(output.time_s, meant, commanded, delay_s, waits);
   }
 
   /// One look of the user at the picture, and what the character does until the next.
   void Look() {
     const engine::EngineOutput& seen = engine_.Output();
-    channel_->Send(user_.Want(See(seen, put_backs_)));
+    Move(seen.time_s, driver_.Want(See(seen)));
     if (inputs_.push_number == 0 && seen.time_s >= kick_s_) {
       inputs_.push_number = 1;
       inputs_.push_impulse_W_ns =
@@ -137,14 +151,19 @@ class TrackTrial {
     const engine::EngineOutput& output = engine_.Output();
     result_.time_s = output.trial.time_s;
     result_.completed = output.trial.phase == stream::TrialPhase::kFinished;
-    if (!fallen_) result_.off_centre.Add(output.trial.lateral_offset_m);
+    if (fallen_) {
+      result_.agreement.Restart();
+      return;
+    }
+    Compare();
+    result_.off_centre.Add(output.trial.lateral_offset_m);
   }
 
   void Step() {
     engine_.Advance(inputs_);
     const engine::EngineOutput& output = engine_.Output();
-    if (WasPutBack(output)) ++put_backs_;
-    fallen_ = (fallen_ || Fell(output)) && !WasPutBack(output);
+    const bool put_back = Has(output, engine::EventKind::kPutBack);
+    fallen_ = (fallen_ || Has(output, engine::EventKind::kFall)) && !put_back;
     if (fallen_) return;
     result_.heading_error.Add(
         WrapAngle(YawOf(output.links[0].orientation) - output.gait.heading_rad));
@@ -152,28 +171,25 @@ class TrackTrial {
   }
 
   engine::GaitEngine engine_;
+  TrackUser user_;
   engine::EngineInputs inputs_;
-  Random random_;
-  double kick_s_, kick_rad_;
-  std::unique_ptr<Channel> channel_;
-  SyntheticUser user_;
+  users::Driver driver_;
+  std::optional<Embodied> embodied_;
+  double kick_s_ = 0, kick_rad_ = 0;
   TrackResult result_;
-  std::uint64_t put_backs_ = 0;
   bool fallen_ = false;
 };
 
 }  // namespace
 
-Result<TrackResult> RunTrack(const std::string& track_text, Interface interface,
-                             std::uint64_t seed) {
-  Result<engine::GaitEngine> engine = NewEngineOn(track_text);
+Result<TrackResult> RunTrack(const std::string& track_text, const TrackUser& user) {
+  Result<engine::GaitEngine> engine =
+      NewEngineOn(track_text, user.interface.value_or(UserInterface::kWrist));
   if (!engine) return engine.error();
   if (engine->track().finish_m <= 0) {
     return UsageError("the track \"" + engine->track().name + "\" has no finish line");
   }
-  const Result<mapping::WristMapping> mapping = ReadMapping();
-  if (!mapping) return mapping.error();
-  return TrackTrial(std::move(engine).value(), interface, *mapping, seed).Run();
+  return TrackTrial(std::move(engine).value(), user).Run();
 }
 
 }  // namespace footing::eval

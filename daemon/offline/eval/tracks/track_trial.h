@@ -1,16 +1,23 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "common/stream/user_interface.h"
 #include "daemon/offline/eval/gait/statistics.h"
 #include "daemon/offline/eval/gait/trial.h"
+#include "daemon/offline/eval/tracks/agreement.h"
 
 namespace footing::eval {
 
-/// How the synthetic user's commands reach the engine.
-enum class Interface {
-  kDirect,  ///< As a GaitCommand, at once.
-  kWrist,   ///< By two swung controllers, footingd's features and the wrist mapping.
+/// Who runs a trial, and with what.
+struct TrackUser {
+  /// None: the user's intention reaches the engine as a command, at once. Else by body, sensors,
+  /// footingd's features and the interface.
+  std::optional<stream::UserInterface> interface = {};
+  /// The remotes are rotated in the hands by this, left and right as mirror images of each other.
+  double grip_rad = 0;
+  std::uint64_t seed = 1;  ///< Of the user's style and noise, the task and the push.
 };
 
 struct TrackResult {
@@ -18,13 +25,14 @@ struct TrackResult {
   double time_s = 0;       ///< From the start line to there.
   std::string task;        ///< The one that was drawn; empty: none.
   stream::FailureCounts failures;
+  Agreement agreement;           ///< Of motion and command, but for falls; not of a direct user.
   RootMeanSquare heading_error;  ///< Body's yaw against the heading, rad, but for falls.
   RootMeanSquare line_heading;   ///< Body's yaw against the centre line, rad, but for falls.
   RootMeanSquare off_centre;     ///< COM's distance from the centre line, m.
 };
 
-/// One trial on a track, put back after each failure, kicked once by 2 N s. The seed draws the
-/// task. UsageError when the track has no finish line.
-Result<TrackResult> RunTrack(const std::string& track, Interface interface, std::uint64_t seed);
+/// One trial on a track, put back after each failure, kicked once by 2 N s. UsageError when the
+/// track has no finish line.
+Result<TrackResult> RunTrack(const std::string& track, const TrackUser& user);
 
 }  // namespace footing::eval

@@ -5,10 +5,12 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <vector>
 
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
+#include "common/units/units.h"
 #include "daemon/offline/eval/report/print_report.h"
 #include "daemon/offline/eval/tracks/track_trial.h"
 
@@ -20,6 +22,7 @@ struct Options {
   std::string track = "straight";
   int trials = 1;
   std::string seed = "1";
+  double grip_deg = 0;
 };
 
 struct Trials {
@@ -28,13 +31,25 @@ struct Trials {
   stream::FailureCounts failures;
   std::map<std::string, int> tasks;  ///< How often each was drawn.
   std::vector<double> times_s;
+  Agreement agreement;
   RootMeanSquare heading_error, line_heading, off_centre;
 };
 
-Result<Interface> InterfaceNamed(const std::string& name) {
-  if (name == "wrist") return Interface::kWrist;
-  if (name == "direct") return Interface::kDirect;
-  return UsageError("--interface " + name + " is not built; there is: wrist, direct");
+Result<TrackUser> UserFor(const Options& options) {
+  TrackUser user{.grip_rad = DegreesToRadians(options.grip_deg)};
+  if (options.interface != "direct") {
+    user.interface = stream::UserInterfaceNamed(options.interface);
+    if (*user.interface == stream::UserInterface::kUnspecified) {
+      return UsageError("unknown --interface " + options.interface +
+                        "; there are: " + stream::UserInterfaceNames() + ", direct");
+    }
+  }
+  const bool hands = user.interface == stream::UserInterface::kWrist ||
+                     user.interface == stream::UserInterface::kArm;
+  if (options.grip_deg != 0 && !hands) {
+    return UsageError("--grip-deg: only the users of wrist and arm hold remotes that they swing");
+  }
+  return user;
 }
 
 void Pool(const RootMeanSquare& part, RootMeanSquare& all) {
@@ -42,23 +57,25 @@ void Pool(const RootMeanSquare& part, RootMeanSquare& all) {
   all.count += part.count;
 }
 
-Result<Trials> RunTrials(const Options& options, const std::string& track, Interface interface,
+Result<Trials> RunTrials(const Options& options, const std::string& track, TrackUser user,
                          std::uint64_t seed) {
   Trials trials;
   for (int i = 0; i < options.trials; ++i) {
-    const Result<TrackResult> run = RunTrack(track, interface, TrialSeed(seed, i));
+    user.seed = TrialSeed(seed, i);
+    const Result<TrackResult> run = RunTrack(track, user);
     if (!run) return run.error();
     for (const stream::FailureCause cause : stream::kFailureCauses) {
       *stream::MutableCountOf(cause, trials.failures) += stream::CountOf(cause, run->failures);
     }
     if (!run->task.empty()) ++trials.tasks[run->task];
+    trials.agreement.Pool(run->agreement);
     Pool(run->heading_error, trials.heading_error);
     Pool(run->line_heading, trials.line_heading);
     Pool(run->off_centre, trials.off_centre);
-    std::fprintf(stderr, "trial %d of %d: %s%s%s after %.1f s, failures %d\n", i + 1,
-                 options.trials, run->task.c_str(), run->task.empty() ? "" : " ",
+    std::fprintf(stderr, "trial %d of %d: %s%s%s after %.1f s, failures %d, agreement %.3f\n",
+                 i + 1, options.trials, run->task.c_str(), run->task.empty() ? "" : " ",
                  run->completed ? "finished" : "given up", run->time_s,
-                 static_cast<int>(stream::Total(run->failures)));
+                 static_cast<int>(stream::Total(run->failures)), run->agreement.share());
     if (!run->completed) continue;
     ++trials.completed;
     if (stream::Total(run->failures) == 0) ++trials.without_failure;
@@ -66,6 +83,22 @@ Result<Trials> RunTrials(const Options& options, const std::string& track, Inter
   }
   std::sort(trials.times_s.begin(), trials.times_s.end());
   return trials;
+}
+
+/// Shares of each gait meant; gaits that nobody meant are left out.
+nlohmann::ordered_json Confusion(const Agreement::Table& table) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::object();
+  for (const stream::Gait meant : stream::kGaits) {
+    const auto& row = table[stream::IndexOf(meant)];
+    const double sum =
+        static_cast<double>(std::accumulate(row.begin(), row.end(), std::uint64_t{0}));
+    if (sum == 0) continue;
+    for (const stream::Gait commanded : stream::kGaits) {
+      rows[stream::Name(meant)][stream::Name(commanded)] =
+          static_cast<double>(row[stream::IndexOf(commanded)]) / sum;
+    }
+  }
+  return rows;
 }
 
 nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const Trials& trials) {
@@ -85,17 +118,20 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
           {"median_time_s", times_s.empty() ? 0 : times_s[times_s.size() / 2]},
           {"heading_error_rms_rad", trials.heading_error.value()},
           {"line_heading_rms_rad", trials.line_heading.value()},
-          {"off_centre_rms_m", trials.off_centre.value()}};
+          {"off_centre_rms_m", trials.off_centre.value()},
+          {"grip_deg", options.grip_deg},
+          {"gait_agreement", trials.agreement.share()},
+          {"gait_confusion", Confusion(trials.agreement.table())}};
 }
 
 int Run(const Options& options, bool json) {
-  const Result<Interface> interface = InterfaceNamed(options.interface);
-  if (!interface) return cli::Report(interface.error());
+  const Result<TrackUser> user = UserFor(options);
+  if (!user) return cli::Report(user.error());
   const Result<std::uint64_t> seed = ParseSeed(options.seed);
   if (!seed) return cli::Report(seed.error());
   const Result<std::string> track = config::ReadNamedOrPath(options.track, "tracks");
   if (!track) return cli::Report(track.error());
-  const Result<Trials> trials = RunTrials(options, *track, *interface, *seed);
+  const Result<Trials> trials = RunTrials(options, *track, *user, *seed);
   if (!trials) return cli::Report(trials.error());
   const nlohmann::ordered_json report = Report(options, *seed, *trials);
   PrintReport(report, json);
@@ -108,12 +144,17 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("tracks", "Trials of a synthetic user steering along a track");
   auto options = std::make_shared<Options>();
-  command->add_option("--interface", options->interface, "Interface: wrist or direct");
+  command->add_option("--interface", options->interface,
+                      "Interface: wrist, arm, leg, joystick, boards, or direct (default wrist)");
   command->add_option("--track", options->track,
                       "Track: straight, 1 to 4 or another built-in name, or a JSON file");
   command->add_option("--trials", options->trials, "Number of trials")
       ->check(CLI::Range(1, 100000));
   command->add_option("--seed", options->seed, "Seed: a number, or random");
+  command
+      ->add_option("--grip-deg", options->grip_deg,
+                   "Rotation of the remotes in the hands, mirrored left and right, degrees")
+      ->check(CLI::Range(0.0, 90.0));
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

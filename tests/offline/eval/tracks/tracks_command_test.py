@@ -22,13 +22,15 @@ def report(*words):
     return json.loads(done.stdout)
 
 
-for interface in ("direct", "wrist"):
-    for track in ("curves", "corners"):
+for interface in ("direct", "wrist", "arm", "leg", "joystick", "boards"):
+    for track in ("curves", "corners") if interface in ("direct", "wrist") else ("curves",):
         out = report("--interface", interface, "--track", track, "--trials", 1, "--seed", 21)
         assert out["trials"] == out["completed"] == 1, out
         assert out["failures"] == dict.fromkeys(CAUSES, 0), out
         assert 25 < out["median_time_s"] < 120, out  # 94 to 97 m at 1 to 3.5 m/s.
         assert out["tasks"] == {}, out
+        assert out["gait_agreement"] > 0.9, out
+        assert all(abs(sum(row.values()) - 1) < 1e-9 for row in out["gait_confusion"].values()), out
 
 # Every task of the straight track is drawn, done and paid for with few failures.
 out = report("--interface", "wrist", "--track", "straight", "--trials", 12, "--seed", 2)
@@ -45,7 +47,11 @@ assert 1 <= out["failures"]["jump"] <= 60, out
 again = [run("--interface", "wrist", "--track", 1, "--seed", 4).stdout for _ in range(2)]
 assert again[0] == again[1], again
 
-for words, code, listed in ((("--interface", "boards"), 2, "wrist, direct"),
+grip = report("--interface", "arm", "--track", "curves", "--seed", 21, "--grip-deg", 45)
+assert grip["completed"] == 1 and grip["grip_deg"] == 45 and grip["gait_agreement"] > 0.9, grip
+
+for words, code, listed in ((("--interface", "telepathy"), 2, "wrist, arm, leg, joystick, boards"),
+                            (("--interface", "boards", "--grip-deg", "45"), 2, "remotes"),
                             (("--track", "9"), 1, "there are: 1, 2, 3, 4, build"),
                             (("--track", "endless"), 2, "no finish line"),
                             (("--trials", "0"), 2, "")):

@@ -1,0 +1,52 @@
+#include "common/virtual/users/ability.h"
+
+namespace footing::users {
+
+using stream::UserInterface;
+
+Ability DirectAbility() { return {}; }
+
+Ability AbilityWith(UserInterface interface) {
+  // A demonstrator shows 0.2 to 1.4 m/s of walking and 1.5 to 4.5 m/s of running; a user keeps off
+  // the ends.
+  Ability ability{.walk_min_mps = 0.4,
+                  .walk_max_mps = 1.2,
+                  .run_min_mps = 1.9,
+                  .run_max_mps = 3.5,
+                  .jump_mps = 1,
+                  .turns_by_degrees = false};
+  switch (interface) {
+    case UserInterface::kUnspecified:
+    case UserInterface::kWrist:  // A cycle and a half at 2.5 Hz, and the change of the hands.
+      ability.turn_delay_s = 0.35;
+      ability.run_jump_s = 1.2;
+      ability.walk_jump_s = 1.2;
+      break;
+    case UserInterface::kArm:
+      ability.turn_delay_s = 0.5;
+      ability.run_jump_s = 1.5;
+      ability.walk_jump_s = 1.6;
+      break;
+    case UserInterface::kLeg:
+      ability.turn_delay_s = 0.35;
+      ability.run_jump_s = 1.2;
+      ability.walk_jump_s = 1.4;
+      break;
+    case UserInterface::kJoystick:
+      ability.turn_delay_s = 0.1;
+      ability.jumps_at_once = true;
+      ability.run_jump_s = 0.6;
+      ability.walk_jump_s = 0.4;
+      break;
+    case UserInterface::kBoards:  // Steps end, both feet stand, then the heels rise.
+      ability.turn_delay_s = 0.6;
+      ability.jumps_from_run = false;
+      ability.jumps_at_once = true;
+      ability.run_jump_s = 1.2;
+      ability.walk_jump_s = 1.2;
+      break;
+  }
+  return ability;
+}
+
+}  // namespace footing::users

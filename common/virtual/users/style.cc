@@ -1,0 +1,23 @@
+#include "common/virtual/users/style.h"
+
+#include "common/virtual/noise/random.h"
+
+namespace footing::users {
+
+Style DrawStyle(std::uint64_t seed) {
+  noise::Random random(seed);
+  Style style;
+  style.reaction_s = random.Uniform(0.2, 0.4);
+  style.favourite_mps = random.Uniform(2.2, 3.0);
+  style.amplitude = random.Uniform(0.85, 1.2);
+  style.asymmetry = random.Uniform(-0.1, 0.1);
+  style.tempo = random.Uniform(0.94, 1.06);
+  style.tempo_drift = random.Uniform(0.01, 0.04);
+  style.phase_error_rad = random.Uniform(-0.25, 0.25);
+  style.timing_s = random.Uniform(0.05, 0.15);
+  style.mass_kg = random.Uniform(50, 95);
+  style.height_m = random.Uniform(1.55, 1.95);
+  return style;
+}
+
+}  // namespace footing::users
