@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "common/log/log.h"
 #include "common/units/units.h"
 #include "common/virtual/noise/random.h"
 #include "common/virtual/wrists/accelerometer.h"
@@ -77,23 +76,6 @@ Result<RunnerPlan> PlanRunner(const Common& common) {
   }
   planned.plan.duration_s = common.seconds;
   return planned;
-}
-
-std::unique_ptr<transport::Client> WatchSimulation(boost::asio::io_context& io,
-                                                   const transport::Address& simulation,
-                                                   std::shared_ptr<LiveRunner> runner) {
-  transport::ClientOptions options;
-  options.address = simulation;
-  options.client_name = "footing-stream";
-  options.channels = {"characters", "track"};
-  transport::ClientHandlers handlers;
-  handlers.on_tick = [runner = std::move(runner)](const v1::Tick& tick) { runner->See(tick); };
-  handlers.on_state = [](transport::LinkState, const std::string& why) {
-    log::Info("the player's eyes: " + why);
-  };
-  auto client = std::make_unique<transport::Client>(io, options, std::move(handlers));
-  client->Start();
-  return client;
 }
 
 }  // namespace footing::stream_client

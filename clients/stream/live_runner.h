@@ -1,13 +1,10 @@
 #pragma once
 
-#include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <memory>
 
 #include "clients/stream/plan.h"
 #include "clients/stream/runner.h"
-#include "common/transport/address.h"
-#include "common/transport/client.h"
 #include "common/virtual/wrists/hand_motion.h"
 #include "footing/v1/session.pb.h"
 
@@ -37,10 +34,5 @@ struct RunnerPlan {
   std::shared_ptr<LiveRunner> runner;
 };
 Result<RunnerPlan> PlanRunner(const Common& common);
-
-/// Lets the runner see footing-sim. Everything runs on the io_context's one thread.
-std::unique_ptr<transport::Client> WatchSimulation(boost::asio::io_context& io,
-                                                   const transport::Address& simulation,
-                                                   std::shared_ptr<LiveRunner> runner);
 
 }  // namespace footing::stream_client

@@ -9,6 +9,8 @@
 #include "clients/stream/players_command.h"
 #include "clients/stream/replay.h"
 #include "clients/stream/samples.h"
+#include "clients/stream/user_command.h"
+#include "clients/stream/watch.h"
 #include "common/cli/cli.h"
 #include "common/log/log.h"
 
@@ -56,7 +58,8 @@ int RunPlayer(const std::string& simulation, const stream_client::Common& common
   auto planned = stream_client::PlanRunner(common);
   if (!planned) return cli::Report(planned.error());
   return Run(std::move(planned->plan), common, [&](boost::asio::io_context& io) {
-    return stream_client::WatchSimulation(io, *at, planned->runner);
+    return stream_client::WatchSimulation(
+        io, *at, [runner = planned->runner](const v1::Tick& tick) { runner->See(tick); });
   });
 }
 
@@ -71,8 +74,23 @@ void AddCommon(CLI::App& app, stream_client::Common& common) {
       ->check(CLI::Range(0.0, 1e6));
 }
 
+int RunUser(const stream_client::UserOptions& user, const stream_client::Common& common) {
+  if (user.see.empty()) {
+    return Run(stream_client::PlanUser(user.script, user.interface, common, user.ports), common);
+  }
+  const auto simulation = transport::ParseAddress(user.see);
+  if (!simulation) return cli::Report(simulation.error());
+  auto live = stream_client::PlanLiveUser(user.interface, common);
+  if (!live) return cli::Report(live.error());
+  return Run(std::move(live->plan), common, [&](boost::asio::io_context& io) {
+    return stream_client::WatchSimulation(
+        io, *simulation, [user = live->user](const v1::Tick& tick) { user->See(tick); });
+  });
+}
+
 constexpr char kExamples[] =
     "  footing-stream user --script demo --interface wrist\n"
+    "  footing-stream user --interface leg --see tcp:localhost:7411 --seed 3\n"
     "  footing-stream sample .     # writes the files that the examples below read\n"
     "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
     "  footing-stream corners --left corners.csv --link poor --seconds 60\n"
@@ -98,14 +116,10 @@ int main(int argc, char** argv) {
   app->require_subcommand(1);
   app->fallthrough();
 
-  std::string script = "demo", interface = "wrist", left, right;
+  std::string left, right;
   double rate_hz = 100;
-  auto* user = app->add_subcommand("user", "A synthetic user with a Wiimote in each hand");
-  user->add_option("--script", script, "Script of the user: a built-in name, or a JSON file");
-  user->add_option("--interface", interface, "Interface: wrist or joystick");
-  stream_client::Ports ports;
-  user->add_flag("--motion-plus", ports.motion_plus, "Add a MotionPlus to each Wiimote");
-  user->add_flag("--nunchuk", ports.nunchuk, "Add a Nunchuk to each Wiimote");
+  stream_client::UserOptions person;
+  auto* user = stream_client::AddUserCommand(*app, person);
   auto* accel = app->add_subcommand(
       "accel", "Wiimotes that play recorded accelerations, CSV ax,ay,az in m/s2");
   auto* corners = app->add_subcommand(
@@ -139,7 +153,7 @@ int main(int argc, char** argv) {
   if (*replay) return Run(stream_client::PlanReplay(recording, common), common);
   if (*runner) return RunPlayer(players.simulation, common);
   if (*builder) return Run(stream_client::PlanBuilder(players.pits, common), common);
-  if (*user) return Run(stream_client::PlanUser(script, interface, common, ports), common);
+  if (*user) return RunUser(person, common);
   if (*accel) return Run(stream_client::PlanAccelerations(left, right, rate_hz, common), common);
   if (*insoles) return Run(stream_client::PlanInsoles(insoles_options, common), common);
   if (*boards) return Run(stream_client::PlanBoards(under, common), common);

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+
+#include "clients/stream/plan.h"
+#include "common/stream/user_interface.h"
+#include "common/virtual/users/driver.h"
+#include "common/virtual/users/person.h"
+#include "footing/v1/session.pb.h"
+
+namespace footing::stream_client {
+
+/// A synthetic user in real time: sees what footing-sim publishes of the character, its track and
+/// its trial, and moves the devices of one interface. Its clock is that of its devices. Stands
+/// still while it sees nothing.
+class LiveUser {
+ public:
+  LiveUser(stream::UserInterface interface, std::uint64_t seed);
+
+  void See(const v1::Tick& tick);
+  /// What the devices feel at t_s since the motion began; after a new connection that is 0 again.
+  const users::Felt& At(double t_s);
+
+ private:
+  /// Without a frame for this long the user sees nothing.
+  static constexpr double kBlindS = 0.5;
+
+  stream::Track track_;
+  users::Driver driver_;
+  users::Person person_;
+  users::Observation seen_;
+  users::Intention wanted_;
+  double seen_s_ = -1e9;
+  double time_s_ = 0;
+  double before_s_ = 0;  ///< Of the connections before this one.
+  double at_s_ = 0;
+};
+
+/// The devices of a synthetic user, and the user who moves them.
+struct LiveUserPlan {
+  Plan plan;
+  std::shared_ptr<LiveUser> user;
+};
+/// `interface` by its name; a usage error lists what there is.
+Result<LiveUserPlan> PlanLiveUser(const std::string& interface, const Common& common);
+
+}  // namespace footing::stream_client

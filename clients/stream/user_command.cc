@@ -1,0 +1,24 @@
+#include "clients/stream/user_command.h"
+
+namespace footing::stream_client {
+
+CLI::App* AddUserCommand(CLI::App& app, UserOptions& options) {
+  auto* user = app.add_subcommand(
+      "user", "A synthetic user, who follows a script or sees the track and steers along it");
+  auto* script = user->add_option("--script", options.script,
+                                  "Script of the user: a built-in name, or a JSON file");
+  user->add_option("--interface", options.interface,
+                   "Interface: wrist, arm, leg, joystick or boards; of a script wrist or joystick");
+  auto* see = user->add_option("--see", options.see,
+                               "Address of footing-sim, whose character, track and trial the user "
+                               "sees, unix:PATH or tcp:HOST:PORT");
+  see->excludes(script);
+  auto* motion_plus = user->add_flag("--motion-plus", options.ports.motion_plus,
+                                     "Add a MotionPlus to each Wiimote");
+  auto* nunchuk =
+      user->add_flag("--nunchuk", options.ports.nunchuk, "Add a Nunchuk to each Wiimote");
+  see->excludes(motion_plus)->excludes(nunchuk);
+  return user;
+}
+
+}  // namespace footing::stream_client
