@@ -38,17 +38,26 @@ void WithSession(Shared& shared, const std::vector<std::string>& channels,
   }
 }
 
-Result<void> SendToSimulation(const Shared& shared, v1::Command command,
-                              const std::string& start_with) {
+Result<std::unique_ptr<Session>> OpenSimulation(const Shared& shared,
+                                                std::vector<std::string> channels,
+                                                const std::string& start_with) {
   Shared simulation = shared;
   if (simulation.connect.empty()) {
     simulation.connect = transport::DefaultAddress("simulation").Text();
   }
-  const auto session = Open(simulation, {"skeletons"});  // Published to whoever comes.
+  auto session = Open(simulation, std::move(channels));
   if (!session) {
     return NoDevice("no footing-sim on " + simulation.connect + "; start it with: " + start_with +
                     ", or name it with --connect");
   }
+  return session;
+}
+
+Result<void> SendToSimulation(const Shared& shared, v1::Command command,
+                              const std::string& start_with) {
+  // The skeletons are published to whoever comes.
+  const auto session = OpenSimulation(shared, {"skeletons"}, start_with);
+  if (!session) return session.error();
   if (const auto done = (*session)->Call(std::move(command)); !done) return done.error();
   return {};
 }

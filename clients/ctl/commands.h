@@ -29,8 +29,12 @@ void Print(const nlohmann::ordered_json& out, const std::string& text, const Sha
 void WithSession(Shared& shared, const std::vector<std::string>& channels,
                  const std::function<Result<void>(Session&)>& body);
 
-/// Sends one command to footing-sim: at --connect, else at its default address. NoDevice, with how
-/// to start it, when nothing listens there.
+/// A session with footing-sim: at --connect, else at its default address. NoDevice, with how to
+/// start it, when nothing listens there.
+Result<std::unique_ptr<Session>> OpenSimulation(const Shared& shared,
+                                                std::vector<std::string> channels,
+                                                const std::string& start_with);
+/// Sends one command to footing-sim, likewise.
 Result<void> SendToSimulation(const Shared& shared, v1::Command command,
                               const std::string& start_with);
 
@@ -49,5 +53,6 @@ void AddAcceptanceCommand(CLI::App& app, Shared& shared);  ///< acceptance
 void AddPoseCommands(CLI::App& app, Shared& shared);       ///< t-pose, subject
 void AddTrialCommands(CLI::App& app, Shared& shared);      ///< trial
 void AddInterfaceCommand(CLI::App& app, Shared& shared);   ///< interface
+void AddLeaseCommand(CLI::App& app, Shared& shared);       ///< lease
 
 }  // namespace footing::ctl

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddPoseCommands(*app, shared);
   footing::ctl::AddTrialCommands(*app, shared);
   footing::ctl::AddInterfaceCommand(*app, shared);
+  footing::ctl::AddLeaseCommand(*app, shared);
   for (CLI::App* command : app->get_subcommands({})) {
     command->footer(command->get_footer() +
                     "\nAlso: --json and --connect, as in footing-ctl --help.");

@@ -1,5 +1,9 @@
 #include "common/cli/cli.h"
 
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -84,6 +88,15 @@ std::optional<int> Parse(CLI::App& app, int argc, char** argv) {
 int Report(const Error& error) {
   std::cerr << "error: " << error.message << std::endl;
   return static_cast<int>(error.kind);
+}
+
+std::string UserAtHost() {
+  const char* user = std::getenv("USER");
+  std::array<char, 256> host{};
+  // A name that is longer is cut, and the last byte stays zero.
+  if (::gethostname(host.data(), host.size() - 1) != 0) host = {"unknown host"};
+  return (user != nullptr ? std::string(user) : "uid " + std::to_string(::getuid())) + "@" +
+         host.data();
 }
 
 const char* Version() { return FOOTING_VERSION; }

@@ -21,6 +21,10 @@ std::optional<int> Parse(CLI::App& app, int argc, char** argv);
 /// Prints "error: ..." to standard error and returns the error's exit code.
 int Report(const Error& error);
 
+/// Who runs this program and where, for others to read: "anna@lab1"; "uid 1000@lab1" where the
+/// environment names no user.
+std::string UserAtHost();
+
 /// Program version, e.g. "0.1.0".
 const char* Version();
 

@@ -8,6 +8,7 @@
 #include "clients/study/session/run_session.h"
 #include "clients/study/session/survey.h"
 #include "clients/study/session/trial_run.h"
+#include "common/cli/cli.h"
 #include "common/clock/clock.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
@@ -177,10 +178,16 @@ Result<bool> SessionRun::AskToRepeat(Servers& servers) {
 }
 
 Result<Servers*> SessionRun::Connect() {
-  if (servers_ && servers_->live()) return servers_.get();
+  if (servers_) {
+    if (const auto leased = servers_->CheckLease(); !leased) return leased.error();
+    if (servers_->live()) return servers_.get();
+  }
   servers_.reset();
-  auto servers = Servers::Open(context_.console, context_.options.sensor,
-                               context_.options.simulation, active_);
+  // Without the process: after a crash the same session goes on with its lease.
+  const Servers::Options servers_of = {
+      context_.options.sensor, context_.options.simulation,
+      cli::UserAtHost() + ", footing-study, participant " + context_.options.participant};
+  auto servers = Servers::Open(context_.console, servers_of, active_);
   if (!servers) return servers.error();
   servers_ = std::move(*servers);
   return servers_.get();

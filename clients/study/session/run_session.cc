@@ -6,6 +6,7 @@
 
 #include "clients/study/journal/lock.h"
 #include "clients/study/journal/study_folder.h"
+#include "common/cli/cli.h"
 #include "common/text/number.h"
 
 namespace footing::study {
@@ -16,18 +17,16 @@ using records::EventKind;
 
 constexpr double kSecondsPerMinute = 60;
 
+std::string Holder(const SessionOptions& options) {
+  return cli::UserAtHost() + ", footing-study process " + std::to_string(::getpid()) +
+         ", participant " + options.participant;
+}
+
 /// Everything that must be there before an event can be appended.
 struct Opened {
   journal::Lock lock;
   journal::Journal journal;
 };
-
-std::string Holder(const SessionOptions& options) {
-  const char* user = ::getenv("USER");
-  return std::string(user != nullptr ? user : "uid " + std::to_string(::getuid())) +
-         ", footing-study process " + std::to_string(::getpid()) + ", participant " +
-         options.participant;
-}
 
 Result<Opened> OpenStudy(const SessionOptions& options, const plan::Protocol& protocol) {
   const std::string& folder = options.study_folder;
@@ -77,6 +76,14 @@ Result<void> NoteStart(SessionContext& context, const records::Progress& progres
                                  {"interrupted_trial", progress.interrupted_trial}});
 }
 
+/// Whether any of the phases from `first` on needs footing-sim.
+bool NeedServers(const std::vector<plan::Phase>& phases, std::size_t first) {
+  for (std::size_t i = first; i < phases.size(); ++i) {
+    if (phases[i].kind == plan::PhaseKind::kDeviceCheck || !phases[i].track.empty()) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 SessionRun::SessionRun(SessionContext context)
@@ -95,8 +102,12 @@ Result<void> SessionRun::Run() {
     console.Print("the last line of " + context_.journal.path() + " was torn (" +
                   std::to_string(context_.journal.torn_bytes()) + " bytes) and is dropped");
   }
-  if (const auto done = NoteStart(context_, progress_); !done) return done;
   const std::vector<plan::Phase>& phases = context_.session.phases;
+  if (NeedServers(phases, progress_.next_phase)) {
+    // Before anything is noted: who leads another session on this footing-sim goes on with it.
+    if (const auto servers = Connect(); !servers) return servers.error();
+  }
+  if (const auto done = NoteStart(context_, progress_); !done) return done;
   for (std::size_t i = progress_.next_phase; i < phases.size(); ++i) {
     ordered_json fields = {{"phase", phases[i].id},
                            {"kind", Name(phases[i].kind)},

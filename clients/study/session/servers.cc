@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "clients/study/session/held_lease.h"
 #include "common/transport/client.h"
 #include "common/wire/wire.h"
 
@@ -13,6 +14,9 @@ namespace {
 constexpr double kConnectS = 5;
 constexpr double kAnswerS = 5;
 constexpr double kShownS = 2;
+constexpr double kReleasedS = 1;
+// The lease of a session that is gone has run out by then.
+constexpr double kLeaseWithinS = 7;
 constexpr std::uint32_t kQueueTicks = 1024;
 
 transport::ClientOptions ClientOf(const transport::Address& address, v1::Role role,
@@ -47,32 +51,39 @@ class Servers::Implementation {
     std::optional<transport::Client> client;
   };
 
-  Implementation(Console& console, const transport::Address& sensor,
-                 const transport::Address& simulation, ActiveTime& active)
+  Implementation(Console& console, const Options& options, ActiveTime& active)
       : console_(console), active_(active) {
-    sensor_.name = "footingd at " + sensor.Text();
-    simulation_.name = "footing-sim at " + simulation.Text();
-    Start(sensor_, ClientOf(sensor, v1::ROLE_VIEW, {"status", "features"}));
-    Start(simulation_, ClientOf(simulation, v1::ROLE_CONTROL, {"characters", "events", "track"}));
+    sensor_.name = "footingd at " + options.sensor.Text();
+    simulation_.name = "footing-sim at " + options.simulation.Text();
+    Make(sensor_, ClientOf(options.sensor, v1::ROLE_VIEW, {"status", "features"}));
+    Make(simulation_,
+         ClientOf(options.simulation, v1::ROLE_CONTROL, {"characters", "events", "track"}));
+    lease_ = std::make_shared<HeldLease>(console.io(), *simulation_.client, options.holder);
+    for (Link* link : {&sensor_, &simulation_}) link->client->Start();
   }
 
   ~Implementation() {
+    if (lease_->held()) {
+      const auto released = std::make_shared<bool>(false);
+      lease_->Release([released] { *released = true; });
+      console_.RunUntil([&] { return *released; }, kReleasedS);
+    }
     for (Link* link : {&sensor_, &simulation_}) link->client->Stop();
   }
 
-  void Start(Link& link, transport::ClientOptions options) {
+  void Make(Link& link, transport::ClientOptions options) {
     transport::ClientHandlers handlers;
     handlers.on_tick = [this, &link](const v1::Tick& tick) {
       OnTick(tick);
       // The snapshot has no frame yet, and without one nothing is known of footing-sim.
       link.ticked = link.ticked || &link == &sensor_ || tick.has_characters();
     };
-    handlers.on_state = [&link](transport::LinkState state, const std::string& why) {
+    handlers.on_state = [this, &link](transport::LinkState state, const std::string& why) {
       link.state = state;
       link.why = why;
+      if (&link == &simulation_) lease_->OnState(state);
     };
     link.client.emplace(console_.io(), std::move(options), std::move(handlers));
-    link.client->Start();
   }
 
   void OnTick(const v1::Tick& tick) {
@@ -103,6 +114,7 @@ class Servers::Implementation {
   ActiveTime& active_;
   Link sensor_;
   Link simulation_;
+  std::shared_ptr<HeldLease> lease_;
   std::vector<stream::DeviceStatus> devices_;
   SimulationFrame frame_;
   stream::Track track_;
@@ -114,10 +126,9 @@ Servers::Servers(std::unique_ptr<Implementation> implementation)
     : implementation_(std::move(implementation)) {}
 Servers::~Servers() = default;
 
-Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const transport::Address& sensor,
-                                               const transport::Address& simulation,
+Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const Options& options,
                                                ActiveTime& active) {
-  auto own = std::make_unique<Implementation>(console, sensor, simulation, active);
+  auto own = std::make_unique<Implementation>(console, options, active);
   const Waited waited =
       console.RunUntil([&] { return own->sensor_.ticked && own->simulation_.ticked; }, kConnectS);
   if (waited == Waited::kInterrupted) return Interrupted();
@@ -126,6 +137,11 @@ Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const transport
       return NoDevice("no " + Implementation::Text(*link) +
                       "; start it, or name its address (footing-study run --help)");
     }
+  }
+  const Waited leased = console.RunUntil([&] { return own->lease_->held(); }, kLeaseWithinS);
+  if (leased == Waited::kInterrupted) return Interrupted();
+  if (leased == Waited::kTimeUp) {
+    return Failure("footing-sim at " + options.simulation.Text() + ": " + own->lease_->refusal());
   }
   return std::unique_ptr<Servers>(new Servers(std::move(own)));
 }
@@ -138,12 +154,21 @@ const stream::Track& Servers::track() const { return implementation_->track_; }
 
 bool Servers::live() const {
   return implementation_->sensor_.state == transport::LinkState::kLive &&
-         implementation_->simulation_.state == transport::LinkState::kLive;
+         implementation_->simulation_.state == transport::LinkState::kLive &&
+         implementation_->lease_->held();
+}
+
+Result<void> Servers::CheckLease() const {
+  const HeldLease& lease = *implementation_->lease_;
+  if (!lease.lost()) return {};
+  return Failure(implementation_->simulation_.name + ": " + lease.refusal() +
+                 "; footing-study run goes on with the session");
 }
 
 std::string Servers::Links() const {
   return Implementation::Text(implementation_->sensor_) + "; " +
-         Implementation::Text(implementation_->simulation_);
+         Implementation::Text(implementation_->simulation_) +
+         (implementation_->lease_->held() ? "" : "; " + implementation_->lease_->refusal());
 }
 
 void Servers::set_on_frame(std::function<void(const SimulationFrame&)> on_frame) {

@@ -29,10 +29,17 @@ struct SimulationFrame {
 /// Connections to footingd, for the health of the devices, and to footing-sim, for trials.
 class Servers {
  public:
-  /// NoDevice when one of them is not there within a few seconds. `active` goes on counting as long
-  /// as the connection lasts.
-  static Result<std::unique_ptr<Servers>> Open(Console& console, const transport::Address& sensor,
-                                               const transport::Address& simulation,
+  /// How to reach them.
+  struct Options {
+    transport::Address sensor;
+    transport::Address simulation;
+    std::string holder;  ///< Of footing-sim's lease: who leads the session, for others.
+  };
+
+  /// Takes footing-sim's lease, which is released in the destructor. NoDevice when one of them is
+  /// not there within a few seconds; a failure with its holder's name when another program has the
+  /// lease. `active` goes on counting as long as the connection lasts.
+  static Result<std::unique_ptr<Servers>> Open(Console& console, const Options& options,
                                                ActiveTime& active);
   ~Servers();
   Servers(const Servers&) = delete;
@@ -42,7 +49,10 @@ class Servers {
   /// The newest frame.
   const SimulationFrame& frame() const;
   const stream::Track& track() const;
+  /// Both connections stand, and the lease is held.
   bool live() const;
+  /// Fails once somebody has taken the lease over: this session controls footing-sim no more.
+  Result<void> CheckLease() const;
   /// How the connections stand, for a person.
   std::string Links() const;
 

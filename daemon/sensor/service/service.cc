@@ -219,6 +219,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       case v1::Command::kStopTrial:
       case v1::Command::kCorrectFailure:
       case v1::Command::kSetInterface:
+      case v1::Command::kTakeLease:
+      case v1::Command::kReleaseLease:
       case v1::Command::kSetGame:
         return Answer(command, UsageError("that is a command for footing-sim"));
       case v1::Command::kTare:

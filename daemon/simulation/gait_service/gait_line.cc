@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/clock/clock.h"
 #include "common/log/log.h"
 #include "common/wire/wire.h"
 #include "daemon/simulation/engine_files/engine_files.h"
@@ -53,8 +54,7 @@ GaitLine::GaitLine(const std::string& rig, const Config& config, engine::GaitEng
 std::vector<std::string> GaitLine::Capabilities() {
   std::vector<std::string> names{"gait"};
   for (const auto interface : stream::kUserInterfaces) names.push_back(stream::Name(interface));
-  names.push_back("trial");
-  names.push_back("game");
+  names.insert(names.end(), {"trial", "game", "lease"});
   return names;
 }
 
@@ -89,6 +89,9 @@ Result<void> GaitLine::SetInterface(const v1::SetInterface& message) {
 
 v1::CommandResult GaitLine::OnCommand(const transport::SessionInfo& who,
                                       const v1::Command& command) {
+  const std::int64_t now_ns = clock::MonotonicNs();
+  if (LeaseControl::Takes(command)) return lease_.OnCommand(command, who.session, now_ns);
+  if (const auto refusal = lease_.Refusal(command, who.session, now_ns)) return *refusal;
   if (command.has_set_game()) return game_.OnSetGame(who, command.set_game());
   if (const auto refusal = game_.Refuse(who, command)) return *refusal;
   if (command.has_set_interface()) {
@@ -109,6 +112,7 @@ v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
   for (v1::Event& event : trials_.TakeCorrections(now_ns)) {
     *events.add_events() = std::move(event);
   }
+  for (v1::Event& event : lease_.TakeEvents(now_ns)) *events.add_events() = std::move(event);
   v1::ResponseStages stages;
   if (!responses_.Complete(frame, now_ns, stages)) return events;
   v1::Event& event = *events.add_events();
@@ -134,6 +138,7 @@ std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::
   }
   v1::CharacterFrame characters = ToCharacterFrame(frame, world_, input_.rig());
   trials_.Describe(frame, *characters.mutable_characters(0));
+  characters.set_lease_holder(lease_.holder());
   v1::AppliedInputs inputs;
   for (int i = 0; i < frame.applied_count; ++i) {
     *inputs.add_inputs() = ToAppliedInput(frame.applied[static_cast<std::size_t>(i)]);

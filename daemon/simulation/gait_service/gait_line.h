@@ -10,6 +10,7 @@
 #include "daemon/simulation/gait_service/config.h"
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/gait_service/game_relay.h"
+#include "daemon/simulation/gait_service/lease_control.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "daemon/simulation/gait_service/sensor_input.h"
 #include "daemon/simulation/gait_service/track_exchange.h"
@@ -42,7 +43,10 @@ class GaitLine {
   std::vector<transport::ChannelBytes> Retained() const;
   void OnTick(const v1::Tick& tick, std::int64_t now_ns) { input_.OnTick(tick, now_ns); }
   v1::CommandResult OnCommand(const transport::SessionInfo& who, const v1::Command& command);
-  void OnSessionEnd(const transport::SessionInfo& who) { game_.OnSessionEnd(who); }
+  void OnSessionEnd(const transport::SessionInfo& who) {
+    game_.OnSessionEnd(who);
+    lease_.EndSession(who.session);
+  }
   std::vector<transport::ChannelBytes> OnFrame(const Frame& frame, std::int64_t now_ns);
 
  private:
@@ -58,6 +62,7 @@ class GaitLine {
   TrackExchange tracks_;  // Before the thread, which uses it.
   serving::SimulationThread<GaitRun> thread_;
   TrialControl trials_;
+  LeaseControl lease_;
   SensorInput input_;
   GameRelay game_;
 };

@@ -1,0 +1,76 @@
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "clients/ctl/commands.h"
+#include "common/cli/cli.h"
+
+namespace footing::ctl {
+namespace {
+
+constexpr double kFrameWithinS = 3;
+constexpr double kLeaseS = 1;  // It is released at once.
+
+/// The holder that the newest frame names; empty: nobody.
+Result<std::string> ReadHolder(Session& session) {
+  std::optional<std::string> holder;
+  session.set_on_tick([&](const v1::Tick& tick) {
+    if (tick.has_characters()) holder = tick.characters().lease_holder();
+  });
+  const Waited waited = session.RunUntil([&] { return holder.has_value(); }, kFrameWithinS);
+  session.set_on_tick(nullptr);
+  if (waited == Waited::kInterrupted) return Failure("stopped");
+  if (!holder) return Failure("footing-sim publishes no frames: " + session.link());
+  return std::move(*holder);
+}
+
+/// Takes the lease from whoever has it, and gives it back, so that anybody may take it.
+Result<void> TakeOver(Session& session) {
+  v1::Command take;
+  take.mutable_take_lease()->set_holder(cli::UserAtHost() + ", footing-ctl");
+  take.mutable_take_lease()->set_seconds(kLeaseS);
+  take.mutable_take_lease()->set_take_over(true);
+  if (const auto taken = session.Call(std::move(take)); !taken) return taken.error();
+  v1::Command release;
+  release.mutable_release_lease();
+  if (const auto released = session.Call(std::move(release)); !released) return released.error();
+  return {};
+}
+
+Result<void> RunLease(bool take_over, const Shared& shared) {
+  const auto session = OpenSimulation(shared, {"skeletons", "characters"}, "footing-sim");
+  if (!session) return session.error();
+  const auto holder = ReadHolder(**session);
+  if (!holder) return holder.error();
+  if (take_over) {
+    if (const auto done = TakeOver(**session); !done) return done;
+  }
+  Print({{"holder", take_over ? "" : *holder}, {"taken_from", take_over ? *holder : ""}},
+        holder->empty() ? "nobody has the lease"
+        : take_over     ? "the lease was taken over from " + *holder + "; now nobody has it"
+                        : *holder + " has the lease",
+        shared);
+  return {};
+}
+
+}  // namespace
+
+void AddLeaseCommand(CLI::App& app, Shared& shared) {
+  const auto take_over = std::make_shared<bool>(false);
+  CLI::App* command =
+      app.add_subcommand("lease", "Print which program alone controls footing-sim, or end that");
+  command->add_flag("--take-over", *take_over,
+                    "Take the lease from its holder: a study that has it stops");
+  command->footer(
+      "Examples (connect to footing-sim):\n"
+      "  footing-ctl lease\n"
+      "  footing-ctl lease --take-over");
+  command->callback([take_over, &shared] {
+    if (const auto done = RunLease(*take_over, shared); !done) {
+      shared.exit_code = cli::Report(done.error());
+    }
+  });
+}
+
+}  // namespace footing::ctl

@@ -1,0 +1,126 @@
+#include "daemon/simulation/lease/lease.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace footing::lease {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::uint64_t kAnna = 7, kBen = 8;
+
+Request Of(std::uint64_t session, const std::string& holder) {
+  return {.session = session, .holder = holder};
+}
+
+/// The lease of Anna from 0 to 5 s.
+Lease OfAnna() {
+  Lease lease;
+  EXPECT_TRUE(lease.Take(Of(kAnna, "anna"), 0));
+  lease.TakeChanges();
+  return lease;
+}
+
+TEST(Lease, RefusesOthersWithTheNameOfItsHolder) {
+  Lease lease;
+  EXPECT_TRUE(lease.Check(kBen, 0));  // Nobody has it.
+  EXPECT_TRUE(lease.Take(Of(kAnna, "anna"), 0));
+  EXPECT_EQ(lease.holder(), "anna");
+  EXPECT_TRUE(lease.Check(kAnna, 1));
+  EXPECT_THAT(lease.Check(kBen, 1).error().message,
+              AllOf(HasSubstr("anna has the lease"), HasSubstr("--take-over")));
+  const auto refused = lease.Take(Of(kBen, "ben"), 1);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kFailure);
+  EXPECT_THAT(refused.error().message, HasSubstr("anna has the lease"));
+  EXPECT_THAT(lease.Release(kBen, 1).error().message, HasSubstr("anna has the lease"));
+  EXPECT_EQ(lease.holder(), "anna");
+  EXPECT_THAT(lease.TakeChanges(), ElementsAre("lease: anna takes it"));
+}
+
+TEST(Lease, EndsUnlessItIsRenewed) {
+  Lease lease = OfAnna();
+  EXPECT_TRUE(lease.Take(Of(kAnna, "anna"), 4 * kSecondNs));  // Until 9 s.
+  EXPECT_THAT(lease.TakeChanges(), IsEmpty());
+  EXPECT_FALSE(lease.Check(kBen, 9 * kSecondNs - 1));
+  EXPECT_TRUE(lease.Check(kBen, 9 * kSecondNs));
+  lease.Expire(9 * kSecondNs - 1);
+  EXPECT_EQ(lease.holder(), "anna");
+  lease.Expire(9 * kSecondNs);
+  EXPECT_EQ(lease.holder(), "");
+  EXPECT_THAT(lease.TakeChanges(), ElementsAre("lease: that of anna ran out"));
+}
+
+TEST(Lease, LastsAsLongAsWasAskedFor) {
+  Lease lease;
+  Request request = Of(kAnna, "anna");
+  request.seconds = 20;
+  ASSERT_TRUE(lease.Take(request, 0));
+  EXPECT_FALSE(lease.Check(kBen, 20 * kSecondNs - 1));
+  EXPECT_TRUE(lease.Check(kBen, 20 * kSecondNs));
+}
+
+TEST(Lease, IsTakenOverOnlyOnPurpose) {
+  Lease lease = OfAnna();
+  Request request = Of(kBen, "ben");
+  request.take_over = true;
+  ASSERT_TRUE(lease.Take(request, 1));
+  EXPECT_THAT(lease.TakeChanges(), ElementsAre("lease: ben takes it over from anna"));
+  EXPECT_TRUE(lease.Check(kBen, 2));
+  EXPECT_THAT(lease.Check(kAnna, 2).error().message, HasSubstr("ben has the lease"));
+}
+
+TEST(Lease, IsNotRenewedOnceItIsLost) {
+  Lease lease = OfAnna();
+  Request renewal = Of(kAnna, "anna");
+  renewal.renew_only = true;
+  EXPECT_TRUE(lease.Take(renewal, kSecondNs));
+  Request request = Of(kBen, "ben");
+  request.take_over = true;
+  ASSERT_TRUE(lease.Take(request, 2 * kSecondNs));
+  EXPECT_THAT(lease.Take(renewal, 3 * kSecondNs).error().message, HasSubstr("ben has the lease"));
+  ASSERT_TRUE(lease.Release(kBen, 3 * kSecondNs));
+  EXPECT_THAT(lease.TakeChanges(),
+              ElementsAre("lease: ben takes it over from anna", "lease: ben releases it"));
+  EXPECT_THAT(lease.Take(renewal, 4 * kSecondNs).error().message, HasSubstr("taken over"));
+  EXPECT_EQ(lease.holder(), "");
+  renewal.renew_only = false;
+  EXPECT_TRUE(lease.Take(renewal, 4 * kSecondNs));
+}
+
+TEST(Lease, OutlastsItsSessionForAnotherOneOfTheSameName) {
+  Lease lease = OfAnna();
+  EXPECT_FALSE(lease.Take(Of(9, "anna"), 1));  // Two of one name at a time.
+  lease.EndSession(kBen);                      // Not the holder's.
+  EXPECT_FALSE(lease.Take(Of(9, "anna"), 1));
+  lease.EndSession(kAnna);
+  EXPECT_FALSE(lease.Check(kBen, 2));
+  EXPECT_FALSE(lease.Take(Of(kBen, "ben"), 2));
+  ASSERT_TRUE(lease.Take(Of(9, "anna"), 2));
+  EXPECT_THAT(lease.TakeChanges(), IsEmpty());
+  EXPECT_TRUE(lease.Check(9, 3));
+  EXPECT_FALSE(lease.Check(kAnna, 3));
+}
+
+TEST(Lease, RefusesWhatIsNoRequest) {
+  Lease lease;
+  for (const std::string& holder : {std::string(), std::string(201, 'a'), std::string("a\nb")}) {
+    EXPECT_EQ(lease.Take(Of(kAnna, holder), 0).error().kind, ErrorKind::kUsage) << holder;
+  }
+  EXPECT_TRUE(lease.Take(Of(kAnna, std::string(200, 'a')), 0));
+  for (const double seconds : {-1.0, 60.5, std::numeric_limits<double>::infinity(),
+                               std::numeric_limits<double>::quiet_NaN()}) {
+    Request request = Of(kAnna, "anna");
+    request.seconds = seconds;
+    EXPECT_EQ(lease.Take(request, 0).error().kind, ErrorKind::kUsage) << seconds;
+  }
+  EXPECT_FALSE(Lease().Release(kAnna, 0));
+}
+
+}  // namespace
+}  // namespace footing::lease
