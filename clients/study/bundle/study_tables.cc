@@ -111,7 +111,7 @@ DocumentedTable TrialsTable(const std::vector<Records>& people, const Participan
       {"track", Column("Built-in track of Footing")},
       {"task", Column("Task of the straight track: gait before and after the line")},
       {"attempt", Column("Attempt at this trial, from 1")},
-      {"outcome", Column("finished, timed_out, stopped, device_lost, interrupted")},
+      {"outcome", Column("finished, timed_out, stopped, device_lost, broken_off, interrupted")},
       {"counts", Column("yes: the last attempt that ended, the one to analyse")},
       {"time", Column("From the start line, including put-backs", "s")},
       {"distance", Column("Along the track", "m")},

@@ -188,7 +188,9 @@ Records Collect(const std::vector<Event>& events) {
 std::vector<const Trial*> Counting(const Records& records) {
   std::map<std::string, const Trial*> last;
   for (const Trial& trial : records.trials) {
-    if (trial.outcome != "interrupted" && trial.outcome != kDeviceLost) last[trial.phase] = &trial;
+    const bool cut = trial.outcome == "interrupted" || trial.outcome == kDeviceLost ||
+                     trial.outcome == kBrokenOff;
+    if (!cut) last[trial.phase] = &trial;
   }
   std::vector<const Trial*> counting;
   for (const Trial& trial : records.trials) {

@@ -12,6 +12,8 @@ namespace footing::study::records {
 
 /// The outcome of a trial that lost a device: it does not count.
 inline constexpr const char* kDeviceLost = "device_lost";
+/// Of a trial that a server, the lease or the recording has ended: it does not count.
+inline constexpr const char* kBrokenOff = "broken_off";
 
 struct Failure {
   std::uint64_t number = 0;  ///< The server's.
@@ -39,8 +41,9 @@ struct Trial {
   std::size_t position = 0;  ///< Of the interface in the participant's order, from 1.
   std::size_t attempt = 0;
   std::int64_t started_wall_ns = 0;
-  std::string outcome;  ///< "finished", "timed_out", "stopped", kDeviceLost; "interrupted": no end.
-  double time_s = 0;    ///< From the start line; including put-backs.
+  /// "finished", "timed_out", "stopped", kDeviceLost, kBrokenOff; "interrupted": no end.
+  std::string outcome;
+  double time_s = 0;  ///< From the start line; including put-backs.
   double distance_m = 0;
   double heading_oscillation_rad = 0;  ///< Standard deviation of the heading error; NaN: unknown.
   double anticipation_s = 0;  ///< Command before the line of the task; NaN: not done, or no task.
@@ -87,7 +90,8 @@ struct Records {
 
 Records Collect(const std::vector<Event>& events);
 
-/// The attempts that count: the last one of each phase that ended and lost no device.
+/// The attempts that count: the last one of each phase that ended by itself or by a
+/// person.
 std::vector<const Trial*> Counting(const Records& records);
 
 }  // namespace footing::study::records

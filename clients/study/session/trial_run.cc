@@ -63,6 +63,13 @@ class TrialRun {
   TrialRun& operator=(const TrialRun&) = delete;
 
   Result<std::string> Run() {
+    auto outcome = Attempt();
+    if (!outcome && !context_.console.interrupted()) BreakOff(outcome.error());
+    return outcome;
+  }
+
+ private:
+  Result<std::string> Attempt() {
     if (const auto done = Begin(); !done) return done.error();
     const auto outcome = Wait();
     if (!outcome) return outcome.error();
@@ -73,7 +80,6 @@ class TrialRun {
     return outcome;
   }
 
- private:
   ordered_json Marks() const {
     return {{"trial", id_},
             {"phase", phase_.id},
@@ -100,6 +106,12 @@ class TrialRun {
   }
 
   Result<void> Begin() {
+    // First of all: an attempt of which anything is left, such as a recording, has its number.
+    if (const auto done = context_.journal.Append(EventKind::kTrialStarted, Marks()); !done) {
+      return done;
+    }
+    begun_ = true;
+    begin_ns_ = complete_ns_ = clock::MonotonicNs();
     TrialRecorder::Options recording;
     recording.path =
         journal::ParticipantFolder(context_.options.study_folder, context_.session.participant) +
@@ -111,9 +123,6 @@ class TrialRun {
         TrialRecorder::Begin(context_.console, std::move(recording), MarksOfRecording());
     if (!recorder) return recorder.error();
     recorder_ = std::move(*recorder);
-    if (const auto done = context_.journal.Append(EventKind::kTrialStarted, Marks()); !done) {
-      return done;
-    }
     events_.Begin();
     begin_ns_ = complete_ns_ = clock::MonotonicNs();
     if (const auto done = servers_.Call(StartCommand(id_, phase_)); !done) return done;
@@ -195,12 +204,30 @@ class TrialRun {
     return context_.journal.Append(EventKind::kTrialFinished, std::move(fields));
   }
 
+  /// A server, the lease or the recording is gone: marks the attempt, as far as that still works.
+  void BreakOff(const Error& why) {
+    if (!begun_) return;
+    ordered_json fields = {{"trial", id_},
+                           {"outcome", records::kBrokenOff},
+                           {"reason", why.message},
+                           {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)}};
+    fields.update(events_.Figures());
+    if (recorder_) {
+      if (const auto done = recorder_->Finish(ToTextMap(fields)); !done) {
+        context_.console.Print(done.error().message);
+      }
+    }
+    const auto noted = context_.journal.Append(EventKind::kTrialFinished, std::move(fields));
+    if (!noted) context_.console.Print(noted.error().message);
+  }
+
   SessionContext& context_;
   Servers& servers_;
   const plan::Phase& phase_;
   std::size_t attempt_;
   std::string id_, file_;
   std::unique_ptr<TrialRecorder> recorder_;
+  bool begun_ = false;  ///< The journal has its start.
   std::int64_t begin_ns_ = 0;
   std::int64_t complete_ns_ = 0;  ///< When all devices were last there.
   std::uint32_t lost_roles_ = 0;

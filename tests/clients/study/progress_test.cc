@@ -121,15 +121,17 @@ TEST(TrialRecords, CountTheLastAttemptThatEnded) {
   EXPECT_EQ(counting.front()->time_s, 4);
 }
 
-TEST(TrialRecords, DoNotCountAnAttemptThatLostADevice) {
-  Events events;
-  events.Add(EventKind::kSessionStarted);
-  events.Trial("a", 1).Finished(3).Trial("a", 2);
-  events.Add(EventKind::kTrialFinished, {{"outcome", kDeviceLost}, {"time_s", 1}});
-  const Records records = Collect(events.list);
-  const auto counting = Counting(records);
-  ASSERT_EQ(counting.size(), 1u);
-  EXPECT_EQ(counting.front()->attempt, 1u);
+TEST(TrialRecords, DoNotCountAnAttemptThatLostADeviceOrBrokeOff) {
+  for (const char* outcome : {kDeviceLost, kBrokenOff}) {
+    Events events;
+    events.Add(EventKind::kSessionStarted);
+    events.Trial("a", 1).Finished(3).Trial("a", 2);
+    events.Add(EventKind::kTrialFinished, {{"outcome", outcome}, {"time_s", 1}});
+    const Records records = Collect(events.list);
+    const auto counting = Counting(records);
+    ASSERT_EQ(counting.size(), 1u) << outcome;
+    EXPECT_EQ(counting.front()->attempt, 1u) << outcome;
+  }
 }
 
 TEST(TrialRecords, KeepTheStagesOfResponsesWithTheirTrial) {
