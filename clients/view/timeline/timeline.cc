@@ -21,6 +21,15 @@ double EndOf(const Timeline& timeline, const TrialMark& trial) {
   return std::min(end_s, timeline.end_s);
 }
 
+/// It happened while the trial went on. Behind its end falls are still counted, but not for it.
+bool IsOf(const Timeline& timeline, const FailureMark& failure, const TrialMark& trial) {
+  const TrialMark* const at = TrialAt(timeline, failure.at_s);
+  if (at == nullptr || !Same(*at, trial)) return false;
+  if (trial.end_s && failure.at_s > *trial.end_s) return false;
+  // Old recordings hold the cause alone.
+  return failure.number == 0 || trial.id.empty() || failure.trial == trial.id;
+}
+
 std::string ListOf(const Timeline& timeline) {
   constexpr std::size_t kMostListed = 40;
   std::string list;
@@ -80,8 +89,7 @@ const TrialMark* TrialAt(const Timeline& timeline, double at_s) {
 stream::FailureCounts FailuresOf(const Timeline& timeline, const TrialMark& trial, double until_s) {
   stream::FailureCounts counts;
   for (const FailureMark& failure : timeline.failures) {
-    const TrialMark* const of = TrialAt(timeline, failure.at_s);
-    if (failure.withdrawn || failure.at_s > until_s || of == nullptr || !Same(*of, trial)) continue;
+    if (failure.withdrawn || failure.at_s > until_s || !IsOf(timeline, failure, trial)) continue;
     if (auto* const count = stream::MutableCountOf(failure.cause, counts)) ++*count;
   }
   return counts;

@@ -68,7 +68,7 @@ std::optional<double> NextTrial(const Timeline& timeline, double at_s);
 /// The trial that goes on at a position: the last one that has begun. Null before the first.
 const TrialMark* TrialAt(const Timeline& timeline, double at_s);
 
-/// Failures of a trial by cause up to a position, without those withdrawn.
+/// Failures of a trial by cause up to a position, without those withdrawn and those behind its end.
 stream::FailureCounts FailuresOf(const Timeline& timeline, const TrialMark& trial, double until_s);
 
 /// Name for a person: "p07-1"; "trial 2" of one without an id.

@@ -57,6 +57,22 @@ TEST(TimelineTest, FailuresCountForTheirTrialUnlessWithdrawn) {
   EXPECT_EQ(FailuresOf(line, line.trials[1], 100).simulation, 1u);
 }
 
+TEST(TimelineTest, FallsBehindAStoppedTrialDoNotCountForIt) {
+  Timeline line = SampleTimeline();
+  line.trials[0].phase = stream::TrialPhase::kStopped;
+  FailureMark& late = line.failures.emplace_back(line.failures[0]);
+  late.at_s = 45;
+  EXPECT_EQ(stream::Total(FailuresOf(line, line.trials[0], 100)), 1u);
+}
+
+TEST(TimelineTest, AFailureOfATrialWithAnIdNamesIt) {
+  Timeline line = SampleTimeline();
+  line.failures[0].number = 1;
+  EXPECT_EQ(stream::Total(FailuresOf(line, line.trials[0], 100)), 0u);
+  line.failures[0].trial = "p07-1";
+  EXPECT_EQ(stream::Total(FailuresOf(line, line.trials[0], 100)), 1u);
+}
+
 TEST(TimelineTest, OneTrialAloneEndsTwoSecondsAfterItsEndAndHasItsOwnMarks) {
   const Timeline line = SampleTimeline();
   const Timeline only = Only(line, line.trials[0]);
