@@ -35,7 +35,11 @@ class MarkCollector {
   void OnTrialState(const stream::TrialState& state, std::int64_t time_ns) {
     if (!scene::ShowsTrial(state)) return;
     const double at_s = PositionOf(time_ns);
-    TrialMark& trial = At(state, at_s);
+    if (!Goes(state)) {
+      Begin(state, at_s);
+      frame_only_ = true;
+    }
+    TrialMark& trial = marks_.timeline.trials.back();
     const stream::TrialProgress& progress = state.progress;
     if (!trial.start_s && progress.phase == TrialPhase::kRunning) {
       trial.start_s = at_s - progress.time_s;
@@ -102,24 +106,38 @@ class MarkCollector {
     trial.time_s = state.progress.time_s;
   }
 
-  /// The trial that goes on, or a new one that begins here.
-  TrialMark& At(const stream::TrialState& state, double at_s) {
-    auto& trials = marks_.timeline.trials;
-    const bool known =
-        !trials.empty() && trials.back().id == state.trial && trials.back().number == state.number;
-    if (!known) {
-      TrialMark trial;
-      trial.id = state.trial;
-      trial.number = state.number;
-      trial.begin_s = at_s;
-      trials.push_back(trial);
-    }
-    return trials.back();
+  /// The newest mark has this name.
+  bool Goes(const stream::TrialState& state) const {
+    const auto& trials = marks_.timeline.trials;
+    return !trials.empty() && trials.back().id == state.trial &&
+           trials.back().number == state.number;
+  }
+
+  void Begin(const stream::TrialState& state, double at_s) {
+    TrialMark trial;
+    trial.id = state.trial;
+    trial.number = state.number;
+    trial.begin_s = at_s;
+    marks_.timeline.trials.push_back(trial);
+  }
+
+  /// The event begins a trial. A restarted server gives the same names and numbers again.
+  bool Begins(const stream::TrialState& state, double at_s) const {
+    if (!Goes(state)) return true;
+    const TrialMark& newest = marks_.timeline.trials.back();
+    if (state.progress.phase == TrialPhase::kRunning) return newest.end_s.has_value();
+    if (state.progress.phase != TrialPhase::kReady) return false;
+    const bool announced =
+        frame_only_ && (newest.phase == TrialPhase::kReady || at_s <= newest.begin_s);
+    return !announced;
   }
 
   void OnTrial(const stream::TrialState& state, double at_s) {
     if (!scene::ShowsTrial(state)) return;
-    TrialMark& trial = At(state, at_s);
+    if (Begins(state, at_s)) Begin(state, at_s);
+    frame_only_ = false;
+    TrialMark& trial = marks_.timeline.trials.back();
+    trial.begin_s = std::min(trial.begin_s, at_s);
     switch (state.progress.phase) {
       case TrialPhase::kRunning:
         trial.start_s = at_s - state.progress.time_s;
@@ -160,6 +178,7 @@ class MarkCollector {
   }
 
   std::int64_t zero_ns_;
+  bool frame_only_ = false;  ///< The newest trial is known from a frame alone.
   RecordedMarks marks_;
 };
 

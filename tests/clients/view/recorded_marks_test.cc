@@ -1,0 +1,109 @@
+#include "clients/view/app/recorded_marks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/recording/recording_writer.h"
+#include "common/units/time.h"
+#include "common/wire/wire.h"
+#include "tests/common/temporary_folder.h"
+
+namespace footing::view {
+namespace {
+
+using stream::TrialPhase;
+
+/// Events of one server, written where a case needs them.
+class RecordedMarksTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto created = recording::RecordingWriter::Create(path_, {"test", true, {}});
+    ASSERT_TRUE(created.ok());
+    writer_.emplace(std::move(*created));
+  }
+  static stream::TrialState StateOf(const std::string& id, TrialPhase phase, double clock_s) {
+    stream::TrialState state;
+    state.trial = id;
+    state.number = id.empty() ? 0 : 1;
+    state.track = "straight";
+    state.finish_m = 60;
+    state.progress.phase = phase;
+    state.progress.time_s = clock_s;
+    return state;
+  }
+  void Write(const std::string& topic, const google::protobuf::Message& message, double time_s) {
+    const std::int64_t at_ns = RoundToNanoseconds(time_s);
+    ASSERT_TRUE(writer_->Write("/footing-sim/" + topic, message, {at_ns, at_ns, ++sequence_}));
+  }
+  void Trial(double time_s, const std::string& id, TrialPhase phase, double clock_s = 0) {
+    v1::Events events;
+    v1::Event& event = *events.add_events();
+    event.set_kind(v1::Event::KIND_TRIAL);
+    event.set_host_ns(RoundToNanoseconds(time_s));
+    *event.mutable_trial() = wire::ToProto(StateOf(id, phase, clock_s));
+    Write("events", events, time_s);
+  }
+  void Frame(double time_s, const std::string& id, TrialPhase phase, double clock_s = 0) {
+    v1::CharacterFrame frame;
+    *frame.add_characters()->mutable_trial() = wire::ToProto(StateOf(id, phase, clock_s));
+    Write("characters", frame, time_s);
+  }
+  timeline::Timeline Read() {
+    EXPECT_TRUE(writer_->Finish());
+    auto recording = OpenForPlayback(path_);
+    EXPECT_TRUE(recording.ok());
+    auto marks = ReadMarks(*recording);
+    EXPECT_TRUE(marks.ok());
+    return marks->timeline;
+  }
+
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_.Path("marks.mcap");
+  std::optional<recording::RecordingWriter> writer_;
+  std::uint32_t sequence_ = 0;
+};
+
+TEST_F(RecordedMarksTest, ARestartedServerBeginsAnotherTrialOfTheSameName) {
+  Trial(0, "p07", TrialPhase::kReady);
+  Trial(2, "p07", TrialPhase::kRunning);
+  // Killed while the trial ran; the next server counts from 1 again.
+  Trial(20, "p07", TrialPhase::kReady);
+  Trial(23, "p07", TrialPhase::kRunning);
+  Trial(30, "p07", TrialPhase::kFinished, 7);
+  const timeline::Timeline line = Read();
+  ASSERT_EQ(line.trials.size(), 2u);
+  EXPECT_DOUBLE_EQ(line.trials[0].begin_s, 0);
+  EXPECT_DOUBLE_EQ(line.trials[0].start_s.value_or(0), 2);
+  EXPECT_FALSE(line.trials[0].end_s);
+  EXPECT_DOUBLE_EQ(line.trials[1].begin_s, 20);
+  EXPECT_DOUBLE_EQ(line.trials[1].start_s.value_or(0), 23);
+  EXPECT_DOUBLE_EQ(line.trials[1].end_s.value_or(0), 30);
+}
+
+TEST_F(RecordedMarksTest, ATrialWithoutAReadyEventBeginsWhereItRuns) {
+  // The trial that a server begins with has no event of its own before the start line.
+  Trial(1, "", TrialPhase::kRunning);
+  Trial(10, "", TrialPhase::kFinished, 9);
+  Trial(21, "", TrialPhase::kRunning);
+  Trial(35, "", TrialPhase::kFinished, 14);
+  const timeline::Timeline line = Read();
+  ASSERT_EQ(line.trials.size(), 2u);
+  EXPECT_DOUBLE_EQ(line.trials[0].end_s.value_or(0), 9);
+  EXPECT_DOUBLE_EQ(line.trials[0].time_s, 9);
+  EXPECT_DOUBLE_EQ(line.trials[1].start_s.value_or(0), 20);
+  EXPECT_DOUBLE_EQ(line.trials[1].end_s.value_or(0), 34);
+}
+
+TEST_F(RecordedMarksTest, TheFirstFrameAndTheReadyEventAreOneTrial) {
+  Frame(0, "p07", TrialPhase::kReady);
+  Trial(0.02, "p07", TrialPhase::kReady);
+  Trial(2, "p07", TrialPhase::kRunning);
+  Frame(3, "p07", TrialPhase::kRunning, 1);
+  const timeline::Timeline line = Read();
+  ASSERT_EQ(line.trials.size(), 1u);
+  EXPECT_DOUBLE_EQ(line.trials[0].begin_s, 0);
+  EXPECT_DOUBLE_EQ(line.trials[0].start_s.value_or(0), 2);
+}
+
+}  // namespace
+}  // namespace footing::view
