@@ -8,7 +8,6 @@
 
 #include "common/mcap/decode.h"
 #include "common/mcap/seek.h"
-#include "common/text/number.h"
 
 namespace footing::playback {
 namespace {
@@ -20,20 +19,6 @@ constexpr std::size_t kMostChunks = 131'072;
 constexpr std::uint64_t kMostIndexBytes = 64ull << 20;
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-
-std::string TextOf(const mcap::TextMap& values, const std::string& key) {
-  const auto found = values.find(key);
-  return found == values.end() ? "" : found->second;
-}
-
-/// A whole number, 0 where there is none.
-std::int64_t WholeOf(const mcap::TextMap& values, const std::string& key) {
-  const std::string word = TextOf(values, key);
-  const bool negative = !word.empty() && word[0] == '-';
-  const auto count = text::ToCount(std::string_view(word).substr(negative ? 1 : 0));
-  if (!count || *count > static_cast<std::size_t>(kNever)) return 0;
-  return (negative ? -1 : 1) * static_cast<std::int64_t>(*count);
-}
 
 /// Parses the message into its field of the tick; false when it makes no sense.
 bool Parse(std::uint32_t field, std::string_view bytes, v1::Tick& tick) {
@@ -51,7 +36,7 @@ Result<SeekableRecording> SeekableRecording::Open(const std::string& path,
   Result<recording::MappedFile> file = recording::MappedFile::Open(path);
   if (!file) return file.error();
   SeekableRecording opened(path, std::move(*file));
-  for (const std::string& name : names) opened.servers_.push_back({name, 0, {}, {}});
+  for (const std::string& name : names) opened.servers_.emplace_back().name = name;
   if (const Result<void> read = opened.ReadIndex(); !read) {
     return InvalidData(path + ": " + read.error().message);
   }
@@ -109,24 +94,17 @@ void SeekableRecording::ReadMetadata() {
 }
 
 void SeekableRecording::TakeMetadata(const mcap::Metadata& metadata) {
-  const std::string name = TextOf(metadata.values, "server");
+  const auto named = metadata.values.find("server");
+  if (named == metadata.values.end()) return;
   const auto server = std::find_if(servers_.begin(), servers_.end(),
-                                   [&name](const ServerPlace& one) { return one.name == name; });
+                                   [&named](const auto& one) { return one.name == named->second; });
   if (server == servers_.end()) return;
   if (metadata.name == "clock") {
-    // On one host both read the same clock: an estimate could only add its own error.
-    const bool same_host = TextOf(metadata.values, "address").rfind("unix:", 0) == 0;
-    const bool valid = TextOf(metadata.values, "valid") == "true";
-    if (valid && !same_host) {
-      server->offset_ns = WholeOf(metadata.values, "server_minus_recorder_ns");
-    }
+    TakeClock(metadata.values, *server);
     return;
   }
-  const std::int64_t server_ns = WholeOf(metadata.values, "server_host_ns");
-  const std::int64_t recorder_ns = WholeOf(metadata.values, "recorder_host_ns");
-  const std::int64_t wall_ns = WholeOf(metadata.values, "server_wall_time_ns");
-  server->welcomes.push_back({server_ns, recorder_ns});
-  if (!wall_minus_clock_ns_ && wall_ns != 0) wall_minus_clock_ns_ = wall_ns - recorder_ns;
+  const std::optional<std::int64_t> wall_ns = TakeSession(metadata.values, *server);
+  if (!wall_minus_clock_ns_) wall_minus_clock_ns_ = wall_ns;
 }
 
 void SeekableRecording::FindEnds() {
@@ -160,22 +138,19 @@ std::string SeekableRecording::Limits() const {
 }
 
 std::int64_t SeekableRecording::TimeOf(const mcap::Message& message) const {
-  const ServerPlace& server = servers_[channels_.at(message.channel_id).server];
+  const RecordedServer& server = servers_[channels_.at(message.channel_id).server];
   return static_cast<std::int64_t>(message.log_time_ns) - server.offset_ns;
 }
 
 PlacedTick SeekableRecording::Place(const mcap::Message& message) const {
   PlacedTick placed;
   placed.server = channels_.at(message.channel_id).server;
-  const ServerPlace& server = servers_[placed.server];
+  const RecordedServer& server = servers_[placed.server];
   const auto host_ns = static_cast<std::int64_t>(message.log_time_ns);
   const auto recorded_ns = static_cast<std::int64_t>(message.publish_time_ns);
   placed.offset_ns = server.offset_ns;
   placed.time_ns = host_ns - server.offset_ns;
-  placed.live =
-      std::none_of(server.welcomes.begin(), server.welcomes.end(), [&](const Welcome& welcome) {
-        return host_ns < welcome.server_ns && recorded_ns >= welcome.recorder_ns;
-      });
+  placed.live = IsLive(server, host_ns, recorded_ns);
   if (placed.live) placed.delay_ns = std::max<std::int64_t>(0, recorded_ns - placed.time_ns);
   placed.tick.set_host_ns(host_ns);
   placed.tick.set_sequence(message.sequence);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/mcap/summary.h"
+#include "common/playback/recorded_server.h"
 #include "common/recording/mapped_file.h"
 #include "common/result/result.h"
 #include "footing/v1/session.pb.h"
@@ -66,17 +67,6 @@ class SeekableRecording {
     std::size_t server = 0;
     std::uint32_t field = 0;  ///< Of v1::Tick.
   };
-  /// A connection of the recorder: what was made before it came later.
-  struct Welcome {
-    std::int64_t server_ns = 0;
-    std::int64_t recorder_ns = 0;
-  };
-  struct ServerPlace {
-    std::string name;
-    std::int64_t offset_ns = 0;
-    std::vector<Welcome> welcomes;
-    std::map<std::string, std::uint16_t> channels;  ///< By name, to the file's channel id.
-  };
 
   SeekableRecording(std::string path, recording::MappedFile file)
       : path_(std::move(path)), file_(std::move(file)) {}
@@ -94,7 +84,7 @@ class SeekableRecording {
   recording::MappedFile file_;
   mcap::Summary summary_;
   std::string problem_;  ///< Of a file without an index.
-  std::vector<ServerPlace> servers_;
+  std::vector<RecordedServer> servers_;
   std::map<std::uint16_t, ChannelPlace> channels_;
   std::set<std::uint64_t> damaged_chunks_;
   std::optional<std::int64_t> wall_minus_clock_ns_;
