@@ -14,13 +14,13 @@ std::string TextOf(const mcap::TextMap& values, const std::string& key) {
   return found == values.end() ? "" : found->second;
 }
 
-/// A whole number, 0 where there is none.
-std::int64_t WholeOf(const mcap::TextMap& values, const std::string& key) {
+/// A whole number; nothing where there is none.
+std::optional<std::int64_t> WholeOf(const mcap::TextMap& values, const std::string& key) {
   const std::string word = TextOf(values, key);
   const bool negative = !word.empty() && word[0] == '-';
   const auto count = text::ToCount(std::string_view(word).substr(negative ? 1 : 0));
   if (!count || *count > static_cast<std::size_t>(std::numeric_limits<std::int64_t>::max())) {
-    return 0;
+    return std::nullopt;
   }
   return (negative ? -1 : 1) * static_cast<std::int64_t>(*count);
 }
@@ -34,16 +34,22 @@ bool OnThisHost(const mcap::TextMap& values) {
 
 void TakeClock(const mcap::TextMap& values, RecordedServer& server) {
   if (TextOf(values, "valid") != "true" || OnThisHost(values)) return;
-  server.offset_ns = WholeOf(values, "server_minus_recorder_ns");
+  const std::optional<std::int64_t> offset_ns = WholeOf(values, "server_minus_recorder_ns");
+  if (!offset_ns) return;
+  server.offset_ns = *offset_ns;
+  server.clock_measured = true;
 }
 
 std::optional<std::int64_t> TakeSession(const mcap::TextMap& values, RecordedServer& server) {
-  const std::int64_t server_ns = WholeOf(values, "server_host_ns");
-  const std::int64_t recorder_ns = WholeOf(values, "recorder_host_ns");
-  const std::int64_t wall_ns = WholeOf(values, "server_wall_time_ns");
-  server.welcomes.push_back({server_ns, recorder_ns});
+  const std::optional<std::int64_t> server_ns = WholeOf(values, "server_host_ns");
+  const std::optional<std::int64_t> recorder_ns = WholeOf(values, "recorder_host_ns");
+  if (!server_ns || !recorder_ns) return std::nullopt;
+  server.welcomes.push_back({*server_ns, *recorder_ns});
+  const bool other_host = !TextOf(values, "address").empty() && !OnThisHost(values);
+  if (other_host && !server.clock_measured) server.offset_ns = *server_ns - *recorder_ns;
+  const std::int64_t wall_ns = WholeOf(values, "server_wall_time_ns").value_or(0);
   if (wall_ns == 0) return std::nullopt;
-  return wall_ns - recorder_ns;
+  return wall_ns - *recorder_ns;
 }
 
 bool IsLive(const RecordedServer& server, std::int64_t host_ns, std::int64_t recorded_ns) {

@@ -19,7 +19,8 @@ struct RecordedWelcome {
 /// What a recording says of one server.
 struct RecordedServer {
   std::string name;
-  std::int64_t offset_ns = 0;  ///< Its clock minus the recorder's.
+  std::int64_t offset_ns = 0;   ///< Its clock minus the recorder's.
+  bool clock_measured = false;  ///< `offset_ns` is of "clock".
   std::vector<RecordedWelcome> welcomes;
   std::map<std::string, std::uint16_t> channels;  ///< By name, to the file's channel id.
 };
@@ -27,8 +28,9 @@ struct RecordedServer {
 /// Takes the metadata "clock": how the clocks stood at the recording's end.
 void TakeClock(const mcap::TextMap& values, RecordedServer& server);
 
-/// Takes the metadata "session" of a new connection. Gives UNIX time less the recorder's clock;
-/// nothing when it does not say.
+/// Takes the metadata "session" of a new connection. Until a clock is taken, the greeting of
+/// another host gives the offset, late by the time it was under way. Gives UNIX time less the
+/// recorder's clock; nothing when it does not say.
 std::optional<std::int64_t> TakeSession(const mcap::TextMap& values, RecordedServer& server);
 
 /// A tick made at `host_ns` and recorded at `recorded_ns` came as it was made.

@@ -135,6 +135,38 @@ TEST_F(SeekableRecordingTest, ServersOfOtherHostsAreOnTheRecordersClock) {
   EXPECT_EQ(ticks[0].delay_ns, 4 * kMs);
 }
 
+TEST_F(SeekableRecordingTest, WithoutAMeasuredClockTheSessionSaysHowTheClocksStand) {
+  // A killed recorder writes no "clock"; one that never measured it says that it is not valid.
+  for (const bool killed : {true, false}) {
+    Create();
+    const std::int64_t offset_ns = 5'000'000 * kMs;
+    Session("footing-sim", "tcp:10.0.0.2:4711", offset_ns + 100 * kMs, 100 * kMs);
+    Session("footingd", "unix:/a", 60 * kMs, 100 * kMs);
+    Frame(offset_ns + 200 * kMs, 203 * kMs, 1);
+    Motion(210 * kMs, 211 * kMs, 1);
+    const mcap::TextMap clock{{"server", "footing-sim"}, {"valid", "false"}};
+    ASSERT_TRUE(killed || writer_->AddMetadata("clock", clock).ok());
+    auto recording = Opened();
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(recording->first_ns(), 200 * kMs);
+    EXPECT_EQ(recording->last_ns(), 210 * kMs);
+  }
+}
+
+TEST_F(SeekableRecordingTest, AMeasuredClockGoesBeforeTheSessions) {
+  Create();
+  const mcap::TextMap clock{{"server", "footing-sim"},
+                            {"address", "tcp:10.0.0.2:4711"},
+                            {"valid", "true"},
+                            {"server_minus_recorder_ns", std::to_string(3000 * kMs)}};
+  ASSERT_TRUE(writer_->AddMetadata("clock", clock));
+  Session("footing-sim", "tcp:10.0.0.2:4711", 2990 * kMs, 0);
+  Frame(3500 * kMs, 510 * kMs, 1);
+  auto recording = Opened();
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->first_ns(), 500 * kMs);
+}
+
 TEST_F(SeekableRecordingTest, NothingToPlayIsAnError) {
   Create();
   ASSERT_TRUE(writer_->Write("/footing-camera/status", v1::DeviceStatusList(), {1, 1, 1}));
