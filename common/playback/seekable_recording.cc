@@ -114,16 +114,21 @@ void SeekableRecording::FindEnds() {
     first_ns_ = std::min(first_ns_, TimeOf(message));
     last_ns_ = std::max(last_ns_, TimeOf(message));
   };
-  const auto& chunks = summary_.chunks;
-  for (const auto& [id, place] : channels_) {
-    const auto has = [id = id](const mcap::ChunkIndex& chunk) {
-      return chunk.message_index_offsets.count(id) > 0;
-    };
-    const auto first = std::find_if(chunks.begin(), chunks.end(), has);
-    if (first == chunks.end()) continue;
-    ReadChannel(*first, id, take);
-    ReadChannel(*std::find_if(chunks.rbegin(), chunks.rend(), has), id, take);
-  }
+  // Inwards from both ends, to the first chunk that yields a message of the channel.
+  const auto search = [&](auto from, auto to) {
+    std::set<std::uint16_t> found;
+    for (auto chunk = from; chunk != to && found.size() < channels_.size(); ++chunk) {
+      for (const auto& [id, offset] : chunk->message_index_offsets) {
+        if (channels_.count(id) == 0 || found.count(id) > 0) continue;
+        ReadChannel(*chunk, id, [&](const mcap::Message& message) {
+          take(message);
+          found.insert(message.channel_id);
+        });
+      }
+    }
+  };
+  search(summary_.chunks.begin(), summary_.chunks.end());
+  search(summary_.chunks.rbegin(), summary_.chunks.rend());
 }
 
 std::string SeekableRecording::Limits() const {

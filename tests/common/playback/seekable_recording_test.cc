@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "common/recording/recording_writer.h"
 #include "tests/common/temporary_folder.h"
 
@@ -43,6 +46,18 @@ class SeekableRecordingTest : public ::testing::Test {
   }
   Result<SeekableRecording> Opened() {
     EXPECT_TRUE(writer_->Finish());
+    return SeekableRecording::Open(path_, kNames, kChannels);
+  }
+  /// Opens it with other bytes; `change` gets them and the chunks.
+  template <typename Change>
+  Result<SeekableRecording> OpenedWith(Change change) {
+    EXPECT_TRUE(writer_->Finish());
+    std::ifstream whole(path_, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+    const auto summary = mcap::ReadSummary(bytes);
+    EXPECT_TRUE(summary.ok());
+    change(bytes, summary->chunks);
+    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
     return SeekableRecording::Open(path_, kNames, kChannels);
   }
 
@@ -165,6 +180,21 @@ TEST_F(SeekableRecordingTest, AMeasuredClockGoesBeforeTheSessions) {
   auto recording = Opened();
   ASSERT_TRUE(recording.ok());
   EXPECT_EQ(recording->first_ns(), 500 * kMs);
+}
+
+TEST_F(SeekableRecordingTest, DamagedChunksAtTheEndsDoNotHideTheRest) {
+  Create();
+  for (std::uint32_t k = 0; k < 250; ++k) Frame(k * 20 * kMs, k * 20 * kMs, k);
+  auto recording = OpenedWith([](std::string& bytes, const auto& chunks) {
+    ASSERT_GT(chunks.size(), 3u);
+    bytes[chunks.front().chunk_offset] = '\x7f';
+    bytes[chunks.back().chunk_offset] = '\x7f';
+  });
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  // A chunk holds the 51 frames of 1 s: the last one begins with frame 204.
+  EXPECT_EQ(recording->first_ns() / kMs, 51 * 20);
+  EXPECT_EQ(recording->last_ns() / kMs, 203 * 20);
+  EXPECT_THAT(recording->Limits(), HasSubstr("2 damaged chunks"));
 }
 
 TEST_F(SeekableRecordingTest, NothingToPlayIsAnError) {
