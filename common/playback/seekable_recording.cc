@@ -241,11 +241,13 @@ void SeekableRecording::Visit(std::size_t server, const std::string& channel,
                               const std::function<void(const PlacedTick&)>& handler) {
   const auto id = servers_[server].channels.find(channel);
   if (id == servers_[server].channels.end()) return;
+  std::set<std::pair<std::int64_t, std::uint64_t>> seen;
   for (const mcap::ChunkIndex& chunk : summary_.chunks) {
     if (chunk.message_index_offsets.count(id->second) == 0) continue;
     ReadChannel(chunk, id->second, [&](const mcap::Message& message) {
       PlacedTick placed = Place(message);
-      if (Parse(channels_.at(id->second).field, message.data, placed.tick)) handler(placed);
+      if (!Parse(channels_.at(id->second).field, message.data, placed.tick)) return;
+      if (seen.emplace(placed.time_ns, placed.tick.sequence()).second) handler(placed);
     });
   }
 }

@@ -58,7 +58,8 @@ class SeekableRecording {
   std::optional<PlacedTick> LastOf(std::size_t server, const std::string& channel,
                                    std::int64_t at_ns, bool or_next = false);
 
-  /// Every tick of one channel of one server, with that channel alone, in the order of the file.
+  /// Every tick of one channel of one server, with that channel alone, in the order of the file;
+  /// what a resume sent again comes once.
   void Visit(std::size_t server, const std::string& channel,
              const std::function<void(const PlacedTick&)>& handler);
 

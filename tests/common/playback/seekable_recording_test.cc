@@ -197,6 +197,23 @@ TEST_F(SeekableRecordingTest, DamagedChunksAtTheEndsDoNotHideTheRest) {
   EXPECT_THAT(recording->Limits(), HasSubstr("2 damaged chunks"));
 }
 
+TEST_F(SeekableRecordingTest, EveryTickIsVisitedOnce) {
+  Create();
+  for (std::uint32_t k = 0; k < 100; ++k) Frame(k * 20 * kMs, k * 20 * kMs, k);
+  // Sent again by a resume; the last one is another tick of the same instant.
+  for (std::uint32_t k = 90; k < 100; ++k) Frame(k * 20 * kMs, 2100 * kMs, k);
+  Frame(99 * 20 * kMs, 2100 * kMs, 100);
+  auto recording = Opened();
+  ASSERT_TRUE(recording.ok());
+  std::vector<std::uint64_t> steps;
+  recording->Visit(0, "characters", [&](const PlacedTick& placed) {
+    steps.push_back(placed.tick.characters().step());
+  });
+  ASSERT_EQ(steps.size(), 101u);
+  EXPECT_EQ(steps[99], 99u);
+  EXPECT_EQ(steps[100], 100u);
+}
+
 TEST_F(SeekableRecordingTest, NothingToPlayIsAnError) {
   Create();
   ASSERT_TRUE(writer_->Write("/footing-camera/status", v1::DeviceStatusList(), {1, 1, 1}));
