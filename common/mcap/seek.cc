@@ -8,6 +8,8 @@
 namespace footing::mcap {
 namespace {
 
+constexpr const char* kDamagedRecord = "a chunk with a damaged record";
+
 Error DamagedAt(std::uint64_t offset, const std::string& what) {
   return InvalidData("byte " + std::to_string(offset) + ": " + what);
 }
@@ -53,6 +55,37 @@ bool ForEachRecord(std::string_view records, Taker take) {
   return true;
 }
 
+/// Every record fits, and every message has its fields.
+bool RecordsAreWhole(const Chunk& chunk) {
+  return ForEachRecord(chunk.records, [](const FoundRecord& record) {
+    return record.opcode != Opcode::kMessage || DecodeMessage(record.body).has_value();
+  });
+}
+
+/// The message of this channel at `offset` within a chunk's records.
+std::optional<Message> MessageAt(std::string_view records, std::uint64_t offset,
+                                 std::uint16_t channel) {
+  const std::optional<FoundRecord> record = RecordAt(records, offset);
+  if (!record || record->opcode != Opcode::kMessage) return std::nullopt;
+  const std::optional<Message> message = DecodeMessage(record->body);
+  if (!message || message->channel_id != channel) return std::nullopt;
+  return message;
+}
+
+/// The channel's message index at `offset` of the file; nothing when an entry names anything but a
+/// message of the channel.
+std::optional<MessageIndex> IndexAt(std::string_view file, std::uint64_t offset,
+                                    std::uint16_t channel, std::string_view records) {
+  const std::optional<FoundRecord> record = RecordAt(file, offset);
+  if (!record || record->opcode != Opcode::kMessageIndex) return std::nullopt;
+  std::optional<MessageIndex> index = DecodeMessageIndex(record->body);
+  if (!index || index->channel_id != channel) return std::nullopt;
+  for (const MessageIndex::Entry& entry : index->entries) {
+    if (!MessageAt(records, entry.offset, channel)) return std::nullopt;
+  }
+  return index;
+}
+
 /// Takes a schema or channel into the summary; false when it is damaged.
 bool TakeDefinition(const FoundRecord& record, Summary& summary) {
   if (record.opcode == Opcode::kSchema) {
@@ -89,19 +122,26 @@ std::optional<ChunkIndex> IndexOf(std::string_view body, std::uint64_t offset, S
 
 }  // namespace
 
-Result<void> VisitChunk(std::string_view file, const ChunkIndex& index,
-                        const std::function<void(const Message&)>& handler) {
+Result<void> CheckChunk(std::string_view file, const ChunkIndex& index) {
   const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset);
   if (!chunk || !IsWhole(*chunk)) {
     return DamagedAt(index.chunk_offset, "a damaged chunk, or a compressed one");
   }
-  const bool whole = ForEachRecord(chunk->records, [&](const FoundRecord& record) {
-    if (record.opcode != Opcode::kMessage) return true;
-    const std::optional<Message> message = DecodeMessage(record.body);
-    if (message) handler(*message);
-    return message.has_value();
+  if (!RecordsAreWhole(*chunk)) return DamagedAt(index.chunk_offset, kDamagedRecord);
+  return {};
+}
+
+Result<void> VisitChunk(std::string_view file, const ChunkIndex& index,
+                        const std::function<void(const Message&)>& handler) {
+  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset);
+  // Checked ahead: of a damaged chunk nothing is delivered.
+  if (!chunk || !chunk->compression.empty() || !RecordsAreWhole(*chunk)) {
+    return DamagedAt(index.chunk_offset, kDamagedRecord);
+  }
+  ForEachRecord(chunk->records, [&](const FoundRecord& record) {
+    if (record.opcode == Opcode::kMessage) handler(*DecodeMessage(record.body));
+    return true;
   });
-  if (!whole) return DamagedAt(index.chunk_offset, "a chunk with a damaged record");
   return {};
 }
 
@@ -109,24 +149,17 @@ Result<void> VisitChannel(std::string_view file, const ChunkIndex& index, std::u
                           const std::function<void(const Message&)>& handler) {
   const auto found = index.message_index_offsets.find(channel);
   if (found == index.message_index_offsets.end()) return {};
-  if (found->second == 0) {
+  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset);
+  const auto entries = chunk && chunk->compression.empty() && found->second != 0
+                           ? IndexAt(file, found->second, channel, chunk->records)
+                           : std::nullopt;
+  if (!entries) {
     return VisitChunk(file, index, [&](const Message& message) {
       if (message.channel_id == channel) handler(message);
     });
   }
-  const std::optional<FoundRecord> record = RecordAt(file, found->second);
-  const bool is_index = record && record->opcode == Opcode::kMessageIndex;
-  const auto entries = is_index ? DecodeMessageIndex(record->body) : std::nullopt;
-  const std::optional<Chunk> chunk = ChunkAt(file, index.chunk_offset);
-  if (!entries || !chunk || !chunk->compression.empty()) {
-    return DamagedAt(index.chunk_offset, "a damaged chunk or message index, or a compressed chunk");
-  }
   for (const MessageIndex::Entry& entry : entries->entries) {
-    const std::optional<FoundRecord> at = RecordAt(chunk->records, entry.offset);
-    const bool is_message = at && at->opcode == Opcode::kMessage;
-    const auto message = is_message ? DecodeMessage(at->body) : std::nullopt;
-    if (!message) return DamagedAt(found->second, "a message index that names no message");
-    if (message->channel_id == channel) handler(*message);
+    handler(*MessageAt(chunk->records, entry.offset, channel));
   }
   return {};
 }

@@ -10,13 +10,17 @@
 /// Reading a file from any place. What is not read is not touched.
 namespace footing::mcap {
 
-/// Visits the messages of one chunk, in its order. InvalidData with the byte offset when it is
-/// damaged or compressed.
+/// Checks one chunk: its CRC, and that every record in it is complete. InvalidData with the byte
+/// offset when it is damaged or compressed.
+Result<void> CheckChunk(std::string_view file, const ChunkIndex& index);
+
+/// Visits the messages of one chunk that CheckChunk accepts, in its order; its CRC is not checked
+/// again. InvalidData with the byte offset, and no message, when its records are damaged.
 Result<void> VisitChunk(std::string_view file, const ChunkIndex& index,
                         const std::function<void(const Message&)>& handler);
 
-/// Visits the messages of one channel of one chunk, found through the chunk's message index; the
-/// chunk's CRC is not checked then. Where the file has no such index, the whole chunk is read.
+/// The same for the messages of one channel, found through the chunk's message index. Where the
+/// file has no such index or it is wrong, the whole chunk is read.
 Result<void> VisitChannel(std::string_view file, const ChunkIndex& index, std::uint16_t channel,
                           const std::function<void(const Message&)>& handler);
 

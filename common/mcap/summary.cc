@@ -95,6 +95,7 @@ Result<void> VisitMessages(std::string_view file, const Summary& summary, std::u
                            const std::function<void(const Message&)>& handler) {
   for (const ChunkIndex& index : summary.chunks) {
     if (index.end_time_ns < start_ns || index.start_time_ns >= end_ns) continue;
+    if (Result<void> checked = CheckChunk(file, index); !checked) return checked;
     const Result<void> visited = VisitChunk(file, index, [&](const Message& message) {
       if (message.log_time_ns >= start_ns && message.log_time_ns < end_ns) handler(message);
     });

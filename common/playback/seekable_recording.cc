@@ -133,9 +133,11 @@ void SeekableRecording::FindEnds() {
 
 std::string SeekableRecording::Limits() const {
   std::string limits = problem_;
-  if (!damaged_chunks_.empty()) {
-    limits += (limits.empty() ? "" : ", ") + std::to_string(damaged_chunks_.size()) +
-              " damaged chunks are left out";
+  const auto damaged = std::count_if(usable_chunks_.begin(), usable_chunks_.end(),
+                                     [](const auto& chunk) { return !chunk.second; });
+  if (damaged > 0) {
+    limits +=
+        (limits.empty() ? "" : ", ") + std::to_string(damaged) + " damaged chunks are left out";
   }
   if (limits.empty()) return "";
   return "the recording is not whole: " + limits + "; repair it with: footing-log repair " + path_ +
@@ -164,9 +166,15 @@ PlacedTick SeekableRecording::Place(const mcap::Message& message) const {
 
 void SeekableRecording::ReadChannel(const mcap::ChunkIndex& chunk, std::uint16_t channel,
                                     const std::function<void(const mcap::Message&)>& handler) {
-  if (!mcap::VisitChannel(file_.bytes(), chunk, channel, handler)) {
-    damaged_chunks_.insert(chunk.chunk_offset);
-  }
+  if (!IsUsable(chunk)) return;
+  // It was checked: there is no other way to fail.
+  (void)mcap::VisitChannel(file_.bytes(), chunk, channel, handler).ok();
+}
+
+bool SeekableRecording::IsUsable(const mcap::ChunkIndex& chunk) {
+  const auto [known, fresh] = usable_chunks_.emplace(chunk.chunk_offset, false);
+  if (fresh) known->second = mcap::CheckChunk(file_.bytes(), chunk).ok();
+  return known->second;
 }
 
 std::vector<PlacedTick> SeekableRecording::Ticks(std::int64_t from_ns, std::int64_t to_ns) {
@@ -194,8 +202,7 @@ std::vector<PlacedTick> SeekableRecording::Ticks(std::int64_t from_ns, std::int6
       return static_cast<std::int64_t>(chunk.end_time_ns) - server.offset_ns >= from_ns &&
              static_cast<std::int64_t>(chunk.start_time_ns) - server.offset_ns < to_ns;
     });
-    if (!meets || damaged_chunks_.count(chunk.chunk_offset) > 0) continue;
-    if (!mcap::VisitChunk(file_.bytes(), chunk, take)) damaged_chunks_.insert(chunk.chunk_offset);
+    if (meets && IsUsable(chunk)) (void)mcap::VisitChunk(file_.bytes(), chunk, take).ok();
   }
   std::stable_sort(ticks.begin(), ticks.end(),
                    [](const PlacedTick& a, const PlacedTick& b) { return a.time_ns < b.time_ns; });

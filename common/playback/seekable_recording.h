@@ -78,6 +78,8 @@ class SeekableRecording {
   void FindEnds();
   std::int64_t TimeOf(const mcap::Message& message) const;
   PlacedTick Place(const mcap::Message& message) const;
+  /// The chunk's CRC and records are right; checked at its first use.
+  bool IsUsable(const mcap::ChunkIndex& chunk);
   void ReadChannel(const mcap::ChunkIndex& chunk, std::uint16_t channel,
                    const std::function<void(const mcap::Message&)>& handler);
 
@@ -87,7 +89,7 @@ class SeekableRecording {
   std::string problem_;  ///< Of a file without an index.
   std::vector<RecordedServer> servers_;
   std::map<std::uint16_t, ChannelPlace> channels_;
-  std::set<std::uint64_t> damaged_chunks_;
+  std::map<std::uint64_t, bool> usable_chunks_;  ///< Those checked, by offset.
   std::optional<std::int64_t> wall_minus_clock_ns_;
   std::int64_t first_ns_ = 0;
   std::int64_t last_ns_ = 0;

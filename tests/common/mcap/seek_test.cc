@@ -90,7 +90,38 @@ TEST(McapSeek, ADamagedChunkIsLeftOutAndCounted) {
   ASSERT_TRUE(rebuilt.ok());
   EXPECT_EQ(rebuilt->summary.chunks.size(), summary.chunks.size() - 1);
   EXPECT_THAT(rebuilt->problem, HasSubstr("1 damaged chunks"));
-  EXPECT_FALSE(VisitChunk(file, second, [](const Message&) {}).ok());
+  EXPECT_FALSE(CheckChunk(file, second).ok());
+  EXPECT_TRUE(CheckChunk(file, summary.chunks[2]).ok());
+}
+
+/// Opcode and length; then of the index the channel (u16), the entries' size (u32) and per entry
+/// the log time and the offset (u64 each).
+constexpr std::uint64_t kSecondEntryOffset = kRecordHeadBytes + 6 + 16 + 8;
+
+TEST(McapSeek, ADamagedMessageIndexDoesNotHideItsChunk) {
+  const std::string whole = SampleFile(23);
+  const Summary summary = *ReadSummary(whole);
+  const std::uint64_t index = summary.chunks[0].message_index_offsets.at(1);
+  // No index; one of another channel; entries that name the wrong messages, the first one right.
+  for (const std::uint64_t at : {index, index + kRecordHeadBytes, index + kSecondEntryOffset}) {
+    std::string file = whole;
+    file[at] ^= 3;
+    EXPECT_EQ(TextsOf(file, summary, 1), EverySecond(0, 23)) << at - index;
+  }
+}
+
+TEST(McapSeek, ADamagedRecordWithinAChunkYieldsNothingOfIt) {
+  std::string file = SampleFile(23);
+  const ChunkIndex chunk = ReadSummary(file)->chunks[1];
+  // Its last message is longer than the chunk.
+  const std::size_t last = file.rfind(SampleText(9), chunk.chunk_offset + chunk.chunk_length);
+  ASSERT_NE(last, std::string::npos);
+  constexpr std::size_t kMessageHeadBytes = 22;
+  file[last - kMessageHeadBytes - 1] ^= 1;
+  int visited = 0;
+  EXPECT_FALSE(CheckChunk(file, chunk).ok());
+  EXPECT_FALSE(VisitChunk(file, chunk, [&](const Message&) { ++visited; }).ok());
+  EXPECT_EQ(visited, 0);
 }
 
 TEST(McapSeek, LimitsAreCheckedBeforeMemoryIsTaken) {

@@ -197,6 +197,29 @@ TEST_F(SeekableRecordingTest, DamagedChunksAtTheEndsDoNotHideTheRest) {
   EXPECT_THAT(recording->Limits(), HasSubstr("2 damaged chunks"));
 }
 
+TEST_F(SeekableRecordingTest, WhatIsVisitedIsWhatPlays) {
+  Create();
+  for (std::uint32_t k = 0; k < 250; ++k) Frame(k * 20 * kMs, k * 20 * kMs, k);
+  auto recording = OpenedWith([](std::string& bytes, const auto& chunks) {
+    // Of one chunk a byte of the last message, of another one the message index.
+    bytes[chunks[1].chunk_offset + chunks[1].chunk_length - 1] ^= 1;
+    bytes[chunks[2].message_index_offsets.begin()->second] ^= 0x40;
+  });
+  ASSERT_TRUE(recording.ok());
+  std::vector<std::int64_t> visited_ns;
+  recording->Visit(0, "characters",
+                   [&](const PlacedTick& placed) { visited_ns.push_back(placed.time_ns); });
+  EXPECT_EQ(visited_ns.size(), 199u);
+  std::vector<std::int64_t> played_ns;
+  for (const PlacedTick& placed : recording->Ticks(0, 5000 * kMs)) {
+    played_ns.push_back(placed.time_ns);
+  }
+  EXPECT_EQ(visited_ns, played_ns);
+  // The frame before the damaged chunk, not one within it.
+  EXPECT_EQ(recording->LastOf(0, "characters", 2000 * kMs)->time_ns, 1000 * kMs);
+  EXPECT_THAT(recording->Limits(), HasSubstr("1 damaged chunks"));
+}
+
 TEST_F(SeekableRecordingTest, EveryTickIsVisitedOnce) {
   Create();
   for (std::uint32_t k = 0; k < 100; ++k) Frame(k * 20 * kMs, k * 20 * kMs, k);
