@@ -86,38 +86,71 @@ std::optional<MessageIndex> IndexAt(std::string_view file, std::uint64_t offset,
   return index;
 }
 
-/// Takes a schema or channel into the summary; false when it is damaged.
-bool TakeDefinition(const FoundRecord& record, Summary& summary) {
-  if (record.opcode == Opcode::kSchema) {
-    const std::optional<Schema> schema = DecodeSchema(record.body);
-    if (schema) summary.schemas[schema->id] = *schema;
-    return schema.has_value();
+/// Bytes that an index may still take.
+struct Budget {
+  std::uint64_t left = 0;
+  bool exceeded = false;
+
+  bool Take(std::uint64_t bytes) {
+    if (bytes > left) exceeded = true;
+    if (!exceeded) left -= bytes;
+    return !exceeded;
   }
-  if (record.opcode == Opcode::kChannel) {
-    const std::optional<Channel> channel = DecodeChannel(record.body);
-    if (channel) summary.channels[channel->id] = *channel;
-    return channel.has_value();
-  }
+};
+
+/// Of one chunk, and of one of its channels, in an index that stands in a file.
+constexpr std::uint64_t kChunkEntryBytes = 64, kChannelEntryBytes = 10, kMetadataEntryBytes = 32;
+
+/// Keeps the first record of an id; false when it is damaged or the budget is exceeded.
+template <typename T>
+bool TakeOnce(std::string_view body, std::optional<T> (*decode)(std::string_view),
+              std::map<std::uint16_t, T>& kept, Budget& budget) {
+  const std::uint16_t id = Cursor(body).U16();
+  if (kept.count(id) > 0) return true;
+  if (!budget.Take(body.size())) return false;
+  std::optional<T> decoded = decode(body);
+  if (!decoded) return false;
+  kept.emplace(id, *std::move(decoded));
   return true;
 }
 
-/// The chunk's index entry; nothing when the chunk is damaged or compressed.
-std::optional<ChunkIndex> IndexOf(std::string_view body, std::uint64_t offset, Summary& summary) {
+bool TakeRecord(const FoundRecord& record, Summary& summary, ChunkIndex& index, Budget& budget) {
+  if (record.opcode == Opcode::kSchema) {
+    return TakeOnce(record.body, DecodeSchema, summary.schemas, budget);
+  }
+  if (record.opcode == Opcode::kChannel) {
+    return TakeOnce(record.body, DecodeChannel, summary.channels, budget);
+  }
+  if (record.opcode != Opcode::kMessage) return true;
+  const std::optional<Message> message = DecodeMessage(record.body);
+  if (!message) return false;
+  const bool fresh = index.message_index_offsets.emplace(message->channel_id, 0).second;
+  return !fresh || budget.Take(kChannelEntryBytes);
+}
+
+/// The chunk's index entry; nothing when the chunk is damaged or compressed, or the budget is
+/// exceeded.
+std::optional<ChunkIndex> IndexOf(std::string_view body, std::uint64_t offset, Summary& summary,
+                                  Budget& budget) {
   const std::optional<Chunk> chunk = DecodeChunk(body);
-  if (!chunk || !IsWhole(*chunk)) return std::nullopt;
+  if (!chunk || !IsWhole(*chunk) || !budget.Take(kChunkEntryBytes)) return std::nullopt;
   ChunkIndex index;
   index.start_time_ns = chunk->start_time_ns;
   index.end_time_ns = chunk->end_time_ns;
   index.chunk_offset = offset;
   index.chunk_length = kRecordHeadBytes + body.size();
   const bool whole = ForEachRecord(chunk->records, [&](const FoundRecord& record) {
-    if (record.opcode != Opcode::kMessage) return TakeDefinition(record, summary);
-    const std::optional<Message> message = DecodeMessage(record.body);
-    if (message) index.message_index_offsets[message->channel_id] = 0;
-    return message.has_value();
+    return TakeRecord(record, summary, index, budget);
   });
   if (!whole) return std::nullopt;
   return index;
+}
+
+void TakeMetadata(std::string_view body, std::uint64_t offset, Summary& summary, Budget& budget) {
+  const std::string_view name = Cursor(body).Text();
+  if (!budget.Take(kMetadataEntryBytes + name.size())) return;
+  if (!DecodeMetadata(body)) return;
+  summary.metadata.push_back({offset, kRecordHeadBytes + body.size(), std::string(name)});
 }
 
 }  // namespace
@@ -164,11 +197,13 @@ Result<void> VisitChannel(std::string_view file, const ChunkIndex& index, std::u
   return {};
 }
 
-Result<RebuiltIndex> RebuildIndex(std::string_view file, std::size_t most_chunks) {
+Result<RebuiltIndex> RebuildIndex(std::string_view file, std::size_t most_chunks,
+                                  std::uint64_t most_bytes) {
   if (file.substr(0, kMagic.size()) != kMagic) return DamagedAt(0, "this is not an MCAP file");
   RebuiltIndex rebuilt;
   std::uint64_t damaged = 0, outside = 0;
   rebuilt.end_offset = kMagic.size();
+  Budget budget{most_bytes};
   bool ended = false;
   while (!ended) {
     const std::optional<FoundRecord> record = RecordAt(file, rebuilt.end_offset);
@@ -181,15 +216,15 @@ Result<RebuiltIndex> RebuildIndex(std::string_view file, std::size_t most_chunks
         return DamagedAt(rebuilt.end_offset,
                          "more than " + std::to_string(most_chunks) + " chunks");
       }
-      const auto index = IndexOf(record->body, rebuilt.end_offset, rebuilt.summary);
+      const auto index = IndexOf(record->body, rebuilt.end_offset, rebuilt.summary, budget);
       if (index) rebuilt.summary.chunks.push_back(*index);
       damaged += index ? 0 : 1;
     } else if (record->opcode == Opcode::kMetadata) {
-      const std::optional<Metadata> metadata = DecodeMetadata(record->body);
-      const std::uint64_t length = kRecordHeadBytes + record->body.size();
-      if (metadata) {
-        rebuilt.summary.metadata.push_back({rebuilt.end_offset, length, metadata->name});
-      }
+      TakeMetadata(record->body, rebuilt.end_offset, rebuilt.summary, budget);
+    }
+    if (budget.exceeded) {
+      return DamagedAt(rebuilt.end_offset,
+                       "an index of more than " + std::to_string(most_bytes) + " bytes");
     }
     outside += record->opcode == Opcode::kMessage ? 1 : 0;
     ended = record->opcode == Opcode::kDataEnd;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -33,7 +34,10 @@ struct RebuiltIndex {
 
 /// Reads every record's head, from the file's start to its end or to the first record that is cut.
 /// Damaged chunks and messages outside chunks are left out. InvalidData when the file is not MCAP,
-/// or has more than `most_chunks` chunks.
-Result<RebuiltIndex> RebuildIndex(std::string_view file, std::size_t most_chunks);
+/// has more than `most_chunks` chunks, or its chunks, schemas, channels and metadata would take
+/// more than `most_bytes` in an index.
+Result<RebuiltIndex> RebuildIndex(
+    std::string_view file, std::size_t most_chunks,
+    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 }  // namespace footing::mcap

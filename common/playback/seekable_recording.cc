@@ -59,7 +59,8 @@ Result<void> SeekableRecording::ReadIndex() {
     summary_ = std::move(*summary);
     return {};
   }
-  Result<mcap::RebuiltIndex> rebuilt = mcap::RebuildIndex(file_.bytes(), kMostChunks);
+  Result<mcap::RebuiltIndex> rebuilt =
+      mcap::RebuildIndex(file_.bytes(), kMostChunks, kMostIndexBytes);
   if (!rebuilt) return rebuilt.error();
   summary_ = std::move(rebuilt->summary);
   problem_ = rebuilt->problem.empty() ? "it has no index" : rebuilt->problem;

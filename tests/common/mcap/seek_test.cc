@@ -131,6 +131,25 @@ TEST(McapSeek, LimitsAreCheckedBeforeMemoryIsTaken) {
   EXPECT_FALSE(RebuildIndex("no MCAP file", 2).ok());
 }
 
+TEST(McapSeek, ARebuiltIndexOfManyDefinitionsOrMetadataIsRefused) {
+  constexpr std::uint64_t kMostBytes = 4000;
+  ASSERT_TRUE(RebuildIndex(SampleFile(23), 100, kMostBytes).ok());
+  Writer channels({"", "test 1"}, {}), metadata({"", "test 1"}, {});
+  for (std::uint16_t k = 0; k < 200; ++k) {
+    const std::uint16_t channel = channels.AddChannel(0, "/" + std::to_string(k), "protobuf", {});
+    channels.Add(Message{channel, 0, 0, 0, ""});
+    metadata.Add(Metadata{"session", {}});
+  }
+  for (Writer* const writer : {&channels, &metadata}) {
+    writer->Finish();
+    const std::string file = writer->Take();
+    EXPECT_TRUE(RebuildIndex(file, 100, 20 * kMostBytes).ok());
+    const Result<RebuiltIndex> refused = RebuildIndex(file, 100, kMostBytes);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_THAT(refused.error().message, HasSubstr("an index of more than 4000 bytes"));
+  }
+}
+
 TEST(McapSeek, AnIndexThatPointsAnywhereIsRefused) {
   const std::string file = SampleFile(23);
   const Summary summary = *ReadSummary(file);
