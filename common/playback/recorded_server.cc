@@ -1,7 +1,6 @@
 #include "common/playback/recorded_server.h"
 
 #include <algorithm>
-#include <limits>
 #include <string_view>
 
 #include "common/text/number.h"
@@ -14,14 +13,12 @@ std::string TextOf(const mcap::TextMap& values, const std::string& key) {
   return found == values.end() ? "" : found->second;
 }
 
-/// A whole number; nothing where there is none.
+/// A whole number within kMostNs; nothing where there is none.
 std::optional<std::int64_t> WholeOf(const mcap::TextMap& values, const std::string& key) {
   const std::string word = TextOf(values, key);
   const bool negative = !word.empty() && word[0] == '-';
   const auto count = text::ToCount(std::string_view(word).substr(negative ? 1 : 0));
-  if (!count || *count > static_cast<std::size_t>(std::numeric_limits<std::int64_t>::max())) {
-    return std::nullopt;
-  }
+  if (!count || *count > static_cast<std::size_t>(kMostNs)) return std::nullopt;
   return (negative ? -1 : 1) * static_cast<std::int64_t>(*count);
 }
 
@@ -44,9 +41,10 @@ std::optional<std::int64_t> TakeSession(const mcap::TextMap& values, RecordedSer
   const std::optional<std::int64_t> server_ns = WholeOf(values, "server_host_ns");
   const std::optional<std::int64_t> recorder_ns = WholeOf(values, "recorder_host_ns");
   if (!server_ns || !recorder_ns) return std::nullopt;
-  server.welcomes.push_back({*server_ns, *recorder_ns});
+  if (server.welcomes.size() < kMostSessions) server.welcomes.push_back({*server_ns, *recorder_ns});
   const bool other_host = !TextOf(values, "address").empty() && !OnThisHost(values);
-  if (other_host && !server.clock_measured) server.offset_ns = *server_ns - *recorder_ns;
+  const std::int64_t offset_ns = *server_ns - *recorder_ns;
+  if (other_host && !server.clock_measured && IsInstant(offset_ns)) server.offset_ns = offset_ns;
   const std::int64_t wall_ns = WholeOf(values, "server_wall_time_ns").value_or(0);
   if (wall_ns == 0) return std::nullopt;
   return wall_ns - *recorder_ns;

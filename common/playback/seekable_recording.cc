@@ -17,8 +17,13 @@ namespace pb = google::protobuf;
 /// Of one file, 36 hours: what is kept of them takes some 90 MB.
 constexpr std::size_t kMostChunks = 131'072;
 constexpr std::uint64_t kMostIndexBytes = 64ull << 20;
+/// Of all sessions and clocks, and of one message.
+constexpr std::uint64_t kMostMetadataBytes = 64ull << 20;
+constexpr std::size_t kMostMessageBytes = std::size_t{64} << 20;
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+bool IsInstant(std::uint64_t time_ns) { return time_ns <= static_cast<std::uint64_t>(kMostNs); }
 
 /// Parses the message into its field of the tick; false when it makes no sense.
 bool Parse(std::uint32_t field, std::string_view bytes, v1::Tick& tick) {
@@ -53,6 +58,16 @@ Result<SeekableRecording> SeekableRecording::Open(const std::string& path,
 }
 
 Result<void> SeekableRecording::ReadIndex() {
+  const Result<void> found = FindIndex();
+  std::erase_if(summary_.chunks, [this](const mcap::ChunkIndex& chunk) {
+    const bool refused = !IsInstant(chunk.start_time_ns) || !IsInstant(chunk.end_time_ns);
+    if (refused) usable_chunks_[chunk.chunk_offset] = false;
+    return refused;
+  });
+  return found;
+}
+
+Result<void> SeekableRecording::FindIndex() {
   Result<mcap::Summary> summary = mcap::ReadSummary(file_.bytes(), kMostIndexBytes);
   if (summary && summary->chunks.size() <= kMostChunks &&
       (!summary->chunks.empty() || summary->statistics.message_count == 0)) {
@@ -83,6 +98,7 @@ void SeekableRecording::PlaceChannels(const std::set<std::string>& channels) {
 }
 
 void SeekableRecording::ReadMetadata() {
+  std::uint64_t bytes = 0;
   for (const mcap::MetadataIndex& index : summary_.metadata) {
     if (index.name != "session" && index.name != "clock") continue;
     if (index.offset > file_.bytes().size()) continue;
@@ -90,6 +106,8 @@ void SeekableRecording::ReadMetadata() {
     const auto opcode = static_cast<mcap::Opcode>(head.U8());
     const std::string_view body = head.Take(head.U64());
     if (!head.ok() || opcode != mcap::Opcode::kMetadata) continue;
+    bytes += body.size();
+    if (bytes > kMostMetadataBytes) return;
     if (const auto metadata = mcap::DecodeMetadata(body)) TakeMetadata(*metadata);
   }
 }
@@ -174,7 +192,14 @@ void SeekableRecording::ReadChannel(const mcap::ChunkIndex& chunk, std::uint16_t
 
 bool SeekableRecording::IsUsable(const mcap::ChunkIndex& chunk) {
   const auto [known, fresh] = usable_chunks_.emplace(chunk.chunk_offset, false);
-  if (fresh) known->second = mcap::CheckChunk(file_.bytes(), chunk).ok();
+  if (!fresh || !mcap::CheckChunk(file_.bytes(), chunk)) return known->second;
+  bool within = true;
+  const auto check = [&](const mcap::Message& message) {
+    if (channels_.count(message.channel_id) == 0) return;
+    within = within && message.data.size() <= kMostMessageBytes && IsInstant(message.log_time_ns) &&
+             IsInstant(message.publish_time_ns);
+  };
+  known->second = mcap::VisitChunk(file_.bytes(), chunk, check).ok() && within;
   return known->second;
 }
 

@@ -72,13 +72,15 @@ class SeekableRecording {
   SeekableRecording(std::string path, recording::MappedFile file)
       : path_(std::move(path)), file_(std::move(file)) {}
   Result<void> ReadIndex();
+  Result<void> FindIndex();
   void PlaceChannels(const std::set<std::string>& channels);
   void ReadMetadata();
   void TakeMetadata(const mcap::Metadata& metadata);
   void FindEnds();
   std::int64_t TimeOf(const mcap::Message& message) const;
   PlacedTick Place(const mcap::Message& message) const;
-  /// The chunk's CRC and records are right; checked at its first use.
+  /// The chunk's CRC and records are right, and its messages within the limits of size and time;
+  /// checked at its first use.
   bool IsUsable(const mcap::ChunkIndex& chunk);
   void ReadChannel(const mcap::ChunkIndex& chunk, std::uint16_t channel,
                    const std::function<void(const mcap::Message&)>& handler);

@@ -220,6 +220,36 @@ TEST_F(SeekableRecordingTest, WhatIsVisitedIsWhatPlays) {
   EXPECT_THAT(recording->Limits(), HasSubstr("1 damaged chunks"));
 }
 
+TEST_F(SeekableRecordingTest, TimesThatCouldOverflowAreLeftOut) {
+  Create();
+  for (std::uint32_t k = 0; k < 50; ++k) Frame(k * 20 * kMs, k * 20 * kMs, k);
+  // The chunk of such a message is left out.
+  ASSERT_TRUE(writer_->Flush());
+  Frame(kMostNs + 1, 1000 * kMs, 50);
+  ASSERT_TRUE(writer_->Flush());
+  Frame(-1, 1000 * kMs, 51);
+  ASSERT_TRUE(writer_->Flush());
+  Frame(10'000 * kMs, kMostNs + 1, 52);
+  auto recording = Opened();
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->first_ns(), 0);
+  EXPECT_EQ(recording->last_ns(), 49 * 20 * kMs);
+  EXPECT_THAT(recording->Limits(), HasSubstr("3 damaged chunks"));
+}
+
+TEST_F(SeekableRecordingTest, MessagesBeyondTheLimitOfSizeAreLeftOut) {
+  Create();
+  Frame(0, 0, 0);
+  ASSERT_TRUE(writer_->Flush());
+  v1::Events events;
+  events.add_events()->set_text(std::string(std::size_t{64} << 20, 'a'));
+  ASSERT_TRUE(writer_->Write("/footing-sim/events", events, {5000 * kMs, 5000 * kMs, 1}));
+  auto recording = Opened();
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->last_ns(), 0);
+  EXPECT_FALSE(recording->LastOf(0, "events", 5000 * kMs));
+}
+
 TEST_F(SeekableRecordingTest, EveryTickIsVisitedOnce) {
   Create();
   for (std::uint32_t k = 0; k < 100; ++k) Frame(k * 20 * kMs, k * 20 * kMs, k);
