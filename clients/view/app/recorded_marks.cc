@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clients/view/scene/trial_text.h"
+#include "common/playback/recorded_server.h"
 #include "common/units/units.h"
 #include "common/wire/scalar.h"
 #include "common/wire/wire.h"
@@ -48,6 +49,7 @@ class MarkCollector {
   }
 
   void OnEvent(const v1::Event& event, std::int64_t offset_ns) {
+    if (!playback::IsInstant(event.host_ns())) return;
     const double at_s = PositionOf(event.host_ns() - offset_ns);
     switch (event.kind()) {
       case v1::Event::KIND_TRIAL:
@@ -67,6 +69,8 @@ class MarkCollector {
   void OnTick(const PlacedTick& placed) {
     bool response = false, note = false, change = false;
     for (const v1::Event& event : placed.tick.events().events()) {
+      too_many_ = too_many_ || IsFull();
+      if (too_many_) return;
       OnEvent(event, placed.offset_ns);
       change = change || event.kind() == v1::Event::KIND_GAIT_CHANGED;
       response = response || event.kind() == v1::Event::KIND_RESPONSE;
@@ -77,14 +81,7 @@ class MarkCollector {
     if (note) marks_.notes_ns.push_back(placed.time_ns);
   }
 
-  bool TooMany() const {
-    const timeline::Timeline& line = marks_.timeline;
-    const std::size_t instants = std::max(
-        {marks_.gait_changes_ns.size(), marks_.responses_ns.size(), marks_.notes_ns.size()});
-    return std::max({line.trials.size(), line.failures.size(), line.tasks.size()}) >=
-               timeline::kMostMarks ||
-           instants >= kMostInstants;
-  }
+  bool too_many() const { return too_many_; }
 
   RecordedMarks Take(std::int64_t last_ns) {
     timeline::Timeline& line = marks_.timeline;
@@ -98,6 +95,15 @@ class MarkCollector {
 
  private:
   double PositionOf(std::int64_t time_ns) const { return NanosecondsToSeconds(time_ns - zero_ns_); }
+
+  bool IsFull() const {
+    const timeline::Timeline& line = marks_.timeline;
+    const std::size_t instants = std::max(
+        {marks_.gait_changes_ns.size(), marks_.responses_ns.size(), marks_.notes_ns.size()});
+    return std::max({line.trials.size(), line.failures.size(), line.tasks.size()}) >=
+               timeline::kMostMarks ||
+           instants >= kMostInstants;
+  }
 
   static void Take(const stream::TrialState& state, TrialMark& trial) {
     trial.track = state.track;
@@ -179,6 +185,7 @@ class MarkCollector {
 
   std::int64_t zero_ns_;
   bool frame_only_ = false;  ///< The newest trial is known from a frame alone.
+  bool too_many_ = false;    ///< An event was left out.
   RecordedMarks marks_;
 };
 
@@ -209,12 +216,9 @@ Result<RecordedMarks> ReadMarks(playback::SeekableRecording& recording) {
   MarkCollector collector(recording.first_ns());
   TakeFrame(recording.LastOf(kPlayedSimulation, "characters", recording.first_ns(), true),
             collector);
-  bool too_many = false;
-  recording.Visit(kPlayedSimulation, "events", [&](const PlacedTick& placed) {
-    too_many = too_many || collector.TooMany();
-    if (!too_many) collector.OnTick(placed);
-  });
-  if (too_many) {
+  recording.Visit(kPlayedSimulation, "events",
+                  [&collector](const PlacedTick& placed) { collector.OnTick(placed); });
+  if (collector.too_many()) {
     return InvalidData(recording.path() + ": too many events; at most " +
                        std::to_string(timeline::kMostMarks) + " failures are read");
   }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "common/recording/recording_writer.h"
 #include "common/units/time.h"
 #include "common/wire/wire.h"
@@ -48,11 +50,14 @@ class RecordedMarksTest : public ::testing::Test {
     *frame.add_characters()->mutable_trial() = wire::ToProto(StateOf(id, phase, clock_s));
     Write("characters", frame, time_s);
   }
-  timeline::Timeline Read() {
+  Result<RecordedMarks> Marks() {
     EXPECT_TRUE(writer_->Finish());
     auto recording = OpenForPlayback(path_);
     EXPECT_TRUE(recording.ok());
-    auto marks = ReadMarks(*recording);
+    return ReadMarks(*recording);
+  }
+  timeline::Timeline Read() {
+    const auto marks = Marks();
     EXPECT_TRUE(marks.ok());
     return marks->timeline;
   }
@@ -103,6 +108,29 @@ TEST_F(RecordedMarksTest, TheFirstFrameAndTheReadyEventAreOneTrial) {
   ASSERT_EQ(line.trials.size(), 1u);
   EXPECT_DOUBLE_EQ(line.trials[0].begin_s, 0);
   EXPECT_DOUBLE_EQ(line.trials[0].start_s.value_or(0), 2);
+}
+
+TEST_F(RecordedMarksTest, TheLimitHoldsWithinOneTick) {
+  v1::Events events;
+  for (std::size_t k = 0; k <= timeline::kMostMarks; ++k) {
+    events.add_events()->set_kind(v1::Event::KIND_FALL);
+  }
+  Write("events", events, 0);
+  const auto marks = Marks();
+  ASSERT_FALSE(marks.ok());
+  EXPECT_EQ(marks.error().kind, ErrorKind::kInvalidData);
+}
+
+TEST_F(RecordedMarksTest, EventsAtImpossibleTimesHaveNoMarks) {
+  v1::Events events;
+  for (const std::int64_t at_ns : {std::int64_t{0}, std::numeric_limits<std::int64_t>::min(),
+                                   std::numeric_limits<std::int64_t>::max()}) {
+    v1::Event& event = *events.add_events();
+    event.set_kind(v1::Event::KIND_FALL);
+    event.set_host_ns(at_ns);
+  }
+  Write("events", events, 0);
+  EXPECT_EQ(Read().failures.size(), 1u);
 }
 
 }  // namespace

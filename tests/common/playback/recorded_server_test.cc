@@ -24,7 +24,8 @@ TEST(RecordedServerTest, TimesBeyondTheLimitAreLeftOut) {
   EXPECT_TRUE(server.welcomes.empty());
   TakeSession(SessionOf(kMostNs, -kMostNs), server);
   EXPECT_EQ(server.offset_ns, 0);
-  TakeClock({{"valid", "true"}, {"server_minus_recorder_ns", std::to_string(-kMostNs - 1)}}, server);
+  TakeClock({{"valid", "true"}, {"server_minus_recorder_ns", std::to_string(-kMostNs - 1)}},
+            server);
   EXPECT_FALSE(server.clock_measured);
 }
 
