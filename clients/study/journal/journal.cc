@@ -64,6 +64,7 @@ Result<Journal> Journal::Resume(const std::string& path) {
   }
   journal.events_ = std::move(text->events);
   journal.torn_bytes_ = text->torn_bytes;
+  journal.whole_bytes_ = text->whole_bytes;
   return journal;
 }
 
@@ -71,13 +72,17 @@ Journal::Journal(Journal&& other) noexcept
     : path_(std::move(other.path_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       events_(std::move(other.events_)),
-      torn_bytes_(other.torn_bytes_) {}
+      torn_bytes_(other.torn_bytes_),
+      whole_bytes_(other.whole_bytes_),
+      refused_(std::move(other.refused_)) {}
 
 Journal& Journal::operator=(Journal&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(events_, other.events_);
   std::swap(torn_bytes_, other.torn_bytes_);
+  std::swap(whole_bytes_, other.whole_bytes_);
+  std::swap(refused_, other.refused_);
   return *this;
 }
 
@@ -85,7 +90,14 @@ Journal::~Journal() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
+Result<void> Journal::Refuse(const std::string& what) {
+  refused_ = Fault(what, path_);
+  if (::ftruncate(descriptor_, static_cast<off_t>(whole_bytes_)) == 0) ::fsync(descriptor_);
+  return refused_;
+}
+
 Result<void> Journal::Append(records::EventKind kind, nlohmann::ordered_json fields) {
+  if (!refused_) return refused_;
   records::Event event;
   event.kind = kind;
   event.number = events_.size() + 1;
@@ -96,10 +108,11 @@ Result<void> Journal::Append(records::EventKind kind, nlohmann::ordered_json fie
   while (!left.empty()) {
     const ssize_t written = ::write(descriptor_, left.data(), left.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return Fault("write", path_);
+    if (written < 0) return Refuse("write");
     left.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(descriptor_) != 0) return Fault("write", path_);
+  if (::fsync(descriptor_) != 0) return Refuse("write");
+  whole_bytes_ += line.size();
   events_.push_back(std::move(event));
   return {};
 }

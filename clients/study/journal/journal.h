@@ -24,6 +24,8 @@ class Journal {
   Journal& operator=(const Journal&) = delete;
   ~Journal();
 
+  /// When the disk refuses, what was written of the line is cut off again, and every later call
+  /// returns the same failure: the file stays readable, and Resume goes on with it.
   Result<void> Append(records::EventKind kind, nlohmann::ordered_json fields);
 
   /// Those of the file and those appended.
@@ -33,11 +35,15 @@ class Journal {
 
  private:
   Journal(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+  /// `what` failed with errno: cuts the file behind its last whole line.
+  Result<void> Refuse(const std::string& what);
 
   std::string path_;
   int descriptor_ = -1;
   std::vector<records::Event> events_;
   std::size_t torn_bytes_ = 0;
+  std::size_t whole_bytes_ = 0;  ///< Of all lines that are on the disk.
+  Result<void> refused_;
 };
 
 /// The events of a journal, without changing the file. Failure when it cannot be read.

@@ -1,6 +1,7 @@
 #include "clients/study/journal/journal.h"
 
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +19,7 @@
 namespace footing::study::journal {
 namespace {
 
+using nlohmann::ordered_json;
 using records::EventKind;
 using testing::HasSubstr;
 
@@ -83,6 +85,38 @@ TEST(Journal, KeepsWhatWasAppendedBeforeAKill) {
   const auto journal = Journal::Resume(path);
   ASSERT_TRUE(journal) << journal.error().message;
   EXPECT_GE(journal->events().size(), 20u);
+}
+
+/// In a process of its own: the limit and the signal are those of a process.
+TEST(Journal, StaysReadableWhenTheDiskRefusesPartOfALine) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("j");
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    auto journal = Journal::Create(path);
+    bool as_expected = journal && journal->Append(EventKind::kNote, {{"text", "whole"}});
+    const rlimit little{200, RLIM_INFINITY};  // Less than the first line and the next one.
+    as_expected = as_expected && setrlimit(RLIMIT_FSIZE, &little) == 0;
+    const ordered_json large = {{"text", std::string(300, 'x')}};
+    as_expected = as_expected && !journal->Append(EventKind::kNote, large);
+    const rlimit enough{RLIM_INFINITY, RLIM_INFINITY};
+    as_expected = as_expected && setrlimit(RLIMIT_FSIZE, &enough) == 0;
+    // The disk is there again, but what was refused is missing: nothing may follow it.
+    as_expected = as_expected && !journal->Append(EventKind::kNote, {{"text", "late"}});
+    _exit(as_expected ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  const auto read = ReadJournal(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->torn_bytes, 0u);
+  ASSERT_EQ(read->events.size(), 1u);
+  EXPECT_EQ(read->events[0].Text("text"), "whole");
+  auto again = Journal::Resume(path);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_TRUE(again->Append(EventKind::kNote, {{"text", "after"}}));
 }
 
 TEST(StudyLock, NamesItsHolderAndEndsWithIt) {
