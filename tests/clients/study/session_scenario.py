@@ -95,6 +95,21 @@ def check_recordings(stage, trials, finished):
     assert all(2 <= one["wall_s"] < 8 for one in finished), finished
 
 
+def check_recording_in_the_way(stage):
+    """A recording that a crash has left without an event ends one attempt, not the session for good."""
+    folder = stage.folder / "r.study/P01"
+    folder.mkdir(parents=True)
+    command = [*words(stage, "P01", "--unattended"), "--folder", folder.parent]
+    plan = stage.run_json("footing-study", "check", stage.folder / "s.json")
+    first = next(one["phase"] for one in plan["sessions"][0]["phases"] if "seed" in one)
+    (folder / f"{first}.1.mcap").write_bytes(b"")
+    refused(stage, 2, "exists", *command)
+    lines = [json.loads(line) for line in (folder / "journal.jsonl").read_text().splitlines()]
+    assert lines[-1]["event"] == "trial_started", lines[-1]
+    done = stage.run("footing-study", *command, timeout_s=120)
+    assert done.returncode == 0 and f"{first}, attempt 1" in done.stderr, done
+
+
 def check_lost_device(stage):
     """Without its device a trial ends as lost, and the next run attempts it again."""
     running = stage.start("footing-study", *words(stage, "P02", "--unattended"), name="study")
@@ -199,6 +214,7 @@ def main():
         stage.start_user("demo")
         trials, finished = check_kill_and_resume(stage)
         check_recordings(stage, trials, finished)
+        check_recording_in_the_way(stage)
         check_attended(stage)
         check_lost_device(stage)
         check_withdrawal(stage)
