@@ -2,12 +2,18 @@
 
 #include <set>
 
+#include "clients/study/records/active_tally.h"
+#include "clients/study/records/trials.h"
+
 namespace footing::study::records {
 
 Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>& events) {
   Progress progress;
   std::set<std::string> finished;
+  std::string phase_of_trial;
+  ActiveTally active;
   for (const Event& event : events) {
+    active.Add(event);
     switch (event.kind) {
       case EventKind::kSessionStarted:
         progress.started = true;
@@ -20,14 +26,17 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
         break;
       case EventKind::kPhaseFinished:
         finished.insert(event.Text("phase"));
-        progress.active_s += event.Number("active_s");
         break;
       case EventKind::kTrialStarted:
-        ++progress.attempts[event.Text("phase")];
+        phase_of_trial = event.Text("phase");
+        ++progress.attempts[phase_of_trial];
         progress.interrupted_trial = event.Text("trial");
         break;
       case EventKind::kTrialFinished:
         progress.interrupted_trial.clear();
+        if (const std::string outcome = event.Text("outcome"); EndedInOrder(outcome)) {
+          progress.outcomes[phase_of_trial] = outcome;
+        }
         break;
       case EventKind::kSessionResumed:
       case EventKind::kPhaseStarted:
@@ -42,6 +51,7 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
         break;
     }
   }
+  progress.active_s = active.total_s();
   progress.phases_finished = finished.size();
   while (progress.next_phase < phases.size() &&
          finished.count(phases[progress.next_phase].id) != 0) {

@@ -18,7 +18,9 @@ struct Progress {
   std::size_t next_phase = 0;  ///< The first one that is not finished; as many as phases: none.
   std::size_t phases_finished = 0;
   std::map<std::string, std::size_t> attempts;  ///< Trials begun, by phase.
-  double active_s = 0;  ///< Of the finished phases: how long the participant has been moving.
+  /// The outcome of the last attempt that counts, by phase.
+  std::map<std::string, std::string> outcomes;
+  double active_s = 0;  ///< How long the participant has been moving.
   std::string interrupted_trial;  ///< Began and did not finish; empty: none.
 };
 

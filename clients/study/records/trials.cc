@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 
+#include "clients/study/records/active_tally.h"
+
 namespace footing::study::records {
 namespace {
 
@@ -131,7 +133,9 @@ double Trial::time_to_first_failure_s() const {
 
 Records Collect(const std::vector<Event>& events) {
   Records records;
+  ActiveTally active;
   for (const Event& event : events) {
+    active.Add(event);
     const bool in_trial = !records.trials.empty();
     switch (event.kind) {
       case EventKind::kSessionStarted:
@@ -172,25 +176,25 @@ Records Collect(const std::vector<Event>& events) {
         // One synthetic part makes the whole session one.
         records.synthetic = records.synthetic || event.Flag("synthetic");
         break;
-      case EventKind::kPhaseFinished:
-        if (!event.Text("interface").empty()) {
-          records.active_s[event.Text("interface")] += event.Number("active_s");
-        }
-        break;
       case EventKind::kPhaseStarted:
+      case EventKind::kPhaseFinished:
       case EventKind::kNote:
         break;
     }
   }
+  records.active_s = active.by_interface();
+  records.active_s.erase("");
   return records;
+}
+
+bool EndedInOrder(const std::string& outcome) {
+  return outcome != "interrupted" && outcome != kDeviceLost && outcome != kBrokenOff;
 }
 
 std::vector<const Trial*> Counting(const Records& records) {
   std::map<std::string, const Trial*> last;
   for (const Trial& trial : records.trials) {
-    const bool cut = trial.outcome == "interrupted" || trial.outcome == kDeviceLost ||
-                     trial.outcome == kBrokenOff;
-    if (!cut) last[trial.phase] = &trial;
+    if (EndedInOrder(trial.outcome)) last[trial.phase] = &trial;
   }
   std::vector<const Trial*> counting;
   for (const Trial& trial : records.trials) {

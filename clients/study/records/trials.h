@@ -88,6 +88,9 @@ struct Records {
   std::vector<Answer> answers;
 };
 
+/// Whether a trial with this outcome counts.
+bool EndedInOrder(const std::string& outcome);
+
 Records Collect(const std::vector<Event>& events);
 
 /// The attempts that count: the last one of each phase that ended by itself or by a

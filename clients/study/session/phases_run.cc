@@ -127,6 +127,13 @@ Result<void> SessionRun::Practise(const plan::Phase& phase) {
 
 Result<void> SessionRun::Trial(const plan::Phase& phase) {
   const bool attended = !context_.options.unattended;
+  if (const auto before = progress_.outcomes.find(phase.id); before != progress_.outcomes.end()) {
+    context_.console.Print(phase.id + " has ended before: " + before->second);
+    if (!attended) return {};
+    const auto repeat = AskToRepeat();
+    if (!repeat) return repeat.error();
+    if (!*repeat) return {};
+  }
   for (;;) {
     const auto outcome = Attempt(phase);
     if (!outcome) return outcome.error();
@@ -136,7 +143,7 @@ Result<void> SessionRun::Trial(const plan::Phase& phase) {
       continue;
     }
     if (!attended) return {};
-    const auto repeat = AskToRepeat(*servers_);
+    const auto repeat = AskToRepeat();
     if (!repeat) return repeat.error();
     if (!*repeat) return {};
   }
@@ -154,7 +161,8 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
   }
   const auto servers = UseInterface(phase.interface);
   if (!servers) return servers.error();
-  const auto outcome = RunTrial(context_, **servers, phase, ++progress_.attempts[phase.id]);
+  const auto outcome = 
+      RunTrial(context_, **servers, active_, phase, ++progress_.attempts[phase.id]);
   if (!outcome) return outcome.error();
   const stream::TrialProgress& trial = (*servers)->frame().trial.progress;
   context_.console.Print(phase.id + ": " + *outcome + ", " + text::Fixed(trial.time_s, 1) +
@@ -162,7 +170,7 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
   return outcome;
 }
 
-Result<bool> SessionRun::AskToRepeat(Servers& servers) {
+Result<bool> SessionRun::AskToRepeat() {
   for (;;) {
     const auto next = context_.console.Ask(
         "Press Enter to go on, type r to repeat the trial, or u NUMBER to undo a failure:");
@@ -171,7 +179,9 @@ Result<bool> SessionRun::AskToRepeat(Servers& servers) {
     if (*next == "r") return true;
     const auto number = next->starts_with("u ") ? text::ToCount(next->substr(2)) : std::nullopt;
     if (!number) continue;
-    if (const auto undone = UndoFailure(context_, servers, *number); !undone) {
+    const auto servers = Connect();
+    if (!servers) return servers.error();
+    if (const auto undone = UndoFailure(context_, **servers, *number); !undone) {
       context_.console.Print(undone.error().message);
     }
   }

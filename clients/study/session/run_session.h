@@ -26,11 +26,12 @@ class SessionRun {
   Result<void> Practise(const plan::Phase& phase);
   /// Until the time is up or, where that is allowed, Enter is pressed, which the journal notes.
   Result<void> CountDown(const std::string& what, double duration_s, bool may_end_early);
-  /// Attempts of a trial until one counts.
+  /// Attempts of a trial until one counts; first about the one that an interrupted session has
+  /// left.
   Result<void> Trial(const plan::Phase& phase);
   Result<std::string> Attempt(const plan::Phase& phase);
   /// After an attended attempt: undoes failures as asked; true when the trial is to be repeated.
-  Result<bool> AskToRepeat(Servers& servers);
+  Result<bool> AskToRepeat();
   /// Waits until the devices of an interface are as the protocol asks.
   Result<void> CheckDevices(const std::string& interface);
   /// Connects to both servers where that is due.

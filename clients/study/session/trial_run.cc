@@ -50,9 +50,12 @@ Result<void> Withdraw(Servers& servers, std::uint64_t failure) {
 
 class TrialRun {
  public:
-  TrialRun(SessionContext& context, Servers& servers, const plan::Phase& phase, std::size_t attempt)
+  TrialRun(SessionContext& context, Servers& servers, const ActiveTime& active,
+           const plan::Phase& phase, std::size_t attempt)
       : context_(context),
         servers_(servers),
+        active_(active),
+        active_before_s_(active.seconds()),
         phase_(phase),
         attempt_(attempt),
         id_(context.session.participant + "." + phase.id + "." + std::to_string(attempt)),
@@ -197,7 +200,8 @@ class TrialRun {
   Result<void> Finish(const std::string& outcome) {
     ordered_json fields = {{"trial", id_},
                            {"outcome", outcome},
-                           {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)}};
+                           {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)},
+                           {"active_s", active_.seconds() - active_before_s_}};
     fields.update(events_.Figures());
     if (outcome == records::kDeviceLost) fields["device"] = stream::RoleNames(lost_roles_);
     if (const auto done = recorder_->Finish(ToTextMap(fields)); !done) return done;
@@ -223,6 +227,8 @@ class TrialRun {
 
   SessionContext& context_;
   Servers& servers_;
+  const ActiveTime& active_;
+  double active_before_s_;
   const plan::Phase& phase_;
   std::size_t attempt_;
   std::string id_, file_;
@@ -236,9 +242,9 @@ class TrialRun {
 
 }  // namespace
 
-Result<std::string> RunTrial(SessionContext& context, Servers& servers, const plan::Phase& phase,
-                             std::size_t attempt) {
-  return TrialRun(context, servers, phase, attempt).Run();
+Result<std::string> RunTrial(SessionContext& context, Servers& servers, const ActiveTime& active,
+                             const plan::Phase& phase, std::size_t attempt) {
+  return TrialRun(context, servers, active, phase, attempt).Run();
 }
 
 Result<void> PlaceOnTrack(Servers& servers, const std::string& id, const plan::Phase& phase) {

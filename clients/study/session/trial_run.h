@@ -13,8 +13,8 @@ namespace footing::study {
 /// Runs one attempt at a trial: begins the recording and the trial, writes every failure into the
 /// journal, and ends both. Returns the outcome: "finished", "timed_out" or "stopped". Keys during
 /// an attended trial: s stops it, u undoes the newest failure.
-Result<std::string> RunTrial(SessionContext& context, Servers& servers, const plan::Phase& phase,
-                             std::size_t attempt);
+Result<std::string> RunTrial(SessionContext& context, Servers& servers, const ActiveTime& active,
+                             const plan::Phase& phase, std::size_t attempt);
 
 /// Puts the character at the start of a track, for demonstration and practice.
 Result<void> PlaceOnTrack(Servers& servers, const std::string& id, const plan::Phase& phase);

@@ -55,7 +55,8 @@ class Experimenter:
         self.type(text + "\n")
 
 
-def session(stage, experimenter):
+def session(stage, start):
+    experimenter = start()
     experimenter.answer("Type yes to confirm", "yes")
     experimenter.answer("show all commands", "")
     experimenter.answer("Practice of wrist: 100 s left", "")
@@ -75,7 +76,13 @@ def session(stage, experimenter):
     experimenter.answer("Press Enter to begin", "")
     experimenter.read("Keys: s stops the trial")
     experimenter.type("s")
-    experimenter.answer(r"test: stopped[^:]*failures: \d+\n.*u NUMBER", "")
+    experimenter.read(r"test: stopped[^:]*failures: \d+\n.*u NUMBER")
+    # Killed at the question, the session asks it again, and the trial is kept.
+    experimenter.process.kill()
+    experimenter.process.wait()
+    experimenter = start()
+    experimenter.read("has ended before: stopped")
+    experimenter.answer("r to repeat", "")
     experimenter.answer("fun, 1 to 5", "6")
     experimenter.answer("whole number", "4")
     experimenter.answer("exertion", "7")
@@ -107,9 +114,8 @@ def main():
         protocol.write_text(json.dumps(PROTOCOL))
         stage.start_servers()
         stage.start_user("demo")
-        experimenter = Experimenter(stage, "run", protocol, "--participant", "P01", "--sensor", stage.sensor,
-                                    "--simulation", stage.simulation)
-        check_journal(stage, *session(stage, experimenter))
+        command = ("run", protocol, "--participant", "P01", "--sensor", stage.sensor, "--simulation", stage.simulation)
+        check_journal(stage, *session(stage, lambda: Experimenter(stage, *command)))
     return 0
 
 

@@ -70,6 +70,32 @@ TEST(Progress, AddsUpTheActiveTimeOfFinishedPhases) {
   EXPECT_EQ(Replay(TwoTrials().phases, events.list).active_s, 60.5);
 }
 
+TEST(Progress, KeepsTheTrialThatEndedBeforeACrash) {
+  const plan::Session session = TwoTrials();
+  Events events;
+  events.Add(EventKind::kSessionStarted).Add(EventKind::kPhaseFinished, {{"phase", "consent"}});
+  events.Add(EventKind::kPhaseStarted, {{"phase", "wrist.straight1"}, {"interface", "wrist"}});
+  events.Trial("wrist.straight1", 1);
+  EXPECT_TRUE(Replay(session.phases, events.list).outcomes.empty());
+  events.Add(EventKind::kTrialFinished, {{"outcome", "timed_out"}, {"active_s", 7.5}});
+  Progress progress = Replay(session.phases, events.list);
+  EXPECT_EQ(progress.next_phase, 1u);  // Whether to repeat it has not been answered.
+  EXPECT_EQ(progress.outcomes.at("wrist.straight1"), "timed_out");
+  EXPECT_EQ(progress.active_s, 7.5);
+  // A repeat that lost a device does not replace it.
+  events.Add(EventKind::kPhaseStarted, {{"phase", "wrist.straight1"}, {"interface", "wrist"}});
+  events.Trial("wrist.straight1", 2);
+  events.Add(EventKind::kTrialFinished, {{"outcome", kDeviceLost}, {"active_s", 2}});
+  progress = Replay(session.phases, events.list);
+  EXPECT_EQ(progress.outcomes.at("wrist.straight1"), "timed_out");
+  EXPECT_EQ(progress.active_s, 9.5);
+  // The time of a phase holds that of its trials in the same run.
+  events.Add(EventKind::kPhaseFinished,
+             {{"phase", "wrist.straight1"}, {"interface", "wrist"}, {"active_s", 3}});
+  EXPECT_EQ(Replay(session.phases, events.list).active_s, 10.5);
+  EXPECT_EQ(Collect(events.list).active_s.at("wrist"), 10.5);
+}
+
 TEST(Progress, KnowsWithdrawalAndTheEnd) {
   const plan::Session session = TwoTrials();
   Events events;
