@@ -24,7 +24,7 @@ stream::Gait WantedGait(const stream::Track& track, const std::string& task) {
 }  // namespace
 
 TrialEvents::TrialEvents(SessionContext& context, Servers& servers, std::string id)
-    : context_(context), servers_(servers), id_(std::move(id)) {}
+    : context_(context), servers_(servers), id_(std::move(id)), tracker_(id_) {}
 
 TrialEvents::~TrialEvents() {
   servers_.set_on_frame(nullptr);
@@ -38,7 +38,8 @@ void TrialEvents::Begin() {
 
 void TrialEvents::OnFrame(const SimulationFrame& frame) {
   const stream::TrialState& trial = frame.trial;
-  if (trial.trial != id_) return;
+  const std::string shown = tracker_.state().instruction;
+  if (!tracker_.Add(trial)) return;
   if (trial.progress.phase == stream::TrialPhase::kRunning && trial.progress.on_track) {
     heading_.Add(trial.progress.heading_error_rad);
   }
@@ -47,15 +48,14 @@ void TrialEvents::OnFrame(const SimulationFrame& frame) {
     anticipation_.Add(frame.host_ns, trial.to_mark_m, frame.commanded_gait,
                       WantedGait(servers_.track(), trial.task));
   }
-  if (!trial.instruction.empty() && trial.instruction != state_.instruction) {
+  if (!trial.instruction.empty() && trial.instruction != shown) {
     context_.console.Print("Task for the participant: " + trial.instruction);
   }
-  state_ = trial;
 }
 
 void TrialEvents::OnEvent(const v1::Event& event) {
   // Responses do not name a trial; while nothing has begun they belong to none.
-  if (event.kind() == v1::Event::KIND_RESPONSE && state_.trial == id_) OnResponse(event.response());
+  if (event.kind() == v1::Event::KIND_RESPONSE && tracker_.begun()) OnResponse(event.response());
   if (event.failure().trial() != id_) return;
   if (event.kind() == v1::Event::KIND_CORRECTION) OnCorrection(event.failure());
   if (event.kind() == v1::Event::KIND_FALL) OnFailure(event);
@@ -105,14 +105,15 @@ void TrialEvents::Append(EventKind kind, ordered_json fields) {
 }
 
 ordered_json TrialEvents::Figures() const {
-  ordered_json fields = {{"time_s", state_.progress.time_s},
-                         {"distance_m", state_.progress.distance_m},
-                         {"failed_attempts", stream::Total(state_.progress.failures)},
-                         {"operator_put_backs", state_.progress.operator_put_backs}};
+  const stream::TrialProgress& progress = tracker_.state().progress;
+  ordered_json fields = {{"time_s", progress.time_s},
+                         {"distance_m", progress.distance_m},
+                         {"failed_attempts", stream::Total(progress.failures)},
+                         {"operator_put_backs", progress.operator_put_backs}};
   const double oscillation_rad = heading_.StandardDeviation();
   if (std::isfinite(oscillation_rad)) fields["heading_oscillation_rad"] = oscillation_rad;
-  if (state_.task.empty()) return fields;
-  fields["task_done"] = state_.progress.task_phase == stream::TaskPhase::kDone;
+  if (tracker_.state().task.empty()) return fields;
+  fields["task_done"] = progress.task_phase == stream::TaskPhase::kDone;
   // Of a task that was never done there is nothing to say.
   const auto anticipation_s = anticipation_.seconds();
   if (fields["task_done"] && anticipation_s) fields["anticipation_s"] = *anticipation_s;

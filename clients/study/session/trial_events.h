@@ -8,8 +8,8 @@
 #include "clients/study/session/heading.h"
 #include "clients/study/session/servers.h"
 #include "clients/study/session/session_context.h"
+#include "clients/study/session/trial_tracker.h"
 #include "common/result/result.h"
-#include "common/stream/trial.h"
 
 namespace footing::study {
 
@@ -25,9 +25,7 @@ class TrialEvents {
   /// Listens from here on.
   void Begin();
 
-  /// As of the newest frame of this trial.
-  const stream::TrialState& state() const { return state_; }
-  bool over() const { return state_.progress.phase == stream::TrialPhase::kFinished; }
+  const TrialTracker& tracker() const { return tracker_; }
   /// The newest failure that is not withdrawn; 0: none.
   std::uint64_t newest_failure() const { return newest_failure_; }
   /// The first event that could not be written.
@@ -47,7 +45,7 @@ class TrialEvents {
   SessionContext& context_;
   Servers& servers_;
   std::string id_;
-  stream::TrialState state_;
+  TrialTracker tracker_;
   HeadingOscillation heading_;
   Anticipation anticipation_;
   std::uint64_t newest_failure_ = 0;

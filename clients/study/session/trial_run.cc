@@ -74,12 +74,12 @@ class TrialRun {
  private:
   Result<std::string> Attempt() {
     if (const auto done = Begin(); !done) return done.error();
-    const auto outcome = Wait();
-    if (!outcome) return outcome.error();
-    if (*outcome != "finished") {
-      if (const auto done = Stop(); !done) return done.error();
-    }
-    if (const auto done = Finish(*outcome); !done) return done.error();
+    const auto reason = Wait();
+    if (!reason) return reason.error();
+    if (const auto done = Stop(); !done) return done.error();
+    // The finish line may have come between the reason and the stop.
+    const std::string outcome = events_.tracker().Outcome(*reason);
+    if (const auto done = Finish(outcome); !done) return done.error();
     return outcome;
   }
 
@@ -138,7 +138,8 @@ class TrialRun {
     return {};
   }
 
-  /// Until the finish line, the time limit, or a key.
+  /// Until the finish line, the time limit, a key, or the end by another console: the outcome, but
+  /// for a finish line that is crossed before the trial is stopped.
   Result<std::string> Wait() {
     const std::int64_t end_ns = begin_ns_ + SecondsToNanoseconds(context_.protocol.trial_limit_s);
     for (;;) {
@@ -146,14 +147,14 @@ class TrialRun {
       const Waited waited = context_.console.RunUntil(
           [&] {
             if (!context_.options.unattended) key = context_.console.TakeKey();
-            return key || events_.over() || !events_.written() || !recorder_->written() ||
+            return key || events_.tracker().over() || !events_.written() || !recorder_->written() ||
                    !servers_.live() || DeviceLost();
           },
           std::max(0.0, NanosecondsToSeconds(end_ns - clock::MonotonicNs())));
       if (waited == Waited::kInterrupted) return Interrupted();
       if (!events_.written()) return events_.written().error();
       if (!recorder_->written()) return recorder_->written().error();
-      if (events_.over()) return std::string("finished");
+      if (events_.tracker().over()) return events_.tracker().Outcome("stopped");
       if (waited == Waited::kTimeUp) return std::string("timed_out");
       if (!servers_.live()) return Failure("the trial broke off: " + servers_.Links());
       if (DeviceLost()) return std::string(records::kDeviceLost);
@@ -183,18 +184,18 @@ class TrialRun {
     return NanosecondsToSeconds(now_ns - complete_ns_) > kDeviceBackS;
   }
 
+  /// Unless it is over; returns when it is.
   Result<void> Stop() {
+    const auto over = [&] { return events_.tracker().over(); };
+    if (over()) return {};
     v1::Command command;
     command.mutable_stop_trial()->set_character(1);
     command.mutable_stop_trial()->set_trial(id_);
-    if (const auto done = servers_.Call(std::move(command)); !done) return done;
-    const Waited waited = context_.console.RunUntil(
-        [&] {
-          return events_.state().progress.phase == stream::TrialPhase::kStopped || events_.over();
-        },
-        kConfirmedWithinS);
+    const auto stopped = servers_.Call(std::move(command));
+    const Waited waited = context_.console.RunUntil(over, kConfirmedWithinS);
     if (waited == Waited::kInterrupted) return Interrupted();
-    return {};
+    // A trial that another console has begun meanwhile refuses it, and ends this one.
+    return waited == Waited::kTimeUp ? stopped : Result<void>();
   }
 
   Result<void> Finish(const std::string& outcome) {

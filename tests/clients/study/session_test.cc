@@ -8,6 +8,7 @@
 #include "clients/study/session/heading.h"
 #include "clients/study/session/respondent.h"
 #include "clients/study/session/survey.h"
+#include "clients/study/session/trial_tracker.h"
 
 namespace footing::study {
 namespace {
@@ -61,6 +62,41 @@ TEST(Anticipation, IsOfTheLastAttemptAndNegativeBehindTheLine) {
   at(-0.4, Gait::kRun);
   at(-0.7, Gait::kJump);  // ... and 0.2 s later the command.
   EXPECT_NEAR(*anticipation.seconds(), -0.2, 1e-9);
+}
+
+stream::TrialState FrameOf(const std::string& trial, stream::TrialPhase phase, double time_s) {
+  stream::TrialState frame;
+  frame.trial = trial;
+  frame.progress.phase = phase;
+  frame.progress.time_s = time_s;
+  return frame;
+}
+
+TEST(TrialTracker, EndsWithTheFinishLineAStopOrAnotherTrial) {
+  using stream::TrialPhase;
+  for (const auto& [last, outcome] :
+       {std::pair(FrameOf("b", TrialPhase::kFinished, 9), "finished"),
+        std::pair(FrameOf("b", TrialPhase::kStopped, 9), "stopped"),
+        std::pair(FrameOf("other", TrialPhase::kFinished, 1), "stopped")}) {
+    TrialTracker tracker("b");
+    EXPECT_FALSE(tracker.Add(FrameOf("a", TrialPhase::kFinished, 5)));  // The trial before.
+    EXPECT_FALSE(tracker.over());
+    EXPECT_TRUE(tracker.Add(FrameOf("b", TrialPhase::kRunning, 8)));
+    EXPECT_TRUE(tracker.begun());
+    EXPECT_FALSE(tracker.over());
+    EXPECT_EQ(tracker.Add(last), last.trial == "b");
+    EXPECT_TRUE(tracker.over()) << outcome;
+    EXPECT_EQ(tracker.Outcome("stopped"), outcome);
+    EXPECT_EQ(tracker.state().progress.time_s, last.trial == "b" ? 9 : 8);
+  }
+}
+
+TEST(TrialTracker, TakesAFinishLineBeforeTheStopForTheOutcome) {
+  TrialTracker tracker("b");
+  tracker.Add(FrameOf("b", stream::TrialPhase::kRunning, 600));
+  EXPECT_EQ(tracker.Outcome("timed_out"), "timed_out");
+  tracker.Add(FrameOf("b", stream::TrialPhase::kFinished, 600.01));
+  EXPECT_EQ(tracker.Outcome("timed_out"), "finished");
 }
 
 TEST(Respondent, GivesTheSameAnswersForASeedAndAllRatingsAboutEquallyOften) {
