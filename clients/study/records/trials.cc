@@ -21,6 +21,7 @@ std::size_t Position(const Records& records, const std::string& interface) {
 
 Trial Begun(const Event& event, const Records& records) {
   Trial trial;
+  trial.id = event.Text("trial");
   trial.participant = records.participant;
   trial.phase = event.Text("phase");
   trial.interface = event.Text("interface");
@@ -64,10 +65,12 @@ void TakeResponse(const Event& event, Trial& trial) {
   trial.responses.push_back(std::move(response));
 }
 
-/// Numbers start again with the server: the newest failure of that number is meant.
+/// Numbers start again with the server: without a trial the newest failure of that number is meant.
 void MarkUndone(const Event& event, bool undone, Records& records) {
   const auto number = static_cast<std::uint64_t>(event.Number("failure"));
+  const std::string of_trial = event.Text("trial");
   for (auto trial = records.trials.rbegin(); trial != records.trials.rend(); ++trial) {
+    if (!of_trial.empty() && trial->id != of_trial) continue;
     for (auto failure = trial->failures.rbegin(); failure != trial->failures.rend(); ++failure) {
       if (failure->number != number) continue;
       failure->undone = undone;
@@ -189,6 +192,22 @@ Records Collect(const std::vector<Event>& events) {
 
 bool EndedInOrder(const std::string& outcome) {
   return outcome != "interrupted" && outcome != kDeviceLost && outcome != kBrokenOff;
+}
+
+std::vector<Failure> FailuresOf(const Records& records, const std::string& trial) {
+  for (const Trial& one : records.trials) {
+    if (one.id == trial) return one.failures;
+  }
+  return {};
+}
+
+const Trial* WithFailure(const Records& records, std::uint64_t number) {
+  for (auto trial = records.trials.rbegin(); trial != records.trials.rend(); ++trial) {
+    for (const Failure& failure : trial->failures) {
+      if (failure.number == number) return &*trial;
+    }
+  }
+  return nullptr;
 }
 
 std::vector<const Trial*> Counting(const Records& records) {

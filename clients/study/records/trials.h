@@ -32,6 +32,7 @@ using Response = std::vector<StageTime>;
 
 /// One attempt at a trial.
 struct Trial {
+  std::string id;  ///< Of all participants no other has it.
   std::string participant;
   std::string phase;
   std::string interface;
@@ -92,6 +93,11 @@ struct Records {
 bool EndedInOrder(const std::string& outcome);
 
 Records Collect(const std::vector<Event>& events);
+
+/// Of the attempt with that id, in the order in which they happened.
+std::vector<Failure> FailuresOf(const Records& records, const std::string& trial);
+/// The newest attempt that has a failure of that number; null: none.
+const Trial* WithFailure(const Records& records, std::uint64_t number);
 
 /// The attempts that count: the last one of each phase that ended by itself or by a
 /// person.

@@ -8,6 +8,7 @@
 #include "clients/study/session/run_session.h"
 #include "clients/study/session/survey.h"
 #include "clients/study/session/trial_run.h"
+#include "clients/study/session/undo.h"
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
 #include "common/text/number.h"
@@ -39,8 +40,11 @@ Result<void> SessionRun::RunPhase(const plan::Phase& phase) {
     case plan::PhaseKind::kPractice:
       return Practise(phase);
     case plan::PhaseKind::kStraight:
-    case plan::PhaseKind::kTestTrack:
-      return Trial(phase);
+    case plan::PhaseKind::kTestTrack: {
+      const auto done = Trial(phase);
+      events_.reset();
+      return done;
+    }
     case plan::PhaseKind::kSurvey:
       return RunSurvey(context_, context_.protocol.survey, phase.interface);
     case plan::PhaseKind::kFinalSurvey:
@@ -130,7 +134,7 @@ Result<void> SessionRun::Trial(const plan::Phase& phase) {
   if (const auto before = progress_.outcomes.find(phase.id); before != progress_.outcomes.end()) {
     context_.console.Print(phase.id + " has ended before: " + before->second);
     if (!attended) return {};
-    const auto repeat = AskToRepeat();
+    const auto repeat = AskToRepeat(phase);
     if (!repeat) return repeat.error();
     if (!*repeat) return {};
   }
@@ -143,7 +147,7 @@ Result<void> SessionRun::Trial(const plan::Phase& phase) {
       continue;
     }
     if (!attended) return {};
-    const auto repeat = AskToRepeat();
+    const auto repeat = AskToRepeat(phase);
     if (!repeat) return repeat.error();
     if (!*repeat) return {};
   }
@@ -161,8 +165,12 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
   }
   const auto servers = UseInterface(phase.interface);
   if (!servers) return servers.error();
-  const auto outcome = 
-      RunTrial(context_, **servers, active_, phase, ++progress_.attempts[phase.id]);
+  const std::size_t attempt = ++progress_.attempts[phase.id];
+  events_.reset();
+  events_ = std::make_unique<TrialEvents>(
+      context_, **servers,
+      context_.session.participant + "." + phase.id + "." + std::to_string(attempt));
+  const auto outcome = RunTrial(context_, **servers, active_, *events_, phase, attempt);
   if (!outcome) return outcome.error();
   const stream::TrialProgress& trial = (*servers)->frame().trial.progress;
   context_.console.Print(phase.id + ": " + *outcome + ", " + text::Fixed(trial.time_s, 1) +
@@ -170,7 +178,7 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
   return outcome;
 }
 
-Result<bool> SessionRun::AskToRepeat() {
+Result<bool> SessionRun::AskToRepeat(const plan::Phase& phase) {
   for (;;) {
     const auto next = context_.console.Ask(
         "Press Enter to go on, type r to repeat the trial, or u NUMBER to undo a failure:");
@@ -179,12 +187,24 @@ Result<bool> SessionRun::AskToRepeat() {
     if (*next == "r") return true;
     const auto number = next->starts_with("u ") ? text::ToCount(next->substr(2)) : std::nullopt;
     if (!number) continue;
-    const auto servers = Connect();
-    if (!servers) return servers.error();
-    if (const auto undone = UndoFailure(context_, **servers, *number); !undone) {
-      context_.console.Print(undone.error().message);
-    }
+    if (const auto done = Undo(phase, *number); !done) return done.error();
   }
+}
+
+Result<void> SessionRun::Undo(const plan::Phase& phase, std::uint64_t failure) {
+  const auto servers = Connect();
+  if (!servers) return servers.error();
+  const records::Records records = records::Collect(context_.journal.events());
+  for (const records::Trial* trial : records::Counting(records)) {
+    if (trial->phase != phase.id) continue;
+    if (!events_) {  // The session was interrupted, or the connection.
+      events_ = std::make_unique<TrialEvents>(context_, **servers, trial->id);
+      events_->Begin();
+      events_->End();
+    }
+    return UndoFailure(context_, **servers, trial->id, failure);
+  }
+  return {};
 }
 
 Result<Servers*> SessionRun::Connect() {
@@ -192,6 +212,7 @@ Result<Servers*> SessionRun::Connect() {
     if (const auto leased = servers_->CheckLease(); !leased) return leased.error();
     if (servers_->live()) return servers_.get();
   }
+  events_.reset();
   servers_.reset();
   // Without the process: after a crash the same session goes on with its lease.
   const Servers::Options servers_of = {

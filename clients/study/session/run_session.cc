@@ -6,6 +6,7 @@
 
 #include "clients/study/journal/lock.h"
 #include "clients/study/journal/study_folder.h"
+#include "clients/study/records/trials.h"
 #include "common/cli/cli.h"
 #include "common/text/number.h"
 
@@ -148,6 +149,16 @@ Result<void> AppendToSession(const SessionOptions& options, const plan::Protocol
                       " is missing");
   auto opened = OpenStudy(options, protocol);
   if (!opened) return opened.error();
+  if (fields.contains("failure")) {
+    const records::Records records = records::Collect(opened->journal.events());
+    const std::uint64_t number = fields["failure"];
+    const records::Trial* trial = records::WithFailure(records, number);
+    if (trial == nullptr) {
+      return UsageError("no trial of participant " + options.participant + " has failure " +
+                        std::to_string(number) + "; " + path + " has their numbers");
+    }
+    fields["trial"] = trial->id;
+  }
   return opened->journal.Append(kind, std::move(fields));
 }
 

@@ -7,6 +7,7 @@
 
 #include "clients/study/records/progress.h"
 #include "clients/study/session/session_context.h"
+#include "clients/study/session/trial_events.h"
 #include "common/result/result.h"
 
 namespace footing::study {
@@ -31,7 +32,9 @@ class SessionRun {
   Result<void> Trial(const plan::Phase& phase);
   Result<std::string> Attempt(const plan::Phase& phase);
   /// After an attended attempt: undoes failures as asked; true when the trial is to be repeated.
-  Result<bool> AskToRepeat();
+  Result<bool> AskToRepeat(const plan::Phase& phase);
+  /// Of the attempt of a phase that counts.
+  Result<void> Undo(const plan::Phase& phase, std::uint64_t failure);
   /// Waits until the devices of an interface are as the protocol asks.
   Result<void> CheckDevices(const std::string& interface);
   /// Connects to both servers where that is due.
@@ -43,13 +46,15 @@ class SessionRun {
   records::Progress progress_;
   ActiveTime active_;
   std::unique_ptr<Servers> servers_;
+  std::unique_ptr<TrialEvents> events_;  ///< Of the newest attempt, until it is settled.
 };
 
 /// Runs or resumes the session of a participant: takes the study's lock, checks the disk, opens the
 /// journal. `protocol` must have the participant.
 Result<void> RunSession(const SessionOptions& options, const plan::Protocol& protocol);
 
-/// Appends an event to a participant's journal, without servers: a withdrawal or a correction.
+/// Appends an event to a participant's journal, without servers: a withdrawal, or the correction of
+/// a failure that the journal has.
 Result<void> AppendToSession(const SessionOptions& options, const plan::Protocol& protocol,
                              records::EventKind kind, nlohmann::ordered_json fields);
 

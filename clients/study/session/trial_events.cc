@@ -37,6 +37,7 @@ void TrialEvents::Begin() {
 }
 
 void TrialEvents::OnFrame(const SimulationFrame& frame) {
+  if (ended_) return;
   const stream::TrialState& trial = frame.trial;
   const std::string shown = tracker_.state().instruction;
   if (!tracker_.Add(trial)) return;
@@ -54,25 +55,25 @@ void TrialEvents::OnFrame(const SimulationFrame& frame) {
 }
 
 void TrialEvents::OnEvent(const v1::Event& event) {
+  if (event.kind() == v1::Event::KIND_CORRECTION && event.failure().trial() == id_) {
+    OnCorrection(event.failure());
+  }
+  if (ended_) return;
   // Responses do not name a trial; while nothing has begun they belong to none.
   if (event.kind() == v1::Event::KIND_RESPONSE && tracker_.begun()) OnResponse(event.response());
-  if (event.failure().trial() != id_) return;
-  if (event.kind() == v1::Event::KIND_CORRECTION) OnCorrection(event.failure());
-  if (event.kind() == v1::Event::KIND_FALL) OnFailure(event);
+  if (event.kind() == v1::Event::KIND_FALL && event.failure().trial() == id_) OnFailure(event);
 }
 
 /// By this program or by another console.
 void TrialEvents::OnCorrection(const v1::Failure& failure) {
   Append(failure.withdrawn() ? EventKind::kFailureUndone : EventKind::kFailureRestored,
-         {{"failure", failure.number()}});
-  if (failure.number() == newest_failure_) newest_failure_ = 0;
+         {{"trial", id_}, {"failure", failure.number()}});
   context_.console.Print("failure " + std::to_string(failure.number()) +
                          (failure.withdrawn() ? " undone" : " restored"));
 }
 
 void TrialEvents::OnFailure(const v1::Event& event) {
   const v1::Failure& failure = event.failure();
-  newest_failure_ = failure.number();
   const char* kind = stream::Name(static_cast<stream::FailureCause>(failure.cause()));
   Append(EventKind::kFailure, {{"trial", id_},
                                {"failure", failure.number()},

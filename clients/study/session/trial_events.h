@@ -24,10 +24,11 @@ class TrialEvents {
 
   /// Listens from here on.
   void Begin();
+  /// From here on to corrections alone.
+  void End() { ended_ = true; }
+  const std::string& trial() const { return id_; }
 
   const TrialTracker& tracker() const { return tracker_; }
-  /// The newest failure that is not withdrawn; 0: none.
-  std::uint64_t newest_failure() const { return newest_failure_; }
   /// The first event that could not be written.
   const Result<void>& written() const { return written_; }
 
@@ -48,7 +49,7 @@ class TrialEvents {
   TrialTracker tracker_;
   HeadingOscillation heading_;
   Anticipation anticipation_;
-  std::uint64_t newest_failure_ = 0;
+  bool ended_ = false;
   Result<void> written_;
 };
 

@@ -9,6 +9,7 @@
 #include "clients/study/records/trials.h"
 #include "clients/study/session/trial_events.h"
 #include "clients/study/session/trial_recorder.h"
+#include "clients/study/session/undo.h"
 #include "common/clock/clock.h"
 #include "common/units/units.h"
 
@@ -41,26 +42,19 @@ mcap::TextMap ToTextMap(const ordered_json& fields) {
   return texts;
 }
 
-Result<void> Withdraw(Servers& servers, std::uint64_t failure) {
-  v1::Command command;
-  command.mutable_correct_failure()->set_failure(failure);
-  command.mutable_correct_failure()->set_reason("undone by the experimenter");
-  return servers.Call(std::move(command));
-}
-
 class TrialRun {
  public:
   TrialRun(SessionContext& context, Servers& servers, const ActiveTime& active,
-           const plan::Phase& phase, std::size_t attempt)
+           TrialEvents& events, const plan::Phase& phase, std::size_t attempt)
       : context_(context),
         servers_(servers),
         active_(active),
         active_before_s_(active.seconds()),
         phase_(phase),
         attempt_(attempt),
-        id_(context.session.participant + "." + phase.id + "." + std::to_string(attempt)),
+        id_(events.trial()),
         file_(phase.id + "." + std::to_string(attempt) + ".mcap"),
-        events_(context, servers, id_) {}
+        events_(events) {}
   ~TrialRun() { context_.console.ReadKeys(false); }
   TrialRun(const TrialRun&) = delete;
   TrialRun& operator=(const TrialRun&) = delete;
@@ -159,20 +153,10 @@ class TrialRun {
       if (!servers_.live()) return Failure("the trial broke off: " + servers_.Links());
       if (DeviceLost()) return std::string(records::kDeviceLost);
       if (key == 's') return std::string("stopped");
-      if (key == 'u' && events_.newest_failure() != 0) {
-        if (const auto done = UndoNewest(); !done) return done.error();
+      if (key == 'u') {
+        if (const auto done = UndoNewest(context_, servers_, id_); !done) return done.error();
       }
     }
-  }
-
-  /// Returns when the correction is in the journal.
-  Result<void> UndoNewest() {
-    if (const auto done = Withdraw(servers_, events_.newest_failure()); !done) return done;
-    const Waited waited =
-        context_.console.RunUntil([&] { return events_.newest_failure() == 0; }, kConfirmedWithinS);
-    if (waited == Waited::kInterrupted) return Interrupted();
-    if (waited == Waited::kTimeUp) return Failure("footing-sim has not confirmed the correction");
-    return {};
   }
 
   /// A device that the interface needs has sent nothing for a while.
@@ -204,6 +188,7 @@ class TrialRun {
                            {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)},
                            {"active_s", active_.seconds() - active_before_s_}};
     fields.update(events_.Figures());
+    events_.End();
     if (outcome == records::kDeviceLost) fields["device"] = stream::RoleNames(lost_roles_);
     if (const auto done = recorder_->Finish(ToTextMap(fields)); !done) return done;
     return context_.journal.Append(EventKind::kTrialFinished, std::move(fields));
@@ -238,24 +223,18 @@ class TrialRun {
   std::int64_t begin_ns_ = 0;
   std::int64_t complete_ns_ = 0;  ///< When all devices were last there.
   std::uint32_t lost_roles_ = 0;
-  TrialEvents events_;
+  TrialEvents& events_;
 };
 
 }  // namespace
 
 Result<std::string> RunTrial(SessionContext& context, Servers& servers, const ActiveTime& active,
-                             const plan::Phase& phase, std::size_t attempt) {
-  return TrialRun(context, servers, active, phase, attempt).Run();
+                             TrialEvents& events, const plan::Phase& phase, std::size_t attempt) {
+  return TrialRun(context, servers, active, events, phase, attempt).Run();
 }
 
 Result<void> PlaceOnTrack(Servers& servers, const std::string& id, const plan::Phase& phase) {
   return servers.Call(StartCommand(id, phase));
-}
-
-Result<void> UndoFailure(SessionContext& context, Servers& servers, std::uint64_t failure) {
-  if (const auto done = Withdraw(servers, failure); !done) return done;
-  context.console.Print("failure " + std::to_string(failure) + " undone");
-  return context.journal.Append(EventKind::kFailureUndone, {{"failure", failure}});
 }
 
 }  // namespace footing::study

@@ -134,6 +134,22 @@ TEST(TrialRecords, UndoTheNewestFailureOfANumberWhenAServerStartedAgain) {
   EXPECT_EQ(records.trials[1].failure_count(), 0u);
 }
 
+TEST(TrialRecords, UndoTheFailureOfTheTrialThatIsNamed) {
+  Events events;
+  events.Add(EventKind::kSessionStarted);
+  events.Trial("a", 1).Failed(1, "jump", 1).Finished(3);
+  events.Trial("b", 1).Failed(1, "jump", 1).Failed(2, "jump", 2).Finished(3);
+  events.Add(EventKind::kFailureUndone, {{"failure", 1}, {"trial", "a1"}});
+  const Records records = Collect(events.list);
+  EXPECT_EQ(records.trials[0].failure_count(), 0u);
+  EXPECT_EQ(records.trials[1].failure_count(), 2u);
+  EXPECT_TRUE(FailuresOf(records, "a1").at(0).undone);
+  EXPECT_FALSE(FailuresOf(records, "b1").at(0).undone);
+  EXPECT_TRUE(FailuresOf(records, "c1").empty());
+  EXPECT_EQ(WithFailure(records, 1)->id, "b1");
+  EXPECT_EQ(WithFailure(records, 999), nullptr);
+}
+
 TEST(TrialRecords, CountTheLastAttemptThatEnded) {
   Events events;
   events.Add(EventKind::kSessionStarted);

@@ -126,6 +126,7 @@ def check_lost_device(stage):
 
 
 def check_withdrawal(stage):
+    refused(stage, 2, "has failure 999", "run", stage.folder / "s.json", "--participant", "P02", "--undo-failure", "999")
     refused(stage, 0, "", "run", stage.folder / "s.json", "--participant", "P02", "--withdraw", "--reason", "asked")
     assert journal(stage, "P02")[-1]["event"] == "withdrawn"
 
