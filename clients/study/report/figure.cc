@@ -102,7 +102,7 @@ std::string Figure(const Measure& measure, const plan::Protocol& protocol) {
     least = std::min(least, one.value);
     greatest = std::max(greatest, one.value);
   }
-  const std::vector<double> ticks = Ticks(least, greatest, measure.counts());
+  const std::vector<double> ticks = Ticks(least, greatest, measure.counts);
   const Axis axis{ticks.front(), ticks.back()};
   const double width = kLeft + kColumn * static_cast<double>(names.size());
   std::string svg = OpenSvg(width, kHeight, measure.title);

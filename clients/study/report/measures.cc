@@ -56,7 +56,8 @@ double CompletionS(const Trials& trials) {
 double MeanTimeToFailureS(const Trials& trials) {
   std::size_t failures = 0;
   for (const Trial* trial : trials) failures += trial->failure_count();
-  return TimeS(trials) / static_cast<double>(std::max<std::size_t>(1, failures));
+  const double time_s = TimeS(trials);
+  return time_s > 0 ? time_s / static_cast<double>(std::max<std::size_t>(1, failures)) : kNone;
 }
 
 double LatencyMs(const Trials& trials) {
@@ -70,7 +71,8 @@ double LatencyMs(const Trials& trials) {
 /// Makes the measures of trials, one after the other.
 class TrialMeasures {
  public:
-  TrialMeasures(const plan::Protocol& protocol, const std::vector<Records>& people) {
+  TrialMeasures(const plan::Protocol& protocol, const std::vector<Records>& people)
+      : planned_{{"straight", protocol.straight_trials}, {"test_track", 1}} {
     for (const Records& person : people) {
       const auto counting = records::Counting(person);
       for (const std::string& interface : protocol.interfaces) {
@@ -84,13 +86,14 @@ class TrialMeasures {
   }
 
   /// `kind` is "straight" or "test_track"; empty: both.
-  void Add(const std::string& kind, Measure measure, const FromTrials& from, bool count = false) {
+  void Add(const std::string& kind, Measure measure, const FromTrials& from) {
     for (const auto& [key, trials] : trials_) {
       if (std::get<2>(key) != kind) continue;
       const double value = from(trials);
-      if (!std::isfinite(value)) continue;
-      measure.values.push_back({std::get<0>(key), std::get<1>(key), value,
-                                count ? TimeS(trials) / kSecondsPerMinute : 0});
+      const double exposure_min = TimeS(trials) / kSecondsPerMinute;
+      const bool whole = trials.size() >= Planned(kind) && exposure_min > 0;
+      if (!std::isfinite(value) || (measure.counts && !whole)) continue;
+      measure.values.push_back({std::get<0>(key), std::get<1>(key), value, exposure_min});
     }
     list.push_back(std::move(measure));
   }
@@ -104,13 +107,13 @@ class TrialMeasures {
            id + "_failures_" + name,
            where + ", " + title,
            TestKind::kSteel,
-           {}},
+           {},
+           /*counts=*/true},
           [&count_of](const Trials& trials) {
             double count = 0;
             for (const Trial* trial : trials) count += static_cast<double>(count_of(*trial));
             return count;
-          },
-          /*count=*/true);
+          });
     };
     add("all", "failures of every kind", [](const Trial& trial) { return trial.failure_count(); });
     for (const stream::FailureCause cause : stream::kFailureCauses) {
@@ -122,6 +125,12 @@ class TrialMeasures {
   std::vector<Measure> list;
 
  private:
+  std::size_t Planned(const std::string& kind) const {
+    const auto found = planned_.find(kind);
+    return found == planned_.end() ? 0 : found->second;
+  }
+
+  std::map<std::string, std::size_t> planned_;  ///< Trials of a kind with each interface.
   /// By participant, interface and kind.
   std::map<std::tuple<std::string, std::string, std::string>, Trials> trials_;
 };
@@ -179,11 +188,6 @@ std::vector<double> Measure::Of(const std::string& interface) const {
     if (one.interface == interface) found.push_back(one.value);
   }
   return found;
-}
-
-bool Measure::counts() const {
-  return std::all_of(values.begin(), values.end(),
-                     [](const Value& one) { return one.exposure_min > 0; });
 }
 
 bool Measure::all_zero() const {
@@ -258,7 +262,7 @@ statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& pro
     kept.push_back(name);
     std::vector<double>& exposures = table.exposures.emplace_back();
     for (const Value& one : measure.values) {
-      if (one.interface == name) exposures.push_back(measure.counts() ? one.exposure_min : 1);
+      if (one.interface == name) exposures.push_back(measure.counts ? one.exposure_min : 1);
     }
     table.groups.push_back({name, std::move(values)});
   }

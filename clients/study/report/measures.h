@@ -22,7 +22,7 @@ struct Value {
   std::string participant;
   std::string interface;
   double value = 0;
-  double exposure_min = 0;  ///< Of a count: the time behind it; 0: not a count.
+  double exposure_min = 0;  ///< Of a count: the time behind it.
 };
 
 /// Something that is compared between interfaces, one value for each participant and interface.
@@ -33,11 +33,11 @@ struct Measure {
   /// As in the gait paper: Dunnett's for the oscillation of heading, otherwise Steel's.
   statistics::TestKind test = statistics::TestKind::kSteel;
   std::vector<Value> values;
+  /// Every value is a count over a time. Without a time or one of the planned trials there is none.
+  bool counts = false;
 
   /// Of an interface, in the order of the participants.
   std::vector<double> Of(const std::string& interface) const;
-  /// Every value is a count over a time.
-  bool counts() const;
   bool all_zero() const;
 };
 

@@ -79,7 +79,7 @@ std::string SectionBlock(Section section, const Analysis& analysis,
   for (std::size_t i = 0; i < analysis.measures.size(); ++i) {
     const Measure& measure = analysis.measures[i];
     if (measure.section != section) continue;
-    if (measure.counts() && measure.all_zero()) {
+    if (measure.counts && measure.all_zero()) {
       zeros += (zeros.empty() ? "None at all: " : "; ") + measure.title;
     } else {
       block += MeasureBlock(measure, analysis.json["measures"][i], protocol);

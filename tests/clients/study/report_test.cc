@@ -134,6 +134,35 @@ TEST(StudyAnalysis, HasTheRateOfAllFailuresAndSkipsWhatNeverHappened) {
   EXPECT_THAT(page, HasSubstr("ratio of rates"));
 }
 
+TEST(StudyAnalysis, HasNoCountWithoutItsTimeOrAPlannedTrial) {
+  plan::Protocol protocol = Two();
+  protocol.straight_trials = 2;
+  auto people = People(6);
+  for (records::Records& person : people) {
+    for (const char* interface : {"wrist", "joystick"}) {
+      for (const char* number : {"1", "2"}) {
+        records::Trial trial = report::Test(person.participant, interface, 10, 1);
+        trial.phase = std::string(interface) + ".straight" + number;
+        trial.kind = "straight";
+        person.trials.push_back(trial);
+      }
+    }
+  }
+  people[0].trials.pop_back();      // One of two straight trials with the joystick.
+  people[1].trials[0].time_s = 0;   // Never over the start line with the wrist.
+  people[1].trials[0].outcome = "stopped";
+  const Analysis analysis = Analyze(protocol, people);
+  const auto& straight = Find(analysis, "straight_failures_all");
+  EXPECT_EQ(straight["groups"][0]["n"], 5);
+  EXPECT_EQ(straight["groups"][0]["least"], 2);
+  const auto& test = Find(analysis, "test_failures_all");
+  EXPECT_EQ(test["groups"][1]["n"], 5);
+  // The exposures are the minutes of the trials: wrist 50, 52 to 55 s with 0, 2, 0, 1, 2 failures.
+  EXPECT_NEAR(test["rate"]["rows"][0]["poisson"]["estimate"].get<double>(),
+              (5.0 / 264) / (18.0 / 375), 1e-9);
+  EXPECT_EQ(Find(analysis, "test_mean_time_to_failure_s")["groups"][1]["n"], 5);
+}
+
 TEST(StudyPage, SaysWhichTestToBelieveBesideEachMeasure) {
   const auto people = People(6);
   const Analysis analysis = Analyze(Two(), people);
