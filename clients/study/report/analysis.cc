@@ -65,9 +65,13 @@ Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Reco
   for (const Measure& measure : analysis.measures) {
     const statistics::StudyTable table = TableOf(measure, protocol);
     ordered_json one = {{"id", measure.id}, {"title", measure.title}, {"groups", Groups(table)}};
+    std::set<std::string> participants;
+    for (const Value& value : measure.values) participants.insert(value.participant);
+    one["participants"] = participants.size();
     if (Comparable(table, protocol.control)) {
       one["test"] = Tested(table, measure.test, protocol.seed);
       if (table.blocks) {
+        one["paired_participants"] = table.blocks->subjects.size();
         one["paired"] = Tested(table, statistics::TestKind::kPaired, protocol.seed);
       }
       if (measure.id.ends_with("_failures_all") && !measure.all_zero()) {

@@ -11,7 +11,7 @@ namespace footing::study::report {
 
 struct Analysis {
   /// {name, control, participants, withdrawn, unfinished, synthetic, measures: [{id, title, groups,
-  /// test, paired, rate}], latency: [{interface, stage, n, p50_ms, p95_ms}]}; `test`, `paired` and
+  /// participants, test, paired_participants, paired, rate}], latency: [{interface, stage, n, p50_ms, p95_ms}]}; `test`, `paired` and
   /// `rate` (of all failures together) are reports of footing-eval stats, or {error}.
   nlohmann::ordered_json json;
   std::vector<Measure> measures;

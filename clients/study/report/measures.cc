@@ -271,12 +271,12 @@ statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& pro
   statistics::Blocks blocks;
   blocks.groups = kept;
   for (const auto& [participant, values] : by_person) {
-    if (values.size() != kept.size()) return table;
+    if (values.size() != kept.size()) continue;
     blocks.subjects.push_back(participant);
     std::vector<double>& row = blocks.values.emplace_back();
     for (const std::string& name : kept) row.push_back(values.at(name));
   }
-  table.blocks = std::move(blocks);
+  if (blocks.subjects.size() > 1) table.blocks = std::move(blocks);
   return table;
 }
 

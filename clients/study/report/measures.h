@@ -50,8 +50,8 @@ std::vector<Measure> Measures(const plan::Protocol& protocol,
 /// The interfaces of a protocol, the control first.
 std::vector<std::string> InOrder(const plan::Protocol& protocol);
 
-/// In their order. Interfaces without a value are left out; blocks where every participant with a
-/// value has one in each group.
+/// In their order. Interfaces without a value are left out; the blocks are of the participants with
+/// a value in each group, where there are two of them.
 statistics::StudyTable TableOf(const Measure& measure, const plan::Protocol& protocol);
 
 }  // namespace footing::study::report

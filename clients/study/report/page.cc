@@ -66,6 +66,11 @@ std::string MeasureBlock(const Measure& measure, const ordered_json& json,
   if (json.contains("test")) block += TestTable(json["test"]);
   if (json.contains("rate")) block += RateTable(json["rate"]);
   block += "</div></div>";
+  if (json.contains("paired_participants")) {
+    block += Paragraph("note", "Paired test: " + Short(json, "paired_participants") + " of " +
+                                   Short(json, "participants") +
+                                   " participants, those with a value for every interface.");
+  }
   if (json.contains("test") && !json["test"].contains("error")) {
     block += Paragraph("believe", json["test"].value("note", "")) +
              Paragraph("note", json["test"].value("procedure", "") + ".");

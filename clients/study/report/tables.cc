@@ -27,15 +27,18 @@ std::string Row(const std::vector<std::string>& cells, const char* tag) {
   return row + "</tr>";
 }
 
-/// Of a test against the control: within subjects where that is known.
-double PToBelieve(const ordered_json& measure, const std::string& interface) {
-  if (!measure.contains("test") || measure["test"].contains("error")) return 1;
+/// Of a test against the control: within subjects where that is known, otherwise of the test that
+/// takes the groups as independent, and says so. Empty where it is not below 0.05.
+std::string SignificantP(const ordered_json& measure, const std::string& interface) {
+  if (!measure.contains("test") || measure["test"].contains("error")) return "";
   for (const ordered_json& row : measure["test"]["rows"]) {
     if (row.value("group", "") != interface) continue;
-    const char* key = row.contains("paired_p") && row["paired_p"].is_number() ? "paired_p" : "p";
-    return row[key].is_number() ? row[key].get<double>() : 1;
+    const bool paired = row.contains("paired_p") && row["paired_p"].is_number();
+    const ordered_json& p = row[paired ? "paired_p" : "p"];
+    if (!p.is_number() || p.get<double>() >= kSignificant) return "";
+    return " (p " + Rounded(p) + (paired ? ")" : ", independent)");
   }
-  return 1;
+  return "";
 }
 
 bool AllZero(const ordered_json& measure) {
@@ -75,8 +78,7 @@ std::string OverviewTable(const ordered_json& analysis,
       for (const ordered_json& group : measure["groups"]) {
         if (group["interface"] == interface) cell = Short(group, "median");
       }
-      const double p = PToBelieve(measure, interface);
-      cells.push_back(p < kSignificant ? cell + " (p " + Rounded(p) + ")" : cell);
+      cells.push_back(cell + SignificantP(measure, interface));
     }
     table += Row(cells, "td");
   }

@@ -16,7 +16,8 @@ std::string Short(const nlohmann::ordered_json& object, const char* key);
 std::string NameOfRow(const nlohmann::ordered_json& row);
 
 /// A row for each measure of an analysis: the median of each interface, in their order, with the p
-/// to believe against the control where it is below 0.05.
+/// to believe against the control where it is below 0.05: of the paired test, or marked as that of
+/// independent groups.
 std::string OverviewTable(const nlohmann::ordered_json& analysis,
                           const std::vector<std::string>& interfaces);
 /// The groups of a measure.

@@ -86,7 +86,11 @@ TEST(StudyAnalysis, LeavesOutWhoHasWithdrawnAndPairsOnlyWhatIsComplete) {
   const auto& completion = Find(analysis, "test_time_to_completion_s");
   EXPECT_EQ(completion["groups"][0]["n"], 2);  // Of P2 and P3; P1 did not arrive.
   EXPECT_EQ(completion["groups"][1]["n"], 3);
-  EXPECT_FALSE(completion.contains("paired"));
+  EXPECT_EQ(completion["participants"], 3);
+  EXPECT_EQ(completion["paired_participants"], 2);
+  EXPECT_TRUE(completion.contains("paired"));
+  EXPECT_THAT(Page(analysis, Two(), people),
+              HasSubstr("Paired test: 2 of 3 participants, those with a value"));
   EXPECT_THAT(ValuesCsv(analysis), Not(HasSubstr("P0")));
   EXPECT_THAT(ValuesCsv(analysis), HasSubstr("test_time_to_completion_s,point,P2,joystick,62\n"));
 }
@@ -161,6 +165,22 @@ TEST(StudyAnalysis, HasNoCountWithoutItsTimeOrAPlannedTrial) {
   EXPECT_NEAR(test["rate"]["rows"][0]["poisson"]["estimate"].get<double>(),
               (5.0 / 264) / (18.0 / 375), 1e-9);
   EXPECT_EQ(Find(analysis, "test_mean_time_to_failure_s")["groups"][1]["n"], 5);
+}
+
+TEST(StudyPage, MarksAPOfIndependentGroupsInTheOverview) {
+  const auto overview = [](const std::vector<records::Records>& people) {
+    const std::string page = Page(Analyze(Two(), people), Two(), people);
+    return page.substr(0, page.find("<h2>Completion"));
+  };
+  auto people = People(16);
+  EXPECT_THAT(overview(people), Not(HasSubstr("independent)")));
+  EXPECT_THAT(overview(people), HasSubstr("(p "));
+  people[0].trials.erase(people[0].trials.begin());  // One value is missing: still paired.
+  EXPECT_THAT(overview(people), Not(HasSubstr("independent)")));
+  for (std::size_t i = 0; i < people.size(); ++i) {  // Each participant with one interface.
+    if (people[i].trials.size() > 1) people[i].trials.erase(people[i].trials.begin() + i % 2);
+  }
+  EXPECT_THAT(overview(people), HasSubstr(", independent)"));
 }
 
 TEST(StudyPage, SaysWhichTestToBelieveBesideEachMeasure) {
