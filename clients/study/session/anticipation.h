@@ -16,8 +16,9 @@ class Anticipation {
   /// it, and `wanted` the gait of the task.
   void Add(std::int64_t host_ns, double to_mark_m, stream::Gait commanded, stream::Gait wanted);
 
-  /// Instant at the line less that of the command, each the newest one, s: negative where the
-  /// command came after the line. Nothing before both.
+  /// Instant at the line less that of the command, of the newest approach, s: negative where the
+  /// command came after the line. Ahead of the line the last command counts, behind it the first
+  /// one, unless there was one ahead. Nothing before both.
   std::optional<double> seconds() const;
 
  private:
@@ -25,6 +26,7 @@ class Anticipation {
   std::int64_t line_ns_ = 0;
   bool commanded_ = false;
   bool ahead_ = false;
+  bool answered_ = false;  ///< This approach has its command.
 };
 
 }  // namespace footing::study

@@ -6,6 +6,7 @@
 namespace footing::study {
 
 void HeadingOscillation::Add(double heading_error_rad) {
+  if (!upright_) return;
   ++count_;
   const double before = heading_error_rad - mean_;
   mean_ += before / static_cast<double>(count_);

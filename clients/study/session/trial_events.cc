@@ -61,6 +61,8 @@ void TrialEvents::OnEvent(const v1::Event& event) {
   if (ended_) return;
   // Responses do not name a trial; while nothing has begun they belong to none.
   if (event.kind() == v1::Event::KIND_RESPONSE && tracker_.begun()) OnResponse(event.response());
+  if (event.kind() == v1::Event::KIND_FALL) heading_.SetUpright(false);
+  if (event.kind() == v1::Event::KIND_PUT_BACK) heading_.SetUpright(true);
   if (event.kind() == v1::Event::KIND_FALL && event.failure().trial() == id_) OnFailure(event);
 }
 

@@ -21,6 +21,16 @@ TEST(HeadingOscillation, IsTheStandardDeviationWithoutTheMean) {
   EXPECT_NEAR(heading.StandardDeviation(), std::sqrt(0.05 / 3), 1e-15);
 }
 
+TEST(HeadingOscillation, LeavesOutTheFramesOnTheGround) {
+  HeadingOscillation heading;
+  for (const double error_rad : {0.1, 0.2}) heading.Add(error_rad);
+  heading.SetUpright(false);
+  heading.Add(2.5);
+  heading.SetUpright(true);
+  for (const double error_rad : {0.3, 0.4}) heading.Add(error_rad);
+  EXPECT_NEAR(heading.StandardDeviation(), std::sqrt(0.05 / 3), 1e-15);
+}
+
 TEST(ActiveTime, CountsWhatPassesBetweenTicksWhileSomethingMoves) {
   ActiveTime active;
   constexpr std::int64_t kStartNs = 5'000'000'000, kTickNs = 10'000'000;
@@ -62,6 +72,22 @@ TEST(Anticipation, IsOfTheLastAttemptAndNegativeBehindTheLine) {
   at(-0.4, Gait::kRun);
   at(-0.7, Gait::kJump);  // ... and 0.2 s later the command.
   EXPECT_NEAR(*anticipation.seconds(), -0.2, 1e-9);
+}
+
+TEST(Anticipation, BehindTheLineKeepsTheCommandOfTheSameApproach) {
+  using stream::Gait;
+  Anticipation anticipation;
+  std::int64_t now_ns = 0;
+  const auto at = [&](double to_mark_m, Gait commanded) {
+    anticipation.Add(now_ns += 100'000'000, to_mark_m, commanded, Gait::kWalk);
+  };
+  at(1, Gait::kRun);
+  at(0.5, Gait::kWalk);  // 0.2 s before the line.
+  at(0.2, Gait::kWalk);
+  at(-0.1, Gait::kWalk);
+  at(-0.2, Gait::kRun);
+  at(-0.3, Gait::kWalk);  // Only once more.
+  EXPECT_NEAR(*anticipation.seconds(), 0.2, 1e-9);
 }
 
 stream::TrialState FrameOf(const std::string& trial, stream::TrialPhase phase, double time_s) {
