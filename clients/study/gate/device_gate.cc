@@ -66,6 +66,14 @@ std::vector<DeviceRole> RolesOf(const std::string& interface) {
   return {DeviceRole::kLeftHand, DeviceRole::kRightHand};
 }
 
+bool AnySimulated(const std::string& interface, const std::vector<DeviceStatus>& devices) {
+  for (const DeviceRole role : RolesOf(interface)) {
+    const DeviceStatus* device = DeviceOf(role, interface, devices);
+    if (device != nullptr && device->simulated) return true;
+  }
+  return false;
+}
+
 std::vector<std::string> Problems(const plan::DeviceGate& gate, const std::string& interface,
                                   const std::vector<DeviceStatus>& devices) {
   std::vector<std::string> problems;

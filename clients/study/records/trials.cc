@@ -151,6 +151,7 @@ Records Collect(const std::vector<Event>& events) {
         records.withdrawn = true;
         break;
       case EventKind::kTrialStarted:
+        records.synthetic = records.synthetic || event.Flag("synthetic");
         records.trials.push_back(Begun(event, records));
         break;
       case EventKind::kTrialFinished:

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "clients/study/gate/device_gate.h"
 #include "clients/study/journal/study_folder.h"
 #include "clients/study/records/trials.h"
 #include "clients/study/session/trial_events.h"
@@ -77,6 +78,11 @@ class TrialRun {
     return outcome;
   }
 
+  bool Synthetic() const {
+    return context_.options.unattended ||
+           gate::AnySimulated(phase_.interface, servers_.devices());
+  }
+
   ordered_json Marks() const {
     return {{"trial", id_},
             {"phase", phase_.id},
@@ -86,13 +92,13 @@ class TrialRun {
             {"task", phase_.task},
             {"seed", phase_.seed},
             {"attempt", attempt_},
-            {"recording", file_}};
+            {"recording", file_},
+            {"synthetic", Synthetic()}};
   }
 
   mcap::TextMap MarksOfRecording() const {
     mcap::TextMap marks = ToTextMap(Marks());
     marks["participant"] = context_.session.participant;
-    marks["synthetic"] = context_.options.unattended ? "true" : "false";
     std::string order;
     for (const std::string& one : context_.session.interfaces) {
       order += (order.empty() ? "" : " ") + one;

@@ -104,6 +104,7 @@ def check_journal(stage, first, second):
     assert of["note"][1]["planned_s"] == 100 > of["note"][1]["took_s"], of["note"]
     assert [one["failure"] for one in of["failure_undone"]] == [first, second], of["failure_undone"]
     assert [one["attempt"] for one in of["trial_started"]] == [1, 2], of["trial_started"]
+    assert all(one["synthetic"] for one in of["trial_started"]), of["trial_started"]  # Simulated devices.
     assert [one["outcome"] for one in of["trial_finished"]] == ["stopped", "stopped"], of["trial_finished"]
     assert of["trial_finished"][0]["failed_attempts"] == 1, of["trial_finished"]
     assert (of["rating"][0]["value"], of["exertion"][0]["value"]) == (4, 7), (of["rating"], of["exertion"])

@@ -32,6 +32,15 @@ TEST(DeviceGate, OpensForGoodDevices) {
   EXPECT_THAT(Problems({}, "arm", Hands()), IsEmpty());
 }
 
+TEST(DeviceGate, KnowsASimulatedDeviceOfTheInterface) {
+  auto devices = Hands();
+  EXPECT_FALSE(AnySimulated("wrist", devices));
+  devices.front().simulated = true;
+  EXPECT_TRUE(AnySimulated("wrist", devices));
+  EXPECT_FALSE(AnySimulated("joystick", devices));  // In the right hand.
+  EXPECT_FALSE(AnySimulated("leg", devices));
+}
+
 TEST(DeviceGate, NeedsTheRolesOfTheInterface) {
   EXPECT_THAT(Problems({}, "leg", Hands()),
               ElementsAre(HasSubstr("left_leg is missing"), HasSubstr("right_leg is missing"),

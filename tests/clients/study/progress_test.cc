@@ -150,6 +150,16 @@ TEST(TrialRecords, UndoTheFailureOfTheTrialThatIsNamed) {
   EXPECT_EQ(WithFailure(records, 999), nullptr);
 }
 
+TEST(TrialRecords, AreSyntheticOnceATrialIs) {
+  Events events;
+  events.Add(EventKind::kSessionStarted, {{"participant", "P7"}, {"synthetic", false}});
+  events.Trial("a", 1).Finished(3);
+  EXPECT_FALSE(Collect(events.list).synthetic);
+  events.Add(EventKind::kTrialStarted, {{"phase", "b"}, {"synthetic", true}});
+  EXPECT_TRUE(Collect(events.list).synthetic);
+  EXPECT_TRUE(Collect(events.list).trials[1].synthetic);
+}
+
 TEST(TrialRecords, CountTheLastAttemptThatEnded) {
   Events events;
   events.Add(EventKind::kSessionStarted);
