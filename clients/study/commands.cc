@@ -1,5 +1,6 @@
 #include "clients/study/commands.h"
 
+#include <algorithm>
 #include <iostream>
 #include <set>
 #include <utility>
@@ -67,12 +68,24 @@ Result<LoadedProtocol> Load(const std::string& path, const std::string& folder) 
 }
 
 Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
+  if (const auto done = journal::CheckProtocol(loaded.folder, loaded.text); !done) {
+    return done.error();
+  }
+  for (const std::string& code : journal::Participants(loaded.folder)) {
+    const auto& codes = loaded.protocol.participants;
+    if (std::find(codes.begin(), codes.end(), code) != codes.end()) continue;
+    return InvalidData(journal::ParticipantFolder(loaded.folder, code) +
+                       " has a journal, and participants of " + loaded.path + " does not have " +
+                       code + "; add the code, or move the folder away");
+  }
   std::vector<records::Records> people;
   for (const std::string& participant : loaded.protocol.participants) {
     const std::string path = journal::JournalPath(loaded.folder, participant);
     if (!journal::Exists(path)) continue;
     const auto text = journal::ReadJournal(path);
     if (!text) return text.error();
+    const auto own = journal::RequireParticipant(text->events, participant, path);
+    if (!own) return own.error();
     people.push_back(records::Collect(text->events));
   }
   if (!people.empty()) return people;

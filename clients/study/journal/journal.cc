@@ -39,6 +39,18 @@ Result<records::JournalText> ReadJournal(const std::string& path) {
   return records::ParseJournal(*text, path);
 }
 
+Result<void> RequireParticipant(const std::vector<records::Event>& events,
+                                const std::string& participant, const std::string& path) {
+  for (const records::Event& event : events) {
+    if (event.kind != records::EventKind::kSessionStarted) continue;
+    const std::string own = event.Text("participant");
+    if (own == participant) return {};
+    return InvalidData(path + " is the journal of participant " + own + ", not of " + participant +
+                       "; move it to the folder of that code");
+  }
+  return {};
+}
+
 Result<Journal> Journal::Create(const std::string& path) {
   const int descriptor =
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0600);

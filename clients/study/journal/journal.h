@@ -46,6 +46,10 @@ class Journal {
   Result<void> refused_;
 };
 
+/// InvalidData when the journal at `path` is of another participant, such as after a copy.
+Result<void> RequireParticipant(const std::vector<records::Event>& events,
+                                const std::string& participant, const std::string& path);
+
 /// The events of a journal, without changing the file. Failure when it cannot be read.
 Result<records::JournalText> ReadJournal(const std::string& path);
 

@@ -5,6 +5,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -103,16 +104,31 @@ Result<void> RequireSpace(const std::string& folder, double needed_mb) {
                  "; delete something, or set disk_mb in the protocol");
 }
 
-Result<void> KeepProtocol(const std::string& study_folder, const std::string& text) {
+std::vector<std::string> Participants(const std::string& study_folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(study_folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (Exists(JournalPath(study_folder, name))) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Result<void> CheckProtocol(const std::string& study_folder, const std::string& text) {
   const std::string path = study_folder + "/protocol.json";
-  if (!Exists(path)) return ReplaceFile(path, text);
+  if (!Exists(path)) return {};
   const auto before = config::ReadTextFile(path);
   if (!before) return before.error();
-  if (*before == text) return {};
-  if (OnlyAddsParticipants(Parsed(*before), Parsed(text))) return ReplaceFile(path, text);
+  if (*before == text || OnlyAddsParticipants(Parsed(*before), Parsed(text))) return {};
   return InvalidData("the protocol differs from " + path +
                      ", with which the study began; only participants may be added, at the end of "
                      "their list. Copy the protocol to a new name for a new study");
+}
+
+Result<void> KeepProtocol(const std::string& study_folder, const std::string& text) {
+  if (const auto done = CheckProtocol(study_folder, text); !done) return done;
+  return ReplaceFile(study_folder + "/protocol.json", text);
 }
 
 }  // namespace footing::study::journal

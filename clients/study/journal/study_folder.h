@@ -22,6 +22,9 @@ Result<void> ReplaceFile(const std::string& path, const std::string& text);
 Result<void> MakeFolder(const std::string& path);
 bool Exists(const std::string& path);
 
+/// Names of the participants who have a journal in the folder, in order.
+std::vector<std::string> Participants(const std::string& study_folder);
+
 /// Bytes free for this user on the disk of an existing folder.
 Result<std::uint64_t> FreeBytes(const std::string& folder);
 /// Failure that says how much is free and how much is needed.
@@ -30,5 +33,7 @@ Result<void> RequireSpace(const std::string& folder, double needed_mb);
 /// The protocol of a study must not change once a session began: the first call stores its text in
 /// the folder as protocol.json, later ones compare. Participants may be added at the end.
 Result<void> KeepProtocol(const std::string& study_folder, const std::string& text);
+/// The comparison alone, for those who only read.
+Result<void> CheckProtocol(const std::string& study_folder, const std::string& text);
 
 }  // namespace footing::study::journal

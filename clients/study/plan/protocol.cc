@@ -27,6 +27,13 @@ bool IsCode(const std::string& code) {
          std::all_of(code.begin(), code.end(), allowed);
 }
 
+std::string LowerCase(std::string code) {
+  for (char& c : code) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return code;
+}
+
 bool Has(const std::vector<std::string>& list, const std::string& one) {
   return std::find(list.begin(), list.end(), one) != list.end();
 }
@@ -65,6 +72,14 @@ void ReadPeople(Reader& reader, Protocol& protocol) {
       reader.Fail("participants", "has \"" + code +
                                       "\"; a code is 1 to 16 letters, digits, - and _, and never a "
                                       "person's name");
+    }
+    if (LowerCase(code) == "lock") {
+      reader.Fail("participants", "has \"" + code + "\", which is the name of the study's lock");
+    }
+    for (const std::string& other : protocol.participants) {
+      if (other == code || LowerCase(other) != LowerCase(code)) continue;
+      reader.Fail("participants", "has \"" + code + "\" and \"" + other +
+                                      "\"; codes must differ by more than case");
     }
   }
   reader.Texts("interfaces", protocol.interfaces, 1, stream::kUserInterfaces.size());

@@ -29,15 +29,12 @@ struct Opened {
   journal::Journal journal;
 };
 
-Result<Opened> OpenStudy(const SessionOptions& options, const plan::Protocol& protocol) {
+Result<Opened> OpenStudy(const SessionOptions& options) {
   const std::string& folder = options.study_folder;
   if (const auto done = journal::MakeFolder(folder); !done) return done.error();
   auto lock = journal::Lock::Take(folder + "/lock", Holder(options));
   if (!lock) return lock.error();
   if (const auto done = journal::KeepProtocol(folder, options.protocol_text); !done) {
-    return done.error();
-  }
-  if (const auto done = journal::RequireSpace(folder, protocol.disk_mb); !done) {
     return done.error();
   }
   const std::string own = journal::ParticipantFolder(folder, options.participant);
@@ -46,6 +43,8 @@ Result<Opened> OpenStudy(const SessionOptions& options, const plan::Protocol& pr
   auto journal =
       journal::Exists(path) ? journal::Journal::Resume(path) : journal::Journal::Create(path);
   if (!journal) return journal.error();
+  const auto same = journal::RequireParticipant(journal->events(), options.participant, path);
+  if (!same) return same.error();
   return Opened{std::move(*lock), std::move(*journal)};
 }
 
@@ -134,8 +133,10 @@ Result<void> SessionRun::Run() {
 Result<void> RunSession(const SessionOptions& options, const plan::Protocol& protocol) {
   const auto session = SessionOf(options, protocol);
   if (!session) return session.error();
-  auto opened = OpenStudy(options, protocol);
+  auto opened = OpenStudy(options);
   if (!opened) return opened.error();
+  const auto space = journal::RequireSpace(options.study_folder, protocol.disk_mb);
+  if (!space) return space.error();
   Console console;
   return SessionRun({options, protocol, *session, console, opened->journal}).Run();
 }
@@ -147,7 +148,7 @@ Result<void> AppendToSession(const SessionOptions& options, const plan::Protocol
   if (!journal::Exists(path))
     return UsageError("participant " + options.participant + " has no session yet: " + path +
                       " is missing");
-  auto opened = OpenStudy(options, protocol);
+  auto opened = OpenStudy(options);
   if (!opened) return opened.error();
   if (fields.contains("failure")) {
     const records::Records records = records::Collect(opened->journal.events());

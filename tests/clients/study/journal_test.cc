@@ -147,6 +147,38 @@ TEST(StudyFolder, StandsBesideTheProtocol) {
   EXPECT_EQ(JournalPath("b.study", "P1"), "b.study/P1/journal.jsonl");
 }
 
+TEST(Journal, IsOfTheParticipantOfItsFolder) {
+  const test::TemporaryFolder folder;
+  auto journal = Journal::Create(folder.Path("j"));
+  ASSERT_TRUE(journal);
+  EXPECT_TRUE(RequireParticipant(journal->events(), "P1", "j"));
+  ASSERT_TRUE(journal->Append(EventKind::kSessionStarted, {{"participant", "P1"}}));
+  EXPECT_TRUE(RequireParticipant(journal->events(), "P1", "j"));
+  const auto other = RequireParticipant(journal->events(), "P2", "j");
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error().message, HasSubstr("j is the journal of participant P1, not of P2"));
+}
+
+TEST(StudyFolder, NamesThoseWithAJournal) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(MakeFolder(folder.Path("P2")));
+  ASSERT_TRUE(MakeFolder(folder.Path("P1")));
+  ASSERT_TRUE(MakeFolder(folder.Path("empty")));
+  for (const char* code : {"P2", "P1"}) {
+    ASSERT_TRUE(Journal::Create(JournalPath(folder.Path(""), code)));
+  }
+  EXPECT_THAT(Participants(folder.Path("")), testing::ElementsAre("P1", "P2"));
+}
+
+TEST(StudyFolder, ComparesTheProtocolWithoutStoringIt) {
+  const test::TemporaryFolder folder;
+  EXPECT_TRUE(CheckProtocol(folder.Path(""), "{}"));
+  EXPECT_FALSE(Exists(folder.Path("protocol.json")));
+  ASSERT_TRUE(KeepProtocol(folder.Path(""), R"({"participants": ["P1"], "seed": 1})"));
+  EXPECT_TRUE(CheckProtocol(folder.Path(""), R"({"participants": ["P1"], "seed": 1})"));
+  EXPECT_FALSE(CheckProtocol(folder.Path(""), R"({"participants": ["P1"], "seed": 2})"));
+}
+
 TEST(StudyFolder, KeepsTheProtocolItBeganWithButForNewParticipants) {
   const test::TemporaryFolder folder;
   const std::string path = folder.Path("s");

@@ -161,6 +161,10 @@ def check_report(stage):
     assert "latency_without_contact_ms" in found and analysis["latency"][0]["stage"] == "decode", analysis["latency"]
     assert found["active_min"]["groups"][0]["mean"] > 0, found["active_min"]
     refused(stage, 2, "exists", "report", protocol)
+    other = stage.folder / "other.json"
+    other.write_text(json.dumps({**PROTOCOL, "control": "wrist"}))
+    for command in (("analyze",), ("report",), ("export", "--out", stage.folder / "o.bids")):
+        refused(stage, 4, "the protocol differs", *command, other, "--folder", stage.folder / "s.study")
     assert stage.run("footing-study", "report", protocol, "--force").returncode == 0
 
 
