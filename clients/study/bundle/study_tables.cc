@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "clients/study/bundle/bids.h"
 #include "common/stream/trial.h"
@@ -37,6 +38,24 @@ std::string ColumnOf(const std::string& interface, const std::string& item) {
   return name;
 }
 
+/// Different items have different columns, also where their names differ only in what ColumnOf
+/// replaces: the second one is NAME_2. The codebook has the items as they were asked.
+class ColumnNames {
+ public:
+  std::string Of(const std::string& interface, const std::string& item, const char* form) {
+    const auto known = names_.find({interface, item, form});
+    if (known != names_.end()) return known->second;
+    const std::string plain = ColumnOf(interface, item);
+    std::string name = plain;
+    for (int i = 2; !used_.insert(name).second; ++i) name = plain + "_" + std::to_string(i);
+    return names_[{interface, item, form}] = name;
+  }
+
+ private:
+  std::map<std::tuple<std::string, std::string, std::string>, std::string> names_;
+  std::set<std::string> used_;
+};
+
 std::string InterfaceText(const std::string& interface) {
   return interface.empty() ? "asked at the end" : "asked after the interface " + interface;
 }
@@ -66,6 +85,7 @@ DocumentedTable SurveyTable(const std::vector<Records>& people, const Participan
                             bool with_text) {
   std::vector<std::string> columns;
   DocumentedTable table;
+  ColumnNames names;
   std::map<std::string, std::map<std::string, std::string>> cells;  // By subject and column.
   const auto add = [&](const std::string& subject, const std::string& column, std::string cell,
                        const ordered_json& meaning) {
@@ -80,12 +100,12 @@ DocumentedTable SurveyTable(const std::vector<Records>& people, const Participan
       const std::string scale = one.item == "exertion"
                                     ? ", 0 (nothing at all) to 10 (extremely strong)"
                                     : ", 1 (very little) to 5 (very much)";
-      add(subject, ColumnOf(one.interface, one.item), Cell(one.value, 0),
+      add(subject, names.Of(one.interface, one.item, "rating"), Cell(one.value, 0),
           Column(one.item + scale + "; " + InterfaceText(one.interface)));
     }
     if (!with_text) continue;
     for (const records::Answer& one : person.answers) {
-      add(subject, ColumnOf(one.interface, one.question), one.text,
+      add(subject, names.Of(one.interface, one.question, "text"), one.text,
           Column("Free text: " + one.question + "; " + InterfaceText(one.interface)));
     }
   }

@@ -46,6 +46,14 @@ Result<void> ReadSurvey(Reader& outer, const std::string& key, const std::string
   reader.Texts("ratings", survey.ratings, 0, kMostItems);
   reader.Texts("questions", survey.questions, 0, kMostItems);
   reader.Flag("exertion", survey.exertion);
+  for (const std::string& item : survey.ratings) {
+    if (item == "exertion") {
+      reader.Fail("ratings", "has \"exertion\", which is a scale of its own: set exertion to true");
+    }
+    if (Has(survey.questions, item)) {
+      reader.Fail("questions", "has \"" + item + "\", which is a rating, too");
+    }
+  }
   return reader.Finish();
 }
 

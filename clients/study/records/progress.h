@@ -20,7 +20,7 @@ struct Progress {
   std::map<std::string, std::size_t> attempts;  ///< Trials begun, by phase.
   /// The outcome of the last attempt that counts, by phase.
   std::map<std::string, std::string> outcomes;
-  double active_s = 0;  ///< How long the participant has been moving.
+  double active_s = 0;            ///< How long the participant has been moving.
   std::string interrupted_trial;  ///< Began and did not finish; empty: none.
 };
 

@@ -11,8 +11,9 @@ namespace footing::study::report {
 
 struct Analysis {
   /// {name, control, participants, withdrawn, unfinished, synthetic, measures: [{id, title, groups,
-  /// participants, test, paired_participants, paired, rate}], latency: [{interface, stage, n, p50_ms, p95_ms}]}; `test`, `paired` and
-  /// `rate` (of all failures together) are reports of footing-eval stats, or {error}.
+  /// participants, test, paired_participants, paired, rate}], latency: [{interface, stage, n,
+  /// p50_ms, p95_ms}]}; `test`, `paired` and `rate` (of all failures together) are reports of
+  /// footing-eval stats, or {error}.
   nlohmann::ordered_json json;
   std::vector<Measure> measures;
   std::vector<StageLatency> latency;

@@ -101,8 +101,7 @@ class TrialMeasures {
   /// Failures by kind, and all together.
   void AddFailures(const std::string& kind, const std::string& id, const std::string& where) {
     const auto add = [&](const std::string& name, const std::string& title, const auto& count_of) {
-      Add(
-          kind,
+      Add(kind,
           {Section::kFailures,
            id + "_failures_" + name,
            where + ", " + title,

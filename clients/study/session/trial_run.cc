@@ -45,8 +45,8 @@ mcap::TextMap ToTextMap(const ordered_json& fields) {
 
 class TrialRun {
  public:
-  TrialRun(SessionContext& context, Servers& servers, const ActiveTime& active,
-           TrialEvents& events, const plan::Phase& phase, std::size_t attempt)
+  TrialRun(SessionContext& context, Servers& servers, const ActiveTime& active, TrialEvents& events,
+           const plan::Phase& phase, std::size_t attempt)
       : context_(context),
         servers_(servers),
         active_(active),
@@ -79,8 +79,7 @@ class TrialRun {
   }
 
   bool Synthetic() const {
-    return context_.options.unattended ||
-           gate::AnySimulated(phase_.interface, servers_.devices());
+    return context_.options.unattended || gate::AnySimulated(phase_.interface, servers_.devices());
   }
 
   ordered_json Marks() const {

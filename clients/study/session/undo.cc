@@ -1,6 +1,7 @@
 #include "clients/study/session/undo.h"
 
 #include <utility>
+#include <vector>
 
 #include "clients/study/records/trials.h"
 
@@ -47,8 +48,8 @@ Result<void> UndoFailure(SessionContext& context, Servers& servers, const std::s
     context.console.Print(sent.error().message);
     return {};
   }
-  const Waited waited = context.console.RunUntil([&] { return !Counts(context, trial, number); },
-                                                 kCorrectedWithinS);
+  const Waited waited =
+      context.console.RunUntil([&] { return !Counts(context, trial, number); }, kCorrectedWithinS);
   if (waited == Waited::kInterrupted) return Interrupted();
   if (waited == Waited::kTimeUp) {
     context.console.Print("footing-sim has not confirmed the correction of " + text);

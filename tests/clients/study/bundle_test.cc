@@ -129,6 +129,23 @@ TEST(StudyTables, HaveNumbersInPlaceOfCodesAndNoTextUnlessAsked) {
   }
 }
 
+TEST(StudyTables, KeepSimilarItemsApart) {
+  auto people = One();
+  people[0].ratings = {{"Anna7", "wrist", "Spaß", 1, false},
+                       {"Anna7", "wrist", "Spaé", 2, false},
+                       {"Anna7", "wrist", "a b", 3, false},
+                       {"Anna7", "wrist", "a-b", 4, false}};
+  people[0].answers.clear();
+  ParticipantKey key;
+  key.Add({"Anna7"}, 1);
+  const auto survey = SurveyTable(people, key, /*with_text=*/false);
+  EXPECT_EQ(survey.tsv,
+            "participant_id\twrist_Spa__\twrist_Spa___2\twrist_a_b\twrist_a_b_2\n"
+            "sub-01\t1\t2\t3\t4\n");
+  EXPECT_THAT(survey.codebook["wrist_Spa___2"]["Description"].get<std::string>(),
+              HasSubstr("Spaé"));
+}
+
 TEST(StudyTables, DescribeEveryColumnOfTrials) {
   const auto people = One();
   ParticipantKey key;

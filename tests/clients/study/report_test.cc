@@ -152,8 +152,8 @@ TEST(StudyAnalysis, HasNoCountWithoutItsTimeOrAPlannedTrial) {
       }
     }
   }
-  people[0].trials.pop_back();      // One of two straight trials with the joystick.
-  people[1].trials[0].time_s = 0;   // Never over the start line with the wrist.
+  people[0].trials.pop_back();     // One of two straight trials with the joystick.
+  people[1].trials[0].time_s = 0;  // Never over the start line with the wrist.
   people[1].trials[0].outcome = "stopped";
   const Analysis analysis = Analyze(protocol, people);
   const auto& straight = Find(analysis, "straight_failures_all");
