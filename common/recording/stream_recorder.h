@@ -32,6 +32,8 @@ class StreamRecorder {
 
   std::uint64_t ticks() const { return ticks_; }
   std::uint64_t missing_ticks() const { return missing_ticks_; }
+  /// Of the newest tick, on the server's clock; 0: none.
+  std::int64_t last_host_ns() const { return last_host_ns_; }
   /// The last state of the link, for a person.
   const std::string& link() const { return link_; }
   const std::string& address() const { return address_; }

@@ -15,6 +15,7 @@ namespace asio = boost::asio;
 
 constexpr auto kFlushPeriod = std::chrono::milliseconds(400);  // Half of kLongestUnwrittenNs.
 constexpr double kFirstTickS = 5;
+constexpr double kCaughtUpS = 1;
 
 }  // namespace
 
@@ -54,6 +55,12 @@ class TrialRecorder::Implementation {
   bool Flowing() const {
     return !written_ || std::all_of(servers_.begin(), servers_.end(), [](const auto& server) {
       return server->recorder().ticks() > 1;
+    });
+  }
+
+  bool Has(std::int64_t host_ns) const {
+    return !written_ || std::all_of(servers_.begin(), servers_.end(), [&](const auto& server) {
+      return server->recorder().last_host_ns() >= host_ns;
     });
   }
 
@@ -113,6 +120,10 @@ Result<std::unique_ptr<TrialRecorder>> TrialRecorder::Begin(Console& console, Op
 }
 
 const Result<void>& TrialRecorder::written() const { return implementation_->written_; }
+
+Waited TrialRecorder::CatchUp(Console& console, std::int64_t host_ns) const {
+  return console.RunUntil([&] { return implementation_->Has(host_ns); }, kCaughtUpS);
+}
 
 Result<void> TrialRecorder::Finish(const mcap::TextMap& outcome) {
   return implementation_->Finish(outcome);

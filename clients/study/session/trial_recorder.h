@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,6 +34,9 @@ class TrialRecorder {
 
   /// A full disk, as soon as it is noticed.
   const Result<void>& written() const;
+  /// Runs until everything up to this instant is in the file, for a short while at most: events
+  /// reach other connections first. A server with another clock is waited for in vain.
+  Waited CatchUp(Console& console, std::int64_t host_ns) const;
   /// Ends the file; `outcome` is the metadata record "trial_outcome".
   Result<void> Finish(const mcap::TextMap& outcome);
 

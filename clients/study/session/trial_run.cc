@@ -195,6 +195,9 @@ class TrialRun {
     fields.update(events_.Figures());
     events_.End();
     if (outcome == records::kDeviceLost) fields["device"] = stream::RoleNames(lost_roles_);
+    if (recorder_->CatchUp(context_.console, servers_.frame().host_ns) == Waited::kInterrupted) {
+      return Interrupted();
+    }
     if (const auto done = recorder_->Finish(ToTextMap(fields)); !done) return done;
     return context_.journal.Append(EventKind::kTrialFinished, std::move(fields));
   }

@@ -5,6 +5,7 @@ Usage: session_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
 """
 import json
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -190,6 +191,8 @@ def check_export(stage):
         assert f"{name.split('/', 1)[1]}\t1900-01-01T00:" in files["sub-01/sub-01_scans.tsv"], name
     events = [text for name, text in files.items() if name.endswith("_events.tsv")]
     assert len(events) == 4 and all("trial_ready" in text for text in events), events
+    ends = [re.findall(r"trial_\w+", text)[-1] for text in events]
+    assert all(end in ("trial_finished", "trial_stopped") for end in ends), ends
     trials = [line.split("\t") for line in files["sourcedata/trials.tsv"].splitlines()]
     assert len(trials) == 1 + 5 and set(trials[0][1:]) == set(json.loads(files["sourcedata/trials.json"])), trials
     key = (stage.folder / "s.study/participant_key.csv")
