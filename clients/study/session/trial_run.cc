@@ -208,6 +208,7 @@ class TrialRun {
     ordered_json fields = {{"trial", id_},
                            {"outcome", records::kBrokenOff},
                            {"reason", why.message},
+                           {"active_s", active_.seconds() - active_before_s_},
                            {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)}};
     fields.update(events_.Figures());
     if (recorder_) {
