@@ -106,7 +106,7 @@ def check_recording_in_the_way(stage):
     (folder / f"{first}.1.mcap").write_bytes(b"")
     refused(stage, 2, "exists", *command)
     lines = [json.loads(line) for line in (folder / "journal.jsonl").read_text().splitlines()]
-    assert lines[-1]["event"] == "trial_started", lines[-1]
+    assert lines[-1]["outcome"] == "broken_off" and "exists" in lines[-1]["reason"], lines[-1]
     done = stage.run("footing-study", *command, timeout_s=120)
     assert done.returncode == 0 and f"{first}, attempt 1" in done.stderr, done
 
