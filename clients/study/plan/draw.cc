@@ -2,12 +2,14 @@
 
 #include <limits>
 
+#include "common/text/fnv.h"
+
 namespace footing::study::plan {
 
 /// FNV-1a, started with the seed.
 Draw::Draw(std::uint64_t seed, std::string_view purpose) {
-  std::uint64_t hash = 14695981039346656037u;
-  const auto mix = [&hash](unsigned char byte) { hash = (hash ^ byte) * 1099511628211u; };
+  std::uint64_t hash = text::kFnvBasis;
+  const auto mix = [&hash](unsigned char byte) { hash = text::AddFnv(hash, byte); };
   for (int i = 0; i < 8; ++i) mix(static_cast<unsigned char>(seed >> (8 * i)));
   for (const char c : purpose) mix(static_cast<unsigned char>(c));
   engine_.seed(hash);
