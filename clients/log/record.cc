@@ -1,5 +1,6 @@
 #include "clients/log/record.h"
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -21,6 +22,8 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kFlushPeriod = std::chrono::milliseconds(50);
+constexpr auto kCatchUpPeriod = std::chrono::milliseconds(5);
+constexpr std::int64_t kLongestCatchUpNs = 2'000'000'000;
 constexpr auto kProgressPeriod = std::chrono::seconds(5);
 constexpr std::size_t kMostAttachmentBytes = 16u << 20;
 
@@ -44,13 +47,13 @@ class Recording {
     for (const transport::Address& address : options_.addresses) Link(address);
     for (const auto& link : links_) link->Start();
     signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (!error) End();
+      if (!error) CatchUp(clock::MonotonicNs());
     });
     if (options_.seconds > 0) {
       end_.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
           std::chrono::duration<double>(options_.seconds)));
       end_.async_wait([this](const boost::system::error_code& error) {
-        if (!error) End();
+        if (!error) CatchUp(clock::MonotonicNs());
       });
     }
     FlushLater();
@@ -119,6 +122,17 @@ class Recording {
       }
       std::cerr << std::endl;
       ProgressLater();
+    });
+  }
+
+  /// Ends once everything has come that was sent up to then, or soon.
+  void CatchUp(std::int64_t until_ns) {
+    const bool has_all = std::all_of(links_.begin(), links_.end(),
+                                     [&](const auto& link) { return link->HasAllUntil(until_ns); });
+    if (has_all || clock::MonotonicNs() - until_ns > kLongestCatchUpNs) return End();
+    end_.expires_after(kCatchUpPeriod);
+    end_.async_wait([this, until_ns](const boost::system::error_code& error) {
+      if (!error) CatchUp(until_ns);
     });
   }
 

@@ -75,6 +75,12 @@ transport::ClientHandlers ServerRecorder::Handlers() {
   return handlers;
 }
 
+bool ServerRecorder::HasAllUntil(std::int64_t our_ns) const {
+  if (client_.state() != transport::LinkState::kLive) return true;
+  const transport::ClockOffset clock = client_.clock();
+  return clock.valid && recorder_.last_host_ns() >= our_ns + clock.offset_ns;
+}
+
 Result<void> ServerRecorder::End() {
   return recorder_.OnEnd(client_.clock(), clock::MonotonicNs());
 }

@@ -50,6 +50,9 @@ class ServerRecorder {
 
   void Start() { client_.Start(); }
   void Stop() { client_.Stop(); }
+  /// Whether everything up to an instant of our clock has come, ns. Without a connection nothing
+  /// more comes.
+  bool HasAllUntil(std::int64_t our_ns) const;
   /// Last, before the recording is finished: how the server's clock stood to ours.
   Result<void> End();
 

@@ -35,7 +35,7 @@ def check_logger(stage, recording):
                          name="serve")
     stage.wait_for_socket(stage.sensor)
     done = stage.run("footing-log", "record", "--connect", stage.sensor, "--out", again,
-                     "--seconds", SECONDS + 2)
+                     "--seconds", SECONDS + 4)
     assert done.returncode == 0 and "the recording has ended" in done.stderr, done
     assert server.wait(10) == 0
     assert '"complete":true' in (stage.folder / "serve.log").read_text()

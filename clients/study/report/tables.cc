@@ -134,17 +134,20 @@ std::string LatencyTable(const std::vector<StageLatency>& latency) {
 }
 
 std::string AnswerTable(const std::vector<records::Records>& people) {
-  std::string table;
+  // Sorted, since the order of the participants would say whose they are.
+  std::vector<std::vector<std::string>> answers;
   for (const records::Records& person : people) {
     if (person.withdrawn) continue;
     for (const records::Answer& answer : person.answers) {
       if (answer.text.empty()) continue;
-      table += Row({answer.interface.empty() ? "whole study" : answer.interface, answer.question,
-                    answer.text},
-                   "td");
+      answers.push_back({answer.interface.empty() ? "whole study" : answer.interface,
+                         answer.question, answer.text});
     }
   }
-  if (table.empty()) return "";
+  if (answers.empty()) return "";
+  std::sort(answers.begin(), answers.end());
+  std::string table;
+  for (const std::vector<std::string>& answer : answers) table += Row(answer, "td");
   return "<h2>Answers</h2><table>" + Row({"interface", "question", "answer"}, "th") + table +
          "</table>";
 }

@@ -42,7 +42,9 @@ Result<void> Lease::Take(const Request& request, std::int64_t now_ns) {
   }
   Expire(now_ns);
   const bool mine = HeldBy(request.session, now_ns);
-  if (request.renew_only && !mine) {
+  // Nobody took it since its last holder, who was only late.
+  const bool late = holder_.empty() && request.session == session_ && !session_ended_;
+  if (request.renew_only && !mine && !late) {
     if (!holder_.empty()) return HeldByError(holder_);
     return Failure("this session does not have the lease any more: it ran out, or was taken over");
   }
@@ -67,6 +69,7 @@ Result<void> Lease::Release(std::uint64_t session, std::int64_t now_ns) {
   if (HeldByOther(session, now_ns)) return HeldByError(holder_);
   if (holder_.empty()) return Failure("nobody has the lease of this footing-sim");
   End("lease: " + holder_ + " releases it");
+  session_ = 0;
   return {};
 }
 

@@ -14,7 +14,7 @@ struct Request {
   std::string holder;       ///< Who it is, for a person.
   double seconds = 0;       ///< Until the lease ends, unless it is renewed; 0 means kUsualS.
   bool take_over = false;   ///< Also from another session.
-  bool renew_only = false;  ///< Refused unless the session has the lease.
+  bool renew_only = false;  ///< Refused unless the session has the lease, or nobody after it.
 };
 
 /// Which session alone may control a server: none, or one until it releases the lease or does not

@@ -52,12 +52,13 @@ TEST(CsvTable, ListsWithinARowAreNumberedAndPaddedToTheLongest) {
   CsvTable table(*two.GetDescriptor());
   ASSERT_TRUE(table.Learn(two).ok());
   ASSERT_TRUE(table.Learn(one).ok());
-  EXPECT_EQ(table.Header(),
-            "world,step,time_s,overruns,state_hash,character,rig,valid,contacts_0_touching,"
-            "contacts_0_normal_force_n,contacts_1_touching,contacts_1_normal_force_n,"
-            "simulated_input");
-  EXPECT_EQ(Rows(table, two), "w,0,0,0,0,0,,0,1,0,0,2.5,0\n");
-  EXPECT_EQ(Rows(table, one), ",0,0,0,0,0,,0,0,0,,,0\n");
+  EXPECT_EQ(
+      table.Header(),
+      "world,step,time_s,overruns,state_hash,lease_holder,character,rig,valid,contacts_0_touching,"
+      "contacts_0_normal_force_n,contacts_1_touching,contacts_1_normal_force_n,"
+      "simulated_input");
+  EXPECT_EQ(Rows(table, two), "w,0,0,0,0,,0,,0,1,0,0,2.5,0\n");
+  EXPECT_EQ(Rows(table, one), ",0,0,0,0,,0,,0,0,0,,,0\n");
 }
 
 TEST(CsvTable, WhatAMessageDoesNotHaveIsAnEmptyCell) {

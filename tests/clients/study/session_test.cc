@@ -45,11 +45,12 @@ TEST(ActiveTime, CountsWhatPassesBetweenTicksWhileSomethingMoves) {
 
 TEST(Anticipation, IsTheTimeFromTheCommandToTheLine) {
   using stream::Gait;
+  constexpr std::int64_t kStartNs = 1'000'000'000, kTickNs = 10'000'000;
   Anticipation anticipation;
   // At 2 m/s, frames of 10 ms, the line at 3 m; the command comes at 2.4 m: (3 - 2.4) / 2 s.
   for (int i = 0; i <= 200; ++i) {
     const double to_mark_m = 3 - 0.02 * i;
-    anticipation.Add(1'000'000'000 + i * 10'000'000, to_mark_m, i < 120 ? Gait::kRun : Gait::kWalk,
+    anticipation.Add(kStartNs + i * kTickNs, to_mark_m, i < 120 ? Gait::kRun : Gait::kWalk,
                      Gait::kWalk);
     EXPECT_EQ(anticipation.seconds().has_value(), to_mark_m <= 0);
   }

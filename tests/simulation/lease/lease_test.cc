@@ -93,6 +93,21 @@ TEST(Lease, IsNotRenewedOnceItIsLost) {
   EXPECT_TRUE(lease.Take(renewal, 4 * kSecondNs));
 }
 
+TEST(Lease, IsRenewedLateWhileNobodyElseTookIt) {
+  Lease lease = OfAnna();
+  Request renewal = Of(kAnna, "anna");
+  renewal.renew_only = true;
+  ASSERT_TRUE(lease.Take(renewal, 6 * kSecondNs));
+  EXPECT_THAT(lease.TakeChanges(),
+              ElementsAre("lease: that of anna ran out", "lease: anna takes it"));
+  EXPECT_FALSE(lease.Check(kBen, 7 * kSecondNs));
+  ASSERT_TRUE(lease.Release(kAnna, 7 * kSecondNs));
+  EXPECT_FALSE(lease.Take(renewal, 8 * kSecondNs));  // Given back, not late.
+  Request request = Of(kBen, "ben");
+  ASSERT_TRUE(lease.Take(request, 8 * kSecondNs));
+  EXPECT_FALSE(lease.Take(renewal, 20 * kSecondNs));  // Ben was the last one to have it.
+}
+
 TEST(Lease, OutlastsItsSessionForAnotherOneOfTheSameName) {
   Lease lease = OfAnna();
   EXPECT_FALSE(lease.Take(Of(9, "anna"), 1));  // Two of one name at a time.
