@@ -66,12 +66,7 @@ Result<BoardsMapping> ParseBoardsMapping(const std::string& text, const std::str
       {"heel_rise_standing_s", &m.heel_rise.standing_s, 0.05, 2},
       {"standing_turn_above", &m.standing_turn_above, 0.01, 1},
   };
-  AddFields({"walk_frequency_min_hz", "walk_frequency_max_hz", "walk_speed_min_mps",
-             "walk_speed_max_mps", 0.1, 10, 0, 1.75},
-            m.walk_mps_from_hz, fields);
-  AddFields({"run_frequency_min_hz", "run_frequency_max_hz", "run_speed_min_mps",
-             "run_speed_max_mps", 0.1, 10, 0, 6},
-            m.run_mps_from_hz, fields);
+  AddSpeedFields(m.walk_mps_from_hz, m.run_mps_from_hz, fields);
   AddFields({"jump_overshoot_min", "jump_overshoot_max", "jump_height_min_m", "jump_height_max_m",
              0, 3, 0.02, 0.5},
             m.jump_m_from_overshoot, fields);

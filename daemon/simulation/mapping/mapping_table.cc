@@ -60,4 +60,13 @@ void AddFields(const ScalingKeys& keys, Scaling& scaling, TableFields& fields) {
   fields.push_back({keys.to_max, &scaling.to_max, keys.least_to, keys.most_to});
 }
 
+void AddSpeedFields(Scaling& walk_mps_from_hz, Scaling& run_mps_from_hz, TableFields& fields) {
+  AddFields({"walk_frequency_min_hz", "walk_frequency_max_hz", "walk_speed_min_mps",
+             "walk_speed_max_mps", 0.1, 10, 0, 1.75},
+            walk_mps_from_hz, fields);
+  AddFields({"run_frequency_min_hz", "run_frequency_max_hz", "run_speed_min_mps",
+             "run_speed_max_mps", 0.1, 10, 0, 6},
+            run_mps_from_hz, fields);
+}
+
 }  // namespace footing::mapping

@@ -45,5 +45,7 @@ struct ScalingKeys {
   double least_from, most_from, least_to, most_to;
 };
 void AddFields(const ScalingKeys& keys, Scaling& scaling, TableFields& fields);
+/// Speeds of walking and running by a limb's frequency.
+void AddSpeedFields(Scaling& walk_mps_from_hz, Scaling& run_mps_from_hz, TableFields& fields);
 
 }  // namespace footing::mapping

@@ -29,12 +29,7 @@ bool SwingMapping::IsOrdered() const {
 }
 
 void AddFields(SwingMapping& m, TableFields& fields) {
-  AddFields({"walk_frequency_min_hz", "walk_frequency_max_hz", "walk_speed_min_mps",
-             "walk_speed_max_mps", 0.1, 10, 0, 1.75},
-            m.walk_mps_from_hz, fields);
-  AddFields({"run_frequency_min_hz", "run_frequency_max_hz", "run_speed_min_mps",
-             "run_speed_max_mps", 0.1, 10, 0, 6},
-            m.run_mps_from_hz, fields);
+  AddSpeedFields(m.walk_mps_from_hz, m.run_mps_from_hz, fields);
   AddFields({"jump_amplitude_min_mps2", "jump_amplitude_max_mps2", "jump_height_min_m",
              "jump_height_max_m", 0.1, 100, 0.02, 0.5},
             m.jump_m_from_mps2, fields);
