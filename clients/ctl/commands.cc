@@ -46,6 +46,7 @@ Result<std::unique_ptr<Session>> OpenSimulation(const Shared& shared,
     simulation.connect = transport::DefaultAddress("simulation").Text();
   }
   auto session = Open(simulation, std::move(channels));
+  if (!session && session.error().kind != ErrorKind::kNoDevice) return session.error();
   if (!session) {
     return NoDevice("no footing-sim on " + simulation.connect + "; start it with: " + start_with +
                     ", or name it with --connect");

@@ -28,7 +28,8 @@ void Doctor(Shared& shared, const std::string& root) {
     facts.devices = (*session)->status();
     facts.setup = (*session)->setup();
   } else {
-    facts.footingd_trouble = "nothing answers";
+    const bool refused = session.error().kind == ErrorKind::kFailure;
+    facts.footingd_trouble = refused ? session.error().message : "nothing answers";
   }
   const std::vector<doctor::Finding> findings = doctor::Examine(facts);
   Print(doctor::ToJson(findings), doctor::ToText(findings), shared);

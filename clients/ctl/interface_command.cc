@@ -3,13 +3,15 @@
 
 #include "clients/ctl/commands.h"
 #include "common/cli/cli.h"
+#include "common/config/data_file.h"
+#include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
 
 namespace footing::ctl {
 namespace {
 
 struct InterfaceOptions {
-  std::string name, turn_by;
+  std::string name, turn_by, table;
 };
 
 Result<v1::Command> CommandOf(const InterfaceOptions& options) {
@@ -22,15 +24,18 @@ Result<v1::Command> CommandOf(const InterfaceOptions& options) {
   v1::SetInterface& set = *command.mutable_set_interface();
   set.set_character(1);
   set.set_interface(static_cast<v1::UserInterface>(interface));
-  if (options.turn_by.empty()) return command;
-  for (const auto source :
-       {stream::TurnSource::kHead, stream::TurnSource::kFeet, stream::TurnSource::kTrunk}) {
-    if (options.turn_by == stream::Name(source)) {
-      set.set_turn_by(static_cast<v1::TurnSource>(source));
-      return command;
-    }
+  if (!options.table.empty()) {
+    auto table = config::ReadTextFile(options.table);
+    if (!table) return table.error();
+    set.set_table(std::move(table).value());
   }
-  return UsageError("unknown --turn-by " + options.turn_by + "; there are: head, feet, trunk");
+  if (options.turn_by.empty()) return command;
+  const auto source = stream::LegTurnSourceNamed(options.turn_by);
+  if (source == stream::TurnSource::kUnspecified) {
+    return UsageError("unknown --turn-by " + options.turn_by + "; there are: head, feet, trunk");
+  }
+  set.set_turn_by(static_cast<v1::TurnSource>(source));
+  return command;
 }
 
 Result<void> ChangeInterface(const InterfaceOptions& options, const Shared& shared) {
@@ -52,9 +57,13 @@ void AddInterfaceCommand(CLI::App& app, Shared& shared) {
   command->add_option(
       "--turn-by", options->turn_by,
       "What turns with the interface leg: head, feet or trunk (default: as before)");
+  command->add_option("--table", options->table,
+                      "Mapping table, such as one of footing-study ranges (default: the built-in "
+                      "one)");
   command->footer(
       "Examples (connect to footing-sim):\n"
       "  footing-ctl interface arm\n"
+      "  footing-ctl interface wrist --table P01_wrist.json\n"
       "  footing-ctl interface leg --turn-by trunk");
   command->callback([options, &shared] {
     if (const auto done = ChangeInterface(*options, shared); !done) {

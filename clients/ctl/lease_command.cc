@@ -59,7 +59,7 @@ Result<void> RunLease(bool take_over, const Shared& shared) {
 void AddLeaseCommand(CLI::App& app, Shared& shared) {
   const auto take_over = std::make_shared<bool>(false);
   CLI::App* command =
-      app.add_subcommand("lease", "Print which program alone controls footing-sim, or end that");
+      app.add_subcommand("lease", "Print who holds footing-sim's lease, or take it over");
   command->add_flag("--take-over", *take_over,
                     "Take the lease from its holder: a study that has it stops");
   command->footer(

@@ -4,7 +4,6 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <chrono>
 #include <csignal>
 #include <optional>
 #include <utility>
@@ -12,7 +11,7 @@
 #include "clients/ctl/display/find_device.h"
 #include "common/clock/clock.h"
 #include "common/transport/client.h"
-#include "common/units/units.h"
+#include "common/transport/token.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {
@@ -41,7 +40,10 @@ class Session::Implementation {
     transport::ClientOptions client;
     client.address = options.address;
     client.client_name = "footing-ctl";
-    client.role = v1::ROLE_CONTROL;
+    // Over TCP nobody gets more without a token; a command is then refused, with the reason.
+    const bool views = options.address.kind == transport::Address::Kind::kTcp &&
+                       transport::TokenFromEnvironment().empty();
+    client.role = views ? v1::ROLE_VIEW : v1::ROLE_CONTROL;
     client.channels = std::move(options.channels);
     client.max_hz = options.max_hz;
     client.queue_ticks = kQueueTicks;
@@ -64,6 +66,7 @@ class Session::Implementation {
     const Waited waited = RunUntil([this] { return ticks_ > 0 || refused_; }, within_s);
     if (waited == Waited::kInterrupted) return Failure("stopped");
     if (waited == Waited::kDone && !refused_) return {};
+    if (refused_) return Failure(link_);
     return NoDevice("no footingd: " + link_ + "; " + Remedy());
   }
 
@@ -79,14 +82,7 @@ class Session::Implementation {
   }
 
   Waited RunUntil(const std::function<bool()>& condition, double within_s) {
-    const auto end =
-        std::chrono::steady_clock::now() + std::chrono::nanoseconds(SecondsToNanoseconds(within_s));
-    for (;;) {
-      if (interrupted_) return Waited::kInterrupted;
-      if (condition && condition()) return Waited::kDone;
-      if (std::chrono::steady_clock::now() >= end) return Waited::kTimeUp;
-      io_.run_one_until(end);
-    }
+    return timer::RunUntil(io_, condition, within_s, [this] { return interrupted_; });
   }
 
   void OnTick(const v1::Tick& tick) {

@@ -9,6 +9,7 @@
 #include "common/result/result.h"
 #include "common/stream/device.h"
 #include "common/stream/setup.h"
+#include "common/timer/run_until.h"
 #include "common/transport/address.h"
 #include "footing/v1/session.pb.h"
 
@@ -21,19 +22,16 @@ struct SessionOptions {
   double connect_within_s = 3;
 };
 
-/// How a wait ended.
-enum class Waited {
-  kDone,         ///< The condition holds.
-  kTimeUp,       ///< The time is over.
-  kInterrupted,  ///< SIGINT or SIGTERM; every later wait ends at once, too.
-};
+/// kInterrupted: SIGINT or SIGTERM; every later wait ends at once, too.
+using timer::Waited;
 
 /// A connection to footingd as a console program wants it: every call waits, and ticks are handled
 /// while it waits. One thread. While it exists SIGINT and SIGTERM end waits, not the program.
 class Session {
  public:
-  /// Connects with the role control and takes the first snapshot. NoDevice (exit 3) when footingd
-  /// is not there within the time.
+  /// Connects with the role control, over TCP without a token with the role view, and takes the
+  /// first snapshot. NoDevice (exit 3) when footingd is not there within the time, Failure with its
+  /// words when it refuses.
   static Result<std::unique_ptr<Session>> Open(SessionOptions options);
   ~Session();
   Session(const Session&) = delete;

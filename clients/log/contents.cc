@@ -50,6 +50,15 @@ std::uint64_t Unsigned(const pb::Message& message, const char* name) {
   return message.GetReflection()->GetUInt64(message, field);
 }
 
+std::string Text(const pb::Message& message, const char* name) {
+  const pb::FieldDescriptor* field = message.GetDescriptor()->FindFieldByName(name);
+  if (field == nullptr || field->is_repeated() ||
+      field->cpp_type() != pb::FieldDescriptor::CPPTYPE_STRING) {
+    return "";
+  }
+  return message.GetReflection()->GetString(message, field);
+}
+
 /// Fills Contents as the walk shows it.
 class Collector {
  public:
@@ -78,6 +87,7 @@ class Collector {
   }
 
   void Finish() {
+    for (auto& [topic, config] : configs_) contents_.configs.push_back(std::move(config));
     for (const auto& [id, entry] : topics_) contents_.topics.push_back(entry.topic);
     std::sort(contents_.topics.begin(), contents_.topics.end(),
               [](const Topic& a, const Topic& b) { return a.name < b.name; });
@@ -104,6 +114,10 @@ class Collector {
         const std::optional<bool> simulated = FindSimulated(*parsed);
         if (simulated) contents_.simulated = contents_.simulated.value_or(false) || *simulated;
       }
+    } else if (EndsWith(topic.name, "/config")) {
+      if (const pb::Message* parsed = Parse(entry, message)) {
+        configs_[topic.name] = Text(*parsed, "json");
+      }
     } else if (EndsWith(topic.name, "/gaps")) {
       ++contents_.gaps;
       if (const pb::Message* parsed = Parse(entry, message)) {
@@ -122,6 +136,7 @@ class Collector {
   recording::SchemaPool pool_;
   std::map<std::uint16_t, std::string> names_;
   std::map<std::uint16_t, Entry> topics_;
+  std::map<std::string, std::string> configs_;  ///< By topic.
 };
 
 }  // namespace

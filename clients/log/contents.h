@@ -41,6 +41,8 @@ struct Contents {
   std::uint64_t end_ns = 0;
   /// Some device or input of a character was simulated; nothing when no message says.
   std::optional<bool> simulated;
+  /// What each footing-sim ran with, as it said last: its EffectiveConfig, JSON.
+  std::vector<std::string> configs;
   std::uint64_t gaps = 0;
   std::uint64_t missing_ticks = 0;
   mcap::WalkEnd end;

@@ -43,6 +43,11 @@ ordered_json ToJson(const Contents& contents) {
                              {"start_s", SecondsBetween(contents.start_ns, topic.first_ns)},
                              {"end_s", SecondsBetween(contents.start_ns, topic.last_ns)}});
   }
+  out["configs"] = ordered_json::array();
+  for (const std::string& config : contents.configs) {
+    auto parsed = ordered_json::parse(config, nullptr, /*allow_exceptions=*/false);
+    out["configs"].push_back(parsed.is_discarded() ? ordered_json() : std::move(parsed));
+  }
   out["attachments"] = ordered_json::array();
   for (const AttachmentNote& attachment : contents.attachments) {
     out["attachments"].push_back({{"name", attachment.name},
@@ -54,6 +59,29 @@ ordered_json ToJson(const Contents& contents) {
     out["metadata"].push_back({{"name", metadata.name}, {"values", metadata.values}});
   }
   return out;
+}
+
+/// One line of what stands out in an effective config; its values are printed with --json.
+void PrintConfig(const std::string& text) {
+  using Path = ordered_json::json_pointer;
+  const ordered_json config = ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const auto word = [&](const char* path) {
+    const Path place(path);
+    const ordered_json value = config.contains(place) ? config[place] : ordered_json("?");
+    return value.is_string() ? value.get<std::string>() : value.dump();
+  };
+  std::cout << "  ran with: " << word("/program") << " " << word("/version") << ", engine "
+            << word("/engine");
+  if (config.contains(Path("/interface/name"))) {
+    const std::string interface = word("/interface/name");
+    std::cout << ", interface "
+              << interface << (interface == "leg" ? " turned by " + word("/interface/turn_by") : "")
+              << ", its table: " << word("/interface/table_by");
+  }
+  if (config.contains(Path("/interface/table/measured"))) {
+    std::cout << ", measured of " << word("/interface/table/measured/participants");
+  }
+  std::cout << " (all values: --json)\n";
 }
 
 void PrintText(const Contents& contents) {
@@ -71,6 +99,7 @@ void PrintText(const Contents& contents) {
     std::cout << "  " << topic.name << "  " << topic.messages << " messages  " << topic.RateHz()
               << " Hz  " << topic.schema << "\n";
   }
+  for (const std::string& config : contents.configs) PrintConfig(config);
   for (const AttachmentNote& attachment : contents.attachments) {
     std::cout << "  attached: " << attachment.name << " (" << attachment.bytes << " bytes)\n";
   }

@@ -77,7 +77,7 @@ class Recording {
     recording::ServerRecorderOptions server;
     server.address = address;
     server.client_name = "footing-log";
-    server.from_ring_start = true;  // So that what began just before can be run again.
+    server.from_ring_start = options_.from_ring;
     server.on_written = [this](Result<void> written) { Keep(std::move(written)); };
     server.on_link = [](const recording::StreamRecorder& recorder) {
       std::cerr << recorder.address() << ": " << recorder.link() << std::endl;

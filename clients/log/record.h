@@ -12,7 +12,8 @@ namespace footing::log_client {
 struct RecordOptions {
   std::vector<transport::Address> addresses;
   std::string out;
-  double seconds = 0;  ///< From the start; 0: until SIGINT or SIGTERM.
+  double seconds = 0;      ///< From the start; 0: until SIGINT or SIGTERM.
+  bool from_ring = false;  ///< First what the servers' rings still hold, up to 30 s.
   bool replace = false;
   std::vector<std::string> attachments;  ///< Files: config, calibrations, track, survey.
   std::string version;

@@ -1,15 +1,14 @@
 #include "clients/stream/dialer.h"
 
 #include <algorithm>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/device_link/device_link.h"
 #include "common/log/log.h"
-#include "common/transport/framed_connection.h"
-#include "common/transport/socket.h"
+#include "common/timer/timer.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 #include "footing/v1/device.pb.h"
@@ -20,75 +19,39 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
  public:
   Implementation(boost::asio::io_context& io, DialerOptions options, Plan plan,
                  std::function<void()> on_end)
-      : io_(io),
-        options_(std::move(options)),
+      : options_(std::move(options)),
         duration_s_(plan.duration_s),
         on_end_(std::move(on_end)),
-        redial_(io),
         devices_(std::move(plan.devices)),
         fresh_sources_(std::move(plan.feeds)),
-        silences_(std::move(plan.silences)) {
+        silences_(std::move(plan.silences)),
+        link_(io, {.to = options_.to,
+                   .on_open = [this] { OnOpen(); },
+                   .on_message = [this](const v1::DeviceEnvelope& message) { OnMessage(message); },
+                   .on_close = [this] { StopClocks(); }}) {
     sequences_.assign(devices_.size(), 0);
     // One for each, and one for the end.
     for (std::size_t i = 0; i < devices_.size() + fresh_sources_.size() + 1; ++i)
-      clocks_.push_back(std::make_unique<boost::asio::steady_timer>(io));
+      clocks_.push_back(std::make_unique<timer::Timer>(io));
   }
 
-  void Dial() {
-    transport::Dial(io_, options_.to, [weak = weak_from_this()](Result<transport::Socket> socket) {
-      const auto self = weak.lock();
-      if (!self || self->stopped_) return;
-      if (socket) {
-        self->Attach(std::move(socket).value());
-      } else {
-        self->WaitFor(socket.error().message);
-      }
-    });
-  }
+  void Dial() { link_.Start(); }
 
   void Stop(const std::string& reason) {
     stopped_ = true;
-    redial_.cancel();
     StopClocks();
-    if (!connection_) return;
     for (std::size_t slot = 0; slot < devices_.size(); ++slot) SendDetach(slot, reason);
-    connection_->Finish({}, reason);
+    link_.Stop(reason);
   }
 
  private:
-  static constexpr auto kRedial = std::chrono::milliseconds(250);
-  static constexpr std::uint32_t kMaxEnvelopeBytes = 1024;
-
-  void WaitFor(const std::string& why) {
-    if (why != waits_for_) {
-      log::Info("waiting for footingd: " + why +
-                "; start it with: footingd --source stream:" + options_.to.Text());
-    }
-    waits_for_ = why;
-    redial_.expires_after(kRedial);
-    redial_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-      const auto self = weak.lock();
-      if (self && !error && !self->stopped_) self->Dial();
-    });
-  }
-
-  void Attach(transport::Socket socket) {
-    waits_for_.clear();
-    transport::FramedLimits limits;
-    limits.max_in_bytes = kMaxEnvelopeBytes;
-    limits.max_out_bytes = kMaxEnvelopeBytes;
-    transport::FramedHandlers handlers;
-    handlers.on_frame = [this](std::string_view payload) { OnFrame(payload); };
-    handlers.on_close = [this](const std::string& reason) { OnClose(reason); };
-    connection_ = std::make_unique<transport::FramedConnection>(std::move(socket), limits,
-                                                                std::move(handlers));
-    connection_->Start();
+  void OnOpen() {
     const std::string what = devices_.empty()
                                  ? std::to_string(fresh_sources_.size()) + " simulated sources"
                                  : std::to_string(devices_.size()) + " simulated devices";
     log::Info("attached " + what + " to " + options_.to.Text());
     start_ns_ = clock::MonotonicNs();
-    start_ = std::chrono::steady_clock::now();
+    start_ = timer::Now();
     for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
       devices_[slot].Restart();
       if (devices_[slot].attaches_s() > 0) {
@@ -102,12 +65,6 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     sources_ = fresh_sources_;
     sent_.assign(sources_.size(), 0);
     for (std::size_t i = 0; i < sources_.size(); ++i) ScheduleSource(i);
-  }
-
-  void OnClose(const std::string& reason) {
-    connection_.reset();
-    StopClocks();
-    if (!stopped_) WaitFor(reason);
   }
 
   void StopClocks() {
@@ -132,7 +89,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     v1::DeviceEnvelope envelope;
     envelope.mutable_detach()->set_slot(static_cast<std::uint32_t>(slot));
     envelope.mutable_detach()->set_reason(reason);
-    Send(envelope);
+    link_.Send(envelope);
   }
 
   /// Does something at a time of the motion, by one of the clocks: of a slot, a source or the end.
@@ -141,7 +98,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     clocks_[slot]->async_wait(
         [weak = weak_from_this(), action = std::move(action)](boost::system::error_code error) {
           const auto self = weak.lock();
-          if (self && !error && self->connection_ && !self->stopped_) action();
+          if (self && !error && self->link_.open() && !self->stopped_) action();
         });
   }
 
@@ -156,12 +113,10 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     attach.set_name(identity.name);
     attach.set_serial(identity.serial);
     attach.set_role(static_cast<v1::DeviceRole>(devices_[slot].role()));
-    Send(envelope);
+    link_.Send(envelope);
   }
 
-  void OnFrame(std::string_view payload) {
-    v1::DeviceEnvelope envelope;
-    if (!envelope.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) return;
+  void OnMessage(const v1::DeviceEnvelope& envelope) {
     if (!envelope.has_output() || envelope.output().slot() >= devices_.size()) return;
     const std::string& bytes = envelope.output().report();
     const std::size_t slot = envelope.output().slot();
@@ -245,7 +200,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
       frame.age_ns = age_ns;
       *envelope.mutable_reference_frame() = wire::ToProto(frame);
     }
-    Send(envelope);
+    link_.Send(envelope);
     ++sent_[index];
     ScheduleSource(index);
   }
@@ -259,28 +214,21 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     input.set_report(report.data(), report.size());
     input.set_true_ns(true_ns);
     input.set_feature(feature);
-    Send(envelope);
+    link_.Send(envelope);
   }
 
-  void Send(const v1::DeviceEnvelope& envelope) {
-    if (connection_) connection_->Send(envelope.SerializeAsString());
-  }
-
-  boost::asio::io_context& io_;
   const DialerOptions options_;
   const double duration_s_;  // Of motion; 0 goes on until stopped.
   const std::function<void()> on_end_;
-  boost::asio::steady_timer redial_;
   std::vector<SimulatedDevice> devices_;
   const std::vector<Feed> fresh_sources_;
   const std::vector<Silence> silences_;
   std::vector<Feed> sources_;
   std::vector<std::uint64_t> sent_;  // How often each was.
-  std::vector<std::unique_ptr<boost::asio::steady_timer>> clocks_;
-  std::chrono::steady_clock::time_point start_;
+  std::vector<std::unique_ptr<timer::Timer>> clocks_;
+  timer::TimePoint start_;
   std::vector<std::uint64_t> sequences_;
-  std::unique_ptr<transport::FramedConnection> connection_;
-  std::string waits_for_;
+  device_link::DeviceLink link_;
   std::int64_t start_ns_ = 0;
   bool stopped_ = false;
   bool ended_ = false;

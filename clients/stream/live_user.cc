@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/stream/leg_turn.h"
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/board_cells.h"
 #include "common/virtual/wrists/accelerometer.h"
@@ -13,6 +14,7 @@ namespace footing::stream_client {
 namespace {
 
 using stream::DeviceRole;
+using stream::TurnSource;
 using stream::UserInterface;
 
 /// Interval of the user's decisions, s.
@@ -48,7 +50,7 @@ SimulatedDevice::CornerForces BoardOf(std::shared_ptr<LiveUser> user, std::size_
   };
 }
 
-std::vector<DeviceRole> RolesOf(UserInterface interface) {
+std::vector<DeviceRole> RolesOf(UserInterface interface, TurnSource turn_by) {
   switch (interface) {
     case UserInterface::kUnspecified:
       return {};
@@ -56,7 +58,9 @@ std::vector<DeviceRole> RolesOf(UserInterface interface) {
     case UserInterface::kArm:
       return {DeviceRole::kLeftHand, DeviceRole::kRightHand};
     case UserInterface::kLeg:
-      return {DeviceRole::kLeftLeg, DeviceRole::kRightLeg, DeviceRole::kHead};
+      if (turn_by == TurnSource::kFeet) return {DeviceRole::kLeftLeg, DeviceRole::kRightLeg};
+      return {DeviceRole::kLeftLeg, DeviceRole::kRightLeg,
+              turn_by == TurnSource::kTrunk ? DeviceRole::kTrunk : DeviceRole::kHead};
     case UserInterface::kJoystick:
       return {DeviceRole::kRightHand};
     case UserInterface::kBoards:
@@ -67,9 +71,9 @@ std::vector<DeviceRole> RolesOf(UserInterface interface) {
 
 }  // namespace
 
-LiveUser::LiveUser(UserInterface interface, std::uint64_t seed)
-    : driver_(users::AbilityWith(interface), users::DrawStyle(seed), seed),
-      person_(interface, users::DrawStyle(seed), seed) {}
+LiveUser::LiveUser(UserInterface interface, TurnSource turn_by, std::uint64_t seed)
+    : driver_(users::AbilityWith(interface, turn_by), users::DrawStyle(seed), seed),
+      person_(interface, users::DrawStyle(seed), seed, turn_by) {}
 
 void LiveUser::See(const v1::Tick& tick) {
   if (tick.has_track()) {
@@ -79,7 +83,9 @@ void LiveUser::See(const v1::Tick& tick) {
   if (tick.characters().characters_size() == 0) return;
   const v1::Character& character = tick.characters().characters(0);
   const stream::GaitState gait = wire::FromProto(character.gait());
-  seen_ = {.p_W_m = wire::FromProto(character.com_m()).head<2>(),
+  const Eigen::Vector3d com_m = wire::FromProto(character.com_m());
+  seen_ = {.p_W_m = com_m.head<2>(),
+           .com_m = com_m.z(),
            .heading_rad = gait.heading_rad,
            .speed_mps = gait.speed_mps,
            .steps = gait.steps,
@@ -105,16 +111,21 @@ const users::Felt& LiveUser::At(double t_s) {
   return person_.felt();
 }
 
-Result<LiveUserPlan> PlanLiveUser(const std::string& interface, const Common& common) {
+Result<LiveUserPlan> PlanLiveUser(const std::string& interface, const std::string& turn_by,
+                                  const Common& common, std::uint64_t style_seed) {
   const auto link = ParseLink(common.link);
   if (!link) return link.error();
   const UserInterface named = stream::UserInterfaceNamed(interface);
-  const std::vector<DeviceRole> roles = RolesOf(named);
+  const TurnSource turns = stream::LegTurnSourceNamed(turn_by);
+  if (turns == TurnSource::kUnspecified) {
+    return UsageError("unknown --turn-by " + turn_by + "; there are: head, feet, trunk");
+  }
+  const std::vector<DeviceRole> roles = RolesOf(named, turns);
   if (roles.empty()) {
     return UsageError("unknown --interface " + interface +
                       "; there are: " + stream::UserInterfaceNames());
   }
-  LiveUserPlan live{.plan = {}, .user = std::make_shared<LiveUser>(named, common.seed)};
+  LiveUserPlan live{.plan = {}, .user = std::make_shared<LiveUser>(named, turns, style_seed)};
   for (std::size_t i = 0; i < roles.size(); ++i) {
     const std::uint64_t device = i + 1;
     const std::uint64_t seed = DeviceSeed(common, device);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "clients/stream/plan.h"
@@ -15,7 +16,8 @@ namespace footing::stream_client {
 /// still while it sees nothing.
 class LiveUser {
  public:
-  LiveUser(stream::UserInterface interface, std::uint64_t seed);
+  /// `turn_by` is what turns with the interface leg.
+  LiveUser(stream::UserInterface interface, stream::TurnSource turn_by, std::uint64_t seed);
 
   void See(const v1::Tick& tick);
   /// What the devices feel at t_s since the motion began; after a new connection that is 0 again.
@@ -41,7 +43,9 @@ struct LiveUserPlan {
   Plan plan;
   std::shared_ptr<LiveUser> user;
 };
-/// `interface` by its name; a usage error lists what there is.
-Result<LiveUserPlan> PlanLiveUser(const std::string& interface, const Common& common);
+/// `interface` by its name, `turn_by` by that of head, feet or trunk; a usage error lists what
+/// there is. `style_seed` is that of the user, common.seed that of the devices.
+Result<LiveUserPlan> PlanLiveUser(const std::string& interface, const std::string& turn_by,
+                                  const Common& common, std::uint64_t style_seed);
 
 }  // namespace footing::stream_client

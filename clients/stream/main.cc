@@ -12,7 +12,9 @@
 #include "clients/stream/user_command.h"
 #include "clients/stream/watch.h"
 #include "common/cli/cli.h"
+#include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/timer/timer.h"
 
 namespace {
 
@@ -29,6 +31,7 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
   auto to = common.to.empty() ? Result<transport::Address>(transport::DefaultAddress("devices"))
                               : transport::ParseAddress(common.to);
   if (!to) return cli::Report(to.error());
+  if (const auto done = clock::FollowTimekeeper(); !done) return cli::Report(done.error());
   boost::asio::io_context io(1);
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   std::unique_ptr<stream_client::Dialer> dialer;
@@ -46,7 +49,7 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
     if (!error) end("stopped");
   });
   dialer->Start();
-  io.run();
+  timer::Run(io);
   return 0;
 }
 
@@ -80,7 +83,8 @@ int RunUser(const stream_client::UserOptions& user, const stream_client::Common&
   }
   const auto simulation = transport::ParseAddress(user.see);
   if (!simulation) return cli::Report(simulation.error());
-  auto live = stream_client::PlanLiveUser(user.interface, common);
+  auto live = stream_client::PlanLiveUser(user.interface, user.turn_by, common,
+                                          user.style_seed.value_or(common.seed));
   if (!live) return cli::Report(live.error());
   return Run(std::move(live->plan), common, [&](boost::asio::io_context& io) {
     return stream_client::WatchSimulation(

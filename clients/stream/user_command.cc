@@ -13,6 +13,13 @@ CLI::App* AddUserCommand(CLI::App& app, UserOptions& options) {
                                "Address of footing-sim, whose character, track and trial the user "
                                "sees, unix:PATH or tcp:HOST:PORT");
   see->excludes(script);
+  auto* style = user->add_option("--style-seed", options.style_seed,
+                                 "Seed of the style of the user who sees: equal for one person "
+                                 "with devices of several seeds (default: --seed)");
+  style->needs(see);
+  user->add_option("--turn-by", options.turn_by,
+                   "What turns with the interface leg: head, feet or trunk (default head)")
+      ->needs(see);
   auto* motion_plus = user->add_flag("--motion-plus", options.ports.motion_plus,
                                      "Add a MotionPlus to each Wiimote");
   auto* nunchuk =

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "clients/stream/live_user.h"
@@ -10,7 +12,9 @@ namespace footing::stream_client {
 struct UserOptions {
   std::string script = "demo";
   std::string interface = "wrist";
+  std::string turn_by = "head";
   std::string see;  ///< Address of footing-sim; empty: the user follows the script.
+  std::optional<std::uint64_t> style_seed;
   Ports ports;
 };
 

@@ -1,12 +1,14 @@
 #include "clients/study/commands.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <set>
 #include <utility>
 
 #include "clients/study/journal/journal.h"
 #include "clients/study/journal/study_folder.h"
+#include "clients/study/ranges/ranges.h"
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
 
@@ -22,8 +24,9 @@ Result<std::string> ReadTrack(const std::string& key, const std::string& track,
   }
   auto found = config::ReadNamedOrPath(track, "tracks");
   if (found) return found;
-  return InvalidData(file + ": " + key + " has unknown track \"" + track +
-                     "\": " + found.error().message);
+  std::string why = found.error().message;
+  why.erase(std::min(why.size(), why.find("; or give the path")));  // A study takes none.
+  return InvalidData(file + ": " + key + " has unknown track \"" + track + "\": " + why);
 }
 
 /// Each task must be one of the straight track's.
@@ -48,6 +51,29 @@ Result<void> CheckTasks(const plan::Protocol& protocol, const std::string& track
   return {};
 }
 
+/// The tables that the protocol names, beside it.
+Result<std::map<std::string, std::string>> ReadTables(const plan::Protocol& protocol,
+                                                      const std::string& file) {
+  std::map<std::string, std::string> tables;
+  for (const auto& [interface, name] : protocol.settings.tables) {
+    const std::filesystem::path path = std::filesystem::path(file).parent_path() / name;
+    auto text = config::ReadTextFile(path.string());
+    if (!text) return Error{text.error().kind, file + ": tables: " + text.error().message};
+    const auto measured = ranges::MeasuredOf(*text, path.string());
+    if (!measured)
+      return Error{measured.error().kind, file + ": tables: " + measured.error().message};
+    const ranges::Played& played = measured->played;
+    const bool turns = interface != "leg" || played.turn_by == protocol.settings.turn_by;
+    if (played.interface != interface || !turns) {
+      return InvalidData(file + ": tables has " + name + " for " + interface +
+                         ", which was measured of " + played.interface +
+                         (played.interface == "leg" ? " turned by " + played.turn_by : ""));
+    }
+    tables[interface] = std::move(*text);
+  }
+  return tables;
+}
+
 }  // namespace
 
 Result<LoadedProtocol> Load(const std::string& path, const std::string& folder) {
@@ -63,8 +89,10 @@ Result<LoadedProtocol> Load(const std::string& path, const std::string& folder) 
   for (const std::string& track : protocol->test_tracks) {
     if (const auto found = ReadTrack("test_tracks", track, path); !found) return found.error();
   }
+  auto tables = ReadTables(*protocol, path);
+  if (!tables) return tables.error();
   return LoadedProtocol{path, std::move(*text), std::move(*protocol),
-                        folder.empty() ? journal::FolderOf(path) : folder};
+                        folder.empty() ? journal::FolderOf(path) : folder, std::move(*tables)};
 }
 
 Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
@@ -85,6 +113,7 @@ Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
     const auto text = journal::ReadJournal(path);
     if (!text) return text.error();
     const auto own = journal::RequireParticipant(text->events, participant, path);
+    if (text->events.empty()) continue;  // It ended before its session began.
     if (!own) return own.error();
     people.push_back(records::Collect(text->events));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -22,9 +23,11 @@ struct LoadedProtocol {
   std::string text;
   plan::Protocol protocol;
   std::string folder;  ///< Of the study's files.
+  /// Texts of its mapping tables, by interface.
+  std::map<std::string, std::string> tables = {};
 };
 
-/// Reads and checks a protocol file; its tracks must be built-in ones.
+/// Reads and checks a protocol file; its tracks must be built-in ones, its tables measured ones.
 Result<LoadedProtocol> Load(const std::string& path, const std::string& folder);
 
 /// What the journals of all participants say; a failure where there is none yet.
@@ -47,7 +50,10 @@ void AddProtocolOptions(CLI::App& command, ProtocolOptions& options);
 /// Each adds subcommands to footing-study; their callbacks do the work.
 void AddCheckCommand(CLI::App& app, Shared& shared);
 void AddRunCommand(CLI::App& app, Shared& shared);
+void AddRangesCommand(CLI::App& app, Shared& shared);
 void AddReportCommands(CLI::App& app, Shared& shared);  ///< analyze, report
+void AddSimulateCommand(CLI::App& app, Shared& shared);
+void AddSurveyCommand(CLI::App& app, Shared& shared);
 void AddExportCommand(CLI::App& app, Shared& shared);
 
 }  // namespace footing::study

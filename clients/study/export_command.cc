@@ -56,8 +56,9 @@ Result<Answer> Export(const ExportOptions& options) {
                  {"trials", report->trials},
                  {"remarks", report->remarks}},
                 "wrote " + options.out + ": " + std::to_string(report->participants) +
-                    " participants, " + std::to_string(report->trials) +
-                    " trials; who is who is in " + key_path + " alone"};
+                    (report->participants == 1 ? " participant, " : " participants, ") +
+                    std::to_string(report->trials) + " trials; who is who is in " + key_path +
+                    " alone"};
   for (const std::string& remark : report->remarks) answer.text += "\nleft out: " + remark;
   return answer;
 }

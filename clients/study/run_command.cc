@@ -5,6 +5,7 @@
 #include "clients/study/commands.h"
 #include "clients/study/session/run_session.h"
 #include "common/cli/cli.h"
+#include "common/clock/clock.h"
 
 namespace footing::study {
 namespace {
@@ -16,6 +17,7 @@ struct RunOptions {
   std::uint64_t seed = 1;
   std::string sensor;
   std::string simulation;
+  std::string survey;
   bool withdraw = false;
   std::optional<std::uint64_t> undo, restore;
   std::string reason;
@@ -29,6 +31,7 @@ Result<SessionOptions> ToSession(const RunOptions& given, const LoadedProtocol& 
   options.unattended = given.unattended;
   options.answer_seed = given.seed;
   options.version = cli::Version();
+  options.tables = loaded.tables;
   options.sensor = transport::DefaultAddress("sensor");
   options.simulation = transport::DefaultAddress("simulation");
   for (const auto& [text, address] : {std::pair(&given.sensor, &options.sensor),
@@ -37,6 +40,11 @@ Result<SessionOptions> ToSession(const RunOptions& given, const LoadedProtocol& 
     const auto parsed = transport::ParseAddress(*text);
     if (!parsed) return parsed.error();
     *address = *parsed;
+  }
+  if (!given.survey.empty()) {
+    const auto parsed = transport::ParseAddress(given.survey);
+    if (!parsed) return parsed.error();
+    options.survey = *parsed;
   }
   return options;
 }
@@ -59,7 +67,8 @@ Result<Answer> Run(const RunOptions& given) {
         given.undo ? records::EventKind::kFailureUndone : records::EventKind::kFailureRestored,
         {{"failure", given.undo ? *given.undo : *given.restore}, {"reason", given.reason}});
   } else {
-    done = RunSession(*options, loaded->protocol);
+    done = clock::FollowTimekeeper();
+    if (done) done = RunSession(*options, loaded->protocol);
   }
   if (!done) return done.error();
   return Answer{{{"participant", given.participant}, {"result", did}, {"folder", loaded->folder}},
@@ -76,6 +85,9 @@ void AddRunCommand(CLI::App& app, Shared& shared) {
   command->add_option("--participant", given->participant, "Code of the participant")->required();
   command->add_option("--sensor", given->sensor, "Address of footingd");
   command->add_option("--simulation", given->simulation, "Address of footing-sim");
+  command->add_option("--survey", given->survey,
+                      "Address for the participant's survey screen, footing-study survey (default: "
+                      "the survey is asked in this terminal)");
   command->add_flag(
       "--unattended", given->unattended,
       "Ask nobody, wait for nothing, and answer the surveys at random, marked synthetic");

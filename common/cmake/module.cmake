@@ -115,7 +115,14 @@ function(add_program name)
   endif()
   target_link_libraries(${name} PRIVATE ${links} footing_warnings)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
-  install(TARGETS ${name} RUNTIME DESTINATION bin)
+  install(TARGETS ${name} RUNTIME DESTINATION bin COMPONENT ${name})
+  # Its manual page is what it says with --help.
+  install(CODE "
+    execute_process(COMMAND \"${Python3_EXECUTABLE}\" \"${PROJECT_SOURCE_DIR}/common/cmake/man_page.py\"
+                            \"$<TARGET_FILE:${name}>\" \"${PROJECT_VERSION}\"
+                            \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}\"
+                    COMMAND_ERROR_IS_FATAL ANY)"
+    COMPONENT ${name})
   string(REPLACE ";" " " deps "${arg_DEPS}")
   set_property(GLOBAL APPEND_STRING PROPERTY MODULE_TABLE "${name}|${folder}|FALSE|${deps}|\n")
 endfunction()

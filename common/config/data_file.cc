@@ -5,13 +5,25 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace footing::config {
 namespace {
 
+/// The data folder that was installed with this program, wherever that is now; empty when it runs
+/// where it was built.
+std::string InstalledFolder() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return "";
+  const auto folder = program.parent_path() / FOOTING_DATA_DIR_FROM_BIN;
+  return std::filesystem::is_directory(folder, error) ? folder.lexically_normal().string() : "";
+}
+
 std::vector<std::string> DataFolders(const std::string& folder) {
   if (!folder.empty()) return {folder};
+  if (std::string installed = InstalledFolder(); !installed.empty()) return {std::move(installed)};
   return {FOOTING_INSTALL_DATA_DIR, FOOTING_SOURCE_DATA_DIR};
 }
 

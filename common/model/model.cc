@@ -66,6 +66,12 @@ std::string SubjectName(const std::string& subject) {
   return number && first != std::string::npos ? subject.substr(first) : subject;
 }
 
+std::string SubjectOfFile(const std::string& stem) {
+  const std::string corpus = "HDM_";
+  const std::size_t from = stem.rfind(corpus, 0) == 0 ? corpus.size() : 0;
+  return SubjectName(stem.substr(0, stem.find('_', from)));
+}
+
 Result<void> CheckNotTrainedOn(const Model& model, const std::string& subject,
                                const std::string& origin) {
   const auto& subjects = model.provenance.subjects;

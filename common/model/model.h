@@ -55,6 +55,11 @@ Result<void> CheckKind(const Model& model, const std::string& kind, const std::s
 /// "013" and "13" are one person.
 std::string SubjectName(const std::string& subject);
 
+/// Whose motion a file is, by its name without folder and ending: what comes before the first '_',
+/// "13" of 013_29; in the names of the corpus HDM05, what comes before the second, "HDM_bd" of
+/// HDM_bd_squat1Reps_001_120.
+std::string SubjectOfFile(const std::string& stem);
+
 /// Refuses to evaluate a model on a person it was trained with: no score would be cross-subject.
 Result<void> CheckNotTrainedOn(const Model& model, const std::string& subject,
                                const std::string& origin);

@@ -17,8 +17,8 @@ constexpr auto kLookForSession = std::chrono::milliseconds(20);
 constexpr auto kSubscribeTime = std::chrono::milliseconds(200);
 
 /// Channels that say how things stand: their last value is part of every snapshot.
-constexpr std::array<std::string_view, 5> kRetainedChannels = {"status", "setup", "skeletons",
-                                                               "track", "game"};
+constexpr std::array<std::string_view, 7> kRetainedChannels = {
+    "status", "setup", "skeletons", "track", "game", "config", "study"};
 
 transport::ServerOptions OptionsOf(const recording::RecordedSession& session,
                                    const std::string& name, const std::string& version) {

@@ -1,27 +1,25 @@
 #include "common/statistics/analysis.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "common/statistics/moments.h"
+#include "common/statistics/quantile.h"
 #include "common/statistics/report_rows.h"
 
 namespace footing::statistics {
 namespace {
 
 ordered_json Summary(const Group& group, std::size_t index) {
-  std::vector<double> values = group.values;
-  std::sort(values.begin(), values.end());
+  const std::vector<double>& values = group.values;
   const std::size_t n = values.size();
   const double mean = Mean(values);
   std::vector<double> residuals;
   for (const double value : values) residuals.push_back(value - mean);
-  const double low = values[(n - 1) / 2], high = values[n / 2];
   ordered_json summary = {{"group_index", index}, {"group", group.name}, {"n", n}};
   summary["mean"] = mean;
   summary["standard_deviation"] =
       n > 1 ? ordered_json(Norm(residuals) / std::sqrt(static_cast<double>(n - 1))) : nullptr;
-  summary["median"] = low + (high - low) / 2;
+  summary["median"] = MedianOf(values);
   return summary;
 }
 

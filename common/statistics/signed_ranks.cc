@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/statistics/ranks.h"
 #include "common/statistics/special.h"
 #include "common/statistics/within_subject.h"
 
@@ -11,36 +12,11 @@ namespace {
 constexpr std::size_t kMostExact = 200;
 constexpr std::size_t kExactInR = 50;  // wilcox.test is normal from here on.
 
-/// Mean ranks of sizes, where sizes that differ by rounding only are tied: 0.3 - 0.1 and 0.2.
-struct SizeRanks {
-  std::vector<double> ranks;
-  double tie_sum = 0;
-};
-
-SizeRanks RankSizes(const std::vector<double>& differences) {
+/// Sizes that differ by rounding only are tied: 0.3 - 0.1 and 0.2.
+MeanRanks RankSizes(std::vector<double> differences) {
   constexpr double kSizeRounding = 1e-12;
-  std::vector<std::size_t> order(differences.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(differences[a]) < std::abs(differences[b]);
-  });
-  SizeRanks result;
-  result.ranks.resize(differences.size());
-  std::size_t first = 0;
-  while (first < order.size()) {
-    const double size = std::abs(differences[order[first]]);
-    std::size_t end = first + 1;
-    while (end < order.size() && std::abs(differences[order[end]]) <= size * (1 + kSizeRounding)) {
-      ++end;
-    }
-    // Ranks first + 1 to end.
-    const double rank = static_cast<double>(first + 1 + end) / 2;
-    for (std::size_t i = first; i < end; ++i) result.ranks[order[i]] = rank;
-    const double t = static_cast<double>(end - first);
-    result.tie_sum += t * t * t - t;
-    first = end;
-  }
-  return result;
+  for (double& difference : differences) difference = std::abs(difference);
+  return RankWithTies(differences, kSizeRounding);
 }
 
 /// P(V <= v) and P(V >= v).
@@ -114,7 +90,7 @@ SignedRanks WilcoxonTest(const std::vector<double>& differences, Alternative alt
   }
   SignedRanks test;
   if (full.empty()) return test;
-  const SizeRanks sizes = RankSizes(full);
+  const MeanRanks sizes = RankSizes(full);
   for (std::size_t i = 0; i < full.size(); ++i) {
     if (full[i] > 0) test.v += sizes.ranks[i];
   }

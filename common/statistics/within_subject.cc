@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/statistics/moments.h"
+#include "common/statistics/ranks.h"
 #include "common/statistics/special.h"
 
 namespace footing::statistics {
@@ -89,19 +91,6 @@ Result<Relabelled> RelabelRows(const Rows& rows, double tolerance, const Relabel
       });
 }
 
-/// Sum of t^3 - t over the groups of equal values.
-double TieSumOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  double sum = 0, equal = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    ++equal;
-    if (i + 1 < values.size() && values[i + 1] == values[i]) continue;
-    sum += equal * equal * equal - equal;
-    equal = 0;
-  }
-  return sum;
-}
-
 /// Square distances of rank sums from their mean: all that varies in Friedman's statistic.
 double SquareDistances(const std::vector<double>& sums) {
   const double mean = Mean(sums);
@@ -147,8 +136,9 @@ Result<Friedman> FriedmanTest(const Blocks& blocks, const Relabelling& relabelli
   Rows ranks;
   double tie_sums = 0;
   for (const std::vector<double>& row : blocks.values) {
-    ranks.push_back(MeanRanks(row));
-    tie_sums += TieSumOf(row);
+    MeanRanks ranked = RankWithTies(row);
+    ranks.push_back(std::move(ranked.ranks));
+    tie_sums += ranked.tie_sum;
   }
   const std::vector<double> sums = ColumnSums(ranks);
   const double n = static_cast<double>(ranks.size());
@@ -181,19 +171,6 @@ std::vector<double> Differences(const Blocks& blocks, std::size_t treatment) {
     differences.push_back(std::abs(difference) <= kRounding * size ? 0 : difference);
   }
   return differences;
-}
-
-std::vector<double> MeanRanks(const std::vector<double>& values) {
-  std::vector<double> ranks;
-  for (const double value : values) {
-    double below = 0, equal = 0;
-    for (const double other : values) {
-      below += other < value ? 1 : 0;
-      equal += other == value ? 1 : 0;
-    }
-    ranks.push_back(below + (equal + 1) / 2);
-  }
-  return ranks;
 }
 
 std::vector<double> Holm(const std::vector<double>& p) {

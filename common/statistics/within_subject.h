@@ -46,7 +46,4 @@ std::vector<double> Holm(const std::vector<double>& p);
 /// of equal values by rounding counts as 0.
 std::vector<double> Differences(const Blocks& blocks, std::size_t treatment);
 
-/// Rank of each value from 1; equal values share the mean of their ranks.
-std::vector<double> MeanRanks(const std::vector<double>& values);
-
 }  // namespace footing::statistics

@@ -14,7 +14,11 @@ struct TrackedPoint {
   DeviceRole role = DeviceRole::kUnspecified;  ///< kLeftHand: the middle of the left fist.
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d sd_m = Eigen::Vector3d::Zero();  ///< Along W's axes.
-  double confidence = 0;                           ///< 0 to 1.
+  double confidence = 0;  ///< 0 to 1; 0: looked for and not seen, nothing else of it counts.
+  /// Of x and y, x and z, y and z; with sd_m the whole matrix. Zero: none are known.
+  Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
+  bool saturated = false;  ///< Its light is at the sensor's limit.
+  bool occluded = false;   ///< Part of it is hidden, or beyond the image.
 };
 
 /// What a tracker sends: all points of one exposure.
@@ -46,6 +50,9 @@ struct HandSample {
   double confidence = 0;
   bool simulated = false;
   std::string tracker;
+  Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();  ///< As a TrackedPoint's.
+  bool saturated = false;
+  bool occluded = false;
 };
 
 /// A simulated body's true pose as footingd publishes it; never estimated from.

@@ -3,6 +3,7 @@
 
 #include "common/stream/character.h"
 #include "common/stream/device.h"
+#include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
 
 namespace footing::stream {
@@ -66,6 +67,13 @@ const char* Name(TrialPhase phase) { return At(kTrialPhaseNames, phase); }
 const char* Name(UserInterface interface) { return At(kInterfaces, interface); }
 const char* Name(TurnSource source) { return At(kTurnSources, source); }
 DeviceRole RoleNamed(const std::string& name) { return Named<DeviceRole>(kRoles, name); }
+TurnSource LegTurnSourceNamed(const std::string& name) {
+  for (const auto source : kLegTurnSources) {
+    if (name == Name(source)) return source;
+  }
+  return TurnSource::kUnspecified;
+}
+
 std::string RoleNames() { return Joined(kRoles); }
 std::string GaitNames() { return Joined(kGaitNames); }
 Gait GaitNamed(const std::string& name) { return Named<Gait>(kGaitNames, name); }

@@ -120,7 +120,7 @@ struct DeviceFeatures {
   bool held = false;     ///< Held from before, because samples clip.
   bool simulated = false;
   bool swing_valid = false;  ///< The horizontal swing of the last cycle has a direction.
-  double swing_rad = 0;      ///< It, from the front; left positive, in (-pi/2, pi/2].
+  double swing_rad = 0;      ///< It, from the front; left positive, within 2.1 rad.
 };
 
 /// Right minus left, in (-pi, pi].

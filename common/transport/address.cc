@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "common/transport/run_folder.h"
+
 namespace footing::transport {
 namespace {
 
@@ -77,9 +79,10 @@ Address DefaultAddress(const std::string& name, bool create) {
   if (runtime != nullptr && *runtime == '/') {
     folder = std::string(runtime) + "/footing";
   } else {
-    folder = "/tmp/footing-" + std::to_string(geteuid());
+    folder = FallbackRunFolder();
   }
-  // A folder that cannot be made shows when the listener binds, with its reason.
+  // A folder that cannot be made, or is not ours alone, shows when the listener binds, with its
+  // reason.
   if (create) mkdir(folder.c_str(), S_IRWXU);
   Address address;
   address.path = folder + "/" + name + ".sock";

@@ -15,8 +15,6 @@ class Backoff {
     return wait_s;
   }
   void Reset() { next_s_ = min_s_; }
-  /// From now on the longest wait.
-  void Slowest() { next_s_ = max_s_; }
 
  private:
   double min_s_;

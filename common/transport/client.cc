@@ -1,16 +1,16 @@
 #include "common/transport/client.h"
 
 #include <algorithm>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <optional>
 #include <random>
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/timer/timer.h"
 #include "common/transport/backoff.h"
 #include "common/transport/client_messages.h"
-#include "common/transport/clock_offset.h"
+#include "common/transport/clock_probes.h"
 #include "common/transport/framed_connection.h"
 #include "common/transport/message_parser.h"
 #include "common/transport/pending_commands.h"
@@ -59,10 +59,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
 
   LinkState state() const { return state_; }
 
-  ClockOffset clock() const {
-    const OffsetEstimate estimate = offset_.estimate();
-    return {estimate.valid, estimate.offset_ns, estimate.uncertainty_ns};
-  }
+  ClockOffset clock() const { return probes_.offset(); }
 
  private:
   /// What a new connection resumes.
@@ -141,6 +138,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
         return commands_.TakeAnswer(message.command_result());
       case v1::Envelope::kWelcome:
         return OnWelcome(message.welcome());
+      case v1::Envelope::kNotice:
+        return Call(handlers_.on_notice, message.notice());
       case v1::Envelope::kSubscribed:
         return OnSubscribed();
       case v1::Envelope::kRefused:
@@ -155,16 +154,16 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnWelcome(const v1::Welcome& welcome) {
-    if (welcome.epoch() != server_.epoch) offset_ = {};  // Perhaps another host.
+    probes_.OnWelcome(welcome.epoch() != server_.epoch);  // Perhaps another host.
     server_.name = welcome.server_id() + " " + welcome.version();
-    const auto wish =
-        MakeSubscribe(options_, welcome.epoch(), server_.epoch, server_.last_sequence);
+    wish_ = MakeSubscribe(options_, welcome.epoch(), server_.epoch, server_.last_sequence);
     if (welcome.epoch() != server_.epoch) server_.last_sequence = 0;
     server_.epoch = welcome.epoch();
-    SendMessage(wish);
     SendPing();
     Call(handlers_.on_welcome, welcome);
   }
+
+  void Subscribe() { SendMessage(*std::exchange(wish_, std::nullopt)); }
 
   void OnSubscribed() {
     subscribed_ = true;
@@ -182,10 +181,11 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnPong(const v1::Pong& pong) {
-    if (pong.id() <= ping_id_) offset_.Add({pong.t0_ns(), pong.t1_ns(), pong.t2_ns(), heard_ns_});
+    probes_.Take(pong, heard_ns_);
+    if (wish_) probes_.settled() ? Subscribe() : SendPing();
   }
 
-  void SendPing() { SendMessage(MakePing(++ping_id_, NowNs())); }
+  void SendPing() { SendMessage(probes_.Next(NowNs())); }
 
   void SendMessage(const v1::Envelope& message) {
     if (connection_) connection_->Send(message.SerializeAsString());
@@ -201,17 +201,17 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
 
   void OnPulse() {
     const std::int64_t now_ns = NowNs();
+    if (WasLate(pulse_)) heard_ns_ = now_ns;  // It was us who stood still.
     const double silent_s = NanosecondsToSeconds(now_ns - heard_ns_);
     commands_.Expire(now_ns);
     if (!connection_) return;  // A handler stopped us.
     const double patience_s = subscribed_ ? options_.dead_after_s : options_.stale_after_s;
-    if (silent_s > patience_s) {
-      return Break(options_.address.Text() + " does not answer any more");
-    }
+    if (silent_s > patience_s) return Break(options_.address.Text() + " does not answer any more");
     if (subscribed_ && silent_s > options_.stale_after_s && state_ == LinkState::kLive) {
       SetState(LinkState::kStale, "nothing comes from " + server_.name + " on " +
                                       options_.address.Text() + "; waiting");
     }
+    if (wish_) Subscribe();  // On a slow link, with fewer pings.
     if (subscribed_) SendPing();
     ArmPulse();
   }
@@ -225,20 +225,20 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     const bool refused = std::exchange(close_.refused, false);
     const std::string words = close_.text.empty() ? reason : close_.text;
     connection_.reset();
+    wish_.reset();
     subscribed_ = false;
     pulse_.cancel();
     commands_.Fail("the connection was lost before the answer; it may still be carried out");
-    if (refused) {
-      backoff_.Slowest();
-      Retry(LinkState::kRefused, options_.address.Text() + " refused: " + words);
-    } else {
-      Retry(LinkState::kConnecting, "waiting for " + options_.address.Text() + ": " + words);
-    }
+    if (refused) return Retry(LinkState::kRefused, options_.address.Text() + " refused: " + words);
+    Retry(LinkState::kConnecting, "waiting for " + options_.address.Text() + ": " + words);
   }
 
   void Retry(LinkState state, const std::string& why) {
     if (!started_) return;
-    const double wait_s = backoff_.Next(std::uniform_real_distribution<double>(0, 1)(random_));
+    const double random = std::uniform_real_distribution<double>(0, 1)(random_);
+    const bool refused = state == LinkState::kRefused;
+    const double wait_s =
+        refused ? options_.refused_wait_s * (1 + random) / 2 : backoff_.Next(random);
     retry_.expires_after(Duration(wait_s));
     retry_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
       const auto self = weak.lock();
@@ -255,8 +255,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     if (const auto handler = handlers_.on_state) handler(state, why);
   }
 
-  template <typename Message>
-  void Call(const std::function<void(const Message&)>& handler, const Message& message) {
+  static void Call(const auto& handler, const auto& message) {
     if (handler) handler(message);
   }
 
@@ -264,8 +263,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   const ClientOptions options_;
   ClientHandlers handlers_;
   std::optional<FramedConnection> connection_;
-  boost::asio::steady_timer retry_;
-  boost::asio::steady_timer pulse_;
+  timer::Timer retry_;
+  timer::Timer pulse_;
   Backoff backoff_;
   std::mt19937_64 random_;
   bool started_ = false;
@@ -276,9 +275,9 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   ServerPosition server_;
   CloseReason close_;
   std::int64_t heard_ns_ = 0;
-  std::uint64_t ping_id_ = 0;
   PendingCommands commands_;
-  ClockOffsetEstimator offset_;
+  ClockProbes probes_;
+  std::optional<v1::Envelope> wish_;  ///< The Subscribe to send once the clock is known.
   MessageParser parser_;
 };
 

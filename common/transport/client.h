@@ -24,7 +24,8 @@ struct ClientOptions {
   bool from_ring_start = false;  ///< First everything that the server's ring still holds.
   std::uint32_t max_message_bytes = 1u << 20;
   double backoff_min_s = 0.1;
-  double backoff_max_s = 5;
+  double backoff_max_s = 1;
+  double refused_wait_s = 5;  ///< Between tries when the server says no, times 0.5 to 1.
   double stale_after_s = 3;
   double dead_after_s = 10;
   double ping_interval_s = 0.25;  ///< For the clock offset, and to notice that nothing comes.
@@ -37,7 +38,7 @@ enum class LinkState {
   kConnecting,  ///< Dialling, or waiting to dial again.
   kLive,
   kStale,    ///< Nothing for 3 s.
-  kRefused,  ///< The server said no; it is asked again at the slowest rate.
+  kRefused,  ///< The server said no; it is asked again every few seconds.
 };
 
 /// The server's clock minus ours, from the pings with the shortest round trip.
@@ -53,9 +54,11 @@ struct ClientHandlers {
   std::function<void(const v1::Gap&)> on_gap;
   /// `why` is a line for a person: what it waits for, or the server's own words.
   std::function<void(LinkState, const std::string& why)> on_state;
+  /// Something slows this session or the server.
+  std::function<void(const v1::Notice&)> on_notice = {};
 };
 
-/// Connects, keeps connected (0.1 s to 5 s between tries, with jitter) and resumes by sequence.
+/// Connects, keeps connected (0.1 s to 1 s between tries, with jitter) and resumes by sequence.
 /// A resume asks for the ticks since the last one received; with the policy latest there is none.
 /// Everything runs on the io_context's one thread; handlers are called there, never from within a
 /// call to this class, but for `done` of Send() when the link is down.

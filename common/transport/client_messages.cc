@@ -1,6 +1,7 @@
 #include "common/transport/client_messages.h"
 
 #include "common/transport/handshake.h"
+#include "common/transport/token.h"
 
 namespace footing::transport {
 
@@ -10,7 +11,8 @@ v1::Envelope MakeHello(const ClientOptions& options) {
   hello.set_protocol_major(kProtocolMajor);
   hello.set_protocol_minor(kProtocolMinor);
   hello.set_role(options.role);
-  hello.set_token(options.token);
+  const bool ask_environment = options.token.empty() && options.address.kind == Address::Kind::kTcp;
+  hello.set_token(ask_environment ? TokenFromEnvironment() : options.token);
   hello.set_client_name(options.client_name);
   return message;
 }
@@ -27,7 +29,7 @@ v1::Envelope MakeSubscribe(const ClientOptions& options, std::uint64_t epoch,
     wish.set_from_sequence(last_sequence + 1);
     wish.set_from_epoch(last_epoch);
   } else if (options.from_ring_start) {
-    wish.set_from_sequence(1);
+    wish.set_from_sequence(0);  // Whatever the ring holds.
     wish.set_from_epoch(epoch);
   }
   return message;

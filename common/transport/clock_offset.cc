@@ -17,13 +17,14 @@ void ClockOffsetEstimator::Add(const Probe& probe) {
       samples_.begin(), samples_.end(),
       [](const Sample& a, const Sample& b) { return a.round_trip_ns < b.round_trip_ns; });
   Approach(*best, probe.t3_ns);
+  settled_ = settled_ || samples_.size() == kProbes;
 }
 
 void ClockOffsetEstimator::Approach(const Sample& best, std::int64_t now_ns) {
   const std::int64_t bound = best.round_trip_ns / 2 + 1;
   const std::int64_t to_go = best.offset_ns - estimate_.offset_ns;
   const bool contradicts = std::abs(to_go) > bound + estimate_.uncertainty_ns;
-  if (!estimate_.valid || contradicts) {
+  if (!settled_ || contradicts) {
     estimate_ = {true, best.offset_ns, bound};
   } else {
     const auto reach = static_cast<std::int64_t>(

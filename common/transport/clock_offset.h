@@ -24,9 +24,10 @@ struct OffsetEstimate {
 /// of its section 10: of the last 8 probes the one with the shortest round trip counts, since its
 /// two ways differ least. Its error is at most half its round trip.
 ///
-/// The estimate moves towards a better one by at most 0.5 ms a second of the asker's clock, so that
-/// mapped stamps never jump; what is still to go is part of the uncertainty. The first estimate,
-/// and one that contradicts the current one beyond both uncertainties, is taken at once.
+/// The first 8 probes are taken at once. From then on the estimate moves towards a better one by at
+/// most 0.5 ms a second of the asker's clock, so that mapped stamps do not jump; what is still to
+/// go is part of the uncertainty. One that contradicts the current one beyond both uncertainties is
+/// taken at once.
 class ClockOffsetEstimator {
  public:
   static constexpr std::size_t kProbes = 8;
@@ -44,6 +45,7 @@ class ClockOffsetEstimator {
   void Approach(const Sample& best, std::int64_t now_ns);
 
   std::deque<Sample> samples_;
+  bool settled_ = false;  ///< There were 8 probes.
   OffsetEstimate estimate_;
   std::int64_t moved_ns_ = 0;  ///< When the estimate last moved, asker's clock.
 };

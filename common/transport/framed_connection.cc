@@ -2,12 +2,14 @@
 
 #include <array>
 #include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <deque>
 #include <utility>
 
+#include "common/clock/clock.h"
+#include "common/timer/timer.h"
 #include "common/transport/framing.h"
+#include "common/units/units.h"
 
 namespace footing::transport {
 namespace {
@@ -18,6 +20,8 @@ using boost::system::error_code;
 constexpr std::size_t kReadBytes = 16 << 10;
 /// Batches written in one go before other connections get their turn.
 constexpr int kBatchesInARow = 8;
+/// Messages handled in one turn.
+constexpr int kMessagesInATurn = 8;
 
 std::string CloseReason(const error_code& error, bool inside_frame) {
   if (error != asio::error::eof) return "the connection broke: " + MessageOf(error);
@@ -30,13 +34,15 @@ std::string CloseReason(const error_code& error, bool inside_frame) {
 class FramedConnection::Implementation : public std::enable_shared_from_this<Implementation> {
  public:
   Implementation(Socket socket, const FramedLimits& limits, FramedHandlers handlers,
-                 std::shared_ptr<BatchPool> pool)
+                 SharedLoop loop)
       : socket_(std::move(socket)),
         linger_(socket_.get_executor()),
+        slowed_(socket_.get_executor()),
         limits_(limits),
         handlers_(std::move(handlers)),
         splitter_(limits.max_in_bytes),
-        pool_(std::move(pool)) {
+        pace_(limits.input),
+        loop_(std::move(loop)) {
     Prepare(socket_);
   }
 
@@ -54,6 +60,13 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   void Wake() {
     if (state_ == State::kOpen) Write();
   }
+
+  void WakeInTurn() {
+    if (!loop_.turns) return Wake();
+    if (state_ == State::kOpen && !waiting_) WriteLater();
+  }
+
+  void Charge(double messages) { pace_.ChargeMessages(messages); }
 
   void Finish(std::string_view last_payload, const std::string& reason) {
     if (state_ != State::kOpen) return;
@@ -98,18 +111,58 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     // While finishing, what still comes is read and thrown away: closing over unread bytes would
     // reset the connection and lose the last word.
     if (state_ == State::kOpen && handlers_.on_bytes) handlers_.on_bytes();
-    if (state_ == State::kOpen) Split(std::string_view(input_.data(), size));
-    if (state_ != State::kOver) Read();
+    if (state_ == State::kOver) return;
+    pace_.ChargeBytes(size);
+    unhandled_ = std::string_view(input_.data(), size);
+    Handle();
   }
 
-  void Split(std::string_view bytes) {
-    const auto fed = splitter_.Feed(bytes, [this](std::string_view payload) {
+  void Handle() {
+    if (loop_.turns) {
+      return loop_.turns->Add([self = shared_from_this()] { return self->HandleSome(); });
+    }
+    while (HandleSome()) {
+    }
+  }
+
+  /// Handles some of the messages that were read; true when there are more. Then it reads on.
+  bool HandleSome() {
+    if (state_ == State::kOver) return false;
+    if (state_ == State::kOpen && !unhandled_.empty()) {
+      if (Slow()) return false;
+      int handled = 0;
+      corked_ = loop_.turns != nullptr;  // Their answers leave together.
+      Split([&] { return ++handled < kMessagesInATurn; });
+      corked_ = false;
+      if (loop_.turns && state_ != State::kOver) Write();
+    }
+    if (state_ == State::kOpen && !unhandled_.empty()) return true;
+    if (state_ != State::kOver) Read();
+    return false;
+  }
+
+  void Split(const std::function<bool()>& more) {
+    const auto fed = splitter_.Feed(unhandled_, [&](std::string_view payload) {
+      pace_.ChargeMessages(1);
       handlers_.on_frame(payload);
-      return state_ == State::kOpen;
+      return state_ == State::kOpen && more();
     });
-    if (fed) return;
+    if (fed) return unhandled_.remove_prefix(*fed);
+    unhandled_ = {};
     if (handlers_.on_oversized) handlers_.on_oversized(fed.error().message);
     if (state_ == State::kOpen) End(fed.error().message);
+  }
+
+  /// Whether the budget is used up; the rest is handled when there is some again.
+  bool Slow() {
+    const std::int64_t wait_ns = pace_.WaitNs(clock::MonotonicNs());
+    if (wait_ns == 0) return false;
+    slowed_.expires_after(std::chrono::nanoseconds(wait_ns));
+    slowed_.async_wait([self = shared_from_this()](const error_code& error) {
+      if (!error && self->state_ != State::kOver) self->Handle();
+    });
+    if (handlers_.on_slowed) handlers_.on_slowed(NanosecondsToSeconds(wait_ns));
+    return true;
   }
 
   void Queue(std::string_view payload) {
@@ -118,10 +171,10 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   }
 
   void Write() {
-    if (waiting_ || writing_) return;
+    if (waiting_ || writing_ || corked_) return;
     writing_ = true;  // on_writable may call Wake() or Send().
     for (int batches = 0; state_ != State::kOver; ++batches) {
-      if (!batch_) batch_ = pool_->Take();
+      if (!batch_) batch_ = loop_.pool->Take();
       if (batch_->empty()) Fill();
       if (batch_->empty()) break;
       if (batches == kBatchesInARow) {
@@ -129,6 +182,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
         break;
       }
       error_code error;
+      clock::Act();
       const std::size_t written = socket_.write_some(batch_->buffers(), error);
       if (error == asio::error::would_block) {
         WaitUntilWritable();
@@ -141,7 +195,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
       batch_->Consume(written);
     }
     writing_ = false;
-    if (batch_ && batch_->empty()) pool_->Give(std::move(batch_));
+    if (batch_ && batch_->empty()) loop_.pool->Give(std::move(batch_));
     if (state_ == State::kFinishing && !batch_ && queue_.empty()) SayNoMore();
   }
 
@@ -158,22 +212,32 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
 
   void WriteLater() {
     waiting_ = true;
-    asio::post(socket_.get_executor(), [self = shared_from_this()] {
-      self->waiting_ = false;
-      if (self->state_ != State::kOver) self->Write();
+    if (!loop_.turns) {
+      asio::post(socket_.get_executor(), [self = shared_from_this()] { self->WriteNow(); });
+      return;
+    }
+    loop_.turns->Add([self = shared_from_this()] {
+      self->WriteNow();
+      return false;  // What is left gets in line by itself.
     });
+  }
+
+  void WriteNow() {
+    waiting_ = false;
+    if (state_ != State::kOver) Write();
   }
 
   void WaitUntilWritable() {
     waiting_ = true;
     socket_.async_wait(Socket::wait_write, [self = shared_from_this()](const error_code& error) {
       self->waiting_ = false;
-      if (!error && self->state_ != State::kOver) self->Write();
+      if (!error && self->state_ != State::kOver) self->WriteLater();
     });
   }
 
   void SayNoMore() {
     error_code ignored;  // It may be gone already.
+    clock::Act();
     socket_.shutdown(Socket::shutdown_send, ignored);
   }
 
@@ -181,7 +245,9 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     if (state_ == State::kOver) return;
     state_ = State::kOver;
     linger_.cancel();
+    slowed_.cancel();
     error_code ignored;
+    clock::Act();
     socket_.close(ignored);
     asio::post(socket_.get_executor(), [self = shared_from_this(), reason] {
       // The handlers go too: they often hold the owner of this connection.
@@ -192,30 +258,36 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   }
 
   Socket socket_;
-  asio::steady_timer linger_;
+  timer::Timer linger_;
+  timer::Timer slowed_;
   const FramedLimits limits_;
   FramedHandlers handlers_;
   FrameSplitter splitter_;
+  InputPace pace_;
+  std::string_view unhandled_;  ///< Of input_: read, and not handled yet.
   std::deque<std::string> queue_;
   std::size_t queued_bytes_ = 0;
-  const std::shared_ptr<BatchPool> pool_;
+  const SharedLoop loop_;
   std::unique_ptr<WriteBatch> batch_;  ///< While something waits to be written.
   State state_ = State::kOpen;
   bool waiting_ = false;
   bool writing_ = false;
+  bool corked_ = false;
   bool silent_ = false;
   std::string reason_;
   std::array<char, kReadBytes> input_;
 };
 
 FramedConnection::FramedConnection(Socket socket, const FramedLimits& limits,
-                                   FramedHandlers handlers, std::shared_ptr<BatchPool> pool)
+                                   FramedHandlers handlers, SharedLoop loop)
     : implementation_(std::make_shared<Implementation>(std::move(socket), limits,
-                                                       std::move(handlers), std::move(pool))) {}
+                                                       std::move(handlers), std::move(loop))) {}
 FramedConnection::~FramedConnection() { Close(); }
 void FramedConnection::Start() { implementation_->Start(); }
 bool FramedConnection::Send(std::string_view payload) { return implementation_->Send(payload); }
 void FramedConnection::Wake() { implementation_->Wake(); }
+void FramedConnection::WakeInTurn() { implementation_->WakeInTurn(); }
+void FramedConnection::Charge(double messages) { implementation_->Charge(messages); }
 void FramedConnection::Finish(std::string_view last_payload, const std::string& reason) {
   implementation_->Finish(last_payload, reason);
 }

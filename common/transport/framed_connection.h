@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "common/transport/input_pace.h"
 #include "common/transport/socket.h"
+#include "common/transport/turn_queue.h"
 #include "common/transport/write_batch.h"
 
 namespace footing::transport {
@@ -18,6 +20,8 @@ struct FramedLimits {
   std::size_t max_queued_bytes = 1u << 20;  ///< Of Send(); what waits in the kernel not counted.
   std::size_t max_queued_frames = 1024;
   double linger_s = 1;  ///< How long Finish() waits for the other side to take the last bytes.
+  /// Who sends more is read no more until it has waited: nothing of it is lost, it is slowed.
+  InputBudget input = {};
 };
 
 struct FramedHandlers {
@@ -33,6 +37,15 @@ struct FramedHandlers {
   std::function<void()> on_bytes;
   /// Optional: a frame over the limit was announced. May Finish() with a last word.
   std::function<void(const std::string& why)> on_oversized;
+  /// Optional: the budget of input is used up, and nothing is read for `wait_s`.
+  std::function<void(double wait_s)> on_slowed = {};
+};
+
+/// What the connections of one thread share: empty batches, and the line in which each gets a small
+/// piece of its work done. Without the line a connection does its work as it comes.
+struct SharedLoop {
+  std::shared_ptr<BatchPool> pool = std::make_shared<BatchPool>();
+  std::shared_ptr<TurnQueue> turns;
 };
 
 /// A connection that carries frames (u32 little-endian length, payload) both ways, with bounded
@@ -42,9 +55,8 @@ struct FramedHandlers {
 class FramedConnection {
  public:
   /// A socket of Listener or Dial; it is made ready here (see Prepare).
-  /// Connections of one thread may share a pool; without one it has its own.
   FramedConnection(Socket socket, const FramedLimits& limits, FramedHandlers handlers,
-                   std::shared_ptr<BatchPool> pool = std::make_shared<BatchPool>());
+                   SharedLoop loop = {});
   ~FramedConnection();
   FramedConnection(const FramedConnection&) = delete;
   FramedConnection& operator=(const FramedConnection&) = delete;
@@ -58,6 +70,11 @@ class FramedConnection {
 
   /// There is something for on_writable to fetch.
   void Wake();
+  /// The same, but when its turn comes: for what is not urgent and may be much.
+  void WakeInTurn();
+
+  /// Counts the message being handled as that many more of the budget.
+  void Charge(double messages);
 
   /// Sends what is queued and one last frame (none if empty; on_writable is asked no more), then
   /// closes; at the latest after linger_s. on_close gets `reason`.

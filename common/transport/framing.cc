@@ -39,32 +39,33 @@ std::size_t FrameSplitter::Missing() const {
   return kLengthBytes + DecodeLength(pending_.data()) - pending_.size();
 }
 
-Result<void> FrameSplitter::Feed(std::string_view bytes,
-                                 const std::function<bool(std::string_view)>& on_frame) {
+Result<std::size_t> FrameSplitter::Feed(std::string_view bytes,
+                                        const std::function<bool(std::string_view)>& on_frame) {
+  const std::size_t offered = bytes.size();
   while (!pending_.empty()) {
     const std::size_t taken = std::min(Missing(), bytes.size());
     pending_.append(bytes.substr(0, taken));
     bytes.remove_prefix(taken);
-    if (pending_.size() < kLengthBytes) return {};
-    if (auto checked = CheckLength(pending_); !checked) return checked;
+    if (pending_.size() < kLengthBytes) return offered;
+    if (auto checked = CheckLength(pending_); !checked) return checked.error();
     if (Missing() > 0) {
-      if (bytes.empty()) return {};
+      if (bytes.empty()) return offered;
       continue;
     }
     const std::string frame = std::move(pending_);
     pending_.clear();
-    if (!on_frame(std::string_view(frame).substr(kLengthBytes))) return {};
+    if (!on_frame(std::string_view(frame).substr(kLengthBytes))) return offered - bytes.size();
   }
   while (bytes.size() >= kLengthBytes) {
-    if (auto checked = CheckLength(bytes); !checked) return checked;
+    if (auto checked = CheckLength(bytes); !checked) return checked.error();
     const std::size_t whole = kLengthBytes + DecodeLength(bytes.data());
     if (bytes.size() < whole) break;
     const std::string_view frame = bytes.substr(kLengthBytes, whole - kLengthBytes);
     bytes.remove_prefix(whole);
-    if (!on_frame(frame)) return {};
+    if (!on_frame(frame)) return offered - bytes.size();
   }
   pending_.assign(bytes);
-  return {};
+  return offered;
 }
 
 }  // namespace footing::transport

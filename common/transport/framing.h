@@ -29,10 +29,12 @@ class FrameSplitter {
  public:
   explicit FrameSplitter(std::uint32_t max_payload_bytes) : max_(max_payload_bytes) {}
 
-  /// Calls `on_frame` for every complete frame, in order; it returns false to stop (the rest is
-  /// thrown away). The view is valid during the call only. InvalidData for a length over the limit;
+  /// Calls `on_frame` for every complete frame, in order; it returns false to stop behind that
+  /// frame. The view is valid during the call only. Returns how many bytes were taken: all of them
+  /// unless it was stopped; the rest may be fed again. InvalidData for a length over the limit;
   /// nothing may be fed after that.
-  Result<void> Feed(std::string_view bytes, const std::function<bool(std::string_view)>& on_frame);
+  Result<std::size_t> Feed(std::string_view bytes,
+                           const std::function<bool(std::string_view)>& on_frame);
 
   /// Bytes of a frame that has begun and is not complete.
   std::size_t pending_bytes() const { return pending_.size(); }

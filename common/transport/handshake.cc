@@ -63,7 +63,7 @@ v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message) {
 }
 
 std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role highest,
-                                                const std::string& server_id) {
+                                                bool has_token, const std::string& server_id) {
   if (hello.protocol_major() != kProtocolMajor) {
     const bool client_older = hello.protocol_major() < kProtocolMajor;
     return Refuse(v1::Refused::REASON_PROTOCOL_VERSION,
@@ -78,7 +78,8 @@ std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role
                 "the role " + RoleName(wished) + " is not given to this connection, at most " +
                     RoleName(highest) +
                     "; connect over the server's Unix socket as its user (admin) or as a member "
-                    "of its group (control)");
+                    "of its group (control)" +
+                    (has_token ? ", or over TCP with the server's token (control)" : ""));
 }
 
 v1::Welcome MakeWelcome(const ServerOptions& options, std::uint64_t epoch, v1::Role role) {
@@ -97,6 +98,8 @@ v1::Welcome MakeWelcome(const ServerOptions& options, std::uint64_t epoch, v1::R
   limits.set_max_queue_ticks(options.max_queue_ticks);
   limits.set_ring_s(options.ring_s);
   limits.set_tick_rate_hz(options.tick_rate_hz);
+  limits.set_max_messages_per_s(options.sessions.session_messages_per_s);
+  limits.set_max_message_burst(static_cast<std::uint32_t>(options.sessions.Input().message_burst));
   return welcome;
 }
 

@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kProtocolMinor = 0;
 /// The role granted, or why not. Another minor version is fine: both sides leave out what they do
 /// not know. No role asked for is view.
 std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role highest,
-                                                const std::string& server_id);
+                                                bool has_token, const std::string& server_id);
 
 v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message);
 

@@ -6,13 +6,14 @@
 
 #include <boost/asio/basic_socket_acceptor.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <utility>
 
 #include "common/service_manager/service_manager.h"
+#include "common/timer/timer.h"
+#include "common/transport/run_folder.h"
 #include "common/transport/unix_socket_file.h"
 
 namespace footing::transport {
@@ -37,16 +38,23 @@ Error ListenError(const Address& address, const error_code& error) {
 
 class Listener::Implementation : public std::enable_shared_from_this<Implementation> {
  public:
-  Implementation(asio::io_context& io, Address address, std::function<void(Socket)> on_accept)
-      : address_(std::move(address)), acceptor_(io), pause_(io), on_accept_(std::move(on_accept)) {}
+  Implementation(asio::io_context& io, Address address, std::function<void(Socket)> on_accept,
+                 bool insecure_lan)
+      : address_(std::move(address)),
+        acceptor_(io),
+        pause_(io),
+        on_accept_(std::move(on_accept)),
+        insecure_lan_(insecure_lan) {}
 
   Result<void> Open() {
-    if (!StaysOnThisHost(address_)) {
+    if (!StaysOnThisHost(address_) && !insecure_lan_) {
       return UsageError("will not listen on " + address_.Text() +
                         ": beyond this host a connection must be encrypted, and this version "
-                        "cannot do that; use tcp:127.0.0.1:PORT and carry it with ssh -L");
+                        "cannot do that; use tcp:127.0.0.1:PORT and carry it with ssh -L, or, in a "
+                        "network that you trust wholly, --insecure-lan with a token_file");
     }
     if (address_.kind == Address::Kind::kPassed) return TakePassed();
+    if (auto checked = CheckFolderOf(address_); !checked) return checked;
     const Result<Endpoint> endpoint = EndpointOf(address_);
     if (!endpoint) return endpoint.error();
     if (address_.kind == Address::Kind::kTcp) return OpenTcp(*endpoint);
@@ -139,15 +147,18 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
 
   Address address_;
   Acceptor acceptor_;
-  asio::steady_timer pause_;
+  timer::Timer pause_;
   std::function<void(Socket)> on_accept_;
   FileIdentity file_;
+  const bool insecure_lan_;
   bool closed_ = false;
 };
 
 Result<std::unique_ptr<Listener>> Listener::Open(asio::io_context& io, const Address& address,
-                                                 std::function<void(Socket)> on_accept) {
-  auto implementation = std::make_shared<Implementation>(io, address, std::move(on_accept));
+                                                 std::function<void(Socket)> on_accept,
+                                                 bool insecure_lan) {
+  auto implementation =
+      std::make_shared<Implementation>(io, address, std::move(on_accept), insecure_lan);
   if (auto opened = implementation->Open(); !opened) {
     implementation->Close();
     return opened.error();

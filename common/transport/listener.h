@@ -13,12 +13,14 @@ namespace footing::transport {
 /// Accepts connections on one address and hands over their sockets.
 ///
 /// Unix: mode 0660. A socket file left over by a dead server is replaced; one with a living server
-/// behind it is never touched. The own file is removed at the end. TCP beyond loopback is refused.
+/// behind it is never touched. The own file is removed at the end. TCP beyond loopback is refused
+/// unless `insecure_lan` is set.
 class Listener {
  public:
   /// Begins to listen. Errors say which address, why, and what to do.
   static Result<std::unique_ptr<Listener>> Open(boost::asio::io_context& io, const Address& address,
-                                                std::function<void(Socket)> on_accept);
+                                                std::function<void(Socket)> on_accept,
+                                                bool insecure_lan = false);
   ~Listener();
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;

@@ -1,6 +1,7 @@
 #include "common/transport/server.h"
 
 #include <google/protobuf/stubs/logging.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
@@ -9,9 +10,12 @@
 
 #include "common/transport/listener.h"
 #include "common/transport/session.h"
+#include "common/units/units.h"
 
 namespace footing::transport {
 namespace {
+
+constexpr std::int64_t kMostLingering = 64;  // Sessions that are being refused.
 
 std::uint64_t NewEpoch() {
   std::random_device random;
@@ -25,15 +29,16 @@ std::uint64_t NewEpoch() {
 class Server::Implementation {
  public:
   Implementation(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
-      : io_(io), shared_(std::move(options), std::move(handlers)) {
+      : io_(io), shared_(io.get_executor(), std::move(options), std::move(handlers)) {
     shared_.epoch = NewEpoch();
     // Protobuf would write a line to standard error for every message that a client got wrong.
     google::protobuf::SetLogHandler(nullptr);
   }
 
   Result<void> Listen(const Address& address) {
-    auto listener =
-        Listener::Open(io_, address, [this](Socket socket) { OnAccept(std::move(socket)); });
+    const bool lan = shared_.options.insecure_lan && !shared_.options.token.empty();
+    auto listener = Listener::Open(
+        io_, address, [this](Socket socket) { OnAccept(std::move(socket)); }, lan);
     if (!listener) return listener.error();
     listeners_.push_back(std::move(*listener));
     return {};
@@ -49,6 +54,25 @@ class Server::Implementation {
     for (const auto& session : sessions_) session->Offer(tick);
     shared_.publication.Trim();
     return tick->sequence;
+  }
+
+  void Answer(std::uint64_t number, const v1::CommandResult& result) {
+    for (const auto& session : sessions_) {
+      if (session->info().session == number) return session->Answer(result);
+    }
+  }
+
+  void NoteLateTicks(std::uint64_t count) {
+    shared_.statistics.late_ticks += count;
+    if (!late_lines_.Take(shared_.NowNs())) return;
+    const std::uint64_t all = shared_.statistics.late_ticks;
+    const std::string line =
+        shared_.options.server_id + " has too much to do: " + std::to_string(all) +
+        " ticks left out since its start, " + std::to_string(sessions_.size()) + " sessions";
+    if (shared_.handlers.on_overload) shared_.handlers.on_overload(line);
+    for (const auto& session : sessions_) {
+      session->Notify(v1::Notice::KIND_TICKS_LATE, line, all);
+    }
   }
 
   std::uint64_t epoch() const { return shared_.epoch; }
@@ -70,17 +94,26 @@ class Server::Implementation {
 
  private:
   void OnAccept(Socket socket) {
-    // Those that are being refused linger for a moment; there is an end to them too.
-    if (sessions_.size() >= 2 * shared_.options.max_sessions) return;
-    const bool full = sessions_.size() >= shared_.options.max_sessions;
     ++shared_.statistics.accepted;
-    sessions_.push_back(std::make_shared<Session>(std::move(socket), ++last_number_, shared_,
-                                                  [this](Session& ended) { OnEnd(ended); }));
-    if (!full) return sessions_.back()->Start();
-    sessions_.back()->StartRefused(v1::Refused::REASON_TOO_MANY_SESSIONS,
-                                   shared_.options.server_id + " serves " +
-                                       std::to_string(shared_.options.max_sessions) +
-                                       " sessions already; end one or try again later");
+    const auto session = std::make_shared<Session>(std::move(socket), ++last_number_, shared_,
+                                                   [this](Session& ended) { OnEnd(ended); });
+    SessionCounts taken;
+    std::int64_t lingering = 0;
+    for (const auto& other : sessions_) {
+      const Peer &a = session->peer(), &b = other->peer();
+      lingering += other->refused() ? 1 : 0;
+      taken.all += other->refused() ? 0 : 1;
+      taken.of_user += !other->refused() && a.known == b.known && a.user == b.user ? 1 : 0;
+    }
+    const SessionLimits& limits = shared_.options.sessions;
+    const std::string full = WhyNoPlace(limits, session->peer(), geteuid(), taken);
+    // Those that are being refused linger for a moment; there is an end to them too.
+    if (!full.empty() && lingering >= kMostLingering) return;
+    sessions_.push_back(session);
+    if (full.empty()) return session->Start();
+    session->StartRefused(
+        v1::Refused::REASON_TOO_MANY_SESSIONS,
+        shared_.options.server_id + " has " + full + "; end one or try again later");
   }
 
   void OnEnd(Session& ended) {
@@ -89,9 +122,9 @@ class Server::Implementation {
     const std::shared_ptr<Session> session = *found;
     sessions_.erase(found);
     boost::asio::post(io_, [session] {});  // It is still being called: let it go later.
-    if (session->welcomed() && shared_.handlers.on_session_end) {
-      shared_.handlers.on_session_end(session->info());
-    }
+    if (!session->welcomed()) return;
+    if (!session->may_administer()) --shared_.with_role[session->info().role];
+    if (shared_.handlers.on_session_end) shared_.handlers.on_session_end(session->info());
   }
 
   boost::asio::io_context& io_;
@@ -99,6 +132,7 @@ class Server::Implementation {
   std::vector<std::unique_ptr<Listener>> listeners_;
   std::vector<std::shared_ptr<Session>> sessions_;
   std::uint64_t last_number_ = 0;
+  TokenBucket late_lines_{0.1, 1};
 };
 
 Server::Server(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
@@ -111,6 +145,10 @@ Address Server::ListeningOn(std::size_t index) const { return implementation_->L
 std::uint64_t Server::Publish(std::int64_t host_ns, std::vector<ChannelBytes> channels) {
   return implementation_->Publish(host_ns, channels);
 }
+void Server::Answer(std::uint64_t session, const v1::CommandResult& result) {
+  implementation_->Answer(session, result);
+}
+void Server::NoteLateTicks(std::uint64_t count) { implementation_->NoteLateTicks(count); }
 std::uint64_t Server::epoch() const { return implementation_->epoch(); }
 ServerStatistics Server::statistics() const { return implementation_->statistics(); }
 void Server::Stop(const std::string& reason) { implementation_->Stop(reason); }

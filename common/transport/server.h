@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/result/result.h"
 #include "common/transport/address.h"
+#include "common/transport/session_limits.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::transport {
@@ -30,7 +32,10 @@ struct ServerOptions {
   std::uint32_t max_message_in_bytes = 64u << 10;
   std::uint32_t max_message_out_bytes = 1u << 20;
   std::uint32_t max_queue_ticks = 1024;
-  std::size_t max_sessions = 256;
+  SessionLimits sessions;
+  std::string token;  ///< By which a client over TCP gets the role control; empty: none does.
+  /// Listen beyond this host without encryption: anyone on the network path can read everything.
+  bool insecure_lan = false;
   double hello_deadline_s = 3;
   double ping_interval_s = 1;
   double dead_after_s = 10;
@@ -55,10 +60,13 @@ struct SessionInfo {
 
 struct ServerHandlers {
   /// A command of a session with role control or admin. Roles below are refused before this is
-  /// called.
-  std::function<v1::CommandResult(const SessionInfo&, const v1::Command&)> on_command;
+  /// called. Without a result the answer comes later, by Server::Answer().
+  std::function<std::optional<v1::CommandResult>(const SessionInfo&, const v1::Command&)>
+      on_command;
   /// A session is gone: end its leases.
   std::function<void(const SessionInfo&)> on_session_end;
+  /// A line for the log, at most one in 10 s of each kind: a session is slowed, or ticks are late.
+  std::function<void(const std::string& line)> on_overload = {};
 };
 
 struct ServerStatistics {
@@ -68,6 +76,8 @@ struct ServerStatistics {
   std::uint64_t ticks_dropped = 0;      ///< Of full session queues, all sessions together.
   std::uint64_t channels_left_out = 0;  ///< Did not fit into a tick, or are not a channel.
   std::uint64_t ring_bytes = 0;
+  std::uint64_t slowed = 0;      ///< Times that a session had to wait for its budget.
+  std::uint64_t late_ticks = 0;  ///< As reported by NoteLateTicks().
 };
 
 /// Publishes ticks to any number of sessions. Everything runs on the io_context's one thread.
@@ -83,7 +93,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   /// Opens one more listener. A Unix socket left over by a dead server is replaced; one in use, or
-  /// a TCP port in use, is an error that says so. TCP beyond loopback is refused.
+  /// a TCP port in use, is an error that says so. TCP beyond loopback is refused, unless
+  /// insecure_lan is set and there is a token.
   Result<void> Listen(const Address& address);
 
   /// The bound address of the i-th listener (the real port where 0 was asked for).
@@ -91,6 +102,13 @@ class Server {
 
   /// Publishes one tick of the given channels; returns its sequence, from 1.
   std::uint64_t Publish(std::int64_t host_ns, std::vector<ChannelBytes> channels);
+
+  /// Answers a command that on_command left open; `result` has its id. The session may be gone.
+  void Answer(std::uint64_t session, const v1::CommandResult& result);
+
+  /// The owner could not publish `count` ticks in time: counted, logged, and said to every session,
+  /// at most once in 10 s.
+  void NoteLateTicks(std::uint64_t count);
 
   std::uint64_t epoch() const;
   ServerStatistics statistics() const;

@@ -13,8 +13,10 @@
 namespace footing::transport {
 namespace {
 
+constexpr std::size_t kMostNameBytes = 64;
 constexpr std::size_t kMaxQueuedAnswers = 64;
 constexpr std::size_t kRememberedAnswers = 256;
+constexpr double kCommandCost = 2;  // In messages.
 
 FramedLimits LimitsOf(const ServerOptions& options) {
   FramedLimits limits;
@@ -22,11 +24,20 @@ FramedLimits LimitsOf(const ServerOptions& options) {
   limits.max_out_bytes = options.max_message_out_bytes;
   limits.max_queued_bytes = 2 * options.max_message_out_bytes;  // A snapshot, and answers.
   limits.max_queued_frames = kMaxQueuedAnswers;
+  limits.input = options.sessions.Input();
   return limits;
 }
 
-boost::asio::steady_timer::duration Duration(double seconds) {
+std::chrono::nanoseconds Duration(double seconds) {
   return std::chrono::nanoseconds(SecondsToNanoseconds(seconds));
+}
+
+/// For logs and other people's screens: at most 64 bytes, printable.
+std::string PlainName(std::string name) {
+  name.resize(std::min(name.size(), kMostNameBytes));
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return name;
 }
 
 std::string Seconds(double seconds) {
@@ -38,10 +49,6 @@ std::string Seconds(double seconds) {
 
 }  // namespace
 
-std::int64_t Shared::NowNs() const {
-  return options.now_ns ? options.now_ns() : clock::MonotonicNs();
-}
-
 Session::Session(Socket socket, std::uint64_t number, Shared& shared,
                  std::function<void(Session&)> on_end)
     : shared_(shared),
@@ -51,13 +58,14 @@ Session::Session(Socket socket, std::uint64_t number, Shared& shared,
           {[this](std::string_view payload) { OnFrame(payload); },
            [this](const std::string&) { on_end_(*this); },
            [this](WriteBatch& batch) { Fill(batch); }, [this] { heard_ns_ = shared_.NowNs(); },
-           [this](const std::string& why) { BadMessage(why); }},
-          shared.pool),
+           [this](const std::string& why) { BadMessage(why); }, [this](double) { OnSlowed(); }},
+          shared.loop),
       timer_(connection_.executor()),
       heard_ns_(shared.NowNs()),
       answers_(kRememberedAnswers) {
   info_.session = number;
-  highest_role_ = HighestRole(PeerOf(connection_.native_handle()), geteuid(), getegid());
+  peer_ = PeerOf(connection_.native_handle());
+  highest_role_ = HighestRole(peer_, geteuid(), getegid());
 }
 
 void Session::Start() {
@@ -78,9 +86,17 @@ void Session::ArmTimer(double seconds) {
   });
 }
 
+void Session::GrantTime() {
+  heard_ns_ = shared_.NowNs();
+  ArmTimer(phase_ == Phase::kHello ? shared_.options.hello_deadline_s
+                                   : shared_.options.ping_interval_s);
+}
+
 void Session::OnTimer() {
   if (!connection_.open()) return;
   const ServerOptions& options = shared_.options;
+  // A pause of this program itself: what the client sent during it has not been read yet.
+  if (WasLate(timer_)) return GrantTime();
   if (phase_ == Phase::kHello) {
     Refused(v1::Refused::REASON_HELLO_TIMEOUT,
             "no Hello within " + Seconds(options.hello_deadline_s));
@@ -117,13 +133,35 @@ void Session::OnFrame(std::string_view payload) {
 }
 
 void Session::OnHello(const v1::Hello& hello) {
-  const auto answer = AnswerHello(hello, highest_role_, shared_.options.server_id);
+  const bool needs_token = shared_.options.insecure_lan && !peer_.known;
+  if (needs_token && hello.token().empty()) {
+    return Refused(v1::Refused::REASON_TOKEN,
+                   "this server wants its token over TCP: FOOTING_TOKEN_FILE=FILE names it");
+  }
+  if (!hello.token().empty() && !peer_.known && !shared_.options.token.empty()) {
+    if (!shared_.token.Accepts(hello.token(), shared_.NowNs())) {
+      return Refused(v1::Refused::REASON_TOKEN,
+                     "the token is wrong, or there were too many wrong ones: try again in 5 s");
+    }
+    highest_role_ = v1::ROLE_CONTROL;
+  }
+  const auto answer =
+      AnswerHello(hello, highest_role_, !shared_.options.token.empty(), shared_.options.server_id);
   if (const auto* refused = std::get_if<v1::Refused>(&answer)) {
     Refused(refused->reason(), refused->message());
     return;
   }
-  info_.client_name = hello.client_name();
-  info_.role = std::get<v1::Role>(answer);
+  info_.client_name = PlainName(hello.client_name());
+  const v1::Role role = std::get<v1::Role>(answer);
+  if (!may_administer()) {
+    const auto taken = WhyRoleIsTaken(shared_.options.sessions, role, shared_.with_role[role]);
+    if (!taken.empty()) {
+      return Refused(v1::Refused::REASON_TOO_MANY_SESSIONS,
+                     shared_.options.server_id + " has " + taken + "; end one or try again later");
+    }
+    ++shared_.with_role[role];
+  }
+  info_.role = role;
   phase_ = Phase::kWelcomed;
   v1::Envelope message;
   *message.mutable_welcome() = MakeWelcome(shared_.options, shared_.epoch, info_.role);
@@ -158,6 +196,7 @@ void Session::Dispatch(const v1::Envelope& message, std::int64_t arrived_ns) {
     case v1::Envelope::kCommandResult:
     case v1::Envelope::kTick:
     case v1::Envelope::kGap:
+    case v1::Envelope::kNotice:
       return BadMessage("this message is the server's to send");
   }
 }
@@ -173,22 +212,36 @@ void Session::OnPing(const v1::Ping& ping, std::int64_t arrived_ns) {
 }
 
 void Session::OnCommand(const v1::Command& command, std::int64_t arrived_ns) {
-  v1::Envelope message;
+  connection_.Charge(kCommandCost - 1);
   if (const v1::CommandResult* first = answers_.Find(command.id())) {
+    v1::Envelope message;
     *message.mutable_command_result() = *first;
-  } else {
-    *message.mutable_command_result() = Carry(command, arrived_ns);
-    message.mutable_command_result()->set_id(command.id());
-    answers_.Remember(message.command_result());
+    return Send(message);
   }
+  if (open_commands_.contains(command.id())) return;  // Its answer is on its way.
+  open_commands_.insert(command.id());
+  if (auto result = Carry(command, arrived_ns)) {
+    result->set_id(command.id());
+    Answer(*result);
+  }
+}
+
+void Session::Answer(const v1::CommandResult& result) {
+  if (open_commands_.erase(result.id()) == 0 || !connection_.open()) return;
+  answers_.Remember(result);
+  v1::Envelope message;
+  *message.mutable_command_result() = result;
   Send(message);
 }
 
-v1::CommandResult Session::Carry(const v1::Command& command, std::int64_t arrived_ns) {
+std::optional<v1::CommandResult> Session::Carry(const v1::Command& command,
+                                                std::int64_t arrived_ns) {
   v1::CommandResult failed;
   const std::uint32_t deadline_ms =
       command.deadline_ms() == 0 ? kDefaultDeadlineMs : command.deadline_ms();
-  if (info_.role < v1::ROLE_CONTROL) {
+  if (open_commands_.size() > kMaxQueuedAnswers) {
+    failed.set_message("not carried out: too many commands of this session wait for the disk");
+  } else if (info_.role < v1::ROLE_CONTROL) {
     failed.set_message("this session may only look; ask for the role control in Hello");
   } else if (shared_.NowNs() - arrived_ns >
              std::int64_t{deadline_ms} * kNanosecondsPerMillisecond) {
@@ -210,6 +263,7 @@ void Session::Send(const v1::Envelope& message) {
 
 void Session::Refused(v1::Refused::Reason reason, const std::string& message) {
   ++shared_.statistics.refused;
+  phase_ = Phase::kRefused;
   timer_.cancel();
   v1::Envelope envelope;
   *envelope.mutable_refused() = Refuse(reason, message);

@@ -1,14 +1,16 @@
 #pragma once
 
-#include <boost/asio/steady_timer.hpp>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
+#include "common/timer/timer.h"
 #include "common/transport/answers.h"
 #include "common/transport/decimator.h"
 #include "common/transport/framed_connection.h"
@@ -17,20 +19,32 @@
 #include "common/transport/publication.h"
 #include "common/transport/server.h"
 #include "common/transport/tick_queue.h"
+#include "common/transport/token.h"
+#include "common/transport/token_bucket.h"
 
 namespace footing::transport {
 
 /// What all sessions of one server share.
 struct Shared {
-  explicit Shared(ServerOptions with, ServerHandlers and_with)
-      : options(std::move(with)), handlers(std::move(and_with)), publication(options) {}
+  Shared(boost::asio::any_io_executor executor, ServerOptions with, ServerHandlers and_with)
+      : options(std::move(with)),
+        handlers(std::move(and_with)),
+        publication(options),
+        token(options.token) {
+    loop.turns = std::make_shared<TurnQueue>(std::move(executor));
+  }
   ServerOptions options;
   ServerHandlers handlers;
   Publication publication;
+  TokenGuard token;
   ServerStatistics statistics;
   std::uint64_t epoch = 0;
-  std::shared_ptr<BatchPool> pool = std::make_shared<BatchPool>();
+  std::map<v1::Role, std::int64_t> with_role;  ///< Sessions, administrators' not counted.
+  SharedLoop loop;
   std::int64_t NowNs() const;
+  /// Logs the line, unless another was logged within the last 10 s.
+  void SayOverload(const std::string& line);
+  TokenBucket overload_lines{0.1, 1};
 };
 
 /// One client's connection on the server's side, from Hello to Goodbye.
@@ -49,27 +63,38 @@ class Session : public std::enable_shared_from_this<Session> {
   /// A tick has just been published.
   void Offer(const SharedTick& tick);
 
+  /// Answers a command that was left open.
+  void Answer(const v1::CommandResult& result);
+
+  /// Something slows this session, or all of them.
+  void Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count);
+
   /// Says goodbye and ends.
   void End(const std::string& reason);
 
   const SessionInfo& info() const { return info_; }
+  const Peer& peer() const { return peer_; }
+  bool may_administer() const { return highest_role_ == v1::ROLE_ADMIN; }
+  /// It was refused, and lingers until the client has seen why.
+  bool refused() const { return phase_ == Phase::kRefused; }
   bool welcomed() const { return phase_ == Phase::kWelcomed || phase_ == Phase::kSubscribed; }
 
  private:
-  enum class Phase { kHello, kWelcomed, kSubscribed };
+  enum class Phase { kHello, kWelcomed, kSubscribed, kRefused };
   struct Range {
     std::uint64_t next = 0;
     std::uint64_t last = 0;
   };
 
   void OnFrame(std::string_view payload);
+  void OnSlowed();
   void OnHello(const v1::Hello& hello);
   void Dispatch(const v1::Envelope& message, std::int64_t arrived_ns);
   void OnSubscribe(const v1::Subscribe& wish);
   void OnRefill(const v1::Refill& wish);
   void OnPing(const v1::Ping& ping, std::int64_t arrived_ns);
   void OnCommand(const v1::Command& command, std::int64_t arrived_ns);
-  v1::CommandResult Carry(const v1::Command& command, std::int64_t arrived_ns);
+  std::optional<v1::CommandResult> Carry(const v1::Command& command, std::int64_t arrived_ns);
 
   std::uint64_t FirstSequence(const v1::Subscribe& wish) const;
   void SendSnapshot(std::uint64_t sequence);
@@ -88,18 +113,23 @@ class Session : public std::enable_shared_from_this<Session> {
   void BadMessage(const std::string& why);
   void ArmTimer(double seconds);
   void OnTimer();
+  void GrantTime();
 
   Shared& shared_;
   SessionInfo info_;
   Phase phase_ = Phase::kHello;
+  Peer peer_;
   v1::Role highest_role_ = v1::ROLE_UNSPECIFIED;
   std::function<void(Session&)> on_end_;
   FramedConnection connection_;
-  boost::asio::steady_timer timer_;
+  timer::Timer timer_;
   std::int64_t heard_ns_ = 0;
   std::uint64_t ping_id_ = 0;
   bool ping_unanswered_ = false;
+  std::uint64_t slowed_ = 0;
+  TokenBucket slowed_notices_{1, 1};
   Answers answers_;
+  std::set<std::uint64_t> open_commands_;  ///< Being carried out; their answers come later.
 
   Subscription subscription_;
   TickQueue queue_;

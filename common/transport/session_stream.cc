@@ -12,6 +12,10 @@ namespace {
 
 /// Unanswered requests to refill; each is a few bytes, but there must be an end.
 constexpr std::size_t kMaxRefills = 16;
+/// In messages: a snapshot is made and sent for it.
+constexpr double kSubscribeCost = 20;
+/// In messages, of a tick out of the ring: the whole ring of 3000 is within a session's burst.
+constexpr double kReplayCost = 0.02;
 
 }  // namespace
 
@@ -25,6 +29,7 @@ std::uint64_t Session::FirstSequence(const v1::Subscribe& wish) const {
 }
 
 void Session::OnSubscribe(const v1::Subscribe& wish) {
+  connection_.Charge(kSubscribeCost - 1);
   EffectiveSubscription settled = Settle(wish, shared_.options);
   const std::uint64_t first = FirstSequence(wish);
   const std::uint64_t next = shared_.publication.last_sequence() + 1;
@@ -42,7 +47,7 @@ void Session::OnSubscribe(const v1::Subscribe& wish) {
   if (wish.has_from_sequence()) {
     if (wish.from_epoch() != shared_.epoch) {
       SendGap(wish.from_sequence(), 0, v1::Gap::REASON_NEW_EPOCH);
-    } else if (wish.from_sequence() < first) {
+    } else if (wish.from_sequence() != 0 && wish.from_sequence() < first) {
       SendGap(wish.from_sequence(), first - 1, v1::Gap::REASON_RING_PASSED);
     }
   }
@@ -88,7 +93,7 @@ void Session::OnRefill(const v1::Refill& wish) {
 void Session::Offer(const SharedTick& tick) {
   if (phase_ != Phase::kSubscribed || !connection_.open()) return;
   if (catch_up_ != 0) {  // It will come out of the ring.
-    connection_.Wake();
+    connection_.WakeInTurn();
     return;
   }
   if (!decimator_->Take(tick->host_ns)) {
@@ -151,6 +156,7 @@ bool Session::FillCatchUp(WriteBatch& batch) {
     return true;
   }
   const SharedTick& tick = *ring.Find(catch_up_++);
+  connection_.Charge(kReplayCost);
   if (decimator_->Take(tick->host_ns)) {
     AddTick({tick, {}}, subscription_, Head(true), batch);
   } else {
@@ -168,6 +174,7 @@ bool Session::FillRefill(WriteBatch& batch) {
     AddGap(range.next, gone, v1::Gap::REASON_RING_PASSED, batch);
     range.next = gone + 1;
   } else if (const SharedTick* tick = ring.Find(range.next)) {
+    connection_.Charge(kReplayCost);
     AddTick({*tick, {}}, subscription_, Head(true), batch);
     ++range.next;
   } else {

@@ -7,6 +7,9 @@
 #include <memory>
 #include <utility>
 
+#include "common/clock/clock.h"
+#include "common/transport/run_folder.h"
+
 namespace footing::transport {
 namespace {
 
@@ -45,11 +48,13 @@ bool StaysOnThisHost(const Address& address) {
 
 void Dial(asio::io_context& io, const Address& address, std::function<void(Result<Socket>)> done) {
   Result<Endpoint> endpoint = EndpointOf(address);
+  if (const auto checked = CheckFolderOf(address); !checked) endpoint = checked.error();
   if (!endpoint) {
     asio::post(io, [done = std::move(done), error = endpoint.error()] { done(error); });
     return;
   }
   auto socket = std::make_shared<Socket>(io);
+  clock::Act();
   socket->async_connect(
       *endpoint, [socket, address, done = std::move(done)](const boost::system::error_code& error) {
         if (error) {

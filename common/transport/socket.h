@@ -2,10 +2,12 @@
 
 #include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/io_context.hpp>
+#include <chrono>
 #include <functional>
 #include <string>
 
 #include "common/result/result.h"
+#include "common/timer/timer.h"
 #include "common/transport/address.h"
 
 /// One socket type for Unix and TCP, so that everything above shares its code.
@@ -29,6 +31,12 @@ void Dial(boost::asio::io_context& io, const Address& address,
 /// Non-blocking, TCP_NODELAY, and a send buffer small enough that a slow reader's data do not wait
 /// in the kernel where nobody can drop them.
 void Prepare(Socket& socket);
+
+/// Whether a timer that has just ended did so more than a second late: the program itself, or the
+/// machine, stood still, and the silence meanwhile is nobody else's fault.
+inline bool WasLate(const timer::Timer& timer) {
+  return timer::Now() - timer.expiry() > std::chrono::seconds(1);
+}
 
 /// The system's words for an error, begun in lower case.
 std::string MessageOf(const boost::system::error_code& error);

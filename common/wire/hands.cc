@@ -26,6 +26,11 @@ void Fields(Way way, const stream::TrackedPoint&) {
   FOOTING_FIELD_OF(sd_m.y(), sd_y_m);
   FOOTING_FIELD_OF(sd_m.z(), sd_z_m);
   FOOTING_FIELD(confidence);
+  FOOTING_FIELD_OF(covariance_m2.x(), cov_xy_m2);
+  FOOTING_FIELD_OF(covariance_m2.y(), cov_xz_m2);
+  FOOTING_FIELD_OF(covariance_m2.z(), cov_yz_m2);
+  FOOTING_FIELD(saturated);
+  FOOTING_FIELD(occluded);
 }
 FOOTING_BOTH_WAYS(TrackedPoint)
 
@@ -42,6 +47,7 @@ void Fields(Way way, const stream::HandFrame&) {
       one.position_m = {point.x_m(), point.y_m(), point.z_m()};  // With what is not finite.
       one.sd_m = {point.sd_x_m(), point.sd_y_m(), point.sd_z_m()};
       one.confidence = point.confidence();
+      one.covariance_m2 = {point.cov_xy_m2(), point.cov_xz_m2(), point.cov_yz_m2()};
     }
   }
   FOOTING_FIELD(simulated);
@@ -83,6 +89,11 @@ void Fields(Way way, const stream::HandSample&) {
   FOOTING_FIELD(confidence);
   FOOTING_FIELD(simulated);
   FOOTING_FIELD(tracker);
+  if (!Way::kOut || !way.value.covariance_m2.isZero()) {
+    FOOTING_MESSAGE(covariance_m2);
+  }
+  FOOTING_FIELD(saturated);
+  FOOTING_FIELD(occluded);
 }
 FOOTING_BOTH_WAYS(HandSample)
 

@@ -74,9 +74,48 @@ def seeds() -> dict[str, bytes]:
         "move/zcm2": b"\x05" + b"".join(string(raw(p)) for p in MOVE2_PIECES) + string(b"")
                      + string(raw(MOVE_REPORT)[:44]),
         **motion_files(),
+        **skeletons(),
         "handshake/wiimote": b"\x00" + steps(wiimote),
         "handshake/board": b"\x01" + steps(board),
     }
+
+
+def osc_text(text: str) -> bytes:
+    data = text.encode() + b"\0"
+    return data.ljust((len(data) + 3) // 4 * 4, b"\0")
+
+
+def osc(address: str, types: str, *arguments: object) -> bytes:
+    packed = {"i": ">i", "h": ">q", "f": ">f", "d": ">d"}
+    return osc_text(address) + osc_text("," + types) + b"".join(
+        osc_text(a) if t == "s" else struct.pack(packed[t], a) for t, a in zip(types, arguments))
+
+
+def bundle(*messages: bytes) -> bytes:
+    return b"#bundle\0" + struct.pack(">Q", 1) + b"".join(
+        struct.pack(">I", len(m)) + m for m in messages)
+
+
+def blocks(packet: bytes) -> bytes:
+    parts = [packet[i:i + 255] for i in range(0, len(packet), 255)][:16]
+    return bytes([len(parts) - 1]) + b"".join(map(string, parts))
+
+
+def skeletons() -> dict[str, bytes]:
+    names = ["head", "neck", "l_hand", "r_shoulder", "l_knee"]
+    point = (0.5, 0.25, 1.5)
+    stamped = (*point, 1.0, 5.0)
+    packets = {
+        "sensebloom": [bundle(*[osc("/joint", "sifff", n, 1, *point) for n in names])],
+        "quartz": [bundle(*[osc(f"/joint/{n}/1", "fff", *point) for n in names])],
+        "zillode": [bundle(*[osc("/joint", "siiffffd", n, 0, 1, *stamped) for n in names])],
+        "sdk2": [osc("/osceleton2/joint", "siiffffd", n, 0, 1, *stamped) for n in names],
+        "footing": [bundle(osc("/footing/skeleton", "hi", 7, 1),
+                           *[osc("/footing/joint", "sffff", n, *point, 1.0) for n in names])],
+        "vmc": [bundle(osc("/VMC/Ext/Bone/Pos", "sfffffff", n, *point, 0.0, 0.0, 0.0, 1.0),
+                       osc("/VMC/Ext/T", "f", 1.0)) for n in ["Hips", "Head", "LeftHand"]],
+    }
+    return {f"osc/{name}": b"".join(map(blocks, sent)) for name, sent in packets.items()}
 
 
 def motion_files() -> dict[str, bytes]:

@@ -25,7 +25,8 @@ from harness import Stage
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ["README.md", "systemd/README.md", *sorted(str(page.relative_to(ROOT)) for page in ROOT.glob("docs/*.md"))]
 PROGRAMS = ["footingd", "footing-sim", "footing-stream", "footing-view", "footing-log", "footing-ctl", "footing-eval",
-            "footing-train", "footing-tune", "footing-bench", "footing-study", "footing-game"]
+            "footing-train", "footing-tune", "footing-bench", "footing-study", "footing-game", "footing-skeleton",
+            "footing-camera"]
 SECONDS_TO_WATCH = 3
 SECONDS_TO_STOP = 20
 # A pattern of commands, and why they cannot run here.
@@ -35,14 +36,18 @@ NOT_HERE = {
     r"^footing-ctl interface leg": "needs remotes on the legs; scenario joystick_line changes interfaces",
     r"^footing-ctl trial withdraw": "needs a failure; scenario trial runs it",
     r"^footing-ctl doctor": "judges the whole machine, with the daemons of other tests; scenarios.ctl runs it",
+    r"^footing-eval sphere|^footing-camera": "renders frames, or reads them; scenario camera_line runs them",
     r"^sudo ": "as root",
     r"\.\.\.": "stands for the words before it",
     r"\b[A-Z]{2,}\b(?!=)": "has a word to fill in",
     r"mocap|\.asf|\.trc|me\.mcap|me\.bvh": "reads motion capture of one's own; tests/offline runs it on recordings",
     r"tcp:": "needs a server on another address",
+    r"0\.0\.0\.0": "would listen to other hosts",
+    r"wave\.csv": "reads a Kinect's recording; tests/clients/skeleton does",
     r"/run/footing": "needs the system service",
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
     r"^footing-study (run|analyze|report|export)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",
+    r"^footing-study (ranges|survey)|interface .* --table": "needs a person; tests/clients/study/*_scenario.py have one",
     r"first\.mcap|body\.mcap|game\.mcap": "reads what a command above would have recorded",
 }
 # Those that connect to a pose engine, or read what was recorded of one.
@@ -120,7 +125,7 @@ def run(stage, command, environment, folder):
 
 
 def record(folder, environment, binaries, name, seconds):
-    subprocess.run([binaries / "footing-log", "record", "--seconds", str(seconds), "--out", name], cwd=folder,
+    subprocess.run([binaries / "footing-log", "record", "--from-ring", "--seconds", str(seconds), "--out", name], cwd=folder,
                    env=environment, check=True, capture_output=True)
 
 

@@ -5,6 +5,7 @@ same game, and a recording gives the published scores again.
 Usage: game.py BINARY_FOLDER
 """
 import json
+import signal
 import sys
 
 from harness import Stage
@@ -48,6 +49,17 @@ def check(game):
     assert game["winner"] == best["name"], game
 
 
+def check_left(stage):
+    """The trial of a game that is killed ends: what becomes of its runner counts no more."""
+    def phase():
+        return stage.run_json("footing-view", "--text", "--connect", stage.simulation, "--seconds", 0.5)["trial"]["phase"]
+
+    stage.start(*game_command(stage, "--round-s", 60), name="left")
+    stage.wait_for(lambda: phase() == "running", "a round", 30)
+    stage.stop("left", signal.SIGKILL)
+    stage.wait_for(lambda: phase() == "stopped", "the end of its trial", 5)
+
+
 def main(binaries):
     with Stage(binaries) as stage:
         stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
@@ -56,7 +68,7 @@ def main(binaries):
         stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation, "--track", "build")
         stage.wait_for_socket(stage.simulation)
         recording = stage.folder / "game.mcap"
-        stage.start("footing-log", "record", "--connect", stage.simulation, "--connect", stage.sensor, "--out",
+        stage.start("footing-log", "record", "--from-ring", "--connect", stage.simulation, "--connect", stage.sensor, "--out",
                     recording)
         start_players(stage)
         stage.start(*game_command(stage, "--round-s", 15, "--json"))
@@ -76,6 +88,7 @@ def main(binaries):
         assert after["players"] == game["players"], (after, game)
         replayed = view(stage, "--recording", recording, "--from", 20, "--speed", 8)
         assert replayed == after, (replayed, after)
+        check_left(stage)
         replay = stage.run_json("footing-eval", "replay", recording)
         assert replay["frames_equal"] == replay["frames_compared"] > 1000, replay
         assert stage.stop("footing-sim") == 0

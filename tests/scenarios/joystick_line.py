@@ -34,7 +34,7 @@ def changes(stage):
                 "straight", name="second")
     stage.wait_for_socket(stage.simulation)
     recording = stage.folder / "changes.mcap"
-    stage.start("footing-log", "record", "--connect", stage.simulation, "--out", recording)
+    stage.start("footing-log", "record", "--from-ring", "--connect", stage.simulation, "--out", recording)
     stage.start_user("demo", "--link", "good")
     stage.wait_for(lambda: "wrist: hands" in last_line(stage), "the hands", 20)
     console = ("footing-ctl", "--connect", stage.simulation)
@@ -59,11 +59,12 @@ def main(binaries):
         stage.start_servers(interface="joystick")
         stage.start_user("demo", "--link", "good", interface="joystick")
         recording = stage.folder / "recording.mcap"
-        done = stage.run("footing-log", "record", "--connect", stage.sensor, "--connect",
+        done = stage.run("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",
                          stage.simulation, "--out", recording, "--seconds", 8)
         assert done.returncode == 0, done.stderr
+        # The motion repeats after 29 s: whenever this begins, it sees every gait.
         seen = stage.run_json("footing-view", "--connect", stage.simulation, "--connect",
-                              stage.sensor, "--seconds", 22, "--text", timeout_s=60)
+                              stage.sensor, "--seconds", 32, "--text", timeout_s=75)
         print(seen)
         assert {"walk", "run", "jump"} <= set(seen["gaits_seen"]), seen
         assert seen["falls"] == 0, seen

@@ -56,7 +56,7 @@ def main(binaries, writer):
         stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
         stage.wait_for_socket(stage.sensor)
         stage.wait_for_socket(stage.devices)
-        record = stage.start("footing-log", "record", "--connect", stage.sensor, "--out", recording,
+        record = stage.start("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--out", recording,
                              "--seconds", 40)
         # A T-pose of 6 s is put before the motion, which has one, too.
         stage.start("footing-stream", "boards", "--motion", motion, "--hands", "move", "--mass-kg",

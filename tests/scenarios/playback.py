@@ -52,7 +52,7 @@ def record(stage):
     recording = stage.folder / "study.mcap"
     stage.start_servers()
     stage.start_user("demo")
-    stage.start("footing-log", "record", "--connect", stage.sensor, "--connect", stage.simulation, "--out", recording)
+    stage.start("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect", stage.simulation, "--out", recording)
     operator = Operator(stage.simulation)
     run_trials(operator)
     assert stage.stop("footing-log") == 0

@@ -173,7 +173,7 @@ def main(binaries):
         stage.start("footing-sim", "--engine", "pose", "--subject", subject, "--sensor",
                     stage.sensor, "--listen", stage.simulation, "--set", f"data_folder={folder}")
         stage.wait_for_socket(stage.simulation)
-        stage.start("footing-log", "record", "--connect", stage.simulation, "--out",
+        stage.start("footing-log", "record", "--from-ring", "--connect", stage.simulation, "--out",
                     stage.folder / "line.mcap")
         start_boards(stage)
         check_the_body(stage)

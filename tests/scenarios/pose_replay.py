@@ -18,7 +18,7 @@ def main(binaries):
         stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "move", "--to",
                     stage.devices)
         recording = stage.folder / "recording.mcap"
-        logger = stage.start("footing-log", "record", "--connect", stage.sensor, "--connect",
+        logger = stage.start("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",
                              stage.simulation, "--out", recording, "--seconds", 14)
         stage.wait_for(lambda: "footing-sim" in (stage.folder / "footing-log.log").read_text(),
                        "the logger to be connected")

@@ -12,7 +12,7 @@ def main(binaries):
         stage.start_servers()
         stage.start_user("demo", "--link", "poor")
         recording = stage.folder / "recording.mcap"
-        done = stage.run("footing-log", "record", "--connect", stage.sensor, "--connect",
+        done = stage.run("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",
                          stage.simulation, "--out", recording, "--seconds", 9)
         assert done.returncode == 0, done.stderr
         result = stage.run_json("footing-eval", "replay", recording)

@@ -20,7 +20,7 @@ def record(stage):
     recording = stage.folder / "walk.mcap"
     stage.start_servers()
     stage.start_user("demo")
-    done = stage.run("footing-log", "record", "--connect", stage.sensor, "--connect",
+    done = stage.run("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",
                      stage.simulation, "--out", recording, "--seconds", SECONDS)
     assert done.returncode == 0, done.stderr
     for name in ("footing-stream", "footing-sim", "footingd"):
@@ -34,7 +34,7 @@ def check_logger(stage, recording):
     server = stage.start("footing-log", "serve", recording, "--listen", stage.sensor, "--json",
                          name="serve")
     stage.wait_for_socket(stage.sensor)
-    done = stage.run("footing-log", "record", "--connect", stage.sensor, "--out", again,
+    done = stage.run("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--out", again,
                      "--seconds", SECONDS + 4)
     assert done.returncode == 0 and "the recording has ended" in done.stderr, done
     assert server.wait(10) == 0

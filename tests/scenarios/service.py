@@ -1,4 +1,4 @@
-"""footingd under a service manager: passed sockets, readiness, watchdog, farewell, restart.
+"""footingd and footing-sim under a service manager: passed sockets, readiness, watchdog, farewell, restart.
 
 Usage: service.py BINARY_FOLDER
 
@@ -22,18 +22,19 @@ FIRST_DESCRIPTOR = 3  # SD_LISTEN_FDS_START
 
 
 class Manager:
-    def __init__(self, binaries, folder):
-        self.program = pathlib.Path(binaries) / "footingd"
+    def __init__(self, binaries, folder, program="footingd", sockets=SOCKETS):
+        self.program = pathlib.Path(binaries) / program
         self.folder = folder
-        self.log = folder / "footingd.log"
+        self.log = folder / f"{program}.log"
         self.sockets = {}
-        for name in SOCKETS:
+        for name in sockets:
             listening = socket.socket(socket.AF_UNIX)
             listening.bind(str(folder / f"{name}.sock"))
             listening.listen(16)
             self.sockets[name] = listening
         self.notices = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-        self.notices.bind(str(folder / "notify"))
+        self.notify = folder / f"notify-{program}"
+        self.notices.bind(str(self.notify))
         self.process = None
 
     def start(self, *words, watchdog_s=0.0, names=SOCKETS):
@@ -45,7 +46,7 @@ class Manager:
         try:
             environment = {**os.environ, "LISTEN_FDS": str(len(names)),
                            "LISTEN_FDNAMES": ":".join(names), "LISTEN_PID": str(os.getpid()),
-                           "NOTIFY_SOCKET": str(self.folder / "notify")}
+                           "NOTIFY_SOCKET": str(self.notify)}
             if watchdog_s:
                 environment.update(WATCHDOG_USEC=str(int(watchdog_s * 1e6)),
                                    WATCHDOG_PID=str(os.getpid()))
@@ -174,6 +175,22 @@ def main(binaries):
             check_start_to_end(stage, manager)
         finally:
             manager.close()
+        simulation = Manager(binaries, stage.folder, "footing-sim", ("simulation",))
+        try:
+            check_simulation(stage, simulation)
+        finally:
+            simulation.close()
+
+
+def check_simulation(stage, manager):
+    """The same of footing-sim, which is ready before any footingd is there."""
+    early = Caller(stage.simulation)
+    manager.start("--sensor", stage.sensor, watchdog_s=WATCHDOG_S, names=("simulation",))
+    notice = manager.wait_for("READY=1", 20)
+    assert "STATUS=engine gait" in notice, notice
+    early.welcome()
+    check_watchdog(manager)
+    check_farewell(manager)
 
 
 def check_start_to_end(stage, manager):

@@ -1,5 +1,5 @@
-"""Two synthetic users who see the track through the protocol do a trial of the straight track unattended: they wait
-for its start, do the task at the mark and cross the finish line.
+"""Three synthetic users, each with other devices, who see the track through the protocol do a trial of the straight
+track unattended: they wait for its start, do the task at the mark and cross the finish line.
 
 Usage: synthetic_users.py BINARY_FOLDER
 """
@@ -47,8 +47,11 @@ def main(binaries):
         stage.start_servers(interface="joystick")
         done = stage.run("footing-stream", "user", "--interface", "telepathy", "--see", stage.simulation)
         assert done.returncode == 2 and "wrist, arm, leg, joystick, boards" in done.stderr, done
+        done = stage.run("footing-stream", "user", "--interface", "leg", "--turn-by", "tail", "--see", stage.simulation)
+        assert done.returncode == 2 and "head, feet, trunk" in done.stderr, done
         does_a_trial(stage, "joystick", 3)
         does_a_trial(stage, "leg", 4)
+        does_a_trial(stage, "boards", 11)
 
 
 if __name__ == "__main__":

@@ -177,7 +177,7 @@ def main(binaries):
         stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation)
         stage.wait_for_socket(stage.simulation)
         recording = stage.folder / "trial.mcap"
-        stage.start("footing-log", "record", "--connect", stage.simulation, "--out", recording)
+        stage.start("footing-log", "record", "--from-ring", "--connect", stage.simulation, "--out", recording)
         operator = Operator(stage.simulation)
         refusals(operator)
         straight_track(operator)

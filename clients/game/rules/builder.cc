@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/track/centre_line.h"
+
 namespace footing::game {
 namespace {
 
@@ -25,7 +27,8 @@ std::optional<Piece> Builder::Advance(const Sight& sight, const Hand& hand) {
     sent_s_.reset();
     ghost_ = Held(plain_ ? Hand{} : hand, sight.track, sight.speed_mps, pits_);
   }
-  if (LengthOf(sight.track) - sight.distance_m >= LookAheadM(sight.speed_mps)) return std::nullopt;
+  if (track::LengthOf(sight.track) - sight.distance_m >= LookAheadM(sight.speed_mps))
+    return std::nullopt;
   sent_s_ = sight.time_s;
   sent_revision_ = sight.track.revision;
   return ghost_;

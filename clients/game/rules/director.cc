@@ -98,7 +98,7 @@ void Director::Play(const Frame& frame, const Collector& seen, const Hand& hand,
   orders.append = builder_.Advance({frame.time_s, frame.trial.progress.distance_m,
                                     std::max(0.0, frame.commanded_speed_mps), seen.track()},
                                    hand);
-  game_.ghost = Placed(builder_.ghost(), seen.track());
+  game_.ghost = track::Placed(builder_.ghost(), seen.track().segments.back());
   game_.ghost_curve_rad = builder_.ghost().curve_rad;
   game_.ghost_step_m = builder_.ghost().step_m;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "clients/game/rules/piece.h"
+#include "common/track/centre_line.h"
 #include "common/units/units.h"
 
 namespace footing::game {
@@ -52,7 +53,7 @@ void Collector::OnTrial(const stream::TrialState& trial) {
     facts = {};
     facts.trial_number = trial.number;
     facts.start_m = track_.start_m;
-    facts.end_m = LengthOf(track_);
+    facts.end_m = track::LengthOf(track_);
   }
   if (facts.phase == stream::TrialPhase::kStopped) return;
   AddNew(track_, facts);

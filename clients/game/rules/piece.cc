@@ -49,21 +49,4 @@ Piece Held(const Hand& hand, const stream::Track& track, double speed_mps, bool 
   return piece;
 }
 
-stream::TrackSegment Placed(const Piece& piece, const stream::Track& track) {
-  stream::TrackSegment placed = stream::Following(track.segments.back());
-  placed.length_m = piece.length_m;
-  placed.width_m = track.segments.back().width_m;
-  placed.slope_rad = piece.slope_rad;
-  placed.heading_rad += piece.curve_rad;
-  placed.start_m.z() += piece.step_m;
-  placed.pit = piece.pit;
-  return placed;
-}
-
-double LengthOf(const stream::Track& track) {
-  double length_m = track.first_m;
-  for (const stream::TrackSegment& segment : track.segments) length_m += segment.length_m;
-  return length_m;
-}
-
 }  // namespace footing::game

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/stream/track.h"
+#include "common/track/piece.h"
 
 /// The terrain editor (gait paper, section 8.2 and figure 13): "create a slope by inclining the
 /// Wiimote vertically, a curve by inclining the Wiimote sideways, and a step by pushing button A
@@ -18,16 +19,7 @@ struct Hand {
   bool b = false;        ///< Button B is held: a pit, where pits are allowed.
 };
 
-/// A segment to append.
-struct Piece {
-  double length_m = 2;
-  double slope_rad = 0;  ///< Up positive.
-  double curve_rad = 0;  ///< Left positive, at its start.
-  double step_m = 0;     ///< Up positive, at its start.
-  bool pit = false;
-
-  friend bool operator==(const Piece&, const Piece&) = default;
-};
+using track::Piece;
 
 /// Inclinations within this are level, rad: nobody holds a hand quite still.
 inline constexpr double kDeadZoneRad = 0.105;  // 6 degrees.
@@ -39,11 +31,5 @@ inline constexpr double kFullRad = 0.785;  // 45 degrees: the wrist goes no furt
 /// direction, so that it never runs into itself; after a pit come neither a pit nor a curve. Its
 /// length is the way of about 1 s at `speed_mps`, within 2 and 4 m. `track` is not empty.
 Piece Held(const Hand& hand, const stream::Track& track, double speed_mps, bool pits);
-
-/// Where the piece lies when it is appended to the track.
-stream::TrackSegment Placed(const Piece& piece, const stream::Track& track);
-
-/// From the start of the first segment that the track ever had to its end, m.
-double LengthOf(const stream::Track& track);
 
 }  // namespace footing::game

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clients/study/bundle/bids.h"
+#include "clients/study/bundle/run_config.h"
 #include "clients/study/bundle/study_tables.h"
 #include "clients/study/bundle/trial_tables.h"
 #include "clients/study/journal/study_folder.h"
@@ -32,11 +33,12 @@ constexpr const char* kReadme =
     "each\n"
     "sample; several systems of a run share it, and so do the events.\n"
     "\n"
-    "sourcedata/trials.tsv has one row for each attempt, phenotype/survey.tsv the ratings. "
-    "Numbers\n"
-    "stand for participants, instants count from the start of 1900, and free text is left out "
-    "unless\n"
-    "the study's owners decided otherwise.\n";
+    "sourcedata/trials.tsv has one row for each attempt, sourcedata/config what the simulation "
+    "ran\n"
+    "with: version, settings, the interface's mapping table with its values, hashes of the gains.\n"
+    "phenotype/survey.tsv has the ratings. Numbers stand for participants, instants count from "
+    "the\n"
+    "start of 1900, and free text is left out unless the study's owners decided otherwise.\n";
 
 class BundleWriter {
  public:
@@ -126,6 +128,10 @@ class BundleWriter {
             {"channels.tsv", ChannelsTsv(table)}}) {
         if (const auto done = Write(folder + name + end, text); !done) return done.error();
       }
+    }
+    if (const ordered_json config = AnonymousConfig(tables->config); !config.is_null()) {
+      const auto done = Write("sourcedata/config/" + stem + run + "config.json", Json(config));
+      if (!done) return done.error();
     }
     file_of_[&trial] = stem + "_tracksys-*" + run + "motion.tsv";
     ++report_.trials;

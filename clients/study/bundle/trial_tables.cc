@@ -200,8 +200,8 @@ Result<TrialTables> ReadTrial(const recording::RecordedSession& session,
   if (id.empty()) return InvalidData(session.path() + ": it has no trial marks");
   const RecordedServer* simulation = session.Find("footing-sim");
   if (simulation == nullptr) return InvalidData(session.path() + ": nothing of footing-sim");
-  const auto ticks =
-      ReadTicks(*simulation, {Tick::kCharactersFieldNumber, Tick::kEventsFieldNumber});
+  const auto ticks = ReadTicks(*simulation, {Tick::kCharactersFieldNumber, Tick::kEventsFieldNumber,
+                                             Tick::kConfigFieldNumber});
   if (!ticks) return ticks.error();
   std::set<std::uint64_t> undone;
   for (const records::Failure& one : trial.failures) {
@@ -211,6 +211,7 @@ Result<TrialTables> ReadTrial(const recording::RecordedSession& session,
   MotionTable frames = SimulationTable();
   std::optional<std::int64_t> zero_wall_ns;
   for (const Tick& tick : *ticks) {
+    if (tick.has_config()) result.config = tick.config().json();
     const bool of_trial = tick.characters().characters_size() > 0 &&
                           tick.characters().characters(0).trial().trial() == id;
     if (of_trial && !zero_wall_ns) {

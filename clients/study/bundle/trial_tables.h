@@ -13,6 +13,7 @@ namespace footing::study::bundle {
 struct TrialTables {
   std::vector<MotionTable> tables;  ///< "sim", then one for each device that sent samples.
   std::vector<TrialEvent> events;
+  std::string config;  ///< The last EffectiveConfig of the recording; empty: it has none.
 };
 
 /// What a recording says of its trial. Time counts from the first frame of the trial, in seconds on

@@ -28,6 +28,16 @@ const DeviceStatus* DeviceOf(DeviceRole role, const std::string& interface,
   return WithRole(DeviceRole::kLeftHand, devices);
 }
 
+/// A head's controller is worn as its frame is, and hands need no mounting (docs/interfaces.md).
+bool NeedsMounting(DeviceRole role) {
+  return role == DeviceRole::kLeftLeg || role == DeviceRole::kRightLeg ||
+         role == DeviceRole::kTrunk;
+}
+
+bool IsBoard(DeviceRole role) {
+  return role == DeviceRole::kLeftBoard || role == DeviceRole::kRightBoard;
+}
+
 std::string Percent(double share) { return text::Fixed(std::floor(100 * share), 0) + " %"; }
 
 void Check(const plan::DeviceGate& gate, const DeviceStatus& device,
@@ -59,35 +69,60 @@ void Check(const plan::DeviceGate& gate, const DeviceStatus& device,
 
 }  // namespace
 
-std::vector<DeviceRole> RolesOf(const std::string& interface) {
-  if (interface == "leg") return {DeviceRole::kLeftLeg, DeviceRole::kRightLeg, DeviceRole::kHead};
+std::vector<DeviceRole> RolesOf(const Played& played) {
+  const std::string& interface = played.interface;
+  if (interface == "leg") {
+    std::vector<DeviceRole> roles{DeviceRole::kLeftLeg, DeviceRole::kRightLeg};
+    if (played.turn_by == "head") roles.push_back(DeviceRole::kHead);
+    if (played.turn_by == "trunk") roles.push_back(DeviceRole::kTrunk);
+    return roles;
+  }
   if (interface == "boards") return {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
   if (interface == "joystick") return {DeviceRole::kRightHand};
   return {DeviceRole::kLeftHand, DeviceRole::kRightHand};
 }
 
-bool AnySimulated(const std::string& interface, const std::vector<DeviceStatus>& devices) {
-  for (const DeviceRole role : RolesOf(interface)) {
-    const DeviceStatus* device = DeviceOf(role, interface, devices);
+bool AnySimulated(const Played& played, const std::vector<DeviceStatus>& devices) {
+  for (const DeviceRole role : RolesOf(played)) {
+    const DeviceStatus* device = DeviceOf(role, played.interface, devices);
     if (device != nullptr && device->simulated) return true;
   }
   return false;
 }
 
-std::vector<std::string> Problems(const plan::DeviceGate& gate, const std::string& interface,
+std::vector<std::string> Problems(const plan::DeviceGate& gate, const Played& played,
                                   const std::vector<DeviceStatus>& devices) {
   std::vector<std::string> problems;
-  for (const DeviceRole role : RolesOf(interface)) {
-    const DeviceStatus* device = DeviceOf(role, interface, devices);
+  for (const DeviceRole role : RolesOf(played)) {
+    const DeviceStatus* device = DeviceOf(role, played.interface, devices);
     if (device == nullptr) {
       problems.push_back(std::string(stream::Name(role)) + " is missing, and the interface " +
-                         interface +
+                         played.interface +
                          " needs it; connect it, or give it the role: footing-ctl setup");
       continue;
     }
     Check(gate, *device, problems);
   }
   return problems;
+}
+
+std::vector<std::string> Warnings(const Played& played, const std::vector<DeviceStatus>& devices) {
+  std::vector<std::string> warnings;
+  for (const DeviceRole role : RolesOf(played)) {
+    const DeviceStatus* device = DeviceOf(role, played.interface, devices);
+    if (device == nullptr) continue;
+    const std::string name = std::string(stream::Name(role)) + " (" + device->serial + ")";
+    if (NeedsMounting(role) && !device->mounted) {
+      warnings.push_back(name +
+                         " is worn without a mounting, so its features are less exact; run "
+                         "footing-ctl setup --worn " +
+                         stream::Name(role));
+    }
+    if (IsBoard(role) && !device->tared) {
+      warnings.push_back(name + " is not tared; run footing-ctl tare with nobody on it");
+    }
+  }
+  return warnings;
 }
 
 }  // namespace footing::study::gate

@@ -69,7 +69,10 @@ Result<void> ReplaceFile(const std::string& path, const std::string& text) {
       ::fsync(descriptor) == 0;
   const int error = errno;
   ::close(descriptor);
-  if (!written) return Failure("cannot write " + draft + ": " + std::strerror(error));
+  if (!written) {
+    ::unlink(draft.c_str());
+    return Failure("cannot write " + draft + ": " + std::strerror(error));
+  }
   if (::rename(draft.c_str(), path.c_str()) != 0) {
     return Failure("cannot rename " + draft + ": " + std::strerror(errno));
   }
@@ -128,7 +131,9 @@ Result<void> CheckProtocol(const std::string& study_folder, const std::string& t
 
 Result<void> KeepProtocol(const std::string& study_folder, const std::string& text) {
   if (const auto done = CheckProtocol(study_folder, text); !done) return done;
-  return ReplaceFile(study_folder + "/protocol.json", text);
+  const std::string path = study_folder + "/protocol.json";
+  if (const auto before = config::ReadTextFile(path); before && *before == text) return {};
+  return ReplaceFile(path, text);
 }
 
 }  // namespace footing::study::journal

@@ -44,6 +44,9 @@ void AddInterface(const Protocol& protocol, const std::string& participant,
   };
   if (!first && protocol.rest_s > 0) add(PhaseKind::kRest, "rest").duration_s = protocol.rest_s;
   add(PhaseKind::kDemonstration, "demonstration").track = protocol.practice_track;
+  if (protocol.settings.personal_ranges && interface != "boards") {
+    add(PhaseKind::kRanges, "ranges").track = protocol.practice_track;
+  }
   if (protocol.practice_s > 0) {
     Phase& practice = add(PhaseKind::kPractice, "practice");
     practice.track = protocol.practice_track;
@@ -90,6 +93,8 @@ const char* Name(PhaseKind kind) {
       return "rest";
     case PhaseKind::kDemonstration:
       return "demonstration";
+    case PhaseKind::kRanges:
+      return "ranges";
     case PhaseKind::kPractice:
       return "practice";
     case PhaseKind::kStraight:

@@ -14,6 +14,7 @@ enum class PhaseKind {
   kDeviceCheck,
   kRest,
   kDemonstration,
+  kRanges,
   kPractice,
   kStraight,
   kTestTrack,
@@ -38,7 +39,8 @@ struct Phase {
 };
 
 /// What one participant does, from the consent to the final survey (gait paper, section 8.1): for
-/// each interface the demonstration, practice, the straight tracks, one test track, the survey.
+/// each interface the demonstration, the measurement of personal ranges where the protocol
+/// wants it, practice, the straight tracks, one test track, the survey.
 struct Session {
   std::string participant;
   std::vector<std::string> interfaces;  ///< In their order.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/study/plan/reader.h"
+#include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
 
 namespace footing::study::plan {
@@ -67,6 +68,19 @@ Result<void> ReadDevices(Reader& outer, const std::string& file, DeviceGate& gat
   return reader.Finish();
 }
 
+/// A file's name for each of some interfaces.
+Result<void> ReadTables(Reader& outer, const std::string& file, Protocol& protocol) {
+  const ordered_json* object = outer.Object("tables");
+  if (object == nullptr) return {};
+  Reader reader(*object, file + ": tables");
+  for (const std::string& interface : protocol.interfaces) {
+    std::string path;
+    reader.Text(interface, path);
+    if (!path.empty()) protocol.settings.tables[interface] = path;
+  }
+  return reader.Finish();
+}
+
 void ReadPeople(Reader& reader, Protocol& protocol) {
   for (const char* key : {"version", "name", "participants", "interfaces", "seed"}) {
     reader.Require(key);
@@ -111,6 +125,11 @@ void ReadPeople(Reader& reader, Protocol& protocol) {
     reader.Fail("order", "is \"" + order + "\"; it must be williams or random");
   }
   protocol.order = order == "random" ? Order::kRandom : Order::kWilliams;
+  reader.Text("turn_by", protocol.settings.turn_by);
+  if (stream::LegTurnSourceNamed(protocol.settings.turn_by) == stream::TurnSource::kUnspecified) {
+    reader.Fail("turn_by",
+                "is \"" + protocol.settings.turn_by + "\"; it must be head, trunk or feet");
+  }
   reader.Whole("seed", protocol.seed, 0, kMostSeed);
   reader.Text("consent", protocol.consent);
 }
@@ -148,6 +167,8 @@ Result<Protocol> ParseProtocol(const std::string& text, const std::string& file)
   if (const auto done = ReadSurvey(reader, "final_survey", file, protocol.final_survey); !done) {
     return done.error();
   }
+  reader.Flag("personal_ranges", protocol.settings.personal_ranges);
+  if (const auto done = ReadTables(reader, file, protocol); !done) return done.error();
   if (const auto done = ReadDevices(reader, file, protocol.devices); !done) return done.error();
   if (const auto done = reader.Finish(); !done) return done.error();
   return protocol;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,16 @@ struct DeviceGate {
   bool allow_simulated = false;
 };
 
+/// What a study chooses of its interfaces.
+struct InterfaceSettings {
+  std::string turn_by = "head";  ///< What turns with the interface leg: head, trunk or feet.
+  /// Each participant's own ranges are measured before practice. Where an interface has none of its
+  /// own, such as boards, its table is the one of `tables` or the built-in one.
+  bool personal_ranges = false;
+  /// Files of mapping tables by interface, such as a group's; beside the protocol.
+  std::map<std::string, std::string> tables;
+};
+
 /// A study as its file says; docs/studies.md describes the keys. Defaults follow the gait paper,
 /// section 8.1, where it says something.
 struct Protocol {
@@ -48,6 +59,7 @@ struct Protocol {
   std::uint64_t straight_trials = 2;        ///< For each interface.
   std::vector<std::string> straight_tasks;  ///< Of the track; empty: it has none.
   std::vector<std::string> test_tracks = {"1", "2", "3", "4"};
+  InterfaceSettings settings;
   Survey survey;
   Survey final_survey{{}, {"preferred interface", "remarks"}, false};
   DeviceGate devices;

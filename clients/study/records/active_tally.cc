@@ -3,21 +3,15 @@
 namespace footing::study::records {
 
 void ActiveTally::Add(const Event& event) {
-  switch (event.kind) {
-    case EventKind::kPhaseStarted:
-      by_interface_ = by_interface();
-      interface_ = event.Text("interface");
-      of_trials_s_ = 0;
-      break;
-    case EventKind::kTrialFinished:
-      of_trials_s_ += event.Number("active_s");
-      break;
-    case EventKind::kPhaseFinished:
-      by_interface_[event.Text("interface")] += event.Number("active_s");
-      of_trials_s_ = 0;
-      break;
-    default:
-      break;
+  if (event.kind == EventKind::kPhaseStarted) {
+    by_interface_ = by_interface();
+    interface_ = event.Text("interface");
+    of_trials_s_ = 0;
+  } else if (event.kind == EventKind::kTrialFinished) {
+    of_trials_s_ += event.Number("active_s");
+  } else if (event.kind == EventKind::kPhaseFinished) {
+    by_interface_[event.Text("interface")] += event.Number("active_s");
+    of_trials_s_ = 0;
   }
 }
 

@@ -13,7 +13,7 @@ constexpr std::array kNames{
     "session_started",  "session_resumed", "session_finished", "withdrawn", "phase_started",
     "phase_finished",   "trial_started",   "trial_finished",   "failure",   "failure_undone",
     "failure_restored", "rating",          "answer",           "exertion",  "note",
-    "response"};
+    "response",         "ranges"};
 
 std::optional<EventKind> KindNamed(const std::string& name) {
   for (std::size_t i = 0; i < kNames.size(); ++i) {

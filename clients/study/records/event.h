@@ -30,6 +30,7 @@ enum class EventKind {
   kExertion,
   kNote,
   kResponse,
+  kRanges,  ///< The mapping table that an interface has from here on.
 };
 
 const char* Name(EventKind kind);

@@ -48,6 +48,7 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
       case EventKind::kExertion:
       case EventKind::kNote:
       case EventKind::kResponse:
+      case EventKind::kRanges:
         break;
     }
   }

@@ -104,6 +104,7 @@ void TakeAnswer(const Event& event, Records& records) {
 void TakeStart(const Event& event, Records& records) {
   records.participant = event.Text("participant");
   records.synthetic = event.Flag("synthetic");
+  records.simulated_time = event.Flag("simulated_time");
   if (!event.fields.contains("interfaces") || !event.fields["interfaces"].is_array()) return;
   for (const auto& one : event.fields["interfaces"]) {
     if (one.is_string()) records.interfaces.push_back(one);
@@ -183,6 +184,7 @@ Records Collect(const std::vector<Event>& events) {
       case EventKind::kPhaseStarted:
       case EventKind::kPhaseFinished:
       case EventKind::kNote:
+      case EventKind::kRanges:
         break;
     }
   }

@@ -83,6 +83,7 @@ struct Records {
   bool finished = false;
   bool withdrawn = false;
   bool synthetic = false;
+  bool simulated_time = false;
   std::map<std::string, double> active_s;  ///< Time in motion, by interface.
   std::vector<Trial> trials;               ///< All attempts, in the order in which they began.
   std::vector<Rating> ratings;

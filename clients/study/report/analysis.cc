@@ -60,6 +60,8 @@ Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Reco
     withdrawn += person.withdrawn ? 1 : 0;
     unfinished += !person.finished && !person.withdrawn ? 1 : 0;
     analysis.synthetic = analysis.synthetic || (person.synthetic && !person.withdrawn);
+    analysis.simulated_time =
+        analysis.simulated_time || (person.simulated_time && !person.withdrawn);
   }
   ordered_json measures = ordered_json::array();
   for (const Measure& measure : analysis.measures) {
@@ -89,10 +91,15 @@ Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Reco
                        {"p50_ms", one.p50_ms},
                        {"p95_ms", one.p95_ms}});
   }
-  analysis.json = {{"name", protocol.name},         {"control", protocol.control},
-                   {"participants", people.size()}, {"withdrawn", withdrawn},
-                   {"unfinished", unfinished},      {"synthetic", analysis.synthetic},
-                   {"measures", measures},          {"latency", latency}};
+  analysis.json = {{"name", protocol.name},
+                   {"control", protocol.control},
+                   {"participants", people.size()},
+                   {"withdrawn", withdrawn},
+                   {"unfinished", unfinished},
+                   {"synthetic", analysis.synthetic},
+                   {"simulated_time", analysis.simulated_time},
+                   {"measures", measures},
+                   {"latency", latency}};
   return analysis;
 }
 
@@ -118,7 +125,9 @@ std::string ValuesCsv(const Analysis& analysis) {
     }
   }
   for (const StageLatency& one : analysis.latency) {
-    if (one.stage != kWithoutContact) {
+    if (one.stage == kWhole) {
+      add("latency_whole_ms", "label", "", one.interface, one.p50_ms);
+    } else if (IsBar(one)) {
       add("latency_" + one.stage + "_ms", "bar", "", one.interface, one.p50_ms);
     }
   }

@@ -10,14 +10,15 @@
 namespace footing::study::report {
 
 struct Analysis {
-  /// {name, control, participants, withdrawn, unfinished, synthetic, measures: [{id, title, groups,
-  /// participants, test, paired_participants, paired, rate}], latency: [{interface, stage, n,
-  /// p50_ms, p95_ms}]}; `test`, `paired` and `rate` (of all failures together) are reports of
-  /// footing-eval stats, or {error}.
+  /// {name, control, participants, withdrawn, unfinished, synthetic, simulated_time, measures:
+  /// [{id, title, groups, participants, test, paired_participants, paired, rate}], latency:
+  /// [{interface, stage, n, p50_ms, p95_ms}]}; `test`, `paired` and `rate` (of all failures
+  /// together) are reports of footing-eval stats, or {error}.
   nlohmann::ordered_json json;
   std::vector<Measure> measures;
   std::vector<StageLatency> latency;
-  bool synthetic = false;  ///< Any part of it does not come from a person.
+  bool synthetic = false;       ///< Any part of it does not come from a person.
+  bool simulated_time = false;  ///< Of any session.
 };
 
 /// Every measure of a study with its tests against the control. The protocol's seed is that of
@@ -25,7 +26,7 @@ struct Analysis {
 Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Records>& people);
 
 /// A row for everything that a figure shows: measure,plotted,participant,interface,value. `plotted`
-/// is point, lower_quartile, median, upper_quartile or bar.
+/// is point, lower_quartile, median, upper_quartile, bar or label.
 std::string ValuesCsv(const Analysis& analysis);
 
 }  // namespace footing::study::report

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/statistics/quantile.h"
 #include "common/text/number.h"
 
 namespace footing::study::report {
@@ -19,14 +20,6 @@ std::string N(double value) { return text::Fixed(value, 1); }
 std::string Line(double x1, double y1, double x2, double y2, const std::string& kind) {
   return "<line class=\"" + kind + "\" x1=\"" + N(x1) + "\" y1=\"" + N(y1) + "\" x2=\"" + N(x2) +
          "\" y2=\"" + N(y2) + "\"/>";
-}
-
-/// `sorted` has one value at least.
-double Quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 /// The middle of a column.
@@ -77,9 +70,9 @@ std::map<std::string, std::vector<Point>> PointsOf(const Measure& measure, const
 
 }  // namespace
 
-Quartiles QuartilesOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return {Quantile(values, 0.25), Quantile(values, 0.5), Quantile(values, 0.75)};
+Quartiles QuartilesOf(const std::vector<double>& values) {
+  using statistics::QuantileOf;
+  return {QuantileOf(values, 0.25), QuantileOf(values, 0.5), QuantileOf(values, 0.75)};
 }
 
 std::vector<double> Ticks(double least, double greatest, bool counts) {

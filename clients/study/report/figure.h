@@ -12,15 +12,14 @@ namespace footing::study::report {
 /// counts at whole numbers.
 std::vector<double> Ticks(double least, double greatest, bool counts = false);
 
-/// The box of an interface: between the lower and the upper quartile, linear between the two
-/// nearest values.
+/// The box of an interface: between the lower and the upper quartile.
 struct Quartiles {
   double low = 0;
   double median = 0;
   double high = 0;
 };
 /// `values` has one at least.
-Quartiles QuartilesOf(std::vector<double> values);
+Quartiles QuartilesOf(const std::vector<double>& values);
 
 /// A measure: a point for each value, a box with the median for each interface, and a line that
 /// joins the values of each participant.

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "clients/study/report/figure.h"
+#include "common/statistics/quantile.h"
 #include "common/stream/response.h"
 #include "common/text/number.h"
-#include "common/text/quantile.h"
 
 namespace footing::study::report {
 namespace {
@@ -28,10 +28,17 @@ std::string Rectangle(double x, double y, double width, double height, const cha
          "\" style=\"fill:" + colour + "\"><title>" + Escaped(title) + "</title></rect>";
 }
 
+double WholeMs(const records::Response& response) {
+  double sum_ms = 0;
+  for (const StageTime& one : response) sum_ms += one.ms;
+  return sum_ms;
+}
+
 struct Bars {
   std::vector<std::string> interfaces;
   std::vector<std::string> stages;
-  std::map<std::string, double> total_ms;  ///< By interface.
+  std::map<std::string, double> length_ms;  ///< By interface: the sum of the stages' medians.
+  std::map<std::string, double> whole_ms;   ///< By interface.
 };
 
 Bars BarsOf(const std::vector<StageLatency>& latency) {
@@ -40,15 +47,20 @@ Bars BarsOf(const std::vector<StageLatency>& latency) {
     if (std::find(list.begin(), list.end(), one) == list.end()) list.push_back(one);
   };
   for (const StageLatency& one : latency) {
-    if (one.stage == kWithoutContact) continue;
+    if (one.stage == kWhole) bars.whole_ms[one.interface] = one.p50_ms;
+    if (!IsBar(one)) continue;
     add(bars.interfaces, one.interface);
     add(bars.stages, one.stage);
-    bars.total_ms[one.interface] += one.p50_ms;
+    bars.length_ms[one.interface] += one.p50_ms;
   }
   return bars;
 }
 
 }  // namespace
+
+bool IsBar(const StageLatency& latency) {
+  return latency.stage != kWithoutContact && latency.stage != kWhole;
+}
 
 double WithoutContactMs(const records::Response& response) {
   double sum_ms = 0;
@@ -76,12 +88,13 @@ std::vector<StageLatency> LatencyByStage(const std::vector<std::string>& interfa
         for (const records::Response& response : trial->responses) {
           for (const StageTime& one : response) add(one.stage, one.ms);
           add(kWithoutContact, WithoutContactMs(response));
+          add(kWhole, WholeMs(response));
         }
       }
     }
     for (const auto& [stage, times_ms] : stages) {
-      latency.push_back({interface, stage, times_ms.size(), text::Median(times_ms),
-                         text::Quantile(times_ms, 0.95)});
+      latency.push_back({interface, stage, times_ms.size(), statistics::MedianOf(times_ms),
+                         statistics::QuantileOf(times_ms, 0.95)});
     }
   }
   return latency;
@@ -90,8 +103,8 @@ std::vector<StageLatency> LatencyByStage(const std::vector<std::string>& interfa
 std::string LatencyFigure(const std::vector<StageLatency>& latency) {
   const Bars bars = BarsOf(latency);
   double greatest_ms = 0;
-  for (const auto& [interface, total_ms] : bars.total_ms) {
-    greatest_ms = std::max(greatest_ms, total_ms);
+  for (const auto& [interface, length_ms] : bars.length_ms) {
+    greatest_ms = std::max(greatest_ms, length_ms);
   }
   if (greatest_ms <= 0) return "";
   const double scale = kBarsWidth / greatest_ms;
@@ -107,7 +120,7 @@ std::string LatencyFigure(const std::vector<StageLatency>& latency) {
     double x = kBarLeft;
     svg += Label(kBarLeft - 8, y + 15, "end", bars.interfaces[row]);
     for (const StageLatency& one : latency) {
-      if (one.interface != bars.interfaces[row] || one.stage == kWithoutContact) continue;
+      if (one.interface != bars.interfaces[row] || !IsBar(one)) continue;
       const auto stage = std::find(bars.stages.begin(), bars.stages.end(), one.stage);
       svg += Rectangle(x, y, one.p50_ms * scale, kBarHeight,
                        colour(static_cast<std::size_t>(stage - bars.stages.begin())),
@@ -115,7 +128,7 @@ std::string LatencyFigure(const std::vector<StageLatency>& latency) {
       x += one.p50_ms * scale;
     }
     svg += Label(x + 6, y + 15, "start",
-                 text::Fixed(bars.total_ms.at(bars.interfaces[row]), 0) + " ms");
+                 text::Fixed(bars.whole_ms.at(bars.interfaces[row]), 0) + " ms");
   }
   return svg + "</svg>";
 }

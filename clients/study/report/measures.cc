@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "clients/study/report/latency.h"
+#include "common/statistics/quantile.h"
 #include "common/stream/trial.h"
-#include "common/text/quantile.h"
 #include "common/units/units.h"
 
 namespace footing::study::report {
@@ -65,7 +65,7 @@ double LatencyMs(const Trials& trials) {
   for (const Trial* trial : trials) {
     for (const records::Response& one : trial->responses) times_ms.push_back(WithoutContactMs(one));
   }
-  return times_ms.empty() ? kNone : text::Median(std::move(times_ms));
+  return times_ms.empty() ? kNone : statistics::MedianOf(std::move(times_ms));
 }
 
 /// Makes the measures of trials, one after the other.

@@ -13,7 +13,8 @@ using nlohmann::ordered_json;
 constexpr const char* kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:72rem;margin:2rem auto;"
     "padding:0 1rem}h1,h2,h3{font-weight:300}h2{margin-top:3rem;border-bottom:1px solid #ccc}"
-    "h3{margin-bottom:.3rem}table{border-collapse:collapse;margin:.5rem 0}"
+    "h3{margin-bottom:.3rem}table{border-collapse:collapse;margin:.5rem 0;display:block;"
+    "overflow-x:auto;max-width:100%}.pair-of-columns>*{min-width:0;max-width:100%}"
     "td,th{font-weight:400;text-align:right;padding:.1rem .8rem .1rem 0;"
     "border-bottom:1px solid #e5e5e5}td:first-child,th:first-child{text-align:left}"
     "th{color:#777}.pair-of-columns{display:flex;flex-wrap:wrap;gap:0 2rem;align-items:flex-start}"
@@ -22,7 +23,8 @@ constexpr const char* kStyle =
     ".median{stroke:#246;stroke-width:2}.pair{fill:none;stroke:#246;opacity:.25}"
     "circle{fill:#246;opacity:.7}.synthetic{background:#fff3cd;padding:.5rem 1rem}"
     ".note{color:#777;font-size:13px;max-width:60rem}.believe{border-left:3px solid #246;"
-    "padding-left:.8rem;max-width:60rem}@media print{.measure{break-inside:avoid}}";
+    "padding-left:.8rem;max-width:60rem}@media print{.measure{break-inside:avoid}}"
+    "@media(max-width:30rem){table{font-size:12px}td,th{padding-right:.4rem}}";
 
 constexpr const char* kHowToRead =
     "Each point is a participant, each box reaches from the lower to the upper quartile with the "
@@ -40,7 +42,11 @@ constexpr const char* kLatencyNote =
     "contact belongs to a simulated character: it can answer only with the right foot on the "
     "ground. Time that the features need to notice a change of motion lies before the first "
     "report that is counted. Anticipation is positive where the command came before the character "
-    "reached the line.";
+    "reached the line. The figure stacks the medians of the stages; the number behind them is the "
+    "median of whole responses.";
+constexpr const char* kSimulatedTime =
+    "Time was simulated: these latencies have the waits for samples, ticks and steps in them, and "
+    "no time of computing or of a radio.";
 constexpr const char* kSynthetic =
     "Synthetic: simulated devices or random answers. It says nothing about people.";
 
@@ -49,7 +55,8 @@ std::string Paragraph(const std::string& kind, const std::string& text) {
 }
 
 std::string Heading(const ordered_json& json) {
-  std::string text = std::to_string(json["participants"].get<std::size_t>()) + " participants";
+  const auto participants = json["participants"].get<std::size_t>();
+  std::string text = std::to_string(participants) + " participant" + (participants == 1 ? "" : "s");
   for (const char* kind : {"withdrawn", "unfinished"}) {
     const auto count = json[kind].get<std::size_t>();
     if (count > 0) text += ", " + std::to_string(count) + " " + kind;
@@ -72,8 +79,11 @@ std::string MeasureBlock(const Measure& measure, const ordered_json& json,
                                    " participants, those with a value for every interface.");
   }
   if (json.contains("test") && !json["test"].contains("error")) {
-    block += Paragraph("believe", json["test"].value("note", "")) +
-             Paragraph("note", json["test"].value("procedure", "") + ".");
+    std::string note = json["test"].value("note", "");
+    if (const auto at = note.find("paired_p"); at != std::string::npos)
+      note.replace(at, 8, "paired p");
+    block +=
+        Paragraph("believe", note) + Paragraph("note", json["test"].value("procedure", "") + ".");
   }
   return block + "</div>";
 }
@@ -94,6 +104,7 @@ std::string SectionBlock(Section section, const Analysis& analysis,
   if (section == Section::kFailures && !block.empty()) block += Paragraph("note", kWhyNoRate);
   if (section == Section::kLatency && !analysis.latency.empty()) {
     block = LatencyFigure(analysis.latency) + LatencyTable(analysis.latency) +
+            (analysis.simulated_time ? Paragraph("synthetic", kSimulatedTime) : "") +
             Paragraph("note", kLatencyNote) + block;
   }
   if (block.empty()) return "";

@@ -1,7 +1,9 @@
 #include "clients/study/report/tables.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <map>
 
 #include "clients/study/report/figure.h"
 #include "common/text/number.h"
@@ -12,11 +14,25 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kSignificant = 0.05;
+constexpr double kLeastP = 0.0001;
+constexpr const char* kNoBreak = "\u00a0";
 
 std::string Rounded(double value) {
   if (value == 0) return "0";
   const double scale = std::pow(10, 3 - std::floor(std::log10(std::abs(value))));
   return text::Shortest(std::round(value * scale) / scale);
+}
+
+/// JSON and CSV have all digits.
+std::string P(double p) { return p < kLeastP ? "<" + text::Fixed(kLeastP, 4) : text::Fixed(p, 4); }
+
+std::string PCell(const ordered_json& row, const char* key) {
+  return row.contains(key) && row[key].is_number() ? P(row[key].get<double>()) : "–";
+}
+
+std::string Capitalised(std::string name) {
+  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
 }
 
 std::string Row(const std::vector<std::string>& cells, const char* tag) {
@@ -36,7 +52,7 @@ std::string SignificantP(const ordered_json& measure, const std::string& interfa
     const bool paired = row.contains("paired_p") && row["paired_p"].is_number();
     const ordered_json& p = row[paired ? "paired_p" : "p"];
     if (!p.is_number() || p.get<double>() >= kSignificant) return "";
-    return " (p " + Rounded(p) + (paired ? ")" : ", independent)");
+    return std::string(" (p") + kNoBreak + P(p) + (paired ? ")" : ", independent)");
   }
   return "";
 }
@@ -98,13 +114,13 @@ std::string GroupTable(const ordered_json& groups) {
 
 std::string TestTable(const ordered_json& test) {
   if (test.contains("error")) return ErrorNote(test);
-  std::string table = "<table>" + Row({test.value("test", ""), "estimate", "95 % interval",
-                                       "statistic", "p", "paired_p"},
+  std::string table = "<table>" + Row({Capitalised(test.value("test", "")), "estimate",
+                                       "95 % interval", "statistic", "p", "paired p"},
                                       "th");
   for (const ordered_json& row : test["rows"]) {
     table += Row(
         {NameOfRow(row), Short(row, "estimate"), Short(row, "low") + " to " + Short(row, "high"),
-         Short(row, "statistic"), Short(row, "p"), Short(row, "paired_p")},
+         Short(row, "statistic"), PCell(row, "p"), PCell(row, "paired_p")},
         "td");
   }
   return table + "</table>";
@@ -116,21 +132,35 @@ std::string RateTable(const ordered_json& rate) {
       "<table>" + Row({"failures a minute", "ratio of rates", "95 % interval", "p"}, "th");
   for (const ordered_json& row : rate["rows"]) {
     table += Row({NameOfRow(row), Short(row, "estimate"),
-                  Short(row, "low") + " to " + Short(row, "high"), Short(row, "p")},
+                  Short(row, "low") + " to " + Short(row, "high"), PCell(row, "p")},
                  "td");
   }
   return table + "</table>";
 }
 
 std::string LatencyTable(const std::vector<StageLatency>& latency) {
-  std::string table =
-      "<table>" + Row({"interface", "stage", "responses", "median, ms", "95 %, ms"}, "th");
+  std::vector<std::string> heads = {"median / 95 %, ms"};
+  std::vector<std::string> counts = {"responses"};
+  std::vector<std::string> stages;
+  std::map<std::string, std::vector<std::string>> cells;  // By stage: one for each interface.
   for (const StageLatency& one : latency) {
-    table += Row({one.interface, one.stage, std::to_string(one.responses),
-                  text::Fixed(one.p50_ms, 1), text::Fixed(one.p95_ms, 1)},
-                 "td");
+    if (one.interface != heads.back()) {
+      heads.push_back(one.interface);
+      counts.push_back(std::to_string(one.responses));
+    }
+    if (!cells.contains(one.stage)) stages.push_back(one.stage);
+    std::vector<std::string>& row = cells[one.stage];
+    row.resize(heads.size() - 1, "–");
+    row.back() = text::Fixed(one.p50_ms, 1) + " / " + text::Fixed(one.p95_ms, 1);
   }
-  return table + "</table>";
+  std::string table = "<table>" + Row(heads, "th");
+  for (const std::string& stage : stages) {
+    std::vector<std::string> row = cells[stage];
+    row.resize(heads.size() - 1, "–");
+    row.insert(row.begin(), stage);
+    table += Row(row, "td");
+  }
+  return table + Row(counts, "td") + "</table>";
 }
 
 std::string AnswerTable(const std::vector<records::Records>& people) {

@@ -7,11 +7,10 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <chrono>
 #include <csignal>
 #include <iostream>
 
-#include "common/units/units.h"
+#include "common/timer/timer.h"
 
 namespace footing::study {
 namespace {
@@ -74,8 +73,17 @@ class Console::Implementation {
                            });
   }
 
+  /// What was typed before does not answer what comes. What stands in a pipe or file was written
+  /// for it.
+  void DropTypedAhead() {
+    if (!terminal_) return;
+    ::tcflush(STDIN_FILENO, TCIFLUSH);
+    typed_.clear();
+  }
+
   void ReadKeys(bool on) {
     if (!terminal_ || on == keys_) return;
+    DropTypedAhead();
     keys_ = on;
     termios now = before_;
     if (on) now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
@@ -93,14 +101,7 @@ class Console::Implementation {
   }
 
   Waited RunUntil(const std::function<bool()>& condition, double within_s) {
-    const auto end =
-        std::chrono::steady_clock::now() + std::chrono::nanoseconds(SecondsToNanoseconds(within_s));
-    for (;;) {
-      if (interrupted_) return Waited::kInterrupted;
-      if (condition && condition()) return Waited::kDone;
-      if (std::chrono::steady_clock::now() >= end) return Waited::kTimeUp;
-      io_.run_one_until(end);
-    }
+    return timer::RunUntil(io_, condition, within_s, [this] { return interrupted_; });
   }
 
   asio::io_context io_{1};
@@ -117,7 +118,7 @@ class Console::Implementation {
 };
 
 Console::Console() : implementation_(std::make_unique<Implementation>()) {}
-Console::~Console() = default;
+Console::~Console() { timer::DropWaits(); }
 
 boost::asio::io_context& Console::io() { return implementation_->io_; }
 
@@ -127,6 +128,7 @@ Result<std::string> Console::Ask(const std::string& prompt) {
   Implementation& own = *implementation_;
   own.ReadKeys(false);
   own.Open();
+  own.DropTypedAhead();
   std::cerr << prompt << " " << std::flush;
   own.RunUntil([&own] { return own.HasLine() || own.ended_; }, kAskS);
   if (own.interrupted_) return Interrupted();
@@ -146,6 +148,13 @@ std::optional<char> Console::TakeKey() {
   typed.erase(0, 1);
   return key;
 }
+
+std::optional<std::string> Console::TakeLine() {
+  if (!implementation_->HasLine()) return std::nullopt;
+  return implementation_->TakeLine();
+}
+
+void Console::DropTypedAhead() { implementation_->DropTypedAhead(); }
 
 Waited Console::RunUntil(const std::function<bool()>& condition, double within_s) {
   return implementation_->RunUntil(condition, within_s);

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "common/result/result.h"
+#include "common/timer/run_until.h"
 
 namespace footing::study {
 
-/// How a wait ended.
-enum class Waited { kDone, kTimeUp, kInterrupted };
+using timer::Waited;
 
 /// The experimenter's terminal, and the event loop of the program: everything that waits, waits
 /// here. Prompts go to standard error, answers come from standard input. While it exists SIGINT and
@@ -26,11 +26,18 @@ class Console {
   boost::asio::io_context& io();
 
   void Print(const std::string& line);
-  /// The next line that is typed. Failure when the program is interrupted or the input has ended.
+  /// The next line that is typed; on a terminal, from the prompt on. Failure when the program is
+  /// interrupted or the input has ended.
   Result<std::string> Ask(const std::string& prompt);
 
-  /// From here on single keys count, without Enter; a terminal does not show them.
+  /// From here on single keys count, without Enter; a terminal does not show them. What was typed
+  /// before does not count.
   void ReadKeys(bool on);
+  /// The next whole line that was typed, while single keys do not count; nothing when there is
+  /// none.
+  std::optional<std::string> TakeLine();
+  /// On a terminal, forgets what was typed so far.
+  void DropTypedAhead();
   /// The oldest key that was pressed since; nothing when there is none.
   std::optional<char> TakeKey();
 

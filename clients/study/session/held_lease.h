@@ -1,11 +1,11 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 
+#include "common/timer/timer.h"
 #include "common/transport/client.h"
 
 namespace footing::study {
@@ -37,7 +37,7 @@ class HeldLease : public std::enable_shared_from_this<HeldLease> {
   void AskLater();
   void OnAnswer(const v1::CommandResult& answer);
 
-  boost::asio::steady_timer timer_;
+  timer::Timer timer_;
   transport::Client& client_;
   const std::string holder_;
   bool connected_ = false;

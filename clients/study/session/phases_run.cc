@@ -37,6 +37,8 @@ Result<void> SessionRun::RunPhase(const plan::Phase& phase) {
       return CountDown("Rest", phase.duration_s, /*may_end_early=*/false);
     case plan::PhaseKind::kDemonstration:
       return Demonstrate(phase);
+    case plan::PhaseKind::kRanges:
+      return MeasureRanges(phase);
     case plan::PhaseKind::kPractice:
       return Practise(phase);
     case plan::PhaseKind::kStraight:
@@ -72,19 +74,35 @@ Result<void> SessionRun::CheckDevices(const std::string& interface) {
   if (!servers) return servers.error();
   plan::DeviceGate gate = context_.protocol.devices;
   gate.allow_simulated = gate.allow_simulated || context_.options.unattended;
-  const auto problems = [&] { return gate::Problems(gate, interface, (*servers)->devices()); };
+  const gate::Played played{interface, context_.protocol.settings.turn_by};
+  const auto problems = [&] { return gate::Problems(gate, played, (*servers)->devices()); };
   for (;;) {
     const Waited waited =
         context_.console.RunUntil([&] { return problems().empty(); }, kDevicesReadyS);
     if (waited == Waited::kInterrupted) return Interrupted();
-    if (waited == Waited::kDone) return {};
+    if (waited == Waited::kDone) return Warn(gate::Warnings(played, (*servers)->devices()));
+    const std::vector<std::string> now = problems();
     std::string text;
-    for (const std::string& problem : problems()) text += (text.empty() ? "" : "; ") + problem;
+    for (const std::string& problem : now) text += (text.empty() ? "" : "; ") + problem;
     if (context_.options.unattended) return NoDevice("the devices are not ready: " + text);
     context_.console.Print("The devices are not ready: " + text);
+    const std::string more =
+        now.size() > 1 ? "; and " + std::to_string(now.size() - 1) + " more, see the terminal" : "";
+    Show("The devices are not ready: " + (now.empty() ? "" : now.front()) + more,
+         "Enter checks again");
     const auto again = context_.console.Ask("Press Enter to check again:");
     if (!again) return again.error();
   }
+}
+
+Result<void> SessionRun::Warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    if (!warned_.insert(warning).second) continue;
+    context_.console.Print("Warning: " + warning);
+    const auto done = context_.journal.Append(EventKind::kNote, {{"text", "warning: " + warning}});
+    if (!done) return done;
+  }
+  return {};
 }
 
 Result<void> SessionRun::Demonstrate(const plan::Phase& phase) {
@@ -92,6 +110,7 @@ Result<void> SessionRun::Demonstrate(const plan::Phase& phase) {
   if (!servers) return servers.error();
   const auto placed = PlaceOnTrack(**servers, context_.session.participant + "." + phase.id, phase);
   if (!placed || context_.options.unattended) return placed;
+  Show("Show all commands of " + phase.interface + ".", "Enter: done");
   const auto done = context_.console.Ask("Interface " + phase.interface +
                                          ": show all commands. Press Enter when done:");
   return done ? Result<void>() : done.error();
@@ -109,6 +128,7 @@ Result<void> SessionRun::CountDown(const std::string& what, double duration_s, b
     return early = may_end_early && key == '\n';
   };
   while (!early && !console.interrupted() && passed_s() < duration_s) {
+    Show(what + ".", may_end_early ? "Enter ends it early" : "", duration_s - passed_s());
     console.Print(what + ": " + text::Fixed(std::ceil(duration_s - passed_s()), 0) + " s left." +
                   (may_end_early ? " Press Enter to end it early." : ""));
     console.RunUntil(ended, std::min(kReminderS, duration_s - passed_s()));
@@ -159,6 +179,8 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
       context_.protocol.disk_mb / static_cast<double>(context_.session.trial_count()));
   if (!space) return space.error();
   if (!context_.options.unattended) {
+    Show("Next: track " + phase.track + (phase.task.empty() ? "." : ", task " + phase.task + "."),
+         "Enter begins the trial");
     const auto ready = context_.console.Ask("Next: " + phase.id + ", track " + phase.track +
                                             ". Press Enter to begin:");
     if (!ready) return ready.error();
@@ -166,6 +188,8 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
   const auto servers = UseInterface(phase.interface);
   if (!servers) return servers.error();
   const std::size_t attempt = ++progress_.attempts[phase.id];
+  shown_.attempt = static_cast<std::uint32_t>(attempt);
+  Show("The trial goes on.", "s stops it, u undoes the newest failure");
   events_.reset();
   events_ = std::make_unique<TrialEvents>(
       context_, **servers,
@@ -179,6 +203,7 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
 }
 
 Result<bool> SessionRun::AskToRepeat(const plan::Phase& phase) {
+  Show("The trial is over.", "Enter goes on, r repeats it, u NUMBER undoes a failure");
   for (;;) {
     const auto next = context_.console.Ask(
         "Press Enter to go on, type r to repeat the trial, or u NUMBER to undo a failure:");
@@ -221,6 +246,7 @@ Result<Servers*> SessionRun::Connect() {
   auto servers = Servers::Open(context_.console, servers_of, active_);
   if (!servers) return servers.error();
   servers_ = std::move(*servers);
+  servers_->Show(shown_);
   return servers_.get();
 }
 
@@ -228,7 +254,10 @@ Result<Servers*> SessionRun::UseInterface(const std::string& interface) {
   if (const auto done = CheckDevices(interface); !done) return done.error();
   const auto servers = Connect();
   if (!servers) return servers.error();
-  if (const auto done = (*servers)->UseInterface(interface); !done) return done.error();
+  const auto table = TableOf(interface);
+  if (!table) return table.error();
+  const auto done = (*servers)->UseInterface(interface, context_.protocol.settings.turn_by, *table);
+  if (!done) return done.error();
   return servers;
 }
 

@@ -7,7 +7,9 @@
 #include "clients/study/journal/lock.h"
 #include "clients/study/journal/study_folder.h"
 #include "clients/study/records/trials.h"
+#include "clients/study/session/survey_screen.h"
 #include "common/cli/cli.h"
+#include "common/clock/clock.h"
 #include "common/text/number.h"
 
 namespace footing::study {
@@ -65,7 +67,9 @@ Result<void> NoteStart(SessionContext& context, const records::Progress& progres
          {"study", context.protocol.name},
          {"study_seed", context.protocol.seed},
          {"interfaces", context.session.interfaces},
+         {"turn_by", context.protocol.settings.turn_by},
          {"synthetic", options.unattended},
+         {"simulated_time", clock::OwnFollower() != nullptr},
          {"answer_seed", options.unattended ? ordered_json(options.answer_seed) : ordered_json()},
          {"version", options.version}});
   }
@@ -82,6 +86,30 @@ bool NeedServers(const std::vector<plan::Phase>& phases, std::size_t first) {
     if (phases[i].kind == plan::PhaseKind::kDeviceCheck || !phases[i].track.empty()) return true;
   }
   return false;
+}
+
+const char* PhaseText(plan::PhaseKind kind) {
+  switch (kind) {
+    case plan::PhaseKind::kConsent:
+      return "Confirm the consent.";
+    case plan::PhaseKind::kDeviceCheck:
+      return "Checking the devices.";
+    case plan::PhaseKind::kRest:
+      return "Rest.";
+    case plan::PhaseKind::kDemonstration:
+      return "Show all commands.";
+    case plan::PhaseKind::kRanges:
+      return "Measure the participant's own ranges.";
+    case plan::PhaseKind::kPractice:
+      return "Practice.";
+    case plan::PhaseKind::kStraight:
+    case plan::PhaseKind::kTestTrack:
+      return "A trial comes next.";
+    case plan::PhaseKind::kSurvey:
+    case plan::PhaseKind::kFinalSurvey:
+      return "The participant answers the survey.";
+  }
+  return "";
 }
 
 }  // namespace
@@ -119,6 +147,16 @@ Result<void> SessionRun::Run() {
                   phases[i].id + ", active so far: " +
                   text::Fixed((progress_.active_s + active_.seconds()) / kSecondsPerMinute, 1) +
                   " min");
+    shown_ = {.study = context_.protocol.name,
+              .participant = context_.session.participant,
+              .interface = phases[i].interface,
+              .phase = phases[i].id,
+              .number = static_cast<std::uint32_t>(i + 1),
+              .phases = static_cast<std::uint32_t>(phases.size()),
+              .doing = "",
+              .next = i + 1 < phases.size() ? phases[i + 1].id : "the end of the session",
+              .keys = ""};
+    Show(PhaseText(phases[i].kind), "");
     const double active_before_s = active_.seconds();
     if (const auto done = RunPhase(phases[i]); !done) return done;
     if (console.interrupted()) return Interrupted();
@@ -130,15 +168,33 @@ Result<void> SessionRun::Run() {
   return context_.journal.Append(EventKind::kSessionFinished, ordered_json::object());
 }
 
+void SessionRun::Show(const std::string& doing, const std::string& keys, double left_s) {
+  shown_.doing = doing;
+  shown_.keys = keys;
+  shown_.left_s = left_s;
+  shown_.active_s = progress_.active_s + active_.seconds();
+  if (servers_) servers_->Show(shown_);
+}
+
 Result<void> RunSession(const SessionOptions& options, const plan::Protocol& protocol) {
   const auto session = SessionOf(options, protocol);
   if (!session) return session.error();
-  auto opened = OpenStudy(options);
-  if (!opened) return opened.error();
+  // Before anything is written.
+  if (const auto done = journal::MakeFolder(options.study_folder); !done) return done;
   const auto space = journal::RequireSpace(options.study_folder, protocol.disk_mb);
   if (!space) return space.error();
+  auto opened = OpenStudy(options);
+  if (!opened) return opened.error();
   Console console;
-  return SessionRun({options, protocol, *session, console, opened->journal}).Run();
+  std::unique_ptr<SurveyScreen> screen;
+  if (options.survey) {
+    auto open = SurveyScreen::Open(console, *options.survey);
+    if (!open) return open.error();
+    screen = std::move(*open);
+    console.Print("The participant's screen: footing-study survey --connect " +
+                  screen->address().Text());
+  }
+  return SessionRun({options, protocol, *session, console, opened->journal, screen.get()}).Run();
 }
 
 Result<void> AppendToSession(const SessionOptions& options, const plan::Protocol& protocol,

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "clients/study/session/session_context.h"
 #include "clients/study/session/trial_events.h"
 #include "common/result/result.h"
+#include "common/stream/study.h"
 
 namespace footing::study {
 
@@ -35,8 +37,19 @@ class SessionRun {
   Result<bool> AskToRepeat(const plan::Phase& phase);
   /// Of the attempt of a phase that counts.
   Result<void> Undo(const plan::Phase& phase, std::uint64_t failure);
+  /// The participant's own ranges, until they are measured or the experimenter goes on without.
+  Result<void> MeasureRanges(const plan::Phase& phase);
+  /// The mapping table of an interface: as the journal says, else the protocol's, which the journal
+  /// notes; empty: the built-in one.
+  Result<std::string> TableOf(const std::string& interface);
+  Result<void> NoteTable(const std::string& interface, const std::string& by,
+                         const std::string& table, const std::string& reason);
   /// Waits until the devices of an interface are as the protocol asks.
   Result<void> CheckDevices(const std::string& interface);
+  /// Shows on every experimenter's screen what goes on in the phase, and what may be pressed.
+  void Show(const std::string& doing, const std::string& keys, double left_s = 0);
+  /// Prints and notes each warning once a session.
+  Result<void> Warn(const std::vector<std::string>& warnings);
   /// Connects to both servers where that is due.
   Result<Servers*> Connect();
   /// Once its devices are ready, makes an interface the one in force.
@@ -45,6 +58,8 @@ class SessionRun {
   SessionContext context_;
   records::Progress progress_;
   ActiveTime active_;
+  std::set<std::string> warned_;
+  stream::StudyState shown_;
   std::unique_ptr<Servers> servers_;
   std::unique_ptr<TrialEvents> events_;  ///< Of the newest attempt, until it is settled.
 };

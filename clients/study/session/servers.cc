@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clients/study/session/held_lease.h"
+#include "common/stream/leg_turn.h"
 #include "common/transport/client.h"
 #include "common/wire/wire.h"
 
@@ -81,6 +82,7 @@ class Servers::Implementation {
     handlers.on_state = [this, &link](transport::LinkState state, const std::string& why) {
       link.state = state;
       link.why = why;
+      if (state != transport::LinkState::kLive && &link == &simulation_) in_force_.clear();
       if (&link == &simulation_) lease_->OnState(state);
     };
     link.client.emplace(console_.io(), std::move(options), std::move(handlers));
@@ -117,6 +119,7 @@ class Servers::Implementation {
   std::shared_ptr<HeldLease> lease_;
   std::vector<stream::DeviceStatus> devices_;
   SimulationFrame frame_;
+  std::string in_force_;  ///< What this connection made the interface last; empty: nothing.
   stream::Track track_;
   std::function<void(const SimulationFrame&)> on_frame_;
   std::function<void(const v1::Event&)> on_event_;
@@ -179,10 +182,18 @@ void Servers::set_on_event(std::function<void(const v1::Event&)> on_event) {
   implementation_->on_event_ = std::move(on_event);
 }
 
-Result<void> Servers::UseInterface(const std::string& interface) {
+Result<void> Servers::UseInterface(const std::string& interface, const std::string& turn_by,
+                                   const std::string& table) {
   const auto wanted = stream::UserInterfaceNamed(interface);
-  const auto in_force = [&] { return frame().interface.interface == wanted; };
-  if (in_force()) return {};
+  const auto source = stream::LegTurnSourceNamed(turn_by);
+  const auto in_force = [&] {
+    const stream::InterfaceState& now = frame().interface;
+    const bool turns = wanted != stream::UserInterface::kLeg || now.turn.source == source;
+    return now.interface == wanted && turns;
+  };
+  // Frames do not show the table: what another session has left must not stay in force.
+  const std::string asked = interface + " " + turn_by + " " + table;
+  if (in_force() && implementation_->in_force_ == asked) return {};
   const stream::TrialPhase phase = frame().trial.progress.phase;
   if (phase == stream::TrialPhase::kReady || phase == stream::TrialPhase::kRunning) {
     v1::Command stop;
@@ -192,11 +203,20 @@ Result<void> Servers::UseInterface(const std::string& interface) {
   v1::Command command;
   command.mutable_set_interface()->set_character(1);
   command.mutable_set_interface()->set_interface(static_cast<v1::UserInterface>(wanted));
+  command.mutable_set_interface()->set_turn_by(static_cast<v1::TurnSource>(source));
+  command.mutable_set_interface()->set_table(table);
   if (const auto done = Call(std::move(command)); !done) return done;
   const Waited waited = implementation_->console_.RunUntil(in_force, kShownS);
   if (waited == Waited::kInterrupted) return Interrupted();
   if (waited == Waited::kTimeUp) return Failure("footing-sim does not show interface " + interface);
+  implementation_->in_force_ = asked;
   return {};
+}
+
+void Servers::Show(const stream::StudyState& state) {
+  v1::Command command;
+  *command.mutable_set_study()->mutable_study() = wire::ToProto(state);
+  implementation_->simulation_.client->Send(std::move(command), [](const v1::CommandResult&) {});
 }
 
 Result<void> Servers::Call(v1::Command command) {

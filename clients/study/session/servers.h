@@ -10,6 +10,7 @@
 #include "common/result/result.h"
 #include "common/stream/device.h"
 #include "common/stream/gait.h"
+#include "common/stream/study.h"
 #include "common/stream/track.h"
 #include "common/stream/trial.h"
 #include "common/stream/user_interface.h"
@@ -60,10 +61,14 @@ class Servers {
   void set_on_frame(std::function<void(const SimulationFrame&)> on_frame);
   void set_on_event(std::function<void(const v1::Event&)> on_event);
 
-  /// Makes an interface the one in force: the only place where a study changes it. A trial that
-  /// goes on, such as practice or what a crash has left, is stopped. Returns when the frames show
-  /// it.
-  Result<void> UseInterface(const std::string& interface);
+  /// Makes an interface the one in force, with what turns and the text of its mapping table (empty:
+  /// the built-in one): the only place where a study changes it. A trial that goes on, such as
+  /// practice or what a crash has left, is stopped. Returns when the frames show it.
+  Result<void> UseInterface(const std::string& interface, const std::string& turn_by,
+                            const std::string& table);
+
+  /// Where the session stands, for all screens; not waited for.
+  void Show(const stream::StudyState& state);
 
   /// Sends a command to footing-sim and waits for the answer; a refusal is a failure with its text.
   Result<void> Call(v1::Command command);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,14 +15,18 @@
 
 namespace footing::study {
 
+class SurveyScreen;
+
 struct SessionOptions {
   std::string participant;
   std::string study_folder;
   std::string protocol_text;
   bool unattended = false;        ///< Nobody is asked and nothing waits; all is marked synthetic.
   std::uint64_t answer_seed = 1;  ///< Of unattended answers.
+  std::map<std::string, std::string> tables;  ///< Texts of the protocol's mapping tables.
   transport::Address sensor;
   transport::Address simulation;
+  std::optional<transport::Address> survey;  ///< Where the participant's survey screen connects.
   std::string version;
 };
 
@@ -31,6 +37,7 @@ struct SessionContext {
   const plan::Session& session;
   Console& console;
   journal::Journal& journal;
+  SurveyScreen* screen = nullptr;  ///< The participant's, where there is one.
 };
 
 }  // namespace footing::study

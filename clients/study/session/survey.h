@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "clients/study/plan/protocol.h"
@@ -9,12 +8,10 @@
 
 namespace footing::study {
 
-/// Asks every item of a survey and writes the answers into the journal. `interface` is empty for
-/// the final survey.
+/// Asks every item of a survey, on the participant's screen where there is one, else in the
+/// terminal, and writes each answer into the journal before the next question. `interface` is empty
+/// for the final survey.
 Result<void> RunSurvey(SessionContext& context, const plan::Survey& survey,
                        const std::string& interface);
-
-/// A whole number within the range that is the whole of `text`, or nothing.
-std::optional<int> ParseRating(const std::string& text, int least, int greatest);
 
 }  // namespace footing::study

@@ -1,12 +1,12 @@
 #include "clients/study/session/trial_recorder.h"
 
 #include <algorithm>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 
 #include "common/clock/clock.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/server_recorder.h"
+#include "common/timer/timer.h"
 
 namespace footing::study {
 namespace {
@@ -92,7 +92,7 @@ class TrialRecorder::Implementation {
   recording::ServerNames names_;
   std::vector<std::unique_ptr<recording::ServerRecorder>> servers_;
   Result<void> written_;
-  asio::steady_timer flush_;
+  timer::Timer flush_;
   asio::io_context& io_;
 };
 

@@ -62,8 +62,11 @@ class TrialRun {
 
   Result<std::string> Run() {
     auto outcome = Attempt();
-    if (!outcome && !context_.console.interrupted()) BreakOff(outcome.error());
-    return outcome;
+    if (outcome || context_.console.interrupted()) return outcome;
+    BreakOff(outcome.error());
+    return Error{outcome.error().kind,
+                 outcome.error().message +
+                     "; this attempt does not count. Put that right, then run the same command"};
   }
 
  private:
@@ -79,7 +82,9 @@ class TrialRun {
   }
 
   bool Synthetic() const {
-    return context_.options.unattended || gate::AnySimulated(phase_.interface, servers_.devices());
+    return context_.options.unattended ||
+           gate::AnySimulated({phase_.interface, context_.protocol.settings.turn_by},
+                              servers_.devices());
   }
 
   ordered_json Marks() const {
@@ -129,10 +134,10 @@ class TrialRun {
     begin_ns_ = complete_ns_ = clock::MonotonicNs();
     if (const auto done = servers_.Call(StartCommand(id_, phase_)); !done) return done;
     if (!context_.options.unattended) {
+      context_.console.ReadKeys(true);
       context_.console.Print(id_ + " on track " + phase_.track +
                              (phase_.task.empty() ? "" : ", task " + phase_.task) +
                              ". Keys: s stops the trial, u undoes the newest failure.");
-      context_.console.ReadKeys(true);
     }
     return {};
   }
@@ -212,7 +217,8 @@ class TrialRun {
                            {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)}};
     fields.update(events_.Figures());
     if (recorder_) {
-      if (const auto done = recorder_->Finish(ToTextMap(fields)); !done) {
+      const auto done = recorder_->Finish(ToTextMap(fields));
+      if (!done && done.error().message != why.message) {
         context_.console.Print(done.error().message);
       }
     }

@@ -152,6 +152,7 @@ void AddSimulation(const v1::Tick& tick, scene::Update& update) {
     }
   }
   if (tick.has_track()) update.track = wire::FromProto(tick.track());
+  if (tick.has_study()) update.study = wire::FromProto(tick.study());
   if (tick.has_game()) update.game = wire::FromProto(tick.game());
   if (tick.has_characters()) update.frame = FrameOf(tick.characters(), tick.sequence());
   for (const auto& event : tick.events().events()) {

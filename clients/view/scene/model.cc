@@ -38,13 +38,13 @@ void AddBoard(Model& model, int source, std::int64_t received_ns,
 
 void AddNote(Model& model, const Note& note, std::int64_t received_ns) {
   if (note.kind == NoteKind::kResponse) {
-    model.last_response = note;
+    model.last.response = note;
     model.tally.Add(note.response);
     return;
   }
   if (note.text.empty()) return;
-  model.last_note = note;
-  model.last_note->received_ns = received_ns;
+  model.last.note = note;
+  model.last.note->received_ns = received_ns;
 }
 
 void AddPhase(Model& model, const CharacterPose& pose, std::int64_t received_ns) {
@@ -82,7 +82,8 @@ stream::DeviceRole RoleOf(const Model& model, const std::pair<int, std::uint32_t
 }  // namespace
 
 void Apply(Model& model, const Update& update) {
-  model.newest_host_ns = std::max(model.newest_host_ns, update.host_ns);
+  std::int64_t& newest_ns = model.newest_host_ns[update.source];
+  newest_ns = std::max(newest_ns, update.host_ns);
   if (update.devices) Replace(model.devices, update.source, *update.devices);
   if (update.skeletons) {
     model.skeletons = *update.skeletons;
@@ -93,6 +94,9 @@ void Apply(Model& model, const Update& update) {
     ++model.track_version;
   }
   if (update.game) model.game = *update.game;
+  if (update.study) {
+    model.study = {*update.study, update.received_ns};
+  }
   if (update.setup) model.setup = *update.setup;
   if (update.reference) AddReference(model, *update.reference);
   model.strips.Add(update);
@@ -124,12 +128,16 @@ bool IsSimulated(const Model& model) {
 }
 
 double AgeMs(const Model& model, std::int64_t now_ns) {
-  return std::max(0.0, static_cast<double>(now_ns - model.newest_host_ns) * 1e-6);
+  std::int64_t oldest_ns = IsWaiting(model) ? 0 : now_ns;
+  for (const auto& [source, newest_ns] : model.newest_host_ns) {
+    oldest_ns = std::min(oldest_ns, newest_ns);
+  }
+  return std::max(0.0, static_cast<double>(now_ns - oldest_ns) * 1e-6);
 }
 
 bool HasPicture(const Model& model) { return !model.playout.empty(); }
 
-bool IsWaiting(const Model& model) { return model.newest_host_ns == 0; }
+bool IsWaiting(const Model& model) { return model.newest_host_ns.empty(); }
 
 const ReferencePose* ReferenceAt(const Model& model, std::int64_t time_ns) {
   if (model.references.empty()) return nullptr;

@@ -44,6 +44,18 @@ struct Device {
   stream::DeviceStatus status;
 };
 
+/// The newest events.
+struct LastNotes {
+  std::optional<Note> response;
+  std::optional<Note> note;  ///< That a person should read.
+};
+
+/// The user study, where one runs.
+struct ShownStudy {
+  stream::StudyState state;
+  std::int64_t received_ns = 0;  ///< On the viewer's clock.
+};
+
 /// Everything that the picture and the words are made from.
 struct Model {
   std::vector<LinkReport> links;  ///< By source.
@@ -52,13 +64,14 @@ struct Model {
   stream::Track track;
   std::uint64_t track_version = 0;  ///< Counts the tracks received.
   stream::GameState game;           ///< The terrain game, where one is led.
+  ShownStudy study;
   Playout playout;
   FallReplay replay;
   StripSet strips;
   std::map<std::pair<int, std::uint32_t>, BoardTrace> boards;  ///< By {source, device}.
-  std::optional<Note> last_response;
-  std::optional<Note> last_note;    ///< The last one that a person should read.
-  std::int64_t newest_host_ns = 0;  ///< Newest tick's stamp, on the viewer's clock.
+  LastNotes last;
+  std::map<int, std::int64_t>
+      newest_host_ns;               ///< Newest tick's stamp of each source, on the viewer's clock.
   std::vector<std::string> phases;  ///< Of the first character's present gait, in order of coming.
   std::deque<PhaseSpan> phase_spans;  ///< The last 10 s, oldest first.
   Tally tally;
@@ -74,7 +87,7 @@ void Apply(Model& model, const Update& update);
 /// True when any character or device is simulated, which every screen must show.
 bool IsSimulated(const Model& model);
 
-/// Age of the newest data, ms.
+/// Age of the newest data, ms; of several servers that of the one whose data are oldest.
 double AgeMs(const Model& model, std::int64_t now_ns);
 
 /// True once any server has sent something to look at.

@@ -13,6 +13,7 @@
 #include "common/stream/response.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
+#include "common/stream/study.h"
 #include "common/stream/user_interface.h"
 
 /// What one tick of a server brings, as plain structs. World frame W: x forward, y left, z up; SI.
@@ -80,6 +81,7 @@ struct Update {
   std::optional<ReferencePose> reference;  ///< The newest one of the tick.
   std::optional<WorldFrame> frame;
   std::optional<stream::GameState> game;
+  std::optional<stream::StudyState> study;
   std::vector<Note> notes;
 };
 

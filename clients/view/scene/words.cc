@@ -5,6 +5,7 @@
 
 #include "clients/view/scene/game_text.h"
 #include "clients/view/scene/interface_text.h"
+#include "clients/view/scene/study_text.h"
 #include "clients/view/scene/trial_text.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
@@ -120,6 +121,13 @@ const stream::TrialState* FirstTrial(const Model& model) {
   return trial ? &*trial : nullptr;
 }
 
+/// Old data must not look like a number among others.
+std::string AgeText(double age_ms) {
+  constexpr double kNoDataMs = 3000;  // As a link is called stale.
+  if (age_ms < kNoDataMs) return "age " + Fixed(age_ms, 0) + " ms";
+  return "no data for " + Fixed(age_ms * 1e-3, 0) + " s";
+}
+
 }  // namespace
 
 std::string Fixed(double value, int decimals) {
@@ -206,6 +214,12 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
       for (std::string& line : CharacterLines(pose, model.track)) lines.push_back(std::move(line));
     }
   }
+  if (ShowsStudy(model.study.state)) {
+    lines.push_back("Study       " + model.study.state.study);
+    const double passed_s = NanosecondsToSeconds(now_ns - model.study.received_ns);
+    for (const std::string& line : StudyLines(model.study.state, passed_s))
+      lines.push_back("  " + line);
+  }
   if (ShowsGame(model.game, FirstTrial(model))) {
     for (std::string& line : GameLines(model.game)) lines.push_back(std::move(line));
   }
@@ -219,19 +233,19 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
   }
   if (!IsWaiting(model)) {
     const Latencies& latency = model.tally.publish_to_view;
-    lines.push_back("Latency     age " + Fixed(AgeMs(model, now_ns), 0) +
-                    " ms   publish to view p50 " + Fixed(latency.QuantileMs(0.5), 2) + " ms  p99 " +
+    lines.push_back("Latency     " + AgeText(AgeMs(model, now_ns)) + "   publish to view p50 " +
+                    Fixed(latency.QuantileMs(0.5), 2) + " ms  p99 " +
                     Fixed(latency.QuantileMs(0.99), 2) + " ms");
   }
-  if (model.last_response) {
+  if (model.last.response) {
     std::string line = "Response   ";
     for (const stream::ResponseStage& stage :
-         stream::ResponseTimes(model.last_response->response)) {
+         stream::ResponseTimes(model.last.response->response)) {
       line += std::string(" ") + stage.name + " " + Fixed(stage.ms, 1);
     }
     lines.push_back(line + " ms");
   }
-  if (model.last_note) lines.push_back("Last event  " + model.last_note->text);
+  if (model.last.note) lines.push_back("Last event  " + model.last.note->text);
   return lines;
 }
 
@@ -241,8 +255,8 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
       const auto lines = WaitingLines(link);
       if (!lines.empty()) return lines[0] + ". " + lines[1];
     }
-    return "devices " + std::to_string(model.devices.size()) + "  age " +
-           Fixed(AgeMs(model, now_ns), 0) + " ms" + (IsSimulated(model) ? "  SIMULATED" : "");
+    return "devices " + std::to_string(model.devices.size()) + "  " +
+           AgeText(AgeMs(model, now_ns)) + (IsSimulated(model) ? "  SIMULATED" : "");
   }
   const WorldFrame& frame = model.playout.Newest();
   std::string line = "t " + Fixed(frame.time_s, 1) + " s";
@@ -263,8 +277,8 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
     }
   }
   if (ShowsGame(model.game, FirstTrial(model))) line += "  " + GameLine(model.game);
-  line += "  devices " + std::to_string(model.devices.size()) + "  age " +
-          Fixed(AgeMs(model, now_ns), 0) + " ms";
+  line +=
+      "  devices " + std::to_string(model.devices.size()) + "  " + AgeText(AgeMs(model, now_ns));
   return line + (IsSimulated(model) ? "  SIMULATED" : "");
 }
 

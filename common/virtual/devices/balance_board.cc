@@ -65,7 +65,7 @@ BalanceBoard::BalanceBoard(std::uint64_t seed) : BalanceBoard(seed, DrawPoints(s
 BalanceBoard::BalanceBoard(std::uint64_t seed, const std::array<Points, kCorners>& points)
     : points_(points), controller_(MakeMemory(points_)) {
   identity_.name = "Nintendo RVL-WBC-01";
-  identity_.serial = MakeSerial(seed);
+  identity_.serial = MakeSerial(SerialOf::kBalanceBoard, seed);
 }
 
 std::optional<Report> BalanceBoard::Sample(const CornerForces& forces, bool button) {

@@ -16,7 +16,16 @@ struct Identity {
   std::string serial;  ///< A Bluetooth address.
 };
 
-/// A Bluetooth address drawn from the seed; its first byte says that nobody registered it.
-std::string MakeSerial(std::uint64_t seed);
+/// First bytes of the addresses of each kind, so that devices of one seed differ. Nobody registered
+/// them: they are locally administered.
+enum class SerialOf {
+  kWiimote = 0x52,
+  kBalanceBoard = 0x56,
+  kPsMove = 0x5a,
+  kProController = 0x5e
+};
+
+/// A Bluetooth address drawn from the seed.
+std::string MakeSerial(SerialOf kind, std::uint64_t seed);
 
 }  // namespace footing::virtual_devices

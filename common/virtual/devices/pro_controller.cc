@@ -26,7 +26,7 @@ void PutStick(double value, std::uint8_t* out) {
 ProController::ProController(std::uint64_t seed) : controller_(MakeProMemory()) {
   identity_.product = stream::kProductTr;
   identity_.name = "Nintendo RVL-CNT-01-UC";
-  identity_.serial = MakeSerial(seed);
+  identity_.serial = MakeSerial(SerialOf::kProController, seed);
 }
 
 std::optional<Report> ProController::Sample(const ProControllerSensors& sensors) {

@@ -133,7 +133,7 @@ PsMove::PsMove(std::uint64_t seed, MoveModel model, std::vector<std::uint8_t> bl
   identity_.vendor = stream::kVendorSony;
   identity_.product = model == MoveModel::kZcm1 ? stream::kProductZcm1 : stream::kProductZcm2;
   identity_.name = "Motion Controller";
-  identity_.serial = MakeSerial(seed);
+  identity_.serial = MakeSerial(SerialOf::kPsMove, seed);
 }
 
 std::vector<Report> PsMove::HandleOutput(std::int64_t now_ns,

@@ -96,7 +96,7 @@ Wiimote::Wiimote(std::uint64_t seed, const WiimoteOptions& options)
   }
   identity_.name = options.tr ? "Nintendo RVL-CNT-01-TR" : "Nintendo RVL-CNT-01";
   if (options.tr) identity_.product = stream::kProductTr;
-  identity_.serial = MakeSerial(seed);
+  identity_.serial = MakeSerial(SerialOf::kWiimote, seed);
 }
 
 std::vector<Report> Wiimote::Plug(Accessory accessory, std::int64_t now_ns) {

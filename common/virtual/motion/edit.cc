@@ -23,24 +23,37 @@ std::size_t Index(int value) { return static_cast<std::size_t>(value); }
 
 }  // namespace
 
+Eigen::VectorXd NearestPose(const body::Skeleton& skeleton, const Eigen::VectorXd& q,
+                            const Eigen::VectorXd& near_q) {
+  Eigen::VectorXd nearest = near_q;
+  nearest.head<3>() = q.head<3>();
+  for (const body::Joint& joint : skeleton.joints) {
+    if (joint.rotations.size() == 3) {
+      SetJointRotation(joint, JointRotation(joint, q), nearest);
+      continue;
+    }
+    for (std::size_t i = 0; i < joint.rotations.size(); ++i) {
+      const int dof = joint.first_dof + static_cast<int>(i);
+      nearest(dof) = NearestTurn(q(dof), near_q(dof));
+    }
+  }
+  return nearest;
+}
+
 Motion Continuous(Motion motion) {
   for (Eigen::Index frame = 1; frame < motion.frames(); ++frame) {
-    const Eigen::VectorXd raw = motion.q.col(frame);
-    Eigen::VectorXd q = motion.q.col(frame - 1);
-    q.head<3>() = raw.head<3>();
-    for (const body::Joint& joint : motion.skeleton.joints) {
-      if (joint.rotations.size() == 3) {
-        SetJointRotation(joint, JointRotation(joint, raw), q);
-        continue;
-      }
-      for (std::size_t i = 0; i < joint.rotations.size(); ++i) {
-        const int dof = joint.first_dof + static_cast<int>(i);
-        q(dof) = NearestTurn(raw(dof), q(dof));
-      }
-    }
-    motion.q.col(frame) = q;
+    motion.q.col(frame) =
+        NearestPose(motion.skeleton, motion.q.col(frame), motion.q.col(frame - 1));
   }
   return motion;
+}
+
+Motion Canonical(Motion motion) {
+  if (motion.frames() > 0) {
+    motion.q.col(0) =
+        NearestPose(motion.skeleton, motion.q.col(0), Eigen::VectorXd::Zero(motion.skeleton.dof));
+  }
+  return Continuous(std::move(motion));
 }
 
 Motion Smoothed(const Motion& motion, double cutoff_hz) {

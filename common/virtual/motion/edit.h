@@ -9,9 +9,18 @@
 /// What is done to a motion before it is used.
 namespace footing::motion {
 
+/// The same pose by the angles nearest to those of `near_q`: of the triples and whole turns that
+/// mean the same rotation of a joint. The root's place is that of `q`.
+Eigen::VectorXd NearestPose(const body::Skeleton& skeleton, const Eigen::VectorXd& q,
+                            const Eigen::VectorXd& near_q);
+
 /// The same rotations with angles that do not jump: of the triples and whole turns that mean the
 /// same, each frame takes those nearest to the frame before.
 Motion Continuous(Motion motion);
+
+/// Continuous from a first frame whose angles are those nearest to 0: the same movement has the
+/// same angles whatever whole turns and triples its file has them with.
+Motion Canonical(Motion motion);
 
 /// Smoothed by LowPass (signal.h), angles made continuous first. About 8 Hz for daily movement, 14
 /// for jumps.

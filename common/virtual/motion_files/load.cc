@@ -11,6 +11,7 @@
 #include "common/virtual/motion/asf.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/virtual/motion/c3d.h"
+#include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/marker_fit.h"
 #include "common/virtual/motion/trc.h"
 
@@ -61,7 +62,7 @@ Result<LoadedMotion> FromMarkers(const std::string& path, const LoadOptions& opt
   char note[160];
   std::snprintf(note, sizeof note, "%zu markers of set %s fitted: height %.2f m, residual %.1f mm",
                 fit->markers.size(), fit->set.c_str(), fit->height_m, 1000 * fit->rms_m);
-  return LoadedMotion{std::move(fit->motion), note, fit->height_m};
+  return LoadedMotion{motion::Canonical(std::move(fit->motion)), note, fit->height_m};
 }
 
 }  // namespace
@@ -77,7 +78,7 @@ Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& opti
   if (ending == "bvh") {
     auto motion = motion::ParseBvh(*text, path, {.unit_m = options.bvh_unit_m});
     if (!motion) return motion.error();
-    return LoadedMotion{*std::move(motion), "", std::nullopt};
+    return LoadedMotion{motion::Canonical(*std::move(motion)), "", std::nullopt};
   }
   if (options.skeleton.empty()) {
     return UsageError(path + ": an AMC file needs its skeleton: give --skeleton FILE.asf");
@@ -88,7 +89,7 @@ Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& opti
   if (!asf) return asf.error();
   auto motion = motion::ParseAmc(*text, path, *asf, options.amc_rate_hz);
   if (!motion) return motion.error();
-  return LoadedMotion{*std::move(motion), "", std::nullopt};
+  return LoadedMotion{motion::Canonical(*std::move(motion)), "", std::nullopt};
 }
 
 Result<motion::MarkerTracks> LoadMarkers(const std::string& path) {

@@ -30,6 +30,7 @@ struct LoadedMotion {
 };
 
 /// Reads .bvh, .amc (with its skeleton), .trc and .c3d. The error of an unknown ending lists them.
+/// Angles are motion::Canonical.
 Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options = {});
 
 /// Ground forces of a .mot, .sto or .c3d file, in W.

@@ -15,15 +15,17 @@ struct Ability {
   bool jumps_from_run = true;    ///< False: walks up to where it jumps.
   bool jumps_at_once = false;    ///< One gesture is one jump; else it lasts as long as the jump.
   double turn_delay_s = 0.02;    ///< From the user's motion to a changed command.
-  /// From the user's motion to the character's jumping, the same of a run and of a walk; the user
-  /// corrects it by what it sees.
-  double run_jump_s = 0.45;
-  double walk_jump_s = 0.25;
+  /// From the user's motion to the top of the character's leap, out of a run and out of a walk; the
+  /// user corrects it by what it sees.
+  double run_jump_s = 0.75;
+  double walk_jump_s = 0.85;
 };
 
 /// Of a command given at once, without a body.
 Ability DirectAbility();
-/// The speeds are those of the demonstration (docs/interfaces.md), the delays a first guess.
-Ability AbilityWith(stream::UserInterface interface);
+/// The speeds are those of the demonstration (docs/interfaces.md), the delays what five minutes of
+/// practice teach. `turn_by` is of the leg interface.
+Ability AbilityWith(stream::UserInterface interface,
+                    stream::TurnSource turn_by = stream::TurnSource::kHead);
 
 }  // namespace footing::users

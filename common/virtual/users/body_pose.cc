@@ -15,12 +15,23 @@ constexpr double kElbowToFist = 0.186;
 constexpr double kThigh = 0.245;
 constexpr double kKneeToSensor = 0.12;
 constexpr double kNeckToCrown = 0.18;
+/// From the hips to the middle of the chest.
+constexpr double kHipToChest = 0.2;
 /// A Wiimote's accelerometer lies so far before the wrist, m.
 constexpr double kWristToSensorM = 0.11;
 
 /// A direction in the sagittal plane, `angle_rad` before straight down.
 Eigen::Vector3d Sagittal(double angle_rad) {
   return {std::sin(angle_rad), 0, -std::cos(angle_rad)};
+}
+
+/// At `lever_m` over a joint about which it inclines sideways.
+SensorPose Inclined(double lever_m, double roll_rad, double pelvis_m) {
+  const Eigen::Vector3d front = Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d left =
+      Eigen::AngleAxisd(roll_rad, front) * Eigen::Vector3d(Eigen::Vector3d::UnitY());
+  const Eigen::Vector3d up = front.cross(left);
+  return {lever_m * up + Eigen::Vector3d(0, 0, pelvis_m), AxesFrom(left, front)};
 }
 
 }  // namespace
@@ -60,11 +71,11 @@ SensorPose ShinPose(double height_m, double hip_rad, double knee_rad, double pel
 }
 
 SensorPose HeadPose(double height_m, double roll_rad, double pelvis_m) {
-  const Eigen::Vector3d front = Eigen::Vector3d::UnitX();
-  const Eigen::Vector3d left =
-      Eigen::AngleAxisd(roll_rad, front) * Eigen::Vector3d(Eigen::Vector3d::UnitY());
-  const Eigen::Vector3d up = front.cross(left);
-  return {kNeckToCrown * height_m * up + Eigen::Vector3d(0, 0, pelvis_m), AxesFrom(left, front)};
+  return Inclined(kNeckToCrown * height_m, roll_rad, pelvis_m);
+}
+
+SensorPose TrunkPose(double height_m, double roll_rad, double pelvis_m) {
+  return Inclined(kHipToChest * height_m, roll_rad, pelvis_m);
 }
 
 Eigen::Vector3d SpecificForce(const SensorPose& before, const SensorPose& at,

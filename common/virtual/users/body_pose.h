@@ -33,6 +33,9 @@ SensorPose ShinPose(double height_m, double hip_rad, double knee_rad, double pel
 /// A remote on the head, inclined by `roll_rad` about the neck, left side up.
 SensorPose HeadPose(double height_m, double roll_rad, double pelvis_m);
 
+/// The same on the chest of a trunk that inclines at the hips; axes of the frame M.
+SensorPose TrunkPose(double height_m, double roll_rad, double pelvis_m);
+
 /// Specific force in S from three poses `step_s` apart, of the middle one: acceleration and
 /// gravity.
 Eigen::Vector3d SpecificForce(const SensorPose& before, const SensorPose& at,

@@ -19,10 +19,8 @@ constexpr double kSteerAboveRad = 0.07;
 constexpr double kSteerBelowRad = 0.02;
 /// Share of the error that one step is to take away, when it can be chosen.
 constexpr double kSteerShare = 0.35;
-/// The character is to leave the ground so far before the edge of a pit.
-constexpr double kLiftOffM = 0.15;
-/// From the begin of the character's jump to its leap: a run leaps at once, a walk crouches first.
-constexpr double kCrouchS = 0.35;
+/// The pit that was jumped at is nearer, any other one farther.
+constexpr double kSamePitM = 5;
 /// Nobody changes from walking to running again and again.
 constexpr double kRunAgainS = 1;
 /// Narrower pits are run across without a jump.
@@ -56,8 +54,8 @@ void Driver::StartOver() {
   intention_ = {};
   steering_ = false;
   jump_until_m_ = -1;
-  correction_ = 0;
   timing_.End();
+  correction_ = 0;
 }
 
 /// Steps a second as seen; before there are any, a walk's.
@@ -96,11 +94,14 @@ Observation Driver::Reckon(double now_s) const {
   return old;
 }
 
-/// The sharpest bend within what matters at this speed, rad/m.
+/// The sharpest bend within what matters at this speed, rad/m. Up to a pit the run-up matters, and
+/// the bend behind it later.
 double Driver::CurvatureAhead(const Observation& now, double speed_mps) const {
   constexpr double kSpanM = 3;
   const track::TrackPlace place = track::Locate(track_, now.p_W_m);
-  const double sight_m = 3 + 2.5 * std::max(0.0, speed_mps);
+  double pit_m = 0;
+  const double edge_m = PitAhead(now, &pit_m);
+  const double sight_m = std::min(3 + 2.5 * std::max(0.0, speed_mps), edge_m + pit_m);
   double sharpest = 0;
   for (double ahead_m = 0; ahead_m < sight_m; ahead_m += 0.5) {
     const double from_rad = track::CentreAhead(track_, place, ahead_m).heading_rad;
@@ -141,15 +142,22 @@ double Driver::PitAhead(const Observation& now, double* length_m) const {
 /// True from a jump's command until the pit lies behind; with an interface of one jump for one
 /// gesture until the character is seen to jump.
 bool Driver::ChooseJump(const Observation& now) {
+  // The place is that of a turn's delay from now.
   const double here_m = track::LengthTo(track_, track::Locate(track_, now.p_W_m));
-  if (jump_until_m_ >= 0 && here_m > jump_until_m_ + 0.3) jump_until_m_ = -1;
-  if (jump_until_m_ >= 0) return !ability_.jumps_at_once || timing_.waits();
+  const double ahead_m = ability_.turn_delay_s * now.speed_mps;
+  if (jump_until_m_ >= 0 && here_m - ahead_m > jump_until_m_ + 0.3) jump_until_m_ = -1;
+  if (jump_until_m_ >= 0 && !ability_.jumps_at_once) return true;
+  if (jump_until_m_ >= 0 && timing_.waits()) return true;
   double length_m = 0;
   const double edge_m = PitAhead(now, &length_m);
-  // The place is that of a turn's delay from now.
-  const double lead_s = std::max(0.0, timing_.LeadS(now.gait) + kCrouchS - ability_.turn_delay_s);
-  if (edge_m >= lead_s * std::max(0.5, now.speed_mps)) return false;
+  // A single leap is under way, or it is over and the pit behind it; one that came down before the
+  // pit is followed by another.
+  if (jump_until_m_ >= 0 && (now.gait == Gait::kJump || edge_m > kSamePitM)) return false;
+  const double lead_s = std::max(0.0, timing_.LeadS(now.gait) - ability_.turn_delay_s);
+  const double middle_m = edge_m + length_m / 2;
+  if (middle_m >= lead_s * std::max(0.5, now.speed_mps)) return false;
   jump_until_m_ = here_m + edge_m + length_m;
+  timing_.Begin(now_s_, now.gait, now.speed_mps, here_m + middle_m);
   return true;
 }
 
@@ -246,9 +254,13 @@ Intention Driver::Want(const Observation& seen) {
     wanted_.pop_front();
   }
   const Observation& delayed = Delayed(seen.time_s);
-  timing_.See(delayed.time_s, delayed.gait);
-  if (delayed.falls > falls_ && jump_until_m_ >= 0) timing_.Fail();
-  falls_ = delayed.falls;
+  if (!track_.segments.empty()) {
+    timing_.See(delayed.time_s, delayed.gait,
+                track::LengthTo(track_, track::Locate(track_, delayed.p_W_m)), delayed.com_m);
+  }
+  if (delayed.trial.failures.jump > pit_falls_) timing_.Fail(intention_.gait);
+  pit_falls_ = delayed.trial.failures.jump;
+  now_s_ = seen.time_s;
   // A character that has fallen is put back soon.
   const bool over = delayed.trial.phase == stream::TrialPhase::kFinished ||
                     delayed.trial.phase == stream::TrialPhase::kStopped ||
@@ -260,9 +272,6 @@ Intention Driver::Want(const Observation& seen) {
   }
   const Observation now = Reckon(seen.time_s);
   ChooseGait(now, wanted);
-  if (wanted.gait == Gait::kJump && intention_.gait != Gait::kJump) {
-    timing_.Begin(seen.time_s, now.gait);
-  }
   wanted.turn_rad = Steer(now);
   wanted.effort = EffortFor(wanted, elapsed_s);
   intention_ = wanted;

@@ -54,7 +54,8 @@ class Driver {
   std::deque<Observation> seen_;  ///< The last moments, newest last.
   std::deque<Wanted> wanted_;     ///< The same of the own turns.
   Intention intention_;
-  std::uint64_t falls_ = 0;
+  std::uint64_t pit_falls_ = 0;  ///< Jump failures seen so far.
+  double now_s_ = 0;             ///< Of the newest sight.
   bool steering_ = false;
   double walked_s_ = -1e9;    ///< When walking was last begun.
   double jump_until_m_ = -1;  ///< Along the track; negative: not jumping.

@@ -10,17 +10,19 @@ namespace {
 
 using stream::DeviceRole;
 using stream::Gait;
+using stream::TurnSource;
 using stream::UserInterface;
 
 /// Ordinary frequencies of one limb, Hz: walking, running, jumping. People were shown where an
 /// interface changes from walking to running, and keep off it; the fastest are those that untrained
-/// people keep up for a minute.
+/// people keep up for a minute. People hop at 2.2 Hz when nobody asks for another rate (Farley et
+/// al. 1991), and who was shown that quicker swings jump further swings briskly.
 struct Tempo {
   double walk_slow_hz, walk_fast_hz, run_slow_hz, run_fast_hz, jump_hz;
 };
-constexpr Tempo kWristTempo{0.8, 1.65, 2.5, 3.8, 1.8};
-constexpr Tempo kArmTempo{0.85, 1.4, 1.2, 2.3, 1.3};
-constexpr Tempo kLegTempo{0.75, 1.55, 2.4, 3.0, 1.6};
+constexpr Tempo kWristTempo{0.8, 1.65, 2.5, 3.8, 2.2};
+constexpr Tempo kArmTempo{0.85, 1.4, 1.2, 2.3, 1.5};
+constexpr Tempo kLegTempo{0.75, 1.55, 2.4, 3.0, 2.2};
 
 /// Half the way of a joint at ease, and the speed that it does not exceed at ease.
 struct Way {
@@ -39,6 +41,15 @@ constexpr double kMostBounceM = 0.1;
 constexpr double kWristTurnRad = DegreesToRadians(32);
 constexpr double kArmTurnRad = DegreesToRadians(36);
 constexpr double kHeadTurnRad = DegreesToRadians(23);
+constexpr double kTrunkTurnRad = DegreesToRadians(22);
+/// A trunk sways to the standing leg with every step; inclined, it loads the leg on its lower side,
+/// which is lifted less by this share.
+constexpr double kTrunkSwayRad = DegreesToRadians(3);
+constexpr double kLoadedLift = 0.25;
+/// To turn by the feet, one is lifted higher and the other lower by this share of an even step.
+/// Wider movements take longer, by this power of their width (Viviani & Flash 1995).
+constexpr double kFeetTurn = 0.6;
+constexpr double kIsochrony = 0.25;
 constexpr double kHangingRad = DegreesToRadians(12), kBentRad = DegreesToRadians(85);
 constexpr double kTurnS = 0.07, kBendS = 0.1;
 /// Share of a leg's cycle in the air, walking and running in place.
@@ -68,16 +79,20 @@ double Lift(double cycles, double share) {
   return wave * wave;
 }
 
-double TurnOf(UserInterface interface) {
-  return interface == UserInterface::kArm   ? kArmTurnRad
-         : interface == UserInterface::kLeg ? kHeadTurnRad
-                                            : kWristTurnRad;
+/// How far who turns inclines or twists, rad; with the feet a share.
+double TurnOf(UserInterface interface, TurnSource turn_by) {
+  if (interface == UserInterface::kArm) return kArmTurnRad;
+  if (interface != UserInterface::kLeg) return kWristTurnRad;
+  return turn_by == TurnSource::kFeet    ? kFeetTurn
+         : turn_by == TurnSource::kTrunk ? kTrunkTurnRad
+                                         : kHeadTurnRad;
 }
 
 }  // namespace
 
-LimbBody::LimbBody(UserInterface interface, const Style& style, std::uint64_t seed)
-    : interface_(interface), style_(style), rhythm_(style, seed) {
+LimbBody::LimbBody(UserInterface interface, const Style& style, std::uint64_t seed,
+                   TurnSource turn_by)
+    : interface_(interface), turn_by_(turn_by), style_(style), rhythm_(style, seed) {
   bend_.value = kHangingRad;
   poses_.fill(PosesNow());
 }
@@ -96,7 +111,7 @@ void LimbBody::Advance(const Intention& wanted, double step_s) {
   }
   rhythm_.Advance(aim, step_s);
   const double side = wanted.turn_rad == 0 ? 0 : wanted.turn_rad > 0 ? -1 : 1;
-  turn_.Advance(side * TurnOf(interface_) * style_.amplitude, kTurnS, step_s);
+  turn_.Advance(side * TurnOf(interface_, turn_by_) * style_.amplitude, kTurnS, step_s);
   bend_.Advance(runs ? kBentRad : kHangingRad, kBendS, step_s);
   hop_.Advance(aim.together ? 1 : 0, kBendS, step_s);
   run_.Advance(runs ? 1 : 0, kBendS, step_s);
@@ -134,26 +149,49 @@ double LimbBody::PelvisRise() const {
   return rhythm_.activity() * std::lerp(step_m, hop_m, hop_.value);
 }
 
+/// Height of a leg's lift over that of an even step; not in a hop with both.
+double LimbBody::LiftedBy(bool left) const {
+  const double steps = 1 - std::clamp(hop_.value, 0.0, 1.0);
+  if (turn_by_ == TurnSource::kFeet) return 1 + (left ? 1 : -1) * steps * turn_.value;
+  if (turn_by_ != TurnSource::kTrunk) return 1;
+  const double lower = (left ? -1 : 1) * turn_.value / kTrunkTurnRad;  // Right side down: right.
+  return 1 - kLoadedLift * steps * std::clamp(lower, 0.0, 1.0);
+}
+
 SensorPose LimbBody::ShinNow(bool left) const {
-  const double cycles = left ? rhythm_.left_cycles() : rhythm_.right_cycles();
+  const double lifted = std::max(0.1, LiftedBy(left));
+  const double even = std::lerp(kWalkSwing, kRunSwing, run_.value);
+  const double share = even * std::pow(lifted, kIsochrony);
+  // A leg that is in the air for longer makes the other one wait.
+  const double wait = left ? 0 : even * (std::pow(std::max(0.1, LiftedBy(true)), kIsochrony) - 1);
+  const double cycles = left ? rhythm_.left_cycles() : rhythm_.right_cycles() - wait;
   const double amplitude = left ? rhythm_.left_amplitude() : rhythm_.right_amplitude();
   const double way = 2 * WayAt(kHipWay, rhythm_.frequency_hz()) * amplitude / kJumpAmplitude;
-  const double hip_rad = way * Lift(cycles, std::lerp(kWalkSwing, kRunSwing, run_.value));
+  const double hip_rad = way * lifted * Lift(cycles, share);
   const double grip_rad = left ? style_.left_grip_rad : style_.right_grip_rad;
   return ShinPose(style_.height_m, hip_rad, 1.8 * hip_rad, PelvisRise(), grip_rad);
 }
 
+SensorPose LimbBody::TrunkNow() const {
+  const double sway_rad =
+      kTrunkSwayRad * rhythm_.activity() * std::sin(2 * kPi * rhythm_.left_cycles());
+  return TrunkPose(style_.height_m, turn_.value + sway_rad, PelvisRise());
+}
+
 LimbBody::Poses LimbBody::PosesNow() const {
   if (interface_ != UserInterface::kLeg) return {HandNow(true), HandNow(false), {}};
-  return {ShinNow(true), ShinNow(false), HeadPose(style_.height_m, turn_.value, PelvisRise())};
+  const bool head = turn_by_ == TurnSource::kHead;
+  return {ShinNow(true), ShinNow(false),
+          head ? HeadPose(style_.height_m, turn_.value, PelvisRise()) : TrunkNow()};
 }
 
 void LimbBody::Feel(Felt& felt) const {
   const bool legs = interface_ == UserInterface::kLeg;
-  const DeviceRole roles[] = {legs ? DeviceRole::kLeftLeg : DeviceRole::kLeftHand,
-                              legs ? DeviceRole::kRightLeg : DeviceRole::kRightHand,
-                              DeviceRole::kHead};
-  felt.remote_count = legs ? 3 : 2;
+  const DeviceRole roles[] = {
+      legs ? DeviceRole::kLeftLeg : DeviceRole::kLeftHand,
+      legs ? DeviceRole::kRightLeg : DeviceRole::kRightHand,
+      turn_by_ == TurnSource::kTrunk ? DeviceRole::kTrunk : DeviceRole::kHead};
+  felt.remote_count = legs && turn_by_ != TurnSource::kFeet ? 3 : 2;
   for (std::size_t i = 0; i < static_cast<std::size_t>(felt.remote_count); ++i) {
     felt.remotes[i] = {roles[i], SpecificForce(poses_[0][i], poses_[1][i], poses_[2][i], step_s_)};
   }

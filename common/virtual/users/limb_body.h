@@ -12,10 +12,12 @@
 namespace footing::users {
 
 /// A person who swings two remotes from the wrists, or with the arms, or who steps in place with
-/// one on each shin and one on the head. A plain value.
+/// one on each shin and one on the head or the trunk. A plain value.
 class LimbBody {
  public:
-  LimbBody(stream::UserInterface interface, const Style& style, std::uint64_t seed);
+  /// `turn_by`: of who steps, the head or the trunk inclines, or one foot is lifted higher.
+  LimbBody(stream::UserInterface interface, const Style& style, std::uint64_t seed,
+           stream::TurnSource turn_by);
 
   void Advance(const Intention& wanted, double step_s);
   void Feel(Felt& felt) const;
@@ -29,12 +31,15 @@ class LimbBody {
   Poses PosesNow() const;
   SensorPose HandNow(bool left) const;
   SensorPose ShinNow(bool left) const;
+  SensorPose TrunkNow() const;
+  double LiftedBy(bool left) const;
   double PelvisRise() const;
 
   stream::UserInterface interface_;
+  stream::TurnSource turn_by_;
   Style style_;
   Rhythm rhythm_;
-  Follower turn_;  ///< Of hands or head, to the right: the left side up.
+  Follower turn_;  ///< Of hands, head or trunk, to the right: the left side up. Of feet: a share.
   Follower bend_;  ///< Elbow.
   Follower hop_;   ///< 0 stepping to 1 hopping with both legs.
   Follower run_;   ///< 0 walking to 1 running.

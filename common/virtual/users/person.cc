@@ -6,7 +6,8 @@ namespace {
 using stream::UserInterface;
 
 std::variant<LimbBody, StickBody, BoardBody> BodyFor(UserInterface interface, const Style& style,
-                                                     std::uint64_t seed) {
+                                                     std::uint64_t seed,
+                                                     stream::TurnSource turn_by) {
   switch (interface) {
     case UserInterface::kUnspecified:
     case UserInterface::kWrist:
@@ -18,13 +19,14 @@ std::variant<LimbBody, StickBody, BoardBody> BodyFor(UserInterface interface, co
     case UserInterface::kBoards:
       return BoardBody(style, seed);
   }
-  return LimbBody(interface, style, seed);
+  return LimbBody(interface, style, seed, turn_by);
 }
 
 }  // namespace
 
-Person::Person(UserInterface interface, const Style& style, std::uint64_t seed)
-    : body_(BodyFor(interface, style, seed)) {}
+Person::Person(UserInterface interface, const Style& style, std::uint64_t seed,
+               stream::TurnSource turn_by)
+    : body_(BodyFor(interface, style, seed, turn_by)) {}
 
 void Person::Advance(double time_s, const Intention& wanted) {
   std::visit(

@@ -19,8 +19,9 @@ class Person {
  public:
   static constexpr double kStepS = 0.0025;
 
-  /// kUnspecified counts as the wrist.
-  Person(stream::UserInterface interface, const Style& style, std::uint64_t seed);
+  /// kUnspecified counts as the wrist. `turn_by` is what turns with the leg interface.
+  Person(stream::UserInterface interface, const Style& style, std::uint64_t seed,
+         stream::TurnSource turn_by = stream::TurnSource::kHead);
 
   /// Moves on to `time_s`; an earlier one changes nothing.
   void Advance(double time_s, const Intention& wanted);

@@ -12,6 +12,7 @@ namespace footing::users {
 struct Observation {
   double time_s = 0;
   Eigen::Vector2d p_W_m = Eigen::Vector2d::Zero();
+  double com_m = 0;  ///< Height of the COM.
   double heading_rad = 0;
   double speed_mps = 0;
   std::uint64_t steps = 0;

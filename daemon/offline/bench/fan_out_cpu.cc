@@ -59,6 +59,7 @@ Result<Rows> FanOutCpu() {
   LoopThread client_thread;
   transport::Server server(server_thread.io(), ServerOptionsFor(100, 30), {});
   BareFanOut bare(server_thread.io());
+  const StopsAtEnd stops_server({&server_thread});
   Result<void> listening;
   server_thread.Do([&] {
     listening = server.Listen(TcpAddress());
@@ -68,6 +69,7 @@ Result<Rows> FanOutCpu() {
 
   Viewers ours;
   Viewers others;
+  const StopsAtEnd stops_viewers({&client_thread});
   const bool connected =
       ConnectViewers(client_thread, server.ListeningOn(0), Viewer::Greeting::kSubscribe, ours) &&
       ConnectViewers(client_thread, bare.address(), Viewer::Greeting::kNone, others) &&

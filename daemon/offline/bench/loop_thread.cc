@@ -33,10 +33,12 @@ void Next(const std::shared_ptr<Pacer>& pacer) {
 
 LoopThread::LoopThread() : work_(io_.get_executor()), thread_([this] { io_.run(); }) {}
 
-LoopThread::~LoopThread() {
+LoopThread::~LoopThread() { Stop(); }
+
+void LoopThread::Stop() {
   work_.reset();
   io_.stop();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void LoopThread::Do(const std::function<void()>& work) {

@@ -111,6 +111,7 @@ class Publishers {
       to_viewer_.Stop("done");
       to_handler_.Stop("done");
     });
+    thread_.Stop();
   }
   Publishers(const Publishers&) = delete;
   Publishers& operator=(const Publishers&) = delete;
@@ -179,6 +180,7 @@ class Readers {
       viewer_.reset();
       bare_.reset();
     });
+    thread_.Stop();
   }
   Readers(const Readers&) = delete;
   Readers& operator=(const Readers&) = delete;

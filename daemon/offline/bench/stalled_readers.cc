@@ -95,6 +95,7 @@ Result<Rows> StalledReaders() {
   LoopThread client_thread;
   Crowd with(server_thread, client_thread, "with");
   Crowd without(server_thread, client_thread, "without");
+  const StopsAtEnd stops({&server_thread, &client_thread});
   if (auto opened = with.Open(kReaders); !opened) return opened.error();
   if (auto opened = without.Open(0); !opened) return opened.error();
 

@@ -36,7 +36,6 @@ Result<void> AddOwnExamples(const OwnTake& take, const reconstruction::Models& b
   options.rate_hz = settings.rate_hz;
   auto made = reconstruction::Reconstruction::Create(take.body, basis, options);
   if (!made) return made.error();
-  const double root_m = body::TPose(take.body.skeleton, take.body.landmarks)(2);
   noise::Random random(settings.seed);
   body::Kinematics at(take.body.skeleton);
   const std::size_t before = examples.poses.size();
@@ -66,12 +65,9 @@ Result<void> AddOwnExamples(const OwnTake& take, const reconstruction::Models& b
     const bool measured = inputs.loads.feet[0].valid && inputs.loads.feet[1].valid &&
                           inputs.hands[0].valid && inputs.hands[1].valid;
     if (since_s < settings.settled_s || !measured) continue;
-    pose.head<3>() = (pose.head<3>() - output.momentum.p_WC_m) / root_m;
-    examples.features.push_back(made->features().values());
-    examples.poses.push_back(std::move(pose));
     const double into_s = take.alignment.ToMotion(time_s);
-    examples.folds.push_back((settings.first_piece + static_cast<int>(into_s / settings.piece_s)) %
-                             kFolds);
+    const int piece = settings.first_piece + static_cast<int>(into_s / settings.piece_s);
+    examples.Add(*made, settings.cues, pose, piece % kFolds);
   }
   if (examples.poses.size() > before) return {};
   return InvalidData(take.session.name +

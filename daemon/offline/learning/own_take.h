@@ -46,6 +46,7 @@ Result<OwnTake> MirrorImage(const OwnTake& take);
 std::vector<LoadClip> OwnLoads(const OwnTake& take);
 
 struct OwnExampleSettings {
+  PoseCues cues = PoseCues::kMomentum;
   double rate_hz = 60;
   double hand_noise_m = 0.01;  ///< Of the motion's fists, where no tracker measured hands.
   double piece_s = 10;         ///< Frames of one piece are in one fold,

@@ -4,10 +4,25 @@
 #include <utility>
 
 #include "common/result/result.h"
+#include "common/virtual/motion/edit.h"
 #include "daemon/offline/learning/ridge.h"
 #include "daemon/offline/learning/scaling.h"
 
 namespace footing::learning {
+
+void PoseExamples::Add(const reconstruction::Reconstruction& made, PoseCues cues,
+                       const Eigen::VectorXd& q, int fold) {
+  const body::Body& body = made.body();
+  Eigen::VectorXd pose =
+      motion::NearestPose(body.skeleton, q, Eigen::VectorXd::Zero(body.skeleton.dof));
+  const bool posture = cues == PoseCues::kPosture;
+  const Eigen::Vector3d from_m =
+      posture ? made.posture().middle_W_m() : made.output().momentum.p_WC_m;
+  pose.head<3>() = (pose.head<3>() - from_m) / body::TPose(body.skeleton, body.landmarks)(2);
+  features.push_back(posture ? made.posture().features().values() : made.features().values());
+  poses.push_back(std::move(pose));
+  folds.push_back(fold);
+}
 
 FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen::VectorXd& scale,
                                        const RandomWaves& waves) {
@@ -40,11 +55,13 @@ FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen
   return fitted;
 }
 
-void AppendTensors(const FittedPoseRegression& fitted, model::Model& model) {
-  const auto add = [&model](const char* name, const Eigen::MatrixXd& rows) {
+void AppendTensors(const FittedPoseRegression& fitted, model::Model& model,
+                   const std::string& prefix) {
+  const auto add = [&](const std::string& name, const Eigen::MatrixXd& rows) {
     std::vector<std::uint32_t> shape{static_cast<std::uint32_t>(rows.rows())};
     if (rows.cols() > 1) shape.push_back(static_cast<std::uint32_t>(rows.cols()));
-    model.tensors.push_back({.name = name, .shape = shape, .values = ToFloats(rows.transpose())});
+    model.tensors.push_back(
+        {.name = prefix + name, .shape = shape, .values = ToFloats(rows.transpose())});
   };
   add("feature_mean", fitted.regression.mean);
   add("feature_scale", fitted.regression.scale);

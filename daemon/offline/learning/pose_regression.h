@@ -1,13 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "common/model/model.h"
 #include "daemon/offline/learning/ridge.h"
 #include "daemon/simulation/reconstruction/features.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
 
 namespace footing::learning {
+
+/// By what a pose is to be foreseen: hands and feet alone, or with the momentum too.
+enum class PoseCues { kPosture, kMomentum };
 
 /// What a pose regression is trained with: a column a frame.
 struct PoseExamples {
@@ -15,6 +20,11 @@ struct PoseExamples {
   /// The root from the estimated centre of mass in parts of the root's height, then the angles.
   std::vector<Eigen::VectorXd> poses;
   std::vector<int> folds;  ///< Frames of one fold are predicted without it; 0 to kFolds - 1.
+
+  /// The frame that `made` has just reconstructed, in truth at the pose `q`, whose angles are taken
+  /// as those nearest to 0 that mean the same.
+  void Add(const reconstruction::Reconstruction& made, PoseCues cues, const Eigen::VectorXd& q,
+           int fold);
 };
 inline constexpr int kFolds = 5;
 
@@ -35,6 +45,8 @@ struct FittedPoseRegression {
 FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen::VectorXd& scale,
                                        const RandomWaves& waves = kPoseWaves);
 
-void AppendTensors(const FittedPoseRegression& fitted, model::Model& model);
+/// Their names begin with `prefix`.
+void AppendTensors(const FittedPoseRegression& fitted, model::Model& model,
+                   const std::string& prefix = "");
 
 }  // namespace footing::learning

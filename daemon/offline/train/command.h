@@ -19,6 +19,7 @@ void AddBasisCommand(CLI::App& app, Shared& shared);
 void AddCascadeCommand(CLI::App& app, Shared& shared);
 void AddComCommand(CLI::App& app, Shared& shared);
 void AddMlpCommand(CLI::App& app, Shared& shared);
+void AddPeopleCommand(CLI::App& app, Shared& shared);
 void AddPoseCommand(CLI::App& app, Shared& shared);
 
 }  // namespace footing::train

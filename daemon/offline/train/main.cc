@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   footing::train::AddCascadeCommand(*app, shared);
   footing::train::AddComCommand(*app, shared);
   footing::train::AddMlpCommand(*app, shared);
+  footing::train::AddPeopleCommand(*app, shared);
   footing::train::AddPoseCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;

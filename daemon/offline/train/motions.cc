@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <set>
 
+#include "common/body/kinematics.h"
+#include "common/body/points.h"
 #include "common/config/data_file.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/motion_files/load.h"
@@ -16,11 +18,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostMotionBytes = 256u << 20;
 constexpr Eigen::Index kFewestFrames = 30;
+constexpr double kMostAwayM = 0.4, kLeastRootShare = 0.5;
 
-std::string SubjectOf(const fs::path& path) {
-  const std::string stem = path.stem().string();
-  return model::SubjectName(stem.substr(0, stem.find('_')));
-}
+std::string SubjectOf(const fs::path& path) { return model::SubjectOfFile(path.stem().string()); }
 
 /// The files of one ending, by name.
 Result<std::vector<fs::path>> FilesOf(const std::string& folder, const std::string& ending) {
@@ -78,6 +78,27 @@ Result<Clip> ReadClip(const std::string& file, const std::string& skeleton) {
               .file = {.name = name, .sha256 = model::Sha256(*text)},
               .motion = learning::Aligned(*motion, body->landmarks),
               .body = *body};
+}
+
+bool StaysInPlace(const Clip& clip) {
+  const body::Skeleton& skeleton = clip.motion.skeleton;
+  const double least_m = kLeastRootShare * body::TPose(skeleton, clip.body.landmarks)(2);
+  body::Kinematics at(skeleton);
+  Eigen::Matrix<double, 4, Eigen::Dynamic> feet_m(4, clip.motion.frames());
+  for (Eigen::Index t = 0; t < clip.motion.frames(); ++t) {
+    if (clip.motion.q(2, t) < least_m) return false;
+    body::ComputeKinematics(skeleton, clip.motion.q.col(t), at);
+    for (int side = 0; side < 2; ++side) {
+      feet_m.block<2, 1>(2 * side, t) = body::Place(body::Ankle(clip.body, side), at).head<2>();
+    }
+  }
+  for (int side = 0; side < 2; ++side) {
+    const Eigen::Vector2d middle_m(learning::Quantile(feet_m.row(2 * side), 0.5),
+                                   learning::Quantile(feet_m.row(2 * side + 1), 0.5));
+    const auto off_m = feet_m.middleRows<2>(2 * side).colwise() - middle_m;
+    if (off_m.colwise().norm().maxCoeff() > kMostAwayM) return false;
+  }
+  return true;
 }
 
 void AddMotionOptions(CLI::App& command, MotionOptions& options) {

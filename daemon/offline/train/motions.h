@@ -20,6 +20,10 @@ struct Clip {
   body::Body body;
 };
 
+/// Both feet stay within 40 cm of where they mostly are, and the hips above half their height in
+/// the T-pose: motion that two boards can be under.
+bool StaysInPlace(const Clip& clip);
+
 struct MotionOptions {
   std::vector<std::string> folders;
   std::vector<std::string> exclude;  ///< Subjects.

@@ -4,21 +4,16 @@
 
 #include "common/cli/cli.h"
 #include "common/log/log.h"
-#include "common/virtual/motion/edit.h"
-#include "daemon/offline/learning/pose_regression.h"
-#include "daemon/offline/pose_run/pose_run.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
 #include "daemon/offline/train/own_recordings.h"
+#include "daemon/offline/train/pose_training.h"
 #include "daemon/offline/train/poses.h"
 
 namespace footing::train {
 namespace {
 
-constexpr double kPosePieceS = 10;  // Frames of one piece are left out together.
-constexpr double kSettledS = 1.5;   // After the T-pose.
-constexpr double kCellNoiseKg = 0.05;
 constexpr double kEnoughPoseS = 90;  // Of range of motion: section 6.
 
 struct PoseOptions {
@@ -27,40 +22,12 @@ struct PoseOptions {
   ModelOptions model;
 };
 
-/// What the sensors would have measured in one motion, and its poses.
-Result<void> AddExamples(const motion::Motion& motion, const std::string& name,
-                         const reconstruction::Models& basis, std::uint64_t seed, int& piece,
-                         learning::PoseExamples& examples) {
-  pose_run::Settings settings;
-  settings.errors.noise_kg = kCellNoiseKg;
-  settings.errors.seed = settings.seed = seed;
-  const auto run = pose_run::RunPose(motion, settings, name);
-  if (!run) return run.error();
-  reconstruction::Options options;
-  options.rate_hz = settings.rate_hz;
-  auto made = reconstruction::Reconstruction::Create(run->body, basis, options);
-  if (!made) return made.error();
-  const double root_m = body::TPose(run->body.skeleton, run->body.landmarks)(2);
-  const auto first = static_cast<std::size_t>((pose_run::kStandS + kSettledS) * settings.rate_hz);
-  const auto piece_frames = static_cast<std::size_t>(kPosePieceS * settings.rate_hz);
-  for (std::size_t i = 0; i < run->frames.size(); ++i) {
-    const auto& output = made->Advance(run->frames[i].inputs);
-    if (i < first) continue;
-    if (!output.calibrated) return InvalidData(name + ": its T-pose never stood still");
-    Eigen::VectorXd pose = run->frames[i].q;
-    pose.head<3>() = (pose.head<3>() - output.momentum.p_WC_m) / root_m;
-    examples.features.push_back(made->features().values());
-    examples.poses.push_back(std::move(pose));
-    examples.folds.push_back((piece + static_cast<int>((i - first) / piece_frames)) %
-                             learning::kFolds);
-  }
-  return {};
-}
-
 /// The same of an own recording, with what its boards measured, `weight` times.
-Result<void> AddOwn(const OwnRecording& own, const reconstruction::Models& basis, int weight,
-                    std::uint64_t seed, int piece, learning::PoseExamples& examples) {
+Result<void> AddOwn(const OwnRecording& own, const reconstruction::Models& models,
+                    learning::PoseCues cues, int weight, std::uint64_t seed, int piece,
+                    learning::PoseExamples& examples) {
   learning::OwnExampleSettings settings;
+  settings.cues = cues;
   settings.piece_s = kPosePieceS;
   settings.first_piece = piece;
   settings.settled_s = kSettledS;
@@ -69,32 +36,30 @@ Result<void> AddOwn(const OwnRecording& own, const reconstruction::Models& basis
   for (int i = 0; i < weight; ++i) {
     for (const learning::OwnTake* take : {&own.take, &*image}) {
       settings.seed = seed++;
-      const auto added = learning::AddOwnExamples(*take, basis, settings, examples);
+      const auto added = learning::AddOwnExamples(*take, models, settings, examples);
       if (!added) return added;
     }
   }
   return {};
 }
 
-/// Of all clips and their mirror images; a clip and its image are in the same folds.
-Result<learning::PoseExamples> Examples(const TrainingSet& set, const model::Model& basis,
-                                        std::uint64_t seed) {
-  const auto models = reconstruction::MakeModels({{"the new basis", basis}});
+/// Of all clips and their mirror images, and of the own recordings.
+Result<learning::PoseExamples> Examples(const TrainingSet& set, const model::Model& model,
+                                        learning::PoseCues cues, std::uint64_t seed) {
+  const auto models = reconstruction::MakeModels({{"the new model", model}});
   if (!models) return models.error();
   learning::PoseExamples examples;
   int piece = 0;
-  for (const Clip& clip : set.clips.train) {
-    for (const bool mirrored : {false, true}) {
-      const auto added = AddExamples(
-          mirrored ? motion::Mirrored(clip.motion) : clip.motion, clip.name, *models,
-          seed + 2 * static_cast<std::uint64_t>(piece) + (mirrored ? 1 : 0), piece, examples);
-      if (!added) return added.error();
+  std::vector<const Clip*> clips;
+  for (const Clip& clip : set.clips.train) clips.push_back(&clip);
+  for (const PoseTake& take : TakesOf(clips, seed, piece)) {
+    if (const auto added = AddExamples(take, *models, cues, examples); !added) {
+      return added.error();
     }
-    piece += 1 + static_cast<int>(clip.motion.duration_s() / kPosePieceS);
-    log::Info("simulated " + clip.name);
+    if (take.mirrored) log::Info("simulated " + take.clip->name);
   }
   for (const OwnRecording& own : set.own) {
-    const auto added = AddOwn(own, *models, set.weight,
+    const auto added = AddOwn(own, *models, cues, set.weight,
                               seed + 2 * static_cast<std::uint64_t>(piece), piece, examples);
     if (!added) return added.error();
     piece += 1 + static_cast<int>(own.take.motion.duration_s() / kPosePieceS);
@@ -113,20 +78,23 @@ int Run(const PoseOptions& options, const Shared& shared) {
   model::Model model =
       NewModel("basis", shared, options.model, set->DataFiles(), set->clips.subjects);
   AppendBasis(trained->basis, model);
-  const auto examples = Examples(*set, model, options.model.seed);
+  // The momentum's filters take postures in, so these are learned first.
+  const std::uint64_t seed = options.model.seed;
+  const auto postures = Examples(*set, model, learning::PoseCues::kPosture, seed);
+  if (!postures) return cli::Report(postures.error());
+  const Eigen::VectorXd& scale = trained->basis.scale;
+  const auto posture = AppendPoses(*postures, learning::PoseCues::kPosture, scale, seed, model);
+  const auto examples = Examples(*set, model, learning::PoseCues::kMomentum, seed);
   if (!examples) return cli::Report(examples.error());
-  learning::RandomWaves waves = learning::kPoseWaves;
-  waves.seed = options.model.seed;
-  const learning::FittedPoseRegression fitted =
-      learning::FitPoseRegression(*examples, trained->basis.scale, waves);
+  const auto fitted = AppendPoses(*examples, learning::PoseCues::kMomentum, scale, seed, model);
   model.kind = "pose";
-  learning::AppendTensors(fitted, model);
   nlohmann::ordered_json report = {{"dof", trained->basis.mean.size()},
                                    {"poses", trained->poses},
                                    {"examples", examples->poses.size()},
                                    {"subjects", set->clips.subjects},
                                    {"ridge", fitted.ridge},
                                    {"left_out_error", fitted.error},
+                                   {"left_out_posture_error", posture.error},
                                    {"spread", fitted.spread}};
   AppendOwn(*set, report);
   return Deliver(model, options.model, report, shared);

@@ -42,10 +42,12 @@ Result<Eigen::MatrixXd> Poses(const std::vector<Clip>& clips,
                          "; train a basis of one layout at a time");
     }
   }
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(clips.front().motion.skeleton.dof);
   for (const motion::Motion& motion : motions) {
     const double step = std::max(1.0, motion.rate_hz / kRateHz);
     for (double at = 0; at < static_cast<double>(motion.frames()); at += step) {
-      columns.emplace_back(motion.q.col(static_cast<Eigen::Index>(at)));
+      columns.push_back(
+          motion::NearestPose(motion.skeleton, motion.q.col(static_cast<Eigen::Index>(at)), zero));
     }
   }
   Eigen::MatrixXd poses(columns.front().size(), static_cast<Eigen::Index>(columns.size()));

@@ -50,7 +50,8 @@ struct IncomingReport {
 
 /// Called on the io thread.
 struct SourceHandlers {
-  std::function<void(DeviceHandle, const DeviceIdentity&)> on_attach;
+  /// Says why the device is not taken, or nothing; what one sends that is not taken is ignored.
+  std::function<std::string(DeviceHandle, const DeviceIdentity&)> on_attach;
   std::function<void(DeviceHandle, const IncomingReport&)> on_report;
   std::function<void(DeviceHandle, const std::string& reason)> on_detach;
   /// What trackers and simulators send without a device, unchecked; null: dropped.

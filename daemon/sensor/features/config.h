@@ -81,9 +81,6 @@ struct PhaseConfig {
   double agree_share = 0.15;
   /// For this many cycles after they agreed, one of them may show another period: its phase jumps.
   double disagree_cycles = 1.25;
-  /// Controllers that swing further than this off their fronts are not compared in the axes of
-  /// their swings: to which end of the line the front belongs would be a guess. 60 degrees.
-  double most_turned_rad = 1.05;
 };
 
 /// 4) Amplitude and 5) inclination in motion.
@@ -103,6 +100,11 @@ struct CycleConfig {
   double least_swing_mps2 = 1.0;
   double swing_ratio = 2.5;
   double least_level = 0.3;
+  /// To which end of the line the front belongs is a guess for a swing further off the front than
+  /// the first, unless the controller was turned there while it swung; no hand turns beyond the
+  /// second. 60 and 120 degrees.
+  double most_turned_rad = 1.05;
+  double furthest_turned_rad = 2.1;
 };
 
 struct Config {

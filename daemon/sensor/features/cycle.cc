@@ -139,6 +139,20 @@ SwingLine FindSwing(const Block& samples, const Eigen::Vector3d& mean_mps2,
   return {true, angle_rad, std::cos(angle_rad) * front + std::sin(angle_rad) * left, up};
 }
 
+SwingLine Continued(const SwingLine& line, const SwingEnd& before, const CycleConfig& config) {
+  const bool other = line.valid && before.known &&
+                     std::abs(WrapAngle(line.angle_rad - before.angle_rad)) > kPi / 2;
+  const double angle_rad = WrapAngle(line.angle_rad + kPi);
+  if (!other || std::abs(angle_rad) > config.furthest_turned_rad) return line;
+  return {true, angle_rad, -line.along, line.up};
+}
+
+SwingEnd Next(const SwingEnd& before, const SwingLine& line, const CycleConfig& config) {
+  if (!line.valid) return before;
+  const bool known = before.known || std::abs(line.angle_rad) <= config.most_turned_rad;
+  return {known, Continued(line, before, config).angle_rad};
+}
+
 Inclination InclinationOf(const Eigen::Vector3d& gravity_mps2) {
   const auto angle = [](double along_mps2) {
     return std::asin(std::clamp(along_mps2 / kStandardGravityMps2, -1.0, 1.0));

@@ -11,10 +11,23 @@ namespace footing::features {
 /// which keeps its inclination.
 struct SwingLine {
   bool valid = false;
-  double angle_rad = 0;  ///< From S's front, left positive, in (-pi/2, pi/2].
+  double angle_rad = 0;                             ///< From S's front, left positive.
   Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< The same as a unit vector in S,
   Eigen::Vector3d up = Eigen::Vector3d::Zero();     ///< and the vertical one.
 };
+
+/// Which end of a swing's line is its front, once known: a controller that was turned
+/// within 60 degrees of the swing, and is turned further while it swings, keeps its front's end.
+struct SwingEnd {
+  bool known = false;
+  double angle_rad = 0;  ///< Of the last line, from S's front, left positive.
+};
+
+/// The line's end that goes on from `before`; while none is known, or where it would be turned
+/// further than hands are, the one nearer to the front.
+SwingLine Continued(const SwingLine& line, const SwingEnd& before, const CycleConfig& config);
+/// What is known after that line: a line that is not valid changes nothing.
+SwingEnd Next(const SwingEnd& before, const SwingLine& line, const CycleConfig& config);
 
 /// What the newest whole cycle of raw samples says (section 6, features 4 and 5).
 struct Cycle {
@@ -29,8 +42,9 @@ struct Cycle {
   SwingLine swing;
 };
 
-/// Which way the samples (m/s², one a row) swing across `mean_mps2`, which points up. Not valid
-/// when they hardly do, or not along a line, or when S's left-right axis is near the vertical.
+/// Which way, in (-pi/2, pi/2], the samples (m/s², one a row) swing across `mean_mps2`, which
+/// points up. Not valid when they hardly do, or not along a line, or when S's left-right axis is
+/// near the vertical.
 SwingLine FindSwing(const Eigen::Matrix<double, Eigen::Dynamic, 3>& samples,
                     const Eigen::Vector3d& mean_mps2, const CycleConfig& config);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "common/units/units.h"
-#include "daemon/sensor/features/cycle.h"
 
 namespace footing::features {
 
@@ -25,6 +24,7 @@ void DeviceFeatureExtractor::Forget() {
   moving_ = {};
   cadence_ = {};
   estimate_ = {};
+  swing_end_ = {};
   features_.moving = features_.frequency_valid = features_.amplitude_valid = false;
   features_.inclination_valid = features_.held = features_.swing_valid = false;
   features_.frequency_hz = features_.amplitude_mps2 = 0;
@@ -32,6 +32,7 @@ void DeviceFeatureExtractor::Forget() {
 }
 
 void DeviceFeatureExtractor::MeasureRest() {
+  swing_end_ = {};
   features_.held = features_.amplitude_valid = features_.swing_valid = false;
   features_.amplitude_mps2 = features_.swing_rad = 0;
   const int count =
@@ -59,7 +60,8 @@ void DeviceFeatureExtractor::MeasureCycle() {
   features_.amplitude_valid = true;
   if (cycle.clipped) return;
   features_.swing_valid = cycle.swing.valid;
-  features_.swing_rad = cycle.swing.angle_rad;
+  features_.swing_rad = Continued(cycle.swing, swing_end_, config_.cycle).angle_rad;
+  swing_end_ = Next(swing_end_, cycle.swing, config_.cycle);
   const Inclination inclination = InclinationOf(cycle.mean_mps2);
   features_.inclination_valid = true;
   features_.roll_rad = inclination.roll_rad;

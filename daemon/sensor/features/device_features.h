@@ -5,6 +5,7 @@
 #include "common/stream/sensor.h"
 #include "daemon/sensor/features/cadence.h"
 #include "daemon/sensor/features/config.h"
+#include "daemon/sensor/features/cycle.h"
 #include "daemon/sensor/features/moving.h"
 #include "daemon/sensor/features/sample_grid.h"
 
@@ -24,6 +25,9 @@ class DeviceFeatureExtractor {
   /// The features as of the newest sample. `partner` is the estimate of the other hand or leg.
   const stream::DeviceFeatures& Compute(const PeriodEstimate& partner);
 
+  /// Since the motion began.
+  const SwingEnd& swing_end() const { return swing_end_; }
+
   std::uint32_t device() const { return features_.device; }
   stream::DeviceRole role() const { return features_.role; }
   const SampleGrid& grid() const { return grid_; }
@@ -41,6 +45,7 @@ class DeviceFeatureExtractor {
   Moving moving_;
   PeriodEstimate estimate_;
   Cadence cadence_;
+  SwingEnd swing_end_;
   double elapsed_s_ = 0;  ///< Between the newest points of the last two Observe; 0 nothing new.
   std::int64_t newest_received_ns_ = 0;
   std::uint32_t beginnings_ = 0;     ///< Of the grid, when last observed.

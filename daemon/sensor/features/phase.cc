@@ -7,7 +7,6 @@
 #include <complex>
 
 #include "common/units/units.h"
-#include "daemon/sensor/features/cycle.h"
 
 namespace footing::features {
 namespace {
@@ -101,14 +100,15 @@ PhaseEstimate PeakOf(const Spectrum& left, const Spectrum& right, const PhaseCon
 }
 
 /// The spectrum in the axes along the horizontal swing, across it and up: however the controller
-/// is turned about the vertical, within most_turned_rad, or inclined. False when the swing has no
-/// such direction.
-bool Align(const SampleGrid& grid, int late, double steps, const PhaseConfig& config,
+/// is turned about the vertical, or inclined. False when the swing has no such direction, or when
+/// its end is not known.
+bool Align(const SampleGrid& grid, int late, double steps, const SwingEnd& end,
            const CycleConfig& cycle, Spectrum& spectrum) {
   const int count = static_cast<int>(std::floor(steps)) + 2;
   const Eigen::Vector3d mean = CycleMean(grid, late, steps).transpose();
-  const SwingLine swing = FindSwing(grid.Filtered(count + late).topRows(count), mean, cycle);
-  if (!swing.valid || std::abs(swing.angle_rad) > config.most_turned_rad) return false;
+  const SwingLine line = FindSwing(grid.Filtered(count + late).topRows(count), mean, cycle);
+  if (!line.valid || !Next(end, line, cycle).known) return false;
+  const SwingLine swing = Continued(line, end, cycle);
   Eigen::Matrix3d axes;
   axes << swing.along.transpose(), swing.up.cross(swing.along).transpose(), swing.up.transpose();
   for (auto& harmonic : spectrum) harmonic = axes.cast<std::complex<double>>() * harmonic;
@@ -118,6 +118,7 @@ bool Align(const SampleGrid& grid, int late, double steps, const PhaseConfig& co
 }  // namespace
 
 PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double period_s,
+                        const SwingEnd& left_end, const SwingEnd& right_end,
                         const PhaseConfig& config, const CycleConfig& cycle) {
   const double steps = period_s * kGridHz;
   const auto common = std::min(left.newest_index(), right.newest_index());
@@ -133,8 +134,8 @@ PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double 
       WithoutTwist(CycleSpectrum(right, late_right, steps), right, late_right, steps, config);
   const PhaseEstimate estimate = PeakOf(left_spectrum, right_spectrum, config);
   if (estimate.found) return estimate;
-  if (!Align(left, late_left, steps, config, cycle, left_spectrum) ||
-      !Align(right, late_right, steps, config, cycle, right_spectrum)) {
+  if (!Align(left, late_left, steps, left_end, cycle, left_spectrum) ||
+      !Align(right, late_right, steps, right_end, cycle, right_spectrum)) {
     return {};
   }
   return PeakOf(left_spectrum, right_spectrum, config);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemon/sensor/features/config.h"
+#include "daemon/sensor/features/cycle.h"
 #include "daemon/sensor/features/sample_grid.h"
 
 /// Phase by cross-correlation (section 6, eq. 4).
@@ -25,8 +26,9 @@ struct PhaseEstimate {
 
 /// `period_s` > 0 is common to both. Not found: no whole common cycle, one stands still, or the two
 /// do not swing alike. Controllers that swing alike but are turned against each other are compared
-/// in the axes of their swings.
+/// in the axes of their swings, whose ends must be known or within 60 degrees of the fronts.
 PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double period_s,
+                        const SwingEnd& left_end, const SwingEnd& right_end,
                         const PhaseConfig& config, const CycleConfig& cycle);
 
 /// The phase that is published: jumps must persist, a loss is bridged for a while.

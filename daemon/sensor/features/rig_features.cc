@@ -90,7 +90,8 @@ stream::PairFeatures RigFeatureExtractor::ComputePair(
     // While both periods are merely held, the newest cycle is none of theirs.
     const bool shown = period_s > 0 && (Shows(one, period_s) || Shows(other, period_s));
     const PhaseEstimate estimate =
-        shown ? FindPhase(one.grid(), other.grid(), period_s, config_.phase, config_.cycle)
+        shown ? FindPhase(one.grid(), other.grid(), period_s, one.swing_end(), other.swing_end(),
+                          config_.phase, config_.cycle)
               : PhaseEstimate{};
     if (period_s > 0) pair.period_s = period_s;
     pair.phase = Next(pair.phase, estimate, pair.period_s, elapsed_s, config_.phase);

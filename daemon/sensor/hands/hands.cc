@@ -25,15 +25,34 @@ std::string ProblemOfHead(const std::string& name, std::int64_t age_ns) {
   return "";
 }
 
+/// The matrix of deviations and covariances has no negative direction, rounding apart.
+bool IsCovariance(const Eigen::Vector3d& sd_m, const Eigen::Vector3d& covariance_m2) {
+  if (!covariance_m2.allFinite()) return false;
+  const double xy = covariance_m2.x() / (sd_m.x() * sd_m.y());
+  const double xz = covariance_m2.y() / (sd_m.x() * sd_m.z());
+  const double yz = covariance_m2.z() / (sd_m.y() * sd_m.z());
+  constexpr double kMost = 1 + 1e-9;
+  const double determinant = 1 + 2 * xy * xz * yz - xy * xy - xz * xz - yz * yz;
+  return std::abs(xy) <= kMost && std::abs(xz) <= kMost && std::abs(yz) <= kMost &&
+         determinant >= -1e-9;
+}
+
 std::string ProblemOf(const stream::TrackedPoint& point) {
   if (point.role == DeviceRole::kUnspecified) return "no role that is known";
   if (!IsNear(point.position_m)) return "a position that is not within 10 m";
+  if (!(point.confidence >= 0 && point.confidence <= 1)) {
+    return "a confidence that is not from 0 to 1";
+  }
+  if (point.confidence == 0) {
+    const bool finite = point.sd_m.allFinite() && point.covariance_m2.allFinite();
+    return finite ? "" : "a number that is not finite";
+  }
   const auto is_sd = [](double sd_m) { return sd_m > 0 && sd_m <= kLargestSdM; };
   if (!is_sd(point.sd_m.x()) || !is_sd(point.sd_m.y()) || !is_sd(point.sd_m.z())) {
     return "a standard deviation that is not above 0 and at most 1 m";
   }
-  if (!(point.confidence >= 0 && point.confidence <= 1)) {
-    return "a confidence that is not from 0 to 1";
+  if (!IsCovariance(point.sd_m, point.covariance_m2)) {
+    return "covariances that do not fit its standard deviations";
   }
   return "";
 }
@@ -105,6 +124,9 @@ std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::i
     sample.confidence = point.confidence;
     sample.simulated = frame.simulated;
     sample.tracker = frame.tracker;
+    sample.covariance_m2 = point.covariance_m2;
+    sample.saturated = point.saturated;
+    sample.occluded = point.occluded;
     samples.push_back(std::move(sample));
   }
   return samples;

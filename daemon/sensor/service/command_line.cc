@@ -15,7 +15,7 @@ std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_cod
   config.Bind(binder);
   std::string file;
   std::vector<std::string> settings, listen, sources;
-  bool print = false, check = false, quiet = false;
+  bool print = false, check = false, quiet = false, insecure_lan = false;
   auto app = cli::NewApp("footingd",
                          "Sensor daemon: reads devices, publishes samples, features and forces.",
                          "  footingd\n"
@@ -29,6 +29,8 @@ std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_cod
   app->add_option(
       "--source", sources,
       "Source of devices: hid, or stream:ADDRESS for simulated devices; may be repeated");
+  app->add_flag("--insecure-lan", insecure_lan,
+                "Allow --listen beyond this host WITHOUT ENCRYPTION; needs --set token_file=FILE");
   app->add_flag("--print-config", print, "Print the effective config and exit");
   app->add_flag("--check-config", check, "Check the config and exit");
   app->add_flag("--json", line.json, "Print the listening addresses as one JSON object");
@@ -42,6 +44,7 @@ std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_cod
   auto done = binder.Apply(file, settings);
   if (!listen.empty()) config.listen = listen;
   if (!sources.empty()) config.sources = sources;
+  config.insecure_lan = config.insecure_lan || insecure_lan;
   if (done) done = Check(config);
   if (!done) {
     exit_code = cli::Report(done.error());

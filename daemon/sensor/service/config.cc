@@ -8,6 +8,9 @@ void Config::Bind(config::Binder& binder) {
   binder.TextList("listen", listen, "Addresses for clients, unix:PATH or tcp:HOST:PORT");
   binder.TextList("sources", sources,
                   "Sources of devices: hid, or stream:ADDRESS for simulated devices");
+  binder.Flag("tcp_devices", tcp_devices,
+              "Allow stream:tcp:HOST:PORT as a source: then every user of this host may attach "
+              "simulated devices");
   binder.TextMap("roles", roles,
                  "Rig and role of each serial, e.g. {\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}",
                  [](const std::string& text) {
@@ -37,6 +40,11 @@ void Config::Bind(config::Binder& binder) {
   binder.Flag("camera", camera, "Enable the infrared cameras of Wiimotes");
   binder.Number("status_interval_s", status_interval_s, 0, 3600,
                 "Interval of status requests to devices, s (0: never)");
+  binder.Text("token_file", token_file,
+              "File (mode 0600) with a token by which clients over TCP get the role control");
+  binder.Flag("insecure_lan", insecure_lan,
+              "Listen beyond this host WITHOUT ENCRYPTION; needs token_file");
+  sessions.Bind(binder);
 }
 
 Result<std::optional<transport::Address>> ParseSource(const std::string& text) {
@@ -55,7 +63,16 @@ Result<void> Check(const Config& config) {
     if (const auto address = transport::ParseAddress(text); !address) return address.error();
   }
   for (const std::string& text : config.sources) {
-    if (const auto source = ParseSource(text); !source) return source.error();
+    const auto source = ParseSource(text);
+    if (!source) return source.error();
+    if (*source && (*source)->kind == transport::Address::Kind::kTcp && !config.tcp_devices) {
+      return UsageError("source " + text +
+                        ": over TCP every user of this host may attach devices; use "
+                        "stream:unix:PATH, or allow it with --set tcp_devices=true");
+    }
+  }
+  if (config.insecure_lan && config.token_file.empty()) {
+    return UsageError("config: insecure_lan needs a token_file");
   }
   if (config.plate.contact_on_n < config.plate.contact_off_n) {
     return UsageError("config: board_contact_on_n must not be below board_contact_off_n");

@@ -9,6 +9,7 @@
 #include "common/config/config.h"
 #include "common/result/result.h"
 #include "common/transport/address.h"
+#include "common/transport/session_limits.h"
 #include "common/units/units.h"
 
 namespace footing::sensor {
@@ -17,6 +18,8 @@ namespace footing::sensor {
 struct Config {
   std::vector<std::string> listen;   ///< Empty: the default address of "sensor".
   std::vector<std::string> sources;  ///< Empty: hid, and stream: at the default of "devices".
+  /// Let every user of this host attach simulated devices: a source may be stream:tcp:.
+  bool tcp_devices = false;
   /// Serial to "rig/role"; overrides what a simulated device requests.
   std::map<std::string, std::string> roles;
   std::string default_rig = "main";
@@ -29,6 +32,9 @@ struct Config {
   bool motion_plus = true;        ///< Look for MotionPlus and use it.
   bool camera = false;            ///< Switch the infrared cameras of Wiimotes on.
   double status_interval_s = 60;  ///< Between requests for the status of devices; 0: never.
+  transport::SessionLimits sessions;
+  std::string token_file;  ///< Whose token gives the role control over TCP; empty: nothing does.
+  bool insecure_lan = false;
 
   void Bind(config::Binder& binder);
 };

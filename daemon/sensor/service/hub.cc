@@ -8,6 +8,19 @@ namespace {
 
 constexpr std::int64_t kStatusIntervalNs = 200'000'000;
 
+/// Why a second device of one serial is not taken; empty when it is.
+std::string WhyNotTwice(const Device& first, const devices::DeviceIdentity& second,
+                        bool second_link) {
+  if (!second.simulated)
+    return "";  // A real one that is found again, or in a simulated one's place.
+  if (!first.simulated()) {
+    return "a simulated device with the serial of the real device " + second.serial + " is ignored";
+  }
+  if (second_link) return "";
+  return "a second simulated device with the serial " + second.serial +
+         " is ignored: the first one is still there; end it, or choose another serial or seed";
+}
+
 }  // namespace
 
 Hub::Hub(const Config& config, Ports ports)
@@ -66,27 +79,30 @@ Device* Hub::AddDevice() {
   return devices_.back().get();
 }
 
-void Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
+std::string Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
   Device* device = WithSerial(identity.serial);
-  if (device != nullptr && device->attached() && !device->simulated() && identity.simulated) {
-    ports_.log("a simulated device with the serial of the real device " + identity.serial +
-               " is ignored");
-    return;
+  const bool there = device != nullptr && device->attached();
+  const bool second_link =
+      there && device->has_second_link() && device->identity().bus != identity.bus;
+  const std::string why = there ? WhyNotTwice(*device, identity, second_link) : "";
+  if (!why.empty()) {
+    ports_.log(why);
+    return why;
   }
-  if (device != nullptr && device->attached() && device->has_second_link() &&
-      device->identity().bus != identity.bus) {
+  if (second_link) {
     device->AttachSecond(handle, identity);
     status_due_ = true;
     ports_.log("device " + std::to_string(device->number()) + " (" + identity.serial +
                ") is on a second link: " + identity.place);
     Flush(*device);
-    return;
+    return "";
   }
   if (device == nullptr) device = AddDevice();
   if (device == nullptr) {
-    ports_.log("more than " + std::to_string(kMaxDevices) + " devices: " + identity.serial +
-               " is ignored");
-    return;
+    const std::string full =
+        "more than " + std::to_string(kMaxDevices) + " devices: " + identity.serial + " is ignored";
+    ports_.log(full);
+    return full;
   }
   Device::Stored stored;
   if (ports_.load_calibration) stored = ports_.load_calibration(identity.serial);
@@ -98,6 +114,7 @@ void Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& 
              identity.place);
   device->Advance(ports_.now_ns());
   Flush(*device);
+  return "";
 }
 
 void Hub::OnDetach(devices::DeviceHandle handle, const std::string& reason) {

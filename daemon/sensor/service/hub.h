@@ -50,8 +50,9 @@ class Hub {
 
   Hub(const Config& config, Ports ports);
 
-  /// As SourceHandlers.
-  void OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity);
+  /// As SourceHandlers. A simulated device with the serial of another one that is there is not
+  /// taken; a real device takes the place of a simulated one.
+  std::string OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity);
   void OnReport(devices::DeviceHandle handle, const devices::IncomingReport& report);
   void OnDetach(devices::DeviceHandle handle, const std::string& reason);
   /// Published with the next tick; what makes no sense is refused, counted and said now and then.

@@ -1,12 +1,13 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "common/cli/cli.h"
+#include "common/clock/clock.h"
 #include "common/service_manager/service_manager.h"
+#include "common/timer/timer.h"
 #include "daemon/sensor/service/command_line.h"
 #include "daemon/sensor/service/service.h"
 
@@ -24,14 +25,14 @@ int Run(const sensor::CommandLine& line) {
   }
   service_manager::Notifier notifier(io);
   notifier.Ready("listening on " + (*service)->listening_on().front());
-  boost::asio::steady_timer goodbye(io);  // Time for the goodbyes to leave.
+  timer::Timer goodbye(io);  // Time for the goodbyes to leave.
   signals.async_wait([&](boost::system::error_code, int) {
     notifier.Stopping();
     (*service)->Stop("footingd ends");
     goodbye.expires_after(std::chrono::milliseconds(200));
     goodbye.async_wait([&io](boost::system::error_code) { io.stop(); });
   });
-  io.run();
+  timer::Run(io);
   return 0;
 }
 
@@ -40,5 +41,7 @@ int Run(const sensor::CommandLine& line) {
 int main(int argc, char** argv) {
   int exit_code = 0;
   const auto line = sensor::ParseCommandLine(argc, argv, exit_code);
-  return line ? Run(*line) : exit_code;
+  if (!line) return exit_code;
+  const auto followed = clock::FollowTimekeeper();
+  return followed ? Run(*line) : cli::Report(followed.error());
 }

@@ -1,23 +1,26 @@
 #include "daemon/sensor/service/service.h"
 
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "common/clock/clock.h"
 #include "common/log/log.h"
 #include "common/service_manager/service_manager.h"
+#include "common/timer/timer.h"
 #include "common/transport/address.h"
 #include "common/transport/server.h"
+#include "common/transport/token.h"
 #include "common/units/time.h"
-#include "common/wire/wire.h"
 #include "daemon/sensor/devices/hid_source.h"
 #include "daemon/sensor/devices/socket_source.h"
-#include "daemon/sensor/service/answer.h"
+#include "daemon/sensor/service/commands.h"
 #include "daemon/sensor/service/hub.h"
+#include "daemon/sensor/service/limited_log.h"
 #include "daemon/sensor/service/publish.h"
 #include "daemon/sensor/setup/calibration_store.h"
+#include "daemon/sensor/setup/disk_writer.h"
 #include "daemon/sensor/setup/state_directory.h"
 
 namespace footing::sensor {
@@ -25,18 +28,25 @@ namespace {
 
 using devices::DeviceHandle;
 
+/// Late ticks are made up for up to this many; more are left out.
+constexpr int kMostTicksBehind = 10;
+
 /// The socket that the service manager passed under this name, or the user's own.
 std::string OwnAddress(const std::string& name) {
   if (service_manager::PassedSocket(name) >= 0) return "fd:" + name;
   return transport::DefaultAddress(name, true).Text();
 }
 
-transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version) {
+transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
+                                           const std::string& token) {
   transport::ServerOptions options;
   options.server_id = "footingd";
   options.version = version;
   options.channels = Channels();
   options.tick_rate_hz = config.tick_rate_hz;
+  options.sessions = config.sessions;
+  options.token = token;
+  options.insecure_lan = config.insecure_lan;
   options.capabilities = {"features", "boards",   "raw",    "rumble", "leds",
                           "assign",   "nunchuk",  "camera", "sphere", "setup",
                           "tare",     "mounting", "layout", "hands",  "contacts"};
@@ -44,41 +54,50 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
 }
 
 /// The configured state directory; none when nothing is to be kept.
-setup::Storage StorageOf(setup::StateDirectory& directory, const Config& config) {
-  return config.state_directory == "none" ? setup::Storage() : setup::StorageIn(directory);
+setup::Storage StorageOf(setup::StateDirectory& directory, setup::DiskWriter& disk,
+                         const Config& config) {
+  return config.state_directory == "none" ? setup::Storage() : setup::StorageIn(directory, disk);
 }
 
 }  // namespace
 
 class Service::Implementation : public std::enable_shared_from_this<Service::Implementation> {
  public:
-  Implementation(boost::asio::io_context& io, const Config& config, const std::string& version)
+  Implementation(boost::asio::io_context& io, const Config& config, const std::string& version,
+                 const std::string& token)
       : io_(io),
         config_(config),
         timer_(io),
+        warning_(io),
         state_(setup::StatePath(config.state_directory),
                [](const std::string& line) { log::Warning(line); }),
-        calibrations_(StorageOf(state_, config)),
-        hub_(config,
-             {[this](DeviceHandle device, const reports::OutputReport& report) {
-                Send(device, report);
-              },
-              [](const std::string& line) { log::Info(line); }, [] { return clock::MonotonicNs(); },
-              [this](DeviceHandle device, std::uint8_t id, std::size_t size) {
-                RequestFeature(device, id, size);
-              },
-              [this](const std::string& serial) { return calibrations_.Load(serial); },
-              [this](const std::string& serial, const std::vector<std::uint8_t>& bytes) {
-                calibrations_.Save(serial, bytes);
-              },
-              StorageOf(state_, config)}),
+        disk_(
+            io,
+            [this](const std::string& name, const std::string& content) {
+              return state_.Write(name, content);
+            },
+            [this](const std::string& problem) { state_.SayWritten(problem); }),
+        calibrations_(StorageOf(state_, disk_, config)),
+        hub_(config, {[this](DeviceHandle device, const reports::OutputReport& report) {
+                        Send(device, report);
+                      },
+                      [this](const std::string& line) { changes_.Say(line, clock::MonotonicNs()); },
+                      [] { return clock::MonotonicNs(); },
+                      [this](DeviceHandle device, std::uint8_t id, std::size_t size) {
+                        RequestFeature(device, id, size);
+                      },
+                      [this](const std::string& serial) { return calibrations_.Load(serial); },
+                      [this](const std::string& serial, const std::vector<std::uint8_t>& bytes) {
+                        calibrations_.Save(serial, bytes);
+                      },
+                      StorageOf(state_, disk_, config)}),
         server_(
-            io, MakeServerOptions(config, version),
+            io, MakeServerOptions(config, version, token),
             {[this](const transport::SessionInfo& session, const v1::Command& command) {
                return OnCommand(session, command);
              },
-             [this](const transport::SessionInfo& session) { hub_.EndSession(session.session); }}) {
-  }
+             [this](const transport::SessionInfo& session) { hub_.EndSession(session.session); },
+             [](const std::string& line) { log::Warning(line); }}) {}
 
   Result<void> Open() {
     auto listen = config_.listen;
@@ -101,13 +120,15 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   }
 
   void Start() {
-    next_tick_ = std::chrono::steady_clock::now();
+    next_tick_ = timer::Now();
     WaitForTick();
+    if (config_.insecure_lan) WarnOfLan();
   }
 
   void Stop(const std::string& reason) {
     hub_.StopMotors();
     timer_.cancel();
+    warning_.cancel();
     for (const auto& source : sources_) source->Stop();
     server_.Stop(reason);
   }
@@ -115,6 +136,15 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   const std::vector<std::string>& listening_on() const { return listening_on_; }
 
  private:
+  void WarnOfLan() {
+    log::Warning("insecure_lan: what goes beyond this host is NOT ENCRYPTED, the token included");
+    warning_.expires_after(std::chrono::hours(1));
+    warning_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
+      const auto self = weak.lock();
+      if (!error && self) self->WarnOfLan();
+    });
+  }
+
   Result<void> OpenSource(const std::string& text) {
     const auto address = ParseSource(text);
     if (!address) return address.error();
@@ -122,7 +152,9 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     devices::SourceHandlers handlers;
     handlers.on_attach = [this, index](DeviceHandle device, const devices::DeviceIdentity& who) {
       source_of_[device] = index;
-      hub_.OnAttach(device, who);
+      std::string why_not = hub_.OnAttach(device, who);
+      if (!why_not.empty()) source_of_.erase(device);
+      return why_not;
     };
     handlers.on_report = [this](DeviceHandle device, const devices::IncomingReport& report) {
       hub_.OnReport(device, report);
@@ -140,7 +172,9 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     handlers.on_contacts = [this](std::int64_t received_ns, const stream::ContactFrame& frame) {
       hub_.OnContacts(received_ns, frame);
     };
-    handlers.on_trouble = [](const std::string& line) { log::Warning(line); };
+    handlers.on_trouble = [this](const std::string& line) {
+      troubles_.Say(line, clock::MonotonicNs());
+    };
     const auto new_handle = [this] { return ++last_handle_; };
     if (!*address) {
       sources_.push_back(std::make_unique<devices::HidSource>(io_, new_handle, handlers));
@@ -169,9 +203,12 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
 
   void WaitForTick() {
     const auto period = std::chrono::nanoseconds(PeriodNanoseconds(config_.tick_rate_hz));
-    const auto now = std::chrono::steady_clock::now();
+    const auto now = timer::Now();
     next_tick_ += period;
-    if (now - next_tick_ > 10 * period) next_tick_ = now;  // After a pause of the machine.
+    if (now - next_tick_ > kMostTicksBehind * period) {
+      server_.NoteLateTicks(static_cast<std::uint64_t>((now - next_tick_) / period));
+      next_tick_ = now;
+    }
     timer_.expires_at(next_tick_);
     timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
       const auto self = weak.lock();
@@ -182,88 +219,34 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     });
   }
 
-  v1::CommandResult OnCommand(const transport::SessionInfo& session, const v1::Command& command) {
-    switch (command.action_case()) {
-      case v1::Command::kSetRumble: {
-        const v1::SetRumble& rumble = command.set_rumble();
-        return Answer(command, hub_.SetRumble(session.session, rumble.device(), rumble.on(),
-                                              rumble.lease_ms() * 1e-3));
+  /// What is to be kept is answered when it is on the disk; ticks do not wait for that.
+  std::optional<v1::CommandResult> OnCommand(const transport::SessionInfo& session,
+                                             const v1::Command& command) {
+    const std::uint64_t before = disk_.last_save();
+    v1::CommandResult result = CarryOut(hub_, config_, session.session, command);
+    if (disk_.last_save() == before) return result;
+    disk_.OnWritten([this, session = session.session, result](const std::string& problem) mutable {
+      if (!problem.empty()) {
+        result.set_message(result.message() + (result.message().empty() ? "" : "; ") +
+                           "it lasts until footingd ends: " + problem);
       }
-      case v1::Command::kSetLeds:
-        return Answer(command, hub_.SetLeds(command.set_leds().device(),
-                                            static_cast<std::uint8_t>(command.set_leds().leds())));
-      case v1::Command::kAssignRole: {
-        const v1::AssignRole& assign = command.assign_role();
-        Binding binding = {assign.rig().empty() ? config_.default_rig : assign.rig(),
-                           stream::DeviceRole::kUnspecified};
-        if (v1::DeviceRole_IsValid(assign.role())) {
-          binding.role = static_cast<stream::DeviceRole>(assign.role());
-        }
-        return Answer(command, hub_.AssignRole(assign.serial(), binding));
-      }
-      case v1::Command::kSetSphere:
-        return Answer(command,
-                      hub_.SetSphere(command.set_sphere().device(), command.set_sphere().rgb()));
-      case v1::Command::kSetCamera:
-        return Answer(command,
-                      hub_.SetCamera(command.set_camera().device(), command.set_camera().on()));
-      case v1::Command::kRequestDeviceStatus:
-        return Answer(command, hub_.RequestDeviceStatus(command.request_device_status().device()));
-      case v1::Command::kPutBack:
-      case v1::Command::kPush:
-      case v1::Command::kDirectGait:
-      case v1::Command::kAppendSegment:
-      case v1::Command::kCalibrateTPose:
-      case v1::Command::kSetSubject:
-      case v1::Command::kStartTrial:
-      case v1::Command::kStopTrial:
-      case v1::Command::kCorrectFailure:
-      case v1::Command::kSetInterface:
-      case v1::Command::kTakeLease:
-      case v1::Command::kReleaseLease:
-      case v1::Command::kSetGame:
-        return Answer(command, UsageError("that is a command for footing-sim"));
-      case v1::Command::kTare:
-      case v1::Command::kSolveMounting:
-      case v1::Command::kSetBoardLayout:
-      case v1::Command::kRecordSetup:
-        return OnSetupCommand(command);
-      case v1::Command::ACTION_NOT_SET:
-        return Answer(command, UsageError("the command has no action that footingd knows"));
-    }
-    return Answer(command, UsageError("the command has no action that footingd knows"));
-  }
-
-  v1::CommandResult OnSetupCommand(const v1::Command& command) {
-    if (command.has_tare()) {
-      const v1::Tare& tare = command.tare();
-      return AnswerMeasured(command, hub_.Tare(tare.serial(), tare.window_s(), tare.clear()));
-    }
-    if (command.has_solve_mounting()) {
-      const v1::SolveMounting& solve = command.solve_mounting();
-      if (solve.clear()) return AnswerMeasured(command, hub_.ClearMounting(solve.serial()));
-      return AnswerMeasured(
-          command,
-          hub_.SolveMounting(solve.serial(), {solve.still_from_ns(), solve.still_to_ns(),
-                                              solve.steps_from_ns(), solve.steps_to_ns()}));
-    }
-    if (command.has_set_board_layout()) {
-      return AnswerMeasured(
-          command, hub_.SetBoardLayout(wire::FromProto(command.set_board_layout().layout())));
-    }
-    const v1::RecordSetup& record = command.record_setup();
-    return Answer(command,
-                  hub_.RecordSetup(record.rig(), wire::FromProto(record.item()), record.forget()));
+      server_.Answer(session, result);
+    });
+    return std::nullopt;
   }
 
   boost::asio::io_context& io_;
   const Config config_;
-  boost::asio::steady_timer timer_;
-  std::chrono::steady_clock::time_point next_tick_;
+  timer::Timer timer_;
+  timer::Timer warning_;
+  timer::TimePoint next_tick_;
   std::vector<std::unique_ptr<devices::DeviceSource>> sources_;
   std::map<DeviceHandle, std::size_t> source_of_;
   DeviceHandle last_handle_ = 0;
+  LimitedLog changes_{[](const std::string& line) { log::Info(line); }};
+  LimitedLog troubles_{[](const std::string& line) { log::Warning(line); }};
   setup::StateDirectory state_;
+  setup::DiskWriter disk_;  ///< Writes with state_, so it ends first.
   setup::CalibrationStore calibrations_;
   Hub hub_;
   transport::Server server_;
@@ -277,7 +260,13 @@ Service::~Service() = default;
 
 Result<std::unique_ptr<Service>> Service::Start(boost::asio::io_context& io, const Config& config,
                                                 const std::string& version) {
-  auto implementation = std::make_shared<Implementation>(io, config, version);
+  std::string token;
+  if (!config.token_file.empty()) {
+    auto read = transport::ReadTokenFile(config.token_file);
+    if (!read) return read.error();
+    token = std::move(read).value();
+  }
+  auto implementation = std::make_shared<Implementation>(io, config, version, token);
   if (const auto opened = implementation->Open(); !opened) return opened.error();
   implementation->Start();
   return std::unique_ptr<Service>(new Service(std::move(implementation)));

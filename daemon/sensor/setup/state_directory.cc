@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -19,6 +20,8 @@ namespace {
 
 constexpr int kVersion = 1;
 constexpr std::size_t kMostBytes = 1u << 20;
+constexpr std::size_t kMostNameBytes = 150;
+constexpr std::ptrdiff_t kMostFiles = 300;
 
 std::uint32_t Checksum(const std::string& content) {
   return static_cast<std::uint32_t>(crc32(crc32(0, nullptr, 0),
@@ -74,6 +77,18 @@ Storage StorageIn(StateDirectory& directory) {
           }};
 }
 
+Storage StorageIn(StateDirectory& directory, DiskWriter& disk) {
+  Storage storage = StorageIn(directory);
+  storage.load = [&directory, &disk](const std::string& name) {
+    const auto waiting = disk.Waiting(name);
+    return waiting ? waiting : directory.Load(name);
+  };
+  storage.save = [&disk](const std::string& name, const std::string& content) {
+    disk.Save(name, content);
+  };
+  return storage;
+}
+
 std::string StatePath(const std::string& configured) {
   if (!configured.empty()) return configured;
   const std::string systemd = Variable("STATE_DIRECTORY");
@@ -84,14 +99,37 @@ std::string StatePath(const std::string& configured) {
   return home.empty() ? "" : home + "/.local/state/footing";
 }
 
-/// Serials are part of names; what is neither a letter nor a digit becomes '-'.
+/// A serial may be the part of a name behind its first '-': its ':' become '-', and whatever is
+/// neither that nor a letter or digit becomes its code. So two serials never share a file.
 std::string StateDirectory::FileOf(const std::string& name) const {
   std::string file;
-  for (const char c : name.substr(0, 100)) {
+  bool in_prefix = true;
+  for (const char c : name) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    file += plain ? c : '-';
+    const bool first_dash = in_prefix && c == '-';
+    in_prefix = in_prefix && c != '-';
+    if (plain || first_dash) {
+      file += c;
+    } else if (c == ':') {
+      file += '-';
+    } else {
+      constexpr char kDigits[] = "0123456789abcdef";
+      const auto code = static_cast<unsigned char>(c);
+      file += {'_', kDigits[code >> 4], kDigits[code & 15]};
+    }
+  }
+  if (file.size() > kMostNameBytes) {  // The whole name stands in the file, and is compared.
+    file = file.substr(0, kMostNameBytes) + "_" + std::to_string(Checksum(name));
   }
   return path_ + "/" + file + ".json";
+}
+
+/// Whether one more file may be made: each new serial of a device makes one.
+bool StateDirectory::HasPlaceFor(const std::string& path) const {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return true;
+  const std::filesystem::directory_iterator files(path_, ignored);
+  return std::distance(begin(files), end(files)) < kMostFiles;
 }
 
 std::optional<std::string> StateDirectory::Load(const std::string& name) {
@@ -129,23 +167,29 @@ void StateDirectory::Refuse(const std::string& name, const std::string& why) {
        "; redo that part of the set-up");
 }
 
-void StateDirectory::Save(const std::string& name, const std::string& content) {
-  std::string why = "no directory is known; set state_directory";
-  if (!path_.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(path_, error);
-    const auto json = nlohmann::json::parse(content, nullptr, false);
-    const nlohmann::json file = {
-        {"version", kVersion}, {"name", name}, {"crc32", Checksum(json.dump())}, {"content", json}};
-    why = error ? error.message() : WriteDurably(FileOf(name), file.dump(2) + "\n");
+std::string StateDirectory::Write(const std::string& name, const std::string& content) const {
+  if (path_.empty()) return "no directory is known; set state_directory";
+  std::error_code error;
+  std::filesystem::create_directories(path_, error);
+  if (error) return error.message();
+  if (!HasPlaceFor(FileOf(name))) {
+    return "it has " + std::to_string(kMostFiles) +
+           " files already; remove calibrations of old devices";
   }
-  if (why.empty()) {
+  const auto json = nlohmann::json::parse(content, nullptr, false);
+  const nlohmann::json file = {
+      {"version", kVersion}, {"name", name}, {"crc32", Checksum(json.dump())}, {"content", json}};
+  return WriteDurably(FileOf(name), file.dump(2) + "\n");
+}
+
+void StateDirectory::SayWritten(const std::string& problem) {
+  if (problem.empty()) {
     unwritable_said_ = false;
     return;
   }
   if (unwritable_said_) return;
   unwritable_said_ = true;
-  say_("cannot save to " + (path_.empty() ? std::string("disk") : path_) + ": " + why +
+  say_("cannot save to " + (path_.empty() ? std::string("disk") : path_) + ": " + problem +
        "; the set-up lasts until footingd ends");
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/sensor/setup/disk_writer.h"
 #include "daemon/sensor/setup/storage.h"
 
 namespace footing::setup {
@@ -21,8 +22,15 @@ class StateDirectory {
 
   /// The content last saved under this name; none if there is none, or it is refused.
   std::optional<std::string> Load(const std::string& name);
-  /// Written beside, synced, then renamed: the old content or the new one, never half of it.
-  void Save(const std::string& name, const std::string& content);
+  /// Written beside, synced, then renamed: the old content or the new one, never half of it. Says
+  /// what went wrong, or nothing. May be called on another thread: it changes nothing of this.
+  std::string Write(const std::string& name, const std::string& content) const;
+  /// How a Write() went: a directory that cannot be written is said once.
+  void SayWritten(const std::string& problem);
+  /// Both.
+  void Save(const std::string& name, const std::string& content) {
+    SayWritten(Write(name, content));
+  }
   /// For content whose form its reader does not understand.
   void Refuse(const std::string& name, const std::string& why);
 
@@ -30,6 +38,7 @@ class StateDirectory {
 
  private:
   std::string FileOf(const std::string& name) const;
+  bool HasPlaceFor(const std::string& path) const;
 
   std::string path_;
   Say say_;
@@ -38,6 +47,8 @@ class StateDirectory {
 
 /// The directory as a storage; it must outlive what is returned.
 Storage StorageIn(StateDirectory& directory);
+/// The same, written by the disk's thread; what waits to be written is what is loaded.
+Storage StorageIn(StateDirectory& directory, DiskWriter& disk);
 
 /// Where the state lies: `configured` if not empty, else $STATE_DIRECTORY (set by systemd), else
 /// $XDG_STATE_HOME/footing, else ~/.local/state/footing. Empty if there is no home either.

@@ -5,14 +5,6 @@
 #include "daemon/simulation/terrain/endless.h"
 
 namespace footing::engine {
-namespace {
-
-/// Segments behind the character and, with its own, ahead of it that have a box.
-constexpr int kBoxesBehind = 8;
-constexpr int kBoxesAhead = terrain::kGroundBoxes - kBoxesBehind;
-
-}  // namespace
-
 void GaitEngine::Parts::TakeAppend(const EngineInputs& inputs) {
   std::uint64_t& taken = state.track.append_number;
   if (taken == inputs.append_number) return;
@@ -31,7 +23,7 @@ void GaitEngine::Parts::TakeAppend(const EngineInputs& inputs) {
   }
   // The segment that was last may have to reach under the new one.
   const std::uint64_t last = state.track.first_segment + on.track.segments.size() - 1;
-  box_holds[static_cast<std::size_t>(last % terrain::kGroundBoxes)] = 0;
+  box_holds[static_cast<std::size_t>(last) % static_cast<std::size_t>(on.window.boxes)] = 0;
   const std::size_t before = on.track.segments.size();
   terrain::Append(segment, on.track);
   if (on.track.segments.size() == before) ++state.track.first_segment;
@@ -52,13 +44,14 @@ void GaitEngine::Parts::ExtendEndless() {
 }
 
 void GaitEngine::Parts::PlaceGround() {
-  if (!on.track.extendable) return;
-  const int here = place.segment;
-  const int from = std::max(0, here - kBoxesBehind);
-  const int to = std::min(static_cast<int>(on.track.segments.size()), here + kBoxesAhead);
+  if (on.window.boxes == 0) return;
+  const int from = std::max(0, place.segment - on.window.behind);
+  const int to = std::min(static_cast<int>(on.track.segments.size()),
+                          place.segment - on.window.behind + on.window.boxes);
   for (int i = from; i < to; ++i) {
     const std::uint64_t number = state.track.first_segment + static_cast<std::uint64_t>(i);
-    const auto slot = static_cast<std::size_t>(number % terrain::kGroundBoxes);
+    const auto slot =
+        static_cast<std::size_t>(number % static_cast<std::uint64_t>(on.window.boxes));
     if (box_holds[slot] == number + 1) continue;
     box_holds[slot] = number + 1;
     const int index = static_cast<int>(slot);
@@ -94,7 +87,7 @@ void GaitEngine::Parts::RestoreTrack() {
   }
   if (!on.track.extendable) return;
   // Boxes of another course may be left anywhere: all wait, then those that are needed come.
-  for (int i = 0; i < terrain::kGroundBoxes; ++i) {
+  for (int i = 0; i < on.window.boxes; ++i) {
     const terrain::GroundBox box = terrain::WaitingBox(i);
     on.world.PlaceBox(i, box.centre_W_m, box.q_WS, box.half_size_m);
   }

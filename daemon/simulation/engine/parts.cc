@@ -32,7 +32,7 @@ void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) 
   const std::uint64_t steps = state.gait.steps;
   state.gait = gait::Standing(heading_rad, TimeS());
   state.gait.steps = steps;
-  state.interface.DropJump();
+  state.interface.StartAgain();
   state.fallen = false;
   state.inputs.push_steps_left = 0;
   ReadBody();

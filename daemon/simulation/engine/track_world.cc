@@ -14,7 +14,8 @@ Result<std::unique_ptr<TrackWorld>> MakeTrackWorld(stream::Track track,
                                                    const biped::BipedParameters& biped,
                                                    double step_s) {
   std::vector<std::string> boxes;
-  for (int i = 0; track.extendable && i < terrain::kGroundBoxes; ++i) {
+  const terrain::GroundWindow window = terrain::WindowOf(track);
+  for (int i = 0; i < window.boxes; ++i) {
     boxes.push_back(terrain::GroundBoxName(i));
   }
   Result<physics::World> world = physics::World::FromMjcf(
@@ -24,6 +25,7 @@ Result<std::unique_ptr<TrackWorld>> MakeTrackWorld(stream::Track track,
                                                       .sight = {},
                                                       .sees_ground = false,
                                                       .first_segments = {},
+                                                      .window = window,
                                                       .world = std::move(*world)});
   if (!made->track.help_over_pits) made->sight = terrain::WithPitsFilled(made->track);
   made->sees_ground = !terrain::IsLevel(made->track.help_over_pits ? made->track : made->sight);

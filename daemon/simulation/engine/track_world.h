@@ -7,6 +7,7 @@
 #include "common/stream/character.h"
 #include "daemon/simulation/biped/parameters.h"
 #include "daemon/simulation/physics/world.h"
+#include "daemon/simulation/terrain/ground.h"
 
 namespace footing::engine {
 
@@ -17,6 +18,7 @@ struct TrackWorld {
   stream::Track sight;
   bool sees_ground = false;                          ///< That has slopes, steps or pits.
   std::vector<stream::TrackSegment> first_segments;  ///< Of a track that grows: the file's.
+  terrain::GroundWindow window;                      ///< Boxes that follow the character.
   physics::World world;
 };
 

@@ -11,7 +11,9 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
   auto biped = config::ReadDataFile(engine::kBipedFile, wish.data_folder);
   if (!biped) return biped.error();
   auto mapping_table =
-      config::ReadDataFile(mapping::MappingFileOf(wish.interface), wish.data_folder);
+      wish.mapping_table.empty()
+          ? config::ReadDataFile(mapping::MappingFileOf(wish.interface), wish.data_folder)
+          : config::ReadTextFile(wish.mapping_table);
   if (!mapping_table) return mapping_table.error();
   auto track = config::ReadNamedOrPath(wish.track, "tracks", wish.data_folder);
   if (!track) return track.error();

@@ -5,16 +5,18 @@
 
 namespace footing::footing_sim {
 
-Result<serving::StopServing> StartService(boost::asio::io_context& io, const Config& config,
+Result<serving::StopServing> StartService(boost::asio::io_context& io, const Config& given,
                                           const std::string& version) {
+  Config config = given;
+  config.serving.version = version;
   using gait_service::GaitLine;
   using pose_service::PoseLine;
   if (config.engine == "pose") {
-    return serving::StartServing<PoseLine>(io, config.serving, version, [&config](int wake) {
+    return serving::StartServing<PoseLine>(io, config.serving, [&config](int wake) {
       return PoseLine::Create(config.serving, config.pose, wake);
     });
   }
-  return serving::StartServing<GaitLine>(io, config.serving, version, [&config](int wake) {
+  return serving::StartServing<GaitLine>(io, config.serving, [&config](int wake) {
     return GaitLine::Create(config.serving, config.gait, wake);
   });
 }

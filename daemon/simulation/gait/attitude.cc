@@ -30,14 +30,15 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
       memory.turning_radps * Eigen::Vector3d::UnitZ() + targets.rate_W_radps;
   const Eigen::Vector3d late_w_B = body.R_WB.transpose() * (desired_w_W - body.w_WB);
   // Servos leave the rate -kp / kd times the tilt at lift-off, which a long flight overshoots.
-  const double roll_nm_per_rad = targets.flight_s > 0
-                                     ? std::min(gains.roll_stiffness_nm_per_rad,
-                                                gains.roll_damping_nms_per_rad / targets.flight_s)
-                                     : gains.roll_stiffness_nm_per_rad;
-  const Eigen::Array3d stiffness(roll_nm_per_rad, gains.pitch_stiffness_nm_per_rad,
-                                 running           ? gains.run_yaw_stiffness_nm_per_rad
-                                 : targets.jumping ? gains.jump_yaw_stiffness_nm_per_rad
-                                                   : gains.walk_yaw_stiffness_nm_per_rad);
+  const auto before_flight = [&targets](double stiffness, double damping) {
+    return targets.flight_s > 0 ? std::min(stiffness, damping / targets.flight_s) : stiffness;
+  };
+  const Eigen::Array3d stiffness(
+      before_flight(gains.roll_stiffness_nm_per_rad, gains.roll_damping_nms_per_rad),
+      before_flight(gains.pitch_stiffness_nm_per_rad, gains.pitch_damping_nms_per_rad),
+      running           ? gains.run_yaw_stiffness_nm_per_rad
+      : targets.jumping ? gains.jump_yaw_stiffness_nm_per_rad
+                        : gains.walk_yaw_stiffness_nm_per_rad);
   const Eigen::Array3d damping(gains.roll_damping_nms_per_rad, gains.pitch_damping_nms_per_rad,
                                running           ? gains.run_yaw_damping_nms_per_rad
                                : targets.jumping ? gains.jump_yaw_damping_nms_per_rad

@@ -23,7 +23,8 @@ struct ServoGains {
 };
 
 /// PD servo of the body's attitude, by the hips of the supporting legs. Overdamped: the rate left
-/// at lift-off, not the angle, is what a flight makes worse.
+/// at lift-off, not the angle, is what a flight makes worse. Before a flight the rate in roll and
+/// pitch is that of body and legs together (running_targets.cc).
 struct AttitudeGains {
   double roll_stiffness_nm_per_rad = 250;
   double roll_damping_nms_per_rad = 60;
@@ -39,6 +40,7 @@ struct AttitudeGains {
                             ///< acceleration together point along the body.
   double jump_lean_rad_per_mps = -0.14;  ///< Pitch set-point: both legs swinging forward
                                          ///< together pitch the body forward.
+  double hop_yaw_momentum_share = 0.5;   ///< Of the legs' yaw momentum, taken for the body's own.
   double friction_share = 0.7;           ///< Of the friction cone, for hip torque.
   double turning_friction_share = 0.8;   ///< Of the torsional friction, for torque along the leg.
   double turning_limit_nm = 8;           ///< By fore-aft forces of both feet.
@@ -114,12 +116,13 @@ struct TransitionGains {
   double thrust_from_swing = 0.55;  ///< Of the swing: from here Fall may become a thrust.
   double thrust_to_run_mps = 1.17;  ///< Vertical lift-off speed out of walking.
   double thrust_to_jump_mps = 1.0;
-  double run_to_walk_mps = 1.4;           ///< Run slows to this, ...
-  double run_to_walk_margin_mps = 0.35;   ///< ... and lands into walking up to this above it.
-  double leaving_run_mps2 = 8;            ///< Braking of v_d in a run that is to end.
-  double leaving_run_gain_s = 0.12;       ///< k_R then, while faster than v_d.
-  double leaving_run_lift_off_mps = 1.0;  ///< Lower hops then: sooner down, less to absorb.
-  double landing_reach_m = 0.08;          ///< The last step's foot is put this much further ahead.
+  double run_to_walk_mps = 1.4;               ///< Run slows to this, ...
+  double run_to_walk_margin_mps = 1.1;        ///< ... and lands into walking up to this above it.
+  double leaving_run_mps2 = 8;                ///< Braking of v_d in a run that is to end.
+  double leaving_run_gain_s = 0.14;           ///< k_R then, while faster than v_d.
+  double leaving_run_lift_off_mps = 0.8;      ///< Lower hops then: sooner down, less to absorb.
+  double leaving_run_damping_ns_per_m = 475;  ///< Of the leg while it shortens then.
+  double landing_reach_m = 0.08;  ///< The last step's foot is put this much further ahead.
   double run_landing_stiffness_n_per_m = 1800;
   double run_landing_damping_ns_per_m = 420;
   double run_to_jump_mps = 4.0;      ///< Up to this the preparatory step may be taken.
@@ -157,6 +160,8 @@ struct RecoveryGains {
   double idle_yield = 1.25;           ///< Roll of running's idle leg for the body's roll, ...
   double idle_yield_limit_rad = 0.9;  ///< ... up to this.
   double spread_mps = 0.5;            ///< At this speed aside a jump's legs are spread in full.
+  double jump_yield = 2;              ///< Roll of a jump's far leg for the body's roll beyond ...
+  double jump_yield_from_rad = 0.55;  ///< ... this, up to idle_yield_limit_rad.
 };
 
 /// How far a command's cadence is followed.

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +9,7 @@
 #include "daemon/simulation/gait/ground_plan.h"
 #include "daemon/simulation/gait/momentum.h"
 #include "daemon/simulation/gait/running.h"
+#include "daemon/simulation/gait/transition.h"
 
 namespace footing::gait {
 namespace {
@@ -51,13 +53,17 @@ LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
   return Placed(Cleared(context, memory, leg, HipToFoot(context.body, leg, offset_W, length_m)));
 }
 
+/// Of the body, in the heading frame; negative leans to the left.
+double Roll(const Context& context, const GaitMemory& memory) {
+  const Eigen::Vector3d up_H = ToHeading(memory.heading_rad, context.body.R_WB.col(2));
+  return -std::atan2(up_H.y(), up_H.z());
+}
+
 /// A push on the body acts above the whole COM and leaves angular momentum for the whole flight.
 /// The idle leg rolls on with the body, further than it, and so takes up most of that.
 double IdleYield(const Context& context, const GaitMemory& memory) {
   const RecoveryGains& gains = context.gains.recovery;
-  const Eigen::Vector3d up_H = ToHeading(memory.heading_rad, context.body.R_WB.col(2));
-  const double roll_rad =
-      -std::atan2(up_H.y(), up_H.z()) - BankAngle(memory, context.gains.attitude);
+  const double roll_rad = Roll(context, memory) - BankAngle(memory, context.gains.attitude);
   return std::clamp(gains.idle_yield * roll_rad, -gains.idle_yield_limit_rad,
                     gains.idle_yield_limit_rad);
 }
@@ -69,13 +75,29 @@ LegTarget Idle(const Context& context, const GaitMemory& memory, int leg,
                                  context.gains.hopping.idle_length_m, IdleYield(context, memory))));
 }
 
+/// Pushed aside at lift-off, a jump's body would turn over before it lands. The leg that it does
+/// not fall towards swings out with it and takes up part of that; the other one lands.
+LegTarget Yielding(const Context& context, const GaitMemory& memory, int leg, LegTarget target) {
+  const RecoveryGains& gains = context.gains.recovery;
+  const double outward_rad = biped::Side(leg) * Roll(context, memory);
+  const double swing_rad = std::clamp(gains.jump_yield * (outward_rad - gains.jump_yield_from_rad),
+                                      0.0, gains.idle_yield_limit_rad);
+  const Eigen::Vector3d ahead_W = ToWorld(memory.heading_rad, {1, 0, 0});
+  target.r_HF_W_m = Eigen::AngleAxisd(biped::Side(leg) * swing_rad, ahead_W) * target.r_HF_W_m;
+  return target;
+}
+
 Targets Flight(const Context& context, const GaitMemory& memory) {
   Targets targets;
+  if (memory.gait == stream::Gait::kJump) {
+    for (int leg = 0; leg < 2; ++leg) {
+      targets.legs[leg] = Yielding(context, memory, leg, Landing(context, memory, leg));
+    }
+    return targets;
+  }
   const int front = memory.support_leg, rear = 1 - front;
   targets.legs[front] = Landing(context, memory, front);
-  targets.legs[rear] = memory.gait == stream::Gait::kJump
-                           ? Landing(context, memory, rear)
-                           : Idle(context, memory, rear, targets.legs[front].r_HF_W_m);
+  targets.legs[rear] = Idle(context, memory, rear, targets.legs[front].r_HF_W_m);
   return targets;
 }
 
@@ -86,18 +108,23 @@ AxialTarget OnSlope(const Context& context, const GaitMemory& memory, int leg, A
   return spring;
 }
 
-/// The stance leg's spring, which only pushes.
+/// The stance leg's spring, which only pushes. A run that brakes to be left takes energy out while
+/// the leg shortens: else the speed it loses becomes a high hop.
 AxialTarget RunSpring(const Context& context, const GaitMemory& memory) {
   const HoppingGains& gains = context.gains.hopping;
-  const TransitionGains& landing = context.gains.transition;
+  const TransitionGains& transition = context.gains.transition;
+  const bool shortens = memory.running == RunningPhase::kCompression;
   AxialTarget spring;
   spring.min_n = 0;
-  spring.length_m = memory.running == RunningPhase::kCompression ? gains.touchdown_length_m
-                                                                 : memory.hop.thrust_length_m;
-  spring.stiffness_n_per_m = memory.transition.absorbing ? landing.run_landing_stiffness_n_per_m
-                                                         : gains.run_leg_stiffness_n_per_m;
-  spring.damping_ns_per_m = memory.transition.absorbing ? landing.run_landing_damping_ns_per_m
-                                                        : gains.run_leg_damping_ns_per_m;
+  spring.length_m = shortens ? gains.touchdown_length_m : memory.hop.thrust_length_m;
+  spring.stiffness_n_per_m = gains.run_leg_stiffness_n_per_m;
+  spring.damping_ns_per_m = gains.run_leg_damping_ns_per_m;
+  if (memory.transition.absorbing) {
+    spring.stiffness_n_per_m = transition.run_landing_stiffness_n_per_m;
+    spring.damping_ns_per_m = transition.run_landing_damping_ns_per_m;
+  } else if (shortens && LeavesRun(context.goal, memory)) {
+    spring.damping_ns_per_m = transition.leaving_run_damping_ns_per_m;
+  }
   return spring;
 }
 
@@ -171,13 +198,18 @@ void PrepareLongFlight(const Context& context, const GaitMemory& memory, Targets
 }
 
 /// What a flight turns by is the momentum of body and legs together, so that is what support damps
-/// in roll, as if it were the body's own rate.
-void DampWholeRoll(const Context& context, const GaitMemory& memory, Targets& targets) {
-  const Eigen::Vector3d momentum_H =
-      ToHeading(memory.heading_rad, AngularMomentum(context.body, context.biped));
-  const double roll_radps = ToHeading(memory.heading_rad, context.body.w_WB).x() -
-                            momentum_H.x() / context.biped.body_inertia_roll_kgm2;
-  targets.rate_W_radps = ToWorld(memory.heading_rad, {roll_radps, 0, 0});
+/// in roll and pitch, as if it were the body's own rate. In yaw it is in part: at lift-off the legs
+/// swing against each other, and do so again before the next touchdown.
+void DampWholeMomentum(const Context& context, const GaitMemory& memory, Targets& targets) {
+  const biped::BipedParameters& biped = context.biped;
+  const Eigen::Array3d inertia_kgm2(biped.body_inertia_roll_kgm2, biped.body_inertia_pitch_kgm2,
+                                    biped.body_inertia_yaw_kgm2);
+  const Eigen::Array3d share(1, 1, context.gains.attitude.hop_yaw_momentum_share);
+  const Eigen::Array3d momentum_H =
+      ToHeading(memory.heading_rad, AngularMomentum(context.body, biped));
+  const Eigen::Array3d rate_H = ToHeading(memory.heading_rad, context.body.w_WB);
+  targets.rate_W_radps =
+      ToWorld(memory.heading_rad, (share * (rate_H - momentum_H / inertia_kgm2)).matrix());
 }
 
 }  // namespace
@@ -195,7 +227,7 @@ Targets RunningTargets(const Context& context, const GaitMemory& memory) {
   if (leaps && !flying && !jumping) {
     PrepareLongFlight(context, memory, targets);
   } else if (!flying) {
-    DampWholeRoll(context, memory, targets);
+    DampWholeMomentum(context, memory, targets);
   }
   targets.jumping = jumping;
   if (jumping) targets.flight_s = 2 * std::sqrt(2 * context.goal.height_m / kStandardGravityMps2);

@@ -1,22 +1,8 @@
 #include "daemon/simulation/gait_service/config.h"
 
-#include <array>
+#include "common/stream/leg_turn.h"
 
 namespace footing::gait_service {
-namespace {
-
-constexpr std::array kLegTurnSources{stream::TurnSource::kHead, stream::TurnSource::kFeet,
-                                     stream::TurnSource::kTrunk};
-
-/// kUnspecified unless it can turn with the interface leg.
-stream::TurnSource TurnSourceNamed(const std::string& name) {
-  for (const auto source : kLegTurnSources) {
-    if (name == stream::Name(source)) return source;
-  }
-  return stream::TurnSource::kUnspecified;
-}
-
-}  // namespace
 
 void Config::Bind(config::Binder& binder) {
   binder.Text("interface", interface,
@@ -26,6 +12,9 @@ void Config::Bind(config::Binder& binder) {
   binder.Flag("boards_may_be_left", boards_may_be_left,
               "Let both feet leave the boards in a jump, with the interface boards; the person may "
               "fall beside a board");
+  binder.Text("mapping_table", mapping_table,
+              "Mapping table of the interface, JSON file, such as one of footing-study ranges "
+              "(empty: the built-in one)");
   binder.Text("track", track, "Track of the gait engine: a built-in name, or a JSON file");
   binder.Number("frame_rate_hz", frame_rate_hz, 10, 200, "Rate of character frames, Hz");
   binder.Number("features_timeout_s", features_timeout_s, 0.1, 5,
@@ -41,14 +30,14 @@ Result<void> Check(const Config& config) {
     return UsageError("unknown --interface " + config.interface +
                       "; there are: " + stream::UserInterfaceNames());
   }
-  if (TurnSourceNamed(config.turn_by) == stream::TurnSource::kUnspecified) {
+  if (stream::LegTurnSourceNamed(config.turn_by) == stream::TurnSource::kUnspecified) {
     return UsageError("unknown turn_by " + config.turn_by + "; there are: head, feet, trunk");
   }
   return {};
 }
 
 stream::TurnSource LegTurnSource(int number) {
-  for (const auto source : kLegTurnSources) {
+  for (const auto source : stream::kLegTurnSources) {
     if (number == static_cast<int>(source)) return source;
   }
   return stream::TurnSource::kUnspecified;
@@ -56,7 +45,8 @@ stream::TurnSource LegTurnSource(int number) {
 
 mapping::InterfaceOptions OptionsOf(const Config& config) {
   return {.interface = stream::UserInterfaceNamed(config.interface),
-          .leg = {.turn_by = TurnSourceNamed(config.turn_by), .camera_roll = config.camera_roll},
+          .leg = {.turn_by = stream::LegTurnSourceNamed(config.turn_by),
+                  .camera_roll = config.camera_roll},
           .boards_may_be_left = config.boards_may_be_left};
 }
 

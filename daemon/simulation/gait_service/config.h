@@ -13,6 +13,7 @@ struct Config {
   std::string turn_by = "head";     ///< Of the interface leg: head, feet or trunk.
   bool camera_roll = false;         ///< Likewise: the picture follows the head.
   bool boards_may_be_left = false;  ///< Of the interface boards: both feet may leave them.
+  std::string mapping_table;        ///< Path, of the interface; empty: the built-in one.
   std::string track = "endless";    ///< Name of a built-in track, or a path.
   double frame_rate_hz = 100;       ///< CharacterFrames a second.
   double features_timeout_s = 0.5;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/config/data_file.h"
 #include "common/log/log.h"
 #include "common/wire/wire.h"
 #include "daemon/simulation/engine_files/engine_files.h"
@@ -14,17 +15,25 @@
 #include "daemon/simulation/terrain/append.h"
 
 namespace footing::gait_service {
+namespace {
+
+constexpr std::size_t kMostTableBytes = 16 * 1024;
+
+}  // namespace
 
 Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common,
                                                    const Config& config, int wake_descriptor) {
   const mapping::InterfaceOptions interface = OptionsOf(config);
   if (interface.boards_may_be_left) {  // SetInterface may choose the boards later.
     log::Warning(
-        "boards_may_be_left: whoever jumps off a board can fall beside it; keep the floor around "
+        "boards_may_be_left: a person who jumps off a board can fall beside it; keep the floor "
+        "around "
         "it free, and somebody near");
   }
-  const auto texts = engine_files::ReadTexts(
-      {.track = config.track, .interface = interface.interface, .data_folder = common.data_folder});
+  const auto texts = engine_files::ReadTexts({.track = config.track,
+                                              .interface = interface.interface,
+                                              .mapping_table = config.mapping_table,
+                                              .data_folder = common.data_folder});
   if (!texts) return texts.error();
   engine::EngineConfig engine_config;
   engine_config.fall_shown_s = config.fall_shown_s;
@@ -35,13 +44,15 @@ Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common
   if (!engine) return engine.error();
   const auto biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
   if (!biped) return biped.error();
-  return std::unique_ptr<GaitLine>(new GaitLine(
-      common.rig, config, std::move(engine).value(),
-      {config.track, common.data_folder, *biped, engine_config.step_s}, wake_descriptor));
+  return std::unique_ptr<GaitLine>(
+      new GaitLine(common.rig, config, std::move(engine).value(),
+                   {config.track, common.data_folder, *biped, engine_config.step_s},
+                   EffectiveConfig(common, config, *texts, engine_config), wake_descriptor));
 }
 
 GaitLine::GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
-                   TrialControl::Options trial_options, int wake_descriptor)
+                   TrialControl::Options trial_options, EffectiveConfig effective,
+                   int wake_descriptor)
     : world_(config.track),
       data_folder_(trial_options.data_folder),
       frame_rate_hz_(config.frame_rate_hz),
@@ -49,7 +60,8 @@ GaitLine::GaitLine(const std::string& rig, const Config& config, engine::GaitEng
               static_cast<int>(std::lround(1.0 / (trial_options.step_s * config.frame_rate_hz))),
               wake_descriptor),
       trials_(std::move(trial_options), thread_.run().engine().track(), tracks_),
-      input_(rig, OptionsOf(config), thread_.inputs(), responses_) {}
+      input_(rig, OptionsOf(config), thread_.inputs(), responses_),
+      effective_(std::move(effective)) {}
 
 std::vector<std::string> GaitLine::Capabilities() {
   std::vector<std::string> names{"gait"};
@@ -59,18 +71,25 @@ std::vector<std::string> GaitLine::Capabilities() {
 }
 
 std::vector<transport::Channel> GaitLine::Channels() {
-  return {{"skeletons", serving::kSkeletons, true},    {"track", serving::kTrack, true},
-          {"characters", serving::kCharacters, false}, {"events", serving::kEvents, false},
-          {"inputs", serving::kInputs, false},         {"game", serving::kGame, true}};
+  return {{"skeletons", serving::kSkeletons, true},
+          {"track", serving::kTrack, true},
+          {"characters", serving::kCharacters, false},
+          {"events", serving::kEvents, false},
+          {"inputs", serving::kInputs, false},
+          {"config", serving::kConfig, true},
+          {"study", serving::kStudy, true},
+          {"game", serving::kGame, true}};
 }
 
 std::vector<transport::ChannelBytes> GaitLine::Retained() const {
   return {serving::Bytes(serving::kSkeletons,
                          serving::MakeSkeletons(world_, thread_.run().engine().skeleton())),
-          serving::Bytes(serving::kTrack, wire::ToProto(trials_.track()))};
+          serving::Bytes(serving::kTrack, wire::ToProto(trials_.track())),
+          serving::Bytes(serving::kConfig, effective_.Message())};
 }
 
-Result<void> GaitLine::SetInterface(const v1::SetInterface& message) {
+Result<void> GaitLine::SetInterface(const transport::SessionInfo& who,
+                                    const v1::SetInterface& message) {
   mapping::InterfaceOptions options = input_.interface();
   options.interface = v1::UserInterface_IsValid(message.interface())
                           ? static_cast<stream::UserInterface>(message.interface())
@@ -82,9 +101,21 @@ Result<void> GaitLine::SetInterface(const v1::SetInterface& message) {
     return UsageError("unknown turn_by; there are: head, feet, trunk");
   }
   if (const auto none = trials_.CheckNoneGoesOn(); !none) return none;
-  const auto made = engine_files::ReadInterface(options, data_folder_);
+  const bool own = !message.table().empty();
+  if (message.table().size() > kMostTableBytes) {
+    return InvalidData("the table has more than 16 KiB");
+  }
+  const auto table =
+      own ? Result<std::string>(message.table())
+          : config::ReadDataFile(mapping::MappingFileOf(options.interface), data_folder_);
+  if (!table) return table.error();
+  const auto made = mapping::AnyInterface::Create(options, *table);
   if (!made) return made.error();
-  return input_.SetInterface(options, *made);
+  if (const auto done = input_.SetInterface(options, *made); !done) return done;
+  effective_.SetInterface(input_.interface_number(), options, *table,
+                          own ? who.client_name : kBuiltInTable);
+  config_changed_ = true;
+  return {};
 }
 
 v1::CommandResult GaitLine::OnCommand(const transport::SessionInfo& who,
@@ -92,16 +123,27 @@ v1::CommandResult GaitLine::OnCommand(const transport::SessionInfo& who,
   const std::int64_t now_ns = clock::MonotonicNs();
   if (LeaseControl::Takes(command)) return lease_.OnCommand(command, who.session, now_ns);
   if (const auto refusal = lease_.Refusal(command, who.session, now_ns)) return *refusal;
-  if (command.has_set_game()) return game_.OnSetGame(who, command.set_game());
+  if (command.has_set_study()) return study_.OnSetStudy(who, command.set_study());
+  if (command.has_set_game()) {
+    const v1::CommandResult result = game_.OnSetGame(who, command.set_game());
+    EndLeftGame();
+    return result;
+  }
   if (const auto refusal = game_.Refuse(who, command)) return *refusal;
   if (command.has_set_interface()) {
-    const Result<void> done = SetInterface(command.set_interface());
+    const Result<void> done = SetInterface(who, command.set_interface());
     return serving::Answer(done.ok(), done ? "" : "set_interface: " + done.error().message);
   }
   if (!TrialControl::Takes(command)) return input_.OnCommand(command);
   const v1::CommandResult result = trials_.OnCommand(command);
   if (result.ok()) input_.SetTrial(trials_.inputs());
   return result;
+}
+
+void GaitLine::EndLeftGame() {
+  if (!game_.TakeLeft() || trials_.CheckNoneGoesOn()) return;
+  trials_.StopNewest();
+  input_.SetTrial(trials_.inputs());
 }
 
 v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
@@ -122,6 +164,22 @@ v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
   return events;
 }
 
+void GaitLine::AddChanges(const Frame& frame, bool switched,
+                          std::vector<transport::ChannelBytes>& channels) {
+  if (switched || frame.added_count > 0) {
+    channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(trials_.track())));
+  }
+  if (std::exchange(config_changed_, false)) {
+    channels.push_back(serving::Bytes(serving::kConfig, effective_.Message()));
+  }
+  if (const auto study = study_.TakeChange()) {
+    channels.push_back(serving::Bytes(serving::kStudy, wire::ToProto(*study)));
+  }
+  if (const auto game = game_.TakeChange()) {
+    channels.push_back(serving::Bytes(serving::kGame, wire::ToProto(*game)));
+  }
+}
+
 std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::int64_t now_ns) {
   input_.OnFrame(frame);
   std::vector<transport::ChannelBytes> channels;
@@ -130,12 +188,7 @@ std::vector<transport::ChannelBytes> GaitLine::OnFrame(const Frame& frame, std::
   for (int i = 0; i < frame.added_count; ++i) {
     terrain::Add(frame.added[static_cast<std::size_t>(i)], trials_.track());
   }
-  if (switched || frame.added_count > 0) {
-    channels.push_back(serving::Bytes(serving::kTrack, wire::ToProto(trials_.track())));
-  }
-  if (const auto game = game_.TakeChange()) {
-    channels.push_back(serving::Bytes(serving::kGame, wire::ToProto(*game)));
-  }
+  AddChanges(frame, switched, channels);
   v1::CharacterFrame characters = ToCharacterFrame(frame, world_, input_.rig());
   trials_.Describe(frame, *characters.mutable_characters(0));
   characters.set_lease_holder(lease_.holder());

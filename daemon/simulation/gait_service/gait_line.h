@@ -8,11 +8,13 @@
 #include "common/stream/character.h"
 #include "common/transport/server.h"
 #include "daemon/simulation/gait_service/config.h"
+#include "daemon/simulation/gait_service/effective_config.h"
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/gait_service/game_relay.h"
 #include "daemon/simulation/gait_service/lease_control.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "daemon/simulation/gait_service/sensor_input.h"
+#include "daemon/simulation/gait_service/study_relay.h"
 #include "daemon/simulation/gait_service/track_exchange.h"
 #include "daemon/simulation/gait_service/trial_control.h"
 #include "daemon/simulation/serving/config.h"
@@ -45,14 +47,21 @@ class GaitLine {
   v1::CommandResult OnCommand(const transport::SessionInfo& who, const v1::Command& command);
   void OnSessionEnd(const transport::SessionInfo& who) {
     game_.OnSessionEnd(who);
+    EndLeftGame();
+    study_.OnSessionEnd(who);
     lease_.EndSession(who.session);
   }
   std::vector<transport::ChannelBytes> OnFrame(const Frame& frame, std::int64_t now_ns);
 
  private:
   GaitLine(const std::string& rig, const Config& config, engine::GaitEngine engine,
-           TrialControl::Options trial_options, int wake_descriptor);
-  Result<void> SetInterface(const v1::SetInterface& message);
+           TrialControl::Options trial_options, EffectiveConfig effective, int wake_descriptor);
+  Result<void> SetInterface(const transport::SessionInfo& who, const v1::SetInterface& message);
+  /// Stops the trial of a game whose leader has gone: the runner would run off its track's end.
+  void EndLeftGame();
+  /// What changed of the retained channels since the last frame.
+  void AddChanges(const Frame& frame, bool switched,
+                  std::vector<transport::ChannelBytes>& channels);
   v1::Events EventsOf(const Frame& frame, std::int64_t now_ns);
 
   const std::string world_;
@@ -65,6 +74,9 @@ class GaitLine {
   LeaseControl lease_;
   SensorInput input_;
   GameRelay game_;
+  StudyRelay study_;
+  EffectiveConfig effective_;
+  bool config_changed_ = false;
 };
 
 }  // namespace footing::gait_service

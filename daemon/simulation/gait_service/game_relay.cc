@@ -37,7 +37,10 @@ void GameRelay::OnSessionEnd(const transport::SessionInfo& who) {
 /// A game that was played to its end stays as it is.
 void GameRelay::Leave() {
   leader_ = 0;
-  if (game_.phase != stream::GamePhase::kOver) game_.phase = stream::GamePhase::kLeft;
+  if (game_.phase != stream::GamePhase::kOver) {
+    game_.phase = stream::GamePhase::kLeft;
+    left_ = true;
+  }
   game_.ghost.reset();
   game_.left_s = 0;
   changed_ = true;
@@ -52,6 +55,8 @@ std::optional<v1::CommandResult> GameRelay::Refuse(const transport::SessionInfo&
   return Answer(false,
                 game_.host + " leads a terrain game: only it changes the track; end it first");
 }
+
+bool GameRelay::TakeLeft() { return std::exchange(left_, false); }
 
 std::optional<stream::GameState> GameRelay::TakeChange() {
   if (!std::exchange(changed_, false)) return std::nullopt;

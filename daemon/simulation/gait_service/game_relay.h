@@ -23,6 +23,10 @@ class GameRelay {
   std::optional<v1::CommandResult> Refuse(const transport::SessionInfo& who,
                                           const v1::Command& command) const;
 
+  /// True once after a game that was under way has lost its leader: nobody adds to its track any
+  /// more, so its trial is to be stopped.
+  bool TakeLeft();
+
   /// The state to publish, once after each change.
   std::optional<stream::GameState> TakeChange();
 
@@ -32,6 +36,7 @@ class GameRelay {
   stream::GameState game_;
   std::uint64_t leader_ = 0;  ///< Its session; 0: nobody.
   bool changed_ = false;
+  bool left_ = false;
 };
 
 }  // namespace footing::gait_service

@@ -12,6 +12,7 @@ const char* Forbidden(const v1::Command& command) {
   if (command.has_stop_trial()) return "stop_trial";
   if (command.has_correct_failure()) return "correct_failure";
   if (command.has_set_interface()) return "set_interface";
+  if (command.has_set_study()) return "set_study";
   if (command.has_put_back()) return "put_back";
   return nullptr;
 }

@@ -101,10 +101,10 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
     case v1::Command::kAppendSegment:
       return Append(command.append_segment());
     default:
-      return Answer(
-          false,
-          "footing-sim takes direct_gait, push, put_back, append_segment, start_trial, "
-          "stop_trial, correct_failure, set_interface, set_game, take_lease and release_lease");
+      return Answer(false,
+                    "footing-sim takes direct_gait, push, put_back, append_segment, start_trial, "
+                    "stop_trial, correct_failure, set_interface, set_study, set_game, take_lease "
+                    "and release_lease");
   }
   Publish();
   return Answer(true, "");

@@ -34,6 +34,8 @@ class SensorInput {
   }
 
   const std::string& rig() const { return collector_.rig(); }
+  /// Counts the changes of the interface.
+  std::uint64_t interface_number() const { return inputs_.engine.interface.number; }
   const mapping::InterfaceOptions& interface() const { return collector_.options(); }
 
  private:

@@ -102,7 +102,7 @@ Result<void> TrialControl::Stop(const v1::StopTrial& message) {
     return UsageError("stop_trial: \"" + message.trial() + "\" is not the newest trial" +
                       (newest.id.empty() ? "" : "; that is \"" + newest.id + "\""));
   }
-  inputs_.stopped_below = newest.number + 1;
+  StopNewest();
   return {};
 }
 

@@ -33,6 +33,8 @@ class TrialControl {
   /// True for StartTrial, StopTrial and CorrectFailure.
   static bool Takes(const v1::Command& command);
   v1::CommandResult OnCommand(const v1::Command& command);
+  /// Whichever it is, as StopTrial without a name.
+  void StopNewest() { inputs_.stopped_below = trials_.back().number + 1; }
   /// Fails, with the reason, while a trial is on its way, ready or running; a server's first one,
   /// which has no id, from its start line on.
   Result<void> CheckNoneGoesOn() const;

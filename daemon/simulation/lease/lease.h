@@ -8,7 +8,7 @@
 
 namespace footing::lease {
 
-/// A session's wish for the lease.
+/// A session's request for the lease.
 struct Request {
   std::uint64_t session = 0;
   std::string holder;       ///< Who it is, for a person.

@@ -95,9 +95,8 @@ biped::GaitCommand AnyInterface::Advance(double time_s, const Inputs& inputs) {
   return std::visit([&](auto& interface) { return interface.Advance(time_s, inputs); }, interface_);
 }
 
-void AnyInterface::DropJump() {
-  if (auto* joystick = std::get_if<JoystickInterface>(&interface_)) joystick->DropJump();
-  if (auto* boards = std::get_if<BoardsInterface>(&interface_)) boards->DropJump();
+void AnyInterface::StartAgain() {
+  std::visit([](auto& interface) { interface.StartAgain(); }, interface_);
 }
 
 const stream::InterfaceState& AnyInterface::state() const {

@@ -39,8 +39,9 @@ class AnyInterface {
   /// Without inputs: as if every device were missing.
   biped::GaitCommand Rest(double time_s) { return Advance(time_s, {}); }
   /// For a character that is put somewhere else: a single jump that was commanded before, and that
-  /// it has not made, is not made any more.
-  void DropJump();
+  /// it has not made, is not made any more; wrists,
+  /// arms and legs have to show a gait again before it goes on.
+  void StartAgain();
   /// What it believes that the person does, as of the last Advance.
   const stream::InterfaceState& state() const;
 

@@ -21,6 +21,8 @@ constexpr double kBackS = 0.5;
 constexpr double kGoneS = 1;
 /// A rise's push is over this time after it was recognised.
 constexpr double kPushS = 0.15;
+/// A heel rise jumps on from the walk that ended no longer ago than this: its feet stand first.
+constexpr double kWalkedS = 1;
 /// A change from walking to running must last two steps, since who leans over to the other side
 /// takes two short ones; a change back one step.
 constexpr double kRunCycles = 1;
@@ -172,12 +174,19 @@ biped::GaitCommand BoardsInterface::Advance(double time_s, const Inputs& inputs)
         heel_rise_.Advance(time_s, stance.load_n / weight_n_, stance.forward_m, steps_.even_s());
   }
   biped::GaitCommand command = StepCommand(time_s);
-  if (rises) StartJump(time_s, command.speed_mps, heel_rise_.overshoot());
+  if (steps_.stepping() && steps_.on_time()) {
+    walked_mps_ = command.speed_mps;
+    walked_s_ = time_s;
+  }
+  if (rises) {
+    const double speed_mps = time_s - walked_s_ < kWalkedS ? walked_mps_ : 0;
+    StartJump(time_s, speed_mps, heel_rise_.overshoot());
+  }
   if (time_s - rose_s_ < kPushS) {  // The push goes on for a moment.
     jump_.height_m =
         std::max(jump_.height_m, mapping_.jump_m_from_overshoot(heel_rise_.overshoot()));
   }
-  if (leaves) DropJump();  // The push of a leap looks like a heel rise.
+  if (leaves) held_jump_.Drop();  // The push of a leap looks like a heel rise.
   if (leaves && may_be_left_) StartJump(time_s, command_.speed_mps, push);
   if (held_jump_.Advance(time_s, inputs.running, false)) command = jump_;
   command.turn_per_step_rad = TurnOf(time_s);

@@ -51,7 +51,7 @@ class BoardsInterface {
   /// The command for new inputs at `time_s`; times must not decrease.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
   /// A jump that was commanded is not made any more.
-  void DropJump() { held_jump_.Drop(); }
+  void StartAgain() { held_jump_.Drop(); }
   const stream::InterfaceState& state() const { return state_; }
 
  private:
@@ -70,12 +70,14 @@ class BoardsInterface {
   SettledGait settled_;
   Turn turn_;
   double time_s_ = 0;
-  double weight_n_ = 0;   ///< Mean load of who stands there; 0: nobody yet.
-  double weighed_s_ = 0;  ///< Over this time, at most a few seconds.
-  double gone_s_ = 0;     ///< How long both feet have been off.
-  double back_s_ = 0;     ///< How long somebody has stood again.
-  bool off_ = true;       ///< Both feet are off, or came back only just now.
-  double rose_s_ = -1;    ///< When the last rise was recognised.
+  double weight_n_ = 0;     ///< Mean load of who stands there; 0: nobody yet.
+  double weighed_s_ = 0;    ///< Over this time, at most a few seconds.
+  double gone_s_ = 0;       ///< How long both feet have been off.
+  double back_s_ = 0;       ///< How long somebody has stood again.
+  bool off_ = true;         ///< Both feet are off, or came back only just now.
+  double rose_s_ = -1;      ///< When the last rise was recognised.
+  double walked_mps_ = 0;   ///< Speed of the last step that came on time, ...
+  double walked_s_ = -1e9;  ///< ... and when that was.
   HeldJump held_jump_;
   biped::GaitCommand jump_;
   biped::GaitCommand command_;

@@ -53,7 +53,7 @@ class JoystickInterface {
   /// The command for new inputs at `time_s`; times must not decrease.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
   /// A jump that was commanded is not made any more.
-  void DropJump() { jump_.Drop(); }
+  void StartAgain() { jump_.Drop(); }
   const stream::InterfaceState& state() const { return state_; }
 
  private:

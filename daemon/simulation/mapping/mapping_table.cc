@@ -39,7 +39,7 @@ Result<void> ReadTable(const std::string& text, const std::string& origin,
   for (const auto& item : root.items()) {
     const std::string& key = item.key();
     const bool known =
-        key == "version" || key == "how_found" ||
+        key == "version" || key == "how_found" || key == "measured" ||
         std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return f.key == key; });
     if (!known) return InvalidData(origin + ": unknown key " + key);
   }

@@ -31,8 +31,8 @@ struct TableField {
 };
 using TableFields = std::vector<TableField>;
 
-/// Reads a table: the version 1, how the numbers were found, every key of `fields`, nothing
-/// unknown, all in range. `origin` names the file.
+/// Reads a table: the version 1, how the numbers were found, where measured ones come from, every
+/// key of `fields`, nothing unknown, all in range. `origin` names the file.
 Result<void> ReadTable(const std::string& text, const std::string& origin,
                        const TableFields& fields);
 

@@ -21,6 +21,8 @@ class StepCadence {
 
   /// Whether the person steps: the feet have taken turns, and the next change is not overdue.
   bool stepping() const { return steps_ >= 2; }
+  /// Whether this step takes no longer than those before so far.
+  bool on_time() const { return time_s_ - changed_s_ <= step_s_; }
   /// Of one foot, half the steps a second; meaningful while stepping. A step that takes longer than
   /// those before shows it before its end.
   double frequency_hz() const;

@@ -103,7 +103,15 @@ void SwingGait::SetPace(const LimbPair& limbs, double frequency_hz) {
   }
 }
 
+/// The time for which `run` differs from what it was when the gait settled, while nothing else is
+/// known: that the motion is another one has then lasted, although not which one it is.
+void SwingGait::WaitForPhase(double time_s, bool run) {
+  other_s_ = run == settled_run_ ? 0 : other_s_ + time_s - time_s_;
+  settled_.Pause(time_s);
+}
+
 biped::GaitCommand SwingGait::Rest() {
+  other_s_ = 0;
   settled_.Reset(Gait::kStep);
   return command_ = biped::GaitCommand{};
 }
@@ -121,14 +129,21 @@ biped::GaitCommand SwingGait::Advance(double time_s, const LimbPair& limbs, bool
   const auto frequency_hz =
       MeanOf(limbs, &LimbFeatures::frequency_valid, &LimbFeatures::frequency_hz);
   if (!limbs.phase_valid || !frequency_hz) {
-    settled_.Pause(time_s);
+    WaitForPhase(time_s, run);
+    time_s_ = time_s;
     return time_s - valid_time_s_ > mapping_.hold_s ? Rest() : command_;
   }
-  valid_time_s_ = time_s;
+  valid_time_s_ = time_s_ = time_s;
+  if (run == settled_run_) other_s_ = 0;
   const Gait seen = Seen(limbs.phase_rad, run);
-  const double cycles = gait() == Gait::kStep ? mapping_.start_cycles : mapping_.change_cycles;
-  const double lasting_s = std::max(mapping_.change_min_s, cycles / *frequency_hz);
-  if (settled_.Advance(time_s, seen, lasting_s) == seen) SetPace(limbs, *frequency_hz);
+  const double least_s = mapping_.start_cycles / *frequency_hz;
+  const double change_s = mapping_.change_cycles / *frequency_hz - other_s_;
+  const double lasting_s = gait() == Gait::kStep ? least_s : std::max(least_s, change_s);
+  if (settled_.Advance(time_s, seen, std::max(mapping_.change_min_s, lasting_s)) == seen) {
+    SetPace(limbs, *frequency_hz);
+    settled_run_ = run;
+    other_s_ = 0;
+  }
   return command_;
 }
 

@@ -60,12 +60,16 @@ class SwingGait {
 
  private:
   stream::Gait Seen(double phase_rad, bool run) const;
+  void WaitForPhase(double time_s, bool run);
   void SetPace(const LimbPair& limbs, double frequency_hz);
 
   SwingMapping mapping_;
   SettledGait settled_;
   biped::GaitCommand command_;
   double valid_time_s_ = 0;
+  double time_s_ = 0;
+  bool settled_run_ = false;  ///< `run` when the gait was last seen as it is.
+  double other_s_ = 0;        ///< For how long it has been different without a phase.
 };
 
 }  // namespace footing::mapping

@@ -35,6 +35,8 @@ class WristInterface {
 
   /// The command for new inputs at `time_s`; times must not decrease.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
+  /// What the limbs showed before does not count.
+  void StartAgain() { gait_.Rest(); }
   const stream::InterfaceState& state() const { return state_; }
 
  private:

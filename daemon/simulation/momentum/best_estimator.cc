@@ -36,10 +36,13 @@ HorizontalPrior LateralPrior() {
   prior.moment_spread_m = 0.0079;
   prior.moment_time_s = 0.064;
   prior.cop_noise_m = 0.0006;
-  prior.posture = {1.16, 0.12, 0.25, 0.01};
   prior.spread_factor = 0.4;
   return prior;
 }
+
+PostureError PlainLateralPosture() { return {1.16, 0.12, 0.25, 0.01}; }
+PostureError PlainHeightPosture() { return {1, 0.15, 1, 0.01}; }
+PostureError LearnedHeightPosture() { return {1, 0.12, 1, 0.01}; }
 
 BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, const TPose& pose,
                              double step_s)
@@ -49,9 +52,10 @@ BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, c
       step_s_(step_s),
       lag_steps_(std::clamp(static_cast<int>(std::lround(config.lag_s / step_s)), 0,
                             HorizontalCom::kSlots - 1)),
-      horizontal_{HorizontalCom(config.forward, pose.mass_kg, step_s),
-                  HorizontalCom(config.lateral, pose.mass_kg, step_s)},
-      vertical_(pose.mass_kg, step_s, subject.arms_hang_m, pose.cell_noise_n),
+      horizontal_{HorizontalCom(config.forward, {}, pose.mass_kg, step_s),
+                  HorizontalCom(config.lateral, config.lateral_posture, pose.mass_kg, step_s)},
+      vertical_(pose.mass_kg, step_s, subject.arms_hang_m, pose.cell_noise_n,
+                config.height_posture),
       contacts_{FootContact(config.contact), FootContact(config.contact)},
       places_{FootPlace(subject.feet[0], config.place), FootPlace(subject.feet[1], config.place)} {
   for (HorizontalCom& axis : horizontal_) axis.KeepLag(lag_steps_);
@@ -83,6 +87,7 @@ const Estimate& BestEstimator::Advance(const ContactLoads& loads) {
   const bool away = gap || total < kAwayShare * pose_.mass_kg * kStandardGravityMps2;
   if (!away && away_s_ >= kAwayS) {
     Begin();
+    vertical_.Land();
     ++estimate_.resets;
   }
   away_s_ = away ? away_s_ + step_s_ : 0;
@@ -135,14 +140,18 @@ void BestEstimator::AdvanceCom(const ContactLoads& loads, bool gap) {
   ReportCom();
 }
 
-const Estimate& BestEstimator::SeePosture(const Eigen::Vector3d& p_WC_m) {
-  if (!estimate_.valid || !p_WC_m.allFinite()) return estimate_;
-  for (int i = 0; i < 2; ++i) horizontal_[static_cast<std::size_t>(i)].SeePosture(p_WC_m(i));
+const Estimate& BestEstimator::SeePosture(double lateral_W_m, double height_W_m) {
+  if (!estimate_.valid || !std::isfinite(lateral_W_m) || !std::isfinite(height_W_m)) {
+    return estimate_;
+  }
+  horizontal_[1].SeePosture(lateral_W_m);
+  vertical_.SeePosture(height_W_m - subject_.com_height_m);
   ReportCom();
   return estimate_;
 }
 
 void BestEstimator::ReportCom() {
+  estimate_.trusted = vertical_.trusted();
   for (int i = 0; i < 2; ++i) {
     const HorizontalCom& axis = horizontal_[static_cast<std::size_t>(i)];
     const auto position = axis.Position(lag_steps_);

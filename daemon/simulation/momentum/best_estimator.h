@@ -18,9 +18,18 @@ namespace footing::momentum {
 HorizontalPrior ForwardPrior();
 HorizontalPrior LateralPrior();
 
+/// How postures are wrong about the place of C along the lateral axis and upwards: `lateral` by the
+/// mean of all poses, and `height` by that or by poses that were found to go with hands and feet
+/// (docs/momentum.md).
+PostureError PlainLateralPosture();
+PostureError PlainHeightPosture();
+PostureError LearnedHeightPosture();
+
 struct BestConfig {
   HorizontalPrior forward = ForwardPrior();
   HorizontalPrior lateral = LateralPrior();
+  PostureError lateral_posture = PlainLateralPosture();
+  PostureError height_posture = PlainHeightPosture();
   FootContactConfig contact;
   FootPlaceConfig place;
   double lag_s = 0;               ///< 0 to 0.2: positions of C come this much later, and better.
@@ -39,8 +48,9 @@ class BestEstimator {
   /// it restarts when loads come again (`resets`).
   const Estimate& Advance(const ContactLoads& loads);
   /// Where C is by hands and feet alone, in the frame of the last Advance: its place along the
-  /// lateral axis is estimated again. What is not finite, or comes in a gap, is passed over.
-  const Estimate& SeePosture(const Eigen::Vector3d& p_WC_m);
+  /// lateral axis and its height are estimated again. What is not finite, or comes in a gap, is
+  /// passed over.
+  const Estimate& SeePosture(double lateral_W_m, double height_W_m);
   const Estimate& estimate() const { return estimate_; }
   const VerticalBank& vertical() const { return vertical_; }
   /// Weighed in the T-pose, and again where what came after contradicts that.

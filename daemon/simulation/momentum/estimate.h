@@ -47,6 +47,9 @@ struct Estimate {
   double time_s = 0;
   double lag_s = 0;
   bool valid = false;
+  /// False while the height by the loads is more than three deviations from what hands and feet
+  /// allow (about half a metre), or is not known to 12 cm. A smaller contradiction goes unseen.
+  bool trusted = true;
   Eigen::Vector3d p_WC_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_WC_mps = Eigen::Vector3d::Zero();
   Eigen::Vector3d a_WC_mps2 = Eigen::Vector3d::Zero();

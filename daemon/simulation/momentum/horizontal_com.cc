@@ -57,8 +57,9 @@ Matrix3 Exponential(const Matrix3& a, double h) {
 
 }  // namespace
 
-HorizontalCom::HorizontalCom(const HorizontalPrior& prior, double mass_kg, double step_s)
-    : prior_(prior), mass_kg_(mass_kg) {
+HorizontalCom::HorizontalCom(const HorizontalPrior& prior, const PostureError& posture,
+                             double mass_kg, double step_s)
+    : prior_(prior), posture_(posture), mass_kg_(mass_kg) {
   a_.setZero();
   stationary_.setZero();
   int at = 0;
@@ -72,8 +73,8 @@ HorizontalCom::HorizontalCom(const HorizontalPrior& prior, double mass_kg, doubl
   }
   a_(6, 6) = std::exp(-step_s / prior.moment_time_s);
   stationary_(6, 6) = prior.moment_spread_m * prior.moment_spread_m;
-  a_(7, 7) = std::exp(-step_s / prior.posture.time_s);
-  stationary_(7, 7) = prior.posture.spread_m * prior.posture.spread_m;
+  a_(7, 7) = std::exp(-step_s / posture.time_s);
+  stationary_(7, 7) = posture.spread_m * posture.spread_m;
   q_ = stationary_ - a_ * stationary_ * a_.transpose();
   position_ << 1, 0, 0, 1, 0, 0, 0, 0;
   velocity_ << 0, 1, 0, 0, 1, 0, 0, 0;
@@ -110,11 +111,10 @@ void HorizontalCom::Advance(const HorizontalInput& input) {
 }
 
 void HorizontalCom::SeePosture(double c_m) {
-  const PostureError& posture = prior_.posture;
-  if (posture.spread_m <= 0) return;
-  Filter::Row h = posture.share * position_;
+  if (posture_.spread_m <= 0) return;
+  Filter::Row h = posture_.share * position_;
   h(7) = 1;
-  filter_.Update(h, c_m - centre_m_, posture.white_m * posture.white_m);
+  filter_.Update(h, c_m - centre_m_, posture_.white_m * posture_.white_m);
 }
 
 Filter::Scalar HorizontalCom::Position(int lag_steps) const {
@@ -132,7 +132,7 @@ std::vector<Filter::Scalar> SmoothHorizontal(const HorizontalPrior& prior, doubl
     Filter::Matrix p;
     double centre_m;
   };
-  HorizontalCom com(prior, mass_kg, step_s);
+  HorizontalCom com(prior, {}, mass_kg, step_s);
   com.Start(start_m, inputs.front().centre_m);
   std::vector<Step> steps;
   steps.reserve(inputs.size());

@@ -28,7 +28,6 @@ struct HorizontalPrior {
   double moment_spread_m = 0.015;  ///< Standard deviation of e.
   double moment_time_s = 0.1;      ///< Correlation time of e.
   double cop_noise_m = 0.002;      ///< White, at full weight; grows with the inverse of the load.
-  PostureError posture;
   /// Factor of the reported deviation of c over the filter's, whose parts reach further than c
   /// does.
   double spread_factor = 1;
@@ -53,7 +52,8 @@ class HorizontalCom {
   using Filter = LinearFilter<kStates, kSlots>;
 
   /// `step_s` is the time between frames, > 0.
-  HorizontalCom(const HorizontalPrior& prior, double mass_kg, double step_s);
+  HorizontalCom(const HorizontalPrior& prior, const PostureError& posture, double mass_kg,
+                double step_s);
 
   /// Only Position of up to so many steps ago will be asked for. Before Start.
   void KeepLag(int lag_steps) { filter_.Keep(lag_steps + 1); }
@@ -76,6 +76,7 @@ class HorizontalCom {
 
  private:
   HorizontalPrior prior_;
+  PostureError posture_;
   double mass_kg_;
   Filter filter_;
   Filter::Matrix a_;

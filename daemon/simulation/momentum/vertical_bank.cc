@@ -17,7 +17,19 @@ constexpr double kAdoptEveryS = 5;
 // Parts of the weight: by which the T-pose's is wrong before it is doubted at all, and to which the
 // weight must be known to be given to the others.
 constexpr double kLeastOverweight = 0.005, kSettledSpread = 0.001;
+constexpr double kPostureS = 0.1;  // A posture older than this is not used.
+// Where a body is that nothing is known of, and how fast when it lands.
+constexpr double kAnyHeightM = 0, kAnyHeightSpreadM = 0.15, kLandingMps = 1.5;
+constexpr double kReseedMps = 0.5;
+constexpr double kRecoverEveryS = 1,
+                 kBehind = 10;  // How often, and by how much, others may be worse.
+constexpr double kTrustedSpreadM = 0.12;
 constexpr double kSureSpreads = 4;  // Of what both know of it.
+
+VerticalConfig WithPosture(VerticalConfig config, const PostureError& posture) {
+  config.posture = posture;
+  return config;
+}
 
 }  // namespace
 
@@ -65,29 +77,95 @@ VerticalConfig UnweighedVertical(double arms_hang_m, double cell_noise_n, double
   return config;
 }
 
-VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n)
-    : trusting_(TrustingVertical(arms_hang_m, cell_noise_n), mass_kg, step_s),
-      doubtful_(DoubtfulVertical(arms_hang_m, cell_noise_n), mass_kg, step_s),
-      unweighed_(UnweighedVertical(arms_hang_m, cell_noise_n, mass_kg), mass_kg, step_s),
-      step_s_(step_s) {}
+VerticalConfig WaryVertical(double arms_hang_m, double cell_noise_n, double mass_kg) {
+  VerticalConfig config = UnweighedVertical(arms_hang_m, cell_noise_n, mass_kg);
+  config.weight_spread = 0.05;
+  config.weight_walk = 0.002;
+  config.slow_force_n = 4;
+  config.slow_force_time_s = 2;
+  config.gain_spread = 0.01;
+  return config;
+}
+
+VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n,
+                           const PostureError& posture)
+    : trusting_(WithPosture(TrustingVertical(arms_hang_m, cell_noise_n), posture), mass_kg, step_s),
+      doubtful_(WithPosture(DoubtfulVertical(arms_hang_m, cell_noise_n), posture), mass_kg, step_s),
+      unweighed_(WithPosture(UnweighedVertical(arms_hang_m, cell_noise_n, mass_kg), posture),
+                 mass_kg, step_s),
+      wary_(WithPosture(WaryVertical(arms_hang_m, cell_noise_n, mass_kg), posture), mass_kg,
+            step_s),
+      step_s_(step_s),
+      posture_(posture) {}
 
 void VerticalBank::KeepLag(int lag_steps) {
-  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_}) filter->KeepLag(lag_steps);
+  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_, &wary_})
+    filter->KeepLag(lag_steps);
 }
 
 void VerticalBank::Start(const VerticalInput& mean) {
   trusting_.Start(mean);
   doubtful_.Start(mean);
   unweighed_.Start(mean);
+  wary_.Start(mean);
+  wary_speaks_ = false;
+  since_posture_s_ = kPostureS;
   trusts_ = false;
   adopted_s_ = 0;
   weighing_ = false;
+}
+
+void VerticalBank::SeePosture(double height_m) {
+  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_, &wary_}) {
+    filter->SeePosture(height_m);
+  }
+  since_posture_s_ = 0;
+}
+
+bool VerticalBank::SeesPosture() const {
+  return posture_.spread_m > 0 && since_posture_s_ < kPostureS;
+}
+
+void VerticalBank::Land() {
+  // Each keeps its mass: what was learned of the weight stays true.
+  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_, &wary_}) {
+    filter->Reseed(kAnyHeightM, kAnyHeightSpreadM, kLandingMps);
+  }
+}
+
+void VerticalBank::Recover() {
+  // The posture of this frame finds the height.
+  if (wary_.strayed()) wary_.Reseed(kAnyHeightM, kAnyHeightSpreadM, kReseedMps);
+  since_look_s_ += step_s_;
+  // Without a posture nothing but a height that is impossible speaks for it.
+  const bool seen = SeesPosture();
+  const bool look = seen && since_look_s_ >= kRecoverEveryS;
+  if (look) since_look_s_ = 0;
+  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_}) {
+    if (filter->strayed() || (look && filter->score() < wary_.score() - kBehind)) {
+      filter->Adopt(wary_);
+    }
+  }
+  if (!seen) {
+    wary_speaks_ = false;
+    return;
+  }
+  const double best = std::max(doubtful_.score(), trusting_.score());
+  wary_speaks_ = wary_speaks_ ? best < wary_.score() + kTrustAbove : best < wary_.score() - kBehind;
+}
+
+bool VerticalBank::trusted() const {
+  if (SeesPosture() && chosen().contradicted()) return false;
+  return chosen().Height(0).variance < kTrustedSpreadM * kTrustedSpreadM;
 }
 
 void VerticalBank::Advance(const VerticalInput& input) {
   trusting_.Advance(input);
   doubtful_.Advance(input);
   unweighed_.Advance(input);
+  wary_.Advance(input);
+  since_posture_s_ += step_s_;
+  Recover();
   Weigh();
   adopted_s_ += step_s_;
   const double lead = trusting_.score() - doubtful_.score();
@@ -117,6 +195,7 @@ void VerticalBank::Coast() {
   trusting_.Coast();
   doubtful_.Coast();
   unweighed_.Coast();
+  wary_.Coast();
 }
 
 VerticalCom::Filter::Scalar VerticalBank::Height(int lag_steps) const {

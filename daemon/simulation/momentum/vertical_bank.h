@@ -13,41 +13,67 @@ VerticalConfig DoubtfulVertical(double arms_hang_m, double cell_noise_n);
 /// for long.
 VerticalConfig UnweighedVertical(double arms_hang_m, double cell_noise_n, double mass_kg);
 
-/// Two filters of the height side by side, one that trusts the cells and one that doubts them. The
+/// For a body whose weight is never known for good, and for cells that are wrong by as much as the
+/// worst boards are.
+VerticalConfig WaryVertical(double arms_hang_m, double cell_noise_n, double mass_kg);
+
+/// Filters of the height side by side, one that trusts the cells and one that doubts them. The
 /// one that foresaw the last minute's events better speaks; a trusting filter that lost its way is
 /// set right by the doubtful one. A third one takes nothing for granted of the weight: when it is
 /// sure that the T-pose's is wrong, it speaks until the weight is settled, then gives it to the
-/// others. A plain value.
+/// others. A fourth one knows nothing for good: where the others stray or foresee much less than it
+/// does, it speaks, and they adopt its state. A plain value.
 class VerticalBank {
  public:
-  VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n);
+  VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n,
+               const PostureError& posture);
 
   /// VerticalCom::KeepLag of all.
   void KeepLag(int lag_steps);
   void Start(const VerticalInput& mean);
   void Advance(const VerticalInput& input);
+  /// Hands and feet alone have the body that high over the T-pose.
+  void SeePosture(double height_m);
   void Coast();
+  /// The body is back on the cells, at an unknown height and velocity. After Start.
+  void Land();
+  /// False while what speaks contradicts the posture, or is not sure of the height.
+  bool trusted() const;
 
   const VerticalCom& chosen() const {
+    if (wary_speaks_) return wary_;
     if (weighing_) return unweighed_;
     return trusts_ ? trusting_ : doubtful_;
   }
   bool trusts() const { return trusts_; }
   /// The T-pose's, or what it was found to be.
-  double mass_kg() const { return weighing_ ? unweighed_.weighed_kg() : chosen().mass_kg(); }
+  double mass_kg() const {
+    return wary_speaks_ ? wary_.weighed_kg()
+           : weighing_  ? unweighed_.weighed_kg()
+                        : chosen().mass_kg();
+  }
   /// Mean and variance, with what the anchor itself may be wrong by in it.
   VerticalCom::Filter::Scalar Height(int lag_steps) const;
 
  private:
   void Weigh();
+  /// The wary filter restarts where it has strayed; others that have, or that foresaw much less
+  /// than it did, adopt its state.
+  void Recover();
+  bool SeesPosture() const;
 
   VerticalCom trusting_;
   VerticalCom doubtful_;
   VerticalCom unweighed_;
+  VerticalCom wary_;
+  bool wary_speaks_ = false;
   bool trusts_ = false;
   double adopted_s_ = 0;
   bool weighing_ = false;  ///< The T-pose's weight is known to be wrong, the true one not yet.
   double step_s_;
+  PostureError posture_;
+  double since_posture_s_ = 0;
+  double since_look_s_ = 0;
 };
 
 }  // namespace footing::momentum

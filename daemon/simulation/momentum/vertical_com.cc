@@ -13,15 +13,22 @@ namespace {
 using VerticalFilter = VerticalCom::Filter;
 
 constexpr int kGroups = VerticalInput::kGroups;
-constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
-constexpr double kLevelTimeS = 0.5;          // Of the acceleration that is kept.
-constexpr double kCopTimeS = 0.1;            // Smoothing of the COP, and again of its speed.
-constexpr double kStillLookS = 0.1;          // Time between zero-velocity measurements.
-constexpr double kLoadedShare = 0.5;         // Of the weight: with less, the body may fly.
+constexpr int kGains = 3, kPosture = kGains + kGroups;  // Where they begin in the state.
+constexpr double kAccelerationTimeS = 0.12;             // Smoothing of |acceleration|.
+constexpr double kLevelTimeS = 0.5;                     // Of the acceleration that is kept.
+constexpr double kCopTimeS = 0.1;     // Smoothing of the COP, and again of its speed.
+constexpr double kStillLookS = 0.1;   // Time between zero-velocity measurements.
+constexpr double kLoadedShare = 0.5;  // Of the weight: with less, the body may fly.
 constexpr double kScoreTimeS = 30;
 constexpr double kLeastLogDensity = -20;  // One event alone condemns nothing.
 constexpr double kCoastMps2 = 20;         // Of a velocity that nobody watches, per root frame.
 constexpr double kLeastShare = 0.5;       // Of a weight that is taken for the true one.
+constexpr double kPostureLookS = 0.3;
+// A filter has strayed that is sure, by so many deviations, of a height over tiptoe with raised
+// arms or under the ground; or that is for a while so many deviations from the posture.
+constexpr double kStraySpreads = 4, kHighestM = 0.15, kLowestM = -0.75;
+constexpr double kFarSpreads = 4, kFarS = 0.2, kDoubtSpreads = 3;
+constexpr double kReseedGain = 0.03;  // Of the weight: what a filter that strayed may have learned.
 constexpr double kStartHeightM = 0.005;
 constexpr double kStartVelocityMps = 0.005;
 
@@ -45,6 +52,11 @@ VerticalCom::VerticalCom(const VerticalConfig& config, double mass_kg, double st
   q_(0, 0) = 1e-9;
   q_(1, 1) = white * white * step_s * step_s;
   q_(2, 2) = slow * slow * (1 - keep * keep);
+  q_.block<kGroups, kGroups>(kGains, kGains)
+      .setConstant(config.weight_walk * config.weight_walk * step_s);
+  const double posture_keep = std::exp(-step_s / config.posture.time_s);
+  a_(kPosture, kPosture) = posture_keep;
+  q_(kPosture, kPosture) = std::pow(config.posture.spread_m, 2) * (1 - posture_keep * posture_keep);
   u_.setZero();
 }
 
@@ -53,9 +65,10 @@ void VerticalCom::Start(const VerticalInput& mean) {
   p(0, 0) = kStartHeightM * kStartHeightM;
   p(1, 1) = kStartVelocityMps * kStartVelocityMps;
   p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
-  p.bottomRightCorner<kGroups, kGroups>().setConstant(config_.weight_spread *
-                                                      config_.weight_spread);
-  for (int i = 0; i < kGroups; ++i) p(3 + i, 3 + i) += config_.gain_spread * config_.gain_spread;
+  p.block<kGroups, kGroups>(kGains, kGains)
+      .setConstant(config_.weight_spread * config_.weight_spread);
+  for (int i = kGains; i < kPosture; ++i) p(i, i) += config_.gain_spread * config_.gain_spread;
+  p(kPosture, kPosture) = config_.posture.spread_m * config_.posture.spread_m;
   filter_.Start(VerticalFilter::Vector::Zero(), p);
   // In the T-pose all gains together give the weight, but for what the mass is wrong by.
   VerticalFilter::Row h = VerticalFilter::Row::Zero();
@@ -65,21 +78,20 @@ void VerticalCom::Start(const VerticalInput& mean) {
   const double error = config_.mass_error_kg * kStandardGravityMps2 / mass_kg_;
   filter_.Update(h, 0, error * error);
   filter_.Remember(VerticalFilter::Row::Unit(0));
-  started_ = false;
+  last_.started = false;
+  posture_ = {};
 }
 
 void VerticalCom::Advance(const VerticalInput& input) {
   const double raw = Total(input) / mass_kg_ - kStandardGravityMps2;
-  if (!started_) {
-    started_ = true;
-    last_ = input;
-    last_raw_mps2_ = raw;
+  if (!last_.started) {
+    last_ = {true, input, raw};
     mean_cop_m_ = input.cop_m;
     level_mps2_ = raw;
     mean_acceleration_mps2_ = std::abs(raw);
   }
   // Trapezoid over the step; the errors enter with the loads of the same time.
-  const double h = step_s_, mean = 0.5 * (raw + last_raw_mps2_);
+  const double h = step_s_, mean = 0.5 * (raw + last_.raw_mps2);
   u_.setZero();
   u_(0) = 0.5 * mean * h * h;
   u_(1) = mean * h;
@@ -88,7 +100,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
   acceleration_mps2_ = raw - filter_.x()(2);
   for (int i = 0; i < kGroups; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double share = 0.5 * (input.load_n[k] + last_.load_n[k]) / mass_kg_;
+    const double share = 0.5 * (input.load_n[k] + last_.input.load_n[k]) / mass_kg_;
     a_(0, 3 + i) = -0.5 * h * h * share;
     a_(1, 3 + i) = -h * share;
     acceleration_mps2_ -= filter_.x()(3 + i) * input.load_n[k] / mass_kg_;
@@ -110,8 +122,8 @@ void VerticalCom::Advance(const VerticalInput& input) {
     since_look_s_ = 0;
     Anchor(raw > (kLoadedShare - 1) * kStandardGravityMps2);
   }
-  last_ = input;
-  last_raw_mps2_ = raw;
+  last_.input = input;
+  last_.raw_mps2 = raw;
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }
 
@@ -136,6 +148,11 @@ void VerticalCom::Anchor(bool loaded) {
   if (!loaded) return;
   const VerticalFilter::Row row = VerticalFilter::Row::Unit(0);
   const VerticalFilter::Scalar now = filter_.Of(row);
+  const double sure_m = kStraySpreads * std::sqrt(now.variance);
+  if (now.mean - sure_m > kHighestM || now.mean + sure_m < kLowestM) {
+    posture_.strayed = true;  // A cut would make it surer still.
+    return;
+  }
   const double upright = config_.upright_share;
   MixtureMoments product = TimesMixture(
       {now.mean, now.variance}, {{{upright, -config_.upright_below_m, config_.upright_spread_m},
@@ -145,6 +162,41 @@ void VerticalCom::Anchor(bool loaded) {
   filter_.SetMoments(row, {posterior.mean, posterior.variance});
 }
 
+void VerticalCom::SeePosture(double height_m) {
+  const PostureError& posture = config_.posture;
+  if (posture.spread_m <= 0) return;
+  VerticalFilter::Row h = posture.share * VerticalFilter::Row::Unit(0);
+  h(kPosture) = 1;
+  filter_.Update(h, height_m, posture.white_m * posture.white_m);
+  const double s = filter_.p()(0, 0) + posture.spread_m * posture.spread_m;
+  const double off_m = height_m - posture.share * filter_.x()(0);
+  const bool far = off_m * off_m > kFarSpreads * kFarSpreads * s;
+  posture_.contradicted = off_m * off_m > kDoubtSpreads * kDoubtSpreads * s;
+  posture_.far_s = far ? posture_.far_s + step_s_ : 0;
+  posture_.strayed = posture_.strayed || posture_.far_s > kFarS;
+  posture_.since_score_s += step_s_;
+  if (posture_.since_score_s >= kPostureLookS) {
+    posture_.since_score_s = 0;
+    Score(-0.5 * (off_m * off_m / s + std::log(s)));
+  }
+}
+
+void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_sd_mps) {
+  VerticalFilter::Vector x = filter_.x();
+  VerticalFilter::Matrix p = VerticalFilter::Matrix::Zero();
+  p.block<kGroups, kGroups>(kGains, kGains) = filter_.p().block<kGroups, kGroups>(kGains, kGains);
+  p.block<kGroups, kGroups>(kGains, kGains).array() += kReseedGain * kReseedGain;
+  x(0) = height_m;
+  x(1) = x(2) = x(kPosture) = 0;
+  p(0, 0) = height_sd_m * height_sd_m;
+  p(1, 1) = velocity_sd_mps * velocity_sd_mps;
+  p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
+  p(kPosture, kPosture) = config_.posture.spread_m * config_.posture.spread_m;
+  filter_.Start(x, p);
+  posture_ = {};
+  filter_.Remember(VerticalFilter::Row::Unit(0));
+}
+
 void VerticalCom::Score(double log_density) { score_ += std::max(log_density, kLeastLogDensity); }
 
 void VerticalCom::Adopt(const VerticalCom& other) {
@@ -152,7 +204,8 @@ void VerticalCom::Adopt(const VerticalCom& other) {
   score_ = other.score_;
   mass_kg_ = other.mass_kg_;
   overweight_ = other.overweight_;
-  last_raw_mps2_ = Total(last_) / mass_kg_ - kStandardGravityMps2;
+  posture_ = other.posture_;
+  last_.raw_mps2 = Total(last_.input) / mass_kg_ - kStandardGravityMps2;
 }
 
 double VerticalCom::weighed_kg() const {
@@ -163,11 +216,12 @@ void VerticalCom::Reweigh() {
   // (1 - gain) / mass of each group stays what it was.
   const double share = mass_kg_ / weighed_kg();
   VerticalFilter::Vector shift = VerticalFilter::Vector::Zero();
-  for (int i = 3; i < kStates; ++i) shift(i) = 1 - (1 - filter_.x()(i)) / share - filter_.x()(i);
+  for (int i = kGains; i < kPosture; ++i)
+    shift(i) = 1 - (1 - filter_.x()(i)) / share - filter_.x()(i);
   filter_.Predict(VerticalFilter::Matrix::Identity(), shift, VerticalFilter::Matrix::Zero());
   mass_kg_ /= share;
   overweight_ *= share;
-  last_raw_mps2_ = Total(last_) / mass_kg_ - kStandardGravityMps2;
+  last_.raw_mps2 = Total(last_.input) / mass_kg_ - kStandardGravityMps2;
 }
 
 void VerticalCom::Coast() {
@@ -177,7 +231,7 @@ void VerticalCom::Coast() {
   q(1, 1) += kCoastMps2 * kCoastMps2 * step_s_ * step_s_;
   u_.setZero();
   filter_.Predict(a, u_, q);
-  started_ = false;
+  last_.started = false;
   still_s_ = 0;
   filter_.Remember(VerticalFilter::Row::Unit(0));
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/simulation/momentum/linear_filter.h"
+#include "daemon/simulation/momentum/posture.h"
 
 namespace footing::momentum {
 
@@ -17,6 +18,7 @@ struct VerticalConfig {
   double slow_force_time_s = 5;  ///< Its correlation time.
   double mass_error_kg = 0.05;   ///< Of the calibration.
   double weight_spread = 0;      ///< Of what all cells are wrong by alike, beside their own gains.
+  double weight_walk = 0;        ///< By which that wanders, per root second.
   /// Still is who keeps the acceleration that the loads show, whatever it is; else who has none.
   bool still_at_any_weight = false;
   // Zero-velocity events.
@@ -31,6 +33,7 @@ struct VerticalConfig {
   double low_below_m = 0.12;  ///< Mean and spread of all other heights.
   double low_spread_m = 0.15;
   double highest_m = 0.12;  ///< Over the T-pose, with load on the feet: tiptoe, arms up.
+  PostureError posture;     ///< Of what hands and feet alone say.
 };
 
 /// One frame: the load of each group of cells, and where the COP is.
@@ -43,14 +46,14 @@ struct VerticalInput {
 
 /// Height of the centre of mass over its height in the T-pose, by a Kalman filter of the loads.
 ///
-/// States: height, velocity, slow error of the acceleration, one gain error per group of cells. The
-/// loads enter as an input; the cells' gains, the mass and the slow error are found by what the
-/// filter learns when the body is still (zero velocity) and upright (a mixture of densities,
-/// matched in its moments): the more doubtful the height, the wider the reach of the anchor. A
-/// plain value.
+/// States: height, velocity, slow error of the acceleration, one gain error per group of cells, the
+/// posture's error. The loads enter as an input; the cells' gains, the mass and the slow error are
+/// found by what the filter learns when the body is still (zero velocity) and upright (a mixture of
+/// densities, matched in its moments): the more doubtful the height, the wider the reach of the
+/// anchor. A plain value.
 class VerticalCom {
  public:
-  static constexpr int kStates = 3 + VerticalInput::kGroups;
+  static constexpr int kStates = 4 + VerticalInput::kGroups;
   static constexpr int kSlots = 25;
   static constexpr double kStillAfterS = 0.2;
   using Filter = LinearFilter<kStates, kSlots>;
@@ -62,6 +65,15 @@ class VerticalCom {
   /// The body stands still in its T-pose; `mean` is the calibration's mean load of each group.
   void Start(const VerticalInput& mean);
   void Advance(const VerticalInput& input);
+  /// Hands and feet alone have the body that high, in the frame of the last Advance.
+  void SeePosture(double height_m);
+  /// True once it is sure of a height that no body has, or that no posture comes near: what it has
+  /// learned is wrong. Until Reseed, Adopt or Start.
+  bool strayed() const { return posture_.strayed; }
+  /// The last posture was further off than both can be wrong by, by three deviations.
+  bool contradicted() const { return posture_.contradicted; }
+  /// Restarts at that height, with what was learned of the cells doubted.
+  void Reseed(double height_m, double height_sd_m, double velocity_sd_mps);
 
   Filter::Scalar Height(int lag_steps) const { return filter_.Delayed(lag_steps); }
   Filter::Scalar Velocity() const { return filter_.Of(Filter::Row::Unit(1)); }
@@ -102,9 +114,11 @@ class VerticalCom {
   Filter::Matrix q_;
   Filter::Vector u_;
   Filter::Row overweight_ = Filter::Row::Zero();
-  bool started_ = false;
-  VerticalInput last_;
-  double last_raw_mps2_ = 0;
+  struct {
+    bool started = false;
+    VerticalInput input;
+    double raw_mps2 = 0;
+  } last_;
   double acceleration_mps2_ = 0;
   double level_mps2_ = 0;              // What the loads show, slowly smoothed.
   double mean_acceleration_mps2_ = 0;  // Smoothed, absolute.
@@ -113,6 +127,12 @@ class VerticalCom {
   double still_s_ = 0;
   double since_still_look_s_ = 0;
   double since_look_s_ = 0;
+  struct {
+    double since_score_s = 0;
+    double far_s = 0;  ///< For how long it has been too far from the posture.
+    bool strayed = false;
+    bool contradicted = false;
+  } posture_;
   double score_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "daemon/simulation/pose_service/pose_line.h"
 
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "daemon/simulation/pose_service/pose_models.h"
@@ -10,6 +11,23 @@
 namespace footing::pose_service {
 
 using serving::Answer;
+
+namespace {
+
+/// What the engine runs with; its subject stands in the frames.
+std::string EffectiveConfig(serving::Config common, Config config) {
+  using nlohmann::ordered_json;
+  config::Binder binder;
+  common.Bind(binder);
+  config.Bind(binder);
+  const ordered_json json = {{"program", "footing-sim"},
+                             {"version", common.version},
+                             {"engine", "pose"},
+                             {"settings", ordered_json::parse(binder.Print())}};
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace
 
 Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common,
                                                    const Config& config, int wake_descriptor) {
@@ -30,21 +48,22 @@ Result<std::unique_ptr<PoseLine>> PoseLine::Create(const serving::Config& common
   if (!models) return models.error();
   auto run = MakeSubjectRun(1, *body, *models, options);
   if (!run) return run.error();
-  return std::unique_ptr<PoseLine>(new PoseLine(common.rig, config, std::move(models).value(),
-                                                options, {1, first, *body}, std::move(run).value(),
+  return std::unique_ptr<PoseLine>(new PoseLine(common, config, std::move(models).value(), options,
+                                                {1, first, *body}, std::move(run).value(),
                                                 wake_descriptor));
 }
 
-PoseLine::PoseLine(const std::string& rig, const Config& config, reconstruction::Models models,
-                   reconstruction::Options options, Known first, std::unique_ptr<SubjectRun> run,
-                   int wake_descriptor)
+PoseLine::PoseLine(const serving::Config& common, const Config& config,
+                   reconstruction::Models models, reconstruction::Options options, Known first,
+                   std::unique_ptr<SubjectRun> run, int wake_descriptor)
     : mode_(config.mode),
+      effective_config_(EffectiveConfig(common, config)),
       models_(std::move(models)),
       options_(options),
       known_{std::move(first)},
       shown_number_(known_.front().number),
       thread_(PoseRun(std::move(run), kRateHz, subjects_), 1 / kRateHz, 1, wake_descriptor),
-      sensors_(rig, thread_.inputs(), models_.arm) {
+      sensors_(common.rig, thread_.inputs(), models_.arm) {
   sensors_.TakeSubject(shown_number_);
 }
 
@@ -52,7 +71,8 @@ std::vector<transport::Channel> PoseLine::Channels() {
   return {{"skeletons", serving::kSkeletons, true},
           {"characters", serving::kCharacters, false},
           {"events", serving::kEvents, false},
-          {"inputs", serving::kInputs, false}};
+          {"inputs", serving::kInputs, false},
+          {"config", serving::kConfig, true}};
 }
 
 const PoseLine::Known& PoseLine::Of(std::uint64_t number) const {
@@ -63,8 +83,11 @@ const PoseLine::Known& PoseLine::Of(std::uint64_t number) const {
 }
 
 std::vector<transport::ChannelBytes> PoseLine::Retained() const {
+  v1::EffectiveConfig effective;
+  effective.set_json(effective_config_);
   return {serving::Bytes(serving::kSkeletons,
-                         serving::MakeSkeletons(world_, ToSkeleton(Of(shown_number_).body)))};
+                         serving::MakeSkeletons(world_, ToSkeleton(Of(shown_number_).body))),
+          serving::Bytes(serving::kConfig, effective)};
 }
 
 v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {

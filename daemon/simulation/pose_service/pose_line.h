@@ -54,7 +54,7 @@ class PoseLine {
     body::Body body;
   };
 
-  PoseLine(const std::string& rig, const Config& config, reconstruction::Models models,
+  PoseLine(const serving::Config& common, const Config& config, reconstruction::Models models,
            reconstruction::Options options, Known first, std::unique_ptr<SubjectRun> run,
            int wake_descriptor);
   v1::CommandResult TakeSubject(const v1::SetSubject& message);
@@ -62,6 +62,7 @@ class PoseLine {
 
   const std::string world_ = "boards";
   const std::string mode_;
+  const std::string effective_config_;  ///< JSON.
   const reconstruction::Models models_;
   const reconstruction::Options options_;
   std::deque<Known> known_;  ///< Oldest first; the newest is the one asked for last.

@@ -134,7 +134,9 @@ std::string PoseNote(const PoseFrame& frame, const Subject& subject) {
     return note;
   }
   if (measured) AddFeet(frame, note);
-  if (measured && frame.momentum.valid && !frame.valid)
+  if (measured && frame.momentum.valid && !frame.momentum.trusted)
+    Add(note, "the height by the loads is not certain: it does not count for the pose");
+  else if (measured && frame.momentum.valid && !frame.valid)
     Add(note, "what is measured fits no pose that the model knows: this one is a guess");
   AddHands(frame, note);
   AddMass(frame, subject, note);

@@ -24,6 +24,7 @@ void BestMode::Advance(const Inputs& inputs, const Truth& truth, Output& output)
   const Measurement now = estimate_.Advance(inputs);
   output.mass_kg = estimate_.mass_kg();
   ReportEstimate(now.momentum, state_.solver_resets, output);
+  output.posture_com_W_m = now.posture_com_W_m;
   const Measurement then = Delayed(now);
   truth_.Add(truth);
   const Truth& true_then = truth_.Back(static_cast<std::size_t>(state_.options.lag_steps()));
@@ -43,6 +44,7 @@ Measurement BestMode::Delayed(const Measurement& now) {
   // The filters report places as they were, the rest as it is.
   then.momentum.p_WC_m = now.momentum.p_WC_m;
   then.momentum.position_variance_m2 = now.momentum.position_variance_m2;
+  then.momentum.trusted = now.momentum.trusted;
   return then;
 }
 

@@ -20,6 +20,7 @@ class BestMode {
   /// One frame after it.
   void Advance(const Inputs& inputs, const Truth& truth, Output& output);
   const Features& features() const { return solver_.features(); }
+  const LikelyPosture& posture() const { return estimate_.posture(); }
 
  private:
   template <typename T>

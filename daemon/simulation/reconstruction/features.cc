@@ -95,6 +95,23 @@ const Features::Values& Features::Advance(const std::array<Eigen::Vector3d, 2>& 
   return values_;
 }
 
+momentum::Estimate WithoutLoads(const momentum::Estimate& estimate, double com_height_m) {
+  momentum::Estimate bare;
+  bare.time_s = estimate.time_s;
+  bare.valid = estimate.valid;
+  for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+    const momentum::FootEstimate& foot = estimate.feet[f];
+    momentum::FootEstimate& shown = bare.feet[f];
+    shown.contact = foot.contact;
+    shown.valid = foot.valid;
+    shown.p_WF_m = foot.p_WF_m;
+    shown.airborne_s = foot.airborne_s;
+    bare.p_WC_m += foot.p_WF_m / double{momentum::kFeet};
+  }
+  bare.p_WC_m.z() = com_height_m;
+  return bare;
+}
+
 StripMatrix::StripMatrix(const Eigen::MatrixXf& dense) : rows_(dense.rows()), cols_(dense.cols()) {
   strips_.setZero(kStrip, StripRows() / kStrip * cols_);
   for (Eigen::Index row = 0; row < rows_; ++row) {

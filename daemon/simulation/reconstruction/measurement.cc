@@ -69,13 +69,21 @@ bool Calibrate(const Inputs& inputs, double step_s, momentum::TPoseCalibration& 
 BestEstimate::BestEstimate(const SubjectModel& model, const Options& options)
     : model_(&model),
       options_(options),
-      posture_(model.body, model.basis, PostureSolverOptions(options)) {}
+      likely_(model, options.step_s()),
+      plain_(model.body, model.basis, PostureSolverOptions(options)) {
+  if (!model.posture.empty()) {
+    learned_.emplace(model.body, model.posture.rest, PostureSolverOptions(options));
+  }
+}
 
 void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {
   momentum::BestConfig config;
   config.lag_s = options_.lag_steps() * options_.step_s();
+  if (!model_->posture.empty()) config.height_posture = momentum::LearnedHeightPosture();
   estimator_.emplace(config, model_->subject, pose, options_.step_s());
-  posture_.Reset();
+  likely_.Start();
+  plain_.Reset();
+  if (learned_) learned_->Reset();
   origin_m_ = origin_m;
 }
 
@@ -83,20 +91,27 @@ Measurement BestEstimate::Advance(const Inputs& inputs) {
   Measurement now{UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
                   estimator_->Advance(inputs.loads)};
   if (options_.use_posture && now.both_hands()) {
-    now.momentum = estimator_->SeePosture(PostureCom(now));
+    SeePosture(now);
   }
   return now;
 }
 
-Eigen::Vector3d BestEstimate::PostureCom(const Measurement& now) {
+void BestEstimate::SeePosture(Measurement& now) {
+  likely_.Advance({now.hands[0].p_W_m, now.hands[1].p_W_m}, now.momentum);
   targets_ = {};
   AddHandTargets(*model_, now, options_.best, targets_);
   for (std::size_t f = 0; f < momentum::kFeet; ++f) {
     AddFootTargets(model_->feet[f], now.momentum.feet[f], options_.best.foot, targets_);
   }
   MoveOrigin(origin_m_, targets_);
-  posture_.Solve(targets_);
-  return origin_m_ + body::CentreOfMass(model_->body, posture_.at());
+  plain_.Solve(targets_);
+  const Eigen::Vector3d plain_m = body::CentreOfMass(model_->body, plain_.at());
+  now.posture_com_W_m = origin_m_ + plain_m;
+  if (learned_) {
+    learned_->Solve(targets_, likely_.Predict(origin_m_));
+    now.posture_com_W_m = origin_m_ + body::CentreOfMass(model_->body, learned_->at());
+  }
+  now.momentum = estimator_->SeePosture(origin_m_.y() + plain_m.y(), now.posture_com_W_m->z());
 }
 
 void PaperEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {

@@ -12,6 +12,7 @@
 #include "daemon/simulation/pose/gauss_newton.h"
 #include "daemon/simulation/reconstruction/inputs.h"
 #include "daemon/simulation/reconstruction/output.h"
+#include "daemon/simulation/reconstruction/posture.h"
 #include "daemon/simulation/reconstruction/subject_model.h"
 
 /// The first two steps of every mode: the T-pose, and what is estimated from the loads.
@@ -22,6 +23,8 @@ struct Measurement {
   std::array<HandInput, kHands> hands;
   std::array<arms::ArmEstimate, kHands> arms;
   momentum::Estimate momentum;
+  /// COM by hands and feet alone, W; only with both hands.
+  std::optional<Eigen::Vector3d> posture_com_W_m = std::nullopt;
 
   bool both_hands() const { return hands[0].valid && hands[1].valid; }
 };
@@ -47,17 +50,22 @@ class BestEstimate {
   Measurement Advance(const Inputs& inputs);
   /// Weighed in the T-pose, corrected since.
   double mass_kg() const { return estimator_->mass_kg(); }
+  /// Of the last frame with both hands.
+  const LikelyPosture& posture() const { return likely_; }
 
  private:
-  /// The COM of a pose of hands and feet alone: it uses no load, so its errors are its own.
-  Eigen::Vector3d PostureCom(const Measurement& now);
+  /// Takes in the COM of poses of hands and feet alone: they use no load, so their errors are their
+  /// own.
+  void SeePosture(Measurement& now);
 
   const SubjectModel* model_;
   Options options_;
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   std::optional<momentum::BestEstimator> estimator_;  ///< From Start on.
   pose::PoseTargets targets_;
-  pose::GaussNewton posture_;
+  LikelyPosture likely_;
+  pose::GaussNewton plain_;                   ///< About the mean of all poses.
+  std::optional<pose::GaussNewton> learned_;  ///< About likely postures, where there are such.
 };
 
 /// Momentum as the paper estimates it.

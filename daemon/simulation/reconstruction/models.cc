@@ -81,16 +81,18 @@ Result<void> ReadBasis(const NamedModel& named, Models& models) {
 }
 
 /// Older models have none.
-Result<void> ReadWaves(const NamedModel& named, PoseRegression& regression) {
-  const model::Tensor* phases = model::FindAny(named.model, "wave_phases");
+Result<void> ReadWaves(const NamedModel& named, const std::string& prefix,
+                       PoseRegression& regression) {
+  const model::Tensor* phases = model::FindAny(named.model, prefix + "wave_phases");
   if (phases == nullptr) return {};
   if (phases->shape.size() != 1 || phases->shape[0] == 0 || phases->shape[0] > kMostWaves) {
-    return InvalidData(named.origin + ": its tensor wave_phases is not a list of 1 to " +
-                       std::to_string(kMostWaves) + " phases");
+    return InvalidData(named.origin + ": its tensor " + prefix +
+                       "wave_phases is not a list of 1 to " + std::to_string(kMostWaves) +
+                       " phases");
   }
   const std::uint32_t count = phases->shape[0];
   const auto read = [&](const char* name, std::uint32_t rows, std::uint32_t columns) {
-    return Matrix(named.model, name, rows, columns, named.origin);
+    return Matrix(named.model, prefix + name, rows, columns, named.origin);
   };
   const auto waves = read("waves", count, Features::kCount);
   if (!waves) return waves.error();
@@ -103,8 +105,9 @@ Result<void> ReadWaves(const NamedModel& named, PoseRegression& regression) {
   return {};
 }
 
-Result<void> ReadRegression(const NamedModel& named, Models& models) {
-  if (const auto basis = ReadBasis(named, models); !basis) return basis;
+/// The tensors that begin with `prefix`, of a basis that has been read.
+Result<LikelyPoses> ReadLikelyPoses(const NamedModel& named, const std::string& prefix,
+                                    const Models& models) {
   const auto dof = static_cast<std::uint32_t>(models.basis.dof());
   constexpr auto kFeatures = static_cast<std::uint32_t>(Features::kCount);
   struct Part {
@@ -112,31 +115,54 @@ Result<void> ReadRegression(const NamedModel& named, Models& models) {
     std::uint32_t rows, columns;
     Eigen::MatrixXd values;
   };
-  std::array<Part, 7> parts{{{"scale", dof, 1, {}},
-                             {"feature_mean", kFeatures, 1, {}},
+  const auto scale = Matrix(named.model, "scale", dof, 1, named.origin);
+  if (!scale) return scale.error();
+  std::array<Part, 6> parts{{{"feature_mean", kFeatures, 1, {}},
                              {"feature_scale", kFeatures, 1, {}},
                              {"regression_weights", dof, kFeatures, {}},
                              {"regression_offset", dof, 1, {}},
                              {"rest_components", dof, dof, {}},
                              {"rest_variances", dof, 1, {}}}};
   for (Part& part : parts) {
-    auto read = Matrix(named.model, part.name, part.rows, part.columns, named.origin);
+    auto read = Matrix(named.model, prefix + part.name, part.rows, part.columns, named.origin);
     if (!read) return read.error();
     part.values = std::move(*read);
   }
-  models.regression = {parts[1].values.col(0),
-                       parts[2].values.col(0),
-                       parts[3].values,
-                       parts[4].values.col(0),
-                       {},
-                       {},
-                       {}};
-  if (const auto waves = ReadWaves(named, models.regression); !waves) return waves;
-  models.rest =
-      ToBasis(models.basis.mean, parts[0].values.col(0), parts[5].values, parts[6].values.col(0));
-  if (models.rest.size() == 0 || !(models.root_height_m > 0)) {
+  LikelyPoses poses;
+  poses.regression = {parts[0].values.col(0),
+                      parts[1].values.col(0),
+                      parts[2].values,
+                      parts[3].values.col(0),
+                      {},
+                      {},
+                      {}};
+  if (const auto waves = ReadWaves(named, prefix, poses.regression); !waves) return waves.error();
+  poses.rest = ToBasis(models.basis.mean, scale->col(0), parts[4].values, parts[5].values.col(0));
+  if (poses.rest.size() == 0 || !(models.root_height_m > 0)) {
     return InvalidData(named.origin + ": its regression has no error, or its people no height");
   }
+  return poses;
+}
+
+/// Those of a basis, too: in training postures are learned before the rest.
+Result<void> ReadPostures(const NamedModel& named, Models& models) {
+  if (const auto basis = ReadBasis(named, models); !basis) return basis;
+  // Older models have none.
+  if (model::FindAny(named.model, kPosturePrefix + std::string("feature_mean")) == nullptr) {
+    return {};
+  }
+  auto posture = ReadLikelyPoses(named, kPosturePrefix, models);
+  if (!posture) return posture.error();
+  models.posture = *std::move(posture);
+  return {};
+}
+
+Result<void> ReadRegression(const NamedModel& named, Models& models) {
+  if (const auto read = ReadPostures(named, models); !read) return read;
+  auto likely = ReadLikelyPoses(named, "", models);
+  if (!likely) return likely.error();
+  models.regression = std::move(likely->regression);
+  models.rest = std::move(likely->rest);
   return {};
 }
 
@@ -179,7 +205,7 @@ Result<Models> MakeModels(const std::vector<NamedModel>& models) {
       return UsageError(named.origin + ": a pose model brings its basis; give one of the two");
     }
     const auto read =
-        kind == "basis"  ? ReadBasis(named, made)
+        kind == "basis"  ? ReadPostures(named, made)
         : kind == "pose" ? ReadRegression(named, made)
         : kind == "com"  ? ReadNetworks(named, made)
         : kind == "arm"

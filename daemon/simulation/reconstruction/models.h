@@ -20,6 +20,18 @@ struct NamedModel {
   model::Model model;
 };
 
+/// What the names of the tensors begin with that are of hands and feet alone.
+inline constexpr const char* kPosturePrefix = "posture.";
+
+/// The pose that some features make likely, and what is left of it: components of the regression's
+/// errors.
+struct LikelyPoses {
+  PoseRegression regression;
+  pose::PoseBasis rest;  ///< About the mean of all poses.
+
+  bool empty() const { return regression.empty(); }
+};
+
 /// What has been learned of how people move (docs/models.md).
 struct Models {
   pose::PoseBasis basis;
@@ -28,6 +40,8 @@ struct Models {
   /// errors, about the mean of `basis`. Where the model has them (kind "pose").
   PoseRegression regression;
   pose::PoseBasis rest;
+  /// The same by hands and feet alone (WithoutLoads), where the model has it.
+  LikelyPoses posture;
   std::vector<std::string> dofs;  ///< Of the basis: the layout of the bodies that it fits.
   std::string origin;             ///< File of the basis.
   /// Next C_x and C_y (section 4.2), where there are such networks.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "daemon/simulation/momentum/estimate.h"
@@ -23,6 +24,8 @@ struct Output {
   /// rest is the loads'.
   Eigen::Vector3d com_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d com_variance_m2 = Eigen::Vector3d::Zero();
+  /// COM by hands and feet alone; in best mode, while both hands are there.
+  std::optional<Eigen::Vector3d> posture_com_W_m;
   /// How badly what is measured and what is known of people fit together, in best mode: square of
   /// what is left of the terms, by their deviations, a row, in the mean of the last half second. 1
   /// where all deviations are right. With more than 1.5 the pose's deviations grow, with more than

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "daemon/simulation/reconstruction/report.h"
+
 namespace footing::reconstruction {
 namespace {
 
@@ -117,6 +119,7 @@ void SetMomentumTargets(const SubjectModel& model, const Measurement& then, doub
   targets.com_W_m = estimate.p_WC_m;
   targets.com_sd_m =
       (estimate.position_variance_m2.array() + std::pow(options.best.com_sd_m, 2)).sqrt();
+  if (!estimate.trusted) targets.com_sd_m.z() = kUnknownSdM;
   targets.has_angular = options.use_angular_momentum && options.best.angular_sd > 0;
   targets.angular_W = AngularTarget(model, then, mass_kg);
   targets.angular_sd =

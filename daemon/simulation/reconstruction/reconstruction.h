@@ -39,6 +39,7 @@ class Reconstruction {
   const Output& output() const { return output_; }
   /// Of the last frame of best mode, for training; only when calibrated.
   const Features& features() const { return std::get<BestMode>(mode_).features(); }
+  const LikelyPosture& posture() const { return std::get<BestMode>(mode_).posture(); }
 
  private:
   using AnyMode = std::variant<BestMode, PaperMode>;

@@ -37,7 +37,7 @@ void ReportEstimate(const momentum::Estimate& momentum, std::uint32_t solver_res
                     Output& output) {
   output.momentum = momentum;
   output.resets = momentum.resets + solver_resets;
-  output.valid = momentum.valid;
+  output.valid = momentum.valid && momentum.trusted;
 }
 
 void ReportCom(const momentum::Estimate& then, Output& output) {

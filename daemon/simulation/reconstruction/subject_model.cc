@@ -67,9 +67,14 @@ Result<SubjectModel> WalkSubjectModel(const body::Body& body, const Models& mode
 Result<SubjectModel> BestSubjectModel(const body::Body& body, const Models& models,
                                       const Options& options) {
   auto model = WalkSubjectModel(body, models, options);
-  if (model && options.use_basis && options.use_momentum && !models.regression.empty()) {
+  if (!model || !options.use_basis) return model;
+  const double size = model->root_height_m() / models.root_height_m;
+  if (options.use_momentum && !models.regression.empty()) {
     model->regression = models.regression;
-    model->rest = pose::Resized(models.rest, model->root_height_m() / models.root_height_m);
+    model->rest = pose::Resized(models.rest, size);
+  }
+  if (options.use_posture && !models.posture.empty()) {
+    model->posture = {models.posture.regression, pose::Resized(models.posture.rest, size)};
   }
   return model;
 }

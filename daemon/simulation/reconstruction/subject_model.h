@@ -34,6 +34,7 @@ struct SubjectModel {
   pose::PoseBasis basis;
   PoseRegression regression;  ///< Empty where the mode does without.
   pose::PoseBasis rest;       ///< Errors of the regression.
+  LikelyPoses posture;        ///< Of hands and feet alone; empty likewise.
   std::optional<std::array<cascade::CascadeNetwork, 2>> horizontal;
 
   double root_height_m() const { return t_pose(2); }

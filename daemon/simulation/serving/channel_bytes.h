@@ -13,6 +13,8 @@ inline constexpr std::uint32_t kTrack = v1::Tick::kTrackFieldNumber;
 inline constexpr std::uint32_t kCharacters = v1::Tick::kCharactersFieldNumber;
 inline constexpr std::uint32_t kEvents = v1::Tick::kEventsFieldNumber;
 inline constexpr std::uint32_t kInputs = v1::Tick::kInputsFieldNumber;
+inline constexpr std::uint32_t kConfig = v1::Tick::kConfigFieldNumber;
+inline constexpr std::uint32_t kStudy = v1::Tick::kStudyFieldNumber;
 inline constexpr std::uint32_t kGame = v1::Tick::kGameFieldNumber;
 
 /// One channel of a tick.

@@ -8,6 +8,7 @@ void Config::Bind(config::Binder& binder) {
   binder.Text("rig", rig, "Rig to follow (empty: the first with hand devices, or with boards)");
   binder.Text("data_folder", data_folder,
               "Folder with biped.json, the mappings, the models and the tracks");
+  sessions.Bind(binder);
 }
 
 }  // namespace footing::serving

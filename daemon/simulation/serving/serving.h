@@ -14,6 +14,7 @@
 #include "common/clock/clock.h"
 #include "common/log/log.h"
 #include "common/result/result.h"
+#include "common/service_manager/service_manager.h"
 #include "common/transport/client.h"
 #include "common/transport/server.h"
 #include "daemon/simulation/serving/config.h"
@@ -24,20 +25,23 @@ namespace footing::serving {
 template <typename Line>
 class Serving : public std::enable_shared_from_this<Serving<Line>> {
  public:
-  Serving(boost::asio::io_context& io, std::unique_ptr<Line> line, const std::string& version,
+  Serving(boost::asio::io_context& io, std::unique_ptr<Line> line, const Config& config,
           int wake_descriptor)
       : line_(std::move(line)),
         wake_(io, wake_descriptor),
-        server_(io, MakeServerOptions(*line_, version),
+        server_(io, MakeServerOptions(*line_, config),
                 {[this](const transport::SessionInfo& who, const v1::Command& command) {
                    return line_->OnCommand(who, command);
                  },
-                 [this](const transport::SessionInfo& who) { line_->OnSessionEnd(who); }}) {}
+                 [this](const transport::SessionInfo& who) { line_->OnSessionEnd(who); },
+                 [](const std::string& text) { log::Warning(text); }}) {}
 
   Result<void> Open(boost::asio::io_context& io, const Config& config) {
     auto addresses = config.listen;
     if (addresses.empty()) {
-      addresses.push_back(transport::DefaultAddress("simulation", true).Text());
+      const bool passed = service_manager::PassedSocket("simulation") >= 0;
+      addresses.push_back(passed ? "fd:simulation"
+                                 : transport::DefaultAddress("simulation", true).Text());
     }
     for (const std::string& text : addresses) {
       const auto address = transport::ParseAddress(text);
@@ -80,12 +84,13 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   }
 
  private:
-  static transport::ServerOptions MakeServerOptions(const Line& line, const std::string& version) {
+  static transport::ServerOptions MakeServerOptions(const Line& line, const Config& config) {
     transport::ServerOptions options;
     options.server_id = "footing-sim";
-    options.version = version;
+    options.version = config.version;
     options.channels = Line::Channels();
     options.tick_rate_hz = line.frame_rate_hz();
+    options.sessions = config.sessions;
     options.capabilities = line.Capabilities();
     return options;
   }
@@ -121,13 +126,13 @@ using StopServing = std::function<void(const std::string& reason)>;
 /// Makes the line with `make_line(wake_descriptor)`, starts it and returns how to stop it.
 template <typename Line, typename MakeLine>
 Result<StopServing> StartServing(boost::asio::io_context& io, const Config& config,
-                                 const std::string& version, const MakeLine& make_line) {
+                                 const MakeLine& make_line) {
   const int wake_descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake_descriptor < 0) return Failure(std::string("eventfd: ") + std::strerror(errno));
   Result<std::unique_ptr<Line>> line = make_line(wake_descriptor);
   if (!line) return line.error();
   auto serving =
-      std::make_shared<Serving<Line>>(io, std::move(line).value(), version, wake_descriptor);
+      std::make_shared<Serving<Line>>(io, std::move(line).value(), config, wake_descriptor);
   if (const auto open = serving->Open(io, config); !open) return open.error();
   serving->Start();
   return StopServing([serving](const std::string& reason) { serving->Stop(reason); });

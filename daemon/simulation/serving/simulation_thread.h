@@ -40,11 +40,19 @@ class SimulationThread {
   SimulationThread& operator=(const SimulationThread&) = delete;
 
   void Start() {
-    thread_ = std::thread([this] { RunOnSimThread(); });
+    thread_ = std::thread([this, follower = clock::NewFollower()]() mutable {
+      clock::Follow(std::move(follower));
+      RunOnSimThread();
+    });
   }
   void Stop() {
     stop_.Raise();
-    if (thread_.joinable()) thread_.join();
+    if (!thread_.joinable()) return;
+    // The thread looks once a frame, and on simulated time in its own turns only.
+    if (clock::OwnFollower() != nullptr) {
+      clock::SleepUntil(clock::MonotonicNs() + (steps_per_frame_ + 1) * step_ns_);
+    }
+    thread_.join();
   }
 
   exchange::Latest<Inputs>& inputs() { return inputs_; }
@@ -80,6 +88,7 @@ class SimulationThread {
     // A full queue keeps events and inputs for the next frame: only a pose is lost.
     if (!frames_.Push(frame_)) return;
     run_.TakenOnSimThread(frame_);
+    clock::Act();
     const std::uint64_t one = 1;
     [[maybe_unused]] const auto written = write(wake_descriptor_, &one, sizeof(one));
   }

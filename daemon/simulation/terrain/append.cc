@@ -20,17 +20,6 @@ constexpr double kOwnBendM = 12;
 
 bool Within(double value, double limit) { return std::fabs(value) <= limit + kSlack; }
 
-stream::TrackSegment Placed(const NewSegment& segment, const stream::TrackSegment& last) {
-  stream::TrackSegment placed = Following(last);
-  placed.length_m = segment.length_m;
-  placed.width_m = last.width_m;
-  placed.slope_rad = segment.slope_rad;
-  placed.heading_rad += segment.curve_rad;
-  placed.start_m.z() += segment.step_m;
-  placed.pit = segment.pit;
-  return placed;
-}
-
 /// Length from the last step to the track's end.
 double SinceStep(const stream::Track& track) {
   double length_m = 0;
@@ -95,14 +84,14 @@ const char* WhyNotAppended(const stream::Track& track, const NewSegment& segment
   if (track.segments.size() >= kMostSegments && here < kKeptBehind) {
     return "the track is full; wait until the character has moved on";
   }
-  if (RunsIntoItself(track, Placed(segment, last))) {
+  if (RunsIntoItself(track, track::Placed(segment, last))) {
     return "the track would run into itself; curve the other way";
   }
   return nullptr;
 }
 
 void Append(const NewSegment& segment, stream::Track& track) {
-  Add(Placed(segment, track.segments.back()), track);
+  Add(track::Placed(segment, track.segments.back()), track);
 }
 
 void Add(const stream::TrackSegment& placed, stream::Track& track) {

@@ -3,19 +3,15 @@
 #include <cstddef>
 
 #include "common/stream/character.h"
+#include "common/track/piece.h"
 
 /// Ground that is added to a track's end while a character is on it, as in the gait paper's terrain
 /// editor (section 8). Nothing here allocates while the track's capacity suffices.
 namespace footing::terrain {
 
-/// A segment to add. It begins where the track ends.
-struct NewSegment {
-  double length_m = 3;   ///< 2 to 4; of a pit 0.3 to 1.5.
-  double slope_rad = 0;  ///< Within 5 degrees, up positive.
-  double curve_rad = 0;  ///< Within 15 degrees, left positive, at the segment's start.
-  double step_m = 0;     ///< Within 0.10, up positive, at the segment's start.
-  bool pit = false;      ///< Without slope, curve and step.
-};
+/// A segment to add: 2 to 4 m long, of a pit 0.3 to 1.5 m, its slope within 5 degrees, its curve
+/// within 15 degrees, its step within 0.10 m. A pit has none of these three.
+using NewSegment = track::Piece;
 
 /// More segments than this are not kept: the oldest one goes for each that is added.
 inline constexpr std::size_t kMostSegments = 256;

@@ -1,5 +1,6 @@
 #include "daemon/simulation/terrain/ground.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace footing::terrain {
@@ -14,6 +15,21 @@ std::string Geom(const GroundBox& box, const std::string& name = "") {
          " type='box' contype='1' conaffinity='2' size='" + text(half.x()) + text(half.y()) +
          text(half.z()) + "' pos='" + text(p.x()) + text(p.y()) + text(p.z()) + "' quat='" +
          text(q.w()) + text(q.x()) + text(q.y()) + text(q.z()) + "'/>\n";
+}
+
+constexpr int kBoxesBehind = 8;  ///< Of an extendable track.
+constexpr double kReachM = 2.5;  ///< Of the character, with its next steps.
+
+/// Segments within reach of segment `from`'s end, stepping by `by`.
+int WithinReach(const stream::Track& track, int from, int by) {
+  const int count = static_cast<int>(track.segments.size());
+  double length_m = 0;
+  int reached = 0;
+  for (int i = from + by; i >= 0 && i < count && length_m < kReachM; i += by) {
+    length_m += track.segments[static_cast<std::size_t>(i)].length_m;
+    ++reached;
+  }
+  return reached;
 }
 
 }  // namespace
@@ -40,6 +56,19 @@ double GroundHeight(const stream::Track& track, double x_m, double y_m) {
   return segment.pit ? height_m - kPitDepthM : height_m;
 }
 
+GroundWindow WindowOf(const stream::Track& track) {
+  if (track.extendable) return {kGroundBoxes, kBoxesBehind};
+  if (Grows(track) || HasPlane(track)) return {};
+  const int count = static_cast<int>(track.segments.size());
+  int behind = 0, ahead = 0;
+  for (int i = 0; i < count; ++i) {
+    behind = std::max(behind, WithinReach(track, i, -1));
+    ahead = std::max(ahead, WithinReach(track, i, 1));
+  }
+  const int boxes = behind + 1 + ahead;
+  return boxes < std::min(count, kGroundBoxes) ? GroundWindow{boxes, behind} : GroundWindow{};
+}
+
 GroundBox WaitingBox(int index) {
   constexpr double kDepthM = 100, kApartM = 10;
   return {{kApartM * index, 0, -kDepthM}, Eigen::Quaterniond::Identity(), {1, 1, 1}};
@@ -48,9 +77,9 @@ GroundBox WaitingBox(int index) {
 std::string GroundBoxName(int index) { return "ground_" + std::to_string(index); }
 
 std::string GroundMjcf(const stream::Track& track) {
-  if (track.extendable) {
+  if (const GroundWindow window = WindowOf(track); window.boxes > 0) {
     std::string boxes;
-    for (int i = 0; i < kGroundBoxes; ++i) boxes += Geom(WaitingBox(i), GroundBoxName(i));
+    for (int i = 0; i < window.boxes; ++i) boxes += Geom(WaitingBox(i), GroundBoxName(i));
     return boxes;
   }
   if (HasPlane(track)) {

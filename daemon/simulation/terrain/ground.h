@@ -26,15 +26,23 @@ double RibbonHeight(const stream::Track& track, double x_m, double y_m);
 /// Height of the ground under a point, m. Beside the ribbon the height of the nearest place.
 double GroundHeight(const stream::Track& track, double x_m, double y_m);
 
-/// Boxes that an extendable track's world has; each stands for one segment near the character.
-inline constexpr int kGroundBoxes = 32;
+/// Boxes of a track's world that stand for the segments near the character, and how many of them
+/// are for segments behind its own. A box costs time in every step, also far away.
+struct GroundWindow {
+  int boxes = 0;  ///< 0: the whole ground stays where it is.
+  int behind = 0;
+};
+inline constexpr int kGroundBoxes = 32;  ///< At most; an extendable track has as many.
+/// As many as reach 2.5 m to both sides of any point of the track, if that saves any.
+GroundWindow WindowOf(const stream::Track& track);
+
 /// Far below everything: where a box waits that no segment needs.
 GroundBox WaitingBox(int index);
 std::string GroundBoxName(int index);
 
-/// The ground as MJCF geoms of the world body: kGroundBoxes waiting ones for an extendable track,
-/// else one plane (HasPlane), or a box for each segment that is not a pit; the first one begins 3 m
-/// before its start.
+/// The ground as MJCF geoms of the world body: the waiting ones of WindowOf, else one plane
+/// (HasPlane), or a box for each segment that is not a pit; the first one begins 3 m before its
+/// start.
 std::string GroundMjcf(const stream::Track& track);
 
 }  // namespace footing::terrain

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/track/centre_line.h"
 #include "tests/clients/game/short_track.h"
 
 namespace footing::game {
@@ -109,7 +110,7 @@ TEST(Director, LaysLevelGroundBetweenTheRoundsThatCountsForNobody) {
   for (int i = 0; i < 90; ++i) {
     world.frame.trial.progress.distance_m += 0.05;  // It runs on, at 5 m/s.
     world.Step();
-    EXPECT_GT(LengthOf(world.track) - world.frame.trial.progress.distance_m, 3);
+    EXPECT_GT(track::LengthOf(world.track) - world.frame.trial.progress.distance_m, 3);
   }
   ASSERT_GT(world.laid.size(), laid);
   for (std::size_t i = laid; i < world.laid.size(); ++i) EXPECT_EQ(world.laid[i].slope_rad, 0);
@@ -165,7 +166,7 @@ TEST(Director, LaysLevelGroundWhileTheBuildersDeviceIsSilent) {
   EXPECT_THAT(world.director.game().note, HasSubstr("level ground"));
   ASSERT_GT(world.laid.size(), 2u);
   for (const Piece& piece : world.laid) EXPECT_EQ(piece, Piece());
-  EXPECT_GE(LengthOf(world.track) - world.frame.trial.progress.distance_m, 6);
+  EXPECT_GE(track::LengthOf(world.track) - world.frame.trial.progress.distance_m, 6);
 }
 
 TEST(Director, PlaysARoundAgainWhoseTrialIsGone) {

@@ -102,7 +102,7 @@ TEST(Piece, IsOneThatTheTrackTakesWhateverTheHandDoes) {
       const int here = static_cast<int>(track.segments.size()) - 5;
       ASSERT_EQ(terrain::WhyNotAppended(track, segment, here), nullptr)
           << "seed " << seed << " piece " << i;
-      const stream::TrackSegment shown = Placed(piece, track);
+      const stream::TrackSegment shown = track::Placed(piece, track.segments.back());
       terrain::Append(segment, track);
       // The ghost is what is laid, to the last bit.
       const stream::TrackSegment& laid = track.segments.back();

@@ -23,7 +23,7 @@ inline stream::Track ShortTrack(double length_m = 16) {
 }
 
 inline void Lay(const Piece& piece, stream::Track& track) {
-  track.segments.push_back(Placed(piece, track));
+  track.segments.push_back(track::Placed(piece, track.segments.back()));
   ++track.revision;
 }
 

@@ -24,7 +24,7 @@ def main():
         whole, killed, repaired = (stage.folder / f"{n}.mcap" for n in ("whole", "killed", "fixed"))
         started_s = {}
         for name, path in (("ended", whole), ("killed", killed)):
-            stage.start("footing-log", "record", *connect, "--out", path, name=name)
+            stage.start("footing-log", "record", "--from-ring", *connect, "--out", path, name=name)
             started_s[name] = time.monotonic()
         stage.wait_for(lambda: killed.exists() and killed.stat().st_size > 200_000,
                        "a recording of some size", 30)
@@ -45,6 +45,13 @@ def main():
         assert cut.returncode == 4 and "repair" in cut.stderr, cut
         stage.run_json("footing-log", "repair", killed, "--out", repaired)
         kept_s = stage.run_json("footing-log", "info", repaired)["duration_s"]
+        # Begun long after the servers, with and without what they hold of before.
+        for ring, least_s, most_s in (((), 1.5, 2.5), (("--from-ring",), 2.6, 40)):
+            late = stage.folder / f"late{len(ring)}.mcap"
+            info = stage.run_json("footing-log", "record", *connect, "--out", late, "--seconds", 2, *ring)
+            assert least_s <= info["duration_s"] <= most_s, (ring, info)
+            assert info["missing_ticks"] == 0, (ring, info)
+
         # Start-up of the process and connecting are within the first 0.5 s.
         assert kept_s > killed_after_s - 1.5, (kept_s, killed_after_s)
         print(f"killed after {killed_after_s:.2f} s, kept {kept_s:.2f} s")

@@ -25,11 +25,11 @@ PROTOCOL = {
 class Experimenter:
     """Types into the terminal of footing-study and reads what it says."""
 
-    def __init__(self, stage, *command):
+    def __init__(self, stage, *command, name="attended"):
         self.terminal, slave = pty.openpty()
         self.process = subprocess.Popen([stage.binaries / "footing-study", *command], stdin=slave,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        stage.processes["attended"] = self.process
+        stage.processes[name] = self.process
         os.close(slave)
         self.said = ""
 
@@ -55,26 +55,39 @@ class Experimenter:
         self.type(text + "\n")
 
 
+def check_lock(stage):
+    """While a session runs nothing else writes into its journals."""
+    path = stage.folder / "a.study/P01/journal.jsonl"
+    before = path.read_text()
+    for change in (("--withdraw",), ("--undo-failure", 1), ("--restore-failure", 1)):
+        done = stage.run("footing-study", "run", stage.folder / "a.json", "--participant", "P01", *change)
+        assert done.returncode == 1 and "the study is in use by" in done.stderr, done
+    assert path.read_text() == before
+
+
 def session(stage, start):
     experimenter = start()
     experimenter.answer("Type yes to confirm", "yes")
-    experimenter.answer("show all commands", "")
+    experimenter.read("show all commands")
+    check_lock(stage)
+    experimenter.type("\n")
     experimenter.answer("Practice of wrist: 100 s left", "")
     experimenter.answer("Press Enter to begin", "")
-    # A user who does not look at the track leaves it.
-    first = experimenter.read(r"failure (\d+): (\w+)", 90)
-    experimenter.type("u")
-    experimenter.read(f"failure {first[1]} undone")
+    experimenter.read("Keys: s stops the trial")
     experimenter.type("u")
     experimenter.read("no failure to undo")
+    # A user who does not look at the track leaves it, again and again.
+    experimenter.read(r"failure \d+: \w+", 90)
+    experimenter.type("u")
+    first = experimenter.read(r"failure (\d+) undone")
     second = experimenter.read(r"failure (\d+): (\w+)", 90)
     experimenter.type("s")
-    experimenter.read(r"test: stopped, [\d.]+ s, failures: 1")
+    shown = experimenter.read(r"test: stopped, [\d.]+ s, failures: (\d+)")
     experimenter.answer("r to repeat", f"u {second[1]}")
     experimenter.read(f"failure {second[1]} undone")
     experimenter.answer("u NUMBER to undo", "u 999")
     experimenter.read("has no failure 999")
-    experimenter.type("r\n")
+    experimenter.answer("u NUMBER to undo", "r")
     experimenter.answer("Press Enter to begin", "")
     experimenter.read("Keys: s stops the trial")
     experimenter.type("s")
@@ -83,6 +96,7 @@ def session(stage, start):
     experimenter.process.kill()
     experimenter.process.wait()
     experimenter = start()
+    experimenter.type("\n3\n")  # Ahead of any prompt: answers none of them.
     experimenter.read("has ended before: stopped")
     experimenter.answer("r to repeat", "")
     experimenter.answer("fun, 1 to 5", "6")
@@ -91,10 +105,10 @@ def session(stage, start):
     experimenter.answer("good .one line", "it walks")
     experimenter.answer("remarks .one line", "")
     assert experimenter.process.wait(20) == 0
-    return int(first[1]), int(second[1])
+    return int(first[1]), int(second[1]), int(shown[1])
 
 
-def check_journal(stage, first, second):
+def check_journal(stage, first, second, shown):
     events = [json.loads(line) for line in (stage.folder / "a.study/P01/journal.jsonl").read_text().splitlines()]
     of = {}
     for event in events:
@@ -103,6 +117,9 @@ def check_journal(stage, first, second):
     assert [one["text"] for one in of["note"]][1:] == ["Practice of wrist ended early"], of["note"]
     assert of["note"][1]["planned_s"] == 100 > of["note"][1]["took_s"], of["note"]
     assert [one["failure"] for one in of["failure_undone"]] == [first, second], of["failure_undone"]
+    repeated = of["trial_started"][1]["number"]
+    failed = [one for one in of["failure"] if one["number"] < repeated]
+    assert shown == len(failed) - 1 >= 1, (shown, of["failure"])  # The second was undone after it was shown.
     assert [one["attempt"] for one in of["trial_started"]] == [1, 2], of["trial_started"]
     assert all(one["synthetic"] for one in of["trial_started"]), of["trial_started"]  # Simulated devices.
     assert [one["outcome"] for one in of["trial_finished"]] == ["stopped", "stopped"], of["trial_finished"]

@@ -28,32 +28,60 @@ std::vector<DeviceStatus> Hands() {
 }
 
 TEST(DeviceGate, OpensForGoodDevices) {
-  EXPECT_THAT(Problems({}, "wrist", Hands()), IsEmpty());
-  EXPECT_THAT(Problems({}, "arm", Hands()), IsEmpty());
+  EXPECT_THAT(Problems({}, {"wrist"}, Hands()), IsEmpty());
+  EXPECT_THAT(Problems({}, {"arm"}, Hands()), IsEmpty());
 }
 
 TEST(DeviceGate, KnowsASimulatedDeviceOfTheInterface) {
   auto devices = Hands();
-  EXPECT_FALSE(AnySimulated("wrist", devices));
+  EXPECT_FALSE(AnySimulated({"wrist"}, devices));
   devices.front().simulated = true;
-  EXPECT_TRUE(AnySimulated("wrist", devices));
-  EXPECT_FALSE(AnySimulated("joystick", devices));  // In the right hand.
-  EXPECT_FALSE(AnySimulated("leg", devices));
+  EXPECT_TRUE(AnySimulated({"wrist"}, devices));
+  EXPECT_FALSE(AnySimulated({"joystick"}, devices));  // In the right hand.
+  EXPECT_FALSE(AnySimulated({"leg"}, devices));
 }
 
 TEST(DeviceGate, NeedsTheRolesOfTheInterface) {
-  EXPECT_THAT(Problems({}, "leg", Hands()),
+  EXPECT_THAT(Problems({}, {"leg"}, Hands()),
               ElementsAre(HasSubstr("left_leg is missing"), HasSubstr("right_leg is missing"),
                           HasSubstr("head is missing")));
-  EXPECT_THAT(Problems({}, "joystick", {Good(DeviceRole::kLeftHand)}), IsEmpty());
-  EXPECT_THAT(Problems({}, "joystick", {}), ElementsAre(HasSubstr("right_hand is missing")));
+  EXPECT_THAT(Problems({}, {"joystick"}, {Good(DeviceRole::kLeftHand)}), IsEmpty());
+  EXPECT_THAT(Problems({}, {"joystick"}, {}), ElementsAre(HasSubstr("right_hand is missing")));
+}
+
+TEST(DeviceGate, NeedsOfTheLegsWhatTurns) {
+  const std::vector<DeviceStatus> legs{Good(DeviceRole::kLeftLeg), Good(DeviceRole::kRightLeg)};
+  EXPECT_THAT(Problems({}, {"leg", "head"}, legs), ElementsAre(HasSubstr("head is missing")));
+  EXPECT_THAT(Problems({}, {"leg", "trunk"}, legs), ElementsAre(HasSubstr("trunk is missing")));
+  EXPECT_THAT(Problems({}, {"leg", "feet"}, legs), IsEmpty());
+  auto with_head = legs;
+  with_head.push_back(Good(DeviceRole::kHead));
+  EXPECT_THAT(Problems({}, {"leg", "head"}, with_head), IsEmpty());
+  EXPECT_THAT(Problems({}, {"leg", "trunk"}, with_head), testing::SizeIs(1));
+}
+
+TEST(DeviceGate, WarnsOfAMissingMountingOrTare) {
+  std::vector<DeviceStatus> worn{Good(DeviceRole::kLeftLeg), Good(DeviceRole::kRightLeg),
+                                 Good(DeviceRole::kHead), Good(DeviceRole::kTrunk)};
+  worn[0].mounted = true;
+  EXPECT_THAT(Warnings({"leg", "head"}, worn),
+              ElementsAre(AllOf(HasSubstr("right_leg (00:1f) is worn without a mounting"),
+                                HasSubstr("footing-ctl setup --worn right_leg"))));
+  EXPECT_THAT(Warnings({"leg", "trunk"}, worn),
+              ElementsAre(HasSubstr("right_leg"), HasSubstr("trunk")));
+  EXPECT_THAT(Warnings({"wrist"}, Hands()), IsEmpty());
+  std::vector<DeviceStatus> boards{Good(DeviceRole::kLeftBoard), Good(DeviceRole::kRightBoard)};
+  boards[1].tared = true;
+  EXPECT_THAT(Warnings({"boards"}, boards),
+              ElementsAre(AllOf(HasSubstr("left_board (00:1f) is not tared"),
+                                HasSubstr("footing-ctl tare"))));
 }
 
 TEST(DeviceGate, NamesEveryFaultWithItsRemedy) {
   const auto after = [](auto change) {
     auto devices = Hands();
     change(devices[1]);
-    return Problems({}, "wrist", devices);
+    return Problems({}, {"wrist"}, devices);
   };
   EXPECT_THAT(after([](DeviceStatus& d) { d.battery_fraction = 0.19; }),
               ElementsAre(AllOf(HasSubstr("right_hand (00:1f) has 19 % of battery, and 20 %"),
@@ -75,9 +103,9 @@ TEST(DeviceGate, RefusesSimulatedDevicesUnlessTheProtocolAllowsThem) {
   auto devices = Hands();
   devices[0].simulated = true;
   plan::DeviceGate gate;
-  EXPECT_THAT(Problems(gate, "wrist", devices), ElementsAre(HasSubstr("is simulated")));
+  EXPECT_THAT(Problems(gate, {"wrist"}, devices), ElementsAre(HasSubstr("is simulated")));
   gate.allow_simulated = true;
-  EXPECT_THAT(Problems(gate, "wrist", devices), IsEmpty());
+  EXPECT_THAT(Problems(gate, {"wrist"}, devices), IsEmpty());
 }
 
 }  // namespace

@@ -1,23 +1,100 @@
-"""kill -9 of footing-sim and footingd at instants from a seed: nothing of the journal is lost, the trial that was cut is
-marked and attempted again, and the session finishes.
+"""kill -9 of footing-study, footing-sim and footingd at instants from a seed, in sessions one after the other: no line
+of a journal is lost or torn, a trial that was cut is marked and attempted again, every survey is answered in the end,
+and every session finishes.
 
-Usage: kill_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
+Usage: kill_scenario.py SCENARIOS_FOLDER BINARY_FOLDER [KILLS_OF_EACH]
 """
 import json
 import random
 import signal
-import subprocess
 import sys
+import time
 
 sys.path.insert(0, sys.argv[1])
 from harness import Stage  # noqa: E402
 
+RATINGS = [f"item {number}" for number in range(30)]  # A survey that lasts long enough to be hit.
 PROTOCOL = {
-    "version": 1, "name": "kills", "participants": ["P01"], "interfaces": ["arm", "wrist"], "control": "arm", "seed": 5,
-    "straight_tasks": ["walk_run"], "straight_trials": 2, "test_tracks": ["1", "2"], "trial_limit_s": 3, "disk_mb": 1,
+    "version": 1, "name": "kills", "participants": [f"P{number:02}" for number in range(1, 16)],
+    "interfaces": ["arm", "wrist"], "control": "arm", "seed": 5, "straight_tasks": ["walk_run"], "straight_trials": 2,
+    "test_tracks": ["1", "2"], "trial_limit_s": 3, "disk_mb": 1, "survey": {"ratings": RATINGS, "exertion": True},
+    "final_survey": {"ratings": RATINGS},
 }
-SEED, KILLS, LATEST_KILL_S, MOST_RUNS = 11, 6, 4.0, 8
-CUT = "broken_off"
+PROGRAMS = ("footing-study", "footing-sim", "footingd")
+SEED, LATEST_KILL_S, LATEST_IN_SURVEY_S, RUN_WITHIN_S = 11, 4.0, 0.01, 90
+CUT = ("broken_off", "device_lost", None)  # None: footing-study itself was killed, so the journal has no end.
+
+
+class Study:
+    """The sessions of one study, which are killed and resumed."""
+
+    def __init__(self, stage):
+        self.stage = stage
+        (stage.folder / "s.json").write_text(json.dumps(PROTOCOL))
+        self.participants = iter(PROTOCOL["participants"])
+        self.finished, self.in_surveys = [], 0
+        self.next_participant()
+
+    def next_participant(self):
+        self.participant, self.lines = next(self.participants), []
+        self.path = self.stage.folder / "s.study" / self.participant / "journal.jsonl"
+
+    def start(self):
+        return self.stage.start("footing-study", "run", self.stage.folder / "s.json", "--participant", self.participant,
+                                "--sensor", self.stage.sensor, "--simulation", self.stage.simulation, "--unattended")
+
+    def new_text(self):
+        """What the journal says since the run began."""
+        text = self.path.read_text() if self.path.exists() else ""
+        return text[sum(len(line) + 1 for line in self.lines):]
+
+    def wait(self, process, what):
+        """Until the journal says it, or the session has ended."""
+        deadline = time.monotonic() + RUN_WITHIN_S
+        while process.poll() is None and what not in self.new_text():
+            assert time.monotonic() < deadline, f"no {what} in {self.path}"
+            time.sleep(0.002)
+
+    def run_with_kill(self, program, draw):
+        """Runs the session until its end or, where that is earlier, a kill."""
+        process, where = self.start(), draw.random()
+        in_survey = program == "footing-study" and where < 0.5
+        if in_survey:
+            self.wait(process, '"kind":"survey"')
+        elif where < 0.8:  # Else even the connections may be cut.
+            self.wait(process, "{")
+        time.sleep(draw.uniform(0, LATEST_IN_SURVEY_S if in_survey else LATEST_KILL_S))
+        if process.poll() is not None:
+            assert process.poll() == 0, (self.stage.folder / "footing-study.log").read_text()
+        else:
+            self.stage.stop(program, signal.SIGKILL)
+            if program == "footing-study":
+                phase = [one for one in map(json.loads, self.new_text().splitlines()) if "phase" in one][-1:]
+                self.in_surveys += bool(phase) and phase[0].get("kind") == "survey"
+            else:
+                code = process.wait(RUN_WITHIN_S)
+                assert code in (0, 1, 3), (code, (self.stage.folder / "footing-study.log").read_text())
+                start_server(self.stage, program)
+        self.check_prefix()
+
+    def check_prefix(self):
+        """What the journal held before is there still, each line whole; a line that was torn is the newest one."""
+        text = self.path.read_text() if self.path.exists() else ""
+        now = text.split("\n")[:-1]
+        assert now[:len(self.lines)] == self.lines, (self.lines[-1:], now[-1:])
+        assert [json.loads(one)["number"] for one in now] == list(range(1, len(now) + 1))
+        self.lines = now
+        if now and json.loads(now[-1])["event"] == "session_finished":
+            self.finished.append([json.loads(one) for one in now])
+            self.next_participant()
+
+    def finish(self):
+        """The session that is under way, without further kills."""
+        sessions = len(self.finished)
+        code = self.start().wait(2 * RUN_WITHIN_S)
+        assert code == 0, (self.stage.folder / "footing-study.log").read_text()
+        self.check_prefix()
+        assert len(self.finished) == sessions + 1
 
 
 def start_server(stage, program):
@@ -29,66 +106,54 @@ def start_server(stage, program):
         stage.wait_for_socket(stage.simulation)
 
 
-def check_prefix(lines, path):
-    """What the journal held before is there still, each line whole; returns its lines."""
-    now = path.read_text().splitlines() if path.exists() else []
-    assert now[:len(lines)] == lines, (lines[-1:], now[-1:])
-    assert [json.loads(one)["number"] for one in now] == list(range(1, len(now) + 1))
-    return now
-
-
-def run_with_kill(stage, command, program, after_s):
-    """Runs the session, with a kill of that program; returns the exit code."""
-    process = stage.start("footing-study", *command, name="study")
-    try:
-        process.wait(after_s)
-    except subprocess.TimeoutExpired:
-        stage.stop(program, signal.SIGKILL)
-    code = process.wait(60)
-    if program not in stage.processes:
-        start_server(stage, program)
-    return code
-
-
-def check_events(events):
+def check_trials(events):
+    """Returns how many attempts were cut."""
     trials = [one for one in events if one["event"] == "trial_started"]
     ends = {one["trial"]: one["outcome"] for one in events if one["event"] == "trial_finished"}
+    resumed = {one["interrupted_trial"] for one in events if one["event"] == "session_resumed"}
     assert len({one["trial"] for one in trials}) == len(trials), trials
-    assert set(ends) == {one["trial"] for one in trials}, (trials, ends)  # No attempt is without its end.
-    cut = [one for one in trials if ends[one["trial"]] in (CUT, "device_lost")]
-    assert any(ends[one["trial"]] == CUT for one in cut), ends
+    assert {one["trial"] for one in trials} - set(ends) <= resumed, (trials, ends)  # Without an end, it is named.
+    cut = [one for one in trials if ends.get(one["trial"]) in CUT]
     phases = {one["phase"] for one in trials}
     assert len(phases) == 6, phases
     for phase in phases:  # The last attempt counts, and those before it were cut.
         attempts = [one for one in trials if one["phase"] == phase]
         assert [one["attempt"] for one in attempts] == list(range(1, len(attempts) + 1)), attempts
         assert [one in cut for one in attempts] == [True] * (len(attempts) - 1) + [False], attempts
-    for kind, count in (("rating", 12), ("exertion", 2)):
-        answers = [(one["interface"], one["item"]) for one in events if one["event"] == kind]
-        assert len(answers) == len(set(answers)) == count, answers
+    return len(cut)
+
+
+def check_surveys(events):
+    """Every question has its answer. One that is asked again has the same: it follows from the seed."""
+    answers = {}
+    for one in events:
+        if one["event"] in ("rating", "exertion"):
+            answers.setdefault((one["interface"], one["item"]), set()).add(one["value"])
+    expected = {(interface, item) for interface in ("arm", "wrist") for item in (*RATINGS, "exertion")}
+    expected |= {("", item) for item in RATINGS}
+    assert set(answers) == expected, set(answers) ^ expected
+    assert all(len(values) == 1 for values in answers.values()), answers
 
 
 def main():
+    kills_of_each = int(sys.argv[3]) if len(sys.argv) > 3 else 3
     draw = random.Random(SEED)
     with Stage(sys.argv[2]) as stage:
-        (stage.folder / "s.json").write_text(json.dumps(PROTOCOL))
-        command = ("run", stage.folder / "s.json", "--participant", "P01", "--sensor", stage.sensor, "--simulation",
-                   stage.simulation, "--unattended")
         stage.start_servers()
         stage.start_user("demo")
-        path, lines, code = stage.folder / "s.study/P01/journal.jsonl", [], None
-        for kill in range(KILLS):
-            program = ("footing-sim", "footingd")[kill % 2]
-            code = run_with_kill(stage, command, program, draw.uniform(0.2, LATEST_KILL_S))
-            lines = check_prefix(lines, path)
-            assert code in (1, 3), (code, (stage.folder / "study.log").read_text())
-        for _ in range(MOST_RUNS - KILLS):
-            if code != 0:
-                code = stage.run("footing-study", *command, timeout_s=60).returncode
-                lines = check_prefix(lines, path)
-        events = [json.loads(one) for one in lines]
-        assert code == 0 and events[-1]["event"] == "session_finished", events[-1]
-        check_events(events)
+        study = Study(stage)
+        for _ in range(kills_of_each):
+            for program in PROGRAMS:
+                study.run_with_kill(program, draw)
+        if study.lines:
+            study.finish()
+        cut = sum(check_trials(events) for events in study.finished)
+        for events in study.finished:
+            check_surveys(events)
+        resumed = sum(one["event"] == "session_resumed" for events in study.finished for one in events)
+        print(f"{len(study.finished)} sessions, {kills_of_each} kills of each program, {study.in_surveys} of "
+              f"footing-study in a survey, {cut} attempts cut, resumed {resumed} times")
+        assert cut >= kills_of_each and resumed >= kills_of_each, (cut, resumed)
     return 0
 
 

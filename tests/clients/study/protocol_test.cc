@@ -75,6 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{With(R"(, "straight_trials": 1.5)"), "straight_trials is 1.5"},
         Fault{With(R"(, "order": "latin")"), "it must be williams or random"},
         Fault{With(R"(, "control": "leg")"), "not one of interfaces"},
+        Fault{With(R"(, "turn_by": "nose")"), "it must be head, trunk or feet"},
         Fault{R"({"version": 1, "name": "n", "participants": ["P1", "P1"],
                   "interfaces": ["wrist"], "seed": 3})",
               "participants has \"P1\" twice"},

@@ -174,7 +174,7 @@ TEST(StudyPage, MarksAPOfIndependentGroupsInTheOverview) {
   };
   auto people = People(16);
   EXPECT_THAT(overview(people), Not(HasSubstr("independent)")));
-  EXPECT_THAT(overview(people), HasSubstr("(p "));
+  EXPECT_THAT(overview(people), HasSubstr("(p\u00a0"));
   people[0].trials.erase(people[0].trials.begin());  // One value is missing: still paired.
   EXPECT_THAT(overview(people), Not(HasSubstr("independent)")));
   for (std::size_t i = 0; i < people.size(); ++i) {  // Each participant with one interface.
@@ -187,27 +187,44 @@ TEST(StudyPage, SaysWhichTestToBelieveBesideEachMeasure) {
   const auto people = People(6);
   const Analysis analysis = Analyze(Two(), people);
   const std::string page = Page(analysis, Two(), people);
-  const std::string note = Find(analysis, "rating fun")["test"]["note"];
-  ASSERT_FALSE(note.empty());
+  std::string note = Find(analysis, "rating fun")["test"]["note"];
+  ASSERT_THAT(note, HasSubstr("Believe paired_p"));
+  note.replace(note.find("paired_p"), 8, "paired p");  // As in the head of the column.
   EXPECT_THAT(page, HasSubstr("<p class=\"believe\">" + Escaped(note)));
+}
+
+TEST(StudyPage, RoundsEachPForAReader) {
+  const auto people = People(8);
+  const std::string page = Page(Analyze(Two(), people), Two(), people);
+  EXPECT_THAT(page, HasSubstr("<th>Steel</th>"));
+  EXPECT_THAT(page, HasSubstr("<td>0.0078</td>"));  // 2 / 256, of the paired test.
+  EXPECT_THAT(page, HasSubstr("(p\u00a00.0078)"));
+  EXPECT_THAT(page, Not(testing::ContainsRegex("[0-9]e-0")));
 }
 
 TEST(Latency, IsByStageAndWithoutTheWaitForContact) {
   auto people = People(1);
   for (int i = 1; i <= 100; ++i) {
-    people[0].trials[0].responses.push_back({{"decode", 1}, {"contact", 100}, {"frame", 1.0 * i}});
+    people[0].trials[0].responses.push_back(
+        {{"decode", 1}, {"contact", i <= 40 ? 100.0 : 0.0}, {"frame", 1.0 * i}});
   }
   const Analysis analysis = Analyze(Two(), people);
-  ASSERT_EQ(analysis.latency.size(), 4u);
+  ASSERT_EQ(analysis.latency.size(), 5u);
   EXPECT_EQ(analysis.latency[2].stage, "frame");
   EXPECT_EQ(analysis.latency[2].responses, 100u);
-  EXPECT_EQ(analysis.latency[2].p95_ms, 96);  // Of rank floor(0.95 * 100) from 0, of 1 to 100.
+  EXPECT_DOUBLE_EQ(analysis.latency[2].p95_ms, 1 + 0.95 * 99);  // Of 1 to 100.
   EXPECT_EQ(analysis.latency[3].stage, kWithoutContact);
-  EXPECT_EQ(analysis.latency[3].p50_ms, 52);  // 51 of rank 50, and the decoding.
+  EXPECT_EQ(analysis.latency[3].p50_ms, 51.5);  // 50.5, and the decoding.
+  EXPECT_EQ(analysis.latency[4].stage, kWhole);
+  EXPECT_EQ(analysis.latency[4].p50_ms, 91.5);  // 60 from 42 to 101, then 40 from 102.
   const auto& measure = Find(analysis, "latency_without_contact_ms");
   EXPECT_EQ(measure["groups"][0]["interface"], "wrist");
-  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("latency_contact_ms,bar,,wrist,100\n"));
-  EXPECT_THAT(Page(analysis, Two(), people), HasSubstr("frame 51.0 ms"));
+  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("latency_contact_ms,bar,,wrist,0\n"));
+  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("latency_whole_ms,label,,wrist,91.5\n"));
+  EXPECT_THAT(Page(analysis, Two(), people), HasSubstr("frame 50.5 ms"));
+  EXPECT_THAT(Page(analysis, Two(), people), Not(HasSubstr("Time was simulated")));
+  people[0].simulated_time = true;
+  EXPECT_THAT(Page(Analyze(Two(), people), Two(), people), HasSubstr("Time was simulated"));
 }
 
 TEST(ValuesCsv, HasTheBoxOfEachInterface) {

@@ -44,11 +44,13 @@ def check_refusals(stage):
                          ({"participants": ["P01", "P01"]}, "twice"), ({"straight_tasks": ["fly"]}, "does not have")):
         wrong = stage.folder / "wrong.json"
         wrong.write_text(json.dumps({**PROTOCOL, **change}))
-        refused(stage, 4, says, "check", wrong)
+        done = stage.run("footing-study", "check", wrong)
+        assert done.returncode == 4 and says in done.stderr and "give the path" not in done.stderr, done
     plan = stage.run_json("footing-study", "check", protocol)
     assert [one["participant"] for one in plan["sessions"]] == PROTOCOL["participants"], plan
     refused(stage, 2, "not in the protocol", *words(stage, "P09", "--unattended"))
     refused(stage, 3, "no footingd", *words(stage, "P01", "--unattended"))
+    refused(stage, 1, "has no journal yet", "analyze", protocol)  # Nothing of it was begun.
 
 
 def check_kill_and_resume(stage):
@@ -77,7 +79,8 @@ def check_kill_and_resume(stage):
     assert all(1 <= one["value"] <= 5 for one in ratings if one["event"] == "rating"), ratings
     assert events[-1]["event"] == "session_finished", events[-1]
     active_s = sum(one["active_s"] for one in events if one["event"] == "phase_finished")
-    assert 4 < active_s < 4 * 8, active_s  # In four trials of 4 s and more.
+    passed_s = (events[-1]["wall_ns"] - events[0]["wall_ns"]) * 1e-9
+    assert 4 < active_s < passed_s, (active_s, passed_s)  # In four trials of 4 s and more.
     refused(stage, 2, "has finished", *words(stage, "P01", "--unattended"))
     return trials, finished
 
@@ -93,7 +96,8 @@ def check_recordings(stage, trials, finished):
         assert path.stat().st_mode & 0o777 == 0o600
     cut = stage.folder / "s.study/P01" / trials[0]["recording"]
     assert stage.run("footing-log", "info", cut).returncode == 4  # Of the killed attempt: kept, repairable.
-    assert all(2 <= one["wall_s"] < 8 for one in finished), finished
+    # None was stopped before its time. How long the end takes is the machine's affair.
+    assert all(one["wall_s"] >= PROTOCOL["trial_limit_s"] for one in finished if one["outcome"] == "timed_out"), finished
 
 
 def check_recording_in_the_way(stage):
@@ -178,6 +182,7 @@ def check_export(stage):
     files = {str(path.relative_to(out)): path.read_text() for path in out.rglob("*") if path.is_file()}
     assert not any("P01" in text or "P02" in text or "synthetic answer" in text for text in files.values())
     assert not any("P01" in name for name in files), files.keys()
+    longest_s = max(one["wall_s"] for one in journal(stage, "P01") if one["event"] == "trial_finished")
     motion = {name: text for name, text in files.items() if name.endswith("_motion.tsv")}
     assert len(motion) == 4 * 3, sorted(motion)  # Two remotes and the character.
     for name, text in motion.items():
@@ -187,7 +192,7 @@ def check_export(stage):
         about = json.loads(files[name.replace(".tsv", ".json")])
         assert about["MotionChannelCount"] == len(channels) and 40 < about["SamplingFrequency"] < 110, (name, about)
         times_s = [float(row[0]) for row in rows]
-        assert times_s == sorted(times_s) and 0 <= times_s[0] < 0.1 and 3 < times_s[-1] < 9, (name, times_s[:2])
+        assert times_s == sorted(times_s) and 0 <= times_s[0] < 0.1 and 3 < times_s[-1] < longest_s + 2, (name, times_s[:2])
         assert f"{name.split('/', 1)[1]}\t1900-01-01T00:" in files["sub-01/sub-01_scans.tsv"], name
     events = [text for name, text in files.items() if name.endswith("_events.tsv")]
     assert len(events) == 4 and all("trial_ready" in text for text in events), events

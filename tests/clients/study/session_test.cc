@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "clients/study/screen/screen_message.h"
 #include "clients/study/session/active_time.h"
 #include "clients/study/session/anticipation.h"
 #include "clients/study/session/heading.h"
 #include "clients/study/session/respondent.h"
-#include "clients/study/session/survey.h"
 #include "clients/study/session/trial_tracker.h"
 
 namespace footing::study {
@@ -142,12 +142,12 @@ TEST(Respondent, GivesTheSameAnswersForASeedAndAllRatingsAboutEquallyOften) {
 }
 
 TEST(Rating, IsAWholeNumberOfTheScaleAndNothingElse) {
-  EXPECT_EQ(ParseRating("3", 1, 5), 3);
-  EXPECT_EQ(ParseRating(" 5 ", 1, 5), 5);
-  EXPECT_EQ(ParseRating("0", 0, 10), 0);
+  EXPECT_EQ(screen::ParseRating("3", 1, 5), 3);
+  EXPECT_EQ(screen::ParseRating(" 5 ", 1, 5), 5);
+  EXPECT_EQ(screen::ParseRating("0", 0, 10), 0);
   for (const char* wrong :
        {"", " ", "0", "6", "3.5", "-1", "3 4", "three", "99999999999999999999"}) {
-    EXPECT_EQ(ParseRating(wrong, 1, 5), std::nullopt) << wrong;
+    EXPECT_EQ(screen::ParseRating(wrong, 1, 5), std::nullopt) << wrong;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -74,6 +75,36 @@ class HudPictureTest : public PictureFixture {
     }
     return {inside, outside};
   }
+
+  struct Shown {
+    const scene::Model& model;
+    const scene::WorldFrame& frame;
+  };
+  /// Compares two pictures at every size, with the panels and without them: `check` gets how many
+  /// pixels differ in the box in the middle, and none may differ outside of it.
+  static void CompareMiddles(
+      const scene::Picture& picture, const Shown& first, const Shown& second,
+      const std::string& what,
+      const std::function<void(bool hidden, int inside, const std::string& name)>& check) {
+    const std::int64_t now_ns = scene::made::ClockAt(12);
+    for (const Size& size : kPictureSizes) {
+      Resize(size.width, size.height);
+      const ImVec2 pixels(static_cast<float>(size.width), static_cast<float>(size.height));
+      for (const bool hidden : {false, true}) {
+        HudOptions options;
+        options.hidden = hidden;
+        const auto name = SizedName(hidden ? what + "_alone" : what, size);
+        const Image with = Show(picture, first.model, first.frame, now_ns, options, name);
+        const Image without =
+            Show(picture, second.model, second.frame, now_ns, options, name + "_bare");
+        const HudContent content{picture, first.model, first.frame, now_ns, first.model, now_ns};
+        const Box middle = BoxesOf(content, options, pixels, HudScale(pixels, 1)).middle;
+        const auto [inside, outside] = Changed(with, without, middle, size);
+        check(hidden, inside, name);
+        EXPECT_EQ(outside, 0) << name;
+      }
+    }
+  }
 };
 
 TEST_F(HudPictureTest, ThePanelsOfTheBirdStayInTheirBoxesAtEverySize) {
@@ -103,23 +134,9 @@ TEST_F(HudPictureTest, ATaskIsSeenAtEverySizeAlsoByThePersonWhoSeesTheWorldAlone
   scene::Stage stage;
   const std::int64_t now_ns = scene::made::ClockAt(12);
   const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
-  for (const Size& size : kPictureSizes) {
-    Resize(size.width, size.height);
-    const ImVec2 pixels(static_cast<float>(size.width), static_cast<float>(size.height));
-    for (const bool hidden : {false, true}) {
-      HudOptions options;
-      options.hidden = hidden;
-      const auto name = SizedName(hidden ? "task_alone" : "task", size);
-      const Image with = Show(picture, model, frame, now_ns, options, name);
-      const Image without = Show(picture, model, bare, now_ns, options, name + "_bare");
-      const Box middle = BoxesOf({picture, model, frame, now_ns, model, now_ns}, options, pixels,
-                                 HudScale(pixels, 1))
-                             .middle;
-      const auto [inside, outside] = Changed(with, without, middle, size);
-      EXPECT_GT(inside, 1000) << name;
-      EXPECT_EQ(outside, 0) << name;
-    }
-  }
+  CompareMiddles(
+      picture, {model, frame}, {model, bare}, "task",
+      [](bool, int inside, const std::string& name) { EXPECT_GT(inside, 1000) << name; });
 }
 
 TEST_F(HudPictureTest, AGameIsSeenAtEverySizeAlsoWithoutThePanels) {
@@ -131,22 +148,31 @@ TEST_F(HudPictureTest, AGameIsSeenAtEverySizeAlsoWithoutThePanels) {
   scene::Stage stage;
   const std::int64_t now_ns = scene::made::ClockAt(12);
   const scene::Picture picture = stage.Advance(bare, frame, now_ns, 0.01, {});
-  for (const Size& size : kPictureSizes) {
-    Resize(size.width, size.height);
-    const ImVec2 pixels(static_cast<float>(size.width), static_cast<float>(size.height));
-    for (const bool hidden : {false, true}) {
-      HudOptions options;
-      options.hidden = hidden;
-      const auto name = SizedName(hidden ? "game_alone" : "game", size);
-      const Image with = Show(picture, model, frame, now_ns, options, name);
-      const Image without = Show(picture, bare, frame, now_ns, options, name + "_bare");
-      const HudContent content{picture, model, frame, now_ns, model, now_ns};
-      const Box middle = BoxesOf(content, options, pixels, HudScale(pixels, 1)).middle;
-      const auto [inside, outside] = Changed(with, without, middle, size);
-      EXPECT_GT(inside, 1000) << name;
-      EXPECT_EQ(outside, 0) << name;
-    }
-  }
+  CompareMiddles(
+      picture, {model, frame}, {bare, frame}, "game",
+      [](bool, int inside, const std::string& name) { EXPECT_GT(inside, 1000) << name; });
+}
+
+TEST_F(HudPictureTest, AStudyIsSeenByItsExperimenterAloneAtEverySize) {
+  const scene::made::Wish wish;
+  const scene::Model bare = scene::made::ModelAfter(12, wish);
+  scene::Model model = bare;
+  const std::int64_t now_ns = scene::made::ClockAt(12);
+  stream::StudyState& study = model.study.state;
+  study.participant = "P07";
+  study.phase = "wrist.straight1";
+  study.doing = "Practice of wrist.";
+  study.next = "wrist.straight2";
+  study.keys = "Enter ends it early";
+  study.left_s = 100;
+  model.study.received_ns = now_ns;
+  const scene::WorldFrame frame = scene::made::TickAt(12, wish).frame.value();
+  scene::Stage stage;
+  const scene::Picture picture = stage.Advance(bare, frame, now_ns, 0.01, {});
+  CompareMiddles(picture, {model, frame}, {bare, frame}, "study",
+                 [](bool hidden, int inside, const std::string& name) {
+                   EXPECT_EQ(inside > 1000, !hidden) << name << ": " << inside;
+                 });
 }
 
 TEST_F(HudPictureTest, TheInterfacePanelStaysInItsBoxForEveryInterface) {

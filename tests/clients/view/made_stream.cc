@@ -224,7 +224,7 @@ Model ModelAfter(double seconds, const Wish& wish) {
   response.kind = NoteKind::kResponse;
   response.response = {stream::Gait::kWalk, stream::Gait::kRun, 1'000'000,   1'400'000,  3'000'000,
                        4'100'000,           5'000'000,          182'000'000, 190'000'000};
-  model.last_response = response;
+  model.last.response = response;
   return model;
 }
 

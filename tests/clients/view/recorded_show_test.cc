@@ -77,13 +77,13 @@ void ExpectSameModel(const scene::Model& a, const scene::Model& b, std::int64_t 
     EXPECT_EQ(a.phase_spans[i].start_ns, b.phase_spans[i].start_ns);
   }
   EXPECT_EQ(a.track.segments.size(), b.track.segments.size());
-  ASSERT_EQ(a.last_note.has_value(), b.last_note.has_value());
-  EXPECT_EQ(a.last_note.value_or(scene::Note{}).text, b.last_note.value_or(scene::Note{}).text);
-  EXPECT_EQ(a.last_note.value_or(scene::Note{}).received_ns,
-            b.last_note.value_or(scene::Note{}).received_ns);
-  ASSERT_EQ(a.last_response.has_value(), b.last_response.has_value());
-  EXPECT_EQ(a.last_response.value_or(scene::Note{}).host_ns,
-            b.last_response.value_or(scene::Note{}).host_ns);
+  ASSERT_EQ(a.last.note.has_value(), b.last.note.has_value());
+  EXPECT_EQ(a.last.note.value_or(scene::Note{}).text, b.last.note.value_or(scene::Note{}).text);
+  EXPECT_EQ(a.last.note.value_or(scene::Note{}).received_ns,
+            b.last.note.value_or(scene::Note{}).received_ns);
+  ASSERT_EQ(a.last.response.has_value(), b.last.response.has_value());
+  EXPECT_EQ(a.last.response.value_or(scene::Note{}).host_ns,
+            b.last.response.value_or(scene::Note{}).host_ns);
   // Devices, links, character, trial, last event: all that text shows but the latencies so far.
   const auto screen = [now_ns](const scene::Model& model) {
     auto lines = scene::StatusScreen(model, now_ns);

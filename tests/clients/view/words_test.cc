@@ -54,6 +54,19 @@ TEST(StatusScreen, NamesGaitSpeedDevicesAndThatTheInputIsSimulated) {
   EXPECT_THAT(lines, Contains(HasSubstr("age 1 ms")));
 }
 
+TEST(StatusLine, OneServerThatStandsStillShowsThoughTheOtherGoesOn) {
+  Model model = made::ModelAfter(3, {});
+  Update other;
+  other.source = 1;
+  other.host_ns = made::ClockAt(3);
+  Apply(model, other);
+  EXPECT_THAT(StatusLine(model, made::ClockAt(3)), HasSubstr("age 1 ms"));
+  other.host_ns = made::ClockAt(13);
+  Apply(model, other);
+  EXPECT_THAT(StatusLine(model, made::ClockAt(13)), HasSubstr("no data for 10 s"));
+  EXPECT_THAT(StatusScreen(model, made::ClockAt(13)), Contains(HasSubstr("no data for 10 s")));
+}
+
 TEST(StatusScreen, CountsFallsByCauseApartFromWhatTheOperatorPutBack) {
   const Model model = made::ModelAfter(3, {});
   stream::GaitState gait;

@@ -71,6 +71,10 @@ TEST(Model, IsNotJudgedOnAPersonItWasTrainedWith) {
   EXPECT_FALSE(CheckNotTrainedOn(Good(), "014", "m.fmodel").ok());
   EXPECT_TRUE(CheckNotTrainedOn(Good(), "14b", "m.fmodel").ok());
   EXPECT_EQ(SubjectName("000"), "000");
+  EXPECT_EQ(SubjectOfFile("013_29"), "13");
+  EXPECT_EQ(SubjectOfFile("walk"), "walk");
+  EXPECT_EQ(SubjectOfFile("HDM_bd_squat1Reps_001_120"), "HDM_bd");
+  EXPECT_EQ(SubjectOfFile("HDM_bd"), "HDM_bd");
 }
 
 TEST(Model, OfAnotherKindIsRefused) {

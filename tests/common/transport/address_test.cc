@@ -1,8 +1,14 @@
 #include "common/transport/address.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
+#include "common/transport/run_folder.h"
 #include "common/transport/socket.h"
+#include "tests/common/temporary_folder.h"
 
 namespace footing::transport {
 namespace {
@@ -48,6 +54,24 @@ TEST(Address, TheDefaultNamesTheServer) {
   const Address address = DefaultAddress("sensor");
   EXPECT_EQ(address.kind, Address::Kind::kUnix);
   EXPECT_NE(address.path.find("/sensor.sock"), std::string::npos);
+}
+
+TEST(RunFolder, OnlyAFolderOfTheOwnUserAloneIsTrusted) {
+  const test::TemporaryFolder folder;
+  const std::string own = folder.Path("own"), link = folder.Path("link"),
+                    file = folder.Path("file");
+  EXPECT_TRUE(CheckRunFolder(own, geteuid()).ok()) << "it can be made";
+  ASSERT_EQ(mkdir(own.c_str(), 0700), 0);
+  EXPECT_TRUE(CheckRunFolder(own, geteuid()).ok());
+  const auto others = CheckRunFolder(own, geteuid() + 1);
+  ASSERT_FALSE(others.ok());
+  EXPECT_NE(others.error().message.find("belongs to user"), std::string::npos);
+  ASSERT_EQ(symlink(own.c_str(), link.c_str()), 0);
+  EXPECT_FALSE(CheckRunFolder(link, geteuid()).ok());
+  ASSERT_EQ(chmod(own.c_str(), 0770), 0);
+  EXPECT_FALSE(CheckRunFolder(own, geteuid()).ok());
+  ASSERT_EQ(close(creat(file.c_str(), 0600)), 0);
+  EXPECT_FALSE(CheckRunFolder(file, geteuid()).ok());
 }
 
 }  // namespace

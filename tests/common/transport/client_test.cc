@@ -193,6 +193,42 @@ TEST_F(ClientTest, TheServersClockIsFoundWithinTheStatedUncertainty) {
   EXPECT_LE(std::llabs(offset.offset_ns - kAhead), offset.uncertainty_ns);
 }
 
+TEST_F(ClientTest, TheClockIsKnownBeforeWhatTheRingHolds) {
+  constexpr std::int64_t kAhead = 3'600'000'000'000;
+  StartServer();
+  server_.reset();
+  ServerOptions options = Options();
+  options.now_ns = [] { return clock::MonotonicNs() + kAhead; };
+  server_ = std::make_unique<Server>(io_, options, ServerHandlers());
+  ASSERT_TRUE(server_->Listen(UnixAddress()).ok());
+  for (int i = 0; i < 2000; ++i) PublishMotion(2000);
+  std::optional<ClockOffset> at_first_tick;
+  ClientHandlers handlers;
+  handlers.on_tick = [&](const v1::Tick&) {
+    if (!at_first_tick) at_first_tick = client_->clock();
+  };
+  ClientOptions wish = ClientOn(UnixAddress());
+  wish.from_ring_start = true;
+  client_ = std::make_unique<Client>(io_, wish, handlers);
+  client_->Start();
+  ASSERT_TRUE(RunUntil([&] { return at_first_tick.has_value(); }));
+  ASSERT_TRUE(at_first_tick->valid);
+  EXPECT_LE(std::llabs(at_first_tick->offset_ns - kAhead), at_first_tick->uncertainty_ns);
+}
+
+TEST_F(ClientTest, WhatTheRingNoLongerHoldsIsNotMissedByWhoAsksForAllThatItHolds) {
+  ServerOptions options = Options();
+  options.ring_s = 0.05;  // 5 ticks.
+  StartServer(options);
+  for (int i = 0; i < 20; ++i) PublishMotion();
+  ClientOptions wish = ClientOn(UnixAddress());
+  wish.from_ring_start = true;
+  StartClient(wish);
+  ASSERT_TRUE(RunUntil([&] { return sequences_.size() == 5; }));
+  EXPECT_EQ(sequences_.front(), 16u);
+  EXPECT_TRUE(gaps_.empty());
+}
+
 TEST_F(ClientTest, AServerThatTalksNonsenseIsLeftAndTriedAgain) {
   std::vector<std::unique_ptr<TestClient>> accepted;
   auto listener = Listener::Open(io_, UnixAddress(), [&](Socket socket) {

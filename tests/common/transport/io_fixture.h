@@ -5,11 +5,10 @@
 #include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <chrono>
 #include <functional>
 #include <string>
 
+#include "common/timer/run_until.h"
 #include "common/transport/address.h"
 
 namespace footing::transport {
@@ -40,14 +39,10 @@ class IoFixture : public testing::Test {
 
   /// Runs handlers until `done` holds; false when it does not within 5 s.
   bool RunUntil(const std::function<bool()>& done) {
-    bool late = false;
-    boost::asio::steady_timer timer(io_, std::chrono::seconds(5));
-    timer.async_wait([&](const boost::system::error_code& error) { late = !error; });
     io_.restart();
-    while (!done() && !late) io_.run_one();
-    timer.cancel();
+    const bool held = timer::RunUntil(io_, done, 5, [] { return false; }) == timer::Waited::kDone;
     io_.poll();
-    return !late;
+    return held;
   }
 
   /// Runs handlers until nothing is ready.

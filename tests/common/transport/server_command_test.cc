@@ -95,7 +95,10 @@ TEST_F(ServerCommandTest, AClientThatIsNotHeardOfIsPingedThenEnded) {
 }
 
 TEST_F(ServerCommandTest, AClientThatAsksAndNeverReadsIsEnded) {
-  StartServer();
+  ServerOptions options = Options();
+  options.sessions.session_messages_per_s = 1e6;
+  options.sessions.session_kilobytes_per_s = 1e6;
+  StartServer(options);
   const auto client = Connect();
   client->Send(Hello());
   v1::Envelope ping;
@@ -106,6 +109,35 @@ TEST_F(ServerCommandTest, AClientThatAsksAndNeverReadsIsEnded) {
     for (int i = 0; i < 100; ++i) client->connection->Send(payload);
     return ended_.size() == 1;
   }));
+}
+
+TEST_F(ServerCommandTest, ACommandLeftOpenIsCarriedOutOnceAndAnsweredWhenItIsDone) {
+  StartServer();
+  answer_later_ = true;
+  const auto client = WithRole(v1::ROLE_CONTROL);
+  v1::Envelope message;
+  message.mutable_command()->set_id(7);
+  message.mutable_command()->mutable_set_rumble()->set_on(true);
+  client->Send(message);
+  client->Send(message);  // Asked again while it is under way.
+  v1::Envelope ping;
+  ping.mutable_ping()->set_id(1);
+  client->Send(ping);
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kPong));
+  EXPECT_EQ(commands_.size(), 1u);
+  EXPECT_EQ(client->Count(v1::Envelope::kCommandResult), 0u);
+  v1::CommandResult result;
+  result.set_id(7);
+  result.set_ok(true);
+  result.set_message("on the disk");
+  server_->Answer(commands_[0].first.session, result);
+  server_->Answer(commands_[0].first.session, result);  // Once is enough.
+  ASSERT_TRUE(WaitFor(*client, v1::Envelope::kCommandResult));
+  client->Send(message);  // And again when it is done: the same answer.
+  ASSERT_TRUE(RunUntil([&] { return client->Count(v1::Envelope::kCommandResult) == 2; }));
+  EXPECT_EQ(client->messages.back().command_result().message(), "on the disk");
+  EXPECT_EQ(commands_.size(), 1u);
+  server_->Answer(99, result);  // A session that is gone.
 }
 
 }  // namespace

@@ -80,8 +80,10 @@ class ServerFixture : public IoFixture {
   void StartServer(ServerOptions options = Options()) {
     options.now_ns = [this] { return now_ns_; };
     ServerHandlers handlers;
-    handlers.on_command = [this](const SessionInfo& info, const v1::Command& command) {
+    handlers.on_command = [this](const SessionInfo& info,
+                                 const v1::Command& command) -> std::optional<v1::CommandResult> {
       commands_.emplace_back(info, command);
+      if (answer_later_) return std::nullopt;
       if (on_command_) on_command_();
       v1::CommandResult result;
       result.set_ok(true);
@@ -89,6 +91,7 @@ class ServerFixture : public IoFixture {
       return result;
     };
     handlers.on_session_end = [this](const SessionInfo& info) { ended_.push_back(info); };
+    handlers.on_overload = [this](const std::string& line) { overloads_.push_back(line); };
     server_ = std::make_unique<Server>(io_, options, handlers);
     ASSERT_TRUE(server_->Listen(UnixAddress()).ok());
     ASSERT_TRUE(server_->Listen(TcpAddress()).ok());
@@ -158,7 +161,9 @@ class ServerFixture : public IoFixture {
   std::unique_ptr<Server> server_;
   std::vector<std::pair<SessionInfo, v1::Command>> commands_;
   std::function<void()> on_command_;
+  bool answer_later_ = false;
   std::vector<SessionInfo> ended_;
+  std::vector<std::string> overloads_;
 };
 
 }  // namespace footing::transport

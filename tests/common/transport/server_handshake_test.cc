@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include "tests/common/transport/server_fixture.h"
 
 namespace footing::transport {
@@ -92,16 +94,76 @@ TEST_F(ServerHandshakeTest, ASilentConnectionIsEndedAtTheHelloDeadline) {
 
 TEST_F(ServerHandshakeTest, OneSessionTooManyIsRefusedAndTheOthersStay) {
   ServerOptions options = Options();
-  options.max_sessions = 2;
+  options.sessions.max_sessions = 2;
   StartServer(options);
-  const auto first = Subscribed(Subscribe());
-  const auto second = Subscribed(Subscribe());
-  const v1::Refused refused = RefusalOf(Hello());
+  const auto first = Subscribed(Subscribe(), 1);
+  const auto second = Subscribed(Subscribe(), 1);
+  const v1::Refused refused = RefusalOf(Hello(), 1);
   EXPECT_EQ(refused.reason(), v1::Refused::REASON_TOO_MANY_SESSIONS);
   PublishMotion();
   EXPECT_TRUE(RunUntil([&] { return first->Sequences().size() == 1; }));
   EXPECT_TRUE(RunUntil([&] { return second->Sequences().size() == 1; }));
   EXPECT_EQ(server_->statistics().refused, 1u);
+}
+
+TEST_F(ServerHandshakeTest, ACrowdOverTcpDoesNotLockTheAdministratorOut) {
+  ServerOptions options = Options();
+  options.sessions.max_sessions = 3;
+  options.sessions.admin_places = 4;
+  StartServer(options);
+  std::vector<std::unique_ptr<TestClient>> crowd;
+  for (int i = 0; i < 8; ++i) {  // Idle: connected, and nothing more.
+    crowd.push_back(Connect(1));
+    crowd.back()->Read();
+  }
+  ASSERT_TRUE(RunUntil([&] { return server_->statistics().accepted == 8; }));
+  std::vector<std::unique_ptr<TestClient>> administrators;
+  const int places = geteuid() == 0 ? 4 : 2;  // Half of them are root's.
+  for (int i = 0; i < places; ++i) {
+    administrators.push_back(Connect());
+    administrators.back()->Read();
+    administrators.back()->Send(Hello(v1::ROLE_ADMIN));
+    ASSERT_TRUE(WaitFor(*administrators.back(), v1::Envelope::kWelcome)) << i;
+  }
+  EXPECT_EQ(RefusalOf(Hello(v1::ROLE_ADMIN)).reason(), v1::Refused::REASON_TOO_MANY_SESSIONS);
+}
+
+TEST_F(ServerHandshakeTest, OneRoleTooManyIsRefusedAndItsPlaceComesBack) {
+  ServerOptions options = Options();
+  options.sessions.max_log_sessions = 1;
+  StartServer(options);
+  auto logging = Connect(1);
+  logging->Read();
+  logging->Send(Hello(v1::ROLE_LOG));
+  ASSERT_TRUE(WaitFor(*logging, v1::Envelope::kWelcome));
+  const v1::Refused refused = RefusalOf(Hello(v1::ROLE_LOG), 1);
+  EXPECT_EQ(refused.reason(), v1::Refused::REASON_TOO_MANY_SESSIONS);
+  EXPECT_NE(refused.message().find("role log"), std::string::npos) << refused.message();
+  Subscribed(Subscribe(), 1);  // Another role is free.
+  logging.reset();
+  ASSERT_TRUE(RunUntil([&] { return server_->statistics().sessions == 0; }));
+  const auto next = Connect(1);
+  next->Read();
+  next->Send(Hello(v1::ROLE_LOG));
+  EXPECT_TRUE(WaitFor(*next, v1::Envelope::kWelcome));
+}
+
+TEST(SessionLimits, OneUserDoesNotTakeEverybodysPlaces) {
+  SessionLimits limits;
+  limits.max_sessions = 10;
+  limits.max_sessions_per_user = 6;
+  limits.admin_places = 4;
+  constexpr uid_t kOwn = 1000;
+  const Peer tcp, other{true, 2000, {}}, own{true, kOwn, {}}, root{true, 0, {}};
+  EXPECT_EQ(WhyNoPlace(limits, tcp, kOwn, {5, 5}), "");
+  EXPECT_NE(WhyNoPlace(limits, tcp, kOwn, {6, 6}).find("over TCP"), std::string::npos);
+  EXPECT_EQ(WhyNoPlace(limits, other, kOwn, {9, 3}), "");
+  EXPECT_NE(WhyNoPlace(limits, other, kOwn, {6, 6}).find("of this user"), std::string::npos);
+  EXPECT_NE(WhyNoPlace(limits, other, kOwn, {10, 0}), "");
+  EXPECT_EQ(WhyNoPlace(limits, own, kOwn, {11, 11}), "");
+  EXPECT_NE(WhyNoPlace(limits, own, kOwn, {12, 12}), "");
+  EXPECT_EQ(WhyNoPlace(limits, root, kOwn, {13, 0}), "");
+  EXPECT_NE(WhyNoPlace(limits, root, kOwn, {14, 0}), "");
 }
 
 TEST_F(ServerHandshakeTest, StoppingSaysGoodbyeWithTheReason) {

@@ -72,7 +72,7 @@ using Messages =
                    v1::CameraSample, v1::BoardGeometry, v1::BoardPose, v1::BoardLayout,
                    v1::SetupItem, v1::RigSetup, v1::Skeleton, v1::Track, v1::LinkPose,
                    v1::HandFrame, v1::HandSample, v1::ReferencePose, v1::ContactFrame,
-                   v1::ContactSample, v1::InterfaceState, v1::GameState>;
+                   v1::ContactSample, v1::InterfaceState, v1::GameState, v1::StudyState>;
 TYPED_TEST_SUITE(RoundTrip, Messages);
 
 TYPED_TEST(RoundTrip, EveryFieldOfTheMessageSurvives) {

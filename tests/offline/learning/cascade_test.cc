@@ -5,6 +5,7 @@
 #include <array>
 
 #include "daemon/offline/learning/scaling.h"
+#include "daemon/offline/learning/spirals.h"
 #include "tests/offline/learning/problems.h"
 
 namespace footing::learning {

@@ -189,6 +189,24 @@ class Train(unittest.TestCase):
         self.refused(1, "cannot list", "com", "--motions", folder / "none", "--out", self.out)
         self.assertFalse(self.out.exists())
 
+    def test_people_are_each_judged_by_a_model_without_them(self):
+        folder = self.motions()
+        result = run("people", "--motions", folder, "--seed", 1, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        report = json.loads(result.stdout)
+        self.assertEqual(sorted(report["people"]), ["1", "2"])
+        frames = [person["frames"] for person in report["people"].values()]
+        self.assertEqual(report["all"]["frames"], sum(frames))
+        for person in report["people"].values():
+            best, learned = person["best"]["mpjpe_cm"], person["hands_feet_learned"]["mpjpe_cm"]
+            self.assertAlmostEqual(person["gain_over_learned"], 1 - best / learned)
+            self.assertGreater(person["hands_feet_ik"]["mpjpe_cm"], 0)
+            self.assertLessEqual(person["invalid_share"], 1)
+        only = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--json")
+        self.assertEqual(json.loads(only.stdout)["people"]["2"], report["people"]["2"])
+        (folder / "2_01.bvh").unlink()
+        self.refused(2, "a single person", "people", "--motions", folder)
+
     def test_arm_leaves_out_a_person_at_a_time(self):
         folder = self.motions()
         result = run("arm", "--motions", folder, "--out", self.out, "--seed", 3, "--json")

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/units/units.h"
@@ -114,6 +115,58 @@ TEST(Pair, ControllersTurnedAgainstEachOtherHaveThePhaseOfTheirSwings) {
           << turned_deg << " degrees, phase " << phase_rad;
     }
   }
+}
+
+/// Level remotes whose swing is `from_deg` off their fronts for 3 s, and then in 0.5 s `by_deg`
+/// more, right the mirror image at first; 1.3 Hz, alternately. The features after 8 s.
+stream::RigFeatures TurnedWhileSwinging(double from_deg, double by_deg) {
+  RigFeatureExtractor rig = TwoHands();
+  stream::RigFeatures features;
+  for (int i = 0; i < 800; ++i) {
+    const double t_s = 0.01 * i;
+    const double more_deg = by_deg * std::clamp((t_s - 3) / 0.5, 0.0, 1.0);
+    for (const bool left : {true, false}) {
+      const double angle = DegreesToRadians((left ? from_deg : -from_deg) + more_deg);
+      const double swing_mps2 = 6 * std::sin(2 * kPi * 1.3 * t_s + (left ? 0 : kPi));
+      stream::MotionSample sample;
+      sample.device = left ? kLeft : kRight;
+      sample.sampled_ns = sample.received_ns = SecondsToNanoseconds(1 + t_s);
+      sample.specific_force_mps2 =
+          Eigen::Vector3d(0, 0, -kStandardGravityMps2) +
+          swing_mps2 * Eigen::Vector3d(std::sin(angle), std::cos(angle), 0.05);
+      sample.filtered_mps2 = sample.specific_force_mps2;
+      rig.AddSample(sample);
+    }
+    features = rig.Compute(SecondsToNanoseconds(1 + t_s));
+  }
+  return features;
+}
+
+TEST(Pair, ControllersThatAreTurnedOnWhileTheySwingKeepTheirPhaseAndTheirSide) {
+  // Grips of 45 degrees, mirrored, and a twist of 42 and of 52: the left one is turned by up to 97.
+  for (const double by_deg : {42.0, 52.0, -52.0}) {
+    const stream::RigFeatures features = TurnedWhileSwinging(45, by_deg);
+    ASSERT_TRUE(features.pairs[0].phase_valid && !features.pairs[0].phase_held) << by_deg;
+    EXPECT_NEAR(std::abs(features.pairs[0].phase_rad), kPi, 0.1) << by_deg;
+    ASSERT_TRUE(features.devices[0].swing_valid && features.devices[1].swing_valid);
+    const double mean_rad = (features.devices[0].swing_rad + features.devices[1].swing_rad) / 2;
+    EXPECT_NEAR(RadiansToDegrees(mean_rad), by_deg, 1) << by_deg;
+  }
+}
+
+TEST(SwingDirection, GoesOnFromWhereItWasUpToHowFarHandsTurn) {
+  const auto line = [](double deg) {
+    return SwingLine{true, DegreesToRadians(deg), Eigen::Vector3d::UnitX(),
+                     Eigen::Vector3d::UnitZ()};
+  };
+  const CycleConfig config;
+  EXPECT_FALSE(Next(SwingEnd{}, line(80), config).known);
+  const SwingEnd held = Next(SwingEnd{}, line(50), config);
+  EXPECT_TRUE(held.known);
+  EXPECT_NEAR(Continued(line(-80), held, config).angle_rad, DegreesToRadians(100), 1e-9);
+  EXPECT_EQ(Continued(line(-80), held, config).along, -Eigen::Vector3d::UnitX());
+  EXPECT_NEAR(Continued(line(-50), held, config).angle_rad, DegreesToRadians(-50), 1e-9);
+  EXPECT_TRUE(Next(held, SwingLine{}, config).known);
 }
 
 /// Rows of a swing along `direction` about `mean`.

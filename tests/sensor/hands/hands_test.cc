@@ -63,6 +63,13 @@ TEST(Hands, EachBadValueIsRefusedAndNamed) {
       {"confidence", [](HandFrame& f) { f.points[1].confidence = 1.1; }},
       {"confidence", [](HandFrame& f) { f.points[1].confidence = -0.1; }},
       {"confidence", [](HandFrame& f) { f.points[1].confidence = kNan; }},
+      {"covariances", [](HandFrame& f) { f.points[1].covariance_m2.x() = 1.01e-4; }},
+      {"covariances", [](HandFrame& f) { f.points[1].covariance_m2.z() = kNan; }},
+      // Each pair could be, all three together cannot.
+      {"covariances",
+       [](HandFrame& f) {
+         f.points[1].covariance_m2 = {-0.9e-4, 1.8e-4, 1.8e-4};
+       }},
       {"role", [](HandFrame& f) { f.points[1].role = DeviceRole::kUnspecified; }},
       {"age_ns", [](HandFrame& f) { f.age_ns = -1; }},
       {"age_ns", [](HandFrame& f) { f.age_ns = kOldestNs + 1; }},
@@ -94,6 +101,26 @@ TEST(Hands, SamplesAreDatedBackAndGoToTheDefaultRigWithoutOne) {
   EXPECT_TRUE(samples[0].simulated);
   frame.rig = "second";
   EXPECT_EQ(ToSamples(frame, 0, "main")[0].rig, "second");
+}
+
+TEST(Hands, CovarianceAndWhatWasWrongWithTheSightGoWithThePoint) {
+  HandFrame frame = TwoFists();
+  frame.points[0].covariance_m2 = {0.5e-4, -1.5e-4, 0};
+  frame.points[0].saturated = frame.points[0].occluded = true;
+  ASSERT_EQ(Problem(frame), "");
+  const auto samples = ToSamples(frame, 0, "main");
+  EXPECT_EQ(samples[0].covariance_m2, frame.points[0].covariance_m2);
+  EXPECT_TRUE(samples[0].saturated && samples[0].occluded);
+  EXPECT_FALSE(samples[1].saturated || samples[1].occluded);
+}
+
+TEST(Hands, APointThatWasNotSeenNeedsNoDeviations) {
+  HandFrame frame = TwoFists();
+  frame.points[1].sd_m.setZero();
+  EXPECT_NE(Problem(frame), "");
+  frame.points[1].confidence = 0;
+  EXPECT_EQ(Problem(frame), "");
+  EXPECT_EQ(ToSamples(frame, 0, "main")[1].confidence, 0);
 }
 
 TEST(Reference, EachBadValueIsRefusedAndNamed) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "daemon/sensor/service/limited_log.h"
 #include "tests/sensor/service/fixture.h"
 
 namespace footing::sensor {
@@ -58,9 +59,9 @@ TEST(HubFaults, AFloodIsBoundedWithinATickAndSaidSo) {
 
 TEST(HubFaults, TheSameSerialAgainTakesTheOldOnesPlace) {
   Bench bench;
-  const auto old_handle = bench.Attach(Wiimote(1), "a");
+  const auto old_handle = bench.Attach(Wiimote(1), "a", false);
   bench.Advance(0.5);
-  bench.Attach(Wiimote(1), "a");
+  bench.Attach(Wiimote(1), "a", false);
   bench.Detach(old_handle);
   bench.Advance(0.5);
   EXPECT_EQ(bench.content.status.size(), 1u);
@@ -76,6 +77,31 @@ TEST(HubFaults, AStandInCannotTakeARealDevicesPlace) {
   EXPECT_EQ(bench.content.status.size(), 1u);
   EXPECT_FALSE(bench.StatusOf("a").simulated);
   EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kLive);
+}
+
+TEST(HubFaults, ASecondStandInOfOneSerialIsNotTakenAndTheFirstLivesOn) {
+  Bench bench;
+  bench.Attach(Wiimote(1), "a");
+  bench.Advance(0.5);
+  const std::uint64_t before = bench.StatusOf("a").reports;
+  const auto second = bench.Attach(Wiimote(2), "a");
+  ASSERT_FALSE(bench.log.empty());
+  EXPECT_NE(bench.log.back().find("the first one is still there"), std::string::npos);
+  bench.Advance(0.5);
+  EXPECT_GT(bench.StatusOf("a").reports, before + 20) << "50, as of a status that is 0.2 s old";
+  bench.Detach(second);
+  bench.Advance(0.1);
+  EXPECT_EQ(bench.StatusOf("a").state, DeviceState::kLive);
+}
+
+TEST(LimitedLog, AFloodOfLinesIsCutAndCounted) {
+  std::vector<std::string> lines;
+  LimitedLog log([&](const std::string& line) { lines.push_back(line); });
+  std::int64_t now_ns = 1'000'000'000;
+  for (int i = 0; i < 1000; ++i) log.Say("line", now_ns);
+  EXPECT_EQ(lines.size(), 20u);
+  log.Say("later", now_ns + 2'000'000'000);
+  EXPECT_EQ(lines.back(), "later (980 lines before were left out)");
 }
 
 TEST(HubFaults, EndlesslyManySerialsAreForgottenAgain) {

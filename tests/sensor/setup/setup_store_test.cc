@@ -160,5 +160,31 @@ TEST_F(SetupTest, StaleItemsStayWithTheirReasonUntilTheyAreDoneAgain) {
 
 TEST(StatePath, IsTheConfiguredOneFirst) { EXPECT_EQ(StatePath("/somewhere"), "/somewhere"); }
 
+TEST_F(SetupTest, SerialsThatLookAlikeKeepAFileEach) {
+  auto directory = Directory();
+  const CalibrationStore store(StorageIn(directory));
+  const std::vector<std::string> serials = {"00:07:aa", "00-07-aa",           "00_07_aa",
+                                            "00/07/aa", std::string(64, ':'), std::string(64, '-')};
+  for (std::size_t i = 0; i < serials.size(); ++i) {
+    store.Save(serials[i], {static_cast<std::uint8_t>(i)});
+  }
+  for (std::size_t i = 0; i < serials.size(); ++i) {
+    EXPECT_EQ(store.Load(serials[i]), (std::vector<std::uint8_t>{static_cast<std::uint8_t>(i)}))
+        << serials[i];
+  }
+  EXPECT_TRUE(said_.empty()) << said_.front();
+  EXPECT_TRUE(fs::exists(folder_ / "state/calibration-00-07-aa.json")) << "as it always was";
+}
+
+TEST_F(SetupTest, NotEndlesslyManyFilesAreMade) {
+  auto directory = Directory();
+  for (int i = 0; i < 320; ++i) directory.Save("calibration-" + std::to_string(i), "1");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "state"), {}), 300);
+  ASSERT_EQ(said_.size(), 1u);
+  EXPECT_NE(said_[0].find("300 files"), std::string::npos) << said_[0];
+  directory.Save("calibration-7", "2");
+  EXPECT_EQ(directory.Load("calibration-7"), "2") << "one that is there is replaced";
+}
+
 }  // namespace
 }  // namespace footing::setup

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -43,6 +44,16 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{Command(Gait::kRun, 2), 0, 2}, Case{Command(Gait::kRun, 3), 1.4, -1.4},
                     Case{Command(Gait::kJump, 0, 0.3), -2, 0},
                     Case{Command(Gait::kJump, 0.5, 0.15), 0, 2}));
+
+TEST(Jumping, LowAndFastFromAStandDoesNotDriftAside) {
+  GaitEngine engine = NewEngine();
+  double aside_m = 0;
+  Simulate(engine, Direct(Command(Gait::kJump, 2, 0.1)), 6, [&](const EngineOutput& output) {
+    aside_m = std::max(aside_m, std::fabs(output.p_WC_m.y()));
+  });
+  EXPECT_LT(aside_m, 1.5);
+  EXPECT_GT(engine.Output().p_WC_m.x(), 6);
+}
 
 class Turning : public testing::TestWithParam<biped::GaitCommand> {};
 

@@ -1,9 +1,12 @@
+#include <array>
 #include <cmath>
 
 #include "common/units/units.h"
 #include "daemon/simulation/gait/attitude.h"
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/momentum.h"
+#include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/gait/servo.h"
 #include "tests/simulation/test_world.h"
 
@@ -155,6 +158,79 @@ TEST(Turning, HoldsARunBankedAndTurningAsItsHeadingDoes) {
   scene.body.R_WB = Eigen::AngleAxisd(bank_rad, Vector3d::UnitX()).toRotationMatrix();
   scene.body.w_WB = {0, 0, 0.2};
   EXPECT_LT(BodyMoment(scene.body, scene.memory, targets, scene.gains.attitude).norm(), 1e-9);
+}
+
+/// A run's or jump's support, the hips still, the legs swinging.
+struct SupportScene : LawsScene {
+  explicit SupportScene(stream::Gait gait) {
+    memory.gait = goal.gait = gait;
+    memory.running = RunningPhase::kCompression;
+    for (biped::LegState& leg : body.legs) {
+      leg.length_m = 0.9;
+      leg.touching = true;
+      leg.joint_velocity = {0, 0.5, -1.5, 0};
+      leg.hinge_axes_W.col(0) = Vector3d::UnitZ();
+      leg.hinge_axes_W.col(1) = Vector3d::UnitX();
+      leg.hinge_axes_W.col(2) = Vector3d::UnitY();
+    }
+  }
+};
+
+TEST(Support, DampsTheMomentumOfBodyAndLegsAsIfItWereTheBodysRate) {
+  for (const stream::Gait gait : {stream::Gait::kRun, stream::Gait::kJump}) {
+    const SupportScene scene(gait);
+    const Targets targets = RunningTargets(scene.context(), scene.memory);
+    const Vector3d momentum = AngularMomentum(scene.body, scene.biped);
+    ASSERT_GT(std::fabs(momentum.y()), 0.1);
+    EXPECT_NEAR(targets.rate_W_radps.x(), -momentum.x() / scene.biped.body_inertia_roll_kgm2, 1e-9);
+    EXPECT_NEAR(targets.rate_W_radps.y(), -momentum.y() / scene.biped.body_inertia_pitch_kgm2,
+                1e-9);
+    EXPECT_NEAR(targets.rate_W_radps.z(),
+                -scene.gains.attitude.hop_yaw_momentum_share * momentum.z() /
+                    scene.biped.body_inertia_yaw_kgm2,
+                1e-9);
+  }
+}
+
+TEST(Support, RightsATiltInPitchByTheEndOfAJumpsFlight) {
+  LawsScene scene;
+  scene.body.R_WB = Eigen::AngleAxisd(0.1, Vector3d::UnitY()).toRotationMatrix();
+  Targets targets;
+  targets.hopping = targets.jumping = true;
+  targets.flight_s = 0.6;
+  const Vector3d moment = BodyMoment(scene.body, scene.memory, targets, scene.gains.attitude);
+  EXPECT_NEAR(moment.y(), -scene.gains.attitude.pitch_damping_nms_per_rad / 0.6 * 0.1, 1e-9);
+}
+
+TEST(Support, TakesEnergyOutOfARunThatIsToEnd) {
+  SupportScene scene(stream::Gait::kRun);
+  const auto damping = [&scene] {
+    return RunningTargets(scene.context(), scene.memory).legs[0].axial.damping_ns_per_m;
+  };
+  EXPECT_EQ(damping(), scene.gains.hopping.run_leg_damping_ns_per_m);
+  scene.goal.gait = stream::Gait::kWalk;
+  EXPECT_EQ(damping(), scene.gains.transition.leaving_run_damping_ns_per_m);
+  scene.memory.running = RunningPhase::kExtension;
+  EXPECT_EQ(damping(), scene.gains.hopping.run_leg_damping_ns_per_m);
+}
+
+TEST(Flight, OfAJumpThatTurnsOverSwingsTheFarLegOut) {
+  SupportScene scene(stream::Gait::kJump);
+  scene.memory.running = RunningPhase::kUpwardFlight;
+  const auto feet_m = [&scene](double roll_rad) {
+    scene.body.R_WB = Eigen::AngleAxisd(roll_rad, Vector3d::UnitX()).toRotationMatrix();
+    const Targets targets = RunningTargets(scene.context(), scene.memory);
+    return std::array{targets.legs[0].r_HF_W_m.y(), targets.legs[1].r_HF_W_m.y()};
+  };
+  const auto upright = feet_m(0);
+  const double from_rad = scene.gains.recovery.jump_yield_from_rad;
+  EXPECT_EQ(feet_m(-0.9 * from_rad), upright);
+  const auto to_the_left = feet_m(-from_rad - 0.1);
+  EXPECT_EQ(to_the_left[0], upright[0]);
+  EXPECT_LT(to_the_left[1], upright[1] - 0.1);
+  const auto to_the_right = feet_m(from_rad + 0.1);
+  EXPECT_GT(to_the_right[0], upright[0] + 0.1);
+  EXPECT_EQ(to_the_right[1], upright[1]);
 }
 
 TEST(LegInverseKinematics, BringsTheFootWhereItIsWanted) {

@@ -70,6 +70,21 @@ TEST(GameRelay, LetsOnlyTheLeaderChangeTheTrack) {
   EXPECT_FALSE(relay.Refuse(kBen, push));
 }
 
+TEST(GameRelay, SaysOnceThatAGameUnderWayWasLeft) {
+  GameRelay relay;
+  ASSERT_TRUE(relay.OnSetGame(kAnn, Game()).ok());
+  relay.OnSessionEnd(kBen);
+  EXPECT_FALSE(relay.TakeLeft());
+  relay.OnSessionEnd(kAnn);
+  EXPECT_TRUE(relay.TakeLeft());
+  EXPECT_FALSE(relay.TakeLeft());
+  v1::SetGame over = Game();
+  over.mutable_game()->set_phase(v1::GameState::PHASE_OVER);
+  ASSERT_TRUE(relay.OnSetGame(kAnn, over).ok());
+  relay.OnSessionEnd(kAnn);
+  EXPECT_FALSE(relay.TakeLeft());  // Its track is not built on any more.
+}
+
 TEST(GameRelay, IsFreeAgainWhenTheLeaderIsGoneOrLeaves) {
   for (const bool leaves : {true, false}) {
     GameRelay relay;

@@ -143,6 +143,27 @@ TEST(Boards, AJumpKeepsTheSpeedOfTheWalkBeforeIt) {
   EXPECT_NEAR(speed_mps, 0.8, 0.1);
 }
 
+/// Both feet stand for longer than a step takes before the heels rise.
+TEST(Boards, AJumpKeepsTheSpeedOfTheLastStepThatCameOnTime) {
+  for (const double stands_s : {0.6, 2.0}) {
+    BoardPerson person(70);
+    BoardsInterface boards = NewBoards();
+    For(2, person, boards);
+    person.step_hz = 2;
+    For(4, person, boards);
+    person.step_hz = 0;
+    For(stands_s, person, boards);
+    double speed_mps = -1;
+    const See see = [&](const biped::GaitCommand& command) {
+      if (command.gait == Gait::kJump) speed_mps = command.speed_mps;
+    };
+    Rise(person, boards, 0.4, see);
+    For(0.2, person, boards, see);
+    // 1 Hz of a foot: 0.2 + 0.6 / 0.8 * 1.2 m/s; who has stood for longer jumps in place.
+    EXPECT_NEAR(speed_mps, stands_s < 1 ? 1.1 : 0, 0.1) << stands_s;
+  }
+}
+
 TEST(Boards, LeaningTurnsToThatSideWhileSteppingAndWhileStanding) {
   BoardPerson person(70);
   BoardsInterface boards = NewBoards();

@@ -75,7 +75,7 @@ TEST(Joystick, APressJumpsOnceAndAHeldButtonForAsLongAsItIsHeld) {
   const auto jump = joystick.Advance(1, Stick(1, 0, 5));  // Pressed and let go within a tick.
   EXPECT_EQ(jump.gait, Gait::kJump);
   EXPECT_NEAR(jump.height_m, 0.3, 1e-9);
-  EXPECT_NEAR(jump.speed_mps, 1, 1e-9);  // Not faster than a jump can be.
+  EXPECT_NEAR(jump.speed_mps, 1.5, 1e-9);  // Not faster than a jump can be.
   EXPECT_EQ(joystick.state().activity, stream::Activity::kButton);
   EXPECT_EQ(joystick.Advance(2.2, Stick(1, 0, 5)).gait, Gait::kJump) << "not taken over yet";
   Inputs jumping = Stick(1, 0, 5);

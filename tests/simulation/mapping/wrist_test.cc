@@ -40,13 +40,44 @@ TEST(Wrist, GaitFollowsPhaseAndFrequency) {
                     {1.25, kPi, Gait::kWalk, 0.8},  // 0.2 + (1.25 - 0.5) / 1.5 * 1.2
                     {1.9, -3.0, Gait::kWalk, 1.32}, {2.1, kPi, Gait::kRun, 1.62},
                     {3.25, 2.5, Gait::kRun, 3.0},   {9.0, kPi, Gait::kRun, 4.5},
-                    {1.75, 0.2, Gait::kJump, 0.5},  {1.75, -0.9, Gait::kJump, 0.5}};
+                    {1.75, 0.2, Gait::kJump, 0.75}, {1.75, -0.9, Gait::kJump, 0.75}};
   for (const auto& row : rows) {
     WristInterface wrist(Mapping());
     const auto command = Settled(wrist, 0, Swing(row.frequency_hz, row.phase_rad));
     EXPECT_EQ(command.gait, row.gait) << row.frequency_hz << " Hz, phase " << row.phase_rad;
     EXPECT_NEAR(command.speed_mps, row.speed_mps, 1e-9) << row.frequency_hz;
   }
+}
+
+TEST(Wrist, AfterAPutBackTheHandsHaveToShowTheirGaitAgain) {
+  WristInterface wrist(Mapping());
+  EXPECT_EQ(Settled(wrist, 0, Swing(2, 0)).gait, Gait::kJump);
+  wrist.StartAgain();
+  Inputs unknown = Swing(2, 0);
+  unknown.hands.phase_valid = false;  // As while they go over to another motion.
+  EXPECT_EQ(wrist.Advance(20, unknown).gait, Gait::kStep);
+  EXPECT_EQ(Settled(wrist, 20, Swing(2, 0)).gait, Gait::kJump);
+}
+
+/// Bent arms hang down again: they do not run any more, whether or not they swing together.
+TEST(SwingGait, WhatContradictsTheGaitCountsWhileThePhaseIsNotKnown) {
+  const auto walks_after_s = [](double unknown_s) {
+    SwingGait gait(Mapping().swing);
+    Inputs inputs = Swing(1, kPi);
+    double time_s = 0;
+    for (; time_s < 3; time_s += 0.01) gait.Advance(time_s, inputs.hands, true);
+    EXPECT_EQ(gait.gait(), Gait::kRun);
+    inputs.hands.phase_valid = false;
+    const double from_s = time_s;
+    for (; time_s < from_s + unknown_s; time_s += 0.01) gait.Advance(time_s, inputs.hands, false);
+    inputs.hands.phase_valid = true;
+    const double known_s = time_s;
+    while (gait.gait() == Gait::kRun) gait.Advance(time_s += 0.01, inputs.hands, false);
+    return time_s - known_s;
+  };
+  EXPECT_NEAR(walks_after_s(0), 0.75, 0.03);  // change_cycles of 1 Hz.
+  EXPECT_NEAR(walks_after_s(0.3), 0.45, 0.03);
+  EXPECT_NEAR(walks_after_s(1), 0.25, 0.03);  // start_cycles.
 }
 
 TEST(Wrist, AmplitudeSetsTheHeightOfAJump) {

@@ -18,18 +18,6 @@ bool Finite(const Estimate& e) {
   return finite;
 }
 
-// Squats of 30 cm every four seconds, upright between them.
-MadeBody Squatter() {
-  MadeBody body;
-  body.noise_n = 0.5;
-  body.com_m = [](double t) {
-    const double phase = t - 4 * std::floor(t / 4);
-    const double down = t > 0 ? Ramp(phase - 1) - Ramp(phase - 2.5) : 0;
-    return Eigen::Vector3d(0, 0, kMadeHeightM - 0.3 * down);
-  };
-  return body;
-}
-
 TEST(BestEstimator, HeightOfSquatsDoesNotDriftInTenMinutes) {
   MadeBody body = Squatter();
   const TPose pose = body.Calibrate();
@@ -71,48 +59,6 @@ TEST(BestEstimator, OutlivesCellsWhoseGainIsWrongByOnePercent) {
   EXPECT_LT(std::sqrt(sum / kFrames), 0.05);
 }
 
-// Root mean square error of the height over a minute in which the cells tell `share` of what they
-// told in the T-pose.
-double HeightErrorAfter(MadeBody body, double share, double& mass_kg) {
-  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
-  double sum = 0;
-  constexpr int kFrames = 3600;
-  for (int i = 0; i < kFrames; ++i) {
-    ContactLoads loads = body.At(i * kMadeStepS);
-    for (FootLoads& foot : loads.feet)
-      for (Cell& cell : foot.cells) cell.load_n *= share;
-    const double error = best.Advance(loads).p_WC_m.z() - body.com_m(i * kMadeStepS).z();
-    sum += error * error;
-  }
-  mass_kg = best.mass_kg();
-  return std::sqrt(sum / kFrames);
-}
-
-TEST(BestEstimator, FindsAWeightThatTheTPoseHadWrong) {
-  for (const double share : {0.98, 1.02, 0.95}) {
-    double mass_kg = 0;
-    EXPECT_LT(HeightErrorAfter(Squatter(), share, mass_kg), 0.03) << share;
-    EXPECT_NEAR(mass_kg, share * kMadeMassKg, 0.002 * kMadeMassKg) << share;
-  }
-}
-
-TEST(BestEstimator, FindsTheWeightOfOneWhoNeverStandsStill) {
-  MadeBody body;
-  body.noise_n = 0.5;
-  body.com_m = [](double t) {
-    return Eigen::Vector3d(0, 0, kMadeHeightM - 0.08 * Ramp(t) * (1 - std::cos(2 * kPi * 0.8 * t)));
-  };
-  double mass_kg = 0;
-  EXPECT_LT(HeightErrorAfter(body, 0.98, mass_kg), 0.10);
-  EXPECT_NEAR(mass_kg, 0.98 * kMadeMassKg, 0.003 * kMadeMassKg);
-}
-
-TEST(BestEstimator, KeepsTheWeightThatTheTPoseHadRight) {
-  double mass_kg = 0;
-  EXPECT_LT(HeightErrorAfter(Squatter(), 1, mass_kg), 0.03);
-  EXPECT_EQ(mass_kg, Squatter().Calibrate().mass_kg);
-}
-
 TEST(BestEstimator, LagMakesTheHorizontalPlaceBetter) {
   double rms[2] = {0, 0};
   for (const int late : {0, 1}) {
@@ -133,59 +79,18 @@ TEST(BestEstimator, LagMakesTheHorizontalPlaceBetter) {
   EXPECT_LT(rms[1], 0.6 * rms[0]);
 }
 
-// A posture that is wrong by a first-order process along each axis.
-class WrongPosture {
- public:
-  Eigen::Vector3d Of(const Eigen::Vector3d& com_m) {
-    const Eigen::Vector3d time_s(0.25, 0.25, 3), spread_m(0.03, 0.03, 0.06);
-    for (int i = 0; i < 3; ++i) {
-      const double keep = std::exp(-kMadeStepS / time_s(i));
-      error_m_(i) =
-          keep * error_m_(i) + spread_m(i) * std::sqrt(1 - keep * keep) * random_.Normal();
-    }
-    return com_m + error_m_;
-  }
-
- private:
-  noise::Random random_{8};
-  Eigen::Vector3d error_m_ = Eigen::Vector3d::Zero();
-};
-
-TEST(BestEstimator, APostureTellsWhatLoadsCannot) {
-  const auto com_m = [](double t) {
-    return Eigen::Vector3d(0, 0.05 * Ramp(t) * std::sin(4 * t) * std::sin(0.7 * t),
-                           kMadeHeightM - 0.1 * Ramp(t) * (1 + std::sin(2.3 * t)));
-  };
-  Eigen::Vector3d rms[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  for (const int seen : {0, 1}) {
-    MadeBody body;
-    body.com_m = com_m;
-    BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
-    WrongPosture posture;
-    for (int i = 0; i < 3600; ++i) {
-      const double t = i * kMadeStepS;
-      Eigen::Vector3d told_m = best.Advance(body.At(t)).p_WC_m;
-      if (seen == 1) told_m = best.SeePosture(posture.Of(com_m(t))).p_WC_m;
-      rms[seen] += (told_m - com_m(t)).cwiseAbs2() / 3600;
-    }
-    rms[seen] = rms[seen].cwiseSqrt();
-  }
-  EXPECT_LT(rms[1].y(), 0.85 * rms[0].y());
-  EXPECT_NEAR(rms[1].x(), rms[0].x(), 1e-3);
-  EXPECT_NEAR(rms[1].z(), rms[0].z(), 1e-3);
-}
-
 TEST(BestEstimator, PassesOverAPostureThatIsNotOne) {
   MadeBody body;
   BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
   const Eigen::Vector3d before_m = best.Advance(body.At(0)).p_WC_m;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(best.SeePosture({0, nan, 1}).p_WC_m, before_m);
-  EXPECT_NE(best.SeePosture({0, 0.1, 1.1}).p_WC_m, before_m);
+  EXPECT_EQ(best.SeePosture(nan, 1).p_WC_m, before_m);
+  EXPECT_EQ(best.SeePosture(0, nan).p_WC_m, before_m);
+  EXPECT_NE(best.SeePosture(0.1, 1.1).p_WC_m, before_m);
   ContactLoads lost = body.At(kMadeStepS);
   lost.feet[0].valid = false;
   const Eigen::Vector3d coasted_m = best.Advance(lost).p_WC_m;
-  EXPECT_EQ(best.SeePosture({0, 0.1, 1.1}).p_WC_m, coasted_m);
+  EXPECT_EQ(best.SeePosture(0.1, 1.1).p_WC_m, coasted_m);
 }
 
 TEST(BestEstimator, IsFiniteAndSaysSoWhenTheSourceIsLostOrMad) {
@@ -207,6 +112,7 @@ TEST(BestEstimator, IsFiniteAndSaysSoWhenTheSourceIsLostOrMad) {
   EXPECT_TRUE(back.valid);
   EXPECT_EQ(back.resets, 1u);
   EXPECT_NEAR(back.p_WC_m.z(), 1.0, 0.02);
+  EXPECT_FALSE(back.trusted) << "it may have come back at any height";
 }
 
 TEST(BestEstimator, StaysFiniteUnderAnyLoads) {

@@ -98,7 +98,7 @@ TEST(HorizontalCom, SmootherFindsASwayThatTheCopOvershoots) {
     inputs.push_back(input);
   }
   const auto smooth = SmoothHorizontal(Prior(), kMadeMassKg, kMadeStepS, 0, inputs);
-  HorizontalCom causal(Prior(), kMadeMassKg, kMadeStepS);
+  HorizontalCom causal(Prior(), {}, kMadeMassKg, kMadeStepS);
   causal.Start(0, 0);
   double offline = 0, now = 0, late = 0, cop = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {

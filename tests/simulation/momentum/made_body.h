@@ -70,4 +70,16 @@ inline double Ramp(double t) {
   return t >= 1 ? 1 : t * t * t * (10 - 15 * t + 6 * t * t);
 }
 
+// Squats of 30 cm every four seconds, upright between them.
+inline MadeBody Squatter() {
+  MadeBody body;
+  body.noise_n = 0.5;
+  body.com_m = [](double t) {
+    const double phase = t - 4 * std::floor(t / 4);
+    const double down = t > 0 ? Ramp(phase - 1) - Ramp(phase - 2.5) : 0;
+    return Eigen::Vector3d(0, 0, kMadeHeightM - 0.3 * down);
+  };
+  return body;
+}
+
 }  // namespace footing::momentum

@@ -32,6 +32,8 @@ TEST(PoseNote, SaysThatWhatIsMeasuredFitsNoPose) {
   frame.valid = false;
   frame.momentum.valid = true;
   EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("fits no pose"));
+  frame.momentum.trusted = false;
+  EXPECT_THAT(PoseNote(frame, kSubject), HasSubstr("the height by the loads is not certain"));
   frame.momentum.valid = false;  // The boards are what is wrong.
   EXPECT_EQ(PoseNote(frame, kSubject), "");
 }

@@ -51,6 +51,38 @@ TEST(Reconstruction, ACertainRegressionDecidesAndIsLeftOutWithoutHands) {
   EXPECT_GT((regressed.output().q - t_pose).tail(53).cwiseAbs().mean(), 0.03);
 }
 
+/// The same of hands and feet alone: nothing is said of the regression with the momentum.
+NamedModel WithPosture(const World& world) {
+  NamedModel named = WithRegression(world);
+  named.model.kind = "basis";
+  for (model::Tensor& tensor : named.model.tensors) {
+    if (tensor.name.rfind("feature_", 0) == 0 || tensor.name.rfind("regression_", 0) == 0 ||
+        tensor.name.rfind("rest_", 0) == 0) {
+      tensor.name = kPosturePrefix + tensor.name;
+    }
+  }
+  return named;
+}
+
+TEST(Reconstruction, ALearnedPostureDecidesWhereTheMomentumIsLeftOut) {
+  World world;
+  const Models models = MakeModels({WithPosture(world)}).value();
+  ASSERT_FALSE(models.posture.empty());
+  EXPECT_TRUE(models.regression.empty());
+  const Eigen::VectorXd t_pose = body::TPose(world.person.skeleton, world.person.landmarks);
+  Options options = world.AtRate();
+  options.clean_up = options.use_momentum = false;
+  double off_rad[2];
+  for (const bool use : {false, true}) {
+    options.use_posture = use;
+    Reconstruction made = Reconstruction::Create(world.person, models, options).value();
+    for (std::size_t i = 0; i < 460; ++i) made.Advance(world.inputs[i]);
+    off_rad[use ? 1 : 0] = (made.output().q - t_pose).tail(53).cwiseAbs().mean();
+  }
+  EXPECT_LT(off_rad[1], 0.01);  // It is certain of the T-pose.
+  EXPECT_GT(off_rad[0], 0.03);
+}
+
 TEST(Reconstruction, ArmsAreTakenWhereHandsAreNotSeen) {
   World world;
   std::vector<Inputs> unseen = world.inputs;
@@ -128,6 +160,26 @@ TEST(PoseRegression, AddsTheCosinesThatItsFileHas) {
   regression.Predict(features, workspace, q);
   EXPECT_NEAR(q(7), regression.offset(7) + 0.5 * std::cos(2 * 0.5 + 0.25), 1e-6);
   EXPECT_EQ(q(8), regression.offset(8));
+}
+
+TEST(Features, WithoutLoadsOnlyHandsAndFeetCount) {
+  momentum::Estimate light, heavy;
+  heavy.p_WC_m << 0.1, 0.2, 0.6;
+  heavy.v_WC_mps.setConstant(0.3);
+  heavy.a_WC_mps2.setConstant(2);
+  heavy.angular_momentum_kgm2ps.setConstant(5);
+  for (momentum::Estimate* estimate : {&light, &heavy}) {
+    estimate->feet[0].p_WF_m.y() = 0.2;
+    estimate->feet[0].contact = estimate->feet[1].contact = true;
+  }
+  heavy.feet[0].load_n = 500;
+  heavy.feet[1].cop_valid = true;
+  const std::array<Eigen::Vector3d, 2> hands{Eigen::Vector3d(0, 0.7, 1.4),
+                                             Eigen::Vector3d(0, -0.7, 1.4)};
+  Features a(1 / 60.0, 0.95, 70), b(1 / 60.0, 0.95, 70);
+  EXPECT_EQ(a.Advance(hands, WithoutLoads(light, 1)), b.Advance(hands, WithoutLoads(heavy, 1)));
+  heavy.feet[1].contact = false;
+  EXPECT_NE(a.Advance(hands, WithoutLoads(light, 1)), b.Advance(hands, WithoutLoads(heavy, 1)));
 }
 
 TEST(Features, AreTheSameWhereverThePersonStands) {

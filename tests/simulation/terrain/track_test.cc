@@ -232,6 +232,33 @@ TEST(Track, OnlyGroundThatMayBeLeftIsAnEndlessPlane) {
             std::string::npos);
 }
 
+TEST(GroundWindow, HasTheBoxesWithinReachOfAnyPoint) {
+  const auto window = [](const char* text) { return WindowOf(ParseTrack(text, "").value()); };
+  const auto boxes = [](const char* text) {
+    const std::string geoms = GroundMjcf(ParseTrack(text, "").value());
+    int count = 0;
+    for (auto at = geoms.find("'box'"); at != std::string::npos; at = geoms.find("'box'", at + 1))
+      ++count;
+    return count;
+  };
+  // One segment on either side of 3 m; two of 1.5 m.
+  const char* long_ones =
+      R"({"version": 1, "segments": [{"length_m": 3, "step_m": 0.1, "repeat": 20}]})";
+  EXPECT_EQ(window(long_ones).boxes, 3);
+  EXPECT_EQ(window(long_ones).behind, 1);
+  EXPECT_EQ(boxes(long_ones), 3);
+  const char* short_ones = R"({"version": 1, "segments": [{"length_m": 1.5, "repeat": 20}]})";
+  EXPECT_EQ(window(short_ones).boxes, 5);
+  EXPECT_EQ(window(short_ones).behind, 2);
+  // As many as the track has, or more than there may be: all of them stay.
+  EXPECT_EQ(window(R"({"version": 1, "segments": [{"length_m": 3, "repeat": 3}]})").boxes, 0);
+  const char* tiny_ones = R"({"version": 1, "segments": [{"length_m": 0.1, "repeat": 200}]})";
+  EXPECT_EQ(window(tiny_ones).boxes, 0);
+  EXPECT_EQ(boxes(tiny_ones), 200);
+  EXPECT_EQ(window(R"({"version": 1, "extendable": true, "segments": [{"length_m": 50}]})").boxes,
+            kGroundBoxes);
+}
+
 TEST(GroundBox, KeepsAPitsEdges) {
   const auto track = ParseTrack(kHills, "hills").value();
   const GroundBox after_pit = BoxOf(track, 3);

@@ -119,7 +119,7 @@ float DeviceRowsHeight(const scene::Model& model, const Extent& extent) {
 }
 
 Extent FullExtent(const scene::Model& model) {
-  return {model.last_response.has_value(), kDeviceRow,
+  return {model.last.response.has_value(), kDeviceRow,
           std::min(model.devices.size(), kMaxListedDevices)};
 }
 
@@ -152,7 +152,7 @@ void DrawDevicePanel(const Paint& p, const Box& box, const scene::Model& model,
     y += kLinkRow * s;
   }
   if (extent.response) {
-    DrawResponse(p, in, y + 4 * s, *model.last_response);
+    DrawResponse(p, in, y + 4 * s, *model.last.response);
     y += kResponseRow * s;
   }
   y += kAboveDevices * s;

@@ -11,6 +11,7 @@
 #include "clients/view/render/hud/layout_panel.h"
 #include "clients/view/render/hud/overlay.h"
 #include "clients/view/render/hud/strip_panel.h"
+#include "clients/view/render/hud/study_panel.h"
 #include "clients/view/render/hud/t_pose_panel.h"
 #include "clients/view/render/hud/trial_panel.h"
 #include "clients/view/scene/game_text.h"
@@ -76,6 +77,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   Box notes = boxes.middle;
   if (!options.title.empty()) DrawTitle(p, options.title, options.over, notes);
   DrawReplay(p, model, content.now_ns, notes);
+  if (!options.hidden) DrawStudyPanel(p, model, content.now_ns, notes);
   const scene::CharacterPose* pose = FirstCharacter(content);
   // A round is a trial: its panel would say the same again.
   if (scene::ShowsGame(model.game, pose != nullptr && pose->trial ? &*pose->trial : nullptr)) {

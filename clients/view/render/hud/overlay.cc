@@ -151,12 +151,12 @@ void DrawReplay(const Paint& p, const scene::Model& model, std::int64_t now_ns, 
 }
 
 void DrawNote(const Paint& p, const scene::Model& model, std::int64_t now_ns, Box& space) {
-  if (!model.last_note) return;
-  const double age_s = NanosecondsToSeconds(now_ns - model.last_note->received_ns);
+  if (!model.last.note) return;
+  const double age_s = NanosecondsToSeconds(now_ns - model.last.note->received_ns);
   if (age_s > kNoteS) return;
   const auto opacity = static_cast<float>(std::clamp((kNoteS - age_s) / kNoteFadeS, 0.0, 1.0));
-  const bool fall = model.last_note->kind == scene::NoteKind::kFall;
-  DrawBanner(p, space, model.last_note->text, p.fonts.text, Faded(colour::kPanel, 0.7f * opacity),
+  const bool fall = model.last.note->kind == scene::NoteKind::kFall;
+  DrawBanner(p, space, model.last.note->text, p.fonts.text, Faded(colour::kPanel, 0.7f * opacity),
              Faded(fall ? colour::kBad : colour::kText, opacity));
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/offline/eval/arm/trial.h"
+#include "daemon/offline/eval/pose/motion_options.h"
 #include "daemon/offline/eval/pose/scene.h"
 #include "daemon/offline/eval/report/print_report.h"
 
@@ -34,11 +35,7 @@ void AddArmCommand(CLI::App& app, Shared& shared) {
       "arm",
       "Arm poses estimated from a Wiimote with MotionPlus in each hand, compared with the motion");
   const auto flags = std::make_shared<Flags>();
-  command->add_option("--motion", flags->scene.motion, "Motion file: BVH, AMC, TRC or C3D")
-      ->required();
-  command->add_option("--skeleton", flags->scene.skeleton, "Skeleton of an AMC motion, ASF file");
-  command->add_option("--still", flags->scene.still,
-                      "Marker file of the same person standing still, TRC or C3D");
+  AddMotionOptions(*command, flags->scene);
   command->add_option("--model", flags->model, "Arm model, *.fmodel (default: built in)");
   command->add_option("--rate-hz", flags->scene.settings.rate_hz, "Frame rate, Hz")
       ->check(CLI::Range(30.0, 120.0));

@@ -11,6 +11,7 @@
 #include "daemon/offline/eval/gait/trial.h"
 #include "daemon/offline/eval/report/print_report.h"
 #include "daemon/offline/tracking/tracking.h"
+#include "daemon/simulation/biped/limits.h"
 
 namespace footing::eval {
 namespace {
@@ -25,6 +26,7 @@ struct MonkeyOptions {
   int trials = 1;
   std::string seed = "1";
   bool gentle = false;
+  bool whole_range = false;
 };
 
 struct Outcome {
@@ -35,6 +37,24 @@ struct Outcome {
 
   int of(Tracking became) const { return commands[static_cast<std::size_t>(became)]; }
 };
+
+/// Evenly over all that biped::Limited accepts.
+biped::GaitCommand DrawAccepted(Random& random) {
+  constexpr double kBeyond = 100;
+  biped::GaitCommand command;
+  command.gait = kGaits[static_cast<std::size_t>(random.Uniform(0, kGaits.size() - 0.001))];
+  const biped::GaitCommand fastest =
+      biped::Limited({.gait = command.gait, .speed_mps = kBeyond, .height_m = kBeyond});
+  command.speed_mps = random.Uniform(0, fastest.speed_mps);
+  const biped::GaitCommand highest =
+      biped::Limited({.gait = command.gait, .speed_mps = command.speed_mps, .height_m = kBeyond});
+  const double lowest_m = biped::Limited({.gait = command.gait, .height_m = 0}).height_m;
+  command.height_m = random.Uniform(lowest_m, highest.height_m);
+  const double turn_max_rad = biped::TurnLimit(command.gait, command.speed_mps);
+  const bool turns = random.Uniform(0, 1) < 0.5;
+  command.turn_per_step_rad = turns ? random.Uniform(-turn_max_rad, turn_max_rad) : 0;
+  return command;
+}
 
 /// Gentle: run to 3 m/s and walk to 1, instead of 4 and 1.3.
 biped::GaitCommand DrawCommand(bool gentle, Random& random) {
@@ -67,7 +87,8 @@ Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, Outcome&
         ++outcome.commands[static_cast<std::size_t>(became)];
       }
       next_s = time_s + random.Uniform(0.5, 4);
-      const biped::GaitCommand command = DrawCommand(options.gentle, random);
+      const biped::GaitCommand command =
+          options.whole_range ? DrawAccepted(random) : DrawCommand(options.gentle, random);
       given = {time_s, command.speed_mps, state.falls};
       walker.Command(command);
     }
@@ -127,8 +148,12 @@ void AddMonkeyCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(1.0, 36000.0));
   command->add_option("--trials", options->trials, "Number of trials")->check(CLI::Range(1, 10000));
   command->add_option("--seed", options->seed, "Seed: a number, or random");
-  command->add_flag("--gentle", options->gentle,
-                    "Limit runs to 3 m/s and walks to 1 m/s, in place of 4 and 1.3");
+  CLI::Option* gentle = command->add_flag(
+      "--gentle", options->gentle, "Limit runs to 3 m/s and walks to 1 m/s, in place of 4 and 1.3");
+  command
+      ->add_flag("--whole-range", options->whole_range,
+                 "Draw every speed, height and turn that is accepted, run to 6 m/s")
+      ->excludes(gentle);
   command->callback([options, &shared] { shared.exit_code = RunMonkey(*options, shared.json); });
 }
 

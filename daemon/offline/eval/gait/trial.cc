@@ -51,11 +51,12 @@ Result<engine::GaitEngine> NewEngine() {
   return engine::GaitEngine::Create(*texts);
 }
 
-Result<engine::GaitEngine> NewEngineOn(const std::string& track, stream::UserInterface interface) {
-  Result<engine::EngineTexts> texts = ReadTexts(interface);
+Result<engine::GaitEngine> NewEngineOn(const std::string& track,
+                                       const mapping::InterfaceOptions& interface) {
+  Result<engine::EngineTexts> texts = ReadTexts(interface.interface);
   if (!texts) return texts.error();
   texts->track = track;
-  return engine::GaitEngine::Create(*texts, {.interface = {.interface = interface}});
+  return engine::GaitEngine::Create(*texts, {.interface = interface});
 }
 
 Result<physics::World> NewWorld() {

@@ -37,8 +37,8 @@ void ReadGainsToo(std::vector<std::string> paths);
 /// An engine on the straight track, from the product's data files.
 Result<engine::GaitEngine> NewEngine();
 /// An engine on a track given as text, for a user interface.
-Result<engine::GaitEngine> NewEngineOn(
-    const std::string& track, stream::UserInterface interface = stream::UserInterface::kWrist);
+Result<engine::GaitEngine> NewEngineOn(const std::string& track,
+                                       const mapping::InterfaceOptions& interface = {});
 /// The world of NewEngine's engine alone.
 Result<physics::World> NewWorld();
 

@@ -17,6 +17,20 @@ double Still(const pose_run::PoseRun& run, const Eigen::VectorXd& q, std::size_t
   return score.mpjpe_cm();
 }
 
+/// All frames of a reconstruction with these options.
+Result<ordered_json> Rebuilt(const pose_run::PoseRun& run, const reconstruction::Models& models,
+                             const reconstruction::Options& options, std::size_t start) {
+  auto made = reconstruction::Reconstruction::Create(run.body, models, options);
+  if (!made) return made.error();
+  PoseScore score(run.body);
+  const auto lag = static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz));
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    const auto& output = made->Advance(run.frames[i].inputs);
+    if (i >= start) score.Add(output.q, run.frames[i - lag].q);
+  }
+  return score.Json();
+}
+
 }  // namespace
 
 Result<ordered_json> ScoreBaselines(const pose_run::PoseRun& run,
@@ -37,15 +51,16 @@ Result<ordered_json> ScoreBaselines(const pose_run::PoseRun& run,
 
   reconstruction::Options without = options;
   without.use_momentum = without.use_angular_momentum = false;
-  auto made = reconstruction::Reconstruction::Create(run.body, models, without);
-  if (!made) return made.error();
-  PoseScore score(run.body);
-  const auto lag = static_cast<std::size_t>(std::lround(options.lag_s * options.rate_hz));
-  for (std::size_t i = 0; i < run.frames.size(); ++i) {
-    const auto& output = made->Advance(run.frames[i].inputs);
-    if (i >= start) score.Add(output.q, run.frames[i - lag].q);
+  without.use_posture = false;
+  const auto bare = Rebuilt(run, models, without, start);
+  if (!bare) return bare.error();
+  json["hands_feet_ik"] = *bare;
+  if (!models.posture.empty()) {
+    without.use_posture = true;
+    const auto learned = Rebuilt(run, models, without, start);
+    if (!learned) return learned.error();
+    json["hands_feet_learned"] = *learned;
   }
-  json["hands_feet_ik"] = score.Json();
   return json;
 }
 

@@ -22,6 +22,12 @@ void ComScore::Add(const body::Body& body, const reconstruction::Output& output,
   loads_vertical_.Add(100 * (output.momentum.p_WC_m.z() - truth.com_m.z()));
   nees_ += error_m.z() * error_m.z() / output.com_variance_m2.z();
   ++frames_;
+  if (output.posture_com_W_m) {
+    const Eigen::Vector3d off_m = *output.posture_com_W_m - truth.com_m;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      posture_[static_cast<std::size_t>(axis)].Add(100 * off_m(axis));
+    }
+  }
   pose_horizontal_.Add(100 * (com - truth.com_m).head<2>().norm());
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     angular_[static_cast<std::size_t>(axis)].Add(output.momentum.angular_momentum_kgm2ps(axis) -
@@ -43,6 +49,8 @@ void ComScore::WriteTo(nlohmann::ordered_json& json) const {
   json["com_vertical_nees"] = nees_ / static_cast<double>(std::max(frames_, std::size_t{1}));
   json["pose_com_vertical_rms_cm"] = pose_vertical_.rms();
   json["pose_com_horizontal_rms_cm"] = pose_horizontal_.rms();
+  for (const Spread& axis : posture_) json["posture_com_rms_cm"].push_back(axis.rms());
+  for (const Spread& axis : posture_) json["posture_com_bias_cm"].push_back(axis.mean());
   for (const Spread& axis : angular_) json["angular_momentum_error_kgm2ps"].push_back(axis.rms());
 }
 

@@ -42,6 +42,7 @@ class ComScore {
   Spread vertical_, horizontal_, forward_, lateral_;
   Drift vertical_drift_, horizontal_drift_;
   Spread loads_vertical_;                   ///< Of the estimate from the loads alone.
+  std::array<Spread, 3> posture_;           ///< Of hands and feet alone.
   Spread pose_vertical_, pose_horizontal_;  ///< Of the pose's own COM.
   double nees_ = 0;                         ///< Vertical, summed.
   std::size_t frames_ = 0;

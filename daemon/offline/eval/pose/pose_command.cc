@@ -14,6 +14,7 @@
 #include "daemon/offline/eval/pose/constants.h"
 #include "daemon/offline/eval/pose/figures.h"
 #include "daemon/offline/eval/pose/insoles.h"
+#include "daemon/offline/eval/pose/motion_options.h"
 #include "daemon/offline/eval/pose/plates.h"
 #include "daemon/offline/eval/pose/scene.h"
 #include "daemon/offline/eval/pose/trial.h"
@@ -148,11 +149,7 @@ void PrintField(const std::string& name, const ordered_json& value) {
 
 void AddFlags(CLI::App& command, Flags& flags) {
   pose_run::Settings& settings = flags.scene.settings;
-  command.add_option("--motion", flags.scene.motion, "Motion file: BVH, AMC, TRC or C3D")
-      ->required();
-  command.add_option("--skeleton", flags.scene.skeleton, "Skeleton of an AMC motion, ASF file");
-  command.add_option("--still", flags.scene.still,
-                     "Marker file of the same person standing still, TRC or C3D");
+  AddMotionOptions(command, flags.scene);
   command.add_option("--forces", flags.scene.forces,
                      "Measured forces for --boards forces: MOT, STO or C3D");
   command.add_option(

@@ -20,8 +20,7 @@ constexpr std::size_t kMostLabelBytes = 1u << 20;
 constexpr std::size_t kMostMotionBytes = 512u << 20;
 
 std::string SubjectOf(const std::string& motion) {
-  const std::string stem = std::filesystem::path(motion).stem().string();
-  return model::SubjectName(stem.substr(0, stem.find('_')));
+  return model::SubjectOfFile(std::filesystem::path(motion).stem().string());
 }
 
 /// Refuses a model that has seen this very file.

@@ -7,6 +7,7 @@
 #include "daemon/simulation/engine/track_world.h"
 #include "daemon/simulation/engine_files/engine_files.h"
 #include "daemon/simulation/gait_service/applied_input.h"
+#include "daemon/simulation/gait_service/effective_config.h"
 
 namespace footing::eval {
 namespace {
@@ -18,6 +19,16 @@ struct BipedRecording {
   std::map<std::uint64_t, engine::EngineInputs> inputs;  ///< By step.
   std::map<std::uint64_t, std::uint64_t> hashes;         ///< By step.
   std::map<std::uint64_t, stream::Track> tracks;         ///< By number, as they were at first.
+  std::vector<v1::EffectiveConfig> configs;              ///< The first one and its changes.
+
+  /// The recorded table of the interface of that number; empty: an older footing-sim made it.
+  std::string TableOf(std::uint64_t interface_number) const {
+    for (const v1::EffectiveConfig& config : configs) {
+      const std::string table = gait_service::TableIn(config, interface_number);
+      if (!table.empty()) return table;
+    }
+    return "";
+  }
 };
 
 BipedRecording GatherBiped(const std::vector<v1::Tick>& ticks) {
@@ -32,6 +43,7 @@ BipedRecording GatherBiped(const std::vector<v1::Tick>& ticks) {
       const auto [known, fresh] = recording.tracks.emplace(track.number, track);
       if (!fresh && track.revision < known->second.revision) known->second = track;
     }
+    if (tick.has_config()) recording.configs.push_back(tick.config());
     if (!tick.has_characters()) continue;
     recording.hashes[tick.characters().step()] = tick.characters().state_hash();
   }
@@ -77,7 +89,9 @@ class BipedRerun {
   Result<void> UseInterface(engine::InterfaceInputs& wanted) {
     if (wanted.number == interface_number_) return {};
     interface_number_ = wanted.number;
-    const auto made = engine_files::ReadInterface(wanted.options, data_folder_);
+    const std::string table = recording_.TableOf(wanted.number);
+    const auto made = table.empty() ? engine_files::ReadInterface(wanted.options, data_folder_)
+                                    : mapping::AnyInterface::Create(wanted.options, table);
     if (!made) return made.error();
     wanted.made = *made;
     return {};
@@ -93,14 +107,16 @@ class BipedRerun {
 
 Result<engine::GaitEngine> FirstEngine(const BipedRecording& recording,
                                        const BipedReplayOptions& options) {
-  if (options.named_track) return engine::GaitEngine::Create(options.texts, options.config);
+  engine::EngineTexts texts = options.texts;
+  if (std::string table = recording.TableOf(0); !table.empty()) texts.mapping = std::move(table);
+  if (options.named_track) return engine::GaitEngine::Create(texts, options.config);
   const auto first = recording.tracks.find(1);
   if (first == recording.tracks.end()) {
     return InvalidData(
         "the recording does not hold its whole track (an older footing-sim made it); name the "
         "track with --track");
   }
-  return engine::GaitEngine::CreateOn(first->second, options.texts, options.config);
+  return engine::GaitEngine::CreateOn(first->second, texts, options.config);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ const std::vector<std::uint32_t>& ReplayedFields() {
   static const std::vector<std::uint32_t> fields = {
       Tick::kStatusFieldNumber,     Tick::kRawFieldNumber,   Tick::kFeaturesFieldNumber,
       Tick::kCharactersFieldNumber, Tick::kSetupFieldNumber, Tick::kInputsFieldNumber,
-      Tick::kTrackFieldNumber};
+      Tick::kTrackFieldNumber,      Tick::kConfigFieldNumber};
   return fields;
 }
 

@@ -54,6 +54,7 @@ users::Style StyleOf(const TrackUser& user) {
 users::Observation See(const engine::EngineOutput& output) {
   return {.time_s = output.time_s,
           .p_W_m = output.p_WC_m.head<2>(),
+          .com_m = output.p_WC_m.z(),
           .heading_rad = output.gait.heading_rad,
           .speed_mps = output.gait.speed_mps,
           .steps = output.gait.steps,
@@ -78,18 +79,21 @@ struct Embodied {
 /// One engine with its user.
 class TrackTrial {
  public:
-  TrackTrial(engine::GaitEngine engine, const TrackUser& user)
+  TrackTrial(engine::GaitEngine engine, const TrackUser& user, TrackTrace& trace)
       : engine_(std::move(engine)),
         user_(user),
-        driver_(user.interface ? users::AbilityWith(*user.interface) : users::DirectAbility(),
+        trace_(trace),
+        driver_(user.interface ? users::AbilityWith(*user.interface, user.turn_by)
+                               : users::DirectAbility(),
                 StyleOf(user), user.seed) {
+    trace_.Begin(user.seed);
     Random random(user.seed);
     kick_s_ = random.Uniform(3, 20);
     kick_rad_ = random.Uniform(-kPi, kPi);
     driver_.SeeTrack(engine_.track());
     if (user.interface) {
-      embodied_.emplace(
-          Embodied{{*user.interface, StyleOf(user), user.seed}, {*user.interface, user.seed}});
+      embodied_.emplace(Embodied{{*user.interface, StyleOf(user), user.seed, user.turn_by},
+                                 {*user.interface, user.turn_by, user.seed}});
     }
     inputs_.trial = {.number = 1, .task = trial::DrawTask(engine_.track(), user.seed)};
   }
@@ -141,7 +145,8 @@ class TrackTrial {
   /// One look of the user at the picture, and what the character does until the next.
   void Look() {
     const engine::EngineOutput& seen = engine_.Output();
-    Move(seen.time_s, driver_.Want(See(seen)));
+    const users::Intention wanted = driver_.Want(See(seen));
+    Move(seen.time_s, wanted);
     if (inputs_.push_number == 0 && seen.time_s >= kick_s_) {
       inputs_.push_number = 1;
       inputs_.push_impulse_W_ns =
@@ -149,6 +154,8 @@ class TrackTrial {
     }
     for (int i = 0; i < kStepsPerSight; ++i) Step();
     const engine::EngineOutput& output = engine_.Output();
+    trace_.Add(wanted.gait, embodied_ ? embodied_->person.gesture() : wanted.gait, wanted.turn_rad,
+               output);
     result_.time_s = output.trial.time_s;
     result_.completed = output.trial.phase == stream::TrialPhase::kFinished;
     if (fallen_) {
@@ -172,6 +179,7 @@ class TrackTrial {
 
   engine::GaitEngine engine_;
   TrackUser user_;
+  TrackTrace& trace_;
   engine::EngineInputs inputs_;
   users::Driver driver_;
   std::optional<Embodied> embodied_;
@@ -182,14 +190,16 @@ class TrackTrial {
 
 }  // namespace
 
-Result<TrackResult> RunTrack(const std::string& track_text, const TrackUser& user) {
+Result<TrackResult> RunTrack(const std::string& track_text, const TrackUser& user,
+                             TrackTrace& trace) {
   Result<engine::GaitEngine> engine =
-      NewEngineOn(track_text, user.interface.value_or(UserInterface::kWrist));
+      NewEngineOn(track_text, {.interface = user.interface.value_or(UserInterface::kWrist),
+                               .leg = {.turn_by = user.turn_by}});
   if (!engine) return engine.error();
   if (engine->track().finish_m <= 0) {
     return UsageError("the track \"" + engine->track().name + "\" has no finish line");
   }
-  return TrackTrial(std::move(engine).value(), user).Run();
+  return TrackTrial(std::move(engine).value(), user, trace).Run();
 }
 
 }  // namespace footing::eval

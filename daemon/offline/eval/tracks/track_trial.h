@@ -7,6 +7,7 @@
 #include "daemon/offline/eval/gait/statistics.h"
 #include "daemon/offline/eval/gait/trial.h"
 #include "daemon/offline/eval/tracks/agreement.h"
+#include "daemon/offline/eval/tracks/trace.h"
 
 namespace footing::eval {
 
@@ -17,6 +18,7 @@ struct TrackUser {
   std::optional<stream::UserInterface> interface = {};
   /// The remotes are rotated in the hands by this, left and right as mirror images of each other.
   double grip_rad = 0;
+  stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< Of the leg interface.
   std::uint64_t seed = 1;  ///< Of the user's style and noise, the task and the push.
 };
 
@@ -33,6 +35,6 @@ struct TrackResult {
 
 /// One trial on a track, put back after each failure, kicked once by 2 N s. UsageError when the
 /// track has no finish line.
-Result<TrackResult> RunTrack(const std::string& track, const TrackUser& user);
+Result<TrackResult> RunTrack(const std::string& track, const TrackUser& user, TrackTrace& trace);
 
 }  // namespace footing::eval

@@ -10,6 +10,7 @@
 
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
+#include "common/stream/leg_turn.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/report/print_report.h"
 #include "daemon/offline/eval/tracks/track_trial.h"
@@ -23,6 +24,8 @@ struct Options {
   int trials = 1;
   std::string seed = "1";
   double grip_deg = 0;
+  std::string turn_by;
+  std::string trace;
 };
 
 struct Trials {
@@ -44,6 +47,15 @@ Result<TrackUser> UserFor(const Options& options) {
                         "; there are: " + stream::UserInterfaceNames() + ", direct");
     }
   }
+  if (!options.turn_by.empty()) {
+    user.turn_by = stream::LegTurnSourceNamed(options.turn_by);
+    if (user.turn_by == stream::TurnSource::kUnspecified) {
+      return UsageError("unknown --turn-by " + options.turn_by + "; there are: head, feet, trunk");
+    }
+    if (user.interface != stream::UserInterface::kLeg) {
+      return UsageError("--turn-by: only the interface leg turns by head, feet or trunk");
+    }
+  }
   const bool hands = user.interface == stream::UserInterface::kWrist ||
                      user.interface == stream::UserInterface::kArm;
   if (options.grip_deg != 0 && !hands) {
@@ -59,10 +71,12 @@ void Pool(const RootMeanSquare& part, RootMeanSquare& all) {
 
 Result<Trials> RunTrials(const Options& options, const std::string& track, TrackUser user,
                          std::uint64_t seed) {
+  Result<TrackTrace> trace = TrackTrace::Create(options.trace);
+  if (!trace) return trace.error();
   Trials trials;
   for (int i = 0; i < options.trials; ++i) {
     user.seed = TrialSeed(seed, i);
-    const Result<TrackResult> run = RunTrack(track, user);
+    const Result<TrackResult> run = RunTrack(track, user, *trace);
     if (!run) return run.error();
     for (const stream::FailureCause cause : stream::kFailureCauses) {
       *stream::MutableCountOf(cause, trials.failures) += stream::CountOf(cause, run->failures);
@@ -120,6 +134,7 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
           {"line_heading_rms_rad", trials.line_heading.value()},
           {"off_centre_rms_m", trials.off_centre.value()},
           {"grip_deg", options.grip_deg},
+          {"turn_by", options.turn_by},
           {"gait_agreement", trials.agreement.share()},
           {"gait_confusion", Confusion(trials.agreement.table())}};
 }
@@ -155,6 +170,10 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
       ->add_option("--grip-deg", options->grip_deg,
                    "Rotation of the remotes in the hands, mirrored left and right, degrees")
       ->check(CLI::Range(0.0, 90.0));
+  command->add_option("--turn-by", options->turn_by,
+                      "What turns with the interface leg: head, feet or trunk (default head)");
+  command->add_option("--trace", options->trace,
+                      "CSV file to write: what user, interface and character do, every 10 ms");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

@@ -9,6 +9,7 @@ namespace footing::eval {
 namespace {
 
 using stream::DeviceRole;
+using stream::TurnSource;
 using stream::UserInterface;
 
 constexpr double kBoardHz = 60;
@@ -22,21 +23,22 @@ constexpr double kCellGainSpread = 0.01;
 /// Device numbers are those of the roles.
 std::uint32_t DeviceOf(DeviceRole role) { return static_cast<std::uint32_t>(role); }
 
-std::vector<features::Member> MembersFor(UserInterface interface) {
+std::vector<features::Member> MembersFor(UserInterface interface, TurnSource turn_by) {
   const bool legs = interface == UserInterface::kLeg;
   std::vector<features::Member> members;
   for (const DeviceRole role : {legs ? DeviceRole::kLeftLeg : DeviceRole::kLeftHand,
                                 legs ? DeviceRole::kRightLeg : DeviceRole::kRightHand}) {
     members.push_back({DeviceOf(role), role});
   }
-  if (legs) members.push_back({DeviceOf(DeviceRole::kHead), DeviceRole::kHead});
+  const DeviceRole upper = turn_by == TurnSource::kTrunk ? DeviceRole::kTrunk : DeviceRole::kHead;
+  if (legs && turn_by != TurnSource::kFeet) members.push_back({DeviceOf(upper), upper});
   return members;
 }
 
 }  // namespace
 
-UserDevices::UserDevices(UserInterface interface, std::uint64_t seed)
-    : interface_(interface), random_(seed), chain_(MembersFor(interface)) {
+UserDevices::UserDevices(UserInterface interface, TurnSource turn_by, std::uint64_t seed)
+    : interface_(interface), random_(seed), chain_(MembersFor(interface, turn_by)) {
   for (const std::uint64_t board : {1u, 2u}) {
     cells_.emplace_back(virtual_sensors::CellErrorConfig{
         .gain_spread = kCellGainSpread, .noise_kg = kCellNoiseKg, .seed = seed + board});
@@ -50,9 +52,10 @@ void UserDevices::TakeRemotes(const users::Felt& felt) {
     const users::FeltRemote& remote = felt.remotes[i];
     const auto reading = wrists::Read(sensor_, remote.specific_force_S_mps2, random_);
     chain_.Add(DeviceOf(remote.role), now_ns, reading.specific_force_mps2, reading.clipped_axes);
-    // Shins have a mounting; hands and the head need none.
-    const bool shin = remote.role == DeviceRole::kLeftLeg || remote.role == DeviceRole::kRightLeg;
-    if (shin) mounted_roles |= stream::RoleBit(remote.role);
+    // Shins and the trunk have a mounting; hands and the head need none.
+    const bool mounted = remote.role == DeviceRole::kLeftLeg ||
+                         remote.role == DeviceRole::kRightLeg || remote.role == DeviceRole::kTrunk;
+    if (mounted) mounted_roles |= stream::RoleBit(remote.role);
   }
   mapping::TakeFeatures(chain_.Compute(now_ns), mounted_roles, inputs_);
 }

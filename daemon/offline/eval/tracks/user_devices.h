@@ -18,7 +18,8 @@ class UserDevices {
  public:
   static constexpr double kTickS = 0.01;
 
-  UserDevices(stream::UserInterface interface, std::uint64_t seed);
+  /// `turn_by` is of the leg interface.
+  UserDevices(stream::UserInterface interface, stream::TurnSource turn_by, std::uint64_t seed);
 
   /// The inputs of the next tick.
   mapping::Inputs Take(const users::Felt& felt);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "common/virtual/devices/wiimote.h"
+
 namespace footing::virtual_devices {
 namespace {
 
@@ -137,6 +139,14 @@ TEST(BalanceBoard, AWarmBoardReadsMore) {
   const int cool = above_zero();
   board.set_temperature(0x19 + 20);
   EXPECT_NEAR(above_zero(), cool / (1 - 0.007 * 20 / 10), 1);
+}
+
+TEST(Serial, DevicesOfOneSeedDifferByTheirKind) {
+  const std::string board = BalanceBoard(7).identity().serial;
+  const std::string wiimote = Wiimote(7).identity().serial;
+  EXPECT_EQ(board.substr(0, 3), "56:");
+  EXPECT_EQ(wiimote.substr(0, 3), "52:");
+  EXPECT_NE(board, BalanceBoard(8).identity().serial);
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ TEST(PsMove, OtherFeaturesAreRefusedAndItsAddressComesBackwards) {
   EXPECT_FALSE(move.Feature(0x11, 49));
   EXPECT_EQ(move.Feature(0x10, 20)->size(), 20u);
   const Report address = move.Feature(0x04, 16).value();
-  EXPECT_EQ(address[6], 0x52);  // The serial's first byte.
+  EXPECT_EQ(address[6], 0x5a);  // The serial's first byte.
 }
 
 TEST(PsMove, EndsAtTheRangeAndTakesWhatIsNotFiniteAsZero) {

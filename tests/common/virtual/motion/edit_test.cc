@@ -54,6 +54,18 @@ TEST(Edit, ContinuousAnglesMeanTheSame) {
   }
 }
 
+TEST(Edit, CanonicalAnglesAreTheSameHoweverTheyWereWritten) {
+  const Motion plain = Swinging(60, 1);
+  Motion turned = plain;
+  turned.q.row(3).array() += kPi;  // The other triple of the root,
+  turned.q.row(4) = (kPi - turned.q.row(4).array()).matrix();
+  turned.q.row(5).array() -= kPi;
+  for (const int dof : {12, 20, 33}) turned.q.row(dof).array() += 4 * kPi;  // and whole turns.
+  EXPECT_GT((Continuous(turned).q - plain.q).cwiseAbs().maxCoeff(), 3);
+  EXPECT_LT((Canonical(turned).q - plain.q).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((Canonical(plain).q - plain.q).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(Edit, ResamplingKeepsPlacesInTime) {
   const Motion motion = Swinging(120, 2);
   const Motion slow = Resampled(motion, 60);

@@ -4,6 +4,11 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+
+#include "common/body/body.h"
+#include "common/units/units.h"
+#include "common/virtual/motion/bvh.h"
 
 namespace footing::motion_files {
 namespace {
@@ -38,6 +43,26 @@ TEST(Load, ReadsEveryKindOfFile) {
   const auto plates = LoadForces(mocap + "c3d/JA1Gait35.c3d");
   ASSERT_TRUE(plates.ok()) << plates.error().message;
   EXPECT_EQ(plates->plates.size(), 8u);
+}
+
+TEST(Load, WholeTurnsInAFileChangeNothing) {
+  motion::Motion motion{body::StandardPerson(1.75), 60, 0, {}};
+  motion.q.resize(motion.skeleton.dof, 30);
+  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
+    for (int dof = 0; dof < motion.skeleton.dof; ++dof) {
+      motion.q(dof, i) = 0.2 * std::sin(0.1 * static_cast<double>(i) + dof);
+    }
+  }
+  const auto read = [&motion](const char* name) {
+    const std::string path = testing::TempDir() + name;
+    std::ofstream(path) << motion::WriteBvh(motion);
+    return LoadMotion(path);
+  };
+  const auto plain = read("plain_turns.bvh");
+  for (const int dof : {9, 21, 40}) motion.q.row(dof).array() += 4 * kPi;
+  const auto turned = read("whole_turns.bvh");
+  ASSERT_TRUE(plain.ok() && turned.ok());
+  EXPECT_LT((plain->motion.q - turned->motion.q).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 // The file has no POINT:Y_SCREEN, and y is up in it.

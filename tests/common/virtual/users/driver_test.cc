@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace footing::users {
 namespace {
 
@@ -82,16 +84,76 @@ TEST(Driver, WantsNoJumpAnyMoreOnceItWasPutBack) {
   EXPECT_EQ(runner.RunTo(19.9).gait, Gait::kJump);  // And again before the pit.
 }
 
-TEST(Driver, LearnsToBeginAJumpEarlierWhereTheCharacterAnswersLate) {
-  JumpTiming timing(0.4, 0.4, 0, 1);
-  const double before_s = timing.LeadS(Gait::kRun);
-  timing.Begin(10, Gait::kRun);
-  timing.See(11, Gait::kRun);
+/// A jump of a run at 2 m/s towards a pit with its middle at 20 m: it begins at 18 m, the character
+/// leaps so that its COM is highest, 0.2 m up, at `top_m`.
+void Leap(JumpTiming& timing, double top_m) {
+  timing.Begin(10, Gait::kRun, 2, 20);
   EXPECT_TRUE(timing.waits());
-  timing.See(11.4, Gait::kJump);  // After 1.4 s, in place of 0.4.
+  for (double x_m = 18; x_m < top_m + 0.4; x_m += 0.02) {
+    const double off_m = std::fabs(x_m - top_m);
+    const Gait gait = off_m < 0.3 ? Gait::kJump : Gait::kRun;
+    timing.See(10 + (x_m - 18) / 2, gait, x_m, 1 + 0.2 * std::max(0.0, 1 - off_m / 0.3));
+  }
   EXPECT_FALSE(timing.waits());
-  EXPECT_NEAR(timing.LeadS(Gait::kRun), before_s + 0.4, 1e-9);  // 0.4 of the surprise.
-  EXPECT_NEAR(timing.LeadS(Gait::kWalk), before_s, 1e-9);
+}
+
+TEST(JumpTiming, WhoLeaptTooEarlyBeginsLaterAndTheOtherWayRound) {
+  JumpTiming timing(1, 1, 0, 1);
+  Leap(timing, 20);
+  EXPECT_NEAR(timing.LeadS(Gait::kRun), 1, 0.005);
+  Leap(timing, 19.5);  // 0.25 s before the pit's middle, of which 0.3 are learned.
+  EXPECT_NEAR(timing.LeadS(Gait::kRun), 1 - 0.3 * 0.25, 0.01);
+  JumpTiming late(1, 1, 0, 1);
+  Leap(late, 20.5);
+  EXPECT_NEAR(late.LeadS(Gait::kRun), 1 + 0.3 * 0.25, 0.01);
+  EXPECT_EQ(late.LeadS(Gait::kWalk), 1);
+}
+
+TEST(JumpTiming, WhoHasSeenNoLeapBeforeTheFallWasTooLate) {
+  JumpTiming begun(1, 1, 0, 1), none(1, 1, 0, 1), leapt(1, 1, 0, 1);
+  begun.Begin(10, Gait::kWalk, 1, 20);
+  begun.Fail(Gait::kWalk);
+  EXPECT_GT(begun.LeadS(Gait::kWalk), 1.1);
+  none.Fail(Gait::kRun);  // Ran into it.
+  EXPECT_GT(none.LeadS(Gait::kRun), 1.1);
+  Leap(leapt, 19);
+  const double learned_s = leapt.LeadS(Gait::kRun);
+  leapt.Fail(Gait::kRun);  // The leap before the pit was seen, and is learned from once.
+  EXPECT_EQ(leapt.LeadS(Gait::kRun), learned_s);
+}
+
+/// Out of a walk a small hop comes before the leap.
+TEST(JumpTiming, LearnsFromTheLeapAndNotFromTheHopBeforeIt) {
+  JumpTiming timing(1, 1, 0, 1);
+  timing.Begin(10, Gait::kWalk, 1, 20);
+  const double heights_m[] = {1, 1.03, 1.05, 1.02, 0.98, 1.1, 1.2, 1.1, 1};
+  for (int i = 0; i < 9; ++i) timing.See(10.5 + 0.1 * i, Gait::kJump, 19.4 + 0.1 * i, heights_m[i]);
+  timing.See(11.5, Gait::kWalk, 20.4, 1);
+  EXPECT_NEAR(timing.LeadS(Gait::kWalk), 1, 1e-6);  // The top was at 20 m.
+}
+
+TEST(Driver, JumpsAgainAtOnceWhenASingleLeapCameDownBeforeThePit) {
+  Ability ability = DirectAbility();
+  ability.jumps_at_once = true;
+  Runner runner(PitAt20(), ability);
+  while (runner.RunTo(runner.seen.p_W_m.x() + 0.02).gait != Gait::kJump) {
+  }
+  ASSERT_LT(runner.seen.p_W_m.x(), 18.5);
+  runner.seen.speed_mps = 1;
+  runner.seen.gait = Gait::kJump;
+  EXPECT_NE(runner.RunTo(19).gait, Gait::kJump);  // It was seen.
+  runner.seen.gait = Gait::kWalk;
+  EXPECT_EQ(runner.RunTo(19.6).gait, Gait::kJump);
+}
+
+TEST(Driver, RunsUpToAPitAlthoughABendLiesBehindIt) {
+  stream::Track track = Straight({{20, false}, {0.5, true}, {3, false}, {30, false}});
+  track.segments[3].heading_rad = 1.2;
+  Runner runner(track);
+  EXPECT_EQ(runner.RunTo(17).gait, Gait::kRun);
+  stream::Track without = Straight({{20, false}, {0.5, false}, {3, false}, {30, false}});
+  without.segments[3].heading_rad = 1.2;
+  EXPECT_EQ(Runner(without).RunTo(18.5).gait, Gait::kWalk);
 }
 
 TEST(Driver, DoesTheTaskAtTheMarkAndGoesOnWhenItIsDone) {

@@ -74,6 +74,41 @@ TEST(Person, AGripOf45DegreesTurnsWhatTheRemoteFeelsAboutItsFront) {
   }
 }
 
+/// Half the peak to peak of what a shin feels along itself over the last 4 s.
+double ShinAmplitude(const std::vector<Felt>& felt, std::size_t leg) {
+  double least = 1e9, most = -1e9;
+  for (std::size_t i = felt.size() - 400; i < felt.size(); ++i) {
+    least = std::min(least, felt[i].remotes[leg].specific_force_S_mps2.z());
+    most = std::max(most, felt[i].remotes[leg].specific_force_S_mps2.z());
+  }
+  return (most - least) / 2;
+}
+
+TEST(Person, WhoTurnsByTheFeetLiftsTheOuterOneHigher) {
+  for (const double turn_rad : {-0.087, 0.087}) {
+    Person person(UserInterface::kLeg, Ordinary(), 1, stream::TurnSource::kFeet);
+    const auto felt = Perform(person, {.gait = Gait::kWalk, .turn_rad = turn_rad}, 0, 8);
+    ASSERT_EQ(felt.back().remote_count, 2);  // Nothing on the head.
+    const double left = ShinAmplitude(felt, 0), right = ShinAmplitude(felt, 1);
+    EXPECT_GT(turn_rad < 0 ? left - right : right - left, 0.2 * (left + right)) << turn_rad;
+  }
+  Person straight(UserInterface::kLeg, Ordinary(), 1, stream::TurnSource::kFeet);
+  const auto even = Perform(straight, {.gait = Gait::kWalk}, 0, 8);
+  EXPECT_NEAR(ShinAmplitude(even, 0) / ShinAmplitude(even, 1), 1, 0.1);
+}
+
+TEST(Person, WhoTurnsByTheTrunkInclinesItAndLoadsTheLegOnThatSide) {
+  Person person(UserInterface::kLeg, Ordinary(), 1, stream::TurnSource::kTrunk);
+  const Felt standing = Perform(person, {.turn_rad = -0.087}, 0, 2).back();
+  ASSERT_EQ(standing.remote_count, 3);
+  EXPECT_EQ(standing.remotes[2].role, stream::DeviceRole::kTrunk);
+  // Left side up by 22 degrees.
+  EXPECT_NEAR(standing.remotes[2].specific_force_S_mps2.x(),
+              kStandardGravityMps2 * std::sin(DegreesToRadians(22)), 0.01);
+  const auto felt = Perform(person, {.gait = Gait::kWalk, .turn_rad = -0.087}, 2, 8);
+  EXPECT_GT(ShinAmplitude(felt, 0), 1.1 * ShinAmplitude(felt, 1));
+}
+
 TEST(Person, BothBoardsTogetherBearTheWeightOnAverage) {
   Style style = Ordinary();
   style.mass_kg = 80;

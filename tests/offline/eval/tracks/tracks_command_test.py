@@ -50,8 +50,27 @@ assert again[0] == again[1], again
 grip = report("--interface", "arm", "--track", "curves", "--seed", 21, "--grip-deg", 45)
 assert grip["completed"] == 1 and grip["grip_deg"] == 45 and grip["gait_agreement"] > 0.9, grip
 
+# What turns with the interface leg can be chosen; a trace shows every look at the picture.
+with tempfile.TemporaryDirectory() as folder:
+    trace = pathlib.Path(folder, "trace.csv")
+    trunk = report("--interface", "leg", "--turn-by", "trunk", "--track", "curves", "--seed", 21,
+                   "--trace", trace)
+    assert trunk["completed"] == 1 and trunk["turn_by"] == "trunk", trunk
+    assert trunk["failures"]["curve"] == 0 and trunk["gait_agreement"] > 0.9, trunk
+    rows = [line.split(",") for line in trace.read_text().splitlines()]
+    names = rows[0]
+    assert all(len(row) == len(names) for row in rows), names
+    commanded = {row[names.index("commanded")] for row in rows[2:]}
+    assert {"walk", "run"} <= commanded <= {"step", "walk", "run", "jump"}, commanded
+    times = [float(row[names.index("time")]) for row in rows[2:]]
+    assert abs(times[-1] - times[0] - 0.01 * (len(times) - 1)) < 0.05, times[-1]
+    bad = run("--interface", "leg", "--trace", pathlib.Path(folder, "none", "trace.csv"))
+    assert bad.returncode == 1 and "cannot write" in bad.stderr, bad
+
 for words, code, listed in ((("--interface", "telepathy"), 2, "wrist, arm, leg, joystick, boards"),
                             (("--interface", "boards", "--grip-deg", "45"), 2, "remotes"),
+                            (("--interface", "leg", "--turn-by", "tail"), 2, "head, feet, trunk"),
+                            (("--interface", "arm", "--turn-by", "feet"), 2, "leg"),
                             (("--track", "9"), 1, "there are: 1, 2, 3, 4, build"),
                             (("--track", "endless"), 2, "no finish line"),
                             (("--trials", "0"), 2, "")):

@@ -1,0 +1,49 @@
+#include "clients/camera/observation.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace footing::camera {
+namespace {
+
+constexpr double kFarthestM = 10, kLargestSdM = 1;  // Of a hand frame.
+constexpr std::int64_t kOldestNs = 1'000'000'000;
+
+stream::TrackedPoint ToPoint(const Eigen::Isometry3d& X_WC, const sphere::Estimate& estimate) {
+  stream::TrackedPoint point;
+  const Eigen::Matrix3d covariance =
+      X_WC.linear() * estimate.covariance_m2 * X_WC.linear().transpose();
+  point.position_m = X_WC * estimate.p_C_m;
+  point.sd_m = covariance.diagonal().cwiseSqrt();
+  if (!(point.position_m.norm() <= kFarthestM) || !point.sd_m.allFinite() ||
+      point.sd_m.maxCoeff() > kLargestSdM)
+    return stream::TrackedPoint();
+  point.covariance_m2 = {covariance(0, 1), covariance(0, 2), covariance(1, 2)};
+  point.confidence = estimate.confidence;
+  point.saturated = estimate.is_saturated;
+  point.occluded = estimate.is_occluded;
+  return point;
+}
+
+}  // namespace
+
+stream::HandFrame ToHandFrame(const frames::CameraFile& camera,
+                              const std::vector<std::optional<sphere::Estimate>>& found,
+                              std::int64_t exposed_ns, std::int64_t now_ns) {
+  const Eigen::Isometry3d X_WC = camera.X_WC.value_or(Eigen::Isometry3d::Identity());
+  stream::HandFrame frame;
+  frame.tracker = "camera";
+  std::optional<double> row_s;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    stream::TrackedPoint point = found[i] ? ToPoint(X_WC, *found[i]) : stream::TrackedPoint();
+    point.role = camera.spheres[i].role;
+    frame.points.push_back(point);
+    if (found[i] && !row_s) row_s = camera.RowTime(found[i]->centre_px.y());
+  }
+  const auto row_ns = static_cast<std::int64_t>(std::llround(1e9 * row_s.value_or(0)));
+  frame.age_ns = std::clamp<std::int64_t>(now_ns - exposed_ns - row_ns, 0, kOldestNs);
+  return frame;
+}
+
+}  // namespace footing::camera

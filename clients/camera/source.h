@@ -1,0 +1,47 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/frames/camera_file.h"
+#include "common/frames/frame.h"
+#include "common/result/result.h"
+
+namespace footing::camera {
+
+/// Where frames come from; everything runs on the io_context's thread.
+class Source {
+ public:
+  /// A frame, and the mid-exposure of its middle row on the host's monotonic clock.
+  using OnFrame = std::function<void(const frames::Frame& frame, std::int64_t exposed_ns)>;
+  /// No more frames: the end, or an error.
+  using OnEnd = std::function<void(Result<void> end)>;
+
+  virtual ~Source() = default;
+  virtual void Start(OnFrame on_frame, OnEnd on_end) = 0;
+  virtual void Stop() = 0;
+};
+
+/// The frames of a folder at the camera file's rate, again and again when `repeats`.
+Result<std::unique_ptr<Source>> OpenFolder(boost::asio::io_context& io, const std::string& folder,
+                                           const frames::CameraFile& camera, bool repeats);
+
+/// PGM and PPM images one after the other from a FIFO, or from standard input ("-"). A frame's
+/// exposure is when its last byte arrived less `latency_s`.
+Result<std::unique_ptr<Source>> OpenPipe(boost::asio::io_context& io, const std::string& path,
+                                         double latency_s);
+
+/// A camera by V4L2: `device` is a path as /dev/video0. Exposure, gain and white balance are locked
+/// to the values given and read back; a camera that ignores one is reported by `alarm`.
+struct VideoSettings {
+  double exposure_s = 0.004;
+  int gain = -1;  ///< Of the driver's own scale; -1 leaves it as it is.
+};
+Result<std::unique_ptr<Source>> OpenVideo(boost::asio::io_context& io, const std::string& device,
+                                          const frames::CameraFile& camera,
+                                          const VideoSettings& settings,
+                                          std::function<void(const std::string&)> alarm);
+
+}  // namespace footing::camera

@@ -1,0 +1,120 @@
+#include "clients/camera/tracking.h"
+
+#include <algorithm>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <utility>
+
+#include "clients/camera/observation.h"
+#include "common/clock/clock.h"
+#include "common/device_link/device_link.h"
+#include "common/log/log.h"
+#include "common/sphere/find.h"
+#include "common/text/quantile.h"
+
+namespace footing::camera {
+namespace {
+
+constexpr std::size_t kMaxQueuedFrames = 64;  // To footingd.
+
+class Tracking {
+ public:
+  explicit Tracking(const TrackingOptions& options)
+      : options_(options),
+        io_(1),
+        signals_(io_, SIGINT, SIGTERM),
+        limit_(io_),
+        link_(io_, {.to = options.to,
+                    .max_queued_frames = kMaxQueuedFrames,
+                    .on_open = [this] { log::Info("sending hands to " + options_.to.Text()); }}),
+        finder_(options.camera.lens, options.camera.Targets(), options.camera.settings) {
+    report_.found.resize(options.camera.spheres.size());
+  }
+
+  Result<TrackingReport> Run() {
+    auto source = Open();
+    if (!source) return source.error();
+    source_ = std::move(source).value();
+    signals_.async_wait([this](boost::system::error_code error, int) {
+      if (!error) End({});
+    });
+    if (options_.seconds > 0) {
+      limit_.expires_after(std::chrono::milliseconds(std::llround(1e3 * options_.seconds)));
+      limit_.async_wait([this](boost::system::error_code error) {
+        if (!error) End({});
+      });
+    }
+    link_.Start();
+    source_->Start(
+        [this](const frames::Frame& frame, std::int64_t exposed_ns) { Take(frame, exposed_ns); },
+        [this](Result<void> end) { End(std::move(end)); });
+    io_.run();
+    if (!end_) return end_.error();
+    report_.sent = link_.sent();
+    report_.cost_p50_ms = text::Quantile(cost_ms_, 0.5);
+    report_.cost_p99_ms = text::Quantile(cost_ms_, 0.99);
+    return report_;
+  }
+
+ private:
+  static constexpr std::size_t kMostCosts = 1 << 16;
+
+  Result<std::unique_ptr<Source>> Open() {
+    if (!options_.folder.empty())
+      return OpenFolder(io_, options_.folder, options_.camera, options_.repeats);
+    if (!options_.pipe.empty()) return OpenPipe(io_, options_.pipe, options_.pipe_latency_s);
+    return OpenVideo(io_, options_.device, options_.camera, options_.video,
+                     [](const std::string& line) { log::Warning(line); });
+  }
+
+  void Take(const frames::Frame& frame, std::int64_t exposed_ns) {
+    if (frame.width != options_.camera.lens.width || frame.height != options_.camera.lens.height)
+      return End(InvalidData("a frame's size is not that of the camera file"));
+    const std::int64_t began_ns = clock::ThreadCpuNs();
+    const auto found = finder_.Find(frame.View());
+    if (cost_ms_.size() < kMostCosts)
+      cost_ms_.push_back(1e-6 * static_cast<double>(clock::ThreadCpuNs() - began_ns));
+    stream::HandFrame hands = ToHandFrame(options_.camera, found, exposed_ns, clock::MonotonicNs());
+    hands.simulated = options_.simulated;
+    link_.Send(hands);
+    ++report_.frames;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      report_.found[i] += found[i] ? 1 : 0;
+      if (!found[i] || !found[i]->is_saturated) continue;
+      if (report_.saturated++ == 0)
+        log::Warning(
+            "a sphere is brighter than the camera can see: lower the exposure, or depth "
+            "is wrong by centimetres");
+    }
+  }
+
+  void End(Result<void> end) {
+    if (std::exchange(ended_, true)) return;
+    end_ = std::move(end);
+    source_->Stop();
+    link_.Stop("footing-camera ends");
+    signals_.cancel();
+    limit_.cancel();
+  }
+
+  const TrackingOptions& options_;
+  boost::asio::io_context io_;
+  boost::asio::signal_set signals_;
+  boost::asio::steady_timer limit_;
+  device_link::DeviceLink link_;
+  sphere::Finder finder_;
+  std::unique_ptr<Source> source_;
+  TrackingReport report_;
+  std::vector<double> cost_ms_;
+  Result<void> end_;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Result<TrackingReport> Track(const TrackingOptions& options) { return Tracking(options).Run(); }
+
+}  // namespace footing::camera

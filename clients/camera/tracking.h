@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "clients/camera/source.h"
+#include "common/transport/address.h"
+
+namespace footing::camera {
+
+struct TrackingOptions {
+  frames::CameraFile camera;
+  std::string device, folder, pipe;  ///< One of them.
+  VideoSettings video;
+  double pipe_latency_s = 0;
+  bool repeats = false;
+  bool simulated = false;  ///< The frames are not of a camera.
+  double seconds = 0;      ///< 0: until the frames end, or a signal.
+  transport::Address to;
+};
+
+/// What a run did.
+struct TrackingReport {
+  std::uint64_t frames = 0, sent = 0;
+  std::vector<std::uint64_t> found;  ///< Of each sphere.
+  std::uint64_t saturated = 0;       ///< Spheres at the sensor's limit.
+  double cost_p50_ms = 0, cost_p99_ms = 0;
+};
+
+/// Reads frames, finds the spheres and sends them to footingd until the end.
+Result<TrackingReport> Track(const TrackingOptions& options);
+
+}  // namespace footing::camera

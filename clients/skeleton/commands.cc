@@ -1,0 +1,180 @@
+#include "clients/skeleton/commands.h"
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "clients/skeleton/clips/synthetic_clip.h"
+#include "clients/skeleton/service/receiver.h"
+#include "clients/skeleton/service/sender.h"
+#include "clients/skeleton/service/statistics.h"
+#include "clients/skeleton/service/udp.h"
+#include "common/cli/cli.h"
+#include "common/config/data_file.h"
+#include "common/log/log.h"
+#include "common/units/units.h"
+
+namespace footing::skeleton {
+namespace {
+
+/// What --units, --factor, --offset, --flip-y and --mirrored say.
+struct DialectFlags {
+  std::string units = "dialect";
+  std::vector<double> factor{1, 1, 1}, offset{0, 0, 0};
+  bool flip_y = false, mirrored = false;
+
+  void Add(CLI::App& app) {
+    app.add_option("--units", units,
+                   "Units of the sender's numbers: dialect, normalised, mm, cm or m")
+        ->check(CLI::IsMember({"dialect", "normalised", "mm", "cm", "m"}));
+    app.add_option("--factor", factor,
+                   "The sender's factors of x, y, z (OSCeleton's -mx, -my, -mz)")
+        ->expected(3)
+        ->delimiter(',');
+    app.add_option("--offset", offset,
+                   "The sender's offsets of x, y, z (OSCeleton's -ox, -oy, -oz)")
+        ->expected(3)
+        ->delimiter(',');
+    app.add_flag("--flip-y", flip_y, "The sender's y points down");
+    app.add_flag("--mirrored", mirrored, "The sender shows a mirror image");
+  }
+
+  Result<DialectOptions> Options() const {
+    DialectOptions options;
+    options.units = *UnitsOf(units);
+    options.factor = Eigen::Vector3d::Map(factor.data());
+    options.offset = Eigen::Vector3d::Map(offset.data());
+    if (!options.factor.allFinite() || options.factor.cwiseAbs().minCoeff() < 1e-6)
+      return UsageError("--factor: must not be 0");
+    if (!options.offset.allFinite()) return UsageError("--offset: not a number");
+    options.flip_y = flip_y;
+    options.mirrored = mirrored;
+    return options;
+  }
+};
+
+int Print(const Result<nlohmann::ordered_json>& statistics, bool json, bool receiver) {
+  if (!statistics) return cli::Report(statistics.error());
+  std::cout << (json || !receiver ? statistics->dump() + "\n" : ToText(*statistics)) << std::flush;
+  return 0;
+}
+
+struct ReceiverFlags {
+  DialectFlags dialect;
+  std::string listen = "127.0.0.1:7110", to;
+  std::vector<double> camera_m;
+  double yaw_deg = 180, pitch_deg = 0, roll_deg = 0, latency_ms = 67, seconds = 0, most = 50'000;
+  std::int32_t user = -1;
+  bool no_publish = false;
+
+  Result<ReceiverOptions> Options() const {
+    ReceiverOptions options;
+    const auto parsed = dialect.Options();
+    if (!parsed) return parsed.error();
+    options.tracker.dialect = *parsed;
+    const auto at = ParseUdp(listen, "--listen");
+    if (!at) return at.error();
+    options.listen = *at;
+    if (!no_publish) {
+      const auto address = to.empty()
+                               ? Result<transport::Address>(transport::DefaultAddress("devices"))
+                               : transport::ParseAddress(to);
+      if (!address) return address.error();
+      options.to = *address;
+    }
+    options.tracker.stand = camera_m.empty();
+    if (!camera_m.empty()) options.tracker.camera.p_W_m = Eigen::Vector3d::Map(camera_m.data());
+    options.tracker.camera.yaw_rad = DegreesToRadians(yaw_deg);
+    options.tracker.camera.pitch_rad = DegreesToRadians(pitch_deg);
+    options.tracker.camera.roll_rad = DegreesToRadians(roll_deg);
+    options.tracker.latency_ns = SecondsToNanoseconds(1e-3 * latency_ms);
+    if (user >= 0) options.tracker.user = user;
+    options.seconds = seconds;
+    options.most_packets_per_s = most;
+    return options;
+  }
+};
+
+}  // namespace
+
+std::function<void()> AddReceiver(CLI::App& app, Shared& shared) {
+  const auto flags = std::make_shared<ReceiverFlags>();
+  flags->dialect.Add(app);
+  app.add_option("--listen", flags->listen,
+                 "UDP address to receive on, HOST:PORT; 0.0.0.0:7110 takes every host's packets");
+  app.add_option("--to", flags->to,
+                 "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
+  app.add_flag("--no-publish", flags->no_publish, "Receive and check only");
+  app.add_option("--user", flags->user, "Person to publish (default: the first one)");
+  app.add_option(
+         "--camera-m", flags->camera_m,
+         "Place of the camera in the boards' frame, x,y,z in m (default: found from a person "
+         "who stands on the boards and faces the camera for two seconds)")
+      ->expected(3)
+      ->delimiter(',');
+  app.add_option("--camera-yaw-deg", flags->yaw_deg,
+                 "Heading of the camera's look; 180 looks at a person who faces it");
+  app.add_option("--camera-pitch-deg", flags->pitch_deg, "Tilt of the camera, upwards positive")
+      ->check(CLI::Range(-90.0, 90.0));
+  app.add_option("--camera-roll-deg", flags->roll_deg, "Roll of the camera, left side up positive")
+      ->check(CLI::Range(-180.0, 180.0));
+  app.add_option("--latency-ms", flags->latency_ms,
+                 "Age of a skeleton at its arrival where the sender gives no time, ms")
+      ->check(CLI::Range(0.0, 500.0));
+  app.add_option("--max-packets-per-s", flags->most, "Packets a second to read; more are dropped")
+      ->check(CLI::Range(1.0, 1e6));
+  app.add_option("--seconds", flags->seconds, "Duration, s (0: until SIGINT)")
+      ->check(CLI::Range(0.0, 1e6));
+  return [flags, &shared] {
+    const auto options = flags->Options();
+    shared.exit_code =
+        options ? Print(RunReceiver(*options), shared.json, true) : cli::Report(options.error());
+  };
+}
+
+void AddSend(CLI::App& app, Shared& shared) {
+  struct Flags {
+    DialectFlags dialect;
+    std::string clip, to = "127.0.0.1:7110", name = "footing";
+    SenderOptions options;
+  };
+  const auto flags = std::make_shared<Flags>();
+  auto* send = app.add_subcommand("send", "Play a recorded or a synthetic skeleton as OSC");
+  flags->dialect.Add(*send);
+  send->add_option("CLIP", flags->clip,
+                   "Kinect v2 recording, CSV t_100ns,(x,y,z,state)*25 (default: a synthetic person "
+                   "who stands, waves and squats)");
+  send->add_option("--to", flags->to, "UDP address to send to, HOST:PORT");
+  send->add_option("--dialect", flags->name,
+                   "Dialect: footing, sensebloom, quartz, zillode or kinect-sdk2")
+      ->check(CLI::IsMember({"footing", "sensebloom", "quartz", "zillode", "kinect-sdk2"}));
+  send->add_option("--rate-scale", flags->options.rate_scale, "Speed of the clip")
+      ->check(CLI::Range(0.01, 100.0));
+  send->add_option("--rate-hz", flags->options.rate_hz,
+                   "Frames a second, whatever the clip's times (0: as recorded)")
+      ->check(CLI::Range(0.0, 1e5));
+  send->add_option("--people", flags->options.people, "Send every frame for this many persons")
+      ->check(CLI::Range(1, 8));
+  send->add_option("--seconds", flags->options.seconds, "Duration, s; the clip repeats (0: once)")
+      ->check(CLI::Range(0.0, 1e6));
+  send->callback([flags, &shared] {
+    const auto run = [&]() -> Result<nlohmann::ordered_json> {
+      const auto dialect = flags->dialect.Options();
+      if (!dialect) return dialect.error();
+      const auto to = ParseUdp(flags->to, "--to");
+      if (!to) return to.error();
+      flags->options.dialect_options = *dialect;
+      flags->options.to = *to;
+      flags->options.dialect = *DialectOf(flags->name);
+      if (flags->clip.empty()) return SendClip(SyntheticClip(), flags->options);
+      const auto text = config::ReadTextFile(flags->clip);
+      if (!text) return text.error();
+      const auto clip = ReadKinectClip(*text, flags->clip);
+      if (!clip) return clip.error();
+      return SendClip(*clip, flags->options);
+    };
+    shared.exit_code = Print(run(), shared.json, false);
+  });
+}
+
+}  // namespace footing::skeleton

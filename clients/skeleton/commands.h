@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace footing::skeleton {
+
+/// What the command line of both ways to run has in common.
+struct Shared {
+  bool json = false;
+  int exit_code = 0;
+};
+
+/// The options of the receiver, which runs where no subcommand is named. `run` is to be called
+/// after parsing then.
+std::function<void()> AddReceiver(CLI::App& app, Shared& shared);
+/// footing-skeleton send: plays a recording or a synthetic person as OSC.
+void AddSend(CLI::App& app, Shared& shared);
+
+}  // namespace footing::skeleton

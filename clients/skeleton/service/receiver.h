@@ -1,0 +1,26 @@
+#pragma once
+
+#include <boost/asio/ip/udp.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "clients/skeleton/tracking/tracker.h"
+#include "common/result/result.h"
+#include "common/transport/address.h"
+
+namespace footing::skeleton {
+
+struct ReceiverOptions {
+  TrackerOptions tracker;
+  boost::asio::ip::udp::endpoint listen;
+  std::optional<transport::Address> to;  ///< footingd's device socket; none: nothing is published.
+  double seconds = 0;                    ///< Ends by itself after this; 0: by SIGINT or SIGTERM.
+  double most_packets_per_s = 50'000;    ///< More are dropped unread.
+};
+
+/// Receives until its end and returns the statistics that --json prints: see docs/skeleton.md.
+/// Failure when it cannot listen.
+Result<nlohmann::ordered_json> RunReceiver(const ReceiverOptions& options);
+
+}  // namespace footing::skeleton

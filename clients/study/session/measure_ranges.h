@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "clients/study/measure/range_feed.h"
+#include "clients/study/session/console.h"
+#include "common/result/result.h"
+#include "common/transport/address.h"
+
+namespace footing::study {
+
+/// Prompts a person through the motions of an interface, in about 20 s, and measures them live:
+/// NoDevice before the first prompt when footingd or a device is not there, a failure with the
+/// motion to repeat when one was too small or too short.
+Result<RecordedRanges> MeasureRanges(Console& console, const transport::Address& sensor,
+                                     const std::string& rig, const ranges::Played& played);
+
+/// The instant as UTC text, ISO 8601.
+std::string UtcText(std::int64_t wall_ns);
+
+}  // namespace footing::study

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/stream/hands.h"
+#include "common/transport/address.h"
+#include "footing/v1/device.pb.h"
+
+/// A client's side of footingd's device socket (docs/protocol.md).
+namespace footing::device_link {
+
+struct Options {
+  transport::Address to;
+  std::size_t max_queued_frames = 1024;  ///< Messages that wait while footingd does not read.
+  std::function<void()> on_open = {};    ///< After each connection is made.
+  std::function<void(const v1::DeviceEnvelope& message)> on_message = {};
+  std::function<void()> on_close = {};  ///< After each connection is lost; not after Stop().
+};
+
+/// One connection to the device socket, dialled again four times a second while there is none; the
+/// log says why, once for each reason. Everything runs on the io_context's one thread.
+class DeviceLink {
+ public:
+  DeviceLink(boost::asio::io_context& io, Options options);
+  ~DeviceLink();
+  DeviceLink(const DeviceLink&) = delete;
+  DeviceLink& operator=(const DeviceLink&) = delete;
+
+  void Start();
+
+  /// False when the message is dropped: there is no connection, or its queue is full. Hands and
+  /// reports of the past are of no use later.
+  bool Send(const v1::DeviceEnvelope& message);
+  bool Send(const stream::HandFrame& frame);
+
+  /// Sends what is queued and closes; does not dial again.
+  void Stop(const std::string& reason);
+
+  bool open() const;
+  std::uint64_t sent() const;
+  std::uint64_t dropped() const;
+
+ private:
+  class Implementation;
+  std::shared_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::device_link

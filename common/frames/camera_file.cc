@@ -1,0 +1,242 @@
+#include "common/frames/camera_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/config/data_file.h"
+
+namespace footing::frames {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+/// Reads one object: keeps the first problem, and finds keys that nobody asked for.
+class Reader {
+ public:
+  Reader(const json& object, std::string place) : object_(object), place_(std::move(place)) {
+    if (!object.is_object()) Fail("", "must be an object");
+  }
+
+  void Number(const char* key, double& value, double low, double high) {
+    const json* found = Find(key);
+    if (found == nullptr) return;
+    if (!found->is_number() || !(*found >= low && *found <= high)) {
+      return Fail(key, "must be a number from " + Short(low) + " to " + Short(high));
+    }
+    value = *found;
+  }
+
+  void Integer(const char* key, int& value, int low, int high) {
+    double number = value;
+    Number(key, number, low, high);
+    if (number != std::floor(number)) Fail(key, "must be a whole number");
+    value = static_cast<int>(number);
+  }
+
+  /// As many numbers as there are.
+  std::vector<double> Numbers(const char* key, std::size_t count, double low, double high) {
+    const json* found = Find(key);
+    if (found == nullptr) return {};
+    std::vector<double> numbers;
+    if (found->is_array()) {
+      for (const json& one : *found)
+        if (one.is_number() && one >= low && one <= high) numbers.push_back(one);
+    }
+    if (numbers.size() == count && found->size() == count) return numbers;
+    Fail(key,
+         "must be " + std::to_string(count) + " numbers from " + Short(low) + " to " + Short(high));
+    return {};
+  }
+
+  std::string Text(const char* key) {
+    const json* found = Find(key);
+    if (found == nullptr) return "";
+    if (!found->is_string()) Fail(key, "must be a text");
+    return found->is_string() ? found->get<std::string>() : "";
+  }
+
+  const json* Find(const char* key) {
+    known_.push_back(key);
+    if (!object_.is_object()) return nullptr;
+    const auto found = object_.find(key);
+    return found == object_.end() ? nullptr : &*found;
+  }
+
+  void Fail(const std::string& key, const std::string& what) {
+    if (problem_.empty()) problem_ = place_ + (key.empty() ? "" : ", key " + key) + ": " + what;
+  }
+
+  /// Of all that was read; call it last.
+  std::string Problem() {
+    if (object_.is_object()) {
+      for (const auto& [key, value] : object_.items()) {
+        if (std::find(known_.begin(), known_.end(), key) == known_.end()) Fail(key, "unknown key");
+      }
+    }
+    return problem_;
+  }
+
+ private:
+  static std::string Short(double value) { return json(value).dump(); }
+
+  const json& object_;
+  std::string place_;
+  std::vector<std::string> known_;
+  std::string problem_;
+};
+
+Result<HeldSphere> ReadSphere(const json& object, const std::string& place) {
+  HeldSphere sphere;
+  Reader reader(object, place);
+  const std::string role = reader.Text("role");
+  sphere.role = stream::RoleNamed(role);
+  if (sphere.role == stream::DeviceRole::kUnspecified)
+    reader.Fail("role", "must be one of " + stream::RoleNames());
+  const auto colour = reader.Numbers("colour_dn", 3, 0, 255);
+  if (colour.empty()) {
+    reader.Fail("colour_dn", "is needed");
+  } else {
+    sphere.target.colour_dn = {colour[0], colour[1], colour[2]};
+    const auto& value = sphere.target.colour_dn;
+    if (value.maxCoeff() - value.minCoeff() < 20)
+      reader.Fail("colour_dn", "must not be grey: its channels must be 20 DN apart or more");
+  }
+  reader.Number("radius_m", sphere.target.radius_m, 0.005, 0.2);
+  const std::string problem = reader.Problem();
+  if (!problem.empty()) return InvalidData(problem);
+  return sphere;
+}
+
+void ReadLens(Reader& reader, sphere::Lens& lens) {
+  reader.Integer("width", lens.width, 32, 4096);
+  reader.Integer("height", lens.height, 32, 4096);
+  reader.Number("fx_px", lens.fx_px, 1, 1e5);
+  reader.Number("fy_px", lens.fy_px, 1, 1e5);
+  reader.Number("cx_px", lens.cx_px, 0, 4096);
+  reader.Number("cy_px", lens.cy_px, 0, 4096);
+  const auto bend = reader.Numbers("distortion", 5, -10, 10);
+  if (!bend.empty()) {
+    lens.k1 = bend[0];
+    lens.k2 = bend[1];
+    lens.p1 = bend[2];
+    lens.p2 = bend[3];
+    lens.k3 = bend[4];
+  }
+  if (const std::string problem = sphere::Problem(lens); !problem.empty()) reader.Fail("", problem);
+}
+
+void ReadSensor(Reader& reader, CameraFile& camera) {
+  sphere::Profile& profile = camera.settings.profile;
+  sphere::PixelNoise& noise = camera.settings.noise;
+  if (const std::string format = reader.Text("format"); format == "YUYV") {
+    camera.format = sphere::PixelFormat::kYuyv;
+    // What demosaicing does to a pixel; measured blur and noise belong into the file.
+    profile.blur_px = 1.15;
+    profile.blur_sd_px = 0.1;
+    noise.correlation = 3;
+  } else if (!format.empty() && format != "SGRBG8") {
+    reader.Fail("format", "must be SGRBG8 or YUYV");
+  }
+  reader.Number("rate_hz", camera.rate_hz, 1, 1000);
+  reader.Number("readout_s", camera.readout_s, 0, 1);
+  reader.Number("blur_px", profile.blur_px, 0.3, 5);
+  reader.Number("blur_sd_px", profile.blur_sd_px, 0.001, 1);
+  reader.Number("limb", profile.limb, -0.5, 0.9);
+  reader.Number("limb_sd", profile.limb_sd, 0.001, 1);
+  reader.Number("read_noise_dn", noise.read_dn, 0.1, 50);
+  reader.Number("dn_per_electron", noise.dn_per_electron, 0, 10);
+  reader.Number("noise_correlation", noise.correlation, 1, 20);
+}
+
+void ReadPose(Reader& reader, CameraFile& camera) {
+  const auto position = reader.Numbers("position_W_m", 3, -10, 10);
+  const auto turn = reader.Numbers("rotation_WC", 4, -1, 1);
+  if (position.empty() != turn.empty()) {
+    reader.Fail("rotation_WC", "position_W_m and rotation_WC (w, x, y, z) belong together");
+  } else if (!turn.empty()) {
+    const Eigen::Quaterniond q(turn[0], turn[1], turn[2], turn[3]);
+    if (std::abs(q.norm() - 1) > 0.01) reader.Fail("rotation_WC", "must have the length 1");
+    camera.X_WC = Eigen::Isometry3d::Identity();
+    camera.X_WC->linear() = q.normalized().toRotationMatrix();
+    camera.X_WC->translation() << position[0], position[1], position[2];
+  }
+}
+
+}  // namespace
+
+std::vector<sphere::Target> CameraFile::Targets() const {
+  std::vector<sphere::Target> targets;
+  for (const HeldSphere& held : spheres) targets.push_back(held.target);
+  return targets;
+}
+
+double CameraFile::RowTime(double row_px) const {
+  return readout_s * (row_px / (lens.height - 1) - 0.5);
+}
+
+Result<CameraFile> ParseCameraFile(const std::string& text, const std::string& origin) {
+  const json object = json::parse(text, nullptr, false, true);
+  if (object.is_discarded()) return InvalidData(origin + ": not JSON");
+  CameraFile camera;
+  Reader reader(object, origin);
+  ReadLens(reader, camera.lens);
+  ReadSensor(reader, camera);
+  ReadPose(reader, camera);
+  const json* spheres = reader.Find("spheres");
+  if (spheres == nullptr || !spheres->is_array() || spheres->empty() || spheres->size() > 8) {
+    reader.Fail("spheres", "must be a list of 1 to 8 spheres");
+  }
+  if (const std::string problem = reader.Problem(); !problem.empty()) return InvalidData(problem);
+  for (std::size_t i = 0; i < spheres->size(); ++i) {
+    const auto held = ReadSphere((*spheres)[i], origin + ", sphere " + std::to_string(i + 1));
+    if (!held) return held.error();
+    camera.spheres.push_back(*held);
+  }
+  return camera;
+}
+
+Result<CameraFile> ReadCameraFile(const std::string& path) {
+  const auto text = config::ReadTextFile(path);
+  if (!text) return text.error();
+  return ParseCameraFile(*text, path);
+}
+
+std::string ToJson(const CameraFile& camera) {
+  const sphere::Lens& lens = camera.lens;
+  const sphere::Settings& settings = camera.settings;
+  ordered_json object = {
+      {"width", lens.width},
+      {"height", lens.height},
+      {"fx_px", lens.fx_px},
+      {"fy_px", lens.fy_px},
+      {"cx_px", lens.cx_px},
+      {"cy_px", lens.cy_px},
+      {"distortion", {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3}},
+      {"format", camera.format == sphere::PixelFormat::kYuyv ? "YUYV" : "SGRBG8"},
+      {"rate_hz", camera.rate_hz},
+      {"readout_s", camera.readout_s},
+      {"blur_px", settings.profile.blur_px},
+      {"blur_sd_px", settings.profile.blur_sd_px},
+      {"limb", settings.profile.limb},
+      {"limb_sd", settings.profile.limb_sd},
+      {"read_noise_dn", settings.noise.read_dn},
+      {"dn_per_electron", settings.noise.dn_per_electron},
+      {"noise_correlation", settings.noise.correlation}};
+  if (camera.X_WC) {
+    const Eigen::Vector3d p = camera.X_WC->translation();
+    const Eigen::Quaterniond q(camera.X_WC->rotation());
+    object["position_W_m"] = {p.x(), p.y(), p.z()};
+    object["rotation_WC"] = {q.w(), q.x(), q.y(), q.z()};
+  }
+  for (const HeldSphere& held : camera.spheres) {
+    const Eigen::Vector3d& c = held.target.colour_dn;
+    object["spheres"].push_back({{"role", stream::Name(held.role)},
+                                 {"colour_dn", {c.x(), c.y(), c.z()}},
+                                 {"radius_m", held.target.radius_m}});
+  }
+  return object.dump(2) + "\n";
+}
+
+}  // namespace footing::frames

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/sphere/find.h"
+#include "common/stream/device.h"
+
+namespace footing::frames {
+
+/// A sphere that is looked for, and whose hand holds it.
+struct HeldSphere {
+  stream::DeviceRole role = stream::DeviceRole::kUnspecified;
+  sphere::Target target;
+};
+
+/// A camera file, JSON (docs/camera.md): lens, sensor, spheres, and where the camera stands.
+struct CameraFile {
+  sphere::Lens lens;
+  sphere::Settings settings;
+  sphere::PixelFormat format = sphere::PixelFormat::kSgrbg8;
+  double rate_hz = 60;
+  double readout_s = 0.0155;  ///< From the first to the last row.
+  std::vector<HeldSphere> spheres;
+  std::optional<Eigen::Isometry3d> X_WC;  ///< Camera frame in W; nothing: not calibrated.
+
+  std::vector<sphere::Target> Targets() const;
+  /// Mid-exposure of a row after that of the middle row, s.
+  double RowTime(double row_px) const;
+};
+
+/// Every error names file, key and what is allowed; unknown keys are errors.
+Result<CameraFile> ReadCameraFile(const std::string& path);
+Result<CameraFile> ParseCameraFile(const std::string& text, const std::string& origin);
+std::string ToJson(const CameraFile& camera);
+
+}  // namespace footing::frames

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "common/sphere/blobs.h"
+#include "common/sphere/image.h"
+#include "common/sphere/settings.h"
+
+namespace footing::sphere {
+
+/// Light of a sphere and of what is around it in each channel of the image, DN.
+struct Contrast {
+  std::array<double, 3> inside{}, outside{};
+  double Height(int channel) const {
+    return inside[static_cast<std::size_t>(channel)] - outside[static_cast<std::size_t>(channel)];
+  }
+};
+
+inline constexpr int kEdgeRays = 32;
+
+/// Where the light falls to the half between inside and outside along rays from a blob's middle.
+struct Edges {
+  Contrast contrast;
+  std::vector<Eigen::Vector2d> pixels;  ///< Of the rays that meet an edge.
+};
+
+/// Edges on the light itself, not on the chroma: each colour is set between its own levels inside
+/// and outside and weighted by its contrast over its noise, so that a mosaic needs no
+/// interpolation. Sub-pixel by linear interpolation. Nothing when the blob has no contrast.
+std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
+                               const PixelNoise& noise);
+
+}  // namespace footing::sphere

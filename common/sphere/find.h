@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "common/sphere/blobs.h"
+#include "common/sphere/disc_fit.h"
+#include "common/sphere/image.h"
+#include "common/sphere/lens.h"
+#include "common/sphere/profile_table.h"
+#include "common/sphere/settings.h"
+
+namespace footing::sphere {
+
+/// Where a sphere is.
+struct Estimate {
+  Eigen::Vector3d p_C_m{0, 0, 0};  ///< Its centre, camera frame.
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+  double confidence = 0;            ///< 0 to 1: how sure it is that this is the sphere, seen well.
+  Eigen::Vector2d centre_px{0, 0};  ///< Where its centre appears.
+  double radius_px = 0;             ///< Of its disc.
+  bool is_saturated = false;        ///< Light at the sensor's limit: depth is wrong by centimetres.
+  bool is_occluded = false;         ///< Part of the edge is hidden, or beyond the image.
+  double seen_share = 0;            ///< Of its edge.
+  double misfit = 0;                ///< Mean square residual over the noise; about 1.
+  double residual_share = 0;        ///< RMS residual over the contrast.
+  double blur_px = 0, limb = 0;     ///< As fitted, for `Calibrate`.
+};
+
+/// Finds luminous spheres in a frame, each by its hue: chroma to find blobs, then the light itself
+/// for edges, a robust cone and a photometric fit (docs/camera.md). Nothing is remembered from
+/// frame to frame but memory.
+class Finder {
+ public:
+  Finder(const Lens& lens, std::vector<Target> targets, const Settings& settings);
+
+  /// One for each target, in their order; nothing where it is not in sight.
+  std::vector<std::optional<Estimate>> Find(const Image& image);
+
+ private:
+  struct Candidate;
+  std::optional<Estimate> FindOne(const Image& image, const Target& target);
+  std::vector<Candidate> Candidates(const Image& image, const Target& target, double share);
+  std::optional<Estimate> Measure(const Image& image, const Target& target,
+                                  const Candidate& candidate) const;
+
+  Lens lens_;
+  std::vector<Target> targets_;
+  Settings settings_;
+  ProfileTable table_;
+  Quads quads_;
+};
+
+/// Blur and limb of a sphere through a camera, from estimates at 0.5 to 1.2 m that were made with
+/// loose deviations (blur_sd_px 0.3, limb_sd 0.3): their means weighted alike. No truth is needed.
+/// Nothing from fewer than eight estimates.
+std::optional<Profile> Calibrate(const std::vector<Estimate>& estimates);
+
+}  // namespace footing::sphere

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace footing::sphere {
+
+/// How a camera's bytes are laid out, by V4L2's names.
+enum class PixelFormat {
+  kSgrbg8,  ///< One byte a pixel: rows G R G R..., B G B G...
+  kYuyv,    ///< Two bytes a pixel: luma of each, chroma of every two (BT.601, full range).
+};
+
+inline int BytesPerPixel(PixelFormat format) { return format == PixelFormat::kYuyv ? 2 : 1; }
+
+/// A frame, borrowed; rows follow one another without padding. Pixel (0, 0) is the upper left one,
+/// and its middle the origin of coordinates.
+struct Image {
+  PixelFormat format = PixelFormat::kSgrbg8;
+  int width = 0, height = 0;  ///< Even.
+  std::span<const std::uint8_t> bytes;
+
+  const std::uint8_t* Row(int v) const {
+    return bytes.data() +
+           static_cast<std::size_t>(v) * static_cast<std::size_t>(width * BytesPerPixel(format));
+  }
+  /// Value of a pixel that is fitted: its colour's of a mosaic, luma of YUYV.
+  int Value(int u, int v) const { return Row(v)[u * BytesPerPixel(format)]; }
+  /// Which colour that is: red 0, green 1, blue 2; luma is 0.
+  int Channel(int u, int v) const {
+    if (format == PixelFormat::kYuyv) return 0;
+    return (u + v) % 2 == 0 ? 1 : v % 2 == 0 ? 0 : 2;
+  }
+};
+
+}  // namespace footing::sphere

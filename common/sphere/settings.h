@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace footing::sphere {
+
+/// A luminous sphere that is looked for.
+struct Target {
+  /// Red, green and blue as the camera shows it at the locked exposure, DN. The hue decides which
+  /// sphere is which; 30 degrees apart is enough.
+  Eigen::Vector3d colour_dn{170, 40, 150};
+  double radius_m = 0.0225;  ///< Of a PS Move.
+};
+
+/// How a small luminous sphere looks through this camera. Calibrated per controller and camera
+/// (`Calibrate`), then held to these deviations.
+struct Profile {
+  double blur_px = 0.945;  ///< Standard deviation of lens and pixel together.
+  double blur_sd_px = 0.02;
+  double limb = 0.15;  ///< Brightness falls by limb (1 - cos) from the middle to the edge.
+  double limb_sd = 0.02;
+};
+
+/// Variance of a pixel: read_dn² + dn_per_electron * value, 1/12 for rounding; times `correlation`
+/// where neighbours are not independent (a demosaiced image).
+struct PixelNoise {
+  double read_dn = 1.5;
+  double dn_per_electron = 0.03;
+  double correlation = 1;
+};
+
+struct Settings {
+  Profile profile;
+  PixelNoise noise;
+};
+
+}  // namespace footing::sphere

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+
+/// Timers and event loops on the clock of common/clock: the host's, or that of the timekeeper that
+/// the calling thread follows.
+namespace footing::timer {
+
+using TimePoint = std::chrono::steady_clock::time_point;
+
+/// clock::MonotonicNs() as a time point.
+TimePoint Now();
+
+/// A steady_timer of Asio for one wait at a time: a new expiry cancels the wait. A thread that
+/// follows a timekeeper runs its io_context with Run or RunOneUntil below, or it never expires.
+class Timer {
+ public:
+  using Handler = std::function<void(const boost::system::error_code&)>;
+
+  explicit Timer(const boost::asio::any_io_executor& executor) : real_(executor) {}
+  explicit Timer(boost::asio::io_context& io) : real_(io) {}
+  ~Timer() { cancel(); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+  void expires_at(TimePoint expiry);
+  TimePoint expiry() const { return expiry_; }
+  void expires_after(std::chrono::nanoseconds wait) { expires_at(Now() + wait); }
+  /// As in Asio the handler is called on the io_context, with operation_aborted after a cancel.
+  void async_wait(Handler handler);
+  void cancel();
+
+ private:
+  boost::asio::steady_timer real_;
+  TimePoint expiry_;
+  std::uint64_t simulated_ = 0;  ///< Number of the wait on simulated time; 0: none.
+};
+
+/// Forgets the calling thread's waits on simulated time, whose handlers may hold what belongs to an
+/// io_context: before that io_context ends. Run does it.
+void DropWaits();
+
+/// io.run().
+void Run(boost::asio::io_context& io);
+/// io.run_one_until(end): returns after one handler, at the end, or when the io_context is stopped.
+void RunOneUntil(boost::asio::io_context& io, TimePoint end);
+
+}  // namespace footing::timer

@@ -1,0 +1,38 @@
+#include "common/transport/run_folder.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace footing::transport {
+namespace {
+
+Error Unsafe(const std::string& folder, const std::string& why) {
+  return Failure(
+      "folder " + folder + " " + why +
+      ", so a socket in it may be anybody's: remove it, or set XDG_RUNTIME_DIR to a folder "
+      "of your own");
+}
+
+}  // namespace
+
+std::string FallbackRunFolder() { return "/tmp/footing-" + std::to_string(geteuid()); }
+
+Result<void> CheckRunFolder(const std::string& folder, uid_t own_user) {
+  struct stat status {};
+  if (lstat(folder.c_str(), &status) != 0) return {};  // Nobody's yet.
+  if (!S_ISDIR(status.st_mode)) return Unsafe(folder, "is a link or a file");
+  if (status.st_uid != own_user) {
+    return Unsafe(folder, "belongs to user " + std::to_string(status.st_uid));
+  }
+  if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) return Unsafe(folder, "is writable by others");
+  return {};
+}
+
+Result<void> CheckFolderOf(const Address& address) {
+  const std::string folder = FallbackRunFolder();
+  const bool in_it =
+      address.kind == Address::Kind::kUnix && address.path.rfind(folder + "/", 0) == 0;
+  return in_it ? CheckRunFolder(folder, geteuid()) : Result<void>();
+}
+
+}  // namespace footing::transport

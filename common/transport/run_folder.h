@@ -1,0 +1,23 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+#include "common/result/result.h"
+#include "common/transport/address.h"
+
+/// The folder of the sockets where there is no runtime directory: /tmp/footing-UID. Anybody may
+/// make that first, so it is trusted only if it is the own user's alone.
+namespace footing::transport {
+
+std::string FallbackRunFolder();
+
+/// An error when `folder` exists and is not a folder (a symbolic link is not one), belongs to
+/// another user, or others may write to it.
+Result<void> CheckRunFolder(const std::string& folder, uid_t own_user);
+
+/// CheckRunFolder for an address in the fallback folder; any other address passes.
+Result<void> CheckFolderOf(const Address& address);
+
+}  // namespace footing::transport

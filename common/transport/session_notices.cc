@@ -1,0 +1,38 @@
+#include <string>
+
+#include "common/clock/clock.h"
+#include "common/transport/session.h"
+
+/// The part of Session that says what slows it, and what all sessions share.
+namespace footing::transport {
+
+std::int64_t Shared::NowNs() const {
+  return options.now_ns ? options.now_ns() : clock::MonotonicNs();
+}
+
+void Shared::SayOverload(const std::string& line) {
+  if (handlers.on_overload && overload_lines.Take(NowNs())) handlers.on_overload(line);
+}
+
+void Session::OnSlowed() {
+  ++slowed_;
+  ++shared_.statistics.slowed;
+  const double per_s = shared_.options.sessions.session_messages_per_s;
+  shared_.SayOverload("session " + std::to_string(info_.session) + " (" + info_.client_name +
+                      ") sends more than " + std::to_string(static_cast<int>(per_s)) +
+                      " messages a second and is slowed");
+  if (phase_ == Phase::kHello || !slowed_notices_.Take(shared_.NowNs())) return;
+  Notify(v1::Notice::KIND_SLOWED,
+         "this client sends more than the server's limit of messages; the rest waits", slowed_);
+}
+
+void Session::Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count) {
+  if (!welcomed() || !connection_.open()) return;
+  v1::Envelope message;
+  message.mutable_notice()->set_kind(kind);
+  message.mutable_notice()->set_text(text);
+  message.mutable_notice()->set_count(count);
+  Send(message);
+}
+
+}  // namespace footing::transport

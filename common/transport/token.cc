@@ -1,0 +1,66 @@
+#include "common/transport/token.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+namespace footing::transport {
+namespace {
+
+constexpr std::size_t kShortest = 16, kLongest = 256;
+
+bool IsPlain(const std::string& token) {
+  for (const char c : token) {
+    if (c <= ' ' || c > '~') return false;
+  }
+  return token.size() >= kShortest && token.size() <= kLongest;
+}
+
+}  // namespace
+
+Result<std::string> ReadTokenFile(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) {
+    return Failure("token file " + path + ": " + std::strerror(errno));
+  }
+  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    return UsageError("token file " + path + " may be read by others; chmod 600 " + path);
+  }
+  std::ifstream file(path);
+  std::string token;
+  std::getline(file, token);
+  if (!IsPlain(token)) {
+    return InvalidData("token file " + path +
+                       ": its first line must be 16 to 256 printable characters without blanks; "
+                       "make one with: openssl rand -hex 16");
+  }
+  return token;
+}
+
+std::string TokenFromEnvironment() {
+  const char* const path = std::getenv("FOOTING_TOKEN_FILE");
+  if (path == nullptr) return "";
+  const auto token = ReadTokenFile(path);
+  return token ? *token : "";
+}
+
+bool IsSameSecret(std::string_view a, std::string_view b) {
+  unsigned difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < a.size() && !b.empty(); ++i) {
+    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i % b.size()]);
+  }
+  return difference == 0;
+}
+
+bool TokenGuard::Accepts(std::string_view presented, std::int64_t now_ns) {
+  if (token_.empty() || !tries_.HasOne(now_ns)) return false;
+  if (IsSameSecret(presented, token_)) return true;
+  tries_.Charge(1);
+  return false;
+}
+
+}  // namespace footing::transport

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "common/result/result.h"
+#include "common/transport/token_bucket.h"
+
+/// A secret by which a client over TCP gets the role control. It is never logged.
+namespace footing::transport {
+
+/// The first line of a file that only its owner may read (mode 0600 or less): 16 to 256 printable
+/// characters without blanks.
+Result<std::string> ReadTokenFile(const std::string& path);
+
+/// Of the file that FOOTING_TOKEN_FILE names; empty when it names none, or none that can be used:
+/// the server then says what is missing.
+std::string TokenFromEnvironment();
+
+/// Whether both are equal, in a time that does not depend on where they differ.
+bool IsSameSecret(std::string_view a, std::string_view b);
+
+/// The server's token. After 5 wrong ones every further one waits: one in 5 s is looked at.
+class TokenGuard {
+ public:
+  /// Empty: no token is right.
+  explicit TokenGuard(std::string token = "") : token_(std::move(token)) {}
+
+  bool Accepts(std::string_view presented, std::int64_t now_ns);
+
+ private:
+  std::string token_;
+  TokenBucket tries_{0.2, 5};
+};
+
+}  // namespace footing::transport

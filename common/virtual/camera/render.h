@@ -1,0 +1,14 @@
+#pragma once
+
+#include "common/virtual/camera/scene.h"
+#include "common/virtual/noise/random.h"
+
+namespace footing::virtual_camera {
+
+/// The frame that the sensor reads of a scene, ray by ray: balls are supersampled 64-fold (25-fold
+/// from 15 px of radius on), each row at its own time and a moving ball nine times during the
+/// exposure; then the point spread, halo, mosaic, shot and read noise, rounding and clipping at
+/// 255. A ball nearer than 0.1 m, or beyond the image, is not drawn.
+Mosaic Render(const Scene& scene, noise::Random& random);
+
+}  // namespace footing::virtual_camera

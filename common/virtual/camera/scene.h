@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/virtual/camera/lens.h"
+
+namespace footing::virtual_camera {
+
+/// A luminous sphere, as of a PS Move. Brightness is in DN, digital numbers of the 8-bit sensor
+/// before clipping, at the exposure of the scene, for red, green and blue.
+struct Ball {
+  Eigen::Vector3d p_C_m{0, 0, 2};  ///< Centre, while the middle row is exposed.
+  Eigen::Vector3d v_C_mps = Eigen::Vector3d::Zero();
+  double radius_m = 0.0225;
+  Eigen::Vector3d colour_dn{170, 40, 150};
+  double limb = 0.15;     ///< Brightness 1 - limb (1 - cos) at the angle from the normal.
+  double limb_power = 0;  ///< Not 0: cos to this power in its place.
+  double hot_spot = 0.1;  ///< Brighter towards the camera's y by this share.
+  double halo = 0;        ///< Share of the light that the lens scatters around the ball.
+  double halo_px = 12;    ///< Distance over which the halo falls to 1/e.
+};
+
+/// Painted over the background, beneath the balls.
+struct Shape {
+  enum class Kind { kRectangle, kEllipse };
+  Kind kind = Kind::kRectangle;
+  Eigen::Vector2d centre_px{0, 0}, half_px{10, 10};
+  double turn_rad = 0;
+  Eigen::Vector3d colour_dn{0, 0, 0};
+};
+
+/// Everything of the image on the far side of a line is hidden: a hand, a sleeve.
+struct Occluder {
+  Eigen::Vector2d point_px{0, 0};
+  Eigen::Vector2d towards_hidden{1, 0};  ///< Unit vector.
+  Eigen::Vector3d colour_dn{12, 10, 9};
+};
+
+/// The sensor with its optics. A pixel's variance is read_noise² + dn_per_electron * signal.
+struct Sensor {
+  double psf_px = 0.9;  ///< Standard deviation of the lens's point spread.
+  double exposure_s = 0.004;
+  double readout_s = 0.0155;  ///< From the first to the last row: a rolling shutter.
+  double read_noise_dn = 1.5;
+  double dn_per_electron = 0.03;
+};
+
+struct Scene {
+  Lens lens;
+  Sensor sensor;
+  std::vector<Ball> balls;
+  std::vector<Shape> shapes;
+  std::vector<Occluder> occluders;
+  Eigen::Vector3d background_dn{12, 11, 13};
+  Eigen::Vector3d background_slope_dn{4, 3, 2};  ///< From the left to the right edge.
+};
+
+/// A frame as the sensor gives it: rows of bytes, mosaic G R / B G (V4L2's SGRBG8).
+struct Mosaic {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Time of a row's mid-exposure after that of the middle row, s.
+double RowTime(const Scene& scene, double row_px);
+
+/// Where the centre of a ball is at the mid-exposure of the row on which its centre appears, and
+/// that time after the middle row's, s. Nothing when it is behind the camera.
+struct Seen {
+  Eigen::Vector3d p_C_m;
+  double after_s = 0;
+};
+std::optional<Seen> Truth(const Scene& scene, const Ball& ball);
+
+}  // namespace footing::virtual_camera

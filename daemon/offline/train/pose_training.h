@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/model/model.h"
+#include "daemon/offline/learning/pose_regression.h"
+#include "daemon/offline/pose_run/pose_run.h"
+#include "daemon/offline/train/motions.h"
+#include "daemon/simulation/reconstruction/models.h"
+
+/// How poses are learned from clips: simulated sensors, the reconstruction's own estimators, and a
+/// regression on what these say.
+namespace footing::train {
+
+inline constexpr double kPosePieceS = 10;  ///< Frames of one piece are left out together.
+inline constexpr double kSettledS = 1.5;   ///< After the T-pose.
+
+/// A clip, or its mirror image, and how its random errors and pieces are numbered.
+struct PoseTake {
+  const Clip* clip;
+  bool mirrored = false;
+  int piece = 0;  ///< Of its first piece.
+  std::uint64_t seed = 1;
+};
+
+/// All clips and their mirror images; a clip and its image are in the same folds. `piece` is that
+/// of the first, and becomes that after the last.
+std::vector<PoseTake> TakesOf(const std::vector<const Clip*>& clips, std::uint64_t seed,
+                              int& piece);
+
+/// What two boards and two hand trackers would have measured.
+Result<pose_run::PoseRun> SimulateTake(const PoseTake& take);
+
+/// Appends the take's frames.
+Result<void> AddExamples(const PoseTake& take, const reconstruction::Models& models,
+                         learning::PoseCues cues, learning::PoseExamples& examples);
+
+/// Fits what is foreseen by `cues` and appends it to the model, which has a basis of this scale.
+learning::FittedPoseRegression AppendPoses(const learning::PoseExamples& examples,
+                                           learning::PoseCues cues, const Eigen::VectorXd& scale,
+                                           std::uint64_t seed, model::Model& model);
+
+}  // namespace footing::train

@@ -1,0 +1,277 @@
+#include "clients/skeleton/dialects/dialects.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "clients/skeleton/dialects/decoder.h"
+#include "tests/clients/skeleton/clips.h"
+
+namespace footing::skeleton {
+namespace {
+
+constexpr Dialect kWritten[] = {Dialect::kSensebloom, Dialect::kQuartz, Dialect::kZillode,
+                                Dialect::kKinectSdk2, Dialect::kFooting};
+
+void Send(Decoder& decoder, const std::vector<std::string>& packets, std::int64_t now_ns,
+          std::vector<Decoded>& complete) {
+  osc::Packet packet;
+  for (const std::string& bytes : packets) {
+    ASSERT_TRUE(osc::Read(osc::AsBytes(bytes), packet));
+    decoder.Take(packet, now_ns, complete);
+  }
+}
+
+/// What the dialect can say of a confidence.
+double Said(Dialect dialect, double confidence) {
+  const double least = dialect == Dialect::kSensebloom || dialect == Dialect::kQuartz ? 0.5 : 0.1;
+  if (confidence < least && dialect != Dialect::kFooting) return 0;
+  if (dialect == Dialect::kSensebloom || dialect == Dialect::kQuartz) return 1;
+  return static_cast<double>(static_cast<float>(confidence));
+}
+
+/// Half a step of a float of this size, in metres, and the double's own rounding.
+double Rounding(Dialect dialect, double p_m) {
+  const double unit_m = dialect == Dialect::kFooting                                     ? 1
+                        : dialect == Dialect::kSensebloom || dialect == Dialect::kQuartz ? 2.56
+                                                                                         : 1e-3;
+  // Normalised coordinates are below 8, so their steps are at most 2^-21.
+  const double number = unit_m > 2 ? 4 : std::abs(p_m) / unit_m;
+  return unit_m * number * std::ldexp(1.0, -24) + 1e-15;
+}
+
+TEST(Dialects, CarryRealSkeletonsWithoutLossButForFloatRounding) {
+  const auto clips = RealClips();
+  if (clips.empty()) GTEST_SKIP() << "needs FOOTING_TEST_DATA";
+  for (const Dialect dialect : kWritten) {
+    std::size_t frames = 0, joints = 0;
+    for (const auto& clip : clips) {
+      Decoder decoder({});
+      std::int64_t now_ns = 0;
+      for (const ClipFrame& frame : clip) {
+        Skeleton sent = frame.skeleton;
+        sent.sent_ns = 1'700'000'000'000'000'000 + frame.time_ns;
+        std::vector<Decoded> complete;
+        now_ns += 33'000'000;
+        Send(decoder, Encode(dialect, {}, sent), now_ns, complete);
+        ASSERT_EQ(complete.size(), 1u) << NameOf(dialect);
+        const Skeleton& got = complete[0].skeleton;
+        EXPECT_EQ(complete[0].dialect, dialect);
+        EXPECT_EQ(got.user, 1);
+        if (dialect == Dialect::kFooting) {
+          EXPECT_EQ(got.sequence, sent.sequence);
+          EXPECT_EQ(got.sent_ns, sent.sent_ns);
+        }
+        for (std::size_t i = 0; i < kJoints; ++i) {
+          ASSERT_EQ(got.joints[i].confidence, Said(dialect, sent.joints[i].confidence));
+          if (!got.joints[i].present()) continue;
+          ++joints;
+          for (int axis = 0; axis < 3; ++axis) {
+            const double p_m = sent.joints[i].p_K_m[axis];
+            ASSERT_NEAR(got.joints[i].p_K_m[axis], p_m, Rounding(dialect, p_m)) << NameOf(dialect);
+          }
+        }
+        ++frames;
+      }
+      EXPECT_EQ(decoder.counts().unknown + decoder.counts().rejected, 0u);
+    }
+    EXPECT_EQ(frames, 858u);
+    EXPECT_GT(joints, 9'000u);
+  }
+}
+
+TEST(Dialects, CarryScaledShiftedAndMirroredNumbers) {
+  DialectOptions options;
+  options.factor = {2, -1, 0.5};
+  options.offset = {0.1, 0.2, 0.3};
+  options.mirrored = true;
+  options.flip_y = true;
+  for (const Dialect dialect : kWritten) {
+    Decoder decoder(options);
+    std::vector<Decoded> complete;
+    Send(decoder, Encode(dialect, options, Standing()), 1, complete);
+    ASSERT_EQ(complete.size(), 1u);
+    for (std::size_t i = 0; i < kJoints; ++i)
+      EXPECT_LT((complete[0].skeleton.joints[i].p_K_m - Standing().joints[i].p_K_m).norm(), 1e-5);
+  }
+}
+
+TEST(Dialects, MeanWhatTheirSendersMean) {
+  // OSCeleton.cpp: x = (1280 - X)/2560, y = (960 - Y)/1920, z = Z 7.8125/10000, in mm, where X
+  // points to the camera's right: 0.64 m right, 0.48 m up, 2 m away.
+  const Eigen::Vector3d p_K(-0.64, 0.48, 2);
+  const auto near = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    EXPECT_LT((a - b).norm(), 1e-12) << a.transpose();
+  };
+  near(FromCamera(Dialect::kSensebloom, {}, p_K),
+       {(1280 - 640) / 2560.0, (960 - 480) / 1920.0, 1.5625});
+  near(FromCamera(Dialect::kZillode, {}, p_K), {640, 480, 2000});
+  // TrackingInformation.cs: (x, -y, z) of Kinect times 1000.
+  near(FromCamera(Dialect::kKinectSdk2, {}, p_K), {-640, -480, 2000});
+  near(FromCamera(Dialect::kFooting, {}, p_K), p_K);
+}
+
+TEST(Dialects, ReadTheBytesThatTheDocumentationShows) {
+  std::ifstream page(FOOTING_SOURCE_DIR "/docs/skeleton.md");
+  std::string line, name, bytes;
+  std::size_t shown = 0;
+  while (std::getline(page, line)) {
+    if (line.starts_with("```osc ")) {
+      name = line.substr(7);
+      bytes.clear();
+    } else if (line == "```" && !name.empty()) {
+      Decoder decoder({});
+      std::vector<Decoded> complete;
+      Send(decoder, {bytes}, 1, complete);
+      decoder.Flush(Decoder::kPatienceNs + 1, complete);
+      ASSERT_EQ(complete.size(), 1u) << name;
+      EXPECT_EQ(NameOf(complete[0].dialect), name);
+      EXPECT_EQ(complete[0].skeleton.user, 1);
+      const auto& hand = complete[0].skeleton[Joint::kLeftHand];
+      EXPECT_LT((hand.p_K_m - Eigen::Vector3d(-0.64, 0.48, 2)).norm(), 1e-6) << name;
+      if (name == "footing") {
+        EXPECT_EQ(complete[0].skeleton.sequence, 7);
+        EXPECT_EQ(complete[0].skeleton.sent_ns, 1'790'000'000'500'000'000);
+        EXPECT_EQ(hand.confidence, 0.75);
+      }
+      ++shown;
+      name.clear();
+    } else if (!name.empty()) {
+      std::istringstream digits(line.substr(0, line.find('#')));
+      for (std::string byte; digits >> byte;)
+        bytes.push_back(static_cast<char>(std::stoi(byte, nullptr, 16)));
+    }
+  }
+  EXPECT_EQ(shown, std::size(kWritten));
+}
+
+TEST(Decoder, CompletesAPersonWhenTheNextFrameBegins) {
+  // KinectSDK2 sends a packet a joint; here half of the joints are not sent.
+  Skeleton half = Standing();
+  half[Joint::kHead].confidence = half[Joint::kRightFoot].confidence = 0;
+  half.sent_ns = 5'000'000;
+  Decoder decoder({});
+  std::vector<Decoded> complete;
+  Send(decoder, Encode(Dialect::kKinectSdk2, {}, half), 100, complete);
+  EXPECT_TRUE(complete.empty());
+  half.sent_ns = 38'000'000;
+  Send(decoder, Encode(Dialect::kKinectSdk2, {}, half), 33'000'100, complete);
+  ASSERT_EQ(complete.size(), 1u);
+  EXPECT_EQ(complete[0].skeleton.sent_ns, 5'000'000);
+  EXPECT_EQ(complete[0].arrived_ns, 100);
+  EXPECT_EQ(complete[0].skeleton.present(), 13u);
+  decoder.Flush(34'000'000, complete);
+  EXPECT_EQ(complete.size(), 1u);
+  decoder.Flush(33'000'100 + Decoder::kPatienceNs, complete);
+  EXPECT_EQ(complete.size(), 2u);
+}
+
+TEST(Decoder, LeavesALateJointOfACompleteFrameOut) {
+  Skeleton whole = Standing();
+  whole.sent_ns = 5'000'000;
+  Decoder decoder({});
+  std::vector<Decoded> complete;
+  const auto packets = Encode(Dialect::kKinectSdk2, {}, whole);
+  Send(decoder, packets, 100, complete);
+  ASSERT_EQ(complete.size(), 1u) << "at once when all 15 are there";
+  const osc::Argument tip[] = {std::string_view("r_foot"), 0, 1, 0.f, 0.f, 0.f, 1.f, 5.0};
+  Send(decoder, {osc::WriteMessage("/osceleton2/joint", tip)}, 101, complete);
+  decoder.Flush(1'000'000'000, complete);
+  EXPECT_EQ(complete.size(), 1u);
+  EXPECT_EQ(decoder.counts().late, 1u);
+}
+
+TEST(Decoder, KeepsPersonsApartAndTheirNumberBounded) {
+  Decoder decoder({});
+  std::vector<Decoded> complete;
+  std::vector<std::string> messages;
+  for (std::int32_t user = 1; user <= 100; ++user) {
+    const osc::Argument hand[] = {std::string_view("l_hand"), user, 0.5f, 0.5f, 1.f};
+    messages.push_back(osc::WriteMessage("/joint", hand));
+  }
+  Send(decoder, {osc::WriteBundle({}, messages)}, 1, complete);
+  EXPECT_EQ(complete.size(), Decoder::kMostPeople);
+  EXPECT_EQ(decoder.counts().rejected, 100 - Decoder::kMostPeople);
+}
+
+TEST(Decoder, RejectsNumbersThatMakeNoSense) {
+  Decoder decoder({});
+  std::vector<Decoded> complete;
+  for (const float wrong : {std::nanf(""), INFINITY, 1e9f}) {
+    const osc::Argument hand[] = {std::string_view("l_hand"), 1, wrong, 0.5f, 1.f};
+    Send(decoder, {osc::WriteMessage("/joint", hand)}, 1, complete);
+  }
+  const osc::Argument unsure[] = {std::string_view("l_hand"), 0.f, 0.f, 1.f, 1.5f};
+  Send(decoder, {osc::WriteMessage("/footing/joint", unsure)}, 1, complete);
+  decoder.Flush(1'000'000'000, complete);
+  EXPECT_TRUE(complete.empty());
+  EXPECT_EQ(decoder.counts().rejected, 4u);
+}
+
+TEST(Decoder, SaysWhatItDoesNotUnderstand) {
+  Decoder decoder({});
+  std::vector<Decoded> complete;
+  const osc::Argument flat[] = {std::string_view("l_hand1"), 0.5f, 0.5f};
+  Send(decoder, {osc::WriteMessage("/joint", flat)}, 1, complete);
+  EXPECT_NE(decoder.last_problem().find("kitchen mode has two dimensions"), std::string::npos);
+  Send(decoder, {osc::WriteMessage("/tempo", {})}, 1, complete);
+  EXPECT_NE(decoder.last_problem().find("/tempo"), std::string::npos);
+  const osc::Argument one[] = {1.f, 2.f, 3.f};
+  Send(decoder, {osc::WriteMessage("/joint/l_hand/x", one)}, 1, complete);
+  EXPECT_NE(decoder.last_problem().find("/joint/NAME/USER"), std::string::npos);
+  EXPECT_EQ(decoder.counts().unknown, 3u);
+  // Events that OSCeleton sends, in hand mode without arguments, are nothing to report.
+  Send(decoder, {osc::WriteMessage("/new_user", {}), osc::WriteMessage("/lost_user", {})}, 1,
+       complete);
+  EXPECT_EQ(decoder.counts().unknown, 3u);
+}
+
+TEST(Vmc, PutsBonesIntoTheirChain) {
+  // A person who looks along Unity's z: right is x. The left upper arm is turned by 90 degrees
+  // about z, so the forearm, 0.3 m along its own -x, hangs down.
+  Decoder decoder({});
+  std::vector<Decoded> complete;
+  std::vector<std::string> messages;
+  const auto bone = [&](std::string_view name, float x, float y, float z, float qz = 0,
+                        float qw = 1) {
+    const osc::Argument arguments[] = {name, x, y, z, 0.f, 0.f, qz, qw};
+    messages.push_back(osc::WriteMessage("/VMC/Ext/Bone/Pos", arguments));
+  };
+  const float half = std::sqrt(0.5f);
+  bone("Hips", 0, 1, 0);
+  bone("Spine", 0, 0.2f, 0);
+  bone("Neck", 0, 0.3f, 0);
+  bone("Head", 0, 0.1f, 0.05f);
+  bone("LeftUpperArm", -0.2f, 0.25f, 0, half, half);
+  bone("LeftLowerArm", -0.3f, 0, 0);
+  bone("LeftHand", -0.25f, 0, 0);
+  bone("RightUpperArm", 0.2f, 0.25f, 0);
+  bone("RightLowerArm", 0.3f, 0, 0);
+  bone("RightHand", 0.25f, 0, 0);
+  for (const char* const side : {"Left", "Right"}) {
+    bone(std::string(side) + "UpperLeg", side[0] == 'L' ? -0.1f : 0.1f, 0, 0);
+    bone(std::string(side) + "LowerLeg", 0, -0.45f, 0);
+    bone(std::string(side) + "Foot", 0, -0.45f, 0);
+  }
+  const osc::Argument time[] = {1.f};
+  messages.push_back(osc::WriteMessage("/VMC/Ext/T", time));
+  Send(decoder, {osc::WriteBundle({}, messages)}, 1, complete);
+  ASSERT_EQ(complete.size(), 1u);
+  const Skeleton& skeleton = complete[0].skeleton;
+  const auto expect = [&](Joint joint, const Eigen::Vector3d& unity) {
+    // The camera is in front: what is away from it is behind the person.
+    const Eigen::Vector3d p_K(unity.x(), unity.y(), -unity.z());
+    EXPECT_LT((skeleton[joint].p_K_m - p_K).norm(), 1e-6) << kJointNames[Index(joint)];
+  };
+  expect(Joint::kHead, {0, 1.6, 0.05});
+  expect(Joint::kLeftShoulder, {-0.2, 1.45, 0});
+  expect(Joint::kLeftElbow, {-0.2, 1.15, 0});
+  expect(Joint::kLeftHand, {-0.2, 0.9, 0});
+  expect(Joint::kRightHand, {0.75, 1.45, 0});
+  expect(Joint::kRightFoot, {0.1, 0.1, 0});
+  EXPECT_FALSE(skeleton[Joint::kTorso].present()) << "no Chest was sent";
+}
+
+}  // namespace
+}  // namespace footing::skeleton

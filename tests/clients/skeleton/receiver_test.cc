@@ -1,0 +1,101 @@
+#include "clients/skeleton/service/receiver.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include "clients/skeleton/service/sender.h"
+#include "clients/skeleton/service/udp.h"
+#include "tests/clients/skeleton/clips.h"
+
+namespace footing::skeleton {
+namespace {
+
+TEST(ParseUdp, TakesHostsAndPorts) {
+  EXPECT_EQ(ParseUdp("127.0.0.1:7110", "--listen")->port(), 7110);
+  EXPECT_TRUE(ParseUdp("localhost:0", "--listen")->address().is_loopback());
+  EXPECT_TRUE(ParseUdp("[::1]:7110", "--listen")->address().is_v6());
+  for (const char* const wrong : {"", "7110", "host:7110", "127.0.0.1:", "127.0.0.1:70000", "::1"})
+    EXPECT_EQ(ParseUdp(wrong, "--listen").error().kind, ErrorKind::kUsage) << wrong;
+}
+
+/// A port that nobody listens on now.
+boost::asio::ip::udp::endpoint FreePort() {
+  boost::asio::io_context io;
+  boost::asio::ip::udp::socket socket(io, *ParseUdp("127.0.0.1:0", ""));
+  return socket.local_endpoint();
+}
+
+/// Returns when the port is bound, as the kernel lists it, or after five seconds.
+void WaitForListener(std::uint16_t port) {
+  char wanted[16];
+  std::snprintf(wanted, sizeof wanted, ":%04X ", port);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  for (bool bound = false; !bound && std::chrono::steady_clock::now() < end;
+       std::this_thread::yield()) {
+    std::ifstream table("/proc/net/udp");
+    for (std::string line; std::getline(table, line);)
+      bound = bound || line.find(wanted) != std::string::npos;
+  }
+}
+
+struct Exchange {
+  Result<nlohmann::ordered_json> sent = Failure("not run");
+  Result<nlohmann::ordered_json> received = Failure("not run");
+};
+
+/// A receiver that runs for a second, and a sender beside it.
+Exchange SendToReceiver(ReceiverOptions options, std::size_t frames, double rate_hz) {
+  options.listen = FreePort();
+  options.seconds = 1;
+  Exchange exchange;
+  std::thread receiver([&] { exchange.received = RunReceiver(options); });
+  WaitForListener(options.listen.port());
+  SenderOptions sender;
+  sender.to = options.listen;
+  sender.rate_hz = rate_hz;
+  exchange.sent = SendClip(std::vector<ClipFrame>(frames, {0, Standing()}), sender);
+  receiver.join();
+  return exchange;
+}
+
+TEST(Receiver, CountsWhatASenderSends) {
+  const auto [sent, received] = SendToReceiver({}, 50, 200);
+  ASSERT_TRUE(sent);
+  ASSERT_TRUE(received) << received.error().message;
+  EXPECT_EQ((*sent)["packets"], 50);
+  EXPECT_EQ((*received)["packets"], 50);
+  EXPECT_EQ((*received)["skeletons"], 50);
+  EXPECT_EQ((*received)["people"][0]["joints"], 50 * kJoints);
+  EXPECT_EQ((*received)["people"][0]["dialect"], "footing");
+}
+
+TEST(Receiver, DropsMorePacketsThanItIsAllowed) {
+  ReceiverOptions options;
+  options.most_packets_per_s = 50;
+  const auto [sent, received] = SendToReceiver(options, 100, 1000);
+  ASSERT_TRUE(sent);
+  ASSERT_TRUE(received);
+  // A bucket of 5 and 50 a second for the second that it ran.
+  EXPECT_LE((*received)["packets"], 56);
+  EXPECT_GE((*received)["dropped_packets"], 40);
+}
+
+TEST(Receiver, SaysWhenItsPortIsTaken) {
+  boost::asio::io_context io;
+  const boost::asio::ip::udp::socket taken(io, *ParseUdp("127.0.0.1:0", ""));
+  ReceiverOptions options;
+  options.listen = taken.local_endpoint();
+  options.seconds = 1;
+  const auto refused = RunReceiver(options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kFailure);
+  EXPECT_NE(refused.error().message.find("--listen"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace footing::skeleton

@@ -1,0 +1,117 @@
+#include "common/transport/token.h"
+
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "common/transport/client_messages.h"
+#include "tests/common/temporary_folder.h"
+#include "tests/common/transport/server_fixture.h"
+
+namespace footing::transport {
+namespace {
+
+constexpr char kToken[] = "0123456789abcdef";
+
+TEST(Token, OnlyAFileOfItsOwnerAloneWithALongLineIsTaken) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("token");
+  EXPECT_FALSE(ReadTokenFile(path).ok());
+  std::ofstream(path) << kToken << "\n";
+  ASSERT_EQ(chmod(path.c_str(), 0640), 0);
+  EXPECT_FALSE(ReadTokenFile(path).ok()) << "others may read it";
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  const auto token = ReadTokenFile(path);
+  ASSERT_TRUE(token.ok());
+  EXPECT_EQ(*token, kToken);
+  std::ofstream(path) << "short\n";
+  const auto brief = ReadTokenFile(path);
+  ASSERT_FALSE(brief.ok());
+  EXPECT_EQ(brief.error().message.find("short"), std::string::npos) << "never shown";
+}
+
+TEST(Token, SecretsAreEqualOrNot) {
+  EXPECT_TRUE(IsSameSecret("abc", "abc"));
+  EXPECT_FALSE(IsSameSecret("abc", "abd"));
+  EXPECT_FALSE(IsSameSecret("abcabc", "abc"));
+  EXPECT_FALSE(IsSameSecret("", "abc"));
+  EXPECT_FALSE(IsSameSecret("abc", ""));
+}
+
+TEST(Token, GuessingIsSlowedEvenWhenTheGuessIsRight) {
+  TokenGuard guard(kToken);
+  std::int64_t now_ns = 1'000'000'000;
+  EXPECT_TRUE(guard.Accepts(kToken, now_ns));
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(guard.Accepts("wrong", now_ns));
+  EXPECT_FALSE(guard.Accepts(kToken, now_ns));
+  now_ns += 5'100'000'000;
+  EXPECT_TRUE(guard.Accepts(kToken, now_ns));
+  EXPECT_FALSE(TokenGuard().Accepts("", now_ns)) << "without a token none is right";
+}
+
+TEST(Token, AClientPresentsTheEnvironmentsTokenOverTcpOnly) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("token");
+  std::ofstream(path) << kToken << "\n";
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  ASSERT_EQ(setenv("FOOTING_TOKEN_FILE", path.c_str(), 1), 0);
+  ClientOptions options;
+  EXPECT_EQ(MakeHello(options).hello().token(), "") << "on a Unix socket the kernel says who it is";
+  options.address.kind = Address::Kind::kTcp;
+  EXPECT_EQ(MakeHello(options).hello().token(), kToken);
+  unsetenv("FOOTING_TOKEN_FILE");
+  EXPECT_EQ(MakeHello(options).hello().token(), "");
+}
+
+class TokenTest : public ServerFixture {
+ protected:
+  std::unique_ptr<TestClient> SayHello(const std::string& token, v1::Role role) {
+    auto client = Connect(1);  // Over TCP.
+    client->Read();
+    v1::Envelope hello = Hello(role);
+    hello.mutable_hello()->set_token(token);
+    client->Send(hello);
+    EXPECT_TRUE(RunUntil([&] { return !client->messages.empty(); }));
+    return client;
+  }
+};
+
+TEST_F(TokenTest, OverTcpOnlyTheTokenGivesControl) {
+  ServerOptions options = Options();
+  options.token = kToken;
+  StartServer(options);
+  const auto without = SayHello("", v1::ROLE_CONTROL);
+  EXPECT_EQ(without->messages[0].refused().reason(), v1::Refused::REASON_ROLE);
+  const auto wrong = SayHello("0123456789abcdeX", v1::ROLE_VIEW);
+  EXPECT_EQ(wrong->messages[0].refused().reason(), v1::Refused::REASON_TOKEN);
+  const auto right = SayHello(kToken, v1::ROLE_CONTROL);
+  EXPECT_EQ(right->messages[0].welcome().granted_role(), v1::ROLE_CONTROL);
+  const auto admin = SayHello(kToken, v1::ROLE_ADMIN);
+  EXPECT_EQ(admin->messages[0].refused().reason(), v1::Refused::REASON_ROLE);
+}
+
+TEST_F(TokenTest, BeyondThisHostItListensOnlyWhenThatIsAllowedAndNobodyComesWithoutTheToken) {
+  Address everywhere;
+  everywhere.kind = Address::Kind::kTcp;
+  everywhere.host = "0.0.0.0";
+  for (const bool allowed : {false, true}) {
+    for (const std::string token : {"", kToken}) {
+      ServerOptions options = Options();
+      options.insecure_lan = allowed;
+      options.token = token;
+      Server server(io_, options, {});
+      EXPECT_EQ(server.Listen(everywhere).ok(), allowed && !token.empty());
+    }
+  }
+  ServerOptions options = Options();
+  options.insecure_lan = true;
+  options.token = kToken;
+  StartServer(options);
+  const auto without = SayHello("", v1::ROLE_VIEW);
+  EXPECT_EQ(without->messages[0].refused().reason(), v1::Refused::REASON_TOKEN);
+  const auto with = SayHello(kToken, v1::ROLE_VIEW);
+  EXPECT_TRUE(with->messages[0].has_welcome());
+}
+
+}  // namespace
+}  // namespace footing::transport

@@ -1,0 +1,82 @@
+"""Installed anywhere, the programs run from there alone: no unit, no program names the place of the build.
+
+Usage: install.py BINARY_FOLDER BUILD_FOLDER
+
+Installs footingd, footing-sim, footing-stream, units and data to a temporary prefix, and runs the line
+from there, once with a data file missing in the installed folder to see that no other one is read.
+"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from harness import Stage, read_ticks
+
+PROGRAMS = ("footingd", "footing-sim", "footing-stream")
+
+
+def install(build, prefix):
+    for component in (*PROGRAMS, "data", "documentation", "systemd"):
+        done = subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--component", component],
+                              capture_output=True, text=True, timeout=120, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+def check_units(build, prefix):
+    units = sorted((prefix / "lib/systemd/system").iterdir())
+    names = [unit.name for unit in units]
+    assert names == ["footing-sim.service", "footing-sim.socket", "footingd-devices.socket",
+                     "footingd.service", "footingd.socket"], names
+    for unit in units:
+        text = unit.read_text()
+        assert "@" not in text.replace("@system-service", "").replace("@resources", "").replace(
+            "@privileged", ""), f"{unit.name}: a place is not filled in"
+        assert str(build) not in text and "/usr/local" not in text, unit.name
+        for line in text.splitlines():
+            if line.startswith("ExecStart="):
+                program = pathlib.Path(line.removeprefix("ExecStart=").split()[0])
+                assert program.parent == prefix / "bin" and program.is_file(), line
+
+
+def check_files(prefix):
+    for name in ("share/footing/biped.json", "share/footing/proto/footing/v1/session.proto",
+                 "share/doc/footing/README.md", "share/doc/footing/docs/protocol.md",
+                 "share/man/man8/footingd.8", "share/man/man1/footing-stream.1",
+                 "lib/udev/rules.d/70-footing.rules", "lib/sysusers.d/footing.conf"):
+        assert (prefix / name).is_file(), f"{name} is not installed"
+    assert "\\-\\-listen" in (prefix / "share/man/man8/footingd.8").read_text()
+
+
+def check_line(prefix):
+    with Stage(prefix / "bin") as stage:
+        stage.start_servers()
+        stage.start_user("walk", "--seconds", 20)
+        for tick in read_ticks(stage.simulation, 10, ["characters"]):
+            if tick.get("characters"):
+                return
+    raise AssertionError("no character within 10 s")
+
+
+def check_data(prefix):
+    """It is the installed data that is read, and nothing stands in for what is missing there."""
+    biped = prefix / "share/footing/biped.json"
+    biped.rename(biped.with_suffix(".away"))
+    with Stage(prefix / "bin") as stage:
+        done = stage.run("footing-sim", "--listen", stage.simulation, timeout_s=20)
+        assert done.returncode == 1, done
+        assert "biped.json" in done.stderr and str(prefix) in done.stderr, done.stderr
+
+
+def main(build):
+    with tempfile.TemporaryDirectory(prefix="footing-install.") as folder:
+        prefix = pathlib.Path(folder) / "anywhere"
+        install(build, prefix)
+        check_files(prefix)
+        check_units(build, prefix)
+        check_line(prefix)
+        check_data(prefix)
+    print("installed, run and read from " + prefix.name)
+
+
+if __name__ == "__main__":
+    main(pathlib.Path(sys.argv[2]).resolve())

@@ -1,0 +1,62 @@
+"""A synthetic person is sent by OSC, and footingd publishes its hands where they are: the whole line
+from UDP to the channel `hands`, with the camera's place found from the person's stand.
+
+Usage: skeleton.py BINARY_FOLDER
+"""
+import json
+import socket
+import sys
+
+import harness
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def play(stage, dialect):
+    """The hands of a clip sent in a dialect, as (role, sample), and the receiver's statistics."""
+    port = free_port()
+    stage.start("footing-skeleton", "--listen", f"127.0.0.1:{port}", "--to", stage.devices, "--seconds", 9,
+                "--json", name=dialect)
+    stage.wait_for(lambda: "connected to footingd" in (stage.folder / f"{dialect}.log").read_text(),
+                   "the device socket")
+    stage.start("footing-skeleton", "send", "--to", f"127.0.0.1:{port}", "--dialect", dialect,
+                "--seconds", 6, name=f"send-{dialect}")
+    samples = [sample for tick in harness.read_ticks(stage.sensor, 6, ("hands",))
+               for sample in tick.get("hands", {}).get("samples", [])]
+    assert stage.processes[f"send-{dialect}"].wait(10) == 0
+    assert stage.processes[dialect].wait(10) == 0
+    return samples, json.loads((stage.folder / f"{dialect}.log").read_text().splitlines()[-1])
+
+
+def check(samples, statistics, age_ms):
+    assert statistics["people"][0]["advice"] == "", statistics
+    assert abs(statistics["camera"]["x_m"] - 2.4) < 0.02, statistics
+    assert statistics["published"] > 100 and statistics["dropped_hand_frames"] == 0, statistics
+    left = [sample for sample in samples if sample["role"] == 1]
+    right = [sample for sample in samples if sample["role"] == 2]
+    assert len(left) > 60 and len(right) > 60, (len(left), len(right))
+    # The left hand hangs beside the hip while the right one waves above the shoulder.
+    for sample in left:
+        place = sample["position_m"]
+        assert abs(place["y"] - 0.26) < 0.05 and abs(place["z"] - 0.77) < 0.08, sample
+        assert abs(sample["sd_m"]["x"] - 0.0427) < 0.001 and sample["tracker"] == "skeleton", sample
+        age = (sample["received_ns"] - sample["sampled_ns"]) / 1e6
+        assert age_ms[0] <= age <= age_ms[1], sample
+    assert max(sample["position_m"]["z"] for sample in right) > 1.3
+
+
+def main():
+    with harness.Stage(sys.argv[1]) as stage:
+        stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
+        stage.wait_for_socket(stage.sensor)
+        stage.wait_for_socket(stage.devices)
+        check(*play(stage, "footing"), (0, 60))
+        check(*play(stage, "sensebloom"), (60, 140))  # Without a time: the assumed 67 ms.
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,54 @@
+#include "daemon/simulation/gait_service/effective_config.h"
+
+#include <gtest/gtest.h>
+
+#include "daemon/simulation/engine_files/engine_files.h"
+
+namespace footing::gait_service {
+namespace {
+
+using nlohmann::json;
+
+TEST(EffectiveConfig, HasVersionSettingsGainsAndTheTableWithItsValues) {
+  const auto texts = *engine_files::ReadTexts();
+  serving::Config common;
+  common.version = "9.8.7";
+  Config config;
+  config.fall_shown_s = 0.25;
+  engine::EngineConfig engine;
+  EffectiveConfig effective(common, config, texts, engine);
+  const json shown = json::parse(effective.Message().json());
+  EXPECT_EQ(shown["version"], "9.8.7");
+  EXPECT_EQ(shown["settings"]["fall_shown_s"], 0.25);
+  EXPECT_EQ(shown["settings"]["track"], "endless");
+  for (const char* name : engine::kGainFiles) {
+    EXPECT_EQ(shown["sha256"][name].get<std::string>().size(), 64u) << name;
+  }
+  EXPECT_EQ(shown["interface"]["name"], "wrist");
+  EXPECT_EQ(shown["interface"]["table_by"], kBuiltInTable);
+  EXPECT_EQ(shown["interface"]["table"], json::parse(texts.mapping));
+}
+
+TEST(EffectiveConfig, ShowsAnotherInterfaceAndItsTable) {
+  const auto texts = *engine_files::ReadTexts();
+  EffectiveConfig effective({}, {}, texts, {});
+  json table = json::parse(texts.mapping);
+  table["turn_above_deg"] = 17.5;
+  effective.SetInterface(
+      3, {.interface = stream::UserInterface::kLeg, .leg = {.turn_by = stream::TurnSource::kTrunk}},
+      table.dump(), "footing-ctl");
+  const json shown = json::parse(effective.Message().json())["interface"];
+  EXPECT_EQ(shown["name"], "leg");
+  EXPECT_EQ(shown["turn_by"], "trunk");
+  EXPECT_EQ(shown["number"], 3);
+  EXPECT_EQ(shown["table_by"], "footing-ctl");
+  EXPECT_EQ(shown["table"]["turn_above_deg"], 17.5);
+  EXPECT_EQ(json::parse(TableIn(effective.Message(), 3)), table);
+  EXPECT_EQ(TableIn(effective.Message(), 2), "");
+  v1::EffectiveConfig torn;
+  torn.set_json("{");
+  EXPECT_EQ(TableIn(torn, 0), "");
+}
+
+}  // namespace
+}  // namespace footing::gait_service

@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/simulation/momentum/best_estimator.h"
+#include "tests/simulation/momentum/made_body.h"
+
+// Weights that are wrong or change, postures, and landings.
+namespace footing::momentum {
+namespace {
+
+// Root mean square error of the height over a minute in which the cells tell `share` of what they
+// told in the T-pose.
+double HeightErrorAfter(MadeBody body, double share, double& mass_kg) {
+  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  double sum = 0;
+  constexpr int kFrames = 3600;
+  for (int i = 0; i < kFrames; ++i) {
+    ContactLoads loads = body.At(i * kMadeStepS);
+    for (FootLoads& foot : loads.feet)
+      for (Cell& cell : foot.cells) cell.load_n *= share;
+    const double error = best.Advance(loads).p_WC_m.z() - body.com_m(i * kMadeStepS).z();
+    sum += error * error;
+  }
+  mass_kg = best.mass_kg();
+  return std::sqrt(sum / kFrames);
+}
+
+TEST(BestEstimator, FindsAWeightThatTheTPoseHadWrong) {
+  for (const double share : {0.98, 1.02, 0.95}) {
+    double mass_kg = 0;
+    EXPECT_LT(HeightErrorAfter(Squatter(), share, mass_kg), 0.03) << share;
+    EXPECT_NEAR(mass_kg, share * kMadeMassKg, 0.002 * kMadeMassKg) << share;
+  }
+}
+
+TEST(BestEstimator, FindsTheWeightOfOneWhoNeverStandsStill) {
+  MadeBody body;
+  body.noise_n = 0.5;
+  body.com_m = [](double t) {
+    return Eigen::Vector3d(0, 0, kMadeHeightM - 0.08 * Ramp(t) * (1 - std::cos(2 * kPi * 0.8 * t)));
+  };
+  double mass_kg = 0;
+  EXPECT_LT(HeightErrorAfter(body, 0.98, mass_kg), 0.10);
+  EXPECT_NEAR(mass_kg, 0.98 * kMadeMassKg, 0.003 * kMadeMassKg);
+}
+
+TEST(BestEstimator, KeepsTheWeightThatTheTPoseHadRight) {
+  double mass_kg = 0;
+  EXPECT_LT(HeightErrorAfter(Squatter(), 1, mass_kg), 0.03);
+  EXPECT_EQ(mass_kg, Squatter().Calibrate().mass_kg);
+}
+
+TEST(BestEstimator, KeepsTheWeightThatItFoundWhenTheBodyStepsOff) {
+  MadeBody body = Squatter();
+  BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+  for (int i = 0; i < 3600; ++i) {
+    ContactLoads loads = body.At(i * kMadeStepS);
+    const bool away = i >= 3000 && i < 3120;
+    for (FootLoads& foot : loads.feet)
+      for (Cell& cell : foot.cells) cell.load_n *= away ? 0 : 0.95;
+    best.Advance(loads);
+    if (i > 3120) {
+      EXPECT_NEAR(best.mass_kg(), 0.95 * kMadeMassKg, 0.003 * kMadeMassKg) << i;
+    }
+  }
+  EXPECT_EQ(best.estimate().resets, 1u);
+}
+
+// A posture that is wrong by a first-order process along each axis.
+class WrongPosture {
+ public:
+  Eigen::Vector3d Of(const Eigen::Vector3d& com_m) {
+    const Eigen::Vector3d time_s(0.25, 0.25, 3), spread_m(0.03, 0.03, 0.06);
+    for (int i = 0; i < 3; ++i) {
+      const double keep = std::exp(-kMadeStepS / time_s(i));
+      error_m_(i) =
+          keep * error_m_(i) + spread_m(i) * std::sqrt(1 - keep * keep) * random_.Normal();
+    }
+    return com_m + error_m_;
+  }
+
+ private:
+  noise::Random random_{8};
+  Eigen::Vector3d error_m_ = Eigen::Vector3d::Zero();
+};
+
+TEST(BestEstimator, APostureTellsWhatLoadsCannot) {
+  const auto com_m = [](double t) {
+    return Eigen::Vector3d(0, 0.05 * Ramp(t) * std::sin(4 * t) * std::sin(0.7 * t),
+                           kMadeHeightM - 0.1 * Ramp(t) * (1 + std::sin(2.3 * t)));
+  };
+  Eigen::Vector3d rms[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (const int seen : {0, 1}) {
+    MadeBody body;
+    body.com_m = com_m;
+    BestEstimator best({}, {}, body.Calibrate(), kMadeStepS);
+    WrongPosture posture;
+    for (int i = 0; i < 3600; ++i) {
+      const double t = i * kMadeStepS;
+      Eigen::Vector3d told_m = best.Advance(body.At(t)).p_WC_m;
+      const Eigen::Vector3d seen_m = posture.Of(com_m(t));
+      if (seen == 1) told_m = best.SeePosture(seen_m.y(), seen_m.z()).p_WC_m;
+      rms[seen] += (told_m - com_m(t)).cwiseAbs2() / 3600;
+    }
+    rms[seen] = rms[seen].cwiseSqrt();
+  }
+  EXPECT_LT(rms[1].y(), 0.85 * rms[0].y());
+  EXPECT_NEAR(rms[1].x(), rms[0].x(), 1e-3);
+  EXPECT_LT(rms[1].z(), rms[0].z() + 1e-3);
+}
+
+// Errors of the height while the posture is seen, from the time `from_s` on: rms, and the greatest
+// of frames that are trusted. From `change_s` on the cells measure `share` of the load.
+struct HeightErrors {
+  double rms_m = 0, greatest_trusted_m = 0, trusted_share = 0;
+};
+HeightErrors ErrorsAfterChange(double share, double change_s, double from_s) {
+  MadeBody body = Squatter();
+  BestConfig config;
+  config.height_posture = LearnedHeightPosture();
+  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  WrongPosture posture;
+  HeightErrors errors;
+  int count = 0;
+  for (int i = 0; i < 30 * 60; ++i) {
+    const double t = i * kMadeStepS;
+    ContactLoads loads = body.At(t);
+    for (FootLoads& foot : loads.feet) {
+      for (Cell& cell : foot.cells) cell.load_n *= t < change_s ? 1 : share;
+    }
+    best.Advance(loads);
+    const Eigen::Vector3d seen_m = posture.Of(body.com_m(t));
+    const Estimate& now = best.SeePosture(seen_m.y(), seen_m.z());
+    if (t < from_s) continue;
+    const double error = now.p_WC_m.z() - body.com_m(t).z();
+    ++count;
+    errors.rms_m += error * error;
+    errors.trusted_share += now.trusted ? 1 : 0;
+    if (now.trusted)
+      errors.greatest_trusted_m = std::max(errors.greatest_trusted_m, std::abs(error));
+  }
+  errors.rms_m = std::sqrt(errors.rms_m / count);
+  errors.trusted_share /= count;
+  return errors;
+}
+
+TEST(BestEstimator, AWeightThatChangesInMidMovementDoesNotCarryTheHeightAway) {
+  for (const double share : {0.95, 0.99, 1.01, 1.05}) {
+    const HeightErrors errors = ErrorsAfterChange(share, 5.3, 6.3);
+    EXPECT_LT(errors.rms_m, 0.15) << share;
+    EXPECT_LT(errors.greatest_trusted_m, 0.55) << share;
+    EXPECT_GT(errors.trusted_share, 0.9) << share;
+  }
+}
+
+TEST(BestEstimator, ComesBackWithinASecondOfALandingThatItDidNotSeeComing) {
+  MadeBody body;
+  BestConfig config;
+  config.height_posture = LearnedHeightPosture();
+  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  // Off the cells for three seconds; back on them out of a fall, knees giving way by 15 cm.
+  const auto height_m = [](double t) {
+    return kMadeHeightM - (t < 3 ? 0 : 0.15 * Ramp(2 * (t - 3)));
+  };
+  body.com_m = [&](double t) { return Eigen::Vector3d(0, 0, height_m(t)); };
+  for (int i = 0; i < 5 * 60; ++i) {
+    const double t = i * kMadeStepS;
+    ContactLoads loads = body.At(t);
+    if (t < 3) {
+      for (FootLoads& foot : loads.feet) {
+        for (Cell& cell : foot.cells) cell.load_n = 0;
+      }
+    }
+    best.Advance(loads);
+    const Estimate& now = best.SeePosture(0, height_m(t) + 0.04);
+    if (t > 1.2 && t < 2.9) {
+      EXPECT_FALSE(now.valid);
+    }
+    if (t > 4) {
+      EXPECT_TRUE(now.trusted) << t;
+      EXPECT_NEAR(now.p_WC_m.z(), height_m(t), 0.14) << t;
+    }
+  }
+  EXPECT_EQ(best.estimate().resets, 1u);
+}
+
+}  // namespace
+}  // namespace footing::momentum
