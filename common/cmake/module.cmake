@@ -113,6 +113,10 @@ function(add_program name)
   if(arg_RELEASE_ONLY AND FOOTING_SANITIZE)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
   endif()
+  if(NOT TARGET programs)
+    add_custom_target(programs)
+  endif()
+  add_dependencies(programs ${name})
   target_link_libraries(${name} PRIVATE ${links} footing_warnings)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${name} RUNTIME DESTINATION bin COMPONENT ${name})
@@ -122,6 +126,13 @@ function(add_program name)
                             \"$<TARGET_FILE:${name}>\" \"${PROJECT_VERSION}\"
                             \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}\"
                     COMMAND_ERROR_IS_FATAL ANY)"
+    COMPONENT ${name})
+  # Completion is one file, found by the name of the program.
+  install(CODE "
+    set(folder \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/bash-completion/completions\")
+    file(MAKE_DIRECTORY \"\${folder}\")
+    file(CREATE_LINK footing \"\${folder}/${name}\" SYMBOLIC)
+    message(STATUS \"Installing: \${folder}/${name}\")"
     COMPONENT ${name})
   string(REPLACE ";" " " deps "${arg_DEPS}")
   set_property(GLOBAL APPEND_STRING PROPERTY MODULE_TABLE "${name}|${folder}|FALSE|${deps}|\n")

@@ -5,6 +5,7 @@ Usage: install.py BINARY_FOLDER BUILD_FOLDER
 Installs footingd, footing-sim, footing-stream, units and data to a temporary prefix, and runs the line
 from there, once with a data file missing in the installed folder to see that no other one is read.
 """
+import gzip
 import pathlib
 import subprocess
 import sys
@@ -16,7 +17,7 @@ PROGRAMS = ("footingd", "footing-sim", "footing-stream")
 
 
 def install(build, prefix):
-    for component in (*PROGRAMS, "data", "documentation", "systemd"):
+    for component in (*PROGRAMS, "completion", "data", "documentation", "system_user"):
         done = subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--component", component],
                               capture_output=True, text=True, timeout=120, check=False)
         assert done.returncode == 0, done.stderr
@@ -41,10 +42,12 @@ def check_units(build, prefix):
 def check_files(prefix):
     for name in ("share/footing/biped.json", "share/footing/proto/footing/v1/session.proto",
                  "share/doc/footing/README.md", "share/doc/footing/docs/protocol.md",
-                 "share/man/man8/footingd.8", "share/man/man1/footing-stream.1",
+                 "share/man/man8/footingd.8.gz", "share/man/man1/footing-stream.1.gz",
+                 "share/bash-completion/completions/footing",
                  "lib/udev/rules.d/70-footing.rules", "lib/sysusers.d/footing.conf"):
         assert (prefix / name).is_file(), f"{name} is not installed"
-    assert "\\-\\-listen" in (prefix / "share/man/man8/footingd.8").read_text()
+    page = gzip.decompress((prefix / "share/man/man8/footingd.8.gz").read_bytes()).decode()
+    assert "\\-\\-listen" in page
 
 
 def check_line(prefix):
