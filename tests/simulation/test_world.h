@@ -23,10 +23,9 @@ inline biped::BipedParameters Biped() {
 
 /// The biped over a plane at z = 0.
 inline physics::World LevelWorld(double step_s = 0.001) {
-  const char* plane = "<geom type='plane' contype='1' conaffinity='2' size='0 0 1'/>";
-  return std::move(
-             physics::World::FromMjcf(biped::WriteMjcf(Biped(), plane, step_s), biped::Names()))
-      .value();
+  const char* plane = "<geom name='plane' type='plane' contype='1' conaffinity='2' size='0 0 1'/>";
+  const std::string world = biped::WriteMjcf(Biped(), plane, {"plane"}, step_s);
+  return std::move(physics::World::FromMjcf(world, biped::Names())).value();
 }
 
 }  // namespace footing::test

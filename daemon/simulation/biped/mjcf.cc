@@ -46,25 +46,47 @@ std::string Leg(const BipedParameters& p, int leg) {
          Knee(p, side) + "</body>\n";
 }
 
+constexpr const char* kSolref = "0.006 1";
+constexpr const char* kRolling = "0.0001";  // Rolling friction, m; of no effect with condim 4.
+
+/// Each foot with each geom of the ground, by the same numbers that the geoms have: a foot's come
+/// first by its priority.
+std::string FootPairs(const BipedParameters& p, const std::vector<std::string>& ground_names) {
+  const std::string slides = Shortest(p.sliding_friction), turns = Shortest(p.torsional_friction_m);
+  std::string pairs;
+  for (const char* foot : {"left_foot", "right_foot"}) {
+    for (const std::string& name : ground_names) {
+      pairs += "<pair geom1='" + name + "' geom2='" + foot + "' condim='4' solref='" + kSolref +
+               "' friction='" + slides + " " + slides + " " + turns + " " + kRolling + " " +
+               kRolling + "'/>\n";
+    }
+  }
+  return pairs.empty() ? "" : "<contact>\n" + pairs + "</contact>\n";
+}
+
 }  // namespace
 
-std::string WriteMjcf(const BipedParameters& p, const std::string& ground, double step_s) {
+std::string WriteMjcf(const BipedParameters& p, const std::string& ground,
+                      const std::vector<std::string>& ground_names, double step_s) {
   return "<mujoco>\n<compiler angle='radian' inertiafromgeom='false'/>\n"
          "<option timestep='" +
          Shortest(step_s) + "' integrator='Euler' cone='elliptic' gravity='0 0 " +
          Shortest(-kStandardGravityMps2) +
          "' iterations='50'/>\n"
-         "<default>\n<geom solref='0.006 1'/>\n"
+         "<default>\n<geom solref='" +
+         kSolref +
+         "'/>\n"
          "<default class='shell'><geom contype='2' conaffinity='1'/></default>\n"
          "<default class='foot'><geom contype='2' conaffinity='1' priority='1' condim='4' "
          "friction='" +
-         Shortest(p.sliding_friction) + " " + Shortest(p.torsional_friction_m) +
-         " 0.0001'/></default>\n</default>\n<worldbody>\n" + ground +
+         Shortest(p.sliding_friction) + " " + Shortest(p.torsional_friction_m) + " " + kRolling +
+         "'/></default>\n</default>\n<worldbody>\n" + ground +
          "<body name='body' pos='0 0 1'>\n<freejoint/>\n" +
          Inertial(0, p.body_mass_kg, p.body_inertia_roll_kgm2, p.body_inertia_pitch_kgm2,
                   p.body_inertia_yaw_kgm2) +
          "<geom type='capsule' class='shell' size='0.1' fromto='-0.15 0 0 0.15 0 0'/>\n" +
-         Leg(p, kLeft) + Leg(p, kRight) + "</body>\n</worldbody>\n</mujoco>\n";
+         Leg(p, kLeft) + Leg(p, kRight) + "</body>\n</worldbody>\n" + FootPairs(p, ground_names) +
+         "</mujoco>\n";
 }
 
 physics::WorldNames Names(const std::vector<std::string>& ground) {

@@ -18,8 +18,9 @@ Result<std::unique_ptr<TrackWorld>> MakeTrackWorld(stream::Track track,
   for (int i = 0; i < window.boxes; ++i) {
     boxes.push_back(terrain::GroundBoxName(i));
   }
+  const terrain::GroundText ground = terrain::GroundMjcf(track);
   Result<physics::World> world = physics::World::FromMjcf(
-      biped::WriteMjcf(biped, terrain::GroundMjcf(track), step_s), biped::Names(boxes));
+      biped::WriteMjcf(biped, ground.mjcf, ground.names, step_s), biped::Names(boxes));
   if (!world) return world.error();
   auto made = std::make_unique<TrackWorld>(TrackWorld{.track = std::move(track),
                                                       .sight = {},

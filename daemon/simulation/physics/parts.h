@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "daemon/simulation/physics/clearance.h"
 #include "daemon/simulation/physics/compile.h"
 #include "daemon/simulation/physics/world.h"
 
@@ -19,6 +20,7 @@ struct World::Parts {
   std::array<int, kLegs> hips{};
   std::array<int, kLegs> feet{};
   std::vector<int> ground;
+  Clearance clearance;
   double mass_kg = 0;
   std::uint64_t steps = 0;
   /// As integrated: mj_step1 normalises qpos in place, and doing so twice may change the last bit.

@@ -59,6 +59,7 @@ Result<World> World::FromMjcf(const std::string& mjcf, const WorldNames& names) 
     if (!found) return found.error();
   }
   for (const int link : parts->links) parts->mass_kg += m.body_mass[link];
+  parts->clearance = Clearance(m, {parts->feet.begin(), parts->feet.end()});
   parts->state.reset(mj_makeData(&m));
   FOOTING_CHECK(parts->state != nullptr);
   World world(std::move(parts));
@@ -82,6 +83,7 @@ void World::Reset(const Eigen::Vector3d& p_WB_m, double heading_rad,
   d.qpos[6] = std::sin(heading_rad / 2);
   std::copy(joint_position.begin(), joint_position.end(), d.qpos + 7);
   KeepQuaternion(d, p.root_quaternion);
+  p.model->opt.collision = mjCOL_ALL;
   mj_forward(p.model.get(), &d);
   ReadContacts(*p.model, d, p.feet, p.observation);
   ReadMotion(*p.model, d, p.links, p.hips, p.feet, p.mass_kg, p.observation);
@@ -96,6 +98,7 @@ void World::PlaceBox(int index, const Eigen::Vector3d& centre_W_m, const Eigen::
   const std::array<double, 4> quaternion{q_WS.w(), q_WS.x(), q_WS.y(), q_WS.z()};
   std::copy(quaternion.begin(), quaternion.end(), m.geom_quat + 4 * geom);
   m.geom_rbound[geom] = half_size_m.norm();
+  parts_->clearance.MoveGround(m, geom);
 }
 
 // mj_step is mj_step1 then mj_step2. Cut between them, a step leaves positions and velocities of
@@ -110,6 +113,7 @@ void World::Step(const JointEfforts& efforts, const Eigen::Vector3d& push_W_n) {
   mj_step2(p.model.get(), &d);
   KeepQuaternion(d, p.root_quaternion);
   ReadContacts(*p.model, d, p.feet, p.observation);
+  p.model->opt.collision = p.clearance.FeetAlone(*p.model, d) ? mjCOL_PAIR : mjCOL_ALL;
   mj_step1(p.model.get(), &d);
   ReadMotion(*p.model, d, p.links, p.hips, p.feet, p.mass_kg, p.observation);
   ++p.steps;
@@ -119,6 +123,7 @@ void World::StepBare(const JointEfforts& efforts, const Eigen::Vector3d& push_W_
   ApplyForces(*parts_->state, parts_->links[0], efforts, push_W_n);
   std::copy(parts_->root_quaternion.begin(), parts_->root_quaternion.end(),
             parts_->state->qpos + 3);
+  parts_->model->opt.collision = mjCOL_ALL;
   mj_step(parts_->model.get(), parts_->state.get());
   KeepQuaternion(*parts_->state, parts_->root_quaternion);
 }
@@ -173,6 +178,7 @@ void World::Restore(const WorldState& state) {
   p.observation.normal_force_n = state.normal_force_n;
   p.observation.contact_force_W_n = state.contact_force_W_n;
   p.observation.other_contact = state.other_contact;
+  p.model->opt.collision = mjCOL_ALL;
   mj_step1(p.model.get(), &d);
   ReadMotion(*p.model, d, p.links, p.hips, p.feet, p.mass_kg, p.observation);
 }

@@ -6,15 +6,14 @@
 namespace footing::terrain {
 namespace {
 
-std::string Geom(const GroundBox& box, const std::string& name = "") {
+std::string Geom(const GroundBox& box, const std::string& name) {
   const auto text = [](double value) { return std::to_string(value) + " "; };
   const Eigen::Vector3d& p = box.centre_W_m;
   const Eigen::Vector3d& half = box.half_size_m;
   const Eigen::Quaterniond& q = box.q_WS;
-  return "<geom" + (name.empty() ? "" : " name='" + name + "'") +
-         " type='box' contype='1' conaffinity='2' size='" + text(half.x()) + text(half.y()) +
-         text(half.z()) + "' pos='" + text(p.x()) + text(p.y()) + text(p.z()) + "' quat='" +
-         text(q.w()) + text(q.x()) + text(q.y()) + text(q.z()) + "'/>\n";
+  return "<geom name='" + name + "' type='box' contype='1' conaffinity='2' size='" +
+         text(half.x()) + text(half.y()) + text(half.z()) + "' pos='" + text(p.x()) + text(p.y()) +
+         text(p.z()) + "' quat='" + text(q.w()) + text(q.x()) + text(q.y()) + text(q.z()) + "'/>\n";
 }
 
 constexpr int kBoxesBehind = 8;  ///< Of an extendable track.
@@ -76,20 +75,24 @@ GroundBox WaitingBox(int index) {
 
 std::string GroundBoxName(int index) { return "ground_" + std::to_string(index); }
 
-std::string GroundMjcf(const stream::Track& track) {
+GroundText GroundMjcf(const stream::Track& track) {
+  GroundText ground;
+  const auto add = [&ground](const GroundBox& box, std::size_t index) {
+    ground.names.push_back(GroundBoxName(static_cast<int>(index)));
+    ground.mjcf += Geom(box, ground.names.back());
+  };
   if (const GroundWindow window = WindowOf(track); window.boxes > 0) {
-    std::string boxes;
-    for (int i = 0; i < window.boxes; ++i) boxes += Geom(WaitingBox(i), GroundBoxName(i));
-    return boxes;
+    for (int i = 0; i < window.boxes; ++i) add(WaitingBox(i), static_cast<std::size_t>(i));
+    return ground;
   }
   if (HasPlane(track)) {
-    return "<geom type='plane' contype='1' conaffinity='2' size='0 0 1'/>\n";
+    return {"<geom name='ground' type='plane' contype='1' conaffinity='2' size='0 0 1'/>\n",
+            {"ground"}};
   }
-  std::string text;
   for (std::size_t i = 0; i < track.segments.size(); ++i) {
-    if (!track.segments[i].pit) text += Geom(BoxOf(track, i));
+    if (!track.segments[i].pit) add(BoxOf(track, i), i);
   }
-  return text;
+  return ground;
 }
 
 }  // namespace footing::terrain

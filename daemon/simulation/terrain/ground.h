@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/stream/character.h"
 #include "daemon/simulation/terrain/box.h"
@@ -40,9 +41,13 @@ GroundWindow WindowOf(const stream::Track& track);
 GroundBox WaitingBox(int index);
 std::string GroundBoxName(int index);
 
+struct GroundText {
+  std::string mjcf;
+  std::vector<std::string> names;  ///< Of its geoms, in their order.
+};
 /// The ground as MJCF geoms of the world body: the waiting ones of WindowOf, else one plane
 /// (HasPlane), or a box for each segment that is not a pit; the first one begins 3 m before its
 /// start.
-std::string GroundMjcf(const stream::Track& track);
+GroundText GroundMjcf(const stream::Track& track);
 
 }  // namespace footing::terrain

@@ -79,6 +79,44 @@ TEST(World, BareStepsReachTheSameStateAsOurs) {
   EXPECT_EQ(bare.StateHash(), world.StateHash());
 }
 
+/// Over two boxes with a step of 10 cm between them, feet and boxes listed as pairs or not.
+World SteppedWorld(bool pairs) {
+  const std::string boxes =
+      "<geom name='low' type='box' contype='1' conaffinity='2' size='2 2 1' pos='-2 0 -1'/>"
+      "<geom name='high' type='box' contype='1' conaffinity='2' size='2 2 1' pos='2 0 -0.9'/>";
+  const std::vector<std::string> names =
+      pairs ? std::vector<std::string>{"low", "high"} : std::vector<std::string>{};
+  return std::move(World::FromMjcf(biped::WriteMjcf(test::Biped(), boxes, names, 0.001),
+                                   biped::Names(pairs ? names : std::vector<std::string>{})))
+      .value();
+}
+
+TEST(World, LooksAtTheFeetAloneOnlyWhereNothingElseCanTouch) {
+  World feet = SteppedWorld(true), all = SteppedWorld(false);
+  for (World* world : {&feet, &all}) world->Reset({-0.1, 0, 1.02}, 0.2, {});
+  bool stood = false, lay = false;
+  for (int i = 0; i < 2500; ++i) {  // It stands, wriggles, stumbles over the step and lies there.
+    feet.Step(Wriggle(i), Eigen::Vector3d(i < 300 ? 0 : 20, 0, 0));
+    all.Step(Wriggle(i), Eigen::Vector3d(i < 300 ? 0 : 20, 0, 0));
+    ASSERT_EQ(feet.StateHash(), all.StateHash()) << i;
+    ASSERT_EQ(feet.Observe().other_contact, all.Observe().other_contact) << i;
+    stood = stood || feet.Observe().normal_force_n[0] > 0;
+    lay = lay || feet.Observe().other_contact;
+  }
+  EXPECT_TRUE(stood && lay);
+}
+
+TEST(World, GroundThatRisesUnderTheBodyTouchesIt) {
+  World world = SteppedWorld(true);
+  world.Reset({-0.5, 0, 3}, 0, {});
+  world.Step({}, Eigen::Vector3d::Zero());
+  // The box's face is then 5 cm above the body's COM, all between its shells.
+  world.PlaceBox(0, {-0.5, 0, 2.05}, Eigen::Quaterniond::Identity(), {2, 2, 1});
+  world.Step({}, Eigen::Vector3d::Zero());
+  world.Step({}, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(world.Observe().other_contact);
+}
+
 TEST(World, HashTellsStatesApartThatDifferInTheLastBit) {
   World world = test::LevelWorld();
   const std::uint64_t hash = world.StateHash();

@@ -225,7 +225,7 @@ TEST(Track, OneThatMayBeLeftOrGrowsHasNoFinishLine) {
 }
 
 TEST(Track, OnlyGroundThatMayBeLeftIsAnEndlessPlane) {
-  const auto geoms = [](const char* text) { return GroundMjcf(ParseTrack(text, "").value()); };
+  const auto geoms = [](const char* text) { return GroundMjcf(ParseTrack(text, "").value()).mjcf; };
   EXPECT_NE(geoms(R"({"version": 1, "open": true, "segments": [{"length_m": 50}]})").find("plane"),
             std::string::npos);
   EXPECT_EQ(geoms(R"({"version": 1, "segments": [{"length_m": 50}]})").find("plane"),
@@ -235,7 +235,7 @@ TEST(Track, OnlyGroundThatMayBeLeftIsAnEndlessPlane) {
 TEST(GroundWindow, HasTheBoxesWithinReachOfAnyPoint) {
   const auto window = [](const char* text) { return WindowOf(ParseTrack(text, "").value()); };
   const auto boxes = [](const char* text) {
-    const std::string geoms = GroundMjcf(ParseTrack(text, "").value());
+    const std::string geoms = GroundMjcf(ParseTrack(text, "").value()).mjcf;
     int count = 0;
     for (auto at = geoms.find("'box'"); at != std::string::npos; at = geoms.find("'box'", at + 1))
       ++count;

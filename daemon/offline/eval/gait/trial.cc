@@ -66,9 +66,9 @@ Result<physics::World> NewWorld() {
   if (!biped) return biped.error();
   Result<stream::Track> track = terrain::ParseTrack(texts->track, engine::kPlainTrackFile);
   if (!track) return track.error();
-  return physics::World::FromMjcf(
-      biped::WriteMjcf(*biped, terrain::GroundMjcf(*track), engine::EngineConfig{}.step_s),
-      biped::Names());
+  return physics::World::FromMjcf(biped::WriteMjcf(*biped, terrain::GroundMjcf(*track).mjcf, {},
+                                                   engine::EngineConfig{}.step_s),
+                                  biped::Names());
 }
 
 void Walker::Command(const biped::GaitCommand& command) {
