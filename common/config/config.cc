@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/config/data_file.h"
+#include "common/config/lines_of_keys.h"
 
 namespace footing::config {
 namespace {
@@ -109,16 +110,25 @@ const Binder::Entry* Binder::Find(const std::string& key) const {
   return nullptr;
 }
 
-Result<void> Binder::Assign(const std::string& key, const Json& value, const std::string& origin) {
-  const Entry* entry = Find(key);
+Binder::Entry* Binder::Find(const std::string& key) {
+  for (Entry& entry : entries_) {
+    if (entry.key == key) return &entry;
+  }
+  return nullptr;
+}
+
+Result<void> Binder::Assign(const std::string& key, const Json& value, const std::string& where,
+                            const std::string& origin) {
+  Entry* entry = Find(key);
   if (entry == nullptr) {
-    return UsageError("config: unknown key \"" + key + "\" in " + origin +
+    return UsageError("config: unknown key \"" + key + "\" in " + where +
                       "; --print-config lists the keys");
   }
   if (!entry->assign(value)) {
-    return UsageError("config: " + key + " = " + value.dump() + " in " + origin + "; it must be " +
+    return UsageError("config: " + key + " = " + value.dump() + " in " + where + "; it must be " +
                       entry->allowed);
   }
+  entry->origin = origin;
   return {};
 }
 
@@ -130,8 +140,12 @@ Result<void> Binder::ApplyText(const std::string& text, const std::string& origi
     return UsageError("config: " + origin + " is not JSON: " + error.what());
   }
   if (!json.is_object()) return UsageError("config: " + origin + " must hold one JSON object");
+  const auto lines = LinesOfKeys(text);
   for (const auto& [key, value] : json.items()) {
-    if (const Result<void> result = Assign(key, value, origin); !result) return result;
+    const auto line = lines.find(key);
+    const std::string place =
+        line == lines.end() ? origin : origin + ":" + std::to_string(line->second);
+    if (const Result<void> result = Assign(key, value, origin, place); !result) return result;
   }
   return {};
 }
@@ -152,7 +166,7 @@ Result<void> Binder::ApplySetting(const std::string& setting) {
   const Entry* entry = Find(key);
   Json value = Json::parse(text, nullptr, false);
   if (value.is_discarded() || (entry != nullptr && entry->text && !value.is_string())) value = text;
-  return Assign(key, value, "--set");
+  return Assign(key, value, "--set", "--set");
 }
 
 Result<void> Binder::Apply(const std::string& file, const std::vector<std::string>& settings) {
@@ -171,6 +185,19 @@ std::string Binder::Print() const {
   return json.dump(2);
 }
 
+void Binder::SetOrigin(const std::string& key, const std::string& origin) {
+  if (Entry* entry = Find(key)) entry->origin = origin;
+}
+
+std::string Binder::PrintOrigins() const {
+  std::string text;
+  for (const Entry& entry : entries_) {
+    const Json one{{"value", entry.read()}, {"origin", entry.origin}};
+    text += (text.empty() ? "{\n  " : ",\n  ") + Json(entry.key).dump() + ": " + one.dump();
+  }
+  return text + "\n}";
+}
+
 std::string Binder::Describe() const {
   std::string text;
   for (const Entry& entry : entries_) {
@@ -178,6 +205,16 @@ std::string Binder::Describe() const {
             entry.read().dump() + ")\n";
   }
   return text;
+}
+
+std::vector<Change> Differences(const Binder& before, const Binder& after) {
+  const Json old_values = Json::parse(before.Print()), new_values = Json::parse(after.Print());
+  std::vector<Change> changes;
+  for (const auto& [key, value] : new_values.items()) {
+    const std::string old_text = old_values.contains(key) ? old_values[key].dump() : "";
+    if (old_text != value.dump()) changes.push_back({key, old_text, value.dump()});
+  }
+  return changes;
 }
 
 }  // namespace footing::config

@@ -42,8 +42,14 @@ class Binder {
 
   bool Has(const std::string& key) const { return Find(key) != nullptr; }
 
+  /// Says where a key's value comes from, when that was neither the file nor a setting.
+  void SetOrigin(const std::string& key, const std::string& origin);
+
   /// The effective config as a JSON object, in the order bound.
   std::string Print() const;
+  /// The same with the origin of each value, a line a key: "KEY": {"value": ..., "origin":
+  /// "default", "FILE:LINE", "--set" or that of SetOrigin}.
+  std::string PrintOrigins() const;
   /// One line a key: key, range, default, documentation.
   std::string Describe() const;
 
@@ -55,13 +61,26 @@ class Binder {
     std::function<bool(const nlohmann::ordered_json&)> assign;
     std::function<nlohmann::ordered_json()> read;
     bool text = false;
+    std::string origin = "default";
   };
 
+  /// `where` is named in errors, `origin` in PrintOrigins.
   Result<void> Assign(const std::string& key, const nlohmann::ordered_json& value,
-                      const std::string& origin);
+                      const std::string& where, const std::string& origin);
   const Entry* Find(const std::string& key) const;
+  Entry* Find(const std::string& key);
 
   std::vector<Entry> entries_;
 };
+
+/// A key whose values differ, both as JSON.
+struct Change {
+  std::string key;
+  std::string before;
+  std::string after;
+};
+
+/// Between two configs with the same keys, in the order bound.
+std::vector<Change> Differences(const Binder& before, const Binder& after);
 
 }  // namespace footing::config

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/config/data_file.h"
+#include "common/config/lines_of_keys.h"
 
 namespace footing::config {
 namespace {
@@ -113,6 +116,45 @@ TEST(DataFile, AnUnknownNameListsTheBuiltInOnes) {
       HasSubstr(
           "there are: 1, 2, 3, 4, build, corners, curves, endless, hills, pits, plain, straight"));
   EXPECT_TRUE(ReadNamedOrPath("straight", "tracks"));
+}
+
+TEST(Config, EachValueKnowsWhereItComesFrom) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  const char* file =
+      "// comment\n{\n\n  \"rate_hz\": 50, \"sessions\": 3,\n  /* two\n lines */ "
+      "\"listen\":\n[\"unix:a\"]}";
+  ASSERT_TRUE(binder.ApplyText(file, "/etc/f.json"));
+  ASSERT_TRUE(binder.ApplySetting("sessions=4"));
+  binder.SetOrigin("listen", "--listen");
+  const auto shown = nlohmann::json::parse(binder.PrintOrigins());
+  EXPECT_EQ(shown["rate_hz"], (nlohmann::json{{"value", 50}, {"origin", "/etc/f.json:4"}}));
+  EXPECT_EQ(shown["sessions"], (nlohmann::json{{"value", 4}, {"origin", "--set"}}));
+  EXPECT_EQ(shown["quiet"], (nlohmann::json{{"value", false}, {"origin", "default"}}));
+  EXPECT_EQ(shown["listen"]["origin"], "--listen");
+  EXPECT_EQ(LinesOfKeys(file).at("listen"), 6);
+  EXPECT_EQ(shown.size(), 5u);
+}
+
+TEST(Config, LinesAreThoseOfTheOutermostKeys) {
+  const auto lines = LinesOfKeys("{\"a\": {\n\"b\": [{\"c\": 1}]},\n\"d\": 1");
+  EXPECT_EQ(lines, (std::map<std::string, int>{{"a", 1}, {"d", 3}}));
+}
+
+TEST(Config, DifferencesNameTheKeysThatChanged) {
+  Example before, after;
+  Binder old_binder, new_binder;
+  before.Bind(old_binder);
+  after.Bind(new_binder);
+  EXPECT_TRUE(Differences(old_binder, new_binder).empty());
+  ASSERT_TRUE(new_binder.ApplyText(R"({"rate_hz": 50, "rig": "two"})", "f"));
+  const auto changes = Differences(old_binder, new_binder);
+  ASSERT_EQ(changes.size(), 2u);
+  EXPECT_EQ(changes[0].key, "rate_hz");
+  EXPECT_EQ(changes[0].before, "100.0");
+  EXPECT_EQ(changes[0].after, "50.0");
+  EXPECT_EQ(changes[1].after, "\"two\"");
 }
 
 }  // namespace
