@@ -87,10 +87,27 @@ class Server::Implementation {
     return statistics;
   }
 
+  std::vector<stream::SessionStats> sessions() const {
+    std::vector<stream::SessionStats> all;
+    for (const auto& session : sessions_) {
+      if (session->welcomed()) all.push_back(session->Stats());
+    }
+    return all;
+  }
+
   void Stop(const std::string& reason) {
     listeners_.clear();
     for (const auto& session : sessions_) session->End(reason);
   }
+
+  void Drain(const std::string& reason, std::function<void()> done) {
+    listeners_.clear();
+    drained_ = std::move(done);
+    for (const auto& session : sessions_) session->Drain(reason);
+    if (sessions_.empty()) Drained();
+  }
+
+  void SetLimits(const SessionLimits& limits) { shared_.options.sessions = limits; }
 
  private:
   void OnAccept(Socket socket) {
@@ -116,12 +133,17 @@ class Server::Implementation {
         shared_.options.server_id + " has " + full + "; end one or try again later");
   }
 
+  void Drained() {
+    if (drained_) boost::asio::post(io_, std::exchange(drained_, nullptr));
+  }
+
   void OnEnd(Session& ended) {
     const auto found = std::find_if(sessions_.begin(), sessions_.end(),
                                     [&](const auto& session) { return session.get() == &ended; });
     const std::shared_ptr<Session> session = *found;
     sessions_.erase(found);
     boost::asio::post(io_, [session] {});  // It is still being called: let it go later.
+    if (sessions_.empty()) Drained();
     if (!session->welcomed()) return;
     if (!session->may_administer()) --shared_.with_role[session->info().role];
     if (shared_.handlers.on_session_end) shared_.handlers.on_session_end(session->info());
@@ -133,6 +155,7 @@ class Server::Implementation {
   std::vector<std::shared_ptr<Session>> sessions_;
   std::uint64_t last_number_ = 0;
   TokenBucket late_lines_{0.1, 1};
+  std::function<void()> drained_;  ///< While draining.
 };
 
 Server::Server(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
@@ -151,6 +174,11 @@ void Server::Answer(std::uint64_t session, const v1::CommandResult& result) {
 void Server::NoteLateTicks(std::uint64_t count) { implementation_->NoteLateTicks(count); }
 std::uint64_t Server::epoch() const { return implementation_->epoch(); }
 ServerStatistics Server::statistics() const { return implementation_->statistics(); }
+std::vector<stream::SessionStats> Server::sessions() const { return implementation_->sessions(); }
 void Server::Stop(const std::string& reason) { implementation_->Stop(reason); }
+void Server::Drain(const std::string& reason, std::function<void()> done) {
+  implementation_->Drain(reason, std::move(done));
+}
+void Server::SetLimits(const SessionLimits& limits) { implementation_->SetLimits(limits); }
 
 }  // namespace footing::transport

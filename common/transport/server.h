@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/result/result.h"
+#include "common/stream/server_stats.h"
 #include "common/transport/address.h"
 #include "common/transport/session_limits.h"
 #include "footing/v1/session.pb.h"
@@ -112,9 +113,17 @@ class Server {
 
   std::uint64_t epoch() const;
   ServerStatistics statistics() const;
+  /// Of each session that was welcomed.
+  std::vector<stream::SessionStats> sessions() const;
 
-  /// Says goodbye to every session and closes.
+  /// Says goodbye to every session and closes; what waits for them is lost.
   void Stop(const std::string& reason);
+  /// The same, but each session first gets what waits for it. No further connection is accepted,
+  /// and the owner publishes no more. `done` is called once, on the loop, when the last session has
+  /// ended; the owner decides how long it waits for that.
+  void Drain(const std::string& reason, std::function<void()> done);
+  /// For sessions that come from now on.
+  void SetLimits(const SessionLimits& limits);
 
  private:
   class Implementation;

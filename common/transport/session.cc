@@ -64,6 +64,7 @@ Session::Session(Socket socket, std::uint64_t number, Shared& shared,
       heard_ns_(shared.NowNs()),
       answers_(kRememberedAnswers) {
   info_.session = number;
+  record_.began_ns = heard_ns_;
   peer_ = PeerOf(connection_.native_handle());
   highest_role_ = HighestRole(peer_, geteuid(), getegid());
 }
@@ -107,11 +108,11 @@ void Session::OnTimer() {
         "; connect again");
     return;
   }
-  if (!ping_unanswered_) {
+  if (!record_.ping.unanswered) {
+    record_.ping = {record_.ping.id + 1, shared_.NowNs(), true};
     v1::Envelope message;
-    message.mutable_ping()->set_id(++ping_id_);
-    message.mutable_ping()->set_t0_ns(shared_.NowNs());
-    ping_unanswered_ = true;
+    message.mutable_ping()->set_id(record_.ping.id);
+    message.mutable_ping()->set_t0_ns(record_.ping.sent_ns);
     Send(message);
   }
   if (connection_.open()) ArmTimer(options.ping_interval_s);
@@ -180,8 +181,7 @@ void Session::Dispatch(const v1::Envelope& message, std::int64_t arrived_ns) {
     case v1::Envelope::kPing:
       return OnPing(message.ping(), arrived_ns);
     case v1::Envelope::kPong:
-      ping_unanswered_ = false;
-      return;
+      return record_.TakePong(message.pong(), arrived_ns);
     case v1::Envelope::kCommand:
       return OnCommand(message.command(), arrived_ns);
     case v1::Envelope::BODY_NOT_SET:

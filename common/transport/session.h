@@ -18,6 +18,7 @@
 #include "common/transport/peer.h"
 #include "common/transport/publication.h"
 #include "common/transport/server.h"
+#include "common/transport/session_record.h"
 #include "common/transport/tick_queue.h"
 #include "common/transport/token.h"
 #include "common/transport/token_bucket.h"
@@ -69,8 +70,14 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Something slows this session, or all of them.
   void Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count);
 
+  /// Sends what waits for the client, then says goodbye and ends.
+  void Drain(const std::string& reason);
+
   /// Says goodbye and ends.
   void End(const std::string& reason);
+
+  /// How it fares, for the channel `stats`.
+  stream::SessionStats Stats() const;
 
   const SessionInfo& info() const { return info_; }
   const Peer& peer() const { return peer_; }
@@ -102,6 +109,7 @@ class Session : public std::enable_shared_from_this<Session> {
   /// A full queue of answers ends the session: it takes nothing that it asked for.
   void Send(const v1::Envelope& message);
 
+  void EndLater();
   void Fill(WriteBatch& batch);
   bool FillLive(WriteBatch& batch);
   bool FillCatchUp(WriteBatch& batch);
@@ -124,9 +132,7 @@ class Session : public std::enable_shared_from_this<Session> {
   FramedConnection connection_;
   timer::Timer timer_;
   std::int64_t heard_ns_ = 0;
-  std::uint64_t ping_id_ = 0;
-  bool ping_unanswered_ = false;
-  std::uint64_t slowed_ = 0;
+  SessionRecord record_;
   TokenBucket slowed_notices_{1, 1};
   Answers answers_;
   std::set<std::uint64_t> open_commands_;  ///< Being carried out; their answers come later.

@@ -15,7 +15,7 @@ void Shared::SayOverload(const std::string& line) {
 }
 
 void Session::OnSlowed() {
-  ++slowed_;
+  ++record_.slowed;
   ++shared_.statistics.slowed;
   const double per_s = shared_.options.sessions.session_messages_per_s;
   shared_.SayOverload("session " + std::to_string(info_.session) + " (" + info_.client_name +
@@ -23,7 +23,8 @@ void Session::OnSlowed() {
                       " messages a second and is slowed");
   if (phase_ == Phase::kHello || !slowed_notices_.Take(shared_.NowNs())) return;
   Notify(v1::Notice::KIND_SLOWED,
-         "this client sends more than the server's limit of messages; the rest waits", slowed_);
+         "this client sends more than the server's limit of messages; the rest waits",
+         record_.slowed);
 }
 
 void Session::Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count) {

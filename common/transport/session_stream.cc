@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <boost/asio/post.hpp>
 #include <limits>
 
 #include "common/transport/framing.h"
@@ -38,6 +39,7 @@ void Session::OnSubscribe(const v1::Subscribe& wish) {
   *message.mutable_subscribed() = settled.answer;
   Send(message);
 
+  record_.ticks_dropped += queue_.dropped_ticks();
   subscription_ = std::move(settled.subscription);
   queue_ = TickQueue(subscription_.rule, subscription_.queue_ticks, shared_.publication.retained());
   decimator_.emplace(subscription_.max_hz, SecondsToNanoseconds(1 / shared_.options.tick_rate_hz));
@@ -129,8 +131,23 @@ void Session::AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reaso
 void Session::Fill(WriteBatch& batch) {
   // A tick and a Gap in front of it.
   while (batch.free_buffers() > kBuffersPerTick) {
-    if (!FillLive(batch) && !FillCatchUp(batch) && !FillRefill(batch)) return;
+    if (FillLive(batch) || FillCatchUp(batch) || FillRefill(batch)) continue;
+    if (!record_.drain_reason.empty() && batch.empty()) EndLater();
+    return;
   }
+}
+
+void Session::Drain(const std::string& reason) {
+  if (phase_ != Phase::kSubscribed || !connection_.open()) return End(reason);
+  record_.drain_reason = reason;
+  connection_.Wake();
+}
+
+/// Not from within the filling of a batch.
+void Session::EndLater() {
+  boost::asio::post(connection_.executor(), [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) self->End(self->record_.drain_reason);
+  });
 }
 
 bool Session::FillLive(WriteBatch& batch) {
@@ -140,6 +157,7 @@ bool Session::FillLive(WriteBatch& batch) {
     AddGap(dropped->from, dropped->to, v1::Gap::REASON_QUEUE_FULL, batch);
   }
   AddTick(entry, subscription_, Head(false), batch);
+  ++record_.ticks_sent;
   return true;
 }
 
@@ -159,6 +177,7 @@ bool Session::FillCatchUp(WriteBatch& batch) {
   connection_.Charge(kReplayCost);
   if (decimator_->Take(tick->host_ns)) {
     AddTick({tick, {}}, subscription_, Head(true), batch);
+    ++record_.ticks_sent;
   } else {
     queue_.Skip(tick);
   }
@@ -176,6 +195,7 @@ bool Session::FillRefill(WriteBatch& batch) {
   } else if (const SharedTick* tick = ring.Find(range.next)) {
     connection_.Charge(kReplayCost);
     AddTick({*tick, {}}, subscription_, Head(true), batch);
+    ++record_.ticks_sent;
     ++range.next;
   } else {
     range.next = range.last + 1;

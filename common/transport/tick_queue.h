@@ -51,6 +51,9 @@ class TickQueue {
   std::optional<Dropped> TakeDropped() { return std::exchange(dropped_, std::nullopt); }
   bool Pop(Entry& entry);
 
+  /// The oldest tick that waits; null: none.
+  const Tick* oldest() const { return entries_.empty() ? nullptr : entries_.front().tick.get(); }
+
   bool empty() const { return entries_.empty(); }
   std::size_t size() const { return entries_.size(); }
   std::uint64_t dropped_ticks() const { return dropped_ticks_; }

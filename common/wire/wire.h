@@ -7,6 +7,7 @@
 #include "common/stream/hands.h"
 #include "common/stream/response.h"
 #include "common/stream/sensor.h"
+#include "common/stream/server_stats.h"
 #include "common/stream/setup.h"
 #include "common/stream/study.h"
 #include "common/stream/user_interface.h"
@@ -14,6 +15,7 @@
 #include "footing/v1/device.pb.h"
 #include "footing/v1/game.pb.h"
 #include "footing/v1/sensor.pb.h"
+#include "footing/v1/stats.pb.h"
 #include "footing/v1/study.pb.h"
 
 /// Between the plain structs of common/stream and the messages of the protocol. Enums have the same
@@ -46,6 +48,7 @@ v1::GamePlayer ToProto(const stream::GamePlayer& value);
 v1::GameRound ToProto(const stream::GameRound& value);
 v1::GameState ToProto(const stream::GameState& value);
 v1::StudyState ToProto(const stream::StudyState& value);
+v1::ServerStats ToProto(const stream::ServerStats& value);
 v1::TrackSegment ToProto(const stream::TrackSegment& value);
 v1::FailureCounts ToProto(const stream::FailureCounts& value);
 v1::TrialState ToProto(const stream::TrialState& value);
@@ -83,6 +86,7 @@ stream::GamePlayer FromProto(const v1::GamePlayer& value);
 stream::GameRound FromProto(const v1::GameRound& value);
 stream::GameState FromProto(const v1::GameState& value);
 stream::StudyState FromProto(const v1::StudyState& value);
+stream::ServerStats FromProto(const v1::ServerStats& value);
 stream::TrackSegment FromProto(const v1::TrackSegment& value);
 stream::FailureCounts FromProto(const v1::FailureCounts& value);
 stream::TrialState FromProto(const v1::TrialState& value);

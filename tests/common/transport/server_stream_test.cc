@@ -242,5 +242,35 @@ TEST_F(ServerStreamTest, ATickNearTheLimitPasses) {
   EXPECT_EQ(server_->statistics().channels_left_out, 0u);
 }
 
+TEST_F(ServerStreamTest, DrainingSendsWhatWaitsAndThenGoodbyeWithTheReason) {
+  StartServer();
+  auto slow = Connect();
+  slow->Send(Hello());
+  slow->Send(Subscribe(v1::QUEUE_POLICY_RELIABLE, 100));
+  ASSERT_TRUE(RunUntil(
+      [&] { return server_->sessions().size() == 1 && !server_->sessions()[0].policy.empty(); }));
+  for (int i = 0; i < 60; ++i) PublishMotion(50'000);
+  EXPECT_GT(server_->sessions().at(0).queue_ticks, 10u) << "more than the kernel takes";
+  bool drained = false;
+  server_->Drain("restarting after an update", [&] { drained = true; });
+  Settle();
+  EXPECT_FALSE(drained);
+  slow->Read();
+  ASSERT_TRUE(RunUntil([&] { return slow->closed.has_value(); }));
+  EXPECT_EQ(slow->Sequences().size(), 60u);
+  EXPECT_EQ(slow->messages.back().goodbye().reason(), "restarting after an update");
+  slow.reset();
+  EXPECT_TRUE(RunUntil([&] { return drained; }));
+}
+
+TEST_F(ServerStreamTest, WithoutSessionsDrainingIsDoneAtOnce) {
+  StartServer();
+  bool drained = false;
+  server_->Drain("end", [&] { drained = true; });
+  EXPECT_FALSE(drained) << "not from within the call";
+  Settle();
+  EXPECT_TRUE(drained);
+}
+
 }  // namespace
 }  // namespace footing::transport

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/result/result.h"
+
+namespace footing::monitoring {
+
+/// Answers GET /metrics over HTTP on a Unix socket, one request a connection: for
+/// `curl --unix-socket` and for the proxy of a Prometheus server. HTTP/1.0 and 1.1.
+///
+/// At most 8 connections are open at once; more are closed at once. Each ends after 5 s. A request
+/// may have 4 KiB of header and no body. Everything runs on the io_context's one thread.
+class MetricsEndpoint {
+ public:
+  /// Listens on `address`, unix:PATH or fd:NAME (usage error for others), mode 0660. `text` gives
+  /// the page.
+  static Result<std::unique_ptr<MetricsEndpoint>> Open(boost::asio::io_context& io,
+                                                       const std::string& address,
+                                                       std::function<std::string()> text);
+  ~MetricsEndpoint();
+  MetricsEndpoint(const MetricsEndpoint&) = delete;
+  MetricsEndpoint& operator=(const MetricsEndpoint&) = delete;
+
+ private:
+  class Implementation;
+  explicit MetricsEndpoint(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace footing::monitoring

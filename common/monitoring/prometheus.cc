@@ -1,0 +1,174 @@
+#include "common/monitoring/prometheus.h"
+
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+#include "common/text/number.h"
+
+namespace footing::monitoring {
+namespace {
+
+struct Label {
+  const char* name;
+  std::string value;
+};
+using Labels = std::initializer_list<Label>;
+
+/// As the format wants a label's value: a backslash, a quote and the end of a line are escaped.
+std::string Escaped(const std::string& value) {
+  std::string text;
+  for (const char c : value) {
+    if (c == '\\' || c == '"') text += '\\';
+    text += c == '\n' ? std::string("\\n") : std::string(1, c);
+  }
+  return text;
+}
+
+class Writer {
+ public:
+  /// Begins a metric; its samples follow.
+  void Gauge(const char* name, const char* help) { Begin(name, help, "gauge"); }
+  void Counter(const char* name, const char* help) { Begin(name, help, "counter"); }
+
+  void Sample(double value, const std::string& labels = "") {
+    text_ += name_ + labels + ' ';
+    text::AppendShortest(text_, std::isfinite(value) ? value : 0);
+    text_ += '\n';
+  }
+  void Sample(std::uint64_t value, const std::string& labels = "") {
+    text_ += name_ + labels + ' ' + std::to_string(value) + '\n';
+  }
+
+  std::string Take() { return std::move(text_); }
+
+ private:
+  void Begin(const char* name, const char* help, const char* type) {
+    name_ = name;
+    text_ += "# HELP " + name_ + ' ' + help + "\n# TYPE " + name_ + ' ' + type + '\n';
+  }
+
+  std::string name_;
+  std::string text_;
+};
+
+std::string Braced(Labels labels) {
+  std::string text;
+  for (const Label& label : labels) {
+    text +=
+        (text.empty() ? "{" : ",") + std::string(label.name) + "=\"" + Escaped(label.value) + "\"";
+  }
+  return text + "}";
+}
+
+std::string Of(const stream::SessionStats& session) {
+  return Braced({{"session", std::to_string(session.session)},
+                 {"client", session.client_name},
+                 {"role", session.role}});
+}
+
+std::string Of(const stream::DeviceStats& device) {
+  return Braced({{"serial", device.serial},
+                 {"kind", stream::Name(device.kind)},
+                 {"rig", device.rig},
+                 {"role", stream::Name(device.role)},
+                 {"simulated", device.simulated ? "true" : "false"}});
+}
+
+void WriteServer(const stream::ServerStats& stats, Writer& to) {
+  to.Gauge("footing_uptime_seconds", "Time since the first tick.");
+  to.Sample(stats.uptime_s);
+  to.Counter("footing_ticks_total", "Ticks published.");
+  to.Sample(stats.ticks.ticks);
+  to.Gauge("footing_tick_rate_hertz", "Ticks a second, of the last second.");
+  to.Sample(stats.ticks.rate_hz);
+  to.Gauge("footing_tick_late_max_seconds", "Largest delay of a tick in the last second.");
+  to.Sample(stats.ticks.late_max_s);
+  to.Counter("footing_tick_overruns_total", "Ticks or steps more than a period late.");
+  to.Sample(stats.ticks.overruns);
+  to.Counter("footing_ticks_left_out_total", "Ticks left out of the rhythm by overload.");
+  to.Sample(stats.ticks.left_out);
+  to.Counter("footing_ticks_dropped_total", "Ticks dropped of full queues of sessions.");
+  to.Sample(stats.ticks_dropped);
+  to.Counter("footing_channels_left_out_total", "Channels that did not fit into a tick.");
+  to.Sample(stats.channels_left_out);
+  to.Gauge("footing_ring_bytes", "Size of the ring of past ticks.");
+  to.Sample(stats.ring_bytes);
+  to.Gauge("footing_sessions", "Sessions that there are.");
+  to.Sample(stats.session_count);
+  to.Counter("footing_connections_accepted_total", "Connections accepted.");
+  to.Sample(stats.sessions_accepted);
+  to.Counter("footing_connections_refused_total", "Connections refused.");
+  to.Sample(stats.sessions_refused);
+  to.Counter("footing_budget_refusals_total", "Times that a session waited for its budget.");
+  to.Sample(stats.slowed);
+}
+
+void WriteSessions(const std::vector<stream::SessionStats>& sessions, Writer& to) {
+  if (sessions.empty()) return;
+  to.Gauge("footing_session_queue_ticks", "Ticks that wait for the session.");
+  for (const auto& one : sessions) to.Sample(std::uint64_t{one.queue_ticks}, Of(one));
+  to.Gauge("footing_session_lag_seconds", "Age of the oldest tick that waits.");
+  for (const auto& one : sessions) to.Sample(one.lag_s, Of(one));
+  to.Counter("footing_session_ticks_sent_total", "Ticks handed to the session's socket.");
+  for (const auto& one : sessions) to.Sample(one.ticks_sent, Of(one));
+  to.Counter("footing_session_ticks_dropped_total", "Ticks dropped of the session's full queue.");
+  for (const auto& one : sessions) to.Sample(one.ticks_dropped, Of(one));
+  to.Counter("footing_session_budget_refusals_total", "Times that it waited for its budget.");
+  for (const auto& one : sessions) to.Sample(one.slowed, Of(one));
+  to.Gauge("footing_session_clock_offset_seconds", "The client's clock minus the server's.");
+  for (const auto& one : sessions) {
+    if (one.clock_valid) to.Sample(one.clock_offset_s, Of(one));
+  }
+}
+
+void WriteDevices(const std::vector<stream::DeviceStats>& devices, Writer& to) {
+  if (devices.empty()) return;
+  to.Gauge("footing_device_live", "1 while data reports arrive.");
+  for (const auto& one : devices) {
+    to.Sample(std::uint64_t{one.state == stream::DeviceState::kLive ? 1u : 0u}, Of(one));
+  }
+  to.Gauge("footing_device_report_rate_hertz", "Reports a second.");
+  for (const auto& one : devices) to.Sample(one.report_rate_hz, Of(one));
+  to.Gauge("footing_device_jitter_seconds", "Standard deviation of the intervals of reports.");
+  for (const auto& one : devices) to.Sample(one.jitter_s, Of(one));
+  to.Counter("footing_device_reports_total", "Reports received.");
+  for (const auto& one : devices) to.Sample(one.reports, Of(one));
+  to.Counter("footing_device_gaps_total", "Intervals longer than 5 nominal ones.");
+  for (const auto& one : devices) to.Sample(one.gaps, Of(one));
+  to.Counter("footing_device_queue_drops_total", "Reports lost before they were decoded.");
+  for (const auto& one : devices) to.Sample(one.queue_drops, Of(one));
+  to.Counter("footing_device_undecodable_total", "Reports that make no sense.");
+  for (const auto& one : devices) to.Sample(one.undecodable, Of(one));
+  to.Counter("footing_device_writes_failed_total", "Output reports that the device did not take.");
+  for (const auto& one : devices) to.Sample(one.writes_failed, Of(one));
+  to.Gauge("footing_device_battery_ratio", "Charge of the battery, 0 to 1.");
+  for (const auto& one : devices) {
+    if (one.battery_fraction >= 0) to.Sample(one.battery_fraction, Of(one));
+  }
+}
+
+void WriteProcess(const ProcessUsage& usage, Writer& to) {
+  to.Counter("process_cpu_seconds_total", "CPU time of the process, user and system.");
+  to.Sample(usage.cpu_s);
+  to.Gauge("process_resident_memory_bytes", "Resident memory of the process.");
+  to.Sample(usage.resident_bytes);
+  to.Gauge("process_open_fds", "Open descriptors of the process.");
+  to.Sample(usage.open_descriptors);
+}
+
+}  // namespace
+
+std::string PrometheusText(const stream::ServerStats& stats, const Program& program,
+                           const ProcessUsage& usage) {
+  Writer to;
+  to.Gauge("footing_build_info", "1; the labels say which program this is.");
+  to.Sample(std::uint64_t{1}, Braced({{"program", program.name}, {"version", program.version}}));
+  WriteServer(stats, to);
+  WriteSessions(stats.sessions, to);
+  WriteDevices(stats.devices, to);
+  WriteProcess(usage, to);
+  return to.Take();
+}
+
+}  // namespace footing::monitoring

@@ -1,0 +1,84 @@
+#include "common/transport/session_record.h"
+
+#include <algorithm>
+
+#include "common/transport/session.h"
+#include "common/units/units.h"
+
+namespace footing::transport {
+namespace {
+
+/// 36 years: no host has been up for that, and sums of a few such stamps do not overflow.
+constexpr std::int64_t kMostStampNs = std::int64_t{1} << 60;
+
+bool IsStamp(std::int64_t ns) { return ns > 0 && ns < kMostStampNs; }
+
+const char* NameOf(v1::Role role) {
+  switch (role) {
+    case v1::ROLE_LOG:
+      return "log";
+    case v1::ROLE_CONTROL:
+      return "control";
+    case v1::ROLE_ADMIN:
+      return "admin";
+    default:
+      return "view";
+  }
+}
+
+const char* NameOf(QueueRule rule) {
+  switch (rule) {
+    case QueueRule::kLatest:
+      return "latest";
+    case QueueRule::kDropOldest:
+      return "drop_oldest";
+    case QueueRule::kReliable:
+      return "reliable";
+  }
+  return "";
+}
+
+}  // namespace
+
+void SessionRecord::TakePong(const v1::Pong& pong, std::int64_t arrived_ns) {
+  const bool answers = ping.unanswered && pong.id() == ping.id;
+  ping.unanswered = false;
+  if (!answers || !IsStamp(pong.t1_ns()) || !IsStamp(pong.t2_ns())) return;
+  clock.Add({ping.sent_ns, pong.t1_ns(), pong.t2_ns(), arrived_ns});
+}
+
+stream::SessionStats Session::Stats() const {
+  const std::int64_t now_ns = shared_.NowNs();
+  stream::SessionStats stats;
+  stats.session = info_.session;
+  stats.client_name = info_.client_name;
+  stats.role = NameOf(info_.role);
+  stats.local = peer_.known;
+  stats.connected_s = NanosecondsToSeconds(now_ns - record_.began_ns);
+  stats.ticks_sent = record_.ticks_sent;
+  stats.ticks_dropped = record_.ticks_dropped + queue_.dropped_ticks();
+  stats.slowed = record_.slowed;
+  const OffsetEstimate clock = record_.clock.estimate();
+  stats.clock_valid = clock.valid;
+  stats.clock_offset_s = NanosecondsToSeconds(clock.offset_ns);
+  stats.clock_uncertainty_s = NanosecondsToSeconds(clock.uncertainty_ns);
+  if (phase_ != Phase::kSubscribed) return stats;
+  stats.policy = NameOf(subscription_.rule);
+  stats.queue_capacity = static_cast<std::uint32_t>(subscription_.queue_ticks);
+  std::uint64_t waiting = queue_.size();
+  const Tick* oldest = queue_.oldest();
+  if (catch_up_ != 0) {
+    const TickRing& ring = shared_.publication.ring();
+    const std::uint64_t next = ring.empty() ? catch_up_ : std::max(catch_up_, ring.first());
+    const SharedTick* tick = ring.Find(next);
+    if (tick != nullptr) {
+      oldest = tick->get();
+      waiting = ring.last() - next + 1;
+    }
+  }
+  stats.queue_ticks = static_cast<std::uint32_t>(waiting);
+  if (oldest != nullptr) stats.lag_s = NanosecondsToSeconds(now_ns - oldest->host_ns);
+  return stats;
+}
+
+}  // namespace footing::transport
