@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -97,6 +98,11 @@ std::string UserAtHost() {
   if (::gethostname(host.data(), host.size() - 1) != 0) host = {"unknown host"};
   return (user != nullptr ? std::string(user) : "uid " + std::to_string(::getuid())) + "@" +
          host.data();
+}
+
+std::string StopReason(const std::string& program, int signal) {
+  return program +
+         (signal == SIGINT ? " was stopped at its terminal (Ctrl-C)" : " is being stopped");
 }
 
 const char* Version() { return FOOTING_VERSION; }

@@ -25,6 +25,9 @@ int Report(const Error& error);
 /// environment names no user.
 std::string UserAtHost();
 
+/// What a program's clients read when a signal ends it: "footingd is being stopped".
+std::string StopReason(const std::string& program, int signal);
+
 /// Program version, e.g. "0.1.0".
 const char* Version();
 

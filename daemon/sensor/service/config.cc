@@ -44,6 +44,8 @@ void Config::Bind(config::Binder& binder) {
               "File (mode 0600) with a token by which clients over TCP get the role control");
   binder.Flag("insecure_lan", insecure_lan,
               "Listen beyond this host WITHOUT ENCRYPTION; needs token_file");
+  binder.Text("metrics", metrics,
+              "Unix socket with metrics for Prometheus, unix:PATH (empty: none)");
   sessions.Bind(binder);
 }
 

@@ -35,6 +35,7 @@ struct Config {
   transport::SessionLimits sessions;
   std::string token_file;  ///< Whose token gives the role control over TCP; empty: nothing does.
   bool insecure_lan = false;
+  std::string metrics;  ///< Where Prometheus metrics are served, unix:PATH; empty: nowhere.
 
   void Bind(config::Binder& binder);
 };

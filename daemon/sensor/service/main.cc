@@ -1,12 +1,15 @@
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <chrono>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/log/log.h"
 #include "common/service_manager/service_manager.h"
+#include "common/service_manager/service_signals.h"
 #include "common/timer/timer.h"
 #include "daemon/sensor/service/command_line.h"
 #include "daemon/sensor/service/service.h"
@@ -15,9 +18,9 @@ namespace {
 
 using namespace footing;  // NOLINT: main is wiring
 
-int Run(const sensor::CommandLine& line) {
+int Run(const sensor::CommandLine& line,
+        const std::function<std::optional<sensor::CommandLine>()>& read_again) {
   boost::asio::io_context io(1);
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   auto service = sensor::Service::Start(io, line.config, cli::Version());
   if (!service) return cli::Report(service.error());
   if (line.json) {
@@ -25,13 +28,17 @@ int Run(const sensor::CommandLine& line) {
   }
   service_manager::Notifier notifier(io);
   notifier.Ready("listening on " + (*service)->listening_on().front());
-  timer::Timer goodbye(io);  // Time for the goodbyes to leave.
-  signals.async_wait([&](boost::system::error_code, int) {
+  service_manager::ServiceSignals::Handlers handlers;
+  handlers.stop = [&](int signal, std::function<void()> done) {
     notifier.Stopping();
-    (*service)->Stop("footingd ends");
-    goodbye.expires_after(std::chrono::milliseconds(200));
-    goodbye.async_wait([&io](boost::system::error_code) { io.stop(); });
-  });
+    (*service)->Stop(cli::StopReason("footingd", signal), std::move(done));
+  };
+  handlers.reload = [&] {
+    const auto again = read_again();
+    if (again) (*service)->Reload(again->config);
+    if (!again) log::Warning("config not reloaded: the one in force stays");
+  };
+  const service_manager::ServiceSignals signals(io, std::move(handlers));
   timer::Run(io);
   return 0;
 }
@@ -40,8 +47,9 @@ int Run(const sensor::CommandLine& line) {
 
 int main(int argc, char** argv) {
   int exit_code = 0;
-  const auto line = sensor::ParseCommandLine(argc, argv, exit_code);
+  const auto read = [&] { return sensor::ParseCommandLine(argc, argv, exit_code); };
+  const auto line = read();
   if (!line) return exit_code;
   const auto followed = clock::FollowTimekeeper();
-  return followed ? Run(*line) : cli::Report(followed.error());
+  return followed ? Run(*line, read) : cli::Report(followed.error());
 }

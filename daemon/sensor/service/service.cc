@@ -7,6 +7,7 @@
 
 #include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/monitoring/monitor.h"
 #include "common/service_manager/service_manager.h"
 #include "common/timer/timer.h"
 #include "common/transport/address.h"
@@ -19,6 +20,7 @@
 #include "daemon/sensor/service/hub.h"
 #include "daemon/sensor/service/limited_log.h"
 #include "daemon/sensor/service/publish.h"
+#include "daemon/sensor/service/reload.h"
 #include "daemon/sensor/setup/calibration_store.h"
 #include "daemon/sensor/setup/disk_writer.h"
 #include "daemon/sensor/setup/state_directory.h"
@@ -43,6 +45,7 @@ transport::ServerOptions MakeServerOptions(const Config& config, const std::stri
   options.server_id = "footingd";
   options.version = version;
   options.channels = Channels();
+  options.channels.push_back(monitoring::StatsChannel());
   options.tick_rate_hz = config.tick_rate_hz;
   options.sessions = config.sessions;
   options.token = token;
@@ -97,7 +100,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
                return OnCommand(session, command);
              },
              [this](const transport::SessionInfo& session) { hub_.EndSession(session.session); },
-             [](const std::string& line) { log::Warning(line); }}) {}
+             [](const std::string& line) { log::Warning(line); }}),
+        monitor_(server_, config.tick_rate_hz, {"footingd", version}) {}
 
   Result<void> Open() {
     auto listen = config_.listen;
@@ -116,7 +120,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     for (const std::string& text : sources) {
       if (const auto opened = OpenSource(text); !opened) return opened;
     }
-    return {};
+    return monitor_.Serve(io_, config_.metrics);
   }
 
   void Start() {
@@ -125,12 +129,19 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     if (config_.insecure_lan) WarnOfLan();
   }
 
-  void Stop(const std::string& reason) {
+  void Reload(const Config& wanted) {
+    config_ = Reloaded(config_, wanted, log::Info);
+    hub_.Reload(config_);
+    server_.SetLimits(config_.sessions);
+  }
+
+  void Stop(const std::string& reason, std::function<void()> done) {
     hub_.StopMotors();
     timer_.cancel();
     warning_.cancel();
     for (const auto& source : sources_) source->Stop();
-    server_.Stop(reason);
+    monitor_.Stop();
+    server_.Drain(reason, std::move(done));
   }
 
   const std::vector<std::string>& listening_on() const { return listening_on_; }
@@ -213,10 +224,19 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
       const auto self = weak.lock();
       if (error || !self) return;
-      const std::int64_t now_ns = clock::MonotonicNs();
-      self->server_.Publish(now_ns, ToChannels(self->hub_.Tick(now_ns)));
+      self->Tick();
       self->WaitForTick();
     });
+  }
+
+  void Tick() {
+    const std::int64_t now_ns = clock::MonotonicNs();
+    const TickContent content = hub_.Tick(now_ns);
+    if (content.has_status) monitor_.SetDevices(content.status);
+    auto channels = ToChannels(content);
+    const std::chrono::nanoseconds late = timer::Now() - next_tick_;
+    monitor_.OnTick({now_ns, now_ns - late.count(), std::nullopt}, channels);
+    server_.Publish(now_ns, std::move(channels));
   }
 
   /// What is to be kept is answered when it is on the disk; ticks do not wait for that.
@@ -236,7 +256,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   }
 
   boost::asio::io_context& io_;
-  const Config config_;
+  Config config_;
   timer::Timer timer_;
   timer::Timer warning_;
   timer::TimePoint next_tick_;
@@ -250,14 +270,13 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   setup::CalibrationStore calibrations_;
   Hub hub_;
   transport::Server server_;
+  monitoring::Monitor monitor_;
   std::vector<std::string> listening_on_;
 };
 
 Service::Service(std::shared_ptr<Implementation> implementation)
     : implementation_(std::move(implementation)) {}
-
 Service::~Service() = default;
-
 Result<std::unique_ptr<Service>> Service::Start(boost::asio::io_context& io, const Config& config,
                                                 const std::string& version) {
   std::string token;
@@ -272,8 +291,10 @@ Result<std::unique_ptr<Service>> Service::Start(boost::asio::io_context& io, con
   return std::unique_ptr<Service>(new Service(std::move(implementation)));
 }
 
-void Service::Stop(const std::string& reason) { implementation_->Stop(reason); }
-
+void Service::Stop(const std::string& reason, std::function<void()> done) {
+  implementation_->Stop(reason, std::move(done));
+}
+void Service::Reload(const Config& wanted) { implementation_->Reload(wanted); }
 std::vector<std::string> Service::listening_on() const { return implementation_->listening_on(); }
 
 }  // namespace footing::sensor

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,8 +20,12 @@ class Service {
                                                 const std::string& version);
   ~Service();
 
-  /// Motors off, goodbye to every client, no device any more.
-  void Stop(const std::string& reason);
+  /// Motors off, no device any more; each client gets what waits for it, and goodbye. `done` is
+  /// called when the last one has ended.
+  void Stop(const std::string& reason, std::function<void()> done);
+
+  /// Takes of another config what needs no restart, and logs what changed and what does.
+  void Reload(const Config& wanted);
 
   /// Where it listens for clients.
   std::vector<std::string> listening_on() const;

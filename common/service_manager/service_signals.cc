@@ -1,0 +1,53 @@
+#include "common/service_manager/service_signals.h"
+
+#include <systemd/sd-daemon.h>
+
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <utility>
+
+#include "common/clock/clock.h"
+
+namespace footing::service_manager {
+namespace {
+
+/// Below the 90 s of TimeoutStopSec=, and below what a person waits for at a terminal.
+constexpr auto kPatience = std::chrono::seconds(2);
+
+}  // namespace
+
+ServiceSignals::ServiceSignals(boost::asio::io_context& io, Handlers handlers)
+    : io_(io),
+      signals_(io, SIGINT, SIGTERM, SIGHUP),
+      patience_(io),
+      handlers_(std::move(handlers)) {
+  Wait();
+}
+
+void ServiceSignals::Wait() {
+  signals_.async_wait([this](const boost::system::error_code& error, int signal) {
+    if (error) return;
+    OnSignal(signal);
+    Wait();
+  });
+}
+
+void ServiceSignals::OnSignal(int signal) {
+  if (signal == SIGHUP) {
+    if (stopping_) return;
+    const std::string now_us = std::to_string(clock::MonotonicNs() / 1000);
+    sd_notify(0, ("RELOADING=1\nMONOTONIC_USEC=" + now_us).c_str());
+    handlers_.reload();
+    sd_notify(0, "READY=1");
+    return;
+  }
+  if (std::exchange(stopping_, true)) return io_.stop();
+  patience_.expires_after(kPatience);
+  patience_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) io_.stop();
+  });
+  handlers_.stop(signal, [this] { io_.stop(); });
+}
+
+}  // namespace footing::service_manager

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "daemon/sensor/service/config.h"
+
+namespace footing::sensor {
+
+/// `before` with those settings of `wanted` that footingd takes while it runs. `say` gets a line
+/// with what changed, and one with what needs a restart.
+///
+/// The limits of sessions hold for those that come; stale_after_s holds at once; default_rig,
+/// motion_plus, camera and status_interval_s for devices that attach.
+Config Reloaded(const Config& before, const Config& wanted,
+                const std::function<void(const std::string& line)>& say);
+
+}  // namespace footing::sensor

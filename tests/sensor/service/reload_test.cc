@@ -1,0 +1,40 @@
+#include "daemon/sensor/service/reload.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace footing::sensor {
+namespace {
+
+using ::testing::ElementsAre;
+
+TEST(Reload, TakesWhatNeedsNoRestartAndSaysWhatDoes) {
+  Config before, wanted;
+  wanted.stale_after_s = 2;
+  wanted.sessions.max_sessions = 9;
+  wanted.default_rig = "left";
+  wanted.tick_rate_hz = 50;
+  wanted.roles = {{"00:1f", "main/left_hand"}};
+  std::vector<std::string> lines;
+  const Config next =
+      Reloaded(before, wanted, [&](const std::string& line) { lines.push_back(line); });
+  EXPECT_EQ(next.stale_after_s, 2);
+  EXPECT_EQ(next.sessions.max_sessions, 9);
+  EXPECT_EQ(next.default_rig, "left");
+  EXPECT_EQ(next.tick_rate_hz, 100);
+  EXPECT_TRUE(next.roles.empty());
+  EXPECT_THAT(lines,
+              ElementsAre("config reloaded: default_rig \"main\" -> \"left\", stale_after_s 0.5 -> "
+                          "2.0, max_sessions 256 -> 9",
+                          "config: takes effect after a restart: roles {} -> "
+                          "{\"00:1f\":\"main/left_hand\"}, tick_rate_hz 100.0 -> 50.0"));
+}
+
+TEST(Reload, SaysWhenNothingHasChanged) {
+  std::vector<std::string> lines;
+  Reloaded({}, {}, [&](const std::string& line) { lines.push_back(line); });
+  EXPECT_THAT(lines, ElementsAre("config reloaded: nothing has changed"));
+}
+
+}  // namespace
+}  // namespace footing::sensor
