@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "clients/ctl/commands.h"
 #include "clients/ctl/display/device_table.h"
 #include "clients/ctl/display/live_screen.h"
+#include "clients/ctl/display/server_table.h"
 #include "common/cli/cli.h"
 #include "common/wire/wire.h"
 
@@ -17,6 +19,7 @@ using nlohmann::ordered_json;
 
 constexpr double kScreenEveryS = 0.25;
 constexpr double kLineEveryS = 1;
+constexpr double kNoticeS = 5;  // For this time watch shows what slows the server.
 constexpr double kForeverS = 1e6;
 constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
 
@@ -41,6 +44,8 @@ Result<void> Status(Session& session, const Shared& shared) {
                        {"simulated", device.simulated},
                        {"note", device.note}});
   }
+  const auto& stats = session.stats();
+  const std::string notice = session.TakeNotice();
   const ordered_json out{{"server", welcome.server_id()},
                          {"version", welcome.version()},
                          {"epoch", welcome.epoch()},
@@ -54,10 +59,15 @@ Result<void> Status(Session& session, const Shared& shared) {
                            {"max_message_in_bytes", limits.max_message_in_bytes()},
                            {"max_message_out_bytes", limits.max_message_out_bytes()}}},
                          {"setup", display::SetupToJson(session.setup())},
-                         {"devices", std::move(devices)}};
+                         {"devices", std::move(devices)},
+                         {"notice", notice},
+                         {"stats", stats ? display::ServerStatsToJson(*stats) : ordered_json()}};
   Print(out,
-        session.link() + ", " + ordered_json(limits.tick_rate_hz()).dump() + " ticks a second\n\n" +
-            display::DeviceTable(session.status()) + "\n" + display::SetupTable(session.setup()),
+        session.link() + ", " + ordered_json(limits.tick_rate_hz()).dump() + " ticks a second\n" +
+            (notice.empty() ? "" : "NOTICE: " + notice + "\n") +
+            (stats ? display::ServerLine(*stats) + "\n\n" + display::SessionTable(*stats) : "") +
+            "\n" + display::DeviceTable(session.status()) + "\n" +
+            display::SetupTable(session.setup()),
         shared);
   return {};
 }
@@ -73,7 +83,7 @@ Result<void> Watch(Session& session, double seconds, const Shared& shared) {
   const bool screen = !shared.json && isatty(STDOUT_FILENO) == 1;
   const double every_s = screen ? kScreenEveryS : kLineEveryS;
   const double whole_s = seconds > 0 ? seconds : kForeverS;
-  double passed_s = 0;
+  double passed_s = 0, noticed_s = 0;
   Waited waited = Waited::kTimeUp;
   while (waited != Waited::kInterrupted && passed_s < whole_s) {
     const double step_s = std::min(every_s, whole_s - passed_s);
@@ -81,6 +91,14 @@ Result<void> Watch(Session& session, double seconds, const Shared& shared) {
     passed_s += step_s;
     live.devices = session.status();
     live.link = session.link();
+    live.lost = !session.live();
+    live.server = session.stats();
+    if (std::string notice = session.TakeNotice(); !notice.empty()) {
+      live.notice = std::move(notice);
+      noticed_s = passed_s;
+    } else if (!shared.json && passed_s - noticed_s > kNoticeS) {
+      live.notice.clear();
+    }
     if (screen) {
       std::cout << kHomeAndClear << display::LiveScreen(live) << "\nCtrl-C leaves." << std::endl;
     } else if (!shared.json) {
@@ -101,11 +119,11 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
     WithSession(shared, {"status"}, [&](Session& session) { return Devices(session, shared); });
   });
 
-  CLI::App* status =
-      app.add_subcommand("status", "Print the state of footingd, its devices and their setup");
+  CLI::App* status = app.add_subcommand(
+      "status", "Print the state of footingd, its sessions, its devices and their setup");
   status->footer("Example:\n  footing-ctl status --json");
   status->callback([&shared] {
-    WithSession(shared, {"status", "setup"},
+    WithSession(shared, {"status", "setup", "stats"},
                 [&](Session& session) { return Status(session, shared); });
   });
 
@@ -115,7 +133,7 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.1, 1e5));
   watch->footer("Examples:\n  footing-ctl watch\n  footing-ctl watch --seconds 5 --json");
   watch->callback([seconds, &shared] {
-    WithSession(shared, {"status", "motion", "nunchuk", "gamepad", "boards"},
+    WithSession(shared, {"status", "motion", "nunchuk", "gamepad", "boards", "stats"},
                 [&](Session& session) { return Watch(session, *seconds, shared); });
   });
 }

@@ -55,6 +55,7 @@ class Session::Implementation {
       refused_ = state == transport::LinkState::kRefused;
       link_ = why;
     };
+    handlers.on_notice = [this](const v1::Notice& notice) { notice_ = notice.text(); };
     client_.emplace(io_, std::move(client), std::move(handlers));
     signals_.async_wait([this](const boost::system::error_code& error, int) {
       if (!error) interrupted_ = true;
@@ -98,6 +99,7 @@ class Session::Implementation {
       setup_.clear();
       for (const v1::RigSetup& one : tick.setup().rigs()) setup_.push_back(wire::FromProto(one));
     }
+    if (tick.has_stats()) stats_ = wire::FromProto(tick.stats());
     if (on_tick_) on_tick_(tick);
   }
 
@@ -108,8 +110,10 @@ class Session::Implementation {
   v1::Welcome welcome_;
   std::vector<stream::DeviceStatus> status_;
   std::vector<stream::RigSetup> setup_;
+  std::optional<stream::ServerStats> stats_;
   std::function<void(const v1::Tick&)> on_tick_;
   std::string link_ = "not connected";
+  std::string notice_;
   std::uint64_t ticks_ = 0;
   std::int64_t server_ns_ = 0;
   bool live_ = false;
@@ -132,10 +136,12 @@ const std::vector<stream::DeviceStatus>& Session::status() const {
   return implementation_->status_;
 }
 const std::vector<stream::RigSetup>& Session::setup() const { return implementation_->setup_; }
+const std::optional<stream::ServerStats>& Session::stats() const { return implementation_->stats_; }
 const v1::Welcome& Session::welcome() const { return implementation_->welcome_; }
 std::int64_t Session::server_ns() const { return implementation_->server_ns_; }
 bool Session::live() const { return implementation_->live_; }
 const std::string& Session::link() const { return implementation_->link_; }
+std::string Session::TakeNotice() { return std::exchange(implementation_->notice_, {}); }
 bool Session::interrupted() const { return implementation_->interrupted_; }
 
 void Session::set_on_tick(std::function<void(const v1::Tick&)> on_tick) {

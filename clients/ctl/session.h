@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/result/result.h"
 #include "common/stream/device.h"
+#include "common/stream/server_stats.h"
 #include "common/stream/setup.h"
 #include "common/timer/run_until.h"
 #include "common/transport/address.h"
@@ -41,12 +43,18 @@ class Session {
   const std::vector<stream::DeviceStatus>& status() const;
   /// The newest set-up of every rig.
   const std::vector<stream::RigSetup>& setup() const;
+  /// How the server fares, at most about a second ago; none before the first, or of an older
+  /// server.
+  const std::optional<stream::ServerStats>& stats() const;
   const v1::Welcome& welcome() const;
   /// Newest host_ns of footingd's ticks: its CLOCK_MONOTONIC; 0 before the first one.
   std::int64_t server_ns() const;
   bool live() const;
   /// A line for a person on how the connection stands.
   const std::string& link() const;
+
+  /// What the server said since the last call about what slows it or this session; empty: nothing.
+  std::string TakeNotice();
 
   /// Called for every tick while a call waits; the tick holds the channels asked for.
   void set_on_tick(std::function<void(const v1::Tick&)> on_tick);

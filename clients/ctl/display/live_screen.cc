@@ -4,6 +4,7 @@
 
 #include "clients/ctl/display/device_table.h"
 #include "clients/ctl/display/format.h"
+#include "clients/ctl/display/server_table.h"
 #include "common/units/units.h"
 
 namespace footing::ctl::display {
@@ -197,11 +198,15 @@ std::string LiveScreen(const Live& live) {
     if (found->second.gamepad) below += GamepadLine(*found->second.gamepad);
   }
   if (live.devices.empty()) below = "no device yet: footing-ctl pair, then press a button on it\n";
-  return live.link + "\n\n" + Table(rows) + below;
+  const std::string notice = live.notice.empty() ? "" : "NOTICE: " + live.notice + "\n";
+  const std::string server = live.server ? ServerLine(*live.server) + "\n" : "";
+  return live.link + "\n" + server + notice + "\n" + Table(rows) + below;
 }
 
 std::string LiveLine(const Live& live) {
-  if (live.devices.empty()) return "no device yet";
+  const std::string notice = live.notice.empty() ? "" : " | NOTICE: " + live.notice;
+  if (live.lost) return live.link;
+  if (live.devices.empty()) return "no device yet" + notice;
   std::string line;
   for (const DeviceStatus& device : live.devices) {
     line += (line.empty() ? "" : " | ") + Title(device) + " " + stream::Name(device.state) + " " +
@@ -213,7 +218,7 @@ std::string LiveLine(const Live& live) {
       line += ", " + Fixed(NewtonsToKilograms(found->second.board->total_n), 1) + " kg";
     }
   }
-  return line;
+  return line + notice;
 }
 
 ordered_json LiveToJson(const Live& live, double seconds) {
@@ -224,7 +229,10 @@ ordered_json LiveToJson(const Live& live, double seconds) {
     one.update(NewestToJson(found == live.newest.end() ? Live::Newest() : found->second));
     devices.push_back(std::move(one));
   }
-  return {{"seconds", seconds}, {"link", live.link}, {"devices", std::move(devices)}};
+  return {{"seconds", seconds},
+          {"link", live.link},
+          {"notice", live.notice},
+          {"devices", std::move(devices)}};
 }
 
 }  // namespace footing::ctl::display

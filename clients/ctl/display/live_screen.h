@@ -9,6 +9,7 @@
 
 #include "common/stream/device.h"
 #include "common/stream/sensor.h"
+#include "common/stream/server_stats.h"
 
 namespace footing::ctl::display {
 
@@ -22,8 +23,11 @@ struct Live {
     std::uint64_t samples = 0;  ///< Since the watch began; of a gamepad where it has no motion.
   };
   std::vector<stream::DeviceStatus> devices;
-  std::map<std::uint32_t, Newest> newest;  ///< By device number.
-  std::string link;                        ///< How the connection stands.
+  std::map<std::uint32_t, Newest> newest;     ///< By device number.
+  std::string link;                           ///< How the connection stands.
+  bool lost = false;                          ///< It does not stand: what is below is old.
+  std::optional<stream::ServerStats> server;  ///< How it fares.
+  std::string notice;                         ///< What slows the server; empty: nothing.
 
   void Take(const stream::MotionSample& sample);
   void Take(const stream::NunchukSample& sample);

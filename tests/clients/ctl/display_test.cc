@@ -6,6 +6,7 @@
 #include "clients/ctl/display/device_table.h"
 #include "clients/ctl/display/format.h"
 #include "clients/ctl/display/live_screen.h"
+#include "clients/ctl/display/server_table.h"
 
 namespace footing::ctl::display {
 namespace {
@@ -205,6 +206,43 @@ TEST(LiveScreen, DrawsAGamepadsSticksTriggersAndButtons) {
                         "  A, ZR, right stick\n"),
             std::string::npos)
       << screen;
+}
+
+TEST(LiveScreen, ShowsWhatSlowsTheServer) {
+  Live live;
+  live.notice = "12 ticks left out";
+  EXPECT_NE(LiveScreen(live).find("NOTICE: 12 ticks left out"), std::string::npos);
+  EXPECT_NE(LiveLine(live).find("NOTICE: 12 ticks left out"), std::string::npos);
+  EXPECT_EQ(LiveToJson(live, 1)["notice"], "12 ticks left out");
+}
+
+TEST(SessionTable, ShowsWhoWaitsAndHowManyMoreThereAre) {
+  stream::ServerStats stats;
+  EXPECT_EQ(SessionTable(stats), "");
+  stats.uptime_s = 12;
+  stats.ticks = {1200, 99.96, 0.0031, 2, 0};
+  stats.session_count = 3;
+  stats.sessions.push_back({7, "footing-view", "view", true, 5, "drop_oldest", 4, 256, 0.04, 480, 9,
+                            0, true, 0.0001, 0.00005});
+  stats.sessions.push_back({});
+  EXPECT_EQ(ServerLine(stats),
+            "up 12 s, 100.0 ticks a second, latest by 3.1 ms, 3 sessions, 2 overruns");
+  EXPECT_EQ(SessionTable(stats),
+            "session  client        role  policy       queue  lag ms  sent  dropped  clock ms\n"
+            "      7  footing-view  view  drop_oldest  4/256    40.0   480        9  0.10 +-0.05\n"
+            "      0                      -            0/0       0.0     0        0  -\n"
+            "not shown: 1 that lag less\n");
+  const auto json = ServerStatsToJson(stats);
+  EXPECT_EQ(json["sessions"][0]["lag_s"], 0.04);
+  EXPECT_EQ(json["sessions"][0]["clock_offset_s"], 0.0001);
+  EXPECT_TRUE(json["sessions"][1]["clock_offset_s"].is_null());
+}
+
+TEST(LiveLine, OfALostServerShowsWhyAndNoOldNumbers) {
+  Live live = LiveBoard();
+  live.lost = true;
+  live.link = "waiting for unix:/s: footingd is being stopped";
+  EXPECT_EQ(LiveLine(live), live.link);
 }
 
 TEST(LiveLine, NamesEveryDeviceInOneLine) {
