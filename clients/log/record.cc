@@ -82,6 +82,9 @@ class Recording {
     server.on_link = [](const recording::StreamRecorder& recorder) {
       std::cerr << recorder.address() << ": " << recorder.link() << std::endl;
     };
+    server.on_notice = [](const recording::StreamRecorder& recorder) {
+      std::cerr << recorder.address() << ": notice: " << recorder.notice() << std::endl;
+    };
     links_.push_back(
         std::make_unique<recording::ServerRecorder>(io_, writer_, names_, std::move(server)));
   }

@@ -72,6 +72,10 @@ transport::ClientHandlers ServerRecorder::Handlers() {
     options_.on_written(recorder_.OnState(state, why, clock::MonotonicNs()));
     if (options_.on_link) options_.on_link(recorder_);
   };
+  handlers.on_notice = [this](const v1::Notice& notice) {
+    options_.on_written(recorder_.OnNotice(notice, clock::MonotonicNs()));
+    if (options_.on_notice) options_.on_notice(recorder_);
+  };
   return handlers;
 }
 

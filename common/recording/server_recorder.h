@@ -37,6 +37,8 @@ struct ServerRecorderOptions {
   std::function<void(Result<void>)> on_written;
   /// Called when the link changes; may be empty.
   std::function<void(const StreamRecorder&)> on_link;
+  /// Called when the server said what slows it; may be empty.
+  std::function<void(const StreamRecorder&)> on_notice = {};
 };
 
 /// A connection with the role log, all of whose messages go to a recording. It is reliable: when

@@ -89,6 +89,17 @@ Result<void> StreamRecorder::OnState(transport::LinkState state, const std::stri
                                       {"recorder_host_ns", std::to_string(now_ns)}});
 }
 
+Result<void> StreamRecorder::OnNotice(const v1::Notice& notice, std::int64_t now_ns) {
+  notice_ = notice.text();
+  ++notices_;
+  return writer_.AddMetadata("notice", {{"address", address_},
+                                        {"server", server_},
+                                        {"kind", v1::Notice::Kind_Name(notice.kind())},
+                                        {"text", notice.text()},
+                                        {"count", std::to_string(notice.count())},
+                                        {"recorder_host_ns", std::to_string(now_ns)}});
+}
+
 Result<void> StreamRecorder::OnEnd(const transport::ClockOffset& clock, std::int64_t now_ns) {
   return writer_.AddMetadata("clock",
                              {{"address", address_},

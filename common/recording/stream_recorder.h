@@ -27,6 +27,7 @@ class StreamRecorder {
   Result<void> OnTick(const v1::Tick& tick, std::int64_t now_ns);
   Result<void> OnGap(const v1::Gap& gap, std::int64_t now_ns);
   Result<void> OnState(transport::LinkState state, const std::string& why, std::int64_t now_ns);
+  Result<void> OnNotice(const v1::Notice& notice, std::int64_t now_ns);
   /// Last: how the server's clock stood to ours.
   Result<void> OnEnd(const transport::ClockOffset& clock, std::int64_t now_ns);
 
@@ -34,6 +35,9 @@ class StreamRecorder {
   std::uint64_t missing_ticks() const { return missing_ticks_; }
   /// Of the newest tick, on the server's clock; 0: none.
   std::int64_t last_host_ns() const { return last_host_ns_; }
+  /// What slows the server or this session, in the server's words, and how often it said so.
+  const std::string& notice() const { return notice_; }
+  std::uint64_t notices() const { return notices_; }
   /// The last state of the link, for a person.
   const std::string& link() const { return link_; }
   const std::string& address() const { return address_; }
@@ -44,6 +48,8 @@ class StreamRecorder {
   std::function<std::string(const std::string&)> name_of_;
   std::string server_;
   std::string link_ = "not connected yet";
+  std::string notice_;
+  std::uint64_t notices_ = 0;
   std::int64_t last_host_ns_ = 0;
   std::uint64_t last_sequence_ = 0;
   std::uint64_t ticks_ = 0;

@@ -87,6 +87,27 @@ TEST_F(StreamRecorderTest, StampsAreTheTicksTimeAndTheArrival) {
   EXPECT_EQ(messages, 1);
 }
 
+TEST_F(StreamRecorderTest, ANoticeIsAMetadataRecord) {
+  StreamRecorder recorder(*writer_, "unix:/1", [](const std::string& id) { return id; });
+  ASSERT_TRUE(recorder.OnWelcome(WelcomeOf("footingd", 5), 1).ok());
+  v1::Notice notice;
+  notice.set_kind(v1::Notice::KIND_TICKS_LATE);
+  notice.set_text("12 ticks left out");
+  notice.set_count(12);
+  ASSERT_TRUE(recorder.OnNotice(notice, 3).ok());
+  EXPECT_EQ(recorder.notice(), "12 ticks left out");
+  EXPECT_EQ(recorder.notices(), 1u);
+  const RecordedSession session = Read();
+  for (const mcap::Metadata& record : session.metadata()) {
+    if (record.name != "notice") continue;
+    EXPECT_EQ(record.values.at("kind"), "KIND_TICKS_LATE");
+    EXPECT_EQ(record.values.at("text"), "12 ticks left out");
+    EXPECT_EQ(record.values.at("count"), "12");
+    return;
+  }
+  FAIL() << "no record \"notice\"";
+}
+
 TEST_F(StreamRecorderTest, TicksComeBackInOrderWithTheChannelsAskedFor) {
   StreamRecorder recorder(*writer_, "unix:/1", [](const std::string& id) { return id; });
   ASSERT_TRUE(recorder.OnWelcome(WelcomeOf("footingd", 5), 1).ok());
