@@ -54,5 +54,6 @@ void AddPoseCommands(CLI::App& app, Shared& shared);       ///< t-pose, subject
 void AddTrialCommands(CLI::App& app, Shared& shared);      ///< trial
 void AddInterfaceCommand(CLI::App& app, Shared& shared);   ///< interface
 void AddLeaseCommand(CLI::App& app, Shared& shared);       ///< lease
+void AddTrustCommand(CLI::App& app, Shared& shared);       ///< trust
 
 }  // namespace footing::ctl

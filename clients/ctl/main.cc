@@ -9,9 +9,9 @@ int main(int argc, char** argv) {
                            "  footing-ctl watch               # live values\n"
                            "  footing-ctl led left_hand 1010");
   footing::ctl::Shared shared;
-  app->add_option(
-      "--connect", shared.connect,
-      "Address of footingd, unix:PATH or tcp:HOST:PORT (default: footingd of this user)");
+  app->add_option("--connect", shared.connect,
+                  "Address of footingd, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT (default: "
+                  "footingd of this user)");
   app->add_flag("--json", shared.json, "Print one JSON object on standard output");
   app->require_subcommand(0, 1);  // An unknown command is then reported by its name.
   app->fallthrough();
@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddTrialCommands(*app, shared);
   footing::ctl::AddInterfaceCommand(*app, shared);
   footing::ctl::AddLeaseCommand(*app, shared);
+  footing::ctl::AddTrustCommand(*app, shared);
   for (CLI::App* command : app->get_subcommands({})) {
     command->footer(command->get_footer() +
                     "\nAlso: --json and --connect, as in footing-ctl --help.");

@@ -41,8 +41,7 @@ class Session::Implementation {
     client.address = options.address;
     client.client_name = "footing-ctl";
     // Over TCP nobody gets more without a token; a command is then refused, with the reason.
-    const bool views = options.address.kind == transport::Address::Kind::kTcp &&
-                       transport::TokenFromEnvironment().empty();
+    const bool views = options.address.OverTcp() && transport::TokenFromEnvironment().empty();
     client.role = views ? v1::ROLE_VIEW : v1::ROLE_CONTROL;
     client.channels = std::move(options.channels);
     client.max_hz = options.max_hz;

@@ -59,7 +59,8 @@ int main(int argc, char** argv) {
   game::GameOptions& rules = options.game;
   std::string sensor, simulation, recording;
   bool json = false;
-  app->add_option("--sensor", sensor, "Address of footingd, unix:PATH or tcp:HOST:PORT");
+  app->add_option("--sensor", sensor,
+                  "Address of footingd, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT");
   app->add_option("--simulation", simulation, "Address of footing-sim, the same way");
   app->add_option("--players", rules.players, "Names of both players; the first one runs first");
   app->add_option("--rounds", rules.rounds, "Rounds; the players change parts after each")

@@ -113,9 +113,10 @@ void AddRecordCommand(CLI::App& app, Shared& shared) {
       app.add_subcommand("record", "Record the messages of servers to an MCAP file");
   const auto options = std::make_shared<RecordOptions>();
   const auto addresses = std::make_shared<std::vector<std::string>>();
-  command->add_option("--connect", *addresses,
-                      "Address of a server, unix:PATH or tcp:HOST:PORT; may be repeated (default: "
-                      "this user's sensor and simulation servers)");
+  command->add_option(
+      "--connect", *addresses,
+      "Address of a server, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated (default: "
+      "this user's sensor and simulation servers)");
   command->add_option("--out", options->out, "Output file, MCAP")->required();
   command->add_option("--seconds", options->seconds, "Duration, s (default: until SIGINT)")
       ->check(CLI::Range(0.1, 1e6));

@@ -5,8 +5,9 @@ namespace footing::stream_client {
 CLI::App* AddRunnerCommand(CLI::App& app, PlayersOptions& options) {
   CLI::App* const runner = app.add_subcommand(
       "runner", "A synthetic player who runs along the track, a Wiimote in each hand");
-  runner->add_option("--watch", options.simulation,
-                     "Address of footing-sim, which the player sees, unix:PATH or tcp:HOST:PORT");
+  runner->add_option(
+      "--watch", options.simulation,
+      "Address of footing-sim, which the player sees, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT");
   return runner;
 }
 

@@ -11,7 +11,7 @@ CLI::App* AddUserCommand(CLI::App& app, UserOptions& options) {
                    "Interface: wrist, arm, leg, joystick or boards; of a script wrist or joystick");
   auto* see = user->add_option("--see", options.see,
                                "Address of footing-sim, whose character, track and trial the user "
-                               "sees, unix:PATH or tcp:HOST:PORT");
+                               "sees, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT");
   see->excludes(script);
   auto* style = user->add_option("--style-seed", options.style_seed,
                                  "Seed of the style of the user who sees: equal for one person "

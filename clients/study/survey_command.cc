@@ -47,7 +47,7 @@ class ScreenClient {
                   },
               .on_writable = {},
               .on_bytes = {},
-              .on_oversized = {}});
+              .on_bad_input = {}});
       connection_->Start();
     });
   }

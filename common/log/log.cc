@@ -3,9 +3,19 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <memory>
 
 namespace footing::log {
+namespace {
+
+/// spdlog's own logger writes to standard output, where --json has its object alone.
+void Write(spdlog::level::level_enum level, const std::string& line) {
+  if (spdlog::default_logger()->name().empty()) Start(program_invocation_short_name, false);
+  spdlog::log(level, "{}", line);
+}
+
+}  // namespace
 
 void Start(const std::string& program, bool quiet) {
   auto logger =
@@ -16,8 +26,8 @@ void Start(const std::string& program, bool quiet) {
   spdlog::set_default_logger(logger);
 }
 
-void Info(const std::string& line) { spdlog::info("{}", line); }
-void Warning(const std::string& line) { spdlog::warn("{}", line); }
-void Error(const std::string& line) { spdlog::error("{}", line); }
+void Info(const std::string& line) { Write(spdlog::level::info, line); }
+void Warning(const std::string& line) { Write(spdlog::level::warn, line); }
+void Error(const std::string& line) { Write(spdlog::level::err, line); }
 
 }  // namespace footing::log

@@ -6,7 +6,8 @@
 /// never in pure code.
 namespace footing::log {
 
-/// Sets the program's name in every line. `quiet` keeps only warnings and errors.
+/// Sets the program's name in every line. `quiet` keeps only warnings and errors. A program that
+/// never calls it logs under the name of its file.
 void Start(const std::string& program, bool quiet);
 
 void Info(const std::string& line);

@@ -15,7 +15,8 @@ namespace {
 
 Error NotAnAddress(const std::string& text, const std::string& why) {
   return UsageError("\"" + text + "\" is not an address: " + why +
-                    "; write unix:PATH or tcp:HOST:PORT, for example tcp:127.0.0.1:7450");
+                    "; write unix:PATH, tcp:HOST:PORT or tls:HOST:PORT, for example "
+                    "tcp:127.0.0.1:7450");
 }
 
 Result<Address> ParseUnix(const std::string& text, const std::string& path) {
@@ -31,7 +32,7 @@ Result<Address> ParseUnix(const std::string& text, const std::string& path) {
   return address;
 }
 
-Result<Address> ParseTcp(const std::string& text, const std::string& rest) {
+Result<Address> ParseTcp(const std::string& text, const std::string& rest, Address::Kind kind) {
   const std::size_t colon = rest.rfind(':');
   if (colon == std::string::npos) return NotAnAddress(text, "the port is missing");
   std::string host = rest.substr(0, colon);
@@ -46,7 +47,7 @@ Result<Address> ParseTcp(const std::string& text, const std::string& rest) {
   if (begin == end || error != std::errc() || stop != end) {
     return NotAnAddress(text, "the port must be a number from 0 to 65535");
   }
-  address.kind = Address::Kind::kTcp;
+  address.kind = kind;
   address.host = host;
   return address;
 }
@@ -57,12 +58,14 @@ std::string Address::Text() const {
   if (kind == Kind::kUnix) return "unix:" + path;
   if (kind == Kind::kPassed) return "fd:" + path;
   const bool version6 = host.find(':') != std::string::npos;
-  return "tcp:" + (version6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
+  return (kind == Kind::kTls ? "tls:" : "tcp:") + (version6 ? "[" + host + "]" : host) + ":" +
+         std::to_string(port);
 }
 
 Result<Address> ParseAddress(const std::string& text) {
   if (text.rfind("unix:", 0) == 0) return ParseUnix(text, text.substr(5));
-  if (text.rfind("tcp:", 0) == 0) return ParseTcp(text, text.substr(4));
+  if (text.rfind("tcp:", 0) == 0) return ParseTcp(text, text.substr(4), Address::Kind::kTcp);
+  if (text.rfind("tls:", 0) == 0) return ParseTcp(text, text.substr(4), Address::Kind::kTls);
   if (text.rfind("fd:", 0) == 0) {
     Address address;
     address.kind = Address::Kind::kPassed;
@@ -70,7 +73,7 @@ Result<Address> ParseAddress(const std::string& text) {
     if (address.path.empty()) return NotAnAddress(text, "the name of the passed socket is missing");
     return address;
   }
-  return NotAnAddress(text, "it begins with neither unix: nor tcp:");
+  return NotAnAddress(text, "it begins with none of unix:, tcp: and tls:");
 }
 
 Address DefaultAddress(const std::string& name, bool create) {

@@ -7,16 +7,19 @@
 
 namespace footing::transport {
 
-/// Where a listener listens and a client dials: "unix:PATH" or "tcp:HOST:PORT". A listener may also
-/// take the socket that the service manager passed under a name: "fd:NAME".
+/// Where a listener listens and a client dials: "unix:PATH", "tcp:HOST:PORT", or "tls:HOST:PORT"
+/// for TLS 1.3 over TCP. A listener may also take the socket that the service manager passed under
+/// a name: "fd:NAME"; if that is one of TCP, it speaks TLS.
 struct Address {
-  enum class Kind { kUnix, kTcp, kPassed };
+  enum class Kind { kUnix, kTcp, kTls, kPassed };
   Kind kind = Kind::kUnix;
   std::string path;  ///< Unix socket; of a passed one its name.
-  std::string host;  ///< TCP: a numeric address or "localhost".
+  std::string host;  ///< TCP and TLS: a numeric address or "localhost".
   std::uint16_t port = 0;
 
   std::string Text() const;
+  /// Over TCP, in clear or not: the kernel does not know who is at the other end.
+  bool OverTcp() const { return kind == Kind::kTcp || kind == Kind::kTls; }
 };
 
 /// Usage error with the right form when the text is none.

@@ -58,7 +58,6 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   LinkState state() const { return state_; }
-
   ClockOffset clock() const { return probes_.offset(); }
 
  private:
@@ -109,6 +108,9 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     handlers.on_close = [weak = weak_from_this()](const std::string& reason) {
       if (const auto self = weak.lock()) self->OnClose(reason);
     };
+    handlers.on_untrusted = [weak = weak_from_this()](const std::string& why) {
+      if (const auto self = weak.lock()) self->close_ = {true, why};
+    };
     connection_.emplace(std::move(socket), limits, std::move(handlers));
     connection_->Start();
     heard_ns_ = NowNs();
@@ -143,7 +145,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
       case v1::Envelope::kSubscribed:
         return OnSubscribed();
       case v1::Envelope::kRefused:
-        close_ = {true, message.refused().message()};
+        close_ = {true, options_.address.Text() + " refused: " + message.refused().message()};
         return;
       case v1::Envelope::kGoodbye:
         close_.text = message.goodbye().reason();
@@ -229,7 +231,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     subscribed_ = false;
     pulse_.cancel();
     commands_.Fail("the connection was lost before the answer; it may still be carried out");
-    if (refused) return Retry(LinkState::kRefused, options_.address.Text() + " refused: " + words);
+    if (refused) return Retry(LinkState::kRefused, words);
     Retry(LinkState::kConnecting, "waiting for " + options_.address.Text() + ": " + words);
   }
 
@@ -242,8 +244,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     retry_.expires_after(Duration(wait_s));
     retry_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
       const auto self = weak.lock();
-      if (error || !self || !self->started_) return;
-      self->Connect();
+      if (!error && self && self->started_) self->Connect();
     });
     SetState(state, why);
   }

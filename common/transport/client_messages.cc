@@ -11,7 +11,7 @@ v1::Envelope MakeHello(const ClientOptions& options) {
   hello.set_protocol_major(kProtocolMajor);
   hello.set_protocol_minor(kProtocolMinor);
   hello.set_role(options.role);
-  const bool ask_environment = options.token.empty() && options.address.kind == Address::Kind::kTcp;
+  const bool ask_environment = options.token.empty() && options.address.OverTcp();
   hello.set_token(ask_environment ? TokenFromEnvironment() : options.token);
   hello.set_client_name(options.client_name);
   return message;

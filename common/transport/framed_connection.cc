@@ -3,12 +3,11 @@
 #include <array>
 #include <boost/asio/post.hpp>
 #include <chrono>
-#include <deque>
 #include <utility>
 
 #include "common/clock/clock.h"
 #include "common/timer/timer.h"
-#include "common/transport/framing.h"
+#include "common/transport/outbox.h"
 #include "common/units/units.h"
 
 namespace footing::transport {
@@ -22,12 +21,6 @@ constexpr std::size_t kReadBytes = 16 << 10;
 constexpr int kBatchesInARow = 8;
 /// Messages handled in one turn.
 constexpr int kMessagesInATurn = 8;
-
-std::string CloseReason(const error_code& error, bool inside_frame) {
-  if (error != asio::error::eof) return "the connection broke: " + MessageOf(error);
-  return inside_frame ? "the other side closed in the middle of a message"
-                      : "the other side closed the connection";
-}
 
 }  // namespace
 
@@ -46,13 +39,13 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     Prepare(socket_);
   }
 
-  void Start() { Read(); }
+  void Start() { socket_.needs_handshake() ? ShakeHands() : Read(); }
 
   bool Send(std::string_view payload) {
     if (state_ != State::kOpen || payload.size() > limits_.max_out_bytes) return false;
-    if (queue_.size() >= limits_.max_queued_frames) return false;
-    if (queued_bytes_ + payload.size() > limits_.max_queued_bytes) return false;
-    Queue(payload);
+    if (outbox_.frames() >= limits_.max_queued_frames) return false;
+    if (outbox_.bytes() + payload.size() > limits_.max_queued_bytes) return false;
+    outbox_.Add(payload);
     Write();
     return true;
   }
@@ -72,7 +65,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     if (state_ != State::kOpen) return;
     state_ = State::kFinishing;
     reason_ = reason;
-    if (!last_payload.empty()) Queue(last_payload);
+    if (!last_payload.empty()) outbox_.Add(last_payload);
     linger_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
         std::chrono::duration<double>(limits_.linger_s)));
     linger_.async_wait([self = shared_from_this()](const error_code& error) {
@@ -87,18 +80,42 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   }
 
   bool open() const { return state_ == State::kOpen; }
-  std::size_t queued_bytes() const { return queued_bytes_; }
+  std::size_t queued_bytes() const { return outbox_.bytes(); }
+  bool secured() const { return socket_.secured(); }
+  std::string peer_fingerprint() const { return socket_.peer_fingerprint(); }
   int native_handle() { return socket_.native_handle(); }
   Socket::executor_type executor() { return socket_.get_executor(); }
 
  private:
   enum class State { kOpen, kFinishing, kOver };
 
+  /// A step costs as much as hundreds of messages, so it waits for its turn, too.
+  void ShakeHands() {
+    const auto self = shared_from_this();
+    socket_.AsyncHandshake(
+        [self](std::function<void()> step) { self->loop_.InTurn(self->executor(), step); },
+        [self](tls::Progress progress) { self->OnHandshake(progress); });
+  }
+
+  void OnHandshake(tls::Progress progress) {
+    if (state_ == State::kOver) return;
+    if (progress == tls::Progress::kNotTls) {
+      socket_.GoOnInClear();
+      OnBadInput("this port speaks TLS: connect with tls:HOST:PORT");
+    } else if (progress != tls::Progress::kDone) {
+      const std::string problem = socket_.channel().problem();
+      if (socket_.channel().untrusted() && handlers_.on_untrusted) handlers_.on_untrusted(problem);
+      return End(state_ == State::kFinishing ? reason_ : problem);
+    }
+    Write();
+    if (state_ != State::kOver) Read();
+  }
+
   void Read() {
-    socket_.async_read_some(asio::buffer(input_),
-                            [self = shared_from_this()](const error_code& error, std::size_t size) {
-                              self->OnRead(error, size);
-                            });
+    socket_.AsyncReadSome(asio::buffer(input_),
+                          [self = shared_from_this()](const error_code& error, std::size_t size) {
+                            self->OnRead(error, size);
+                          });
   }
 
   void OnRead(const error_code& error, std::size_t size) {
@@ -149,8 +166,12 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     });
     if (fed) return unhandled_.remove_prefix(*fed);
     unhandled_ = {};
-    if (handlers_.on_oversized) handlers_.on_oversized(fed.error().message);
-    if (state_ == State::kOpen) End(fed.error().message);
+    OnBadInput(fed.error().message);
+  }
+
+  void OnBadInput(const std::string& why) {
+    if (state_ == State::kOpen && handlers_.on_bad_input) handlers_.on_bad_input(why);
+    if (state_ == State::kOpen) End(why);
   }
 
   /// Whether the budget is used up; the rest is handled when there is some again.
@@ -165,13 +186,8 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     return true;
   }
 
-  void Queue(std::string_view payload) {
-    queued_bytes_ += payload.size();
-    queue_.push_back(Frame(payload));
-  }
-
   void Write() {
-    if (waiting_ || writing_ || corked_) return;
+    if (waiting_ || writing_ || corked_ || socket_.needs_handshake()) return;
     writing_ = true;  // on_writable may call Wake() or Send().
     for (int batches = 0; state_ != State::kOver; ++batches) {
       if (!batch_) batch_ = loop_.pool->Take();
@@ -182,8 +198,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
         break;
       }
       error_code error;
-      clock::Act();
-      const std::size_t written = socket_.write_some(batch_->buffers(), error);
+      const std::size_t written = socket_.WriteSome(batch_->buffers(), error);
       if (error == asio::error::would_block) {
         WaitUntilWritable();
         break;
@@ -196,15 +211,11 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     }
     writing_ = false;
     if (batch_ && batch_->empty()) loop_.pool->Give(std::move(batch_));
-    if (state_ == State::kFinishing && !batch_ && queue_.empty()) SayNoMore();
+    if (state_ == State::kFinishing && !batch_ && outbox_.empty()) socket_.SayNoMore();
   }
 
   void Fill() {
-    while (!queue_.empty() && batch_->free_buffers() > 0) {
-      queued_bytes_ -= queue_.front().size() - kLengthBytes;
-      batch_->AddOwned(std::move(queue_.front()));
-      queue_.pop_front();
-    }
+    outbox_.MoveTo(*batch_);
     if (state_ == State::kOpen && batch_->free_buffers() > 0 && handlers_.on_writable) {
       handlers_.on_writable(*batch_);
     }
@@ -212,14 +223,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
 
   void WriteLater() {
     waiting_ = true;
-    if (!loop_.turns) {
-      asio::post(socket_.get_executor(), [self = shared_from_this()] { self->WriteNow(); });
-      return;
-    }
-    loop_.turns->Add([self = shared_from_this()] {
-      self->WriteNow();
-      return false;  // What is left gets in line by itself.
-    });
+    loop_.InTurn(executor(), [self = shared_from_this()] { self->WriteNow(); });
   }
 
   void WriteNow() {
@@ -229,16 +233,11 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
 
   void WaitUntilWritable() {
     waiting_ = true;
-    socket_.async_wait(Socket::wait_write, [self = shared_from_this()](const error_code& error) {
+    const auto wanted = tls::Progress::kWantsWrite;
+    socket_.AsyncWait(wanted, [self = shared_from_this()](const error_code& error) {
       self->waiting_ = false;
       if (!error && self->state_ != State::kOver) self->WriteLater();
     });
-  }
-
-  void SayNoMore() {
-    error_code ignored;  // It may be gone already.
-    clock::Act();
-    socket_.shutdown(Socket::shutdown_send, ignored);
   }
 
   void End(const std::string& reason) {
@@ -246,9 +245,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     state_ = State::kOver;
     linger_.cancel();
     slowed_.cancel();
-    error_code ignored;
-    clock::Act();
-    socket_.close(ignored);
+    socket_.Close();
     asio::post(socket_.get_executor(), [self = shared_from_this(), reason] {
       // The handlers go too: they often hold the owner of this connection.
       FramedHandlers handlers = std::move(self->handlers_);
@@ -265,8 +262,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   FrameSplitter splitter_;
   InputPace pace_;
   std::string_view unhandled_;  ///< Of input_: read, and not handled yet.
-  std::deque<std::string> queue_;
-  std::size_t queued_bytes_ = 0;
+  Outbox outbox_;
   const SharedLoop loop_;
   std::unique_ptr<WriteBatch> batch_;  ///< While something waits to be written.
   State state_ = State::kOpen;
@@ -294,6 +290,10 @@ void FramedConnection::Finish(std::string_view last_payload, const std::string& 
 void FramedConnection::Close() { implementation_->Close(); }
 bool FramedConnection::open() const { return implementation_->open(); }
 std::size_t FramedConnection::queued_bytes() const { return implementation_->queued_bytes(); }
+bool FramedConnection::secured() const { return implementation_->secured(); }
+std::string FramedConnection::peer_fingerprint() const {
+  return implementation_->peer_fingerprint();
+}
 int FramedConnection::native_handle() { return implementation_->native_handle(); }
 Socket::executor_type FramedConnection::executor() { return implementation_->executor(); }
 

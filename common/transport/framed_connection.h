@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "common/transport/input_pace.h"
+#include "common/transport/shared_loop.h"
 #include "common/transport/socket.h"
-#include "common/transport/turn_queue.h"
 #include "common/transport/write_batch.h"
 
 namespace footing::transport {
@@ -35,23 +35,20 @@ struct FramedHandlers {
   std::function<void(WriteBatch& batch)> on_writable;
   /// Optional: bytes have just arrived; the frames that they complete follow.
   std::function<void()> on_bytes;
-  /// Optional: a frame over the limit was announced. May Finish() with a last word.
-  std::function<void(const std::string& why)> on_oversized;
+  /// Optional: a frame over the limit was announced, or bytes in clear came where TLS is spoken.
+  /// May Finish() with a last word.
+  std::function<void(const std::string& why)> on_bad_input;
   /// Optional: the budget of input is used up, and nothing is read for `wait_s`.
   std::function<void(double wait_s)> on_slowed = {};
-};
-
-/// What the connections of one thread share: empty batches, and the line in which each gets a small
-/// piece of its work done. Without the line a connection does its work as it comes.
-struct SharedLoop {
-  std::shared_ptr<BatchPool> pool = std::make_shared<BatchPool>();
-  std::shared_ptr<TurnQueue> turns;
+  /// Optional: the certificate of the other side was refused. on_close follows.
+  std::function<void(const std::string& why)> on_untrusted = {};
 };
 
 /// A connection that carries frames (u32 little-endian length, payload) both ways, with bounded
 /// memory. Everything runs on the io_context's one thread.
 ///
-/// Writes go to the socket at once when it takes them; only what it does not take is queued.
+/// Writes go to the socket at once when it takes them; only what it does not take is queued. Over
+/// TLS the handshake comes first, from Start() on; what is sent before waits for it.
 class FramedConnection {
  public:
   /// A socket of Listener or Dial; it is made ready here (see Prepare).
@@ -85,6 +82,10 @@ class FramedConnection {
 
   bool open() const;
   std::size_t queued_bytes() const;
+  /// Within TLS.
+  bool secured() const;
+  /// Of the certificate that the other side showed in TLS; empty without one.
+  std::string peer_fingerprint() const;
   /// For SO_PEERCRED and the like.
   int native_handle();
   Socket::executor_type executor();

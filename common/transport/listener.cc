@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "common/service_manager/service_manager.h"
@@ -39,40 +40,44 @@ Error ListenError(const Address& address, const error_code& error) {
 class Listener::Implementation : public std::enable_shared_from_this<Implementation> {
  public:
   Implementation(asio::io_context& io, Address address, std::function<void(Socket)> on_accept,
-                 bool insecure_lan)
+                 const ListenSecurity& security)
       : address_(std::move(address)),
         acceptor_(io),
         pause_(io),
         on_accept_(std::move(on_accept)),
-        insecure_lan_(insecure_lan) {}
+        security_(security) {}
 
   Result<void> Open() {
-    if (!StaysOnThisHost(address_) && !insecure_lan_) {
+    if (address_.kind == Address::Kind::kTls) {
+      if (auto prepared = PrepareTls(); !prepared) return prepared;
+    }
+    if (address_.kind == Address::Kind::kTcp && !StaysOnThisHost(address_) &&
+        !security_.insecure_lan) {
       return UsageError("will not listen on " + address_.Text() +
-                        ": beyond this host a connection must be encrypted, and this version "
-                        "cannot do that; use tcp:127.0.0.1:PORT and carry it with ssh -L, or, in a "
-                        "network that you trust wholly, --insecure-lan with a token_file");
+                        ": beyond this host a connection must be encrypted; use tls:HOST:PORT, or, "
+                        "in a network that you trust wholly, --insecure-lan with a token_file");
     }
     if (address_.kind == Address::Kind::kPassed) return TakePassed();
     if (auto checked = CheckFolderOf(address_); !checked) return checked;
     const Result<Endpoint> endpoint = EndpointOf(address_);
     if (!endpoint) return endpoint.error();
-    if (address_.kind == Address::Kind::kTcp) return OpenTcp(*endpoint);
+    if (address_.OverTcp()) return OpenTcp(*endpoint);
     auto bound =
         BindWhereNobodyListens(address_.path, address_.Text(), [&] { return BindUnix(*endpoint); });
     return bound;
   }
 
   void Accept() {
-    acceptor_.async_accept([self = shared_from_this()](const error_code& error, Socket socket) {
-      if (self->closed_ || error == asio::error::operation_aborted) return;
-      if (error) {
-        self->AcceptLater();  // For example too many open files: it passes.
-        return;
-      }
-      self->on_accept_(std::move(socket));
-      if (!self->closed_) self->Accept();
-    });
+    acceptor_.async_accept(
+        [self = shared_from_this()](const error_code& error, PlainSocket socket) {
+          if (self->closed_ || error == asio::error::operation_aborted) return;
+          if (error) {
+            self->AcceptLater();  // For example too many open files: it passes.
+            return;
+          }
+          self->on_accept_(self->Accepted(std::move(socket)));
+          if (!self->closed_) self->Accept();
+        });
   }
 
   void Close() {
@@ -87,6 +92,24 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
   const Address& address() const { return address_; }
 
  private:
+  Result<void> PrepareTls() {
+    if (!security_.tls) {
+      return UsageError("will not listen on " + address_.Text() + ": this socket has no TLS");
+    }
+    auto context = security_.tls();
+    if (!context) return context.error();
+    tls_ = std::move(context).value();
+    return {};
+  }
+
+  Socket Accepted(PlainSocket plain) const {
+    if (address_.kind != Address::Kind::kTls) return Socket(std::move(plain));
+    error_code ignored;  // It would block: seen at once.
+    plain.non_blocking(true, ignored);
+    auto channel = tls_->Accept(plain.native_handle());
+    return Socket(std::move(plain), std::move(channel));
+  }
+
   /// The service manager opened it, and keeps it while this program restarts.
   Result<void> TakePassed() {
     const int passed = service_manager::PassedSocket(address_.path);
@@ -96,16 +119,18 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
       return UsageError("no socket was passed under the name " + address_.path +
                         "; start by the socket unit, or listen on unix:PATH");
     }
-    if (name.ss_family != AF_UNIX) {
-      return UsageError("the socket passed as " + address_.path +
-                        " is not a Unix socket; beyond this host nothing is encrypted yet");
+    const bool over_tcp = name.ss_family == AF_INET || name.ss_family == AF_INET6;
+    if (over_tcp) {
+      if (auto prepared = PrepareTls(); !prepared) return prepared;
+    } else if (name.ss_family != AF_UNIX) {
+      return UsageError("the socket passed as " + address_.path + " is neither Unix's nor TCP's");
     }
     // A copy: closing it must not close what the manager passed.
     const int own = fcntl(passed, F_DUPFD_CLOEXEC, 0);
     error_code error;
-    acceptor_.assign(asio::generic::stream_protocol(AF_UNIX, 0), own, error);
+    acceptor_.assign(asio::generic::stream_protocol(name.ss_family, 0), own, error);
     if (own < 0 || error) return ListenError(address_, error);
-    return {};
+    return over_tcp ? TakeBound(Address::Kind::kTls) : Result<void>();
   }
 
   Result<void> OpenTcp(const Endpoint& endpoint) {
@@ -115,10 +140,18 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
     if (!error) acceptor_.bind(endpoint, error);
     if (!error) acceptor_.listen(kBacklog, error);
     if (error) return ListenError(address_, error);
+    return TakeBound(address_.kind);
+  }
+
+  /// The address where it really listens.
+  Result<void> TakeBound(Address::Kind kind) {
+    error_code error;
     asio::ip::tcp::endpoint bound;
     const Endpoint local = acceptor_.local_endpoint(error);
     if (error) return ListenError(address_, error);
     std::memcpy(bound.data(), local.data(), local.size());
+    if (address_.kind == Address::Kind::kPassed) address_.host = bound.address().to_string();
+    address_.kind = kind;
     address_.port = bound.port();
     return {};
   }
@@ -150,15 +183,16 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
   timer::Timer pause_;
   std::function<void(Socket)> on_accept_;
   FileIdentity file_;
-  const bool insecure_lan_;
+  const ListenSecurity security_;
+  std::optional<tls::Context> tls_;
   bool closed_ = false;
 };
 
 Result<std::unique_ptr<Listener>> Listener::Open(asio::io_context& io, const Address& address,
                                                  std::function<void(Socket)> on_accept,
-                                                 bool insecure_lan) {
+                                                 const ListenSecurity& security) {
   auto implementation =
-      std::make_shared<Implementation>(io, address, std::move(on_accept), insecure_lan);
+      std::make_shared<Implementation>(io, address, std::move(on_accept), security);
   if (auto opened = implementation->Open(); !opened) {
     implementation->Close();
     return opened.error();

@@ -5,22 +5,31 @@
 #include <memory>
 
 #include "common/result/result.h"
+#include "common/tls/context.h"
 #include "common/transport/address.h"
 #include "common/transport/socket.h"
 
 namespace footing::transport {
 
+/// What a listener may do beyond this host.
+struct ListenSecurity {
+  /// Asked when it is to listen on tls:, or on a socket of TCP that was passed. Empty: it never
+  /// does.
+  std::function<Result<tls::Context>()> tls;
+  bool insecure_lan = false;  ///< Listen on tcp: beyond loopback, not encrypted.
+};
+
 /// Accepts connections on one address and hands over their sockets.
 ///
 /// Unix: mode 0660. A socket file left over by a dead server is replaced; one with a living server
 /// behind it is never touched. The own file is removed at the end. TCP beyond loopback is refused
-/// unless `insecure_lan` is set.
+/// unless `insecure_lan` is set. On tls: the sockets' handshakes are still to come.
 class Listener {
  public:
   /// Begins to listen. Errors say which address, why, and what to do.
   static Result<std::unique_ptr<Listener>> Open(boost::asio::io_context& io, const Address& address,
                                                 std::function<void(Socket)> on_accept,
-                                                bool insecure_lan = false);
+                                                const ListenSecurity& security = {});
   ~Listener();
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;

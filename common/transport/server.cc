@@ -8,6 +8,8 @@
 #include <random>
 #include <utility>
 
+#include "common/tls/context.h"
+#include "common/tls/identity.h"
 #include "common/transport/listener.h"
 #include "common/transport/session.h"
 #include "common/units/units.h"
@@ -36,9 +38,11 @@ class Server::Implementation {
   }
 
   Result<void> Listen(const Address& address) {
-    const bool lan = shared_.options.insecure_lan && !shared_.options.token.empty();
+    ListenSecurity security;
+    security.insecure_lan = shared_.options.insecure_lan && !shared_.options.token.empty();
+    security.tls = [this, &address] { return TlsContext(address); };
     auto listener = Listener::Open(
-        io_, address, [this](Socket socket) { OnAccept(std::move(socket)); }, lan);
+        io_, address, [this](Socket socket) { OnAccept(std::move(socket)); }, security);
     if (!listener) return listener.error();
     listeners_.push_back(std::move(*listener));
     return {};
@@ -75,6 +79,7 @@ class Server::Implementation {
     }
   }
 
+  std::string fingerprint() const { return identity_ ? identity_->fingerprint() : ""; }
   std::uint64_t epoch() const { return shared_.epoch; }
 
   ServerStatistics statistics() const {
@@ -110,6 +115,21 @@ class Server::Implementation {
   void SetLimits(const SessionLimits& limits) { shared_.options.sessions = limits; }
 
  private:
+  Result<tls::Context> TlsContext(const Address& address) {
+    const ServerOptions& options = shared_.options;
+    if (options.token.empty() && options.clients.empty()) {
+      return UsageError("will not listen on " + address.Text() +
+                        ": anyone who reaches the port could come in; set token_file or "
+                        "clients_file");
+    }
+    if (!identity_) {
+      auto identity = tls::Identity::LoadOrMake(options.identity_file, "Footing");
+      if (!identity) return identity.error();
+      identity_ = std::move(identity).value();
+    }
+    return tls::Context::ForServer(*identity_, !options.clients.empty());
+  }
+
   void OnAccept(Socket socket) {
     ++shared_.statistics.accepted;
     const auto session = std::make_shared<Session>(std::move(socket), ++last_number_, shared_,
@@ -151,6 +171,7 @@ class Server::Implementation {
 
   boost::asio::io_context& io_;
   Shared shared_;
+  std::optional<tls::Identity> identity_;
   std::vector<std::unique_ptr<Listener>> listeners_;
   std::vector<std::shared_ptr<Session>> sessions_;
   std::uint64_t last_number_ = 0;
@@ -172,6 +193,7 @@ void Server::Answer(std::uint64_t session, const v1::CommandResult& result) {
   implementation_->Answer(session, result);
 }
 void Server::NoteLateTicks(std::uint64_t count) { implementation_->NoteLateTicks(count); }
+std::string Server::fingerprint() const { return implementation_->fingerprint(); }
 std::uint64_t Server::epoch() const { return implementation_->epoch(); }
 ServerStatistics Server::statistics() const { return implementation_->statistics(); }
 std::vector<stream::SessionStats> Server::sessions() const { return implementation_->sessions(); }

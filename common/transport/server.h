@@ -3,6 +3,7 @@
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,7 +35,12 @@ struct ServerOptions {
   std::uint32_t max_message_out_bytes = 1u << 20;
   std::uint32_t max_queue_ticks = 1024;
   SessionLimits sessions;
-  std::string token;  ///< By which a client over TCP gets the role control; empty: none does.
+  std::string
+      token;  ///< By which a client over TCP or TLS gets the role control; empty: none does.
+  /// Fingerprints of the certificates by which clients over TLS get their roles.
+  std::map<std::string, v1::Role> clients;
+  /// Key and certificate for TLS, made where the file is missing when it first listens on tls:.
+  std::string identity_file;
   /// Listen beyond this host without encryption: anyone on the network path can read everything.
   bool insecure_lan = false;
   double hello_deadline_s = 3;
@@ -95,7 +101,7 @@ class Server {
 
   /// Opens one more listener. A Unix socket left over by a dead server is replaced; one in use, or
   /// a TCP port in use, is an error that says so. TCP beyond loopback is refused, unless
-  /// insecure_lan is set and there is a token.
+  /// insecure_lan is set and there is a token; TLS, unless there is a token or a client.
   Result<void> Listen(const Address& address);
 
   /// The bound address of the i-th listener (the real port where 0 was asked for).
@@ -110,6 +116,9 @@ class Server {
   /// The owner could not publish `count` ticks in time: counted, logged, and said to every session,
   /// at most once in 10 s.
   void NoteLateTicks(std::uint64_t count);
+
+  /// Of the certificate that it shows on tls:; empty while it listens on none.
+  std::string fingerprint() const;
 
   std::uint64_t epoch() const;
   ServerStatistics statistics() const;

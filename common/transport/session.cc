@@ -13,7 +13,6 @@
 namespace footing::transport {
 namespace {
 
-constexpr std::size_t kMostNameBytes = 64;
 constexpr std::size_t kMaxQueuedAnswers = 64;
 constexpr std::size_t kRememberedAnswers = 256;
 constexpr double kCommandCost = 2;  // In messages.
@@ -30,14 +29,6 @@ FramedLimits LimitsOf(const ServerOptions& options) {
 
 std::chrono::nanoseconds Duration(double seconds) {
   return std::chrono::nanoseconds(SecondsToNanoseconds(seconds));
-}
-
-/// For logs and other people's screens: at most 64 bytes, printable.
-std::string PlainName(std::string name) {
-  name.resize(std::min(name.size(), kMostNameBytes));
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return name;
 }
 
 std::string Seconds(double seconds) {
@@ -131,45 +122,6 @@ void Session::OnFrame(std::string_view payload) {
   } else {
     BadMessage("the first message must be Hello");
   }
-}
-
-void Session::OnHello(const v1::Hello& hello) {
-  const bool needs_token = shared_.options.insecure_lan && !peer_.known;
-  if (needs_token && hello.token().empty()) {
-    return Refused(v1::Refused::REASON_TOKEN,
-                   "this server wants its token over TCP: FOOTING_TOKEN_FILE=FILE names it");
-  }
-  if (!hello.token().empty() && !peer_.known && !shared_.options.token.empty()) {
-    if (!shared_.token.Accepts(hello.token(), shared_.NowNs())) {
-      return Refused(v1::Refused::REASON_TOKEN,
-                     "the token is wrong, or there were too many wrong ones: try again in 5 s");
-    }
-    highest_role_ = v1::ROLE_CONTROL;
-  }
-  const auto answer =
-      AnswerHello(hello, highest_role_, !shared_.options.token.empty(), shared_.options.server_id);
-  if (const auto* refused = std::get_if<v1::Refused>(&answer)) {
-    Refused(refused->reason(), refused->message());
-    return;
-  }
-  info_.client_name = PlainName(hello.client_name());
-  const v1::Role role = std::get<v1::Role>(answer);
-  if (!may_administer()) {
-    const auto taken = WhyRoleIsTaken(shared_.options.sessions, role, shared_.with_role[role]);
-    if (!taken.empty()) {
-      return Refused(v1::Refused::REASON_TOO_MANY_SESSIONS,
-                     shared_.options.server_id + " has " + taken + "; end one or try again later");
-    }
-    ++shared_.with_role[role];
-  }
-  info_.role = role;
-  phase_ = Phase::kWelcomed;
-  v1::Envelope message;
-  *message.mutable_welcome() = MakeWelcome(shared_.options, shared_.epoch, info_.role);
-  message.mutable_welcome()->set_host_ns(shared_.NowNs());
-  message.mutable_welcome()->set_wall_time_ns(clock::WallNs());
-  Send(message);
-  ArmTimer(shared_.options.ping_interval_s);
 }
 
 void Session::Dispatch(const v1::Envelope& message, std::int64_t arrived_ns) {

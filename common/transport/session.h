@@ -96,6 +96,9 @@ class Session : public std::enable_shared_from_this<Session> {
   void OnFrame(std::string_view payload);
   void OnSlowed();
   void OnHello(const v1::Hello& hello);
+  /// Finds out the highest role of who comes over TCP or TLS; why not, if it may not come in.
+  std::optional<v1::Refused> Authenticate(const v1::Hello& hello);
+  std::string HowToComeIn(const std::string& certificate) const;
   void Dispatch(const v1::Envelope& message, std::int64_t arrived_ns);
   void OnSubscribe(const v1::Subscribe& wish);
   void OnRefill(const v1::Refill& wish);

@@ -16,6 +16,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 EXTERNAL = [
     (re.compile(r"^Eigen/"), {"eigen"}),
+    (re.compile(r"^boost/asio/ssl"), {"openssl"}),
     (re.compile(r"^boost/asio"), {"asio"}),
     (re.compile(r"^boost/math/"), {"boost_math"}),
     (re.compile(r"^boost/"), {"asio", "boost_headers"}),
@@ -25,6 +26,8 @@ EXTERNAL = [
     (re.compile(r"^hidapi"), {"hidapi"}),
     (re.compile(r"^mujoco/"), {"mujoco"}),
     (re.compile(r"^zlib\.h$"), {"zlib"}),
+    (re.compile(r"^openssl/"), {"openssl"}),
+    (re.compile(r"^qrencode\.h$"), {"qrencode"}),
     (re.compile(r"^CLI/"), {"cli11"}),
     (re.compile(r"^(GL|EGL|KHR)/"), {"opengl"}),
     (re.compile(r"^imgui"), {"imgui"}),

@@ -33,7 +33,7 @@ class SurveyScreen::Implementation {
             .on_close = [](const std::string&) {},  // It comes back.
             .on_writable = {},
             .on_bytes = {},
-            .on_oversized = {}}));
+            .on_bad_input = {}}));
     connections_.back()->Start();
     connections_.back()->Send(screen::ToText(shown_));
   }

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   Options options;
   std::vector<std::string> connect, subjects;
   app->add_option("--connect", connect,
-                  "Address of a server, unix:PATH or tcp:HOST:PORT; may be repeated "
+                  "Address of a server, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated "
                   "(default: footing-sim and footingd of this user)");
   PlayArguments play;
   AddPlayOptions(*app, options, play);

@@ -16,6 +16,7 @@ constexpr Benchmark kBenchmarks[] = {
     {"publish_to_client_p50", footing::bench::PublishToClient},
     {"fan_out_cpu", footing::bench::FanOutCpu},
     {"stalled_readers", footing::bench::StalledReaders},
+    {"tls_exchange", footing::bench::TlsExchange},
     {"body_kinematics", footing::bench::BodyKinematics},
     {"pose_frame", footing::bench::PoseFrame},
     {"dunnett_test", footing::bench::DunnettTest},

@@ -86,7 +86,7 @@ class BareReader {
 
  private:
   void Read() {
-    boost::asio::async_read(*socket_, boost::asio::buffer(frame_),
+    boost::asio::async_read(socket_->plain(), boost::asio::buffer(frame_),
                             [this](const boost::system::error_code& error, std::size_t) {
                               if (error) return;
                               on_payload_(std::string_view(frame_).substr(transport::kLengthBytes));

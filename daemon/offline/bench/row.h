@@ -30,6 +30,10 @@ Result<Rows> FanOutCpu();
 /// the memory grows once ring and queues are full, against 2 MB.
 Result<Rows> StalledReaders();
 
+/// From the dial to the first echo over TLS, and one round trip of 100 bytes, against Asio's own
+/// TLS stream with the same certificate.
+Result<Rows> TlsExchange();
+
 /// Forward kinematics, centre of mass and momentum of the standard person (56 degrees of freedom),
 /// and the same with the centroidal momentum matrix, against the sines and cosines of its angles.
 Result<Rows> BodyKinematics();

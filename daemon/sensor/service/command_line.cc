@@ -37,14 +37,16 @@ std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_cod
   app->add_option("--config", file, "Config file, JSON");
   app->add_option("--set", settings,
                   "Setting, key=value; may be repeated; overrides the config file");
-  app->add_option("--listen", listen,
-                  "Address for clients, unix:PATH or tcp:HOST:PORT; may be repeated");
+  app->add_option(
+      "--listen", listen,
+      "Address for clients, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated");
   app->add_option(
       "--source", sources,
       "Source of devices: hid, or stream:ADDRESS for simulated devices; may be repeated");
   app->add_option("--metrics", metrics, "Unix socket with metrics for Prometheus, unix:PATH");
-  app->add_flag("--insecure-lan", insecure_lan,
-                "Allow --listen beyond this host WITHOUT ENCRYPTION; needs --set token_file=FILE");
+  app->add_flag(
+      "--insecure-lan", insecure_lan,
+      "Allow --listen tcp: beyond this host WITHOUT ENCRYPTION; needs --set token_file=FILE");
   app->add_flag("--print-config", print, "Print the effective config and exit");
   app->add_flag(
       "--origin", origin,
@@ -63,7 +65,7 @@ std::optional<CommandLine> ParseCommandLine(int argc, char** argv, int& exit_cod
   Override(sources, "sources", "--source", config.sources, binder);
   Override(metrics, "metrics", "--metrics", config.metrics, binder);
   if (insecure_lan) {
-    config.insecure_lan = true;
+    config.access.insecure_lan = true;
     binder.SetOrigin("insecure_lan", "--insecure-lan");
   }
   if (done) done = Check(config);

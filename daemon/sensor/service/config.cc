@@ -5,7 +5,8 @@
 namespace footing::sensor {
 
 void Config::Bind(config::Binder& binder) {
-  binder.TextList("listen", listen, "Addresses for clients, unix:PATH or tcp:HOST:PORT");
+  binder.TextList("listen", listen,
+                  "Addresses for clients, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT");
   binder.TextList("sources", sources,
                   "Sources of devices: hid, or stream:ADDRESS for simulated devices");
   binder.Flag("tcp_devices", tcp_devices,
@@ -40,10 +41,7 @@ void Config::Bind(config::Binder& binder) {
   binder.Flag("camera", camera, "Enable the infrared cameras of Wiimotes");
   binder.Number("status_interval_s", status_interval_s, 0, 3600,
                 "Interval of status requests to devices, s (0: never)");
-  binder.Text("token_file", token_file,
-              "File (mode 0600) with a token by which clients over TCP get the role control");
-  binder.Flag("insecure_lan", insecure_lan,
-              "Listen beyond this host WITHOUT ENCRYPTION; needs token_file");
+  access.Bind(binder);
   binder.Text("metrics", metrics,
               "Unix socket with metrics for Prometheus, unix:PATH (empty: none)");
   sessions.Bind(binder);
@@ -73,9 +71,7 @@ Result<void> Check(const Config& config) {
                         "stream:unix:PATH, or allow it with --set tcp_devices=true");
     }
   }
-  if (config.insecure_lan && config.token_file.empty()) {
-    return UsageError("config: insecure_lan needs a token_file");
-  }
+  if (const auto access = config.access.Check(); !access) return access;
   if (config.plate.contact_on_n < config.plate.contact_off_n) {
     return UsageError("config: board_contact_on_n must not be below board_contact_off_n");
   }

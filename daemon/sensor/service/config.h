@@ -8,6 +8,7 @@
 #include "common/board/plate.h"
 #include "common/config/config.h"
 #include "common/result/result.h"
+#include "common/transport/access.h"
 #include "common/transport/address.h"
 #include "common/transport/session_limits.h"
 #include "common/units/units.h"
@@ -33,8 +34,7 @@ struct Config {
   bool camera = false;            ///< Switch the infrared cameras of Wiimotes on.
   double status_interval_s = 60;  ///< Between requests for the status of devices; 0: never.
   transport::SessionLimits sessions;
-  std::string token_file;  ///< Whose token gives the role control over TCP; empty: nothing does.
-  bool insecure_lan = false;
+  transport::AccessSettings access;
   std::string metrics;  ///< Where Prometheus metrics are served, unix:PATH; empty: nowhere.
 
   void Bind(config::Binder& binder);

@@ -12,7 +12,6 @@
 #include "common/timer/timer.h"
 #include "common/transport/address.h"
 #include "common/transport/server.h"
-#include "common/transport/token.h"
 #include "common/units/time.h"
 #include "daemon/sensor/devices/hid_source.h"
 #include "daemon/sensor/devices/socket_source.h"
@@ -40,16 +39,14 @@ std::string OwnAddress(const std::string& name) {
 }
 
 transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
-                                           const std::string& token) {
-  transport::ServerOptions options;
+                                           const transport::ServerOptions& with_access) {
+  transport::ServerOptions options = with_access;
   options.server_id = "footingd";
   options.version = version;
   options.channels = Channels();
   options.channels.push_back(monitoring::StatsChannel());
   options.tick_rate_hz = config.tick_rate_hz;
   options.sessions = config.sessions;
-  options.token = token;
-  options.insecure_lan = config.insecure_lan;
   options.capabilities = {"features", "boards",   "raw",    "rumble", "leds",
                           "assign",   "nunchuk",  "camera", "sphere", "setup",
                           "tare",     "mounting", "layout", "hands",  "contacts"};
@@ -67,7 +64,7 @@ setup::Storage StorageOf(setup::StateDirectory& directory, setup::DiskWriter& di
 class Service::Implementation : public std::enable_shared_from_this<Service::Implementation> {
  public:
   Implementation(boost::asio::io_context& io, const Config& config, const std::string& version,
-                 const std::string& token)
+                 const transport::ServerOptions& with_access)
       : io_(io),
         config_(config),
         timer_(io),
@@ -95,7 +92,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
                       },
                       StorageOf(state_, disk_, config)}),
         server_(
-            io, MakeServerOptions(config, version, token),
+            io, MakeServerOptions(config, version, with_access),
             {[this](const transport::SessionInfo& session, const v1::Command& command) {
                return OnCommand(session, command);
              },
@@ -111,7 +108,9 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       if (!address) return address.error();
       if (const auto listening = server_.Listen(*address); !listening) return listening;
       listening_on_.push_back(server_.ListeningOn(listening_on_.size()).Text());
-      log::Info("listening on " + listening_on_.back());
+      const bool tls = listening_on_.back().starts_with("tls:");
+      log::Info("listening on " + listening_on_.back() +
+                (tls ? ", certificate " + server_.fingerprint() : ""));
     }
     auto sources = config_.sources;
     if (sources.empty()) {
@@ -126,7 +125,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   void Start() {
     next_tick_ = timer::Now();
     WaitForTick();
-    if (config_.insecure_lan) WarnOfLan();
+    if (config_.access.insecure_lan) WarnOfLan();
   }
 
   void Reload(const Config& wanted) {
@@ -279,13 +278,14 @@ Service::Service(std::shared_ptr<Implementation> implementation)
 Service::~Service() = default;
 Result<std::unique_ptr<Service>> Service::Start(boost::asio::io_context& io, const Config& config,
                                                 const std::string& version) {
-  std::string token;
-  if (!config.token_file.empty()) {
-    auto read = transport::ReadTokenFile(config.token_file);
-    if (!read) return read.error();
-    token = std::move(read).value();
+  transport::AccessSettings access = config.access;
+  const bool own_state = !config.state_directory.empty() && config.state_directory != "none";
+  if (access.identity_file.empty() && own_state) {
+    access.identity_file = config.state_directory + "/identity.pem";
   }
-  auto implementation = std::make_shared<Implementation>(io, config, version, token);
+  transport::ServerOptions with_access;
+  if (const auto applied = access.Apply(with_access); !applied) return applied.error();
+  auto implementation = std::make_shared<Implementation>(io, config, version, with_access);
   if (const auto opened = implementation->Open(); !opened) return opened.error();
   implementation->Start();
   return std::unique_ptr<Service>(new Service(std::move(implementation)));

@@ -52,8 +52,9 @@ std::unique_ptr<CLI::App> NewParser(Given& given) {
   app->add_option("--config", given.file, "Config file, JSON");
   app->add_option("--set", given.settings,
                   "Setting, key=value; may be repeated; overrides the config file");
-  app->add_option("--listen", given.listen,
-                  "Address for clients, unix:PATH or tcp:HOST:PORT; may be repeated");
+  app->add_option(
+      "--listen", given.listen,
+      "Address for clients, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated");
   for (std::size_t i = 0; i < kKeyOptions.size(); ++i) {
     app->add_option(kKeyOptions[i].name, given.values[i], kKeyOptions[i].help);
   }

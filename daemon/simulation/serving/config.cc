@@ -4,10 +4,12 @@ namespace footing::serving {
 
 void Config::Bind(config::Binder& binder) {
   binder.Text("sensor", sensor, "Address of footingd");
-  binder.TextList("listen", listen, "Addresses for clients, unix:PATH or tcp:HOST:PORT");
+  binder.TextList("listen", listen,
+                  "Addresses for clients, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT");
   binder.Text("rig", rig, "Rig to follow (empty: the first with hand devices, or with boards)");
   binder.Text("data_folder", data_folder,
               "Folder with biped.json, the mappings, the models and the tracks");
+  access.Bind(binder);
   sessions.Bind(binder);
 }
 

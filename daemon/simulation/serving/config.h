@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/config/config.h"
+#include "common/transport/access.h"
 #include "common/transport/session_limits.h"
 
 namespace footing::serving {
@@ -15,6 +16,7 @@ struct Config {
   std::string rig;                  ///< Whose motion commands; empty: the first one that can.
   std::string data_folder;          ///< In place of the installed data.
   transport::SessionLimits sessions;
+  transport::AccessSettings access;
   std::string version;  ///< Of the program; not a setting.
 
   void Bind(config::Binder& binder);

@@ -26,10 +26,10 @@ template <typename Line>
 class Serving : public std::enable_shared_from_this<Serving<Line>> {
  public:
   Serving(boost::asio::io_context& io, std::unique_ptr<Line> line, const Config& config,
-          int wake_descriptor)
+          int wake_descriptor, const transport::ServerOptions& with_access)
       : line_(std::move(line)),
         wake_(io, wake_descriptor),
-        server_(io, MakeServerOptions(*line_, config),
+        server_(io, MakeServerOptions(*line_, config, with_access),
                 {[this](const transport::SessionInfo& who, const v1::Command& command) {
                    return line_->OnCommand(who, command);
                  },
@@ -47,7 +47,13 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
       const auto address = transport::ParseAddress(text);
       if (!address) return address.error();
       if (const auto listening = server_.Listen(*address); !listening) return listening;
-      log::Info("listening on " + address->Text());
+      const transport::Address bound = server_.ListeningOn(listening_++);
+      const bool tls = bound.kind == transport::Address::Kind::kTls;
+      log::Info("listening on " + bound.Text() +
+                (tls ? ", certificate " + server_.fingerprint() : ""));
+    }
+    if (config.access.insecure_lan) {
+      log::Warning("insecure_lan: what goes beyond this host is NOT ENCRYPTED, the token included");
     }
     transport::ClientOptions options;
     options.address = transport::DefaultAddress("sensor");
@@ -84,8 +90,9 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   }
 
  private:
-  static transport::ServerOptions MakeServerOptions(const Line& line, const Config& config) {
-    transport::ServerOptions options;
+  static transport::ServerOptions MakeServerOptions(const Line& line, const Config& config,
+                                                    const transport::ServerOptions& with_access) {
+    transport::ServerOptions options = with_access;
     options.server_id = "footing-sim";
     options.version = config.version;
     options.channels = Line::Channels();
@@ -117,6 +124,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   std::uint64_t wakes_ = 0;
   typename Line::Run::Frame frame_;
   transport::Server server_;
+  std::size_t listening_ = 0;
   std::unique_ptr<transport::Client> client_;
 };
 
@@ -129,10 +137,12 @@ Result<StopServing> StartServing(boost::asio::io_context& io, const Config& conf
                                  const MakeLine& make_line) {
   const int wake_descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake_descriptor < 0) return Failure(std::string("eventfd: ") + std::strerror(errno));
+  transport::ServerOptions with_access;
+  if (const auto access = config.access.Apply(with_access); !access) return access.error();
   Result<std::unique_ptr<Line>> line = make_line(wake_descriptor);
   if (!line) return line.error();
-  auto serving =
-      std::make_shared<Serving<Line>>(io, std::move(line).value(), config, wake_descriptor);
+  auto serving = std::make_shared<Serving<Line>>(io, std::move(line).value(), config,
+                                                 wake_descriptor, with_access);
   if (const auto open = serving->Open(io, config); !open) return open.error();
   serving->Start();
   return StopServing([serving](const std::string& reason) { serving->Stop(reason); });

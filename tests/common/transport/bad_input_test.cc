@@ -11,7 +11,7 @@ class BadInputTest : public ServerFixture {
   /// Writes raw bytes to the server and returns the client that reads what comes back.
   std::unique_ptr<TestClient> Throw(const std::string& bytes, std::size_t listener) {
     Socket socket = DialServer(listener);
-    boost::asio::write(socket, boost::asio::buffer(bytes));
+    boost::asio::write(socket.plain(), boost::asio::buffer(bytes));
     auto client = std::make_unique<TestClient>(std::move(socket));
     client->Read();
     return client;
@@ -82,8 +82,8 @@ TEST_F(BadInputTest, AConnectionCutAtAnyByteOfItsHelloDisturbsNobody) {
       Frame(Hello().SerializeAsString()) + Frame(Subscribe().SerializeAsString());
   for (std::size_t cut = 0; cut < bytes.size(); ++cut) {
     Socket socket = DialServer(cut % 2);
-    boost::asio::write(socket, boost::asio::buffer(bytes.substr(0, cut)));
-    socket.close();
+    boost::asio::write(socket.plain(), boost::asio::buffer(bytes.substr(0, cut)));
+    socket.Close();
     PublishMotion();
   }
   EXPECT_TRUE(RunUntil([&] { return other->Sequences().size() == bytes.size(); }));
@@ -103,7 +103,7 @@ TEST_F(BadInputTest, RandomBytesNeverStopTheServer) {
     }
     Socket socket = DialServer(random() % 2);
     boost::system::error_code ignored;  // The server may have ended it already.
-    boost::asio::write(socket, boost::asio::buffer(bytes), ignored);
+    boost::asio::write(socket.plain(), boost::asio::buffer(bytes), ignored);
     PublishMotion();
   }
   EXPECT_TRUE(RunUntil([&] { return other->Sequences().size() == 200; }));

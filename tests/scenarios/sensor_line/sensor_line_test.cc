@@ -232,7 +232,7 @@ TEST_F(SensorLine, GarbageOnTheDeviceSocketHarmsNobody) {
                     [&](Result<transport::Socket> socket) {
                       ASSERT_TRUE(socket);
                       boost::system::error_code ignored;
-                      boost::asio::write(*socket, boost::asio::buffer(bytes), ignored);
+                      boost::asio::write(socket->plain(), boost::asio::buffer(bytes), ignored);
                       half_open.push_back(std::move(socket).value());
                     });
   }

@@ -1,0 +1,91 @@
+#include "common/transport/server_trust.h"
+
+#include <unistd.h>
+
+#include <optional>
+#include <utility>
+
+#include "common/log/log.h"
+#include "common/tls/identity.h"
+#include "common/tls/places.h"
+
+namespace footing::transport {
+
+std::shared_ptr<ServerTrust> ServerTrust::Of(const Address& address) {
+  return std::make_shared<ServerTrust>(KnownName(address),
+                                       tls::KnownServers(tls::KnownServersFile()));
+}
+
+std::string ServerTrust::WhyRefused(const std::string& fingerprint) {
+  const auto known = known_.Find(server_);
+  if (!known) return "not connected to tls:" + server_ + ": " + known.error().message;
+  if (*known) {
+    if (**known == fingerprint) return "";
+    return "tls:" + server_ + ": THE CERTIFICATE HAS CHANGED: it is " + fingerprint + ", and " +
+           known_.path() + " has " + **known +
+           "; either the server made a new one, or somebody else answers in its place. Compare it "
+           "with what footing-ctl trust prints on the server; if it is the same, run: footing-ctl "
+           "trust tls:" +
+           server_ + " " + fingerprint;
+  }
+  is_new_ = true;
+  // It must be possible to remember it: who forgets would trust anybody each time.
+  if (known_.path().empty()) {
+    return "not connected to tls:" + server_ +
+           ": there is no home folder in which to remember the server's certificate; name a file "
+           "by "
+           "FOOTING_KNOWN_SERVERS";
+  }
+  return "";
+}
+
+void ServerTrust::OnProved(const std::string& fingerprint) {
+  if (!is_new_) return;
+  is_new_ = false;
+  if (const auto added = known_.Add(server_, fingerprint); !added) {
+    return log::Warning("the certificate of tls:" + server_ +
+                        " is not remembered: " + added.error().message + "; it was " + fingerprint);
+  }
+  log::Warning("trusting tls:" + server_ + " from now on: its certificate is " + fingerprint +
+               "; compare it with what footing-ctl trust prints on the server");
+}
+
+std::string KnownName(const Address& address) { return address.Text().substr(sizeof("tls:") - 1); }
+
+namespace {
+
+/// Keeps the context of a loop's clients.
+class ClientTls : public boost::asio::execution_context::service {
+ public:
+  using key_type = ClientTls;
+  inline static boost::asio::execution_context::id id;
+
+  explicit ClientTls(boost::asio::execution_context& owner) : service(owner) {}
+
+  std::optional<tls::Context> context;
+
+ private:
+  void shutdown() override {}
+};
+
+Result<tls::Context> NewClientContext() {
+  const std::string path = tls::ClientIdentityFile();
+  if (path.empty() || access(path.c_str(), F_OK) != 0) return tls::Context::ForClient(nullptr);
+  const auto own = tls::Identity::Load(path);
+  if (!own) return own.error();
+  return tls::Context::ForClient(&*own);
+}
+
+}  // namespace
+
+Result<tls::Context> ClientContext(boost::asio::io_context& io) {
+  std::optional<tls::Context>& context = boost::asio::use_service<ClientTls>(io).context;
+  if (!context) {
+    auto made = NewClientContext();
+    if (!made) return made;
+    context = std::move(made).value();
+  }
+  return *context;
+}
+
+}  // namespace footing::transport

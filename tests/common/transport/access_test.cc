@@ -1,0 +1,61 @@
+#include "common/transport/access.h"
+
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "common/tls/fingerprint.h"
+#include "tests/common/temporary_folder.h"
+
+namespace footing::transport {
+namespace {
+
+TEST(Access, ClientsAreLinesOfFingerprintRoleAndName) {
+  const std::string one = tls::FingerprintOf("one"), two = tls::FingerprintOf("two");
+  const auto clients =
+      ParseClients("# the lab\n" + one + " view wall screen\n\n" + two + " control Ada\n");
+  ASSERT_TRUE(clients.ok()) << clients.error().message;
+  EXPECT_EQ(*clients,
+            (std::map<std::string, v1::Role>{{one, v1::ROLE_VIEW}, {two, v1::ROLE_CONTROL}}));
+}
+
+TEST(Access, AWrongLineIsNamedAndNobodyIsLetIn) {
+  const std::string one = tls::FingerprintOf("one");
+  for (const std::string& line : {one + " admin Ada", one, std::string("sha256:12 view Ada")}) {
+    const auto refused = ParseClients("# the lab\n" + line + "\n");
+    ASSERT_FALSE(refused.ok()) << line;
+    EXPECT_NE(refused.error().message.find("line 2"), std::string::npos);
+  }
+}
+
+TEST(Access, TheFilesOfTheSettingsComeIntoTheOptions) {
+  const test::TemporaryFolder folder;
+  AccessSettings settings;
+  settings.token_file = folder.Path("token");
+  settings.clients_file = folder.Path("clients");
+  settings.identity_file = folder.Path("identity.pem");
+  std::ofstream(settings.token_file) << "0123456789abcdef\n";
+  ASSERT_EQ(chmod(settings.token_file.c_str(), 0600), 0);
+  std::ofstream(settings.clients_file) << tls::FingerprintOf("one") << " log Ada\n";
+  ServerOptions options;
+  const auto applied = settings.Apply(options);
+  ASSERT_TRUE(applied.ok()) << applied.error().message;
+  EXPECT_EQ(options.token, "0123456789abcdef");
+  EXPECT_EQ(options.clients.at(tls::FingerprintOf("one")), v1::ROLE_LOG);
+  EXPECT_EQ(options.identity_file, folder.Path("identity.pem"));
+  std::ofstream(settings.clients_file) << "Ada\n";
+  const auto refused = settings.Apply(options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find(settings.clients_file + ", line 1"), std::string::npos);
+}
+
+TEST(Access, WithoutEncryptionThereMustBeAToken) {
+  AccessSettings settings;
+  settings.insecure_lan = true;
+  EXPECT_FALSE(settings.Check().ok());
+  settings.token_file = "/etc/footing/token";
+  EXPECT_TRUE(settings.Check().ok());
+}
+
+}  // namespace
+}  // namespace footing::transport
