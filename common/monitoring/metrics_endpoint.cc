@@ -15,7 +15,7 @@ namespace {
 
 namespace http = boost::beast::http;
 using boost::system::error_code;
-using transport::Socket;
+using Socket = transport::PlainSocket;
 
 constexpr int kMostConnections = 8;
 constexpr auto kLongest = std::chrono::seconds(5);
@@ -108,11 +108,12 @@ class MetricsEndpoint::Implementation {
   }
 
   Result<void> Listen(boost::asio::io_context& io, const transport::Address& address) {
-    auto listener = transport::Listener::Open(io, address, [desk = desk_](Socket socket) {
-      if (desk->connections < kMostConnections) {
-        std::make_shared<Exchange>(std::move(socket), desk)->Start();
-      }
-    });
+    auto listener =
+        transport::Listener::Open(io, address, [desk = desk_](transport::Socket socket) {
+          if (desk->connections < kMostConnections) {
+            std::make_shared<Exchange>(std::move(socket.plain()), desk)->Start();
+          }
+        });
     if (!listener) return listener.error();
     listener_ = std::move(*listener);
     return {};
@@ -128,7 +129,8 @@ Result<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Open(boost::asio::io_c
                                                                std::function<std::string()> text) {
   const auto parsed = transport::ParseAddress(address);
   if (!parsed) return parsed.error();
-  if (parsed->kind == transport::Address::Kind::kTcp) {
+  if (parsed->kind == transport::Address::Kind::kTcp ||
+      parsed->kind == transport::Address::Kind::kTls) {
     return UsageError("metrics are served on a Unix socket only, not on " + address +
                       "; use unix:PATH, with a proxy in front of it for a Prometheus server");
   }
