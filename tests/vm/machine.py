@@ -67,6 +67,22 @@ def fetch_packages(folder):
     return root
 
 
+def add_modules(folder, packages, names):
+    """Puts kernel modules into a root file system, with those that they need."""
+    version = next((packages / "lib/modules").iterdir()).name
+    run(find_tool("depmod"), "-b", packages, version)
+    base, target = packages / "lib/modules" / version, folder / "lib/modules" / version
+    depends = {}
+    for line in (base / "modules.dep").read_text().splitlines():
+        module, _, others = line.partition(":")
+        depends[pathlib.Path(module).name.removesuffix(".ko").replace("_", "-")] = [module, *others.split()]
+    files = [module for name in names for module in depends[name]]  # Itself, then what it needs.
+    for file in (*files, "modules.order", "modules.builtin", "modules.builtin.modinfo"):
+        (target / file).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(base / file, target / file)
+    run(find_tool("depmod"), "-b", folder, version)
+
+
 class Image:
     """The initramfs in the making."""
 
@@ -102,23 +118,6 @@ class Image:
             if not (self.folder / target).exists():
                 self.add(library, target)
 
-    def add_modules(self, names):
-        versions = list((self.packages / "lib/modules").iterdir())
-        version = versions[0].name
-        run(find_tool("depmod"), "-b", self.packages, version)
-        base = self.packages / "lib/modules" / version
-        depends = {}
-        for line in (base / "modules.dep").read_text().splitlines():
-            module, _, others = line.partition(":")
-            depends[pathlib.Path(module).name.removesuffix(".ko").replace("_", "-")] = \
-                [module, *others.split()]
-        for name in names:
-            for module in depends[name]:  # Itself, then what it needs.
-                self.add(base / module, f"lib/modules/{version}/{module}")
-        for name in ("modules.order", "modules.builtin", "modules.builtin.modinfo"):
-            self.add(base / name, f"lib/modules/{version}/{name}")
-        run(find_tool("depmod"), "-b", self.folder, version)
-
     def pack(self, target):
         names = subprocess.run(["find", "."], cwd=self.folder, check=True, capture_output=True).stdout
         archive = subprocess.run(["cpio", "-o", "-H", "newc", "--quiet", "-R", "0:0"], input=names,
@@ -146,19 +145,19 @@ def make_image(build, source, packages, folder):
               "kvm 105", "render 106", "sgx 107", "lp 7", "tape 26", "kmem 15", "footing 990", "root 0")
     (image.folder / "etc/group").write_text(
         "".join("{}:x:{}:\n".format(*group.split()) for group in groups))
-    image.add_modules(MODULES)
+    add_modules(image.folder, packages, MODULES)
     target = folder / "initramfs.cpio"
     image.pack(target)
     return target
 
 
-def boot(kernel, initramfs, accelerator, only, first_word_s, all_s):
+def boot(kernel, initramfs, accelerator, arguments, first_word_s, all_s, memory_mb=768):
     """Runs the machine to its end. Its console's text; None when it never came up."""
     processor = {"kvm": "max,-arch-capabilities", "tcg": "max"}[accelerator]
     command = [find_tool("qemu-system-x86_64"), "-M", "pc", "-accel", accelerator, "-cpu", processor,
-               "-smp", "2", "-m", "768", "-nodefaults", "-display", "none", "-serial", "stdio",
+               "-smp", "2", "-m", str(memory_mb), "-nodefaults", "-display", "none", "-serial", "stdio",
                "-no-reboot", "-kernel", str(kernel), "-initrd", str(initramfs),
-               "-append", f"console=ttyS0 quiet panic=-1 rdinit=/init only={only}"]
+               "-append", f"console=ttyS0 quiet panic=-1 rdinit=/init {arguments}"]
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT)
     console, begin = b"", time.monotonic()
@@ -187,12 +186,17 @@ def run_machine(build, source, only=""):
     packages = fetch_packages(folder / "packages")
     kernel = next((packages / "boot").glob("vmlinuz-*"))
     initramfs = make_image(build, source, packages, folder)
+    return boot_as_can_be(kernel, initramfs, f"only={only}", {"kvm": 850, "tcg": 1000})
+
+
+def boot_as_can_be(kernel, initramfs, arguments, all_s, memory_mb=768):
+    """Console text and the accelerator that ran it, within all_s[accelerator] seconds."""
     # The hardware's own virtualisation where it works; TCG translates every instruction.
     if os.access("/dev/kvm", os.R_OK | os.W_OK) and os.environ.get("FOOTING_VM") != "tcg":
-        text = boot(kernel, initramfs, "kvm", only, 20, 850)
+        text = boot(kernel, initramfs, "kvm", arguments, 20, all_s["kvm"], memory_mb)
         if text:
             return text, "kvm"
-    text = boot(kernel, initramfs, "tcg", only, 180, 1000)
+    text = boot(kernel, initramfs, "tcg", arguments, 180, all_s["tcg"], memory_mb)
     if not text:
         raise RuntimeError("the machine did not come up within 180 s")
     return text, "tcg"
