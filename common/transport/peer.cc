@@ -1,10 +1,29 @@
 #include "common/transport/peer.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 
 namespace footing::transport {
+namespace {
+
+std::string HostOf(int socket) {
+  sockaddr_storage name{};
+  socklen_t size = sizeof(name);
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (getpeername(socket, reinterpret_cast<sockaddr*>(&name), &size) != 0) return "";
+  const void* address = &reinterpret_cast<const sockaddr_in*>(&name)->sin_addr;
+  if (name.ss_family == AF_INET6) {
+    address = &reinterpret_cast<const sockaddr_in6*>(&name)->sin6_addr;
+  }
+  const bool written = inet_ntop(name.ss_family, address, text.data(), text.size()) != nullptr;
+  return written ? text.data() : "";
+}
+
+}  // namespace
 
 Peer PeerOf(int socket) {
   Peer peer;
@@ -12,7 +31,10 @@ Peer PeerOf(int socket) {
   socklen_t size = sizeof(credentials);
   sockaddr name{};
   socklen_t name_size = sizeof(name);
-  if (getsockname(socket, &name, &name_size) != 0 || name.sa_family != AF_UNIX) return peer;
+  if (getsockname(socket, &name, &name_size) != 0 || name.sa_family != AF_UNIX) {
+    peer.host = HostOf(socket);
+    return peer;
+  }
   if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0) return peer;
   peer.known = true;
   peer.user = credentials.uid;

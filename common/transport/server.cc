@@ -141,6 +141,8 @@ class Server::Implementation {
       lingering += other->refused() ? 1 : 0;
       taken.all += other->refused() ? 0 : 1;
       taken.of_user += !other->refused() && a.known == b.known && a.user == b.user ? 1 : 0;
+      const bool entering = other->secured() && !other->welcomed() && !other->refused();
+      taken.entering_of_host += session->secured() && entering && a.host == b.host ? 1 : 0;
     }
     const SessionLimits& limits = shared_.options.sessions;
     const std::string full = WhyNoPlace(limits, session->peer(), geteuid(), taken);

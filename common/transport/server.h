@@ -72,7 +72,8 @@ struct ServerHandlers {
       on_command;
   /// A session is gone: end its leases.
   std::function<void(const SessionInfo&)> on_session_end;
-  /// A line for the log, at most one in 10 s of each kind: a session is slowed, or ticks are late.
+  /// A line for the log, at most one in 10 s of each kind: a session is slowed, ticks are late, or
+  /// a client is kept out.
   std::function<void(const std::string& line)> on_overload = {};
 };
 
@@ -80,6 +81,7 @@ struct ServerStatistics {
   std::size_t sessions = 0;
   std::uint64_t accepted = 0;
   std::uint64_t refused = 0;
+  std::uint64_t denied = 0;             ///< Without a right token or a known certificate.
   std::uint64_t ticks_dropped = 0;      ///< Of full session queues, all sessions together.
   std::uint64_t channels_left_out = 0;  ///< Did not fit into a tick, or are not a channel.
   std::uint64_t ring_bytes = 0;

@@ -46,6 +46,9 @@ struct Shared {
   /// Logs the line, unless another was logged within the last 10 s.
   void SayOverload(const std::string& line);
   TokenBucket overload_lines{0.1, 1};
+  /// The same for who is kept out; the line says how many there were.
+  void SayDenied(const std::string& host, const std::string& why);
+  TokenBucket denied_lines{0.1, 1};
 };
 
 /// One client's connection on the server's side, from Hello to Goodbye.
@@ -81,6 +84,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   const SessionInfo& info() const { return info_; }
   const Peer& peer() const { return peer_; }
+  bool secured() const { return connection_.secured(); }
   bool may_administer() const { return highest_role_ == v1::ROLE_ADMIN; }
   /// It was refused, and lingers until the client has seen why.
   bool refused() const { return phase_ == Phase::kRefused; }

@@ -30,10 +30,12 @@ std::optional<v1::Refused> Session::Authenticate(const v1::Hello& hello) {
   }
   const bool needs_proof = options.insecure_lan || connection_.secured();
   if (needs_proof && (hello.token().empty() || options.token.empty())) {
+    shared_.SayDenied(peer_.host, certificate.empty() ? "no token" : certificate + " is not known");
     return Refuse(v1::Refused::REASON_TOKEN, HowToComeIn(certificate));
   }
   if (hello.token().empty() || options.token.empty()) return std::nullopt;
-  if (!shared_.token.Accepts(hello.token(), shared_.NowNs())) {
+  if (!shared_.token.Accepts(hello.token(), peer_.host, shared_.NowNs())) {
+    shared_.SayDenied(peer_.host, "wrong token");
     return Refuse(v1::Refused::REASON_TOKEN,
                   "the token is wrong, or there were too many wrong ones: try again in 5 s");
   }

@@ -12,6 +12,9 @@ void SessionLimits::Bind(config::Binder& binder) {
   binder.Integer("max_sessions", max_sessions, 1, most, "Sessions at once");
   binder.Integer("max_sessions_per_user", max_sessions_per_user, 1, most,
                  "Sessions of one user at once; all those over TCP count as one user's");
+  binder.Integer(
+      "max_entering_per_host", max_entering_per_host, 1, most,
+      "Connections over TLS of one host that have not shown a token or a certificate yet");
   binder.Integer("admin_places", admin_places, 2, 100,
                  "Further sessions for the server's own user and root; half of them for root only");
   binder.Integer("max_log_sessions", max_log_sessions, 1, most,
@@ -39,6 +42,10 @@ std::string WhyNoPlace(const SessionLimits& limits, const Peer& peer, uid_t own_
   }
   if (taken.all >= limits.max_sessions) {
     return std::to_string(limits.max_sessions) + " sessions already";
+  }
+  if (taken.entering_of_host >= limits.max_entering_per_host) {
+    return std::to_string(limits.max_entering_per_host) +
+           " connections of this host that have not come in yet";
   }
   if (taken.of_user < limits.max_sessions_per_user) return "";
   return std::to_string(limits.max_sessions_per_user) +

@@ -19,6 +19,8 @@ struct SessionLimits {
   std::int64_t max_sessions = 256;
   /// Of one user; all sessions over TCP count as one user's, since nobody knows whose they are.
   std::int64_t max_sessions_per_user = 224;
+  /// Over TLS, of one host, before they are welcomed: who has no token cannot take all places.
+  std::int64_t max_entering_per_host = 64;
   std::int64_t admin_places = 16;
   std::int64_t max_log_sessions = 64;      ///< With the role log, administrators not counted.
   std::int64_t max_control_sessions = 32;  ///< With the role control, likewise.
@@ -35,6 +37,8 @@ struct SessionLimits {
 struct SessionCounts {
   std::int64_t all = 0;
   std::int64_t of_user = 0;  ///< Of the user that comes now.
+  /// Over TLS from the host that comes now, and not welcomed yet.
+  std::int64_t entering_of_host = 0;
 };
 
 /// Why there is not a place for one more session of this peer; empty when there is.

@@ -14,6 +14,13 @@ void Shared::SayOverload(const std::string& line) {
   if (handlers.on_overload && overload_lines.Take(NowNs())) handlers.on_overload(line);
 }
 
+void Shared::SayDenied(const std::string& host, const std::string& why) {
+  ++statistics.denied;
+  if (!handlers.on_overload || !denied_lines.Take(NowNs())) return;
+  handlers.on_overload("kept out a client at " + host + ", " + why + "; " +
+                       std::to_string(statistics.denied) + " since the start");
+}
+
 void Session::OnSlowed() {
   ++record_.slowed;
   ++shared_.statistics.slowed;

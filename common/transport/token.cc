@@ -12,6 +12,7 @@ namespace footing::transport {
 namespace {
 
 constexpr std::size_t kShortest = 16, kLongest = 256;
+constexpr double kTriesPerS = 0.2, kTries = 5;
 
 bool IsPlain(const std::string& token) {
   for (const char c : token) {
@@ -56,10 +57,24 @@ bool IsSameSecret(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-bool TokenGuard::Accepts(std::string_view presented, std::int64_t now_ns) {
-  if (token_.empty() || !tries_.HasOne(now_ns)) return false;
+TokenBucket& TokenGuard::TriesOf(const std::string& host, std::int64_t now_ns) {
+  constexpr std::size_t kMostHosts = 256;
+  if (tries_.size() >= kMostHosts) {  // Those that have waited are forgotten; the rest share one.
+    std::erase_if(tries_, [&](const auto& entry) {
+      TokenBucket tries = entry.second;
+      return tries.WaitNs(now_ns, kTries) == 0;
+    });
+  }
+  const bool full = tries_.size() >= kMostHosts && !tries_.contains(host);
+  return tries_.try_emplace(full ? "" : host, kTriesPerS, kTries).first->second;
+}
+
+bool TokenGuard::Accepts(std::string_view presented, const std::string& host, std::int64_t now_ns) {
+  if (token_.empty()) return false;
+  TokenBucket& tries = TriesOf(host, now_ns);
+  if (!tries.HasOne(now_ns)) return false;
   if (IsSameSecret(presented, token_)) return true;
-  tries_.Charge(1);
+  tries.Charge(1);
   return false;
 }
 

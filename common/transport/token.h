@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,17 +23,20 @@ std::string TokenFromEnvironment();
 /// Whether both are equal, in a time that does not depend on where they differ.
 bool IsSameSecret(std::string_view a, std::string_view b);
 
-/// The server's token. After 5 wrong ones every further one waits: one in 5 s is looked at.
+/// The server's token. After 5 wrong ones of a host every further one of it waits: one in 5 s is
+/// looked at. Others are not kept out by it, unless hundreds of hosts guess at once.
 class TokenGuard {
  public:
   /// Empty: no token is right.
   explicit TokenGuard(std::string token = "") : token_(std::move(token)) {}
 
-  bool Accepts(std::string_view presented, std::int64_t now_ns);
+  bool Accepts(std::string_view presented, const std::string& host, std::int64_t now_ns);
 
  private:
+  TokenBucket& TriesOf(const std::string& host, std::int64_t now_ns);
+
   std::string token_;
-  TokenBucket tries_{0.2, 5};
+  std::map<std::string, TokenBucket> tries_;  ///< Of hosts that were wrong lately.
 };
 
 }  // namespace footing::transport

@@ -39,6 +39,7 @@ TEST(Peer, TheKernelNamesTheOtherEndOfAUnixSocketOnly) {
   close(pair[1]);
   const int tcp = socket(AF_INET, SOCK_STREAM, 0);
   EXPECT_FALSE(PeerOf(tcp).known);
+  EXPECT_EQ(PeerOf(tcp).host, "") << "it is not connected";
   close(tcp);
 }
 

@@ -248,6 +248,31 @@ TEST_F(TlsTest, HandshakesUnderWayTakeTheirPlaces) {
   EXPECT_TRUE(WhyHas("2 sessions over TCP already")) << why_;
 }
 
+TEST_F(TlsTest, AHostThatNeverComesInLeavesPlacesToOthers) {
+  options_.sessions.max_entering_per_host = 2;
+  StartTlsServer();
+  const tcp::socket one = PlainPeer(Port()), other = PlainPeer(Port());
+  ASSERT_TRUE(RunUntil([&] { return server_->statistics().accepted == 2; }));
+  StartClient(TlsAddress(Port()));
+  ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
+  EXPECT_TRUE(WhyHas("2 connections of this host that have not come in yet")) << why_;
+  // Loopback TCP and the Unix socket are not for other hosts.
+  const auto local = Subscribed(Subscribe(), 1);
+  EXPECT_NE(local->Find(v1::Envelope::kTick), nullptr);
+}
+
+TEST_F(TlsTest, WhoIsKeptOutIsLoggedWithItsHostAndOnceInTenSeconds) {
+  StartTlsServer();
+  for (int i = 0; i < 3; ++i) {
+    state_.reset();
+    StartClient(TlsAddress(Port()), "0123456789abcdeX");
+    ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
+  }
+  EXPECT_EQ(server_->statistics().denied, 3u);
+  EXPECT_EQ(overloads_, std::vector<std::string>{
+                            "kept out a client at 127.0.0.1, wrong token; 1 since the start"});
+}
+
 TEST_F(TlsTest, ACertificateThatTheServerKnowsGivesItsRole) {
   const auto own = tls::Identity::LoadOrMake(config_.Path("client.pem"), "viewer");
   ASSERT_TRUE(own.ok());

@@ -41,12 +41,32 @@ TEST(Token, SecretsAreEqualOrNot) {
 TEST(Token, GuessingIsSlowedEvenWhenTheGuessIsRight) {
   TokenGuard guard(kToken);
   std::int64_t now_ns = 1'000'000'000;
-  EXPECT_TRUE(guard.Accepts(kToken, now_ns));
-  for (int i = 0; i < 5; ++i) EXPECT_FALSE(guard.Accepts("wrong", now_ns));
-  EXPECT_FALSE(guard.Accepts(kToken, now_ns));
+  EXPECT_TRUE(guard.Accepts(kToken, "10.0.0.1", now_ns));
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(guard.Accepts("wrong", "10.0.0.1", now_ns));
+  EXPECT_FALSE(guard.Accepts(kToken, "10.0.0.1", now_ns));
   now_ns += 5'100'000'000;
-  EXPECT_TRUE(guard.Accepts(kToken, now_ns));
-  EXPECT_FALSE(TokenGuard().Accepts("", now_ns)) << "without a token none is right";
+  EXPECT_TRUE(guard.Accepts(kToken, "10.0.0.1", now_ns));
+  EXPECT_FALSE(TokenGuard().Accepts("", "10.0.0.1", now_ns)) << "without a token none is right";
+}
+
+TEST(Token, GuessingKeepsNobodyElseOut) {
+  TokenGuard guard(kToken);
+  const std::int64_t now_ns = 1'000'000'000;
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(guard.Accepts("wrong", "10.0.0.1", now_ns));
+  EXPECT_TRUE(guard.Accepts(kToken, "10.0.0.2", now_ns));
+}
+
+TEST(Token, AThousandHostsThatGuessAreSlowedTogether) {
+  TokenGuard guard(kToken);
+  std::int64_t now_ns = 1'000'000'000;
+  for (int host = 0; host < 1000; ++host) {
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_FALSE(guard.Accepts("wrong", "10.0.0." + std::to_string(host), now_ns));
+    }
+  }
+  EXPECT_FALSE(guard.Accepts(kToken, "10.0.1.1", now_ns)) << "nobody new: all places are guessers'";
+  now_ns += 26'000'000'000;  // 5 tries at 0.2 a second, and those of the shared one.
+  EXPECT_TRUE(guard.Accepts(kToken, "10.0.1.1", now_ns));
 }
 
 TEST(Token, AClientPresentsTheEnvironmentsTokenOverTcpOnly) {
