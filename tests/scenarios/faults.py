@@ -4,7 +4,8 @@ what it missed.
 Usage: faults.py BINARY_FOLDER [--seed N] [--fault NAME]...
 
 Between the programs stand fault proxies: footing-log, footing-ctl watch and footing-sim before footingd, footing-view before
-footing-sim, footing-stream before the device socket. Each fault lies on all of them at once.
+footing-sim, footing-stream before the device socket. Each fault lies on all of them at once. Then each server stands still
+for a while, and each program that others need is killed and started again.
 """
 import argparse
 import csv
@@ -17,6 +18,7 @@ from fault_proxy import FaultProxy
 from harness import Stage
 
 FAULTS = ("delay", "stall", "split", "dribble", "reset", "half_close")
+LINKS = ("log", "ctl", "sim", "view", "devices")
 FAULT_S = 3.5  # Longer than the 3 s after which a silent link is stale.
 LONG_STALL_S = 11.5  # Longer than the 10 s after which it is dead.
 MOST_RETURN_S = 2
@@ -39,15 +41,18 @@ class Links:
         for proxy in self.proxies.values():
             proxy.set(fault)
         time.sleep(seconds)
+        self.clear()
+
+    def clear(self):
         for proxy in self.proxies.values():
             proxy.clear()
 
-    def returns(self):
+    def returns(self, names):
         """Seconds until each client got a tick that was made after the end of the fault."""
-        took = {name: proxy.seconds_to_fresh_tick(GIVE_UP_S) for name, proxy in self.proxies.items()
-                if name != "devices"}
-        devices = self.proxies["devices"]
-        took["devices"] = devices.seconds_until(lambda: devices.passed["up"] >= SIGN_BYTES, GIVE_UP_S)
+        took = {name: self.proxies[name].seconds_to_fresh_tick(GIVE_UP_S) for name in names if name != "devices"}
+        if "devices" in names:
+            devices = self.proxies["devices"]
+            took["devices"] = devices.seconds_until(lambda: devices.passed["up"] >= SIGN_BYTES, GIVE_UP_S)
         return took
 
     def stop(self):
@@ -57,15 +62,25 @@ class Links:
 
 def start_daemon(stage):
     stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
-    stage.wait_for_socket(stage.devices)
+    log = stage.folder / "footingd.log"
+    stage.wait_for(lambda: "simulated devices on" in log.read_text(), "footingd to listen")
+
+
+def start_simulation(stage, links):
+    stage.start("footing-sim", "--sensor", links.addresses["sim"], "--listen", stage.simulation)
+    log = stage.folder / "footing-sim.log"
+    stage.wait_for(lambda: "listening on" in log.read_text(), "footing-sim to listen")
+
+
+def start_devices(stage, links):
+    stage.start("footing-stream", "user", "--script", "walk", "--interface", "wrist", "--to", links.addresses["devices"],
+                "--seconds", 600)
 
 
 def start_programs(stage, links):
     start_daemon(stage)
-    stage.start("footing-sim", "--sensor", links.addresses["sim"], "--listen", stage.simulation)
-    stage.wait_for_socket(stage.simulation)
-    stage.start("footing-stream", "user", "--script", "walk", "--interface", "wrist", "--to", links.addresses["devices"],
-                "--seconds", 600)
+    start_simulation(stage, links)
+    start_devices(stage, links)
     stage.wait_for(lambda: len(stage.run_json("footing-ctl", "--connect", stage.sensor, "status")["devices"]) == 2,
                    "both devices", 20)
     stage.start("footing-log", "record", "--connect", links.addresses["log"], "--out", stage.folder / "all.mcap")
@@ -84,9 +99,9 @@ def sequences(stage, recording):
         return [int(row["sequence"]) for row in csv.DictReader(file)]
 
 
-def check_return(links, fault, worst):
-    took = links.returns()
-    print(f"{fault:10}: " + ", ".join(f"{name} {'never' if s is None else format(s, '.2f')} s" for name, s in took.items()),
+def check_return(links, fault, worst, names=LINKS):
+    took = links.returns(names)
+    print(f"{fault:19}: " + ", ".join(f"{name} {'never' if s is None else format(s, '.2f')} s" for name, s in took.items()),
           flush=True)
     for name, seconds in took.items():
         assert seconds is not None and seconds <= MOST_RETURN_S, f"{name} after {fault}: {seconds} s"
@@ -104,24 +119,33 @@ def check_recording(stage):
     print(f"{len(recorded)} rows of features, without a hole, over {len(set(recorded))} ticks")
 
 
-def check_gap(stage, links):
-    """A server that was killed comes back with a new epoch: the recording says that something is missing."""
+def check_pauses(stage, links, worst):
+    """A server that stood still goes on where it was; nobody is ended for its silence."""
+    for program, names in (("footingd", ("log", "ctl", "sim")), ("footing-sim", ("view",))):
+        stage.processes[program].send_signal(signal.SIGSTOP)
+        time.sleep(FAULT_S)
+        links.clear()
+        stage.processes[program].send_signal(signal.SIGCONT)
+        check_return(links, f"SIGSTOP {program}", worst, names)
+
+
+def check_kills(stage, links, worst):
+    """Who was killed comes back with a new epoch: the recording says that something is missing."""
     path = stage.folder / "gap.mcap"
     stage.start("footing-log", "record", "--connect", links.addresses["log"], "--out", path)
     log = stage.folder / "footing-log.log"
     stage.wait_for(lambda: "connected to footingd" in log.read_text(), "the recorder")
-    stage.stop("footingd", signal.SIGKILL)
-    time.sleep(FAULT_S)
-    start_daemon(stage)
-    began_s = time.monotonic()
-    stage.wait_for(lambda: log.read_text().count("connected to footingd") == 2, "the recorder's return")
-    took_s = time.monotonic() - began_s
-    assert took_s <= MOST_RETURN_S, took_s
-    time.sleep(0.5)
+    for program, start, names in (("footingd", lambda: start_daemon(stage), ("log", "ctl", "sim", "devices")),
+                                  ("footing-sim", lambda: start_simulation(stage, links), ("view",)),
+                                  ("footing-stream", lambda: start_devices(stage, links), ("devices",))):
+        stage.stop(program, signal.SIGKILL)
+        time.sleep(FAULT_S)
+        start()
+        links.clear()
+        check_return(links, f"kill -9 {program}", worst, names)
     assert stage.stop("footing-log", signal.SIGINT) == 0
     info = stage.run_json("footing-log", "info", path)
-    assert info["gaps"] >= 1, info
-    print(f"kill -9: back after {took_s:.2f} s, {info['gaps']} gap reported")
+    assert info["gaps"] == 1 and info["complete"], info
 
 
 def main():
@@ -143,10 +167,11 @@ def main():
             if not arguments.fault:
                 links.apply("stall", LONG_STALL_S)
                 check_return(links, "long stall", worst)
+                check_pauses(stage, links, worst)
             check_recording(stage)
             for name in ("footing-ctl", "footing-view", "footing-sim", "footing-stream"):
                 assert stage.processes[name].poll() is None, f"{name} ended"
-            check_gap(stage, links)
+            check_kills(stage, links, worst)
         finally:
             links.stop()
     print("at most: " + ", ".join(f"{name} {seconds:.2f} s" for name, seconds in worst.items()))
