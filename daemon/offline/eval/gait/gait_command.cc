@@ -11,6 +11,7 @@
 #include "common/clock/clock.h"
 #include "common/text/fnv.h"
 #include "common/units/units.h"
+#include "daemon/offline/eval/gait/gait_options.h"
 #include "daemon/offline/eval/gait/ground_course.h"
 #include "daemon/offline/eval/gait/pit_course.h"
 #include "daemon/offline/eval/gait/push_sweep.h"
@@ -23,26 +24,6 @@
 namespace footing::eval {
 namespace {
 
-struct GaitOptions {
-  std::string gait = "walk";
-  double speed_mps = 0;
-  std::optional<double> height_m;
-  double turn_deg = 0;
-  double seconds = 60;
-  int trials = 1;
-  std::string seed = "1";
-  double push_ns = 2;
-  std::optional<double> push_direction_deg;
-  double push_phase = -1;
-  double slope_deg = 0;
-  double step_m = 0;
-  int push_directions = 0;
-  int push_phases = 12;
-  std::optional<double> pit_m;
-  double jump_lead_s = 0.8;
-  bool no_jump = false;
-};
-
 struct Trials {
   int falls = 0;
   int pits = 0, steps = 0, crossed = 0;
@@ -50,6 +31,7 @@ struct Trials {
   double speed_sum_mps = 0;
   double apex_sum_m = 0;
   RootMeanSquare speed_error, heading_error;
+  double leg_gap_min_m = INFINITY;
   double root_force_max_n = 0;
   double simulated_s = 0, cpu_s = 0, wall_s = 0;
   std::uint64_t state_hash = 0;
@@ -136,6 +118,7 @@ Result<void> RunTrial(const GaitOptions& options, std::uint64_t seed, Trials& tr
   trials.apex_sum_m += statistics.apex_height_m();
   trials.speed_error.Add(statistics.speed_error_rms_mps());
   trials.heading_error.Add(statistics.heading_error_rms_rad());
+  trials.leg_gap_min_m = std::min(trials.leg_gap_min_m, walker.leg_gap_min_m());
   trials.root_force_max_n = std::max(trials.root_force_max_n, last.root_force_max_n);
   trials.state_hash = text::AddFnv(trials.state_hash, last.state_hash);
   return {};
@@ -174,6 +157,7 @@ nlohmann::ordered_json Report(const GaitOptions& options, std::uint64_t seed, co
                                 {"speed_error_rms_mps", trials.speed_error.value()},
                                 {"heading_error_rms_rad", trials.heading_error.value()},
                                 {"apex_height_m", trials.apex_sum_m / options.trials},
+                                {"leg_gap_min_m", trials.leg_gap_min_m},
                                 {"real_time_factor", trials.simulated_s / trials.cpu_s},
                                 {"real_time_factor_wall", trials.simulated_s / trials.wall_s},
                                 {"step_cost_ratio", step_cost_ratio},
@@ -211,6 +195,7 @@ int RunSweep(const GaitOptions& options, std::uint64_t seed, bool json) {
                {"pushes", result.pushes},
                {"falls", result.all_falls()},
                {"falls_by_direction", result.falls},
+               {"leg_gap_min_m", result.leg_gap_min_m},
                {"largest_survived_ns", result.largest_survived_ns}},
               json);
   return 0;
@@ -236,7 +221,10 @@ int Run(const GaitOptions& options, bool json) {
   if (options.push_directions > 0) return RunSweep(options, *seed, json);
   const Result<Trials> trials = RunTrials(options, *seed);
   if (!trials) return cli::Report(trials.error());
-  const Result<double> ratio = MeasureStepCostRatio(CommandOf(options));
+  const Result<double> ratio =
+      MeasureStepCostRatio(CommandOf(options), {.slope_deg = options.slope_deg,
+                                                .step_m = options.step_m,
+                                                .pit_m = options.pit_m.value_or(0)});
   if (!ratio) return cli::Report(ratio.error());
   PrintReport(Report(options, *seed, *trials, *ratio), json);
   return 0;
@@ -247,53 +235,7 @@ int Run(const GaitOptions& options, bool json) {
 void AddGaitCommand(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand("gait", "Trials of one gait, each with one push");
   auto options = std::make_shared<GaitOptions>();
-  command->add_option("--gait", options->gait, "Gait: step, walk, run or jump")->required();
-  command->add_option("--speed", options->speed_mps, "Commanded speed, m/s")
-      ->check(CLI::Range(0.0, 6.0));
-  command
-      ->add_option("--height", options->height_m,
-                   "Jump height, m (default: 0.2, or the height that the pit needs)")
-      ->check(CLI::Range(0.05, 0.7));
-  command->add_option("--turn", options->turn_deg, "Turn, degrees per step; left positive")
-      ->check(CLI::Range(-8.0, 8.0));
-  command->add_option("--seconds", options->seconds, "Duration of each trial, s")
-      ->check(CLI::Range(0.1, 36000.0));
-  command->add_option("--trials", options->trials, "Number of trials")
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--seed", options->seed, "Seed: a number, or random");
-  command->add_option("--push", options->push_ns, "Push impulse, N s (default: 2)")
-      ->check(CLI::Range(0.0, 1000.0));
-  command->add_option(
-      "--push-direction", options->push_direction_deg,
-      "Push direction, degrees: 0 pushes forwards, 90 to the left (default: random)");
-  command
-      ->add_option("--push-phase", options->push_phase,
-                   "Push time as a fraction of the gait cycle, 0 to 1 (default: random)")
-      ->check(CLI::Range(0.0, 1.0));
-  command
-      ->add_option("--slope", options->slope_deg, "Slope of the ground, degrees; uphill positive")
-      ->check(CLI::Range(-20.0, 20.0));
-  command
-      ->add_option(
-          "--step", options->step_m,
-          "Height of the alternating steps of the ground, m; negative: the first step is down")
-      ->check(CLI::Range(-0.3, 0.3));
-  command
-      ->add_option(
-          "--push-directions", options->push_directions,
-          "Number of push directions of a sweep; each is tried at --push-phases times of the cycle")
-      ->check(CLI::Range(1, 360));
-  command
-      ->add_option("--push-phases", options->push_phases,
-                   "Number of push times per cycle of a sweep (default: 12)")
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--pit", options->pit_m, "Width of the pits across the track, m")
-      ->check(CLI::Range(0.05, 5.0));
-  command
-      ->add_option("--jump-lead", options->jump_lead_s,
-                   "Lead of the jump command before a pit, s (run only)")
-      ->check(CLI::Range(0.0, 5.0));
-  command->add_flag("--no-jump", options->no_jump, "Give a run no jump commands at pits");
+  AddOptions(*command, *options);
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });
 }
 

@@ -50,6 +50,23 @@ GroundCourse MakeSlopeCourse(double slope_deg, double speed_mps, double length_m
           {run_up_m}};
 }
 
+std::optional<std::string> MakeShortTrack(const GroundKind& kind, double level_m) {
+  constexpr double kStepLastsM = 3;
+  nlohmann::json segments = {{{"length_m", level_m}}};
+  if (kind.step_m != 0) {
+    segments.push_back({{"length_m", kStepLastsM}, {"step_m", kind.step_m}});
+    segments.push_back({{"length_m", kBehindM}, {"step_m", -kind.step_m}});
+  } else if (kind.slope_deg != 0) {
+    segments.push_back({{"length_m", kBehindM}, {"slope_deg", kind.slope_deg}});
+  } else if (kind.pit_m > 0) {
+    segments.push_back({{"length_m", kind.pit_m}, {"pit", true}});
+    segments.push_back({{"length_m", kBehindM}});
+  } else {
+    return std::nullopt;
+  }
+  return TrackText("short", std::move(segments));
+}
+
 GroundPilot::GroundPilot(const GroundCourse& course, const biped::GaitCommand& command,
                          Random& random)
     : course_(course),

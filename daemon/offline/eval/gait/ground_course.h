@@ -21,6 +21,18 @@ GroundCourse MakeStepCourse(double step_m, double length_m, Random& random);
 /// A level run-up of random length on which `speed_mps` is reached, then one slope of `length_m`.
 GroundCourse MakeSlopeCourse(double slope_deg, double speed_mps, double length_m, Random& random);
 
+/// What a trial's ground has, at most one of them; 0: not that.
+struct GroundKind {
+  double slope_deg = 0;
+  double step_m = 0;
+  double pit_m = 0;  ///< Width.
+};
+
+/// Ground of that kind in three segments at most, so that the world keeps all of it in its place:
+/// level, and from `level_m` on the slope, a step up and 3 m later one down, or a pit. Level ground
+/// is without a name of its own: the plane.
+std::optional<std::string> MakeShortTrack(const GroundKind& kind, double level_m);
+
 /// Commands a gait along a course, and says when it is time for the kick. A gait that stays in
 /// place is led on to the course by walking first.
 class GroundPilot {

@@ -25,6 +25,7 @@ class Cycle {
   Result<void> Record(int phases, Random& random);
   bool Falls(int phase, double impulse_ns, double direction_rad);
   int phases() const { return static_cast<int>(states_.size()); }
+  double leg_gap_min_m() const { return leg_gap_min_m_; }
 
  private:
   Walker NewWalker() {
@@ -50,6 +51,7 @@ class Cycle {
   biped::GaitCommand command_;
   std::vector<engine::EngineState> states_;
   std::uint64_t pushes_ = 1;
+  double leg_gap_min_m_ = INFINITY;
 };
 
 Result<void> Cycle::Record(int phases, Random& random) {
@@ -76,6 +78,7 @@ bool Cycle::Falls(int phase, double impulse_ns, double direction_rad) {
   Walker walker = NewWalker();
   walker.Push(impulse_ns, direction_rad, ++pushes_);
   Run(walker, engine_.Output().time_s + kPushUprightS);
+  leg_gap_min_m_ = std::min(leg_gap_min_m_, walker.leg_gap_min_m());
   return walker.fell();
 }
 
@@ -120,6 +123,7 @@ Result<void> RunPushSweep(const PushSweep& sweep, std::uint64_t seed, PushSweepR
     }
   }
   result.pushes += sweep.directions * sweep.phases;
+  result.leg_gap_min_m = std::min(result.leg_gap_min_m, cycle.leg_gap_min_m());
   const double largest_ns = falls == 0
                                 ? LargestSurvived(cycle, sweep.directions, sweep.impulse_ns,
                                                   std::max(kLargestNs, sweep.impulse_ns))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "daemon/offline/eval/gait/trial.h"
@@ -18,6 +19,7 @@ struct PushSweep {
 struct PushSweepResult {
   std::vector<int> falls;  ///< By direction; direction 0 pushes from behind, then to the left.
   int pushes = 0;
+  double leg_gap_min_m = INFINITY;  ///< Between the legs (leg_gap.h), after pushes that size.
   /// Found by bisection to 1 N s, up to 64: as if who survives a push survived all smaller ones.
   double largest_survived_ns = 0;
 

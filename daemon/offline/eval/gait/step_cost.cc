@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kWarmUpSteps = 5000;
 constexpr int kSteps = 2000;
+constexpr double kStepS = 0.001;
 constexpr int kPairs = 7;
 constexpr int kPublishEvery = 10;
 
@@ -40,12 +41,22 @@ std::int64_t TimeBare(physics::World& world, const physics::WorldState& start,
   return clock::ThreadCpuNs() - begin_ns;
 }
 
+/// How much level ground there is first, m.
+double LevelLength(const biped::GaitCommand& command, const GroundKind& kind) {
+  constexpr double kStandsOnM = 2, kBeforePitM = 1;
+  const double until_m = command.speed_mps * kStepS * (kWarmUpSteps + kSteps);
+  if (kind.pit_m > 0) return until_m + kBeforePitM;
+  if (kind.step_m != 0) return until_m - command.speed_mps * kStepS * kSteps / 2;
+  return kStandsOnM;
+}
+
 }  // namespace
 
-Result<double> MeasureStepCostRatio(const biped::GaitCommand& command) {
-  Result<engine::GaitEngine> engine = NewEngine();
+Result<double> MeasureStepCostRatio(const biped::GaitCommand& command, const GroundKind& kind) {
+  const std::optional<std::string> track = MakeShortTrack(kind, LevelLength(command, kind));
+  Result<engine::GaitEngine> engine = track ? NewEngineOn(*track) : NewEngine();
   if (!engine) return engine.error();
-  Result<physics::World> world = NewWorld();
+  Result<physics::World> world = NewWorld(track);
   if (!world) return world.error();
   Walker walker(*engine);
   walker.Command(command);

@@ -1,9 +1,11 @@
 #include "daemon/offline/eval/gait/trial.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 
+#include "daemon/offline/eval/gait/leg_gap.h"
 #include "daemon/simulation/biped/mjcf.h"
 #include "daemon/simulation/engine_files/engine_files.h"
 #include "daemon/simulation/terrain/ground.h"
@@ -59,16 +61,17 @@ Result<engine::GaitEngine> NewEngineOn(const std::string& track,
   return engine::GaitEngine::Create(*texts, {.interface = interface});
 }
 
-Result<physics::World> NewWorld() {
+Result<physics::World> NewWorld(const std::optional<std::string>& track_text) {
   Result<engine::EngineTexts> texts = ReadTexts();
   if (!texts) return texts.error();
   Result<biped::BipedParameters> biped = biped::ParseBiped(texts->biped, engine::kBipedFile);
   if (!biped) return biped.error();
-  Result<stream::Track> track = terrain::ParseTrack(texts->track, engine::kPlainTrackFile);
+  Result<stream::Track> track =
+      terrain::ParseTrack(track_text.value_or(texts->track), engine::kPlainTrackFile);
   if (!track) return track.error();
-  return physics::World::FromMjcf(biped::WriteMjcf(*biped, terrain::GroundMjcf(*track).mjcf, {},
-                                                   engine::EngineConfig{}.step_s),
-                                  biped::Names());
+  const terrain::GroundText ground = terrain::GroundMjcf(*track);
+  return physics::World::FromMjcf(
+      biped::WriteMjcf(*biped, ground.mjcf, {}, engine::EngineConfig{}.step_s), biped::Names());
 }
 
 void Walker::Command(const biped::GaitCommand& command) {
@@ -89,6 +92,7 @@ void Walker::Push(double impulse_ns, double direction_rad, std::uint64_t number)
 const engine::EngineOutput& Walker::Advance() {
   engine_.Advance(inputs_);
   output_ = &engine_.Output();
+  if (!fell()) leg_gap_min_m_ = std::min(leg_gap_min_m_, LegGap(*output_));
   return *output_;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -39,8 +41,8 @@ Result<engine::GaitEngine> NewEngine();
 /// An engine on a track given as text, for a user interface.
 Result<engine::GaitEngine> NewEngineOn(const std::string& track,
                                        const mapping::InterfaceOptions& interface = {});
-/// The world of NewEngine's engine alone.
-Result<physics::World> NewWorld();
+/// The world of NewEngine's engine alone, or of one on a track; its feet are not listed as pairs.
+Result<physics::World> NewWorld(const std::optional<std::string>& track = std::nullopt);
 
 /// An engine driven by direct commands, with what one wants to know of it.
 class Walker {
@@ -55,12 +57,15 @@ class Walker {
   /// One step; reads the output every step.
   const engine::EngineOutput& Advance();
   bool fell() const { return output_ != nullptr && output_->gait.falls > 0; }
+  /// Least gap between the legs so far, m (leg_gap.h); without falls and what follows them.
+  double leg_gap_min_m() const { return leg_gap_min_m_; }
   const engine::EngineInputs& inputs() const { return inputs_; }
 
  private:
   engine::GaitEngine& engine_;
   engine::EngineInputs inputs_;
   const engine::EngineOutput* output_ = nullptr;
+  double leg_gap_min_m_ = INFINITY;
 };
 
 }  // namespace footing::eval
