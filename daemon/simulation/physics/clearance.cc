@@ -1,6 +1,7 @@
 #include "daemon/simulation/physics/clearance.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace footing::physics {
 namespace {
@@ -23,21 +24,36 @@ Clearance::Clearance(const mjModel& model, const std::vector<int>& feet) {
 
 void Clearance::MoveGround(const mjModel& model, int geom) {
   Ground& ground = ground_[static_cast<std::size_t>(geom)];
-  mjtNum axes[9];
-  mju_quat2Mat(axes, model.geom_quat + 4 * geom);
-  ground.up = {axes[2], axes[5], axes[8]};
-  const Eigen::Map<const Eigen::Vector3d> centre(model.geom_pos + 3 * geom);
-  const double half_m = model.geom_type[geom] == mjGEOM_BOX ? model.geom_size[3 * geom + 2] : 0;
-  ground.height_m = ground.up.dot(centre) + half_m;
+  ground.centre_W_m = Eigen::Map<const Eigen::Vector3d>(model.geom_pos + 3 * geom);
+  mjtNum R_WG[9];
+  mju_quat2Mat(R_WG, model.geom_quat + 4 * geom);
+  ground.R_GW = Eigen::Map<const Eigen::Matrix3d>(R_WG);  // Of row order: the transpose.
+  const bool box = model.geom_type[geom] == mjGEOM_BOX;
+  ground.half_size_m =
+      box ? Eigen::Vector3d(Eigen::Map<const Eigen::Vector3d>(model.geom_size + 3 * geom))
+          : Eigen::Vector3d(INFINITY, INFINITY, 0);
+}
+
+/// Whether a sphere may touch the ground: one beyond any of its faces does not.
+bool Clearance::Reaches(const Ground& ground, const Eigen::Vector3d& centre_W_m, double radius_m) {
+  const Eigen::Vector3d offset_W_m = centre_W_m - ground.centre_W_m;
+  for (const int axis : {2, 0, 1}) {  // Mostly it is above.
+    const double along_m = ground.R_GW.row(axis).dot(offset_W_m);
+    const double reach_m = ground.half_size_m[axis] + radius_m;
+    if (along_m > reach_m) return false;
+    if (along_m < -reach_m && std::isfinite(ground.half_size_m.x())) return false;
+  }
+  return true;
 }
 
 bool Clearance::FeetAlone(const mjModel& model, const mjData& state) const {
   if (!pairs_complete_) return false;
   for (const int shell : shells_) {
-    const Eigen::Map<const Eigen::Vector3d> centre(state.geom_xpos + 3 * shell);
-    const double reach_m = model.geom_rbound[shell] + kFarthestStepM;
+    const Eigen::Vector3d centre_W_m =
+        Eigen::Map<const Eigen::Vector3d>(state.geom_xpos + 3 * shell);
+    const double radius_m = model.geom_rbound[shell] + kFarthestStepM;
     for (const Ground& ground : ground_) {
-      if (ground.up.dot(centre) < ground.height_m + reach_m) return false;
+      if (Reaches(ground, centre_W_m, radius_m)) return false;
     }
   }
   return true;

@@ -27,11 +27,13 @@ class Clearance {
   bool FeetAlone(const mjModel& model, const mjData& state) const;
 
  private:
-  /// The half space under a box's or a plane's upper face.
+  /// A box, or a plane as a box without ends below its face.
   struct Ground {
-    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-    double height_m = 0;  ///< Of its face, along `up`.
+    Eigen::Vector3d centre_W_m = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d R_GW = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
   };
+  static bool Reaches(const Ground& ground, const Eigen::Vector3d& centre_W_m, double radius_m);
 
   std::vector<Ground> ground_;  ///< By geom; the world body's are the model's first ones.
   std::vector<int> shells_;

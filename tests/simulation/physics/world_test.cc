@@ -79,31 +79,39 @@ TEST(World, BareStepsReachTheSameStateAsOurs) {
   EXPECT_EQ(bare.StateHash(), world.StateHash());
 }
 
-/// Over two boxes with a step of 10 cm between them, feet and boxes listed as pairs or not.
-World SteppedWorld(bool pairs) {
-  const std::string boxes =
-      "<geom name='low' type='box' contype='1' conaffinity='2' size='2 2 1' pos='-2 0 -1'/>"
-      "<geom name='high' type='box' contype='1' conaffinity='2' size='2 2 1' pos='2 0 -0.9'/>";
-  const std::vector<std::string> names =
-      pairs ? std::vector<std::string>{"low", "high"} : std::vector<std::string>{};
-  return std::move(World::FromMjcf(biped::WriteMjcf(test::Biped(), boxes, names, 0.001),
-                                   biped::Names(pairs ? names : std::vector<std::string>{})))
+/// Over two boxes, the second one 10 cm higher, with a pit of this width between them; feet and
+/// boxes listed as pairs or not.
+World SteppedWorld(bool pairs, double pit_m = 0) {
+  const auto box = [](const char* name, double x_m, double top_m) {
+    return std::string("<geom name='") + name +
+           "' type='box' contype='1' conaffinity='2' size='2 2 1' pos='" + std::to_string(x_m) +
+           " 0 " + std::to_string(top_m - 1) + "'/>";
+  };
+  const std::string boxes = box("low", -2 - pit_m / 2, 0) + box("high", 2 + pit_m / 2, 0.1);
+  const std::vector<std::string> listed{"low", "high"};
+  return std::move(
+             World::FromMjcf(biped::WriteMjcf(test::Biped(), boxes,
+                                              pairs ? listed : std::vector<std::string>{}, 0.001),
+                             biped::Names(pairs ? listed : std::vector<std::string>{})))
       .value();
 }
 
 TEST(World, LooksAtTheFeetAloneOnlyWhereNothingElseCanTouch) {
-  World feet = SteppedWorld(true), all = SteppedWorld(false);
-  for (World* world : {&feet, &all}) world->Reset({-0.1, 0, 1.02}, 0.2, {});
-  bool stood = false, lay = false;
-  for (int i = 0; i < 2500; ++i) {  // It stands, wriggles, stumbles over the step and lies there.
-    feet.Step(Wriggle(i), Eigen::Vector3d(i < 300 ? 0 : 20, 0, 0));
-    all.Step(Wriggle(i), Eigen::Vector3d(i < 300 ? 0 : 20, 0, 0));
-    ASSERT_EQ(feet.StateHash(), all.StateHash()) << i;
-    ASSERT_EQ(feet.Observe().other_contact, all.Observe().other_contact) << i;
-    stood = stood || feet.Observe().normal_force_n[0] > 0;
-    lay = lay || feet.Observe().other_contact;
+  for (const double pit_m : {0.0, 0.6}) {
+    World feet = SteppedWorld(true, pit_m), all = SteppedWorld(false, pit_m);
+    for (World* world : {&feet, &all}) world->Reset({-0.1 - pit_m / 2, 0, 1.02}, 0.2, {});
+    bool stood = false, lay = false;
+    for (int i = 0; i < 2500; ++i) {  // It stands, wriggles, stumbles over the edge and lies there.
+      const Eigen::Vector3d push_n(i < 300 ? 0 : 20, 0, 0);
+      feet.Step(Wriggle(i), push_n);
+      all.Step(Wriggle(i), push_n);
+      ASSERT_EQ(feet.StateHash(), all.StateHash()) << i;
+      ASSERT_EQ(feet.Observe().other_contact, all.Observe().other_contact) << i;
+      stood = stood || feet.Observe().normal_force_n[0] > 0;
+      lay = lay || feet.Observe().other_contact;
+    }
+    EXPECT_TRUE(stood && lay) << pit_m;
   }
-  EXPECT_TRUE(stood && lay);
 }
 
 TEST(World, GroundThatRisesUnderTheBodyTouchesIt) {
