@@ -31,6 +31,27 @@ boost::system::error_code Broken(tls::Progress progress) {
   return boost::system::errc::make_error_code(boost::system::errc::protocol_error);
 }
 
+/// A connection that is being made. A host that is off does not even refuse, and the kernel would
+/// try for two minutes, less and less often.
+struct Dialling {
+  explicit Dialling(asio::io_context& io) : socket(io), deadline(io) {}
+
+  void SetDeadline(const std::weak_ptr<Dialling>& weak) {
+    deadline.expires_after(std::chrono::seconds(3));
+    deadline.async_wait([weak](const boost::system::error_code& error) {
+      const auto self = weak.lock();
+      if (error || !self) return;
+      self->late = true;
+      boost::system::error_code ignored;
+      self->socket.close(ignored);
+    });
+  }
+
+  PlainSocket socket;
+  timer::Timer deadline;
+  bool late = false;
+};
+
 /// A connected socket with what its address asks for.
 Result<Socket> Dialled(asio::io_context& io, PlainSocket plain, const Address& address) {
   if (address.kind != Address::Kind::kTls) return Socket(std::move(plain));
@@ -156,15 +177,19 @@ void Dial(asio::io_context& io, const Address& address, std::function<void(Resul
     asio::post(io, [done = std::move(done), error = endpoint.error()] { done(error); });
     return;
   }
-  auto socket = std::make_shared<PlainSocket>(io);
+  const auto dialling = std::make_shared<Dialling>(io);
+  if (address.OverTcp()) dialling->SetDeadline(dialling);
   clock::Act();
-  socket->async_connect(*endpoint, [&io, socket, address, done = std::move(done)](
-                                       const boost::system::error_code& error) {
-    if (error) {
+  dialling->socket.async_connect(*endpoint, [&io, dialling, address, done = std::move(done)](
+                                                const boost::system::error_code& error) {
+    dialling->deadline.cancel();
+    if (dialling->late) {
+      done(Failure(address.Text() + ": no answer within 3 s"));
+    } else if (error) {
       done(Failure(address.Text() + ": " + MessageOf(error)));
-      return;
+    } else {
+      done(Dialled(io, std::move(dialling->socket), address));
     }
-    done(Dialled(io, std::move(*socket), address));
   });
 }
 

@@ -115,7 +115,8 @@ Result<Endpoint> EndpointOf(const Address& address);
 bool StaysOnThisHost(const Address& address);
 
 /// Connects without blocking; `done` gets the socket or one line with the reason, for example
-/// "unix:/run/x.sock: no such file". `done` may be dropped with the io_context. A TLS handshake is
+/// "unix:/run/x.sock: no such file"; over TCP it takes 3 s at most. `done` may be dropped with the
+/// io_context. A TLS handshake is
 /// still to come (see FramedConnection); in it the server's certificate is checked against what the
 /// user trusts (see server_trust.h).
 void Dial(boost::asio::io_context& io, const Address& address,

@@ -9,11 +9,13 @@ import json
 import os
 import pathlib
 import re
+import socket
 import sys
 import time
 
 sys.path.insert(0, sys.argv[1])
 from harness import Stage  # noqa: E402
+from service import Manager  # noqa: E402
 
 TOKEN = "correct-horse-battery-staple"
 
@@ -85,6 +87,25 @@ def check_client_certificate(stage):
     assert status["granted_role"] == "ROLE_VIEW", status
 
 
+def check_passed_socket(stage):
+    """A TCP socket of the service manager speaks TLS, as systemd/README.md sets it up."""
+    folder = stage.folder / "service"
+    folder.mkdir()
+    manager = Manager(stage.binaries, folder)
+    passed = socket.create_server(("127.0.0.1", 0))
+    manager.sockets["sensor-tls"] = passed
+    try:
+        manager.start("--listen", "fd:sensor", "--listen", "fd:sensor-tls", "--set",
+                      f"token_file={stage.folder}/token", names=("sensor", "devices", "sensor-tls"))
+        manager.wait_for("READY=1", 20)
+        address = f"tls:127.0.0.1:{passed.getsockname()[1]}"
+        os.environ["FOOTING_TOKEN_FILE"] = f"{stage.folder}/token"
+        status = stage.run_json("footing-ctl", "--connect", address, "status")
+        assert status["granted_role"] == "ROLE_CONTROL", status
+    finally:
+        manager.close()
+
+
 def main():
     with Stage(sys.argv[2]) as stage:
         os.environ["XDG_STATE_HOME"] = f"{stage.folder}/state"
@@ -108,6 +129,7 @@ def main():
         assert again == address and second != first, (again, second)
         check_changed(stage, address, first, second)
         check_client_certificate(stage)
+        check_passed_socket(stage)
         for log in stage.folder.glob("*.log"):
             assert TOKEN not in log.read_text() and "PRIVATE" not in log.read_text(), log
 

@@ -1,5 +1,6 @@
 #include "common/transport/listener.h"
 
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -139,6 +140,30 @@ TEST_F(ListenerTest, DiallingNobodySaysWhatIsMissing) {
   const auto dialled = DialTo(UnixAddress("nobody"));
   ASSERT_FALSE(dialled.ok());
   EXPECT_EQ(dialled.error().message, UnixAddress("nobody").Text() + ": no such file");
+}
+
+TEST_F(ListenerTest, AHostThatDoesNotEvenRefuseIsGivenUp) {
+  // A queue of connections that is full and that nobody empties: the kernel drops what comes then.
+  const int full = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in name{};
+  name.sin_family = AF_INET;
+  name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(name);
+  ASSERT_EQ(bind(full, reinterpret_cast<sockaddr*>(&name), size), 0);
+  ASSERT_EQ(listen(full, 0), 0);
+  ASSERT_EQ(getsockname(full, reinterpret_cast<sockaddr*>(&name), &size), 0);
+  std::vector<int> waiting;
+  for (int i = 0; i < 4; ++i) {
+    waiting.push_back(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+    connect(waiting.back(), reinterpret_cast<sockaddr*>(&name), size);
+  }
+  Address address = TcpAddress();
+  address.port = ntohs(name.sin_port);
+  const auto dialled = DialTo(address);
+  ASSERT_FALSE(dialled.ok());
+  EXPECT_EQ(dialled.error().message, address.Text() + ": no answer within 3 s");
+  for (const int one : waiting) close(one);
+  close(full);
 }
 
 }  // namespace
