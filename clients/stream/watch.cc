@@ -19,6 +19,9 @@ std::unique_ptr<transport::Client> WatchSimulation(boost::asio::io_context& io,
   handlers.on_state = [](transport::LinkState, const std::string& why) {
     log::Info("watching the simulation: " + why);
   };
+  handlers.on_notice = [](const v1::Notice& notice) {
+    log::Warning("watching the simulation: " + notice.text());
+  };
   auto client = std::make_unique<transport::Client>(io, options, std::move(handlers));
   client->Start();
   return client;

@@ -32,6 +32,7 @@ constexpr std::array kKeyOptions{
     KeyOption{"--subject", "subject", "Subject file of the pose engine, JSON"},
     KeyOption{"--mode", "mode",
               "Reconstruction mode of the pose engine: best or paper (default: best)"},
+    KeyOption{"--metrics", "metrics", "Unix socket with metrics for Prometheus, unix:PATH"},
     KeyOption{"--lag-ms", "lag_ms",
               "Output delay of the pose engine, ms: 0, 100 or 200; longer is more accurate "
               "(default: 0)"},
@@ -41,7 +42,7 @@ struct Given {
   std::string file;
   std::vector<std::string> settings, listen;
   std::array<std::string, kKeyOptions.size()> values;
-  bool print = false, check = false, quiet = false;
+  bool print = false, origin = false, check = false, quiet = false;
 };
 
 std::unique_ptr<CLI::App> NewParser(Given& given) {
@@ -59,6 +60,9 @@ std::unique_ptr<CLI::App> NewParser(Given& given) {
     app->add_option(kKeyOptions[i].name, given.values[i], kKeyOptions[i].help);
   }
   app->add_flag("--print-config", given.print, "Print the effective config and exit");
+  app->add_flag(
+      "--origin", given.origin,
+      "With --print-config: where each value comes from, too (default, FILE:LINE, option)");
   app->add_flag("--check-config", given.check, "Check the config and exit");
   app->add_flag("-q,--quiet", given.quiet, "Log only warnings and errors");
   return app;
@@ -81,12 +85,20 @@ std::optional<int> ReadCommandLine(int argc, char** argv, Config& config) {
   if (const auto done = binder.Apply(given.file, given.settings); !done) {
     return cli::Report(done.error());
   }
-  if (!given.listen.empty()) config.serving.listen = given.listen;
+  for (std::size_t i = 0; i < kKeyOptions.size(); ++i) {
+    if (!given.values[i].empty()) binder.SetOrigin(kKeyOptions[i].key, kKeyOptions[i].name);
+  }
+  if (!given.listen.empty()) {
+    config.serving.listen = given.listen;
+    binder.SetOrigin("listen", "--listen");
+  }
   if (const auto checked = Check(config); !checked) return cli::Report(checked.error());
   if (const auto apply = CheckApply(config, given.settings); !apply) {
     return cli::Report(apply.error());
   }
-  if (given.print) std::cout << binder.Print() << std::endl;
+  if (given.print) {
+    std::cout << (given.origin ? binder.PrintOrigins() : binder.Print()) << std::endl;
+  }
   if (given.print || given.check) return 0;
   return std::nullopt;
 }

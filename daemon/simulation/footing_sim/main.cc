@@ -1,12 +1,14 @@
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <chrono>
+#include <utility>
 
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/log/log.h"
 #include "common/service_manager/service_manager.h"
+#include "common/service_manager/service_signals.h"
 #include "common/timer/timer.h"
 #include "daemon/simulation/footing_sim/command_line.h"
+#include "daemon/simulation/footing_sim/reload.h"
 #include "daemon/simulation/footing_sim/service.h"
 
 int main(int argc, char** argv) {
@@ -15,18 +17,24 @@ int main(int argc, char** argv) {
   if (const auto code = footing_sim::ReadCommandLine(argc, argv, config)) return *code;
   if (const auto done = clock::FollowTimekeeper(); !done) return cli::Report(done.error());
   boost::asio::io_context io(1);
-  const auto stop = footing_sim::StartService(io, config, cli::Version());
-  if (!stop) return cli::Report(stop.error());
+  const auto served = footing_sim::StartService(io, config, cli::Version());
+  if (!served) return cli::Report(served.error());
   service_manager::Notifier notifier(io);
   notifier.Ready("engine " + config.engine);
-  timer::Timer goodbye(io);  // Time for the goodbyes to leave.
-  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
-  signals.async_wait([&](boost::system::error_code, int) {
+  service_manager::ServiceSignals::Handlers handlers;
+  handlers.stop = [&](int signal, std::function<void()> done) {
     notifier.Stopping();
-    (*stop)("footing-sim ends");
-    goodbye.expires_after(std::chrono::milliseconds(200));
-    goodbye.async_wait([&io](boost::system::error_code) { io.stop(); });
-  });
+    served->stop(cli::StopReason("footing-sim", signal), std::move(done));
+  };
+  handlers.reload = [&] {
+    footing_sim::Config wanted;
+    if (footing_sim::ReadCommandLine(argc, argv, wanted)) {
+      return log::Warning("config not reloaded: the one in force stays");
+    }
+    config = footing_sim::Reloaded(config, wanted, log::Info);
+    served->set_limits(config.serving.sessions);
+  };
+  const service_manager::ServiceSignals signals(io, std::move(handlers));
   timer::Run(io);
   return 0;
 }

@@ -5,8 +5,8 @@
 
 namespace footing::footing_sim {
 
-Result<serving::StopServing> StartService(boost::asio::io_context& io, const Config& given,
-                                          const std::string& version) {
+Result<serving::Served> StartService(boost::asio::io_context& io, const Config& given,
+                                     const std::string& version) {
   Config config = given;
   config.serving.version = version;
   using gait_service::GaitLine;

@@ -10,8 +10,8 @@
 namespace footing::footing_sim {
 
 /// footing-sim: subscribes to footingd, runs the configured engine on its thread, publishes frames.
-/// Reads the engine's files, builds it, opens the listeners and starts; returns how to stop it.
-Result<serving::StopServing> StartService(boost::asio::io_context& io, const Config& config,
-                                          const std::string& version);
+/// Reads the engine's files, builds it, opens the listeners and starts.
+Result<serving::Served> StartService(boost::asio::io_context& io, const Config& config,
+                                     const std::string& version);
 
 }  // namespace footing::footing_sim

@@ -10,6 +10,8 @@ void Config::Bind(config::Binder& binder) {
   binder.Text("data_folder", data_folder,
               "Folder with biped.json, the mappings, the models and the tracks");
   access.Bind(binder);
+  binder.Text("metrics", metrics,
+              "Unix socket with metrics for Prometheus, unix:PATH (empty: none)");
   sessions.Bind(binder);
 }
 

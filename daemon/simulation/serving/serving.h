@@ -10,9 +10,11 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/monitoring/monitor.h"
 #include "common/result/result.h"
 #include "common/service_manager/service_manager.h"
 #include "common/transport/client.h"
@@ -34,7 +36,8 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
                    return line_->OnCommand(who, command);
                  },
                  [this](const transport::SessionInfo& who) { line_->OnSessionEnd(who); },
-                 [](const std::string& text) { log::Warning(text); }}) {}
+                 [](const std::string& text) { log::Warning(text); }}),
+        monitor_(server_, line_->frame_rate_hz(), {"footing-sim", config.version}) {}
 
   Result<void> Open(boost::asio::io_context& io, const Config& config) {
     auto addresses = config.listen;
@@ -55,6 +58,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     if (config.access.insecure_lan) {
       log::Warning("insecure_lan: what goes beyond this host is NOT ENCRYPTED, the token included");
     }
+    if (const auto served = monitor_.Serve(io, config.metrics); !served) return served;
     transport::ClientOptions options;
     options.address = transport::DefaultAddress("sensor");
     if (!config.sensor.empty()) {
@@ -70,6 +74,9 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     handlers.on_state = [](transport::LinkState, const std::string& why) {
       log::Info("sensor stream: " + why);
     };
+    handlers.on_notice = [](const v1::Notice& notice) {
+      log::Warning("sensor stream: " + notice.text());
+    };
     client_ = std::make_unique<transport::Client>(io, options, std::move(handlers));
     return {};
   }
@@ -81,12 +88,15 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     WaitForFrame();
   }
 
-  void Stop(const std::string& reason) {
+  void SetLimits(const transport::SessionLimits& limits) { server_.SetLimits(limits); }
+
+  void Stop(const std::string& reason, std::function<void()> done) {
     client_->Stop();
     line_->thread().Stop();
     boost::system::error_code ignored;
     wake_.close(ignored);
-    server_.Stop(reason);
+    monitor_.Stop();
+    server_.Drain(reason, std::move(done));
   }
 
  private:
@@ -96,6 +106,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     options.server_id = "footing-sim";
     options.version = config.version;
     options.channels = Line::Channels();
+    options.channels.push_back(monitoring::StatsChannel());
     options.tick_rate_hz = line.frame_rate_hz();
     options.sessions = config.sessions;
     options.capabilities = line.Capabilities();
@@ -115,7 +126,9 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   void PublishFrames() {
     while (line_->thread().frames().Pop(frame_)) {
       const std::int64_t now_ns = clock::MonotonicNs();
-      server_.Publish(now_ns, line_->OnFrame(frame_, now_ns));
+      std::vector<transport::ChannelBytes> channels = line_->OnFrame(frame_, now_ns);
+      monitor_.OnTick({now_ns, std::nullopt, frame_.overruns}, channels);
+      server_.Publish(now_ns, std::move(channels));
     }
   }
 
@@ -125,16 +138,23 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   typename Line::Run::Frame frame_;
   transport::Server server_;
   std::size_t listening_ = 0;
+  monitoring::Monitor monitor_;
   std::unique_ptr<transport::Client> client_;
 };
 
-/// Says goodbye to every client, with the reason, and stops the simulation thread.
-using StopServing = std::function<void(const std::string& reason)>;
+/// A service that runs.
+struct Served {
+  /// Stops the simulation thread; each client gets what waits for it, and goodbye with the reason.
+  /// `done` is called when the last one has ended.
+  std::function<void(const std::string& reason, std::function<void()> done)> stop;
+  /// For sessions that come from now on.
+  std::function<void(const transport::SessionLimits&)> set_limits;
+};
 
-/// Makes the line with `make_line(wake_descriptor)`, starts it and returns how to stop it.
+/// Makes the line with `make_line(wake_descriptor)` and starts it.
 template <typename Line, typename MakeLine>
-Result<StopServing> StartServing(boost::asio::io_context& io, const Config& config,
-                                 const MakeLine& make_line) {
+Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
+                            const MakeLine& make_line) {
   const int wake_descriptor = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake_descriptor < 0) return Failure(std::string("eventfd: ") + std::strerror(errno));
   transport::ServerOptions with_access;
@@ -145,7 +165,10 @@ Result<StopServing> StartServing(boost::asio::io_context& io, const Config& conf
                                                  wake_descriptor, with_access);
   if (const auto open = serving->Open(io, config); !open) return open.error();
   serving->Start();
-  return StopServing([serving](const std::string& reason) { serving->Stop(reason); });
+  return Served{[serving](const std::string& reason, std::function<void()> done) {
+                  serving->Stop(reason, std::move(done));
+                },
+                [serving](const transport::SessionLimits& limits) { serving->SetLimits(limits); }};
 }
 
 }  // namespace footing::serving

@@ -1,0 +1,19 @@
+#include "daemon/simulation/footing_sim/reload.h"
+
+#include "common/config/reload.h"
+
+namespace footing::footing_sim {
+
+Config Reloaded(const Config& before, const Config& wanted,
+                const std::function<void(const std::string& line)>& say) {
+  Config old_config = before, new_config = wanted, next = before;
+  next.serving.sessions = wanted.serving.sessions;
+  config::Binder old_binder, new_binder, next_binder;
+  old_config.Bind(old_binder);
+  new_config.Bind(new_binder);
+  next.Bind(next_binder);
+  for (const auto& line : config::DescribeReload(old_binder, next_binder, new_binder)) say(line);
+  return next;
+}
+
+}  // namespace footing::footing_sim
