@@ -65,6 +65,9 @@ std::unique_ptr<transport::Client> Feed::Connect(boost::asio::io_context& io, in
     sources_[index].report.why = why;
     handlers_.on_link(source, sources_[index].report);
   };
+  handlers.on_notice = [this, source](const v1::Notice& notice) {
+    handlers_.on_update(TranslateNotice(notice, source, clock::MonotonicNs()));
+  };
   return std::make_unique<transport::Client>(io, options, std::move(handlers));
 }
 
@@ -84,8 +87,8 @@ void Feed::SendToSimulation(const v1::Command& command) {
       scene::Update refusal;
       refusal.source = static_cast<int>(i);
       refusal.live = false;
-      refusal.received_ns = refusal.host_ns = clock::MonotonicNs();
-      refusal.notes.push_back({scene::NoteKind::kOther, refusal.host_ns, result.message(), {}});
+      refusal.received_ns = clock::MonotonicNs();
+      refusal.notes.push_back({scene::NoteKind::kOther, refusal.received_ns, result.message(), {}});
       handlers_.on_update(std::move(refusal));
     });
   }

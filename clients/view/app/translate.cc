@@ -175,4 +175,13 @@ scene::Update Translate(const v1::Tick& tick, int source, std::int64_t received_
   return update;
 }
 
+scene::Update TranslateNotice(const v1::Notice& notice, int source, std::int64_t received_ns) {
+  scene::Update update;
+  update.source = source;
+  update.live = false;
+  update.received_ns = received_ns;
+  update.notes.push_back({scene::NoteKind::kServer, received_ns, notice.text(), {}});
+  return update;
+}
+
 }  // namespace footing::view

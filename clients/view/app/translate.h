@@ -12,4 +12,7 @@ namespace footing::view {
 scene::Update Translate(const v1::Tick& tick, int source, std::int64_t received_ns,
                         std::int64_t offset_ns);
 
+/// What slows a server or this session, as a note.
+scene::Update TranslateNotice(const v1::Notice& notice, int source, std::int64_t received_ns);
+
 }  // namespace footing::view

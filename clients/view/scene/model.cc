@@ -36,7 +36,7 @@ void AddBoard(Model& model, int source, std::int64_t received_ns,
   }
 }
 
-void AddNote(Model& model, const Note& note, std::int64_t received_ns) {
+void AddNote(Model& model, const Note& note, int source, std::int64_t received_ns) {
   if (note.kind == NoteKind::kResponse) {
     model.last.response = note;
     model.tally.Add(note.response);
@@ -45,6 +45,7 @@ void AddNote(Model& model, const Note& note, std::int64_t received_ns) {
   if (note.text.empty()) return;
   model.last.note = note;
   model.last.note->received_ns = received_ns;
+  if (note.kind == NoteKind::kServer) model.last.server[source] = *model.last.note;
 }
 
 void AddPhase(Model& model, const CharacterPose& pose, std::int64_t received_ns) {
@@ -82,8 +83,10 @@ stream::DeviceRole RoleOf(const Model& model, const std::pair<int, std::uint32_t
 }  // namespace
 
 void Apply(Model& model, const Update& update) {
-  std::int64_t& newest_ns = model.newest_host_ns[update.source];
-  newest_ns = std::max(newest_ns, update.host_ns);
+  if (update.host_ns != 0) {
+    std::int64_t& newest_ns = model.newest_host_ns[update.source];
+    newest_ns = std::max(newest_ns, update.host_ns);
+  }
   if (update.devices) Replace(model.devices, update.source, *update.devices);
   if (update.skeletons) {
     model.skeletons = *update.skeletons;
@@ -103,7 +106,7 @@ void Apply(Model& model, const Update& update) {
   for (const stream::BoardSample& sample : update.boards) {
     AddBoard(model, update.source, update.received_ns, sample);
   }
-  for (const Note& note : update.notes) AddNote(model, note, update.received_ns);
+  for (const Note& note : update.notes) AddNote(model, note, update.source, update.received_ns);
   if (update.frame) {
     if (!update.frame->characters.empty() && !update.frame->characters.front().body) {
       AddPhase(model, update.frame->characters.front(), update.received_ns);

@@ -47,7 +47,8 @@ struct Device {
 /// The newest events.
 struct LastNotes {
   std::optional<Note> response;
-  std::optional<Note> note;  ///< That a person should read.
+  std::optional<Note> note;    ///< That a person should read.
+  std::map<int, Note> server;  ///< What each source's server said slows it.
 };
 
 /// The user study, where one runs.

@@ -44,7 +44,16 @@ struct WorldFrame {
   std::vector<CharacterPose> characters;
 };
 
-enum class NoteKind { kOther, kFall, kPutBack, kGaitChanged, kResponse, kStreamLost, kStreamBack };
+enum class NoteKind {
+  kOther,
+  kFall,
+  kPutBack,
+  kGaitChanged,
+  kResponse,
+  kStreamLost,
+  kStreamBack,
+  kServer,  ///< Something slows the server or this session.
+};
 
 /// An event, for a person to read.
 struct Note {

@@ -5,6 +5,7 @@
 
 #include "clients/view/scene/game_text.h"
 #include "clients/view/scene/interface_text.h"
+#include "clients/view/scene/notice_text.h"
 #include "clients/view/scene/study_text.h"
 #include "clients/view/scene/trial_text.h"
 #include "common/text/number.h"
@@ -188,6 +189,8 @@ std::vector<std::string> WaitingLines(const LinkReport& link) {
     case LinkState::kConnecting:
       break;
   }
+  // It was there: why it is not any more, in its own words where it gave some.
+  if (!link.server_id.empty()) return {"Lost " + link.address, link.why};
   if (Names(link.address, "simulation")) {
     return {"Waiting for a simulation server on " + link.address,
             "Start one with:  footing-sim --engine gait --listen " + link.address};
@@ -203,10 +206,13 @@ std::vector<std::string> WaitingLines(const LinkReport& link) {
 std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
   std::vector<std::string> lines{std::string("Footing") +
                                  (IsSimulated(model) ? "   [SIMULATED input]" : "")};
-  for (const LinkReport& link : model.links) {
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const LinkReport& link = model.links[i];
     const std::string server = link.server_id.empty() ? "server" : link.server_id;
     lines.push_back(Padded(server, 14) + Padded(StateName(link.state), 12) + link.address);
     for (const std::string& line : WaitingLines(link)) lines.push_back("  " + line);
+    const std::string notice = NoticeText(model, static_cast<int>(i), now_ns);
+    if (!notice.empty()) lines.push_back("  NOTICE: " + notice);
   }
   if (HasPicture(model)) {
     lines.push_back("Character");
@@ -256,7 +262,8 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
       if (!lines.empty()) return lines[0] + ". " + lines[1];
     }
     return "devices " + std::to_string(model.devices.size()) + "  " +
-           AgeText(AgeMs(model, now_ns)) + (IsSimulated(model) ? "  SIMULATED" : "");
+           AgeText(AgeMs(model, now_ns)) + (IsSimulated(model) ? "  SIMULATED" : "") +
+           NoticesOfLogLine(model, now_ns);
   }
   const WorldFrame& frame = model.playout.Newest();
   std::string line = "t " + Fixed(frame.time_s, 1) + " s";
@@ -279,7 +286,7 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
   if (ShowsGame(model.game, FirstTrial(model))) line += "  " + GameLine(model.game);
   line +=
       "  devices " + std::to_string(model.devices.size()) + "  " + AgeText(AgeMs(model, now_ns));
-  return line + (IsSimulated(model) ? "  SIMULATED" : "");
+  return line + (IsSimulated(model) ? "  SIMULATED" : "") + NoticesOfLogLine(model, now_ns);
 }
 
 }  // namespace footing::scene

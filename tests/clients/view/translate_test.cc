@@ -27,6 +27,18 @@ TEST(Translate, SnapshotsAndRefilledTicksAreNotLive) {
   EXPECT_FALSE(Translate(refilled, 0, 0, 0).live);
 }
 
+TEST(Translate, ANoticeIsANoteWithoutATime) {
+  v1::Notice notice;
+  notice.set_text("slow");
+  const scene::Update update = TranslateNotice(notice, 2, 7);
+  EXPECT_EQ(update.source, 2);
+  EXPECT_FALSE(update.live);
+  EXPECT_EQ(update.host_ns, 0);
+  ASSERT_EQ(update.notes.size(), 1u);
+  EXPECT_EQ(update.notes[0].kind, scene::NoteKind::kServer);
+  EXPECT_EQ(update.notes[0].text, "slow");
+}
+
 TEST(Translate, WhatATickDoesNotCarryStaysEmpty) {
   const scene::Update update = Translate({}, 0, 0, 0);
   EXPECT_FALSE(update.devices || update.skeletons || update.track || update.frame);

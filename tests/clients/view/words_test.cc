@@ -43,6 +43,29 @@ TEST(WaitingLines, ARefusalIsShownInTheServersOwnWords) {
   EXPECT_EQ(WaitingLines(link)[1], "update the viewer");
 }
 
+TEST(WaitingLines, AServerThatWentAwaySaysWhy) {
+  const LinkReport link{"unix:/run/sensor.sock", "footingd", LinkState::kConnecting,
+                        "waiting for unix:/run/sensor.sock: footingd is being stopped"};
+  EXPECT_THAT(WaitingLines(link)[1], HasSubstr("footingd is being stopped"));
+}
+
+TEST(StatusScreen, ShowsForAWhileWhatSlowsAServer) {
+  Model model = made::ModelAfter(3, {});
+  model.links = {{"unix:/s", "footingd", LinkState::kLive, ""}};
+  const double age_ms = AgeMs(model, made::ClockAt(3));
+  Update update;
+  update.live = false;
+  update.received_ns = made::ClockAt(3);
+  update.notes.push_back({NoteKind::kServer, made::ClockAt(3), "12 ticks left out", {}});
+  Apply(model, update);
+  EXPECT_THAT(StatusScreen(model, made::ClockAt(4)),
+              Contains(HasSubstr("NOTICE: 12 ticks left out")));
+  EXPECT_THAT(StatusScreen(model, made::ClockAt(40)), Not(Contains(HasSubstr("NOTICE"))));
+  EXPECT_THAT(StatusLine(model, made::ClockAt(4)), HasSubstr("NOTICE: 12 ticks left out"));
+  EXPECT_THAT(StatusLine(model, made::ClockAt(10)), Not(HasSubstr("NOTICE")));
+  EXPECT_EQ(AgeMs(model, made::ClockAt(3)), age_ms) << "a notice is no data";
+}
+
 TEST(StatusScreen, NamesGaitSpeedDevicesAndThatTheInputIsSimulated) {
   const Model model = made::ModelAfter(3, {});
   const auto lines = StatusScreen(model, made::ClockAt(3));

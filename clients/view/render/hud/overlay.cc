@@ -155,9 +155,12 @@ void DrawNote(const Paint& p, const scene::Model& model, std::int64_t now_ns, Bo
   const double age_s = NanosecondsToSeconds(now_ns - model.last.note->received_ns);
   if (age_s > kNoteS) return;
   const auto opacity = static_cast<float>(std::clamp((kNoteS - age_s) / kNoteFadeS, 0.0, 1.0));
-  const bool fall = model.last.note->kind == scene::NoteKind::kFall;
+  const scene::NoteKind kind = model.last.note->kind;
+  const auto ink = kind == scene::NoteKind::kFall     ? colour::kBad
+                   : kind == scene::NoteKind::kServer ? colour::kWarning
+                                                      : colour::kText;
   DrawBanner(p, space, model.last.note->text, p.fonts.text, Faded(colour::kPanel, 0.7f * opacity),
-             Faded(fall ? colour::kBad : colour::kText, opacity));
+             Faded(ink, opacity));
 }
 
 void DrawFrozen(const Paint& p, Box& space) {
