@@ -2,14 +2,26 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "common/units/units.h"
 #include "daemon/simulation/gait/context.h"
+#include "daemon/simulation/gait/frames.h"
 
 namespace footing::gait {
 
 double BankAngle(const GaitMemory& memory, const AttitudeGains& gains) {
   return -gains.bank_share * memory.speed.desired_mps * memory.turning_radps / kStandardGravityMps2;
+}
+
+double Roll(const biped::BodyState& body, const GaitMemory& memory) {
+  const Eigen::Vector3d up_H = ToHeading(memory.heading_rad, body.R_WB.col(2));
+  return -std::atan2(up_H.y(), up_H.z());
+}
+
+double TiltAside(const biped::BodyState& body, const GaitMemory& memory,
+                 const AttitudeGains& gains) {
+  return Roll(body, memory) - BankAngle(memory, gains);
 }
 
 Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memory,

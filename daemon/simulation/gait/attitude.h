@@ -18,4 +18,10 @@ Eigen::Vector3d BodyMoment(const biped::BodyState& body, const GaitMemory& memor
 /// Roll, rad, at which a run goes through the present curve: to the left negative.
 double BankAngle(const GaitMemory& memory, const AttitudeGains& gains);
 
+/// Roll of the body about the heading, rad; to the left negative.
+double Roll(const biped::BodyState& body, const GaitMemory& memory);
+/// The same beyond the bank: what a push leaves.
+double TiltAside(const biped::BodyState& body, const GaitMemory& memory,
+                 const AttitudeGains& gains);
+
 }  // namespace footing::gait

@@ -5,6 +5,7 @@
 #include "common/units/units.h"
 #include "daemon/simulation/gait/anticipation.h"
 #include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/leg_room.h"
 #include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/gait/servo.h"
 #include "daemon/simulation/gait/transition.h"
@@ -45,6 +46,7 @@ physics::JointEfforts Advance(const biped::BodyState& body, const biped::BipedPa
   SlewSpeed(context, memory);
   Targets targets = AdvanceMachines(context, memory);
   targets.lean_rad += AnticipatedLean(context, memory);
+  KeepLegsApart(context, memory, targets);
   return Servo(targets, body, biped, gains, step_s, memory);
 }
 

@@ -86,6 +86,9 @@ constexpr std::array kFields{
     GAIN(hopping, acceleration_mps2, "m/s2", 0, 10),
     GAIN(hopping, braking_mps2, "m/s2", 0, 20),
 
+    GAIN(curve, idle_bank, "1", 0, 5),
+    GAIN(curve, leg_gap_m, "m", 0, 0.3),
+
     GAIN(transition, thrust_from_swing, "1", 0, 1),
     GAIN(transition, thrust_to_run_mps, "m/s", 0, 5),
     GAIN(transition, thrust_to_jump_mps, "m/s", 0, 5),

@@ -97,6 +97,13 @@ struct HoppingGains {
   double braking_mps2 = 4;
 };
 
+/// Where a run's idle leg is in a curve.
+struct CurveGains {
+  double idle_bank = 2.5;   ///< It mirrors the other one about half of this times the bank: with a
+                            ///< bank_share of 0.8 about the direction of the whole force.
+  double leg_gap_m = 0.07;  ///< Between the legs' axes (leg_room.h).
+};
+
 /// Running and jumping over steps of the ground that are seen.
 struct SteppingGains {
   double low_margin_m = 0.06;    ///< Foot's centre from an edge, below it.
@@ -184,6 +191,7 @@ struct Gains {
   AttitudeGains attitude;
   WalkingGains walking;
   HoppingGains hopping;
+  CurveGains curve;
   SteppingGains stepping;
   TransitionGains transition;
   PitGains pit;

@@ -53,33 +53,34 @@ LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
   return Placed(Cleared(context, memory, leg, HipToFoot(context.body, leg, offset_W, length_m)));
 }
 
-/// Of the body, in the heading frame; negative leans to the left.
-double Roll(const Context& context, const GaitMemory& memory) {
-  const Eigen::Vector3d up_H = ToHeading(memory.heading_rad, context.body.R_WB.col(2));
-  return -std::atan2(up_H.y(), up_H.z());
-}
-
 /// A push on the body acts above the whole COM and leaves angular momentum for the whole flight.
 /// The idle leg rolls on with the body, further than it, and so takes up most of that.
 double IdleYield(const Context& context, const GaitMemory& memory) {
   const RecoveryGains& gains = context.gains.recovery;
-  const double roll_rad = Roll(context, memory) - BankAngle(memory, context.gains.attitude);
-  return std::clamp(gains.idle_yield * roll_rad, -gains.idle_yield_limit_rad,
+  const double tilt_rad = TiltAside(context.body, memory, context.gains.attitude);
+  return std::clamp(gains.idle_yield * tilt_rad, -gains.idle_yield_limit_rad,
                     gains.idle_yield_limit_rad);
+}
+
+/// In a curve the legs lie along the force, aslant: mirrored about the vertical the idle one would
+/// cross the other.
+double IdleAside(const Context& context, const GaitMemory& memory) {
+  return IdleYield(context, memory) +
+         context.gains.curve.idle_bank * BankAngle(memory, context.gains.attitude);
 }
 
 LegTarget Idle(const Context& context, const GaitMemory& memory, int leg,
                const Eigen::Vector3d& other_r_HF_W_m) {
   return Placed(Cleared(context, memory, leg,
                         Mirrored(memory.heading_rad, other_r_HF_W_m,
-                                 context.gains.hopping.idle_length_m, IdleYield(context, memory))));
+                                 context.gains.hopping.idle_length_m, IdleAside(context, memory))));
 }
 
 /// Pushed aside at lift-off, a jump's body would turn over before it lands. The leg that it does
 /// not fall towards swings out with it and takes up part of that; the other one lands.
 LegTarget Yielding(const Context& context, const GaitMemory& memory, int leg, LegTarget target) {
   const RecoveryGains& gains = context.gains.recovery;
-  const double outward_rad = biped::Side(leg) * Roll(context, memory);
+  const double outward_rad = biped::Side(leg) * Roll(context.body, memory);
   const double swing_rad = std::clamp(gains.jump_yield * (outward_rad - gains.jump_yield_from_rad),
                                       0.0, gains.idle_yield_limit_rad);
   const Eigen::Vector3d ahead_W = ToWorld(memory.heading_rad, {1, 0, 0});

@@ -1,0 +1,66 @@
+#include "daemon/simulation/gait/leg_room.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/simulation/gait/attitude.h"
+#include "daemon/simulation/gait/frames.h"
+
+namespace footing::gait {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The gap is asked for in full from this bank on.
+constexpr double kFullBankRad = 0.1;
+/// It is given up between this tilt of the body, which runs in curves do not reach, and twice that.
+constexpr double kPushedRad = 0.15;
+/// A leg that is less steep reaches no other.
+constexpr double kSteepEnoughM = -0.2;
+
+/// Where the line from a hip along `r_HF_m` is at a height.
+Vector3d AtHeight(const Vector3d& hip_m, const Vector3d& r_HF_m, double height_m) {
+  return hip_m + (height_m - hip_m.z()) / r_HF_m.z() * r_HF_m;
+}
+
+/// From 0 to 1: how much of the gap is asked for.
+double Asked(const Context& context, const GaitMemory& memory) {
+  const AttitudeGains& attitude = context.gains.attitude;
+  const double bank = std::fabs(BankAngle(memory, attitude)) / kFullBankRad;
+  const double tilt = std::fabs(TiltAside(context.body, memory, attitude)) / kPushedRad;
+  return std::min(1.0, bank) * std::clamp(2 - tilt, 0.0, 1.0);
+}
+
+}  // namespace
+
+void KeepLegsApart(const Context& context, const GaitMemory& memory, Targets& targets) {
+  const double gap_m = context.gains.curve.leg_gap_m;
+  const int leg = 1 - memory.support_leg;
+  LegTarget& target = targets.legs[leg];
+  if (gap_m <= 0 || memory.gait != stream::Gait::kRun || target.task != LegTask::kPlace) return;
+  const double asked = Asked(context, memory);
+  const biped::LegState &own = context.body.legs[leg], &other = context.body.legs[1 - leg];
+  const Vector3d r_other_m = other.p_WF - other.p_WH;
+  if (asked <= 0 || target.r_HF_W_m.z() > kSteepEnoughM || r_other_m.z() > kSteepEnoughM) return;
+
+  // Both at the height of the upper foot; side by side they are nearest there.
+  const double height_m = std::max(own.p_WH.z() + target.r_HF_W_m.z(), other.p_WF.z());
+  const Vector3d feet_H =
+      ToHeading(memory.heading_rad, AtHeight(own.p_WH, target.r_HF_W_m, height_m) -
+                                        AtHeight(other.p_WH, r_other_m, height_m));
+  const Vector3d hips_H = ToHeading(memory.heading_rad, own.p_WH - other.p_WH);
+  const double side = biped::Side(leg);
+  const double outward_m = side * feet_H.y(), hips_m = side * hips_H.y();
+  if (outward_m >= gap_m) return;
+  // Where they cross, how far are they apart fore and aft?
+  const double way = outward_m < 0 && hips_m > 0 ? hips_m / (hips_m - outward_m) : 1;
+  const double ahead_m = std::fabs(std::lerp(hips_H.x(), feet_H.x(), way));
+  const double share = asked * std::clamp(2 - ahead_m / gap_m, 0.0, 1.0);
+  const double reach = target.r_HF_W_m.z() / (height_m - own.p_WH.z());
+  const double length_m = target.r_HF_W_m.norm();
+  target.r_HF_W_m +=
+      ToWorld(memory.heading_rad, {0, side * share * reach * (gap_m - outward_m), 0});
+  target.r_HF_W_m *= length_m / target.r_HF_W_m.norm();
+}
+
+}  // namespace footing::gait
