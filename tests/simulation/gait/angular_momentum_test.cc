@@ -37,9 +37,9 @@ TEST(AngularMomentum, StaysInFlightWhateverTheLegsDo) {
   biped::BipedParameters biped = test::Biped();
   biped.hip_armature_kgm2 = 0;  // The rotors' own momentum is left out.
   const char* plane = "<geom type='plane' contype='1' conaffinity='2' size='0 0 1'/>";
-  physics::World world =
-      std::move(physics::World::FromMjcf(biped::WriteMjcf(biped, plane, {}, 0.0002), biped::Names()))
-          .value();
+  physics::World world = std::move(physics::World::FromMjcf(
+                                       biped::WriteMjcf(biped, plane, {}, 0.0002), biped::Names()))
+                             .value();
   world.Reset({0, 0, 8}, 0, {});
   const auto momentum = [&] {
     return AngularMomentum(biped::Read(biped, world.Observe(), 0), biped);
