@@ -24,9 +24,12 @@ void AddOptions(CLI::App& app, camera::TrackingOptions& options) {
   app.add_option("--gain", options.video.gain,
                  "Gain of a camera, on its own scale (-1: leave unchanged)")
       ->check(CLI::Range(-1, 100000));
-  app.add_option("--latency-s", options.pipe_latency_s,
+  app.add_option("--latency-s", options.pipe_settings.latency_s,
                  "Time from the exposure of a FIFO's frame to its last byte, s")
       ->check(CLI::Range(0.0, 1.0));
+  app.add_flag(
+      "--stamped", options.pipe_settings.stamped,
+      "Take a FIFO frame's exposure from its comment # time_ns, of the host's monotonic clock");
   app.add_flag("--repeat", options.repeats, "Play the frames of a folder again and again");
   app.add_flag("--simulated", options.simulated, "Mark the hands as simulated");
   app.add_option("--seconds", options.seconds, "Duration, s (default: until the frames end)")
@@ -67,6 +70,7 @@ int main(int argc, char** argv) {
   const auto camera = frames::ReadCameraFile(camera_file);
   if (!camera) return cli::Report(camera.error());
   options.camera = *camera;
+  options.camera_path = camera_file;
   const auto address = to.empty() ? Result<transport::Address>(transport::DefaultAddress("devices"))
                                   : transport::ParseAddress(to);
   if (!address) return cli::Report(address.error());

@@ -29,11 +29,13 @@ stream::TrackedPoint ToPoint(const Eigen::Isometry3d& X_WC, const sphere::Estima
 }  // namespace
 
 stream::HandFrame ToHandFrame(const frames::CameraFile& camera,
+                              const std::optional<Eigen::Isometry3d>& calibrated_X_WC,
                               const std::vector<std::optional<sphere::Estimate>>& found,
                               std::int64_t exposed_ns, std::int64_t now_ns) {
-  const Eigen::Isometry3d X_WC = camera.X_WC.value_or(Eigen::Isometry3d::Identity());
+  const Eigen::Isometry3d X_WC = calibrated_X_WC.value_or(Eigen::Isometry3d::Identity());
   stream::HandFrame frame;
   frame.tracker = "camera";
+  frame.tracker_pose = stream::TrackerPose{X_WC.translation(), Eigen::Quaterniond(X_WC.rotation())};
   std::optional<double> row_s;
   for (std::size_t i = 0; i < found.size(); ++i) {
     stream::TrackedPoint point = found[i] ? ToPoint(X_WC, *found[i]) : stream::TrackedPoint();

@@ -15,8 +15,10 @@ namespace {
 
 class PipeSource : public Source {
  public:
-  PipeSource(boost::asio::io_context& io, int descriptor, double latency_s)
-      : pipe_(io, descriptor), latency_ns_(static_cast<std::int64_t>(1e9 * latency_s)) {}
+  PipeSource(boost::asio::io_context& io, int descriptor, const PipeSettings& settings)
+      : pipe_(io, descriptor),
+        latency_ns_(static_cast<std::int64_t>(1e9 * settings.latency_s)),
+        stamped_(settings.stamped) {}
 
   void Start(OnFrame on_frame, OnEnd on_end) override {
     on_frame_ = std::move(on_frame);
@@ -52,13 +54,17 @@ class PipeSource : public Source {
       const auto frame = reader_.Next();
       if (!frame) return on_end_(frame.error());
       if (!*frame) break;
-      on_frame_(**frame, exposed_ns);
+      const auto& time_ns = (*frame)->time_ns;
+      if (stamped_ && !time_ns)
+        return on_end_(InvalidData("frames: an image has no comment with its time (# time_ns N)"));
+      on_frame_(**frame, stamped_ ? *time_ns : exposed_ns);
     }
     if (pipe_.is_open()) Read();
   }
 
   boost::asio::posix::stream_descriptor pipe_;
   const std::int64_t latency_ns_;
+  const bool stamped_;
   OnFrame on_frame_;
   OnEnd on_end_;
   frames::NetpbmReader reader_;
@@ -68,14 +74,14 @@ class PipeSource : public Source {
 }  // namespace
 
 Result<std::unique_ptr<Source>> OpenPipe(boost::asio::io_context& io, const std::string& path,
-                                         double latency_s) {
+                                         const PipeSettings& settings) {
   // Blocks until a writer opens the FIFO; without a writer, a read would return end of file at
   // once.
   const int descriptor = path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY);
   if (descriptor < 0)
     return Failure("cannot open " + path + ": " + std::string(std::strerror(errno)));
   try {
-    return std::unique_ptr<Source>(std::make_unique<PipeSource>(io, descriptor, latency_s));
+    return std::unique_ptr<Source>(std::make_unique<PipeSource>(io, descriptor, settings));
   } catch (const boost::system::system_error& error) {
     ::close(descriptor);
     return Failure(path + " is not a FIFO: " + error.code().message() +

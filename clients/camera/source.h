@@ -29,9 +29,14 @@ Result<std::unique_ptr<Source>> OpenFolder(boost::asio::io_context& io, const st
                                            const frames::CameraFile& camera, bool repeats);
 
 /// PGM and PPM images one after the other from a FIFO, or from standard input ("-"). A frame's
-/// exposure is when its last byte arrived less `latency_s`.
+/// exposure is when its last byte arrived less `latency_s`, or, where frames are `stamped`, the
+/// time that its comment states on the host's monotonic clock.
+struct PipeSettings {
+  double latency_s = 0;
+  bool stamped = false;
+};
 Result<std::unique_ptr<Source>> OpenPipe(boost::asio::io_context& io, const std::string& path,
-                                         double latency_s);
+                                         const PipeSettings& settings);
 
 /// A camera by V4L2: `device` is a path as /dev/video0. Exposure, gain and white balance are locked
 /// to the values given and read back; a camera that ignores one is reported by `alarm`.

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "clients/camera/observation.h"
@@ -19,14 +21,25 @@ namespace footing::camera {
 namespace {
 
 constexpr std::size_t kMaxQueuedFrames = 64;  // To footingd.
+constexpr std::chrono::milliseconds kLookAtTheFileEvery(500);
+
+/// The time of a file's last change; any constant one where there is no file.
+std::filesystem::file_time_type ChangedAt(const std::string& path) {
+  std::error_code none;
+  const auto at = std::filesystem::last_write_time(path, none);
+  return none ? std::filesystem::file_time_type::min() : at;
+}
 
 class Tracking {
  public:
   explicit Tracking(const TrackingOptions& options)
       : options_(options),
+        X_WC_(options.camera.X_WC),
+        changed_at_(ChangedAt(options.camera_path)),
         io_(1),
         signals_(io_, SIGINT, SIGTERM),
         limit_(io_),
+        look_(io_),
         link_(io_, {.to = options.to,
                     .max_queued_frames = kMaxQueuedFrames,
                     .on_open = [this] { log::Info("sending hands to " + options_.to.Text()); }}),
@@ -48,6 +61,7 @@ class Tracking {
       });
     }
     link_.Start();
+    LookAtTheFile();
     source_->Start(
         [this](const frames::Frame& frame, std::int64_t exposed_ns) { Take(frame, exposed_ns); },
         [this](Result<void> end) { End(std::move(end)); });
@@ -65,9 +79,29 @@ class Tracking {
   Result<std::unique_ptr<Source>> Open() {
     if (!options_.folder.empty())
       return OpenFolder(io_, options_.folder, options_.camera, options_.repeats);
-    if (!options_.pipe.empty()) return OpenPipe(io_, options_.pipe, options_.pipe_latency_s);
+    if (!options_.pipe.empty()) return OpenPipe(io_, options_.pipe, options_.pipe_settings);
     return OpenVideo(io_, options_.device, options_.camera, options_.video,
                      [](const std::string& line) { log::Warning(line); });
+  }
+
+  /// Takes a new pose from the camera file, as a calibration writes it.
+  void LookAtTheFile() {
+    if (options_.camera_path.empty() || ended_) return;
+    look_.expires_after(kLookAtTheFileEvery);
+    look_.async_wait([this](boost::system::error_code error) {
+      if (error) return;
+      const auto at = ChangedAt(options_.camera_path);
+      if (std::exchange(changed_at_, at) != at) {
+        const auto camera = frames::ReadCameraFile(options_.camera_path);
+        if (camera) {
+          X_WC_ = camera->X_WC;
+          log::Info("took the camera's pose from " + options_.camera_path);
+        } else {
+          log::Warning(camera.error().message + "; the camera's old pose stays in use");
+        }
+      }
+      LookAtTheFile();
+    });
   }
 
   void Take(const frames::Frame& frame, std::int64_t exposed_ns) {
@@ -77,7 +111,8 @@ class Tracking {
     const auto found = finder_.Find(frame.View());
     if (cost_ms_.size() < kMostCosts)
       cost_ms_.push_back(1e-6 * static_cast<double>(clock::ThreadCpuNs() - began_ns));
-    stream::HandFrame hands = ToHandFrame(options_.camera, found, exposed_ns, clock::MonotonicNs());
+    stream::HandFrame hands =
+        ToHandFrame(options_.camera, X_WC_, found, exposed_ns, clock::MonotonicNs());
     hands.simulated = options_.simulated;
     link_.Send(hands);
     ++report_.frames;
@@ -98,12 +133,15 @@ class Tracking {
     link_.Stop("footing-camera ends");
     signals_.cancel();
     limit_.cancel();
+    look_.cancel();
   }
 
   const TrackingOptions& options_;
+  std::optional<Eigen::Isometry3d> X_WC_;
+  std::filesystem::file_time_type changed_at_;
   boost::asio::io_context io_;
   boost::asio::signal_set signals_;
-  boost::asio::steady_timer limit_;
+  boost::asio::steady_timer limit_, look_;
   device_link::DeviceLink link_;
   sphere::Finder finder_;
   std::unique_ptr<Source> source_;

@@ -9,9 +9,10 @@ namespace footing::camera {
 
 struct TrackingOptions {
   frames::CameraFile camera;
+  std::string camera_path;  ///< A new calibration is taken from there while tracking; may be empty.
   std::string device, folder, pipe;  ///< One of them.
   VideoSettings video;
-  double pipe_latency_s = 0;
+  PipeSettings pipe_settings;
   bool repeats = false;
   bool simulated = false;  ///< The frames are not of a camera.
   double seconds = 0;      ///< 0: until the frames end, or a signal.

@@ -21,6 +21,7 @@ void AddRecordCommand(CLI::App& app, Shared& shared);
 void AddInfoCommand(CLI::App& app, Shared& shared);
 void AddExportCommand(CLI::App& app, Shared& shared);
 void AddRepairCommand(CLI::App& app, Shared& shared);
+void AddRecalibrateCommand(CLI::App& app, Shared& shared);
 void AddServeCommand(CLI::App& app, Shared& shared);
 
 }  // namespace footing::log_client

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
       "  footing-log info a.mcap --json\n"
       "  footing-log export a.mcap --format csv --out a/\n"
       "  footing-log repair cut.mcap --out whole.mcap\n"
+      "  footing-log recalibrate a.mcap --camera eye.json --out again.mcap\n"
       "  footing-log serve a.mcap --listen unix:/tmp/replay.sock");
   footing::log_client::Shared shared;
   app->add_flag("--json", shared.json, "Print one JSON object on standard output");
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
   footing::log_client::AddInfoCommand(*app, shared);
   footing::log_client::AddExportCommand(*app, shared);
   footing::log_client::AddRepairCommand(*app, shared);
+  footing::log_client::AddRecalibrateCommand(*app, shared);
   footing::log_client::AddServeCommand(*app, shared);
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   return shared.exit_code;

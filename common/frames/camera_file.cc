@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/config/data_file.h"
@@ -162,6 +164,15 @@ void ReadPose(Reader& reader, CameraFile& camera) {
     camera.X_WC->linear() = q.normalized().toRotationMatrix();
     camera.X_WC->translation() << position[0], position[1], position[2];
   }
+  camera.calibrated = reader.Text("calibrated");
+}
+
+void SetPose(ordered_json& object, const Eigen::Isometry3d& X_WC, const std::string& calibrated) {
+  const Eigen::Vector3d p = X_WC.translation();
+  const Eigen::Quaterniond q(X_WC.rotation());
+  object["position_W_m"] = {p.x(), p.y(), p.z()};
+  object["rotation_WC"] = {q.w(), q.x(), q.y(), q.z()};
+  if (!calibrated.empty()) object["calibrated"] = calibrated;
 }
 
 }  // namespace
@@ -224,12 +235,7 @@ std::string ToJson(const CameraFile& camera) {
       {"read_noise_dn", settings.noise.read_dn},
       {"dn_per_electron", settings.noise.dn_per_electron},
       {"noise_correlation", settings.noise.correlation}};
-  if (camera.X_WC) {
-    const Eigen::Vector3d p = camera.X_WC->translation();
-    const Eigen::Quaterniond q(camera.X_WC->rotation());
-    object["position_W_m"] = {p.x(), p.y(), p.z()};
-    object["rotation_WC"] = {q.w(), q.x(), q.y(), q.z()};
-  }
+  if (camera.X_WC) SetPose(object, *camera.X_WC, camera.calibrated);
   for (const HeldSphere& held : camera.spheres) {
     const Eigen::Vector3d& c = held.target.colour_dn;
     object["spheres"].push_back({{"role", stream::Name(held.role)},
@@ -237,6 +243,24 @@ std::string ToJson(const CameraFile& camera) {
                                  {"radius_m", held.target.radius_m}});
   }
   return object.dump(2) + "\n";
+}
+
+Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
+                       const std::string& calibrated) {
+  const auto text = config::ReadTextFile(path);
+  if (!text) return text.error();
+  if (const auto camera = ParseCameraFile(*text, path); !camera) return camera.error();
+  ordered_json object = ordered_json::parse(*text, nullptr, false, true);
+  SetPose(object, X_WC, calibrated);
+  const std::string beside = path + ".new";
+  std::ofstream file(beside);
+  file << object.dump(2) << "\n";
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(beside, path, error);
+  if (!file || error)
+    return Failure("cannot write " + path + ": the disk is full, or the file may not be written");
+  return {};
 }
 
 }  // namespace footing::frames

@@ -26,6 +26,7 @@ struct CameraFile {
   double readout_s = 0.0155;  ///< From the first to the last row.
   std::vector<HeldSphere> spheres;
   std::optional<Eigen::Isometry3d> X_WC;  ///< Camera frame in W; nothing: not calibrated.
+  std::string calibrated;                 ///< When and how well, for people; may be empty.
 
   std::vector<sphere::Target> Targets() const;
   /// Mid-exposure of a row after that of the middle row, s.
@@ -36,5 +37,10 @@ struct CameraFile {
 Result<CameraFile> ReadCameraFile(const std::string& path);
 Result<CameraFile> ParseCameraFile(const std::string& text, const std::string& origin);
 std::string ToJson(const CameraFile& camera);
+
+/// Writes pose and remark into a camera file, in place of those that it has; its other keys stay.
+/// The file is whole at every instant.
+Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
+                       const std::string& calibrated);
 
 }  // namespace footing::frames

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct TrackedPoint {
   bool occluded = false;   ///< Part of it is hidden, or beyond the image.
 };
 
+/// A tracker's own frame T in W.
+struct TrackerPose {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+};
+
 /// What a tracker sends: all points of one exposure.
 struct HandFrame {
   std::string tracker;
@@ -28,6 +35,9 @@ struct HandFrame {
   std::int64_t age_ns = 0;  ///< Since the exposure, when it was sent.
   std::vector<TrackedPoint> points;
   bool simulated = false;
+  /// By which the points are in W; nothing: the tracker has no frame of its own. The identity: it
+  /// is not calibrated.
+  std::optional<TrackerPose> tracker_pose;
 };
 
 /// From a device simulator: the true pose behind its simulated reports.
@@ -53,6 +63,7 @@ struct HandSample {
   Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();  ///< As a TrackedPoint's.
   bool saturated = false;
   bool occluded = false;
+  std::optional<TrackerPose> tracker_pose;  ///< As a HandFrame's.
 };
 
 /// A simulated body's true pose as footingd publishes it; never estimated from.

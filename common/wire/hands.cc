@@ -14,6 +14,24 @@ Eigen::Vector3d Triple(const Numbers& numbers, int first) {
   return value;
 }
 
+v1::TrackerPose ToProto(const stream::TrackerPose& value) {
+  v1::TrackerPose message;
+  message.set_x_m(Finite(value.position_m.x()));
+  message.set_y_m(Finite(value.position_m.y()));
+  message.set_z_m(Finite(value.position_m.z()));
+  message.set_qw(Finite(value.rotation.w()));
+  message.set_qx(Finite(value.rotation.x()));
+  message.set_qy(Finite(value.rotation.y()));
+  message.set_qz(Finite(value.rotation.z()));
+  return message;
+}
+
+/// With what is not finite, so that a check finds it.
+stream::TrackerPose FromProto(const v1::TrackerPose& message) {
+  return {{message.x_m(), message.y_m(), message.z_m()},
+          {message.qw(), message.qx(), message.qy(), message.qz()}};
+}
+
 }  // namespace
 
 template <typename Way>
@@ -51,6 +69,7 @@ void Fields(Way way, const stream::HandFrame&) {
     }
   }
   FOOTING_FIELD(simulated);
+  FOOTING_OPTIONAL(tracker_pose)
 }
 FOOTING_BOTH_WAYS(HandFrame)
 
@@ -94,6 +113,7 @@ void Fields(Way way, const stream::HandSample&) {
   }
   FOOTING_FIELD(saturated);
   FOOTING_FIELD(occluded);
+  FOOTING_OPTIONAL(tracker_pose)
 }
 FOOTING_BOTH_WAYS(HandSample)
 

@@ -57,6 +57,13 @@ std::string ProblemOf(const stream::TrackedPoint& point) {
   return "";
 }
 
+std::string ProblemOf(const stream::TrackerPose& pose) {
+  if (!IsNear(pose.position_m)) return "a tracker that is not within 10 m";
+  constexpr double kMostOff = 0.01;
+  if (!(std::abs(pose.rotation.norm() - 1) <= kMostOff)) return "a tracker_pose that does not turn";
+  return "";
+}
+
 }  // namespace
 
 std::string Problem(const stream::HandFrame& frame) {
@@ -69,7 +76,8 @@ std::string Problem(const stream::HandFrame& frame) {
     const std::string problem = ProblemOf(frame.points[i]);
     if (!problem.empty()) return "point " + std::to_string(i + 1) + " has " + problem;
   }
-  return "";
+  const std::string problem = frame.tracker_pose ? ProblemOf(*frame.tracker_pose) : "";
+  return problem.empty() ? "" : "it has " + problem;
 }
 
 std::string Problem(const stream::ReferenceFrame& frame) {
@@ -127,6 +135,7 @@ std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::i
     sample.covariance_m2 = point.covariance_m2;
     sample.saturated = point.saturated;
     sample.occluded = point.occluded;
+    sample.tracker_pose = frame.tracker_pose;
     samples.push_back(std::move(sample));
   }
   return samples;

@@ -31,7 +31,8 @@ sphere::Estimate OneEstimate() {
 }
 
 TEST(Observation, IsInTheWorldWithItsWholeCovariance) {
-  const auto frame = ToHandFrame(FacingThePerson(), {OneEstimate(), OneEstimate()}, 1'000, 21'000);
+  const auto frame = ToHandFrame(FacingThePerson(), FacingThePerson().X_WC,
+                                 {OneEstimate(), OneEstimate()}, 1'000, 21'000);
   ASSERT_EQ(hands::Problem(frame), "");
   const stream::TrackedPoint& point = frame.points.at(0);
   EXPECT_EQ(point.role, stream::DeviceRole::kLeftHand);
@@ -43,8 +44,20 @@ TEST(Observation, IsInTheWorldWithItsWholeCovariance) {
   EXPECT_NEAR(frame.age_ns, 20'000, 1);
 }
 
+TEST(Observation, CarriesThePoseByWhichItIsInTheWorld) {
+  const auto camera = FacingThePerson();
+  const auto frame = ToHandFrame(camera, camera.X_WC, {OneEstimate(), OneEstimate()}, 0, 0);
+  ASSERT_TRUE(frame.tracker_pose);
+  EXPECT_EQ(frame.tracker_pose->position_m, camera.X_WC->translation());
+  EXPECT_TRUE(frame.tracker_pose->rotation.toRotationMatrix().isApprox(camera.X_WC->linear()));
+  const auto plain = ToHandFrame(camera, {}, {OneEstimate(), OneEstimate()}, 0, 0);
+  EXPECT_EQ(plain.points[0].position_m, OneEstimate().p_C_m);
+  EXPECT_TRUE(plain.tracker_pose->rotation.isApprox(Eigen::Quaterniond::Identity()));
+}
+
 TEST(Observation, SaysWhichSphereIsNotSeen) {
-  const auto frame = ToHandFrame(FacingThePerson(), {std::nullopt, OneEstimate()}, 0, 0);
+  const auto frame =
+      ToHandFrame(FacingThePerson(), FacingThePerson().X_WC, {std::nullopt, OneEstimate()}, 0, 0);
   ASSERT_EQ(hands::Problem(frame), "");
   ASSERT_EQ(frame.points.size(), 2u);
   EXPECT_EQ(frame.points[0].confidence, 0);
@@ -57,14 +70,15 @@ TEST(Observation, IsAsOldAsTheRowOnWhichTheSphereIs) {
   sphere::Estimate low = OneEstimate();
   low.centre_px.y() = camera.lens.height - 1;
   // Half the readout after the middle row.
-  const auto frame = ToHandFrame(camera, {low, std::nullopt}, 0, 20'000'000);
+  const auto frame = ToHandFrame(camera, camera.X_WC, {low, std::nullopt}, 0, 20'000'000);
   EXPECT_NEAR(frame.age_ns, 20'000'000 - 1e9 * camera.readout_s / 2, 2);
 }
 
 TEST(Observation, OfAPlaceThatFootingdWouldRefuseIsNotSeen) {
   sphere::Estimate far = OneEstimate();
   far.p_C_m.z() = 15;
-  const auto frame = ToHandFrame(FacingThePerson(), {far, OneEstimate()}, 0, 0);
+  const auto frame =
+      ToHandFrame(FacingThePerson(), FacingThePerson().X_WC, {far, OneEstimate()}, 0, 0);
   EXPECT_EQ(hands::Problem(frame), "");
   EXPECT_EQ(frame.points[0].confidence, 0);
 }

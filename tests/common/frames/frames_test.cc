@@ -79,6 +79,28 @@ TEST(CameraFile, ComesBackAsItWasWritten) {
   EXPECT_NEAR(again->RowTime(479) - again->RowTime(0), again->readout_s, 1e-12);
 }
 
+TEST(CameraFile, TakesAPoseAndKeepsTheRest) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("eye.json");
+  std::ofstream(path)
+      << R"({"fx_px": 612, "spheres": [{"role": "left_hand", "colour_dn": [9, 90, 9]}]})";
+  Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();
+  X_WC.linear() << 0, 0, -1, 1, 0, 0, 0, -1, 0;
+  X_WC.translation() << 2, 0, 1;
+  ASSERT_TRUE(StorePose(path, X_WC, "8 marks, 1 mm"));
+  const auto camera = ReadCameraFile(path);
+  ASSERT_TRUE(camera) << camera.error().message;
+  EXPECT_TRUE(camera->X_WC->isApprox(X_WC, 1e-12));
+  EXPECT_EQ(camera->calibrated, "8 marks, 1 mm");
+  EXPECT_EQ(camera->lens.fx_px, 612);
+  EXPECT_EQ(camera->lens.fy_px, 540);
+  ASSERT_TRUE(StorePose(path, Eigen::Isometry3d::Identity(), "again"));
+  EXPECT_TRUE(ReadCameraFile(path)->X_WC->isApprox(Eigen::Isometry3d::Identity(), 1e-12));
+  // A file that is no camera file is not written into.
+  std::ofstream(folder.Path("other.json")) << "{}";
+  EXPECT_FALSE(StorePose(folder.Path("other.json"), X_WC, ""));
+}
+
 TEST(CameraFile, ErrorsNameFileKeyAndWhatIsAllowed) {
   const auto problem = [](const std::string& more) {
     std::string text = kLeast;

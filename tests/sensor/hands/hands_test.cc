@@ -75,6 +75,14 @@ TEST(Hands, EachBadValueIsRefusedAndNamed) {
       {"age_ns", [](HandFrame& f) { f.age_ns = kOldestNs + 1; }},
       {"0 points", [](HandFrame& f) { f.points.clear(); }},
       {"9 points", [](HandFrame& f) { f.points.resize(9, f.points[0]); }},
+      {"tracker that is not within",
+       [](HandFrame& f) {
+         f.tracker_pose = stream::TrackerPose{{0, kNan, 0}};
+       }},
+      {"tracker_pose that does not turn",
+       [](HandFrame& f) {
+         f.tracker_pose = stream::TrackerPose{{0, 0, 0}, {0.9, 0, 0, 0}};
+       }},
       {"name", [](HandFrame& f) { f.tracker = "a\nb"; }},
       {"name", [](HandFrame& f) { f.rig = std::string(65, 'r'); }},
   };
@@ -88,6 +96,7 @@ TEST(Hands, EachBadValueIsRefusedAndNamed) {
 TEST(Hands, SamplesAreDatedBackAndGoToTheDefaultRigWithoutOne) {
   HandFrame frame = TwoFists();
   frame.simulated = true;
+  frame.tracker_pose = stream::TrackerPose{{2, 0, 1}, {0, 1, 0, 0}};
   auto samples = ToSamples(frame, 1'000'000'000, "main");
   ASSERT_EQ(samples.size(), 2u);
   EXPECT_EQ(samples[1].role, DeviceRole::kRightHand);
@@ -99,6 +108,7 @@ TEST(Hands, SamplesAreDatedBackAndGoToTheDefaultRigWithoutOne) {
   EXPECT_EQ(samples[1].sd_m, frame.points[1].sd_m);
   EXPECT_EQ(samples[0].confidence, 0.9);
   EXPECT_TRUE(samples[0].simulated);
+  EXPECT_EQ(samples[0].tracker_pose->position_m, Eigen::Vector3d(2, 0, 1));
   frame.rig = "second";
   EXPECT_EQ(ToSamples(frame, 0, "main")[0].rig, "second");
 }
