@@ -3,12 +3,16 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <ctime>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
+#include <sstream>
 #include <utility>
 
 #include "clients/ctl/guide/set_up.h"
 #include "common/clock/clock.h"
+#include "common/frames/camera_file.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {
@@ -61,14 +65,31 @@ v1::Command CommandOf(const guide::Action& action, const std::string& rig) {
     case guide::Action::Kind::kLayout:
       *command.mutable_set_board_layout()->mutable_layout() = wire::ToProto(action.layout);
       break;
+    case guide::Action::Kind::kStoreCamera:
+      break;  // A file's, not footingd's.
   }
   return command;
 }
 
-guide::Answer Do(Session& session, const guide::Action& action, const std::string& rig) {
+guide::Answer StoreCamera(const guide::Action& action, const std::string& file) {
+  const std::time_t now_s = clock::WallNs() / 1'000'000'000;
+  std::ostringstream remark;
+  remark << std::put_time(std::gmtime(&now_s), "%F") << ": " << action.remark;
+  const auto stored = frames::StorePose(file, action.X_WC, remark.str());
   guide::Answer answer;
   answer.key = action.key;
-  const auto result = session.Call(CommandOf(action, rig), kSolveWithinS);
+  answer.ok = stored.ok();
+  answer.message = stored ? action.remark + "; stored in " + file : stored.error().message;
+  return answer;
+}
+
+guide::Answer Do(Session& session, const guide::Action& action,
+                 const guide::SetUpOptions& options) {
+  if (action.kind == guide::Action::Kind::kStoreCamera)
+    return StoreCamera(action, options.camera_file);
+  guide::Answer answer;
+  answer.key = action.key;
+  const auto result = session.Call(CommandOf(action, options.rig), kSolveWithinS);
   answer.ok = result.ok();
   if (result) {
     answer.message = result->message();
@@ -131,7 +152,7 @@ Result<void> Record(Session& session, const std::string& rig, const stream::Setu
 }  // namespace
 
 const std::vector<std::string>& GuidedChannels() {
-  static const std::vector<std::string> channels{"status", "setup", "motion", "boards"};
+  static const std::vector<std::string> channels{"status", "setup", "motion", "boards", "hands"};
   return channels;
 }
 
@@ -143,6 +164,7 @@ void TakeTick(const v1::Tick& tick, guide::Recent& recent) {
   }
   for (const auto& sample : tick.motion().samples()) recent.Add(wire::FromProto(sample));
   for (const auto& sample : tick.boards().samples()) recent.Add(wire::FromProto(sample));
+  for (const auto& sample : tick.hands().samples()) recent.Add(wire::FromProto(sample));
 }
 
 std::vector<stream::DeviceStatus> DevicesOf(const Session& session, const std::string& rig) {
@@ -183,7 +205,7 @@ Result<std::vector<stream::SetupItem>> RunGuided(Session& session,
     const guide::Progress progress = set_up.Advance(now);
     printer.Show(progress);
     for (const auto& action : progress.actions) {
-      answers.push_back(Do(session, action, options.rig));
+      answers.push_back(Do(session, action, options));
     }
     while (found.size() < set_up.results().size()) {
       stream::SetupItem item = set_up.results()[found.size()];

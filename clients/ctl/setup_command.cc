@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "clients/ctl/commands.h"
@@ -5,6 +6,7 @@
 #include "clients/ctl/guided.h"
 #include "common/board/layout.h"
 #include "common/cli/cli.h"
+#include "common/frames/camera_file.h"
 
 namespace footing::ctl {
 namespace {
@@ -20,6 +22,20 @@ struct SetUpArguments {
 
 constexpr double kScriptSettleS = 2;
 constexpr double kEffectsSeenS = 1.2;
+
+/// The camera's sphere that is held on the marks: the first of its file.
+Result<void> TakeCamera(SetUpArguments& arguments, const std::vector<guide::Item>& items) {
+  const bool is_named = std::find(items.begin(), items.end(), guide::Item::kCamera) != items.end();
+  if (arguments.options.camera_file.empty()) {
+    if (!is_named) return {};
+    return UsageError("--only camera needs --camera FILE, the file that footing-camera runs with");
+  }
+  const auto camera = frames::ReadCameraFile(arguments.options.camera_file);
+  if (!camera) return camera.error();
+  arguments.options.camera_role = camera->spheres.front().role;
+  arguments.options.camera_radius_m = camera->spheres.front().target.radius_m;
+  return {};
+}
 
 /// The items that the arguments name; UsageError when they contradict each other.
 Result<std::vector<guide::Item>> Validate(SetUpArguments& arguments) {
@@ -40,6 +56,7 @@ Result<std::vector<guide::Item>> Validate(SetUpArguments& arguments) {
     return UsageError("--preset " + arguments.options.preset +
                       ": no such layout; there are: one_foot_each side_by_side single");
   }
+  if (const auto camera = TakeCamera(arguments, items); !camera) return camera.error();
   if (arguments.mass_kg > 0) arguments.options.mass_kg = arguments.mass_kg;
   if (arguments.script || arguments.yes) arguments.options.settle_s = kScriptSettleS;
   return items;
@@ -71,7 +88,7 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("setup",
                          "Guided set-up of a rig: adapter, pairing, roles, layout, tare, "
-                         "mounting, weigh, checks");
+                         "mounting, weigh, camera, checks");
   command->add_option("--rig", arguments->options.rig,
                       "Rig: the devices of one person (default main)");
   command
@@ -100,6 +117,8 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(1.0, 3600.0));
   command->add_option("--tries", arguments->options.tries, "Attempts for each item (default 2)")
       ->check(CLI::Range(1, 10));
+  command->add_option("--camera", arguments->options.camera_file,
+                      "Camera file of a running footing-camera, to calibrate where it stands");
   command->add_flag("--yes", arguments->yes,
                     "Do not wait for Enter where no sensor can see the answer");
   command->add_flag(
@@ -107,9 +126,10 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       "Print prompts as lines PROMPT: ... on standard error, for a program that drives "
       "the devices");
   command->footer(
-      "Items, in order: adapter pairing roles layout tare mounting weigh checks\n"
+      "Items, in order: adapter pairing roles layout tare mounting weigh camera checks\n"
       "Examples:\n  footing-ctl setup --worn left_leg,right_leg\n"
       "  footing-ctl setup --only layout --only tare      # two items alone\n"
+      "  footing-ctl setup --only camera --camera eye.json   # while footing-camera runs\n"
       "  footing-ctl setup --mass-kg 70 --json");
   command->callback([arguments, &shared] {
     const auto items = Validate(*arguments);

@@ -108,6 +108,8 @@ Motion MotionOf(const std::vector<stream::MotionSample>& samples) {
 void Recent::Add(const stream::MotionSample& sample) { Keep(motion_[sample.device], sample); }
 void Recent::Add(const stream::BoardSample& sample) { Keep(boards_[sample.device], sample); }
 
+void Recent::Add(const stream::HandSample& sample) { Keep(hands_, sample); }
+
 std::vector<stream::DeviceStatus> Recent::Boards(const std::string& rig) const {
   return Attached(devices_, rig, true);
 }
@@ -132,6 +134,25 @@ Load Recent::BoardLoad(std::uint32_t device, std::int64_t from_ns, std::int64_t 
 
 Motion Recent::DeviceMotion(std::uint32_t device, std::int64_t from_ns, std::int64_t to_ns) const {
   return MotionOf(Between(motion_, device, from_ns, to_ns));
+}
+
+std::optional<Eigen::Vector3d> Recent::MeanForce(std::uint32_t device, std::int64_t from_ns,
+                                                 std::int64_t to_ns) const {
+  const auto samples = Between(motion_, device, from_ns, to_ns);
+  if (samples.empty()) return std::nullopt;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& sample : samples) sum += sample.specific_force_mps2;
+  return sum / static_cast<double>(samples.size());
+}
+
+std::vector<stream::HandSample> Recent::Hands(const std::string& rig, stream::DeviceRole role,
+                                              std::int64_t from_ns, std::int64_t to_ns) const {
+  std::vector<stream::HandSample> samples;
+  for (const stream::HandSample& sample : hands_) {
+    const bool is_within = sample.received_ns >= from_ns && sample.received_ns < to_ns;
+    if (is_within && sample.rig == rig && sample.role == role) samples.push_back(sample);
+  }
+  return samples;
 }
 
 }  // namespace footing::guide

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/stream/device.h"
+#include "common/stream/hands.h"
 #include "common/stream/sensor.h"
 
 /// The guided set-up and acceptance of a rig: what is asked of the person, and what the sensors
@@ -40,6 +41,7 @@ class Recent {
   void SetDevices(std::vector<stream::DeviceStatus> devices) { devices_ = std::move(devices); }
   void Add(const stream::MotionSample& sample);
   void Add(const stream::BoardSample& sample);
+  void Add(const stream::HandSample& sample);
 
   const std::vector<stream::DeviceStatus>& devices() const { return devices_; }
   /// Attached devices of a rig: boards, or those mounted or held. In the order of their roles.
@@ -51,11 +53,18 @@ class Recent {
   /// Received in [from, to); none when the stretch is not covered by samples up to a tenth of it.
   Load BoardLoad(std::uint32_t device, std::int64_t from_ns, std::int64_t to_ns) const;
   Motion DeviceMotion(std::uint32_t device, std::int64_t from_ns, std::int64_t to_ns) const;
+  /// Mean specific force, sensor frame S; nothing when the stretch is not covered.
+  std::optional<Eigen::Vector3d> MeanForce(std::uint32_t device, std::int64_t from_ns,
+                                           std::int64_t to_ns) const;
+  /// Of trackers, received in [from, to), seen or not.
+  std::vector<stream::HandSample> Hands(const std::string& rig, stream::DeviceRole role,
+                                        std::int64_t from_ns, std::int64_t to_ns) const;
 
  private:
   std::vector<stream::DeviceStatus> devices_;
   std::map<std::uint32_t, std::vector<stream::MotionSample>> motion_;
   std::map<std::uint32_t, std::vector<stream::BoardSample>> boards_;
+  std::vector<stream::HandSample> hands_;
 };
 
 }  // namespace footing::guide

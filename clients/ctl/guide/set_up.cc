@@ -22,6 +22,8 @@ SetUp::Step SetUp::StepOf(Item item) {
       return MountingStep();
     case Item::kWeigh:
       return WeighStep();
+    case Item::kCamera:
+      return CameraStep();
     case Item::kChecks:
       return ChecksStep();
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "clients/ctl/guide/board_steps.h"
+#include "clients/ctl/guide/camera_step.h"
 #include "clients/ctl/guide/device_steps.h"
 #include "clients/ctl/guide/mounting_step.h"
 #include "clients/ctl/guide/step.h"
@@ -29,7 +30,7 @@ class SetUp {
 
  private:
   using Step = std::variant<AdapterStep, PairingStep, RolesStep, LayoutStep, TareStep, MountingStep,
-                            WeighStep, ChecksStep>;
+                            WeighStep, CameraStep, ChecksStep>;
   static Step StepOf(Item item);
   void Begin();
 

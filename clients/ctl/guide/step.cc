@@ -18,6 +18,8 @@ const char* Name(Item item) {
       return "mounting";
     case Item::kWeigh:
       return "weigh";
+    case Item::kCamera:
+      return "camera";
     case Item::kChecks:
       return "checks";
   }
@@ -27,7 +29,7 @@ const char* Name(Item item) {
 const std::vector<Item>& AllItems() {
   static const std::vector<Item> items{Item::kAdapter, Item::kPairing, Item::kRoles,
                                        Item::kLayout,  Item::kTare,    Item::kMounting,
-                                       Item::kWeigh,   Item::kChecks};
+                                       Item::kWeigh,   Item::kCamera,  Item::kChecks};
   return items;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,7 +12,7 @@
 namespace footing::guide {
 
 /// The items of a set-up, in their order.
-enum class Item { kAdapter, kPairing, kRoles, kLayout, kTare, kMounting, kWeigh, kChecks };
+enum class Item { kAdapter, kPairing, kRoles, kLayout, kTare, kMounting, kWeigh, kCamera, kChecks };
 
 const char* Name(Item item);
 std::optional<Item> ItemNamed(const std::string& name);
@@ -28,13 +29,18 @@ struct SetUpOptions {
   double patience_s = 60;  ///< Timeout of an item that makes no progress.
   double settle_s = 4;     ///< Without a new device in this time, all are there.
   int tries = 2;
+  std::string camera_file;  ///< Of the camera that is calibrated; empty: none is.
+  /// Which of its spheres is held on the marks, and how large it is.
+  stream::DeviceRole camera_role = stream::DeviceRole::kUnspecified;
+  double camera_radius_m = 0;
 
   static constexpr double kNoGapMm = -1;  ///< The default one.
 };
 
-/// Something that footingd is asked to do. Its answer comes back under the same key.
+/// Something that footingd is asked to do, or is written into a file. The answer comes back under
+/// the same key.
 struct Action {
-  enum class Kind { kAssign, kTare, kSolveMounting, kLayout };
+  enum class Kind { kAssign, kTare, kSolveMounting, kLayout, kStoreCamera };
   Kind kind = Kind::kAssign;
   std::string key;
   std::string serial;
@@ -45,6 +51,8 @@ struct Action {
   std::int64_t still_to_ns = 0;
   std::int64_t steps_from_ns = 0;
   std::int64_t steps_to_ns = 0;
+  Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();  ///< Of kStoreCamera.
+  std::string remark;                                      ///< Likewise.
 };
 
 struct Answer {
