@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clients/stream/feeds.h"
+#include "clients/stream/rendered_hands.h"
 #include "common/body/held_frame.h"
 #include "common/virtual/sensors/held_device.h"
 
@@ -59,15 +60,20 @@ namespace {
 
 Result<void> CheckHands(const BoardsOptions& options) {
   const std::string& hands = options.hands;
-  if (hands != "none" && hands != "move" && hands != "wiimote" && hands != "kinect") {
-    return UsageError("--hands " + hands + ": there are none, move, wiimote and kinect");
+  if (hands != "none" && hands != "move" && hands != "wiimote" && hands != "kinect" &&
+      hands != "camera") {
+    return UsageError("--hands " + hands + ": there are none, move, wiimote, kinect and camera");
+  }
+  if (hands == "camera" && (options.camera_file.empty() || options.frames_to.empty())) {
+    return UsageError("--hands camera needs --camera FILE and --frames-to FIFO");
   }
   const std::string& lost = options.lost_hand;
   if (!lost.empty() && lost != "left" && lost != "right") {
     return UsageError("--lose-hand " + lost + ": there are left and right");
   }
-  if (!lost.empty() && hands == "none") {
-    return UsageError("--lose-hand " + lost + ": with --hands none there is nothing to lose");
+  if (!lost.empty() && (hands == "none" || hands == "camera")) {
+    return UsageError("--lose-hand " + lost + ": with --hands " + hands +
+                      " there is nothing to lose");
   }
   return {};
 }
@@ -121,6 +127,12 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
     }
   }
   AddBodyFeeds(stage, options.hands, options.hand_noise_m, common, plan);
+  if (options.hands == "camera") {
+    auto frames = RenderedHandsFeed(stage, options.camera_file, options.frames_to,
+                                    DeviceSeed(common, 3) + 700);
+    if (!frames) return frames.error();
+    plan.feeds.push_back(*std::move(frames));
+  }
   LoseHand(options, plan);
   return plan;
 }

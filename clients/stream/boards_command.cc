@@ -31,7 +31,12 @@ CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
   auto* boards =
       app.add_subcommand("boards", "Two Balance Boards, and hand devices, under a moving body");
   AddMotion(*boards, options.stage);
-  boards->add_option("--hands", options.hands, "Hand devices: none, move, wiimote or kinect");
+  boards->add_option("--hands", options.hands,
+                     "Hand devices: none, move, wiimote, kinect or camera");
+  boards->add_option("--camera", options.camera_file,
+                     "Camera file of the simulated camera, of --hands camera");
+  boards->add_option("--frames-to", options.frames_to,
+                     "FIFO for its rendered frames, which footing-camera reads");
   boards->add_option("--lose-hand", options.lost_hand, "Hand to lose for a while: left or right");
   boards->add_option("--lose-from-s", options.lost_from_s, "Start of the loss, s")
       ->check(CLI::Range(0.0, 1e6));

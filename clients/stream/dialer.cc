@@ -184,6 +184,11 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   void SendDue(std::size_t index, double due_s) {
     if (devices_.empty() && IsOver(due_s)) return;
     Feed& feed = sources_[index];
+    if (feed.frames) {
+      feed.frames(due_s, start_ns_ + SecondsToNanoseconds(due_s));
+      ++sent_[index];
+      return ScheduleSource(index);
+    }
     const std::int64_t age_ns =
         std::max<std::int64_t>(0, clock::MonotonicNs() - start_ns_ - SecondsToNanoseconds(due_s));
     v1::DeviceEnvelope envelope;

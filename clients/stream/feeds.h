@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 
@@ -17,6 +18,9 @@ Feed KinectHandFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed);
 /// The true pose 60 times a second: all joints, or of a skeleton of more than 64 those on the way
 /// to a landmark.
 Feed PoseFeed(std::shared_ptr<const Stage> stage);
+
+/// The middle of the fist of side 0 (left) or 1, in W.
+Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s);
 
 /// Ends a plan of what is under the feet: the fists where `hands` is "move" or "kinect", the true
 /// pose, and how long it takes.

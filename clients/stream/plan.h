@@ -35,6 +35,8 @@ struct Feed {
   std::function<stream::HandFrame(double t_s)> hands;
   std::function<stream::ReferenceFrame(double t_s)> reference;
   std::function<stream::ContactFrame(double t_s)> contacts;
+  /// Sends by itself, to another program, what is exposed at this instant of the host's clock.
+  std::function<void(double t_s, std::int64_t exposed_ns)> frames;
 };
 
 /// A device of the plan that is out of reach for a while, seconds since the motion began: nothing

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "clients/stream/rendered_hands.h"
 #include "clients/stream/script.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
@@ -160,7 +161,8 @@ Result<std::vector<SampleFile>> SampleFiles() {
                                  {"sway.csv", SampleSwayTable()},
                                  {"ratings.csv", SampleStudy(kSampleRatings, 1)},
                                  {"oscillation.csv", SampleStudy(kSampleOscillation, 2)},
-                                 {"failures.csv", SampleStudy(kSampleFailures, 3)}};
+                                 {"failures.csv", SampleStudy(kSampleFailures, 3)},
+                                 {"camera.json", DemoCameraFile()}};
 }
 
 Result<void> WriteSampleFiles(const std::string& folder) {

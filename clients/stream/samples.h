@@ -16,8 +16,8 @@ struct SampleFile {
 /// (left.csv, right.csv, 100 Hz), the corners of a board under a standing person (corners.csv),
 /// subjects (p07.json, p08.json, p09.json), a motion clip (clip.bvh) and its activities
 /// (labels.csv), a table for the trainers (sway.csv), and tables of a study for footing-eval stats:
-/// fifteen subjects with four interfaces (ratings.csv, oscillation.csv, failures.csv). The same on
-/// every call.
+/// fifteen subjects with four interfaces (ratings.csv, oscillation.csv, failures.csv), and a
+/// simulated camera (camera.json). The same on every call.
 Result<std::vector<SampleFile>> SampleFiles();
 
 /// Writes them into a folder, which it creates; files of the same names are replaced.

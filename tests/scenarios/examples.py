@@ -36,6 +36,7 @@ NOT_HERE = {
     r"^footing-ctl interface leg": "needs remotes on the legs; scenario joystick_line changes interfaces",
     r"^footing-ctl trial withdraw": "needs a failure; scenario trial runs it",
     r"^footing-ctl doctor": "judges the whole machine, with the daemons of other tests; scenarios.ctl runs it",
+    r"^footing-log recalibrate|--hands camera": "needs a recording of a camera; tests/clients/log has one",
     r"^footing-eval sphere|^footing-camera": "renders frames, or reads them; scenario camera_line runs them",
     r"^sudo ": "as root",
     r"\.\.\.": "stands for the words before it",

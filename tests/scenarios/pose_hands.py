@@ -1,8 +1,9 @@
 """The hands of the pose engine, from devices to the body: Wiimotes with MotionPlus in the fists, one of
-which is lost and told so; a Kinect, late; and none.
+which is lost and told so; a Kinect, late; rendered frames of two spheres through footing-camera; and none.
 
-Usage: pose_hands.py BINARY_FOLDER wiimote|kinect|none
+Usage: pose_hands.py BINARY_FOLDER wiimote|kinect|camera|none
 """
+import os
 import pathlib
 import sys
 
@@ -11,7 +12,7 @@ from pose_line import SKIPPED, Watcher
 
 # Joints, wrists, cm. Generous: the made person moves at ease, but every latency counts as an error,
 # and other people's arms are what the Wiimotes' are learned from.
-BOUNDS = {"wiimote": (12, 30), "kinect": (11, 16), "none": (25, 70)}
+BOUNDS = {"wiimote": (12, 30), "kinect": (11, 16), "camera": (11, 16), "none": (25, 70)}
 SECONDS = 17
 LOST_FOR_S = 2
 
@@ -30,6 +31,13 @@ def check_the_body(stage, hands):
 
 
 def start(stage, hands, *words):
+    if hands == "camera":
+        stage.run("footing-stream", "sample", stage.folder)
+        camera, fifo = stage.folder / "camera.json", stage.folder / "frames"
+        os.mkfifo(fifo)
+        stage.start("footing-camera", "--camera", camera, "--fifo", fifo, "--stamped", "--simulated", "--json", "--to",
+                    stage.devices)
+        words += ("--camera", camera, "--frames-to", fifo)
     stage.start("footing-stream", "boards", "--motion", "demo", "--hands", hands, "--to",
                 stage.devices, *words)
     log = stage.folder / "footing-stream.log"

@@ -1,16 +1,23 @@
 #include "clients/stream/boards.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <memory>
 
 #include "clients/stream/feeds.h"
+#include "clients/stream/rendered_hands.h"
 #include "common/body/kinematics.h"
 #include "common/body/momentum.h"
 #include "common/body/points.h"
+#include "common/frames/netpbm.h"
+#include "common/sphere/find.h"
 #include "common/units/units.h"
 #include "tests/common/temporary_folder.h"
 
@@ -48,6 +55,48 @@ TEST_F(BoardsTest, TwoBoardsAndTheTruePoseAreThereAndHandsWhenAskedFor) {
   EXPECT_EQ(PlanBoards(options_, {})->feeds.size(), 2u);
   options_.hands = "wiimote";
   EXPECT_EQ(PlanBoards(options_, {})->devices.size(), 4u);
+}
+
+TEST_F(BoardsTest, ACameraSeesTheSpheresInTheFists) {
+  options_.hands = "camera";
+  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("--frames-to"));
+  options_.camera_file = folder_.Path("camera.json");
+  options_.frames_to = folder_.Path("frames");
+  std::ofstream(options_.camera_file) << DemoCameraFile();
+  ASSERT_EQ(::mkfifo(options_.frames_to.c_str(), 0600), 0);
+  // Its reader, ready before the writer opens.
+  const int reader = ::open(options_.frames_to.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  auto plan = PlanBoards(options_, {});
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_EQ(plan->feeds.size(), 2u);
+  constexpr double kT_s = 2;
+  constexpr std::int64_t kExposedNs = 123'456'789;
+  plan->feeds[1].frames(kT_s, kExposedNs);
+  frames::NetpbmReader images;
+  std::optional<frames::Frame> frame;
+  std::array<char, 65536> buffer;
+  ::fcntl(reader, F_SETFL, 0);  // Waits from here on.
+  while (!frame) {
+    const ssize_t count = ::read(reader, buffer.data(), buffer.size());
+    ASSERT_GT(count, 0);
+    images.Add({buffer.data(), static_cast<std::size_t>(count)});
+    auto next = images.Next();
+    ASSERT_TRUE(next);
+    frame = *next;
+  }
+  ::close(reader);
+  EXPECT_EQ(frame->time_ns, kExposedNs);
+  const auto camera = *frames::ParseCameraFile(DemoCameraFile(), "demo");
+  sphere::Finder finder(camera.lens, camera.Targets(), camera.settings);
+  const auto found = finder.Find(frame->View());
+  const auto stage = *MakeStage(options_.stage);
+  for (int side : {0, 1}) {
+    ASSERT_TRUE(found[static_cast<std::size_t>(side)]);
+    const Eigen::Vector3d p_W_m = *camera.X_WC * found[static_cast<std::size_t>(side)]->p_C_m;
+    // Depth to some 5 mm at 2 m, and up to 8 ms of a hand's motion from row to row.
+    EXPECT_LT((p_W_m - FistAt(stage, side, kT_s)).norm(), 0.04) << side;
+  }
 }
 
 TEST_F(BoardsTest, ALostHandIsASilentWiimoteOrAPointThatIsNotSeen) {
