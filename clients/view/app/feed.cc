@@ -49,8 +49,9 @@ std::unique_ptr<transport::Client> Feed::Connect(boost::asio::io_context& io, in
   // On the machine itself the keys T and N may command; elsewhere the viewer only looks.
   const bool local = address.kind == transport::Address::Kind::kUnix;
   options.role = local ? v1::ROLE_CONTROL : v1::ROLE_VIEW;
-  options.channels = {"status",     "motion", "features", "boards",    "skeletons", "track",
-                      "characters", "events", "setup",    "reference", "game",      "study"};
+  options.channels = {"status",    "motion", "features",   "boards", "hands",
+                      "skeletons", "track",  "characters", "events", "setup",
+                      "reference", "game",   "study"};
   transport::ClientHandlers handlers;
   handlers.on_welcome = [this, source, index](const v1::Welcome& welcome) {
     sources_[index].report.server_id = welcome.server_id();

@@ -102,7 +102,7 @@ std::vector<RecordedShow::Span> RecordedShow::SeekSpans(std::int64_t time_ns) {
     const auto last = recording_.LastOf(server, channel, time_ns);
     if (last) add(last->time_ns - seek_ns, last->time_ns + 1);
   };
-  for (const char* channel : {"motion", "features", "boards", "reference"}) {
+  for (const char* channel : {"motion", "features", "boards", "hands", "reference"}) {
     ceased(kPlayedSensors, channel);
   }
   ceased(kPlayedSimulation, "characters");

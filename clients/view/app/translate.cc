@@ -134,6 +134,9 @@ void AddSensors(const v1::Tick& tick, std::int64_t offset_ns, scene::Update& upd
   for (const auto& sample : tick.boards().samples()) {
     update.boards.push_back(wire::FromProto(sample));
   }
+  for (const auto& sample : tick.hands().samples()) {
+    update.hands.push_back(wire::FromProto(sample));
+  }
   if (tick.has_setup()) {
     update.setup.emplace();
     for (const auto& rig : tick.setup().rigs()) update.setup->push_back(wire::FromProto(rig));

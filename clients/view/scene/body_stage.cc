@@ -65,8 +65,8 @@ void AddSoleShadows(const Anatomy& anatomy, const std::vector<Eigen::Vector3d>& 
 }  // namespace
 
 bool HasReference(const Model& model, std::int64_t now_ns) {
-  return !model.references.empty() &&
-         now_ns - model.references.back().received_ns < kReferenceStaleNs;
+  return !model.observed.references.empty() &&
+         now_ns - model.observed.references.back().received_ns < kReferenceStaleNs;
 }
 
 void AddBody(const Model& model, const CharacterPose& pose, const ComTrail& trail,
@@ -87,6 +87,7 @@ void AddBody(const Model& model, const CharacterPose& pose, const ComTrail& trai
   }
   BodySigns signs;
   AddBodySigns(pose, trail, signs);
+  AddHandSigns(model.observed.hands, pose.rig, now_ns, signs);
   picture.signs = std::move(signs.solid);
   const PartList& clear = signs.clear;
   picture.clear.balls.insert(picture.clear.balls.end(), clear.balls.begin(), clear.balls.end());

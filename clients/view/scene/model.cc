@@ -64,10 +64,10 @@ void AddPhase(Model& model, const CharacterPose& pose, std::int64_t received_ns)
 }
 
 void AddReference(Model& model, const ReferencePose& reference) {
-  model.references.push_back(reference);
-  while (model.references.size() > 1 &&
-         model.references.front().received_ns < reference.received_ns - kReferencesNs) {
-    model.references.pop_front();
+  model.observed.references.push_back(reference);
+  while (model.observed.references.size() > 1 &&
+         model.observed.references.front().received_ns < reference.received_ns - kReferencesNs) {
+    model.observed.references.pop_front();
   }
 }
 
@@ -102,6 +102,8 @@ void Apply(Model& model, const Update& update) {
   }
   if (update.setup) model.setup = *update.setup;
   if (update.reference) AddReference(model, *update.reference);
+  for (const stream::HandSample& sample : update.hands)
+    TakeHand(sample, update.received_ns, model.observed.hands);
   model.strips.Add(update);
   for (const stream::BoardSample& sample : update.boards) {
     AddBoard(model, update.source, update.received_ns, sample);
@@ -113,7 +115,7 @@ void Apply(Model& model, const Update& update) {
     }
     if (!update.frame->characters.empty()) {
       model.pose_tally.Add(update.frame->characters.front(), model.anatomy, update.host_ns,
-                           model.references);
+                           model.observed.references);
     }
     model.tally.Add(*update.frame);
     model.replay.Push(*update.frame);
@@ -143,9 +145,9 @@ bool HasPicture(const Model& model) { return !model.playout.empty(); }
 bool IsWaiting(const Model& model) { return model.newest_host_ns.empty(); }
 
 const ReferencePose* ReferenceAt(const Model& model, std::int64_t time_ns) {
-  if (model.references.empty()) return nullptr;
-  const ReferencePose* found = &model.references.front();
-  for (const ReferencePose& reference : model.references) {
+  if (model.observed.references.empty()) return nullptr;
+  const ReferencePose* found = &model.observed.references.front();
+  for (const ReferencePose& reference : model.observed.references) {
     if (reference.received_ns <= time_ns) found = &reference;
   }
   return found;

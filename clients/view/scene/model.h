@@ -10,6 +10,7 @@
 
 #include "clients/view/scene/anatomy.h"
 #include "clients/view/scene/fall_replay.h"
+#include "clients/view/scene/hand_signs.h"
 #include "clients/view/scene/playout.h"
 #include "clients/view/scene/pose_tally.h"
 #include "clients/view/scene/strip.h"
@@ -57,6 +58,12 @@ struct ShownStudy {
   std::int64_t received_ns = 0;  ///< On the viewer's clock.
 };
 
+/// Of the person's body, from the trackers and from the simulator.
+struct Observed {
+  std::deque<ReferencePose> references;  ///< The last half second, oldest first.
+  std::vector<SeenHand> hands;
+};
+
 /// Everything that the picture and the words are made from.
 struct Model {
   std::vector<LinkReport> links;  ///< By source.
@@ -77,9 +84,9 @@ struct Model {
   std::deque<PhaseSpan> phase_spans;  ///< The last 10 s, oldest first.
   Tally tally;
   PoseTally pose_tally;
-  Anatomy anatomy;                       ///< Of the first skeleton.
-  std::vector<stream::RigSetup> setup;   ///< Of the server that has one.
-  std::deque<ReferencePose> references;  ///< The last half second, oldest first.
+  Anatomy anatomy;                      ///< Of the first skeleton.
+  std::vector<stream::RigSetup> setup;  ///< Of the server that has one.
+  Observed observed;
 };
 
 /// Takes one tick in. Plain data in, plain data out: no clock is read.

@@ -10,6 +10,7 @@
 #include "common/stream/character.h"
 #include "common/stream/device.h"
 #include "common/stream/game.h"
+#include "common/stream/hands.h"
 #include "common/stream/response.h"
 #include "common/stream/sensor.h"
 #include "common/stream/setup.h"
@@ -84,6 +85,7 @@ struct Update {
   std::vector<stream::MotionSample> motion;
   std::vector<stream::RigFeatures> features;
   std::vector<stream::BoardSample> boards;
+  std::vector<stream::HandSample> hands;
   std::optional<std::vector<stream::Skeleton>> skeletons;
   std::optional<stream::Track> track;
   std::optional<std::vector<stream::RigSetup>> setup;

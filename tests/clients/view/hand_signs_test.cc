@@ -1,0 +1,80 @@
+#include "clients/view/scene/hand_signs.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+namespace footing::scene {
+namespace {
+
+constexpr std::int64_t kNowNs = 5'000'000'000;
+
+stream::HandSample Sample(stream::DeviceRole role, double confidence) {
+  stream::HandSample sample;
+  sample.rig = "main";
+  sample.tracker = "camera";
+  sample.role = role;
+  sample.confidence = confidence;
+  sample.position_m = {0.3, 0.4, 1.2};
+  sample.sd_m = {0.02, 0.001, 0.005};
+  return sample;
+}
+
+BodySigns SignsOf(const std::vector<SeenHand>& hands) {
+  BodySigns signs;
+  AddHandSigns(hands, "main", kNowNs, signs);
+  return signs;
+}
+
+TEST(HandSigns, AnObservationIsAnEllipsoidOfTwoDeviations) {
+  const Eigen::Matrix3f axes = HandEllipsoid(Sample(stream::DeviceRole::kLeftHand, 1));
+  const Eigen::Matrix3f square = axes * axes.transpose();
+  EXPECT_NEAR(square(0, 0), 0.04 * 0.04, 1e-6);
+  EXPECT_NEAR(square(2, 2), 0.01 * 0.01, 1e-6);
+  EXPECT_NEAR(square(1, 1), 0.008 * 0.008, 1e-6);  // The least that can be seen.
+  // Of depth along a line of sight that is turned: the long axis lies along it.
+  stream::HandSample turned = Sample(stream::DeviceRole::kLeftHand, 1);
+  turned.sd_m = {0.02, 0.02, 0.001};
+  turned.covariance_m2.x() = 0.0004 * 0.99;
+  const Eigen::Matrix3f long_axes = HandEllipsoid(turned);
+  Eigen::Index longest = 0;
+  long_axes.colwise().norm().maxCoeff(&longest);
+  const Eigen::Vector3f along = long_axes.col(longest).normalized();
+  EXPECT_NEAR(std::abs(along.dot(Eigen::Vector3f(1, 1, 0).normalized())), 1, 1e-3);
+}
+
+TEST(HandSigns, WhatIsHiddenOrLostIsNamedWhereItIs) {
+  std::vector<SeenHand> hands;
+  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0.9), kNowNs, hands);
+  EXPECT_EQ(SignsOf(hands).solid.balls.size(), 1u);
+  EXPECT_TRUE(SignsOf(hands).labels.empty());
+  stream::HandSample hidden = Sample(stream::DeviceRole::kRightHand, 0.4);
+  hidden.occluded = true;
+  TakeHand(hidden, kNowNs, hands);
+  ASSERT_EQ(SignsOf(hands).labels.size(), 1u);
+  EXPECT_EQ(SignsOf(hands).labels[0].text, "right hand partly hidden");
+  stream::HandSample lost = Sample(stream::DeviceRole::kLeftHand, 0);
+  lost.position_m.setZero();
+  TakeHand(lost, kNowNs, hands);
+  ASSERT_EQ(hands.size(), 2u);
+  ASSERT_EQ(SignsOf(hands).labels.size(), 2u);
+  EXPECT_EQ(SignsOf(hands).labels[0].text, "left hand not seen");
+  EXPECT_NEAR(SignsOf(hands).labels[0].at_m.z(), 1.2, 1e-6);
+}
+
+TEST(HandSigns, NothingIsShownOfATrackerThatIsSilentOrOfAnotherRig) {
+  std::vector<SeenHand> hands;
+  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0.9), kNowNs - 600'000'000, hands);
+  EXPECT_TRUE(SignsOf(hands).solid.balls.empty());
+  stream::HandSample other = Sample(stream::DeviceRole::kLeftHand, 0.9);
+  other.rig = "second";
+  TakeHand(other, kNowNs, hands);
+  EXPECT_TRUE(SignsOf(hands).solid.balls.empty());
+  // Never seen, so without a place.
+  std::vector<SeenHand> none;
+  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0), kNowNs, none);
+  EXPECT_TRUE(SignsOf(none).solid.balls.empty());
+}
+
+}  // namespace
+}  // namespace footing::scene
