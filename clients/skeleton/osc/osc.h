@@ -27,9 +27,9 @@ inline constexpr std::string_view kBundle("#bundle\0", 8);
 
 /// NTP time: seconds since 1900-01-01 in the upper half, parts of 2^-32 s in the lower.
 struct TimeTag {
-  std::uint64_t ntp = 1;  ///< 1 means "at once": no time is given.
+  std::uint64_t ntp = 1;  ///< 1 means "at once": no time is given. Some senders write 0.
 
-  bool immediate() const { return ntp == 1; }
+  bool immediate() const { return ntp <= 1; }
   bool operator==(const TimeTag&) const = default;
 };
 

@@ -167,6 +167,29 @@ TEST(Decoder, CompletesAPersonWhenTheNextFrameBegins) {
   EXPECT_EQ(complete.size(), 2u);
 }
 
+TEST(Decoder, TakesATimeOf0ForNone) {
+  // Milliseconds of 0, and the time tags 0 and 1: every frame is one of its own, however many come.
+  for (const Dialect dialect : {Dialect::kZillode, Dialect::kKinectSdk2, Dialect::kFooting}) {
+    Skeleton whole = Standing();
+    whole.sent_ns.reset();
+    Decoder decoder({});
+    std::vector<Decoded> complete;
+    for (std::int64_t i = 0; i < 3; ++i) {
+      std::vector<std::string> packets = Encode(dialect, {}, whole);
+      // Of the time tag, the last byte: 8 of "#bundle" and 8 of the tag.
+      if (dialect == Dialect::kFooting && i == 1) packets[0][15] = 0;
+      Send(decoder, packets, i * 33'000'000, complete);
+    }
+    decoder.Flush(1'000'000'000, complete);
+    ASSERT_EQ(complete.size(), 3u) << NameOf(dialect);
+    for (const Decoded& one : complete) {
+      EXPECT_FALSE(one.skeleton.sent_ns) << NameOf(dialect);
+      EXPECT_EQ(one.skeleton.present(), kJoints);
+    }
+    EXPECT_EQ(decoder.counts().late, 0u) << NameOf(dialect);
+  }
+}
+
 TEST(Decoder, LeavesALateJointOfACompleteFrameOut) {
   Skeleton whole = Standing();
   whole.sent_ns = 5'000'000;
