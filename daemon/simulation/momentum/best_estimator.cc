@@ -42,7 +42,7 @@ HorizontalPrior LateralPrior() {
 
 PostureError PlainLateralPosture() { return {1.16, 0.12, 0.25, 0.01}; }
 PostureError PlainHeightPosture() { return {1, 0.15, 1, 0.01}; }
-PostureError LearnedHeightPosture() { return {1, 0.12, 1, 0.01}; }
+PostureError LearnedHeightPosture() { return {1, 0.12, 1, 0.01, 0.85, 0.03}; }
 
 BestEstimator::BestEstimator(const BestConfig& config, const Subject& subject, const TPose& pose,
                              double step_s)

@@ -10,6 +10,11 @@ struct PostureError {
   double spread_m = 0;  ///< Of the slow error; 0: postures are not asked.
   double time_s = 1;    ///< Its correlation time.
   double white_m = 0.01;
+  /// Share of looks in which it is right to `right_m`; in the others, as in squats, to `spread_m`.
+  /// It then is the anchor of the height, in place of what upright bodies have, and no state. 0: it
+  /// is a first-order process.
+  double right_share = 0;
+  double right_m = 0.03;
 };
 
 }  // namespace footing::momentum

@@ -1,6 +1,5 @@
 #include "daemon/simulation/momentum/vertical_com.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -24,6 +23,12 @@ constexpr double kLeastLogDensity = -20;  // One event alone condemns nothing.
 constexpr double kCoastMps2 = 20;         // Of a velocity that nobody watches, per root frame.
 constexpr double kLeastShare = 0.5;       // Of a weight that is taken for the true one.
 constexpr double kPostureLookS = 0.3;
+// A body that moves slowly and evenly looks still, too: in this share of looks it is, else it has
+// this speed.
+constexpr double kStillShare = 0.6, kSlowMps = 0.04;
+constexpr double kPostureAnchorLookS = 0.5, kPostureAnchorsS = 0.1;
+// A body whose posture rises or sinks is not still, however even its loads are.
+constexpr double kPostureSpeedS = 0.3, kStillPostureMps = 0.02;
 // A filter has strayed that is sure, by so many deviations, of a height over tiptoe with raised
 // arms or under the ground; or that is for a while so many deviations from the posture.
 constexpr double kStraySpreads = 4, kHighestM = 0.15, kLowestM = -0.75;
@@ -36,6 +41,16 @@ double Total(const VerticalInput& input) {
   double total = 0;
   for (const double load : input.load_n) total += load;
   return total;
+}
+
+/// A posture is off by so much, and may be by that variance.
+template <typename Watched>
+void Compare(double off_m, double variance_m2, double step_s, Watched& posture) {
+  const bool far = off_m * off_m > kFarSpreads * kFarSpreads * variance_m2;
+  posture.contradicted = off_m * off_m > kDoubtSpreads * kDoubtSpreads * variance_m2;
+  posture.far_s = far ? posture.far_s + step_s : 0;
+  posture.strayed = posture.strayed || posture.far_s > kFarS;
+  posture.since_score_s += step_s;
 }
 
 }  // namespace
@@ -111,12 +126,11 @@ void VerticalCom::Advance(const VerticalInput& input) {
     since_still_look_s_ += h;
     if (since_still_look_s_ >= kStillLookS) {
       since_still_look_s_ = 0;
-      const double variance = config_.still_velocity_mps * config_.still_velocity_mps;
-      const double s = filter_.p()(1, 1) + variance;
-      Score(-0.5 * (filter_.Update(VerticalFilter::Row::Unit(1), 0, variance) + std::log(s)));
+      LookAtVelocity();
     }
   }
   score_ *= std::exp(-h / kScoreTimeS);
+  posture_.anchors_s -= h;
   since_look_s_ += h;
   if (since_look_s_ >= config_.look_s) {
     since_look_s_ = 0;
@@ -140,19 +154,36 @@ void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
   const double speed = input.cop_valid ? move.norm() / step_s_ : config_.still_cop_mps * 2;
   cop_speed_mps_ += cop_share * (speed - cop_speed_mps_);
   const bool calm = mean_acceleration_mps2_ < config_.still_acceleration_mps2 &&
-                    cop_speed_mps_ < config_.still_cop_mps;
+                    cop_speed_mps_ < config_.still_cop_mps &&
+                    !(posture_.anchors_s > 0 && std::abs(posture_.speed_mps) > kStillPostureMps);
   still_s_ = calm ? still_s_ + step_s_ : 0;
+}
+
+void VerticalCom::LookAtVelocity() {
+  const VerticalFilter::Row row = VerticalFilter::Row::Unit(1);
+  const VerticalFilter::Scalar now = filter_.Of(row);
+  const MixtureMoments product = TimesMixture(
+      {now.mean, now.variance},
+      {{{kStillShare, 0, config_.still_velocity_mps}, {1 - kStillShare, 0, kSlowMps}}});
+  // Filters find stillness at different times, postures at the same.
+  if (posture_.anchors_s <= 0) Score(product.log_evidence);
+  filter_.SetMoments(row, {product.moments.mean, product.moments.variance});
+}
+
+bool VerticalCom::IsImpossible(const VerticalFilter::Scalar& height) const {
+  const double sure_m = kStraySpreads * std::sqrt(height.variance);
+  return height.mean - sure_m > kHighestM || height.mean + sure_m < kLowestM;
 }
 
 void VerticalCom::Anchor(bool loaded) {
   if (!loaded) return;
   const VerticalFilter::Row row = VerticalFilter::Row::Unit(0);
   const VerticalFilter::Scalar now = filter_.Of(row);
-  const double sure_m = kStraySpreads * std::sqrt(now.variance);
-  if (now.mean - sure_m > kHighestM || now.mean + sure_m < kLowestM) {
+  if (IsImpossible(now)) {
     posture_.strayed = true;  // A cut would make it surer still.
     return;
   }
+  if (posture_.anchors_s > 0) return;
   const double upright = config_.upright_share;
   MixtureMoments product = TimesMixture(
       {now.mean, now.variance}, {{{upright, -config_.upright_below_m, config_.upright_spread_m},
@@ -165,20 +196,43 @@ void VerticalCom::Anchor(bool loaded) {
 void VerticalCom::SeePosture(double height_m) {
   const PostureError& posture = config_.posture;
   if (posture.spread_m <= 0) return;
+  if (posture.right_share > 0) {
+    AnchorToPosture(height_m);
+    return;
+  }
   VerticalFilter::Row h = posture.share * VerticalFilter::Row::Unit(0);
   h(kPosture) = 1;
   filter_.Update(h, height_m, posture.white_m * posture.white_m);
   const double s = filter_.p()(0, 0) + posture.spread_m * posture.spread_m;
   const double off_m = height_m - posture.share * filter_.x()(0);
-  const bool far = off_m * off_m > kFarSpreads * kFarSpreads * s;
-  posture_.contradicted = off_m * off_m > kDoubtSpreads * kDoubtSpreads * s;
-  posture_.far_s = far ? posture_.far_s + step_s_ : 0;
-  posture_.strayed = posture_.strayed || posture_.far_s > kFarS;
-  posture_.since_score_s += step_s_;
+  Compare(off_m, s, step_s_, posture_);
   if (posture_.since_score_s >= kPostureLookS) {
     posture_.since_score_s = 0;
     Score(-0.5 * (off_m * off_m / s + std::log(s)));
   }
+}
+
+void VerticalCom::AnchorToPosture(double height_m) {
+  const PostureError& posture = config_.posture;
+  if (posture_.anchors_s <= 0) posture_.level_m = height_m;
+  posture_.anchors_s = kPostureAnchorsS;
+  posture_.speed_mps = (height_m - posture_.level_m) / kPostureSpeedS;
+  posture_.level_m += step_s_ / (kPostureSpeedS + step_s_) * (height_m - posture_.level_m);
+  const VerticalFilter::Row row = VerticalFilter::Row::Unit(0);
+  const VerticalFilter::Scalar now = filter_.Of(row);
+  Compare(height_m - now.mean, now.variance + posture.spread_m * posture.spread_m, step_s_,
+          posture_);
+  // What is less certain than a posture at its worst is not waited for.
+  const bool lost = now.variance > posture.spread_m * posture.spread_m;
+  const bool due = posture_.since_score_s >= kPostureAnchorLookS;
+  if (!due && !lost) return;
+  if (due) posture_.since_score_s = 0;
+  const double right = posture.right_share;
+  const MixtureMoments product =
+      TimesMixture({now.mean, now.variance},
+                   {{{right, height_m, posture.right_m}, {1 - right, height_m, posture.spread_m}}});
+  if (due) Score(product.log_evidence);
+  filter_.SetMoments(row, {product.moments.mean, product.moments.variance});
 }
 
 void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_sd_mps) {
@@ -234,38 +288,6 @@ void VerticalCom::Coast() {
   last_.started = false;
   still_s_ = 0;
   filter_.Remember(VerticalFilter::Row::Unit(0));
-}
-
-std::vector<VerticalFilter::Scalar> SmoothVertical(const VerticalConfig& config, double mass_kg,
-                                                   double step_s, const VerticalInput& mean,
-                                                   const std::vector<VerticalInput>& inputs) {
-  if (inputs.empty()) return {};
-  struct Step {
-    VerticalFilter::Vector x, u;
-    VerticalFilter::Matrix p, a;
-  };
-  VerticalCom com(config, mass_kg, step_s);
-  com.Start(mean);
-  std::vector<Step> steps;
-  steps.reserve(inputs.size());
-  for (const VerticalInput& input : inputs) {
-    com.Advance(input);
-    steps.push_back({com.filter().x(), com.input_shift(), com.filter().p(), com.transition()});
-  }
-  std::vector<VerticalFilter::Scalar> out(steps.size());
-  VerticalFilter::Vector x = steps.back().x;
-  VerticalFilter::Matrix p = steps.back().p;
-  for (std::size_t i = steps.size(); i-- > 0;) {
-    if (i + 1 < steps.size()) {
-      const Step& next = steps[i + 1];
-      const VerticalFilter::Matrix p_ahead = next.a * steps[i].p * next.a.transpose() + com.noise();
-      const VerticalFilter::Matrix gain = p_ahead.ldlt().solve(next.a * steps[i].p).transpose();
-      x = steps[i].x + gain * (x - (next.a * steps[i].x + next.u));
-      p = steps[i].p + gain * (p - p_ahead) * gain.transpose();
-    }
-    out[i] = {x(0), std::max(0.0, p(0, 0))};
-  }
-  return out;
 }
 
 }  // namespace footing::momentum

@@ -103,7 +103,11 @@ class VerticalCom {
 
  private:
   void Watch(const VerticalInput& input, double raw_mps2);
+  void LookAtVelocity();
   void Anchor(bool loaded);
+  void AnchorToPosture(double height_m);
+  /// Too high or too low for any body, for sure: its height is not to be corrected but given up.
+  bool IsImpossible(const Filter::Scalar& height) const;
   void Score(double log_density);
 
   VerticalConfig config_;
@@ -129,7 +133,9 @@ class VerticalCom {
   double since_look_s_ = 0;
   struct {
     double since_score_s = 0;
-    double far_s = 0;  ///< For how long it has been too far from the posture.
+    double anchors_s = 0;               ///< For how much longer the last one stands for the height.
+    double level_m = 0, speed_mps = 0;  ///< Smoothed.
+    double far_s = 0;                   ///< For how long it has been too far from the posture.
     bool strayed = false;
     bool contradicted = false;
   } posture_;

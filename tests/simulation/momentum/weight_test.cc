@@ -155,6 +155,47 @@ TEST(BestEstimator, AWeightThatChangesInMidMovementDoesNotCarryTheHeightAway) {
   }
 }
 
+// Greatest error of the height of a body that moves by `height_m` over the T-pose, seen by a
+// posture that has half of a crouch.
+double GreatestHeightError(double (*height_m)(double)) {
+  MadeBody body;
+  body.noise_n = 0.5;
+  body.com_m = [height_m](double t) { return Eigen::Vector3d(0, 0, kMadeHeightM + height_m(t)); };
+  BestConfig config;
+  config.height_posture = LearnedHeightPosture();
+  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  double greatest_m = 0;
+  for (int i = 0; i < 8 * 60; ++i) {
+    const double t = i * kMadeStepS, now_m = height_m(t);
+    best.Advance(body.At(t));
+    const double told_m =
+        best.SeePosture(0, kMadeHeightM + std::max(now_m, 0.5 * now_m)).p_WC_m.z();
+    greatest_m = std::max(greatest_m, std::abs(told_m - kMadeHeightM - now_m));
+  }
+  return greatest_m;
+}
+
+// The integral of Ramp.
+double RampedRise(double t) {
+  if (t <= 0) return 0;
+  return t >= 1 ? t - 0.5 : t * t * t * t * (2.5 - 3 * t + t * t);
+}
+
+TEST(BestEstimator, DoesNotTakeASlowEvenDescentForStillness) {
+  // 7 cm down at 5 cm/s, with an acceleration in the first and the last 0.4 s only.
+  EXPECT_LT(GreatestHeightError([](double t) {
+              return -0.05 * 0.4 * (RampedRise((t - 1) / 0.4) - RampedRise((t - 2.4) / 0.4));
+            }),
+            0.03);
+}
+
+TEST(BestEstimator, FollowsABodyThatRisesOverItsTPose) {
+  // A raised knee, or arms over the head.
+  EXPECT_LT(GreatestHeightError(
+                [](double t) { return 0.08 * Ramp(2 * (t - 1)) * (1 - Ramp(2 * (t - 2.5))); }),
+            0.025);
+}
+
 TEST(BestEstimator, ComesBackWithinASecondOfALandingThatItDidNotSeeComing) {
   MadeBody body;
   BestConfig config;
