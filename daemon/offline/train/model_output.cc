@@ -16,6 +16,9 @@ void AddModelOptions(CLI::App& command, ModelOptions& options) {
   command.add_option("--seed", options.seed,
                      "Seed of initial weights and noise; equal seeds give equal models");
   command.add_flag("--force", options.force, "Overwrite an existing model");
+  command.add_option("--licence", options.licences,
+                     "Whose motion under what terms; the model states it with its command line; "
+                     "may be repeated");
 }
 
 Result<void> CheckFree(const ModelOptions& options) {

@@ -17,6 +17,7 @@ struct ModelOptions {
   std::string out;
   bool force = false;
   std::uint64_t seed = 1;
+  std::vector<std::string> licences;  ///< Kept by the command line, in the provenance.
 };
 
 void AddModelOptions(CLI::App& command, ModelOptions& options);

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -10,13 +8,13 @@
 #include "common/cli/cli.h"
 #include "common/log/log.h"
 #include "common/model/model.h"
-#include "daemon/offline/eval/scores/pose_metrics.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
+#include "daemon/offline/train/people_score.h"
 #include "daemon/offline/train/pose_training.h"
 #include "daemon/offline/train/poses.h"
-#include "daemon/simulation/reconstruction/reconstruction.h"
+#include "daemon/simulation/reconstruction/models.h"
 
 namespace footing::train {
 namespace {
@@ -27,83 +25,9 @@ struct PeopleOptions {
   MotionOptions motions;
   std::vector<std::string> only;
   int every = 1;
+  bool with_truth = false;
   std::uint64_t seed = 1;
 };
-
-/// What is compared: all sensors, hands and feet with what is learned of these, and without.
-enum Way { kBest, kLearned, kBare, kWays };
-constexpr const char* kWayNames[kWays] = {"best", "hands_feet_learned", "hands_feet_ik"};
-
-reconstruction::Options OptionsOf(Way way, double rate_hz) {
-  reconstruction::Options options;
-  options.rate_hz = rate_hz;
-  options.use_momentum = way == kBest;
-  options.use_posture = way != kBare;
-  return options;
-}
-
-/// Sums over frames, all of them: those that are not valid count like the others.
-struct Tally {
-  double frames = 0, invalid = 0, nees = 0, nees_count = 0, height_m2 = 0;
-  double posture_m2 = 0, posture_frames = 0;
-  std::array<double, kWays> mpjpe_cm{};
-
-  void Add(const Tally& other) {
-    frames += other.frames;
-    invalid += other.invalid;
-    nees += other.nees;
-    nees_count += other.nees_count;
-    height_m2 += other.height_m2;
-    posture_m2 += other.posture_m2;
-    posture_frames += other.posture_frames;
-    for (std::size_t i = 0; i < kWays; ++i) mpjpe_cm[i] += other.mpjpe_cm[i];
-  }
-
-  ordered_json Json() const {
-    ordered_json json = {{"frames", frames}};
-    for (std::size_t i = 0; i < kWays; ++i) {
-      json[kWayNames[i]] = {{"mpjpe_cm", mpjpe_cm[i] / frames}};
-    }
-    json["gain_over_learned"] = 1 - mpjpe_cm[kBest] / mpjpe_cm[kLearned];
-    json["invalid_share"] = invalid / frames;
-    json["nees"] = nees / std::max(nees_count, 1.0);
-    json["com_vertical_rms_cm"] = 100 * std::sqrt(height_m2 / frames);
-    json["posture_com_vertical_rms_cm"] =
-        100 * std::sqrt(posture_m2 / std::max(posture_frames, 1.0));
-    return json;
-  }
-};
-
-Result<Tally> ScoreTake(const PoseTake& take, const reconstruction::Models& models) {
-  const auto run = SimulateTake(take);
-  if (!run) return run.error();
-  Tally tally;
-  for (const Way way : {kBest, kLearned, kBare}) {
-    auto made =
-        reconstruction::Reconstruction::Create(run->body, models, OptionsOf(way, run->rate_hz));
-    if (!made) return made.error();
-    eval::PoseScore score(run->body);
-    for (std::size_t i = 0; i < run->frames.size(); ++i) {
-      const auto& output = made->Advance(run->frames[i].inputs);
-      if (i < run->judged_from) continue;
-      score.Add(output.q, run->frames[i].q);
-      tally.mpjpe_cm[way] += score.last_mpjpe_cm();
-      if (way != kBest) continue;
-      ++tally.frames;
-      tally.invalid += output.valid ? 0 : 1;
-      tally.height_m2 += std::pow(output.com_W_m.z() - run->frames[i].com_m.z(), 2);
-      if (output.posture_com_W_m) {
-        ++tally.posture_frames;
-        tally.posture_m2 += std::pow(output.posture_com_W_m->z() - run->frames[i].com_m.z(), 2);
-      }
-      for (std::size_t k = 0; k < output.joint_sd_m.size(); ++k) {
-        tally.nees += score.errors_m()[k].squaredNorm() / (3 * std::pow(output.joint_sd_m[k], 2));
-        ++tally.nees_count;
-      }
-    }
-  }
-  return tally;
-}
 
 /// "squat1Reps" of HDM_bd_squat1Reps_001_120.amc; else the file's name without its ending.
 std::string ActivityOf(const Clip& clip) {
@@ -171,12 +95,13 @@ class LeaveOneOut {
   }
 
   /// Scores the person's clips in place; adds to `by_activity`.
-  Result<Tally> ScorePerson(const std::string& person, const reconstruction::Models& models,
-                            std::map<std::string, Tally>& by_activity) const {
-    Tally sum;
+  Result<PoseTally> ScorePerson(const std::string& person, const reconstruction::Models& models,
+                                bool with_truth,
+                                std::map<std::string, PoseTally>& by_activity) const {
+    PoseTally sum;
     for (const PoseTake& take : takes_) {
       if (take.clip->subject != person || take.mirrored || !StaysInPlace(*take.clip)) continue;
-      const auto tally = ScoreTake(take, models);
+      const auto tally = ScoreTake(take, models, with_truth);
       if (!tally) return tally.error();
       sum.Add(*tally);
       by_activity[ActivityOf(*take.clip)].Add(*tally);
@@ -217,13 +142,13 @@ int Run(const PeopleOptions& options, const Shared& shared) {
   LeaveOneOut study(std::move(kept), options.seed);
   if (const auto prepared = study.Prepare(); !prepared) return cli::Report(prepared.error());
   ordered_json report;
-  Tally sum;
-  std::map<std::string, Tally> by_activity;
+  PoseTally sum;
+  std::map<std::string, PoseTally> by_activity;
   for (const std::string& person : people) {
     if (!only.empty() && only.count(person) == 0) continue;
     const auto models = study.Train(person);
     if (!models) return cli::Report(models.error());
-    const auto tally = study.ScorePerson(person, *models, by_activity);
+    const auto tally = study.ScorePerson(person, *models, options.with_truth, by_activity);
     if (!tally) return cli::Report(tally.error());
     sum.Add(*tally);
     report["people"][person] = tally->Json();
@@ -253,11 +178,14 @@ void AddPeopleCommand(CLI::App& app, Shared& shared) {
       ->add_option("--every", options->every,
                    "Take every so many of a person's takes of one activity")
       ->check(CLI::Range(1, 100));
+  command->add_flag("--ablations", options->with_truth,
+                    "Score with true COM, momentum, feet and all of them, too");
   command->add_option("--seed", options->seed, "Seed of the simulated sensors and the model");
   command->footer(
       "Examples:\n"
       "  footing-train people --motions mocap/ --json\n"
-      "  footing-train people --motions mocap/ --motions hdm05/ --only 14 --every 3");
+      "  footing-train people --motions mocap/ --motions hdm05/ --only 14 --every 3\n"
+      "  footing-train people --motions mocap/ --ablations");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }
 

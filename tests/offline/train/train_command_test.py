@@ -204,13 +204,20 @@ class Train(unittest.TestCase):
             self.assertLessEqual(person["invalid_share"], 1)
         only = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--json")
         self.assertEqual(json.loads(only.stdout)["people"]["2"], report["people"]["2"])
+        known = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--ablations", "--json")
+        ways = json.loads(known.stdout)["people"]["2"]
+        self.assertEqual(ways["best"], report["people"]["2"]["best"])
+        for way in ("true_com", "true_momentum", "true_feet"):
+            self.assertGreater(ways[way]["mpjpe_cm"], ways["true_all"]["mpjpe_cm"])
         (folder / "2_01.bvh").unlink()
         self.refused(2, "a single person", "people", "--motions", folder)
 
     def test_arm_leaves_out_a_person_at_a_time(self):
         folder = self.motions()
-        result = run("arm", "--motions", folder, "--out", self.out, "--seed", 3, "--json")
+        result = run("arm", "--motions", folder, "--out", self.out, "--seed", 3, "--licence",
+                     "1, 2: CC0", "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(b"1, 2: CC0", self.out.read_bytes())
         report = json.loads(result.stdout)
         self.assertEqual((report["subjects"], report["folds"]), (["1", "2"], 2))
         # Their arms stay level while the trunk bends.

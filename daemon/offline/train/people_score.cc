@@ -1,0 +1,116 @@
+#include "daemon/offline/train/people_score.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/offline/eval/scores/pose_metrics.h"
+#include "daemon/simulation/reconstruction/reconstruction.h"
+
+namespace footing::train {
+namespace {
+
+constexpr std::array<const char*, kPoseWays> kWayNames{
+    "best",          "hands_feet_learned", "hands_feet_ik", "true_com",
+    "true_momentum", "true_feet",          "true_all"};
+
+constexpr std::size_t Index(PoseWay way) { return static_cast<std::size_t>(way); }
+
+reconstruction::Options OptionsOf(PoseWay way, double rate_hz) {
+  reconstruction::Options options;
+  options.rate_hz = rate_hz;
+  options.use_momentum = way != PoseWay::kLearned && way != PoseWay::kBare;
+  options.use_posture = way != PoseWay::kBare;
+  return options;
+}
+
+reconstruction::Truth TruthOf(PoseWay way, const pose_run::Frame& frame) {
+  reconstruction::Truth truth;
+  const bool all = way == PoseWay::kTrueAll;
+  if (all || way == PoseWay::kTrueCom) truth.com_W_m = frame.com_m;
+  if (all || way == PoseWay::kTrueMomentum) truth.angular_W = frame.angular_momentum;
+  if (all || way == PoseWay::kTrueFeet) {
+    truth.feet.emplace();
+    for (std::size_t f = 0; f < momentum::kFeet; ++f) {
+      (*truth.feet)[f] = {frame.feet[f].ankle_m, frame.feet[f].toe_m};
+    }
+  }
+  return truth;
+}
+
+/// What only the way with all sensors reports.
+void AddReport(const reconstruction::Output& output, const pose_run::Frame& frame,
+               const eval::PoseScore& score, const eval::JudgedJoints& joints, PoseTally& tally) {
+  ++tally.frames;
+  tally.invalid += output.valid ? 0 : 1;
+  tally.height_m2 += std::pow(output.com_W_m.z() - frame.com_m.z(), 2);
+  if (output.posture_com_W_m) {
+    ++tally.posture_frames;
+    tally.posture_m2 += std::pow(output.posture_com_W_m->z() - frame.com_m.z(), 2);
+  }
+  const auto add = [&](std::size_t joint, Nees& nees) {
+    nees.Add(score.errors_m()[joint].squaredNorm(), output.joint_sd_m[joint]);
+  };
+  for (std::size_t joint = 0; joint < output.joint_sd_m.size(); ++joint) add(joint, tally.all);
+  for (const int joint : joints.legs) add(static_cast<std::size_t>(joint), tally.legs);
+  for (const int joint : joints.arms) add(static_cast<std::size_t>(joint), tally.arms);
+}
+
+}  // namespace
+
+void PoseTally::Add(const PoseTally& other) {
+  frames += other.frames;
+  invalid += other.invalid;
+  height_m2 += other.height_m2;
+  posture_m2 += other.posture_m2;
+  posture_frames += other.posture_frames;
+  all.Add(other.all);
+  legs.Add(other.legs);
+  arms.Add(other.arms);
+  for (std::size_t i = 0; i < kPoseWays; ++i) {
+    if (other.mpjpe_cm[i]) mpjpe_cm[i] = mpjpe_cm[i].value_or(0) + *other.mpjpe_cm[i];
+  }
+}
+
+nlohmann::ordered_json PoseTally::Json() const {
+  nlohmann::ordered_json json = {{"frames", frames}};
+  for (std::size_t i = 0; i < kPoseWays; ++i) {
+    if (mpjpe_cm[i]) json[kWayNames[i]] = {{"mpjpe_cm", *mpjpe_cm[i] / frames}};
+  }
+  json["gain_over_learned"] = 1 - mpjpe_cm[Index(PoseWay::kBest)].value_or(0) /
+                                      mpjpe_cm[Index(PoseWay::kLearned)].value_or(1);
+  json["invalid_share"] = invalid / frames;
+  json["nees"] = all.mean();
+  json["nees_legs"] = legs.mean();
+  json["nees_arms"] = arms.mean();
+  json["com_vertical_rms_cm"] = 100 * std::sqrt(height_m2 / frames);
+  json["posture_com_vertical_rms_cm"] = 100 * std::sqrt(posture_m2 / std::max(posture_frames, 1.0));
+  return json;
+}
+
+Result<PoseTally> ScoreTake(const PoseTake& take, const reconstruction::Models& models,
+                            bool with_truth) {
+  const auto run = SimulateTake(take);
+  if (!run) return run.error();
+  const eval::JudgedJoints joints(run->body);
+  PoseTally tally;
+  for (std::size_t way = 0; way < (with_truth ? kPoseWays : kSensorWays); ++way) {
+    const auto which = static_cast<PoseWay>(way);
+    auto made =
+        reconstruction::Reconstruction::Create(run->body, models, OptionsOf(which, run->rate_hz));
+    if (!made) return made.error();
+    eval::PoseScore score(run->body);
+    double sum_cm = 0;
+    for (std::size_t i = 0; i < run->frames.size(); ++i) {
+      const pose_run::Frame& frame = run->frames[i];
+      const auto& output = made->Advance(frame.inputs, TruthOf(which, frame));
+      if (i < run->judged_from) continue;
+      score.Add(output.q, frame.q);
+      sum_cm += score.last_mpjpe_cm();
+      if (which == PoseWay::kBest) AddReport(output, frame, score, joints, tally);
+    }
+    tally.mpjpe_cm[way] = sum_cm;
+  }
+  return tally;
+}
+
+}  // namespace footing::train

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "common/result/result.h"
+#include "daemon/offline/train/pose_training.h"
+#include "daemon/simulation/reconstruction/models.h"
+
+/// How poses of people whom no model has seen are scored.
+namespace footing::train {
+
+/// What is compared: all sensors, hands and feet with what is learned of these, and without; then
+/// all sensors with parts of the truth in place of their estimates, to see which of these is to
+/// blame.
+enum class PoseWay { kBest, kLearned, kBare, kTrueCom, kTrueMomentum, kTrueFeet, kTrueAll };
+inline constexpr std::size_t kPoseWays = 7, kSensorWays = 3;
+
+/// Normalised squared errors of joints: |error|^2 / (3 sd^2), in the mean 1 where the deviations
+/// are honest.
+struct Nees {
+  double sum = 0, count = 0;
+
+  void Add(double squared_m2, double sd_m) {
+    sum += squared_m2 / (3 * sd_m * sd_m);
+    ++count;
+  }
+  void Add(const Nees& other) {
+    sum += other.sum;
+    count += other.count;
+  }
+  double mean() const { return count > 0 ? sum / count : 0; }
+};
+
+/// Sums over frames, all of them: those that are not valid count like the others.
+struct PoseTally {
+  double frames = 0, invalid = 0, height_m2 = 0;
+  double posture_m2 = 0, posture_frames = 0;
+  Nees all, legs, arms;
+  std::array<std::optional<double>, kPoseWays> mpjpe_cm{};  ///< Of each way that was asked for.
+
+  void Add(const PoseTally& other);
+  nlohmann::ordered_json Json() const;
+};
+
+/// The take as the sensors show it; `with_truth`: with parts of the truth, too.
+Result<PoseTally> ScoreTake(const PoseTake& take, const reconstruction::Models& models,
+                            bool with_truth);
+
+}  // namespace footing::train
