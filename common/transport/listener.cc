@@ -54,8 +54,10 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
     if (address_.kind == Address::Kind::kTcp && !StaysOnThisHost(address_) &&
         !security_.insecure_lan) {
       return UsageError("will not listen on " + address_.Text() +
-                        ": beyond this host a connection must be encrypted; use tls:HOST:PORT, or, "
-                        "in a network that you trust wholly, --insecure-lan with a token_file");
+                        ": beyond this host a connection must be encrypted; " +
+                        (security_.tls ? "use tls:HOST:PORT, or, in a network that you trust "
+                                         "wholly, --insecure-lan with a token_file"
+                                       : "listen on unix:PATH, and come from there with ssh -L"));
     }
     if (address_.kind == Address::Kind::kPassed) return TakePassed();
     if (auto checked = CheckFolderOf(address_); !checked) return checked;
