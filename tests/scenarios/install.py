@@ -30,8 +30,7 @@ def check_units(build, prefix):
                      "footingd.service", "footingd.socket"], names
     for unit in units:
         text = unit.read_text()
-        assert "@" not in text.replace("@system-service", "").replace("@resources", "").replace(
-            "@privileged", ""), f"{unit.name}: a place is not filled in"
+        assert "@FOOTING" not in text, f"{unit.name}: a place is not filled in"
         assert str(build) not in text and "/usr/local" not in text, unit.name
         for line in text.splitlines():
             if line.startswith("ExecStart="):
