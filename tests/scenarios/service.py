@@ -152,6 +152,14 @@ def check_devices(stage, sensor):
     stage.stop("footing-stream")
 
 
+def check_reload(manager):
+    os.kill(manager.process, signal.SIGHUP)
+    notice = manager.wait_for("RELOADING=1", 5)
+    assert any(line.startswith("MONOTONIC_USEC=") for line in notice), notice
+    manager.wait_for("READY=1", 5)
+    assert "config reloaded: nothing has changed" in manager.log.read_text()
+
+
 def check_farewell(manager):
     os.kill(manager.process, signal.SIGTERM)
     manager.wait_for("STOPPING=1", 5)
@@ -190,6 +198,7 @@ def check_simulation(stage, manager):
     assert "STATUS=engine gait" in notice, notice
     early.welcome()
     check_watchdog(manager)
+    check_reload(manager)
     check_farewell(manager)
 
 
@@ -200,6 +209,7 @@ def check_start_to_end(stage, manager):
     check_watchdog(manager)
     check_hangs_show(manager)
     check_devices(stage, address)
+    check_reload(manager)
     check_farewell(manager)
     for name, number in files.items():
         assert os.stat(stage.folder / f"{name}.sock").st_ino == number, f"{name}.sock was replaced"
