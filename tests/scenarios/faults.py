@@ -1,7 +1,7 @@
 """Faulty links in front of every client: each comes back within 2 s of the end of the fault, resumes by sequence, and reports
 what it missed.
 
-Usage: faults.py BINARY_FOLDER [--seed N] [--fault NAME]...
+Usage: faults.py BINARY_FOLDER [--seed N] [--fault NAME]... [--json]
 
 Between the programs stand fault proxies: footing-log, footing-ctl watch and footing-sim before footingd, footing-view before
 footing-sim, footing-stream before the device socket. Each fault lies on all of them at once. Then each server stands still
@@ -9,6 +9,7 @@ for a while, and each program that others need is killed and started again.
 """
 import argparse
 import csv
+import json
 import random
 import signal
 import sys
@@ -99,13 +100,13 @@ def sequences(stage, recording):
         return [int(row["sequence"]) for row in csv.DictReader(file)]
 
 
-def check_return(links, fault, worst, names=LINKS):
+def check_return(links, fault, results, names=LINKS):
     took = links.returns(names)
     print(f"{fault:19}: " + ", ".join(f"{name} {'never' if s is None else format(s, '.2f')} s" for name, s in took.items()),
-          flush=True)
+          file=sys.stderr, flush=True)
     for name, seconds in took.items():
         assert seconds is not None and seconds <= MOST_RETURN_S, f"{name} after {fault}: {seconds} s"
-        worst[name] = max(worst.get(name, 0), seconds)
+    results[fault] = took
 
 
 def check_recording(stage):
@@ -116,20 +117,20 @@ def check_recording(stage):
     recorded = sequences(stage, stage.folder / "all.mcap")
     steps = {b - a for a, b in zip(recorded, recorded[1:]) if b != a}  # A rig has a row each.
     assert steps == {1}, f"sequences advance by {sorted(steps)}"
-    print(f"{len(recorded)} rows of features, without a hole, over {len(set(recorded))} ticks")
+    print(f"{len(recorded)} rows of features, without a hole, over {len(set(recorded))} ticks", file=sys.stderr)
 
 
-def check_pauses(stage, links, worst):
+def check_pauses(stage, links, results):
     """A server that stood still goes on where it was; nobody is ended for its silence."""
     for program, names in (("footingd", ("log", "ctl", "sim")), ("footing-sim", ("view",))):
         stage.processes[program].send_signal(signal.SIGSTOP)
         time.sleep(FAULT_S)
         links.clear()
         stage.processes[program].send_signal(signal.SIGCONT)
-        check_return(links, f"SIGSTOP {program}", worst, names)
+        check_return(links, f"SIGSTOP {program}", results, names)
 
 
-def check_kills(stage, links, worst):
+def check_kills(stage, links, results):
     """Who was killed comes back with a new epoch: the recording says that something is missing."""
     path = stage.folder / "gap.mcap"
     stage.start("footing-log", "record", "--connect", links.addresses["log"], "--out", path)
@@ -142,7 +143,7 @@ def check_kills(stage, links, worst):
         time.sleep(FAULT_S)
         start()
         links.clear()
-        check_return(links, f"kill -9 {program}", worst, names)
+        check_return(links, f"kill -9 {program}", results, names)
     assert stage.stop("footing-log", signal.SIGINT) == 0
     info = stage.run_json("footing-log", "info", path)
     assert info["gaps"] == 1 and info["complete"], info
@@ -152,29 +153,32 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("binaries")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--json", action="store_true", help="print seconds by fault and link")
     parser.add_argument("--fault", action="append", choices=FAULTS, default=[])
     arguments = parser.parse_args()
     faults = arguments.fault or list(FAULTS)
     random.Random(arguments.seed).shuffle(faults)
-    worst = {}
+    results = {}
     with Stage(arguments.binaries) as stage:
         links = Links(stage, arguments.seed)
         try:
             start_programs(stage, links)
             for fault in faults:
                 links.apply(fault, FAULT_S)
-                check_return(links, fault, worst)
+                check_return(links, fault, results)
             if not arguments.fault:
                 links.apply("stall", LONG_STALL_S)
-                check_return(links, "long stall", worst)
-                check_pauses(stage, links, worst)
+                check_return(links, "long stall", results)
+                check_pauses(stage, links, results)
             check_recording(stage)
             for name in ("footing-ctl", "footing-view", "footing-sim", "footing-stream"):
                 assert stage.processes[name].poll() is None, f"{name} ended"
-            check_kills(stage, links, worst)
+            check_kills(stage, links, results)
         finally:
             links.stop()
-    print("at most: " + ", ".join(f"{name} {seconds:.2f} s" for name, seconds in worst.items()))
+    if arguments.json:
+        print(json.dumps({"seed": arguments.seed, "seconds": results}))
+    print(f"at most {max(max(took.values()) for took in results.values()):.2f} s", file=sys.stderr)
 
 
 if __name__ == "__main__":
