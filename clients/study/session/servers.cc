@@ -85,6 +85,9 @@ class Servers::Implementation {
       if (state != transport::LinkState::kLive && &link == &simulation_) in_force_.clear();
       if (&link == &simulation_) lease_->OnState(state);
     };
+    handlers.on_notice = [this, &link](const v1::Notice& notice) {
+      console_.Print("Notice of " + link.name + ": " + notice.text());
+    };
     link.client.emplace(console_.io(), std::move(options), std::move(handlers));
   }
 
