@@ -101,9 +101,12 @@ class Holder {
     sample.role = stream::DeviceRole::kLeftHand;
     sample.received_ns = sample.sampled_ns = now_ns_ - 1;
     sample.position_m = at.p_C_m + noise;
-    if (mirrored) sample.position_m.x() *= -1;
     sample.sd_m = at.covariance_m2.diagonal().cwiseSqrt();
     sample.covariance_m2 = {at.covariance_m2(0, 1), at.covariance_m2(0, 2), at.covariance_m2(1, 2)};
+    if (mirrored) {
+      sample.position_m.x() *= -1;
+      sample.covariance_m2.head<2>() *= -1;  // Of x with y and with z.
+    }
     sample.confidence = 0.9;
     sample.tracker_pose = stream::TrackerPose{};
     recent_.Add(sample);
