@@ -12,6 +12,7 @@
 #include "common/recording/output_file.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
+#include "common/text/number.h"
 
 namespace footing::study {
 namespace {
@@ -29,10 +30,9 @@ struct RangesOptions {
 
 Result<void> Check(const RangesOptions& options) {
   const std::string& interface = options.played.interface;
-  if (stream::UserInterfaceNamed(interface) == stream::UserInterface::kUnspecified ||
-      interface == "boards") {
-    return UsageError("ranges are measured of wrist, arm, leg and joystick, not of \"" + interface +
-                      "\"");
+  if (stream::UserInterfaceNamed(interface) == stream::UserInterface::kUnspecified) {
+    return UsageError("ranges are measured of wrist, arm, leg, joystick and boards, not of \"" +
+                      interface + "\"");
   }
   const std::string& turn_by = options.played.turn_by;
   if (stream::LegTurnSourceNamed(turn_by) == stream::TurnSource::kUnspecified) {
@@ -61,7 +61,9 @@ Result<RecordedRanges> MeasureLive(const RangesOptions& options) {
   }
   Console console;
   if (!options.now) {
-    const auto ready = console.Ask("Read each motion aloud; they take 20 s. Press Enter to begin:");
+    const auto ready = console.Ask("Read each motion aloud; they take " +
+                                   text::Fixed(ranges::DurationOf(options.played), 0) +
+                                   " s. Press Enter to begin:");
     if (!ready) return ready.error();
   }
   return MeasureRanges(console, sensor, options.rig, options.played);
@@ -125,7 +127,7 @@ void AddRangesCommand(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand(
       "ranges", "Measure a person's comfortable range for an interface, or merge a group's");
   command->add_option("--interface", options->played.interface,
-                      "Interface: wrist, arm, leg or joystick");
+                      "Interface: wrist, arm, leg, joystick or boards");
   command->add_option("--turn-by", options->played.turn_by,
                       "What turns with the interface leg: head, trunk or feet (default: head)");
   command->add_option("--participant", options->participant, "Code of the person");

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/board/geometry.h"
+#include "common/board/layout.h"
 #include "common/recording/recorded_session.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
@@ -12,7 +14,12 @@ namespace {
 
 using stream::DeviceRole;
 
+/// A board that has been silent for longer is missing, as for the interface.
+constexpr double kBoardTimeoutS = 0.25;
+
 bool Uses(const std::string& interface, DeviceRole role) {
+  const bool board = role == DeviceRole::kLeftBoard || role == DeviceRole::kRightBoard;
+  if (interface == "boards") return board;
   const bool leg = role == DeviceRole::kLeftLeg || role == DeviceRole::kRightLeg;
   const bool hand = role == DeviceRole::kLeftHand || role == DeviceRole::kRightHand;
   return interface == "leg" ? leg : hand;
@@ -20,7 +27,9 @@ bool Uses(const std::string& interface, DeviceRole role) {
 
 }  // namespace
 
-std::vector<std::string> RangeChannels() { return {"status", "features", "nunchuk"}; }
+std::vector<std::string> RangeChannels() {
+  return {"status", "features", "nunchuk", "boards", "setup"};
+}
 
 RangeFeed::RangeFeed(const ranges::Played& played, std::string rig)
     : played_(played), rig_(std::move(rig)), meter_(played) {}
@@ -48,11 +57,45 @@ void RangeFeed::TakeStick(double time_s, const v1::NunchukSamples& samples) {
   }
 }
 
+void RangeFeed::TakeBoards(double time_s, const v1::BoardSamples& samples) {
+  bool taken = false;
+  for (const v1::BoardSample& message : samples.samples()) {
+    const auto device = devices_.find(message.device());
+    if (device == devices_.end() || !Uses(played_.interface, device->second.role)) continue;
+    if (!Follows(device->second.rig, device->second.role)) continue;
+    if (!std::isfinite(message.total_n()) || !std::isfinite(message.cop_x_m()) ||
+        !std::isfinite(message.cop_y_m())) {
+      continue;
+    }
+    stream::BoardLayout layout;
+    for (const v1::RigSetup& rig : setup_.rigs()) {
+      if (rig.rig() == rig_) layout = wire::FromProto(rig).layout;
+    }
+    layout = board::LayoutOr(layout);
+    const bool left = device->second.role == DeviceRole::kLeftBoard;
+    const double forward_m =
+        board::InWorld(left ? layout.left : layout.right, message.cop_x_m(), message.cop_y_m()).x();
+    const double load_n = message.top_left_n() + message.top_right_n() + message.bottom_left_n() +
+                          message.bottom_right_n();
+    (left ? left_ : right_) = {
+        {load_n, message.cop_valid(), forward_m}, time_s, message.simulated()};
+    taken = true;
+  }
+  const auto sends = [time_s](const Foot& foot) {
+    return foot.seen_s >= 0 && time_s - foot.seen_s <= kBoardTimeoutS;
+  };
+  if (!taken || !sends(left_) || !sends(right_)) return;
+  meter_.AddStance(time_s, board::StanceOn(left_.load, right_.load),
+                   left_.simulated || right_.simulated);
+}
+
 void RangeFeed::Take(const v1::Tick& tick) {
   if (tick.has_status()) TakeStatus(tick.status());
+  if (tick.has_setup()) setup_ = tick.setup();
   if (tick.snapshot()) return;
   const double time_s = NanosecondsToSeconds(tick.host_ns());
   if (played_.interface == "joystick") return TakeStick(time_s, tick.nunchuk());
+  if (played_.interface == "boards") return TakeBoards(time_s, tick.boards());
   for (const v1::RigFeatures& message : tick.features().rigs()) {
     const stream::RigFeatures rig = wire::FromProto(message);
     bool follows = false;
@@ -81,12 +124,14 @@ Result<RecordedRanges> RangesInRecording(const std::string& path, const ranges::
   for (const recording::RecordedTick& recorded : sensors->ticks) {
     auto tick =
         recording::ReadTick(recorded, {v1::Tick::kStatusFieldNumber, v1::Tick::kFeaturesFieldNumber,
-                                       v1::Tick::kNunchukFieldNumber});
+                                       v1::Tick::kNunchukFieldNumber, v1::Tick::kBoardsFieldNumber,
+                                       v1::Tick::kSetupFieldNumber});
     if (!tick) return InvalidData(path + ": " + tick.error().message);
     const double time_s = NanosecondsToSeconds(recorded.host_ns - start_ns);
     if (time_s < from_s || (to_s > 0 && time_s > to_s)) {
       tick->clear_features();
       tick->clear_nunchuk();
+      tick->clear_boards();
     }
     feed.Take(*tick);
   }

@@ -33,10 +33,19 @@ class RangeFeed {
   bool Follows(const std::string& rig, stream::DeviceRole role);
   void TakeStatus(const v1::DeviceStatusList& status);
   void TakeStick(double time_s, const v1::NunchukSamples& samples);
+  void TakeBoards(double time_s, const v1::BoardSamples& samples);
 
   ranges::Played played_;
   std::string rig_;
+  struct Foot {
+    board::FootLoad load;
+    double seen_s = -1;  ///< When its board last sent; negative: not yet.
+    bool simulated = false;
+  };
+
   std::map<std::uint32_t, Device> devices_;
+  v1::SetupState setup_;
+  Foot left_, right_;
   ranges::Meter meter_;
 };
 

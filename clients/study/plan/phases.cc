@@ -44,7 +44,7 @@ void AddInterface(const Protocol& protocol, const std::string& participant,
   };
   if (!first && protocol.rest_s > 0) add(PhaseKind::kRest, "rest").duration_s = protocol.rest_s;
   add(PhaseKind::kDemonstration, "demonstration").track = protocol.practice_track;
-  if (protocol.settings.personal_ranges && interface != "boards") {
+  if (protocol.settings.personal_ranges) {
     add(PhaseKind::kRanges, "ranges").track = protocol.practice_track;
   }
   if (protocol.practice_s > 0) {

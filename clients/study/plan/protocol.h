@@ -34,8 +34,8 @@ struct DeviceGate {
 /// What a study chooses of its interfaces.
 struct InterfaceSettings {
   std::string turn_by = "head";  ///< What turns with the interface leg: head, trunk or feet.
-  /// Each participant's own ranges are measured before practice. Where an interface has none of its
-  /// own, such as boards, its table is the one of `tables` or the built-in one.
+  /// Each participant's own ranges are measured before practice. Where that is given up, the table
+  /// is the one of `tables` or the built-in one.
   bool personal_ranges = false;
   /// Files of mapping tables by interface, such as a group's; beside the protocol.
   std::map<std::string, std::string> tables;

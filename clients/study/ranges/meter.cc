@@ -26,7 +26,9 @@ const double kTogetherRad = DegreesToRadians(75), kAlternateRad = DegreesToRadia
 const double kBentRad = DegreesToRadians(-44);
 /// For how long a motion must be seen, s.
 constexpr double kLeastAlternateS = 2, kLeastArmsS = 1.5, kLeastTogetherS = 1.5, kLeastTurnS = 1,
-                 kLeastStickS = 0.5;
+                 kLeastStickS = 0.5, kLeastStepsS = 4, kLeastStandS = 2;
+/// Heel rises that must be seen; each counts for the time that it may take.
+constexpr double kRiseS = 0.35, kLeastRisesS = 4 * kRiseS;
 /// At rest for longer, the next motion is another one.
 constexpr double kRestS = 0.6;
 /// A device is missing that is there for less than this share of the time.
@@ -49,6 +51,7 @@ bool Present(const DeviceFeatures* device) {
 }
 
 std::vector<DeviceRole> RolesOf(const Played& played) {
+  if (played.interface == "boards") return {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
   if (played.interface != "leg") return {DeviceRole::kLeftHand, DeviceRole::kRightHand};
   std::vector<DeviceRole> roles{DeviceRole::kLeftLeg, DeviceRole::kRightLeg};
   if (played.turn_by == "head") roles.push_back(DeviceRole::kHead);
@@ -192,6 +195,18 @@ void Meter::AddStick(double time_s, double x, double y, bool simulated) {
   }
 }
 
+void Meter::AddStance(double time_s, const board::Stance& stance, bool simulated) {
+  const double elapsed_s = Elapse(time_s);
+  simulated_ = simulated_ || simulated;
+  for (const DeviceRole role : RolesOf(played_)) present_s_[role] += elapsed_s;
+  const BoardMotion motion = boards_.Advance(time_s, stance);
+  if (motion.steps) Put(quantity::kFootHz, motion.foot_hz, elapsed_s);
+  if (motion.leans_known) {
+    Put(motion.steps ? quantity::kStepLean : quantity::kStandLean, motion.lean_right, elapsed_s);
+  }
+  if (motion.rose) Put(quantity::kRiseShare, motion.rise_share, kRiseS);
+}
+
 double Meter::SecondsOf(const char* quantity) const {
   const auto found = pools_.find(quantity);
   return found == pools_.end() ? 0 : found->second.seconds;
@@ -239,13 +254,18 @@ Result<Ranges> Meter::Measure() const {
     needed = {{quantity::kRestRadius, kLeastStickS, "a stick let go"},
               {quantity::kForwardRadius, kLeastStickS, "a stick pushed forwards"},
               {quantity::kSideRadius, kLeastStickS, "a stick pushed to a side"}};
+  } else if (played_.interface == "boards") {
+    needed = {{quantity::kFootHz, kLeastStepsS, "stepping in place"},
+              {quantity::kStepLean, kLeastStepsS, "stepping in place"},
+              {quantity::kRiseShare, kLeastRisesS, "rising quickly on the toes"},
+              {quantity::kStandLean, kLeastStandS, "standing with both feet loaded"}};
   } else if (played_.interface == "arm") {
     needed = {{quantity::kStraightHz, kLeastArmsS, "swinging straight arms in turns"},
               {quantity::kBentHz, kLeastArmsS, "swinging bent arms in turns"}};
   } else {
     needed = {{quantity::kAlternateHz, kLeastAlternateS, "moving left and right in turns"}};
   }
-  if (played_.interface != "joystick") {
+  if (played_.interface != "joystick" && played_.interface != "boards") {
     needed.push_back({quantity::kTogetherHz, kLeastTogetherS, "moving left and right together"});
     needed.push_back({quantity::kTogetherMps2, kLeastTogetherS, "moving left and right together"});
     needed.push_back({quantity::kTurnRight, kLeastTurnS, "what turns the character"});

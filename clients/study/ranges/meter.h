@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "clients/study/ranges/board_meter.h"
 #include "clients/study/ranges/ranges.h"
 #include "common/stream/sensor.h"
 
@@ -21,6 +22,9 @@ class Meter {
   void Add(double time_s, const stream::RigFeatures& rig, std::uint32_t mounted_roles);
   /// The stick of a Nunchuk: x -1 left to 1 right, y -1 back to 1 front.
   void AddStick(double time_s, double x, double y, bool simulated);
+
+  /// Two boards that both send.
+  void AddStance(double time_s, const board::Stance& stance, bool simulated);
 
   /// What was measured: the 5th and the 95th percentile of each quantity. NoDevice, with their
   /// roles, where devices were missing; a failure, with the motion to repeat, where a motion was
@@ -56,6 +60,7 @@ class Meter {
   Played played_;
   std::map<std::string, Pool> pools_;
   Motion motion_;
+  BoardMeter boards_;
   double time_s_ = -1;
   double seen_s_ = 0;     ///< With anything of the person's.
   double unequal_s_ = 0;  ///< Left and right at different frequencies.

@@ -10,10 +10,28 @@ std::vector<Motion> OfStick() {
           {"Let it go.", 4}};
 }
 
+std::vector<Motion> OfBoards() {
+  return {{"Step in place, as slowly as is comfortable.", 5},
+          {"Faster: jog as fast as is comfortable, one foot on the boards.", 4},
+          {"Stand. Rise quickly on your toes and come down, three times, gently.", 5},
+          {"Three times, as hard as is comfortable, toes on the boards.", 5},
+          {"Step in place and lean to the left, as far as is comfortable.", 4},
+          {"Step and lean to the right.", 4},
+          {"Stand on both feet and lean to the left, as far as is comfortable.", 3},
+          {"Stand and lean to the right.", 3}};
+}
+
 }  // namespace
+
+double DurationOf(const Played& played) {
+  double duration_s = 0;
+  for (const Motion& motion : MotionsOf(played)) duration_s += motion.duration_s;
+  return duration_s;
+}
 
 std::vector<Motion> MotionsOf(const Played& played) {
   if (played.interface == "joystick") return OfStick();
+  if (played.interface == "boards") return OfBoards();
   if (played.interface == "arm") {
     return {{"Swing straight arms in turns, as slowly as is comfortable.", 4},
             {"Faster: as fast as is comfortable.", 3},

@@ -30,6 +30,12 @@ inline constexpr const char* kTurnRight = "turn_right";
 inline constexpr const char* kRestRadius = "rest_radius";        ///< Of a stick that is let go.
 inline constexpr const char* kForwardRadius = "forward_radius";  ///< Of a stick that is pushed.
 inline constexpr const char* kSideRadius = "side_radius";
+inline constexpr const char* kFootHz = "foot_hz";  ///< Stepping in place on boards, of one foot.
+/// Push of a heel rise above the weight, as its share.
+inline constexpr const char* kRiseShare = "rise_share";
+/// Load that leans to the right, -1 to 1: stepping the mean of two steps; standing.
+inline constexpr const char* kStepLean = "step_lean";
+inline constexpr const char* kStandLean = "stand_lean";
 }  // namespace quantity
 
 /// Ends of a comfortable range: robust, percentiles of what was seen.
@@ -42,12 +48,15 @@ struct Range {
 /// By quantity.
 using Ranges = std::map<std::string, Range>;
 
-/// One sentence for each thing that a person does, with its time; about 20 s together.
+/// One sentence for each thing that a person does, with its time; about 20 s together, of boards
+/// 33 s.
 struct Motion {
   std::string prompt;
   double duration_s = 0;
 };
 std::vector<Motion> MotionsOf(const Played& played);
+/// Their times together, s.
+double DurationOf(const Played& played);
 
 /// Where a table's numbers come from.
 struct Provenance {

@@ -25,6 +25,12 @@ constexpr double kLeastTurnDeg = 12, kMostTurnDeg = 80, kLeastTurnShare = 0.15;
 /// far beyond the rest its centre reaches.
 constexpr double kLeastStick = 0.6, kFullStick = 0.95, kRunStick = 0.6, kCentreMargin = 0.1;
 
+/// The same of boards, as shares of the load; and where an interface must begin to take a standing
+/// person's lean for a turn, who leans by 0.2 without meaning it.
+constexpr double kLeastStepLean = 0.15, kLeastStandLean = 0.3, kUnmeantLean = 0.22;
+/// A heel rise counts from this share of the gentlest comfortable push on.
+constexpr double kRiseCountsShare = 0.8;
+
 std::string Text(double value) { return text::Fixed(value, value < 10 ? 2 : 1); }
 double Rounded(double value) { return std::round(1e3 * value) / 1e3; }
 
@@ -41,7 +47,8 @@ class Table {
 
   Result<void> Fill() {
     if (played_.interface == "joystick") return FillStick();
-    const auto swings = played_.interface == "arm" ? FillArms() : FillSwings();
+    if (played_.interface == "boards") return FillBoards();
+    const auto swings = played_.interface == "arm" ? FillArms() : FillGaits(quantity::kAlternateHz);
     if (!swings) return swings;
     if (const auto jumps = FillJumps(); !jumps) return jumps;
     return FillTurn();
@@ -49,6 +56,9 @@ class Table {
 
  private:
   const Range& Of(const char* quantity) const { return ranges_.at(quantity); }
+  double SmallerSide(const char* quantity) const {
+    return std::min(-Of(quantity).low, Of(quantity).high);
+  }
   void Set(const char* key, double value) { table_[key] = Rounded(value); }
 
   Result<void> CheckVaried(const char* quantity, const std::string& what) const {
@@ -59,10 +69,10 @@ class Table {
 
   /// Walking below the border, running above it. It stays where the table has it as long as both
   /// gaits have their share of what the person can do.
-  Result<void> FillSwings() {
-    const auto varied = CheckVaried(quantity::kAlternateHz, "the frequency of the motion in turns");
+  Result<void> FillGaits(const char* quantity) {
+    const auto varied = CheckVaried(quantity, "the frequency of the motion in turns");
     if (!varied) return varied;
-    const Range& hz = Of(quantity::kAlternateHz);
+    const Range& hz = Of(quantity);
     const double share_hz = kLeastGaitShare * (hz.high - hz.low);
     const double border_hz = std::clamp(table_["walk_run_border_hz"].get<double>(),
                                         hz.low + share_hz, hz.high - share_hz);
@@ -71,6 +81,33 @@ class Table {
     Set("run_frequency_min_hz", border_hz);
     Set("run_frequency_max_hz", hz.high);
     Set("walk_run_border_hz", border_hz);
+    return {};
+  }
+
+  Result<void> FillBoards() {
+    if (const auto gaits = FillGaits(quantity::kFootHz); !gaits) return gaits;
+    const Range& push = Of(quantity::kRiseShare);
+    if (push.high < kLeastAmplitudeRatio * push.low) {
+      return Again("the push of the heel rises, as a share of the weight,", push, "",
+                   "rise gently first and clearly harder then");
+    }
+    Set("jump_overshoot_min", push.low);
+    Set("jump_overshoot_max", push.high);
+    Set("heel_rise_overshoot",
+        std::min(table_["heel_rise_overshoot"].get<double>(), kRiseCountsShare * push.low));
+    const double steps = SmallerSide(quantity::kStepLean);
+    if (steps < kLeastStepLean) {
+      return Again("the lean of the steps, as a share of the load,", Of(quantity::kStepLean), "",
+                   "lean further while you step, to both sides");
+    }
+    Set("turn_above", kTurnShare * steps);
+    Set("straight_below", kStraightShare * kTurnShare * steps);
+    const double stands = SmallerSide(quantity::kStandLean);
+    if (stands < kLeastStandLean) {
+      return Again("the lean of standing, as a share of the load,", Of(quantity::kStandLean), "",
+                   "lean further on both feet, to both sides");
+    }
+    Set("standing_turn_above", std::max(kUnmeantLean, kTurnShare * stands));
     return {};
   }
 
@@ -105,7 +142,7 @@ class Table {
   Result<void> FillTurn() {
     const bool feet = played_.interface == "leg" && played_.turn_by == "feet";
     const Range& right = Of(quantity::kTurnRight);
-    const double smaller = std::min(-right.low, right.high);
+    const double smaller = SmallerSide(quantity::kTurnRight);
     const std::string unit = feet ? "" : " degrees to the right";
     if (smaller < (feet ? kLeastTurnShare : kLeastTurnDeg)) {
       return Again("the inclination", right, unit, "incline further, to both sides");

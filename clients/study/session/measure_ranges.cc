@@ -30,8 +30,8 @@ class SensorLink {
   bool ticked() const { return ticked_; }
   bool live() const { return state_ == transport::LinkState::kLive; }
   const std::string& why() const { return why_; }
-  /// The newest device status, which a new feed begins with.
-  const v1::Tick& status() const { return status_; }
+  /// The newest device status and setup, which a new feed begins with.
+  const v1::Tick& known() const { return known_; }
 
  private:
   static transport::ClientOptions OptionsOf(const transport::Address& address) {
@@ -49,7 +49,8 @@ class SensorLink {
     transport::ClientHandlers handlers;
     handlers.on_tick = [&link](const v1::Tick& tick) {
       link.ticked_ = true;
-      if (tick.has_status()) link.status_ = tick;
+      if (tick.has_status()) *link.known_.mutable_status() = tick.status();
+      if (tick.has_setup()) *link.known_.mutable_setup() = tick.setup();
       if (link.feed_ != nullptr) link.feed_->Take(tick);
     };
     handlers.on_state = [&link](transport::LinkState state, const std::string& why) {
@@ -61,7 +62,7 @@ class SensorLink {
 
   RangeFeed* feed_ = nullptr;
   bool ticked_ = false;
-  v1::Tick status_;
+  v1::Tick known_;
   transport::LinkState state_ = transport::LinkState::kConnecting;
   std::string why_ = "not connected";
   transport::Client client_;
@@ -71,7 +72,7 @@ class SensorLink {
 Result<std::string> FindRig(Console& console, SensorLink& link, const std::string& rig,
                             const ranges::Played& played) {
   RangeFeed look(played, rig);
-  look.Take(link.status());
+  look.Take(link.known());
   link.Feed(&look);
   const Waited waited = console.RunUntil([] { return false; }, kLookS);
   link.Feed(nullptr);
@@ -95,7 +96,7 @@ Result<RecordedRanges> MeasureRanges(Console& console, const transport::Address&
   const auto found = FindRig(console, link, rig, played);
   if (!found) return found.error();
   RangeFeed feed(played, *found);
-  feed.Take(link.status());
+  feed.Take(link.known());
   link.Feed(&feed);
   const std::vector<ranges::Motion> motions = ranges::MotionsOf(played);
   for (std::size_t i = 0; i < motions.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "clients/study/session/run_session.h"
 #include "common/clock/clock.h"
 #include "common/config/data_file.h"
+#include "common/text/number.h"
 
 namespace footing::study {
 namespace {
@@ -56,8 +57,9 @@ Result<void> SessionRun::MeasureRanges(const plan::Phase& phase) {
   const ranges::Played played{interface, context_.protocol.settings.turn_by};
   for (;;) {
     Show("Measure the participant's own ranges: read each motion aloud.", "Enter begins");
-    const auto ready = context_.console.Ask(
-        "Next: the participant's own ranges, 20 s. Read each motion aloud. Press Enter to begin:");
+    const auto ready = context_.console.Ask("Next: the participant's own ranges, " +
+                                            text::Fixed(ranges::DurationOf(played), 0) +
+                                            " s. Read each motion aloud. Press Enter to begin:");
     if (!ready) return ready.error();
     const auto measured =
         study::MeasureRanges(context_.console, context_.options.sensor, "", played);

@@ -11,8 +11,6 @@ using stream::Gait;
 
 constexpr double kWalkStepsPerCycle = 2;
 constexpr double kRunStepsPerCycle = 1;
-/// The weight is the mean load over this time.
-constexpr double kWeighingS = 3;
 /// Below this share of the weight both feet are off, once it lasts; they are back after a while.
 constexpr double kOffShare = 0.25;
 constexpr double kOffS = 0.1;
@@ -28,28 +26,8 @@ constexpr double kWalkedS = 1;
 constexpr double kRunCycles = 1;
 constexpr double kWalkCycles = 0.5;
 
-/// Load and COP of both boards together.
-struct Stance {
-  double load_n = 0;
-  double left_share = 0.5;
-  double forward_m = 0;
-};
-
-Stance StanceOn(const Inputs& inputs) {
-  const double left_n = std::max(0.0, inputs.left_board.LoadN());
-  const double right_n = std::max(0.0, inputs.right_board.LoadN());
-  Stance stance;
-  stance.load_n = left_n + right_n;
-  if (stance.load_n <= 0) return stance;
-  stance.left_share = left_n / stance.load_n;
-  double moment_nm = 0, load_n = 0;
-  for (const BoardInput* board : {&inputs.left_board, &inputs.right_board}) {
-    if (!board->cop_valid) continue;
-    moment_nm += board->LoadN() * board->cop_x_m;
-    load_n += board->LoadN();
-  }
-  if (load_n > 0) stance.forward_m = moment_nm / load_n;
-  return stance;
+board::FootLoad FootOn(const BoardInput& board) {
+  return {board.LoadN(), board.cop_valid, board.cop_x_m};
 }
 
 }  // namespace
@@ -89,23 +67,16 @@ BoardsInterface::BoardsInterface(const BoardsMapping& mapping, bool may_be_left)
       turn_(mapping.turn),
       held_jump_(mapping.jump_after_s) {}
 
-/// The first seconds count in full, so that a weight is known at once.
-void BoardsInterface::Weigh(double load_n, double elapsed_s) {
-  weighed_s_ = std::min(kWeighingS, weighed_s_ + elapsed_s);
-  const double share = weighed_s_ > elapsed_s ? elapsed_s / weighed_s_ : 1;
-  weight_n_ += share * (load_n - weight_n_);
-}
-
 bool BoardsInterface::Leaves(double load_n, double elapsed_s) {
-  const double on_n = std::max(mapping_.standing_load_n, kOffShare * weight_n_);
+  const double on_n = std::max(mapping_.standing_load_n, kOffShare * weight_.n());
   gone_s_ = load_n < on_n ? gone_s_ + elapsed_s : 0;
   back_s_ = load_n < on_n ? 0 : back_s_ + elapsed_s;
-  if (gone_s_ > kGoneS) weight_n_ = 0;
+  if (gone_s_ > kGoneS) weight_ = {};
   const bool leaves = !off_ && gone_s_ > kOffS;
   if (leaves) off_ = true;
   if (off_ && back_s_ > kBackS) {
     off_ = false;
-    weighed_s_ = 0;
+    weight_.WeighAgain();
   }
   if (!off_) return false;
   steps_.Reset();
@@ -163,15 +134,16 @@ biped::GaitCommand BoardsInterface::Advance(double time_s, const Inputs& inputs)
     Describe(inputs, 0.5);
     return command_;
   }
-  const Stance stance = StanceOn(inputs);
+  const board::Stance stance =
+      board::StanceOn(FootOn(inputs.left_board), FootOn(inputs.right_board));
   const double push = heel_rise_.overshoot();
   const bool leaves = Leaves(stance.load_n, elapsed_s);
   bool rises = false;
   if (!off_) {
-    Weigh(stance.load_n, elapsed_s);
+    weight_.Advance(stance.load_n, elapsed_s);
     steps_.Advance(time_s, stance.left_share);
     rises =
-        heel_rise_.Advance(time_s, stance.load_n / weight_n_, stance.forward_m, steps_.even_s());
+        heel_rise_.Advance(time_s, stance.load_n / weight_.n(), stance.forward_m, steps_.even_s());
   }
   biped::GaitCommand command = StepCommand(time_s);
   if (steps_.stepping() && steps_.on_time()) {

@@ -1,12 +1,13 @@
 #pragma once
 
+#include "common/board/heel_rise.h"
+#include "common/board/stance.h"
+#include "common/board/step_cadence.h"
 #include "daemon/simulation/biped/command.h"
-#include "daemon/simulation/mapping/heel_rise.h"
 #include "daemon/simulation/mapping/held_jump.h"
 #include "daemon/simulation/mapping/inputs.h"
 #include "daemon/simulation/mapping/mapping_table.h"
 #include "daemon/simulation/mapping/settled_gait.h"
-#include "daemon/simulation/mapping/step_cadence.h"
 #include "daemon/simulation/mapping/swing_gait.h"
 #include "daemon/simulation/mapping/turn.h"
 
@@ -21,8 +22,8 @@ struct BoardsMapping {
   double jump_speed_max_mps = 0;
   double jump_after_s = 0;     ///< How long a heel rise goes on once the character jumps.
   double standing_load_n = 0;  ///< From here on somebody stands on the boards.
-  StepCadenceMapping steps;
-  HeelRiseMapping heel_rise;
+  board::StepBorders steps;
+  board::HeelRiseBorders heel_rise;
   TurnMapping turn;                ///< By the share that leans; while stepping.
   double standing_turn_above = 0;  ///< The same while standing.
 };
@@ -55,7 +56,6 @@ class BoardsInterface {
   const stream::InterfaceState& state() const { return state_; }
 
  private:
-  void Weigh(double load_n, double elapsed_s);
   /// Follows whether both feet are off; true when they have just left.
   bool Leaves(double load_n, double elapsed_s);
   biped::GaitCommand StepCommand(double time_s);
@@ -65,13 +65,12 @@ class BoardsInterface {
 
   BoardsMapping mapping_;
   bool may_be_left_;
-  StepCadence steps_;
-  HeelRise heel_rise_;
+  board::StepCadence steps_;
+  board::HeelRise heel_rise_;
   SettledGait settled_;
   Turn turn_;
   double time_s_ = 0;
-  double weight_n_ = 0;     ///< Mean load of who stands there; 0: nobody yet.
-  double weighed_s_ = 0;    ///< Over this time, at most a few seconds.
+  board::Weight weight_;    ///< Of who stands there.
   double gone_s_ = 0;       ///< How long both feet have been off.
   double back_s_ = 0;       ///< How long somebody has stood again.
   bool off_ = true;         ///< Both feet are off, or came back only just now.

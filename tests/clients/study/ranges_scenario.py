@@ -79,13 +79,71 @@ def check_measurement(stage):
     return tables
 
 
+def board_person():
+    """Rows of time, load, share on the right foot and COP forward, m, of who does the motions of boards: steps slowly and
+    fast, rises on the toes gently and hard, leans while stepping and while standing."""
+    phase = 0.0
+    # Duration, steps a second, push, lean of the steps, lean of standing.
+    for duration_s, step_hz, push, step_lean, lean in ((5, 1.2, 0, 0, 0), (4, 3.6, 0, 0, 0), (5, 0, 0.2, 0, 0),
+                                                       (5, 0, 0.5, 0, 0), (4, 2, 0, -0.3, 0), (4, 2, 0, 0.3, 0),
+                                                       (3, 0, 0, 0, -0.5), (3, 0, 0, 0, 0.5)):
+        for i in range(int(60 * duration_s)):
+            phase = (phase + step_hz / 120) % 1
+            border = 0.5 * (1 + step_lean)
+            away = min(1, min(phase, abs(phase - border), 1 - phase) / 0.05)
+            right = (0.5 + (0.49 if phase < border else -0.49) * away) if step_hz else 0.5 + lean / 2
+            rise = i / 60 % 1.6 - 1  # Seconds since the heels began to rise; each stands for 1 s before.
+            rises = push > 0 and 0 <= rise < 0.3
+            yield 75 * (1 + push * (rises and rise < 0.2)), right, 0.09 * rises
+
+
+def write_boards(folder):
+    """What both boards weigh, kg, by their corners; power buttons outwards."""
+    for side in ("left", "right"):
+        with open(folder / f"{side}.csv", "w", encoding="utf-8") as file:
+            file.write("time_s,tl_kg,tr_kg,bl_kg,br_kg\n")
+            rows = list(board_person()) * 2  # Whenever one begins to measure, everything is seen in 33 s.
+            for i, (load_kg, right, forward_m) in enumerate(rows):
+                part_kg = load_kg * (right if side == "right" else 1 - right) / 2
+                front = 0.5 + forward_m / 0.433  # Of the left board towards its plate's left side.
+                left_kg, right_kg = (part_kg * front, part_kg * (1 - front))[::1 if side == "left" else -1]
+                file.write(f"{i / 60},{left_kg},{right_kg},{left_kg},{right_kg}\n")
+
+
+def check_boards(stage):
+    """The same of two boards, live and from a recording."""
+    write_boards(stage.folder)
+    recording = stage.folder / "boards.mcap"
+    stage.start("footing-log", "record", "--connect", stage.sensor, "--out", recording, "--seconds", 38)
+    stage.start("footing-stream", "corners", "--left", stage.folder / "left.csv", "--right", stage.folder / "right.csv",
+                "--to", stage.devices)
+    stage.wait_for(lambda: "right_board" in stage.run("footing-ctl", "devices", "--connect", stage.sensor).stdout,
+                   "the boards")
+    live = measure(stage, stage.folder / "live_boards.json", "--now", interface="boards")
+    assert live.returncode == 0 and "[3/8] Stand. Rise quickly" in live.stderr, live
+    assert stage.processes.pop("footing-log").wait(30) == 0
+    recorded = measure(stage, stage.folder / "boards.json", "--recording", recording, interface="boards")
+    assert recorded.returncode == 0, recorded
+    for done in (live, recorded):
+        table = json.loads(done.stdout)["table"]
+        close(table["walk_frequency_min_hz"], 0.6)
+        close(table["run_frequency_max_hz"], 1.8)
+        close(table["jump_overshoot_min"], 0.2, 0.25)
+        close(table["jump_overshoot_max"], 0.5, 0.2)
+        close(table["turn_above"], 0.625 * 0.3, 0.15)
+        close(table["standing_turn_above"], 0.625 * 0.5, 0.15)
+        assert table["measured"]["simulated"], table["measured"]
+    stage.stop("footing-stream")
+
+
 def check_refusals(stage, tables):
     recording = stage.folder / "P01.mcap"
     for code, says, words in (
             (1, "exists", ["--recording", recording]),
             (1, "too small or too short", ["--recording", recording, "--to", 2, "--force"]),
             (3, "left_leg, right_leg, head are missing", ["--recording", recording, "--force", "--interface", "leg"]),
-            (2, "not of \"boards\"", ["--interface", "boards"]),
+            (3, "left_board, right_board are missing", ["--recording", recording, "--force", "--interface", "boards"]),
+            (2, "not of \"voice\"", ["--interface", "voice"]),
             (4, "not an MCAP file", ["--recording", tables[0]])):
         done = stage.run("footing-study", "ranges", "--participant", "P01", "--out", tables[0],
                          *(() if "--interface" in words else ("--interface", "wrist")), *words)
@@ -212,6 +270,7 @@ def main():
         stage.start_servers()
         tables = check_measurement(stage)
         check_refusals(stage, tables)
+        check_boards(stage)
         check_group(stage, tables)
         check_in_force(stage, tables[0])
         check_study(stage)

@@ -10,6 +10,7 @@
 #include "common/virtual/users/person.h"
 #include "daemon/offline/eval/chain/features_chain.h"
 #include "daemon/simulation/mapping/any_interface.h"
+#include "tests/clients/study/range_acts.h"
 
 namespace footing::study::ranges {
 namespace {
@@ -19,15 +20,7 @@ using stream::UserInterface;
 using testing::HasSubstr;
 using users::Intention;
 
-constexpr double kPeriodS = 0.01;
 constexpr double kMostMps2 = 33;  // Of a Wiimote: a little over 3 g.
-
-/// What a synthetic user does for a while; `amplitude` is a share of the user's own.
-struct Act {
-  Intention wanted;
-  double duration_s = 0;
-  double amplitude = 1;
-};
 
 /// The motions of MotionsOf for two limbs, from slow to fast, low to high, left to right.
 std::vector<Act> Motions(bool arms = false) {
@@ -86,14 +79,6 @@ Result<nlohmann::ordered_json> Table(const Played& played, const Meter& meter) {
   return TableOf(played, *ranges,
                  {.participants = {"P01"}, .when = "now", .how = "live", .by = "t"},
                  BuiltIn(played.interface));
-}
-
-users::Style StyleOf(double tempo, double amplitude) {
-  users::Style style;
-  style.tempo = tempo;
-  style.amplitude = amplitude;
-  style.tempo_drift = 0.01;
-  return style;
 }
 
 /// The synthetic users' slowest and fastest motion at tempo 1 (common/virtual/users/limb_body.cc).

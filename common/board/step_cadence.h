@@ -2,9 +2,10 @@
 
 #include <optional>
 
-namespace footing::mapping {
+namespace footing::board {
 
-struct StepCadenceMapping {
+/// From where on a foot counts as the standing one, and a step as none.
+struct StepBorders {
   double stance_above = 0;    ///< Share of the load on a foot above which it alone bears it.
   double longest_step_s = 0;  ///< Without a change of the foot for longer: standing.
 };
@@ -13,11 +14,11 @@ struct StepCadenceMapping {
 /// they alternate, and to which side the person leans. A plain value.
 class StepCadence {
  public:
-  explicit StepCadence(const StepCadenceMapping& mapping) : mapping_(mapping) {}
+  explicit StepCadence(const StepBorders& borders) : borders_(borders) {}
 
   /// Times must not decrease.
   void Advance(double time_s, double left_share);
-  void Reset() { *this = StepCadence(mapping_); }
+  void Reset() { *this = StepCadence(borders_); }
 
   /// Whether the person steps: the feet have taken turns, and the next change is not overdue.
   bool stepping() const { return steps_ >= 2; }
@@ -26,6 +27,8 @@ class StepCadence {
   /// Of one foot, half the steps a second; meaningful while stepping. A step that takes longer than
   /// those before shows it before its end.
   double frequency_hz() const;
+  /// The same of the last two steps alone, without the present one.
+  double last_frequency_hz() const { return 1 / (2 * step_s_); }
   /// How the load leans to the right, -1 to 1: stepping, its mean over the last two steps;
   /// standing, over 0.4 s. None while a step says nothing yet.
   std::optional<double> lean_right() const;
@@ -35,7 +38,7 @@ class StepCadence {
  private:
   void ChangeFoot(double time_s, int foot);
 
-  StepCadenceMapping mapping_;
+  StepBorders borders_;
   bool started_ = false;
   double time_s_ = 0;
   int foot_ = 0;          ///< That bore the load alone last: -1 left, 1 right, 0 none.
@@ -50,4 +53,4 @@ class StepCadence {
   double even_s_ = 0;
 };
 
-}  // namespace footing::mapping
+}  // namespace footing::board

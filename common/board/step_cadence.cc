@@ -1,9 +1,9 @@
-#include "daemon/simulation/mapping/step_cadence.h"
+#include "common/board/step_cadence.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace footing::mapping {
+namespace footing::board {
 namespace {
 
 /// Share of the load from which a foot takes part in standing.
@@ -46,8 +46,8 @@ void StepCadence::Advance(double time_s, double left_share) {
   even_s_ = even ? even_s_ + elapsed_s : 0;
   const bool both = left_share > kLoadedShare && left_share < 1 - kLoadedShare;
   both_s_ = both ? both_s_ + elapsed_s : 0;
-  const int foot = left_share > mapping_.stance_above       ? -1
-                   : left_share < 1 - mapping_.stance_above ? 1
+  const int foot = left_share > borders_.stance_above       ? -1
+                   : left_share < 1 - borders_.stance_above ? 1
                    : steps_ == 0 && even                    ? 0
                                                             : foot_;
   if (foot == 0) {
@@ -56,7 +56,7 @@ void StepCadence::Advance(double time_s, double left_share) {
     ChangeFoot(time_s, foot);
   }
   const double longest_s =
-      stepping() ? std::min(mapping_.longest_step_s, kOverdue * step_s_) : mapping_.longest_step_s;
+      stepping() ? std::min(borders_.longest_step_s, kOverdue * step_s_) : borders_.longest_step_s;
   if (time_s - changed_s_ > longest_s) steps_ = 0;
   standing_lean_ += (lean - standing_lean_) * (1 - std::exp(-elapsed_s / kStandingLeanS));
 }
@@ -73,4 +73,4 @@ std::optional<double> StepCadence::lean_right() const {
   return standing_lean_;
 }
 
-}  // namespace footing::mapping
+}  // namespace footing::board

@@ -1,8 +1,9 @@
 #pragma once
 
-namespace footing::mapping {
+namespace footing::board {
 
-struct HeelRiseMapping {
+/// What a heel rise must exceed.
+struct HeelRiseBorders {
   double forward_m = 0;   ///< How far the COP goes towards the toes.
   double overshoot = 0;   ///< By which share of the weight the load exceeds it.
   double together_s = 0;  ///< Both within this time.
@@ -14,18 +15,18 @@ struct HeelRiseMapping {
 /// pressure too little. A plain value.
 class HeelRise {
  public:
-  explicit HeelRise(const HeelRiseMapping& mapping) : mapping_(mapping) {}
+  explicit HeelRise(const HeelRiseBorders& borders) : borders_(borders) {}
 
   /// True when a rise is complete. `load_share`: load over weight. `forward_m`: COP in W.
   /// `even_s`: for how long both feet have been loaded alike. Times must not decrease.
   bool Advance(double time_s, double load_share, double forward_m, double even_s);
-  void Reset() { *this = HeelRise(mapping_); }
+  void Reset() { *this = HeelRise(borders_); }
 
   /// Largest load of the last push, above the weight, as its share.
   double overshoot() const { return peak_ - 1; }
 
  private:
-  HeelRiseMapping mapping_;
+  HeelRiseBorders borders_;
   bool started_ = false;
   double time_s_ = 0;
   double heels_m_ = 0;       ///< Where the COP is while the heels are down.
@@ -36,4 +37,4 @@ class HeelRise {
   double peak_ = 1;
 };
 
-}  // namespace footing::mapping
+}  // namespace footing::board
