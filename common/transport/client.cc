@@ -87,7 +87,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
            if (!self || attempt != self->attempt_) return;
            if (!socket) {
              self->Retry(LinkState::kConnecting,
-                         "waiting for a server on " + socket.error().message);
+                         WaitingText(socket.error().message, self->close_.text));
              return;
            }
            self->OnConnected(std::move(*socket));

@@ -59,4 +59,9 @@ v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_
   return message;
 }
 
+std::string WaitingText(const std::string& dial_error, const std::string& last_reason) {
+  return "waiting for a server on " + dial_error +
+         (last_reason.empty() ? "" : "; the last one said: " + last_reason);
+}
+
 }  // namespace footing::transport

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "common/transport/client.h"
 #include "footing/v1/session.pb.h"
@@ -18,5 +19,9 @@ v1::Envelope MakeSubscribe(const ClientOptions& options, std::uint64_t epoch,
 v1::Envelope MakeRefill(std::uint64_t from_sequence, std::uint64_t to_sequence);
 v1::Envelope MakePing(std::uint64_t id, std::int64_t now_ns);
 v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_t now_ns);
+
+/// What a client that finds nobody says: the dial's error, and the reason that the server gave when
+/// it ended the last connection, if it did.
+std::string WaitingText(const std::string& dial_error, const std::string& last_reason);
 
 }  // namespace footing::transport

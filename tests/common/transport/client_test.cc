@@ -107,6 +107,10 @@ TEST_F(ClientTest, TheServersGoodbyeIsPassedOn) {
   server_->Stop("out of coffee");
   ASSERT_TRUE(RunUntilState(LinkState::kConnecting));
   EXPECT_NE(states_.back().second.find("out of coffee"), std::string::npos);
+  // Nor is it forgotten when the next dial fails.
+  EXPECT_TRUE(RunUntil([&] {
+    return states_.back().second.ends_with("no such file; the last one said: out of coffee");
+  })) << states_.back().second;
 }
 
 TEST_F(ClientTest, ARefusalIsAStateOfItsOwnWithTheServersWords) {

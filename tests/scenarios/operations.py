@@ -1,0 +1,204 @@
+"""Both servers as an administrator sees them: status, metrics in Prometheus' own parser, reload on SIGHUP, origins of the config,
+and a stop that every client can explain.
+
+Usage: operations.py BINARY_FOLDER
+"""
+import http.client
+import json
+import re
+import signal
+import socket
+import sys
+import time
+
+from harness import Stage
+
+try:
+    from prometheus_client.parser import text_string_to_metric_families
+except ImportError:  # Another Python than Debian's, which has the package.
+    sys.path.append("/usr/lib/python3/dist-packages")
+    from prometheus_client.parser import text_string_to_metric_families
+
+UNITS = ("seconds", "hertz", "bytes", "ratio", "ticks")
+COUNTED = ("footing_sessions", "footing_build_info", "footing_device_live", "process_open_fds")
+MOST_STOP_S = 3
+PAUSE_S = 0.4  # Beyond the 0.1 s of ticks that are made up for.
+
+
+class UnixHttp(http.client.HTTPConnection):
+    def __init__(self, address):
+        super().__init__("footing", timeout=10)
+        self.path = address.removeprefix("unix:")
+
+    def connect(self):
+        self.sock = socket.socket(socket.AF_UNIX)
+        self.sock.settimeout(10)
+        self.sock.connect(self.path)
+
+
+def metrics_of(address):
+    """Samples by name: a list of (labels, value)."""
+    connection = UnixHttp(address)
+    connection.request("GET", "/metrics")
+    response = connection.getresponse()
+    text = response.read().decode()
+    assert response.status == 200 and "version=0.0.4" in response.headers["Content-Type"], response.headers
+    samples = {}
+    for family in text_string_to_metric_families(text):
+        assert family.documentation, family.name
+        assert family.type in ("counter", "gauge"), family
+        assert (family.type == "counter") == (f"# TYPE {family.name}_total" in text), family.name
+        is_named = family.type == "counter" or family.name.endswith(UNITS) or family.name in COUNTED
+        assert is_named, f"{family.name} has no unit"
+        for sample in family.samples:
+            samples.setdefault(sample.name, []).append((sample.labels, sample.value))
+    return samples
+
+
+def log_of(stage, name):
+    return (stage.folder / f"{name}.log").read_text()
+
+
+def status_of(stage, address):
+    return stage.run_json("footing-ctl", "--connect", address, "status")
+
+
+def check_status_and_metrics(stage, metrics):
+    def settled():
+        stats = status_of(stage, stage.sensor)["stats"]
+        live = [device for device in stats["devices"] if device["report_rate_hz"] > 50]
+        clocks = [session for session in stats["sessions"] if session["clock_offset_s"] is not None]
+        return stats if stats["ticks"]["rate_hz"] > 0 and len(live) == 2 and clocks else None
+
+    stats = stage.wait_for(settled, "two devices and a client's clock in the stats", 20)
+    assert stats["ticks"]["ticks"] > 0 and stats["uptime_s"] > 0, stats
+    clients = {session["client"]: session for session in stats["sessions"]}
+    sim = clients["footing-sim"]
+    assert sim["role"] in ("view", "control", "log") and sim["ticks_sent"] > 0, sim
+    assert abs(sim["clock_offset_s"]) <= sim["clock_uncertainty_s"] + 1e-4, f"one clock on one host: {sim}"
+    simulation = status_of(stage, stage.simulation)["stats"]
+    assert simulation["ticks"]["ticks"] > 0 and simulation["devices"] == [], simulation
+    assert "ticks a second" in stage.run("footing-ctl", "--connect", stage.sensor, "status").stdout
+
+    samples = metrics_of(metrics["sensor"])
+    assert samples["footing_build_info"][0][0]["program"] == "footingd", samples["footing_build_info"]
+    assert samples["footing_ticks_total"][0][1] >= stats["ticks"]["ticks"], samples["footing_ticks_total"]
+    serials = {labels["serial"] for labels, _ in samples["footing_device_report_rate_hertz"]}
+    assert serials == {device["serial"] for device in stats["devices"]}, serials
+    assert all(0 <= ratio <= 1 for _, ratio in samples["footing_device_battery_ratio"]), samples
+    assert {"footing-sim"} <= {labels["client"] for labels, _ in samples["footing_session_lag_seconds"]}, samples
+    assert 1e6 < samples["process_resident_memory_bytes"][0][1] < 1e9, samples
+    assert "footing_ticks_total" in metrics_of(metrics["simulation"])
+
+
+def check_metrics_limits(metrics):
+    """Idle connections hold no more than their places, and not for long."""
+    idle = []
+    for _ in range(20):
+        connection = socket.socket(socket.AF_UNIX)
+        connection.settimeout(10)
+        connection.connect(metrics["sensor"].removeprefix("unix:"))
+        idle.append(connection)
+    began_s = time.monotonic()
+    for connection in idle:
+        assert connection.recv(1) == b"", "an idle connection is closed"
+        connection.close()
+    assert time.monotonic() - began_s < 9, "after its 5 s"
+    assert metrics_of(metrics["sensor"])
+
+
+def check_reload(stage, config):
+    daemon = stage.processes["footingd"]
+
+    def reload(values, until):
+        config.write_text(json.dumps(values))
+        daemon.send_signal(signal.SIGHUP)
+        stage.wait_for(lambda: until in log_of(stage, "footingd"), f'"{until}" in the log')
+
+    reload({"stale_after_s": 2.5, "max_sessions": 3, "max_sessions_per_user": 3, "tick_rate_hz": 50},
+           "takes effect after a restart: tick_rate_hz 100.0 -> 50.0")
+    assert re.search(r"config reloaded: stale_after_s 0.5 -> 2.5, max_sessions 256 -> 3", log_of(stage, "footingd"))
+    reload({"stale_after_s": 99}, "config not reloaded: the one in force stays")
+    reload({"stale_after_s": 2.5, "max_sessions": 3, "max_sessions_per_user": 3}, "nothing has changed")
+    stage.processes["footing-sim"].send_signal(signal.SIGHUP)
+    stage.wait_for(lambda: "nothing has changed" in log_of(stage, "footing-sim"), "footing-sim to reload")
+    stats = status_of(stage, stage.sensor)["stats"]
+    assert 80 < stats["ticks"]["rate_hz"] < 120, stats["ticks"]
+
+
+def check_origins(stage, config):
+    config.write_text('{\n  "stale_after_s": 2,\n  "camera": true\n}\n')
+    done = stage.run("footingd", "--config", config, "--set", "camera=false", "--listen", "unix:/tmp/x",
+                     "--print-config", "--origin")
+    shown = json.loads(done.stdout)
+    assert shown["stale_after_s"] == {"value": 2.0, "origin": f"{config}:2"}, shown
+    assert shown["camera"] == {"value": False, "origin": "--set"}, shown
+    assert shown["listen"] == {"value": ["unix:/tmp/x"], "origin": "--listen"}, shown
+    assert shown["tick_rate_hz"] == {"value": 100.0, "origin": "default"}, shown
+    shown = json.loads(stage.run("footing-sim", "--interface", "leg", "--print-config", "--origin").stdout)
+    assert shown["interface"] == {"value": "leg", "origin": "--interface"}, shown
+
+
+def check_overload(stage, metrics):
+    """A server that stood still says to all how many ticks it left out: at most once in 10 s."""
+    daemon = stage.processes["footingd"]
+
+    def noticed():
+        daemon.send_signal(signal.SIGSTOP)
+        time.sleep(PAUSE_S)
+        daemon.send_signal(signal.SIGCONT)
+        time.sleep(PAUSE_S)
+        return "has too much to do" in log_of(stage, "footing-log")
+
+    stage.wait_for(noticed, "a notice", 20)
+    for client, words in (("footing-log", "notice: footingd has too much to do"), ("footing-ctl", "NOTICE: footingd has"),
+                          ("footing-sim", "sensor stream: footingd has too much to do")):
+        stage.wait_for(lambda: words in log_of(stage, client), f"the notice in {client}")
+    stage.wait_for(lambda: metrics_of(metrics["sensor"])["footing_ticks_left_out_total"][0][1] > 0, "the count", 5)
+
+
+def start_clients(stage):
+    stage.start("footing-log", "record", "--connect", stage.sensor, "--out", stage.folder / "a.mcap")
+    stage.start("footing-ctl", "--connect", stage.sensor, "watch")
+    stage.wait_for(lambda: "connected to footingd" in log_of(stage, "footing-log"), "the recorder")
+    stage.wait_for(lambda: "live" in log_of(stage, "footing-ctl"), "footing-ctl watch")
+
+
+def check_stop(stage):
+    began_s = time.monotonic()
+    assert stage.stop("footingd") == 0, "an orderly end"
+    took_s = time.monotonic() - began_s
+    assert took_s < MOST_STOP_S, took_s
+    for client in ("footing-log", "footing-sim", "footing-ctl"):
+        stage.wait_for(lambda: "footingd is being stopped" in log_of(stage, client), f"the reason in {client}")
+    stage.stop("footing-ctl", signal.SIGINT)
+    stage.stop("footing-log", signal.SIGINT)
+    info = stage.run_json("footing-log", "info", stage.folder / "a.mcap")
+    notices = [record["values"] for record in info["metadata"] if record["name"] == "notice"]
+    assert notices and notices[0]["kind"] == "KIND_TICKS_LATE", info["metadata"]
+    print(f"stopped in {took_s:.2f} s")
+
+
+def main(binaries):
+    with Stage(binaries) as stage:
+        config = stage.folder / "footingd.json"
+        check_origins(stage, config)
+        config.write_text("{}")
+        metrics = {name: f"unix:{stage.folder}/{name}-metrics.sock" for name in ("sensor", "simulation")}
+        stage.start("footingd", "--config", config, "--listen", stage.sensor, "--source", f"stream:{stage.devices}",
+                    "--metrics", metrics["sensor"])
+        stage.wait_for_socket(stage.devices)
+        stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation, "--metrics",
+                    metrics["simulation"])
+        stage.wait_for_socket(metrics["simulation"])
+        stage.start_user("walk", "--seconds", 120)
+        check_status_and_metrics(stage, metrics)
+        check_metrics_limits(metrics)
+        check_reload(stage, config)
+        start_clients(stage)
+        check_overload(stage, metrics)
+        check_stop(stage)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
