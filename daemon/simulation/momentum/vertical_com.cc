@@ -27,7 +27,6 @@ constexpr double kPostureLookS = 0.3;
 // this speed.
 constexpr double kStillShare = 0.6, kSlowMps = 0.04;
 constexpr double kPostureAnchorLookS = 0.5, kPostureAnchorsS = 0.1;
-constexpr double kRightPerDepth = 0.4, kSpreadPerDepth = 0.6;  // Of a posture's height.
 // A body whose posture rises or sinks is not still, however even its loads are.
 constexpr double kPostureSpeedS = 0.3, kStillPostureMps = 0.02;
 // A filter has strayed that is sure, by so many deviations, of a height over tiptoe with raised
@@ -221,19 +220,17 @@ void VerticalCom::AnchorToPosture(double height_m) {
   posture_.level_m += step_s_ / (kPostureSpeedS + step_s_) * (height_m - posture_.level_m);
   const VerticalFilter::Row row = VerticalFilter::Row::Unit(0);
   const VerticalFilter::Scalar now = filter_.Of(row);
-  // Hands and feet show a part of a squat: the deeper the posture, the less is known of it.
-  const double low_m = std::max(0.0, -height_m);
-  const double right_m = posture.right_m + kRightPerDepth * low_m;
-  const double spread_m = posture.spread_m + kSpreadPerDepth * low_m;
-  const double worst_m2 = posture.spread_m * posture.spread_m;
-  Compare(height_m - now.mean, now.variance + worst_m2, step_s_, posture_);
-  const bool lost = now.variance > worst_m2;  // Then there is nothing to wait for.
+  Compare(height_m - now.mean, now.variance + posture.spread_m * posture.spread_m, step_s_,
+          posture_);
+  // What is less certain than a posture at its worst is not waited for.
+  const bool lost = now.variance > posture.spread_m * posture.spread_m;
   const bool due = posture_.since_score_s >= kPostureAnchorLookS;
   if (!due && !lost) return;
   if (due) posture_.since_score_s = 0;
   const double right = posture.right_share;
-  const MixtureMoments product = TimesMixture(
-      {now.mean, now.variance}, {{{right, height_m, right_m}, {1 - right, height_m, spread_m}}});
+  const MixtureMoments product =
+      TimesMixture({now.mean, now.variance},
+                   {{{right, height_m, posture.right_m}, {1 - right, height_m, posture.spread_m}}});
   if (due) Score(product.log_evidence);
   filter_.SetMoments(row, {product.moments.mean, product.moments.variance});
 }

@@ -189,11 +189,6 @@ TEST(BestEstimator, DoesNotTakeASlowEvenDescentForStillness) {
             0.03);
 }
 
-TEST(BestEstimator, FollowsASquatOfWhichThePostureShowsHalf) {
-  // 50 cm down for two seconds.
-  EXPECT_LT(GreatestHeightError([](double t) { return -0.5 * (Ramp(t - 1) - Ramp(t - 4)); }), 0.05);
-}
-
 TEST(BestEstimator, FollowsABodyThatRisesOverItsTPose) {
   // A raised knee, or arms over the head.
   EXPECT_LT(GreatestHeightError(
