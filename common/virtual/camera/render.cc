@@ -225,7 +225,10 @@ std::optional<Seen> Truth(const Scene& scene, const Ball& ball) {
   return seen;
 }
 
-Mosaic Render(const Scene& scene, noise::Random& random) {
+namespace {
+
+/// Light before the sensor reads it.
+Canvas Trace(const Scene& scene) {
   const Canvas background = Background(scene);
   Canvas canvas = background;
   if (!scene.shapes.empty()) canvas.Blur(scene.sensor.psf_px);
@@ -233,7 +236,20 @@ Mosaic Render(const Scene& scene, noise::Random& random) {
     if (const auto extent = ExtentOf(scene, ball)) TraceBall(scene, *extent, background, canvas);
   }
   for (const Ball& ball : scene.balls) AddHalo(scene, ball, canvas);
-  return Read(scene, canvas, random);
+  return canvas;
+}
+
+}  // namespace
+
+Mosaic Render(const Scene& scene, noise::Random& random) {
+  return Read(scene, Trace(scene), random);
+}
+
+std::vector<Mosaic> RenderStill(const Scene& scene, int frames, noise::Random& random) {
+  const Canvas canvas = Trace(scene);
+  std::vector<Mosaic> mosaics;
+  for (int i = 0; i < frames; ++i) mosaics.push_back(Read(scene, canvas, random));
+  return mosaics;
 }
 
 }  // namespace footing::virtual_camera

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "common/virtual/camera/scene.h"
 #include "common/virtual/noise/random.h"
 
@@ -10,5 +12,8 @@ namespace footing::virtual_camera {
 /// exposure; then the point spread, halo, mosaic, shot and read noise, rounding and clipping at
 /// 255. A ball nearer than 0.1 m, or beyond the image, is not drawn.
 Mosaic Render(const Scene& scene, noise::Random& random);
+
+/// Frames of a scene at rest, one after the other: traced once, each read with noise of its own.
+std::vector<Mosaic> RenderStill(const Scene& scene, int frames, noise::Random& random);
 
 }  // namespace footing::virtual_camera

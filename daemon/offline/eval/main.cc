@@ -2,6 +2,7 @@
 #include "daemon/offline/eval/arm/arm_command.h"
 #include "daemon/offline/eval/attitude/attitude_command.h"
 #include "daemon/offline/eval/board/board_command.h"
+#include "daemon/offline/eval/calibration/calibration_command.h"
 #include "daemon/offline/eval/clock/clock_command.h"
 #include "daemon/offline/eval/features/features_command.h"
 #include "daemon/offline/eval/fusion/fusion_command.h"
@@ -37,6 +38,7 @@ constexpr char kExamples[] =
     "  footing-eval fusion --motion clip.bvh --json\n"
     "  footing-eval spheres --condition clutter --distance-m 2 --frames 10 --out frames --json\n"
     "  footing-eval sphere --frames frames --camera frames/camera.json --json\n"
+    "  footing-eval calibration --method marks --boards 1 --trials 1 --json\n"
     "  footing-eval spirals --seeds 20 --json\n"
     "  footing-eval replay walk.mcap --json     # recorded by footing-log record --out "
     "walk.mcap";
@@ -46,6 +48,7 @@ void AddCommands(CLI::App& app, footing::eval::Shared& shared) {
   AddArmCommand(app, shared);
   AddAttitudeCommand(app, shared);
   AddBoardCommand(app, shared);
+  AddCalibrationCommand(app, shared);
   AddClockCommand(app, shared);
   AddFeaturesCommand(app, shared);
   AddFusionCommand(app, shared);
