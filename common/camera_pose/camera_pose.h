@@ -36,7 +36,7 @@ CameraPose Fit(const Observations& observations);
 
 /// `Fit`, and refusals, each with what, why and what to do: fewer than three marks, marks in a line
 /// (within 0.1 m), a mirrored image, lengths that are off by more than 2 %, a mark in the wrong
-/// place, gravity that is off by more than 2 degrees, and a turn that stays uncertain by more than
+/// place, gravity that is off by more than 4 degrees, and a turn that stays uncertain by more than
 /// 1 degree.
 Result<CameraPose> Calibrate(const Observations& observations);
 

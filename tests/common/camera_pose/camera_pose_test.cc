@@ -113,11 +113,11 @@ TEST(CameraPose, RefusesGravityThatDisagreesWithTheBoards) {
   Observations observations = Seen(kTrue);
   for (const std::size_t i : {0, 4}) {
     const Vector3d low = observations.marks[i].p_W_m;
-    // 3 degrees of 0.19 m.
+    // 6 degrees of 0.19 m.
     observations.plumbs.push_back(
-        {SeenAt(kTrue, low), SeenAt(kTrue, low + Vector3d(0.01, 0, 0.19)), 0});
+        {SeenAt(kTrue, low), SeenAt(kTrue, low + Vector3d(0.02, 0, 0.19)), 0});
   }
-  EXPECT_THAT(RefusalOf(observations), HasSubstr("gravity is 3.0 degrees off"));
+  EXPECT_THAT(RefusalOf(observations), HasSubstr("gravity is 6.0 degrees off"));
 }
 
 TEST(CameraPose, RefusesADirectionThatStaysUncertain) {
