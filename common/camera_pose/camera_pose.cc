@@ -30,7 +30,7 @@ double WidthM(const std::vector<SeenMark>& marks) {
   for (std::size_t i = 0; i < marks.size(); ++i)
     places.row(static_cast<Eigen::Index>(i)) = marks[i].p_W_m.transpose();
   const Eigen::MatrixX3d centred = places.rowwise() - places.colwise().mean();
-  const Eigen::JacobiSVD<Eigen::MatrixX3d> axes(centred, Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixX3d> axes(centred, Eigen::ComputeFullV);
   const Eigen::VectorXd across = centred * axes.matrixV().col(1);
   return across.maxCoeff() - across.minCoeff();
 }
