@@ -64,8 +64,8 @@ TEST_F(RecalibrateTest, HandsGoWhereTheNewCalibrationPutsThem) {
   ASSERT_EQ(ticks.size(), 1u);
   v1::HandSamples hands;
   for (const auto& channel : ticks[0].channels) {
-    if (channel.field == v1::Tick::kHandsFieldNumber)
-      ASSERT_TRUE(hands.ParseFromString(std::string(channel.bytes)));
+    if (channel.field != v1::Tick::kHandsFieldNumber) continue;
+    ASSERT_TRUE(hands.ParseFromString(std::string(channel.bytes)));
   }
   ASSERT_EQ(hands.samples_size(), 2);
   EXPECT_NEAR(hands.samples(0).position_m().x(), 0.5, 1e-12);  // 2 less 1.5 of depth.

@@ -7,7 +7,7 @@
 namespace footing::scene {
 namespace {
 
-constexpr std::int64_t kNowNs = 5'000'000'000;
+constexpr std::int64_t kSeenNs = 5'000'000'000;
 
 stream::HandSample Sample(stream::DeviceRole role, double confidence) {
   stream::HandSample sample;
@@ -22,7 +22,7 @@ stream::HandSample Sample(stream::DeviceRole role, double confidence) {
 
 BodySigns SignsOf(const std::vector<SeenHand>& hands) {
   BodySigns signs;
-  AddHandSigns(hands, "main", kNowNs, signs);
+  AddHandSigns(hands, "main", kSeenNs, signs);
   return signs;
 }
 
@@ -45,17 +45,17 @@ TEST(HandSigns, AnObservationIsAnEllipsoidOfTwoDeviations) {
 
 TEST(HandSigns, WhatIsHiddenOrLostIsNamedWhereItIs) {
   std::vector<SeenHand> hands;
-  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0.9), kNowNs, hands);
+  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0.9), kSeenNs, hands);
   EXPECT_EQ(SignsOf(hands).solid.balls.size(), 1u);
   EXPECT_TRUE(SignsOf(hands).labels.empty());
   stream::HandSample hidden = Sample(stream::DeviceRole::kRightHand, 0.4);
   hidden.occluded = true;
-  TakeHand(hidden, kNowNs, hands);
+  TakeHand(hidden, kSeenNs, hands);
   ASSERT_EQ(SignsOf(hands).labels.size(), 1u);
   EXPECT_EQ(SignsOf(hands).labels[0].text, "right hand partly hidden");
   stream::HandSample lost = Sample(stream::DeviceRole::kLeftHand, 0);
   lost.position_m.setZero();
-  TakeHand(lost, kNowNs, hands);
+  TakeHand(lost, kSeenNs, hands);
   ASSERT_EQ(hands.size(), 2u);
   ASSERT_EQ(SignsOf(hands).labels.size(), 2u);
   EXPECT_EQ(SignsOf(hands).labels[0].text, "left hand not seen");
@@ -64,15 +64,15 @@ TEST(HandSigns, WhatIsHiddenOrLostIsNamedWhereItIs) {
 
 TEST(HandSigns, NothingIsShownOfATrackerThatIsSilentOrOfAnotherRig) {
   std::vector<SeenHand> hands;
-  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0.9), kNowNs - 600'000'000, hands);
+  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0.9), kSeenNs - 600'000'000, hands);
   EXPECT_TRUE(SignsOf(hands).solid.balls.empty());
   stream::HandSample other = Sample(stream::DeviceRole::kLeftHand, 0.9);
   other.rig = "second";
-  TakeHand(other, kNowNs, hands);
+  TakeHand(other, kSeenNs, hands);
   EXPECT_TRUE(SignsOf(hands).solid.balls.empty());
   // Never seen, so without a place.
   std::vector<SeenHand> none;
-  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0), kNowNs, none);
+  TakeHand(Sample(stream::DeviceRole::kLeftHand, 0), kSeenNs, none);
   EXPECT_TRUE(SignsOf(none).solid.balls.empty());
 }
 
