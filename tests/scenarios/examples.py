@@ -50,7 +50,7 @@ NOT_HERE = {
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
     r"^footing-study (run|analyze|report|export)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",
     r"^footing-study (ranges|survey)|interface .* --table": "needs a person; tests/clients/study/*_scenario.py have one",
-    r"first\.mcap|body\.mcap|game\.mcap": "reads what a command above would have recorded",
+    r"again\.mcap|first\.mcap|body\.mcap|game\.mcap": "reads what a command above would have recorded",
 }
 # Those that connect to a pose engine, or read what was recorded of one.
 POSE_ENGINE = re.compile(r"^footing-ctl (t-pose|subject)|--next-subject|session\.mcap")

@@ -7,6 +7,7 @@ import json
 import pathlib
 import signal
 import sys
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 sys.path.insert(0, sys.argv[1])
@@ -115,17 +116,23 @@ def check_boards(stage):
     write_boards(stage.folder)
     recording = stage.folder / "boards.mcap"
     stage.start("footing-log", "record", "--connect", stage.sensor, "--out", recording, "--seconds", 42)
+    # It waits for Enter, so that its start does not shift it against the motions; then it looks at the devices for 1.5 s,
+    # and the first motion goes on for 3 s longer than it is measured.
+    out = stage.folder / "live_boards.json"
+    live = Experimenter(stage, "ranges", "--interface", "boards", "--participant", "P01", "--sensor", stage.sensor,
+                        "--out", out, name="ranges")
+    live.read("Press Enter to begin")
+    begin_s = time.monotonic()
     stage.start("footing-stream", "corners", "--left", stage.folder / "left.csv", "--right", stage.folder / "right.csv",
                 "--to", stage.devices)
-    stage.wait_for(lambda: "right_board" in stage.run("footing-ctl", "devices", "--connect", stage.sensor).stdout,
-                   "the boards")
-    live = measure(stage, stage.folder / "live_boards.json", "--now", interface="boards")
-    assert live.returncode == 0 and "[3/8] Stand. Rise quickly" in live.stderr, live
+    stage.wait_for(lambda: time.monotonic() > begin_s + 1.4, "the boards' first samples")
+    live.type("\n")
+    live.read(r"\[3/8\] Stand. Rise quickly")
+    assert live.process.wait(60) == 0, live.process.stderr.read()
     assert stage.processes.pop("footing-log").wait(30) == 0
     recorded = measure(stage, stage.folder / "boards.json", "--recording", recording, interface="boards")
     assert recorded.returncode == 0, recorded
-    for done in (live, recorded):
-        table = json.loads(done.stdout)["table"]
+    for table in (json.loads(out.read_text()), json.loads(recorded.stdout)["table"]):
         close(table["walk_frequency_min_hz"], 0.6)
         close(table["run_frequency_max_hz"], 1.8)
         close(table["jump_overshoot_min"], 0.2, 0.25)
