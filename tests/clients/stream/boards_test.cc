@@ -127,7 +127,7 @@ TEST_F(BoardsTest, ALostHandIsASilentWiimoteOrAPointThatIsNotSeen) {
 TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
   options_.hands = "leap";
   EXPECT_THAT(PlanBoards(options_, {}).error().message,
-              HasSubstr("none, move, wiimote and kinect"));
+              HasSubstr("none, move, wiimote, kinect and camera"));
   options_.hands = "move";
   options_.lost_hand = "middle";
   EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("left and right"));
