@@ -215,7 +215,7 @@ def check_in_force(stage, table):
 
 
 def check_study(stage):
-    """The phase of 20 s; what it measured is in force in the trial, also after a crash, and not in the next one's."""
+    """The phase of 20 s and more; what it measured is in force in the trial, also after a crash, and not in the next one's."""
     stage.stop("footing-stream")
     stage.start_user(script(stage, "slow", *ANN))
     (stage.folder / "o.json").write_text(json.dumps(PROTOCOL))
@@ -227,7 +227,7 @@ def check_study(stage):
     journal = []
     for interface in (first, "arm" if first == "wrist" else "wrist"):
         experimenter.answer("show all commands", "")
-        experimenter.answer("own ranges, 20 s", "")
+        experimenter.answer(f"own ranges, {22 if interface == 'arm' else 20} s", "")
         if interface == "arm":  # Hands that swing from the wrist are no bent arms.
             experimenter.read("was recognised for", 40)
             experimenter.answer("type b to go on", "b")
