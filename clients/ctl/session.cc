@@ -41,7 +41,8 @@ class Session::Implementation {
     client.address = options.address;
     client.client_name = "footing-ctl";
     // Over TCP nobody gets more without a token; a command is then refused, with the reason.
-    const bool views = options.address.OverTcp() && transport::TokenFromEnvironment().empty();
+    const auto token = transport::TokenFromEnvironment();  // The client says why it is unusable.
+    const bool views = options.address.OverTcp() && token && token->empty();
     client.role = views ? v1::ROLE_VIEW : v1::ROLE_CONTROL;
     client.channels = std::move(options.channels);
     client.max_hz = options.max_hz;

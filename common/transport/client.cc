@@ -95,8 +95,9 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnConnected(Socket socket) {
-    FramedLimits limits;
-    limits.max_in_bytes = options_.max_message_bytes;
+    const auto hello = MakeHello(options_);
+    if (!hello) return Retry(LinkState::kRefused, hello.error().message);
+    FramedLimits limits{.max_in_bytes = options_.max_message_bytes};
     FramedHandlers handlers;
     // Each keeps this alive while it is called: a handler may destroy the client.
     handlers.on_frame = [weak = weak_from_this()](std::string_view payload) {
@@ -115,7 +116,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     connection_->Start();
     heard_ns_ = NowNs();
     close_.text.clear();
-    SendMessage(MakeHello(options_));
+    SendMessage(*hello);
     ArmPulse();
   }
 
@@ -238,9 +239,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   void Retry(LinkState state, const std::string& why) {
     if (!started_) return;
     const double random = std::uniform_real_distribution<double>(0, 1)(random_);
-    const bool refused = state == LinkState::kRefused;
-    const double wait_s =
-        refused ? options_.refused_wait_s * (1 + random) / 2 : backoff_.Next(random);
+    const double wait_s = state == LinkState::kRefused ? options_.refused_wait_s * (1 + random) / 2
+                                                       : backoff_.Next(random);
     retry_.expires_after(Duration(wait_s));
     retry_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
       const auto self = weak.lock();

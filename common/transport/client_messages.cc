@@ -5,14 +5,16 @@
 
 namespace footing::transport {
 
-v1::Envelope MakeHello(const ClientOptions& options) {
+Result<v1::Envelope> MakeHello(const ClientOptions& options) {
+  const bool ask_environment = options.token.empty() && options.address.OverTcp();
+  const auto token = ask_environment ? TokenFromEnvironment() : Result<std::string>(options.token);
+  if (!token) return token.error();
   v1::Envelope message;
   v1::Hello& hello = *message.mutable_hello();
   hello.set_protocol_major(kProtocolMajor);
   hello.set_protocol_minor(kProtocolMinor);
   hello.set_role(options.role);
-  const bool ask_environment = options.token.empty() && options.address.OverTcp();
-  hello.set_token(ask_environment ? TokenFromEnvironment() : options.token);
+  hello.set_token(*token);
   hello.set_client_name(options.client_name);
   return message;
 }

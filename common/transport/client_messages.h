@@ -3,13 +3,16 @@
 #include <cstdint>
 #include <string>
 
+#include "common/result/result.h"
 #include "common/transport/client.h"
 #include "footing/v1/session.pb.h"
 
 /// What a client says to its server, as functions of what it knows.
 namespace footing::transport {
 
-v1::Envelope MakeHello(const ClientOptions& options);
+/// Over TCP with the token of the environment where the options have none; an error when its file
+/// cannot be used.
+Result<v1::Envelope> MakeHello(const ClientOptions& options);
 
 /// Asks for the ticks behind `last_sequence` of `last_epoch`, or, when that is 0, for those that
 /// the options say. `epoch` is that of the server that welcomed us.

@@ -32,6 +32,7 @@ Result<std::string> ReadTokenFile(const std::string& path) {
     return UsageError("token file " + path + " may be read by others; chmod 600 " + path);
   }
   std::ifstream file(path);
+  if (!file) return Failure("token file " + path + ": " + std::strerror(errno));
   std::string token;
   std::getline(file, token);
   if (!IsPlain(token)) {
@@ -42,11 +43,12 @@ Result<std::string> ReadTokenFile(const std::string& path) {
   return token;
 }
 
-std::string TokenFromEnvironment() {
+Result<std::string> TokenFromEnvironment() {
   const char* const path = std::getenv("FOOTING_TOKEN_FILE");
-  if (path == nullptr) return "";
-  const auto token = ReadTokenFile(path);
-  return token ? *token : "";
+  if (path == nullptr || *path == '\0') return std::string();
+  auto token = ReadTokenFile(path);
+  if (token) return token;
+  return Error{token.error().kind, "FOOTING_TOKEN_FILE: " + token.error().message};
 }
 
 bool IsSameSecret(std::string_view a, std::string_view b) {

@@ -16,9 +16,9 @@ namespace footing::transport {
 /// characters without blanks.
 Result<std::string> ReadTokenFile(const std::string& path);
 
-/// Of the file that FOOTING_TOKEN_FILE names; empty when it names none, or none that can be used:
-/// the server then says what is missing.
-std::string TokenFromEnvironment();
+/// Of the file that FOOTING_TOKEN_FILE names; empty when it names none. An error names the
+/// variable, the file and what is wrong with it.
+Result<std::string> TokenFromEnvironment();
 
 /// Whether both are equal, in a time that does not depend on where they differ.
 bool IsSameSecret(std::string_view a, std::string_view b);

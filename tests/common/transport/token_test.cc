@@ -76,11 +76,32 @@ TEST(Token, AClientPresentsTheEnvironmentsTokenOverTcpOnly) {
   ASSERT_EQ(chmod(path.c_str(), 0600), 0);
   ASSERT_EQ(setenv("FOOTING_TOKEN_FILE", path.c_str(), 1), 0);
   ClientOptions options;
-  EXPECT_EQ(MakeHello(options).hello().token(), "") << "on a Unix socket the kernel says who it is";
+  EXPECT_EQ(MakeHello(options)->hello().token(), "")
+      << "on a Unix socket the kernel says who it is";
   options.address.kind = Address::Kind::kTcp;
-  EXPECT_EQ(MakeHello(options).hello().token(), kToken);
+  EXPECT_EQ(MakeHello(options)->hello().token(), kToken);
   unsetenv("FOOTING_TOKEN_FILE");
-  EXPECT_EQ(MakeHello(options).hello().token(), "");
+  EXPECT_EQ(MakeHello(options)->hello().token(), "");
+}
+
+TEST(Token, AFileThatCannotBeUsedIsNamedNotPassedOver) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("token");
+  ASSERT_EQ(setenv("FOOTING_TOKEN_FILE", path.c_str(), 1), 0);
+  ClientOptions options;
+  options.address.kind = Address::Kind::kTls;
+  const auto missing = MakeHello(options);
+  std::ofstream(path) << kToken << "\n";
+  ASSERT_EQ(chmod(path.c_str(), 0644), 0);
+  const auto open_to_all = MakeHello(options);
+  options.token = kToken;  // Then the environment is not asked.
+  EXPECT_TRUE(MakeHello(options).ok());
+  unsetenv("FOOTING_TOKEN_FILE");
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().message,
+            "FOOTING_TOKEN_FILE: token file " + path + ": No such file or directory");
+  ASSERT_FALSE(open_to_all.ok());
+  EXPECT_NE(open_to_all.error().message.find("may be read by others"), std::string::npos);
 }
 
 class TokenTest : public ServerFixture {
@@ -108,6 +129,26 @@ TEST_F(TokenTest, OverTcpOnlyTheTokenGivesControl) {
   EXPECT_EQ(right->messages[0].welcome().granted_role(), v1::ROLE_CONTROL);
   const auto admin = SayHello(kToken, v1::ROLE_ADMIN);
   EXPECT_EQ(admin->messages[0].refused().reason(), v1::Refused::REASON_ROLE);
+}
+
+TEST_F(TokenTest, AClientWithAnUnusableTokenFileSaysSoAndComesOnceItIsMended) {
+  StartServer();
+  const std::string path = folder_ + "/token";
+  ASSERT_EQ(setenv("FOOTING_TOKEN_FILE", path.c_str(), 1), 0);
+  ClientOptions options;
+  options.address = server_->ListeningOn(1);
+  options.refused_wait_s = 0.01;
+  std::string why;
+  LinkState state = LinkState::kConnecting;
+  ClientHandlers handlers;
+  handlers.on_state = [&](LinkState now, const std::string& text) { state = now, why = text; };
+  Client client(io_, options, handlers);
+  client.Start();
+  EXPECT_TRUE(RunUntil([&] { return state == LinkState::kRefused; }));
+  EXPECT_NE(why.find(path), std::string::npos) << why;
+  EXPECT_EQ(server_->statistics().refused, 0u);
+  unsetenv("FOOTING_TOKEN_FILE");
+  EXPECT_TRUE(RunUntil([&] { return state == LinkState::kLive; }));
 }
 
 TEST_F(TokenTest, BeyondThisHostItListensOnlyWhenThatIsAllowedAndNobodyComesWithoutTheToken) {
