@@ -24,10 +24,12 @@ Publication::Publication(const ServerOptions& options)
   }
 }
 
-SharedTick Publication::Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
+std::shared_ptr<Tick> Publication::Serialise(const TickNumber& number,
+                                             const std::vector<ChannelBytes>& channels) {
   auto tick = std::make_shared<Tick>();
-  tick->sequence = ++last_sequence_;
-  tick->host_ns = host_ns;
+  tick->sequence = number.sequence;
+  tick->host_ns = number.host_ns;
+  tick->missing_from = number.missing_from;
   std::size_t size = 0;
   for (const auto& channel : channels) size += channel.bytes.size() + kMaxPrefixBytes;
   tick->bytes.reserve(std::min(size, max_tick_bytes_));
@@ -41,12 +43,27 @@ SharedTick Publication::Publish(std::int64_t host_ns, const std::vector<ChannelB
     }
     AppendField(channel.field, channel.bytes, *tick);
   }
-  SharedTick shared = std::move(tick);
-  for (const Slice& slice : shared->slices) {
-    if (retained_.count(slice.field) > 0) last_values_[slice.field] = shared;
+  return tick;
+}
+
+void Publication::KeepRetained(const SharedTick& tick) {
+  for (const Slice& slice : tick->slices) {
+    if (retained_.count(slice.field) > 0) last_values_[slice.field] = tick;
   }
-  ring_.Push(shared);
-  return shared;
+}
+
+SharedTick Publication::Publish(const TickNumber& number,
+                                const std::vector<ChannelBytes>& channels) {
+  SharedTick tick = Serialise(number, channels);
+  last_sequence_ = number.sequence;
+  KeepRetained(tick);
+  ring_.Push(tick);
+  return tick;
+}
+
+void Publication::BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained) {
+  last_sequence_ = number.sequence;
+  KeepRetained(Serialise(number, retained));
 }
 
 SharedTick Publication::Snapshot(std::uint64_t sequence, std::int64_t host_ns) const {

@@ -17,9 +17,13 @@ class Publication {
  public:
   explicit Publication(const ServerOptions& options);
 
-  /// Serialises the next tick once. Channels that would make it longer than max_message_out_bytes
-  /// are left out, and so are fields that are not a channel. Trim() once it is on its way.
-  SharedTick Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels);
+  /// Serialises a tick once. Channels that would make it longer than max_message_out_bytes are left
+  /// out, and so are fields that are not a channel. Trim() once it is on its way. Its sequence is
+  /// above the last one's.
+  SharedTick Publish(const TickNumber& number, const std::vector<ChannelBytes>& channels);
+
+  /// See Server::BeginAt().
+  void BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained);
 
   void Trim() { ring_.Trim(); }
 
@@ -32,6 +36,10 @@ class Publication {
   std::uint64_t channels_left_out() const { return channels_left_out_; }
 
  private:
+  std::shared_ptr<Tick> Serialise(const TickNumber& number,
+                                  const std::vector<ChannelBytes>& channels);
+  void KeepRetained(const SharedTick& tick);
+
   std::set<std::uint32_t> fields_;
   std::set<std::uint32_t> retained_;
   std::size_t max_tick_bytes_;

@@ -32,7 +32,7 @@ class Server::Implementation {
  public:
   Implementation(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
       : io_(io), shared_(io.get_executor(), std::move(options), std::move(handlers)) {
-    shared_.epoch = NewEpoch();
+    shared_.epoch = shared_.options.epoch != 0 ? shared_.options.epoch : NewEpoch();
     // Protobuf would write a line to standard error for every message that a client got wrong.
     google::protobuf::SetLogHandler(nullptr);
   }
@@ -54,10 +54,19 @@ class Server::Implementation {
   }
 
   std::uint64_t Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
-    const SharedTick tick = shared_.publication.Publish(host_ns, channels);
+    const std::uint64_t sequence = shared_.publication.last_sequence() + 1;
+    Relay({sequence, host_ns}, channels);
+    return sequence;
+  }
+
+  void BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained) {
+    shared_.publication.BeginAt(number, retained);
+  }
+
+  void Relay(const TickNumber& number, const std::vector<ChannelBytes>& channels) {
+    const SharedTick tick = shared_.publication.Publish(number, channels);
     for (const auto& session : sessions_) session->Offer(tick);
     shared_.publication.Trim();
-    return tick->sequence;
   }
 
   void Answer(std::uint64_t number, const v1::CommandResult& result) {
@@ -190,6 +199,12 @@ Result<void> Server::Listen(const Address& address) { return implementation_->Li
 Address Server::ListeningOn(std::size_t index) const { return implementation_->ListeningOn(index); }
 std::uint64_t Server::Publish(std::int64_t host_ns, std::vector<ChannelBytes> channels) {
   return implementation_->Publish(host_ns, channels);
+}
+void Server::BeginAt(const TickNumber& number, std::vector<ChannelBytes> retained) {
+  implementation_->BeginAt(number, retained);
+}
+void Server::Relay(const TickNumber& number, std::vector<ChannelBytes> channels) {
+  implementation_->Relay(number, channels);
 }
 void Server::Answer(std::uint64_t session, const v1::CommandResult& result) {
   implementation_->Answer(session, result);

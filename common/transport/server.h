@@ -24,6 +24,13 @@ struct Channel {
   bool retained = false;  ///< Its last value is part of every snapshot.
 };
 
+/// Which tick of its source a relay hands on.
+struct TickNumber {
+  std::uint64_t sequence = 0;
+  std::int64_t host_ns = 0;
+  std::uint64_t missing_from = 0;  ///< First of those lost right in front of it; 0: none.
+};
+
 struct ServerOptions {
   std::string server_id;  ///< "footingd" or "footing-sim".
   std::string version;
@@ -34,6 +41,7 @@ struct ServerOptions {
   std::uint32_t max_message_in_bytes = 64u << 10;
   std::uint32_t max_message_out_bytes = 1u << 20;
   std::uint32_t max_queue_ticks = 1024;
+  std::uint64_t epoch = 0;  ///< Of the source, for a relay; 0: a random one.
   SessionLimits sessions;
   std::string
       token;  ///< By which a client over TCP or TLS gets the role control; empty: none does.
@@ -111,6 +119,13 @@ class Server {
 
   /// Publishes one tick of the given channels; returns its sequence, from 1.
   std::uint64_t Publish(std::int64_t host_ns, std::vector<ChannelBytes> channels);
+
+  /// For a relay, which hands on the ticks of another server under their own numbers: where that
+  /// one stands, and what its retained channels hold. Before the first session.
+  void BeginAt(const TickNumber& number, std::vector<ChannelBytes> retained);
+  /// One tick of the source; its sequence is above the last one's. What is neither published nor
+  /// missing in between was left out on purpose, as for max_hz.
+  void Relay(const TickNumber& number, std::vector<ChannelBytes> channels);
 
   /// Answers a command that on_command left open; `result` has its id. The session may be gone.
   void Answer(std::uint64_t session, const v1::CommandResult& result);

@@ -122,6 +122,8 @@ class Session : public std::enable_shared_from_this<Session> {
   bool FillCatchUp(WriteBatch& batch);
   bool FillRefill(WriteBatch& batch);
   void AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason, WriteBatch& batch);
+  void AddMissing(const Tick& tick, WriteBatch& batch);
+  bool Takes(const Tick& tick);
   TickHead Head(bool refilled) const;
 
   void Refused(v1::Refused::Reason reason, const std::string& message);

@@ -70,10 +70,10 @@ stream::SessionStats Session::Stats() const {
   if (catch_up_ != 0) {
     const TickRing& ring = shared_.publication.ring();
     const std::uint64_t next = ring.empty() ? catch_up_ : std::max(catch_up_, ring.first());
-    const SharedTick* tick = ring.Find(next);
+    const SharedTick* tick = ring.AtOrAfter(next);
     if (tick != nullptr) {
       oldest = tick->get();
-      waiting = ring.last() - next + 1;
+      waiting = ring.CountFrom(next);
     }
   }
   stats.queue_ticks = static_cast<std::uint32_t>(waiting);

@@ -98,7 +98,7 @@ void Session::Offer(const SharedTick& tick) {
     connection_.WakeInTurn();
     return;
   }
-  if (!decimator_->Take(tick->host_ns)) {
+  if (!Takes(*tick)) {
     queue_.Skip(tick);
     return;
   }
@@ -110,6 +110,12 @@ void Session::Offer(const SharedTick& tick) {
   }
   shared_.statistics.ticks_dropped += queue_.dropped_ticks() - dropped_before;
   connection_.Wake();
+}
+
+/// For max_hz; the one behind a hole always comes, since the Gap comes with it.
+bool Session::Takes(const Tick& tick) {
+  const bool due = decimator_->Take(tick.host_ns);
+  return due || tick.missing_from != 0;
 }
 
 TickHead Session::Head(bool refilled) const {
@@ -126,6 +132,11 @@ void Session::AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reaso
   message.mutable_gap()->set_to_sequence(to);
   message.mutable_gap()->set_reason(reason);
   batch.AddOwned(Frame(message.SerializeAsString()));
+}
+
+void Session::AddMissing(const Tick& tick, WriteBatch& batch) {
+  if (tick.missing_from == 0) return;
+  AddGap(tick.missing_from, tick.sequence - 1, v1::Gap::REASON_UNSPECIFIED, batch);
 }
 
 void Session::Fill(WriteBatch& batch) {
@@ -153,8 +164,12 @@ void Session::EndLater() {
 bool Session::FillLive(WriteBatch& batch) {
   TickQueue::Entry entry;
   if (!queue_.Pop(entry)) return false;
+  const std::uint64_t missing = entry.tick->missing_from;
   if (const auto dropped = queue_.TakeDropped()) {
-    AddGap(dropped->from, dropped->to, v1::Gap::REASON_QUEUE_FULL, batch);
+    const std::uint64_t to = missing != 0 ? entry.tick->sequence - 1 : dropped->to;
+    AddGap(dropped->from, to, v1::Gap::REASON_QUEUE_FULL, batch);
+  } else {
+    AddMissing(*entry.tick, batch);
   }
   AddTick(entry, subscription_, Head(false), batch);
   ++record_.ticks_sent;
@@ -173,9 +188,11 @@ bool Session::FillCatchUp(WriteBatch& batch) {
     catch_up_ = ring.first();
     return true;
   }
-  const SharedTick& tick = *ring.Find(catch_up_++);
+  const SharedTick& tick = *ring.AtOrAfter(catch_up_);
+  catch_up_ = tick->sequence + 1;
   connection_.Charge(kReplayCost);
-  if (decimator_->Take(tick->host_ns)) {
+  if (Takes(*tick)) {
+    AddMissing(*tick, batch);
     AddTick({tick, {}}, subscription_, Head(true), batch);
     ++record_.ticks_sent;
   } else {
@@ -192,13 +209,15 @@ bool Session::FillRefill(WriteBatch& batch) {
     const std::uint64_t gone = std::min(range.last, ring.first() - 1);
     AddGap(range.next, gone, v1::Gap::REASON_RING_PASSED, batch);
     range.next = gone + 1;
-  } else if (const SharedTick* tick = ring.Find(range.next)) {
-    connection_.Charge(kReplayCost);
-    AddTick({*tick, {}}, subscription_, Head(true), batch);
-    ++record_.ticks_sent;
-    ++range.next;
   } else {
+    const SharedTick* tick = ring.AtOrAfter(range.next);
     range.next = range.last + 1;
+    if (tick != nullptr && (*tick)->sequence <= range.last) {
+      connection_.Charge(kReplayCost);
+      AddTick({*tick, {}}, subscription_, Head(true), batch);
+      ++record_.ticks_sent;
+      range.next = (*tick)->sequence + 1;
+    }
   }
   if (range.next > range.last) refills_.pop_front();
   return true;

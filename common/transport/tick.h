@@ -19,6 +19,9 @@ struct Slice {
 struct Tick {
   std::uint64_t sequence = 0;
   std::int64_t host_ns = 0;
+  /// First of the ticks right in front of this one that were lost before they came here, to a
+  /// server that relays another one's; 0: none. Whoever gets this tick gets a Gap in front of it.
+  std::uint64_t missing_from = 0;
   std::string bytes;  ///< The channels' fields, one after the other, as they stand in v1::Tick.
   std::vector<Slice> slices;
 

@@ -46,7 +46,8 @@ void TickQueue::DropOldest() {
   Entry oldest = std::move(entries_.front());
   entries_.pop_front();
   const std::uint64_t sequence = oldest.tick->sequence;
-  dropped_ = Dropped{dropped_ ? dropped_->from : sequence, sequence};
+  const std::uint64_t missing = oldest.tick->missing_from;
+  dropped_ = Dropped{dropped_ ? dropped_->from : missing != 0 ? missing : sequence, sequence};
   ++dropped_ticks_;
   // What the dropped one contained, then its own, then what its heir has already: the newest stays.
   std::vector<RetainedField> retained = std::move(oldest.retained);

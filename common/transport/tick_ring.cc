@@ -1,5 +1,6 @@
 #include "common/transport/tick_ring.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/result/result.h"
@@ -14,7 +15,7 @@ std::size_t Cost(const Tick& tick) {
 }  // namespace
 
 void TickRing::Push(SharedTick tick) {
-  FOOTING_CHECK(empty() || tick->sequence == last() + 1);
+  FOOTING_CHECK(empty() || tick->sequence > last());
   bytes_ += Cost(*tick);
   ticks_.push_back(std::move(tick));
 }
@@ -26,9 +27,20 @@ void TickRing::Trim() {
   }
 }
 
-const SharedTick* TickRing::Find(std::uint64_t sequence) const {
-  if (empty() || sequence < first() || sequence > last()) return nullptr;
-  return &ticks_[sequence - first()];
+std::size_t TickRing::IndexFrom(std::uint64_t sequence) const {
+  const auto found = std::lower_bound(
+      ticks_.begin(), ticks_.end(), sequence,
+      [](const SharedTick& tick, std::uint64_t wanted) { return tick->sequence < wanted; });
+  return static_cast<std::size_t>(found - ticks_.begin());
+}
+
+const SharedTick* TickRing::AtOrAfter(std::uint64_t sequence) const {
+  const std::size_t index = IndexFrom(sequence);
+  return index < ticks_.size() ? &ticks_[index] : nullptr;
+}
+
+std::size_t TickRing::CountFrom(std::uint64_t sequence) const {
+  return ticks_.size() - IndexFrom(sequence);
 }
 
 }  // namespace footing::transport

@@ -8,21 +8,23 @@
 
 namespace footing::transport {
 
-/// The last ticks, without holes in their sequence, bounded in number and in bytes. The
-/// newest is always held.
+/// The last ticks, by rising sequence, bounded in number and in bytes. The newest is always held.
+/// The sequences of a relay's ticks have holes where it left ticks out.
 class TickRing {
  public:
   TickRing(std::size_t max_ticks, std::size_t max_bytes)
       : max_ticks_(max_ticks), max_bytes_(max_bytes) {}
 
-  /// The tick's sequence follows the last one's.
+  /// The tick's sequence is above the last one's.
   void Push(SharedTick tick);
   /// Lets go what is over the bounds. Apart from Push, so that it can wait until the new tick is on
   /// its way.
   void Trim();
 
-  /// Null when it is not held (any more, or yet).
-  const SharedTick* Find(std::uint64_t sequence) const;
+  /// The first one held from this sequence on; null when there is none yet.
+  const SharedTick* AtOrAfter(std::uint64_t sequence) const;
+  /// How many are held from this sequence on.
+  std::size_t CountFrom(std::uint64_t sequence) const;
 
   bool empty() const { return ticks_.empty(); }
   /// Of the oldest and the newest tick held; 0 when there is none.
@@ -31,6 +33,8 @@ class TickRing {
   std::size_t bytes() const { return bytes_; }
 
  private:
+  std::size_t IndexFrom(std::uint64_t sequence) const;
+
   std::size_t max_ticks_;
   std::size_t max_bytes_;
   std::size_t bytes_ = 0;

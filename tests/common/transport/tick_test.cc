@@ -66,16 +66,27 @@ std::string StatusBytes(const std::string& serial) {
 
 TEST(Publication, TheRingHoldsItsSecondsAndNoMore) {
   Publication publication(Options());
-  for (int i = 0; i < 12; ++i) {
-    publication.Publish(i, {});
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    publication.Publish({i + 1, static_cast<std::int64_t>(i)}, {});
     publication.Trim();
   }
   // 0.5 s at 10 Hz are 5 ticks.
   EXPECT_EQ(publication.ring().first(), 8u);
   EXPECT_EQ(publication.ring().last(), 12u);
-  EXPECT_EQ(publication.ring().Find(7), nullptr);
-  EXPECT_EQ((*publication.ring().Find(8))->host_ns, 7);
-  EXPECT_EQ(publication.ring().Find(13), nullptr);
+  EXPECT_EQ((*publication.ring().AtOrAfter(7))->host_ns, 7);
+  EXPECT_EQ((*publication.ring().AtOrAfter(8))->host_ns, 7);
+  EXPECT_EQ(publication.ring().AtOrAfter(13), nullptr);
+}
+
+TEST(Publication, TheRingOfARelayHasHoles) {
+  Publication publication(Options());
+  for (const std::uint64_t sequence : {100u, 103u, 106u}) publication.Publish({sequence, 0}, {});
+  EXPECT_EQ((*publication.ring().AtOrAfter(1))->sequence, 100u);
+  EXPECT_EQ((*publication.ring().AtOrAfter(101))->sequence, 103u);
+  EXPECT_EQ((*publication.ring().AtOrAfter(106))->sequence, 106u);
+  EXPECT_EQ(publication.ring().AtOrAfter(107), nullptr);
+  EXPECT_EQ(publication.ring().CountFrom(101), 2u);
+  EXPECT_EQ(publication.ring().CountFrom(107), 0u);
 }
 
 TEST(Publication, TheRingIsBoundedInBytesToo) {
@@ -83,8 +94,8 @@ TEST(Publication, TheRingIsBoundedInBytesToo) {
   options.ring_s = 1000;
   options.ring_max_bytes = 100'000;
   Publication publication(options);
-  for (int i = 0; i < 50; ++i) {
-    publication.Publish(i, {{17, std::string(10'000, '\0')}});
+  for (std::uint64_t i = 1; i <= 50; ++i) {
+    publication.Publish({i, 0}, {{17, std::string(10'000, '\0')}});
     publication.Trim();
   }
   EXPECT_LE(publication.ring().bytes(), 100'000u);
@@ -94,9 +105,9 @@ TEST(Publication, TheRingIsBoundedInBytesToo) {
 
 TEST(Publication, TheSnapshotHoldsTheLastValueOfRetainedChannelsOnly) {
   Publication publication(Options());
-  publication.Publish(1, {{16, StatusBytes("old")}, {17, Motion(1).SerializeAsString()}});
-  publication.Publish(2, {{16, StatusBytes("new")}});
-  publication.Publish(3, {{17, Motion(2).SerializeAsString()}});
+  publication.Publish({1, 1}, {{16, StatusBytes("old")}, {17, Motion(1).SerializeAsString()}});
+  publication.Publish({2, 2}, {{16, StatusBytes("new")}});
+  publication.Publish({3, 3}, {{17, Motion(2).SerializeAsString()}});
   const SharedTick snapshot = publication.Snapshot(3, 99);
   v1::Tick tick;
   ASSERT_TRUE(tick.ParseFromString(snapshot->bytes));
@@ -111,7 +122,7 @@ TEST(Publication, WhatDoesNotFitOrIsNoChannelIsLeftOutAndCounted) {
   options.max_message_out_bytes = 1000;
   Publication publication(options);
   const SharedTick tick = publication.Publish(
-      1, {{16, StatusBytes("s")}, {17, std::string(2000, 'x')}, {99, "no channel"}});
+      {1, 1}, {{16, StatusBytes("s")}, {17, std::string(2000, 'x')}, {99, "no channel"}});
   EXPECT_EQ(publication.channels_left_out(), 2u);
   EXPECT_NE(tick->Find(16), nullptr);
   EXPECT_EQ(tick->Find(17), nullptr);
