@@ -13,8 +13,10 @@ constexpr double kEvenShare = 0.3;
 constexpr double kStandingLeanS = 0.4;
 /// Who has leaned on one foot for this time, and lifted none, stands.
 constexpr double kLeansS = 0.7;
-/// A step that takes longer than this times the last ones ends stepping.
+/// A step that takes longer than this times the last ones ends stepping; not before a heel rise
+/// after it has had time to show: both feet stand for 0.2 s, and the heels rise within 0.35 s.
 constexpr double kOverdue = 2;
+constexpr double kHeelRiseShowsS = 0.55;
 
 }  // namespace
 
@@ -55,8 +57,9 @@ void StepCadence::Advance(double time_s, double left_share) {
   } else if (foot != foot_) {
     ChangeFoot(time_s, foot);
   }
+  const double overdue_s = std::max(step_s_ + kHeelRiseShowsS, kOverdue * step_s_);
   const double longest_s =
-      stepping() ? std::min(borders_.longest_step_s, kOverdue * step_s_) : borders_.longest_step_s;
+      stepping() ? std::min(borders_.longest_step_s, overdue_s) : borders_.longest_step_s;
   if (time_s - changed_s_ > longest_s) steps_ = 0;
   standing_lean_ += (lean - standing_lean_) * (1 - std::exp(-elapsed_s / kStandingLeanS));
 }

@@ -20,31 +20,30 @@ Ability AbilityWith(UserInterface interface, TurnSource turn_by) {
     case UserInterface::kUnspecified:
     case UserInterface::kWrist:  // A cycle and a half at 2.5 Hz, and the change of the hands.
       ability.turn_delay_s = 0.35;
-      ability.run_jump_s = 1.95;
+      ability.run_jump_s = 1.45;
       ability.walk_jump_s = 2.0;
       break;
     case UserInterface::kArm:
       ability.turn_delay_s = 0.5;
-      ability.run_jump_s = 2.3;
-      ability.walk_jump_s = 2.4;
+      ability.run_jump_s = 2.15;
+      ability.walk_jump_s = 2.35;
       break;
     case UserInterface::kLeg:  // Feet show their heights in a whole cycle of either.
       ability.turn_delay_s = turn_by == TurnSource::kFeet ? 0.7 : 0.35;
-      ability.run_jump_s = 2.1;
+      ability.run_jump_s = 1.45;
       ability.walk_jump_s = 2.2;
       break;
     case UserInterface::kJoystick:
       ability.turn_delay_s = 0.1;
       ability.jumps_at_once = true;
-      ability.run_jump_s = 0.85;
-      ability.walk_jump_s = 0.95;
+      ability.run_jump_s = 0.6;
+      ability.walk_jump_s = 0.85;
       break;
     case UserInterface::kBoards:  // Steps end, both feet stand, then the heels rise.
       ability.turn_delay_s = 0.6;
-      ability.jumps_from_run = false;
       ability.jumps_at_once = true;
-      ability.run_jump_s = 1.5;
-      ability.walk_jump_s = 1.3;
+      ability.run_jump_s = 0.95;
+      ability.walk_jump_s = 1.25;
       break;
   }
   return ability;

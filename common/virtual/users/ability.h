@@ -12,11 +12,10 @@ struct Ability {
   double jump_mps = 1.5, jump_height_m = 0.35;
   double turn_per_step_rad = 0.0873;
   bool turns_by_degrees = true;  ///< False: none or all of turn_per_step_rad.
-  bool jumps_from_run = true;    ///< False: walks up to where it jumps.
   bool jumps_at_once = false;    ///< One gesture is one jump; else it lasts as long as the jump.
   double turn_delay_s = 0.02;    ///< From the user's motion to a changed command.
-  /// From the user's motion to the top of the character's leap, out of a run and out of a walk; the
-  /// user corrects it by what it sees.
+  /// From the user's motion to the top of the character's first leap, out of a run and out of a
+  /// walk: means of the jumps of straight tracks. The user corrects it by what it sees.
   double run_jump_s = 0.75;
   double walk_jump_s = 0.85;
 };

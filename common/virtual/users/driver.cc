@@ -25,8 +25,6 @@ constexpr double kSamePitM = 5;
 constexpr double kRunAgainS = 1;
 /// Narrower pits are run across without a jump.
 constexpr double kRunOverM = 0.25;
-/// In front of a pit who cannot jump from a run walks.
-constexpr double kWalkBeforeM = 7;
 /// No character moves so far between two looks: it was put back.
 constexpr double kPutBackM = 1.5;
 /// The effort follows an error of the speed: a share a second, and at most.
@@ -209,10 +207,8 @@ void Driver::ChooseGait(const Observation& now, Intention& wanted) {
                                   turn_rad * kRunStepsPerS / std::max(1e-3, bend));
   // A run that walks now, or the other way round, wants a reason.
   const double slack_mps = intention_.gait == Gait::kRun ? 0.0 : 0.2;
-  double length_m = 0;
-  const bool walks = !ability_.jumps_from_run && PitAhead(now, &length_m) < kWalkBeforeM;
   const bool may_run = intention_.gait != Gait::kWalk || now.time_s - walked_s_ > kRunAgainS;
-  if (run_mps >= ability_.run_min_mps + slack_mps && !walks && may_run) {
+  if (run_mps >= ability_.run_min_mps + slack_mps && may_run) {
     wanted.gait = Gait::kRun;
     wanted.speed_mps = run_mps;
     return;

@@ -1,9 +1,18 @@
 #include "daemon/simulation/mapping/any_interface.h"
 
+#include <algorithm>
+
 namespace footing::mapping {
 
 using stream::DeviceRole;
 using stream::UserInterface;
+
+namespace {
+
+/// The fastest stable jump (daemon/simulation/biped/limits.cc).
+constexpr double kRunUpMps = 2;
+
+}  // namespace
 
 const char* MappingFileOf(UserInterface interface) {
   switch (interface) {
@@ -92,7 +101,12 @@ Result<AnyInterface> AnyInterface::Create(const InterfaceOptions& options,
 }
 
 biped::GaitCommand AnyInterface::Advance(double time_s, const Inputs& inputs) {
-  return std::visit([&](auto& interface) { return interface.Advance(time_s, inputs); }, interface_);
+  biped::GaitCommand command =
+      std::visit([&](auto& interface) { return interface.Advance(time_s, inputs); }, interface_);
+  if (command.gait == stream::Gait::kRun) run_mps_ = command.speed_mps;
+  const bool runs_up = command.gait == stream::Gait::kJump && inputs.running == stream::Gait::kRun;
+  if (runs_up) command.speed_mps = std::max(command.speed_mps, std::min(run_mps_, kRunUpMps));
+  return command;
 }
 
 void AnyInterface::StartAgain() {

@@ -34,7 +34,8 @@ class AnyInterface {
   /// file and the key.
   static Result<AnyInterface> Create(const InterfaceOptions& options, const std::string& table);
 
-  /// The command for new inputs at `time_s`; times must not decrease.
+  /// The command for new inputs at `time_s`; times must not decrease. A jump keeps the speed of the
+  /// run-up until the character jumps: braked before, it would be shorter than a stride.
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
   /// Without inputs: as if every device were missing.
   biped::GaitCommand Rest(double time_s) { return Advance(time_s, {}); }
@@ -50,6 +51,7 @@ class AnyInterface {
       std::variant<WristInterface, ArmInterface, LegInterface, JoystickInterface, BoardsInterface>;
   explicit AnyInterface(const Variant& interface) : interface_(interface) {}
   Variant interface_;
+  double run_mps_ = 0;  ///< Commanded last of a run.
 };
 
 }  // namespace footing::mapping

@@ -67,5 +67,34 @@ TEST(AnyInterface, UsesTheRolesOfItsLimbs) {
   EXPECT_FALSE(Uses({.interface = UserInterface::kWrist}, DeviceRole::kEditor));
 }
 
+/// Braked before it leaps, the character's leap would be no longer than a stride.
+TEST(AnyInterface, AJumpOutOfARunKeepsTheRunUpUntilTheCharacterJumps) {
+  auto stick = *AnyInterface::Create({.interface = UserInterface::kJoystick},
+                                     test::DataFile(MappingFileOf(UserInterface::kJoystick)));
+  Inputs inputs;
+  inputs.stick = {.present = true, .y = 0.7};
+  const biped::GaitCommand run = stick.Advance(0, inputs);
+  ASSERT_EQ(run.gait, stream::Gait::kRun);
+  ASSERT_GT(run.speed_mps, 2);
+  inputs.stick.presses = 1;
+  inputs.running = stream::Gait::kRun;
+  const biped::GaitCommand jump = stick.Advance(0.1, inputs);
+  EXPECT_EQ(jump.gait, stream::Gait::kJump);
+  EXPECT_NEAR(jump.speed_mps, 2, 1e-9);  // The fastest stable jump.
+  inputs.running = stream::Gait::kJump;
+  EXPECT_NEAR(stick.Advance(0.2, inputs).speed_mps, 1.5, 1e-9);  // The table's again.
+}
+
+TEST(AnyInterface, AJumpOutOfAWalkHasTheTablesSpeed) {
+  auto stick = *AnyInterface::Create({.interface = UserInterface::kJoystick},
+                                     test::DataFile(MappingFileOf(UserInterface::kJoystick)));
+  Inputs inputs;
+  inputs.stick = {.present = true, .y = 0.4};
+  const double walk_mps = stick.Advance(0, inputs).speed_mps;
+  inputs.stick.presses = 1;
+  inputs.running = stream::Gait::kWalk;
+  EXPECT_NEAR(stick.Advance(0.1, inputs).speed_mps, walk_mps, 1e-9);
+}
+
 }  // namespace
 }  // namespace footing::mapping

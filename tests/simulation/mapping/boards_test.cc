@@ -164,6 +164,27 @@ TEST(Boards, AJumpKeepsTheSpeedOfTheLastStepThatCameOnTime) {
   }
 }
 
+/// The steps of a run are short: both feet stand for longer than two of them before the heels rise.
+TEST(Boards, AJumpOutOfARunComesBeforeTheRunEnds) {
+  BoardPerson person(70);
+  BoardsInterface boards = NewBoards();
+  For(2, person, boards);
+  person.step_hz = 4;
+  For(4, person, boards);
+  ASSERT_EQ(boards.state().gait, Gait::kRun);
+  person.step_hz = 0;
+  bool jumped = false, stopped_before = false;
+  const See see = [&](const biped::GaitCommand& command) {
+    stopped_before = stopped_before || (!jumped && command.gait == Gait::kStep);
+    jumped = jumped || command.gait == Gait::kJump;
+  };
+  For(0.35, person, boards, see);
+  Rise(person, boards, 0.4, see);
+  For(0.2, person, boards, see);
+  EXPECT_TRUE(jumped);
+  EXPECT_FALSE(stopped_before);
+}
+
 TEST(Boards, LeaningTurnsToThatSideWhileSteppingAndWhileStanding) {
   BoardPerson person(70);
   BoardsInterface boards = NewBoards();

@@ -61,14 +61,6 @@ TEST(Driver, JumpsBeforeAPitAndRunsOnBehindIt) {
   EXPECT_EQ(runner.RunTo(22.5).gait, Gait::kRun);
 }
 
-TEST(Driver, WalksUpToAPitThatCannotBeJumpedFromARun) {
-  Ability ability;
-  ability.jumps_from_run = false;
-  Runner runner(PitAt20(), ability);
-  EXPECT_EQ(runner.RunTo(10).gait, Gait::kRun);
-  EXPECT_EQ(runner.RunTo(15).gait, Gait::kWalk);
-}
-
 TEST(Driver, WantsNoJumpAnyMoreOnceItWasPutBack) {
   Runner runner(PitAt20());
   ASSERT_EQ(runner.RunTo(19.9).gait, Gait::kJump);
