@@ -26,7 +26,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ["README.md", "systemd/README.md", *sorted(str(page.relative_to(ROOT)) for page in ROOT.glob("docs/*.md"))]
 PROGRAMS = ["footingd", "footing-sim", "footing-stream", "footing-view", "footing-log", "footing-ctl", "footing-eval",
             "footing-train", "footing-tune", "footing-bench", "footing-study", "footing-game", "footing-skeleton",
-            "footing-camera"]
+            "footing-camera", "footing-relay"]
 SECONDS_TO_WATCH = 3
 SECONDS_TO_STOP = 20
 # A pattern of commands, and why they cannot run here.

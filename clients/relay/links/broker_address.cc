@@ -1,0 +1,22 @@
+#include "clients/relay/links/broker_address.h"
+
+#include "common/transport/socket.h"
+
+namespace footing::relay {
+
+Result<transport::Address> ParseBrokerAddress(const std::string& text, const std::string& instead) {
+  const bool named = text.starts_with("tcp:") || text.starts_with("tls:") ||
+                     text.starts_with("unix:") || text.starts_with("fd:");
+  auto address = transport::ParseAddress(named ? text : "tcp:" + text);
+  if (!address) return address.error();
+  if (address->kind != transport::Address::Kind::kTcp) {
+    return UsageError(text + ": a broker is dialled at tcp:HOST:PORT");
+  }
+  if (const auto endpoint = transport::EndpointOf(*address); !endpoint) return endpoint.error();
+  if (!transport::StaysOnThisHost(*address)) {
+    return UsageError(text + ": would leave this host unencrypted; " + instead);
+  }
+  return address;
+}
+
+}  // namespace footing::relay

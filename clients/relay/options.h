@@ -1,0 +1,31 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <string>
+
+#include "clients/relay/links/nats_link.h"
+#include "common/result/result.h"
+
+/// Options that both subcommands have, and how both run.
+namespace footing::relay {
+
+struct SiteFlags {
+  std::string site;
+  double seconds = 0;
+
+  void Add(CLI::App& command);
+  /// The site, or this host's name where none was given.
+  Result<std::string> Site() const;
+};
+
+/// The link to NATS of these flags.
+Result<NatsOptions> NatsOf(const std::string& address, const std::string& login_file);
+
+/// Runs the loop until SIGINT, SIGTERM or the time is up. Then `end` is called once, with what stops
+/// the loop when its work is done; it is stopped after 2 s in any case.
+void RunUntilStopped(boost::asio::io_context& io, double seconds,
+                     const std::function<void(std::function<void()> done)>& end);
+
+}  // namespace footing::relay

@@ -1,0 +1,116 @@
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "clients/relay/commands.h"
+#include "clients/relay/options.h"
+#include "clients/relay/service/edge.h"
+#include "common/cli/cli.h"
+
+namespace footing::relay {
+namespace {
+
+struct ServeFlags {
+  SiteFlags site;
+  std::string nats, nats_login, server = "footingd";
+  std::vector<std::string> listen;
+  double rate_hz = 30;
+  std::int64_t max_sessions = 6000;
+  transport::AccessSettings access;
+};
+
+Result<EdgeOptions> EdgeOptionsOf(const ServeFlags& flags) {
+  EdgeOptions options;
+  const auto site = flags.site.Site();
+  if (!site) return site.error();
+  options.site = *site;
+  if (!nats::IsPart(flags.server)) {
+    return UsageError("--server: \"" + flags.server + "\" must be the name of a server, such as "
+                      "footingd or footing-sim");
+  }
+  options.server = flags.server;
+  const auto nats = NatsOf(flags.nats, flags.nats_login);
+  if (!nats) return nats.error();
+  options.nats = *nats;
+  for (const std::string& text : flags.listen) {
+    const auto address = transport::ParseAddress(text);
+    if (!address) return address.error();
+    options.listen.push_back(*address);
+  }
+  options.rate_hz = flags.rate_hz;
+  options.sessions.max_sessions = flags.max_sessions;
+  options.sessions.max_sessions_per_user = flags.max_sessions;
+  options.access = flags.access;
+  if (const auto checked = options.access.Check(); !checked) {
+    return UsageError("--insecure-lan needs a --token-file");
+  }
+  return options;
+}
+
+Result<EdgeReport> RunServe(const ServeFlags& flags) {
+  const auto options = EdgeOptionsOf(flags);
+  if (!options) return options.error();
+  boost::asio::io_context io(1);
+  std::optional<Error> broken;
+  Edge edge(io, *options, [&](const Error& error) {
+    broken = error;
+    io.stop();
+  });
+  edge.Start();
+  RunUntilStopped(io, flags.site.seconds, [&](std::function<void()> done) {
+    edge.Drain("footing-relay is being stopped", std::move(done));
+  });
+  edge.Stop();
+  if (broken) return *broken;
+  return edge.report();
+}
+
+void AddAccess(CLI::App& command, transport::AccessSettings& access) {
+  command.add_option("--token-file", access.token_file,
+                     "File (mode 0600) with the token of viewers over TLS");
+  command.add_option("--clients-file", access.clients_file,
+                     "File with the certificates of viewers, lines \"sha256:... ROLE NAME\"");
+  command.add_option("--identity-file", access.identity_file,
+                     "File with this relay's key and certificate for tls: (default: as footingd's)");
+  command.add_flag("--insecure-lan", access.insecure_lan,
+                   "Listen on tcp: beyond this host WITHOUT ENCRYPTION; needs --token-file");
+}
+
+}  // namespace
+
+void AddServeCommand(CLI::App& app, Shared& shared) {
+  CLI::App* command = app.add_subcommand(
+      "serve", "Serve viewers what another footing-relay publishes in NATS, in the server's place");
+  const auto flags = std::make_shared<ServeFlags>();
+  command->add_option("--nats", flags->nats, "NATS server on this host, tcp:HOST:PORT")->required();
+  command->add_option("--nats-login", flags->nats_login,
+                      "File (mode 0600) with a token, or with a user and a password on two lines");
+  command->add_option("--server", flags->server, "Server to serve: footingd or footing-sim");
+  command
+      ->add_option("--listen", flags->listen,
+                   "Address to listen on, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated")
+      ->required();
+  command
+      ->add_option("--rate-hz", flags->rate_hz,
+                   "Highest rate of samples and poses, Hz (0: every tick)")
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_option("--max-sessions", flags->max_sessions, "Viewers at once")
+      ->check(CLI::Range(1, 100'000));
+  AddAccess(*command, flags->access);
+  flags->site.Add(*command);
+  command->callback([flags, &shared] {
+    const auto report = RunServe(*flags);
+    if (!report) {
+      shared.exit_code = cli::Report(report.error());
+      return;
+    }
+    const nlohmann::ordered_json json = {{"ticks", report->ticks},
+                                         {"missing", report->missing},
+                                         {"left_out", report->left_out},
+                                         {"dropped", report->dropped},
+                                         {"accepted", report->accepted}};
+    if (shared.json) std::cout << json.dump() << std::endl;
+  });
+}
+
+}  // namespace footing::relay

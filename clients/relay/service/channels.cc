@@ -1,0 +1,62 @@
+#include "clients/relay/service/channels.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace footing::relay {
+namespace {
+
+constexpr std::array<std::string_view, 8> kRetained = {"status", "setup", "skeletons", "track",
+                                                       "config", "study", "game",      "stats"};
+constexpr std::array<std::string_view, 12> kSampled = {
+    "motion", "features",   "boards", "raw",   "nunchuk",   "camera",
+    "hands",  "characters", "inputs", "reference", "contacts", "gamepad"};
+
+const google::protobuf::FieldDescriptor* Field(std::uint32_t field) {
+  const auto* const found = v1::Tick::descriptor()->FindFieldByNumber(static_cast<int>(field));
+  return found != nullptr && found->message_type() != nullptr ? found : nullptr;
+}
+
+}  // namespace
+
+ChannelKind KindOf(std::uint32_t field) {
+  const std::string name = ChannelName(field);
+  if (std::count(kRetained.begin(), kRetained.end(), name) > 0) return ChannelKind::kRetained;
+  if (std::count(kSampled.begin(), kSampled.end(), name) > 0) return ChannelKind::kSampled;
+  return ChannelKind::kWhole;
+}
+
+std::vector<transport::ChannelBytes> ChannelsOf(const v1::Tick& tick) {
+  std::vector<transport::ChannelBytes> channels;
+  std::vector<const google::protobuf::FieldDescriptor*> present;
+  const google::protobuf::Reflection& fields = *tick.GetReflection();
+  fields.ListFields(tick, &present);
+  for (const google::protobuf::FieldDescriptor* field : present) {
+    if (field->message_type() == nullptr) continue;
+    channels.push_back({static_cast<std::uint32_t>(field->number()),
+                        fields.GetMessage(tick, field).SerializeAsString()});
+  }
+  return channels;
+}
+
+std::string ChannelName(std::uint32_t field) {
+  const auto* const found = Field(field);
+  return found == nullptr ? "" : found->name();
+}
+
+std::vector<transport::Channel> ChannelsNamed(
+    const google::protobuf::RepeatedPtrField<std::string>& names) {
+  std::vector<transport::Channel> channels;
+  for (const std::string& name : names) {
+    const auto* const found = v1::Tick::descriptor()->FindFieldByName(name);
+    if (found == nullptr || found->message_type() == nullptr) continue;
+    const auto field = static_cast<std::uint32_t>(found->number());
+    channels.push_back({name, field, KindOf(field) == ChannelKind::kRetained});
+  }
+  return channels;
+}
+
+}  // namespace footing::relay

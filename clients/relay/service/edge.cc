@@ -1,0 +1,218 @@
+#include "clients/relay/service/edge.h"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <utility>
+
+#include "clients/relay/service/channels.h"
+#include "clients/relay/service/subjects.h"
+#include "common/clock/clock.h"
+#include "common/log/log.h"
+#include "common/units/units.h"
+
+namespace footing::relay {
+namespace {
+
+constexpr auto kPulse = std::chrono::milliseconds(250);
+constexpr double kAskAgainS = 0.9;
+constexpr double kPingViewersS = 3;
+constexpr double kMostTickRateHz = 10'000;
+
+std::string NewInbox() {
+  std::random_device random;
+  std::string inbox = "_INBOX.footing";
+  for (int i = 0; i < 4; ++i) inbox += std::to_string(random());
+  return inbox;
+}
+
+v1::CommandResult RefuseCommand(const transport::SessionInfo&, const v1::Command& command) {
+  v1::CommandResult result;
+  result.set_id(command.id());
+  result.set_message("this is a relay; send commands to the server itself");
+  return result;
+}
+
+}  // namespace
+
+Edge::Edge(boost::asio::io_context& io, EdgeOptions options,
+           std::function<void(const Error&)> on_broken)
+    : io_(io),
+      options_(std::move(options)),
+      on_broken_(std::move(on_broken)),
+      inbox_(NewInbox()),
+      nats_(io, options_.nats,
+            {[this] {
+               Say("connected to " + options_.nats.address.Text());
+               Ask(probes_.Next(clock::MonotonicNs()));
+             },
+             [this](const std::string& why) { Say("NATS: " + why); },
+             [this](const nats::Message& message) { OnMessage(message); }}),
+      pulse_(io) {
+  nats_.Subscribe(TickSubject(options_.site, options_.server));
+  nats_.Subscribe(inbox_);
+}
+
+void Edge::Start() {
+  nats_.Start();
+  ArmPulse();
+}
+
+void Edge::Stop() {
+  pulse_.cancel();
+  nats_.Stop();
+  Count();
+  server_.reset();
+  former_.reset();
+}
+
+void Edge::Drain(const std::string& reason, std::function<void()> done) {
+  pulse_.cancel();
+  nats_.Stop();
+  if (!server_) return done();
+  server_->Drain(reason, std::move(done));
+}
+
+EdgeReport Edge::report() const { return report_; }
+
+void Edge::OnMessage(const nats::Message& message) {
+  v1::Envelope envelope;
+  const bool parsed =
+      envelope.ParseFromArray(message.payload.data(), static_cast<int>(message.payload.size()));
+  if (message.subject != inbox_) {
+    if (parsed && envelope.has_tick()) OnTick(envelope.tick());
+    return;
+  }
+  if (message.no_responders && !server_) {
+    Say("waiting: nobody publishes " + options_.server + " of " + options_.site);
+  }
+  if (!parsed) return;
+  if (envelope.has_pong()) {
+    const bool settled = probes_.settled();
+    probes_.Take(envelope.pong(), clock::MonotonicNs());
+    if (!settled) probes_.settled() ? AskForSnapshot() : Ask(probes_.Next(clock::MonotonicNs()));
+  } else if (envelope.has_welcome()) {
+    welcome_ = envelope.welcome();
+  } else if (envelope.has_tick() && envelope.tick().snapshot()) {
+    OnSnapshot(envelope.tick());
+  }
+}
+
+void Edge::Ask(const v1::Envelope& question) {
+  nats_.Publish(AskSubject(options_.site, options_.server), question.SerializeAsString(), inbox_);
+}
+
+void Edge::AskForSnapshot() {
+  const std::int64_t now_ns = clock::MonotonicNs();
+  if (asked_ns_ != 0 && NanosecondsToSeconds(now_ns - asked_ns_) < kAskAgainS) return;
+  asked_ns_ = now_ns;
+  v1::Envelope question;
+  question.mutable_hello()->set_client_name("footing-relay");
+  Ask(question);
+}
+
+void Edge::OnTick(const v1::Tick& tick) {
+  if (!server_) return;  // The snapshot comes first.
+  if (tick.epoch() != server_->epoch()) return AskForSnapshot();
+  heard_ns_ = clock::MonotonicNs();
+  ++report_.ticks;
+  const std::uint64_t expected = thinner_->last_sequence() + 1;
+  auto thinned = thinner_->Take({tick.sequence(), tick.host_ns()}, ChannelsOf(tick));
+  if (tick.sequence() > expected) AskForSnapshot();  // A retained channel may have been among them.
+  if (thinned) server_->Relay(thinned->number, std::move(thinned->channels));
+}
+
+void Edge::OnSnapshot(const v1::Tick& tick) {
+  if (welcome_.epoch() == 0 || tick.epoch() != welcome_.epoch()) return;
+  if (!server_ || server_->epoch() != tick.epoch()) {
+    if (server_) End(options_.server + " was started again");
+    return Begin(tick);
+  }
+  thinner_->TakeRetained(ChannelsOf(tick));
+}
+
+transport::ServerOptions Edge::OptionsOf(const v1::Welcome& welcome) const {
+  transport::ServerOptions options;
+  options.server_id = options_.server;
+  constexpr std::size_t kLongestVersion = 64;
+  options.version = welcome.version().substr(0, kLongestVersion) + " relayed";
+  options.channels = ChannelsNamed(welcome.channels());
+  const double source_hz = welcome.limits().tick_rate_hz();
+  if (source_hz > 0 && source_hz <= kMostTickRateHz) options.tick_rate_hz = source_hz;
+  if (options_.rate_hz > 0) options.tick_rate_hz = std::min(options.tick_rate_hz, options_.rate_hz);
+  options.epoch = welcome.epoch();
+  options.sessions = options_.sessions;
+  options.ping_interval_s = kPingViewersS;
+  options.capabilities = {"relay"};
+  options.now_ns = [this] { return clock::MonotonicNs() + probes_.offset().offset_ns; };
+  return options;
+}
+
+void Edge::Begin(const v1::Tick& snapshot) {
+  transport::ServerOptions options = OptionsOf(welcome_);
+  if (const auto applied = options_.access.Apply(options); !applied) {
+    return on_broken_(applied.error());
+  }
+  const double source_hz = welcome_.limits().tick_rate_hz();
+  transport::ServerHandlers handlers;
+  handlers.on_command = RefuseCommand;
+  handlers.on_overload = [](const std::string& line) { log::Warning(line); };
+  server_ = std::make_unique<transport::Server>(io_, options, handlers);
+  thinner_.emplace(options_.rate_hz, source_hz > 0 ? source_hz : options.tick_rate_hz,
+                   snapshot.sequence());
+  server_->BeginAt({snapshot.sequence(), snapshot.host_ns()}, ChannelsOf(snapshot));
+  heard_ns_ = clock::MonotonicNs();
+  std::string places;
+  for (std::size_t i = 0; i < options_.listen.size(); ++i) {
+    if (const auto listening = server_->Listen(options_.listen[i]); !listening) {
+      return on_broken_(listening.error());
+    }
+    places += " " + server_->ListeningOn(i).Text();
+  }
+  Say("serving " + options_.server + " of " + options_.site + " on" + places);
+  if (!server_->fingerprint().empty()) log::Info("certificate " + server_->fingerprint());
+}
+
+/// Its numbers are added to the report.
+void Edge::Count() {
+  if (!server_) return;
+  const transport::ServerStatistics statistics = server_->statistics();
+  report_.dropped += statistics.ticks_dropped;
+  report_.accepted += statistics.accepted;
+  report_.missing += thinner_->missing();
+  report_.left_out += thinner_->left_out();
+}
+
+void Edge::End(const std::string& reason) {
+  Count();
+  server_->Stop(reason);
+  former_ = std::move(server_);
+  Say(reason);
+}
+
+void Edge::ArmPulse() {
+  pulse_.expires_after(kPulse);
+  pulse_.async_wait([this](const boost::system::error_code& error) {
+    if (error) return;
+    OnPulse();
+    ArmPulse();
+  });
+}
+
+void Edge::OnPulse() {
+  const std::int64_t now_ns = clock::MonotonicNs();
+  if (server_ && NanosecondsToSeconds(now_ns - heard_ns_) > options_.silent_after_s) {
+    End("nothing comes from " + options_.server + " of " + options_.site + " any more");
+  }
+  if (!nats_.up()) return;
+  Ask(probes_.Next(now_ns));
+  if (!server_ && probes_.settled()) AskForSnapshot();
+}
+
+void Edge::Say(const std::string& state) {
+  if (state == state_) return;
+  state_ = state;
+  log::Info(state);
+}
+
+}  // namespace footing::relay

@@ -1,0 +1,62 @@
+#include "clients/relay/service/thinner.h"
+
+#include <utility>
+
+#include "clients/relay/service/channels.h"
+#include "common/units/time.h"
+
+namespace footing::relay {
+
+Thinner::Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequence)
+    : rate_hz_(rate_hz),
+      tick_ns_(PeriodNanoseconds(tick_rate_hz)),
+      last_sequence_(last_sequence) {}
+
+bool Thinner::IsDue(std::uint32_t field, std::int64_t host_ns) {
+  return decimators_.try_emplace(field, rate_hz_, tick_ns_).first->second.Take(host_ns);
+}
+
+std::optional<Thinner::Thinned> Thinner::Take(const transport::TickNumber& number,
+                                              std::vector<transport::ChannelBytes> channels) {
+  if (number.sequence <= last_sequence_) return std::nullopt;
+  Thinned thinned;
+  thinned.number = number;
+  const bool hole = number.sequence > last_sequence_ + 1;
+  thinned.number.missing_from = hole ? last_sequence_ + 1 : 0;
+  missing_ += number.sequence - last_sequence_ - 1;
+  last_sequence_ = number.sequence;
+  for (transport::ChannelBytes& channel : channels) {
+    if (KindOf(channel.field) == ChannelKind::kSampled) {
+      waiting_[channel.field] = std::move(channel.bytes);
+    } else {
+      retained_.erase(channel.field);
+      thinned.channels.push_back(std::move(channel));
+    }
+  }
+  for (auto& [field, bytes] : std::exchange(retained_, {})) {
+    thinned.channels.push_back({field, std::move(bytes)});
+  }
+  for (auto waiting = waiting_.begin(); waiting != waiting_.end();) {
+    if (IsDue(waiting->first, number.host_ns)) {
+      thinned.channels.push_back({waiting->first, std::move(waiting->second)});
+      waiting = waiting_.erase(waiting);
+    } else {
+      ++waiting;
+    }
+  }
+  if (rate_hz_ > 0 && thinned.channels.empty() && !hole) {
+    ++left_out_;
+    return std::nullopt;
+  }
+  return thinned;
+}
+
+void Thinner::TakeRetained(std::vector<transport::ChannelBytes> channels) {
+  for (transport::ChannelBytes& channel : channels) {
+    if (KindOf(channel.field) == ChannelKind::kRetained) {
+      retained_[channel.field] = std::move(channel.bytes);
+    }
+  }
+}
+
+}  // namespace footing::relay

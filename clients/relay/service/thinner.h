@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/transport/decimator.h"
+#include "common/transport/server.h"
+
+namespace footing::relay {
+
+/// Takes the ticks of one epoch and gives those that viewers get: of each channel of samples or
+/// poses at most `rate_hz` a second, the newest; retained channels and events whole, at once.
+///
+/// What waits for its turn goes with the next tick that comes when it is due, so that the last value
+/// before a pause is not lost. The tick behind a hole in the sequence is always given, with the
+/// hole. A plain value.
+class Thinner {
+ public:
+  struct Thinned {
+    transport::TickNumber number;
+    std::vector<transport::ChannelBytes> channels;
+  };
+
+  /// `rate_hz` 0: every tick. `last_sequence` has been had already.
+  Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequence);
+
+  /// Nothing for a tick that is left out, or was had already. missing_from of `number` is ignored.
+  std::optional<Thinned> Take(const transport::TickNumber& number,
+                              std::vector<transport::ChannelBytes> channels);
+
+  /// Retained channels of a snapshot: they go with the next tick.
+  void TakeRetained(std::vector<transport::ChannelBytes> channels);
+
+  std::uint64_t last_sequence() const { return last_sequence_; }
+  std::uint64_t missing() const { return missing_; }     ///< Ticks that never came.
+  std::uint64_t left_out() const { return left_out_; }  ///< Ticks of which nothing went on.
+
+ private:
+  bool IsDue(std::uint32_t field, std::int64_t host_ns);
+
+  double rate_hz_;
+  std::int64_t tick_ns_;
+  std::uint64_t last_sequence_;
+  std::map<std::uint32_t, std::string> waiting_;  ///< Of channels of samples, by field.
+  std::map<std::uint32_t, std::string> retained_;
+  std::map<std::uint32_t, transport::Decimator> decimators_;
+  std::uint64_t missing_ = 0;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace footing::relay
