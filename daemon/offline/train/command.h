@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "daemon/offline/ranks/ranks.h"
+
 namespace footing::train {
 
 /// What all subcommands share.
@@ -10,6 +12,7 @@ struct Shared {
   bool json = false;
   std::string command_line;  ///< For the model's provenance.
   int exit_code = 0;         ///< Set by the subcommand that ran.
+  ranks::Ranks ranks;        ///< Of which this process is one; `people` alone shares its work.
 };
 
 /// Each adds one subcommand to footing-train; its callback does the work and sets

@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <string_view>
+
 #include "common/cli/cli.h"
 #include "common/log/log.h"
+#include "daemon/offline/ranks/ranks.h"
 #include "daemon/offline/train/command.h"
 
 namespace {
@@ -23,6 +27,7 @@ int main(int argc, char** argv) {
       "  footing-train pose --motions mocap/ --exclude 14 --out pose.fmodel\n"
       "  footing-train pose --motions mocap/ --recording me.mcap --motion me.bvh --out me.fmodel\n"
       "  footing-train arm --motions mocap/ --exclude 14 --out arm.fmodel\n"
+      "  mpirun -n 4 footing-train people --motions mocap/ --json\n"
       "  footing-train mlp --data sway.csv --inputs 20 --out mlp.fmodel --mse-goal 1e-5");
   footing::log::Start("footing-train", false);
   footing::train::Shared shared;
@@ -37,6 +42,14 @@ int main(int argc, char** argv) {
   footing::train::AddMlpCommand(*app, shared);
   footing::train::AddPeopleCommand(*app, shared);
   footing::train::AddPoseCommand(*app, shared);
-  if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
-  return shared.exit_code;
+  const auto ranks = footing::ranks::Ranks::Join();
+  if (!ranks) return footing::cli::Report(ranks.error());
+  shared.ranks = *ranks;
+  const auto asked = std::find(argv, argv + argc, std::string_view("people"));
+  if (ranks->count() > 1 && asked == argv + argc) {
+    return ranks->Leave(footing::cli::Report(
+        footing::UsageError("only footing-train people shares its work among MPI's ranks")));
+  }
+  const auto code = footing::cli::Parse(*app, argc, argv);
+  return ranks->Leave(code.value_or(shared.exit_code));
 }

@@ -8,6 +8,7 @@
 #include "common/cli/cli.h"
 #include "common/log/log.h"
 #include "common/model/model.h"
+#include "daemon/offline/ranks/ranks.h"
 #include "daemon/offline/train/command.h"
 #include "daemon/offline/train/model_output.h"
 #include "daemon/offline/train/motions.h"
@@ -36,6 +37,12 @@ std::string ActivityOf(const Clip& clip) {
   name = name.substr(clip.subject.size() + 1);
   return name.substr(0, name.find('_'));
 }
+
+/// What one take came to; plain, since ranks share it.
+struct ScoredTake {
+  std::size_t take = 0;
+  PoseTally tally;
+};
 
 class LeaveOneOut {
  public:
@@ -94,20 +101,22 @@ class LeaveOneOut {
     return reconstruction::MakeModels({{"the model without " + person, model}});
   }
 
-  /// Scores the person's clips in place; adds to `by_activity`.
+  /// Scores the person's clips in place, and appends each to `scored`.
   Result<PoseTally> ScorePerson(const std::string& person, const reconstruction::Models& models,
-                                bool with_truth,
-                                std::map<std::string, PoseTally>& by_activity) const {
+                                bool with_truth, std::vector<ScoredTake>& scored) const {
     PoseTally sum;
-    for (const PoseTake& take : takes_) {
+    for (std::size_t i = 0; i < takes_.size(); ++i) {
+      const PoseTake& take = takes_[i];
       if (take.clip->subject != person || take.mirrored || !StaysInPlace(*take.clip)) continue;
       const auto tally = ScoreTake(take, models, with_truth);
       if (!tally) return tally.error();
       sum.Add(*tally);
-      by_activity[ActivityOf(*take.clip)].Add(*tally);
+      scored.push_back({i, *tally});
     }
     return sum;
   }
+
+  const Clip& ClipOf(const ScoredTake& scored) const { return *takes_[scored.take].clip; }
 
  private:
   std::vector<Clip> clips_;
@@ -117,50 +126,84 @@ class LeaveOneOut {
   std::vector<learning::PoseExamples> postures_;  ///< Of each take.
 };
 
-int Run(const PeopleOptions& options, const Shared& shared) {
-  auto clips = ReadClips(options.motions);
-  if (!clips) return cli::Report(clips.error());
+/// Of each activity of a person so many takes as the options say.
+std::vector<Clip> Thinned(std::vector<Clip> clips, int every) {
   std::vector<Clip> kept;
   std::map<std::string, int> seen;
-  for (Clip& clip : clips->train) {
-    if (seen[clip.subject + ActivityOf(clip)]++ % options.every == 0)
-      kept.push_back(std::move(clip));
+  for (Clip& clip : clips) {
+    if (seen[clip.subject + ActivityOf(clip)]++ % every == 0) kept.push_back(std::move(clip));
   }
+  return kept;
+}
+
+/// The people to leave out, one after the other.
+Result<std::vector<std::string>> PeopleOf(const std::vector<Clip>& clips,
+                                          const std::vector<std::string>& only) {
   std::set<std::string> people;
-  for (const Clip& clip : kept) {
+  for (const Clip& clip : clips) {
     if (StaysInPlace(clip)) people.insert(clip.subject);
   }
-  if (people.empty()) return cli::Report(InvalidData("no motion in the folders stays in place"));
-  std::set<std::string> only;
-  for (const std::string& name : options.only) {
-    only.insert(model::SubjectName(name));
+  if (people.empty()) return InvalidData("no motion in the folders stays in place");
+  if (only.empty()) return std::vector(people.begin(), people.end());
+  std::set<std::string> asked;
+  for (const std::string& name : only) {
+    asked.insert(model::SubjectName(name));
     if (people.count(model::SubjectName(name)) == 0) {
-      return cli::Report(UsageError("--only " + name +
-                                    ": no motion of that subject that stays in place is there"));
+      return UsageError("--only " + name +
+                        ": no motion of that subject that stays in place is there");
     }
   }
-  LeaveOneOut study(std::move(kept), options.seed);
-  if (const auto prepared = study.Prepare(); !prepared) return cli::Report(prepared.error());
+  return std::vector(asked.begin(), asked.end());
+}
+
+/// This rank's share of the people, take by take.
+Result<std::vector<ScoredTake>> ScoreOwn(const LeaveOneOut& study,
+                                         const std::vector<std::string>& people, bool with_truth,
+                                         const ranks::Ranks& ranks) {
+  std::vector<ScoredTake> scored;
+  for (std::size_t i = ranks.rank(); i < people.size(); i += ranks.count()) {
+    const auto models = study.Train(people[i]);
+    if (!models) return models.error();
+    const auto tally = study.ScorePerson(people[i], *models, with_truth, scored);
+    if (!tally) return tally.error();
+    log::Info("scored " + people[i] + ": " + tally->Json().dump());
+  }
+  return scored;
+}
+
+/// The sums, added up person after person and take after take, whoever scored them.
+ordered_json ReportOf(const LeaveOneOut& study, const std::vector<std::string>& people,
+                      const std::vector<std::vector<ScoredTake>>& by_rank) {
   ordered_json report;
   PoseTally sum;
   std::map<std::string, PoseTally> by_activity;
-  for (const std::string& person : people) {
-    if (!only.empty() && only.count(person) == 0) continue;
-    const auto models = study.Train(person);
-    if (!models) return cli::Report(models.error());
-    const auto tally = study.ScorePerson(person, *models, options.with_truth, by_activity);
-    if (!tally) return cli::Report(tally.error());
-    sum.Add(*tally);
-    report["people"][person] = tally->Json();
-    log::Info("scored " + person + ": " + tally->Json().dump());
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    PoseTally of_person;
+    for (const ScoredTake& scored : by_rank[i % by_rank.size()]) {
+      if (study.ClipOf(scored).subject != people[i]) continue;
+      of_person.Add(scored.tally);
+      by_activity[ActivityOf(study.ClipOf(scored))].Add(scored.tally);
+    }
+    sum.Add(of_person);
+    report["people"][people[i]] = of_person.Json();
   }
   for (const auto& [activity, tally] : by_activity) report["activities"][activity] = tally.Json();
   report["all"] = sum.Json();
-  if (shared.json) {
-    std::cout << report.dump() << "\n";
-  } else {
-    std::cout << report.dump(2) << "\n";
-  }
+  return report;
+}
+
+int Run(const PeopleOptions& options, const Shared& shared) {
+  auto clips = ReadClips(options.motions);
+  if (!clips) return cli::Report(clips.error());
+  std::vector<Clip> kept = Thinned(std::move(clips->train), options.every);
+  const auto people = PeopleOf(kept, options.only);
+  if (!people) return cli::Report(people.error());
+  LeaveOneOut study(std::move(kept), options.seed);
+  if (const auto prepared = study.Prepare(); !prepared) return cli::Report(prepared.error());
+  const auto scored = ScoreOwn(study, *people, options.with_truth, shared.ranks);
+  if (!scored) return cli::Report(scored.error());
+  const ordered_json report = ReportOf(study, *people, shared.ranks.Share(*scored));
+  if (shared.ranks.first()) std::cout << report.dump(shared.json ? -1 : 2) << "\n";
   return 0;
 }
 
@@ -185,7 +228,8 @@ void AddPeopleCommand(CLI::App& app, Shared& shared) {
       "Examples:\n"
       "  footing-train people --motions mocap/ --json\n"
       "  footing-train people --motions mocap/ --motions hdm05/ --only 14 --every 3\n"
-      "  footing-train people --motions mocap/ --ablations");
+      "  footing-train people --motions mocap/ --ablations\n"
+      "  mpirun -n 4 footing-train people --motions mocap/ --json");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }
 

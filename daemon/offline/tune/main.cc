@@ -1,4 +1,5 @@
 #include "common/cli/cli.h"
+#include "daemon/offline/ranks/ranks.h"
 #include "daemon/offline/tune/tune_command.h"
 
 int main(int argc, char** argv) {
@@ -7,7 +8,8 @@ int main(int argc, char** argv) {
       "  footing-tune --gait walk --speeds 0.5,1.5 --out walk.csv\n"
       "  footing-tune --gait run --speeds 2,5 --out run.csv --method cmaes --iterations 20\n"
       "  footing-tune --gait walk --speeds 0.5 --from walk.csv --iterations 0 --trials 400 "
-      "--seed 7 --json");
+      "--seed 7 --json\n"
+      "  mpirun -n 4 footing-tune --gait walk --speeds 0.5,1.5 --out walk.csv");
   footing::tune::Options options;
   app->add_option("--gait", options.gait, "Gait: step, walk, run or jump")->required();
   app->add_option("--speeds", options.speeds_mps,
@@ -37,5 +39,7 @@ int main(int argc, char** argv) {
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
   options.command_line = "footing-tune";
   for (int i = 1; i < argc; ++i) (options.command_line += ' ') += argv[i];
-  return footing::tune::Run(options);
+  const auto ranks = footing::ranks::Ranks::Join();
+  if (!ranks) return footing::cli::Report(ranks.error());
+  return ranks->Leave(footing::tune::Run(options, *ranks));
 }

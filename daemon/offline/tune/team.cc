@@ -23,10 +23,11 @@ Difference MeanOf(std::size_t count, const Value& value) {
 
 }  // namespace
 
-Result<Team> Team::Create(int threads) {
+Result<Team> Team::Create(int threads, ranks::Ranks ranks) {
   const Result<engine::EngineTexts> texts = engine_files::ReadTexts();
   if (!texts) return texts.error();
   Team team;
+  team.ranks_ = ranks;
   team.texts_ = *texts;
   for (int i = 0; i < threads; ++i) {
     Result<engine::GaitEngine> engine = engine::GaitEngine::Create(*texts);
@@ -58,33 +59,45 @@ engine::GaitEngine Team::OnTrack(std::string track) const {
   return std::move(engine).value();
 }
 
-std::vector<std::vector<Cost>> Team::Try(const std::vector<gait::Gains>& gains, int trials,
-                                         std::uint64_t seed) {
-  const auto per_gains = static_cast<std::size_t>(trials);
-  std::vector<std::vector<Cost>> costs(gains.size(), std::vector<Cost>(per_gains));
-  const std::size_t jobs = gains.size() * per_gains;
+Cost Team::TryOne(engine::GaitEngine& engine, const gait::Gains& gains, std::size_t trial,
+                  std::uint64_t seed) const {
+  gait::GainTable table = table_;
+  table.Set(task_.gait, {{"tried", 0, gains}});
+  engine.UseGains(table);
+  const engine::EngineState& start = starts_[trial % starts_.size()];
+  const Disturbance disturbance = Draw(task_, MixSeeds(seed, trial));
+  if (disturbance.pit_m == 0) return CostOf(task_, RunTrial(engine, start, task_, disturbance));
+  engine::GaitEngine on_pit = OnTrack(PitTrack(start, disturbance));
+  on_pit.UseGains(table);
+  return CostOf(task_, RunTrial(on_pit, start, task_, disturbance));
+}
+
+std::vector<Cost> Team::TryOwn(const std::vector<gait::Gains>& gains, std::size_t trials,
+                               std::uint64_t seed) {
+  const std::size_t all = gains.size() * trials;
+  // Job after job in turn among the ranks, and a rank's among its threads.
+  std::vector<Cost> costs((all + ranks_.count() - 1 - ranks_.rank()) / ranks_.count());
   const auto work = [&](std::size_t worker) {
-    engine::GaitEngine& engine = engines_[worker];
-    for (std::size_t job = worker; job < jobs; job += engines_.size()) {
-      const std::size_t which = job / per_gains, trial = job % per_gains;
-      gait::GainTable table = table_;
-      table.Set(task_.gait, {{"tried", 0, gains[which]}});
-      engine.UseGains(table);
-      const engine::EngineState& start = starts_[trial % starts_.size()];
-      const Disturbance disturbance = Draw(task_, MixSeeds(seed, trial));
-      if (disturbance.pit_m == 0) {
-        costs[which][trial] = CostOf(task_, RunTrial(engine, start, task_, disturbance));
-        continue;
-      }
-      engine::GaitEngine on_pit = OnTrack(PitTrack(start, disturbance));
-      on_pit.UseGains(table);
-      costs[which][trial] = CostOf(task_, RunTrial(on_pit, start, task_, disturbance));
+    for (std::size_t own = worker; own < costs.size(); own += engines_.size()) {
+      const std::size_t job = own * ranks_.count() + ranks_.rank();
+      costs[own] = TryOne(engines_[worker], gains[job / trials], job % trials, seed);
     }
   };
   std::vector<std::thread> others;
   for (std::size_t i = 1; i < engines_.size(); ++i) others.emplace_back(work, i);
   work(0);
   for (std::thread& other : others) other.join();
+  return costs;
+}
+
+std::vector<std::vector<Cost>> Team::Try(const std::vector<gait::Gains>& gains, int trials,
+                                         std::uint64_t seed) {
+  const auto per_gains = static_cast<std::size_t>(trials);
+  const auto shared = ranks_.Share(TryOwn(gains, per_gains, seed));
+  std::vector<std::vector<Cost>> costs(gains.size(), std::vector<Cost>(per_gains));
+  for (std::size_t job = 0; job < gains.size() * per_gains; ++job) {
+    costs[job / per_gains][job % per_gains] = shared[job % shared.size()][job / shared.size()];
+  }
   return costs;
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "daemon/offline/ranks/ranks.h"
 #include "daemon/offline/tune/objective.h"
 #include "daemon/offline/tune/search.h"
 #include "daemon/offline/tune/search_space.h"
@@ -16,11 +17,14 @@ struct Score {
   int trials = 0;
 };
 
-/// Threads with a world each, that try gains out. What comes out does not depend on how many.
+/// Threads with a world each, in one process or as many as MPI runs, that try gains out. What comes
+/// out does not depend on how many.
 class Team {
  public:
-  /// Reads the product's data; one engine a thread.
-  static Result<Team> Create(int threads);
+  /// Reads the product's data; one engine a thread of this rank.
+  static Result<Team> Create(int threads, ranks::Ranks ranks = {});
+
+  const ranks::Ranks& ranks() const { return ranks_; }
 
   /// Makes the states in which the trials of `task` begin, under `table`.
   Result<void> Prepare(const Task& task, const gait::GainTable& table, std::uint64_t seed);
@@ -34,6 +38,13 @@ class Team {
   Team() = default;
   engine::GaitEngine OnTrack(std::string track) const;
 
+  /// The jobs of this rank, on all of its threads.
+  std::vector<Cost> TryOwn(const std::vector<gait::Gains>& gains, std::size_t trials,
+                           std::uint64_t seed);
+  Cost TryOne(engine::GaitEngine& engine, const gait::Gains& gains, std::size_t trial,
+              std::uint64_t seed) const;
+
+  ranks::Ranks ranks_;
   engine::EngineTexts texts_;
 
   std::vector<engine::GaitEngine> engines_;

@@ -45,9 +45,10 @@ class Tuning {
 
   Result<void> Resume() {
     searches_.assign(options_.speeds_mps.size(), StartSearch(static_cast<int>(dimensions_.size())));
-    if (options_.iterations == 0 || !std::filesystem::exists(StatePath())) return {};
-    const Result<std::string> text = config::ReadTextFile(StatePath());
+    if (options_.iterations == 0) return {};
+    const Result<std::string> text = KeptText();
     if (!text) return text.error();
+    if (text->empty()) return {};
     auto searches = ResumeRun(*text, Key(), StatePath());
     if (!searches) return searches.error();
     const auto sized = [this](const SearchState& search) {
@@ -58,7 +59,7 @@ class Tuning {
       return InvalidData(StatePath() + " is of another version; remove it to start again");
     }
     searches_ = std::move(*searches);
-    std::fprintf(stderr, "goes on from %s\n", StatePath().c_str());
+    if (team_.ranks().first()) std::fprintf(stderr, "goes on from %s\n", StatePath().c_str());
     return {};
   }
 
@@ -70,7 +71,7 @@ class Tuning {
   }
 
   Result<void> Write() const {
-    if (options_.iterations == 0) return {};
+    if (options_.iterations == 0 || !team_.ranks().first()) return {};
     std::vector<gait::GainSet> sets;
     for (std::size_t i = 0; i < options_.keep_mps.size(); ++i) {
       const double speed_mps = options_.keep_mps[i];
@@ -87,6 +88,21 @@ class Tuning {
   std::string StatePath() const { return options_.out + ".state.json"; }
   std::string PlotPath() const {
     return std::filesystem::path(options_.out).replace_extension(".svg").string();
+  }
+
+  /// Of the run that was stopped, on the first rank's disk; empty when there is none.
+  Result<std::string> KeptText() const {
+    Result<std::string> text = std::string();
+    if (team_.ranks().first() && std::filesystem::exists(StatePath())) {
+      text = config::ReadTextFile(StatePath());
+    }
+    if (!text) return text;
+    return team_.ranks().OfFirst(*text);
+  }
+
+  Result<void> Keep() const {
+    if (!team_.ranks().first()) return {};
+    return ReplaceFile(StatePath(), KeepRun(Key(), searches_));
   }
 
   RunKey Key() const {
@@ -124,7 +140,7 @@ class Tuning {
       } else {
         Evolve(search, evaluate, seed);
       }
-      if (const auto kept = ReplaceFile(StatePath(), KeepRun(Key(), searches_)); !kept) return kept;
+      if (const auto kept = Keep(); !kept) return kept;
       ShowProgress(index, NanosecondsToSeconds(clock::MonotonicNs() - begin_ns));
     }
     Validate(index, task, start, seed);
@@ -146,6 +162,7 @@ class Tuning {
   }
 
   void ShowProgress(std::size_t index, double seconds) const {
+    if (!team_.ranks().first()) return;
     int left = 0;
     for (std::size_t i = index; i < searches_.size(); ++i) {
       left += std::max(0, options_.iterations - searches_[i].iteration);
@@ -172,11 +189,13 @@ class Tuning {
     tuned.difference = Compare(costs.back(), costs.front());
     tuned.better = tuned.difference.mean + tuned.difference.half_width < 0;
     tuned.set = {SetName(index, searches_.size()), task.speed_mps, tuned.better ? found : start};
-    std::fprintf(stderr, "%s %.3g m/s: %.3f +- %.3f before, %.3f +- %.3f after%s\n",
-                 options_.gait.c_str(), task.speed_mps, tuned.before.mean.total(),
-                 tuned.before.total_half_width, tuned.after.mean.total(),
-                 tuned.after.total_half_width,
-                 scores_only || tuned.better ? "" : ": not better, the start is kept");
+    const char* const remark = scores_only || tuned.better ? "" : ": not better, the start is kept";
+    if (team_.ranks().first()) {
+      std::fprintf(stderr, "%s %.3g m/s: %.3f +- %.3f before, %.3f +- %.3f after%s\n",
+                   options_.gait.c_str(), task.speed_mps, tuned.before.mean.total(),
+                   tuned.before.total_half_width, tuned.after.mean.total(),
+                   tuned.after.total_half_width, remark);
+    }
     tuned_.push_back(std::move(tuned));
   }
 
@@ -204,14 +223,14 @@ Result<void> Check(const Options& options) {
   return {};
 }
 
-Result<ordered_json> RunChecked(const Options& options) {
+Result<ordered_json> RunChecked(const Options& options, const ranks::Ranks& ranks) {
   if (const auto good = Check(options); !good) return good.error();
   const auto texts = engine_files::ReadTexts();
   if (!texts) return texts.error();
   auto table = TableOf(*texts, options.from);
   if (!table) return table.error();
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  auto team = Team::Create(options.threads > 0 ? options.threads : cores);
+  auto team = Team::Create(options.threads > 0 ? options.threads : cores, ranks);
   if (!team) return team.error();
   Tuning tuning(options, std::move(*team), std::move(*table));
   if (const auto resumed = tuning.Resume(); !resumed) return resumed.error();
@@ -222,10 +241,10 @@ Result<ordered_json> RunChecked(const Options& options) {
 
 }  // namespace
 
-int Run(const Options& options) {
-  const Result<ordered_json> report = RunChecked(options);
+int Run(const Options& options, const ranks::Ranks& ranks) {
+  const Result<ordered_json> report = RunChecked(options, ranks);
   if (!report) return cli::Report(report.error());
-  if (options.json) std::printf("%s\n", report->dump().c_str());
+  if (options.json && ranks.first()) std::printf("%s\n", report->dump().c_str());
   return 0;
 }
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/offline/ranks/ranks.h"
+
 namespace footing::tune {
 
 struct Options {
@@ -20,7 +22,7 @@ struct Options {
   std::string command_line;  ///< As typed, for the table's comment.
 };
 
-/// Tunes; returns the exit code.
-int Run(const Options& options);
+/// Tunes, as one of these ranks; returns the exit code.
+int Run(const Options& options, const ranks::Ranks& ranks);
 
 }  // namespace footing::tune
