@@ -5,7 +5,8 @@
 int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
       "footing-relay",
-      "Takes the ticks of servers to more viewers than one machine can serve: publishes them in NATS "
+      "Takes the ticks of servers to more viewers than one machine can serve: publishes them in "
+      "NATS "
       "or MQTT, and serves them at the edge.",
       "  footing-relay publish --nats tcp:127.0.0.1:4222 --site lab1\n"
       "  footing-relay serve --nats tcp:127.0.0.1:4222 --site lab1 --listen tcp:127.0.0.1:7460\n"

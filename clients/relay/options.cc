@@ -15,7 +15,8 @@
 namespace footing::relay {
 
 void SiteFlags::Add(CLI::App& command) {
-  command.add_option("--site", site, "Name of the site, letters, digits, - and _ (default: this host's name)");
+  command.add_option("--site", site,
+                     "Name of the site, letters, digits, - and _ (default: this host's name)");
   command.add_option("--seconds", seconds, "Duration, s (0: until SIGINT or SIGTERM)")
       ->check(CLI::Range(0.0, 1e9));
 }

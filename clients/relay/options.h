@@ -23,8 +23,8 @@ struct SiteFlags {
 /// The link to NATS of these flags.
 Result<NatsOptions> NatsOf(const std::string& address, const std::string& login_file);
 
-/// Runs the loop until SIGINT, SIGTERM or the time is up. Then `end` is called once, with what stops
-/// the loop when its work is done; it is stopped after 2 s in any case.
+/// Runs the loop until SIGINT, SIGTERM or the time is up. Then `end` is called once, with what
+/// stops the loop when its work is done; it is stopped after 2 s in any case.
 void RunUntilStopped(boost::asio::io_context& io, double seconds,
                      const std::function<void(std::function<void()> done)>& end);
 

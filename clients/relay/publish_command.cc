@@ -95,7 +95,8 @@ void AddPublishCommand(CLI::App& app, Shared& shared) {
   command->add_option("--nats", flags->nats, "NATS server on this host, tcp:HOST:PORT");
   command->add_option("--nats-login", flags->nats_login,
                       "File (mode 0600) with a token, or with a user and a password on two lines");
-  command->add_option("--mqtt", flags->mqtt, "MQTT broker, HOST:PORT; on this host without --mqtt-ca");
+  command->add_option("--mqtt", flags->mqtt,
+                      "MQTT broker, HOST:PORT; on this host without --mqtt-ca");
   command->add_option("--mqtt-login", flags->mqtt_login, "The same file for the MQTT broker");
   command->add_option("--mqtt-ca", flags->mqtt_ca,
                       "Certificate by which the broker's is checked, PEM; turns TLS on");

@@ -25,7 +25,8 @@ Result<EdgeOptions> EdgeOptionsOf(const ServeFlags& flags) {
   if (!site) return site.error();
   options.site = *site;
   if (!nats::IsPart(flags.server)) {
-    return UsageError("--server: \"" + flags.server + "\" must be the name of a server, such as "
+    return UsageError("--server: \"" + flags.server +
+                      "\" must be the name of a server, such as "
                       "footingd or footing-sim");
   }
   options.server = flags.server;
@@ -70,8 +71,9 @@ void AddAccess(CLI::App& command, transport::AccessSettings& access) {
                      "File (mode 0600) with the token of viewers over TLS");
   command.add_option("--clients-file", access.clients_file,
                      "File with the certificates of viewers, lines \"sha256:... ROLE NAME\"");
-  command.add_option("--identity-file", access.identity_file,
-                     "File with this relay's key and certificate for tls: (default: as footingd's)");
+  command.add_option(
+      "--identity-file", access.identity_file,
+      "File with this relay's key and certificate for tls: (default: as footingd's)");
   command.add_flag("--insecure-lan", access.insecure_lan,
                    "Listen on tcp: beyond this host WITHOUT ENCRYPTION; needs --token-file");
 }
@@ -87,8 +89,9 @@ void AddServeCommand(CLI::App& app, Shared& shared) {
                       "File (mode 0600) with a token, or with a user and a password on two lines");
   command->add_option("--server", flags->server, "Server to serve: footingd or footing-sim");
   command
-      ->add_option("--listen", flags->listen,
-                   "Address to listen on, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated")
+      ->add_option(
+          "--listen", flags->listen,
+          "Address to listen on, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT; may be repeated")
       ->required();
   command
       ->add_option("--rate-hz", flags->rate_hz,

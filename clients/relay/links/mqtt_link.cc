@@ -69,7 +69,8 @@ class MqttLink::Implementation : public std::enable_shared_from_this<Implementat
  private:
   /// One try, from the dial until it breaks. The library's thread has its address.
   struct Client {
-    Client(Implementation& with, std::uint64_t of) : owner(with.weak_from_this()), io(with.io_), attempt(of) {}
+    Client(Implementation& with, std::uint64_t of)
+        : owner(with.weak_from_this()), io(with.io_), attempt(of) {}
     ~Client() {
       if (mosquitto == nullptr) return;
       mosquitto_disconnect(mosquitto);

@@ -38,8 +38,8 @@ class MqttLink {
   Result<void> Start();
   void Stop();
 
-  /// False, and nothing is sent, when the link is down or the broker takes too little. `retain`: the
-  /// broker keeps it for those who subscribe later.
+  /// False, and nothing is sent, when the link is down or the broker takes too little. `retain`:
+  /// the broker keeps it for those who subscribe later.
   bool Publish(const std::string& topic, const std::string& payload, bool retain);
 
   bool up() const;

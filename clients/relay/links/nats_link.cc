@@ -60,7 +60,7 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
 
   void Subscribe(const std::string& subject) {
     subjects_.push_back(subject);
-    if (connection_ && connection_->up) Queue(nats::Subscribe(subject, subjects_.size()));
+    if (connection_ && connection_->greeted) Queue(nats::Subscribe(subject, subjects_.size()));
   }
 
   bool Publish(const std::string& subject, std::string_view payload, const std::string& reply) {
@@ -89,20 +89,21 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
     std::string queued;   ///< Waits behind what is being written.
     std::string writing;  ///< Empty: nothing is.
     std::size_t max_payload = 0;
+    bool greeted = false;  ///< Its INFO came, and our subscriptions went.
     bool up = false;
     std::int64_t heard_ns = 0;
     std::string why;  ///< What the server said last that was wrong.
   };
 
   void Dial() {
-    transport::Dial(io_, options_.address,
-                    [weak = weak_from_this(),
-                     attempt = ++attempt_](Result<transport::Socket> socket) {
-                      const auto self = weak.lock();
-                      if (!self || attempt != self->attempt_) return;
-                      if (!socket) return self->Retry(socket.error().message);
-                      self->OnConnected(std::move(*socket));
-                    });
+    transport::Dial(
+        io_, options_.address,
+        [weak = weak_from_this(), attempt = ++attempt_](Result<transport::Socket> socket) {
+          const auto self = weak.lock();
+          if (!self || attempt != self->attempt_) return;
+          if (!socket) return self->Retry(socket.error().message);
+          self->OnConnected(std::move(*socket));
+        });
   }
 
   void OnConnected(transport::Socket socket) {
@@ -131,7 +132,7 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
 
   void OnInfo(const nats::ServerInfo& info) {
     if (!connection_) return;
-    const bool first = connection_->max_payload == 0;
+    const bool first = !std::exchange(connection_->greeted, true);
     connection_->max_payload = info.max_payload > 0 ? info.max_payload : options_.max_payload;
     if (!first) return;  // The cluster changed.
     if (info.tls_required) connection_->why = "it wants TLS, which footing-relay does not speak";
@@ -195,8 +196,7 @@ class NatsLink::Implementation : public std::enable_shared_from_this<Implementat
   void Retry(const std::string& why) {
     if (!started_) return;
     const double random = std::uniform_real_distribution<double>(0, 1)(random_);
-    retry_.expires_after(
-        std::chrono::nanoseconds(SecondsToNanoseconds(backoff_.Next(random))));
+    retry_.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(backoff_.Next(random))));
     retry_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
       const auto self = weak.lock();
       if (!error && self && self->started_) self->Dial();

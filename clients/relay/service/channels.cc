@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::string_view, 8> kRetained = {"status", "setup", "skeletons", "track",
                                                        "config", "study", "game",      "stats"};
 constexpr std::array<std::string_view, 12> kSampled = {
-    "motion", "features",   "boards", "raw",   "nunchuk",   "camera",
+    "motion", "features",   "boards", "raw",       "nunchuk",  "camera",
     "hands",  "characters", "inputs", "reference", "contacts", "gamepad"};
 
 const google::protobuf::FieldDescriptor* Field(std::uint32_t field) {

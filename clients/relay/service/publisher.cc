@@ -19,19 +19,21 @@ constexpr double kAnswersPerS = 500, kAnswersAtOnce = 1000;
 Publisher::Publisher(boost::asio::io_context& io, PublisherOptions options)
     : options_(std::move(options)), answers_(kAnswersPerS, kAnswersAtOnce) {
   if (options_.nats) {
-    nats_.emplace(io, *options_.nats,
-                  NatsLinkHandlers{
-                      [this] { Say("publishing in NATS at " + options_.nats->address.Text(), nats_state_); },
-                      [this](const std::string& why) { Say("NATS: " + why, nats_state_); },
-                      [this](const nats::Message& message) { OnAsked(message); }});
+    nats_.emplace(
+        io, *options_.nats,
+        NatsLinkHandlers{
+            [this] { Say("publishing in NATS at " + options_.nats->address.Text(), nats_state_); },
+            [this](const std::string& why) { Say("NATS: " + why, nats_state_); },
+            [this](const nats::Message& message) { OnAsked(message); }});
   }
   if (options_.mqtt) {
-    mqtt_.emplace(io, *options_.mqtt,
-                  MqttLinkHandlers{[this] {
-                                     Say("publishing in MQTT at " + options_.mqtt->host, mqtt_state_);
-                                     RepeatRetained();
-                                   },
-                                   [this](const std::string& why) { Say("MQTT: " + why, mqtt_state_); }});
+    mqtt_.emplace(
+        io, *options_.mqtt,
+        MqttLinkHandlers{[this] {
+                           Say("publishing in MQTT at " + options_.mqtt->host, mqtt_state_);
+                           RepeatRetained();
+                         },
+                         [this](const std::string& why) { Say("MQTT: " + why, mqtt_state_); }});
   }
   for (const transport::Address& address : options_.servers) {
     sources_.push_back(std::make_unique<Source>(
@@ -120,10 +122,9 @@ void Publisher::RepeatRetained() {
 }
 
 const Source* Publisher::Asked(std::string_view subject) const {
-  const auto found =
-      std::find_if(sources_.begin(), sources_.end(), [&](const auto& source) {
-        return !source->name().empty() && AskSubject(options_.site, source->name()) == subject;
-      });
+  const auto found = std::find_if(sources_.begin(), sources_.end(), [&](const auto& source) {
+    return !source->name().empty() && AskSubject(options_.site, source->name()) == subject;
+  });
   return found == sources_.end() ? nullptr : found->get();
 }
 

@@ -59,7 +59,7 @@ class Publisher {
   std::optional<NatsLink> nats_;
   std::optional<MqttLink> mqtt_;
   std::map<std::uint64_t, Thinner> thinners_;  ///< For MQTT, by epoch.
-  std::string nats_state_, mqtt_state_;  ///< As logged last.
+  std::string nats_state_, mqtt_state_;        ///< As logged last.
   transport::TokenBucket answers_;
   std::uint64_t published_ = 0;
 };

@@ -59,8 +59,8 @@ std::optional<std::int64_t> Source::ServerNs() const {
 
 void Source::OnWelcome(const v1::Welcome& welcome) {
   if (!nats::IsPart(welcome.server_id())) {
-    log::Warning(address_ + ": the server's name cannot be part of a subject: " +
-                 welcome.server_id());
+    log::Warning(address_ +
+                 ": the server's name cannot be part of a subject: " + welcome.server_id());
     return;
   }
   if (welcome.epoch() != welcome_.epoch()) snapshot_.Clear();

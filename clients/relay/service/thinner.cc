@@ -8,9 +8,7 @@
 namespace footing::relay {
 
 Thinner::Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequence)
-    : rate_hz_(rate_hz),
-      tick_ns_(PeriodNanoseconds(tick_rate_hz)),
-      last_sequence_(last_sequence) {}
+    : rate_hz_(rate_hz), tick_ns_(PeriodNanoseconds(tick_rate_hz)), last_sequence_(last_sequence) {}
 
 bool Thinner::IsDue(std::uint32_t field, std::int64_t host_ns) {
   return decimators_.try_emplace(field, rate_hz_, tick_ns_).first->second.Take(host_ns);

@@ -14,9 +14,9 @@ namespace footing::relay {
 /// Takes the ticks of one epoch and gives those that viewers get: of each channel of samples or
 /// poses at most `rate_hz` a second, the newest; retained channels and events whole, at once.
 ///
-/// What waits for its turn goes with the next tick that comes when it is due, so that the last value
-/// before a pause is not lost. The tick behind a hole in the sequence is always given, with the
-/// hole. A plain value.
+/// What waits for its turn goes with the next tick that comes when it is due, so that the last
+/// value before a pause is not lost. The tick behind a hole in the sequence is always given, with
+/// the hole. A plain value.
 class Thinner {
  public:
   struct Thinned {
@@ -35,7 +35,7 @@ class Thinner {
   void TakeRetained(std::vector<transport::ChannelBytes> channels);
 
   std::uint64_t last_sequence() const { return last_sequence_; }
-  std::uint64_t missing() const { return missing_; }     ///< Ticks that never came.
+  std::uint64_t missing() const { return missing_; }    ///< Ticks that never came.
   std::uint64_t left_out() const { return left_out_; }  ///< Ticks of which nothing went on.
 
  private:

@@ -17,7 +17,8 @@ TEST(BrokerAddress, IsOnThisHostOrRefused) {
   ASSERT_FALSE(away.ok());
   EXPECT_NE(away.error().message.find("use a leaf node"), std::string::npos);
   EXPECT_EQ(away.error().kind, ErrorKind::kUsage);
-  for (const char* const text : {"unix:/tmp/x", "tls:127.0.0.1:1", "tcp:broker.example:4222", "4222", ""}) {
+  for (const char* const text :
+       {"unix:/tmp/x", "tls:127.0.0.1:1", "tcp:broker.example:4222", "4222", ""}) {
     EXPECT_FALSE(ParseBrokerAddress(text, "x").ok()) << text;
   }
 }

@@ -19,7 +19,8 @@ struct Seen {
   Handlers handlers() {
     return {[this](const ServerInfo& info) {
               lines.push_back("info " + info.version + " " + std::to_string(info.max_payload) +
-                              (info.auth_required ? " auth" : "") + (info.tls_required ? " tls" : ""));
+                              (info.auth_required ? " auth" : "") +
+                              (info.tls_required ? " tls" : ""));
             },
             [this](const Message& message) {
               lines.push_back("message " + std::string(message.subject) + " " +
@@ -27,8 +28,7 @@ struct Seen {
                               std::string(message.reply) + "> <" + std::string(message.payload) +
                               ">" + (message.no_responders ? " nobody" : ""));
             },
-            [this] { lines.emplace_back("ping"); },
-            [this] { lines.emplace_back("pong"); },
+            [this] { lines.emplace_back("ping"); }, [this] { lines.emplace_back("pong"); },
             [this](std::string_view text) { lines.push_back("error " + std::string(text)); }};
   }
 };
@@ -75,8 +75,8 @@ TEST(Parser, BytesMayBeCutAnywhere) {
 }
 
 TEST(Parser, ALongPayloadIsRefusedWhenItIsAnnounced) {
-  for (const char* const line : {"MSG a 1 1001\r\n", "HMSG a 1 3 1001\r\n",
-                                 "MSG a 1 18446744073709551615\r\n"}) {
+  for (const char* const line :
+       {"MSG a 1 1001\r\n", "HMSG a 1 3 1001\r\n", "MSG a 1 18446744073709551615\r\n"}) {
     Seen seen;
     Parser parser(kMaxPayload);
     EXPECT_FALSE(parser.Take(line, seen.handlers()).ok()) << line;
@@ -98,16 +98,17 @@ TEST(Parser, ALineWithoutAnEndIsRefused) {
 TEST(Parser, WhatIsNotNatsIsRefused) {
   for (const char* const bytes :
        {"HTTP/1.1 400 Bad Request\r\n", "MSG\r\n", "MSG a\r\n", "MSG a b 1\r\n", "MSG a 1 -1\r\n",
-        "MSG a 1 r s 1\r\n", "HMSG a 1 1\r\n", "HMSG a 1 5 4\r\n", "MSG a 1 1\r\nabc\r\n", "INFO\r\n",
-        "INFO []\r\n", "INFO {\"max_payload\":-1}\r\n", "INFO {\"max_payload\":\"1\"}\r\n", "\r\n"}) {
+        "MSG a 1 r s 1\r\n", "HMSG a 1 1\r\n", "HMSG a 1 5 4\r\n", "MSG a 1 1\r\nabc\r\n",
+        "INFO\r\n", "INFO []\r\n", "INFO {\"max_payload\":-1}\r\n",
+        "INFO {\"max_payload\":\"1\"}\r\n", "\r\n"}) {
     Seen seen;
     Parser parser(kMaxPayload);
     EXPECT_FALSE(parser.Take(bytes, seen.handlers()).ok()) << bytes;
   }
 }
 
-/// Streams with bytes changed, left out and repeated, in pieces of any size: the parser refuses them
-/// or goes on, and never holds more than a message.
+/// Streams with bytes changed, left out and repeated, in pieces of any size: the parser refuses
+/// them or goes on, and never holds more than a message.
 TEST(Parser, SurvivesDamagedStreams) {
   std::mt19937 random(7);
   const auto below = [&](std::size_t bound) {
