@@ -26,6 +26,7 @@ constexpr double kRestForceMps2 = 0.5;
 // freely.
 constexpr double kNoiseRadPerSqrtS = DegreesToRadians(0.02);
 constexpr double kGainError = 0.01;
+constexpr double kLargestGain = 0.05;
 constexpr double kInclinationSd = DegreesToRadians(0.6);
 
 Eigen::Matrix3d Turned(const Eigen::Vector3d& angle) {
@@ -59,10 +60,13 @@ void AttitudeFilter::Start(const Eigen::Vector3d& force_S_mps2, const Eigen::Vec
   *this = AttitudeFilter(options_);
   R_WG_ = LevelStart(force_S_mps2.normalized());
   start_bias_S_ = bias_S_radps;
-  bias_variance_ = Square(bias_sd_radps) * Eigen::Matrix3d::Identity();
+  variance_.diagonal().head<3>().setConstant(Square(bias_sd_radps));
+  variance_.diagonal().tail<3>().setConstant(options_.gain_in_motion ? Square(kGainError) : 0);
   force_G_.Start(force_S_mps2);
-  turned_bias_.Start(Eigen::Vector3d::Zero());
-  turned_.Start(R_WG_);
+  turned_error_.Start(Eigen::Vector3d::Zero());
+  Jacobian turned = Jacobian::Zero();
+  turned.leftCols<3>() = R_WG_;
+  turned_.Start(turned);
   rest_force_S_.Start(force_S_mps2);
   rest_turn_S_.Start(Eigen::Vector3d::Zero());
 }
@@ -75,12 +79,13 @@ void AttitudeFilter::Advance(const HandReading& measured, double step_s) {
   HandReading reading = measured;
   reading.angular_velocity_S_radps -= start_bias_S_;
   const bool rests = Rests(reading, step_s);
-  Integrate(reading.angular_velocity_S_radps - bias_S_, step_s);
+  const Eigen::Vector3d& turn_S = reading.angular_velocity_S_radps;
+  Integrate(Corrected(turn_S), step_s);
   const Eigen::Matrix3d before = R_WG_;
   Correct(reading, step_s);
   // The lean of the mean force before it was corrected, as a turn about W's level axes.
   const Eigen::Vector3d up_W = (before * force_G_.value()).normalized();
-  FollowBias(Eigen::Vector3d(-up_W.y(), up_W.x(), 0), rests, step_s);
+  FollowErrors(turn_S, Eigen::Vector3d(-up_W.y(), up_W.x(), 0), rests, step_s);
   Spread(reading, step_s);
 }
 
@@ -118,45 +123,51 @@ void AttitudeFilter::Correct(const HandReading& reading, double step_s) {
       R_WG_);
 }
 
-/// The Kalman filter of VQF's appendix: rows are the turned bias at rest or, in motion, what the
-/// corrections about the level axes say of it.
-void AttitudeFilter::FollowBias(const Eigen::Vector3d& lean_W, bool rests, double step_s) {
+/// The Kalman filter of VQF's appendix: rows are the bias at rest or, in motion, what the
+/// corrections about the level axes say of the turn that bias and gains have made in W.
+void AttitudeFilter::FollowErrors(const Eigen::Vector3d& turn_S, const Eigen::Vector3d& lean_W,
+                                  bool rests, double step_s) {
   const Eigen::Matrix3d R = R_WS();
-  const Eigen::Matrix3d mean_R = turned_.Advance(R, options_.gravity_s, step_s);
-  const Eigen::Vector3d mean_bias = turned_bias_.Advance(R * bias_S_, options_.gravity_s, step_s);
+  Jacobian turned;
+  turned << R, R * turn_S.asDiagonal();
+  const Eigen::Vector3d mean_error =
+      turned_error_.Advance(turned * errors_, options_.gravity_s, step_s);
+  const Jacobian mean_turned = turned_.Advance(turned, options_.gravity_s, step_s);
   const double forget = Square(kBiasForgottenSd) * step_s / kBiasForgottenS;
-  bias_variance_.diagonal().array() += forget;
-  Eigen::Matrix3d H;
+  variance_.diagonal().head<3>().array() += forget;
+  Jacobian H = Jacobian::Zero();
   Eigen::Vector3d error, weight;
   const auto noise_for = [forget](double sd) { return Square(Square(sd)) / forget + Square(sd); };
   if (rests && options_.bias_in_rest) {
-    H.setIdentity();
-    error = rest_turn_S_.value() - bias_S_;
+    H.leftCols<3>().setIdentity();
+    error = rest_turn_S_.value() - errors_.head<3>();
     weight.setConstant(noise_for(kBiasSdInRest));
   } else if (options_.bias_in_motion && held_s_ <= 0) {
-    H = mean_R;
-    error = lean_W / step_s + mean_bias - mean_R * bias_S_;
-    error.z() = -(mean_R * bias_S_).z();
+    H = mean_turned;
+    H.row(2).tail<3>().setZero();
+    error = lean_W / step_s + mean_error - H * errors_;
+    error.z() = -H.row(2).dot(errors_);
     weight.setConstant(noise_for(kBiasSdInMotion));
     weight.z() /= kVerticalFactor;
   } else {
     return;
   }
   error = error.cwiseMax(-kLargestBias).cwiseMin(kLargestBias);
-  Eigen::Matrix3d S = H * bias_variance_ * H.transpose();
+  Eigen::Matrix3d S = H * variance_ * H.transpose();
   S += weight.asDiagonal();
-  const Eigen::Matrix3d K = bias_variance_ * H.transpose() * S.inverse();
-  bias_S_ += K * error;
-  bias_S_ = bias_S_.cwiseMax(-kLargestBias).cwiseMin(kLargestBias);
-  bias_variance_ -= (K * H * bias_variance_).eval();
+  const Eigen::Matrix<double, 6, 3> K = variance_ * H.transpose() * S.inverse();
+  errors_ += K * error;
+  errors_.head<3>() = errors_.head<3>().cwiseMax(-kLargestBias).cwiseMin(kLargestBias);
+  errors_.tail<3>() = errors_.tail<3>().cwiseMax(-kLargestGain).cwiseMin(kLargestGain);
+  variance_ -= (K * H * variance_).eval();
 }
 
 void AttitudeFilter::Spread(const HandReading& reading, double step_s) {
   const Eigen::Matrix3d R = R_WS();
-  const Eigen::Matrix3d variance_W = R * bias_variance_ * R.transpose();
+  const Eigen::Matrix3d variance_W = R * variance_.topLeftCorner<3, 3>() * R.transpose();
   heading_drift_rad_ += std::sqrt(std::max(0.0, variance_W(2, 2))) * step_s;
   heading_noise_rad2_ += Square(kNoiseRadPerSqrtS) * step_s;
-  heading_turned_rad_ += R.row(2).dot(reading.angular_velocity_S_radps - bias_S_) * step_s;
+  heading_turned_rad_ += R.row(2).dot(Corrected(reading.angular_velocity_S_radps)) * step_s;
   if (held_s_ > 0) {
     frozen_drift_rad_ += std::sqrt(std::max(0.0, variance_W(0, 0) + variance_W(1, 1))) * step_s;
   } else {

@@ -80,6 +80,30 @@ TEST(AttitudeFilter, LearnsALevelBiasInMotionFromItsCorrections) {
   EXPECT_LT(LeanDeg(learns), 0.5 * LeanDeg(without));
 }
 
+TEST(AttitudeFilter, LearnsAGainInMotionFromItsCorrections) {
+  // Whole turns about a level axis: 2 % too much of them is a lean of 7 degrees a turn.
+  const auto turn = [](AttitudeFilter& filter) {
+    filter.Start(kUp, Vector3d::Zero(), DegreesToRadians(0.03));
+    double sum = 0;
+    for (int i = 0; i < 9000; ++i) {
+      const double rate = 3 * std::sin(0.1 * kPi * i * kTickS);
+      const double angle = 30 / kPi * (1 - std::cos(0.1 * kPi * (i + 0.5) * kTickS));
+      const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, Vector3d::UnitX()).toRotationMatrix();
+      filter.Advance({.specific_force_S_mps2 = R.transpose() * kUp,
+                      .angular_velocity_S_radps = Vector3d(1.02 * rate, 0, 0)},
+                     kTickS);
+      const Vector3d up = filter.R_WS().transpose() * Vector3d::UnitZ();
+      sum += std::acos(std::clamp(up.dot(R.transpose() * Vector3d::UnitZ()), -1.0, 1.0));
+    }
+    return sum / 9000;
+  };
+  AttitudeFilter learns, without({.gain_in_motion = false});
+  const double lean = turn(learns);
+  EXPECT_LT(lean, 0.7 * turn(without));
+  EXPECT_NEAR(learns.gain_errors().x(), 0.02, 0.01);
+  EXPECT_EQ(without.gain_errors(), Vector3d::Zero());
+}
+
 TEST(AttitudeFilter, TakesNoSlowTurnForABias) {
   // 4 degrees/s about the vertical is no bias of a gyroscope.
   AttitudeFilter filter;

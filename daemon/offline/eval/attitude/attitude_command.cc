@@ -11,7 +11,7 @@ namespace {
 struct Flags {
   std::string imu, degrade = "none";
   std::uint64_t seed = 1;
-  bool no_rows = false, no_rest_bias = false, no_motion_bias = false;
+  bool no_rows = false, no_rest_bias = false, no_motion_bias = false, no_gain = false;
   AttitudeTrialOptions options;
 };
 
@@ -23,6 +23,7 @@ Result<nlohmann::ordered_json> Evaluate(Flags flags) {
   options.rows = !flags.no_rows;
   options.filter.bias_in_rest = !flags.no_rest_bias;
   options.filter.bias_in_motion = !flags.no_motion_bias;
+  options.filter.gain_in_motion = !flags.no_gain;
   return RunAttitudeTrial(*samples, options);
 }
 
@@ -55,6 +56,7 @@ void AddAttitudeCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 60.0));
   command->add_flag("--no-rest-bias", flags->no_rest_bias, "Do not learn the bias at rest");
   command->add_flag("--no-motion-bias", flags->no_motion_bias, "Do not learn the bias in motion");
+  command->add_flag("--no-gain", flags->no_gain, "Do not learn the gains of the gyroscope");
   command->add_flag("--no-rows", flags->no_rows, "Leave the rows out");
   command->callback(
       [flags, &shared] { shared.exit_code = PrintResult(Evaluate(*flags), shared.json); });
