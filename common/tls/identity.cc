@@ -13,6 +13,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/config/write_file.h"
 #include "common/tls/fingerprint.h"
 
 namespace footing::tls {
@@ -73,20 +74,11 @@ std::string MakePem(const std::string& common_name) {
   return {text, static_cast<std::size_t>(size)};
 }
 
-Result<void> MakeFolders(const std::string& path) {
-  for (std::size_t slash = path.find('/', 1); slash != std::string::npos;
-       slash = path.find('/', slash + 1)) {
-    const std::string folder = path.substr(0, slash);
-    if (mkdir(folder.c_str(), S_IRWXU) != 0 && errno != EEXIST) {
-      return FileError(path, "cannot make the folder " + folder + ": " + std::strerror(errno));
-    }
-  }
-  return {};
-}
-
 /// Writes beside, then links: the file is complete as soon as it is there, and the first one stays.
 Result<void> WriteOnce(const std::string& path, const std::string& text) {
-  if (auto made = MakeFolders(path); !made) return made;
+  if (const auto made = config::MakeFoldersAbove(path); !made) {
+    return FileError(path, made.error().message);
+  }
   std::string beside = path + ".XXXXXX";
   const int file = mkstemp(beside.data());  // Mode 0600.
   if (file < 0) return FileError(path, std::string("cannot be made: ") + std::strerror(errno));

@@ -9,9 +9,22 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/config/write_file.h"
 #include "common/tls/fingerprint.h"
 
 namespace footing::tls {
+namespace {
+
+/// A person's editor may have left the last line without an end.
+bool EndsWithinLine(int file) {
+  struct stat status {};
+  char last = '\n';
+  if (fstat(file, &status) != 0 || status.st_size == 0) return false;
+  return pread(file, &last, 1, status.st_size - 1) == 1 && last != '\n';
+}
+
+}  // namespace
+
 Result<std::optional<std::string>> KnownServers::Find(const std::string& server) const {
   std::ifstream file(path_);
   if (!file) {
@@ -32,21 +45,19 @@ Result<std::optional<std::string>> KnownServers::Find(const std::string& server)
     }
     if (name == server) found = fingerprint;
   }
+  // What could not be read may have had the server: it must not be taken for a new one.
+  if (file.bad()) return Failure(path_ + ": cannot be read");
   return found;
 }
 
 Result<void> KnownServers::Add(const std::string& server, const std::string& fingerprint) const {
   if (path_.empty()) {
-    return Failure("there is no home folder to keep it in; name a file by FOOTING_KNOWN_SERVERS");
+    return Failure("there is no home folder to keep it in; set FOOTING_KNOWN_SERVERS to a file");
   }
-  for (std::size_t slash = path_.find('/', 1); slash != std::string::npos;
-       slash = path_.find('/', slash + 1)) {
-    mkdir(path_.substr(0, slash).c_str(), S_IRWXU);  // What fails shows when the file is opened.
-  }
-  const int file =
-      open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (auto made = config::MakeFoldersAbove(path_); !made) return made;
+  const int file = open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (file < 0) return Failure(path_ + ": " + std::strerror(errno));
-  const std::string line = server + " " + fingerprint + "\n";
+  const std::string line = (EndsWithinLine(file) ? "\n" : "") + server + " " + fingerprint + "\n";
   const bool written = write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
   const std::string why = std::strerror(errno);
   close(file);

@@ -1,19 +1,16 @@
 #include "daemon/sensor/setup/state_directory.h"
 
-#include <fcntl.h>
-#include <unistd.h>
 #include <zlib.h>
 
-#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "common/config/data_file.h"
+#include "common/config/write_file.h"
 
 namespace footing::setup {
 namespace {
@@ -27,37 +24,6 @@ std::uint32_t Checksum(const std::string& content) {
   return static_cast<std::uint32_t>(crc32(crc32(0, nullptr, 0),
                                           reinterpret_cast<const Bytef*>(content.data()),
                                           static_cast<uInt>(content.size())));
-}
-
-/// What went wrong; empty when all bytes are on the disk under their final name.
-std::string WriteDurably(const std::string& path, const std::string& text) {
-  const std::string beside = path + ".new";
-  const int file = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (file < 0) return std::strerror(errno);
-  std::size_t done = 0;
-  int error = 0;
-  while (done < text.size() && error == 0) {
-    const ssize_t wrote = write(file, text.data() + done, text.size() - done);
-    if (wrote >= 0) {
-      done += static_cast<std::size_t>(wrote);
-    } else if (errno != EINTR) {
-      error = errno;
-    }
-  }
-  if (error == 0 && fsync(file) != 0) error = errno;
-  if (close(file) != 0 && error == 0) error = errno;
-  if (error == 0 && std::rename(beside.c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) {
-    unlink(beside.c_str());
-    return std::strerror(error);
-  }
-  const std::string folder = std::filesystem::path(path).parent_path();
-  const int directory = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory >= 0) {
-    fsync(directory);  // The rename itself; some file systems cannot, and the file is whole anyway.
-    close(directory);
-  }
-  return "";
 }
 
 std::string Variable(const char* name) {
@@ -179,7 +145,8 @@ std::string StateDirectory::Write(const std::string& name, const std::string& co
   const auto json = nlohmann::json::parse(content, nullptr, false);
   const nlohmann::json file = {
       {"version", kVersion}, {"name", name}, {"crc32", Checksum(json.dump())}, {"content", json}};
-  return WriteDurably(FileOf(name), file.dump(2) + "\n");
+  const auto written = config::ReplaceFile(FileOf(name), file.dump(2) + "\n");
+  return written ? "" : written.error().message;
 }
 
 void StateDirectory::SayWritten(const std::string& problem) {

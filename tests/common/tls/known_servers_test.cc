@@ -38,5 +38,21 @@ TEST(KnownServers, ADamagedFileTrustsNobody) {
   EXPECT_NE(refused.error().message.find("line 4"), std::string::npos) << refused.error().message;
 }
 
+TEST(KnownServers, AFileThatCannotBeReadTrustsNobody) {
+  const test::TemporaryFolder folder;
+  const KnownServers known(folder.Path(""));  // It can be opened; reading fails.
+  EXPECT_FALSE(known.Find("10.0.0.1:7450").ok());
+}
+
+TEST(KnownServers, AddsBehindALastLineWithoutItsEnd) {
+  const test::TemporaryFolder folder;
+  const KnownServers known(folder.Path("known_servers"));
+  const std::string one = FingerprintOf("one"), two = FingerprintOf("two");
+  std::ofstream(known.path()) << "10.0.0.1:7450 " << one;
+  ASSERT_TRUE(known.Add("10.0.0.2:7450", two).ok());
+  EXPECT_EQ(known.Find("10.0.0.1:7450").value(), one);
+  EXPECT_EQ(known.Find("10.0.0.2:7450").value(), two);
+}
+
 }  // namespace
 }  // namespace footing::tls
