@@ -64,7 +64,9 @@ endfunction()
 add_scripts(common COMMON common)
 set(UNITS "footingd.socket footingd-devices.socket footingd.service")
 set(UNITS_TO_STOP "${UNITS}")
+# Both services have these folders; who is purged last deletes them.
 set(STATE_FOLDERS "/var/lib/footing /run/footing")
+set(OTHER_UNIT /usr/lib/systemd/system/footing-sim.service)
 set(AFTER_INSTALL [[if command -v udevadm >/dev/null && [ -d /run/udev ]; then
     # Devices that are connected already get their group now.
     udevadm control --reload || true
@@ -74,7 +76,7 @@ add_scripts(daemon DAEMON service)
 # The socket alone is enabled: it starts footing-sim for the first client, and nothing is computed before.
 set(UNITS "footing-sim.socket")
 set(UNITS_TO_STOP "footing-sim.socket footing-sim.service")
-set(STATE_FOLDERS "")
+set(OTHER_UNIT /usr/lib/systemd/system/footingd.service)
 set(AFTER_INSTALL ":")
 add_scripts(simulation SIMULATION service)
 

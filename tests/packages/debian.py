@@ -1,5 +1,6 @@
 """Makes the Debian packages of a build folder and reads them."""
 import pathlib
+import re
 import stat
 import subprocess
 
@@ -46,10 +47,18 @@ def files_below(folder):
 
 
 def same_file(one, other):
-    """Same kind, mode and content. Programs are stripped in a package: of them the kind and the mode count."""
+    """Same kind, mode and content. Programs are stripped in a package: of them mode and build-id count."""
     if one.is_symlink() or other.is_symlink():
         return one.is_symlink() and other.is_symlink() and one.readlink() == other.readlink()
     mode = stat.S_IMODE(one.stat().st_mode) == stat.S_IMODE(other.stat().st_mode)
     content, other_content = one.read_bytes(), other.read_bytes()
     program = content.startswith(b"\x7fELF") and other_content.startswith(b"\x7fELF")
-    return mode and (program or content == other_content)
+    return mode and (build_id(one) == build_id(other) if program else content == other_content)
+
+
+def build_id(program):
+    """The linker's hash of what it linked: stripping keeps it."""
+    notes = run("readelf", "--notes", program)
+    found = re.search(r"Build ID: ([0-9a-f]+)", notes)
+    assert found, f"{program} has no build-id: {notes}"
+    return found[1]
