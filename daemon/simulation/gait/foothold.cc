@@ -21,6 +21,9 @@ constexpr double kSidewaysNearM = 0.05;
 constexpr double kSidewaysWideM = 0.45;
 constexpr double kBackwardLimitM = 0.7;
 constexpr double kHurryPerMetre = 6;
+/// A braking run's foot is at most this far ahead, by speed, s: of a slower body that has lost its
+/// speed over a foot further ahead nothing is left to carry it over, low on a slanting leg.
+constexpr double kBrakingReachS = 0.13;
 
 struct Pendulum {
   double rate_radps;  ///< w = sqrt(g / h).
@@ -116,6 +119,7 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
 
   const bool landing = memory.transition.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
+  if (brakes && !landing) ahead_m = std::min(ahead_m, kBrakingReachS * v_H.x());
   ahead_m += memory.pit.shift_m + memory.ground.shift_m;
   const bool preparing = memory.transition.preparing_jump && !jumping;
   const double side_gain_s =

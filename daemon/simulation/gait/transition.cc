@@ -177,6 +177,10 @@ void LandIntoWalking(const Context& context, GaitMemory& memory) {
   memory.transition.absorbing = false;
   memory.phase_start_s = context.body.time_s;
   memory.walking_step.swing_start_W_m = context.body.legs[1 - memory.support_leg].p_WF;
+  // A body that landed low rises from there: extended at once to its walking height, a leg far
+  // ahead would throw it up and back.
+  memory.walking_step.support_height_m =
+      context.body.legs[memory.support_leg].p_WH.z() - context.gains.walking.hip_height_m;
   memory.servo.followed = {};
 }
 

@@ -55,6 +55,24 @@ TEST(Jumping, LowAndFastFromAStandDoesNotDriftAside) {
   EXPECT_GT(engine.Output().p_WC_m.x(), 6);
 }
 
+/// A run of 6 m/s lands low when it is to step in place: it was thrown up and back, and half fell.
+TEST(Braking, FromTheFastestRunToSteppingInPlaceDoesNotFall) {
+  GaitEngine engine = NewEngine();
+  Simulate(engine, Direct(Command(Gait::kRun, 6)), 7);
+  for (int i = 0; i < 8; ++i) {
+    Simulate(engine, Direct(Command(Gait::kRun, 6)), 0.053);
+    const EngineState running = engine.Save();
+    double rises_mps = 0;
+    Simulate(engine, Direct(Command(Gait::kStep, 0)), 4, [&](const EngineOutput& output) {
+      if (output.gait.gait == Gait::kStep) rises_mps = std::max(rises_mps, output.v_WC_mps.z());
+    });
+    EXPECT_EQ(engine.Output().gait.falls, 0u) << i;
+    EXPECT_EQ(engine.Output().gait.gait, Gait::kStep) << i;
+    EXPECT_LT(rises_mps, 1.5) << i;
+    engine.Restore(running);
+  }
+}
+
 class Turning : public testing::TestWithParam<biped::GaitCommand> {};
 
 TEST_P(Turning, FiveDegreesAStepKeepsSpeedAndBodyWithTheHeading) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <vector>
 
 #include "common/cli/cli.h"
 #include "common/units/units.h"
@@ -29,10 +30,21 @@ struct MonkeyOptions {
   bool whole_range = false;
 };
 
+/// Where one is to look for what went wrong.
+struct Fall {
+  int trial;
+  double time_s;
+  Gait gait;
+  const char* why;
+  biped::GaitCommand command;
+  double commanded_s;  ///< Before the fall.
+};
+
 struct Outcome {
   double simulated_s = 0;
   int falls = 0;
   std::array<int, kGaits.size()> falls_by_gait{};
+  std::vector<Fall> fell;
   std::array<int, tracking::kTrackings> commands{};  ///< By what became of them.
 
   int of(Tracking became) const { return commands[static_cast<std::size_t>(became)]; }
@@ -71,10 +83,11 @@ biped::GaitCommand DrawCommand(bool gentle, Random& random) {
 }
 
 /// One trial; a fall is put back by the engine and the trial goes on.
-Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, Outcome& outcome) {
+Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, int trial,
+                      Outcome& outcome) {
   Result<engine::GaitEngine> engine = NewEngine();
   if (!engine) return engine.error();
-  Random random(seed);
+  Random random(TrialSeed(seed, trial));
   Walker walker(*engine);
   double next_s = tracking::kLongCommandS;
   tracking::GivenCommand given;
@@ -100,10 +113,24 @@ Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, Outcome&
       if (event.kind != engine::EventKind::kFall) continue;
       ++outcome.falls;
       ++outcome.falls_by_gait[stream::IndexOf(event.from)];
+      outcome.fell.push_back({trial, time_s, event.from, event.text, walker.inputs().direct_command,
+                              time_s - given.time_s});
     }
   }
   outcome.simulated_s += options.seconds;
   return {};
+}
+
+nlohmann::ordered_json ToJson(const Fall& fall) {
+  return {{"trial", fall.trial},
+          {"time_s", fall.time_s},
+          {"gait", Name(fall.gait)},
+          {"why", fall.why},
+          {"commanded", Name(fall.command.gait)},
+          {"commanded_s_before", fall.commanded_s},
+          {"speed_mps", fall.command.speed_mps},
+          {"height_m", fall.command.height_m},
+          {"turn_deg", RadiansToDegrees(fall.command.turn_per_step_rad)}};
 }
 
 int RunMonkey(const MonkeyOptions& options, bool json) {
@@ -111,7 +138,7 @@ int RunMonkey(const MonkeyOptions& options, bool json) {
   if (!seed) return cli::Report(seed.error());
   Outcome outcome;
   for (int i = 0; i < options.trials; ++i) {
-    if (auto run = RunTrial(options, TrialSeed(*seed, i), outcome); !run) {
+    if (auto run = RunTrial(options, *seed, i, outcome); !run) {
       return cli::Report(run.error());
     }
   }
@@ -134,6 +161,8 @@ int RunMonkey(const MonkeyOptions& options, bool json) {
   for (std::size_t i = 0; i < kGaits.size(); ++i) {
     report["falls_by_gait"][Name(kGaits[i])] = outcome.falls_by_gait[i];
   }
+  report["fell"] = nlohmann::ordered_json::array();
+  for (const Fall& fall : outcome.fell) report["fell"].push_back(ToJson(fall));
   PrintReport(report, json);
   return 0;
 }
