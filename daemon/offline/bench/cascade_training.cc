@@ -1,10 +1,8 @@
-#include <fann.h>
-
 #include <cmath>
-#include <memory>
 
 #include "common/clock/clock.h"
 #include "common/units/units.h"
+#include "daemon/offline/bench/fann_network.h"
 #include "daemon/offline/bench/row.h"
 #include "daemon/offline/learning/cascade.h"
 #include "daemon/offline/learning/horizontal_com.h"
@@ -66,21 +64,6 @@ TrainingCost Perceptron(const Axis& axis, double validation_mse) {
   const std::int64_t start_ns = clock::ThreadCpuNs();
   const auto result = learning::TrainMlp(axis.train, axis.validation, options, 1);
   return {SecondsSince(start_ns), MeanSquaredError(result.network, axis.fresh)};
-}
-
-using FannData = std::unique_ptr<fann_train_data, decltype(&fann_destroy_train)>;
-using FannNetwork = std::unique_ptr<fann, decltype(&fann_destroy)>;
-
-FannData ToFann(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& targets) {
-  FannData data(
-      fann_create_train(static_cast<unsigned>(inputs.rows()), static_cast<unsigned>(inputs.cols()),
-                        static_cast<unsigned>(targets.cols())),
-      &fann_destroy_train);
-  for (Eigen::Index row = 0; row < inputs.rows(); ++row) {
-    Eigen::RowVectorXf::Map(data->input[row], inputs.cols()) = inputs.row(row).cast<float>();
-    Eigen::RowVectorXf::Map(data->output[row], targets.cols()) = targets.row(row).cast<float>();
-  }
-  return data;
 }
 
 /// FANN's Cascade2 as it comes, with linear outputs, on inputs and targets scaled as ours are.

@@ -22,6 +22,7 @@ constexpr Benchmark kBenchmarks[] = {
     {"dunnett_test", footing::bench::DunnettTest},
 #ifdef FOOTING_HAS_FANN
     {"cascade_training", footing::bench::CascadeTraining},
+    {"spirals_training", footing::bench::SpiralsTraining},
 #endif
 };
 
