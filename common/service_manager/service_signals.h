@@ -9,8 +9,8 @@
 namespace footing::service_manager {
 
 /// SIGINT and SIGTERM end a service in order: its clients are served to the end, for at most 2 s or
-/// until a second signal. SIGHUP lets it read its config again. Without a service manager it is the
-/// same.
+/// until a second signal. SIGHUP lets it read its config again, but for the one that comes with the
+/// end of its terminal, which ends it, too. Started with nohup it outlives its terminal.
 class ServiceSignals {
  public:
   struct Handlers {
@@ -32,6 +32,7 @@ class ServiceSignals {
   boost::asio::signal_set signals_;
   timer::Timer patience_;
   Handlers handlers_;
+  const bool ends_with_terminal_;
   bool stopping_ = false;
 };
 

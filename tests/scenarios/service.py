@@ -10,7 +10,9 @@ import os
 import pathlib
 import signal
 import socket
+import subprocess
 import sys
+import termios
 import time
 
 import decode_stream
@@ -167,6 +169,44 @@ def check_farewell(manager):
     assert code == 0, f"exit code {code}"
 
 
+def check_terminal(stage, words, ends):
+    """A reload at a terminal, and what the end of the terminal does."""
+    leader, terminal = os.openpty()
+    log = stage.folder / f"terminal-{'ends' if ends else 'nohup'}.log"
+    # A shell is the terminal's own process, as where a person types.
+    with open(log, "w") as output:
+        shell = subprocess.Popen(
+            ["sh", "-c", 'trap "" HUP; "$@" & echo $!; wait', "sh", *map(str, words)] if not ends else
+            ["sh", "-c", '"$@" & echo $!; wait', "sh", *map(str, words)],
+            stdin=terminal, stdout=subprocess.PIPE, stderr=output, start_new_session=True, text=True,
+            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
+    os.close(terminal)
+    server = int(shell.stdout.readline())
+    try:
+        stage.wait_for(lambda: "listening on" in log.read_text(), "the server at its terminal")
+        os.kill(server, signal.SIGHUP)
+        stage.wait_for(lambda: "nothing has changed" in log.read_text(), "the reload")
+        os.close(leader)  # The window is closed: the kernel takes the terminal away,
+        os.kill(server, signal.SIGHUP)  # and an interactive shell passes its SIGHUP on.
+        if ends:
+            stage.wait_for(lambda: is_gone(server), "the server to end with its terminal")
+        else:
+            stage.wait_for(lambda: log.read_text().count("nothing has changed") >= 2, "the second reload")
+            assert not is_gone(server), "nohup: it stays"
+    finally:
+        if not is_gone(server):
+            os.kill(server, signal.SIGKILL)
+        shell.kill()
+        shell.communicate()
+
+
+def is_gone(process):
+    try:
+        return pathlib.Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] == "Z"
+    except FileNotFoundError:
+        return True
+
+
 def check_wrong_sockets(manager):
     """A socket that is not passed ends the start, with its name, and nobody is told it is ready."""
     manager.start("--listen", "fd:sensor", "--source", "stream:fd:tracker", names=("sensor",))
@@ -183,6 +223,10 @@ def main(binaries):
             check_start_to_end(stage, manager)
         finally:
             manager.close()
+        words = (stage.binaries / "footingd", "--listen", f"unix:{stage.folder}/t.sock", "--source",
+                 f"stream:unix:{stage.folder}/td.sock")
+        check_terminal(stage, words, ends=True)
+        check_terminal(stage, words, ends=False)
         simulation = Manager(binaries, stage.folder, "footing-sim", ("simulation",))
         try:
             check_simulation(stage, simulation)
