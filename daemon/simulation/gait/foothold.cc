@@ -21,9 +21,10 @@ constexpr double kSidewaysNearM = 0.05;
 constexpr double kSidewaysWideM = 0.45;
 constexpr double kBackwardLimitM = 0.7;
 constexpr double kHurryPerMetre = 6;
-/// A braking run's foot is at most this far ahead, by speed, s: of a slower body that has lost its
-/// speed over a foot further ahead nothing is left to carry it over, low on a slanting leg.
+/// A braking run's foot is at most this far ahead, by speed, s: a slower body loses all its speed
+/// over a foot further ahead, and is left low on a slanting leg. The last one may be further.
 constexpr double kBrakingReachS = 0.13;
+constexpr double kLandingReachS = 0.18;
 
 struct Pendulum {
   double rate_radps;  ///< w = sqrt(g / h).
@@ -119,7 +120,7 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
 
   const bool landing = memory.transition.preparing_landing && !jumping;
   if (landing) ahead_m += context.gains.transition.landing_reach_m;
-  if (brakes && !landing) ahead_m = std::min(ahead_m, kBrakingReachS * v_H.x());
+  if (brakes) ahead_m = std::min(ahead_m, (landing ? kLandingReachS : kBrakingReachS) * v_H.x());
   ahead_m += memory.pit.shift_m + memory.ground.shift_m;
   const bool preparing = memory.transition.preparing_jump && !jumping;
   const double side_gain_s =
