@@ -16,6 +16,14 @@ std::string Range(const std::string& min, const std::string& max) {
   return "from " + min + " to " + max;
 }
 
+bool IsUtf8(const std::string& text) {
+  try {
+    return !Json(text).dump().empty();
+  } catch (const Json::type_error&) {
+    return false;
+  }
+}
+
 std::string NumberText(double value) {
   std::ostringstream text;
   text << value;
@@ -125,7 +133,8 @@ Result<void> Binder::Assign(const std::string& key, const Json& value, const std
                       "; --print-config lists the keys");
   }
   if (!entry->assign(value)) {
-    return UsageError("config: " + key + " = " + value.dump() + " in " + where + "; it must be " +
+    const std::string shown = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return UsageError("config: " + key + " = " + shown + " in " + where + "; it must be " +
                       entry->allowed);
   }
   entry->origin = origin;
@@ -136,7 +145,7 @@ Result<void> Binder::ApplyText(const std::string& text, const std::string& origi
   Json json;
   try {
     json = Json::parse(text, nullptr, true, true);
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {  // Of a number too large for any type, too.
     return UsageError("config: " + origin + " is not JSON: " + error.what());
   }
   if (!json.is_object()) return UsageError("config: " + origin + " must hold one JSON object");
@@ -165,7 +174,10 @@ Result<void> Binder::ApplySetting(const std::string& setting) {
   const std::string text = setting.substr(equals + 1);
   const Entry* entry = Find(key);
   Json value = Json::parse(text, nullptr, false);
-  if (value.is_discarded() || (entry != nullptr && entry->text && !value.is_string())) value = text;
+  if (value.is_discarded() || (entry != nullptr && entry->text && !value.is_string())) {
+    if (!IsUtf8(text)) return UsageError("--set " + key + ": its value is not text in UTF-8");
+    value = text;
+  }
   return Assign(key, value, "--set", "--set");
 }
 

@@ -8,6 +8,8 @@ import pathlib
 import struct
 import sys
 
+import make_protocol_seeds
+
 ACCELERATION = "82 82 82 15 9C 9C 9E 38 40 3E"
 NUNCHUK = "7D 7A 7E 0A B0 AF B1 12 E5 21 7C E7 23 7A FC 51"
 MOTION_PLUS = ("7B EC 76 CA 76 2C 32 DC CC D7 2E A8 C8 77 5E 02 "
@@ -75,6 +77,7 @@ def seeds() -> dict[str, bytes]:
                      + string(raw(MOVE_REPORT)[:44]),
         **motion_files(),
         **skeletons(),
+        **make_protocol_seeds.seeds(),
         "handshake/wiimote": b"\x00" + steps(wiimote),
         "handshake/board": b"\x01" + steps(board),
     }

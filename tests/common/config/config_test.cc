@@ -29,6 +29,28 @@ struct Example {
   }
 };
 
+TEST(Config, ANumberBeyondAllTypesIsOneLineToo) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  const auto applied = binder.ApplyText(R"({"rate_hz": 1e999})", "file");
+  ASSERT_FALSE(applied.ok());
+  EXPECT_THAT(applied.error().message, HasSubstr("config: file is not JSON: "));
+  EXPECT_FALSE(binder.ApplySetting("rate_hz=1e999"));
+}
+
+TEST(Config, ASettingThatIsNotUtf8IsOneLineToo) {
+  Example example;
+  Binder binder;
+  example.Bind(binder);
+  for (const std::string key : {"rate_hz", "rig"}) {
+    const auto applied = binder.ApplySetting(key + "=\xf3");
+    ASSERT_FALSE(applied.ok());
+    EXPECT_THAT(applied.error().message, HasSubstr("--set " + key + ": its value is not text in"));
+  }
+  EXPECT_EQ(nlohmann::json::parse(binder.Print())["rig"], "one");
+}
+
 TEST(Config, DefaultsYieldToTheFileAndTheFileToSettings) {
   Example example;
   Binder binder;

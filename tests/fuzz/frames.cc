@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "common/tls/first_bytes.h"
+#include "common/transport/framing.h"
+#include "tests/fuzz/input.h"
+
+/// A stream of bytes cut into frames: in pieces of any length, stopped behind any frame, it comes
+/// to the same frames as at once. Its beginning is looked at as that of TLS, too.
+namespace footing::fuzz {
+namespace {
+
+constexpr std::uint32_t kMost = 300;
+
+struct Cut {
+  std::vector<std::string> frames;
+  bool refused = false;
+};
+
+Cut AtOnce(std::string_view bytes) {
+  Cut cut;
+  transport::FrameSplitter splitter(kMost);
+  const auto fed = splitter.Feed(bytes, [&](std::string_view frame) {
+    cut.frames.emplace_back(frame);
+    return true;
+  });
+  cut.refused = !fed.ok();
+  if (fed) Expect(*fed == bytes.size() && splitter.pending_bytes() < 4 + kMost);
+  return cut;
+}
+
+Cut InPieces(std::string_view bytes, Input pieces) {
+  Cut cut;
+  transport::FrameSplitter splitter(kMost);
+  while (!bytes.empty()) {
+    const std::uint8_t how = pieces.Byte();
+    const std::string_view piece = bytes.substr(0, 1 + how / 2);
+    const auto fed = splitter.Feed(piece, [&](std::string_view frame) {
+      cut.frames.emplace_back(frame);
+      return (how & 1) == 0;
+    });
+    if (!fed) {
+      cut.refused = true;
+      break;
+    }
+    Expect(*fed > 0 && *fed <= piece.size() && splitter.pending_bytes() < 4 + kMost);
+    bytes.remove_prefix(*fed);
+  }
+  return cut;
+}
+
+void CheckFirstBytes(std::string_view bytes) {
+  using Verdict = tls::FirstBytes::Verdict;
+  tls::FirstBytes first;
+  for (const char byte : bytes.substr(0, tls::FirstBytes::kSize)) {
+    Expect(first.missing() > 0);
+    *first.next() = byte;
+    first.Add(1);
+    if (first.Check() != Verdict::kMore) break;
+  }
+  if (bytes.size() >= tls::FirstBytes::kSize) Expect(first.Check() != Verdict::kMore);
+}
+
+}  // namespace
+}  // namespace footing::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace footing;
+  fuzz::Input input(data, size);
+  const fuzz::Bytes pieces = input.String();
+  const fuzz::Bytes rest = input.Rest();
+  const std::string_view bytes(reinterpret_cast<const char*>(rest.data()), rest.size());
+  const fuzz::Cut whole = fuzz::AtOnce(bytes);
+  const fuzz::Cut cut = fuzz::InPieces(bytes, fuzz::Input(pieces.data(), pieces.size()));
+  fuzz::Expect(whole.frames == cut.frames && whole.refused == cut.refused);
+  std::string again;
+  for (const std::string& frame : whole.frames) again += transport::Frame(frame);
+  fuzz::Expect(bytes.substr(0, again.size()) == again);
+  fuzz::CheckFirstBytes(bytes);
+  return 0;
+}
