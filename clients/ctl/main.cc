@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   footing::ctl::AddInterfaceCommand(*app, shared);
   footing::ctl::AddLeaseCommand(*app, shared);
   footing::ctl::AddTrustCommand(*app, shared);
+  footing::ctl::AddDiscoverCommand(*app, shared);
   for (CLI::App* command : app->get_subcommands({})) {
     command->footer(command->get_footer() +
                     "\nAlso: --json and --connect, as in footing-ctl --help.");

@@ -38,11 +38,19 @@ void AccessSettings::Bind(config::Binder& binder) {
       "~/.local/state/footing");
   binder.Flag("insecure_lan", insecure_lan,
               "Listen on tcp: beyond this host WITHOUT ENCRYPTION; needs token_file");
+  binder.Text(
+      "advertise", advertise,
+      "Name under which footing-ctl discover finds this server, while it listens beyond this "
+      "host; by avahi-daemon (empty: not advertised)");
 }
 
 Result<void> AccessSettings::Check() const {
-  if (!insecure_lan || !token_file.empty()) return {};
-  return UsageError("config: insecure_lan needs a token_file");
+  if (insecure_lan && token_file.empty()) {
+    return UsageError("config: insecure_lan needs a token_file");
+  }
+  constexpr std::size_t kLongestName = 63;  // RFC 6763, 4.1.1.
+  if (advertise.size() > kLongestName) return UsageError("config: advertise has at most 63 bytes");
+  return {};
 }
 
 Result<void> AccessSettings::Apply(ServerOptions& options) const {

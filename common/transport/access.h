@@ -16,6 +16,7 @@ struct AccessSettings {
   std::string clients_file;   ///< Whose certificates give their roles over TLS.
   std::string identity_file;  ///< The server's own; empty: tls::DefaultIdentityFile().
   bool insecure_lan = false;
+  std::string advertise;  ///< Name in the network, by mDNS; empty: not advertised.
 
   void Bind(config::Binder& binder);
   /// Usage error for settings that do not go together.

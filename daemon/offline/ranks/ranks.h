@@ -12,9 +12,9 @@
 /// MPI (`mpirun -n 4 footing-tune ...`).
 namespace footing::ranks {
 
-/// The ranks of this run; a program that mpirun did not start is the only one. All ranks do the same
-/// in the same order, but each a part of the trials; Share gives all of them what each came to. Only
-/// the first one writes files and shows results.
+/// The ranks of this run; a program that mpirun did not start is the only one. All ranks do the
+/// same in the same order, but each a part of the trials; Share gives all of them what each came
+/// to. Only the first one writes files and shows results.
 class Ranks {
  public:
   /// One rank, which needs no MPI.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/clock/clock.h"
+#include "common/discovery/advertiser.h"
 #include "common/log/log.h"
 #include "common/monitoring/monitor.h"
 #include "common/service_manager/service_manager.h"
@@ -69,8 +70,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
         config_(config),
         timer_(io),
         warning_(io),
-        state_(setup::StatePath(config.state_directory),
-               [](const std::string& line) { log::Warning(line); }),
+        state_(setup::StatePath(config.state_directory), log::Warning),
         disk_(
             io,
             [this](const std::string& name, const std::string& content) {
@@ -113,12 +113,12 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
                 (tls ? ", certificate " + server_.fingerprint() : ""));
     }
     auto sources = config_.sources;
-    if (sources.empty()) {
-      sources = {"hid", "stream:" + OwnAddress("devices")};
-    }
+    if (sources.empty()) sources = {"hid", "stream:" + OwnAddress("devices")};
     for (const std::string& text : sources) {
       if (const auto opened = OpenSource(text); !opened) return opened;
     }
+    const std::string& name = config_.access.advertise;
+    advertiser_.emplace(io_, discovery::ServicesOf(server_, listen.size(), name, "footingd"));
     return monitor_.Serve(io_, config_.metrics);
   }
 
@@ -140,6 +140,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     warning_.cancel();
     for (const auto& source : sources_) source->Stop();
     monitor_.Stop();
+    advertiser_.reset();
     server_.Drain(reason, std::move(done));
   }
 
@@ -189,9 +190,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     if (!*address) {
       sources_.push_back(std::make_unique<devices::HidSource>(io_, new_handle, handlers));
       // Without rights to any device simulated ones still work.
-      if (const auto started = sources_.back()->Start(); !started) {
+      if (const auto started = sources_.back()->Start(); !started)
         log::Warning(started.error().message);
-      }
       return {};
     }
     sources_.push_back(
@@ -245,10 +245,9 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     v1::CommandResult result = CarryOut(hub_, config_, session.session, command);
     if (disk_.last_save() == before) return result;
     disk_.OnWritten([this, session = session.session, result](const std::string& problem) mutable {
-      if (!problem.empty()) {
-        result.set_message(result.message() + (result.message().empty() ? "" : "; ") +
-                           "it lasts until footingd ends: " + problem);
-      }
+      const std::string before_it = result.message().empty() ? "" : result.message() + "; ";
+      if (!problem.empty())
+        result.set_message(before_it + "it lasts until footingd ends: " + problem);
       server_.Answer(session, result);
     });
     return std::nullopt;
@@ -270,6 +269,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   Hub hub_;
   transport::Server server_;
   monitoring::Monitor monitor_;
+  std::optional<discovery::Advertiser> advertiser_;
   std::vector<std::string> listening_on_;
 };
 

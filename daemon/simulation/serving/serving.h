@@ -8,11 +8,13 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/clock/clock.h"
+#include "common/discovery/advertiser.h"
 #include "common/log/log.h"
 #include "common/monitoring/monitor.h"
 #include "common/result/result.h"
@@ -58,6 +60,8 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     if (config.access.insecure_lan) {
       log::Warning("insecure_lan: what goes beyond this host is NOT ENCRYPTED, the token included");
     }
+    const std::string& name = config.access.advertise;
+    advertiser_.emplace(io, discovery::ServicesOf(server_, listening_, name, "footing-sim"));
     if (const auto served = monitor_.Serve(io, config.metrics); !served) return served;
     transport::ClientOptions options;
     options.address = transport::DefaultAddress("sensor");
@@ -96,6 +100,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     boost::system::error_code ignored;
     wake_.close(ignored);
     monitor_.Stop();
+    advertiser_.reset();
     server_.Drain(reason, std::move(done));
   }
 
@@ -139,6 +144,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   transport::Server server_;
   std::size_t listening_ = 0;
   monitoring::Monitor monitor_;
+  std::optional<discovery::Advertiser> advertiser_;
   std::unique_ptr<transport::Client> client_;
 };
 
