@@ -1,14 +1,17 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
+#include "daemon/offline/arm_network/network.h"
 #include "daemon/offline/pose_run/held_hands.h"
 #include "daemon/simulation/arms/arm_model.h"
 
 namespace footing::eval {
 
 /// The arms estimated from the devices of a run against the truth from the T-pose on, beside an arm
-/// that never moves; the fields of `footing-eval arm`.
-nlohmann::ordered_json RunArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model);
+/// that never moves and beside these networks; the fields of `footing-eval arm`.
+nlohmann::ordered_json RunArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model,
+                                   const std::vector<arm_network::ArmNetwork>& networks = {});
 
 }  // namespace footing::eval

@@ -69,6 +69,27 @@ class Arm(unittest.TestCase):
         self.assertLess(error["wiimote"], 0.85 * error["none"])
         self.assertLess(error["kinect"], error["wiimote"])
 
+    def test_networks_that_receive_their_own_estimates_are_compared(self):
+        folder = pathlib.Path(self.folder.name)
+        names = []
+        for kind in ("paper", "residual"):
+            name = folder / f"{kind}.fmodel"
+            done = run(TRAIN, "arm", "--kind", kind, "--motions", folder / "clips", "--out", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            names += ["--network", name]
+        report = self.report("arm", *JUDGED, "--model", self.arm, *names)
+        networks = report["networks"]
+        self.assertEqual(set(networks), {"arm_paper", "arm_residual"})
+        for scores in (*networks.values(), report, report["baselines"]["mean_arm"]):
+            self.assertEqual(len(scores["hand_position_rms_halves_cm"]), 2)
+        self.assertLess(networks["arm_residual"]["hand_position_rms_cm"],
+                        networks["arm_paper"]["hand_position_rms_cm"])
+        self.assertLess(report["hand_position_rms_cm"], networks["arm_residual"]["hand_position_rms_cm"])
+        done = run(EVAL, "arm", "--motion", DATA / "13_30.amc", "--skeleton", DATA / "13_reconstructed.asf",
+                   "--model", self.arm, "--network", self.arm)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("kind", done.stderr)
+
     def test_is_never_judged_on_whom_it_was_trained_on(self):
         done = run(EVAL, "arm", "--motion", DATA / "14_14.amc", "--skeleton",
                    DATA / "14_reconstructed.asf", "--model", self.arm)
