@@ -14,10 +14,13 @@ std::string Listed(const std::vector<Change>& changes) {
 }  // namespace
 
 std::vector<std::string> DescribeReload(const Binder& before, const Binder& after,
-                                        const Binder& wanted) {
+                                        const Binder& wanted,
+                                        const std::vector<std::string>& files) {
   const auto taken = Differences(before, after), left = Differences(after, wanted);
+  std::string now = Listed(taken);
+  for (const std::string& file : files) now += (now.empty() ? "" : ", ") + ("contents of " + file);
   std::vector<std::string> lines;
-  if (!taken.empty()) lines.push_back("config reloaded: " + Listed(taken));
+  if (!now.empty()) lines.push_back("config reloaded: " + now);
   if (!left.empty()) lines.push_back("config: takes effect after a restart: " + Listed(left));
   if (lines.empty()) lines.push_back("config reloaded: nothing has changed");
   return lines;

@@ -84,6 +84,13 @@ Progress Channel::Handshake() {
   return progress;
 }
 
+Progress Channel::Distrust(const std::string& why) {
+  ready_ = false;
+  untrusted_ = true;
+  problem_ = why;
+  return Progress::kFailed;
+}
+
 /// What a server looks at before it makes anything of OpenSSL's.
 std::optional<Progress> Channel::LookAtFirstBytes() {
   while (is_server_) {

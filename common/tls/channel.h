@@ -38,6 +38,8 @@ class Channel {
 
   /// Until it is done nothing can be read or written.
   Progress Handshake();
+  /// After it: the certificate is not accepted all the same, and nothing is read or written.
+  Progress Distrust(const std::string& why);
   bool ready() const { return ready_; }
 
   /// Up to `size` bytes, at least one when it is done.

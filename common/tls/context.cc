@@ -53,13 +53,13 @@ Error NoContext() {
 
 }  // namespace
 
-Result<Context> Context::ForServer(const Identity& identity, bool wants_certificates) {
+Result<Context> Context::ForServer(const Identity& identity) {
   const auto shared = NewContext(TLS_server_method());
   if (!shared || SSL_CTX_use_certificate(shared.get(), identity.certificate_.get()) != 1 ||
       SSL_CTX_use_PrivateKey(shared.get(), identity.key_.get()) != 1) {
     return NoContext();
   }
-  SSL_CTX_set_verify(shared.get(), wants_certificates ? SSL_VERIFY_PEER : SSL_VERIFY_NONE, nullptr);
+  SSL_CTX_set_verify(shared.get(), SSL_VERIFY_PEER, nullptr);
   return Context(shared);
 }
 

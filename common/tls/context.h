@@ -20,8 +20,8 @@ using CertificateCheck = std::function<std::string(const std::string& fingerprin
 /// tickets, no resumption, no early data.
 class Context {
  public:
-  /// `wants_certificates`: clients may show one. Whether it is a known one the session decides.
-  static Result<Context> ForServer(const Identity& identity, bool wants_certificates);
+  /// Clients may show a certificate. Whether it is a known one the session decides.
+  static Result<Context> ForServer(const Identity& identity);
   /// `own` is shown to a server that asks for a certificate; may be null.
   static Result<Context> ForClient(const Identity* own);
 

@@ -1,10 +1,14 @@
 #include "common/transport/access.h"
 
+#include <sys/stat.h>
+
 #include <array>
+#include <chrono>
 #include <sstream>
 #include <utility>
 
 #include "common/config/data_file.h"
+#include "common/log/log.h"
 #include "common/tls/fingerprint.h"
 #include "common/tls/places.h"
 #include "common/transport/token.h"
@@ -22,20 +26,43 @@ v1::Role RoleNamed(const std::string& name) {
   return v1::ROLE_UNSPECIFIED;
 }
 
+void WarnAndWait(const std::shared_ptr<timer::Timer>& timer) {
+  log::Warning("insecure_lan: what goes beyond this host is NOT ENCRYPTED, the token included");
+  timer->expires_after(std::chrono::hours(1));
+  timer->async_wait([weak = std::weak_ptr(timer)](const boost::system::error_code& error) {
+    const auto still_there = weak.lock();
+    if (!error && still_there) WarnAndWait(still_there);
+  });
+}
+
+/// Who may write the file may let anybody in.
+Result<std::map<std::string, v1::Role>> ReadClients(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+    return UsageError("clients file " + path + " may be written by others; chmod go-w " + path);
+  }
+  const auto text = config::ReadTextFile(path);
+  if (!text) return text.error();
+  auto clients = ParseClients(*text);
+  if (!clients) return InvalidData(path + ", " + clients.error().message);
+  return clients;
+}
+
 }  // namespace
 
 void AccessSettings::Bind(config::Binder& binder) {
   binder.Text(
       "token_file", token_file,
       "File (mode 0600) with a token by which clients over TCP and TLS get the role control");
-  binder.Text("clients_file", clients_file,
-              "File with the certificates of clients over TLS, lines \"sha256:... ROLE NAME\" with "
-              "the role view, log or control");
+  binder.Text(
+      "clients_file", clients_file,
+      "File with the certificates of clients over TLS, lines \"sha256:... ROLE [NAME]\" with "
+      "the role view, log or control; only its owner may be able to write it");
   binder.Text(
       "identity_file", identity_file,
       "File (mode 0600) with this server's key and certificate for TLS, made where it is "
-      "missing; empty: identity.pem in $STATE_DIRECTORY, else $XDG_STATE_HOME/footing, else "
-      "~/.local/state/footing");
+      "missing; empty: identity.pem in state_directory (footingd), else in $STATE_DIRECTORY, else "
+      "in $XDG_STATE_HOME/footing, else in ~/.local/state/footing");
   binder.Flag("insecure_lan", insecure_lan,
               "Listen on tcp: beyond this host WITHOUT ENCRYPTION; needs token_file");
   binder.Text(
@@ -61,15 +88,29 @@ Result<void> AccessSettings::Apply(ServerOptions& options) const {
     options.token = std::move(token).value();
   }
   if (!clients_file.empty()) {
-    const auto text = config::ReadTextFile(clients_file);
-    if (!text) return text.error();
-    auto clients = ParseClients(*text);
-    if (!clients) return InvalidData(clients_file + ", " + clients.error().message);
+    auto clients = ReadClients(clients_file);
+    if (!clients) return clients.error();
     options.clients = std::move(clients).value();
   }
   options.identity_file = identity_file.empty() ? tls::DefaultIdentityFile() : identity_file;
   options.insecure_lan = insecure_lan;
   return {};
+}
+
+Result<std::vector<std::string>> AccessSettings::Reapply(Server& server) const {
+  ServerOptions read;
+  if (const auto applied = Apply(read); !applied) return applied.error();
+  std::vector<std::string> changed;
+  if (read.token != server.options().token) changed.push_back("token_file");
+  if (read.clients != server.options().clients) changed.push_back("clients_file");
+  server.SetAccess(read.token, read.clients);
+  return changed;
+}
+
+std::shared_ptr<timer::Timer> WarnOfInsecureLan(boost::asio::io_context& io) {
+  auto timer = std::make_shared<timer::Timer>(io);
+  WarnAndWait(timer);
+  return timer;
 }
 
 Result<std::map<std::string, v1::Role>> ParseClients(const std::string& text) {
@@ -86,8 +127,7 @@ Result<std::map<std::string, v1::Role>> ParseClients(const std::string& text) {
     if (!fingerprint || role == v1::ROLE_UNSPECIFIED) {
       return InvalidData(
           "line " + std::to_string(number) +
-          ": it must be a certificate's fingerprint sha256:..., a role (view, log or "
-          "control) and a name");
+          ": it must be a certificate's fingerprint sha256:... and a role: view, log or control");
     }
     clients[*fingerprint] = role;
   }

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <boost/asio/io_context.hpp>
 #include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "common/config/config.h"
 #include "common/result/result.h"
+#include "common/timer/timer.h"
 #include "common/transport/server.h"
 #include "footing/v1/session.pb.h"
 
@@ -23,10 +27,16 @@ struct AccessSettings {
   Result<void> Check() const;
   /// Reads the files into the options; an error names the file, and the line.
   Result<void> Apply(ServerOptions& options) const;
+  /// Reads token_file and clients_file again, for the sessions that come to the server from now on:
+  /// the settings ("token_file") whose files have another content. An error changes nothing.
+  Result<std::vector<std::string>> Reapply(Server& server) const;
 };
 
-/// The certificates that a server lets in: lines "sha256:... ROLE NAME" with the role view, log or
-/// control; what begins with # is a comment.
+/// Logs now and every hour that insecure_lan is on, until the timer that it returns is gone.
+[[nodiscard]] std::shared_ptr<timer::Timer> WarnOfInsecureLan(boost::asio::io_context& io);
+
+/// The certificates that a server lets in: lines "sha256:... ROLE" with the role view, log or
+/// control; more words, such as whose it is, and what begins with # are comments.
 Result<std::map<std::string, v1::Role>> ParseClients(const std::string& text);
 
 }  // namespace footing::transport

@@ -147,7 +147,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
         return OnSubscribed();
       case v1::Envelope::kRefused:
         close_ = {true, options_.address.Text() + " refused: " + message.refused().message()};
-        return;
+        return Call(handlers_.on_refused, message.refused());
       case v1::Envelope::kGoodbye:
         close_.text = message.goodbye().reason();
         return;
@@ -209,7 +209,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     commands_.Expire(now_ns);
     if (!connection_) return;  // A handler stopped us.
     const double patience_s = subscribed_ ? options_.dead_after_s : options_.stale_after_s;
-    if (silent_s > patience_s) return Break(options_.address.Text() + " does not answer any more");
+    if (silent_s > patience_s) return Break(options_.address.Text() + " stopped answering");
     if (subscribed_ && silent_s > options_.stale_after_s && state_ == LinkState::kLive) {
       SetState(LinkState::kStale, "nothing comes from " + server_.name + " on " +
                                       options_.address.Text() + "; waiting");

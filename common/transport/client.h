@@ -56,6 +56,8 @@ struct ClientHandlers {
   std::function<void(LinkState, const std::string& why)> on_state;
   /// Something slows this session or the server.
   std::function<void(const v1::Notice&)> on_notice = {};
+  /// The server said no, before on_state says so.
+  std::function<void(const v1::Refused&)> on_refused = {};
 };
 
 /// Connects, keeps connected (0.1 s to 1 s between tries, with jitter) and resumes by sequence.

@@ -1,14 +1,32 @@
 #include "common/transport/client_messages.h"
 
+#include <cstdlib>
+#include <string_view>
+
 #include "common/transport/handshake.h"
+#include "common/transport/socket.h"
 #include "common/transport/token.h"
 
 namespace footing::transport {
+namespace {
+
+bool MaySendSecretTo(const Address& address) {
+  if (address.kind != Address::Kind::kTcp || StaysOnThisHost(address)) return true;
+  const char* const allowed = std::getenv("FOOTING_INSECURE_LAN");
+  return allowed != nullptr && std::string_view(allowed) == "1";
+}
+
+}  // namespace
 
 Result<v1::Envelope> MakeHello(const ClientOptions& options) {
   const bool ask_environment = options.token.empty() && options.address.OverTcp();
   const auto token = ask_environment ? TokenFromEnvironment() : Result<std::string>(options.token);
   if (!token) return token.error();
+  if (!token->empty() && !MaySendSecretTo(options.address)) {
+    return UsageError(options.address.Text() +
+                      ": the token is not sent without encryption; connect with tls:HOST:PORT, or, "
+                      "in a network that you trust wholly, set FOOTING_INSECURE_LAN=1");
+  }
   v1::Envelope message;
   v1::Hello& hello = *message.mutable_hello();
   hello.set_protocol_major(kProtocolMajor);

@@ -11,7 +11,8 @@
 namespace footing::transport {
 
 /// Over TCP with the token of the environment where the options have none; an error when its file
-/// cannot be used.
+/// cannot be used. Beyond this host a token goes over tcp:, where everybody on the way can read it,
+/// only with FOOTING_INSECURE_LAN=1; an error otherwise.
 Result<v1::Envelope> MakeHello(const ClientOptions& options);
 
 /// Asks for the ticks behind `last_sequence` of `last_epoch`, or, when that is 0, for those that

@@ -63,7 +63,8 @@ v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message) {
 }
 
 std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role highest,
-                                                bool has_token, const std::string& server_id) {
+                                                const std::string& how_to_get_more,
+                                                const std::string& server_id) {
   if (hello.protocol_major() != kProtocolMajor) {
     const bool client_older = hello.protocol_major() < kProtocolMajor;
     return Refuse(v1::Refused::REASON_PROTOCOL_VERSION,
@@ -74,12 +75,9 @@ std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role
   }
   const v1::Role wished = hello.role() == v1::ROLE_UNSPECIFIED ? v1::ROLE_VIEW : hello.role();
   if (wished <= highest) return wished;
-  return Refuse(v1::Refused::REASON_ROLE,
-                "the role " + RoleName(wished) + " is not given to this connection, at most " +
-                    RoleName(highest) +
-                    "; connect over the server's Unix socket as its user (admin) or as a member "
-                    "of its group (control)" +
-                    (has_token ? ", or over TCP with the server's token (control)" : ""));
+  return Refuse(v1::Refused::REASON_ROLE, "the role " + RoleName(wished) +
+                                              " is not given to this connection, at most " +
+                                              RoleName(highest) + "; " + how_to_get_more);
 }
 
 v1::Welcome MakeWelcome(const ServerOptions& options, std::uint64_t epoch, v1::Role role) {

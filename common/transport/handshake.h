@@ -16,9 +16,10 @@ inline constexpr std::uint32_t kProtocolMajor = 1;
 inline constexpr std::uint32_t kProtocolMinor = 0;
 
 /// The role granted, or why not. Another minor version is fine: both sides leave out what they do
-/// not know. No role asked for is view.
+/// not know. No role asked for is view. `how_to_get_more` says what gives this client a higher one.
 std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role highest,
-                                                bool has_token, const std::string& server_id);
+                                                const std::string& how_to_get_more,
+                                                const std::string& server_id);
 
 v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message);
 

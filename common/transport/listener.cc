@@ -25,6 +25,7 @@ using boost::system::error_code;
 using Acceptor = asio::basic_socket_acceptor<asio::generic::stream_protocol>;
 
 constexpr int kBacklog = 128;
+constexpr char kComeBySsh[] = "listen on unix:PATH, and connect from other machines with ssh -L";
 constexpr auto kPauseAfterError = std::chrono::milliseconds(100);
 
 Error ListenError(const Address& address, const error_code& error) {
@@ -56,8 +57,8 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
       return UsageError("will not listen on " + address_.Text() +
                         ": beyond this host a connection must be encrypted; " +
                         (security_.tls ? "use tls:HOST:PORT, or, in a network that you trust "
-                                         "wholly, --insecure-lan with a token_file"
-                                       : "listen on unix:PATH, and come from there with ssh -L"));
+                                         "wholly, --set insecure_lan=true with a token_file"
+                                       : kComeBySsh));
     }
     if (address_.kind == Address::Kind::kPassed) return TakePassed();
     if (auto checked = CheckFolderOf(address_); !checked) return checked;
@@ -96,7 +97,8 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
  private:
   Result<void> PrepareTls() {
     if (!security_.tls) {
-      return UsageError("will not listen on " + address_.Text() + ": this socket has no TLS");
+      return UsageError("will not listen on " + address_.Text() + ": this program has no TLS; " +
+                        kComeBySsh);
     }
     auto context = security_.tls();
     if (!context) return context.error();

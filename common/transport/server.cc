@@ -40,7 +40,9 @@ class Server::Implementation {
   Result<void> Listen(const Address& address) {
     ListenSecurity security;
     security.insecure_lan = shared_.options.insecure_lan && !shared_.options.token.empty();
-    security.tls = [this, &address] { return TlsContext(address); };
+    if (shared_.options.identity_file) {
+      security.tls = [this, address] { return TlsContext(address); };
+    }
     auto listener = Listener::Open(
         io_, address, [this](Socket socket) { OnAccept(std::move(socket)); }, security);
     if (!listener) return listener.error();
@@ -80,8 +82,8 @@ class Server::Implementation {
     if (!late_lines_.Take(shared_.NowNs())) return;
     const std::uint64_t all = shared_.statistics.late_ticks;
     const std::string line =
-        shared_.options.server_id + " has too much to do: " + std::to_string(all) +
-        " ticks left out since its start, " + std::to_string(sessions_.size()) + " sessions";
+        shared_.options.server_id + " is overloaded: " + std::to_string(all) +
+        " ticks skipped since start, sessions: " + std::to_string(sessions_.size());
     if (shared_.handlers.on_overload) shared_.handlers.on_overload(line);
     for (const auto& session : sessions_) {
       session->Notify(v1::Notice::KIND_TICKS_LATE, line, all);
@@ -123,6 +125,14 @@ class Server::Implementation {
 
   void SetLimits(const SessionLimits& limits) { shared_.options.sessions = limits; }
 
+  void SetAccess(const std::string& token, const std::map<std::string, v1::Role>& clients) {
+    if (token != shared_.options.token) shared_.token = TokenGuard(token);
+    shared_.options.token = token;
+    shared_.options.clients = clients;
+  }
+
+  const ServerOptions& options() const { return shared_.options; }
+
  private:
   Result<tls::Context> TlsContext(const Address& address) {
     const ServerOptions& options = shared_.options;
@@ -132,11 +142,11 @@ class Server::Implementation {
                         "clients_file");
     }
     if (!identity_) {
-      auto identity = tls::Identity::LoadOrMake(options.identity_file, "Footing");
+      auto identity = tls::Identity::LoadOrMake(*options.identity_file, "Footing");
       if (!identity) return identity.error();
       identity_ = std::move(identity).value();
     }
-    return tls::Context::ForServer(*identity_, !options.clients.empty());
+    return tls::Context::ForServer(*identity_);
   }
 
   void OnAccept(Socket socket) {
@@ -219,5 +229,9 @@ void Server::Drain(const std::string& reason, std::function<void()> done) {
   implementation_->Drain(reason, std::move(done));
 }
 void Server::SetLimits(const SessionLimits& limits) { implementation_->SetLimits(limits); }
+void Server::SetAccess(const std::string& token, const std::map<std::string, v1::Role>& clients) {
+  implementation_->SetAccess(token, clients);
+}
+const ServerOptions& Server::options() const { return implementation_->options(); }
 
 }  // namespace footing::transport

@@ -47,8 +47,9 @@ struct ServerOptions {
       token;  ///< By which a client over TCP or TLS gets the role control; empty: none does.
   /// Fingerprints of the certificates by which clients over TLS get their roles.
   std::map<std::string, v1::Role> clients;
-  /// Key and certificate for TLS, made where the file is missing when it first listens on tls:.
-  std::string identity_file;
+  /// Key and certificate for TLS, made where the file is missing when it first listens on tls:;
+  /// none: there is no TLS.
+  std::optional<std::string> identity_file;
   /// Listen beyond this host without encryption: anyone on the network path can read everything.
   bool insecure_lan = false;
   double hello_deadline_s = 3;
@@ -150,6 +151,9 @@ class Server {
   void Drain(const std::string& reason, std::function<void()> done);
   /// For sessions that come from now on.
   void SetLimits(const SessionLimits& limits);
+  /// The same: who may come over TCP and TLS, as in the options.
+  void SetAccess(const std::string& token, const std::map<std::string, v1::Role>& clients);
+  const ServerOptions& options() const;
 
  private:
   class Implementation;

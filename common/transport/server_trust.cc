@@ -29,25 +29,20 @@ std::string ServerTrust::WhyRefused(const std::string& fingerprint) {
            server_ + " " + fingerprint;
   }
   is_new_ = true;
-  // It must be possible to remember it: who forgets would trust anybody each time.
-  if (known_.path().empty()) {
-    return "not connected to tls:" + server_ +
-           ": there is no home folder in which to remember the server's certificate; name a file "
-           "by "
-           "FOOTING_KNOWN_SERVERS";
-  }
   return "";
 }
 
-void ServerTrust::OnProved(const std::string& fingerprint) {
-  if (!is_new_) return;
-  is_new_ = false;
+std::string ServerTrust::OnProved(const std::string& fingerprint) {
+  if (!is_new_) return "";
+  // Who cannot remember it would trust anybody, each time.
   if (const auto added = known_.Add(server_, fingerprint); !added) {
-    return log::Warning("the certificate of tls:" + server_ +
-                        " is not remembered: " + added.error().message + "; it was " + fingerprint);
+    return "not connected to tls:" + server_ + ": its certificate " + fingerprint +
+           " cannot be remembered: " + added.error().message;
   }
+  is_new_ = false;
   log::Warning("trusting tls:" + server_ + " from now on: its certificate is " + fingerprint +
                "; compare it with what footing-ctl trust prints on the server");
+  return "";
 }
 
 std::string KnownName(const Address& address) { return address.Text().substr(sizeof("tls:") - 1); }

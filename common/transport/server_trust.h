@@ -23,8 +23,9 @@ class ServerTrust {
 
   /// Why the certificate is refused; empty when it is not.
   std::string WhyRefused(const std::string& fingerprint);
-  /// The server has proved that the certificate is its own.
-  void OnProved(const std::string& fingerprint);
+  /// The server has proved that the certificate is its own: a new one is remembered. Why it is
+  /// refused all the same; empty when it is not.
+  std::string OnProved(const std::string& fingerprint);
 
  private:
   std::string server_;

@@ -53,6 +53,7 @@ Session::Session(Socket socket, std::uint64_t number, Shared& shared,
           shared.loop),
       timer_(connection_.executor()),
       heard_ns_(shared.NowNs()),
+      messages_per_s_(shared.options.sessions.session_messages_per_s),
       answers_(kRememberedAnswers) {
   info_.session = number;
   record_.began_ns = heard_ns_;
@@ -194,7 +195,9 @@ std::optional<v1::CommandResult> Session::Carry(const v1::Command& command,
   if (open_commands_.size() > kMaxQueuedAnswers) {
     failed.set_message("not carried out: too many commands of this session wait for the disk");
   } else if (info_.role < v1::ROLE_CONTROL) {
-    failed.set_message("this session may only look; ask for the role control in Hello");
+    failed.set_message(
+        "commands need the role control: connect over the server's Unix socket, or with its token "
+        "or a certificate that has this role");
   } else if (shared_.NowNs() - arrived_ns >
              std::int64_t{deadline_ms} * kNanosecondsPerMillisecond) {
     failed.set_message("not carried out: its deadline of " + std::to_string(deadline_ms) +

@@ -103,6 +103,7 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Finds out the highest role of who comes over TCP or TLS; why not, if it may not come in.
   std::optional<v1::Refused> Authenticate(const v1::Hello& hello);
   std::string HowToComeIn(const std::string& certificate) const;
+  std::string HowToGetMore() const;
   void Dispatch(const v1::Envelope& message, std::int64_t arrived_ns);
   void OnSubscribe(const v1::Subscribe& wish);
   void OnRefill(const v1::Refill& wish);
@@ -141,6 +142,7 @@ class Session : public std::enable_shared_from_this<Session> {
   FramedConnection connection_;
   timer::Timer timer_;
   std::int64_t heard_ns_ = 0;
+  const double messages_per_s_;  ///< What it may send: its own, when a reload changes the limit.
   SessionRecord record_;
   TokenBucket slowed_notices_{1, 1};
   Answers answers_;

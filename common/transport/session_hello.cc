@@ -46,7 +46,11 @@ std::optional<v1::Refused> Session::Authenticate(const v1::Hello& hello) {
 std::string Session::HowToComeIn(const std::string& certificate) const {
   const ServerOptions& options = shared_.options;
   std::string text = connection_.secured() ? "this server wants" : "this server wants its token";
-  if (!connection_.secured()) return text + " over TCP: FOOTING_TOKEN_FILE=FILE names it";
+  if (!connection_.secured()) {
+    return text +
+           ": FOOTING_TOKEN_FILE=FILE names it, and FOOTING_INSECURE_LAN=1 allows a client to send "
+           "it without encryption";
+  }
   if (!options.token.empty()) text += " its token, which FOOTING_TOKEN_FILE=FILE names";
   if (!options.token.empty() && !options.clients.empty()) text += ", or";
   if (!options.clients.empty()) {
@@ -57,11 +61,21 @@ std::string Session::HowToComeIn(const std::string& certificate) const {
   return text;
 }
 
+std::string Session::HowToGetMore() const {
+  const ServerOptions& options = shared_.options;
+  if (options.clients.contains(connection_.peer_fingerprint())) {
+    return "the server's clients_file gives this client's certificate that role: change it there";
+  }
+  return std::string(
+             "connect over the server's Unix socket as its user (admin) or as a member of its "
+             "group (control)") +
+         (options.token.empty() ? "" : ", or over TCP with the server's token (control)");
+}
+
 void Session::OnHello(const v1::Hello& hello) {
   if (const auto refused = Authenticate(hello))
     return Refused(refused->reason(), refused->message());
-  const auto answer =
-      AnswerHello(hello, highest_role_, !shared_.options.token.empty(), shared_.options.server_id);
+  const auto answer = AnswerHello(hello, highest_role_, HowToGetMore(), shared_.options.server_id);
   if (const auto* refused = std::get_if<v1::Refused>(&answer)) {
     Refused(refused->reason(), refused->message());
     return;

@@ -45,7 +45,7 @@ std::string WhyNoPlace(const SessionLimits& limits, const Peer& peer, uid_t own_
   }
   if (taken.entering_of_host >= limits.max_entering_per_host) {
     return std::to_string(limits.max_entering_per_host) +
-           " connections of this host that have not come in yet";
+           " unauthenticated connections from this host";
   }
   if (taken.of_user < limits.max_sessions_per_user) return "";
   return std::to_string(limits.max_sessions_per_user) +

@@ -17,21 +17,20 @@ void Shared::SayOverload(const std::string& line) {
 void Shared::SayDenied(const std::string& host, const std::string& why) {
   ++statistics.denied;
   if (!handlers.on_overload || !denied_lines.Take(NowNs())) return;
-  handlers.on_overload("kept out a client at " + host + ", " + why + "; " +
-                       std::to_string(statistics.denied) + " since the start");
+  handlers.on_overload("refused a client from " + host + ": " + why + " (" +
+                       std::to_string(statistics.denied) + " since start)");
 }
 
 void Session::OnSlowed() {
   ++record_.slowed;
   ++shared_.statistics.slowed;
-  const double per_s = shared_.options.sessions.session_messages_per_s;
-  shared_.SayOverload("session " + std::to_string(info_.session) + " (" + info_.client_name +
-                      ") sends more than " + std::to_string(static_cast<int>(per_s)) +
+  const std::string name = info_.client_name.empty() ? "" : " (" + info_.client_name + ")";
+  shared_.SayOverload("session " + std::to_string(info_.session) + name + " sends more than " +
+                      std::to_string(static_cast<int>(messages_per_s_)) +
                       " messages a second and is slowed");
   if (phase_ == Phase::kHello || !slowed_notices_.Take(shared_.NowNs())) return;
   Notify(v1::Notice::KIND_SLOWED,
-         "this client sends more than the server's limit of messages; the rest waits",
-         record_.slowed);
+         "this client exceeds the server's rate limit; its messages are delayed", record_.slowed);
 }
 
 void Session::Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count) {

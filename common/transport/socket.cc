@@ -64,7 +64,7 @@ Result<Socket> Dialled(asio::io_context& io, PlainSocket plain, const Address& a
     return trust->WhyRefused(fingerprint);
   });
   return Socket(std::move(plain), std::move(channel),
-                [trust](const std::string& fingerprint) { trust->OnProved(fingerprint); });
+                [trust](const std::string& fingerprint) { return trust->OnProved(fingerprint); });
 }
 
 }  // namespace
@@ -86,8 +86,9 @@ tls::Progress Socket::StepHandshake() {
   if (!plain_.is_open()) return tls::Progress::kFailed;  // Its descriptor may be another's by now.
   clock::Act();
   const tls::Progress progress = tls_->Handshake();
-  if (progress == tls::Progress::kDone && on_trusted_) on_trusted_(tls_->peer_fingerprint());
-  return progress;
+  if (progress != tls::Progress::kDone || !on_proved_) return progress;
+  const std::string why_not = on_proved_(tls_->peer_fingerprint());
+  return why_not.empty() ? progress : tls_->Distrust(why_not);
 }
 
 std::size_t Socket::WriteSome(std::span<const asio::const_buffer> buffers, error_code& error) {

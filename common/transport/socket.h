@@ -30,10 +30,11 @@ class Socket {
   using error_code = boost::system::error_code;
 
   explicit Socket(PlainSocket plain) : plain_(std::move(plain)) {}
-  /// `on_trusted` is called once the handshake is done, with the other side's fingerprint.
+  /// `on_proved` is called once the handshake is done, with the other side's fingerprint; what it
+  /// returns, if not empty, is why the connection fails all the same.
   Socket(PlainSocket plain, std::unique_ptr<tls::Channel> tls,
-         std::function<void(const std::string& fingerprint)> on_trusted = {})
-      : plain_(std::move(plain)), tls_(std::move(tls)), on_trusted_(std::move(on_trusted)) {}
+         std::function<std::string(const std::string& fingerprint)> on_proved = {})
+      : plain_(std::move(plain)), tls_(std::move(tls)), on_proved_(std::move(on_proved)) {}
 
   executor_type get_executor() { return plain_.get_executor(); }
   int native_handle() { return plain_.native_handle(); }
@@ -104,7 +105,7 @@ class Socket {
 
   PlainSocket plain_;
   std::unique_ptr<tls::Channel> tls_;
-  std::function<void(const std::string& fingerprint)> on_trusted_;
+  std::function<std::string(const std::string& fingerprint)> on_proved_;
 };
 
 /// The address as the kernel takes it. "localhost" is 127.0.0.1; other hosts must be numeric, so

@@ -74,7 +74,7 @@ def check_tcp(stage, address):
     done = stage.run("footing-ctl", "--connect", address, "doctor", "--json")
     assert "footingd_not_running" not in done.stdout, done.stdout
     done = stage.run("footing-ctl", "--connect", address, "assign", "1", "main/left_hand")
-    assert done.returncode == 1 and "may only look" in done.stderr, done
+    assert done.returncode == 1 and "need the role control" in done.stderr, done
 
 
 def start_daemon(stage, *words):

@@ -148,11 +148,11 @@ def check_overload(stage, metrics):
         time.sleep(PAUSE_S)
         daemon.send_signal(signal.SIGCONT)
         time.sleep(PAUSE_S)
-        return "has too much to do" in log_of(stage, "footing-log")
+        return "is overloaded" in log_of(stage, "footing-log")
 
     stage.wait_for(noticed, "a notice", 20)
-    for client, words in (("footing-log", "notice: footingd has too much to do"), ("footing-ctl", "NOTICE: footingd has"),
-                          ("footing-sim", "sensor stream: footingd has too much to do")):
+    for client, words in (("footing-log", "notice: footingd is overloaded"), ("footing-ctl", "NOTICE: footingd is overloaded"),
+                          ("footing-sim", "sensor stream: footingd is overloaded")):
         stage.wait_for(lambda: words in log_of(stage, client), f"the notice in {client}")
     stage.wait_for(lambda: metrics_of(metrics["sensor"])["footing_ticks_left_out_total"][0][1] > 0, "the count", 5)
 

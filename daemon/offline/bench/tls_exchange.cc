@@ -45,7 +45,7 @@ class FramedEcho {
     transport::Address address = TcpAddress();
     address.kind = transport::Address::Kind::kTls;
     transport::ListenSecurity security;
-    security.tls = [this] { return tls::Context::ForServer(identity_, false); };
+    security.tls = [this] { return tls::Context::ForServer(identity_); };
     auto listener = transport::Listener::Open(
         io_, address, [this](transport::Socket socket) { Accept(std::move(socket)); }, security);
     if (!listener) return listener.error();

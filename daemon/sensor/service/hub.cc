@@ -40,14 +40,6 @@ Hub::Hub(const Config& config, Ports ports)
   }
 }
 
-void Hub::Reload(const Config& config) {
-  config_.stale_after_s = config.stale_after_s;
-  config_.default_rig = config.default_rig;
-  config_.motion_plus = config.motion_plus;
-  config_.camera = config.camera;
-  config_.status_interval_s = config.status_interval_s;
-}
-
 Device* Hub::Find(devices::DeviceHandle handle) {
   for (const auto& device : devices_) {
     if (device->Owns(handle)) return device.get();

@@ -88,8 +88,8 @@ class Hub {
   /// A mounting of a recording, found for this role.
   void TakeMounting(const Binding& binding, const stream::DeviceMounting& mounting);
   void EndSession(std::uint64_t session);
-  /// Takes what a running footingd can take of a config (reload.h says what).
-  void Reload(const Config& config);
+  /// The config from now on: of Reloaded(), which changes only what a running footingd can take.
+  void Reload(const Config& config) { config_ = config; }
   /// Every motor off, at once.
   void StopMotors();
 

@@ -5,6 +5,7 @@
 namespace footing::sensor {
 
 Config Reloaded(const Config& before, const Config& wanted,
+                const std::vector<std::string>& changed_files,
                 const std::function<void(const std::string& line)>& say) {
   Config old_config = before, new_config = wanted, next = before;
   config::Binder old_binder, new_binder, next_binder;
@@ -16,8 +17,13 @@ Config Reloaded(const Config& before, const Config& wanted,
   next.camera = wanted.camera;
   next.status_interval_s = wanted.status_interval_s;
   next.sessions = wanted.sessions;
+  next.access.token_file = wanted.access.token_file;
+  next.access.clients_file = wanted.access.clients_file;
   next.Bind(next_binder);
-  for (const auto& line : config::DescribeReload(old_binder, next_binder, new_binder)) say(line);
+  for (const auto& line :
+       config::DescribeReload(old_binder, next_binder, new_binder, changed_files)) {
+    say(line);
+  }
   return next;
 }
 

@@ -69,8 +69,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       : io_(io),
         config_(config),
         timer_(io),
-        warning_(io),
-        state_(setup::StatePath(config.state_directory), log::Warning),
+        state_(setup::StatePath(config.state_directory),
+               [](const std::string& line) { log::Warning(line); }),
         disk_(
             io,
             [this](const std::string& name, const std::string& content) {
@@ -125,11 +125,16 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   void Start() {
     next_tick_ = timer::Now();
     WaitForTick();
-    if (config_.access.insecure_lan) WarnOfLan();
+    if (config_.access.insecure_lan) lan_warning_ = transport::WarnOfInsecureLan(io_);
   }
 
   void Reload(const Config& wanted) {
-    config_ = Reloaded(config_, wanted, log::Info);
+    const auto changed_files = wanted.access.Reapply(server_);
+    if (!changed_files) {
+      return log::Warning("config not reloaded: the one in force stays: " +
+                          changed_files.error().message);
+    }
+    config_ = Reloaded(config_, wanted, *changed_files, log::Info);
     hub_.Reload(config_);
     server_.SetLimits(config_.sessions);
   }
@@ -137,7 +142,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   void Stop(const std::string& reason, std::function<void()> done) {
     hub_.StopMotors();
     timer_.cancel();
-    warning_.cancel();
+    lan_warning_.reset();
     for (const auto& source : sources_) source->Stop();
     monitor_.Stop();
     advertiser_.reset();
@@ -147,15 +152,6 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   const std::vector<std::string>& listening_on() const { return listening_on_; }
 
  private:
-  void WarnOfLan() {
-    log::Warning("insecure_lan: what goes beyond this host is NOT ENCRYPTED, the token included");
-    warning_.expires_after(std::chrono::hours(1));
-    warning_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-      const auto self = weak.lock();
-      if (!error && self) self->WarnOfLan();
-    });
-  }
-
   Result<void> OpenSource(const std::string& text) {
     const auto address = ParseSource(text);
     if (!address) return address.error();
@@ -256,7 +252,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   boost::asio::io_context& io_;
   Config config_;
   timer::Timer timer_;
-  timer::Timer warning_;
+  std::shared_ptr<timer::Timer> lan_warning_;  ///< With insecure_lan.
   timer::TimePoint next_tick_;
   std::vector<std::unique_ptr<devices::DeviceSource>> sources_;
   std::map<DeviceHandle, std::size_t> source_of_;

@@ -31,8 +31,12 @@ int main(int argc, char** argv) {
     if (footing_sim::ReadCommandLine(argc, argv, wanted)) {
       return log::Warning("config not reloaded: the one in force stays");
     }
-    config = footing_sim::Reloaded(config, wanted, log::Info);
-    served->set_limits(config.serving.sessions);
+    const auto changed_files = served->reload(wanted.serving);
+    if (!changed_files) {
+      return log::Warning("config not reloaded: the one in force stays: " +
+                          changed_files.error().message);
+    }
+    config = footing_sim::Reloaded(config, wanted, *changed_files, log::Info);
   };
   const service_manager::ServiceSignals signals(io, std::move(handlers));
   timer::Run(io);

@@ -19,6 +19,8 @@
 #include "common/monitoring/monitor.h"
 #include "common/result/result.h"
 #include "common/service_manager/service_manager.h"
+#include "common/timer/timer.h"
+#include "common/transport/access.h"
 #include "common/transport/client.h"
 #include "common/transport/server.h"
 #include "daemon/simulation/serving/config.h"
@@ -57,9 +59,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
       log::Info("listening on " + bound.Text() +
                 (tls ? ", certificate " + server_.fingerprint() : ""));
     }
-    if (config.access.insecure_lan) {
-      log::Warning("insecure_lan: what goes beyond this host is NOT ENCRYPTED, the token included");
-    }
+    if (config.access.insecure_lan) lan_warning_ = transport::WarnOfInsecureLan(io);
     const std::string& name = config.access.advertise;
     advertiser_.emplace(io, discovery::ServicesOf(server_, listening_, name, "footing-sim"));
     if (const auto served = monitor_.Serve(io, config.metrics); !served) return served;
@@ -92,13 +92,18 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     WaitForFrame();
   }
 
-  void SetLimits(const transport::SessionLimits& limits) { server_.SetLimits(limits); }
+  Result<std::vector<std::string>> Reload(const Config& wanted) {
+    auto changed_files = wanted.access.Reapply(server_);
+    if (changed_files) server_.SetLimits(wanted.sessions);
+    return changed_files;
+  }
 
   void Stop(const std::string& reason, std::function<void()> done) {
     client_->Stop();
     line_->thread().Stop();
     boost::system::error_code ignored;
     wake_.close(ignored);
+    lan_warning_.reset();
     monitor_.Stop();
     advertiser_.reset();
     server_.Drain(reason, std::move(done));
@@ -143,6 +148,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   typename Line::Run::Frame frame_;
   transport::Server server_;
   std::size_t listening_ = 0;
+  std::shared_ptr<timer::Timer> lan_warning_;  ///< With insecure_lan.
   monitoring::Monitor monitor_;
   std::optional<discovery::Advertiser> advertiser_;
   std::unique_ptr<transport::Client> client_;
@@ -153,8 +159,9 @@ struct Served {
   /// Stops the simulation thread; each client gets what waits for it, and goodbye with the reason.
   /// `done` is called when the last one has ended.
   std::function<void(const std::string& reason, std::function<void()> done)> stop;
-  /// For sessions that come from now on.
-  std::function<void(const transport::SessionLimits&)> set_limits;
+  /// Takes limits and access of another config, for sessions that come from now on: the settings
+  /// whose files have another content. An error changes nothing.
+  std::function<Result<std::vector<std::string>>(const Config& wanted)> reload;
 };
 
 /// Makes the line with `make_line(wake_descriptor)` and starts it.
@@ -174,7 +181,7 @@ Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
   return Served{[serving](const std::string& reason, std::function<void()> done) {
                   serving->Stop(reason, std::move(done));
                 },
-                [serving](const transport::SessionLimits& limits) { serving->SetLimits(limits); }};
+                [serving](const Config& wanted) { return serving->Reload(wanted); }};
 }
 
 }  // namespace footing::serving

@@ -10,10 +10,10 @@
 namespace footing::transport {
 namespace {
 
-TEST(Access, ClientsAreLinesOfFingerprintRoleAndName) {
+TEST(Access, ClientsAreLinesOfFingerprintAndRole) {
   const std::string one = tls::FingerprintOf("one"), two = tls::FingerprintOf("two");
   const auto clients =
-      ParseClients("# the lab\n" + one + " view wall screen\n\n" + two + " control Ada\n");
+      ParseClients("# the lab\n" + one + " view wall screen\n\n" + two + " control\n");
   ASSERT_TRUE(clients.ok()) << clients.error().message;
   EXPECT_EQ(*clients,
             (std::map<std::string, v1::Role>{{one, v1::ROLE_VIEW}, {two, v1::ROLE_CONTROL}}));
@@ -47,6 +47,19 @@ TEST(Access, TheFilesOfTheSettingsComeIntoTheOptions) {
   const auto refused = settings.Apply(options);
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().message.find(settings.clients_file + ", line 1"), std::string::npos);
+}
+
+TEST(Access, AClientsFileThatOthersMayWriteIsRefused) {
+  const test::TemporaryFolder folder;
+  AccessSettings settings;
+  settings.clients_file = folder.Path("clients");
+  std::ofstream(settings.clients_file) << tls::FingerprintOf("one") << " log\n";
+  for (const auto& [mode, taken] :
+       {std::pair<mode_t, bool>{0664, false}, {0646, false}, {0644, true}}) {
+    ASSERT_EQ(chmod(settings.clients_file.c_str(), mode), 0);
+    ServerOptions options;
+    EXPECT_EQ(settings.Apply(options).ok(), taken) << mode;
+  }
 }
 
 TEST(Access, WithoutEncryptionThereMustBeAToken) {

@@ -134,6 +134,7 @@ TEST_F(ListenerTest, BeyondLoopbackIsRefusedWithTheReason) {
   ASSERT_FALSE(listener.ok());
   EXPECT_EQ(listener.error().kind, ErrorKind::kUsage);
   EXPECT_NE(listener.error().message.find("beyond this host"), std::string::npos);
+  EXPECT_NE(listener.error().message.find("ssh -L"), std::string::npos) << "it has no TLS";
 }
 
 TEST_F(ListenerTest, DiallingNobodySaysWhatIsMissing) {

@@ -36,7 +36,7 @@ TEST_F(ServerCommandTest, ControlAndAdminAreCarriedOutViewAndLogAreNot) {
   for (const v1::Role role : {v1::ROLE_VIEW, v1::ROLE_LOG}) {
     const v1::CommandResult result = Ask(*WithRole(role, 1), 7);
     EXPECT_FALSE(result.ok());
-    EXPECT_NE(result.message().find("may only look"), std::string::npos);
+    EXPECT_NE(result.message().find("need the role control"), std::string::npos);
   }
   EXPECT_EQ(commands_.size(), 2u);
 }

@@ -1,104 +1,14 @@
-#include <boost/asio/connect.hpp>
-#include <boost/asio/ip/tcp.hpp>
+#include "tests/common/transport/tls_fixture.h"
+
 #include <boost/asio/read.hpp>
-#include <boost/asio/ssl.hpp>
 #include <boost/asio/write.hpp>
-#include <optional>
 
 #include "common/tls/fingerprint.h"
-#include "common/tls/known_servers.h"
-#include "common/transport/client.h"
-#include "tests/common/temporary_folder.h"
-#include "tests/common/transport/server_fixture.h"
 
 namespace footing::transport {
 namespace {
 
-using boost::asio::ip::tcp;
-using boost::system::error_code;
-
-constexpr char kToken[] = "0123456789abcdef";
-constexpr std::size_t kTls = 2;  // The listener behind those of ServerFixture.
-
-Address TlsAddress(std::uint16_t port = 0) {
-  Address address;
-  address.kind = Address::Kind::kTls;
-  address.host = "127.0.0.1";
-  address.port = port;
-  return address;
-}
-
-class TlsTest : public ServerFixture {
- protected:
-  TlsTest() {
-    setenv("FOOTING_KNOWN_SERVERS", config_.Path("known_servers").c_str(), 1);
-    options_.token = kToken;
-    options_.identity_file = config_.Path("identity.pem");
-  }
-  ~TlsTest() override { unsetenv("FOOTING_KNOWN_SERVERS"); }
-
-  void StartTlsServer(std::uint16_t port = 0) {
-    StartServer(options_);
-    const auto listening = server_->Listen(TlsAddress(port));
-    ASSERT_TRUE(listening.ok()) << listening.error().message;
-  }
-
-  std::uint16_t Port(std::size_t listener = kTls) const {
-    return server_->ListeningOn(listener).port;
-  }
-
-  /// A real client; its state and its words are kept.
-  void StartClient(const Address& address, const std::string& token = kToken) {
-    ClientOptions options;
-    options.address = address;
-    options.client_name = "test";
-    options.token = token;
-    ClientHandlers handlers;
-    handlers.on_tick = [this](const v1::Tick& tick) { ticks_.push_back(tick); };
-    handlers.on_state = [this](LinkState state, const std::string& why) {
-      state_ = state;
-      why_ = why;
-    };
-    client_.emplace(io_, options, handlers);
-    client_->Start();
-  }
-
-  bool RunUntilState(LinkState state) {
-    return RunUntil([&] { return state_ == state; });
-  }
-  bool WhyHas(const std::string& text) const { return why_.find(text) != std::string::npos; }
-
-  std::optional<std::string> Known(std::uint16_t port) const {
-    return tls::KnownServers(config_.Path("known_servers"))
-        .Find("127.0.0.1:" + std::to_string(port))
-        .value();
-  }
-
-  /// A socket that speaks no TLS, connected to the listener.
-  tcp::socket PlainPeer(std::uint16_t port) {
-    tcp::socket socket(io_);
-    socket.connect({boost::asio::ip::address_v4::loopback(), port});
-    return socket;
-  }
-
-  /// What the handshake of a foreign TLS client ends with.
-  error_code HandshakeOf(boost::asio::ssl::context::method method) {
-    boost::asio::ssl::context context(method);
-    boost::asio::ssl::stream<tcp::socket> stream(PlainPeer(Port()), context);
-    std::optional<error_code> ended;
-    stream.async_handshake(boost::asio::ssl::stream_base::client,
-                           [&](const error_code& error) { ended = error; });
-    EXPECT_TRUE(RunUntil([&] { return ended.has_value(); }));
-    return *ended;
-  }
-
-  const test::TemporaryFolder config_;
-  ServerOptions options_ = Options();
-  std::optional<Client> client_;
-  std::vector<v1::Tick> ticks_;
-  std::optional<LinkState> state_;
-  std::string why_;
-};
+using TlsTest = TlsFixture;
 
 TEST_F(TlsTest, TheFirstCertificateIsRememberedAndTheTokenLetsIn) {
   StartTlsServer();
@@ -255,7 +165,7 @@ TEST_F(TlsTest, AHostThatNeverComesInLeavesPlacesToOthers) {
   ASSERT_TRUE(RunUntil([&] { return server_->statistics().accepted == 2; }));
   StartClient(TlsAddress(Port()));
   ASSERT_TRUE(RunUntilState(LinkState::kRefused)) << why_;
-  EXPECT_TRUE(WhyHas("2 connections of this host that have not come in yet")) << why_;
+  EXPECT_TRUE(WhyHas("2 unauthenticated connections from this host")) << why_;
   // Loopback TCP and the Unix socket are not for other hosts.
   const auto local = Subscribed(Subscribe(), 1);
   EXPECT_NE(local->Find(v1::Envelope::kTick), nullptr);
@@ -270,7 +180,7 @@ TEST_F(TlsTest, WhoIsKeptOutIsLoggedWithItsHostAndOnceInTenSeconds) {
   }
   EXPECT_EQ(server_->statistics().denied, 3u);
   EXPECT_EQ(overloads_, std::vector<std::string>{
-                            "kept out a client at 127.0.0.1, wrong token; 1 since the start"});
+                            "refused a client from 127.0.0.1: wrong token (1 since start)"});
 }
 
 TEST_F(TlsTest, ACertificateThatTheServerKnowsGivesItsRole) {

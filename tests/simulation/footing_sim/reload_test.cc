@@ -14,7 +14,7 @@ TEST(Reload, TakesTheLimitsOfSessionsAndSaysWhatNeedsARestart) {
   wanted.engine = "pose";
   std::vector<std::string> lines;
   const Config next =
-      Reloaded(before, wanted, [&](const std::string& line) { lines.push_back(line); });
+      Reloaded(before, wanted, {}, [&](const std::string& line) { lines.push_back(line); });
   EXPECT_EQ(next.serving.sessions.max_log_sessions, 9);
   EXPECT_EQ(next.engine, "gait");
   EXPECT_THAT(lines, ElementsAre("config reloaded: max_log_sessions 64 -> 9",
