@@ -14,7 +14,7 @@ namespace footing::device_link {
 namespace {
 
 constexpr auto kRedial = std::chrono::milliseconds(250);
-constexpr std::uint32_t kMaxEnvelopeBytes = 1024;
+constexpr std::uint32_t kMaxEnvelopeBytes = 2048;
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,7 +11,32 @@
 
 namespace footing::stream {
 
-/// A point of a body as a tracker sees it, in W.
+/// Joints of a tracked skeleton beside the hands; a foot is the ankle.
+enum class BodyJoint {
+  kUnspecified = 0,
+  kHead = 1,
+  kNeck = 2,
+  kLeftShoulder = 3,
+  kRightShoulder = 4,
+  kLeftElbow = 5,
+  kRightElbow = 6,
+  kTorso = 7,
+  kLeftHip = 8,
+  kRightHip = 9,
+  kLeftKnee = 10,
+  kRightKnee = 11,
+  kLeftFoot = 12,
+  kRightFoot = 13,
+};
+inline constexpr std::size_t kBodyJoints = 13;
+
+/// Limits of a hand frame, which footingd checks (hands::Problem) and trackers keep.
+inline constexpr std::size_t kMostTrackedPoints = 16;
+inline constexpr double kFarthestPointM = 10;  ///< From W's origin.
+inline constexpr double kLargestPointSdM = 1;
+inline constexpr std::int64_t kOldestPointNs = 1'000'000'000;
+
+/// A point of a body as a tracker sees it, in W: a hand, by its role, or another joint.
 struct TrackedPoint {
   DeviceRole role = DeviceRole::kUnspecified;  ///< kLeftHand: the middle of the left fist.
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
@@ -18,8 +44,9 @@ struct TrackedPoint {
   double confidence = 0;  ///< 0 to 1; 0: looked for and not seen, nothing else of it counts.
   /// Of x and y, x and z, y and z; with sd_m the whole matrix. Zero: none are known.
   Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
-  bool saturated = false;  ///< Its light is at the sensor's limit.
-  bool occluded = false;   ///< Part of it is hidden, or beyond the image.
+  bool saturated = false;                     ///< Its light is at the sensor's limit.
+  bool occluded = false;                      ///< It, or part of it, is hidden or beyond the image.
+  BodyJoint joint = BodyJoint::kUnspecified;  ///< Where there is no role.
 };
 
 /// A tracker's own frame T in W.
@@ -63,7 +90,8 @@ struct HandSample {
   Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();  ///< As a TrackedPoint's.
   bool saturated = false;
   bool occluded = false;
-  std::optional<TrackerPose> tracker_pose;  ///< As a HandFrame's.
+  std::optional<TrackerPose> tracker_pose;    ///< As a HandFrame's.
+  BodyJoint joint = BodyJoint::kUnspecified;  ///< Where there is no role.
 };
 
 /// A simulated body's true pose as footingd publishes it; never estimated from.

@@ -49,6 +49,7 @@ void Fields(Way way, const stream::TrackedPoint&) {
   FOOTING_FIELD_OF(covariance_m2.z(), cov_yz_m2);
   FOOTING_FIELD(saturated);
   FOOTING_FIELD(occluded);
+  FOOTING_ENUM(BodyJoint, joint);
 }
 FOOTING_BOTH_WAYS(TrackedPoint)
 
@@ -114,6 +115,7 @@ void Fields(Way way, const stream::HandSample&) {
   FOOTING_FIELD(saturated);
   FOOTING_FIELD(occluded);
   FOOTING_OPTIONAL(tracker_pose)
+  FOOTING_ENUM(BodyJoint, joint);
 }
 FOOTING_BOTH_WAYS(HandSample)
 

@@ -54,7 +54,7 @@ SCHEMAS = {
         1: ("rig", "text"), 2: ("role", "uint"), 3: ("received_ns", "int"),
         4: ("sampled_ns", "int"), 5: ("position_m", "vector3"), 6: ("sd_m", "vector3"),
         7: ("confidence", "double"), 8: ("simulated", "bool"), 9: ("tracker", "text"),
-        10: ("covariance_m2", "vector3"), 11: ("saturated", "bool"), 12: ("occluded", "bool")},
+        10: ("covariance_m2", "vector3"), 11: ("saturated", "bool"), 12: ("occluded", "bool"), 14: ("joint", "int")},
     "hands": {1: ("samples", "*hand_sample")},
     "reference_pose": {1: ("rig", "text"), 2: ("sampled_ns", "int"),
                        4: ("positions_m", "*vector3"), 5: ("com_m", "vector3")},

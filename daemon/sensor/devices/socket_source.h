@@ -9,13 +9,13 @@
 
 namespace footing::devices {
 
-/// The device socket: device simulators dial it and speak DeviceEnvelopes, at most 1 KiB each, many
+/// The device socket: device simulators dial it and speak DeviceEnvelopes, at most 2 KiB each, many
 /// devices a connection. A connection that says something senseless is closed with one line; no
 /// other connection notices. Hand and reference frames need no device; they are passed on
 /// unchecked.
 class SocketSource : public DeviceSource {
  public:
-  static constexpr std::uint32_t kMaxEnvelopeBytes = 1024;
+  static constexpr std::uint32_t kMaxEnvelopeBytes = 2048;
   static constexpr std::size_t kMaxConnections = 64;
   static constexpr std::size_t kMaxSlots = 16;  ///< Devices of one connection.
 

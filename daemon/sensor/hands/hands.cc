@@ -15,11 +15,13 @@ bool IsPlain(const std::string& text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-bool IsNear(const Eigen::Vector3d& p_W) { return p_W.allFinite() && p_W.norm() <= kFarthestM; }
+bool IsNear(const Eigen::Vector3d& p_W) {
+  return p_W.allFinite() && p_W.norm() <= stream::kFarthestPointM;
+}
 
 std::string ProblemOfHead(const std::string& name, std::int64_t age_ns) {
   if (!IsPlain(name)) return "a name is not printable text of at most 64 characters";
-  if (age_ns < 0 || age_ns > kOldestNs) {
+  if (age_ns < 0 || age_ns > stream::kOldestPointNs) {
     return "age_ns is " + std::to_string(age_ns) + ", must be from 0 to 1000000000";
   }
   return "";
@@ -38,7 +40,10 @@ bool IsCovariance(const Eigen::Vector3d& sd_m, const Eigen::Vector3d& covariance
 }
 
 std::string ProblemOf(const stream::TrackedPoint& point) {
-  if (point.role == DeviceRole::kUnspecified) return "no role that is known";
+  const bool has_role = point.role != DeviceRole::kUnspecified;
+  const bool has_joint = point.joint != stream::BodyJoint::kUnspecified;
+  if (!has_role && !has_joint) return "no role and no joint that is known";
+  if (has_role && has_joint) return "a role and a joint, must have one of them";
   if (!IsNear(point.position_m)) return "a position that is not within 10 m";
   if (!(point.confidence >= 0 && point.confidence <= 1)) {
     return "a confidence that is not from 0 to 1";
@@ -47,7 +52,7 @@ std::string ProblemOf(const stream::TrackedPoint& point) {
     const bool finite = point.sd_m.allFinite() && point.covariance_m2.allFinite();
     return finite ? "" : "a number that is not finite";
   }
-  const auto is_sd = [](double sd_m) { return sd_m > 0 && sd_m <= kLargestSdM; };
+  const auto is_sd = [](double sd_m) { return sd_m > 0 && sd_m <= stream::kLargestPointSdM; };
   if (!is_sd(point.sd_m.x()) || !is_sd(point.sd_m.y()) || !is_sd(point.sd_m.z())) {
     return "a standard deviation that is not above 0 and at most 1 m";
   }
@@ -69,8 +74,8 @@ std::string ProblemOf(const stream::TrackerPose& pose) {
 std::string Problem(const stream::HandFrame& frame) {
   if (!IsPlain(frame.tracker)) return "a name is not printable text of at most 64 characters";
   if (auto problem = ProblemOfHead(frame.rig, frame.age_ns); !problem.empty()) return problem;
-  if (frame.points.empty() || frame.points.size() > kMostPoints) {
-    return "it has " + std::to_string(frame.points.size()) + " points, must have 1 to 8";
+  if (frame.points.empty() || frame.points.size() > stream::kMostTrackedPoints) {
+    return "it has " + std::to_string(frame.points.size()) + " points, must have 1 to 16";
   }
   for (std::size_t i = 0; i < frame.points.size(); ++i) {
     const std::string problem = ProblemOf(frame.points[i]);
@@ -125,6 +130,7 @@ std::vector<stream::HandSample> ToSamples(const stream::HandFrame& frame, std::i
     stream::HandSample sample;
     sample.rig = frame.rig.empty() ? default_rig : frame.rig;
     sample.role = point.role;
+    sample.joint = point.joint;
     sample.received_ns = received_ns;
     sample.sampled_ns = received_ns - frame.age_ns;
     sample.position_m = point.position_m;

@@ -40,12 +40,23 @@ ReferenceFrame ThreeJoints() {
 TEST(Hands, AFrameAtEveryLimitIsTaken) {
   HandFrame frame = TwoFists();
   EXPECT_EQ(Problem(frame), "");
-  frame.age_ns = kOldestNs;
-  frame.points[0].position_m = {0, 0, kFarthestM};
+  frame.age_ns = stream::kOldestPointNs;
+  frame.points[0].position_m = {0, 0, stream::kFarthestPointM};
   frame.points[0].sd_m = {1, 1, 1};
   frame.points[1].confidence = 0;
-  frame.points.resize(kMostPoints, frame.points[0]);
+  frame.points.resize(stream::kMostTrackedPoints, frame.points[0]);
   EXPECT_EQ(Problem(frame), "");
+}
+
+TEST(Hands, AJointHasItsNameInPlaceOfARole) {
+  HandFrame frame = TwoFists();
+  frame.points[1].role = DeviceRole::kUnspecified;
+  frame.points[1].joint = stream::BodyJoint::kRightFoot;
+  ASSERT_EQ(Problem(frame), "");
+  const auto samples = ToSamples(frame, 1, "main");
+  EXPECT_EQ(samples[0].joint, stream::BodyJoint::kUnspecified);
+  EXPECT_EQ(samples[1].joint, stream::BodyJoint::kRightFoot);
+  EXPECT_EQ(samples[1].role, DeviceRole::kUnspecified);
 }
 
 TEST(Hands, EachBadValueIsRefusedAndNamed) {
@@ -71,10 +82,12 @@ TEST(Hands, EachBadValueIsRefusedAndNamed) {
          f.points[1].covariance_m2 = {-0.9e-4, 1.8e-4, 1.8e-4};
        }},
       {"role", [](HandFrame& f) { f.points[1].role = DeviceRole::kUnspecified; }},
+      {"a role and a joint",
+       [](HandFrame& f) { f.points[1].joint = stream::BodyJoint::kLeftKnee; }},
       {"age_ns", [](HandFrame& f) { f.age_ns = -1; }},
-      {"age_ns", [](HandFrame& f) { f.age_ns = kOldestNs + 1; }},
+      {"age_ns", [](HandFrame& f) { f.age_ns = stream::kOldestPointNs + 1; }},
       {"0 points", [](HandFrame& f) { f.points.clear(); }},
-      {"9 points", [](HandFrame& f) { f.points.resize(9, f.points[0]); }},
+      {"17 points", [](HandFrame& f) { f.points.resize(17, f.points[0]); }},
       {"tracker that is not within",
        [](HandFrame& f) {
          f.tracker_pose = stream::TrackerPose{{0, kNan, 0}};
@@ -196,7 +209,7 @@ TEST(Hands, AnInsoleThatMakesNoSenseIsRefusedWithTheReason) {
       {"cell 2 has a load", [](ContactFrame& f) { f.cells[1].load_n = kInfinity; }},
       {"cell 1 has a load", [](ContactFrame& f) { f.cells[0].load_n = kNan; }},
       {"cell 1 has a load", [](ContactFrame& f) { f.cells[0].load_n = -10'001; }},
-      {"age_ns", [](ContactFrame& f) { f.age_ns = kOldestNs + 1; }},
+      {"age_ns", [](ContactFrame& f) { f.age_ns = stream::kOldestPointNs + 1; }},
       {"name", [](ContactFrame& f) { f.source = "a\nb"; }},
       {"name", [](ContactFrame& f) { f.rig = std::string(65, 'r'); }},
   };
