@@ -9,6 +9,7 @@
 #include "clients/skeleton/service/sender.h"
 #include "clients/skeleton/service/statistics.h"
 #include "clients/skeleton/service/udp.h"
+#include "clients/skeleton/web/model_files.h"
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
 #include "common/log/log.h"
@@ -16,6 +17,8 @@
 
 namespace footing::skeleton {
 namespace {
+
+constexpr std::size_t kMostClipBytes = std::size_t{256} << 20;  // Three hours at 30 Hz.
 
 /// What --units, --factor, --offset, --flip-y and --mirrored say.
 struct DialectFlags {
@@ -65,6 +68,7 @@ struct ReceiverFlags {
   std::vector<double> camera_m;
   double yaw_deg = 180, pitch_deg = 0, roll_deg = 0, latency_ms = 67, seconds = 0, most = 50'000;
   std::int32_t user = -1;
+  std::string web, pose_package;
   bool no_publish = false;
 
   Result<ReceiverOptions> Options() const {
@@ -82,6 +86,12 @@ struct ReceiverFlags {
       if (!address) return address.error();
       options.to = *address;
     }
+    if (!web.empty()) {
+      const auto page = transport::ParseAddress("tcp:" + web);
+      if (!page) return UsageError("--web " + web + ": must be 127.0.0.1:PORT");
+      options.web = *page;
+    }
+    options.pose_package = pose_package;
     options.tracker.stand = camera_m.empty();
     if (!camera_m.empty()) options.tracker.camera.p_W_m = Eigen::Vector3d::Map(camera_m.data());
     options.tracker.camera.yaw_rad = DegreesToRadians(yaw_deg);
@@ -104,6 +114,11 @@ std::function<void()> AddReceiver(CLI::App& app, Shared& shared) {
                  "UDP address to receive on, HOST:PORT; 0.0.0.0:7110 takes every host's packets");
   app.add_option("--to", flags->to,
                  "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
+  app.add_option("--web", flags->web,
+                 "Serve a page that makes a skeleton of this computer's webcam, 127.0.0.1:PORT");
+  flags->pose_package = DefaultPosePackage();
+  app.add_option("--pose-package", flags->pose_package,
+                 "Folder of npm's @mediapipe/pose, of --web (scripts/fetch-pose-model)");
   app.add_flag("--no-publish", flags->no_publish, "Receive and check only");
   app.add_option("--user", flags->user, "Person to publish (default: the first one)");
   app.add_option(
@@ -167,7 +182,7 @@ void AddSend(CLI::App& app, Shared& shared) {
       flags->options.to = *to;
       flags->options.dialect = *DialectOf(flags->name);
       if (flags->clip.empty()) return SendClip(SyntheticClip(), flags->options);
-      const auto text = config::ReadTextFile(flags->clip);
+      const auto text = config::ReadTextFile(flags->clip, kMostClipBytes);
       if (!text) return text.error();
       const auto clip = ReadKinectClip(*text, flags->clip);
       if (!clip) return clip.error();

@@ -6,9 +6,10 @@ int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
       "footing-skeleton",
       "Receives skeletons of people by OSC (OSCeleton, VMC, Footing's own messages) and publishes "
-      "their hands on footingd's device socket.",
+      "their joints on footingd's device socket. A page makes such a skeleton of a webcam.",
       "  footing-skeleton                                # port 7110 of this host\n"
       "  footing-skeleton --listen 0.0.0.0:7110 --camera-m 2.4,0,1.1 --camera-pitch-deg -5\n"
+      "  footing-skeleton --web 127.0.0.1:7180           # open that page, choose the webcam\n"
       "  footing-skeleton --no-publish --seconds 10 --json   # is what arrives plausible?\n"
       "  footing-skeleton send --seconds 60              # a synthetic person\n"
       "  footing-skeleton send wave.csv --dialect sensebloom");

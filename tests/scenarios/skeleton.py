@@ -1,4 +1,4 @@
-"""A synthetic person is sent by OSC, and footingd publishes its hands where they are: the whole line
+"""A synthetic person is sent by OSC, and footingd publishes its joints where they are: the whole line
 from UDP to the channel `hands`, with the camera's place found from the person's stand.
 
 Usage: skeleton.py BINARY_FOLDER
@@ -36,8 +36,9 @@ def check(samples, statistics, age_ms):
     assert statistics["people"][0]["advice"] == "", statistics
     assert abs(statistics["camera"]["x_m"] - 2.4) < 0.02, statistics
     assert statistics["published"] > 100 and statistics["dropped_hand_frames"] == 0, statistics
-    left = [sample for sample in samples if sample["role"] == 1]
-    right = [sample for sample in samples if sample["role"] == 2]
+    seen = [sample for sample in samples if sample.get("confidence", 0) > 0]
+    left = [sample for sample in seen if sample.get("role") == 1]
+    right = [sample for sample in seen if sample.get("role") == 2]
     assert len(left) > 60 and len(right) > 60, (len(left), len(right))
     # The left hand hangs beside the hip while the right one waves above the shoulder.
     for sample in left:
@@ -47,6 +48,12 @@ def check(samples, statistics, age_ms):
         age = (sample["received_ns"] - sample["sampled_ns"]) / 1e6
         assert age_ms[0] <= age <= age_ms[1], sample
     assert max(sample["position_m"]["z"] for sample in right) > 1.3
+    # Every joint that has no role, by its number, 13 of them.
+    joints = {number: [sample for sample in samples if sample.get("joint") == number] for number in range(1, 14)}
+    assert all(len(of) > 60 for of in joints.values()), {number: len(of) for number, of in joints.items()}
+    assert all(not sample.get("role") for of in joints.values() for sample in of)
+    knee = [sample for sample in joints[10] if sample.get("confidence", 0) > 0][0]  # The left one.
+    assert abs(knee["position_m"]["z"] - 0.5) < 0.1 and knee["position_m"]["y"] > 0, knee
 
 
 def main():

@@ -4,6 +4,7 @@
 
 #include "clients/skeleton/joints/joint_set.h"
 #include "common/text/csv.h"
+#include "common/text/lines.h"
 #include "common/text/number.h"
 
 namespace footing::skeleton {
@@ -44,16 +45,10 @@ Result<Skeleton> ToSkeleton(const std::vector<std::string_view>& cells) {
 Result<std::vector<ClipFrame>> ReadKinectClip(std::string_view text, const std::string& path) {
   std::vector<ClipFrame> frames;
   double first = 0;
-  std::size_t number = 0;
-  while (!text.empty()) {
-    ++number;
-    const std::size_t end = text.find('\n');
-    const auto cells = text::Cells(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    const auto wrong = [&](const std::string& why) {
-      return InvalidData(path + ": line " + std::to_string(number) + ": " + why);
-    };
-    if (cells.size() == 1 && cells[0].empty()) continue;
+  text::Lines lines(text, path);
+  while (const auto line = lines.NextFull()) {
+    const auto cells = text::Cells(*line);
+    const auto wrong = [&](const std::string& why) { return lines.Fault(why); };
     if (cells.size() < kCells) return wrong("has fewer than " + std::to_string(kCells) + " cells");
     const auto time = text::ToNumber(cells[0]);
     if (!time) return wrong("the time is not a number");

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "clients/skeleton/service/statistics.h"
+#include "clients/skeleton/web/model_files.h"
+#include "clients/skeleton/web/web_server.h"
 #include "common/clock/clock.h"
 #include "common/device_link/device_link.h"
 #include "common/log/log.h"
@@ -25,6 +27,7 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kFlush = std::chrono::milliseconds(10);
+constexpr auto kPagesLeave = std::chrono::milliseconds(100);
 constexpr int kMostAtOnce = 64;  // Packets before the other work of this thread has its turn.
 constexpr std::int64_t kQuietNs = 10'000'000'000;  // Between two lines on dropped packets.
 constexpr std::size_t kMaxQueuedFrames = 64;       // To footingd.
@@ -61,6 +64,7 @@ class Receiver {
     const auto at = socket_.local_endpoint(error);
     log::Info("listening for skeletons on UDP " + at.address().to_string() + ":" +
               std::to_string(at.port()));
+    if (const auto served = Serve(); !served) return served.error();
     signals_.async_wait([this](const boost::system::error_code& failed, int) {
       if (!failed) End();
     });
@@ -82,7 +86,9 @@ class Receiver {
     cost.dropped_packets = dropped_;
     cost.hand_frames = link_ ? link_->sent() : 0;
     cost.dropped_hand_frames = link_ ? link_->dropped() : 0;
-    return ToJson(tracker_, cost);
+    auto json = ToJson(tracker_, cost);
+    if (web_) json["web"] = ToJson(web_->counts());
+    return json;
   }
 
  private:
@@ -100,11 +106,34 @@ class Receiver {
       boost::system::error_code error;
       const std::size_t size = socket_.receive(asio::buffer(bytes_), 0, error);
       if (error) return;  // No packet is waiting.
-      const std::int64_t now_ns = clock::MonotonicNs();
-      if (!Allow(now_ns)) continue;
-      tracker_.Take({bytes_.data(), size}, now_ns, clock::WallNs(), observations_);
-      Publish(now_ns);
+      TakePacket({bytes_.data(), size});
     }
+  }
+
+  Result<void> Serve() {
+    if (!options_.web) return {};
+    auto server = WebServer::Open(
+        io_, {.listen = *options_.web,
+              .package = options_.pose_package,
+              .on_packet = [this](osc::Bytes packet) { TakePacket(packet); },
+              .on_state = [](const std::string& line) { log::Info("page: " + line); }});
+    if (!server) return server.error();
+    web_ = std::move(*server);
+    log::Info("page for a webcam: http://" + web_->address().Text().substr(sizeof("tcp:") - 1));
+    if (!ModelFile(options_.pose_package, "pose.js")) {
+      log::Warning("the page has no pose model: @mediapipe/pose is not in " +
+                   options_.pose_package +
+                   "; run scripts/fetch-pose-model, or name its folder with "
+                   "--pose-package");
+    }
+    return {};
+  }
+
+  void TakePacket(osc::Bytes packet) {
+    const std::int64_t now_ns = clock::MonotonicNs();
+    if (!Allow(now_ns)) return;
+    tracker_.Take(packet, now_ns, clock::WallNs(), observations_);
+    Publish(now_ns);
   }
 
   bool Allow(std::int64_t now_ns) {
@@ -131,7 +160,7 @@ class Receiver {
   void Publish(std::int64_t now_ns) {
     for (const Observation& observation : observations_) {
       if (!link_) break;
-      if (const auto frame = ToHandFrame(observation, now_ns)) link_->Send(*frame);
+      link_->Send(ToHandFrame(observation, now_ns));
     }
     observations_.clear();
   }
@@ -145,6 +174,9 @@ class Receiver {
     end_.cancel();
     signals_.cancel();
     if (link_) link_->Stop("stopped");
+    if (!web_) return;
+    end_.expires_after(kPagesLeave);  // Pages stay connected for as long as they are shown.
+    end_.async_wait([this](const boost::system::error_code&) { io_.stop(); });
   }
 
   const ReceiverOptions options_;
@@ -154,6 +186,7 @@ class Receiver {
   asio::ip::udp::socket socket_;
   asio::steady_timer flush_, end_;
   std::optional<device_link::DeviceLink> link_;
+  std::unique_ptr<WebServer> web_;
   std::array<std::uint8_t, osc::kMostPacketBytes> bytes_;
   std::vector<Observation> observations_;
   /// A tenth of a second at once.

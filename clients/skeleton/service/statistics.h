@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/skeleton/tracking/tracker.h"
+#include "clients/skeleton/web/web_server.h"
 
 namespace footing::skeleton {
 
@@ -17,6 +18,9 @@ struct Cost {
 
 /// The statistics of a run: docs/skeleton.md lists the fields.
 nlohmann::ordered_json ToJson(const Tracker& tracker, const Cost& cost);
+
+/// The same of the page.
+nlohmann::ordered_json ToJson(const WebCounts& web);
 
 /// The same for a person to read, a few lines.
 std::string ToText(const nlohmann::ordered_json& statistics);

@@ -26,6 +26,7 @@ struct Observation {
   std::optional<std::int64_t> sequence;
   std::int64_t exposed_ns = 0, arrived_ns = 0;  ///< Monotonic, of this host.
   std::array<JointObservation, kJoints> joints;
+  Eigen::Isometry3d X_WK = Eigen::Isometry3d::Identity();  ///< By which they are in W.
 };
 
 /// Standard deviations of a tracked joint: jitter of recorded Kinect v2 joints (2 to 4 mm between
@@ -39,9 +40,8 @@ inline constexpr double kInferredFactor = 3;
 /// A frame behind the gate, in W.
 Observation Observe(const Skeleton& skeleton, const Eigen::Isometry3d& X_WK);
 
-/// The fists of an observation, for the device socket; none when neither is present or within
-/// `kFarthestM` of W's origin.
-std::optional<stream::HandFrame> ToHandFrame(const Observation& observation, std::int64_t now_ns);
-inline constexpr double kFarthestM = 10;
+/// An observation for the device socket: all joints, those that are absent, or too far off, with
+/// confidence 0.
+stream::HandFrame ToHandFrame(const Observation& observation, std::int64_t now_ns);
 
 }  // namespace footing::skeleton

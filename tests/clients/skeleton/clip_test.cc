@@ -26,12 +26,12 @@ TEST(KinectClip, ReadsFramesAndStates) {
 
 TEST(KinectClip, NamesWhatIsWrong) {
   EXPECT_EQ(ReadKinectClip("", "f").error().message, "f: has no frames");
-  EXPECT_EQ(ReadKinectClip("1,2,3\n", "f").error().message, "f: line 1: has fewer than 101 cells");
+  EXPECT_EQ(ReadKinectClip("1,2,3\n", "f").error().message, "f, line 1: has fewer than 101 cells");
   EXPECT_EQ(ReadKinectClip(Line(1) + Line(0), "f").error().message,
-            "f: line 2: the time goes back");
-  EXPECT_EQ(ReadKinectClip(Line(1, "x"), "f").error().message, "f: line 1: cell 2 is not a number");
+            "f, line 2: the time goes back");
+  EXPECT_EQ(ReadKinectClip(Line(1, "x"), "f").error().message, "f, line 1: cell 2 is not a number");
   EXPECT_EQ(ReadKinectClip(Line(1, "1", "3"), "f").error().message,
-            "f: line 1: cell 5 is not a state 0, 1 or 2");
+            "f, line 1: cell 5 is not a state 0, 1 or 2");
 }
 
 TEST(KinectClip, ReadsRealRecordings) {

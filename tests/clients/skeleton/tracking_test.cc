@@ -99,19 +99,38 @@ TEST(Observation, HasACovarianceByHowTheJointWasSeen) {
   EXPECT_FALSE(observation.joints[Index(Joint::kHead)].present);
 }
 
-TEST(Observation, BecomesAFrameOfBothHands) {
+TEST(Observation, BecomesAFrameOfAllJoints) {
   Observation observation = Observe(Standing(), ToPose({.p_W_m = {2.5, 0, 1}}));
   observation.exposed_ns = 5 * kMs;
-  const auto frame = ToHandFrame(observation, 25 * kMs);
-  ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->age_ns, 20 * kMs);
-  ASSERT_EQ(frame->points.size(), 2u);
-  EXPECT_EQ(frame->points[0].role, stream::DeviceRole::kLeftHand);
-  EXPECT_LT((frame->points[0].position_m - Eigen::Vector3d(0.25, 0.25, 1.05)).norm(), 1e-9);
-  EXPECT_NEAR(frame->points[0].sd_m.x(), std::hypot(0.015, 0.04), 1e-9);
+  const stream::HandFrame frame = ToHandFrame(observation, 25 * kMs);
+  EXPECT_EQ(frame.age_ns, 20 * kMs);
+  ASSERT_EQ(frame.points.size(), kJoints);
+  ASSERT_TRUE(frame.tracker_pose) << "a later placement can be applied";
+  EXPECT_EQ(frame.tracker_pose->position_m, Eigen::Vector3d(2.5, 0, 1));
+  const stream::TrackedPoint& hand = frame.points[Index(Joint::kLeftHand)];
+  EXPECT_EQ(hand.role, stream::DeviceRole::kLeftHand);
+  EXPECT_EQ(hand.joint, stream::BodyJoint::kUnspecified);
+  EXPECT_LT((hand.position_m - Eigen::Vector3d(0.25, 0.25, 1.05)).norm(), 1e-9);
+  EXPECT_NEAR(hand.sd_m.x(), std::hypot(0.015, 0.04), 1e-9);
+  const stream::TrackedPoint& knee = frame.points[Index(Joint::kRightKnee)];
+  EXPECT_EQ(knee.role, stream::DeviceRole::kUnspecified);
+  EXPECT_EQ(knee.joint, stream::BodyJoint::kRightKnee);
+  EXPECT_EQ(knee.position_m, observation.joints[Index(Joint::kRightKnee)].p_W_m);
+}
+
+TEST(Observation, SaysWhatIsAbsentInferredAndTooFarOff) {
+  Observation observation = Observe(Standing(), ToPose({.p_W_m = {2.5, 0, 1}}));
   observation.joints[Index(Joint::kLeftHand)].present = false;
   observation.joints[Index(Joint::kRightHand)].p_W_m.x() = 11;
-  EXPECT_FALSE(ToHandFrame(observation, 25 * kMs));
+  observation.joints[Index(Joint::kNeck)].inferred = true;
+  Eigen::Matrix3d& covariance = observation.joints[Index(Joint::kTorso)].covariance_W_m2;
+  covariance << 4e-4, 1e-4, 2e-4, 1e-4, 5e-4, 3e-4, 2e-4, 3e-4, 9e-4;
+  const stream::HandFrame frame = ToHandFrame(observation, 25 * kMs);
+  EXPECT_EQ(frame.points[Index(Joint::kLeftHand)].confidence, 0);
+  EXPECT_EQ(frame.points[Index(Joint::kRightHand)].confidence, 0);
+  EXPECT_TRUE(frame.points[Index(Joint::kNeck)].occluded);
+  EXPECT_FALSE(frame.points[Index(Joint::kTorso)].occluded);
+  EXPECT_EQ(frame.points[Index(Joint::kTorso)].covariance_m2, Eigen::Vector3d(1e-4, 2e-4, 3e-4));
 }
 
 /// What a tracker makes of a clip that is sent in a dialect.
@@ -191,8 +210,10 @@ TEST(Tracker, TakesRealClips) {
     const auto observations = Track(tracker, clip, Dialect::kKinectSdk2);
     EXPECT_EQ(observations.size(), clip.size());
     std::size_t hands = 0;
-    for (const Observation& one : observations)
-      if (const auto frame = ToHandFrame(one, one.arrived_ns)) hands += frame->points.size();
+    for (const Observation& one : observations) {
+      for (const stream::TrackedPoint& point : ToHandFrame(one, one.arrived_ns).points)
+        if (point.role != stream::DeviceRole::kUnspecified && point.confidence > 0) ++hands;
+    }
     EXPECT_GT(hands, clip.size()) << "more than one of two, the worst clip's third inferred";
   }
 }

@@ -1,0 +1,170 @@
+"""The page of footing-skeleton --web, without a person and, where there are a browser and the npm package
+@mediapipe/pose, in headless Chromium: files and refusals over HTTP; joints that the page makes of a synthetic
+person reach footingd; the pose model loads from this host and runs on the frames of a generated video.
+
+A drawn figure is no person to the model, so what it finds is not tested.
+
+Usage: skeleton_page.py BINARY_FOLDER (http|synthetic|model)
+"""
+import http.client
+import json
+import math
+import os
+import pathlib
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+
+import harness
+
+PACKAGE = pathlib.Path(os.environ.get("XDG_DATA_HOME") or pathlib.Path.home() / ".local/share") / "footing/mediapipe-pose"
+PROFILE = tempfile.TemporaryDirectory(prefix="footing-chromium.", ignore_cleanup_errors=True)
+
+
+def skip(why):
+    print(f"skipped: {why}")
+    sys.exit(77)
+
+
+def serve(stage, seconds, *words):
+    """footing-skeleton with a page, and the page's port."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    stage.start("footing-skeleton", "--listen", "127.0.0.1:0", "--web", f"127.0.0.1:{port}", "--camera-m", "2.5,0,1",
+                "--seconds", seconds, "--json", *words, name="skeleton")
+    stage.wait_for(lambda: "page for a webcam" in (stage.folder / "skeleton.log").read_text(), "the page")
+    return port
+
+
+def statistics(stage, timeout_s):
+    assert stage.processes["skeleton"].wait(timeout_s) == 0
+    return json.loads((stage.folder / "skeleton.log").read_text().splitlines()[-1])
+
+
+def browse(stage, port, source, *words):
+    """Chromium on the page; nothing that it asks any other host for is answered."""
+    stage.processes["chromium"] = subprocess.Popen(
+        ["chromium", "--headless=new", "--no-sandbox", "--use-angle=swiftshader",
+         "--enable-unsafe-swiftshader", "--no-first-run", "--mute-audio",
+         "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1", f"--user-data-dir={PROFILE.name}",
+         "--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream", *words,
+         f"http://127.0.0.1:{port}/?source={source}"],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def write_video(path, frames=30, width=320, height=240):
+    """A stick figure that waves, YUV4MPEG2."""
+    with open(path, "wb") as video:
+        video.write(f"YUV4MPEG2 W{width} H{height} F30:1 Ip A1:1 C420\n".encode())
+        for i in range(frames):
+            luma = bytearray(b"\x50" * (width * height))
+            angle = math.sin(2 * math.pi * i / frames)
+            limbs = [((160, 60), (160, 140)), ((160, 140), (140, 220)), ((160, 140), (180, 220)),
+                     ((160, 80), (110, 110)), ((160, 80), (215, round(80 - 40 * angle)))]
+            for (x0, y0), (x1, y1) in limbs:
+                for k in range(101):
+                    x, y = x0 + (x1 - x0) * k // 100, y0 + (y1 - y0) * k // 100
+                    for dy in range(-4, 5):
+                        start = (y + dy) * width + x - 4
+                        luma[start:start + 9] = b"\xd0" * 9
+            video.write(b"FRAME\n" + bytes(luma) + b"\x80" * (width * height // 2))
+
+
+def get(port, target, host=None):
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    connection.putrequest("GET", target, skip_host=True)
+    connection.putheader("Host", host or f"127.0.0.1:{port}")
+    connection.endheaders()
+    answer = connection.getresponse()
+    return answer.status, answer.read().decode(errors="replace"), answer.headers
+
+
+def upgrade(port, origin):
+    """The first line of the answer to a WebSocket's handshake."""
+    with socket.create_connection(("127.0.0.1", port), timeout=10) as stream:
+        stream.sendall((f"GET /skeleton HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: {origin}\r\nUpgrade: websocket\r\n"
+                        "Connection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                        "Sec-WebSocket-Version: 13\r\n\r\n").encode())
+        return stream.recv(4096).decode().splitlines()[0]
+
+
+def check_http(stage):
+    package = stage.folder / "package"
+    package.mkdir()
+    (package / "pose.js").write_text("// a model\n")
+    (stage.folder / "secret").write_text("no page\n")
+    port = serve(stage, 6, "--no-publish", "--pose-package", package)
+    status, text, headers = get(port, "/?source=synthetic")
+    assert status == 200 and "page.js" in text and headers["Content-Type"].startswith("text/html"), (status, text)
+    assert "http" not in headers["Content-Security-Policy"], "nothing from another host"
+    for name in ("page.js", "landmarks.js", "page.css"):
+        assert get(port, "/" + name)[0] == 200, name
+    for name in ("index.html", "page.js", "landmarks.js", "page.css"):
+        assert "https:" not in get(port, "/" + name)[1], f"{name} names another host"
+    assert get(port, "/pose/pose.js")[1] == "// a model\n"
+    for target in ("/pose/../secret", "/pose/%2e%2e/secret", "/pose/", "/pose/.hidden", "/secret", "/pose/none.js"):
+        assert get(port, target)[0] == 404, target
+    assert get(port, "/", host="attacker.example")[0] == 403
+    assert " 101 " in upgrade(port, f"http://127.0.0.1:{port}")
+    assert " 403 " in upgrade(port, "http://attacker.example")
+    web = statistics(stage, 20)["web"]
+    assert web["pages"] == 1 and web["refused"] == 8, web
+
+
+def check_missing_package(stage):
+    port = serve(stage, 2, "--no-publish", "--pose-package", stage.folder / "nothing")
+    log = (stage.folder / "skeleton.log").read_text()
+    assert "run scripts/fetch-pose-model" in log, log
+    assert "fetch-pose-model" in get(port, "/pose/pose.js")[1]
+    assert statistics(stage, 20)["web"]["refused"] == 1
+
+
+def check_synthetic(stage):
+    stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
+    stage.wait_for_socket(stage.sensor)
+    stage.wait_for_socket(stage.devices)
+    port = serve(stage, 30, "--to", stage.devices)
+    browse(stage, port, "synthetic")
+    samples = [sample for tick in harness.read_ticks(stage.sensor, 25, ("hands",))
+               for sample in tick.get("hands", {}).get("samples", [])]
+    report = statistics(stage, 60)
+    person = report["people"][0]
+    assert person["dialect"] == "footing" and person["advice"] == "", person
+    assert report["web"]["packets"] > 20 and person["skeletons"] > 20, report
+    # The camera is 1 m up and looks along -x: shoulders are 1.41 m up, 36 cm apart, above W's origin.
+    places = {number: [one["position_m"] for one in samples if one.get("joint") == number] for number in (3, 4)}
+    left, right = places[3][-1], places[4][-1]
+    assert abs(left["y"] - 0.18) < 0.02 and abs(right["y"] + 0.18) < 0.02, (left, right)
+    assert abs(left["z"] - 1.41) < 0.02 and abs(left["x"]) < 0.05, left
+
+
+def check_model(stage):
+    video = stage.folder / "figure.y4m"
+    write_video(video)
+    port = serve(stage, 90, "--no-publish")
+    browse(stage, port, "camera", f"--use-file-for-fake-video-capture={video}")
+    log = stage.folder / "skeleton.log"
+    stage.wait_for(lambda: "page: watching the webcam" in log.read_text() or "page: stopped" in log.read_text(),
+                   "the model", timeout_s=80)
+    assert "page: stopped" not in log.read_text(), log.read_text()
+    web = statistics(stage, 120)["web"]
+    assert web["frames"] >= 1, web
+
+
+def main():
+    part = sys.argv[2]
+    if part != "http" and not shutil.which("chromium"):
+        skip("chromium is missing; scripts/dependencies-web.txt lists what this test needs")
+    if part == "model" and not (PACKAGE / "pose.js").is_file():
+        skip("@mediapipe/pose is missing; run scripts/fetch-pose-model")
+    checks = {"http": (check_http, check_missing_package), "synthetic": (check_synthetic,), "model": (check_model,)}
+    for check in checks[part]:
+        with harness.Stage(sys.argv[1]) as stage:
+            check(stage)
+
+
+if __name__ == "__main__":
+    main()
