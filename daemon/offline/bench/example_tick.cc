@@ -25,7 +25,6 @@ v1::MotionSamples Motion() {
 
 v1::BoardSamples Boards() {
   stream::BoardSample sample;
-  sample.device = 4;
   sample.report_count = kSomeCount;
   sample.received_ns = sample.sampled_ns = kSomeNs;
   sample.top_left_n = sample.top_right_n = sample.bottom_left_n = sample.bottom_right_n = 171.5;
@@ -34,7 +33,10 @@ v1::BoardSamples Boards() {
   sample.cop_y_m = -0.02;
   sample.cop_valid = sample.contact = true;
   v1::BoardSamples message;
-  *message.add_samples() = wire::ToProto(sample);
+  for (std::uint32_t device = 4; device <= 5; ++device) {
+    sample.device = device;
+    *message.add_samples() = wire::ToProto(sample);
+  }
   return message;
 }
 
@@ -62,11 +64,11 @@ v1::FeatureFrame Features() {
 
 v1::RawReports Raw() {
   v1::RawReports message;
-  for (std::uint32_t device = 1; device <= 4; ++device) {
+  for (std::uint32_t device = 1; device <= 5; ++device) {
     stream::RawReport report;
     report.device = device;
     report.received_ns = kSomeNs;
-    report.report.assign(device == 4 ? 22 : 6, 0x80);  // Reports 0x34 and 0x31 with their id.
+    report.report.assign(device >= 4 ? 22 : 6, 0x80);  // Reports 0x34 and 0x31 with their id.
     *message.add_reports() = wire::ToProto(report);
   }
   return message;

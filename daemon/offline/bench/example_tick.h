@@ -4,7 +4,7 @@
 
 #include "common/transport/server.h"
 
-/// What footingd publishes in one tick with four devices: three Wiimotes and a Balance Board at
+/// What footingd publishes in one tick with five devices: three Wiimotes and two Balance Boards at
 /// about 100 reports a second, so one sample and one raw report each, and their features.
 namespace footing::bench {
 

@@ -15,6 +15,8 @@ struct Benchmark {
 constexpr Benchmark kBenchmarks[] = {
     {"publish_to_client_p50", footing::bench::PublishToClient},
     {"fan_out_cpu", footing::bench::FanOutCpu},
+    {"fan_out_1000", footing::bench::FanOutThousand},
+    {"publish_to_handler", footing::bench::PublishToHandler},
     {"stalled_readers", footing::bench::StalledReaders},
     {"tls_exchange", footing::bench::TlsExchange},
     {"body_kinematics", footing::bench::BodyKinematics},

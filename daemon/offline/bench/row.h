@@ -22,9 +22,19 @@ using Rows = std::vector<Row>;
 /// the client has the tick's bytes (like for like), and until its handler has the parsed tick.
 Result<Rows> PublishToClient();
 
-/// CPU time of the server's thread for 100 viewers over loopback TCP at 100 Hz with 4 devices,
+/// CPU time of the server's thread for 100 viewers over loopback TCP at 100 Hz with 5 devices,
 /// against a bare Asio fan-out of the same bytes.
 Result<Rows> FanOutCpu();
+
+/// CPU time of the server for each tick that each of 1000 viewers over loopback TCP gets at 100 Hz,
+/// until the last one has it, against bare Asio, and against Debian's mosquitto and nats-server
+/// where they are installed; no tick may be lost.
+Result<Rows> FanOutThousand();
+
+/// From Server::Publish over a Unix socket until the client's handler has the parsed tick, median
+/// and p99, against bare Asio over the same, and against Debian's brokers over loopback TCP where
+/// they are installed, with the same parsing behind.
+Result<Rows> PublishToHandler();
 
 /// Delay of 20 healthy readers beside 20 stalled ones, against 20 healthy ones alone; and how far
 /// the memory grows once ring and queues are full, against 2 MB.

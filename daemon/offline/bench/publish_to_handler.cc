@@ -1,0 +1,210 @@
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/read.hpp>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "common/clock/clock.h"
+#include "common/text/quantile.h"
+#include "common/transport/client.h"
+#include "common/transport/framing.h"
+#include "common/transport/message_parser.h"
+#include "common/transport/server.h"
+#include "common/transport/tick.h"
+#include "daemon/offline/bench/bare_fan_out.h"
+#include "daemon/offline/bench/broker_link.h"
+#include "daemon/offline/bench/example_tick.h"
+#include "daemon/offline/bench/waiting.h"
+
+namespace footing::bench {
+namespace {
+
+constexpr int kRaceTicks = 300;
+constexpr int kRaceRounds = 7;
+constexpr std::int64_t kRaceIntervalNs = 2'000'000;
+
+struct RaceWay {
+  std::string name;               ///< Empty: bare Asio.
+  std::function<void()> publish;  ///< On the publishing thread.
+  std::vector<double> p50_us = {}, p99_us = {};
+};
+
+/// The envelope of a tick made now.
+std::string TickPayload(const std::vector<transport::ChannelBytes>& channels) {
+  transport::Tick tick;
+  for (const auto& channel : channels) transport::AppendField(channel.field, channel.bytes, tick);
+  transport::TickHead head;
+  head.epoch = ~0ull;
+  head.sequence = 1000;
+  head.host_ns = clock::MonotonicNs();
+  std::array<char, transport::kMaxTickHeadBytes> bytes;
+  const std::size_t size = transport::EncodeTickHead(head, tick.bytes.size(), bytes.data());
+  return std::string(bytes.data() + transport::kLengthBytes, size - transport::kLengthBytes) +
+         tick.bytes;
+}
+
+class Race {
+ public:
+  Race() : server_(publisher_.io(), ServerOptionsFor(500, 1), {}), bare_(publisher_.io()) {}
+  ~Race() {
+    publisher_.Do([this] { server_.Stop("done"); });
+    reader_.Do([this] {
+      client_.reset();
+      bare_socket_.reset();
+      subscribers_.clear();
+    });
+    publisher_.Do([this] { publishers_.clear(); });
+    reader_.Stop();
+    publisher_.Stop();
+  }
+  Race(const Race&) = delete;
+  Race& operator=(const Race&) = delete;
+
+  Result<void> Begin() {
+    Result<void> listening;
+    publisher_.Do([&] {
+      listening = server_.Listen(UnixAddress("race"));
+      if (listening) listening = bare_.Listen(UnixAddress("race-bare"));
+    });
+    if (!listening) return listening;
+    ways_.push_back({"ours", [this] { server_.Publish(clock::MonotonicNs(), channels_); }});
+    ways_.push_back({"", [this] { bare_.Publish(BareFrame()); }});
+    ConnectOwn();
+    for (const BrokerKind kind : {BrokerKind::kMosquitto, BrokerKind::kNats}) {
+      if (auto broker = Broker::Start(kind)) ConnectBroker(std::move(broker));
+    }
+    const bool ready = WaitUntil(reader_, [this] {
+      bool all = client_->state() == transport::LinkState::kLive && bare_socket_.has_value();
+      for (const auto& link : subscribers_) all = all && link->ready();
+      return all;
+    });
+    if (!ready) return Failure("publish_to_handler: the clients did not connect");
+    return {};
+  }
+
+  Result<void> Run() {
+    for (int round = -1; round < kRaceRounds; ++round) {  // The first one warms up.
+      for (std::size_t i = 0; i < ways_.size(); ++i) {
+        RaceWay& way = ways_[round % 2 == 0 ? i : ways_.size() - 1 - i];
+        reader_.Do([this] { delays_us_.clear(); });
+        publisher_.Pace(kRaceTicks, kRaceIntervalNs, way.publish);
+        if (!WaitUntil(reader_, [this] { return delays_us_.size() >= kRaceTicks; })) {
+          return Failure("publish_to_handler: ticks were lost by " +
+                         (way.name.empty() ? std::string("bare Asio") : way.name));
+        }
+        if (round < 0) continue;
+        way.p50_us.push_back(text::Quantile(delays_us_, 0.5));
+        way.p99_us.push_back(text::Quantile(delays_us_, 0.99));
+      }
+    }
+    return {};
+  }
+
+  const std::vector<RaceWay>& ways() const { return ways_; }
+
+ private:
+  void ConnectOwn() {
+    transport::ClientOptions options;
+    options.address = UnixAddress("race");
+    transport::ClientHandlers handlers;
+    handlers.on_tick = [this](const v1::Tick& tick) {
+      if (!tick.snapshot()) AddDelaySince(tick.host_ns());
+    };
+    reader_.Do([&] {
+      client_.emplace(reader_.io(), options, handlers);
+      client_->Start();
+      transport::Dial(reader_.io(), UnixAddress("race-bare"), [this](Result<transport::Socket> dialled) {
+        if (!dialled) return;  // It shows as not connected.
+        bare_socket_.emplace(std::move(*dialled));
+        ReadBare();
+      });
+    });
+  }
+
+  void ConnectBroker(std::unique_ptr<Broker> broker) {
+    brokers_.push_back(std::move(broker));
+    const Broker& of = *brokers_.back();
+    reader_.Do([&] {
+      subscribers_.push_back(std::make_unique<BrokerLink>(
+          reader_.io(), of, BrokerLink::Part::kSubscribes, 1, [this](std::string_view payload) {
+            const v1::Envelope* const message = parser_.Parse(payload);
+            if (message != nullptr) AddDelaySince(message->tick().host_ns());
+          }));
+    });
+    publisher_.Do([&] {
+      publishers_.push_back(std::make_unique<BrokerLink>(
+          publisher_.io(), of, BrokerLink::Part::kPublishes, 2, nullptr));
+      ways_.push_back({NameOf(of.kind()), [this, link = publishers_.back().get()] {
+                         link->Publish(TickPayload(channels_));
+                       }});
+    });
+  }
+
+  /// Bytes as long as ours with the stamp in front, which nobody parses.
+  std::shared_ptr<const std::string> BareFrame() const {
+    std::string payload(payload_bytes_, '\0');
+    const std::int64_t now_ns = clock::MonotonicNs();
+    std::memcpy(payload.data(), &now_ns, sizeof(now_ns));
+    return std::make_shared<const std::string>(transport::Frame(payload));
+  }
+
+  void ReadBare() {
+    boost::asio::async_read(bare_socket_->plain(), boost::asio::buffer(bare_frame_),
+                            [this](const boost::system::error_code& error, std::size_t) {
+                              if (error) return;
+                              std::int64_t stamp_ns = 0;
+                              std::memcpy(&stamp_ns, bare_frame_.data() + transport::kLengthBytes,
+                                          sizeof(stamp_ns));
+                              AddDelaySince(stamp_ns);
+                              ReadBare();
+                            });
+  }
+
+  void AddDelaySince(std::int64_t stamp_ns) {
+    delays_us_.push_back(static_cast<double>(clock::MonotonicNs() - stamp_ns) * 1e-3);
+  }
+
+  const std::vector<transport::ChannelBytes> channels_ = ExampleTick();
+  const std::size_t payload_bytes_ = TickPayload(channels_).size();
+  std::string bare_frame_ = std::string(payload_bytes_ + transport::kLengthBytes, '\0');
+  LoopThread publisher_;
+  LoopThread reader_;
+  transport::Server server_;
+  BareFanOut bare_;
+  std::vector<std::unique_ptr<Broker>> brokers_;
+  std::vector<RaceWay> ways_;
+  std::vector<double> delays_us_;  // Of the reader's thread.
+  transport::MessageParser parser_;
+  std::optional<transport::Client> client_;
+  std::optional<transport::Socket> bare_socket_;
+  std::vector<std::unique_ptr<BrokerLink>> subscribers_;
+  std::vector<std::unique_ptr<BrokerLink>> publishers_;
+};
+
+Row RaceRow(const std::string& name, const std::vector<double>& ours,
+          const std::vector<double>& baseline) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(ours[i] / baseline[i]);
+  return {name, text::Median(ours), text::Median(baseline), text::Median(ratios), "us"};
+}
+
+}  // namespace
+
+Result<Rows> PublishToHandler() {
+  Race race;
+  if (auto begun = race.Begin(); !begun) return begun.error();
+  if (auto run = race.Run(); !run) return run.error();
+  const RaceWay& ours = race.ways().front();
+  Rows rows;
+  for (std::size_t i = 1; i < race.ways().size(); ++i) {
+    const RaceWay& other = race.ways()[i];
+    const std::string against = other.name.empty() ? "" : "_" + other.name;
+    rows.push_back(RaceRow("publish_to_handler" + against + "_p50", ours.p50_us, other.p50_us));
+    rows.push_back(RaceRow("publish_to_handler" + against + "_p99", ours.p99_us, other.p99_us));
+  }
+  return rows;
+}
+
+}  // namespace footing::bench
