@@ -23,12 +23,11 @@ class NatsLinkTest : public transport::IoFixture {
     options.address = TcpAddress();
     options.address.port = acceptor_->local_endpoint().port();
     options.client_name = "test";
-    link_.emplace(io_, options,
-                  NatsLinkHandlers{[this] { ++ups_; },
-                                   [this](const std::string& why) { downs_.push_back(why); },
-                                   [this](const nats::Message& message) {
-                                     messages_.emplace_back(message.payload);
-                                   }});
+    link_.emplace(
+        io_, options,
+        NatsLinkHandlers{
+            [this] { ++ups_; }, [this](const std::string& why) { downs_.push_back(why); },
+            [this](const nats::Message& message) { messages_.emplace_back(message.payload); }});
     link_->Start();
     Accept();
   }
@@ -36,7 +35,8 @@ class NatsLinkTest : public transport::IoFixture {
   void Accept() {
     socket_.emplace(io_);
     bool accepted = false;
-    acceptor_->async_accept(*socket_, [&](const boost::system::error_code& error) { accepted = !error; });
+    acceptor_->async_accept(*socket_,
+                            [&](const boost::system::error_code& error) { accepted = !error; });
     ASSERT_TRUE(RunUntil([&] { return accepted; }));
     socket_->non_blocking(true);
     received_.clear();
