@@ -29,8 +29,9 @@ Result<void> RunDiscover(double within_s, const Shared& shared) {
   if (text.empty()) {
     text = "no server advertises itself in this network; name its address with --connect";
   } else {
-    text += "\nAnyone in the network can say so: compare the fingerprint with what footing-ctl trust "
-            "prints on the server.";
+    text +=
+        "\nAnyone in the network can say so: compare the fingerprint with what footing-ctl trust "
+        "prints on the server.";
   }
   Print({{"servers", servers}}, text, shared);
   return {};

@@ -91,7 +91,8 @@ class Advertiser::Implementation : public std::enable_shared_from_this<Implement
         0) {
       return;
     }
-    if (Describe(service, call) < 0 || sd_bus_call_async(bus_, nullptr, call, &OnDone, this, 0) < 0) {
+    if (Describe(service, call) < 0 ||
+        sd_bus_call_async(bus_, nullptr, call, &OnDone, this, 0) < 0) {
       NotAdvertised("\"" + service.name + "\" is refused as a name");
     }
     sd_bus_message_unref(call);
@@ -99,8 +100,9 @@ class Advertiser::Implementation : public std::enable_shared_from_this<Implement
 
   /// Below 0 when the bus takes none of this.
   static int Describe(const Service& service, sd_bus_message* call) {
-    const int head = sd_bus_message_append(call, "iiussssq", kAnyInterface, kAnyProtocol, 0u,
-                                           service.name.c_str(), kServiceType, "", "", service.port);
+    const int head =
+        sd_bus_message_append(call, "iiussssq", kAnyInterface, kAnyProtocol, 0u,
+                              service.name.c_str(), kServiceType, "", "", service.port);
     if (head < 0) return head;
     sd_bus_message_open_container(call, 'a', "ay");
     for (const std::string& entry : TextRecord(service)) {
@@ -127,7 +129,8 @@ class Advertiser::Implementation : public std::enable_shared_from_this<Implement
     const std::string& name = self->services_.front().name;
     if (state == kEstablished) log::Info("advertised in the network as \"" + name + "\"");
     if (state == kCollision) {
-      self->NotAdvertised("another server is called \"" + name + "\": set advertise to another name");
+      self->NotAdvertised("another server is called \"" + name +
+                          "\": set advertise to another name");
     }
     return 0;
   }

@@ -10,8 +10,8 @@
 
 namespace footing::discovery {
 
-/// Keeps services in the local network's mDNS while it lives, also after avahi-daemon was restarted.
-/// Nothing blocks: everything runs on the io_context's one thread.
+/// Keeps services in the local network's mDNS while it lives, also after avahi-daemon was
+/// restarted. Nothing blocks: everything runs on the io_context's one thread.
 class Advertiser {
  public:
   /// One line in the log says that the services are advertised, or why they are not.

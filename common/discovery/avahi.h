@@ -18,8 +18,8 @@ inline constexpr int kAnyInterface = -1, kAnyProtocol = -1, kIpv4 = 0;
 
 /// What a server says of one of its ports.
 struct Service {
-  std::string name;         ///< Of the server, unique in the network: at most 63 bytes.
-  std::string program;      ///< "footingd" or "footing-sim".
+  std::string name;     ///< Of the server, unique in the network: at most 63 bytes.
+  std::string program;  ///< "footingd" or "footing-sim".
   std::uint16_t port = 0;
   bool tls = false;
   std::string fingerprint;  ///< Of its certificate: a hint to compare, no proof.
