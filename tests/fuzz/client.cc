@@ -15,7 +15,8 @@
 
 /// A client whose server sends anything at any time: bytes, whole messages of every kind, or
 /// nothing for seconds; which ends the connection and is there again. Every command gets exactly
-/// one answer, the clock offset stays a number, and what the client sends is frames of its messages.
+/// one answer, the clock offset stays a number, and what the client sends is frames of its
+/// messages.
 namespace footing::fuzz {
 namespace {
 

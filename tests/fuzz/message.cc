@@ -74,8 +74,8 @@ void FillOne(Input& input, pb::Message& message, const pb::FieldDescriptor* fiel
     case Kind::CPPTYPE_ENUM:
       return FOOTING_FUZZ_SET(EnumValue, input.Byte() % 40);
     case Kind::CPPTYPE_STRING:
-      return FOOTING_FUZZ_SET(
-          String, Text(input, field->type() == pb::FieldDescriptor::Type::TYPE_BYTES));
+      return FOOTING_FUZZ_SET(String,
+                              Text(input, field->type() == pb::FieldDescriptor::Type::TYPE_BYTES));
     case Kind::CPPTYPE_MESSAGE:
       if (depth >= kDeepest) return;
       return Fill(input,

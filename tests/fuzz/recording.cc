@@ -11,8 +11,8 @@
 #include "common/recording/recorded_session.h"
 #include "tests/fuzz/input.h"
 
-/// Any bytes as a recording: read by every reader, from end to end, by its index, and by one that is
-/// made for it. What borrows from the file lies within it.
+/// Any bytes as a recording: read by every reader, from end to end, by its index, and by one that
+/// is made for it. What borrows from the file lies within it.
 namespace footing::fuzz {
 namespace {
 

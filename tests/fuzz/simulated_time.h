@@ -13,8 +13,9 @@ void FollowSimulatedTime();
 
 /// Runs the loop until nothing is left to do at this instant and `seconds` have passed, or until
 /// `done` holds.
-void RunFor(boost::asio::io_context& io, double seconds,
-            const std::function<bool()>& done = [] { return false; });
+void RunFor(
+    boost::asio::io_context& io, double seconds,
+    const std::function<bool()>& done = [] { return false; });
 
 /// Simulated time that one input may take: it costs a message to the timekeeper for each instant at
 /// which something is sent.
