@@ -23,7 +23,7 @@ constexpr double kBackwardLimitM = 0.7;
 constexpr double kHurryPerMetre = 6;
 /// A braking run's foot is at most this far ahead, by speed, s: a slower body loses all its speed
 /// over a foot further ahead, and is left low on a slanting leg. The last one may be further.
-constexpr double kBrakingReachS = 0.13;
+constexpr double kBrakingReachS = 0.115;
 constexpr double kLandingReachS = 0.18;
 
 struct Pendulum {

@@ -92,7 +92,7 @@ TEST(Equation2, IsHalfTheSupportsTravelAtTheDesiredSpeed) {
 TEST(Equation2, BrakesHarderInARunThatIsToEnd) {
   LawsScene scene;
   scene.memory.gait = stream::Gait::kRun;
-  scene.memory.speed.desired_mps = 2.5;
+  scene.memory.speed.desired_mps = 2.7;
   scene.body.v_WC = {3, 0, 1};
   scene.goal.gait = stream::Gait::kRun;
   const double running_m = HoppingFoothold(scene.context(), scene.memory, 0).x();
@@ -102,8 +102,8 @@ TEST(Equation2, BrakesHarderInARunThatIsToEnd) {
       0.5 * (scene.gains.transition.leaving_run_gain_s - scene.gains.hopping.run_velocity_gain_s),
       1e-12);
   scene.memory.speed.desired_mps =
-      1.8;  // No further ahead than the body passes over: 0.13 s of 3 m/s.
-  EXPECT_NEAR(HoppingFoothold(scene.context(), scene.memory, 0).x(), 0.39, 1e-12);
+      1.8;  // No further ahead than the body passes over: 0.115 s of 3 m/s.
+  EXPECT_NEAR(HoppingFoothold(scene.context(), scene.memory, 0).x(), 0.345, 1e-12);
   scene.body.v_WC.x() = 1.5;  // Slower than wanted: nothing to brake.
   const double slow_m = HoppingFoothold(scene.context(), scene.memory, 0).x();
   scene.goal.gait = stream::Gait::kRun;
