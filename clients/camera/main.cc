@@ -10,9 +10,9 @@ namespace {
 using namespace footing;  // NOLINT: main is wiring
 
 constexpr char kExamples[] =
-    "  footing-camera --camera eye.json --device /dev/video0 --exposure-s 0.004\n"
-    "  footing-camera --camera eye.json --frames frames --repeat --seconds 10\n"
-    "  footing-camera --camera eye.json --fifo /tmp/frames --json\n";
+    "  footing-camera --camera camera.json --device /dev/video0 --exposure-s 0.004\n"
+    "  footing-camera --camera camera.json --frames frames --repeat --seconds 10\n"
+    "  footing-camera --camera camera.json --fifo /tmp/frames --json\n";
 
 void AddOptions(CLI::App& app, camera::TrackingOptions& options) {
   app.add_option("--device", options.device, "Camera, such as /dev/video0");

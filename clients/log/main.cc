@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
       "  footing-log info a.mcap --json\n"
       "  footing-log export a.mcap --format csv --out a/\n"
       "  footing-log repair cut.mcap --out whole.mcap\n"
-      "  footing-log recalibrate a.mcap --camera eye.json --out again.mcap\n"
+      "  footing-log recalibrate a.mcap --camera camera.json --out again.mcap\n"
       "  footing-log serve a.mcap --listen unix:/tmp/replay.sock");
   footing::log_client::Shared shared;
   app->add_flag("--json", shared.json, "Print one JSON object on standard output");

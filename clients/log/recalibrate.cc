@@ -14,6 +14,46 @@
 namespace footing::log_client {
 namespace {
 
+constexpr char kHandSchema[] = "footing.v1.HandSamples";
+
+bool IsChanged(const v1::HandSample& sample, const std::string& tracker) {
+  return sample.tracker() == tracker && sample.has_tracker_pose();
+}
+
+/// Counts the hands that a Copier would change.
+class Counter {
+ public:
+  explicit Counter(const std::string& tracker) : tracker_(tracker) {}
+
+  mcap::Visitor Visitor() {
+    mcap::Visitor visitor;
+    visitor.schema = [this](const mcap::Schema& schema) {
+      if (schema.name == kHandSchema) schemas_.insert(schema.id);
+    };
+    visitor.channel = [this](const mcap::Channel& channel) {
+      if (schemas_.contains(channel.schema_id)) channels_.insert(channel.id);
+    };
+    visitor.message = [this](const mcap::Message& message) {
+      v1::HandSamples hands;
+      if (!channels_.contains(message.channel_id) ||
+          !hands.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) {
+        return;
+      }
+      for (const v1::HandSample& sample : hands.samples()) {
+        samples_ += IsChanged(sample, tracker_) ? 1 : 0;
+      }
+    };
+    return visitor;
+  }
+
+  std::uint64_t samples() const { return samples_; }
+
+ private:
+  const std::string tracker_;
+  std::set<std::uint16_t> schemas_, channels_;
+  std::uint64_t samples_ = 0;
+};
+
 /// Copies what it is shown, and changes the hands.
 class Copier {
  public:
@@ -44,7 +84,7 @@ class Copier {
 
  private:
   void Copy(const mcap::Schema& schema) {
-    if (schema.name == "footing.v1.HandSamples") hand_schemas_.insert(schema.id);
+    if (schema.name == kHandSchema) hand_schemas_.insert(schema.id);
     writer_.CopySchema(schema);
   }
 
@@ -68,7 +108,7 @@ class Copier {
   }
 
   void Change(v1::HandSample& sample) {
-    if (sample.tracker() != tracker_ || !sample.has_tracker_pose()) {
+    if (!IsChanged(sample, tracker_)) {
       ++report_.untouched;
       return;
     }
@@ -100,21 +140,19 @@ Result<RecalibrateReport> Recalibrate(const std::string& input, const std::strin
   std::error_code error;
   if (std::filesystem::equivalent(input, output, error))
     return UsageError("the new recording may not replace " + input + "; name another with --out");
-  const mcap::WalkEnd found = mcap::Walk(in->bytes(), {}, mcap::WalkMode::kStrict);
+  Counter counter(tracker);
+  const mcap::WalkEnd found = mcap::Walk(in->bytes(), counter.Visitor(), mcap::WalkMode::kStrict);
   if (!found.complete)
     return InvalidData(input + ": " + found.problem + "; repair it first: footing-log repair " +
                        input + " --out whole.mcap");
+  if (counter.samples() == 0)
+    return InvalidData(input + " has no hands of the tracker \"" + tracker +
+                       "\" with what it saw in its own frame");
   auto out = recording::OutputFile::Create(output, replace);
   if (!out) return out.error();
   Copier copier(*out, tracker, X_WC, library);
   mcap::Walk(in->bytes(), copier.Visitor(), mcap::WalkMode::kStrict);
-  const auto report = copier.Finish();
-  if (report && report->samples == 0) {
-    std::filesystem::remove(output, error);
-    return InvalidData(input + " has no hands of the tracker \"" + tracker +
-                       "\" with what it saw in its own frame");
-  }
-  return report;
+  return copier.Finish();
 }
 
 }  // namespace footing::log_client

@@ -17,7 +17,7 @@ struct RecalibrateReport {
 
 /// Copies a recording, with the hands that this tracker saw where another calibration puts them:
 /// what it saw in its own frame is in the recording. InvalidData when the recording is cut or has
-/// no such hands.
+/// no such hands; `output` is then left as it was.
 Result<RecalibrateReport> Recalibrate(const std::string& input, const std::string& output,
                                       const std::string& tracker, const Eigen::Isometry3d& X_WC,
                                       const std::string& library, bool replace);

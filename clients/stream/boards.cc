@@ -62,14 +62,15 @@ Result<void> CheckHands(const BoardsOptions& options) {
   const std::string& hands = options.hands;
   if (hands != "none" && hands != "move" && hands != "wiimote" && hands != "kinect" &&
       hands != "camera") {
-    return UsageError("--hands " + hands + ": there are none, move, wiimote, kinect and camera");
+    return UsageError("--hands " + hands +
+                      " is unknown; must be one of: none, move, wiimote, kinect, camera");
   }
   if (hands == "camera" && (options.camera_file.empty() || options.frames_to.empty())) {
     return UsageError("--hands camera needs --camera FILE and --frames-to FIFO");
   }
   const std::string& lost = options.lost_hand;
   if (!lost.empty() && lost != "left" && lost != "right") {
-    return UsageError("--lose-hand " + lost + ": there are left and right");
+    return UsageError("--lose-hand " + lost + " is unknown; must be left or right");
   }
   if (!lost.empty() && (hands == "none" || hands == "camera")) {
     return UsageError("--lose-hand " + lost + ": with --hands " + hands +

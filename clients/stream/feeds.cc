@@ -44,8 +44,6 @@ std::vector<int> ShownJoints(const body::Body& body) {
   return joints;
 }
 
-namespace {}  // namespace
-
 Eigen::Vector3d FistAt(const Stage& stage, int side, double t_s) {
   return body::Place(body::Fist(stage.scene.body, side), KinematicsAt(stage, t_s));
 }

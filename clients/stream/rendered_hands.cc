@@ -1,6 +1,8 @@
 #include "clients/stream/rendered_hands.h"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <array>
@@ -32,15 +34,21 @@ virtual_camera::Lens ToLens(const sphere::Lens& lens) {
 class Renderer {
  public:
   Renderer(int descriptor, std::uint64_t seed)
-      : descriptor_(descriptor), random_(seed), work_(io_.get_executor()) {
+      : descriptor_(descriptor),
+        ended_(::eventfd(0, EFD_CLOEXEC)),
+        random_(seed),
+        work_(io_.get_executor()) {
+    ::fcntl(descriptor_, F_SETFL, O_NONBLOCK);
     thread_ = std::thread([this] { io_.run(); });
   }
 
   ~Renderer() {
+    ::eventfd_write(ended_, 1);  // The thread may wait for a reader that reads no more.
     work_.reset();
     io_.stop();
     thread_.join();
     ::close(descriptor_);
+    ::close(ended_);
   }
 
   Renderer(const Renderer&) = delete;
@@ -62,16 +70,25 @@ class Renderer {
         {sphere::PixelFormat::kSgrbg8, mosaic.width, mosaic.height, mosaic.bytes, exposed_ns});
     for (std::size_t at = 0; at < image.size();) {
       const ssize_t written = ::write(descriptor_, image.data() + at, image.size() - at);
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) {
-        closed_ = true;  // Its reader has gone.
+      if (written > 0) at += static_cast<std::size_t>(written);
+      if (written > 0 || (written < 0 && errno == EINTR)) continue;
+      if (written == 0 || errno != EAGAIN || !WaitForReader()) {
+        closed_ = true;  // Its reader has gone, or this program ends.
         return;
       }
-      at += static_cast<std::size_t>(written);
     }
   }
 
+  /// False when the destructor waits.
+  bool WaitForReader() const {
+    std::array<pollfd, 2> waited = {{{descriptor_, POLLOUT, 0}, {ended_, POLLIN, 0}}};
+    while (::poll(waited.data(), waited.size(), -1) < 0 && errno == EINTR) {
+    }
+    return (waited[1].revents & POLLIN) == 0;
+  }
+
   const int descriptor_;
+  const int ended_;
   noise::Random random_;
   exchange::Flag busy_;
   bool closed_ = false;  // Of the render thread.

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "common/recording/recorded_session.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/stream_recorder.h"
@@ -83,6 +86,10 @@ TEST_F(RecalibrateTest, RefusesARecordingWithoutSuchHands) {
   ASSERT_FALSE(none.ok());
   EXPECT_THAT(none.error().message, HasSubstr("no hands of the tracker \"camera\""));
   EXPECT_FALSE(std::filesystem::exists(Path("b.mcap")));
+  std::ofstream(Path("b.mcap")) << "an older one";
+  EXPECT_FALSE(
+      Recalibrate(Path("a.mcap"), Path("b.mcap"), "camera", FacingThePerson(), "t", true).ok());
+  EXPECT_EQ(std::filesystem::file_size(Path("b.mcap")), 12u) << "nothing to put in its place";
   EXPECT_FALSE(
       Recalibrate(Path("a.mcap"), Path("a.mcap"), "camera", FacingThePerson(), "t", true).ok());
 }
