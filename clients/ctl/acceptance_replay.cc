@@ -38,7 +38,7 @@ Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path) {
   const auto metadata = KeptPlan(*session);
   if (!metadata) {
     return InvalidData(path +
-                       " does not hold an acceptance; record one with: footing-ctl "
+                       " is not an acceptance recording; record one with: footing-ctl "
                        "acceptance --out FILE.mcap");
   }
   const auto plan = ReadAcceptanceMetadata(*metadata);
@@ -46,7 +46,7 @@ Result<AcceptanceVerdict> ReplayAcceptance(const std::string& path) {
   guide::Acceptance acceptance(plan->rig, plan->layout);
   auto span = plan->spans.begin();
   const recording::RecordedServer* server = session->Find("footingd");
-  if (server == nullptr) return InvalidData(path + " holds no ticks of footingd");
+  if (server == nullptr) return InvalidData(path + " has no ticks of footingd");
   const auto ticks = recording::ReadTicks(*server, JudgedFields());
   if (!ticks) return InvalidData(path + ": " + ticks.error().message);
   for (const v1::Tick& tick : *ticks) {

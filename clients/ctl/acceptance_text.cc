@@ -84,7 +84,7 @@ Result<AcceptancePlan> ReadAcceptanceMetadata(const std::map<std::string, std::s
   } catch (const std::out_of_range& error) {
     return InvalidData(std::string("its metadata lacks a part: ") + error.what());
   } catch (const ordered_json::exception& error) {
-    return InvalidData(std::string("its metadata makes no sense: ") + error.what());
+    return InvalidData(std::string("its metadata is invalid: ") + error.what());
   }
   return plan;
 }

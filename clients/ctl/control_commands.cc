@@ -63,7 +63,7 @@ Result<void> Rumble(Session& session, const std::string& name, double seconds,
 
 Result<void> CheckLight(const std::string& light) {
   if (ParseLeds(light) || ParseColour(light)) return {};
-  return UsageError(light + " is neither four lamps such as 1010 nor a colour such as #00ff40");
+  return UsageError(light + " is neither four LEDs such as 1010 nor a colour such as #00ff40");
 }
 
 Result<void> Led(Session& session, const std::string& name, const std::string& light,
@@ -75,7 +75,7 @@ Result<void> Led(Session& session, const std::string& name, const std::string& l
   const bool move = device->kind == stream::DeviceKind::kPsMove;
   if (colour.has_value() != move) {
     return UsageError(device->serial + (move ? " is a PS Move: give a colour such as #00ff40"
-                                             : " has lamps, no colour: give them such as 1010"));
+                                             : " has four LEDs, not a colour: write them as 1010"));
   }
   v1::Command command;
   if (move) {
@@ -192,7 +192,7 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
   CLI::App* led = app.add_subcommand("led", "Set the LEDs of a device, or the colour of a PS Move");
   led->add_option("DEVICE", arguments->device, "Serial, number, RIG/ROLE or ROLE")->required();
   led->add_option("LIGHT", arguments->light,
-                  "Four lamps, such as 1010, or a colour, such as #00ff40")
+                  "Four LEDs, such as 1010, or a colour, such as #00ff40")
       ->required();
   led->footer(
       "Examples:\n  footing-ctl led 00:1f:32:aa:bb:cc 1010\n  footing-ctl led head '#00ff40'");
@@ -207,7 +207,7 @@ void AddControlCommands(CLI::App& app, Shared& shared) {
   });
 
   const auto clear = std::make_shared<bool>(false);
-  CLI::App* tare = app.add_subcommand("tare", "Take a board's empty weight as its zero");
+  CLI::App* tare = app.add_subcommand("tare", "Set a board's zero while nobody stands on it");
   tare->add_option("BOARD", arguments->device, "Serial, number, RIG/ROLE or ROLE; or all")
       ->required();
   tare->add_flag("--clear", *clear, "Remove the tare");

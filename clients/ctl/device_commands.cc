@@ -26,7 +26,9 @@ constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
 Result<void> Devices(Session& session, const Shared& shared) {
   const auto& devices = session.status();
   Print({{"devices", display::DevicesToJson(devices)}}, display::DeviceTable(devices), shared);
-  if (devices.empty()) return NoDevice("footingd has no device: footing-ctl pair, or doctor");
+  if (devices.empty())
+    return NoDevice(
+        "footingd has no device: pair one with footing-ctl pair, or run footing-ctl doctor");
   return {};
 }
 
@@ -63,7 +65,7 @@ Result<void> Status(Session& session, const Shared& shared) {
                          {"notice", notice},
                          {"stats", stats ? display::ServerStatsToJson(*stats) : ordered_json()}};
   Print(out,
-        session.link() + ", " + ordered_json(limits.tick_rate_hz()).dump() + " ticks a second\n" +
+        session.link() + ", " + ordered_json(limits.tick_rate_hz()).dump() + " ticks per second\n" +
             (notice.empty() ? "" : "NOTICE: " + notice + "\n") +
             (stats ? display::ServerLine(*stats) + "\n\n" + display::SessionTable(*stats) : "") +
             "\n" + display::DeviceTable(session.status()) + "\n" +
@@ -128,7 +130,7 @@ void AddDeviceCommands(CLI::App& app, Shared& shared) {
   });
 
   const auto seconds = std::make_shared<double>(0);
-  CLI::App* watch = app.add_subcommand("watch", "Live: rates, batteries, forces");
+  CLI::App* watch = app.add_subcommand("watch", "Show rates, batteries and forces live");
   watch->add_option("--seconds", *seconds, "Duration, s (default: until Ctrl-C)")
       ->check(CLI::Range(0.1, 1e5));
   watch->footer("Examples:\n  footing-ctl watch\n  footing-ctl watch --seconds 5 --json");

@@ -41,7 +41,7 @@ void Doctor(Shared& shared, const std::string& root) {
 void AddDoctorCommand(CLI::App& app, Shared& shared) {
   const auto root = std::make_shared<std::string>("/");
   CLI::App* command = app.add_subcommand("doctor", "Find faults and print their remedies");
-  command->add_option("--root", *root, "Look at a host below this folder")->group("");
+  command->add_option("--root", *root, "Root folder of the host to examine")->group("");
   command->footer(
       "Exit code 0 when there is no error, else 1.\n"
       "Examples:\n  footing-ctl doctor\n  sudo footing-ctl doctor --json");

@@ -13,7 +13,7 @@ Result<std::vector<stream::DeviceRole>> BodyRoles(const std::vector<std::string>
     if (role == stream::DeviceRole::kLeftBoard || role == stream::DeviceRole::kRightBoard ||
         role == stream::DeviceRole::kUnspecified) {
       return UsageError("--worn " + name +
-                        ": not a role of a remote; there are: left_hand right_hand left_leg "
+                        ": not a role of a remote; must be one of: left_hand right_hand left_leg "
                         "right_leg head trunk editor");
     }
     if (std::find(roles.begin(), roles.end(), role) != roles.end()) {
@@ -32,7 +32,7 @@ Result<void> AssignByGesture(Session& session, const std::string& rig,
   options.body_roles = body_roles;
   const auto results = RunGuided(session, options, {guide::Item::kRoles}, PromptOptions{script});
   if (!results) return results.error();
-  if (results->empty()) return NoDevice("rig " + rig + " has no device: footing-ctl devices");
+  if (results->empty()) return NoDevice("rig " + rig + " has no device; see footing-ctl devices");
   nlohmann::ordered_json out{{"rig", rig}, {"items", nlohmann::ordered_json::array()}};
   std::string text;
   for (const auto& item : *results) {

@@ -56,7 +56,7 @@ void AddInterfaceCommand(CLI::App& app, Shared& shared) {
       ->required();
   command->add_option(
       "--turn-by", options->turn_by,
-      "What turns with the interface leg: head, feet or trunk (default: as before)");
+      "Body part that steers with the interface leg: head, feet or trunk (default: unchanged)");
   command->add_option("--table", options->table,
                       "Mapping table, such as one of footing-study ranges (default: the built-in "
                       "one)");

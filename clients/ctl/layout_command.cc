@@ -92,9 +92,9 @@ void AddLayoutCommand(CLI::App& app, Shared& shared) {
       "  footing-ctl layout --preset one_foot_each --gap-mm 20 --check");
   command->callback([arguments, &shared] {
     if (!arguments->preset.empty() && !board::LayoutNamed(arguments->preset, 0)) {
-      shared.exit_code =
-          cli::Report(UsageError("--preset " + arguments->preset +
-                                 ": no such layout; there are: one_foot_each side_by_side single"));
+      shared.exit_code = cli::Report(
+          UsageError("--preset " + arguments->preset +
+                     ": no such layout; must be one of: one_foot_each side_by_side single"));
       return;
     }
     WithSession(shared, GuidedChannels(),

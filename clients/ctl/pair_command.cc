@@ -59,12 +59,12 @@ Result<void> WaitForNew(Session& session, pairing::Kind kind, double within_s) {
   if (waited == Waited::kInterrupted) return Failure("stopped");
   if (waited == Waited::kTimeUp) {
     return NoDevice(std::string("no new ") + pairing::Name(kind) +
-                    " came: footing-ctl doctor names the obstacle");
+                    " appeared; run footing-ctl doctor to find the cause");
   }
   const auto device = session.Find(found);
   if (!device) return device.error();
   std::cout << "It is there: " << found << ", " << display::RigRole(*device)
-            << ". Another role: footing-ctl assign " << found << " main/ROLE" << std::endl;
+            << ". To change the role: footing-ctl assign " << found << " main/ROLE" << std::endl;
   return {};
 }
 
@@ -73,13 +73,13 @@ void Pair(const std::string& name, bool print, double within_s, const std::strin
   const auto kind = pairing::KindNamed(name);
   if (!kind) {
     shared.exit_code =
-        cli::Report(UsageError("there is no way to pair a " + name + "; wiimote, board or move"));
+        cli::Report(UsageError("cannot pair a " + name + "; must be wiimote, board or move"));
     return;
   }
   const pairing::Host host = Look(root);
   Print(pairing::ToJson(*kind, host), pairing::ToText(*kind, host), shared);
   if (shared.json || print) return;
-  std::cout << "Waiting for it in footingd (Ctrl-C leaves) ..." << std::endl;
+  std::cout << "Waiting until footingd finds it (Ctrl-C to stop) ..." << std::endl;
   WithSession(shared, {"status"},
               [&](Session& session) { return WaitForNew(session, *kind, within_s); });
 }
@@ -99,7 +99,7 @@ void AddPairCommand(CLI::App& app, Shared& shared) {
   command->add_flag("--print", arguments->print, "Only print the steps");
   command->add_option("--seconds", arguments->within_s, "Timeout, s (default 180)")
       ->check(CLI::Range(0.1, 3600.0));
-  command->add_option("--root", arguments->root, "Look at a host below this folder")->group("");
+  command->add_option("--root", arguments->root, "Root folder of the host to examine")->group("");
   command->footer("Examples:\n  footing-ctl pair wiimote\n  footing-ctl pair board --json");
   command->callback([arguments, &shared] {
     Pair(arguments->device, arguments->print, arguments->within_s, arguments->root, shared);

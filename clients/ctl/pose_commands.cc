@@ -16,8 +16,7 @@ Result<void> TakeTPose(const Shared& shared) {
   v1::Command command;
   command.mutable_calibrate_t_pose()->set_character(1);
   if (const auto sent = Send(shared, std::move(command)); !sent) return sent;
-  Print({{"t_pose", "awaited"}}, "taking the T-pose again: stand still in it for five seconds",
-        shared);
+  Print({{"t_pose", "awaited"}}, "stand still in the T-pose for five seconds", shared);
   return {};
 }
 
@@ -32,7 +31,8 @@ Result<void> NextSubject(const std::string& file, const Shared& shared) {
   set.set_foot_length_m(subject->foot_length_m);
   if (const auto sent = Send(shared, std::move(command)); !sent) return sent;
   Print({{"subject", subject->code}, {"t_pose", "awaited"}},
-        subject->code + " is next: step on and stand in a T-pose for five seconds", shared);
+        subject->code + " is next: step on the boards and stand still in a T-pose for five seconds",
+        shared);
   return {};
 }
 
@@ -43,7 +43,7 @@ void Keep(const Result<void>& done, Shared& shared) {
 }  // namespace
 
 void AddPoseCommands(CLI::App& app, Shared& shared) {
-  CLI::App* t_pose = app.add_subcommand("t-pose", "Take the T-pose of the pose engine again");
+  CLI::App* t_pose = app.add_subcommand("t-pose", "Repeat the T-pose of the pose engine");
   t_pose->footer("Example:\n  footing-ctl t-pose   # connects to footing-sim");
   t_pose->callback([&shared] { Keep(TakeTPose(shared), shared); });
 

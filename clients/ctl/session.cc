@@ -11,7 +11,6 @@
 #include "clients/ctl/display/find_device.h"
 #include "common/clock/clock.h"
 #include "common/transport/client.h"
-#include "common/transport/token.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {
@@ -35,18 +34,20 @@ std::string Remedy() {
 
 class Session::Implementation {
  public:
-  explicit Implementation(SessionOptions options)
-      : address_(options.address.Text()), signals_(io_, SIGINT, SIGTERM) {
-    transport::ClientOptions client;
-    client.address = options.address;
-    client.client_name = "footing-ctl";
-    // Over TCP nobody gets more without a token; a command is then refused, with the reason.
-    const auto token = transport::TokenFromEnvironment();  // The client says why it is unusable.
-    const bool views = options.address.OverTcp() && token && token->empty();
-    client.role = views ? v1::ROLE_VIEW : v1::ROLE_CONTROL;
-    client.channels = std::move(options.channels);
-    client.max_hz = options.max_hz;
-    client.queue_ticks = kQueueTicks;
+  explicit Implementation(SessionOptions options) : signals_(io_, SIGINT, SIGTERM) {
+    dialled_.address = options.address;
+    dialled_.client_name = "footing-ctl";
+    dialled_.role = v1::ROLE_CONTROL;
+    dialled_.channels = std::move(options.channels);
+    dialled_.max_hz = options.max_hz;
+    dialled_.queue_ticks = kQueueTicks;
+    signals_.async_wait([this](const boost::system::error_code& error, int) {
+      if (!error) interrupted_ = true;
+    });
+    Connect();
+  }
+
+  void Connect() {
     transport::ClientHandlers handlers;
     handlers.on_welcome = [this](const v1::Welcome& welcome) { welcome_ = welcome; };
     handlers.on_tick = [this](const v1::Tick& tick) { OnTick(tick); };
@@ -56,11 +57,19 @@ class Session::Implementation {
       link_ = why;
     };
     handlers.on_notice = [this](const v1::Notice& notice) { notice_ = notice.text(); };
-    client_.emplace(io_, std::move(client), std::move(handlers));
-    signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (!error) interrupted_ = true;
-    });
+    handlers.on_refused = [this](const v1::Refused& refused) {
+      if (refused.reason() == v1::Refused::REASON_ROLE) ViewOnly();
+    };
+    client_.emplace(io_, dialled_, std::move(handlers));
     client_->Start();
+  }
+
+  /// Over TCP a token or a certificate gives control. Who has neither may look; a command is then
+  /// refused, with the reason.
+  void ViewOnly() {
+    if (!dialled_.address.OverTcp() || dialled_.role == v1::ROLE_VIEW) return;
+    dialled_.role = v1::ROLE_VIEW;
+    Connect();
   }
 
   Result<void> WaitForSnapshot(double within_s) {
@@ -103,7 +112,7 @@ class Session::Implementation {
     if (on_tick_) on_tick_(tick);
   }
 
-  std::string address_;
+  transport::ClientOptions dialled_;
   boost::asio::io_context io_{1};
   boost::asio::signal_set signals_;
   std::optional<transport::Client> client_;

@@ -31,9 +31,9 @@ using timer::Waited;
 /// while it waits. One thread. While it exists SIGINT and SIGTERM end waits, not the program.
 class Session {
  public:
-  /// Connects with the role control, over TCP without a token with the role view, and takes the
-  /// first snapshot. NoDevice (exit 3) when footingd is not there within the time, Failure with its
-  /// words when it refuses.
+  /// Connects with the role control, or over TCP with the role view where the server does not give
+  /// control, and takes the first snapshot. NoDevice (exit 3) when footingd is not there within the
+  /// time, Failure with its words when it refuses.
   static Result<std::unique_ptr<Session>> Open(SessionOptions options);
   ~Session();
   Session(const Session&) = delete;

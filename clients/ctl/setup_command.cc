@@ -45,7 +45,7 @@ Result<std::vector<guide::Item>> Validate(SetUpArguments& arguments) {
     if (!item) {
       std::string known;
       for (const guide::Item one : guide::AllItems()) known += std::string(" ") + guide::Name(one);
-      return UsageError("--only " + name + ": no such item; there are:" + known);
+      return UsageError("--only " + name + ": no such item; must be one of:" + known);
     }
     items.push_back(*item);
   }
@@ -54,7 +54,7 @@ Result<std::vector<guide::Item>> Validate(SetUpArguments& arguments) {
   arguments.options.body_roles = std::move(roles).value();
   if (!arguments.options.preset.empty() && !board::LayoutNamed(arguments.options.preset, 0)) {
     return UsageError("--preset " + arguments.options.preset +
-                      ": no such layout; there are: one_foot_each side_by_side single");
+                      ": no such layout; must be one of: one_foot_each side_by_side single");
   }
   if (const auto camera = TakeCamera(arguments, items); !camera) return camera.error();
   if (arguments.mass_kg > 0) arguments.options.mass_kg = arguments.mass_kg;
@@ -109,7 +109,7 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 2000.0));
   command
       ->add_option("--mass-kg", arguments->mass_kg,
-                   "Mass of the person, kg: the weighing is compared with it")
+                   "Mass of the person, kg, to compare the weighing with")
       ->check(CLI::Range(10.0, 200.0));
   command
       ->add_option("--patience", arguments->options.patience_s,
@@ -118,9 +118,9 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
   command->add_option("--tries", arguments->options.tries, "Attempts for each item (default 2)")
       ->check(CLI::Range(1, 10));
   command->add_option("--camera", arguments->options.camera_file,
-                      "Camera file of a running footing-camera, to calibrate where it stands");
+                      "Camera file of the running footing-camera, whose pose is calibrated");
   command->add_flag("--yes", arguments->yes,
-                    "Do not wait for Enter where no sensor can see the answer");
+                    "Do not wait for Enter at steps that no sensor can confirm");
   command->add_flag(
       "--script", arguments->script,
       "Print prompts as lines PROMPT: ... on standard error, for a program that drives "
@@ -129,7 +129,7 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       "Items, in order: adapter pairing roles layout tare mounting weigh camera checks\n"
       "Examples:\n  footing-ctl setup --worn left_leg,right_leg\n"
       "  footing-ctl setup --only layout --only tare      # two items alone\n"
-      "  footing-ctl setup --only camera --camera eye.json   # while footing-camera runs\n"
+      "  footing-ctl setup --only camera --camera camera.json   # while footing-camera runs\n"
       "  footing-ctl setup --mass-kg 70 --json");
   command->callback([arguments, &shared] {
     const auto items = Validate(*arguments);

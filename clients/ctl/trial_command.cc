@@ -90,10 +90,10 @@ void AddTrialCommands(CLI::App& app, Shared& shared) {
       ->required();
   start->add_option("--track", options->track, "Built-in track (default: the current one)");
   start->add_option("--seed", options->seed, "Seed that draws the task of a straight track");
-  start->add_option("--task", options->task, "Task, in place of the draw");
+  start->add_option("--task", options->task, "Task (default: drawn with the seed)");
   start->callback([options, &shared] { StartTrial(*options, shared); });
   CLI::App* stop = trial->add_subcommand("stop", "End the trial before its finish line");
-  stop->add_option("ID", options->id, "Id of the trial (default: whichever is going on)");
+  stop->add_option("ID", options->id, "Id of the trial (default: the current one)");
   stop->callback([options, &shared] { StopTrial(*options, shared); });
   CLI::App* back = trial->add_subcommand("put-back", "Put the character back without a failure");
   back->callback([&shared] { PutBack(shared); });

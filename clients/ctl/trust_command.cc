@@ -16,6 +16,9 @@
 namespace footing::ctl {
 namespace {
 
+constexpr char kServiceState[] = "/var/lib/footing";  // As in systemd/footingd.service.
+constexpr char kServiceIdentity[] = "/var/lib/footing/identity.pem";
+
 struct TrustOptions {
   std::string address, fingerprint, identity;
   bool client = false;
@@ -25,17 +28,39 @@ std::string Drawn(const std::string& fingerprint) {
   return isatty(STDOUT_FILENO) == 1 ? "\n" + display::QrCode(fingerprint) : "";
 }
 
-/// The certificate of the servers that this user runs.
+bool IsThere(const std::string& path) { return access(path.c_str(), F_OK) == 0; }
+
+/// The service has a certificate of its own.
+std::string OfService(const std::string& shown) {
+  if (shown == kServiceIdentity || !IsThere(kServiceState)) return "";
+  return std::string("\nFor the certificate of the service: sudo footing-ctl trust --identity ") +
+         kServiceIdentity;
+}
+
+/// The certificate in a file; only a server makes it.
+Result<tls::Identity> LoadServers(const std::string& file) {
+  auto identity = tls::Identity::Load(file);
+  if (identity || identity.error().kind != ErrorKind::kFailure) return identity;
+  return Failure(identity.error().message +
+                 "; a server makes it when it first listens on tls:, and only its user and root "
+                 "can read it (sudo footing-ctl trust --identity " +
+                 file + ")");
+}
+
+/// The certificate of a server: of the named file, else of the servers that this user runs, else of
+/// the service.
 Result<void> ShowServer(const TrustOptions& options, const Shared& shared) {
-  const bool named = !options.identity.empty();
-  const std::string file = named ? options.identity : tls::DefaultIdentityFile();
-  const auto identity = tls::Identity::LoadOrMake(file, "Footing");
+  std::string file = options.identity.empty() ? tls::DefaultIdentityFile() : options.identity;
+  const bool has_own = !file.empty() && IsThere(file);
+  if (options.identity.empty() && !has_own && IsThere(kServiceState)) file = kServiceIdentity;
+  const bool may_make = options.identity.empty() && !has_own && file != kServiceIdentity;
+  const auto identity = may_make ? tls::Identity::LoadOrMake(file, "Footing") : LoadServers(file);
   if (!identity) return identity.error();
   Print({{"fingerprint", identity->fingerprint()}, {"file", file}},
         identity->fingerprint() + "\n\nThis is the certificate of servers that have " + file +
-            ".\nOn the viewer's machine compare it with what the first connection prints, or "
-            "enter it before:\n  footing-ctl trust tls:HOST:PORT " +
-            identity->fingerprint() + Drawn(identity->fingerprint()),
+            ".\nOn the client's machine, compare it with what the first connection prints, or "
+            "trust it beforehand:\n  footing-ctl trust tls:HOST:PORT " +
+            identity->fingerprint() + OfService(file) + Drawn(identity->fingerprint()),
         shared);
   return {};
 }
@@ -48,8 +73,11 @@ Result<void> ShowClient(const Shared& shared) {
   const std::string line = identity->fingerprint() + " view " + cli::UserAtHost();
   Print({{"fingerprint", identity->fingerprint()}, {"file", file}, {"line", line}},
         line +
-            "\n\nThis line in a server's clients_file lets this user in (view, log or control).\n"
-            "The certificate is shown to every tls: server that asks for one.",
+            "\n\nAdd this line to a server's clients_file and reload the server: it gives this "
+            "user the "
+            "role view (or log, or control).\nThis user's programs show the certificate to every "
+            "tls: "
+            "server.",
         shared);
   return {};
 }
@@ -86,26 +114,29 @@ Result<void> RunTrust(const TrustOptions& options, const Shared& shared) {
 void AddTrustCommand(CLI::App& app, Shared& shared) {
   const auto options = std::make_shared<TrustOptions>();
   CLI::App* command =
-      app.add_subcommand("trust", "Certificates of tls: addresses: print, or trust one");
+      app.add_subcommand("trust", "Print this server's certificate, or trust another server's");
   CLI::Option* const address =
       command->add_option("ADDRESS", options->address, "Server to trust, tls:HOST:PORT");
   CLI::Option* const fingerprint = command->add_option(
       "FINGERPRINT", options->fingerprint, "Fingerprint of its certificate, sha256:...");
   address->needs(fingerprint);
-  command
-      ->add_option("--identity", options->identity,
-                   "Identity file of the server (default: that of this user's servers)")
-      ->excludes(address);
+  CLI::Option* const identity =
+      command
+          ->add_option("--identity", options->identity,
+                       "Identity file of a server (default: that of this user's servers, else of "
+                       "the service)")
+          ->excludes(address);
   command
       ->add_flag("--client", options->client,
-                 "Print this user's own certificate, made where there is none, for a clients_file")
-      ->excludes(address);
+                 "Print this user's own certificate, made if there is none, for a clients_file")
+      ->excludes(address)
+      ->excludes(identity);
   command->footer(
       "Examples:\n"
-      "  footing-ctl trust                           # on the server: its fingerprint\n"
+      "  footing-ctl trust                           # on the server: print its fingerprint\n"
       "  sudo footing-ctl trust --identity /var/lib/footing/identity.pem\n"
-      "  footing-ctl trust tls:192.168.1.5:7450 sha256:...   # on the viewer's machine\n"
-      "  footing-ctl trust --client                  # a viewer's certificate");
+      "  footing-ctl trust tls:192.168.1.5:7450 sha256:...   # on the client: trust it\n"
+      "  footing-ctl trust --client                  # on the client: print its own certificate");
   command->callback([options, &shared] {
     if (const auto done = RunTrust(*options, shared); !done) {
       shared.exit_code = cli::Report(done.error());

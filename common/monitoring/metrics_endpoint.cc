@@ -60,12 +60,12 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
     answer_.keep_alive(false);
     answer_.set(http::field::content_type, kContentType);
     if (!readable) {
-      Answer(http::status::bad_request, "this is not a request for GET /metrics\n");
+      Answer(http::status::bad_request, "not an HTTP request; use GET /metrics\n");
     } else if (parser_.get().method() != http::verb::get) {
       answer_.set(http::field::allow, "GET");
-      Answer(http::status::method_not_allowed, "there is GET /metrics\n");
+      Answer(http::status::method_not_allowed, "only GET is supported\n");
     } else if (const auto target = parser_.get().target(); target != "/metrics" && target != "/") {
-      Answer(http::status::not_found, "there is /metrics\n");
+      Answer(http::status::not_found, "not found; use /metrics\n");
     } else {
       Answer(http::status::ok, desk_->text());
     }

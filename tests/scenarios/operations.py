@@ -78,7 +78,7 @@ def check_status_and_metrics(stage, metrics):
     assert abs(sim["clock_offset_s"]) <= sim["clock_uncertainty_s"] + 1e-4, f"one clock on one host: {sim}"
     simulation = status_of(stage, stage.simulation)["stats"]
     assert simulation["ticks"]["ticks"] > 0 and simulation["devices"] == [], simulation
-    assert "ticks a second" in stage.run("footing-ctl", "--connect", stage.sensor, "status").stdout
+    assert "ticks per second" in stage.run("footing-ctl", "--connect", stage.sensor, "status").stdout
 
     samples = metrics_of(metrics["sensor"])
     assert samples["footing_build_info"][0][0]["program"] == "footingd", samples["footing_build_info"]

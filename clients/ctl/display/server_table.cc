@@ -9,8 +9,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string Counted(std::uint64_t count, const std::string& what) {
-  return count == 0 ? "" : ", " + std::to_string(count) + " " + what;
+std::string Plural(std::uint64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string Counted(std::uint64_t count, const std::string& noun, const std::string& what = "") {
+  return count == 0 ? "" : ", " + Plural(count, noun) + what;
 }
 
 ordered_json KnownOrNull(bool known, double value) {
@@ -74,13 +78,12 @@ ordered_json ServerStatsToJson(const stream::ServerStats& stats) {
 
 std::string ServerLine(const stream::ServerStats& stats) {
   return "up " + Fixed(stats.uptime_s, 0) + " s, " + Fixed(stats.ticks.rate_hz, 1) +
-         " ticks a second, latest by " + Fixed(1e3 * stats.ticks.late_max_s, 1) + " ms, " +
-         std::to_string(stats.session_count) + " sessions" +
-         Counted(stats.ticks.overruns, "overruns") +
-         Counted(stats.ticks.left_out, "ticks left out by overload") +
-         Counted(stats.ticks_dropped, "ticks dropped of full queues") +
-         Counted(stats.slowed, "waits for a message budget") +
-         Counted(stats.sessions_refused, "connections refused");
+         " ticks per second, max delay " + Fixed(1e3 * stats.ticks.late_max_s, 1) + " ms, " +
+         Plural(stats.session_count, "session") + Counted(stats.ticks.overruns, "overrun") +
+         Counted(stats.ticks.left_out, "tick", " skipped (overload)") +
+         Counted(stats.ticks_dropped, "tick", " dropped (queue full)") +
+         Counted(stats.slowed, "rate-limit wait") +
+         Counted(stats.sessions_refused, "connection", " refused");
 }
 
 std::string SessionTable(const stream::ServerStats& stats) {

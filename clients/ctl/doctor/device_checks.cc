@@ -96,12 +96,12 @@ std::vector<Symptom> Uncalibrated(const Facts& facts) {
       },
       [](const DeviceStatus& device) {
         const bool move = device.kind == DeviceKind::kPsMove;
-        return Symptom{
-            Severity::kWarning,
-            "its calibration could not be read or makes no sense; typical values are used", "",
-            move ? "connect it by USB once while footingd runs: its calibration is kept"
-                 : "switch it off and on to read it again; if it stays, its numbers are "
-                   "only approximate"};
+        return Symptom{Severity::kWarning,
+                       "its calibration could not be read or is invalid; typical values are used",
+                       "",
+                       move ? "connect it by USB once while footingd runs: its calibration is kept"
+                            : "switch it off and on to read it again; if it stays, its numbers are "
+                              "only approximate"};
       });
 }
 

@@ -22,7 +22,7 @@ struct Row {
 
 constexpr Row kRows[] = {
     {Phase::kStill, "still", 1, true, false, "Stand still, arms down."},
-    {Phase::kWalk, "walk", 2, true, false, "Walk in place, swinging left and right in turns."},
+    {Phase::kWalk, "walk", 2, true, false, "Walk in place, swinging left and right alternately."},
     {Phase::kRun, "run", 1.5, true, false, "Run in place: faster, more than two steps a second."},
     {Phase::kJump, "jump", 1, true, false, "Swing left and right together, as for jumps."},
     {Phase::kQuiet, "quiet", 1.5, false, true, "Stand upright on the boards and keep still."},
@@ -31,7 +31,7 @@ constexpr Row kRows[] = {
     {Phase::kStepping, "stepping", 1.5, false, true,
      "Step off the boards, wait, and step on again; again and again."},
     {Phase::kRumble, "rumble", 0.5, true, false, "Feel every remote rumble."},
-    {Phase::kLed, "led", 0.5, true, true, "Look at the lamps: they count."},
+    {Phase::kLed, "led", 0.5, true, true, "Look at the LEDs: they count."},
     {Phase::kReplug, "replug", 1, true, true,
      "Switch one device off (hold its power button, or take a battery out), and on again."},
 };

@@ -52,7 +52,8 @@ void Acceptance::CheckDevice(const DeviceRecord& device, std::vector<Check>& che
   const double gaps =
       static_cast<double>(std::max(device.gaps_last, device.gaps_first) - device.gaps_first);
   checks.push_back(AtMost("gaps " + serial, gaps * 60 / std::max(steady_s, 60.0), kGapsPerMinute,
-                          "1/min", "holes in the stream: go nearer, fewer devices an adapter"));
+                          "1/min",
+                          "gaps in the stream: move closer, or use fewer devices per adapter"));
   checks.push_back(AtMost("jitter " + serial, last.jitter_ms, kJitterMs, "ms",
                           "standard deviation of the intervals"));
   checks.push_back(AtMost("repeats " + serial,
@@ -101,7 +102,7 @@ void Acceptance::CheckFeatures(std::vector<Check>& checks) const {
       checks.push_back(AtLeast("walk cadence", frequency_hz, kWalkLeastHz, "Hz", "median"));
       if (!sizes.empty()) {
         checks.push_back(AtLeast("walk phase", phase_rad, kInTurnsRad, "rad",
-                                 "left and right in turns: near pi"));
+                                 "left and right alternately: near pi"));
       }
     } else if (phase == Phase::kRun) {
       checks.push_back(AtLeast("run cadence", frequency_hz, kRunLeastHz, "Hz", "median"));
@@ -183,10 +184,10 @@ void Acceptance::CheckActuators(std::vector<Check>& checks) const {
     away = away || (device.lost && !device.back);
   }
   if (!held(Phase::kReplug)) return;
-  checks.push_back(AtLeast("replug", returned, 1, "", "devices that went and came back"));
+  checks.push_back(AtLeast("replug", returned, 1, "", "devices that disconnected and came back"));
   if (away) {
     checks.back().passed = false;
-    checks.back().note = "a device went and did not come back";
+    checks.back().note = "a device disconnected and did not come back";
   }
 }
 

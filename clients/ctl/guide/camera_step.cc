@@ -98,7 +98,7 @@ CameraStep::Rest CameraStep::Look(const Situation& now, const SetUpOptions& opti
   if (upright) {
     const auto tilt = TiltRad(now, options, from_ns);
     rest.feedback = tilt ? text::Fixed(RadiansToDegrees(*tilt), 1) + " degrees from upright"
-                         : "the controller sends nothing";
+                         : "the controller sends no data";
     if (!tilt || *tilt > kMostTiltRad) return rest;
     rest.tilt_rad = *tilt;
   }

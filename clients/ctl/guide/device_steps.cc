@@ -60,12 +60,12 @@ std::string FaultOf(const stream::DeviceStatus& device) {
   }
   if (device.battery_low) return "battery low: change the batteries now";
   if (device.calibration == stream::CalibrationOrigin::kDefaults) {
-    return "uncalibrated: its own calibration makes no sense; use another device";
+    return "uncalibrated: the calibration stored in it is invalid; use another device";
   }
   const double least_hz = board ? kLeastBoardRateHz : kLeastControllerRateHz;
   if (device.report_rate_hz < least_hz) {
     return "only " + std::to_string(std::lround(device.report_rate_hz)) +
-           " reports a second: go nearer, or take devices off this adapter";
+           " reports per second: move closer, or use fewer devices on this adapter";
   }
   if (device.slipped) return "its mounting slipped: footing-ctl setup --only mounting";
   if (device.moved) return "the board was moved: footing-ctl setup --only layout --only tare";
@@ -94,7 +94,7 @@ Progress PairingStep::Advance(const Situation& now, const SetUpOptions& options)
   Progress progress;
   progress.prompt =
       "Switch on every device of this rig (pair new ones in another terminal: footing-ctl pair). "
-      "Enter when all are there.";
+      "Press Enter when all are on.";
   const auto devices = AllDevices(now, options);
   std::size_t live = 0;
   for (const auto& device : devices) live += device.state == stream::DeviceState::kLive;
@@ -119,9 +119,9 @@ void RolesStep::BeginWith(const std::vector<stream::DeviceStatus>& devices,
                           const std::vector<stream::DeviceRole>& roles) {
   if (roles.size() > devices.size()) {
     results_.push_back(Outcome(Item::kRoles, "", false, 0, "",
-                               std::to_string(roles.size()) + " roles are asked for, but only " +
+                               std::to_string(roles.size()) + " roles are requested, but only " +
                                    std::to_string(devices.size()) +
-                                   " devices are there: footing-ctl pair brings more"));
+                                   " devices are attached: add more with footing-ctl pair"));
     return;
   }
   wanted_.insert(wanted_.end(), roles.begin(), roles.end());

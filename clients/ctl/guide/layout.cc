@@ -87,7 +87,7 @@ LayoutVerdict CheckLayout(const stream::BoardLayout& layout, const LayoutObserve
       return verdict;
     }
     if (left.left.mean_n < kStoodOnN || right.right.mean_n < kStoodOnN) {
-      return NoContact("a board felt nobody: stand on it alone, then on the other");
+      return NoContact("a board had no load on it: stand on it alone, then on the other");
     }
   }
   const auto left = Moved(layout.left, observed.upright.left, observed.forward.left);

@@ -40,7 +40,7 @@ Pick WhichBoard(const std::vector<BoardLoad>& boards) {
   for (const BoardLoad& board : boards) {
     if (board.load.samples > 0) force_n.Add(board.device, board.load.mean_n);
   }
-  if (force_n.most < kStoodOnN) return {Pick::Kind::kNone, 0, 0, "no board is stood on"};
+  if (force_n.most < kStoodOnN) return {Pick::Kind::kNone, 0, 0, "nobody stands on a board"};
   if (force_n.next > kFreeN) {
     return force_n.Ambiguous("two boards carry load (" + Rounded(force_n.most) + " N and " +
                              Rounded(force_n.next) + " N): stand on one alone");
@@ -53,7 +53,7 @@ Pick WhichShaken(const std::vector<DeviceMotion>& devices) {
   for (const DeviceMotion& device : devices) {
     if (device.motion.samples > 0) shake_mps2.Add(device.device, device.motion.shake_mps2);
   }
-  if (shake_mps2.most < kShakenMps2) return {Pick::Kind::kNone, 0, 0, "nothing is shaken"};
+  if (shake_mps2.most < kShakenMps2) return {Pick::Kind::kNone, 0, 0, "no device is shaken"};
   if (shake_mps2.most < kClearlyMore * shake_mps2.next) {
     return shake_mps2.Ambiguous("two devices move (" + Rounded(shake_mps2.most) + " and " +
                                 Rounded(shake_mps2.next) + " m/s2): hold the others still");

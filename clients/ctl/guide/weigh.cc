@@ -25,7 +25,7 @@ Weight Weigh(const std::vector<Load>& boards, std::optional<double> given_kg) {
   double worst_n = 0;  // Boards' swings may be opposite; their sum is the most there can be.
   for (const Load& load : boards) {
     if (load.samples == 0) {
-      weight.note = "a board sends nothing";
+      weight.note = "a board sends no data";
       return weight;
     }
     total_n += load.mean_n;

@@ -117,8 +117,8 @@ def check_led(stage, console, devices):
     stage.wait_for(lambda: line in log_of(stage, "footing-stream"), line)
     stage.wait_for(lambda: console.json("devices")["devices"][left["device"] - 1]["leds"] == "1011",
                    "the lamps in the list")
-    console.refused(2, "led", "left_hand", "10", says="neither four lamps")
-    console.refused(2, "led", "left_hand", "#00ff40", says="has lamps, no colour")
+    console.refused(2, "led", "left_hand", "10", says="neither four LEDs")
+    console.refused(2, "led", "left_hand", "#00ff40", says="has four LEDs, not a colour")
     console.refused(3, "led", "9", "1000", says="there are: 1 = ")
 
 

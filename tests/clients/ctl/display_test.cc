@@ -229,8 +229,15 @@ TEST(SessionTable, ShowsWhoWaitsAndHowManyMoreThereAre) {
   stats.sessions.push_back({7, "footing-view", "view", true, 5, "drop_oldest", 4, 256, 0.04, 480, 9,
                             0, true, 0.0001, 0.00005});
   stats.sessions.push_back({});
+  stream::ServerStats busy;
+  busy.session_count = 1;
+  busy.ticks_dropped = 1;
+  busy.slowed = 2;
+  EXPECT_EQ(ServerLine(busy),
+            "up 0 s, 0.0 ticks per second, max delay 0.0 ms, 1 session, 1 tick dropped (queue "
+            "full), 2 rate-limit waits");
   EXPECT_EQ(ServerLine(stats),
-            "up 12 s, 100.0 ticks a second, latest by 3.1 ms, 3 sessions, 2 overruns");
+            "up 12 s, 100.0 ticks per second, max delay 3.1 ms, 3 sessions, 2 overruns");
   EXPECT_EQ(SessionTable(stats),
             "session  client        role  policy       queue  lag ms  sent  dropped  clock ms\n"
             "      7  footing-view  view  drop_oldest  4/256    40.0   480        9  0.10 +-0.05\n"

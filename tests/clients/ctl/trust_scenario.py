@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import re
+import signal
 import socket
 import sys
 import time
@@ -43,6 +44,12 @@ def check_server_side(stage, fingerprint):
     assert file.parent == stage.folder / "state/footing", file
     text = stage.run("footing-ctl", "trust").stdout
     assert fingerprint in text and "PRIVATE" not in text, text
+    missing = stage.folder / "none/identity.pem"
+    shown = stage.run("footing-ctl", "trust", "--identity", missing)
+    assert shown.returncode == 1 and "when it first listens" in shown.stderr, shown
+    assert not missing.parent.exists(), "showing makes nothing"
+    both = stage.run("footing-ctl", "trust", "--client", "--identity", file)
+    assert both.returncode == 2 and "excludes" in both.stderr, both
 
 
 def check_client(stage, address, fingerprint):
@@ -72,8 +79,10 @@ def check_client_certificate(stage):
     first = stage.run_json("footing-ctl", "trust", "--client")
     again = stage.run_json("footing-ctl", "trust", "--client")
     assert first == again and first["line"].startswith(first["fingerprint"] + " view "), first
-    (stage.folder / "clients").write_text("# the lab\n" + first["line"] + "\n")
-    stage.start("footingd", "--listen", "tls:127.0.0.1:0", "--json", "--source",
+    clients = stage.folder / "clients"
+    clients.write_text("# the lab\n" + first["line"] + "\n")
+    clients.chmod(0o600)
+    daemon = stage.start("footingd", "--listen", "tls:127.0.0.1:0", "--json", "--source",
                 f"stream:unix:{stage.folder}/more.sock", "--set",
                 f"clients_file={stage.folder}/clients", name="with_clients")
     log = stage.folder / "with_clients.log"
@@ -82,9 +91,19 @@ def check_client_certificate(stage):
         time.sleep(0.02)
     line = next(line for line in log.read_text().splitlines() if line.startswith("{"))
     del os.environ["FOOTING_TOKEN_FILE"]
-    status = stage.run_json("footing-ctl", "--connect", json.loads(line)["listening_on"][0],
-                            "status")
+    address = json.loads(line)["listening_on"][0]
+    status = stage.run_json("footing-ctl", "--connect", address, "status")
     assert status["granted_role"] == "ROLE_VIEW", status
+    # The roles of sessions that come are what the file says now.
+    clients.write_text(first["line"].replace(" view ", " control ") + "\n")
+    daemon.send_signal(signal.SIGHUP)
+    stage.wait_for(lambda: "config reloaded: contents of clients_file" in log.read_text(), "the reload")
+    status = stage.run_json("footing-ctl", "--connect", address, "status")
+    assert status["granted_role"] == "ROLE_CONTROL", status
+    clients.write_text("Ada\n")
+    daemon.send_signal(signal.SIGHUP)
+    stage.wait_for(lambda: "config not reloaded: the one in force stays: " in log.read_text(), "the refusal")
+    assert "line 1" in log.read_text(), log.read_text()
 
 
 def check_passed_socket(stage):

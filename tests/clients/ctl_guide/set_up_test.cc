@@ -234,7 +234,7 @@ TEST(SetUp, SaysThatThereAreFewerRemotesThanRoles) {
   const auto* bad = Find(results, "roles", "");
   ASSERT_NE(bad, nullptr);
   EXPECT_FALSE(bad->passed);
-  EXPECT_NE(bad->note.find("3 roles are asked for, but only 2"), std::string::npos) << bad->note;
+  EXPECT_NE(bad->note.find("3 roles are requested, but only 2"), std::string::npos) << bad->note;
 }
 
 TEST(SetUp, LeavesTheRoleOfARemoteThatIsNotAskedFor) {
