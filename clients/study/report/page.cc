@@ -79,11 +79,8 @@ std::string MeasureBlock(const Measure& measure, const ordered_json& json,
                                    " participants, those with a value for every interface.");
   }
   if (json.contains("test") && !json["test"].contains("error")) {
-    std::string note = json["test"].value("note", "");
-    if (const auto at = note.find("paired_p"); at != std::string::npos)
-      note.replace(at, 8, "paired p");
-    block +=
-        Paragraph("believe", note) + Paragraph("note", json["test"].value("procedure", "") + ".");
+    block += Paragraph("believe", json["test"].value("note", "")) +
+             Paragraph("note", json["test"].value("procedure", "") + ".");
   }
   return block + "</div>";
 }

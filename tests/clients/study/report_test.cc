@@ -187,9 +187,8 @@ TEST(StudyPage, SaysWhichTestToBelieveBesideEachMeasure) {
   const auto people = People(6);
   const Analysis analysis = Analyze(Two(), people);
   const std::string page = Page(analysis, Two(), people);
-  std::string note = Find(analysis, "rating fun")["test"]["note"];
-  ASSERT_THAT(note, HasSubstr("Believe paired_p"));
-  note.replace(note.find("paired_p"), 8, "paired p");  // As in the head of the column.
+  const std::string note = Find(analysis, "rating fun")["test"]["note"];
+  ASSERT_THAT(note, HasSubstr("Believe the paired p"));
   EXPECT_THAT(page, HasSubstr("<p class=\"believe\">" + Escaped(note)));
 }
 

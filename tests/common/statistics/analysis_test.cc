@@ -170,7 +170,7 @@ TEST(Analysis, NoteNamesWhatToBelieve) {
   StudyTable independent = Table();
   independent.blocks.reset();
   const Case steel = {TestKind::kSteel, {}}, dunnett = {TestKind::kDunnett, {}};
-  EXPECT_NE(note(Table(), steel).find("Believe paired_p"), std::string::npos);
+  EXPECT_NE(note(Table(), steel).find("Believe the paired p"), std::string::npos);
   EXPECT_NE(note(Table(), steel).find("4 subjects"), std::string::npos);
   EXPECT_NE(note(independent, dunnett).find("believe --test paired"), std::string::npos);
   EXPECT_NE(note(Table(), {TestKind::kPaired, {}}).find("Believe p:"), std::string::npos);
