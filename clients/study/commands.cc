@@ -22,11 +22,10 @@ Result<std::string> ReadTrack(const std::string& key, const std::string& track,
     return InvalidData(file + ": " + key + " has \"" + track +
                        "\"; a study uses built-in tracks, by their names");
   }
-  auto found = config::ReadNamedOrPath(track, "tracks");
+  auto found = config::ReadNamed(track, "tracks");
   if (found) return found;
-  std::string why = found.error().message;
-  why.erase(std::min(why.size(), why.find("; or give the path")));  // A study takes none.
-  return InvalidData(file + ": " + key + " has unknown track \"" + track + "\": " + why);
+  return InvalidData(file + ": " + key + " has unknown track \"" + track +
+                     "\": " + found.error().message);
 }
 
 /// Each task must be one of the straight track's.

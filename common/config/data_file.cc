@@ -79,18 +79,25 @@ Result<std::string> ReadDataFile(const std::string& name, const std::string& fol
   return ReadTextFile(*path);
 }
 
+Result<std::string> ReadNamed(const std::string& name, const std::string& folder,
+                              const std::string& data_folder) {
+  const std::string file = folder + "/" + name + ".json";
+  const std::string names = BuiltInNames(folder, data_folder);
+  if (!FindDataFile(file, data_folder) && !names.empty()) {
+    return Failure("cannot find " + file + ": \"" + name +
+                   "\" is not built in; there are: " + names);
+  }
+  return ReadDataFile(file, data_folder);
+}
+
 Result<std::string> ReadNamedOrPath(const std::string& name_or_path, const std::string& folder,
                                     const std::string& data_folder) {
   const bool is_path = name_or_path.find('/') != std::string::npos ||
                        name_or_path.find(".json") != std::string::npos;
   if (is_path) return ReadTextFile(name_or_path);
-  const std::string file = folder + "/" + name_or_path + ".json";
-  const std::string names = BuiltInNames(folder, data_folder);
-  if (!FindDataFile(file, data_folder) && !names.empty()) {
-    return Failure("cannot find " + file + ": \"" + name_or_path +
-                   "\" is not built in; there are: " + names + "; or give the path of a JSON file");
-  }
-  return ReadDataFile(file, data_folder);
+  auto read = ReadNamed(name_or_path, folder, data_folder);
+  if (read) return read;
+  return Error{read.error().kind, read.error().message + "; or give the path of a JSON file"};
 }
 
 }  // namespace footing::config

@@ -18,6 +18,9 @@ Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes 
 /// "FOLDER/NAME.json". The error for an unknown name lists the names that there are.
 Result<std::string> ReadNamedOrPath(const std::string& name_or_path, const std::string& folder,
                                     const std::string& data_folder = "");
+/// The built-in file "FOLDER/NAME.json" alone; the same error.
+Result<std::string> ReadNamed(const std::string& name, const std::string& folder,
+                              const std::string& data_folder = "");
 
 /// FindDataFile, then ReadTextFile.
 Result<std::string> ReadDataFile(const std::string& name, const std::string& folder = "");
