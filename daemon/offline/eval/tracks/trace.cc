@@ -19,13 +19,22 @@ constexpr const char* kColumns =
 Result<TrackTrace> TrackTrace::Create(const std::string& path) {
   TrackTrace trace;
   if (path.empty()) return trace;
+  trace.path_ = path;
   trace.file_.open(path);
   trace.file_ << kColumns;
-  if (!trace.file_.flush()) {
-    return Failure("cannot write " + path + ": " + std::generic_category().message(errno) +
-                   "; name another file");
-  }
+  if (!trace.file_.flush()) return trace.CannotWrite();
   return trace;
+}
+
+Error TrackTrace::CannotWrite() const {
+  return Failure("cannot write " + path_ + ": " +
+                 std::generic_category().message(error_ != 0 ? error_ : errno) +
+                 "; name another file");
+}
+
+Result<void> TrackTrace::Flush() {
+  if (!file_.is_open() || file_.flush()) return {};
+  return CannotWrite();
 }
 
 void TrackTrace::Add(stream::Gait wanted, stream::Gait meant, double turn_rad,
@@ -49,6 +58,7 @@ void TrackTrace::Add(stream::Gait wanted, stream::Gait meant, double turn_rad,
   file_ << ',';
   if (shown.turn.valid) file_ << shown.turn.share;
   file_ << '\n';
+  if (!file_ && error_ == 0) error_ = errno;
 }
 
 }  // namespace footing::eval

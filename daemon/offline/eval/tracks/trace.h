@@ -19,8 +19,14 @@ class TrackTrace {
   void Begin(std::uint64_t seed) { seed_ = seed; }
   void Add(stream::Gait wanted, stream::Gait meant, double turn_rad,
            const engine::EngineOutput& output);
+  /// Whether all rows so far are in the file: fails where the disk is full.
+  Result<void> Flush();
 
  private:
+  Error CannotWrite() const;
+
+  std::string path_;
+  int error_ = 0;  ///< errno of the first row that could not be written.
   std::ofstream file_;
   std::uint64_t seed_ = 0;
 };

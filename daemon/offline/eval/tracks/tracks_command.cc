@@ -78,6 +78,7 @@ Result<Trials> RunTrials(const Options& options, const std::string& track, Track
     user.seed = TrialSeed(seed, i);
     const Result<TrackResult> run = RunTrack(track, user, *trace);
     if (!run) return run.error();
+    if (const auto written = trace->Flush(); !written) return written.error();
     for (const stream::FailureCause cause : stream::kFailureCauses) {
       *stream::MutableCountOf(cause, trials.failures) += stream::CountOf(cause, run->failures);
     }
