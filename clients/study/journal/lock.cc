@@ -22,13 +22,14 @@ std::string Holder(int descriptor) {
 
 }  // namespace
 
-Result<Lock> Lock::Take(const std::string& path, const std::string& holder) {
+Result<Lock> Lock::Take(const std::string& path, const std::string& what,
+                        const std::string& holder) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (descriptor < 0) return Failure("cannot open " + path + ": " + std::strerror(errno));
   Lock lock(descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) return Failure("cannot lock " + path + ": " + std::strerror(errno));
-    return Failure("the study is in use by " + Holder(descriptor) +
+    return Failure(what + " is in use by " + Holder(descriptor) +
                    "; end that session first (lock file " + path + ")");
   }
   const std::string text = holder + "\n";

@@ -27,27 +27,35 @@ std::string Holder(const SessionOptions& options) {
 
 /// Everything that must be there before an event can be appended.
 struct Opened {
-  journal::Lock lock;
+  journal::Lock lock;  ///< Of the participant's folder.
   journal::Journal journal;
 };
 
-Result<Opened> OpenStudy(const SessionOptions& options) {
-  const std::string& folder = options.study_folder;
-  if (const auto done = journal::MakeFolder(folder); !done) return done.error();
-  auto lock = journal::Lock::Take(folder + "/lock", Holder(options));
+/// The journal of a participant whose folder is there: nobody else writes into it.
+Result<Opened> OpenJournal(const SessionOptions& options) {
+  const std::string own = journal::ParticipantFolder(options.study_folder, options.participant);
+  auto lock =
+      journal::Lock::Take(own + "/lock", "the session of " + options.participant, Holder(options));
   if (!lock) return lock.error();
-  if (const auto done = journal::KeepProtocol(folder, options.protocol_text); !done) {
-    return done.error();
-  }
-  const std::string own = journal::ParticipantFolder(folder, options.participant);
-  if (const auto done = journal::MakeFolder(own); !done) return done.error();
-  const std::string path = journal::JournalPath(folder, options.participant);
+  const std::string path = journal::JournalPath(options.study_folder, options.participant);
   auto journal =
       journal::Exists(path) ? journal::Journal::Resume(path) : journal::Journal::Create(path);
   if (!journal) return journal.error();
   const auto same = journal::RequireParticipant(journal->events(), options.participant, path);
   if (!same) return same.error();
   return Opened{std::move(*lock), std::move(*journal)};
+}
+
+/// One session at a time runs in a study: participants share devices and the character.
+Result<journal::Lock> LockStudy(const SessionOptions& options) {
+  const std::string& folder = options.study_folder;
+  auto lock = journal::Lock::Take(folder + "/lock", "the study", Holder(options));
+  if (!lock) return lock;
+  if (const auto done = journal::KeepProtocol(folder, options.protocol_text); !done) {
+    return done.error();
+  }
+  const auto done = journal::MakeFolder(journal::ParticipantFolder(folder, options.participant));
+  return done ? std::move(lock) : Result<journal::Lock>(done.error());
 }
 
 Result<plan::Session> SessionOf(const SessionOptions& options, const plan::Protocol& protocol) {
@@ -183,7 +191,9 @@ Result<void> RunSession(const SessionOptions& options, const plan::Protocol& pro
   if (const auto done = journal::MakeFolder(options.study_folder); !done) return done;
   const auto space = journal::RequireSpace(options.study_folder, protocol.disk_mb);
   if (!space) return space.error();
-  auto opened = OpenStudy(options);
+  const auto lock = LockStudy(options);
+  if (!lock) return lock.error();
+  auto opened = OpenJournal(options);
   if (!opened) return opened.error();
   Console console;
   std::unique_ptr<SurveyScreen> screen;
@@ -204,7 +214,9 @@ Result<void> AppendToSession(const SessionOptions& options, const plan::Protocol
   if (!journal::Exists(path))
     return UsageError("participant " + options.participant + " has no session yet: " + path +
                       " is missing");
-  auto opened = OpenStudy(options);
+  const auto same = journal::CheckProtocol(options.study_folder, options.protocol_text);
+  if (!same) return same.error();
+  auto opened = OpenJournal(options);
   if (!opened) return opened.error();
   if (fields.contains("failure")) {
     const records::Records records = records::Collect(opened->journal.events());

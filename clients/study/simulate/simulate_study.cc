@@ -102,7 +102,7 @@ Result<std::vector<SessionTime>> SimulateStudy(const StudyOptions& options) {
     if (const auto done = journal::MakeFolder(folder); !done) return done.error();
   }
   const auto lock = journal::Lock::Take(
-      options.study_folder + "/lock",
+      options.study_folder + "/lock", "the study",
       cli::UserAtHost() + ", footing-study simulate, process " + std::to_string(::getpid()));
   if (!lock) return lock.error();
   const auto kept = journal::KeepProtocol(options.study_folder, options.protocol_text);

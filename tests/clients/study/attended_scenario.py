@@ -16,7 +16,7 @@ sys.path.insert(0, sys.argv[1])
 from harness import Stage  # noqa: E402
 
 PROTOCOL = {
-    "version": 1, "name": "attended", "participants": ["P01"], "interfaces": ["wrist"], "seed": 2, "practice_s": 100,
+    "version": 1, "name": "attended", "participants": ["P01", "P02"], "interfaces": ["wrist"], "seed": 2, "practice_s": 100,
     "straight_trials": 0, "test_tracks": ["3"], "survey": {"ratings": ["fun"], "questions": ["good"]},
     "final_survey": {"questions": ["remarks"]}, "devices": {"allow_simulated": True}, "disk_mb": 1,
 }
@@ -61,8 +61,21 @@ def check_lock(stage):
     before = path.read_text()
     for change in (("--withdraw",), ("--undo-failure", 1), ("--restore-failure", 1)):
         done = stage.run("footing-study", "run", stage.folder / "a.json", "--participant", "P01", *change)
-        assert done.returncode == 1 and "the study is in use by" in done.stderr, done
+        assert done.returncode == 1 and "the session of P01 is in use by" in done.stderr, done
     assert path.read_text() == before
+    second = ("run", stage.folder / "a.json", "--participant", "P02", "--unattended")
+    done = stage.run("footing-study", *second)
+    assert done.returncode == 1 and "the study is in use by" in done.stderr, done
+
+
+def check_other(stage):
+    """Who has been here before may withdraw while somebody else's session runs."""
+    other = stage.folder / "a.study/P02"
+    other.mkdir()
+    other.joinpath("journal.jsonl").write_text(
+        '{"number":1,"wall_ns":1,"event":"session_started","participant":"P02","interfaces":["wrist"]}\n')
+    done = stage.run("footing-study", "run", stage.folder / "a.json", "--participant", "P02", "--withdraw")
+    assert done.returncode == 0 and '"withdrawn"' in other.joinpath("journal.jsonl").read_text(), done
 
 
 def session(stage, start):
@@ -70,6 +83,7 @@ def session(stage, start):
     experimenter.answer("Type yes to confirm", "yes")
     experimenter.read("show all commands")
     check_lock(stage)
+    check_other(stage)
     experimenter.type("\n")
     experimenter.answer("Practice of wrist: 100 s left", "")
     experimenter.answer("Press Enter to begin", "")

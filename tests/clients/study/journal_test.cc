@@ -123,13 +123,14 @@ TEST(StudyLock, NamesItsHolderAndEndsWithIt) {
   const test::TemporaryFolder folder;
   const std::string path = folder.Path("lock");
   {
-    const auto held = Lock::Take(path, "anna, footing-study 4711, participant P3");
+    const auto held = Lock::Take(path, "the study", "anna, footing-study 4711, participant P3");
     ASSERT_TRUE(held);
-    const auto second = Lock::Take(path, "ben");
+    const auto second = Lock::Take(path, "the study", "ben");
     ASSERT_FALSE(second);
-    EXPECT_THAT(second.error().message, HasSubstr("anna, footing-study 4711, participant P3"));
+    EXPECT_THAT(second.error().message,
+                HasSubstr("the study is in use by anna, footing-study 4711, participant P3"));
   }
-  EXPECT_TRUE(Lock::Take(path, "ben"));
+  EXPECT_TRUE(Lock::Take(path, "the study", "ben"));
 }
 
 TEST(DiskSpace, IsRequiredWithTheNeedStated) {
