@@ -54,7 +54,8 @@ Result<Answer> Check(const ProtocolOptions& options) {
                  {"folder", loaded->folder},
                  {"remarks", plan::Remarks(protocol)},
                  {"sessions", ordered_json::array()}};
-  answer.text = protocol.name + ": " + std::to_string(sessions.size()) + " participants, order " +
+  answer.text = protocol.name + ": " + std::to_string(sessions.size()) +
+                (sessions.size() == 1 ? " participant" : " participants") + ", order " +
                 Name(protocol.order) + ", seed " + std::to_string(protocol.seed) + ", control " +
                 protocol.control + "; data in " + loaded->folder + "\n";
   for (const plan::Session& session : sessions) {

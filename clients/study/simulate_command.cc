@@ -6,6 +6,7 @@
 
 #include "clients/study/commands.h"
 #include "clients/study/plan/phases.h"
+#include "clients/study/report/latency.h"
 #include "clients/study/simulate/simulate_study.h"
 #include "common/clock/clock.h"
 #include "common/text/number.h"
@@ -41,6 +42,26 @@ Result<std::vector<plan::Session>> Chosen(const SimulateOptions& given,
   return sessions;
 }
 
+/// Appends the latency of each interface without the wait for contact: a stage of its own would
+/// have to be looked up in the report.
+Result<void> AddLatency(const LoadedProtocol& loaded, Answer& answer) {
+  const auto people = ReadPeople(loaded);
+  if (!people) return people.error();
+  answer.json["latency"] = nlohmann::ordered_json::array();
+  for (const auto& one : report::LatencyByStage(loaded.protocol.interfaces, *people)) {
+    answer.json["latency"].push_back({{"interface", one.interface},
+                                      {"stage", one.stage},
+                                      {"responses", one.responses},
+                                      {"p50_ms", one.p50_ms},
+                                      {"p95_ms", one.p95_ms}});
+    if (one.stage != report::kWithoutContact) continue;
+    answer.text += "\n" + one.interface + ": latency without the wait for contact " +
+                   text::Fixed(one.p50_ms, 1) + " ms, 95 % within " + text::Fixed(one.p95_ms, 1) +
+                   " ms, " + std::to_string(one.responses) + " responses";
+  }
+  return {};
+}
+
 Result<Answer> Simulate(const SimulateOptions& given) {
   const auto loaded = Load(given.protocol, given.folder);
   if (!loaded) return loaded.error();
@@ -68,6 +89,7 @@ Result<Answer> Simulate(const SimulateOptions& given) {
   answer.json["simulated_s"] = simulated_s;
   answer.text = loaded->folder + ": " + std::to_string(times->size()) + " sessions; simulated " +
                 text::Fixed(simulated_s, 0) + " s in " + text::Fixed(took_s, 0) + " s";
+  if (const auto done = AddLatency(*loaded, answer); !done) return done.error();
   return answer;
 }
 
