@@ -4,6 +4,7 @@
 #include "clients/camera/tracking.h"
 #include "common/cli/cli.h"
 #include "common/log/log.h"
+#include "common/transport/address_or_default.h"
 
 namespace {
 
@@ -71,8 +72,7 @@ int main(int argc, char** argv) {
   if (!camera) return cli::Report(camera.error());
   options.camera = *camera;
   options.camera_path = camera_file;
-  const auto address = to.empty() ? Result<transport::Address>(transport::DefaultAddress("devices"))
-                                  : transport::ParseAddress(to);
+  const auto address = transport::AddressOrDefault(to, "devices");
   if (!address) return cli::Report(address.error());
   options.to = *address;
   if (!camera->X_WC)

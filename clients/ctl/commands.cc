@@ -4,18 +4,16 @@
 #include <utility>
 
 #include "common/cli/cli.h"
+#include "common/transport/address_or_default.h"
 
 namespace footing::ctl {
 
 Result<std::unique_ptr<Session>> Open(const Shared& shared, std::vector<std::string> channels) {
   SessionOptions options;
   options.channels = std::move(channels);
-  options.address = transport::DefaultAddress("sensor");
-  if (!shared.connect.empty()) {
-    const auto address = transport::ParseAddress(shared.connect);
-    if (!address) return address.error();
-    options.address = *address;
-  }
+  const auto address = transport::AddressOrDefault(shared.connect, "sensor");
+  if (!address) return address.error();
+  options.address = *address;
   return Session::Open(std::move(options));
 }
 

@@ -3,16 +3,14 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <ctime>
 #include <filesystem>
-#include <iomanip>
 #include <iostream>
-#include <sstream>
 #include <utility>
 
 #include "clients/ctl/guide/set_up.h"
 #include "common/clock/clock.h"
 #include "common/frames/camera_file.h"
+#include "common/text/utc.h"
 #include "common/wire/wire.h"
 
 namespace footing::ctl {
@@ -72,10 +70,10 @@ v1::Command CommandOf(const guide::Action& action, const std::string& rig) {
 }
 
 guide::Answer StoreCamera(const guide::Action& action, const std::string& file) {
-  const std::time_t now_s = clock::WallNs() / 1'000'000'000;
-  std::ostringstream remark;
-  remark << std::put_time(std::gmtime(&now_s), "%F") << ": " << action.remark;
-  const auto stored = frames::StorePose(file, action.X_WC, remark.str());
+  constexpr std::size_t kDateLength = 10;  // Of ISO 8601.
+  const std::string remark =
+      text::Utc(clock::WallNs()).substr(0, kDateLength) + ": " + action.remark;
+  const auto stored = frames::StorePose(file, action.X_WC, remark);
   guide::Answer answer;
   answer.key = action.key;
   answer.ok = stored.ok();

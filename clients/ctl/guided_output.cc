@@ -1,8 +1,8 @@
 #include <cmath>
-#include <ctime>
 
 #include "clients/ctl/guide/set_up.h"
 #include "clients/ctl/guided.h"
+#include "common/text/utc.h"
 #include "common/units/units.h"
 
 namespace footing::ctl {
@@ -13,12 +13,7 @@ using nlohmann::ordered_json;
 /// "2026-11-21T10:30:00Z"; empty when there is none.
 std::string Date(std::int64_t wall_time_ns) {
   if (wall_time_ns <= 0) return "";
-  const std::time_t seconds = wall_time_ns / kNanosecondsPerSecond;
-  std::tm parts{};
-  if (gmtime_r(&seconds, &parts) == nullptr) return "";
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
+  return text::Utc(wall_time_ns);
 }
 
 std::string RoundedText(double value) {

@@ -6,6 +6,7 @@
 #include "clients/game/recount.h"
 #include "common/cli/cli.h"
 #include "common/log/log.h"
+#include "common/transport/address_or_default.h"
 
 namespace {
 
@@ -30,14 +31,10 @@ int PrintRecount(const std::string& path, bool json) {
 
 Result<void> Resolve(const std::string& sensor, const std::string& simulation,
                      game::HostOptions& options) {
-  const auto resolve = [](const std::string& text, const char* name) {
-    return text.empty() ? Result<transport::Address>(transport::DefaultAddress(name))
-                        : transport::ParseAddress(text);
-  };
-  const auto at = resolve(sensor, "sensor");
+  const auto at = transport::AddressOrDefault(sensor, "sensor");
   if (!at) return at.error();
   options.sensor = *at;
-  const auto simulated = resolve(simulation, "simulation");
+  const auto simulated = transport::AddressOrDefault(simulation, "simulation");
   if (!simulated) return simulated.error();
   options.simulation = *simulated;
   // Ids of trials differ from one game to the next.

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <ctime>
 
 #include "common/stream/device.h"
+#include "common/text/utc.h"
 #include "footing/v1/character.pb.h"
 #include "footing/v1/device.pb.h"
 
@@ -15,8 +15,6 @@ namespace footing::log_client {
 namespace {
 
 namespace pb = google::protobuf;
-
-constexpr std::int64_t kNsInSecond = 1'000'000'000;
 
 /// Of /SERVER/CHANNEL.
 std::string ServerOf(const std::string& topic) {
@@ -58,18 +56,6 @@ void AppendNames(const std::vector<std::string>& names, std::size_t count, std::
 }
 
 }  // namespace
-
-std::string UtcText(std::int64_t unix_ns) {
-  const auto seconds = static_cast<std::time_t>(unix_ns / kNsInSecond);
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  char text[40];
-  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
-  char fraction[16];
-  std::snprintf(fraction, sizeof fraction, ".%06dZ",
-                static_cast<int>(unix_ns % kNsInSecond / 1000));
-  return std::string(text, length) + fraction;
-}
 
 void RowNotes::TakeSession(const mcap::TextMap& values) {
   const auto name = values.find("server");
@@ -128,7 +114,7 @@ std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
                 1e-9 * static_cast<double>(log_time_ns - std::min(first_ns_, log_time_ns)));
   std::string cells = seconds;
   if (server.has_wall_time) {
-    cells += UtcText(static_cast<std::int64_t>(log_time_ns) + server.wall_minus_host_ns);
+    cells += text::Utc(static_cast<std::int64_t>(log_time_ns) + server.wall_minus_host_ns, 6);
   }
   if (const pb::FieldDescriptor* field = DeviceField(row)) {
     cells += ',';

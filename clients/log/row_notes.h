@@ -45,7 +45,4 @@ class RowNotes {
   std::size_t most_contacts_ = 0;
 };
 
-/// Nanoseconds of UNIX time as UTC: 2026-11-22T13:38:48.123456Z.
-std::string UtcText(std::int64_t unix_ns);
-
 }  // namespace footing::log_client

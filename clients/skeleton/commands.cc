@@ -13,6 +13,7 @@
 #include "common/cli/cli.h"
 #include "common/config/data_file.h"
 #include "common/log/log.h"
+#include "common/transport/address_or_default.h"
 #include "common/units/units.h"
 
 namespace footing::skeleton {
@@ -80,9 +81,7 @@ struct ReceiverFlags {
     if (!at) return at.error();
     options.listen = *at;
     if (!no_publish) {
-      const auto address = to.empty()
-                               ? Result<transport::Address>(transport::DefaultAddress("devices"))
-                               : transport::ParseAddress(to);
+      const auto address = transport::AddressOrDefault(to, "devices");
       if (!address) return address.error();
       options.to = *address;
     }

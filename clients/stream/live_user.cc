@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/stream/interface_roles.h"
 #include "common/stream/leg_turn.h"
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/board_cells.h"
@@ -48,25 +49,6 @@ SimulatedDevice::CornerForces BoardOf(std::shared_ptr<LiveUser> user, std::size_
     const virtual_sensors::Corners& n = load.corners_n;
     return virtual_devices::CornerForces{n[0], n[1], n[2], n[3]};
   };
-}
-
-std::vector<DeviceRole> RolesOf(UserInterface interface, TurnSource turn_by) {
-  switch (interface) {
-    case UserInterface::kUnspecified:
-      return {};
-    case UserInterface::kWrist:
-    case UserInterface::kArm:
-      return {DeviceRole::kLeftHand, DeviceRole::kRightHand};
-    case UserInterface::kLeg:
-      if (turn_by == TurnSource::kFeet) return {DeviceRole::kLeftLeg, DeviceRole::kRightLeg};
-      return {DeviceRole::kLeftLeg, DeviceRole::kRightLeg,
-              turn_by == TurnSource::kTrunk ? DeviceRole::kTrunk : DeviceRole::kHead};
-    case UserInterface::kJoystick:
-      return {DeviceRole::kRightHand};
-    case UserInterface::kBoards:
-      return {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
-  }
-  return {};
 }
 
 }  // namespace
@@ -120,7 +102,7 @@ Result<LiveUserPlan> PlanLiveUser(const std::string& interface, const std::strin
   if (turns == TurnSource::kUnspecified) {
     return UsageError("unknown --turn-by " + turn_by + "; there are: head, feet, trunk");
   }
-  const std::vector<DeviceRole> roles = RolesOf(named, turns);
+  const std::vector<DeviceRole> roles = stream::RolesOf(named, turns);
   if (roles.empty()) {
     return UsageError("unknown --interface " + interface +
                       "; there are: " + stream::UserInterfaceNames());

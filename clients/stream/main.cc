@@ -15,6 +15,7 @@
 #include "common/clock/clock.h"
 #include "common/log/log.h"
 #include "common/timer/timer.h"
+#include "common/transport/address_or_default.h"
 
 namespace {
 
@@ -28,8 +29,7 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
   if (!plan) return cli::Report(plan.error());
   if (plan->devices.empty() && plan->feeds.empty())
     return cli::Report(UsageError("name --left FILE, --right FILE or both"));
-  auto to = common.to.empty() ? Result<transport::Address>(transport::DefaultAddress("devices"))
-                              : transport::ParseAddress(common.to);
+  const auto to = transport::AddressOrDefault(common.to, "devices");
   if (!to) return cli::Report(to.error());
   if (const auto done = clock::FollowTimekeeper(); !done) return cli::Report(done.error());
   boost::asio::io_context io(1);
@@ -54,9 +54,7 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
 }
 
 int RunPlayer(const std::string& simulation, const stream_client::Common& common) {
-  const auto at = simulation.empty()
-                      ? Result<transport::Address>(transport::DefaultAddress("simulation"))
-                      : transport::ParseAddress(simulation);
+  const auto at = transport::AddressOrDefault(simulation, "simulation");
   if (!at) return cli::Report(at.error());
   auto planned = stream_client::PlanRunner(common);
   if (!planned) return cli::Report(planned.error());

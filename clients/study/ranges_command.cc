@@ -13,6 +13,8 @@
 #include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
 #include "common/text/number.h"
+#include "common/text/utc.h"
+#include "common/transport/address_or_default.h"
 
 namespace footing::study {
 namespace {
@@ -53,12 +55,8 @@ Result<RecordedRanges> MeasureLive(const RangesOptions& options) {
                       " exists and is not overwritten; choose another name, or say "
                       "--force");
   }
-  transport::Address sensor = transport::DefaultAddress("sensor");
-  if (!options.sensor.empty()) {
-    const auto parsed = transport::ParseAddress(options.sensor);
-    if (!parsed) return parsed.error();
-    sensor = *parsed;
-  }
+  const auto sensor = transport::AddressOrDefault(options.sensor, "sensor");
+  if (!sensor) return sensor.error();
   Console console;
   if (!options.now) {
     const auto ready = console.Ask("Read each motion aloud; they take " +
@@ -66,7 +64,7 @@ Result<RecordedRanges> MeasureLive(const RangesOptions& options) {
                                    " s. Press Enter to begin:");
     if (!ready) return ready.error();
   }
-  return MeasureRanges(console, sensor, options.rig, options.played);
+  return MeasureRanges(console, *sensor, options.rig, options.played);
 }
 
 /// Of one person, live or from a recording.
@@ -101,7 +99,7 @@ Result<ranges::Measured> MergeGroup(const RangesOptions& options) {
 Result<Answer> MakeTable(const RangesOptions& options) {
   auto measured = options.group.empty() ? MeasureOne(options) : MergeGroup(options);
   if (!measured) return measured.error();
-  measured->provenance.when = UtcText(clock::WallNs());
+  measured->provenance.when = text::Utc(clock::WallNs());
   measured->provenance.by = std::string("footing-study ") + cli::Version();
   const auto built_in = config::ReadDataFile(measured->played.interface + "_mapping.json");
   if (!built_in) return built_in.error();

@@ -6,6 +6,7 @@
 #include "clients/study/session/run_session.h"
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
+#include "common/transport/address_or_default.h"
 
 namespace footing::study {
 namespace {
@@ -32,15 +33,12 @@ Result<SessionOptions> ToSession(const RunOptions& given, const LoadedProtocol& 
   options.answer_seed = given.seed;
   options.version = cli::Version();
   options.tables = loaded.tables;
-  options.sensor = transport::DefaultAddress("sensor");
-  options.simulation = transport::DefaultAddress("simulation");
-  for (const auto& [text, address] : {std::pair(&given.sensor, &options.sensor),
-                                      std::pair(&given.simulation, &options.simulation)}) {
-    if (text->empty()) continue;
-    const auto parsed = transport::ParseAddress(*text);
-    if (!parsed) return parsed.error();
-    *address = *parsed;
-  }
+  const auto sensor = transport::AddressOrDefault(given.sensor, "sensor");
+  if (!sensor) return sensor.error();
+  options.sensor = *sensor;
+  const auto simulation = transport::AddressOrDefault(given.simulation, "simulation");
+  if (!simulation) return simulation.error();
+  options.simulation = *simulation;
   if (!given.survey.empty()) {
     const auto parsed = transport::ParseAddress(given.survey);
     if (!parsed) return parsed.error();

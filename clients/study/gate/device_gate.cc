@@ -20,12 +20,19 @@ const DeviceStatus* WithRole(DeviceRole role, const std::vector<DeviceStatus>& d
   return found;
 }
 
-/// Of a role that the interface needs; null: none.
+bool HasNunchuk(const DeviceStatus& device) {
+  return device.extension == stream::Extension::kNunchuk ||
+         device.extension == stream::Extension::kMotionPlusNunchuk;
+}
+
+/// Of a role that the interface needs; null: none. The joystick is in the hand whose Wiimote has
+/// the Nunchuk.
 const DeviceStatus* DeviceOf(DeviceRole role, const std::string& interface,
                              const std::vector<DeviceStatus>& devices) {
   const DeviceStatus* device = WithRole(role, devices);
-  if (device != nullptr || interface != "joystick") return device;
-  return WithRole(DeviceRole::kLeftHand, devices);
+  if (interface != "joystick" || (device != nullptr && HasNunchuk(*device))) return device;
+  const DeviceStatus* other = WithRole(DeviceRole::kLeftHand, devices);
+  return device == nullptr || (other != nullptr && HasNunchuk(*other)) ? other : device;
 }
 
 /// A head's controller is worn as its frame is, and hands need no mounting (docs/interfaces.md).
@@ -69,31 +76,18 @@ void Check(const plan::DeviceGate& gate, const DeviceStatus& device,
 
 }  // namespace
 
-std::vector<DeviceRole> RolesOf(const Played& played) {
-  const std::string& interface = played.interface;
-  if (interface == "leg") {
-    std::vector<DeviceRole> roles{DeviceRole::kLeftLeg, DeviceRole::kRightLeg};
-    if (played.turn_by == "head") roles.push_back(DeviceRole::kHead);
-    if (played.turn_by == "trunk") roles.push_back(DeviceRole::kTrunk);
-    return roles;
-  }
-  if (interface == "boards") return {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
-  if (interface == "joystick") return {DeviceRole::kRightHand};
-  return {DeviceRole::kLeftHand, DeviceRole::kRightHand};
-}
-
-bool AnySimulated(const Played& played, const std::vector<DeviceStatus>& devices) {
-  for (const DeviceRole role : RolesOf(played)) {
+bool AnySimulated(const plan::Played& played, const std::vector<DeviceStatus>& devices) {
+  for (const DeviceRole role : plan::RolesOf(played)) {
     const DeviceStatus* device = DeviceOf(role, played.interface, devices);
     if (device != nullptr && device->simulated) return true;
   }
   return false;
 }
 
-std::vector<std::string> Problems(const plan::DeviceGate& gate, const Played& played,
+std::vector<std::string> Problems(const plan::DeviceGate& gate, const plan::Played& played,
                                   const std::vector<DeviceStatus>& devices) {
   std::vector<std::string> problems;
-  for (const DeviceRole role : RolesOf(played)) {
+  for (const DeviceRole role : plan::RolesOf(played)) {
     const DeviceStatus* device = DeviceOf(role, played.interface, devices);
     if (device == nullptr) {
       problems.push_back(std::string(stream::Name(role)) + " is missing, and the interface " +
@@ -102,13 +96,18 @@ std::vector<std::string> Problems(const plan::DeviceGate& gate, const Played& pl
       continue;
     }
     Check(gate, *device, problems);
+    if (played.interface == "joystick" && !HasNunchuk(*device)) {
+      problems.push_back(std::string(stream::Name(device->role)) + " (" + device->serial +
+                         ") has no Nunchuk; plug one into it");
+    }
   }
   return problems;
 }
 
-std::vector<std::string> Warnings(const Played& played, const std::vector<DeviceStatus>& devices) {
+std::vector<std::string> Warnings(const plan::Played& played,
+                                  const std::vector<DeviceStatus>& devices) {
   std::vector<std::string> warnings;
-  for (const DeviceRole role : RolesOf(played)) {
+  for (const DeviceRole role : plan::RolesOf(played)) {
     const DeviceStatus* device = DeviceOf(role, played.interface, devices);
     if (device == nullptr) continue;
     const std::string name = std::string(stream::Name(role)) + " (" + device->serial + ")";

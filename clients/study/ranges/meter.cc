@@ -50,15 +50,6 @@ bool Present(const DeviceFeatures* device) {
   return device != nullptr && (device->moving || device->inclination_valid);
 }
 
-std::vector<DeviceRole> RolesOf(const Played& played) {
-  if (played.interface == "boards") return {DeviceRole::kLeftBoard, DeviceRole::kRightBoard};
-  if (played.interface != "leg") return {DeviceRole::kLeftHand, DeviceRole::kRightHand};
-  std::vector<DeviceRole> roles{DeviceRole::kLeftLeg, DeviceRole::kRightLeg};
-  if (played.turn_by == "head") roles.push_back(DeviceRole::kHead);
-  if (played.turn_by == "trunk") roles.push_back(DeviceRole::kTrunk);
-  return roles;
-}
-
 /// Of a forearm over the horizontal; as mapping::ForearmElevation.
 double Elevation(const DeviceFeatures& hand, bool mounted) {
   if (!mounted) return hand.pitch_rad;
@@ -157,13 +148,14 @@ void Meter::AddTurn(const RigFeatures& rig, const Limbs& limbs, double elapsed_s
 
 void Meter::Add(double time_s, const RigFeatures& rig, std::uint32_t mounted_roles) {
   const double elapsed_s = Elapse(time_s);
-  const std::vector<DeviceRole> roles = RolesOf(played_);
+  const std::vector<DeviceRole> roles = plan::RolesOf(played_);
   for (const DeviceRole role : roles) {
     const DeviceFeatures* device = Find(rig, role);
     if (!Present(device)) continue;
     present_s_[role] += elapsed_s;
     simulated_ = simulated_ || device->simulated;
   }
+  if (roles.size() < 2) return;  // A stick.
   const DeviceFeatures *left = Find(rig, roles[0]), *right = Find(rig, roles[1]);
   if (!Present(left) || !Present(right)) return;
   Limbs limbs{.left = *left,
@@ -198,7 +190,7 @@ void Meter::AddStick(double time_s, double x, double y, bool simulated) {
 void Meter::AddStance(double time_s, const board::Stance& stance, bool simulated) {
   const double elapsed_s = Elapse(time_s);
   simulated_ = simulated_ || simulated;
-  for (const DeviceRole role : RolesOf(played_)) present_s_[role] += elapsed_s;
+  for (const DeviceRole role : plan::RolesOf(played_)) present_s_[role] += elapsed_s;
   const BoardMotion motion = boards_.Advance(time_s, stance);
   if (motion.steps) Put(quantity::kFootHz, motion.foot_hz, elapsed_s);
   if (motion.leans_known) {
@@ -218,7 +210,7 @@ Result<void> Meter::CheckDevices() const {
     return NoDevice("no stick has sent anything; plug the Nunchuk into the Wiimote of a hand");
   }
   std::uint32_t missing = 0;
-  for (const DeviceRole role : RolesOf(played_)) {
+  for (const DeviceRole role : plan::RolesOf(played_)) {
     const auto found = present_s_.find(role);
     const double present_s = found == present_s_.end() ? 0 : found->second;
     if (present_s < kLeastPresence * seen_s_ || seen_s_ == 0) missing |= stream::RoleBit(role);

@@ -5,17 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "clients/study/plan/played.h"
 #include "common/result/result.h"
 
 /// A person's comfortable range for an interface (gait paper, section 7: the mapping goes from "the
 /// user's comfortable range of motion" to the character's stable one).
 namespace footing::study::ranges {
 
-/// Who does what: an interface and, of the interface leg, what turns.
-struct Played {
-  std::string interface;         ///< Name of a stream::UserInterface.
-  std::string turn_by = "head";  ///< head, trunk or feet.
-};
+using plan::Played;
 
 /// What of a person's motion is measured.
 namespace quantity {

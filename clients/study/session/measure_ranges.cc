@@ -1,7 +1,5 @@
 #include "clients/study/session/measure_ranges.h"
 
-#include <array>
-#include <ctime>
 #include <vector>
 
 #include "common/text/number.h"
@@ -109,15 +107,6 @@ Result<RecordedRanges> MeasureRanges(Console& console, const transport::Address&
   auto measured = feed.meter().Measure();
   if (!measured) return measured.error();
   return RecordedRanges{std::move(*measured), feed.meter().simulated()};
-}
-
-std::string UtcText(std::int64_t wall_ns) {
-  const std::time_t seconds = wall_ns / 1'000'000'000;
-  std::tm utc{};
-  ::gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  const std::size_t size = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return std::string(text.data(), size);
 }
 
 }  // namespace footing::study

@@ -15,7 +15,4 @@ namespace footing::study {
 Result<RecordedRanges> MeasureRanges(Console& console, const transport::Address& sensor,
                                      const std::string& rig, const ranges::Played& played);
 
-/// The instant as UTC text, ISO 8601.
-std::string UtcText(std::int64_t wall_ns);
-
 }  // namespace footing::study

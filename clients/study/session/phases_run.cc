@@ -74,7 +74,7 @@ Result<void> SessionRun::CheckDevices(const std::string& interface) {
   if (!servers) return servers.error();
   plan::DeviceGate gate = context_.protocol.devices;
   gate.allow_simulated = gate.allow_simulated || context_.options.unattended;
-  const gate::Played played{interface, context_.protocol.settings.turn_by};
+  const plan::Played played{interface, context_.protocol.settings.turn_by};
   const auto problems = [&] { return gate::Problems(gate, played, (*servers)->devices()); };
   for (;;) {
     const Waited waited =
@@ -163,7 +163,7 @@ Result<void> SessionRun::Trial(const plan::Phase& phase) {
     if (!outcome) return outcome.error();
     if (*outcome == records::kDeviceLost) {
       if (!attended) return NoDevice("a device was lost in " + phase.id);
-      context_.console.Print("A device was lost: this attempt does not count.");
+      context_.console.Print("This attempt does not count.");
       continue;
     }
     if (!attended) return {};
@@ -179,10 +179,11 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
       context_.protocol.disk_mb / static_cast<double>(context_.session.trial_count()));
   if (!space) return space.error();
   if (!context_.options.unattended) {
-    Show("Next: track " + phase.track + (phase.task.empty() ? "." : ", task " + phase.task + "."),
-         "Enter begins the trial");
-    const auto ready = context_.console.Ask("Next: " + phase.id + ", track " + phase.track +
-                                            ". Press Enter to begin:");
+    const std::string where =
+        "track " + phase.track + (phase.task.empty() ? "" : ", task " + phase.task) + ".";
+    Show("Next: " + where, "Enter begins the trial");
+    const auto ready =
+        context_.console.Ask("Next: " + phase.id + ", " + where + " Press Enter to begin:");
     if (!ready) return ready.error();
   }
   const auto servers = UseInterface(phase.interface);

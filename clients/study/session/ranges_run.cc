@@ -5,6 +5,7 @@
 #include "common/clock/clock.h"
 #include "common/config/data_file.h"
 #include "common/text/number.h"
+#include "common/text/utc.h"
 
 namespace footing::study {
 namespace {
@@ -66,7 +67,7 @@ Result<void> SessionRun::MeasureRanges(const plan::Phase& phase) {
     if (context_.console.interrupted()) return Interrupted();
     auto table = measured ? ranges::TableOf(played, measured->ranges,
                                             {.participants = {context_.session.participant},
-                                             .when = UtcText(clock::WallNs()),
+                                             .when = text::Utc(clock::WallNs()),
                                              .how = "live",
                                              .by = "footing-study " + context_.options.version,
                                              .simulated = measured->simulated},

@@ -199,7 +199,10 @@ class TrialRun {
                            {"active_s", active_.seconds() - active_before_s_}};
     fields.update(events_.Figures());
     events_.End();
-    if (outcome == records::kDeviceLost) fields["device"] = stream::RoleNames(lost_roles_);
+    if (outcome == records::kDeviceLost) {
+      fields["device"] = stream::RoleNames(lost_roles_);
+      context_.console.Print("Lost: " + stream::RoleNames(lost_roles_) + ".");
+    }
     if (recorder_->CatchUp(context_.console, servers_.frame().host_ns) == Waited::kInterrupted) {
       return Interrupted();
     }

@@ -1,7 +1,7 @@
 #include "daemon/simulation/gait_service/effective_config.h"
 
-#include "common/config/config.h"
 #include "common/model/sha256.h"
+#include "daemon/simulation/serving/effective_settings.h"
 
 namespace footing::gait_service {
 namespace {
@@ -10,24 +10,14 @@ using nlohmann::ordered_json;
 
 std::string HashOf(const std::string& text) { return model::Hex(model::Sha256(text)); }
 
-ordered_json SettingsOf(serving::Config common, Config config) {
-  config::Binder binder;
-  common.Bind(binder);
-  config.Bind(binder);
-  return ordered_json::parse(binder.Print());
-}
-
 }  // namespace
 
 EffectiveConfig::EffectiveConfig(const serving::Config& common, const Config& config,
                                  const engine::EngineTexts& texts,
                                  const engine::EngineConfig& engine) {
-  json_ = {{"program", "footing-sim"},
-           {"version", common.version},
-           {"engine", "gait"},
-           {"step_s", engine.step_s},
-           {"settings", SettingsOf(common, config)},
-           {"sha256", {{engine::kBipedFile, HashOf(texts.biped)}}}};
+  json_ = serving::EffectiveSettings(common, "gait", config);
+  json_["step_s"] = engine.step_s;
+  json_["sha256"] = {{engine::kBipedFile, HashOf(texts.biped)}};
   for (const engine::GainText& gains : texts.gains) {
     json_["sha256"][gains.origin] = HashOf(gains.text);
   }

@@ -6,6 +6,7 @@
 #include "daemon/simulation/pose_service/pose_models.h"
 #include "daemon/simulation/pose_service/pose_publish.h"
 #include "daemon/simulation/serving/channel_bytes.h"
+#include "daemon/simulation/serving/effective_settings.h"
 #include "daemon/simulation/serving/messages.h"
 
 namespace footing::pose_service {
@@ -15,16 +16,10 @@ using serving::Answer;
 namespace {
 
 /// What the engine runs with; its subject stands in the frames.
-std::string EffectiveConfig(serving::Config common, Config config) {
+std::string EffectiveConfig(const serving::Config& common, const Config& config) {
   using nlohmann::ordered_json;
-  config::Binder binder;
-  common.Bind(binder);
-  config.Bind(binder);
-  const ordered_json json = {{"program", "footing-sim"},
-                             {"version", common.version},
-                             {"engine", "pose"},
-                             {"settings", ordered_json::parse(binder.Print())}};
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return serving::EffectiveSettings(common, "pose", config)
+      .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace

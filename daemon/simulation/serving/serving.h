@@ -21,6 +21,7 @@
 #include "common/service_manager/service_manager.h"
 #include "common/timer/timer.h"
 #include "common/transport/access.h"
+#include "common/transport/address_or_default.h"
 #include "common/transport/client.h"
 #include "common/transport/server.h"
 #include "daemon/simulation/serving/config.h"
@@ -64,12 +65,9 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     advertiser_.emplace(io, discovery::ServicesOf(server_, listening_, name, "footing-sim"));
     if (const auto served = monitor_.Serve(io, config.metrics); !served) return served;
     transport::ClientOptions options;
-    options.address = transport::DefaultAddress("sensor");
-    if (!config.sensor.empty()) {
-      const auto address = transport::ParseAddress(config.sensor);
-      if (!address) return address.error();
-      options.address = *address;
-    }
+    const auto sensor = transport::AddressOrDefault(config.sensor, "sensor");
+    if (!sensor) return sensor.error();
+    options.address = *sensor;
     options.client_name = "footing-sim";
     options.channels = line_->SensorChannels();
     options.policy = Line::kSensorPolicy;

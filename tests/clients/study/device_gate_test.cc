@@ -45,8 +45,22 @@ TEST(DeviceGate, NeedsTheRolesOfTheInterface) {
   EXPECT_THAT(Problems({}, {"leg"}, Hands()),
               ElementsAre(HasSubstr("left_leg is missing"), HasSubstr("right_leg is missing"),
                           HasSubstr("head is missing")));
-  EXPECT_THAT(Problems({}, {"joystick"}, {Good(DeviceRole::kLeftHand)}), IsEmpty());
   EXPECT_THAT(Problems({}, {"joystick"}, {}), ElementsAre(HasSubstr("right_hand is missing")));
+}
+
+/// The hands' Wiimotes of another interface are no joystick.
+TEST(DeviceGate, NeedsTheNunchukOfAJoystickInEitherHand) {
+  auto devices = Hands();
+  EXPECT_THAT(Problems({}, {"joystick"}, devices),
+              ElementsAre(HasSubstr("right_hand (00:1f) has no Nunchuk; plug one into it")));
+  for (DeviceStatus& device : devices) {
+    device.extension = stream::Extension::kNunchuk;
+    EXPECT_THAT(Problems({}, {"joystick"}, devices), IsEmpty()) << stream::Name(device.role);
+    EXPECT_THAT(Problems({}, {"joystick"}, {device}), IsEmpty()) << stream::Name(device.role);
+    device.extension = stream::Extension::kNone;
+  }
+  devices.back().extension = stream::Extension::kMotionPlusNunchuk;
+  EXPECT_THAT(Problems({}, {"joystick"}, devices), IsEmpty());
 }
 
 TEST(DeviceGate, NeedsOfTheLegsWhatTurns) {

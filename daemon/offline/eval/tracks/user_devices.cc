@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/board/layout.h"
+#include "common/stream/interface_roles.h"
 #include "common/units/units.h"
 
 namespace footing::eval {
@@ -23,15 +24,12 @@ constexpr double kCellGainSpread = 0.01;
 /// Device numbers are those of the roles.
 std::uint32_t DeviceOf(DeviceRole role) { return static_cast<std::uint32_t>(role); }
 
+/// Boards and sticks have no features.
 std::vector<features::Member> MembersFor(UserInterface interface, TurnSource turn_by) {
-  const bool legs = interface == UserInterface::kLeg;
   std::vector<features::Member> members;
-  for (const DeviceRole role : {legs ? DeviceRole::kLeftLeg : DeviceRole::kLeftHand,
-                                legs ? DeviceRole::kRightLeg : DeviceRole::kRightHand}) {
+  for (const DeviceRole role : stream::RolesOf(interface, turn_by)) {
     members.push_back({DeviceOf(role), role});
   }
-  const DeviceRole upper = turn_by == TurnSource::kTrunk ? DeviceRole::kTrunk : DeviceRole::kHead;
-  if (legs && turn_by != TurnSource::kFeet) members.push_back({DeviceOf(upper), upper});
   return members;
 }
 
