@@ -144,13 +144,13 @@ def check_synthetic(stage):
 def check_model(stage):
     video = stage.folder / "figure.y4m"
     write_video(video)
-    port = serve(stage, 90, "--no-publish")
+    port = serve(stage, 150, "--no-publish")
     browse(stage, port, "camera", f"--use-file-for-fake-video-capture={video}")
     log = stage.folder / "skeleton.log"
     stage.wait_for(lambda: "page: watching the webcam" in log.read_text() or "page: stopped" in log.read_text(),
-                   "the model", timeout_s=80)
+                   "the model", timeout_s=100)
     assert "page: stopped" not in log.read_text(), log.read_text()
-    web = statistics(stage, 120)["web"]
+    web = statistics(stage, 200)["web"]
     assert web["frames"] >= 1, web
 
 
