@@ -34,7 +34,8 @@ constexpr std::size_t kMostStateBytes = 200;
 /// Nothing comes from another host. The model's own code makes functions out of text and compiles
 /// WebAssembly.
 constexpr const char* kPolicy =
-    "default-src 'self' data: blob:; script-src 'self' 'unsafe-eval' blob:; worker-src 'self' blob:; "
+    "default-src 'self' data: blob:; script-src 'self' 'unsafe-eval' blob:; worker-src 'self' "
+    "blob:; "
     "connect-src 'self' ws: data: blob:";
 
 const std::map<std::string_view, const char*> kTypes = {
@@ -111,7 +112,8 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
 
   void TakeState(std::string state) {
     state.resize(std::min(state.size(), kMostStateBytes));
-    std::replace_if(state.begin(), state.end(), [](char c) { return c < ' ' || c > '~'; }, ' ');
+    std::replace_if(
+        state.begin(), state.end(), [](char c) { return c < ' ' || c > '~'; }, ' ');
     if (state == desk_->state) return;
     desk_->state = state;
     if (desk_->options.on_state) desk_->options.on_state(state);
@@ -154,7 +156,8 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
     if (error == http::error::end_of_stream || !socket_.is_open()) return;
     if (error) return Refuse(http::status::bad_request, "this is not a request\n");
     const Request& request = parser_.get();
-    if (!IsOwnHost(request[http::field::host])) return Refuse(http::status::forbidden, "another host's name\n");
+    if (!IsOwnHost(request[http::field::host]))
+      return Refuse(http::status::forbidden, "another host's name\n");
     if (websocket::is_upgrade(request) && request.target() == "/skeleton") return Upgrade(request);
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return Refuse(http::status::method_not_allowed, "there is GET\n");
@@ -211,9 +214,9 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
   void Send(Answer& answer) {
     answer.prepare_payload();
     Expire(kLongestAnswer);
-    http::async_write(
-        socket_, answer,
-        [self = shared_from_this()](const error_code&, std::size_t) { self->Close(); });
+    http::async_write(socket_, answer, [self = shared_from_this()](const error_code&, std::size_t) {
+      self->Close();
+    });
   }
 
   void Close() {

@@ -16,7 +16,7 @@ namespace footing::skeleton {
 struct WebOptions {
   transport::Address listen;      ///< tcp, of this host only: browsers give it their webcam.
   std::filesystem::path package;  ///< The folder of npm's @mediapipe/pose.
-  std::function<void(osc::Bytes packet)> on_packet;           ///< What a page sends.
+  std::function<void(osc::Bytes packet)> on_packet;            ///< What a page sends.
   std::function<void(const std::string& line)> on_state = {};  ///< What a page says of itself.
 };
 
