@@ -12,6 +12,7 @@ import math
 import os
 import pathlib
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -144,13 +145,14 @@ def check_synthetic(stage):
 def check_model(stage):
     video = stage.folder / "figure.y4m"
     write_video(video)
-    port = serve(stage, 150, "--no-publish")
+    port = serve(stage, 0, "--no-publish")
     browse(stage, port, "camera", f"--use-file-for-fake-video-capture={video}")
     log = stage.folder / "skeleton.log"
-    stage.wait_for(lambda: "page: watching the webcam" in log.read_text() or "page: stopped" in log.read_text(),
-                   "the model", timeout_s=100)
+    stage.wait_for(lambda: "page: the model runs" in log.read_text() or "page: stopped" in log.read_text(),
+                   "the model", timeout_s=250)
     assert "page: stopped" not in log.read_text(), log.read_text()
-    web = statistics(stage, 200)["web"]
+    stage.processes["skeleton"].send_signal(signal.SIGINT)
+    web = statistics(stage, 20)["web"]
     assert web["frames"] >= 1, web
 
 

@@ -92,7 +92,7 @@ async function runCamera() {
     const pose = new window.Pose({ locateFile: name => '/pose/' + name });
     pose.setOptions({ modelComplexity: 1, smoothLandmarks: true, minDetectionConfidence: 0.5,
                       minTrackingConfidence: 0.5 });
-    let exposedMs = 0;
+    let exposedMs = 0, model = false;  // The first picture takes longest.
     pose.onResults(results => take(results.image, results.poseLandmarks,
                                    results.poseWorldLandmarks, exposedMs));
     await pose.initialize();
@@ -106,6 +106,8 @@ async function runCamera() {
     while (mine === run) {
       exposedMs = nowMs();
       await pose.send({ image: video });
+      if (!model) show('the model runs on the webcam');
+      model = true;
       await new Promise(resolve => setTimeout(resolve, 0));
     }
     for (const track of video.srcObject.getTracks()) track.stop();
