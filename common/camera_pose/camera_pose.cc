@@ -72,16 +72,16 @@ std::optional<Error> WrongLength(const CameraPose& pose) {
                      times);
 }
 
-/// The mark without which the others fit best.
-std::size_t WorstMark(const Observations& observations) {
-  std::size_t worst = 0;
+/// The mark without which the others fit best; none when the others are too few to say so.
+std::optional<std::size_t> WorstMark(const Observations& observations) {
+  std::optional<std::size_t> worst;
   double least = 0;
   for (std::size_t i = 0; i < observations.marks.size(); ++i) {
     Observations others = observations;
     others.marks.erase(others.marks.begin() + static_cast<std::ptrdiff_t>(i));
     if (others.marks.size() < 3 || WidthM(others.marks) < kLeastWidthM) continue;
     const double misfit = Fit(others).misfit;
-    if (i > 0 && least > 0 && misfit >= least) continue;
+    if (worst && misfit >= least) continue;
     least = misfit;
     worst = i;
   }
@@ -97,9 +97,14 @@ std::optional<Error> WrongPlace(const Observations& observations, const CameraPo
         std::pow(observations.placement_sd_m, 2) * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d error = mark.p_W_m - pose.X_WC * mark.seen.p_C_m;
     if (error.dot(covariance.ldlt().solve(error)) <= kMostDeviations * kMostDeviations) continue;
-    const std::size_t worst = WorstMark(observations);
-    return InvalidData("the mark " + observations.marks[worst].name + " is " +
-                       Mm(pose.residuals_m[worst]) +
+    const auto worst = WorstMark(observations);
+    if (!worst)
+      return InvalidData("the marks are up to " + Mm(std::ranges::max(pose.residuals_m)) +
+                         " from where they should be, and with so few nobody can say which one is "
+                         "wrong: add a fourth mark, or measure all again, with the sphere right on "
+                         "each mark");
+    return InvalidData("the mark " + observations.marks[*worst].name + " is " +
+                       Mm(pose.residuals_m[*worst]) +
                        " from where the others put it: measure it again, with the sphere right on "
                        "the mark; if it stays, the boards lie otherwise than in the layout");
   }

@@ -1,5 +1,7 @@
 #include "common/camera_pose/samples.h"
 
+#include "common/stream/hand_covariance.h"
+
 namespace footing::camera_pose {
 namespace {
 
@@ -10,21 +12,13 @@ Eigen::Isometry3d ToIsometry(const stream::TrackerPose& pose) {
   return X_WT;
 }
 
-Eigen::Matrix3d CovarianceOf(const stream::HandSample& sample) {
-  Eigen::Matrix3d covariance = sample.sd_m.cwiseAbs2().asDiagonal();
-  covariance(0, 1) = covariance(1, 0) = sample.covariance_m2.x();
-  covariance(0, 2) = covariance(2, 0) = sample.covariance_m2.y();
-  covariance(1, 2) = covariance(2, 1) = sample.covariance_m2.z();
-  return covariance;
-}
-
 }  // namespace
 
 std::optional<SeenPoint> InTrackerFrame(const stream::HandSample& sample) {
   if (sample.confidence == 0 || !sample.tracker_pose) return {};
   const Eigen::Isometry3d X_TW = ToIsometry(*sample.tracker_pose).inverse();
   return SeenPoint{X_TW * sample.position_m,
-                   X_TW.linear() * CovarianceOf(sample) * X_TW.linear().transpose()};
+                   X_TW.linear() * stream::CovarianceOf(sample) * X_TW.linear().transpose()};
 }
 
 stream::HandSample Recalibrated(const stream::HandSample& sample, const Eigen::Isometry3d& X_WC) {

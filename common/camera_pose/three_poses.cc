@@ -50,14 +50,22 @@ Covariance CovarianceOf(const Places& places, const ThreePoses& poses) {
   return covariance;
 }
 
-std::optional<Error> WrongSpan(const char* name, double seen_m, double known_m, double sd_m) {
+/// Variance of the distance between two places: of each, along the line between them.
+double SpanVarianceM2(const SeenPoint& from, const SeenPoint& to, double placement_sd_m) {
+  const Vector3d along = (to.p_C_m - from.p_C_m).normalized();
+  return along.dot((from.covariance_m2 + to.covariance_m2) * along) +
+         2 * placement_sd_m * placement_sd_m;
+}
+
+std::optional<Error> WrongSpan(const char* name, double seen_m, double known_m,
+                               double variance_m2) {
   const std::string length = text::Fixed(100 * seen_m, 1) + " cm";
   if (seen_m < kLeastSpanM)
     return InvalidData(std::string("the sphere ") + name + " is only " + length +
                        " from the first place: stretch the arm, 20 cm or more");
   if (known_m <= 0) return {};
   const double off_m = std::abs(seen_m - known_m);
-  if (off_m <= kMostLengthOff * known_m || off_m <= 3 * std::sqrt(2.0) * sd_m) return {};
+  if (off_m <= kMostLengthOff * known_m || off_m <= 3 * std::sqrt(variance_m2)) return {};
   return InvalidData(std::string("the sphere ") + name + " is seen " + length +
                      " from the first place, and should be " + text::Fixed(100 * known_m, 1) +
                      " cm: the lens file or the sphere's radius is not the true one, or the sphere "
@@ -69,9 +77,12 @@ std::optional<Error> WrongSpan(const char* name, double seen_m, double known_m, 
 Result<CameraPose> FromThreePoses(const ThreePoses& poses) {
   const Places places = {poses.origin.p_C_m, poses.ahead.p_C_m, poses.left.p_C_m};
   const Vector3d ahead = places[1] - places[0], left = places[2] - places[0];
-  if (auto wrong = WrongSpan("ahead", ahead.norm(), poses.ahead_m, poses.placement_sd_m))
+  const auto variance_m2 = [&](const SeenPoint& to) {
+    return SpanVarianceM2(poses.origin, to, poses.placement_sd_m);
+  };
+  if (auto wrong = WrongSpan("ahead", ahead.norm(), poses.ahead_m, variance_m2(poses.ahead)))
     return *std::move(wrong);
-  if (auto wrong = WrongSpan("to the left", left.norm(), poses.left_m, poses.placement_sd_m))
+  if (auto wrong = WrongSpan("to the left", left.norm(), poses.left_m, variance_m2(poses.left)))
     return *std::move(wrong);
   const double angle = std::acos(std::clamp(ahead.normalized().dot(left.normalized()), -1.0, 1.0));
   if (!(angle >= DegreesToRadians(60) && angle <= DegreesToRadians(120)))

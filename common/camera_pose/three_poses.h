@@ -16,7 +16,8 @@ struct ThreePoses {
 
 /// x points from the first place to the second, and the third is on y's side. Refuses places nearer
 /// than 0.2 m, an angle between them outside of 60 to 120 degrees, known distances that are off by
-/// more than 2 % and three times what placement explains, and a mirrored image.
+/// more than 2 % and three standard deviations of placement and of what was seen, and a mirrored
+/// image.
 Result<CameraPose> FromThreePoses(const ThreePoses& poses);
 
 }  // namespace footing::camera_pose

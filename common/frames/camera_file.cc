@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/config/data_file.h"
+#include "common/config/write_file.h"
 
 namespace footing::frames {
 namespace {
@@ -252,15 +251,9 @@ Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
   if (const auto camera = ParseCameraFile(*text, path); !camera) return camera.error();
   ordered_json object = ordered_json::parse(*text, nullptr, false, true);
   SetPose(object, X_WC, calibrated);
-  const std::string beside = path + ".new";
-  std::ofstream file(beside);
-  file << object.dump(2) << "\n";
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(beside, path, error);
-  if (!file || error)
-    return Failure("cannot write " + path + ": the disk is full, or the file may not be written");
-  return {};
+  const auto written = config::ReplaceFile(path, object.dump(2) + "\n");
+  return written ? Result<void>()
+                 : Failure("cannot write " + path + ": " + written.error().message);
 }
 
 }  // namespace footing::frames

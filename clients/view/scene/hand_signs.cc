@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "clients/view/scene/boards.h"
+#include "common/stream/hand_covariance.h"
 
 namespace footing::scene {
 namespace {
@@ -36,11 +37,7 @@ void TakeHand(const stream::HandSample& sample, std::int64_t received_ns,
 }
 
 Eigen::Matrix3f HandEllipsoid(const stream::HandSample& sample) {
-  Eigen::Matrix3d covariance = sample.sd_m.cwiseAbs2().asDiagonal();
-  covariance(0, 1) = covariance(1, 0) = sample.covariance_m2.x();
-  covariance(0, 2) = covariance(2, 0) = sample.covariance_m2.y();
-  covariance(1, 2) = covariance(2, 1) = sample.covariance_m2.z();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(stream::CovarianceOf(sample));
   const Eigen::Vector3f half = (2 * axes.eigenvalues().cwiseMax(0).cwiseSqrt())
                                    .cast<float>()
                                    .cwiseMax(kLeastHalfM)

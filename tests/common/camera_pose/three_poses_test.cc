@@ -63,6 +63,11 @@ TEST(ThreePoses, RefusesShortAnglesLengthsAndMirrors) {
   poses.left_m = 0.38;
   EXPECT_THAT(FromThreePoses(poses).error().message,
               HasSubstr("to the left is seen 40.0 cm from the first place, and should be 38.0 cm"));
+  // Seen with 10 mm along every axis the distance has 14 mm: 20 mm off are nothing.
+  poses.left.covariance_m2 = poses.origin.covariance_m2 = 1e-4 * Eigen::Matrix3d::Identity();
+  EXPECT_TRUE(FromThreePoses(poses));
+  poses.left_m = 0.35;
+  EXPECT_FALSE(FromThreePoses(poses)) << "50 mm are more than three times that";
 }
 
 }  // namespace

@@ -87,7 +87,9 @@ TEST(CameraFile, TakesAPoseAndKeepsTheRest) {
   Eigen::Isometry3d X_WC = Eigen::Isometry3d::Identity();
   X_WC.linear() << 0, 0, -1, 1, 0, 0, 0, -1, 0;
   X_WC.translation() << 2, 0, 1;
+  std::filesystem::permissions(path, std::filesystem::perms(0640));
   ASSERT_TRUE(StorePose(path, X_WC, "8 marks, 1 mm"));
+  EXPECT_EQ(std::filesystem::status(path).permissions(), std::filesystem::perms(0640));
   const auto camera = ReadCameraFile(path);
   ASSERT_TRUE(camera) << camera.error().message;
   EXPECT_TRUE(camera->X_WC->isApprox(X_WC, 1e-12));
@@ -99,6 +101,11 @@ TEST(CameraFile, TakesAPoseAndKeepsTheRest) {
   // A file that is no camera file is not written into.
   std::ofstream(folder.Path("other.json")) << "{}";
   EXPECT_FALSE(StorePose(folder.Path("other.json"), X_WC, ""));
+  // Where the file beside it cannot be written the reason is the system's.
+  std::filesystem::create_directories(path + ".new/full");
+  const auto refused = StorePose(path, X_WC, "");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "cannot write " + path + ": File exists");
 }
 
 TEST(CameraFile, ErrorsNameFileKeyAndWhatIsAllowed) {
