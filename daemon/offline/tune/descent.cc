@@ -12,8 +12,9 @@ constexpr double kLongestStep = 4, kShortestStep = 0.05;
 
 }  // namespace
 
-SearchState StartSearch(int dimensions) {
+SearchState StartSearch(int dimensions, double step) {
   SearchState state;
+  state.step = step;
   state.point = Eigen::VectorXd::Zero(dimensions);
   state.covariance = Eigen::MatrixXd::Identity(dimensions, dimensions);
   state.covariance_path = state.step_path = Eigen::VectorXd::Zero(dimensions);

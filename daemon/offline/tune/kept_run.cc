@@ -9,7 +9,8 @@ using nlohmann::json;
 
 json ToJson(const RunKey& key) {
   return {{"gait", key.gait},     {"speeds_mps", key.speeds_mps}, {"seed", key.seed},
-          {"method", key.method}, {"trials", key.trials},         {"from", key.from}};
+          {"method", key.method}, {"trials", key.trials},         {"step", key.step},
+          {"from", key.from}};
 }
 
 std::vector<double> Numbers(const Eigen::MatrixXd& matrix) {

@@ -15,6 +15,7 @@ struct RunKey {
   std::uint64_t seed = 1;
   std::string method;
   int trials = 0;
+  double step = 1;
   std::string from;  ///< All gains it starts from, as text.
 
   bool operator==(const RunKey&) const = default;

@@ -33,6 +33,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 100000));
   app->add_option("--trials", options.trials, "Number of trials for each point")
       ->check(CLI::Range(1, 100000));
+  app->add_option("--step", options.step,
+                  "First step of the search (cmaes: sigma), in units of its scales")
+      ->check(CLI::Range(0.01, 4.0));
   app->add_option("--threads", options.threads, "Number of threads (0: one per core)")
       ->check(CLI::Range(0, 256));
   app->add_flag("--json", options.json, "One JSON object on standard output");

@@ -45,7 +45,7 @@ Wanted WantedOf(const Task& task, double height_m) {
 Cost CostOf(const Task& task, const TrialResult& result) {
   const Wanted wanted = WantedOf(task, result.height_m);
   Cost cost;
-  cost.failure = result.survived < 1 ? 5 + 5 * (1 - result.survived) : 0;
+  cost.failure = result.survived < 1 ? 10 + 10 * (1 - result.survived) : 0;
   cost.speed = std::min(2.0, Square(result.speed_error_mps / 0.15));
   cost.flight = Deviation(result.flight_s, wanted.flight_s);
   cost.stance = Deviation(result.stance_s, wanted.stance_s);

@@ -7,7 +7,7 @@ namespace footing::tune {
 /// The terms of the paper's objective (section 5, Optimization), each at least 0, lower is better.
 /// The paper names what it evaluates and gives no weights; these are ours.
 struct Cost {
-  double failure = 0;  ///< Of a fall: 5 + 5 (1 - fraction survived).
+  double failure = 0;  ///< Of a fall: 10 + 10 (1 - fraction survived), more than all else can be.
   double speed = 0;    ///< (speed error / 0.15 m/s)^2, at most 2.
   double flight = 0;   ///< Flight or swing: 0.25 (relative deviation / 10 %)^2, at most 1.
   double stance = 0;   ///< As flight.

@@ -19,15 +19,22 @@ std::string Short(double value) {
 }
 
 std::string ScoreText(const Score& score) {
-  return Short(score.mean.total()) + " +- " + Short(score.total_half_width);
+  return Short(score.mean.total()) + " +- " + Short(score.total_half_width) + ", " +
+         std::to_string(score.falls) + " falls of " + std::to_string(score.trials);
 }
 
 ordered_json ToJson(const Score& score) {
-  return {{"objective", score.mean.total()}, {"half_width", score.total_half_width},
-          {"trials", score.trials},          {"survival", score.survival},
-          {"failure", score.mean.failure},   {"speed", score.mean.speed},
-          {"flight", score.mean.flight},     {"stance", score.mean.stance},
-          {"stride", score.mean.stride},     {"heading", score.mean.heading}};
+  return {{"objective", score.mean.total()},
+          {"half_width", score.total_half_width},
+          {"trials", score.trials},
+          {"survival", score.survival},
+          {"falls", score.falls},
+          {"failure", score.mean.failure},
+          {"speed", score.mean.speed},
+          {"flight", score.mean.flight},
+          {"stance", score.mean.stance},
+          {"stride", score.mean.stride},
+          {"heading", score.mean.heading}};
 }
 
 }  // namespace
@@ -36,10 +43,10 @@ std::string TableText(const Options& options, const std::vector<gait::GainSet>& 
                       const std::vector<TunedSet>& tuned) {
   std::string comment = "Made by footing-tune " + std::string(cli::Version()) + ", seed " +
                         std::to_string(options.seed) + ":\n" + options.command_line +
-                        "\nObjective on trials of its own, 95 % intervals:\n";
+                        "\nObjective on trials that no iteration had, 95 % intervals:\n";
   std::vector<gait::GainSet> sets = kept;
   for (const TunedSet& one : tuned) {
-    comment += one.set.name + " " + ScoreText(one.before) + " before, " + ScoreText(one.after) +
+    comment += one.set.name + ": " + ScoreText(one.before) + " before; " + ScoreText(one.after) +
                " after" + (one.better ? "" : ", not better: the start is kept") + "\n";
     sets.push_back(one.set);
   }

@@ -14,7 +14,7 @@ struct TunedSet {
   gait::GainSet set;  ///< The answer's gains when it is better, else the start's.
   Score before, after;
   Difference difference;  ///< Of the answer's objective from the start's; below 0 is better.
-  bool better = false;    ///< With its whole 95 % interval.
+  bool better = false;    ///< No more falls, and lower with its whole 95 % interval.
 };
 
 /// The gait table, with seed, command line and scores in its comment; only columns that differ

@@ -30,8 +30,8 @@ struct SearchState {
 using Evaluate = std::function<std::vector<double>(const std::vector<Eigen::VectorXd>& points,
                                                    std::uint64_t batch)>;
 
-/// A search of so many dimensions about 0.
-SearchState StartSearch(int dimensions);
+/// A search of so many dimensions about 0, with its first `step`.
+SearchState StartSearch(int dimensions, double step = 1);
 
 /// One step of steepest descent: the gradient by finite differences of half a unit, then the best
 /// of four lengths along it. Nothing better there: stays, and halves the step.

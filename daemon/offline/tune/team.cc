@@ -8,7 +8,7 @@
 namespace footing::tune {
 namespace {
 
-constexpr int kStarts = 12;
+constexpr std::size_t kStarts = 12;
 constexpr double k95Percent = 1.96;
 
 template <typename Value>
@@ -37,17 +37,25 @@ Result<Team> Team::Create(int threads, ranks::Ranks ranks) {
   return team;
 }
 
-Result<void> Team::Prepare(const Task& task, const gait::GainTable& table, std::uint64_t seed) {
-  const Result<engine::EngineTexts> texts = engine_files::ReadTexts();
-  if (!texts) return texts.error();
-  Result<engine::GaitEngine> engine = engine::GaitEngine::Create(*texts);
-  if (!engine) return engine.error();
-  engine->UseGains(table);
-  Result<std::vector<engine::EngineState>> starts = SettledStates(*engine, task, kStarts, seed);
-  if (!starts) return starts.error();
-  task_ = task;
+Result<void> Team::Prepare(const std::vector<Task>& tasks, const gait::GainTable& table,
+                           std::uint64_t seed) {
+  const std::size_t each = kStarts / tasks.size();
+  std::vector<std::vector<engine::EngineState>> settled;
+  for (const Task& task : tasks) {
+    Result<engine::GaitEngine> engine = engine::GaitEngine::Create(texts_);
+    if (!engine) return engine.error();
+    engine->UseGains(table);
+    auto states =
+        SettledStates(*engine, task, static_cast<int>(each), MixSeeds(seed, settled.size()));
+    if (!states) return states.error();
+    settled.push_back(std::move(*states));
+  }
+  std::vector<Start> starts;
+  for (std::size_t k = 0; k < each; ++k) {
+    for (std::size_t i = 0; i < tasks.size(); ++i) starts.push_back({tasks[i], settled[i][k]});
+  }
   table_ = table;
-  starts_ = std::move(*starts);
+  starts_ = std::move(starts);
   return {};
 }
 
@@ -62,14 +70,14 @@ engine::GaitEngine Team::OnTrack(std::string track) const {
 Cost Team::TryOne(engine::GaitEngine& engine, const gait::Gains& gains, std::size_t trial,
                   std::uint64_t seed) const {
   gait::GainTable table = table_;
-  table.Set(task_.gait, {{"tried", 0, gains}});
+  const auto& [task, start] = starts_[trial % starts_.size()];
+  table.Set(task.gait, {{"tried", 0, gains}});
   engine.UseGains(table);
-  const engine::EngineState& start = starts_[trial % starts_.size()];
-  const Disturbance disturbance = Draw(task_, MixSeeds(seed, trial));
-  if (disturbance.pit_m == 0) return CostOf(task_, RunTrial(engine, start, task_, disturbance));
+  const Disturbance disturbance = Draw(task, MixSeeds(seed, trial));
+  if (disturbance.pit_m == 0) return CostOf(task, RunTrial(engine, start, task, disturbance));
   engine::GaitEngine on_pit = OnTrack(PitTrack(start, disturbance));
   on_pit.UseGains(table);
-  return CostOf(task_, RunTrial(on_pit, start, task_, disturbance));
+  return CostOf(task, RunTrial(on_pit, start, task, disturbance));
 }
 
 std::vector<Cost> Team::TryOwn(const std::vector<gait::Gains>& gains, std::size_t trials,
@@ -112,8 +120,9 @@ Score ScoreOf(const std::vector<Cost>& costs) {
     score.mean.stance += cost.stance / n;
     score.mean.stride += cost.stride / n;
     score.mean.heading += cost.heading / n;
-    score.survival += (cost.failure == 0 ? 1 : 0) / n;
+    score.falls += cost.failure > 0 ? 1 : 0;
   }
+  score.survival = 1 - score.falls / n;
   score.total_half_width =
       MeanOf(costs.size(), [&costs](std::size_t i) { return costs[i].total(); }).half_width;
   return score;

@@ -14,6 +14,7 @@ struct Score {
   Cost mean;
   double total_half_width = 0;
   double survival = 0;  ///< Fraction of trials without a fall.
+  int falls = 0;
   int trials = 0;
 };
 
@@ -26,8 +27,10 @@ class Team {
 
   const ranks::Ranks& ranks() const { return ranks_; }
 
-  /// Makes the states in which the trials of `task` begin, under `table`.
-  Result<void> Prepare(const Task& task, const gait::GainTable& table, std::uint64_t seed);
+  /// Makes the states in which the trials begin, under `table`, for each task as many. All tasks
+  /// are of one gait.
+  Result<void> Prepare(const std::vector<Task>& tasks, const gait::GainTable& table,
+                       std::uint64_t seed);
 
   /// Costs of `trials` trials for each of the gains, gains by gains, all on the same trials, which
   /// `seed` draws.
@@ -48,9 +51,12 @@ class Team {
   engine::EngineTexts texts_;
 
   std::vector<engine::GaitEngine> engines_;
-  Task task_;
+  struct Start {
+    Task task;
+    engine::EngineState state;
+  };
+  std::vector<Start> starts_;  ///< The tasks take turns.
   gait::GainTable table_;
-  std::vector<engine::EngineState> starts_;
 };
 
 Score ScoreOf(const std::vector<Cost>& costs);

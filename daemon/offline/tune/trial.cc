@@ -17,30 +17,53 @@ constexpr std::uint64_t kTuneSalt = 0x666f6f74696e67;  // Keeps tuning off the s
 constexpr double kSettleS = 6;
 constexpr double kBetweenStatesS = 0.61;
 
-/// Shares of the trials, added up: pushed; pushed while turning; turning. The rest come to a pit.
-constexpr double kPushed = 0.5, kPushedTurning = 0.7, kTurning = 0.85;
+/// Shares of the trials, added up: pushed; turning. The rest come to a pit.
+constexpr double kPushed = 0.5, kTurning = 0.75;
 constexpr double kTurnDeg = 5;
 constexpr double kSmallKickNs = 2;
 constexpr double kLowestM = 0.1;
-constexpr double kPitFromMps = 1;
 constexpr double kJumpLeadS = 0.8;
 
-struct Kick {
-  double min_ns, max_ns;
+/// Pushes are the acceptance tests' and up to this times as large: at theirs hardly any falls, and
+/// a search learns nothing.
+constexpr double kBeyondTest = 1.3;
+
+struct Range {
+  double min, max;
 };
 
-Kick KickOf(Gait gait) {
+double TestedKickNs(Gait gait) { return gait == Gait::kRun ? 26 : 16; }
+
+/// Speeds from the slowest to the fastest that the acceptance tests have.
+Range TestedMps(Gait gait) {
   switch (gait) {
-    case Gait::kRun:
-      return {15, 40};
-    case Gait::kJump:
-      return {8, 28};
-    case Gait::kStep:
     case Gait::kWalk:
+      return {0.25, 1.75};
+    case Gait::kRun:
+      return {2, 6};
+    case Gait::kJump:
+      return {0, 2};
+    case Gait::kStep:
     case Gait::kUnspecified:
-      return {4, 20};
+      return {0, 0};
   }
-  return {4, 20};
+  return {0, 0};
+}
+
+/// Of pits that the gait is to cross; none: 0.
+Range PitWidths(const Task& task) {
+  switch (task.gait) {
+    case Gait::kWalk:
+      return {0.05, 0.3};
+    case Gait::kRun:
+      return {0.4, task.speed_mps > 3.6 ? 1.0 : 1.5};
+    case Gait::kJump:
+      return task.speed_mps < 1 ? Range{0, 0} : Range{0.3, 1.0};
+    case Gait::kStep:
+    case Gait::kUnspecified:
+      return {0, 0};
+  }
+  return {0, 0};
 }
 
 engine::EngineInputs Inputs(const Task& task) {
@@ -66,6 +89,15 @@ std::uint64_t MixSeeds(std::uint64_t a, std::uint64_t b) {
   return z ^ (z >> 31);
 }
 
+std::vector<Task> TasksOf(Gait gait, const std::vector<double>& speeds_mps, std::size_t set) {
+  const Range tested = TestedMps(gait);
+  const double own_mps = speeds_mps[set];
+  std::vector<Task> tasks{{gait, own_mps}};
+  if (set == 0 && tested.min < own_mps) tasks.push_back({gait, tested.min});
+  if (set + 1 == speeds_mps.size() && tested.max > own_mps) tasks.push_back({gait, tested.max});
+  return tasks;
+}
+
 Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engine, const Task& task,
                                                        int count, std::uint64_t seed) {
   noise::Random random(MixSeeds(seed, 0));
@@ -89,26 +121,26 @@ Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engin
 
 Disturbance Draw(const Task& task, std::uint64_t seed) {
   noise::Random random(MixSeeds(seed, 1));
-  const Kick kick = KickOf(task.gait);
+  const double tested_ns = TestedKickNs(task.gait);
   Disturbance drawn{.kick_s = random.Uniform(1.5, 2.2),
-                    .kick_ns = random.Uniform(kick.min_ns, kick.max_ns),
+                    .kick_ns = random.Uniform(tested_ns, kBeyondTest * tested_ns),
                     .kick_direction_rad = random.Uniform(-kPi, kPi)};
   const double turn_rad = DegreesToRadians(random.Uniform() < 0.5 ? kTurnDeg : -kTurnDeg);
   const double kind = random.Uniform();
-  const bool hops = task.gait == Gait::kRun || task.gait == Gait::kJump;
   if (task.gait == Gait::kJump) {
     const double highest_m =
         biped::Limited({.gait = task.gait, .speed_mps = task.speed_mps, .height_m = 1}).height_m;
-    drawn.height_m = random.Uniform(kLowestM, highest_m);
+    const bool highest = random.Uniform() < 0.5;
+    drawn.height_m = highest ? highest_m : random.Uniform(kLowestM, highest_m);
   }
   if (kind < kPushed) return drawn;
-  if (kind < kPushedTurning || kind < kTurning || !hops || task.speed_mps < kPitFromMps) {
+  drawn.kick_ns = kSmallKickNs;
+  const Range widths = PitWidths(task);
+  if (kind < kTurning || widths.max == 0) {
     drawn.turn_rad = turn_rad;
-    if (kind >= kPushedTurning) drawn.kick_ns = kSmallKickNs;
     return drawn;
   }
-  drawn.kick_ns = kSmallKickNs;
-  drawn.pit_m = task.gait == Gait::kRun ? random.Uniform(0.4, 1.2) : random.Uniform(0.3, 0.8);
+  drawn.pit_m = random.Uniform(widths.min, widths.max);
   drawn.pit_ahead_m = task.speed_mps * random.Uniform(2.4, 3.0);
   return drawn;
 }

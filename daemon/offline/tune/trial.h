@@ -29,10 +29,10 @@ struct Disturbance {
   double pit_ahead_m = 0;  ///< From the start to the near edge.
 };
 
-/// Half of the trials are pushes of 0.1 s from any side after 1.5 to 2.2 s (step and walk 4 to 20
-/// N s, run 15 to 40, jump 8 to 28). A fifth turns by 5 degrees a step when pushed. The others,
-/// with a push of 2 N s, turn by the largest turn of 5 degrees or less, or come to a pit, where a
-/// run is to jump. Jumps are 0.1 m to as high as they are accepted.
+/// What the acceptance tests do (tests/scenarios/biped_table.py). Half of the trials are pushes of
+/// 0.1 s from any side after 1.5 to 2.2 s, of 26 N s (run) or 16 N s and up to 1.3 times that. The
+/// others, with a push of 2 N s, turn by 5 degrees a step, or come to a pit, where a run is to
+/// jump. Half of the jumps are as high as they are accepted, the others 0.1 m to that.
 Disturbance Draw(const Task& task, std::uint64_t seed);
 
 /// Whether the trial's turn is to be followed by the body: no large push disturbs it.
@@ -53,6 +53,11 @@ struct TrialResult {
 };
 
 inline constexpr double kTrialS = 5;
+
+/// What a set of gains is tried at: its own speed and, as gains stay the same beyond the outermost
+/// sets, for these the slowest or the fastest speed of the acceptance tests.
+std::vector<Task> TasksOf(stream::Gait gait, const std::vector<double>& speeds_mps,
+                          std::size_t set);
 
 /// States in which trials begin: the gait settled at its speed under the table's gains, at moments
 /// of the cycle that `seed` draws. An error when it falls on the way.

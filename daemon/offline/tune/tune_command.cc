@@ -44,7 +44,8 @@ class Tuning {
         dimensions_(DimensionsOf(gait_)) {}
 
   Result<void> Resume() {
-    searches_.assign(options_.speeds_mps.size(), StartSearch(static_cast<int>(dimensions_.size())));
+    searches_.assign(options_.speeds_mps.size(),
+                     StartSearch(static_cast<int>(dimensions_.size()), options_.step));
     if (options_.iterations == 0) return {};
     const Result<std::string> text = KeptText();
     if (!text) return text.error();
@@ -108,8 +109,13 @@ class Tuning {
   RunKey Key() const {
     std::vector<const gait::GainField*> columns;
     for (const gait::GainField& field : gait::GainFields()) columns.push_back(&field);
-    RunKey key{options_.gait,   options_.speeds_mps, options_.seed,
-               options_.method, options_.trials,     ""};
+    RunKey key{options_.gait,
+               options_.speeds_mps,
+               options_.seed,
+               options_.method,
+               options_.trials,
+               options_.step,
+               ""};
     for (const stream::Gait gait : stream::kGaits) {
       key.from += gait::WriteGains(gait, table_.SetsOf(gait), columns, "");
     }
@@ -119,7 +125,8 @@ class Tuning {
   Result<void> TuneSet(std::size_t index) {
     const Task task{gait_, options_.speeds_mps[index]};
     const std::uint64_t seed = MixSeeds(options_.seed, index);
-    if (const auto prepared = team_.Prepare(task, table_, seed); !prepared) return prepared;
+    const std::vector<Task> tasks = TasksOf(gait_, options_.speeds_mps, index);
+    if (const auto prepared = team_.Prepare(tasks, table_, seed); !prepared) return prepared;
     SearchState& search = searches_[index];
     const gait::Gains start = StartOf(task);
     const Evaluate evaluate = [&](const std::vector<Eigen::VectorXd>& points, std::uint64_t batch) {
@@ -187,14 +194,16 @@ class Tuning {
     tuned.before = ScoreOf(costs.front());
     tuned.after = ScoreOf(costs.back());
     tuned.difference = Compare(costs.back(), costs.front());
-    tuned.better = tuned.difference.mean + tuned.difference.half_width < 0;
+    tuned.better = tuned.after.falls <= tuned.before.falls &&
+                   tuned.difference.mean + tuned.difference.half_width < 0;
     tuned.set = {SetName(index, searches_.size()), task.speed_mps, tuned.better ? found : start};
     const char* const remark = scores_only || tuned.better ? "" : ": not better, the start is kept";
     if (team_.ranks().first()) {
-      std::fprintf(stderr, "%s %.3g m/s: %.3f +- %.3f before, %.3f +- %.3f after%s\n",
+      std::fprintf(stderr,
+                   "%s %.3g m/s: %.3f +- %.3f, %d falls before; %.3f +- %.3f, %d falls after%s\n",
                    options_.gait.c_str(), task.speed_mps, tuned.before.mean.total(),
-                   tuned.before.total_half_width, tuned.after.mean.total(),
-                   tuned.after.total_half_width, remark);
+                   tuned.before.total_half_width, tuned.before.falls, tuned.after.mean.total(),
+                   tuned.after.total_half_width, tuned.after.falls, remark);
     }
     tuned_.push_back(std::move(tuned));
   }

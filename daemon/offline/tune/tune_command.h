@@ -17,6 +17,7 @@ struct Options {
   std::string method = "descent";
   int iterations = 6;
   int trials = 24;
+  double step = 1;  ///< The search's first: CMA-ES's sigma.
   int threads = 0;  ///< 0: one a core.
   bool json = false;
   std::string command_line;  ///< As typed, for the table's comment.

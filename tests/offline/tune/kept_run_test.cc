@@ -7,7 +7,7 @@
 namespace footing::tune {
 namespace {
 
-const RunKey kKey{"walk", {0.5, 1.5}, 7, "cmaes", 24, "gains"};
+const RunKey kKey{"walk", {0.5, 1.5}, 7, "cmaes", 24, 1, "gains"};
 
 std::vector<double> Roughly(const std::vector<Eigen::VectorXd>& points) {
   std::vector<double> values;

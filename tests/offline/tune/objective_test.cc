@@ -25,12 +25,26 @@ TEST(Objective, IsNothingWhenAllIsAsWanted) {
   }
 }
 
-TEST(Objective, ChargesTenForAFallAtOnceAndFiveForTheLatest) {
+TEST(Objective, ChargesTwentyForAFallAtOnceAndTenForTheLatest) {
   TrialResult result = AsWanted(kWalk);
   result.survived = 0;
-  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).total(), 10);
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).total(), 20);
   result.survived = 0.75;
-  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).failure, 5 + 5 * 0.25);
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).failure, 10 + 10 * 0.25);
+}
+
+TEST(Objective, ChargesTheLatestFallMoreThanAllElseTogether) {
+  TrialResult worst{.survived = 1,
+                    .speed_error_mps = 9,
+                    .flight_s = 9,
+                    .stance_s = 9,
+                    .stride_m = 99,
+                    .heading_error_rad = 3};
+  const double all_else = CostOf(kWalk, worst).total();
+  TrialResult fallen = AsWanted(kWalk);
+  fallen.survived = 0.9999;
+  EXPECT_GT(all_else, 6);
+  EXPECT_GT(CostOf(kWalk, fallen).total(), all_else);
 }
 
 TEST(Objective, ChargesEachTermByItself) {
