@@ -9,7 +9,6 @@
 #include "clients/relay/service/channels.h"
 #include "common/clock/clock.h"
 #include "common/log/log.h"
-#include "common/transport/token.h"
 
 namespace footing::relay {
 namespace {
@@ -21,7 +20,6 @@ transport::ClientOptions OptionsFor(const transport::Address& address,
   transport::ClientOptions options;
   options.address = address;
   options.client_name = "footing-relay";
-  options.token = transport::TokenFromEnvironment();
   options.channels = channels;
   options.queue_ticks = kQueueTicks;
   return options;

@@ -94,7 +94,8 @@ bool Broker::Spawn(const std::string& program) {
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
     posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
   }
-  const int error = posix_spawn(&process_, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int error =
+      posix_spawn(&process_, program.c_str(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     process_ = -1;

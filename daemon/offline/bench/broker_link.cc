@@ -146,8 +146,7 @@ class BrokerLink::Implementation : public std::enable_shared_from_this<Implement
       bytes = rest_;
     }
     while (bytes.size() > 1) {
-      const Front front =
-          kind_ == BrokerKind::kNats ? LookAtNats(bytes) : LookAtMqtt(bytes, part_);
+      const Front front = kind_ == BrokerKind::kNats ? LookAtNats(bytes) : LookAtMqtt(bytes, part_);
       if (front.size == 0) break;
       if (front.ready) ready_ = true;
       if (front.payload && on_payload_) on_payload_(*front.payload);

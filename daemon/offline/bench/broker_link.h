@@ -12,8 +12,8 @@
 
 namespace footing::bench {
 
-/// A client of a broker at its barest: one topic, QoS 0, no acknowledgements. It answers nothing, so
-/// that it lasts for a minute or two.
+/// A client of a broker at its barest: one topic, QoS 0, no acknowledgements. It answers nothing,
+/// so that it lasts for a minute or two.
 class BrokerLink {
  public:
   enum class Part { kPublishes, kSubscribes };

@@ -26,9 +26,9 @@ constexpr std::size_t kLeastTickBytes = 400;  // What greets a viewer is shorter
 /// One way to bring a frame to all viewers, and what of it the server costs.
 struct FanOutWay {
   std::string name;
-  std::function<void()> publish;   ///< On the server's thread.
-  std::function<double()> cpu_s;   ///< Of the server until now.
-  std::uint64_t received = 0;      ///< Ticks, all viewers together; of the viewers' thread.
+  std::function<void()> publish;  ///< On the server's thread.
+  std::function<double()> cpu_s;  ///< Of the server until now.
+  std::uint64_t received = 0;     ///< Ticks, all viewers together; of the viewers' thread.
   std::vector<double> us_per_tick = {};
 };
 
@@ -153,8 +153,8 @@ class Contest {
     }
     BrokerLink* publisher = nullptr;
     server_thread_.Do([&] {
-      publishers_.push_back(std::make_unique<BrokerLink>(server_thread_.io(), of,
-                                                         BrokerLink::Part::kPublishes, -1, nullptr));
+      publishers_.push_back(std::make_unique<BrokerLink>(
+          server_thread_.io(), of, BrokerLink::Part::kPublishes, -1, nullptr));
       publisher = publishers_.back().get();
     });
     way.publish = [this, publisher] { publisher->Publish(Payload()); };

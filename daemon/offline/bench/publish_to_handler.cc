@@ -115,11 +115,12 @@ class Race {
     reader_.Do([&] {
       client_.emplace(reader_.io(), options, handlers);
       client_->Start();
-      transport::Dial(reader_.io(), UnixAddress("race-bare"), [this](Result<transport::Socket> dialled) {
-        if (!dialled) return;  // It shows as not connected.
-        bare_socket_.emplace(std::move(*dialled));
-        ReadBare();
-      });
+      transport::Dial(reader_.io(), UnixAddress("race-bare"),
+                      [this](Result<transport::Socket> dialled) {
+                        if (!dialled) return;  // It shows as not connected.
+                        bare_socket_.emplace(std::move(*dialled));
+                        ReadBare();
+                      });
     });
   }
 
@@ -134,8 +135,8 @@ class Race {
           }));
     });
     publisher_.Do([&] {
-      publishers_.push_back(std::make_unique<BrokerLink>(
-          publisher_.io(), of, BrokerLink::Part::kPublishes, 2, nullptr));
+      publishers_.push_back(std::make_unique<BrokerLink>(publisher_.io(), of,
+                                                         BrokerLink::Part::kPublishes, 2, nullptr));
       ways_.push_back({NameOf(of.kind()), [this, link = publishers_.back().get()] {
                          link->Publish(TickPayload(channels_));
                        }});
@@ -184,7 +185,7 @@ class Race {
 };
 
 Row RaceRow(const std::string& name, const std::vector<double>& ours,
-          const std::vector<double>& baseline) {
+            const std::vector<double>& baseline) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(ours[i] / baseline[i]);
   return {name, text::Median(ours), text::Median(baseline), text::Median(ratios), "us"};

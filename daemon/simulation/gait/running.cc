@@ -23,10 +23,6 @@ constexpr double kShortestExtensionS = 0.02;
 constexpr double kShortestLandingS = 0.04;
 constexpr double kShortestJumpLandingS = 0.05;
 constexpr int kLiftOffSteps = 2;
-/// A leg this much shorter than at touchdown that lost the ground may only chatter: it pushes on,
-/// and counts as lifted off after so many steps.
-constexpr double kShortLegM = 0.10;
-constexpr int kShortLegLiftOffSteps = 20;
 /// Rate of the leg's length, m/s, at which it counts as at its shortest, or as landed.
 constexpr double kShortestRateMps = -0.02;
 constexpr double kLandedRateMps = -0.15;
@@ -164,14 +160,12 @@ void Enter(RunningPhase phase, const Context& context, GaitMemory& memory) {
 RunningCues SenseRunning(const Context& context, const GaitMemory& memory) {
   const VirtualLeg leg = StanceLeg(context, memory);
   const double time_s = context.TimeIn(memory);
-  const bool is_short = leg.length_m < context.gains.hopping.touchdown_length_m - kShortLegM;
-  const int lift_off_steps = is_short ? kShortLegLiftOffSteps : kLiftOffSteps;
   return {.falling = RisingSpeed(context, memory) < 0,
           .landed_early = leg.touching && time_s > kEarliestLandingS,
           .landed = leg.touching,
           .leg_shortest = !memory.transition.absorbing && time_s > kShortestCompressionS &&
                           leg.rate_mps > kShortestRateMps,
-          .lifted_off = memory.hop.off_steps >= lift_off_steps};
+          .lifted_off = memory.hop.off_steps >= kLiftOffSteps};
 }
 
 Targets AdvanceRunning(const Context& context, GaitMemory& memory) {

@@ -65,7 +65,9 @@ Result<void> Crowd::Add(std::size_t address) {
   options.client_name = "crowd";
   v1::Envelope subscribe;
   subscribe.mutable_subscribe()->set_policy(v1::QUEUE_POLICY_DROP_OLDEST);
-  if (!Send(socket, transport::MakeHello(options)) || !Send(socket, subscribe)) return System("send");
+  const auto hello = transport::MakeHello(options);
+  if (!hello) return hello.error();
+  if (!Send(socket, *hello) || !Send(socket, subscribe)) return System("send");
   epoll_event event{};
   event.events = EPOLLIN;
   event.data.u64 = number;
@@ -118,29 +120,30 @@ Result<void> Crowd::ReadSome(Viewer& viewer) {
   if (count <= 0) return Failure("a viewer was sent away");
   tally_.bytes += static_cast<std::uint64_t>(count);
   std::string ended;
-  viewer.frames.Take({bytes.data(), static_cast<std::size_t>(count)}, [&](std::string_view payload) {
-    TickHead tick;
-    switch (Look(payload, tick)) {
-      case FrameKind::kTick:
-        if (!std::exchange(viewer.subscribed, true)) ++subscribed_;
-        return OnTick(viewer, tick);
-      case FrameKind::kGap:
-        ++tally_.gaps;
-        return;
-      case FrameKind::kPing: {
-        v1::Envelope ping;
-        const std::int64_t now_ns = clock::MonotonicNs();
-        if (ping.ParseFromArray(payload.data(), static_cast<int>(payload.size())))
-          Send(viewer.socket, transport::MakePong(ping.ping(), now_ns, now_ns));
-        return;
-      }
-      case FrameKind::kEnd:
-        ended = WhyEnded(payload);
-        return;
-      case FrameKind::kOther:
-        return;
-    }
-  });
+  viewer.frames.Take(
+      {bytes.data(), static_cast<std::size_t>(count)}, [&](std::string_view payload) {
+        TickHead tick;
+        switch (Look(payload, tick)) {
+          case FrameKind::kTick:
+            if (!std::exchange(viewer.subscribed, true)) ++subscribed_;
+            return OnTick(viewer, tick);
+          case FrameKind::kGap:
+            ++tally_.gaps;
+            return;
+          case FrameKind::kPing: {
+            v1::Envelope ping;
+            const std::int64_t now_ns = clock::MonotonicNs();
+            if (ping.ParseFromArray(payload.data(), static_cast<int>(payload.size())))
+              Send(viewer.socket, transport::MakePong(ping.ping(), now_ns, now_ns));
+            return;
+          }
+          case FrameKind::kEnd:
+            ended = WhyEnded(payload);
+            return;
+          case FrameKind::kOther:
+            return;
+        }
+      });
   if (!ended.empty()) return Failure("a viewer was refused, or sent away: " + ended);
   return {};
 }

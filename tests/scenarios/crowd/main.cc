@@ -54,8 +54,9 @@ Result<nlohmann::ordered_json> Run(const Flags& flags) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  auto app = cli::NewApp("scenario_crowd", "Viewers by the thousand, and what they get.",
-                         "  scenario_crowd --connect tcp:127.0.0.1:7460 --viewers 1000 --seconds 5");
+  auto app =
+      cli::NewApp("scenario_crowd", "Viewers by the thousand, and what they get.",
+                  "  scenario_crowd --connect tcp:127.0.0.1:7460 --viewers 1000 --seconds 5");
   Flags flags;
   app->add_option("--connect", flags.addresses, "Address; may be repeated")->required();
   app->add_option("--viewers", flags.viewers, "Sessions")->check(CLI::Range(1, 50'000));
