@@ -47,6 +47,7 @@ NOT_HERE = {
     r"0\.0\.0\.0": "would listen to other hosts",
     r"wave\.csv": "reads a Kinect's recording; tests/clients/skeleton does",
     r"/run/footing": "needs the system service",
+    r"^footing-ctl discover": "needs the system bus and Avahi; scenario discovery has both",
     r"study\.mcap": "reads recorded trials; scenario playback runs it",
     r"^footing-study (run|analyze|report|export)": "needs whole sessions; tests/clients/study/session_scenario.py runs them",
     r"^footing-study (ranges|survey)|interface .* --table": "needs a person; tests/clients/study/*_scenario.py have one",
@@ -175,7 +176,8 @@ def main():
         os.environ.update(environment)
         # What the examples read beside the files of footing-stream sample: recordings, one of them cut, and a table.
         subprocess.run([binaries / "footing-stream", "sample", "."], cwd=folder, check=True, env=environment)
-        shutil.copy(ROOT / "docs/examples/study.json", folder)
+        for protocol in ("study.json", "latency.json"):
+            shutil.copy(ROOT / "docs/examples" / protocol, folder)
         start_walk(stage)
         record(folder, environment, binaries, "walk.mcap", 4)
         stop_all(stage)

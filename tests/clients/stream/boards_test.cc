@@ -127,10 +127,10 @@ TEST_F(BoardsTest, ALostHandIsASilentWiimoteOrAPointThatIsNotSeen) {
 TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
   options_.hands = "leap";
   EXPECT_THAT(PlanBoards(options_, {}).error().message,
-              HasSubstr("none, move, wiimote, kinect and camera"));
+              HasSubstr("none, move, wiimote, kinect, camera"));
   options_.hands = "move";
   options_.lost_hand = "middle";
-  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("left and right"));
+  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("left or right"));
   options_.hands = "none";
   options_.lost_hand = "left";
   EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("nothing to lose"));

@@ -96,7 +96,7 @@ TEST_F(SocketSourceTest, WhatMakesNoSenseClosesItsConnectionWithOneLine) {
 TEST_F(SocketSourceTest, AnOversizedMessageEndsTheConnection) {
   auto peer = Connect();
   peer->Attach(0, "a");
-  peer->Report(0, std::string(2000, 'x'));
+  peer->Report(0, std::string(3000, 'x'));
   EXPECT_TRUE(RunUntil([&peer] { return peer->closed; }));
   EXPECT_EQ(attached_.size(), 1u);
   EXPECT_EQ(detached_.size(), 1u);

@@ -24,9 +24,10 @@ constexpr double kCellGainSpread = 0.01;
 /// Device numbers are those of the roles.
 std::uint32_t DeviceOf(DeviceRole role) { return static_cast<std::uint32_t>(role); }
 
-/// Boards and sticks have no features.
+/// Boards have no features.
 std::vector<features::Member> MembersFor(UserInterface interface, TurnSource turn_by) {
   std::vector<features::Member> members;
+  if (interface == UserInterface::kBoards) return members;
   for (const DeviceRole role : stream::RolesOf(interface, turn_by)) {
     members.push_back({DeviceOf(role), role});
   }
