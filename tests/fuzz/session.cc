@@ -181,8 +181,9 @@ class Served {
       v1::RawReports raw;
       raw.add_reports()->set_report(std::string(2 * how, 'r'));
       if ((how & 4) != 0) channels.push_back({20, raw.SerializeAsString()});
-      const auto tick =
-          shared_.publication.Publish(clock::MonotonicNs() + i * 10'000'000, channels);
+      const auto tick = shared_.publication.Publish(
+          {shared_.publication.last_sequence() + 1, clock::MonotonicNs() + i * 10'000'000},
+          channels);
       session_->Offer(tick);
       shared_.publication.Trim();
     }
