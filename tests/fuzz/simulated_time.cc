@@ -40,7 +40,9 @@ void RunFor(boost::asio::io_context& io, double seconds, const std::function<boo
   while (!done() && io.poll_one() > 0) {
   }
   // Only what takes time asks the timekeeper, which takes long.
-  if (seconds > 0 && !done()) (void)timer::RunUntil(io, done, seconds, [] { return false; });
+  if (seconds <= 0 || done()) return;
+  io.restart();  // It may have run out of work, and a stopped one would never come to the end.
+  (void)timer::RunUntil(io, done, seconds, [] { return false; });
 }
 
 void RawPeer::Take(int descriptor) {
