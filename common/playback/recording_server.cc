@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/transport/channels_of.h"
+
 namespace footing::playback {
 namespace {
 
@@ -78,16 +80,7 @@ void RecordingServer::WaitForSession() {
 }
 
 void RecordingServer::Publish(const v1::Tick& tick) {
-  std::vector<transport::ChannelBytes> channels;
-  std::vector<const google::protobuf::FieldDescriptor*> present;
-  const google::protobuf::Reflection& fields = *tick.GetReflection();
-  fields.ListFields(tick, &present);
-  for (const google::protobuf::FieldDescriptor* field : present) {
-    if (field->message_type() == nullptr) continue;
-    channels.push_back({static_cast<std::uint32_t>(field->number()),
-                        fields.GetMessage(tick, field).SerializeAsString()});
-  }
-  server_.Publish(tick.host_ns(), std::move(channels));
+  server_.Publish(tick.host_ns(), transport::ChannelsOf(tick));
   ++published_;
 }
 

@@ -29,19 +29,6 @@ ChannelKind KindOf(std::uint32_t field) {
   return ChannelKind::kWhole;
 }
 
-std::vector<transport::ChannelBytes> ChannelsOf(const v1::Tick& tick) {
-  std::vector<transport::ChannelBytes> channels;
-  std::vector<const google::protobuf::FieldDescriptor*> present;
-  const google::protobuf::Reflection& fields = *tick.GetReflection();
-  fields.ListFields(tick, &present);
-  for (const google::protobuf::FieldDescriptor* field : present) {
-    if (field->message_type() == nullptr) continue;
-    channels.push_back({static_cast<std::uint32_t>(field->number()),
-                        fields.GetMessage(tick, field).SerializeAsString()});
-  }
-  return channels;
-}
-
 std::string ChannelName(std::uint32_t field) {
   const auto* const found = Field(field);
   return found == nullptr ? "" : found->name();

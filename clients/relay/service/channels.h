@@ -19,9 +19,6 @@ enum class ChannelKind {
 /// Of a field of v1::Tick. One that this version does not know is handed on whole.
 ChannelKind KindOf(std::uint32_t field);
 
-/// The channels of a tick, each serialised.
-std::vector<transport::ChannelBytes> ChannelsOf(const v1::Tick& tick);
-
 /// The name of a channel; empty for a field that is none.
 std::string ChannelName(std::uint32_t field);
 

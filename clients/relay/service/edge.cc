@@ -9,6 +9,7 @@
 #include "clients/relay/service/subjects.h"
 #include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/transport/channels_of.h"
 #include "common/units/units.h"
 
 namespace footing::relay {
@@ -117,7 +118,7 @@ void Edge::OnTick(const v1::Tick& tick) {
   heard_ns_ = clock::MonotonicNs();
   ++report_.ticks;
   const std::uint64_t expected = thinner_->last_sequence() + 1;
-  auto thinned = thinner_->Take({tick.sequence(), tick.host_ns()}, ChannelsOf(tick));
+  auto thinned = thinner_->Take({tick.sequence(), tick.host_ns()}, transport::ChannelsOf(tick));
   if (tick.sequence() > expected) AskForSnapshot();  // A retained channel may have been among them.
   if (thinned) server_->Relay(thinned->number, std::move(thinned->channels));
 }
@@ -128,7 +129,7 @@ void Edge::OnSnapshot(const v1::Tick& tick) {
     if (server_) End(options_.server + " was started again");
     return Begin(tick);
   }
-  thinner_->TakeRetained(ChannelsOf(tick));
+  thinner_->TakeRetained(transport::ChannelsOf(tick));
 }
 
 transport::ServerOptions Edge::OptionsOf(const v1::Welcome& welcome) const {
@@ -160,7 +161,7 @@ void Edge::Begin(const v1::Tick& snapshot) {
   server_ = std::make_unique<transport::Server>(io_, options, handlers);
   thinner_.emplace(options_.rate_hz, source_hz > 0 ? source_hz : options.tick_rate_hz,
                    snapshot.sequence());
-  server_->BeginAt({snapshot.sequence(), snapshot.host_ns()}, ChannelsOf(snapshot));
+  server_->BeginAt({snapshot.sequence(), snapshot.host_ns()}, transport::ChannelsOf(snapshot));
   heard_ns_ = clock::MonotonicNs();
   std::string places;
   for (std::size_t i = 0; i < options_.listen.size(); ++i) {

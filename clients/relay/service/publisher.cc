@@ -7,6 +7,7 @@
 #include "clients/relay/service/subjects.h"
 #include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/transport/channels_of.h"
 
 namespace footing::relay {
 namespace {
@@ -98,8 +99,8 @@ void Publisher::PublishChannels(const Source& source, const v1::Tick& tick) {
     found = thinners_.emplace(tick.epoch(), fresh).first;
   }
   Thinner& thinner = found->second;
-  if (tick.snapshot()) return thinner.TakeRetained(ChannelsOf(tick));
-  const auto thinned = thinner.Take({tick.sequence(), tick.host_ns()}, ChannelsOf(tick));
+  if (tick.snapshot()) return thinner.TakeRetained(transport::ChannelsOf(tick));
+  const auto thinned = thinner.Take({tick.sequence(), tick.host_ns()}, transport::ChannelsOf(tick));
   if (!thinned) return;
   for (const transport::ChannelBytes& channel : thinned->channels) {
     const bool retain = KindOf(channel.field) == ChannelKind::kRetained;
@@ -117,7 +118,8 @@ void Publisher::PublishChannels(const Source& source, const v1::Tick& tick) {
 void Publisher::RepeatRetained() {
   for (const auto& source : sources_) {
     const auto thinner = thinners_.find(source->epoch());
-    if (thinner != thinners_.end()) thinner->second.TakeRetained(ChannelsOf(source->snapshot()));
+    if (thinner != thinners_.end())
+      thinner->second.TakeRetained(transport::ChannelsOf(source->snapshot()));
   }
 }
 

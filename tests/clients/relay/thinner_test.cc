@@ -6,6 +6,7 @@
 
 #include "clients/relay/service/channels.h"
 #include "clients/relay/service/subjects.h"
+#include "common/transport/channels_of.h"
 
 namespace footing::relay {
 namespace {
@@ -133,7 +134,7 @@ TEST(TickMessage, IsAnEnvelopeOfTheProtocol) {
   tick.mutable_status()->add_devices()->set_serial("s");
   tick.mutable_motion()->add_samples()->set_device(3);
   v1::Envelope message;
-  ASSERT_TRUE(message.ParseFromString(TickMessage(77, {5, 6}, ChannelsOf(tick))));
+  ASSERT_TRUE(message.ParseFromString(TickMessage(77, {5, 6}, transport::ChannelsOf(tick))));
   EXPECT_EQ(message.tick().epoch(), 77u);
   EXPECT_EQ(message.tick().sequence(), 5u);
   EXPECT_EQ(message.tick().host_ns(), 6);
