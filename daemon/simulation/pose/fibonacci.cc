@@ -34,7 +34,7 @@ double FibonacciSearch::Cost(const PoseTargets& targets) {
   double cost = 0;
   for (int i = 0; i < targets.count; ++i) {
     const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
-    cost += Squared(point.p_W_m - PlaceOf(point, at_), point.sd_m);
+    cost += Whitened(point, point.p_W_m - PlaceOf(point, at_)).squaredNorm();
   }
   if (targets.has_com) {
     cost += Squared(targets.com_W_m - body::CentreOfMass(*body_, at_), targets.com_sd_m);

@@ -43,24 +43,24 @@ void MeasuredTerms::Measure(const PoseTargets& targets, const Eigen::VectorXd& q
   body::ComputeKinematics(body_->skeleton, q, at_);
   has_angular_ = targets.has_angular && q_before != nullptr;
   row_count_ = 0;
-  const auto add = [this](const Eigen::Vector3d& residual, const Eigen::Vector3d& sd) {
-    residuals_.segment<3>(row_count_) = residual.cwiseQuotient(sd);
+  const auto add = [this](const Eigen::Vector3d& residual) {
+    residuals_.segment<3>(row_count_) = residual;
     row_count_ += 3;
   };
   for (int i = 0; i < targets.count; ++i) {
     const PointTarget& point = targets.points[static_cast<std::size_t>(i)];
-    add(point.p_W_m - PlaceOf(point, at_), point.sd_m);
+    add(Whitened(point, point.p_W_m - PlaceOf(point, at_)));
   }
   if (has_angular_) {
     com_W_m_ = body::ComputeCentroidalMatrix(*body_, at_, workspace_, centroidal_);
   } else if (targets.has_com) {
     com_W_m_ = body::CentreOfMass(*body_, at_);
   }
-  if (targets.has_com) add(targets.com_W_m - com_W_m_, targets.com_sd_m);
+  if (targets.has_com) add((targets.com_W_m - com_W_m_).cwiseQuotient(targets.com_sd_m));
   if (has_angular_) {
     rate_ = (q - *q_before) / frame_s_;
     const Eigen::Vector3d angular_W = centroidal_.bottomRows<3>() * rate_;
-    add(targets.angular_W - angular_W, targets.angular_sd);
+    add((targets.angular_W - angular_W).cwiseQuotient(targets.angular_sd));
   }
 }
 
@@ -73,8 +73,8 @@ void MeasuredTerms::DifferentiatePoint(const PointTarget& point, JacobianBlock& 
     out.by_q -= JointBlock(point.from_joint).by_q;
     out.dofs = &all_dofs_;
   }
-  const Eigen::Vector3d weight = point.sd_m.cwiseInverse();
-  for (const int dof : *out.dofs) out.by_q.col(dof).array() *= weight.array();
+  const Eigen::Matrix3d weight = point.whitening * point.sd_m.cwiseInverse().asDiagonal();
+  for (const int dof : *out.dofs) out.by_q.col(dof) = (weight * out.by_q.col(dof)).eval();
 }
 
 void MeasuredTerms::Differentiate(const PoseTargets& targets) {

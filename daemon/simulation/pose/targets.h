@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 
@@ -14,7 +15,34 @@ struct PointTarget {
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();  ///< Where it should be.
   Eigen::Vector3d sd_m = Eigen::Vector3d::Ones();   ///< Along W's axes, positive.
   int from_joint = -1;  ///< p_W_m is the way from there to the point, along W's axes; -1: from W.
+  /// Turns errors over sd_m into independent ones of deviation 1 (WhiteningOf). The identity: they
+  /// are independent along W's axes.
+  Eigen::Matrix3d whitening = Eigen::Matrix3d::Identity();
 };
+
+/// The inverse Cholesky factor of the correlations that belong to these covariances of x and y, x
+/// and z, y and z. Correlations count for 0.999 of what they are, so that no direction is known
+/// exactly; those that no errors can have do not count.
+inline Eigen::Matrix3d WhiteningOf(const Eigen::Vector3d& sd_m,
+                                   const Eigen::Vector3d& covariance_m2) {
+  if (covariance_m2.isZero(0)) return Eigen::Matrix3d::Identity();
+  constexpr double kCounts = 0.999;
+  Eigen::Matrix3d correlation = Eigen::Matrix3d::Identity();
+  const auto set = [&](int i, int j, double value_m2) {
+    correlation(i, j) = correlation(j, i) = kCounts * value_m2 / (sd_m(i) * sd_m(j));
+  };
+  set(0, 1, covariance_m2.x());
+  set(0, 2, covariance_m2.y());
+  set(1, 2, covariance_m2.z());
+  const Eigen::LLT<Eigen::Matrix3d> factor(correlation);
+  if (factor.info() != Eigen::Success) return Eigen::Matrix3d::Identity();
+  return factor.matrixL().solve(Eigen::Matrix3d::Identity());
+}
+
+/// How far the point is off, in independent deviations.
+inline Eigen::Vector3d Whitened(const PointTarget& point, const Eigen::Vector3d& off_m) {
+  return point.whitening * off_m.cwiseQuotient(point.sd_m);
+}
 
 /// Where it is in a pose, in the same terms as p_W_m.
 inline Eigen::Vector3d PlaceOf(const PointTarget& point, const body::Kinematics& at) {
@@ -24,7 +52,8 @@ inline Eigen::Vector3d PlaceOf(const PointTarget& point, const body::Kinematics&
   return place_m - at.p_WJ[static_cast<std::size_t>(point.from_joint)];
 }
 
-inline constexpr int kMaxPoints = 16;
+/// Fists or arms (up to 6), ankles and balls (4), and the joints of a skeleton (13).
+inline constexpr int kMaxPoints = 24;
 
 /// What one frame's pose is solved for: the terms of equation (6), each with its standard
 /// deviation. What is not valid is not asked for.

@@ -12,6 +12,10 @@ BestMode::BestMode(const SubjectModel& model, const Options& options)
 
 void BestMode::Start(const momentum::TPose& pose) {
   state_.origin_m = BasisOrigin(*state_.model, pose);
+  state_.pose.q = state_.model->t_pose;
+  state_.pose.at = state_.model->t_pose_at;
+  MoveToWorld(state_.origin_m, state_.pose);
+  skeleton_.Start();
   estimate_.Start(pose, state_.origin_m);
   measured_.Clear();
   truth_.Clear();
@@ -21,7 +25,7 @@ void BestMode::Start(const momentum::TPose& pose) {
 }
 
 void BestMode::Advance(const Inputs& inputs, const Truth& truth, Output& output) {
-  const Measurement now = estimate_.Advance(inputs);
+  const Measurement now = estimate_.Advance(Plausible(inputs));
   output.mass_kg = estimate_.mass_kg();
   ReportEstimate(now.momentum, state_.solver_resets, output);
   output.posture_com_W_m = now.posture_com_W_m;
@@ -35,7 +39,14 @@ void BestMode::Advance(const Inputs& inputs, const Truth& truth, Output& output)
     solver_.Reset();
     return;
   }
+  skeleton_.Learn(*state_.model, then.joints, state_.pose.at, state_.options.step_s());
   Report(then, true_then, output);
+}
+
+Inputs BestMode::Plausible(const Inputs& inputs) const {
+  Inputs plausible = skeleton_.Without(inputs);
+  GateJoints(*state_.model, state_.pose.at, plausible.joints);
+  return plausible;
 }
 
 Measurement BestMode::Delayed(const Measurement& now) {
@@ -59,6 +70,8 @@ void BestMode::SetTargets(const Measurement& then, const Truth& truth, const Out
     hold_.ShowFeet(*state_.model, state_.targets, then.momentum, output, state_.options.step_s(),
                    state_.shown_feet);
   }
+  // After the feet, whose places are the first targets of their joints.
+  AddJointTargets(*state_.model, then.joints, state_.targets);
   SetMomentumTargets(*state_.model, then, output.mass_kg, state_.options, state_.targets);
   OverrideMomentumTargets(truth, state_.options, state_.targets);
   state_.MoveTargets();

@@ -6,6 +6,7 @@
 #include "daemon/simulation/reconstruction/delay.h"
 #include "daemon/simulation/reconstruction/measurement.h"
 #include "daemon/simulation/reconstruction/mode_state.h"
+#include "daemon/simulation/reconstruction/skeleton.h"
 
 namespace footing::reconstruction {
 
@@ -28,11 +29,14 @@ class BestMode {
 
   /// What was measured at the instant that is reconstructed, with what is known of it now.
   Measurement Delayed(const Measurement& now);
+  /// Without what the joints are off by in common, and without those that are implausible.
+  Inputs Plausible(const Inputs& inputs) const;
   void SetTargets(const Measurement& then, const Truth& truth, const Output& output);
   void CleanUp(const Measurement& then, const Truth& truth);
   void Report(const Measurement& then, const Truth& truth, Output& output);
 
   ModeState state_;
+  SkeletonOffset skeleton_;
   BestEstimate estimate_;
   Lag<Measurement> measured_;
   Lag<Truth> truth_;

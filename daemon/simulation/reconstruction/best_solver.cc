@@ -40,6 +40,7 @@ void BestSolver::Reset() {
 }
 
 BestSolver::Source BestSolver::Choose(const Measurement& then) const {
+  if (then.skeleton()) return Source::kMean;
   const bool hands =
       (then.hands[0].valid || then.arms[0].valid) && (then.hands[1].valid || then.arms[1].valid);
   if (hands && regressed_ && (then.momentum.trusted || !posed_)) return Source::kRegression;

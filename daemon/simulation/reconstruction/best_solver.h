@@ -18,8 +18,9 @@ namespace footing::reconstruction {
 
 /// The fourth step of best mode: Gauss-Newton about the pose that the regression of the features
 /// makes likely. While the momentum is not trusted, or left out, about the pose that hands and feet
-/// alone make likely. While a hand is neither seen nor known by its arm, and where nothing is
-/// learned of either, about the mean of all poses.
+/// alone make likely. While a hand is neither seen nor known by its arm, where nothing is learned
+/// of either, and while a skeleton's joints show the pose, about the mean of all poses: what is
+/// learned knows no joints, and poses of other people are nearer to it than to what they show.
 class BestSolver {
  public:
   /// `model` must outlive it.

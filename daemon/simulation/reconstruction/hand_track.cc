@@ -24,10 +24,12 @@ void HandTrack::Predict(double step_s) {
   vv_ = kept * kept * vv_ + kAcceleration * step_s;
 }
 
-void HandTrack::Add(double time_s, const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& sd_m) {
+void HandTrack::Add(double time_s, const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& sd_m,
+                    const Eigen::Vector3d& covariance_m2) {
   const double step_s = time_s - time_s_;
   if (started_ && step_s <= 0 && step_s > -kFurthestS) return;
   measured_variance_ = sd_m.array().square();
+  covariance_m2_ = covariance_m2;
   if (!started_ || std::abs(step_s) > kFurthestS) {
     p_m_ = p_W_m;
     v_mps_.setZero();
@@ -56,6 +58,7 @@ HandInput HandTrack::At(double time_s) const {
   hand.valid = started_;
   hand.p_W_m = later.p_m_;
   hand.sd_m = (measured_variance_ + later.pp_ - pp_).sqrt();
+  hand.covariance_m2 = covariance_m2_;
   return hand;
 }
 

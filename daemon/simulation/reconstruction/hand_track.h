@@ -6,17 +6,18 @@
 
 namespace footing::reconstruction {
 
-/// Where a hand is by now, which a tracker measures with a delay: a Kalman filter of place and
-/// velocity along each of W's axes; the velocity is white noise through a first-order lag.
-/// Measurements count as if their errors were white; they need not be, so no place is reported with
-/// a smaller deviation than the tracker's. A value.
+/// Where a hand, or another point of the body, is by now, which a tracker measures with a delay: a
+/// Kalman filter of place and velocity along each of W's axes; the velocity is white noise through
+/// a first-order lag. Measurements count as if their errors were white; they need not be, so no
+/// place is reported with a smaller deviation than the tracker's. A value.
 class HandTrack {
  public:
   static constexpr double kFurthestS = 0.3;  ///< Nothing is known of a hand later than that.
 
   /// The hand's place at `time_s`, which is later than the one before; after a pause or a step back
   /// of kFurthestS it starts again. Finite; deviations above 0.
-  void Add(double time_s, const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& sd_m);
+  void Add(double time_s, const Eigen::Vector3d& p_W_m, const Eigen::Vector3d& sd_m,
+           const Eigen::Vector3d& covariance_m2 = Eigen::Vector3d::Zero());
   /// At `time_s`, if not before the last place then at that. Invalid before the first.
   HandInput At(double time_s) const;
 
@@ -29,6 +30,7 @@ class HandTrack {
   Eigen::Array3d pp_ = Eigen::Array3d::Zero(), pv_ = Eigen::Array3d::Zero(),
                  vv_ = Eigen::Array3d::Zero();  ///< Their covariance.
   Eigen::Array3d measured_variance_ = Eigen::Array3d::Ones();
+  Eigen::Vector3d covariance_m2_ = Eigen::Vector3d::Zero();  ///< Between axes, of the last place.
 };
 
 }  // namespace footing::reconstruction

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "common/stream/hands.h"
 #include "daemon/simulation/arms/arm_model.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 
@@ -12,12 +13,17 @@ namespace footing::reconstruction {
 
 inline constexpr std::size_t kHands = 2;  ///< 0 is the left one.
 
-/// Middle of the fist (body::Fist), W.
-struct HandInput {
+/// A point of the body as a tracker sees it.
+struct PointInput {
   bool valid = false;
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d sd_m = Eigen::Vector3d::Constant(0.01);
+  /// Of x and y, x and z, y and z; with sd_m the whole matrix.
+  Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
 };
+using HandInput = PointInput;   ///< Middle of the fist (body::Fist).
+using JointInput = PointInput;  ///< A joint of a skeleton (body::SkeletonPoints).
+using JointInputs = std::array<JointInput, stream::kBodyJoints>;  ///< By body::IndexOf.
 
 /// What the sensors measure in one frame.
 struct Inputs {
@@ -25,6 +31,8 @@ struct Inputs {
   std::array<HandInput, kHands> hands;
   /// How the arms are held, where their hands are not seen.
   std::array<arms::ArmEstimate, kHands> arms = {};
+  JointInputs joints = {};
+  bool hands_of_skeleton = false;  ///< The tracker of the joints sees the hands, too.
 };
 
 /// For evaluation: parts of the truth at the instant of the loads, in place of their estimates, to

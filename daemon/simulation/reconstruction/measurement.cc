@@ -10,7 +10,14 @@
 namespace footing::reconstruction {
 namespace {
 
-constexpr double kMostHandM = 10;  // Nobody's hand is further from the cells.
+constexpr int kLeastJoints = 4;    // Of a skeleton that shows more than a limb.
+constexpr double kMostHandM = 10;  // No part of a person is further from the cells.
+
+bool IsUsable(const PointInput& point, const Eigen::Vector3d& origin_m) {
+  return point.valid && point.p_W_m.allFinite() && point.sd_m.allFinite() &&
+         point.covariance_m2.allFinite() && point.sd_m.minCoeff() > 0 &&
+         (point.p_W_m - origin_m).norm() < kMostHandM;
+}
 
 bool UsableDirection(const Eigen::Vector3d& direction, const Eigen::Vector3d& sd) {
   return direction.allFinite() && sd.allFinite() && sd.minCoeff() > 0;
@@ -18,13 +25,21 @@ bool UsableDirection(const Eigen::Vector3d& direction, const Eigen::Vector3d& sd
 
 }  // namespace
 
+bool Measurement::skeleton() const {
+  return std::count_if(joints.begin(), joints.end(),
+                       [](const JointInput& joint) { return joint.valid; }) >= kLeastJoints;
+}
+
 std::array<HandInput, kHands> UsableHands(const std::array<HandInput, kHands>& hands,
                                           const Eigen::Vector3d& origin_m) {
   std::array<HandInput, kHands> usable = hands;
-  for (HandInput& hand : usable) {
-    hand.valid = hand.valid && hand.p_W_m.allFinite() && hand.sd_m.allFinite() &&
-                 hand.sd_m.minCoeff() > 0 && (hand.p_W_m - origin_m).norm() < kMostHandM;
-  }
+  for (HandInput& hand : usable) hand.valid = IsUsable(hand, origin_m);
+  return usable;
+}
+
+JointInputs UsableJoints(const JointInputs& joints, const Eigen::Vector3d& origin_m) {
+  JointInputs usable = joints;
+  for (JointInput& joint : usable) joint.valid = IsUsable(joint, origin_m);
   return usable;
 }
 
@@ -89,7 +104,7 @@ void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& ori
 
 Measurement BestEstimate::Advance(const Inputs& inputs) {
   Measurement now{UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
-                  estimator_->Advance(inputs.loads)};
+                  estimator_->Advance(inputs.loads), UsableJoints(inputs.joints, origin_m_)};
   if (options_.use_posture && now.both_hands()) {
     SeePosture(now);
   }

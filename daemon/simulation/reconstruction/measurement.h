@@ -23,15 +23,20 @@ struct Measurement {
   std::array<HandInput, kHands> hands;
   std::array<arms::ArmEstimate, kHands> arms;
   momentum::Estimate momentum;
+  JointInputs joints = {};
   /// COM by hands and feet alone, W; only with both hands.
   std::optional<Eigen::Vector3d> posture_com_W_m = std::nullopt;
 
   bool both_hands() const { return hands[0].valid && hands[1].valid; }
+  /// Enough joints of a skeleton are seen, or inferred, to show the pose.
+  bool skeleton() const;
 };
 
-/// Hands and arms as they are, those that are not finite or far from `origin_m` as not valid.
+/// Hands, joints and arms as they are, those that are not finite or far from `origin_m` as not
+/// valid.
 std::array<HandInput, kHands> UsableHands(const std::array<HandInput, kHands>& hands,
                                           const Eigen::Vector3d& origin_m);
+JointInputs UsableJoints(const JointInputs& joints, const Eigen::Vector3d& origin_m);
 std::array<arms::ArmEstimate, kHands> UsableArms(const std::array<arms::ArmEstimate, kHands>& arms);
 
 /// Before the first T-pose and after each request for a new one: stands in a T-pose, nothing valid.

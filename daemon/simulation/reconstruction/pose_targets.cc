@@ -16,7 +16,8 @@ constexpr double kHingeM = 0.25;  // Distance at which a turn of the upper arm c
 
 pose::PointTarget FistTarget(const body::Point& fist, const HandInput& hand,
                              const Eigen::Vector3d& sd_m) {
-  return {fist.joint, fist.p_J_m, hand.p_W_m, sd_m};
+  return {fist.joint, fist.p_J_m, hand.p_W_m,
+          sd_m,       -1,         pose::WhiteningOf(sd_m, hand.covariance_m2)};
 }
 
 /// Three targets, of unit vectors times lengths; `sd_m` maps length and deviation to a deviation.
@@ -78,7 +79,8 @@ void AddPaperHandTargets(const SubjectModel& model, const Measurement& then,
       AddArmTargets(model.arms[side], then.arms[side], arm_sd_m, targets);
       continue;
     }
-    targets.Add(FistTarget(model.fists[side], hand, Eigen::Vector3d::Constant(kPaperHandSdM)));
+    const body::Point& fist = model.fists[side];
+    targets.Add({fist.joint, fist.p_J_m, hand.p_W_m, Eigen::Vector3d::Constant(kPaperHandSdM)});
   }
 }
 

@@ -14,13 +14,13 @@ constexpr int kSpreadsAFrame = 2;  // Of the joints and the COM, those that are 
 constexpr double kMisfitTimeS = 0.5, kMostMisfitAtOnce = 25;
 constexpr double kUsualMisfit = 1.5, kMostMisfit = 2;
 
-/// Sum of squares, row by row.
+/// Sum of squares, row by row, of what is off by its deviation.
 struct Squares {
   double sum = 0;
   int rows = 0;
 
-  void Add(const Eigen::Vector3d& off_m, const Eigen::Vector3d& sd_m) {
-    sum += off_m.cwiseQuotient(sd_m).squaredNorm();
+  void Add(const Eigen::Vector3d& off) {
+    sum += off.squaredNorm();
     rows += 3;
   }
 };
@@ -65,10 +65,11 @@ double MisfitOf(const SubjectModel& model, const pose::PoseTargets& targets,
     const pose::PointTarget& point = targets.points[static_cast<std::size_t>(i)];
     Eigen::Vector3d off_m = point.p_W_m - PlaceOf(point, at);
     if (point.from_joint < 0) off_m += origin_m;
-    squares.Add(off_m, point.sd_m);
+    squares.Add(Whitened(point, off_m));
   }
   if (targets.has_com) {
-    squares.Add(targets.com_W_m + origin_m - body::CentreOfMass(model.body, at), targets.com_sd_m);
+    const Eigen::Vector3d com_m = body::CentreOfMass(model.body, at);
+    squares.Add((targets.com_W_m + origin_m - com_m).cwiseQuotient(targets.com_sd_m));
   }
   const pose::PoseBasis& basis = prior.basis;
   for (int i = 0; i < basis.size(); ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "common/body/skeleton_points.h"
+
 namespace footing::reconstruction {
 namespace {
 
@@ -47,6 +49,7 @@ Result<SubjectModel> CommonSubjectModel(const body::Body& body, const Models& mo
                     : models.basis;
   model.subject = SubjectOf(body);
   model.feet = StandingFeet(body);
+  model.joints = body::SkeletonPoints(body);
   for (int side = 0; side < 2; ++side) {
     model.fists[static_cast<std::size_t>(side)] = body::Fist(body, side);
     model.shanks[static_cast<std::size_t>(side)] = ShankJoints(body, side);

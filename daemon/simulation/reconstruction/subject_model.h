@@ -30,7 +30,8 @@ struct SubjectModel {
   std::array<FootGeometry, momentum::kFeet> feet;
   std::array<std::vector<std::size_t>, momentum::kFeet> shanks;  ///< Joints from the knees down.
   std::array<body::Point, kHands> fists;
-  std::vector<arms::ArmGeometry> arms;  ///< kHands.
+  std::array<body::Point, stream::kBodyJoints> joints;  ///< Those of a tracked skeleton.
+  std::vector<arms::ArmGeometry> arms;                  ///< kHands.
   pose::PoseBasis basis;
   PoseRegression regression;  ///< Empty where the mode does without.
   pose::PoseBasis rest;       ///< Errors of the regression.

@@ -19,6 +19,7 @@ PoseTargets AllKinds(const body::Body& person) {
   fist.p_J_m << 0.02, 0.05, -0.01;
   fist.p_W_m << 0.3, 0.6, 1.2;
   fist.sd_m << 0.01, 0.02, 0.03;
+  fist.whitening = WhiteningOf(fist.sd_m, {0.0001, -0.0002, 0.0003});
   targets.Add(fist);
   PointTarget knee;
   knee.joint = person.landmarks[body::Landmark::kRightKnee];
