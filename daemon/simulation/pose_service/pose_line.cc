@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "daemon/simulation/pose_service/pose_applied.h"
 #include "daemon/simulation/pose_service/pose_models.h"
 #include "daemon/simulation/pose_service/pose_publish.h"
 #include "daemon/simulation/serving/channel_bytes.h"

@@ -19,9 +19,4 @@ v1::CharacterFrame ToCharacterFrame(const PoseFrame& frame, const Subject& subje
 /// One link a joint; its size is that of a ball about the joint that the limbs end in.
 stream::Skeleton ToSkeleton(const body::Body& body);
 
-v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subject);
-/// The other way round, for replays.
-PoseApplied PoseAppliedFrom(const v1::AppliedInput& message);
-Subject SubjectFrom(const v1::AppliedInput& message);
-
 }  // namespace footing::pose_service

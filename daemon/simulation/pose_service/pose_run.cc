@@ -134,6 +134,7 @@ void PoseRun::StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
     for (auto& foot : insoles_.feet) foot.valid = false;
     for (auto& hand : sensors_.hands) hand.valid = false;
     for (auto& arm : sensors_.arms) arm.valid = false;
+    for (auto& joint : sensors_.joints) joint.valid = false;
   }
   insoles_.time_s = sensors_.loads.time_s;
   insoles_.hands = sensors_.hands;

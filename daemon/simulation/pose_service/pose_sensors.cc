@@ -6,6 +6,7 @@
 
 #include "common/board/geometry.h"
 #include "common/board/layout.h"
+#include "common/body/skeleton_points.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 
@@ -13,11 +14,22 @@ namespace footing::pose_service {
 namespace {
 
 /// A tracker that says less of itself is not believed: no point is known better than this.
-constexpr double kLeastHandSdM = 0.002;
-constexpr double kMostHandSdM = 1;
+constexpr double kLeastPointSdM = 0.002;
+constexpr double kMostPointSdM = 1;
 
 bool IsFinite(const v1::Vector3& v) {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+bool IsSeen(const v1::HandSample& sample) {
+  return sample.confidence() > 0 && IsFinite(sample.position_m()) && IsFinite(sample.sd_m()) &&
+         IsFinite(sample.covariance_m2());
+}
+
+void Add(const v1::HandSample& sample, double exposed_s, reconstruction::HandTrack& track) {
+  track.Add(exposed_s, wire::FromProto(sample.position_m()),
+            wire::FromProto(sample.sd_m()).cwiseMax(kLeastPointSdM).cwiseMin(kMostPointSdM),
+            wire::FromProto(sample.covariance_m2()));
 }
 
 bool IsOld(std::int64_t seen_ns, std::int64_t now_ns, double timeout_s) {
@@ -109,14 +121,22 @@ void PoseSensors::TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns) 
 
 void PoseSensors::TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns) {
   const int side = HandSideOf(sample.role());
-  if (side < 0 || sample.rig() != followed_rig_) return;
-  if (!IsFinite(sample.position_m()) || !IsFinite(sample.sd_m())) return;
-  if (!(sample.confidence() > 0)) return;
+  if (side < 0 || sample.rig() != followed_rig_ || !IsSeen(sample)) return;
   hands_[static_cast<std::size_t>(side)] = {true, now_ns, sample.simulated()};
   tracker_ = sample.tracker();
-  tracks_[static_cast<std::size_t>(side)].Add(
-      NanosecondsToSeconds(now_ns) - std::max(0.0, age_s), wire::FromProto(sample.position_m()),
-      wire::FromProto(sample.sd_m()).cwiseMax(kLeastHandSdM).cwiseMin(kMostHandSdM));
+  Add(sample, NanosecondsToSeconds(now_ns) - std::max(0.0, age_s),
+      tracks_[static_cast<std::size_t>(side)]);
+}
+
+void PoseSensors::TakeJoint(const v1::HandSample& sample, double age_s, std::int64_t now_ns) {
+  const auto joint = wire::FromProto(sample).joint;
+  if (joint == stream::BodyJoint::kUnspecified || sample.rig() != followed_rig_) return;
+  const std::size_t index = body::IndexOf(joint);
+  if (sample.confidence() == 0 && sample.tracker() == joint_tracker_) joints_[index].seen = false;
+  if (!IsSeen(sample)) return;
+  joints_[index] = {true, now_ns, sample.simulated()};
+  joint_tracker_ = sample.tracker();
+  Add(sample, NanosecondsToSeconds(now_ns) - std::max(0.0, age_s), joint_tracks_[index]);
 }
 
 void PoseSensors::TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns) {
@@ -160,6 +180,12 @@ void PoseSensors::DropOld(std::int64_t now_ns) {
     inputs_.sensors.hands[side].valid = seen;
     inputs_.insoles[side].valid = is_live(insoles_[side], kInsoleTimeoutS);
   }
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const bool seen = is_live(joints_[i], kHandTimeoutS);
+    if (seen) inputs_.sensors.joints[i] = joint_tracks_[i].At(NanosecondsToSeconds(now_ns));
+    inputs_.sensors.joints[i].valid = seen;
+  }
+  inputs_.sensors.hands_of_skeleton = !tracker_.empty() && tracker_ == joint_tracker_;
 }
 
 void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
@@ -174,7 +200,9 @@ void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   for (const v1::ContactSample& sample : tick.contacts().samples()) TakeInsole(sample, now_ns);
   for (const v1::HandSample& sample : tick.hands().samples()) {
     // Both times are footingd's; its clock may be another one than ours.
-    TakeHand(sample, NanosecondsToSeconds(tick.host_ns() - sample.sampled_ns()), now_ns);
+    const double age_s = NanosecondsToSeconds(tick.host_ns() - sample.sampled_ns());
+    TakeHand(sample, age_s, now_ns);
+    TakeJoint(sample, age_s, now_ns);
   }
   for (const v1::MotionSample& sample : tick.motion().samples()) arms_.Take(sample, now_ns);
   DropOld(now_ns);

@@ -16,12 +16,12 @@ namespace footing::pose_service {
 
 /// Turns ticks of the sensor daemon into inputs of the pose engine, on the io thread: the newest
 /// raw sample of the rig's left and right board with its cells' places in W and what they have felt
-/// so far, of its insoles, and of
-/// its hands as they have gone on since the tracker saw them, and how its arms are held by the
-/// Wiimotes in the fists.
+/// so far, of its insoles, of its hands and of the joints of its skeleton as they have gone on
+/// since the tracker saw them, and how its arms are held by the Wiimotes in the fists.
 ///
-/// A board or an insole without samples, or a hand not seen, for longer than its timeout is not
-/// valid, which is not the same as no load. Samples that are not finite count as none.
+/// A board or an insole without samples, or a hand or joint not seen, for longer than its timeout
+/// is not valid, which is not the same as no load. A joint that its tracker looked for and did not
+/// see is not valid from then on. Samples that are not finite count as none.
 class PoseSensors {
  public:
   static constexpr double kBoardTimeoutS = 0.2;
@@ -55,7 +55,7 @@ class PoseSensors {
     bool simulated = false;
     board::ImpulseMeter meter;
   };
-  /// A hand or an insole.
+  /// A hand, a joint or an insole.
   struct BodySource {
     bool seen = false;
     std::int64_t seen_ns = 0;
@@ -68,6 +68,7 @@ class PoseSensors {
   void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
   /// `age_s` of its exposure.
   void TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
+  void TakeJoint(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
   void TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns);
   void DropOld(std::int64_t now_ns);
 
@@ -78,8 +79,11 @@ class PoseSensors {
   std::array<BodySource, 2> hands_{};
   std::array<reconstruction::HandTrack, reconstruction::kHands> tracks_;
   std::array<BodySource, momentum::kFeet> insoles_{};
+  std::array<BodySource, stream::kBodyJoints> joints_{};
+  std::array<reconstruction::HandTrack, stream::kBodyJoints> joint_tracks_;
   std::string tracker_;
-  v1::SetupState setup_;  ///< As published last.
+  std::string joint_tracker_;  ///< The same of a joint.
+  v1::SetupState setup_;       ///< As published last.
   PoseArms arms_;
   PoseInputs inputs_;
 };

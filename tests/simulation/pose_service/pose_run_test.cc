@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "daemon/simulation/pose_service/pose_publish.h"
+#include "daemon/simulation/pose_service/pose_applied.h"
 #include "tests/simulation/reconstruction/made_person.h"
 
 namespace footing::pose_service {
@@ -56,6 +56,14 @@ struct Line {
     told.sensors.hands[0].valid = false;
     told.sensors.arms[0].valid = true;
     told.sensors.arms[0].directions.upper = Eigen::Vector3d(0.3, 0.8, -0.4).normalized();
+  }
+  /// A camera sees two joints, one of them with errors that depend on each other.
+  void SeeJoints(std::size_t i) {
+    made::JointInputs& joints = told.sensors.joints;
+    joints = {};
+    joints[0] = {true, {0.01, 0, 1.6 + 1e-4 * static_cast<double>(i % 10)}, {0.04, 0.05, 0.1}};
+    joints[7] = {true, {0, 0.1, 0.9}, {0.04, 0.05, 0.1}, {0.001, -0.0005, 0.002}};
+    told.sensors.hands_of_skeleton = i % 2 == 0;
   }
   /// One step with the i-th frame that was measured.
   void Step(std::size_t i) {
@@ -216,6 +224,7 @@ TEST(PoseRun, AppliedInputsComeBackBitForBitAndRunAgainToTheSameHash) {
     line.Press(i);
     if (i % 200 > 150) line.Wear(i);
     if (i % 100 > 70) line.HoldAnArm();
+    if (i % 90 > 40) line.SeeJoints(i);
     if (i % 200 == 0) line.told.insoles = {};
     line.inputs.Write(line.told);
     line.run.StepOnSimThread(line.inputs, line.frame);

@@ -176,6 +176,49 @@ TEST_F(PoseSensorsTest, AHandThatATrackerTellsLateIsCarriedOnToNow) {
   EXPECT_EQ(sensors.tracker(), "kinect");
 }
 
+TEST_F(PoseSensorsTest, AJointIsGivenWithItsCovarianceUntilItIsAbsentOrSilent) {
+  After(StatusTick());
+  v1::Tick tick;
+  v1::HandSample& knee = AddJoint(tick, v1::BODY_JOINT_LEFT_KNEE, 0.1, 0.2, 0.5);
+  knee.mutable_sd_m()->set_x(0.05);
+  knee.mutable_covariance_m2()->set_x(0.0003);
+  AddJoint(tick, v1::BODY_JOINT_HEAD, 0, 0, 1.6);
+  const reconstruction::JointInputs seen = After(tick, 0).sensors.joints;
+  const std::size_t kKnee = v1::BODY_JOINT_LEFT_KNEE - 1, kHead = v1::BODY_JOINT_HEAD - 1;
+  ASSERT_TRUE(seen[kKnee].valid);
+  EXPECT_EQ(seen[kKnee].p_W_m, Eigen::Vector3d(0.1, 0.2, 0.5));
+  EXPECT_EQ(seen[kKnee].sd_m, Eigen::Vector3d(0.05, 0.01, 0.01));
+  EXPECT_EQ(seen[kKnee].covariance_m2, Eigen::Vector3d(0.0003, 0, 0));
+  EXPECT_TRUE(seen[kHead].valid);
+  EXPECT_FALSE(seen[v1::BODY_JOINT_NECK - 1].valid);
+  v1::Tick lost;
+  AddJoint(lost, v1::BODY_JOINT_LEFT_KNEE, 0, 0, 0, 0);
+  const reconstruction::JointInputs after = After(lost, 0.05).sensors.joints;
+  EXPECT_FALSE(after[kKnee].valid) << "absent, not at the origin";
+  EXPECT_TRUE(after[kHead].valid);
+  EXPECT_FALSE(After({}, 0.16).sensors.joints[kHead].valid) << "silent";
+}
+
+TEST_F(PoseSensorsTest, HandsBelongToTheSkeletonOfTheirTracker) {
+  After(StatusTick());
+  v1::Tick tick;
+  AddJoint(tick, v1::BODY_JOINT_HEAD, 0, 0, 1.6);
+  AddHand(tick, v1::DEVICE_ROLE_LEFT_HAND, 0, 0.8, 1.4);
+  tick.mutable_hands()->mutable_samples(1)->set_tracker("camera");
+  EXPECT_FALSE(After(tick).sensors.hands_of_skeleton);
+  tick.mutable_hands()->mutable_samples(1)->set_tracker("kinect");
+  EXPECT_TRUE(After(tick).sensors.hands_of_skeleton);
+}
+
+TEST_F(PoseSensorsTest, JointsOfOthersAndWithoutSenseAreNotGiven) {
+  After(StatusTick());
+  v1::Tick tick;
+  AddJoint(tick, v1::BODY_JOINT_HEAD, 0, 0, 1.6).set_rig("two");
+  AddJoint(tick, v1::BODY_JOINT_NECK, std::numeric_limits<double>::quiet_NaN(), 0, 1.4);
+  AddJoint(tick, static_cast<v1::BodyJoint>(99), 0, 0, 1);
+  for (const auto& joint : After(tick).sensors.joints) EXPECT_FALSE(joint.valid);
+}
+
 TEST_F(PoseSensorsTest, AWiimoteInAHandOfTheRigIsBoundByItsRole) {
   v1::Tick status = StatusTick();
   AddDevice(status, 21, v1::DEVICE_ROLE_LEFT_HAND);

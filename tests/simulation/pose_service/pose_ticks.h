@@ -49,6 +49,17 @@ inline void AddHand(v1::Tick& tick, v1::DeviceRole role, double x_m, double y_m,
   sample.set_confidence(1);
 }
 
+/// A joint of the tracker "kinect"; with confidence 0 it is absent.
+inline v1::HandSample& AddJoint(v1::Tick& tick, v1::BodyJoint joint, double x_m, double y_m,
+                                double z_m, double confidence = 1) {
+  AddHand(tick, v1::DEVICE_ROLE_UNSPECIFIED, x_m, y_m, z_m);
+  v1::HandSample& sample = *tick.mutable_hands()->mutable_samples()->rbegin();
+  sample.set_joint(joint);
+  sample.set_tracker("kinect");
+  sample.set_confidence(confidence);
+  return sample;
+}
+
 /// Four cells about the middle of a sole of 24 cm, each with this load.
 inline void AddInsole(v1::Tick& tick, v1::ContactBody body, double load_n,
                       const char* rig = "one") {

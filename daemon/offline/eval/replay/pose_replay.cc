@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/exchange/latest.h"
+#include "daemon/simulation/pose_service/pose_applied.h"
 #include "daemon/simulation/pose_service/pose_line.h"
 #include "daemon/simulation/pose_service/pose_models.h"
 #include "daemon/simulation/pose_service/pose_publish.h"
