@@ -7,7 +7,7 @@
 #include "common/body/momentum.h"
 #include "common/body/points.h"
 #include "common/virtual/noise/random.h"
-#include "common/virtual/sensors/kinect_errors.h"
+#include "common/virtual/sensors/kinect_skeleton.h"
 
 namespace footing::stream_client {
 namespace {
@@ -81,16 +81,30 @@ Feed HandFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t 
   return feed;
 }
 
-Feed KinectHandFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed) {
+Feed KinectFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed) {
   using virtual_sensors::KinectErrors;
+  using virtual_sensors::KinectSkeleton;
+  constexpr double kTracked = 1, kInferred = 0.5;  // As NiTE says it.
   Feed feed;
   feed.rate_hz = 1 / KinectErrors::kPeriodS;
   feed.late_s = KinectErrors::kLateS;
-  feed.hands = [stage, errors = KinectErrors(seed)](double t_s) mutable {
-    stream::HandFrame frame = Fists(*stage, "kinect", KinectErrors::SdM(), t_s);
-    errors.Expose();
-    for (stream::TrackedPoint& point : frame.points)
-      point.position_m = errors.Measure(point.position_m);
+  feed.hands = [stage, kinect = KinectSkeleton(stage->scene.body, seed)](double t_s) mutable {
+    stream::HandFrame frame;
+    frame.tracker = "kinect";
+    frame.simulated = true;
+    const auto& seen = kinect.Expose(KinematicsAt(*stage, t_s));
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      stream::TrackedPoint& point = frame.points.emplace_back();
+      if (i < KinectSkeleton::kHands) {
+        point.role = i == 0 ? stream::DeviceRole::kLeftHand : stream::DeviceRole::kRightHand;
+      } else {
+        point.joint = static_cast<stream::BodyJoint>(i - KinectSkeleton::kHands + 1);
+      }
+      point.position_m = seen[i].p_W_m;
+      point.sd_m.setConstant(seen[i].sd_m);
+      point.confidence = seen[i].hidden ? kInferred : kTracked;
+      point.occluded = seen[i].hidden;
+    }
     return frame;
   };
   return feed;
@@ -123,7 +137,7 @@ void AddBodyFeeds(const std::shared_ptr<const Stage>& stage, const std::string& 
   if (hands == "move") {
     plan.feeds.push_back(HandFeed(stage, hand_noise_m, DeviceSeed(common, 3) + 700));
   } else if (hands == "kinect") {
-    plan.feeds.push_back(KinectHandFeed(stage, DeviceSeed(common, 3) + 700));
+    plan.feeds.push_back(KinectFeed(stage, DeviceSeed(common, 3) + 700));
   }
   plan.feeds.push_back(PoseFeed(stage));
   plan.duration_s = common.seconds > 0 ? common.seconds : stage->repeats ? 0 : stage->duration_s();

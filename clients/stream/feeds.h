@@ -12,8 +12,10 @@ namespace footing::stream_client {
 /// Both fists 60 times a second as a tracker with white noise sees them.
 Feed HandFeed(std::shared_ptr<const Stage> stage, double noise_m, std::uint64_t seed);
 
-/// Both fists as a Kinect's skeleton tracker measures them (virtual_sensors::KinectErrors).
-Feed KinectHandFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed);
+/// Both fists and all joints as a Kinect's skeleton tracker measures them
+/// (virtual_sensors::KinectSkeleton); what the body hides from it is inferred and said to be
+/// hidden.
+Feed KinectFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed);
 
 /// The true pose 60 times a second: all joints, or of a skeleton of more than 64 those on the way
 /// to a landmark.

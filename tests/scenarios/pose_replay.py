@@ -1,4 +1,4 @@
-"""A recording of the pose engine runs again to the same frames, bit for bit.
+"""A recording of the pose engine, with boards and a Kinect's joints, runs again to the same frames, bit for bit.
 
 Usage: pose_replay.py BINARY_FOLDER
 """
@@ -15,7 +15,7 @@ def main(binaries):
         stage.start("footing-sim", "--engine", "pose", "--sensor", stage.sensor, "--listen",
                     stage.simulation)
         stage.wait_for_socket(stage.simulation)
-        stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "move", "--to",
+        stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "kinect", "--to",
                     stage.devices)
         recording = stage.folder / "recording.mcap"
         logger = stage.start("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",

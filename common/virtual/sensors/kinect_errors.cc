@@ -15,9 +15,9 @@ void KinectErrors::Expose() {
   }
 }
 
-Eigen::Vector3d KinectErrors::Measure(const Eigen::Vector3d& p_W_m) {
+Eigen::Vector3d KinectErrors::Measure(const Eigen::Vector3d& p_W_m, noise::Random& noise) const {
   Eigen::Vector3d measured_m = p_W_m + offset_m_;
-  for (double& value : measured_m) value += kNoiseM * random_.Normal();
+  for (double& value : measured_m) value += kNoiseM * noise.Normal();
   return measured_m;
 }
 

@@ -7,9 +7,9 @@
 
 namespace footing::virtual_sensors {
 
-/// Errors of hands as a Kinect's skeleton tracker reports them (docs/hands.md): white noise, and an
-/// offset common to both hands that changes slowly. It sees 30 frames a second and reports each two
-/// frames late.
+/// Errors of points as a Kinect's skeleton tracker reports them (docs/hands.md): white noise, and
+/// an offset common to all of them that changes slowly. It sees 30 frames a second and reports each
+/// two frames late.
 class KinectErrors {
  public:
   static constexpr double kPeriodS = 1.0 / 30, kLateS = 2.0 / 30;
@@ -20,7 +20,9 @@ class KinectErrors {
   /// The next exposure, kPeriodS after the one before.
   void Expose();
   /// A hand of this exposure where it is reported; the left one first.
-  Eigen::Vector3d Measure(const Eigen::Vector3d& p_W_m);
+  Eigen::Vector3d Measure(const Eigen::Vector3d& p_W_m) { return Measure(p_W_m, random_); }
+  /// Another point of it, with noise from elsewhere.
+  Eigen::Vector3d Measure(const Eigen::Vector3d& p_W_m, noise::Random& noise) const;
   /// Along each axis, of all errors.
   static double SdM();
 

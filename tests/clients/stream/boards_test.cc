@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include "clients/stream/feeds.h"
 #include "clients/stream/rendered_hands.h"
@@ -118,10 +119,26 @@ TEST_F(BoardsTest, ALostHandIsASilentWiimoteOrAPointThatIsNotSeen) {
   Feed& kinect = seen->feeds[0];
   EXPECT_NEAR(kinect.rate_hz, 30, 1e-9);
   EXPECT_NEAR(kinect.late_s, 2.0 / 30, 1e-9);
-  EXPECT_EQ(kinect.hands(1.9).points.size(), 2u);
-  ASSERT_EQ(kinect.hands(2.5).points.size(), 1u);
+  EXPECT_EQ(kinect.hands(1.9).points.size(), 15u);
+  ASSERT_EQ(kinect.hands(2.5).points.size(), 14u);
   EXPECT_EQ(kinect.hands(2.6).points[0].role, stream::DeviceRole::kLeftHand);
-  EXPECT_EQ(kinect.hands(3.1).points.size(), 2u);
+  EXPECT_EQ(kinect.hands(3.1).points.size(), 15u);
+}
+
+TEST_F(BoardsTest, AKinectSendsEachJointOnceAndSaysWhatIsHidden) {
+  options_.hands = "kinect";
+  auto plan = PlanBoards(options_, {});
+  ASSERT_TRUE(plan);
+  const stream::HandFrame frame = plan->feeds[0].hands(0);
+  ASSERT_EQ(frame.points.size(), 15u);
+  std::set<stream::BodyJoint> joints;
+  for (const stream::TrackedPoint& point : frame.points) {
+    const bool is_hand = point.role != stream::DeviceRole::kUnspecified;
+    EXPECT_NE(is_hand, point.joint != stream::BodyJoint::kUnspecified);
+    if (!is_hand) joints.insert(point.joint);
+    EXPECT_EQ(point.occluded, point.confidence < 0.75);
+  }
+  EXPECT_EQ(joints.size(), stream::kBodyJoints);
 }
 
 TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
