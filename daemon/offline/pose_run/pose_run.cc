@@ -10,7 +10,6 @@
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/scene.h"
 #include "daemon/offline/pose_run/held_hands.h"
-#include "daemon/offline/pose_run/kinect_hands.h"
 #include "daemon/offline/pose_run/stage.h"
 #include "daemon/simulation/momentum/estimate.h"
 
@@ -87,7 +86,9 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
     held.emplace(scene, settings.seed);
     run.reading_s = held->step_s();
   }
-  KinectHands kinect(settings.seed, 1 / settings.rate_hz);
+  virtual_sensors::KinectOptions options = settings.kinect;
+  options.hides = options.hides && settings.joints;
+  KinectBody kinect(scene.body, settings.seed, 1 / settings.rate_hz, options);
   body::Kinematics at(scene.body.skeleton);
   const double step_s = 1 / settings.rate_hz;
   const std::size_t count = FrameCount(scene, settings.rate_hz);
@@ -116,10 +117,12 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
     }
     if (held) {
       frame.readings = held->Until(column);
+    } else if (settings.hands && settings.hand_device == HandDevice::kKinect) {
+      kinect.Advance(at, settings.joints, frame.inputs);
+      frame.kinect.assign(kinect.exposed().begin(), kinect.exposed().end());
+      frame.kinect_crouches = kinect.crouches();
     } else if (settings.hands) {
-      const bool exact = settings.hand_device == HandDevice::kKinect;
-      MeasureHands(scene.body, at, exact ? 0 : settings.hand_noise_m, random, frame.inputs.hands);
-      if (exact) frame.inputs.hands = kinect.Advance(frame.inputs.hands);
+      MeasureHands(scene.body, at, settings.hand_noise_m, random, frame.inputs.hands);
     }
     run.frames.push_back(std::move(frame));
   }

@@ -14,6 +14,7 @@
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/board_cells.h"
 #include "common/virtual/sensors/scene.h"
+#include "daemon/offline/pose_run/kinect_body.h"
 #include "daemon/simulation/arms/arm_features.h"
 #include "daemon/simulation/arms/hand_attitude.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
@@ -40,7 +41,10 @@ struct Settings {
   bool limited = false;  ///< Boards end at their sensors; else as if they had no edge.
   bool hands = true;
   HandDevice hand_device = HandDevice::kMove;
-  double hand_noise_m = 0.01;  ///< White, of each axis; of kMove.
+  /// Of kKinect: the joints of its skeleton, too, with what the body hides of it from the camera.
+  bool joints = false;
+  virtual_sensors::KinectOptions kinect = {};  ///< Of the joints.
+  double hand_noise_m = 0.01;                  ///< White, of each axis; of kMove.
   virtual_sensors::CellErrorConfig errors;
   // The boards are not quite where they are configured to be.
   double gap_error_m = 0;    ///< Configured further apart by this.
@@ -64,6 +68,9 @@ struct Frame {
   std::array<TrueFoot, momentum::kFeet> feet;
   /// Of kWiimote: those since the frame before.
   std::array<std::vector<arms::HandReading>, arms::kArms> readings;
+  /// Of kKinect: the newest exposure's hands and joints (KinectPoints), which has not come yet.
+  std::vector<virtual_sensors::KinectPoint> kinect = {};
+  bool kinect_crouches = false;  ///< In it the legs are lost.
 };
 
 /// What the person does in each frame (activity.h).

@@ -20,12 +20,8 @@ constexpr double kOffsetLearnedS = 1;
 constexpr double kMostOffsetM = 0.3;  // Further off is a camera that was never placed.
 
 pose::PointTarget TargetOf(const body::Point& point, const JointInput& joint) {
-  return {point.joint,
-          point.p_J_m,
-          joint.p_W_m,
-          joint.sd_m,
-          -1,
-          pose::WhiteningOf(joint.sd_m, joint.covariance_m2)};
+  return {point.joint, point.p_J_m, joint.p_W_m,
+          joint.sd_m,  -1,          pose::WhiteningOf(joint.sd_m, joint.covariance_m2)};
 }
 
 void Widen(double factor, JointInput& joint) {

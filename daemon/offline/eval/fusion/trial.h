@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "common/result/result.h"
 #include "daemon/offline/pose_run/pose_run.h"
@@ -10,24 +11,19 @@
 
 namespace footing::eval {
 
-struct FusionOptions {
-  /// Below this part of its height in the T-pose the pelvis counts as in a squat: the camera loses
-  /// the legs, and what it reports of hips and knees is inferred.
-  double squat_share = 0.85;
-  std::uint64_t seed = 1;  ///< Of the skeleton's errors.
-  /// Weights of the prior over poses and of staying near the last pose, of (b) and (d).
-  double prior_weight = 0.6;
-  double smooth_weight = 1;
+/// What of a fusion trial is shown.
+struct FusionReport {
+  nlohmann::ordered_json json;
+  std::string figure;  ///< SVG: Figure 7 of the pose paper.
 };
 
-/// Hips and knees of a person who squats, against the truth, from (a) a camera's skeleton as it is,
-/// (b) the same skeleton solved for the most likely pose, (c) boards and hands, as the engine does
-/// today, and (d) every joint of the skeleton with its covariance, together with COM and feet by
-/// the boards (pose paper, section 7.3); the fields of `footing-eval fusion`. The run has a
-/// Kinect's hands. The skeleton's joints come without delay. `options.lag_s` is 0.
-Result<nlohmann::ordered_json> RunFusionTrial(const pose_run::PoseRun& run,
-                                              const reconstruction::Models& models,
-                                              const reconstruction::Options& options,
-                                              const FusionOptions& fusion);
+/// A person under boards and a simulated Kinect that loses a part of them, against the truth, four
+/// ways: (a) the skeleton as it is, at its exposure, (b) the same skeleton solved for the most
+/// likely pose, (c) boards and hands, and (d) boards, hands and joints, both by the engine that the
+/// product runs (pose paper, section 7.3); the fields of `footing-eval fusion`. `run` has a
+/// Kinect's joints.
+Result<FusionReport> RunFusionTrial(const pose_run::PoseRun& run,
+                                    const reconstruction::Models& models,
+                                    const reconstruction::Options& options);
 
 }  // namespace footing::eval

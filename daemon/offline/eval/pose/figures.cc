@@ -8,9 +8,9 @@
 #include <functional>
 
 #include "common/body/kinematics.h"
-#include "common/recording/output_file.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/pose/trial.h"
+#include "daemon/offline/eval/report/write_text.h"
 #include "daemon/offline/plot/line_plot.h"
 #include "daemon/offline/plot/stick_plot.h"
 #include "daemon/offline/pose_run/crouch.h"
@@ -231,13 +231,6 @@ Result<Runs> RunAll(const Show& show) {
   return runs;
 }
 
-Result<void> Write(const std::string& path, const std::string& text) {
-  auto file = recording::OutputFile::Create(path, true);
-  if (!file) return file.error();
-  if (auto written = file->Write(text); !written) return written;
-  return file->Sync();
-}
-
 }  // namespace
 
 Result<std::vector<std::string>> WriteFigures(const pose_run::PoseRun& run,
@@ -268,7 +261,7 @@ Result<std::vector<std::string>> WriteFigures(const pose_run::PoseRun& run,
               {runs->best, runs->best_without_angular, runs->paper, runs->paper_without_angular})}};
   std::vector<std::string> names;
   for (const auto& [name, text] : files) {
-    if (auto written = Write(folder + "/" + name, text); !written) return written.error();
+    if (auto written = WriteText(folder + "/" + name, text); !written) return written.error();
     names.push_back(name);
   }
   return names;

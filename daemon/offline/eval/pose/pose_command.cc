@@ -44,6 +44,9 @@ Result<void> Translate(Flags& flags) {
   settings.hands = flags.hands != "none";
   if (flags.hands == "wiimote") settings.hand_device = pose_run::HandDevice::kWiimote;
   if (flags.hands == "kinect") settings.hand_device = pose_run::HandDevice::kKinect;
+  if (settings.joints && (flags.hands != "kinect" || flags.boards != "simulated")) {
+    return UsageError("--joints goes with --hands kinect and --boards simulated");
+  }
   if (flags.boards == "insoles" && flags.hands != "move" && flags.hands != "none") {
     return UsageError("--boards insoles has --hands move and none, not " + flags.hands);
   }
@@ -166,6 +169,8 @@ void AddFlags(CLI::App& command, Flags& flags) {
                   "Hand devices: move (positions, 1 cm noise), wiimote (attitudes), kinect (late "
                   "positions), none")
       ->check(CLI::IsMember({"move", "wiimote", "kinect", "none"}));
+  command.add_flag("--joints", settings.joints,
+                   "With --hands kinect: all joints of its skeleton, hidden ones inferred");
   command
       .add_option("--boards", flags.boards,
                   "Board forces: simulated, forces (measured), or insoles")

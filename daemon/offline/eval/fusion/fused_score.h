@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "common/stream/hands.h"
+#include "daemon/offline/eval/scores/pose_metrics.h"
+
+namespace footing::eval {
+
+/// Where a way has the joints of a skeleton, by body::IndexOf.
+using JointPlaces = std::array<Eigen::Vector3d, stream::kBodyJoints>;
+
+/// Errors of one way, cm: of hips and knees while the person squats, and of any joint while the
+/// camera infers it.
+class FusedScore {
+ public:
+  void Add(const JointPlaces& truth, const JointPlaces& places,
+           const std::array<bool, stream::kBodyJoints>& hidden, bool squats);
+  double hip_cm() const { return hips_.mean(); }
+  double knee_cm() const { return knees_.mean(); }
+  double hidden_cm() const { return hidden_.mean(); }
+  nlohmann::ordered_json Json() const;
+
+ private:
+  Spread hips_, knees_, hidden_, arms_, legs_;
+};
+
+}  // namespace footing::eval
