@@ -62,6 +62,26 @@ TEST(HandSigns, WhatIsHiddenOrLostIsNamedWhereItIs) {
   EXPECT_NEAR(SignsOf(hands).labels[0].at_m.z(), 1.2, 1e-6);
 }
 
+TEST(HandSigns, JointsHaveTheirOwnEllipsoidsAndSayWhatIsHidden) {
+  std::vector<SeenHand> points;
+  const auto take = [&](stream::BodyJoint joint, double confidence, bool occluded) {
+    stream::HandSample sample = Sample(stream::DeviceRole::kUnspecified, confidence);
+    sample.joint = joint;
+    sample.occluded = occluded;
+    TakeHand(sample, kSeenNs, points);
+  };
+  take(stream::BodyJoint::kHead, 1, false);
+  take(stream::BodyJoint::kLeftKnee, 0.5, true);
+  take(stream::BodyJoint::kRightFoot, 1, false);
+  take(stream::BodyJoint::kRightFoot, 0, false);
+  TakeHand(Sample(stream::DeviceRole::kUnspecified, 1), kSeenNs, points);  // Of no body.
+  const BodySigns signs = SignsOf(points);
+  EXPECT_EQ(signs.solid.balls.size(), 3u);
+  ASSERT_EQ(signs.labels.size(), 2u);
+  EXPECT_EQ(signs.labels[0].text, "left knee hidden");
+  EXPECT_EQ(signs.labels[1].text, "right foot not seen");
+}
+
 TEST(HandSigns, NothingIsShownOfATrackerThatIsSilentOrOfAnotherRig) {
   std::vector<SeenHand> hands;
   TakeHand(Sample(stream::DeviceRole::kLeftHand, 0.9), kSeenNs - 600'000'000, hands);
