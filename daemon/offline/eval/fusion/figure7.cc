@@ -18,26 +18,25 @@ void AddMoment(const std::string& name, const Figure7::Moment& moment,
   const plot::Sticks truth = SticksOf(moment.truth);
   const std::string hides = name + ", " + std::to_string(moment.hidden) + " joints hidden";
   panels.push_back({hides + ": Kinect alone", truth, SticksOf(moment.alone)});
-  panels.push_back({"with the boards, " + text::Fixed(moment.time_s, 1) + " s", truth,
-                    SticksOf(moment.fused)});
+  panels.push_back(
+      {"with the boards, " + text::Fixed(moment.time_s, 1) + " s", truth, SticksOf(moment.fused)});
 }
 
 }  // namespace
 
 plot::Sticks SticksOf(const StickPlaces& places) {
-  constexpr std::array kBones{
-      std::array{BodyJoint::kHead, BodyJoint::kNeck},
-      std::array{BodyJoint::kNeck, BodyJoint::kTorso},
-      std::array{BodyJoint::kNeck, BodyJoint::kLeftShoulder},
-      std::array{BodyJoint::kNeck, BodyJoint::kRightShoulder},
-      std::array{BodyJoint::kLeftShoulder, BodyJoint::kLeftElbow},
-      std::array{BodyJoint::kRightShoulder, BodyJoint::kRightElbow},
-      std::array{BodyJoint::kTorso, BodyJoint::kLeftHip},
-      std::array{BodyJoint::kTorso, BodyJoint::kRightHip},
-      std::array{BodyJoint::kLeftHip, BodyJoint::kLeftKnee},
-      std::array{BodyJoint::kRightHip, BodyJoint::kRightKnee},
-      std::array{BodyJoint::kLeftKnee, BodyJoint::kLeftFoot},
-      std::array{BodyJoint::kRightKnee, BodyJoint::kRightFoot}};
+  constexpr std::array kBones{std::array{BodyJoint::kHead, BodyJoint::kNeck},
+                              std::array{BodyJoint::kNeck, BodyJoint::kTorso},
+                              std::array{BodyJoint::kNeck, BodyJoint::kLeftShoulder},
+                              std::array{BodyJoint::kNeck, BodyJoint::kRightShoulder},
+                              std::array{BodyJoint::kLeftShoulder, BodyJoint::kLeftElbow},
+                              std::array{BodyJoint::kRightShoulder, BodyJoint::kRightElbow},
+                              std::array{BodyJoint::kTorso, BodyJoint::kLeftHip},
+                              std::array{BodyJoint::kTorso, BodyJoint::kRightHip},
+                              std::array{BodyJoint::kLeftHip, BodyJoint::kLeftKnee},
+                              std::array{BodyJoint::kRightHip, BodyJoint::kRightKnee},
+                              std::array{BodyJoint::kLeftKnee, BodyJoint::kLeftFoot},
+                              std::array{BodyJoint::kRightKnee, BodyJoint::kRightFoot}};
   const double yaw_rad = DegreesToRadians(kSeenFromDeg);
   const auto across = [&](const Eigen::Vector3d& p) {
     return std::cos(yaw_rad) * p.x() - std::sin(yaw_rad) * p.y();

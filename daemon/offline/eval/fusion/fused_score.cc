@@ -27,12 +27,9 @@ void FusedScore::Add(const JointPlaces& truth, const JointPlaces& places,
 }
 
 nlohmann::ordered_json FusedScore::Json() const {
-  return {{"hip_cm", hips_.mean()},
-          {"hip_p95_cm", hips_.Quantile(0.95)},
-          {"knee_cm", knees_.mean()},
-          {"knee_p95_cm", knees_.Quantile(0.95)},
-          {"hidden_cm", hidden_.mean()},
-          {"hidden_arms_cm", arms_.mean()},
+  return {{"hip_cm", hips_.mean()},        {"hip_p95_cm", hips_.Quantile(0.95)},
+          {"knee_cm", knees_.mean()},      {"knee_p95_cm", knees_.Quantile(0.95)},
+          {"hidden_cm", hidden_.mean()},   {"hidden_arms_cm", arms_.mean()},
           {"hidden_legs_cm", legs_.mean()}};
 }
 
