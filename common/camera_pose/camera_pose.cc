@@ -26,12 +26,12 @@ std::string Degrees(double rad) { return text::Fixed(RadiansToDegrees(rad), 1) +
 
 /// Extent of the marks across the line that fits them best.
 double WidthM(const std::vector<SeenMark>& marks) {
-  Eigen::MatrixX3d places(marks.size(), 3);
+  Eigen::Matrix3Xd places(3, marks.size());
   for (std::size_t i = 0; i < marks.size(); ++i)
-    places.row(static_cast<Eigen::Index>(i)) = marks[i].p_W_m.transpose();
-  const Eigen::MatrixX3d centred = places.rowwise() - places.colwise().mean();
-  const Eigen::JacobiSVD<Eigen::MatrixX3d> axes(centred, Eigen::ComputeFullV);
-  const Eigen::VectorXd across = centred * axes.matrixV().col(1);
+    places.col(static_cast<Eigen::Index>(i)) = marks[i].p_W_m;
+  const Eigen::Matrix3Xd centred = places.colwise() - places.rowwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centred * centred.transpose());
+  const Eigen::RowVectorXd across = axes.eigenvectors().col(1).transpose() * centred;
   return across.maxCoeff() - across.minCoeff();
 }
 

@@ -62,7 +62,7 @@ std::vector<std::string> ReadTexts(sd_bus_message* message) {
 /// Where it is and what it says; false when it does not answer.
 bool Resolve(sd_bus* bus, const Item& item, Found& found) {
   sd_bus_message* answer = nullptr;
-  sd_bus_error error = SD_BUS_ERROR_NULL;
+  sd_bus_error error{};
   const int called = sd_bus_call_method(
       bus, kAvahi, "/", kServer, "ResolveService", &error, &answer, "iisssiu", item.interface,
       item.protocol, item.name.c_str(), kServiceType, item.domain.c_str(), item.protocol, 0u);
@@ -97,7 +97,7 @@ Result<std::vector<Found>> Browse(double within_s) {
   const Bus bus(opened, &sd_bus_flush_close_unref);
   Seen seen;
   sd_bus_match_signal(bus.get(), nullptr, kAvahi, nullptr, kBrowser, nullptr, &OnSignal, &seen);
-  sd_bus_error error = SD_BUS_ERROR_NULL;
+  sd_bus_error error{};
   const int begun =
       sd_bus_call_method(bus.get(), kAvahi, "/", kServer, "ServiceBrowserNew", &error, nullptr,
                          "iissu", kAnyInterface, kAnyProtocol, kServiceType, "", 0u);

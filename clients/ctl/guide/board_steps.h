@@ -25,7 +25,6 @@ class LayoutStep {
 
   Phase phase_ = Phase::kBegin;
   bool two_ = false;
-  std::int64_t since_ns_ = 0;
   stream::BoardLayout layout_;
   LayoutObserved observed_;
   std::vector<stream::SetupItem> results_;

@@ -27,8 +27,8 @@ ordered_json ToJson(const Tracker& tracker, const Cost& cost) {
                        {"dropped_hand_frames", cost.dropped_hand_frames},
                        {"people", ordered_json::array()}};
   for (const auto& [user, person] : counts.people) {
-    const auto of = [&person](Verdict verdict) {
-      return person.verdicts[static_cast<std::size_t>(verdict)];
+    const auto of = [&verdicts = person.verdicts](Verdict verdict) {
+      return verdicts[static_cast<std::size_t>(verdict)];
     };
     json["people"].push_back({{"user", user},
                               {"dialect", NameOf(person.dialect)},

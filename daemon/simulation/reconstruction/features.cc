@@ -114,6 +114,7 @@ momentum::Estimate WithoutLoads(const momentum::Estimate& estimate, double com_h
 
 StripMatrix::StripMatrix(const Eigen::MatrixXf& dense) : rows_(dense.rows()), cols_(dense.cols()) {
   strips_.setZero(kStrip, StripRows() / kStrip * cols_);
+  if (dense.size() == 0) return;
   for (Eigen::Index row = 0; row < rows_; ++row) {
     strips_.row(row % kStrip).segment(row / kStrip * cols_, cols_) = dense.row(row);
   }
@@ -121,6 +122,7 @@ StripMatrix::StripMatrix(const Eigen::MatrixXf& dense) : rows_(dense.rows()), co
 
 Eigen::MatrixXf StripMatrix::Dense() const {
   Eigen::MatrixXf dense(rows_, cols_);
+  if (dense.size() == 0) return dense;
   for (Eigen::Index row = 0; row < rows_; ++row) {
     dense.row(row) = strips_.row(row % kStrip).segment(row / kStrip * cols_, cols_);
   }

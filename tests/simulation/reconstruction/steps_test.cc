@@ -74,7 +74,7 @@ TEST(Reconstruction, ATruthTakesThePlaceOfTheEstimateInEitherMode) {
       body::ComputeKinematics(world.person.skeleton, q, world.at);
       Truth truth;
       truth.com_W_m = body::CentreOfMass(world.person, world.at);
-      truth.feet.emplace();
+      truth.feet = std::array<Truth::Foot, 2>{};
       const auto feet = StandingFeet(world.person);
       for (std::size_t f = 0; f < momentum::kFeet; ++f) {
         const auto place = [&](const body::Point& point) {
