@@ -89,6 +89,10 @@ function(add_module name)
                  FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${with_source}
                  FILE_SET without_source TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${without_source})
   target_link_libraries(${name} ${scope} ${public_links})
+  # The fuzzer follows what decodes; the rest runs as fast as in any build with sanitizers.
+  if(FOOTING_FUZZ AND arg_SOURCES AND folder MATCHES "^(common|daemon/sensor|clients/skeleton)(/|$)")
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
   if(arg_SOURCES)
     target_link_libraries(${name} PRIVATE ${private_links} footing_warnings)
   endif()

@@ -4,7 +4,7 @@
 namespace footing::device_faults {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef FOOTING_SANITIZED
 // Freed memory stays in AddressSanitizer's quarantine, so its size says nothing there; a leak shows
 // at footingd's end instead, and does so after any number of seconds.
 constexpr bool kMemoryCounts = false;

@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 // Counts what the C library hands out, so MuJoCo's allocations are seen as well as ours.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef FOOTING_SANITIZED
 #define FOOTING_COUNTS_ALLOCATIONS 1
 namespace {
 long allocations = 0;

@@ -45,7 +45,7 @@ bool SameBits(const cascade::NetworkWeights& a, const cascade::NetworkWeights& b
 TEST(TrainCascade, SolvesTheTwoSpiralsWithAsManyUnitsAsFahlmanAndLebiere) {
   // 1990, section 3.1: 100 of 100 trials, 12 to 19 hidden units, 15.2 on average, 1700 epochs.
   const Examples spirals = TwoSpirals(), between = TwoSpirals(4);
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef FOOTING_SANITIZED
   constexpr int kTrials = 2;  // Ten take minutes there.
 #else
   constexpr int kTrials = 10;
