@@ -8,11 +8,9 @@
 namespace footing::relay {
 
 Thinner::Thinner(double rate_hz, double tick_rate_hz, std::uint64_t last_sequence)
-    : rate_hz_(rate_hz), tick_ns_(PeriodNanoseconds(tick_rate_hz)), last_sequence_(last_sequence) {}
-
-bool Thinner::IsDue(std::uint32_t field, std::int64_t host_ns) {
-  return decimators_.try_emplace(field, rate_hz_, tick_ns_).first->second.Take(host_ns);
-}
+    : rate_hz_(rate_hz),
+      last_sequence_(last_sequence),
+      decimator_(rate_hz, PeriodNanoseconds(tick_rate_hz)) {}
 
 std::optional<Thinner::Thinned> Thinner::Take(const transport::TickNumber& number,
                                               std::vector<transport::ChannelBytes> channels) {
@@ -34,12 +32,9 @@ std::optional<Thinner::Thinned> Thinner::Take(const transport::TickNumber& numbe
   for (auto& [field, bytes] : std::exchange(retained_, {})) {
     thinned.channels.push_back({field, std::move(bytes)});
   }
-  for (auto waiting = waiting_.begin(); waiting != waiting_.end();) {
-    if (IsDue(waiting->first, number.host_ns)) {
-      thinned.channels.push_back({waiting->first, std::move(waiting->second)});
-      waiting = waiting_.erase(waiting);
-    } else {
-      ++waiting;
+  if (!waiting_.empty() && decimator_.Take(number.host_ns)) {
+    for (auto& [field, bytes] : std::exchange(waiting_, {})) {
+      thinned.channels.push_back({field, std::move(bytes)});
     }
   }
   if (rate_hz_ > 0 && thinned.channels.empty() && !hole) {

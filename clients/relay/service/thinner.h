@@ -14,9 +14,10 @@ namespace footing::relay {
 /// Takes the ticks of one epoch and gives those that viewers get: of each channel of samples or
 /// poses at most `rate_hz` a second, the newest; retained channels and events whole, at once.
 ///
-/// What waits for its turn goes with the next tick that comes when it is due, so that the last
-/// value before a pause is not lost. The tick behind a hole in the sequence is always given, with
-/// the hole. A plain value.
+/// All sampled channels go out at the same instants, so that viewers get `rate_hz` frames a second
+/// however many devices there are. What waits for them goes with the next tick that comes when it
+/// is due, so that the last value before a pause is not lost. The tick behind a hole in the
+/// sequence is always given, with the hole. A plain value.
 class Thinner {
  public:
   struct Thinned {
@@ -39,14 +40,11 @@ class Thinner {
   std::uint64_t left_out() const { return left_out_; }  ///< Ticks of which nothing went on.
 
  private:
-  bool IsDue(std::uint32_t field, std::int64_t host_ns);
-
   double rate_hz_;
-  std::int64_t tick_ns_;
   std::uint64_t last_sequence_;
   std::map<std::uint32_t, std::string> waiting_;  ///< Of channels of samples, by field.
   std::map<std::uint32_t, std::string> retained_;
-  std::map<std::uint32_t, transport::Decimator> decimators_;
+  transport::Decimator decimator_;
   std::uint64_t missing_ = 0;
   std::uint64_t left_out_ = 0;
 };

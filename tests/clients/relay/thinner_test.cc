@@ -75,13 +75,21 @@ TEST(Thinner, TheLastSampleBeforeAPauseGoesWithALaterTick) {
   FAIL() << "it never came";
 }
 
-TEST(Thinner, EachChannelHasItsOwnRate) {
-  Thinner thinner(10, 100, 0);
-  ASSERT_TRUE(TakeAt(thinner, 1, {{kMotion, "m"}}));
-  const auto thinned = TakeAt(thinner, 5, {{kFeatures, "f"}, {kMotion, "m"}});
-  ASSERT_TRUE(thinned);
-  EXPECT_EQ(Fields(*thinned).count(kFeatures), 1u);
-  EXPECT_EQ(Fields(*thinned).count(kMotion), 0u);
+TEST(Thinner, ChannelsOfDifferentTicksShareTheFrames) {
+  Thinner thinner(30, 100, 0);
+  int frames = 0, motions = 0, features = 0;
+  for (std::uint64_t sequence = 1; sequence <= 1000; ++sequence) {
+    const auto thinned =
+        TakeAt(thinner, sequence, {{sequence % 2 == 0 ? kFeatures : kMotion, "s"}});
+    if (!thinned) continue;
+    auto fields = Fields(*thinned);
+    ++frames;
+    motions += static_cast<int>(fields.count(kMotion));
+    features += static_cast<int>(fields.count(kFeatures));
+  }
+  EXPECT_NEAR(frames, 300, 1);  // Not one of each channel.
+  EXPECT_NEAR(motions, frames, 1);
+  EXPECT_NEAR(features, frames, 1);
 }
 
 TEST(Thinner, AHoleIsGivenAtOnceWithItsFirstAndLast) {
