@@ -1,9 +1,15 @@
 #include "daemon/simulation/pose/measured_terms.h"
 
+#include <algorithm>
 #include <numeric>
+
+#include "common/result/result.h"
 
 namespace footing::pose {
 namespace {
+
+// Limits are those of most people, so they give way. 0.03 and 0.1 made the same poses.
+constexpr double kLimitSdRad = 0.1;
 
 /// Degrees of freedom that move the frame of each joint: its own and those of its ancestors.
 std::vector<std::vector<int>> DofsThatMove(const body::Skeleton& skeleton) {
@@ -27,12 +33,15 @@ MeasuredTerms::MeasuredTerms(const body::Body& body, double frame_s)
       frame_s_(frame_s),
       moved_by_(DofsThatMove(body.skeleton)),
       all_dofs_(static_cast<std::size_t>(body.skeleton.dof)),
+      limits_(body),
       residuals_(Eigen::VectorXd::Zero(kMaxRows)),
       rate_(Eigen::VectorXd::Zero(body.skeleton.dof)),
       blocks_(kMaxRows / 3),
+      limited_dofs_(kMaxAngles / 3, std::vector<int>(3)),
       at_(body.skeleton),
       workspace_(body.skeleton),
       centroidal_(6, body.skeleton.dof) {
+  FOOTING_CHECK(limits_.most() <= kMaxAngles);
   std::iota(all_dofs_.begin(), all_dofs_.end(), 0);
   for (JacobianBlock& block : blocks_) block.by_q.setZero(3, body.skeleton.dof);
   single_.by_q.setZero(3, body.skeleton.dof);
@@ -61,6 +70,18 @@ void MeasuredTerms::Measure(const PoseTargets& targets, const Eigen::VectorXd& q
     rate_ = (q - *q_before) / frame_s_;
     const Eigen::Vector3d angular_W = centroidal_.bottomRows<3>() * rate_;
     add((targets.angular_W - angular_W).cwiseQuotient(targets.angular_sd));
+  }
+  MeasureLimits(q);
+}
+
+void MeasuredTerms::MeasureLimits(const Eigen::VectorXd& q) {
+  limits_.Measure(q);
+  const std::vector<JointLimits::Excess>& excesses = limits_.excesses();
+  for (std::size_t i = 0; i < excesses.size(); i += 3, row_count_ += 3) {
+    residuals_.segment<3>(row_count_).setZero();
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, excesses.size() - i); ++k) {
+      residuals_(row_count_ + static_cast<int>(k)) = excesses[i + k].back_rad / kLimitSdRad;
+    }
   }
 }
 
@@ -94,6 +115,23 @@ void MeasuredTerms::Differentiate(const PoseTargets& targets) {
     angular.dofs = &all_dofs_;
     angular.by_q =
         (targets.angular_sd * frame_s_).cwiseInverse().asDiagonal() * centroidal_.bottomRows<3>();
+    row += 3;
+  }
+  DifferentiateLimits(row);
+}
+
+void MeasuredTerms::DifferentiateLimits(int row) {
+  const std::vector<JointLimits::Excess>& excesses = limits_.excesses();
+  for (std::size_t i = 0; i < excesses.size(); i += 3, row += 3) {
+    std::vector<int>& dofs = limited_dofs_[i / 3];
+    JacobianBlock& block = MutableBlock(row);
+    dofs.clear();
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, excesses.size() - i); ++k) {
+      const int dof = excesses[i + k].dof;
+      dofs.push_back(dof);
+      block.by_q.col(dof) = Eigen::Vector3d::Unit(static_cast<int>(k)) / kLimitSdRad;
+    }
+    block.dofs = &dofs;
   }
 }
 

@@ -67,6 +67,33 @@ TEST(MeasuredTerms, TheirBlocksAreTheDerivativesOfWhatIsMeasured) {
   }
 }
 
+TEST(MeasuredTerms, AnglesBeyondTheirLimitsHaveARowEach) {
+  const body::Body person =
+      body::MakeBody(body::StandardPerson(1.75), body::PersonParameters()).value();
+  MeasuredTerms terms(person, kFrameS);
+  Eigen::VectorXd q = body::TPose(person.skeleton, person.landmarks);
+  const auto dof_of = [&](body::Landmark landmark) {
+    return person.skeleton.joint(person.landmarks[landmark]).first_dof;
+  };
+  const int knee = dof_of(body::Landmark::kLeftKnee), elbow = dof_of(body::Landmark::kRightElbow);
+  const PoseTargets none;
+  terms.Measure(none, q, nullptr);
+  EXPECT_EQ(terms.rows(), 0);
+  q(knee) = body::LowerLimits(person.skeleton)(knee) - 0.3;
+  q(elbow) = body::UpperLimits(person.skeleton)(elbow) + 0.2;
+  q(dof_of(body::Landmark::kLeftShoulder)) = 3;  // Has limits that people exceed.
+  terms.Measure(none, q, nullptr);
+  terms.Differentiate(none);
+  ASSERT_EQ(terms.rows(), 3);
+  const JacobianBlock& block = terms.block(0);
+  ASSERT_EQ(*block.dofs, (std::vector<int>{knee, elbow}));
+  EXPECT_NEAR(terms.residuals()(0), 3, 1e-9);  // Back by 0.3 rad, over 0.1 rad.
+  EXPECT_NEAR(terms.residuals()(1), -2, 1e-9);
+  EXPECT_EQ(terms.residuals()(2), 0);
+  EXPECT_EQ(block.by_q.col(knee), Eigen::Vector3d(10, 0, 0));
+  EXPECT_EQ(block.by_q.col(elbow), Eigen::Vector3d(0, 10, 0));
+}
+
 TEST(MeasuredTerms, LeaveTheAngularMomentumOutWithoutAPoseBefore) {
   const body::Body person =
       body::MakeBody(body::StandardPerson(1.75), body::PersonParameters()).value();

@@ -127,6 +127,25 @@ TEST(Basis, ItsComponentsFallInVarianceAndAShareOfItTakesFewer) {
   EXPECT_GE(fewer.sd.squaredNorm(), 0.5 * world.basis.sd.squaredNorm());
 }
 
+TEST(GaussNewton, ALegDoesNotBendBackwards) {
+  World world;
+  Eigen::VectorXd q = body::TPose(world.person.skeleton, world.person.landmarks);
+  PoseTargets targets = world.Targets(q, 0.02);
+  PointTarget knee;
+  knee.joint = world.person.landmarks[Landmark::kLeftKnee];
+  knee.p_W_m = world.At(q, Landmark::kLeftKnee) - Eigen::Vector3d(0.2, 0, 0);
+  knee.sd_m.setConstant(0.05);
+  targets.Add(knee);
+  GaussNewtonOptions options;
+  options.prior_weight = 0.1;
+  const PoseBasis basis = FitBasis(Poses(world.person, 400, 60, 2), {});  // Any angle may change.
+  GaussNewton solver(world.person, basis, options);
+  solver.Solve(targets);
+  const int dof = world.person.skeleton.joint(knee.joint).first_dof;
+  const double limit_rad = body::LowerLimits(world.person.skeleton)(dof);
+  EXPECT_GT(solver.q()(dof), limit_rad - 0.1);
+}
+
 TEST(GaussNewton, FindsAPoseOfTheSpaceFromHandsFeetAndCentreOfMass) {
   World world;
   for (int i = 0; i < 20; ++i) {
