@@ -32,7 +32,7 @@ class Dancer {
   Dancer(const Script& script, const body::Body& body, double rate_hz)
       : body_(body),
         posture_(body),
-        legs_{LegSolver(body, true), LegSolver(body, false)},
+        legs_{motion::LegSolver(body, true), motion::LegSolver(body, false)},
         at_(body.skeleton) {
     const double end_s = script.duration_s();
     for (const Values& values : Sample(script, rate_hz)) {
@@ -46,7 +46,7 @@ class Dancer {
     motion_.q.resize(body.skeleton.dof, static_cast<Eigen::Index>(targets_.size()));
     motion_.q.colwise() = posture_.t_pose();
     // The knee that bends to the back, of the two that reach as far.
-    for (const LegSolver& leg : legs_) motion_.q(leg.knee_dof(), 0) = kFirstKneeRad;
+    for (const motion::LegSolver& leg : legs_) motion_.q(leg.knee_dof(), 0) = kFirstKneeRad;
     reach_m_ = std::sqrt(std::pow(legs_[0].thigh_m(), 2) + std::pow(legs_[0].shank_m(), 2) +
                          2 * legs_[0].thigh_m() * legs_[0].shank_m() * std::cos(kKneeBentRad));
   }
@@ -90,7 +90,7 @@ class Dancer {
     double pull = std::exp(0.0);
     const double wished = posture_.t_pose()(2) - At(values, Channel::kCrouch);
     for (int foot = 0; foot < 2; ++foot) {
-      const LegSolver& leg = legs_[static_cast<std::size_t>(foot)];
+      const motion::LegSolver& leg = legs_[static_cast<std::size_t>(foot)];
       const Eigen::Vector3d hip = at_.p_WJ[static_cast<std::size_t>(leg.hip())];
       const Eigen::Vector3d ankle = posture_.FootOf(values, foot).p_WA;
       const double across = (hip - ankle).head<2>().norm();
@@ -103,7 +103,7 @@ class Dancer {
 
   const body::Body& body_;
   Posture posture_;
-  std::array<LegSolver, 2> legs_;
+  std::array<motion::LegSolver, 2> legs_;
   body::Kinematics at_;
   std::vector<Target> targets_;
   motion::Motion motion_;

@@ -57,7 +57,7 @@ Posture::Posture(const body::Body& body)
     middle_x += 0.25 * (heel.x() + ball.x());
   }
   t_pose_(0) -= middle_x;
-  for (FootPlace& place : standing_) place.p_WA.x() -= middle_x;
+  for (motion::FootPlace& place : standing_) place.p_WA.x() -= middle_x;
 }
 
 void Posture::Turn(int joint, const Eigen::Matrix3d& R_PJ, Eigen::Ref<Eigen::VectorXd> q) const {
@@ -93,10 +93,10 @@ void Posture::PlaceUpperBody(const Values& values, Eigen::Ref<Eigen::VectorXd> q
   PlaceArm(values, false, q);
 }
 
-FootPlace Posture::FootOf(const Values& values, int foot) const {
+motion::FootPlace Posture::FootOf(const Values& values, int foot) const {
   const bool left = foot == 0;
   const auto of = [&](Channel l, Channel r) { return At(values, left ? l : r); };
-  FootPlace place = standing_[static_cast<std::size_t>(foot)];
+  motion::FootPlace place = standing_[static_cast<std::size_t>(foot)];
   const double lift = of(Channel::kLeftLift, Channel::kRightLift);
   place.p_WA += Eigen::Vector3d(of(Channel::kLeftStep, Channel::kRightStep),
                                 (left ? 1 : -1) * of(Channel::kLeftOut, Channel::kRightOut), lift);

@@ -4,8 +4,8 @@
 #include <array>
 
 #include "common/body/body.h"
-#include "common/virtual/choreography/legs.h"
 #include "common/virtual/choreography/script.h"
+#include "common/virtual/motion/leg_solver.h"
 
 namespace footing::choreography {
 
@@ -20,7 +20,7 @@ class Posture {
   void PlaceUpperBody(const Values& values, Eigen::Ref<Eigen::VectorXd> q) const;
 
   /// Where the feet are; 0 is the left one.
-  FootPlace FootOf(const Values& values, int foot) const;
+  motion::FootPlace FootOf(const Values& values, int foot) const;
   /// Where a standing foot's pressure is, on the ground.
   Eigen::Vector2d RestOf(const Values& values, int foot) const;
   /// Where the script puts the pressure of the whole body, on the ground.
@@ -36,7 +36,7 @@ class Posture {
   const body::Body& body_;
   Eigen::VectorXd t_pose_;
   std::array<int, 3> back_{}, neck_{};
-  std::array<FootPlace, 2> standing_;
+  std::array<motion::FootPlace, 2> standing_;
   std::array<Eigen::Vector2d, 2> rest_;  ///< From the ankle, in the T-pose.
 };
 

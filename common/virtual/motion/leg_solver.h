@@ -6,7 +6,7 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 
-namespace footing::choreography {
+namespace footing::motion {
 
 /// Where a foot is to be: the frame of the ankle joint in W.
 struct FootPlace {
@@ -14,14 +14,20 @@ struct FootPlace {
   Eigen::Matrix3d R_WA = Eigen::Matrix3d::Identity();
 };
 
+/// What of a foot's orientation is asked for.
+enum class FootAim {
+  /// Where it points, with the last angle of the ankle. The skeletons of CMU have no angle that
+  /// would roll the sole against the shank, so it rolls with it, some degrees.
+  kAhead,
+  kFlat,  ///< All of it, as far as the angles of the ankle allow.
+};
+
 /// Puts a foot at its place by the joints from hip to ankle: the ankle's origin and where the foot
-/// points are met exactly when they are in reach, with three angles of the hip, the knee's and the
-/// last one of the ankle. The skeletons of CMU have no angle that would roll the sole against the
-/// shank, so it rolls with it, some degrees.
+/// points are met exactly when they are in reach.
 class LegSolver {
  public:
   /// `body` must outlive it. `left`: which leg.
-  LegSolver(const body::Body& body, bool left);
+  LegSolver(const body::Body& body, bool left, FootAim aim = FootAim::kAhead);
 
   /// Moves the leg's angles in `q`, beginning at those that stand there. Returns what is left of
   /// the distance, m.
@@ -36,6 +42,7 @@ class LegSolver {
 
  private:
   const body::Body& body_;
+  FootAim aim_;
   int hip_, knee_, ankle_;
   double thigh_m_, shank_m_;
   std::vector<int> dofs_;
@@ -43,4 +50,4 @@ class LegSolver {
   Eigen::Matrix<double, 3, Eigen::Dynamic> J_;
 };
 
-}  // namespace footing::choreography
+}  // namespace footing::motion

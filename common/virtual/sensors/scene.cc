@@ -8,6 +8,7 @@
 #include "common/body/kinematics.h"
 #include "common/text/quantile.h"
 #include "common/virtual/motion/edit.h"
+#include "common/virtual/sensors/stance.h"
 
 namespace footing::virtual_sensors {
 namespace {
@@ -46,12 +47,13 @@ void Lean(const body::Body& body, double rest_share, Eigen::VectorXd& pose) {
   }
 }
 
-// The T-pose where the clip begins, held, then the clip.
+// The T-pose where the clip begins, on feet that stand as they do there, held, then the clip.
 motion::Motion WithTPose(const motion::Motion& clip, const body::Body& body,
                          const SceneOptions& options) {
   Eigen::VectorXd pose = body::TPose(clip.skeleton, body.landmarks);
+  Stance stance(body, pose, clip.q.col(0));
   Lean(body, options.rest_share, pose);
-  pose.head<2>() = clip.q.col(0).head<2>();
+  stance.StandOver(pose);
   const auto hold = static_cast<Eigen::Index>(std::lround(options.hold_s * clip.rate_hz));
   const auto leave = static_cast<Eigen::Index>(std::lround(options.leave_s * clip.rate_hz));
   motion::Motion out = clip;
@@ -59,7 +61,9 @@ motion::Motion WithTPose(const motion::Motion& clip, const body::Body& body,
   for (Eigen::Index i = 0; i < hold + leave; ++i) {
     const double u = std::max(0.0, static_cast<double>(i - hold) / static_cast<double>(leave));
     const double s = u * u * u * (10 - 15 * u + 6 * u * u);
-    out.q.col(i) = pose + s * (clip.q.col(0) - pose);
+    Eigen::VectorXd q = pose + s * (clip.q.col(0) - pose);
+    if (u > 0) stance.KeepFeet(s, q);
+    out.q.col(i) = q;
   }
   out.q.rightCols(clip.q.cols()) = clip.q;
   return out;

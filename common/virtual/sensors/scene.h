@@ -37,9 +37,9 @@ struct Scene {
 double FloorHeight(const motion::Motion& motion, const body::Landmarks& landmarks);
 
 /// Turns the clip forward, puts it on the floor (its feet as high as in the T-pose),
-/// prepends the T-pose, leaning so that the centre of mass is over the soles, and computes the
-/// forces. InvalidData when a landmark is missing, the person cannot be, or the clip has fewer
-/// than two frames; `origin` names the clip.
+/// prepends the T-pose, leaning so that the centre of mass is over the soles, on feet that stand as
+/// in the clip's first frame, and computes the forces. InvalidData when a landmark is missing, the
+/// person cannot be, or the clip has fewer than two frames; `origin` names the clip.
 Result<Scene> MakeScene(motion::Motion clip, const body::PersonParameters& person,
                         const SceneOptions& options, const std::string& origin);
 

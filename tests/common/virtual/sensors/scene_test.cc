@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "common/body/kinematics.h"
 #include "common/units/units.h"
 
 namespace footing::virtual_sensors {
@@ -32,6 +35,46 @@ TEST(MakeScene, PutsATPoseInFrontWithTheWeightOverTheSoles) {
   EXPECT_GT(left.y() - right.y(), 0.1);  // It looks along x.
   // 0.42 of heel to toe is 8 % of a sole of 24 cm behind its middle.
   EXPECT_NEAR(scene->course.com_m(0, 300), left.x() - 0.02, 0.01);
+}
+
+// Both legs apart, and the left one turned out: stands unlike the T-pose.
+motion::Motion Straddling() {
+  motion::Motion clip = Clip();
+  const body::Landmarks landmarks = body::FindLandmarks(clip.skeleton).value();
+  for (const double side : {1.0, -1.0}) {
+    const body::Landmark hip = body::OfSide(body::Landmark::kLeftHip, side > 0 ? 0 : 1);
+    const body::Joint& joint = clip.skeleton.joint(landmarks[hip]);
+    Eigen::VectorXd q = clip.q.col(0);
+    const Eigen::Matrix3d turn = body::AxisRotation(body::Axis::kZ, side > 0 ? 0.4 : 0) *
+                                 body::AxisRotation(body::Axis::kX, side * 0.2);
+    body::SetJointRotation(joint, turn * body::JointRotation(joint, q), q);
+    clip.q = q.replicate(1, 100);
+  }
+  return clip;
+}
+
+TEST(MakeScene, NoFootSlidesFromTheTPoseIntoTheClip) {
+  const auto scene = MakeScene(Straddling(), {}, {}, "clip");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const BodyCourse& course = scene->course;
+  const Eigen::Index last = course.frames() - 1;
+  const auto heading = [&](std::size_t foot, Eigen::Index frame) {  // From heel to ball.
+    const auto& sole = course.sole_m[foot];
+    const Eigen::Vector3d ahead = sole[2].col(frame) - sole[0].col(frame);
+    return std::atan2(ahead.y(), ahead.x());
+  };
+  const double apart_m = SoleMiddle(course, 0, 0).y() - SoleMiddle(course, 1, 0).y();
+  EXPECT_GT(apart_m, 0.4);
+  EXPECT_GT(heading(0, 0) - heading(1, 0), 0.3);
+  for (std::size_t foot = 0; foot < kFeet; ++foot) {
+    const Eigen::Vector2d stands_m = SoleMiddle(course, foot, last).head<2>();
+    for (Eigen::Index i = 0; i < course.frames(); i += 10) {
+      // The clip's legs have their feet on edge, the T-pose has them flat.
+      EXPECT_LT((SoleMiddle(course, foot, i).head<2>() - stands_m).norm(), 0.04) << i;
+      EXPECT_NEAR(heading(foot, i), heading(foot, last), 0.05) << i;
+    }
+    EXPECT_NEAR(SoleMiddle(course, foot, 300).z(), 0, 0.01);
+  }
 }
 
 TEST(MakeScene, LeavesAClipThatBeginsInATPoseAsItIs) {
