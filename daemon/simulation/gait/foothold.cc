@@ -114,7 +114,7 @@ Vector3d HoppingFoothold(const Context& context, const GaitMemory& memory, int l
       jumping ? memory.speed.integrators.jump_m
               : memory.speed.integrators.run_m + gains.speed_gain_s * memory.speed.desired_mps;
   const double velocity_gain_s = jumping ? gains.jump_velocity_gain_s : gains.run_velocity_gain_s;
-  const bool brakes = LeavesRun(context.goal, memory) && faster_mps > 0;
+  const bool brakes = LeavesRun(context, memory) && faster_mps > 0;
   const double gain_s = brakes ? context.gains.transition.leaving_run_gain_s : velocity_gain_s;
   double ahead_m = v_H.x() * memory.hop.support_time_s / 2 + gain_s * faster_mps + learned_m;
 

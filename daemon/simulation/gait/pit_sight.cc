@@ -211,8 +211,8 @@ void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory)
     seen.lift_off_mps = plan.lift_off_mps;
 }
 
-double PlannedExtension(const Context& context, const GaitMemory& memory) {
-  return ThrustOf(context, memory).ExtensionFor(memory.pit.lift_off_mps);
+double PlannedExtension(const Context& context, double lift_off_mps, const GaitMemory& memory) {
+  return ThrustOf(context, memory).ExtensionFor(lift_off_mps);
 }
 
 bool JumpsPit(const biped::GaitCommand& goal, const GaitMemory& memory) {

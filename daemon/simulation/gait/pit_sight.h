@@ -27,8 +27,8 @@ void ForeseeLeap(const Context& context, double nominal_mps, GaitMemory& memory)
 /// one.
 void PlanLiftOff(const Context& context, double nominal_mps, GaitMemory& memory);
 
-/// The spring's extension for the planned lift-off.
-double PlannedExtension(const Context& context, const GaitMemory& memory);
+/// The spring's extension for a lift-off at this vertical speed, by what the last hops lost.
+double PlannedExtension(const Context& context, double lift_off_mps, const GaitMemory& memory);
 
 /// True in a run whose commanded jump waits for the pit ahead.
 bool JumpsPit(const biped::GaitCommand& goal, const GaitMemory& memory);

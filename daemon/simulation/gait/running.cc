@@ -31,6 +31,8 @@ constexpr double kStalledAfterS = 0.10;
 constexpr double kStalledRateMps = 0.25;
 constexpr double kStalledGrowthMps = 0.8;
 constexpr double kLowestJumpM = 0.02;
+/// Of a leap out of a run, which is faster than jumps are: as high as the fastest of those.
+constexpr double kHighestLeapM = 0.5;
 /// A jump may still be prepared this long after the apex: then its foothold can be reached, s.
 constexpr double kPreparesUntilS = 0.05;
 
@@ -54,9 +56,12 @@ VirtualLeg StanceLeg(const Context& context, const GaitMemory& memory) {
 
 /// The gait's own; what the ground asks for comes on top.
 double LevelLiftOffSpeed(const Context& context, const GaitMemory& memory) {
-  if (LeavesRun(context.goal, memory)) return context.gains.transition.leaving_run_lift_off_mps;
-  if (memory.gait != Gait::kJump) return RunLiftOffSpeed(context, memory);
-  return std::sqrt(2 * kStandardGravityMps2 * std::max(kLowestJumpM, context.goal.height_m));
+  if (LeavesRun(context, memory)) return context.gains.transition.leaving_run_lift_off_mps;
+  const bool jumps = memory.gait == Gait::kJump || LeapsFromRun(memory);
+  if (!jumps) return RunLiftOffSpeed(context, memory);
+  double height_m = std::max(kLowestJumpM, context.goal.height_m);
+  if (memory.gait != Gait::kJump) height_m = std::min(height_m, kHighestLeapM);
+  return std::sqrt(2 * kStandardGravityMps2 * height_m);
 }
 
 double LiftOffSpeed(const Context& context, const GaitMemory& memory) {
@@ -85,15 +90,18 @@ double ThrustLength(const Context& context, const GaitMemory& memory) {
                         EnergyLoss(memory));
   const double stiffness = memory.gait == Gait::kJump ? 2 * gains.jump_leg_stiffness_n_per_m
                                                       : gains.run_leg_stiffness_n_per_m;
-  const double extension_m = memory.pit.lift_off_mps > 0 ? PlannedExtension(context, memory)
-                                                         : std::sqrt(2 * energy_j / stiffness);
+  const double planned_mps = memory.pit.lift_off_mps > 0 ? memory.pit.lift_off_mps
+                             : LeapsFromRun(memory)      ? speed_mps
+                                                         : 0;
+  const double extension_m = planned_mps > 0 ? PlannedExtension(context, planned_mps, memory)
+                                             : std::sqrt(2 * energy_j / stiffness);
   return std::clamp(length_m + extension_m, gains.touchdown_length_m - 0.05,
                     gains.touchdown_length_m + 0.25);
 }
 
 void LearnEnergyLoss(const Context& context, GaitMemory& memory) {
   const double wanted_mps = LiftOffSpeed(context, memory);
-  if (memory.pit.lift_off_mps != 0) return;
+  if (memory.pit.lift_off_mps != 0 || LeapsFromRun(memory)) return;
   const double reached_mps = RisingSpeed(context, memory);
   const double missing_j = context.biped.mass_kg() / 2 *
                            (wanted_mps * wanted_mps - reached_mps * std::fabs(reached_mps));
@@ -169,7 +177,8 @@ RunningCues SenseRunning(const Context& context, const GaitMemory& memory) {
 }
 
 Targets AdvanceRunning(const Context& context, GaitMemory& memory) {
-  if (!memory.transition.thrusting && context.goal.gait != Gait::kJump)
+  const bool leaps = LeapsFromRun(memory) && memory.running == RunningPhase::kExtension;
+  if (!memory.transition.thrusting && !leaps && context.goal.gait != Gait::kJump)
     memory.transition.preparing_jump = false;
   if (memory.running == RunningPhase::kExtension) WatchExtension(context, memory);
   const RunningPhase next = Next(memory.running, SenseRunning(context, memory));

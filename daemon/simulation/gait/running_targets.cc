@@ -123,7 +123,7 @@ AxialTarget RunSpring(const Context& context, const GaitMemory& memory) {
   if (memory.transition.absorbing) {
     spring.stiffness_n_per_m = transition.run_landing_stiffness_n_per_m;
     spring.damping_ns_per_m = transition.run_landing_damping_ns_per_m;
-  } else if (shortens && LeavesRun(context.goal, memory)) {
+  } else if (shortens && LeavesRun(context, memory)) {
     spring.damping_ns_per_m = transition.leaving_run_damping_ns_per_m;
   }
   return spring;

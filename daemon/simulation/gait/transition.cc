@@ -26,6 +26,13 @@ double SpeedAlongHeading(const Context& context, const GaitMemory& memory) {
   return ToHeading(memory.heading_rad, context.body.v_WC).x();
 }
 
+/// In a run that jumps from one of its next steps: it keeps its speed for the leap.
+bool RunsUp(const Context& context, const GaitMemory& memory) {
+  return memory.gait == Gait::kRun && context.goal.gait == Gait::kJump &&
+         (memory.transition.preparing_jump || JumpsPit(context.goal, memory) ||
+          SpeedAlongHeading(context, memory) < context.gains.transition.run_to_jump_mps);
+}
+
 /// Smoothed duration of the supports: T of equation (2).
 void MeasureSupport(double duration_s, GaitMemory& memory) {
   memory.hop.support_time_s =
@@ -62,9 +69,12 @@ biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& comm
   return goal;
 }
 
-bool LeavesRun(const biped::GaitCommand& goal, const GaitMemory& memory) {
-  return memory.gait == Gait::kRun && goal.gait != Gait::kRun &&
-         !memory.transition.preparing_jump && !JumpsPit(goal, memory);
+bool LeavesRun(const Context& context, const GaitMemory& memory) {
+  return memory.gait == Gait::kRun && context.goal.gait != Gait::kRun && !RunsUp(context, memory);
+}
+
+bool LeapsFromRun(const GaitMemory& memory) {
+  return memory.gait == Gait::kRun && memory.transition.preparing_jump;
 }
 
 void SlewSpeed(const Context& context, GaitMemory& memory) {
@@ -77,23 +87,28 @@ void SlewSpeed(const Context& context, GaitMemory& memory) {
   } else if (to_ground && flying) {
     target_mps = std::min(target_mps, limits.run_to_walk_mps);
   }
-  if (JumpsPit(context.goal, memory)) target_mps = std::max(target_mps, memory.speed.desired_mps);
-  if (to_ground && !flying) target_mps = std::min(target_mps, SpeedBeforePit(context, memory));
-  memory.speed.target_mps = target_mps;
-  // Slowing down starts from the speed there is, not from one that was not reached yet.
   const bool in_flight =
       IsHopping(memory.gait) && (memory.running == RunningPhase::kUpwardFlight ||
                                  memory.running == RunningPhase::kDownwardFlight);
+  const double speed_mps = SpeedAlongHeading(context, memory);
+  if (RunsUp(context, memory)) {
+    const double held_mps =
+        in_flight ? std::min(memory.speed.desired_mps, speed_mps) : memory.speed.desired_mps;
+    target_mps = std::max(target_mps, held_mps);
+  }
+  if (to_ground && !flying) target_mps = std::min(target_mps, SpeedBeforePit(context, memory));
+  memory.speed.target_mps = target_mps;
+  // Slowing down starts from the speed there is, not from one that was not reached yet.
   if (in_flight) {
-    const double reached_mps = std::max(target_mps, SpeedAlongHeading(context, memory));
+    const double reached_mps = std::max(target_mps, speed_mps);
     memory.speed.desired_mps = std::min(memory.speed.desired_mps, reached_mps);
   }
   const double faster =
       (flying ? context.gains.hopping.acceleration_mps2 : context.gains.walking.acceleration_mps2) *
       context.step_s;
   const bool brakes = flying && memory.speed.desired_mps > 0;
-  const double braking_mps2 = LeavesRun(context.goal, memory) ? limits.leaving_run_mps2
-                                                              : context.gains.hopping.braking_mps2;
+  const double braking_mps2 =
+      LeavesRun(context, memory) ? limits.leaving_run_mps2 : context.gains.hopping.braking_mps2;
   const double slower = brakes ? braking_mps2 * context.step_s : faster;
   memory.speed.desired_mps += std::clamp(target_mps - memory.speed.desired_mps, -slower, faster);
 }
@@ -132,7 +147,8 @@ void LiftOff(const Context& context, GaitMemory& memory) {
   MeasureSupport(context.body.time_s - memory.hop.touchdown_time_s, memory);
   const bool was_jumping = memory.gait == Gait::kJump;
   const bool jump = context.goal.gait == Gait::kJump;
-  if (jump && (was_jumping || memory.transition.preparing_jump)) {
+  // A leap is high: it ends as a jump does, even when another gait is commanded by now.
+  if (LeapsFromRun(memory) || (jump && (was_jumping || memory.transition.preparing_jump))) {
     memory.gait = Gait::kJump;
     memory.transition.preparing_jump = false;
   } else {

@@ -26,8 +26,11 @@ std::string DrawGaitChanges();
 biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,
                         const TransitionGains& gains);
 
+/// True in the step of a run from which a jump begins: its thrust is the jump's first leap.
+bool LeapsFromRun(const GaitMemory& memory);
+
 /// True in a run that is to end, before a jump's preparatory step: it brakes harder, in lower hops.
-bool LeavesRun(const biped::GaitCommand& goal, const GaitMemory& memory);
+bool LeavesRun(const Context& context, const GaitMemory& memory);
 
 /// Moves v_d towards the goal's speed; a gait that is to be left for a slower one brakes first.
 void SlewSpeed(const Context& context, GaitMemory& memory);

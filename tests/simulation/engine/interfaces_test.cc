@@ -47,9 +47,10 @@ TEST(Interfaces, APressOfTheButtonIsOneJump) {
     Feed(engine, inputs, 6, [&](const EngineOutput& output) {
       if (output.gait.gait == Gait::kJump) jumped_s += EngineConfig{}.step_s;
     });
-    // One hop of 0.3 m takes 0.5 s in the air, and its push and the change before it.
+    // One hop of 0.3 m takes 0.5 s in the air, and its push and the change before it. Out of a fast
+    // run the hop is as long as the run was fast, and two more slow it down.
     EXPECT_GT(jumped_s, 0.9) << radius;
-    EXPECT_LT(jumped_s, 2.0) << radius;
+    EXPECT_LT(jumped_s, 2.2) << radius;
     EXPECT_EQ(engine.Output().gait.gait, before) << radius;
     EXPECT_EQ(engine.Output().gait.falls, 0u) << radius;
   }
