@@ -28,6 +28,33 @@ double NearestQuantile(const std::vector<double>& values, double part) {
   return text::OfRank(values, static_cast<std::size_t>(part * last + 0.5));
 }
 
+/// The first leaps of jumps.
+class Leaps {
+ public:
+  void Add(const Leap& leap) {
+    flights_s_.push_back(leap.flight_s);
+    lengths_m_.push_back(leap.length_m);
+    rise_shares_.push_back(leap.rise_m / leap.commanded_m);
+  }
+
+  nlohmann::ordered_json Report() const {
+    return {{"leaps", flights_s_.size()},
+            {"flight_s", Quantiles(flights_s_)},
+            {"length_m", Quantiles(lengths_m_)},
+            {"rise_over_commanded", Quantiles(rise_shares_)}};
+  }
+
+ private:
+  static nlohmann::ordered_json Quantiles(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return {{"p5", NearestQuantile(values, 0.05)},
+            {"median", NearestQuantile(values, 0.5)},
+            {"p95", NearestQuantile(values, 0.95)}};
+  }
+
+  std::vector<double> flights_s_, lengths_m_, rise_shares_;
+};
+
 int RunTransitions(const TransitionOptions& options, bool json) {
   const stream::Gait from = stream::GaitNamed(options.from);
   const stream::Gait to = stream::GaitNamed(options.to);
@@ -39,24 +66,27 @@ int RunTransitions(const TransitionOptions& options, bool json) {
   if (!seed) return cli::Report(seed.error());
   int succeeded = 0, falls = 0;
   std::vector<double> latencies_s;
+  Leaps leaps;
   for (int i = 0; i < options.trials; ++i) {
     const Result<TransitionResult> trial =
         RunTransition(from, to, TrialSeed(*seed, i), options.speeds);
     if (!trial) return cli::Report(trial.error());
     falls += trial.value().fell ? 1 : 0;
+    if (trial.value().leap) leaps.Add(*trial.value().leap);
     if (!trial.value().succeeded) continue;
     ++succeeded;
     latencies_s.push_back(trial.value().latency_s);
   }
   std::sort(latencies_s.begin(), latencies_s.end());
-  const nlohmann::ordered_json report{{"from", options.from},
-                                      {"to", options.to},
-                                      {"seed", *seed},
-                                      {"trials", options.trials},
-                                      {"succeeded", succeeded},
-                                      {"falls", falls},
-                                      {"median_latency_s", NearestQuantile(latencies_s, 0.5)},
-                                      {"p95_latency_s", NearestQuantile(latencies_s, 0.95)}};
+  nlohmann::ordered_json report{{"from", options.from},
+                                {"to", options.to},
+                                {"seed", *seed},
+                                {"trials", options.trials},
+                                {"succeeded", succeeded},
+                                {"falls", falls},
+                                {"median_latency_s", NearestQuantile(latencies_s, 0.5)},
+                                {"p95_latency_s", NearestQuantile(latencies_s, 0.95)}};
+  if (to == stream::Gait::kJump) report["leap"] = leaps.Report();
   if (json) {
     std::printf("%s\n", report.dump().c_str());
   } else {
@@ -82,6 +112,8 @@ void AddTransitionsCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 6.0));
   command->add_option("--to-speed", options->speeds.to_mps, "m/s; drawn by default")
       ->check(CLI::Range(0.0, 6.0));
+  command->add_option("--height", options->speeds.height_m, "Of jumps, m; drawn by default")
+      ->check(CLI::Range(0.05, 0.7));
   command->callback(
       [options, &shared] { shared.exit_code = RunTransitions(*options, shared.json); });
 }
