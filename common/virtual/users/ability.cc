@@ -20,7 +20,7 @@ Ability AbilityWith(UserInterface interface, TurnSource turn_by) {
     case UserInterface::kUnspecified:
     case UserInterface::kWrist:  // A cycle and a half at 2.5 Hz, and the change of the hands.
       ability.turn_delay_s = 0.35;
-      ability.run_jump_s = 1.45;
+      ability.run_jump_s = 1.7;
       ability.walk_jump_s = 2.0;
       break;
     case UserInterface::kArm:
@@ -30,19 +30,19 @@ Ability AbilityWith(UserInterface interface, TurnSource turn_by) {
       break;
     case UserInterface::kLeg:  // Feet show their heights in a whole cycle of either.
       ability.turn_delay_s = turn_by == TurnSource::kFeet ? 0.7 : 0.35;
-      ability.run_jump_s = 1.45;
+      ability.run_jump_s = 1.7;
       ability.walk_jump_s = 2.2;
       break;
     case UserInterface::kJoystick:
       ability.turn_delay_s = 0.1;
       ability.jumps_at_once = true;
-      ability.run_jump_s = 0.6;
+      ability.run_jump_s = 0.7;
       ability.walk_jump_s = 0.85;
       break;
     case UserInterface::kBoards:  // Steps end, both feet stand, then the heels rise.
       ability.turn_delay_s = 0.6;
       ability.jumps_at_once = true;
-      ability.run_jump_s = 0.95;
+      ability.run_jump_s = 1.3;
       ability.walk_jump_s = 1.25;
       break;
   }
