@@ -21,8 +21,8 @@ constexpr double kGoneS = 1;
 constexpr double kPushS = 0.15;
 /// A heel rise jumps on from the walk that ended no longer ago than this: its feet stand first.
 constexpr double kWalkedS = 1;
-/// A change from walking to running must last two steps, since who leans over to the other side
-/// takes two short ones; a change back one step.
+/// A run must last two steps before it counts, since who leans over to the other side takes two
+/// short ones, and the first step of a person who leans is short; a change back one step.
 constexpr double kRunCycles = 1;
 constexpr double kWalkCycles = 0.5;
 
@@ -92,12 +92,12 @@ biped::GaitCommand BoardsInterface::StepCommand(double time_s) {
   }
   const double frequency_hz = steps_.frequency_hz();
   const Gait now = settled_.gait();
-  // The first step of a person who leans is short: standing people begin with a walk.
-  const bool run_seen = now != Gait::kStep && mapping_.border.IsRun(frequency_hz, now);
+  const bool run_seen = mapping_.border.IsRun(frequency_hz, now);
   const Gait seen = run_seen ? Gait::kRun : Gait::kWalk;
-  const double cycles = now == Gait::kStep ? 0 : run_seen ? kRunCycles : kWalkCycles;
+  const double cycles = run_seen ? kRunCycles : now == Gait::kStep ? 0 : kWalkCycles;
   const double lasting_s = cycles / frequency_hz;
   command.gait = settled_.Advance(time_s, seen, lasting_s);
+  if (command.gait == Gait::kStep) return command;
   const bool run = command.gait == Gait::kRun;
   command.speed_mps =
       run ? mapping_.run_mps_from_hz(frequency_hz) : mapping_.walk_mps_from_hz(frequency_hz);

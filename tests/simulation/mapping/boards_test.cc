@@ -91,6 +91,25 @@ TEST(Boards, AWalkBeginsWithTheSecondStepAndEndsWithinTwoStepsOfTheLast) {
   EXPECT_LT(rested_s - stopped_s, 1.1);
 }
 
+TEST(Boards, ARunFromStandingHasNoWalkBeforeIt) {
+  for (const double step_hz : {2.9, 3.4, 4.2}) {
+    BoardPerson person(70);
+    BoardsInterface boards = NewBoards();
+    For(2, person, boards);
+    const double from_s = person.time_s();
+    person.step_hz = step_hz;
+    double began_s = 0;
+    For(4, person, boards, [&](const auto& command) {
+      EXPECT_NE(command.gait, Gait::kWalk) << step_hz;
+      EXPECT_EQ(command.speed_mps > 0, command.gait == Gait::kRun) << step_hz;
+      if (began_s == 0 && command.gait == Gait::kRun) began_s = person.time_s();
+    });
+    // Two steps until a step has a frequency, and the two that a run must last.
+    EXPECT_GT(began_s, from_s) << step_hz;
+    EXPECT_LT(began_s - from_s, 4.5 / step_hz) << step_hz;
+  }
+}
+
 TEST(Boards, SteppingNeverJumps) {
   for (const double step_hz : {1.0, 1.6, 2.4, 3.4, 4.2}) {
     BoardPerson person(70);
