@@ -1,5 +1,7 @@
 #include "daemon/offline/pose_run/kinect_body.h"
 
+#include <algorithm>
+
 namespace footing::pose_run {
 
 using virtual_sensors::KinectErrors;
@@ -7,7 +9,10 @@ using virtual_sensors::KinectSkeleton;
 
 KinectBody::KinectBody(const body::Body& body, std::uint64_t seed, double step_s,
                        const virtual_sensors::KinectOptions& options)
-    : skeleton_(body, seed, options), step_s_(step_s) {}
+    : skeleton_(body, seed, options), step_s_(step_s) {
+  const auto joints = reconstruction::JointTracks();
+  std::copy(joints.begin(), joints.end(), tracks_.begin() + KinectSkeleton::kHands);
+}
 
 void KinectBody::Advance(const body::Kinematics& at, bool with_joints,
                          reconstruction::Inputs& inputs) {

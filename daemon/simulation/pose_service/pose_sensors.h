@@ -80,7 +80,8 @@ class PoseSensors {
   std::array<reconstruction::HandTrack, reconstruction::kHands> tracks_;
   std::array<BodySource, momentum::kFeet> insoles_{};
   std::array<BodySource, stream::kBodyJoints> joints_{};
-  std::array<reconstruction::HandTrack, stream::kBodyJoints> joint_tracks_;
+  std::array<reconstruction::HandTrack, stream::kBodyJoints> joint_tracks_ =
+      reconstruction::JointTracks();
   std::string tracker_;
   std::string joint_tracker_;  ///< The same of a joint.
   v1::SetupState setup_;       ///< As published last.

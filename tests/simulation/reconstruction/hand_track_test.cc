@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/body/skeleton_points.h"
 #include "common/virtual/noise/random.h"
 
 namespace footing::reconstruction {
@@ -11,6 +12,20 @@ namespace {
 
 constexpr double kHandTrackStepS = 1.0 / 30;
 const Eigen::Vector3d kSdM = Eigen::Vector3d::Constant(0.02);
+
+TEST(HandTrack, AJointIsFollowedAsSlowerThanAHand) {
+  HandTrack hand;
+  HandTrack joint = JointTracks()[body::IndexOf(stream::BodyJoint::kLeftElbow)];
+  for (HandTrack* track : {&hand, &joint}) {
+    for (int i = 0; i < 60; ++i) {
+      track->Add(i / 30.0, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(0.02));
+    }
+  }
+  const double late_s = 59 / 30.0 + 0.1;
+  const double hand_sd_m = hand.At(late_s).sd_m.x(), joint_sd_m = joint.At(late_s).sd_m.x();
+  EXPECT_GT(joint_sd_m, 0.02);
+  EXPECT_LT(joint_sd_m, 0.75 * hand_sd_m);
+}
 
 TEST(HandTrack, IsInvalidBeforeTheFirstPlaceAndThenThere) {
   HandTrack track;

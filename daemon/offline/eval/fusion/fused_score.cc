@@ -19,7 +19,11 @@ void FusedScore::Add(const JointPlaces& truth, const JointPlaces& places,
     const double off_cm = 100 * (places[i] - truth[i]).norm();
     if (squats && IsBetween(i, BodyJoint::kLeftHip, BodyJoint::kRightHip)) hips_.Add(off_cm);
     if (squats && IsBetween(i, BodyJoint::kLeftKnee, BodyJoint::kRightKnee)) knees_.Add(off_cm);
-    if (!hidden[i]) continue;
+    if (!hidden[i]) {
+      seen_.Add(off_cm);
+      if (IsBetween(i, BodyJoint::kLeftShoulder, BodyJoint::kRightElbow)) seen_arms_.Add(off_cm);
+      continue;
+    }
     hidden_.Add(off_cm);
     if (IsBetween(i, BodyJoint::kLeftShoulder, BodyJoint::kRightElbow)) arms_.Add(off_cm);
     if (IsBetween(i, BodyJoint::kLeftHip, BodyJoint::kRightKnee)) legs_.Add(off_cm);
@@ -27,10 +31,11 @@ void FusedScore::Add(const JointPlaces& truth, const JointPlaces& places,
 }
 
 nlohmann::ordered_json FusedScore::Json() const {
-  return {{"hip_cm", hips_.mean()},        {"hip_p95_cm", hips_.Quantile(0.95)},
-          {"knee_cm", knees_.mean()},      {"knee_p95_cm", knees_.Quantile(0.95)},
-          {"hidden_cm", hidden_.mean()},   {"hidden_arms_cm", arms_.mean()},
-          {"hidden_legs_cm", legs_.mean()}};
+  return {{"hip_cm", hips_.mean()},           {"hip_p95_cm", hips_.Quantile(0.95)},
+          {"knee_cm", knees_.mean()},         {"knee_p95_cm", knees_.Quantile(0.95)},
+          {"hidden_cm", hidden_.mean()},      {"hidden_arms_cm", arms_.mean()},
+          {"hidden_legs_cm", legs_.mean()},   {"seen_cm", seen_.mean()},
+          {"seen_arms_cm", seen_arms_.mean()}};
 }
 
 }  // namespace footing::eval

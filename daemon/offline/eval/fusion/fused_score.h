@@ -12,8 +12,8 @@ namespace footing::eval {
 /// Where a way has the joints of a skeleton, by body::IndexOf.
 using JointPlaces = std::array<Eigen::Vector3d, stream::kBodyJoints>;
 
-/// Errors of one way, cm: of hips and knees while the person squats, and of any joint while the
-/// camera infers it.
+/// Errors of one way, cm: of hips and knees while the person squats, of any joint while the camera
+/// infers it, and of those that it sees.
 class FusedScore {
  public:
   void Add(const JointPlaces& truth, const JointPlaces& places,
@@ -24,7 +24,7 @@ class FusedScore {
   nlohmann::ordered_json Json() const;
 
  private:
-  Spread hips_, knees_, hidden_, arms_, legs_;
+  Spread hips_, knees_, hidden_, arms_, legs_, seen_, seen_arms_;
 };
 
 }  // namespace footing::eval
