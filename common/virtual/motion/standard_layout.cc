@@ -106,8 +106,12 @@ class Placer {
 }  // namespace
 
 bool HasStandardLayout(const Motion& motion) {
+  return IsStandardLayout(body::DofNames(motion.skeleton));
+}
+
+bool IsStandardLayout(const std::vector<std::string>& dofs) {
   static const std::vector<std::string> kStandard = body::DofNames(body::StandardPerson(1.7));
-  return body::DofNames(motion.skeleton) == kStandard;
+  return dofs == kStandard;
 }
 
 Result<StandardMotion> ToStandardLayout(const Motion& motion) {

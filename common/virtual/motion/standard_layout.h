@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "common/result/result.h"
 #include "common/virtual/motion/motion.h"
 
@@ -14,6 +17,7 @@ struct StandardMotion {
 
 /// True when the motion's degrees of freedom are the standard person's, by number and name.
 bool HasStandardLayout(const Motion& motion);
+bool IsStandardLayout(const std::vector<std::string>& dofs);
 
 /// Another skeleton's motion as the standard person's: markers are put about its joints and fitted
 /// (FitMarkers), so that lengths and joint centres stay. An error says which landmark is

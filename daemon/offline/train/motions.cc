@@ -7,7 +7,10 @@
 #include "common/body/kinematics.h"
 #include "common/body/points.h"
 #include "common/config/data_file.h"
+#include "common/log/log.h"
+#include "common/text/number.h"
 #include "common/virtual/motion/edit.h"
+#include "common/virtual/motion/standard_layout.h"
 #include "common/virtual/motion_files/load.h"
 #include "daemon/offline/learning/alignment.h"
 
@@ -18,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostMotionBytes = 256u << 20;
 constexpr Eigen::Index kFewestFrames = 30;
-constexpr double kMostAwayM = 0.4, kLeastRootShare = 0.5;
+constexpr double kMostAwayM = 0.4, kLeastRootShare = 0.25;
 
 std::string SubjectOf(const fs::path& path) { return model::SubjectOfFile(path.stem().string()); }
 
@@ -46,6 +49,28 @@ Result<std::string> SkeletonBeside(const fs::path& path) {
     return InvalidData(path.string() + ": no skeleton " + SubjectOf(path) + ".asf beside it");
   }
   return found->string();
+}
+
+/// Of files of several layouts those of another one than the standard are fitted to it.
+Result<void> UnifyLayouts(std::vector<Clip>& clips) {
+  const auto of_first = [&clips](const Clip& clip) {
+    return body::DofNames(clip.motion.skeleton) == body::DofNames(clips.front().motion.skeleton);
+  };
+  if (std::all_of(clips.begin(), clips.end(), of_first)) return {};
+  for (Clip& clip : clips) {
+    if (motion::HasStandardLayout(clip.motion)) continue;
+    auto standard = motion::ToStandardLayout(clip.motion);
+    if (!standard) return InvalidData(clip.name + ": " + standard.error().message);
+    body::PersonParameters person;
+    person.height_m = standard->height_m;
+    auto body = body::MakeBody(standard->motion.skeleton, person);
+    if (!body) return InvalidData(clip.name + ": " + body.error().message);
+    log::Info("fitted " + clip.name + " to the standard layout within " +
+              text::Fixed(1e3 * standard->rms_m, 1) + " mm");
+    clip.motion = learning::Aligned(standard->motion, body->landmarks);
+    clip.body = *std::move(body);
+  }
+  return {};
 }
 
 }  // namespace
@@ -136,6 +161,7 @@ Result<Clips> ReadClips(const MotionOptions& options) {
     return InvalidData("no *.amc or *.bvh to train on in the folders named");
   }
   clips.subjects = {subjects.begin(), subjects.end()};
+  if (const auto unified = UnifyLayouts(clips.train); !unified) return unified.error();
   return clips;
 }
 

@@ -41,8 +41,8 @@ struct Clips {
 Result<Clip> ReadClip(const std::string& file, const std::string& skeleton = "");
 
 /// Every *.bvh and *.amc of the folders, by name. An AMC file's skeleton is SUBJECT.asf beside it,
-/// or else the first SUBJECT_*.asf. An error names the file; folders without
-/// a file to train on are one too.
+/// or else the first SUBJECT_*.asf. Where layouts differ, those to train on are fitted to the
+/// standard one. An error names the file; folders without a file to train on are one too.
 Result<Clips> ReadClips(const MotionOptions& options);
 
 /// The data files of a model: those of the training.

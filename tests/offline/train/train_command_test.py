@@ -180,6 +180,18 @@ class Train(unittest.TestCase):
         self.assertEqual(report["components_9999"], 3)
         self.assertEqual(report["poses"], 2400)  # And their mirror images.
 
+    def test_files_of_several_layouts_are_fitted_to_the_standard_one(self):
+        folder = self.motions()
+        other = (folder / "1_01.bvh").read_text().replace("Spine", "Chest")
+        (folder / "3_01.bvh").write_text(other)
+        result = run("basis", "--motions", folder, "--out", self.out, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for name in ("1_01.bvh", "2_01.bvh", "3_01.bvh"):
+            self.assertIn(f"fitted {name} to the standard layout", result.stderr)
+        report = json.loads(result.stdout)
+        self.assertEqual(report["subjects"], ["1", "2", "3"])
+        self.assertEqual(report["dof"], 56)
+
     def test_bad_motions_are_refused_by_name(self):
         folder = self.motions()
         self.refused(2, "--exclude 7: no file of that subject", "basis", "--motions", folder, "--exclude",

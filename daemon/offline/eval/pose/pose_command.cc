@@ -7,6 +7,7 @@
 
 #include "common/cli/cli.h"
 #include "common/units/units.h"
+#include "common/virtual/motion/standard_layout.h"
 #include "common/virtual/sensor_options/sensor_options.h"
 #include "daemon/offline/eval/pose/ablations.h"
 #include "daemon/offline/eval/pose/baselines.h"
@@ -86,10 +87,10 @@ Result<ordered_json> Evaluate(Flags flags) {
     if (!run) return run.error();
     return ordered_json{{"claims", CheckClaims(*run)}};
   }
-  // A basis of the user's own may be of another layout.
-  flags.scene.standard_layout = flags.models.empty();
   const auto models = ReadPoseModels(flags.models, flags.scene.motion, flags.same_person);
   if (!models) return models.error();
+  // A basis of the user's own may be of another layout.
+  flags.scene.standard_layout = motion::IsStandardLayout(models->dofs);
   if (flags.boards == "insoles") {
     const auto walk = MakeInsoleScene(flags.scene);
     if (!walk) return walk.error();

@@ -1,5 +1,6 @@
 #include "daemon/offline/eval/pose/trial.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -79,7 +80,7 @@ class TrialScore {
       nees_ += pose_.errors_m()[k].squaredNorm() / (3 * std::pow(output.joint_sd_m[k], 2));
       ++nees_count_;
     }
-    invalid_ += output.valid ? 0 : 1;
+    AddValidity(output.valid);
     misfit_.Add(output.misfit);
     finite_ = finite_ && output.q.allFinite();
   }
@@ -94,11 +95,20 @@ class TrialScore {
     json["misfit_p50"] = misfit_.Quantile(0.5);
     json["misfit_p95"] = misfit_.Quantile(0.95);
     json["invalid_frames"] = invalid_;
+    json["valid_fraction"] = 1 - static_cast<double>(invalid_) / static_cast<double>(frames_);
+    json["longest_invalid_s"] = static_cast<double>(longest_invalid_) / run_.rate_hz;
     json["finite"] = finite_;
     return json;
   }
 
  private:
+  void AddValidity(bool valid) {
+    ++frames_;
+    invalid_ += valid ? 0 : 1;
+    invalid_since_ = valid ? 0 : invalid_since_ + 1;
+    longest_invalid_ = std::max(longest_invalid_, invalid_since_);
+  }
+
   const pose_run::PoseRun& run_;
   const std::size_t lag_;
   PoseScore pose_;
@@ -108,7 +118,8 @@ class TrialScore {
   PoseBreakdown breakdown_;
   double nees_ = 0, nees_count_ = 0;  ///< Of joints' places, summed.
   Spread misfit_;
-  std::size_t invalid_ = 0;
+  std::size_t frames_ = 0, invalid_ = 0;
+  std::size_t invalid_since_ = 0, longest_invalid_ = 0;  ///< Frames in a row.
   bool finite_ = true;
 };
 

@@ -65,6 +65,15 @@ class Pose(unittest.TestCase):
             # Nobody has shown this model a walk, and the best mode says so.
             unsure = report["invalid_frames"] / report["frames"]
             self.assertTrue(0 < unsure < 0.5 if mode == "best" else unsure == 0, unsure)
+            self.assertAlmostEqual(report["valid_fraction"], 1 - unsure)
+            self.assertLessEqual(report["longest_invalid_s"] * report["rate_hz"], report["invalid_frames"] + 1e-6)
+
+    def test_fits_another_skeleton_to_the_layout_of_the_model(self):
+        done = run(EVAL, "pose", "--motion", DATA.parent / "mass_bvh" / "walk.bvh", "--model", self.models["pose"],
+                   "--no-baselines", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("fitted to the standard layout", done.stderr)
+        self.assertGreater(json.loads(done.stdout)["frames"], 30)
 
     def test_boards_and_hands_tell_more_than_hands_and_feet_and_those_more_than_a_mean(self):
         report = self.judge("pose")
