@@ -1,6 +1,8 @@
 #include "daemon/offline/learning/pose_regression.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <map>
 #include <utility>
 
 #include "common/result/result.h"
@@ -9,9 +11,28 @@
 #include "daemon/offline/learning/scaling.h"
 
 namespace footing::learning {
+namespace {
+
+/// People weigh the same, each frame of one person as much as another, and all of them together as
+/// their frames are.
+Eigen::VectorXd EqualWeights(const std::vector<int>& people) {
+  std::map<int, double> frames;
+  for (const int person : people) ++frames[person];
+  const double own = frames.count(PoseExamples::kOwn) > 0 ? frames[PoseExamples::kOwn] : 0;
+  const double others = static_cast<double>(frames.size()) - (own > 0 ? 1 : 0);
+  const double each = (static_cast<double>(people.size()) - own) / std::max(others, 1.0);
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(people.size()));
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    const int person = people[static_cast<std::size_t>(i)];
+    weights(i) = person == PoseExamples::kOwn ? 1 : each / frames[person];
+  }
+  return weights;
+}
+
+}  // namespace
 
 void PoseExamples::Add(const reconstruction::Reconstruction& made, PoseCues cues,
-                       const Eigen::VectorXd& q, int fold) {
+                       const Eigen::VectorXd& q, int fold, int person) {
   const body::Body& body = made.body();
   Eigen::VectorXd pose =
       motion::NearestPose(body.skeleton, q, Eigen::VectorXd::Zero(body.skeleton.dof));
@@ -22,12 +43,21 @@ void PoseExamples::Add(const reconstruction::Reconstruction& made, PoseCues cues
   features.push_back(posture ? made.posture().features().values() : made.features().values());
   poses.push_back(std::move(pose));
   folds.push_back(fold);
+  people.push_back(person);
+}
+
+void PoseExamples::Append(const PoseExamples& other) {
+  features.insert(features.end(), other.features.begin(), other.features.end());
+  poses.insert(poses.end(), other.poses.begin(), other.poses.end());
+  folds.insert(folds.end(), other.folds.begin(), other.folds.end());
+  people.insert(people.end(), other.people.begin(), other.people.end());
 }
 
 FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen::VectorXd& scale,
                                        const RandomWaves& waves) {
   FOOTING_CHECK(!examples.poses.empty() && examples.features.size() == examples.poses.size() &&
-                examples.folds.size() == examples.poses.size());
+                examples.folds.size() == examples.poses.size() &&
+                examples.people.size() == examples.poses.size());
   const auto count = static_cast<Eigen::Index>(examples.poses.size());
   Eigen::MatrixXd x(reconstruction::Features::kCount, count);
   Eigen::MatrixXd y(examples.poses.front().size(), count);
@@ -35,13 +65,16 @@ FittedPoseRegression FitPoseRegression(const PoseExamples& examples, const Eigen
     x.col(i) = examples.features[static_cast<std::size_t>(i)];
     y.col(i) = examples.poses[static_cast<std::size_t>(i)];
   }
-  const RidgeFit fit = FitRidge(std::move(x), std::move(y), examples.folds, kFolds, scale, waves);
+  const Eigen::VectorXd weights = EqualWeights(examples.people);
+  const int folds = 1 + *std::max_element(examples.folds.begin(), examples.folds.end());
+  const RidgeFit fit =
+      FitRidge(std::move(x), std::move(y), examples.folds, folds, scale, waves, weights);
   FittedPoseRegression fitted;
   fitted.spread = fit.spread;
   fitted.error = fit.error;
   fitted.ridge = fit.ridge;
   const Eigen::MatrixXd covariance =
-      fit.errors * fit.errors.transpose() / static_cast<double>(count);
+      fit.errors * weights.asDiagonal() * fit.errors.transpose() / weights.sum();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
   fitted.rest_variances = solver.eigenvalues().reverse().cwiseMax(0);
   fitted.rest_components = solver.eigenvectors().rowwise().reverse().transpose();

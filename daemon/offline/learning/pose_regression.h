@@ -19,14 +19,19 @@ struct PoseExamples {
   std::vector<reconstruction::Features::Values> features;
   /// The root from the estimated centre of mass in parts of the root's height, then the angles.
   std::vector<Eigen::VectorXd> poses;
-  std::vector<int> folds;  ///< Frames of one fold are predicted without it; 0 to kFolds - 1.
+  std::vector<int> folds;  ///< Frames of one fold are predicted without it; from 0 on.
+  /// Whose frames they are: all people count alike, however long each was recorded. Frames of
+  /// kOwn count once each.
+  std::vector<int> people;
+  static constexpr int kOwn = -1;
 
   /// The frame that `made` has just reconstructed, in truth at the pose `q`, whose angles are taken
   /// as those nearest to 0 that mean the same.
   void Add(const reconstruction::Reconstruction& made, PoseCues cues, const Eigen::VectorXd& q,
-           int fold);
+           int fold, int person = kOwn);
+  void Append(const PoseExamples& other);
 };
-inline constexpr int kFolds = 5;
+inline constexpr int kFolds = 5;  ///< Of pieces of time, where there are too few people.
 
 inline constexpr RandomWaves kPoseWaves{.count = 500};
 

@@ -23,6 +23,7 @@ constexpr double kMostScaled = 4;
 struct Prepared {
   Eigen::MatrixXd x, y;
   std::vector<int> folds;
+  Eigen::VectorXd weights;
   std::vector<Eigen::MatrixXd> xx, xy;  ///< A fold each.
   std::vector<double> examples;
 
@@ -35,11 +36,22 @@ void Sum(Prepared& p, int fold_count) {
     for (Eigen::Index i = 0; i < p.x.cols(); ++i) {
       if (p.folds[static_cast<std::size_t>(i)] == fold) examples.push_back(i);
     }
-    const Eigen::MatrixXd x = p.x(Eigen::all, examples), y = p.y(Eigen::all, examples);
-    p.xx.emplace_back(x * x.transpose());
-    p.xy.emplace_back(x * y.transpose());
-    p.examples.push_back(static_cast<double>(examples.size()));
+    const Eigen::MatrixXd x = p.x(Eigen::all, examples);
+    const Eigen::VectorXd weights = p.weights(examples);
+    const Eigen::MatrixXd weighted = (x * weights.asDiagonal()).transpose();
+    p.xx.emplace_back(x * weighted);
+    p.xy.emplace_back(weighted.transpose() * p.y(Eigen::all, examples).transpose());
+    p.examples.push_back(weights.sum());
   }
+}
+
+Eigen::VectorXd MeanOf(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weights) {
+  return columns * weights / weights.sum();
+}
+
+/// Of errors, a column an example.
+double RootMeanSquare(const Eigen::MatrixXd& errors, const Eigen::VectorXd& weights) {
+  return std::sqrt(errors.colwise().squaredNorm().dot(weights) / weights.sum());
 }
 
 /// Appends them to the scaled inputs, about their mean. Returns the mean.
@@ -52,7 +64,7 @@ Eigen::VectorXd AddWaves(const RandomWaves& config, Prepared& p, RidgeFit& fit) 
   for (double& value : fit.waves.reshaped()) value = sd * random.Normal();
   for (double& value : fit.phases) value = random.Uniform(0, 2 * kPi);
   const Eigen::MatrixXd waved = ((fit.waves * p.x).colwise() + fit.phases).array().cos().matrix();
-  const Eigen::VectorXd mean = waved.rowwise().mean();
+  const Eigen::VectorXd mean = MeanOf(waved, p.weights);
   p.x.conservativeResize(inputs + config.count, Eigen::NoChange);
   p.x.bottomRows(config.count) = waved.colwise() - mean;
   return mean;
@@ -89,34 +101,36 @@ Eigen::MatrixXd LeftOut(const Prepared& p, double ridge) {
 }  // namespace
 
 RidgeFit FitRidge(Eigen::MatrixXd x, Eigen::MatrixXd y, const std::vector<int>& folds,
-                  int fold_count, const Eigen::VectorXd& output_scale, const RandomWaves& waves) {
+                  int fold_count, const Eigen::VectorXd& output_scale, const RandomWaves& waves,
+                  const Eigen::VectorXd& weights) {
   FOOTING_CHECK(x.cols() > 0 && x.cols() == y.cols() && fold_count > 0 &&
                 folds.size() == static_cast<std::size_t>(x.cols()));
-  const auto count = static_cast<double>(x.cols());
+  FOOTING_CHECK(weights.size() == 0 || (weights.size() == x.cols() && weights.minCoeff() > 0));
   RidgeFit fit;
-  Prepared p{std::move(x), std::move(y), folds, {}, {}, {}};
-  fit.mean = p.x.rowwise().mean();
+  Prepared p{std::move(x), std::move(y), folds, weights, {}, {}, {}};
+  if (weights.size() == 0) p.weights = Eigen::VectorXd::Ones(p.x.cols());
+  fit.mean = MeanOf(p.x, p.weights);
   p.x.colwise() -= fit.mean;
-  const Eigen::VectorXd sd = (p.x.rowwise().squaredNorm() / count).cwiseSqrt();
+  const Eigen::VectorXd sd = MeanOf(p.x.cwiseAbs2(), p.weights).cwiseSqrt();
   fit.scale = (sd.array() > kLeastSpread).select(sd.cwiseInverse(), 0);
   p.x = (fit.scale.asDiagonal() * p.x).cwiseMax(-kMostScaled).cwiseMin(kMostScaled);
   const Eigen::VectorXd wave_mean = AddWaves(waves, p, fit);
-  fit.offset = p.y.rowwise().mean();
+  fit.offset = MeanOf(p.y, p.weights);
   p.y.colwise() -= fit.offset;
   Sum(p, fold_count);
-  fit.spread = std::sqrt((output_scale.asDiagonal() * p.y).squaredNorm() / count);
+  fit.spread = RootMeanSquare(output_scale.asDiagonal() * p.y, p.weights);
   fit.error = std::numeric_limits<double>::infinity();
   for (const double ridge : kRidges) {
     Eigen::MatrixXd errors = output_scale.asDiagonal() * LeftOut(p, ridge);
-    const double error = std::sqrt(errors.squaredNorm() / count);
+    const double error = RootMeanSquare(errors, p.weights);
     if (error >= fit.error) continue;
     fit.error = error;
     fit.ridge = ridge;
     fit.errors = std::move(errors);
   }
-  const Eigen::MatrixXd weights = Solve(p, -1, fit.ridge);
-  fit.weights = weights.leftCols(weights.cols() - waves.count);
-  fit.wave_weights = weights.rightCols(waves.count);
+  const Eigen::MatrixXd solved = Solve(p, -1, fit.ridge);
+  fit.weights = solved.leftCols(solved.cols() - waves.count);
+  fit.wave_weights = solved.rightCols(waves.count);
   fit.offset -= fit.wave_weights * wave_mean;
   return fit;
 }

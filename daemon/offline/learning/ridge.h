@@ -29,9 +29,10 @@ struct RidgeFit {
 };
 
 /// A column of `x` and `y` an example; `folds`: 0 to fold_count - 1, which fold each is left out
-/// with. `output_scale`: by which the outputs' errors count.
+/// with. `output_scale`: by which the outputs' errors count. `weights`: how often each example
+/// counts, > 0; empty: once.
 RidgeFit FitRidge(Eigen::MatrixXd x, Eigen::MatrixXd y, const std::vector<int>& folds,
                   int fold_count, const Eigen::VectorXd& output_scale,
-                  const RandomWaves& waves = {});
+                  const RandomWaves& waves = {}, const Eigen::VectorXd& weights = {});
 
 }  // namespace footing::learning

@@ -83,10 +83,7 @@ class LeaveOneOut {
     learning::PoseExamples postures, examples;
     for (std::size_t i = 0; i < takes_.size(); ++i) {
       if (takes_[i].clip->subject == person) continue;
-      const learning::PoseExamples& of = postures_[i];
-      postures.features.insert(postures.features.end(), of.features.begin(), of.features.end());
-      postures.poses.insert(postures.poses.end(), of.poses.begin(), of.poses.end());
-      postures.folds.insert(postures.folds.end(), of.folds.begin(), of.folds.end());
+      postures.Append(postures_[i]);
     }
     AppendPoses(postures, learning::PoseCues::kPosture, basis->basis.scale, seed_, model);
     const auto first = reconstruction::MakeModels({{"the postures", model}});

@@ -1,5 +1,7 @@
 #include "daemon/offline/train/pose_training.h"
 
+#include <map>
+
 #include "common/virtual/motion/edit.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
@@ -13,13 +15,16 @@ constexpr double kCellNoiseKg = 0.05;
 std::vector<PoseTake> TakesOf(const std::vector<const Clip*>& clips, std::uint64_t seed,
                               int& piece) {
   std::vector<PoseTake> takes;
+  std::map<std::string, int> people;
   for (const Clip* clip : clips) {
+    const int person = people.emplace(clip->subject, static_cast<int>(people.size())).first->second;
     for (const bool mirrored : {false, true}) {
-      takes.push_back({clip, mirrored, piece,
+      takes.push_back({clip, mirrored, piece, person, false,
                        seed + 2 * static_cast<std::uint64_t>(piece) + (mirrored ? 1 : 0)});
     }
     piece += 1 + static_cast<int>(clip->motion.duration_s() / kPosePieceS);
   }
+  for (PoseTake& take : takes) take.by_person = people.size() >= kFewestPeople;
   return takes;
 }
 
@@ -49,7 +54,8 @@ Result<void> AddExamples(const PoseTake& take, const reconstruction::Models& mod
       return InvalidData(take.clip->name + ": its T-pose never stood still");
     }
     const int piece = take.piece + static_cast<int>((i - first) / piece_frames);
-    examples.Add(*made, cues, run->frames[i].q, piece % learning::kFolds);
+    const int fold = take.by_person ? take.person : piece % learning::kFolds;
+    examples.Add(*made, cues, run->frames[i].q, fold, take.person);
   }
   return {};
 }

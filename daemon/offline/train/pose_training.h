@@ -13,19 +13,24 @@
 /// regression on what these say.
 namespace footing::train {
 
-inline constexpr double kPosePieceS = 10;  ///< Frames of one piece are left out together.
-inline constexpr double kSettledS = 1.5;   ///< After the T-pose.
+inline constexpr double kPosePieceS = 10;        ///< Frames of one piece are left out together.
+inline constexpr std::size_t kFewestPeople = 3;  ///< Whose errors show those of the next person.
+inline constexpr double kSettledS = 1.5;         ///< After the T-pose.
 
 /// A clip, or its mirror image, and how its random errors and pieces are numbered.
 struct PoseTake {
   const Clip* clip;
   bool mirrored = false;
-  int piece = 0;  ///< Of its first piece.
+  int piece = 0;   ///< Of its first piece.
+  int person = 0;  ///< Number of the clip's subject.
+  /// All that a person did is left out together; else pieces are.
+  bool by_person = false;
   std::uint64_t seed = 1;
 };
 
-/// All clips and their mirror images; a clip and its image are in the same folds. `piece` is that
-/// of the first, and becomes that after the last.
+/// All clips and their mirror images; a clip and its image are in the same folds: those of people,
+/// where there are kFewestPeople of them. `piece` is that of the first, and becomes that after the
+/// last.
 std::vector<PoseTake> TakesOf(const std::vector<const Clip*>& clips, std::uint64_t seed,
                               int& piece);
 

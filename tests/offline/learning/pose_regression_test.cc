@@ -26,6 +26,7 @@ PoseExamples Linear(double noise, std::uint64_t seed, Eigen::MatrixXd& map, int 
     examples.features.push_back(features);
     examples.poses.push_back(pose);
     examples.folds.push_back(i / 100 % kFolds);
+    examples.people.push_back(0);
   }
   return examples;
 }
@@ -59,6 +60,7 @@ TEST(PoseRegression, ItsWavesFindWhatIsNotLinear) {
     examples.features.push_back(features);
     examples.poses.push_back(pose);
     examples.folds.push_back(i / 100 % kFolds);
+    examples.people.push_back(0);
   }
   const Eigen::VectorXd scale = Eigen::VectorXd::Ones(2);
   const auto linear = FitPoseRegression(examples, scale, {.count = 0});
@@ -81,6 +83,30 @@ TEST(PoseRegression, WithNothingToLearnShrinksAndItsErrorIsTheSpread) {
   const auto fitted = FitPoseRegression(examples, Eigen::VectorXd::Ones(kDof), kWaves);
   EXPECT_EQ(fitted.ridge, 1.0);  // The greatest that is tried.
   EXPECT_NEAR(fitted.error / fitted.spread, 1, 0.03);
+}
+
+TEST(PoseRegression, PeopleCountAlikeHoweverLongEachWasRecorded) {
+  noise::Random random(6);
+  PoseExamples examples;
+  const auto add = [&](int person, int frames, double angle) {
+    for (int i = 0; i < frames; ++i) {
+      reconstruction::Features::Values features;
+      for (double& value : features) value = random.Normal();
+      examples.features.push_back(features);
+      examples.poses.push_back(Eigen::VectorXd::Constant(1, angle));
+      examples.folds.push_back(person < 0 ? 2 : person);
+      examples.people.push_back(person);
+    }
+  };
+  add(0, 900, 1);
+  add(1, 100, -1);
+  const auto two = FitPoseRegression(examples, Eigen::VectorXd::Ones(1), {.count = 0});
+  EXPECT_NEAR(two.regression.offset(0), 0, 1e-9);
+  EXPECT_NEAR(two.spread, 1, 1e-9);
+  // 1000 frames of one's own count once each, beside as many of the others.
+  add(PoseExamples::kOwn, 1000, 3);
+  const auto own = FitPoseRegression(examples, Eigen::VectorXd::Ones(1), {.count = 0});
+  EXPECT_NEAR(own.regression.offset(0), 1.5, 1e-9);
 }
 
 TEST(PoseRegression, ItsTensorsHaveTheShapesThatTheyAreReadBy) {
