@@ -113,7 +113,7 @@ Stretch Longest(const std::vector<bool>& supported) {
 
 /// What the boards feel at one time: simulated in the T-pose, measured in the clip. While the
 /// T-pose is left, the left foot's share of the load and the COPs go over by what they differ
-/// later.
+/// later. Who begins in the air has stepped off the boards to get there.
 class Feet {
  public:
   using Forces = std::array<sensors::FootForce, kFeet>;
@@ -128,6 +128,8 @@ class Feet {
     const Forces first = Measured(kRunInS, simulated);
     left_share_ = LeftShare(first) - LeftShare(simulated);
     for (std::size_t f = 0; f < kFeet; ++f) cop_m_[f] = first[f].cop_m - simulated[f].cop_m;
+    const Forces begin = Measured(0, simulated);
+    begins_aloft_ = begin[0].load_n + begin[1].load_n < kLoadedN;
   }
 
   double judged_s() const { return begin_s_ + kRunInS; }
@@ -135,6 +137,10 @@ class Feet {
   Forces At(double time_s, Eigen::Index column) const {
     Forces feet = Simulated(column);
     if (time_s > judged_s() - kTinyS) return Measured(time_s - begin_s_, feet);
+    if (begins_aloft_ && time_s > kStandS) {
+      for (sensors::FootForce& foot : feet) foot.load_n = 0;
+      return feet;
+    }
     const double u = std::clamp((time_s - kStandS) / (begin_s_ - kStandS), 0.0, 1.0);
     const double s = u * u * u * (10 - 15 * u + 6 * u * u);
     const double total_n = feet[0].load_n + feet[1].load_n;
@@ -166,6 +172,7 @@ class Feet {
   const FeltForces& felt_;
   double span_s_, begin_s_;
   double left_share_ = 0;
+  bool begins_aloft_ = false;
   std::array<Eigen::Vector2d, kFeet> cop_m_;
 };
 

@@ -12,6 +12,8 @@ constexpr double kLeastCopN = 20;
 constexpr double kFootCopShare = 0.04;  // Of the weight, for a foot's own COP.
 constexpr double kAwayS = 1.0;          // Longer than any jump.
 constexpr double kAwayShare = 0.3;      // Of the weight: nobody stands on the cells.
+constexpr double kAloftShare = 0.05;    // Nobody touches them.
+constexpr double kFlightS = 0.12;       // Shorter than any jump.
 constexpr double kMostSpread = 1.0;     // m, m/s: more than this is unknown.
 
 }  // namespace
@@ -87,14 +89,36 @@ const Estimate& BestEstimator::Advance(const ContactLoads& loads) {
   const bool away = gap || total < kAwayShare * pose_.mass_kg * kStandardGravityMps2;
   if (!away && away_s_ >= kAwayS) {
     Begin();
-    vertical_.Land();
-    ++estimate_.resets;
+    LandElsewhere(loads);
   }
+  WatchFlight(loads, gap, total);
   away_s_ = away ? away_s_ + step_s_ : 0;
   estimate_.valid = !gap && away_s_ < kAwayS;
   AdvanceCom(loads, gap || away_s_ >= kAwayS);
   if (!gap) AdvanceAngular();
   return estimate_;
+}
+
+void BestEstimator::WatchFlight(const ContactLoads& loads, bool gap, double total_n) {
+  const double weight_n = pose_.mass_kg * kStandardGravityMps2;
+  if (gap || total_n < kAloftShare * weight_n) {
+    aloft_s_ += step_s_;
+    return;
+  }
+  if (total_n < kAwayShare * weight_n) return;  // Touching down, or leaving.
+  if (aloft_s_ >= kFlightS && !vertical_.CanLand()) LandElsewhere(loads);
+  aloft_s_ = 0;
+}
+
+void BestEstimator::LandElsewhere(const ContactLoads& loads) {
+  const Pressure both = PressureOf(loads, kLeastCopN);
+  const Eigen::Vector2d centre = Centre();
+  for (int i = 0; i < 2; ++i) {
+    horizontal_[static_cast<std::size_t>(i)].Land(both.p_WP_m(i), centre(i));
+  }
+  vertical_.Land();
+  estimate_.angular_momentum_kgm2ps.setZero();
+  ++estimate_.resets;
 }
 
 void BestEstimator::AdvanceFeet(const ContactLoads& loads) {

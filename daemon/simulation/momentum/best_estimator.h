@@ -58,6 +58,9 @@ class BestEstimator {
 
  private:
   void Begin();
+  /// The feet come down after a flight that began elsewhere.
+  void LandElsewhere(const ContactLoads& loads);
+  void WatchFlight(const ContactLoads& loads, bool gap, double total_n);
   void AdvanceFeet(const ContactLoads& loads);
   void AdvanceCom(const ContactLoads& loads, bool gap);
   void ReportCom();
@@ -74,7 +77,8 @@ class BestEstimator {
   std::array<FootContact, kFeet> contacts_;
   std::array<FootPlace, kFeet> places_;
   std::array<Pressure, kFeet> pressures_{};
-  double away_s_ = 0;  // Since the feet had load, or the sources were valid.
+  double away_s_ = 0;   // Since the feet had load, or the sources were valid.
+  double aloft_s_ = 0;  // Since the feet had any load.
   Estimate estimate_;
 };
 

@@ -17,6 +17,7 @@ constexpr double kLeastLoadShare = 0.3;
 constexpr double kFlightShare = 0.05;
 constexpr double kFlightAcceleration = 0.3;  // m/s², standard deviation around 0.
 constexpr double kLeastRatio = 2.0;          // 1/s², of load / mass / height.
+constexpr double kLandsBesideM = 0.15;       // The body from the COP, when feet come down.
 constexpr double kLeastHeight = 0.4;         // m
 
 Matrix3 Companion(const HorizontalPrior::Part& part) {
@@ -88,6 +89,13 @@ void HorizontalCom::Start(double c_m, double centre_m) {
   filter_.Update(position_, c_m - centre_m, 1e-4);
   filter_.Update(velocity_, 0, 1e-4);
   filter_.Update(acceleration_, 0, 1e-2);
+  filter_.Remember(position_, centre_m_);
+}
+
+void HorizontalCom::Land(double cop_m, double centre_m) {
+  centre_m_ = centre_m;
+  filter_.Start(Filter::Vector::Zero(), stationary_);
+  filter_.Update(position_, cop_m - centre_m, kLandsBesideM * kLandsBesideM);
   filter_.Remember(position_, centre_m_);
 }
 

@@ -59,6 +59,9 @@ class HorizontalCom {
   void KeepLag(int lag_steps) { filter_.Keep(lag_steps + 1); }
   /// The body is at rest at c_m.
   void Start(double c_m, double centre_m);
+  /// The feet have just come down from a flight that nobody has seen: the body is somewhere over
+  /// them, and moves as bodies do.
+  void Land(double cop_m, double centre_m);
   void Advance(const HorizontalInput& input);
   /// C is there by hands and feet alone, in the frame of the last Advance.
   void SeePosture(double c_m);

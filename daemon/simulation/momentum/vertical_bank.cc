@@ -21,6 +21,8 @@ constexpr double kPostureS = 0.1;  // A posture older than this is not used.
 // Where a body is that nothing is known of, and how fast when it lands.
 constexpr double kAnyHeightM = 0, kAnyHeightSpreadM = 0.15, kLandingMps = 1.5;
 constexpr double kReseedMps = 0.5;
+// Where a body is when its feet come down from a flight.
+constexpr double kLandingHeightM = -0.03, kLandingSpreadM = 0.06;
 constexpr double kRecoverEveryS = 1,
                  kBehind = 10;  // How often, and by how much, others may be worse.
 constexpr double kTrustedSpreadM = 0.12;
@@ -131,6 +133,13 @@ void VerticalBank::Land() {
   for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_, &wary_}) {
     filter->Reseed(kAnyHeightM, kAnyHeightSpreadM, kLandingMps);
   }
+}
+
+bool VerticalBank::CanLand() const {
+  const VerticalCom::Filter::Scalar height = chosen().Height(0);
+  const double off_m = height.mean - kLandingHeightM;
+  return off_m * off_m <
+         kSureSpreads * kSureSpreads * (height.variance + kLandingSpreadM * kLandingSpreadM);
 }
 
 void VerticalBank::Recover() {

@@ -37,6 +37,9 @@ class VerticalBank {
   void Coast();
   /// The body is back on the cells, at an unknown height and velocity. After Start.
   void Land();
+  /// The body's feet come down, so its legs are nearly straight. False where the height is certain
+  /// to be another: the flight did not begin where these filters were.
+  bool CanLand() const;
   /// False while what speaks contradicts the posture, or is not sure of the height.
   bool trusted() const;
 

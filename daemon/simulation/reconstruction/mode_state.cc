@@ -27,12 +27,15 @@ bool ModeState::MovePoseToWorld(Output& output) {
 
 void SolutionReport::Start() {
   misfit_.Start();
+  resets_ = 0;
   spread_.Start();
 }
 
 void SolutionReport::Report(const ModeState& state, const Measurement& then,
                             const PriorOfPose& prior, pose::GaussNewton& solver, Output& output) {
   ReportPose(state.pose.q, state.pose.at, output);
+  if (then.momentum.resets != resets_) misfit_.Start();
+  resets_ = then.momentum.resets;
   misfit_.Report(MisfitOf(*state.model, state.targets, state.origin_m, state.pose.at, prior),
                  state.options.step_s(), output);
   const double doubt = Doubt(output.misfit);

@@ -46,6 +46,7 @@ class SolutionReport {
 
  private:
   MeanMisfit misfit_;
+  std::uint32_t resets_ = 0;  ///< Of the filters, whose contradictions end with each.
   PoseSpread spread_;
 };
 

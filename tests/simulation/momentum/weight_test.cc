@@ -227,5 +227,73 @@ TEST(BestEstimator, ComesBackWithinASecondOfALandingThatItDidNotSeeComing) {
   EXPECT_EQ(best.estimate().resets, 1u);
 }
 
+TEST(BestEstimator, LandsAfterAShortFlightThatBeganElsewhere) {
+  // Out of the T-pose onto a box, unseen, and from it at 2 m/s onto the boards, ahead of where the
+  // body stood, knees giving way by 20 cm for a moment. The posture
+  // has them half as low.
+  constexpr double kLandS = 0.3, kFallMps = 2, kBrakeMps2 = 10;
+  constexpr double kStopS = kLandS + kFallMps / kBrakeMps2;
+  const auto height_m = [=](double t) {
+    const double s = std::min(t, kStopS) - kLandS;
+    const double fallen = -kFallMps * s;
+    return kMadeHeightM + fallen + 0.5 * s * s * (s < 0 ? -kStandardGravityMps2 : kBrakeMps2) +
+           0.2 * Ramp((t - kStopS) / 0.5);
+  };
+  MadeBody body;
+  body.noise_n = 0.5;
+  body.com_m = [&](double t) {
+    return t < 0.5 * kMadeStepS ? Eigen::Vector3d(0, 0, kMadeHeightM)
+                                : Eigen::Vector3d(0.08, 0, height_m(t));
+  };
+  BestConfig config;
+  config.height_posture = LearnedHeightPosture();
+  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  for (int i = 0; i < 3 * 60; ++i) {
+    const double t = i * kMadeStepS;
+    best.Advance(body.At(t));
+    const Estimate& now = best.SeePosture(0, 0.5 * (kMadeHeightM + height_m(t)));
+    if (t < kLandS + 1) continue;
+    EXPECT_TRUE(now.trusted) << t;
+    EXPECT_TRUE(now.valid) << t;
+    EXPECT_NEAR(now.p_WC_m.z(), height_m(t), 0.1) << t;
+    EXPECT_NEAR(now.p_WC_m.x(), 0.08, 0.03) << t;
+  }
+  EXPECT_EQ(best.estimate().resets, 1u);
+}
+
+TEST(BestEstimator, AJumpOnTheSpotIsNoLandingElsewhere) {
+  // Knees bend by 15 cm and throw the body up by 20; it lands as it left.
+  MadeBody body;
+  body.noise_n = 0.5;
+  const double up_mps = std::sqrt(2 * kStandardGravityMps2 * 0.2);
+  const double flight_s = 2 * up_mps / kStandardGravityMps2;
+  const double push_s = 0.3;  // Down by 15 cm, then up to the speed of the lift-off.
+  const auto height_m = [=](double t) {
+    if (t < 0) return 0.0;
+    if (t < 1) return -0.15 * Ramp(t);
+    if (t < 1 + push_s) {
+      const double u = (t - 1) / push_s;  // A quintic from rest at -15 cm to up_mps at 0.
+      const double v = up_mps * push_s, g = -kStandardGravityMps2 * push_s * push_s;
+      const double a3 = 1.5 - 4 * v + 0.5 * g, a4 = -2.25 + 7 * v - g, a5 = 0.9 - 3 * v + 0.5 * g;
+      return -0.15 + u * u * u * (a3 + u * (a4 + u * a5));
+    }
+    const double s = t - 1 - push_s;
+    if (s < flight_s) return up_mps * s - 0.5 * kStandardGravityMps2 * s * s;
+    const double stop_s = 0.2, b = std::min(s - flight_s, stop_s);  // Braked evenly.
+    return -up_mps * b + 0.5 * up_mps / stop_s * b * b;
+  };
+  body.com_m = [&](double t) { return Eigen::Vector3d(0, 0, kMadeHeightM + height_m(t)); };
+  BestConfig config;
+  config.height_posture = LearnedHeightPosture();
+  BestEstimator best(config, {}, body.Calibrate(), kMadeStepS);
+  for (int i = 0; i < 3 * 60; ++i) {
+    const double t = i * kMadeStepS;
+    best.Advance(body.At(t));
+    best.SeePosture(0, kMadeHeightM + std::max(0.5 * height_m(t), height_m(t)));
+    EXPECT_NEAR(best.estimate().p_WC_m.z(), kMadeHeightM + height_m(t), 0.1) << t;
+  }
+  EXPECT_EQ(best.estimate().resets, 0u);
+}
+
 }  // namespace
 }  // namespace footing::momentum
