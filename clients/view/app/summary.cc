@@ -14,6 +14,7 @@ void AddPose(const scene::PoseTally& tally, nlohmann::ordered_json& summary) {
   summary["hands"] = tally.hands_source().empty() ? "none" : tally.hands_source();
   summary["contact_source"] = tally.contact_source();
   summary["compared_frames"] = tally.compared();
+  summary["invalid_frames"] = tally.invalid();
   if (tally.compared() == 0) return;
   summary["mpjpe_cm"] = tally.mpjpe_cm();
   summary["mpjpe_root_relative_cm"] = tally.mpjpe_root_relative_cm();

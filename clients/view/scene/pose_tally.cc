@@ -43,11 +43,11 @@ void PoseTally::Add(const CharacterPose& pose, const Anatomy& anatomy, std::int6
   last_ = *pose.body;
   if (!last_.calibrated) return;
   ++calibrated_frames_;
-  if (!pose.valid) return;
   const ReferencePose* reference = Nearest(references, host_ns - SecondsToNanoseconds(last_.lag_s));
   if (reference == nullptr || !Fits(anatomy, reference->parents)) return;
   if (pose.links.size() != reference->positions_m.size()) return;
   Compare(pose, anatomy, *reference);
+  invalid_ += pose.valid ? 0 : 1;
 }
 
 void PoseTally::Compare(const CharacterPose& pose, const Anatomy& anatomy,

@@ -28,9 +28,10 @@ class PoseTally {
   double mass_kg() const { return last_.mass_kg; }
   const std::string& hands_source() const { return last_.hands_source; }
   const std::string& contact_source() const { return last_.contact_source; }
-  /// Frames that were compared; the means below are over them, cm. Joints are the landmarks of a
-  /// person without the tips of hands and toes.
+  /// Frames that were compared; the means below are over them, cm, over those that are not valid,
+  /// too. Joints are the landmarks of a person without the tips of hands and toes.
   std::uint64_t compared() const { return compared_; }
+  std::uint64_t invalid() const { return invalid_; }  ///< Of the frames compared.
   double mpjpe_cm() const { return Mean(all_cm_); }
   /// Of the joints against the hips.
   double mpjpe_root_relative_cm() const { return Mean(relative_cm_); }
@@ -43,7 +44,7 @@ class PoseTally {
   }
   void Compare(const CharacterPose& pose, const Anatomy& anatomy, const ReferencePose& reference);
 
-  std::uint64_t frames_ = 0, calibrated_frames_ = 0, calibrations_ = 0, compared_ = 0;
+  std::uint64_t frames_ = 0, calibrated_frames_ = 0, calibrations_ = 0, compared_ = 0, invalid_ = 0;
   BodyState last_;
   double all_cm_ = 0, relative_cm_ = 0, wrists_cm_ = 0, ankles_cm_ = 0;
 };

@@ -155,6 +155,24 @@ std::string Missing(const MarkerTracks& tracks, const MarkerSet& set, int& found
   return missing;
 }
 
+/// What the file has, and what the set that is nearest to it would still need.
+std::string NoKnownSet(const MarkerTracks& tracks, const std::string& names) {
+  std::string nearest;
+  int most = -1;
+  for (const MarkerSet& set : kSets) {
+    int found = 0;
+    const std::string missing = Missing(tracks, set, found);
+    if (found <= most) continue;
+    most = found;
+    nearest = std::string(set.name) + " also needs " + missing;
+  }
+  std::string markers;
+  for (const std::string& name : tracks.names) markers += (markers.empty() ? "" : ", ") + name;
+  return "the markers are of no set known (" + names + "); there are " +
+         std::to_string(tracks.names.size()) + " markers: " + markers + "; the nearest set, " +
+         nearest + "; rename them, or add a set to the table (docs/body.md, From markers)";
+}
+
 }  // namespace
 
 std::span<const MarkerSet> MarkerSets() { return kSets; }
@@ -206,7 +224,7 @@ Result<MarkerSet> FindMarkerSet(const MarkerTracks& tracks, std::string_view nam
   if (!name.empty()) {
     return UsageError("no marker set " + text::Quoted(name) + "; there are " + names);
   }
-  if (best == nullptr) return InvalidData("the markers are of no set known (" + names + ")");
+  if (best == nullptr) return InvalidData(NoKnownSet(tracks, names));
   return *best;
 }
 

@@ -129,7 +129,7 @@ CharacterPose CharacterAt(double time_s, const PersonWish& wish) {
   CharacterPose pose;
   pose.character = 1;
   pose.rig = "one";
-  pose.valid = wish.calibrated;
+  pose.valid = wish.calibrated && wish.valid;
   pose.simulated_input = true;
   for (std::size_t i = 0; i < at.p_WJ.size(); ++i) {
     pose.links.push_back({at.p_WJ[i], Eigen::Quaterniond(at.R_WJ[i])});

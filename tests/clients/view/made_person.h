@@ -12,6 +12,7 @@ struct PersonWish {
   bool left_foot_off = false;  ///< For 1.4 s already.
   bool reference = true;
   double lag_s = 0;
+  bool valid = true;
 };
 
 stream::Skeleton PersonSkeleton();

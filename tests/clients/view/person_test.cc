@@ -127,6 +127,15 @@ TEST(PoseTally, ComparesEachPoseWithTheReferenceOfItsTime) {
   EXPECT_GT(made::PersonModelAfter(1, lagging).pose_tally.wrists_cm(), 2);
 }
 
+TEST(PoseTally, FramesThatAreNotValidCountInTheMeanAndBesideIt) {
+  EXPECT_EQ(made::PersonModelAfter(1, {}).pose_tally.invalid(), 0u);
+  PersonWish wish;
+  wish.valid = false;
+  const Model model = made::PersonModelAfter(1, wish);
+  EXPECT_GT(model.pose_tally.compared(), 90u);
+  EXPECT_EQ(model.pose_tally.invalid(), model.pose_tally.compared());
+}
+
 TEST(Words, TheTextViewTellsOfTheBody) {
   PersonWish wish;
   wish.left_foot_off = true;

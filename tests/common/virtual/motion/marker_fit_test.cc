@@ -148,6 +148,19 @@ TEST(JointCentres, HarringtonsHipsAndMiddlesAreMet) {
   }
 }
 
+TEST(MarkerSets, AnUnknownSetIsListedWithWhatTheNearestOneNeeds) {
+  Made made;
+  for (std::string& name : made.tracks.names) {
+    if (name == "L_ankle" || name == "L_elbow_lat") name = "other_" + name;
+  }
+  const auto set = FindMarkerSet(made.tracks);
+  ASSERT_FALSE(set.ok());
+  const std::string& said = set.error().message;
+  for (const char* part : {"other_L_ankle", "opencap also needs", "docs/body.md"}) {
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  }
+}
+
 TEST(MarkerFit, FindsLengthsAndMotionOfAMadePerson) {
   const Made made;
   const auto fit = FitMarkers(made.tracks);
