@@ -1,12 +1,21 @@
 #include <memory>
+#include <utility>
 
 #include "clients/study/commands.h"
 #include "clients/study/plan/phases.h"
+#include "common/config/data_file.h"
 
 namespace footing::study {
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr const char* kSchemaFile = "study_protocol.schema.json";
+
+struct CheckOptions {
+  ProtocolOptions protocol;
+  bool schema = false;
+};
 
 double PlannedS(const plan::Session& session) {
   double planned_s = 0;
@@ -41,8 +50,21 @@ std::string Line(const plan::Session& session) {
   return line;
 }
 
-Result<Answer> Check(const ProtocolOptions& options) {
-  const auto loaded = Load(options.path, options.folder);
+Result<Answer> PrintSchema() {
+  auto text = config::ReadDataFile(kSchemaFile);
+  if (!text) return text.error();
+  ordered_json schema = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  if (schema.is_discarded()) return InvalidData(std::string(kSchemaFile) + ": not JSON");
+  while (text->ends_with('\n')) text->pop_back();
+  return Answer{std::move(schema), std::move(*text)};
+}
+
+Result<Answer> Check(const CheckOptions& options) {
+  if (options.schema) return PrintSchema();
+  if (options.protocol.path.empty()) {
+    return UsageError("PROTOCOL is missing: name a protocol file, or --schema");
+  }
+  const auto loaded = Load(options.protocol.path, options.protocol.folder);
   if (!loaded) return loaded.error();
   const plan::Protocol& protocol = loaded->protocol;
   const auto sessions = plan::MakeSessions(protocol);
@@ -75,9 +97,12 @@ Result<Answer> Check(const ProtocolOptions& options) {
 }  // namespace
 
 void AddCheckCommand(CLI::App& app, Shared& shared) {
-  const auto options = std::make_shared<ProtocolOptions>();
+  const auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand("check", "Check a protocol and print its plan");
-  AddProtocolOptions(*command, *options);
+  AddProtocolOptions(*command, options->protocol);
+  command->get_option("PROTOCOL")->required(false);
+  command->add_flag("--schema", options->schema,
+                    "Print the JSON Schema of protocol files, for editors and other programs");
   command->callback([options, &shared] { Finish(Check(*options), shared); });
 }
 

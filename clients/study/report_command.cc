@@ -1,15 +1,23 @@
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "clients/study/commands.h"
 #include "clients/study/report/analysis.h"
 #include "clients/study/report/page.h"
 #include "common/recording/output_file.h"
+#include "common/statistics/analysis.h"
 
 namespace footing::study {
 namespace {
 
 struct ReportOptions {
   ProtocolOptions protocol;
+  std::string alternative = "two.sided";
+  std::string ties = "pairwise";
+  std::string method;
+  std::optional<std::uint64_t> seed;
   std::string out;
   bool force = false;
 };
@@ -21,25 +29,43 @@ Result<void> Write(const std::string& path, const std::string& text, bool force)
   return file->Sync();
 }
 
-Result<Answer> Analyze(const ProtocolOptions& options) {
-  const auto loaded = Load(options.path, options.folder);
+/// The study's records with the analysis of them.
+struct Analysed {
+  LoadedProtocol loaded;
+  std::vector<records::Records> people;
+  report::Analysis analysis;
+};
+
+Result<Analysed> ReadAndAnalyze(const ReportOptions& options) {
+  auto loaded = Load(options.protocol.path, options.protocol.folder);
   if (!loaded) return loaded.error();
-  const auto people = ReadPeople(*loaded);
+  auto people = ReadPeople(*loaded);
   if (!people) return people.error();
-  const report::Analysis analysis = report::Analyze(loaded->protocol, *people);
-  return Answer{analysis.json, report::Summary(analysis)};
+  report::TestOptions tests;
+  tests.alternative = statistics::Named(options.alternative, statistics::kAlternatives);
+  tests.ties = statistics::Named(options.ties, statistics::kAllTies);
+  if (!options.method.empty()) {
+    tests.method = statistics::Named(options.method, statistics::kMethods);
+  }
+  tests.seed = options.seed;
+  report::Analysis analysis = report::Analyze(loaded->protocol, *people, tests);
+  return Analysed{std::move(*loaded), std::move(*people), std::move(analysis)};
+}
+
+Result<Answer> Analyze(const ReportOptions& options) {
+  const auto analysed = ReadAndAnalyze(options);
+  if (!analysed) return analysed.error();
+  return Answer{analysed->analysis.json, report::Summary(analysed->analysis)};
 }
 
 Result<Answer> Report(const ReportOptions& options) {
-  const auto loaded = Load(options.protocol.path, options.protocol.folder);
-  if (!loaded) return loaded.error();
-  const auto people = ReadPeople(*loaded);
-  if (!people) return people.error();
-  const report::Analysis analysis = report::Analyze(loaded->protocol, *people);
-  const std::string page = options.out.empty() ? loaded->folder + "/report.html" : options.out;
+  const auto analysed = ReadAndAnalyze(options);
+  if (!analysed) return analysed.error();
+  const auto& [loaded, people, analysis] = *analysed;
+  const std::string page = options.out.empty() ? loaded.folder + "/report.html" : options.out;
   const std::string csv =
       (page.ends_with(".html") ? page.substr(0, page.size() - 5) : page) + ".csv";
-  const std::string html = report::Page(analysis, loaded->protocol, *people);
+  const std::string html = report::Page(analysis, loaded.protocol, people);
   if (const auto done = Write(page, html, options.force); !done) return done.error();
   if (const auto done = Write(csv, report::ValuesCsv(analysis), options.force); !done) {
     return done.error();
@@ -48,15 +74,36 @@ Result<Answer> Report(const ReportOptions& options) {
                 "wrote " + page + " and " + csv};
 }
 
+void AddTestOptions(CLI::App& command, ReportOptions& options) {
+  using statistics::NamesOf;
+  command
+      .add_option("--alternative", options.alternative,
+                  "Differences looked for: any, or values greater or less than the control's")
+      ->check(CLI::IsMember(NamesOf(statistics::kAlternatives)));
+  command
+      .add_option("--ties", options.ties,
+                  "Ties that Steel's deviation allows for: of the two groups compared, or of all "
+                  "groups (default pairwise)")
+      ->check(CLI::IsMember(NamesOf(statistics::kAllTies)));
+  command
+      .add_option("--method", options.method,
+                  "Source of Steel's p (default: exact where feasible, otherwise permutation)")
+      ->check(CLI::IsMember(NamesOf(statistics::kMethods)));
+  command.add_option("--seed", options.seed,
+                     "Seed of the random permutations (default: the protocol's)");
+}
+
 }  // namespace
 
 void AddReportCommands(CLI::App& app, Shared& shared) {
   const auto options = std::make_shared<ReportOptions>();
   CLI::App* analyze = app.add_subcommand("analyze", "Compare the interfaces with the control");
   AddProtocolOptions(*analyze, options->protocol);
-  analyze->callback([options, &shared] { Finish(Analyze(options->protocol), shared); });
+  AddTestOptions(*analyze, *options);
+  analyze->callback([options, &shared] { Finish(Analyze(*options), shared); });
   CLI::App* report = app.add_subcommand("report", "Write the analysis as an HTML page and a CSV");
   AddProtocolOptions(*report, options->protocol);
+  AddTestOptions(*report, *options);
   report->add_option("--out", options->out,
                      "HTML file; the CSV is beside it (default: report.html in the folder)");
   report->add_flag("--force", options->force, "Overwrite existing files");

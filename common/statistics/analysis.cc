@@ -99,6 +99,7 @@ Result<ordered_json> Analyze(const StudyTable& table, const AnalysisRequest& req
   }
   report["rows"] = std::move(findings->rows);
   report["note"] = note + ".";
+  report["remarks"] = findings->remarks;
   return report;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/result/result.h"
 #include "common/statistics/samples.h"
@@ -33,6 +35,29 @@ std::string_view NameOf(TestKind test);
 std::string_view NameOf(Alternative alternative);
 std::string_view NameOf(Method method);
 std::string_view NameOf(Ties ties);
+
+/// What a command line may name, and what it is without a name.
+inline constexpr std::array kTests{TestKind::kDunnett, TestKind::kSteel, TestKind::kPaired,
+                                   TestKind::kRate};
+inline constexpr std::array kAlternatives{Alternative::kTwoSided, Alternative::kGreater,
+                                          Alternative::kLess};
+inline constexpr std::array kAllTies{Ties::kPairwise, Ties::kJoint};
+inline constexpr std::array kMethods{Method::kExact, Method::kPermutation, Method::kAsymptotic};
+
+template <typename Enum, std::size_t count>
+std::vector<std::string> NamesOf(const std::array<Enum, count>& all) {
+  std::vector<std::string> names;
+  for (const Enum value : all) names.emplace_back(NameOf(value));
+  return names;
+}
+/// The one of that name; the first one where none has it.
+template <typename Enum, std::size_t count>
+Enum Named(std::string_view name, const std::array<Enum, count>& all) {
+  for (const Enum value : all) {
+    if (NameOf(value) == name) return value;
+  }
+  return all.front();
+}
 
 /// The report of a test, a table of one row per treatment with a note on which p to believe;
 /// docs/statistics.md lists its fields. UsageError for a method that the test does not have.

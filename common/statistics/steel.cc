@@ -1,5 +1,6 @@
 #include "common/statistics/steel.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/statistics/many_to_one.h"
@@ -45,8 +46,9 @@ std::vector<double> SteelAsymptotic(const Groups& groups, Alternative alternativ
       // Cov(U_i, U_j) = n_0 n_i n_j E[psi(1, 2) psi(1, 3)].
       square = n_0 * n_i * n_i * scale.shared_covariance() / scale.JointVariance(i);
     }
-    constexpr double kGreatest = 1 - 1e-9;  // With n_0 = 1 it can be 1.
-    family.loadings.push_back(std::sqrt(std::min(square, kGreatest)));
+    // With n_0 = 1 it can be 1; of two values alone the joint covariance is 0.
+    constexpr double kLeast = 1e-12, kGreatest = 1 - 1e-9;
+    family.loadings.push_back(std::sqrt(std::clamp(square, kLeast, kGreatest)));
   }
   std::vector<double> p;
   for (const RankScore& score : scores) {

@@ -30,9 +30,17 @@ ordered_json Column(const std::string& description, const std::string& units = "
   return column;
 }
 
-/// "wrist_ease_of_use"; the final survey's begin with "final_".
-std::string ColumnOf(const std::string& interface, const std::string& item) {
-  std::string name = (interface.empty() ? "final" : interface) + "_" + item;
+/// What a survey's column begins with: "wrist", at the end "final_wrist", "final" of the whole
+/// study.
+template <typename Answered>
+std::string About(const Answered& one) {
+  if (one.interface.empty()) return "final";
+  return (one.at_end ? "final_" : "") + one.interface;
+}
+
+/// "wrist_ease_of_use".
+std::string ColumnOf(const std::string& about, const std::string& item) {
+  std::string name = about + "_" + item;
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
@@ -42,13 +50,13 @@ std::string ColumnOf(const std::string& interface, const std::string& item) {
 /// replaces: the second one is NAME_2. The codebook has the items as they were asked.
 class ColumnNames {
  public:
-  std::string Of(const std::string& interface, const std::string& item, const char* form) {
-    const auto known = names_.find({interface, item, form});
+  std::string Of(const std::string& about, const std::string& item, const char* form) {
+    const auto known = names_.find({about, item, form});
     if (known != names_.end()) return known->second;
-    const std::string plain = ColumnOf(interface, item);
+    const std::string plain = ColumnOf(about, item);
     std::string name = plain;
     for (int i = 2; !used_.insert(name).second; ++i) name = plain + "_" + std::to_string(i);
-    return names_[{interface, item, form}] = name;
+    return names_[{about, item, form}] = name;
   }
 
  private:
@@ -56,8 +64,11 @@ class ColumnNames {
   std::set<std::string> used_;
 };
 
-std::string InterfaceText(const std::string& interface) {
-  return interface.empty() ? "asked at the end" : "asked after the interface " + interface;
+template <typename Answered>
+std::string WhenAsked(const Answered& one) {
+  if (one.interface.empty()) return "asked at the end about the whole study";
+  return (one.at_end ? "asked at the end about the interface " : "asked after the interface ") +
+         one.interface;
 }
 
 }  // namespace
@@ -100,13 +111,13 @@ DocumentedTable SurveyTable(const std::vector<Records>& people, const Participan
       const std::string scale = one.item == "exertion"
                                     ? ", 0 (nothing at all) to 10 (extremely strong)"
                                     : ", 1 (very little) to 5 (very much)";
-      add(subject, names.Of(one.interface, one.item, "rating"), Cell(one.value, 0),
-          Column(one.item + scale + "; " + InterfaceText(one.interface)));
+      add(subject, names.Of(About(one), one.item, "rating"), Cell(one.value, 0),
+          Column(one.item + scale + "; " + WhenAsked(one)));
     }
     if (!with_text) continue;
     for (const records::Answer& one : person.answers) {
-      add(subject, names.Of(one.interface, one.question, "text"), one.text,
-          Column("Free text: " + one.question + "; " + InterfaceText(one.interface)));
+      add(subject, names.Of(About(one), one.question, "text"), one.text,
+          Column("Free text: " + one.question + "; " + WhenAsked(one)));
     }
   }
   Rows rows = {{"participant_id"}};

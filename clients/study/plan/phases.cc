@@ -42,7 +42,9 @@ void AddInterface(const Protocol& protocol, const std::string& participant,
     phase.seed = Draw(protocol.seed, "trial " + participant + " " + phase.id).Bits() & kBits53;
     return phase;
   };
-  if (!first && protocol.rest_s > 0) add(PhaseKind::kRest, "rest").duration_s = protocol.rest_s;
+  if (const double rest_s = protocol.rests.between_s; !first && rest_s > 0) {
+    add(PhaseKind::kRest, "rest").duration_s = rest_s;
+  }
   add(PhaseKind::kDemonstration, "demonstration").track = protocol.practice_track;
   if (protocol.settings.personal_ranges) {
     add(PhaseKind::kRanges, "ranges").track = protocol.practice_track;

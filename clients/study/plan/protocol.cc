@@ -17,6 +17,7 @@ constexpr std::size_t kMostTracks = 50;
 constexpr std::size_t kMostItems = 30;
 constexpr std::uint64_t kMostSeed = (1ull << 53) - 1;  // What every JSON reader keeps.
 constexpr double kMostPracticeS = 3600;
+constexpr double kLeastActiveMin = 0.01, kMostActiveMin = 600;
 
 /// Codes become names of folders and of trials.
 bool IsCode(const std::string& code) {
@@ -39,21 +40,42 @@ bool Has(const std::vector<std::string>& list, const std::string& one) {
   return std::find(list.begin(), list.end(), one) != list.end();
 }
 
-Result<void> ReadSurvey(Reader& outer, const std::string& key, const std::string& file,
-                        Survey& survey) {
-  const ordered_json* object = outer.Object(key);
-  if (object == nullptr) return {};
-  Reader reader(*object, file + ": " + key);
+void ReadItems(Reader& reader, Survey& survey) {
   reader.Texts("ratings", survey.ratings, 0, kMostItems);
   reader.Texts("questions", survey.questions, 0, kMostItems);
   reader.Flag("exertion", survey.exertion);
   for (const std::string& item : survey.ratings) {
-    if (item == "exertion") {
+    if (item == kExertionItem) {
       reader.Fail("ratings", "has \"exertion\", which is a scale of its own: set exertion to true");
     }
     if (Has(survey.questions, item)) {
       reader.Fail("questions", "has \"" + item + "\", which is a rating, too");
     }
+  }
+}
+
+Result<void> ReadSurvey(Reader& outer, const std::string& file, Survey& survey) {
+  const ordered_json* object = outer.Object("survey");
+  if (object == nullptr) return {};
+  Reader reader(*object, file + ": survey");
+  ReadItems(reader, survey);
+  return reader.Finish();
+}
+
+Result<void> ReadFinalSurvey(Reader& outer, const std::string& file, FinalSurvey& survey) {
+  const ordered_json* object = outer.Object("final_survey");
+  if (object == nullptr) return {};
+  Reader reader(*object, file + ": final_survey");
+  ReadItems(reader, survey.items);
+  reader.Flag("each_interface", survey.each_interface);
+  reader.Texts("overall", survey.overall, 0, kMostItems);
+  if (survey.each_interface) return reader.Finish();
+  for (const std::string& question : survey.overall) {
+    if (!Has(survey.items.ratings, question) && !Has(survey.items.questions, question)) continue;
+    reader.Fail("overall",
+                "has \"" + question +
+                    "\", which is asked about the whole study already: each_interface is "
+                    "false");
   }
   return reader.Finish();
 }
@@ -136,7 +158,10 @@ void ReadPeople(Reader& reader, Protocol& protocol) {
 
 void ReadTrials(Reader& reader, Protocol& protocol) {
   reader.Number("practice_s", protocol.practice_s, 0, kMostPracticeS);
-  reader.Number("rest_s", protocol.rest_s, 0, kMostPracticeS);
+  reader.Number("rest_s", protocol.rests.between_s, 0, kMostPracticeS);
+  reader.Number("active_limit_min", protocol.rests.active_limit_min, kLeastActiveMin,
+                kMostActiveMin);
+  reader.Number("active_rest_s", protocol.rests.after_limit_s, 0, kMostPracticeS);
   reader.Number("trial_limit_s", protocol.trial_limit_s, 1, kMostPracticeS);
   reader.Text("practice_track", protocol.practice_track);
   reader.Text("straight_track", protocol.straight_track);
@@ -161,13 +186,15 @@ Result<Protocol> ParseProtocol(const std::string& text, const std::string& file)
   Reader reader(object, file);
   ReadPeople(reader, protocol);
   ReadTrials(reader, protocol);
-  if (const auto done = ReadSurvey(reader, "survey", file, protocol.survey); !done) {
-    return done.error();
-  }
-  if (const auto done = ReadSurvey(reader, "final_survey", file, protocol.final_survey); !done) {
+  if (const auto done = ReadSurvey(reader, file, protocol.survey); !done) return done.error();
+  if (const auto done = ReadFinalSurvey(reader, file, protocol.final_survey); !done) {
     return done.error();
   }
   reader.Flag("personal_ranges", protocol.settings.personal_ranges);
+  reader.Flag("camera_roll", protocol.settings.camera_roll);
+  if (protocol.settings.camera_roll && !Has(protocol.interfaces, "leg")) {
+    reader.Fail("camera_roll", "is true, and interfaces has no leg, whose picture it rolls");
+  }
   if (const auto done = ReadTables(reader, file, protocol); !done) return done.error();
   if (const auto done = ReadDevices(reader, file, protocol.devices); !done) return done.error();
   if (const auto done = reader.Finish(); !done) return done.error();

@@ -16,12 +16,32 @@ enum class Order {
 
 const char* Name(Order order);
 
+/// The item of the exertion in journals and tables: a scale of its own beside the ratings.
+inline constexpr const char* kExertionItem = "exertion";
+
 struct Survey {
   /// Each is rated 1 to 5 (gait paper, section 8.1).
   std::vector<std::string> ratings = {"fun",         "ease of use", "stress",
                                       "familiarity", "immersion",   "like"};
   std::vector<std::string> questions = {"good", "bad"};  ///< Free text.
   bool exertion = true;  ///< After each interface: 0 (nothing at all) to 10, Borg's CR10 scale.
+};
+
+/// After the last interface, when all of them can be compared.
+struct FinalSurvey {
+  /// Asked of each interface, as in the gait paper ("after using all four interfaces, the subjects
+  /// also completed a survey which required them to rank each interface").
+  Survey items = {.exertion = false};
+  bool each_interface = true;  ///< Otherwise `items` are asked once, about the whole study.
+  std::vector<std::string> overall = {"preferred interface", "remarks"};  ///< Free text, once.
+};
+
+/// How participants are spared.
+struct Rests {
+  double between_s = 60;  ///< Before each interface but the first.
+  /// After this time in motion (ActiveTime) the participant rests before they move again.
+  double active_limit_min = 60;
+  double after_limit_s = 300;  ///< How long. A rest of at least this counts, whatever it is for.
 };
 
 /// What the devices must be like before a trial begins.
@@ -37,6 +57,7 @@ struct InterfaceSettings {
   /// Each participant's own ranges are measured before practice. Where that is given up, the table
   /// is the one of `tables` or the built-in one.
   bool personal_ranges = false;
+  bool camera_roll = false;  ///< With the interface leg: the picture rolls with the head.
   /// Files of mapping tables by interface, such as a group's; beside the protocol.
   std::map<std::string, std::string> tables;
 };
@@ -52,7 +73,7 @@ struct Protocol {
   std::uint64_t seed = 0;
   std::string consent = "The participant has read and signed the consent form.";
   double practice_s = 300;
-  double rest_s = 60;          ///< Before each interface but the first.
+  Rests rests;
   double trial_limit_s = 600;  ///< A trial that takes longer is stopped.
   std::string practice_track = "endless";
   std::string straight_track = "straight";
@@ -61,7 +82,7 @@ struct Protocol {
   std::vector<std::string> test_tracks = {"1", "2", "3", "4"};
   InterfaceSettings settings;
   Survey survey;
-  Survey final_survey{{}, {"preferred interface", "remarks"}, false};
+  FinalSurvey final_survey;
   DeviceGate devices;
   double disk_mb = 500;  ///< Free space that a session needs.
 };

@@ -1,11 +1,23 @@
 #include "clients/study/records/progress.h"
 
+#include <optional>
 #include <set>
 
 #include "clients/study/records/active_tally.h"
 #include "clients/study/records/trials.h"
 
 namespace footing::study::records {
+namespace {
+
+/// Of the events of a survey; nothing of any other.
+std::optional<plan::SurveyScale> ScaleOf(EventKind kind) {
+  if (kind == EventKind::kRating) return plan::SurveyScale::kRating;
+  if (kind == EventKind::kExertion) return plan::SurveyScale::kExertion;
+  if (kind == EventKind::kAnswer) return plan::SurveyScale::kText;
+  return std::nullopt;
+}
+
+}  // namespace
 
 Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>& events) {
   Progress progress;
@@ -38,6 +50,9 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
           progress.outcomes[phase_of_trial] = outcome;
         }
         break;
+      case EventKind::kNote:
+        progress.rested_at_s = event.Number(kRestedAt, progress.rested_at_s);
+        break;
       case EventKind::kSessionResumed:
       case EventKind::kPhaseStarted:
       case EventKind::kFailure:
@@ -46,7 +61,6 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
       case EventKind::kRating:
       case EventKind::kAnswer:
       case EventKind::kExertion:
-      case EventKind::kNote:
       case EventKind::kResponse:
       case EventKind::kRanges:
         break;
@@ -59,6 +73,21 @@ Progress Replay(const std::vector<plan::Phase>& phases, const std::vector<Event>
     ++progress.next_phase;
   }
   return progress;
+}
+
+std::vector<plan::SurveyItem> Unanswered(const std::vector<plan::SurveyItem>& items,
+                                         const std::vector<Event>& events) {
+  std::vector<plan::SurveyItem> left = items;
+  for (const Event& event : events) {
+    const auto scale = ScaleOf(event.kind);
+    if (!scale) continue;
+    const bool text = *scale == plan::SurveyScale::kText;
+    const plan::SurveyItem answered = {event.Text("interface"),
+                                       event.Text(text ? "question" : "item"), *scale,
+                                       event.Flag("at_end")};
+    std::erase(left, answered);
+  }
+  return left;
 }
 
 std::string Describe(const Progress& progress, const plan::Session& session) {

@@ -79,11 +79,17 @@ void MarkUndone(const Event& event, bool undone, Records& records) {
   }
 }
 
+/// What is about no interface is about the whole study, and so of its end.
+bool AtEnd(const Event& event) { return event.Flag("at_end") || event.Text("interface").empty(); }
+
 void TakeRating(const Event& event, const std::string& item, Records& records) {
-  Rating rating{records.participant, event.Text("interface"), item, event.Number("value"),
-                event.Flag("synthetic")};
+  Rating rating{records.participant,   event.Text("interface"), item,
+                event.Number("value"), event.Flag("synthetic"), AtEnd(event)};
   for (Rating& earlier : records.ratings) {
-    if (earlier.interface != rating.interface || earlier.item != rating.item) continue;
+    if (earlier.interface != rating.interface || earlier.item != rating.item ||
+        earlier.at_end != rating.at_end) {
+      continue;
+    }
     earlier = rating;
     return;
   }
@@ -92,9 +98,12 @@ void TakeRating(const Event& event, const std::string& item, Records& records) {
 
 void TakeAnswer(const Event& event, Records& records) {
   Answer answer{records.participant, event.Text("interface"), event.Text("question"),
-                event.Text("text"), event.Flag("synthetic")};
+                event.Text("text"),  event.Flag("synthetic"), AtEnd(event)};
   for (Answer& earlier : records.answers) {
-    if (earlier.interface != answer.interface || earlier.question != answer.question) continue;
+    if (earlier.interface != answer.interface || earlier.question != answer.question ||
+        earlier.at_end != answer.at_end) {
+      continue;
+    }
     earlier = answer;
     return;
   }

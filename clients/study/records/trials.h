@@ -62,10 +62,11 @@ struct Trial {
 
 struct Rating {
   std::string participant;
-  std::string interface;  ///< Empty: of the final survey.
+  std::string interface;  ///< Empty: of the whole study.
   std::string item;       ///< "exertion" for the exertion.
   double value = 0;
   bool synthetic = false;
+  bool at_end = false;  ///< Of the final survey.
 };
 
 struct Answer {
@@ -74,6 +75,7 @@ struct Answer {
   std::string question;
   std::string text;
   bool synthetic = false;
+  bool at_end = false;  ///< Of the final survey.
 };
 
 /// What the journal of one participant says of results. A repeated survey replaces the earlier one.

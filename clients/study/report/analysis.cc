@@ -12,10 +12,15 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json Tested(const statistics::StudyTable& table, statistics::TestKind test,
-                    std::uint64_t seed) {
+                    const TestOptions& options) {
   statistics::AnalysisRequest request;
   request.test = test;
-  request.seed = seed;
+  request.alternative = options.alternative;
+  if (test == statistics::TestKind::kSteel) {
+    request.ties = options.ties;
+    request.method = options.method;
+  }
+  request.seed = options.seed.value_or(1);
   auto report = statistics::Analyze(table, request);
   if (report) return std::move(*report);
   return {{"test", statistics::NameOf(test)}, {"error", report.error().message}};
@@ -42,6 +47,33 @@ ordered_json Groups(const statistics::StudyTable& table) {
   return groups;
 }
 
+ordered_json ToJson(const TestOptions& options) {
+  return {{"alternative", NameOf(options.alternative)},
+          {"ties", NameOf(options.ties)},
+          {"method", options.method ? ordered_json(NameOf(*options.method)) : ordered_json()},
+          {"seed", options.seed.value_or(1)}};
+}
+
+/// A measure with its groups and tests.
+ordered_json ToJson(const Measure& measure, const plan::Protocol& protocol,
+                    const TestOptions& options) {
+  const statistics::StudyTable table = TableOf(measure, protocol);
+  ordered_json one = {{"id", measure.id}, {"title", measure.title}, {"groups", Groups(table)}};
+  std::set<std::string> participants;
+  for (const Value& value : measure.values) participants.insert(value.participant);
+  one["participants"] = participants.size();
+  if (!Comparable(table, protocol.control)) return one;
+  one["test"] = Tested(table, measure.test, options);
+  if (table.blocks) {
+    one["paired_participants"] = table.blocks->subjects.size();
+    one["paired"] = Tested(table, statistics::TestKind::kPaired, options);
+  }
+  if (measure.id.ends_with("_failures_all") && !measure.all_zero()) {
+    one["rate"] = Tested(table, statistics::TestKind::kRate, options);
+  }
+  return one;
+}
+
 /// RFC 4180.
 std::string Cell(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
@@ -52,7 +84,10 @@ std::string Cell(const std::string& text) {
 
 }  // namespace
 
-Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Records>& people) {
+Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Records>& people,
+                 const TestOptions& given) {
+  TestOptions options = given;
+  if (!options.seed) options.seed = protocol.seed;
   Analysis analysis;
   analysis.measures = Measures(protocol, people);
   std::size_t withdrawn = 0, unfinished = 0;
@@ -65,22 +100,7 @@ Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Reco
   }
   ordered_json measures = ordered_json::array();
   for (const Measure& measure : analysis.measures) {
-    const statistics::StudyTable table = TableOf(measure, protocol);
-    ordered_json one = {{"id", measure.id}, {"title", measure.title}, {"groups", Groups(table)}};
-    std::set<std::string> participants;
-    for (const Value& value : measure.values) participants.insert(value.participant);
-    one["participants"] = participants.size();
-    if (Comparable(table, protocol.control)) {
-      one["test"] = Tested(table, measure.test, protocol.seed);
-      if (table.blocks) {
-        one["paired_participants"] = table.blocks->subjects.size();
-        one["paired"] = Tested(table, statistics::TestKind::kPaired, protocol.seed);
-      }
-      if (measure.id.ends_with("_failures_all") && !measure.all_zero()) {
-        one["rate"] = Tested(table, statistics::TestKind::kRate, protocol.seed);
-      }
-    }
-    measures.push_back(std::move(one));
+    measures.push_back(ToJson(measure, protocol, options));
   }
   analysis.latency = LatencyByStage(InOrder(protocol), people);
   ordered_json latency = ordered_json::array();
@@ -98,6 +118,7 @@ Analysis Analyze(const plan::Protocol& protocol, const std::vector<records::Reco
                    {"unfinished", unfinished},
                    {"synthetic", analysis.synthetic},
                    {"simulated_time", analysis.simulated_time},
+                   {"tests", ToJson(options)},
                    {"measures", measures},
                    {"latency", latency}};
   return analysis;

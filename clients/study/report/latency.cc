@@ -15,6 +15,9 @@ namespace {
 
 using records::StageTime;
 
+/// As stream::ResponseTimes names it.
+constexpr const char* kCommandStage = "command";
+
 // Pixels.
 constexpr double kBarHeight = 22, kRowHeight = 34, kBarLeft = 80, kBarsWidth = 560, kLegend = 26,
                  kKey = 10;
@@ -32,6 +35,13 @@ double WholeMs(const records::Response& response) {
   double sum_ms = 0;
   for (const StageTime& one : response) sum_ms += one.ms;
   return sum_ms;
+}
+
+/// Of one stage; 0 where there is none.
+double MsOf(const records::Response& response, const std::string& stage) {
+  double ms = 0;
+  for (const StageTime& one : response) ms += one.stage == stage ? one.ms : 0;
+  return ms;
 }
 
 struct Bars {
@@ -59,15 +69,16 @@ Bars BarsOf(const std::vector<StageLatency>& latency) {
 }  // namespace
 
 bool IsBar(const StageLatency& latency) {
-  return latency.stage != kWithoutContact && latency.stage != kWhole;
+  return latency.stage != kWithoutContact && latency.stage != kWithoutWindow &&
+         latency.stage != kWhole;
 }
 
 double WithoutContactMs(const records::Response& response) {
-  double sum_ms = 0;
-  for (const StageTime& one : response) {
-    if (one.stage != stream::kContactStage) sum_ms += one.ms;
-  }
-  return sum_ms;
+  return WholeMs(response) - MsOf(response, stream::kContactStage);
+}
+
+double WithoutWindowMs(const records::Response& response) {
+  return WithoutContactMs(response) - MsOf(response, kCommandStage);
 }
 
 std::vector<StageLatency> LatencyByStage(const std::vector<std::string>& interfaces,
@@ -88,6 +99,7 @@ std::vector<StageLatency> LatencyByStage(const std::vector<std::string>& interfa
         for (const records::Response& response : trial->responses) {
           for (const StageTime& one : response) add(one.stage, one.ms);
           add(kWithoutContact, WithoutContactMs(response));
+          add(kWithoutWindow, WithoutWindowMs(response));
           add(kWhole, WholeMs(response));
         }
       }

@@ -11,17 +11,23 @@ namespace footing::study::report {
 /// The stage of StageLatency that stands for all but the wait for contact.
 inline constexpr const char* kWithoutContact = "without contact";
 
+/// The same without what is left of the features' window: a change of gait is held until it has
+/// lasted, and the stage "command" ends there.
+inline constexpr const char* kWithoutWindow = "without contact and feature window";
+
 /// The stage of StageLatency that stands for all of a response. Its median is not the sum of the
 /// medians of the stages.
 inline constexpr const char* kWhole = "whole";
 
 /// All stages but the wait for the contact from which the character can answer, ms.
 double WithoutContactMs(const records::Response& response);
+/// The same without the stage "command", ms.
+double WithoutWindowMs(const records::Response& response);
 
 /// Over all responses with an interface.
 struct StageLatency {
   std::string interface;
-  std::string stage;  ///< As in stream::ResponseTimes, kWithoutContact or kWhole.
+  std::string stage;  ///< As in stream::ResponseTimes, kWithoutContact, kWithoutWindow or kWhole.
   std::size_t responses = 0;
   double p50_ms = 0;
   double p95_ms = 0;

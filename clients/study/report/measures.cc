@@ -134,18 +134,20 @@ class TrialMeasures {
   std::map<std::tuple<std::string, std::string, std::string>, Trials> trials_;
 };
 
+/// Of each interface: right after it, and at the end.
 std::vector<Measure> OfRatings(const std::vector<Records>& people) {
   std::vector<Measure> measures;
   std::map<std::string, std::size_t> index;
   for (const Records& person : people) {
     for (const records::Rating& rating : person.ratings) {
       if (rating.interface.empty()) continue;
-      const std::string id = "rating " + rating.item;
-      const bool exertion = rating.item == "exertion";
+      const std::string id = (rating.at_end ? "final_rating " : "rating ") + rating.item;
+      const bool exertion = rating.item == plan::kExertionItem;
       if (index.emplace(id, measures.size()).second) {
         measures.push_back({Section::kSurvey,
                             id,
-                            rating.item + (exertion ? ", 0 to 10" : ", rating 1 to 5"),
+                            rating.item + (rating.at_end ? ", at the end" : "") +
+                                (exertion ? ", 0 to 10" : ", rating 1 to 5"),
                             TestKind::kSteel,
                             {}});
       }

@@ -1,6 +1,7 @@
 #include "clients/study/report/page.h"
 
 #include <cmath>
+#include <utility>
 
 #include "clients/study/report/figure.h"
 #include "clients/study/report/tables.h"
@@ -30,7 +31,10 @@ constexpr const char* kHowToRead =
     "Each point is a participant, each box reaches from the lower to the upper quartile with the "
     "median as a line, and thin lines join the values of one participant. Each p is adjusted for "
     "the comparisons of its measure, not for the number of measures: decide before the study "
-    "which measures it is about.";
+    "which measures it is about. The paired p permutes the labels within each participant and "
+    "takes the greatest mean difference from the control, which needs neither normal values nor "
+    "one variance; the blocked Dunnett test needs both, Wilcoxon's test uses ranks only, and "
+    "Friedman's says only whether any interface differs.";
 /// Gait paper, footnote 1.
 constexpr const char* kWhyNoRate =
     "The gait paper ranks failure counts and fits no rate model: each failure delays the goal and "
@@ -41,7 +45,10 @@ constexpr const char* kLatencyNote =
     "From the report of a controller to the first frame that shows the new gait. The wait for "
     "contact belongs to a simulated character: it can answer only with the right foot on the "
     "ground. Time that the features need to notice a change of motion lies before the first "
-    "report that is counted. Anticipation is positive where the command came before the character "
+    "report that is counted; what is left of their window when that report comes is the stage "
+    "command, since a change of gait is held until it has lasted. Without it and the contact 95 % "
+    "should stay within 20 ms. Anticipation is positive where the command came before the "
+    "character "
     "reached the line. The figure stacks the medians of the stages; the number behind them is the "
     "median of whole responses.";
 constexpr const char* kSimulatedTime =
@@ -61,7 +68,45 @@ std::string Heading(const ordered_json& json) {
     const auto count = json[kind].get<std::size_t>();
     if (count > 0) text += ", " + std::to_string(count) + " " + kind;
   }
-  return text + "; control: " + json["control"].get<std::string>();
+  text += "; control: " + json["control"].get<std::string>();
+  const std::string alternative = json["tests"]["alternative"];
+  if (alternative == "two.sided") return text;
+  return text + "; tests look for values " + alternative + " than the control's only";
+}
+
+/// Of one comparison: what both tests say.
+std::string ComparisonText(const ordered_json& row, const std::string& test,
+                           const ordered_json& measure) {
+  std::string text = NameOfRow(row) + ": " + test + " p " + PText(row, "p");
+  if (!measure.contains("paired") || measure["paired"].contains("error")) return text;
+  for (const ordered_json& paired : measure["paired"]["rows"]) {
+    if (paired["group"] != row["group"]) continue;
+    text += "; paired p " + PText(paired, "permutation_p") + ", Wilcoxon " +
+            PText(paired, "wilcoxon_exact_holm") + ", blocked Dunnett " +
+            PText(paired, "block_dunnett_p") + ", Cliff's delta " +
+            Short(paired["cliffs_delta"], "estimate");
+  }
+  return text;
+}
+
+/// A remark of a test, which names fields of its report, in words of the page.
+std::string ForTheReader(std::string remark) {
+  for (const auto& [field, words] : {std::pair("wilcoxon_exact_holm", "Wilcoxon's p"),
+                                     std::pair("block_t", "the blocked Dunnett test")}) {
+    const auto at = remark.find(field);
+    if (at != std::string::npos) remark.replace(at, std::string(field).size(), words);
+  }
+  return remark;
+}
+
+/// What stands below the tests within participants.
+std::string PairedNotes(const ordered_json& json) {
+  const ordered_json& paired = json["paired"];
+  std::string participants = "Within participants: " + Short(json, "paired_participants") + " of " +
+                             Short(json, "participants") +
+                             " participants, those with a value for every interface";
+  for (const ordered_json& one : paired["remarks"]) participants += "; " + ForTheReader(one);
+  return Paragraph("note", FriedmanText(paired)) + Paragraph("note", participants + ".");
 }
 
 /// The figure beside its numbers, then the tests with the sentence on which to believe.
@@ -70,18 +115,19 @@ std::string MeasureBlock(const Measure& measure, const ordered_json& json,
   std::string block = "<div class=\"measure\"><h3>" + Escaped(measure.title) +
                       "</h3><div class=\"pair-of-columns\">" + Figure(measure, protocol) + "<div>" +
                       GroupTable(json["groups"]);
-  if (json.contains("test")) block += TestTable(json["test"]);
   if (json.contains("rate")) block += RateTable(json["rate"]);
   block += "</div></div>";
-  if (json.contains("paired_participants")) {
-    block += Paragraph("note", "Paired test: " + Short(json, "paired_participants") + " of " +
-                                   Short(json, "participants") +
-                                   " participants, those with a value for every interface.");
+  if (!json.contains("test")) return block + "</div>";
+  const ordered_json& test = json["test"];
+  block += TestTable(test);
+  if (json.contains("paired")) block += PairedTable(json["paired"]);
+  if (!test.contains("error")) {
+    block += Paragraph("believe", test.value("note", "")) +
+             Paragraph("note", test.value("procedure", "") + ".");
+  } else if (json.contains("paired")) {
+    block += Paragraph("believe", "Believe the paired p: each participant used every interface.");
   }
-  if (json.contains("test") && !json["test"].contains("error")) {
-    block += Paragraph("believe", json["test"].value("note", "")) +
-             Paragraph("note", json["test"].value("procedure", "") + ".");
-  }
+  if (json.contains("paired") && !json["paired"].contains("error")) block += PairedNotes(json);
   return block + "</div>";
 }
 
@@ -121,7 +167,7 @@ std::string Page(const Analysis& analysis, const plan::Protocol& protocol,
   page +=
       "<h2>Overview</h2>" + OverviewTable(json, InOrder(protocol)) + Paragraph("note", kHowToRead);
   for (const Section section : kSections) page += SectionBlock(section, analysis, protocol);
-  return page + AnswerTable(people) + "</body></html>\n";
+  return page + WholeStudyTable(people) + AnswerTable(people) + "</body></html>\n";
 }
 
 std::string Summary(const Analysis& analysis) {
@@ -135,10 +181,16 @@ std::string Summary(const Analysis& analysis) {
               Short(group, "median") + ", mean " + Short(group, "mean") + ", n " +
               Short(group, "n");
     }
-    if (!one.contains("test") || one["test"].contains("error")) continue;
+    if (!one.contains("test")) continue;
+    if (one["test"].contains("error")) {
+      text += "\n  " + one["test"]["error"].get<std::string>();
+      continue;
+    }
     for (const ordered_json& row : one["test"]["rows"]) {
-      text += "\n  " + NameOfRow(row) + ": " + one["test"]["test"].get<std::string>() + " p " +
-              Short(row, "p") + ", paired p " + Short(row, "paired_p");
+      text += "\n  " + ComparisonText(row, one["test"]["test"], one);
+    }
+    if (one.contains("paired") && one["paired"].contains("friedman_p")) {
+      text += "\n  " + FriedmanText(one["paired"]);
     }
   }
   return text;

@@ -26,8 +26,15 @@ std::string Rounded(double value) {
 /// JSON and CSV have all digits.
 std::string P(double p) { return p < kLeastP ? "<" + text::Fixed(kLeastP, 4) : text::Fixed(p, 4); }
 
-std::string PCell(const ordered_json& row, const char* key) {
-  return row.contains(key) && row[key].is_number() ? P(row[key].get<double>()) : "–";
+/// "low to high", of simultaneous intervals.
+std::string IntervalText(const ordered_json& ends) {
+  return Short(ends, "low") + " to " + Short(ends, "high");
+}
+
+/// An effect size with its interval.
+std::string EffectText(const ordered_json& row, const char* key) {
+  if (!row.contains(key)) return "–";
+  return Short(row[key], "estimate") + " (" + IntervalText(row[key]) + ")";
 }
 
 std::string Capitalised(std::string name) {
@@ -74,6 +81,10 @@ std::string Short(const ordered_json& object, const char* key) {
   return Rounded(object[key].get<double>());
 }
 
+std::string PText(const ordered_json& object, const char* key) {
+  return object.contains(key) && object[key].is_number() ? P(object[key].get<double>()) : "–";
+}
+
 std::string NameOfRow(const ordered_json& row) {
   for (const char* key : {"comparison", "group"}) {
     if (row.contains(key) && row[key].is_string()) return row[key];
@@ -114,16 +125,47 @@ std::string GroupTable(const ordered_json& groups) {
 
 std::string TestTable(const ordered_json& test) {
   if (test.contains("error")) return ErrorNote(test);
-  std::string table = "<table>" + Row({Capitalised(test.value("test", "")), "estimate",
-                                       "95 % interval", "statistic", "p", "paired p"},
-                                      "th");
+  const std::string name = test.value("test", "");
+  const bool of_means = name == "dunnett";
+  std::vector<std::string> heads = {Capitalised(name) + ", independent groups", "statistic", "p"};
+  if (of_means) heads.insert(heads.end(), {"mean difference", "95 % interval"});
+  heads.insert(heads.end(), {"Hodges-Lehmann (95 %)", "Cliff's delta (95 %)"});
+  std::string table = "<table>" + Row(heads, "th");
   for (const ordered_json& row : test["rows"]) {
-    table += Row(
-        {NameOfRow(row), Short(row, "estimate"), Short(row, "low") + " to " + Short(row, "high"),
-         Short(row, "statistic"), PCell(row, "p"), PCell(row, "paired_p")},
-        "td");
+    std::vector<std::string> cells = {NameOfRow(row), Short(row, "statistic"), PText(row, "p")};
+    if (of_means) {
+      cells.insert(cells.end(),
+                   {Short(row, "estimate"), IntervalText(row), EffectText(row, "hodges_lehmann")});
+    } else {  // The estimate of a rank test is that shift.
+      cells.push_back(Short(row, "estimate") + " (" + IntervalText(row) + ")");
+    }
+    cells.push_back(EffectText(row, "cliffs_delta"));
+    table += Row(cells, "td");
   }
   return table + "</table>";
+}
+
+std::string PairedTable(const ordered_json& paired) {
+  if (paired.contains("error")) return ErrorNote(paired);
+  std::string table =
+      "<table>" + Row({"Within participants", "paired p", "Wilcoxon p (Holm)", "blocked Dunnett p",
+                       "mean difference (95 %)", "Hodges-Lehmann (95 %)", "Cliff's delta (95 %)"},
+                      "th");
+  for (const ordered_json& row : paired["rows"]) {
+    table +=
+        Row({NameOfRow(row), PText(row, "permutation_p"), PText(row, "wilcoxon_exact_holm"),
+             PText(row, "block_dunnett_p"), Short(row, "estimate") + " (" + IntervalText(row) + ")",
+             EffectText(row, "hodges_lehmann"), EffectText(row, "cliffs_delta")},
+            "td");
+  }
+  return table + "</table>";
+}
+
+std::string FriedmanText(const ordered_json& paired) {
+  if (!paired.contains("friedman_p")) return "";
+  return "Friedman's test: chi-square " + Short(paired, "friedman_chi2") + ", degrees of freedom " +
+         Short(paired, "friedman_df") + ", p " + PText(paired, "friedman_p") + ", by permutation " +
+         PText(paired, "friedman_permutation_p") + ".";
 }
 
 std::string RateTable(const ordered_json& rate) {
@@ -131,9 +173,8 @@ std::string RateTable(const ordered_json& rate) {
   std::string table =
       "<table>" + Row({"failures a minute", "ratio of rates", "95 % interval", "p"}, "th");
   for (const ordered_json& row : rate["rows"]) {
-    table += Row({NameOfRow(row), Short(row, "estimate"),
-                  Short(row, "low") + " to " + Short(row, "high"), PCell(row, "p")},
-                 "td");
+    table +=
+        Row({NameOfRow(row), Short(row, "estimate"), IntervalText(row), PText(row, "p")}, "td");
   }
   return table + "</table>";
 }
@@ -163,6 +204,28 @@ std::string LatencyTable(const std::vector<StageLatency>& latency) {
   return table + Row(counts, "td") + "</table>";
 }
 
+std::string WholeStudyTable(const std::vector<records::Records>& people) {
+  std::map<std::string, std::vector<double>> values;  // By item.
+  for (const records::Records& person : people) {
+    if (person.withdrawn) continue;
+    for (const records::Rating& rating : person.ratings) {
+      const bool exertion = rating.item == plan::kExertionItem;
+      const std::string item = rating.item + (exertion ? ", 0 to 10" : ", rating 1 to 5");
+      if (rating.interface.empty()) values[item].push_back(rating.value);
+    }
+  }
+  std::string table;
+  for (const auto& [item, all] : values) {
+    const Quartiles box = QuartilesOf(all);
+    table += Row({item, std::to_string(all.size()), Rounded(box.median),
+                  Rounded(box.low) + " to " + Rounded(box.high)},
+                 "td");
+  }
+  if (table.empty()) return "";
+  return "<h2>Ratings of the whole study</h2><table>" +
+         Row({"item", "n", "median", "quartiles"}, "th") + table + "</table>";
+}
+
 std::string AnswerTable(const std::vector<records::Records>& people) {
   // Sorted, since the order of the participants would say whose they are.
   std::vector<std::vector<std::string>> answers;
@@ -170,8 +233,9 @@ std::string AnswerTable(const std::vector<records::Records>& people) {
     if (person.withdrawn) continue;
     for (const records::Answer& answer : person.answers) {
       if (answer.text.empty()) continue;
+      const bool looks_back = answer.at_end && !answer.interface.empty();
       answers.push_back({answer.interface.empty() ? "whole study" : answer.interface,
-                         answer.question, answer.text});
+                         answer.question + (looks_back ? ", at the end" : ""), answer.text});
     }
   }
   if (answers.empty()) return "";

@@ -12,6 +12,8 @@ namespace footing::study::report {
 
 /// Four significant digits, or an en dash where there is no number.
 std::string Short(const nlohmann::ordered_json& object, const char* key);
+/// A p for a reader: four decimals, or an en dash.
+std::string PText(const nlohmann::ordered_json& object, const char* key);
 /// What a row of a test compares.
 std::string NameOfRow(const nlohmann::ordered_json& row);
 
@@ -22,11 +24,18 @@ std::string OverviewTable(const nlohmann::ordered_json& analysis,
                           const std::vector<std::string>& interfaces);
 /// The groups of a measure.
 std::string GroupTable(const nlohmann::ordered_json& groups);
-/// A report of footing-eval stats, or its error.
+/// A report of footing-eval stats on independent groups, or its error: p and effect sizes with
+/// their intervals.
 std::string TestTable(const nlohmann::ordered_json& test);
+/// The same of its tests within participants: permutation, Wilcoxon, blocked Dunnett.
+std::string PairedTable(const nlohmann::ordered_json& paired);
+/// What Friedman's test says, in a sentence; empty: nothing.
+std::string FriedmanText(const nlohmann::ordered_json& paired);
 /// The same of rates.
 std::string RateTable(const nlohmann::ordered_json& rate);
 std::string LatencyTable(const std::vector<StageLatency>& latency);
+/// Ratings that are about no interface; empty: there are none.
+std::string WholeStudyTable(const std::vector<records::Records>& people);
 /// The free text, without codes; empty: there is none.
 std::string AnswerTable(const std::vector<records::Records>& people);
 

@@ -4,16 +4,22 @@
 
 namespace footing::study {
 
-void Anticipation::Add(std::int64_t host_ns, double to_mark_m, stream::Gait commanded,
-                       stream::Gait wanted) {
-  const bool now_commanded = commanded == wanted;
-  const bool now_ahead = to_mark_m > 0;
+void Anticipation::Add(const Sight& frame) {
+  const bool now_commanded = frame.commanded == frame.wanted;
+  const bool now_ahead = frame.to_mark_m > 0;
   if (now_ahead && !ahead_) answered_ = now_commanded;  // A new approach.
+  if (!now_ahead && ahead_) {
+    line_ns_ = frame.host_ns;
+    const bool in_force = commanded_ || frame.running == frame.wanted;
+    if (!in_force) {
+      command_ns_ = 0;
+      answered_ = false;
+    }
+  }
   if (now_commanded && !commanded_ && (now_ahead || !answered_)) {
-    command_ns_ = host_ns;
+    command_ns_ = frame.host_ns;
     answered_ = true;
   }
-  if (!now_ahead && ahead_) line_ns_ = host_ns;
   commanded_ = now_commanded;
   ahead_ = now_ahead;
 }

@@ -12,9 +12,16 @@ namespace footing::study {
 /// (section 1), since the character itself cannot answer at once.
 class Anticipation {
  public:
-  /// From each frame, in their order; `to_mark_m` is the distance left to the line, negative behind
-  /// it, and `wanted` the gait of the task.
-  void Add(std::int64_t host_ns, double to_mark_m, stream::Gait commanded, stream::Gait wanted);
+  /// What a frame shows of a task.
+  struct Sight {
+    std::int64_t host_ns = 0;
+    double to_mark_m = 0;  ///< Left to the line; negative behind it.
+    stream::Gait commanded = stream::Gait::kUnspecified;
+    stream::Gait running = stream::Gait::kUnspecified;  ///< The character's.
+    stream::Gait wanted = stream::Gait::kUnspecified;   ///< The task's.
+  };
+  /// From each frame, in their order.
+  void Add(const Sight& frame);
 
   /// Instant at the line less that of the command, of the newest approach, s: negative where the
   /// command came after the line. Ahead of the line the last command counts, behind it the first

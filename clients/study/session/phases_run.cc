@@ -21,7 +21,6 @@ using nlohmann::ordered_json;
 using records::EventKind;
 
 constexpr double kDevicesReadyS = 10;  // A rate is known a few seconds after a device attached.
-constexpr double kReminderS = 60;
 
 }  // namespace
 
@@ -34,7 +33,7 @@ Result<void> SessionRun::RunPhase(const plan::Phase& phase) {
     case plan::PhaseKind::kDeviceCheck:
       return CheckDevices(interface);
     case plan::PhaseKind::kRest:
-      return CountDown("Rest", phase.duration_s, /*may_end_early=*/false);
+      return Rest("Rest", phase.duration_s);
     case plan::PhaseKind::kDemonstration:
       return Demonstrate(phase);
     case plan::PhaseKind::kRanges:
@@ -48,9 +47,9 @@ Result<void> SessionRun::RunPhase(const plan::Phase& phase) {
       return done;
     }
     case plan::PhaseKind::kSurvey:
-      return RunSurvey(context_, context_.protocol.survey, phase.interface);
+      return RunSurvey(context_, plan::ItemsAfter(context_.protocol, phase.interface));
     case plan::PhaseKind::kFinalSurvey:
-      return RunSurvey(context_, context_.protocol.final_survey, "");
+      return RunSurvey(context_, plan::ItemsAtEnd(context_.protocol, context_.session.interfaces));
   }
   return {};
 }
@@ -114,31 +113,6 @@ Result<void> SessionRun::Demonstrate(const plan::Phase& phase) {
   const auto done = context_.console.Ask("Interface " + phase.interface +
                                          ": show all commands. Press Enter when done:");
   return done ? Result<void>() : done.error();
-}
-
-Result<void> SessionRun::CountDown(const std::string& what, double duration_s, bool may_end_early) {
-  if (context_.options.unattended) return {};
-  Console& console = context_.console;
-  const std::int64_t begin_ns = clock::MonotonicNs();
-  const auto passed_s = [&] { return NanosecondsToSeconds(clock::MonotonicNs() - begin_ns); };
-  console.ReadKeys(true);
-  bool early = false;
-  const auto ended = [&] {
-    const std::optional<char> key = console.TakeKey();
-    return early = may_end_early && key == '\n';
-  };
-  while (!early && !console.interrupted() && passed_s() < duration_s) {
-    Show(what + ".", may_end_early ? "Enter ends it early" : "", duration_s - passed_s());
-    console.Print(what + ": " + text::Fixed(std::ceil(duration_s - passed_s()), 0) + " s left." +
-                  (may_end_early ? " Press Enter to end it early." : ""));
-    console.RunUntil(ended, std::min(kReminderS, duration_s - passed_s()));
-  }
-  console.ReadKeys(false);
-  if (console.interrupted()) return Interrupted();
-  if (!early) return {};
-  return context_.journal.Append(
-      EventKind::kNote,
-      {{"text", what + " ended early"}, {"planned_s", duration_s}, {"took_s", passed_s()}});
 }
 
 Result<void> SessionRun::Practise(const plan::Phase& phase) {
@@ -255,7 +229,7 @@ Result<Servers*> SessionRun::UseInterface(const std::string& interface) {
   if (const auto done = CheckDevices(interface); !done) return done.error();
   const auto servers = Connect();
   if (!servers) return servers.error();
-  const auto table = TableOf(interface);
+  const auto table = TableToSend(interface);
   if (!table) return table.error();
   const auto done = (*servers)->UseInterface(interface, context_.protocol.settings.turn_by, *table);
   if (!done) return done.error();

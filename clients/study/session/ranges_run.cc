@@ -33,6 +33,17 @@ Result<std::string> SessionRun::TableOf(const std::string& interface) {
   return TableOf(interface);  // As the journal has it.
 }
 
+Result<std::string> SessionRun::TableToSend(const std::string& interface) {
+  auto table = TableOf(interface);
+  if (!table || interface != "leg" || !context_.protocol.settings.camera_roll) return table;
+  if (table->empty()) table = config::ReadDataFile(interface + "_mapping.json");
+  if (!table) return table;
+  ordered_json values = ordered_json::parse(*table, nullptr, false, true);
+  if (!values.is_object()) return InvalidData("the table of " + interface + " is not JSON");
+  values["camera_roll"] = true;
+  return values.dump();
+}
+
 Result<void> SessionRun::NoteTable(const std::string& interface, const std::string& by,
                                    const std::string& table, const std::string& reason) {
   ordered_json fields = {

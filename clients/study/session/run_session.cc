@@ -18,8 +18,6 @@ namespace {
 using nlohmann::ordered_json;
 using records::EventKind;
 
-constexpr double kSecondsPerMinute = 60;
-
 std::string Holder(const SessionOptions& options) {
   return cli::UserAtHost() + ", footing-study process " + std::to_string(::getpid()) +
          ", participant " + options.participant;
@@ -145,16 +143,6 @@ Result<void> SessionRun::Run() {
   }
   if (const auto done = NoteStart(context_, progress_); !done) return done;
   for (std::size_t i = progress_.next_phase; i < phases.size(); ++i) {
-    ordered_json fields = {{"phase", phases[i].id},
-                           {"kind", Name(phases[i].kind)},
-                           {"interface", phases[i].interface}};
-    if (const auto done = context_.journal.Append(EventKind::kPhaseStarted, fields); !done) {
-      return done;
-    }
-    console.Print("[" + std::to_string(i + 1) + "/" + std::to_string(phases.size()) + "] " +
-                  phases[i].id + ", active so far: " +
-                  text::Fixed((progress_.active_s + active_.seconds()) / kSecondsPerMinute, 1) +
-                  " min");
     shown_ = {.study = context_.protocol.name,
               .participant = context_.session.participant,
               .interface = phases[i].interface,
@@ -164,6 +152,16 @@ Result<void> SessionRun::Run() {
               .doing = "",
               .next = i + 1 < phases.size() ? phases[i + 1].id : "the end of the session",
               .keys = ""};
+    if (const auto done = RestWhereDue(phases[i]); !done) return done;
+    ordered_json fields = {{"phase", phases[i].id},
+                           {"kind", Name(phases[i].kind)},
+                           {"interface", phases[i].interface}};
+    if (const auto done = context_.journal.Append(EventKind::kPhaseStarted, fields); !done) {
+      return done;
+    }
+    console.Print("[" + std::to_string(i + 1) + "/" + std::to_string(phases.size()) + "] " +
+                  phases[i].id +
+                  ", active so far: " + text::Fixed(ActiveS() / kSecondsPerMinute, 1) + " min");
     Show(PhaseText(phases[i].kind), "");
     const double active_before_s = active_.seconds();
     if (const auto done = RunPhase(phases[i]); !done) return done;
@@ -177,10 +175,12 @@ Result<void> SessionRun::Run() {
 }
 
 void SessionRun::Show(const std::string& doing, const std::string& keys, double left_s) {
-  shown_.doing = doing;
+  const std::string warning = RestWarning();
+  if (!warning.empty() && warned_.insert(kRestWarning).second) context_.console.Print(warning);
+  shown_.doing = doing + (warning.empty() ? "" : " " + warning);
   shown_.keys = keys;
   shown_.left_s = left_s;
-  shown_.active_s = progress_.active_s + active_.seconds();
+  shown_.active_s = ActiveS();
   if (servers_) servers_->Show(shown_);
 }
 

@@ -29,6 +29,13 @@ class SessionRun {
   Result<void> Practise(const plan::Phase& phase);
   /// Until the time is up or, where that is allowed, Enter is pressed, which the journal notes.
   Result<void> CountDown(const std::string& what, double duration_s, bool may_end_early);
+  Result<void> Rest(const std::string& what, double duration_s);
+  /// Before a phase in which the participant moves, once they have moved for long enough.
+  Result<void> RestWhereDue(const plan::Phase& next);
+  double ActiveS() const;
+  double UnrestedMin() const;  ///< In motion since the last long rest.
+  bool NeedsRest() const;
+  std::string RestWarning() const;  ///< Empty: none is due.
   /// Attempts of a trial until one counts; first about the one that an interrupted session has
   /// left.
   Result<void> Trial(const plan::Phase& phase);
@@ -42,6 +49,8 @@ class SessionRun {
   /// The mapping table of an interface: as the journal says, else the protocol's, which the journal
   /// notes; empty: the built-in one.
   Result<std::string> TableOf(const std::string& interface);
+  /// The same with what else the protocol chooses of the interface.
+  Result<std::string> TableToSend(const std::string& interface);
   Result<void> NoteTable(const std::string& interface, const std::string& by,
                          const std::string& table, const std::string& reason);
   /// Waits until the devices of an interface are as the protocol asks.
@@ -55,9 +64,14 @@ class SessionRun {
   /// Once its devices are ready, makes an interface the one in force.
   Result<Servers*> UseInterface(const std::string& interface);
 
+  /// Among the warnings that were printed.
+  static constexpr const char* kRestWarning = "rest";
+  static constexpr double kSecondsPerMinute = 60;
+
   SessionContext context_;
   records::Progress progress_;
   ActiveTime active_;
+  bool rests_ = false;  ///< The participant has their rest now.
   std::set<std::string> warned_;
   stream::StudyState shown_;
   std::unique_ptr<Servers> servers_;

@@ -108,6 +108,7 @@ class Servers::Implementation {
       const v1::Character& character = tick.characters().characters(0);
       frame_ = {tick.host_ns(), wire::FromProto(character.trial()),
                 stream::GaitNumbered(character.gait().commanded_gait()),
+                stream::GaitNumbered(character.gait().gait()),
                 wire::FromProto(character.interface())};
       if (on_frame_) on_frame_(frame_);
     }

@@ -24,6 +24,7 @@ struct SimulationFrame {
   std::int64_t host_ns = 0;  ///< Of its tick, on the clock of footing-sim.
   stream::TrialState trial;  ///< Without an id before the first trial.
   stream::Gait commanded_gait = stream::Gait::kUnspecified;
+  stream::Gait gait = stream::Gait::kUnspecified;  ///< The character's own.
   stream::InterfaceState interface;
 };
 

@@ -1,8 +1,11 @@
 #include "clients/study/session/survey.h"
 
+#include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "clients/study/records/progress.h"
 #include "clients/study/session/respondent.h"
 #include "clients/study/session/survey_screen.h"
 
@@ -10,6 +13,7 @@ namespace footing::study {
 namespace {
 
 using nlohmann::ordered_json;
+using plan::SurveyItem;
 using records::EventKind;
 using screen::Shown;
 
@@ -22,60 +26,84 @@ constexpr double kAnswerWithinS = 24 * 3600;  // A wait for a person has no end 
 /// Asks here in place of the participant's screen.
 constexpr char kHereKey = 't';
 
+/// The scale of an item; both ends 0: free text.
+struct Scale {
+  EventKind kind = EventKind::kAnswer;
+  int least = 0, greatest = 0;
+  const char* ends = "";
+};
+
+Scale ScaleOf(plan::SurveyScale scale) {
+  switch (scale) {
+    case plan::SurveyScale::kRating:
+      return {EventKind::kRating, kLeastRating, kMostRating, kRatingScale};
+    case plan::SurveyScale::kExertion:
+      return {EventKind::kExertion, 0, kMostExertion, kExertionScale};
+    case plan::SurveyScale::kText:
+      return {};
+  }
+  return {};
+}
+
+std::string TitleOf(const SurveyItem& item) {
+  if (item.interface.empty()) return "The whole study";
+  return (item.at_end ? "Looking back: interface " : "Interface ") + item.interface;
+}
+
 class SurveyRun {
  public:
-  SurveyRun(SessionContext& context, const std::string& interface, int count)
+  SurveyRun(SessionContext& context, const std::vector<SurveyItem>& items)
       : context_(context),
-        interface_(interface),
-        respondent_{context.options.answer_seed, context.session.participant},
-        count_(count) {}
+        items_(items),
+        respondent_{context.options.answer_seed, context.session.participant} {}
 
-  Result<void> Rating(EventKind kind, const std::string& item, const std::string& scale, int least,
-                      int greatest) {
-    ++position_;
-    int value = 0;
+  Result<void> Run(const SurveyItem& item) {
+    const Scale scale = ScaleOf(item.scale);
+    const bool text = scale.kind == EventKind::kAnswer;
+    ordered_json fields = {{text ? "question" : "item", item.item}};
     if (context_.options.unattended) {
-      value = respondent_.Rate(interface_, item, least, greatest);
+      // A look back is answered independently of what was said right after the interface.
+      const std::string about = (item.at_end ? "end " : "") + item.interface;
+      if (text) {
+        fields["text"] = respondent_.Answer(about, item.item);
+      } else {
+        fields["value"] = respondent_.Rate(about, item.item, scale.least, scale.greatest);
+      }
     } else {
-      const auto asked = Ask(Question(item, scale, least, greatest));
+      auto asked = Ask(item, Question(item, scale));
       if (!asked) return asked.error();
-      value = *screen::ParseRating(*asked, least, greatest);
+      if (text) {
+        fields["text"] = std::move(*asked);
+      } else {
+        fields["value"] = *screen::ParseRating(*asked, scale.least, scale.greatest);
+      }
     }
-    return Append(kind, {{"item", item}, {"value", value}});
-  }
-
-  Result<void> Text(const std::string& question) {
-    ++position_;
-    std::string text;
-    if (context_.options.unattended) {
-      text = respondent_.Answer(interface_, question);
-    } else {
-      auto asked = Ask(Question(question, "", 0, 0));
-      if (!asked) return asked.error();
-      text = std::move(*asked);
-    }
-    return Append(EventKind::kAnswer, {{"question", question}, {"text", text}});
+    fields["interface"] = item.interface;
+    fields["at_end"] = item.at_end;
+    fields["synthetic"] = context_.options.unattended;
+    return context_.journal.Append(scale.kind, std::move(fields));
   }
 
  private:
-  Shown Question(const std::string& item, const std::string& scale, int least, int greatest) const {
-    return {.title = interface_.empty() ? "The whole study" : "Interface " + interface_,
-            .item = item,
-            .scale = scale,
-            .least = least,
-            .greatest = greatest,
-            .position = position_,
-            .count = count_};
+  Shown Question(const SurveyItem& item, const Scale& scale) const {
+    const auto place = std::find(items_.begin(), items_.end(), item);
+    return {.title = TitleOf(item),
+            .item = item.item,
+            .scale = scale.ends,
+            .least = scale.least,
+            .greatest = scale.greatest,
+            .position = static_cast<int>(place - items_.begin()) + 1,
+            .count = static_cast<int>(items_.size())};
   }
 
-  Result<std::string> Ask(const Shown& question) {
+  Result<std::string> Ask(const SurveyItem& item, const Shown& question) {
     if (context_.screen != nullptr && !here_) {
       auto answer = AskOnScreen(question);
       if (!answer) return answer.error();
       if (*answer) return std::move(**answer);
       here_ = true;
     }
-    return AskHere(question);
+    return AskHere(item, question);
   }
 
   /// Nothing: the experimenter wants to ask in the terminal.
@@ -105,7 +133,8 @@ class SurveyRun {
     return std::optional<std::string>();
   }
 
-  Result<std::string> AskHere(const Shown& question) {
+  Result<std::string> AskHere(const SurveyItem& item, const Shown& question) {
+    const std::string about = item.at_end && !item.interface.empty() ? item.interface + ": " : "";
     const std::string range =
         std::to_string(question.least) + " to " + std::to_string(question.greatest);
     const bool exertion = question.greatest == kMostExertion;
@@ -114,55 +143,41 @@ class SurveyRun {
             ? question.item + (exertion ? " (" + question.scale + ")" : "") + ", " + range + ":"
             : question.item + " (one line):";
     for (;;) {
-      auto text = context_.console.Ask("  " + prompt);
+      auto text = context_.console.Ask("  " + about + prompt);
       if (!text || screen::Answers(question, *text)) return text;
       context_.console.Print("  Type a whole number from " + range + ".");
     }
   }
 
-  Result<void> Append(EventKind kind, ordered_json fields) {
-    fields["interface"] = interface_;
-    fields["synthetic"] = context_.options.unattended;
-    return context_.journal.Append(kind, std::move(fields));
-  }
-
   SessionContext& context_;
-  const std::string& interface_;
+  const std::vector<SurveyItem>& items_;
   Respondent respondent_;
-  int count_ = 0;
-  int position_ = 0;
   bool here_ = false;  ///< The experimenter asks in the terminal.
 };
 
-Result<void> AskAll(SessionContext& context, const plan::Survey& survey,
-                    const std::string& interface) {
-  const std::size_t count =
-      survey.ratings.size() + survey.questions.size() + (survey.exertion ? 1 : 0);
-  SurveyRun run(context, interface, static_cast<int>(count));
-  for (const std::string& item : survey.ratings) {
-    const auto done = run.Rating(EventKind::kRating, item, kRatingScale, kLeastRating, kMostRating);
-    if (!done) return done;
+/// What the experimenter reads before the first question.
+std::string Heading(const std::vector<SurveyItem>& items, std::size_t left) {
+  std::string heading = "Survey";
+  if (items.front().at_end) {
+    heading += " at the end";
+  } else if (!items.front().interface.empty()) {
+    heading += ", interface " + items.front().interface;
   }
-  if (survey.exertion) {
-    const auto done =
-        run.Rating(EventKind::kExertion, "exertion", kExertionScale, 0, kMostExertion);
-    if (!done) return done;
-  }
-  for (const std::string& question : survey.questions) {
-    if (const auto done = run.Text(question); !done) return done;
-  }
-  return {};
+  heading += std::string(": ") + kRatingScale + ".";
+  if (left == items.size()) return heading;
+  return heading + " It goes on with question " + std::to_string(items.size() - left + 1) + " of " +
+         std::to_string(items.size()) + ".";
 }
 
 }  // namespace
 
-Result<void> RunSurvey(SessionContext& context, const plan::Survey& survey,
-                       const std::string& interface) {
-  if (!context.options.unattended) {
-    context.console.Print("Survey" + (interface.empty() ? "" : ", interface " + interface) + ": " +
-                          kRatingScale + ".");
-  }
-  const auto done = AskAll(context, survey, interface);
+Result<void> RunSurvey(SessionContext& context, const std::vector<SurveyItem>& items) {
+  const auto left = records::Unanswered(items, context.journal.events());
+  if (left.empty()) return {};
+  if (!context.options.unattended) context.console.Print(Heading(items, left.size()));
+  SurveyRun run(context, items);
+  Result<void> done;
+  for (auto item = left.begin(); item != left.end() && done; ++item) done = run.Run(*item);
   if (context.screen != nullptr) context.screen->Say("Thank you. Please wait.");
   return done;
 }

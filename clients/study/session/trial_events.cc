@@ -46,8 +46,11 @@ void TrialEvents::OnFrame(const SimulationFrame& frame) {
   }
   const stream::TaskPhase task = trial.progress.task_phase;
   if (task == stream::TaskPhase::kAhead || task == stream::TaskPhase::kDue) {
-    anticipation_.Add(frame.host_ns, trial.to_mark_m, frame.commanded_gait,
-                      WantedGait(servers_.track(), trial.task));
+    anticipation_.Add({.host_ns = frame.host_ns,
+                       .to_mark_m = trial.to_mark_m,
+                       .commanded = frame.commanded_gait,
+                       .running = frame.gait,
+                       .wanted = WantedGait(servers_.track(), trial.task)});
   }
   if (!trial.instruction.empty() && trial.instruction != shown) {
     context_.console.Print("Task for the participant: " + trial.instruction);

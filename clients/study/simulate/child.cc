@@ -45,7 +45,9 @@ int CodeOf(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + 
 Result<Child> Child::Start(const Options& options) {
   std::error_code error;
   const auto own = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string path = (own.parent_path() / options.program).string();
+  const std::filesystem::path folder =
+      options.folder.empty() ? own.parent_path() : std::filesystem::path(options.folder);
+  const std::string path = (folder / options.program).string();
   if (error || ::access(path.c_str(), X_OK) != 0) {
     return Failure("cannot start " + path + ": " +
                    (error ? error.message() : std::strerror(errno)) + "; build or install it");

@@ -11,14 +11,15 @@
 
 namespace footing::study::simulate {
 
-/// A program of the folder in which this one is, as a child process that never outlives it.
+/// Another program as a child process that never outlives this one.
 class Child {
  public:
   struct Options {
     std::string program;
     std::vector<std::string> words;
     std::map<std::string, std::string> environment;  ///< Added to this process's own.
-    std::string log;  ///< File of both its outputs; written from its start.
+    std::string log;          ///< File of both its outputs; written from its start.
+    std::string folder = {};  ///< Where the program is; empty: in the folder of this one.
   };
   static Result<Child> Start(const Options& options);
 

@@ -27,14 +27,17 @@ EffectiveConfig::EffectiveConfig(const serving::Config& common, const Config& co
 
 void EffectiveConfig::SetInterface(std::uint64_t number, const mapping::InterfaceOptions& options,
                                    const std::string& table, const std::string& table_by) {
+  const ordered_json values = ordered_json::parse(table, nullptr, false, true);
+  const bool table_rolls =
+      options.interface == stream::UserInterface::kLeg && values.value("camera_roll", false);
   json_["interface"] = {{"number", number},
                         {"name", stream::Name(options.interface)},
                         {"turn_by", stream::Name(options.leg.turn_by)},
-                        {"camera_roll", options.leg.camera_roll},
+                        {"camera_roll", options.leg.camera_roll || table_rolls},
                         {"boards_may_be_left", options.boards_may_be_left},
                         {"table_by", table_by},
                         {"table_sha256", HashOf(table)},
-                        {"table", ordered_json::parse(table, nullptr, false, true)}};
+                        {"table", values}};
 }
 
 v1::EffectiveConfig EffectiveConfig::Message() const {

@@ -62,7 +62,8 @@ Result<LegMapping> ParseLegMapping(const std::string& text, const std::string& o
   AddFields(mapping.turn, false, fields);
   fields.push_back({"feet_turn_above", &mapping.feet_turn_above, 0.01, 1});
   fields.push_back({"feet_straight_below", &mapping.feet_straight_below, 0, 1});
-  if (const auto read = ReadTable(text, origin, fields); !read) return read.error();
+  const auto read = ReadTable(text, origin, fields, {{"camera_roll", &mapping.camera_roll}});
+  if (!read) return read.error();
   if (!mapping.swing.IsOrdered() || !mapping.turn.IsOrdered() ||
       mapping.feet_straight_below > mapping.feet_turn_above) {
     return NotOrdered(origin);
@@ -74,7 +75,9 @@ LegInterface::LegInterface(const LegMapping& mapping, const LegOptions& options)
     : mapping_(mapping),
       options_(options),
       gait_(mapping.swing),
-      turn_(TurnMappingOf(mapping, options.turn_by)) {}
+      turn_(TurnMappingOf(mapping, options.turn_by)) {
+  options_.camera_roll = options.camera_roll || mapping.camera_roll;
+}
 
 biped::GaitCommand LegInterface::Advance(double time_s, const Inputs& inputs) {
   const LimbPair& legs = inputs.legs;

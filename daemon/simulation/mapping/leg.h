@@ -13,6 +13,8 @@ struct LegMapping {
   /// By the feet: difference of the amplitudes over their sum.
   double feet_turn_above = 0;
   double feet_straight_below = 0;
+  /// The picture follows the head: what a study chooses with the table that it sends. Optional.
+  bool camera_roll = false;
 };
 
 inline constexpr const char* kLegMappingFile = "leg_mapping.json";
@@ -21,7 +23,8 @@ Result<LegMapping> ParseLegMapping(const std::string& text, const std::string& o
 
 struct LegOptions {
   stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< kHead, kFeet or kTrunk.
-  bool camera_roll = false;                                ///< The picture follows the head.
+  /// The picture follows the head; the table may choose that, too.
+  bool camera_roll = false;
 };
 
 /// The leg interface of the gait paper, section 7: controllers on both shins of a person who steps

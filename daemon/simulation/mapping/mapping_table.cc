@@ -22,6 +22,25 @@ Result<void> ReadField(const json& root, const TableField& field, const std::str
   return {};
 }
 
+Result<void> ReadFlag(const json& root, const TableFlag& flag, const std::string& origin) {
+  if (!root.contains(flag.key)) return {};
+  const json& value = root[flag.key];
+  if (!value.is_boolean()) {
+    return InvalidData(origin + ": " + flag.key + " is " + value.dump() +
+                       ", allowed is true or false");
+  }
+  *flag.value = value.get<bool>();
+  return {};
+}
+
+bool IsKnown(const std::string& key, const TableFields& fields,
+             const std::vector<TableFlag>& flags) {
+  const auto has_key = [&key](const auto& one) { return one.key == key; };
+  return key == "version" || key == "how_found" || key == "measured" ||
+         std::any_of(fields.begin(), fields.end(), has_key) ||
+         std::any_of(flags.begin(), flags.end(), has_key);
+}
+
 }  // namespace
 
 double Scaling::operator()(double from) const {
@@ -30,21 +49,22 @@ double Scaling::operator()(double from) const {
 }
 
 Result<void> ReadTable(const std::string& text, const std::string& origin,
-                       const TableFields& fields) {
+                       const TableFields& fields, const std::vector<TableFlag>& flags) {
   const json root = json::parse(text, nullptr, false, true);
   if (!root.is_object()) return InvalidData(origin + ": not a JSON object");
   if (!root.contains("version") || root["version"] != 1) {
     return InvalidData(origin + ": version must be 1, the only one known");
   }
   for (const auto& item : root.items()) {
-    const std::string& key = item.key();
-    const bool known =
-        key == "version" || key == "how_found" || key == "measured" ||
-        std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return f.key == key; });
-    if (!known) return InvalidData(origin + ": unknown key " + key);
+    if (!IsKnown(item.key(), fields, flags)) {
+      return InvalidData(origin + ": unknown key " + item.key());
+    }
   }
   for (const TableField& field : fields) {
     if (auto read = ReadField(root, field, origin); !read) return read.error();
+  }
+  for (const TableFlag& flag : flags) {
+    if (auto read = ReadFlag(root, flag, origin); !read) return read.error();
   }
   return {};
 }

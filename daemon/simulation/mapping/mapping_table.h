@@ -31,10 +31,16 @@ struct TableField {
 };
 using TableFields = std::vector<TableField>;
 
+/// One choice of a table, true or false; a table may be without it.
+struct TableFlag {
+  const char* key;
+  bool* value;
+};
+
 /// Reads a table: the version 1, how the numbers were found, where measured ones come from, every
-/// key of `fields`, nothing unknown, all in range. `origin` names the file.
+/// key of `fields`, nothing unknown but `flags`, all in range. `origin` names the file.
 Result<void> ReadTable(const std::string& text, const std::string& origin,
-                       const TableFields& fields);
+                       const TableFields& fields, const std::vector<TableFlag>& flags = {});
 
 /// The error for a table whose numbers contradict each other.
 Error NotOrdered(const std::string& origin);

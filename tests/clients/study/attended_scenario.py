@@ -13,12 +13,13 @@ import sys
 import time
 
 sys.path.insert(0, sys.argv[1])
-from harness import Stage  # noqa: E402
+from harness import Stage, read_ticks  # noqa: E402
 
 PROTOCOL = {
-    "version": 1, "name": "attended", "participants": ["P01", "P02"], "interfaces": ["wrist"], "seed": 2, "practice_s": 100,
-    "straight_trials": 0, "test_tracks": ["3"], "survey": {"ratings": ["fun"], "questions": ["good"]},
-    "final_survey": {"questions": ["remarks"]}, "devices": {"allow_simulated": True}, "disk_mb": 1,
+    "version": 1, "name": "attended", "participants": ["P01", "P02", "P03"], "interfaces": ["wrist"], "seed": 2,
+    "practice_s": 100, "straight_trials": 0, "test_tracks": ["3"], "survey": {"ratings": ["fun"], "questions": ["good"]},
+    "final_survey": {"ratings": ["like"], "questions": [], "overall": ["remarks"]},
+    "devices": {"allow_simulated": True}, "disk_mb": 1, "active_limit_min": 0.05, "active_rest_s": 1,
 }
 
 
@@ -97,6 +98,9 @@ def session(stage, start):
     second = experimenter.read(r"failure (\d+): (\w+)", 90)
     experimenter.type("s")
     shown = experimenter.read(r"test: stopped, [\d.]+ s, failures: (\d+)")
+    doing = next(tick["study"]["doing"] for tick in read_ticks(stage.simulation, 5, ("study", "characters"))
+                 if "The trial is over" in tick.get("study", {}).get("doing", ""))
+    assert re.search(r"has moved for \d+ min: a rest of \d+ min comes next", doing), doing
     experimenter.answer("r to repeat", f"u {second[1]}")
     experimenter.read(f"failure {second[1]} undone")
     experimenter.answer("u NUMBER to undo", "u 999")
@@ -117,9 +121,35 @@ def session(stage, start):
     experimenter.answer("whole number(?s:.*)fun, 1 to 5", "4")  # What is typed before the prompt is dropped.
     experimenter.answer("exertion", "7")
     experimenter.answer("good .one line", "it walks")
+    experimenter.answer("Survey at the end(?s:.*)wrist: like, 1 to 5", "5")
     experimenter.answer("remarks .one line", "")
     assert experimenter.process.wait(20) == 0
     return int(first[1]), int(second[1]), int(shown[1])
+
+
+def check_next(start):
+    """The next participant: two prompts to answer before they practise."""
+    experimenter = start()
+    experimenter.answer("Type yes to confirm", "yes")
+    said = experimenter.read(r"([\s\S]*)show all commands\. Press Enter when done:")[1]
+    assert "Press Enter" not in said and "Type" not in said, said
+    experimenter.type("\n")
+    said = experimenter.read(r"([\s\S]*)Practice of wrist: 100 s left")[1]
+    assert "Press Enter" not in said and "Type" not in said, said
+    experimenter.process.kill()
+    experimenter.process.wait()
+
+
+def check_rests(events):
+    """Who has moved for the limit rests before they move again, and the journal says after how long."""
+    rests = [one for one in events if "rested_at_active_s" in one]
+    assert rests and all("Rest after" in one["text"] and one["took_s"] == 1 for one in rests), rests
+    at_s = [one["rested_at_active_s"] for one in rests]
+    assert at_s[0] >= 3 and all(later - before >= 3 for before, later in zip(at_s, at_s[1:])), at_s
+    for one in rests:  # The next event is a phase with motion: none rests before a survey.
+        following = events[one["number"]]
+        assert following["event"] == "phase_started", following
+        assert following["kind"] in ("demonstration", "practice", "test_track"), following
 
 
 def check_journal(stage, first, second, shown):
@@ -128,8 +158,10 @@ def check_journal(stage, first, second, shown):
     for event in events:
         of.setdefault(event["event"], []).append(event)
     assert not events[0]["synthetic"] and events[-1]["event"] == "session_finished", events
-    assert [one["text"] for one in of["note"]][1:] == ["Practice of wrist ended early"], of["note"]
-    assert of["note"][1]["planned_s"] == 100 > of["note"][1]["took_s"], of["note"]
+    check_rests(events)
+    notes = [one for one in of["note"] if "rested_at_active_s" not in one]
+    assert [one["text"] for one in notes][1:] == ["Practice of wrist ended early"], notes
+    assert notes[1]["planned_s"] == 100 > notes[1]["took_s"], notes
     assert [one["failure"] for one in of["failure_undone"]] == [first, second], of["failure_undone"]
     repeated = of["trial_started"][1]["number"]
     failed = [one for one in of["failure"] if one["number"] < repeated]
@@ -138,7 +170,9 @@ def check_journal(stage, first, second, shown):
     assert all(one["synthetic"] for one in of["trial_started"]), of["trial_started"]  # Simulated devices.
     assert [one["outcome"] for one in of["trial_finished"]] == ["stopped", "stopped"], of["trial_finished"]
     assert of["trial_finished"][0]["failed_attempts"] == 1, of["trial_finished"]
-    assert (of["rating"][0]["value"], of["exertion"][0]["value"]) == (4, 7), (of["rating"], of["exertion"])
+    assert [(one["item"], one["interface"], one["at_end"], one["value"]) for one in of["rating"]] == [
+        ("fun", "wrist", False, 4), ("like", "wrist", True, 5)], of["rating"]
+    assert of["exertion"][0]["value"] == 7, of["exertion"]
     assert [one["text"] for one in of["answer"]] == ["it walks", ""], of["answer"]
 
 
@@ -148,8 +182,13 @@ def main():
         protocol.write_text(json.dumps(PROTOCOL))
         stage.start_servers()
         stage.start_user("demo")
-        command = ("run", protocol, "--participant", "P01", "--sensor", stage.sensor, "--simulation", stage.simulation)
-        check_journal(stage, *session(stage, lambda: Experimenter(stage, *command)))
+
+        def start(participant):
+            return Experimenter(stage, "run", protocol, "--participant", participant, "--sensor", stage.sensor,
+                                "--simulation", stage.simulation)
+
+        check_journal(stage, *session(stage, lambda: start("P01")))
+        check_next(lambda: start("P03"))
     return 0
 
 

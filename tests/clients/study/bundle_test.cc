@@ -129,6 +129,19 @@ TEST(StudyTables, HaveNumbersInPlaceOfCodesAndNoTextUnlessAsked) {
   }
 }
 
+TEST(StudyTables, HaveTheFinalSurveyOfEachInterface) {
+  auto people = One();
+  people[0].ratings = {{"Anna7", "wrist", "fun", 2, false, false},
+                       {"Anna7", "wrist", "fun", 5, false, true},
+                       {"Anna7", "", "fun", 3, false, true}};
+  ParticipantKey key;
+  key.Add({"Anna7"}, 1);
+  const auto survey = SurveyTable(people, key, /*with_text=*/false);
+  EXPECT_EQ(survey.tsv, "participant_id\tfinal_fun\tfinal_wrist_fun\twrist_fun\nsub-01\t3\t5\t2\n");
+  EXPECT_THAT(survey.codebook["final_wrist_fun"]["Description"].get<std::string>(),
+              HasSubstr("asked at the end about the interface wrist"));
+}
+
 TEST(StudyTables, KeepSimilarItemsApart) {
   auto people = One();
   people[0].ratings = {{"Anna7", "wrist", "Spaß", 1, false},

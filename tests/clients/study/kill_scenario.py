@@ -124,15 +124,15 @@ def check_trials(events):
 
 
 def check_surveys(events):
-    """Every question has its answer. One that is asked again has the same: it follows from the seed."""
-    answers = {}
-    for one in events:
-        if one["event"] in ("rating", "exertion"):
-            answers.setdefault((one["interface"], one["item"]), set()).add(one["value"])
-    expected = {(interface, item) for interface in ("arm", "wrist") for item in (*RATINGS, "exertion")}
-    expected |= {("", item) for item in RATINGS}
-    assert set(answers) == expected, set(answers) ^ expected
-    assert all(len(values) == 1 for values in answers.values()), answers
+    """Every question has its answer, and none was asked again after a kill."""
+    asked = [(one["at_end"], one["interface"], one.get("item", one.get("question"))) for one in events
+             if one["event"] in ("rating", "exertion", "answer")]
+    expected = {(at_end, interface, item) for interface in ("arm", "wrist") for at_end in (False, True)
+                for item in (*RATINGS, "good", "bad")}
+    expected |= {(False, interface, "exertion") for interface in ("arm", "wrist")}
+    expected |= {(True, "", item) for item in ("preferred interface", "remarks")}
+    assert set(asked) == expected, set(asked) ^ expected
+    assert len(asked) == len(expected), sorted(asked)
 
 
 def main():

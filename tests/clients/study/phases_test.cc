@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "clients/study/plan/survey_items.h"
+
 namespace footing::study::plan {
 namespace {
 
@@ -36,6 +38,32 @@ TEST(Sessions, FollowThePapersSequence) {
     expected.push_back("final_survey");
     EXPECT_EQ(ids, expected);
   }
+}
+
+TEST(SurveyItems, AtTheEndAskEachItemOfEveryInterface) {
+  // "After using all four interfaces, the subjects also completed a survey which required them to
+  // rank each interface" by six items, "and to list good and bad aspects of each interface".
+  const Protocol protocol = Four();
+  const auto items = ItemsAtEnd(protocol, {"leg", "joystick", "wrist", "arm"});
+  ASSERT_EQ(items.size(), 6u * 4 + 2 * 4 + 2);
+  EXPECT_EQ(items[0], (SurveyItem{"leg", "fun", SurveyScale::kRating, true}));
+  EXPECT_EQ(items[3], (SurveyItem{"arm", "fun", SurveyScale::kRating, true}));
+  EXPECT_EQ(items[4], (SurveyItem{"leg", "ease of use", SurveyScale::kRating, true}));
+  EXPECT_EQ(items[24], (SurveyItem{"leg", "good", SurveyScale::kText, true}));
+  EXPECT_EQ(items.back(), (SurveyItem{"", "remarks", SurveyScale::kText, true}));
+  const auto after = ItemsAfter(protocol, "leg");
+  ASSERT_EQ(after.size(), 6u + 1 + 2);
+  EXPECT_EQ(after[6], (SurveyItem{"leg", "exertion", SurveyScale::kExertion, false}));
+}
+
+TEST(SurveyItems, AtTheEndAskOnceOfTheWholeStudyWhereTheProtocolSaysSo) {
+  Protocol protocol = Four();
+  protocol.final_survey.each_interface = false;
+  protocol.final_survey.items.questions.clear();
+  protocol.final_survey.overall.clear();
+  const auto items = ItemsAtEnd(protocol, {"leg", "arm"});
+  ASSERT_EQ(items.size(), 6u);
+  EXPECT_EQ(items[5], (SurveyItem{"", "like", SurveyScale::kRating, true}));
 }
 
 TEST(Sessions, HaveEachTestTrackOncePerParticipant) {

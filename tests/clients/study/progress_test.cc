@@ -70,6 +70,18 @@ TEST(Progress, AddsUpTheActiveTimeOfFinishedPhases) {
   EXPECT_EQ(Replay(TwoTrials().phases, events.list).active_s, 60.5);
 }
 
+TEST(Progress, KnowsAfterHowLongInMotionTheLastLongRestWas) {
+  Events events;
+  events.Add(EventKind::kPhaseFinished, {{"phase", "a"}, {"active_s", 40}});
+  events.Add(EventKind::kNote, {{"text", "warning: something"}});
+  EXPECT_EQ(Replay(TwoTrials().phases, events.list).rested_at_s, 0);
+  events.Add(EventKind::kNote, {{"text", "Rest"}, {kRestedAt, 40}});
+  events.Add(EventKind::kPhaseFinished, {{"phase", "b"}, {"active_s", 20}});
+  const Progress progress = Replay(TwoTrials().phases, events.list);
+  EXPECT_EQ(progress.rested_at_s, 40);
+  EXPECT_EQ(progress.active_s, 60);
+}
+
 TEST(Progress, KeepsTheTrialThatEndedBeforeACrash) {
   const plan::Session session = TwoTrials();
   Events events;
@@ -200,6 +212,38 @@ TEST(TrialRecords, KeepTheStagesOfResponsesWithTheirTrial) {
   EXPECT_EQ(records.trials[0].anticipation_s, 0.25);
   EXPECT_TRUE(records.trials[1].responses.empty());
   EXPECT_TRUE(std::isnan(records.trials[1].anticipation_s));
+}
+
+TEST(Progress, ASurveyGoesOnWithTheItemsThatHaveNoAnswer) {
+  plan::Protocol protocol;
+  protocol.survey.ratings = {"fun", "like"};
+  const auto items = plan::ItemsAfter(protocol, "arm");  // And exertion, good, bad.
+  Events events;
+  events.Add(EventKind::kRating, {{"interface", "arm"}, {"item", "like"}, {"value", 2}});
+  events.Add(EventKind::kExertion, {{"interface", "arm"}, {"item", "exertion"}, {"value", 2}});
+  events.Add(EventKind::kAnswer, {{"interface", "arm"}, {"question", "bad"}, {"text", ""}});
+  // Another interface, and the same one at the end.
+  events.Add(EventKind::kRating, {{"interface", "leg"}, {"item", "fun"}, {"value", 2}});
+  events.Add(EventKind::kRating,
+             {{"interface", "arm"}, {"item", "fun"}, {"value", 2}, {"at_end", true}});
+  const auto left = Unanswered(items, events.list);
+  ASSERT_EQ(left.size(), 2u);
+  EXPECT_EQ(left[0].item, "fun");
+  EXPECT_EQ(left[1].item, "good");
+}
+
+TEST(TrialRecords, KeepRatingsAtTheEndApart) {
+  Events events;
+  events.Add(EventKind::kSessionStarted, {{"participant", "P7"}});
+  events.Add(EventKind::kRating, {{"interface", "arm"}, {"item", "fun"}, {"value", 2}});
+  events.Add(EventKind::kRating,
+             {{"interface", "arm"}, {"item", "fun"}, {"value", 5}, {"at_end", true}});
+  events.Add(EventKind::kRating, {{"interface", ""}, {"item", "fun"}, {"value", 1}});
+  const Records records = Collect(events.list);
+  ASSERT_EQ(records.ratings.size(), 3u);
+  EXPECT_FALSE(records.ratings[0].at_end);
+  EXPECT_TRUE(records.ratings[1].at_end);
+  EXPECT_TRUE(records.ratings[2].at_end);  // Of no interface: of the whole study.
 }
 
 TEST(TrialRecords, HaveOneRatingPerItemTheLastOne) {

@@ -24,6 +24,9 @@ TEST(Protocol, HasThePapersDefaults) {
   EXPECT_EQ(protocol->straight_trials, 2u);  // "straight track task twice"
   EXPECT_EQ(protocol->test_tracks.size(), 4u);
   EXPECT_EQ(protocol->survey.ratings.size(), 6u);
+  EXPECT_EQ(protocol->final_survey.items.ratings.size(), 6u);  // "rank each interface"
+  EXPECT_TRUE(protocol->final_survey.each_interface);
+  EXPECT_FALSE(protocol->final_survey.items.exertion);
   EXPECT_EQ(protocol->control, "joystick");
   EXPECT_EQ(protocol->order, Order::kWilliams);
   EXPECT_FALSE(protocol->devices.allow_simulated);
@@ -71,6 +74,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{With(R"(, "survey": {"ratings": ["exertion"]})"), "a scale of its own"},
         Fault{With(R"(, "survey": {"ratings": ["fun"], "questions": ["fun"]})"),
               "questions has \"fun\", which is a rating, too"},
+        Fault{With(R"(, "final_survey": {"each_interface": false, "overall": ["fun"]})"),
+              "overall has \"fun\", which is asked about the whole study already"},
         Fault{With(R"(, "practice_s": -1)"), "practice_s is -1; it must be a number from"},
         Fault{With(R"(, "straight_trials": 1.5)"), "straight_trials is 1.5"},
         Fault{With(R"(, "order": "latin")"), "it must be williams or random"},

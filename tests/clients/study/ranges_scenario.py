@@ -17,7 +17,8 @@ from harness import Stage, read_ticks  # noqa: E402
 PROTOCOL = {
     "version": 1, "name": "own ranges", "participants": ["P01"], "interfaces": ["wrist", "arm"], "seed": 2,
     "practice_s": 0, "rest_s": 0, "straight_trials": 0, "test_tracks": ["3"], "trial_limit_s": 3,
-    "survey": {"ratings": [], "questions": [], "exertion": False}, "final_survey": {"questions": []},
+    "survey": {"ratings": [], "questions": [], "exertion": False}, 
+    "final_survey": {"ratings": [], "questions": [], "overall": []},
     "devices": {"allow_simulated": True}, "disk_mb": 1, "personal_ranges": True,
 }
 # Slowest, fastest, Hz; inclination, degrees.

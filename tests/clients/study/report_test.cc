@@ -7,6 +7,7 @@
 #include "clients/study/report/analysis.h"
 #include "clients/study/report/figure.h"
 #include "clients/study/report/page.h"
+#include "common/stream/response.h"
 
 namespace footing::study::report {
 namespace {
@@ -90,7 +91,7 @@ TEST(StudyAnalysis, LeavesOutWhoHasWithdrawnAndPairsOnlyWhatIsComplete) {
   EXPECT_EQ(completion["paired_participants"], 2);
   EXPECT_TRUE(completion.contains("paired"));
   EXPECT_THAT(Page(analysis, Two(), people),
-              HasSubstr("Paired test: 2 of 3 participants, those with a value"));
+              HasSubstr("Within participants: 2 of 3 participants, those with a value"));
   EXPECT_THAT(ValuesCsv(analysis), Not(HasSubstr("P0")));
   EXPECT_THAT(ValuesCsv(analysis), HasSubstr("test_time_to_completion_s,point,P2,joystick,62\n"));
 }
@@ -192,10 +193,57 @@ TEST(StudyPage, SaysWhichTestToBelieveBesideEachMeasure) {
   EXPECT_THAT(page, HasSubstr("<p class=\"believe\">" + Escaped(note)));
 }
 
+TEST(StudyPage, ShowsTheTestsWithinParticipantsWithEffectSizes) {
+  const auto people = People(8);
+  const std::string page = Page(Analyze(Two(), people), Two(), people);
+  // Eight differences of -10 s: 2 of 2^8 signs are as extreme for the permutation and for
+  // Wilcoxon's test, whatever the ranks; no variance is left to the blocked Dunnett test.
+  EXPECT_THAT(page, HasSubstr("<td>wrist - joystick</td><td>0.0078</td><td>0.0078</td>"
+                              "<td>&lt;0.0001</td><td>-10 (-10 to -10)</td>"
+                              "<td>-10 (-10 to -10)</td><td>-1 ("));
+  // Friedman: 12 n / (k (k + 1)) sum (mean rank - 1.5)^2 = 16 (0.25 + 0.25); P(chi2_1 > 8).
+  EXPECT_THAT(page, HasSubstr("chi-square 8, degrees of freedom 1, p 0.0047, by permutation "
+                              "0.0078."));
+  EXPECT_THAT(page, HasSubstr("for every interface; all subjects show the same differences, so "
+                              "the blocked Dunnett test has no error"));
+}
+
+TEST(StudyPage, HasEffectSizesOfIndependentGroups) {
+  auto people = People(8);
+  for (std::size_t i = 0; i < people.size(); ++i) {  // Each participant with one interface.
+    people[i].trials.erase(people[i].trials.begin() + static_cast<std::ptrdiff_t>(i % 2));
+    people[i].ratings.clear();
+  }
+  const std::string page = Page(Analyze(Two(), people), Two(), people);
+  EXPECT_THAT(page, Not(HasSubstr("Within participants")));
+  EXPECT_THAT(page, HasSubstr("<th>Hodges-Lehmann (95 %)</th><th>Cliff's delta (95 %)</th>"));
+}
+
+TEST(StudyAnalysis, TestsAsItIsAsked) {
+  const auto people = People(8);
+  TestOptions options;
+  options.alternative = statistics::Alternative::kGreater;
+  options.ties = statistics::Ties::kJoint;
+  options.method = statistics::Method::kAsymptotic;
+  options.seed = 77;
+  const Analysis analysis = Analyze(Two(), people, options);
+  EXPECT_EQ(analysis.json["tests"].dump(),
+            R"({"alternative":"greater","ties":"joint","method":"asymptotic","seed":77})");
+  const auto& completion = Find(analysis, "test_time_to_completion_s");
+  EXPECT_EQ(completion["test"]["method"], "asymptotic");
+  EXPECT_EQ(completion["test"]["ties"], "joint");
+  EXPECT_GT(completion["test"]["rows"][0]["p"], 0.99);  // The wrist is the faster one.
+  EXPECT_EQ(completion["paired"]["rows"][0]["p"], 1);   // All of 2^8 signs are at least as great.
+  EXPECT_THAT(Page(analysis, Two(), people), HasSubstr("values greater than the control"));
+  EXPECT_EQ(Analyze(Two(), people).json["tests"]["seed"], Two().seed);
+  options.method = statistics::Method::kPermutation;
+  EXPECT_EQ(Find(Analyze(Two(), people, options), "test_time_to_completion_s")["test"]["seed"], 77);
+}
+
 TEST(StudyPage, RoundsEachPForAReader) {
   const auto people = People(8);
   const std::string page = Page(Analyze(Two(), people), Two(), people);
-  EXPECT_THAT(page, HasSubstr("<th>Steel</th>"));
+  EXPECT_THAT(page, HasSubstr("<th>Steel, independent groups</th>"));
   EXPECT_THAT(page, HasSubstr("<td>0.0078</td>"));  // 2 / 256, of the paired test.
   EXPECT_THAT(page, HasSubstr("(p\u00a00.0078)"));
   EXPECT_THAT(page, Not(testing::ContainsRegex("[0-9]e-0")));
@@ -205,25 +253,65 @@ TEST(Latency, IsByStageAndWithoutTheWaitForContact) {
   auto people = People(1);
   for (int i = 1; i <= 100; ++i) {
     people[0].trials[0].responses.push_back(
-        {{"decode", 1}, {"contact", i <= 40 ? 100.0 : 0.0}, {"frame", 1.0 * i}});
+        {{"decode", 1}, {"command", 4}, {"contact", i <= 40 ? 100.0 : 0.0}, {"frame", 1.0 * i}});
   }
   const Analysis analysis = Analyze(Two(), people);
-  ASSERT_EQ(analysis.latency.size(), 5u);
-  EXPECT_EQ(analysis.latency[2].stage, "frame");
-  EXPECT_EQ(analysis.latency[2].responses, 100u);
-  EXPECT_DOUBLE_EQ(analysis.latency[2].p95_ms, 1 + 0.95 * 99);  // Of 1 to 100.
-  EXPECT_EQ(analysis.latency[3].stage, kWithoutContact);
-  EXPECT_EQ(analysis.latency[3].p50_ms, 51.5);  // 50.5, and the decoding.
-  EXPECT_EQ(analysis.latency[4].stage, kWhole);
-  EXPECT_EQ(analysis.latency[4].p50_ms, 91.5);  // 60 from 42 to 101, then 40 from 102.
+  ASSERT_EQ(analysis.latency.size(), 7u);
+  EXPECT_EQ(analysis.latency[3].stage, "frame");
+  EXPECT_EQ(analysis.latency[3].responses, 100u);
+  EXPECT_DOUBLE_EQ(analysis.latency[3].p95_ms, 1 + 0.95 * 99);  // Of 1 to 100.
+  EXPECT_EQ(analysis.latency[4].stage, kWithoutContact);
+  EXPECT_EQ(analysis.latency[4].p50_ms, 55.5);  // 50.5, the decoding and the command.
+  EXPECT_EQ(analysis.latency[5].stage, kWithoutWindow);
+  EXPECT_EQ(analysis.latency[5].p50_ms, 51.5);
+  EXPECT_DOUBLE_EQ(analysis.latency[5].p95_ms, 2 + 0.95 * 99);
+  EXPECT_EQ(analysis.latency[6].stage, kWhole);
+  EXPECT_EQ(analysis.latency[6].p50_ms, 95.5);  // 60 from 46 to 105, then 40 from 106.
   const auto& measure = Find(analysis, "latency_without_contact_ms");
   EXPECT_EQ(measure["groups"][0]["interface"], "wrist");
   EXPECT_THAT(ValuesCsv(analysis), HasSubstr("latency_contact_ms,bar,,wrist,0\n"));
-  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("latency_whole_ms,label,,wrist,91.5\n"));
+  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("latency_whole_ms,label,,wrist,95.5\n"));
   EXPECT_THAT(Page(analysis, Two(), people), HasSubstr("frame 50.5 ms"));
+  EXPECT_THAT(Page(analysis, Two(), people),  // In real time, too.
+              HasSubstr("<td>without contact and feature window</td><td>51.5 / 96.0</td>"));
   EXPECT_THAT(Page(analysis, Two(), people), Not(HasSubstr("Time was simulated")));
   people[0].simulated_time = true;
   EXPECT_THAT(Page(Analyze(Two(), people), Two(), people), HasSubstr("Time was simulated"));
+}
+
+TEST(Latency, LeavesOutTheStagesThatResponsesName) {
+  stream::ResponseStages stamps;
+  stamps.report_received_ns = 1'000'000;
+  stamps.decoded_ns = stamps.report_received_ns + 1'000'000;
+  stamps.features_computed_ns = stamps.decoded_ns + 2'000'000;
+  stamps.features_received_ns = stamps.features_computed_ns + 4'000'000;
+  stamps.command_ns = stamps.features_received_ns + 8'000'000;
+  stamps.contact_ns = stamps.command_ns + 16'000'000;
+  stamps.first_frame_ns = stamps.contact_ns + 32'000'000;
+  records::Response response;
+  for (const auto& one : stream::ResponseTimes(stamps)) response.push_back({one.name, one.ms});
+  EXPECT_NEAR(WithoutContactMs(response), 1 + 2 + 4 + 8 + 32, 1e-9);
+  EXPECT_NEAR(WithoutWindowMs(response), 1 + 2 + 4 + 32, 1e-9);
+}
+
+TEST(StudyAnalysis, ComparesTheRatingsAtTheEnd) {
+  auto people = People(6);
+  for (records::Records& person : people) {
+    person.ratings.push_back({person.participant, "wrist", "fun", 1, false, true});
+    person.ratings.push_back({person.participant, "joystick", "fun", 5, false, true});
+    person.ratings.push_back({person.participant, "", "worth it", 3, false, true});
+    person.answers.push_back({person.participant, "wrist", "good", "light", false, true});
+  }
+  const Analysis analysis = Analyze(Two(), people);
+  const auto& at_end = Find(analysis, "final_rating fun");
+  ASSERT_TRUE(at_end.is_object());
+  EXPECT_EQ(at_end["groups"][0]["mean"], 5);
+  EXPECT_EQ(Find(analysis, "rating fun")["groups"][0]["mean"], 2);  // Right after it.
+  const std::string page = Page(analysis, Two(), people);
+  EXPECT_THAT(page, HasSubstr("fun, at the end, rating 1 to 5"));
+  EXPECT_THAT(page, HasSubstr("<td>worth it, rating 1 to 5</td><td>6</td><td>3</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>good, at the end</td><td>light</td>"));
+  EXPECT_THAT(ValuesCsv(analysis), HasSubstr("final_rating fun,point,P0,wrist,1\n"));
 }
 
 TEST(ValuesCsv, HasTheBoxOfEachInterface) {

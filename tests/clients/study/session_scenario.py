@@ -46,6 +46,9 @@ def check_refusals(stage):
         wrong.write_text(json.dumps({**PROTOCOL, **change}))
         done = stage.run("footing-study", "check", wrong)
         assert done.returncode == 4 and says in done.stderr and "give the path" not in done.stderr, done
+    refused(stage, 2, "PROTOCOL is missing", "check")
+    schema = stage.run_json("footing-study", "check", "--schema")
+    assert schema["required"][-1] == "seed" and "final_survey" in schema["properties"], schema
     plan = stage.run_json("footing-study", "check", protocol)
     assert [one["participant"] for one in plan["sessions"]] == PROTOCOL["participants"], plan
     refused(stage, 2, "not in the protocol", *words(stage, "P09", "--unattended"))
@@ -73,9 +76,10 @@ def check_kill_and_resume(stage):
     assert trials[0]["phase"] == trials[1]["phase"] and trials[1]["trial"] != trials[0]["trial"]
     finished = [one for one in events if one["event"] == "trial_finished"]
     assert len(finished) == 4 and all(one["outcome"] in ("timed_out", "finished") for one in finished), finished
-    # Six ratings and the exertion, for each interface, within their scales and marked.
+    # Six ratings and the exertion for each interface, and six again at the end, within their scales and marked.
     ratings = [one for one in events if one["event"] in ("rating", "exertion")]
-    assert len(ratings) == 14 and all(one["synthetic"] for one in ratings), ratings
+    assert len(ratings) == 2 * 7 + 2 * 6 and all(one["synthetic"] for one in ratings), ratings
+    assert sorted({one["interface"] for one in ratings if one["at_end"]}) == ["arm", "wrist"], ratings
     assert all(1 <= one["value"] <= 5 for one in ratings if one["event"] == "rating"), ratings
     assert events[-1]["event"] == "session_finished", events[-1]
     active_s = sum(one["active_s"] for one in events if one["event"] == "phase_finished")
@@ -153,7 +157,8 @@ def check_report(stage):
     analysis = stage.run_json("footing-study", "analyze", protocol)
     assert analysis["synthetic"] and analysis["participants"] == 2 and analysis["withdrawn"] == 1, analysis
     found = {one["id"]: one for one in analysis["measures"]}
-    assert {"rating fun", "rating exertion", "test_failures_curve", "straight_oscillation_deg"} <= set(found), found
+    expected = {"rating fun", "final_rating fun", "rating exertion", "test_failures_curve", "straight_oscillation_deg"}
+    assert expected <= set(found), found
     assert [one["interface"] for one in found["rating fun"]["groups"]] == ["arm", "wrist"]
     wrote = stage.run_json("footing-study", "report", protocol)
     page, rows = (pathlib.Path(wrote[key]).read_text() for key in ("page", "csv"))
@@ -165,6 +170,10 @@ def check_report(stage):
     assert len([one for one in points if one[0] in figures]) <= page.count("<circle") <= len(points), rows
     assert "latency_without_contact_ms" in found and analysis["latency"][0]["stage"] == "decode", analysis["latency"]
     assert found["active_min"]["groups"][0]["mean"] > 0, found["active_min"]
+    tested = stage.run_json("footing-study", "analyze", protocol, "--ties", "joint", "--method", "asymptotic",
+                            "--alternative", "greater", "--seed", 5)
+    assert tested["tests"] == {"alternative": "greater", "ties": "joint", "method": "asymptotic", "seed": 5}, tested["tests"]
+    refused(stage, 2, "--method", "analyze", protocol, "--method", "guessed")
     refused(stage, 2, "exists", "report", protocol)
     other = stage.folder / "other.json"
     other.write_text(json.dumps({**PROTOCOL, "control": "wrist"}))

@@ -50,45 +50,95 @@ TEST(Anticipation, IsTheTimeFromTheCommandToTheLine) {
   // At 2 m/s, frames of 10 ms, the line at 3 m; the command comes at 2.4 m: (3 - 2.4) / 2 s.
   for (int i = 0; i <= 200; ++i) {
     const double to_mark_m = 3 - 0.02 * i;
-    anticipation.Add(kStartNs + i * kTickNs, to_mark_m, i < 120 ? Gait::kRun : Gait::kWalk,
-                     Gait::kWalk);
+    anticipation.Add({.host_ns = kStartNs + i * kTickNs,
+                      .to_mark_m = to_mark_m,
+                      .commanded = i < 120 ? Gait::kRun : Gait::kWalk,
+                      .running = Gait::kRun,
+                      .wanted = Gait::kWalk});
     EXPECT_EQ(anticipation.seconds().has_value(), to_mark_m <= 0);
   }
   EXPECT_NEAR(*anticipation.seconds(), 0.3, 0.011);
 }
 
+/// Frames of one task, 0.1 s apart, of a character that goes on running unless it is said.
+class Approach {
+ public:
+  explicit Approach(stream::Gait wanted) : wanted_(wanted) {}
+  void At(double to_mark_m, stream::Gait commanded, stream::Gait running = stream::Gait::kRun) {
+    anticipation.Add({.host_ns = now_ns_ += 100'000'000,
+                      .to_mark_m = to_mark_m,
+                      .commanded = commanded,
+                      .running = running,
+                      .wanted = wanted_});
+  }
+  Anticipation anticipation;
+
+ private:
+  stream::Gait wanted_;
+  std::int64_t now_ns_ = 0;
+};
+
 TEST(Anticipation, IsOfTheLastAttemptAndNegativeBehindTheLine) {
   using stream::Gait;
-  Anticipation anticipation;
-  std::int64_t now_ns = 0;
-  const auto at = [&](double to_mark_m, Gait commanded) {
-    anticipation.Add(now_ns += 100'000'000, to_mark_m, commanded, Gait::kJump);
-  };
-  at(1, Gait::kRun);
-  at(0.5, Gait::kJump);  // Too early: it fails, and is put back.
-  at(-0.1, Gait::kRun);
-  at(6, Gait::kStep);
-  at(1, Gait::kRun);
-  at(-0.1, Gait::kRun);  // Over the line ...
-  at(-0.4, Gait::kRun);
-  at(-0.7, Gait::kJump);  // ... and 0.2 s later the command.
-  EXPECT_NEAR(*anticipation.seconds(), -0.2, 1e-9);
+  Approach jump(Gait::kJump);
+  jump.At(1, Gait::kRun);
+  jump.At(0.5, Gait::kJump);  // Too early: it fails, and is put back.
+  jump.At(-0.1, Gait::kRun);
+  jump.At(6, Gait::kStep);
+  jump.At(1, Gait::kRun);
+  jump.At(-0.1, Gait::kRun);  // Over the line ...
+  jump.At(-0.4, Gait::kRun);
+  jump.At(-0.7, Gait::kJump);  // ... and 0.2 s later the command.
+  EXPECT_NEAR(*jump.anticipation.seconds(), -0.2, 1e-9);
 }
 
 TEST(Anticipation, BehindTheLineKeepsTheCommandOfTheSameApproach) {
   using stream::Gait;
-  Anticipation anticipation;
-  std::int64_t now_ns = 0;
-  const auto at = [&](double to_mark_m, Gait commanded) {
-    anticipation.Add(now_ns += 100'000'000, to_mark_m, commanded, Gait::kWalk);
-  };
-  at(1, Gait::kRun);
-  at(0.5, Gait::kWalk);  // 0.2 s before the line.
-  at(0.2, Gait::kWalk);
-  at(-0.1, Gait::kWalk);
-  at(-0.2, Gait::kRun);
-  at(-0.3, Gait::kWalk);  // Only once more.
-  EXPECT_NEAR(*anticipation.seconds(), 0.2, 1e-9);
+  Approach walk(Gait::kWalk);
+  walk.At(1, Gait::kRun);
+  walk.At(0.5, Gait::kWalk);  // 0.2 s before the line.
+  walk.At(0.2, Gait::kWalk);
+  walk.At(-0.1, Gait::kWalk);
+  walk.At(-0.2, Gait::kRun);
+  walk.At(-0.3, Gait::kWalk);  // Only once more.
+  EXPECT_NEAR(*walk.anticipation.seconds(), 0.2, 1e-9);
+}
+
+TEST(Anticipation, IsNotOfWhatWasGivenUpBeforeTheLine) {
+  using stream::Gait;
+  Approach walk(Gait::kWalk);
+  walk.At(29, Gait::kStep, Gait::kStep);
+  walk.At(28, Gait::kWalk, Gait::kStep);  // On the way from standing to running.
+  walk.At(27, Gait::kWalk, Gait::kWalk);
+  walk.At(20, Gait::kRun, Gait::kWalk);
+  walk.At(1, Gait::kRun);
+  walk.At(-0.1, Gait::kRun);
+  EXPECT_FALSE(walk.anticipation.seconds());
+  walk.At(-0.5, Gait::kRun);
+  walk.At(-0.9, Gait::kWalk);
+  EXPECT_NEAR(*walk.anticipation.seconds(), -0.2, 1e-9);
+  Approach at_line(Gait::kWalk);
+  at_line.At(28, Gait::kWalk, Gait::kStep);
+  at_line.At(20, Gait::kRun, Gait::kWalk);
+  at_line.At(0.1, Gait::kRun);
+  at_line.At(-0.1, Gait::kWalk);  // In the very frame that crosses it.
+  EXPECT_EQ(*at_line.anticipation.seconds(), 0);
+  Approach stop(Gait::kStep);  // Every trial begins with stepping in place.
+  stop.At(29, Gait::kStep, Gait::kStep);
+  stop.At(28, Gait::kRun, Gait::kStep);
+  stop.At(-0.1, Gait::kRun);
+  stop.At(-0.2, Gait::kStep);
+  EXPECT_NEAR(*stop.anticipation.seconds(), -0.1, 1e-9);
+}
+
+TEST(Anticipation, IsOfAJumpThatIsUnderWayAtTheLine) {
+  using stream::Gait;
+  Approach jump(Gait::kJump);
+  jump.At(1, Gait::kRun);
+  jump.At(0.5, Gait::kJump);
+  jump.At(0.2, Gait::kRun, Gait::kJump);  // One gesture: its command is over.
+  jump.At(-0.1, Gait::kRun, Gait::kJump);
+  EXPECT_NEAR(*jump.anticipation.seconds(), 0.2, 1e-9);
 }
 
 stream::TrialState FrameOf(const std::string& trial, stream::TrialPhase phase, double time_s) {

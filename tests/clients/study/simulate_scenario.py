@@ -76,8 +76,22 @@ def main():
         assert stage.run("footing-study", "report", *words).returncode == 0
         wrote = stage.run_json("footing-study", "export", *words, "--out", stage.folder / "a.bids")
         assert wrote["trials"] == 8 and not wrote["remarks"], wrote
+        check_camera_roll(stage)
         check_refusals(stage)
     return 0
+
+
+def check_camera_roll(stage):
+    """What the protocol chooses of the interface leg is in force, and the recording says so."""
+    protocol = {**PROTOCOL, "participants": ["P01"], "interfaces": ["leg"], "straight_trials": 0, "test_tracks": ["1"],
+                "trial_limit_s": 2, "camera_roll": True}
+    (stage.folder / "r.json").write_text(json.dumps(protocol))
+    words = (stage.folder / "r.json", "--folder", stage.folder / "r")
+    stage.run_json("footing-study", "simulate", *words, timeout_s=250)
+    stage.run_json("footing-study", "export", *words, "--out", stage.folder / "r.bids")
+    config = json.loads(next((stage.folder / "r.bids/sourcedata/config").iterdir()).read_text())
+    assert config["interface"]["name"] == "leg" and config["interface"]["camera_roll"] is True, config
+    assert config["settings"]["camera_roll"] is False, config
 
 
 def check_refusals(stage):

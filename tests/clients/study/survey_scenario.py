@@ -14,7 +14,8 @@ from harness import Stage, read_ticks  # noqa: E402
 PROTOCOL = {
     "version": 1, "name": "survey", "participants": ["P01"], "interfaces": ["wrist"], "seed": 2, "practice_s": 0,
     "straight_trials": 0, "test_tracks": [], "survey": {"ratings": ["fun", "stress"], "questions": ["good"]},
-    "final_survey": {"ratings": ["like"], "questions": []}, "devices": {"allow_simulated": True}, "disk_mb": 1,
+    "final_survey": {"ratings": ["like", "ease"], "questions": [], "overall": []}, "devices": {"allow_simulated": True},
+    "disk_mb": 1,
 }
 
 
@@ -68,16 +69,22 @@ def main():
         experimenter.process.wait()
         participant.read("Waiting for the experimenter")
         participant.type("1\n")  # Nobody has asked.
-        experimenter = start()  # The survey is asked as a whole; the new answers replace the old ones.
-        for item, text in (("fun", "5"), ("stress", "1"), ("exertion", "3"), ("good", "it walks")):
-            participant.answer(f"of 4(?s:.*){item}(?s:.*)press Enter", text)
-        participant.read("like")
-        experimenter.read("like: on the participant's screen. Press t")
+        experimenter = start()
+        experimenter.read("goes on with question 4 of 4")  # What was answered is not asked again.
+        participant.answer("4 of 4(?s:.*)good(?s:.*)press Enter", "it walks")
+        participant.answer("Looking back: interface wrist(?s:.*)1 of 2(?s:.*)like(?s:.*)press Enter", "5")
+        participant.read("2 of 2(?s:.*)ease")
+        experimenter.process.kill()
+        experimenter.process.wait()
+        experimenter = start()
+        experimenter.read("Survey at the end(?s:.*)goes on with question 2 of 2")
+        participant.read("Looking back: interface wrist(?s:.*)2 of 2(?s:.*)ease")
+        experimenter.read("ease: on the participant's screen(?s:.*)Press t to ask here")
         experimenter.type("t")
-        experimenter.answer("like, 1 to 5", "3")
+        experimenter.answer("wrist: ease, 1 to 5", "3")
         participant.read("Please answer the experimenter(?s:.*)Thank you")
         assert experimenter.process.wait(20) == 0
-        assert answers(stage) == [4, 2, 10, 5, 1, 3, "it walks", 3], answers(stage)
+        assert answers(stage) == [4, 2, 10, "it walks", 5, 3], answers(stage)
         shown(stage, "")  # It is over.
         done = stage.run("footing-study", "run", stage.folder / "s.json", "--participant", "P01", "--survey",
                          "tcp:0.0.0.0:4711")

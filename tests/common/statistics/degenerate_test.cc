@@ -127,6 +127,15 @@ TEST(DegenerateData, OfTwoValuesInAGroup) { RunAll(TableOf({{1, 2}, {3, 5}})); }
 
 TEST(DegenerateData, OfOneValueInTheControl) { RunAll(TableOf({{1}, {3, 5, 4}, {2}})); }
 
+TEST(DegenerateData, OfOneValueInEachGroupHaveAnAsymptoticP) {
+  const Groups groups = {{"control", {1}}, {"treatment", {2}}};
+  for (const Ties ties : {Ties::kPairwise, Ties::kJoint}) {
+    const auto p = SteelAsymptotic(groups, Alternative::kTwoSided, {.ties = ties});
+    // U is 0 or 1, so its deviation is 1/2 and z = 1: p = 2 (1 - Phi(1)).
+    EXPECT_NEAR(p.at(0), std::erfc(1 / std::sqrt(2.0)), 1e-10);
+  }
+}
+
 TEST(DegenerateData, OfGreatAndSmallScale) {
   RunAll(TableOf({{0, 2, 1, 0}, {0, 0, 0, 1}, {0, 0, 0, 0}}));
   for (const double scale : {1e100, 1e-100, 5e-324}) {

@@ -29,6 +29,20 @@ TEST(EffectiveConfig, HasVersionSettingsGainsAndTheTableWithItsValues) {
   EXPECT_EQ(shown["interface"]["table"], json::parse(texts.mapping));
 }
 
+TEST(EffectiveConfig, SaysThatThePictureRollsWhoeverChoseIt) {
+  const auto texts = *engine_files::ReadTexts();
+  EffectiveConfig effective({}, {}, texts, {});
+  const auto rolls = [&](const mapping::InterfaceOptions& options, const std::string& table) {
+    effective.SetInterface(1, options, table, "a client");
+    return json::parse(effective.Message().json())["interface"]["camera_roll"];
+  };
+  mapping::InterfaceOptions leg{.interface = stream::UserInterface::kLeg};
+  EXPECT_EQ(rolls(leg, "{}"), false);
+  EXPECT_EQ(rolls(leg, R"({"camera_roll": true})"), true);
+  leg.leg.camera_roll = true;
+  EXPECT_EQ(rolls(leg, "{}"), true);
+}
+
 TEST(EffectiveConfig, ShowsAnotherInterfaceAndItsTable) {
   const auto texts = *engine_files::ReadTexts();
   EffectiveConfig effective({}, {}, texts, {});

@@ -118,6 +118,23 @@ TEST(Leg, ThePictureFollowsTheHeadOnlyWhereThatIsChosen) {
   EXPECT_NEAR(rolling.state().view_roll_rad, DegreesToRadians(45), 1e-12);
 }
 
+TEST(Leg, ATableMayChooseThatThePictureFollowsTheHead) {
+  std::string table = test::DataFile(kLegMappingFile);
+  table.insert(table.find('{') + 1, "\"camera_roll\": true,");
+  const auto mapping = ParseLegMapping(table, kLegMappingFile);
+  ASSERT_TRUE(mapping) << mapping.error().message;
+  LegInterface leg(*mapping, {});
+  Inputs inputs = Standing();
+  inputs.head = Upright(12);
+  leg.Advance(0, inputs);
+  EXPECT_NEAR(leg.state().view_roll_rad, DegreesToRadians(12), 1e-12);
+  table.replace(table.find("true"), 4, "7");
+  const auto wrong = ParseLegMapping(table, kLegMappingFile);
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message.find("camera_roll is 7, allowed is true or false"),
+            std::string::npos);
+}
+
 TEST(Leg, WithoutItsLegsTheCharacterStopsAndTurnsNoMore) {
   LegInterface leg = NewLeg();
   Inputs inputs = Stepping(1, kPi);

@@ -16,10 +16,7 @@ namespace footing::eval {
 namespace {
 
 using nlohmann::ordered_json;
-using statistics::Alternative;
-using statistics::Method;
-using statistics::TestKind;
-using statistics::Ties;
+using statistics::NamesOf;
 
 struct StatsOptions {
   std::string data;
@@ -31,40 +28,19 @@ struct StatsOptions {
   statistics::AnalysisRequest request;
 };
 
-/// The values of an enum by their names on the command line.
-template <typename Enum, std::size_t count>
-Enum Named(const std::string& name, const Enum (&all)[count]) {
-  for (const Enum value : all) {
-    if (statistics::NameOf(value) == name) return value;
-  }
-  return all[0];
-}
-
-constexpr TestKind kTests[] = {TestKind::kDunnett, TestKind::kSteel, TestKind::kPaired,
-                               TestKind::kRate};
-constexpr Alternative kAlternatives[] = {Alternative::kTwoSided, Alternative::kGreater,
-                                         Alternative::kLess};
-constexpr Ties kTies[] = {Ties::kPairwise, Ties::kJoint};
-constexpr Method kMethods[] = {Method::kExact, Method::kPermutation, Method::kAsymptotic};
-
-template <typename Enum, std::size_t count>
-std::vector<std::string> NamesOf(const Enum (&all)[count]) {
-  std::vector<std::string> names;
-  for (const Enum value : all) names.emplace_back(statistics::NameOf(value));
-  return names;
-}
-
 Result<ordered_json> EvaluateStats(const StatsOptions& options) {
   statistics::AnalysisRequest request = options.request;
-  request.test = Named(options.test, kTests);
-  request.alternative = Named(options.alternative, kAlternatives);
+  request.test = statistics::Named(options.test, statistics::kTests);
+  request.alternative = statistics::Named(options.alternative, statistics::kAlternatives);
   if (!options.ties.empty()) {
-    if (request.test != TestKind::kSteel) {
+    if (request.test != statistics::TestKind::kSteel) {
       return UsageError("--ties applies to --test steel only");
     }
-    request.ties = Named(options.ties, kTies);
+    request.ties = statistics::Named(options.ties, statistics::kAllTies);
   }
-  if (!options.method.empty()) request.method = Named(options.method, kMethods);
+  if (!options.method.empty()) {
+    request.method = statistics::Named(options.method, statistics::kMethods);
+  }
   const auto text = config::ReadTextFile(options.data);
   if (!text) return text.error();
   const auto table = statistics::ParseStudyTable(
@@ -80,7 +56,7 @@ Result<ordered_json> EvaluateStats(const StatsOptions& options) {
 void AddStatsOptions(CLI::App& command, StatsOptions& options) {
   command.add_option("--test", options.test, "Test of each group against the control")
       ->required()
-      ->check(CLI::IsMember(NamesOf(kTests)));
+      ->check(CLI::IsMember(NamesOf(statistics::kTests)));
   command
       .add_option("--data", options.data,
                   "CSV with the columns group_index,group,value, where group_index 0 is the "
@@ -90,17 +66,17 @@ void AddStatsOptions(CLI::App& command, StatsOptions& options) {
   command
       .add_option("--alternative", options.alternative,
                   "Differences looked for: any, or values greater or less than the control's")
-      ->check(CLI::IsMember(NamesOf(kAlternatives)));
+      ->check(CLI::IsMember(NamesOf(statistics::kAlternatives)));
   command
       .add_option("--ties", options.ties,
                   "Ties that Steel's deviation allows for: of the two groups compared, or of all "
                   "groups (default pairwise)")
-      ->check(CLI::IsMember(NamesOf(kTies)));
+      ->check(CLI::IsMember(NamesOf(statistics::kAllTies)));
   command
       .add_option("--method", options.method,
                   "Source of p (default: exact where feasible, otherwise permutation; rate: "
                   "asymptotic)")
-      ->check(CLI::IsMember(NamesOf(kMethods)));
+      ->check(CLI::IsMember(NamesOf(statistics::kMethods)));
   command.add_option("--seed", options.request.seed, "Seed of the random permutations");
   command
       .add_option("--permutations", options.request.permutations, "Number of random permutations")
