@@ -40,6 +40,15 @@ int HandSideOf(v1::DeviceRole role) {
   return SideOf(role, v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND);
 }
 
+struct ArmRoles {
+  arms::Place place;
+  v1::DeviceRole left, right;
+};
+constexpr ArmRoles kArmRoles[] = {
+    {arms::Place::kFist, v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND},
+    {arms::Place::kUpperArm, v1::DEVICE_ROLE_LEFT_UPPER_ARM, v1::DEVICE_ROLE_RIGHT_UPPER_ARM},
+    {arms::Place::kForearm, v1::DEVICE_ROLE_LEFT_FOREARM, v1::DEVICE_ROLE_RIGHT_FOREARM}};
+
 }  // namespace
 
 PoseSensors::PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
@@ -53,13 +62,8 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
     if (followed_rig_.empty() && BoardSideOf(device.role()) >= 0) followed_rig_ = device.rig();
   }
   std::array<Board, momentum::kFeet> boards{};
-  std::array<std::optional<std::uint32_t>, reconstruction::kHands> wiimotes;
   for (const v1::DeviceStatus& device : status.devices()) {
     if (device.rig() != followed_rig_) continue;
-    const int hand = HandSideOf(device.role());
-    if (hand >= 0 && device.kind() == v1::DEVICE_KIND_WIIMOTE) {
-      wiimotes[static_cast<std::size_t>(hand)] = device.device();
-    }
     const int side = BoardSideOf(device.role());
     if (side < 0) continue;
     Board& board = boards[static_cast<std::size_t>(side)];
@@ -69,7 +73,21 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
     board.device = device.device();
   }
   boards_ = boards;
-  for (std::size_t side = 0; side < wiimotes.size(); ++side) arms_.Bind(side, wiimotes[side]);
+  BindArms(status);
+}
+
+void PoseSensors::BindArms(const v1::DeviceStatusList& status) {
+  for (const ArmRoles& roles : kArmRoles) {
+    std::array<std::optional<std::uint32_t>, reconstruction::kHands> wiimotes;
+    for (const v1::DeviceStatus& device : status.devices()) {
+      const int side = SideOf(device.role(), roles.left, roles.right);
+      if (side < 0 || device.rig() != followed_rig_ || device.kind() != v1::DEVICE_KIND_WIIMOTE)
+        continue;
+      wiimotes[static_cast<std::size_t>(side)] = device.device();
+    }
+    for (std::size_t side = 0; side < wiimotes.size(); ++side)
+      arms_.Bind(side, wiimotes[side], roles.place);
+  }
 }
 
 void PoseSensors::Place(const v1::SetupState& setup) {

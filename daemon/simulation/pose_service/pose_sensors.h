@@ -18,7 +18,7 @@ namespace footing::pose_service {
 /// Turns ticks of the sensor daemon into inputs of the pose engine, on the io thread: the newest
 /// raw sample of the rig's left and right board with its cells' places in W and what they have felt
 /// so far, of its insoles, of its hands and of the joints of its skeleton as they have gone on
-/// since the tracker saw them, and how its arms are held by the Wiimotes in the fists.
+/// since the tracker saw them, and how its arms are held by the Wiimotes on them.
 ///
 /// A board or an insole without samples, or a hand or joint not seen, for longer than its timeout
 /// is not valid, which is not the same as no load. A joint that its tracker looked for and did not
@@ -65,6 +65,7 @@ class PoseSensors {
   };
 
   void Bind(const v1::DeviceStatusList& status);
+  void BindArms(const v1::DeviceStatusList& status);
   /// Puts the cells where the followed rig's boards have them.
   void Place(const v1::SetupState& setup);
   void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);

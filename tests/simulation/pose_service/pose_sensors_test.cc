@@ -285,6 +285,15 @@ TEST_F(PoseSensorsTest, AWiimoteInAHandOfTheRigIsBoundByItsRole) {
   EXPECT_EQ(told.hand_trouble[1], HandTrouble::kNone);
 }
 
+TEST_F(PoseSensorsTest, AStrappedWiimoteIsBoundByItsRole) {
+  v1::Tick status = StatusTick();
+  AddDevice(status, 21, v1::DEVICE_ROLE_RIGHT_FOREARM);
+  status.mutable_status()->mutable_devices(2)->set_kind(v1::DEVICE_KIND_WIIMOTE);
+  After(status);
+  EXPECT_EQ(After({}).hand_trouble[1], HandTrouble::kOneStrap);
+  EXPECT_EQ(After({}).hand_trouble[0], HandTrouble::kNone);
+}
+
 TEST_F(PoseSensorsTest, SamplesOfThePastAndOfOtherRigsAreNotTold) {
   v1::Tick status = StatusTick();
   AddDevice(status, 11, v1::DEVICE_ROLE_LEFT_BOARD, "two");
