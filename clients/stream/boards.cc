@@ -27,21 +27,20 @@ SimulatedDevice::CornerForces UnderFoot(std::shared_ptr<const Stage> stage, std:
   };
 }
 
-/// Errors of the device and of the grip; the device itself counts.
-sensors::HeldErrors ErrorsInFist(std::uint64_t seed) {
+/// Errors of the device and of its mounting; the device itself counts.
+sensors::HeldErrors ErrorsOf(bool rolled, std::uint64_t seed) {
   sensors::HeldErrorConfig config;
   config.force_count_mps2 = config.turn_count_radps = 0;
+  config.rolled = rolled;
   config.seed = seed;
   return sensors::HeldErrors(config);
 }
 
-}  // namespace
-
-SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
-                                      std::uint64_t seed) {
-  const auto course = std::make_shared<const sensors::HeldCourse>(
-      sensors::FollowFist(stage->scene.body, stage->scene.motion, side));
-  return [stage, course, errors = ErrorsInFist(seed), last_s = 0.0](double t_s) mutable {
+SimulatedDevice::WiimoteMotion Felt(std::shared_ptr<const Stage> stage,
+                                    sensors::HeldCourse true_course,
+                                    const sensors::HeldErrors& of_device) {
+  const auto course = std::make_shared<const sensors::HeldCourse>(std::move(true_course));
+  return [stage, course, errors = of_device, last_s = 0.0](double t_s) mutable {
     const Stage::Instant at = stage->At(t_s);
     const auto between = [&at](const Eigen::Matrix3Xd& values) -> Eigen::Vector3d {
       return (1 - at.share) * values.col(at.frame) + at.share * values.col(at.frame + 1);
@@ -56,14 +55,37 @@ SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int si
   };
 }
 
-namespace {
+void AddWiimotes(const std::shared_ptr<const Stage>& stage, const std::string& hands,
+                 const Common& common, virtual_devices::LinkQuality link, Plan& plan) {
+  const auto add = [&](DeviceRole role, const auto& motion_of) {
+    const std::uint64_t device = plan.devices.size() + 1;
+    plan.devices.push_back(MakeWiimote(common, link, device, role,
+                                       motion_of(DeviceSeed(common, device) + 700), {true, false}));
+  };
+  for (const int side : {0, 1}) {
+    const auto role = [side](DeviceRole left, DeviceRole right) {
+      return side == 0 ? left : right;
+    };
+    if (hands == "wiimote") {
+      add(role(DeviceRole::kLeftHand, DeviceRole::kRightHand),
+          [&](std::uint64_t seed) { return InFist(stage, side, seed); });
+    }
+    if (hands != "straps") continue;
+    add(role(DeviceRole::kLeftUpperArm, DeviceRole::kRightUpperArm), [&](std::uint64_t seed) {
+      return OnSegment(stage, side, sensors::ArmSegment::kUpperArm, seed);
+    });
+    add(role(DeviceRole::kLeftForearm, DeviceRole::kRightForearm), [&](std::uint64_t seed) {
+      return OnSegment(stage, side, sensors::ArmSegment::kForearm, seed);
+    });
+  }
+}
 
 Result<void> CheckHands(const BoardsOptions& options) {
   const std::string& hands = options.hands;
   if (hands != "none" && hands != "move" && hands != "wiimote" && hands != "kinect" &&
-      hands != "camera") {
+      hands != "camera" && hands != "straps") {
     return UsageError("--hands " + hands +
-                      " is unknown; must be one of: none, move, wiimote, kinect, camera");
+                      " is unknown; must be one of: none, move, wiimote, straps, kinect, camera");
   }
   if (hands == "camera" && (options.camera_file.empty() || options.frames_to.empty())) {
     return UsageError("--hands camera needs --camera FILE and --frames-to FIFO");
@@ -72,7 +94,7 @@ Result<void> CheckHands(const BoardsOptions& options) {
   if (!lost.empty() && lost != "left" && lost != "right") {
     return UsageError("--lose-hand " + lost + " is unknown; must be left or right");
   }
-  if (!lost.empty() && (hands == "none" || hands == "camera")) {
+  if (!lost.empty() && (hands == "none" || hands == "camera" || hands == "straps")) {
     return UsageError("--lose-hand " + lost + ": with --hands " + hands +
                       " there is nothing to lose");
   }
@@ -102,6 +124,18 @@ void LoseHand(const BoardsOptions& options, Plan& plan) {
 
 }  // namespace
 
+SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
+                                      std::uint64_t seed) {
+  auto course = sensors::FollowFist(stage->scene.body, stage->scene.motion, side);
+  return Felt(std::move(stage), std::move(course), ErrorsOf(false, seed));
+}
+
+SimulatedDevice::WiimoteMotion OnSegment(std::shared_ptr<const Stage> stage, int side,
+                                         sensors::ArmSegment segment, std::uint64_t seed) {
+  auto course = sensors::FollowSegment(stage->scene.body, stage->scene.motion, side, segment);
+  return Felt(std::move(stage), std::move(course), ErrorsOf(true, seed));
+}
+
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
   if (const auto checked = CheckHands(options); !checked) return checked.error();
   const auto link = ParseLink(common.link);
@@ -119,14 +153,7 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
                               foot == 0 ? DeviceRole::kLeftBoard : DeviceRole::kRightBoard,
                               virtual_devices::BoardLink(*link, seed + 500));
   }
-  if (options.hands == "wiimote") {
-    for (const int side : {0, 1}) {
-      const std::uint64_t device = 3 + static_cast<std::uint64_t>(side);
-      plan.devices.push_back(MakeWiimote(
-          common, *link, device, side == 0 ? DeviceRole::kLeftHand : DeviceRole::kRightHand,
-          InFist(stage, side, DeviceSeed(common, device) + 700), {true, false}));
-    }
-  }
+  AddWiimotes(stage, options.hands, common, *link, plan);
   AddBodyFeeds(stage, options.hands, options.hand_noise_m, common, plan);
   if (options.hands == "camera") {
     auto frames = RenderedHandsFeed(stage, options.camera_file, options.frames_to,

@@ -7,12 +7,13 @@
 #include "clients/stream/body_stage.h"
 #include "clients/stream/plan.h"
 #include "common/virtual/sensors/board_cells.h"
+#include "common/virtual/sensors/held_device.h"
 
 namespace footing::stream_client {
 
 struct BoardsOptions {
   StageOptions stage;
-  std::string hands = "none";          ///< none, move, wiimote, kinect or camera.
+  std::string hands = "none";          ///< none, move, wiimote, straps, kinect or camera.
   std::string camera_file, frames_to;  ///< Of hands "camera": the simulated camera, and a FIFO.
   /// A hand that is lost for a while: its Wiimote out of reach, or not seen.
   std::string lost_hand;  ///< left or right; empty: none is.
@@ -24,11 +25,16 @@ struct BoardsOptions {
 /// Two Balance Boards under a body in motion, its true pose, and its hands: as a tracker sees them
 /// ("move"), as a Kinect does ("kinect"), or as two Wiimotes with MotionPlus in the fists feel them
 /// ("wiimote"), each held so that it points forward with its buttons up in the T-pose, give or take
-/// the errors of virtual_sensors::HeldErrors; or as rendered frames for footing-camera ("camera").
+/// the errors of virtual_sensors::HeldErrors, or strapped on upper arms and forearms ("straps"); or
+/// as rendered frames for footing-camera ("camera").
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common);
 
 /// What a Wiimote in the fist of side 0 (left) or 1 feels. A copy starts from the beginning.
 SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
                                       std::uint64_t seed);
+
+/// What a Wiimote strapped there feels.
+SimulatedDevice::WiimoteMotion OnSegment(std::shared_ptr<const Stage> stage, int side,
+                                         virtual_sensors::ArmSegment segment, std::uint64_t seed);
 
 }  // namespace footing::stream_client

@@ -32,7 +32,7 @@ CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
       app.add_subcommand("boards", "Two Balance Boards, and hand devices, under a moving body");
   AddMotion(*boards, options.stage);
   boards->add_option("--hands", options.hands,
-                     "Hand devices: none, move, wiimote, kinect or camera");
+                     "Hand devices: none, move, wiimote, straps, kinect or camera");
   boards->add_option("--camera", options.camera_file,
                      "Camera file of the simulated camera, of --hands camera");
   boards->add_option("--frames-to", options.frames_to,

@@ -1,6 +1,7 @@
 #include "clients/stream/feeds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/body/kinematics.h"
@@ -101,8 +102,8 @@ Feed KinectFeed(std::shared_ptr<const Stage> stage, std::uint64_t seed) {
         point.joint = static_cast<stream::BodyJoint>(i - KinectSkeleton::kHands + 1);
       }
       point.position_m = seen[i].p_W_m;
-      point.sd_m.setConstant(seen[i].sd_m);
       point.confidence = seen[i].hidden ? kInferred : kTracked;
+      point.sd_m.setConstant(std::sqrt(point.confidence) * seen[i].sd_m);
       point.occluded = seen[i].hidden;
     }
     return frame;

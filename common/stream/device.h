@@ -37,6 +37,10 @@ enum class DeviceRole {
   kRightBoard = 7,
   kEditor = 8,
   kTrunk = 9,
+  kLeftUpperArm = 10,
+  kRightUpperArm = 11,
+  kLeftForearm = 12,
+  kRightForearm = 13,
 };
 
 enum class DeviceState { kUnspecified = 0, kConnecting = 1, kLive = 2, kStale = 3, kLost = 4 };
@@ -61,7 +65,8 @@ DeviceRole RoleNamed(const std::string& name);
 std::string RoleNames();
 
 /// The lamps that show a role, bits 0 to 3: left hand 1, right hand 2, left leg 3, right leg 4,
-/// head 1 and 4, trunk 1 and 3, editor 2 and 3. A board has the first lamp alone: lit on the left
+/// head 1 and 4, trunk 1 and 3, editor 2 and 3, left upper arm 1 and 2, right upper arm 2 and 4,
+/// left forearm 1 to 3, right forearm 2 to 4. A board has the first lamp alone: lit on the left
 /// one, dark on the right one. 0 without a role.
 std::uint32_t LedsOf(DeviceRole role);
 

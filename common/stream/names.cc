@@ -10,8 +10,10 @@ namespace footing::stream {
 namespace {
 
 constexpr std::array kKinds = {"unknown", "wiimote", "balance_board", "ps_move", "pro_controller"};
-constexpr std::array kRoles = {"none", "left_hand",  "right_hand",  "left_leg", "right_leg",
-                               "head", "left_board", "right_board", "editor",   "trunk"};
+constexpr std::array kRoles = {"none",         "left_hand",    "right_hand",     "left_leg",
+                               "right_leg",    "head",         "left_board",     "right_board",
+                               "editor",       "trunk",        "left_upper_arm", "right_upper_arm",
+                               "left_forearm", "right_forearm"};
 constexpr std::array kStates = {"unknown", "connecting", "live", "stale", "lost"};
 constexpr std::array kOrigins = {"unknown", "device", "device_copy", "defaults", "stored"};
 constexpr std::array kExtensions = {"unknown",
@@ -110,6 +112,14 @@ std::uint32_t LedsOf(DeviceRole role) {
       return 0b0001;
     case DeviceRole::kEditor:
       return 0b0110;
+    case DeviceRole::kLeftUpperArm:
+      return 0b0011;
+    case DeviceRole::kRightUpperArm:
+      return 0b1010;
+    case DeviceRole::kLeftForearm:
+      return 0b0111;
+    case DeviceRole::kRightForearm:
+      return 0b1110;
     case DeviceRole::kRightBoard:
     case DeviceRole::kUnspecified:
       return 0;

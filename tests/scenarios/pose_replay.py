@@ -1,13 +1,15 @@
-"""A recording of the pose engine, with boards and a Kinect's joints, runs again to the same frames, bit for bit.
+"""A recording of the pose engine, with boards and a Kinect's joints, spheres that footing-camera finds in rendered
+frames, or Wiimotes strapped on the arms, runs again to the same frames, bit for bit.
 
-Usage: pose_replay.py BINARY_FOLDER
+Usage: pose_replay.py BINARY_FOLDER kinect|camera|straps
 """
 import sys
 
 from harness import Stage
+from pose_hands import start
 
 
-def main(binaries):
+def main(binaries, hands):
     with Stage(binaries) as stage:
         stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
         stage.wait_for_socket(stage.sensor)
@@ -15,16 +17,15 @@ def main(binaries):
         stage.start("footing-sim", "--engine", "pose", "--sensor", stage.sensor, "--listen",
                     stage.simulation)
         stage.wait_for_socket(stage.simulation)
-        stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "kinect", "--to",
-                    stage.devices)
+        start(stage, hands)
         recording = stage.folder / "recording.mcap"
         logger = stage.start("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",
                              stage.simulation, "--out", recording, "--seconds", 14)
         stage.wait_for(lambda: "footing-sim" in (stage.folder / "footing-log.log").read_text(),
                        "the logger to be connected")
         # A T-pose, then a second subject in the middle of the motion.
-        done = stage.run("footing-view", "--connect", stage.simulation, "--text", "--seconds", 8)
-        assert done.returncode == 0, done
+        seen = stage.run_json("footing-view", "--connect", stage.simulation, "--text", "--seconds", 8)
+        assert seen["hands"] == {"straps": "wiimote"}.get(hands, hands), seen
         subject = stage.folder / "p02.json"
         subject.write_text('{"code": "p02", "height_m": 1.62}')
         done = stage.run("footing-ctl", "--connect", stage.simulation, "subject", subject)
@@ -38,4 +39,4 @@ def main(binaries):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1], sys.argv[2])

@@ -1,10 +1,9 @@
 """The page of footing-skeleton --web, without a person and, where there are a browser and the npm package
 @mediapipe/pose, in headless Chromium: files and refusals over HTTP; joints that the page makes of a synthetic
-person reach footingd; the pose model loads from this host and runs on the frames of a generated video.
+person reach footingd; the pose model loads from this host and runs on the frames of a generated video, in
+which it finds nobody, and of a photograph, whose person's joints reach footingd.
 
-A drawn figure is no person to the model, so what it finds is not tested.
-
-Usage: skeleton_page.py BINARY_FOLDER (http|synthetic|model)
+Usage: skeleton_page.py BINARY_FOLDER (http|synthetic|model|person)
 """
 import http.client
 import json
@@ -21,6 +20,7 @@ import tempfile
 import harness
 
 PACKAGE = pathlib.Path(os.environ.get("XDG_DATA_HOME") or pathlib.Path.home() / ".local/share") / "footing/mediapipe-pose"
+PICTURE = pathlib.Path(__file__).parent / "pictures/astronaut.jpg"
 PROFILE = tempfile.TemporaryDirectory(prefix="footing-chromium.", ignore_cleanup_errors=True)
 
 
@@ -156,13 +156,42 @@ def check_model(stage):
     assert web["frames"] >= 1, web
 
 
+def check_person(stage):
+    """A photograph as a webcam: the model finds who is in it, and where the joints are to each other."""
+    stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
+    stage.wait_for_socket(stage.sensor)
+    stage.wait_for_socket(stage.devices)
+    video = stage.folder / "person.mjpeg"
+    video.write_bytes(10 * PICTURE.read_bytes())
+    port = serve(stage, 0, "--to", stage.devices)
+    browse(stage, port, "camera", f"--use-file-for-fake-video-capture={video}")
+    log = stage.folder / "skeleton.log"
+    stage.wait_for(lambda: "page: the model runs" in log.read_text() or "page: stopped" in log.read_text(),
+                   "the model", timeout_s=250)
+    assert "page: stopped" not in log.read_text(), log.read_text()
+    samples = [sample for tick in harness.read_ticks(stage.sensor, 15, ("hands",))
+               for sample in tick.get("hands", {}).get("samples", [])]
+    stage.processes["skeleton"].send_signal(signal.SIGINT)
+    report = statistics(stage, 20)
+    assert report["web"]["found"] >= 3 and report["web"]["found"] >= 0.9 * report["web"]["frames"], report
+    assert report["people"][0]["skeletons"] >= 3 and report["people"][0]["joints"] >= 20, report
+    assert report["published"] >= 3, report
+    # Head, left and right shoulder. She faces the camera, which looks along -x: her left is at y > 0.
+    head, left, right = ([one["position_m"] for one in samples if one.get("joint") == number and one["confidence"] > 0]
+                         for number in (1, 3, 4))
+    assert head and left and right, len(samples)
+    assert 0.2 < left[-1]["y"] - right[-1]["y"] < 0.6, (left[-1], right[-1])
+    assert head[-1]["z"] > max(left[-1]["z"], right[-1]["z"]) + 0.1, (head[-1], left[-1], right[-1])
+
+
 def main():
     part = sys.argv[2]
     if part != "http" and not shutil.which("chromium"):
         skip("chromium is missing; scripts/dependencies-web.txt lists what this test needs")
-    if part == "model" and not (PACKAGE / "pose.js").is_file():
+    if part in ("model", "person") and not (PACKAGE / "pose.js").is_file():
         skip("@mediapipe/pose is missing; run scripts/fetch-pose-model")
-    checks = {"http": (check_http, check_missing_package), "synthetic": (check_synthetic,), "model": (check_model,)}
+    checks = {"http": (check_http, check_missing_package), "synthetic": (check_synthetic,), "model": (check_model,),
+              "person": (check_person,)}
     for check in checks[part]:
         with harness.Stage(sys.argv[1]) as stage:
             check(stage)

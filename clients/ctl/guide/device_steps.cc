@@ -41,6 +41,14 @@ std::string RoleText(stream::DeviceRole role) {
       return "the head";
     case stream::DeviceRole::kTrunk:
       return "the chest";
+    case stream::DeviceRole::kLeftUpperArm:
+      return "the left upper arm";
+    case stream::DeviceRole::kRightUpperArm:
+      return "the right upper arm";
+    case stream::DeviceRole::kLeftForearm:
+      return "the left forearm";
+    case stream::DeviceRole::kRightForearm:
+      return "the right forearm";
     case stream::DeviceRole::kLeftBoard:
       return "the left board";
     case stream::DeviceRole::kRightBoard:

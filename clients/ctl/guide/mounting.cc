@@ -82,6 +82,10 @@ std::string Picture(stream::DeviceRole role) {
       return kWrist;
     case stream::DeviceRole::kLeftBoard:
     case stream::DeviceRole::kRightBoard:
+    case stream::DeviceRole::kLeftUpperArm:
+    case stream::DeviceRole::kRightUpperArm:
+    case stream::DeviceRole::kLeftForearm:
+    case stream::DeviceRole::kRightForearm:
     case stream::DeviceRole::kEditor:
     case stream::DeviceRole::kUnspecified:
       return "";
@@ -105,6 +109,10 @@ std::string Wearing(stream::DeviceRole role) {
       return "right wrist: buttons up, front along the fingers";
     case stream::DeviceRole::kLeftBoard:
     case stream::DeviceRole::kRightBoard:
+    case stream::DeviceRole::kLeftUpperArm:
+    case stream::DeviceRole::kRightUpperArm:
+    case stream::DeviceRole::kLeftForearm:
+    case stream::DeviceRole::kRightForearm:
     case stream::DeviceRole::kEditor:
     case stream::DeviceRole::kUnspecified:
       return "";

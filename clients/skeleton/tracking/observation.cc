@@ -54,7 +54,8 @@ stream::HandFrame ToHandFrame(const Observation& observation, std::int64_t now_n
     const JointObservation& joint = observation.joints[i];
     if (joint.present && joint.p_W_m.norm() <= stream::kFarthestPointM) {
       point.position_m = joint.p_W_m;
-      const Eigen::Matrix3d& covariance = joint.covariance_W_m2;
+      // Whoever uses the point divides its covariance by its confidence.
+      const Eigen::Matrix3d covariance = joint.confidence * joint.covariance_W_m2;
       point.sd_m = covariance.diagonal().cwiseSqrt();
       point.covariance_m2 = {covariance(0, 1), covariance(0, 2), covariance(1, 2)};
       point.confidence = joint.confidence;

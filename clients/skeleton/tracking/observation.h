@@ -41,7 +41,8 @@ inline constexpr double kInferredFactor = 3;
 Observation Observe(const Skeleton& skeleton, const Eigen::Isometry3d& X_WK);
 
 /// An observation for the device socket: all joints, those that are absent, or too far off, with
-/// confidence 0.
+/// confidence 0. What counts of a point is its covariance over its confidence, which is the
+/// observation's (docs/protocol.md).
 stream::HandFrame ToHandFrame(const Observation& observation, std::int64_t now_ns);
 
 }  // namespace footing::skeleton

@@ -174,6 +174,10 @@ Stance StanceOf(const Model& model) {
       case stream::DeviceRole::kRightLeg:
       case stream::DeviceRole::kHead:
       case stream::DeviceRole::kTrunk:
+      case stream::DeviceRole::kLeftUpperArm:
+      case stream::DeviceRole::kRightUpperArm:
+      case stream::DeviceRole::kLeftForearm:
+      case stream::DeviceRole::kRightForearm:
       case stream::DeviceRole::kEditor:
         left_n += left_cells_n;
         right_n += right_cells_n;

@@ -10,7 +10,7 @@
 
 namespace footing::virtual_sensors {
 
-/// What a device held in a fist measures, a column a frame, in its held frame S
+/// What a device on an arm measures, a column a frame, in its held frame S
 /// (common/body/held_frame.h).
 struct HeldCourse {
   Eigen::Matrix3Xd specific_force_S_mps2;
@@ -21,6 +21,12 @@ struct HeldCourse {
 /// are not fit to be differentiated twice. The motion's skeleton is the body's.
 HeldCourse FollowFist(const body::Body& body, const motion::Motion& motion, int side,
                       double cutoff_hz = 10);
+
+/// Strapped halfway along the upper arm or forearm of a side, without errors of its mounting: in
+/// the T-pose S's x points outwards, as the arm does, and z up.
+enum class ArmSegment { kUpperArm, kForearm };
+HeldCourse FollowSegment(const body::Body& body, const motion::Motion& motion, int side,
+                         ArmSegment segment, double cutoff_hz = 10);
 
 /// Errors of a Wiimote with MotionPlus and of the hand that holds it; standard deviations unless
 /// said otherwise. Noises, counts and ranges are the devices' (docs/hands.md).
@@ -35,7 +41,8 @@ struct HeldErrorConfig {
   double turn_walk_radps_rt_s = 0.0003;  ///< The bias' random walk, after a second.
   double gain_spread = 0.01;             ///< Of every axis of both.
   double grip_tilt_rad = 0.17;           ///< How it lies in the fist, about level axes,
-  double grip_heading_rad = 0.07;        ///< and how far off forward it points in the T-pose.
+  double grip_heading_rad = 0.07;        ///< and how far off it points in the T-pose.
+  bool rolled = false;                   ///< Strapped with any turn about its x.
   std::uint64_t seed = 1;
 };
 
@@ -49,6 +56,9 @@ struct HeldReading {
 class HeldErrors {
  public:
   explicit HeldErrors(const HeldErrorConfig& config);
+
+  /// Of a perfect device, but for the end of the accelerometer's range.
+  static HeldErrorConfig None();
 
   /// What it measures of the truth, `step_s` after the reading before.
   HeldReading Advance(const Eigen::Vector3d& specific_force_mps2,

@@ -9,55 +9,82 @@ namespace footing::pose_run {
 
 namespace sensors = virtual_sensors;
 
-HeldHands::HeldHands(const sensors::Scene& scene, std::uint64_t seed)
-    : courses_{sensors::FollowFist(scene.body, scene.motion, 0),
-               sensors::FollowFist(scene.body, scene.motion, 1)},
-      step_s_(1 / scene.motion.rate_hz) {
-  for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
-    sensors::HeldErrorConfig config;
-    config.seed = 2 * seed + arm;
-    errors_.emplace_back(config);
+namespace {
+
+/// Of a Wiimote in a fist, or strapped.
+sensors::HeldErrorConfig ErrorsOf(arms::Place place, const Settings& settings) {
+  sensors::HeldErrorConfig config;
+  if (settings.perfect_devices) config = sensors::HeldErrors::None();
+  config.rolled = !settings.perfect_devices && place != arms::Place::kFist;
+  return config;
+}
+
+sensors::HeldCourse CourseOf(const sensors::Scene& scene, std::size_t arm, arms::Place place) {
+  const int side = static_cast<int>(arm);
+  if (place == arms::Place::kFist) return sensors::FollowFist(scene.body, scene.motion, side);
+  return sensors::FollowSegment(scene.body, scene.motion, side,
+                                place == arms::Place::kUpperArm ? sensors::ArmSegment::kUpperArm
+                                                                : sensors::ArmSegment::kForearm);
+}
+
+}  // namespace
+
+HeldHands::HeldHands(const sensors::Scene& scene, const Places& places, const Settings& settings)
+    : step_s_(1 / scene.motion.rate_hz) {
+  for (std::size_t place = 0; place < arms::kPlaces; ++place) {
+    for (std::size_t arm = 0; places[place] && arm < arms::kArms; ++arm) {
+      const auto where = static_cast<arms::Place>(place);
+      sensors::HeldErrorConfig config = ErrorsOf(where, settings);
+      config.seed = 2 * settings.seed + arm + 7919 * place;
+      devices_.push_back({arm, place, CourseOf(scene, arm, where), sensors::HeldErrors(config)});
+    }
   }
 }
 
-std::array<std::vector<arms::HandReading>, arms::kArms> HeldHands::Until(Eigen::Index column) {
-  std::array<std::vector<arms::HandReading>, arms::kArms> readings;
+ArmReadings HeldHands::Until(Eigen::Index column) {
+  ArmReadings readings;
   for (; next_ <= column; ++next_) {
-    for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
+    for (Device& device : devices_) {
       const auto reading =
-          errors_[arm].Advance(courses_[arm].specific_force_S_mps2.col(next_),
-                               courses_[arm].angular_velocity_S_radps.col(next_), step_s_);
-      readings[arm].push_back(
+          device.errors.Advance(device.course.specific_force_S_mps2.col(next_),
+                                device.course.angular_velocity_S_radps.col(next_), step_s_);
+      readings[device.arm][device.place].push_back(
           {reading.specific_force_S_mps2, reading.angular_velocity_S_radps, reading.clipped});
     }
   }
   return readings;
 }
 
-void EstimateArms(const arms::ArmModel& model, PoseRun& run) {
+void Feed(const ArmReadings& readings, double reading_s, arms::ArmTracker& tracker) {
+  for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
+    for (std::size_t place = 0; place < arms::kPlaces; ++place) {
+      for (const arms::HandReading& reading : readings[arm][place]) {
+        tracker.Add(arm, reading, reading_s, static_cast<arms::Place>(place));
+      }
+    }
+  }
+}
+
+void EstimateArms(const std::optional<arms::ArmModel>& model, PoseRun& run) {
   arms::ArmTracker tracker(model);
   const auto aligned = static_cast<std::size_t>(kAlignedS * run.rate_hz);
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     Frame& frame = run.frames[i];
-    for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
-      for (const arms::HandReading& reading : frame.readings[arm]) {
-        tracker.Add(arm, reading, run.reading_s);
-      }
-    }
+    Feed(frame.readings, run.reading_s, tracker);
     if (i == aligned) tracker.Align();
     frame.inputs.arms = tracker.Advance(1 / run.rate_hz);
   }
 }
 
 Result<ArmRun> RunArms(const motion::Motion& clip, const Settings& settings,
-                       const std::string& origin) {
+                       const std::string& origin, const Places& places) {
   const auto scene = Stage(clip, settings, origin);
   if (!scene) return scene.error();
   ArmRun run;
   run.body = scene->body;
   run.rate_hz = settings.rate_hz;
   run.aligned = static_cast<std::size_t>(kAlignedS * settings.rate_hz);
-  HeldHands hands(*scene, settings.seed);
+  HeldHands hands(*scene, places, settings);
   run.reading_s = hands.step_s();
   const std::size_t count = FrameCount(*scene, settings.rate_hz);
   for (std::size_t i = 0; i < count; ++i) {

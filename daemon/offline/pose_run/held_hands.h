@@ -1,40 +1,52 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/virtual/sensors/held_device.h"
 #include "common/virtual/sensors/scene.h"
 #include "daemon/offline/pose_run/pose_run.h"
-#include "daemon/simulation/arms/arm_features.h"
 #include "daemon/simulation/arms/arm_model.h"
-#include "daemon/simulation/arms/hand_attitude.h"
+#include "daemon/simulation/arms/arm_tracker.h"
 
 namespace footing::pose_run {
 
-/// A Wiimote with MotionPlus in each fist of a scene: a sample for every column of its motion.
+/// Which devices there are on each arm, by arms::Place.
+using Places = std::array<bool, arms::kPlaces>;
+inline constexpr Places kFists{true, false, false}, kStrapped{false, true, true};
+
+/// Wiimotes with MotionPlus on both arms of a scene: a sample for every column of its motion.
 class HeldHands {
  public:
-  HeldHands(const virtual_sensors::Scene& scene, std::uint64_t seed);
+  HeldHands(const virtual_sensors::Scene& scene, const Places& places, const Settings& settings);
 
   /// The samples from the last call's column up to this one.
-  std::array<std::vector<arms::HandReading>, arms::kArms> Until(Eigen::Index column);
+  ArmReadings Until(Eigen::Index column);
   double step_s() const { return step_s_; }
 
  private:
-  std::array<virtual_sensors::HeldCourse, arms::kArms> courses_;
-  std::vector<virtual_sensors::HeldErrors> errors_;
+  struct Device {
+    std::size_t arm, place;
+    virtual_sensors::HeldCourse course;
+    virtual_sensors::HeldErrors errors;
+  };
+  std::vector<Device> devices_;
   Eigen::Index next_ = 0;
   double step_s_;
 };
 
-/// Puts how the arms are held into the inputs, by the readings of a Wiimote in each hand.
-void EstimateArms(const arms::ArmModel& model, PoseRun& run);
+/// A frame's readings to their devices.
+void Feed(const ArmReadings& readings, double reading_s, arms::ArmTracker& tracker);
 
-/// What a recorded motion would have given two Wiimotes alone, beside the truth.
+/// Puts how the arms are held into the inputs, by the readings of the run's devices. Straps need no
+/// model.
+void EstimateArms(const std::optional<arms::ArmModel>& model, PoseRun& run);
+
+/// What a recorded motion would have given such devices alone, beside the truth.
 struct ArmFrame {
-  std::array<std::vector<arms::HandReading>, arms::kArms> readings;
+  ArmReadings readings;
   Eigen::VectorXd q;
 };
 struct ArmRun {
@@ -45,8 +57,8 @@ struct ArmRun {
   std::vector<ArmFrame> frames;  ///< Begins with kStandS in the T-pose.
 };
 
-/// As RunPose; of the settings the person, rate, loop and seed count.
+/// As RunPose; of the settings the person, rate, loop, seed and perfect_devices count.
 Result<ArmRun> RunArms(const motion::Motion& clip, const Settings& settings,
-                       const std::string& origin);
+                       const std::string& origin, const Places& places = kFists);
 
 }  // namespace footing::pose_run

@@ -35,11 +35,11 @@ void KinectBody::Advance(const body::Kinematics& at, bool with_joints,
     const reconstruction::PointInput point = tracks_[i].At(now_s_);
     if (i < KinectSkeleton::kHands) {
       inputs.hands[i] = point;
+      inputs.hands[i].of_skeleton = with_joints;
     } else if (with_joints) {
       inputs.joints[i - KinectSkeleton::kHands] = point;
     }
   }
-  inputs.hands_of_skeleton = with_joints;
   now_s_ += step_s_;
 }
 

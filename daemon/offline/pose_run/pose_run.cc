@@ -82,8 +82,9 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
   Boards boards(scene, settings);
   noise::Random random(settings.seed);
   std::optional<HeldHands> held;
-  if (settings.hands && settings.hand_device == HandDevice::kWiimote) {
-    held.emplace(scene, settings.seed);
+  const bool strapped = settings.hand_device == HandDevice::kStraps;
+  if (settings.hands && (strapped || settings.hand_device == HandDevice::kWiimote)) {
+    held.emplace(scene, strapped ? kStrapped : kFists, settings);
     run.reading_s = held->step_s();
   }
   virtual_sensors::KinectOptions options = settings.kinect;

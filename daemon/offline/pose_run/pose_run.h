@@ -15,8 +15,7 @@
 #include "common/virtual/sensors/board_cells.h"
 #include "common/virtual/sensors/scene.h"
 #include "daemon/offline/pose_run/kinect_body.h"
-#include "daemon/simulation/arms/arm_features.h"
-#include "daemon/simulation/arms/hand_attitude.h"
+#include "daemon/simulation/arms/arm_tracker.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
 /// What a recorded motion would have given two boards and two hand trackers, frame by frame, beside
@@ -29,7 +28,8 @@ inline constexpr double kLoadedN = 20;
 /// Source of the hands.
 enum class HandDevice {
   kMove,     ///< Places with white noise.
-  kWiimote,  ///< Readings of a Wiimote with MotionPlus in each fist.
+  kWiimote,  ///< Readings of a Wiimote with MotionPlus in each fist,
+  kStraps,   ///< or strapped on each upper arm and forearm.
   kKinect,   ///< Places 30 times a second, late, with white noise and a slow offset.
 };
 
@@ -45,6 +45,8 @@ struct Settings {
   bool joints = false;
   virtual_sensors::KinectOptions kinect = {};  ///< Of the joints.
   double hand_noise_m = 0.01;                  ///< White, of each axis; of kMove.
+  bool perfect_devices =
+      false;  ///< Of kWiimote and kStraps: they and their mounting have no errors.
   virtual_sensors::CellErrorConfig errors;
   // The boards are not quite where they are configured to be.
   double gap_error_m = 0;    ///< Configured further apart by this.
@@ -52,6 +54,10 @@ struct Settings {
   double mass_error = 0;     ///< What the T-pose weighs too much, as a part.
   std::uint64_t seed = 1;    ///< Of the hands.
 };
+
+/// Of the devices on each arm, by arms::Place.
+using ArmReadings =
+    std::array<std::array<std::vector<arms::HandReading>, arms::kPlaces>, arms::kArms>;
 
 struct TrueFoot {
   double load_n = 0;
@@ -66,8 +72,7 @@ struct Frame {
   Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< About C, kg m^2/s.
   std::array<TrueFoot, momentum::kFeet> feet;
-  /// Of kWiimote: those since the frame before.
-  std::array<std::vector<arms::HandReading>, arms::kArms> readings;
+  ArmReadings readings;  ///< Of kWiimote or kStraps: those since the frame before.
   /// Of kKinect: the newest exposure's hands and joints (KinectPoints), which has not come yet.
   std::vector<virtual_sensors::KinectPoint> kinect = {};
   bool kinect_crouches = false;  ///< In it the legs are lost.

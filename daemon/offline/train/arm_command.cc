@@ -43,7 +43,7 @@ Result<void> ForEachFrame(const Clip& clip, std::uint64_t seed, const Add& add) 
   for (std::size_t i = 0; i < run->frames.size(); ++i) {
     const pose_run::ArmFrame& frame = run->frames[i];
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
-      for (const arms::HandReading& reading : frame.readings[arm]) {
+      for (const arms::HandReading& reading : frame.readings[arm][0]) {
         hands[arm].Advance(reading, run->reading_s);
         newest[arm] = reading;
       }

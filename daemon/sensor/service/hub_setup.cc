@@ -34,6 +34,10 @@ bool IsOnBody(DeviceRole role) {
     case DeviceRole::kLeftBoard:
     case DeviceRole::kRightBoard:
     case DeviceRole::kEditor:
+    case DeviceRole::kLeftUpperArm:
+    case DeviceRole::kRightUpperArm:
+    case DeviceRole::kLeftForearm:
+    case DeviceRole::kRightForearm:
       return false;
   }
   return false;
@@ -183,7 +187,7 @@ Result<Device*> Hub::AttachedOnBody(const std::string& serial) {
   if (device.placement() != Placement::kOnBody || !IsOnBody(device.binding().role)) {
     return UsageError(
         serial + " is " + Text(device.binding()) +
-        "; only devices on hands, legs and head have a mounting (footing-ctl assign)");
+        "; only devices on hands, legs, head and trunk have a mounting (footing-ctl assign)");
   }
   return found;
 }

@@ -1,5 +1,6 @@
 #include "daemon/simulation/arms/hand_attitude.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "common/units/units.h"
@@ -14,6 +15,9 @@ constexpr double kTPoseBiasSd = DegreesToRadians(0.1);  // Nobody holds the arms
 
 }  // namespace
 
+HandAttitude::HandAttitude(double heading_rad)
+    : R_WF_(Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix()) {}
+
 void HandAttitude::Advance(const HandReading& reading, double step_s) {
   if (!reading.specific_force_S_mps2.allFinite() || !reading.angular_velocity_S_radps.allFinite() ||
       !(step_s > 0)) {
@@ -27,12 +31,14 @@ void HandAttitude::Advance(const HandReading& reading, double step_s) {
     return;
   }
   filter_.Advance(reading, step_s);
-  const Eigen::Matrix3d R_WS = filter_.R_WS();
+  const Eigen::Matrix3d R_WS = R_WF_ * filter_.R_WS();
   state_.turn_W = R_WS * R_ST_;
   state_.acceleration_W_mps2 = R_WS * reading.specific_force_S_mps2;
   state_.acceleration_W_mps2.z() -= kStandardGravityMps2;
   state_.angular_velocity_W_radps =
       R_WS * (reading.angular_velocity_S_radps - filter_.bias_S_radps());
+  state_.heading_sd_rad = filter_.heading_sd_rad();
+  state_.inclination_sd_rad = filter_.inclination_sd_rad();
 }
 
 void HandAttitude::BeginTPose() {
@@ -44,7 +50,7 @@ void HandAttitude::Align() {
   const Eigen::Vector3d up_S = mean_force_S_.normalized();
   if ((Eigen::Vector3d::UnitX() - up_S.x() * up_S).norm() < 1e-3) return;  // Upright: no heading.
   filter_.Start(mean_force_S_, bias_S_, kTPoseBiasSd);
-  R_ST_ = filter_.R_WS().transpose();
+  R_ST_ = (R_WF_ * filter_.R_WS()).transpose();
   state_ = {};
   state_.valid = true;
 }

@@ -77,6 +77,7 @@ void Fields(Way way, const reconstruction::HandInput&) {
   if (!Way::kOut || !way.value.covariance_m2.isZero(0)) {
     FOOTING_MESSAGE(covariance_m2);
   }
+  FOOTING_FIELD(of_skeleton);
 }
 
 template <typename Way>
@@ -164,7 +165,6 @@ v1::AppliedInput ToAppliedInput(const PoseApplied& applied, const Subject& subje
   SetSide(inputs, 0, *pose.mutable_left_foot(), *pose.mutable_left_hand());
   SetSide(inputs, 1, *pose.mutable_right_foot(), *pose.mutable_right_hand());
   SetJoints(inputs.sensors.joints, pose);
-  pose.set_hands_of_skeleton(inputs.sensors.hands_of_skeleton);
   pose.set_calibrate_number(inputs.calibrate_number);
   pose.set_subject_number(inputs.subject_number);
   Set(subject, pose);
@@ -182,7 +182,9 @@ PoseApplied PoseAppliedFrom(const v1::AppliedInput& message) {
   GetSide(pose.left_foot(), pose.left_hand(), 0, inputs);
   GetSide(pose.right_foot(), pose.right_hand(), 1, inputs);
   inputs.sensors.joints = GetJoints(pose);
-  inputs.sensors.hands_of_skeleton = pose.hands_of_skeleton();
+  for (reconstruction::HandInput& hand : inputs.sensors.hands) {
+    hand.of_skeleton = hand.of_skeleton || pose.hands_of_skeleton();
+  }
   inputs.calibrate_number = pose.calibrate_number();
   inputs.subject_number = pose.subject_number();
   return applied;

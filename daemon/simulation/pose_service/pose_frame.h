@@ -21,6 +21,7 @@ enum class HandTrouble {
   kNoGyroscope,  ///< No MotionPlus in it.
   kSilent,       ///< Nothing comes from it.
   kAwaitsTPose,  ///< It was not heard for a while: how it has turned is not known.
+  kOneStrap,     ///< It is strapped on the upper arm or the forearm, and the other one is missing.
 };
 
 /// Inputs of the pose engine, with where they came from. Fixed size.

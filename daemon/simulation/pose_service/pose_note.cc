@@ -120,6 +120,10 @@ std::string HandText(HandTrouble trouble, const std::string& side) {
       return "nothing comes from the " + side + " Wiimote: its arm is guessed";
     case HandTrouble::kAwaitsTPose:
       return "the " + side + " Wiimote was lost and has no heading: take the T-pose again";
+    case HandTrouble::kOneStrap:
+      return "the " + side +
+             " arm has one strapped Wiimote: it needs one on the upper arm and one " +
+             "on the forearm (roles " + side + "_upper_arm, " + side + "_forearm)";
   }
   return "";
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "common/board/geometry.h"
@@ -12,25 +13,6 @@
 
 namespace footing::pose_service {
 namespace {
-
-/// A tracker that says less of itself is not believed: no point is known better than this.
-constexpr double kLeastPointSdM = 0.002;
-constexpr double kMostPointSdM = 1;
-
-bool IsFinite(const v1::Vector3& v) {
-  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
-}
-
-bool IsSeen(const v1::HandSample& sample) {
-  return sample.confidence() > 0 && IsFinite(sample.position_m()) && IsFinite(sample.sd_m()) &&
-         IsFinite(sample.covariance_m2());
-}
-
-void Add(const v1::HandSample& sample, double exposed_s, reconstruction::HandTrack& track) {
-  track.Add(exposed_s, wire::FromProto(sample.position_m()),
-            wire::FromProto(sample.sd_m()).cwiseMax(kLeastPointSdM).cwiseMin(kMostPointSdM),
-            wire::FromProto(sample.covariance_m2()));
-}
 
 bool IsOld(std::int64_t seen_ns, std::int64_t now_ns, double timeout_s) {
   return NanosecondsToSeconds(now_ns - seen_ns) > timeout_s;
@@ -58,6 +40,15 @@ int HandSideOf(v1::DeviceRole role) {
   return SideOf(role, v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND);
 }
 
+struct ArmRoles {
+  arms::Place place;
+  v1::DeviceRole left, right;
+};
+constexpr ArmRoles kArmRoles[] = {
+    {arms::Place::kFist, v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND},
+    {arms::Place::kUpperArm, v1::DEVICE_ROLE_LEFT_UPPER_ARM, v1::DEVICE_ROLE_RIGHT_UPPER_ARM},
+    {arms::Place::kForearm, v1::DEVICE_ROLE_LEFT_FOREARM, v1::DEVICE_ROLE_RIGHT_FOREARM}};
+
 }  // namespace
 
 PoseSensors::PoseSensors(std::string rig, exchange::Latest<PoseInputs>& out,
@@ -71,13 +62,8 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
     if (followed_rig_.empty() && BoardSideOf(device.role()) >= 0) followed_rig_ = device.rig();
   }
   std::array<Board, momentum::kFeet> boards{};
-  std::array<std::optional<std::uint32_t>, reconstruction::kHands> wiimotes;
   for (const v1::DeviceStatus& device : status.devices()) {
     if (device.rig() != followed_rig_) continue;
-    const int hand = HandSideOf(device.role());
-    if (hand >= 0 && device.kind() == v1::DEVICE_KIND_WIIMOTE) {
-      wiimotes[static_cast<std::size_t>(hand)] = device.device();
-    }
     const int side = BoardSideOf(device.role());
     if (side < 0) continue;
     Board& board = boards[static_cast<std::size_t>(side)];
@@ -87,7 +73,21 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
     board.device = device.device();
   }
   boards_ = boards;
-  for (std::size_t side = 0; side < wiimotes.size(); ++side) arms_.Bind(side, wiimotes[side]);
+  BindArms(status);
+}
+
+void PoseSensors::BindArms(const v1::DeviceStatusList& status) {
+  for (const ArmRoles& roles : kArmRoles) {
+    std::array<std::optional<std::uint32_t>, reconstruction::kHands> wiimotes;
+    for (const v1::DeviceStatus& device : status.devices()) {
+      const int side = SideOf(device.role(), roles.left, roles.right);
+      if (side < 0 || device.rig() != followed_rig_ || device.kind() != v1::DEVICE_KIND_WIIMOTE)
+        continue;
+      wiimotes[static_cast<std::size_t>(side)] = device.device();
+    }
+    for (std::size_t side = 0; side < wiimotes.size(); ++side)
+      arms_.Bind(side, wiimotes[side], roles.place);
+  }
 }
 
 void PoseSensors::Place(const v1::SetupState& setup) {
@@ -121,22 +121,33 @@ void PoseSensors::TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns) 
 
 void PoseSensors::TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns) {
   const int side = HandSideOf(sample.role());
-  if (side < 0 || sample.rig() != followed_rig_ || !IsSeen(sample)) return;
-  hands_[static_cast<std::size_t>(side)] = {true, now_ns, sample.simulated()};
-  tracker_ = sample.tracker();
-  Add(sample, NanosecondsToSeconds(now_ns) - std::max(0.0, age_s),
-      tracks_[static_cast<std::size_t>(side)]);
+  if (side < 0 || sample.rig() != followed_rig_ || !IsSeenInWorld(sample)) return;
+  hands_[static_cast<std::size_t>(side)].Add(
+      sample, NanosecondsToSeconds(now_ns) - std::max(0.0, age_s), now_ns);
+}
+
+bool PoseSensors::FollowsJointsOf(const std::string& tracker, std::int64_t now_ns) {
+  if (tracker != joint_tracker_) {
+    if (joint_tracker_ns_ != 0 && !IsOld(joint_tracker_ns_, now_ns, kHandTimeoutS)) return false;
+    joint_tracker_ = tracker;
+    joints_ = {};
+    joint_tracks_ = reconstruction::JointTracks();
+  }
+  joint_tracker_ns_ = now_ns;
+  return true;
 }
 
 void PoseSensors::TakeJoint(const v1::HandSample& sample, double age_s, std::int64_t now_ns) {
   const auto joint = wire::FromProto(sample).joint;
   if (joint == stream::BodyJoint::kUnspecified || sample.rig() != followed_rig_) return;
+  if (!FollowsJointsOf(sample.tracker(), now_ns)) return;
   const std::size_t index = body::IndexOf(joint);
-  if (sample.confidence() == 0 && sample.tracker() == joint_tracker_) joints_[index].seen = false;
-  if (!IsSeen(sample)) return;
+  if (sample.confidence() == 0) joints_[index].seen = false;
+  if (!IsSeenInWorld(sample)) return;
   joints_[index] = {true, now_ns, sample.simulated()};
-  joint_tracker_ = sample.tracker();
-  Add(sample, NanosecondsToSeconds(now_ns) - std::max(0.0, age_s), joint_tracks_[index]);
+  const CountedPoint point(sample);
+  joint_tracks_[index].Add(NanosecondsToSeconds(now_ns) - std::max(0.0, age_s), point.p_W_m,
+                           point.sd_m, point.covariance_m2);
 }
 
 void PoseSensors::TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns) {
@@ -174,10 +185,7 @@ void PoseSensors::DropOld(std::int64_t now_ns) {
     inputs_.simulated |= source.seen && source.simulated;
     return source.seen;
   };
-  for (std::size_t side = 0; side < hands_.size(); ++side) {
-    const bool seen = is_live(hands_[side], kHandTimeoutS);
-    if (seen) inputs_.sensors.hands[side] = tracks_[side].At(NanosecondsToSeconds(now_ns));
-    inputs_.sensors.hands[side].valid = seen;
+  for (std::size_t side = 0; side < insoles_.size(); ++side) {
     inputs_.insoles[side].valid = is_live(insoles_[side], kInsoleTimeoutS);
   }
   for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -185,7 +193,22 @@ void PoseSensors::DropOld(std::int64_t now_ns) {
     if (seen) inputs_.sensors.joints[i] = joint_tracks_[i].At(NanosecondsToSeconds(now_ns));
     inputs_.sensors.joints[i].valid = seen;
   }
-  inputs_.sensors.hands_of_skeleton = !tracker_.empty() && tracker_ == joint_tracker_;
+}
+
+void PoseSensors::ReportHands(std::int64_t now_ns) {
+  std::set<std::string> trackers;
+  for (std::size_t side = 0; side < hands_.size(); ++side) {
+    const TrackedHand::Fused fused = hands_[side].At(now_ns);
+    reconstruction::HandInput& hand = inputs_.sensors.hands[side];
+    if (fused.hand.valid) hand = fused.hand;
+    hand.valid = fused.hand.valid;
+    hand.of_skeleton = joint_tracker_ns_ != 0 && fused.trackers == std::set{joint_tracker_};
+    inputs_.simulated |= fused.simulated;
+    trackers.insert(fused.trackers.begin(), fused.trackers.end());
+  }
+  if (trackers.empty()) return;
+  tracker_.clear();
+  for (const std::string& name : trackers) tracker_ += (tracker_.empty() ? "" : ", ") + name;
 }
 
 void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
@@ -206,6 +229,7 @@ void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
   }
   for (const v1::MotionSample& sample : tick.motion().samples()) arms_.Take(sample, now_ns);
   DropOld(now_ns);
+  ReportHands(now_ns);
   arms_.Report(now_ns, inputs_);
   inputs_.sensor_epoch = tick.epoch();
   inputs_.sensor_sequence = tick.sequence();

@@ -8,6 +8,7 @@
 #include "common/exchange/latest.h"
 #include "daemon/simulation/pose_service/pose_arms.h"
 #include "daemon/simulation/pose_service/pose_frame.h"
+#include "daemon/simulation/pose_service/tracked_hand.h"
 #include "daemon/simulation/reconstruction/hand_track.h"
 #include "footing/v1/command.pb.h"
 #include "footing/v1/session.pb.h"
@@ -17,15 +18,16 @@ namespace footing::pose_service {
 /// Turns ticks of the sensor daemon into inputs of the pose engine, on the io thread: the newest
 /// raw sample of the rig's left and right board with its cells' places in W and what they have felt
 /// so far, of its insoles, of its hands and of the joints of its skeleton as they have gone on
-/// since the tracker saw them, and how its arms are held by the Wiimotes in the fists.
+/// since the tracker saw them, and how its arms are held by the Wiimotes on them.
 ///
 /// A board or an insole without samples, or a hand or joint not seen, for longer than its timeout
 /// is not valid, which is not the same as no load. A joint that its tracker looked for and did not
-/// see is not valid from then on. Samples that are not finite count as none.
+/// see is not valid from then on. Hands of several trackers are fused (TrackedHand); joints are
+/// those of one tracker, as long as it reports any. Samples that are not finite count as none.
 class PoseSensors {
  public:
   static constexpr double kBoardTimeoutS = 0.2;
-  static constexpr double kHandTimeoutS = 0.15;
+  static constexpr double kHandTimeoutS = kPointTimeoutS;
   static constexpr double kInsoleTimeoutS = 0.2;
 
   /// `rig` empty: the first rig with a board or an insole. Without an arm model Wiimotes are
@@ -43,7 +45,7 @@ class PoseSensors {
 
   const std::string& rig() const { return followed_rig_; }
   const PoseInputs& inputs() const { return inputs_; }
-  /// Name of who tracked a hand last; empty: it has none.
+  /// Names of who tracked the hands last, "camera, kinect"; empty: nobody has.
   const std::string& tracker() const { return tracker_; }
 
  private:
@@ -55,7 +57,7 @@ class PoseSensors {
     bool simulated = false;
     board::ImpulseMeter meter;
   };
-  /// A hand, a joint or an insole.
+  /// A joint or an insole.
   struct BodySource {
     bool seen = false;
     std::int64_t seen_ns = 0;
@@ -63,28 +65,32 @@ class PoseSensors {
   };
 
   void Bind(const v1::DeviceStatusList& status);
+  void BindArms(const v1::DeviceStatusList& status);
   /// Puts the cells where the followed rig's boards have them.
   void Place(const v1::SetupState& setup);
   void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
   /// `age_s` of its exposure.
   void TakeHand(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
   void TakeJoint(const v1::HandSample& sample, double age_s, std::int64_t now_ns);
+  /// Whether the joints of this tracker are followed: another one's are once it is silent.
+  bool FollowsJointsOf(const std::string& tracker, std::int64_t now_ns);
   void TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns);
   void DropOld(std::int64_t now_ns);
+  void ReportHands(std::int64_t now_ns);
 
   const std::string wanted_rig_;
   std::string followed_rig_;
   exchange::Latest<PoseInputs>& out_;
   std::array<Board, momentum::kFeet> boards_{};
-  std::array<BodySource, 2> hands_{};
-  std::array<reconstruction::HandTrack, reconstruction::kHands> tracks_;
+  std::array<TrackedHand, reconstruction::kHands> hands_{};
   std::array<BodySource, momentum::kFeet> insoles_{};
   std::array<BodySource, stream::kBodyJoints> joints_{};
   std::array<reconstruction::HandTrack, stream::kBodyJoints> joint_tracks_ =
       reconstruction::JointTracks();
   std::string tracker_;
-  std::string joint_tracker_;  ///< The same of a joint.
-  v1::SetupState setup_;       ///< As published last.
+  std::string joint_tracker_;  ///< Whose joints are followed.
+  std::int64_t joint_tracker_ns_ = 0;
+  v1::SetupState setup_;  ///< As published last.
   PoseArms arms_;
   PoseInputs inputs_;
 };

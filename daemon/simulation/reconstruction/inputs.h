@@ -20,6 +20,7 @@ struct PointInput {
   Eigen::Vector3d sd_m = Eigen::Vector3d::Constant(0.01);
   /// Of x and y, x and z, y and z; with sd_m the whole matrix.
   Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
+  bool of_skeleton = false;  ///< A hand that the tracker of the joints alone sees.
 };
 using HandInput = PointInput;   ///< Middle of the fist (body::Fist).
 using JointInput = PointInput;  ///< A joint of a skeleton (body::SkeletonPoints).
@@ -32,7 +33,6 @@ struct Inputs {
   /// How the arms are held, where their hands are not seen.
   std::array<arms::ArmEstimate, kHands> arms = {};
   JointInputs joints = {};
-  bool hands_of_skeleton = false;  ///< The tracker of the joints sees the hands, too.
 };
 
 /// For evaluation: parts of the truth at the instant of the loads, in place of their estimates, to

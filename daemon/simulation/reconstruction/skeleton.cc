@@ -61,8 +61,9 @@ void GateJoints(const SubjectModel& model, const body::Kinematics& at, JointInpu
 Inputs SkeletonOffset::Without(const Inputs& inputs) const {
   Inputs corrected = inputs;
   for (JointInput& joint : corrected.joints) joint.p_W_m -= offset_m_;
-  if (!inputs.hands_of_skeleton) return corrected;
-  for (HandInput& hand : corrected.hands) hand.p_W_m -= offset_m_;
+  for (HandInput& hand : corrected.hands) {
+    if (hand.of_skeleton) hand.p_W_m -= offset_m_;
+  }
   return corrected;
 }
 

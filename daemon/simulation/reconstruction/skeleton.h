@@ -26,7 +26,8 @@ void GateJoints(const SubjectModel& model, const body::Kinematics& at, JointInpu
 class SkeletonOffset {
  public:
   void Start() { offset_m_.setZero(); }
-  /// The inputs without it: joints, and the hands that the same tracker sees.
+  /// The inputs without it: joints, and the hands that the same tracker alone
+  /// sees: another one knows a hand better than the offset is known.
   Inputs Without(const Inputs& inputs) const;
   /// One frame: `joints` by Without, and gated; `at` in W is the pose that was solved for them.
   void Learn(const SubjectModel& model, const JointInputs& joints, const body::Kinematics& at,

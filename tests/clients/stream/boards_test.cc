@@ -56,6 +56,11 @@ TEST_F(BoardsTest, TwoBoardsAndTheTruePoseAreThereAndHandsWhenAskedFor) {
   EXPECT_EQ(PlanBoards(options_, {})->feeds.size(), 2u);
   options_.hands = "wiimote";
   EXPECT_EQ(PlanBoards(options_, {})->devices.size(), 4u);
+  options_.hands = "straps";
+  const auto strapped = PlanBoards(options_, {});
+  ASSERT_EQ(strapped->devices.size(), 6u);
+  EXPECT_EQ(strapped->devices[2].role(), stream::DeviceRole::kLeftUpperArm);
+  EXPECT_EQ(strapped->devices[5].role(), stream::DeviceRole::kRightForearm);
 }
 
 TEST_F(BoardsTest, ACameraSeesTheSpheresInTheFists) {
@@ -144,7 +149,7 @@ TEST_F(BoardsTest, AKinectSendsEachJointOnceAndSaysWhatIsHidden) {
 TEST_F(BoardsTest, WhatIsNotThereIsAUsageErrorThatListsWhatIs) {
   options_.hands = "leap";
   EXPECT_THAT(PlanBoards(options_, {}).error().message,
-              HasSubstr("none, move, wiimote, kinect, camera"));
+              HasSubstr("none, move, wiimote, straps, kinect, camera"));
   options_.hands = "move";
   options_.lost_hand = "middle";
   EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("left or right"));

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "common/body/kinematics.h"
 #include "common/body/points.h"
 #include "daemon/offline/pose_run/held_hands.h"
+#include "daemon/simulation/arms/arm_geometry.h"
 
 namespace footing::pose_run {
 namespace {
@@ -94,8 +98,8 @@ TEST(PoseRun, AWiimoteTellsReadingsAndNoPlaces) {
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     const Frame& frame = run.frames[i];
     ASSERT_FALSE(frame.inputs.hands[0].valid);
-    ASSERT_EQ(frame.readings[0].size(), 1u);
-    force += frame.readings[0][0].specific_force_S_mps2 / static_cast<double>(run.frames.size());
+    ASSERT_EQ(frame.readings[0][0].size(), 1u);
+    force += frame.readings[0][0][0].specific_force_S_mps2 / static_cast<double>(run.frames.size());
   }
   EXPECT_NEAR(force.norm(), 9.8, 0.5);  // Gravity, with a gain and a bias.
 
@@ -110,6 +114,36 @@ TEST(PoseRun, AWiimoteTellsReadingsAndNoPlaces) {
   EXPECT_TRUE(run.frames[340].inputs.arms[0].valid);
   EXPECT_LT((run.frames[340].inputs.arms[1].directions.upper + Eigen::Vector3d::UnitY()).norm(),
             1e-9);
+}
+
+/// The furthest that an upper arm's or forearm's direction is off.
+double WorstOfStraps(bool perfect) {
+  Settings settings;
+  settings.hand_device = HandDevice::kStraps;
+  settings.perfect_devices = perfect;
+  PoseRun run = RunOf(settings);
+  EXPECT_TRUE(run.frames[0].readings[0][0].empty()) << "no fist";
+  EstimateArms(std::nullopt, run);
+  body::Kinematics at(run.body.skeleton);
+  double worst = 0;
+  for (std::size_t i = 345; i < run.frames.size(); ++i) {
+    body::ComputeKinematics(run.body.skeleton, run.frames[i].q, at);
+    for (const int side : {0, 1}) {
+      const arms::ArmEstimate& arm = run.frames[i].inputs.arms[static_cast<std::size_t>(side)];
+      EXPECT_TRUE(arm.valid) << i;
+      const arms::ArmDirections truth = arms::ArmGeometry(run.body, side).Directions(at);
+      worst = std::max({worst, (arm.directions.upper - truth.upper).norm(),
+                        (arm.directions.forearm - truth.forearm).norm()});
+    }
+  }
+  return worst;
+}
+
+TEST(PoseRun, StrapsShowBothArmsWithoutAModel) {
+  const double perfect = WorstOfStraps(true), real = WorstOfStraps(false);
+  EXPECT_LT(perfect, 0.06);
+  EXPECT_LT(real, 0.3);
+  EXPECT_GT(real, perfect) << "noise, bias and mounting show";
 }
 
 TEST(PoseRun, ErrorsOfTheLayoutMoveWhereTheCellsAreToldToBe) {

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "common/body/kinematics.h"
 #include "common/units/units.h"
@@ -137,7 +139,93 @@ TEST(ArmTracker, ToldArmsFollowTheHands) {
       up(0, -std::cos(0.8), std::sin(0.8));
   EXPECT_LT((told[0].directions.forearm - down).norm(), 0.01);
   EXPECT_LT((told[1].directions.forearm - up).norm(), 0.01);
-  EXPECT_NEAR(told[0].forearm_sd.x(), 0.2, 1e-6);
+  // The model's, and of the inclination's 0.6 degrees.
+  EXPECT_NEAR(told[0].forearm_sd.x(), std::hypot(0.2, DegreesToRadians(0.6)), 1e-3);
+}
+
+/// A device of the left arm that rests in the T-pose and then turns up about the axis ahead.
+struct LeftArm {
+  static constexpr double kStepS = 0.01;
+  ArmTracker tracker;
+  std::vector<Place> places;
+  Eigen::Matrix3d R_WS = Eigen::Matrix3d::Identity();  ///< Of the one in the fist.
+  std::array<ArmEstimate, kArms> estimates;
+
+  LeftArm(const std::optional<ArmModel>& model, std::vector<Place> devices)
+      : tracker(model), places(std::move(devices)) {
+    Run(5, 0);
+    tracker.Align();
+  }
+  void Run(double seconds, double up_radps, double forearm_radps = 0) {
+    for (int i = 0; i < std::lround(seconds / kStepS); ++i) {
+      R_WS = Eigen::AngleAxisd(kStepS * up_radps, Eigen::Vector3d::UnitX()) * R_WS;
+      R_WB = Eigen::AngleAxisd(kStepS * forearm_radps, R_WS.col(2)) * R_WB;
+      R_WB = Eigen::AngleAxisd(kStepS * up_radps, Eigen::Vector3d::UnitX()) * R_WB;
+      const Eigen::Vector3d up_W(up_radps, 0, 0);
+      for (const Place place : places) {
+        // Along the arm, and rolled about it.
+        const Eigen::Matrix3d mounted =
+            place == Place::kFist
+                ? Eigen::Matrix3d::Identity()
+                : (Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(2, Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+        const bool bends = place == Place::kForearm;
+        const Eigen::Vector3d w_W =
+            up_W + (bends ? forearm_radps : 0) * Eigen::Vector3d(R_WS.col(2));
+        tracker.Add(0, Reading((bends ? R_WB : R_WS) * mounted, w_W), kStepS, place);
+      }
+      estimates = tracker.Advance(kStepS);
+    }
+  }
+
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< Of the forearm since the T-pose.
+};
+
+TEST(ArmTracker, ItsDeviationsGrowAsTheHeadingDrifts) {
+  LeftArm arm(StiffArm(), {Place::kFist});
+  arm.Run(1, 0);
+  const ArmEstimate first = arm.estimates[0];
+  const double heading_sd = arm.tracker.hand(0).heading_sd_rad;
+  for (int i = 0; i < 120; ++i) arm.Run(1, i % 2 == 0 ? 0.5 : -0.5);
+  const ArmEstimate later = arm.estimates[0];
+  const double grown_rad = arm.tracker.hand(0).heading_sd_rad;
+  EXPECT_GT(grown_rad, 2 * heading_sd);
+  // The forearm points to the left: a wrong heading turns it ahead or back, the hinge, which points
+  // up, nowhere.
+  EXPECT_NEAR(later.forearm_sd.x(),
+              std::sqrt(std::pow(first.forearm_sd.x(), 2) + std::pow(grown_rad, 2) -
+                        std::pow(heading_sd, 2)),
+              1e-3);
+  EXPECT_NEAR(later.hinge_sd.x(), first.hinge_sd.x(), 1e-3);
+}
+
+TEST(ArmTracker, StrapsOnBothSegmentsMeasureAnArmWithoutAModel) {
+  LeftArm arm(std::nullopt, {Place::kUpperArm, Place::kForearm});
+  arm.Run(0.6, 1);
+  arm.Run(0.5, 0, -1);  // The forearm bends forwards.
+  const ArmEstimate& left = arm.estimates[0];
+  ASSERT_TRUE(left.valid);
+  EXPECT_FALSE(arm.estimates[1].valid) << "nothing is on the right arm";
+  EXPECT_LT((left.directions.upper - Eigen::Vector3d(0, std::cos(0.6), std::sin(0.6))).norm(),
+            0.01);
+  EXPECT_LT((left.directions.hinge - Eigen::Vector3d(0, -std::sin(0.6), std::cos(0.6))).norm(),
+            0.01);
+  const Eigen::Vector3d forearm(std::sin(0.5), std::cos(0.5) * std::cos(0.6),
+                                std::cos(0.5) * std::sin(0.6));
+  EXPECT_LT((left.directions.forearm - forearm).norm(), 0.01);
+  EXPECT_LT(left.forearm_sd.maxCoeff(), 0.15);
+  EXPECT_GT(left.forearm_sd.minCoeff(), 0.015);
+  arm.tracker.Lose(0, Place::kForearm);
+  EXPECT_FALSE(arm.tracker.Advance(0.01)[0].valid) << "one strap is half an arm";
+}
+
+TEST(ArmTracker, AStrapBesideTheFistTakesTheUpperArmOver) {
+  LeftArm alone(StiffArm(), {Place::kFist}), both(StiffArm(), {Place::kFist, Place::kUpperArm});
+  for (LeftArm* arm : {&alone, &both}) arm->Run(0.6, 1);
+  EXPECT_LT(both.estimates[0].upper_sd.maxCoeff(), 0.5 * alone.estimates[0].upper_sd.maxCoeff());
+  EXPECT_NEAR(both.estimates[0].forearm_sd.x(), alone.estimates[0].forearm_sd.x(), 0.01)
+      << "the model knows of no connection";
 }
 
 TEST(ArmTracker, AdvancesWithoutAllocating) {

@@ -152,5 +152,61 @@ TEST_F(PoseArmsTest, AWiimoteWithoutMotionPlusAndOneWithoutAModelAreNamed) {
   EXPECT_FALSE(inputs.sensors.arms[0].valid);
 }
 
+/// Wiimotes on both segments of the left arm, that point to the hand, and whose buttons face up.
+struct StrappedArmTest : testing::Test {
+  static constexpr std::uint32_t kUpper = 11, kForearm = 12;
+
+  void Take(std::uint32_t device, double up_radps) {
+    v1::MotionSample sample;
+    sample.set_device(device);
+    sample.set_sampled_ns(now_ns);
+    sample.set_simulated(true);
+    // S is x left, y front, z down: front to the left, up by `pitch_rad`.
+    *sample.mutable_specific_force_mps2() =
+        wire::ToProto(Eigen::Vector3d(0, kStandardGravityMps2 * std::sin(pitch_rad),
+                                      -kStandardGravityMps2 * std::cos(pitch_rad)));
+    // Ahead is to the right of its front: the negative x.
+    *sample.mutable_angular_velocity_radps() = wire::ToProto(Eigen::Vector3d(-up_radps, 0, 0));
+    arms.Take(sample, now_ns);
+  }
+  void Run(double seconds, double up_radps, bool forearm_too = true) {
+    for (double t_s = 0; t_s < seconds - 1e-9; t_s += kPeriodS) {
+      now_ns += SecondsToNanoseconds(kPeriodS);
+      pitch_rad += up_radps * kPeriodS;
+      Take(kUpper, up_radps);
+      if (forearm_too) Take(kForearm, up_radps);
+      arms.Report(now_ns, inputs);
+    }
+  }
+
+  double pitch_rad = 0;
+  std::int64_t now_ns = 50'000'000'000;
+  PoseArms arms{std::nullopt};
+  PoseInputs inputs;
+};
+
+TEST_F(StrappedArmTest, NeedsBothStrapsAndNoModel) {
+  arms.Bind(0, kUpper, arms::Place::kUpperArm);
+  Run(5, 0);
+  EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kOneStrap);
+  arms.Bind(0, kForearm, arms::Place::kForearm);
+  Run(5, 0);
+  arms.Follow(true, 1);
+  Run(0.7, 1);
+  EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kNone);
+  ASSERT_TRUE(inputs.sensors.arms[0].valid);
+  EXPECT_TRUE(inputs.simulated);
+  const arms::ArmDirections& arm = inputs.sensors.arms[0].directions;
+  const Eigen::Vector3d up(0, std::cos(0.7), std::sin(0.7));
+  EXPECT_LT((arm.upper - up).norm(), 0.02) << arm.upper.transpose();
+  EXPECT_LT((arm.forearm - up).norm(), 0.02);
+  EXPECT_FALSE(inputs.sensors.arms[1].valid);
+  Run(0.5, 0, false);
+  EXPECT_FALSE(inputs.sensors.arms[0].valid);
+  EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kSilent);
+  Run(0.5, 0);
+  EXPECT_EQ(inputs.hand_trouble[0], HandTrouble::kAwaitsTPose);
+}
+
 }  // namespace
 }  // namespace footing::pose_service

@@ -63,7 +63,7 @@ struct Line {
     joints = {};
     joints[0] = {true, {0.01, 0, 1.6 + 1e-4 * static_cast<double>(i % 10)}, {0.04, 0.05, 0.1}};
     joints[7] = {true, {0, 0.1, 0.9}, {0.04, 0.05, 0.1}, {0.001, -0.0005, 0.002}};
-    told.sensors.hands_of_skeleton = i % 2 == 0;
+    told.sensors.hands[0].of_skeleton = i % 2 == 0;
   }
   /// One step with the i-th frame that was measured.
   void Step(std::size_t i) {

@@ -205,9 +205,65 @@ TEST_F(PoseSensorsTest, HandsBelongToTheSkeletonOfTheirTracker) {
   AddJoint(tick, v1::BODY_JOINT_HEAD, 0, 0, 1.6);
   AddHand(tick, v1::DEVICE_ROLE_LEFT_HAND, 0, 0.8, 1.4);
   tick.mutable_hands()->mutable_samples(1)->set_tracker("camera");
-  EXPECT_FALSE(After(tick).sensors.hands_of_skeleton);
+  EXPECT_FALSE(After(tick).sensors.hands[0].of_skeleton);
   tick.mutable_hands()->mutable_samples(1)->set_tracker("kinect");
-  EXPECT_TRUE(After(tick).sensors.hands_of_skeleton);
+  EXPECT_TRUE(After(tick, 0.2).sensors.hands[0].of_skeleton) << "the camera fell silent";
+  EXPECT_FALSE(After(tick, 0.2).sensors.hands[1].of_skeleton) << "not seen";
+}
+
+TEST_F(PoseSensorsTest, ASkeletonBesideACameraDoesNotTakeItsHandsOver) {
+  After(StatusTick());
+  const auto Seen = [](bool camera) {
+    v1::Tick tick;
+    AddJoint(tick, v1::BODY_JOINT_HEAD, 0, 0, 1.6);
+    if (camera) AddHand(tick, v1::DEVICE_ROLE_LEFT_HAND, 0, 0.8, 1.4);
+    if (camera) tick.mutable_hands()->mutable_samples()->rbegin()->set_tracker("camera");
+    AddHand(tick, v1::DEVICE_ROLE_LEFT_HAND, 0.06, 0.8, 1.4);
+    v1::HandSample& skeleton = *tick.mutable_hands()->mutable_samples()->rbegin();
+    skeleton.set_tracker("kinect");
+    for (auto set : {&v1::Vector3::set_x, &v1::Vector3::set_y, &v1::Vector3::set_z}) {
+      (skeleton.mutable_sd_m()->*set)(0.043);
+    }
+    return tick;
+  };
+  for (double t_s = 0; t_s < 0.5; t_s += 0.05) {
+    const reconstruction::HandInput hand = After(Seen(true), t_s).sensors.hands[0];
+    // By their information, 1 / 0.01^2 to 1 / 0.043^2, and of two standing points' tracks.
+    EXPECT_LT(hand.p_W_m.x(), 0.005) << t_s;
+    EXPECT_LE(hand.sd_m.x(), 0.012) << t_s;
+    EXPECT_FALSE(hand.of_skeleton) << "its offset is not the camera's";
+  }
+  EXPECT_EQ(sensors.tracker(), "camera, kinect");
+  const reconstruction::HandInput alone = After(Seen(false), 0.7).sensors.hands[0];
+  EXPECT_NEAR(alone.p_W_m.x(), 0.06, 0.005) << "no trace of the camera is left in its track";
+  EXPECT_TRUE(alone.of_skeleton);
+  EXPECT_EQ(sensors.tracker(), "kinect");
+}
+
+TEST_F(PoseSensorsTest, OfTwoSkeletonsOneIsFollowedUntilItIsSilent) {
+  After(StatusTick());
+  const auto Seen = [](const char* tracker, double z_m, double confidence = 1) {
+    v1::Tick tick;
+    AddJoint(tick, v1::BODY_JOINT_HEAD, 0, 0, z_m, confidence).set_tracker(tracker);
+    return tick;
+  };
+  const std::size_t kHead = v1::BODY_JOINT_HEAD - 1;
+  After(Seen("kinect", 1.6), 0);
+  EXPECT_NEAR(After(Seen("webcam", 1.9), 0.01).sensors.joints[kHead].p_W_m.z(), 1.6, 1e-9);
+  EXPECT_FALSE(After(Seen("kinect", 0, 0), 0.1).sensors.joints[kHead].valid);
+  EXPECT_FALSE(After(Seen("webcam", 1.9), 0.2).sensors.joints[kHead].valid)
+      << "the other one is there and does not see it";
+  EXPECT_EQ(After(Seen("webcam", 1.9), 0.3).sensors.joints[kHead].p_W_m.z(), 1.9);
+}
+
+TEST_F(PoseSensorsTest, ATrackerInItsOwnFrameSaysNothingOfPlacesInTheWorld) {
+  After(StatusTick());
+  v1::Tick tick;
+  AddHand(tick, v1::DEVICE_ROLE_LEFT_HAND, 0, 0.8, 1.4);
+  tick.mutable_hands()->mutable_samples(0)->mutable_tracker_pose()->set_qw(1);
+  EXPECT_FALSE(After(tick).sensors.hands[0].valid) << "not calibrated";
+  tick.mutable_hands()->mutable_samples(0)->mutable_tracker_pose()->set_z_m(1.1);
+  EXPECT_TRUE(After(tick).sensors.hands[0].valid);
 }
 
 TEST_F(PoseSensorsTest, JointsOfOthersAndWithoutSenseAreNotGiven) {
@@ -227,6 +283,15 @@ TEST_F(PoseSensorsTest, AWiimoteInAHandOfTheRigIsBoundByItsRole) {
   const PoseInputs& told = After({});
   EXPECT_EQ(told.hand_trouble[0], HandTrouble::kNoModel);
   EXPECT_EQ(told.hand_trouble[1], HandTrouble::kNone);
+}
+
+TEST_F(PoseSensorsTest, AStrappedWiimoteIsBoundByItsRole) {
+  v1::Tick status = StatusTick();
+  AddDevice(status, 21, v1::DEVICE_ROLE_RIGHT_FOREARM);
+  status.mutable_status()->mutable_devices(2)->set_kind(v1::DEVICE_KIND_WIIMOTE);
+  After(status);
+  EXPECT_EQ(After({}).hand_trouble[1], HandTrouble::kOneStrap);
+  EXPECT_EQ(After({}).hand_trouble[0], HandTrouble::kNone);
 }
 
 TEST_F(PoseSensorsTest, SamplesOfThePastAndOfOtherRigsAreNotTold) {

@@ -154,7 +154,7 @@ TEST_F(SkeletonTest, WhatAllJointsAreOffByIsLearnedInASecond) {
   const Eigen::Vector3d offset_m(0.06, -0.05, 0.04);
   Inputs inputs;
   inputs.joints = JointsAt(world.person, model.t_pose_at, offset_m);
-  inputs.hands[0].valid = inputs.hands_of_skeleton = true;
+  inputs.hands[0].valid = inputs.hands[0].of_skeleton = true;
   SkeletonOffset offset;
   constexpr double kStepS = 0.01;
   for (int i = 0; i < 100; ++i) {
@@ -163,7 +163,7 @@ TEST_F(SkeletonTest, WhatAllJointsAreOffByIsLearnedInASecond) {
   // (1 - step)^100 = 1 / e of it is left.
   EXPECT_LT((offset.offset_m() - (1 - std::exp(-1)) * offset_m).norm(), 0.001);
   EXPECT_EQ(offset.Without(inputs).hands[0].p_W_m, -offset.offset_m());
-  inputs.hands_of_skeleton = false;
+  inputs.hands[0].of_skeleton = false;
   EXPECT_EQ(offset.Without(inputs).hands[0].p_W_m, Eigen::Vector3d::Zero()) << "another tracker";
 }
 

@@ -1,12 +1,10 @@
 #include "daemon/offline/eval/arm/trial.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "common/body/kinematics.h"
-#include "common/units/units.h"
-#include "daemon/offline/eval/scores/pose_metrics.h"
+#include "daemon/offline/eval/arm/arm_score.h"
 #include "daemon/simulation/arms/arm_geometry.h"
 #include "daemon/simulation/arms/arm_tracker.h"
 
@@ -15,35 +13,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// One way to estimate an arm, against the truth.
-class ArmScore {
- public:
-  void Add(const arms::ArmGeometry& geometry, const arms::ArmDirections& estimate,
-           const arms::ArmDirections& truth, const Eigen::Vector3d& hand_m) {
-    shoulder_.Add(RadiansToDegrees(arms::ShoulderError(estimate, truth)));
-    elbow_.Add(RadiansToDegrees(arms::ElbowError(estimate, truth)));
-    cm_.push_back(100 * (geometry.Hand(estimate) - hand_m).norm());
-    hand_.Add(cm_.back());
-  }
-  ordered_json Json() const {
-    return {
-        {"shoulder_error_deg", shoulder_.mean()},
-        {"elbow_error_deg", elbow_.mean()},
-        {"hand_position_rms_cm", hand_.rms()},
-        {"hand_position_p95_cm", hand_.Quantile(0.95)},
-        {"hand_position_rms_halves_cm", {Rms(0, cm_.size() / 2), Rms(cm_.size() / 2, cm_.size())}}};
-  }
-
- private:
-  double Rms(std::size_t from, std::size_t to) const {
-    double squares = 0;
-    for (std::size_t i = from; i < to; ++i) squares += cm_[i] * cm_[i];
-    return to > from ? std::sqrt(squares / static_cast<double>(to - from)) : 0;
-  }
-
-  Spread shoulder_, elbow_, hand_;
-  std::vector<double> cm_;  ///< Of hand_, in the order of time.
-};
+/// Of the kinematic prediction alone: a left forearm bends forwards.
+const Eigen::Vector3d kElbowAxis_U = -Eigen::Vector3d::UnitZ();
 
 /// A network's own estimates of both arms from the T-pose on.
 struct NetworkScore {
@@ -52,34 +23,21 @@ struct NetworkScore {
   ArmScore score = {};
 };
 
-/// How far the estimated rotation of a hand since the T-pose is off, in all and of its up alone.
-class TurnScore {
- public:
-  void Add(const Eigen::Matrix3d& estimate, const Eigen::Matrix3d& truth) {
-    const double cosine = ((estimate.transpose() * truth).trace() - 1) / 2;
-    all_.Add(RadiansToDegrees(std::acos(std::clamp(cosine, -1.0, 1.0))));
-    const double level = estimate.row(2).dot(truth.row(2));
-    inclination_.Add(RadiansToDegrees(std::acos(std::clamp(level, -1.0, 1.0))));
-  }
-  double mean_deg() const { return all_.mean(); }
-  double inclination_deg() const { return inclination_.mean(); }
-
- private:
-  Spread all_, inclination_;
-};
-
 class ArmTrial {
  public:
-  ArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model,
+  ArmTrial(const pose_run::ArmRun& run, const std::optional<arms::ArmModel>& model,
            const std::vector<arm_network::ArmNetwork>& networks)
       : run_(run),
         tracker_(model),
         geometry_{arms::ArmGeometry(run.body, 0), arms::ArmGeometry(run.body, 1)},
         at_(run.body.skeleton) {
     for (const arm_network::ArmNetwork& network : networks) networks_.push_back({network});
-    mean_ = arms::Of(model.offset);
+    if (model) mean_ = arms::Of(model->offset);
     body::ComputeKinematics(run.body.skeleton, run.frames.front().q, at_);
-    for (std::size_t arm = 0; arm < arms::kArms; ++arm) rest_[arm] = HandAt(arm).transpose();
+    for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
+      for (std::size_t place = 0; place < arms::kPlaces; ++place)
+        rest_[arm][place] = SegmentAt(arm, place).transpose();
+    }
   }
 
   ordered_json Run() {
@@ -87,17 +45,11 @@ class ArmTrial {
     const auto first = static_cast<std::size_t>(std::lround(pose_run::kStandS * run_.rate_hz));
     for (std::size_t i = 0; i < run_.frames.size(); ++i) {
       const pose_run::ArmFrame& frame = run_.frames[i];
-      for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
-        for (const arms::HandReading& reading : frame.readings[arm]) {
-          tracker_.Add(arm, reading, run_.reading_s);
-          newest_[arm] = reading;
-          clipped_ += reading.clipped ? 1 : 0;
-          ++readings_;
-        }
-      }
+      pose_run::Feed(frame.readings, run_.reading_s, tracker_);
+      Count(frame.readings);
       if (i == run_.aligned) tracker_.Align();
       const auto& estimates = tracker_.Advance(step_s);
-      if (i >= run_.aligned) AdvanceNetworks(step_s);
+      if (i >= run_.aligned && tracker_.aligned()) AdvanceNetworks(step_s);
       if (i < first) continue;
       body::ComputeKinematics(run_.body.skeleton, frame.q, at_);
       for (std::size_t arm = 0; arm < arms::kArms; ++arm) Score(arm, estimates[arm]);
@@ -106,14 +58,29 @@ class ArmTrial {
   }
 
  private:
-  Eigen::Matrix3d HandAt(std::size_t arm) const {
-    return at_.R_WJ[static_cast<std::size_t>(geometry_[arm].fist.joint)];
+  /// What a device there is fixed to.
+  Eigen::Matrix3d SegmentAt(std::size_t arm, std::size_t place) const {
+    const arms::ArmGeometry& geometry = geometry_[arm];
+    const std::array joints{geometry.fist.joint, geometry.shoulder, geometry.elbow};
+    return at_.R_WJ[static_cast<std::size_t>(joints[place])];
+  }
+
+  void Count(const pose_run::ArmReadings& readings) {
+    for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
+      for (const auto& of_place : readings[arm]) {
+        for (const arms::HandReading& reading : of_place) clipped_ += reading.clipped ? 1 : 0;
+        readings_ += of_place.size();
+      }
+      if (!readings[arm][0].empty()) newest_[arm] = readings[arm][0].back();
+    }
   }
 
   void AdvanceNetworks(double step_s) {
     for (std::size_t arm = 0; arm < arms::kArms; ++arm) {
       const auto input =
           arm_network::MakeInput(arm, newest_[arm], tracker_.hand(arm), tracker_.features());
+      kinematic_pose_[arm] = arm_network::Predicted(kinematic_pose_[arm], kElbowAxis_U,
+                                                    input.angular_velocity_W_radps, step_s);
       for (NetworkScore& one : networks_) {
         one.poses[arm] = one.network.Next(one.poses[arm], input, step_s);
       }
@@ -130,15 +97,14 @@ class ArmTrial {
       const auto own = arm_network::ToDirections(one.poses[arm], one.network.elbow_axis_U);
       one.score.Add(geometry, arm == 1 ? arms::Mirrored(own) : own, truth, hand_m);
     }
+    const auto kinematic = arm_network::ToDirections(kinematic_pose_[arm], kElbowAxis_U);
+    kinematic_.Add(geometry, arm == 1 ? arms::Mirrored(kinematic) : kinematic, truth, hand_m);
     still_.Add(geometry, arm == 1 ? arms::Mirrored(mean_) : mean_, truth, hand_m);
-    turn_.Add(tracker_.hand(arm).turn_W, HandAt(arm) * rest_[arm]);
-    const auto add = [this](const Eigen::Vector3d& error, const Eigen::Vector3d& sd) {
-      nees_ += error.cwiseQuotient(sd).squaredNorm() / 9;
-    };
-    add(estimate.directions.upper - truth.upper, estimate.upper_sd);
-    add(estimate.directions.hinge - truth.hinge, estimate.hinge_sd);
-    add(estimate.directions.forearm - truth.forearm, estimate.forearm_sd);
-    ++judged_;
+    for (std::size_t place = 0; place < arms::kPlaces; ++place) {
+      const arms::HandState& state = tracker_.hand(arm, static_cast<arms::Place>(place));
+      if (state.valid) turn_.Add(state.turn_W, SegmentAt(arm, place) * rest_[arm][place]);
+    }
+    nees_.Add(estimate, truth);
     finite_ = finite_ && arms::Stacked(estimate.directions).allFinite();
   }
 
@@ -148,9 +114,11 @@ class ArmTrial {
     json["attitude_error_deg"] = turn_.mean_deg();
     json["inclination_error_deg"] = turn_.inclination_deg();
     json["clipped_share"] = static_cast<double>(clipped_) / static_cast<double>(readings_);
-    json["nees"] = nees_ / static_cast<double>(judged_);
+    json["nees"] = nees_.mean();
+    json["nees_quarters"] = nees_.Parts(4);
     json["finite"] = finite_;
     json["baselines"]["mean_arm"] = still_.Json();
+    if (tracker_.aligned()) json["baselines"]["kinematic"] = kinematic_.Json();
     for (const NetworkScore& one : networks_) {
       json["networks"][arm_network::KindName(one.network.kind)] = one.score.Json();
     }
@@ -160,21 +128,22 @@ class ArmTrial {
   const pose_run::ArmRun& run_;
   arms::ArmTracker tracker_;
   std::array<arms::ArmGeometry, arms::kArms> geometry_;
-  std::array<Eigen::Matrix3d, arms::kArms> rest_;
+  std::array<std::array<Eigen::Matrix3d, arms::kPlaces>, arms::kArms> rest_;
   body::Kinematics at_;
   arms::ArmDirections mean_;
   std::vector<NetworkScore> networks_;
   std::array<arms::HandReading, arms::kArms> newest_{};
-  ArmScore estimate_, still_;
+  std::array<arm_network::ArmPose, arms::kArms> kinematic_pose_ = {};
+  ArmScore estimate_, still_, kinematic_;
   TurnScore turn_;
-  std::size_t clipped_ = 0, readings_ = 0, judged_ = 0;
-  double nees_ = 0;
+  NeesScore nees_;
+  std::size_t clipped_ = 0, readings_ = 0;
   bool finite_ = true;
 };
 
 }  // namespace
 
-ordered_json RunArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model,
+ordered_json RunArmTrial(const pose_run::ArmRun& run, const std::optional<arms::ArmModel>& model,
                          const std::vector<arm_network::ArmNetwork>& networks) {
   return ArmTrial(run, model, networks).Run();
 }

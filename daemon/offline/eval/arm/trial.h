@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "daemon/offline/arm_network/network.h"
@@ -10,8 +11,10 @@
 namespace footing::eval {
 
 /// The arms estimated from the devices of a run against the truth from the T-pose on, beside an arm
-/// that never moves and beside these networks; the fields of `footing-eval arm`.
-nlohmann::ordered_json RunArmTrial(const pose_run::ArmRun& run, const arms::ArmModel& model,
+/// that never moves, beside the kinematic prediction alone and beside these networks; the fields of
+/// `footing-eval arm`. Straps on both segments need no model.
+nlohmann::ordered_json RunArmTrial(const pose_run::ArmRun& run,
+                                   const std::optional<arms::ArmModel>& model,
                                    const std::vector<arm_network::ArmNetwork>& networks = {});
 
 }  // namespace footing::eval

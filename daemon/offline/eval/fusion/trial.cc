@@ -57,7 +57,7 @@ class FusionTrial {
     const pose_run::Frame& frame = run_.frames[i];
     reconstruction::Inputs without = frame.inputs;
     without.joints = {};
-    without.hands_of_skeleton = false;
+    for (reconstruction::HandInput& hand : without.hands) hand.of_skeleton = false;
     boards.Advance(without);
     if (!fused.Advance(frame.inputs).calibrated) return;
     SolveAlone(frame.inputs);

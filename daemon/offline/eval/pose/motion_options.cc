@@ -3,7 +3,10 @@
 namespace footing::eval {
 
 void AddMotionOptions(CLI::App& command, PoseSceneOptions& scene) {
-  command.add_option("--motion", scene.motion, "Motion file: BVH, AMC, TRC or C3D")->required();
+  command
+      .add_option("--motion", scene.motion,
+                  "Motion: BVH, AMC, TRC or C3D file, or choreography script (.json)")
+      ->required();
   command.add_option("--skeleton", scene.skeleton, "Skeleton of an AMC motion, ASF file");
   command.add_option("--still", scene.still,
                      "Marker file of the same person standing still, TRC or C3D");

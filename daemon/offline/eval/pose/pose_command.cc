@@ -44,6 +44,7 @@ Result<void> Translate(Flags& flags) {
   pose_run::Settings& settings = flags.scene.settings;
   settings.hands = flags.hands != "none";
   if (flags.hands == "wiimote") settings.hand_device = pose_run::HandDevice::kWiimote;
+  if (flags.hands == "straps") settings.hand_device = pose_run::HandDevice::kStraps;
   if (flags.hands == "kinect") settings.hand_device = pose_run::HandDevice::kKinect;
   if (settings.joints && (flags.hands != "kinect" || flags.boards != "simulated")) {
     return UsageError("--joints goes with --hands kinect and --boards simulated");
@@ -51,8 +52,8 @@ Result<void> Translate(Flags& flags) {
   if (flags.boards == "insoles" && flags.hands != "move" && flags.hands != "none") {
     return UsageError("--boards insoles has --hands move and none, not " + flags.hands);
   }
-  if (flags.boards == "forces" && flags.hands == "wiimote") {
-    return UsageError("--boards forces has --hands move, kinect and none, not wiimote");
+  if (flags.boards == "forces" && (flags.hands == "wiimote" || flags.hands == "straps")) {
+    return UsageError("--boards forces has --hands move, kinect and none, not " + flags.hands);
   }
   if ((flags.boards == "forces") == flags.scene.forces.empty()) {
     return UsageError("--boards forces and --forces FILE (.mot, .sto or .c3d) go together");
@@ -104,12 +105,10 @@ Result<ordered_json> Evaluate(Flags flags) {
   }
   auto run = plates ? Result<pose_run::PoseRun>(plates->measured) : MakePoseScene(flags.scene);
   if (!run) return run.error();
-  if (flags.hands == "wiimote") {
-    if (!models->arm) {
-      return UsageError("--hands wiimote: give a model of kind arm too (footing-train arm)");
-    }
-    pose_run::EstimateArms(*models->arm, *run);
-  }
+  if (flags.hands == "wiimote" && !models->arm)
+    return UsageError("--hands wiimote: give a model of kind arm too (footing-train arm)");
+  if (flags.hands == "wiimote" || flags.hands == "straps")
+    pose_run::EstimateArms(models->arm, *run);
   if (flags.ablations) {
     const auto rows = ScoreAblations(*run, *models, flags.options);
     if (!rows) return Error{rows.error().kind, flags.scene.motion + ": " + rows.error().message};
@@ -167,9 +166,10 @@ void AddFlags(CLI::App& command, Flags& flags) {
       ->check(CLI::Range(0.5, 2.6));
   command
       .add_option("--hands", flags.hands,
-                  "Hand devices: move (positions, 1 cm noise), wiimote (attitudes), kinect (late "
+                  "Hand devices: move (positions, 1 cm noise), wiimote (attitudes of the fists), "
+                  "straps (of the arms), kinect (late "
                   "positions), none")
-      ->check(CLI::IsMember({"move", "wiimote", "kinect", "none"}));
+      ->check(CLI::IsMember({"move", "wiimote", "straps", "kinect", "none"}));
   command.add_flag("--joints", settings.joints,
                    "With --hands kinect: all joints of its skeleton, hidden ones inferred");
   command

@@ -6,6 +6,8 @@
 
 #include "common/config/data_file.h"
 #include "common/model/model.h"
+#include "common/virtual/choreography/perform.h"
+#include "common/virtual/choreography/script.h"
 #include "common/virtual/motion/edit.h"
 #include "common/virtual/motion/standard_layout.h"
 #include "common/virtual/motion_files/load.h"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMostLabelBytes = 1u << 20;
 constexpr std::size_t kMostMotionBytes = 512u << 20;
+constexpr double kPerformerHeightM = 1.75;
 
 std::string SubjectOf(const std::string& motion) {
   return model::SubjectOfFile(std::filesystem::path(motion).stem().string());
@@ -50,7 +53,20 @@ Result<reconstruction::NamedModel> ReadModel(const std::string& path, const std:
   return reconstruction::NamedModel{path, std::move(*model)};
 }
 
+/// A choreography, by the synthetic person.
+Result<motion_files::LoadedMotion> Perform(const PoseSceneOptions& options) {
+  const auto text = config::ReadTextFile(options.motion);
+  if (!text) return text.error();
+  const auto script = choreography::ParseScript(*text, options.motion);
+  if (!script) return script.error();
+  const double height_m = options.settings.height_m.value_or(kPerformerHeightM);
+  const auto body = choreography::Performer(height_m, options.settings.mass_kg);
+  if (!body) return body.error();
+  return motion_files::LoadedMotion{choreography::Perform(*script, *body).motion, "", height_m};
+}
+
 Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
+  if (options.motion.ends_with(".json")) return Perform(options);
   motion_files::LoadOptions load;
   load.skeleton = options.skeleton;
   load.still = options.still;
@@ -143,10 +159,11 @@ Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options) {
   return pose_run::RunInsoles(loaded->motion, WithHeight(options, *loaded), options.motion);
 }
 
-Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options) {
+Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options,
+                                      const pose_run::Places& places) {
   const auto loaded = Load(options);
   if (!loaded) return loaded.error();
-  return pose_run::RunArms(loaded->motion, WithHeight(options, *loaded), options.motion);
+  return pose_run::RunArms(loaded->motion, WithHeight(options, *loaded), options.motion, places);
 }
 
 Result<arms::ArmModel> ReadArmModel(const std::string& file, const std::string& motion) {

@@ -15,7 +15,7 @@ namespace footing::eval {
 
 /// A motion file, and what the boards and hands measure of it.
 struct PoseSceneOptions {
-  std::string motion;             ///< BVH, AMC, TRC or C3D.
+  std::string motion;             ///< BVH, AMC, TRC or C3D, or a choreography (.json).
   std::string skeleton;           ///< ASF, of an AMC.
   std::string still;              ///< TRC or C3D of the same person standing, of markers.
   std::string forces;             ///< MOT, STO or C3D of the plates under the same trial.
@@ -33,7 +33,8 @@ Result<pose_run::PlateRun> MakePlateScene(const PoseSceneOptions& options);
 
 Result<pose_run::InsoleRun> MakeInsoleScene(const PoseSceneOptions& options);
 
-Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options);
+Result<pose_run::ArmRun> MakeArmScene(const PoseSceneOptions& options,
+                                      const pose_run::Places& places);
 
 /// Refuses a model that was trained on the motion's subject. Empty: the one that the product
 /// carries.

@@ -45,13 +45,37 @@ TEST(HeldCourse, ATPoseThatSpinsFeelsGravityAndIsPulledInwards) {
   }
 }
 
-HeldErrorConfig None() {
-  HeldErrorConfig none;
-  none.force_noise_mps2 = none.force_count_mps2 = none.force_bias_mps2 = 0;
-  none.turn_noise_radps = none.turn_count_radps = none.turn_bias_radps = 0;
-  none.turn_walk_radps_rt_s = none.gain_spread = none.grip_tilt_rad = none.grip_heading_rad = 0;
-  return none;
+TEST(HeldCourse, AStrappedDevicePointsOutwardsInTheTPose) {
+  const body::Body person = Person();
+  motion::Motion motion;
+  motion.skeleton = person.skeleton;
+  motion.rate_hz = 100;
+  motion.q = body::TPose(person.skeleton, person.landmarks).replicate(1, 300);
+  // The whole body rolls to its right about the axis ahead.
+  constexpr double kRollRadps = 0.5;
+  for (Eigen::Index i = 0; i < 300; ++i) {
+    Eigen::VectorXd q = motion.q.col(i);
+    body::SetJointRotation(
+        person.skeleton.joint(0),
+        body::AxisRotation(body::Axis::kX, kRollRadps * static_cast<double>(i) / motion.rate_hz) *
+            body::JointRotation(person.skeleton.joint(0), q),
+        q);
+    motion.q.col(i) = q;
+  }
+  for (const int side : {0, 1}) {
+    for (const ArmSegment segment : {ArmSegment::kUpperArm, ArmSegment::kForearm}) {
+      const HeldCourse course = FollowSegment(person, motion, side, segment);
+      // The axis ahead is to the right of what points left, and to the left of what points right.
+      const Eigen::Vector3d turn(0, side == 0 ? -kRollRadps : kRollRadps, 0);
+      EXPECT_LT((course.angular_velocity_S_radps.col(150) - turn).norm(), 0.001);
+      // At first level: gravity along z but for the pull to the middle, less than 1 m away.
+      EXPECT_NEAR(course.specific_force_S_mps2(2, 20), kStandardGravityMps2, 0.3);
+      EXPECT_LT(std::abs(course.specific_force_S_mps2(1, 20)), 0.01);
+    }
+  }
 }
+
+HeldErrorConfig None() { return HeldErrors::None(); }
 
 TEST(HeldErrors, EndAtTheRangeAndSaySo) {
   HeldErrors errors(None());

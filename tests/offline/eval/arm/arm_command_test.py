@@ -59,15 +59,49 @@ class Arm(unittest.TestCase):
         other = self.report("arm", *JUDGED, "--model", self.arm, "--seed", 2)
         self.assertNotEqual(other["hand_position_rms_cm"], report["hand_position_rms_cm"])
 
+    def test_straps_on_both_segments_meet_the_aims_without_a_model(self):
+        report = self.report("arm", *JUDGED, "--devices", "upper_arm,forearm")
+        self.assertLess(report["hand_position_rms_cm"], 6)
+        self.assertLess(report["shoulder_error_deg"], 8)
+        self.assertLess(report["elbow_error_deg"], 8)
+        self.assertGreater(report["nees"], 0.3)
+        self.assertLess(report["nees"], 1.5)
+        self.assertNotIn("kinematic", report["baselines"])
+        perfect = self.report("arm", *JUDGED, "--devices", "upper_arm,forearm", "--perfect")
+        self.assertLess(perfect["attitude_error_deg"], 1)
+        self.assertLess(perfect["hand_position_rms_cm"], report["hand_position_rms_cm"])
+
+    def test_what_a_fist_does_not_observe_no_better_device_does(self):
+        report, perfect, strapped = (self.report("arm", *JUDGED, "--model", self.arm, *more) for more in (
+            (), ("--perfect",), ("--devices", "fist,upper_arm")))
+        self.assertLess(perfect["attitude_error_deg"], 0.5 * report["attitude_error_deg"])
+        self.assertGreater(perfect["hand_position_rms_cm"], 0.8 * report["hand_position_rms_cm"])
+        self.assertLess(strapped["hand_position_rms_cm"], 0.85 * report["hand_position_rms_cm"])
+        self.assertLess(report["hand_position_rms_cm"], report["baselines"]["kinematic"]["hand_position_rms_cm"])
+
+    def test_deviations_stay_right_over_minutes(self):
+        report = self.report("arm", *JUDGED, "--model", self.arm, "--loop-minutes", 4)
+        quarters = report["nees_quarters"]
+        self.assertEqual(len(quarters), 4)
+        self.assertLess(max(quarters), 3)  # Of one person who trained.
+        self.assertLessEqual(quarters[3], quarters[0])
+
+    def test_devices_that_are_no_arm_are_refused(self):
+        for devices in ("forearm", "wrist", "upper_arm"):
+            done = run(EVAL, "arm", *JUDGED, "--devices", devices)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("upper_arm", done.stderr)
+
     def test_wiimotes_help_the_pose_and_a_kinect_more(self):
         error = {}
-        for hands in ("none", "wiimote", "kinect"):
+        for hands in ("none", "wiimote", "straps", "kinect"):
             report = self.report("pose", *JUDGED, "--model", self.pose, "--model", self.arm, "--hands",
                                  hands, "--no-baselines")
             self.assertTrue(report["finite"])
             error[hands] = report["mpjpe_cm"]
         self.assertLess(error["wiimote"], 0.85 * error["none"])
         self.assertLess(error["kinect"], error["wiimote"])
+        self.assertLess(error["straps"], 0.9 * error["wiimote"])
 
     def test_networks_that_receive_their_own_estimates_are_compared(self):
         folder = pathlib.Path(self.folder.name)

@@ -46,6 +46,15 @@ class Fusion(unittest.TestCase):
         self.assertGreater(report["hidden_joints"], 100)
         self.assertLess(report["hidden_ratio"], 1)
 
+    def test_boards_do_not_cost_what_crossed_arms_hide(self):
+        done = subprocess.run([EVAL, "fusion", "--motion", pathlib.Path(__file__).parent / "crossed_arms.json", "--json"],
+                              capture_output=True, text=True, timeout=100)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        report = json.loads(done.stdout)
+        self.assertEqual(report["squat_frames"], 0)
+        self.assertGreater(report["hidden_joints"], 100)
+        self.assertLess(report["hidden_ratio"], 0.5)
+
     def test_figure_7_has_the_skeleton_alone_beside_the_fused_pose(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "figure7.svg"

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "daemon/simulation/reconstruction/hand_track.h"
+#include "footing/v1/sensor.pb.h"
+
+namespace footing::pose_service {
+
+/// A point that is not heard of for longer counts as not seen.
+inline constexpr double kPointTimeoutS = 0.15;
+
+/// A tracked point with the deviations that count: no point is known better than to 2 mm; its
+/// information is the tracker's times its confidence; and where its light was at the sensor's limit
+/// the tracker's depth is not believed beyond kSaturatedDepthShare of the distance, or, of a
+/// tracker whose place is not known, no axis beyond kSaturatedSdM.
+struct CountedPoint {
+  static constexpr double kSaturatedDepthShare = 0.02, kSaturatedSdM = 0.1;
+
+  Eigen::Vector3d p_W_m, sd_m, covariance_m2;
+
+  explicit CountedPoint(const v1::HandSample& sample);
+};
+
+/// Whether the sample is of a point that was seen and whose place is in W: a tracker without
+/// calibration reports places in its own frame.
+bool IsSeenInWorld(const v1::HandSample& sample);
+
+/// One hand as several trackers see it: a HandTrack for each of them, fused by their covariances.
+/// Where they contradict each other the fused covariance grows with the contradiction (Birge's
+/// ratio). At most kMostTrackers at once; another one replaces the one that was heard longest ago.
+/// A value.
+class TrackedHand {
+ public:
+  static constexpr std::size_t kMostTrackers = 4;
+
+  /// A sample by IsSeenInWorld, exposed then.
+  void Add(const v1::HandSample& sample, double exposed_s, std::int64_t now_ns);
+
+  struct Fused {
+    reconstruction::HandInput hand;  ///< Invalid where no tracker has it.
+    bool simulated = false;          ///< One of its trackers is.
+    std::set<std::string> trackers;  ///< Their names.
+  };
+  /// Of the trackers that have seen it lately.
+  Fused At(std::int64_t now_ns) const;
+
+ private:
+  struct Source {
+    std::string tracker;
+    bool used = false, simulated = false;
+    std::int64_t seen_ns = 0;
+    reconstruction::HandTrack track;
+  };
+  Source& SourceOf(const std::string& tracker);
+
+  std::array<Source, kMostTrackers> sources_;
+};
+
+}  // namespace footing::pose_service
