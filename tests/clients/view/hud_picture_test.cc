@@ -228,6 +228,30 @@ TEST_F(HudPictureTest, TheInterfacePanelStaysInItsBoxForEveryInterface) {
   }
 }
 
+TEST_F(HudPictureTest, TheStickGaugeLightsUpWhereTheCharacterTurnsInPlace) {
+  const scene::made::Wish wish{.gait = stream::Gait::kStep,
+                               .interface = stream::UserInterface::kJoystick};
+  const scene::Model model = scene::made::ModelAfter(3, wish);
+  scene::WorldFrame frame = scene::made::TickAt(3, wish).frame.value();
+  stream::InterfaceState& state = frame.characters.front().interface;
+  state.stick = {.valid = true, .x = 0.9, .y = -0.3};  // 108 degrees to the right.
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(3);
+  const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+  const auto shown = [&](double turn_share, const std::string& name) {
+    state.turn.share = turn_share;
+    return Show(picture, model, frame, now_ns, {}, name);
+  };
+  const Image right = shown(1.5, "stick_right"), straight = shown(0, "stick_straight");
+  const HudBoxes boxes =
+      BoxesOf({picture, model, frame, now_ns, model, now_ns}, {}, {kWidth, kHeight}, 1);
+  ASSERT_TRUE(boxes.interface);
+  Box stick = *boxes.interface;  // Its right half; the gauge of turns is in the last column.
+  stick.low.x += stick.width() / 6;
+  stick.high.x = stick.low.x + stick.width() / 5;
+  EXPECT_GT(Changed(right, straight, stick, {kWidth, kHeight}).first, 100);
+}
+
 TEST_F(HudPictureTest, TheTPosePromptStaysOutOfThePanelsHoweverLongItIs) {
   scene::made::PersonWish wish;
   wish.calibrated = false;
