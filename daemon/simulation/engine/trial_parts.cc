@@ -26,6 +26,7 @@ void GaitEngine::Parts::TakeTrial(const EngineInputs& inputs) {
     state.trial = trial::Begin(on.track, inputs.trial.task);
     const stream::TrackSegment start = on.track.segments.front();
     Stand(start.start_m, start.heading_rad);
+    state.interface.RenewGrip();
     AddEvent({.kind = EventKind::kTrialReady, .trial = Progress()});
   }
   if (taken.trial_number < inputs.trial.stopped_below && trial::GoesOn(state.trial)) {
