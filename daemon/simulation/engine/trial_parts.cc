@@ -67,8 +67,11 @@ void GaitEngine::Parts::NoteTrial() {
 
 void GaitEngine::Parts::NoteFall() {
   if (state.fallen) return;
-  const Failure failure = FindFailure(on.track, place, body, on.world.Observe());
+  if (MissesPit(on.track, place, body)) state.missed_pit_s = TimeS();
+  Failure failure = FindFailure(on.track, place, body, on.world.Observe());
   if (failure.why == nullptr) return;
+  const bool stumbles = TimeS() - state.missed_pit_s < kStumbleS;
+  if (failure.cause == FailureCause::kSimulation && stumbles) failure.cause = FailureCause::kJump;
   // Behind the finish line a character may slow down as it can.
   const bool over =
       !trial::GoesOn(state.trial) && on.track.finish_m > 0 && DistanceAlong() >= on.track.finish_m;
