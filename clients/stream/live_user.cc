@@ -53,9 +53,10 @@ SimulatedDevice::CornerForces BoardOf(std::shared_ptr<LiveUser> user, std::size_
 
 }  // namespace
 
-LiveUser::LiveUser(UserInterface interface, TurnSource turn_by, std::uint64_t seed)
-    : driver_(users::AbilityWith(interface, turn_by), users::DrawStyle(seed), seed),
-      person_(interface, users::DrawStyle(seed), seed, turn_by) {}
+LiveUser::LiveUser(UserInterface interface, TurnSource turn_by,
+                   const std::optional<users::GripWish>& grip, std::uint64_t seed)
+    : driver_(users::AbilityWith(interface, turn_by), users::StyleOf(seed, interface, grip), seed),
+      person_(interface, users::StyleOf(seed, interface, grip), seed, turn_by) {}
 
 void LiveUser::See(const v1::Tick& tick) {
   if (tick.has_track()) {
@@ -93,21 +94,27 @@ const users::Felt& LiveUser::At(double t_s) {
   return person_.felt();
 }
 
-Result<LiveUserPlan> PlanLiveUser(const std::string& interface, const std::string& turn_by,
-                                  const Common& common, std::uint64_t style_seed) {
+Result<LiveUserPlan> PlanLiveUser(const LiveUserOptions& options, const Common& common,
+                                  std::uint64_t style_seed) {
   const auto link = ParseLink(common.link);
   if (!link) return link.error();
-  const UserInterface named = stream::UserInterfaceNamed(interface);
-  const TurnSource turns = stream::LegTurnSourceNamed(turn_by);
+  const UserInterface named = stream::UserInterfaceNamed(options.interface);
+  const TurnSource turns = stream::LegTurnSourceNamed(options.turn_by);
   if (turns == TurnSource::kUnspecified) {
-    return UsageError("unknown --turn-by " + turn_by + "; there are: head, feet, trunk");
+    return UsageError("unknown --turn-by " + options.turn_by + "; there are: head, feet, trunk");
   }
   const std::vector<DeviceRole> roles = stream::RolesOf(named, turns);
   if (roles.empty()) {
-    return UsageError("unknown --interface " + interface +
+    return UsageError("unknown --interface " + options.interface +
                       "; there are: " + stream::UserInterfaceNames());
   }
-  LiveUserPlan live{.plan = {}, .user = std::make_shared<LiveUser>(named, turns, style_seed)};
+  std::optional<users::GripWish> grip;
+  if (options.grip_deg) {
+    const auto parsed = users::ParseGrip(*options.grip_deg, options.grip_way, named);
+    if (!parsed) return parsed.error();
+    grip = *parsed;
+  }
+  LiveUserPlan live{.plan = {}, .user = std::make_shared<LiveUser>(named, turns, grip, style_seed)};
   for (std::size_t i = 0; i < roles.size(); ++i) {
     const std::uint64_t device = i + 1;
     const std::uint64_t seed = DeviceSeed(common, device);

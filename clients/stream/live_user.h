@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "clients/stream/plan.h"
 #include "common/stream/user_interface.h"
 #include "common/virtual/users/driver.h"
+#include "common/virtual/users/grip.h"
 #include "common/virtual/users/person.h"
 #include "footing/v1/session.pb.h"
 
@@ -16,8 +19,9 @@ namespace footing::stream_client {
 /// still while it sees nothing.
 class LiveUser {
  public:
-  /// `turn_by` is what turns with the interface leg.
-  LiveUser(stream::UserInterface interface, stream::TurnSource turn_by, std::uint64_t seed);
+  /// `turn_by` is what turns with the interface leg; `grip` none: as the style of `seed` has it.
+  LiveUser(stream::UserInterface interface, stream::TurnSource turn_by,
+           const std::optional<users::GripWish>& grip, std::uint64_t seed);
 
   void See(const v1::Tick& tick);
   /// What the devices feel at t_s since the motion began; after a new connection that is 0 again.
@@ -43,9 +47,16 @@ struct LiveUserPlan {
   Plan plan;
   std::shared_ptr<LiveUser> user;
 };
-/// `interface` by its name, `turn_by` by that of head, feet or trunk; a usage error lists what
-/// there is. `style_seed` is that of the user, common.seed that of the devices.
-Result<LiveUserPlan> PlanLiveUser(const std::string& interface, const std::string& turn_by,
-                                  const Common& common, std::uint64_t style_seed);
+/// Who the user is, as options have it.
+struct LiveUserOptions {
+  std::string interface = "wrist";
+  std::string turn_by = "head";
+  std::optional<double> grip_deg = {};  ///< None: drawn with the style.
+  std::string grip_way = "mirrored";
+};
+/// A usage error lists what there is. `style_seed` is that of the user, common.seed that of the
+/// devices.
+Result<LiveUserPlan> PlanLiveUser(const LiveUserOptions& options, const Common& common,
+                                  std::uint64_t style_seed);
 
 }  // namespace footing::stream_client

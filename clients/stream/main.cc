@@ -81,8 +81,9 @@ int RunUser(const stream_client::UserOptions& user, const stream_client::Common&
   }
   const auto simulation = transport::ParseAddress(user.see);
   if (!simulation) return cli::Report(simulation.error());
-  auto live = stream_client::PlanLiveUser(user.interface, user.turn_by, common,
-                                          user.style_seed.value_or(common.seed));
+  auto live =
+      stream_client::PlanLiveUser({user.interface, user.turn_by, user.grip_deg, user.grip_way},
+                                  common, user.style_seed.value_or(common.seed));
   if (!live) return cli::Report(live.error());
   return Run(std::move(live->plan), common, [&](boost::asio::io_context& io) {
     return stream_client::WatchSimulation(

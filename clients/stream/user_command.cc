@@ -20,6 +20,13 @@ CLI::App* AddUserCommand(CLI::App& app, UserOptions& options) {
   user->add_option("--turn-by", options.turn_by,
                    "What turns with the interface leg: head, feet or trunk (default head)")
       ->needs(see);
+  auto* grip = user->add_option("--grip-deg", options.grip_deg,
+                                "Rotation of the remotes in the hands of the user who sees, with "
+                                "wrist and arm, degrees (default: drawn with the style)");
+  grip->needs(see);
+  user->add_option("--grip-way", options.grip_way,
+                   "Grips of both hands: mirrored or same (default mirrored)")
+      ->needs(grip);
   auto* motion_plus = user->add_flag("--motion-plus", options.ports.motion_plus,
                                      "Add a MotionPlus to each Wiimote");
   auto* nunchuk =

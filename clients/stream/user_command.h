@@ -13,6 +13,8 @@ struct UserOptions {
   std::string script = "demo";
   std::string interface = "wrist";
   std::string turn_by = "head";
+  std::optional<double> grip_deg;
+  std::string grip_way = "mirrored";
   std::string see;  ///< Address of footing-sim; empty: the user follows the script.
   std::optional<std::uint64_t> style_seed;
   Ports ports;

@@ -83,8 +83,15 @@ def median(bar):
     return judge
 
 
+def whole_range(rows):
+    """Commands of every accepted speed, height and turn: at most one fall in 20 h. Many ask for a speed
+    that takes longer than they last."""
+    count, hours = sum(r["falls"] for r in rows), sum(r["simulated_s"] for r in rows) / 3600
+    return f"{count} falls in {hours:.1f} h", count <= max(1, hours / 20)
+
+
 def monkey(rows):
-    """At most one fall in five hours, on which a run of 20 h of 4 falls is judged."""
+    """Ordinary ones, which are also followed."""
     count, hours = sum(r["falls"] for r in rows), sum(r["simulated_s"] for r in rows) / 3600
     share = (sum(r["commands_tracked_fraction"] * r["commands_of_3_s"] for r in rows) /
              sum(r["commands_of_3_s"] for r in rows))
@@ -177,8 +184,10 @@ def table():
                     ["transitions", "--from", "run", "--to", "walk", "--from-speed", 3], 200, 100))
     rows.append(Row("run to jump, latency", "<= 0.7 s", median(0.7),
                     ["transitions", "--from", "run", "--to", "jump"], 200, 100))
-    rows.append(Row("random commands", "20 h, <= 4 falls, 95 % tracked", monkey,
-                    ["monkey", "--seconds", 3600], 20, 1))
+    rows.append(Row("random commands of the whole range", "20 h, <= 1 fall", whole_range,
+                    ["monkey", "--whole-range", "--seconds", 3600], 20, 1))
+    rows.append(Row("random commands", "5 h, <= 1 fall, 95 % tracked", monkey,
+                    ["monkey", "--seconds", 3600], 5, 1))
     for start, goal in PAIRS:
         rows.append(Row(f"{start} to {goal}", "lower bound >= 99.7 %", transitions,
                         ["transitions", "--from", start, "--to", goal], 1000, 50))

@@ -1,9 +1,10 @@
 """The demo of an interface whose synthetic user sees the track, as scripts/demo starts it: from the devices to the
-screen, the character moves, stays on its track and on its feet.
+screen, the character moves, stays on its track and on its feet. When its devices are gone the screen says so at once.
 
 Usage: demo_interface.py BINARY_FOLDER INTERFACE
 """
 import sys
+import time
 
 from harness import Stage
 
@@ -19,7 +20,11 @@ def main(binaries, interface):
         assert {"walk", "run"} & set(seen["gaits_seen"]) and seen["simulated"], seen
         assert seen["falls"] == 0 and seen["off_track_s"] == 0, seen
         assert seen["distance_m"] > 5, seen
-        for name in ("footing-stream", "footing-sim", "footingd"):
+        assert stage.stop("footing-stream") == 0
+        time.sleep(1)  # A device that has been silent for 0.5 s is missing.
+        gone = stage.run("footing-view", "--connect", stage.simulation, "--seconds", 2, "--text")
+        assert "!! No signal from the left" in gone.stdout.splitlines()[-1], gone
+        for name in ("footing-sim", "footingd"):
             assert stage.stop(name) == 0, name
 
 

@@ -5,6 +5,7 @@
 
 #include "clients/view/scene/game_text.h"
 #include "clients/view/scene/interface_text.h"
+#include "clients/view/scene/lost_text.h"
 #include "clients/view/scene/notice_text.h"
 #include "clients/view/scene/study_text.h"
 #include "clients/view/scene/trial_text.h"
@@ -215,6 +216,9 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
     if (!notice.empty()) lines.push_back("  NOTICE: " + notice);
   }
   if (HasPicture(model)) {
+    for (const CharacterPose& pose : model.playout.Newest().characters) {
+      if (std::string lost = LostLine(pose); !lost.empty()) lines.push_back("!! " + lost);
+    }
     lines.push_back("Character");
     for (const CharacterPose& pose : model.playout.Newest().characters) {
       for (std::string& line : CharacterLines(pose, model.track)) lines.push_back(std::move(line));
@@ -275,6 +279,7 @@ std::string StatusLine(const Model& model, std::int64_t now_ns) {
     line += "  " + GaitTitle(pose.gait.gait) + "  " + Fixed(pose.gait.speed_mps, 2) + "/" +
             Fixed(pose.gait.commanded_speed_mps, 2) + " m/s  " + Fixed(pose.gait.distance_m, 1) +
             " m  " + FallText(pose.gait);
+    if (const auto lost = LostSignalOf(pose)) line += "  !! " + lost->what;
     const std::string interface = InterfaceText(pose.interface);
     if (!interface.empty()) line += "  " + interface;
     if (!pose.trial || !ShowsTrial(*pose.trial)) continue;

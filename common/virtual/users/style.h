@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "common/stream/user_interface.h"
+
 /// Synthetic users: what they see, what they want, and how their bodies do it. Frames: world W
 /// (x forward, y left, z up), sensor S of a Wiimote (x left, y front, z down). SI units.
 namespace footing::users {
@@ -24,5 +26,14 @@ struct Style {
 
 /// Evenly within the ranges above; the remotes as they should be held.
 Style DrawStyle(std::uint64_t seed);
+/// The same person with the remotes as people hold and wear them: each by its own up to
+/// MostGrip(interface) off.
+Style DrawStyle(std::uint64_t seed, stream::UserInterface interface);
+
+/// How far a remote is rotated, rad. In the hands of swinging arms, where nobody looks at it, by 45
+/// degrees (the gait paper names different grips as a difficulty of that interface). Wrists hold it
+/// buttons up in sight, and shins wear it with a mounting: a few degrees. No stick and no board can
+/// be rotated.
+double MostGrip(stream::UserInterface interface);
 
 }  // namespace footing::users

@@ -64,4 +64,22 @@ Failure FindFailure(const stream::Track& track, const terrain::TrackPlace& place
   return {missed.edge ? FailureCause::kCurve : FailureCause::kSimulation, why};
 }
 
+bool MissesPit(const stream::Track& track, const terrain::TrackPlace& place,
+               const biped::BodyState& body) {
+  const auto& segments = track.segments;
+  const auto at = static_cast<std::size_t>(place.segment);
+  const std::size_t first = at > 0 ? at - 1 : 0, last = std::min(at + 1, segments.size() - 1);
+  bool near = false;
+  for (std::size_t i = first; i <= last; ++i) near = near || segments[i].pit;
+  if (!near) return false;
+  return std::any_of(
+      body.legs.begin(), body.legs.end(), [&track, &segments](const biped::LegState& leg) {
+        const terrain::TrackPlace foot = terrain::Locate(track, leg.p_WF.head<2>());
+        const stream::TrackSegment& segment = segments[static_cast<std::size_t>(foot.segment)];
+        if (!segment.pit || terrain::IsOffRibbon(track, foot)) return false;
+        // Over a pit there is nothing to touch but its edges and walls.
+        return leg.touching || leg.p_WF.z() < terrain::RibbonHeight(segment, foot) - kSunkM;
+      });
+}
+
 }  // namespace footing::engine

@@ -15,6 +15,9 @@ inline constexpr double kLargestTiltRad = 1.0471975511965976;  ///< 60 degrees.
 /// A foot lower than this under the ribbon, in a pit, has missed the ground.
 inline constexpr double kFootInPitM = 0.3;
 
+/// A fall within this time of a foot that was in a pit, or stood on its edge, is the jump's.
+inline constexpr double kStumbleS = 1;
+
 /// A failure and why, as text of static storage; null when there is none.
 struct Failure {
   stream::FailureCause cause = stream::FailureCause::kSimulation;
@@ -26,5 +29,10 @@ struct Failure {
 /// is the body's on the track.
 Failure FindFailure(const stream::Track& track, const terrain::TrackPlace& place,
                     const biped::BodyState& body, const physics::Observation& seen);
+
+/// Whether a foot touches the edge of a pit, or is lower than the track over one: a jump that was
+/// too short or badly timed. `place` is the body's on the track.
+bool MissesPit(const stream::Track& track, const terrain::TrackPlace& place,
+               const biped::BodyState& body);
 
 }  // namespace footing::engine

@@ -34,6 +34,7 @@ void GaitEngine::Parts::Stand(const Eigen::Vector3d& p_W_m, double heading_rad) 
   state.gait.steps = steps;
   state.interface.StartAgain();
   state.fallen = false;
+  state.missed_pit_s = -1e9;
   state.inputs.push_steps_left = 0;
   ReadBody();
 }

@@ -54,7 +54,8 @@ struct EngineState {
   double distance_m = 0;
   bool fallen = false;
   double fallen_time_s = 0;
-  double put_back_to_m = 0;  ///< Where the put-back after the failure goes, along the track.
+  double missed_pit_s = -1e9;  ///< When a foot last was in a pit or on its edge.
+  double put_back_to_m = 0;    ///< Where the put-back after the failure goes, along the track.
   bool simulated_input = false;
 };
 

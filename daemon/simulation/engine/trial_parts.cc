@@ -26,6 +26,7 @@ void GaitEngine::Parts::TakeTrial(const EngineInputs& inputs) {
     state.trial = trial::Begin(on.track, inputs.trial.task);
     const stream::TrackSegment start = on.track.segments.front();
     Stand(start.start_m, start.heading_rad);
+    state.interface.RenewGrip();
     AddEvent({.kind = EventKind::kTrialReady, .trial = Progress()});
   }
   if (taken.trial_number < inputs.trial.stopped_below && trial::GoesOn(state.trial)) {
@@ -66,8 +67,11 @@ void GaitEngine::Parts::NoteTrial() {
 
 void GaitEngine::Parts::NoteFall() {
   if (state.fallen) return;
-  const Failure failure = FindFailure(on.track, place, body, on.world.Observe());
+  if (MissesPit(on.track, place, body)) state.missed_pit_s = TimeS();
+  Failure failure = FindFailure(on.track, place, body, on.world.Observe());
   if (failure.why == nullptr) return;
+  const bool stumbles = TimeS() - state.missed_pit_s < kStumbleS;
+  if (failure.cause == FailureCause::kSimulation && stumbles) failure.cause = FailureCause::kJump;
   // Behind the finish line a character may slow down as it can.
   const bool over =
       !trial::GoesOn(state.trial) && on.track.finish_m > 0 && DistanceAlong() >= on.track.finish_m;

@@ -113,6 +113,10 @@ void AnyInterface::StartAgain() {
   std::visit([](auto& interface) { interface.StartAgain(); }, interface_);
 }
 
+void AnyInterface::RenewGrip() {
+  if (auto* arm = std::get_if<ArmInterface>(&interface_)) arm->RenewGrip();
+}
+
 const stream::InterfaceState& AnyInterface::state() const {
   return std::visit(
       [](const auto& interface) -> const stream::InterfaceState& { return interface.state(); },

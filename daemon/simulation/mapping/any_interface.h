@@ -43,6 +43,8 @@ class AnyInterface {
   /// it has not made, is not made any more; wrists,
   /// arms and legs have to show a gait again before it goes on.
   void StartAgain();
+  /// A new trial: how the person holds the controllers is learned again where it is learned.
+  void RenewGrip();
   /// What it believes that the person does, as of the last Advance.
   const stream::InterfaceState& state() const;
 

@@ -10,10 +10,30 @@ namespace {
 
 using stream::DeviceRole;
 
+/// A hand whose controller was missing for this long may hold it otherwise.
+constexpr double kForgetS = 5;
+/// Cosine of the elevation from which gravity shows a forearm's rotation about itself: hanging it
+/// is 10 to 20 degrees off the vertical.
+constexpr double kLeastLevel = 0.15;
+
 std::optional<double> MeanElevation(const LimbPair& hands) {
   const auto left_rad = ForearmElevation(hands.left), right_rad = ForearmElevation(hands.right);
   if (!left_rad || !right_rad) return std::nullopt;
   return (*left_rad + *right_rad) / 2;
+}
+
+/// Of both hands.
+std::optional<double> MeanRotation(const LimbPair& hands, bool by_swing) {
+  const auto left_rad = ForearmRotation(hands.left, by_swing),
+             right_rad = ForearmRotation(hands.right, by_swing);
+  if (!left_rad || !right_rad) return std::nullopt;
+  return (*left_rad + *right_rad) / 2;
+}
+
+/// What arms that hang still show: no twist, but one that is held aside.
+std::optional<double> MeanRoll(const LimbPair& hands) {
+  if (!hands.left.inclination_valid || !hands.right.inclination_valid) return std::nullopt;
+  return (hands.left.roll_rad + hands.right.roll_rad) / 2;
 }
 
 }  // namespace
@@ -41,14 +61,40 @@ std::optional<double> ForearmElevation(const LimbFeatures& hand) {
   return -std::acos(std::min(1.0, across));
 }
 
-std::optional<double> ArmInterface::TurnRight(const LimbPair& hands) const {
-  const LimbFeatures &left = hands.left, &right = hands.right;
-  if (!bent_ && left.moving && right.moving) {
-    if (!left.swing_valid || !right.swing_valid) return std::nullopt;
-    return (left.swing_rad + right.swing_rad) / 2;
+std::optional<double> ForearmRotation(const LimbFeatures& hand, bool by_swing) {
+  if (by_swing) return hand.swing_valid ? std::optional(hand.swing_rad) : std::nullopt;
+  if (!hand.inclination_valid) return std::nullopt;
+  if (hand.mounted) return hand.roll_rad;
+  const double level = std::cos(hand.pitch_rad);
+  if (level < kLeastLevel) return std::nullopt;
+  return std::asin(std::clamp(std::sin(hand.roll_rad) / level, -1.0, 1.0));
+}
+
+std::optional<double> ArmInterface::TurnRight(double time_s, const LimbPair& hands) {
+  const bool swing = hands.left.moving && hands.right.moving;
+  const bool hang = !swing && !bent_;
+  const auto rotation_rad = MeanRotation(hands, swing && !bent_);
+  if (hands.left.mounted && hands.right.mounted) return hang ? MeanRoll(hands) : rotation_rad;
+  const auto frequency_hz =
+      MeanOf(hands, &LimbFeatures::frequency_valid, &LimbFeatures::frequency_hz);
+  if (swing && rotation_rad && frequency_hz) {
+    grip_.Stride(time_s, *rotation_rad, *frequency_hz);
+  } else if (hang && rotation_rad && !hands.left.moving && !hands.right.moving) {
+    grip_.Hang(time_s, *rotation_rad);
+  } else if (!swing) {
+    grip_.Rest();
   }
-  if (!left.inclination_valid || !right.inclination_valid) return std::nullopt;
-  return (left.roll_rad + right.roll_rad) / 2;
+  if (hang) return MeanRoll(hands);
+  return rotation_rad ? grip_.TwistOf(*rotation_rad) : std::nullopt;
+}
+
+void ArmInterface::NoteMissing(double time_s, const LimbPair& hands) {
+  if (hands.left.present && hands.right.present) {
+    if (time_s - present_s_ > kForgetS) grip_.Forget();
+    present_s_ = time_s;
+  } else {
+    turn_.Rest();
+  }
 }
 
 biped::GaitCommand ArmInterface::Advance(double time_s, const Inputs& inputs) {
@@ -59,8 +105,8 @@ biped::GaitCommand ArmInterface::Advance(double time_s, const Inputs& inputs) {
     bent_ = *elevation_rad > border_rad;
   }
   biped::GaitCommand command = gait_.Advance(time_s, hands, bent_);
-  if (!hands.left.present || !hands.right.present) turn_.Rest();
-  command.turn_per_step_rad = turn_.Advance(time_s, TurnRight(hands));
+  NoteMissing(time_s, hands);
+  command.turn_per_step_rad = turn_.Advance(time_s, TurnRight(time_s, hands));
 
   state_ = {.interface = stream::UserInterface::kArm,
             .forearms = {.valid = elevation_rad.has_value(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "daemon/simulation/mapping/neutral_grip.h"
 #include "daemon/simulation/mapping/swing_gait.h"
 #include "daemon/simulation/mapping/turn.h"
 
@@ -27,6 +28,11 @@ Result<ArmMapping> ParseArmMapping(const std::string& text, const std::string& o
 /// follows from both inclinations; a forearm above the horizontal counts as one as far below it.
 std::optional<double> ForearmElevation(const LimbFeatures& hand);
 
+/// Rotation of a controller about the forearm, left side up. `by_swing`: from the direction of its
+/// swing, which straight arms show; else from its inclination, however high the forearm is, unless
+/// it hangs straight down. Not known: none.
+std::optional<double> ForearmRotation(const LimbFeatures& hand, bool by_swing);
+
 /// The arm interface of the gait paper, section 7: two controllers in the hands of swinging arms.
 ///
 /// | motion                        | command                                                   |
@@ -40,7 +46,8 @@ std::optional<double> ForearmElevation(const LimbFeatures& hand);
 ///
 /// A hanging forearm that is twisted keeps its gravity, so the twist of straight arms is taken from
 /// the direction of their swing against the controllers, which bent arms leave to the inclination.
-/// Both need both hands: grips that are mirror images of each other cancel. A plain value.
+/// Both need both hands: grips that are mirror images of each other cancel. An equal rotation of
+/// both is learned (NeutralGrip), unless both have a mounting. A plain value.
 class ArmInterface {
  public:
   explicit ArmInterface(const ArmMapping& mapping)
@@ -50,14 +57,19 @@ class ArmInterface {
   biped::GaitCommand Advance(double time_s, const Inputs& inputs);
   /// What the limbs showed before does not count.
   void StartAgain() { gait_.Rest(); }
+  /// How the controllers lie in the hands is learned again.
+  void RenewGrip() { grip_.Renew(); }
   const stream::InterfaceState& state() const { return state_; }
 
  private:
-  std::optional<double> TurnRight(const LimbPair& hands) const;
+  std::optional<double> TurnRight(double time_s, const LimbPair& hands);
+  void NoteMissing(double time_s, const LimbPair& hands);
 
   ArmMapping mapping_;
   SwingGait gait_;
   Turn turn_;
+  NeutralGrip grip_;
+  double present_s_ = 0;  ///< When both hands were there last.
   bool bent_ = false;
   stream::InterfaceState state_;
 };

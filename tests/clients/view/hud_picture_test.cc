@@ -139,6 +139,42 @@ TEST_F(HudPictureTest, ATaskIsSeenAtEverySizeAlsoByThePersonWhoSeesTheWorldAlone
       [](bool, int inside, const std::string& name) { EXPECT_GT(inside, 1000) << name; });
 }
 
+TEST_F(HudPictureTest, LostDevicesAreSeenAtEverySizeAlsoByThePersonWhoSeesTheWorldAlone) {
+  for (const auto interface : stream::kUserInterfaces) {
+    scene::made::Wish wish{.gait = stream::Gait::kStep, .speed_mps = 0, .interface = interface};
+    const scene::Model model = scene::made::ModelAfter(3, wish);
+    const scene::WorldFrame bare = scene::made::TickAt(12, wish).frame.value();
+    const bool boards = interface == stream::UserInterface::kBoards;
+    scene::WorldFrame frame = bare;
+    stream::InterfaceState& state = frame.characters.front().interface;
+    state.activity = stream::Activity::kAbsent;
+    state.missing_roles =
+        stream::RoleBit(boards ? stream::DeviceRole::kLeftBoard : stream::DeviceRole::kLeftHand) |
+        stream::RoleBit(boards ? stream::DeviceRole::kRightBoard : stream::DeviceRole::kRightHand);
+    scene::Stage stage;
+    const std::int64_t now_ns = scene::made::ClockAt(12);
+    const scene::Picture picture = stage.Advance(model, bare, now_ns, 0.01, {});
+    // The small warnings of the panels are outside of the middle; without panels there are none.
+    for (const Size& size : kPictureSizes) {
+      Resize(size.width, size.height);
+      const ImVec2 pixels(static_cast<float>(size.width), static_cast<float>(size.height));
+      for (const bool hidden : {false, true}) {
+        HudOptions options;
+        options.hidden = hidden;
+        const std::string what = std::string("lost_") + stream::Name(interface);
+        const auto name = SizedName(hidden ? what + "_alone" : what, size);
+        const Image with = Show(picture, model, frame, now_ns, options, name);
+        const Image without = Show(picture, model, bare, now_ns, options, name + "_bare");
+        const HudContent content{picture, model, frame, now_ns, model, now_ns};
+        const Box middle = BoxesOf(content, options, pixels, HudScale(pixels, 1)).middle;
+        const auto [inside, outside] = Changed(with, without, middle, size);
+        EXPECT_GT(inside, size.width * size.height / 40) << name;
+        EXPECT_TRUE(!hidden || outside == 0) << name;
+      }
+    }
+  }
+}
+
 TEST_F(HudPictureTest, AGameIsSeenAtEverySizeAlsoWithoutThePanels) {
   const scene::made::Wish wish;
   const scene::Model bare = scene::made::ModelAfter(12, wish);
@@ -190,6 +226,30 @@ TEST_F(HudPictureTest, TheInterfacePanelStaysInItsBoxForEveryInterface) {
         BoxesOf({picture, model, frame, now_ns, model, now_ns}, {}, {1280, 720}, 1);
     EXPECT_TRUE(boxes.interface) << name;
   }
+}
+
+TEST_F(HudPictureTest, TheStickGaugeLightsUpWhereTheCharacterTurnsInPlace) {
+  const scene::made::Wish wish{.gait = stream::Gait::kStep,
+                               .interface = stream::UserInterface::kJoystick};
+  const scene::Model model = scene::made::ModelAfter(3, wish);
+  scene::WorldFrame frame = scene::made::TickAt(3, wish).frame.value();
+  stream::InterfaceState& state = frame.characters.front().interface;
+  state.stick = {.valid = true, .x = 0.9, .y = -0.3};  // 108 degrees to the right.
+  scene::Stage stage;
+  const std::int64_t now_ns = scene::made::ClockAt(3);
+  const scene::Picture picture = stage.Advance(model, frame, now_ns, 0.01, {});
+  const auto shown = [&](double turn_share, const std::string& name) {
+    state.turn.share = turn_share;
+    return Show(picture, model, frame, now_ns, {}, name);
+  };
+  const Image right = shown(1.5, "stick_right"), straight = shown(0, "stick_straight");
+  const HudBoxes boxes =
+      BoxesOf({picture, model, frame, now_ns, model, now_ns}, {}, {kWidth, kHeight}, 1);
+  ASSERT_TRUE(boxes.interface);
+  Box stick = *boxes.interface;  // Its right half; the gauge of turns is in the last column.
+  stick.low.x += stick.width() / 6;
+  stick.high.x = stick.low.x + stick.width() / 5;
+  EXPECT_GT(Changed(right, straight, stick, {kWidth, kHeight}).first, 100);
 }
 
 TEST_F(HudPictureTest, TheTPosePromptStaysOutOfThePanelsHoweverLongItIs) {

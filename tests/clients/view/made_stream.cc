@@ -46,6 +46,13 @@ stream::InterfaceState BeliefAt(double time_s, const Wish& wish) {
   state.left_share = 0.8;
   state.turn.source = stream::TurnSource::kHands;
   state.turn.share = 1.3;
+  if (wish.missing_roles != 0) {
+    state.missing_roles = wish.missing_roles;
+    state.activity = stream::Activity::kAbsent;
+    state.gait = stream::Gait::kStep;
+    state.frequency_valid = state.phase_valid = state.turn.valid = false;
+    state.turn.share = 0;
+  }
   return state;
 }
 
@@ -76,7 +83,7 @@ CharacterPose PoseAt(double time_s, const Wish& wish) {
   pose.com_m = {x_m, 0, hip_m};
   pose.com_velocity_mps = {wish.speed_mps, 0, 0};
   pose.gait.gait = wish.gait;
-  pose.gait.commanded_gait = wish.gait;
+  pose.gait.commanded_gait = wish.missing_roles != 0 ? stream::Gait::kStep : wish.gait;
   pose.gait.speed_mps = wish.speed_mps + 0.05 * std::sin(time_s);
   pose.gait.commanded_speed_mps = wish.speed_mps;
   pose.gait.commanded_turn_rad = DegreesToRadians(5);

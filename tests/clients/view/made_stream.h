@@ -14,6 +14,7 @@ struct Wish {
   bool board = true;
   bool simulated = true;
   stream::UserInterface interface = stream::UserInterface::kWrist;
+  std::uint32_t missing_roles = 0;  ///< The interface is without them; the character steps.
 };
 
 /// Foot and hip heights of the made body: hips at 0.95 m, feet on the ground while they stand.

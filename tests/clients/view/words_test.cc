@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "clients/view/scene/interface_text.h"
+#include "clients/view/scene/lost_text.h"
 #include "tests/clients/view/made_stream.h"
 
 namespace footing::scene {
@@ -142,6 +143,47 @@ TEST(InterfaceText, NamesTheInterfaceItsBeliefAndWhatItMisses) {
   state.missing_roles =
       stream::RoleBit(stream::DeviceRole::kHead) | stream::RoleBit(stream::DeviceRole::kLeftLeg);
   EXPECT_THAT(InterfaceText(state), HasSubstr("missing: left leg, head"));
+}
+
+TEST(LostSignal, SaysWhatIsSilentWhatTheCharacterDoesAndWhatToDo) {
+  made::Wish wish;
+  wish.missing_roles = stream::RoleBit(stream::DeviceRole::kLeftHand) |
+                       stream::RoleBit(stream::DeviceRole::kRightHand);
+  const Model model = made::ModelAfter(3, wish);
+  EXPECT_THAT(StatusScreen(model, made::ClockAt(3)),
+              Contains(AllOf(HasSubstr("No signal from the left hand and the right hand."),
+                             HasSubstr("The character stops"), HasSubstr("batteries"))));
+  EXPECT_THAT(StatusLine(model, made::ClockAt(3)),
+              HasSubstr("!! No signal from the left hand and the right hand"));
+}
+
+TEST(LostSignal, IsNoneWhileAllDevicesAreThereOrACommandTakesTheirPlace) {
+  EXPECT_FALSE(LostSignalOf(made::TickAt(3, {}).frame->characters.front()));
+  made::Wish wish;
+  wish.missing_roles = stream::RoleBit(stream::DeviceRole::kLeftHand);
+  CharacterPose pose = made::TickAt(3, wish).frame->characters.front();
+  EXPECT_TRUE(LostSignalOf(pose));
+  pose.gait.commanded_gait = stream::Gait::kRun;
+  EXPECT_FALSE(LostSignalOf(pose));
+  EXPECT_FALSE(LostSignalOf({}));
+}
+
+TEST(LostSignal, NamesTheSensorDaemonWhereNothingComesFromIt) {
+  made::Wish wish;
+  wish.missing_roles = stream::RoleBit(stream::DeviceRole::kLeftHand);
+  CharacterPose pose = made::TickAt(3, wish).frame->characters.front();
+  pose.gait.commanded_by_stream = false;
+  EXPECT_THAT(LostLine(pose), AllOf(HasSubstr("No signal from any device"), HasSubstr("footingd")));
+}
+
+TEST(LostSignal, WithoutItsHeadAloneTheLegInterfaceDoesNotTurn) {
+  CharacterPose pose = made::TickAt(3, {}).frame->characters.front();
+  pose.interface.interface = stream::UserInterface::kLeg;
+  pose.interface.missing_roles = stream::RoleBit(stream::DeviceRole::kHead);
+  const auto lost = LostSignalOf(pose);
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->what, "No signal from the head");
+  EXPECT_THAT(lost->effect, HasSubstr("does not turn"));
 }
 
 TEST(InterfaceText, IsOnTheScreenAndInTheLog) {

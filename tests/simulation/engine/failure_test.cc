@@ -70,6 +70,24 @@ TEST(Failure, RunningIntoAPitIsTheJumps) {
   EXPECT_EQ(FirstFailure(engine, inputs, 10).cause, FailureCause::kJump);
 }
 
+TEST(Failure, AFallBehindAPitWhoseEdgeAFootHitIsTheJumps) {
+  // Runs at 3 m/s, whose steps are 1.2 m long, over pits of 0.3 m at every place of a step: most
+  // of them are run over, and some of their far edges are hit.
+  int hit = 0;
+  for (int i = 0; i < 16; ++i) {
+    const std::string start_m = std::to_string(8 + 0.075 * i);
+    GaitEngine engine = EngineOn(R"({"version": 1, "help_over_pits": false, "segments": [
+        {"length_m": )" + start_m +
+                                 R"(}, {"length_m": 0.3, "pit": true}, {"length_m": 30}]})");
+    const EngineEvent failure = FirstFailure(engine, Direct(Command(Gait::kRun, 3)), 8);
+    if (failure.text[0] == 0) continue;
+    ++hit;
+    EXPECT_EQ(failure.cause, FailureCause::kJump) << start_m << ": " << failure.text;
+  }
+  EXPECT_GT(hit, 0);
+  EXPECT_LT(hit, 16);
+}
+
 TEST(Failure, APushOverIsTheSimulations) {
   GaitEngine engine = EngineOn(test::DataFile("tracks/pits.json"));
   EngineInputs inputs = Direct(Command(Gait::kWalk, 1));

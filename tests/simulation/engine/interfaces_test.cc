@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "daemon/simulation/engine/state.h"
 #include "tests/simulation/engine/engine_fixture.h"
 
 namespace footing::engine {
@@ -79,6 +80,29 @@ TEST(Interfaces, WithoutItsControllersTheCharacterStopsTurningAndRests) {
   Feed(engine, inputs, 3);
   EXPECT_EQ(engine.Output().gait.heading_rad, heading_rad);
   EXPECT_NEAR(engine.Output().gait.speed_mps, 0, 0.1);
+}
+
+TEST(Interfaces, ANewTrialLearnsAgainHowArmsHoldTheirControllers) {
+  GaitEngine engine = NewEngineOf(UserInterface::kArm);
+  EngineInputs inputs;
+  mapping::LimbFeatures hand{.present = true,
+                             .moving = true,
+                             .frequency_valid = true,
+                             .frequency_hz = 1,
+                             .inclination_valid = true,
+                             .pitch_rad = -1.4,
+                             .swing_valid = true};
+  const auto swing = [&](double rotation_rad, double seconds) {
+    hand.swing_rad = rotation_rad;
+    inputs.features.hands = {.left = hand, .right = hand, .phase_valid = true, .phase_rad = M_PI};
+    Feed(engine, inputs, seconds);
+    return engine.Output().gait.commanded_turn_rad;
+  };
+  EXPECT_EQ(swing(0.7, 3), 0);
+  EXPECT_GT(swing(0, 3), 0);  // Both turned back: to the left.
+  ++inputs.trial.number;
+  EXPECT_EQ(swing(0, 3), 0);
+  EXPECT_LT(swing(0.7, 3), 0);
 }
 
 TEST(Interfaces, AnotherOneTakesOverWhenItsNumberIsNewAndBeginsAtRest) {

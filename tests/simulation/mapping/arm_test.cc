@@ -33,6 +33,24 @@ biped::GaitCommand After5S(const ArmSwing& motion, bool mounted,
   return command;
 }
 
+/// The turn a step after 4 s of going straight from rest, and 5 s more with the arms twisted.
+double TurnWith(ArmSwing motion, double twist_deg, bool mounted) {
+  Arms arms(mounted);
+  ArmInterface arm = NewArm();
+  biped::GaitCommand command;
+  while (arms.time_s() < 9) {
+    motion.twist_rad = arms.time_s() < 4 ? 0 : DegreesToRadians(twist_deg);
+    const Inputs inputs = arms.Advance(motion);
+    command = arm.Advance(arms.time_s(), inputs);
+  }
+  return command.turn_per_step_rad;
+}
+
+/// What `twist_deg` to the right commands.
+double TurnFor(double twist_deg) {
+  return twist_deg > 0 ? -kTwistStepRad : twist_deg < 0 ? kTwistStepRad : 0;
+}
+
 TEST(Arm, StraightArmsWalkAndBentArmsRunWhateverTheGrip) {
   for (const bool mounted : {false, true}) {
     for (const double left_deg : {-45.0, 0.0, 45.0}) {
@@ -64,15 +82,69 @@ TEST(Arm, TwistedStraightArmsAndInclinedBentOnesTurnToTheirSide) {
       for (const double twist_deg : {-35.0, 0.0, 35.0}) {
         for (const double grip_deg : {0.0, 40.0}) {
           ArmSwing motion = swing;
-          motion.twist_rad = DegreesToRadians(twist_deg);
           motion.grip_left_rad = DegreesToRadians(grip_deg);
           motion.grip_right_rad = DegreesToRadians(-grip_deg);
-          const double turn = twist_deg > 0 ? -kTwistStepRad : twist_deg < 0 ? kTwistStepRad : 0;
-          EXPECT_NEAR(After5S(motion, mounted).turn_per_step_rad, turn, 1e-9)
+          EXPECT_NEAR(TurnWith(motion, twist_deg, mounted), TurnFor(twist_deg), 1e-9)
               << twist_deg << " degrees, grip " << grip_deg << ", elbow " << swing.elbow_rad;
         }
       }
     }
+  }
+}
+
+TEST(Arm, GripsOfUpTo45DegreesInAnyCombinationNeitherTurnNorKeepFromTurning) {
+  for (const ArmSwing& swing : {Walking(), Running()}) {
+    for (const double left_deg : {-45.0, 0.0, 45.0}) {
+      for (const double right_deg : {-45.0, 0.0, 45.0}) {
+        for (const double twist_deg : {-35.0, 0.0, 35.0}) {
+          ArmSwing motion = swing;
+          motion.grip_left_rad = DegreesToRadians(left_deg);
+          motion.grip_right_rad = DegreesToRadians(right_deg);
+          EXPECT_NEAR(TurnWith(motion, twist_deg, false), TurnFor(twist_deg), 1e-9)
+              << left_deg << ", " << right_deg << ", twist " << twist_deg << ", elbow "
+              << swing.elbow_rad;
+        }
+      }
+    }
+  }
+}
+
+/// Advances both for `seconds` of a motion; the turn a step at the end.
+double Go(Arms& arms, ArmInterface& arm, const ArmSwing& motion, double seconds) {
+  biped::GaitCommand command;
+  for (const double until_s = arms.time_s() + seconds; arms.time_s() < until_s;) {
+    const Inputs inputs = arms.Advance(motion);
+    command = arm.Advance(arms.time_s(), inputs);
+  }
+  return command.turn_per_step_rad;
+}
+
+TEST(Arm, APutBackKeepsTheGripAndANewTrialLearnsItAgain) {
+  Arms arms(false);
+  ArmInterface arm = NewArm();
+  ArmSwing twisted = Walking();
+  twisted.twist_rad = DegreesToRadians(35);
+  EXPECT_EQ(Go(arms, arm, Walking(), 4), 0);
+  EXPECT_NEAR(Go(arms, arm, twisted, 4), -kTwistStepRad, 1e-9);
+  arm.StartAgain();
+  EXPECT_NEAR(Go(arms, arm, twisted, 4), -kTwistStepRad, 1e-9);
+  arm.RenewGrip();
+  EXPECT_EQ(Go(arms, arm, twisted, 4), 0);
+}
+
+TEST(Arm, AHandThatWasAwayForLongMayHoldItsControllerOtherwise) {
+  for (const double away_s : {1.0, 6.0}) {
+    Arms arms(false);
+    ArmInterface arm = NewArm();
+    Go(arms, arm, Walking(), 4);
+    ArmSwing turned = Walking();
+    turned.grip_left_rad = turned.grip_right_rad = DegreesToRadians(40);
+    for (const double until_s = arms.time_s() + away_s; arms.time_s() < until_s;) {
+      Inputs inputs = arms.Advance(turned);
+      inputs.hands.left = {};
+      arm.Advance(arms.time_s(), inputs);
+    }
+    EXPECT_EQ(Go(arms, arm, turned, 4) != 0, away_s < 5) << away_s;
   }
 }
 

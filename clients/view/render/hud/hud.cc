@@ -9,6 +9,7 @@
 #include "clients/view/render/hud/interface_panel.h"
 #include "clients/view/render/hud/labels.h"
 #include "clients/view/render/hud/layout_panel.h"
+#include "clients/view/render/hud/lost_panel.h"
 #include "clients/view/render/hud/overlay.h"
 #include "clients/view/render/hud/strip_panel.h"
 #include "clients/view/render/hud/study_panel.h"
@@ -79,6 +80,8 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   DrawReplay(p, model, content.now_ns, notes);
   if (!options.hidden) DrawStudyPanel(p, model, content.now_ns, notes);
   const scene::CharacterPose* pose = FirstCharacter(content);
+  // The person must know why the character stops.
+  if (pose != nullptr) DrawLostPanel(p, *pose, notes);
   // A round is a trial: its panel would say the same again.
   if (scene::ShowsGame(model.game, pose != nullptr && pose->trial ? &*pose->trial : nullptr)) {
     DrawGamePanel(p, model.game, notes);

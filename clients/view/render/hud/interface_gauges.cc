@@ -14,8 +14,11 @@ using stream::Gait;
 constexpr float kCaption = 14;
 constexpr float kTint = 0.30f, kLit = 0.75f;
 constexpr double kMostHz = 5, kMostFootHz = 2.5;
-/// Of figure 11, as shares of the stick's way.
+/// Of figure 11 as in the built-in table, shares of the stick's way and degrees from the front. A
+/// person's own table may have other radii: what is lit is what the interface believes.
 constexpr float kCentreRadius = 0.25f, kRunRadius = 0.6f;
+constexpr double kStraightDeg = 30, kForwardDeg = 75, kRearDeg = 135;
+constexpr double kGapRad = 0.03;
 
 float Pi(double share) { return static_cast<float>(share * kPi); }
 
@@ -45,6 +48,29 @@ void Sector(const Paint& p, ImVec2 centre, float inner, float outer, double from
               to = static_cast<float>(to_rad) - Pi(0.5);
   p.list->PathArcTo(centre, (inner + outer) / 2, from, to, 32);
   p.list->PathStroke(ink, 0, outer - inner);
+}
+
+/// The half circle in three sectors, and beside it where the character turns in place.
+void DrawStickRegions(const Paint& p, ImVec2 centre, float radius,
+                      const stream::InterfaceState& state) {
+  const float s = p.scale;
+  const int believed = state.turn.share >= 1 ? 1 : state.turn.share <= -1 ? -1 : 0;
+  const auto tint = [&](Gait gait, int side) {
+    return Faded(ColourOf(gait), state.gait == gait && believed == side ? kLit : kTint);
+  };
+  for (const int side : {-1, 0, 1}) {
+    const double from_deg = side == 0 ? -kStraightDeg : side < 0 ? -kForwardDeg : kStraightDeg;
+    const double to_deg = side == 0 ? kStraightDeg : side < 0 ? -kStraightDeg : kForwardDeg;
+    const double from = DegreesToRadians(from_deg) + kGapRad;
+    const double to = DegreesToRadians(to_deg) - kGapRad;
+    Sector(p, centre, kCentreRadius * radius, kRunRadius * radius - s, from, to,
+           tint(Gait::kWalk, side));
+    Sector(p, centre, kRunRadius * radius + s, radius, from, to, tint(Gait::kRun, side));
+    if (side == 0) continue;
+    const double near = DegreesToRadians(kForwardDeg), far = DegreesToRadians(kRearDeg);
+    Sector(p, centre, kCentreRadius * radius, radius, (side > 0 ? near : -far) + kGapRad,
+           (side > 0 ? far : -near) - kGapRad, tint(Gait::kStep, side));
+  }
 }
 
 }  // namespace
@@ -131,16 +157,7 @@ void DrawStickGauge(const Paint& p, const Box& box, const stream::InterfaceState
   const Box in = Above(p, box, "stick");
   const ImVec2 centre = MiddleOf(in);
   const float radius = std::min(in.width(), in.height()) / 2 - 2 * s;
-  const double third = kPi / 3;
-  const auto tint = [&](Gait gait, bool straight) {
-    return Faded(ColourOf(gait), (straight ? 1.0f : 0.6f) * (state.gait == gait ? 0.55f : kTint));
-  };
-  for (int sector = -1; sector <= 1; ++sector) {
-    const double from = (sector - 0.5) * third + 0.03, to = (sector + 0.5) * third - 0.03;
-    Sector(p, centre, kCentreRadius * radius, kRunRadius * radius - s, from, to,
-           tint(Gait::kWalk, sector == 0));
-    Sector(p, centre, kRunRadius * radius + s, radius, from, to, tint(Gait::kRun, sector == 0));
-  }
+  DrawStickRegions(p, centre, radius, state);
   p.list->AddCircle(centre, radius, colour::kGroove, 48, s);
   p.list->AddCircleFilled(centre, kCentreRadius * radius, colour::kGroove, 24);
   if (!state.stick.valid) return;

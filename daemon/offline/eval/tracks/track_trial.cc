@@ -19,6 +19,8 @@ using stream::UserInterface;
 /// Nobody is given up before: the paper's subjects all finished.
 constexpr double kLongestS = 600;
 constexpr double kKickNs = 2;
+/// People stand before the start line until a trial begins.
+constexpr double kStandsS = 1;
 constexpr int kStepsPerSight = 10;
 /// Time in which people change over from one motion to another (common/virtual/users/rhythm.cc).
 constexpr double kChangeOverS = 0.4;
@@ -44,11 +46,8 @@ double FollowsWithin(UserInterface interface, double limb_hz) {
 }
 
 users::Style StyleOf(const TrackUser& user) {
-  users::Style style = users::DrawStyle(user.seed);
-  const double side = user.seed % 2 == 0 ? 1 : -1;
-  style.left_grip_rad = side * user.grip_rad;
-  style.right_grip_rad = -side * user.grip_rad;
-  return style;
+  if (!user.interface) return users::DrawStyle(user.seed);
+  return users::StyleOf(user.seed, *user.interface, user.grip);
 }
 
 users::Observation See(const engine::EngineOutput& output) {
@@ -95,13 +94,16 @@ class TrackTrial {
       embodied_.emplace(Embodied{{*user.interface, StyleOf(user), user.seed, user.turn_by},
                                  {*user.interface, user.turn_by, user.seed}});
     }
+    if (embodied_) Stand();
     inputs_.trial = {.number = 1, .task = trial::DrawTask(engine_.track(), user.seed)};
   }
 
   TrackResult Run() {
-    while (engine_.Output().time_s < kLongestS && !result_.completed) Look();
+    const double longest_s = user_.seconds ? kStandsS + *user_.seconds : kLongestS;
+    while (engine_.Output().time_s < longest_s && !result_.completed) Look();
     const stream::TrialProgress& end = engine_.Output().trial;
     result_.failures = end.failures;
+    result_.distance_m = engine_.Output().gait.distance_m;
     if (end.task >= 0) {
       result_.task = engine_.track().tasks[static_cast<std::size_t>(end.task)].name;
     }
@@ -109,6 +111,14 @@ class TrackTrial {
   }
 
  private:
+  void Stand() {
+    while (engine_.Output().time_s < kStandsS) {
+      Move(engine_.Output().time_s, {});
+      for (int i = 0; i < kStepsPerSight; ++i) engine_.Advance(inputs_);
+      Compare();
+    }
+  }
+
   void Move(double time_s, const users::Intention& wanted) {
     if (!embodied_) {
       inputs_.direct = true;
@@ -140,6 +150,7 @@ class TrackTrial {
         one_jump && commanded == Gait::kJump &&
         output.time_s - embodied_->jump_meant_s < delay_s + mapping::HeldJump::kMostWaitS;
     result_.agreement.Add(output.time_s, meant, commanded, delay_s, waits);
+    result_.jumps.Add(output.time_s, meant == Gait::kJump, commanded == Gait::kJump, delay_s);
   }
 
   /// One look of the user at the picture, and what the character does until the next.
@@ -160,6 +171,7 @@ class TrackTrial {
     result_.completed = output.trial.phase == stream::TrialPhase::kFinished;
     if (fallen_) {
       result_.agreement.Restart();
+      result_.jumps.Restart();
       return;
     }
     Compare();
@@ -169,12 +181,14 @@ class TrackTrial {
   void Step() {
     engine_.Advance(inputs_);
     const engine::EngineOutput& output = engine_.Output();
+    if (output.append.added) driver_.SeeTrack(engine_.track());  // It grows.
     const bool put_back = Has(output, engine::EventKind::kPutBack);
     fallen_ = (fallen_ || Has(output, engine::EventKind::kFall)) && !put_back;
     if (fallen_) return;
     result_.heading_error.Add(
         WrapAngle(YawOf(output.links[0].orientation) - output.gait.heading_rad));
     result_.line_heading.Add(output.trial.heading_error_rad);
+    if (!output.trial.on_track) result_.off_track_s += engine::EngineConfig{}.step_s;
   }
 
   engine::GaitEngine engine_;
@@ -196,8 +210,9 @@ Result<TrackResult> RunTrack(const std::string& track_text, const TrackUser& use
       NewEngineOn(track_text, {.interface = user.interface.value_or(UserInterface::kWrist),
                                .leg = {.turn_by = user.turn_by}});
   if (!engine) return engine.error();
-  if (engine->track().finish_m <= 0) {
-    return UsageError("the track \"" + engine->track().name + "\" has no finish line");
+  if (engine->track().finish_m <= 0 && !user.seconds) {
+    return UsageError("the track \"" + engine->track().name +
+                      "\" has no finish line: give --seconds");
   }
   return TrackTrial(std::move(engine).value(), user, trace).Run();
 }

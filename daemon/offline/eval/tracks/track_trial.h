@@ -4,9 +4,11 @@
 #include <string>
 
 #include "common/stream/user_interface.h"
+#include "common/virtual/users/grip.h"
 #include "daemon/offline/eval/gait/statistics.h"
 #include "daemon/offline/eval/gait/trial.h"
 #include "daemon/offline/eval/tracks/agreement.h"
+#include "daemon/offline/eval/tracks/jump_events.h"
 #include "daemon/offline/eval/tracks/trace.h"
 
 namespace footing::eval {
@@ -16,25 +18,30 @@ struct TrackUser {
   /// None: the user's intention reaches the engine as a command, at once. Else by body, sensors,
   /// footingd's features and the interface.
   std::optional<stream::UserInterface> interface = {};
-  /// The remotes are rotated in the hands by this, left and right as mirror images of each other.
-  double grip_rad = 0;
+  /// How the remotes are rotated in the hands; none: as the user's style has it.
+  std::optional<users::GripWish> grip = {};
   stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< Of the leg interface.
   std::uint64_t seed = 1;  ///< Of the user's style and noise, the task and the push.
+  /// Ends after this time at the latest; without it a trial ends at the finish line.
+  std::optional<double> seconds = {};
 };
 
 struct TrackResult {
   bool completed = false;  ///< Crossed the finish line.
   double time_s = 0;       ///< From the start line to there.
+  double distance_m = 0;   ///< Along its way.
+  double off_track_s = 0;  ///< Beside the track, but for falls.
   std::string task;        ///< The one that was drawn; empty: none.
   stream::FailureCounts failures;
   Agreement agreement;           ///< Of motion and command, but for falls; not of a direct user.
+  JumpEvents jumps;              ///< The same, gesture by gesture.
   RootMeanSquare heading_error;  ///< Body's yaw against the heading, rad, but for falls.
   RootMeanSquare line_heading;   ///< Body's yaw against the centre line, rad, but for falls.
   RootMeanSquare off_centre;     ///< COM's distance from the centre line, m.
 };
 
 /// One trial on a track, put back after each failure, kicked once by 2 N s. UsageError when the
-/// track has no finish line.
+/// track has no finish line and the user no `seconds`.
 Result<TrackResult> RunTrack(const std::string& track, const TrackUser& user, TrackTrace& trace);
 
 }  // namespace footing::eval

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "common/cli/cli.h"
@@ -23,8 +24,10 @@ struct Options {
   std::string track = "straight";
   int trials = 1;
   std::string seed = "1";
-  double grip_deg = 0;
+  std::optional<double> grip_deg;
+  std::string grip_way = "mirrored";
   std::string turn_by;
+  std::optional<double> seconds;
   std::string trace;
 };
 
@@ -34,12 +37,15 @@ struct Trials {
   stream::FailureCounts failures;
   std::map<std::string, int> tasks;  ///< How often each was drawn.
   std::vector<double> times_s;
+  double distance_m = 0, off_track_s = 0;
   Agreement agreement;
+  JumpEvents jumps;
   RootMeanSquare heading_error, line_heading, off_centre;
 };
 
 Result<TrackUser> UserFor(const Options& options) {
-  TrackUser user{.grip_rad = DegreesToRadians(options.grip_deg)};
+  TrackUser user;
+  user.seconds = options.seconds;
   if (options.interface != "direct") {
     user.interface = stream::UserInterfaceNamed(options.interface);
     if (*user.interface == stream::UserInterface::kUnspecified) {
@@ -56,10 +62,12 @@ Result<TrackUser> UserFor(const Options& options) {
       return UsageError("--turn-by: only the interface leg turns by head, feet or trunk");
     }
   }
-  const bool hands = user.interface == stream::UserInterface::kWrist ||
-                     user.interface == stream::UserInterface::kArm;
-  if (options.grip_deg != 0 && !hands) {
-    return UsageError("--grip-deg: only the users of wrist and arm hold remotes that they swing");
+  if (options.grip_deg) {
+    const auto grip =
+        users::ParseGrip(*options.grip_deg, options.grip_way,
+                         user.interface.value_or(stream::UserInterface::kUnspecified));
+    if (!grip) return grip.error();
+    user.grip = *grip;
   }
   return user;
 }
@@ -84,6 +92,9 @@ Result<Trials> RunTrials(const Options& options, const std::string& track, Track
     }
     if (!run->task.empty()) ++trials.tasks[run->task];
     trials.agreement.Pool(run->agreement);
+    trials.jumps.Pool(run->jumps);
+    trials.distance_m += run->distance_m;
+    trials.off_track_s += run->off_track_s;
     Pool(run->heading_error, trials.heading_error);
     Pool(run->line_heading, trials.line_heading);
     Pool(run->off_centre, trials.off_centre);
@@ -116,6 +127,12 @@ nlohmann::ordered_json Confusion(const Agreement::Table& table) {
   return rows;
 }
 
+nlohmann::ordered_json Jumps(const JumpEvents& jumps) {
+  return {{"meant", jumps.meant()},         {"recognised", jumps.recognised()},
+          {"late", jumps.late()},           {"recall", jumps.recall()},
+          {"commanded", jumps.commanded()}, {"not_meant", jumps.not_meant()}};
+}
+
 nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const Trials& trials) {
   const auto& times_s = trials.times_s;
   nlohmann::ordered_json failures;
@@ -134,10 +151,14 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
           {"heading_error_rms_rad", trials.heading_error.value()},
           {"line_heading_rms_rad", trials.line_heading.value()},
           {"off_centre_rms_m", trials.off_centre.value()},
-          {"grip_deg", options.grip_deg},
+          {"distance_m", trials.distance_m},
+          {"off_track_s", trials.off_track_s},
+          {"grip_deg", options.grip_deg ? nlohmann::ordered_json(*options.grip_deg) : nullptr},
+          {"grip_way", options.grip_deg ? options.grip_way : "drawn"},
           {"turn_by", options.turn_by},
           {"gait_agreement", trials.agreement.share()},
-          {"gait_confusion", Confusion(trials.agreement.table())}};
+          {"gait_confusion", Confusion(trials.agreement.table())},
+          {"jumps", Jumps(trials.jumps)}};
 }
 
 int Run(const Options& options, bool json) {
@@ -167,12 +188,19 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
   command->add_option("--trials", options->trials, "Number of trials")
       ->check(CLI::Range(1, 100000));
   command->add_option("--seed", options->seed, "Seed: a number, or random");
+  auto* grip = command->add_option(
+      "--grip-deg", options->grip_deg,
+      "Rotation of the remotes in the hands, degrees (default: drawn for each user)");
   command
-      ->add_option("--grip-deg", options->grip_deg,
-                   "Rotation of the remotes in the hands, mirrored left and right, degrees")
-      ->check(CLI::Range(0.0, 90.0));
+      ->add_option("--grip-way", options->grip_way,
+                   "Grips of both hands: mirrored or same (default mirrored)")
+      ->needs(grip);
   command->add_option("--turn-by", options->turn_by,
                       "What turns with the interface leg: head, feet or trunk (default head)");
+  command
+      ->add_option("--seconds", options->seconds,
+                   "Duration of a trial, s (default: to the finish line, at most 600)")
+      ->check(CLI::Range(1.0, 1e5));
   command->add_option("--trace", options->trace,
                       "CSV file to write: what user, interface and character do, every 10 ms");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared.json); });

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "common/units/units.h"
+#include "common/virtual/users/grip.h"
 
 namespace footing::users {
 namespace {
@@ -182,7 +186,47 @@ TEST(Driver, StylesAreDrawnFromTheSeedWithinTheirRanges) {
     const Style style = DrawStyle(seed);
     EXPECT_GE(style.reaction_s, 0.2);
     EXPECT_LE(style.reaction_s, 0.4);
+    EXPECT_EQ(style.left_grip_rad, 0);
   }
+}
+
+TEST(Driver, EachHandHasItsOwnGripAsWideAsTheInterfaceLetsIt) {
+  for (const auto interface : stream::kUserInterfaces) {
+    const double most_rad = MostGrip(interface);
+    double least_rad = 0, widest_rad = 0;
+    int alike = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      const Style style = DrawStyle(seed, interface);
+      EXPECT_EQ(style.reaction_s, DrawStyle(seed).reaction_s);
+      for (const double grip_rad : {style.left_grip_rad, style.right_grip_rad}) {
+        EXPECT_LE(std::fabs(grip_rad), most_rad);
+        least_rad = std::min(least_rad, grip_rad);
+        widest_rad = std::max(widest_rad, grip_rad);
+      }
+      alike += style.left_grip_rad * style.right_grip_rad > 0;
+    }
+    EXPECT_LE(least_rad, -0.9 * most_rad);
+    EXPECT_GE(widest_rad, 0.9 * most_rad);
+    EXPECT_NEAR(alike, most_rad > 0 ? 100 : 0, 30) << stream::Name(interface);
+  }
+}
+
+TEST(Grip, IsAsWishedOrAsDrawn) {
+  const auto mirrored = ParseGrip(45, "mirrored", stream::UserInterface::kArm);
+  const auto same = ParseGrip(45, "same", stream::UserInterface::kWrist);
+  ASSERT_TRUE(mirrored && same);
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const Style apart = StyleOf(seed, stream::UserInterface::kArm, *mirrored);
+    const Style alike = StyleOf(seed, stream::UserInterface::kWrist, *same);
+    EXPECT_NEAR(std::fabs(apart.left_grip_rad), DegreesToRadians(45), 1e-12);
+    EXPECT_EQ(apart.left_grip_rad, -apart.right_grip_rad);
+    EXPECT_EQ(alike.left_grip_rad, alike.right_grip_rad);
+    EXPECT_EQ(StyleOf(seed, stream::UserInterface::kArm, {}).left_grip_rad,
+              DrawStyle(seed, stream::UserInterface::kArm).left_grip_rad);
+  }
+  EXPECT_FALSE(ParseGrip(45, "askew", stream::UserInterface::kArm));
+  EXPECT_FALSE(ParseGrip(120, "same", stream::UserInterface::kArm));
+  EXPECT_FALSE(ParseGrip(45, "same", stream::UserInterface::kBoards));
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ for interface in ("direct", "wrist", "arm", "leg", "joystick", "boards"):
         assert out["tasks"] == {}, out
         assert out["gait_agreement"] > 0.9, out
         assert all(abs(sum(row.values()) - 1) < 1e-9 for row in out["gait_confusion"].values()), out
+    assert out["jumps"] == {"meant": 0, "recognised": 0, "late": 0, "recall": 1, "commanded": 0, "not_meant": 0}, out
 
 # Every task of the straight track is drawn, done and paid for with few failures.
 out = report("--interface", "wrist", "--track", "straight", "--trials", 12, "--seed", 2)
@@ -49,12 +50,23 @@ assert sum(out["failures"].values()) <= 4, out
 out = report("--interface", "wrist", "--track", "3", "--trials", 2, "--seed", 3)
 assert out["trials"] == out["completed"] == 2, out
 assert out["failures"]["jump"] <= 60, out
+jumps = out["jumps"]
+assert jumps["recognised"] >= 6 and jumps["recall"] == jumps["recognised"] / jumps["meant"] > 0.9, out  # Three pits each.
+assert jumps["commanded"] >= jumps["recognised"] - jumps["not_meant"], out
+
+# A demo in simulated time: on a track that grows the user goes on, on the track and on its feet.
+out = report("--interface", "leg", "--track", "endless", "--seconds", 40, "--seed", 5)
+assert out["failures"] == dict.fromkeys(CAUSES, 0) and out["off_track_s"] == 0, out
+assert out["completed"] == 0 and 30 < out["distance_m"] < 160, out
 
 again = [run("--interface", "wrist", "--track", 1, "--seed", 4).stdout for _ in range(2)]
 assert again[0] == again[1], again
 
-grip = report("--interface", "arm", "--track", "curves", "--seed", 21, "--grip-deg", 45)
-assert grip["completed"] == 1 and grip["grip_deg"] == 45 and grip["gait_agreement"] > 0.9, grip
+# However the remotes lie in the hands: as mirror images, or both rotated to one side or the other.
+for words in (("mirrored", 45), ("same", 45), ("same", -45)):
+    grip = report("--interface", "arm", "--track", "curves", "--seed", 21, "--grip-way", *words[:1], "--grip-deg", words[1])
+    assert grip["completed"] == 1 and (grip["grip_way"], grip["grip_deg"]) == words, grip
+    assert grip["failures"] == dict.fromkeys(CAUSES, 0) and grip["gait_agreement"] > 0.9, grip
 
 # What turns with the interface leg can be chosen; a trace shows every look at the picture.
 with tempfile.TemporaryDirectory() as folder:
@@ -79,6 +91,7 @@ with tempfile.TemporaryDirectory() as folder:
 
 for words, code, listed in ((("--interface", "telepathy"), 2, "wrist, arm, leg, joystick, boards"),
                             (("--interface", "boards", "--grip-deg", "45"), 2, "remotes"),
+                            (("--interface", "arm", "--grip-deg", "45", "--grip-way", "askew"), 2, "mirrored, same"),
                             (("--interface", "leg", "--turn-by", "tail"), 2, "head, feet, trunk"),
                             (("--interface", "arm", "--turn-by", "feet"), 2, "leg"),
                             (("--track", "9"), 1, "there are: 1, 2, 3, 4, build"),

@@ -1,0 +1,39 @@
+#include "common/virtual/users/grip.h"
+
+#include <cmath>
+
+#include "common/units/units.h"
+
+namespace footing::users {
+
+using stream::UserInterface;
+
+namespace {
+
+constexpr double kMostDeg = 90;
+
+}  // namespace
+
+Result<GripWish> ParseGrip(double rotation_deg, const std::string& way, UserInterface interface) {
+  if (interface != UserInterface::kWrist && interface != UserInterface::kArm) {
+    return UsageError("--grip-deg: only the users of wrist and arm hold remotes that they swing");
+  }
+  if (!(std::fabs(rotation_deg) <= kMostDeg)) {
+    return UsageError("--grip-deg takes -90 to 90 degrees");
+  }
+  if (way != "mirrored" && way != "same") {
+    return UsageError("unknown --grip-way " + way + "; there are: mirrored, same");
+  }
+  return GripWish{.rotation_rad = DegreesToRadians(rotation_deg), .same = way == "same"};
+}
+
+Style StyleOf(std::uint64_t seed, UserInterface interface, const std::optional<GripWish>& grip) {
+  if (!grip) return DrawStyle(seed, interface);
+  Style style = DrawStyle(seed);
+  const double side = seed % 2 == 0 ? 1 : -1;
+  style.left_grip_rad = side * grip->rotation_rad;
+  style.right_grip_rad = grip->same ? style.left_grip_rad : -style.left_grip_rad;
+  return style;
+}
+
+}  // namespace footing::users
