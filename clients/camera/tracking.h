@@ -10,13 +10,12 @@ namespace footing::camera {
 struct TrackingOptions {
   frames::CameraFile camera;
   std::string camera_path;  ///< A new calibration is taken from there while tracking; may be empty.
-  std::string device, folder, pipe;  ///< One of them.
-  VideoSettings video;
-  PipeSettings pipe_settings;
-  bool repeats = false;
+  FrameOptions frames;
   bool simulated = false;  ///< The frames are not of a camera.
   double seconds = 0;      ///< 0: until the frames end, or a signal.
   transport::Address to;
+  transport::Address
+      sensor;  ///< footingd's client socket, where the file's lights are switched on.
 };
 
 /// What a run did.

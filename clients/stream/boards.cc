@@ -37,8 +37,12 @@ sensors::HeldErrors ErrorsInFist(std::uint64_t seed) {
 
 }  // namespace
 
-SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
-                                      std::uint64_t seed) {
+namespace {
+
+/// What a device in a fist measures, in its own frame: x left, y front, z down.
+template <typename Sensors>
+std::function<Sensors(double)> FeltInFist(std::shared_ptr<const Stage> stage, int side,
+                                          std::uint64_t seed) {
   const auto course = std::make_shared<const sensors::HeldCourse>(
       sensors::FollowFist(stage->scene.body, stage->scene.motion, side));
   return [stage, course, errors = ErrorsInFist(seed), last_s = 0.0](double t_s) mutable {
@@ -49,11 +53,18 @@ SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int si
     const auto measured = errors.Advance(between(course->specific_force_S_mps2),
                                          between(course->angular_velocity_S_radps),
                                          std::max(0.0, t_s - std::exchange(last_s, t_s)));
-    virtual_devices::WiimoteSensors felt;
+    Sensors felt;
     felt.specific_force_S_mps2 = body::AsHeld(measured.specific_force_S_mps2);
     felt.angular_velocity_S_radps = body::AsHeld(measured.angular_velocity_S_radps);
     return felt;
   };
+}
+
+}  // namespace
+
+SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
+                                      std::uint64_t seed) {
+  return FeltInFist<virtual_devices::WiimoteSensors>(std::move(stage), side, seed);
 }
 
 namespace {
@@ -68,6 +79,9 @@ Result<void> CheckHands(const BoardsOptions& options) {
   if (hands == "camera" && (options.camera_file.empty() || options.frames_to.empty())) {
     return UsageError("--hands camera needs --camera FILE and --frames-to FIFO");
   }
+  if (options.moves && hands != "camera") {
+    return UsageError("--moves needs --hands camera: their lights are for a camera");
+  }
   const std::string& lost = options.lost_hand;
   if (!lost.empty() && lost != "left" && lost != "right") {
     return UsageError("--lose-hand " + lost + " is unknown; must be left or right");
@@ -77,6 +91,18 @@ Result<void> CheckHands(const BoardsOptions& options) {
                       " there is nothing to lose");
   }
   return {};
+}
+
+/// PS Moves in both fists; a camera sees their lights.
+void AddMoves(const std::shared_ptr<const Stage>& stage, const Common& common,
+              virtual_devices::LinkQuality link, Plan& plan) {
+  for (const int side : {0, 1}) {
+    const std::uint64_t seed = DeviceSeed(common, 3 + static_cast<std::uint64_t>(side));
+    plan.devices.emplace_back(virtual_devices::PsMove(seed, virtual_devices::MoveModel::kZcm1),
+                              FeltInFist<virtual_devices::MoveSensors>(stage, side, seed + 700),
+                              side == 0 ? DeviceRole::kLeftHand : DeviceRole::kRightHand,
+                              virtual_devices::WiimoteLink(link, seed + 500));
+  }
 }
 
 /// One hand is out of reach, or not seen, for a while.
@@ -127,6 +153,7 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
           InFist(stage, side, DeviceSeed(common, device) + 700), {true, false}));
     }
   }
+  if (options.moves) AddMoves(stage, common, *link, plan);
   AddBodyFeeds(stage, options.hands, options.hand_noise_m, common, plan);
   if (options.hands == "camera") {
     auto frames = RenderedHandsFeed(stage, options.camera_file, options.frames_to,
