@@ -22,6 +22,7 @@ void Print(const camera::TrackingReport& report, const frames::CameraFile& camer
   for (std::size_t i = 0; i < report.found.size(); ++i)
     object["found"][stream::Name(camera.spheres[i].role)] = report.found[i];
   object["saturated"] = report.saturated;
+  object["alarms"] = report.alarms;
   object["cost_p50_ms"] = report.cost_p50_ms;
   object["cost_p99_ms"] = report.cost_p99_ms;
   if (json) {

@@ -50,7 +50,7 @@ class Tracking {
 
   Result<TrackingReport> Run() {
     auto source = OpenFrames(io_, options_.frames, options_.camera,
-                             [](const std::string& line) { log::Warning(line); });
+                             [this](const std::string& line) { Alarm(line); });
     if (!source) return source.error();
     source_ = std::move(source).value();
     signals_.async_wait([this](boost::system::error_code error, int) {
@@ -82,6 +82,12 @@ class Tracking {
 
  private:
   static constexpr std::size_t kMostCosts = 1 << 16;
+  static constexpr std::size_t kMostAlarms = 32;
+
+  void Alarm(const std::string& line) {
+    log::Warning(line);
+    if (report_.alarms.size() < kMostAlarms) report_.alarms.push_back(line);
+  }
 
   /// Lights each sphere as the camera file says, again after a controller came back.
   void SwitchLights() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "clients/camera/source.h"
 #include "common/transport/address.h"
@@ -23,6 +24,7 @@ struct TrackingReport {
   std::uint64_t frames = 0, sent = 0;
   std::vector<std::uint64_t> found;  ///< Of each sphere.
   std::uint64_t saturated = 0;       ///< Spheres at the sensor's limit.
+  std::vector<std::string> alarms;   ///< What was wrong with the camera, first lines.
   double cost_p50_ms = 0, cost_p99_ms = 0;
 };
 
