@@ -49,4 +49,19 @@ Result<std::unique_ptr<Source>> OpenVideo(boost::asio::io_context& io, const std
                                           const VideoSettings& settings,
                                           std::function<void(const std::string&)> alarm);
 
+/// Where frames come from, as a command line names it.
+struct FrameOptions {
+  std::string device, folder, pipe;  ///< One of them.
+  VideoSettings video;
+  PipeSettings pipe_settings;
+  bool repeats = false;  ///< Of a folder.
+
+  const std::string& Name() const {
+    return !folder.empty() ? folder : !pipe.empty() ? pipe : device;
+  }
+};
+Result<std::unique_ptr<Source>> OpenFrames(boost::asio::io_context& io, const FrameOptions& options,
+                                           const frames::CameraFile& camera,
+                                           std::function<void(const std::string&)> alarm);
+
 }  // namespace footing::camera

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "clients/camera/lights.h"
 #include "clients/camera/observation.h"
 #include "common/clock/clock.h"
 #include "common/device_link/device_link.h"
@@ -48,7 +49,8 @@ class Tracking {
   }
 
   Result<TrackingReport> Run() {
-    auto source = Open();
+    auto source = OpenFrames(io_, options_.frames, options_.camera,
+                             [this](const std::string& line) { Alarm(line); });
     if (!source) return source.error();
     source_ = std::move(source).value();
     signals_.async_wait([this](boost::system::error_code error, int) {
@@ -61,6 +63,11 @@ class Tracking {
       });
     }
     link_.Start();
+    const auto& spheres = options_.camera.spheres;
+    if (std::any_of(spheres.begin(), spheres.end(), [](const auto& one) { return one.led_rgb; })) {
+      lights_.emplace(io_, options_.sensor, [this] { SwitchLights(); });
+      lights_->Start();
+    }
     LookAtTheFile();
     source_->Start(
         [this](const frames::Frame& frame, std::int64_t exposed_ns) { Take(frame, exposed_ns); },
@@ -75,13 +82,23 @@ class Tracking {
 
  private:
   static constexpr std::size_t kMostCosts = 1 << 16;
+  static constexpr std::size_t kMostAlarms = 32;
 
-  Result<std::unique_ptr<Source>> Open() {
-    if (!options_.folder.empty())
-      return OpenFolder(io_, options_.folder, options_.camera, options_.repeats);
-    if (!options_.pipe.empty()) return OpenPipe(io_, options_.pipe, options_.pipe_settings);
-    return OpenVideo(io_, options_.device, options_.camera, options_.video,
-                     [](const std::string& line) { log::Warning(line); });
+  void Alarm(const std::string& line) {
+    log::Warning(line);
+    if (report_.alarms.size() < kMostAlarms) report_.alarms.push_back(line);
+  }
+
+  /// Lights each sphere as the camera file says, again after a controller came back.
+  void SwitchLights() {
+    for (const stream::DeviceStatus& move : lights_->moves()) {
+      for (const frames::HeldSphere& held : options_.camera.spheres) {
+        if (held.role != move.role || !held.led_rgb || move.sphere_rgb == *held.led_rgb) continue;
+        lights_->Set(move.device, *held.led_rgb, [serial = move.serial](Result<void> done) {
+          if (!done) log::Warning(serial + ": its light cannot be set: " + done.error().message);
+        });
+      }
+    }
   }
 
   /// Takes a new pose from the camera file, as a calibration writes it.
@@ -131,6 +148,7 @@ class Tracking {
     end_ = std::move(end);
     source_->Stop();
     link_.Stop("footing-camera ends");
+    if (lights_) lights_->Stop();
     signals_.cancel();
     limit_.cancel();
     look_.cancel();
@@ -143,6 +161,7 @@ class Tracking {
   boost::asio::signal_set signals_;
   boost::asio::steady_timer limit_, look_;
   device_link::DeviceLink link_;
+  std::optional<Lights> lights_;
   sphere::Finder finder_;
   std::unique_ptr<Source> source_;
   TrackingReport report_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "clients/camera/source.h"
 #include "common/transport/address.h"
@@ -10,13 +11,12 @@ namespace footing::camera {
 struct TrackingOptions {
   frames::CameraFile camera;
   std::string camera_path;  ///< A new calibration is taken from there while tracking; may be empty.
-  std::string device, folder, pipe;  ///< One of them.
-  VideoSettings video;
-  PipeSettings pipe_settings;
-  bool repeats = false;
+  FrameOptions frames;
   bool simulated = false;  ///< The frames are not of a camera.
   double seconds = 0;      ///< 0: until the frames end, or a signal.
   transport::Address to;
+  transport::Address
+      sensor;  ///< footingd's client socket, where the file's lights are switched on.
 };
 
 /// What a run did.
@@ -24,6 +24,7 @@ struct TrackingReport {
   std::uint64_t frames = 0, sent = 0;
   std::vector<std::uint64_t> found;  ///< Of each sphere.
   std::uint64_t saturated = 0;       ///< Spheres at the sensor's limit.
+  std::vector<std::string> alarms;   ///< What was wrong with the camera, first lines.
   double cost_p50_ms = 0, cost_p99_ms = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 namespace footing::camera {
 namespace {
@@ -14,13 +15,18 @@ std::string FourLetters(std::uint32_t format) {
   return letters;
 }
 
+/// Nothing when the camera does not have the control.
+std::optional<std::int32_t> Get(VideoPort& port, std::uint32_t id) {
+  v4l2_control control{id, -1};
+  if (port.Control(VIDIOC_G_CTRL, &control) != 0) return std::nullopt;
+  return control.value;
+}
+
 /// One control: set, and read back. Nothing when the camera does not have it.
 std::optional<std::int32_t> Set(VideoPort& port, std::uint32_t id, std::int32_t value) {
   v4l2_control control{id, value};
   if (port.Control(VIDIOC_S_CTRL, &control) != 0) return std::nullopt;
-  control = {id, -1};
-  if (port.Control(VIDIOC_G_CTRL, &control) != 0) return std::nullopt;
-  return control.value;
+  return Get(port, id);
 }
 
 struct Lock {
@@ -33,6 +39,19 @@ struct Lock {
 constexpr char kBrightness[] =
     "the sphere's light changes by itself, and with it where its edge is";
 constexpr char kHue[] = "the sphere's hue changes by itself, and it may be lost";
+
+std::vector<Lock> LocksOf(const VideoSettings& settings) {
+  std::vector<Lock> locks = {
+      {V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "automatic exposure", kBrightness},
+      {V4L2_CID_AUTOGAIN, 0, "automatic gain", kBrightness},
+      {V4L2_CID_AUTO_WHITE_BALANCE, 0, "automatic white balance", kHue},
+      // In units of 100 microseconds.
+      {V4L2_CID_EXPOSURE_ABSOLUTE,
+       static_cast<std::int32_t>(std::lround(1e4 * settings.exposure_s)), "exposure time",
+       kBrightness}};
+  if (settings.gain >= 0) locks.push_back({V4L2_CID_GAIN, settings.gain, "gain", kBrightness});
+  return locks;
+}
 
 }  // namespace
 
@@ -65,17 +84,8 @@ Result<void> Negotiate(VideoPort& port, const frames::CameraFile& camera) {
 }
 
 std::vector<std::string> LockControls(VideoPort& port, const VideoSettings& settings) {
-  std::vector<Lock> locks = {
-      {V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "automatic exposure", kBrightness},
-      {V4L2_CID_AUTOGAIN, 0, "automatic gain", kBrightness},
-      {V4L2_CID_AUTO_WHITE_BALANCE, 0, "automatic white balance", kHue},
-      // In units of 100 microseconds.
-      {V4L2_CID_EXPOSURE_ABSOLUTE,
-       static_cast<std::int32_t>(std::lround(1e4 * settings.exposure_s)), "exposure time",
-       kBrightness}};
-  if (settings.gain >= 0) locks.push_back({V4L2_CID_GAIN, settings.gain, "gain", kBrightness});
   std::vector<std::string> alarms;
-  for (const Lock& lock : locks) {
+  for (const Lock& lock : LocksOf(settings)) {
     const auto read = Set(port, lock.id, lock.value);
     const std::string wanted = std::to_string(lock.value);
     if (!read) {
@@ -87,6 +97,29 @@ std::vector<std::string> LockControls(VideoPort& port, const VideoSettings& sett
     }
   }
   return alarms;
+}
+
+LockedControls::LockedControls(VideoPort& port, const VideoSettings& settings) : port_(port) {
+  for (const Lock& lock : LocksOf(settings))
+    if (Get(port, lock.id) == lock.value)
+      watched_.push_back({lock.id, lock.value, lock.name, lock.harm, true});
+}
+
+std::vector<std::string> LockedControls::Check() {
+  std::vector<std::string> lines;
+  for (Watched& one : watched_) {
+    const auto now = Get(port_, one.id);
+    const bool held = std::exchange(one.holds, now == one.value);
+    if (one.holds) continue;
+    one.holds = Set(port_, one.id, one.value) == one.value;
+    // One that cannot be set again is named once.
+    if (!held) continue;
+    const std::string what =
+        "camera: " + one.name + " has changed to " + (now ? std::to_string(*now) : "nothing");
+    lines.push_back(one.holds ? what + " and was set to " + std::to_string(one.value) + " again"
+                              : what + " and cannot be set again: " + one.harm);
+  }
+  return lines;
 }
 
 std::int64_t ExposedNs(const v4l2_buffer& buffer, const frames::CameraFile& camera,

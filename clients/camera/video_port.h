@@ -29,6 +29,28 @@ Result<void> Negotiate(VideoPort& port, const frames::CameraFile& camera);
 /// measurement; empty when all is locked.
 std::vector<std::string> LockControls(VideoPort& port, const VideoSettings& settings);
 
+/// Watches the controls that were locked: a driver may lose them, and another program may change
+/// them, while frames arrive.
+class LockedControls {
+ public:
+  /// Those that hold now.
+  LockedControls(VideoPort& port, const VideoSettings& settings);
+
+  /// Reads all back, and sets again what has changed. Each line names a control that has changed
+  /// since the last call, and whether it could be set again; empty when all hold.
+  std::vector<std::string> Check();
+
+ private:
+  struct Watched {
+    std::uint32_t id;
+    std::int32_t value;
+    std::string name, harm;
+    bool holds;
+  };
+  VideoPort& port_;
+  std::vector<Watched> watched_;
+};
+
 /// Mid-exposure of the middle row of a dequeued buffer, ns of the monotonic clock; `now_ns` where
 /// the driver's stamp is not of that clock. A driver stamps the end of the readout, or the start of
 /// the exposure where its flags say so.

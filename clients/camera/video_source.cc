@@ -6,6 +6,8 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <utility>
 
 #include "clients/camera/source.h"
 #include "clients/camera/video_port.h"
@@ -15,6 +17,7 @@ namespace footing::camera {
 namespace {
 
 constexpr std::uint32_t kBuffers = 4;
+constexpr std::uint64_t kFramesBetweenChecks = 120;  // Of its controls: every few seconds.
 
 class KernelPort : public VideoPort {
  public:
@@ -41,16 +44,21 @@ v4l2_buffer BufferOf(std::uint32_t index) {
 class VideoSource : public Source {
  public:
   VideoSource(boost::asio::io_context& io, int descriptor, const frames::CameraFile& camera,
-              const VideoSettings& settings)
-      : device_(io, descriptor), port_(descriptor), camera_(camera), settings_(settings) {}
+              const VideoSettings& settings, std::function<void(const std::string&)> alarm)
+      : device_(io, descriptor),
+        port_(descriptor),
+        camera_(camera),
+        settings_(settings),
+        alarm_(std::move(alarm)) {}
 
   ~VideoSource() override {
     for (const Mapped& one : mapped_) ::munmap(one.start, one.size);
   }
 
-  Result<void> Open(const std::function<void(const std::string&)>& alarm) {
+  Result<void> Open() {
     if (const auto agreed = Negotiate(port_, camera_); !agreed) return agreed;
-    for (const std::string& line : LockControls(port_, settings_)) alarm(line);
+    for (const std::string& line : LockControls(port_, settings_)) alarm_(line);
+    controls_.emplace(port_, settings_);
     return Map();
   }
 
@@ -119,6 +127,8 @@ class VideoSource : public Source {
       has_one = true;
     }
     if (has_one) Deliver(newest);
+    if (++frames_ % kFramesBetweenChecks == 0)
+      for (const std::string& line : controls_->Check()) alarm_(line);
     Wait();
   }
 
@@ -141,6 +151,9 @@ class VideoSource : public Source {
   KernelPort port_;
   const frames::CameraFile camera_;
   const VideoSettings settings_;
+  const std::function<void(const std::string&)> alarm_;
+  std::optional<LockedControls> controls_;
+  std::uint64_t frames_ = 0;
   std::vector<Mapped> mapped_;
   OnFrame on_frame_;
   OnEnd on_end_;
@@ -162,8 +175,8 @@ Result<std::unique_ptr<Source>> OpenVideo(boost::asio::io_context& io, const std
     ::close(descriptor);
     return NoDevice(device + " is not a camera");
   }
-  auto source = std::make_unique<VideoSource>(io, descriptor, camera, settings);
-  if (const auto opened = source->Open(alarm); !opened) return opened.error();
+  auto source = std::make_unique<VideoSource>(io, descriptor, camera, settings, std::move(alarm));
+  if (const auto opened = source->Open(); !opened) return opened.error();
   return std::unique_ptr<Source>(std::move(source));
 }
 

@@ -36,7 +36,9 @@ sensors::HeldErrors ErrorsOf(bool rolled, std::uint64_t seed) {
   return sensors::HeldErrors(config);
 }
 
-SimulatedDevice::WiimoteMotion Felt(std::shared_ptr<const Stage> stage,
+/// What a device on that course measures, in its own frame: x left, y front, z down.
+template <typename Sensors>
+std::function<Sensors(double)> Felt(std::shared_ptr<const Stage> stage,
                                     sensors::HeldCourse true_course,
                                     const sensors::HeldErrors& of_device) {
   const auto course = std::make_shared<const sensors::HeldCourse>(std::move(true_course));
@@ -48,7 +50,7 @@ SimulatedDevice::WiimoteMotion Felt(std::shared_ptr<const Stage> stage,
     const auto measured = errors.Advance(between(course->specific_force_S_mps2),
                                          between(course->angular_velocity_S_radps),
                                          std::max(0.0, t_s - std::exchange(last_s, t_s)));
-    virtual_devices::WiimoteSensors felt;
+    Sensors felt;
     felt.specific_force_S_mps2 = body::AsHeld(measured.specific_force_S_mps2);
     felt.angular_velocity_S_radps = body::AsHeld(measured.angular_velocity_S_radps);
     return felt;
@@ -87,6 +89,9 @@ Result<void> CheckHands(const BoardsOptions& options) {
     return UsageError("--hands " + hands +
                       " is unknown; must be one of: none, move, wiimote, straps, kinect, camera");
   }
+  if (options.moves && hands != "camera") {
+    return UsageError("--moves needs --hands camera: their lights are for a camera");
+  }
   if (hands == "camera" && (options.camera_file.empty() || options.frames_to.empty())) {
     return UsageError("--hands camera needs --camera FILE and --frames-to FIFO");
   }
@@ -99,6 +104,20 @@ Result<void> CheckHands(const BoardsOptions& options) {
                       " there is nothing to lose");
   }
   return {};
+}
+
+/// PS Moves in both fists; a camera sees their lights.
+void AddMoves(const std::shared_ptr<const Stage>& stage, const Common& common,
+              virtual_devices::LinkQuality link, Plan& plan) {
+  for (const int side : {0, 1}) {
+    const std::uint64_t seed = DeviceSeed(common, 3 + static_cast<std::uint64_t>(side));
+    auto course = sensors::FollowFist(stage->scene.body, stage->scene.motion, side);
+    plan.devices.emplace_back(
+        virtual_devices::PsMove(seed, virtual_devices::MoveModel::kZcm1),
+        Felt<virtual_devices::MoveSensors>(stage, std::move(course), ErrorsOf(false, seed + 700)),
+        side == 0 ? DeviceRole::kLeftHand : DeviceRole::kRightHand,
+        virtual_devices::WiimoteLink(link, seed + 500));
+  }
 }
 
 /// One hand is out of reach, or not seen, for a while.
@@ -127,13 +146,15 @@ void LoseHand(const BoardsOptions& options, Plan& plan) {
 SimulatedDevice::WiimoteMotion InFist(std::shared_ptr<const Stage> stage, int side,
                                       std::uint64_t seed) {
   auto course = sensors::FollowFist(stage->scene.body, stage->scene.motion, side);
-  return Felt(std::move(stage), std::move(course), ErrorsOf(false, seed));
+  return Felt<virtual_devices::WiimoteSensors>(std::move(stage), std::move(course),
+                                               ErrorsOf(false, seed));
 }
 
 SimulatedDevice::WiimoteMotion OnSegment(std::shared_ptr<const Stage> stage, int side,
                                          sensors::ArmSegment segment, std::uint64_t seed) {
   auto course = sensors::FollowSegment(stage->scene.body, stage->scene.motion, side, segment);
-  return Felt(std::move(stage), std::move(course), ErrorsOf(true, seed));
+  return Felt<virtual_devices::WiimoteSensors>(std::move(stage), std::move(course),
+                                               ErrorsOf(true, seed));
 }
 
 Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
@@ -154,6 +175,7 @@ Result<Plan> PlanBoards(const BoardsOptions& options, const Common& common) {
                               virtual_devices::BoardLink(*link, seed + 500));
   }
   AddWiimotes(stage, options.hands, common, *link, plan);
+  if (options.moves) AddMoves(stage, common, *link, plan);
   AddBodyFeeds(stage, options.hands, options.hand_noise_m, common, plan);
   if (options.hands == "camera") {
     auto frames = RenderedHandsFeed(stage, options.camera_file, options.frames_to,

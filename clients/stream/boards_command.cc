@@ -37,6 +37,8 @@ CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
                      "Camera file of the simulated camera, of --hands camera");
   boards->add_option("--frames-to", options.frames_to,
                      "FIFO for its rendered frames, which footing-camera reads");
+  boards->add_flag("--moves", options.moves,
+                   "PS Moves in the fists: their lights are the spheres that the camera sees");
   boards->add_option("--lose-hand", options.lost_hand, "Hand to lose for a while: left or right");
   boards->add_option("--lose-from-s", options.lost_from_s, "Start of the loss, s")
       ->check(CLI::Range(0.0, 1e6));

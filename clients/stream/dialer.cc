@@ -174,6 +174,14 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     Schedule(slot);
   }
 
+  SphereLights Lights() const {
+    const double now_s = NanosecondsToSeconds(clock::MonotonicNs() - start_ns_);
+    SphereLights lights;
+    for (const SimulatedDevice& device : devices_)
+      if (const auto rgb = device.SphereLight(now_s)) lights[device.role()] = *rgb;
+    return lights;
+  }
+
   void ScheduleSource(std::size_t index) {
     const double due_s = static_cast<double>(sent_[index]) / sources_[index].rate_hz;
     At(devices_.size() + index, due_s + sources_[index].late_s,
@@ -185,7 +193,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     if (devices_.empty() && IsOver(due_s)) return;
     Feed& feed = sources_[index];
     if (feed.frames) {
-      feed.frames(due_s, start_ns_ + SecondsToNanoseconds(due_s));
+      feed.frames(due_s, start_ns_ + SecondsToNanoseconds(due_s), Lights());
       ++sent_[index];
       return ScheduleSource(index);
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct Ports {
   bool nunchuk = false;
 };
 
+/// Colours of the spheres that the plan's devices show, 0xRRGGBB.
+using SphereLights = std::map<stream::DeviceRole, std::uint32_t>;
+
 /// Frames sent at a fixed rate, not measured by a device. One of the functions is set; times are
 /// seconds since the start of the motion and increase. A copy starts from the beginning.
 struct Feed {
@@ -36,7 +40,7 @@ struct Feed {
   std::function<stream::ReferenceFrame(double t_s)> reference;
   std::function<stream::ContactFrame(double t_s)> contacts;
   /// Sends by itself, to another program, what is exposed at this instant of the host's clock.
-  std::function<void(double t_s, std::int64_t exposed_ns)> frames;
+  std::function<void(double t_s, std::int64_t exposed_ns, const SphereLights& lights)> frames;
 };
 
 /// A device of the plan that is out of reach for a while, seconds since the motion began: nothing

@@ -97,15 +97,28 @@ class Renderer {
   std::thread thread_;
 };
 
+/// What a sphere shows the simulated camera at a colour of its light: each of three LEDs on the
+/// sensor's red, green and blue, whose filters overlap, and ambient light on the white plastic.
+Eigen::Vector3d ShownColour(std::uint32_t rgb) {
+  Eigen::Matrix3d sensor_dn;  // A column for each LED at its brightest.
+  sensor_dn << 150, 20, 12,   //
+      22, 150, 30,            //
+      12, 30, 150;
+  const Eigen::Vector3d light((rgb >> 16) & 0xff, (rgb >> 8) & 0xff, rgb & 0xff);
+  return Eigen::Vector3d(16, 15, 17) + sensor_dn * light / 255;
+}
+
 /// A sphere where the fist is when the row on which it appears is exposed. It rests meanwhile: at
 /// the exposure of 1 ms that is meant here, a hand moves by a millimetre.
 virtual_camera::Ball BallInFist(const Stage& stage, const frames::CameraFile& camera,
                                 const virtual_camera::Scene& scene, std::size_t sphere,
-                                double t_s) {
+                                const SphereLights& lights, double t_s) {
   const int side = camera.spheres[sphere].role == stream::DeviceRole::kLeftHand ? 0 : 1;
   const Eigen::Isometry3d X_CW = camera.X_WC->inverse();
   virtual_camera::Ball ball;
-  ball.colour_dn = camera.spheres[sphere].target.colour_dn;
+  const auto light = lights.find(camera.spheres[sphere].role);
+  ball.colour_dn =
+      light == lights.end() ? camera.spheres[sphere].target.colour_dn : ShownColour(light->second);
   ball.radius_m = camera.spheres[sphere].target.radius_m;
   ball.p_C_m = X_CW * FistAt(stage, side, t_s);
   if (ball.p_C_m.z() <= 0.1) return ball;  // Behind the camera: not drawn.
@@ -142,7 +155,8 @@ Result<Feed> RenderedHandsFeed(std::shared_ptr<const Stage> stage, const std::st
   const auto renderer = std::make_shared<Renderer>(descriptor, seed);
   Feed feed;
   feed.rate_hz = camera->rate_hz;
-  feed.frames = [stage, camera, renderer](double t_s, std::int64_t exposed_ns) {
+  feed.frames = [stage, camera, renderer](double t_s, std::int64_t exposed_ns,
+                                          const SphereLights& lights) {
     virtual_camera::Scene scene;
     scene.lens = ToLens(camera->lens);
     scene.sensor.readout_s = camera->readout_s;
@@ -150,7 +164,7 @@ Result<Feed> RenderedHandsFeed(std::shared_ptr<const Stage> stage, const std::st
     scene.sensor.read_noise_dn = camera->settings.noise.read_dn;
     scene.sensor.dn_per_electron = camera->settings.noise.dn_per_electron;
     for (std::size_t i = 0; i < camera->spheres.size(); ++i)
-      scene.balls.push_back(BallInFist(*stage, *camera, scene, i, t_s));
+      scene.balls.push_back(BallInFist(*stage, *camera, scene, i, lights, t_s));
     renderer->Take(scene, exposed_ns);
   };
   return feed;

@@ -14,7 +14,8 @@ namespace footing::stream_client {
 /// fist, for footing-camera: PGM images, each with the time of its exposure on the host's monotonic
 /// clock. They are rendered in a thread of their own, since that takes longer than a report may
 /// wait; a frame that is due while one is rendered is left out. `fifo` is opened for writing,
-/// which waits for its reader. The camera file must say where the camera is.
+/// which waits for its reader. The camera file must say where the camera is. A sphere has the
+/// file's colour, or that of the light of the PS Move in its fist.
 Result<Feed> RenderedHandsFeed(std::shared_ptr<const Stage> stage, const std::string& camera_file,
                                const std::string& fifo, std::uint64_t seed);
 

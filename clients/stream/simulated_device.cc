@@ -132,6 +132,12 @@ SimulatedDevice::Shown SimulatedDevice::Show(double now_s) const {
                     device_);
 }
 
+std::optional<std::uint32_t> SimulatedDevice::SphereLight(double now_s) const {
+  const auto* move = std::get_if<Move>(&device_);
+  if (move == nullptr) return std::nullopt;
+  return move->device.sphere_rgb(SecondsToNanoseconds(now_s));
+}
+
 std::string SimulatedDevice::Changes(double now_s) {
   const Shown shown = Show(now_s);
   std::string line;

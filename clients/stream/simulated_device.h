@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -56,6 +57,9 @@ class SimulatedDevice {
   std::vector<virtual_devices::Report> Deliver(double sampled_s);
   /// The motion restarts at time 0 with the device in its initial state, as after a new connection.
   void Restart();
+
+  /// Colour that its sphere shows, 0xRRGGBB; nothing of a device without one.
+  std::optional<std::uint32_t> SphereLight(double now_s) const;
 
   /// A line for the log when lights or rumble changed since the last call; empty otherwise.
   std::string Changes(double now_s);

@@ -1,17 +1,17 @@
 #include "common/frames/camera_file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "common/config/data_file.h"
-#include "common/config/write_file.h"
 
 namespace footing::frames {
 namespace {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 /// Reads one object: keeps the first problem, and finds keys that nobody asked for.
 class Reader {
@@ -88,6 +88,15 @@ class Reader {
   std::string problem_;
 };
 
+std::optional<std::uint32_t> ParseColour(const std::string& text) {
+  if (text.size() != 7 || text[0] != '#') return std::nullopt;
+  std::uint32_t rgb = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data() + 1, end, rgb, 16);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return rgb;
+}
+
 Result<HeldSphere> ReadSphere(const json& object, const std::string& place) {
   HeldSphere sphere;
   Reader reader(object, place);
@@ -105,6 +114,10 @@ Result<HeldSphere> ReadSphere(const json& object, const std::string& place) {
       reader.Fail("colour_dn", "must not be grey: its channels must be 20 DN apart or more");
   }
   reader.Number("radius_m", sphere.target.radius_m, 0.005, 0.2);
+  if (const std::string led = reader.Text("led"); !led.empty()) {
+    sphere.led_rgb = ParseColour(led);
+    if (!sphere.led_rgb) reader.Fail("led", "must be a colour such as #ff00c8");
+  }
   const std::string problem = reader.Problem();
   if (!problem.empty()) return InvalidData(problem);
   return sphere;
@@ -166,12 +179,27 @@ void ReadPose(Reader& reader, CameraFile& camera) {
   camera.calibrated = reader.Text("calibrated");
 }
 
-void SetPose(ordered_json& object, const Eigen::Isometry3d& X_WC, const std::string& calibrated) {
-  const Eigen::Vector3d p = X_WC.translation();
-  const Eigen::Quaterniond q(X_WC.rotation());
-  object["position_W_m"] = {p.x(), p.y(), p.z()};
-  object["rotation_WC"] = {q.w(), q.x(), q.y(), q.z()};
-  if (!calibrated.empty()) object["calibrated"] = calibrated;
+Result<CameraFile> Parse(const std::string& text, const std::string& origin, bool with_spheres) {
+  const json object = json::parse(text, nullptr, false, true);
+  if (object.is_discarded()) return InvalidData(origin + ": not JSON");
+  CameraFile camera;
+  Reader reader(object, origin);
+  ReadLens(reader, camera.lens);
+  ReadSensor(reader, camera);
+  ReadPose(reader, camera);
+  const json* spheres = reader.Find("spheres");
+  const bool is_missing = spheres == nullptr && !with_spheres;
+  if (!is_missing &&
+      (spheres == nullptr || !spheres->is_array() || spheres->empty() || spheres->size() > 8)) {
+    reader.Fail("spheres", "must be a list of 1 to 8 spheres; footing-camera calibrate writes it");
+  }
+  if (const std::string problem = reader.Problem(); !problem.empty()) return InvalidData(problem);
+  for (std::size_t i = 0; !is_missing && i < spheres->size(); ++i) {
+    const auto held = ReadSphere((*spheres)[i], origin + ", sphere " + std::to_string(i + 1));
+    if (!held) return held.error();
+    camera.spheres.push_back(*held);
+  }
+  return camera;
 }
 
 }  // namespace
@@ -187,24 +215,7 @@ double CameraFile::RowTime(double row_px) const {
 }
 
 Result<CameraFile> ParseCameraFile(const std::string& text, const std::string& origin) {
-  const json object = json::parse(text, nullptr, false, true);
-  if (object.is_discarded()) return InvalidData(origin + ": not JSON");
-  CameraFile camera;
-  Reader reader(object, origin);
-  ReadLens(reader, camera.lens);
-  ReadSensor(reader, camera);
-  ReadPose(reader, camera);
-  const json* spheres = reader.Find("spheres");
-  if (spheres == nullptr || !spheres->is_array() || spheres->empty() || spheres->size() > 8) {
-    reader.Fail("spheres", "must be a list of 1 to 8 spheres");
-  }
-  if (const std::string problem = reader.Problem(); !problem.empty()) return InvalidData(problem);
-  for (std::size_t i = 0; i < spheres->size(); ++i) {
-    const auto held = ReadSphere((*spheres)[i], origin + ", sphere " + std::to_string(i + 1));
-    if (!held) return held.error();
-    camera.spheres.push_back(*held);
-  }
-  return camera;
+  return Parse(text, origin, true);
 }
 
 Result<CameraFile> ReadCameraFile(const std::string& path) {
@@ -213,47 +224,12 @@ Result<CameraFile> ReadCameraFile(const std::string& path) {
   return ParseCameraFile(*text, path);
 }
 
-std::string ToJson(const CameraFile& camera) {
-  const sphere::Lens& lens = camera.lens;
-  const sphere::Settings& settings = camera.settings;
-  ordered_json object = {
-      {"width", lens.width},
-      {"height", lens.height},
-      {"fx_px", lens.fx_px},
-      {"fy_px", lens.fy_px},
-      {"cx_px", lens.cx_px},
-      {"cy_px", lens.cy_px},
-      {"distortion", {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3}},
-      {"format", camera.format == sphere::PixelFormat::kYuyv ? "YUYV" : "SGRBG8"},
-      {"rate_hz", camera.rate_hz},
-      {"readout_s", camera.readout_s},
-      {"blur_px", settings.profile.blur_px},
-      {"blur_sd_px", settings.profile.blur_sd_px},
-      {"limb", settings.profile.limb},
-      {"limb_sd", settings.profile.limb_sd},
-      {"read_noise_dn", settings.noise.read_dn},
-      {"dn_per_electron", settings.noise.dn_per_electron},
-      {"noise_correlation", settings.noise.correlation}};
-  if (camera.X_WC) SetPose(object, *camera.X_WC, camera.calibrated);
-  for (const HeldSphere& held : camera.spheres) {
-    const Eigen::Vector3d& c = held.target.colour_dn;
-    object["spheres"].push_back({{"role", stream::Name(held.role)},
-                                 {"colour_dn", {c.x(), c.y(), c.z()}},
-                                 {"radius_m", held.target.radius_m}});
-  }
-  return object.dump(2) + "\n";
-}
-
-Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
-                       const std::string& calibrated) {
+Result<CameraFile> ReadUncalibratedCamera(const std::string& path) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) return CameraFile();
   const auto text = config::ReadTextFile(path);
   if (!text) return text.error();
-  if (const auto camera = ParseCameraFile(*text, path); !camera) return camera.error();
-  ordered_json object = ordered_json::parse(*text, nullptr, false, true);
-  SetPose(object, X_WC, calibrated);
-  const auto written = config::ReplaceFile(path, object.dump(2) + "\n");
-  return written ? Result<void>()
-                 : Failure("cannot write " + path + ": " + written.error().message);
+  return Parse(*text, path, false);
 }
 
 }  // namespace footing::frames

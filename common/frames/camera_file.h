@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ namespace footing::frames {
 struct HeldSphere {
   stream::DeviceRole role = stream::DeviceRole::kUnspecified;
   sphere::Target target;
+  std::optional<std::uint32_t> led_rgb = {};  ///< Light of the controller that looks so, 0xRRGGBB.
 };
 
 /// A camera file, JSON (docs/camera.md): lens, sensor, spheres, and where the camera stands.
@@ -36,11 +38,19 @@ struct CameraFile {
 /// Every error names file, key and what is allowed; unknown keys are errors.
 Result<CameraFile> ReadCameraFile(const std::string& path);
 Result<CameraFile> ParseCameraFile(const std::string& text, const std::string& origin);
+/// The same, but `spheres` may be missing; the defaults where there is no file.
+Result<CameraFile> ReadUncalibratedCamera(const std::string& path);
 std::string ToJson(const CameraFile& camera);
 
 /// Writes pose and remark into a camera file, in place of those that it has; its other keys stay.
 /// The file is whole at every instant.
 Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
                        const std::string& calibrated);
+
+/// Writes spheres, blur and limb darkening alike; a file that is not there begins as `camera`.
+Result<void> StoreSpheres(const std::string& path, const CameraFile& camera);
+
+/// "#ff00c8", as footing-ctl led takes it.
+std::string ColourText(std::uint32_t rgb);
 
 }  // namespace footing::frames

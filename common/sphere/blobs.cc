@@ -10,6 +10,7 @@ namespace footing::sphere {
 namespace {
 
 constexpr double kWidestHue = 0.577;  // tan 30 degrees.
+constexpr double kColourOff = 0.25;   // Limb and gradient change a sphere's light by 0.15.
 constexpr int kUnit = 32;             // Of the integer weights.
 
 /// Chroma along a hue and across it as integer sums, DN times kUnit.
@@ -36,12 +37,14 @@ HueWeights WeightsOf(const Eigen::Vector3d& colour, double share) {
 }
 
 /// Chroma along the hue, or 0 where the hue is another one or the chroma too little.
-void ScoreRow(const Quads& quads, int row, const HueWeights& w, std::int16_t* out) {
-  const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(quads.width);
+void ScoreRow(const Quads& quads, int row, int left, int width, const HueWeights& w,
+              std::int16_t* out) {
+  const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(quads.width) +
+                     static_cast<std::size_t>(left);
   const std::int16_t* red = quads.red.data() + first;
   const std::int16_t* green = quads.green.data() + first;
   const std::int16_t* blue = quads.blue.data() + first;
-  for (int i = 0; i < quads.width; ++i) {
+  for (int i = 0; i < width; ++i) {
     const auto along = static_cast<std::int16_t>(w.along[0] * red[i] + w.along[1] * green[i] +
                                                  w.along[2] * blue[i]);
     const auto across = static_cast<std::int16_t>(w.across[0] * red[i] + w.across[1] * green[i] +
@@ -50,6 +53,35 @@ void ScoreRow(const Quads& quads, int row, const HueWeights& w, std::int16_t* ou
     out[i] = hit ? along : std::int16_t{0};
   }
 }
+
+/// Which quads have a colour, within a share of its length.
+class NearColour {
+ public:
+  explicit NearColour(const Eigen::Vector3d& colour) {
+    for (int i = 0; i < 3; ++i) colour_[i] = static_cast<std::int16_t>(std::lround(colour[i]));
+    most_ = static_cast<std::int32_t>(kColourOff * kColourOff * colour.squaredNorm());
+    const Eigen::Vector3d chroma = colour.array() - colour.mean();
+    score_ = static_cast<std::int16_t>(std::clamp(std::lround(kUnit * chroma.norm()), 1L, 16000L));
+  }
+
+  void ScoreRow(const Quads& quads, int row, int left, int width, std::int16_t* out) const {
+    const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(quads.width) +
+                       static_cast<std::size_t>(left);
+    const std::int16_t* red = quads.red.data() + first;
+    const std::int16_t* green = quads.green.data() + first;
+    const std::int16_t* blue = quads.blue.data() + first;
+    for (int i = 0; i < width; ++i) {
+      const std::int32_t r = red[i] - colour_[0], g = green[i] - colour_[1],
+                         b = blue[i] - colour_[2];
+      out[i] = r * r + g * g + b * b < most_ ? score_ : std::int16_t{0};
+    }
+  }
+
+ private:
+  std::int16_t colour_[3];
+  std::int32_t most_;
+  std::int16_t score_;
+};
 
 /// Quads of one row side by side.
 struct Run {
@@ -68,6 +100,9 @@ int RootOf(std::vector<int>& parents, int label) {
 
 class RunCollector {
  public:
+  /// Scores begin at that column.
+  explicit RunCollector(int left) : left_(left) {}
+
   void AddRow(int row, const std::int16_t* scores, int width) {
     const std::size_t above = previous_;
     previous_ = runs_.size();
@@ -112,13 +147,13 @@ class RunCollector {
 
  private:
   int AddRun(int row, const std::int16_t* scores, int first, int width) {
-    Run run{row, first, first, static_cast<int>(parents_.size()), 0, 0};
+    Run run{row, left_ + first, left_ + first, static_cast<int>(parents_.size()), 0, 0};
     int i = first;
     for (; i < width && scores[i] != 0; ++i) {
       run.score += scores[i];
-      run.weighted += static_cast<double>(scores[i]) * i;
+      run.weighted += static_cast<double>(scores[i]) * (left_ + i);
     }
-    run.right = i - 1;
+    run.right = left_ + i - 1;
     runs_.push_back(run);
     parents_.push_back(run.label);
     return i;
@@ -139,27 +174,28 @@ class RunCollector {
     }
   }
 
+  int left_;
   std::vector<Run> runs_;
   std::vector<int> parents_;
   std::size_t previous_ = 0;
 };
 
-void MosaicRow(const Image& image, int row, std::int16_t* red, std::int16_t* green,
-               std::int16_t* blue) {
-  const std::uint8_t* upper = image.Row(2 * row);
-  const std::uint8_t* lower = image.Row(2 * row + 1);
-  for (int i = 0; i < image.width / 2; ++i) {
+void MosaicRow(const Image& image, int row, int left, int width, std::int16_t* red,
+               std::int16_t* green, std::int16_t* blue) {
+  const std::uint8_t* upper = image.Row(2 * row) + 2 * left;
+  const std::uint8_t* lower = image.Row(2 * row + 1) + 2 * left;
+  for (int i = 0; i < width; ++i) {
     red[i] = upper[2 * i + 1];
     green[i] = static_cast<std::int16_t>((upper[2 * i] + lower[2 * i + 1]) >> 1);
     blue[i] = lower[2 * i];
   }
 }
 
-void YuyvRow(const Image& image, int row, std::int16_t* red, std::int16_t* green,
-             std::int16_t* blue) {
-  const std::uint8_t* upper = image.Row(2 * row);
-  const std::uint8_t* lower = image.Row(2 * row + 1);
-  for (int i = 0; i < image.width / 2; ++i) {
+void YuyvRow(const Image& image, int row, int left, int width, std::int16_t* red,
+             std::int16_t* green, std::int16_t* blue) {
+  const std::uint8_t* upper = image.Row(2 * row) + 4 * left;
+  const std::uint8_t* lower = image.Row(2 * row + 1) + 4 * left;
+  for (int i = 0; i < width; ++i) {
     const int luma = (upper[4 * i] + upper[4 * i + 2] + lower[4 * i] + lower[4 * i + 2]) >> 2;
     const int u = ((upper[4 * i + 1] + lower[4 * i + 1]) >> 1) - 128;
     const int v = ((upper[4 * i + 3] + lower[4 * i + 3]) >> 1) - 128;
@@ -174,28 +210,53 @@ void YuyvRow(const Image& image, int row, std::int16_t* red, std::int16_t* green
 
 }  // namespace
 
-void ToQuads(const Image& image, Quads& quads) {
+QuadWindow Whole(const Image& image) { return {0, 0, image.width / 2 - 1, image.height / 2 - 1}; }
+
+void ToQuads(const Image& image, const QuadWindow& window, Quads& quads) {
   quads.width = image.width / 2;
   quads.height = image.height / 2;
   const auto size = static_cast<std::size_t>(quads.width) * static_cast<std::size_t>(quads.height);
   for (auto* plane : {&quads.red, &quads.green, &quads.blue}) plane->resize(size);
-  for (int row = 0; row < quads.height; ++row) {
-    const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(quads.width);
-    const auto fill = image.format == PixelFormat::kSgrbg8 ? MosaicRow : YuyvRow;
-    fill(image, row, quads.red.data() + first, quads.green.data() + first,
-         quads.blue.data() + first);
+  const auto fill = image.format == PixelFormat::kSgrbg8 ? MosaicRow : YuyvRow;
+  for (int row = window.top; row <= window.bottom; ++row) {
+    const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(quads.width) +
+                       static_cast<std::size_t>(window.left);
+    fill(image, row, window.left, window.right - window.left + 1, quads.red.data() + first,
+         quads.green.data() + first, quads.blue.data() + first);
   }
 }
 
-std::vector<Blob> FindBlobs(const Quads& quads, const Eigen::Vector3d& colour_dn, double share) {
-  const HueWeights weights = WeightsOf(colour_dn, share);
-  std::vector<std::int16_t> scores(static_cast<std::size_t>(quads.width));
-  RunCollector runs;
-  for (int row = 0; row < quads.height; ++row) {
-    ScoreRow(quads, row, weights, scores.data());
-    runs.AddRow(row, scores.data(), quads.width);
+namespace {
+
+/// Blobs of the scores of all rows.
+template <typename Score>
+std::vector<Blob> Collect(const QuadWindow& window, const Score& score) {
+  const int width = window.right - window.left + 1;
+  std::vector<std::int16_t> scores(static_cast<std::size_t>(width));
+  RunCollector runs(window.left);
+  for (int row = window.top; row <= window.bottom; ++row) {
+    score(row, width, scores.data());
+    runs.AddRow(row, scores.data(), width);
   }
   return runs.Blobs();
+}
+
+}  // namespace
+
+std::vector<Blob> FindBlobs(const Quads& quads, const QuadWindow& window,
+                            const Eigen::Vector3d& colour_dn, double share) {
+  const HueWeights weights = WeightsOf(colour_dn, share);
+  return Collect(window, [&](int row, int width, std::int16_t* scores) {
+    ScoreRow(quads, row, window.left, width, weights, scores);
+  });
+}
+
+std::vector<Blob> FindBlobsOfColour(const Quads& quads, const QuadWindow& window,
+                                    const Eigen::Vector3d& colour_dn) {
+  const NearColour near(colour_dn);
+  return Collect(window, [&](int row, int width, std::int16_t* scores) {
+    near.ScoreRow(quads, row, window.left, width, scores);
+  });
 }
 
 }  // namespace footing::sphere

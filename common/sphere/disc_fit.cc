@@ -21,6 +21,8 @@ constexpr int kClippedDn = 250;
 constexpr std::size_t kMostPixels = 700;
 constexpr double kFarBlurs = 4.0;  // Beyond the edge; the background needs no more.
 constexpr double kHuber = 2.5;
+constexpr double kHiddenBlurs = 3.5;  // From an occluder's edge there is no more of its light.
+constexpr double kBesideBlurs = 2.5;  // Along the sphere's edge, where half of it is seen.
 
 class Fitter {
  public:
@@ -77,11 +79,15 @@ class Fitter {
   /// Leaves out what is beyond each sector's reach; says which sectors have the edge in reach.
   std::vector<bool> Limit(const State& state, const SectorReach& reach) {
     const double blur = settings_.profile.blur_px * scale_.Along(Eigen::Vector2d::UnitX());
-    std::vector<bool> sectors(kSectors);
-    for (std::size_t s = 0; s < kSectors; ++s) sectors[s] = std::isinf(reach[s]);
+    std::vector<bool> seen(kSectors);
+    for (std::size_t s = 0; s < kSectors; ++s) seen[s] = std::isinf(reach[s]);
+    const double arc = 2 * std::numbers::pi / kSectors * state.shape[2];
+    const std::vector<bool> sectors = WithoutBorders(seen, kBesideBlurs * blur / arc);
     std::erase_if(samples_, [&](const Sample& sample) {
+      const auto s = static_cast<std::size_t>(sample.sector);
       const double r = (sample.slopes - state.shape.head<2>()).norm();
-      return r > reach[static_cast<std::size_t>(sample.sector)] - 3.5 * blur;
+      const double edge = sectors[s] ? reach[s] : std::min(reach[s], state.shape[2]);
+      return r > edge - kHiddenBlurs * blur;
     });
     return sectors;
   }

@@ -50,4 +50,18 @@ void LookBehind(std::vector<Sample>& samples, const State& state, const PixelNoi
   });
 }
 
+std::vector<bool> WithoutBorders(const std::vector<bool>& seen, double beside) {
+  const auto count = static_cast<int>(seen.size());
+  const auto is_seen = [&](int s) { return seen[static_cast<std::size_t>((s + count) % count)]; };
+  std::vector<bool> sectors = seen;
+  for (int s = 0; s < count; ++s) {
+    if (is_seen(s - 1) || is_seen(s) || is_seen(s + 1)) continue;
+    for (int i = 1; i <= std::min(count / 2, 1 + static_cast<int>(std::ceil(beside))); ++i) {
+      sectors[static_cast<std::size_t>((s + i) % count)] = false;
+      sectors[static_cast<std::size_t>((s + count - i) % count)] = false;
+    }
+  }
+  return sectors;
+}
+
 }  // namespace footing::sphere::disc

@@ -17,4 +17,9 @@ double Variance(const PixelNoise& noise, double value);
 void LookBehind(std::vector<Sample>& samples, const State& state, const PixelNoise& noise,
                 std::vector<bool>& sectors);
 
+/// Sectors whose edge is seen, less those beside a hidden part of it: what hides it darkens the
+/// edge there too, as far as the blur reaches, which is `beside` sectors. One or two unseen sectors
+/// are noise, and hidden by nothing.
+std::vector<bool> WithoutBorders(const std::vector<bool>& seen, double beside);
+
 }  // namespace footing::sphere::disc

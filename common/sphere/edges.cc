@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace footing::sphere {
 namespace {
@@ -10,13 +11,10 @@ namespace {
 using Levels = std::array<double, 3>;
 
 constexpr double kLeastContrastDn = 6;
+constexpr double kInsideQuantile = 0.6;
 
-/// A rectangle of quads, cut at the image's edges.
-struct Window {
-  int left, top, right, bottom;  // Included.
-};
-
-Window Around(const Blob& blob, const Quads& quads, double margin_share) {
+/// Cut at the image's edges.
+QuadWindow Around(const Blob& blob, const Quads& quads, double margin_share) {
   const int size = std::max(blob.right - blob.left, blob.bottom - blob.top) + 1;
   const int margin = 2 + static_cast<int>(margin_share * size);
   return {std::max(0, blob.left - margin), std::max(0, blob.top - margin),
@@ -46,26 +44,46 @@ double Quantile(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob) {
+/// The middle of a blob, in at most some hundred quads; of a small one the middle quad.
+std::vector<std::pair<int, int>> Middle(const Blob& blob) {
+  std::vector<std::pair<int, int>> middle;
+  const int step = 1 + (blob.right - blob.left) / 16;
+  const Eigen::Vector2d size(blob.right - blob.left + 1, blob.bottom - blob.top + 1);
+  for (int y = blob.top; y <= blob.bottom; y += step) {
+    for (int x = blob.left; x <= blob.right; x += step) {
+      const Eigen::Vector2d from = (Eigen::Vector2d(x, y) - blob.centre).cwiseQuotient(size);
+      if (from.norm() < 0.35 || (from.array().abs() * size.array() <= 0.51).all())
+        middle.emplace_back(x, y);
+    }
+  }
+  if (middle.empty()) {
+    middle.emplace_back(static_cast<int>(std::lround(blob.centre.x())),
+                        static_cast<int>(std::lround(blob.centre.y())));
+  }
+  return middle;
+}
+
+Eigen::Vector3d ColourOf(const Quads& quads, const std::vector<std::pair<int, int>>& middle) {
+  std::array<std::vector<double>, 3> inside;
+  for (const auto& [x, y] : middle) {
+    const std::size_t at = QuadAt(quads, x, y);
+    inside[0].push_back(quads.red[at]);
+    inside[1].push_back(quads.green[at]);
+    inside[2].push_back(quads.blue[at]);
+  }
+  return {Quantile(inside[0], kInsideQuantile), Quantile(inside[1], kInsideQuantile),
+          Quantile(inside[2], kInsideQuantile)};
+}
+
+Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob,
+                    const std::vector<std::pair<int, int>>& middle) {
   std::array<std::vector<double>, 3> inside, outside;
   const auto add = [&](std::array<std::vector<double>, 3>& to, int x, int y) {
     const Levels levels = LevelsAt(image, quads, x, y);
     for (std::size_t i = 0; i < 3; ++i) to[i].push_back(levels[i]);
   };
-  const int step = 1 + (blob.right - blob.left) / 16;
-  for (int y = blob.top; y <= blob.bottom; y += step) {
-    for (int x = blob.left; x <= blob.right; x += step) {
-      const Eigen::Vector2d size(blob.right - blob.left + 1, blob.bottom - blob.top + 1);
-      const Eigen::Vector2d from = (Eigen::Vector2d(x, y) - blob.centre).cwiseQuotient(size);
-      if (from.norm() < 0.35 || (from.array().abs() * size.array() <= 0.51).all())
-        add(inside, x, y);
-    }
-  }
-  if (inside[0].empty()) {
-    add(inside, static_cast<int>(std::lround(blob.centre.x())),
-        static_cast<int>(std::lround(blob.centre.y())));
-  }
-  const Window ring = Around(blob, quads, 0.25);
+  for (const auto& [x, y] : middle) add(inside, x, y);
+  const QuadWindow ring = Around(blob, quads, 0.25);
   for (int x = ring.left; x <= ring.right; ++x) {
     add(outside, x, ring.top);
     add(outside, x, ring.bottom);
@@ -76,7 +94,7 @@ Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob) {
   }
   Contrast contrast;
   for (std::size_t i = 0; i < 3; ++i) {
-    contrast.inside[i] = Quantile(inside[i], 0.6);
+    contrast.inside[i] = Quantile(inside[i], kInsideQuantile);
     contrast.outside[i] = Quantile(outside[i], 0.5);
   }
   return contrast;
@@ -85,8 +103,8 @@ Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob) {
 /// How much of the sphere's light a quad has, 1 inside and 0 outside.
 class LightMap {
  public:
-  LightMap(const Image& image, const Quads& quads, const Window& window, const Contrast& contrast,
-           const PixelNoise& noise)
+  LightMap(const Image& image, const Quads& quads, const QuadWindow& window,
+           const Contrast& contrast, const PixelNoise& noise)
       : window_(window), width_(window.right - window.left + 1) {
     Levels weight{};
     double sum = 0;
@@ -120,7 +138,7 @@ class LightMap {
   }
 
  private:
-  Window window_;
+  QuadWindow window_;
   int width_;
   std::vector<double> light_;
 };
@@ -147,7 +165,9 @@ std::optional<double> FallAlong(const LightMap& map, const Eigen::Vector2d& from
 std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
                                const PixelNoise& noise) {
   Edges edges;
-  edges.contrast = ContrastOf(image, quads, blob);
+  const std::vector<std::pair<int, int>> middle = Middle(blob);
+  edges.colour_dn = ColourOf(quads, middle);
+  edges.contrast = ContrastOf(image, quads, blob, middle);
   double highest = 0;
   for (int i = 0; i < 3; ++i) highest = std::max(highest, std::abs(edges.contrast.Height(i)));
   if (highest < kLeastContrastDn) return std::nullopt;

@@ -24,6 +24,7 @@ inline constexpr int kEdgeRays = 32;
 /// Where the light falls to the half between inside and outside along rays from a blob's middle.
 struct Edges {
   Contrast contrast;
+  Eigen::Vector3d colour_dn{0, 0, 0};   ///< Red, green and blue inside.
   std::vector<Eigen::Vector2d> pixels;  ///< Of the rays that meet an edge.
 };
 

@@ -18,20 +18,27 @@ struct Finder::Candidate {
   Eigen::Vector2d middle_px;
   Cone cone;
   SectorReach reach;
-  double quality = 0;  ///< Share of the edge times brightness.
+  double colour_off = 0;  ///< From the sphere's own.
+  double quality = 0;     ///< Share of the edge, less for another colour.
 };
 
 namespace {
 
 constexpr std::size_t kMostBlobs = 6;
 constexpr std::size_t kMostFits = 3;
-constexpr double kLowShare = 0.25, kHighShare = 0.55;  // Of the colour's own chroma.
+constexpr double kLowShare = 0.25;  // Of the colour's own chroma.
 constexpr double kGoodQuality = 0.7;
 constexpr double kClearQuality = 0.88;  // Nothing else in sight is as bright and as round.
 constexpr double kLeastQuality = 0.25;
+// Limb, gradient and the blur of the smallest spheres change the colour by 0.15.
+constexpr double kSureColourOff = 0.2, kMostColourOff = 0.45;
 constexpr double kLeastSeenShare = 0.2;
 constexpr double kMostResidualShare = 0.2;
 constexpr double kSaturatedShare = 0.02;
+// Near the last place: 2 m/s at 1 m and 60 Hz is 18 px a frame, of which most is foreseen.
+constexpr double kNearMarginPx = 24;
+constexpr double kTrustedConfidence = 0.5;
+constexpr int kMostNearFrames = 300;  // A better place elsewhere is seen within 5 s.
 
 /// How much a blob is like a sphere of this colour, at a glance.
 double Likeness(const Blob& blob, double chroma) {
@@ -42,17 +49,30 @@ double Likeness(const Blob& blob, double chroma) {
   return std::min(1.0, fill) * std::min(1.0, 1.5 * aspect) * std::min(1.0, strength);
 }
 
-/// Light of the sphere over what its colour says, at most 1.
-double Brightness(const Contrast& contrast, const Target& target, PixelFormat format) {
-  double light = 0, expected = 0;
-  if (format == PixelFormat::kYuyv) {
-    light = contrast.Height(0);
-    expected = target.colour_dn.dot(Eigen::Vector3d(0.299, 0.587, 0.114));
-  } else {
-    for (int i = 0; i < 3; ++i) light += contrast.Height(i) * target.colour_dn[i];
-    expected = target.colour_dn.squaredNorm();
-  }
-  return std::clamp(light / expected, 0.0, 1.0);
+/// A square in the image, in quads; empty (right < left) when it is outside.
+QuadWindow Square(const Eigen::Vector2d& middle_px, double half_px, const QuadWindow& whole) {
+  const auto quad = [](double px) { return static_cast<int>(std::floor(px / 2)); };
+  return {std::max(whole.left, quad(middle_px.x() - half_px)),
+          std::max(whole.top, quad(middle_px.y() - half_px)),
+          std::min(whole.right, quad(middle_px.x() + half_px)),
+          std::min(whole.bottom, quad(middle_px.y() + half_px))};
+}
+
+/// Cut off by a window that does not end where the image does.
+bool IsCut(const Blob& blob, const QuadWindow& window, const QuadWindow& whole) {
+  return (blob.left == window.left && window.left > whole.left) ||
+         (blob.top == window.top && window.top > whole.top) ||
+         (blob.right == window.right && window.right < whole.right) ||
+         (blob.bottom == window.bottom && window.bottom < whole.bottom);
+}
+
+/// How far a colour is from the sphere's: by hue and saturation, and by how much darker it is, over
+/// its length. Brighter is allowed: it may be at the sensor's limit.
+double ColourOff(const Eigen::Vector3d& seen_dn, const Eigen::Vector3d& colour_dn) {
+  const double scale = seen_dn.dot(colour_dn) / colour_dn.squaredNorm();
+  if (!(scale > 0)) return 1;
+  const double hue = (seen_dn / scale - colour_dn).norm() / colour_dn.norm();
+  return std::hypot(hue, std::max(0.0, 1 - scale));
 }
 
 /// Which sectors have the cone's edge, and up to where the others show the sphere.
@@ -81,7 +101,7 @@ SectorReach ReachOf(const ConeFit& fit, const std::vector<Eigen::Vector2d>& slop
 }
 
 Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius_m,
-                    const Lens& lens) {
+                    double colour_off, const Lens& lens) {
   const double t = fit.cone.tangent, secant = std::sqrt(1 + t * t);
   const double range_m = radius_m * secant / t;
   const Eigen::Vector3d along =
@@ -98,6 +118,7 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
   estimate.seen_share = fit.used_share;
   estimate.misfit = fit.misfit;
   estimate.residual_share = fit.residual_share;
+  estimate.colour_off = colour_off;
   estimate.blur_px = fit.blur_px;
   estimate.limb = fit.limb;
   estimate.is_saturated = fit.clipped_share > kSaturatedShare;
@@ -105,23 +126,23 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
   const auto falling = [](double value, double from, double to) {
     return std::clamp((to - value) / (to - from), 0.0, 1.0);
   };
-  estimate.confidence = falling(-fit.used_share, -0.7, -0.2) *
-                        falling(fit.residual_share, 0.06, kMostResidualShare) *
-                        (estimate.is_saturated ? 0.3 : 1.0);
+  estimate.confidence =
+      falling(-fit.used_share, -0.7, -0.2) * falling(fit.residual_share, 0.06, kMostResidualShare) *
+      falling(colour_off, kSureColourOff, kMostColourOff) * (estimate.is_saturated ? 0.3 : 1.0);
   return estimate;
 }
 
 }  // namespace
 
 Finder::Finder(const Lens& lens, std::vector<Target> targets, const Settings& settings)
-    : lens_(lens), targets_(std::move(targets)), settings_(settings) {}
+    : lens_(lens), targets_(std::move(targets)), settings_(settings), last_(targets_.size()) {}
 
 std::vector<Finder::Candidate> Finder::Candidates(const Image& image, const Target& target,
-                                                  double share) {
+                                                  const QuadWindow& window,
+                                                  std::vector<Blob> blobs) {
   const Eigen::Vector3d chroma = target.colour_dn.array() - target.colour_dn.mean();
-  std::vector<Blob> blobs = FindBlobs(quads_, target.colour_dn, share);
   std::erase_if(blobs, [&](const Blob& blob) {
-    return Likeness(blob, chroma.norm()) < 0.1 ||
+    return IsCut(blob, window, Whole(image)) || Likeness(blob, chroma.norm()) < 0.1 ||
            std::max(blob.right - blob.left, blob.bottom - blob.top) > quads_.height / 2;
   });
   std::sort(blobs.begin(), blobs.end(), [&](const Blob& a, const Blob& b) {
@@ -142,10 +163,11 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, const Targ
     const double tolerance = per_px * std::max(0.5, 0.04 * size_px);
     const auto fit = FitConeRobustly(at, tolerance, 0.8 * per_px, 1.5 * size_px * per_px);
     if (!fit) continue;
-    Candidate candidate{edges->contrast, slopes, middle_px, fit->cone, ReachOf(*fit, at), 0};
+    Candidate candidate{edges->contrast, slopes, middle_px, fit->cone, ReachOf(*fit, at), 0, 0};
     const auto inliers = std::count(fit->inliers.begin(), fit->inliers.end(), true);
-    candidate.quality = static_cast<double>(inliers) / kEdgeRays *
-                        Brightness(edges->contrast, target, image.format);
+    candidate.colour_off = ColourOff(edges->colour_dn, target.colour_dn);
+    candidate.quality =
+        static_cast<double>(inliers) / kEdgeRays * std::max(0.0, 1 - candidate.colour_off);
     candidates.push_back(candidate);
     if (candidate.quality > kClearQuality) break;
   }
@@ -160,28 +182,70 @@ std::optional<Estimate> Finder::Measure(const Image& image, const Target& target
                            candidate.reach, candidate.middle_px, settings_, table_);
   if (!fit || fit->used_share < kLeastSeenShare || fit->residual_share > kMostResidualShare)
     return std::nullopt;
-  return ToEstimate(*fit, candidate.slopes, target.radius_m, lens_);
+  return ToEstimate(*fit, candidate.slopes, target.radius_m, candidate.colour_off, lens_);
 }
 
-std::optional<Estimate> Finder::FindOne(const Image& image, const Target& target) {
-  std::vector<Candidate> candidates = Candidates(image, target, kLowShare);
+std::optional<Finder::Found> Finder::Search(const Image& image, const Target& target,
+                                            const QuadWindow& window) {
+  const Eigen::Vector3d& colour_dn = target.colour_dn;
+  std::vector<Candidate> candidates =
+      Candidates(image, target, window, FindBlobs(quads_, window, colour_dn, kLowShare));
   if (candidates.empty() || candidates.front().quality < kGoodQuality) {
-    for (Candidate& candidate : Candidates(image, target, kHighShare))
+    for (Candidate& candidate :
+         Candidates(image, target, window, FindBlobsOfColour(quads_, window, colour_dn)))
       candidates.push_back(candidate);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const auto& a, const auto& b) { return a.quality > b.quality; });
   }
   for (std::size_t i = 0; i < std::min(kMostFits, candidates.size()); ++i) {
     if (candidates[i].quality < kLeastQuality) break;
-    if (const auto estimate = Measure(image, target, candidates[i])) return estimate;
+    if (const auto estimate = Measure(image, target, candidates[i]))
+      return Found{*estimate, candidates[i].quality};
   }
   return std::nullopt;
 }
 
+/// Where it should be now; nothing unless it is clearly there.
+std::optional<Finder::Found> Finder::Near(const Image& image, std::size_t sphere) {
+  std::optional<Last>& last = last_[sphere];
+  if (!last || ++last->near_frames > kMostNearFrames) return std::nullopt;
+  const QuadWindow whole = Whole(image);
+  const Eigen::Vector2d middle_px = last->centre_px + last->step_px;
+  const double half_px = 1.5 * last->radius_px + kNearMarginPx + 0.5 * last->step_px.norm();
+  const QuadWindow window = Square(middle_px, half_px, whole);
+  if (window.right < window.left || window.bottom < window.top) return std::nullopt;
+  // Edges are looked for beyond a blob, by 0.6 of its size and two quads.
+  if (!has_whole_) ToQuads(image, Square(middle_px, 2.3 * half_px + 6, whole), quads_);
+  const auto found = Search(image, targets_[sphere], window);
+  const bool is_clear =
+      found && found->quality > kGoodQuality && found->estimate.confidence > kTrustedConfidence;
+  return is_clear ? found : std::nullopt;
+}
+
+std::optional<Estimate> Finder::FindOne(const Image& image, std::size_t sphere) {
+  std::optional<Found> found = Near(image, sphere);
+  const bool is_near = found.has_value();
+  if (!is_near) {
+    if (!has_whole_) ToQuads(image, quads_);
+    has_whole_ = true;
+    found = Search(image, targets_[sphere], Whole(image));
+  }
+  std::optional<Last>& last = last_[sphere];
+  if (!found || found->estimate.confidence < kTrustedConfidence) {
+    last.reset();
+  } else {
+    const Estimate& estimate = found->estimate;
+    Last next{estimate.centre_px, {0, 0}, estimate.radius_px, is_near ? last->near_frames : 0};
+    if (is_near) next.step_px = estimate.centre_px - last->centre_px;
+    last = next;
+  }
+  return found ? std::optional<Estimate>(found->estimate) : std::nullopt;
+}
+
 std::vector<std::optional<Estimate>> Finder::Find(const Image& image) {
-  ToQuads(image, quads_);
+  has_whole_ = false;
   std::vector<std::optional<Estimate>> found;
-  for (const Target& target : targets_) found.push_back(FindOne(image, target));
+  for (std::size_t i = 0; i < targets_.size(); ++i) found.push_back(FindOne(image, i));
   return found;
 }
 

@@ -25,23 +25,40 @@ struct Estimate {
   double seen_share = 0;            ///< Of its edge.
   double misfit = 0;                ///< Mean square residual over the noise; about 1.
   double residual_share = 0;        ///< RMS residual over the contrast.
+  double colour_off = 0;            ///< Its colour's distance from the target's, over its length.
   double blur_px = 0, limb = 0;     ///< As fitted, for `Calibrate`.
 };
 
 /// Finds luminous spheres in a frame, each by its hue: chroma to find blobs, then the light itself
-/// for edges, a robust cone and a photometric fit (docs/camera.md). Nothing is remembered from
-/// frame to frame but memory.
+/// for edges, a robust cone and a photometric fit (docs/camera.md). Each is looked for where it
+/// should be by the two frames before, and in the whole image when it is not clearly there. Frames
+/// are those of one camera, in their order.
 class Finder {
  public:
   Finder(const Lens& lens, std::vector<Target> targets, const Settings& settings);
 
   /// One for each target, in their order; nothing where it is not in sight.
   std::vector<std::optional<Estimate>> Find(const Image& image);
+  /// The next frame is of another scene.
+  void Forget() { last_.assign(targets_.size(), std::nullopt); }
 
  private:
   struct Candidate;
-  std::optional<Estimate> FindOne(const Image& image, const Target& target);
-  std::vector<Candidate> Candidates(const Image& image, const Target& target, double share);
+  struct Found {
+    Estimate estimate;
+    double quality = 0;  ///< Of its candidate.
+  };
+  /// Where a sphere was.
+  struct Last {
+    Eigen::Vector2d centre_px{0, 0}, step_px{0, 0};
+    double radius_px = 0;
+    int near_frames = 0;  ///< Since the whole image was searched.
+  };
+  std::optional<Estimate> FindOne(const Image& image, std::size_t sphere);
+  std::optional<Found> Near(const Image& image, std::size_t sphere);
+  std::optional<Found> Search(const Image& image, const Target& target, const QuadWindow& window);
+  std::vector<Candidate> Candidates(const Image& image, const Target& target,
+                                    const QuadWindow& window, std::vector<Blob> blobs);
   std::optional<Estimate> Measure(const Image& image, const Target& target,
                                   const Candidate& candidate) const;
 
@@ -50,6 +67,8 @@ class Finder {
   Settings settings_;
   ProfileTable table_;
   Quads quads_;
+  bool has_whole_ = false;  ///< `quads_` are of the whole image.
+  std::vector<std::optional<Last>> last_;
 };
 
 /// Blur and limb of a sphere through a camera, from estimates at 0.5 to 1.2 m that were made with

@@ -18,23 +18,21 @@ std::vector<float> GaussianKernel(double sd_px) {
   return kernel;
 }
 
-/// One line of `count` pixels that are `step` floats apart, smoothed in place.
-void BlurLine(float* line, int count, std::size_t step, const std::vector<float>& kernel,
-              std::vector<float>& padded) {
+/// out += weight * in, float by float: the inner loop of all images.
+void AddWeighted(float weight, const float* in, std::size_t count, float* out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] += weight * in[i];
+}
+
+/// One row smoothed along itself, in place.
+void BlurRow(float* row, int width, const std::vector<float>& kernel, std::vector<float>& padded) {
   const int reach = static_cast<int>(kernel.size() / 2);
-  padded.resize(3 * static_cast<std::size_t>(count + 2 * reach));
-  for (int i = 0; i < count + 2 * reach; ++i) {
-    const auto from = static_cast<std::size_t>(std::clamp(i - reach, 0, count - 1)) * step;
-    std::copy_n(line + from, 3, padded.begin() + 3 * i);
-  }
-  for (int i = 0; i < count; ++i) {
-    float sum[3] = {0, 0, 0};
-    const float* in = padded.data() + 3 * i;
-    for (const float weight : kernel) {
-      for (float& channel : sum) channel += weight * *in++;
-    }
-    std::copy_n(sum, 3, line + static_cast<std::size_t>(i) * step);
-  }
+  padded.resize(3 * static_cast<std::size_t>(width + 2 * reach));
+  for (int i = 0; i < width + 2 * reach; ++i)
+    std::copy_n(row + 3 * std::clamp(i - reach, 0, width - 1), 3, padded.begin() + 3 * i);
+  const auto count = 3 * static_cast<std::size_t>(width);
+  std::fill_n(row, count, 0.0f);
+  for (std::size_t k = 0; k < kernel.size(); ++k)
+    AddWeighted(kernel[k], padded.data() + 3 * k, count, row);
 }
 
 }  // namespace
@@ -54,10 +52,18 @@ Eigen::Vector3f Canvas::Between(double u_px, double v_px) const {
 void Canvas::Blur(double sd_px) {
   if (sd_px <= 0) return;
   const std::vector<float> kernel = GaussianKernel(sd_px);
+  const int reach = static_cast<int>(kernel.size() / 2);
   std::vector<float> padded;
-  const std::size_t row = 3 * static_cast<std::size_t>(width_);
-  for (int v = 0; v < height_; ++v) BlurLine(At(0, v), width_, 3, kernel, padded);
-  for (int u = 0; u < width_; ++u) BlurLine(At(u, 0), height_, row, kernel, padded);
+  for (int v = 0; v < height_; ++v) BlurRow(At(0, v), width_, kernel, padded);
+  const std::vector<float> before = light_;
+  std::fill(light_.begin(), light_.end(), 0.0f);
+  const auto count = 3 * static_cast<std::size_t>(width_);
+  for (int v = 0; v < height_; ++v) {
+    for (std::size_t k = 0; k < kernel.size(); ++k) {
+      const int from = std::clamp(v + static_cast<int>(k) - reach, 0, height_ - 1);
+      AddWeighted(kernel[k], before.data() + Index(0, from), count, At(0, v));
+    }
+  }
 }
 
 }  // namespace footing::virtual_camera

@@ -67,6 +67,31 @@ TEST(Video, AlarmsWhenTheCameraIgnoresOrLacksAControl) {
   EXPECT_EQ(port.controls[V4L2_CID_GAIN], 77);  // Not asked for.
 }
 
+TEST(Video, SetsAControlAgainThatChangesWhileFramesArrive) {
+  FakePort port;
+  const VideoSettings settings{0.004, 20};
+  EXPECT_THAT(LockControls(port, settings), IsEmpty());
+  LockedControls controls(port, settings);
+  EXPECT_THAT(controls.Check(), IsEmpty());
+  port.controls[V4L2_CID_EXPOSURE_AUTO] = V4L2_EXPOSURE_APERTURE_PRIORITY;
+  EXPECT_THAT(controls.Check(),
+              ElementsAre("camera: automatic exposure has changed to 3 and was set to 1 again"));
+  EXPECT_EQ(port.controls[V4L2_CID_EXPOSURE_AUTO], V4L2_EXPOSURE_MANUAL);
+  EXPECT_THAT(controls.Check(), IsEmpty());
+  port.ignored = V4L2_CID_GAIN;
+  port.controls[V4L2_CID_GAIN] = 63;
+  EXPECT_THAT(controls.Check(),
+              ElementsAre(HasSubstr("gain has changed to 63 and cannot be set again: the sphere")));
+  EXPECT_THAT(controls.Check(), IsEmpty());  // Named once.
+}
+
+TEST(Video, WatchesOnlyWhatCouldBeLocked) {
+  FakePort port;
+  port.ignored = V4L2_CID_AUTOGAIN;
+  EXPECT_EQ(LockControls(port, {0.004, -1}).size(), 1u);
+  EXPECT_THAT(LockedControls(port, {0.004, -1}).Check(), IsEmpty());
+}
+
 TEST(Video, TakesTheFormatOfTheCameraFileAndNoOther) {
   FakePort port;
   frames::CameraFile camera;

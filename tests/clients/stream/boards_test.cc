@@ -63,6 +63,11 @@ TEST_F(BoardsTest, TwoBoardsAndTheTruePoseAreThereAndHandsWhenAskedFor) {
   EXPECT_EQ(strapped->devices[5].role(), stream::DeviceRole::kRightForearm);
 }
 
+TEST_F(BoardsTest, MovesAreForACamera) {
+  options_.moves = true;
+  EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("--moves needs --hands camera"));
+}
+
 TEST_F(BoardsTest, ACameraSeesTheSpheresInTheFists) {
   options_.hands = "camera";
   EXPECT_THAT(PlanBoards(options_, {}).error().message, HasSubstr("--frames-to"));
@@ -78,7 +83,7 @@ TEST_F(BoardsTest, ACameraSeesTheSpheresInTheFists) {
   ASSERT_EQ(plan->feeds.size(), 2u);
   constexpr double kT_s = 2;
   constexpr std::int64_t kExposedNs = 123'456'789;
-  plan->feeds[1].frames(kT_s, kExposedNs);
+  plan->feeds[1].frames(kT_s, kExposedNs, {});
   frames::NetpbmReader images;
   std::optional<frames::Frame> frame;
   std::array<char, 65536> buffer;

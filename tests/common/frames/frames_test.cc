@@ -108,6 +108,34 @@ TEST(CameraFile, TakesAPoseAndKeepsTheRest) {
   EXPECT_EQ(refused.error().message, "cannot write " + path + ": File exists");
 }
 
+TEST(CameraFile, TakesCalibratedSpheresAndKeepsTheRest) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("eye.json");
+  std::ofstream(path) << R"({"fx_px": 612, "blur_px": 2})";
+  EXPECT_FALSE(ReadCameraFile(path));  // Nothing to look for yet.
+  auto camera = ReadUncalibratedCamera(path);
+  ASSERT_TRUE(camera) << camera.error().message;
+  camera->settings.profile.blur_px = 0.9;
+  camera->spheres = {{stream::DeviceRole::kLeftHand, {{150, 40, 130}, 0.03}, 0xff00c8}};
+  ASSERT_TRUE(StoreSpheres(path, *camera));
+  const auto again = ReadCameraFile(path);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->lens.fx_px, 612);
+  EXPECT_EQ(again->settings.profile.blur_px, 0.9);
+  ASSERT_EQ(again->spheres.size(), 1u);
+  EXPECT_EQ(again->spheres[0].led_rgb, 0xff00c8u);
+  EXPECT_EQ(again->spheres[0].target.radius_m, 0.03);
+  EXPECT_EQ(again->spheres[0].target.colour_dn, Eigen::Vector3d(150, 40, 130));
+  // Where there is no file, one begins.
+  ASSERT_TRUE(ReadUncalibratedCamera(folder.Path("new.json")));
+  ASSERT_TRUE(StoreSpheres(folder.Path("new.json"), *camera));
+  EXPECT_EQ(ReadCameraFile(folder.Path("new.json"))->spheres[0].led_rgb, 0xff00c8u);
+  std::ofstream(path)
+      << R"({"spheres": [{"role": "left_hand", "colour_dn": [9, 90, 9], "led": "red"}]})";
+  EXPECT_NE(ReadCameraFile(path).error().message.find("key led: must be a colour"),
+            std::string::npos);
+}
+
 TEST(CameraFile, ErrorsNameFileKeyAndWhatIsAllowed) {
   const auto problem = [](const std::string& more) {
     std::string text = kLeast;

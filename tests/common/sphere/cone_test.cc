@@ -129,7 +129,7 @@ TEST(Blobs, AreOfOneHueAndNotOfWhite) {
   paint(12, 2, 250, 250, 250);
   paint(22, 2, 40, 170, 160);
   paint(30, 20, 160, 50, 150);
-  const auto blobs = FindBlobs(quads, {170, 40, 150}, 0.3);
+  const auto blobs = FindBlobs(quads, {0, 0, 39, 29}, {170, 40, 150}, 0.3);
   ASSERT_EQ(blobs.size(), 2u);
   EXPECT_EQ(blobs[0].area, 20);
   EXPECT_NEAR(blobs[0].centre.x(), 4, 1e-9);

@@ -7,6 +7,7 @@
 #include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
 #include "common/virtual/camera/yuyv.h"
+#include "tests/common/sphere/rendered.h"
 
 namespace footing::sphere {
 namespace {
@@ -14,10 +15,6 @@ namespace {
 namespace camera = virtual_camera;
 
 const Eigen::Vector3d kMagenta(170, 40, 150), kCyan(40, 170, 160);
-
-Image View(const camera::Mosaic& mosaic) {
-  return {PixelFormat::kSgrbg8, mosaic.width, mosaic.height, mosaic.bytes};
-}
 
 camera::Ball BallAt(const Eigen::Vector3d& p_C_m, const Eigen::Vector3d& colour = kMagenta) {
   camera::Ball ball;

@@ -51,6 +51,8 @@ void AddSpheresCommand(CLI::App& app, Shared& shared) {
   command->add_option("--frames", trial.frames, "Frames per distance")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--seed", trial.seed, "Seed of places, noise and clutter");
+  command->add_option("--rows", trial.rows,
+                      "CSV file to add a row to for every sphere that is there or is found");
   command->add_option("--out", trial.out,
                       "Folder to write the frames, truth.csv and camera.json into");
   command->callback(

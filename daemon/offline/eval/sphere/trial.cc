@@ -1,9 +1,10 @@
 #include "daemon/offline/eval/sphere/trial.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 #include "common/clock/clock.h"
 #include "common/frames/netpbm.h"
@@ -11,6 +12,7 @@
 #include "common/virtual/camera/random_scene.h"
 #include "common/virtual/camera/render.h"
 #include "common/virtual/camera/yuyv.h"
+#include "daemon/offline/eval/sphere/sphere_errors.h"
 
 namespace footing::eval {
 namespace {
@@ -35,6 +37,19 @@ void PlaceBalls(camera::Scene& scene, double depth_m, noise::Random& random) {
                                       camera::Project(scene.lens, scene.balls[0].p_C_m))
                                              .norm() < 2.5 * RadiusPx(scene, ball) + 10);
     scene.balls.push_back(ball);
+  }
+}
+
+/// Hands that swing to and fro in front of the camera, at 60 frames a second: 2 m/s at 2 m.
+void Swing(camera::Scene& scene, double depth_m, int frame) {
+  constexpr double kTwoPi = 2 * std::numbers::pi;
+  const Eigen::Array3d rate_hz(0.9, 0.7, 0.5), reach(0.2, 0.15, 0.1);
+  const double t_s = frame / 60.0;
+  for (std::size_t i = 0; i < scene.balls.size(); ++i) {
+    const double side = i == 0 ? -0.3 : 0.3;
+    const Eigen::Array3d phase = kTwoPi * rate_hz * t_s + side * Eigen::Array3d(3, 6, 9);
+    scene.balls[i].p_C_m = depth_m * (Eigen::Array3d(side, 0, 1) + reach * phase.sin()).matrix();
+    scene.balls[i].v_C_mps = depth_m * (kTwoPi * rate_hz * reach * phase.cos()).matrix();
   }
 }
 
@@ -89,53 +104,6 @@ frames::Frame FrameOf(const camera::Mosaic& mosaic, bool is_yuyv) {
   }
   return frame;
 }
-
-/// Errors of many estimates.
-class Errors {
- public:
-  void Add(const sphere::Estimate& found, const Eigen::Vector3d& truth) {
-    const Eigen::Vector3d error = found.p_C_m - truth, along = truth.normalized();
-    const double depth = error.dot(along);
-    confidence_ += found.confidence;
-    ++found_;
-    // A wrong place is a false sphere, not an error of measurement.
-    if (error.norm() > 0.25 * truth.norm()) {
-      ++wrong_;
-      return;
-    }
-    depth_.push_back(1000 * depth);
-    lateral_ += 1e6 * (error - depth * along).squaredNorm();
-    const Eigen::Vector3d scaled = found.covariance_m2.ldlt().solve(error);
-    nees_ += error.dot(scaled) / 3;
-    depth_nees_ += depth * depth / along.dot(found.covariance_m2 * along);
-    sd_ += 1e6 * along.dot(found.covariance_m2 * along);
-  }
-
-  ordered_json Json() const {
-    const double count = std::max<double>(1, static_cast<double>(depth_.size()));
-    double bias = 0, square = 0, largest = 0;
-    for (const double value : depth_) {
-      bias += value / count;
-      square += value * value / count;
-      largest = std::max(largest, std::abs(value));
-    }
-    return {{"found", found_},
-            {"wrong", wrong_},
-            {"lateral_rms_mm", std::sqrt(lateral_ / count)},
-            {"depth_bias_mm", bias},
-            {"depth_sd_mm", std::sqrt(std::max(0.0, square - bias * bias))},
-            {"depth_sd_reported_mm", std::sqrt(sd_ / count)},
-            {"depth_largest_mm", largest},
-            {"nees", nees_ / count},
-            {"nees_depth", depth_nees_ / count},
-            {"confidence_mean", confidence_ / std::max(1, found_)}};
-  }
-
- private:
-  std::vector<double> depth_;
-  int found_ = 0, wrong_ = 0;
-  double lateral_ = 0, nees_ = 0, depth_nees_ = 0, sd_ = 0, confidence_ = 0;
-};
 
 /// Frames, their truth and the camera file in a folder.
 class TruthWriter {
@@ -209,8 +177,8 @@ frames::CameraFile KnownCamera(const std::string& condition) {
 
 const std::vector<std::string>& SphereConditions() {
   static const std::vector<std::string> kConditions = {
-      "nominal",     "dim",     "soft", "saturated", "moving",     "quarter_hidden",
-      "half_hidden", "clutter", "yuyv", "bent_lens", "other_limb", "absent"};
+      "nominal", "dim",  "soft",      "saturated",  "moving", "quarter_hidden", "half_hidden",
+      "clutter", "yuyv", "bent_lens", "other_limb", "absent", "tracked"};
   return kConditions;
 }
 
@@ -239,15 +207,20 @@ Result<ordered_json> RunSphereTrial(const SphereTrial& trial, const frames::Came
   sphere::Finder finder(file.lens, file.Targets(), file.settings);
   TruthWriter writer;
   if (const auto opened = writer.Open(trial.out, file); !opened) return opened.error();
-  Errors errors;
+  SphereErrors errors;
+  EstimateRows rows;
+  if (const auto opened = rows.Open(trial.rows, trial.condition); !opened) return opened.error();
+  const bool is_sequence = trial.condition == "tracked";
   std::vector<double> cost_ms;
   int spheres = 0, extra = 0;
   for (int i = 0; i < trial.frames; ++i) {
     const double depth_m = trial.distance_m > 0 ? trial.distance_m : random.Uniform(0.5, 4);
     camera::Scene scene = MakeScene(trial.condition, depth_m, random);
+    if (is_sequence) Swing(scene, depth_m, i);
     ApplyEvents(trial.condition, scene, random);
     const auto frame = FrameOf(camera::Render(scene, random), trial.condition == "yuyv");
     writer.Add(i, frame, scene, file);
+    if (!is_sequence) finder.Forget();
     const std::int64_t began_ns = clock::ThreadCpuNs();
     const auto found = finder.Find(frame.View());
     cost_ms.push_back(1e-6 * static_cast<double>(clock::ThreadCpuNs() - began_ns));
@@ -256,6 +229,7 @@ Result<ordered_json> RunSphereTrial(const SphereTrial& trial, const frames::Came
                                                : std::optional<camera::Seen>();
       spheres += seen ? 1 : 0;
       if (found[k] && seen) errors.Add(*found[k], seen->p_C_m);
+      if (found[k] || seen) rows.Add(i, k, found[k], seen);
       if (found[k] && !seen && found[k]->confidence > 0.5) ++extra;
     }
   }

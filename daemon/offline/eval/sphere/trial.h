@@ -17,11 +17,13 @@ struct SphereTrial {
   double distance_m = 2;              ///< Along the optical axis; 0: 0.5 to 4 m, evenly.
   int frames = 100;
   std::uint64_t seed = 1;
-  std::string out;  ///< Folder to write frames, truth.csv and camera.json into; empty: none.
+  std::string rows;  ///< CSV file with a row for every sphere; empty: none.
+  std::string out;   ///< Folder to write frames, truth.csv and camera.json into; empty: none.
 };
 
 /// What the lens, the light or the surroundings do: nominal, dim, soft, saturated, moving,
-/// quarter_hidden, half_hidden, clutter, yuyv, bent_lens, other_limb, absent.
+/// quarter_hidden, half_hidden, clutter, yuyv, bent_lens, other_limb, absent; and tracked, whose
+/// frames follow one another, so that the finder knows where to look.
 const std::vector<std::string>& SphereConditions();
 
 /// The camera as a program knows it: lens, noise, and blur and limb calibrated on 24 other frames

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/result/result.h"
+#include "common/sphere/blink.h"
+#include "common/sphere/find.h"
+
+namespace footing::camera {
+
+/// A controller's sphere after the calibration.
+struct CalibratedSphere {
+  std::uint32_t led_rgb = 0;  ///< Light that it is tracked with, 0xRRGGBB.
+  sphere::Blink blink;
+  double distance_m = 0;  ///< From the camera, mean.
+  int found = 0;          ///< Frames in which the finder found it.
+};
+
+/// Finds the sphere of each controller by switching its light, and what it looks like, in steps:
+/// one controller after the other dark, lit, dark, lit; then all lit, for blur and limb darkening.
+/// Light that reaches the sensor's limit is dimmed. It has no clock and switches nothing itself.
+class BlinkCalibration {
+ public:
+  /// `radii_m`: of each controller's sphere. At most four controllers.
+  BlinkCalibration(const sphere::Lens& lens, const sphere::Settings& settings,
+                   std::vector<double> radii_m);
+
+  /// The light that each controller must have now, 0xRRGGBB.
+  const std::vector<std::uint32_t>& lights() const { return lights_; }
+  /// Grows with every step: the lights are to be set again, even when they are the same.
+  int steps() const { return steps_; }
+  /// They have it since then; frames of earlier are of the state before.
+  void LightsAreSet(std::int64_t now_ns);
+  /// A frame. `steps()` has grown afterwards when a step has ended; InvalidData when a step has
+  /// failed three times.
+  Result<void> Take(const sphere::Image& image, std::int64_t exposed_ns);
+  /// What the person should do now, and what failed last; empty: as before.
+  std::string TakeMessage();
+
+  bool is_done() const { return step_ == Step::kDone; }
+  /// When it is done.
+  const std::vector<CalibratedSphere>& spheres() const { return spheres_; }
+  const sphere::Profile& profile() const { return profile_; }
+
+ private:
+  enum class Step { kDark, kLit, kAllLit, kDone };
+
+  void Begin(Step step);
+  Result<void> EndLit();
+  Result<void> EndAllLit();
+  Result<void> Again(const std::string& problem);
+  std::string Which() const;
+
+  sphere::Lens lens_;
+  sphere::Settings loose_;
+  std::vector<double> radii_m_;
+  std::vector<CalibratedSphere> spheres_;
+  sphere::Profile profile_;
+  std::vector<std::uint32_t> lights_;
+  Step step_ = Step::kDark;
+  std::size_t at_ = 0;  ///< The controller that blinks.
+  int steps_ = 0, blinks_ = 0, failures_ = 0, frames_ = 0;
+  double level_ = 1;  ///< Of its light.
+  std::int64_t settled_ns_;
+  sphere::MeanImage dark_, lit_;
+  std::vector<sphere::Finder> finder_;  ///< Of the last step; at most one.
+  std::vector<std::vector<sphere::Estimate>> estimates_;
+  std::string message_;
+};
+
+}  // namespace footing::camera

@@ -1,0 +1,107 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "common/config/data_file.h"
+#include "common/config/write_file.h"
+#include "common/frames/camera_file.h"
+
+namespace footing::frames {
+namespace {
+
+using nlohmann::ordered_json;
+
+void SetPose(ordered_json& object, const Eigen::Isometry3d& X_WC, const std::string& calibrated) {
+  const Eigen::Vector3d p = X_WC.translation();
+  const Eigen::Quaterniond q(X_WC.rotation());
+  object["position_W_m"] = {p.x(), p.y(), p.z()};
+  object["rotation_WC"] = {q.w(), q.x(), q.y(), q.z()};
+  if (!calibrated.empty()) object["calibrated"] = calibrated;
+}
+
+void SetSpheres(ordered_json& object, const CameraFile& camera) {
+  ordered_json spheres = ordered_json::array();
+  for (const HeldSphere& held : camera.spheres) {
+    ordered_json colour = ordered_json::array();
+    for (const double value : held.target.colour_dn)
+      colour.push_back(std::round(100 * value) / 100);
+    ordered_json one = {{"role", stream::Name(held.role)}, {"colour_dn", colour}};
+    if (held.led_rgb) one["led"] = ColourText(*held.led_rgb);
+    one["radius_m"] = held.target.radius_m;
+    spheres.push_back(one);
+  }
+  object["spheres"] = spheres;
+}
+
+/// Changes keys of a camera file; the others stay.
+template <typename Change>
+Result<void> Rewrite(const std::string& path, const Change& change) {
+  const auto text = config::ReadTextFile(path);
+  if (!text) return text.error();
+  if (const auto camera = ReadUncalibratedCamera(path); !camera) return camera.error();
+  ordered_json object = ordered_json::parse(*text, nullptr, false, true);
+  change(object);
+  const auto written = config::ReplaceFile(path, object.dump(2) + "\n");
+  return written ? Result<void>()
+                 : Failure("cannot write " + path + ": " + written.error().message);
+}
+
+}  // namespace
+
+std::string ToJson(const CameraFile& camera) {
+  const sphere::Lens& lens = camera.lens;
+  const sphere::Settings& settings = camera.settings;
+  ordered_json object = {
+      {"width", lens.width},
+      {"height", lens.height},
+      {"fx_px", lens.fx_px},
+      {"fy_px", lens.fy_px},
+      {"cx_px", lens.cx_px},
+      {"cy_px", lens.cy_px},
+      {"distortion", {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3}},
+      {"format", camera.format == sphere::PixelFormat::kYuyv ? "YUYV" : "SGRBG8"},
+      {"rate_hz", camera.rate_hz},
+      {"readout_s", camera.readout_s},
+      {"blur_px", settings.profile.blur_px},
+      {"blur_sd_px", settings.profile.blur_sd_px},
+      {"limb", settings.profile.limb},
+      {"limb_sd", settings.profile.limb_sd},
+      {"read_noise_dn", settings.noise.read_dn},
+      {"dn_per_electron", settings.noise.dn_per_electron},
+      {"noise_correlation", settings.noise.correlation}};
+  if (camera.X_WC) SetPose(object, *camera.X_WC, camera.calibrated);
+  SetSpheres(object, camera);
+  return object.dump(2) + "\n";
+}
+
+Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
+                       const std::string& calibrated) {
+  if (const auto camera = ReadCameraFile(path); !camera) return camera.error();
+  return Rewrite(path, [&](ordered_json& object) { SetPose(object, X_WC, calibrated); });
+}
+
+Result<void> StoreSpheres(const std::string& path, const CameraFile& camera) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) {
+    const auto written = config::ReplaceFile(path, ToJson(camera));
+    return written ? Result<void>()
+                   : Failure("cannot write " + path + ": " + written.error().message);
+  }
+  const sphere::Profile& profile = camera.settings.profile;
+  return Rewrite(path, [&](ordered_json& object) {
+    object["blur_px"] = profile.blur_px;
+    object["blur_sd_px"] = profile.blur_sd_px;
+    object["limb"] = profile.limb;
+    object["limb_sd"] = profile.limb_sd;
+    SetSpheres(object, camera);
+  });
+}
+
+std::string ColourText(std::uint32_t rgb) {
+  char text[16];
+  std::snprintf(text, sizeof text, "#%06x", static_cast<unsigned>(rgb & 0xffffff));
+  return text;
+}
+
+}  // namespace footing::frames

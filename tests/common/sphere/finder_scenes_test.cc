@@ -1,0 +1,96 @@
+// What surrounds a sphere, and how it moves, on frames of a renderer that shares no code with the
+// finder.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "common/sphere/find.h"
+#include "common/virtual/camera/random_scene.h"
+#include "common/virtual/camera/render.h"
+#include "tests/common/sphere/rendered.h"
+
+namespace footing::sphere {
+namespace {
+
+namespace camera = virtual_camera;
+
+camera::Scene SceneWith(const Eigen::Vector3d& p_C_m) {
+  camera::Scene scene;
+  scene.balls.resize(1);
+  scene.balls[0].p_C_m = p_C_m;
+  return scene;
+}
+
+class FinderScenes : public ::testing::Test {
+ protected:
+  std::optional<Estimate> Find(const camera::Scene& scene) {
+    const auto mosaic = camera::Render(scene, random_);
+    return finder_.Find(View(mosaic))[0];
+  }
+
+  noise::Random random_{41};
+  Finder finder_{Lens(), {Target()}, Settings()};
+};
+
+TEST_F(FinderScenes, APlaceIsTheSameWhetherItWasForeseenOrNot) {
+  Finder afresh(Lens(), {Target()}, Settings());
+  camera::Scene scene = SceneWith({0, 0, 1.5});
+  camera::AddClutter(scene, 25, random_);
+  for (int i = 0; i < 40; ++i) {
+    // 2 m/s to and fro, at 60 frames a second.
+    const double phase = 2 * M_PI * i / 40;
+    scene.balls[0].p_C_m = {0.21 * std::sin(phase), 0.1 * std::cos(phase), 1.5};
+    const auto mosaic = camera::Render(scene, random_);
+    const auto followed = finder_.Find(View(mosaic))[0];
+    afresh.Forget();
+    const auto found = afresh.Find(View(mosaic))[0];
+    ASSERT_TRUE(followed && found) << i;
+    EXPECT_LT((followed->p_C_m - found->p_C_m).norm(), 0.002) << i;
+  }
+}
+
+TEST_F(FinderScenes, ASphereThatJumpsIsFoundAtOnce) {
+  ASSERT_TRUE(Find(SceneWith({-0.4, 0.2, 1.5})));
+  const auto found = Find(SceneWith({0.5, -0.3, 2}));
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->p_C_m - Eigen::Vector3d(0.5, -0.3, 2)).norm(), 0.03);
+  EXPECT_FALSE(Find(SceneWith({9, 0, 2})));
+}
+
+TEST_F(FinderScenes, ADullerThingOfItsHueThatTouchesItIsNoPartOfIt) {
+  camera::Scene scene = SceneWith({0, 0, 1.5});
+  const Eigen::Vector2d at = camera::Project(scene.lens, scene.balls[0].p_C_m);
+  // Its hue, and 0.6 of its brightness.
+  scene.shapes.push_back({camera::Shape::Kind::kRectangle,
+                          at + Eigen::Vector2d(30, 0),
+                          {28, 22},
+                          0.2,
+                          0.6 * scene.balls[0].colour_dn});
+  const auto found = Find(scene);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->centre_px - at).norm(), 0.5);
+  EXPECT_LT(std::abs(found->p_C_m.norm() - 1.5), 0.06);
+}
+
+TEST_F(FinderScenes, ASphereInFrontOfALampIsSeen) {
+  camera::Scene scene = SceneWith({0.1, 0.1, 1.2});
+  const Eigen::Vector2d at = camera::Project(scene.lens, scene.balls[0].p_C_m);
+  scene.shapes.push_back({camera::Shape::Kind::kEllipse, at, {25, 25}, 0, {400, 400, 400}});
+  const auto found = Find(scene);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->centre_px - at).norm(), 0.5);
+}
+
+TEST_F(FinderScenes, ADullDiscOfItsHueIsNoSphere) {
+  camera::Scene scene = SceneWith({9, 0, 2});
+  for (const double share : {0.3, 0.5, 0.6}) {
+    scene.shapes = {
+        {camera::Shape::Kind::kEllipse, {300, 200}, {9, 9}, 0, share * scene.balls[0].colour_dn}};
+    const auto found = Find(scene);
+    EXPECT_LT(found ? found->confidence : 0, 0.5) << share;
+  }
+}
+
+}  // namespace
+}  // namespace footing::sphere
