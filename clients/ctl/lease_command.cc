@@ -54,20 +54,40 @@ Result<void> RunLease(bool take_over, const Shared& shared) {
   return {};
 }
 
+Result<void> TakeOverFootingd(bool take_over, const Shared& shared) {
+  if (!take_over) {
+    return UsageError(
+        "lease: footingd does not publish who has its lease; a command that it refuses names the "
+        "holder. To take the lease over add --take-over");
+  }
+  const auto session = Open(shared);
+  if (!session) return session.error();
+  if (const auto done = TakeOver(**session); !done) return done;
+  Print({{"holder", ""}}, "the lease of footingd was taken over; now nobody has it", shared);
+  return {};
+}
+
 }  // namespace
 
 void AddLeaseCommand(CLI::App& app, Shared& shared) {
   const auto take_over = std::make_shared<bool>(false);
+  const auto of = std::make_shared<std::string>("footing-sim");
   CLI::App* command =
-      app.add_subcommand("lease", "Print who holds footing-sim's lease, or take it over");
+      app.add_subcommand("lease", "Print who holds a server's lease, or take it over");
+  command->add_option("--of", *of, "Server whose lease it is")
+      ->check(CLI::IsMember({"footing-sim", "footingd"}))
+      ->capture_default_str();
   command->add_flag("--take-over", *take_over,
                     "Take the lease from its holder: a study that has it stops");
   command->footer(
-      "Examples (connect to footing-sim):\n"
+      "Examples (connect to footing-sim, or with --of to footingd):\n"
       "  footing-ctl lease\n"
-      "  footing-ctl lease --take-over");
-  command->callback([take_over, &shared] {
-    if (const auto done = RunLease(*take_over, shared); !done) {
+      "  footing-ctl lease --take-over\n"
+      "  footing-ctl lease --of footingd --take-over");
+  command->callback([take_over, of, &shared] {
+    const auto done =
+        *of == "footingd" ? TakeOverFootingd(*take_over, shared) : RunLease(*take_over, shared);
+    if (!done) {
       shared.exit_code = cli::Report(done.error());
     }
   });

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "common/log/log.h"
+
 namespace footing::service_manager {
 
 int PassedSocket(const std::string& name) {
@@ -20,6 +22,7 @@ int PassedSocket(const std::string& name) {
 }
 
 void Notifier::Ready(const std::string& status) {
+  status_ = status;
   sd_notify(0, ("READY=1\nSTATUS=" + status).c_str());
   std::uint64_t interval_us = 0;
   if (sd_watchdog_enabled(0, &interval_us) <= 0) return;
@@ -27,8 +30,21 @@ void Notifier::Ready(const std::string& status) {
   Beat();
 }
 
+/// A stuck thread ends the program: by the service manager, when it has missed this for long
+/// enough.
+void Notifier::Report() {
+  const std::string stuck = what_is_stuck_();
+  if (stuck != stuck_) {
+    if (!stuck.empty()) log::Error(stuck + " is stuck: the watchdog is not fed until it goes on");
+    if (stuck.empty()) log::Warning(stuck_ + " goes on");
+    sd_notify(0, ("STATUS=" + (stuck.empty() ? status_ : stuck + " is stuck")).c_str());
+    stuck_ = stuck;
+  }
+  if (stuck.empty()) sd_notify(0, "WATCHDOG=1");
+}
+
 void Notifier::Beat() {
-  sd_notify(0, "WATCHDOG=1");
+  Report();
   timer_.expires_after(interval_);
   timer_.async_wait([this](boost::system::error_code error) {
     if (!error) Beat();

@@ -3,7 +3,9 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <functional>
 #include <string>
+#include <utility>
 
 /// What a program reports to the service manager that started it (sd_notify(3)), and what it got
 /// from it (sd_listen_fds(3)). Started by hand, nothing of this happens.
@@ -13,11 +15,13 @@ namespace footing::service_manager {
 /// (FileDescriptorName= of the socket unit); -1 when there is none.
 int PassedSocket(const std::string& name);
 
-/// Says that the program is ready, that it ends, and, where the unit has WatchdogSec=, that its io
-/// thread is alive: twice in each interval.
+/// Says that the program is ready, that it ends, and, where the unit has WatchdogSec=, that it is
+/// alive: twice in each interval, while its io thread turns and no other thread is stuck.
 class Notifier {
  public:
-  explicit Notifier(boost::asio::io_context& io) : timer_(io) {}
+  /// `what_is_stuck` names a thread that has not come round its loop for too long; empty: none.
+  Notifier(boost::asio::io_context& io, std::function<std::string()> what_is_stuck)
+      : timer_(io), what_is_stuck_(std::move(what_is_stuck)) {}
 
   /// `status` is what `systemctl status` shows.
   void Ready(const std::string& status);
@@ -25,9 +29,13 @@ class Notifier {
 
  private:
   void Beat();
+  void Report();
 
   boost::asio::steady_timer timer_;
   std::chrono::microseconds interval_{0};
+  std::function<std::string()> what_is_stuck_;
+  std::string status_;
+  std::string stuck_;  ///< As it was said.
 };
 
 }  // namespace footing::service_manager

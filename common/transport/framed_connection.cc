@@ -54,11 +54,6 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
     if (state_ == State::kOpen) Write();
   }
 
-  void WakeInTurn() {
-    if (!loop_.turns) return Wake();
-    if (state_ == State::kOpen && !waiting_) WriteLater();
-  }
-
   void Charge(double messages) { pace_.ChargeMessages(messages); }
 
   void Finish(std::string_view last_payload, const std::string& reason) {
@@ -146,7 +141,7 @@ class FramedConnection::Implementation : public std::enable_shared_from_this<Imp
   bool HandleSome() {
     if (state_ == State::kOver) return false;
     if (state_ == State::kOpen && !unhandled_.empty()) {
-      if (Slow()) return false;
+      if (pace_.limits() && Slow()) return false;
       int handled = 0;
       corked_ = loop_.turns != nullptr;  // Their answers leave together.
       Split([&] { return ++handled < kMessagesInATurn; });
@@ -282,7 +277,6 @@ FramedConnection::~FramedConnection() { Close(); }
 void FramedConnection::Start() { implementation_->Start(); }
 bool FramedConnection::Send(std::string_view payload) { return implementation_->Send(payload); }
 void FramedConnection::Wake() { implementation_->Wake(); }
-void FramedConnection::WakeInTurn() { implementation_->WakeInTurn(); }
 void FramedConnection::Charge(double messages) { implementation_->Charge(messages); }
 void FramedConnection::Finish(std::string_view last_payload, const std::string& reason) {
   implementation_->Finish(last_payload, reason);

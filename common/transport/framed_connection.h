@@ -67,8 +67,6 @@ class FramedConnection {
 
   /// There is something for on_writable to fetch.
   void Wake();
-  /// The same, but when its turn comes: for what is not urgent and may be much.
-  void WakeInTurn();
 
   /// Counts the message being handled as that many more of the budget.
   void Charge(double messages);

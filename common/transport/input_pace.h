@@ -22,6 +22,8 @@ class InputPace {
       : messages_(budget.messages_per_s, budget.message_burst),
         bytes_(budget.bytes_per_s, budget.byte_burst) {}
 
+  bool limits() const { return messages_.limits() || bytes_.limits(); }
+
   void ChargeMessages(double messages) { messages_.Charge(messages); }
   void ChargeBytes(std::size_t bytes) { bytes_.Charge(static_cast<double>(bytes)); }
 

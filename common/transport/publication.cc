@@ -6,9 +6,6 @@
 namespace footing::transport {
 namespace {
 
-/// Tag and length in front of a channel's message take at most this.
-constexpr std::size_t kMaxPrefixBytes = 10;
-
 std::size_t RingTicks(const ServerOptions& options) {
   return static_cast<std::size_t>(std::max(1.0, std::ceil(options.ring_s * options.tick_rate_hz)));
 }
@@ -24,6 +21,24 @@ Publication::Publication(const ServerOptions& options)
   }
 }
 
+/// The channels that a tick has space for, and the bytes of their fields.
+std::vector<const ChannelBytes*> Publication::Fitting(const std::vector<ChannelBytes>& channels,
+                                                      std::size_t& size) {
+  std::vector<const ChannelBytes*> fitting;
+  fitting.reserve(channels.size());
+  for (const ChannelBytes& channel : channels) {
+    const std::size_t bytes = FieldBytes(channel.field, channel.bytes.size());
+    if (size + bytes > max_tick_bytes_ || fields_.count(channel.field) == 0) {
+      ++channels_left_out_;
+      left_out_field_ = channel.field;
+      continue;
+    }
+    size += bytes;
+    fitting.push_back(&channel);
+  }
+  return fitting;
+}
+
 std::shared_ptr<Tick> Publication::Serialise(const TickNumber& number,
                                              const std::vector<ChannelBytes>& channels) {
   auto tick = std::make_shared<Tick>();
@@ -31,19 +46,19 @@ std::shared_ptr<Tick> Publication::Serialise(const TickNumber& number,
   tick->host_ns = number.host_ns;
   tick->missing_from = number.missing_from;
   std::size_t size = 0;
-  for (const auto& channel : channels) size += channel.bytes.size() + kMaxPrefixBytes;
-  tick->bytes.reserve(std::min(size, max_tick_bytes_));
-  tick->slices.reserve(channels.size());
-  for (const auto& channel : channels) {
-    const bool fits =
-        tick->bytes.size() + channel.bytes.size() + kMaxPrefixBytes <= max_tick_bytes_;
-    if (!fits || fields_.count(channel.field) == 0) {
-      ++channels_left_out_;
-      continue;
-    }
-    AppendField(channel.field, channel.bytes, *tick);
-  }
+  const std::vector<const ChannelBytes*> fitting = Fitting(channels, size);
+  char head[kMaxTickHeadBytes];
+  tick->head_bytes = EncodeTickHead({epoch_, number.sequence, number.host_ns}, size, head);
+  tick->bytes.reserve(tick->head_bytes + size);
+  tick->bytes.append(head, tick->head_bytes);
+  tick->slices.reserve(fitting.size());
+  for (const ChannelBytes* channel : fitting) AppendField(channel->field, channel->bytes, *tick);
   return tick;
+}
+
+TickNumber Publication::Next(std::int64_t host_ns) const {
+  const std::uint64_t following = last_sequence_ + 1;
+  return {following + left_out_next_, host_ns, left_out_next_ == 0 ? 0 : following};
 }
 
 void Publication::KeepRetained(const SharedTick& tick) {
@@ -56,6 +71,7 @@ SharedTick Publication::Publish(const TickNumber& number,
                                 const std::vector<ChannelBytes>& channels) {
   SharedTick tick = Serialise(number, channels);
   last_sequence_ = number.sequence;
+  left_out_next_ = 0;
   KeepRetained(tick);
   ring_.Push(tick);
   return tick;

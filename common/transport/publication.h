@@ -17,10 +17,17 @@ class Publication {
  public:
   explicit Publication(const ServerOptions& options);
 
+  /// Of the heads of ticks from now on.
+  void set_epoch(std::uint64_t epoch) { epoch_ = epoch; }
+
   /// Serialises a tick once. Channels that would make it longer than max_message_out_bytes are left
   /// out, and so are fields that are not a channel. Trim() once it is on its way. Its sequence is
   /// above the last one's.
   SharedTick Publish(const TickNumber& number, const std::vector<ChannelBytes>& channels);
+
+  /// The number of the next tick of the owner's rhythm; LeaveOut() makes a hole in front of it.
+  TickNumber Next(std::int64_t host_ns) const;
+  void LeaveOut(std::uint64_t ticks) { left_out_next_ += ticks; }
 
   /// See Server::BeginAt().
   void BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained);
@@ -34,10 +41,14 @@ class Publication {
   const std::set<std::uint32_t>& retained() const { return retained_; }
   std::uint64_t last_sequence() const { return last_sequence_; }
   std::uint64_t channels_left_out() const { return channels_left_out_; }
+  /// The field of the newest channel that was left out.
+  std::uint32_t left_out_field() const { return left_out_field_; }
 
  private:
   std::shared_ptr<Tick> Serialise(const TickNumber& number,
                                   const std::vector<ChannelBytes>& channels);
+  std::vector<const ChannelBytes*> Fitting(const std::vector<ChannelBytes>& channels,
+                                           std::size_t& size);
   void KeepRetained(const SharedTick& tick);
 
   std::set<std::uint32_t> fields_;
@@ -46,7 +57,10 @@ class Publication {
   TickRing ring_;
   std::map<std::uint32_t, SharedTick> last_values_;
   std::uint64_t last_sequence_ = 0;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t left_out_next_ = 0;
   std::uint64_t channels_left_out_ = 0;
+  std::uint32_t left_out_field_ = 0;
 };
 
 }  // namespace footing::transport

@@ -33,6 +33,7 @@ class Server::Implementation {
   Implementation(boost::asio::io_context& io, ServerOptions options, ServerHandlers handlers)
       : io_(io), shared_(io.get_executor(), std::move(options), std::move(handlers)) {
     shared_.epoch = shared_.options.epoch != 0 ? shared_.options.epoch : NewEpoch();
+    shared_.publication.set_epoch(shared_.epoch);
     // Protobuf would write a line to standard error for every message that a client got wrong.
     google::protobuf::SetLogHandler(nullptr);
   }
@@ -56,9 +57,9 @@ class Server::Implementation {
   }
 
   std::uint64_t Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
-    const std::uint64_t sequence = shared_.publication.last_sequence() + 1;
-    Relay({sequence, host_ns}, channels);
-    return sequence;
+    const TickNumber number = shared_.publication.Next(host_ns);
+    Relay(number, channels);
+    return number.sequence;
   }
 
   void BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained) {
@@ -66,7 +67,9 @@ class Server::Implementation {
   }
 
   void Relay(const TickNumber& number, const std::vector<ChannelBytes>& channels) {
+    const std::uint64_t left_out = shared_.publication.channels_left_out();
     const SharedTick tick = shared_.publication.Publish(number, channels);
+    if (shared_.publication.channels_left_out() != left_out) SayLeftOut();
     for (const auto& session : sessions_) session->Offer(tick);
     shared_.publication.Trim();
   }
@@ -79,12 +82,13 @@ class Server::Implementation {
 
   void NoteLateTicks(std::uint64_t count) {
     shared_.statistics.late_ticks += count;
+    shared_.publication.LeaveOut(count);
     if (!late_lines_.Take(shared_.NowNs())) return;
     const std::uint64_t all = shared_.statistics.late_ticks;
     const std::string line =
         shared_.options.server_id + " is overloaded: " + std::to_string(all) +
         " ticks skipped since start, sessions: " + std::to_string(sessions_.size());
-    if (shared_.handlers.on_overload) shared_.handlers.on_overload(line);
+    if (shared_.handlers.on_overload) shared_.handlers.on_overload({line});
     for (const auto& session : sessions_) {
       session->Notify(v1::Notice::KIND_TICKS_LATE, line, all);
     }
@@ -149,6 +153,20 @@ class Server::Implementation {
     return tls::Context::ForServer(*identity_);
   }
 
+  void SayLeftOut() {
+    const auto& channels = shared_.options.channels;
+    const auto channel = std::find_if(channels.begin(), channels.end(), [this](const Channel& one) {
+      return one.field == shared_.publication.left_out_field();
+    });
+    if (channel == channels.end() || !shared_.handlers.on_overload) return;
+    if (!left_out_lines_.Take(shared_.NowNs())) return;
+    shared_.handlers.on_overload(
+        {"channel " + channel->name + " was left out of a tick, which has at most " +
+             std::to_string(shared_.options.max_message_out_bytes) + " bytes (" +
+             std::to_string(shared_.publication.channels_left_out()) + " since start)",
+         0, channel->name});
+  }
+
   void OnAccept(Socket socket) {
     ++shared_.statistics.accepted;
     const auto session = std::make_shared<Session>(std::move(socket), ++last_number_, shared_,
@@ -197,6 +215,7 @@ class Server::Implementation {
   std::vector<std::shared_ptr<Session>> sessions_;
   std::uint64_t last_number_ = 0;
   TokenBucket late_lines_{0.1, 1};
+  TokenBucket left_out_lines_{0.1, 1};
   std::function<void()> drained_;  ///< While draining.
 };
 

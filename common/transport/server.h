@@ -74,6 +74,13 @@ struct SessionInfo {
   v1::Role role = v1::ROLE_VIEW;
 };
 
+/// A line for the log, and what it is about: 0 and empty are none.
+struct OverloadLine {
+  std::string text;
+  std::uint64_t session = 0;
+  std::string channel = {};
+};
+
 struct ServerHandlers {
   /// A command of a session with role control or admin. Roles below are refused before this is
   /// called. Without a result the answer comes later, by Server::Answer().
@@ -81,9 +88,9 @@ struct ServerHandlers {
       on_command;
   /// A session is gone: end its leases.
   std::function<void(const SessionInfo&)> on_session_end;
-  /// A line for the log, at most one in 10 s of each kind: a session is slowed, ticks are late, or
-  /// a client is kept out.
-  std::function<void(const std::string& line)> on_overload = {};
+  /// At most one line in 10 s of each kind: a session is slowed, ticks are late, a channel is too
+  /// long for a tick, or a client is kept out.
+  std::function<void(const OverloadLine&)> on_overload = {};
 };
 
 struct ServerStatistics {
@@ -131,8 +138,9 @@ class Server {
   /// Answers a command that on_command left open; `result` has its id. The session may be gone.
   void Answer(std::uint64_t session, const v1::CommandResult& result);
 
-  /// The owner could not publish `count` ticks in time: counted, logged, and said to every session,
-  /// at most once in 10 s.
+  /// The owner could not publish `count` ticks in time. The next tick's sequence leaves them out,
+  /// and a Gap in front of it says so; they are counted, logged and said to every session, the last
+  /// two at most once in 10 s.
   void NoteLateTicks(std::uint64_t count);
 
   /// Of the certificate that it shows on tls:; empty while it listens on none.

@@ -210,8 +210,8 @@ std::optional<v1::CommandResult> Session::Carry(const v1::Command& command,
   return failed;
 }
 
-void Session::Send(const v1::Envelope& message) {
-  if (connection_.Send(message.SerializeAsString()) || !connection_.open()) return;
+void Session::SendPayload(std::string_view payload) {
+  if (connection_.Send(payload) || !connection_.open()) return;
   End("this client does not read the answers it asked for: " + std::to_string(kMaxQueuedAnswers) +
       " wait");
 }

@@ -22,17 +22,22 @@
 #include "common/transport/tick_queue.h"
 #include "common/transport/token.h"
 #include "common/transport/token_bucket.h"
+#include "common/transport/turn_queue.h"
 
 namespace footing::transport {
 
+inline constexpr TurnPace kReplayPace = {
+    .share = 0.2, .longest_rest_ns = 10'000'000, .rests_when_empty = true};
+
 /// What all sessions of one server share.
 struct Shared {
-  Shared(boost::asio::any_io_executor executor, ServerOptions with, ServerHandlers and_with)
+  Shared(const boost::asio::any_io_executor& executor, ServerOptions with, ServerHandlers and_with)
       : options(std::move(with)),
         handlers(std::move(and_with)),
         publication(options),
         token(options.token) {
-    loop.turns = std::make_shared<TurnQueue>(std::move(executor));
+    loop.turns = std::make_shared<TurnQueue>(executor);
+    replays = std::make_shared<TurnQueue>(executor, kReplayPace);
   }
   ServerOptions options;
   ServerHandlers handlers;
@@ -42,9 +47,11 @@ struct Shared {
   std::uint64_t epoch = 0;
   std::map<v1::Role, std::int64_t> with_role;  ///< Sessions, administrators' not counted.
   SharedLoop loop;
+  /// What goes out of the ring, to all sessions together: a fifth of the loop's time.
+  std::shared_ptr<TurnQueue> replays;
   std::int64_t NowNs() const;
   /// Logs the line, unless another was logged within the last 10 s.
-  void SayOverload(const std::string& line);
+  void SayOverload(const OverloadLine& line);
   TokenBucket overload_lines{0.1, 1};
   /// The same for who is kept out; the line says how many there were.
   void SayDenied(const std::string& host, const std::string& why);
@@ -96,6 +103,16 @@ class Session : public std::enable_shared_from_this<Session> {
     std::uint64_t next = 0;
     std::uint64_t last = 0;
   };
+  /// What is to come out of the ring, a few ticks whenever it is this session's turn.
+  struct Replay {
+    /// While not 0 live ticks come out of the ring, from this sequence on, until it is caught up.
+    std::uint64_t catch_up = 0;
+    std::deque<Range> refills;
+    int allowance = 0;  ///< Ticks that may still go out in this turn.
+    bool in_line = false;
+
+    bool wanted() const { return catch_up != 0 || !refills.empty(); }
+  };
 
   void OnFrame(std::string_view payload);
   void OnSlowed();
@@ -115,11 +132,14 @@ class Session : public std::enable_shared_from_this<Session> {
   void SendSnapshot(std::uint64_t sequence);
   void SendGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason);
   /// A full queue of answers ends the session: it takes nothing that it asked for.
-  void Send(const v1::Envelope& message);
+  void Send(const v1::Envelope& message) { SendPayload(message.SerializeAsString()); }
+  void SendPayload(std::string_view payload);
 
   void EndLater();
   void Fill(WriteBatch& batch);
   bool FillLive(WriteBatch& batch);
+  bool FillFromRing(WriteBatch& batch);
+  void JoinReplays();
   bool FillCatchUp(WriteBatch& batch);
   bool FillRefill(WriteBatch& batch);
   void AddGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason, WriteBatch& batch);
@@ -151,9 +171,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Subscription subscription_;
   TickQueue queue_;
   std::optional<Decimator> decimator_;
-  /// While not 0 live ticks come out of the ring, from this sequence on, until it is caught up.
-  std::uint64_t catch_up_ = 0;
-  std::deque<Range> refills_;
+  Replay replay_;
 };
 
 }  // namespace footing::transport

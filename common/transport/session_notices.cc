@@ -10,24 +10,25 @@ std::int64_t Shared::NowNs() const {
   return options.now_ns ? options.now_ns() : clock::MonotonicNs();
 }
 
-void Shared::SayOverload(const std::string& line) {
+void Shared::SayOverload(const OverloadLine& line) {
   if (handlers.on_overload && overload_lines.Take(NowNs())) handlers.on_overload(line);
 }
 
 void Shared::SayDenied(const std::string& host, const std::string& why) {
   ++statistics.denied;
   if (!handlers.on_overload || !denied_lines.Take(NowNs())) return;
-  handlers.on_overload("refused a client from " + host + ": " + why + " (" +
-                       std::to_string(statistics.denied) + " since start)");
+  handlers.on_overload({"refused a client from " + host + ": " + why + " (" +
+                        std::to_string(statistics.denied) + " since start)"});
 }
 
 void Session::OnSlowed() {
   ++record_.slowed;
   ++shared_.statistics.slowed;
   const std::string name = info_.client_name.empty() ? "" : " (" + info_.client_name + ")";
-  shared_.SayOverload("session " + std::to_string(info_.session) + name + " sends more than " +
-                      std::to_string(static_cast<int>(messages_per_s_)) +
-                      " messages a second and is slowed");
+  shared_.SayOverload({"session " + std::to_string(info_.session) + name + " sends more than " +
+                           std::to_string(static_cast<int>(messages_per_s_)) +
+                           " messages a second and is slowed",
+                       info_.session});
   if (phase_ == Phase::kHello || !slowed_notices_.Take(shared_.NowNs())) return;
   Notify(v1::Notice::KIND_SLOWED,
          "this client exceeds the server's rate limit; its messages are delayed", record_.slowed);

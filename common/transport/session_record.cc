@@ -67,9 +67,10 @@ stream::SessionStats Session::Stats() const {
   stats.queue_capacity = static_cast<std::uint32_t>(subscription_.queue_ticks);
   std::uint64_t waiting = queue_.size();
   const Tick* oldest = queue_.oldest();
-  if (catch_up_ != 0) {
+  if (replay_.catch_up != 0) {
     const TickRing& ring = shared_.publication.ring();
-    const std::uint64_t next = ring.empty() ? catch_up_ : std::max(catch_up_, ring.first());
+    const std::uint64_t next =
+        ring.empty() ? replay_.catch_up : std::max(replay_.catch_up, ring.first());
     const SharedTick* tick = ring.AtOrAfter(next);
     if (tick != nullptr) {
       oldest = tick->get();

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
-#include <limits>
+#include <string>
+#include <utility>
 
 #include "common/transport/framing.h"
 #include "common/transport/session.h"
@@ -17,6 +18,7 @@ constexpr std::size_t kMaxRefills = 16;
 constexpr double kSubscribeCost = 20;
 /// In messages, of a tick out of the ring: the whole ring of 3000 is within a session's burst.
 constexpr double kReplayCost = 0.02;
+constexpr int kReplayTicksInATurn = 32;
 
 }  // namespace
 
@@ -43,8 +45,8 @@ void Session::OnSubscribe(const v1::Subscribe& wish) {
   subscription_ = std::move(settled.subscription);
   queue_ = TickQueue(subscription_.rule, subscription_.queue_ticks, shared_.publication.retained());
   decimator_.emplace(subscription_.max_hz, SecondsToNanoseconds(1 / shared_.options.tick_rate_hz));
-  refills_.clear();
-  catch_up_ = first < next ? first : 0;
+  replay_.refills.clear();
+  replay_.catch_up = first < next ? first : 0;
   SendSnapshot(first - 1);
   if (wish.has_from_sequence()) {
     if (wish.from_epoch() != shared_.epoch) {
@@ -59,17 +61,20 @@ void Session::OnSubscribe(const v1::Subscribe& wish) {
 
 void Session::SendSnapshot(std::uint64_t sequence) {
   const SharedTick tick = shared_.publication.Snapshot(sequence, shared_.NowNs());
-  v1::Envelope message;
-  v1::Tick& snapshot = *message.mutable_tick();
+  std::string fields;
   for (const Slice& slice : tick->slices) {
     if (subscription_.fields.count(slice.field) == 0) continue;
-    snapshot.MergeFromString(tick->bytes.substr(slice.begin, slice.size));
+    fields.append(tick->bytes, slice.begin, slice.size);
   }
-  snapshot.set_epoch(shared_.epoch);
-  snapshot.set_sequence(tick->sequence);
-  snapshot.set_host_ns(tick->host_ns);
-  snapshot.set_snapshot(true);
-  Send(message);
+  TickHead head;
+  head.epoch = shared_.epoch;
+  head.sequence = tick->sequence;
+  head.host_ns = tick->host_ns;
+  head.snapshot = true;
+  char bytes[kMaxTickHeadBytes];
+  const std::size_t head_bytes = EncodeTickHead(head, fields.size(), bytes);
+  fields.insert(0, bytes + kLengthBytes, head_bytes - kLengthBytes);
+  SendPayload(fields);
 }
 
 void Session::SendGap(std::uint64_t from, std::uint64_t to, v1::Gap::Reason reason) {
@@ -85,19 +90,16 @@ void Session::OnRefill(const v1::Refill& wish) {
   const std::uint64_t last = std::min(wish.to_sequence(), shared_.publication.last_sequence());
   const std::uint64_t first = std::max<std::uint64_t>(wish.from_sequence(), 1);
   if (first > last) return;
-  if (refills_.size() >= kMaxRefills) {
+  if (replay_.refills.size() >= kMaxRefills) {
     return End("this client asks for missing ticks faster than it reads them");
   }
-  refills_.push_back({first, last});
-  connection_.Wake();
+  replay_.refills.push_back({first, last});
+  JoinReplays();
 }
 
 void Session::Offer(const SharedTick& tick) {
   if (phase_ != Phase::kSubscribed || !connection_.open()) return;
-  if (catch_up_ != 0) {  // It will come out of the ring.
-    connection_.WakeInTurn();
-    return;
-  }
+  if (replay_.catch_up != 0) return JoinReplays();  // It will come out of the ring.
   if (!Takes(*tick)) {
     queue_.Skip(tick);
     return;
@@ -142,10 +144,30 @@ void Session::AddMissing(const Tick& tick, WriteBatch& batch) {
 void Session::Fill(WriteBatch& batch) {
   // A tick and a Gap in front of it.
   while (batch.free_buffers() > kBuffersPerTick) {
-    if (FillLive(batch) || FillCatchUp(batch) || FillRefill(batch)) continue;
+    if (FillLive(batch) || FillFromRing(batch)) continue;
+    if (replay_.wanted()) return JoinReplays();
     if (!record_.drain_reason.empty() && batch.empty()) EndLater();
     return;
   }
+}
+
+/// In turns with all other sessions, since the ring has far more ticks than the present.
+void Session::JoinReplays() {
+  if (replay_.allowance > 0 || std::exchange(replay_.in_line, true)) return;
+  shared_.replays->Add([weak = weak_from_this()] {
+    const auto self = weak.lock();
+    if (!self) return false;
+    self->replay_.in_line = false;
+    self->replay_.allowance = kReplayTicksInATurn;
+    self->connection_.Wake();
+    return false;
+  });
+}
+
+bool Session::FillFromRing(WriteBatch& batch) {
+  if (replay_.allowance == 0 || !replay_.wanted()) return false;
+  --replay_.allowance;
+  return FillCatchUp(batch) || FillRefill(batch);
 }
 
 void Session::Drain(const std::string& reason) {
@@ -177,19 +199,19 @@ bool Session::FillLive(WriteBatch& batch) {
 }
 
 bool Session::FillCatchUp(WriteBatch& batch) {
-  if (catch_up_ == 0) return false;
+  if (replay_.catch_up == 0) return false;
   const TickRing& ring = shared_.publication.ring();
-  if (catch_up_ > ring.last()) {
-    catch_up_ = 0;
+  if (replay_.catch_up > ring.last()) {
+    replay_.catch_up = 0;
     return false;
   }
-  if (catch_up_ < ring.first()) {  // It read so slowly that the ring went past it.
-    AddGap(catch_up_, ring.first() - 1, v1::Gap::REASON_RING_PASSED, batch);
-    catch_up_ = ring.first();
+  if (replay_.catch_up < ring.first()) {  // It read so slowly that the ring went past it.
+    AddGap(replay_.catch_up, ring.first() - 1, v1::Gap::REASON_RING_PASSED, batch);
+    replay_.catch_up = ring.first();
     return true;
   }
-  const SharedTick& tick = *ring.AtOrAfter(catch_up_);
-  catch_up_ = tick->sequence + 1;
+  const SharedTick& tick = *ring.AtOrAfter(replay_.catch_up);
+  replay_.catch_up = tick->sequence + 1;
   connection_.Charge(kReplayCost);
   if (Takes(*tick)) {
     AddMissing(*tick, batch);
@@ -202,8 +224,8 @@ bool Session::FillCatchUp(WriteBatch& batch) {
 }
 
 bool Session::FillRefill(WriteBatch& batch) {
-  if (refills_.empty()) return false;
-  Range& range = refills_.front();
+  if (replay_.refills.empty()) return false;
+  Range& range = replay_.refills.front();
   const TickRing& ring = shared_.publication.ring();
   if (range.next < ring.first()) {
     const std::uint64_t gone = std::min(range.last, ring.first() - 1);
@@ -219,7 +241,7 @@ bool Session::FillRefill(WriteBatch& batch) {
       range.next = (*tick)->sequence + 1;
     }
   }
-  if (range.next > range.last) refills_.pop_front();
+  if (range.next > range.last) replay_.refills.pop_front();
   return true;
 }
 

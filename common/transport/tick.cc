@@ -56,6 +56,13 @@ const Slice* Tick::Find(std::uint32_t field) const {
   return found == slices.end() ? nullptr : &*found;
 }
 
+std::size_t FieldBytes(std::uint32_t field, std::size_t message_bytes) {
+  char prefix[20];  // Two varints.
+  const char* const end =
+      WriteVarint(message_bytes, WriteVarint(Tag(field, kLengthDelimited), prefix));
+  return static_cast<std::size_t>(end - prefix) + message_bytes;
+}
+
 void AppendField(std::uint32_t field, const std::string& message, Tick& tick) {
   char prefix[20];  // Two varints.
   const char* const end =

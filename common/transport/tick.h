@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// One tick, serialised once and shared by the ring and by every session's queue.
@@ -19,21 +20,30 @@ struct Slice {
 struct Tick {
   std::uint64_t sequence = 0;
   std::int64_t host_ns = 0;
-  /// First of the ticks right in front of this one that were lost before they came here, to a
-  /// server that relays another one's; 0: none. Whoever gets this tick gets a Gap in front of it.
+  /// First of the ticks right in front of this one that this server never had: its owner left them
+  /// out, or they were lost before they came to a server that relays another one's; 0: none.
+  /// Whoever gets this tick gets a Gap in front of it.
   std::uint64_t missing_from = 0;
-  std::string bytes;  ///< The channels' fields, one after the other, as they stand in v1::Tick.
-  std::vector<Slice> slices;
+  std::size_t head_bytes = 0;
+  /// The head of the live frame with all channels, if it has one, then the channels' fields, one
+  /// after the other, as they stand in v1::Tick.
+  std::string bytes;
+  std::vector<Slice> slices;  ///< Places in `bytes`.
+
+  std::string_view fields() const { return std::string_view(bytes).substr(head_bytes); }
 
   /// Null when this tick has nothing of that channel.
   const Slice* Find(std::uint32_t field) const;
 };
 using SharedTick = std::shared_ptr<const Tick>;
 
+/// Bytes of one length-delimited protobuf field whose message has so many.
+std::size_t FieldBytes(std::uint32_t field, std::size_t message_bytes);
+
 /// Appends one length-delimited protobuf field.
 void AppendField(std::uint32_t field, const std::string& message, Tick& tick);
 
-/// What differs from session to session in front of the shared bytes.
+/// What stands in front of the channels' fields.
 struct TickHead {
   std::uint64_t epoch = 0;
   std::uint64_t sequence = 0;

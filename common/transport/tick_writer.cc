@@ -28,7 +28,7 @@ std::vector<Piece> PiecesOf(const TickQueue::Entry& entry, const Subscription& s
   for (const Slice& slice : entry.tick->slices) {
     if (subscription.fields.count(slice.field) > 0) Add(entry.tick, slice, pieces);
   }
-  std::size_t size = entry.tick->bytes.size();
+  std::size_t size = entry.tick->fields().size();
   for (const RetainedField& retained : entry.retained) {
     const bool wanted = subscription.fields.count(retained.field) > 0;
     if (!wanted || entry.tick->Find(retained.field) != nullptr) continue;
@@ -53,10 +53,11 @@ void AddTick(const TickQueue::Entry& entry, const Subscription& subscription, Ti
   head.sequence = entry.tick->sequence;
   head.host_ns = entry.tick->host_ns;
   if (subscription.all && entry.retained.empty()) {  // The usual case.
-    AddHead(head, entry.tick->bytes.size(), batch);
-    if (!entry.tick->bytes.empty()) {
-      batch.AddShared(entry.tick, entry.tick->bytes.data(), entry.tick->bytes.size());
-    }
+    const std::string& bytes = entry.tick->bytes;
+    if (!head.refilled) return batch.AddShared(entry.tick, bytes.data(), bytes.size());
+    const std::string_view fields = entry.tick->fields();
+    AddHead(head, fields.size(), batch);
+    if (!fields.empty()) batch.AddShared(entry.tick, fields.data(), fields.size());
     return;
   }
   const std::vector<Piece> pieces = PiecesOf(entry, subscription);

@@ -74,6 +74,7 @@ void Bench::EndFaults() {
   for (const auto& device : devices_) {
     device->incoming = nullptr;
     device->outgoing = nullptr;
+    device->node().page().write_blocks = 0;
   }
 }
 

@@ -242,6 +242,7 @@ ssize_t write(int descriptor, const void* bytes, size_t size) {
     errno = ENODEV;
     return -1;
   }
+  while (node->page->write_blocks.load() != 0) usleep(1000);
   if (TakeFault(node->page->write_faults)) {
     errno = node->page->write_errno.load();
     return -1;

@@ -13,7 +13,8 @@ struct NodePage {
   std::atomic<std::int32_t> open_errno;   ///< While not 0 open() fails with it.
   std::atomic<std::int32_t> write_errno;  ///< While write_faults > 0 write() fails with it.
   std::atomic<std::int32_t> write_faults;
-  std::atomic<std::int32_t> read_errno;  ///< While read_faults > 0 a report read becomes it.
+  std::atomic<std::int32_t> write_blocks;  ///< While not 0 write() does not return.
+  std::atomic<std::int32_t> read_errno;    ///< While read_faults > 0 a report read becomes it.
   std::atomic<std::int32_t> read_faults;
   std::atomic<std::int32_t> gone;    ///< Unplugged: reads give EIO, writes ENODEV.
   std::atomic<std::uint32_t> opens;  ///< How often it was opened; the index of the newest.

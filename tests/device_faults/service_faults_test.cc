@@ -209,6 +209,64 @@ FOOTING_SERVICE_FAULT(Fault62TerminationInAHandshake) {
   }
 }
 
+/// The service manager's side of sd_notify(3).
+class NotifySocket {
+ public:
+  explicit NotifySocket(const std::string& path)
+      : descriptor_(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+    EXPECT_EQ(bind(descriptor_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    setenv("NOTIFY_SOCKET", path.c_str(), 1);
+    setenv("WATCHDOG_USEC", "400000", 1);
+    unsetenv("WATCHDOG_PID");
+  }
+  ~NotifySocket() {
+    unsetenv("NOTIFY_SOCKET");
+    unsetenv("WATCHDOG_USEC");
+    close(descriptor_);
+  }
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+
+  /// Times that the watchdog was fed since the last call.
+  int Beats() {
+    int beats = 0;
+    char bytes[1024];
+    ssize_t size = 0;
+    while ((size = recv(descriptor_, bytes, sizeof(bytes), 0)) > 0) {
+      beats += std::string(bytes, static_cast<std::size_t>(size)) == "WATCHDOG=1" ? 1 : 0;
+    }
+    return beats;
+  }
+
+ private:
+  int descriptor_;
+};
+
+FOOTING_SERVICE_FAULT(Fault65DriverThatKeepsAThread) {
+  NotifySocket manager(bench.folder() + "/notify");
+  Device& device = StartWithWiimote(65);
+  bench.Run(1);
+  EXPECT_GE(manager.Beats(), 3);
+  Device& stuck = bench.Plug(std::make_shared<WiimoteModel>(66));
+  stuck.node().page().write_blocks = 1;
+  const auto said = [&] {
+    manager.Beats();  // The kernel keeps ten of them, and then the sender waits.
+    return bench.LogLines("is stuck: the watchdog is not fed") == 1;
+  };
+  ASSERT_TRUE(bench.Until(said, 25));
+  manager.Beats();
+  bench.Run(1);
+  EXPECT_EQ(manager.Beats(), 0);
+  bench.seen().Forget();
+  ASSERT_TRUE(bench.UntilSamples(device, 60));
+  ExpectUndisturbed(device);  // The others go on until the service manager ends it.
+  stuck.node().page().write_blocks = 0;
+  EXPECT_TRUE(bench.Until([&] { return manager.Beats() > 0; }, 2));
+}
+
 FOOTING_SERVICE_FAULT(Fault63DiskFullForTheRecorder) {
   Device& device = StartWithWiimote(63);
   bench.seen().Forget();

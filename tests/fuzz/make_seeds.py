@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
-"""Writes the fuzz targets' seeds from real packets: make_seeds.py [FOLDER].
+"""Writes the fuzz targets' seeds from real packets: make_seeds.py [--variants] [FOLDER].
+
+With --variants it writes what scripts/fuzz adds to them instead: each seed that is a text, with each of its lines and
+each of its words left out, doubled, or replaced. So nearly every error of a parser is met from the start.
 
 The bytes are those of the tests of daemon/sensor/reports and calibration, which name their sources.
 A seed has the form that the target of its folder reads (see its .cc file).
 """
 import pathlib
+import re
 import struct
 import sys
 
@@ -118,7 +122,8 @@ def skeletons() -> dict[str, bytes]:
         "vmc": [bundle(osc("/VMC/Ext/Bone/Pos", "sfffffff", n, *point, 0.0, 0.0, 0.0, 1.0),
                        osc("/VMC/Ext/T", "f", 1.0)) for n in ["Hips", "Head", "LeftHand"]],
     }
-    return {f"osc/{name}": b"".join(map(blocks, sent)) for name, sent in packets.items()}
+    options = {name: bytes([i]) for i, name in enumerate(["footing", "quartz", "sdk2", "sensebloom", "vmc", "zillode"])}
+    return {f"osc/{name}": options[name] + b"".join(map(blocks, sent)) for name, sent in packets.items()}
 
 
 def motion_files() -> dict[str, bytes]:
@@ -147,9 +152,38 @@ def motion_files() -> dict[str, bytes]:
     return seeds
 
 
-def main() -> None:
-    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).parent / "corpus"
+REPLACEMENTS = ["-1", "1e999", "nan", "999999999999", "x", "{", "2 2"]
+TEXT_FROM = {"motion": 1, "config": 2}  # Bytes in front of the text.
+
+
+def changed(pieces: list[str], joint: str) -> list[str]:
+    """Each piece left out, doubled, and replaced by one of the words in turn."""
+    texts = []
+    for i in range(len(pieces)):
+        others = [[], [pieces[i]] * 2, [REPLACEMENTS[i % len(REPLACEMENTS)]], [REPLACEMENTS[(i + 3) % len(REPLACEMENTS)]]]
+        texts += [joint.join(pieces[:i] + other + pieces[i + 1:]) for other in others]
+    return texts
+
+
+def variants() -> dict[str, bytes]:
+    found = {}
     for name, data in seeds().items():
+        start = TEXT_FROM.get(name.split("/")[0])
+        try:
+            text = data[start:].decode("ascii") if start else ""
+        except UnicodeDecodeError:
+            continue
+        words = re.split(r"([ \t\n,:{}\[\]()]+)", text)
+        lines = text.split("\n")
+        texts = changed(lines, "\n") + changed(words, "")
+        found |= {f"{name}_{i}": data[:start] + one.encode() for i, one in enumerate(texts) if start}
+    return found
+
+
+def main() -> None:
+    words = [word for word in sys.argv[1:] if word != "--variants"]
+    folder = pathlib.Path(words[0]) if words else pathlib.Path(__file__).parent / "corpus"
+    for name, data in (variants() if "--variants" in sys.argv else seeds()).items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)

@@ -7,12 +7,38 @@
 #include "clients/skeleton/gates/person_gate.h"
 #include "tests/fuzz/input.h"
 
-// Any bytes as packets of a sender of skeletons: each is read or rejected; what is read is written
-// and read again as the same; what comes out of decoder and gate is finite.
+namespace {
+
+using namespace footing;  // NOLINT: a fuzz target is one file
+
+skeleton::DialectOptions OptionsOf(std::uint8_t byte) {
+  skeleton::DialectOptions options;
+  options.flip_y = (byte & 1) != 0;
+  options.mirrored = (byte & 2) != 0;
+  if ((byte & 4) != 0) options.factor = {0.5, -2, 1};
+  if ((byte & 8) != 0) options.offset = {0, 0.25, -1};
+  options.units = static_cast<skeleton::Units>((byte >> 4) % 5);
+  return options;
+}
+
+/// What a sender of the dialect would say for a place comes back as that place.
+void CheckRoundTrip(skeleton::Dialect dialect, const skeleton::DialectOptions& options,
+                    const Eigen::Vector3d& p_K_m) {
+  if (!(p_K_m.norm() < 1e6)) return;
+  const Eigen::Vector3d numbers = skeleton::FromCamera(dialect, options, p_K_m);
+  const Eigen::Vector3d again = skeleton::ToCamera(dialect, options, numbers);
+  fuzz::Expect((again - p_K_m).norm() <= 1e-6 * (1 + p_K_m.norm()));
+}
+
+}  // namespace
+
+// The first byte chooses options; then any bytes as packets of a sender of skeletons: each is read
+// or rejected; what is read is written and read again as the same; what comes out of decoder and
+// gate is finite.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace footing;
   fuzz::Input input(data, size);
-  skeleton::Decoder decoder({});
+  const skeleton::DialectOptions options = OptionsOf(input.Byte());
+  skeleton::Decoder decoder(options);
   skeleton::PersonGate gate;
   osc::Packet packet, again;
   std::int64_t now_ns = 0;
@@ -36,9 +62,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<skeleton::Decoded> complete;
     decoder.Take(packet, now_ns, complete);
     decoder.Flush(now_ns, complete);
-    for (const skeleton::Decoded& one : complete)
+    for (const skeleton::Decoded& one : complete) {
+      for (const auto& joint : one.skeleton.joints) {
+        CheckRoundTrip(one.dialect, options, joint.p_K_m);
+      }
       for (const auto& joint : gate.Advance(one.skeleton, now_ns).skeleton.joints)
         fuzz::Expect(joint.p_K_m.allFinite() && joint.confidence >= 0 && joint.confidence <= 1);
+    }
   }
   return 0;
 }

@@ -141,7 +141,9 @@ class Served {
       result.set_ok(true);
       return result;
     };
-    handlers.on_overload = [](const std::string& line) { Expect(line.size() < 1000); };
+    handlers.on_overload = [](const transport::OverloadLine& line) {
+      Expect(line.text.size() < 1000);
+    };
     return handlers;
   }
 

@@ -109,15 +109,17 @@ def check_return(links, fault, results, names=LINKS):
     results[fault] = took
 
 
-def check_recording(stage):
-    """Nothing is missing: every fault was shorter than the server's ring."""
+def check_recording(stage, paused):
+    """Nothing is missing but what footingd left out while it stood still: every fault was shorter than its ring."""
     assert stage.stop("footing-log", signal.SIGINT) == 0
     info = stage.run_json("footing-log", "info", stage.folder / "all.mcap")
-    assert info["complete"] and info["missing_ticks"] == 0, info
     recorded = sequences(stage, stage.folder / "all.mcap")
-    steps = {b - a for a, b in zip(recorded, recorded[1:]) if b != a}  # A rig has a row each.
-    assert steps == {1}, f"sequences advance by {sorted(steps)}"
-    print(f"{len(recorded)} rows of features, without a hole, over {len(set(recorded))} ticks", file=sys.stderr)
+    holes = [b - a - 1 for a, b in zip(recorded, recorded[1:]) if b - a > 1]  # A rig has a row each.
+    assert all(b >= a for a, b in zip(recorded, recorded[1:])), "sequences go back"
+    assert info["complete"] and info["missing_ticks"] == sum(holes), (info, holes)
+    expected = round(100 * FAULT_S) if paused else 0
+    assert abs(sum(holes) - expected) <= 30, f"{holes} ticks missing, not {expected} in all"
+    print(f"{len(recorded)} rows of features over {len(set(recorded))} ticks, holes {holes}", file=sys.stderr)
 
 
 def check_pauses(stage, links, results):
@@ -170,7 +172,7 @@ def main():
                 links.apply("stall", LONG_STALL_S)
                 check_return(links, "long stall", results)
                 check_pauses(stage, links, results)
-            check_recording(stage)
+            check_recording(stage, paused=not arguments.fault)
             for name in ("footing-ctl", "footing-view", "footing-sim", "footing-stream"):
                 assert stage.processes[name].poll() is None, f"{name} ended"
             check_kills(stage, links, results)

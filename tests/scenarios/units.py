@@ -15,6 +15,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = SOURCE / "systemd"
 SKIPPED = 77
 MOST_EXPOSURE = 0.6
+MOST_NETWORK_EXPOSURE = 1.4  # Of what needs the network: it cannot have one of its own.
 
 
 def run(*words):
@@ -34,7 +35,8 @@ def check_units(binaries):
                 continue
             # As installed, but for the place of the program.
             text = file.read_text().replace("@FOOTING_BIN_FOLDER@", str(binaries))
-            (folder / file.name).write_text(text.replace("@FOOTING_DOC_FOLDER@", "/usr/share/doc/footing"))
+            name_here = file.name.replace("@.", "@publish.")  # An instance of a template.
+            (folder / name_here).write_text(text.replace("@FOOTING_DOC_FOLDER@", "/usr/share/doc/footing"))
         units = sorted(folder.iterdir())
         assert len(units) >= 5, units
         done = run("systemd-analyze", "verify", *units)
@@ -42,9 +44,10 @@ def check_units(binaries):
         ours = [line for line in (done.stdout + done.stderr).splitlines()
                 if name in line or "footing" in line]
         assert done.returncode == 0 and not ours, "\n".join(ours) or done.stderr
-        exposures = [exposure(unit) for unit in units if unit.suffix == ".service"]
+        exposures = {unit.name: exposure(unit) for unit in units if unit.suffix == ".service"}
     print("accepted: " + ", ".join(unit.name for unit in units) + f"; exposure {exposures}")
-    assert max(exposures) <= MOST_EXPOSURE, exposures
+    for unit, found in exposures.items():
+        assert found <= (MOST_NETWORK_EXPOSURE if "relay" in unit else MOST_EXPOSURE), exposures
     return 0
 
 

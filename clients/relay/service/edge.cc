@@ -8,6 +8,7 @@
 #include "clients/relay/service/channels.h"
 #include "clients/relay/service/subjects.h"
 #include "common/clock/clock.h"
+#include "common/log/fields.h"
 #include "common/log/log.h"
 #include "common/transport/channels_of.h"
 #include "common/units/units.h"
@@ -157,7 +158,9 @@ void Edge::Begin(const v1::Tick& snapshot) {
   const double source_hz = welcome_.limits().tick_rate_hz();
   transport::ServerHandlers handlers;
   handlers.on_command = RefuseCommand;
-  handlers.on_overload = [](const std::string& line) { log::Warning(line); };
+  handlers.on_overload = [](const transport::OverloadLine& line) {
+    log::Write(log::Level::kWarning, line.text, {"", line.session, line.channel});
+  };
   server_ = std::make_unique<transport::Server>(io_, options, handlers);
   thinner_.emplace(options_.rate_hz, source_hz > 0 ? source_hz : options.tick_rate_hz,
                    snapshot.sequence());

@@ -33,6 +33,7 @@ HidHandle HidReader::Release() {
 void HidReader::Run() {
   Item item;
   while (!stop_.raised()) {
+    heartbeat_.Beat(clock::MonotonicNs());
     WriteOne();
     ReadFeatures();
     const int size =
@@ -83,6 +84,7 @@ void HidReader::Write(const std::vector<std::uint8_t>& report) {
 void HidReader::ReadFeatures() {
   FeatureRequest request;
   while (requests_.Pop(request)) {
+    heartbeat_.Beat(clock::MonotonicNs());
     Item item;
     item.bytes[0] = request.id;
     const int size = hid_get_feature_report(device_.get(), item.bytes.data(),

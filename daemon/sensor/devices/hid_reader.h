@@ -8,6 +8,7 @@
 
 #include "common/exchange/bounded_queue.h"
 #include "common/exchange/flag.h"
+#include "common/exchange/heartbeat.h"
 #include "daemon/sensor/devices/hid_opening.h"
 
 namespace footing::devices {
@@ -16,6 +17,9 @@ namespace footing::devices {
 /// written, at most one report per 9 ms. hidapi's handle is never shared by two threads.
 class HidReader {
  public:
+  /// The kernel waits up to 10 s for a Bluetooth device to acknowledge a report.
+  static constexpr std::int64_t kLongestCallNs = 12'000'000'000;
+
   struct Item {
     std::int64_t received_ns = 0;
     bool feature = false;  ///< The answer to RequestFeature; empty when the device refuses.
@@ -41,6 +45,10 @@ class HidReader {
   std::uint64_t dropped() const { return incoming_.refused(); }
   /// The device is gone; what was read before can still be popped.
   bool ended() const { return ended_.raised(); }
+  /// The device's driver has kept the thread for longer than the kernel waits for any device.
+  bool Stuck(std::int64_t now_ns) const {
+    return !ended() && heartbeat_.StuckFor(kLongestCallNs, now_ns);
+  }
   /// io thread, after it ended: the device, to be closed where it was opened.
   HidHandle Release();
 
@@ -67,6 +75,7 @@ class HidReader {
   exchange::BoundedQueue<FeatureRequest> requests_{8};
   exchange::Flag stop_;
   exchange::Flag ended_;
+  exchange::Heartbeat heartbeat_;
   std::thread thread_;
 };
 

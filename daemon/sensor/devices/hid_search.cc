@@ -70,6 +70,7 @@ void HidSearch::Close(std::string path, HidHandle device) {
 void HidSearch::Run() {
   while (!stop_.raised()) {
     const std::int64_t now_ns = clock::MonotonicNs();
+    heartbeat_.Beat(now_ns);
     Look(now_ns);
     int pause_ms = PauseMs(now_ns);
     if (pause_ms == kWithMonitorMs && monitor_.descriptor() < 0) pause_ms = kSlowlyMs;

@@ -9,7 +9,9 @@
 
 #include "common/exchange/bounded_queue.h"
 #include "common/exchange/flag.h"
+#include "common/exchange/heartbeat.h"
 #include "daemon/sensor/devices/hid_opening.h"
+#include "daemon/sensor/devices/hid_reader.h"
 #include "daemon/sensor/devices/node_monitor.h"
 
 namespace footing::devices {
@@ -35,6 +37,10 @@ class HidSearch {
 
   /// io thread.
   bool Take(Found& found) { return found_.Pop(found); }
+  /// As HidReader::Stuck(): it is kept by a node that it lists or opens.
+  bool Stuck(std::int64_t now_ns) const {
+    return heartbeat_.StuckFor(HidReader::kLongestCallNs, now_ns);
+  }
   /// io thread: closes the device of this path, which may then be opened again. hidapi keeps its
   /// newest error in one place for the whole process, so one thread opens and closes.
   void Close(std::string path, HidHandle device);
@@ -64,6 +70,7 @@ class HidSearch {
   int event_;                    ///< eventfd: stop, or a path was closed.
   std::set<std::string> open_paths_;
   std::map<std::string, Waiting> waiting_;  ///< Nodes that could not be opened, by path.
+  exchange::Heartbeat heartbeat_;
   std::thread thread_;
 };
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "common/clock/clock.h"
 #include "common/exchange/flag.h"
 #include "daemon/sensor/devices/hid_reader.h"
 #include "daemon/sensor/devices/hid_search.h"
@@ -57,6 +58,15 @@ class HidSource::Implementation : public std::enable_shared_from_this<Implementa
   void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
     const auto found = readers_.find(device);
     if (found != readers_.end()) found->second.reader->RequestFeature(id, size);
+  }
+
+  std::string Stuck() const {
+    const std::int64_t now_ns = clock::MonotonicNs();
+    if (search_ && search_->Stuck(now_ns)) return "the search for devices";
+    for (const auto& [device, open] : readers_) {
+      if (open.reader->Stuck(now_ns)) return "the thread of " + open.path;
+    }
+    return "";
   }
 
   void Stop() {
@@ -153,6 +163,8 @@ void HidSource::Send(DeviceHandle device, const reports::OutputReport& report) {
 void HidSource::RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
   implementation_->RequestFeature(device, id, size);
 }
+
+std::string HidSource::Stuck() const { return implementation_->Stuck(); }
 
 void HidSource::Stop() { implementation_->Stop(); }
 

@@ -20,6 +20,8 @@ class HidSource : public DeviceSource {
   Result<void> Start() override;
   void Send(DeviceHandle device, const reports::OutputReport& report) override;
   void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) override;
+  void Refuse(DeviceHandle, const std::string&) override {}
+  std::string Stuck() const override;
   void Stop() override;
 
  private:

@@ -1,5 +1,7 @@
 #include "daemon/sensor/devices/socket_source.h"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <map>
 #include <set>
@@ -14,14 +16,14 @@
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 #include "daemon/sensor/devices/attachment.h"
+#include "daemon/sensor/devices/device_messages.h"
 #include "footing/v1/device.pb.h"
 
 namespace footing::devices {
 namespace {
 
-/// 16 devices of 200 reports a second take two thirds.
-constexpr transport::InputBudget kBudget = {5000, 5000, 1 << 20, 1 << 20};
-constexpr double kAttachCost = 100;  // In messages: it rebuilds a rig, and reads a calibration.
+constexpr double kAttachCost = 100;      // In messages: it rebuilds a rig, and reads a calibration.
+constexpr std::size_t kMaxClosing = 16;  // Further ones that are being refused hear nothing.
 constexpr auto kIdleCheckInterval = std::chrono::seconds(1);
 constexpr std::int64_t kIdleNs = 10 * kNanosecondsPerSecond;
 
@@ -30,11 +32,13 @@ constexpr std::int64_t kIdleNs = 10 * kNanosecondsPerSecond;
 class SocketSource::Implementation {
  public:
   Implementation(boost::asio::io_context& io, const transport::Address& address,
-                 std::function<DeviceHandle()> new_handle, SourceHandlers handlers)
+                 std::function<DeviceHandle()> new_handle, SourceHandlers handlers,
+                 const ConnectionLimits& limits)
       : io_(io),
         address_(address),
         new_handle_(std::move(new_handle)),
         handlers_(std::move(handlers)),
+        limits_(limits),
         idle_check_(io) {
     loop_.turns = std::make_shared<transport::TurnQueue>(io.get_executor());
   }
@@ -48,28 +52,26 @@ class SocketSource::Implementation {
     return {};
   }
 
+  transport::Address address() const { return listener_->address(); }
+
+  /// A simulated device that does not read loses its outputs, as a device out of range does.
   void Send(DeviceHandle device, const reports::OutputReport& report) {
     const auto place = places_.find(device);
     if (place == places_.end()) return;
-    v1::DeviceEnvelope envelope;
-    v1::DeviceOutput& output = *envelope.mutable_output();
-    output.set_slot(place->second.slot);
-    output.set_channel(v1::DeviceOutput::CHANNEL_INTERRUPT);
-    output.set_report(report.data(), report.size());
-    // A simulated device that does not read loses its outputs, as a device out of range does.
-    connections_.at(place->second.connection).link->Send(envelope.SerializeAsString());
+    LinkOf(place->second).Send(OutputMessage(place->second.slot, report));
   }
 
   void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
     const auto place = places_.find(device);
     if (place == places_.end()) return;
-    v1::DeviceEnvelope envelope;
-    v1::DeviceOutput& output = *envelope.mutable_output();
-    output.set_slot(place->second.slot);
-    output.set_channel(v1::DeviceOutput::CHANNEL_FEATURE_GET);
-    output.set_report(&id, 1);
-    output.set_size(static_cast<std::uint32_t>(size));
-    connections_.at(place->second.connection).link->Send(envelope.SerializeAsString());
+    LinkOf(place->second).Send(FeatureRequestMessage(place->second.slot, id, size));
+  }
+
+  void Refuse(DeviceHandle device, const std::string& why) {
+    const auto place = places_.find(device);
+    if (place == places_.end()) return;
+    const auto [connection, slot] = place->second;
+    RefuseDevice(connections_.at(connection), slot, why);
   }
 
   void Stop() {
@@ -82,6 +84,7 @@ class SocketSource::Implementation {
  private:
   struct Connection {
     std::unique_ptr<transport::FramedConnection> link;
+    transport::Peer peer;
     std::map<std::uint32_t, DeviceHandle> slots;
     std::set<std::uint32_t> refused_slots;
     std::int64_t heard_ns = 0;
@@ -92,27 +95,40 @@ class SocketSource::Implementation {
     std::uint32_t slot;
   };
 
+  transport::FramedConnection& LinkOf(const Place& place) {
+    return *connections_.at(place.connection).link;
+  }
+
   void Accept(transport::Socket socket) {
-    if (connections_.size() >= kMaxConnections) {
-      handlers_.on_trouble("device socket: more than " + std::to_string(kMaxConnections) +
-                           " connections; one was refused");
-      return;
+    const transport::Peer peer = transport::PeerOf(socket.native_handle());
+    ConnectionCounts taken;
+    std::size_t closing = 0;
+    for (const auto& [id, other] : connections_) {
+      if (other.closing) ++closing;
+      if (!other.closing) taken.Add(other.peer, peer);
     }
+    const std::string full = WhyNoConnection(limits_, peer, geteuid(), taken);
+    if (!full.empty() && closing >= kMaxClosing) return;
+    Connection& connection = Open(std::move(socket), peer);
+    if (full.empty()) return;
+    handlers_.on_trouble("a connection was refused: " + full);
+    connection.closing = true;
+    connection.link->Finish(RefusedMessage(0, full), full);
+  }
+
+  Connection& Open(transport::Socket socket, const transport::Peer& peer) {
     const std::uint64_t id = ++last_connection_;
-    transport::FramedLimits limits;
-    limits.max_in_bytes = kMaxEnvelopeBytes;
-    limits.max_out_bytes = kMaxEnvelopeBytes;
-    limits.max_queued_bytes = 64 * kMaxEnvelopeBytes;
     transport::FramedHandlers handlers;
     handlers.on_frame = [this, id](std::string_view payload) { OnFrame(id, payload); };
     handlers.on_bytes = [this, id] { connections_.at(id).heard_ns = clock::MonotonicNs(); };
     handlers.on_close = [this, id](const std::string& reason) { OnClose(id, reason); };
-    limits.input = kBudget;
     Connection& connection = connections_[id];
+    connection.peer = peer;
     connection.heard_ns = clock::MonotonicNs();
-    connection.link = std::make_unique<transport::FramedConnection>(std::move(socket), limits,
-                                                                    std::move(handlers), loop_);
+    connection.link = std::make_unique<transport::FramedConnection>(
+        std::move(socket), LimitsOfOne(), std::move(handlers), loop_);
     connection.link->Start();
+    return connection;
   }
 
   void CheckIdleLater() {
@@ -144,38 +160,30 @@ class SocketSource::Implementation {
     }
     switch (envelope_.body_case()) {
       case v1::DeviceEnvelope::kAttach:
-        Attach(id, connection, envelope_.attach());
-        return;
+        return Attach(id, connection, envelope_.attach());
       case v1::DeviceEnvelope::kInputReport:
-        TakeReport(connection, received_ns, envelope_.input_report());
-        return;
+        return TakeReport(connection, received_ns, envelope_.input_report());
       case v1::DeviceEnvelope::kFault:
-        Detach(connection, envelope_.fault().slot(),
-               "read failed with error " + std::to_string(envelope_.fault().error_number()));
-        return;
+        return Detach(connection, envelope_.fault().slot(),
+                      "read failed with error " + std::to_string(envelope_.fault().error_number()));
       case v1::DeviceEnvelope::kDetach:
-        Detach(connection, envelope_.detach().slot(), "detached");
-        return;
+        return Detach(connection, envelope_.detach().slot(), "detached");
       case v1::DeviceEnvelope::kHandFrame:
-        if (handlers_.on_hands)
-          handlers_.on_hands(received_ns, wire::FromProto(envelope_.hand_frame()));
-        return;
+        return Pass(handlers_.on_hands, received_ns, envelope_.hand_frame());
       case v1::DeviceEnvelope::kReferenceFrame:
-        if (handlers_.on_reference)
-          handlers_.on_reference(received_ns, wire::FromProto(envelope_.reference_frame()));
-        return;
+        return Pass(handlers_.on_reference, received_ns, envelope_.reference_frame());
       case v1::DeviceEnvelope::kContactFrame:
-        if (handlers_.on_contacts)
-          handlers_.on_contacts(received_ns, wire::FromProto(envelope_.contact_frame()));
-        return;
+        return Pass(handlers_.on_contacts, received_ns, envelope_.contact_frame());
       case v1::DeviceEnvelope::kOutput:
       case v1::DeviceEnvelope::kRefused:
-        Refuse(connection, "outputs go the other way");
-        return;
+        return Refuse(connection, "outputs go the other way");
       case v1::DeviceEnvelope::BODY_NOT_SET:
-        Refuse(connection, "a message is empty");
-        return;
+        return Refuse(connection, "a message is empty");
     }
+  }
+
+  static void Pass(const auto& handler, std::int64_t received_ns, const auto& frame) {
+    if (handler) handler(received_ns, wire::FromProto(frame));
   }
 
   void Attach(std::uint64_t id, Connection& connection, const v1::DeviceAttach& attach) {
@@ -203,10 +211,7 @@ class SocketSource::Implementation {
     places_.erase(connection.slots.at(slot));
     connection.slots.erase(slot);
     if (connection.refused_slots.size() < kMaxSlots) connection.refused_slots.insert(slot);
-    v1::DeviceEnvelope envelope;
-    envelope.mutable_refused()->set_slot(slot);
-    envelope.mutable_refused()->set_reason(why);
-    connection.link->Send(envelope.SerializeAsString());
+    connection.link->Send(RefusedMessage(slot, why));
   }
 
   void TakeReport(Connection& connection, std::int64_t received_ns,
@@ -255,6 +260,7 @@ class SocketSource::Implementation {
   transport::Address address_;
   std::function<DeviceHandle()> new_handle_;
   SourceHandlers handlers_;
+  const ConnectionLimits limits_;
   std::unique_ptr<transport::Listener> listener_;
   std::map<std::uint64_t, Connection> connections_;
   std::map<DeviceHandle, Place> places_;
@@ -265,13 +271,16 @@ class SocketSource::Implementation {
 };
 
 SocketSource::SocketSource(boost::asio::io_context& io, const transport::Address& address,
-                           std::function<DeviceHandle()> new_handle, SourceHandlers handlers)
+                           std::function<DeviceHandle()> new_handle, SourceHandlers handlers,
+                           const ConnectionLimits& limits)
     : implementation_(std::make_unique<Implementation>(io, address, std::move(new_handle),
-                                                       std::move(handlers))) {}
+                                                       std::move(handlers), limits)) {}
 
 SocketSource::~SocketSource() = default;
 
 Result<void> SocketSource::Start() { return implementation_->Start(); }
+
+transport::Address SocketSource::address() const { return implementation_->address(); }
 
 void SocketSource::Send(DeviceHandle device, const reports::OutputReport& report) {
   implementation_->Send(device, report);
@@ -279,6 +288,10 @@ void SocketSource::Send(DeviceHandle device, const reports::OutputReport& report
 
 void SocketSource::RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
   implementation_->RequestFeature(device, id, size);
+}
+
+void SocketSource::Refuse(DeviceHandle device, const std::string& why) {
+  implementation_->Refuse(device, why);
 }
 
 void SocketSource::Stop() { implementation_->Stop(); }

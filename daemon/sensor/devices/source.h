@@ -73,6 +73,12 @@ class DeviceSource {
   /// Asks for a feature report of `size` bytes, id included. The answer comes through on_report
   /// with `feature` set; a device that refuses gives an empty one.
   virtual void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) = 0;
+  /// A device that was taken is not any more: it hears why, and what it sends is ignored. Only
+  /// simulated devices are ever refused.
+  virtual void Refuse(DeviceHandle device, const std::string& why) = 0;
+  /// What a thread of its devices has been stuck in for longer than the kernel may take; empty:
+  /// nothing.
+  virtual std::string Stuck() const { return ""; }
   /// Detaches everything without calling the handlers. May be called twice.
   virtual void Stop() = 0;
 };

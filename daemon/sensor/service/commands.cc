@@ -1,5 +1,7 @@
 #include "daemon/sensor/service/commands.h"
 
+#include <utility>
+
 #include "common/wire/wire.h"
 #include "daemon/sensor/service/answer.h"
 
@@ -27,10 +29,8 @@ v1::CommandResult CarryOutSetup(Hub& hub, const v1::Command& command) {
                 hub.RecordSetup(record.rig(), wire::FromProto(record.item()), record.forget()));
 }
 
-}  // namespace
-
-v1::CommandResult CarryOut(Hub& hub, const Config& config, std::uint64_t session,
-                           const v1::Command& command) {
+v1::CommandResult CarryOutAllowed(Hub& hub, const Config& config, std::uint64_t session,
+                                  const v1::Command& command) {
   switch (command.action_case()) {
     case v1::Command::kSetRumble: {
       const v1::SetRumble& rumble = command.set_rumble();
@@ -67,8 +67,6 @@ v1::CommandResult CarryOut(Hub& hub, const Config& config, std::uint64_t session
     case v1::Command::kStopTrial:
     case v1::Command::kCorrectFailure:
     case v1::Command::kSetInterface:
-    case v1::Command::kTakeLease:
-    case v1::Command::kReleaseLease:
     case v1::Command::kSetStudy:
     case v1::Command::kSetGame:
       return Answer(command, UsageError("that is a command for footing-sim"));
@@ -77,10 +75,23 @@ v1::CommandResult CarryOut(Hub& hub, const Config& config, std::uint64_t session
     case v1::Command::kSetBoardLayout:
     case v1::Command::kRecordSetup:
       return CarryOutSetup(hub, command);
+    case v1::Command::kTakeLease:
+    case v1::Command::kReleaseLease:
     case v1::Command::ACTION_NOT_SET:
       return Answer(command, UsageError("the command has no action that footingd knows"));
   }
   return Answer(command, UsageError("the command has no action that footingd knows"));
+}
+
+}  // namespace
+
+v1::CommandResult CarryOut(Hub& hub, lease::LeaseControl& lease, const Config& config,
+                           std::uint64_t session, const v1::Command& command, std::int64_t now_ns) {
+  if (auto answer = lease.Answer(command, session, now_ns)) {
+    answer->set_id(command.id());
+    return std::move(*answer);
+  }
+  return CarryOutAllowed(hub, config, session, command);
 }
 
 }  // namespace footing::sensor

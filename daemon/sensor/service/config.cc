@@ -12,6 +12,13 @@ void Config::Bind(config::Binder& binder) {
   binder.Flag("tcp_devices", tcp_devices,
               "Allow stream:tcp:HOST:PORT as a source: then every user of this host may attach "
               "simulated devices");
+  binder.Integer("max_device_connections", device_connections.max_connections, 1, 1000,
+                 "Connections to the device socket at once; 8 more for the server's own user and "
+                 "root");
+  binder.Integer("max_device_connections_per_user", device_connections.max_connections_per_user, 1,
+                 1000,
+                 "Connections of one user to the device socket, without those of the server's own "
+                 "user and root; all those over TCP count as one user's");
   binder.TextMap("roles", roles,
                  "Rig and role of each serial, e.g. {\"00:1f:32:aa:bb:cc\": \"main/left_hand\"}",
                  [](const std::string& text) {

@@ -12,6 +12,7 @@
 #include "common/transport/address.h"
 #include "common/transport/session_limits.h"
 #include "common/units/units.h"
+#include "daemon/sensor/devices/connection_limits.h"
 
 namespace footing::sensor {
 
@@ -21,6 +22,7 @@ struct Config {
   std::vector<std::string> sources;  ///< Empty: hid, and stream: at the default of "devices".
   /// Let every user of this host attach simulated devices: a source may be stream:tcp:.
   bool tcp_devices = false;
+  devices::ConnectionLimits device_connections;
   /// Serial to "rig/role"; overrides what a simulated device requests.
   std::map<std::string, std::string> roles;
   std::string default_rig = "main";

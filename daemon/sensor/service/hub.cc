@@ -1,25 +1,11 @@
 #include "daemon/sensor/service/hub.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace footing::sensor {
 namespace {
 
 constexpr std::int64_t kStatusIntervalNs = 200'000'000;
-
-/// Why a second device of one serial is not taken; empty when it is.
-std::string WhyNotTwice(const Device& first, const devices::DeviceIdentity& second,
-                        bool second_link) {
-  if (!second.simulated)
-    return "";  // A real one that is found again, or in a simulated one's place.
-  if (!first.simulated()) {
-    return "a simulated device with the serial of the real device " + second.serial + " is ignored";
-  }
-  if (second_link) return "";
-  return "a second simulated device with the serial " + second.serial +
-         " is ignored: the first one is still there; end it, or choose another serial or seed";
-}
 
 }  // namespace
 
@@ -33,8 +19,9 @@ Hub::Hub(const Config& config, Ports ports)
     if (!binding) continue;
     const auto configured = assigned_.find(serial);
     if (configured != assigned_.end() && configured->second != *binding) {
-      ports_.log(serial + " is " + text + " by the last command, no longer " +
-                 config_.roles.at(serial) + " as in the config");
+      ports_.log({serial + " is " + text + " by the last command, no longer " +
+                      config_.roles.at(serial) + " as in the config",
+                  serial});
     }
     assigned_[serial] = std::move(binding).value();
   }
@@ -61,62 +48,6 @@ Device* Hub::Numbered(std::uint32_t number) {
   return nullptr;
 }
 
-/// A new Device; null when kMaxDevices are attached.
-Device* Hub::AddDevice() {
-  if (devices_.size() >= kMaxDevices) {
-    const auto lost = std::find_if(devices_.begin(), devices_.end(),
-                                   [](const auto& device) { return !device->attached(); });
-    if (lost == devices_.end()) return nullptr;
-    devices_.erase(lost);
-  }
-  DeviceOptions options;
-  options.plate = config_.plate;
-  options.kind.local_gravity_mps2 = config_.local_gravity_mps2;
-  options.kind.handshake.motion_plus = config_.motion_plus;
-  options.kind.handshake.camera = config_.camera;
-  options.kind.handshake.status_interval_s = config_.status_interval_s;
-  devices_.push_back(std::make_unique<Device>(++last_number_, options));
-  return devices_.back().get();
-}
-
-std::string Hub::OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity) {
-  Device* device = WithSerial(identity.serial);
-  const bool there = device != nullptr && device->attached();
-  const bool second_link =
-      there && device->has_second_link() && device->identity().bus != identity.bus;
-  const std::string why = there ? WhyNotTwice(*device, identity, second_link) : "";
-  if (!why.empty()) {
-    ports_.log(why);
-    return why;
-  }
-  if (second_link) {
-    device->AttachSecond(handle, identity);
-    status_due_ = true;
-    ports_.log("device " + std::to_string(device->number()) + " (" + identity.serial +
-               ") is on a second link: " + identity.place);
-    Flush(*device);
-    return "";
-  }
-  if (device == nullptr) device = AddDevice();
-  if (device == nullptr) {
-    const std::string full =
-        "more than " + std::to_string(kMaxDevices) + " devices: " + identity.serial + " is ignored";
-    ports_.log(full);
-    return full;
-  }
-  Device::Stored stored;
-  if (ports_.load_calibration) stored = ports_.load_calibration(identity.serial);
-  device->Attach(handle, identity, stored);
-  Bind(*device);
-  ports_.log(std::string(identity.simulated ? "simulated " : "") + stream::Name(device->kind()) +
-             " " + identity.serial + " attached as device " + std::to_string(device->number()) +
-             ", " + device->binding().rig + "/" + stream::Name(device->binding().role) + ": " +
-             identity.place);
-  device->Advance(ports_.now_ns());
-  Flush(*device);
-  return "";
-}
-
 void Hub::OnDetach(devices::DeviceHandle handle, const std::string& reason) {
   Device* device = Find(handle);
   if (device == nullptr) return;
@@ -124,8 +55,9 @@ void Hub::OnDetach(devices::DeviceHandle handle, const std::string& reason) {
   status_due_ = true;
   if (device->attached()) return;  // Its other link is still there.
   leases_.erase(device->number());
-  ports_.log("device " + std::to_string(device->number()) + " (" + device->identity().serial +
-             ") lost: " + reason);
+  const std::string& serial = device->identity().serial;
+  ports_.log({"device " + std::to_string(device->number()) + " (" + serial + ") lost: " + reason,
+              serial, true});
 }
 
 void Hub::TakeRaw(const Device& device, std::int64_t at_ns, std::span<const std::uint8_t> bytes,

@@ -14,6 +14,7 @@
 #include "daemon/sensor/hands/refusals.h"
 #include "daemon/sensor/service/config.h"
 #include "daemon/sensor/service/device.h"
+#include "daemon/sensor/service/log_line.h"
 #include "daemon/sensor/service/tick_content.h"
 #include "daemon/sensor/setup/setup_store.h"
 
@@ -25,7 +26,7 @@ class Hub {
  public:
   struct Ports {
     std::function<void(devices::DeviceHandle, const reports::OutputReport&)> send;
-    std::function<void(const std::string& line)> log;
+    std::function<void(const LogLine&)> log;
     std::function<std::int64_t()> now_ns = {};
     /// Asks for a feature report; null: devices are never asked.
     std::function<void(devices::DeviceHandle, std::uint8_t id, std::size_t size)> request_feature =
@@ -36,6 +37,9 @@ class Hub {
         save_calibration = {};
     /// Where the set-up is kept between runs; none: in memory.
     setup::Storage storage = {};
+    /// A simulated device that was taken has given way to a real one: its source says so to it and
+    /// ignores what it sends from now on. Null: it is not informed.
+    std::function<void(devices::DeviceHandle, const std::string& why)> refuse = {};
   };
 
   /// What a command measured.
@@ -45,13 +49,14 @@ class Hub {
     std::string message;
   };
 
-  /// Devices known at once, lost ones included; the longest lost is dropped for a new one.
+  /// Devices known at once, lost ones included. A new one takes the place of the longest lost; a
+  /// real one, when none is lost, that of the newest simulated device.
   static constexpr std::size_t kMaxDevices = 64;
 
   Hub(const Config& config, Ports ports);
 
   /// As SourceHandlers. A simulated device with the serial of another one that is there is not
-  /// taken; a real device takes the place of a simulated one.
+  /// taken; a real device takes the place of a simulated one, and its role back from one.
   std::string OnAttach(devices::DeviceHandle handle, const devices::DeviceIdentity& identity);
   void OnReport(devices::DeviceHandle handle, const devices::IncomingReport& report);
   void OnDetach(devices::DeviceHandle handle, const std::string& reason);
@@ -110,8 +115,11 @@ class Hub {
   Result<Device*> Attached(std::uint32_t number);
   Result<Device*> Attached(const std::string& serial);
   Result<Device*> AttachedOnBody(const std::string& serial);
-  Device* AddDevice();
+  Device* AddDevice(bool simulated);
+  bool FreePlaceFor(bool simulated);
+  void DropSimulated(const Device& device, const std::string& why);
   void Bind(Device& device);
+  bool GivesWay(const Device& holder, const Device& device) const;
   Binding ChooseBinding(const Device& device) const;
   void Rebind(Device& device, const Binding& binding);
   void RebuildRigs();

@@ -36,7 +36,7 @@ void Hub::OnContacts(std::int64_t received_ns, const stream::ContactFrame& frame
 }
 
 void Hub::Refuse(const std::string& what, const std::string& why) {
-  if (const auto line = refusals_.Add(ports_.now_ns(), what, why)) ports_.log(*line);
+  if (const auto line = refusals_.Add(ports_.now_ns(), what, why)) ports_.log({*line, "", true});
 }
 
 }  // namespace footing::sensor

@@ -13,6 +13,13 @@ constexpr std::size_t kMaxRigMembers = 8;  // Of RigFeatureExtractor.
 
 }  // namespace
 
+/// A real device that comes back gets its role back from a simulated one that has it in the
+/// meantime, unless it was assigned to that one.
+bool Hub::GivesWay(const Device& holder, const Device& device) const {
+  return !device.simulated() && holder.simulated() && holder.binding() == device.binding() &&
+         !assigned_.contains(holder.identity().serial);
+}
+
 Binding Hub::ChooseBinding(const Device& device) const {
   const devices::DeviceIdentity& identity = device.identity();
   const auto assigned = assigned_.find(identity.serial);
@@ -21,7 +28,8 @@ Binding Hub::ChooseBinding(const Device& device) const {
   }
   std::vector<Binding> taken;
   for (const auto& other : devices_) {
-    if (other.get() != &device && other->attached()) taken.push_back(other->binding());
+    if (other.get() == &device || !other->attached() || GivesWay(*other, device)) continue;
+    taken.push_back(other->binding());
   }
   const auto is_free = [&taken](const Binding& binding) {
     return std::find(taken.begin(), taken.end(), binding) == taken.end();
@@ -41,7 +49,15 @@ Binding Hub::ChooseBinding(const Device& device) const {
   return wish;
 }
 
-void Hub::Bind(Device& device) { Rebind(device, ChooseBinding(device)); }
+void Hub::Bind(Device& device) {
+  Rebind(device, ChooseBinding(device));
+  if (device.binding().role == DeviceRole::kUnspecified) return;
+  for (const auto& other : devices_) {
+    if (other.get() != &device && other->attached() && GivesWay(*other, device)) {
+      Rebind(*other, ChooseBinding(*other));
+    }
+  }
+}
 
 void Hub::Rebind(Device& device, const Binding& binding) {
   device.set_binding(binding);

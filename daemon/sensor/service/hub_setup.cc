@@ -114,7 +114,8 @@ void Hub::WatchSetup() {
       store_.MarkStale(binding.rig, "layout", "", "board " + serial + " was moved");
       store_.MarkStale(binding.rig, "tare", serial, "the board was moved");
       status_due_ = true;
-      ports_.log("board " + serial + " was moved: footing-ctl setup --only tare --only layout");
+      ports_.log({"board " + serial + " was moved: footing-ctl setup --only tare --only layout",
+                  serial, true});
     }
     auto stored = store_.MountingOf(serial, Text(binding));
     if (stored && device->mounted_sensor().slipped() && !stored->slipped) {
@@ -122,8 +123,9 @@ void Hub::WatchSetup() {
       store_.SetMounting(serial, stored);
       store_.MarkStale(binding.rig, "mounting", serial, "it slipped");
       status_due_ = true;
-      ports_.log(serial + " has slipped on the " + stream::Name(binding.role) +
-                 ": footing-ctl setup --only mounting");
+      ports_.log({serial + " has slipped on the " + stream::Name(binding.role) +
+                      ": footing-ctl setup --only mounting",
+                  serial, true});
     }
   }
 }

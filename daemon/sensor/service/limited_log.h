@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/transport/token_bucket.h"
+#include "daemon/sensor/service/log_line.h"
 
 namespace footing::sensor {
 
@@ -14,20 +15,20 @@ namespace footing::sensor {
 /// left out says how many.
 class LimitedLog {
  public:
-  explicit LimitedLog(std::function<void(const std::string& line)> say) : say_(std::move(say)) {}
+  explicit LimitedLog(std::function<void(const LogLine&)> say) : say_(std::move(say)) {}
 
-  void Say(const std::string& line, std::int64_t now_ns) {
+  void Say(LogLine line, std::int64_t now_ns) {
     if (!bucket_.Take(now_ns)) {
       ++left_out_;
       return;
     }
     const auto before = std::exchange(left_out_, 0);
-    say_(before == 0 ? line
-                     : line + " (" + std::to_string(before) + " lines before were left out)");
+    if (before != 0) line.text += " (" + std::to_string(before) + " lines before were left out)";
+    say_(line);
   }
 
  private:
-  std::function<void(const std::string&)> say_;
+  std::function<void(const LogLine&)> say_;
   transport::TokenBucket bucket_{2, 20};
   std::uint64_t left_out_ = 0;
 };

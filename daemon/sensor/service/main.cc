@@ -26,7 +26,7 @@ int Run(const sensor::CommandLine& line,
   if (line.json) {
     std::cout << nlohmann::json{{"listening_on", (*service)->listening_on()}} << std::endl;
   }
-  service_manager::Notifier notifier(io);
+  service_manager::Notifier notifier(io, [&] { return (*service)->Stuck(); });
   notifier.Ready("listening on " + (*service)->listening_on().front());
   service_manager::ServiceSignals::Handlers handlers;
   handlers.stop = [&](int signal, std::function<void()> done) {

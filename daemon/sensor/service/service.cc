@@ -7,9 +7,9 @@
 
 #include "common/clock/clock.h"
 #include "common/discovery/advertiser.h"
+#include "common/lease_control/lease_control.h"
 #include "common/log/log.h"
 #include "common/monitoring/monitor.h"
-#include "common/service_manager/service_manager.h"
 #include "common/timer/timer.h"
 #include "common/transport/address.h"
 #include "common/transport/server.h"
@@ -19,8 +19,10 @@
 #include "daemon/sensor/service/commands.h"
 #include "daemon/sensor/service/hub.h"
 #include "daemon/sensor/service/limited_log.h"
+#include "daemon/sensor/service/log_line.h"
 #include "daemon/sensor/service/publish.h"
 #include "daemon/sensor/service/reload.h"
+#include "daemon/sensor/service/server_options.h"
 #include "daemon/sensor/setup/calibration_store.h"
 #include "daemon/sensor/setup/disk_writer.h"
 #include "daemon/sensor/setup/state_directory.h"
@@ -32,27 +34,6 @@ using devices::DeviceHandle;
 
 /// Late ticks are made up for up to this many; more are left out.
 constexpr int kMostTicksBehind = 10;
-
-/// The socket that the service manager passed under this name, or the user's own.
-std::string OwnAddress(const std::string& name) {
-  if (service_manager::PassedSocket(name) >= 0) return "fd:" + name;
-  return transport::DefaultAddress(name, true).Text();
-}
-
-transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
-                                           const transport::ServerOptions& with_access) {
-  transport::ServerOptions options = with_access;
-  options.server_id = "footingd";
-  options.version = version;
-  options.channels = Channels();
-  options.channels.push_back(monitoring::StatsChannel());
-  options.tick_rate_hz = config.tick_rate_hz;
-  options.sessions = config.sessions;
-  options.capabilities = {"features", "boards",   "raw",    "rumble", "leds",
-                          "assign",   "nunchuk",  "camera", "sphere", "setup",
-                          "tare",     "mounting", "layout", "hands",  "contacts"};
-  return options;
-}
 
 /// The configured state directory; none when nothing is to be kept.
 setup::Storage StorageOf(setup::StateDirectory& directory, setup::DiskWriter& disk,
@@ -78,26 +59,30 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
             },
             [this](const std::string& problem) { state_.SayWritten(problem); }),
         calibrations_(StorageOf(state_, disk_, config)),
-        hub_(config, {[this](DeviceHandle device, const reports::OutputReport& report) {
-                        Send(device, report);
-                      },
-                      [this](const std::string& line) { changes_.Say(line, clock::MonotonicNs()); },
-                      [] { return clock::MonotonicNs(); },
-                      [this](DeviceHandle device, std::uint8_t id, std::size_t size) {
-                        RequestFeature(device, id, size);
-                      },
-                      [this](const std::string& serial) { return calibrations_.Load(serial); },
-                      [this](const std::string& serial, const std::vector<std::uint8_t>& bytes) {
-                        calibrations_.Save(serial, bytes);
-                      },
-                      StorageOf(state_, disk_, config)}),
-        server_(
-            io, MakeServerOptions(config, version, with_access),
-            {[this](const transport::SessionInfo& session, const v1::Command& command) {
-               return OnCommand(session, command);
-             },
-             [this](const transport::SessionInfo& session) { hub_.EndSession(session.session); },
-             [](const std::string& line) { log::Warning(line); }}),
+        hub_(config,
+             {[this](DeviceHandle device, const reports::OutputReport& report) {
+                Send(device, report);
+              },
+              [this](const LogLine& line) { changes_.Say(line, clock::MonotonicNs()); },
+              [] { return clock::MonotonicNs(); },
+              [this](DeviceHandle device, std::uint8_t id, std::size_t size) {
+                RequestFeature(device, id, size);
+              },
+              [this](const std::string& serial) { return calibrations_.Load(serial); },
+              [this](const std::string& serial, const std::vector<std::uint8_t>& bytes) {
+                calibrations_.Save(serial, bytes);
+              },
+              StorageOf(state_, disk_, config),
+              [this](DeviceHandle device, const std::string& why) { Refuse(device, why); }}),
+        server_(io, MakeServerOptions(config, version, with_access),
+                {[this](const transport::SessionInfo& session, const v1::Command& command) {
+                   return OnCommand(session, command);
+                 },
+                 [this](const transport::SessionInfo& session) {
+                   hub_.EndSession(session.session);
+                   lease_.EndSession(session.session);
+                 },
+                 LogOverload}),
         monitor_(server_, config.tick_rate_hz, {"footingd", version}) {}
 
   Result<void> Open() {
@@ -149,6 +134,13 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     server_.Drain(reason, std::move(done));
   }
 
+  std::string Stuck() const {
+    for (const auto& source : sources_) {
+      if (std::string what = source->Stuck(); !what.empty()) return what;
+    }
+    return "";
+  }
+
   const std::vector<std::string>& listening_on() const { return listening_on_; }
 
  private:
@@ -180,7 +172,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
       hub_.OnContacts(received_ns, frame);
     };
     handlers.on_trouble = [this](const std::string& line) {
-      troubles_.Say(line, clock::MonotonicNs());
+      troubles_.Say({line, "", true}, clock::MonotonicNs());
     };
     const auto new_handle = [this] { return ++last_handle_; };
     if (!*address) {
@@ -190,8 +182,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
         log::Warning(started.error().message);
       return {};
     }
-    sources_.push_back(
-        std::make_unique<devices::SocketSource>(io_, **address, new_handle, handlers));
+    sources_.push_back(std::make_unique<devices::SocketSource>(io_, **address, new_handle, handlers,
+                                                               config_.device_connections));
     if (const auto started = sources_.back()->Start(); !started) return started;
     log::Info("simulated devices on " + (*address)->Text());
     return {};
@@ -205,6 +197,13 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   void RequestFeature(DeviceHandle device, std::uint8_t id, std::size_t size) {
     const auto source = source_of_.find(device);
     if (source != source_of_.end()) sources_[source->second]->RequestFeature(device, id, size);
+  }
+
+  void Refuse(DeviceHandle device, const std::string& why) {
+    const auto source = source_of_.find(device);
+    if (source == source_of_.end()) return;
+    sources_[source->second]->Refuse(device, why);
+    source_of_.erase(device);
   }
 
   void WaitForTick() {
@@ -227,6 +226,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   void Tick() {
     const std::int64_t now_ns = clock::MonotonicNs();
     const TickContent content = hub_.Tick(now_ns);
+    for (const std::string& change : lease_.TakeChanges(now_ns)) log::Info(change);
     if (content.has_status) monitor_.SetDevices(content.status);
     auto channels = ToChannels(content);
     const std::chrono::nanoseconds late = timer::Now() - next_tick_;
@@ -238,7 +238,8 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   std::optional<v1::CommandResult> OnCommand(const transport::SessionInfo& session,
                                              const v1::Command& command) {
     const std::uint64_t before = disk_.last_save();
-    v1::CommandResult result = CarryOut(hub_, config_, session.session, command);
+    v1::CommandResult result =
+        CarryOut(hub_, lease_, config_, session.session, command, clock::MonotonicNs());
     if (disk_.last_save() == before) return result;
     disk_.OnWritten([this, session = session.session, result](const std::string& problem) mutable {
       const std::string before_it = result.message().empty() ? "" : result.message() + "; ";
@@ -257,12 +258,13 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
   std::vector<std::unique_ptr<devices::DeviceSource>> sources_;
   std::map<DeviceHandle, std::size_t> source_of_;
   DeviceHandle last_handle_ = 0;
-  LimitedLog changes_{[](const std::string& line) { log::Info(line); }};
-  LimitedLog troubles_{[](const std::string& line) { log::Warning(line); }};
+  LimitedLog changes_{Log};
+  LimitedLog troubles_{Log};
   setup::StateDirectory state_;
   setup::DiskWriter disk_;  ///< Writes with state_, so it ends first.
   setup::CalibrationStore calibrations_;
   Hub hub_;
+  lease::LeaseControl lease_{"footingd"};
   transport::Server server_;
   monitoring::Monitor monitor_;
   std::optional<discovery::Advertiser> advertiser_;
@@ -291,6 +293,7 @@ void Service::Stop(const std::string& reason, std::function<void()> done) {
   implementation_->Stop(reason, std::move(done));
 }
 void Service::Reload(const Config& wanted) { implementation_->Reload(wanted); }
+std::string Service::Stuck() const { return implementation_->Stuck(); }
 std::vector<std::string> Service::listening_on() const { return implementation_->listening_on(); }
 
 }  // namespace footing::sensor

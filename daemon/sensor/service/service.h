@@ -26,6 +26,8 @@ class Service {
 
   /// Takes of another config what needs no restart, and logs what changed and what does.
   void Reload(const Config& wanted);
+  /// What a thread of a device is stuck in; empty: nothing.
+  std::string Stuck() const;
 
   /// Where it listens for clients.
   std::vector<std::string> listening_on() const;

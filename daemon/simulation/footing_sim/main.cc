@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   boost::asio::io_context io(1);
   const auto served = footing_sim::StartService(io, config, cli::Version());
   if (!served) return cli::Report(served.error());
-  service_manager::Notifier notifier(io);
+  service_manager::Notifier notifier(io, served->stuck);
   notifier.Ready("engine " + config.engine);
   service_manager::ServiceSignals::Handlers handlers;
   handlers.stop = [&](int signal, std::function<void()> done) {

@@ -29,6 +29,7 @@ inline constexpr int kMaxAdded = 64;
 struct Frame {
   engine::EngineOutput output;
   std::uint64_t overruns = 0;
+  std::uint64_t left_out = 0;  ///< Frames that were due and are not published.
   std::array<engine::EngineEvent, kMaxFrameEvents> events;  ///< Since the last frame.
   int event_count = 0;
   std::array<Applied, kMaxApplied> applied;  ///< Since the last frame.

@@ -121,8 +121,7 @@ Result<void> GaitLine::SetInterface(const transport::SessionInfo& who,
 v1::CommandResult GaitLine::OnCommand(const transport::SessionInfo& who,
                                       const v1::Command& command) {
   const std::int64_t now_ns = clock::MonotonicNs();
-  if (LeaseControl::Takes(command)) return lease_.OnCommand(command, who.session, now_ns);
-  if (const auto refusal = lease_.Refusal(command, who.session, now_ns)) return *refusal;
+  if (const auto answer = lease_.Answer(command, who.session, now_ns)) return *answer;
   if (command.has_set_study()) return study_.OnSetStudy(who, command.set_study());
   if (command.has_set_game()) {
     const v1::CommandResult result = game_.OnSetGame(who, command.set_game());
@@ -154,7 +153,7 @@ v1::Events GaitLine::EventsOf(const Frame& frame, std::int64_t now_ns) {
   for (v1::Event& event : trials_.TakeCorrections(now_ns)) {
     *events.add_events() = std::move(event);
   }
-  for (v1::Event& event : lease_.TakeEvents(now_ns)) *events.add_events() = std::move(event);
+  serving::AddLeaseEvents(lease_.TakeChanges(now_ns), now_ns, events);
   v1::ResponseStages stages;
   if (!responses_.Complete(frame, now_ns, stages)) return events;
   v1::Event& event = *events.add_events();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/lease_control/lease_control.h"
 #include "common/result/result.h"
 #include "common/stream/character.h"
 #include "common/transport/server.h"
@@ -11,7 +12,6 @@
 #include "daemon/simulation/gait_service/effective_config.h"
 #include "daemon/simulation/gait_service/gait_run.h"
 #include "daemon/simulation/gait_service/game_relay.h"
-#include "daemon/simulation/gait_service/lease_control.h"
 #include "daemon/simulation/gait_service/responses.h"
 #include "daemon/simulation/gait_service/sensor_input.h"
 #include "daemon/simulation/gait_service/study_relay.h"
@@ -71,7 +71,7 @@ class GaitLine {
   TrackExchange tracks_;  // Before the thread, which uses it.
   serving::SimulationThread<GaitRun> thread_;
   TrialControl trials_;
-  LeaseControl lease_;
+  lease::LeaseControl lease_{"footing-sim"};
   SensorInput input_;
   GameRelay game_;
   StudyRelay study_;

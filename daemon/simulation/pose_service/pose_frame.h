@@ -84,6 +84,7 @@ struct PoseFrame {
   std::uint64_t step = 0;
   double time_s = 0;
   std::uint64_t overruns = 0;
+  std::uint64_t left_out = 0;  ///< Frames that were due and are not published.
   std::uint64_t subject_number = 0;
   std::uint64_t state_hash = 0;  ///< Of the pose's coordinates, bit for bit.
   PoseInputStatus input;

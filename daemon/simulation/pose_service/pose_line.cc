@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/clock/clock.h"
 #include "daemon/simulation/pose_service/pose_applied.h"
 #include "daemon/simulation/pose_service/pose_models.h"
 #include "daemon/simulation/pose_service/pose_publish.h"
@@ -108,13 +109,16 @@ v1::CommandResult PoseLine::TakeSubject(const v1::SetSubject& message) {
   return Answer(true, "");
 }
 
-v1::CommandResult PoseLine::OnCommand(const transport::SessionInfo&, const v1::Command& command) {
+v1::CommandResult PoseLine::OnCommand(const transport::SessionInfo& who,
+                                      const v1::Command& command) {
+  if (const auto answer = lease_.Answer(command, who.session, clock::MonotonicNs())) return *answer;
   if (command.has_set_subject()) return TakeSubject(command.set_subject());
   if (command.has_calibrate_t_pose()) {
     sensors_.Calibrate();
     return Answer(true, "");
   }
-  return Answer(false, "footing-sim --engine pose takes calibrate_t_pose and set_subject");
+  return Answer(false,
+                "footing-sim --engine pose takes calibrate_t_pose, set_subject and the lease");
 }
 
 std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
@@ -134,9 +138,12 @@ std::vector<transport::ChannelBytes> PoseLine::OnFrame(const PoseFrame& frame,
     const PoseApplied& applied = frame.applied[static_cast<std::size_t>(i)];
     *inputs.add_inputs() = ToAppliedInput(applied, Of(applied.inputs.subject_number).subject);
   }
-  serving::AddFrame(
-      ToCharacterFrame(frame, known.subject, mode_, world_, sensors_.rig(), sensors_.tracker()),
-      events_.Between(frame, known.subject, now_ns), inputs, channels);
+  v1::CharacterFrame characters =
+      ToCharacterFrame(frame, known.subject, mode_, world_, sensors_.rig(), sensors_.tracker());
+  characters.set_lease_holder(lease_.holder());
+  v1::Events events = events_.Between(frame, known.subject, now_ns);
+  serving::AddLeaseEvents(lease_.TakeChanges(now_ns), now_ns, events);
+  serving::AddFrame(characters, events, inputs, channels);
   return channels;
 }
 

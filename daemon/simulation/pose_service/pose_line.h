@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/body/body.h"
+#include "common/lease_control/lease_control.h"
 #include "common/result/result.h"
 #include "common/transport/server.h"
 #include "daemon/simulation/pose_service/config.h"
@@ -31,7 +32,7 @@ class PoseLine {
                                                   const Config& config, int wake_descriptor);
 
   static std::vector<transport::Channel> Channels();
-  static std::vector<std::string> Capabilities() { return {"pose"}; }
+  static std::vector<std::string> Capabilities() { return {"pose", "lease"}; }
   static std::vector<std::string> SensorChannels() {
     return {"status", "setup", "boards", "hands", "contacts", "motion"};
   }
@@ -41,9 +42,9 @@ class PoseLine {
   serving::SimulationThread<PoseRun>& thread() { return thread_; }
   std::vector<transport::ChannelBytes> Retained() const;
   void OnTick(const v1::Tick& tick, std::int64_t now_ns) { sensors_.OnTick(tick, now_ns); }
-  /// CalibrateTPose and SetSubject; anything else is answered with what there is.
+  /// CalibrateTPose, SetSubject and the lease; anything else is answered with what there is.
   v1::CommandResult OnCommand(const transport::SessionInfo& who, const v1::Command& command);
-  void OnSessionEnd(const transport::SessionInfo&) {}
+  void OnSessionEnd(const transport::SessionInfo& who) { lease_.EndSession(who.session); }
   std::vector<transport::ChannelBytes> OnFrame(const PoseFrame& frame, std::int64_t now_ns);
 
  private:
@@ -71,6 +72,7 @@ class PoseLine {
   serving::SimulationThread<PoseRun> thread_;
   PoseSensors sensors_;
   PoseEvents events_;
+  lease::LeaseControl lease_{"footing-sim"};
 };
 
 }  // namespace footing::pose_service

@@ -36,6 +36,13 @@ v1::Event MakeEvent(v1::Event::Kind kind, std::int64_t host_ns, const std::strin
   return event;
 }
 
+void AddLeaseEvents(const std::vector<std::string>& changes, std::int64_t host_ns,
+                    v1::Events& events) {
+  for (const std::string& change : changes) {
+    *events.add_events() = MakeEvent(v1::Event::KIND_LEASE, host_ns, change);
+  }
+}
+
 v1::Skeletons MakeSkeletons(const std::string& world, const stream::Skeleton& skeleton) {
   v1::Skeletons skeletons;
   skeletons.set_world(world);

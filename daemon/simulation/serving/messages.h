@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/stream/character.h"
 #include "footing/v1/character.pb.h"
@@ -28,6 +29,9 @@ struct FrameState {
 v1::CharacterFrame MakeFrame(const FrameState& state, const std::string& world,
                              const std::string& rig);
 v1::Event MakeEvent(v1::Event::Kind kind, std::int64_t host_ns, const std::string& text = "");
+/// What happened to the lease, for a person.
+void AddLeaseEvents(const std::vector<std::string>& changes, std::int64_t host_ns,
+                    v1::Events& events);
 v1::Skeletons MakeSkeletons(const std::string& world, const stream::Skeleton& skeleton);
 
 /// The answer to a command; the message says why it was not carried out.

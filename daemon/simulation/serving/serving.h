@@ -15,6 +15,7 @@
 
 #include "common/clock/clock.h"
 #include "common/discovery/advertiser.h"
+#include "common/log/fields.h"
 #include "common/log/log.h"
 #include "common/monitoring/monitor.h"
 #include "common/result/result.h"
@@ -41,7 +42,9 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
                    return line_->OnCommand(who, command);
                  },
                  [this](const transport::SessionInfo& who) { line_->OnSessionEnd(who); },
-                 [](const std::string& text) { log::Warning(text); }}),
+                 [](const transport::OverloadLine& said) {
+                   log::Write(log::Level::kWarning, said.text, {"", said.session, said.channel});
+                 }}),
         monitor_(server_, line_->frame_rate_hz(), {"footing-sim", config.version}) {}
 
   Result<void> Open(boost::asio::io_context& io, const Config& config) {
@@ -96,6 +99,8 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
     return changed_files;
   }
 
+  std::string Stuck() const { return line_->thread().Stuck() ? "the simulation thread" : ""; }
+
   void Stop(const std::string& reason, std::function<void()> done) {
     client_->Stop();
     line_->thread().Stop();
@@ -136,6 +141,9 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
       const std::int64_t now_ns = clock::MonotonicNs();
       std::vector<transport::ChannelBytes> channels = line_->OnFrame(frame_, now_ns);
       monitor_.OnTick({now_ns, std::nullopt, frame_.overruns}, channels);
+      if (const auto more = frame_.left_out - std::exchange(left_out_, frame_.left_out); more > 0) {
+        server_.NoteLateTicks(more);
+      }
       server_.Publish(now_ns, std::move(channels));
     }
   }
@@ -144,6 +152,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
   boost::asio::posix::stream_descriptor wake_;
   std::uint64_t wakes_ = 0;
   typename Line::Run::Frame frame_;
+  std::uint64_t left_out_ = 0;  ///< Frames, as the server knows.
   transport::Server server_;
   std::size_t listening_ = 0;
   std::shared_ptr<timer::Timer> lan_warning_;  ///< With insecure_lan.
@@ -160,6 +169,8 @@ struct Served {
   /// Takes limits and access of another config, for sessions that come from now on: the settings
   /// whose files have another content. An error changes nothing.
   std::function<Result<std::vector<std::string>>(const Config& wanted)> reload;
+  /// The thread that is stuck; empty: none.
+  std::function<std::string()> stuck;
 };
 
 /// Makes the line with `make_line(wake_descriptor)` and starts it.
@@ -179,7 +190,8 @@ Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
   return Served{[serving](const std::string& reason, std::function<void()> done) {
                   serving->Stop(reason, std::move(done));
                 },
-                [serving](const Config& wanted) { return serving->Reload(wanted); }};
+                [serving](const Config& wanted) { return serving->Reload(wanted); },
+                [serving] { return serving->Stuck(); }};
 }
 
 }  // namespace footing::serving

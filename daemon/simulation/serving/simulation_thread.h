@@ -10,6 +10,7 @@
 #include "common/clock/clock.h"
 #include "common/exchange/bounded_queue.h"
 #include "common/exchange/flag.h"
+#include "common/exchange/heartbeat.h"
 #include "common/exchange/latest.h"
 
 namespace footing::serving {
@@ -19,9 +20,9 @@ namespace footing::serving {
 /// `Run` is the engine with its two hand-overs (GaitRun, PoseRun): it names the types `Inputs` and
 /// `Frame`, advances by one step with StepOnSimThread(inputs, frame), and has
 /// FillOnSimThread(frame) before and TakenOnSimThread(frame) after the frame was handed over. A
-/// Frame has a count `overruns`. After Start the thread allocates, locks and logs nothing. It meets
-/// the io thread at `inputs`, `frames`, and one write to `wake_descriptor` (an eventfd) per frame,
-/// and where the run itself has a queue.
+/// Frame has the counts `overruns` and `left_out` (frames). After Start the thread allocates, locks
+/// and logs nothing. It meets the io thread at `inputs`, `frames`, and one write to
+/// `wake_descriptor` (an eventfd) per frame, and where the run itself has a queue.
 template <typename Run>
 class SimulationThread {
  public:
@@ -55,6 +56,9 @@ class SimulationThread {
     thread_.join();
   }
 
+  /// It has not come round for longer than any step takes.
+  bool Stuck() const { return heartbeat_.StuckFor(kLongestTurnNs, clock::MonotonicNs()); }
+
   exchange::Latest<Inputs>& inputs() { return inputs_; }
   exchange::BoundedQueue<Frame>& frames() { return frames_; }
   /// Of the simulation thread once that has started.
@@ -64,10 +68,12 @@ class SimulationThread {
   static constexpr std::size_t kFrameQueue = 64;
   /// Behind by more than this, the thread gives up catching up and restarts from the present.
   static constexpr std::int64_t kGiveUpNs = 100'000'000;
+  static constexpr std::int64_t kLongestTurnNs = 5'000'000'000;
 
   void RunOnSimThread() {
     std::int64_t due_ns = clock::MonotonicNs();
     while (!stop_.raised()) {
+      heartbeat_.Beat(clock::MonotonicNs());
       for (int i = 0; i < steps_per_frame_; ++i) {
         due_ns += step_ns_;
         const std::int64_t behind_ns = clock::MonotonicNs() - due_ns;
@@ -75,7 +81,7 @@ class SimulationThread {
           clock::SleepUntil(due_ns);
         } else if (behind_ns > step_ns_) {
           ++frame_.overruns;
-          if (behind_ns > kGiveUpNs) due_ns += behind_ns;
+          if (behind_ns > kGiveUpNs) GiveUpOnSimThread(behind_ns, due_ns);
         }
         run_.StepOnSimThread(inputs_, frame_);
       }
@@ -83,10 +89,19 @@ class SimulationThread {
     }
   }
 
+  /// Restarts from the present: the frames that were due until now are left out.
+  void GiveUpOnSimThread(std::int64_t behind_ns, std::int64_t& due_ns) {
+    due_ns += behind_ns;
+    frame_.left_out += static_cast<std::uint64_t>(behind_ns / (step_ns_ * steps_per_frame_));
+  }
+
   void HandOverOnSimThread() {
     run_.FillOnSimThread(frame_);
     // A full queue keeps events and inputs for the next frame: only a pose is lost.
-    if (!frames_.Push(frame_)) return;
+    if (!frames_.Push(frame_)) {
+      ++frame_.left_out;
+      return;
+    }
     run_.TakenOnSimThread(frame_);
     clock::Act();
     const std::uint64_t one = 1;
@@ -100,6 +115,7 @@ class SimulationThread {
   exchange::Latest<Inputs> inputs_;
   exchange::BoundedQueue<Frame> frames_;
   exchange::Flag stop_;
+  exchange::Heartbeat heartbeat_;
   Frame frame_;  ///< Being filled, on the simulation thread.
   std::thread thread_;
 };

@@ -163,6 +163,56 @@ TEST_F(FairShareTest, LateTicksAreCountedAndSaidToAllOnce) {
   ASSERT_EQ(overloads_.size(), 1u);
 }
 
+TEST_F(FairShareTest, TicksThatWereLeftOutAreAHoleInTheSequenceWithAGap) {
+  StartServer();
+  const auto client = Subscribed(Subscribe());
+  const std::uint64_t before = server_->Publish(now_ns_, {});
+  server_->NoteLateTicks(12);
+  server_->NoteLateTicks(3);
+  const std::uint64_t after = server_->Publish(now_ns_, {});
+  EXPECT_EQ(after, before + 16);
+  EXPECT_EQ(server_->Publish(now_ns_, {}), after + 1);
+  ASSERT_TRUE(RunUntil([&] { return client->Sequences().size() == 3; }));
+  const v1::Envelope* const gap = client->Find(v1::Envelope::kGap);
+  ASSERT_NE(gap, nullptr);
+  EXPECT_EQ(gap->gap().from_sequence(), before + 1);
+  EXPECT_EQ(gap->gap().to_sequence(), after - 1);
+  EXPECT_EQ(client->Count(v1::Envelope::kGap), 1u);
+}
+
+TEST_F(FairShareTest, AChannelTooLongForATickIsLoggedByItsName) {
+  ServerOptions options = Options();
+  options.max_message_out_bytes = 1000;
+  StartServer(options);
+  for (int i = 0; i < 3; ++i) server_->Publish(now_ns_, {{17, std::string(2000, 'x')}});
+  ASSERT_EQ(overloads_.size(), 1u);
+  EXPECT_NE(overloads_[0].find("channel motion was left out"), std::string::npos) << overloads_[0];
+}
+
+TEST(TurnQueue, ASmallShareIsKeptAlsoByWorkThatComesWhenNothingWaits) {
+  asio::io_context io;
+  const auto turns = std::make_shared<TurnQueue>(io.get_executor(),
+                                                 TurnPace{.share = 0.2, .rests_when_empty = true});
+  const std::int64_t begun_ns = clock::MonotonicNs();
+  std::int64_t worked_ns = 0;
+  int left = 40;
+  std::function<void()> add = [&] {
+    turns->Add([&] {
+      const std::int64_t from_ns = clock::MonotonicNs();
+      while (clock::MonotonicNs() < from_ns + 200'000) {
+      }
+      worked_ns += clock::MonotonicNs() - from_ns;
+      // When the line is empty again, as that of a socket that takes no more for now.
+      if (--left > 0) asio::post(io, add);
+      return false;
+    });
+  };
+  add();
+  io.run();
+  const std::int64_t total_ns = clock::MonotonicNs() - begun_ns;
+  EXPECT_LT(static_cast<double>(worked_ns), 0.3 * static_cast<double>(total_ns));
+}
+
 TEST_F(FairShareTest, TheWelcomeNamesTheLimits) {
   StartServer();
   const auto client = Connect();

@@ -91,7 +91,7 @@ class ServerFixture : public IoFixture {
       return result;
     };
     handlers.on_session_end = [this](const SessionInfo& info) { ended_.push_back(info); };
-    handlers.on_overload = [this](const std::string& line) { overloads_.push_back(line); };
+    handlers.on_overload = [this](const OverloadLine& line) { overloads_.push_back(line.text); };
     server_ = std::make_unique<Server>(io_, options, handlers);
     ASSERT_TRUE(server_->Listen(UnixAddress()).ok());
     ASSERT_TRUE(server_->Listen(TcpAddress()).ok());

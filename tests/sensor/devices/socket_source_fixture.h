@@ -64,9 +64,10 @@ class SocketSourceTest : public transport::IoFixture {
   }
 
   transport::Address AddressHere() const { return UnixAddress("devices.sock"); }
-  std::unique_ptr<Peer> Connect() {
+  std::unique_ptr<Peer> Connect() { return ConnectTo(AddressHere()); }
+  std::unique_ptr<Peer> ConnectTo(const transport::Address& address) {
     std::unique_ptr<Peer> peer;
-    transport::Dial(io_, AddressHere(), [&peer](Result<transport::Socket> socket) {
+    transport::Dial(io_, address, [&peer](Result<transport::Socket> socket) {
       ASSERT_TRUE(socket);
       peer = std::make_unique<Peer>(std::move(socket).value());
     });

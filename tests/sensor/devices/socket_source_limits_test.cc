@@ -13,6 +13,7 @@ namespace footing::devices {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 TEST_F(SocketSourceTest, ADeviceThatIsNotTakenIsToldWhyAndTheOthersGoOn) {
   auto peer = Connect();
@@ -27,6 +28,56 @@ TEST_F(SocketSourceTest, ADeviceThatIsNotTakenIsToldWhyAndTheOthersGoOn) {
   EXPECT_FALSE(peer->closed);
   peer->Attach(1, "b");  // The slot is free for another.
   EXPECT_TRUE(RunUntil([this] { return attached_.size() == 3; }));
+}
+
+TEST_F(SocketSourceTest, ADeviceThatGivesWayIsToldWhyAndTheOthersGoOn) {
+  auto peer = Connect();
+  peer->Attach(4, "a");
+  peer->Attach(5, "b");
+  EXPECT_TRUE(RunUntil([this] { return attached_.size() == 2; }));
+  source_.Refuse(attached_[0], "a real device takes its place");
+  peer->Report(4, "x");
+  peer->Report(5, "x");
+  EXPECT_TRUE(RunUntil([&] { return !reported_.empty() && !peer->received.empty(); }));
+  EXPECT_EQ(peer->received[0].refused().slot(), 4u);
+  EXPECT_EQ(peer->received[0].refused().reason(), "a real device takes its place");
+  EXPECT_THAT(reported_, ElementsAre(attached_[1]));
+  EXPECT_THAT(detached_, ElementsAre()) << "its owner has let it go already";
+  EXPECT_FALSE(peer->closed);
+}
+
+TEST(ConnectionLimits, OneUserCannotTakeEveryPlaceAndAdministratorsHaveTheirOwn) {
+  const ConnectionLimits limits = {64, 16};
+  constexpr uid_t kOwn = 500;
+  const transport::Peer user = {true, 1000, {}}, own = {true, kOwn, {}}, root = {true, 0, {}};
+  EXPECT_EQ(WhyNoConnection(limits, user, kOwn, {15, 15}), "");
+  EXPECT_THAT(WhyNoConnection(limits, user, kOwn, {16, 16}), HasSubstr("of this user"));
+  EXPECT_EQ(WhyNoConnection(limits, user, kOwn, {63, 0}), "");
+  EXPECT_THAT(WhyNoConnection(limits, user, kOwn, {64, 0}), HasSubstr("64 connections"));
+  for (const auto& admin : {own, root}) {
+    EXPECT_EQ(WhyNoConnection(limits, admin, kOwn, {71, 71}), "");
+    EXPECT_NE(WhyNoConnection(limits, admin, kOwn, {72, 0}), "");
+  }
+  EXPECT_THAT(WhyNoConnection(limits, {}, kOwn, {16, 16}), HasSubstr("over TCP"));
+}
+
+TEST_F(SocketSourceTest, AConnectionTooManyHearsWhyAndIsClosed) {
+  transport::Address address{transport::Address::Kind::kTcp, "", "127.0.0.1", 0};
+  SocketSource source(io_, address, [this] { return ++last_handle_; }, Handlers(), {64, 2});
+  ASSERT_TRUE(source.Start());
+  auto first = ConnectTo(source.address());
+  auto second = ConnectTo(source.address());
+  auto third = ConnectTo(source.address());
+  EXPECT_TRUE(RunUntil([&] { return third->closed; }));
+  ASSERT_EQ(third->received.size(), 1u);
+  EXPECT_THAT(third->received[0].refused().reason(), HasSubstr("2 connections over TCP already"));
+  EXPECT_THAT(trouble_, ElementsAre(HasSubstr("a connection was refused")));
+  first->connection.reset();
+  second->Attach(0, "a");
+  EXPECT_TRUE(RunUntil([this] { return attached_.size() == 1; }));
+  auto fourth = ConnectTo(source.address());
+  fourth->Attach(0, "b");
+  EXPECT_TRUE(RunUntil([this] { return attached_.size() == 2; }));
 }
 
 TEST_F(SocketSourceTest, AttachingInALoopIsSlowed) {

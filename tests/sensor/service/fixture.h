@@ -27,8 +27,11 @@ class Bench {
       : hub_(config, {[this](devices::DeviceHandle handle, const reports::OutputReport& report) {
                         Answer(handle, report);
                       },
-                      [this](const std::string& line) { log.push_back(line); },
-                      [this] { return now_ns_; }, nullptr, nullptr, nullptr, storage}) {}
+                      [this](const LogLine& line) { log.push_back(line.text); },
+                      [this] { return now_ns_; }, nullptr, nullptr, nullptr, storage,
+                      [this](devices::DeviceHandle handle, const std::string&) {
+                        refused.push_back(handle);
+                      }}) {}
 
   devices::DeviceHandle Attach(Model model, const std::string& serial = "", bool simulated = true) {
     const auto& own = std::visit(
@@ -86,6 +89,7 @@ class Bench {
 
   TickContent content;
   std::vector<std::string> log;
+  std::vector<devices::DeviceHandle> refused;  ///< Devices that gave way to real ones.
   std::function<Eigen::Vector3d(double t_s)> force = [](double) {
     return Eigen::Vector3d(0, 0, -9.80665);
   };

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +12,10 @@ namespace {
 
 using stream::CalibrationOrigin;
 using stream::DeviceState;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
 using virtual_devices::Wiimote;
 
 std::string Serial(std::size_t number) {
@@ -96,11 +101,11 @@ TEST(HubFaults, ASecondStandInOfOneSerialIsNotTakenAndTheFirstLivesOn) {
 
 TEST(LimitedLog, AFloodOfLinesIsCutAndCounted) {
   std::vector<std::string> lines;
-  LimitedLog log([&](const std::string& line) { lines.push_back(line); });
+  LimitedLog log([&](const LogLine& line) { lines.push_back(line.text); });
   std::int64_t now_ns = 1'000'000'000;
-  for (int i = 0; i < 1000; ++i) log.Say("line", now_ns);
+  for (int i = 0; i < 1000; ++i) log.Say({"line"}, now_ns);
   EXPECT_EQ(lines.size(), 20u);
-  log.Say("later", now_ns + 2'000'000'000);
+  log.Say({"later"}, now_ns + 2'000'000'000);
   EXPECT_EQ(lines.back(), "later (980 lines before were left out)");
 }
 
@@ -121,6 +126,56 @@ TEST(HubFaults, TooManyDevicesAtOnceAreRefusedWithALine) {
   bench.Advance(0.2);
   EXPECT_EQ(bench.content.status.size(), Hub::kMaxDevices);
   EXPECT_NE(bench.log.back().find("ignored"), std::string::npos);
+}
+
+TEST(HubFaults, ARealDeviceGetsAPlaceWhenStandInsHaveAll) {
+  Bench bench;
+  devices::DeviceHandle newest = 0;
+  for (std::size_t i = 0; i < Hub::kMaxDevices; ++i) newest = bench.Attach(Wiimote(i), Serial(i));
+  bench.Attach(Wiimote(100), "real", false);
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("real").state, DeviceState::kLive);
+  EXPECT_EQ(bench.content.status.size(), Hub::kMaxDevices);
+  EXPECT_THAT(bench.refused, ElementsAre(newest));
+  EXPECT_EQ(bench.StatusOf(Serial(0)).state, DeviceState::kLive);
+  EXPECT_THAT(bench.log, Contains(HasSubstr(Serial(Hub::kMaxDevices - 1) + " is no longer taken")));
+}
+
+TEST(HubFaults, RealDevicesAreNeverDroppedForOthers) {
+  Bench bench;
+  for (std::size_t i = 0; i < Hub::kMaxDevices; ++i) bench.Attach(Wiimote(i), Serial(i), false);
+  bench.Attach(Wiimote(100), "stand-in", true);
+  bench.Attach(Wiimote(101), "one more", false);
+  bench.Advance(0.5);
+  EXPECT_THAT(bench.refused, IsEmpty());
+  for (const auto& status : bench.content.status) {
+    EXPECT_EQ(status.state, DeviceState::kLive) << status.serial;
+  }
+}
+
+TEST(HubFaults, TheStandInOfARealDevicesSerialHearsThatItIsNoLongerTaken) {
+  Bench bench;
+  const auto stand_in = bench.Attach(Wiimote(1), "a", true);
+  bench.Advance(0.5);
+  bench.Attach(Wiimote(1), "a", false);
+  bench.Advance(0.5);
+  EXPECT_THAT(bench.refused, ElementsAre(stand_in));
+  EXPECT_FALSE(bench.StatusOf("a").simulated);
+}
+
+TEST(HubFaults, ARealDeviceGetsItsRoleBackFromAStandIn) {
+  Bench bench;
+  bench.wish = stream::DeviceRole::kRightHand;
+  const auto real = bench.Attach(Wiimote(1), "real", false);
+  bench.Advance(0.5);
+  bench.Detach(real);
+  bench.Attach(Wiimote(2), "stand-in", true);
+  bench.Advance(0.5);
+  ASSERT_EQ(bench.StatusOf("stand-in").role, stream::DeviceRole::kRightHand);
+  bench.Attach(Wiimote(1), "real", false);
+  bench.Advance(0.5);
+  EXPECT_EQ(bench.StatusOf("real").role, stream::DeviceRole::kRightHand);
+  EXPECT_EQ(bench.StatusOf("stand-in").role, stream::DeviceRole::kLeftHand);
 }
 
 TEST(HubFaults, AnUncalibratedDeviceIsLiveAndEverySampleSaysSo) {

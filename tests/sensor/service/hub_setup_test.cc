@@ -76,7 +76,7 @@ class StoredMove : public testing::Test {
   Hub MakeHub(bool readable) {
     Hub::Ports ports;
     ports.send = [](devices::DeviceHandle, const reports::OutputReport&) {};
-    ports.log = [](const std::string&) {};
+    ports.log = [](const LogLine&) {};
     ports.now_ns = [this] { return now_ns_; };
     ports.request_feature = [this, readable](devices::DeviceHandle handle, std::uint8_t id,
                                              std::size_t size) {

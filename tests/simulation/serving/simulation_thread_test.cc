@@ -19,6 +19,7 @@ class CountingRun {
   struct Frame {
     std::uint64_t step = 0;
     std::uint64_t overruns = 0;
+    std::uint64_t left_out = 0;
     int newest_input = 0;
     int since_last_frame = 0;
   };
@@ -36,9 +37,23 @@ class CountingRun {
   std::uint64_t step_ = 0;
 };
 
+/// Its steps block while a flag says so.
+class BlockingRun : public CountingRun {
+ public:
+  explicit BlockingRun(exchange::Flag& blocks) : blocks_(&blocks) {}
+
+  void StepOnSimThread(exchange::Latest<Inputs>& inputs, Frame& frame) {
+    while (blocks_->raised()) usleep(1000);
+    CountingRun::StepOnSimThread(inputs, frame);
+  }
+
+ private:
+  exchange::Flag* blocks_;
+};
+
 /// Waits, bounded, until the thread has handed over a frame.
-bool WaitForFrame(SimulationThread<CountingRun>& thread, int wake_descriptor,
-                  CountingRun::Frame& frame) {
+template <typename Run>
+bool WaitForFrame(SimulationThread<Run>& thread, int wake_descriptor, CountingRun::Frame& frame) {
   while (!thread.frames().Pop(frame)) {
     pollfd ready{wake_descriptor, POLLIN, 0};
     if (poll(&ready, 1, 5000) <= 0) return false;
@@ -80,6 +95,33 @@ TEST(SimulationThread, KeepsWhatAFullQueueDidNotTakeForTheNextFrame) {
   thread.Stop();
   close(wake);
   EXPECT_GE(steps, 1000u);
+}
+
+TEST(SimulationThread, AThreadThatDoesNotComeRoundIsStuckAndItsFramesAreCounted) {
+  const int wake = eventfd(0, EFD_CLOEXEC);
+  ASSERT_GE(wake, 0);
+  exchange::Flag blocks;
+  SimulationThread<BlockingRun> thread(BlockingRun(blocks), 0.001, 10, wake);
+  EXPECT_FALSE(thread.Stuck()) << "it has not begun";
+  thread.Start();
+  CountingRun::Frame frame;
+  ASSERT_TRUE(WaitForFrame(thread, wake, frame));
+  EXPECT_FALSE(thread.Stuck());
+  EXPECT_EQ(frame.left_out, 0u);
+  blocks.Raise();
+  bool stuck = false;
+  for (int i = 0; i < 700 && !stuck; ++i) {
+    usleep(10'000);
+    stuck = thread.Stuck();
+  }
+  EXPECT_TRUE(stuck);
+  blocks.Lower();
+  while (frame.left_out == 0 && WaitForFrame(thread, wake, frame)) {
+  }
+  EXPECT_FALSE(thread.Stuck());
+  EXPECT_GE(frame.left_out, 480u) << "5 s of frames of 10 ms";
+  thread.Stop();
+  close(wake);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ class HubReplay {
  public:
   explicit HubReplay(const std::vector<v1::Tick>& ticks)
       : hub_(sensor::Config{}, {[](devices::DeviceHandle, const reports::OutputReport&) {},
-                                [](const std::string&) {},
+                                [](const sensor::LogLine&) {},
                                 [this] { return NowNs(); },
                                 [](devices::DeviceHandle, std::uint8_t, std::size_t) {},
                                 [this](const std::string& serial) { return StoredOf(serial); },

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/result/result.h"
@@ -24,6 +25,9 @@ class Lease {
   static constexpr double kUsualS = 5;
   static constexpr double kLongestS = 60;
   static constexpr std::size_t kMaxHolder = 200;  ///< Bytes.
+
+  /// `server`: whose lease it is, for messages.
+  explicit Lease(std::string server) : server_(std::move(server)) {}
 
   /// Takes or renews the lease. Refused, with the holder's name, while another session has it. Once
   /// the holder's session has ended, a new session that gives the same name goes on with the lease.
@@ -49,7 +53,9 @@ class Lease {
   bool HeldByOther(std::uint64_t session, std::int64_t now_ns) const;
   bool HeldBy(std::uint64_t session, std::int64_t now_ns) const;
   void End(const std::string& change);
+  Error HeldByError() const;
 
+  std::string server_;
   std::string holder_;
   std::uint64_t session_ = 0;
   bool session_ended_ = false;

@@ -1,4 +1,4 @@
-#include "daemon/simulation/lease/lease.h"
+#include "common/lease/lease.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,13 +17,14 @@ bool IsName(const std::string& holder) {
          });
 }
 
-Error HeldByError(const std::string& holder) {
-  return Failure(holder +
-                 " has the lease of this footing-sim; wait until that ends, or take it over: "
-                 "footing-ctl lease --take-over");
-}
-
 }  // namespace
+
+Error Lease::HeldByError() const {
+  const std::string of = server_ == "footing-sim" ? "" : " --of " + server_;
+  return Failure(holder_ + " has the lease of this " + server_ +
+                 "; wait until that ends, or take it over: footing-ctl lease" + of +
+                 " --take-over");
+}
 
 bool Lease::HeldBy(std::uint64_t session, std::int64_t now_ns) const {
   return !holder_.empty() && now_ns < end_ns_ && session == session_ && !session_ended_;
@@ -45,12 +46,12 @@ Result<void> Lease::Take(const Request& request, std::int64_t now_ns) {
   // Nobody took it since its last holder, who was only late.
   const bool late = holder_.empty() && request.session == session_ && !session_ended_;
   if (request.renew_only && !mine && !late) {
-    if (!holder_.empty()) return HeldByError(holder_);
+    if (!holder_.empty()) return HeldByError();
     return Failure("this session does not have the lease any more: it ran out, or was taken over");
   }
   const bool goes_on = session_ended_ && request.holder == holder_;
   if (HeldByOther(request.session, now_ns) && !goes_on && !request.take_over) {
-    return HeldByError(holder_);
+    return HeldByError();
   }
   if (holder_.empty()) {
     changes_.push_back("lease: " + request.holder + " takes it");
@@ -66,15 +67,15 @@ Result<void> Lease::Take(const Request& request, std::int64_t now_ns) {
 
 Result<void> Lease::Release(std::uint64_t session, std::int64_t now_ns) {
   Expire(now_ns);
-  if (HeldByOther(session, now_ns)) return HeldByError(holder_);
-  if (holder_.empty()) return Failure("nobody has the lease of this footing-sim");
+  if (HeldByOther(session, now_ns)) return HeldByError();
+  if (holder_.empty()) return Failure("nobody has the lease of this " + server_);
   End("lease: " + holder_ + " releases it");
   session_ = 0;
   return {};
 }
 
 Result<void> Lease::Check(std::uint64_t session, std::int64_t now_ns) const {
-  if (HeldByOther(session, now_ns)) return HeldByError(holder_);
+  if (HeldByOther(session, now_ns)) return HeldByError();
   return {};
 }
 

@@ -1,4 +1,4 @@
-#include "daemon/simulation/lease/lease.h"
+#include "common/lease/lease.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,14 +21,14 @@ Request Of(std::uint64_t session, const std::string& holder) {
 
 /// The lease of Anna from 0 to 5 s.
 Lease OfAnna() {
-  Lease lease;
+  Lease lease("footing-sim");
   EXPECT_TRUE(lease.Take(Of(kAnna, "anna"), 0));
   lease.TakeChanges();
   return lease;
 }
 
 TEST(Lease, RefusesOthersWithTheNameOfItsHolder) {
-  Lease lease;
+  Lease lease("footing-sim");
   EXPECT_TRUE(lease.Check(kBen, 0));  // Nobody has it.
   EXPECT_TRUE(lease.Take(Of(kAnna, "anna"), 0));
   EXPECT_EQ(lease.holder(), "anna");
@@ -57,7 +57,7 @@ TEST(Lease, EndsUnlessItIsRenewed) {
 }
 
 TEST(Lease, LastsAsLongAsWasAskedFor) {
-  Lease lease;
+  Lease lease("footing-sim");
   Request request = Of(kAnna, "anna");
   request.seconds = 20;
   ASSERT_TRUE(lease.Take(request, 0));
@@ -123,7 +123,7 @@ TEST(Lease, OutlastsItsSessionForAnotherOneOfTheSameName) {
 }
 
 TEST(Lease, RefusesWhatIsNoRequest) {
-  Lease lease;
+  Lease lease("footing-sim");
   for (const std::string& holder : {std::string(), std::string(201, 'a'), std::string("a\nb")}) {
     EXPECT_EQ(lease.Take(Of(kAnna, holder), 0).error().kind, ErrorKind::kUsage) << holder;
   }
@@ -134,7 +134,7 @@ TEST(Lease, RefusesWhatIsNoRequest) {
     request.seconds = seconds;
     EXPECT_EQ(lease.Take(request, 0).error().kind, ErrorKind::kUsage) << seconds;
   }
-  EXPECT_FALSE(Lease().Release(kAnna, 0));
+  EXPECT_FALSE(Lease("footing-sim").Release(kAnna, 0));
 }
 
 }  // namespace

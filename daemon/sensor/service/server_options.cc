@@ -1,0 +1,30 @@
+#include "daemon/sensor/service/server_options.h"
+
+#include "common/monitoring/monitor.h"
+#include "common/service_manager/service_manager.h"
+#include "common/transport/address.h"
+#include "daemon/sensor/service/publish.h"
+
+namespace footing::sensor {
+
+std::string OwnAddress(const std::string& name) {
+  if (service_manager::PassedSocket(name) >= 0) return "fd:" + name;
+  return transport::DefaultAddress(name, true).Text();
+}
+
+transport::ServerOptions MakeServerOptions(const Config& config, const std::string& version,
+                                           const transport::ServerOptions& with_access) {
+  transport::ServerOptions options = with_access;
+  options.server_id = "footingd";
+  options.version = version;
+  options.channels = Channels();
+  options.channels.push_back(monitoring::StatsChannel());
+  options.tick_rate_hz = config.tick_rate_hz;
+  options.sessions = config.sessions;
+  options.capabilities = {"features", "boards", "raw",      "rumble", "leds", "assign",
+                          "nunchuk",  "camera", "sphere",   "setup",  "tare", "mounting",
+                          "layout",   "hands",  "contacts", "lease"};
+  return options;
+}
+
+}  // namespace footing::sensor

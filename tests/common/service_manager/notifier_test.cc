@@ -1,0 +1,100 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "common/service_manager/service_manager.h"
+
+namespace footing::service_manager {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+/// The manager's side of sd_notify(3), with a watchdog of 100 ms: the kernel keeps ten messages
+/// that nobody has read, and then the sender waits.
+class NotifierTest : public testing::Test {
+ protected:
+  NotifierTest() : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+    path_ = testing::TempDir() + "notify" + std::to_string(getpid());
+    sockaddr_un name{};
+    name.sun_family = AF_UNIX;
+    path_.copy(name.sun_path, sizeof(name.sun_path) - 1);
+    unlink(path_.c_str());
+    EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&name), sizeof(name)), 0);
+    setenv("NOTIFY_SOCKET", path_.c_str(), 1);
+    setenv("WATCHDOG_USEC", "100000", 1);
+    unsetenv("WATCHDOG_PID");
+  }
+  ~NotifierTest() override {
+    unsetenv("NOTIFY_SOCKET");
+    unsetenv("WATCHDOG_USEC");
+    unlink(path_.c_str());
+    close(socket_);
+  }
+
+  /// What the manager has been told in the next 0.2 s.
+  std::vector<std::string> RunAndRead() {
+    io_.restart();
+    io_.run_for(std::chrono::milliseconds(200));
+    std::vector<std::string> said;
+    std::array<char, 1024> bytes{};
+    for (ssize_t size = 0; (size = recv(socket_, bytes.data(), bytes.size(), 0)) > 0;) {
+      said.emplace_back(bytes.data(), static_cast<std::size_t>(size));
+    }
+    return said;
+  }
+
+  boost::asio::io_context io_;
+  std::string stuck_;
+  Notifier notifier_{io_, [this] { return stuck_; }};
+
+ private:
+  int socket_;
+  std::string path_;
+};
+
+TEST_F(NotifierTest, TheWatchdogIsFedTwiceInAnInterval) {
+  notifier_.Ready("engine gait");
+  const auto said = RunAndRead();
+  ASSERT_FALSE(said.empty());
+  EXPECT_EQ(said.front(), "READY=1\nSTATUS=engine gait");
+  EXPECT_GE(std::count(said.begin(), said.end(), "WATCHDOG=1"), 3);
+}
+
+TEST_F(NotifierTest, TheWatchdogIsNotFedWhileAThreadIsStuckAndTheStatusNamesIt) {
+  notifier_.Ready("engine gait");
+  RunAndRead();
+  stuck_ = "the thread of /dev/hidraw3";
+  EXPECT_THAT(RunAndRead(), ElementsAre("STATUS=the thread of /dev/hidraw3 is stuck"));
+  EXPECT_THAT(RunAndRead(), SizeIs(0));
+  stuck_.clear();
+  const auto said = RunAndRead();
+  EXPECT_THAT(said, Contains("STATUS=engine gait"));
+  EXPECT_THAT(said, Contains("WATCHDOG=1"));
+}
+
+TEST_F(NotifierTest, TheWatchdogIsNotFedWhileTheLoopStandsStill) {
+  notifier_.Ready("engine gait");
+  RunAndRead();
+  usleep(200'000);  // Nothing runs the loop.
+  io_.restart();
+  std::size_t before = RunAndRead().size();
+  EXPECT_LE(before, 6u) << "one late beat, then those of 0.2 s";
+  notifier_.Stopping();
+  EXPECT_THAT(RunAndRead(), ElementsAre("STOPPING=1"));
+}
+
+}  // namespace
+}  // namespace footing::service_manager
