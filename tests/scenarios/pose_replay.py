@@ -7,6 +7,7 @@ import sys
 
 from harness import Stage
 from pose_hands import start
+from pose_line import Watcher
 
 
 def main(binaries, hands):
@@ -20,12 +21,12 @@ def main(binaries, hands):
         start(stage, hands)
         recording = stage.folder / "recording.mcap"
         logger = stage.start("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",
-                             stage.simulation, "--out", recording, "--seconds", 14)
+                             stage.simulation, "--out", recording, "--seconds", 18)
         stage.wait_for(lambda: "footing-sim" in (stage.folder / "footing-log.log").read_text(),
                        "the logger to be connected")
         # A T-pose, then a second subject in the middle of the motion.
-        seen = stage.run_json("footing-view", "--connect", stage.simulation, "--text", "--seconds", 8)
-        assert seen["hands"] == {"straps": "wiimote"}.get(hands, hands), seen
+        source = {"straps": "wiimote"}.get(hands, hands)
+        Watcher(stage.simulation).wait(lambda body: body["calibrated"] and body["hands_source"] == source, "the hands", 14)
         subject = stage.folder / "p02.json"
         subject.write_text('{"code": "p02", "height_m": 1.62}')
         done = stage.run("footing-ctl", "--connect", stage.simulation, "subject", subject)
