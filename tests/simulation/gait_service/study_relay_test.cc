@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "daemon/simulation/gait_service/lease_control.h"
+#include "common/lease_control/lease_control.h"
 
 namespace footing::gait_service {
 namespace {
@@ -44,15 +44,15 @@ TEST(StudyRelay, RefusesWhatNoScreenCanShow) {
 }
 
 TEST(StudyRelay, IsForTheHolderOfTheLease) {
-  LeaseControl lease;
+  lease::LeaseControl lease("footing-sim");
   v1::Command take;
   take.mutable_take_lease()->set_holder("ann");
-  ASSERT_TRUE(lease.OnCommand(take, kStudyClient.session, 0).ok());
+  ASSERT_TRUE(lease.Answer(take, kStudyClient.session, 0)->ok());
   v1::Command command;
   *command.mutable_set_study() = State("P01");
-  EXPECT_FALSE(lease.Refusal(command, kStudyClient.session, 1));
-  ASSERT_TRUE(lease.Refusal(command, kOtherClient.session, 1));
-  EXPECT_THAT(lease.Refusal(command, kOtherClient.session, 1)->message(),
+  EXPECT_FALSE(lease.Answer(command, kStudyClient.session, 1));
+  ASSERT_TRUE(lease.Answer(command, kOtherClient.session, 1));
+  EXPECT_THAT(lease.Answer(command, kOtherClient.session, 1)->message(),
               HasSubstr("set_study: ann"));
 }
 
