@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A link that misbehaves on demand: stands between clients and a server on stream sockets, and passes their bytes on with the
-fault that is set. The same seed gives the same jitter and the same pieces.
+fault that is set. The same seed gives the same jitter and the same pieces. UdpFaultProxy does it to datagrams, one way.
 
 Usage: fault_proxy.py LISTEN TARGET [--seed N] [--fault NAME] [--seconds S]
 
@@ -263,6 +263,57 @@ class Link:
             proxy.passed[direction] += len(piece)
         if made_ns > proxy.cleared_ns and proxy.fresh_ns is None:
             proxy.fresh_ns = time.monotonic_ns()
+
+
+class UdpFaultProxy:
+    """Passes datagrams on to a port of this host, on a thread of its own: a share is lost, a share comes twice, and a share
+    comes late, so that others overtake it."""
+
+    LATE_S = (0.02, 0.12)
+
+    def __init__(self, port, target_port, seed=1, loss=0.0, duplicate=0.0, reorder=0.0):
+        self.lost = self.doubled = self.late = self.passed = 0
+        self._shares = (loss, duplicate, reorder)
+        self._random = random.Random(seed)
+        self._target = ("127.0.0.1", target_port)
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.bind(("127.0.0.1", port))
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+
+    def start(self):
+        self._socket.setblocking(False)
+        self._loop.add_reader(self._socket, self._read)
+        self._thread.start()
+        return self
+
+    def stop(self):
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(5)
+        self._loop.close()
+        self._socket.close()
+
+    def _read(self):
+        data = self._socket.recv(1 << 16)
+        loss, duplicate, reorder = self._shares
+        if self._random.random() < loss:
+            self.lost += 1
+            return
+        if self._random.random() < duplicate:
+            self.doubled += 1
+            self._send(data)
+        if self._random.random() < reorder:
+            self.late += 1
+            self._loop.call_later(self._random.uniform(*self.LATE_S), self._send, data)
+        else:
+            self._send(data)
+
+    def _send(self, data):
+        self.passed += 1
+        try:
+            self._socket.sendto(data, self._target)
+        except OSError:
+            pass  # Nobody listens yet, or any more.
 
 
 def main():

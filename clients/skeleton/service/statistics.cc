@@ -22,6 +22,7 @@ ordered_json ToJson(const Tracker& tracker, const Cost& cost) {
                        {"rejected_joints", decoder.rejected},
                        {"late_joints", decoder.late},
                        {"skeletons", counts.skeletons},
+                       {"overtaken_skeletons", counts.overtaken},
                        {"published", counts.published},
                        {"hand_frames", cost.hand_frames},
                        {"dropped_hand_frames", cost.dropped_hand_frames},

@@ -61,6 +61,11 @@ void Tracker::Take(const Decoded& decoded, std::int64_t now_ns, std::int64_t wal
   const std::int64_t age_ns = person.clock.Age(decoded.skeleton.sent_ns, decoded.skeleton.unix_time,
                                                decoded.arrived_ns, wall_ns - since_ns);
   const std::int64_t exposed_ns = decoded.arrived_ns - age_ns;
+  if (exposed_ns <= person.exposed_ns) {
+    ++counts_.overtaken;
+    return;
+  }
+  person.exposed_ns = exposed_ns;
   const Gated gated = person.gate.Advance(decoded.skeleton, exposed_ns);
   ++counts_.skeletons;
   PersonCounts& counts = counts_.people[user];

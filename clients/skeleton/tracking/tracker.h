@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -34,6 +35,7 @@ struct PersonCounts {
 
 struct TrackerCounts {
   std::uint64_t packets = 0, bytes = 0, rejected_packets = 0, skeletons = 0, published = 0;
+  std::uint64_t overtaken = 0;  ///< Skeletons that came after a newer one of their person.
   std::map<std::int32_t, PersonCounts> people;  ///< By user; bounded as the decoder's.
 };
 
@@ -65,6 +67,8 @@ class Tracker {
     PersonGate gate;
     SenderClock clock;
     std::int64_t seen_ns = 0;
+    /// Of its newest skeleton.
+    std::int64_t exposed_ns = std::numeric_limits<std::int64_t>::min();
     Fault reported = Fault::kNone;
   };
 
