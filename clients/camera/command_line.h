@@ -19,7 +19,8 @@ void AddCommandLine(CLI::App& app, CommandLine& line);
 /// A usage error unless a camera file and one source of frames are named.
 Result<void> Check(const CommandLine& line);
 
-/// footing-camera calibrate; `exit_code` is set when it has run.
+/// footing-camera calibrate and lens; `exit_code` is set when one has run.
 void AddCalibrateCommand(CLI::App& app, int& exit_code);
+void AddLensCommand(CLI::App& app, int& exit_code);
 
 }  // namespace footing::camera

@@ -13,6 +13,8 @@ using namespace footing;  // NOLINT: main is wiring
 
 constexpr char kExamples[] =
     "  footing-camera calibrate --camera camera.json --device /dev/video0 --exposure-s 0.004\n"
+    "  footing-camera lens --sheet sheet.svg      # to print, at any scale\n"
+    "  footing-camera lens --camera camera.json --device /dev/video0 --exposure-s 0.02\n"
     "  footing-camera --camera camera.json --device /dev/video0 --exposure-s 0.004\n"
     "  footing-camera --camera camera.json --frames frames --repeat --seconds 10\n"
     "  footing-camera --camera camera.json --fifo /tmp/frames --json\n";
@@ -75,6 +77,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 1e6));
   app->require_subcommand(0, 1);
   camera::AddCalibrateCommand(*app, exit_code);
+  camera::AddLensCommand(*app, exit_code);
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   if (!app->get_subcommands().empty()) return exit_code;
   return RunTracking(options, line, to, sensor);

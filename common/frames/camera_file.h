@@ -50,6 +50,9 @@ Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
 /// Writes spheres, blur and limb darkening alike; a file that is not there begins as `camera`.
 Result<void> StoreSpheres(const std::string& path, const CameraFile& camera);
 
+/// Writes the lens alike.
+Result<void> StoreLens(const std::string& path, const CameraFile& camera);
+
 /// "#ff00c8", as footing-ctl led takes it.
 std::string ColourText(std::uint32_t rgb);
 

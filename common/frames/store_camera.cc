@@ -20,6 +20,16 @@ void SetPose(ordered_json& object, const Eigen::Isometry3d& X_WC, const std::str
   if (!calibrated.empty()) object["calibrated"] = calibrated;
 }
 
+void SetLens(ordered_json& object, const sphere::Lens& lens) {
+  object["width"] = lens.width;
+  object["height"] = lens.height;
+  object["fx_px"] = lens.fx_px;
+  object["fy_px"] = lens.fy_px;
+  object["cx_px"] = lens.cx_px;
+  object["cy_px"] = lens.cy_px;
+  object["distortion"] = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+}
+
 void SetSpheres(ordered_json& object, const CameraFile& camera) {
   ordered_json spheres = ordered_json::array();
   for (const HeldSphere& held : camera.spheres) {
@@ -47,31 +57,35 @@ Result<void> Rewrite(const std::string& path, const Change& change) {
                  : Failure("cannot write " + path + ": " + written.error().message);
 }
 
+/// Changes keys of a camera file, or begins one where there is none.
+template <typename Change>
+Result<void> RewriteOrBegin(const std::string& path, const CameraFile& camera,
+                            const Change& change) {
+  std::error_code none;
+  if (std::filesystem::exists(path, none)) return Rewrite(path, change);
+  const auto written = config::ReplaceFile(path, ToJson(camera));
+  return written ? Result<void>()
+                 : Failure("cannot write " + path + ": " + written.error().message);
+}
+
 }  // namespace
 
 std::string ToJson(const CameraFile& camera) {
-  const sphere::Lens& lens = camera.lens;
   const sphere::Settings& settings = camera.settings;
-  ordered_json object = {
-      {"width", lens.width},
-      {"height", lens.height},
-      {"fx_px", lens.fx_px},
-      {"fy_px", lens.fy_px},
-      {"cx_px", lens.cx_px},
-      {"cy_px", lens.cy_px},
-      {"distortion", {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3}},
-      {"format", camera.format == sphere::PixelFormat::kYuyv ? "YUYV" : "SGRBG8"},
-      {"rate_hz", camera.rate_hz},
-      {"readout_s", camera.readout_s},
-      {"blur_px", settings.profile.blur_px},
-      {"blur_sd_px", settings.profile.blur_sd_px},
-      {"limb", settings.profile.limb},
-      {"limb_sd", settings.profile.limb_sd},
-      {"read_noise_dn", settings.noise.read_dn},
-      {"dn_per_electron", settings.noise.dn_per_electron},
-      {"noise_correlation", settings.noise.correlation}};
+  ordered_json object;
+  SetLens(object, camera.lens);
+  object.update({{"format", camera.format == sphere::PixelFormat::kYuyv ? "YUYV" : "SGRBG8"},
+                 {"rate_hz", camera.rate_hz},
+                 {"readout_s", camera.readout_s},
+                 {"blur_px", settings.profile.blur_px},
+                 {"blur_sd_px", settings.profile.blur_sd_px},
+                 {"limb", settings.profile.limb},
+                 {"limb_sd", settings.profile.limb_sd},
+                 {"read_noise_dn", settings.noise.read_dn},
+                 {"dn_per_electron", settings.noise.dn_per_electron},
+                 {"noise_correlation", settings.noise.correlation}});
   if (camera.X_WC) SetPose(object, *camera.X_WC, camera.calibrated);
-  SetSpheres(object, camera);
+  if (!camera.spheres.empty()) SetSpheres(object, camera);
   return object.dump(2) + "\n";
 }
 
@@ -82,20 +96,18 @@ Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
 }
 
 Result<void> StoreSpheres(const std::string& path, const CameraFile& camera) {
-  std::error_code none;
-  if (!std::filesystem::exists(path, none)) {
-    const auto written = config::ReplaceFile(path, ToJson(camera));
-    return written ? Result<void>()
-                   : Failure("cannot write " + path + ": " + written.error().message);
-  }
   const sphere::Profile& profile = camera.settings.profile;
-  return Rewrite(path, [&](ordered_json& object) {
+  return RewriteOrBegin(path, camera, [&](ordered_json& object) {
     object["blur_px"] = profile.blur_px;
     object["blur_sd_px"] = profile.blur_sd_px;
     object["limb"] = profile.limb;
     object["limb_sd"] = profile.limb_sd;
     SetSpheres(object, camera);
   });
+}
+
+Result<void> StoreLens(const std::string& path, const CameraFile& camera) {
+  return RewriteOrBegin(path, camera, [&](ordered_json& object) { SetLens(object, camera.lens); });
 }
 
 std::string ColourText(std::uint32_t rgb) {

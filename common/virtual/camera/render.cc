@@ -193,7 +193,9 @@ void AddHalo(const Scene& scene, const Ball& ball, Canvas& canvas) {
 /// Red, green or blue of the mosaic G R / B G.
 int ChannelAt(int u, int v) { return (u + v) % 2 == 0 ? 1 : v % 2 == 0 ? 0 : 2; }
 
-Mosaic Read(const Scene& scene, const Canvas& canvas, noise::Random& random) {
+}  // namespace
+
+Mosaic ReadOut(const Scene& scene, const Canvas& canvas, noise::Random& random) {
   Mosaic mosaic{canvas.width(), canvas.height(), {}};
   mosaic.bytes.reserve(static_cast<std::size_t>(mosaic.width * mosaic.height));
   const double read_variance = scene.sensor.read_noise_dn * scene.sensor.read_noise_dn;
@@ -207,8 +209,6 @@ Mosaic Read(const Scene& scene, const Canvas& canvas, noise::Random& random) {
   }
   return mosaic;
 }
-
-}  // namespace
 
 double RowTime(const Scene& scene, double row_px) {
   const double rows = std::max(1, scene.lens.height - 1);
@@ -242,13 +242,13 @@ Canvas Trace(const Scene& scene) {
 }  // namespace
 
 Mosaic Render(const Scene& scene, noise::Random& random) {
-  return Read(scene, Trace(scene), random);
+  return ReadOut(scene, Trace(scene), random);
 }
 
 std::vector<Mosaic> RenderStill(const Scene& scene, int frames, noise::Random& random) {
   const Canvas canvas = Trace(scene);
   std::vector<Mosaic> mosaics;
-  for (int i = 0; i < frames; ++i) mosaics.push_back(Read(scene, canvas, random));
+  for (int i = 0; i < frames; ++i) mosaics.push_back(ReadOut(scene, canvas, random));
   return mosaics;
 }
 

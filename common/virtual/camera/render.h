@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "common/virtual/camera/canvas.h"
 #include "common/virtual/camera/scene.h"
 #include "common/virtual/noise/random.h"
 
@@ -15,5 +16,8 @@ Mosaic Render(const Scene& scene, noise::Random& random);
 
 /// Frames of a scene at rest, one after the other: traced once, each read with noise of its own.
 std::vector<Mosaic> RenderStill(const Scene& scene, int frames, noise::Random& random);
+
+/// What the sensor makes of the light on it: mosaic, shot and read noise, rounding and clipping.
+Mosaic ReadOut(const Scene& scene, const Canvas& canvas, noise::Random& random);
 
 }  // namespace footing::virtual_camera

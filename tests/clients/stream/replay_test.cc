@@ -34,7 +34,7 @@ class VirtualLine {
                   answers_.push({now_ns_ + kAnswerNs, ++order_, device, std::move(answer), false});
                 }
               },
-              [](const std::string&) {}, [this] { return now_ns_; },
+              [](const sensor::LogLine&) {}, [this] { return now_ns_; },
               [this](devices::DeviceHandle device, std::uint8_t id, std::size_t size) {
                 answers_.push({now_ns_ + kAnswerNs, ++order_, device,
                                devices_[device - 1].Feature(id, size), true});

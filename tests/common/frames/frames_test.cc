@@ -130,6 +130,14 @@ TEST(CameraFile, TakesCalibratedSpheresAndKeepsTheRest) {
   ASSERT_TRUE(ReadUncalibratedCamera(folder.Path("new.json")));
   ASSERT_TRUE(StoreSpheres(folder.Path("new.json"), *camera));
   EXPECT_EQ(ReadCameraFile(folder.Path("new.json"))->spheres[0].led_rgb, 0xff00c8u);
+  camera->lens.k1 = -0.1;
+  ASSERT_TRUE(StoreLens(path, *camera));
+  EXPECT_EQ(ReadCameraFile(path)->lens.k1, -0.1);
+  EXPECT_EQ(ReadCameraFile(path)->spheres.size(), 1u);
+  // A lens without spheres is the start of a file, too.
+  ASSERT_TRUE(StoreLens(folder.Path("lens.json"), CameraFile()));
+  EXPECT_TRUE(ReadUncalibratedCamera(folder.Path("lens.json")));
+  EXPECT_FALSE(ReadCameraFile(folder.Path("lens.json")));
   std::ofstream(path)
       << R"({"spheres": [{"role": "left_hand", "colour_dn": [9, 90, 9], "led": "red"}]})";
   EXPECT_NE(ReadCameraFile(path).error().message.find("key led: must be a colour"),

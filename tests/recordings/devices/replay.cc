@@ -99,7 +99,7 @@ Result<sensor::TickContent> Replay(const Capture& capture) {
   config.camera = capture.Header("Camera") == "on";
   std::int64_t now_ns = kStartNs;
   sensor::Hub hub(config, {[](devices::DeviceHandle, const reports::OutputReport&) {},
-                           [](const std::string&) {}, [&now_ns] { return now_ns; },
+                           [](const sensor::LogLine&) {}, [&now_ns] { return now_ns; },
                            [](devices::DeviceHandle, std::uint8_t, std::size_t) {}});
   constexpr devices::DeviceHandle kHandle = 1;
   hub.OnAttach(kHandle, identity.value());

@@ -55,7 +55,7 @@ Capture Record(const Plan& plan) {
                                answers.push_back({one});
                              }
                            },
-                           [](const std::string&) {}, [&now_ns] { return now_ns; },
+                           [](const sensor::LogLine&) {}, [&now_ns] { return now_ns; },
                            [&](devices::DeviceHandle, std::uint8_t id, std::size_t size) {
                              answers.push_back({peer.feature(id, size), true});
                            }});

@@ -125,7 +125,7 @@ class LongRun {
            {[this](devices::DeviceHandle handle, const reports::OutputReport& report) {
               Answer(handle, report);
             },
-            [](const std::string&) {}, [this] { return now_ns_; }}};
+            [](const LogLine&) {}, [this] { return now_ns_; }}};
 };
 
 inline PortModel WithNunchuk(std::uint64_t seed) {
