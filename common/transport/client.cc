@@ -65,6 +65,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   struct ServerPosition {
     std::string name;
     std::uint64_t epoch = 0;
+    /// Of the last tick, which may be of an epoch before: a connection may break between.
+    std::uint64_t last_epoch = 0;
     std::uint64_t last_sequence = 0;
   };
 
@@ -159,8 +161,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   void OnWelcome(const v1::Welcome& welcome) {
     probes_.OnWelcome(welcome.epoch() != server_.epoch);  // Perhaps another host.
     server_.name = welcome.server_id() + " " + welcome.version();
-    wish_ = MakeSubscribe(options_, welcome.epoch(), server_.epoch, server_.last_sequence);
-    if (welcome.epoch() != server_.epoch) server_.last_sequence = 0;
+    wish_ = MakeSubscribe(options_, welcome.epoch(), server_.last_epoch, server_.last_sequence);
     server_.epoch = welcome.epoch();
     SendPing();
     Call(handlers_.on_welcome, welcome);
@@ -179,7 +180,12 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnTick(const v1::Tick& tick) {
-    if (!tick.snapshot()) server_.last_sequence = std::max(server_.last_sequence, tick.sequence());
+    if (!tick.snapshot()) {
+      if (std::exchange(server_.last_epoch, server_.epoch) != server_.epoch) {
+        server_.last_sequence = 0;
+      }
+      server_.last_sequence = std::max(server_.last_sequence, tick.sequence());
+    }
     Call(handlers_.on_tick, tick);
   }
 

@@ -100,6 +100,33 @@ TEST_F(ClientTest, AServerStartedAnewIsToldByAGap) {
   EXPECT_EQ(welcomes_, 2);
 }
 
+TEST_F(ClientTest, ARestartIsNotForgottenWhenTheFirstConnectionToItBreaks) {
+  StartServer();
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  PublishMotion();
+  ASSERT_TRUE(RunUntil([&] { return sequences_.size() == 1; }));
+  server_->Stop("restart");
+  server_.reset();
+  {
+    // Welcomes the client, and is gone before that subscribes.
+    std::vector<std::unique_ptr<TestClient>> broken;
+    auto listener = Listener::Open(io_, UnixAddress(), [&](Socket socket) {
+      broken.push_back(std::make_unique<TestClient>(std::move(socket)));
+      v1::Envelope welcome;
+      welcome.mutable_welcome()->set_server_id("restarted");
+      welcome.mutable_welcome()->set_epoch(77);
+      broken.back()->Send(welcome);
+    });
+    ASSERT_TRUE(listener.ok());
+    ASSERT_TRUE(RunUntil([&] { return welcomes_ > 1; }));
+  }
+  StartServer();
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  ASSERT_TRUE(RunUntil([&] { return gaps_.size() == 1; }));
+  EXPECT_EQ(gaps_[0].reason(), v1::Gap::REASON_NEW_EPOCH);
+}
+
 TEST_F(ClientTest, TheServersGoodbyeIsPassedOn) {
   StartServer();
   StartClient(ClientOn(UnixAddress()));
