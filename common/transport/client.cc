@@ -1,6 +1,5 @@
 #include "common/transport/client.h"
 
-#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <random>
@@ -14,6 +13,7 @@
 #include "common/transport/framed_connection.h"
 #include "common/transport/message_parser.h"
 #include "common/transport/pending_commands.h"
+#include "common/transport/server_position.h"
 #include "common/units/time.h"
 #include "common/units/units.h"
 
@@ -61,15 +61,6 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   ClockOffset clock() const { return probes_.offset(); }
 
  private:
-  /// What a new connection resumes.
-  struct ServerPosition {
-    std::string name;
-    std::uint64_t epoch = 0;
-    /// Of the last tick, which may be of an epoch before: a connection may break between.
-    std::uint64_t last_epoch = 0;
-    std::uint64_t last_sequence = 0;
-  };
-
   /// Why the server ends a connection.
   struct CloseReason {
     bool refused = false;
@@ -180,12 +171,7 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnTick(const v1::Tick& tick) {
-    if (!tick.snapshot()) {
-      if (std::exchange(server_.last_epoch, server_.epoch) != server_.epoch) {
-        server_.last_sequence = 0;
-      }
-      server_.last_sequence = std::max(server_.last_sequence, tick.sequence());
-    }
+    if (!tick.snapshot()) server_.Take(tick.sequence());
     Call(handlers_.on_tick, tick);
   }
 
