@@ -122,7 +122,7 @@ TEST(Observation, CountsWithItsOwnCovarianceOnceDividedByTheConfidence) {
   Skeleton skeleton = Standing();
   skeleton[Joint::kLeftHand].confidence = 0.5;
   const Observation observation = Observe(skeleton, ToPose({}));
-  const stream::TrackedPoint& hand = ToHandFrame(observation, 0).points[Index(Joint::kLeftHand)];
+  const stream::TrackedPoint hand = ToHandFrame(observation, 0).points[Index(Joint::kLeftHand)];
   EXPECT_EQ(hand.confidence, 0.5);
   EXPECT_NEAR(hand.sd_m.x() * hand.sd_m.x() / hand.confidence,
               observation.joints[Index(Joint::kLeftHand)].covariance_W_m2(0, 0), 1e-12);
