@@ -31,6 +31,7 @@ constexpr double kPostureAnchorLookS = 0.5, kPostureAnchorsS = 0.1;
 constexpr double kPostureSpeedS = 0.3, kStillPostureMps = 0.02;
 // A filter has strayed that is sure, by so many deviations, of a height over tiptoe with raised
 // arms or under the ground; or that is for a while so many deviations from the posture.
+constexpr double kTiptoeM = 0.08;  // By which raised heels lift a body that a posture has upright.
 constexpr double kStraySpreads = 4, kHighestM = 0.15, kLowestM = -0.75;
 constexpr double kFarSpreads = 4, kFarS = 0.2, kDoubtSpreads = 3;
 constexpr double kReseedGain = 0.03;  // Of the weight: what a filter that strayed may have learned.
@@ -42,6 +43,9 @@ double Total(const VerticalInput& input) {
   for (const double load : input.load_n) total += load;
   return total;
 }
+
+/// The body does not fly, by what the loads show beside the weight.
+bool Loaded(double raw_mps2) { return raw_mps2 > (kLoadedShare - 1) * kStandardGravityMps2; }
 
 /// A posture is off by so much, and may be by that variance.
 template <typename Watched>
@@ -134,7 +138,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
   since_look_s_ += h;
   if (since_look_s_ >= config_.look_s) {
     since_look_s_ = 0;
-    Anchor(raw > (kLoadedShare - 1) * kStandardGravityMps2);
+    if (Loaded(raw)) Anchor();
   }
   last_.input = input;
   last_.raw_mps2 = raw;
@@ -175,8 +179,7 @@ bool VerticalCom::IsImpossible(const VerticalFilter::Scalar& height) const {
   return height.mean - sure_m > kHighestM || height.mean + sure_m < kLowestM;
 }
 
-void VerticalCom::Anchor(bool loaded) {
-  if (!loaded) return;
+void VerticalCom::Anchor() {
   const VerticalFilter::Row row = VerticalFilter::Row::Unit(0);
   const VerticalFilter::Scalar now = filter_.Of(row);
   if (IsImpossible(now)) {
@@ -232,7 +235,11 @@ void VerticalCom::AnchorToPosture(double height_m) {
       TimesMixture({now.mean, now.variance},
                    {{{right, height_m, posture.right_m}, {1 - right, height_m, posture.spread_m}}});
   if (due) Score(product.log_evidence);
-  filter_.SetMoments(row, {product.moments.mean, product.moments.variance});
+  // No straight leg carries a body further up, however wrong the posture is about bent ones.
+  const Moments posterior = Loaded(last_.raw_mps2)
+                                ? Below(product.moments, std::max(height_m, 0.0) + kTiptoeM)
+                                : product.moments;
+  filter_.SetMoments(row, {posterior.mean, posterior.variance});
 }
 
 void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_sd_mps) {

@@ -104,7 +104,7 @@ class VerticalCom {
  private:
   void Watch(const VerticalInput& input, double raw_mps2);
   void LookAtVelocity();
-  void Anchor(bool loaded);
+  void Anchor();
   void AnchorToPosture(double height_m);
   /// Too high or too low for any body, for sure: its height is not to be corrected but given up.
   bool IsImpossible(const Filter::Scalar& height) const;

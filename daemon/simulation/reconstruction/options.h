@@ -23,7 +23,8 @@ struct BestConstants {
   double regressed_smooth_weight = 1;
   /// Factor on the deviations of the linearised terms, whose errors persist for many frames.
   double spread = 1.5;
-  double com_spread = 1.75;  ///< The same for the height of the COM.
+  double arm_joint_spread = 1.15;  ///< The same from the shoulders down: hands are measured.
+  double com_spread = 1.75;        ///< The same for the height of the COM.
   /// What the covariance of all frames leaves out of the knee and what is below it while the foot
   /// is in the air: m along one axis, reached with this time constant.
   double aloft_sd_m = 0.14;

@@ -89,9 +89,13 @@ void MeanMisfit::Report(double now, double step_s, Output& output) {
 double Doubt(double misfit) { return std::pow(std::max(1.0, misfit / kUsualMisfit), 2); }
 
 PoseSpread::PoseSpread(const SubjectModel& model, const BestConstants& best)
-    : joint_factor_(best.spread),
+    : joint_factor_(static_cast<std::size_t>(model.body.skeleton.size()), best.spread),
       com_factor_(best.com_spread),
-      joint_sd_m_(static_cast<std::size_t>(model.body.skeleton.size()), kUnknownSdM) {}
+      joint_sd_m_(joint_factor_.size(), kUnknownSdM) {
+  for (const std::vector<std::size_t>& arm : model.arm_joints) {
+    for (const std::size_t joint : arm) joint_factor_[joint] = best.arm_joint_spread;
+  }
+}
 
 void PoseSpread::Start() {
   std::fill(joint_sd_m_.begin(), joint_sd_m_.end(), kUnknownSdM);
@@ -104,7 +108,7 @@ void PoseSpread::Advance(pose::GaussNewton& solver) {
     if (next_ == joint_sd_m_.size()) {
       com_height_sd_m_ = com_factor_ * solver.ComSd().z();
     } else {
-      joint_sd_m_[next_] = joint_factor_ * solver.JointSd(static_cast<int>(next_));
+      joint_sd_m_[next_] = joint_factor_[next_] * solver.JointSd(static_cast<int>(next_));
     }
   }
 }

@@ -77,7 +77,8 @@ class PoseSpread {
   double com_height_sd_m() const { return com_height_sd_m_; }
 
  private:
-  double joint_factor_, com_factor_;
+  std::vector<double> joint_factor_;
+  double com_factor_;
   std::size_t next_ = 0;
   std::vector<double> joint_sd_m_;
   double com_height_sd_m_ = kUnknownSdM;

@@ -11,15 +11,14 @@ namespace {
 // Of the variance, in the components that paper mode searches.
 constexpr double kPaperVarianceShare = 0.99;
 
-/// The knee of one side and the joints below it.
-std::vector<std::size_t> ShankJoints(const body::Body& body, int side) {
-  const int knee = body.landmarks[side == 0 ? body::Landmark::kLeftKnee
-                                            : body::Mirrored(body::Landmark::kLeftKnee)];
+/// A landmark's joint on one side and the joints below it.
+std::vector<std::size_t> JointsFrom(const body::Body& body, body::Landmark left, int side) {
+  const int top = body.landmarks[side == 0 ? left : body::Mirrored(left)];
   std::vector<std::size_t> joints;
   for (int joint = 0; joint < body.skeleton.size(); ++joint) {
     int up = joint;
-    while (up >= 0 && up != knee) up = body.skeleton.joint(up).parent;
-    if (up == knee) joints.push_back(static_cast<std::size_t>(joint));
+    while (up >= 0 && up != top) up = body.skeleton.joint(up).parent;
+    if (up == top) joints.push_back(static_cast<std::size_t>(joint));
   }
   return joints;
 }
@@ -52,7 +51,10 @@ Result<SubjectModel> CommonSubjectModel(const body::Body& body, const Models& mo
   model.joints = body::SkeletonPoints(body);
   for (int side = 0; side < 2; ++side) {
     model.fists[static_cast<std::size_t>(side)] = body::Fist(body, side);
-    model.shanks[static_cast<std::size_t>(side)] = ShankJoints(body, side);
+    model.shanks[static_cast<std::size_t>(side)] =
+        JointsFrom(body, body::Landmark::kLeftKnee, side);
+    model.arm_joints[static_cast<std::size_t>(side)] =
+        JointsFrom(body, body::Landmark::kLeftShoulder, side);
     model.arms.emplace_back(body, side);
   }
   return model;

@@ -29,6 +29,7 @@ struct SubjectModel {
   momentum::Subject subject;
   std::array<FootGeometry, momentum::kFeet> feet;
   std::array<std::vector<std::size_t>, momentum::kFeet> shanks;  ///< Joints from the knees down.
+  std::array<std::vector<std::size_t>, kHands> arm_joints;       ///< From the shoulders down.
   std::array<body::Point, kHands> fists;
   std::array<body::Point, stream::kBodyJoints> joints;  ///< Those of a tracked skeleton.
   std::vector<arms::ArmGeometry> arms;                  ///< kHands.
