@@ -15,6 +15,8 @@ using Eigen::Vector3d;
 constexpr double kFullBankRad = 0.1;
 /// It is given up between this tilt of the body, which runs in curves do not reach, and twice that.
 constexpr double kPushedRad = 0.15;
+/// The same where the run goes straight ahead.
+constexpr double kPushedStraightRad = 0.06;
 /// A leg that is less steep reaches no other.
 constexpr double kSteepEnoughM = -0.2;
 
@@ -27,8 +29,10 @@ Vector3d AtHeight(const Vector3d& hip_m, const Vector3d& r_HF_m, double height_m
 double Asked(const Context& context, const GaitMemory& memory) {
   const AttitudeGains& attitude = context.gains.attitude;
   const double bank = std::fabs(BankAngle(memory, attitude)) / kFullBankRad;
-  const double tilt = std::fabs(TiltAside(context.body, memory, attitude)) / kPushedRad;
-  return std::min(1.0, bank) * std::clamp(2 - tilt, 0.0, 1.0);
+  const double tilt_rad = std::fabs(TiltAside(context.body, memory, attitude));
+  const double calm = std::clamp(2 - tilt_rad / kPushedRad, 0.0, 1.0);
+  return std::max(std::min(1.0, bank) * calm,
+                  std::clamp(2 - tilt_rad / kPushedStraightRad, 0.0, 1.0));
 }
 
 }  // namespace

@@ -64,12 +64,23 @@ TEST(LegRoom, LeavesLegsAloneThatHaveSpaceOrPassOneBeforeTheOther) {
   }
 }
 
-TEST(LegRoom, IsForRunsInCurvesThatNobodyPushed) {
+TEST(LegRoom, KeepsTheGapStraightAheadTooWhileTheBodyIsUpright) {
+  const auto straight_at = [](double tilt_rad) {
+    CurveScene scene;
+    scene.memory.turning_radps = 0;
+    scene.body.R_WB = Eigen::AngleAxisd(tilt_rad, Vector3d::UnitX()).toRotationMatrix();
+    return scene.Kept();
+  };
+  const Vector3d curve = CurveScene().Kept();
+  EXPECT_LT((straight_at(0) - curve).norm(), 1e-3);
   const Vector3d target = CurveScene().targets.legs[kIdle].r_HF_W_m;
-  CurveScene straight;
-  straight.memory.turning_radps = 0;
-  straight.body.R_WB.setIdentity();
-  EXPECT_EQ(straight.Kept(), target);
+  EXPECT_GT(straight_at(0.09).y(), curve.y());
+  EXPECT_LT(straight_at(0.09).y(), target.y());
+  EXPECT_EQ(straight_at(0.13), target);
+}
+
+TEST(LegRoom, IsForRunsThatNobodyPushed) {
+  const Vector3d target = CurveScene().targets.legs[kIdle].r_HF_W_m;
   CurveScene pushed;
   pushed.body.R_WB = Eigen::AngleAxisd(0.4, Vector3d::UnitX()).toRotationMatrix();
   EXPECT_EQ(pushed.Kept(), target);
