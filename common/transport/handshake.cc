@@ -9,25 +9,6 @@ namespace {
 constexpr std::uint32_t kDefaultQueueTicks = 256;
 constexpr double kSlowestHz = 0.001;
 
-std::string RoleName(v1::Role role) {
-  switch (role) {
-    case v1::ROLE_VIEW:
-      return "view";
-    case v1::ROLE_LOG:
-      return "log";
-    case v1::ROLE_CONTROL:
-      return "control";
-    case v1::ROLE_ADMIN:
-      return "admin";
-    default:
-      return "role " + std::to_string(static_cast<int>(role));
-  }
-}
-
-std::string VersionText(std::uint32_t major, std::uint32_t minor) {
-  return std::to_string(major) + "." + std::to_string(minor);
-}
-
 QueueRule RuleOf(v1::QueuePolicy policy) {
   switch (policy) {
     case v1::QUEUE_POLICY_LATEST:
@@ -60,24 +41,6 @@ v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message) {
   refused.set_reason(reason);
   refused.set_message(message);
   return refused;
-}
-
-std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role highest,
-                                                const std::string& how_to_get_more,
-                                                const std::string& server_id) {
-  if (hello.protocol_major() != kProtocolMajor) {
-    const bool client_older = hello.protocol_major() < kProtocolMajor;
-    return Refuse(v1::Refused::REASON_PROTOCOL_VERSION,
-                  server_id + " speaks protocol " + VersionText(kProtocolMajor, kProtocolMinor) +
-                      ", this client " +
-                      VersionText(hello.protocol_major(), hello.protocol_minor()) +
-                      "; update the " + (client_older ? "client" : "server"));
-  }
-  const v1::Role wished = hello.role() == v1::ROLE_UNSPECIFIED ? v1::ROLE_VIEW : hello.role();
-  if (wished <= highest) return wished;
-  return Refuse(v1::Refused::REASON_ROLE, "the role " + RoleName(wished) +
-                                              " is not given to this connection, at most " +
-                                              RoleName(highest) + "; " + how_to_get_more);
 }
 
 v1::Welcome MakeWelcome(const ServerOptions& options, std::uint64_t epoch, v1::Role role) {

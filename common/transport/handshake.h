@@ -3,23 +3,17 @@
 #include <cstdint>
 #include <set>
 #include <string>
-#include <variant>
 
 #include "common/transport/server.h"
 #include "common/transport/tick_queue.h"
 #include "footing/v1/session.pb.h"
 
-/// The answers to Hello and Subscribe, as functions of what was asked.
+/// The answers to Hello and Subscribe, as functions of what was asked; admission.h decides who gets
+/// them.
 namespace footing::transport {
 
 inline constexpr std::uint32_t kProtocolMajor = 1;
 inline constexpr std::uint32_t kProtocolMinor = 0;
-
-/// The role granted, or why not. Another minor version is fine: both sides leave out what they do
-/// not know. No role asked for is view. `how_to_get_more` says what gives this client a higher one.
-std::variant<v1::Role, v1::Refused> AnswerHello(const v1::Hello& hello, v1::Role highest,
-                                                const std::string& how_to_get_more,
-                                                const std::string& server_id);
 
 v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message);
 

@@ -130,7 +130,7 @@ class Server::Implementation {
   void SetLimits(const SessionLimits& limits) { shared_.options.sessions = limits; }
 
   void SetAccess(const std::string& token, const std::map<std::string, v1::Role>& clients) {
-    if (token != shared_.options.token) shared_.token = TokenGuard(token);
+    if (token != shared_.options.token) shared_.admission.token = TokenGuard(token);
     shared_.options.token = token;
     shared_.options.clients = clients;
   }
@@ -204,7 +204,7 @@ class Server::Implementation {
     boost::asio::post(io_, [session] {});  // It is still being called: let it go later.
     if (sessions_.empty()) Drained();
     if (!session->welcomed()) return;
-    if (!session->may_administer()) --shared_.with_role[session->info().role];
+    Leave(session->admitted(), shared_.admission);
     if (shared_.handlers.on_session_end) shared_.handlers.on_session_end(session->info());
   }
 

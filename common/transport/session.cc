@@ -1,7 +1,5 @@
 #include "common/transport/session.h"
 
-#include <unistd.h>
-
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <utility>
@@ -58,7 +56,6 @@ Session::Session(Socket socket, std::uint64_t number, Shared& shared,
   info_.session = number;
   record_.began_ns = heard_ns_;
   peer_ = PeerOf(connection_.native_handle());
-  highest_role_ = HighestRole(peer_, geteuid(), getegid());
 }
 
 void Session::Start() {

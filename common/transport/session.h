@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -11,6 +10,7 @@
 #include <string_view>
 
 #include "common/timer/timer.h"
+#include "common/transport/admission.h"
 #include "common/transport/answers.h"
 #include "common/transport/decimator.h"
 #include "common/transport/framed_connection.h"
@@ -20,7 +20,6 @@
 #include "common/transport/server.h"
 #include "common/transport/session_record.h"
 #include "common/transport/tick_queue.h"
-#include "common/transport/token.h"
 #include "common/transport/token_bucket.h"
 #include "common/transport/turn_queue.h"
 
@@ -35,17 +34,16 @@ struct Shared {
       : options(std::move(with)),
         handlers(std::move(and_with)),
         publication(options),
-        token(options.token) {
+        admission{TokenGuard(options.token)} {
     loop.turns = std::make_shared<TurnQueue>(executor);
     replays = std::make_shared<TurnQueue>(executor, kReplayPace);
   }
   ServerOptions options;
   ServerHandlers handlers;
   Publication publication;
-  TokenGuard token;
+  AdmissionState admission;
   ServerStatistics statistics;
   std::uint64_t epoch = 0;
-  std::map<v1::Role, std::int64_t> with_role;  ///< Sessions, administrators' not counted.
   SharedLoop loop;
   /// What goes out of the ring, to all sessions together: a fifth of the loop's time.
   std::shared_ptr<TurnQueue> replays;
@@ -92,7 +90,8 @@ class Session : public std::enable_shared_from_this<Session> {
   const SessionInfo& info() const { return info_; }
   const Peer& peer() const { return peer_; }
   bool secured() const { return connection_.secured(); }
-  bool may_administer() const { return highest_role_ == v1::ROLE_ADMIN; }
+  /// Once it is welcomed.
+  const Admitted& admitted() const { return admitted_; }
   /// It was refused, and lingers until the client has seen why.
   bool refused() const { return phase_ == Phase::kRefused; }
   bool welcomed() const { return phase_ == Phase::kWelcomed || phase_ == Phase::kSubscribed; }
@@ -117,10 +116,6 @@ class Session : public std::enable_shared_from_this<Session> {
   void OnFrame(std::string_view payload);
   void OnSlowed();
   void OnHello(const v1::Hello& hello);
-  /// Finds out the highest role of who comes over TCP or TLS; why not, if it may not come in.
-  std::optional<v1::Refused> Authenticate(const v1::Hello& hello);
-  std::string HowToComeIn(const std::string& certificate) const;
-  std::string HowToGetMore() const;
   void Dispatch(const v1::Envelope& message, std::int64_t arrived_ns);
   void OnSubscribe(const v1::Subscribe& wish);
   void OnRefill(const v1::Refill& wish);
@@ -157,7 +152,7 @@ class Session : public std::enable_shared_from_this<Session> {
   SessionInfo info_;
   Phase phase_ = Phase::kHello;
   Peer peer_;
-  v1::Role highest_role_ = v1::ROLE_UNSPECIFIED;
+  Admitted admitted_;
   std::function<void(Session&)> on_end_;
   FramedConnection connection_;
   timer::Timer timer_;

@@ -1,0 +1,217 @@
+#include "common/transport/admission.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <vector>
+
+namespace footing::transport {
+namespace {
+
+constexpr char kRightToken[] = "0123456789abcdef";
+constexpr ServerUser kOwnUser{1000, 1000};
+constexpr std::int64_t kHelloNs = 1'000'000'000;
+
+const Caller kServersUser{{true, 1000, {1000}}};
+const Caller kRoot{{true, 0, {0}}};
+const Caller kMember{{true, 2000, {2000, 1000}}};
+const Caller kStranger{{true, 2000, {2000}}};
+const Caller kOverTcp{{false, 0, {}, "10.0.0.1"}};
+const Caller kOverTls{{false, 0, {}, "10.0.0.1"}, true};
+const Caller kViewersCertificate{{false, 0, {}, "10.0.0.1"}, true, "sha256:view"};
+const Caller kOperatorsCertificate{{false, 0, {}, "10.0.0.1"}, true, "sha256:control"};
+const Caller kUnknownCertificate{{false, 0, {}, "10.0.0.1"}, true, "sha256:unknown"};
+
+ServerOptions GuardedServer() {
+  ServerOptions options;
+  options.server_id = "test-server";
+  options.token = kRightToken;
+  options.clients = {{"sha256:view", v1::ROLE_VIEW}, {"sha256:control", v1::ROLE_CONTROL}};
+  return options;
+}
+
+ServerOptions OpenServer() {
+  ServerOptions options;
+  options.server_id = "test-server";
+  return options;
+}
+
+ServerOptions InsecureLanServer() {
+  ServerOptions options = GuardedServer();
+  options.insecure_lan = true;
+  return options;
+}
+
+v1::Hello HelloFor(v1::Role role, const std::string& token = "") {
+  v1::Hello hello;
+  hello.set_protocol_major(1);
+  hello.set_role(role);
+  hello.set_token(token);
+  hello.set_client_name("viewer");
+  return hello;
+}
+
+AdmissionState StateOf(const ServerOptions& options) { return {TokenGuard(options.token)}; }
+
+Admission AdmitAlone(const ServerOptions& options, const Caller& caller, const v1::Hello& hello) {
+  AdmissionState state = StateOf(options);
+  return Admit(options, kOwnUser, caller, hello, kHelloNs, state);
+}
+
+/// The highest role that is granted, and the reason for which the next higher one is refused.
+struct AccessRow {
+  const char* what;
+  ServerOptions options;
+  Caller caller;
+  std::string token;
+  v1::Role highest;  ///< ROLE_UNSPECIFIED: not even view.
+  v1::Refused::Reason above;
+};
+
+TEST(Admission, EachCallerGetsItsHighestRoleAndNoMore) {
+  constexpr auto kRole = v1::Refused::REASON_ROLE, kProof = v1::Refused::REASON_TOKEN;
+  const std::vector<AccessRow> rows = {
+      {"server's user", GuardedServer(), kServersUser, "", v1::ROLE_ADMIN, kRole},
+      {"root", GuardedServer(), kRoot, "", v1::ROLE_ADMIN, kRole},
+      {"member of its group", GuardedServer(), kMember, "", v1::ROLE_CONTROL, kRole},
+      {"another user", GuardedServer(), kStranger, "", v1::ROLE_LOG, kRole},
+      {"another user with the token", GuardedServer(), kStranger, kRightToken, v1::ROLE_LOG, kRole},
+      {"another user with a wrong token", GuardedServer(), kStranger, "wrong", v1::ROLE_LOG, kRole},
+      {"TCP", GuardedServer(), kOverTcp, "", v1::ROLE_LOG, kRole},
+      {"TCP, token", GuardedServer(), kOverTcp, kRightToken, v1::ROLE_CONTROL, kRole},
+      {"TCP, wrong token", GuardedServer(), kOverTcp, "wrong", v1::ROLE_UNSPECIFIED, kProof},
+      {"TCP, a part of the token", GuardedServer(), kOverTcp, "0123456789", v1::ROLE_UNSPECIFIED,
+       kProof},
+      {"TCP, token where there is none", OpenServer(), kOverTcp, kRightToken, v1::ROLE_LOG, kRole},
+      {"insecure_lan", InsecureLanServer(), kOverTcp, "", v1::ROLE_UNSPECIFIED, kProof},
+      {"insecure_lan, token", InsecureLanServer(), kOverTcp, kRightToken, v1::ROLE_CONTROL, kRole},
+      {"TLS", GuardedServer(), kOverTls, "", v1::ROLE_UNSPECIFIED, kProof},
+      {"TLS, token", GuardedServer(), kOverTls, kRightToken, v1::ROLE_CONTROL, kRole},
+      {"TLS where nothing is known", OpenServer(), kOverTls, kRightToken, v1::ROLE_UNSPECIFIED,
+       kProof},
+      {"viewer's certificate", GuardedServer(), kViewersCertificate, "", v1::ROLE_VIEW, kRole},
+      {"viewer's, token", GuardedServer(), kViewersCertificate, kRightToken, v1::ROLE_VIEW, kRole},
+      {"operator's", GuardedServer(), kOperatorsCertificate, "", v1::ROLE_CONTROL, kRole},
+      {"operator's, wrong", GuardedServer(), kOperatorsCertificate, "x", v1::ROLE_CONTROL, kRole},
+      {"unknown certificate", GuardedServer(), kUnknownCertificate, "", v1::ROLE_UNSPECIFIED,
+       kProof},
+      {"unknown, token", GuardedServer(), kUnknownCertificate, kRightToken, v1::ROLE_CONTROL,
+       kRole},
+  };
+  for (const AccessRow& row : rows) {
+    for (int role = v1::ROLE_VIEW; role <= v1::ROLE_ADMIN + 1; ++role) {
+      const auto hello = HelloFor(static_cast<v1::Role>(role), row.token);
+      const Admission answer = AdmitAlone(row.options, row.caller, hello);
+      const auto* admitted = std::get_if<Admitted>(&answer);
+      ASSERT_EQ(admitted != nullptr, role <= row.highest) << row.what << ", role " << role;
+      if (admitted != nullptr) {
+        EXPECT_EQ(admitted->role, role) << row.what;
+        EXPECT_EQ(admitted->highest, row.highest) << row.what;
+      } else {
+        EXPECT_EQ(std::get<NotAdmitted>(answer).answer.reason(), row.above) << row.what;
+        EXPECT_EQ(std::get<NotAdmitted>(answer).proof.empty(), row.above == kRole) << row.what;
+      }
+    }
+  }
+}
+
+TEST(Admission, NoRoleIsViewAndAnImpossibleOneIsRefused) {
+  const Admission none = AdmitAlone(OpenServer(), kStranger, HelloFor(v1::ROLE_UNSPECIFIED));
+  ASSERT_TRUE(std::holds_alternative<Admitted>(none));
+  EXPECT_EQ(std::get<Admitted>(none).role, v1::ROLE_VIEW);
+  for (const int role : {-1, -2147483647 - 1, 5, 2147483647}) {
+    const Admission answer =
+        AdmitAlone(OpenServer(), kServersUser, HelloFor(static_cast<v1::Role>(role)));
+    ASSERT_TRUE(std::holds_alternative<NotAdmitted>(answer)) << role;
+    EXPECT_EQ(std::get<NotAdmitted>(answer).answer.reason(), v1::Refused::REASON_ROLE);
+  }
+}
+
+TEST(Admission, WhoIsNotKnownDoesNotLearnTheVersion) {
+  v1::Hello hello = HelloFor(v1::ROLE_VIEW);
+  hello.set_protocol_major(2);
+  const auto stranger = std::get<NotAdmitted>(AdmitAlone(GuardedServer(), kOverTls, hello));
+  EXPECT_EQ(stranger.answer.reason(), v1::Refused::REASON_TOKEN);
+  hello.set_token(kRightToken);
+  const auto known = std::get<NotAdmitted>(AdmitAlone(GuardedServer(), kOverTls, hello));
+  EXPECT_EQ(known.answer.reason(), v1::Refused::REASON_PROTOCOL_VERSION);
+}
+
+TEST(Admission, RolesHaveCountedPlacesThatComeBack) {
+  ServerOptions options = OpenServer();
+  options.sessions.max_log_sessions = 1;
+  options.sessions.max_control_sessions = 1;
+  AdmissionState state = StateOf(options);
+  const auto ask = [&](const Caller& caller, v1::Role role) -> std::optional<Admitted> {
+    const auto answer = Admit(options, kOwnUser, caller, HelloFor(role), kHelloNs, state);
+    if (const auto* admitted = std::get_if<Admitted>(&answer)) return *admitted;
+    EXPECT_EQ(std::get<NotAdmitted>(answer).answer.reason(), v1::Refused::REASON_TOO_MANY_SESSIONS);
+    return std::nullopt;
+  };
+  const auto first = ask(kStranger, v1::ROLE_LOG);
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(ask(kOverTcp, v1::ROLE_LOG)) << "one log session already";
+  EXPECT_TRUE(ask(kMember, v1::ROLE_CONTROL)) << "another role has its own places";
+  EXPECT_FALSE(ask(kMember, v1::ROLE_CONTROL));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(ask(kOverTcp, v1::ROLE_VIEW)) << "viewers are not counted";
+    const auto administrator = ask(kServersUser, v1::ROLE_LOG);
+    ASSERT_TRUE(administrator) << "administrators have places of their own";
+    Leave(*administrator, state);
+  }
+  EXPECT_FALSE(ask(kOverTcp, v1::ROLE_LOG)) << "an administrator's end frees no place of others";
+  Leave(*first, state);
+  EXPECT_TRUE(ask(kOverTcp, v1::ROLE_LOG));
+}
+
+TEST(Admission, WhoIsRefusedTakesNoPlace) {
+  ServerOptions options = GuardedServer();
+  options.sessions.max_control_sessions = 1;
+  AdmissionState state = StateOf(options);
+  v1::Hello other_version = HelloFor(v1::ROLE_CONTROL, kRightToken);
+  other_version.set_protocol_major(2);
+  for (const auto& hello : {HelloFor(v1::ROLE_CONTROL, "wrong"), HelloFor(v1::ROLE_CONTROL),
+                            HelloFor(v1::ROLE_ADMIN, kRightToken), other_version}) {
+    const auto answer = Admit(options, kOwnUser, kOverTcp, hello, kHelloNs, state);
+    EXPECT_TRUE(std::holds_alternative<NotAdmitted>(answer));
+  }
+  const auto answer =
+      Admit(options, kOwnUser, kOverTcp, HelloFor(v1::ROLE_CONTROL, kRightToken), kHelloNs, state);
+  EXPECT_TRUE(std::holds_alternative<Admitted>(answer));
+}
+
+TEST(Admission, AWrongTokenShowsNowhere) {
+  for (const std::string& wrong : {std::string("0123456789abcdeX"), std::string("X")}) {
+    const auto refused = std::get<NotAdmitted>(
+        AdmitAlone(GuardedServer(), kOverTls, HelloFor(v1::ROLE_VIEW, wrong)));
+    const std::string all = refused.answer.message() + refused.proof;
+    EXPECT_EQ(all.find(wrong), std::string::npos) << all;
+    EXPECT_EQ(all.find(kRightToken), std::string::npos) << all;
+  }
+}
+
+TEST(Admission, GuessesAreCountedByHostAndFiveWaitEvenWithTheRightOne) {
+  const ServerOptions options = GuardedServer();
+  AdmissionState state = StateOf(options);
+  const auto admitted = [&](const Caller& caller, const std::string& token, double after_s) {
+    const auto now_ns = kHelloNs + static_cast<std::int64_t>(after_s * 1e9);
+    const auto hello = HelloFor(v1::ROLE_VIEW, token);
+    return std::holds_alternative<Admitted>(Admit(options, kOwnUser, caller, hello, now_ns, state));
+  };
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(admitted(kOverTls, "wrong", 0));
+  EXPECT_FALSE(admitted(kOverTls, kRightToken, 0));
+  const Caller elsewhere{{false, 0, {}, "10.0.0.2"}, true};
+  EXPECT_TRUE(admitted(elsewhere, kRightToken, 0));
+  EXPECT_TRUE(admitted(kViewersCertificate, "", 0)) << "of the same host, but known";
+  EXPECT_TRUE(admitted(kOverTls, kRightToken, 5.1));
+}
+
+TEST(Admission, NamesAreShortAndPrintable) {
+  v1::Hello hello = HelloFor(v1::ROLE_VIEW);
+  hello.set_client_name("a\x1b[2J\n" + std::string(100, 'b'));
+  const auto admitted = std::get<Admitted>(AdmitAlone(OpenServer(), kOverTcp, hello));
+  EXPECT_EQ(admitted.client_name, "a?[2J?" + std::string(58, 'b'));
+}
+
+}  // namespace
+}  // namespace footing::transport
