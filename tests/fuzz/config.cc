@@ -46,6 +46,8 @@ void CheckConfig(const std::string& text, Input input) {
     (void)settings.binder.ApplySetting({bytes.begin(), bytes.end()}).ok();
   }
   settings.Check();
+  Settings whole;  // As a program is started: no file, and the same text as one setting.
+  Expect(!whole.binder.Apply("", {text}) || text.find('=') != std::string::npos);
   settings.binder.SetOrigin("text", "--text");
   const std::string printed = settings.binder.Print();
   Settings again;

@@ -1,14 +1,13 @@
-"""Seeds of the fuzz targets of the protocol, of config files and of recordings; make_seeds.py
-writes them."""
+"""Seeds of the fuzz targets of the protocol and of config files; make_seeds.py writes them."""
 import pathlib
 import random
 import re
 import struct
 
 PROTOCOL = pathlib.Path(__file__).parents[2] / "docs" / "protocol.md"
-RAW, GREET, SUBSCRIBE, PUBLISH, RUN, LOOK = 0, 3, 4, 5, 6, 7
+RAW, GREET, SUBSCRIBE, PUBLISH, RUN, LOOK, ANSWER_ONE, TELL = 0, 3, 4, 5, 6, 7, 8, 9
+REFILL_TAG = b"\x5a"  # Field 11 of Envelope.
 WELCOME, ANSWER, COMMAND = 3, 4, 6
-MAGIC = b"\x89MCAP0\r\n"
 
 
 def string(data: bytes) -> bytes:
@@ -29,6 +28,13 @@ def raw(data: bytes) -> bytes:
     return b"".join(bytes([RAW]) + string(data[i:i + 255]) for i in range(0, len(data), 255))
 
 
+def refill(first: int, last: int) -> bytes:
+    varint = lambda n: bytes([n & 0x7F | 0x80, n >> 7])
+    body = b"\x08" + varint(first) + b"\x10" + varint(last)
+    body = REFILL_TAG + bytes([len(body)]) + body
+    return struct.pack("<I", len(body)) + body
+
+
 def sessions() -> dict[str, bytes]:
     begun = bytes([GREET, 4, SUBSCRIBE, 2])
     seeds = {f"session/{name}": b"\x02" + begun + raw(data) + bytes([PUBLISH, 5, 7, LOOK])
@@ -39,10 +45,47 @@ def sessions() -> dict[str, bytes]:
     seeds["session/token"] = b"\x15" + bytes([GREET, 64 + 128 + 3, SUBSCRIBE, 2, LOOK])
     seeds["session/wrong_token"] = b"\x15" + bytes([GREET, 64 + 3, LOOK])
     seeds["session/no_token"] = b"\x11" + bytes([GREET, 3, LOOK])
+    wish = lambda how: bytes([SUBSCRIBE, how])
+    command = dict(examples())["command"]
+    seeds["session/refused_at_once"] = b"\xe0" + bytes([LOOK])
+    seeds["session/not_protobuf"] = b"\x00" + raw(struct.pack("<I", 3) + b"\xff\xff\xff") + bytes([LOOK])
+    seeds["session/no_hello"] = b"\x00" + raw(command) + bytes([LOOK])
+    seeds["session/unknown"] = b"\x02" + begun + raw(struct.pack("<I", 3) + b"\xfa\x7f\x00") + bytes([LOOK])
+    seeds["session/command_twice"] = b"\x02" + begun + raw(command * 2) + bytes([LOOK, ANSWER_ONE, 1]) + raw(
+        command) + bytes([LOOK])
+    seeds["session/command_of_viewer"] = b"\x02" + bytes([GREET, 1]) + raw(command) + bytes([LOOK])
+    seeds["session/latest"] = b"\x02" + bytes([GREET, 1]) + wish(1) + bytes([PUBLISH, 31, 255]) * 10 + bytes([LOOK])
+    seeds["session/drop_oldest"] = b"\x02" + bytes([GREET, 1]) + wish(2) + bytes([PUBLISH, 31, 255]) * 40 + bytes([LOOK] * 9)
+    seeds["session/passed"] = b"\x02" + bytes([GREET, 1]) + bytes([PUBLISH, 31, 7]) * 8 + wish(34) + bytes([1, 0]) + bytes(
+        [RUN, 20, LOOK]) + wish(2) + raw(refill(1, 250)) + bytes([RUN, 20, LOOK])
+    seeds["session/refills"] = b"\x02" + begun + bytes([PUBLISH, 31, 6]) + b"".join(
+        raw(refill(i, i + 3)) for i in range(1, 40)) + bytes([RUN, 20, LOOK])
+    seeds["session/drained"] = b"\x02" + begun + bytes([PUBLISH, 31, 7, TELL, 1, RUN, 20, LOOK])
     seeds["session/resume"] = b"\x02" + bytes([GREET, 1, PUBLISH, 31, 6, SUBSCRIBE, 34, 3, 0, PUBLISH, 31, 6,
                                               LOOK, RUN, 20, LOOK])
     seeds["session/other_epoch"] = b"\x02" + bytes([GREET, 1, PUBLISH, 9, 7, SUBSCRIBE, 35, 3, 1, LOOK])
     seeds["session/slow_reliable"] = b"\x02" + bytes([GREET, 1, SUBSCRIBE, 3]) + bytes([PUBLISH, 31, 255]) * 40
+    return seeds
+
+
+def admissions() -> dict[str, bytes]:
+    """Settings, then steps: below 40 a wait, below 80 an end, else a caller and a Hello."""
+    ask, leave, wait = 255, 79, 39
+    own, member, tcp, tls, certificate = 0, 20, 1, 2, 3
+    no_token, right, wrong = 0, 24, 8
+    view, log, control, admin = 2, 3, 4, 5
+    def asks(caller: int, how: int, guess: bytes = b"") -> bytes:
+        return bytes([ask, caller, how]) + (string(guess) if how & wrong and not how & 16 else b"")
+    token_and_certificates = 1 | 4 | 16 | 192
+    everybody = b"".join(asks(caller, how | role, b"guess") for caller in (own, member, 4, tcp, tls, certificate)
+                         for how in (no_token, right, wrong) for role in (view, log, control, admin))
+    seeds = {f"admission/everybody_{how}": bytes([how]) + everybody + bytes([leave, leave, leave]) * 9 + everybody
+             for how in (0, 1 | 4 | 16, 2, 3 | 4 | 16, token_and_certificates, 4 | 64)}
+    guesses = asks(tls, wrong | view, b"0123456789abcdeX")
+    seeds["admission/guesses"] = b"\x01" + guesses * 7 + asks(tls, right | view) + bytes([wait]) + guesses * 3 + asks(
+        tls, right | view)
+    seeds["admission/version"] = b"\x01" + asks(own, 128 | view) + bytes([ask, own, 64 | view]) + string(b"a\x1b\n")
+    seeds["admission/no_such_role"] = b"\x01" + asks(own, 0) + asks(own, 6) + asks(own, 1)
     return seeds
 
 
@@ -51,6 +94,9 @@ def clients() -> dict[str, bytes]:
     seeds = {f"client/{name}": b"\x00" + begun + raw(data) + bytes([COMMAND, 5, RUN - 1, 20])
              for name, data in examples()}
     seeds["client/stale"] = b"\x02" + begun + bytes([5, 40, 5, 100, 5, 20]) + begun
+    seeds["client/resumes"] = b"\x00" + begun + raw(dict(examples())["tick"]) + bytes([5, 1, 8]) + begun + bytes([5, 1, 7, 1, 2])
+    seeds["client/stops"] = b"\x00" + bytes([9, 1]) + begun
+    seeds["client/stops_at_tick"] = b"\x00" + begun + bytes([9, 2]) + raw(dict(examples())["tick"]) + bytes([5, 1])
     seeds["client/reconnects"] = b"\x00" + begun + bytes([COMMAND, 9, 8]) + begun + bytes([8]) + begun
     return seeds
 
@@ -59,6 +105,44 @@ def messages() -> dict[str, bytes]:
     """Any bytes make fields; how these come to be is what counts."""
     source = random.Random(16)
     return {f"wire/{kind:02}": bytes([kind, 0]) + source.randbytes(700) for kind in range(39)}
+
+
+def field(number: int, kind: int, value: bytes) -> bytes:
+    return bytes([number << 3 | kind]) + value
+
+
+def fields(count: int, *filled: bytes) -> bytes:
+    """A message as message.h fills it: how many fields, then each by its index."""
+    return bytes([count]) + b"".join(filled)
+
+
+def filled_messages() -> dict[str, bytes]:
+    """Messages with others inside, which random bytes hardly make; kinds as in the table of wire.cc."""
+    numbers = bytes([0, 200]) * 30
+    pair = fields(5, *(bytes([i]) + bytes([0, 7]) for i in range(5)))
+    stats = fields(12, *(bytes([i % 15]) + bytes([0, 3]) for i in range(12)))
+    digest = string(bytes(range(32)))
+    data = fields(2, bytes([0]) + string(b"a"), bytes([1]) + digest)
+    short = fields(2, bytes([0]) + string(b"a"), bytes([1]) + string(b"ab"))
+    tensor = lambda shape, values, name=b"w": fields(3, bytes([0]) + string(name), bytes([1, len(shape) - 1]) + b"".join(
+        bytes([0, n]) for n in shape), bytes([2, values - 1]) + bytes([0, 200]) * values)
+    def model(training: bytes, *tensors: bytes, kind: bytes = b"k") -> bytes:
+        source = fields(5, bytes([0]) + string(b"1"), bytes([1]) + string(b"c"), bytes([2, 0, 7]), bytes([3, 0]) + training,
+                        bytes([4, 0]) + string(b"s"))
+        return fields(3, bytes([0]) + string(kind), bytes([2]) + source, bytes([3, len(tensors) - 1]) + b"".join(tensors))
+    of_kind = {
+        "pairs": (3, fields(1, bytes([2, 1]) + pair * 2)),
+        "server": (17, fields(2, bytes([9, 1]) + stats * 2, bytes([10, 1]) + stats * 2)),
+        "model": (37, model(data, tensor([2, 3], 6), tensor([4], 4, b"v"))),
+        "model_digest": (37, model(short, tensor([2], 2))),
+        "model_shape": (37, model(data, tensor([2, 3], 5))),
+    }
+    return {f"wire/{name}": bytes([kind, 0]) + message + numbers for name, (kind, message) in of_kind.items()} | {
+        "wire/not_ascii": bytes([0, 1]) + field(2, 2, string("\u00e4\u20ac\U0001f600\u07ff".encode())),
+        "wire/model_version": bytes([38, 0]) + b"\x10\x63",
+        "wire/no_model": bytes([38, 0]) + b"\xff\xff",
+        "wire/model_bytes": bytes([38, 0]) + field(1, 2, string(b"k")) + b"\x7a\x20" + bytes(32),
+    }
 
 
 def configs() -> dict[str, bytes]:
@@ -70,6 +154,9 @@ def configs() -> dict[str, bytes]:
         "config/file": b"\x00\x00" + text,
         "config/settings": b"\x00" + string(string(b"text=x") + string(b"integer=3") + string(b"flag=maybe")
                                             + string(b"nothing") + string(b"no=1")) + text,
+        "config/null": b"\x00\x00" + b'{"text": null, "number": null}',
+        "config/deep": b"\x00\x00" + b'{"list": [["a"], null, 1.5, true], "map": {"k": {"l": 1}}}',
+        "config/setting": b"\x00\x00text=x",
         "config/wrong": b"\x00\x00" + b'{"integer": 7.5}',
         "config/too_large": b"\x00\x00" + b'{"integer": 1e999}',
         "config/not_utf8": b"\x00" + string(string(b"integer=\xf3") + string(b"text=\xf3")) + b"{}",
@@ -77,66 +164,9 @@ def configs() -> dict[str, bytes]:
         "config/not_json": b"\x00\x00" + b'{"integer": 7',
         "config/clients": b"\x02" + clients_file.encode(),
     }
-    addresses = ["unix:/run/x.sock", "tcp:127.0.0.1:7450", "tls:[::1]:7450", "fd:sensor", "tcp:x", "udp:1:2"]
+    addresses = ["unix:/run/x.sock", "tcp:127.0.0.1:7450", "tls:[::1]:7450", "fd:sensor", "tcp:x", "udp:1:2", "unix:/" + 120 * "x", "unix:", "tcp:127.0.0.1:0x",
+                 "tcp:127.0.0.1:99999", "fd:", ""]
     return seeds | {f"config/address_{i}": b"\x01" + a.encode() for i, a in enumerate(addresses)}
-
-
-def text(value: str | bytes) -> bytes:
-    data = value.encode() if isinstance(value, str) else value
-    return struct.pack("<I", len(data)) + data
-
-
-def text_map(values: dict[str, str]) -> bytes:
-    return text(b"".join(text(k) + text(v) for k, v in values.items()))
-
-
-def record(opcode: int, body: bytes) -> bytes:
-    return struct.pack("<BQ", opcode, len(body)) + body
-
-
-def recording(with_index: bool, cut: int = 0) -> bytes:
-    """A recording without checksums, which are 0: two channels, two chunks."""
-    schema = record(3, struct.pack("<H", 1) + text("s") + text("protobuf") + text(""))
-    channels = b"".join(record(4, struct.pack("<HH", i, 1) + text(f"/footingd/{name}") + text("protobuf")
-                                  + text_map({})) for i, name in ((1, "status"), (2, "motion")))
-    out = MAGIC + record(1, text("") + text("seed"))
-    metadata_at = len(out)
-    clock = {"server": "footingd", "offset_ns": "5", "epoch": "7", "server_id": "footingd",
-             "tick_rate_hz": "100", "server_host_ns": "1000", "server_wall_time_ns": "2000"}
-    session = record(12, text("session") + text_map(clock))
-    out += session + record(12, text("clock") + text_map(clock))
-    attachment_at = len(out)
-    attachment = record(9, struct.pack("<QQ", 1, 1) + text("a") + text("b") + struct.pack("<Q", 1) + b"x" + bytes(4))
-    out += attachment
-    chunk_indexes = b""
-    for start in (1000, 2000):
-        records, offsets = schema + channels, {1: [], 2: []}
-        for i in range(4):
-            channel = 1 + i % 2
-            offsets[channel].append((start + i, len(records)))
-            records += record(5, struct.pack("<HIQQ", channel, i, start + i, start + i) + b"\x0a\x02\x08\x01")
-        chunk_at = len(out)
-        chunk = record(6, struct.pack("<QQQI", start, start + 3, len(records), 0) + text("")
-                       + struct.pack("<Q", len(records)) + records)
-        out += chunk
-        places = b""
-        indexes_at = len(out)
-        for channel, entries in offsets.items():
-            places += struct.pack("<HQ", channel, len(out))
-            out += record(7, struct.pack("<H", channel) + text(b"".join(struct.pack("<QQ", *e) for e in entries)))
-        chunk_indexes += record(8, struct.pack("<QQQQ", start, start + 3, chunk_at, len(chunk)) + text(places)
-                                + struct.pack("<Q", len(out) - indexes_at) + text("")
-                                + struct.pack("<QQ", len(records), len(records)))
-    out += record(15, bytes(4))
-    summary_at = len(out) if with_index else 0
-    if with_index:
-        counts = text(struct.pack("<HQHQ", 1, 4, 2, 4))
-        out += schema + channels + chunk_indexes
-        out += record(10, struct.pack("<QQQQQ", attachment_at, len(attachment), 1, 1, 1) + text("a") + text("b"))
-        out += record(13, struct.pack("<QQ", metadata_at, len(session)) + text("session"))
-        out += record(11, struct.pack("<QHIIIIQQ", 8, 1, 2, 1, 2, 2, 1000, 2003) + counts)
-    out += record(2, struct.pack("<QQI", summary_at, 0, 0)) + MAGIC
-    return out[:len(out) - cut]
 
 
 def devices() -> dict[str, bytes]:
@@ -161,9 +191,5 @@ def seeds() -> dict[str, bytes]:
     return {
         "frames/pieces": string(bytes([1, 4, 9, 0])) + frames,
         "frames/tls": string(b"") + bytes([22, 3, 1, 0, 200, 1, 0, 0, 196]) + bytes(20),
-        **devices(), **sessions(), **clients(), **messages(), **configs(),
-        "recording/whole": recording(True),
-        "recording/no_index": recording(False),
-        "recording/cut": recording(True, 300),
-        "recording/cut_in_chunk": recording(True, 900),
+        **devices(), **admissions(), **sessions(), **clients(), **messages(), **filled_messages(), **configs(),
     }

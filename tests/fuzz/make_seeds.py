@@ -9,10 +9,11 @@ A seed has the form that the target of its folder reads (see its .cc file).
 """
 import pathlib
 import re
-import struct
 import sys
 
+import make_motion_seeds
 import make_protocol_seeds
+import make_recording_seeds
 
 ACCELERATION = "82 82 82 15 9C 9C 9E 38 40 3E"
 NUNCHUK = "7D 7A 7E 0A B0 AF B1 12 E5 21 7C E7 23 7A FC 51"
@@ -49,6 +50,10 @@ def string(data: bytes) -> bytes:
     return bytes([len(data)]) + data
 
 
+def with_byte(data: bytes, at: int, value: int) -> bytes:
+    return data[:at] + bytes([value]) + data[at + 1:]
+
+
 def memory(offset: int, data: bytes) -> bytes:
     return bytes([0x21, 0, 0, (len(data) - 1) << 4, offset >> 8, offset & 0xFF]) + data.ljust(16, b"\0")
 
@@ -70,90 +75,37 @@ def seeds() -> dict[str, bytes]:
         "reports/every_id": b"".join(map(string, ids)),
         "reports/wiimote": b"".join(map(string, wiimote)),
         "reports/board": b"".join(map(string, board)),
+        "reports/short": b"".join(string(bytes([kind] + [0] * size)) for kind in (0x20, 0x21, 0x22, 0x30, 0x31, 0x35)
+                                  for size in (0, 1, 2, 4)) + string(b"") + string(b"\x31" + bytes(22))
+                         + string(bytes([0x21, 0, 0, 0xF0, 0, 0, 1])),
         "reports/packets": string(raw(MOTION_PLUS_PACKET)) + string(raw(NUNCHUK_PACKET)),
         "calibration/acceleration": string(raw(ACCELERATION)) + string(b"") + raw("02 00 02 00 02 6A"),
         "calibration/nunchuk": string(raw(NUNCHUK) * 2) + string(b"") + raw(NUNCHUK_PACKET),
         "calibration/motion_plus": string(raw(MOTION_PLUS)) + string(b"") + raw(MOTION_PLUS_PACKET) * 4,
+        "calibration/still": string(raw(MOTION_PLUS)) + string(b"") + b"".join(
+            bytes([60, 0, 0, 0x7E, 0x7F, 0x7E]) for _ in range(40)),
+        "calibration/turning": string(raw(MOTION_PLUS)) + string(b"") + b"".join(
+            bytes([60 + i % 5, 0, 0, 0x7E, 0x7F, 0x7E]) for i in range(60)),
         "calibration/board": string(board_block) + string(raw("19 01")) + raw(BOARD_REPORT)[3:14],
         "move/zcm1": b"\x06" + b"".join(string(raw(p)) for p in MOVE_PIECES) + string(b"")
                      + string(raw(MOVE_REPORT)),
         "move/zcm2": b"\x05" + b"".join(string(raw(p)) for p in MOVE2_PIECES) + string(b"")
                      + string(raw(MOVE_REPORT)[:44]),
-        **motion_files(),
-        **skeletons(),
+        "move/at_charger": b"\x00" + string(b"") + string(with_byte(raw(MOVE_REPORT), 12, 0xEF))
+                           + string(with_byte(with_byte(raw(MOVE_REPORT), 37, 0xFF), 38, 0xFF))
+                           + string(with_byte(raw(MOVE_REPORT), 12, 0x77)) + string(raw(MOVE_REPORT)[:20]),
+        "move/fast": b"\x00" + string(b"") + string(raw(MOVE_REPORT)[:25] + b"\xff" * 24),
+        **make_motion_seeds.seeds(),
         **make_protocol_seeds.seeds(),
+        **make_recording_seeds.seeds(),
         "handshake/wiimote": b"\x00" + steps(wiimote),
         "handshake/board": b"\x01" + steps(board),
     }
 
 
-def osc_text(text: str) -> bytes:
-    data = text.encode() + b"\0"
-    return data.ljust((len(data) + 3) // 4 * 4, b"\0")
-
-
-def osc(address: str, types: str, *arguments: object) -> bytes:
-    packed = {"i": ">i", "h": ">q", "f": ">f", "d": ">d"}
-    return osc_text(address) + osc_text("," + types) + b"".join(
-        osc_text(a) if t == "s" else struct.pack(packed[t], a) for t, a in zip(types, arguments))
-
-
-def bundle(*messages: bytes) -> bytes:
-    return b"#bundle\0" + struct.pack(">Q", 1) + b"".join(
-        struct.pack(">I", len(m)) + m for m in messages)
-
-
-def blocks(packet: bytes) -> bytes:
-    parts = [packet[i:i + 255] for i in range(0, len(packet), 255)][:16]
-    return bytes([len(parts) - 1]) + b"".join(map(string, parts))
-
-
-def skeletons() -> dict[str, bytes]:
-    names = ["head", "neck", "l_hand", "r_shoulder", "l_knee"]
-    point = (0.5, 0.25, 1.5)
-    stamped = (*point, 1.0, 5.0)
-    packets = {
-        "sensebloom": [bundle(*[osc("/joint", "sifff", n, 1, *point) for n in names])],
-        "quartz": [bundle(*[osc(f"/joint/{n}/1", "fff", *point) for n in names])],
-        "zillode": [bundle(*[osc("/joint", "siiffffd", n, 0, 1, *stamped) for n in names])],
-        "sdk2": [osc("/osceleton2/joint", "siiffffd", n, 0, 1, *stamped) for n in names],
-        "footing": [bundle(osc("/footing/skeleton", "hi", 7, 1),
-                           *[osc("/footing/joint", "sffff", n, *point, 1.0) for n in names])],
-        "vmc": [bundle(osc("/VMC/Ext/Bone/Pos", "sfffffff", n, *point, 0.0, 0.0, 0.0, 1.0),
-                       osc("/VMC/Ext/T", "f", 1.0)) for n in ["Hips", "Head", "LeftHand"]],
-    }
-    options = {name: bytes([i]) for i, name in enumerate(["footing", "quartz", "sdk2", "sensebloom", "vmc", "zillode"])}
-    return {f"osc/{name}": options[name] + b"".join(map(blocks, sent)) for name, sent in packets.items()}
-
-
-def motion_files() -> dict[str, bytes]:
-    bvh = ("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation "
-           "Xrotation Yrotation\nJOINT b\n{\nOFFSET 1 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
-           "End Site\n{\nOFFSET 1 0 0\n}\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.01\n"
-           "0 1 0 0 0 0 10 20 30\n")
-    asf = (":units\nlength 0.45\nangle deg\n:root\norder TX TY TZ RX RY RZ\naxis XYZ\n:bonedata\nbegin\n"
-           "name a\ndirection 0 1 0\nlength 1\naxis 0 90 0 XYZ\ndof rx ry\nlimits (-1 2)\n(-3 4)\nend\n"
-           ":hierarchy\nbegin\nroot a\nend\n")
-    amc = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 1 2 3 4 5\na 6 7\n2\nroot 0 1 2 3 4 5\na 6 7\n"
-    trc = ("PathFileType\t4\t(X/Y/Z)\tx\nDataRate\tUnits\n100\tmm\nFrame#\tTime\ta\t\t\n\t\tX1\tY1\tZ1\n\n"
-           "1\t0\t1\t2\t3\n2\t0.01\t\t\t\n")
-    mot = ("x\nversion=1\nnRows=2\nnColumns=7\ninDegrees=no\nendheader\ntime\tavx\tavy\tavz\tapx\tapy\tapz\n"
-           "0\t1\t2\t3\t4\t5\t6\n0.01\t1\t2\t3\t4\t5\t6\n")
-    labels = b"\x06\x01LABELS" + struct.pack("<H", 9) + b"\xff\x02\x02\x01ab\x00"
-    parameters = b"\x01\x50\x01\x54" + b"\x05\xffPOINT\x03\x00\x00" + labels + b"\x00\x00"
-    header = struct.pack("<BBHHHHHfHHf", 2, 0x50, 1, 1, 1, 2, 0, -1.0, 3, 1, 100.0)
-    data = struct.pack("<5f", 1, 2, 3, 0, 7) * 2
-    c3d = header.ljust(512, b"\0") + parameters.ljust(512, b"\0") + data
-    texts = [bvh, asf, amc, trc, mot]
-    names = ["bvh", "asf", "amc", "trc", "mot"]
-    seeds = {f"motion/{name}": bytes([i]) + text.encode() for i, (name, text) in
-             enumerate(zip(names, texts))}
-    seeds["motion/c3d"] = b"\x05" + c3d
-    return seeds
-
-
 REPLACEMENTS = ["-1", "1e999", "nan", "999999999999", "x", "{", "2 2"]
 TEXT_FROM = {"motion": 1, "config": 2}  # Bytes in front of the text.
+VARIED = {"bvh", "asf", "amc", "trc", "mot"}  # Of motion files; the others differ from these already.
 
 
 def changed(pieces: list[str], joint: str) -> list[str]:
@@ -168,7 +120,8 @@ def changed(pieces: list[str], joint: str) -> list[str]:
 def variants() -> dict[str, bytes]:
     found = {}
     for name, data in seeds().items():
-        start = TEXT_FROM.get(name.split("/")[0])
+        folder, _, seed = name.partition("/")
+        start = TEXT_FROM.get(folder) if folder != "motion" or seed in VARIED else None
         try:
             text = data[start:].decode("ascii") if start else ""
         except UnicodeDecodeError:

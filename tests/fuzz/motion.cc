@@ -46,6 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto table = motion::ParseTable(text, "f");
       if (!table) break;
       fuzz::Expect(table->values.allFinite());
+      fuzz::Expect(!motion::WriteTable(*table).empty());
       static_cast<void>(motion::ToGroundForces(*table, "f"));
       break;
     }

@@ -13,11 +13,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const auto model = (head & 1) != 0 ? reports::MoveModel::kZcm2 : reports::MoveModel::kZcm1;
   calibration::MoveBlob blob(model);
   for (int i = 0; i < (head >> 1 & 3); ++i) (void)blob.Take(input.String());
+  Expect(!blob.complete() || !blob.bytes().empty());
   Expect(blob.bytes().empty() || blob.bytes().size() == calibration::MoveBlobBytes(model));
   const auto calibration = calibration::ParseMove(model, blob.bytes());
   Expect((calibration.origin == stream::CalibrationOrigin::kDefaults) !=
          calibration.problem.empty());
   (void)calibration::ParseMove(model, input.String());
+  const std::uint32_t colour = head * 0x10101u;
+  Expect(reports::MoveLights(colour, head).size() <= reports::kMaxReportBytes);
   while (!input.empty()) {
     const auto report = reports::DecodeMove(model, input.String());
     if (!report) continue;

@@ -1,6 +1,8 @@
 #include "clients/skeleton/osc/osc.h"
 
+#include <cstdlib>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "clients/skeleton/dialects/decoder.h"
@@ -30,6 +32,21 @@ void CheckRoundTrip(skeleton::Dialect dialect, const skeleton::DialectOptions& o
   fuzz::Expect((again - p_K_m).norm() <= 1e-6 * (1 + p_K_m.norm()));
 }
 
+/// A time comes back within the nanosecond to which it is rounded.
+void CheckTime(osc::TimeTag tag) {
+  const std::int64_t unix_ns = osc::ToUnixNs(tag);
+  fuzz::Expect(std::abs(osc::ToUnixNs(osc::ToTimeTag(unix_ns)) - unix_ns) <= 1);
+}
+
+/// The names of an option: as many bytes as there are of one, or any.
+void CheckNames(fuzz::Bytes bytes) {
+  const std::string_view name(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (const auto dialect = skeleton::DialectOf(name)) {
+    fuzz::Expect(skeleton::NameOf(*dialect) == name);
+  }
+  if (const auto units = skeleton::UnitsOf(name)) fuzz::Expect(skeleton::NameOf(*units) == name);
+}
+
 }  // namespace
 
 // The first byte chooses options; then any bytes as packets of a sender of skeletons: each is read
@@ -51,8 +68,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       bytes.insert(bytes.end(), block.begin(), block.end());
     }
     now_ns += 7'000'000;
+    CheckNames(bytes);
     if (!osc::Read(bytes, packet)) continue;
     for (const osc::Message& message : packet.messages) {
+      CheckTime(message.time);
       const auto arguments = packet.Of(message);
       const std::string written = osc::WriteMessage(message.address, arguments);
       fuzz::Expect(osc::Read(osc::AsBytes(written), again).ok());
