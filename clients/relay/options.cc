@@ -8,6 +8,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <csignal>
+#include <utility>
 
 #include "clients/relay/links/broker_address.h"
 #include "clients/relay/links/login_file.h"
@@ -19,6 +20,8 @@ void SiteFlags::Add(CLI::App& command) {
                      "Name of the site, letters, digits, - and _ (default: this host's name)");
   command.add_option("--seconds", seconds, "Duration, s (0: until SIGINT or SIGTERM)")
       ->check(CLI::Range(0.0, 1e9));
+  command.add_option("--metrics", metrics,
+                     "Unix socket with metrics for Prometheus, unix:PATH (default: none)");
 }
 
 Result<std::string> SiteFlags::Site() const {
@@ -46,6 +49,12 @@ Result<NatsOptions> NatsOf(const std::string& address, const std::string& login_
   options.client_name = "footing-relay";
   options.login = std::move(login).value();
   return options;
+}
+
+Result<std::unique_ptr<monitoring::MetricsEndpoint>> ServeMetrics(
+    boost::asio::io_context& io, const SiteFlags& flags, std::function<std::string()> text) {
+  if (flags.metrics.empty()) return std::unique_ptr<monitoring::MetricsEndpoint>();
+  return monitoring::MetricsEndpoint::Open(io, flags.metrics, std::move(text));
 }
 
 void RunUntilStopped(boost::asio::io_context& io, double seconds,

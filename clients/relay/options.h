@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "clients/relay/links/nats_link.h"
+#include "common/monitoring/metrics_endpoint.h"
 #include "common/result/result.h"
 
 /// Options that both subcommands have, and how both run.
@@ -14,6 +16,7 @@ namespace footing::relay {
 struct SiteFlags {
   std::string site;
   double seconds = 0;
+  std::string metrics;  ///< Address of the endpoint for Prometheus; empty: none.
 
   void Add(CLI::App& command);
   /// The site, or this host's name where none was given.
@@ -22,6 +25,10 @@ struct SiteFlags {
 
 /// The link to NATS of these flags.
 Result<NatsOptions> NatsOf(const std::string& address, const std::string& login_file);
+
+/// Serves metrics where the flags say so; nothing where they do not.
+Result<std::unique_ptr<monitoring::MetricsEndpoint>> ServeMetrics(
+    boost::asio::io_context& io, const SiteFlags& flags, std::function<std::string()> text);
 
 /// Runs the loop until SIGINT, SIGTERM or the time is up. Then `end` is called once, with what
 /// stops the loop when its work is done; it is stopped after 2 s in any case.

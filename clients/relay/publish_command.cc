@@ -6,6 +6,7 @@
 #include "clients/relay/links/broker_address.h"
 #include "clients/relay/links/login_file.h"
 #include "clients/relay/options.h"
+#include "clients/relay/service/metrics.h"
 #include "clients/relay/service/publisher.h"
 #include "common/cli/cli.h"
 
@@ -73,6 +74,9 @@ Result<PublisherReport> RunPublish(const PublishFlags& flags) {
   if (!options) return options.error();
   boost::asio::io_context io(1);
   Publisher publisher(io, *options);
+  const auto metrics =
+      ServeMetrics(io, flags.site, [&] { return MetricsText(publisher.report(), cli::Version()); });
+  if (!metrics) return metrics.error();
   if (const auto started = publisher.Start(); !started) return started.error();
   RunUntilStopped(io, flags.site.seconds, [&](const std::function<void()>& done) {
     publisher.Stop();

@@ -5,6 +5,7 @@
 #include "clients/relay/commands.h"
 #include "clients/relay/options.h"
 #include "clients/relay/service/edge.h"
+#include "clients/relay/service/metrics.h"
 #include "common/cli/cli.h"
 
 namespace footing::relay {
@@ -57,6 +58,9 @@ Result<EdgeReport> RunServe(const ServeFlags& flags) {
     broken = error;
     io.stop();
   });
+  const auto metrics =
+      ServeMetrics(io, flags.site, [&] { return MetricsText(edge.report(), cli::Version()); });
+  if (!metrics) return metrics.error();
   edge.Start();
   RunUntilStopped(io, flags.site.seconds, [&](std::function<void()> done) {
     edge.Drain("footing-relay is being stopped", std::move(done));

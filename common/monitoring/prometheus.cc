@@ -1,65 +1,11 @@
 #include "common/monitoring/prometheus.h"
 
-#include <cmath>
-#include <initializer_list>
-#include <utility>
+#include <vector>
 
-#include "common/text/number.h"
+#include "common/monitoring/metrics_writer.h"
 
 namespace footing::monitoring {
 namespace {
-
-struct Label {
-  const char* name;
-  std::string value;
-};
-using Labels = std::initializer_list<Label>;
-
-/// As the format wants a label's value: a backslash, a quote and the end of a line are escaped.
-std::string Escaped(const std::string& value) {
-  std::string text;
-  for (const char c : value) {
-    if (c == '\\' || c == '"') text += '\\';
-    text += c == '\n' ? std::string("\\n") : std::string(1, c);
-  }
-  return text;
-}
-
-class Writer {
- public:
-  /// Begins a metric; its samples follow.
-  void Gauge(const char* name, const char* help) { Begin(name, help, "gauge"); }
-  void Counter(const char* name, const char* help) { Begin(name, help, "counter"); }
-
-  void Sample(double value, const std::string& labels = "") {
-    text_ += name_ + labels + ' ';
-    text::AppendShortest(text_, std::isfinite(value) ? value : 0);
-    text_ += '\n';
-  }
-  void Sample(std::uint64_t value, const std::string& labels = "") {
-    text_ += name_ + labels + ' ' + std::to_string(value) + '\n';
-  }
-
-  std::string Take() { return std::move(text_); }
-
- private:
-  void Begin(const char* name, const char* help, const char* type) {
-    name_ = name;
-    text_ += "# HELP " + name_ + ' ' + help + "\n# TYPE " + name_ + ' ' + type + '\n';
-  }
-
-  std::string name_;
-  std::string text_;
-};
-
-std::string Braced(Labels labels) {
-  std::string text;
-  for (const Label& label : labels) {
-    text +=
-        (text.empty() ? "{" : ",") + std::string(label.name) + "=\"" + Escaped(label.value) + "\"";
-  }
-  return text + "}";
-}
 
 std::string Of(const stream::SessionStats& session) {
   return Braced({{"session", std::to_string(session.session)},
@@ -75,7 +21,7 @@ std::string Of(const stream::DeviceStats& device) {
                  {"simulated", device.simulated ? "true" : "false"}});
 }
 
-void WriteServer(const stream::ServerStats& stats, Writer& to) {
+void WriteServer(const stream::ServerStats& stats, MetricsWriter& to) {
   to.Gauge("footing_uptime_seconds", "Time since the first tick.");
   to.Sample(stats.uptime_s);
   to.Counter("footing_ticks_total", "Ticks published.");
@@ -105,7 +51,7 @@ void WriteServer(const stream::ServerStats& stats, Writer& to) {
   to.Sample(stats.slowed);
 }
 
-void WriteSessions(const std::vector<stream::SessionStats>& sessions, Writer& to) {
+void WriteSessions(const std::vector<stream::SessionStats>& sessions, MetricsWriter& to) {
   if (sessions.empty()) return;
   to.Gauge("footing_session_queue_ticks", "Ticks waiting for the session.");
   for (const auto& one : sessions) to.Sample(std::uint64_t{one.queue_ticks}, Of(one));
@@ -125,7 +71,7 @@ void WriteSessions(const std::vector<stream::SessionStats>& sessions, Writer& to
   }
 }
 
-void WriteDevices(const std::vector<stream::DeviceStats>& devices, Writer& to) {
+void WriteDevices(const std::vector<stream::DeviceStats>& devices, MetricsWriter& to) {
   if (devices.empty()) return;
   to.Gauge("footing_device_live", "1 while data reports arrive.");
   for (const auto& one : devices) {
@@ -152,22 +98,12 @@ void WriteDevices(const std::vector<stream::DeviceStats>& devices, Writer& to) {
   }
 }
 
-void WriteProcess(const ProcessUsage& usage, Writer& to) {
-  to.Counter("process_cpu_seconds_total", "CPU time of the process, user and system.");
-  to.Sample(usage.cpu_s);
-  to.Gauge("process_resident_memory_bytes", "Resident memory of the process.");
-  to.Sample(usage.resident_bytes);
-  to.Gauge("process_open_fds", "Open file descriptors of the process.");
-  to.Sample(usage.open_descriptors);
-}
-
 }  // namespace
 
 std::string PrometheusText(const stream::ServerStats& stats, const Program& program,
                            const ProcessUsage& usage) {
-  Writer to;
-  to.Gauge("footing_build_info", "1; the labels say which program this is.");
-  to.Sample(std::uint64_t{1}, Braced({{"program", program.name}, {"version", program.version}}));
+  MetricsWriter to;
+  WriteProgram(program, to);
   WriteServer(stats, to);
   WriteSessions(stats.sessions, to);
   WriteDevices(stats.devices, to);

@@ -20,7 +20,8 @@ except ImportError:  # Another Python than Debian's, which has the package.
     from prometheus_client.parser import text_string_to_metric_families
 
 UNITS = ("seconds", "hertz", "bytes", "ratio", "ticks")
-COUNTED = ("footing_sessions", "footing_build_info", "footing_device_live", "process_open_fds")
+COUNTED = ("footing_sessions", "footing_build_info", "footing_device_live", "process_open_fds", "footing_relay_broker_up",
+           "footing_relay_source_up", "footing_relay_serving")
 MOST_STOP_S = 3
 PAUSE_S = 0.4  # Beyond the 0.1 s of ticks that are made up for.
 

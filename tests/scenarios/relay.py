@@ -13,11 +13,16 @@ import time
 import brokers
 import decode_stream
 from harness import Stage
+from operations import metrics_of
 
 SITE = "lab-1"
 SAMPLED = ("motion", "features", "boards", "raw")
 MOST_RETURN_S = 2
 TRIES = 3  # Other work on the machine may delay one return.
+
+
+def metrics_at(stage):
+    return f"unix:{stage.folder}/publisher-metrics.sock", f"unix:{stage.folder}/edge-metrics.sock"
 
 
 class Viewer(threading.Thread):
@@ -142,6 +147,7 @@ def check_server_killed(stage, edge, address):
     old = edge.of("welcome")[0]["epoch"]
     stage.stop("footingd", signal.SIGKILL)
     stage.wait_for(lambda: edge.ended, "the end of the session", 10)
+    check_metrics_when_alone(metrics_at(stage)[1])
     assert "nothing comes from footingd" in edge.of("goodbye")[0]["reason"], edge.of("goodbye")
     start_footingd(stage)
     since_s = time.monotonic()
@@ -157,6 +163,32 @@ def check_server_killed(stage, edge, address):
     print(f"back {time.monotonic() - since_s:.2f} s after footingd was")
     assert viewer.of("welcome")[0]["epoch"] != old
     viewer.stopping = True
+
+
+def value_of(samples, name, **labels):
+    found = [value for own, value in samples[name] if labels.items() <= own.items()]
+    assert len(found) == 1, (name, labels, samples[name])
+    return found[0]
+
+
+def check_metrics(stage, edge):
+    """Both relays count what goes through them, and what they are connected to."""
+    seen = len(edge.ticks())
+    serving, publisher = (metrics_of(address) for address in reversed(metrics_at(stage)))
+    assert value_of(publisher, "footing_relay_source_up", server="footingd", address=stage.sensor) == 1, publisher
+    for samples in (publisher, serving):
+        assert value_of(samples, "footing_relay_broker_up", broker="nats") == 1, samples
+        assert value_of(samples, "footing_relay_ticks_missing_total") == 0, samples
+        assert value_of(samples, "footing_build_info", program="footing-relay") == 1, samples
+    assert value_of(publisher, "footing_relay_ticks_total") >= value_of(serving, "footing_relay_ticks_total") >= seen > 50
+    assert value_of(publisher, "footing_relay_published_total") > 50 and value_of(publisher, "footing_relay_dropped_total") == 0
+    assert value_of(serving, "footing_relay_serving") == 1 and value_of(serving, "footing_sessions") == 1, serving
+    assert value_of(serving, "footing_relay_ticks_left_out_total") > 0, "100 Hz in, 30 out"
+
+
+def check_metrics_when_alone(edge_address):
+    samples = metrics_of(edge_address)
+    assert value_of(samples, "footing_relay_serving") == 0 and value_of(samples, "footing_sessions") == 0, samples
 
 
 def check_recording(stage, address):
@@ -190,9 +222,11 @@ def main():
     with Stage(sys.argv[1]) as stage:
         port, listen = brokers.free_port(), f"unix:{stage.folder}/edge.sock"
         nats_at = f"tcp:127.0.0.1:{port}"
-        stage.start("footing-relay", "serve", "--nats", nats_at, "--site", SITE, "--listen", listen, name="edge")
-        stage.start("footing-relay", "publish", "--connect", stage.sensor, "--nats", nats_at, "--site", SITE,
-                    name="publisher")
+        of_publisher, of_edge = metrics_at(stage)
+        stage.start("footing-relay", "serve", "--nats", nats_at, "--site", SITE, "--listen", listen, "--metrics", of_edge,
+                    name="edge")
+        stage.start("footing-relay", "publish", "--connect", stage.sensor, "--nats", nats_at, "--site", SITE, "--metrics",
+                    of_publisher, name="publisher")
         time.sleep(0.3)
         start_footingd(stage)
         stage.start_user("walk", "--seconds", 600)
@@ -202,6 +236,7 @@ def main():
             direct, edge = Viewer(stage.sensor), Viewer(listen)
             time.sleep(3)
             check_same(direct, edge)
+            check_metrics(stage, edge)
             direct.stopping = True
             check_recording(stage, listen)
             check_broker_killed(stage, nats, edge)

@@ -63,7 +63,7 @@ void Edge::Start() {
 void Edge::Stop() {
   pulse_.cancel();
   nats_.Stop();
-  Count();
+  Count(report_);
   server_.reset();
   former_.reset();
 }
@@ -75,7 +75,14 @@ void Edge::Drain(const std::string& reason, std::function<void()> done) {
   server_->Drain(reason, std::move(done));
 }
 
-EdgeReport Edge::report() const { return report_; }
+EdgeReport Edge::report() const {
+  EdgeReport report = report_;
+  Count(report);
+  report.serving = server_ != nullptr;
+  if (server_) report.sessions = server_->statistics().sessions;
+  report.nats_up = nats_.up();
+  return report;
+}
 
 void Edge::OnMessage(const nats::Message& message) {
   v1::Envelope envelope;
@@ -178,17 +185,17 @@ void Edge::Begin(const v1::Tick& snapshot) {
 }
 
 /// Its numbers are added to the report.
-void Edge::Count() {
+void Edge::Count(EdgeReport& report) const {
   if (!server_) return;
   const transport::ServerStatistics statistics = server_->statistics();
-  report_.dropped += statistics.ticks_dropped;
-  report_.accepted += statistics.accepted;
-  report_.missing += thinner_->missing();
-  report_.left_out += thinner_->left_out();
+  report.dropped += statistics.ticks_dropped;
+  report.accepted += statistics.accepted;
+  report.missing += thinner_->missing();
+  report.left_out += thinner_->left_out();
 }
 
 void Edge::End(const std::string& reason) {
-  Count();
+  Count(report_);
   server_->Stop(reason);
   former_ = std::move(server_);
   Say(reason);

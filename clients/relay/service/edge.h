@@ -35,6 +35,9 @@ struct EdgeReport {
   std::uint64_t left_out = 0;  ///< By the rate.
   std::uint64_t dropped = 0;   ///< Of full queues of viewers, all together.
   std::uint64_t accepted = 0;  ///< Connections.
+  std::uint64_t sessions = 0;  ///< At present.
+  bool serving = false;
+  bool nats_up = false;
 };
 
 /// Serves a server's ticks out of NATS in that server's place, with its epoch, sequences and clock.
@@ -62,7 +65,8 @@ class Edge {
   void Begin(const v1::Tick& snapshot);
   transport::ServerOptions OptionsOf(const v1::Welcome& welcome) const;
   void End(const std::string& reason);
-  void Count();
+  /// Adds what the present server has counted.
+  void Count(EdgeReport& report) const;
   void OnPulse();
   void ArmPulse();
   void Say(const std::string& state);

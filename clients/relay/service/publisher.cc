@@ -69,7 +69,10 @@ PublisherReport Publisher::report() const {
   for (const auto& source : sources_) {
     report.ticks += source->ticks();
     report.missing += source->missing();
+    report.sources.push_back({source->address(), source->name(), source->live()});
   }
+  if (nats_) report.nats_up = nats_->up();
+  if (mqtt_) report.mqtt_up = mqtt_->up();
   report.published = published_;
   report.dropped = (nats_ ? nats_->dropped() : 0) + (mqtt_ ? mqtt_->dropped() : 0);
   return report;

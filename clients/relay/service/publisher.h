@@ -27,10 +27,17 @@ struct PublisherOptions {
 };
 
 struct PublisherReport {
+  struct SourceState {
+    std::string address;
+    std::string server;  ///< Empty until it has welcomed us.
+    bool up = false;
+  };
   std::uint64_t ticks = 0;
   std::uint64_t missing = 0;    ///< Ticks that never came from the servers.
   std::uint64_t published = 0;  ///< Messages, answers not counted.
   std::uint64_t dropped = 0;    ///< Messages for which a broker was too slow, or too small.
+  std::vector<SourceState> sources;
+  std::optional<bool> nats_up, mqtt_up;  ///< Of the brokers that are published in.
 };
 
 /// Publishes the ticks of servers in NATS, as they are, and in MQTT, a channel a topic. Everything

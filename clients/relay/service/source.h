@@ -30,6 +30,7 @@ class Source {
 
   /// Empty until it has welcomed us. One part of a subject.
   const std::string& name() const { return name_; }
+  const std::string& address() const { return address_; }
   bool live() const { return client_.state() == transport::LinkState::kLive; }
   std::uint64_t epoch() const { return welcome_.epoch(); }
   double tick_rate_hz() const;
