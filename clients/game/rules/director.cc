@@ -83,6 +83,8 @@ void Director::Play(const Frame& frame, const Collector& seen, const Hand& hand,
   }
   if (!std::exchange(trial_seen_, true)) Enter(GamePhase::kRound, frame.time_s, options_.round_s);
   if (frame.trial.progress.phase == stream::TrialPhase::kStopped) {
+    // The game's connection was lost, and footing-sim took it for over.
+    if (asked_s_ < entered_s_) return Void(frame);
     Finish(frame, orders);
     return;
   }

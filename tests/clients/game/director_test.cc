@@ -185,6 +185,22 @@ TEST(Director, PlaysARoundAgainWhoseTrialIsGone) {
   EXPECT_EQ(world.director.game().results.size(), 1u);
 }
 
+TEST(Director, PlaysARoundAgainWhoseTrialTheGameDidNotStop) {
+  World world;
+  world.RunUntil(GamePhase::kRound, 5);
+  world.RunFor(3);
+  const std::string stopped = world.started;
+  world.frame.trial.progress.phase = stream::TrialPhase::kStopped;
+  world.Step();
+  EXPECT_EQ(world.director.game().phase, GamePhase::kWaiting);
+  EXPECT_TRUE(world.director.game().results.empty()) << "3 s of 10 count for nobody";
+  world.RunUntil(GamePhase::kPause, 15);
+  EXPECT_NE(world.started, stopped);
+  ASSERT_EQ(world.director.game().results.size(), 1u);
+  EXPECT_EQ(world.director.game().results[0].runner, 0u);
+  EXPECT_NEAR(world.director.game().results[0].distance_m, 0.5 + 2 * 10 - 1, 0.1);
+}
+
 TEST(Director, PublishesTenTimesASecond) {
   World world;
   int published = 0;
