@@ -22,11 +22,18 @@ void HeldLease::OnState(transport::LinkState state) {
       state == transport::LinkState::kLive || (connected_ && state == transport::LinkState::kStale);
   if (connected == connected_) return;
   connected_ = connected;
-  // A new connection is another session, perhaps of a footing-sim that was restarted. Answers that
+  // A new connection is another session, perhaps of a server that was restarted. Answers that
   // the lost connection has failed are forgotten here, too.
   state_ = State::kNone;
   refusal_.clear();
   timer_.cancel();
+  if (connected_ && wanted_) Ask();
+}
+
+void HeldLease::Hold() {
+  if (wanted_) return;
+  wanted_ = true;
+  ++hold_;
   if (connected_) Ask();
 }
 
@@ -38,9 +45,10 @@ void HeldLease::Ask() {
   take.set_holder(holder_);
   take.set_seconds(kLeaseMs * 1e-3);
   take.set_renew_only(held());
-  client_.Send(std::move(command), [weak = weak_from_this()](const v1::CommandResult& answer) {
-    if (const auto self = weak.lock()) self->OnAnswer(answer);
-  });
+  client_.Send(std::move(command),
+               [weak = weak_from_this(), hold = hold_](const v1::CommandResult& answer) {
+                 if (const auto self = weak.lock()) self->OnAnswer(hold, answer);
+               });
   AskLater();
 }
 
@@ -52,7 +60,8 @@ void HeldLease::AskLater() {
   });
 }
 
-void HeldLease::OnAnswer(const v1::CommandResult& answer) {
+void HeldLease::OnAnswer(std::uint64_t hold, const v1::CommandResult& answer) {
+  if (!wanted_ || hold != hold_) return;
   if (answer.ok()) {
     state_ = State::kHeld;
   } else {
@@ -63,7 +72,9 @@ void HeldLease::OnAnswer(const v1::CommandResult& answer) {
 
 void HeldLease::Release(std::function<void()> done) {
   timer_.cancel();
+  wanted_ = false;
   state_ = State::kNone;
+  refusal_.clear();
   v1::Command command;
   command.mutable_release_lease();
   client_.Send(std::move(command), [done = std::move(done)](const v1::CommandResult&) { done(); });

@@ -74,8 +74,13 @@ Result<void> SessionRun::CheckDevices(const std::string& interface) {
   plan::DeviceGate gate = context_.protocol.devices;
   gate.allow_simulated = gate.allow_simulated || context_.options.unattended;
   const plan::Played played{interface, context_.protocol.settings.turn_by};
-  const auto problems = [&] { return gate::Problems(gate, played, (*servers)->devices()); };
+  const auto problems = [&] {
+    auto all = gate::Problems(gate, played, (*servers)->devices());
+    if (const auto why = (*servers)->WhyNoDevices(); !why.empty()) all.push_back(why);
+    return all;
+  };
   for (;;) {
+    (*servers)->KeepDevices();
     const Waited waited =
         context_.console.RunUntil([&] { return problems().empty(); }, kDevicesReadyS);
     if (waited == Waited::kInterrupted) return Interrupted();
@@ -89,6 +94,7 @@ Result<void> SessionRun::CheckDevices(const std::string& interface) {
         now.size() > 1 ? "; and " + std::to_string(now.size() - 1) + " more, see the terminal" : "";
     Show("The devices are not ready: " + (now.empty() ? "" : now.front()) + more,
          "Enter checks again");
+    (*servers)->LendDevices();  // The remedy may be a command to footingd.
     const auto again = context_.console.Ask("Press Enter to check again:");
     if (!again) return again.error();
   }
@@ -209,7 +215,7 @@ Result<void> SessionRun::Undo(const plan::Phase& phase, std::uint64_t failure) {
 
 Result<Servers*> SessionRun::Connect() {
   if (servers_) {
-    if (const auto leased = servers_->CheckLease(); !leased) return leased.error();
+    if (const auto leased = servers_->CheckLeases(); !leased) return leased.error();
     if (servers_->live()) return servers_.get();
   }
   events_.reset();

@@ -152,6 +152,8 @@ Result<void> SessionRun::Run() {
               .doing = "",
               .next = i + 1 < phases.size() ? phases[i + 1].id : "the end of the session",
               .keys = ""};
+    // Until the device check of a phase that uses them, and after it.
+    if (servers_) servers_->LendDevices();
     if (const auto done = RestWhereDue(phases[i]); !done) return done;
     ordered_json fields = {{"phase", phases[i].id},
                            {"kind", Name(phases[i].kind)},

@@ -4,9 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "clients/study/session/held_lease.h"
+#include "clients/study/session/server_link.h"
 #include "common/stream/leg_turn.h"
-#include "common/transport/client.h"
 #include "common/wire/wire.h"
 
 namespace footing::study {
@@ -18,21 +17,6 @@ constexpr double kShownS = 2;
 constexpr double kReleasedS = 1;
 // The lease of a session that is gone has run out by then.
 constexpr double kLeaseWithinS = 7;
-constexpr std::uint32_t kQueueTicks = 1024;
-
-transport::ClientOptions ClientOf(const transport::Address& address, v1::Role role,
-                                  std::vector<std::string> channels) {
-  transport::ClientOptions options;
-  options.address = address;
-  options.client_name = "footing-study";
-  options.role = role;
-  options.channels = std::move(channels);
-  // Reliable: a failure that is missed would not be counted.
-  options.policy = v1::QUEUE_POLICY_RELIABLE;
-  options.queue_ticks = kQueueTicks;
-  return options;
-}
-
 bool AnyMoves(const v1::FeatureFrame& frame) {
   return std::any_of(frame.rigs().begin(), frame.rigs().end(), [](const v1::RigFeatures& rig) {
     return std::any_of(rig.devices().begin(), rig.devices().end(),
@@ -44,51 +28,34 @@ bool AnyMoves(const v1::FeatureFrame& frame) {
 
 class Servers::Implementation {
  public:
-  struct Link {
-    std::string name;
-    transport::LinkState state = transport::LinkState::kConnecting;
-    std::string why = "not connected";
-    bool ticked = false;
-    std::optional<transport::Client> client;
-  };
-
   Implementation(Console& console, const Options& options, ActiveTime& active)
-      : console_(console), active_(active) {
-    sensor_.name = "footingd at " + options.sensor.Text();
-    simulation_.name = "footing-sim at " + options.simulation.Text();
-    Make(sensor_, ClientOf(options.sensor, v1::ROLE_VIEW, {"status", "features"}));
-    Make(simulation_,
-         ClientOf(options.simulation, v1::ROLE_CONTROL, {"characters", "events", "track"}));
-    lease_ = std::make_shared<HeldLease>(console.io(), *simulation_.client, options.holder);
-    for (Link* link : {&sensor_, &simulation_}) link->client->Start();
-  }
+      : console_(console),
+        active_(active),
+        sensor_(console, {"footingd", options.sensor, {"status", "features"}, options.holder},
+                {[this](const v1::Tick& tick) {
+                   OnTick(tick);
+                   sensor_ticked_ = true;
+                 },
+                 [] {}}),
+        simulation_(
+            console,
+            {"footing-sim", options.simulation, {"characters", "events", "track"}, options.holder},
+            {[this](const v1::Tick& tick) {
+               OnTick(tick);
+               // The snapshot has no frame yet, and without one nothing is known of it.
+               simulation_ticked_ = simulation_ticked_ || tick.has_characters();
+             },
+             [this] { in_force_.clear(); }}) {}
 
   ~Implementation() {
-    if (lease_->held()) {
-      const auto released = std::make_shared<bool>(false);
-      lease_->Release([released] { *released = true; });
-      console_.RunUntil([&] { return *released; }, kReleasedS);
+    const auto released = std::make_shared<int>(0);
+    int held = 0;
+    for (ServerLink* link : {&sensor_, &simulation_}) {
+      if (!link->lease().held()) continue;
+      ++held;
+      link->lease().Release([released] { ++*released; });
     }
-    for (Link* link : {&sensor_, &simulation_}) link->client->Stop();
-  }
-
-  void Make(Link& link, transport::ClientOptions options) {
-    transport::ClientHandlers handlers;
-    handlers.on_tick = [this, &link](const v1::Tick& tick) {
-      OnTick(tick);
-      // The snapshot has no frame yet, and without one nothing is known of footing-sim.
-      link.ticked = link.ticked || &link == &sensor_ || tick.has_characters();
-    };
-    handlers.on_state = [this, &link](transport::LinkState state, const std::string& why) {
-      link.state = state;
-      link.why = why;
-      if (state != transport::LinkState::kLive && &link == &simulation_) in_force_.clear();
-      if (&link == &simulation_) lease_->OnState(state);
-    };
-    handlers.on_notice = [this, &link](const v1::Notice& notice) {
-      console_.Print("Notice of " + link.name + ": " + notice.text());
-    };
-    link.client.emplace(console_.io(), std::move(options), std::move(handlers));
+    if (held > 0) console_.RunUntil([&] { return *released == held; }, kReleasedS);
   }
 
   void OnTick(const v1::Tick& tick) {
@@ -114,19 +81,18 @@ class Servers::Implementation {
     }
   }
 
-  static std::string Text(const Link& link) { return link.name + ": " + link.why; }
-
   Console& console_;
   ActiveTime& active_;
-  Link sensor_;
-  Link simulation_;
-  std::shared_ptr<HeldLease> lease_;
+  bool sensor_ticked_ = false;
+  bool simulation_ticked_ = false;
   std::vector<stream::DeviceStatus> devices_;
   SimulationFrame frame_;
   std::string in_force_;  ///< What this connection made the interface last; empty: nothing.
   stream::Track track_;
   std::function<void(const SimulationFrame&)> on_frame_;
   std::function<void(const v1::Event&)> on_event_;
+  ServerLink sensor_;  // Last: their handlers use all the rest.
+  ServerLink simulation_;
 };
 
 Servers::Servers(std::unique_ptr<Implementation> implementation)
@@ -137,18 +103,21 @@ Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const Options& 
                                                ActiveTime& active) {
   auto own = std::make_unique<Implementation>(console, options, active);
   const Waited waited =
-      console.RunUntil([&] { return own->sensor_.ticked && own->simulation_.ticked; }, kConnectS);
+      console.RunUntil([&] { return own->sensor_ticked_ && own->simulation_ticked_; }, kConnectS);
   if (waited == Waited::kInterrupted) return Interrupted();
-  for (const Implementation::Link* link : {&own->sensor_, &own->simulation_}) {
-    if (!link->ticked) {
-      return NoDevice("no " + Implementation::Text(*link) +
+  for (const auto& [link, ticked] : {std::pair(&own->sensor_, own->sensor_ticked_),
+                                     std::pair(&own->simulation_, own->simulation_ticked_)}) {
+    if (!ticked) {
+      return NoDevice("no " + link->Text() +
                       "; start it, or name its address (footing-study run --help)");
     }
   }
-  const Waited leased = console.RunUntil([&] { return own->lease_->held(); }, kLeaseWithinS);
-  if (leased == Waited::kInterrupted) return Interrupted();
-  if (leased == Waited::kTimeUp) {
-    return Failure("footing-sim at " + options.simulation.Text() + ": " + own->lease_->refusal());
+  for (ServerLink* link : {&own->simulation_, &own->sensor_}) {
+    const Waited leased = console.RunUntil([&] { return link->lease().held(); }, kLeaseWithinS);
+    if (leased == Waited::kInterrupted) return Interrupted();
+    if (leased == Waited::kTimeUp) {
+      return Failure(link->name() + ": " + link->lease().refusal());
+    }
   }
   return std::unique_ptr<Servers>(new Servers(std::move(own)));
 }
@@ -160,22 +129,41 @@ const SimulationFrame& Servers::frame() const { return implementation_->frame_; 
 const stream::Track& Servers::track() const { return implementation_->track_; }
 
 bool Servers::live() const {
-  return implementation_->sensor_.state == transport::LinkState::kLive &&
-         implementation_->simulation_.state == transport::LinkState::kLive &&
-         implementation_->lease_->held();
+  return implementation_->sensor_.up() && implementation_->simulation_.up() && !broken();
 }
 
-Result<void> Servers::CheckLease() const {
-  const HeldLease& lease = *implementation_->lease_;
-  if (!lease.lost()) return {};
-  return Failure(implementation_->simulation_.name + ": " + lease.refusal() +
-                 "; footing-study run goes on with the session");
+bool Servers::broken() const {
+  return implementation_->sensor_.broken() || implementation_->simulation_.broken();
+}
+
+std::uint64_t Servers::breaks() const {
+  return implementation_->sensor_.breaks() + implementation_->simulation_.breaks();
+}
+
+Result<void> Servers::CheckLeases() const {
+  for (const ServerLink* link : {&implementation_->simulation_, &implementation_->sensor_}) {
+    if (!link->lease().lost()) continue;
+    return Failure(link->name() + ": " + link->lease().refusal() +
+                   "; footing-study run goes on with the session");
+  }
+  return {};
+}
+
+void Servers::LendDevices() {
+  HeldLease& lease = implementation_->sensor_.lease();
+  if (lease.wanted()) lease.Release([] {});
+}
+
+void Servers::KeepDevices() { implementation_->sensor_.lease().Hold(); }
+
+std::string Servers::WhyNoDevices() const {
+  const HeldLease& lease = implementation_->sensor_.lease();
+  if (lease.held()) return "";
+  return lease.refusal().empty() ? "footingd has not given its lease yet" : lease.refusal();
 }
 
 std::string Servers::Links() const {
-  return Implementation::Text(implementation_->sensor_) + "; " +
-         Implementation::Text(implementation_->simulation_) +
-         (implementation_->lease_->held() ? "" : "; " + implementation_->lease_->refusal());
+  return implementation_->sensor_.Text() + "; " + implementation_->simulation_.Text();
 }
 
 void Servers::set_on_frame(std::function<void(const SimulationFrame&)> on_frame) {
@@ -220,14 +208,14 @@ Result<void> Servers::UseInterface(const std::string& interface, const std::stri
 void Servers::Show(const stream::StudyState& state) {
   v1::Command command;
   *command.mutable_set_study()->mutable_study() = wire::ToProto(state);
-  implementation_->simulation_.client->Send(std::move(command), [](const v1::CommandResult&) {});
+  implementation_->simulation_.client().Send(std::move(command), [](const v1::CommandResult&) {});
 }
 
 Result<void> Servers::Call(v1::Command command) {
   // The answer may come after an interruption has ended this wait.
   const auto answer = std::make_shared<std::optional<v1::CommandResult>>();
   command.set_deadline_ms(static_cast<std::uint32_t>(kAnswerS * 1e3));
-  implementation_->simulation_.client->Send(
+  implementation_->simulation_.client().Send(
       std::move(command), [answer](const v1::CommandResult& result) { *answer = result; });
   const Waited waited =
       implementation_->console_.RunUntil([&] { return answer->has_value(); }, 2 * kAnswerS);

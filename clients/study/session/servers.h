@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -35,11 +36,11 @@ class Servers {
   struct Options {
     transport::Address sensor;
     transport::Address simulation;
-    std::string holder;  ///< Of footing-sim's lease: who leads the session, for others.
+    std::string holder;  ///< Of both leases: who leads the session, for others.
   };
 
-  /// Takes footing-sim's lease, which is released in the destructor. NoDevice when one of them is
-  /// not there within a few seconds; a failure with its holder's name when another program has the
+  /// Takes the leases of both, which are released in the destructor. NoDevice when one of them is
+  /// not there within a few seconds; a failure with its holder's name when another program has a
   /// lease. `active` goes on counting as long as the connection lasts.
   static Result<std::unique_ptr<Servers>> Open(Console& console, const Options& options,
                                                ActiveTime& active);
@@ -51,10 +52,20 @@ class Servers {
   /// The newest frame.
   const SimulationFrame& frame() const;
   const stream::Track& track() const;
-  /// Both connections stand, and the lease is held.
+  /// Both connections stand, and the leases are held, but for a footingd that others may use.
   bool live() const;
-  /// Fails once somebody has taken the lease over: this session controls footing-sim no more.
-  Result<void> CheckLease() const;
+  /// What goes on with them cannot go on. A connection that is back within seconds breaks nothing:
+  /// its ticks come after all.
+  bool broken() const;
+  /// Times that a connection was down.
+  std::uint64_t breaks() const;
+  /// Fails once somebody has taken a lease over: this session controls that server no more.
+  Result<void> CheckLeases() const;
+  /// Gives footingd's lease back, so that others may set devices up, until KeepDevices().
+  void LendDevices();
+  /// Asks for it again. WhyNoDevices() says why this session does not have it yet; empty: it has.
+  void KeepDevices();
+  std::string WhyNoDevices() const;
   /// How the connections stand, for a person.
   std::string Links() const;
 

@@ -21,6 +21,7 @@ using nlohmann::ordered_json;
 using records::EventKind;
 
 constexpr double kConfirmedWithinS = 2;
+constexpr double kLinksWithinS = 10;  // Beyond the time after which a link counts as broken.
 // Longer than a pause of the radio, shorter than it takes the participant to wonder.
 constexpr double kDeviceBackS = 2;
 
@@ -51,6 +52,7 @@ class TrialRun {
         servers_(servers),
         active_(active),
         active_before_s_(active.seconds()),
+        breaks_before_(servers.breaks()),
         phase_(phase),
         attempt_(attempt),
         id_(events.trial()),
@@ -74,6 +76,7 @@ class TrialRun {
     if (const auto done = Begin(); !done) return done.error();
     const auto reason = Wait();
     if (!reason) return reason.error();
+    if (const auto back = AwaitLinks(); !back) return back.error();
     if (const auto done = Stop(); !done) return done.error();
     // The finish line may have come between the reason and the stop.
     const std::string outcome = events_.tracker().Outcome(*reason);
@@ -152,7 +155,7 @@ class TrialRun {
           [&] {
             if (!context_.options.unattended) key = context_.console.TakeKey();
             return key || events_.tracker().over() || !events_.written() || !recorder_->written() ||
-                   !servers_.live() || DeviceLost();
+                   servers_.broken() || DeviceLost();
           },
           std::max(0.0, NanosecondsToSeconds(end_ns - clock::MonotonicNs())));
       if (waited == Waited::kInterrupted) return Interrupted();
@@ -160,13 +163,22 @@ class TrialRun {
       if (!recorder_->written()) return recorder_->written().error();
       if (events_.tracker().over()) return events_.tracker().Outcome("stopped");
       if (waited == Waited::kTimeUp) return std::string("timed_out");
-      if (!servers_.live()) return Failure("the trial broke off: " + servers_.Links());
+      if (servers_.broken()) return Failure("the trial broke off: " + servers_.Links());
       if (DeviceLost()) return std::string(records::kDeviceLost);
       if (key == 's') return std::string("stopped");
       if (key == 'u') {
         if (const auto done = UndoNewest(context_, servers_, id_); !done) return done.error();
       }
     }
+  }
+
+  /// A connection that is down at the end holds events of the trial back.
+  Result<void> AwaitLinks() {
+    const auto decided = [&] { return servers_.live() || servers_.broken(); };
+    if (context_.console.RunUntil(decided, kLinksWithinS) == Waited::kInterrupted) {
+      return Interrupted();
+    }
+    return servers_.live() ? Result<void>() : Failure("the trial broke off: " + servers_.Links());
   }
 
   /// A device that the interface needs has sent nothing for a while.
@@ -198,6 +210,9 @@ class TrialRun {
                            {"wall_s", NanosecondsToSeconds(clock::MonotonicNs() - begin_ns_)},
                            {"active_s", active_.seconds() - active_before_s_}};
     fields.update(events_.Figures());
+    if (const auto breaks = servers_.breaks() - breaks_before_; breaks > 0) {
+      fields["link_breaks"] = breaks;
+    }
     events_.End();
     if (outcome == records::kDeviceLost) {
       fields["device"] = stream::RoleNames(lost_roles_);
@@ -233,6 +248,7 @@ class TrialRun {
   Servers& servers_;
   const ActiveTime& active_;
   double active_before_s_;
+  std::uint64_t breaks_before_;
   const plan::Phase& phase_;
   std::size_t attempt_;
   std::string id_, file_;

@@ -16,7 +16,7 @@ sys.path.insert(0, sys.argv[1])
 from harness import Stage, read_ticks  # noqa: E402
 
 PROTOCOL = {
-    "version": 1, "name": "attended", "participants": ["P01", "P02", "P03"], "interfaces": ["wrist"], "seed": 2,
+    "version": 1, "name": "attended", "participants": ["P01", "P02", "P03", "P04"], "interfaces": ["wrist"], "seed": 2,
     "practice_s": 100, "straight_trials": 0, "test_tracks": ["3"], "survey": {"ratings": ["fun"], "questions": ["good"]},
     "final_survey": {"ratings": ["like"], "questions": [], "overall": ["remarks"]},
     "devices": {"allow_simulated": True}, "disk_mb": 1, "active_limit_min": 0.05, "active_rest_s": 1,
@@ -140,6 +140,26 @@ def check_next(start):
     experimenter.process.wait()
 
 
+def check_remedy(stage, start):
+    """While a device check waits for a remedy, the experimenter may set devices up; from then on nobody may."""
+    def assign(device, role):
+        return stage.run("footing-ctl", "--connect", stage.sensor, "assign", device, role)
+
+    # The lease of the session that was killed runs out.
+    stage.wait_for(lambda: assign("main/left_hand", "main/head").returncode == 0, "footingd's lease", 8)
+    experimenter = start()
+    experimenter.answer("Type yes to confirm", "yes")
+    experimenter.read("The devices are not ready: [^\n]*left_hand")
+    experimenter.read("Press Enter to check again")
+    stage.wait_for(lambda: assign("main/head", "main/left_hand").returncode == 0, "a remedy", 8)
+    experimenter.type("\n")
+    experimenter.read("show all commands", 40)
+    done = assign("main/left_hand", "main/head")
+    assert done.returncode == 1 and "participant P04 has the lease of this footingd" in done.stderr, done
+    experimenter.process.kill()
+    experimenter.process.wait()
+
+
 def check_rests(events):
     """Who has moved for the limit rests before they move again, and the journal says after how long."""
     rests = [one for one in events if "rested_at_active_s" in one]
@@ -189,6 +209,7 @@ def main():
 
         check_journal(stage, *session(stage, lambda: start("P01")))
         check_next(lambda: start("P03"))
+        check_remedy(stage, lambda: start("P04"))
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Two studies and an operator at one footing-sim: only who has its lease controls it.
+"""Two studies and an operator at one footingd and one footing-sim: only who has their leases controls them.
 
 Usage: lease_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
 """
@@ -15,6 +15,7 @@ PROTOCOL = {
 }
 LEASE = 19
 HOLDER = "footing-study, participant P01 has the lease"
+OF_FOOTINGD = HOLDER + " of this footingd; wait until that ends, or take it over: footing-ctl lease --of footingd --take-over"
 
 
 def journal(stage, folder, participant):
@@ -38,6 +39,24 @@ def begin_trial(stage, folder, participant):
 
 def console(stage, *command):
     return stage.run("footing-ctl", *command, "--connect", stage.simulation)
+
+
+def at_footingd(stage, *command):
+    return stage.run("footing-ctl", *command, "--connect", stage.sensor)
+
+
+def assign_back(stage):
+    """The left hand's device is that already: only who may set devices up is asked."""
+    return at_footingd(stage, "assign", "main/left_hand", "main/left_hand")
+
+
+def check_devices_are_kept(stage):
+    """In a trial nobody else changes the devices; the refusal says who has them, and how to take them."""
+    for command in (("assign", "main/left_hand", "main/right_hand"), ("led", "left_hand", "1010"), ("rumble", "left_hand")):
+        done = at_footingd(stage, *command)
+        assert done.returncode == 1 and OF_FOOTINGD in done.stderr, done
+    roles = {device["role"] for device in stage.run_json("footing-ctl", "--connect", stage.sensor, "status")["devices"]}
+    assert roles == {"left_hand", "right_hand"}, roles
 
 
 def check_refusals(stage):
@@ -68,6 +87,20 @@ def check_take_over(stage, process):
     assert "take_lease: " in (stage.folder / "P01.log").read_text()
     assert console(stage, "lease").stdout == "nobody has the lease\n"
     assert console(stage, "trial", "stop").returncode == 0
+    stage.wait_for(lambda: assign_back(stage).returncode == 0, "footingd's lease, which the study gave back", 8)
+
+
+def check_devices_taken_over(stage):
+    """Who takes footingd's lease over ends the study, too, and its trial counts no more."""
+    process = begin_trial(stage, "s.study", "P01")
+    done = at_footingd(stage, "lease", "--of", "footingd", "--take-over")
+    assert done.returncode == 0, done
+    assert process.wait(20) == 1
+    log = (stage.folder / "P01.log").read_text()
+    assert f"footingd at {stage.sensor}: " in log and "take_lease: " in log, log
+    last = journal(stage, "s.study", "P01")[-1]
+    assert last["event"] == "trial_finished" and last["outcome"] == "broken_off", last
+    assert assign_back(stage).returncode == 0
 
 
 def check_end(stage):
@@ -75,10 +108,13 @@ def check_end(stage):
     begin_trial(stage, "s.study", "P01")
     stage.stop("P01", signal.SIGKILL)
     assert HOLDER in console(stage, "lease").stdout
+    assert OF_FOOTINGD in assign_back(stage).stderr
+    stage.wait_for(lambda: assign_back(stage).returncode == 0, "the end of footingd's lease", 8)
     stage.wait_for(lambda: console(stage, "lease").stdout == "nobody has the lease\n", "the end of the lease", 8)
     done = stage.run("footing-study", *words(stage, "s.study", "P02"), timeout_s=60)
     assert done.returncode == 0, done
     assert console(stage, "lease").stdout == "nobody has the lease\n"
+    assert assign_back(stage).returncode == 0
 
 
 def main():
@@ -88,7 +124,9 @@ def main():
         stage.start_user("demo")
         process = begin_trial(stage, "s.study", "P01")
         check_refusals(stage)
+        check_devices_are_kept(stage)
         check_take_over(stage, process)
+        check_devices_taken_over(stage)
         check_end(stage)
     return 0
 

@@ -1,0 +1,121 @@
+#include "clients/study/session/server_link.h"
+
+#include <optional>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/units/units.h"
+
+namespace footing::study {
+namespace {
+
+constexpr std::uint32_t kQueueTicks = 1024;
+// A client dials again within 1 s; a server that is not there by then has a fault of its own.
+constexpr double kBackWithinS = 4;
+
+transport::ClientOptions ClientOf(const ServerLinkOptions& options) {
+  transport::ClientOptions client;
+  client.address = options.address;
+  client.client_name = "footing-study";
+  client.role = v1::ROLE_CONTROL;
+  client.channels = options.channels;
+  // Reliable: a failure that is missed would not be counted.
+  client.policy = v1::QUEUE_POLICY_RELIABLE;
+  client.queue_ticks = kQueueTicks;
+  return client;
+}
+
+}  // namespace
+
+class ServerLink::Implementation {
+ public:
+  Implementation(Console& console, ServerLinkOptions options, ServerLinkHandlers handlers)
+      : console_(console),
+        name_(options.server + " at " + options.address.Text()),
+        handlers_(std::move(handlers)),
+        client_(console.io(), ClientOf(options), Handlers()),
+        lease_(std::make_shared<HeldLease>(console.io(), client_, options.holder)) {
+    client_.Start();
+  }
+  ~Implementation() { client_.Stop(); }
+
+  transport::ClientHandlers Handlers() {
+    transport::ClientHandlers handlers;
+    handlers.on_tick = [this](const v1::Tick& tick) { handlers_.on_tick(tick); };
+    handlers.on_gap = [this](const v1::Gap& gap) {
+      ticks_lost_ = ticks_lost_ || gap.reason() == v1::Gap::REASON_RING_PASSED;
+    };
+    handlers.on_welcome = [this](const v1::Welcome& welcome) {
+      restarted_ = restarted_ || (epoch_ && *epoch_ != welcome.epoch());
+      epoch_ = welcome.epoch();
+    };
+    handlers.on_state = [this](transport::LinkState state, const std::string& why) {
+      OnState(state, why);
+    };
+    handlers.on_notice = [this](const v1::Notice& notice) {
+      console_.Print("Notice of " + name_ + ": " + notice.text());
+    };
+    return handlers;
+  }
+
+  void OnState(transport::LinkState state, const std::string& why) {
+    const bool was_live = std::exchange(state_, state) == transport::LinkState::kLive;
+    why_ = why;
+    const bool live = state == transport::LinkState::kLive;
+    if (was_live && !live) {
+      down_ns_ = clock::MonotonicNs();
+      ++breaks_;
+      handlers_.on_down();
+    }
+    if (live && breaks_ > 0 && down_ns_) {
+      console_.Print(name_ + ": connected again");
+      down_ns_.reset();
+    }
+    lease_->OnState(state);
+  }
+
+  bool up() const {
+    return state_ == transport::LinkState::kLive && (!lease_->wanted() || lease_->held());
+  }
+
+  bool broken() const {
+    if (restarted_ || ticks_lost_ || lease_->lost()) return true;
+    return down_ns_ && NanosecondsToSeconds(clock::MonotonicNs() - *down_ns_) > kBackWithinS;
+  }
+
+  Console& console_;
+  std::string name_;
+  ServerLinkHandlers handlers_;
+  transport::LinkState state_ = transport::LinkState::kConnecting;
+  std::string why_ = "not connected";
+  std::optional<std::int64_t> down_ns_;  ///< Since when it is down, once it was up.
+  std::optional<std::uint64_t> epoch_;
+  bool restarted_ = false;
+  bool ticks_lost_ = false;
+  std::uint64_t breaks_ = 0;
+  transport::Client client_;
+  std::shared_ptr<HeldLease> lease_;
+};
+
+ServerLink::ServerLink(Console& console, ServerLinkOptions options, ServerLinkHandlers handlers)
+    : implementation_(
+          std::make_unique<Implementation>(console, std::move(options), std::move(handlers))) {}
+ServerLink::~ServerLink() = default;
+
+transport::Client& ServerLink::client() { return implementation_->client_; }
+HeldLease& ServerLink::lease() { return *implementation_->lease_; }
+const HeldLease& ServerLink::lease() const { return *implementation_->lease_; }
+const std::string& ServerLink::name() const { return implementation_->name_; }
+
+std::string ServerLink::Text() const {
+  const Implementation& own = *implementation_;
+  const std::string& refusal = own.lease_->refusal();
+  return own.name_ + ": " + own.why_ + (own.restarted_ ? ", it was started again" : "") +
+         (own.ticks_lost_ ? ", ticks are missing" : "") + (refusal.empty() ? "" : "; " + refusal);
+}
+
+bool ServerLink::up() const { return implementation_->up(); }
+bool ServerLink::broken() const { return implementation_->broken(); }
+std::uint64_t ServerLink::breaks() const { return implementation_->breaks_; }
+
+}  // namespace footing::study
