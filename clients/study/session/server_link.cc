@@ -114,6 +114,10 @@ std::string ServerLink::Text() const {
          (own.ticks_lost_ ? ", ticks are missing" : "") + (refusal.empty() ? "" : "; " + refusal);
 }
 
+bool ServerLink::refused() const {
+  return implementation_->state_ == transport::LinkState::kRefused;
+}
+
 bool ServerLink::up() const { return implementation_->up(); }
 bool ServerLink::broken() const { return implementation_->broken(); }
 std::uint64_t ServerLink::breaks() const { return implementation_->breaks_; }

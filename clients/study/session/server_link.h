@@ -41,6 +41,8 @@ class ServerLink {
   /// How it stands, for a person.
   std::string Text() const;
 
+  /// The server is there and does not let this program in.
+  bool refused() const;
   /// Connected, and the lease is held where it is wanted.
   bool up() const;
   /// A trial cannot go on: the server was restarted, ticks are missing, the lease was taken over,

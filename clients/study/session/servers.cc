@@ -107,6 +107,7 @@ Result<std::unique_ptr<Servers>> Servers::Open(Console& console, const Options& 
   if (waited == Waited::kInterrupted) return Interrupted();
   for (const auto& [link, ticked] : {std::pair(&own->sensor_, own->sensor_ticked_),
                                      std::pair(&own->simulation_, own->simulation_ticked_)}) {
+    if (!ticked && link->refused()) return Failure(link->Text());
     if (!ticked) {
       return NoDevice("no " + link->Text() +
                       "; start it, or name its address (footing-study run --help)");

@@ -92,6 +92,17 @@ TEST_F(ServerLinkTest, WhileItIsUpNobodyElseCommands) {
   EXPECT_THAT(Tare().message(), HasSubstr("participant P01 has the lease"));
 }
 
+TEST_F(ServerLinkTest, WhoMayOnlyWatchIsToldHowToGetMore) {
+  StartServer(7);
+  ASSERT_TRUE(server_->Listen(*transport::ParseAddress("tcp:127.0.0.1:0")).ok());
+  address_ = server_->ListeningOn(1);
+  Link();
+  ASSERT_TRUE(RunUntil([&] { return link_->refused(); }));
+  EXPECT_THAT(link_->Text(), HasSubstr("the role control is not given to this connection"));
+  EXPECT_THAT(link_->Text(), HasSubstr("server's Unix socket"));
+  EXPECT_FALSE(link_->up());
+}
+
 TEST_F(ServerLinkTest, ALeaseThatSomebodyHasIsAskedForAgain) {
   StartServer(7);
   TakeOver();
