@@ -12,6 +12,7 @@ What is done is kept in results.json, so that a run that was cut goes on where i
 counts while neither its patch nor the tree has changed.
 
 Usage: run_mutation.py [--folder build/mutation] [--only NN]... [--fresh]
+       run_mutation.py --check   whether every patch is there and applies to the tree; builds nothing
 """
 import argparse
 import hashlib
@@ -143,6 +144,19 @@ def judge(copy, number, patch):
                 copy_file(ROOT / file, copy)
 
 
+def check():
+    bad = []
+    for number in FAULTS:
+        patch = PATCHES / f"Fault{number:02}.patch"
+        tried = run(["patch", "-p1", "--forward", "--batch", "--dry-run", "-i", str(patch)], ROOT, 60)
+        if tried.returncode != 0:
+            bad.append(f"{patch.name} does not apply to {' '.join(touched(patch)) if patch.is_file() else 'anything'}")
+    for line in bad:
+        print("mutation: " + line)
+    print(f"mutation: {len(FAULTS) - len(bad)} of {len(FAULTS)} patches apply")
+    return 1 if bad else 0
+
+
 def prepare(copy, folder, digest, numbers):
     """Builds the unpatched tree and runs its fault tests; returns those that are not green there."""
     data = os.environ.get("FOOTING_TEST_DATA", "")
@@ -175,7 +189,10 @@ def main():
     parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build" / "mutation")
     parser.add_argument("--only", type=int, action="append", metavar="NN")
     parser.add_argument("--fresh", action="store_true", help="forget earlier results")
+    parser.add_argument("--check", action="store_true", help="build nothing, only try every patch")
     options = parser.parse_args()
+    if options.check:
+        return check()
     folder = options.folder.resolve()
     copy, store = folder / "tree", folder / "results.json"
     copy.mkdir(parents=True, exist_ok=True)
