@@ -229,6 +229,14 @@ class Train(unittest.TestCase):
         known = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--ablations", "--json")
         ways = json.loads(known.stdout)["people"]["2"]
         self.assertEqual(ways["best"], report["people"]["2"]["best"])
+        more = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--sensors", "--json")
+        sensors = json.loads(more.stdout)["people"]["2"]
+        self.assertEqual(sensors["best"], ways["best"], "other sensors change nothing for boards and hands")
+        # These people never turn the pelvis, so a belt alone says nothing new.
+        for way in ("head", "head_kinect", "head_belt", "hands_feet_learned_head_belt"):
+            self.assertNotEqual(sensors[way]["mpjpe_cm"], ways["best"]["mpjpe_cm"])
+            self.assertNotIn(way, ways)
+        self.assertAlmostEqual(sensors["belt"]["mpjpe_cm"], ways["best"]["mpjpe_cm"], places=6)
         for way in ("true_com", "true_momentum", "true_feet"):
             self.assertGreater(ways[way]["mpjpe_cm"], ways["true_all"]["mpjpe_cm"])
         (folder / "2_01.bvh").unlink()
