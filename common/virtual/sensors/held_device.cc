@@ -13,7 +13,8 @@
 namespace footing::virtual_sensors {
 namespace {
 
-constexpr double kStrapShare = 0.5;  // Of the way along its segment.
+constexpr double kStrapShare = 0.5;   // Of the way along its segment.
+constexpr double kBeltBehindM = 0.1;  // Of the middle of the pelvis.
 
 /// At a point of a joint. R_SW: of the T-pose.
 HeldCourse FollowPoint(const body::Body& body, const motion::Motion& motion,
@@ -74,6 +75,14 @@ HeldCourse FollowSegment(const body::Body& body, const motion::Motion& motion, i
       Eigen::AngleAxisd((side == 0 ? 0.5 : -0.5) * std::numbers::pi, Eigen::Vector3d::UnitZ())
           .toRotationMatrix();
   return FollowPoint(body, motion, {joint, middle_J_m}, R_WS.transpose(), cutoff_hz);
+}
+
+HeldCourse FollowPelvis(const body::Body& body, const motion::Motion& motion, double cutoff_hz) {
+  body::Kinematics at(body.skeleton);
+  body::ComputeKinematics(body.skeleton, body::TPose(body.skeleton, body.landmarks), at);
+  const Eigen::Vector3d behind_J_m =
+      at.R_WJ.front().transpose() * Eigen::Vector3d(-kBeltBehindM, 0, 0);
+  return FollowPoint(body, motion, {0, behind_J_m}, Eigen::Matrix3d::Identity(), cutoff_hz);
 }
 
 HeldErrorConfig HeldErrors::None() {

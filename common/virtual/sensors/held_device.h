@@ -10,7 +10,7 @@
 
 namespace footing::virtual_sensors {
 
-/// What a device on an arm measures, a column a frame, in its held frame S
+/// What a device on an arm or a belt measures, a column a frame, in its held frame S
 /// (common/body/held_frame.h).
 struct HeldCourse {
   Eigen::Matrix3Xd specific_force_S_mps2;
@@ -27,6 +27,11 @@ HeldCourse FollowFist(const body::Body& body, const motion::Motion& motion, int 
 enum class ArmSegment { kUpperArm, kForearm };
 HeldCourse FollowSegment(const body::Body& body, const motion::Motion& motion, int side,
                          ArmSegment segment, double cutoff_hz = 10);
+
+/// On a belt, behind the pelvis, without errors of its mounting: in the T-pose S's x points forward
+/// and z up.
+HeldCourse FollowPelvis(const body::Body& body, const motion::Motion& motion,
+                        double cutoff_hz = 10);
 
 /// Errors of a Wiimote with MotionPlus and of the hand that holds it; standard deviations unless
 /// said otherwise. Noises, counts and ranges are the devices' (docs/hands.md).

@@ -1,4 +1,5 @@
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <cmath>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "common/virtual/sensors/board_cells.h"
 #include "common/virtual/sensors/ground_reaction.h"
 #include "daemon/offline/bench/pairs.h"
+#include "daemon/offline/learning/cascade.h"
+#include "daemon/offline/learning/horizontal_com.h"
 #include "daemon/offline/timing/momentum_cost.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
 
@@ -18,7 +21,7 @@ namespace {
 using reconstruction::Features;
 using reconstruction::Inputs;
 
-constexpr int kPosePairs = 15;
+constexpr int kPosePairs = 15, kPaperPairs = 5;
 constexpr double kHeightM = 1.75, kRateHz = 60;
 constexpr double kStandS = 6, kMoveS = 20;
 constexpr int kWays = 12;      // Independent ways to move,
@@ -107,40 +110,102 @@ reconstruction::Models Trained(const body::Body& body, const motion::Motion& mot
   return models;
 }
 
+/// Poses about the T-pose of which as many components hold 99 % of the variance as of recorded
+/// ones (docs/models.md): the search of paper mode costs by their number.
+pose::PoseBasis FallingBasis(const body::Body& body) {
+  constexpr int kHold99Percent = 27, kPoses = 2000;
+  const int dof = body.skeleton.dof;
+  noise::Random random(3);
+  Eigen::MatrixXd directions(dof, dof), poses(dof, kPoses);
+  for (double& value : directions.reshaped()) value = random.Normal();
+  directions = Eigen::HouseholderQR<Eigen::MatrixXd>(directions).householderQ();
+  for (double& value : poses.reshaped()) value = random.Normal();
+  // Variances fall evenly by such a factor that the 27 first hold all but 1 %.
+  for (int i = 0; i < dof; ++i) poses.row(i) *= 0.3 * std::pow(0.01, 0.5 * i / kHold99Percent);
+  pose::BasisOptions options;
+  options.translation_weight = 1;
+  poses = directions * poses;
+  poses.colwise() += body::TPose(body.skeleton, body.landmarks);
+  return pose::FitBasis(poses, options);
+}
+
+/// The same with the networks of the horizontal COM and without the regression.
+reconstruction::Models OfPaper(const body::Body& body, const motion::Motion& motion) {
+  reconstruction::Models models = Trained(body, motion);
+  models.basis = FallingBasis(body);
+  const std::vector<learning::LoadClip> clips{learning::MakeSway({.seconds = 20}, 1)};
+  learning::CascadeOptions options;
+  options.hidden_max = options.hidden_min = 0;
+  const auto network = [&](int axis) {
+    const learning::Examples examples = learning::HorizontalExamples(clips, axis);
+    return learning::TrainCascade(examples, examples, options, 1).network;
+  };
+  models.horizontal = {network(0), network(1)};
+  return models;
+}
+
+/// What a mode's frames cost, once its T-pose is over.
+struct Bench {
+  body::Body body;
+  motion::Motion motion;
+  std::vector<Inputs> all;
+
+  static std::size_t MovesFrom() { return static_cast<std::size_t>(kStandS * kRateHz); }
+
+  Result<reconstruction::Reconstruction> Standing(reconstruction::Mode mode,
+                                                  const reconstruction::Models& models) const {
+    reconstruction::Options options;
+    options.rate_hz = kRateHz;
+    options.mode = mode;
+    auto standing = reconstruction::Reconstruction::Create(body, models, options);
+    if (!standing) return standing;
+    for (std::size_t i = 0; i < MovesFrom(); ++i) standing->Advance(all[i]);
+    if (!standing->output().calibrated) return InvalidData("the made T-pose did not stand still");
+    return standing;
+  }
+
+  double FrameUs(const reconstruction::Reconstruction& standing, double quantile) const {
+    reconstruction::Reconstruction moving = standing;
+    std::vector<double> spent_us;
+    for (std::size_t i = MovesFrom(); i < all.size(); ++i) {
+      const std::int64_t begin_ns = clock::ThreadCpuNs();
+      moving.Advance(all[i]);
+      spent_us.push_back(static_cast<double>(clock::ThreadCpuNs() - begin_ns) / 1e3);
+    }
+    return text::Quantile(std::move(spent_us), quantile);
+  }
+
+  Rows Measure(const std::string& name, const reconstruction::Reconstruction& standing,
+               int pairs) const {
+    const auto unit_us = [&] {
+      return timing::MomentumCostUs(body, motion.q.col(motion.frames() - 1));
+    };
+    const char* const unit = "us (baseline: forward kinematics, centre of mass and momentum once)";
+    const auto row = [&](const char* ending, double quantile) {
+      return RunPairs(
+          name + ending, unit, pairs, [&] { return FrameUs(standing, quantile); }, unit_us);
+    };
+    return {row("_p50_us", 0.5), row("_p99_us", 0.99)};
+  }
+};
+
 }  // namespace
 
 Result<Rows> PoseFrame() {
   body::PersonParameters person;
   person.height_m = kHeightM;
-  const auto body = body::MakeBody(body::StandardPerson(kHeightM), person);
+  auto body = body::MakeBody(body::StandardPerson(kHeightM), person);
   if (!body) return body.error();
   const motion::Motion motion = Moving(*body);
-  const std::vector<Inputs> all = Measured(*body, motion);
-  reconstruction::Options options;
-  options.rate_hz = kRateHz;
-  auto standing = reconstruction::Reconstruction::Create(*body, Trained(*body, motion), options);
-  if (!standing) return standing.error();
-  const auto moves_from = static_cast<std::size_t>(kStandS * kRateHz);
-  for (std::size_t i = 0; i < moves_from; ++i) standing->Advance(all[i]);
-  if (!standing->output().calibrated) return InvalidData("the made T-pose did not stand still");
-  const auto frame_us = [&](double quantile) {
-    return [&, quantile] {
-      reconstruction::Reconstruction moving = *standing;
-      std::vector<double> spent_us;
-      for (std::size_t i = moves_from; i < all.size(); ++i) {
-        const std::int64_t begin_ns = clock::ThreadCpuNs();
-        moving.Advance(all[i]);
-        spent_us.push_back(static_cast<double>(clock::ThreadCpuNs() - begin_ns) / 1e3);
-      }
-      return text::Quantile(std::move(spent_us), quantile);
-    };
-  };
-  const auto unit_us = [&] {
-    return timing::MomentumCostUs(*body, motion.q.col(motion.frames() - 1));
-  };
-  const char* const unit = "us (baseline: forward kinematics, centre of mass and momentum once)";
-  return Rows{RunPairs("pose_frame_p50_us", unit, kPosePairs, frame_us(0.5), unit_us),
-              RunPairs("pose_frame_p99_us", unit, kPosePairs, frame_us(0.99), unit_us)};
+  const Bench bench{*body, motion, Measured(*body, motion)};
+  const auto best = bench.Standing(reconstruction::Mode::kBest, Trained(*body, motion));
+  if (!best) return best.error();
+  const auto paper = bench.Standing(reconstruction::Mode::kPaper, OfPaper(*body, motion));
+  if (!paper) return paper.error();
+  Rows rows = bench.Measure("pose_frame", *best, kPosePairs);
+  const Rows of_paper = bench.Measure("pose_frame_paper", *paper, kPaperPairs);
+  rows.insert(rows.end(), of_paper.begin(), of_paper.end());
+  return rows;
 }
 
 }  // namespace footing::bench

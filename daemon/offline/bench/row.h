@@ -48,9 +48,9 @@ Result<Rows> TlsExchange();
 /// and the same with the centroidal momentum matrix, against the sines and cosines of its angles.
 Result<Rows> BodyKinematics();
 
-/// CPU time of a frame of the best mode's reconstruction (the standard person, a model of a trained
-/// one's sizes, 20 s of synthetic motion), median and p99, against forward kinematics, centre of
-/// mass and momentum once.
+/// CPU time of a frame of the best and the paper mode's reconstruction (the standard person, models
+/// of trained ones' sizes, 20 s of synthetic motion), median and p99, against forward kinematics,
+/// centre of mass and momentum once.
 Result<Rows> PoseFrame();
 
 /// Training the networks of the horizontal COM, both axes of 84 s at 60 Hz, against Cascade2 of

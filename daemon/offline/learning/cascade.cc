@@ -175,6 +175,7 @@ double MeanSquaredError(const cascade::CascadeNetwork& network, const Examples& 
 CascadeResult TrainCascade(const Examples& train, const Examples& validation,
                            const CascadeOptions& options, std::uint64_t seed) {
   FOOTING_CHECK(train.rows() > 0 && train.targets.rows() == train.rows());
+  FOOTING_CHECK(options.hidden_min <= options.hidden_max);
   noise::Random random(seed);
   const Scaling in = Scaling::Of(train.inputs);
   const Scaling out = ScalingOfTargets(train.targets, options.outputs);
@@ -198,8 +199,12 @@ CascadeResult TrainCascade(const Examples& train, const Examples& validation,
     const double mse =
         validates ? Mse(held_out, weights, out, validation.targets, options.outputs) : train_mse;
     goal_reached = layer.AllNear() || train_mse <= options.mse_goal;
-    best.Add(hidden, mse, weights, goal_reached, options.improvement);
-    const bool stagnates = validates && best.WithoutImprovement(hidden) >= options.patience;
+    const bool enough = hidden >= options.hidden_min;
+    if (enough || goal_reached) {
+      best.Add(hidden, mse, weights, goal_reached, options.improvement);
+    }
+    const bool stagnates =
+        validates && enough && best.WithoutImprovement(hidden) >= options.patience;
     if (goal_reached || stagnates || hidden == options.hidden_max) break;
 
     const NewUnit unit = TrainCandidates(layer.Task(units), options.candidates, random);

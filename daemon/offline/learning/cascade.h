@@ -22,6 +22,8 @@ struct CascadeOptions {
   /// Of linear outputs; candidates for sigmoid ones always go by covariance.
   Objective objective = Objective::kErrorReduction;
   int hidden_max = 30;
+  /// Validation may not go below it; at most hidden_max. A goal that is reached with fewer may.
+  int hidden_min = 0;
   /// Stops at a mean squared error of training, in the targets' unit squared, at or below this.
   double mse_goal = 0;
   /// Sigmoid outputs: stops when every output is nearer to its target than this.

@@ -12,6 +12,7 @@
 #include "daemon/offline/pose_run/held_hands.h"
 #include "daemon/offline/pose_run/stage.h"
 #include "daemon/simulation/momentum/estimate.h"
+#include "daemon/simulation/reconstruction/skeleton.h"
 
 namespace footing::pose_run {
 namespace {
@@ -68,6 +69,14 @@ void MeasureHands(const body::Body& body, const body::Kinematics& at, double noi
   }
 }
 
+PoseRun WithoutExtras(PoseRun run) {
+  for (Frame& frame : run.frames) {
+    if (!reconstruction::IsSkeleton(frame.inputs.joints)) frame.inputs.joints = {};
+    frame.inputs.belt = {};
+  }
+  return run;
+}
+
 FootForcesAt SimulatedForces(const sensors::Scene& scene) {
   return [&scene](double, Eigen::Index column) {
     return sensors::ShareBetweenFeet(scene.course, scene.reaction, column);
@@ -92,6 +101,8 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
   KinectBody kinect(scene.body, settings.seed, 1 / settings.rate_hz, options);
   body::Kinematics at(scene.body.skeleton);
   const double step_s = 1 / settings.rate_hz;
+  ExtraSensors extra(scene, settings.head, settings.belt, settings.seed, step_s);
+  const auto aligned = static_cast<std::size_t>(kAlignedS * settings.rate_hz);
   const std::size_t count = FrameCount(scene, settings.rate_hz);
   std::size_t loaded = 0, outside = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -125,6 +136,7 @@ PoseRun RunScene(const sensors::Scene& scene, const Settings& settings,
     } else if (settings.hands) {
       MeasureHands(scene.body, at, settings.hand_noise_m, random, frame.inputs.hands);
     }
+    extra.Advance(at, column, i == aligned, frame.inputs);
     run.frames.push_back(std::move(frame));
   }
   run.outside_share = loaded > 0 ? static_cast<double>(outside) / static_cast<double>(loaded) : 0;

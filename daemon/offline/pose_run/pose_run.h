@@ -14,6 +14,7 @@
 #include "common/virtual/noise/random.h"
 #include "common/virtual/sensors/board_cells.h"
 #include "common/virtual/sensors/scene.h"
+#include "daemon/offline/pose_run/extra_sensors.h"
 #include "daemon/offline/pose_run/kinect_body.h"
 #include "daemon/simulation/arms/arm_tracker.h"
 #include "daemon/simulation/reconstruction/reconstruction.h"
@@ -45,6 +46,8 @@ struct Settings {
   bool joints = false;
   virtual_sensors::KinectOptions kinect = {};  ///< Of the joints.
   double hand_noise_m = 0.01;                  ///< White, of each axis; of kMove.
+  HeadDevice head = HeadDevice::kNone;         ///< A tracker of the head alone.
+  bool belt = false;                           ///< A Wiimote with MotionPlus on a belt.
   bool perfect_devices =
       false;  ///< Of kWiimote and kStraps: they and their mounting have no errors.
   virtual_sensors::CellErrorConfig errors;
@@ -106,6 +109,9 @@ inline constexpr double kAlignedS = 5.5;
 void MeasureHands(const body::Body& body, const body::Kinematics& at, double noise_m,
                   noise::Random& random,
                   std::array<reconstruction::HandInput, reconstruction::kHands>& hands);
+
+/// The same frames without the head and the belt of the extra sensors; a whole skeleton stays.
+PoseRun WithoutExtras(PoseRun run);
 
 /// Vertical force and COP under each foot at one time: of the scene, and its motion's column then.
 using FootForcesAt = std::function<std::array<virtual_sensors::FootForce, momentum::kFeet>(

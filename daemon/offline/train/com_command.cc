@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "common/cli/cli.h"
 #include "common/clock/clock.h"
@@ -194,7 +195,15 @@ nlohmann::ordered_json ScoreNetworks(const learning::Networks& networks,
       {"one_step_rms_m", rms(one_step)}, {"closed_loop_rms_m", rms(loop)}, {"cop_rms_m", rms(cop)}};
 }
 
+Result<void> CheckHidden(const learning::CascadeOptions& options) {
+  if (options.hidden_min <= options.hidden_max) return {};
+  return UsageError("--hidden-min " + std::to_string(options.hidden_min) +
+                    " is above --hidden-max " + std::to_string(options.hidden_max) +
+                    "; give a --hidden-max of at least as many");
+}
+
 int Run(const ComOptions& options, const Shared& shared) {
+  if (auto checked = CheckHidden(options.cascade); !checked) return cli::Report(checked.error());
   if (auto free = CheckFree(options.model); !free) return cli::Report(free.error());
   const Result<TrainingSet> set =
       ReadTrainingSet(options.motions, options.own, kEnoughComS, "for the horizontal COM");
@@ -274,6 +283,10 @@ void AddComCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0, 50));
   command->add_flag("!--no-mirror", options->mirror, "Leave out the mirror images of the clips");
   command->add_option("--hidden-max", options->cascade.hidden_max, "Maximum number of hidden units")
+      ->check(CLI::Range(0, 256));
+  command
+      ->add_option("--hidden-min", options->cascade.hidden_min,
+                   "Minimum number of hidden units, however the validation error grows")
       ->check(CLI::Range(0, 256));
   command
       ->add_option("--patience", options->cascade.patience,

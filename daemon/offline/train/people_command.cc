@@ -26,7 +26,7 @@ struct PeopleOptions {
   MotionOptions motions;
   std::vector<std::string> only;
   int every = 1;
-  bool with_truth = false;
+  MoreWays more;
   std::uint64_t seed = 1;
 };
 
@@ -100,12 +100,12 @@ class LeaveOneOut {
 
   /// Scores the person's clips in place, and appends each to `scored`.
   Result<PoseTally> ScorePerson(const std::string& person, const reconstruction::Models& models,
-                                bool with_truth, std::vector<ScoredTake>& scored) const {
+                                const MoreWays& more, std::vector<ScoredTake>& scored) const {
     PoseTally sum;
     for (std::size_t i = 0; i < takes_.size(); ++i) {
       const PoseTake& take = takes_[i];
       if (take.clip->subject != person || take.mirrored || !StaysInPlace(*take.clip)) continue;
-      const auto tally = ScoreTake(take, models, with_truth);
+      const auto tally = ScoreTake(take, models, more);
       if (!tally) return tally.error();
       sum.Add(*tally);
       scored.push_back({i, *tally});
@@ -155,13 +155,13 @@ Result<std::vector<std::string>> PeopleOf(const std::vector<Clip>& clips,
 
 /// This rank's share of the people, take by take.
 Result<std::vector<ScoredTake>> ScoreOwn(const LeaveOneOut& study,
-                                         const std::vector<std::string>& people, bool with_truth,
-                                         const ranks::Ranks& ranks) {
+                                         const std::vector<std::string>& people,
+                                         const MoreWays& more, const ranks::Ranks& ranks) {
   std::vector<ScoredTake> scored;
   for (std::size_t i = ranks.rank(); i < people.size(); i += ranks.count()) {
     const auto models = study.Train(people[i]);
     if (!models) return models.error();
-    const auto tally = study.ScorePerson(people[i], *models, with_truth, scored);
+    const auto tally = study.ScorePerson(people[i], *models, more, scored);
     if (!tally) return tally.error();
     log::Info("scored " + people[i] + ": " + tally->Json().dump());
   }
@@ -197,7 +197,7 @@ int Run(const PeopleOptions& options, const Shared& shared) {
   if (!people) return cli::Report(people.error());
   LeaveOneOut study(std::move(kept), options.seed);
   if (const auto prepared = study.Prepare(); !prepared) return cli::Report(prepared.error());
-  const auto scored = ScoreOwn(study, *people, options.with_truth, shared.ranks);
+  const auto scored = ScoreOwn(study, *people, options.more, shared.ranks);
   if (!scored) return cli::Report(scored.error());
   const ordered_json report = ReportOf(study, *people, shared.ranks.Share(*scored));
   if (shared.ranks.first()) std::cout << report.dump(shared.json ? -1 : 2) << "\n";
@@ -218,14 +218,17 @@ void AddPeopleCommand(CLI::App& app, Shared& shared) {
       ->add_option("--every", options->every,
                    "Take every so many of a person's takes of one activity")
       ->check(CLI::Range(1, 100));
-  command->add_flag("--ablations", options->with_truth,
+  command->add_flag("--ablations", options->more.truth,
                     "Score with true COM, momentum, feet and all of them, too");
+  command->add_flag("--sensors", options->more.sensors,
+                    "Score with a tracker of the head, a belt and both, too");
   command->add_option("--seed", options->seed, "Seed of the simulated sensors and the model");
   command->footer(
       "Examples:\n"
       "  footing-train people --motions mocap/ --json\n"
       "  footing-train people --motions mocap/ --motions hdm05/ --only 14 --every 3\n"
       "  footing-train people --motions mocap/ --ablations\n"
+      "  footing-train people --motions mocap/ --every 3 --sensors --json\n"
       "  mpirun -n 4 footing-train people --motions mocap/ --json");
   command->callback([options, &shared] { shared.exit_code = Run(*options, shared); });
 }

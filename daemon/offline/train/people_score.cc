@@ -10,15 +10,20 @@ namespace footing::train {
 namespace {
 
 constexpr std::array<const char*, kPoseWays> kWayNames{
-    "best",          "hands_feet_learned", "hands_feet_ik", "true_com",
-    "true_momentum", "true_feet",          "true_all"};
+    "best",          "hands_feet_learned",
+    "hands_feet_ik", "true_com",
+    "true_momentum", "true_feet",
+    "true_all",      "head",
+    "head_kinect",   "belt",
+    "head_belt",     "hands_feet_learned_head_belt"};
 
 constexpr std::size_t Index(PoseWay way) { return static_cast<std::size_t>(way); }
 
 reconstruction::Options OptionsOf(PoseWay way, double rate_hz) {
   reconstruction::Options options;
   options.rate_hz = rate_hz;
-  options.use_momentum = way != PoseWay::kLearned && way != PoseWay::kBare;
+  options.use_momentum =
+      way != PoseWay::kLearned && way != PoseWay::kBare && way != PoseWay::kLearnedHeadBelt;
   options.use_posture = way != PoseWay::kBare;
   return options;
 }
@@ -29,15 +34,23 @@ reconstruction::Truth TruthOf(PoseWay way, const pose_run::Frame& frame) {
   if (all || way == PoseWay::kTrueCom) truth.com_W_m = frame.com_m;
   if (all || way == PoseWay::kTrueMomentum) truth.angular_W = frame.angular_momentum;
   if (all || way == PoseWay::kTrueFeet) {
-    truth.feet.emplace();
-    for (std::size_t f = 0; f < momentum::kFeet; ++f) {
-      (*truth.feet)[f] = {frame.feet[f].ankle_m, frame.feet[f].toe_m};
-    }
+    const auto foot = [&](std::size_t f) {
+      return reconstruction::Truth::Foot{frame.feet[f].ankle_m, frame.feet[f].toe_m};
+    };
+    truth.feet = std::array{foot(0), foot(1)};
   }
   return truth;
 }
 
-/// What only the way with all sensors reports.
+/// Without the head and the belt where the way has none.
+reconstruction::Inputs InputsOf(PoseWay way, const reconstruction::Inputs& all) {
+  reconstruction::Inputs inputs = all;
+  if (way < PoseWay::kHead || way == PoseWay::kBelt) inputs.joints = {};
+  if (way < PoseWay::kBelt) inputs.belt = {};
+  return inputs;
+}
+
+/// What only the way of boards and hands reports.
 void AddReport(const reconstruction::Output& output, const pose_run::Frame& frame,
                const eval::PoseScore& score, const eval::JudgedJoints& joints, PoseTally& tally) {
   ++tally.frames;
@@ -87,29 +100,47 @@ nlohmann::ordered_json PoseTally::Json() const {
   return json;
 }
 
-Result<PoseTally> ScoreTake(const PoseTake& take, const reconstruction::Models& models,
-                            bool with_truth) {
-  const auto run = SimulateTake(take);
-  if (!run) return run.error();
-  const eval::JudgedJoints joints(run->body);
-  PoseTally tally;
-  for (std::size_t way = 0; way < (with_truth ? kPoseWays : kSensorWays); ++way) {
-    const auto which = static_cast<PoseWay>(way);
-    auto made =
-        reconstruction::Reconstruction::Create(run->body, models, OptionsOf(which, run->rate_hz));
-    if (!made) return made.error();
-    eval::PoseScore score(run->body);
-    double sum_cm = 0;
-    for (std::size_t i = 0; i < run->frames.size(); ++i) {
-      const pose_run::Frame& frame = run->frames[i];
-      const auto& output = made->Advance(frame.inputs, TruthOf(which, frame));
-      if (i < run->judged_from) continue;
-      score.Add(output.q, frame.q);
-      sum_cm += score.last_mpjpe_cm();
-      if (which == PoseWay::kBest) AddReport(output, frame, score, joints, tally);
-    }
-    tally.mpjpe_cm[way] = sum_cm;
+namespace {
+
+/// One way over all frames, into the tally.
+Result<void> ScoreWay(PoseWay way, const pose_run::PoseRun& run,
+                      const reconstruction::Models& models, PoseTally& tally) {
+  const eval::JudgedJoints joints(run.body);
+  auto made = reconstruction::Reconstruction::Create(run.body, models, OptionsOf(way, run.rate_hz));
+  if (!made) return made.error();
+  eval::PoseScore score(run.body);
+  double sum_cm = 0;
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    const pose_run::Frame& frame = run.frames[i];
+    const auto& output = made->Advance(InputsOf(way, frame.inputs), TruthOf(way, frame));
+    if (i < run.judged_from) continue;
+    score.Add(output.q, frame.q);
+    sum_cm += score.last_mpjpe_cm();
+    if (way == PoseWay::kBest) AddReport(output, frame, score, joints, tally);
   }
+  tally.mpjpe_cm[Index(way)] = sum_cm;
+  return {};
+}
+
+}  // namespace
+
+Result<PoseTally> ScoreTake(const PoseTake& take, const reconstruction::Models& models,
+                            const MoreWays& more) {
+  using pose_run::HeadDevice;
+  const auto run =
+      SimulateTake(take, more.sensors ? HeadDevice::kSphere : HeadDevice::kNone, more.sensors);
+  if (!run) return run.error();
+  PoseTally tally;
+  for (std::size_t i = 0; i < kPoseWays; ++i) {
+    const auto way = static_cast<PoseWay>(i);
+    if (!more.Include(way) || way == PoseWay::kKinectHead) continue;
+    if (const auto scored = ScoreWay(way, *run, models, tally); !scored) return scored.error();
+  }
+  if (!more.Include(PoseWay::kKinectHead)) return tally;
+  const auto kinect = SimulateTake(take, HeadDevice::kKinect);
+  if (!kinect) return kinect.error();
+  const auto scored = ScoreWay(PoseWay::kKinectHead, *kinect, models, tally);
+  if (!scored) return scored.error();
   return tally;
 }
 

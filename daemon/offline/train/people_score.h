@@ -12,11 +12,34 @@
 /// How poses of people whom no model has seen are scored.
 namespace footing::train {
 
-/// What is compared: all sensors, hands and feet with what is learned of these, and without; then
-/// all sensors with parts of the truth in place of their estimates, to see which of these is to
-/// blame.
-enum class PoseWay { kBest, kLearned, kBare, kTrueCom, kTrueMomentum, kTrueFeet, kTrueAll };
-inline constexpr std::size_t kPoseWays = 7, kSensorWays = 3;
+/// What is compared: boards and hands, hands and feet with what is learned of these, and without;
+/// then boards and hands with parts of the truth in place of their estimates, to see which of these
+/// is to blame; then with more sensors, to see what these are worth.
+enum class PoseWay {
+  kBest,
+  kLearned,
+  kBare,
+  kTrueCom,
+  kTrueMomentum,
+  kTrueFeet,
+  kTrueAll,
+  kHead,        ///< A sphere on a cap,
+  kKinectHead,  ///< or the head of a Kinect.
+  kBelt,
+  kHeadBelt,
+  kLearnedHeadBelt,  ///< Hands, feet, head and belt, without the loads.
+};
+inline constexpr std::size_t kPoseWays = 12;
+
+/// Which ways are scored beside the first three.
+struct MoreWays {
+  bool truth = false, sensors = false;
+
+  bool Include(PoseWay way) const {
+    if (way <= PoseWay::kBare) return true;
+    return way <= PoseWay::kTrueAll ? truth : sensors;
+  }
+};
 
 /// Normalised squared errors of joints: |error|^2 / (3 sd^2), in the mean 1 where the deviations
 /// are honest.
@@ -45,8 +68,8 @@ struct PoseTally {
   nlohmann::ordered_json Json() const;
 };
 
-/// The take as the sensors show it; `with_truth`: with parts of the truth, too.
+/// The take as the sensors show it.
 Result<PoseTally> ScoreTake(const PoseTake& take, const reconstruction::Models& models,
-                            bool with_truth);
+                            const MoreWays& more);
 
 }  // namespace footing::train

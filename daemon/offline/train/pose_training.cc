@@ -28,8 +28,10 @@ std::vector<PoseTake> TakesOf(const std::vector<const Clip*>& clips, std::uint64
   return takes;
 }
 
-Result<pose_run::PoseRun> SimulateTake(const PoseTake& take) {
+Result<pose_run::PoseRun> SimulateTake(const PoseTake& take, pose_run::HeadDevice head, bool belt) {
   pose_run::Settings settings;
+  settings.head = head;
+  settings.belt = belt;
   settings.errors.noise_kg = kCellNoiseKg;
   settings.errors.seed = settings.seed = take.seed;
   const motion::Motion& motion = take.clip->motion;

@@ -34,8 +34,11 @@ struct PoseTake {
 std::vector<PoseTake> TakesOf(const std::vector<const Clip*>& clips, std::uint64_t seed,
                               int& piece);
 
-/// What two boards and two hand trackers would have measured.
-Result<pose_run::PoseRun> SimulateTake(const PoseTake& take);
+/// What two boards and two hand trackers would have measured, and a tracker of the head and a belt
+/// where there are such.
+Result<pose_run::PoseRun> SimulateTake(const PoseTake& take,
+                                       pose_run::HeadDevice head = pose_run::HeadDevice::kNone,
+                                       bool belt = false);
 
 /// Appends the take's frames.
 Result<void> AddExamples(const PoseTake& take, const reconstruction::Models& models,

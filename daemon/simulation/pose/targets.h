@@ -52,8 +52,9 @@ inline Eigen::Vector3d PlaceOf(const PointTarget& point, const body::Kinematics&
   return place_m - at.p_WJ[static_cast<std::size_t>(point.from_joint)];
 }
 
-/// Fists or arms (up to 6), ankles and balls (4), and the joints of a skeleton (13).
-inline constexpr int kMaxPoints = 24;
+/// Fists or arms (up to 6), ankles and balls (4), the joints of a skeleton (13), and the directions
+/// of a belt (2), with one to spare.
+inline constexpr int kMaxPoints = 26;
 
 /// What one frame's pose is solved for: the terms of equation (6), each with its standard
 /// deviation. What is not valid is not asked for.

@@ -72,6 +72,7 @@ void BestMode::SetTargets(const Measurement& then, const Truth& truth, const Out
   }
   // After the feet, whose places are the first targets of their joints.
   AddJointTargets(*state_.model, then.joints, state_.targets);
+  AddBeltTargets(*state_.model, then.belt, state_.options.best, state_.targets);
   SetMomentumTargets(*state_.model, then, output.mass_kg, state_.options, state_.targets);
   OverrideMomentumTargets(truth, state_.options, state_.targets);
   state_.MoveTargets();

@@ -7,6 +7,7 @@
 
 #include "common/stream/hands.h"
 #include "daemon/simulation/arms/arm_model.h"
+#include "daemon/simulation/arms/hand_attitude.h"
 #include "daemon/simulation/momentum/contact_loads.h"
 
 namespace footing::reconstruction {
@@ -33,6 +34,8 @@ struct Inputs {
   /// How the arms are held, where their hands are not seen.
   std::array<arms::ArmEstimate, kHands> arms = {};
   JointInputs joints = {};
+  /// How the pelvis has turned since the T-pose, by a device on a belt.
+  arms::HandState belt = {};
 };
 
 /// For evaluation: parts of the truth at the instant of the loads, in place of their estimates, to

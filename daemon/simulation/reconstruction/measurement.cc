@@ -1,16 +1,15 @@
 #include "daemon/simulation/reconstruction/measurement.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "common/body/momentum.h"
 #include "daemon/simulation/reconstruction/pose_targets.h"
 #include "daemon/simulation/reconstruction/report.h"
+#include "daemon/simulation/reconstruction/skeleton.h"
 
 namespace footing::reconstruction {
 namespace {
 
-constexpr int kLeastJoints = 4;    // Of a skeleton that shows more than a limb.
 constexpr double kMostHandM = 10;  // No part of a person is further from the cells.
 
 bool IsUsable(const PointInput& point, const Eigen::Vector3d& origin_m) {
@@ -25,10 +24,7 @@ bool UsableDirection(const Eigen::Vector3d& direction, const Eigen::Vector3d& sd
 
 }  // namespace
 
-bool Measurement::skeleton() const {
-  return std::count_if(joints.begin(), joints.end(),
-                       [](const JointInput& joint) { return joint.valid; }) >= kLeastJoints;
-}
+bool Measurement::skeleton() const { return IsSkeleton(joints); }
 
 std::array<HandInput, kHands> UsableHands(const std::array<HandInput, kHands>& hands,
                                           const Eigen::Vector3d& origin_m) {
@@ -51,6 +47,16 @@ std::array<arms::ArmEstimate, kHands> UsableArms(
                 UsableDirection(arm.directions.hinge, arm.hinge_sd) &&
                 UsableDirection(arm.directions.forearm, arm.forearm_sd);
   }
+  return usable;
+}
+
+arms::HandState UsableBelt(const arms::HandState& belt) {
+  constexpr double kRounding = 1e-3;
+  arms::HandState usable = belt;
+  const Eigen::Matrix3d square = belt.turn_W.transpose() * belt.turn_W;
+  usable.valid = belt.valid && square.isIdentity(kRounding) && belt.turn_W.determinant() > 0 &&
+                 std::isfinite(belt.heading_sd_rad) && std::isfinite(belt.inclination_sd_rad) &&
+                 belt.heading_sd_rad >= 0 && belt.inclination_sd_rad >= 0;
   return usable;
 }
 
@@ -104,7 +110,8 @@ void BestEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& ori
 
 Measurement BestEstimate::Advance(const Inputs& inputs) {
   Measurement now{UsableHands(inputs.hands, origin_m_), UsableArms(inputs.arms),
-                  estimator_->Advance(inputs.loads), UsableJoints(inputs.joints, origin_m_)};
+                  estimator_->Advance(inputs.loads), UsableJoints(inputs.joints, origin_m_),
+                  UsableBelt(inputs.belt)};
   if (options_.use_posture && now.both_hands()) {
     SeePosture(now);
   }
@@ -123,10 +130,19 @@ void BestEstimate::SeePosture(Measurement& now) {
   const Eigen::Vector3d plain_m = body::CentreOfMass(model_->body, plain_.at());
   now.posture_com_W_m = origin_m_ + plain_m;
   if (learned_) {
+    AddExtraTargets(now);
     learned_->Solve(targets_, likely_.Predict(origin_m_));
     now.posture_com_W_m = origin_m_ + body::CentreOfMass(model_->body, learned_->at());
   }
   now.momentum = estimator_->SeePosture(origin_m_.y() + plain_m.y(), now.posture_com_W_m->z());
+}
+
+void BestEstimate::AddExtraTargets(const Measurement& now) {
+  pose::PoseTargets extra;
+  if (!now.skeleton()) AddJointTargets(*model_, now.joints, extra);
+  AddBeltTargets(*model_, now.belt, options_.best, extra);
+  MoveOrigin(origin_m_, extra);
+  for (int i = 0; i < extra.count; ++i) targets_.Add(extra.points[static_cast<std::size_t>(i)]);
 }
 
 void PaperEstimate::Start(const momentum::TPose& pose, const Eigen::Vector3d& origin_m) {

@@ -24,6 +24,7 @@ struct Measurement {
   std::array<arms::ArmEstimate, kHands> arms;
   momentum::Estimate momentum;
   JointInputs joints = {};
+  arms::HandState belt = {};
   /// COM by hands and feet alone, W; only with both hands.
   std::optional<Eigen::Vector3d> posture_com_W_m = std::nullopt;
 
@@ -32,12 +33,13 @@ struct Measurement {
   bool skeleton() const;
 };
 
-/// Hands, joints and arms as they are, those that are not finite or far from `origin_m` as not
-/// valid.
+/// Hands, joints, arms and belt as they are, those that are not finite or far from `origin_m` as
+/// not valid.
 std::array<HandInput, kHands> UsableHands(const std::array<HandInput, kHands>& hands,
                                           const Eigen::Vector3d& origin_m);
 JointInputs UsableJoints(const JointInputs& joints, const Eigen::Vector3d& origin_m);
 std::array<arms::ArmEstimate, kHands> UsableArms(const std::array<arms::ArmEstimate, kHands>& arms);
+arms::HandState UsableBelt(const arms::HandState& belt);
 
 /// Before the first T-pose and after each request for a new one: stands in a T-pose, nothing valid.
 void ReportTPose(const SubjectModel& model, const Options& options, Output& output);
@@ -62,6 +64,9 @@ class BestEstimate {
   /// Takes in the COM of poses of hands and feet alone: they use no load, so their errors are their
   /// own.
   void SeePosture(Measurement& now);
+  /// What a tracked head and a belt add to hands and feet. Not for the pose about the mean of all:
+  /// the lateral filter knows how that one errs by hands and feet.
+  void AddExtraTargets(const Measurement& now);
 
   const SubjectModel* model_;
   Options options_;

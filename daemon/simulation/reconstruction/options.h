@@ -12,6 +12,8 @@ enum class Mode { kBest, kPaper };
 struct BestConstants {
   double hand_sd_m = 0.008;  ///< Of the fist on the hand, beside what the input says.
   double arm_spread = 1.5;   ///< Factor on an arm's deviations: its errors persist for many frames.
+  /// Of the belt on the pelvis, about each axis, beside what the attitude says.
+  double belt_sd_rad = 0.07;
   FootSpread foot;
   double com_sd_m = 0.005;  ///< Of the masses, beside what the filters say.
   /// kg m^2/s, beside what the estimate says; 0: the angular momentum is left out, since as it is

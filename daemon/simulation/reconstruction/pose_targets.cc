@@ -13,6 +13,8 @@ constexpr double kPaperComSdM = 0.03, kPaperHeightSdM = 0.05, kPaperAngularSd = 
 constexpr double kPaperArmSdRad = 0.2;
 constexpr double kTrueFootSdM = 0.015, kTrueComSdM = 0.01, kTrueAngularSd = 1;
 constexpr double kHingeM = 0.25;  // Distance at which a turn of the upper arm counts as a length.
+constexpr int kPelvis = 0;        // The root.
+constexpr double kPelvisM = 0.2;  // The same of the pelvis; any length makes the same terms.
 
 pose::PointTarget FistTarget(const body::Point& fist, const HandInput& hand,
                              const Eigen::Vector3d& sd_m) {
@@ -82,6 +84,21 @@ void AddPaperHandTargets(const SubjectModel& model, const Measurement& then,
     const body::Point& fist = model.fists[side];
     targets.Add({fist.joint, fist.p_J_m, hand.p_W_m, Eigen::Vector3d::Constant(kPaperHandSdM)});
   }
+}
+
+void AddBeltTargets(const SubjectModel& model, const arms::HandState& belt,
+                    const BestConstants& best, pose::PoseTargets& targets) {
+  if (!belt.valid) return;
+  const Eigen::Matrix3d& R_WJ = model.t_pose_at.R_WJ[kPelvis];
+  const auto add = [&](const Eigen::Vector3d& was_W, const Eigen::Vector3d& sd_m) {
+    targets.Add({kPelvis, kPelvisM * (R_WJ.transpose() * was_W), kPelvisM * (belt.turn_W * was_W),
+                 sd_m, kPelvis});
+  };
+  const double lean_m = kPelvisM * std::hypot(belt.inclination_sd_rad, best.belt_sd_rad);
+  const double turn_m = kPelvisM * std::hypot(belt.heading_sd_rad, best.belt_sd_rad);
+  add(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Constant(lean_m));
+  // How far it points up is the inclination's, which the first one has.
+  add(Eigen::Vector3d::UnitX(), {turn_m, turn_m, kUnknownSdM});
 }
 
 void AddFeetTargets(const SubjectModel& model, const Measurement& then, const FootSpread& spread,

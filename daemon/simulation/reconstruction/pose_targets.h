@@ -22,6 +22,12 @@ void AddHandTargets(const SubjectModel& model, const Measurement& then, const Be
 void AddPaperHandTargets(const SubjectModel& model, const Measurement& then,
                          pose::PoseTargets& targets);
 
+/// How the belt shows the pelvis turned, as directions that were up and forward in the T-pose: the
+/// way up has the deviation of the inclination, the way forward in level directions that of the
+/// heading.
+void AddBeltTargets(const SubjectModel& model, const arms::HandState& belt,
+                    const BestConstants& best, pose::PoseTargets& targets);
+
 /// Both feet by their estimates, with the deviations of recorded feet, or with those of paper mode.
 void AddFeetTargets(const SubjectModel& model, const Measurement& then, const FootSpread& spread,
                     pose::PoseTargets& targets);

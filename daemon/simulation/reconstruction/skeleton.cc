@@ -10,6 +10,7 @@
 namespace footing::reconstruction {
 namespace {
 
+constexpr int kLeastJoints = 4;  // Of a skeleton that shows more than a limb.
 // Deviations from the pose of a moment ago, whitened by the joint's own covariance: of a joint that
 // is right 3.5 are exceeded once in 140 looks (chi squared of three), 10 never.
 constexpr double kDoubtedFrom = 3.5, kDroppedFrom = 10;
@@ -30,6 +31,11 @@ void Widen(double factor, JointInput& joint) {
 }
 
 }  // namespace
+
+bool IsSkeleton(const JointInputs& joints) {
+  return std::count_if(joints.begin(), joints.end(),
+                       [](const JointInput& joint) { return joint.valid; }) >= kLeastJoints;
+}
 
 void AddJointTargets(const SubjectModel& model, const JointInputs& joints,
                      pose::PoseTargets& targets) {
@@ -69,6 +75,7 @@ Inputs SkeletonOffset::Without(const Inputs& inputs) const {
 
 void SkeletonOffset::Learn(const SubjectModel& model, const JointInputs& joints,
                            const body::Kinematics& at, double step_s) {
+  if (!IsSkeleton(joints)) return;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), weights = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (!joints[i].valid) continue;

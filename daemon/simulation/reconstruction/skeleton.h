@@ -11,6 +11,10 @@
 /// them is believed, and the terms of the solver that they are.
 namespace footing::reconstruction {
 
+/// Enough joints are valid to show the pose. Fewer, such as a tracked head, add to what boards and
+/// hands show.
+bool IsSkeleton(const JointInputs& joints);
+
 /// A term for each valid joint, with its covariance. A joint that is not seen has none.
 void AddJointTargets(const SubjectModel& model, const JointInputs& joints,
                      pose::PoseTargets& targets);
@@ -22,7 +26,8 @@ void GateJoints(const SubjectModel& model, const body::Kinematics& at, JointInpu
 
 /// What all joints are off by in common, as a camera that stands not quite where it was found to
 /// stand makes them. Feet and COM stand still in W, so it is learned from what the joints are off
-/// from the pose that follows all of these. A value.
+/// from the pose that follows all of these. Of a few joints it would be what the pose is off by.
+/// A value.
 class SkeletonOffset {
  public:
   void Start() { offset_m_.setZero(); }

@@ -110,6 +110,19 @@ TEST(TrainCascade, StopsWhereValidationGetsNoBetter) {
   EXPECT_LT(result.validation_mse, 2);
 }
 
+TEST(TrainCascade, KeepsTheFewestUnitsThatAreAskedFor) {
+  Examples train = Curved(60, 0, 1), validation = Curved(60, 0, 2);
+  noise::Random random(3);
+  for (double& target : train.targets.reshaped()) target = random.Normal();
+  for (double& target : validation.targets.reshaped()) target = random.Normal();
+  CascadeOptions options;
+  const int chosen = TrainCascade(train, validation, options, 4).hidden_units;
+  options.hidden_min = chosen + 2;
+  EXPECT_GE(TrainCascade(train, validation, options, 4).hidden_units, chosen + 2);
+  options.hidden_min = options.hidden_max = 3;
+  EXPECT_EQ(TrainCascade(train, validation, options, 4).hidden_units, 3);
+}
+
 TEST(TrainCascade, StopsAtItsGoal) {
   const Examples train = Curved(500, 0, 1);
   CascadeOptions options;

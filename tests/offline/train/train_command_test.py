@@ -172,6 +172,16 @@ class Train(unittest.TestCase):
         self.assertIn(b"1_02.bvh", written)
         self.assertNotIn(b"2_01.bvh", written)
 
+    def test_com_has_as_many_hidden_units_as_are_asked_for(self):
+        folder = self.motions()
+        result = run("com", "--motions", folder, "--exclude", 2, "--noise", 0.02, "--rounds", 0, "--hidden-min", 2,
+                     "--hidden-max", 2, "--out", self.out, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        networks = json.loads(result.stdout)["networks"]
+        self.assertEqual([network["hidden_units"] for network in networks], [2, 2])
+        self.refused(2, "--hidden-min 3 is above --hidden-max 0", "com", "--motions", folder, "--hidden-min", 3,
+                     "--out", self.out)
+
     def test_basis_of_someone_who_moves_in_three_ways_has_three_components(self):
         result = run("basis", "--motions", self.motions(), "--out", self.out, "--json")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -219,6 +229,14 @@ class Train(unittest.TestCase):
         known = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--ablations", "--json")
         ways = json.loads(known.stdout)["people"]["2"]
         self.assertEqual(ways["best"], report["people"]["2"]["best"])
+        more = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--sensors", "--json")
+        sensors = json.loads(more.stdout)["people"]["2"]
+        self.assertEqual(sensors["best"], ways["best"], "other sensors change nothing for boards and hands")
+        # These people never turn the pelvis, so a belt alone says nothing new.
+        for way in ("head", "head_kinect", "head_belt", "hands_feet_learned_head_belt"):
+            self.assertNotEqual(sensors[way]["mpjpe_cm"], ways["best"]["mpjpe_cm"])
+            self.assertNotIn(way, ways)
+        self.assertAlmostEqual(sensors["belt"]["mpjpe_cm"], ways["best"]["mpjpe_cm"], places=6)
         for way in ("true_com", "true_momentum", "true_feet"):
             self.assertGreater(ways[way]["mpjpe_cm"], ways["true_all"]["mpjpe_cm"])
         (folder / "2_01.bvh").unlink()

@@ -27,6 +27,14 @@ struct World {
   Reconstruction Made(const Options& options) const {
     return Reconstruction::Create(person, models, options).value();
   }
+  /// Of a basis in which everything moves, where the person's own is of crouches alone.
+  Reconstruction FreelyMade() const {
+    motion::Motion loose = motion;
+    noise::Random random(5);
+    for (double& value : loose.q.reshaped()) value += 0.1 * random.Normal();
+    return Reconstruction::Create(person, MakeModels({BasisOf(person, loose)}).value(), AtRate())
+        .value();
+  }
   /// Mean distance of the joints from where they were `back` frames before frame i.
   double ErrorM(const Output& output, std::size_t i, std::size_t back) {
     body::ComputeKinematics(person.skeleton, motion.q.col(static_cast<Eigen::Index>(i - back)), at);

@@ -167,6 +167,34 @@ TEST_F(SkeletonTest, WhatAllJointsAreOffByIsLearnedInASecond) {
   EXPECT_EQ(offset.Without(inputs).hands[0].p_W_m, Eigen::Vector3d::Zero()) << "another tracker";
 }
 
+TEST_F(SkeletonTest, WhatAHeadAloneIsOffByIsThePosesError) {
+  Inputs inputs;
+  JointInputs all = JointsAt(world.person, model.t_pose_at, {0.06, -0.05, 0.04});
+  Of(inputs.joints, BodyJoint::kHead) = Of(all, BodyJoint::kHead);
+  SkeletonOffset offset;
+  for (int i = 0; i < 100; ++i) {
+    offset.Learn(model, offset.Without(inputs).joints, model.t_pose_at, 0.01);
+  }
+  EXPECT_EQ(offset.offset_m(), Eigen::Vector3d::Zero());
+}
+
+TEST_F(SkeletonTest, AHeadAloneDrawsThePoseToItForGood) {
+  const Reconstruction free = world.FreelyMade();
+  Reconstruction with = free, without = free;
+  const std::size_t head = body::IndexOf(BodyJoint::kHead);
+  constexpr double kAsideM = 0.06;
+  for (std::size_t i = 0; i < 560; ++i) {
+    Inputs inputs = world.inputs[i];
+    inputs.joints[head] = WithJoints(i, {0, kAsideM, 0}).joints[head];
+    inputs.joints[head].sd_m.setConstant(0.01);
+    with.Advance(inputs);
+    without.Advance(world.inputs[i]);
+    ASSERT_TRUE(Finite(with.output())) << i;
+  }
+  const auto joint = static_cast<std::size_t>(model.joints[head].joint);
+  EXPECT_GT(with.output().p_WJ_m[joint].y() - without.output().p_WJ_m[joint].y(), 0.25 * kAsideM);
+}
+
 TEST_F(SkeletonTest, ACameraThatIsOffDoesNotMoveThePoseForLong) {
   Reconstruction right = world.Made(world.AtRate()), off = right;
   for (std::size_t i = 0; i < world.inputs.size(); ++i) {

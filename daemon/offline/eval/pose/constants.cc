@@ -12,6 +12,7 @@ Result<void> SetConstants(const std::vector<std::string>& assignments,
   const std::map<std::string, double*> names = {
       {"hand_sd_m", &c.hand_sd_m},
       {"arm_spread", &c.arm_spread},
+      {"belt_sd_rad", &c.belt_sd_rad},
       {"foot_along", &c.foot.along},
       {"foot_across", &c.foot.across},
       {"ankle_up", &c.foot.ankle_up},

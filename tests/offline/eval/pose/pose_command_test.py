@@ -86,6 +86,20 @@ class Pose(unittest.TestCase):
         known = self.judge("pose", "--no-baselines", "--oracle", "com", "--oracle", "feet")["mpjpe_cm"]
         self.assertLess(known, 0.8 * without)
 
+    def test_a_tracked_head_makes_the_pose_better_and_not_the_baselines(self):
+        without = self.judge("pose")
+        more = self.judge("pose", "--head", "sphere", "--belt")
+        self.assertLess(more["mpjpe_torso_cm"], 0.8 * without["mpjpe_torso_cm"])
+        self.assertEqual(more["baselines"], without["baselines"])
+        self.assertEqual((more["head"], more["belt"]), ("sphere", True))
+
+    def test_refuses_a_head_where_there_is_another_or_no_use_of_it(self):
+        clip = ["--motion", DATA / "11_01.amc", "--skeleton", DATA / "11.asf"]
+        for flags in (["--head", "sphere", "--hands", "kinect"], ["--belt", "--mode", "paper"]):
+            done = run(EVAL, "pose", *clip, *flags)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("--head", done.stderr)
+
     def test_parts_of_the_hips_error_are_parts_of_it(self):
         for flags in ((), ("--oracle", "com", "--oracle", "feet")):
             report = self.judge("pose", "--no-baselines", *flags)

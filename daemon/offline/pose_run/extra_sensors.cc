@@ -1,0 +1,104 @@
+#include "daemon/offline/pose_run/extra_sensors.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "common/body/skeleton_points.h"
+
+namespace footing::pose_run {
+namespace {
+
+constexpr double kLeastSdM = 0.001;
+// Apart from the seeds of boards (twice the run's and one more), hands and arms.
+constexpr std::uint64_t kHeadSeed = 104729, kBeltSeed = 1299709;
+
+Eigen::Vector3d Normals(double sd, noise::Random& random) {
+  Eigen::Vector3d values;
+  for (double& value : values) value = sd * random.Normal();
+  return values;
+}
+
+constexpr std::size_t kHeadJoint = body::IndexOf(stream::BodyJoint::kHead);
+
+virtual_sensors::KinectOptions Unhidden() {
+  virtual_sensors::KinectOptions options;
+  options.hides = false;  // Nothing of a person is between the camera and the head.
+  return options;
+}
+
+virtual_sensors::HeldErrorConfig Seeded(virtual_sensors::HeldErrorConfig config,
+                                        std::uint64_t seed) {
+  config.seed = seed;
+  return config;
+}
+
+Eigen::Matrix3d Turned(const Eigen::Vector3d& angle_rad) {
+  const double norm_rad = angle_rad.norm();
+  if (norm_rad < 1e-12) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(norm_rad, angle_rad / norm_rad).toRotationMatrix();
+}
+
+}  // namespace
+
+HeadTracker::HeadTracker(const body::Body& body, HeadDevice device, const HeadErrors& errors,
+                         std::uint64_t seed, double step_s)
+    : device_(device),
+      errors_(errors),
+      random_(seed + kHeadSeed),
+      sphere_(body::SkeletonPoints(body)[kHeadJoint]),
+      kinect_(body, seed + kHeadSeed, step_s, Unhidden()) {
+  sphere_.p_J_m += Normals(errors.seat_m, random_);
+}
+
+void HeadTracker::Advance(const body::Kinematics& at, reconstruction::Inputs& inputs) {
+  reconstruction::JointInput& head = inputs.joints[kHeadJoint];
+  if (device_ == HeadDevice::kKinect) {
+    reconstruction::Inputs seen;
+    kinect_.Advance(at, true, seen);
+    head = seen.joints[kHeadJoint];
+    return;
+  }
+  head.valid = true;
+  head.p_W_m = body::Place(sphere_, at) + Normals(errors_.noise_m, random_);
+  head.sd_m.setConstant(std::max(std::hypot(errors_.noise_m, errors_.seat_m), kLeastSdM));
+}
+
+Belt::Belt(const virtual_sensors::Scene& scene, const BeltErrors& errors, std::uint64_t seed)
+    : course_(virtual_sensors::FollowPelvis(scene.body, scene.motion)),
+      errors_(errors),
+      device_(Seeded(errors.device, seed + kBeltSeed)),
+      random_(seed + kBeltSeed + 1),
+      reading_s_(1 / scene.motion.rate_hz) {}
+
+arms::HandState Belt::Until(Eigen::Index column, double step_s) {
+  for (; next_ <= column; ++next_) {
+    const auto reading = device_.Advance(course_.specific_force_S_mps2.col(next_),
+                                         course_.angular_velocity_S_radps.col(next_), reading_s_);
+    attitude_.Advance(
+        {reading.specific_force_S_mps2, reading.angular_velocity_S_radps, reading.clipped},
+        reading_s_);
+  }
+  const double stays = std::exp(-step_s / errors_.slip_s);
+  slip_rad_ = stays * slip_rad_ + Normals(errors_.slip_rad * std::sqrt(1 - stays * stays), random_);
+  arms::HandState state = attitude_.state();
+  state.turn_W = state.turn_W * Turned(slip_rad_);
+  return state;
+}
+
+ExtraSensors::ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head, bool belt,
+                           std::uint64_t seed, double step_s)
+    : step_s_(step_s) {
+  if (head != HeadDevice::kNone) head_.emplace(scene.body, head, HeadErrors{}, seed, step_s);
+  if (belt) belt_.emplace(scene, BeltErrors{}, seed);
+}
+
+void ExtraSensors::Advance(const body::Kinematics& at, Eigen::Index column, bool aligns,
+                           reconstruction::Inputs& inputs) {
+  if (head_) head_->Advance(at, inputs);
+  if (!belt_) return;
+  inputs.belt = belt_->Until(column, step_s_);
+  if (aligns) belt_->Align();
+}
+
+}  // namespace footing::pose_run

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "common/body/body.h"
+#include "common/body/kinematics.h"
+#include "common/body/points.h"
+#include "common/virtual/noise/random.h"
+#include "common/virtual/sensors/held_device.h"
+#include "common/virtual/sensors/scene.h"
+#include "daemon/offline/pose_run/kinect_body.h"
+#include "daemon/simulation/arms/hand_attitude.h"
+#include "daemon/simulation/reconstruction/inputs.h"
+
+/// What a lab may add to boards and hands (docs/pose-reports.md). Their random numbers are their
+/// own: a run with them has the boards and hands of the run without.
+namespace footing::pose_run {
+
+/// Source of the place of the head.
+enum class HeadDevice {
+  kNone,
+  kSphere,  ///< A luminous sphere on a cap, as the camera of the hands sees it.
+  kKinect,  ///< The head of a Kinect's skeleton: late, with white noise and a slow offset.
+};
+
+struct HeadErrors {
+  double noise_m = 0.01;  ///< White, along each axis; of kSphere.
+  /// How far the cap has the sphere from where the head is taken to be, along each axis of the
+  /// head: constant, and not known. Of kSphere.
+  double seat_m = 0.02;
+};
+
+class HeadTracker {
+ public:
+  /// `step_s` between frames.
+  HeadTracker(const body::Body& body, HeadDevice device, const HeadErrors& errors,
+              std::uint64_t seed, double step_s);
+
+  /// The head of the inputs' joints, while the joints are `at`.
+  void Advance(const body::Kinematics& at, reconstruction::Inputs& inputs);
+
+ private:
+  HeadDevice device_;
+  HeadErrors errors_;
+  noise::Random random_;
+  body::Point sphere_;
+  KinectBody kinect_;
+};
+
+/// Errors of a belt beside those of its Wiimote with MotionPlus (virtual_sensors::HeldErrorConfig).
+struct BeltErrors {
+  virtual_sensors::HeldErrorConfig device;
+  /// Of the belt about each axis of the pelvis, over skin and clothes: it comes and goes within
+  /// such a time.
+  double slip_rad = 0.05;
+  double slip_s = 0.5;
+};
+
+class Belt {
+ public:
+  Belt(const virtual_sensors::Scene& scene, const BeltErrors& errors, std::uint64_t seed);
+
+  /// How the pelvis has turned, by the samples up to this column of the scene's motion, `step_s`
+  /// after the call before.
+  arms::HandState Until(Eigen::Index column, double step_s);
+  /// The T-pose is held and was for some seconds.
+  void Align() { attitude_.Align(); }
+
+ private:
+  virtual_sensors::HeldCourse course_;
+  BeltErrors errors_;
+  virtual_sensors::HeldErrors device_;
+  noise::Random random_;
+  arms::HandAttitude attitude_;
+  Eigen::Vector3d slip_rad_ = Eigen::Vector3d::Zero();
+  Eigen::Index next_ = 0;
+  double reading_s_;
+};
+
+/// Those of them that there are.
+class ExtraSensors {
+ public:
+  ExtraSensors(const virtual_sensors::Scene& scene, HeadDevice head, bool belt, std::uint64_t seed,
+               double step_s);
+
+  /// Puts what they measure into the inputs of a frame, whose joints are `at`. `aligns`: by now
+  /// the T-pose was held for some seconds.
+  void Advance(const body::Kinematics& at, Eigen::Index column, bool aligns,
+               reconstruction::Inputs& inputs);
+
+ private:
+  std::optional<HeadTracker> head_;
+  std::optional<Belt> belt_;
+  double step_s_;
+};
+
+}  // namespace footing::pose_run

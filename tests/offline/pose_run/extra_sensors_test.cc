@@ -1,0 +1,110 @@
+#include "daemon/offline/pose_run/extra_sensors.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "common/body/points.h"
+#include "common/body/skeleton_points.h"
+#include "daemon/offline/pose_run/pose_run.h"
+
+namespace footing::pose_run {
+namespace {
+
+constexpr std::size_t kHead = body::IndexOf(stream::BodyJoint::kHead);
+constexpr double kTurnRad = 0.8;
+
+/// Turns to the left and back on the spot, with the arms out.
+motion::Motion Turning(double seconds) {
+  motion::Motion motion;
+  motion.skeleton = body::StandardPerson(1.75);
+  const body::Landmarks landmarks = body::FindLandmarks(motion.skeleton).value();
+  motion.rate_hz = 60;
+  motion.q = body::TPose(motion.skeleton, landmarks)
+                 .replicate(1, static_cast<Eigen::Index>(seconds * motion.rate_hz));
+  constexpr int kHeading = 3;  // The root's first angle (common/body).
+  for (Eigen::Index i = 0; i < motion.frames(); ++i) {
+    motion.q(kHeading, i) = kTurnRad * std::sin(static_cast<double>(i) / motion.rate_hz);
+  }
+  return motion;
+}
+
+PoseRun RunOf(HeadDevice head, bool belt, double seconds = 4) {
+  Settings settings;
+  settings.head = head;
+  settings.belt = belt;
+  return RunPose(Turning(seconds), settings, "turning").value();
+}
+
+TEST(ExtraSensors, AddNothingToHandsAndBoards) {
+  const PoseRun plain = RunOf(HeadDevice::kNone, false), more = RunOf(HeadDevice::kSphere, true);
+  for (std::size_t i = 0; i < plain.frames.size(); ++i) {
+    const auto& ours = plain.frames[i].inputs;
+    const auto& theirs = more.frames[i].inputs;
+    ASSERT_EQ(ours.hands[0].p_W_m, theirs.hands[0].p_W_m) << i;
+    ASSERT_EQ(ours.loads.feet[1].cells[2].load_n, theirs.loads.feet[1].cells[2].load_n) << i;
+    ASSERT_FALSE(ours.joints[kHead].valid || ours.belt.valid) << i;
+  }
+  const PoseRun without = WithoutExtras(more);
+  EXPECT_FALSE(without.frames.back().inputs.joints[kHead].valid);
+  EXPECT_FALSE(without.frames.back().inputs.belt.valid);
+}
+
+TEST(ExtraSensors, AHeadsErrorsAreThoseItReports) {
+  const PoseRun run = RunOf(HeadDevice::kSphere, false);
+  const body::Point head = body::SkeletonPoints(run.body)[kHead];
+  body::Kinematics at(run.body.skeleton);
+  Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+  double square_m2 = 0;
+  const double share = 1 / static_cast<double>(run.frames.size());
+  for (const Frame& frame : run.frames) {
+    body::ComputeKinematics(run.body.skeleton, frame.q, at);
+    const auto& input = frame.inputs.joints[kHead];
+    ASSERT_TRUE(input.valid);
+    const auto joint = static_cast<std::size_t>(head.joint);
+    const Eigen::Vector3d off_m =
+        at.R_WJ[joint].transpose() * (input.p_W_m - body::Place(head, at));
+    mean_m += share * off_m;
+    square_m2 += share * off_m.squaredNorm();
+  }
+  // What stays is the seat of the cap, what changes the noise.
+  const HeadErrors errors;
+  EXPECT_GT(mean_m.norm(), 0.003);
+  EXPECT_NEAR(std::sqrt((square_m2 - mean_m.squaredNorm()) / 3), errors.noise_m, 0.001);
+  EXPECT_NEAR(run.frames[0].inputs.joints[kHead].sd_m.x(),
+              std::hypot(errors.noise_m, errors.seat_m), 1e-12);
+}
+
+TEST(ExtraSensors, AKinectShowsTheHeadLateAndLessSurely) {
+  const PoseRun run = RunOf(HeadDevice::kKinect, false);
+  EXPECT_FALSE(run.frames[3].inputs.joints[kHead].valid);  // 67 ms are 4 frames.
+  ASSERT_TRUE(run.frames[4].inputs.joints[kHead].valid);
+  EXPECT_GT(run.frames.back().inputs.joints[kHead].sd_m.x(), 0.0427);
+  EXPECT_FALSE(run.frames.back().inputs.joints[kHead + 1].valid);  // The head alone.
+}
+
+TEST(ExtraSensors, ABeltShowsHowThePelvisHasTurnedSinceTheTPose) {
+  const PoseRun run = RunOf(HeadDevice::kNone, true, 12);
+  EXPECT_FALSE(run.frames[static_cast<std::size_t>(5 * run.rate_hz)].inputs.belt.valid);
+  body::Kinematics at(run.body.skeleton);
+  double square = 0, sd = 0, furthest_rad = 0;
+  for (std::size_t i = run.judged_from; i < run.frames.size(); ++i) {
+    const arms::HandState& belt = run.frames[i].inputs.belt;
+    ASSERT_TRUE(belt.valid) << i;
+    body::ComputeKinematics(run.body.skeleton, run.frames[i].q, at);
+    const Eigen::AngleAxisd off(belt.turn_W.transpose() * at.R_WJ[0]);
+    square += off.angle() * off.angle();
+    sd = belt.heading_sd_rad;
+    furthest_rad = std::max(furthest_rad, std::abs(Eigen::AngleAxisd(at.R_WJ[0]).angle()));
+  }
+  EXPECT_GT(furthest_rad, 0.9 * kTurnRad);
+  const double rms_rad = std::sqrt(square / static_cast<double>(run.frames.size()));
+  // The slip of the belt about three axes, and the device's own.
+  EXPECT_GT(rms_rad, 0.03);
+  EXPECT_LT(rms_rad, 0.13);
+  EXPECT_GT(sd, run.frames[run.judged_from].inputs.belt.heading_sd_rad) << "nothing corrects it";
+}
+
+}  // namespace
+}  // namespace footing::pose_run

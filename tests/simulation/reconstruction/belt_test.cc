@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "daemon/simulation/reconstruction/pose_targets.h"
+#include "tests/simulation/reconstruction/made_world.h"
+
+namespace footing::reconstruction {
+namespace {
+
+/// A belt that shows the pelvis turned so since the T-pose.
+arms::HandState BeltAt(const Eigen::Matrix3d& turn_W, double heading_sd_rad = 0) {
+  arms::HandState belt;
+  belt.valid = true;
+  belt.turn_W = turn_W;
+  belt.heading_sd_rad = heading_sd_rad;
+  return belt;
+}
+
+Eigen::Matrix3d About(const Eigen::Vector3d& axis, double angle_rad) {
+  return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
+}
+
+struct BeltTest : testing::Test {
+  World world;
+  SubjectModel model = BestSubjectModel(world.person, world.models, world.AtRate()).value();
+
+  /// Sum of the squares of the terms, of a pelvis that has turned by `turn_W`.
+  double Cost(const arms::HandState& belt, const Eigen::Matrix3d& turn_W) {
+    pose::PoseTargets targets;
+    AddBeltTargets(model, belt, {}, targets);
+    body::Kinematics at = model.t_pose_at;
+    at.R_WJ[0] = turn_W * at.R_WJ[0];
+    double sum = 0;
+    for (int i = 0; i < targets.count; ++i) {
+      const pose::PointTarget& point = targets.points[static_cast<std::size_t>(i)];
+      sum += Whitened(point, point.p_W_m - PlaceOf(point, at)).squaredNorm();
+    }
+    return sum;
+  }
+};
+
+TEST_F(BeltTest, ThePelvisIsAskedToTurnAsTheBeltDoes) {
+  const Eigen::Matrix3d turn =
+      About(Eigen::Vector3d::UnitZ(), 0.6) * About(Eigen::Vector3d(1, 2, 0).normalized(), 0.5);
+  EXPECT_NEAR(Cost(BeltAt(turn), turn), 0, 1e-20);
+  pose::PoseTargets targets;
+  AddBeltTargets(model, {}, {}, targets);
+  EXPECT_EQ(targets.count, 0) << "no belt";
+}
+
+TEST_F(BeltTest, LeaningAndTurningCostWhatTheirDeviationsSay) {
+  constexpr double kSmallRad = 0.01;
+  const double sd_rad = BestConstants{}.belt_sd_rad;
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
+  const double expected = std::pow(kSmallRad / sd_rad, 2);
+  for (const Eigen::Vector3d& axis :
+       {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)}) {
+    EXPECT_NEAR(Cost(BeltAt(none), About(axis, kSmallRad)), expected, 0.01 * expected) << axis;
+  }
+  // A heading of which little is known costs as little.
+  constexpr double kHeadingSd = 0.7;
+  const double little = kSmallRad * kSmallRad / (kHeadingSd * kHeadingSd + sd_rad * sd_rad);
+  EXPECT_NEAR(Cost(BeltAt(none, kHeadingSd), About(Eigen::Vector3d::UnitZ(), kSmallRad)), little,
+              0.01 * little);
+}
+
+TEST_F(BeltTest, WhatIsNoTurnIsNotUsed) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(UsableBelt(BeltAt(About(Eigen::Vector3d::UnitY(), 0.3))).valid);
+  EXPECT_FALSE(UsableBelt(BeltAt(2 * Eigen::Matrix3d::Identity())).valid);
+  EXPECT_FALSE(UsableBelt(BeltAt(-Eigen::Matrix3d::Identity())).valid) << "a mirror image";
+  EXPECT_FALSE(UsableBelt(BeltAt(Eigen::Matrix3d::Constant(kNaN))).valid);
+  EXPECT_FALSE(UsableBelt(BeltAt(Eigen::Matrix3d::Identity(), kNaN)).valid);
+}
+
+TEST_F(BeltTest, ThePelvisFollowsTheBelt) {
+  const Reconstruction free = world.FreelyMade();
+  Reconstruction with = free, without = free;
+  constexpr double kTurnRad = 0.3;
+  for (std::size_t i = 0; i < 560; ++i) {
+    Inputs inputs = world.inputs[i];
+    inputs.belt = BeltAt(About(Eigen::Vector3d::UnitZ(), kTurnRad));
+    with.Advance(inputs);
+    without.Advance(world.inputs[i]);
+    ASSERT_TRUE(Finite(with.output())) << i;
+  }
+  const auto turned_rad = [&](const Output& output) {
+    const Eigen::Matrix3d turn_W = output.R_WJ[0] * model.t_pose_at.R_WJ[0].transpose();
+    return std::atan2(turn_W(1, 0), turn_W(0, 0));
+  };
+  EXPECT_GT(turned_rad(with.output()) - turned_rad(without.output()), 0.5 * kTurnRad);
+}
+
+}  // namespace
+}  // namespace footing::reconstruction
