@@ -15,6 +15,7 @@ using disc::Sample;
 using disc::Solution;
 using disc::State;
 
+constexpr int kMostPixels = 700, kMostPixelsMoving = 400;  // A moving one costs twice as much.
 constexpr double kFarBlurs = 4;       // Beyond the edge; the background needs no more.
 constexpr double kMaybeMoves = 13.3;  // Of chi² with four degrees: 1 % of spheres at rest.
 constexpr double kSurelyMoves = 40;
@@ -29,10 +30,9 @@ constexpr std::size_t kSomePixels = 200;
 constexpr double kSmallBlurs = 5;
 constexpr int kFewestHidden = 3;  // Sectors; one or two are noise.
 
-/// A solution with the sectors of the edge that it used.
 struct Fit {
   Solution solution;
-  std::vector<bool> sectors;
+  std::vector<bool> sectors;  // Of the edge that it used.
 };
 
 /// An explanation of the light.
@@ -112,7 +112,7 @@ class Strategy {
   }
 
   std::optional<Fit> AtRest(disc::MotionScore& score) {
-    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs);
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
     std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
     fitter_.LookBehind(begin_, 0, used);
     auto solution = fitter_.Solve(begin_, false, 8);
@@ -131,7 +131,7 @@ class Strategy {
   std::optional<Fit> Moving(const Eigen::Vector2d& motion_px, const std::vector<double>& factors) {
     const double length = motion_px.norm();
     fitter_.Collect(image_, slopes_, start_.middle_px, begin_,
-                    kFarBlurs + 0.5 * length / settings_.profile.blur_px);
+                    kFarBlurs + 0.5 * length / settings_.profile.blur_px, kMostPixelsMoving);
     std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
     fitter_.LookBehind(begin_, length, used);
     const std::vector<Sample> all = fitter_.samples();
@@ -141,7 +141,7 @@ class Strategy {
       State state = begin_;
       state.motion_px = factor * motion_px;
       const bool moves = factor != 0;
-      if (const auto found = fitter_.Solve(state, moves, 5)) modes.push_back({*found, moves});
+      if (const auto found = fitter_.Solve(state, moves, 4)) modes.push_back({*found, moves});
     }
     KeepLikely(modes);
     fitter_.Use(all);
@@ -155,7 +155,7 @@ class Strategy {
   std::vector<Solution> SolveAgain(const std::vector<Mode>& modes) {
     std::vector<Solution> solutions;
     for (const Mode& mode : modes) {
-      if (auto solution = fitter_.Solve(mode.solution.state, mode.moves, 6))
+      if (auto solution = fitter_.Solve(mode.solution.state, mode.moves, 3))
         solutions.push_back(*solution);
     }
     return solutions;
@@ -176,7 +176,7 @@ class Strategy {
   /// there. Its blurred light is left out; the place is taken with the best of Akaike's costs. A
   /// part of the pixels is enough to find it.
   std::optional<Fit> BehindAnEdge() {
-    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs);
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
     std::vector<bool> clear(kSectors, true);
     fitter_.LookBehind(begin_, 0, clear);
     const std::vector<Sample> all = fitter_.samples(), some = Thinned(all);

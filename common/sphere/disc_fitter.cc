@@ -37,8 +37,8 @@ bool IsSane(const State& next, const State& before) {
 std::optional<Solution> Fitter::Solve(State state, bool moves, int rounds) {
   if (samples_.size() < 2 * kParameters) return std::nullopt;
   double cost = 0;
-  const auto solved = moves ? Descend<kOwnMoving>(state, rounds, cost)
-                            : Descend<kOwn>(state, rounds, cost);
+  const auto solved =
+      moves ? Descend<kOwnMoving>(state, rounds, cost) : Descend<kOwn>(state, rounds, cost);
   if (!solved) return std::nullopt;
   return Report(*solved, cost, moves);
 }
@@ -186,8 +186,7 @@ MotionScore Fitter::ScoreMotion(const State& state) const {
     const Modelled model = Model(sample.slopes, state, scale_, table_);
     const double value = outside * (1 - model.cover) + state.inside[c] * model.light;
     const double z = std::abs(sample.residual);
-    const double weight =
-        (z < kHuber ? 1 : kHuber / z) / Variance(settings_.noise, value);
+    const double weight = (z < kHuber ? 1 : kHuber / z) / Variance(settings_.noise, value);
     Shape row = state.inside[c] * model.light_slope;
     row.head<4>() -= outside * model.cover_slope;
     const Eigen::Vector2d from = sample.slopes - state.shape.head<2>();
@@ -211,8 +210,8 @@ MotionScore Fitter::ScoreMotion(const State& state) const {
   // Motion adds (motion . unit)² / 12 to the square of the blur: half of it is even.
   const double size = std::hypot(change[0], change[1]);
   const double angle = 0.5 * std::atan2(change[1], change[0]);
-  score.motion_px = std::sqrt(48 * state.shape[3] * size) *
-                    Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  score.motion_px =
+      std::sqrt(48 * state.shape[3] * size) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   return score;
 }
 

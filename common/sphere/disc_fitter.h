@@ -21,13 +21,13 @@ struct Solution {
   std::size_t pixels = 0;
 };
 
-/// Of several explanations of the same pixels: their mean by evidence, and how far they are apart in
-/// its covariance. The rest is the likeliest one's.
+/// Of several explanations of the same pixels: their mean by evidence, and how far they are apart
+/// in its covariance. The rest is the likeliest one's.
 Solution Mean(const std::vector<Solution>& modes);
 
 /// What the residuals of a sphere at rest say of motion.
 struct MotionScore {
-  double chi2 = 0;  ///< Of four degrees of freedom if it is at rest.
+  double chi2 = 0;                  ///< Of four degrees of freedom if it is at rest.
   Eigen::Vector2d motion_px{0, 0};  ///< To begin with; its sign is uncertain.
 };
 
@@ -39,9 +39,9 @@ class Fitter {
          double motion_sd_px)
       : settings_(settings), table_(table), scale_(scale), motion_sd_px_(motion_sd_px) {}
 
-  /// Takes the pixels of a disc and of `far_blurs` around it.
+  /// Takes the pixels of a disc and of `far_blurs` around it, some `most_pixels` of them.
   void Collect(const Image& image, const LocalSlopes& slopes, const Eigen::Vector2d& middle_px,
-               const State& state, double far_blurs);
+               const State& state, double far_blurs, int most_pixels);
   /// Leaves out what is beyond each sector's reach; says which sectors have the edge in reach.
   std::vector<bool> Limit(const State& state, const SectorReach& reach);
   /// See disc::LookBehind; `moving_px` is the travel within the ring.
@@ -59,9 +59,7 @@ class Fitter {
   const std::vector<Sample>& samples() const { return samples_; }
   void Use(std::vector<Sample> samples) { samples_ = std::move(samples); }
   /// Of the pixels inside, those at the sensor's limit.
-  double clipped_share() const {
-    return inside_ > 0 ? static_cast<double>(clipped_) / inside_ : 0;
-  }
+  double clipped_share() const { return inside_ > 0 ? static_cast<double>(clipped_) / inside_ : 0; }
   /// One blur, in slopes.
   double Blur() const { return settings_.profile.blur_px * scale_.Along(Eigen::Vector2d::UnitX()); }
 

@@ -12,14 +12,14 @@ namespace disc {
 namespace {
 
 constexpr int kClippedDn = 250;
-constexpr std::size_t kMostPixels = 700;
 constexpr double kHiddenBlurs = 3.5;  // From an occluder's edge there is no more of its light.
 constexpr double kBesideBlurs = 2.5;  // Along the sphere's edge, where half of it is seen.
 
 }  // namespace
 
 void Fitter::Collect(const Image& image, const LocalSlopes& slopes,
-                     const Eigen::Vector2d& middle_px, const State& state, double far_blurs) {
+                     const Eigen::Vector2d& middle_px, const State& state, double far_blurs,
+                     int most_pixels) {
   samples_.clear();
   inside_ = clipped_ = 0;
   const double per_px = std::sqrt(slopes.scale().determinant());
@@ -31,7 +31,7 @@ void Fitter::Collect(const Image& image, const LocalSlopes& slopes,
   const int v1 = std::min(image.height - 1, static_cast<int>(middle_px.y() + reach_px));
   const double ring_px = 2 * (far_blurs + 2.5) * settings_.profile.blur_px;
   const double expected = 2 * std::numbers::pi * radius_px * std::min(radius_px, ring_px);
-  const int every = 1 + static_cast<int>(expected / kMostPixels);
+  const int every = 1 + static_cast<int>(expected / most_pixels);
   int quad = 0;
   for (int v = v0; v < v1; v += 2) {
     for (int u = u0; u < u1; u += 2)
@@ -94,9 +94,8 @@ void Fitter::LookBehind(const State& state, double moving_px, std::vector<bool>&
 }
 
 void Fitter::KeepBefore(const Eigen::Vector2d& at, const Eigen::Vector2d& away, double margin) {
-  std::erase_if(samples_, [&](const Sample& sample) {
-    return (sample.slopes - at).dot(away) > -margin;
-  });
+  std::erase_if(samples_,
+                [&](const Sample& sample) { return (sample.slopes - at).dot(away) > -margin; });
 }
 
 int Fitter::DropSectors(std::vector<bool>& sectors) {
