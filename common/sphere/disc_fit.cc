@@ -11,9 +11,7 @@ namespace footing::sphere {
 namespace {
 
 using disc::Fitter;
-using disc::Sample;
-using disc::Solution;
-using disc::State;
+using disc::Sample, disc::Solution, disc::State;
 
 constexpr int kMostPixels = 700, kMostPixelsMoving = 400;  // A moving one costs twice as much.
 constexpr double kFarBlurs = 4;       // Beyond the edge; the background needs no more.
@@ -76,6 +74,7 @@ class Strategy {
       const auto fit = BehindAnEdge();
       if (fit && fit->solution.misfit_sds < kGoodSds) {
         Keep(*fit);
+        is_behind_edge_ = true;
       } else if (is_cut && IsSmall() && !(best_ && best_->solution.misfit_sds < kGoodSds)) {
         return std::nullopt;  // Part of it is hidden, and it is not clear which.
       }
@@ -225,7 +224,6 @@ class Strategy {
   }
 
   double Margin() const { return kHiddenMargin * fitter_.Blur(); }
-
   std::optional<Solution> Before(std::size_t edge, const std::vector<Sample>& samples, int rounds) {
     const Eigen::Vector2d& at = start_.edges[edge];
     fitter_.Use(samples);
@@ -275,6 +273,7 @@ class Strategy {
         static_cast<double>(std::count(best_->sectors.begin(), best_->sectors.end(), true)) /
         kSectors;
     fit.clipped_share = clipped_share_;
+    fit.is_doubtful = is_behind_edge_ || fit.cone.tangent < 2 * fitter_.Blur();
     return fit;
   }
 
@@ -287,6 +286,7 @@ class Strategy {
   State begin_;
   std::optional<Fit> best_;
   double clipped_share_ = 0;
+  bool is_behind_edge_ = false;
 };
 
 }  // namespace

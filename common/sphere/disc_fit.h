@@ -43,7 +43,9 @@ struct DiscFit {
   double misfit = 0;                ///< Mean square residual over its expectation.
   double residual_share = 0;        ///< RMS residual over the contrast, weighted as the fit is.
   double used_share = 0;            ///< Of the sectors.
-  double clipped_share = 0;         ///< Pixels at the upper limit, of those inside.
+  /// Clutter looks so, too: partly hidden by an edge, or smaller than two blurs.
+  bool is_doubtful = false;
+  double clipped_share = 0;  ///< Pixels at the upper limit, of those inside.
 };
 
 /// Photometric fit: a blurred, limb-darkened disc with a brightness gradient over an even

@@ -124,9 +124,10 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
   const auto falling = [](double value, double from, double to) {
     return std::clamp((to - value) / (to - from), 0.0, 1.0);
   };
-  estimate.confidence =
-      falling(-fit.used_share, -0.7, -0.2) * falling(fit.residual_share, 0.06, kMostResidualShare) *
-      falling(colour_off, kSureColourOff, kMostColourOff) * (estimate.is_saturated ? 0.3 : 1.0);
+  estimate.confidence = falling(-fit.used_share, -0.7, -0.2) *
+                        falling(fit.residual_share, 0.06, kMostResidualShare) *
+                        falling(colour_off, kSureColourOff, kMostColourOff) *
+                        (estimate.is_saturated ? 0.3 : 1.0) * (fit.is_doubtful ? 0.5 : 1.0);
   return estimate;
 }
 
