@@ -41,8 +41,9 @@ nlohmann::ordered_json ToJson(const BlinkReport& report) {
 
 Result<BlinkReport> CalibrateAndStore(const CalibrateArguments& arguments) {
   if (const auto checked = Check(arguments.line); !checked) return checked.error();
-  const auto camera = frames::ReadUncalibratedCamera(arguments.line.camera_file);
+  auto camera = frames::ReadUncalibratedCamera(arguments.line.camera_file);
   if (!camera) return camera.error();
+  TakeExposure(arguments.line, *camera);
   const auto sensor = transport::AddressOrDefault(arguments.sensor, "sensor");
   if (!sensor) return sensor.error();
   auto report = Calibrate({*camera, arguments.line.frames, *sensor});

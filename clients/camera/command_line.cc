@@ -33,4 +33,9 @@ Result<void> Check(const CommandLine& line) {
   return {};
 }
 
+void TakeExposure(const CommandLine& line, frames::CameraFile& camera) {
+  if (!line.frames.device.empty())
+    camera.settings.shutter.exposure_s = line.frames.video.exposure_s;
+}
+
 }  // namespace footing::camera

@@ -70,3 +70,14 @@ set(EXTERNAL_PURE boost_math eigen json mujoco qrencode zlib)
 
 add_library(footing_cli11 INTERFACE)
 target_include_directories(footing_cli11 SYSTEM INTERFACE ${CLI11_INCLUDE})
+
+# Other trackers' methods, which tests compare ours with; the product does not link it.
+find_path(OPENCV_INCLUDE opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
+find_library(OPENCV_CORE opencv_core)
+find_library(OPENCV_IMGPROC opencv_imgproc)
+if(OPENCV_INCLUDE AND OPENCV_CORE AND OPENCV_IMGPROC AND NOT FOOTING_SANITIZE)
+  set(EXTERNAL_opencv footing_opencv)
+  add_library(footing_opencv INTERFACE)
+  target_include_directories(footing_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE})
+  target_link_libraries(footing_opencv INTERFACE ${OPENCV_IMGPROC} ${OPENCV_CORE})
+endif()

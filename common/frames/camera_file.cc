@@ -155,6 +155,9 @@ void ReadSensor(Reader& reader, CameraFile& camera) {
   }
   reader.Number("rate_hz", camera.rate_hz, 1, 1000);
   reader.Number("readout_s", camera.readout_s, 0, 1);
+  reader.Number("exposure_s", camera.settings.shutter.exposure_s, 1e-5, 1);
+  camera.settings.shutter.row_s = camera.readout_s / (camera.lens.height - 1);
+  camera.settings.shutter.period_s = 1 / camera.rate_hz;
   reader.Number("blur_px", profile.blur_px, 0.3, 5);
   reader.Number("blur_sd_px", profile.blur_sd_px, 0.001, 1);
   reader.Number("limb", profile.limb, -0.5, 0.9);

@@ -77,6 +77,7 @@ std::string ToJson(const CameraFile& camera) {
   object.update({{"format", camera.format == sphere::PixelFormat::kYuyv ? "YUYV" : "SGRBG8"},
                  {"rate_hz", camera.rate_hz},
                  {"readout_s", camera.readout_s},
+                 {"exposure_s", settings.shutter.exposure_s},
                  {"blur_px", settings.profile.blur_px},
                  {"blur_sd_px", settings.profile.blur_sd_px},
                  {"limb", settings.profile.limb},
@@ -98,6 +99,7 @@ Result<void> StorePose(const std::string& path, const Eigen::Isometry3d& X_WC,
 Result<void> StoreSpheres(const std::string& path, const CameraFile& camera) {
   const sphere::Profile& profile = camera.settings.profile;
   return RewriteOrBegin(path, camera, [&](ordered_json& object) {
+    object["exposure_s"] = camera.settings.shutter.exposure_s;
     object["blur_px"] = profile.blur_px;
     object["blur_sd_px"] = profile.blur_sd_px;
     object["limb"] = profile.limb;

@@ -1,292 +1,300 @@
 #include "common/sphere/disc_fit.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
-#include "common/sphere/disc_model.h"
-#include "common/sphere/disc_ring.h"
+#include "common/sphere/disc_fitter.h"
 
 namespace footing::sphere {
 namespace {
 
-using namespace disc;  // NOLINT: the model that is fitted here
+using disc::Fitter;
+using disc::Sample, disc::Solution, disc::State;
 
-constexpr double kGradientSd = 0.15;
-constexpr int kClippedDn = 250;
-constexpr std::size_t kMostPixels = 700;
-constexpr double kFarBlurs = 4.0;  // Beyond the edge; the background needs no more.
-constexpr double kHuber = 2.5;
-constexpr double kHiddenBlurs = 3.5;  // From an occluder's edge there is no more of its light.
-constexpr double kBesideBlurs = 2.5;  // Along the sphere's edge, where half of it is seen.
+constexpr int kMostPixels = 700, kMostPixelsMoving = 400;  // A moving one costs twice as much.
+constexpr double kFarBlurs = 4;       // Beyond the edge; the background needs no more.
+constexpr double kMaybeMoves = 13.3;  // Of chi² with four degrees: 1 % of spheres at rest.
+constexpr double kSurelyMoves = 40;
+constexpr double kLeastMotionPx = 0.4;
+constexpr double kPoorSds = 4;         // A misfit that noise does not explain.
+constexpr double kGoodSds = 2.5;       // One that it does.
+constexpr double kHiddenMargin = 2.5;  // Blurs from an occluder's edge.
+constexpr std::size_t kEdgeStep = 4;   // Of the places that are tried first.
+constexpr std::size_t kSomePixels = 200;
+// Of a smaller sphere what hides a part looks like its edge. A misfit that nothing explains is then
+// taken for coherent: it can move each of three parameters by the root of a third of its chi².
+constexpr double kSmallBlurs = 5;
+constexpr int kFewestHidden = 3;  // Sectors; one or two are noise.
 
-class Fitter {
+struct Fit {
+  Solution solution;
+  std::vector<bool> sectors;  // Of the edge that it used.
+};
+
+/// An explanation of the light.
+struct Mode {
+  Solution solution;
+  bool moves = false;
+};
+
+class Strategy {
  public:
-  Fitter(const Settings& settings, const ProfileTable& table, const BlurScale& scale)
-      : settings_(settings), table_(table), scale_(scale) {}
-
-  void Collect(const Image& image, const LocalSlopes& slopes, const Eigen::Vector2d& middle_px,
-               const State& state) {
-    const double per_px = std::sqrt(slopes.scale().determinant());
-    const double radius_px = state.shape[2] / per_px;
-    const double reach_px = 1.25 * radius_px + (kFarBlurs + 1) * settings_.profile.blur_px;
-    const int u0 = 2 * static_cast<int>(std::max(0.0, middle_px.x() - reach_px) / 2);
-    const int v0 = 2 * static_cast<int>(std::max(0.0, middle_px.y() - reach_px) / 2);
-    const int u1 = std::min(image.width - 1, static_cast<int>(middle_px.x() + reach_px));
-    const int v1 = std::min(image.height - 1, static_cast<int>(middle_px.y() + reach_px));
-    const double ring_px = 2 * (kFarBlurs + 2.5) * settings_.profile.blur_px;
-    const double expected = 2 * std::numbers::pi * radius_px * std::min(radius_px, ring_px);
-    const int every = 1 + static_cast<int>(expected / kMostPixels);
-    int quad = 0;
-    for (int v = v0; v < v1; v += 2) {
-      for (int u = u0; u < u1; u += 2) CollectQuad(image, slopes, state, u, v, quad, every);
-    }
+  Strategy(const Image& image, const LocalSlopes& slopes, const DiscStart& start,
+           const Settings& settings, const ProfileTable& table)
+      : image_(image),
+        slopes_(slopes),
+        start_(start),
+        settings_(settings),
+        scale_(slopes.scale(), settings.shutter.row_s / settings.shutter.exposure_s),
+        fitter_(settings, table, scale_, MotionSdPx()) {
+    begin_.shape << start.cone.axis, start.cone.tangent, settings.profile.blur_px,
+        settings.profile.limb, 0, 0;
+    begin_.inside = start.contrast.inside;
+    begin_.outside = start.contrast.outside;
   }
 
-  /// Solves from a start; false when it runs away.
-  bool Solve(State& state, int rounds) {
-    double lambda = 1e-3;
-    Equations now;
-    double cost = Evaluate(state, now);
-    for (int i = 0; i < rounds; ++i) {
-      Normal normal;
-      Right right;
-      Assemble(state, now, normal, right);
-      normal.diagonal() *= 1 + lambda;
-      const State next = Moved(state, normal.ldlt().solve(right));
-      Equations then;
-      const double next_cost = IsSane(next, state) ? Evaluate(next, then) : cost + 1;
-      if (next_cost > cost * (1 + 1e-9)) {
-        lambda *= 10;
-        continue;
+  std::optional<DiscFit> Run() {
+    if (start_.motion_px && start_.motion_px->norm() > kLeastMotionPx) {
+      if (auto fit = Moving(*start_.motion_px, {1})) Take(*fit);
+    }
+    if (!best_) {
+      disc::MotionScore score;
+      if (auto fit = AtRest(score)) Take(*fit);
+      if (score.chi2 > kMaybeMoves && score.motion_px.norm() > 0) {
+        std::vector<double> ways = {1, -1};
+        if (score.chi2 < kSurelyMoves) ways.push_back(0);
+        if (auto fit = Moving(score.motion_px, ways)) Take(*fit);
       }
-      const double moved = (next.shape - state.shape).head<3>().norm() / state.shape[2];
-      state = next;
-      now = then;
-      cost = next_cost;
-      lambda *= 0.01;
-      // The next step would be about the square of this one.
-      if (moved < 3e-4) break;
     }
-    cost = Evaluate(state, equations_);
-    return std::isfinite(cost);
+    const bool is_cut = Hidden() >= kFewestHidden;
+    if (!IsGood() || is_cut) {
+      // Fewer pixels always fit better: a hidden part must explain all of the misfit.
+      const auto fit = BehindAnEdge();
+      if (fit && fit->solution.misfit_sds < kGoodSds) {
+        Keep(*fit);
+        is_behind_edge_ = true;
+      } else if (is_cut && IsSmall() && !(best_ && best_->solution.misfit_sds < kGoodSds)) {
+        return std::nullopt;  // Part of it is hidden, and it is not clear which.
+      }
+    }
+    if (!best_) return std::nullopt;
+    if (!IsGood() && IsSmall()) best_->solution.covariance *= 1 + best_->solution.excess_chi2 / 3;
+    return ToFit();
   }
 
-  /// Leaves out what is beyond each sector's reach; says which sectors have the edge in reach.
-  std::vector<bool> Limit(const State& state, const SectorReach& reach) {
-    const double blur = settings_.profile.blur_px * scale_.Along(Eigen::Vector2d::UnitX());
-    std::vector<bool> seen(kSectors);
-    for (std::size_t s = 0; s < kSectors; ++s) seen[s] = std::isinf(reach[s]);
-    const double arc = 2 * std::numbers::pi / kSectors * state.shape[2];
-    const std::vector<bool> sectors = WithoutBorders(seen, kBesideBlurs * blur / arc);
-    std::erase_if(samples_, [&](const Sample& sample) {
-      const auto s = static_cast<std::size_t>(sample.sector);
-      const double r = (sample.slopes - state.shape.head<2>()).norm();
-      const double edge = sectors[s] ? reach[s] : std::min(reach[s], state.shape[2]);
-      return r > edge - kHiddenBlurs * blur;
+ private:
+  double MotionSdPx() const {
+    const double px_per_m =
+        start_.cone.tangent / (start_.radius_m * std::sqrt(slopes_.scale().determinant()));
+    return settings_.shutter.speed_sd_mps * settings_.shutter.exposure_s * px_per_m;
+  }
+
+  int Hidden() const {
+    return static_cast<int>(std::count_if(start_.reach.begin(), start_.reach.end(),
+                                          [](double reach) { return std::isfinite(reach); }));
+  }
+
+  bool IsSmall() const { return begin_.shape[2] < kSmallBlurs * fitter_.Blur(); }
+  bool IsGood() const { return best_ && best_->solution.misfit_sds < kPoorSds; }
+
+  /// The better one of two by its misfit; of two good ones the later.
+  void Take(const Fit& fit) {
+    if (!best_ || fit.solution.misfit_sds <= std::max(kPoorSds, best_->solution.misfit_sds))
+      Keep(fit);
+  }
+
+  void Keep(const Fit& fit) {
+    best_ = fit;
+    clipped_share_ = fitter_.clipped_share();
+  }
+
+  std::optional<Fit> AtRest(disc::MotionScore& score) {
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
+    std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
+    fitter_.LookBehind(begin_, 0, used);
+    auto solution = fitter_.Solve(begin_, false, 8);
+    if (!solution) return std::nullopt;
+    score = fitter_.ScoreMotion(solution->state);
+    for (int round = 0; round < 2; ++round) {
+      if (fitter_.DropSectors(used) == 0) break;
+      solution = fitter_.Solve(solution->state, false, 4);
+      if (!solution) return std::nullopt;
+    }
+    return Fit{*solution, used};
+  }
+
+  /// Both ways along a line, and at rest if that is possible: their mean by evidence. A part of the
+  /// pixels says which of them are likely.
+  std::optional<Fit> Moving(const Eigen::Vector2d& motion_px, const std::vector<double>& factors) {
+    const double length = motion_px.norm();
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_,
+                    kFarBlurs + 0.5 * length / settings_.profile.blur_px, kMostPixelsMoving);
+    std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
+    fitter_.LookBehind(begin_, length, used);
+    const std::vector<Sample> all = fitter_.samples();
+    std::vector<Mode> modes;
+    fitter_.Use(Thinned(all));
+    for (const double factor : factors) {
+      State state = begin_;
+      state.motion_px = factor * motion_px;
+      const bool moves = factor != 0;
+      if (const auto found = fitter_.Solve(state, moves, 4)) modes.push_back({*found, moves});
+    }
+    KeepLikely(modes);
+    fitter_.Use(all);
+    std::vector<Solution> solutions = SolveAgain(modes);
+    // The likeliest one was solved last.
+    if (!solutions.empty() && fitter_.DropSectors(used) > 0) solutions = SolveAgain(modes);
+    if (solutions.empty()) return std::nullopt;
+    return Fit{disc::Mean(solutions), used};
+  }
+
+  std::vector<Solution> SolveAgain(const std::vector<Mode>& modes) {
+    std::vector<Solution> solutions;
+    for (const Mode& mode : modes) {
+      if (auto solution = fitter_.Solve(mode.solution.state, mode.moves, 3))
+        solutions.push_back(*solution);
+    }
+    return solutions;
+  }
+
+  /// Those that are likely, the likeliest last.
+  static void KeepLikely(std::vector<Mode>& modes) {
+    constexpr double kUnlikely = 4;  // In the exponent, of a part of the pixels.
+    std::sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) {
+      return a.solution.log_evidence < b.solution.log_evidence;
     });
+    const double most = modes.empty() ? 0 : modes.back().solution.log_evidence;
+    std::erase_if(modes,
+                  [&](const Mode& mode) { return mode.solution.log_evidence < most - kUnlikely; });
+  }
+
+  /// A straight edge hides what is beyond it: through a place where the light ends, across the way
+  /// there. Its blurred light is left out; the place is taken with the best of Akaike's costs. A
+  /// part of the pixels is enough to find it.
+  std::optional<Fit> BehindAnEdge() {
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
+    std::vector<bool> clear(kSectors, true);
+    fitter_.LookBehind(begin_, 0, clear);
+    const std::vector<Sample> all = fitter_.samples(), some = Thinned(all);
+    const auto count = start_.edges.size();
+    std::vector<std::optional<Solution>> tried(count);
+    std::optional<std::size_t> best;
+    const auto attempt = [&](std::size_t i) {
+      if (tried[i]) return;
+      tried[i] = Before(i, some, 3);
+      const auto cost = [&](std::size_t k) { return Cost(*tried[k], some.size()); };
+      if (tried[i] && (!best || cost(i) < cost(*best))) best = i;
+    };
+    const bool fits = IsGood();
+    const std::size_t first_step = fits ? 2 : kEdgeStep;
+    for (std::size_t i = 0; i < count; i += first_step)
+      if (!fits || IsHidden(start_.edges[i])) attempt(i);
+    if (!best) return std::nullopt;
+    for (std::size_t step = first_step / 2; step > 0; step /= 2) {
+      const std::size_t middle = *best;
+      attempt((middle + step) % count);
+      attempt((middle + count - step) % count);
+    }
+    const auto solution = Before(*best, all, 8);
+    if (!solution) return std::nullopt;
+    return Fit{*solution, SectorsBefore(*best, solution->state, clear)};
+  }
+
+  /// Akaike's: each pixel that is left out has a level of its own, which is a parameter.
+  static double Cost(const Solution& solution, std::size_t all) {
+    return solution.misfit * static_cast<double>(solution.pixels) +
+           2 * static_cast<double>(all - solution.pixels);
+  }
+
+  /// In a sector without the cone's edge.
+  bool IsHidden(const Eigen::Vector2d& edge) const {
+    return std::isfinite(start_.reach[static_cast<std::size_t>(SectorOf(edge - start_.cone.axis))]);
+  }
+
+  static std::vector<Sample> Thinned(const std::vector<Sample>& all) {
+    const std::size_t every = 1 + all.size() / kSomePixels;
+    std::vector<Sample> some;
+    // Four pixels of a quad stay together.
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (i / 4 % every == 0) some.push_back(all[i]);
+    return some;
+  }
+
+  double Margin() const { return kHiddenMargin * fitter_.Blur(); }
+  std::optional<Solution> Before(std::size_t edge, const std::vector<Sample>& samples, int rounds) {
+    const Eigen::Vector2d& at = start_.edges[edge];
+    fitter_.Use(samples);
+    fitter_.KeepBefore(at, at.normalized(), Margin());
+    return fitter_.Solve(StartBefore(at, at.normalized(), Margin()), false, rounds);
+  }
+
+  /// Those whose edge is on the near side of the line.
+  std::vector<bool> SectorsBefore(std::size_t edge, const State& state,
+                                  std::vector<bool> sectors) const {
+    const Eigen::Vector2d& at = start_.edges[edge];
+    for (std::size_t s = 0; s < kSectors; ++s) {
+      const double turn = 2 * std::numbers::pi * static_cast<double>(s) / kSectors;
+      const Eigen::Vector2d place =
+          state.shape.head<2>() + state.shape[2] * Eigen::Vector2d(std::cos(turn), std::sin(turn));
+      if ((place - at).dot(at.normalized()) > -Margin()) sectors[s] = false;
+    }
     return sectors;
   }
 
-  /// See disc::LookBehind.
-  void LookBehind(const State& state, std::vector<bool>& sectors) {
-    for (Sample& sample : samples_) sample.beyond = BeyondOf(sample.slopes, state);
-    disc::LookBehind(samples_, state, settings_.noise, sectors);
+  /// The cone through the edges on the near side of a line.
+  State StartBefore(const Eigen::Vector2d& at, const Eigen::Vector2d& away, double margin) const {
+    State state = begin_;
+    std::vector<bool> before;
+    for (const Eigen::Vector2d& edge : start_.edges)
+      before.push_back((edge - at).dot(away) < -margin);
+    const auto cone = FitCone(start_.edges, before);
+    if (cone && cone->tangent > 0.5 * start_.cone.tangent &&
+        cone->tangent < 2 * start_.cone.tangent) {
+      state.shape.head<2>() = cone->axis;
+      state.shape[2] = cone->tangent;
+    }
+    return state;
   }
 
-  /// Sectors whose light around the edge does not fit are taken out. Returns how many were.
-  int DropSectors(std::vector<bool>& sectors) {
-    std::array<double, kSectors> sum{}, square{}, count{}, amplitude{};
-    for (const Sample& sample : samples_) {
-      if (sample.beyond < -2.5) continue;
-      const auto s = static_cast<std::size_t>(sample.sector);
-      sum[s] += sample.residual;
-      square[s] += std::min(sample.residual * sample.residual, 100.0);
-      amplitude[s] += sample.height;
-      ++count[s];
-    }
-    int dropped = 0;
-    for (std::size_t s = 0; s < kSectors; ++s) {
-      if (!sectors[s] || count[s] < 3) continue;
-      // Noise alone, and 1.5 % of the contrast that no model of a lamp explains.
-      const double slack = 0.015 * amplitude[s] / count[s];
-      const double mean = std::abs(sum[s] / count[s]), rms = std::sqrt(square[s] / count[s]);
-      const bool fits = mean < 3.5 / std::sqrt(count[s]) + slack &&
-                        rms < 1 + 3.0 / std::sqrt(2 * count[s]) + 2 * slack;
-      if (fits) continue;
-      sectors[s] = false;
-      ++dropped;
-    }
-    std::erase_if(samples_, [&](const Sample& sample) {
-      return !sectors[static_cast<std::size_t>(sample.sector)] && sample.beyond > -2.5;
-    });
-    return dropped;
-  }
-
-  /// Of the state that was solved last.
-  DiscFit Report(const State& state) const {
+  DiscFit ToFit() const {
+    const Solution& solution = best_->solution;
     DiscFit fit;
-    fit.cone = {state.shape.head<2>(), state.shape[2]};
-    fit.blur_px = state.shape[3];
-    fit.limb = state.shape[4];
-    double square = 0, all = 0, contrast = 0;
-    for (const Sample& sample : samples_) {
-      const double residual2 = sample.residual * sample.residual;
-      square += std::min(residual2, 36.0);
-      all += residual2;
-      contrast += sample.height * sample.height;
-    }
-    const double freedom = std::max(1.0, static_cast<double>(samples_.size()) - kParameters + 2);
-    fit.misfit = square / freedom;
-    fit.residual_share = std::sqrt(all / std::max(1e-9, contrast));
-    Normal normal;
-    Right right;
-    Assemble(state, equations_, normal, right);
-    fit.covariance = settings_.noise.correlation * std::max(1.0, fit.misfit) *
-                     normal.ldlt().solve(Normal::Identity()).topLeftCorner<3, 3>();
-    fit.clipped_share = inside_ > 0 ? static_cast<double>(clipped_) / inside_ : 0;
+    fit.cone = {solution.state.shape.head<2>(), solution.state.shape[2]};
+    fit.covariance = solution.covariance;
+    fit.blur_px = solution.state.shape[3];
+    fit.limb = solution.state.shape[4];
+    fit.motion_px = solution.state.motion_px;
+    fit.misfit = solution.misfit;
+    fit.residual_share = solution.residual_share;
+    fit.used_share =
+        static_cast<double>(std::count(best_->sectors.begin(), best_->sectors.end(), true)) /
+        kSectors;
+    fit.clipped_share = clipped_share_;
+    fit.is_doubtful = is_behind_edge_ || fit.cone.tangent < 2 * fitter_.Blur();
     return fit;
   }
 
-  std::size_t size() const { return samples_.size(); }
-
- private:
-  void CollectQuad(const Image& image, const LocalSlopes& slopes, const State& state, int u, int v,
-                   int& quad, int every) {
-    const Eigen::Vector2d at = slopes.At(u + 0.5, v + 0.5);
-    const double beyond = BeyondOf(at, state);
-    if (beyond > kFarBlurs + 1.5) return;
-    // The middle says little of where the edge is.
-    const bool is_middle = beyond < -5;
-    ++quad;
-    if (quad % (is_middle ? 4 * every : every) != 0) return;
-    for (int i = 0; i < 4; ++i) {
-      const int at_u = u + i % 2, at_v = v + i / 2;
-      Sample sample;
-      sample.value = image.Value(at_u, at_v);
-      if (beyond < -1) {
-        ++inside_;
-        clipped_ += sample.value >= kClippedDn ? 1 : 0;
-      }
-      if (sample.value >= kClippedDn) continue;
-      sample.slopes = slopes.At(at_u, at_v);
-      sample.channel = image.Channel(at_u, at_v);
-      const Eigen::Vector2d pixel_from = sample.slopes - state.shape.head<2>();
-      sample.sector = SectorOf(pixel_from);
-      samples_.push_back(sample);
-    }
-  }
-
-  /// How far outside of a state's edge, in blurs.
-  double BeyondOf(const Eigen::Vector2d& slopes, const State& state) const {
-    const Eigen::Vector2d from = slopes - state.shape.head<2>();
-    const double r = std::max(1e-9, from.norm());
-    return (r - state.shape[2]) / (settings_.profile.blur_px * scale_.Along(from / r));
-  }
-
-  double PriorCost(const State& state) const {
-    const Profile& profile = settings_.profile;
-    const auto square = [](double x) { return x * x; };
-    return square((state.shape[3] - profile.blur_px) / profile.blur_sd_px) +
-           square((state.shape[4] - profile.limb) / profile.limb_sd) +
-           (square(state.shape[5]) + square(state.shape[6])) / square(kGradientSd);
-  }
-
-  /// Huber's cost of a state, and its equations.
-  double Evaluate(const State& state, Equations& equations) {
-    equations = Equations();
-    double cost = PriorCost(state);
-    for (Sample& sample : samples_) {
-      const Modelled model = Model(sample, state, scale_, table_);
-      const auto c = static_cast<std::size_t>(sample.channel);
-      const double outside = state.outside[c] + sample.behind;
-      const double value = outside * (1 - model.cover) + state.inside[c] * model.light;
-      const double per_sd = 1 / std::sqrt(Variance(settings_.noise, value));
-      sample.beyond = model.beyond;
-      sample.residual = (sample.value - value) * per_sd;
-      sample.height = std::abs(state.inside[c] - outside) * per_sd;
-      Own row;
-      row.head<kShape>() = state.inside[c] * model.light_slope;
-      row.head<4>() -= outside * model.cover_slope;
-      row[kShape] = model.light;
-      row[kShape + 1] = 1 - model.cover;
-      const double z = std::abs(sample.residual), share = z < kHuber ? 1 : kHuber / z;
-      cost += z < kHuber ? z * z : kHuber * (2 * z - kHuber);
-      equations.Add(row, sample.value - value, share * per_sd * per_sd, c);
-    }
-    return cost;
-  }
-
-  void Assemble(const State& state, const Equations& equations, Normal& normal,
-                Right& right) const {
-    equations.Assemble(normal, right);
-    const Profile& profile = settings_.profile;
-    const auto prior = [&](int at, double mean, double sd) {
-      normal(at, at) += 1 / (sd * sd);
-      right[at] += (mean - state.shape[at]) / (sd * sd);
-    };
-    prior(3, profile.blur_px, profile.blur_sd_px);
-    prior(4, profile.limb, profile.limb_sd);
-    prior(5, 0, kGradientSd);
-    prior(6, 0, kGradientSd);
-  }
-
-  static State Moved(const State& state, const Right& step) {
-    State next = state;
-    next.shape += step.head<kShape>();
-    for (std::size_t c = 0; c < 3; ++c) {
-      next.inside[c] += step[kShape + 2 * static_cast<int>(c)];
-      next.outside[c] += step[kShape + 2 * static_cast<int>(c) + 1];
-    }
-    return next;
-  }
-
-  static bool IsSane(const State& next, const State& before) {
-    return next.shape.allFinite() && next.shape[2] > 0.4 * before.shape[2] &&
-           next.shape[2] < 2.5 * before.shape[2] && next.shape[3] > 0.2 &&
-           (next.shape - before.shape).head<2>().norm() < 2 * before.shape[2];
-  }
-
+  const Image& image_;
+  const LocalSlopes& slopes_;
+  const DiscStart& start_;
   const Settings& settings_;
-  const ProfileTable& table_;
-  const BlurScale& scale_;
-  std::vector<Sample> samples_;
-  int inside_ = 0, clipped_ = 0;
-  Equations equations_;  // Of the state that was solved last.
+  disc::PixelScale scale_;
+  Fitter fitter_;
+  State begin_;
+  std::optional<Fit> best_;
+  double clipped_share_ = 0;
+  bool is_behind_edge_ = false;
 };
 
 }  // namespace
 
-int SectorOf(const Eigen::Vector2d& from) {
-  const double turn = std::atan2(from.y(), from.x()) / (2 * std::numbers::pi);
-  return (static_cast<int>(std::lround(turn * kSectors)) + kSectors) % kSectors;
-}
-
-std::optional<DiscFit> FitDisc(const Image& image, const LocalSlopes& slopes, const Cone& start,
-                               const Contrast& contrast, const SectorReach& reach,
-                               const Eigen::Vector2d& middle_px, const Settings& settings,
+std::optional<DiscFit> FitDisc(const Image& image, const LocalSlopes& slopes,
+                               const DiscStart& start, const Settings& settings,
                                const ProfileTable& table) {
-  State state;
-  state.shape << start.axis, start.tangent, settings.profile.blur_px, settings.profile.limb, 0, 0;
-  state.inside = contrast.inside;
-  state.outside = contrast.outside;
-  const BlurScale scale(slopes.scale());
-  Fitter fitter(settings, table, scale);
-  fitter.Collect(image, slopes, middle_px, state);
-  std::vector<bool> used = fitter.Limit(state, reach);
-  fitter.LookBehind(state, used);
-  if (fitter.size() < 2 * kParameters || !fitter.Solve(state, 8)) return std::nullopt;
-  for (int round = 0; round < 2; ++round) {
-    if (fitter.DropSectors(used) == 0) break;
-    if (fitter.size() < 2 * kParameters || !fitter.Solve(state, 4)) return std::nullopt;
-  }
-  DiscFit fit = fitter.Report(state);
-  fit.used_share = static_cast<double>(std::count(used.begin(), used.end(), true)) / kSectors;
-  return fit;
+  return Strategy(image, slopes, start, settings, table).Run();
 }
 
 }  // namespace footing::sphere

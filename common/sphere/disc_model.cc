@@ -16,11 +16,11 @@ Eigen::Vector2d EdgeSlopes(double along_beyond, double along_ratio, double beyon
 
 }  // namespace
 
-Modelled Model(const Sample& sample, const State& state, const BlurScale& scale,
+Modelled Model(const Eigen::Vector2d& slopes, const State& state, const PixelScale& scale,
                const ProfileTable& table) {
   const Shape& p = state.shape;
   const double tangent = p[2];
-  const Eigen::Vector2d from(sample.slopes.x() - p[0], sample.slopes.y() - p[1]);
+  const Eigen::Vector2d from(slopes.x() - p[0], slopes.y() - p[1]);
   const double r = std::max(1e-9, from.norm());
   const Eigen::Vector2d unit = from / r;
   const double blur = p[3] * scale.Along(unit);
@@ -49,23 +49,34 @@ Modelled Model(const Sample& sample, const State& state, const BlurScale& scale,
   return result;
 }
 
-void Equations::Assemble(Normal& normal, Right& right) const {
-  normal.setZero();
-  right.setZero();
-  for (int c = 0; c < 3; ++c) {
-    const auto& part = per_channel_[static_cast<std::size_t>(c)];
-    const auto& part_right = right_[static_cast<std::size_t>(c)];
-    const int own = kShape + 2 * c;
-    normal.topLeftCorner<kShape, kShape>() += part.topLeftCorner<kShape, kShape>();
-    normal.block<kShape, 2>(0, own) = part.topRightCorner<kShape, 2>();
-    normal.block<2, kShape>(own, 0) = part.bottomLeftCorner<2, kShape>();
-    normal.block<2, 2>(own, own) = part.bottomRightCorner<2, 2>();
-    right.head<kShape>() += part_right.head<kShape>();
-    right.segment<2>(own) = part_right.tail<2>();
-    // A channel without pixels, as two of YUYV.
-    for (int i = own; i < own + 2; ++i)
-      if (normal(i, i) <= 0) normal(i, i) = 1;
+ModelledMoving ModelMoving(const Eigen::Vector2d& slopes, const State& state,
+                           const PixelScale& scale, const ProfileTable& table) {
+  constexpr double kPartBlurs = 2.5;  // Two points of Gauss stand for that: 0.5 % of the contrast.
+  constexpr int kMostParts = 4;
+  const double travel_blurs = state.motion_px.norm() / state.shape[3];
+  const int parts =
+      std::clamp(static_cast<int>(std::ceil(travel_blurs / kPartBlurs)), 1, kMostParts);
+  const double later = scale.Later(slopes - state.shape.head<2>());
+  const Eigen::Vector2d travel = scale.scale() * state.motion_px;
+  ModelledMoving sum;
+  sum.light_slope.setZero();
+  sum.cover_slope.setZero();
+  const double share = 1.0 / (2 * parts);
+  for (int i = 0; i < 2 * parts; ++i) {
+    const double middle = (i / 2 + 0.5) / parts - 0.5;
+    const double at = later + middle + (i % 2 == 0 ? -1 : 1) * 0.5 / (parts * std::sqrt(3.0));
+    const Modelled one = Model(slopes - at * travel, state, scale, table);
+    sum.light += share * one.light;
+    sum.cover += share * one.cover;
+    sum.beyond += share * one.beyond;
+    sum.light_slope += share * one.light_slope;
+    sum.cover_slope += share * one.cover_slope;
+    sum.light_motion += share * at * one.light_slope.head<2>();
+    sum.cover_motion += share * at * one.cover_slope.head<2>();
   }
+  sum.light_motion = scale.scale().transpose() * sum.light_motion;
+  sum.cover_motion = scale.scale().transpose() * sum.cover_motion;
+  return sum;
 }
 
 }  // namespace footing::sphere::disc

@@ -18,11 +18,11 @@ double Variance(const PixelNoise& noise, double value) {
 }
 
 void LookBehind(std::vector<Sample>& samples, const State& state, const PixelNoise& noise,
-                std::vector<bool>& sectors) {
+                double more_blurs, std::vector<bool>& sectors) {
   const std::size_t count = sectors.size();
   std::vector<std::array<std::vector<double>, 3>> ring(count);
   for (const Sample& sample : samples) {
-    if (sample.beyond < kRingBlurs) continue;
+    if (sample.beyond < kRingBlurs + more_blurs) continue;
     for (const std::size_t turn : {count - 1, count, count + 1}) {
       const std::size_t s = (static_cast<std::size_t>(sample.sector) + turn) % count;
       ring[s][static_cast<std::size_t>(sample.channel)].push_back(sample.value);

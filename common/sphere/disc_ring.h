@@ -13,9 +13,9 @@ double Variance(const PixelNoise& noise, double value);
 /// Sets `behind` of each sample. Where what is behind the sphere is not the same all around, as a
 /// coloured thing beyond part of its edge, a sector gets a level of its own, of the ring around it;
 /// sectors on a border of two levels are taken out, with their samples at the edge. `beyond` of the
-/// samples is used.
+/// samples is used. `more_blurs`: how much farther out the ring begins, beyond a sphere's travel.
 void LookBehind(std::vector<Sample>& samples, const State& state, const PixelNoise& noise,
-                std::vector<bool>& sectors);
+                double more_blurs, std::vector<bool>& sectors);
 
 /// Sectors whose edge is seen, less those beside a hidden part of it: what hides it darkens the
 /// edge there too, as far as the blur reaches, which is `beside` sectors. One or two unseen sectors

@@ -13,11 +13,8 @@ namespace footing::sphere {
 
 /// A blob whose edge is a cone's.
 struct Finder::Candidate {
-  Contrast contrast;
   LocalSlopes slopes;
-  Eigen::Vector2d middle_px;
-  Cone cone;
-  SectorReach reach;
+  DiscStart start;
   double colour_off = 0;  ///< From the sphere's own.
   double quality = 0;     ///< Share of the edge, less for another colour.
 };
@@ -121,14 +118,16 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
   estimate.colour_off = colour_off;
   estimate.blur_px = fit.blur_px;
   estimate.limb = fit.limb;
+  estimate.motion_px = fit.motion_px;
   estimate.is_saturated = fit.clipped_share > kSaturatedShare;
   estimate.is_occluded = fit.used_share < 0.9;
   const auto falling = [](double value, double from, double to) {
     return std::clamp((to - value) / (to - from), 0.0, 1.0);
   };
-  estimate.confidence =
-      falling(-fit.used_share, -0.7, -0.2) * falling(fit.residual_share, 0.06, kMostResidualShare) *
-      falling(colour_off, kSureColourOff, kMostColourOff) * (estimate.is_saturated ? 0.3 : 1.0);
+  estimate.confidence = falling(-fit.used_share, -0.7, -0.2) *
+                        falling(fit.residual_share, 0.06, kMostResidualShare) *
+                        falling(colour_off, kSureColourOff, kMostColourOff) *
+                        (estimate.is_saturated ? 0.3 : 1.0) * (fit.is_doubtful ? 0.5 : 1.0);
   return estimate;
 }
 
@@ -155,7 +154,8 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, const Targ
     if (!edges) continue;
     const Eigen::Vector2d middle_px = 2 * blob.centre + Eigen::Vector2d(0.5, 0.5);
     const double size_px = 2.0 * std::max(blob.right - blob.left, blob.bottom - blob.top) + 2;
-    LocalSlopes slopes(lens_, middle_px, size_px + 8);
+    // Its nodes lie near the edge, where an error would be one of the distance.
+    LocalSlopes slopes(lens_, middle_px, 0.5 * size_px);
     std::vector<Eigen::Vector2d> at;
     for (const Eigen::Vector2d& pixel : edges->pixels)
       at.push_back(slopes.At(pixel.x(), pixel.y()));
@@ -163,7 +163,8 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, const Targ
     const double tolerance = per_px * std::max(0.5, 0.04 * size_px);
     const auto fit = FitConeRobustly(at, tolerance, 0.8 * per_px, 1.5 * size_px * per_px);
     if (!fit) continue;
-    Candidate candidate{edges->contrast, slopes, middle_px, fit->cone, ReachOf(*fit, at), 0, 0};
+    Candidate candidate{
+        slopes, {edges->contrast, middle_px, fit->cone, ReachOf(*fit, at), at, target.radius_m}};
     const auto inliers = std::count(fit->inliers.begin(), fit->inliers.end(), true);
     candidate.colour_off = ColourOff(edges->colour_dn, target.colour_dn);
     candidate.quality =
@@ -178,15 +179,15 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, const Targ
 
 std::optional<Estimate> Finder::Measure(const Image& image, const Target& target,
                                         const Candidate& candidate) const {
-  const auto fit = FitDisc(image, candidate.slopes, candidate.cone, candidate.contrast,
-                           candidate.reach, candidate.middle_px, settings_, table_);
+  const auto fit = FitDisc(image, candidate.slopes, candidate.start, settings_, table_);
   if (!fit || fit->used_share < kLeastSeenShare || fit->residual_share > kMostResidualShare)
     return std::nullopt;
   return ToEstimate(*fit, candidate.slopes, target.radius_m, candidate.colour_off, lens_);
 }
 
 std::optional<Finder::Found> Finder::Search(const Image& image, const Target& target,
-                                            const QuadWindow& window) {
+                                            const QuadWindow& window,
+                                            const std::optional<Eigen::Vector2d>& motion_px) {
   const Eigen::Vector3d& colour_dn = target.colour_dn;
   std::vector<Candidate> candidates =
       Candidates(image, target, window, FindBlobs(quads_, window, colour_dn, kLowShare));
@@ -199,6 +200,7 @@ std::optional<Finder::Found> Finder::Search(const Image& image, const Target& ta
   }
   for (std::size_t i = 0; i < std::min(kMostFits, candidates.size()); ++i) {
     if (candidates[i].quality < kLeastQuality) break;
+    candidates[i].start.motion_px = motion_px;
     if (const auto estimate = Measure(image, target, candidates[i]))
       return Found{*estimate, candidates[i].quality};
   }
@@ -216,7 +218,9 @@ std::optional<Finder::Found> Finder::Near(const Image& image, std::size_t sphere
   if (window.right < window.left || window.bottom < window.top) return std::nullopt;
   // Edges are looked for beyond a blob, by 0.6 of its size and two quads.
   if (!has_whole_) ToQuads(image, Square(middle_px, 2.3 * half_px + 6, whole), quads_);
-  const auto found = Search(image, targets_[sphere], window);
+  const Shutter& shutter = settings_.shutter;
+  const Eigen::Vector2d motion_px = shutter.exposure_s / shutter.period_s * last->step_px;
+  const auto found = Search(image, targets_[sphere], window, motion_px);
   const bool is_clear =
       found && found->quality > kGoodQuality && found->estimate.confidence > kTrustedConfidence;
   return is_clear ? found : std::nullopt;
@@ -228,7 +232,7 @@ std::optional<Estimate> Finder::FindOne(const Image& image, std::size_t sphere) 
   if (!is_near) {
     if (!has_whole_) ToQuads(image, quads_);
     has_whole_ = true;
-    found = Search(image, targets_[sphere], Whole(image));
+    found = Search(image, targets_[sphere], Whole(image), std::nullopt);
   }
   std::optional<Last>& last = last_[sphere];
   if (!found || found->estimate.confidence < kTrustedConfidence) {

@@ -27,6 +27,7 @@ struct Estimate {
   double residual_share = 0;        ///< RMS residual over the contrast.
   double colour_off = 0;            ///< Its colour's distance from the target's, over its length.
   double blur_px = 0, limb = 0;     ///< As fitted, for `Calibrate`.
+  Eigen::Vector2d motion_px{0, 0};  ///< Travel during the exposure; zero if it seems to be at rest.
 };
 
 /// Finds luminous spheres in a frame, each by its hue: chroma to find blobs, then the light itself
@@ -56,7 +57,8 @@ class Finder {
   };
   std::optional<Estimate> FindOne(const Image& image, std::size_t sphere);
   std::optional<Found> Near(const Image& image, std::size_t sphere);
-  std::optional<Found> Search(const Image& image, const Target& target, const QuadWindow& window);
+  std::optional<Found> Search(const Image& image, const Target& target, const QuadWindow& window,
+                              const std::optional<Eigen::Vector2d>& motion_px);
   std::vector<Candidate> Candidates(const Image& image, const Target& target,
                                     const QuadWindow& window, std::vector<Blob> blobs);
   std::optional<Estimate> Measure(const Image& image, const Target& target,

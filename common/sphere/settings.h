@@ -29,9 +29,19 @@ struct PixelNoise {
   double correlation = 1;
 };
 
+/// When the rows of a frame see the light. A hand that moves blurs the sphere along its way, and a
+/// rolling shutter stretches and slants it.
+struct Shutter {
+  double exposure_s = 0.004;
+  double row_s = 0.0155 / 479;  ///< From one row to the next one.
+  double period_s = 1.0 / 60;   ///< From one frame to the next one.
+  double speed_sd_mps = 1;      ///< Of a hand, along each axis, as far as nothing is known of it.
+};
+
 struct Settings {
   Profile profile;
   PixelNoise noise;
+  Shutter shutter;
 };
 
 }  // namespace footing::sphere

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/virtual/camera/canvas.h"
+#include "common/virtual/camera/pixel_noise.h"
 
 namespace footing::virtual_camera {
 namespace {
@@ -198,13 +199,14 @@ int ChannelAt(int u, int v) { return (u + v) % 2 == 0 ? 1 : v % 2 == 0 ? 0 : 2; 
 Mosaic ReadOut(const Scene& scene, const Canvas& canvas, noise::Random& random) {
   Mosaic mosaic{canvas.width(), canvas.height(), {}};
   mosaic.bytes.reserve(static_cast<std::size_t>(mosaic.width * mosaic.height));
+  PixelNoise noise(random);
   const double read_variance = scene.sensor.read_noise_dn * scene.sensor.read_noise_dn;
   for (int v = 0; v < mosaic.height; ++v) {
     for (int u = 0; u < mosaic.width; ++u) {
       const double light = std::max(0.0f, canvas.At(u, v)[ChannelAt(u, v)]);
       const double sd = std::sqrt(read_variance + scene.sensor.dn_per_electron * light);
-      const double read = std::round(light + sd * random.Normal());
-      mosaic.bytes.push_back(static_cast<std::uint8_t>(std::clamp(read, 0.0, 255.0)));
+      const double read = std::clamp(light + sd * noise.Normal(), 0.0, 255.0);
+      mosaic.bytes.push_back(static_cast<std::uint8_t>(read + 0.5));
     }
   }
   return mosaic;

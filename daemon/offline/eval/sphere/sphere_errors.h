@@ -18,6 +18,8 @@ class SphereErrors {
  public:
   void Add(const sphere::Estimate& found, const Eigen::Vector3d& truth_m);
   nlohmann::ordered_json Json() const;
+  /// Found where they are.
+  int right() const { return found_ - wrong_; }
 
  private:
   std::vector<double> depth_mm_;

@@ -1,5 +1,6 @@
 #include "daemon/offline/eval/sphere/spheres_command.h"
 
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -14,7 +15,15 @@ using nlohmann::ordered_json;
 struct TrialFlags {
   SphereTrial trial;
   std::vector<double> distances_m = {0.5, 1, 1.5, 2, 2.5, 3, 4};
+  bool with_progress = false;
 };
+
+void PrintProgress(const SphereProgress& so_far) {
+  std::cerr << so_far.frames << " frames: " << so_far.missed << " of " << so_far.spheres
+            << " spheres missed (95 %: below " << RateBound(so_far.missed, so_far.spheres) << "), "
+            << so_far.extra << " false ones (95 %: below " << RateBound(so_far.extra, so_far.frames)
+            << " a frame)" << std::endl;
+}
 
 Result<ordered_json> EvaluateTrials(const TrialFlags& flags) {
   const auto camera = CalibratedCamera(flags.trial.condition, flags.trial.seed);
@@ -25,6 +34,7 @@ Result<ordered_json> EvaluateTrials(const TrialFlags& flags) {
   for (const double distance_m : flags.distances_m) {
     SphereTrial trial = flags.trial;
     trial.distance_m = distance_m;
+    if (flags.with_progress) trial.on_progress = PrintProgress;
     const auto row = RunSphereTrial(trial, *camera);
     if (!row) return row.error();
     rows.push_back(*row);
@@ -55,6 +65,8 @@ void AddSpheresCommand(CLI::App& app, Shared& shared) {
                       "CSV file to add a row to for every sphere that is there or is found");
   command->add_option("--out", trial.out,
                       "Folder to write the frames, truth.csv and camera.json into");
+  command->add_flag("--progress", flags->with_progress,
+                    "Counts and rates so far on standard error, every 500 frames");
   command->callback(
       [flags, &shared] { shared.exit_code = PrintResult(EvaluateTrials(*flags), shared.json); });
 }

@@ -22,6 +22,8 @@ namespace camera = virtual_camera;
 
 const Eigen::Vector3d kColours[] = {{170, 40, 150}, {40, 170, 160}};
 
+constexpr int kFramesPerReport = 500;
+
 double RadiusPx(const camera::Scene& scene, const camera::Ball& ball) {
   return scene.lens.fx_px * ball.radius_m / ball.p_C_m.z();
 }
@@ -159,6 +161,8 @@ frames::CameraFile KnownCamera(const std::string& condition) {
   file.settings.noise.read_dn = scene.sensor.read_noise_dn;
   file.settings.noise.dn_per_electron = scene.sensor.dn_per_electron;
   file.readout_s = scene.sensor.readout_s;
+  file.settings.shutter.exposure_s = scene.sensor.exposure_s;
+  file.settings.shutter.row_s = file.readout_s / (lens.height - 1);
   if (condition == "yuyv") {
     file.format = sphere::PixelFormat::kYuyv;
     file.settings.noise.correlation = 3;
@@ -174,6 +178,20 @@ frames::CameraFile KnownCamera(const std::string& condition) {
 }
 
 }  // namespace
+
+double RateBound(int events, int trials) {
+  if (trials <= 0) return 1;
+  if (events > 100) return std::min(1.0, (events + 1.645 * std::sqrt(events) + 2) / trials);
+  // Poisson's law: the mean at which so few events or fewer have a probability of 5 %.
+  double low = 0, high = 10 + 3.0 * events;
+  for (int i = 0; i < 60; ++i) {
+    const double mean = 0.5 * (low + high);
+    double term = std::exp(-mean), sum = term;
+    for (int k = 1; k <= events; ++k) sum += term *= mean / k;
+    (sum > 0.05 ? low : high) = mean;
+  }
+  return std::min(1.0, high / trials);
+}
 
 const std::vector<std::string>& SphereConditions() {
   static const std::vector<std::string> kConditions = {
@@ -220,6 +238,8 @@ Result<ordered_json> RunSphereTrial(const SphereTrial& trial, const frames::Came
     ApplyEvents(trial.condition, scene, random);
     const auto frame = FrameOf(camera::Render(scene, random), trial.condition == "yuyv");
     writer.Add(i, frame, scene, file);
+    if (i > 0 && i % kFramesPerReport == 0 && trial.on_progress)
+      trial.on_progress({i, spheres, spheres - errors.right(), extra});
     if (!is_sequence) finder.Forget();
     const std::int64_t began_ns = clock::ThreadCpuNs();
     const auto found = finder.Find(frame.View());
@@ -238,7 +258,9 @@ Result<ordered_json> RunSphereTrial(const SphereTrial& trial, const frames::Came
                       {"frames", trial.frames},
                       {"spheres", spheres}};
   row.update(errors.Json());
+  row["missed_rate_bound95"] = RateBound(spheres - errors.right(), spheres);
   row["false_spheres"] = extra;
+  row["false_rate_bound95"] = RateBound(extra, trial.frames);
   row["cost_p50_ms"] = text::Quantile(cost_ms, 0.5);
   row["cost_p99_ms"] = text::Quantile(std::move(cost_ms), 0.99);
   return row;

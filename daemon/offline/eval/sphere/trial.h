@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,6 +12,13 @@
 
 namespace footing::eval {
 
+/// What a trial counted so far.
+struct SphereProgress {
+  int frames = 0, spheres = 0;
+  int missed = 0;  ///< Not found, or in a wrong place.
+  int extra = 0;   ///< Found with a confidence above 0.5 where none is.
+};
+
 /// Rendered frames of two spheres, magenta and cyan, at one distance from the camera's plane.
 struct SphereTrial {
   std::string condition = "nominal";  ///< One of SphereConditions.
@@ -19,7 +27,11 @@ struct SphereTrial {
   std::uint64_t seed = 1;
   std::string rows;  ///< CSV file with a row for every sphere; empty: none.
   std::string out;   ///< Folder to write frames, truth.csv and camera.json into; empty: none.
+  std::function<void(const SphereProgress&)> on_progress;  ///< Every 500 frames; may be empty.
 };
+
+/// The rate that is exceeded with a confidence of 5 % only, after so many events in so many trials.
+double RateBound(int events, int trials);
 
 /// What the lens, the light or the surroundings do: nominal, dim, soft, saturated, moving,
 /// quarter_hidden, half_hidden, clutter, yuyv, bent_lens, other_limb, absent; and tracked, whose

@@ -1,0 +1,239 @@
+#include "common/sphere/disc_fitter.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/sphere/disc_ring.h"
+
+namespace footing::sphere::disc {
+namespace {
+
+constexpr double kGradientSd = 0.15;
+constexpr double kHuber = 2.5;
+
+State Moved(const State& state, const Right& step) {
+  State next = state;
+  next.shape += step.head<kShape>();
+  next.motion_px += step.segment<kMotion>(kShape);
+  for (std::size_t c = 0; c < 3; ++c) {
+    next.inside[c] += step[kLevels + 2 * static_cast<int>(c)];
+    next.outside[c] += step[kLevels + 2 * static_cast<int>(c) + 1];
+  }
+  return next;
+}
+
+bool IsSane(const State& next, const State& before) {
+  return next.shape.allFinite() && next.shape[2] > 0.4 * before.shape[2] &&
+         next.shape[2] < 2.5 * before.shape[2] && next.shape[3] > 0.2 &&
+         next.motion_px.allFinite() &&
+         (next.shape - before.shape).head<2>().norm() < 2 * before.shape[2];
+}
+
+}  // namespace
+
+std::optional<Solution> Fitter::Solve(State state, bool moves, int rounds) {
+  if (samples_.size() < 2 * kParameters) return std::nullopt;
+  double cost = 0;
+  const auto solved =
+      moves ? Descend<kOwnMoving>(state, rounds, cost) : Descend<kOwn>(state, rounds, cost);
+  if (!solved) return std::nullopt;
+  return Report(*solved, cost, moves);
+}
+
+template <int kSize>
+std::optional<State> Fitter::Descend(State state, int rounds, double& cost) {
+  double lambda = 1e-3;
+  Equations<kSize> now;
+  cost = Evaluate(state, now);
+  bool is_current = true;  // The samples are evaluated at the state.
+  for (int i = 0; i < rounds; ++i) {
+    Normal normal;
+    Right right;
+    Assemble(state, now, normal, right);
+    normal.diagonal() *= 1 + lambda;
+    const State next = Moved(state, normal.ldlt().solve(right));
+    Equations<kSize> then;
+    is_current = false;
+    const double next_cost = IsSane(next, state) ? Evaluate(next, then) : cost + 1;
+    if (!(next_cost <= cost * (1 + 1e-9))) {
+      lambda *= 10;
+      continue;
+    }
+    const double moved = (next.shape - state.shape).head<3>().norm() / state.shape[2];
+    state = next;
+    now = then;
+    cost = next_cost;
+    is_current = true;
+    lambda *= 0.01;
+    // The next step would be about the square of this one.
+    if (moved < 3e-4) break;
+  }
+  if (!is_current) cost = Evaluate(state, now);
+  Right right;
+  Assemble(state, now, normal_, right);
+  if (!std::isfinite(cost)) return std::nullopt;
+  return state;
+}
+
+double Fitter::PriorCost(const State& state) const {
+  const Profile& profile = settings_.profile;
+  const auto square = [](double x) { return x * x; };
+  return square((state.shape[3] - profile.blur_px) / profile.blur_sd_px) +
+         square((state.shape[4] - profile.limb) / profile.limb_sd) +
+         (square(state.shape[5]) + square(state.shape[6])) / square(kGradientSd) +
+         state.motion_px.squaredNorm() / square(motion_sd_px_);
+}
+
+/// Huber's cost of a state, and its equations.
+template <int kSize>
+double Fitter::Evaluate(const State& state, Equations<kSize>& equations) {
+  constexpr bool kMoves = kSize == kOwnMoving;
+  equations = Equations<kSize>();
+  double cost = PriorCost(state);
+  for (Sample& sample : samples_) {
+    const auto c = static_cast<std::size_t>(sample.channel);
+    const double outside = state.outside[c] + sample.behind;
+    typename Equations<kSize>::Row row;
+    const auto fill = [&](const Modelled& model) {
+      const double value = outside * (1 - model.cover) + state.inside[c] * model.light;
+      sample.beyond = model.beyond;
+      row.template head<kShape>() = state.inside[c] * model.light_slope;
+      row.template head<4>() -= outside * model.cover_slope;
+      row[kSize - 2] = model.light;
+      row[kSize - 1] = 1 - model.cover;
+      return value;
+    };
+    double value = 0;
+    if constexpr (kMoves) {
+      const ModelledMoving model = ModelMoving(sample.slopes, state, scale_, table_);
+      value = fill(model);
+      row.template segment<kMotion>(kShape) =
+          state.inside[c] * model.light_motion - outside * model.cover_motion;
+    } else {
+      value = fill(Model(sample.slopes, state, scale_, table_));
+    }
+    const double per_sd = 1 / std::sqrt(Variance(settings_.noise, value));
+    sample.residual = (sample.value - value) * per_sd;
+    sample.height = std::abs(state.inside[c] - outside) * per_sd;
+    const double z = std::abs(sample.residual), share = z < kHuber ? 1 : kHuber / z;
+    cost += z < kHuber ? z * z : kHuber * (2 * z - kHuber);
+    equations.Add(row, sample.value - value, share * per_sd * per_sd, c);
+  }
+  return cost;
+}
+
+template <int kSize>
+void Fitter::Assemble(const State& state, const Equations<kSize>& equations, Normal& normal,
+                      Right& right) const {
+  equations.Assemble(normal, right);
+  const Profile& profile = settings_.profile;
+  const auto prior = [&](int at, double now, double mean, double sd) {
+    normal(at, at) += 1 / (sd * sd);
+    right[at] += (mean - now) / (sd * sd);
+  };
+  prior(3, state.shape[3], profile.blur_px, profile.blur_sd_px);
+  prior(4, state.shape[4], profile.limb, profile.limb_sd);
+  prior(5, state.shape[5], 0, kGradientSd);
+  prior(6, state.shape[6], 0, kGradientSd);
+  if constexpr (kSize == kOwnMoving) {
+    for (int i = 0; i < kMotion; ++i) prior(kShape + i, state.motion_px[i], 0, motion_sd_px_);
+  }
+}
+
+Solution Fitter::Report(const State& state, double cost, bool moves) const {
+  Solution solution;
+  solution.state = state;
+  solution.pixels = samples_.size();
+  double square = 0, all = 0, contrast = 0;
+  for (const Sample& sample : samples_) {
+    const double residual2 = sample.residual * sample.residual;
+    square += std::min(residual2, 36.0);
+    all += residual2;
+    contrast += sample.height * sample.height;
+  }
+  const double correlation = settings_.noise.correlation;
+  const double freedom = std::max(1.0, static_cast<double>(samples_.size()) - kParameters + 4);
+  solution.misfit = square / freedom;
+  solution.misfit_sds = (solution.misfit - 1) * std::sqrt(0.5 * freedom / correlation);
+  solution.excess_chi2 = std::max(0.0, solution.misfit - 1) * freedom / correlation;
+  solution.residual_share = std::sqrt(all / std::max(1e-9, contrast));
+  const Eigen::LDLT<Normal> solver = normal_.ldlt();
+  solution.covariance = correlation * std::max(1.0, solution.misfit) *
+                        solver.solve(Normal::Identity()).topLeftCorner<3, 3>();
+  solution.log_evidence =
+      -0.5 * cost / correlation - 0.5 * solver.vectorD().array().abs().log().sum();
+  // The density of the motion's prior, and what the correlation makes of two more parameters.
+  if (moves) solution.log_evidence += std::log(correlation / (motion_sd_px_ * motion_sd_px_));
+  return solution;
+}
+
+MotionScore Fitter::ScoreMotion(const State& state) const {
+  // Four columns: how blur and edge change with twice the angle, as motion makes them.
+  constexpr int kColumns = 4;
+  using Columns = Eigen::Matrix<double, kColumns, 1>;
+  Eigen::Matrix<double, kParameters, kColumns> cross =
+      Eigen::Matrix<double, kParameters, kColumns>::Zero();
+  Eigen::Matrix<double, kColumns, kColumns> own = Eigen::Matrix<double, kColumns, kColumns>::Zero();
+  Columns right = Columns::Zero();
+  const Eigen::Matrix2d to_px = scale_.scale().inverse();
+  for (const Sample& sample : samples_) {
+    if (std::abs(sample.beyond) > 3) continue;
+    const auto c = static_cast<std::size_t>(sample.channel);
+    const double outside = state.outside[c] + sample.behind;
+    const Modelled model = Model(sample.slopes, state, scale_, table_);
+    const double value = outside * (1 - model.cover) + state.inside[c] * model.light;
+    const double z = std::abs(sample.residual);
+    const double weight = (z < kHuber ? 1 : kHuber / z) / Variance(settings_.noise, value);
+    Shape row = state.inside[c] * model.light_slope;
+    row.head<4>() -= outside * model.cover_slope;
+    const Eigen::Vector2d from = sample.slopes - state.shape.head<2>();
+    const Eigen::Vector2d unit = (to_px * from).normalized();
+    Columns column;
+    column << row[3] * (unit.x() * unit.x() - unit.y() * unit.y()),
+        row[3] * 2 * unit.x() * unit.y(),
+        scale_.Later(from) * (scale_.scale().transpose() * row.head<2>());
+    const Columns weighted = weight * column;
+    cross.topRows<kShape>() += row * weighted.transpose();
+    const int level = kLevels + 2 * sample.channel;
+    cross.row(level) += model.light * weighted.transpose();
+    cross.row(level + 1) += (1 - model.cover) * weighted.transpose();
+    own += weighted * column.transpose();
+    right += weighted * (sample.value - value);
+  }
+  own -= cross.transpose() * normal_.ldlt().solve(cross);
+  const Columns change = own.ldlt().solve(right);
+  MotionScore score;
+  score.chi2 = right.dot(change) / settings_.noise.correlation;
+  // Motion adds (motion . unit)² / 12 to the square of the blur: half of it is even.
+  const double size = std::hypot(change[0], change[1]);
+  const double angle = 0.5 * std::atan2(change[1], change[0]);
+  score.motion_px =
+      std::sqrt(48 * state.shape[3] * size) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  return score;
+}
+
+Solution Mean(const std::vector<Solution>& modes) {
+  Solution mean = *std::max_element(
+      modes.begin(), modes.end(),
+      [](const Solution& a, const Solution& b) { return a.log_evidence < b.log_evidence; });
+  double sum = 0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  const Eigen::Vector3d best = mean.state.shape.head<3>();
+  for (const Solution& mode : modes) {
+    const double weight = std::exp(mode.log_evidence - mean.log_evidence);
+    const Eigen::Vector3d off = mode.state.shape.head<3>() - best;
+    sum += weight;
+    first += weight * off;
+    second += weight * (mode.covariance + off * off.transpose());
+  }
+  first /= sum;
+  mean.covariance = second / sum - first * first.transpose();
+  mean.state.shape.head<3>() += first;
+  return mean;
+}
+
+}  // namespace footing::sphere::disc

@@ -1,0 +1,93 @@
+// Whether errors are as large as the finder's covariance says, on frames of a renderer that shares
+// no code with it.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+
+#include "common/sphere/find.h"
+#include "common/virtual/camera/random_scene.h"
+#include "common/virtual/camera/render.h"
+#include "tests/common/sphere/rendered.h"
+
+namespace footing::sphere {
+namespace {
+
+namespace camera = virtual_camera;
+
+struct Honesty {
+  double nees = 0;  ///< Mean of the error's square over the covariance, a third of it.
+  int found = 0;
+};
+
+template <typename Change>
+Honesty HonestyOf(double depth_m, int count, const Change& change) {
+  noise::Random random(77);
+  Finder finder(Lens(), {Target()}, Settings());
+  Honesty honesty;
+  for (int i = 0; i < count; ++i) {
+    camera::Scene scene;
+    scene.balls.resize(1);
+    scene.balls[0].p_C_m = camera::PlaceInView(scene.lens, depth_m, 0.8, random);
+    change(scene, random);
+    finder.Forget();
+    const auto found = finder.Find(View(camera::Render(scene, random))).front();
+    if (!found) continue;
+    const Eigen::Vector3d error = found->p_C_m - camera::Truth(scene, scene.balls[0])->p_C_m;
+    honesty.nees += error.dot(found->covariance_m2.inverse() * error) / 3;
+    ++honesty.found;
+  }
+  honesty.nees /= honesty.found;
+  return honesty;
+}
+
+// Mean of 16 values of chi² / 3 with three degrees of freedom: its deviation is sqrt(2 / 48) = 0.2.
+constexpr int kFrames = 16;
+constexpr double kLeast = 0.35, kMost = 1.8;
+
+template <int kPercent>
+void HidePart(camera::Scene& scene, noise::Random& random) {
+  scene.occluders.push_back(camera::Hide(scene, scene.balls.front(), 0.01 * kPercent, random));
+}
+
+TEST(FinderHonesty, AQuarterIsHiddenOfASphereOfThreePixels) {
+  const Honesty honesty = HonestyOf(4, kFrames, HidePart<25>);
+  EXPECT_EQ(honesty.found, kFrames);
+  EXPECT_GT(honesty.nees, kLeast);
+  EXPECT_LT(honesty.nees, kMost);
+}
+
+TEST(FinderHonesty, HalfOfItIsHidden) {
+  const Honesty honesty = HonestyOf(2.5, kFrames, HidePart<50>);
+  EXPECT_GE(honesty.found, kFrames - 1);
+  EXPECT_GT(honesty.nees, kLeast);
+  EXPECT_LT(honesty.nees, kMost);
+}
+
+TEST(FinderHonesty, ItMovesAtTwoMetresPerSecond) {
+  const Honesty honesty = HonestyOf(2, kFrames, [](camera::Scene& scene, noise::Random& random) {
+    const double angle = random.Uniform(0, 2 * std::numbers::pi);
+    scene.balls[0].v_C_mps = {2 * std::cos(angle), 2 * std::sin(angle), 0.3};
+  });
+  EXPECT_EQ(honesty.found, kFrames);
+  EXPECT_GT(honesty.nees, kLeast);
+  EXPECT_LT(honesty.nees, kMost);
+}
+
+TEST(FinderHonesty, TheTravelDuringTheExposureIsMeasured) {
+  noise::Random random(5);
+  camera::Scene scene;
+  scene.balls.resize(1);
+  scene.balls[0].p_C_m = {0.1, 0.05, 1.5};
+  scene.balls[0].v_C_mps = {-1.5, 1, 0};
+  Finder finder(Lens(), {Target()}, Settings());
+  const auto found = finder.Find(View(camera::Render(scene, random))).front();
+  ASSERT_TRUE(found);
+  // 540 px / 1.5 m * 0.004 s = 1.44 px s / m; the rolling shutter shows the direction.
+  EXPECT_NEAR(found->motion_px.x(), -2.16, 0.4);
+  EXPECT_NEAR(found->motion_px.y(), 1.44, 0.4);
+}
+
+}  // namespace
+}  // namespace footing::sphere
