@@ -13,12 +13,22 @@
 namespace footing::transport {
 namespace {
 
+// Who holds a folder's lock is about to bind, which takes milliseconds: programs that are started
+// together wait for each other, but for no longer than half a second.
+constexpr int kLockTries = 50;
+constexpr useconds_t kLockTryUs = 10'000;
+
 /// An exclusive lock on a folder, for as long as it lives.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder)
       : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) != 0) error_ = errno;
+    if (descriptor_ < 0) error_ = errno;
+    for (int tries = 0; descriptor_ >= 0; ++tries) {
+      error_ = flock(descriptor_, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+      if (error_ != EWOULDBLOCK || tries == kLockTries) break;
+      usleep(kLockTryUs);
+    }
   }
   ~FolderLock() {
     if (descriptor_ >= 0) close(descriptor_);

@@ -1,13 +1,17 @@
 #include "common/transport/listener.h"
 
+#include <fcntl.h>
 #include <netinet/in.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "tests/common/transport/io_fixture.h"
@@ -117,6 +121,23 @@ TEST_F(ListenerTest, AMissingFolderIsNamed) {
   const auto listener = Open(UnixAddress("none/s"));
   ASSERT_FALSE(listener.ok());
   EXPECT_NE(listener.error().message.find("none/"), std::string::npos);
+}
+
+TEST_F(ListenerTest, ServersThatAreStartedTogetherWaitForEachOther) {
+  const Address address = UnixAddress();
+  const std::string folder = address.path.substr(0, address.path.rfind('/'));
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(flock(descriptor, LOCK_EX), 0);
+  const auto refused = Open(address);  // The other never ends.
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("another server is being started"), std::string::npos);
+  std::thread other([descriptor] {
+    usleep(50'000);
+    close(descriptor);
+  });
+  const auto listener = Open(address);
+  other.join();
+  EXPECT_TRUE(listener.ok()) << listener.error().message;
 }
 
 TEST_F(ListenerTest, APortInUseIsRefusedWithTheReason) {
