@@ -153,7 +153,7 @@ TEST(CountedPoint, ASphereAtTheSensorsLimitCountsForNoMoreThanItIsWorth) {
       EXPECT_EQ(sphere.saturated, sphere.found);
       EXPECT_LE(sphere.counted_nees, sphere.nees) << "its own covariance is taken for too large";
       EXPECT_LE(sphere.counted_nees, 1.2) << distance_m << " m, " << exposure;
-      EXPECT_GE(sphere.counted_nees, 0.1) << distance_m << " m, " << exposure;
+      EXPECT_GE(sphere.counted_nees, 0.05) << distance_m << " m, " << exposure;
     }
   }
 }
