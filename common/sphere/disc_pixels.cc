@@ -12,7 +12,7 @@ namespace disc {
 namespace {
 
 constexpr int kClippedDn = 250;
-constexpr double kHiddenBlurs = 3.5;  // From an occluder's edge there is no more of its light.
+constexpr double kHiddenBlurs = 3.5;  // How far its light reaches beyond an occluder's edge.
 constexpr double kBesideBlurs = 2.5;  // Along the sphere's edge, where half of it is seen.
 
 }  // namespace

@@ -11,21 +11,6 @@ namespace {
 
 constexpr std::size_t kMostNameBytes = 64;
 
-std::string RoleName(v1::Role role) {
-  switch (role) {
-    case v1::ROLE_VIEW:
-      return "view";
-    case v1::ROLE_LOG:
-      return "log";
-    case v1::ROLE_CONTROL:
-      return "control";
-    case v1::ROLE_ADMIN:
-      return "admin";
-    default:
-      return std::to_string(static_cast<int>(role));
-  }
-}
-
 std::string VersionText(std::uint32_t major, std::uint32_t minor) {
   return std::to_string(major) + "." + std::to_string(minor);
 }

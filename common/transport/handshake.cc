@@ -36,6 +36,21 @@ void SettleChannels(const v1::Subscribe& wish, const ServerOptions& options,
 
 }  // namespace
 
+std::string RoleName(v1::Role role) {
+  switch (role) {
+    case v1::ROLE_VIEW:
+      return "view";
+    case v1::ROLE_LOG:
+      return "log";
+    case v1::ROLE_CONTROL:
+      return "control";
+    case v1::ROLE_ADMIN:
+      return "admin";
+    default:
+      return std::to_string(static_cast<int>(role));
+  }
+}
+
 v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message) {
   v1::Refused refused;
   refused.set_reason(reason);

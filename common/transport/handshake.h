@@ -15,6 +15,9 @@ namespace footing::transport {
 inline constexpr std::uint32_t kProtocolMajor = 1;
 inline constexpr std::uint32_t kProtocolMinor = 0;
 
+/// As a person reads it; the number of one that this version does not know.
+std::string RoleName(v1::Role role);
+
 v1::Refused Refuse(v1::Refused::Reason reason, const std::string& message);
 
 /// A Welcome but for its stamps.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/transport/handshake.h"
 #include "common/transport/session.h"
 #include "common/units/units.h"
 
@@ -12,19 +13,6 @@ namespace {
 constexpr std::int64_t kMostStampNs = std::int64_t{1} << 60;
 
 bool IsStamp(std::int64_t ns) { return ns > 0 && ns < kMostStampNs; }
-
-const char* NameOf(v1::Role role) {
-  switch (role) {
-    case v1::ROLE_LOG:
-      return "log";
-    case v1::ROLE_CONTROL:
-      return "control";
-    case v1::ROLE_ADMIN:
-      return "admin";
-    default:
-      return "view";
-  }
-}
 
 const char* NameOf(QueueRule rule) {
   switch (rule) {
@@ -52,7 +40,7 @@ stream::SessionStats Session::Stats() const {
   stream::SessionStats stats;
   stats.session = info_.session;
   stats.client_name = info_.client_name;
-  stats.role = NameOf(info_.role);
+  stats.role = RoleName(info_.role);
   stats.local = peer_.known;
   stats.connected_s = NanosecondsToSeconds(now_ns - record_.began_ns);
   stats.ticks_sent = record_.ticks_sent;

@@ -22,7 +22,7 @@ struct ServerLinkOptions {
 
 struct ServerLinkHandlers {
   std::function<void(const v1::Tick&)> on_tick;
-  std::function<void()> on_down;  ///< The connection is lost; it is made again.
+  std::function<void()> on_down;  ///< The connection is lost and is being restored.
 };
 
 /// A session's connection to one server, with that server's lease. A connection that breaks goes on

@@ -59,7 +59,7 @@ class Servers {
   bool broken() const;
   /// Times that a connection was down.
   std::uint64_t breaks() const;
-  /// Fails once somebody has taken a lease over: this session controls that server no more.
+  /// Fails once somebody has taken a lease over: this session no longer controls that server.
   Result<void> CheckLeases() const;
   /// Gives footingd's lease back, so that others may set devices up, until KeepDevices().
   void LendDevices();

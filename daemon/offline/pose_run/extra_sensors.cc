@@ -1,10 +1,10 @@
 #include "daemon/offline/pose_run/extra_sensors.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "common/body/skeleton_points.h"
+#include "daemon/simulation/arms/rotation_vector.h"
 
 namespace footing::pose_run {
 namespace {
@@ -31,12 +31,6 @@ virtual_sensors::HeldErrorConfig Seeded(virtual_sensors::HeldErrorConfig config,
                                         std::uint64_t seed) {
   config.seed = seed;
   return config;
-}
-
-Eigen::Matrix3d Turned(const Eigen::Vector3d& angle_rad) {
-  const double norm_rad = angle_rad.norm();
-  if (norm_rad < 1e-12) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(norm_rad, angle_rad / norm_rad).toRotationMatrix();
 }
 
 }  // namespace
@@ -82,7 +76,7 @@ arms::HandState Belt::Until(Eigen::Index column, double step_s) {
   const double stays = std::exp(-step_s / errors_.slip_s);
   slip_rad_ = stays * slip_rad_ + Normals(errors_.slip_rad * std::sqrt(1 - stays * stays), random_);
   arms::HandState state = attitude_.state();
-  state.turn_W = state.turn_W * Turned(slip_rad_);
+  state.turn_W = state.turn_W * arms::Turned(slip_rad_);
   return state;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/units/units.h"
+#include "daemon/simulation/arms/rotation_vector.h"
 
 namespace footing::arms {
 namespace {
@@ -28,12 +29,6 @@ constexpr double kNoiseRadPerSqrtS = DegreesToRadians(0.02);
 constexpr double kGainError = 0.01;
 constexpr double kLargestGain = 0.05;
 constexpr double kInclinationSd = DegreesToRadians(0.6);
-
-Eigen::Matrix3d Turned(const Eigen::Vector3d& angle) {
-  const double norm = angle.norm();
-  if (norm < 1e-12) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(norm, angle / norm).toRotationMatrix();
-}
 
 /// The nearest rotation, after small errors of rounding.
 Eigen::Matrix3d Rotation(const Eigen::Matrix3d& R) {

@@ -30,9 +30,10 @@ double Asked(const Context& context, const GaitMemory& memory) {
   const AttitudeGains& attitude = context.gains.attitude;
   const double bank = std::fabs(BankAngle(memory, attitude)) / kFullBankRad;
   const double tilt_rad = std::fabs(TiltAside(context.body, memory, attitude));
-  const double calm = std::clamp(2 - tilt_rad / kPushedRad, 0.0, 1.0);
-  return std::max(std::min(1.0, bank) * calm,
-                  std::clamp(2 - tilt_rad / kPushedStraightRad, 0.0, 1.0));
+  const auto upright = [tilt_rad](double pushed_rad) {
+    return std::clamp(2 - tilt_rad / pushed_rad, 0.0, 1.0);
+  };
+  return std::max(std::min(1.0, bank) * upright(kPushedRad), upright(kPushedStraightRad));
 }
 
 }  // namespace

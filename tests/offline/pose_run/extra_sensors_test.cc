@@ -8,6 +8,7 @@
 #include "common/body/points.h"
 #include "common/body/skeleton_points.h"
 #include "daemon/offline/pose_run/pose_run.h"
+#include "tests/offline/pose_run/standing.h"
 
 namespace footing::pose_run {
 namespace {
@@ -17,12 +18,7 @@ constexpr double kTurnRad = 0.8;
 
 /// Turns to the left and back on the spot, with the arms out.
 motion::Motion Turning(double seconds) {
-  motion::Motion motion;
-  motion.skeleton = body::StandardPerson(1.75);
-  const body::Landmarks landmarks = body::FindLandmarks(motion.skeleton).value();
-  motion.rate_hz = 60;
-  motion.q = body::TPose(motion.skeleton, landmarks)
-                 .replicate(1, static_cast<Eigen::Index>(seconds * motion.rate_hz));
+  motion::Motion motion = Standing(seconds);
   constexpr int kHeading = 3;  // The root's first angle (common/body).
   for (Eigen::Index i = 0; i < motion.frames(); ++i) {
     motion.q(kHeading, i) = kTurnRad * std::sin(static_cast<double>(i) / motion.rate_hz);

@@ -8,20 +8,10 @@
 #include "common/body/points.h"
 #include "daemon/offline/pose_run/held_hands.h"
 #include "daemon/simulation/arms/arm_geometry.h"
+#include "tests/offline/pose_run/standing.h"
 
 namespace footing::pose_run {
 namespace {
-
-/// Stands in a T-pose all the time.
-motion::Motion Standing(double seconds) {
-  motion::Motion motion;
-  motion.skeleton = body::StandardPerson(1.75);
-  const body::Landmarks landmarks = body::FindLandmarks(motion.skeleton).value();
-  motion.rate_hz = 60;
-  motion.q = body::TPose(motion.skeleton, landmarks)
-                 .replicate(1, static_cast<Eigen::Index>(seconds * motion.rate_hz));
-  return motion;
-}
 
 PoseRun RunOf(const Settings& settings) {
   return RunPose(Standing(4), settings, "standing").value();

@@ -11,8 +11,8 @@
 namespace footing::momentum {
 namespace {
 
-// The greatest height in four seconds in which the cells tell `share` of what they told in the
-// T-pose, by a filter that takes that weight for granted and sees a posture of `posture_m`.
+// The greatest height in four seconds in which the cells measure `share` of what they measured in
+// the T-pose, by a filter that takes that weight for granted and sees a posture of `posture_m`.
 double GreatestHeight(double share, double posture_m) {
   MadeBody body;
   body.noise_n = 0.5;
@@ -33,7 +33,7 @@ double GreatestHeight(double share, double posture_m) {
 }
 
 TEST(VerticalCom, LoadsThatTellTooMuchDoNotLiftABodyOffItsLegs) {
-  // 0.5 m/s^2, told as a velocity: it comes that far between two looks half a second apart.
+  // 0.5 m/s^2 that nothing corrects moves it that far between two looks half a second apart.
   for (const double posture_m : {0.0, -0.1, -0.3}) {
     EXPECT_LT(GreatestHeight(1.05, posture_m), 0.4) << posture_m;
   }
