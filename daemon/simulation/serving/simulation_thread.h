@@ -72,8 +72,8 @@ class SimulationThread {
 
   void RunOnSimThread() {
     std::int64_t due_ns = clock::MonotonicNs();
+    heartbeat_.Beat(due_ns);
     while (!stop_.raised()) {
-      heartbeat_.Beat(clock::MonotonicNs());
       for (int i = 0; i < steps_per_frame_; ++i) {
         due_ns += step_ns_;
         const std::int64_t behind_ns = clock::MonotonicNs() - due_ns;
@@ -85,6 +85,7 @@ class SimulationThread {
         }
         run_.StepOnSimThread(inputs_, frame_);
       }
+      heartbeat_.Beat(clock::MonotonicNs());  // Before it: who has its frame sees that it came round.
       HandOverOnSimThread();
     }
   }
