@@ -226,13 +226,13 @@ Server::~Server() = default;
 
 Result<void> Server::Listen(const Address& address) { return implementation_->Listen(address); }
 Address Server::ListeningOn(std::size_t index) const { return implementation_->ListeningOn(index); }
-std::uint64_t Server::Publish(std::int64_t host_ns, std::vector<ChannelBytes> channels) {
+std::uint64_t Server::Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels) {
   return implementation_->Publish(host_ns, channels);
 }
-void Server::BeginAt(const TickNumber& number, std::vector<ChannelBytes> retained) {
+void Server::BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained) {
   implementation_->BeginAt(number, retained);
 }
-void Server::Relay(const TickNumber& number, std::vector<ChannelBytes> channels) {
+void Server::Relay(const TickNumber& number, const std::vector<ChannelBytes>& channels) {
   implementation_->Relay(number, channels);
 }
 void Server::Answer(std::uint64_t session, const v1::CommandResult& result) {

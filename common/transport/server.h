@@ -126,14 +126,14 @@ class Server {
   Address ListeningOn(std::size_t index) const;
 
   /// Publishes one tick of the given channels; returns its sequence, from 1.
-  std::uint64_t Publish(std::int64_t host_ns, std::vector<ChannelBytes> channels);
+  std::uint64_t Publish(std::int64_t host_ns, const std::vector<ChannelBytes>& channels);
 
   /// For a relay, which hands on the ticks of another server under their own numbers: where that
   /// one stands, and what its retained channels hold. Before the first session.
-  void BeginAt(const TickNumber& number, std::vector<ChannelBytes> retained);
+  void BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained);
   /// One tick of the source; its sequence is above the last one's. What is neither published nor
   /// missing in between was left out on purpose, as for max_hz.
-  void Relay(const TickNumber& number, std::vector<ChannelBytes> channels);
+  void Relay(const TickNumber& number, const std::vector<ChannelBytes>& channels);
 
   /// Answers a command that on_command left open; `result` has its id. The session may be gone.
   void Answer(std::uint64_t session, const v1::CommandResult& result);

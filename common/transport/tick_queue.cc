@@ -33,13 +33,17 @@ void TickQueue::Skip(const SharedTick& tick) { Retain(tick, for_next_); }
 bool TickQueue::Push(SharedTick tick) {
   if (entries_.size() >= capacity_) {
     if (rule_ == QueueRule::kReliable) return false;
-    Entry entry{std::move(tick), std::exchange(for_next_, {})};
-    entries_.push_back(std::move(entry));
+    Add(std::move(tick));
     DropOldest();
     return true;
   }
-  entries_.push_back({std::move(tick), std::exchange(for_next_, {})});
+  Add(std::move(tick));
   return true;
+}
+
+void TickQueue::Add(SharedTick tick) {
+  if (entries_.full()) entries_.set_capacity(std::max<std::size_t>(2, 2 * entries_.capacity()));
+  entries_.push_back({std::move(tick), std::exchange(for_next_, {})});
 }
 
 void TickQueue::DropOldest() {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <boost/circular_buffer.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <set>
 #include <utility>
@@ -59,13 +59,16 @@ class TickQueue {
   std::uint64_t dropped_ticks() const { return dropped_ticks_; }
 
  private:
+  void Add(SharedTick tick);
   void DropOldest();
   void Retain(const SharedTick& tick, std::vector<RetainedField>& retained) const;
 
   QueueRule rule_ = QueueRule::kDropOldest;
   std::size_t capacity_ = 1;
   std::set<std::uint32_t> retained_;
-  std::deque<Entry> entries_;
+  /// Grows when it must. Mostly one tick waits at a time, and a server of a thousand sessions
+  /// should find it in few lines of the cache.
+  boost::circular_buffer<Entry> entries_;
   std::vector<RetainedField> for_next_;  ///< Retained fields of ticks skipped since the last Push.
   std::optional<Dropped> dropped_;
   std::uint64_t dropped_ticks_ = 0;

@@ -135,10 +135,7 @@ class Publishers {
 
  private:
   void Publish(transport::Server& server) {
-    Pace([&] {
-      auto serialised = channels_;  // footingd serialises them again and hands them over.
-      server.Publish(clock::MonotonicNs(), std::move(serialised));
-    });
+    Pace([&] { server.Publish(clock::MonotonicNs(), channels_); });
   }
   void Pace(const std::function<void()>& publish) {
     thread_.Pace(kPublishTicks, kPublishIntervalNs, publish);

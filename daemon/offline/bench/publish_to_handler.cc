@@ -1,5 +1,6 @@
 #include <array>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/read.hpp>
 #include <cstring>
 #include <functional>
@@ -16,6 +17,7 @@
 #include "daemon/offline/bench/bare_fan_out.h"
 #include "daemon/offline/bench/broker_link.h"
 #include "daemon/offline/bench/example_tick.h"
+#include "daemon/offline/bench/lsl_link.h"
 #include "daemon/offline/bench/waiting.h"
 
 namespace footing::bench {
@@ -49,6 +51,7 @@ class Race {
  public:
   Race() : server_(publisher_.io(), ServerOptionsFor(500, 1), {}), bare_(publisher_.io()) {}
   ~Race() {
+    lsl_.reset();  // Its thread uses the reader's.
     publisher_.Do([this] { server_.Stop("done"); });
     reader_.Do([this] {
       client_.reset();
@@ -75,6 +78,7 @@ class Race {
     for (const BrokerKind kind : {BrokerKind::kMosquitto, BrokerKind::kNats}) {
       if (auto broker = Broker::Start(kind)) ConnectBroker(std::move(broker));
     }
+    ConnectLsl();
     const bool ready = WaitUntil(reader_, [this] {
       bool all = client_->state() == transport::LinkState::kLive && bare_socket_.has_value();
       for (const auto& link : subscribers_) all = all && link->ready();
@@ -143,6 +147,18 @@ class Race {
     });
   }
 
+  /// Its inlet has a thread of its own, on which the tick is parsed and its delay taken.
+  void ConnectLsl() {
+    lsl_ = LslLink::Start([this](std::string_view payload) {
+      const v1::Envelope* const message = lsl_parser_.Parse(payload);
+      if (message == nullptr) return;
+      const double delay_us = DelayUsSince(message->tick().host_ns());
+      boost::asio::post(reader_.io(), [this, delay_us] { delays_us_.push_back(delay_us); });
+    });
+    if (lsl_ == nullptr) return;
+    ways_.push_back({"lsl", [this] { lsl_->Publish(TickPayload(channels_)); }});
+  }
+
   /// Bytes as long as ours with the stamp in front, which nobody parses.
   std::shared_ptr<const std::string> BareFrame() const {
     std::string payload(payload_bytes_, '\0');
@@ -163,9 +179,10 @@ class Race {
                             });
   }
 
-  void AddDelaySince(std::int64_t stamp_ns) {
-    delays_us_.push_back(static_cast<double>(clock::MonotonicNs() - stamp_ns) * 1e-3);
+  static double DelayUsSince(std::int64_t stamp_ns) {
+    return static_cast<double>(clock::MonotonicNs() - stamp_ns) * 1e-3;
   }
+  void AddDelaySince(std::int64_t stamp_ns) { delays_us_.push_back(DelayUsSince(stamp_ns)); }
 
   const std::vector<transport::ChannelBytes> channels_ = ExampleTick();
   const std::size_t payload_bytes_ = TickPayload(channels_).size();
@@ -182,6 +199,8 @@ class Race {
   std::optional<transport::Socket> bare_socket_;
   std::vector<std::unique_ptr<BrokerLink>> subscribers_;
   std::vector<std::unique_ptr<BrokerLink>> publishers_;
+  transport::MessageParser lsl_parser_;
+  std::unique_ptr<LslLink> lsl_;
 };
 
 Row RaceRow(const std::string& name, const std::vector<double>& ours,

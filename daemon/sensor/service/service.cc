@@ -231,7 +231,7 @@ class Service::Implementation : public std::enable_shared_from_this<Service::Imp
     auto channels = ToChannels(content);
     const std::chrono::nanoseconds late = timer::Now() - next_tick_;
     monitor_.OnTick({now_ns, now_ns - late.count(), std::nullopt}, channels);
-    server_.Publish(now_ns, std::move(channels));
+    server_.Publish(now_ns, channels);
   }
 
   /// What is to be kept is answered when it is on the disk; ticks do not wait for that.

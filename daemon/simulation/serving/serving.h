@@ -144,7 +144,7 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
       if (const auto more = frame_.left_out - std::exchange(left_out_, frame_.left_out); more > 0) {
         server_.NoteLateTicks(more);
       }
-      server_.Publish(now_ns, std::move(channels));
+      server_.Publish(now_ns, channels);
     }
   }
 

@@ -30,7 +30,7 @@ class StatsCollectorTest : public transport::ServerFixture {
       std::vector<ChannelBytes> channels{{17, ""}};
       collector_->OnTick({now_ns_, now_ns_ - late_ns, {}}, channels);
       published_ += channels.size() - 1;
-      server_->Publish(now_ns_, std::move(channels));
+      server_->Publish(now_ns_, channels);
     }
   }
 
