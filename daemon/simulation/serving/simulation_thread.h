@@ -85,7 +85,7 @@ class SimulationThread {
         }
         run_.StepOnSimThread(inputs_, frame_);
       }
-      heartbeat_.Beat(clock::MonotonicNs());  // Before it: who has its frame sees that it came round.
+      heartbeat_.Beat(clock::MonotonicNs());  // First: whoever has the frame then sees the beat.
       HandOverOnSimThread();
     }
   }
