@@ -2,12 +2,13 @@
 #include "common/cli/cli.h"
 
 int main(int argc, char** argv) {
-  auto app =
-      footing::cli::NewApp("footing-ctl", "Console: devices, their set-up and their faults.",
-                           "  footing-ctl setup               # guided set-up of all devices\n"
-                           "  footing-ctl doctor              # faults and their remedies\n"
-                           "  footing-ctl watch               # live values\n"
-                           "  footing-ctl led left_hand 1010");
+  auto app = footing::cli::NewApp(
+      "footing-ctl",
+      "Console: lists, sets up and checks the devices, and sends commands to the servers.",
+      "  footing-ctl setup               # guided setup of all devices\n"
+      "  footing-ctl doctor              # faults and their remedies\n"
+      "  footing-ctl watch               # live values\n"
+      "  footing-ctl led left_hand 1010");
   footing::ctl::Shared shared;
   app->add_option("--connect", shared.connect,
                   "Address of footingd, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT (default: "

@@ -87,7 +87,7 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
   const auto arguments = std::make_shared<SetUpArguments>();
   CLI::App* command =
       app.add_subcommand("setup",
-                         "Guided set-up of a rig: adapter, pairing, roles, layout, tare, "
+                         "Guided setup of a rig: adapter, pairing, roles, layout, tare, "
                          "mounting, weigh, camera, checks");
   command->add_option("--rig", arguments->options.rig,
                       "Rig: the devices of one person (default main)");

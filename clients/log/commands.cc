@@ -18,13 +18,28 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// One JSON object, or one "name: value" line each.
+/// The entry of a list on one line: "path a/b.csv  rows 7".
+std::string EntryLine(const ordered_json& entry) {
+  std::string line = " ";
+  for (const auto& [name, value] : entry.items()) {
+    line += " " + name + " " + (value.is_string() ? value.get<std::string>() : value.dump()) + " ";
+  }
+  line.pop_back();
+  return line;
+}
+
+/// One JSON object, or one "name: value" line each, a list with a line for each entry.
 void Print(const ordered_json& out, bool json) {
   if (json) {
     std::cout << out.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << std::endl;
     return;
   }
   for (const auto& [name, value] : out.items()) {
+    if (value.is_array()) {
+      std::cout << name << ":" << std::endl;
+      for (const ordered_json& entry : value) std::cout << EntryLine(entry) << std::endl;
+      continue;
+    }
     std::cout << name << ": " << (value.is_string() ? value.get<std::string>() : value.dump())
               << std::endl;
   }
@@ -67,7 +82,7 @@ Result<ordered_json> RunExport(const std::string& file, const std::string& forma
                                const std::string& folder, bool replace) {
   if (format == "bvh") return RunBvh(file, folder, replace);
   if (format != "csv") {
-    return UsageError("the format " + format + " is not built; built are: csv, bvh");
+    return UsageError("unknown --format " + format + "; there are: csv, bvh");
   }
   const auto files = ExportCsv(file, folder, replace);
   if (!files) return files.error();

@@ -123,7 +123,10 @@ class Collector {
       if (const pb::Message* parsed = Parse(entry, message)) {
         const std::uint64_t from = Unsigned(*parsed, "from_sequence");
         const std::uint64_t to = Unsigned(*parsed, "to_sequence");
-        if (to >= from) contents_.missing_ticks += to - from + 1;
+        if (to >= from)
+          contents_.missing_ticks += to - from + 1;
+        else
+          ++contents_.restarts;
       }
     }
   }
@@ -157,9 +160,8 @@ std::optional<Error> Incomplete(const std::string& path, const mcap::WalkEnd& en
 Result<Contents> ReadContents(const std::string& path) {
   Result<recording::MappedFile> file = recording::MappedFile::Open(path);
   if (!file) return file.error();
-  const std::string_view magic = file->bytes().substr(0, mcap::kMagic.size());
-  if (magic.empty() || magic != mcap::kMagic.substr(0, magic.size())) {
-    return InvalidData(path + " is not a recording: it does not begin as an MCAP file does");
+  if (!mcap::BeginsAsMcap(file->bytes())) {
+    return InvalidData(path + " is not a recording: this is not an MCAP file");
   }
   Contents contents;
   contents.path = path;

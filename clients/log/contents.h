@@ -45,6 +45,8 @@ struct Contents {
   std::vector<std::string> configs;
   std::uint64_t gaps = 0;
   std::uint64_t missing_ticks = 0;
+  /// Gaps over a restart of a server: nobody knows how many ticks are missing there.
+  std::uint64_t restarts = 0;
   mcap::WalkEnd end;
 };
 

@@ -169,9 +169,8 @@ Result<std::vector<ExportedFile>> ExportCsv(const std::string& recording, const 
                                             bool replace) {
   Result<recording::MappedFile> file = recording::MappedFile::Open(recording);
   if (!file) return file.error();
-  const std::string_view magic = file->bytes().substr(0, mcap::kMagic.size());
-  if (magic != mcap::kMagic.substr(0, magic.size()) || magic.empty()) {
-    return InvalidData(recording + " is not a recording: it does not begin as an MCAP file does");
+  if (!mcap::BeginsAsMcap(file->bytes())) {
+    return InvalidData(recording + " is not a recording: this is not an MCAP file");
   }
   return Exporter(file->bytes(), recording).Run(folder, replace);
 }

@@ -29,7 +29,8 @@ ordered_json ToJson(const Contents& contents) {
       {"duration_s", SecondsBetween(contents.start_ns, contents.end_ns)},
       {"simulated", contents.simulated ? ordered_json(*contents.simulated) : ordered_json(nullptr)},
       {"gaps", contents.gaps},
-      {"missing_ticks", contents.missing_ticks}};
+      {"missing_ticks", contents.missing_ticks},
+      {"restarts", contents.restarts}};
   if (!contents.end.complete) {
     out["problem"] = contents.end.problem;
     out["problem_byte"] = contents.end.problem_offset;
@@ -94,7 +95,11 @@ void PrintText(const Contents& contents) {
                 : *contents.simulated ? "SIMULATED"
                                       : "real devices")
             << "\n"
-            << contents.gaps << " gaps, " << contents.missing_ticks << " ticks missing\n";
+            << "gaps: " << contents.gaps << ", ticks missing: " << contents.missing_ticks;
+  if (contents.restarts > 0) {
+    std::cout << ", not counting those of " << contents.restarts << " server restarts";
+  }
+  std::cout << "\n";
   for (const Topic& topic : contents.topics) {
     std::cout << "  " << topic.name << "  " << topic.messages << " messages  " << topic.RateHz()
               << " Hz  " << topic.schema << "\n";

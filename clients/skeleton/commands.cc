@@ -113,8 +113,9 @@ std::function<void()> AddReceiver(CLI::App& app, Shared& shared) {
                  "UDP address to receive on, HOST:PORT; 0.0.0.0:7110 takes every host's packets");
   app.add_option("--to", flags->to,
                  "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
-  app.add_option("--web", flags->web,
-                 "Serve a page that makes a skeleton of this computer's webcam, 127.0.0.1:PORT");
+  app.add_option(
+      "--web", flags->web,
+      "Serve a web page that tracks a person with this computer's webcam, 127.0.0.1:PORT");
   flags->pose_package = DefaultPosePackage();
   app.add_option("--pose-package", flags->pose_package,
                  "Folder of npm's @mediapipe/pose, of --web (scripts/fetch-pose-model)");
@@ -127,7 +128,8 @@ std::function<void()> AddReceiver(CLI::App& app, Shared& shared) {
       ->expected(3)
       ->delimiter(',');
   app.add_option("--camera-yaw-deg", flags->yaw_deg,
-                 "Heading of the camera's look; 180 looks at a person who faces it");
+                 "Direction in which the camera looks, degrees: 0 the boards' front, 90 left, 180 "
+                 "at a person who faces it");
   app.add_option("--camera-pitch-deg", flags->pitch_deg, "Tilt of the camera, upwards positive")
       ->check(CLI::Range(-90.0, 90.0));
   app.add_option("--camera-roll-deg", flags->roll_deg, "Roll of the camera, left side up positive")

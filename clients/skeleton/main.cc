@@ -6,7 +6,8 @@ int main(int argc, char** argv) {
   auto app = footing::cli::NewApp(
       "footing-skeleton",
       "Receives skeletons of people by OSC (OSCeleton, VMC, Footing's own messages) and publishes "
-      "their joints on footingd's device socket. A page makes such a skeleton of a webcam.",
+      "their joints on footingd's device socket. With --web it serves a page that tracks a person "
+      "with a webcam.",
       "  footing-skeleton                                # port 7110 of this host\n"
       "  footing-skeleton --listen 0.0.0.0:7110 --camera-m 2.4,0,1.1 --camera-pitch-deg -5\n"
       "  footing-skeleton --web 127.0.0.1:7180           # open that page, choose the webcam\n"

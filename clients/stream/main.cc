@@ -94,7 +94,7 @@ int RunUser(const stream_client::UserOptions& user, const stream_client::Common&
 constexpr char kExamples[] =
     "  footing-stream user --script demo --interface wrist\n"
     "  footing-stream user --interface leg --see tcp:localhost:7411 --seed 3\n"
-    "  footing-stream sample .     # writes the files that the examples below read\n"
+    "  footing-stream sample .     # writes the files that these examples read\n"
     "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
     "  footing-stream corners --left corners.csv --link poor --seconds 60\n"
     "  footing-stream boards --motion demo --hands move\n"

@@ -188,7 +188,10 @@ SimulatedDevice MakeWiimote(const Common& common, LinkQuality link, std::uint64_
 Result<Plan> PlanUser(const std::string& script, const std::string& interface, const Common& common,
                       const Ports& ports) {
   if (interface != "wrist" && interface != "joystick") {
-    return UsageError("--interface " + interface + " is not built; there are: wrist, joystick");
+    return UsageError(
+        "--interface " + interface +
+        ": a script moves wrist or joystick; arm, leg and boards need --see ADDRESS, a "
+        "user who sees the track");
   }
   const auto link = ParseLink(common.link);
   if (!link) return link.error();

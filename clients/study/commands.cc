@@ -117,7 +117,7 @@ Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
     people.push_back(records::Collect(text->events));
   }
   if (!people.empty()) return people;
-  return Failure(loaded.folder + " has no journal yet; footing-study run makes them");
+  return Failure(loaded.folder + " has no journal yet; run a session first: footing-study run");
 }
 
 void Finish(const Result<Answer>& result, Shared& shared) {

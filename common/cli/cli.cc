@@ -50,13 +50,33 @@ void NarrowExamples(CLI::App& app) {
   }
 }
 
+/// The command that the words of the command line lead to: "footing-ctl trial start".
+const CLI::App& InnermostCommand(const CLI::App& app, std::string& name) {
+  const std::vector<CLI::App*> taken = app.get_subcommands();
+  if (taken.empty()) return app;
+  name += " " + taken.back()->get_name();
+  return InnermostCommand(*taken.back(), name);
+}
+
+std::string UnknownSubcommand(const CLI::App& command, const std::string& word) {
+  std::string text = "unknown subcommand " + word + "; there are:";
+  for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; })) {
+    text += " " + one->get_name();
+  }
+  return text;
+}
+
 /// What is wrong with a command line, as one line.
-std::string Problem(const CLI::App& app, const CLI::ParseError& error) {
+std::string Problem(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
-  const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unknown.empty();
-  if (!extra) return error.what();
+  if (unknown.empty()) return error.what();
   const std::string& first = unknown.front();
-  return (first.starts_with('-') ? "unknown option " : "unexpected argument ") + first;
+  const bool is_option = first.starts_with('-');
+  const bool has_subcommands =
+      !command.get_subcommands([](const CLI::App*) { return true; }).empty();
+  if (!is_option && has_subcommands) return UnknownSubcommand(command, first);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();
+  return (is_option ? "unknown option " : "unexpected argument ") + first;
 }
 
 }  // namespace
@@ -78,7 +98,9 @@ std::optional<int> Parse(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
     if (!asked) {
-      return Report(UsageError(Problem(app, error) + "; run " + app.get_name() + " --help"));
+      std::string name = app.get_name();
+      const CLI::App& command = InnermostCommand(app, name);
+      return Report(UsageError(Problem(app, command, error) + "; run " + name + " --help"));
     }
     app.exit(error, std::cout, std::cerr);
     return 0;

@@ -6,6 +6,7 @@
 
 #include "common/config/data_file.h"
 #include "common/config/lines_of_keys.h"
+#include "common/text/library_text.h"
 
 namespace footing::config {
 namespace {
@@ -146,7 +147,8 @@ Result<void> Binder::ApplyText(const std::string& text, const std::string& origi
   try {
     json = Json::parse(text, nullptr, true, true);
   } catch (const Json::exception& error) {  // Of a number too large for any type, too.
-    return UsageError("config: " + origin + " is not JSON: " + error.what());
+    return UsageError("config: " + origin +
+                      " is not JSON: " + std::string(text::WithoutTag(error.what())));
   }
   if (!json.is_object()) return UsageError("config: " + origin + " must hold one JSON object");
   const auto lines = LinesOfKeys(text);

@@ -16,6 +16,12 @@ namespace footing::mcap {
 /// The eight bytes at both ends of a file.
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 
+/// True for a file that may be cut anywhere but begins as an MCAP file does.
+constexpr bool BeginsAsMcap(std::string_view file) {
+  const std::string_view begin = file.substr(0, kMagic.size());
+  return !begin.empty() && begin == kMagic.substr(0, begin.size());
+}
+
 /// Opcode (u8) and length (u64) before every record's body.
 inline constexpr std::size_t kRecordHeadBytes = 9;
 

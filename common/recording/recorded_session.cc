@@ -121,6 +121,9 @@ class TickCollector {
 Result<RecordedSession> RecordedSession::Open(const std::string& path) {
   Result<MappedFile> file = MappedFile::Open(path);
   if (!file) return file.error();
+  if (!mcap::BeginsAsMcap(file->bytes())) {
+    return InvalidData(path + " is not a recording: this is not an MCAP file");
+  }
   RecordedSession session(path, std::move(*file));
   TickCollector collector(session.servers_);
   mcap::Visitor visitor;

@@ -80,7 +80,7 @@ v1::Envelope MakePong(const v1::Ping& ping, std::int64_t arrived_ns, std::int64_
 }
 
 std::string WaitingText(const std::string& dial_error, const std::string& last_reason) {
-  return "waiting for a server on " + dial_error +
+  return "cannot connect to " + dial_error +
          (last_reason.empty() ? "" : "; the last one said: " + last_reason);
 }
 

@@ -29,9 +29,11 @@ std::string Frame(std::string_view payload) {
 Result<void> FrameSplitter::CheckLength(std::string_view frame) const {
   const std::uint32_t length = DecodeLength(frame.data());
   if (length <= max_) return {};
-  return InvalidData("a message of " + std::to_string(length) + " bytes was announced, at most " +
-                     std::to_string(max_) +
-                     " are accepted; is the other side speaking Footing's protocol?");
+  return InvalidData(
+      "a message of " + std::to_string(length) + " bytes was announced, at most " +
+      std::to_string(max_) +
+      " are accepted; a message begins with its length as four bytes, little-endian: "
+      "is the other side speaking Footing's protocol?");
 }
 
 std::size_t FrameSplitter::Missing() const {

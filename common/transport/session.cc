@@ -193,8 +193,8 @@ std::optional<v1::CommandResult> Session::Carry(const v1::Command& command,
     failed.set_message("not carried out: too many commands of this session wait for the disk");
   } else if (info_.role < v1::ROLE_CONTROL) {
     failed.set_message(
-        "commands need the role control: connect over the server's Unix socket, or with its token "
-        "or a certificate that has this role");
+        "commands need the role control, and this session has a lower one: request control in "
+        "Hello, over the server's Unix socket, or with its token or a certificate for this role");
   } else if (shared_.NowNs() - arrived_ns >
              std::int64_t{deadline_ms} * kNanosecondsPerMillisecond) {
     failed.set_message("not carried out: its deadline of " + std::to_string(deadline_ms) +

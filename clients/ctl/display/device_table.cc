@@ -134,7 +134,7 @@ ordered_json SetupToJson(const std::vector<stream::RigSetup>& rigs) {
 
 std::string SetupTable(const std::vector<stream::RigSetup>& rigs) {
   std::vector<std::vector<std::string>> rows = {
-      {"rig", "set-up", "device", "result", "date", "residual", "note"}};
+      {"rig", "setup", "device", "result", "date", "residual", "note"}};
   for (const stream::RigSetup& rig : rigs) {
     for (const stream::SetupItem& item : rig.items) {
       rows.push_back({rig.rig, item.name, item.serial.empty() ? "-" : item.serial,

@@ -86,7 +86,7 @@ std::string ToText(const std::vector<Finding>& findings) {
             (one.where.empty() ? "" : " (" + one.where + ")") + "\n  -> " + one.remedy + "\n";
   }
   if (findings.empty()) return "all is well";
-  return text + (Healthy(findings) ? "no error" : "mend the errors first, from the top");
+  return text + (Healthy(findings) ? "no error" : "fix the errors first, from the top");
 }
 
 std::vector<std::string> CheckIds() {

@@ -21,7 +21,7 @@ std::vector<Symptom> Items(const Facts& facts, Bad bad, const char* state) {
       if (!bad(item)) continue;
       found.push_back(
           {Severity::kWarning,
-           "set-up: " + item.name + " " + state + (item.note.empty() ? "" : ": " + item.note),
+           "setup: " + item.name + " " + state + (item.note.empty() ? "" : ": " + item.note),
            item.serial.empty() ? rig.rig : rig.rig + " " + item.serial, Redo(rig, item)});
     }
   }

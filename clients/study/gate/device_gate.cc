@@ -70,7 +70,7 @@ void Check(const plan::DeviceGate& gate, const DeviceStatus& device,
         " battery, and " + Percent(gate.least_battery) + " is needed; change the batteries");
   }
   if (device.slipped || device.moved) {
-    problems.push_back(name + " has moved since its set-up; run footing-ctl setup");
+    problems.push_back(name + " has moved since its setup; run footing-ctl setup");
   }
 }
 

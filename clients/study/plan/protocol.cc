@@ -6,6 +6,7 @@
 #include "clients/study/plan/reader.h"
 #include "common/stream/leg_turn.h"
 #include "common/stream/user_interface.h"
+#include "common/text/library_text.h"
 
 namespace footing::study::plan {
 namespace {
@@ -180,7 +181,7 @@ Result<Protocol> ParseProtocol(const std::string& text, const std::string& file)
   try {
     object = ordered_json::parse(text, nullptr, true, /*ignore_comments=*/true);
   } catch (const ordered_json::exception& error) {
-    return InvalidData(file + ": not JSON: " + error.what());
+    return InvalidData(file + ": not JSON: " + std::string(text::WithoutTag(error.what())));
   }
   Protocol protocol;
   Reader reader(object, file);

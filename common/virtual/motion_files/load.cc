@@ -71,7 +71,7 @@ Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& opti
   const std::string ending = Ending(path);
   if (ending == "trc" || ending == "c3d") return FromMarkers(path, options);
   if (ending != "bvh" && ending != "amc") {
-    return UsageError(path + ": no motion file: expected .bvh, .amc, .trc or .c3d");
+    return UsageError(path + ": not a motion file: expected .bvh, .amc, .trc or .c3d");
   }
   const auto text = Read(path);
   if (!text) return text.error();

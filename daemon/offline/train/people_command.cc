@@ -215,8 +215,7 @@ void AddPeopleCommand(CLI::App& app, Shared& shared) {
   command->add_option("--only", options->only,
                       "Person to leave out; may be repeated (default: all)");
   command
-      ->add_option("--every", options->every,
-                   "Take every so many of a person's takes of one activity")
+      ->add_option("--every", options->every, "Use every Nth of a person's takes of one activity")
       ->check(CLI::Range(1, 100));
   command->add_flag("--ablations", options->more.truth,
                     "Score with true COM, momentum, feet and all of them, too");

@@ -17,8 +17,9 @@ int main(int argc, char** argv) {
       ->required()
       ->delimiter(',')
       ->check(CLI::Range(0.0, 6.0));
-  app->add_option("--keep", options.keep_mps,
-                  "Speeds, m/s: A,B,...; the table has the initial table's sets there besides")
+  app->add_option(
+         "--keep", options.keep_mps,
+         "Speeds, m/s: A,B,...; the output also keeps the initial table's sets at these speeds")
       ->delimiter(',')
       ->check(CLI::Range(0.0, 6.0));
   app->add_option("--out", options.out,

@@ -58,7 +58,7 @@ Result<std::optional<transport::Address>> ParseSource(const std::string& text) {
   static const std::string kPrefix = "stream:";
   if (text == "hid") return std::optional<transport::Address>();
   if (!text.starts_with(kPrefix)) {
-    return UsageError("source \"" + text + "\": there are hid and stream:ADDRESS");
+    return UsageError("unknown source \"" + text + "\"; there are: hid, stream:ADDRESS");
   }
   const auto address = transport::ParseAddress(text.substr(kPrefix.size()));
   if (!address) return address.error();

@@ -166,7 +166,7 @@ TEST(SetupTable, TellsWhatIsStaleAndWhatFailed) {
       {"weigh", "", false, 1'700'000'000'000'000'000, 7, "N", "", false}};
   EXPECT_EQ(
       SetupTable({rig}),
-      "rig   set-up  device             result  date                  residual  note\n"
+      "rig   setup   device             result  date                  residual  note\n"
       "main  tare    00:22:4c:11:22:33  ok      2023-11-14 22:13 UTC  0.32 N\n"
       "main  layout  -                  STALE   2023-11-14 22:13 UTC  -         boards moved\n"
       "main  weigh   -                  FAILED  2023-11-14 22:13 UTC  7.00 N\n");

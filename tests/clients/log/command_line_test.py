@@ -39,6 +39,10 @@ def main(program, writer):
         export = run("export", repaired, "--format", "csv", "--out", folder / "csv", "--json")
         assert export.returncode == 0 and len(json.loads(export.stdout)["files"]) == 3, export
 
+        export = run("export", repaired, "--format", "csv", "--out", folder / "csv", "--force")
+        lines = export.stdout.splitlines()  # A line for each file, not one of JSON.
+        assert sum(".csv  rows " in line for line in lines) == 3 and "{" not in export.stdout, export
+
         for words, said in ((("export", whole, "--format", "c3d", "--out", folder), "csv, bvh"),
                             (("serve", whole, "--server", "none"), "there are: footingd"),
                             (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "common/recording/recording_writer.h"
 #include "tests/clients/log/sample_recording.h"
 #include "tests/clients/log/temporary_folder.h"
 
@@ -37,6 +38,21 @@ TEST_F(ContentsTest, SaysWhetherDevicesWereSimulated) {
   WriteSampleRecording(Path("real.mcap"), false);
   EXPECT_EQ(ReadContents(Path("made.mcap")).value().simulated, true);
   EXPECT_EQ(ReadContents(Path("real.mcap")).value().simulated, false);
+}
+
+TEST_F(ContentsTest, ARestartOfAServerIsCountedApart) {
+  auto writer = recording::RecordingWriter::Create(Path("a.mcap"), {"test", false, {}});
+  ASSERT_TRUE(writer.ok()) << writer.error().message;
+  v1::Gap gap;
+  gap.set_from_sequence(450);
+  gap.set_reason(v1::Gap::REASON_NEW_EPOCH);  // Nobody knows how many: to_sequence is 0.
+  ASSERT_TRUE(writer->Write("/footingd/gaps", gap, {0, 0, 0}).ok());
+  ASSERT_TRUE(writer->Finish().ok());
+  const auto contents = ReadContents(Path("a.mcap"));
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
+  EXPECT_EQ(contents->gaps, 1u);
+  EXPECT_EQ(contents->missing_ticks, 0u);
+  EXPECT_EQ(contents->restarts, 1u);
 }
 
 TEST_F(ContentsTest, TheSameStreamGivesTheSameBytes) {

@@ -70,7 +70,15 @@ TEST(Parse, NamesAnUnknownOptionAndWhereHelpIs) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(ExitCode(program, {"run", "--frequency", "3"}), 2);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            "error: unknown option --frequency; run footing-test --help\n");
+            "error: unknown option --frequency; run footing-test run --help\n");
+}
+
+TEST(Parse, ListsTheSubcommandsBesideAnUnknownOne) {
+  Program program;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(ExitCode(program, {"walk"}), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "error: unknown subcommand walk; there are: run list; run footing-test --help\n");
 }
 
 TEST(Parse, ReportsAValueThatIsNotANumberInOneLine) {

@@ -9,6 +9,7 @@
 #include "common/mcap/summary.h"
 #include "common/mcap/walk.h"
 #include "common/recording/mapped_file.h"
+#include "common/recording/recorded_session.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/repair.h"
 #include "common/recording/schema.h"
@@ -19,6 +20,7 @@ namespace footing::recording {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class Recording : public testing::Test {
  protected:
@@ -163,6 +165,15 @@ TEST_F(Recording, RepairRefusesWhatIsNoRecordingAndItsOwnInput) {
   const auto same = Repair(Path("a.mcap"), Path("a.mcap"), "test", true);
   ASSERT_FALSE(same.ok());
   EXPECT_EQ(same.error().kind, ErrorKind::kUsage);
+}
+
+TEST_F(Recording, ATextFileIsNoCaseForRepair) {
+  Save(Path("notes.txt"), "day 1\n");
+  const auto session = RecordedSession::Open(Path("notes.txt"));
+  ASSERT_FALSE(session.ok());
+  EXPECT_EQ(session.error().kind, ErrorKind::kInvalidData);
+  EXPECT_THAT(session.error().message, HasSubstr("notes.txt is not a recording"));
+  EXPECT_THAT(session.error().message, Not(HasSubstr("repair")));
 }
 
 TEST_F(Recording, SchemasThatMakeNoSenseAreRefused) {

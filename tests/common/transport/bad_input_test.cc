@@ -35,6 +35,15 @@ TEST_F(BadInputTest, AnOversizedLengthIsRefusedBeforeItsBytesCome) {
   ExpectRefusedAsBad(Frame(std::string((64u << 10) + 1, 'x')));
 }
 
+TEST_F(BadInputTest, ALengthThatIsNotLittleEndianIsExplained) {
+  StartServer();
+  const auto client = Throw(std::string("\x00\x00\x00\x10", 4), 1);
+  ASSERT_TRUE(RunUntil([&] { return client->closed.has_value(); }));
+  const v1::Envelope* refused = client->Find(v1::Envelope::kRefused);
+  ASSERT_NE(refused, nullptr);
+  EXPECT_NE(refused->refused().message().find("four bytes, little-endian"), std::string::npos);
+}
+
 TEST_F(BadInputTest, GarbageIsRefused) {
   StartServer();
   ExpectRefusedAsBad("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");

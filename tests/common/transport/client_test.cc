@@ -50,8 +50,7 @@ TEST_F(ClientTest, BeforeItsServerItSaysWhatItWaitsForAndThenConnects) {
   StartClient(ClientOn(UnixAddress()));
   ASSERT_TRUE(RunUntil([&] { return !states_.empty(); }));
   EXPECT_EQ(states_[0].first, LinkState::kConnecting);
-  EXPECT_EQ(states_[0].second,
-            "waiting for a server on " + UnixAddress().Text() + ": no such file");
+  EXPECT_EQ(states_[0].second, "cannot connect to " + UnixAddress().Text() + ": no such file");
   StartServer();
   ASSERT_TRUE(RunUntilState(LinkState::kLive));
   PublishMotion();

@@ -37,6 +37,7 @@ TEST_F(ServerCommandTest, ControlAndAdminAreCarriedOutViewAndLogAreNot) {
     const v1::CommandResult result = Ask(*WithRole(role, 1), 7);
     EXPECT_FALSE(result.ok());
     EXPECT_NE(result.message().find("need the role control"), std::string::npos);
+    EXPECT_NE(result.message().find("request control in Hello"), std::string::npos);
   }
   EXPECT_EQ(commands_.size(), 2u);
 }

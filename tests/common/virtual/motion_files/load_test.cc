@@ -21,7 +21,7 @@ std::string Shared() {
 }
 
 TEST(Load, ErrorsSayWhatIsExpected) {
-  EXPECT_THAT(LoadMotion("x.fbx").error().message, HasSubstr("x.fbx: no motion file: expected"));
+  EXPECT_THAT(LoadMotion("x.fbx").error().message, HasSubstr("x.fbx: not a motion file: expected"));
   EXPECT_EQ(LoadMotion("x.fbx").error().kind, ErrorKind::kUsage);
   EXPECT_THAT(LoadMotion("/nowhere/x.bvh").error().message, HasSubstr("/nowhere/x.bvh"));
   EXPECT_THAT(LoadForces("x.bvh").error().message, HasSubstr("expected .mot"));
