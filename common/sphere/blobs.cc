@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -107,11 +108,11 @@ class RunCollector {
     const std::size_t above = previous_;
     previous_ = runs_.size();
     for (int i = 0; i < width;) {
-      std::uint64_t four = 0;
-      if (i + 4 <= width) {
-        std::memcpy(&four, scores + i, sizeof four);
-        if (four == 0) {
-          i += 4;
+      if (i + kStride <= width) {
+        std::array<std::uint64_t, kStride / 4> some;
+        std::memcpy(some.data(), scores + i, sizeof some);
+        if ((some[0] | some[1] | some[2] | some[3]) == 0) {
+          i += kStride;
           continue;
         }
       }
@@ -146,6 +147,8 @@ class RunCollector {
   }
 
  private:
+  static constexpr int kStride = 16;  // Quads that are skipped at once where nothing is.
+
   int AddRun(int row, const std::int16_t* scores, int first, int width) {
     Run run{row, left_ + first, left_ + first, static_cast<int>(parents_.size()), 0, 0};
     int i = first;

@@ -12,7 +12,8 @@ namespace footing::sphere::disc {
 namespace {
 
 constexpr double kGradientSd = 0.15;
-constexpr double kHuber = 2.5;
+// A step that promises less of chi² is taken unseen: a tenth of a standard deviation.
+constexpr double kLittleGain = 0.01;
 
 State Moved(const State& state, const Right& step) {
   State next = state;
@@ -36,9 +37,11 @@ bool IsSane(const State& next, const State& before) {
 
 std::optional<Solution> Fitter::Solve(State state, bool moves, int rounds) {
   if (samples_.size() < 2 * kParameters) return std::nullopt;
+  ToBlocks(samples_, blocks_);
   double cost = 0;
   const auto solved =
       moves ? Descend<kOwnMoving>(state, rounds, cost) : Descend<kOwn>(state, rounds, cost);
+  ToSamples(blocks_, samples_);
   if (!solved) return std::nullopt;
   return Report(*solved, cost, moves);
 }
@@ -54,7 +57,14 @@ std::optional<State> Fitter::Descend(State state, int rounds, double& cost) {
     Right right;
     Assemble(state, now, normal, right);
     normal.diagonal() *= 1 + lambda;
-    const State next = Moved(state, normal.ldlt().solve(right));
+    const Right step = normal.ldlt().solve(right);
+    const State next = Moved(state, step);
+    const double gain = step.dot(right);
+    if (is_current && gain < kLittleGain && IsSane(next, state)) {
+      state = next;
+      cost -= gain;
+      break;
+    }
     Equations<kSize> then;
     is_current = false;
     const double next_cost = IsSane(next, state) ? Evaluate(next, then) : cost + 1;
@@ -90,37 +100,13 @@ double Fitter::PriorCost(const State& state) const {
 /// Huber's cost of a state, and its equations.
 template <int kSize>
 double Fitter::Evaluate(const State& state, Equations<kSize>& equations) {
-  constexpr bool kMoves = kSize == kOwnMoving;
   equations = Equations<kSize>();
   double cost = PriorCost(state);
-  for (Sample& sample : samples_) {
-    const auto c = static_cast<std::size_t>(sample.channel);
-    const double outside = state.outside[c] + sample.behind;
-    typename Equations<kSize>::Row row;
-    const auto fill = [&](const Modelled& model) {
-      const double value = outside * (1 - model.cover) + state.inside[c] * model.light;
-      sample.beyond = model.beyond;
-      row.template head<kShape>() = state.inside[c] * model.light_slope;
-      row.template head<4>() -= outside * model.cover_slope;
-      row[kSize - 2] = model.light;
-      row[kSize - 1] = 1 - model.cover;
-      return value;
-    };
-    double value = 0;
-    if constexpr (kMoves) {
-      const ModelledMoving model = ModelMoving(sample.slopes, state, scale_, table_);
-      value = fill(model);
-      row.template segment<kMotion>(kShape) =
-          state.inside[c] * model.light_motion - outside * model.cover_motion;
-    } else {
-      value = fill(Model(sample.slopes, state, scale_, table_));
-    }
-    const double per_sd = 1 / std::sqrt(Variance(settings_.noise, value));
-    sample.residual = (sample.value - value) * per_sd;
-    sample.height = std::abs(state.inside[c] - outside) * per_sd;
-    const double z = std::abs(sample.residual), share = z < kHuber ? 1 : kHuber / z;
-    cost += z < kHuber ? z * z : kHuber * (2 * z - kHuber);
-    equations.Add(row, sample.value - value, share * per_sd * per_sd, c);
+  Rows<kSize> rows;
+  for (Block& block : blocks_) {
+    ToRows(block, state, settings_.noise, scale_, table_, rows);
+    equations.Add(rows, block.channel);
+    cost += static_cast<double>(rows.cost.sum());
   }
   return cost;
 }
@@ -170,38 +156,44 @@ Solution Fitter::Report(const State& state, double cost, bool moves) const {
   return solution;
 }
 
-MotionScore Fitter::ScoreMotion(const State& state) const {
+MotionScore Fitter::ScoreMotion(const State& state) {
   // Four columns: how blur and edge change with twice the angle, as motion makes them.
-  constexpr int kColumns = 4;
+  constexpr std::size_t kColumns = 4;
   using Columns = Eigen::Matrix<double, kColumns, 1>;
   Eigen::Matrix<double, kParameters, kColumns> cross =
       Eigen::Matrix<double, kParameters, kColumns>::Zero();
   Eigen::Matrix<double, kColumns, kColumns> own = Eigen::Matrix<double, kColumns, kColumns>::Zero();
   Columns right = Columns::Zero();
-  const Eigen::Matrix2d to_px = scale_.scale().inverse();
-  for (const Sample& sample : samples_) {
-    if (std::abs(sample.beyond) > 3) continue;
-    const auto c = static_cast<std::size_t>(sample.channel);
-    const double outside = state.outside[c] + sample.behind;
-    const Modelled model = Model(sample.slopes, state, scale_, table_);
-    const double value = outside * (1 - model.cover) + state.inside[c] * model.light;
-    const double z = std::abs(sample.residual);
-    const double weight = (z < kHuber ? 1 : kHuber / z) / Variance(settings_.noise, value);
-    Shape row = state.inside[c] * model.light_slope;
-    row.head<4>() -= outside * model.cover_slope;
-    const Eigen::Vector2d from = sample.slopes - state.shape.head<2>();
-    const Eigen::Vector2d unit = (to_px * from).normalized();
-    Columns column;
-    column << row[3] * (unit.x() * unit.x() - unit.y() * unit.y()),
-        row[3] * 2 * unit.x() * unit.y(),
-        scale_.Later(from) * (scale_.scale().transpose() * row.head<2>());
-    const Columns weighted = weight * column;
-    cross.topRows<kShape>() += row * weighted.transpose();
-    const int level = kLevels + 2 * sample.channel;
-    cross.row(level) += model.light * weighted.transpose();
-    cross.row(level + 1) += (1 - model.cover) * weighted.transpose();
-    own += weighted * column.transpose();
-    right += weighted * (sample.value - value);
+  const Eigen::Matrix2f to_px = scale_.scale().inverse().cast<float>();
+  const Eigen::Matrix2f to_slopes = scale_.scale().cast<float>();
+  const Eigen::Vector2f axis = state.shape.head<2>().cast<float>(),
+                        down = scale_.down().cast<float>();
+  Rows<kOwn> rows;
+  for (Block& block : blocks_) {
+    ToRows(block, state, settings_.noise, scale_, table_, rows);
+    const Lane s = block.s - axis.x(), t = block.t - axis.y();
+    const Lane u = to_px(0, 0) * s + to_px(0, 1) * t, v = to_px(1, 0) * s + to_px(1, 1) * t;
+    const Lane per_square = rows.row[3] / (u * u + v * v).max(1e-9F);
+    const Lane later = down.x() * s + down.y() * t;
+    const std::array<Lane, kColumns> columns = {
+        per_square * (u * u - v * v), per_square * 2 * u * v,
+        later * (to_slopes(0, 0) * rows.row[0] + to_slopes(1, 0) * rows.row[1]),
+        later * (to_slopes(0, 1) * rows.row[0] + to_slopes(1, 1) * rows.row[1])};
+    const Lane weight = (block.beyond.abs() <= 3).select(rows.weight, 0.0F);
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      const auto column = static_cast<int>(c);
+      const Lane weighted = weight * columns[c];
+      const auto sum = [&weighted](const Lane& lane) {
+        return static_cast<double>((weighted * lane).sum());
+      };
+      right[column] += sum(rows.off);
+      for (int i = 0; i < kShape; ++i) cross(i, column) += sum(rows.row[std::size_t(i)]);
+      for (int i = 0; i < 2; ++i) {
+        cross(kLevels + 2 * int(block.channel) + i, column) +=
+            sum(rows.row[std::size_t(kShape + i)]);
+      }
+      for (std::size_t k = 0; k < kColumns; ++k) own(int(k), column) += sum(columns[k]);
+    }
   }
   own -= cross.transpose() * normal_.ldlt().solve(cross);
   const Columns change = own.ldlt().solve(right);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/sphere/disc_fit.h"
-#include "common/sphere/disc_model.h"
+#include "common/sphere/disc_rows.h"
 
 namespace footing::sphere::disc {
 
@@ -54,7 +54,7 @@ class Fitter {
   /// From a start; nothing when it runs away. `moves`: the motion is a parameter, too.
   std::optional<Solution> Solve(State state, bool moves, int rounds);
   /// Of the solution that was found last, of a sphere at rest.
-  MotionScore ScoreMotion(const State& state) const;
+  MotionScore ScoreMotion(const State& state);
 
   const std::vector<Sample>& samples() const { return samples_; }
   void Use(std::vector<Sample> samples) { samples_ = std::move(samples); }
@@ -82,6 +82,7 @@ class Fitter {
   const PixelScale& scale_;
   double motion_sd_px_;
   std::vector<Sample> samples_;
+  std::vector<Block> blocks_;  // The same, as they were solved last.
   int inside_ = 0, clipped_ = 0;
   Normal normal_;  // Of the state that was solved last.
 };

@@ -129,8 +129,21 @@ int Fitter::DropSectors(std::vector<bool>& sectors) {
 }  // namespace disc
 
 int SectorOf(const Eigen::Vector2d& from) {
-  const double turn = std::atan2(from.y(), from.x()) / (2 * std::numbers::pi);
-  return (static_cast<int>(std::lround(turn * kSectors)) + kSectors) % kSectors;
+  // Borders of the sectors of an eighth, as tangents.
+  static const std::array<double, kSectors / 8> kBorders = [] {
+    std::array<double, kSectors / 8> borders{};
+    for (std::size_t i = 0; i < borders.size(); ++i)
+      borders[i] = std::tan(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / kSectors);
+    return borders;
+  }();
+  const double u = std::abs(from.x()), v = std::abs(from.y());
+  const double low = std::min(u, v), high = std::max(u, v);
+  int sector = 0;
+  for (const double border : kBorders) sector += low > border * high ? 1 : 0;
+  if (v > u) sector = kSectors / 4 - sector;
+  if (from.x() < 0) sector = kSectors / 2 - sector;
+  if (from.y() < 0) sector = kSectors - sector;
+  return sector % kSectors;
 }
 
 }  // namespace footing::sphere

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace footing::sphere::disc {
 namespace {
@@ -20,24 +21,35 @@ double Variance(const PixelNoise& noise, double value) {
 void LookBehind(std::vector<Sample>& samples, const State& state, const PixelNoise& noise,
                 double more_blurs, std::vector<bool>& sectors) {
   const std::size_t count = sectors.size();
-  std::vector<std::array<std::vector<double>, 3>> ring(count);
-  for (const Sample& sample : samples) {
-    if (sample.beyond < kRingBlurs + more_blurs) continue;
-    for (const std::size_t turn : {count - 1, count, count + 1}) {
-      const std::size_t s = (static_cast<std::size_t>(sample.sector) + turn) % count;
-      ring[s][static_cast<std::size_t>(sample.channel)].push_back(sample.value);
-    }
-  }
+  // Values of each sector and channel, one after the other.
+  const auto place = [](const Sample& sample) {
+    return 3 * static_cast<std::size_t>(sample.sector) + static_cast<std::size_t>(sample.channel);
+  };
+  const auto is_behind = [&](const Sample& s) { return s.beyond >= kRingBlurs + more_blurs; };
+  std::vector<std::size_t> ends(3 * count + 1, 0);
+  for (const Sample& sample : samples) ends[place(sample) + 1] += is_behind(sample) ? 1 : 0;
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<double> ring(ends.back()), values;
+  std::vector<std::size_t> next = ends;
+  for (const Sample& sample : samples)
+    if (is_behind(sample)) ring[next[place(sample)]++] = sample.value;
   std::vector<std::array<double, 3>> behind(count);
   for (std::size_t s = 0; s < count; ++s) {
     for (std::size_t c = 0; c < 3; ++c) {
-      std::vector<double>& values = ring[s][c];
+      values.clear();
+      for (const std::size_t turn : {count - 1, count, count + 1}) {
+        const std::size_t at = 3 * ((s + turn) % count) + c;
+        values.insert(values.end(), ring.begin() + static_cast<std::ptrdiff_t>(ends[at]),
+                      ring.begin() + static_cast<std::ptrdiff_t>(ends[at + 1]));
+      }
       if (values.empty()) continue;
-      std::sort(values.begin(), values.end());
-      const double median = values[values.size() / 2];
-      const double sd = std::sqrt(Variance(noise, median));
-      if (values.back() - values.front() > kWidestRange * sd) sectors[s] = false;
-      const double apart = median - state.outside[c];
+      const auto [least, most] = std::minmax_element(values.begin(), values.end());
+      const double range = *most - *least;
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      const double sd = std::sqrt(Variance(noise, *middle));
+      if (range > kWidestRange * sd) sectors[s] = false;
+      const double apart = *middle - state.outside[c];
       if (std::abs(apart) > kLeastApart * sd) behind[s][c] = apart;
     }
   }

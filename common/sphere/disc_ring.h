@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/sphere/disc_model.h"
+#include "common/sphere/disc_rows.h"
 #include "common/sphere/settings.h"
 
 namespace footing::sphere::disc {

@@ -63,18 +63,6 @@ std::vector<std::pair<int, int>> Middle(const Blob& blob) {
   return middle;
 }
 
-Eigen::Vector3d ColourOf(const Quads& quads, const std::vector<std::pair<int, int>>& middle) {
-  std::array<std::vector<double>, 3> inside;
-  for (const auto& [x, y] : middle) {
-    const std::size_t at = QuadAt(quads, x, y);
-    inside[0].push_back(quads.red[at]);
-    inside[1].push_back(quads.green[at]);
-    inside[2].push_back(quads.blue[at]);
-  }
-  return {Quantile(inside[0], kInsideQuantile), Quantile(inside[1], kInsideQuantile),
-          Quantile(inside[2], kInsideQuantile)};
-}
-
 Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob,
                     const std::vector<std::pair<int, int>>& middle) {
   std::array<std::vector<double>, 3> inside, outside;
@@ -162,12 +150,22 @@ std::optional<double> FallAlong(const LightMap& map, const Eigen::Vector2d& from
 
 }  // namespace
 
+Eigen::Vector3d ColourOf(const Quads& quads, const Blob& blob) {
+  std::array<std::vector<double>, 3> inside;
+  for (const auto& [x, y] : Middle(blob)) {
+    const std::size_t at = QuadAt(quads, x, y);
+    inside[0].push_back(quads.red[at]);
+    inside[1].push_back(quads.green[at]);
+    inside[2].push_back(quads.blue[at]);
+  }
+  return {Quantile(inside[0], kInsideQuantile), Quantile(inside[1], kInsideQuantile),
+          Quantile(inside[2], kInsideQuantile)};
+}
+
 std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
                                const PixelNoise& noise) {
   Edges edges;
-  const std::vector<std::pair<int, int>> middle = Middle(blob);
-  edges.colour_dn = ColourOf(quads, middle);
-  edges.contrast = ContrastOf(image, quads, blob, middle);
+  edges.contrast = ContrastOf(image, quads, blob, Middle(blob));
   double highest = 0;
   for (int i = 0; i < 3; ++i) highest = std::max(highest, std::abs(edges.contrast.Height(i)));
   if (highest < kLeastContrastDn) return std::nullopt;

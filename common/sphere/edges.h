@@ -21,10 +21,12 @@ struct Contrast {
 
 inline constexpr int kEdgeRays = 32;
 
+/// Red, green and blue in the middle of a blob.
+Eigen::Vector3d ColourOf(const Quads& quads, const Blob& blob);
+
 /// Where the light falls to the half between inside and outside along rays from a blob's middle.
 struct Edges {
   Contrast contrast;
-  Eigen::Vector3d colour_dn{0, 0, 0};   ///< Red, green and blue inside.
   std::vector<Eigen::Vector2d> pixels;  ///< Of the rays that meet an edge.
 };
 

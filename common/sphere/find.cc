@@ -76,17 +76,20 @@ double ColourOff(const Eigen::Vector3d& seen_dn, const Eigen::Vector3d& colour_d
 SectorReach ReachOf(const ConeFit& fit, const std::vector<Eigen::Vector2d>& slopes) {
   constexpr double kNear = 1.6 * 2 * std::numbers::pi / kSectors;
   SectorReach reach;
+  std::vector<Eigen::Vector2d> polar;  // Angle and distance of each edge.
+  for (const Eigen::Vector2d& at : slopes) {
+    const Eigen::Vector2d from = at - fit.cone.axis;
+    polar.emplace_back(std::atan2(from.y(), from.x()), from.norm());
+  }
   for (std::size_t s = 0; s < kSectors; ++s) {
     const double middle = 2 * std::numbers::pi * static_cast<double>(s) / kSectors;
     double nearest = fit.cone.tangent;
     int outliers = 0, inliers = 0;
     for (std::size_t i = 0; i < slopes.size(); ++i) {
-      const Eigen::Vector2d from = slopes[i] - fit.cone.axis;
-      const double apart =
-          std::remainder(std::atan2(from.y(), from.x()) - middle, 2 * std::numbers::pi);
-      if (std::abs(apart) > kNear) continue;
+      const double apart = std::abs(polar[i].x() - middle);  // Up to one and a half turns.
+      if (std::min(apart, std::abs(apart - 2 * std::numbers::pi)) > kNear) continue;
       ++(fit.inliers[i] ? inliers : outliers);
-      if (!fit.inliers[i]) nearest = std::min(nearest, from.norm());
+      if (!fit.inliers[i]) nearest = std::min(nearest, polar[i].y());
     }
     if (inliers > outliers) {
       reach[s] = std::numeric_limits<double>::infinity();
@@ -150,6 +153,8 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, const Targ
   if (blobs.size() > kMostBlobs) blobs.resize(kMostBlobs);
   std::vector<Candidate> candidates;
   for (const Blob& blob : blobs) {
+    const double colour_off = ColourOff(ColourOf(quads_, blob), target.colour_dn);
+    if (colour_off >= kMostColourOff) continue;  // Its confidence would be zero.
     const auto edges = FindEdges(image, quads_, blob, settings_.noise);
     if (!edges) continue;
     const Eigen::Vector2d middle_px = 2 * blob.centre + Eigen::Vector2d(0.5, 0.5);
@@ -166,7 +171,7 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, const Targ
     Candidate candidate{
         slopes, {edges->contrast, middle_px, fit->cone, ReachOf(*fit, at), at, target.radius_m}};
     const auto inliers = std::count(fit->inliers.begin(), fit->inliers.end(), true);
-    candidate.colour_off = ColourOff(edges->colour_dn, target.colour_dn);
+    candidate.colour_off = colour_off;
     candidate.quality =
         static_cast<double>(inliers) / kEdgeRays * std::max(0.0, 1 - candidate.colour_off);
     candidates.push_back(candidate);

@@ -1,5 +1,6 @@
 #include "common/sphere/profile_table.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -70,32 +71,38 @@ ProfileTable::ProfileTable() {
   }
 }
 
-ProfileValue ProfileTable::At(double beyond, double blur) const {
+ProfileValue ProfileTable::At(float beyond, float blur) const {
   ProfileValue value;
   if (beyond >= kReach) return value;
-  const double b = std::clamp(blur, kLeastBlur, kLeastBlur + (kBlurs - 1.001) * kBlurStep);
+  const float b = std::clamp(blur, kLeastBlur, kLeastBlur + (kBlurs - 1.001F) * kBlurStep);
   if (beyond <= -kReach) {
-    const double q = std::clamp(1 + b * beyond, 0.0, 0.999);
-    const double cosine = std::sqrt(1 - q * q);
+    const float q = std::clamp(1 + b * beyond, 0.0F, 0.999F);
+    const float cosine = std::sqrt(1 - q * q);
     // Blur adds half its variance times the Laplacian.
-    const double laplacian = 1 / cosine + 1 / (cosine * cosine * cosine);
+    const float laplacian = 1 / cosine + 1 / (cosine * cosine * cosine);
     value.disc = 1;
-    value.limb = 1 - cosine + 0.5 * b * b * laplacian;
+    value.limb = 1 - cosine + 0.5F * b * b * laplacian;
     value.limb_d = b * q / cosine;
     value.limb_blur = beyond * q / cosine + b * laplacian;
     return value;
   }
-  const double row = (b - kLeastBlur) / kBlurStep, column = (beyond + kReach) / kDistanceStep;
+  const float row = (b - kLeastBlur) * (1 / kBlurStep);
+  const float column = (beyond + kReach) * (1 / kDistanceStep);
   const int j = static_cast<int>(row), i = std::min(static_cast<int>(column), kDistances - 2);
-  const double p = row - j, q = column - i;
-  const Cell &a = Node(j, i), &c = Node(j, i + 1), &e = Node(j + 1, i), &g = Node(j + 1, i + 1);
-  const auto mix = [](double from, double to, double share) { return from + share * (to - from); };
-  value.disc = mix(mix(a.disc, c.disc, q), mix(e.disc, g.disc, q), p);
-  value.limb = mix(mix(a.limb, c.limb, q), mix(e.limb, g.limb, q), p);
-  value.disc_d = mix(c.disc - a.disc, g.disc - e.disc, p) / kDistanceStep;
-  value.limb_d = mix(c.limb - a.limb, g.limb - e.limb, p) / kDistanceStep;
-  value.disc_blur = mix(e.disc - a.disc, g.disc - c.disc, q) / kBlurStep;
-  value.limb_blur = mix(e.limb - a.limb, g.limb - c.limb, q) / kBlurStep;
+  const float p = row - static_cast<float>(j), q = column - static_cast<float>(i);
+  // Two nodes side by side: disc and limb of the nearer one, disc and limb of the farther one.
+  const Cell* node = cells_.data() + static_cast<std::size_t>(j * kDistances + i);
+  const Eigen::Map<const Eigen::Array4f> low(&node[0].disc), high(&node[kDistances].disc);
+  const Eigen::Array4f apart = high - low, middle = low + p * apart;
+  const Eigen::Array2f along = middle.tail<2>() - middle.head<2>();
+  const Eigen::Array2f at = middle.head<2>() + q * along;
+  const Eigen::Array2f along_blur = apart.head<2>() + q * (apart.tail<2>() - apart.head<2>());
+  value.disc = at[0];
+  value.limb = at[1];
+  value.disc_d = along[0] * (1 / kDistanceStep);
+  value.limb_d = along[1] * (1 / kDistanceStep);
+  value.disc_blur = along_blur[0] * (1 / kBlurStep);
+  value.limb_blur = along_blur[1] * (1 / kBlurStep);
   return value;
 }
 

@@ -6,10 +6,10 @@ namespace footing::sphere {
 
 /// Brightness of a blurred disc at a distance from its middle, and how it changes.
 struct ProfileValue {
-  double disc = 0;  ///< Of an even disc: 1 inside, 0 outside.
-  double limb = 0;  ///< Of a disc whose brightness is 1 - cos, 0 in the middle, 1 at the edge.
-  double disc_d = 0, limb_d = 0;        ///< Slopes along `beyond`.
-  double disc_blur = 0, limb_blur = 0;  ///< Slopes along `blur`.
+  float disc = 0;  ///< Of an even disc: 1 inside, 0 outside.
+  float limb = 0;  ///< Of a disc whose brightness is 1 - cos, 0 in the middle, 1 at the edge.
+  float disc_d = 0, limb_d = 0;        ///< Slopes along `beyond`.
+  float disc_blur = 0, limb_blur = 0;  ///< Slopes along `blur`.
 };
 
 /// Both discs convolved with a Gaussian, tabulated once by numerical integration over radius, with
@@ -20,20 +20,17 @@ class ProfileTable {
 
   /// `beyond`: distance outside of the edge, in blurs; `blur`: deviation over the disc's radius,
   /// held to 0.005 to 0.6.
-  ProfileValue At(double beyond, double blur) const;
+  ProfileValue At(float beyond, float blur) const;
 
-  static constexpr double kReach = 5;  ///< Beyond that, the disc is 1 or 0.
+  static constexpr float kReach = 5;  ///< Beyond that, the disc is 1 or 0.
 
  private:
   static constexpr int kBlurs = 61, kDistances = 101;
-  static constexpr double kLeastBlur = 0.005, kBlurStep = 0.01, kDistanceStep = 0.1;
+  static constexpr float kLeastBlur = 0.005F, kBlurStep = 0.01F, kDistanceStep = 0.1F;
 
   struct Cell {
     float disc, limb;
   };
-  const Cell& Node(int blur, int distance) const {
-    return cells_[static_cast<std::size_t>(blur * kDistances + distance)];
-  }
   std::vector<Cell> cells_;
 };
 
