@@ -6,6 +6,7 @@
 #include "common/units/units.h"
 #include "daemon/simulation/gait/cadence.h"
 #include "daemon/simulation/gait/frames.h"
+#include "daemon/simulation/gait/leg_room.h"
 #include "daemon/simulation/gait/pit_sight.h"
 #include "daemon/simulation/gait/transition.h"
 #include "daemon/simulation/gait/walk_sight.h"
@@ -64,7 +65,8 @@ WalkingFoothold PlanWalkingFoothold(const Context& context, const GaitMemory& me
                           std::max(0.0, outward_m - kSidewaysWideM);
   foothold.hurry = std::min(gains.hurry_rate, kHurryPerMetre * excess_m);
 
-  const double y_m = side * std::clamp(outward_m, -gains.feet_cross_m, gains.side_step_limit_m);
+  const double y_m = side * std::clamp(SideStep(outward_m, context.gains.curve.leg_gap_m),
+                                       -gains.feet_cross_m, gains.side_step_limit_m);
   const Vector3d& p_WF = context.body.legs[memory.support_leg].p_WF;
   double ahead_m = std::clamp(natural_m, -kBackwardLimitM, gains.step_length_limit_m);
   const Vector3d beside_W = p_WF + ToWorld(memory.heading_rad, {0, y_m, 0});

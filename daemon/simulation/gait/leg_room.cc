@@ -17,6 +17,10 @@ constexpr double kFullBankRad = 0.1;
 constexpr double kPushedRad = 0.15;
 /// The same where the run goes straight ahead.
 constexpr double kPushedStraightRad = 0.06;
+/// In a curve the idle leg begins to turn outwards this much before the legs pass each other, at
+/// about twice the run's speed: its servo follows late, and at 6 m/s they come from 14 cm to 7 cm
+/// in 6 ms. Straight ahead, 4 of 384 runs of 6 m/s fell with that by pushes of 26 N s.
+constexpr double kPassingLeadS = 0.015;
 /// A leg that is less steep reaches no other.
 constexpr double kSteepEnoughM = -0.2;
 
@@ -25,18 +29,25 @@ Vector3d AtHeight(const Vector3d& hip_m, const Vector3d& r_HF_m, double height_m
   return hip_m + (height_m - hip_m.z()) / r_HF_m.z() * r_HF_m;
 }
 
+/// From 0 to 1: how much of a curve it is.
+double InCurve(const Context& context, const GaitMemory& memory) {
+  return std::min(1.0, std::fabs(BankAngle(memory, context.gains.attitude)) / kFullBankRad);
+}
+
 /// From 0 to 1: how much of the gap is asked for.
 double Asked(const Context& context, const GaitMemory& memory) {
-  const AttitudeGains& attitude = context.gains.attitude;
-  const double bank = std::fabs(BankAngle(memory, attitude)) / kFullBankRad;
-  const double tilt_rad = std::fabs(TiltAside(context.body, memory, attitude));
+  const double tilt_rad = std::fabs(TiltAside(context.body, memory, context.gains.attitude));
   const auto upright = [tilt_rad](double pushed_rad) {
     return std::clamp(2 - tilt_rad / pushed_rad, 0.0, 1.0);
   };
-  return std::max(std::min(1.0, bank) * upright(kPushedRad), upright(kPushedStraightRad));
+  return std::max(InCurve(context, memory) * upright(kPushedRad), upright(kPushedStraightRad));
 }
 
 }  // namespace
+
+double SideStep(double outward_m, double gap_m) {
+  return std::max(outward_m, gap_m + 2 * std::min(0.0, outward_m));
+}
 
 void KeepLegsApart(const Context& context, const GaitMemory& memory, Targets& targets) {
   const double gap_m = context.gains.curve.leg_gap_m;
@@ -60,7 +71,9 @@ void KeepLegsApart(const Context& context, const GaitMemory& memory, Targets& ta
   // Where they cross, how far are they apart fore and aft?
   const double way = outward_m < 0 && hips_m > 0 ? hips_m / (hips_m - outward_m) : 1;
   const double ahead_m = std::fabs(std::lerp(hips_H.x(), feet_H.x(), way));
-  const double share = asked * std::clamp(2 - ahead_m / gap_m, 0.0, 1.0);
+  const double lead_s = kPassingLeadS * InCurve(context, memory);
+  const double near_m = gap_m + lead_s * 2 * std::fabs(memory.speed.desired_mps);
+  const double share = asked * std::clamp(2 - ahead_m / near_m, 0.0, 1.0);
   const double reach = target.r_HF_W_m.z() / (height_m - own.p_WH.z());
   const double length_m = target.r_HF_W_m.norm();
   target.r_HF_W_m +=

@@ -57,11 +57,38 @@ TEST(LegRoom, KeepsTheIdleLegOfACurveTheGapAside) {
 
 TEST(LegRoom, LeavesLegsAloneThatHaveSpaceOrPassOneBeforeTheOther) {
   CurveScene scene;
-  const Vector3d wide(0, -0.1, -0.7), ahead(0.2, 0.04, -0.7);
+  const Vector3d wide(0, -0.1, -0.7), ahead(0.5, 0.04, -0.5);
   for (const Vector3d& target : {wide, ahead}) {
     scene.targets.legs[kIdle].r_HF_W_m = target;
     EXPECT_EQ(scene.Kept(), target);
   }
+}
+
+TEST(LegRoom, BeginsInACurveBeforeTheLegsPassTheSoonerTheFasterTheyDo) {
+  const Vector3d ahead(0.35, 0.12, -0.6);
+  const auto outward_m = [&ahead](double speed_mps, double turning_radps) {
+    CurveScene scene;
+    scene.memory.speed.desired_mps = speed_mps;
+    scene.memory.turning_radps = turning_radps;
+    const double bank_rad = BankAngle(scene.memory, scene.gains.attitude);
+    scene.body.R_WB = Eigen::AngleAxisd(bank_rad, Vector3d::UnitX()).toRotationMatrix();
+    scene.targets.legs[kIdle].r_HF_W_m = ahead;
+    return ahead.y() - scene.Kept().y();
+  };
+  EXPECT_GT(outward_m(5, 0.3), 0.005);
+  EXPECT_GT(outward_m(6, 0.3), outward_m(5, 0.3) + 0.002);
+  EXPECT_EQ(outward_m(1, 0.3), 0);
+  EXPECT_EQ(outward_m(6, 0), 0);
+}
+
+TEST(LegRoom, KeepsAWalksFeetTheGapAsideUntilAPushWantsThemToCross) {
+  constexpr double kGapM = 0.07;
+  EXPECT_EQ(SideStep(0.2, kGapM), 0.2);
+  EXPECT_EQ(SideStep(0.03, kGapM), kGapM);
+  EXPECT_EQ(SideStep(0, kGapM), kGapM);
+  EXPECT_NEAR(SideStep(-0.035, kGapM), 0, 1e-12);
+  EXPECT_EQ(SideStep(-0.1, kGapM), -0.1);
+  EXPECT_EQ(SideStep(-0.1, 0), -0.1);
 }
 
 TEST(LegRoom, KeepsTheGapStraightAheadTooWhileTheBodyIsUpright) {
