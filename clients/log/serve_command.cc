@@ -34,7 +34,7 @@ Result<std::string> ChooseServer(const recording::RecordedSession& session,
   }
   if (first.empty()) return InvalidData(session.path() + " holds no ticks of a server");
   if (wanted.empty()) return first;
-  return UsageError(session.path() + " holds nothing of " + wanted + "; there are: " + names);
+  return UsageError(session.path() + " has no messages of " + wanted + "; there are: " + names);
 }
 
 Result<nlohmann::ordered_json> RunServe(const ServeOptions& options) {

@@ -105,7 +105,7 @@ Result<Plan> PlanReplay(const std::string& path, const Common& common) {
   const auto session = recording::RecordedSession::Open(path);
   if (!session) return session.error();
   const recording::RecordedServer* server = session->Find("footingd");
-  if (server == nullptr) return InvalidData(path + " holds nothing of footingd");
+  if (server == nullptr) return InvalidData(path + " has no messages of footingd");
   StayCollector collector;
   for (const recording::RecordedTick& recorded : server->ticks) {
     const auto tick =

@@ -72,7 +72,7 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   AddProtocolOptions(*command, options->protocol);
   command->add_option("--out", options->out, "Folder of the data set; must not exist")->required();
   command->add_flag("--with-text", options->with_text,
-                    "With the free-text answers: read them first, they may say who somebody is");
+                    "Include the free-text answers: read them first, they may identify a person");
   command->callback([options, &shared] { Finish(Export(*options), shared); });
 }
 

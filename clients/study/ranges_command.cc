@@ -133,7 +133,7 @@ void AddRangesCommand(CLI::App& app, Shared& shared) {
   command->add_flag("--force", options->force, "Replace the file where it exists");
   command->add_option("--sensor", options->sensor, "Address of footingd");
   command->add_option("--rig", options->rig, "Rig (default: the first with the devices)");
-  command->add_flag("--now", options->now, "Begin at once, without a key");
+  command->add_flag("--now", options->now, "Begin immediately, without a key press");
   CLI::Option* recording = command->add_option(
       "--recording", options->recording, "Measure what a recording shows, MCAP, in place of live");
   command->add_option("--from", options->from_s, "Start in the recording, s")->needs(recording);

@@ -86,9 +86,9 @@ void AddRunCommand(CLI::App& app, Shared& shared) {
   command->add_option("--survey", given->survey,
                       "Address for the participant's survey screen, footing-study survey (default: "
                       "the survey is asked in this terminal)");
-  command->add_flag(
-      "--unattended", given->unattended,
-      "Ask nobody, wait for nothing, and answer the surveys at random, marked synthetic");
+  command->add_flag("--unattended", given->unattended,
+                    "Without a person: no prompts and no waiting; surveys are answered at random, "
+                    "marked synthetic");
   command->add_option("--seed", given->seed, "Seed of unattended answers");
   CLI::Option* withdraw =
       command->add_flag("--withdraw", given->withdraw,

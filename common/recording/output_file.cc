@@ -14,7 +14,7 @@ Result<OutputFile> OutputFile::Create(const std::string& path, bool replace) {
   const int descriptor = ::open(path.c_str(), flags, 0600);
   if (descriptor >= 0) return OutputFile(path, descriptor);
   if (errno == EEXIST) {
-    return UsageError(path + " exists and is not overwritten; choose another name, or say --force");
+    return UsageError(path + " exists; choose another name, or overwrite it with --force");
   }
   return Failure("cannot create " + path + ": " + std::strerror(errno));
 }

@@ -161,7 +161,7 @@ std::vector<Symptom> WritesFailed(const Facts& facts) {
       [](const DeviceStatus& device) {
         return Symptom{Severity::kWarning,
                        std::to_string(device.writes_failed) + " writes to it failed", "",
-                       "switch it off and on; if it goes on: footing-ctl pair again"};
+                       "switch it off and on; if that does not help: footing-ctl pair"};
       });
 }
 
@@ -241,7 +241,7 @@ std::vector<Symptom> Notes(const Facts& facts) {
       },
       [](const DeviceStatus& device) {
         return Symptom{device.state == DeviceState::kLive ? Severity::kNote : Severity::kWarning,
-                       device.note, "", "footing-ctl watch shows whether it goes on"};
+                       device.note, "", "footing-ctl watch shows whether it persists"};
       });
 }
 

@@ -59,7 +59,7 @@ std::vector<Symptom> NoLayout(const Facts& facts) {
   for (const DeviceStatus& device : facts.devices) {
     if (device.kind != DeviceKind::kBalanceBoard || !IsThere(device)) continue;
     if (laid.count(device.rig) > 0 || !reported.insert(device.rig).second) continue;
-    found.push_back({Severity::kWarning, "nobody has said where the boards lie", device.rig,
+    found.push_back({Severity::kWarning, "the layout of the boards is not set", device.rig,
                      "footing-ctl layout --rig " + device.rig + " --check"});
   }
   return found;
@@ -92,8 +92,8 @@ std::vector<Symptom> NotMounted(const Facts& facts) {
   std::vector<Symptom> found;
   for (const DeviceStatus& device : facts.devices) {
     if (!IsThere(device) || device.mounted || mounted_roles.count(device.role) == 0) continue;
-    found.push_back({Severity::kWarning, "nobody has measured how it sits on its wearer",
-                     Place(device), "footing-ctl setup --rig " + device.rig + " --only mounting"});
+    found.push_back({Severity::kWarning, "its mounting is not measured", Place(device),
+                     "footing-ctl setup --rig " + device.rig + " --only mounting"});
   }
   return found;
 }

@@ -57,7 +57,7 @@ std::vector<Step> NintendoSteps(Kind kind, const Host& host) {
            "next switch-off.",
        "", std::string("[NEW] Device ADDRESS ") + text.name});
   steps.push_back(
-      {"Pair while it blinks. No PIN is to be typed: BlueZ gives it (the adapter's own "
+      {"Pair while it blinks. Do not type a PIN: BlueZ supplies it (the adapter's own "
        "address, backwards). If it asks for one press the red button again and repeat.",
        "pair ADDRESS", "Pairing successful"});
   steps.push_back(

@@ -169,7 +169,7 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
       text_.body() = file->text;
       return Send(text_);
     }
-    Refuse(http::status::not_found, "there is no such page\n");
+    Refuse(http::status::not_found, "this page does not exist\n");
   }
 
   void Upgrade(const Request& request) {
@@ -185,7 +185,7 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
     if (path) file_.body().open(path->c_str(), boost::beast::file_mode::scan, error);
     if (!path || error)
       return Refuse(http::status::not_found,
-                    "there is no such file of @mediapipe/pose; run scripts/fetch-pose-model\n");
+                    "@mediapipe/pose has no such file; run scripts/fetch-pose-model\n");
     const auto type = kTypes.find(path->extension().native());
     Prepare(file_, http::status::ok,
             type == kTypes.end() ? "application/octet-stream" : type->second);

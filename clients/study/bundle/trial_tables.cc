@@ -199,7 +199,7 @@ Result<TrialTables> ReadTrial(const recording::RecordedSession& session,
   const std::string id = IdOf(session);
   if (id.empty()) return InvalidData(session.path() + ": it has no trial marks");
   const RecordedServer* simulation = session.Find("footing-sim");
-  if (simulation == nullptr) return InvalidData(session.path() + ": nothing of footing-sim");
+  if (simulation == nullptr) return InvalidData(session.path() + " has no messages of footing-sim");
   const auto ticks = ReadTicks(*simulation, {Tick::kCharactersFieldNumber, Tick::kEventsFieldNumber,
                                              Tick::kConfigFieldNumber});
   if (!ticks) return ticks.error();

@@ -117,7 +117,7 @@ Result<RecordedRanges> RangesInRecording(const std::string& path, const ranges::
   if (!session) return session.error();
   const recording::RecordedServer* sensors = session->Find("footingd");
   if (sensors == nullptr || sensors->ticks.empty()) {
-    return InvalidData(path + " has nothing of footingd");
+    return InvalidData(path + " has no messages of footingd");
   }
   RangeFeed feed(played, rig);
   const std::int64_t start_ns = sensors->ticks.front().host_ns;

@@ -133,7 +133,7 @@ Result<std::string> Console::Ask(const std::string& prompt) {
   own.RunUntil([&own] { return own.HasLine() || own.ended_; }, kAskS);
   if (own.interrupted_) return Interrupted();
   if (own.HasLine() || !own.typed_.empty()) return own.TakeLine();
-  return Failure("the standard input has ended; the session can go on with footing-study run");
+  return Failure("the standard input has ended; footing-study run resumes the session");
 }
 
 void Console::ReadKeys(bool on) {
@@ -162,6 +162,6 @@ Waited Console::RunUntil(const std::function<bool()>& condition, double within_s
 
 bool Console::interrupted() const { return implementation_->interrupted_; }
 
-Error Interrupted() { return Failure("interrupted; footing-study run goes on with the session"); }
+Error Interrupted() { return Failure("interrupted; footing-study run resumes the session"); }
 
 }  // namespace footing::study

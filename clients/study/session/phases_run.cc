@@ -184,10 +184,10 @@ Result<std::string> SessionRun::Attempt(const plan::Phase& phase) {
 }
 
 Result<bool> SessionRun::AskToRepeat(const plan::Phase& phase) {
-  Show("The trial is over.", "Enter goes on, r repeats it, u NUMBER undoes a failure");
+  Show("The trial is over.", "Enter continues, r repeats it, u NUMBER undoes a failure");
   for (;;) {
     const auto next = context_.console.Ask(
-        "Press Enter to go on, type r to repeat the trial, or u NUMBER to undo a failure:");
+        "Press Enter to continue, type r to repeat the trial, or u NUMBER to undo a failure:");
     if (!next) return next.error();
     if (next->empty()) return false;
     if (*next == "r") return true;

@@ -145,7 +145,7 @@ Result<void> Servers::CheckLeases() const {
   for (const ServerLink* link : {&implementation_->simulation_, &implementation_->sensor_}) {
     if (!link->lease().lost()) continue;
     return Failure(link->name() + ": " + link->lease().refusal() +
-                   "; footing-study run goes on with the session");
+                   "; footing-study run resumes the session");
   }
   return {};
 }

@@ -142,11 +142,11 @@ class Run {
   Result<void> Follow() {
     for (const records::Event& event : tail_.ReadNew()) {
       if (event.kind != records::EventKind::kPhaseStarted) continue;
-      const std::string interface = event.Text("interface");
-      if (interface.empty() || interface == interface_) continue;
-      std::cerr << simulated_.session.participant << ": " << interface_ << " is done after "
+      std::cerr << simulated_.session.participant << ": " << event.Text("phase") << " begins after "
                 << text::Fixed(NanosecondsToSeconds(NowNs() - begin_ns_), 0)
                 << (keeper_ ? " s of simulated time" : " s") << std::endl;
+      const std::string interface = event.Text("interface");
+      if (interface.empty() || interface == interface_) continue;
       if (const auto done = ChangeTo(interface); !done) return done;
     }
     return {};

@@ -192,7 +192,7 @@ void RecordedShow::ReportLinks(std::int64_t time_ns) {
     links.push_back({recording_.path(), name, scene::LinkState::kLive, ""});
     if (time_ns - newest_ns_[server] > kStaleNs) {
       links.back().state = scene::LinkState::kStale;
-      links.back().why = "nothing of " + name + " is recorded here";
+      links.back().why = "the recording has no messages of " + name;
     }
   }
 }

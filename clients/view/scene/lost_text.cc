@@ -42,7 +42,7 @@ std::string DevicesOf(const stream::InterfaceState& state) {
 std::string AdviceFor(UserInterface interface) {
   const std::string which = interface == UserInterface::kBoards ? "board" : "controller";
   return "Stand still and press a button of each silent " + which +
-         ". If no light comes on, change its batteries. The character goes on by itself.";
+         ". If no light comes on, change its batteries. The character continues by itself.";
 }
 
 }  // namespace
@@ -56,12 +56,12 @@ std::optional<LostSignal> LostSignalOf(const CharacterPose& pose) {
   if (absent && pose.gait.commanded_gait != stream::Gait::kStep) return std::nullopt;
   LostSignal lost;
   lost.effect = absent ? "The character stops and steps in place."
-                       : "The character goes on, but does not turn.";
+                       : "The character continues, but does not turn.";
   if (!pose.gait.commanded_by_stream) {
     lost.what = "No signal from any device";
     lost.advice =
         "Stand still. The sensor daemon footingd does not answer: start it again, or "
-        "check the cable to it. The character goes on by itself.";
+        "check the cable to it. The character continues by itself.";
     return lost;
   }
   lost.what = "No signal from " + DevicesOf(state);

@@ -40,8 +40,8 @@ constexpr char kExamples[] =
     "  footing-eval sphere --frames frames --camera frames/camera.json --json\n"
     "  footing-eval calibration --method marks --boards 1 --trials 1 --json\n"
     "  footing-eval spirals --seeds 20 --json\n"
-    "  footing-eval replay walk.mcap --json     # recorded by footing-log record --out "
-    "walk.mcap";
+    "  footing-eval replay walk.mcap --json     # recorded by footing-log record "
+    "--from-ring --out walk.mcap";
 
 void AddCommands(CLI::App& app, footing::eval::Shared& shared) {
   using namespace footing::eval;  // NOLINT: a list

@@ -24,8 +24,7 @@ void AddModelOptions(CLI::App& command, ModelOptions& options) {
 Result<void> CheckFree(const ModelOptions& options) {
   std::error_code error;
   if (options.force || !std::filesystem::exists(options.out, error)) return {};
-  return UsageError(options.out +
-                    " exists and is not overwritten; choose another name, or say --force");
+  return UsageError(options.out + " exists; choose another name, or overwrite it with --force");
 }
 
 model::Model NewModel(const std::string& kind, const Shared& shared, const ModelOptions& options,

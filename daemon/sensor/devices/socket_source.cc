@@ -120,6 +120,7 @@ class SocketSource::Implementation {
     const std::uint64_t id = ++last_connection_;
     transport::FramedHandlers handlers;
     handlers.on_frame = [this, id](std::string_view payload) { OnFrame(id, payload); };
+    handlers.on_bad_input = [this, id](const auto& why) { Refuse(connections_.at(id), why); };
     handlers.on_bytes = [this, id] { connections_.at(id).heard_ns = clock::MonotonicNs(); };
     handlers.on_close = [this, id](const std::string& reason) { OnClose(id, reason); };
     Connection& connection = connections_[id];
@@ -240,12 +241,12 @@ class SocketSource::Implementation {
     handlers_.on_detach(device, reason);
   }
 
-  /// Ends a connection that does not keep to the protocol.
+  /// Ends a connection that does not keep to the protocol; its program gets the reason, too.
   void Refuse(Connection& connection, const std::string& why) {
     handlers_.on_trouble("device socket: " + why + "; connection closed");
     connection.closing = true;
     while (!connection.slots.empty()) Detach(connection, connection.slots.begin()->first, why);
-    connection.link->Finish({}, why);
+    connection.link->Finish(RefusedMessage(0, why), why);
   }
 
   void OnClose(std::uint64_t id, const std::string& reason) {

@@ -100,9 +100,13 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
       break;
     case v1::Command::kAppendSegment:
       return Append(command.append_segment());
+    case v1::Command::kCalibrateTPose:
+    case v1::Command::kSetSubject:
+      return Answer(false, "that is a command for footing-sim --engine pose; this one runs gait");
     default:
       return Answer(false,
-                    "footing-sim takes direct_gait, push, put_back, append_segment, start_trial, "
+                    "footing-sim --engine gait takes direct_gait, push, put_back, append_segment, "
+                    "start_trial, "
                     "stop_trial, correct_failure, set_interface, set_study, set_game, take_lease "
                     "and release_lease");
   }

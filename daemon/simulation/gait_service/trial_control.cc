@@ -112,7 +112,7 @@ Result<void> TrialControl::CheckNoneGoesOn() const {
   const bool ready = phase_ == stream::TrialPhase::kReady && !newest.id.empty();
   if (newest.number < inputs_.stopped_below || !(running || ready)) return {};
   return Failure("a trial" + (newest.id.empty() ? "" : " (" + newest.id + ")") +
-                 " goes on; stop it first (stop_trial)");
+                 " is ready or running; stop it first (footing-ctl trial stop)");
 }
 
 bool TrialControl::OnFrame(const Frame& frame) {

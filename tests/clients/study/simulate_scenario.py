@@ -63,7 +63,11 @@ def main():
         assert (stage.folder / "a/P01/journal.jsonl").read_bytes() == before
         # The same seed in another folder, alone: the same journal. Another one: another person.
         (stage.folder / "b/.drafts/P02").mkdir(parents=True)
-        simulate(stage, "b", "--participant", "P02")
+        done = stage.run("footing-study", "simulate", stage.folder / "s.json", "--folder", stage.folder / "b",
+                         "--participant", "P02", timeout_s=250)
+        # A line for each phase, so that whoever waits sees it go on.
+        phases = [one for one in journal(stage, "b", "P02") if one["event"] == "phase_started"]
+        assert len(phases) > 4 and all(f"P02: {one['phase']} begins after " in done.stderr for one in phases), done
         assert undated(journal(stage, "b", "P02")) == undated(journal(stage, "a", "P02"))
         simulate(stage, "c", "--participant", "P02", "--seed", 2)
         other = undated(journal(stage, "c", "P02"))

@@ -37,6 +37,10 @@ TEST(WaitingLines, SayWhatIsMissingAndHowToStartIt) {
   EXPECT_THAT(WaitingLines(link)[1], HasSubstr("footingd"));
   link.state = LinkState::kLive;
   EXPECT_TRUE(WaitingLines(link).empty());
+  link.state = LinkState::kRefused;
+  link.why = "tls:127.0.0.1:7450 refused: no token";
+  EXPECT_EQ(WaitingLines(link),
+            (std::vector<std::string>{"The server refuses this viewer", link.why}));
 }
 
 TEST(WaitingLines, ARefusalIsShownInTheServersOwnWords) {

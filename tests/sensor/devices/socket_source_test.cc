@@ -86,6 +86,8 @@ TEST_F(SocketSourceTest, WhatMakesNoSenseClosesItsConnectionWithOneLine) {
     EXPECT_TRUE(RunUntil([&peer] { return peer->closed; }));
     ASSERT_EQ(trouble_.size(), 1u) << line;
     EXPECT_THAT(trouble_[0], HasSubstr(line));
+    ASSERT_FALSE(peer->received.empty()) << line;
+    EXPECT_THAT(peer->received.back().refused().reason(), HasSubstr(line));
   }
   healthy->Report(0, "x");
   EXPECT_TRUE(RunUntil([this] { return !reported_.empty(); }));
@@ -101,6 +103,10 @@ TEST_F(SocketSourceTest, AnOversizedMessageEndsTheConnection) {
   EXPECT_EQ(attached_.size(), 1u);
   EXPECT_EQ(detached_.size(), 1u);
   EXPECT_TRUE(reported_.empty());
+  ASSERT_EQ(trouble_.size(), 1u);
+  EXPECT_THAT(trouble_[0], HasSubstr("little-endian"));
+  ASSERT_FALSE(peer->received.empty());
+  EXPECT_THAT(peer->received.back().refused().reason(), HasSubstr("little-endian"));
 }
 
 TEST_F(SocketSourceTest, HandAndReferenceFramesNeedNoSlotAndMayBeBad) {

@@ -94,7 +94,10 @@ TEST_F(SensorInputTest, CommandsThatMakeNoSenseAreRefusedAndChangeNothing) {
   EXPECT_THAT(input.OnCommand(too_hard).message(), HasSubstr("200 N s"));
   v1::Command rumble;
   rumble.mutable_set_rumble();
-  EXPECT_THAT(input.OnCommand(rumble).message(), HasSubstr("footing-sim takes"));
+  EXPECT_THAT(input.OnCommand(rumble).message(), HasSubstr("footing-sim --engine gait takes"));
+  v1::Command t_pose;
+  t_pose.mutable_calibrate_t_pose();
+  EXPECT_THAT(input.OnCommand(t_pose).message(), HasSubstr("for footing-sim --engine pose"));
   EXPECT_FALSE(inputs.Refresh());
 }
 

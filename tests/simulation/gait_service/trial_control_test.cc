@@ -193,7 +193,7 @@ TEST(TrialControl, KnowsWhetherATrialGoesOn) {
   line.Run(3);
   const auto ready = line.control().CheckNoneGoesOn();
   ASSERT_FALSE(ready.ok());
-  EXPECT_THAT(ready.error().message, HasSubstr("a trial (t1) goes on"));
+  EXPECT_THAT(ready.error().message, HasSubstr("a trial (t1) is ready or running"));
   ASSERT_TRUE(line.Stop("t1").ok());
   EXPECT_TRUE(line.control().CheckNoneGoesOn().ok());
   line.Run(3);
@@ -207,7 +207,8 @@ TEST(TrialControl, TheFirstTrialGoesOnFromItsStartLine) {
   for (int i = 0; i < 100 && line.Run(5).trial().phase() == v1::TrialState::PHASE_READY; ++i) {
   }
   ASSERT_EQ(line.Run(1).trial().phase(), v1::TrialState::PHASE_RUNNING);
-  EXPECT_THAT(line.control().CheckNoneGoesOn().error().message, HasSubstr("a trial goes on"));
+  EXPECT_THAT(line.control().CheckNoneGoesOn().error().message,
+              HasSubstr("a trial is ready or running"));
 }
 
 TEST(TrialControl, AFailureIsPublishedWithItsTrialPlaceAndNumber) {

@@ -152,9 +152,10 @@ FeaturesReplay ReplayFeatures(const std::vector<v1::Tick>& ticks) {
 Result<void> CheckFirstStep(std::uint64_t first_step) {
   constexpr std::uint64_t kLatestFirstStep = 100;  // No input can have come before.
   if (first_step <= kLatestFirstStep) return {};
-  return InvalidData("the recording begins at step " + std::to_string(first_step) +
-                     " of the simulation; only one from its first step can be run again (start "
-                     "footing-log within 30 s of footing-sim)");
+  return InvalidData(
+      "the recording begins at step " + std::to_string(first_step) +
+      " of the simulation; only one from its first step can be run again (record "
+      "with footing-log record --from-ring within 30 s of the start of footing-sim)");
 }
 
 }  // namespace footing::eval
