@@ -6,11 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "clients/camera/light_delay.h"
+
 namespace footing::camera {
 namespace {
 
-/// footingd sends a Move's light ten times a second at most; then the radio and an exposure.
-constexpr std::int64_t kSettleNs = 400'000'000;
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr int kMeanFrames = 6;
 constexpr std::size_t kEstimates = 48;  // Of each sphere.
@@ -69,7 +69,7 @@ void BlinkCalibration::Begin(Step step) {
   }
 }
 
-void BlinkCalibration::LightsAreSet(std::int64_t now_ns) { settled_ns_ = now_ns + kSettleNs; }
+void BlinkCalibration::LightsAreSet(std::int64_t now_ns) { settled_ns_ = now_ns + kLightDelayNs; }
 
 std::string BlinkCalibration::TakeMessage() { return std::exchange(message_, {}); }
 

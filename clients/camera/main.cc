@@ -23,6 +23,8 @@ void Print(const camera::TrackingReport& report, const frames::CameraFile& camer
   nlohmann::ordered_json object = {{"frames", report.frames}, {"sent", report.sent}};
   for (std::size_t i = 0; i < report.found.size(); ++i)
     object["found"][stream::Name(camera.spheres[i].role)] = report.found[i];
+  object["challenges_passed"] = report.challenges_passed;
+  object["lights_refused"] = report.lights_refused;
   object["saturated"] = report.saturated;
   object["alarms"] = report.alarms;
   object["cost_p50_ms"] = report.cost_p50_ms;
@@ -74,6 +76,8 @@ int main(int argc, char** argv) {
   app->add_option("--sensor", sensor,
                   "Address of footingd, where the lights of the camera file are switched on");
   app->add_flag("--simulated", options.simulated, "Mark the hands as simulated");
+  app->add_flag("!--no-challenge", options.challenge,
+                "Never switch a sphere's light to make sure that it is the sphere");
   app->add_option("--seconds", options.seconds, "Duration, s (default: until the frames end)")
       ->check(CLI::Range(0.0, 1e6));
   app->require_subcommand(0, 1);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "clients/camera/light_checks.h"
 #include "clients/camera/lights.h"
 #include "clients/camera/observation.h"
 #include "common/clock/clock.h"
@@ -44,7 +45,14 @@ class Tracking {
         link_(io_, {.to = options.to,
                     .max_queued_frames = kMaxQueuedFrames,
                     .on_open = [this] { log::Info("sending hands to " + options_.to.Text()); }}),
-        finder_(options.camera.lens, options.camera.Targets(), options.camera.settings) {
+        finder_(options.camera.lens, options.camera.Targets(), options.camera.settings),
+        // Recorded frames do not follow a light.
+        checks_(
+            options.camera, options.challenge && options.frames.folder.empty(),
+            [this](std::uint32_t device, std::uint32_t rgb, LightChecks::Done done) {
+              lights_->Set(device, rgb, std::move(done));
+            },
+            clock::MonotonicNs) {
     report_.found.resize(options.camera.spheres.size());
   }
 
@@ -65,7 +73,7 @@ class Tracking {
     link_.Start();
     const auto& spheres = options_.camera.spheres;
     if (std::any_of(spheres.begin(), spheres.end(), [](const auto& one) { return one.led_rgb; })) {
-      lights_.emplace(io_, options_.sensor, [this] { SwitchLights(); });
+      lights_.emplace(io_, options_.sensor, [this] { checks_.TakeMoves(lights_->moves()); });
       lights_->Start();
     }
     LookAtTheFile();
@@ -75,6 +83,8 @@ class Tracking {
     io_.run();
     if (!end_) return end_.error();
     report_.sent = link_.sent();
+    report_.challenges_passed = checks_.passed();
+    report_.lights_refused = checks_.refusals();
     report_.cost_p50_ms = text::Quantile(cost_ms_, 0.5);
     report_.cost_p99_ms = text::Quantile(cost_ms_, 0.99);
     return report_;
@@ -87,18 +97,6 @@ class Tracking {
   void Alarm(const std::string& line) {
     log::Warning(line);
     if (report_.alarms.size() < kMostAlarms) report_.alarms.push_back(line);
-  }
-
-  /// Lights each sphere as the camera file says, again after a controller came back.
-  void SwitchLights() {
-    for (const stream::DeviceStatus& move : lights_->moves()) {
-      for (const frames::HeldSphere& held : options_.camera.spheres) {
-        if (held.role != move.role || !held.led_rgb || move.sphere_rgb == *held.led_rgb) continue;
-        lights_->Set(move.device, *held.led_rgb, [serial = move.serial](Result<void> done) {
-          if (!done) log::Warning(serial + ": its light cannot be set: " + done.error().message);
-        });
-      }
-    }
   }
 
   /// Takes a new pose from the camera file, as a calibration writes it.
@@ -125,9 +123,10 @@ class Tracking {
     if (frame.width != options_.camera.lens.width || frame.height != options_.camera.lens.height)
       return End(InvalidData("a frame's size is not that of the camera file"));
     const std::int64_t began_ns = clock::ThreadCpuNs();
-    const auto found = finder_.Find(frame.View());
+    auto found = finder_.Find(frame.View());
     if (cost_ms_.size() < kMostCosts)
       cost_ms_.push_back(1e-6 * static_cast<double>(clock::ThreadCpuNs() - began_ns));
+    checks_.TakeFrame(exposed_ns, finder_, found);
     stream::HandFrame hands =
         ToHandFrame(options_.camera, X_WC_, found, exposed_ns, clock::MonotonicNs());
     hands.simulated = options_.simulated;
@@ -163,6 +162,7 @@ class Tracking {
   device_link::DeviceLink link_;
   std::optional<Lights> lights_;
   sphere::Finder finder_;
+  LightChecks checks_;
   std::unique_ptr<Source> source_;
   TrackingReport report_;
   std::vector<double> cost_ms_;

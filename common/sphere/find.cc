@@ -137,14 +137,28 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
 }  // namespace
 
 Finder::Finder(const Lens& lens, std::vector<Target> targets, const Settings& settings)
-    : lens_(lens), targets_(std::move(targets)), settings_(settings), last_(targets_.size()) {}
+    : lens_(lens),
+      targets_(std::move(targets)),
+      settings_(settings),
+      last_(targets_.size()),
+      left_out_(targets_.size()) {}
 
-std::vector<Finder::Candidate> Finder::Candidates(const Image& image, const Target& target,
+bool Finder::IsLeftOut(const Blob& blob, std::size_t sphere) const {
+  const Eigen::Vector2d middle_px = 2 * blob.centre + Eigen::Vector2d(0.5, 0.5);
+  const auto& places = left_out_[sphere];
+  return std::any_of(places.begin(), places.end(), [&](const Circle& place) {
+    return (middle_px - place.centre_px).norm() < place.radius_px;
+  });
+}
+
+std::vector<Finder::Candidate> Finder::Candidates(const Image& image, std::size_t sphere,
                                                   const QuadWindow& window,
                                                   std::vector<Blob> blobs) {
+  const Target& target = targets_[sphere];
   const Eigen::Vector3d chroma = target.colour_dn.array() - target.colour_dn.mean();
   std::erase_if(blobs, [&](const Blob& blob) {
-    return IsCut(blob, window, Whole(image)) || Likeness(blob, chroma.norm()) < 0.1 ||
+    return IsCut(blob, window, Whole(image)) || IsLeftOut(blob, sphere) ||
+           Likeness(blob, chroma.norm()) < 0.1 ||
            std::max(blob.right - blob.left, blob.bottom - blob.top) > quads_.height / 2;
   });
   std::sort(blobs.begin(), blobs.end(), [&](const Blob& a, const Blob& b) {
@@ -190,15 +204,16 @@ std::optional<Estimate> Finder::Measure(const Image& image, const Target& target
   return ToEstimate(*fit, candidate.slopes, target.radius_m, candidate.colour_off, lens_);
 }
 
-std::optional<Finder::Found> Finder::Search(const Image& image, const Target& target,
+std::optional<Finder::Found> Finder::Search(const Image& image, std::size_t sphere,
                                             const QuadWindow& window,
                                             const std::optional<Eigen::Vector2d>& motion_px) {
+  const Target& target = targets_[sphere];
   const Eigen::Vector3d& colour_dn = target.colour_dn;
   std::vector<Candidate> candidates =
-      Candidates(image, target, window, FindBlobs(quads_, window, colour_dn, kLowShare));
+      Candidates(image, sphere, window, FindBlobs(quads_, window, colour_dn, kLowShare));
   if (candidates.empty() || candidates.front().quality < kGoodQuality) {
     for (Candidate& candidate :
-         Candidates(image, target, window, FindBlobsOfColour(quads_, window, colour_dn)))
+         Candidates(image, sphere, window, FindBlobsOfColour(quads_, window, colour_dn)))
       candidates.push_back(candidate);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const auto& a, const auto& b) { return a.quality > b.quality; });
@@ -225,7 +240,7 @@ std::optional<Finder::Found> Finder::Near(const Image& image, std::size_t sphere
   if (!has_whole_) ToQuads(image, Square(middle_px, 2.3 * half_px + 6, whole), quads_);
   const Shutter& shutter = settings_.shutter;
   const Eigen::Vector2d motion_px = shutter.exposure_s / shutter.period_s * last->step_px;
-  const auto found = Search(image, targets_[sphere], window, motion_px);
+  const auto found = Search(image, sphere, window, motion_px);
   const bool is_clear =
       found && found->quality > kGoodQuality && found->estimate.confidence > kTrustedConfidence;
   return is_clear ? found : std::nullopt;
@@ -237,7 +252,7 @@ std::optional<Estimate> Finder::FindOne(const Image& image, std::size_t sphere) 
   if (!is_near) {
     if (!has_whole_) ToQuads(image, quads_);
     has_whole_ = true;
-    found = Search(image, targets_[sphere], Whole(image), std::nullopt);
+    found = Search(image, sphere, Whole(image), std::nullopt);
   }
   std::optional<Last>& last = last_[sphere];
   if (!found || found->estimate.confidence < kTrustedConfidence) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/sphere/blobs.h"
@@ -30,6 +31,12 @@ struct Estimate {
   Eigen::Vector2d motion_px{0, 0};  ///< Travel during the exposure; zero if it seems to be at rest.
 };
 
+/// A place in the image.
+struct Circle {
+  Eigen::Vector2d centre_px{0, 0};
+  double radius_px = 0;
+};
+
 /// Finds luminous spheres in a frame, each by its hue: chroma to find blobs, then the light itself
 /// for edges, a robust cone and a photometric fit (docs/camera.md). Each is looked for where it
 /// should be by the two frames before, and in the whole image when it is not clearly there. Frames
@@ -42,6 +49,10 @@ class Finder {
   std::vector<std::optional<Estimate>> Find(const Image& image);
   /// The next frame is of another scene.
   void Forget() { last_.assign(targets_.size(), std::nullopt); }
+  /// Places of other lights: blobs with their middle there are left out from now on.
+  void LeaveOut(std::size_t sphere, std::vector<Circle> places) {
+    left_out_[sphere] = std::move(places);
+  }
 
  private:
   struct Candidate;
@@ -57,10 +68,11 @@ class Finder {
   };
   std::optional<Estimate> FindOne(const Image& image, std::size_t sphere);
   std::optional<Found> Near(const Image& image, std::size_t sphere);
-  std::optional<Found> Search(const Image& image, const Target& target, const QuadWindow& window,
+  std::optional<Found> Search(const Image& image, std::size_t sphere, const QuadWindow& window,
                               const std::optional<Eigen::Vector2d>& motion_px);
-  std::vector<Candidate> Candidates(const Image& image, const Target& target,
+  std::vector<Candidate> Candidates(const Image& image, std::size_t sphere,
                                     const QuadWindow& window, std::vector<Blob> blobs);
+  bool IsLeftOut(const Blob& blob, std::size_t sphere) const;
   std::optional<Estimate> Measure(const Image& image, const Target& target,
                                   const Candidate& candidate) const;
 
@@ -71,6 +83,7 @@ class Finder {
   Quads quads_;
   bool has_whole_ = false;  ///< `quads_` are of the whole image.
   std::vector<std::optional<Last>> last_;
+  std::vector<std::vector<Circle>> left_out_;
 };
 
 /// Blur and limb of a sphere through a camera, from estimates at 0.5 to 1.2 m that were made with

@@ -56,7 +56,7 @@ def calibrate(stage, camera):
 
 
 def track(stage, camera):
-    """A later run lights the spheres by itself and finds them."""
+    """A later run lights the spheres by itself, makes sure that they follow and finds them."""
     fifo = stage.folder / "fifo"
     tracking = stage.start("footing-camera", "--camera", camera, "--fifo", fifo, "--stamped", "--simulated", "--to",
                            stage.devices, "--sensor", stage.sensor, "--seconds", 10, "--json")
@@ -66,6 +66,9 @@ def track(stage, camera):
         samples += tick.get("hands", {}).get("samples", [])
     assert tracking.wait(20) == 0
     stage.stop("footing-stream")
+    lines = (stage.folder / "footing-camera.log").read_text().splitlines()
+    report = json.loads(next(line for line in lines if line.startswith("{")))
+    assert report["challenges_passed"] >= len(ROLES), report
     for role in ROLES:
         seen = [one for one in samples if one["role"] == role and one.get("confidence", 0) > 0.5]
         assert len(seen) > 15, (role, len(seen))
