@@ -22,18 +22,14 @@ constexpr double kScoreTimeS = 30;
 constexpr double kLeastLogDensity = -20;  // One event alone condemns nothing.
 constexpr double kCoastMps2 = 20;         // Of a velocity that nobody watches, per root frame.
 constexpr double kLeastShare = 0.5;       // Of a weight that is taken for the true one.
-constexpr double kPostureLookS = 0.3;
 // A body that moves slowly and evenly looks still, too: in this share of looks it is, else it has
 // this speed.
 constexpr double kStillShare = 0.6, kSlowMps = 0.04;
-constexpr double kPostureAnchorLookS = 0.5, kPostureAnchorsS = 0.1;
 // A body whose posture rises or sinks is not still, however even its loads are.
-constexpr double kPostureSpeedS = 0.3, kStillPostureMps = 0.02;
+constexpr double kStillPostureMps = 0.02;
 // A filter has strayed that is sure, by so many deviations, of a height over tiptoe with raised
-// arms or under the ground; or that is for a while so many deviations from the posture.
-constexpr double kTiptoeM = 0.08;  // By which raised heels lift a body that a posture has upright.
+// arms or under the ground.
 constexpr double kStraySpreads = 4, kHighestM = 0.15, kLowestM = -0.75;
-constexpr double kFarSpreads = 4, kFarS = 0.2, kDoubtSpreads = 3;
 constexpr double kReseedGain = 0.03;  // Of the weight: what a filter that strayed may have learned.
 constexpr double kStartHeightM = 0.005;
 constexpr double kStartVelocityMps = 0.005;
@@ -42,19 +38,6 @@ double Total(const VerticalInput& input) {
   double total = 0;
   for (const double load : input.load_n) total += load;
   return total;
-}
-
-/// The body does not fly, by what the loads show beside the weight.
-bool Loaded(double raw_mps2) { return raw_mps2 > (kLoadedShare - 1) * kStandardGravityMps2; }
-
-/// A posture is off by so much, and may be by that variance.
-template <typename Watched>
-void Compare(double off_m, double variance_m2, double step_s, Watched& posture) {
-  const bool far = off_m * off_m > kFarSpreads * kFarSpreads * variance_m2;
-  posture.contradicted = off_m * off_m > kDoubtSpreads * kDoubtSpreads * variance_m2;
-  posture.far_s = far ? posture.far_s + step_s : 0;
-  posture.strayed = posture.strayed || posture.far_s > kFarS;
-  posture.since_score_s += step_s;
 }
 
 }  // namespace
@@ -77,6 +60,10 @@ VerticalCom::VerticalCom(const VerticalConfig& config, double mass_kg, double st
   a_(kPosture, kPosture) = posture_keep;
   q_(kPosture, kPosture) = std::pow(config.posture.spread_m, 2) * (1 - posture_keep * posture_keep);
   u_.setZero();
+}
+
+bool VerticalCom::Loaded(double raw_mps2) {
+  return raw_mps2 > (kLoadedShare - 1) * kStandardGravityMps2;
 }
 
 void VerticalCom::Start(const VerticalInput& mean) {
@@ -193,52 +180,6 @@ void VerticalCom::Anchor() {
                                   {1 - upright, -config_.low_below_m, config_.low_spread_m}}});
   Score(product.log_evidence);
   const Moments posterior = Below(product.moments, config_.highest_m);
-  filter_.SetMoments(row, {posterior.mean, posterior.variance});
-}
-
-void VerticalCom::SeePosture(double height_m) {
-  const PostureError& posture = config_.posture;
-  if (posture.spread_m <= 0) return;
-  if (posture.right_share > 0) {
-    AnchorToPosture(height_m);
-    return;
-  }
-  VerticalFilter::Row h = posture.share * VerticalFilter::Row::Unit(0);
-  h(kPosture) = 1;
-  filter_.Update(h, height_m, posture.white_m * posture.white_m);
-  const double s = filter_.p()(0, 0) + posture.spread_m * posture.spread_m;
-  const double off_m = height_m - posture.share * filter_.x()(0);
-  Compare(off_m, s, step_s_, posture_);
-  if (posture_.since_score_s >= kPostureLookS) {
-    posture_.since_score_s = 0;
-    Score(-0.5 * (off_m * off_m / s + std::log(s)));
-  }
-}
-
-void VerticalCom::AnchorToPosture(double height_m) {
-  const PostureError& posture = config_.posture;
-  if (posture_.anchors_s <= 0) posture_.level_m = height_m;
-  posture_.anchors_s = kPostureAnchorsS;
-  posture_.speed_mps = (height_m - posture_.level_m) / kPostureSpeedS;
-  posture_.level_m += step_s_ / (kPostureSpeedS + step_s_) * (height_m - posture_.level_m);
-  const VerticalFilter::Row row = VerticalFilter::Row::Unit(0);
-  const VerticalFilter::Scalar now = filter_.Of(row);
-  Compare(height_m - now.mean, now.variance + posture.spread_m * posture.spread_m, step_s_,
-          posture_);
-  // What is less certain than a posture at its worst is not waited for.
-  const bool lost = now.variance > posture.spread_m * posture.spread_m;
-  const bool due = posture_.since_score_s >= kPostureAnchorLookS;
-  if (!due && !lost) return;
-  if (due) posture_.since_score_s = 0;
-  const double right = posture.right_share;
-  const MixtureMoments product =
-      TimesMixture({now.mean, now.variance},
-                   {{{right, height_m, posture.right_m}, {1 - right, height_m, posture.spread_m}}});
-  if (due) Score(product.log_evidence);
-  // No straight leg carries a body further up, however wrong the posture is about bent ones.
-  const Moments posterior = Loaded(last_.raw_mps2)
-                                ? Below(product.moments, std::max(height_m, 0.0) + kTiptoeM)
-                                : product.moments;
   filter_.SetMoments(row, {posterior.mean, posterior.variance});
 }
 

@@ -106,6 +106,11 @@ class VerticalCom {
   void LookAtVelocity();
   void Anchor();
   void AnchorToPosture(double height_m);
+  /// The speed at which the posture rises, and from time to time a look at it.
+  void FollowSpeed(double height_m);
+  void LookAtPostureSpeed();
+  /// The body does not fly, by what the loads show beside the weight.
+  static bool Loaded(double raw_mps2);
   /// Too high or too low for any body, for sure: its height is not to be corrected but given up.
   bool IsImpossible(const Filter::Scalar& height) const;
   void Score(double log_density);
@@ -135,7 +140,9 @@ class VerticalCom {
     double since_score_s = 0;
     double anchors_s = 0;               ///< For how much longer the last one stands for the height.
     double level_m = 0, speed_mps = 0;  ///< Smoothed.
-    double far_s = 0;                   ///< For how long it has been too far from the posture.
+    double gained_mps = 0;  ///< Velocity now beside one that is smoothed like the speed.
+    double since_speed_s = 0;
+    double far_s = 0;  ///< For how long it has been too far from the posture.
     bool strayed = false;
     bool contradicted = false;
   } posture_;
