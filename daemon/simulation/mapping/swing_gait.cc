@@ -138,7 +138,9 @@ biped::GaitCommand SwingGait::Advance(double time_s, const LimbPair& limbs, bool
   const Gait seen = Seen(limbs.phase_rad, run);
   const double least_s = mapping_.start_cycles / *frequency_hz;
   const double change_s = mapping_.change_cycles / *frequency_hz - other_s_;
-  const double lasting_s = gait() == Gait::kStep ? least_s : std::max(least_s, change_s);
+  // Two resting limbs that turn, and turn back, are a swing together for half a cycle.
+  const double from_rest_s = seen == Gait::kJump ? mapping_.change_cycles / *frequency_hz : least_s;
+  const double lasting_s = gait() == Gait::kStep ? from_rest_s : std::max(least_s, change_s);
   if (settled_.Advance(time_s, seen, std::max(mapping_.change_min_s, lasting_s)) == seen) {
     SetPace(limbs, *frequency_hz);
     settled_run_ = run;

@@ -18,8 +18,9 @@ struct SwingMapping {
   Scaling jump_m_from_mps2;
   double in_phase_below_rad = 0;
   double out_of_phase_above_rad = 0;
-  /// What the features show must last this part of a cycle before it starts a gait from rest,
-  /// before it changes one gait into another, and in any case this time: see SettledGait.
+  /// What the features show must last this part of a cycle before it starts a walk or a run from
+  /// rest, before it starts a jump or changes one gait into another, and in any case this time: see
+  /// SettledGait.
   double start_cycles = 0;
   double change_cycles = 0;
   double change_min_s = 0;

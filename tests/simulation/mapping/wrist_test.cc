@@ -80,6 +80,23 @@ TEST(SwingGait, WhatContradictsTheGaitCountsWhileThePhaseIsNotKnown) {
   EXPECT_NEAR(walks_after_s(1), 0.25, 0.03);  // start_cycles.
 }
 
+/// Hands that incline to turn, and come back, swing together for as long as that takes.
+TEST(Wrist, RestingHandsThatTurnAndTurnBackDoNotJump) {
+  constexpr double kTurnS = 0.5, kFrequencyHz = 1.16;
+  WristInterface wrist(Mapping());
+  Inputs rest = Swing(1, kPi);
+  rest.hands.left.moving = rest.hands.right.moving = false;
+  double time_s = 0;
+  const auto lasts = [&wrist, &time_s](const Inputs& inputs, double until_s, Gait gait) {
+    for (; time_s < until_s; time_s += 0.01) EXPECT_EQ(wrist.Advance(time_s, inputs).gait, gait);
+  };
+  lasts(rest, 1, Gait::kStep);
+  lasts(Swing(kFrequencyHz, 0), 1 + kTurnS, Gait::kStep);
+  lasts(rest, 2, Gait::kStep);
+  // Who means a jump goes on.
+  EXPECT_EQ(Settled(wrist, 2, Swing(kFrequencyHz, 0)).gait, Gait::kJump);
+}
+
 TEST(Wrist, AmplitudeSetsTheHeightOfAJump) {
   WristInterface wrist(Mapping());
   EXPECT_NEAR(Settled(wrist, 0, Swing(2, 0, 4)).height_m, 0.08, 1e-9);
