@@ -34,15 +34,6 @@ Eigen::Matrix3d Matrix(const Eigen::Vector3d& sd_m, const Eigen::Vector3d& covar
   return matrix;
 }
 
-Eigen::Matrix3d SaturatedCovariance(const v1::HandSample& sample, const Eigen::Vector3d& p_W_m) {
-  const double sd_m = CountedPoint::kSaturatedSdM;
-  if (!sample.has_tracker_pose()) return sd_m * sd_m * Eigen::Matrix3d::Identity();
-  const v1::TrackerPose& pose = sample.tracker_pose();
-  const Eigen::Vector3d sight_m = p_W_m - Eigen::Vector3d(pose.x_m(), pose.y_m(), pose.z_m());
-  const double share = CountedPoint::kSaturatedDepthShare;
-  return share * share * sight_m * sight_m.transpose();
-}
-
 }  // namespace
 
 bool IsSeenInWorld(const v1::HandSample& sample) {
@@ -54,7 +45,6 @@ CountedPoint::CountedPoint(const v1::HandSample& sample)
     : p_W_m(wire::FromProto(sample.position_m())) {
   Eigen::Matrix3d matrix =
       Matrix(wire::FromProto(sample.sd_m()), wire::FromProto(sample.covariance_m2()));
-  if (sample.saturated()) matrix += SaturatedCovariance(sample, p_W_m);
   matrix /= std::min(1.0, sample.confidence());
   sd_m = matrix.diagonal().cwiseMax(0).cwiseSqrt().cwiseMax(kLeastPointSdM);
   covariance_m2 = {matrix(0, 1), matrix(0, 2), matrix(1, 2)};

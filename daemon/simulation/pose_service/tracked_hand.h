@@ -14,13 +14,9 @@ namespace footing::pose_service {
 /// A point that is not heard of for longer counts as not seen.
 inline constexpr double kPointTimeoutS = 0.15;
 
-/// A tracked point with the deviations that count: no point is known better than to 2 mm; its
-/// information is the tracker's times its confidence; and where its light was at the sensor's limit
-/// the tracker's depth is not believed beyond kSaturatedDepthShare of the distance, or, of a
-/// tracker whose place is not known, no axis beyond kSaturatedSdM.
+/// A tracked point with the deviations that count: no point is known better than to 2 mm, and its
+/// information is the tracker's times its confidence, which a light at the sensor's limit lowers.
 struct CountedPoint {
-  static constexpr double kSaturatedDepthShare = 0.02, kSaturatedSdM = 0.1;
-
   Eigen::Vector3d p_W_m, sd_m, covariance_m2;
 
   explicit CountedPoint(const v1::HandSample& sample);
