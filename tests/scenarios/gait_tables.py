@@ -1,9 +1,9 @@
-"""The shipped tables of stepping and walking are what the command in their first lines writes, bit for bit; those of
-running and jumping were made before later changes (docs/tuning.md).
+"""The shipped tables of stepping, walking and jumping are what the command in their first lines writes, bit for bit;
+that of running was made before a later change (docs/tuning.md).
 
 Usage: gait_tables.py BINARY_FOLDER [GAIT...]
 
-A minute of one free processor. A mathematical library that rounds otherwise finds other tables.
+Three minutes of one free processor. A mathematical library that rounds otherwise finds other tables.
 """
 import os
 import pathlib
@@ -14,7 +14,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLES = ROOT / "daemon/simulation/data/gaits"
 COMMAND_LINE = 1
-GAITS = ("step", "walk")
+GAITS = ("step", "walk", "jump")
 
 
 def written(binaries, gait):

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "daemon/offline/ranks/ranks.h"
@@ -22,8 +23,11 @@ struct Score {
 /// out does not depend on how many.
 class Team {
  public:
-  /// Reads the product's data; one engine a thread of this rank.
-  static Result<Team> Create(int threads, ranks::Ranks ranks = {});
+  /// Reads the product's data, with the files `gains` in place of its tables of the same gaits,
+  /// since an engine begins with the gains that it is created with. One engine for each thread of
+  /// this rank.
+  static Result<Team> Create(int threads, ranks::Ranks ranks = {},
+                             const std::vector<std::string>& gains = {});
 
   const ranks::Ranks& ranks() const { return ranks_; }
 

@@ -239,7 +239,7 @@ Result<ordered_json> RunChecked(const Options& options, const ranks::Ranks& rank
   auto table = TableOf(*texts, options.from);
   if (!table) return table.error();
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  auto team = Team::Create(options.threads > 0 ? options.threads : cores, ranks);
+  auto team = Team::Create(options.threads > 0 ? options.threads : cores, ranks, options.from);
   if (!team) return team.error();
   Tuning tuning(options, std::move(*team), std::move(*table));
   if (const auto resumed = tuning.Resume(); !resumed) return resumed.error();
