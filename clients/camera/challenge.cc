@@ -53,23 +53,23 @@ bool Challenge::IsNear(const Seen& seen) const {
 }
 
 void Challenge::Refuse(const sphere::Circle& circle, std::int64_t now_ns) {
-  const sphere::Circle place{circle.centre_px, 1.5 * circle.radius_px + 4};
-  refused_.push_back({place, now_ns + kRefusedForNs});
-  refused_places_.push_back(place);
+  refused_.push_back({{circle.centre_px, 1.5 * circle.radius_px + 4}, now_ns + kRefusedForNs});
   ++refusals_;
-  message_ = "a light at pixel (" + std::to_string(std::lround(place.centre_px.x())) + ", " +
-             std::to_string(std::lround(place.centre_px.y())) +
+  message_ = "a light at pixel (" + std::to_string(std::lround(circle.centre_px.x())) + ", " +
+             std::to_string(std::lround(circle.centre_px.y())) +
              ") does not follow its light; that place is left out for a minute";
 }
 
 void Challenge::DropOld(std::int64_t now_ns) {
-  const auto gone = std::erase_if(
-      refused_, [&](const Refused& one) { return now_ns > one.until_ns && step_ != Step::kDark; });
-  if (gone > 0) {
-    refused_places_.clear();
-    for (const Refused& one : refused_) refused_places_.push_back(one.circle);
-  }
+  std::erase_if(refused_,
+                [&](const Refused& one) { return now_ns > one.until_ns && step_ != Step::kDark; });
   if (trusted_ && now_ns > trusted_->exposed_ns + kTrustedForNs) trusted_.reset();
+}
+
+std::vector<sphere::Circle> Challenge::refused() const {
+  std::vector<sphere::Circle> places;
+  for (const Refused& one : refused_) places.push_back(one.circle);
+  return places;
 }
 
 void Challenge::Take(const std::optional<sphere::Estimate>& estimate, std::int64_t exposed_ns) {

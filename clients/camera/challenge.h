@@ -38,7 +38,7 @@ class Challenge {
   bool accepts() const { return step_ == Step::kAccepted; }
   Step step() const { return step_; }
   /// Places in the image that the finder must leave out now.
-  const std::vector<sphere::Circle>& refused() const { return refused_places_; }
+  std::vector<sphere::Circle> refused() const;
 
   int passed() const { return passed_; }      ///< Challenges that a sphere passed.
   int refusals() const { return refusals_; }  ///< Lights that did not follow.
@@ -72,7 +72,6 @@ class Challenge {
   std::optional<std::int64_t> began_ns_, settled_ns_;
   std::int64_t not_before_ns_ = 0;
   std::vector<Refused> refused_;
-  std::vector<sphere::Circle> refused_places_;
   std::string message_;
 };
 

@@ -160,9 +160,9 @@ class Tracking {
   boost::asio::signal_set signals_;
   boost::asio::steady_timer limit_, look_;
   device_link::DeviceLink link_;
-  std::optional<Lights> lights_;
   sphere::Finder finder_;
   LightChecks checks_;
+  std::optional<Lights> lights_;  // Its end answers what checks_ still waits for.
   std::unique_ptr<Source> source_;
   TrackingReport report_;
   std::vector<double> cost_ms_;

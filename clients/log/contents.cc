@@ -158,11 +158,8 @@ std::optional<Error> Incomplete(const std::string& path, const mcap::WalkEnd& en
 }
 
 Result<Contents> ReadContents(const std::string& path) {
-  Result<recording::MappedFile> file = recording::MappedFile::Open(path);
+  Result<recording::MappedFile> file = recording::OpenRecording(path);
   if (!file) return file.error();
-  if (!mcap::BeginsAsMcap(file->bytes())) {
-    return InvalidData(path + " is not a recording: this is not an MCAP file");
-  }
   Contents contents;
   contents.path = path;
   contents.bytes = file->bytes().size();

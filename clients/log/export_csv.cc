@@ -167,11 +167,8 @@ class Exporter {
 
 Result<std::vector<ExportedFile>> ExportCsv(const std::string& recording, const std::string& folder,
                                             bool replace) {
-  Result<recording::MappedFile> file = recording::MappedFile::Open(recording);
+  Result<recording::MappedFile> file = recording::OpenRecording(recording);
   if (!file) return file.error();
-  if (!mcap::BeginsAsMcap(file->bytes())) {
-    return InvalidData(recording + " is not a recording: this is not an MCAP file");
-  }
   return Exporter(file->bytes(), recording).Run(folder, replace);
 }
 

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <utility>
 
+#include "common/mcap/records.h"
+
 namespace footing::recording {
 
 Result<MappedFile> MappedFile::Open(const std::string& path) {
@@ -34,6 +36,14 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
 
 MappedFile::~MappedFile() {
   if (!bytes_.empty()) ::munmap(const_cast<char*>(bytes_.data()), bytes_.size());
+}
+
+Result<MappedFile> OpenRecording(const std::string& path) {
+  Result<MappedFile> file = MappedFile::Open(path);
+  if (file && !mcap::BeginsAsMcap(file->bytes())) {
+    return InvalidData(path + " is not a recording: this is not an MCAP file");
+  }
+  return file;
 }
 
 }  // namespace footing::recording

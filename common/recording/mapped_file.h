@@ -27,4 +27,7 @@ class MappedFile {
   std::string_view bytes_;
 };
 
+/// A recording, which may be cut anywhere; an error for a file that does not begin as one.
+Result<MappedFile> OpenRecording(const std::string& path);
+
 }  // namespace footing::recording

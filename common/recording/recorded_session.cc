@@ -119,11 +119,8 @@ class TickCollector {
 }  // namespace
 
 Result<RecordedSession> RecordedSession::Open(const std::string& path) {
-  Result<MappedFile> file = MappedFile::Open(path);
+  Result<MappedFile> file = OpenRecording(path);
   if (!file) return file.error();
-  if (!mcap::BeginsAsMcap(file->bytes())) {
-    return InvalidData(path + " is not a recording: this is not an MCAP file");
-  }
   RecordedSession session(path, std::move(*file));
   TickCollector collector(session.servers_);
   mcap::Visitor visitor;

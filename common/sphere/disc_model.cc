@@ -74,8 +74,8 @@ void Model(const Lane& s, const Lane& t, const State& state, const PixelScale& s
   const Lane disc_blur = profile.disc_blur - p.limb * profile.limb_blur;
   const Lane tilt = 1 + (p.gradient_s * x + p.gradient_t * y) * p.per_tangent;
   // The blur of a product: x f blurred is x times f blurred, and the variance times its slope.
-  const Lane spread = disc_d * blur * p.per_tangent;
-  result.light = disc * tilt + (p.gradient_s * unit_s + p.gradient_t * unit_t) * spread;
+  const Lane blurred = disc_d * blur * p.per_tangent;
+  result.light = disc * tilt + (p.gradient_s * unit_s + p.gradient_t * unit_t) * blurred;
   std::array<Lane, kShape>& slope = result.light_slope;
   const Lane light_r = disc_d * per_blur * tilt, level = disc * p.per_tangent;
   slope[0] = -unit_s * light_r - p.gradient_s * level;
@@ -83,8 +83,8 @@ void Model(const Lane& s, const Lane& t, const State& state, const PixelScale& s
   slope[2] = tilt * along_tangent(disc_d, disc_blur) - level * (tilt - 1);
   slope[3] = tilt * along_blur(disc_d, disc_blur);
   slope[4] = -profile.limb * tilt;
-  slope[5] = level * x + spread * unit_s;
-  slope[6] = level * y + spread * unit_t;
+  slope[5] = level * x + blurred * unit_s;
+  slope[6] = level * y + blurred * unit_t;
 }
 
 void ModelMoving(const Lane& s, const Lane& t, const State& state, const PixelScale& scale,

@@ -134,6 +134,9 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
   return estimate;
 }
 
+/// In pixels.
+Eigen::Vector2d MiddleOf(const Blob& blob) { return 2 * blob.centre + Eigen::Vector2d(0.5, 0.5); }
+
 }  // namespace
 
 Finder::Finder(const Lens& lens, std::vector<Target> targets, const Settings& settings)
@@ -144,7 +147,7 @@ Finder::Finder(const Lens& lens, std::vector<Target> targets, const Settings& se
       left_out_(targets_.size()) {}
 
 bool Finder::IsLeftOut(const Blob& blob, std::size_t sphere) const {
-  const Eigen::Vector2d middle_px = 2 * blob.centre + Eigen::Vector2d(0.5, 0.5);
+  const Eigen::Vector2d middle_px = MiddleOf(blob);
   const auto& places = left_out_[sphere];
   return std::any_of(places.begin(), places.end(), [&](const Circle& place) {
     return (middle_px - place.centre_px).norm() < place.radius_px;
@@ -171,7 +174,7 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, std::size_
     if (colour_off >= kMostColourOff) continue;  // Its confidence would be zero.
     const auto edges = FindEdges(image, quads_, blob, settings_.noise);
     if (!edges) continue;
-    const Eigen::Vector2d middle_px = 2 * blob.centre + Eigen::Vector2d(0.5, 0.5);
+    const Eigen::Vector2d middle_px = MiddleOf(blob);
     const double size_px = 2.0 * std::max(blob.right - blob.left, blob.bottom - blob.top) + 2;
     // Its nodes lie near the edge, where an error would be one of the distance.
     LocalSlopes slopes(lens_, middle_px, 0.5 * size_px);

@@ -13,8 +13,8 @@ namespace footing::bench {
 /// string a sample. The library is opened while this program runs, since Debian does not have it.
 class LslLink {
  public:
-  /// Null, with a line on standard error, where there is no liblsl or its inlet finds no outlet.
-  /// `on_payload` runs on a thread of the inlet.
+  /// Null, with a line on standard error, if liblsl is not installed or its inlet does not find the
+  /// outlet. `on_payload` runs on a thread of the inlet.
   static std::unique_ptr<LslLink> Start(std::function<void(std::string_view payload)> on_payload);
   ~LslLink();
   LslLink(const LslLink&) = delete;
