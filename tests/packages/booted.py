@@ -35,7 +35,7 @@ def inside(build, folder):
     for made in ("first", "newer"):
         shutil.rmtree(root.path / "packages" / made / "_CPack_Packages")
     root.apt("update")
-    root.apt("install", "udev", "kmod", "procps")
+    root.apt("install", "udev", "kmod")
     root.install(first)
     root.run("systemd-machine-id-setup")  # Otherwise systemd would think of this boot as the first one.
     root.run("useradd", "--create-home", "--groups", "footing", "student")
