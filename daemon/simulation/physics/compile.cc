@@ -2,12 +2,22 @@
 
 #include <array>
 #include <cstring>
+#include <mutex>
 
 namespace footing::physics {
 namespace {
 
 void IgnoreWarning(const char*) {}
 void AbortOnError(const char* message) { CheckFailed(message, "MuJoCo", 0); }
+
+/// Once, since they are globals of MuJoCo and worlds are compiled on several threads.
+void TakeItsMessages() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    mju_user_warning = IgnoreWarning;
+    mju_user_error = AbortOnError;
+  });
+}
 
 struct DeleteVfs {
   void operator()(mjVFS* files) const {
@@ -19,8 +29,7 @@ struct DeleteVfs {
 }  // namespace
 
 Result<ModelPointer> Compile(const std::string& mjcf) {
-  mju_user_warning = IgnoreWarning;
-  mju_user_error = AbortOnError;
+  TakeItsMessages();
   const char* name = "world.xml";
   std::unique_ptr<mjVFS, DeleteVfs> files(new mjVFS);
   mj_defaultVFS(files.get());
