@@ -78,10 +78,14 @@ Result<PublisherReport> RunPublish(const PublishFlags& flags) {
       ServeMetrics(io, flags.site, [&] { return MetricsText(publisher.report(), cli::Version()); });
   if (!metrics) return metrics.error();
   if (const auto started = publisher.Start(); !started) return started.error();
-  RunUntilStopped(io, flags.site.seconds, [&](const std::function<void()>& done) {
-    publisher.Stop();
-    done();
-  });
+  const RunEnd end =
+      RunUntilStopped(io, flags.site.seconds, [&](const std::function<void()>& done) {
+        publisher.Stop();
+        done();
+      });
+  if (end == RunEnd::kTimeUp) {
+    if (const auto useful = publisher.CheckUseful(); !useful) return useful.error();
+  }
   return publisher.report();
 }
 

@@ -62,11 +62,14 @@ Result<EdgeReport> RunServe(const ServeFlags& flags) {
       ServeMetrics(io, flags.site, [&] { return MetricsText(edge.report(), cli::Version()); });
   if (!metrics) return metrics.error();
   edge.Start();
-  RunUntilStopped(io, flags.site.seconds, [&](std::function<void()> done) {
+  const RunEnd end = RunUntilStopped(io, flags.site.seconds, [&](std::function<void()> done) {
     edge.Drain("footing-relay is being stopped", std::move(done));
   });
   edge.Stop();
   if (broken) return *broken;
+  if (end == RunEnd::kTimeUp && edge.report().ticks == 0) {
+    return NoDevice("nothing came to serve: " + edge.state());
+  }
   return edge.report();
 }
 

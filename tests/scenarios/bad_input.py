@@ -8,7 +8,7 @@ import sys
 
 from harness import Stage, read_ticks
 
-USAGE, FAILURE, INVALID = 2, 1, 4
+USAGE, FAILURE, NO_DEVICE, INVALID = 2, 1, 3, 4
 
 
 def expect(stage, exit_code, words, program, *arguments):
@@ -68,6 +68,19 @@ def wrong_motions(stage):
     boards(USAGE, "--skeleton", "--motion", file)
 
 
+def no_server(stage):
+    """What has waited for a server for as long as it was to run has failed, and says for whom."""
+    nobody = f"unix:{stage.folder}/nobody.sock"
+    broker = "tcp:127.0.0.1:1"  # Nothing listens on that port.
+    waits = f"{nobody}: no such file"
+    expect(stage, NO_DEVICE, waits, "footing-game", "--sensor", nobody, "--simulation", nobody, "--seconds", 0.2)
+    expect(stage, NO_DEVICE, waits, "footing-relay", "publish", "--connect", nobody, "--nats", broker, "--seconds", 0.3)
+    expect(stage, NO_DEVICE, "connection refused", "footing-relay", "serve", "--nats", broker, "--listen",
+           f"unix:{stage.folder}/edge.sock", "--seconds", 0.3)
+    expect(stage, NO_DEVICE, f"footingd --source stream:{nobody}", "footing-stream", "user", "--script", "walk", "--to",
+           nobody, "--seconds", 0.3)
+
+
 def garbage(address):
     """Connections that make no sense, on one socket."""
     path = address.removeprefix("unix:")
@@ -111,6 +124,7 @@ def main(binaries):
     with Stage(binaries) as stage:
         wrong_starts(stage)
         wrong_motions(stage)
+        no_server(stage)
         disturb_nobody(stage)
 
 
