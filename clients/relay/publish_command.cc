@@ -107,7 +107,7 @@ void AddPublishCommand(CLI::App& app, Shared& shared) {
                       "MQTT broker, HOST:PORT; on this host without --mqtt-ca");
   command->add_option("--mqtt-login", flags->mqtt_login, "The same file for the MQTT broker");
   command->add_option("--mqtt-ca", flags->mqtt_ca,
-                      "Certificate by which the broker's is checked, PEM; turns TLS on");
+                      "Certificate that has signed the broker's, PEM; turns TLS on");
   command
       ->add_option("--mqtt-rate-hz", flags->mqtt_rate_hz,
                    "Highest rate of samples and poses in MQTT, Hz (0: every tick)")

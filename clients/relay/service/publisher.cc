@@ -88,8 +88,8 @@ Result<void> Publisher::CheckUseful() const {
   if (!why.empty())
     return NoDevice("no server to publish: " + why + "; start it, or name it with --connect");
   if (published_ > 0) return {};
-  return NoDevice("nothing was published: " + nats_state_ + (nats_ && mqtt_ ? "; " : "") +
-                  mqtt_state_);
+  return Failure("nothing was published: " + nats_state_ + (nats_ && mqtt_ ? "; " : "") +
+                 mqtt_state_);
 }
 
 void Publisher::OnNamed(Source& source) {
