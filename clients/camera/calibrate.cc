@@ -104,8 +104,8 @@ class Calibrating {
 
   void Take(const frames::Frame& frame, std::int64_t exposed_ns) {
     if (ended_) return;
-    if (frame.width != options_.camera.lens.width || frame.height != options_.camera.lens.height)
-      return End(InvalidData("a frame's size is not that of the camera file"));
+    if (const auto checked = CheckSize(frame, options_.camera); !checked)
+      return End(checked.error());
     if (const auto taken = calibration_->Take(frame.View(), exposed_ns); !taken)
       return End(taken.error());
     if (calibration_->is_done()) return Finish();

@@ -26,7 +26,7 @@ void AddCommandLine(CLI::App& app, CommandLine& line) {
 }
 
 Result<void> Check(const CommandLine& line) {
-  if (line.camera_file.empty()) return UsageError("--camera is required");
+  if (line.camera_file.empty()) return UsageError("--camera FILE is missing (docs/camera.md)");
   const FrameOptions& frames = line.frames;
   if (frames.device.empty() + frames.folder.empty() + frames.pipe.empty() != 2)
     return UsageError("name one of --device, --frames and --fifo");

@@ -90,7 +90,7 @@ void AddLensCommand(CLI::App& app, int& exit_code) {
   command->add_option("--sheet", arguments->sheet, "Write the sheet to print, SVG, and end");
   command->add_option("--views", arguments->options.views, "Number of views")
       ->check(CLI::Range(6, 100));
-  command->add_option("--seconds", arguments->options.seconds, "Longest duration, s")
+  command->add_option("--seconds", arguments->options.seconds, "Timeout, s")
       ->check(CLI::Range(1.0, 3600.0));
   command->callback([arguments, &exit_code] { exit_code = RunLens(*arguments); });
 }

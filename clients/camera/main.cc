@@ -76,8 +76,9 @@ int main(int argc, char** argv) {
   app->add_option("--sensor", sensor,
                   "Address of footingd, where the lights of the camera file are switched on");
   app->add_flag("--simulated", options.simulated, "Mark the hands as simulated");
-  app->add_flag("!--no-challenge", options.challenge,
-                "Never switch a sphere's light to make sure that it is the sphere");
+  app->add_flag_callback(
+      "--no-challenge", [&options] { options.challenge = false; },
+      "Never switch a sphere's light to make sure that it is the sphere");
   app->add_option("--seconds", options.seconds, "Duration, s (default: until the frames end)")
       ->check(CLI::Range(0.0, 1e6));
   app->require_subcommand(0, 1);

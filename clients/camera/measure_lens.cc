@@ -46,8 +46,8 @@ class LensMeasurement {
  private:
   void Take(const frames::Frame& frame) {
     if (ended_) return;
-    if (frame.width != options_.camera.lens.width || frame.height != options_.camera.lens.height)
-      return End(InvalidData("a frame's size is not that of the camera file"));
+    if (const auto checked = CheckSize(frame, options_.camera); !checked)
+      return End(checked.error());
     ++frames_;
     collector_.Take(frame.View());
     if (collector_.is_complete()) return End({});

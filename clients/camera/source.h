@@ -49,6 +49,9 @@ Result<std::unique_ptr<Source>> OpenVideo(boost::asio::io_context& io, const std
                                           const VideoSettings& settings,
                                           std::function<void(const std::string&)> alarm);
 
+/// Fails when a frame is not of the size of the camera file.
+Result<void> CheckSize(const frames::Frame& frame, const frames::CameraFile& camera);
+
 /// Where frames come from, as a command line names it.
 struct FrameOptions {
   std::string device, folder, pipe;  ///< One of them.

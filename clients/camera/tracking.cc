@@ -120,8 +120,8 @@ class Tracking {
   }
 
   void Take(const frames::Frame& frame, std::int64_t exposed_ns) {
-    if (frame.width != options_.camera.lens.width || frame.height != options_.camera.lens.height)
-      return End(InvalidData("a frame's size is not that of the camera file"));
+    if (const auto checked = CheckSize(frame, options_.camera); !checked)
+      return End(checked.error());
     const std::int64_t began_ns = clock::ThreadCpuNs();
     auto found = finder_.Find(frame.View());
     if (cost_ms_.size() < kMostCosts)

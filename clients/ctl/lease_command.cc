@@ -74,7 +74,7 @@ void AddLeaseCommand(CLI::App& app, Shared& shared) {
   const auto of = std::make_shared<std::string>("footing-sim");
   CLI::App* command =
       app.add_subcommand("lease", "Print who holds a server's lease, or take it over");
-  command->add_option("--of", *of, "Server whose lease it is")
+  command->add_option("--of", *of, "Server of the lease")
       ->check(CLI::IsMember({"footing-sim", "footingd"}))
       ->capture_default_str();
   command->add_flag("--take-over", *take_over,

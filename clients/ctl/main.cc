@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
                   "Address of footingd, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT (default: "
                   "footingd of this user)");
   app->add_flag("--json", shared.json, "Print one JSON object on standard output");
-  app->require_subcommand(0, 1);  // An unknown command is then reported by its name.
+  app->require_subcommand(1);
   app->fallthrough();
   footing::ctl::AddDeviceCommands(*app, shared);
   footing::ctl::AddControlCommands(*app, shared);
@@ -31,13 +31,10 @@ int main(int argc, char** argv) {
   footing::ctl::AddTrustCommand(*app, shared);
   footing::ctl::AddDiscoverCommand(*app, shared);
   for (CLI::App* command : app->get_subcommands({})) {
-    command->footer(command->get_footer() +
-                    "\nAlso: --json and --connect, as in footing-ctl --help.");
+    const bool connects = command->get_name() != "trust" && command->get_name() != "discover";
+    command->footer(command->get_footer() + "\nAlso: --json" + (connects ? " and --connect" : "") +
+                    ", as in footing-ctl --help.");
   }
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
-  if (app->get_subcommands().empty()) {
-    return footing::cli::Report(
-        footing::UsageError("no command given; footing-ctl --help lists them"));
-  }
   return shared.exit_code;
 }

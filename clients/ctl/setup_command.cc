@@ -109,7 +109,7 @@ void AddSetupCommand(CLI::App& app, Shared& shared) {
       ->check(CLI::Range(0.0, 2000.0));
   command
       ->add_option("--mass-kg", arguments->mass_kg,
-                   "Mass of the person, kg, to compare the weighing with")
+                   "Mass of the person, kg, to compare the weighing with (default: not compared)")
       ->check(CLI::Range(10.0, 200.0));
   command
       ->add_option("--patience", arguments->options.patience_s,

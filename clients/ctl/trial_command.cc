@@ -88,7 +88,9 @@ void AddTrialCommands(CLI::App& app, Shared& shared) {
   CLI::App* start = trial->add_subcommand("start", "Put the character before the start line");
   start->add_option("ID", options->id, "Id of the trial: 1 to 64 letters, digits, - _ and .")
       ->required();
-  start->add_option("--track", options->track, "Built-in track (default: the current one)");
+  start->add_option("--track", options->track,
+                    "Track: straight, 1 to 4, another built-in name, or the file that footing-sim "
+                    "was started with (default: the current one)");
   start->add_option("--seed", options->seed, "Seed that draws the task of a straight track");
   start->add_option("--task", options->task, "Task (default: drawn with the seed)");
   start->callback([options, &shared] { StartTrial(*options, shared); });

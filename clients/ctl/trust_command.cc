@@ -104,6 +104,9 @@ Result<void> TrustServer(const TrustOptions& options, const Shared& shared) {
 }
 
 Result<void> RunTrust(const TrustOptions& options, const Shared& shared) {
+  if (!shared.connect.empty()) {
+    return UsageError("trust connects to no server; name the server as ADDRESS, without --connect");
+  }
   if (options.client) return ShowClient(shared);
   if (options.address.empty()) return ShowServer(options, shared);
   return TrustServer(options, shared);

@@ -48,6 +48,7 @@ class Host {
     LineLater();
     io_.run();
     if (failed_) return *failed_;
+    if (seen_.track().segments.empty()) return WhyNoTrack();
     return MakeReport(director_.game(), seen_, PassedS());
   }
 
@@ -84,7 +85,18 @@ class Host {
     transport::ClientHandlers handlers;
     handlers.on_tick = [this](const v1::Tick& tick) { OnTick(tick); };
     handlers.on_state = [this](transport::LinkState, const std::string& why) { link_ = why; };
+    handlers.on_welcome = [this](const v1::Welcome&) { welcomed_ = true; };
     return handlers;
+  }
+
+  /// Why there was nothing to play on until the end.
+  Error WhyNoTrack() const {
+    if (welcomed_) {
+      return Failure(options_.simulation.Text() +
+                     " has no track: the game needs the gait engine; start it with: footing-sim");
+    }
+    return NoDevice("no footing-sim: " + link_ +
+                    "; start it with: footing-sim, or name its address with --simulation");
   }
 
   double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns_); }
@@ -178,6 +190,7 @@ class Host {
   asio::steady_timer line_, end_;
   std::int64_t started_ns_;
   std::string link_ = "not connected";
+  bool welcomed_ = false;
   bool ending_ = false;
   std::optional<Error> failed_;
   transport::Client sensor_, simulation_;

@@ -17,8 +17,8 @@ struct HostOptions {
   bool text = true;               ///< A line a second on standard output; else on standard error.
 };
 
-/// Leads a game to its end, Ctrl-C, or options.seconds. Fails when footing-sim refuses it: another
-/// one is led there, or its track cannot be extended.
+/// Leads a game to its end, Ctrl-C, or options.seconds. Fails when footing-sim refuses it (another
+/// one is led there, or its track cannot be extended) or never came.
 Result<Report> RunGame(const HostOptions& options);
 
 }  // namespace footing::game

@@ -59,19 +59,22 @@ int main(int argc, char** argv) {
   app->add_option("--sensor", sensor,
                   "Address of footingd, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT");
   app->add_option("--simulation", simulation, "Address of footing-sim, the same way");
-  app->add_option("--players", rules.players, "Names of both players; the first one runs first");
-  app->add_option("--rounds", rules.rounds, "Rounds; the players change parts after each")
+  app->add_option("--players", rules.players, "Names of both players; the first one runs first")
+      ->check([](const std::string& name) {
+        return name.starts_with('-') ? "takes two names, not " + name : std::string();
+      });
+  app->add_option("--rounds", rules.rounds, "Number of rounds; the players swap roles after each")
       ->check(CLI::Range(1, 20));
   app->add_option("--round-s", rules.round_s, "Duration of a round, s")
       ->check(CLI::Range(5.0, 600.0));
   app->add_option("--countdown-s", rules.countdown_s, "Countdown to each round, s")
       ->check(CLI::Range(0.0, 60.0));
-  app->add_option("--pause-s", rules.pause_s, "Pause to change the controllers over, s")
+  app->add_option("--pause-s", rules.pause_s, "Pause to swap the controllers, s")
       ->check(CLI::Range(0.0, 600.0));
   app->add_flag("--pits", rules.pits, "Button B lays pits");
   app->add_option("--seconds", options.seconds, "Duration, s (0: until the game is over)")
       ->check(CLI::Range(0.0, 1e6));
-  app->add_option("--recording", recording, "Recording to count the scores of, MCAP file");
+  app->add_option("--recording", recording, "Recording whose scores to count again, MCAP file");
   app->add_flag("--json", json, "Print one JSON object on standard output at the end");
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   log::Start("footing-game", false);

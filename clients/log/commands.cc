@@ -138,9 +138,9 @@ void AddRecordCommand(CLI::App& app, Shared& shared) {
   command->add_option(
       "--attach", options->attachments,
       "File to store in the recording, such as a config or a track; may be repeated");
-  command->add_flag("--from-ring", options->from_ring,
-                    "Begin with what the servers still hold of the last 30 s, as a replay of the "
-                    "whole session needs it");
+  command->add_flag(
+      "--from-ring", options->from_ring,
+      "Begin with what the servers still hold of the last 30 s, needed to replay a whole session");
   command->add_flag("--force", options->replace, "Overwrite an existing file");
   command->callback(
       [options, addresses, &shared] { Finish(RunRecord(*options, *addresses), shared); });

@@ -37,7 +37,7 @@ Result<ordered_json> RunRecalibrate(const RecalibrateOptions& options) {
 
 void AddRecalibrateCommand(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand(
-      "recalibrate", "Write a recording with its hands where a new calibration puts them");
+      "recalibrate", "Write a copy of a recording with a new calibration applied to its hands");
   const auto options = std::make_shared<RecalibrateOptions>();
   command->add_option("IN", options->in, "Recording, MCAP file")->required();
   command->add_option("--camera", options->camera, "Camera file with the new pose, JSON")

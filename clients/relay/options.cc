@@ -8,6 +8,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <csignal>
+#include <optional>
 #include <utility>
 
 #include "clients/relay/links/broker_address.h"
@@ -57,25 +58,27 @@ Result<std::unique_ptr<monitoring::MetricsEndpoint>> ServeMetrics(
   return monitoring::MetricsEndpoint::Open(io, flags.metrics, std::move(text));
 }
 
-void RunUntilStopped(boost::asio::io_context& io, double seconds,
-                     const std::function<void(std::function<void()>)>& end) {
+RunEnd RunUntilStopped(boost::asio::io_context& io, double seconds,
+                       const std::function<void(std::function<void()>)>& end) {
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   boost::asio::steady_timer timer(io);
-  bool ending = false;
-  const auto stop = [&](const boost::system::error_code& error) {
-    if (error || ending) return;
-    ending = true;
+  std::optional<RunEnd> ended;
+  const auto stop = [&](const boost::system::error_code& error, RunEnd why) {
+    if (error || ended) return;
+    ended = why;
     timer.expires_after(std::chrono::seconds(2));
     timer.async_wait([&](const boost::system::error_code&) { io.stop(); });
     end([&io] { io.stop(); });
   };
-  signals.async_wait([&](const boost::system::error_code& error, int) { stop(error); });
+  signals.async_wait(
+      [&](const boost::system::error_code& error, int) { stop(error, RunEnd::kStopped); });
   if (seconds > 0) {
     timer.expires_after(std::chrono::duration_cast<std::chrono::nanoseconds>(
         std::chrono::duration<double>(seconds)));
-    timer.async_wait(stop);
+    timer.async_wait([&](const boost::system::error_code& error) { stop(error, RunEnd::kTimeUp); });
   }
   io.run();
+  return ended.value_or(RunEnd::kStopped);
 }
 
 }  // namespace footing::relay

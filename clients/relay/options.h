@@ -30,9 +30,11 @@ Result<NatsOptions> NatsOf(const std::string& address, const std::string& login_
 Result<std::unique_ptr<monitoring::MetricsEndpoint>> ServeMetrics(
     boost::asio::io_context& io, const SiteFlags& flags, std::function<std::string()> text);
 
+enum class RunEnd { kStopped, kTimeUp };
+
 /// Runs the loop until SIGINT, SIGTERM or the time is up. Then `end` is called once, with what
 /// stops the loop when its work is done; it is stopped after 2 s in any case.
-void RunUntilStopped(boost::asio::io_context& io, double seconds,
-                     const std::function<void(std::function<void()> done)>& end);
+RunEnd RunUntilStopped(boost::asio::io_context& io, double seconds,
+                       const std::function<void(std::function<void()> done)>& end);
 
 }  // namespace footing::relay

@@ -78,10 +78,14 @@ Result<PublisherReport> RunPublish(const PublishFlags& flags) {
       ServeMetrics(io, flags.site, [&] { return MetricsText(publisher.report(), cli::Version()); });
   if (!metrics) return metrics.error();
   if (const auto started = publisher.Start(); !started) return started.error();
-  RunUntilStopped(io, flags.site.seconds, [&](const std::function<void()>& done) {
-    publisher.Stop();
-    done();
-  });
+  const RunEnd end =
+      RunUntilStopped(io, flags.site.seconds, [&](const std::function<void()>& done) {
+        publisher.Stop();
+        done();
+      });
+  if (end == RunEnd::kTimeUp) {
+    if (const auto useful = publisher.CheckUseful(); !useful) return useful.error();
+  }
   return publisher.report();
 }
 
@@ -103,7 +107,7 @@ void AddPublishCommand(CLI::App& app, Shared& shared) {
                       "MQTT broker, HOST:PORT; on this host without --mqtt-ca");
   command->add_option("--mqtt-login", flags->mqtt_login, "The same file for the MQTT broker");
   command->add_option("--mqtt-ca", flags->mqtt_ca,
-                      "Certificate by which the broker's is checked, PEM; turns TLS on");
+                      "Certificate that has signed the broker's, PEM; turns TLS on");
   command
       ->add_option("--mqtt-rate-hz", flags->mqtt_rate_hz,
                    "Highest rate of samples and poses in MQTT, Hz (0: every tick)")

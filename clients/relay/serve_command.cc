@@ -7,6 +7,7 @@
 #include "clients/relay/service/edge.h"
 #include "clients/relay/service/metrics.h"
 #include "common/cli/cli.h"
+#include "common/transport/socket.h"
 
 namespace footing::relay {
 namespace {
@@ -19,6 +20,23 @@ struct ServeFlags {
   std::int64_t max_sessions = 6000;
   transport::AccessSettings access;
 };
+
+/// Refuses at once what the listener would refuse when the server's ticks come.
+Result<void> CheckSafe(const transport::Address& address, const transport::AccessSettings& access) {
+  if (address.kind == transport::Address::Kind::kTls && access.token_file.empty() &&
+      access.clients_file.empty()) {
+    return UsageError("will not listen on " + address.Text() +
+                      ": anyone who reaches the port could come in; give --token-file or "
+                      "--clients-file");
+  }
+  if (address.kind == transport::Address::Kind::kTcp && !transport::StaysOnThisHost(address) &&
+      !access.insecure_lan) {
+    return UsageError("will not listen on " + address.Text() +
+                      ": beyond this host a connection must be encrypted; use tls:HOST:PORT, or, "
+                      "in a network that you trust wholly, --insecure-lan with a --token-file");
+  }
+  return {};
+}
 
 Result<EdgeOptions> EdgeOptionsOf(const ServeFlags& flags) {
   EdgeOptions options;
@@ -37,6 +55,7 @@ Result<EdgeOptions> EdgeOptionsOf(const ServeFlags& flags) {
   for (const std::string& text : flags.listen) {
     const auto address = transport::ParseAddress(text);
     if (!address) return address.error();
+    if (const auto safe = CheckSafe(*address, flags.access); !safe) return safe.error();
     options.listen.push_back(*address);
   }
   options.rate_hz = flags.rate_hz;
@@ -62,11 +81,17 @@ Result<EdgeReport> RunServe(const ServeFlags& flags) {
       ServeMetrics(io, flags.site, [&] { return MetricsText(edge.report(), cli::Version()); });
   if (!metrics) return metrics.error();
   edge.Start();
-  RunUntilStopped(io, flags.site.seconds, [&](std::function<void()> done) {
+  bool was_up = false;
+  const RunEnd end = RunUntilStopped(io, flags.site.seconds, [&](std::function<void()> done) {
+    was_up = edge.report().nats_up;
     edge.Drain("footing-relay is being stopped", std::move(done));
   });
   edge.Stop();
   if (broken) return *broken;
+  if (end == RunEnd::kTimeUp && edge.report().ticks == 0) {
+    const std::string why = "nothing came to serve: " + edge.state();
+    return was_up ? NoDevice(why) : Failure(why);
+  }
   return edge.report();
 }
 
@@ -101,7 +126,7 @@ void AddServeCommand(CLI::App& app, Shared& shared) {
       ->add_option("--rate-hz", flags->rate_hz,
                    "Highest rate of samples and poses, Hz (0: every tick)")
       ->check(CLI::Range(0.0, 1000.0));
-  command->add_option("--max-sessions", flags->max_sessions, "Viewers at once")
+  command->add_option("--max-sessions", flags->max_sessions, "Maximum number of viewers")
       ->check(CLI::Range(1, 100'000));
   AddAccess(*command, flags->access);
   flags->site.Add(*command);

@@ -14,6 +14,7 @@
 #include "common/config/data_file.h"
 #include "common/log/log.h"
 #include "common/transport/address_or_default.h"
+#include "common/transport/socket.h"
 #include "common/units/units.h"
 
 namespace footing::skeleton {
@@ -87,7 +88,11 @@ struct ReceiverFlags {
     }
     if (!web.empty()) {
       const auto page = transport::ParseAddress("tcp:" + web);
-      if (!page) return UsageError("--web " + web + ": must be 127.0.0.1:PORT");
+      if (!page || !transport::StaysOnThisHost(*page)) {
+        return UsageError("--web " + web +
+                          ": must be 127.0.0.1:PORT; browsers give webcams to pages of their own "
+                          "host only");
+      }
       options.web = *page;
     }
     options.pose_package = pose_package;

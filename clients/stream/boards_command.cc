@@ -34,7 +34,7 @@ CLI::App* AddBoardsCommand(CLI::App& app, BoardsOptions& options) {
   boards->add_option("--hands", options.hands,
                      "Hand devices: none, move, wiimote, straps, kinect or camera");
   boards->add_option("--camera", options.camera_file,
-                     "Camera file of the simulated camera, of --hands camera");
+                     "With --hands camera: camera file of the simulated camera");
   boards->add_option("--frames-to", options.frames_to,
                      "FIFO for its rendered frames, which footing-camera reads");
   boards->add_flag("--moves", options.moves,

@@ -44,8 +44,11 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
     link_.Stop(reason);
   }
 
+  bool has_attached() const { return has_attached_; }
+
  private:
   void OnOpen() {
+    has_attached_ = true;
     const std::string what = devices_.empty()
                                  ? std::to_string(fresh_sources_.size()) + " simulated sources"
                                  : std::to_string(devices_.size()) + " simulated devices";
@@ -243,6 +246,7 @@ class Dialer::Implementation : public std::enable_shared_from_this<Dialer::Imple
   std::vector<std::uint64_t> sequences_;
   device_link::DeviceLink link_;
   std::int64_t start_ns_ = 0;
+  bool has_attached_ = false;
   bool stopped_ = false;
   bool ended_ = false;
 };
@@ -255,6 +259,7 @@ Dialer::Dialer(boost::asio::io_context& io, DialerOptions options, Plan plan,
 Dialer::~Dialer() = default;
 
 void Dialer::Start() { implementation_->Dial(); }
+bool Dialer::has_attached() const { return implementation_->has_attached(); }
 void Dialer::Stop(const std::string& reason) { implementation_->Stop(reason); }
 
 }  // namespace footing::stream_client

@@ -31,6 +31,8 @@ class Dialer {
   void Start();
   /// Detaches every device and closes.
   void Stop(const std::string& reason);
+  /// Whether footingd has been there at any time.
+  bool has_attached() const;
 
  private:
   class Implementation;

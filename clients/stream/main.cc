@@ -16,6 +16,7 @@
 #include "common/log/log.h"
 #include "common/timer/timer.h"
 #include "common/transport/address_or_default.h"
+#include "common/units/units.h"
 
 namespace {
 
@@ -34,6 +35,8 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
   if (const auto done = clock::FollowTimekeeper(); !done) return cli::Report(done.error());
   boost::asio::io_context io(1);
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  timer::Timer limit(io);
+  bool came_in_time = true;
   std::unique_ptr<stream_client::Dialer> dialer;
   const auto eyes = beside ? beside(io) : nullptr;
   const auto end = [&](const std::string& why) {
@@ -41,16 +44,27 @@ int Run(Result<stream_client::Plan> plan, const stream_client::Common& common,
     dialer->Stop(why);
     if (eyes) eyes->Stop();
     signals.cancel();
+    limit.cancel();
   };
   dialer = std::make_unique<stream_client::Dialer>(
       io, stream_client::DialerOptions{*to, common.rate_scale}, std::move(plan).value(),
       [&] { end("the motion has ended"); });
+  if (common.seconds > 0) {
+    limit.expires_after(std::chrono::nanoseconds(SecondsToNanoseconds(common.seconds)));
+    limit.async_wait([&](boost::system::error_code error) {
+      if (error) return;
+      came_in_time = dialer->has_attached();
+      end("the time is up");
+    });
+  }
   signals.async_wait([&](boost::system::error_code error, int) {
     if (!error) end("stopped");
   });
   dialer->Start();
   timer::Run(io);
-  return 0;
+  if (came_in_time) return 0;
+  return cli::Report(NoDevice("no footingd listened for devices on " + to->Text() +
+                              "; start it with: footingd --source stream:" + to->Text()));
 }
 
 int RunPlayer(const std::string& simulation, const stream_client::Common& common) {
@@ -71,7 +85,8 @@ void AddCommon(CLI::App& app, stream_client::Common& common) {
   app.add_option("--link", common.link, "Link model: ideal, good or poor");
   app.add_option("--rate-scale", common.rate_scale, "Ratio of the devices' clock rates to nominal")
       ->check(CLI::Range(0.1, 10.0));
-  app.add_option("--seconds", common.seconds, "Duration, s (default: until SIGINT)")
+  app.add_option("--seconds", common.seconds,
+                 "Duration, s, with the wait for footingd (default: until SIGINT)")
       ->check(CLI::Range(0.0, 1e6));
 }
 

@@ -7,22 +7,24 @@ CLI::App* AddUserCommand(CLI::App& app, UserOptions& options) {
       "user", "A synthetic user, who follows a script or sees the track and steers along it");
   auto* script = user->add_option("--script", options.script,
                                   "Script of the user: a built-in name, or a JSON file");
-  user->add_option("--interface", options.interface,
-                   "Interface: wrist, arm, leg, joystick or boards; of a script wrist or joystick");
+  user->add_option(
+      "--interface", options.interface,
+      "Interface: wrist, arm, leg, joystick or boards; with --script wrist or joystick");
   auto* see = user->add_option("--see", options.see,
                                "Address of footing-sim, whose character, track and trial the user "
                                "sees, unix:PATH, tcp:HOST:PORT or tls:HOST:PORT");
   see->excludes(script);
   auto* style = user->add_option("--style-seed", options.style_seed,
-                                 "Seed of the style of the user who sees: equal for one person "
-                                 "with devices of several seeds (default: --seed)");
+                                 "Seed of the user's style; keep it for one person whose devices "
+                                 "have several seeds (default: --seed)");
   style->needs(see);
-  user->add_option("--turn-by", options.turn_by,
-                   "What turns with the interface leg: head, feet or trunk (default head)")
+  user->add_option(
+          "--turn-by", options.turn_by,
+          "Body part that steers with the interface leg: head, feet or trunk (default head)")
       ->needs(see);
   auto* grip = user->add_option("--grip-deg", options.grip_deg,
-                                "Rotation of the remotes in the hands of the user who sees, with "
-                                "wrist and arm, degrees (default: drawn with the style)");
+                                "Rotation of the remotes in the hands, with wrist and arm, degrees "
+                                "(default: drawn with the style)");
   grip->needs(see);
   user->add_option("--grip-way", options.grip_way,
                    "Grips of both hands: mirrored or same (default mirrored)")

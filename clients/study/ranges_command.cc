@@ -50,11 +50,9 @@ Result<void> Check(const RangesOptions& options) {
 }
 
 Result<RecordedRanges> MeasureLive(const RangesOptions& options) {
-  if (!options.force && journal::Exists(options.out)) {  // Before a person moves for 20 s.
-    return UsageError(options.out +
-                      " exists and is not overwritten; choose another name, or say "
-                      "--force");
-  }
+  // Before a person moves for 20 s.
+  const auto creatable = recording::CheckCreatable(options.out, options.force);
+  if (!creatable) return creatable.error();
   const auto sensor = transport::AddressOrDefault(options.sensor, "sensor");
   if (!sensor) return sensor.error();
   Console console;
@@ -126,16 +124,18 @@ void AddRangesCommand(CLI::App& app, Shared& shared) {
       "ranges", "Measure a person's comfortable range for an interface, or merge a group's");
   command->add_option("--interface", options->played.interface,
                       "Interface: wrist, arm, leg, joystick or boards");
-  command->add_option("--turn-by", options->played.turn_by,
-                      "What turns with the interface leg: head, trunk or feet (default: head)");
+  command->add_option(
+      "--turn-by", options->played.turn_by,
+      "Body part that steers with the interface leg: head, trunk or feet (default: head)");
   command->add_option("--participant", options->participant, "Code of the person");
   command->add_option("--out", options->out, "Mapping table to write, JSON")->required();
-  command->add_flag("--force", options->force, "Replace the file where it exists");
+  command->add_flag("--force", options->force, "Overwrite an existing file");
   command->add_option("--sensor", options->sensor, "Address of footingd");
   command->add_option("--rig", options->rig, "Rig (default: the first with the devices)");
   command->add_flag("--now", options->now, "Begin immediately, without a key press");
-  CLI::Option* recording = command->add_option(
-      "--recording", options->recording, "Measure what a recording shows, MCAP, in place of live");
+  CLI::Option* recording =
+      command->add_option("--recording", options->recording,
+                          "Recording to measure instead of a live person, MCAP file");
   command->add_option("--from", options->from_s, "Start in the recording, s")->needs(recording);
   command->add_option("--to", options->to_s, "End in the recording, s (default: its end)")
       ->needs(recording);

@@ -78,7 +78,7 @@ void AddTestOptions(CLI::App& command, ReportOptions& options) {
   using statistics::NamesOf;
   command
       .add_option("--alternative", options.alternative,
-                  "Differences looked for: any, or values greater or less than the control's")
+                  "Differences to look for: any, or values greater or less than the control's")
       ->check(CLI::IsMember(NamesOf(statistics::kAlternatives)));
   command
       .add_option("--ties", options.ties,

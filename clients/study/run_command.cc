@@ -85,7 +85,7 @@ void AddRunCommand(CLI::App& app, Shared& shared) {
   command->add_option("--simulation", given->simulation, "Address of footing-sim");
   command->add_option("--survey", given->survey,
                       "Address for the participant's survey screen, footing-study survey (default: "
-                      "the survey is asked in this terminal)");
+                      "ask in this terminal)");
   command->add_flag("--unattended", given->unattended,
                     "Without a person: no prompts and no waiting; surveys are answered at random, "
                     "marked synthetic");

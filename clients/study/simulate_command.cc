@@ -105,9 +105,11 @@ void AddSimulateCommand(CLI::App& app, Shared& shared) {
   command->add_option("--folder", given->folder, "Folder of the simulated study's files")
       ->required();
   command->add_option("--participant", given->participants,
-                      "Code of a participant, several times for several (default: all)");
+                      "Code of a participant; may be repeated (default: all)");
   command->add_option("--seed", given->seed, "Seed of the participants' styles and answers");
-  command->add_option("--jobs", given->jobs, "Sessions at once (default 0: one for each processor)")
+  command
+      ->add_option("--jobs", given->jobs,
+                   "Number of sessions at once (default 0: one per processor)")
       ->check(CLI::Range(0, 256));
   command->add_flag(
       "--real-time", given->real_time,

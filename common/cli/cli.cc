@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <regex>
 #include <sstream>
 
 namespace footing::cli {
@@ -58,24 +59,36 @@ const CLI::App& InnermostCommand(const CLI::App& app, std::string& name) {
   return InnermostCommand(*taken.back(), name);
 }
 
-std::string UnknownSubcommand(const CLI::App& command, const std::string& word) {
-  std::string text = "unknown subcommand " + word + "; there are:";
+std::string Subcommands(const CLI::App& command) {
+  std::string text = "there are:";
   for (const CLI::App* one : command.get_subcommands([](const CLI::App*) { return true; })) {
     text += " " + one->get_name();
   }
   return text;
 }
 
+/// "10.000000" of a range becomes "10".
+std::string WithShortNumbers(const std::string& text) {
+  static const std::regex kTrailingZeros(R"((\.\d*?)0+\b)"), kBarePoint(R"((\d)\.(?!\d))");
+  return std::regex_replace(std::regex_replace(text, kTrailingZeros, "$1"), kBarePoint, "$1");
+}
+
 /// What is wrong with a command line, as one line.
 std::string Problem(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
-  if (unknown.empty()) return error.what();
-  const std::string& first = unknown.front();
-  const bool is_option = first.starts_with('-');
   const bool has_subcommands =
       !command.get_subcommands([](const CLI::App*) { return true; }).empty();
-  if (!is_option && has_subcommands) return UnknownSubcommand(command, first);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();
+  const std::string what = WithShortNumbers(error.what());
+  if (unknown.empty() && has_subcommands && what == "A subcommand is required") {
+    return "a subcommand is missing; " + Subcommands(command);
+  }
+  if (unknown.empty()) return what;
+  const std::string& first = unknown.front();
+  const bool is_option = first.starts_with('-');
+  if (!is_option && has_subcommands) {
+    return "unknown subcommand " + first + "; " + Subcommands(command);
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return what;
   return (is_option ? "unknown option " : "unexpected argument ") + first;
 }
 

@@ -92,7 +92,7 @@ void Binder::TextList(const std::string& key, std::vector<std::string>& value,
     return true;
   };
   entries_.push_back(
-      {key, "a list of texts", documentation, assign, [&value] { return Json(value); }});
+      {key, "a list of strings", documentation, assign, [&value] { return Json(value); }});
 }
 
 void Binder::TextMap(const std::string& key, std::map<std::string, std::string>& value,
@@ -108,7 +108,7 @@ void Binder::TextMap(const std::string& key, std::map<std::string, std::string>&
     value = std::move(map);
     return true;
   };
-  entries_.push_back({key, "an object of texts (" + documentation + ")", documentation, assign,
+  entries_.push_back({key, "an object of strings (" + documentation + ")", documentation, assign,
                       [&value] { return Json(value); }});
 }
 

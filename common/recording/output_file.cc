@@ -9,13 +9,25 @@
 
 namespace footing::recording {
 
+Error FileExists(const std::string& path) {
+  return UsageError(path + " exists; choose another name, or overwrite it with --force");
+}
+
+Result<void> CheckCreatable(const std::string& path, bool replace) {
+  const bool exists = ::access(path.c_str(), F_OK) == 0;
+  if (exists && !replace) return FileExists(path);
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  if (descriptor < 0) return Failure("cannot create " + path + ": " + std::strerror(errno));
+  ::close(descriptor);
+  if (!exists) ::unlink(path.c_str());
+  return {};
+}
+
 Result<OutputFile> OutputFile::Create(const std::string& path, bool replace) {
   const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (replace ? O_TRUNC : O_EXCL);
   const int descriptor = ::open(path.c_str(), flags, 0600);
   if (descriptor >= 0) return OutputFile(path, descriptor);
-  if (errno == EEXIST) {
-    return UsageError(path + " exists; choose another name, or overwrite it with --force");
-  }
+  if (errno == EEXIST) return FileExists(path);
   return Failure("cannot create " + path + ": " + std::strerror(errno));
 }
 

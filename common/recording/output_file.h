@@ -7,6 +7,11 @@
 
 namespace footing::recording {
 
+/// The usage error for an output that is there already.
+Error FileExists(const std::string& path);
+/// Whether Create() will do, asked before long work; leaves no file behind.
+Result<void> CheckCreatable(const std::string& path, bool replace);
+
 /// A new file that is written from its start to its end, readable by its owner alone: recordings
 /// are people's movements.
 class OutputFile {

@@ -44,27 +44,8 @@ double Quantile(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-/// The middle of a blob, in at most some hundred quads; of a small one the middle quad.
-std::vector<std::pair<int, int>> Middle(const Blob& blob) {
-  std::vector<std::pair<int, int>> middle;
-  const int step = 1 + (blob.right - blob.left) / 16;
-  const Eigen::Vector2d size(blob.right - blob.left + 1, blob.bottom - blob.top + 1);
-  for (int y = blob.top; y <= blob.bottom; y += step) {
-    for (int x = blob.left; x <= blob.right; x += step) {
-      const Eigen::Vector2d from = (Eigen::Vector2d(x, y) - blob.centre).cwiseQuotient(size);
-      if (from.norm() < 0.35 || (from.array().abs() * size.array() <= 0.51).all())
-        middle.emplace_back(x, y);
-    }
-  }
-  if (middle.empty()) {
-    middle.emplace_back(static_cast<int>(std::lround(blob.centre.x())),
-                        static_cast<int>(std::lround(blob.centre.y())));
-  }
-  return middle;
-}
-
 Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob,
-                    const std::vector<std::pair<int, int>>& middle) {
+                    const InnerQuads& middle) {
   std::array<std::vector<double>, 3> inside, outside;
   const auto add = [&](std::array<std::vector<double>, 3>& to, int x, int y) {
     const Levels levels = LevelsAt(image, quads, x, y);
@@ -150,9 +131,27 @@ std::optional<double> FallAlong(const LightMap& map, const Eigen::Vector2d& from
 
 }  // namespace
 
-Eigen::Vector3d ColourOf(const Quads& quads, const Blob& blob) {
+InnerQuads InnerQuadsOf(const Blob& blob) {
+  InnerQuads middle;
+  const int step = 1 + (blob.right - blob.left) / 16;
+  const Eigen::Vector2d size(blob.right - blob.left + 1, blob.bottom - blob.top + 1);
+  for (int y = blob.top; y <= blob.bottom; y += step) {
+    for (int x = blob.left; x <= blob.right; x += step) {
+      const Eigen::Vector2d from = (Eigen::Vector2d(x, y) - blob.centre).cwiseQuotient(size);
+      if (from.norm() < 0.35 || (from.array().abs() * size.array() <= 0.51).all())
+        middle.emplace_back(x, y);
+    }
+  }
+  if (middle.empty()) {
+    middle.emplace_back(static_cast<int>(std::lround(blob.centre.x())),
+                        static_cast<int>(std::lround(blob.centre.y())));
+  }
+  return middle;
+}
+
+Eigen::Vector3d ColourOf(const Quads& quads, const InnerQuads& inner) {
   std::array<std::vector<double>, 3> inside;
-  for (const auto& [x, y] : Middle(blob)) {
+  for (const auto& [x, y] : inner) {
     const std::size_t at = QuadAt(quads, x, y);
     inside[0].push_back(quads.red[at]);
     inside[1].push_back(quads.green[at]);
@@ -163,9 +162,9 @@ Eigen::Vector3d ColourOf(const Quads& quads, const Blob& blob) {
 }
 
 std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
-                               const PixelNoise& noise) {
+                               const InnerQuads& inner, const PixelNoise& noise) {
   Edges edges;
-  edges.contrast = ContrastOf(image, quads, blob, Middle(blob));
+  edges.contrast = ContrastOf(image, quads, blob, inner);
   double highest = 0;
   for (int i = 0; i < 3; ++i) highest = std::max(highest, std::abs(edges.contrast.Height(i)));
   if (highest < kLeastContrastDn) return std::nullopt;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/sphere/blobs.h"
@@ -21,8 +22,12 @@ struct Contrast {
 
 inline constexpr int kEdgeRays = 32;
 
+/// The middle of a blob, in at most some hundred quads; of a small one the middle quad.
+using InnerQuads = std::vector<std::pair<int, int>>;
+InnerQuads InnerQuadsOf(const Blob& blob);
+
 /// Red, green and blue in the middle of a blob.
-Eigen::Vector3d ColourOf(const Quads& quads, const Blob& blob);
+Eigen::Vector3d ColourOf(const Quads& quads, const InnerQuads& inner);
 
 /// Where the light falls to the half between inside and outside along rays from a blob's middle.
 struct Edges {
@@ -34,6 +39,6 @@ struct Edges {
 /// and outside and weighted by its contrast over its noise, so that a mosaic needs no
 /// interpolation. Sub-pixel by linear interpolation. Nothing when the blob has no contrast.
 std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
-                               const PixelNoise& noise);
+                               const InnerQuads& inner, const PixelNoise& noise);
 
 }  // namespace footing::sphere

@@ -170,9 +170,10 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, std::size_
   if (blobs.size() > kMostBlobs) blobs.resize(kMostBlobs);
   std::vector<Candidate> candidates;
   for (const Blob& blob : blobs) {
-    const double colour_off = ColourOff(ColourOf(quads_, blob), target.colour_dn);
+    const InnerQuads inner = InnerQuadsOf(blob);
+    const double colour_off = ColourOff(ColourOf(quads_, inner), target.colour_dn);
     if (colour_off >= kMostColourOff) continue;  // Its confidence would be zero.
-    const auto edges = FindEdges(image, quads_, blob, settings_.noise);
+    const auto edges = FindEdges(image, quads_, blob, inner, settings_.noise);
     if (!edges) continue;
     const Eigen::Vector2d middle_px = MiddleOf(blob);
     const double size_px = 2.0 * std::max(blob.right - blob.left, blob.bottom - blob.top) + 2;

@@ -49,7 +49,7 @@ Result<void> CheckDigest(std::string_view bytes, const std::string& origin) {
   const bool has_tail = bytes.size() > kTailBytes &&
                         bytes.substr(bytes.size() - kTailBytes, kDigestHead.size()) == kDigestHead;
   if (!has_tail) {
-    return InvalidData(origin + ": no model file, or cut short: it does not end in a checksum");
+    return InvalidData(origin + ": not a model file, or cut short: it does not end in a checksum");
   }
   const std::string_view content = bytes.substr(0, bytes.size() - kTailBytes);
   if (Bytes(model::Sha256(content)) != bytes.substr(bytes.size() - sizeof(model::Digest))) {

@@ -8,7 +8,7 @@ import sys
 
 from harness import Stage, read_ticks
 
-USAGE, FAILURE, INVALID = 2, 1, 4
+USAGE, FAILURE, NO_DEVICE, INVALID = 2, 1, 3, 4
 
 
 def expect(stage, exit_code, words, program, *arguments):
@@ -46,6 +46,21 @@ def wrong_starts(stage):
            "/nonexistent.csv", "--rate-hz", 100)
     expect(stage, FAILURE, "tracks/no_such_track.json", "footing-sim", "--track", "no_such_track",
            "--listen", f"unix:{stage.folder}/unused.sock")
+    expect(stage, INVALID, f"{config}: not JSON", "footing-sim", "--track", config, "--listen",
+           f"unix:{stage.folder}/unused.sock")
+    expect(stage, INVALID, f"{config}, in place of wrist_mapping.json", "footing-sim", "--set",
+           f"mapping_table={config}", "--listen", f"unix:{stage.folder}/unused.sock")
+
+
+def wrong_words(stage):
+    expect(stage, USAGE, "a subcommand is missing; there are: devices", "footing-ctl")
+    expect(stage, USAGE, "connects to no server", "footing-ctl", "trust", "--connect", "tls:127.0.0.1:1")
+    expect(stage, USAGE, "takes two names", "footing-game", "--players", "Ann", "--seconds", 1)
+    expect(stage, USAGE, "must be 127.0.0.1:PORT", "footing-skeleton", "--web", "0.0.0.0:7180", "--no-publish")
+    broker = ("--nats", "tcp:127.0.0.1:1", "--seconds", 1)
+    expect(stage, USAGE, "--insecure-lan", "footing-relay", "serve", *broker, "--listen", "tcp:0.0.0.0:7460")
+    expect(stage, USAGE, "--token-file", "footing-relay", "serve", *broker, "--listen", "tls:127.0.0.1:7460")
+    expect(stage, USAGE, "not a broker's address", "footing-relay", "publish", "--nats", "nonsense")
 
 
 def wrong_motions(stage):
@@ -66,6 +81,19 @@ def wrong_motions(stage):
     file = stage.folder / "motion.amc"
     file.write_text(":FULLY-SPECIFIED\n:DEGREES\n")
     boards(USAGE, "--skeleton", "--motion", file)
+
+
+def no_server(stage):
+    """What has waited for a server for as long as it was to run has failed, and says for whom."""
+    nobody = f"unix:{stage.folder}/nobody.sock"
+    broker = "tcp:127.0.0.1:1"  # Nothing listens on that port.
+    waits = f"{nobody}: no such file"
+    expect(stage, NO_DEVICE, waits, "footing-game", "--sensor", nobody, "--simulation", nobody, "--seconds", 0.2)
+    expect(stage, NO_DEVICE, waits, "footing-relay", "publish", "--connect", nobody, "--nats", broker, "--seconds", 0.3)
+    expect(stage, FAILURE, "connection refused", "footing-relay", "serve", "--nats", broker, "--listen",
+           f"unix:{stage.folder}/edge.sock", "--seconds", 0.3)
+    expect(stage, NO_DEVICE, f"footingd --source stream:{nobody}", "footing-stream", "user", "--script", "walk", "--to",
+           nobody, "--seconds", 0.3)
 
 
 def garbage(address):
@@ -110,7 +138,9 @@ def disturb_nobody(stage):
 def main(binaries):
     with Stage(binaries) as stage:
         wrong_starts(stage)
+        wrong_words(stage)
         wrong_motions(stage)
+        no_server(stage)
         disturb_nobody(stage)
 
 

@@ -207,13 +207,13 @@ def check_login(stage):
         path.write_text(text)
         path.chmod(0o600)
     with brokers.nats(stage.folder, "--auth", "right-token") as nats:
-        def output(login):
+        def output(login, code):
             done = stage.run("footing-relay", "publish", "--connect", stage.sensor, "--site", SITE, "--nats",
                              f"tcp:127.0.0.1:{nats.port}", "--nats-login", login, "--seconds", 1.5, "--json")
-            assert done.returncode == 0, done
+            assert done.returncode == code, done
             return done
-        refused, taken = output(wrong), output(token)
-    assert "Authorization Violation" in refused.stderr and '"published":0' in refused.stdout, refused
+        refused, taken = output(wrong, 1), output(token, 0)
+    assert "nothing was published" in refused.stderr and "Authorization Violation" in refused.stderr, refused
     assert "wrong-token" not in refused.stderr, "it logs the token"
     assert '"published":0' not in taken.stdout, taken
 

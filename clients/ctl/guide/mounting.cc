@@ -64,61 +64,46 @@ constexpr const char* kWrist = R"(
         buttons up, on the back of the wrist; or held in the hand
 )";
 
+struct Mounted {
+  const char* picture = "";
+  const char* text = "";
+};
+
+/// How a device of that role is worn; nothing for one that needs no mounting.
+Mounted MountedAs(stream::DeviceRole role) {
+  switch (role) {
+    case stream::DeviceRole::kLeftLeg:
+      return {kShin, "left leg: outside of the shin, buttons outwards, front up"};
+    case stream::DeviceRole::kRightLeg:
+      return {kShin, "right leg: outside of the shin, buttons outwards, front up"};
+    case stream::DeviceRole::kHead:
+      return {kHead, "head: on top under the band, buttons up, front where you look"};
+    case stream::DeviceRole::kTrunk:
+      return {kTrunk, "trunk: on the breastbone under the strap, buttons outwards, front up"};
+    case stream::DeviceRole::kLeftHand:
+      return {kWrist, "left wrist: buttons up, front along the fingers"};
+    case stream::DeviceRole::kRightHand:
+      return {kWrist, "right wrist: buttons up, front along the fingers"};
+    case stream::DeviceRole::kLeftBoard:
+    case stream::DeviceRole::kRightBoard:
+    case stream::DeviceRole::kLeftUpperArm:
+    case stream::DeviceRole::kRightUpperArm:
+    case stream::DeviceRole::kLeftForearm:
+    case stream::DeviceRole::kRightForearm:
+    case stream::DeviceRole::kEditor:
+    case stream::DeviceRole::kUnspecified:
+      return {};
+  }
+  return {};
+}
+
 }  // namespace
 
 bool NeedsMounting(stream::DeviceRole role) { return !Wearing(role).empty(); }
 
-std::string Picture(stream::DeviceRole role) {
-  switch (role) {
-    case stream::DeviceRole::kLeftLeg:
-    case stream::DeviceRole::kRightLeg:
-      return kShin;
-    case stream::DeviceRole::kHead:
-      return kHead;
-    case stream::DeviceRole::kTrunk:
-      return kTrunk;
-    case stream::DeviceRole::kLeftHand:
-    case stream::DeviceRole::kRightHand:
-      return kWrist;
-    case stream::DeviceRole::kLeftBoard:
-    case stream::DeviceRole::kRightBoard:
-    case stream::DeviceRole::kLeftUpperArm:
-    case stream::DeviceRole::kRightUpperArm:
-    case stream::DeviceRole::kLeftForearm:
-    case stream::DeviceRole::kRightForearm:
-    case stream::DeviceRole::kEditor:
-    case stream::DeviceRole::kUnspecified:
-      return "";
-  }
-  return "";
-}
+std::string Picture(stream::DeviceRole role) { return MountedAs(role).picture; }
 
-std::string Wearing(stream::DeviceRole role) {
-  switch (role) {
-    case stream::DeviceRole::kLeftLeg:
-      return "left leg: outside of the shin, buttons outwards, front up";
-    case stream::DeviceRole::kRightLeg:
-      return "right leg: outside of the shin, buttons outwards, front up";
-    case stream::DeviceRole::kHead:
-      return "head: on top under the band, buttons up, front where you look";
-    case stream::DeviceRole::kTrunk:
-      return "trunk: on the breastbone under the strap, buttons outwards, front up";
-    case stream::DeviceRole::kLeftHand:
-      return "left wrist: buttons up, front along the fingers";
-    case stream::DeviceRole::kRightHand:
-      return "right wrist: buttons up, front along the fingers";
-    case stream::DeviceRole::kLeftBoard:
-    case stream::DeviceRole::kRightBoard:
-    case stream::DeviceRole::kLeftUpperArm:
-    case stream::DeviceRole::kRightUpperArm:
-    case stream::DeviceRole::kLeftForearm:
-    case stream::DeviceRole::kRightForearm:
-    case stream::DeviceRole::kEditor:
-    case stream::DeviceRole::kUnspecified:
-      return "";
-  }
-  return "";
-}
+std::string Wearing(stream::DeviceRole role) { return MountedAs(role).text; }
 
 double StillThenSteps::still_s(std::int64_t now_ns) const {
   if (still_from_ns_ == 0) return 0;

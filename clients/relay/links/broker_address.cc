@@ -8,7 +8,7 @@ Result<transport::Address> ParseBrokerAddress(const std::string& text, const std
   const bool named = text.starts_with("tcp:") || text.starts_with("tls:") ||
                      text.starts_with("unix:") || text.starts_with("fd:");
   auto address = transport::ParseAddress(named ? text : "tcp:" + text);
-  if (!address) return address.error();
+  if (!address) return UsageError("\"" + text + "\" is not a broker's address, [tcp:]HOST:PORT");
   if (address->kind != transport::Address::Kind::kTcp) {
     return UsageError(text + ": a broker is dialled at tcp:HOST:PORT");
   }

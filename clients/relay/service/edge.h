@@ -55,6 +55,8 @@ class Edge {
   void Drain(const std::string& reason, std::function<void()> done);
   void Stop();
   EdgeReport report() const;
+  /// What it does or waits for: a line for a person.
+  const std::string& state() const { return state_; }
 
  private:
   void OnMessage(const nats::Message& message);

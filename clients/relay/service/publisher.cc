@@ -78,6 +78,20 @@ PublisherReport Publisher::report() const {
   return report;
 }
 
+Result<void> Publisher::CheckUseful() const {
+  std::string why;
+  for (const auto& source : sources_) {
+    if (!source->name().empty()) why.clear();
+    if (!source->name().empty()) break;
+    why += (why.empty() ? "" : "; ") + source->link();
+  }
+  if (!why.empty())
+    return NoDevice("no server to publish: " + why + "; start it, or name it with --connect");
+  if (published_ > 0) return {};
+  return Failure("nothing was published: " + nats_state_ + (nats_ && mqtt_ ? "; " : "") +
+                 mqtt_state_);
+}
+
 void Publisher::OnNamed(Source& source) {
   if (nats_) nats_->Subscribe(AskSubject(options_.site, source.name()));
 }

@@ -51,6 +51,8 @@ class Publisher {
   Result<void> Start();
   void Stop();
   PublisherReport report() const;
+  /// Fails when no server has ever welcomed it, or no broker has ever taken anything.
+  Result<void> CheckUseful() const;
 
  private:
   void OnNamed(Source& source);

@@ -77,7 +77,7 @@ void Reader::Texts(const std::string& key, std::vector<std::string>& value, std:
   const ordered_json* found = Find(key);
   if (found == nullptr) return;
   const std::string allowed =
-      "a list of " + std::to_string(least) + " to " + std::to_string(greatest) + " texts";
+      "a list of " + std::to_string(least) + " to " + std::to_string(greatest) + " strings";
   if (!found->is_array() || found->size() < least || found->size() > greatest) {
     return Wrong(key, *found, allowed);
   }

@@ -133,7 +133,8 @@ Result<std::string> Console::Ask(const std::string& prompt) {
   own.RunUntil([&own] { return own.HasLine() || own.ended_; }, kAskS);
   if (own.interrupted_) return Interrupted();
   if (own.HasLine() || !own.typed_.empty()) return own.TakeLine();
-  return Failure("the standard input has ended; footing-study run resumes the session");
+  return Failure(
+      "the standard input has ended, so nobody can answer; run the command again in a terminal");
 }
 
 void Console::ReadKeys(bool on) {

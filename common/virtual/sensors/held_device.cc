@@ -9,6 +9,7 @@
 #include "common/body/points.h"
 #include "common/units/units.h"
 #include "common/virtual/motion/edit.h"
+#include "common/virtual/noise/normal_vector.h"
 
 namespace footing::virtual_sensors {
 namespace {
@@ -94,7 +95,7 @@ HeldErrorConfig HeldErrors::None() {
 }
 
 HeldErrors::HeldErrors(const HeldErrorConfig& config) : config_(config), random_(config.seed) {
-  const Eigen::Vector3d tilt = Normals(config.grip_tilt_rad);
+  const Eigen::Vector3d tilt = noise::NormalVector(config.grip_tilt_rad, random_);
   grip_ = Eigen::AngleAxisd(tilt.x(), Eigen::Vector3d::UnitX()) *
           Eigen::AngleAxisd(tilt.y(), Eigen::Vector3d::UnitY()) *
           Eigen::AngleAxisd(config.grip_heading_rad * random_.Normal(), Eigen::Vector3d::UnitZ())
@@ -104,16 +105,10 @@ HeldErrors::HeldErrors(const HeldErrorConfig& config) : config_(config), random_
                               Eigen::Vector3d::UnitX()) *
             grip_;
   }
-  force_gain_ = Eigen::Vector3d::Ones() + Normals(config.gain_spread);
-  turn_gain_ = Eigen::Vector3d::Ones() + Normals(config.gain_spread);
-  force_bias_ = Normals(config.force_bias_mps2);
-  turn_bias_ = Normals(config.turn_bias_radps);
-}
-
-Eigen::Vector3d HeldErrors::Normals(double sd) {
-  Eigen::Vector3d values;
-  for (double& value : values) value = sd * random_.Normal();
-  return values;
+  force_gain_ = Eigen::Vector3d::Ones() + noise::NormalVector(config.gain_spread, random_);
+  turn_gain_ = Eigen::Vector3d::Ones() + noise::NormalVector(config.gain_spread, random_);
+  force_bias_ = noise::NormalVector(config.force_bias_mps2, random_);
+  turn_bias_ = noise::NormalVector(config.turn_bias_radps, random_);
 }
 
 HeldReading HeldErrors::Advance(const Eigen::Vector3d& specific_force_mps2,
@@ -121,12 +116,14 @@ HeldReading HeldErrors::Advance(const Eigen::Vector3d& specific_force_mps2,
   const auto counted = [](double value, double count) {
     return count > 0 ? count * std::round(value / count) : value;
   };
-  turn_bias_ += Normals(config_.turn_walk_radps_rt_s * std::sqrt(step_s));
+  turn_bias_ += noise::NormalVector(config_.turn_walk_radps_rt_s * std::sqrt(step_s), random_);
   HeldReading reading;
   reading.specific_force_S_mps2 = force_gain_.cwiseProduct(grip_ * specific_force_mps2) +
-                                  force_bias_ + Normals(config_.force_noise_mps2);
+                                  force_bias_ +
+                                  noise::NormalVector(config_.force_noise_mps2, random_);
   reading.angular_velocity_S_radps = turn_gain_.cwiseProduct(grip_ * angular_velocity_radps) +
-                                     turn_bias_ + Normals(config_.turn_noise_radps);
+                                     turn_bias_ +
+                                     noise::NormalVector(config_.turn_noise_radps, random_);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     double& force = reading.specific_force_S_mps2(axis);
     reading.clipped = reading.clipped || std::abs(force) >= config_.force_range_mps2;

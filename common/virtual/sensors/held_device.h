@@ -70,8 +70,6 @@ class HeldErrors {
                       const Eigen::Vector3d& angular_velocity_radps, double step_s);
 
  private:
-  Eigen::Vector3d Normals(double sd);
-
   HeldErrorConfig config_;
   noise::Random random_;
   Eigen::Matrix3d grip_;  ///< From the frame as it should be held.

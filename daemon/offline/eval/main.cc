@@ -32,6 +32,7 @@ constexpr char kExamples[] =
     "  footing-eval transitions --from walk --to run --trials 20 --seed 1 --json\n"
     "  footing-eval monkey --seconds 60 --trials 2 --seed 1 --json\n"
     "  footing-eval tracks --interface wrist --track straight --trials 2 --seed 1 --json\n"
+    "  footing-eval plan straight 1 --out tracks.svg\n"
     "  footing-eval momentum --motion clip.bvh --json\n"
     "  footing-eval pose --motion clip.bvh --json\n"
     "  footing-eval arm --motion clip.bvh --json\n"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/body/skeleton_points.h"
+#include "common/virtual/noise/normal_vector.h"
 #include "daemon/simulation/arms/rotation_vector.h"
 
 namespace footing::pose_run {
@@ -12,12 +13,6 @@ namespace {
 constexpr double kLeastSdM = 0.001;
 // Apart from the seeds of boards (twice the run's and one more), hands and arms.
 constexpr std::uint64_t kHeadSeed = 104729, kBeltSeed = 1299709;
-
-Eigen::Vector3d Normals(double sd, noise::Random& random) {
-  Eigen::Vector3d values;
-  for (double& value : values) value = sd * random.Normal();
-  return values;
-}
 
 constexpr std::size_t kHeadJoint = body::IndexOf(stream::BodyJoint::kHead);
 
@@ -42,7 +37,7 @@ HeadTracker::HeadTracker(const body::Body& body, HeadDevice device, const HeadEr
       random_(seed + kHeadSeed),
       sphere_(body::SkeletonPoints(body)[kHeadJoint]),
       kinect_(body, seed + kHeadSeed, step_s, Unhidden()) {
-  sphere_.p_J_m += Normals(errors.seat_m, random_);
+  sphere_.p_J_m += noise::NormalVector(errors.seat_m, random_);
 }
 
 void HeadTracker::Advance(const body::Kinematics& at, reconstruction::Inputs& inputs) {
@@ -54,7 +49,7 @@ void HeadTracker::Advance(const body::Kinematics& at, reconstruction::Inputs& in
     return;
   }
   head.valid = true;
-  head.p_W_m = body::Place(sphere_, at) + Normals(errors_.noise_m, random_);
+  head.p_W_m = body::Place(sphere_, at) + noise::NormalVector(errors_.noise_m, random_);
   head.sd_m.setConstant(std::max(std::hypot(errors_.noise_m, errors_.seat_m), kLeastSdM));
 }
 
@@ -74,7 +69,8 @@ arms::HandState Belt::Until(Eigen::Index column, double step_s) {
         reading_s_);
   }
   const double stays = std::exp(-step_s / errors_.slip_s);
-  slip_rad_ = stays * slip_rad_ + Normals(errors_.slip_rad * std::sqrt(1 - stays * stays), random_);
+  slip_rad_ = stays * slip_rad_ +
+              noise::NormalVector(errors_.slip_rad * std::sqrt(1 - stays * stays), random_);
   arms::HandState state = attitude_.state();
   state.turn_W = state.turn_W * arms::Turned(slip_rad_);
   return state;

@@ -281,7 +281,9 @@ void AddComCommand(CLI::App& app, Shared& shared) {
       ->add_option("--rounds", options->rounds,
                    "Number of training rounds on the networks' own outputs")
       ->check(CLI::Range(0, 50));
-  command->add_flag("!--no-mirror", options->mirror, "Leave out the mirror images of the clips");
+  command->add_flag_callback(
+      "--no-mirror", [options] { options->mirror = false; },
+      "Leave out the mirror images of the clips");
   command->add_option("--hidden-max", options->cascade.hidden_max, "Maximum number of hidden units")
       ->check(CLI::Range(0, 256));
   command

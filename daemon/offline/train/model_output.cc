@@ -1,6 +1,5 @@
 #include "daemon/offline/train/model_output.h"
 
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -17,14 +16,11 @@ void AddModelOptions(CLI::App& command, ModelOptions& options) {
                      "Seed of initial weights and noise; equal seeds give equal models");
   command.add_flag("--force", options.force, "Overwrite an existing model");
   command.add_option("--licence", options.licences,
-                     "Whose motion under what terms; the model states it with its command line; "
-                     "may be repeated");
+                     "Owner and terms of the motion data, stored in the model; may be repeated");
 }
 
 Result<void> CheckFree(const ModelOptions& options) {
-  std::error_code error;
-  if (options.force || !std::filesystem::exists(options.out, error)) return {};
-  return UsageError(options.out + " exists; choose another name, or overwrite it with --force");
+  return recording::CheckCreatable(options.out, options.force);
 }
 
 model::Model NewModel(const std::string& kind, const Shared& shared, const ModelOptions& options,

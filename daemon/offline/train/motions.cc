@@ -58,17 +58,7 @@ Result<void> UnifyLayouts(std::vector<Clip>& clips) {
   };
   if (std::all_of(clips.begin(), clips.end(), of_first)) return {};
   for (Clip& clip : clips) {
-    if (motion::HasStandardLayout(clip.motion)) continue;
-    auto standard = motion::ToStandardLayout(clip.motion);
-    if (!standard) return InvalidData(clip.name + ": " + standard.error().message);
-    body::PersonParameters person;
-    person.height_m = standard->height_m;
-    auto body = body::MakeBody(standard->motion.skeleton, person);
-    if (!body) return InvalidData(clip.name + ": " + body.error().message);
-    log::Info("fitted " + clip.name + " to the standard layout within " +
-              text::Fixed(1e3 * standard->rms_m, 1) + " mm");
-    clip.motion = learning::Aligned(standard->motion, body->landmarks);
-    clip.body = *std::move(body);
+    if (const auto fitted = FitToStandardLayout(clip); !fitted) return fitted.error();
   }
   return {};
 }
@@ -103,6 +93,21 @@ Result<Clip> ReadClip(const std::string& file, const std::string& skeleton) {
               .file = {.name = name, .sha256 = model::Sha256(*text)},
               .motion = learning::Aligned(*motion, body->landmarks),
               .body = *body};
+}
+
+Result<double> FitToStandardLayout(Clip& clip) {
+  if (motion::HasStandardLayout(clip.motion)) return 0.0;
+  auto standard = motion::ToStandardLayout(clip.motion);
+  if (!standard) return InvalidData(clip.name + ": " + standard.error().message);
+  body::PersonParameters person;
+  person.height_m = standard->height_m;
+  auto body = body::MakeBody(standard->motion.skeleton, person);
+  if (!body) return InvalidData(clip.name + ": " + body.error().message);
+  log::Info("fitted " + clip.name + " to the standard layout within " +
+            text::Fixed(1e3 * standard->rms_m, 1) + " mm");
+  clip.motion = learning::Aligned(standard->motion, body->landmarks);
+  clip.body = *std::move(body);
+  return standard->rms_m;
 }
 
 bool StaysInPlace(const Clip& clip) {

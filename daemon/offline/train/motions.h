@@ -40,6 +40,9 @@ struct Clips {
 /// One .bvh, .amc, .trc or .c3d; an AMC's skeleton is looked for beside it if none is given.
 Result<Clip> ReadClip(const std::string& file, const std::string& skeleton = "");
 
+/// Fits a clip of another layout to the standard one. Returns the residual, m; 0 for the standard.
+Result<double> FitToStandardLayout(Clip& clip);
+
 /// Every *.bvh and *.amc of the folders, by name. An AMC file's skeleton is SUBJECT.asf beside it,
 /// or else the first SUBJECT_*.asf. Where layouts differ, those to train on are fitted to the
 /// standard one. An error names the file; folders without a file to train on are one too.

@@ -9,7 +9,6 @@
 
 #include "common/log/log.h"
 #include "common/units/units.h"
-#include "common/virtual/motion/standard_layout.h"
 #include "daemon/offline/learning/alignment.h"
 #include "daemon/offline/train/recording_reader.h"
 
@@ -50,25 +49,11 @@ void PrintAlignment(const OwnRecording& own) {
 /// The engine runs the standard person's layout; another is fitted to it, unless the others'
 /// motions are of the same. Returns the residual, m.
 Result<double> MakeStandard(const std::vector<Clip>& others, Clip& clip) {
-  if (motion::HasStandardLayout(clip.motion)) return 0.0;
   if (!others.empty() &&
       body::DofNames(others.front().motion.skeleton) == body::DofNames(clip.motion.skeleton)) {
     return 0.0;
   }
-  auto standard = motion::ToStandardLayout(clip.motion);
-  if (!standard) return InvalidData(clip.name + ": " + standard.error().message);
-  body::PersonParameters person;
-  person.height_m = standard->height_m;
-  auto body = body::MakeBody(standard->motion.skeleton, person);
-  if (!body) return InvalidData(clip.name + ": " + body.error().message);
-  clip.body = *std::move(body);
-  clip.motion = learning::Aligned(standard->motion, clip.body.landmarks);
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "%s: another skeleton, fitted to the standard layout within %.1f mm",
-                clip.name.c_str(), 1e3 * standard->rms_m);
-  log::Info(text);
-  return standard->rms_m;
+  return FitToStandardLayout(clip);
 }
 
 Result<OwnRecording> ReadPair(const OwnOptions& options, std::size_t i,

@@ -1,8 +1,12 @@
 #include "daemon/offline/tune/tune_command.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -224,9 +228,16 @@ Result<void> Check(const Options& options) {
   if (options.out.empty() && options.iterations > 0) {
     return UsageError("--out is missing; only --iterations 0 does without");
   }
+  if (options.iterations > 0) {  // Before minutes of trials, not after them.
+    const auto folder = std::filesystem::absolute(options.out).parent_path();
+    if (::access(folder.c_str(), W_OK) != 0) {
+      return Failure("--out " + options.out + ": cannot write to " + folder.string() + ": " +
+                     std::strerror(errno));
+    }
+  }
   for (std::size_t i = 1; i < options.speeds_mps.size(); ++i) {
     if (options.speeds_mps[i] <= options.speeds_mps[i - 1]) {
-      return UsageError("--speeds: must rise");
+      return UsageError("--speeds: must increase");
     }
   }
   return {};

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/config/data_file.h"
+#include "daemon/simulation/terrain/track.h"
 
 namespace footing::engine_files {
 
@@ -17,6 +18,16 @@ Result<engine::EngineTexts> ReadTexts(const Wish& wish) {
   if (!mapping_table) return mapping_table.error();
   auto track = config::ReadNamedOrPath(wish.track, "tracks", wish.data_folder);
   if (!track) return track.error();
+  // The engine does not know the names of the files.
+  if (const auto parsed = terrain::ParseTrack(*track, wish.track); !parsed) return parsed.error();
+  if (!wish.mapping_table.empty()) {
+    const auto mapped =
+        mapping::AnyInterface::Create({.interface = wish.interface}, *mapping_table);
+    if (!mapped) {
+      return Error{mapped.error().kind,
+                   wish.mapping_table + ", in place of " + mapped.error().message};
+    }
+  }
   texts.biped = std::move(*biped);
   texts.mapping = std::move(*mapping_table);
   texts.track = std::move(*track);

@@ -47,8 +47,8 @@ struct Given {
 
 std::unique_ptr<CLI::App> NewParser(Given& given) {
   auto app = cli::NewApp("footing-sim",
-                         "Simulation server: drives a walking biped by features, or reconstructs a "
-                         "body from boards.",
+                         "Simulation server: drives a biped from a person's motion, or "
+                         "reconstructs the body of a person on boards.",
                          kExamples);
   app->add_option("--config", given.file, "Config file, JSON");
   app->add_option("--set", given.settings,

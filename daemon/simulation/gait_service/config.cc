@@ -7,7 +7,8 @@ namespace footing::gait_service {
 void Config::Bind(config::Binder& binder) {
   binder.Text("interface", interface,
               "User interface of the gait engine: " + stream::UserInterfaceNames());
-  binder.Text("turn_by", turn_by, "What turns with the interface leg: head, feet or trunk");
+  binder.Text("turn_by", turn_by,
+              "Body part that steers with the interface leg: head, feet or trunk");
   binder.Flag("camera_roll", camera_roll, "Roll the picture with the head, with the interface leg");
   binder.Flag("boards_may_be_left", boards_may_be_left,
               "Let both feet leave the boards in a jump, with the interface boards; the person may "

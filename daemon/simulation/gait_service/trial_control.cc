@@ -62,11 +62,12 @@ Result<stream::Track> TrialControl::Read(const std::string& name) const {
   const bool path = name.find('/') != std::string::npos || name.find('.') != std::string::npos;
   if (path && name != options_.track) {
     return UsageError("start_trial: \"" + name +
-                      "\" is not the name of a built-in track; start footing-sim with --track for "
-                      "a file");
+                      "\" is not the name of a built-in track; a file can only be the one that "
+                      "footing-sim was started with (--track FILE)");
   }
-  const auto text = config::ReadNamedOrPath(name, "tracks", options_.data_folder);
-  if (!text) return text.error();
+  const auto text =
+      path ? config::ReadTextFile(name) : config::ReadNamed(name, "tracks", options_.data_folder);
+  if (!text) return Error{text.error().kind, "start_trial: " + text.error().message};
   return terrain::ParseTrack(*text, name);
 }
 

@@ -202,6 +202,7 @@ Result<void> CheckGrowing(const stream::Track& track, const std::string& origin)
 
 Result<stream::Track> ParseTrack(const std::string& text, const std::string& origin) {
   const json root = json::parse(text, nullptr, false, true);
+  if (root.is_discarded()) return InvalidData(origin + ": not JSON");
   if (!root.is_object()) return InvalidData(origin + ": not a JSON object");
   Fields fields(root, origin);
   if (fields.Number("version", 0, 0, 1e9) != 1) {

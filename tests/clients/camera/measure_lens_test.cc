@@ -49,6 +49,23 @@ TEST(MeasureLens, OfFramesOfASheetIsTheTrueLens) {
   EXPECT_NEAR(report->fit.lens.cy_px, truth.cy_px, 3);
 }
 
+TEST(CheckSize, NamesBothSizes) {
+  frames::CameraFile camera;
+  camera.lens.width = 1280;
+  camera.lens.height = 720;
+  frames::Frame frame;
+  frame.width = 640;
+  frame.height = 480;
+  const auto checked = CheckSize(frame, camera);
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().kind, ErrorKind::kInvalidData);
+  EXPECT_THAT(checked.error().message, HasSubstr("640x480"));
+  EXPECT_THAT(checked.error().message, HasSubstr("1280x720"));
+  frame.width = 1280;
+  frame.height = 720;
+  EXPECT_TRUE(CheckSize(frame, camera));
+}
+
 TEST(MeasureLens, RefusesTheSameViewAgainAndAgain) {
   const test::TemporaryFolder folder;
   noise::Random random(13);

@@ -16,6 +16,7 @@ using testing::Not;
 
 struct Options {
   int trials = 3;
+  double rate_hz = 50;
   double seconds = 0;
   std::vector<std::string> listen;
 };
@@ -25,6 +26,7 @@ struct Program {
   Program() {
     CLI::App* run = app->add_subcommand("run", "Run the trials");
     run->add_option("--trials", options.trials, "Number of trials");
+    run->add_option("--rate-hz", options.rate_hz, "Rate, Hz")->check(CLI::Range(0.25, 100.0));
     run->add_option("--seconds", options.seconds, "Duration, s (default: until SIGINT)");
     run->add_option("--listen", options.listen, "Address; may be repeated");
     app->add_subcommand("list", "List the trials");
@@ -79,6 +81,22 @@ TEST(Parse, ListsTheSubcommandsBesideAnUnknownOne) {
   EXPECT_EQ(ExitCode(program, {"walk"}), 2);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "error: unknown subcommand walk; there are: run list; run footing-test --help\n");
+}
+
+TEST(Parse, ListsTheSubcommandsWhenNoneIsGiven) {
+  Program program;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(ExitCode(program, {}), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "error: a subcommand is missing; there are: run list; run footing-test --help\n");
+}
+
+TEST(Parse, WritesARangeWithoutTrailingZeros) {
+  Program program;
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(ExitCode(program, {"run", "--rate-hz", "200.5"}), 2);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("Value 200.5 not in range 0.25 to 100;"));
 }
 
 TEST(Parse, ReportsAValueThatIsNotANumberInOneLine) {

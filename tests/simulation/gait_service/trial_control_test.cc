@@ -14,6 +14,7 @@ namespace footing::gait_service {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 engine::EngineTexts TextsOf(const std::string& track) {
   return *engine_files::ReadTexts({.track = track});
@@ -150,6 +151,7 @@ TEST(TrialControl, RefusesWhatItCannotStartAndSaysWhatThereIs) {
   EXPECT_THAT(line.Start("a b", "1").message(), HasSubstr("1 to 64 letters"));
   EXPECT_THAT(line.Start(std::string(65, 'a'), "1").message(), HasSubstr("1 to 64 letters"));
   EXPECT_THAT(line.Start("t", "9").message(), HasSubstr("there are: 1, 2, 3, 4"));
+  EXPECT_THAT(line.Start("t", "9").message(), Not(HasSubstr("path")));  // It takes no file.
   EXPECT_THAT(line.Start("t", "/etc/passwd").message(), HasSubstr("not the name of a built-in"));
   EXPECT_THAT(line.Start("t", "../biped.json").message(), HasSubstr("not the name of a built-in"));
   EXPECT_THAT(line.Start("t", "", "dance").message(), HasSubstr("there are: walk_run, run_walk"));

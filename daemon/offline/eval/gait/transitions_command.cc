@@ -60,7 +60,7 @@ int RunTransitions(const TransitionOptions& options, bool json) {
   const stream::Gait to = stream::GaitNamed(options.to);
   if (from == stream::Gait::kUnspecified || to == stream::Gait::kUnspecified || from == to) {
     return cli::Report(UsageError("--from " + options.from + " --to " + options.to +
-                                  ": must be two different ones of " + stream::GaitNames()));
+                                  ": must be two different gaits of " + stream::GaitNames()));
   }
   const Result<std::uint64_t> seed = ParseSeed(options.seed);
   if (!seed) return cli::Report(seed.error());
@@ -103,16 +103,17 @@ void AddTransitionsCommand(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("transitions", "Trials of a transition from one gait to another");
   auto options = std::make_shared<TransitionOptions>();
-  command->add_option("--from", options->from, "step, walk, run or jump")->required();
-  command->add_option("--to", options->to, "step, walk, run or jump")->required();
+  command->add_option("--from", options->from, "Initial gait: step, walk, run or jump")->required();
+  command->add_option("--to", options->to, "Final gait: step, walk, run or jump")->required();
   command->add_option("--trials", options->trials, "Number of trials")
       ->check(CLI::Range(1, 100000));
   command->add_option("--seed", options->seed, "Seed: a number, or random");
-  command->add_option("--from-speed", options->speeds.from_mps, "m/s; drawn by default")
+  command
+      ->add_option("--from-speed", options->speeds.from_mps, "Initial speed, m/s (default: drawn)")
       ->check(CLI::Range(0.0, 6.0));
-  command->add_option("--to-speed", options->speeds.to_mps, "m/s; drawn by default")
+  command->add_option("--to-speed", options->speeds.to_mps, "Final speed, m/s (default: drawn)")
       ->check(CLI::Range(0.0, 6.0));
-  command->add_option("--height", options->speeds.height_m, "Of jumps, m; drawn by default")
+  command->add_option("--height", options->speeds.height_m, "Jump height, m (default: drawn)")
       ->check(CLI::Range(0.05, 0.7));
   command->callback(
       [options, &shared] { shared.exit_code = RunTransitions(*options, shared.json); });

@@ -65,7 +65,7 @@ void AddStatsOptions(CLI::App& command, StatsOptions& options) {
       ->required();
   command
       .add_option("--alternative", options.alternative,
-                  "Differences looked for: any, or values greater or less than the control's")
+                  "Differences to look for: any, or values greater or less than the control's")
       ->check(CLI::IsMember(NamesOf(statistics::kAlternatives)));
   command
       .add_option("--ties", options.ties,

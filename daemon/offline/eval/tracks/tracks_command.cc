@@ -15,6 +15,7 @@
 #include "common/units/units.h"
 #include "daemon/offline/eval/report/print_report.h"
 #include "daemon/offline/eval/tracks/track_trial.h"
+#include "daemon/simulation/terrain/track.h"
 
 namespace footing::eval {
 namespace {
@@ -168,6 +169,9 @@ int Run(const Options& options, bool json) {
   if (!seed) return cli::Report(seed.error());
   const Result<std::string> track = config::ReadNamedOrPath(options.track, "tracks");
   if (!track) return cli::Report(track.error());
+  // The engine does not know the file's name.
+  const auto parsed = terrain::ParseTrack(*track, options.track);
+  if (!parsed) return cli::Report(parsed.error());
   const Result<Trials> trials = RunTrials(options, *track, *user, *seed);
   if (!trials) return cli::Report(trials.error());
   const nlohmann::ordered_json report = Report(options, *seed, *trials);
@@ -195,8 +199,9 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
       ->add_option("--grip-way", options->grip_way,
                    "Grips of both hands: mirrored or same (default mirrored)")
       ->needs(grip);
-  command->add_option("--turn-by", options->turn_by,
-                      "What turns with the interface leg: head, feet or trunk (default head)");
+  command->add_option(
+      "--turn-by", options->turn_by,
+      "Body part that steers with the interface leg: head, feet or trunk (default head)");
   command
       ->add_option("--seconds", options->seconds,
                    "Duration of a trial, s (default: to the finish line, at most 600)")
