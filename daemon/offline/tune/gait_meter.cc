@@ -1,8 +1,10 @@
 #include "daemon/offline/tune/gait_meter.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/units/units.h"
+#include "daemon/offline/legs/leg_gap.h"
 
 namespace footing::tune {
 namespace {
@@ -54,6 +56,7 @@ void GaitMeter::Add(const engine::EngineOutput& output, double step_s) {
     Watch(contacts_[1], right, time_s_);
   }
   AddStride(output);
+  leg_gap_m_ = std::min(leg_gap_m_, legs::LegGap(output));
 }
 
 void GaitMeter::Report(TrialResult& result) const {
@@ -62,6 +65,7 @@ void GaitMeter::Report(TrialResult& result) const {
   result.flight_s = flight_s_.value();
   result.stance_s = stance_s_.value();
   result.stride_m = stride_m_.value();
+  result.leg_gap_m = leg_gap_m_;
 }
 
 }  // namespace footing::tune

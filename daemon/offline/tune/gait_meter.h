@@ -47,6 +47,7 @@ class GaitMeter {
   Mean flight_s_, stance_s_, stride_m_;
   std::uint64_t steps_ = 0;
   double step_m_ = -1;  ///< Distance at the last touchdown.
+  double leg_gap_m_ = INFINITY;
 };
 
 }  // namespace footing::tune

@@ -10,6 +10,9 @@ namespace {
 
 using stream::Gait;
 
+/// The controller keeps the legs' axes 7 cm apart (CurveGains::leg_gap_m), 4 cm of it legs.
+constexpr double kLegGapM = 0.03;
+
 double Square(double value) { return value * value; }
 
 /// A trial that fell before it showed one whole flight, stance or stride says nothing of it; the
@@ -51,6 +54,9 @@ Cost CostOf(const Task& task, const TrialResult& result) {
   cost.stance = Deviation(result.stance_s, wanted.stance_s);
   if (task.speed_mps >= 0.3) cost.stride = Deviation(result.stride_m, wanted.stride_m);
   cost.heading = std::min(2.0, Square(RadiansToDegrees(result.heading_error_rad) / 5));
+  if (task.gait == Gait::kRun) {
+    cost.legs = std::min(2.0, Square(std::max(0.0, 1 - result.leg_gap_m / kLegGapM)));
+  }
   return cost;
 }
 

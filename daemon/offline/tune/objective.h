@@ -13,8 +13,9 @@ struct Cost {
   double stance = 0;   ///< As flight.
   double stride = 0;   ///< As flight; left out below 0.3 m/s, where a stride has no length.
   double heading = 0;  ///< Turning: (heading error / 5 degrees)^2, at most 2.
+  double legs = 0;  ///< Running: (what the gap lacks of 3 cm / 3 cm)^2, at most 2; 1: they touch.
 
-  double total() const { return failure + speed + flight + stance + stride + heading; }
+  double total() const { return failure + speed + flight + stance + stride + heading + legs; }
 };
 
 /// Durations that are aimed at.

@@ -34,7 +34,8 @@ ordered_json ToJson(const Score& score) {
           {"flight", score.mean.flight},
           {"stance", score.mean.stance},
           {"stride", score.mean.stride},
-          {"heading", score.mean.heading}};
+          {"heading", score.mean.heading},
+          {"legs", score.mean.legs}};
 }
 
 }  // namespace

@@ -120,6 +120,7 @@ Score ScoreOf(const std::vector<Cost>& costs) {
     score.mean.stance += cost.stance / n;
     score.mean.stride += cost.stride / n;
     score.mean.heading += cost.heading / n;
+    score.mean.legs += cost.legs / n;
     score.falls += cost.failure > 0 ? 1 : 0;
   }
   score.survival = 1 - score.falls / n;

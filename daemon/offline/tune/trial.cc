@@ -149,6 +149,8 @@ bool ScoresHeading(const Disturbance& disturbance) {
   return disturbance.turn_rad != 0 && disturbance.kick_ns <= kSmallKickNs;
 }
 
+bool ScoresLegs(const Disturbance& disturbance) { return disturbance.kick_ns <= kSmallKickNs; }
+
 std::string PitTrack(const engine::EngineState& start, const Disturbance& disturbance) {
   const double near_m = start.world.qpos[0] + disturbance.pit_ahead_m;
   return R"({"version": 1, "name": "pit", "segments": [{"length_m": )" + std::to_string(near_m) +
@@ -191,6 +193,7 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
   }
   meter.Report(result);
   if (!ScoresHeading(disturbance)) result.heading_error_rad = 0;
+  if (!ScoresLegs(disturbance)) result.leg_gap_m = INFINITY;
   result.height_m = inputs.direct_command.height_m;
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -38,6 +39,9 @@ Disturbance Draw(const Task& task, std::uint64_t seed);
 /// Whether the trial's turn is to be followed by the body: no large push disturbs it.
 bool ScoresHeading(const Disturbance& disturbance);
 
+/// Whether the legs are to stay beside each other: a large push makes them cross on purpose.
+bool ScoresLegs(const Disturbance& disturbance);
+
 /// A straight track with the disturbance's pit, for a trial from `start`.
 std::string PitTrack(const engine::EngineState& start, const Disturbance& disturbance);
 
@@ -50,6 +54,7 @@ struct TrialResult {
   double stride_m = 0;           ///< Mean; from a foot's touchdown to its next.
   double height_m = 0.2;         ///< That was commanded, of a jump.
   double heading_error_rad = 0;  ///< Root mean square; 0 where it is not scored.
+  double leg_gap_m = INFINITY;   ///< Least, between the legs; infinite where it is not scored.
 };
 
 inline constexpr double kTrialS = 5;

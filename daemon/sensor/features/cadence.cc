@@ -193,13 +193,19 @@ PeriodEstimate FindPeriod(const SampleGrid& grid, int points, double known_s,
   return Refined(seen, points, search, config);
 }
 
-Cadence Next(const Cadence& before, const PeriodEstimate& estimate, const PeriodEstimate& partner,
+bool SpansSeveral(const Cadence& cadence, const Partner& partner, const CadenceConfig& config) {
+  return cadence.valid && partner.period_s > 0 &&
+         cadence.period_s > (1 + config.jump_share) * partner.period_s;
+}
+
+Cadence Next(const Cadence& before, const PeriodEstimate& estimate, const Partner& partner,
              double elapsed_s, const CadenceConfig& config) {
   const auto differ = [](double one_s, double other_s, double share) {
     return std::abs(one_s - other_s) > share * other_s;
   };
-  const bool partner_keeps = before.valid && partner.found &&
-                             !differ(partner.period_s, before.period_s, config.partner_share);
+  const bool partner_keeps =
+      before.valid && partner.estimate.found &&
+      !differ(partner.estimate.period_s, before.period_s, config.partner_share);
   Cadence next = before;
   if (!estimate.found) {
     const double cycles = partner_keeps ? config.partner_cycles : config.hold_cycles;
@@ -209,7 +215,9 @@ Cadence Next(const Cadence& before, const PeriodEstimate& estimate, const Period
   }
   next.lost_s = 0;
   const double share = partner_keeps ? config.partner_share : config.jump_share;
-  if (before.valid && differ(estimate.period_s, before.period_s, share)) {
+  const bool joins = SpansSeveral(before, partner, config) &&
+                     !differ(estimate.period_s, partner.period_s, config.jump_share);
+  if (before.valid && !joins && differ(estimate.period_s, before.period_s, share)) {
     const bool same_candidate =
         before.candidate_s > 0 && !differ(estimate.period_s, before.candidate_s, config.jump_share);
     const double persistence = partner_keeps ? config.partner_cycles : config.jump_persistence;

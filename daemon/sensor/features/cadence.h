@@ -40,9 +40,18 @@ struct Cadence {
   double candidate_age_s = 0;  ///< For how long it was seen.
 };
 
-/// The cadence `elapsed_s` later, with a new estimate and that of the other hand or leg of the pair
-/// (not found if there is none).
-Cadence Next(const Cadence& before, const PeriodEstimate& estimate, const PeriodEstimate& partner,
+/// What the other hand or leg of the pair shows; nothing if there is none.
+struct Partner {
+  PeriodEstimate estimate;
+  double period_s = 0;  ///< Of its cadence; 0 none.
+};
+
+/// Whether the cadence lasts for several of the partner's: what repeats after one period repeats
+/// after two and three as well, so of two limbs the one with the shorter period is right.
+bool SpansSeveral(const Cadence& cadence, const Partner& partner, const CadenceConfig& config);
+
+/// The cadence `elapsed_s` later, with a new estimate.
+Cadence Next(const Cadence& before, const PeriodEstimate& estimate, const Partner& partner,
              double elapsed_s, const CadenceConfig& config);
 
 }  // namespace footing::features

@@ -68,7 +68,7 @@ void DeviceFeatureExtractor::MeasureCycle() {
   features_.pitch_rad = inclination.pitch_rad;
 }
 
-void DeviceFeatureExtractor::Observe(std::int64_t now_ns) {
+void DeviceFeatureExtractor::Observe(std::int64_t now_ns, const Partner& partner) {
   elapsed_s_ = 0;
   const double age_s = NanosecondsToSeconds(now_ns - grid_.newest_ns());
   if (grid_.size() == 0 || age_s > config_.stale_s) {
@@ -88,10 +88,11 @@ void DeviceFeatureExtractor::Observe(std::int64_t now_ns) {
   if (!moving_.moving) return;
   const auto points = static_cast<int>(
       std::min<std::int64_t>(grid_.size(), grid_.newest_index() - moving_.since_index + 1));
-  estimate_ = FindPeriod(grid_, points, known_s, config_.cadence);
+  const bool several = SpansSeveral(cadence_, partner, config_.cadence);
+  estimate_ = FindPeriod(grid_, points, several ? 0 : known_s, config_.cadence);
 }
 
-const stream::DeviceFeatures& DeviceFeatureExtractor::Compute(const PeriodEstimate& partner) {
+const stream::DeviceFeatures& DeviceFeatureExtractor::Compute(const Partner& partner) {
   if (elapsed_s_ == 0) return features_;
   cadence_ =
       moving_.moving ? Next(cadence_, estimate_, partner, elapsed_s_, config_.cadence) : Cadence{};

@@ -19,11 +19,14 @@ class DeviceFeatureExtractor {
   void AddSample(const stream::MotionSample& sample);
   /// Takes the newest samples in: first Observe of all controllers, then Compute of each. Forgets
   /// all when the newest sample is older than Config::stale_s at `now_ns`.
-  void Observe(std::int64_t now_ns);
+  /// `partner` is what the other hand or leg showed until now.
+  void Observe(std::int64_t now_ns, const Partner& partner);
   /// The period as the newest samples alone show it; not found while still.
   const PeriodEstimate& estimate() const { return estimate_; }
-  /// The features as of the newest sample. `partner` is the estimate of the other hand or leg.
-  const stream::DeviceFeatures& Compute(const PeriodEstimate& partner);
+  /// The estimate, and the cadence of the last Compute.
+  Partner AsPartner() const { return {estimate_, cadence_.valid ? cadence_.period_s : 0}; }
+  /// The features as of the newest sample.
+  const stream::DeviceFeatures& Compute(const Partner& partner);
 
   /// Since the motion began.
   const SwingEnd& swing_end() const { return swing_end_; }

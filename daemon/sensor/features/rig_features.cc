@@ -101,16 +101,22 @@ stream::PairFeatures RigFeatureExtractor::ComputePair(
           phase.valid && (phase.lost_s > 0 || phase.jumping)};
 }
 
+std::vector<Partner> RigFeatureExtractor::Partners() const {
+  std::vector<Partner> partners(devices_.size());
+  for (const auto& pair : pairs_) {
+    partners[pair.left] = devices_[pair.right].AsPartner();
+    partners[pair.right] = devices_[pair.left].AsPartner();
+  }
+  return partners;
+}
+
 stream::RigFeatures RigFeatureExtractor::Compute(std::int64_t now_ns) {
   stream::RigFeatures features;
   features.rig = rig_;
   features.computed_ns = now_ns;
-  std::vector<PeriodEstimate> partners(devices_.size());
-  for (auto& device : devices_) device.Observe(now_ns);
-  for (const auto& pair : pairs_) {
-    partners[pair.left] = devices_[pair.right].estimate();
-    partners[pair.right] = devices_[pair.left].estimate();
-  }
+  std::vector<Partner> partners = Partners();
+  for (std::size_t i = 0; i < devices_.size(); ++i) devices_[i].Observe(now_ns, partners[i]);
+  partners = Partners();
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     DeviceFeatureExtractor& device = devices_[i];
     features.devices.push_back(device.Compute(partners[i]));

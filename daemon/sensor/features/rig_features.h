@@ -46,6 +46,7 @@ class RigFeatureExtractor {
   /// The period that the two share; 0 while they do not agree on one.
   double CommonPeriod(const stream::DeviceFeatures& left, const stream::DeviceFeatures& right,
                       double elapsed_s, Pair& pair) const;
+  std::vector<Partner> Partners() const;  ///< By device.
   void AddPair(stream::DeviceRole left, stream::DeviceRole right);
   stream::PairFeatures ComputePair(Pair& pair, const std::vector<stream::DeviceFeatures>& devices);
 

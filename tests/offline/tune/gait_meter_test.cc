@@ -56,5 +56,21 @@ TEST(GaitMeter, OfARunCountsTheTimesWithoutAnyFoot) {
   EXPECT_NEAR(result.stance_s, 0.15, 0.002);
 }
 
+TEST(GaitMeter, KeepsTheLeastGapBetweenTheLegs) {
+  GaitMeter meter({stream::Gait::kRun, 2.0});
+  engine::EngineOutput output;
+  for (const double feet_m : {0.2, 0.1, 0.15}) {  // Parallel legs of 4 cm.
+    for (const int side : {0, 1}) {
+      const double y_m = (side == 0 ? 0.5 : -0.5) * feet_m;
+      output.links[static_cast<std::size_t>(1 + 2 * side)].position_m = {0, y_m, 0.9};
+      output.contacts[static_cast<std::size_t>(side)].position_m = {0, y_m, 0};
+    }
+    meter.Add(output, kStepS);
+  }
+  TrialResult result;
+  meter.Report(result);
+  EXPECT_NEAR(result.leg_gap_m, 0.06, 1e-12);
+}
+
 }  // namespace
 }  // namespace footing::tune

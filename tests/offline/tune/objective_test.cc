@@ -39,12 +39,14 @@ TEST(Objective, ChargesTheLatestFallMoreThanAllElseTogether) {
                     .flight_s = 9,
                     .stance_s = 9,
                     .stride_m = 99,
-                    .heading_error_rad = 3};
-  const double all_else = CostOf(kWalk, worst).total();
-  TrialResult fallen = AsWanted(kWalk);
+                    .heading_error_rad = 3,
+                    .leg_gap_m = -0.04};
+  const Task run{stream::Gait::kRun, 3};
+  const double all_else = CostOf(run, worst).total();
+  TrialResult fallen = AsWanted(run);
   fallen.survived = 0.9999;
-  EXPECT_GT(all_else, 6);
-  EXPECT_GT(CostOf(kWalk, fallen).total(), all_else);
+  EXPECT_GT(all_else, 8);
+  EXPECT_GT(CostOf(run, fallen).total(), all_else);
 }
 
 TEST(Objective, ChargesEachTermByItself) {
@@ -61,6 +63,19 @@ TEST(Objective, ChargesEachTermByItself) {
   EXPECT_NEAR(CostOf(kWalk, result).stride, 1, 1e-12);
   result.heading_error_rad = DegreesToRadians(2.5);
   EXPECT_DOUBLE_EQ(CostOf(kWalk, result).heading, 0.25);
+}
+
+TEST(Objective, ChargesTheLegsOfARunThatComeTooNear) {
+  const Task run{stream::Gait::kRun, 3};
+  TrialResult result = AsWanted(run);
+  result.leg_gap_m = 0.03;
+  EXPECT_DOUBLE_EQ(CostOf(run, result).legs, 0);
+  result.leg_gap_m = 0;
+  EXPECT_DOUBLE_EQ(CostOf(run, result).legs, 1);
+  result.leg_gap_m = -0.04;  // One through the other.
+  EXPECT_DOUBLE_EQ(CostOf(run, result).legs, 2);
+  // A walk steps across where balance asks for it.
+  EXPECT_DOUBLE_EQ(CostOf(kWalk, result).legs, 0);
 }
 
 TEST(Objective, DoesNotChargeWhatWasNeverSeen) {

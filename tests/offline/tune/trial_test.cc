@@ -71,6 +71,7 @@ TEST(Disturbances, OfARunArePushesTurnsAndPits) {
     const Disturbance drawn = Draw(run, seed);
     EXPECT_FALSE(drawn.pit_m > 0 && drawn.turn_rad != 0);
     EXPECT_FALSE(drawn.pit_m > 0 && ScoresHeading(drawn));
+    EXPECT_EQ(ScoresLegs(drawn), drawn.pit_m > 0 || drawn.turn_rad != 0);
     pushed += drawn.kick_ns >= 26 ? 1 : 0;
     EXPECT_LE(drawn.kick_ns, 1.3 * 26);
     turning += ScoresHeading(drawn) ? 1 : 0;

@@ -85,12 +85,26 @@ TEST(Cadence, AJumpMustPersistForAQuarterOfTheOldPeriod) {
 
 TEST(Cadence, AJumpOfOneHandAloneIsNotOne) {
   const CadenceConfig config;
-  const PeriodEstimate partner{true, 1.0, 1};
+  const Partner partner{{true, 1.0, 1}, 1.0};
   Cadence cadence = Next({}, {true, 1.0, 1}, partner, 0.01, config);
   for (int i = 0; i < 190; ++i) cadence = Next(cadence, {true, 0.5, 1}, partner, 0.01, config);
   EXPECT_EQ(cadence.period_s, 1.0);
   for (int i = 0; i < 20; ++i) cadence = Next(cadence, {true, 0.5, 1}, partner, 0.01, config);
   EXPECT_EQ(cadence.period_s, 0.5);  // Two cycles later it is.
+}
+
+TEST(Cadence, OfTwoPeriodsThatSpanSeveralOfTheOtherHandsAJumpToThatIsOneAtOnce) {
+  const CadenceConfig config;
+  const Partner none, partner{{}, 1.0};  // Its newest samples show nothing for a moment.
+  const Cadence two = Next({}, {true, 2.0, 1}, none, 0.01, config);
+  EXPECT_TRUE(SpansSeveral(two, partner, config));
+  EXPECT_FALSE(SpansSeveral(two, none, config));
+  EXPECT_EQ(Next(two, {true, 1.02, 1}, partner, 0.01, config).period_s, 1.02);
+  // Another one than the other hand's has to persist, and so has a longer one.
+  EXPECT_EQ(Next(two, {true, 0.5, 1}, partner, 0.01, config).period_s, 2.0);
+  const Cadence one = Next({}, {true, 1.0, 1}, none, 0.01, config);
+  EXPECT_FALSE(SpansSeveral(one, {{}, 2.0}, config));
+  EXPECT_EQ(Next(one, {true, 2.0, 1}, {{}, 2.0}, 0.01, config).period_s, 1.0);
 }
 
 TEST(Cadence, ALossIsBridgedForOneCycle) {

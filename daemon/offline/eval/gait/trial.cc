@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "daemon/offline/eval/gait/leg_gap.h"
+#include "daemon/offline/legs/leg_gap.h"
 #include "daemon/simulation/biped/mjcf.h"
 #include "daemon/simulation/engine_files/engine_files.h"
 #include "daemon/simulation/terrain/ground.h"
@@ -92,7 +92,7 @@ void Walker::Push(double impulse_ns, double direction_rad, std::uint64_t number)
 const engine::EngineOutput& Walker::Advance() {
   engine_.Advance(inputs_);
   output_ = &engine_.Output();
-  if (!fell()) leg_gap_min_m_ = std::min(leg_gap_min_m_, LegGap(*output_));
+  if (!fell()) leg_gap_min_m_ = std::min(leg_gap_min_m_, legs::LegGap(*output_));
   return *output_;
 }
 

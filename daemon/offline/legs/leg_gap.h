@@ -4,7 +4,7 @@
 
 #include "daemon/simulation/engine/engine.h"
 
-namespace footing::eval {
+namespace footing::legs {
 
 /// A straight line between two points, m.
 struct Segment {
@@ -21,4 +21,4 @@ double DistanceBetween(const Segment& first, const Segment& second);
 /// other keep it above zero.
 double LegGap(const engine::EngineOutput& output);
 
-}  // namespace footing::eval
+}  // namespace footing::legs

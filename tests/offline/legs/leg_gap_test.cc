@@ -1,4 +1,4 @@
-#include "daemon/offline/eval/gait/leg_gap.h"
+#include "daemon/offline/legs/leg_gap.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "common/virtual/noise/random.h"
 
-namespace footing::eval {
+namespace footing::legs {
 namespace {
 
 using Eigen::Vector3d;
@@ -61,4 +61,4 @@ TEST(LegGap, IsWhatLiesBetweenTwoLegsOfFourCentimetres) {
 }
 
 }  // namespace
-}  // namespace footing::eval
+}  // namespace footing::legs

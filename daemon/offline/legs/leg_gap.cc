@@ -1,9 +1,9 @@
-#include "daemon/offline/eval/gait/leg_gap.h"
+#include "daemon/offline/legs/leg_gap.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace footing::eval {
+namespace footing::legs {
 namespace {
 
 constexpr double kLegRadiusM = 0.02;
@@ -36,4 +36,4 @@ double LegGap(const engine::EngineOutput& output) {
   return DistanceBetween(leg(0), leg(1)) - 2 * kLegRadiusM;
 }
 
-}  // namespace footing::eval
+}  // namespace footing::legs
