@@ -23,13 +23,17 @@ class FolderSource : public Source {
     Wait();
   }
 
-  void Stop() override { timer_.cancel(); }
+  void Stop() override {
+    is_stopped_ = true;
+    timer_.cancel();
+  }
 
  private:
   void Wait() {
     timer_.expires_at(due_);
     timer_.async_wait([this](boost::system::error_code error) {
-      if (!error) Deliver();
+      // It may have expired before Stop() cancelled it.
+      if (!error && !is_stopped_) Deliver();
     });
   }
 
@@ -56,6 +60,7 @@ class FolderSource : public Source {
   OnFrame on_frame_;
   OnEnd on_end_;
   std::size_t next_ = 0;
+  bool is_stopped_ = false;
   std::chrono::steady_clock::time_point due_;
 };
 

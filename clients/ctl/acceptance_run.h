@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/guide/acceptance.h"
+#include "common/guide/acceptance.h"
 
 namespace footing::ctl {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "clients/ctl/guide/acceptance.h"
-#include "clients/ctl/guide/layout.h"
+#include "common/guide/acceptance.h"
+#include "common/guide/layout.h"
 #include "common/result/result.h"
 #include "footing/v1/session.pb.h"
 

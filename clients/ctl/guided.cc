@@ -7,9 +7,9 @@
 #include <iostream>
 #include <utility>
 
-#include "clients/ctl/guide/set_up.h"
 #include "common/clock/clock.h"
 #include "common/frames/camera_file.h"
+#include "common/guide/set_up.h"
 #include "common/text/utc.h"
 #include "common/wire/wire.h"
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "clients/ctl/commands.h"
-#include "clients/ctl/guide/recent.h"
-#include "clients/ctl/guide/step.h"
+#include "common/guide/recent.h"
+#include "common/guide/step.h"
 #include "common/stream/setup.h"
 
 namespace footing::ctl {

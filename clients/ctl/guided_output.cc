@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "clients/ctl/guide/set_up.h"
 #include "clients/ctl/guided.h"
+#include "common/guide/set_up.h"
 #include "common/text/utc.h"
 #include "common/units/units.h"
 

@@ -15,8 +15,7 @@ void AddMarks(const stream::BoardPose& pose, const std::optional<stream::BoardGe
               const std::string& which, double radius_m, std::vector<BoardMark>& marks) {
   const auto places = board::SensorPlaces(pose, board::GeometryOr(geometry));
   for (const std::size_t corner : kOrder)
-    marks.push_back({kCorner[corner] + which,
-                     {places[corner].x(), places[corner].y(), board::kPlateHeightM + radius_m}});
+    marks.push_back({kCorner[corner] + which, {places[corner].x(), places[corner].y(), radius_m}});
 }
 
 }  // namespace

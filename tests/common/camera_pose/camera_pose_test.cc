@@ -25,7 +25,7 @@ TEST(Marks, LieOverTheLoadCellsOnceAroundEachBoard) {
   EXPECT_EQ(marks[2].name, "rear right, left board");
   EXPECT_NEAR(marks[0].p_W_m.x() - marks[3].p_W_m.x(), 0.238, 1e-12);  // Front is forward.
   EXPECT_NEAR(marks[0].p_W_m.y() - marks[1].p_W_m.y(), 0.433, 1e-12);
-  EXPECT_NEAR(marks[0].p_W_m.z(), 0.053 + 0.0225, 1e-12);  // A plate's height and the radius.
+  EXPECT_NEAR(marks[0].p_W_m.z(), 0.0225, 1e-12);  // The radius: W's z is 0 where people stand.
   EXPECT_EQ(BoardMarks(*board::LayoutNamed("single", 20), kRadiusM).size(), 4u);
 }
 

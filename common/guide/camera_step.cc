@@ -1,0 +1,201 @@
+#include "common/guide/camera_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/board/layout.h"
+#include "common/camera_pose/samples.h"
+#include "common/guide/layout.h"
+#include "common/text/number.h"
+#include "common/units/units.h"
+
+namespace footing::guide {
+namespace {
+
+/// 30 frames of a camera with 15 a second.
+constexpr double kRestS = 2;
+/// A sphere that rests where nobody brought it is not on a mark.
+constexpr double kBroughtM = 0.1;
+/// A lens that is not calibrated sees lengths wrong by less than this share; a sphere that rests
+/// elsewhere than on its mark is farther off.
+constexpr double kLengthOff = 0.25;
+constexpr double kMostTiltRad = DegreesToRadians(3);
+/// What a PS Move's calibrated accelerometer is off, at rest.
+constexpr double kAccelerometerSdRad = DegreesToRadians(0.5);
+constexpr double kShortestM = 0.1, kLongestM = 0.3;  // From the mark to a sphere above it.
+
+/// Of the controller's long axis, y of its sensor frame; nothing when it is not at rest.
+std::optional<double> TiltRad(const Situation& now, const SetUpOptions& options,
+                              std::int64_t from_ns) {
+  const auto device = now.recent->Holding(options.rig, options.camera_role);
+  if (!device) return {};
+  const auto force = now.recent->MeanForce(device->device, from_ns, now.now_ns);
+  if (!force) return {};
+  return std::acos(std::clamp(force->normalized().y(), -1.0, 1.0));
+}
+
+bool HasController(const Situation& now, const SetUpOptions& options) {
+  const auto device = now.recent->Holding(options.rig, options.camera_role);
+  return device && device->kind == stream::DeviceKind::kPsMove;
+}
+
+/// Whether the sphere was elsewhere, or out of sight, since the place was asked for.
+bool WasBrought(const std::vector<stream::HandSample>& samples, const Eigen::Vector3d& p_C_m) {
+  return std::any_of(samples.begin(), samples.end(), [&](const stream::HandSample& sample) {
+    const auto seen = camera_pose::InTrackerFrame(sample);
+    return !seen || (seen->p_C_m - p_C_m).norm() > kBroughtM;
+  });
+}
+
+std::string Centimetres(double metres) { return std::to_string(std::lround(100 * metres)) + " cm"; }
+
+}  // namespace
+
+void CameraStep::Begin(const Situation& now, const SetUpOptions& options) {
+  begun_ = true;
+  stream::BoardLayout layout = board::DefaultLayout();
+  for (const auto& rig : *now.setup)
+    if (rig.rig == options.rig) layout = board::LayoutOr(rig.layout);
+  picture_ = LayoutPicture(layout.preset);
+  marks_ = camera_pose::BoardMarks(layout, options.camera_radius_m);
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    places_.push_back(i);
+    upright_.push_back(false);
+    if (i % 4 != 0 || !HasController(now, options)) continue;
+    places_.push_back(i);
+    upright_.push_back(true);
+  }
+  asked_ns_ = now.now_ns;
+}
+
+CameraStep::Rest CameraStep::Look(const Situation& now, const SetUpOptions& options,
+                                  bool upright) const {
+  Rest rest;
+  const std::int64_t from_ns = std::max(asked_ns_, now.now_ns - SecondsToNanoseconds(kRestS));
+  std::vector<camera_pose::SeenPoint> frames;
+  for (const auto& sample :
+       now.recent->Hands(options.rig, options.camera_role, from_ns, now.now_ns))
+    if (const auto seen = camera_pose::InTrackerFrame(sample)) frames.push_back(*seen);
+  if (frames.empty()) {
+    rest.feedback = "the camera does not see the sphere";
+    return rest;
+  }
+  if (now.now_ns - asked_ns_ < SecondsToNanoseconds(kRestS)) {
+    rest.feedback = "seen";
+    return rest;
+  }
+  const auto mean = camera_pose::MeanAtRest(frames);
+  if (!mean) {
+    rest.feedback = mean.error().message;
+    return rest;
+  }
+  if (observations_.marks.empty() &&
+      !WasBrought(now.recent->Hands(options.rig, options.camera_role, asked_ns_, now.now_ns),
+                  mean->p_C_m)) {
+    rest.feedback = "bring the sphere to the mark";
+    return rest;
+  }
+  if (upright) {
+    const auto tilt = TiltRad(now, options, from_ns);
+    rest.feedback = tilt ? text::Fixed(RadiansToDegrees(*tilt), 1) + " degrees from upright"
+                         : "the controller sends no data";
+    if (!tilt || *tilt > kMostTiltRad) return rest;
+    rest.tilt_rad = *tilt;
+  }
+  rest.seen = *mean;
+  return rest;
+}
+
+std::string CameraStep::Doubt(const Rest& rest) const {
+  const camera_pose::BoardMark& mark = marks_[places_[next_]];
+  const Eigen::Vector3d& p_C_m = rest.seen->p_C_m;
+  if (upright_[next_]) {
+    const double height_m = (p_C_m - observations_.marks.back().seen.p_C_m).norm();
+    if (height_m >= kShortestM && height_m <= kLongestM) return "";
+    return Centimetres(height_m) + " from the mark";
+  }
+  for (const camera_pose::SeenMark& other : observations_.marks) {
+    const double known_m = (mark.p_W_m - other.p_W_m).norm();
+    const double seen_m = (p_C_m - other.seen.p_C_m).norm();
+    if (std::abs(seen_m - known_m) <= kLengthOff * known_m) continue;
+    return Centimetres(seen_m) + " from the mark at the " + other.name + ", should be " +
+           Centimetres(known_m);
+  }
+  return "";
+}
+
+void CameraStep::Take(const Rest& rest) {
+  if (upright_[next_]) {
+    const double tilt_rad = std::hypot(rest.tilt_rad, std::sqrt(2.0) * kAccelerometerSdRad);
+    observations_.plumbs.push_back({observations_.marks.back().seen, *rest.seen, tilt_rad});
+  } else {
+    const camera_pose::BoardMark& mark = marks_[places_[next_]];
+    observations_.marks.push_back({mark.name, mark.p_W_m, *rest.seen});
+  }
+}
+
+Progress CameraStep::Ask() const {
+  Progress progress;
+  const std::string place = "the mark at the " + marks_[places_[next_]].name;
+  progress.prompt = upright_[next_] ? "Stand the controller on " + place +
+                                          ", sphere up, and hold it upright and still."
+                                    : "Hold the sphere on " + place + ", and keep still.";
+  if (next_ == 0) progress.picture = picture_;
+  return progress;
+}
+
+Progress CameraStep::Solve() {
+  Progress progress;
+  const auto pose = camera_pose::Calibrate(observations_);
+  if (!pose) {
+    progress.results = {Outcome(Item::kCamera, "", false, 0, "mm", pose.error().message)};
+    progress.finished = true;
+    return progress;
+  }
+  pose_ = *pose;
+  stored_ = true;
+  Action store;
+  store.kind = Action::Kind::kStoreCamera;
+  store.key = "camera";
+  store.X_WC = pose_.X_WC;
+  store.remark = std::to_string(observations_.marks.size()) + " marks, residual " +
+                 text::Fixed(1e3 * pose_.residual_rms_m, 1) + " mm, direction to " +
+                 text::Fixed(RadiansToDegrees(pose_.TurnSdRad()), 2) + " degrees" +
+                 (observations_.plumbs.empty() ? "" : ", with gravity");
+  progress.actions = {store};
+  return progress;
+}
+
+Progress CameraStep::Stored(const Situation& now) {
+  Progress progress;
+  for (const Answer& answer : now.answers) {
+    if (answer.key != "camera") continue;
+    progress.results = {
+        Outcome(Item::kCamera, "", answer.ok, 1e3 * pose_.residual_rms_m, "mm", answer.message)};
+    progress.finished = true;
+  }
+  return progress;
+}
+
+Progress CameraStep::Advance(const Situation& now, const SetUpOptions& options) {
+  Progress progress;
+  if (options.camera_file.empty()) {
+    progress.finished = true;
+    return progress;
+  }
+  if (!begun_) Begin(now, options);
+  if (stored_) return Stored(now);
+  progress = Ask();
+  const Rest rest = Look(now, options, upright_[next_]);
+  progress.feedback = rest.feedback;
+  if (!rest.seen) return progress;
+  const std::string doubt = Doubt(rest);
+  progress.feedback = doubt;
+  if (!doubt.empty()) return progress;
+  Take(rest);
+  asked_ns_ = now.now_ns;
+  if (++next_ == places_.size()) return Solve();
+  return Ask();
+}
+
+}  // namespace footing::guide

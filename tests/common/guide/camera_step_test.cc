@@ -1,0 +1,188 @@
+#include "common/guide/camera_step.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "common/board/layout.h"
+#include "common/camera_pose/samples.h"
+#include "common/guide/set_up.h"
+#include "common/units/units.h"
+#include "tests/common/camera_pose/boards.h"
+
+namespace footing::guide {
+namespace {
+
+using Eigen::Vector3d;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const Eigen::Isometry3d kTrue = camera_pose::LookingAtTheBoards({2.1, 0.4, 1.3});
+
+/// Somebody with a PS Move who brings its sphere wherever the prompt says, in half a second, in
+/// front of a camera that is not calibrated, at 60 Hz.
+class Holder {
+ public:
+  Holder() {
+    options.camera_file = "eye.json";
+    options.camera_role = stream::DeviceRole::kLeftHand;
+    options.camera_radius_m = camera_pose::kRadiusM;
+    options.patience_s = 20;
+    options.tries = 1;
+    for (const auto& mark : camera_pose::BoardMarks(board::DefaultLayout(), camera_pose::kRadiusM))
+      marks_.push_back(mark);
+  }
+
+  void HoldAMove() {
+    stream::DeviceStatus status;
+    status.device = 9;
+    status.kind = stream::DeviceKind::kPsMove;
+    status.state = stream::DeviceState::kLive;
+    status.role = stream::DeviceRole::kLeftHand;
+    status.rig = "main";
+    recent_.SetDevices({status});
+  }
+
+  std::vector<stream::SetupItem> Do() {
+    SetUp set_up(options, {Item::kCamera});
+    for (int i = 0; i < 60 * 300; ++i) {
+      now_ns_ += SecondsToNanoseconds(1.0 / 60);
+      See();
+      Situation now;
+      now.now_ns = now_ns_;
+      now.recent = &recent_;
+      now.setup = &setup_;
+      now.answers = std::exchange(answers_, {});
+      const Progress progress = set_up.Advance(now);
+      feedback = progress.feedback.empty() ? feedback : progress.feedback;
+      Hear(progress.prompt);
+      for (const Action& action : progress.actions) {
+        stored.push_back(action);
+        answers_.push_back({action.key, true, action.remark, 0, ""});
+      }
+      if (progress.finished) return set_up.results();
+    }
+    ADD_FAILURE() << "the step did not end; it asked: " << heard_;
+    return {};
+  }
+
+  SetUpOptions options;
+  bool mirrored = false;  ///< The camera mirrors its image.
+  bool deaf = false;      ///< Never moves the sphere.
+  std::string lazy;       ///< Stays where it is when asked for this mark.
+  std::string feedback;   ///< The last one.
+  std::vector<Action> stored;
+  std::vector<std::string> prompts;
+
+ private:
+  void Hear(const std::string& prompt) {
+    if (prompt == heard_ || prompt.empty()) return;
+    heard_ = prompt;
+    heard_ns_ = now_ns_;
+    prompts.push_back(prompt);
+    from_ = to_;
+    for (const auto& mark : marks_) {
+      if (prompt.find(mark.name) == std::string::npos || deaf) continue;
+      if (!lazy.empty() && mark.name == lazy) continue;
+      const bool is_upright = prompt.find("sphere up") != std::string::npos;
+      to_ = mark.p_W_m + Vector3d(0, 0, is_upright ? 0.16 : 0);
+    }
+  }
+
+  void See() {
+    const double share = std::min(1.0, 2 * NanosecondsToSeconds(now_ns_ - heard_ns_));
+    const Vector3d place = from_ + share * (to_ - from_);
+    const auto at = camera_pose::SeenAt(kTrue, place);
+    const Eigen::LLT<Eigen::Matrix3d> root(at.covariance_m2);
+    const Vector3d noise = root.matrixL() * camera_pose::Normal3(random_);
+    stream::HandSample sample;
+    sample.rig = "main";
+    sample.role = stream::DeviceRole::kLeftHand;
+    sample.received_ns = sample.sampled_ns = now_ns_ - 1;
+    sample.position_m = at.p_C_m + noise;
+    sample.sd_m = at.covariance_m2.diagonal().cwiseSqrt();
+    sample.covariance_m2 = {at.covariance_m2(0, 1), at.covariance_m2(0, 2), at.covariance_m2(1, 2)};
+    if (mirrored) {
+      sample.position_m.x() *= -1;
+      sample.covariance_m2.head<2>() *= -1;  // Of x with y and with z.
+    }
+    sample.confidence = 0.9;
+    sample.tracker_pose = stream::TrackerPose{};
+    recent_.Add(sample);
+    stream::MotionSample motion;
+    motion.device = 9;
+    motion.received_ns = now_ns_ - 1;
+    motion.specific_force_mps2 = {0, 9.8, 0.1};
+    recent_.Add(motion);
+  }
+
+  std::vector<camera_pose::BoardMark> marks_;
+  std::int64_t now_ns_ = 100'000'000'000, heard_ns_ = 0;
+  Vector3d from_{0.3, 0.2, 1.1}, to_{0.3, 0.2, 1.1};
+  std::string heard_;
+  Recent recent_;
+  std::vector<stream::RigSetup> setup_;
+  std::vector<Answer> answers_;
+  noise::Random random_{3};
+};
+
+double TurnDeg(const Eigen::Isometry3d& X_WC) {
+  return Eigen::AngleAxisd((X_WC * kTrue.inverse()).rotation()).angle() * 180 / kPi;
+}
+
+TEST(CameraStep, LeadsOverAllMarksToAStoredPose) {
+  Holder holder;
+  const auto results = holder.Do();
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_TRUE(results[0].passed) << results[0].note;
+  EXPECT_EQ(results[0].name, "camera");
+  EXPECT_THAT(results[0].note, HasSubstr("8 marks, residual"));
+  ASSERT_EQ(holder.stored.size(), 1u);
+  EXPECT_LT(TurnDeg(holder.stored[0].X_WC), 0.3);
+  EXPECT_EQ(holder.prompts.size(), 8u);
+  EXPECT_EQ(holder.prompts[0],
+            "Hold the sphere on the mark at the front left, left board, and keep still.");
+}
+
+TEST(CameraStep, TakesGravityFromAMoveThatStandsUpright) {
+  Holder holder;
+  holder.HoldAMove();
+  const auto results = holder.Do();
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_TRUE(results[0].passed) << results[0].note;
+  EXPECT_THAT(results[0].note, HasSubstr("with gravity"));
+  EXPECT_EQ(holder.prompts.size(), 10u);
+  EXPECT_THAT(holder.prompts[1], HasSubstr("Stand the controller on the mark"));
+}
+
+TEST(CameraStep, SaysThatTheImageIsMirroredAndStoresNothing) {
+  Holder holder;
+  holder.mirrored = true;
+  const auto results = holder.Do();
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_FALSE(results[0].passed);
+  EXPECT_THAT(results[0].note, HasSubstr("as in a mirror"));
+  EXPECT_TRUE(holder.stored.empty());
+}
+
+TEST(CameraStep, DoesNotTakeASphereThatRestsElsewhereForOneOnTheMark) {
+  Holder still;
+  still.deaf = true;
+  const auto results = still.Do();
+  EXPECT_FALSE(results.at(0).passed);
+  EXPECT_THAT(results[0].note, HasSubstr("bring the sphere to the mark"));
+  Holder lazy;
+  lazy.lazy = "rear right, left board";
+  EXPECT_THAT(lazy.Do().at(0).note, HasSubstr("0 cm from the mark at the front right, left board"));
+}
+
+TEST(CameraStep, WithoutACameraFileAsksNothing) {
+  Holder holder;
+  holder.options.camera_file.clear();
+  EXPECT_TRUE(holder.Do().empty());
+  EXPECT_TRUE(holder.prompts.empty());
+}
+
+}  // namespace
+}  // namespace footing::guide
