@@ -42,6 +42,9 @@ Result<void> ChangeInterface(const InterfaceOptions& options, const Shared& shar
   auto command = CommandOf(options);
   if (!command) return command.error();
   const auto sent = SendToSimulation(shared, std::move(command).value(), "footing-sim");
+  // The server does not know the file's name.
+  if (!sent && sent.error().kind == ErrorKind::kFailure && !options.table.empty())
+    return Failure("with --table " + options.table + ": " + sent.error().message);
   if (!sent) return sent;
   Print({{"interface", options.name}}, "the interface is " + options.name, shared);
   return {};

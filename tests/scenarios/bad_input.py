@@ -114,6 +114,9 @@ def garbage(address):
 
 def disturb_nobody(stage):
     stage.start_servers()
+    table = stage.folder / "config.json"
+    expect(stage, FAILURE, f"with --table {table}: set_interface:", "footing-ctl", "interface", "wrist", "--table", table,
+           "--connect", stage.simulation)
     stage.start_user("walk", "--link", "ideal")
     for ticks in (read_ticks(stage.sensor, 10, ["motion"]),):
         next(ticks)
