@@ -70,6 +70,13 @@ void AddReport(const reconstruction::Output& output, const pose_run::Frame& fram
 
 }  // namespace
 
+void LegAngles::Add(const LegAngles& other) {
+  hip += other.hip;
+  swing += other.swing;
+  twist += other.twist;
+  knee += other.knee;
+}
+
 void PoseTally::Add(const PoseTally& other) {
   frames += other.frames;
   invalid += other.invalid;
@@ -81,13 +88,20 @@ void PoseTally::Add(const PoseTally& other) {
   arms.Add(other.arms);
   for (std::size_t i = 0; i < kPoseWays; ++i) {
     if (other.mpjpe_cm[i]) mpjpe_cm[i] = mpjpe_cm[i].value_or(0) + *other.mpjpe_cm[i];
+    angles_deg[i].Add(other.angles_deg[i]);
   }
 }
 
 nlohmann::ordered_json PoseTally::Json() const {
   nlohmann::ordered_json json = {{"frames", frames}};
   for (std::size_t i = 0; i < kPoseWays; ++i) {
-    if (mpjpe_cm[i]) json[kWayNames[i]] = {{"mpjpe_cm", *mpjpe_cm[i] / frames}};
+    if (!mpjpe_cm[i]) continue;
+    const LegAngles& angles = angles_deg[i];
+    json[kWayNames[i]] = {{"mpjpe_cm", *mpjpe_cm[i] / frames},
+                          {"hip_deg", angles.hip / frames},
+                          {"hip_swing_deg", angles.swing / frames},
+                          {"hip_twist_deg", angles.twist / frames},
+                          {"knee_deg", angles.knee / frames}};
   }
   json["gain_over_learned"] = 1 - mpjpe_cm[Index(PoseWay::kBest)].value_or(0) /
                                       mpjpe_cm[Index(PoseWay::kLearned)].value_or(1);
@@ -101,6 +115,14 @@ nlohmann::ordered_json PoseTally::Json() const {
 }
 
 namespace {
+
+LegAngles SumOf(const eval::PoseScore& score, double frames) {
+  const nlohmann::ordered_json means = score.Json();
+  const auto sum = [&](const nlohmann::ordered_json& mean) { return frames * mean.get<double>(); };
+  const auto& joints = means["joint_angle_error_deg"];
+  return {sum(joints["hip"]), sum(means["hip_swing_deg"]), sum(means["hip_twist_deg"]),
+          sum(joints["knee"])};
+}
 
 /// One way over all frames, into the tally.
 Result<void> ScoreWay(PoseWay way, const pose_run::PoseRun& run,
@@ -119,6 +141,8 @@ Result<void> ScoreWay(PoseWay way, const pose_run::PoseRun& run,
     if (way == PoseWay::kBest) AddReport(output, frame, score, joints, tally);
   }
   tally.mpjpe_cm[Index(way)] = sum_cm;
+  tally.angles_deg[Index(way)] =
+      SumOf(score, static_cast<double>(run.frames.size() - run.judged_from));
   return {};
 }
 

@@ -18,8 +18,10 @@ constexpr double kAdoptEveryS = 5;
 // weight must be known to be given to the others.
 constexpr double kLeastOverweight = 0.005, kSettledSpread = 0.001;
 constexpr double kPostureS = 0.1;  // A posture older than this is not used.
-// Where a body is that nothing is known of, and how fast when it lands.
-constexpr double kAnyHeightM = 0, kAnyHeightSpreadM = 0.15, kLandingMps = 1.5;
+// Where a body is that nothing is known of, and how fast when it lands: between a step down and a
+// fall of 20 cm.
+constexpr double kAnyHeightM = 0, kAnyHeightSpreadM = 0.15;
+constexpr double kLandingMps = -1, kLandingSpreadMps = 1;
 constexpr double kReseedMps = 0.5;
 // Where a body is when its feet come down from a flight.
 constexpr double kLandingHeightM = -0.03, kLandingSpreadM = 0.06;
@@ -131,7 +133,7 @@ bool VerticalBank::SeesPosture() const {
 void VerticalBank::Land() {
   // Each keeps its mass: what was learned of the weight stays true.
   for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_, &wary_}) {
-    filter->Reseed(kAnyHeightM, kAnyHeightSpreadM, kLandingMps);
+    filter->Land(kAnyHeightM, kAnyHeightSpreadM, kLandingMps, kLandingSpreadMps);
   }
 }
 
@@ -144,7 +146,7 @@ bool VerticalBank::CanLand() const {
 
 void VerticalBank::Recover() {
   // The posture of this frame finds the height.
-  if (wary_.strayed()) wary_.Reseed(kAnyHeightM, kAnyHeightSpreadM, kReseedMps);
+  if (wary_.strayed()) wary_.Reseed(kAnyHeightM, kAnyHeightSpreadM, 0, kReseedMps);
   since_look_s_ += step_s_;
   // Without a posture nothing but a height that is impossible speaks for it.
   const bool seen = SeesPosture();

@@ -31,6 +31,7 @@ constexpr double kStillPostureMps = 0.02;
 // arms or under the ground.
 constexpr double kStraySpreads = 4, kHighestM = 0.15, kLowestM = -0.75;
 constexpr double kReseedGain = 0.03;  // Of the weight: what a filter that strayed may have learned.
+constexpr double kLandingS = 0.8;     // Until a body that has landed stands again, or leaps.
 constexpr double kStartHeightM = 0.005;
 constexpr double kStartVelocityMps = 0.005;
 
@@ -122,6 +123,7 @@ void VerticalCom::Advance(const VerticalInput& input) {
   }
   score_ *= std::exp(-h / kScoreTimeS);
   posture_.anchors_s -= h;
+  posture_.landing_s -= h;
   since_look_s_ += h;
   if (since_look_s_ >= config_.look_s) {
     since_look_s_ = 0;
@@ -183,13 +185,15 @@ void VerticalCom::Anchor() {
   filter_.SetMoments(row, {posterior.mean, posterior.variance});
 }
 
-void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_sd_mps) {
+void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_mps,
+                         double velocity_sd_mps) {
   VerticalFilter::Vector x = filter_.x();
   VerticalFilter::Matrix p = VerticalFilter::Matrix::Zero();
   p.block<kGroups, kGroups>(kGains, kGains) = filter_.p().block<kGroups, kGroups>(kGains, kGains);
   p.block<kGroups, kGroups>(kGains, kGains).array() += kReseedGain * kReseedGain;
   x(0) = height_m;
-  x(1) = x(2) = x(kPosture) = 0;
+  x(1) = velocity_mps;
+  x(2) = x(kPosture) = 0;
   p(0, 0) = height_sd_m * height_sd_m;
   p(1, 1) = velocity_sd_mps * velocity_sd_mps;
   p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
@@ -197,6 +201,13 @@ void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_sd
   filter_.Start(x, p);
   posture_ = {};
   filter_.Remember(VerticalFilter::Row::Unit(0));
+}
+
+void VerticalCom::Land(double height_m, double height_sd_m, double velocity_mps,
+                       double velocity_sd_mps) {
+  Reseed(height_m, height_sd_m, velocity_mps, velocity_sd_mps);
+  posture_.landing_s = kLandingS;
+  posture_.since_score_s = kLandingS;  // The first posture counts.
 }
 
 void VerticalCom::Score(double log_density) { score_ += std::max(log_density, kLeastLogDensity); }

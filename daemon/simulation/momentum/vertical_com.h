@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/simulation/momentum/linear_filter.h"
+#include "daemon/simulation/momentum/mixture.h"
 #include "daemon/simulation/momentum/posture.h"
 
 namespace footing::momentum {
@@ -73,7 +74,10 @@ class VerticalCom {
   /// The last posture was further off than both can be wrong by, by three deviations.
   bool contradicted() const { return posture_.contradicted; }
   /// Restarts at that height, with what was learned of the cells doubted.
-  void Reseed(double height_m, double height_sd_m, double velocity_sd_mps);
+  void Reseed(double height_m, double height_sd_m, double velocity_mps, double velocity_sd_mps);
+  /// The same of a body whose feet have just come down: how far its knees give way is not shown by
+  /// hands and feet.
+  void Land(double height_m, double height_sd_m, double velocity_mps, double velocity_sd_mps);
 
   Filter::Scalar Height(int lag_steps) const { return filter_.Delayed(lag_steps); }
   Filter::Scalar Velocity() const { return filter_.Of(Filter::Row::Unit(1)); }
@@ -106,6 +110,8 @@ class VerticalCom {
   void LookAtVelocity();
   void Anchor();
   void AnchorToPosture(double height_m);
+  /// Where the body is by a posture that has it that high.
+  std::array<Component, 2> ByPosture(double height_m) const;
   /// The speed at which the posture rises, and from time to time a look at it.
   void FollowSpeed(double height_m);
   void LookAtPostureSpeed();
@@ -142,7 +148,8 @@ class VerticalCom {
     double level_m = 0, speed_mps = 0;  ///< Smoothed.
     double gained_mps = 0;  ///< Velocity now beside one that is smoothed like the speed.
     double since_speed_s = 0;
-    double far_s = 0;  ///< For how long it has been too far from the posture.
+    double far_s = 0;      ///< For how long it has been too far from the posture.
+    double landing_s = 0;  ///< For how much longer its knees may give way.
     bool strayed = false;
     bool contradicted = false;
   } posture_;

@@ -18,6 +18,9 @@ constexpr double kFarSpreads = 4, kFarS = 0.2, kDoubtSpreads = 3;
 // kWrongSpeedMps. On people left out 0.9, 0.02, 0.7 and 0.2 fit best; looks that follow each other
 // so closely are not independent, hence more.
 constexpr double kPostureSpeedS = 0.3, kSpeedLookS = 0.25, kSpeedSettlesS = 3 * kPostureSpeedS;
+// Of landings so many are on straight legs; in the others the knees give way by up to 40 cm, of
+// which a posture shows little.
+constexpr double kStiffLandings = 0.5, kGivesWayM = 0.2, kGivesWaySpreadM = 0.12;
 constexpr double kSpeedRight = 0.8, kSpeedMps = 0.04, kSpeedShare = 0.7, kWrongSpeedMps = 0.25;
 
 /// A posture is off by so much, and may be by that variance.
@@ -82,6 +85,16 @@ void VerticalCom::LookAtPostureSpeed() {
   filter_.SetMoments(row, {product.moments.mean, product.moments.variance});
 }
 
+std::array<Component, 2> VerticalCom::ByPosture(double height_m) const {
+  const PostureError& posture = config_.posture;
+  if (posture_.landing_s > 0) {
+    return {{{kStiffLandings, height_m, posture.right_m},
+             {1 - kStiffLandings, height_m - kGivesWayM, kGivesWaySpreadM}}};
+  }
+  return {{{posture.right_share, height_m, posture.right_m},
+           {1 - posture.right_share, height_m, posture.spread_m}}};
+}
+
 void VerticalCom::AnchorToPosture(double height_m) {
   const PostureError& posture = config_.posture;
   FollowSpeed(height_m);
@@ -89,15 +102,14 @@ void VerticalCom::AnchorToPosture(double height_m) {
   const Filter::Scalar now = filter_.Of(row);
   Compare(height_m - now.mean, now.variance + posture.spread_m * posture.spread_m, step_s_,
           posture_);
-  // What is less certain than a posture at its worst is not waited for.
-  const bool lost = now.variance > posture.spread_m * posture.spread_m;
+  // What is less certain than a posture at its worst is not waited for; but looks at a landing
+  // that follow each other are all wrong by the same.
+  const bool lands = posture_.landing_s > 0;
+  const bool lost = !lands && now.variance > posture.spread_m * posture.spread_m;
   const bool due = posture_.since_score_s >= kPostureAnchorLookS;
   if (!due && !lost) return;
   if (due) posture_.since_score_s = 0;
-  const double right = posture.right_share;
-  const MixtureMoments product =
-      TimesMixture({now.mean, now.variance},
-                   {{{right, height_m, posture.right_m}, {1 - right, height_m, posture.spread_m}}});
+  const MixtureMoments product = TimesMixture({now.mean, now.variance}, ByPosture(height_m));
   if (due) Score(product.log_evidence);
   // No straight leg carries a body further up, however wrong the posture is about bent ones.
   const Moments posterior = Loaded(last_.raw_mps2)

@@ -223,6 +223,9 @@ class Train(unittest.TestCase):
             best, learned = person["best"]["mpjpe_cm"], person["hands_feet_learned"]["mpjpe_cm"]
             self.assertAlmostEqual(person["gain_over_learned"], 1 - best / learned)
             self.assertGreater(person["hands_feet_ik"]["mpjpe_cm"], 0)
+            for way in ("best", "hands_feet_learned", "hands_feet_ik"):
+                for part in ("hip_swing_deg", "hip_twist_deg"):
+                    self.assertLessEqual(person[way][part], person[way]["hip_deg"] + 1e-9)
             self.assertLessEqual(person["invalid_share"], 1)
         only = run("people", "--motions", folder, "--only", 2, "--seed", 1, "--json")
         self.assertEqual(json.loads(only.stdout)["people"]["2"], report["people"]["2"])
@@ -239,6 +242,7 @@ class Train(unittest.TestCase):
         self.assertAlmostEqual(sensors["belt"]["mpjpe_cm"], ways["best"]["mpjpe_cm"], places=6)
         for way in ("true_com", "true_momentum", "true_feet"):
             self.assertGreater(ways[way]["mpjpe_cm"], ways["true_all"]["mpjpe_cm"])
+        self.assertGreater(ways["best"]["knee_deg"], ways["true_all"]["knee_deg"])
         (folder / "2_01.bvh").unlink()
         self.refused(2, "a single person", "people", "--motions", folder)
 
