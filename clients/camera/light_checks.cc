@@ -71,6 +71,18 @@ void LightChecks::TakeFrame(std::int64_t exposed_ns, sphere::Finder& finder,
   }
 }
 
+std::vector<LightVerdict> LightChecks::Verdicts() const {
+  std::vector<LightVerdict> verdicts(held_.size());
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    if (!challenges_ || !held_[i].device) continue;
+    const Challenge& challenge = held_[i].challenge;
+    verdicts[i].accepts = challenge.accepts();
+    verdicts[i].is_switching = challenge.is_dark() || challenge.step() == Challenge::Step::kBack;
+    verdicts[i].refused = challenge.refused();
+  }
+  return verdicts;
+}
+
 int LightChecks::passed() const {
   int sum = passed_before_;
   for (const Held& held : held_) sum += held.challenge.passed();

@@ -13,6 +13,13 @@
 
 namespace footing::camera {
 
+/// How the light of one sphere stands, for a person.
+struct LightVerdict {
+  bool accepts = true;        ///< What is found is taken for the sphere.
+  bool is_switching = false;  ///< Its light is out, or on its way back.
+  std::vector<sphere::Circle> refused;
+};
+
 /// The lights of the controllers that hold the camera file's spheres: lit in the colour that is
 /// tracked, and switched where a challenge wants it. Spheres without a controller, or without a
 /// light in the file, are not checked.
@@ -31,6 +38,9 @@ class LightChecks {
   /// refused.
   void TakeFrame(std::int64_t exposed_ns, sphere::Finder& finder,
                  std::vector<std::optional<sphere::Estimate>>& found);
+
+  /// Of every sphere, after TakeFrame.
+  std::vector<LightVerdict> Verdicts() const;
 
   int passed() const;
   int refusals() const;

@@ -36,8 +36,27 @@ void Print(const camera::TrackingReport& report, const frames::CameraFile& camer
   for (const auto& [key, value] : object.items()) std::cout << key << ": " << value << "\n";
 }
 
+/// As the command line names them; empty: the defaults.
+struct Addresses {
+  std::string to, sensor, preview;
+};
+
+/// The default place may belong to another footing-camera, which must not stop this one.
+Result<void> TakePreview(const std::string& text, camera::TrackingOptions& options) {
+  if (text == "none") return {};
+  options.needs_preview = !text.empty();
+  if (text.empty()) {
+    options.preview = transport::DefaultAddress("camera", true);
+    return {};
+  }
+  const auto address = transport::ParseAddress(text);
+  if (!address) return address.error();
+  options.preview = *address;
+  return {};
+}
+
 int RunTracking(camera::TrackingOptions& options, const camera::CommandLine& line,
-                const std::string& to, const std::string& sensor) {
+                const Addresses& addresses) {
   log::Start("footing-camera", line.quiet);
   if (const auto checked = Check(line); !checked) return cli::Report(checked.error());
   const auto camera = frames::ReadCameraFile(line.camera_file);
@@ -46,12 +65,14 @@ int RunTracking(camera::TrackingOptions& options, const camera::CommandLine& lin
   camera::TakeExposure(line, options.camera);
   options.camera_path = line.camera_file;
   options.frames = line.frames;
-  const auto devices = transport::AddressOrDefault(to, "devices");
+  const auto devices = transport::AddressOrDefault(addresses.to, "devices");
   if (!devices) return cli::Report(devices.error());
   options.to = *devices;
-  const auto clients = transport::AddressOrDefault(sensor, "sensor");
+  const auto clients = transport::AddressOrDefault(addresses.sensor, "sensor");
   if (!clients) return cli::Report(clients.error());
   options.sensor = *clients;
+  if (const auto taken = TakePreview(addresses.preview, options); !taken)
+    return cli::Report(taken.error());
   if (!camera->X_WC)
     log::Warning(line.camera_file +
                  " does not say where the camera is (position_W_m, rotation_WC): "
@@ -69,12 +90,16 @@ int main(int argc, char** argv) {
                          kExamples);
   camera::TrackingOptions options;
   camera::CommandLine line;
-  std::string to, sensor;
+  Addresses addresses;
   int exit_code = 0;
   AddCommandLine(*app, line);
-  app->add_option("--to", to, "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
-  app->add_option("--sensor", sensor,
+  app->add_option("--to", addresses.to,
+                  "Address of footingd's device socket, unix:PATH or tcp:HOST:PORT");
+  app->add_option("--sensor", addresses.sensor,
                   "Address of footingd, where the lights of the camera file are switched on");
+  app->add_option("--preview", addresses.preview,
+                  "Unix socket for the preview in footing-view, unix:PATH, or none (default: "
+                  "camera.sock beside footingd's sockets)");
   app->add_flag("--simulated", options.simulated, "Mark the hands as simulated");
   app->add_flag_callback(
       "--no-challenge", [&options] { options.challenge = false; },
@@ -86,5 +111,5 @@ int main(int argc, char** argv) {
   camera::AddLensCommand(*app, exit_code);
   if (const auto code = cli::Parse(*app, argc, argv)) return *code;
   if (!app->get_subcommands().empty()) return exit_code;
-  return RunTracking(options, line, to, sensor);
+  return RunTracking(options, line, addresses);
 }

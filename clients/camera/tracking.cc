@@ -13,6 +13,7 @@
 #include "clients/camera/light_checks.h"
 #include "clients/camera/lights.h"
 #include "clients/camera/observation.h"
+#include "clients/camera/preview_server.h"
 #include "common/clock/clock.h"
 #include "common/device_link/device_link.h"
 #include "common/log/log.h"
@@ -61,6 +62,7 @@ class Tracking {
                              [this](const std::string& line) { Alarm(line); });
     if (!source) return source.error();
     source_ = std::move(source).value();
+    if (auto opened = OpenPreview(); !opened) return opened.error();
     signals_.async_wait([this](boost::system::error_code error, int) {
       if (!error) End({});
     });
@@ -99,6 +101,18 @@ class Tracking {
     if (report_.alarms.size() < kMostAlarms) report_.alarms.push_back(line);
   }
 
+  Result<void> OpenPreview() {
+    if (!options_.preview) return {};
+    auto opened = PreviewServer::Open(*options_.preview, options_.camera);
+    if (!opened && options_.needs_preview) return opened.error();
+    if (opened) {
+      preview_ = std::move(opened).value();
+    } else {
+      log::Warning("no preview: " + opened.error().message);
+    }
+    return {};
+  }
+
   /// Takes a new pose from the camera file, as a calibration writes it.
   void LookAtTheFile() {
     if (options_.camera_path.empty() || ended_) return;
@@ -126,7 +140,11 @@ class Tracking {
     auto found = finder_.Find(frame.View());
     if (cost_ms_.size() < kMostCosts)
       cost_ms_.push_back(1e-6 * static_cast<double>(clock::ThreadCpuNs() - began_ns));
+    SeenFrame* const shown =
+        preview_ && preview_->Wants(clock::MonotonicNs()) ? &preview_->Next() : nullptr;
+    if (shown != nullptr) shown->found = found;
     checks_.TakeFrame(exposed_ns, finder_, found);
+    if (shown != nullptr) ShowPreview(frame, exposed_ns, *shown);
     stream::HandFrame hands =
         ToHandFrame(options_.camera, X_WC_, found, exposed_ns, clock::MonotonicNs());
     hands.simulated = options_.simulated;
@@ -140,6 +158,16 @@ class Tracking {
             "a sphere is brighter than the camera can see: lower the exposure, or depth "
             "is wrong by centimetres");
     }
+  }
+
+  void ShowPreview(const frames::Frame& frame, std::int64_t exposed_ns, SeenFrame& shown) {
+    shown.number = report_.frames + 1;
+    shown.exposed_ns = exposed_ns;
+    shown.frame = frame;
+    shown.verdicts = checks_.Verdicts();
+    shown.has_pose = X_WC_.has_value();
+    shown.simulated = options_.simulated;
+    preview_->Show(clock::MonotonicNs());
   }
 
   void End(Result<void> end) {
@@ -164,6 +192,7 @@ class Tracking {
   LightChecks checks_;
   std::optional<Lights> lights_;  // Its end answers what checks_ still waits for.
   std::unique_ptr<Source> source_;
+  std::unique_ptr<PreviewServer> preview_;
   TrackingReport report_;
   std::vector<double> cost_ms_;
   Result<void> end_;

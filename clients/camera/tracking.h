@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct TrackingOptions {
   transport::Address to;
   transport::Address
       sensor;  ///< footingd's client socket, where the file's lights are switched on.
+  std::optional<transport::Address> preview;  ///< A Unix socket; nothing: no preview.
+  bool needs_preview = false;  ///< A preview that cannot be shown is an error, not a warning.
 };
 
 /// What a run did.

@@ -82,6 +82,7 @@ CameraStep::Rest CameraStep::Look(const Situation& now, const SetUpOptions& opti
   }
   if (now.now_ns - asked_ns_ < SecondsToNanoseconds(kRestS)) {
     rest.feedback = "seen";
+    rest.share = NanosecondsToSeconds(now.now_ns - asked_ns_) / kRestS;
     return rest;
   }
   const auto mean = camera_pose::MeanAtRest(frames);
@@ -103,6 +104,7 @@ CameraStep::Rest CameraStep::Look(const Situation& now, const SetUpOptions& opti
     rest.tilt_rad = *tilt;
   }
   rest.seen = *mean;
+  rest.share = 1;
   return rest;
 }
 
@@ -134,8 +136,36 @@ void CameraStep::Take(const Rest& rest) {
   }
 }
 
+MarksState CameraStep::Marks(double rest_share) const {
+  MarksState state;
+  state.done = next_;
+  state.all = places_.size();
+  state.rest_share = rest_share;
+  for (const camera_pose::BoardMark& mark : marks_)
+    state.marks.push_back({mark.name, mark.p_W_m, MarkState::Stage::kToCome});
+  for (std::size_t i = 0; i < next_; ++i) state.marks[places_[i]].stage = MarkState::Stage::kTaken;
+  if (next_ < places_.size()) {
+    state.marks[places_[next_]].stage = MarkState::Stage::kNext;
+    state.upright = upright_[next_];
+  }
+  if (!stored_) return state;
+  state.X_WC = pose_.X_WC;
+  // Without the upright places, the marks were taken in their own order.
+  for (std::size_t i = 0; i < std::min(marks_.size(), pose_.residuals_m.size()); ++i)
+    state.marks[i].residual_m = pose_.residuals_m[i];
+  return state;
+}
+
+Progress CameraStep::Ask(const Rest& rest) const {
+  Progress progress = Ask();
+  progress.feedback = rest.feedback;
+  progress.marks = Marks(rest.share);
+  return progress;
+}
+
 Progress CameraStep::Ask() const {
   Progress progress;
+  progress.marks = Marks(0);
   const std::string place = "the mark at the " + marks_[places_[next_]].name;
   progress.prompt = upright_[next_] ? "Stand the controller on " + place +
                                           ", sphere up, and hold it upright and still."
@@ -149,11 +179,13 @@ Progress CameraStep::Solve() {
   const auto pose = camera_pose::Calibrate(observations_);
   if (!pose) {
     progress.results = {Outcome(Item::kCamera, "", false, 0, "mm", pose.error().message)};
+    progress.marks = Marks(0);
     progress.finished = true;
     return progress;
   }
   pose_ = *pose;
   stored_ = true;
+  progress.marks = Marks(1);
   Action store;
   store.kind = Action::Kind::kStoreCamera;
   store.key = "camera";
@@ -168,6 +200,7 @@ Progress CameraStep::Solve() {
 
 Progress CameraStep::Stored(const Situation& now) {
   Progress progress;
+  progress.marks = Marks(1);
   for (const Answer& answer : now.answers) {
     if (answer.key != "camera") continue;
     progress.results = {
@@ -185,13 +218,10 @@ Progress CameraStep::Advance(const Situation& now, const SetUpOptions& options) 
   }
   if (!begun_) Begin(now, options);
   if (stored_) return Stored(now);
-  progress = Ask();
-  const Rest rest = Look(now, options, upright_[next_]);
-  progress.feedback = rest.feedback;
-  if (!rest.seen) return progress;
-  const std::string doubt = Doubt(rest);
-  progress.feedback = doubt;
-  if (!doubt.empty()) return progress;
+  Rest rest = Look(now, options, upright_[next_]);
+  if (!rest.seen) return Ask(rest);
+  rest.feedback = Doubt(rest);
+  if (!rest.feedback.empty()) return Ask(rest);
   Take(rest);
   asked_ns_ = now.now_ns;
   if (++next_ == places_.size()) return Solve();

@@ -22,6 +22,7 @@ class CameraStep {
     std::optional<camera_pose::SeenPoint> seen;
     double tilt_rad = 0;  ///< Of the controller's long axis against gravity.
     std::string feedback;
+    double share = 0;  ///< Of the stretch.
   };
 
   void Begin(const Situation& now, const SetUpOptions& options);
@@ -30,6 +31,8 @@ class CameraStep {
   std::string Doubt(const Rest& rest) const;
   void Take(const Rest& rest);
   Progress Ask() const;
+  Progress Ask(const Rest& rest) const;
+  MarksState Marks(double rest_share) const;
   Progress Solve();
   Progress Stored(const Situation& now);
 

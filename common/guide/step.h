@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/guide/marks_state.h"
 #include "common/guide/recent.h"
 #include "common/stream/setup.h"
 
@@ -75,9 +76,10 @@ struct Situation {
 
 /// What an item says in that instant.
 struct Progress {
-  std::string prompt;    ///< To the person; the same until something else is asked.
-  std::string picture;   ///< Goes with the prompt; may be empty.
-  std::string feedback;  ///< What is seen at the moment; changes all the time.
+  std::string prompt;               ///< To the person; the same until something else is asked.
+  std::string picture;              ///< Goes with the prompt; may be empty.
+  std::string feedback;             ///< What is seen at the moment; changes all the time.
+  std::optional<MarksState> marks;  ///< Of a camera's calibration.
   std::vector<Action> actions;
   std::vector<stream::SetupItem> results;  ///< Without rig, date and staleness.
   bool finished = false;

@@ -32,6 +32,7 @@ SECONDS_TO_STOP = 20
 # A pattern of commands, and why they cannot run here.
 NOT_HERE = {
     r"^footing-ctl (pair|setup|assign|acceptance|tare|layout .*--check)": "asks a person; scenarios setup_* run them",
+    r"--calibrate-camera": "asks a person; tests/clients/view/pose_calibration_test.cc has one",
     r"^footing-ctl led (00:|head)": "needs that device",
     r"^footing-ctl interface leg": "needs remotes on the legs; scenario joystick_line changes interfaces",
     r"^footing-ctl trial withdraw": "needs a failure; scenario trial runs it",

@@ -3,10 +3,13 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "clients/view/app/feed.h"
+#include "clients/view/app/pose_calibration.h"
+#include "clients/view/app/preview_link.h"
 #include "clients/view/scene/show.h"
 #include "common/exchange/bounded_queue.h"
 #include "common/exchange/flag.h"
@@ -23,10 +26,12 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
-  /// Render thread: takes in all that has come.
-  void Drain(scene::Show& show);
-  /// Sends a command to the simulation, from the io thread.
-  void SendToSimulation(v1::Command command);
+  /// Render thread: takes in all that has come; a calibration goes on with it.
+  void Drain(scene::Show& show, PoseCalibration* calibration);
+  /// Sends a command to the servers of that name, from the io thread.
+  void SendTo(const std::string& server_id, v1::Command command);
+  /// Receives the preview of footing-camera from now on, or no longer.
+  void WantPreview(bool wanted);
   bool stop_asked() const { return stop_.raised(); }
 
  private:
@@ -37,7 +42,10 @@ class Background {
   exchange::BoundedQueue<scene::Update> updates_;
   std::vector<std::unique_ptr<exchange::Latest<scene::LinkReport>>> links_;
   exchange::Flag stop_;
+  exchange::Latest<scene::CameraPreview> preview_;
   Feed feed_;
+  PreviewLink preview_link_;
+  bool preview_wanted_ = false;
   std::thread thread_;
 };
 

@@ -79,10 +79,10 @@ std::int64_t Feed::OffsetOf(const Source& source) const {
   return offset.valid ? offset.offset_ns : 0;
 }
 
-void Feed::SendToSimulation(const v1::Command& command) {
+void Feed::SendTo(const std::string& server_id, const v1::Command& command) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     Source& source = sources_[i];
-    if (source.report.server_id != "footing-sim" || !source.client) continue;
+    if (source.report.server_id != server_id || !source.client) continue;
     source.client->Send(command, [this, i](const v1::CommandResult& result) {
       if (result.ok()) return;
       scene::Update refusal;

@@ -3,6 +3,7 @@
 #include <boost/asio/io_context.hpp>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "clients/view/app/options.h"
@@ -24,8 +25,8 @@ class Feed {
 
   void Start();
   void Stop();
-  /// Sends a command to every live footing-sim; a refusal comes back as a note.
-  void SendToSimulation(const v1::Command& command);
+  /// Sends a command to every live server of that name; a refusal comes back as a note.
+  void SendTo(const std::string& server_id, const v1::Command& command);
 
   /// The sources as they stand before anything has arrived.
   static std::vector<scene::LinkReport> InitialReports(const Options& options);

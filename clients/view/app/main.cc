@@ -7,6 +7,7 @@
 #include "clients/view/app/window.h"
 #include "common/cli/cli.h"
 #include "common/log/log.h"
+#include "common/transport/address_or_default.h"
 
 namespace {
 
@@ -18,9 +19,41 @@ struct PlayArguments {
   std::optional<double> from_s;
 };
 
-footing::Result<void> Resolve(const std::vector<std::string>& connect,
+/// Where the preview of footing-camera comes from.
+footing::Result<void> TakeCamera(const std::string& text, Options& options) {
+  namespace transport = footing::transport;
+  const auto address = transport::AddressOrDefault(text, "camera");
+  if (!address) return address.error();
+  if (address->kind != transport::Address::Kind::kUnix)
+    return footing::UsageError("--camera-address " + text +
+                               ": the preview is for the camera's own host alone; use unix:PATH");
+  options.camera.address = *address;
+  options.camera.corner = options.camera.corner || !options.camera.calibration_file.empty();
+  return {};
+}
+
+void AddCameraOptions(CLI::App& app, Options& options, std::string& address) {
+  app.add_flag("--camera", options.camera.corner,
+               "Show the preview of footing-camera in a corner (key V)")
+      ->excludes("--recording");
+  app.add_flag("--camera-preview", options.camera.alone,
+               "Show the preview of footing-camera and nothing else")
+      ->excludes("--recording")
+      ->excludes("--connect");
+  app.add_option("--calibrate-camera", options.camera.calibration_file,
+                 "Camera file of the running footing-camera: its pose is measured on the boards, "
+                 "guided, and stored there")
+      ->excludes("--recording")
+      ->excludes("--camera-preview");
+  app.add_option("--camera-address", address,
+                 "Address of the preview, unix:PATH (default: camera.sock beside footingd's "
+                 "sockets)");
+}
+
+footing::Result<void> Resolve(const std::vector<std::string>& connect, const std::string& camera,
                               const PlayArguments& arguments, Options& options) {
   namespace transport = footing::transport;
+  if (auto taken = TakeCamera(camera, options); !taken) return taken;
   if (!options.play.recording.empty()) {
     const auto alignment = footing::view::AlignmentNamed(arguments.align);
     if (!alignment) return alignment.error();
@@ -35,7 +68,7 @@ footing::Result<void> Resolve(const std::vector<std::string>& connect,
     if (!address) return address.error();
     options.addresses.push_back(*address);
   }
-  if (connect.empty()) {
+  if (connect.empty() && !options.camera.alone) {
     options.addresses = {transport::DefaultAddress("simulation"),
                          transport::DefaultAddress("sensor")};
   }
@@ -45,6 +78,11 @@ footing::Result<void> Resolve(const std::vector<std::string>& connect,
 footing::Result<void> Run(const Options& options) {
   if (!options.play.recording.empty()) return RunPlayback(options);
   if (options.off_screen()) return RunOffScreen(options);
+  if (!options.camera.calibration_file.empty() && (options.text || !footing::view::HasDisplay()))
+    return footing::UsageError(
+        "--calibrate-camera needs a window; in a terminal use footing-ctl setup --only camera "
+        "--camera " +
+        options.camera.calibration_file);
   if (options.text) return RunTextView(options);
   if (footing::view::HasDisplay()) return RunWindow(options);
   footing::log::Info("no display: showing the state as text (--screenshot draws without one)");
@@ -82,6 +120,7 @@ int main(int argc, char** argv) {
       "  footing-view --recording walk.mcap\n"
       "  footing-view --recording study.mcap --trial p07-1 --beside study.mcap:p07-2\n"
       "  footing-view --screenshot bird.png --at 5\n"
+      "  footing-view --camera-preview\n"
       "  footing-view --next-subject p08.json --next-subject p09.json\n"
       "  footing-view --text --seconds 30 --json");
   Options options;
@@ -91,6 +130,8 @@ int main(int argc, char** argv) {
                   "(default: footing-sim and footingd of this user)");
   PlayArguments play;
   AddPlayOptions(*app, options, play);
+  std::string camera;
+  AddCameraOptions(*app, options, camera);
   app->add_option("--screenshot", options.screenshot,
                   "PNG file to draw one picture into; then end");
   app->add_option("--at", options.at_s,
@@ -121,7 +162,7 @@ int main(int argc, char** argv) {
   if (const auto code = footing::cli::Parse(*app, argc, argv)) return *code;
 
   footing::log::Start("footing-view", false);
-  if (const auto resolved = Resolve(connect, play, options); !resolved) {
+  if (const auto resolved = Resolve(connect, camera, play, options); !resolved) {
     return footing::cli::Report(resolved.error());
   }
   auto commands = footing::view::SubjectCommands(subjects);

@@ -4,6 +4,7 @@
 
 #include "clients/view/app/background.h"
 #include "clients/view/app/pictures.h"
+#include "clients/view/app/pose_calibration.h"
 #include "clients/view/app/summary.h"
 #include "clients/view/render/off_screen.h"
 #include "clients/view/render/screen.h"
@@ -25,7 +26,8 @@ struct Studio {
   render::Target& target;
   render::Screen& screen;
   Background& background;
-  scene::Show show;
+  PoseCalibration* calibration = nullptr;
+  scene::Show show = {};
   std::int64_t started_ns = clock::MonotonicNs();
 
   double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns); }
@@ -35,7 +37,7 @@ struct Studio {
   /// Lets the camera and the head follow until that instant of the viewer's clock.
   scene::Show::Shot FollowUntil(std::int64_t until_ns) {
     for (;;) {
-      background.Drain(show);
+      background.Drain(show, calibration);
       const std::int64_t now_ns = clock::MonotonicNs();
       scene::Show::Shot shot = show.At(now_ns, false, {options.forces, options.overlay_reference});
       if (now_ns >= until_ns || background.stop_asked()) return shot;
@@ -47,6 +49,8 @@ struct Studio {
     target.Bind();
     render::HudOptions hud;
     hud.hidden = options.subject;
+    hud.camera = options.camera.corner;
+    hud.camera_alone = options.camera.alone;
     screen.Draw(
         {shot.picture, show.model(), shot.frame, clock::MonotonicNs(), shot.past, shot.past_ns},
         hud, target.width(), target.height());
@@ -103,8 +107,10 @@ Result<void> RunOffScreen(const Options& options) {
   if (!target) return target.error();
   auto screen = render::Screen::Create();
   if (!screen) return screen.error();
+  auto calibration = PoseCalibration::OfOptions(options.camera.calibration_file);
+  if (!calibration) return calibration.error();
   Background background(options);
-  Studio studio{options, *target, **screen, background, {}};
+  Studio studio{options, *target, **screen, background, *calibration ? &**calibration : nullptr};
   if (options.replay_falls) studio.show.ReplayFalls();
   auto done = options.screenshot.empty() ? Record(studio) : TakeScreenshot(studio);
   if (done && options.json) {

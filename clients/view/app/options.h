@@ -20,6 +20,14 @@ struct PlayOptions {
   timeline::Alignment alignment = timeline::Alignment::kStart;
 };
 
+/// What is shown of footing-camera.
+struct CameraOptions {
+  transport::Address address;    ///< Of its preview, a Unix socket.
+  bool corner = false;           ///< The preview in a corner, from the start.
+  bool alone = false;            ///< And nothing else.
+  std::string calibration_file;  ///< The camera file whose pose is calibrated; empty: none is.
+};
+
 /// What the command line asks for.
 struct Options {
   std::vector<transport::Address> addresses;
@@ -36,7 +44,8 @@ struct Options {
   bool overlay_reference = false;          ///< The reference pose over the body, not beside it.
   std::vector<v1::Command> next_subjects;  ///< What the key N sends, one after the other.
   bool forces = false;                     ///< Force arrows from the start.
-  int samples = 0;                         ///< Multisampling: 0, 2, 4, 8.
+  CameraOptions camera;
+  int samples = 0;  ///< Multisampling: 0, 2, 4, 8.
   int width = 1280;
   int height = 720;
 

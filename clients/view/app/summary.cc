@@ -1,6 +1,9 @@
 #include "clients/view/app/summary.h"
 
+#include <map>
 #include <nlohmann/json.hpp>
+
+#include "common/clock/clock.h"
 
 namespace footing::view {
 namespace {
@@ -63,6 +66,27 @@ void AddGame(const stream::GameState& game, nlohmann::ordered_json& summary) {
                      {"segments_passed", passed}, {"segments_refused", game.refused}};
 }
 
+/// What the camera showed last.
+void AddCamera(const scene::CameraPreview& camera, nlohmann::ordered_json& summary) {
+  static const std::map<preview::Sight, const char*> kSights{
+      {preview::Sight::kNothing, "nothing"},
+      {preview::Sight::kOther, "other"},
+      {preview::Sight::kChecking, "checking"},
+      {preview::Sight::kSeen, "seen"}};
+  if (camera.state == scene::CameraPreview::State::kNone) return;
+  const std::int64_t now_ns = clock::MonotonicNs();
+  nlohmann::ordered_json spheres = nlohmann::ordered_json::array();
+  if (camera.picture)
+    for (const preview::Sphere& sphere : camera.picture->spheres)
+      spheres.push_back({{"role", stream::Name(sphere.role)},
+                         {"sight", kSights.at(sphere.sight)},
+                         {"confidence", sphere.confidence}});
+  summary["camera"] = {{"frame", camera.picture ? camera.picture->number : 0},
+                       {"age_s", scene::PreviewAgeS(camera, now_ns)},
+                       {"trouble", scene::PreviewTrouble(camera, now_ns)},
+                       {"spheres", spheres}};
+}
+
 }  // namespace
 
 std::string Summary(const scene::Model& model, double seconds) {
@@ -91,6 +115,7 @@ std::string Summary(const scene::Model& model, double seconds) {
       {"simulated", scene::IsSimulated(model)}};
   AddTrial(model, summary);
   AddGame(model.game, summary);
+  AddCamera(model.observed.camera, summary);
   if (model.pose_tally.any()) AddPose(model.pose_tally, summary);
   return summary.dump();
 }

@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "clients/view/app/feed.h"
+#include "clients/view/app/preview_link.h"
 #include "clients/view/app/summary.h"
 #include "clients/view/scene/show.h"
 #include "clients/view/scene/words.h"
@@ -33,7 +34,10 @@ class TextView {
               {[this](const scene::Update& update) { show_.Take(update, clock::MonotonicNs()); },
                [this](int source, const scene::LinkReport& report) {
                  show_.model().links[static_cast<std::size_t>(source)] = report;
-               }}) {
+               }}),
+        preview_(io_, options.camera.address, [this](const scene::CameraPreview& preview) {
+          show_.model().observed.camera = preview;
+        }) {
     show_.model().links = Feed::InitialReports(options);
   }
 
@@ -42,6 +46,7 @@ class TextView {
       if (!error) Stop();
     });
     feed_.Start();
+    if (options_.camera.corner || options_.camera.alone) preview_.Start();
     WaitToDraw();
     io_.run();
     if (options_.json) std::cout << Summary(show_.model(), PassedS()) << std::endl;
@@ -65,6 +70,7 @@ class TextView {
   void Draw() {
     ++show_.model().tally.frames_drawn;
     const std::int64_t now_ns = clock::MonotonicNs();
+    if (options_.camera.alone) return DrawCamera(now_ns);
     if (!screen_) {
       // With --json standard output is for the summary alone.
       std::ostream& out = options_.json ? std::cerr : std::cout;
@@ -72,6 +78,15 @@ class TextView {
       return;
     }
     std::cout << ScreenText(scene::StatusScreen(show_.model(), now_ns)) << std::endl;
+  }
+
+  void DrawCamera(std::int64_t now_ns) {
+    std::ostream& out = options_.json ? std::cerr : std::cout;
+    std::vector<std::string> lines;
+    scene::AddPreviewLines(show_.model().observed.camera, now_ns, lines);
+    out << (screen_ ? ScreenText(lines)
+                    : scene::PreviewStatus(show_.model().observed.camera, now_ns))
+        << std::endl;
   }
 
   void Stop() {
@@ -87,6 +102,7 @@ class TextView {
   boost::asio::signal_set signals_;
   scene::Show show_;
   Feed feed_;
+  PreviewLink preview_;
 };
 
 }  // namespace

@@ -2,10 +2,12 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 #include <utility>
 
 #include "clients/view/app/background.h"
 #include "clients/view/app/glfw_window.h"
+#include "clients/view/app/pose_calibration.h"
 #include "clients/view/app/subjects.h"
 #include "clients/view/app/summary.h"
 #include "clients/view/render/screen.h"
@@ -14,6 +16,8 @@
 
 namespace footing::view {
 namespace {
+
+constexpr char kSimulation[] = "footing-sim";
 
 void OnKey(GLFWwindow* window, int key, int, int action, int) {
   if (action != GLFW_PRESS) return;
@@ -24,6 +28,9 @@ void OnKey(GLFWwindow* window, int key, int, int action, int) {
   if (key == GLFW_KEY_N) hud.next_subject_asked = true;
   if (key == GLFW_KEY_O) hud.overlay_reference = !hud.overlay_reference;
   if (key == GLFW_KEY_R) hud.replay_asked = true;
+  if (key == GLFW_KEY_C) hud.calibration_asked = true;
+  if (key == GLFW_KEY_X) hud.calibration_end_asked = true;
+  if (key == GLFW_KEY_V) hud.camera = !hud.camera;
   if (key == GLFW_KEY_SPACE) hud.frozen = !hud.frozen;
   if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) glfwSetWindowShouldClose(window, GLFW_TRUE);
 }
@@ -34,8 +41,23 @@ void OnLetter(GLFWwindow* window, unsigned int letter) {
   if (letter == '?') hud.keys = !hud.keys;
 }
 
+/// Key presses that belong to the calibration.
+void Calibrate(render::HudOptions& hud, std::optional<PoseCalibration>& calibration,
+               scene::Model& model) {
+  if (std::exchange(hud.calibration_end_asked, false) && calibration) calibration->End();
+  if (!std::exchange(hud.calibration_asked, false)) return;
+  if (calibration) {
+    hud.camera = true;  // Whoever holds a sphere must see whether the camera does.
+    return calibration->Begin();
+  }
+  scene::Note note;
+  note.text = "Start footing-view with --calibrate-camera FILE, the camera's file.";
+  note.received_ns = clock::MonotonicNs();
+  model.last.note = note;
+}
+
 void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
-          render::HudOptions& hud) {
+          render::HudOptions& hud, std::optional<PoseCalibration>& calibration) {
   Background background(options);
   scene::Show show;
   if (options.replay_falls) show.ReplayFalls();
@@ -45,12 +67,14 @@ void Loop(GLFWwindow* window, const Options& options, render::Screen& screen,
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !background.stop_asked() &&
          (options.seconds <= 0 || passed_s < options.seconds)) {
     glfwPollEvents();
-    background.Drain(show);
+    background.WantPreview(hud.camera || hud.camera_alone);
+    Calibrate(hud, calibration, show.model());
+    background.Drain(show, calibration ? &*calibration : nullptr);
     const std::int64_t now_ns = clock::MonotonicNs();
     if (std::exchange(hud.replay_asked, false)) show.ToggleReplay(now_ns);
-    if (std::exchange(hud.t_pose_asked, false)) background.SendToSimulation(TPoseCommand());
+    if (std::exchange(hud.t_pose_asked, false)) background.SendTo(kSimulation, TPoseCommand());
     if (std::exchange(hud.next_subject_asked, false) && !options.next_subjects.empty()) {
-      background.SendToSimulation(options.next_subjects[next_subject++]);
+      background.SendTo(kSimulation, options.next_subjects[next_subject++]);
       next_subject %= options.next_subjects.size();
     }
     const auto shot = show.At(now_ns, hud.frozen, {hud.forces, hud.overlay_reference});
@@ -78,14 +102,18 @@ Result<void> RunWindow(const Options& options) {
   GLFWwindow* const window = opened->get();
   auto screen = render::Screen::Create();
   if (!screen) return screen.error();
+  auto calibration = PoseCalibration::OfOptions(options.camera.calibration_file);
+  if (!calibration) return calibration.error();
   render::HudOptions hud;
   hud.hidden = options.subject;
   hud.forces = options.forces;
   hud.overlay_reference = options.overlay_reference;
+  hud.camera = options.camera.corner || *calibration;
+  hud.camera_alone = options.camera.alone;
   glfwSetWindowUserPointer(window, &hud);
   glfwSetKeyCallback(window, OnKey);
   glfwSetCharCallback(window, OnLetter);
-  Loop(window, options, **screen, hud);
+  Loop(window, options, **screen, hud, *calibration);
   return {};
 }
 

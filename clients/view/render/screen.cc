@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "clients/view/render/gl.h"
+
 namespace footing::render {
 namespace {
 
@@ -72,8 +74,15 @@ void Screen::EndPanels() {
 
 void Screen::Draw(const HudContent& content, const HudOptions& options, int width, int height) {
   const scene::Model& model = content.model;
-  world().Draw(content.picture, model.track, model.track_version, width, height);
-  const Paint paint = BeginPanels(width, height);
+  if (options.camera_alone) {
+    glViewport(0, 0, width, height);
+    glClearColor(0.06f, 0.08f, 0.1f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+  } else {
+    world().Draw(content.picture, model.track, model.track_version, width, height);
+  }
+  Paint paint = BeginPanels(width, height);
+  paint.camera_picture = preview_.Take(model.observed.camera.picture);
   DrawHud(paint, content, options, ImGui::GetIO().DisplaySize);
   EndPanels();
 }

@@ -6,6 +6,7 @@
 
 #include "clients/view/render/hud/hud.h"
 #include "clients/view/render/hud/hud_layout.h"
+#include "clients/view/render/preview_texture.h"
 #include "clients/view/render/world.h"
 
 namespace footing::render {
@@ -39,6 +40,7 @@ class Screen {
   float display_scale_ = 1;
   float scale_ = 0;  ///< Of the fonts; 0 before the first picture.
   Fonts fonts_;
+  PreviewTexture preview_;
 };
 
 }  // namespace footing::render

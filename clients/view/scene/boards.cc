@@ -108,9 +108,14 @@ std::array<PlacedBoard, 2> BoardsOf(const Model& model, const std::string& rig,
   return boards;
 }
 
-void AddBoards(const std::array<PlacedBoard, 2>& boards, PartList& parts) {
-  for (std::size_t side = 0; side < boards.size(); ++side) {
+void AddPlates(const std::array<PlacedBoard, 2>& boards, PartList& parts) {
+  for (std::size_t side = 0; side < boards.size(); ++side)
     AddPlate(boards[side], SideColour(side), parts);
+}
+
+void AddBoards(const std::array<PlacedBoard, 2>& boards, PartList& parts) {
+  AddPlates(boards, parts);
+  for (std::size_t side = 0; side < boards.size(); ++side) {
     AddColumns(boards[side], SideColour(side), parts);
   }
 }

@@ -32,7 +32,9 @@ std::array<PlacedBoard, 2> BoardsOf(const Model& model, const std::string& rig,
 /// The geometry in force of a board, by {source, device}.
 stream::BoardGeometry GeometryOf(const Model& model, const std::pair<int, std::uint32_t>& board);
 
-/// Two plates with their surface at z = 0, and on each sensor a column as high as its load.
+/// Two plates with their surface at z = 0.
+void AddPlates(const std::array<PlacedBoard, 2>& boards, PartList& parts);
+/// The same, and on each sensor a column as high as its load.
 void AddBoards(const std::array<PlacedBoard, 2>& boards, PartList& parts);
 
 /// Left is blue, right is amber, in the whole picture.

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "clients/view/scene/anatomy.h"
+#include "clients/view/scene/calibration.h"
+#include "clients/view/scene/camera_preview.h"
 #include "clients/view/scene/fall_replay.h"
 #include "clients/view/scene/hand_signs.h"
 #include "clients/view/scene/playout.h"
@@ -58,10 +60,13 @@ struct ShownStudy {
   std::int64_t received_ns = 0;  ///< On the viewer's clock.
 };
 
-/// Of the person's body, from the trackers and from the simulator.
+/// Of the person's body, from the trackers and from the simulator, and how a tracker's camera
+/// fares.
 struct Observed {
   std::deque<ReferencePose> references;  ///< The last half second, oldest first.
   std::vector<SeenHand> hands;
+  CameraPreview camera;
+  std::optional<Calibration> calibration;  ///< Its screen takes the place of the world.
 };
 
 /// Everything that the picture and the words are made from.

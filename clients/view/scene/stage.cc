@@ -6,6 +6,7 @@
 #include "clients/view/scene/arrows.h"
 #include "clients/view/scene/bird.h"
 #include "clients/view/scene/body_stage.h"
+#include "clients/view/scene/calibration.h"
 #include "clients/view/scene/game_ghost.h"
 #include "clients/view/scene/ribbon.h"
 #include "common/board/geometry.h"
@@ -111,6 +112,11 @@ Picture Stage::AdvancePeople(const Model& model, const WorldFrame& frame, std::i
 
 Picture Stage::Advance(const Model& model, const WorldFrame& frame, std::int64_t now_ns,
                        double dt_s, const StageOptions& options) {
+  if (model.observed.calibration) {
+    Picture picture;
+    AddCalibration(model, now_ns, picture);
+    return picture;
+  }
   if (!frame.characters.empty() && frame.characters.front().body) {
     return AdvancePeople(model, frame, now_ns, dt_s, options);
   }

@@ -233,6 +233,7 @@ std::vector<std::string> StatusScreen(const Model& model, std::int64_t now_ns) {
   if (ShowsGame(model.game, FirstTrial(model))) {
     for (std::string& line : GameLines(model.game)) lines.push_back(std::move(line));
   }
+  AddPreviewLines(model.observed.camera, now_ns, lines);
   if (!model.devices.empty()) lines.push_back("Devices");
   for (const Device& device : model.devices) lines.push_back(DeviceLine(device.status));
   const Stance stance = StanceOf(model);

@@ -19,6 +19,7 @@ std::vector<NamedBox> All(const HudBoxes& boxes) {
   if (boxes.devices) all.push_back({"devices", *boxes.devices});
   if (boxes.interface) all.push_back({"interface", *boxes.interface});
   if (boxes.boards) all.push_back({"boards", *boxes.boards});
+  if (boxes.camera) all.push_back({"camera", *boxes.camera});
   return all;
 }
 
@@ -32,10 +33,11 @@ const std::vector<ImVec2> kLayoutSizes{{320, 180},   {400, 600},   {640, 360},  
 const HudNeeds kGait{{196, 266}, {190, 550}, {88, 330}, {152, 152}, {150, 236}};
 const HudNeeds kPose{{276, 336}, {}, {88, 330}, {}, {150, 236}};
 const HudNeeds kBare{{196, 266}, {}, {68, 68}, {}, {}};
+const HudNeeds kCamera{{196, 266}, {190, 550}, {88, 330}, {152, 152}, {150, 236}, {250, 350}};
 
 TEST(HudLayout, NoTwoPanelsOverlapAndAllStayInThePicture) {
   for (const ImVec2& size : kLayoutSizes) {
-    for (const HudNeeds& needs : {kGait, kPose, kBare, HudNeeds{}}) {
+    for (const HudNeeds& needs : {kGait, kPose, kBare, kCamera, HudNeeds{}}) {
       const auto all = All(LayOut(size, HudScale(size, 1), needs));
       for (std::size_t i = 0; i < all.size(); ++i) {
         const Box& box = all[i].box;
@@ -67,6 +69,19 @@ TEST(HudLayout, SmallPicturesKeepEveryPanelAndLettersOfTenPixels) {
   const HudBoxes pose = LayOut(size, scale, kPose);
   EXPECT_TRUE(pose.character && pose.devices && pose.boards);
   EXPECT_GT(gait.middle.width(), 0.2f * size.x);  // The figure can still be seen.
+}
+
+TEST(HudLayout, ThePreviewIsAtTheBottomOfTheLeftColumnBeforeAllElse) {
+  const HudBoxes beside = LayOut({1280, 720}, 1, kCamera);
+  ASSERT_TRUE(beside.camera && beside.character);
+  EXPECT_FLOAT_EQ(beside.camera->high.y, 702);
+  EXPECT_FLOAT_EQ(beside.camera->height(), 250);
+  const HudBoxes small = LayOut({640, 400}, 0.8f, kCamera);
+  EXPECT_TRUE(small.camera);
+  EXPECT_FALSE(small.strips);
+  HudNeeds alone;
+  alone.camera = {250, 350};
+  EXPECT_FLOAT_EQ(LayOut({1280, 720}, 1, alone).camera->height(), 350);
 }
 
 TEST(HudLayout, LargePicturesHaveLargeLetters) {

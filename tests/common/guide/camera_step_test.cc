@@ -55,6 +55,7 @@ class Holder {
       now.setup = &setup_;
       now.answers = std::exchange(answers_, {});
       const Progress progress = set_up.Advance(now);
+      if (progress.marks) shown.push_back(*progress.marks);
       feedback = progress.feedback.empty() ? feedback : progress.feedback;
       Hear(progress.prompt);
       for (const Action& action : progress.actions) {
@@ -74,6 +75,7 @@ class Holder {
   std::string feedback;   ///< The last one.
   std::vector<Action> stored;
   std::vector<std::string> prompts;
+  std::vector<MarksState> shown;
 
  private:
   void Hear(const std::string& prompt) {
@@ -154,6 +156,38 @@ TEST(CameraStep, TakesGravityFromAMoveThatStandsUpright) {
   EXPECT_THAT(results[0].note, HasSubstr("with gravity"));
   EXPECT_EQ(holder.prompts.size(), 10u);
   EXPECT_THAT(holder.prompts[1], HasSubstr("Stand the controller on the mark"));
+}
+
+TEST(CameraStep, ShowsEachMarkAsItStandsAndItsResidualAtTheEnd) {
+  Holder holder;
+  holder.HoldAMove();
+  holder.Do();
+  std::size_t done = 0;
+  double most_share = 0;
+  for (const MarksState& state : holder.shown) {
+    ASSERT_EQ(state.marks.size(), 8u);
+    EXPECT_EQ(state.all, 10u);  // One upright place for each board.
+    EXPECT_TRUE(state.done == done || state.done == done + 1);
+    if (state.done != done) {
+      EXPECT_GT(most_share, 0.9) << done;  // The rest was seen to grow before.
+    }
+    most_share = state.done == done ? std::max(most_share, state.rest_share) : 0;
+    done = state.done;
+    const auto next = std::count_if(state.marks.begin(), state.marks.end(), [](const auto& mark) {
+      return mark.stage == MarkState::Stage::kNext;
+    });
+    EXPECT_EQ(next, done < 10 ? 1 : 0);
+    EXPECT_EQ(state.upright, done == 1 || done == 6);
+  }
+  const MarksState& last = holder.shown.back();
+  EXPECT_EQ(last.done, 10u);
+  ASSERT_TRUE(last.X_WC);
+  EXPECT_LT(TurnDeg(*last.X_WC), 0.3);
+  for (const MarkState& mark : last.marks) {
+    EXPECT_EQ(mark.stage, MarkState::Stage::kTaken);
+    ASSERT_TRUE(mark.residual_m) << mark.name;
+    EXPECT_LT(*mark.residual_m, 0.02);
+  }
 }
 
 TEST(CameraStep, SaysThatTheImageIsMirroredAndStoresNothing) {

@@ -1,7 +1,11 @@
 #include "clients/view/render/hud/hud.h"
 
+#include <algorithm>
+
 #include "clients/view/render/hud/board_panel.h"
 #include "clients/view/render/hud/body_panel.h"
+#include "clients/view/render/hud/calibration_panel.h"
+#include "clients/view/render/hud/camera_panel.h"
 #include "clients/view/render/hud/character_panel.h"
 #include "clients/view/render/hud/device_panel.h"
 #include "clients/view/render/hud/game_panel.h"
@@ -21,6 +25,7 @@ namespace footing::render {
 namespace {
 
 constexpr PanelHeight kBoardPanelHeight{150, 236};
+constexpr float kAloneEdge = 10;
 
 const scene::CharacterPose* FirstCharacter(const HudContent& content) {
   return content.frame.characters.empty() ? nullptr : &content.frame.characters.front();
@@ -30,7 +35,11 @@ bool IsPerson(const scene::CharacterPose* pose) { return pose != nullptr && pose
 
 HudNeeds NeedsOf(const HudContent& content, const HudOptions& options) {
   HudNeeds needs;
-  if (options.hidden || !options.columns || scene::IsWaiting(content.model)) return needs;
+  if (options.hidden || !options.columns) return needs;
+  if (options.camera) needs.camera = CameraPanelHeight(content.model.observed.camera);
+  if (scene::IsWaiting(content.model)) return needs;
+  needs.devices = DevicePanelHeight(content.model);
+  if (content.model.observed.calibration) return needs;
   const scene::CharacterPose* pose = FirstCharacter(content);
   const bool person = IsPerson(pose);
   if (person) {
@@ -40,7 +49,6 @@ HudNeeds NeedsOf(const HudContent& content, const HudOptions& options) {
     needs.interface = InterfacePanelHeight(pose->interface);
   }
   if (!person) needs.strips = StripPanelHeight(content.past.strips);
-  needs.devices = DevicePanelHeight(content.model);
   if (person || !content.model.boards.empty()) needs.boards = kBoardPanelHeight;
   return needs;
 }
@@ -52,6 +60,8 @@ void DrawColumns(const Paint& p, const HudContent& content, const HudBoxes& boxe
   } else if (boxes.character && pose != nullptr) {
     DrawCharacterPanel(p, *boxes.character, content.past, *pose, content.past_ns);
   }
+  if (boxes.camera)
+    DrawCameraPanel(p, *boxes.camera, content.model.observed.camera, content.now_ns);
   if (boxes.strips) DrawStripPanel(p, *boxes.strips, content.past.strips, content.past_ns);
   if (boxes.devices) DrawDevicePanel(p, *boxes.devices, content.model, content.now_ns);
   if (boxes.interface && pose != nullptr) {
@@ -64,6 +74,21 @@ void DrawColumns(const Paint& p, const HudContent& content, const HudBoxes& boxe
   }
 }
 
+/// In place of all that belongs to a character.
+void DrawCalibration(const Paint& p, const HudContent& content, const HudBoxes& boxes,
+                     ImVec2 size) {
+  DrawLabels(p, content.picture, boxes, size);
+  DrawColumns(p, content, boxes);
+  Box space = boxes.middle;
+  DrawNote(p, content.model, content.now_ns, space);
+  const auto& links = content.model.links;
+  const bool has_sensors = std::any_of(links.begin(), links.end(), [](const auto& link) {
+    return link.server_id == "footingd" && link.state == scene::LinkState::kLive;
+  });
+  if (!has_sensors) DrawWaitingLines(p, content.model, space);  // No other server is needed.
+  DrawCalibrationPanel(p, *content.model.observed.calibration, space);
+}
+
 }  // namespace
 
 HudBoxes BoxesOf(const HudContent& content, const HudOptions& options, ImVec2 size, float scale) {
@@ -72,9 +97,21 @@ HudBoxes BoxesOf(const HudContent& content, const HudOptions& options, ImVec2 si
 
 void DrawHud(const Paint& p, const HudContent& content, const HudOptions& options, ImVec2 size) {
   const scene::Model& model = content.model;
+  if (options.camera_alone) {
+    const float edge = kAloneEdge * p.scale;
+    DrawCameraPanel(p, {{edge, edge}, {size.x - edge, size.y - edge}}, model.observed.camera,
+                    content.now_ns);
+    if (options.keys) DrawKeys(p, size, false);
+    return;
+  }
   const HudBoxes boxes = BoxesOf(content, options, size, p.scale);
   // Simulated input is stamped at all times, in subject mode too.
   if (scene::IsSimulated(model)) DrawSimulated(p, boxes.stamp);
+  if (model.observed.calibration) {
+    DrawCalibration(p, content, boxes, size);
+    if (options.keys) DrawKeys(p, size, false);
+    return;
+  }
   Box notes = boxes.middle;
   if (!options.title.empty()) DrawTitle(p, options.title, options.over, notes);
   DrawReplay(p, model, content.now_ns, notes);
@@ -91,6 +128,7 @@ void DrawHud(const Paint& p, const HudContent& content, const HudOptions& option
   if (options.hidden) return;
   if (scene::IsWaiting(model)) {
     DrawWaiting(p, model, boxes.middle);
+    DrawColumns(p, content, boxes);
   } else {
     if (IsPerson(pose)) DrawLabels(p, content.picture, boxes, size);
     DrawColumns(p, content, boxes);

@@ -20,9 +20,13 @@ struct HudOptions {
   bool replay_asked = false;  ///< Key presses that wait for their action.
   bool t_pose_asked = false;
   bool next_subject_asked = false;
-  bool columns = true;  ///< The panels at both sides.
-  std::string title;    ///< Above all else; empty: none.
-  std::string over;     ///< A word below it: "ended"; empty: none.
+  bool calibration_asked = false;
+  bool calibration_end_asked = false;
+  bool columns = true;        ///< The panels at both sides.
+  bool camera = false;        ///< The preview of footing-camera in a corner.
+  bool camera_alone = false;  ///< And nothing else.
+  std::string title;          ///< Above all else; empty: none.
+  std::string over;           ///< A word below it: "ended"; empty: none.
 };
 
 /// What the panels show.

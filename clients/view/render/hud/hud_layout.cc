@@ -79,8 +79,16 @@ HudBoxes LayOut(ImVec2 size, float scale, const HudNeeds& needs) {
   HudBoxes boxes;
   const float left_end = edge + column, right_start = units.x - edge - column;
   if (one) {
-    const auto stacked =
-        Stack<2>({needs.character, needs.strips}, {{edge, top}, {left_end, bottom}}, false);
+    Box left{{edge, top}, {left_end, bottom}};
+    const bool camera = needs.camera.full > 0 && needs.camera.least <= left.height();
+    if (camera) left.high.y -= needs.camera.least + kPanelGap;
+    const auto stacked = Stack<2>({needs.character, needs.strips}, left, false);
+    if (camera) {
+      const Box& last = stacked[1] ? *stacked[1] : stacked[0].value_or(Box{left.low, left.low});
+      const float above = stacked[0] || stacked[1] ? last.high.y + kPanelGap : top;
+      boxes.camera = Scaled(
+          Box{{edge, std::max(above, bottom - needs.camera.full)}, {left_end, bottom}}, scale);
+    }
     boxes.character = Scaled(stacked[0], scale);
     boxes.strips = Scaled(stacked[1], scale);
   }
@@ -91,7 +99,7 @@ HudBoxes LayOut(ImVec2 size, float scale, const HudNeeds& needs) {
     boxes.interface = Scaled(stacked[1], scale);
     boxes.boards = Scaled(stacked[2], scale);
   }
-  const bool left_free = !boxes.character && !boxes.strips;
+  const bool left_free = !boxes.character && !boxes.strips && !boxes.camera;
   const bool right_free = !boxes.devices && !boxes.interface && !boxes.boards;
   const float from = left_free ? edge : left_end + kPanelGap;
   const float to = std::max(from, right_free ? units.x - edge : right_start - kPanelGap);

@@ -21,12 +21,13 @@ struct PanelHeight {
 struct HudNeeds {
   PanelHeight character, strips;           ///< Left.
   PanelHeight devices, interface, boards;  ///< Right.
+  PanelHeight camera = {};                 ///< Left, at the bottom: it has its least in any case.
 };
 
 /// Where everything goes, in pixels. No two boxes overlap. A panel without a box is left out: the
 /// picture is too small for it.
 struct HudBoxes {
-  std::optional<Box> character, strips, devices, interface, boards;
+  std::optional<Box> character, strips, devices, interface, boards, camera;
   Box stamp;   ///< One row; what must always be seen.
   Box middle;  ///< Between the columns, under the stamp: messages to the person.
 };

@@ -33,7 +33,8 @@ bool Overlap(const Box& a, const Box& b) {
 void DrawLabels(const Paint& p, const scene::Picture& picture, const HudBoxes& boxes, ImVec2 size) {
   const float s = p.scale, height = 20 * s;
   std::vector<Box> panels, taken;
-  for (const auto& panel : {boxes.character, boxes.strips, boxes.devices, boxes.boards}) {
+  for (const auto& panel : {boxes.character, boxes.strips, boxes.devices, boxes.interface,
+                            boxes.boards, boxes.camera}) {
     if (panel) panels.push_back(*panel);
   }
   for (const scene::Label& label : picture.labels) {

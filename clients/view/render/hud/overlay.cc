@@ -94,11 +94,13 @@ void DrawWaitingLines(const Paint& p, const scene::Model& model, Box& space) {
 
 void DrawKeys(const Paint& p, ImVec2 size, bool playback) {
   using Line = std::array<const char*, 2>;
-  static constexpr std::array<Line, 5> kLiveKeys{{
+  static constexpr std::array<Line, 7> kLiveKeys{{
       {"P", "states of the gait controller"},
       {"R", "replay the last fall in slow motion"},
       {"T", "take the T-pose again"},
       {"N", "the next subject"},
+      {"V", "the preview of the camera"},
+      {"C", "calibrate where the camera stands; X ends it"},
       {"space", "freeze the picture"},
   }};
   static constexpr std::array<Line, 4> kAllKeys{{

@@ -25,6 +25,7 @@ struct Paint {
   ImDrawList* list = nullptr;
   Fonts fonts;
   float scale = 1;
+  ImTextureID camera_picture = nullptr;  ///< Of the preview; null: there is none.
 
   /// A dark rounded panel; returns what is left inside its margins.
   Box Panel(const Box& box) const;

@@ -1,0 +1,152 @@
+#include "clients/camera/preview_server.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "common/clock/clock.h"
+#include "common/log/log.h"
+
+namespace footing::camera {
+namespace {
+
+using boost::system::error_code;
+
+constexpr std::chrono::milliseconds kLookEvery(10);
+constexpr std::int64_t kPeriodNs = static_cast<std::int64_t>(1e9 / PreviewServer::kRateHz);
+constexpr int kNice = 10;  // The tracking goes first.
+
+}  // namespace
+
+/// One connection: at most one picture waits to be written.
+class PreviewServer::Viewer : public std::enable_shared_from_this<Viewer> {
+ public:
+  explicit Viewer(transport::Socket socket) : socket_(std::move(socket)) {
+    transport::Prepare(socket_);
+  }
+
+  void Start() {
+    // It has nothing to say: what comes is its end.
+    socket_.plain().async_read_some(
+        boost::asio::buffer(said_),
+        [self = shared_from_this()](const error_code&, std::size_t) { self->Close(); });
+  }
+  void Send(std::shared_ptr<const std::string> message, std::int64_t now_ns) {
+    if (message_ || closed_) return;
+    message_ = std::move(message);
+    since_ns_ = now_ns;
+    boost::asio::async_write(socket_.plain(), boost::asio::buffer(*message_),
+                             [self = shared_from_this()](const error_code& error, std::size_t) {
+                               self->message_.reset();
+                               if (error) self->Close();
+                             });
+  }
+  /// Without waiting: a socket that was just opened takes a short message.
+  void Refuse(const std::string& why) {
+    const std::string message = preview::EncodeRefusal(why);
+    const boost::asio::const_buffer buffer = boost::asio::buffer(message);
+    error_code ignored;
+    socket_.WriteSome({&buffer, 1}, ignored);
+    Close();
+  }
+  void Close() {
+    if (!std::exchange(closed_, true)) socket_.Close();
+  }
+
+  bool is_free() const { return !message_ && !closed_; }
+  /// Closed, or has not taken its picture for long.
+  bool IsLost(std::int64_t now_ns, std::int64_t cut_off_ns) const {
+    return closed_ || (message_ && now_ns - since_ns_ > cut_off_ns);
+  }
+
+ private:
+  transport::Socket socket_;
+  std::array<char, 16> said_{};
+  std::shared_ptr<const std::string> message_;
+  std::int64_t since_ns_ = 0;
+  bool closed_ = false;
+};
+
+Result<std::unique_ptr<PreviewServer>> PreviewServer::Open(const transport::Address& address,
+                                                           const frames::CameraFile& camera,
+                                                           std::int64_t cut_off_ns) {
+  if (address.kind != transport::Address::Kind::kUnix)
+    return UsageError("the preview cannot listen on " + address.Text() +
+                      ": it is for this host alone; use unix:PATH, or none");
+  std::unique_ptr<PreviewServer> server(new PreviewServer(camera, cut_off_ns));
+  PreviewServer* const own = server.get();
+  auto listener = transport::Listener::Open(
+      server->io_, address, [own](transport::Socket socket) { own->Admit(std::move(socket)); });
+  if (!listener) return listener.error();
+  server->listener_ = std::move(listener).value();
+  server->thread_ = std::thread([own] {
+    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);  // Without it, it works as well.
+    own->io_.run();
+  });
+  return server;
+}
+
+PreviewServer::~PreviewServer() {
+  boost::asio::post(io_, [this] {
+    listener_.reset();
+    for (const auto& viewer : viewers_) viewer->Close();
+    viewers_.clear();
+    look_.cancel();
+    io_.stop();
+  });
+  if (thread_.joinable()) thread_.join();
+}
+
+bool PreviewServer::Wants(std::int64_t now_ns) const {
+  return watched_.raised() && now_ns - shown_ns_ >= kPeriodNs;
+}
+
+void PreviewServer::Show(std::int64_t now_ns) {
+  seen_.Publish();
+  shown_ns_ = now_ns;
+}
+
+void PreviewServer::Admit(transport::Socket socket) {
+  auto viewer = std::make_shared<Viewer>(std::move(socket));
+  if (viewers_.size() >= kMostViewers) {
+    viewer->Refuse("footing-camera already has " + std::to_string(kMostViewers) +
+                   " viewers; close one of them");
+    return;
+  }
+  viewer->Start();
+  viewers_.push_back(std::move(viewer));
+  if (viewers_.size() > 1) return;
+  watched_.Raise();
+  Look();
+}
+
+/// Sends the newest frame to all viewers that have taken the one before, while there are any.
+void PreviewServer::Look() {
+  const std::int64_t now_ns = clock::MonotonicNs();
+  std::erase_if(viewers_, [&](const std::shared_ptr<Viewer>& viewer) {
+    if (!viewer->IsLost(now_ns, cut_off_ns_)) return false;
+    viewer->Close();
+    return true;
+  });
+  if (viewers_.empty()) return watched_.Lower();
+  const bool any_free = std::any_of(viewers_.begin(), viewers_.end(),
+                                    [](const auto& viewer) { return viewer->is_free(); });
+  if (seen_.Refresh() && any_free) {
+    const auto message =
+        std::make_shared<const std::string>(preview::Encode(painter_.Paint(seen_.Front())));
+    for (const auto& viewer : viewers_) viewer->Send(message, now_ns);
+  }
+  look_.expires_after(kLookEvery);
+  look_.async_wait([this](const error_code& error) {
+    if (!error) Look();
+  });
+}
+
+}  // namespace footing::camera
