@@ -1,21 +1,34 @@
 #include "common/camera_pose/marks.h"
 
+#include <algorithm>
+#include <array>
+
 #include "common/board/geometry.h"
 
 namespace footing::camera_pose {
 namespace {
 
-/// In the order of the corners.
-constexpr const char* kCorner[board::kCorners] = {"front left", "front right", "rear left",
-                                                  "rear right"};
 /// Once around, which is the way a person walks.
-constexpr std::size_t kOrder[board::kCorners] = {0, 1, 3, 2};
+constexpr const char* kCorner[board::kCorners] = {"front left", "front right", "rear right",
+                                                  "rear left"};
+
+using Places = std::array<Eigen::Vector2d, board::kCorners>;
+
+/// In the order of kCorner for a person who looks forwards: the board's own front may be elsewhere.
+Places AsSeen(Places places) {
+  const auto rear = places.begin() + 2;
+  std::sort(places.begin(), places.end(),
+            [](const auto& a, const auto& b) { return a.x() > b.x(); });
+  std::sort(places.begin(), rear, [](const auto& a, const auto& b) { return a.y() > b.y(); });
+  std::sort(rear, places.end(), [](const auto& a, const auto& b) { return a.y() < b.y(); });
+  return places;
+}
 
 void AddMarks(const stream::BoardPose& pose, const std::optional<stream::BoardGeometry>& geometry,
               const std::string& which, double radius_m, std::vector<BoardMark>& marks) {
-  const auto places = board::SensorPlaces(pose, board::GeometryOr(geometry));
-  for (const std::size_t corner : kOrder)
-    marks.push_back({kCorner[corner] + which, {places[corner].x(), places[corner].y(), radius_m}});
+  const Places places = AsSeen(board::SensorPlaces(pose, board::GeometryOr(geometry)));
+  for (std::size_t i = 0; i < board::kCorners; ++i)
+    marks.push_back({kCorner[i] + which, {places[i].x(), places[i].y(), radius_m}});
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ struct BoardMark {
 };
 
 /// Four marks on each board, over its load cells, whose places the layout and the board's geometry
-/// give; the plates' surface is z = 0 of W, as for the feet on it. Front is away from the power
-/// button. The left board first; of "single" it is the only one.
+/// give; the plates' surface is z = 0 of W, as for the feet on it. Front and left are the person's,
+/// also of a board that lies turned. The left board first; of "single" it is the only one.
 std::vector<BoardMark> BoardMarks(const stream::BoardLayout& layout, double radius_m);
 
 }  // namespace footing::camera_pose

@@ -29,6 +29,18 @@ TEST(Marks, LieOverTheLoadCellsOnceAroundEachBoard) {
   EXPECT_EQ(BoardMarks(*board::LayoutNamed("single", 20), kRadiusM).size(), 4u);
 }
 
+TEST(Marks, AreNamedAsThePersonLooks) {
+  // Its long sides lie along the walk.
+  const auto marks = BoardMarks(*board::LayoutNamed("one_foot_each", 20), kRadiusM);
+  ASSERT_EQ(marks.size(), 8u);
+  EXPECT_EQ(marks[4].name, "front left, right board");
+  for (const std::size_t board : {0u, 4u}) {
+    EXPECT_NEAR(marks[board].p_W_m.x() - marks[board + 3].p_W_m.x(), 0.433, 1e-12);
+    EXPECT_NEAR(marks[board].p_W_m.y() - marks[board + 1].p_W_m.y(), 0.238, 1e-12);
+    EXPECT_NEAR(marks[board + 1].p_W_m.x() - marks[board + 2].p_W_m.x(), 0.433, 1e-12);
+  }
+}
+
 TEST(CameraPose, OfMarksWithoutNoiseIsTheTrueOne) {
   const auto pose = Calibrate(Seen(kTrue));
   ASSERT_TRUE(pose) << pose.error().message;
