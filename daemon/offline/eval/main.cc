@@ -10,6 +10,7 @@
 #include "daemon/offline/eval/gait/monkey_command.h"
 #include "daemon/offline/eval/gait/transitions_command.h"
 #include "daemon/offline/eval/gait/trial.h"
+#include "daemon/offline/eval/hand/hand_command.h"
 #include "daemon/offline/eval/momentum/momentum_command.h"
 #include "daemon/offline/eval/pose/pose_command.h"
 #include "daemon/offline/eval/replay/replay_command.h"
@@ -36,6 +37,7 @@ constexpr char kExamples[] =
     "  footing-eval momentum --motion clip.bvh --json\n"
     "  footing-eval pose --motion clip.bvh --json\n"
     "  footing-eval arm --motion clip.bvh --json\n"
+    "  footing-eval hand --motion clip.bvh --json\n"
     "  footing-eval fusion --motion clip.bvh --json\n"
     "  footing-eval spheres --condition clutter --distance-m 2 --frames 10 --out frames --json\n"
     "  footing-eval sphere --frames frames --camera frames/camera.json --json\n"
@@ -54,6 +56,7 @@ void AddCommands(CLI::App& app, footing::eval::Shared& shared) {
   AddFeaturesCommand(app, shared);
   AddFusionCommand(app, shared);
   AddGaitCommand(app, shared);
+  AddHandCommand(app, shared);
   AddMomentumCommand(app, shared);
   AddMonkeyCommand(app, shared);
   AddPlanCommand(app, shared);

@@ -74,6 +74,17 @@ void PoseSensors::Bind(const v1::DeviceStatusList& status) {
   }
   boards_ = boards;
   BindArms(status);
+  BindMoves(status);
+}
+
+void PoseSensors::BindMoves(const v1::DeviceStatusList& status) {
+  std::array<std::optional<std::uint32_t>, reconstruction::kHands> moves;
+  for (const v1::DeviceStatus& device : status.devices()) {
+    const int side = HandSideOf(device.role());
+    if (side >= 0 && device.rig() == followed_rig_ && device.kind() == v1::DEVICE_KIND_PS_MOVE)
+      moves[static_cast<std::size_t>(side)] = device.device();
+  }
+  for (std::size_t side = 0; side < moves.size(); ++side) hands_[side].Bind(moves[side]);
 }
 
 void PoseSensors::BindArms(const v1::DeviceStatusList& status) {
@@ -195,10 +206,10 @@ void PoseSensors::DropOld(std::int64_t now_ns) {
   }
 }
 
-void PoseSensors::ReportHands(std::int64_t now_ns) {
+void PoseSensors::ReportHands(std::int64_t now_ns, std::int64_t host_ns) {
   std::set<std::string> trackers;
   for (std::size_t side = 0; side < hands_.size(); ++side) {
-    const TrackedHand::Fused fused = hands_[side].At(now_ns);
+    const TrackedHand::Fused fused = hands_[side].At(now_ns, host_ns);
     reconstruction::HandInput& hand = inputs_.sensors.hands[side];
     if (fused.hand.valid) hand = fused.hand;
     hand.valid = fused.hand.valid;
@@ -227,9 +238,12 @@ void PoseSensors::OnTick(const v1::Tick& tick, std::int64_t now_ns) {
     TakeHand(sample, age_s, now_ns);
     TakeJoint(sample, age_s, now_ns);
   }
-  for (const v1::MotionSample& sample : tick.motion().samples()) arms_.Take(sample, now_ns);
+  for (const v1::MotionSample& sample : tick.motion().samples()) {
+    arms_.Take(sample, now_ns);
+    for (TrackedHand& hand : hands_) hand.Feel(sample);
+  }
   DropOld(now_ns);
-  ReportHands(now_ns);
+  ReportHands(now_ns, tick.host_ns());
   arms_.Report(now_ns, inputs_);
   inputs_.sensor_epoch = tick.epoch();
   inputs_.sensor_sequence = tick.sequence();

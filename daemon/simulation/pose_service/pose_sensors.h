@@ -66,6 +66,7 @@ class PoseSensors {
 
   void Bind(const v1::DeviceStatusList& status);
   void BindArms(const v1::DeviceStatusList& status);
+  void BindMoves(const v1::DeviceStatusList& status);
   /// Puts the cells where the followed rig's boards have them.
   void Place(const v1::SetupState& setup);
   void TakeBoard(const v1::BoardSample& sample, std::int64_t now_ns);
@@ -76,7 +77,7 @@ class PoseSensors {
   bool FollowsJointsOf(const std::string& tracker, std::int64_t now_ns);
   void TakeInsole(const v1::ContactSample& sample, std::int64_t now_ns);
   void DropOld(std::int64_t now_ns);
-  void ReportHands(std::int64_t now_ns);
+  void ReportHands(std::int64_t now_ns, std::int64_t host_ns);
 
   const std::string wanted_rig_;
   std::string followed_rig_;

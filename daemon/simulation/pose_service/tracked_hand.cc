@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/body/held_frame.h"
 #include "common/units/units.h"
 #include "common/wire/wire.h"
 
@@ -13,6 +14,12 @@ namespace {
 /// A tracker that says less of itself is not believed.
 constexpr double kLeastPointSdM = 0.002;
 constexpr double kMostPointSdM = 1;
+/// The name of the tracker that sees the Moves' spheres.
+constexpr char kSphereTracker[] = "camera";
+/// From a Move's inertial sensors to the middle of its sphere: 9 cm to the end of the handle
+/// (Monado's driver) and the sphere's radius. The simulated body holds its spheres in the middle of
+/// its fists, where its devices measure.
+constexpr double kSphereAheadM = 0.09 + 0.0225;
 
 bool IsFinite(const v1::Vector3& v) {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
@@ -48,6 +55,7 @@ CountedPoint::CountedPoint(const v1::HandSample& sample)
   matrix /= std::min(1.0, sample.confidence());
   sd_m = matrix.diagonal().cwiseMax(0).cwiseSqrt().cwiseMax(kLeastPointSdM);
   covariance_m2 = {matrix(0, 1), matrix(0, 2), matrix(1, 2)};
+  matrix_m2 = matrix;
   // Scaled as a whole, so that it stays a covariance.
   const double scale = std::min(1.0, kMostPointSdM / sd_m.maxCoeff());
   sd_m = (scale * sd_m).cwiseMax(kLeastPointSdM);
@@ -74,9 +82,45 @@ void TrackedHand::Add(const v1::HandSample& sample, double exposed_s, std::int64
   source.simulated = sample.simulated();
   const CountedPoint point(sample);
   source.track.Add(exposed_s, point.p_W_m, point.sd_m, point.covariance_m2);
+  if (inertial_ && source.tracker == kSphereTracker)
+    inertial_->See(NanosecondsToSeconds(sample.sampled_ns()), {point.p_W_m, point.matrix_m2});
 }
 
-TrackedHand::Fused TrackedHand::At(std::int64_t now_ns) const {
+void TrackedHand::Bind(std::optional<std::uint32_t> move) {
+  if (move_ == move) return;
+  move_ = move;
+  inertial_.reset();
+}
+
+void TrackedHand::Feel(const v1::MotionSample& sample) {
+  if (move_ != sample.device() || !sample.has_angular_velocity_radps() || sample.uncalibrated() ||
+      sample.gyroscope_uncalibrated())
+    return;
+  if (!inertial_) {
+    const double ahead_m = sample.simulated() ? 0 : kSphereAheadM;
+    inertial_.emplace(Eigen::Vector3d(ahead_m, 0, 0));
+  }
+  // With the bias that footingd has taken off: the filter follows it itself.
+  const Eigen::Vector3d turn_radps = wire::FromProto(sample.angular_velocity_radps()) +
+                                     wire::FromProto(sample.gyroscope_bias_radps());
+  inertial_->Feel(
+      NanosecondsToSeconds(sample.sampled_ns()),
+      {body::AsHeld(wire::FromProto(sample.specific_force_mps2())), body::AsHeld(turn_radps),
+       sample.clipped_axes() != 0 || sample.angular_velocity_clipped()});
+}
+
+reconstruction::HandInput TrackedHand::Inertial(const Source& source, std::int64_t host_ns) const {
+  reconstruction::HandInput hand;
+  if (!inertial_ || source.tracker != kSphereTracker) return hand;
+  const inertial::Track::State state = inertial_->At(NanosecondsToSeconds(host_ns));
+  hand.valid = state.valid;
+  hand.p_W_m = state.p_W_m;
+  hand.sd_m = state.covariance.diagonal().head<3>().cwiseSqrt().cwiseMax(kLeastPointSdM);
+  hand.covariance_m2 = {state.covariance(0, 1), state.covariance(0, 2), state.covariance(1, 2)};
+  return hand;
+}
+
+TrackedHand::Fused TrackedHand::At(std::int64_t now_ns, std::int64_t host_ns) const {
   Fused fused;
   std::array<reconstruction::HandInput, kMostTrackers> hands;
   std::array<Eigen::Matrix3d, kMostTrackers> weights;
@@ -84,8 +128,12 @@ TrackedHand::Fused TrackedHand::At(std::int64_t now_ns) const {
   Eigen::Matrix3d weight = Eigen::Matrix3d::Zero();
   Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
   for (const Source& source : sources_) {
-    if (!source.used || NanosecondsToSeconds(now_ns - source.seen_ns) > kPointTimeoutS) continue;
-    hands[count] = source.track.At(NanosecondsToSeconds(now_ns));
+    if (!source.used) continue;
+    hands[count] = Inertial(source, host_ns);
+    if (!hands[count].valid) {
+      if (NanosecondsToSeconds(now_ns - source.seen_ns) > kPointTimeoutS) continue;
+      hands[count] = source.track.At(NanosecondsToSeconds(now_ns));
+    }
     weights[count] = Matrix(hands[count].sd_m, hands[count].covariance_m2).inverse();
     weight += weights[count];
     weighted += weights[count] * hands[count].p_W_m;

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 
+#include "daemon/simulation/inertial/track.h"
 #include "daemon/simulation/reconstruction/hand_track.h"
 #include "footing/v1/sensor.pb.h"
 
@@ -18,6 +20,7 @@ inline constexpr double kPointTimeoutS = 0.15;
 /// information is the tracker's times its confidence, which a light at the sensor's limit lowers.
 struct CountedPoint {
   Eigen::Vector3d p_W_m, sd_m, covariance_m2;
+  Eigen::Matrix3d matrix_m2;  ///< The same covariance without that limit.
 
   explicit CountedPoint(const v1::HandSample& sample);
 };
@@ -29,10 +32,16 @@ bool IsSeenInWorld(const v1::HandSample& sample);
 /// One hand as several trackers see it: a HandTrack for each of them, fused by their covariances.
 /// Where they contradict each other the fused covariance grows with the contradiction (Birge's
 /// ratio). At most kMostTrackers at once; another one replaces the one that was heard longest ago.
-/// A value.
+/// What the camera sees of a PS Move's sphere is joined to the Move's own readings
+/// (inertial::Track) while there are any. A value.
 class TrackedHand {
  public:
   static constexpr std::size_t kMostTrackers = 4;
+
+  /// The PS Move in this hand, if there is one. Another one starts again.
+  void Bind(std::optional<std::uint32_t> move);
+  /// Nothing but for samples of that Move that have units.
+  void Feel(const v1::MotionSample& sample);
 
   /// A sample by IsSeenInWorld, exposed then.
   void Add(const v1::HandSample& sample, double exposed_s, std::int64_t now_ns);
@@ -42,8 +51,9 @@ class TrackedHand {
     bool simulated = false;          ///< One of its trackers is.
     std::set<std::string> trackers;  ///< Their names.
   };
-  /// Of the trackers that have seen it lately.
-  Fused At(std::int64_t now_ns) const;
+  /// Of the trackers that have seen it lately. `host_ns`: the same instant by the clock of the
+  /// samples' own times.
+  Fused At(std::int64_t now_ns, std::int64_t host_ns = 0) const;
 
  private:
   struct Source {
@@ -53,8 +63,12 @@ class TrackedHand {
     reconstruction::HandTrack track;
   };
   Source& SourceOf(const std::string& tracker);
+  /// By the Move's readings and what that source sees of it. Invalid where there is no such.
+  reconstruction::HandInput Inertial(const Source& source, std::int64_t host_ns) const;
 
   std::array<Source, kMostTrackers> sources_;
+  std::optional<std::uint32_t> move_;
+  std::optional<inertial::Track> inertial_;  ///< From the Move's first sample on.
 };
 
 }  // namespace footing::pose_service

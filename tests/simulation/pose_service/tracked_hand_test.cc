@@ -54,6 +54,58 @@ TEST(TrackedHand, ContradictionMakesItLessCertain) {
   EXPECT_NEAR(hand.At(kNowNs).hand.sd_m.x(), 0.01 / std::sqrt(2) * std::sqrt(450.0 / 3), 1e-6);
 }
 
+/// A level Move that points along W's x and swings along y from 12 s on, and the camera, which sees
+/// its sphere until some time.
+void Swing(double seen_until_s, double to_s, bool simulated, TrackedHand& hand) {
+  constexpr double kReachM = 0.2, kRadps = 6;
+  const double ahead_m = simulated ? 0 : 0.1125;
+  for (double t_s = 10; t_s < to_s; t_s += 0.005) {
+    const double swing = t_s < 12 ? 0 : kReachM * std::sin(kRadps * (t_s - 12));
+    v1::MotionSample sample;
+    sample.set_device(4);
+    sample.set_simulated(simulated);
+    sample.set_sampled_ns(SecondsToNanoseconds(t_s));
+    sample.mutable_specific_force_mps2()->set_x(-kRadps * kRadps * swing);
+    sample.mutable_specific_force_mps2()->set_z(-9.80665);
+    sample.mutable_angular_velocity_radps();
+    hand.Feel(sample);
+    if (t_s > seen_until_s) continue;
+    v1::HandSample seen =
+        Sample("camera", kHere + Eigen::Vector3d(ahead_m, swing, 0), {0.005, 0.002, 0.002});
+    seen.set_sampled_ns(SecondsToNanoseconds(t_s));
+    hand.Add(seen, t_s, SecondsToNanoseconds(t_s));
+  }
+}
+
+TEST(TrackedHand, AMoveBridgesWhatTheCameraDoesNotSee) {
+  TrackedHand with, without;
+  with.Bind(4);
+  for (TrackedHand* hand : {&with, &without}) Swing(18, 18.3, true, *hand);
+  const std::int64_t seen_ns = SecondsToNanoseconds(18), now_ns = SecondsToNanoseconds(18.3);
+  EXPECT_FALSE(without.At(now_ns, now_ns).hand.valid);
+  const TrackedHand::Fused fused = with.At(now_ns, now_ns);
+  ASSERT_TRUE(fused.hand.valid);
+  EXPECT_EQ(fused.trackers, std::set<std::string>{"camera"});
+  const Eigen::Vector3d truth_m = kHere + Eigen::Vector3d(0, 0.2 * std::sin(6 * 6.3), 0);
+  EXPECT_LT((fused.hand.p_W_m - truth_m).norm(), 0.03);
+  EXPECT_GT(fused.hand.sd_m.x(), with.At(seen_ns, seen_ns).hand.sd_m.x());
+  with.Bind(5);
+  EXPECT_FALSE(with.At(now_ns, now_ns).hand.valid);
+}
+
+TEST(TrackedHand, ARealMoveIsHeldBehindItsSphereAsSoonAsItsHeadingIsKnown) {
+  TrackedHand real;
+  real.Bind(4);
+  Swing(11, 11, false, real);
+  std::int64_t now_ns = SecondsToNanoseconds(11);
+  EXPECT_NEAR(real.At(now_ns, now_ns).hand.p_W_m.x(), kHere.x() + 0.1125, 0.01) << "at rest";
+  real = TrackedHand();
+  real.Bind(4);
+  Swing(18, 18, false, real);
+  now_ns = SecondsToNanoseconds(18);
+  EXPECT_NEAR(real.At(now_ns, now_ns).hand.p_W_m.x(), kHere.x(), 0.02);
+}
+
 TEST(TrackedHand, ATrackerThatIsSilentIsLeftOut) {
   TrackedHand hand;
   const Eigen::Vector3d sd_m = Eigen::Vector3d::Constant(0.01);
