@@ -12,10 +12,10 @@ namespace {
 constexpr const char* kCorner[board::kCorners] = {"front left", "front right", "rear right",
                                                   "rear left"};
 
-using Places = std::array<Eigen::Vector2d, board::kCorners>;
+using CornerPlaces = std::array<Eigen::Vector2d, board::kCorners>;
 
 /// In the order of kCorner for a person who looks forwards: the board's own front may be elsewhere.
-Places AsSeen(Places places) {
+CornerPlaces AsSeen(CornerPlaces places) {
   const auto rear = places.begin() + 2;
   std::sort(places.begin(), places.end(),
             [](const auto& a, const auto& b) { return a.x() > b.x(); });
@@ -26,7 +26,7 @@ Places AsSeen(Places places) {
 
 void AddMarks(const stream::BoardPose& pose, const std::optional<stream::BoardGeometry>& geometry,
               const std::string& which, double radius_m, std::vector<BoardMark>& marks) {
-  const Places places = AsSeen(board::SensorPlaces(pose, board::GeometryOr(geometry)));
+  const CornerPlaces places = AsSeen(board::SensorPlaces(pose, board::GeometryOr(geometry)));
   for (std::size_t i = 0; i < board::kCorners; ++i)
     marks.push_back({kCorner[i] + which, {places[i].x(), places[i].y(), radius_m}});
 }
