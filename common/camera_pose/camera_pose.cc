@@ -59,17 +59,9 @@ std::optional<Error> Mirrored(const Observations& observations, const CameraPose
       "that is asked for");
 }
 
-std::optional<Error> WrongLength(const CameraPose& pose) {
-  const double off = pose.scale - 1;
-  if (std::abs(off) <= kMostScaleOff || std::abs(off) <= kSureDeviations * pose.scale_sd) return {};
-  const std::string times = text::Fixed(pose.scale, 3);
-  return InvalidData("the camera sees the marks " +
-                     text::Fixed(100 * std::abs(1 / pose.scale - 1), 1) + " % " +
-                     (off < 0 ? "too far" : "too near") +
-                     " from each other, so distances are wrong, too: the focal length, the "
-                     "sphere's radius or the boards' layout is not the true one. Calibrate the "
-                     "lens; if lens and layout are right, multiply radius_m by " +
-                     times);
+Observations Without(std::size_t mark, Observations observations) {
+  observations.marks.erase(observations.marks.begin() + static_cast<std::ptrdiff_t>(mark));
+  return observations;
 }
 
 /// The mark without which the others fit best; none when the others are too few to say so.
@@ -77,8 +69,7 @@ std::optional<std::size_t> WorstMark(const Observations& observations) {
   std::optional<std::size_t> worst;
   double least = 0;
   for (std::size_t i = 0; i < observations.marks.size(); ++i) {
-    Observations others = observations;
-    others.marks.erase(others.marks.begin() + static_cast<std::ptrdiff_t>(i));
+    const Observations others = Without(i, observations);
     if (others.marks.size() < 3 || WidthM(others.marks) < kLeastWidthM) continue;
     const double misfit = Fit(others).misfit;
     if (worst && misfit >= least) continue;
@@ -86,6 +77,30 @@ std::optional<std::size_t> WorstMark(const Observations& observations) {
     worst = i;
   }
   return worst;
+}
+
+Error MisplacedMark(const Observations& observations, const CameraPose& pose, std::size_t mark) {
+  return InvalidData("the mark " + observations.marks[mark].name + " is " +
+                     Mm(pose.residuals_m[mark]) +
+                     " from where the others put it: measure it again, with the sphere right on "
+                     "the mark; if it stays, the boards lie otherwise than in the layout");
+}
+
+std::optional<Error> WrongLength(const Observations& observations, const CameraPose& pose) {
+  const double off = std::abs(pose.scale - 1);
+  if (off <= kMostScaleOff || off <= kSureDeviations * pose.scale_sd) return {};
+  // A lens is as wrong for the other marks; one mark at an end that is misplaced is not.
+  const auto worst = WorstMark(observations);
+  if (worst && std::abs(Fit(Without(*worst, observations)).scale - 1) < off / 2)
+    return MisplacedMark(observations, pose, *worst);
+  const std::string times = text::Fixed(pose.scale, 3);
+  return InvalidData("the camera sees the marks " +
+                     text::Fixed(100 * std::abs(1 / pose.scale - 1), 1) + " % " +
+                     (pose.scale < 1 ? "too far" : "too near") +
+                     " from each other, so distances are wrong, too: the focal length, the "
+                     "sphere's radius or the boards' layout is not the true one. Calibrate the "
+                     "lens; if lens and layout are right, multiply radius_m by " +
+                     times);
 }
 
 std::optional<Error> WrongPlace(const Observations& observations, const CameraPose& pose) {
@@ -103,10 +118,7 @@ std::optional<Error> WrongPlace(const Observations& observations, const CameraPo
                          " from where they should be, and with so few nobody can say which one is "
                          "wrong: add a fourth mark, or measure all again, with the sphere right on "
                          "each mark");
-    return InvalidData("the mark " + observations.marks[*worst].name + " is " +
-                       Mm(pose.residuals_m[*worst]) +
-                       " from where the others put it: measure it again, with the sphere right on "
-                       "the mark; if it stays, the boards lie otherwise than in the layout");
+    return MisplacedMark(observations, pose, *worst);
   }
   return {};
 }
@@ -132,7 +144,7 @@ Result<CameraPose> Calibrate(const Observations& observations) {
   marks_only.plumbs.clear();
   if (auto refusal = Mirrored(observations, Fit(marks_only))) return *std::move(refusal);
   CameraPose pose = Fit(observations);
-  if (auto refusal = WrongLength(pose)) return *std::move(refusal);
+  if (auto refusal = WrongLength(observations, pose)) return *std::move(refusal);
   if (auto refusal = WrongPlace(observations, pose)) return *std::move(refusal);
   if (auto refusal = WrongGravity(observations, pose)) return *std::move(refusal);
   if (auto refusal = Uncertain(pose)) return *std::move(refusal);

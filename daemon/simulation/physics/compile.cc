@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstring>
-#include <mutex>
 
 namespace footing::physics {
 namespace {
@@ -12,11 +11,11 @@ void AbortOnError(const char* message) { CheckFailed(message, "MuJoCo", 0); }
 
 /// Once, since they are globals of MuJoCo and worlds are compiled on several threads.
 void TakeItsMessages() {
-  static std::once_flag once;
-  std::call_once(once, [] {
+  [[maybe_unused]] static const bool taken = [] {
     mju_user_warning = IgnoreWarning;
     mju_user_error = AbortOnError;
-  });
+    return true;
+  }();
 }
 
 struct DeleteVfs {

@@ -208,7 +208,8 @@ TEST(CameraStep, DoesNotTakeASphereThatRestsElsewhereForOneOnTheMark) {
   EXPECT_THAT(results[0].note, HasSubstr("bring the sphere to the mark"));
   Holder lazy;
   lazy.lazy = "rear right, left board";
-  EXPECT_THAT(lazy.Do().at(0).note, HasSubstr("0 cm from the mark at the front right, left board"));
+  EXPECT_THAT(lazy.Do().at(0).note,
+              HasSubstr("24 cm from the mark at the front left, left board, should be 49 cm"));
 }
 
 TEST(CameraStep, WithoutACameraFileAsksNothing) {
