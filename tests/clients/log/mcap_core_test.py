@@ -21,7 +21,7 @@ def install(reader, work):
     work.mkdir(parents=True, exist_ok=True)
     for name in ("package.json", "package-lock.json"):
         shutil.copy(reader / name, work / name)
-    if (work / "node_modules" / "@mcap" / "core").is_dir():
+    if (work / "node_modules" / ".package-lock.json").is_file():  # npm writes it when all is in place.
         return
     try:
         done = subprocess.run(["npm", "ci", "--no-audit", "--no-fund"], cwd=work, check=False,
