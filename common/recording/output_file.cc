@@ -8,10 +8,13 @@
 #include <utility>
 
 namespace footing::recording {
+namespace {
 
 Error FileExists(const std::string& path) {
   return UsageError(path + " exists; choose another name, or overwrite it with --force");
 }
+
+}  // namespace
 
 Result<void> CheckCreatable(const std::string& path, bool replace) {
   const bool exists = ::access(path.c_str(), F_OK) == 0;

@@ -7,8 +7,6 @@
 
 namespace footing::recording {
 
-/// The usage error for an output that is there already.
-Error FileExists(const std::string& path);
 /// Whether Create() will do, asked before long work; leaves no file behind.
 Result<void> CheckCreatable(const std::string& path, bool replace);
 

@@ -81,8 +81,10 @@ PublisherReport Publisher::report() const {
 Result<void> Publisher::CheckUseful() const {
   std::string why;
   for (const auto& source : sources_) {
-    if (!source->name().empty()) why.clear();
-    if (!source->name().empty()) break;
+    if (!source->name().empty()) {
+      why.clear();
+      break;
+    }
     why += (why.empty() ? "" : "; ") + source->link();
   }
   if (!why.empty())

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "clients/view/scene/interface_text.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
 
@@ -30,12 +31,6 @@ PreviewLine LineOf(const preview::Sphere& sphere) {
 }
 
 }  // namespace
-
-std::string RoleText(stream::DeviceRole role) {
-  std::string text = stream::Name(role);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
 
 double PreviewAgeS(const CameraPreview& preview, std::int64_t now_ns) {
   if (!preview.picture) return 0;

@@ -31,7 +31,7 @@ inline constexpr double kPreviewStaleS = 0.5;
 /// Seconds since the camera saw the picture; 0 without one.
 double PreviewAgeS(const CameraPreview& preview, std::int64_t now_ns);
 
-/// Why there is no live picture and what to do, for a person; empty: there is one.
+/// Why the picture is not live, and what to do; empty when it is.
 std::string PreviewTrouble(const CameraPreview& preview, std::int64_t now_ns);
 
 /// How a sphere fares, in one line.
@@ -47,8 +47,5 @@ void AddPreviewLines(const CameraPreview& preview, std::int64_t now_ns,
                      std::vector<std::string>& lines);
 /// The same in one line.
 std::string PreviewStatus(const CameraPreview& preview, std::int64_t now_ns);
-
-/// "left hand".
-std::string RoleText(stream::DeviceRole role);
 
 }  // namespace footing::scene

@@ -26,13 +26,16 @@ std::string RestText(UserInterface interface) {
   return std::string(LimbsOf(interface)) + " at rest";
 }
 
+std::string WithSpaces(std::string names) {
+  std::replace(names.begin(), names.end(), '_', ' ');
+  return names;
+}
+
 }  // namespace
 
-std::string RolesText(std::uint32_t roles) {
-  std::string text = stream::RoleNames(roles);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
+std::string RoleText(stream::DeviceRole role) { return WithSpaces(stream::Name(role)); }
+
+std::string RolesText(std::uint32_t roles) { return WithSpaces(stream::RoleNames(roles)); }
 
 std::string ActivityText(const stream::InterfaceState& state) {
   const std::string limbs = LimbsOf(state.interface);

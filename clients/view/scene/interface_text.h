@@ -3,10 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "common/stream/device.h"
 #include "common/stream/user_interface.h"
 
 /// A user interface's belief in words, for screens and logs.
 namespace footing::scene {
+
+/// "left hand".
+std::string RoleText(stream::DeviceRole role);
 
 /// "left hand, head": the roles of these bits.
 std::string RolesText(std::uint32_t roles);

@@ -68,14 +68,14 @@ void AddReport(const reconstruction::Output& output, const pose_run::Frame& fram
   for (const int joint : joints.arms) add(static_cast<std::size_t>(joint), tally.arms);
 }
 
-}  // namespace
-
-void LegAngles::Add(const LegAngles& other) {
-  hip += other.hip;
-  swing += other.swing;
-  twist += other.twist;
-  knee += other.knee;
+void AddTimes(double frames, const eval::LegAngles& mean, eval::LegAngles& sum) {
+  sum.hip += frames * mean.hip;
+  sum.swing += frames * mean.swing;
+  sum.twist += frames * mean.twist;
+  sum.knee += frames * mean.knee;
 }
+
+}  // namespace
 
 void PoseTally::Add(const PoseTally& other) {
   frames += other.frames;
@@ -88,7 +88,7 @@ void PoseTally::Add(const PoseTally& other) {
   arms.Add(other.arms);
   for (std::size_t i = 0; i < kPoseWays; ++i) {
     if (other.mpjpe_cm[i]) mpjpe_cm[i] = mpjpe_cm[i].value_or(0) + *other.mpjpe_cm[i];
-    angles_deg[i].Add(other.angles_deg[i]);
+    AddTimes(1, other.angles_deg[i], angles_deg[i]);
   }
 }
 
@@ -96,7 +96,7 @@ nlohmann::ordered_json PoseTally::Json() const {
   nlohmann::ordered_json json = {{"frames", frames}};
   for (std::size_t i = 0; i < kPoseWays; ++i) {
     if (!mpjpe_cm[i]) continue;
-    const LegAngles& angles = angles_deg[i];
+    const eval::LegAngles& angles = angles_deg[i];
     json[kWayNames[i]] = {{"mpjpe_cm", *mpjpe_cm[i] / frames},
                           {"hip_deg", angles.hip / frames},
                           {"hip_swing_deg", angles.swing / frames},
@@ -116,14 +116,6 @@ nlohmann::ordered_json PoseTally::Json() const {
 
 namespace {
 
-LegAngles SumOf(const eval::PoseScore& score, double frames) {
-  const nlohmann::ordered_json means = score.Json();
-  const auto sum = [&](const nlohmann::ordered_json& mean) { return frames * mean.get<double>(); };
-  const auto& joints = means["joint_angle_error_deg"];
-  return {sum(joints["hip"]), sum(means["hip_swing_deg"]), sum(means["hip_twist_deg"]),
-          sum(joints["knee"])};
-}
-
 /// One way over all frames, into the tally.
 Result<void> ScoreWay(PoseWay way, const pose_run::PoseRun& run,
                       const reconstruction::Models& models, PoseTally& tally) {
@@ -141,8 +133,8 @@ Result<void> ScoreWay(PoseWay way, const pose_run::PoseRun& run,
     if (way == PoseWay::kBest) AddReport(output, frame, score, joints, tally);
   }
   tally.mpjpe_cm[Index(way)] = sum_cm;
-  tally.angles_deg[Index(way)] =
-      SumOf(score, static_cast<double>(run.frames.size() - run.judged_from));
+  AddTimes(static_cast<double>(run.frames.size() - run.judged_from), score.leg_angles_deg(),
+           tally.angles_deg[Index(way)]);
   return {};
 }
 

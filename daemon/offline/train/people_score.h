@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/result/result.h"
+#include "daemon/offline/eval/scores/pose_metrics.h"
 #include "daemon/offline/train/pose_training.h"
 #include "daemon/simulation/reconstruction/models.h"
 
@@ -57,21 +58,13 @@ struct Nees {
   double mean() const { return count > 0 ? sum / count : 0; }
 };
 
-/// Errors of the legs' angles, degrees, summed over frames: of the hip as a whole, of the direction
-/// of the thigh in the pelvis and of its turn about itself, and of the knee.
-struct LegAngles {
-  double hip = 0, swing = 0, twist = 0, knee = 0;
-
-  void Add(const LegAngles& other);
-};
-
 /// Sums over frames, all of them: those that are not valid count like the others.
 struct PoseTally {
   double frames = 0, invalid = 0, height_m2 = 0;
   double posture_m2 = 0, posture_frames = 0;
   Nees all, legs, arms;
   std::array<std::optional<double>, kPoseWays> mpjpe_cm{};  ///< Of each way that was asked for.
-  std::array<LegAngles, kPoseWays> angles_deg{};            ///< Of the same.
+  std::array<eval::LegAngles, kPoseWays> angles_deg{};      ///< Of the same, summed.
 
   void Add(const PoseTally& other);
   nlohmann::ordered_json Json() const;

@@ -68,18 +68,17 @@ double Filter::heading_sd_rad() const {
   return std::min(kPi, std::sqrt(std::max(0.0, across.dot(variance * across))) / length);
 }
 
-Eigen::Vector3d Filter::Arm(Rows& by_errors) const {
+Eigen::Vector3d Filter::InWorld(const Eigen::Vector3d& v_G, Rows& by_errors) const {
   const Eigen::Matrix3d C = HeadingMatrix();
-  const Eigen::Vector3d arm_G = R_GS_ * p_SP_m_;
-  by_errors.middleCols<2>(kTilt) = -(C * CrossMatrix(arm_G)).leftCols<2>();
-  by_errors.block<2, 2>(0, kHeading) << arm_G.x(), -arm_G.y(), arm_G.y(), arm_G.x();
-  return C * arm_G;
+  by_errors.middleCols<2>(kTilt) = -(C * CrossMatrix(v_G)).leftCols<2>();
+  by_errors.block<2, 2>(0, kHeading) << v_G.x(), -v_G.y(), v_G.y(), v_G.x();
+  return C * v_G;
 }
 
 Filter::Rows Filter::Sensitivity(Eigen::Vector3d& p_WP_m) const {
   Rows H = Rows::Zero();
   H.leftCols<3>().setIdentity();
-  p_WP_m = p_W_m_ + Arm(H);
+  p_WP_m = p_W_m_ + InWorld(R_GS_ * p_SP_m_, H);
   return H;
 }
 
@@ -94,7 +93,7 @@ void Filter::Start(const Observation& seen, const Eigen::Matrix3d& R_GS, double 
   covariance_.block<3, 3>(kVelocity, kVelocity).diagonal().setConstant(Square(kSpeedSdMps));
   // The device is where its point was seen, less the arm between them, with the arm's errors.
   Rows by_errors = Rows::Zero();
-  p_W_m_ = seen.p_W_m - Arm(by_errors);
+  p_W_m_ = seen.p_W_m - InWorld(R_GS_ * p_SP_m_, by_errors);
   const Eigen::Matrix<double, kErrors, 3> cross = -covariance_ * by_errors.transpose();
   covariance_.topLeftCorner<3, 3>() = seen.covariance_m2 - by_errors * cross;
   covariance_.block<kErrors - 3, 3>(3, 0) = cross.bottomRows<kErrors - 3>();
@@ -111,13 +110,10 @@ void Filter::Advance(const arms::HandReading& from, const arms::HandReading& to,
   const Eigen::Vector3d force_G =
       0.5 * (before * (from.specific_force_S_mps2 - force_bias_S_mps2_) +
              R_GS_ * (to.specific_force_S_mps2 - force_bias_S_mps2_));
-  const Eigen::Matrix3d C = HeadingMatrix();
-  const Eigen::Vector3d a_W = C * force_G - Eigen::Vector3d(0, 0, kStandardGravityMps2);
-
-  Eigen::Matrix<double, 3, kErrors> by_errors = Rows::Zero();  // Of the acceleration.
-  by_errors.middleCols<2>(kTilt) = -(C * CrossMatrix(force_G)).leftCols<2>();
-  by_errors.block<2, 2>(0, kHeading) << force_G.x(), -force_G.y(), force_G.y(), force_G.x();
-  by_errors.middleCols<3>(kForceBias) = -C * R_GS_;
+  Rows by_errors = Rows::Zero();  // Of the acceleration.
+  const Eigen::Vector3d a_W =
+      InWorld(force_G, by_errors) - Eigen::Vector3d(0, 0, kStandardGravityMps2);
+  by_errors.middleCols<3>(kForceBias) = -HeadingMatrix() * R_GS_;
   Covariance F = Covariance::Identity();
   F.block<3, 3>(kPlace, kVelocity).diagonal().setConstant(step_s);
   F.topRows<3>() += 0.5 * step_s * step_s * by_errors;

@@ -62,8 +62,8 @@ class Filter {
   using Rows = Eigen::Matrix<double, 3, kErrors>;
 
   Eigen::Matrix3d HeadingMatrix() const;
-  /// The point from the device in W, and by the errors.
-  Eigen::Vector3d Arm(Rows& by_errors) const;
+  /// A vector of G in W, and by the errors of tilt and heading.
+  Eigen::Vector3d InWorld(const Eigen::Vector3d& v_G, Rows& by_errors) const;
   Rows Sensitivity(Eigen::Vector3d& p_WP_m) const;
   Eigen::Matrix3d Uncertainty(const Observation& seen) const;
   void AddNoise(const arms::HandReading& reading, const Eigen::Vector3d& force_G_mps2,

@@ -63,7 +63,7 @@ class TrackedHand {
     reconstruction::HandTrack track;
   };
   Source& SourceOf(const std::string& tracker);
-  /// By the Move's readings and what that source sees of it. Invalid where there is no such.
+  /// By the Move's readings and what that source sees of it. Invalid without either.
   reconstruction::HandInput Inertial(const Source& source, std::int64_t host_ns) const;
 
   std::array<Source, kMostTrackers> sources_;

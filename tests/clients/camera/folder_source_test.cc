@@ -4,7 +4,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 #include "clients/camera/source.h"
 #include "common/frames/netpbm.h"
@@ -31,7 +30,6 @@ TEST(FolderSource, DeliversNothingOnceItIsStoppedHoweverLateItsFramesAre) {
         if (++frames > 3) io.stop();
       },
       [](const Result<void>&) {});
-  std::this_thread::sleep_for(std::chrono::milliseconds(2));
   io.run();
   EXPECT_EQ(frames, 0);
   std::filesystem::remove_all(folder);

@@ -1,7 +1,6 @@
 // Rendered frames, the real finder, and viewers on real sockets.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -89,7 +88,7 @@ TEST(PreviewPicture, SaysWhyASphereIsNotSeen) {
   EXPECT_EQ(bar.sight, preview::Sight::kOther);
   EXPECT_NEAR(bar.circle.u_px, 500, 3);
   EXPECT_NEAR(bar.circle.v_px, 100, 3);
-  // The same light, refused before, is no news: its place is shown as such.
+  // The same light, refused before, is not shown twice: only its place is.
   seen.verdicts[1].refused = {{{500, 100}, 70}};
   const preview::Picture refused = Painted(seen);
   EXPECT_EQ(refused.spheres[1].sight, preview::Sight::kNothing);
@@ -236,7 +235,7 @@ TEST_F(PreviewServerTest, AViewerThatReadsNothingForLongIsCutOff) {
   Client idle(Path());
   // Nothing is wanted any more once it has lost its place.
   TrackUntil([&] { return shown_ > 0 && !server_->Wants(now_ns_ + 1'000'000'000); });
-  while (idle.Read()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  TrackUntil([&] { return !idle.Read(); });
 }
 
 TEST_F(PreviewServerTest, WhoSpeaksIsCutOffAndTheOthersAreNot) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "clients/view/scene/interface_text.h"
 #include "common/text/number.h"
 
 namespace footing::render {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "clients/view/scene/interface_text.h"
 #include "clients/view/scene/words.h"
 
 namespace footing::render {
@@ -86,9 +87,8 @@ void DrawDevice(const Paint& p, const Box& in, float y, const stream::DeviceStat
                 bool second_line) {
   const float s = p.scale;
   p.Dot({in.low.x + 4 * s, y + 9 * s}, 4, ColourOf(device.state));
-  std::string role = stream::Name(device.role);
-  std::replace(role.begin(), role.end(), '_', ' ');
-  if (device.role == stream::DeviceRole::kUnspecified) role = stream::Name(device.kind);
+  const bool has_role = device.role != stream::DeviceRole::kUnspecified;
+  const std::string role = has_role ? scene::RoleText(device.role) : stream::Name(device.kind);
   p.Write(p.fonts.strong, {in.low.x + 16 * s, y}, colour::kText, role);
   DrawBattery(p, {in.high.x - 24 * s, y + 4 * s}, device);
   p.WriteRight(p.fonts.small, {in.high.x - 34 * s, y + 1 * s}, colour::kText,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clients/view/render/hud/strip_plot.h"
+#include "clients/view/scene/interface_text.h"
 #include "clients/view/scene/words.h"
 #include "common/units/units.h"
 
@@ -96,8 +97,7 @@ std::vector<Plot> PlotsOf(const scene::DeviceStrips& d, std::int64_t now_ns) {
 void DrawDeviceStrips(const Paint& p, const Box& box, const scene::DeviceStrips& device,
                       std::int64_t now_ns) {
   const float s = p.scale;
-  std::string role = stream::Name(device.role);
-  std::replace(role.begin(), role.end(), '_', ' ');
+  const std::string role = scene::RoleText(device.role);
   const float width = p.Write(p.fonts.strong, box.low, colour::kText, role);
   const bool moving = !device.moving.points().empty() && device.moving.points().back().value > 0;
   p.Label({box.low.x + width + 8 * s, box.low.y}, moving ? colour::kGood : colour::kGroove,

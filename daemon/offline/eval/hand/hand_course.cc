@@ -18,20 +18,21 @@ constexpr double kCutoffHz = 10;     // Recorded poses are not fit to be differe
 
 }  // namespace
 
+HandCourse::Between HandCourse::Find(double time_s) const {
+  const double place = std::clamp(time_s * rate_hz, 0.0, static_cast<double>(count()) - 1.001);
+  const auto before = static_cast<Eigen::Index>(place);
+  return {before, place - static_cast<double>(before)};
+}
+
 Eigen::Vector3d HandCourse::At(const Eigen::Matrix3Xd& values, double time_s) const {
-  const double place =
-      std::clamp(time_s * rate_hz, 0.0, static_cast<double>(values.cols()) - 1.001);
-  const auto column = static_cast<Eigen::Index>(place);
-  const double share = place - static_cast<double>(column);
-  return (1 - share) * values.col(column) + share * values.col(column + 1);
+  const auto [before, share] = Find(time_s);
+  return (1 - share) * values.col(before) + share * values.col(before + 1);
 }
 
 Eigen::Vector3d HandCourse::PointAt(const Eigen::Vector3d& p_SP_m, double time_s) const {
-  const double place = std::clamp(time_s * rate_hz, 0.0, static_cast<double>(count()) - 1.001);
-  const auto column = static_cast<std::size_t>(place);
-  const double share = place - static_cast<double>(column);
-  return At(p_W_m, time_s) + (1 - share) * (R_WS[column] * p_SP_m) +
-         share * (R_WS[column + 1] * p_SP_m);
+  const auto [before, share] = Find(time_s);
+  const auto at = static_cast<std::size_t>(before);
+  return At(p_W_m, time_s) + (1 - share) * (R_WS[at] * p_SP_m) + share * (R_WS[at + 1] * p_SP_m);
 }
 
 HandCourse FollowHand(const pose_run::ArmRun& run, int side, std::uint64_t seed) {

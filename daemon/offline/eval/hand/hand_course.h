@@ -21,6 +21,14 @@ struct HandCourse {
   Eigen::Vector3d At(const Eigen::Matrix3Xd& values, double time_s) const;
   /// Where a point of the device is.
   Eigen::Vector3d PointAt(const Eigen::Vector3d& p_SP_m, double time_s) const;
+
+ private:
+  /// The reading before a time, and the share of the way to the next one.
+  struct Between {
+    Eigen::Index before;
+    double share;
+  };
+  Between Find(double time_s) const;
 };
 
 /// Of side 0 (left) or 1, at the rate of a PS Move, with errors as of a Wiimote (held_device.h).

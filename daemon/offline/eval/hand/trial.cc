@@ -3,8 +3,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <deque>
-#include <optional>
-#include <string>
 
 #include "common/virtual/noise/random.h"
 #include "daemon/offline/eval/hand/hand_course.h"
@@ -37,7 +35,6 @@ Eigen::Matrix3d CameraCovariance(const Eigen::Vector3d& p_W_m) {
 struct Score {
   int count = 0, invalid = 0;
   double square_m2 = 0, nees = 0, speed_square = 0;
-  std::vector<double> off_mm;
 
   void Add(bool valid, const Eigen::Vector3d& off_m, const Eigen::Matrix3d& covariance_m2,
            double speed_off_mps = 0) {
@@ -87,7 +84,6 @@ class HandRun {
         random_(seed),
         p_SP_m_(options.sphere_m, 0, 0),
         inertial_(p_SP_m_),
-        camera_(),
         common_{random_.Normal(), random_.Normal(), random_.Normal()} {}
 
   void Run() {

@@ -35,6 +35,12 @@ class Spread {
   std::vector<double> values_;
 };
 
+/// Errors of the legs' angles, degrees: of the hip as a whole, of the direction of the thigh in the
+/// pelvis and of its turn about itself, and of the knee.
+struct LegAngles {
+  double hip = 0, swing = 0, twist = 0, knee = 0;
+};
+
 /// Poses against the truth, frame by frame.
 class PoseScore {
  public:
@@ -49,6 +55,9 @@ class PoseScore {
 
   double mpjpe_cm() const { return frames_.mean(); }
   double last_mpjpe_cm() const { return frames_.last(); }
+  LegAngles leg_angles_deg() const {
+    return {angles_[0].mean(), hips_[0].mean(), hips_[1].mean(), angles_[1].mean()};
+  }
   nlohmann::ordered_json Json() const;
 
  private:
