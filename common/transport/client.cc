@@ -37,11 +37,14 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
 
   void Stop() {
     started_ = false;
+    subscribed_ = false;
     ++attempt_;  // A dial under way is forgotten.
     retry_.cancel();
     pulse_.cancel();
     connection_.reset();
-    commands_.Fail("the client was stopped");
+    wish_.reset();
+    why_ = "the client was stopped";
+    commands_.Fail(why_);
   }
 
   void Send(v1::Command command, const PendingCommands::Done& done) {

@@ -4,11 +4,22 @@
 #include <cstdlib>
 
 namespace footing::transport {
+namespace {
+
+/// 73 years: no host has been up for that, and no sum of such stamps below leaves 64 bits.
+constexpr std::int64_t kEndNs = std::int64_t{1} << 61;
+
+bool AreStamps(const Probe& probe) {
+  const auto [first, last] = std::minmax({probe.t0_ns, probe.t1_ns, probe.t2_ns, probe.t3_ns});
+  return first >= 0 && last < kEndNs && probe.t1_ns != 0 && probe.t2_ns != 0;
+}
+
+}  // namespace
 
 void ClockOffsetEstimator::Add(const Probe& probe) {
+  if (!AreStamps(probe)) return;
   const std::int64_t round_trip = (probe.t3_ns - probe.t0_ns) - (probe.t2_ns - probe.t1_ns);
   if (probe.t3_ns < probe.t0_ns || probe.t2_ns < probe.t1_ns || round_trip < 0) return;
-  // Differences first: the sum of two stamps could overflow.
   const std::int64_t out = probe.t1_ns - probe.t0_ns;
   const std::int64_t back = probe.t2_ns - probe.t3_ns;
   samples_.push_back({back + (out - back) / 2, round_trip});

@@ -33,7 +33,8 @@ class ClockOffsetEstimator {
   static constexpr std::size_t kProbes = 8;
   static constexpr double kMaxSlew = 5e-4;
 
-  /// A probe with t3 < t0, or a negative round trip, is ignored.
+  /// A probe with t3 < t0, a negative round trip, a stamp outside [0, 2^61) ns, or without t1 or t2
+  /// is ignored.
   void Add(const Probe& probe);
   OffsetEstimate estimate() const { return estimate_; }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <random>
 
 #include "common/transport/answers.h"
@@ -135,6 +136,12 @@ TEST(ClockOffset, ImpossibleStampsAreIgnored) {
   estimator.Add({10, 20, 15, 30});  // Sent before it arrived.
   estimator.Add({10, 20, 30, 5});   // Back before it left.
   estimator.Add({10, 20, 90, 30});  // Longer there than away.
+  estimator.Add({10, 0, 0, 30});    // Without the other clock's stamps.
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  estimator.Add({10, kLeast, kMost, 30});
+  estimator.Add({kLeast, 20, 25, kMost});
+  estimator.Add({10, kMost - 1, kMost, 30});
   EXPECT_FALSE(estimator.estimate().valid);
 }
 
