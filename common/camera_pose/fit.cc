@@ -10,9 +10,12 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Column = Eigen::Matrix<double, 7, 1>;  // Turn, shift, scale about the camera.
-using Normal = Eigen::Matrix<double, 7, 7>;
-using Rows = Eigen::Matrix<double, 3, 7>;
+/// Turn, shift, the common error of depth, scale about the camera.
+constexpr int kUnknowns = 8;
+constexpr int kCommon = 6, kScale = 7;
+using Column = Eigen::Matrix<double, kUnknowns, 1>;
+using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+using Rows = Eigen::Matrix<double, 3, kUnknowns>;
 
 constexpr int kIterations = 15;
 constexpr double kUnknownM = 10;  // Standard deviation of what is not known.
@@ -33,6 +36,15 @@ Eigen::Isometry3d Start(const std::vector<SeenMark>& marks) {
   return Eigen::Isometry3d(Eigen::umeyama(seen, places, false));
 }
 
+/// The estimate with the scale as a parameter, or held at 1.
+struct Solution {
+  Eigen::Isometry3d X_WC;
+  double common = 0;  ///< Error of depth that all points share, in standard deviations.
+  double scale = 1;
+  Normal covariance;
+  double misfit = 0;
+};
+
 /// Sums of weighted rows.
 struct Sums {
   Normal normal = Normal::Zero();
@@ -47,52 +59,71 @@ struct Sums {
     misfit += error.dot(weight.solve(error));
     rows += count;
   }
+  /// The unknown is 0 with a standard deviation of 1.
+  void AddPrior(int unknown, double error) {
+    normal(unknown, unknown) += 1;
+    gradient[unknown] += error;
+    misfit += error * error;
+    rows += 1;
+  }
 };
 
-void AddMark(const SeenMark& mark, const Eigen::Isometry3d& X_WC, double scale,
-             double placement_sd_m, Sums& sums) {
-  const Vector3d arm = scale * (X_WC.linear() * mark.seen.p_C_m);
-  const Vector3d place = arm + X_WC.translation();
+/// Of a point's depth: half its variance is taken as common to all points (blur and limb of the
+/// camera file, light from within the sphere), half as its own (its pixels).
+constexpr double kCommonShare = 0.5;
+
+/// One standard deviation of what is common, along the point's ray.
+Vector3d CommonSd(const SeenPoint& seen) {
+  const Vector3d along = seen.covariance_m2 * seen.p_C_m;
+  const double variance = seen.p_C_m.dot(along);
+  return variance > 0 ? Vector3d(std::sqrt(kCommonShare / variance) * along) : Vector3d::Zero();
+}
+
+Matrix3d OwnCovariance(const SeenPoint& seen) {
+  const Vector3d common_sd = CommonSd(seen);
+  return seen.covariance_m2 - common_sd * common_sd.transpose();
+}
+
+void AddMark(const SeenMark& mark, const Solution& at, double placement_sd_m, Sums& sums) {
+  const Matrix3d& turn = at.X_WC.linear();
+  const Vector3d common_sd = turn * CommonSd(mark.seen);
+  const Vector3d arm = at.scale * (turn * mark.seen.p_C_m);
+  const Vector3d place = arm + at.X_WC.translation() - at.common * common_sd;
   Rows jacobian;
-  jacobian << -Cross(place), Matrix3d::Identity(), arm / scale;
-  const Matrix3d covariance = X_WC.linear() * mark.seen.covariance_m2 * X_WC.linear().transpose() +
+  jacobian << -Cross(place), Matrix3d::Identity(), -common_sd, arm / at.scale;
+  const Matrix3d covariance = turn * OwnCovariance(mark.seen) * turn.transpose() +
                               placement_sd_m * placement_sd_m * Matrix3d::Identity();
   sums.Add(jacobian, mark.p_W_m - place, covariance, 3);
 }
 
 /// The line from low to high has no level part; how long it is nobody knows.
-void AddPlumb(const SeenPlumb& plumb, const Eigen::Isometry3d& X_WC, double scale,
-              double placement_sd_m, Sums& sums) {
-  const Vector3d line = scale * (X_WC.linear() * (plumb.high.p_C_m - plumb.low.p_C_m));
+void AddPlumb(const SeenPlumb& plumb, const Solution& at, double placement_sd_m, Sums& sums) {
+  const Matrix3d& turn = at.X_WC.linear();
+  const Vector3d common_sd = turn * (CommonSd(plumb.high) - CommonSd(plumb.low));
+  const Vector3d line =
+      at.scale * (turn * (plumb.high.p_C_m - plumb.low.p_C_m)) - at.common * common_sd;
   Rows jacobian;
-  jacobian << -Cross(line), Matrix3d::Zero(), Vector3d::Zero();
+  jacobian << -Cross(line), Matrix3d::Zero(), -common_sd, Vector3d::Zero();
   const double leaning_m = line.norm() * std::sin(plumb.tilt_rad);
-  Matrix3d covariance = X_WC.linear() * (plumb.low.covariance_m2 + plumb.high.covariance_m2) *
-                        X_WC.linear().transpose();
+  Matrix3d covariance =
+      turn * (OwnCovariance(plumb.low) + OwnCovariance(plumb.high)) * turn.transpose();
   covariance +=
       (2 * placement_sd_m * placement_sd_m + leaning_m * leaning_m / 2) * Matrix3d::Identity();
   covariance(2, 2) += kUnknownM * kUnknownM;
   sums.Add(jacobian, Vector3d(-line.x(), -line.y(), 0), covariance, 2);
 }
 
-/// The estimate with the scale as a parameter, or held at 1.
-struct Solution {
-  Eigen::Isometry3d X_WC;
-  double scale = 1;
-  Normal covariance;
-  double misfit = 0;
-};
-
 Solution Solve(const Observations& observations, bool with_scale) {
   Solution solution;
   solution.X_WC = Start(observations.marks);
-  const int unknowns = with_scale ? 7 : 6;
+  const int unknowns = with_scale ? kUnknowns : kScale;
   for (int i = 0; i <= kIterations; ++i) {
     Sums sums;
     for (const SeenMark& mark : observations.marks)
-      AddMark(mark, solution.X_WC, solution.scale, observations.placement_sd_m, sums);
+      AddMark(mark, solution, observations.placement_sd_m, sums);
     for (const SeenPlumb& plumb : observations.plumbs)
-      AddPlumb(plumb, solution.X_WC, solution.scale, observations.placement_sd_m, sums);
+      AddPlumb(plumb, solution, observations.placement_sd_m, sums);
+    sums.AddPrior(kCommon, -solution.common);
     const Eigen::MatrixXd inverse = sums.normal.topLeftCorner(unknowns, unknowns)
                                         .ldlt()
                                         .solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
@@ -107,7 +138,8 @@ Solution Solve(const Observations& observations, bool with_scale) {
     if (turn.norm() > 0) change.linear() = rotation.toRotationMatrix();
     change.translation() = step.segment<3>(3);
     solution.X_WC = change * solution.X_WC;
-    if (with_scale) solution.scale += step[6];
+    solution.common += step[kCommon];
+    if (with_scale) solution.scale += step[kScale];
   }
   return solution;
 }
@@ -130,7 +162,7 @@ CameraPose Fit(const Observations& observations) {
   pose.covariance = rigid.covariance.topLeftCorner<6, 6>();
   pose.misfit = rigid.misfit;
   pose.scale = scaled.scale;
-  pose.scale_sd = std::sqrt(scaled.covariance(6, 6));
+  pose.scale_sd = std::sqrt(scaled.covariance(kScale, kScale));
   double square = 0;
   for (const SeenMark& mark : observations.marks) {
     pose.residuals_m.push_back((mark.p_W_m - pose.X_WC * mark.seen.p_C_m).norm());

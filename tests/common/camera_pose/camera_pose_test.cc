@@ -56,10 +56,12 @@ TEST(CameraPose, CovarianceIsThatOfItsErrors) {
   constexpr int kTrials = 200;
   for (int i = 0; i < kTrials; ++i) {
     Observations observations = Seen(kTrue);
+    const double common = random.Normal();
     for (SeenMark& mark : observations.marks) {
-      const Eigen::LLT<Eigen::Matrix3d> root(mark.seen.covariance_m2);
-      const Vector3d noise = root.matrixL() * Normal3(random);
-      mark.seen.p_C_m += noise + kTrue.linear().transpose() * (1e-3 * Normal3(random));
+      // Depth: half of the variance is common to all marks, half each one's own.
+      const Vector3d depth_sd = 1e-3 * mark.seen.p_C_m.norm() * mark.seen.p_C_m;
+      mark.seen.p_C_m += std::sqrt(0.5) * (common + random.Normal()) * depth_sd +
+                         1e-4 * Normal3(random) + 1e-3 * Normal3(random);
     }
     const CameraPose pose = Fit(observations);
     const Vector3d error = pose.X_WC * (kTrue.inverse() * hand) - hand;

@@ -176,11 +176,12 @@ const std::vector<std::string>& CalibrationMethods() {
 }
 
 Result<ordered_json> RunCalibrationTrial(const CalibrationTrial& trial) {
-  const auto file = CalibratedCamera("nominal", trial.seed);
-  if (!file) return file.error();
   noise::Random random(trial.seed);
   Errors errors;
   for (int i = 0; i < trial.trials; ++i) {
+    // Each its own: what is wrong with a camera's blur is common to all that it sees.
+    const auto file = CalibratedCamera("nominal", trial.seed * 1000 + static_cast<unsigned>(i));
+    if (!file) return file.error();
     Person person(trial, *file, random);
     const auto pose =
         trial.method == "poses" ? person.CalibrateByPoses() : person.CalibrateByMarks();
