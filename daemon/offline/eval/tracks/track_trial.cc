@@ -151,6 +151,8 @@ class TrackTrial {
         output.time_s - embodied_->jump_meant_s < delay_s + mapping::HeldJump::kMostWaitS;
     result_.agreement.Add(output.time_s, meant, commanded, delay_s, waits);
     result_.jumps.Add(output.time_s, meant == Gait::kJump, commanded == Gait::kJump, delay_s);
+    result_.jump_delays.Add(output.time_s, meant == Gait::kJump, commanded == Gait::kJump,
+                            output.gait.gait == Gait::kJump, delay_s);
   }
 
   /// One look of the user at the picture, and what the character does until the next.
@@ -172,6 +174,7 @@ class TrackTrial {
     if (fallen_) {
       result_.agreement.Restart();
       result_.jumps.Restart();
+      result_.jump_delays.Restart();
       return;
     }
     Compare();

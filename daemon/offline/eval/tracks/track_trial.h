@@ -8,6 +8,7 @@
 #include "daemon/offline/eval/gait/statistics.h"
 #include "daemon/offline/eval/gait/trial.h"
 #include "daemon/offline/eval/tracks/agreement.h"
+#include "daemon/offline/eval/tracks/jump_delays.h"
 #include "daemon/offline/eval/tracks/jump_events.h"
 #include "daemon/offline/eval/tracks/trace.h"
 
@@ -35,6 +36,7 @@ struct TrackResult {
   stream::FailureCounts failures;
   Agreement agreement;           ///< Of motion and command, but for falls; not of a direct user.
   JumpEvents jumps;              ///< The same, gesture by gesture.
+  JumpDelays jump_delays;        ///< Where their time goes.
   RootMeanSquare heading_error;  ///< Body's yaw against the heading, rad, but for falls.
   RootMeanSquare line_heading;   ///< Body's yaw against the centre line, rad, but for falls.
   RootMeanSquare off_centre;     ///< COM's distance from the centre line, m.

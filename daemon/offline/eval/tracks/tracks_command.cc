@@ -41,6 +41,7 @@ struct Trials {
   double distance_m = 0, off_track_s = 0;
   Agreement agreement;
   JumpEvents jumps;
+  JumpDelays jump_delays;
   RootMeanSquare heading_error, line_heading, off_centre;
 };
 
@@ -94,6 +95,7 @@ Result<Trials> RunTrials(const Options& options, const std::string& track, Track
     if (!run->task.empty()) ++trials.tasks[run->task];
     trials.agreement.Pool(run->agreement);
     trials.jumps.Pool(run->jumps);
+    trials.jump_delays.Pool(run->jump_delays);
     trials.distance_m += run->distance_m;
     trials.off_track_s += run->off_track_s;
     Pool(run->heading_error, trials.heading_error);
@@ -134,6 +136,10 @@ nlohmann::ordered_json Jumps(const JumpEvents& jumps) {
           {"commanded", jumps.commanded()}, {"not_meant", jumps.not_meant()}};
 }
 
+nlohmann::ordered_json MeanAndSpread(const Delay& delay) {
+  return {{"count", delay.count}, {"mean_s", delay.mean_s()}, {"sd_s", delay.sd_s()}};
+}
+
 nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const Trials& trials) {
   const auto& times_s = trials.times_s;
   nlohmann::ordered_json failures;
@@ -159,7 +165,9 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
           {"turn_by", options.turn_by},
           {"gait_agreement", trials.agreement.share()},
           {"gait_confusion", Confusion(trials.agreement.table())},
-          {"jumps", Jumps(trials.jumps)}};
+          {"jumps", Jumps(trials.jumps)},
+          {"jump_to_command", MeanAndSpread(trials.jump_delays.to_command())},
+          {"jump_to_take_off", MeanAndSpread(trials.jump_delays.to_take_off())}};
 }
 
 int Run(const Options& options, bool json) {

@@ -37,6 +37,7 @@ for interface in ("direct", "wrist", "arm", "leg", "joystick", "boards"):
         assert out["tasks"] == {}, out
         assert out["gait_agreement"] > 0.9, out
         assert all(abs(sum(row.values()) - 1) < 1e-9 for row in out["gait_confusion"].values()), out
+    assert out["jump_to_command"] == out["jump_to_take_off"] == {"count": 0, "mean_s": 0, "sd_s": 0}, out
     assert out["jumps"] == {"meant": 0, "recognised": 0, "late": 0, "recall": 1, "commanded": 0, "not_meant": 0}, out
 
 # Every task of the straight track is drawn, done and paid for with few failures.
@@ -53,6 +54,8 @@ assert out["failures"]["jump"] <= 60, out
 jumps = out["jumps"]
 assert jumps["recognised"] >= 6 and jumps["recall"] == jumps["recognised"] / jumps["meant"] > 0.9, out  # Three pits each.
 assert jumps["commanded"] >= jumps["recognised"] - jumps["not_meant"], out
+assert 0 < out["jump_to_command"]["count"] <= jumps["recognised"] and 0.4 < out["jump_to_command"]["mean_s"] < 2, out
+assert 0 < out["jump_to_take_off"]["mean_s"] < 1.25, out
 
 # A demo in simulated time: on a track that grows the user goes on, on the track and on its feet.
 out = report("--interface", "leg", "--track", "endless", "--seconds", 40, "--seed", 5)
