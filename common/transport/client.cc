@@ -97,7 +97,10 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     FramedHandlers handlers;
     // Each keeps this alive while it is called: a handler may destroy the client.
     handlers.on_frame = [weak = weak_from_this()](std::string_view payload) {
-      if (const auto self = weak.lock()) self->OnFrame(payload);
+      const auto self = weak.lock();
+      if (!self) return;
+      self->OnFrame(payload);
+      self->parser_.Discard();
     };
     handlers.on_bytes = [weak = weak_from_this()] {
       if (const auto self = weak.lock()) self->heard_ns_ = self->NowNs();

@@ -16,27 +16,27 @@ Publication::Publication(const ServerOptions& options)
     : max_tick_bytes_(options.max_message_out_bytes - kMaxTickHeadBytes),
       ring_(RingTicks(options), options.ring_max_bytes) {
   for (const Channel& channel : options.channels) {
-    fields_.insert(channel.field);
+    fields_.push_back(channel.field);
     if (channel.retained) retained_.insert(channel.field);
   }
 }
 
-/// The channels that a tick has space for, and the bytes of their fields.
-std::vector<const ChannelBytes*> Publication::Fitting(const std::vector<ChannelBytes>& channels,
-                                                      std::size_t& size) {
-  std::vector<const ChannelBytes*> fitting;
-  fitting.reserve(channels.size());
+/// Finds the channels that a tick has space for; returns the bytes of their fields.
+std::size_t Publication::Fit(const std::vector<ChannelBytes>& channels) {
+  std::size_t size = 0;
+  fitting_.clear();
   for (const ChannelBytes& channel : channels) {
     const std::size_t bytes = FieldBytes(channel.field, channel.bytes.size());
-    if (size + bytes > max_tick_bytes_ || fields_.count(channel.field) == 0) {
+    const bool known = std::find(fields_.begin(), fields_.end(), channel.field) != fields_.end();
+    if (size + bytes > max_tick_bytes_ || !known) {
       ++channels_left_out_;
       left_out_field_ = channel.field;
       continue;
     }
     size += bytes;
-    fitting.push_back(&channel);
+    fitting_.push_back(&channel);
   }
-  return fitting;
+  return size;
 }
 
 std::shared_ptr<Tick> Publication::Serialise(const TickNumber& number,
@@ -45,14 +45,13 @@ std::shared_ptr<Tick> Publication::Serialise(const TickNumber& number,
   tick->sequence = number.sequence;
   tick->host_ns = number.host_ns;
   tick->missing_from = number.missing_from;
-  std::size_t size = 0;
-  const std::vector<const ChannelBytes*> fitting = Fitting(channels, size);
+  const std::size_t size = Fit(channels);
   char head[kMaxTickHeadBytes];
   tick->head_bytes = EncodeTickHead({epoch_, number.sequence, number.host_ns}, size, head);
   tick->bytes.reserve(tick->head_bytes + size);
   tick->bytes.append(head, tick->head_bytes);
-  tick->slices.reserve(fitting.size());
-  for (const ChannelBytes* channel : fitting) AppendField(channel->field, channel->bytes, *tick);
+  tick->slices.reserve(fitting_.size());
+  for (const ChannelBytes* channel : fitting_) AppendField(channel->field, channel->bytes, *tick);
   return tick;
 }
 
@@ -72,9 +71,12 @@ SharedTick Publication::Publish(const TickNumber& number,
   SharedTick tick = Serialise(number, channels);
   last_sequence_ = number.sequence;
   left_out_next_ = 0;
+  return tick;
+}
+
+void Publication::Keep(const SharedTick& tick) {
   KeepRetained(tick);
   ring_.Push(tick);
-  return tick;
 }
 
 void Publication::BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained) {

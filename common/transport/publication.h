@@ -21,9 +21,11 @@ class Publication {
   void set_epoch(std::uint64_t epoch) { epoch_ = epoch; }
 
   /// Serialises a tick once. Channels that would make it longer than max_message_out_bytes are left
-  /// out, and so are fields that are not a channel. Trim() once it is on its way. Its sequence is
-  /// above the last one's.
+  /// out, and so are fields that are not a channel. Its sequence is above the last one's. Keep() it
+  /// once it is on its way.
   SharedTick Publish(const TickNumber& number, const std::vector<ChannelBytes>& channels);
+  /// From now on it is part of the ring, and its retained channels of every snapshot.
+  void Keep(const SharedTick& tick);
 
   /// The number of the next tick of the owner's rhythm; LeaveOut() makes a hole in front of it.
   TickNumber Next(std::int64_t host_ns) const;
@@ -31,8 +33,6 @@ class Publication {
 
   /// See Server::BeginAt().
   void BeginAt(const TickNumber& number, const std::vector<ChannelBytes>& retained);
-
-  void Trim() { ring_.Trim(); }
 
   /// The last values of the retained channels, as one tick with the given sequence.
   SharedTick Snapshot(std::uint64_t sequence, std::int64_t host_ns) const;
@@ -47,12 +47,12 @@ class Publication {
  private:
   std::shared_ptr<Tick> Serialise(const TickNumber& number,
                                   const std::vector<ChannelBytes>& channels);
-  std::vector<const ChannelBytes*> Fitting(const std::vector<ChannelBytes>& channels,
-                                           std::size_t& size);
+  std::size_t Fit(const std::vector<ChannelBytes>& channels);
   void KeepRetained(const SharedTick& tick);
 
-  std::set<std::uint32_t> fields_;
+  std::vector<std::uint32_t> fields_;  ///< Side by side: a tick finds a tree's nodes cold.
   std::set<std::uint32_t> retained_;
+  std::vector<const ChannelBytes*> fitting_;  ///< Of the tick being made.
   std::size_t max_tick_bytes_;
   TickRing ring_;
   std::map<std::uint32_t, SharedTick> last_values_;

@@ -71,7 +71,7 @@ class Server::Implementation {
     const SharedTick tick = shared_.publication.Publish(number, channels);
     if (shared_.publication.channels_left_out() != left_out) SayLeftOut();
     for (const auto& session : sessions_) session->Offer(tick);
-    shared_.publication.Trim();
+    shared_.publication.Keep(tick);
   }
 
   void Answer(std::uint64_t number, const v1::CommandResult& result) {

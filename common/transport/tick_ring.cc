@@ -18,9 +18,6 @@ void TickRing::Push(SharedTick tick) {
   FOOTING_CHECK(empty() || tick->sequence > last());
   bytes_ += Cost(*tick);
   ticks_.push_back(std::move(tick));
-}
-
-void TickRing::Trim() {
   while (ticks_.size() > 1 && (ticks_.size() > max_ticks_ || bytes_ > max_bytes_)) {
     bytes_ -= Cost(*ticks_.front());
     ticks_.pop_front();

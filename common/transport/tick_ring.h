@@ -15,11 +15,8 @@ class TickRing {
   TickRing(std::size_t max_ticks, std::size_t max_bytes)
       : max_ticks_(max_ticks), max_bytes_(max_bytes) {}
 
-  /// The tick's sequence is above the last one's.
+  /// The tick's sequence is above the last one's. Lets go what is over the bounds.
   void Push(SharedTick tick);
-  /// Lets go what is over the bounds. Apart from Push, so that it can wait until the new tick is on
-  /// its way.
-  void Trim();
 
   /// The first one held from this sequence on; null when there is none yet.
   const SharedTick* AtOrAfter(std::uint64_t sequence) const;

@@ -136,6 +136,7 @@ class Race {
           reader_.io(), of, BrokerLink::Part::kSubscribes, 1, [this](std::string_view payload) {
             const v1::Envelope* const message = parser_.Parse(payload);
             if (message != nullptr) AddDelaySince(message->tick().host_ns());
+            parser_.Discard();  // As our own client does.
           }));
     });
     publisher_.Do([&] {
@@ -153,6 +154,7 @@ class Race {
       const v1::Envelope* const message = lsl_parser_.Parse(payload);
       if (message == nullptr) return;
       const double delay_us = DelayUsSince(message->tick().host_ns());
+      lsl_parser_.Discard();
       boost::asio::post(reader_.io(), [this, delay_us] { delays_us_.push_back(delay_us); });
     });
     if (lsl_ == nullptr) return;

@@ -67,8 +67,7 @@ std::string StatusBytes(const std::string& serial) {
 TEST(Publication, TheRingHoldsItsSecondsAndNoMore) {
   Publication publication(Options());
   for (std::uint64_t i = 0; i < 12; ++i) {
-    publication.Publish({i + 1, static_cast<std::int64_t>(i)}, {});
-    publication.Trim();
+    publication.Keep(publication.Publish({i + 1, static_cast<std::int64_t>(i)}, {}));
   }
   // 0.5 s at 10 Hz are 5 ticks.
   EXPECT_EQ(publication.ring().first(), 8u);
@@ -80,7 +79,8 @@ TEST(Publication, TheRingHoldsItsSecondsAndNoMore) {
 
 TEST(Publication, TheRingOfARelayHasHoles) {
   Publication publication(Options());
-  for (const std::uint64_t sequence : {100u, 103u, 106u}) publication.Publish({sequence, 0}, {});
+  for (const std::uint64_t sequence : {100u, 103u, 106u})
+    publication.Keep(publication.Publish({sequence, 0}, {}));
   EXPECT_EQ((*publication.ring().AtOrAfter(1))->sequence, 100u);
   EXPECT_EQ((*publication.ring().AtOrAfter(101))->sequence, 103u);
   EXPECT_EQ((*publication.ring().AtOrAfter(106))->sequence, 106u);
@@ -95,8 +95,7 @@ TEST(Publication, TheRingIsBoundedInBytesToo) {
   options.ring_max_bytes = 100'000;
   Publication publication(options);
   for (std::uint64_t i = 1; i <= 50; ++i) {
-    publication.Publish({i, 0}, {{17, std::string(10'000, '\0')}});
-    publication.Trim();
+    publication.Keep(publication.Publish({i, 0}, {{17, std::string(10'000, '\0')}}));
   }
   EXPECT_LE(publication.ring().bytes(), 100'000u);
   EXPECT_EQ(publication.ring().last(), 50u);
@@ -105,9 +104,10 @@ TEST(Publication, TheRingIsBoundedInBytesToo) {
 
 TEST(Publication, TheSnapshotHoldsTheLastValueOfRetainedChannelsOnly) {
   Publication publication(Options());
-  publication.Publish({1, 1}, {{16, StatusBytes("old")}, {17, Motion(1).SerializeAsString()}});
-  publication.Publish({2, 2}, {{16, StatusBytes("new")}});
-  publication.Publish({3, 3}, {{17, Motion(2).SerializeAsString()}});
+  publication.Keep(
+      publication.Publish({1, 1}, {{16, StatusBytes("old")}, {17, Motion(1).SerializeAsString()}}));
+  publication.Keep(publication.Publish({2, 2}, {{16, StatusBytes("new")}}));
+  publication.Keep(publication.Publish({3, 3}, {{17, Motion(2).SerializeAsString()}}));
   const SharedTick snapshot = publication.Snapshot(3, 99);
   v1::Tick tick;
   ASSERT_TRUE(tick.ParseFromString(snapshot->bytes));
