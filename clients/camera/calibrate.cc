@@ -32,6 +32,7 @@ class Calibrating {
       if (!error) End(Failure("stopped"));
     });
     lights_.Start();
+    log::Info("looking for PS Moves in footingd at " + options_.sensor.Text());
     Limit(kDevicesWithin);
     io_.run();
     if (!end_) return end_.error();

@@ -66,8 +66,15 @@ int RunLens(LensArguments& arguments) {
   log::Start("footing-camera", arguments.line.quiet);
   if (!arguments.sheet.empty()) {
     const auto written = config::ReplaceFile(arguments.sheet, Sheet());
-    if (written) return 0;
-    return cli::Report(Failure("cannot write " + arguments.sheet + ": " + written.error().message));
+    if (!written) {
+      return cli::Report(
+          Failure("cannot write " + arguments.sheet + ": " + written.error().message));
+    }
+    log::Info("wrote " + arguments.sheet + ": print it and keep it flat");
+    if (arguments.line.json) {
+      std::cout << nlohmann::ordered_json{{"sheet", arguments.sheet}} << std::endl;
+    }
+    return 0;
   }
   const auto report = MeasureAndStore(arguments);
   if (!report) return cli::Report(report.error());

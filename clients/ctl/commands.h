@@ -55,6 +55,7 @@ void AddTrialCommands(CLI::App& app, Shared& shared);      ///< trial
 void AddInterfaceCommand(CLI::App& app, Shared& shared);   ///< interface
 void AddLeaseCommand(CLI::App& app, Shared& shared);       ///< lease
 void AddTrustCommand(CLI::App& app, Shared& shared);       ///< trust
+void AddConfigCommand(CLI::App& app, Shared& shared);      ///< config
 void AddDiscoverCommand(CLI::App& app, Shared& shared);    ///< discover
 
 }  // namespace footing::ctl

@@ -43,8 +43,7 @@ void AddDiscoverCommand(CLI::App& app, Shared& shared) {
   auto within_s = std::make_shared<double>(3);
   CLI::App* command = app.add_subcommand(
       "discover", "List servers in this network that advertise themselves (needs avahi-daemon)");
-  command->add_option("--seconds", *within_s, "How long to wait for answers, s")
-      ->check(CLI::Range(0.1, 60.0));
+  command->add_option("--seconds", *within_s, "Timeout, s")->check(CLI::Range(0.1, 60.0));
   command->footer(
       "Examples:\n"
       "  footing-ctl discover\n"

@@ -1,3 +1,5 @@
+#include <string>
+
 #include "clients/ctl/commands.h"
 #include "common/cli/cli.h"
 
@@ -30,8 +32,10 @@ int main(int argc, char** argv) {
   footing::ctl::AddLeaseCommand(*app, shared);
   footing::ctl::AddTrustCommand(*app, shared);
   footing::ctl::AddDiscoverCommand(*app, shared);
+  footing::ctl::AddConfigCommand(*app, shared);
   for (CLI::App* command : app->get_subcommands({})) {
-    const bool connects = command->get_name() != "trust" && command->get_name() != "discover";
+    const std::string name = command->get_name();
+    const bool connects = name != "trust" && name != "discover" && name != "config";
     command->footer(command->get_footer() + "\nAlso: --json" + (connects ? " and --connect" : "") +
                     ", as in footing-ctl --help.");
   }

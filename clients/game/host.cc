@@ -49,6 +49,10 @@ class Host {
     io_.run();
     if (failed_) return *failed_;
     if (seen_.track().segments.empty()) return WhyNoTrack();
+    if (!sensed_) {
+      return NoDevice("no footingd: " + sensor_link_ +
+                      "; start it with: footingd, or name its address with --sensor");
+    }
     return MakeReport(director_.game(), seen_, PassedS());
   }
 
@@ -66,6 +70,10 @@ class Host {
     handlers.on_tick = [this](const v1::Tick& tick) {
       if (Take(tick, device_, hand_)) inclined_ns_ = clock::MonotonicNs();
     };
+    handlers.on_state = [this](transport::LinkState, const std::string& why) {
+      sensor_link_ = why;
+    };
+    handlers.on_welcome = [this](const v1::Welcome&) { sensed_ = true; };
     return handlers;
   }
 
@@ -151,14 +159,19 @@ class Host {
     });
   }
 
+  std::string Line() const {
+    if (seen_.track().segments.empty()) return "waiting for footing-sim: " + link_;
+    if (sensor_.state() != transport::LinkState::kLive)
+      return "waiting for footingd: " + sensor_link_;
+    return ToLine(director_.game());
+  }
+
   void LineLater() {
     line_.expires_after(kLine);
     line_.async_wait([this](const boost::system::error_code& error) {
       if (error) return;
       std::ostream& out = options_.text ? std::cout : std::cerr;
-      const bool started = !seen_.track().segments.empty();
-      out << (started ? ToLine(director_.game()) : "waiting for footing-sim: " + link_)
-          << std::endl;
+      out << Line() << std::endl;
       if (options_.seconds > 0 && PassedS() >= options_.seconds) return End();
       LineLater();
     });
@@ -189,8 +202,8 @@ class Host {
   asio::signal_set signals_;
   asio::steady_timer line_, end_;
   std::int64_t started_ns_;
-  std::string link_ = "not connected";
-  bool welcomed_ = false;
+  std::string link_ = "not connected", sensor_link_ = link_;
+  bool welcomed_ = false, sensed_ = false;  ///< By footing-sim; by footingd.
   bool ending_ = false;
   std::optional<Error> failed_;
   transport::Client sensor_, simulation_;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/log/export_bvh.h"
+#include "clients/log/export_bodies.h"
 #include "clients/log/export_csv.h"
 #include "clients/log/record.h"
 #include "common/cli/cli.h"
@@ -65,10 +65,12 @@ Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::str
                       {"duration_s", report->duration_s}};
 }
 
-Result<ordered_json> RunBvh(const std::string& file, const std::string& folder, bool replace) {
-  const auto motions = ExportBvh(file, folder, replace);
+Result<ordered_json> RunBodies(const std::string& file, const std::string& format,
+                               const std::string& folder, bool replace) {
+  const auto motions =
+      ExportBodies(file, folder, format == "bvh" ? BodyFormat::kBvh : BodyFormat::kTrc, replace);
   if (!motions) return motions.error();
-  ordered_json out{{"file", file}, {"format", "bvh"}, {"files", ordered_json::array()}};
+  ordered_json out{{"file", file}, {"format", format}, {"files", ordered_json::array()}};
   for (const ExportedMotion& motion : *motions) {
     out["files"].push_back({{"path", motion.path},
                             {"subject", motion.subject},
@@ -80,9 +82,9 @@ Result<ordered_json> RunBvh(const std::string& file, const std::string& folder, 
 
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
                                const std::string& folder, bool replace) {
-  if (format == "bvh") return RunBvh(file, folder, replace);
+  if (format == "bvh" || format == "trc") return RunBodies(file, format, folder, replace);
   if (format != "csv") {
-    return UsageError("unknown --format " + format + "; there are: csv, bvh");
+    return UsageError("unknown --format " + format + "; there are: csv, bvh, trc");
   }
   const auto files = ExportCsv(file, folder, replace);
   if (!files) return files.error();
@@ -154,9 +156,14 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   const auto folder = std::make_shared<std::string>();
   const auto replace = std::make_shared<bool>(false);
   command->add_option("FILE", *file, "Recording, MCAP file")->required();
-  command->add_option("--format", *format, "Output format: csv, or bvh (reconstructed bodies)")
+  command
+      ->add_option(
+          "--format", *format,
+          "Output format: csv, or of reconstructed bodies bvh (rotations) or trc (joint centres)")
       ->required();
-  command->add_option("--out", *folder, "Output folder; one file per topic (csv) or subject (bvh)")
+  command
+      ->add_option("--out", *folder,
+                   "Output folder; one file per topic (csv) or subject (bvh, trc)")
       ->required();
   command->add_flag("--force", *replace, "Overwrite existing files");
   command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *replace), shared); });

@@ -6,6 +6,7 @@
 #include "clients/relay/links/broker_address.h"
 #include "clients/relay/links/login_file.h"
 #include "clients/relay/options.h"
+#include "clients/relay/service/channels.h"
 #include "clients/relay/service/metrics.h"
 #include "clients/relay/service/publisher.h"
 #include "common/cli/cli.h"
@@ -48,6 +49,7 @@ Result<PublisherOptions> PublisherOptionsOf(const PublishFlags& flags) {
   const auto site = flags.site.Site();
   if (!site) return site.error();
   options.site = *site;
+  if (const auto known = CheckChannels(flags.channels); !known) return known.error();
   options.channels = flags.channels;
   options.mqtt_rate_hz = flags.mqtt_rate_hz;
   for (const std::string& text : flags.servers) {

@@ -86,7 +86,7 @@ void AddCommon(CLI::App& app, stream_client::Common& common) {
   app.add_option("--rate-scale", common.rate_scale, "Ratio of the devices' clock rates to nominal")
       ->check(CLI::Range(0.1, 10.0));
   app.add_option("--seconds", common.seconds,
-                 "Duration, s, with the wait for footingd (default: until SIGINT)")
+                 "Duration, s, including the wait for footingd (default: until SIGINT)")
       ->check(CLI::Range(0.0, 1e6));
 }
 
@@ -146,7 +146,9 @@ int main(int argc, char** argv) {
     recorded->add_option("--left", left, "Recording of the left device, CSV");
     recorded->add_option("--right", right, "Recording of the right device, CSV");
   }
-  accel->add_option("--rate-hz", rate_hz, "Sample rate of the CSV files, Hz")->required();
+  accel->add_option("--rate-hz", rate_hz, "Sample rate of the CSV files, Hz")
+      ->required()
+      ->default_str("");
   stream_client::BoardsOptions under;
   auto* boards = stream_client::AddBoardsCommand(*app, under);
   stream_client::InsolesOptions insoles_options;

@@ -57,8 +57,8 @@ Result<Answer> Export(const ExportOptions& options) {
                  {"remarks", report->remarks}},
                 "wrote " + options.out + ": " + std::to_string(report->participants) +
                     (report->participants == 1 ? " participant, " : " participants, ") +
-                    std::to_string(report->trials) + " trials; who is who is in " + key_path +
-                    " alone"};
+                    std::to_string(report->trials) + " trials; only " + key_path +
+                    " relates their numbers to participants"};
   for (const std::string& remark : report->remarks) answer.text += "\nleft out: " + remark;
   return answer;
 }

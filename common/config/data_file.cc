@@ -84,8 +84,7 @@ Result<std::string> ReadNamed(const std::string& name, const std::string& folder
   const std::string file = folder + "/" + name + ".json";
   const std::string names = BuiltInNames(folder, data_folder);
   if (!FindDataFile(file, data_folder) && !names.empty()) {
-    return Failure("cannot find " + file + ": \"" + name +
-                   "\" is not built in; there are: " + names);
+    return UsageError("\"" + name + "\" is not built in (no " + file + "); there are: " + names);
   }
   return ReadDataFile(file, data_folder);
 }

@@ -86,10 +86,9 @@ Progress AdapterStep::Advance(const Situation& now, const SetUpOptions& options)
   const bool simulated = std::any_of(devices.begin(), devices.end(),
                                      [](const auto& device) { return device.simulated; });
   if (!now.adapters.empty() || !devices.empty()) {
-    const auto count = static_cast<double>(now.adapters.size());
     std::string note = simulated ? "simulated devices need no adapter" : "devices are attached";
     if (!now.adapters.empty()) note = "Bluetooth adapter " + now.adapters.front();
-    progress.results = {Outcome(Item::kAdapter, "", true, count, "adapters", note)};
+    progress.results = {Outcome(Item::kAdapter, "", true, 0, "", note)};
     progress.finished = true;
     return progress;
   }

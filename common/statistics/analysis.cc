@@ -26,7 +26,7 @@ ordered_json Summary(const Group& group, std::size_t index) {
 /// What to believe of a test for groups that it takes as independent.
 std::string AdviceOnDesign(const StudyTable& table, const std::string& test) {
   const std::string assumption = test + " treats the groups as independent";
-  if (table.blocks) {
+  if (table.blocks && table.blocks->subjects.size() > 1) {
     return "Believe the paired p: each of the " + std::to_string(table.blocks->subjects.size()) +
            " subjects has a value in every group, and " + assumption +
            ", which counts the differences between subjects as noise";

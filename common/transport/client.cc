@@ -223,15 +223,20 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
   }
 
   void OnClose(const std::string& reason) {
+    const auto self = shared_from_this();  // A handler may let the client go.
     const bool refused = std::exchange(close_.refused, false);
     const std::string words = close_.text.empty() ? reason : close_.text;
     connection_.reset();
     wish_.reset();
     subscribed_ = false;
     pulse_.cancel();
+    if (refused) {
+      Retry(LinkState::kRefused, words);
+    } else {
+      Retry(LinkState::kConnecting, "waiting for " + options_.address.Text() + ": " + words);
+    }
+    // After the state: who asks for it on a failure must not find the lost link alive.
     commands_.Fail("the connection was lost before the answer; it may still be carried out");
-    if (refused) return Retry(LinkState::kRefused, words);
-    Retry(LinkState::kConnecting, "waiting for " + options_.address.Text() + ": " + words);
   }
 
   void Retry(LinkState state, const std::string& why) {

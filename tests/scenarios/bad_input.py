@@ -39,12 +39,12 @@ def wrong_starts(stage):
            "--subject", "p07.json")
     expect(stage, USAGE, "track does not apply to --engine pose", "footing-sim", "--engine", "pose",
            "--track", "1")
-    expect(stage, FAILURE, "there are: 1, 2, 3, 4, build, corners, curves, endless, hills, pits, plain, straight", "footing-sim", "--track", "9",
+    expect(stage, USAGE, "there are: 1, 2, 3, 4, build, corners, curves, endless, hills, pits, plain, straight", "footing-sim", "--track", "9",
            "--listen", f"unix:{stage.folder}/unused.sock")
     expect(stage, USAGE, "demo", "footing-stream", "user", "--script", "dance")
     expect(stage, FAILURE, "/nonexistent.csv", "footing-stream", "accel", "--left",
            "/nonexistent.csv", "--rate-hz", 100)
-    expect(stage, FAILURE, "tracks/no_such_track.json", "footing-sim", "--track", "no_such_track",
+    expect(stage, USAGE, "\"no_such_track\" is not built in (no tracks/no_such_track.json)", "footing-sim", "--track", "no_such_track",
            "--listen", f"unix:{stage.folder}/unused.sock")
     expect(stage, INVALID, f"{config}: not JSON", "footing-sim", "--track", config, "--listen",
            f"unix:{stage.folder}/unused.sock")
@@ -53,13 +53,22 @@ def wrong_starts(stage):
 
 
 def wrong_words(stage):
+    (stage.folder / "no_such_key.json").write_text('{\n  "no_such_key": 1}')
+    config = stage.folder / "engine.json"
+    config.write_text('{\n  "engine": "pose"}')
+    shown = stage.run_json("footing-ctl", "config", "show", "--of", "footing-sim", "--origin", "--config", config)
+    assert shown["engine"] == {"value": "pose", "origin": f"{config}:2"}, shown
     expect(stage, USAGE, "a subcommand is missing; there are: devices", "footing-ctl")
+    expect(stage, USAGE, "connects to no server", "footing-ctl", "config", "show", "--connect", stage.sensor)
+    expect(stage, USAGE, "no_such_key", "footing-ctl", "config", "show", "--config", stage.folder / "no_such_key.json")
     expect(stage, USAGE, "connects to no server", "footing-ctl", "trust", "--connect", "tls:127.0.0.1:1")
     expect(stage, USAGE, "takes two names", "footing-game", "--players", "Ann", "--seconds", 1)
     expect(stage, USAGE, "must be 127.0.0.1:PORT", "footing-skeleton", "--web", "0.0.0.0:7180", "--no-publish")
     broker = ("--nats", "tcp:127.0.0.1:1", "--seconds", 1)
     expect(stage, USAGE, "--insecure-lan", "footing-relay", "serve", *broker, "--listen", "tcp:0.0.0.0:7460")
     expect(stage, USAGE, "--token-file", "footing-relay", "serve", *broker, "--listen", "tls:127.0.0.1:7460")
+    expect(stage, USAGE, "unknown --channel nonsense; there are: status, motion", "footing-relay", "publish", *broker,
+           "--channel", "nonsense")
     expect(stage, USAGE, "not a broker's address", "footing-relay", "publish", "--nats", "nonsense")
 
 
@@ -112,6 +121,18 @@ def garbage(address):
     return half_open
 
 
+def one_server(stage):
+    """A game needs footingd, too; a server prints where it listens."""
+    nobody = f"unix:{stage.folder}/nobody.sock"
+    stage.start("footing-sim", "--json", "--sensor", nobody, "--listen", stage.simulation)
+    stage.wait_for_socket(stage.simulation)
+    log = stage.folder / "footing-sim.log"
+    stage.wait_for(lambda: f'{{"listening_on":["{stage.simulation}"]}}' in log.read_text(), "the addresses")
+    expect(stage, NO_DEVICE, f"no footingd: cannot connect to {nobody}", "footing-game", "--sensor", nobody,
+           "--simulation", stage.simulation, "--seconds", 0.5)
+    assert stage.stop("footing-sim") == 0
+
+
 def disturb_nobody(stage):
     stage.start_servers()
     table = stage.folder / "config.json"
@@ -144,6 +165,7 @@ def main(binaries):
         wrong_words(stage)
         wrong_motions(stage)
         no_server(stage)
+        one_server(stage)
         disturb_nobody(stage)
 
 

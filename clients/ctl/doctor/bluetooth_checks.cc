@@ -34,7 +34,7 @@ std::vector<Symptom> NoAdapter(const Facts& facts) {
   const bool any = std::any_of(facts.devices.begin(), facts.devices.end(), IsThere);
   return {
       {any ? Severity::kNote : Severity::kError,
-       any ? "no Bluetooth adapter; the devices that are there do without" : "no Bluetooth adapter",
+       any ? "no Bluetooth adapter; the present devices do not need one" : "no Bluetooth adapter",
        "/sys/class/bluetooth",
        "plug one in (Bluetooth 2.1 or later), and look for it with: lsusb; sudo dmesg | grep -i "
        "bluetooth"}};
@@ -122,8 +122,8 @@ std::vector<Symptom> NotConnected(const Facts& facts) {
     if (!device.paired || device.connected) continue;
     found.push_back({Severity::kWarning, device.name + " is paired but not connected: it sleeps",
                      device.address,
-                     "press a button on it (a board: the power button at its front); if it stays "
-                     "away: bluetoothctl connect " +
+                     "press a button on it (a board: the power button at its front); if that "
+                     "does not connect it: bluetoothctl connect " +
                          device.address});
   }
   return found;
@@ -150,7 +150,7 @@ std::vector<Symptom> ConnectedWithoutNode(const Facts& facts) {
     });
     if (!device.connected || listed) continue;
     found.push_back({Severity::kError,
-                     device.name + " is connected, but the kernel has no HID device of it",
+                     device.name + " is connected, but the kernel has no HID device for it",
                      device.address,
                      "sudo modprobe -a uhid hidp; bluetoothctl disconnect " + device.address +
                          ", then press a button on it"});
@@ -171,7 +171,7 @@ std::vector<Symptom> TooMany(const Facts& facts) {
     found.push_back(
         {adapter.links > kMostLinks ? Severity::kError : Severity::kWarning,
          std::to_string(adapter.links) +
-             " devices on one adapter, which carries 7 at most and 4 well",
+             " devices on one adapter, which supports 7 at most and 4 reliably",
          adapter.name,
          "plug in a second adapter and pair half of the devices there: bluetoothctl list, "
          "then bluetoothctl select ADDRESS"});

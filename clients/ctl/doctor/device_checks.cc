@@ -60,7 +60,7 @@ std::vector<Symptom> Silent(const Facts& facts) {
             IsBoard(device)
                 ? "a board goes silent on weak batteries: change all four, then press its "
                   "power button"
-                : "press a button on it; if it stays silent take out a battery for 5 s"};
+                : "press a button on it; if it stays silent, remove a battery for 5 s"};
       });
 }
 
@@ -69,7 +69,7 @@ std::vector<Symptom> Lost(const Facts& facts) {
       facts, [](const DeviceStatus& device) { return device.state == DeviceState::kLost; },
       [](const DeviceStatus& device) {
         return Symptom{Severity::kWarning,
-                       "it went away" + (device.note.empty() ? "" : ": " + device.note), "",
+                       "it is lost" + (device.note.empty() ? "" : ": " + device.note), "",
                        IsBoard(device) ? "press the board's power button"
                                        : "press a button on it; it keeps its role"};
       });
@@ -96,12 +96,12 @@ std::vector<Symptom> Uncalibrated(const Facts& facts) {
       },
       [](const DeviceStatus& device) {
         const bool move = device.kind == DeviceKind::kPsMove;
-        return Symptom{Severity::kWarning,
-                       "its calibration could not be read or is invalid; typical values are used",
-                       "",
-                       move ? "connect it by USB once while footingd runs: its calibration is kept"
-                            : "switch it off and on to read it again; if it stays, its numbers are "
-                              "only approximate"};
+        return Symptom{
+            Severity::kWarning,
+            "its calibration could not be read or is invalid; typical values are used", "",
+            move ? "connect it by USB once while footingd runs: its calibration is kept"
+                 : "switch it off and on to read it again; if this persists, its numbers are "
+                   "only approximate"};
       });
 }
 
@@ -174,7 +174,7 @@ std::vector<Symptom> Undecodable(const Facts& facts) {
       [&facts](const DeviceStatus& device) {
         return Symptom{Severity::kWarning,
                        std::to_string(device.undecodable) +
-                           " of its reports make no sense: perhaps a copy of the real thing",
+                           " of its reports make no sense: it may be a counterfeit",
                        "",
                        "record it for a report: footing-log record --connect " +
                            facts.footingd_address + " --seconds 10 --out odd.mcap"};
@@ -189,7 +189,7 @@ std::vector<Symptom> LoosePlug(const Facts& facts) {
       },
       [](const DeviceStatus& device) {
         return Symptom{Severity::kWarning,
-                       "its extension was plugged or pulled " +
+                       "its extension was plugged in or out " +
                            std::to_string(device.extension_changes) +
                            " times: a loose plug or a clone",
                        "", "press the plug in, clean its contacts, or try another one"};
@@ -215,8 +215,8 @@ std::vector<Symptom> ClockUncertain(const Facts& facts) {
         return device.state == DeviceState::kLive && device.clock_offset_sd_ms > kPoorClockMs;
       },
       [](const DeviceStatus&) {
-        return Symptom{Severity::kWarning, "the time of its samples is known poorly", "",
-                       "wait 10 s; if it stays, mend its link first (see poor_link)"};
+        return Symptom{Severity::kWarning, "its sampling times are uncertain", "",
+                       "wait 10 s; if this persists, fix its link first (see poor_link)"};
       });
 }
 

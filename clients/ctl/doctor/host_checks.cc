@@ -153,7 +153,7 @@ std::vector<Symptom> WrongDriver(const Facts& facts) {
     if (std::find(right.begin(), right.end(), hid.driver) != right.end()) continue;
     found.push_back({Severity::kWarning, hid.name + " is bound to the driver " + hid.driver,
                      "/sys/bus/hid/devices/" + hid.sysfs_id,
-                     "end the program that brought that driver; " + NeverBlacklist()});
+                     "stop the program that installed that driver; " + NeverBlacklist()});
   }
   return found;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/result/result.h"
 #include "common/transport/server.h"
 #include "footing/v1/session.pb.h"
 
@@ -25,5 +26,8 @@ std::string ChannelName(std::uint32_t field);
 /// The channels of these names, as a server publishes them; names that nobody knows are left out.
 std::vector<transport::Channel> ChannelsNamed(
     const google::protobuf::RepeatedPtrField<std::string>& names);
+
+/// Usage error that lists the channels there are when one of `names` is none of them.
+Result<void> CheckChannels(const std::vector<std::string>& names);
 
 }  // namespace footing::relay

@@ -142,7 +142,11 @@ Result<void> SessionRun::Trial(const plan::Phase& phase) {
     const auto outcome = Attempt(phase);
     if (!outcome) return outcome.error();
     if (*outcome == records::kDeviceLost) {
-      if (!attended) return NoDevice("a device was lost in " + phase.id);
+      if (!attended) {
+        return NoDevice("a device was lost in " + phase.id +
+                        ", which does not count; connect it and run the same command again: the "
+                        "session goes on with this trial");
+      }
       context_.console.Print("This attempt does not count.");
       continue;
     }

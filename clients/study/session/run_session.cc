@@ -130,7 +130,7 @@ Result<void> SessionRun::Run() {
     return UsageError(Describe(progress_, context_.session) + "; a session is never run again");
   }
   if (progress_.started) {
-    console.Print(Describe(progress_, context_.session) + "; the session goes on there");
+    console.Print(Describe(progress_, context_.session) + "; the session resumes there");
   }
   if (context_.journal.torn_bytes() > 0) {
     console.Print("the last line of " + context_.journal.path() + " was torn (" +

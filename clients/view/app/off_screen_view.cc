@@ -11,14 +11,16 @@
 #include "clients/view/render/target.h"
 #include "common/clock/clock.h"
 #include "common/log/log.h"
+#include "common/text/number.h"
 #include "common/units/units.h"
 
 namespace footing::view {
 namespace {
 
 constexpr double kStepS = 1.0 / 60;
-constexpr double kAtS = 1;       // Without --at.
-constexpr double kRecordS = 10;  // Without --seconds.
+constexpr double kAtS = 1;         // Without --at.
+constexpr double kRecordS = 10;    // Without --seconds.
+constexpr double kAnnouncedS = 2;  // A longer wait for a picture is announced.
 
 /// The chain of one off-screen run; its members' order is their order of construction.
 struct Studio {
@@ -69,7 +71,14 @@ struct Studio {
 };
 
 Result<void> TakeScreenshot(Studio& studio) {
+  if (studio.AtS() >= kAnnouncedS) {
+    log::Info("drawing " + studio.options.screenshot + " in " + text::Fixed(studio.AtS(), 0) +
+              " s");
+  }
   const std::int64_t from_ns = studio.WaitForData();
+  if (scene::IsWaiting(studio.show.model()) && !studio.options.camera.alone) {
+    log::Warning("no server has sent anything yet: start footing-sim, or name it with --connect");
+  }
   const auto shot = studio.FollowUntil(from_ns + SecondsToNanoseconds(studio.AtS()));
   const auto written = studio.Shoot(shot, studio.options.screenshot);
   if (written) log::Info("wrote " + studio.options.screenshot);

@@ -69,6 +69,7 @@ int main(int argc, char** argv) {
   for (const Benchmark& benchmark : kBenchmarks) {
     const bool named = std::find(wanted.begin(), wanted.end(), benchmark.name) != wanted.end();
     if (!wanted.empty() && !named) continue;
+    std::cerr << "measuring " << benchmark.name << " (up to some minutes)" << std::endl;
     const auto measured = benchmark.run();
     if (!measured) return footing::cli::Report(measured.error());
     for (const auto& row : *measured) Print(row, json ? std::cerr : std::cout);

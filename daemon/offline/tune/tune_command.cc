@@ -64,7 +64,7 @@ class Tuning {
       return InvalidData(StatePath() + " is of another version; remove it to start again");
     }
     searches_ = std::move(*searches);
-    if (team_.ranks().first()) std::fprintf(stderr, "goes on from %s\n", StatePath().c_str());
+    if (team_.ranks().first()) std::fprintf(stderr, "resuming from %s\n", StatePath().c_str());
     return {};
   }
 
@@ -191,6 +191,10 @@ class Tuning {
     const bool scores_only = options_.iterations == 0;
     const gait::Gains found = GainsAt(start, dimensions_, searches_[index].point);
     const int trials = options_.trials * (scores_only ? 1 : kJudgingTimes);
+    if (team_.ranks().first()) {
+      std::fprintf(stderr, "%s %.3g m/s: scoring %d %strials\n", options_.gait.c_str(),
+                   task.speed_mps, trials, scores_only ? "" : "new ");
+    }
     std::vector<gait::Gains> judged{start};
     if (!scores_only) judged.push_back(found);
     const auto costs = team_.Try(judged, trials, MixSeeds(seed, kJudgingBatch));

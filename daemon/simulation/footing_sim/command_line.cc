@@ -42,7 +42,7 @@ struct Given {
   std::string file;
   std::vector<std::string> settings, listen;
   std::array<std::string, kKeyOptions.size()> values;
-  bool print = false, origin = false, check = false, quiet = false;
+  bool print = false, origin = false, check = false, json = false, quiet = false;
 };
 
 std::unique_ptr<CLI::App> NewParser(Given& given) {
@@ -64,17 +64,20 @@ std::unique_ptr<CLI::App> NewParser(Given& given) {
       "--origin", given.origin,
       "With --print-config: where each value comes from, too (default, FILE:LINE, option)");
   app->add_flag("--check-config", given.check, "Check the config and exit");
+  app->add_flag("--json", given.json, "Print the listening addresses as one JSON object");
   app->add_flag("-q,--quiet", given.quiet, "Log only warnings and errors");
   return app;
 }
 
 }  // namespace
 
-std::optional<int> ReadCommandLine(int argc, char** argv, Config& config) {
+std::optional<int> ReadCommandLine(int argc, char** argv, CommandLine& line) {
   Given given;
+  Config& config = line.config;
   const auto app = NewParser(given);
   if (const auto code = cli::Parse(*app, argc, argv)) return code;
   log::Start("footing-sim", given.quiet);
+  line.json = given.json;
 
   for (std::size_t i = 0; i < kKeyOptions.size(); ++i) {
     const std::string key = kKeyOptions[i].key;

@@ -6,9 +6,14 @@
 
 namespace footing::footing_sim {
 
-/// Reads the command line and the config file into `config` and starts the log. The exit code when
+struct CommandLine {
+  Config config;
+  bool json = false;  ///< Print the listening addresses as one JSON object.
+};
+
+/// Reads the command line and the config file into `line` and starts the log. The exit code when
 /// the program should end now: after --help, --print-config or --check-config, or for an error that
 /// has been printed.
-std::optional<int> ReadCommandLine(int argc, char** argv, Config& config);
+std::optional<int> ReadCommandLine(int argc, char** argv, CommandLine& line);
 
 }  // namespace footing::footing_sim

@@ -1,4 +1,6 @@
 #include <boost/asio/io_context.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "common/cli/cli.h"
@@ -13,12 +15,16 @@
 
 int main(int argc, char** argv) {
   using namespace footing;  // NOLINT: main is wiring
-  footing_sim::Config config;
-  if (const auto code = footing_sim::ReadCommandLine(argc, argv, config)) return *code;
+  footing_sim::CommandLine line;
+  if (const auto code = footing_sim::ReadCommandLine(argc, argv, line)) return *code;
+  footing_sim::Config& config = line.config;
   if (const auto done = clock::FollowTimekeeper(); !done) return cli::Report(done.error());
   boost::asio::io_context io(1);
   const auto served = footing_sim::StartService(io, config, cli::Version());
   if (!served) return cli::Report(served.error());
+  if (line.json) {
+    std::cout << nlohmann::json{{"listening_on", served->listening_on}} << std::endl;
+  }
   service_manager::Notifier notifier(io, served->stuck);
   notifier.Ready("engine " + config.engine);
   service_manager::ServiceSignals::Handlers handlers;
@@ -27,10 +33,11 @@ int main(int argc, char** argv) {
     served->stop(cli::StopReason("footing-sim", signal), std::move(done));
   };
   handlers.reload = [&] {
-    footing_sim::Config wanted;
-    if (footing_sim::ReadCommandLine(argc, argv, wanted)) {
+    footing_sim::CommandLine again;
+    if (footing_sim::ReadCommandLine(argc, argv, again)) {
       return log::Warning("config not reloaded: the one in force stays");
     }
+    const footing_sim::Config& wanted = again.config;
     const auto changed_files = served->reload(wanted.serving);
     if (!changed_files) {
       return log::Warning("config not reloaded: the one in force stays: " +

@@ -101,6 +101,12 @@ class Serving : public std::enable_shared_from_this<Serving<Line>> {
 
   std::string Stuck() const { return line_->thread().Stuck() ? "the simulation thread" : ""; }
 
+  std::vector<std::string> listening_on() const {
+    std::vector<std::string> addresses;
+    for (std::size_t i = 0; i < listening_; ++i) addresses.push_back(server_.ListeningOn(i).Text());
+    return addresses;
+  }
+
   void Stop(const std::string& reason, std::function<void()> done) {
     client_->Stop();
     line_->thread().Stop();
@@ -171,6 +177,7 @@ struct Served {
   std::function<Result<std::vector<std::string>>(const Config& wanted)> reload;
   /// The thread that is stuck; empty: none.
   std::function<std::string()> stuck;
+  std::vector<std::string> listening_on;  ///< Addresses for clients.
 };
 
 /// Makes the line with `make_line(wake_descriptor)` and starts it.
@@ -191,7 +198,7 @@ Result<Served> StartServing(boost::asio::io_context& io, const Config& config,
                   serving->Stop(reason, std::move(done));
                 },
                 [serving](const Config& wanted) { return serving->Reload(wanted); },
-                [serving] { return serving->Stuck(); }};
+                [serving] { return serving->Stuck(); }, serving->listening_on()};
 }
 
 }  // namespace footing::serving

@@ -82,6 +82,7 @@ TEST_F(ProgramTest, AScreenshotNeedsNoDisplayAndNoServer) {
                  View("--screenshot " + png + " --at 0.1 --width 320 --height 180") + " 2>&1");
   EXPECT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_GT(std::filesystem::file_size(png), 1000u);
+  EXPECT_THAT(outcome.output, HasSubstr("no server has sent anything yet"));
 }
 
 TEST_F(ProgramTest, ARecordingIsNumberedPictures) {

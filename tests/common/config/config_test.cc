@@ -134,6 +134,7 @@ TEST(DataFile, ThatIsNowhereNamesThePlaces) {
 TEST(DataFile, AnUnknownNameListsTheBuiltInOnes) {
   const auto result = ReadNamedOrPath("9", "tracks");
   ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().kind, ErrorKind::kUsage);
   EXPECT_THAT(result.error().message, HasSubstr("tracks/9.json"));
   EXPECT_THAT(
       result.error().message,

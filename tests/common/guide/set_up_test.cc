@@ -178,6 +178,8 @@ TEST(SetUp, LeadsFromTheBoxToAReadyRig) {
   std::vector<std::string> missing;
   EXPECT_TRUE(Ready(Merged({}, results, person.devices), person.devices, &missing))
       << (missing.empty() ? "" : missing.front());
+  EXPECT_EQ(Find(results, "adapter")->note, "Bluetooth adapter hci0");
+  EXPECT_EQ(Find(results, "adapter")->unit, "");  // No number such as "1.0 adapters" in its line.
   EXPECT_EQ(Find(results, "tare", "serial-1")->residual, 0.7);
   EXPECT_EQ(Find(results, "mounting", "serial-3")->unit, "deg");
   EXPECT_EQ(Find(results, "weigh")->note, "70.2 kg");  // 70 kg and 1 N on each board.

@@ -163,6 +163,15 @@ TEST(Analysis, TwoSidedPIsAtLeastTheSmallerOneSidedOne) {
   }
 }
 
+TEST(Analysis, NobodyIsToBelieveThePairedPOfOneSubject) {
+  const auto table =
+      ParseStudyTable("subject,group_index,group,value\np1,0,stick,3\np1,1,wrist,5\n",
+                      {"data.csv", "", TableUse::kIndependent});
+  ASSERT_TRUE(table) << table.error().message;
+  const auto report = RunTest(*table, {TestKind::kSteel, {}}, Alternative::kTwoSided);
+  EXPECT_EQ(report.at("note").get<std::string>().find("Believe the paired p"), std::string::npos);
+}
+
 TEST(Analysis, NoteNamesWhatToBelieve) {
   const auto note = [](const StudyTable& table, const Case& one) {
     return RunTest(table, one, Alternative::kTwoSided).at("note").get<std::string>();

@@ -1,6 +1,7 @@
 #include "common/transport/client.h"
 
 #include <numeric>
+#include <optional>
 
 #include "common/clock/clock.h"
 #include "tests/common/transport/server_fixture.h"
@@ -184,6 +185,21 @@ TEST_F(ClientTest, ACommandComesBackWithItsAnswer) {
   client_->Send(command, [&](const v1::CommandResult& result) { answer = result; });
   EXPECT_TRUE(RunUntil([&] { return answer.ok(); }));
   EXPECT_EQ(commands_[0].second.set_leds().leds(), 3u);
+}
+
+TEST_F(ClientTest, ACommandThatLosesItsConnectionFailsWhenTheLinkIsNoLongerLive) {
+  StartServer();
+  StartClient(ClientOn(UnixAddress()));
+  ASSERT_TRUE(RunUntilState(LinkState::kLive));
+  std::optional<LinkState> state;
+  client_->Send({}, [&](const v1::CommandResult& result) {
+    EXPECT_FALSE(result.ok());
+    state = client_->state();
+  });
+  server_->Stop("restart");
+  server_.reset();
+  ASSERT_TRUE(RunUntil([&] { return state.has_value(); }));
+  EXPECT_EQ(*state, LinkState::kConnecting);
 }
 
 TEST_F(ClientTest, ACommandWithoutAConnectionFailsAtOnceWithTheReason) {

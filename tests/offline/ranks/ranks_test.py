@@ -71,7 +71,7 @@ def same_table(folder):
     # What ranks kept a single process goes on with, and the other way round.
     again = [tune(2, alone, 2), tune(0, shared, 2)]
     for outcome in again:
-        assert outcome.returncode == 0 and outcome.stderr.count("goes on from") == 1, outcome.stderr
+        assert outcome.returncode == 0 and outcome.stderr.count("resuming from") == 1, outcome.stderr
     assert again[0].stdout.replace("alone", "shared") == again[1].stdout
 
 

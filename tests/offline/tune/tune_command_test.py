@@ -27,7 +27,8 @@ with tempfile.TemporaryDirectory() as folder:
     first, second = tune(broken, 1), tune(broken, 2)
     for done in (first, second, tune(unbroken, 2, "--threads", "1")):
         assert done.returncode == 0, done.stderr
-    assert "goes on from" not in first.stderr and "goes on from" in second.stderr
+    assert "resuming from" not in first.stderr and "resuming from" in second.stderr
+    assert "step 0 m/s: scoring 8 new trials\n" in first.stderr, first.stderr
     assert without_comment(broken) == without_comment(unbroken)
     assert "--seed 5" in broken.read_text() and "seed 5" in broken.read_text().splitlines()[0]
     assert broken.with_suffix(".svg").read_text().count("<polyline") == 2

@@ -1,10 +1,13 @@
 #include "daemon/offline/eval/calibration/calibration_command.h"
 
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/clock/clock.h"
 #include "daemon/offline/eval/calibration/trial.h"
 #include "daemon/offline/eval/report/print_report.h"
+#include "daemon/offline/eval/report/progress.h"
 
 namespace footing::eval {
 namespace {
@@ -41,7 +44,9 @@ void AddCalibrationCommand(CLI::App& app, Shared& shared) {
   command->callback([trial, placement, &shared] {
     if (trial->method == "poses" && placement->count() == 0)
       trial->placement_sd_m = kPosePlacementSdM;
-    shared.exit_code = PrintResult(RunCalibrationTrial(*trial), shared.json);
+    Progress progress("calibration", "trials", trial->trials, clock::MonotonicNs());
+    const auto on_done = [&](int done) { progress.Done(done, clock::MonotonicNs(), std::cerr); };
+    shared.exit_code = PrintResult(RunCalibrationTrial(*trial, on_done), shared.json);
   });
 }
 

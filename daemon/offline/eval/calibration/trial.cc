@@ -175,7 +175,8 @@ const std::vector<std::string>& CalibrationMethods() {
   return kMethods;
 }
 
-Result<ordered_json> RunCalibrationTrial(const CalibrationTrial& trial) {
+Result<ordered_json> RunCalibrationTrial(const CalibrationTrial& trial,
+                                         const std::function<void(int done)>& on_done) {
   noise::Random random(trial.seed);
   Errors errors;
   for (int i = 0; i < trial.trials; ++i) {
@@ -190,6 +191,7 @@ Result<ordered_json> RunCalibrationTrial(const CalibrationTrial& trial) {
     } else if (errors.refusal.empty()) {
       errors.refusal = pose.error().message;
     }
+    on_done(i + 1);
   }
   const double count = std::max<double>(1, static_cast<double>(errors.turn_deg.size()));
   ordered_json row = {{"method", trial.method},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ const std::vector<std::string>& CalibrationMethods();
 
 /// Renders the sphere on every mark, finds it, calibrates, and compares: the turn, and a hand 1.2 m
 /// above the origin.
-Result<nlohmann::ordered_json> RunCalibrationTrial(const CalibrationTrial& trial);
+Result<nlohmann::ordered_json> RunCalibrationTrial(const CalibrationTrial& trial,
+                                                   const std::function<void(int done)>& on_done);
 
 }  // namespace footing::eval

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "daemon/offline/eval/gait/step_cost.h"
 #include "daemon/offline/eval/gait/trial.h"
 #include "daemon/offline/eval/report/print_report.h"
+#include "daemon/offline/eval/report/progress.h"
 #include "daemon/simulation/biped/limits.h"
 
 namespace footing::eval {
@@ -129,7 +131,9 @@ Result<Trials> RunTrials(const GaitOptions& options, std::uint64_t seed) {
   trials.survived_s_min = options.seconds;
   const std::int64_t wall_ns = clock::MonotonicNs();
   const std::int64_t cpu_ns = clock::ThreadCpuNs();
+  Progress progress("gait", "trials", options.trials, wall_ns);
   for (int i = 0; i < options.trials; ++i) {
+    progress.Done(i, clock::MonotonicNs(), std::cerr);
     if (auto run = RunTrial(options, TrialSeed(seed, i), trials); !run) return run.error();
   }
   trials.cpu_s = NanosecondsToSeconds(clock::ThreadCpuNs() - cpu_ns);
@@ -182,7 +186,9 @@ int RunSweep(const GaitOptions& options, std::uint64_t seed, bool json) {
                         .phases = options.push_phases,
                         .impulse_ns = options.push_ns};
   PushSweepResult result;
+  Progress progress("gait", "trials", options.trials, clock::MonotonicNs());
   for (int i = 0; i < options.trials; ++i) {
+    progress.Done(i, clock::MonotonicNs(), std::cerr);
     const auto run = RunPushSweep(sweep, TrialSeed(seed, i), result);
     if (!run) return cli::Report(run.error());
   }

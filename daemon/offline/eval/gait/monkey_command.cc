@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <vector>
 
 #include "common/cli/cli.h"
+#include "common/clock/clock.h"
 #include "common/units/units.h"
 #include "daemon/offline/eval/gait/trial.h"
 #include "daemon/offline/eval/report/print_report.h"
+#include "daemon/offline/eval/report/progress.h"
 #include "daemon/offline/tracking/tracking.h"
 #include "daemon/simulation/biped/limits.h"
 
@@ -84,7 +87,7 @@ biped::GaitCommand DrawCommand(bool gentle, Random& random) {
 
 /// One trial; a fall is put back by the engine and the trial goes on.
 Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, int trial,
-                      Outcome& outcome) {
+                      Progress& progress, Outcome& outcome) {
   Result<engine::GaitEngine> engine = NewEngine();
   if (!engine) return engine.error();
   Random random(TrialSeed(seed, trial));
@@ -100,6 +103,7 @@ Result<void> RunTrial(const MonkeyOptions& options, std::uint64_t seed, int tria
         ++outcome.commands[static_cast<std::size_t>(became)];
       }
       next_s = time_s + random.Uniform(0.5, 4);
+      progress.Done(outcome.simulated_s + time_s, clock::MonotonicNs(), std::cerr);
       const biped::GaitCommand command =
           options.whole_range ? DrawAccepted(random) : DrawCommand(options.gentle, random);
       given = {time_s, command.speed_mps, state.falls};
@@ -137,21 +141,24 @@ int RunMonkey(const MonkeyOptions& options, bool json) {
   const Result<std::uint64_t> seed = ParseSeed(options.seed);
   if (!seed) return cli::Report(seed.error());
   Outcome outcome;
+  Progress progress("monkey", "s simulated", options.trials * options.seconds,
+                    clock::MonotonicNs());
   for (int i = 0; i < options.trials; ++i) {
-    if (auto run = RunTrial(options, *seed, i, outcome); !run) {
+    if (auto run = RunTrial(options, *seed, i, progress, outcome); !run) {
       return cli::Report(run.error());
     }
   }
   const int commands = std::accumulate(outcome.commands.begin(), outcome.commands.end(), 0);
   const int judged = commands - outcome.of(Tracking::kShort);
-  const double tracked = outcome.of(Tracking::kTracked);
+  nlohmann::ordered_json tracked;  // Null: no command lasted long enough.
+  if (judged > 0) tracked = static_cast<double>(outcome.of(Tracking::kTracked)) / judged;
   nlohmann::ordered_json report{
       {"seed", *seed},
       {"simulated_s", outcome.simulated_s},
       {"falls", outcome.falls},
       {"mean_time_between_falls_s", outcome.simulated_s / std::max(1, outcome.falls)},
       {"falls_by_gait", nlohmann::ordered_json::object()},
-      {"commands_tracked_fraction", tracked / std::max(1, judged)},
+      {"commands_tracked_fraction", tracked},
       {"untracked",
        {{"gait", outcome.of(Tracking::kOtherGait)},
         {"fell", outcome.of(Tracking::kFell)},

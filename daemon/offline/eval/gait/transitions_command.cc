@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "common/cli/cli.h"
+#include "common/clock/clock.h"
 #include "common/text/quantile.h"
 #include "daemon/offline/eval/gait/transition_trial.h"
+#include "daemon/offline/eval/report/print_report.h"
+#include "daemon/offline/eval/report/progress.h"
 
 namespace footing::eval {
 namespace {
@@ -67,7 +71,9 @@ int RunTransitions(const TransitionOptions& options, bool json) {
   int succeeded = 0, falls = 0;
   std::vector<double> latencies_s;
   Leaps leaps;
+  Progress progress("transitions", "trials", options.trials, clock::MonotonicNs());
   for (int i = 0; i < options.trials; ++i) {
+    progress.Done(i, clock::MonotonicNs(), std::cerr);
     const Result<TransitionResult> trial =
         RunTransition(from, to, TrialSeed(*seed, i), options.speeds);
     if (!trial) return cli::Report(trial.error());

@@ -1,4 +1,5 @@
-"""Sweeps of pushes: light ones are survived from every side, a push of 90 N s throws over."""
+"""Sweeps of pushes: light ones are survived from every side, a push of 90 N s throws over. Random commands that
+were too short to judge have no tracked fraction."""
 import json
 import subprocess
 import sys
@@ -21,4 +22,8 @@ if report["falls"] < 4 or report["falls"] != sum(report["falls_by_direction"]):
     problems.append(f"step, 90 N s: {report}")
 if not 10 <= report["largest_survived_ns"] < 90:
     problems.append(f"largest push survived while stepping: {report['largest_survived_ns']} N s")
+done = subprocess.run([sys.argv[1], "monkey", "--seconds", "2", "--json"], check=True, capture_output=True, text=True)
+report = json.loads(done.stdout)
+if report["commands_of_3_s"] != 0 or report["commands_tracked_fraction"] is not None:
+    problems.append(f"monkey of 2 s: {report}")
 sys.exit("\n".join(problems) or 0)

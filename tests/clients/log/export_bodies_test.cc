@@ -1,4 +1,4 @@
-#include "clients/log/export_bvh.h"
+#include "clients/log/export_bodies.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 
 #include "common/body/kinematics.h"
 #include "common/virtual/motion/bvh.h"
+#include "common/virtual/motion/trc.h"
 #include "common/wire/wire.h"
 
 namespace footing::log_client {
@@ -85,8 +86,31 @@ TEST(MotionGatherer, TimeThatGoesBackIsRefused) {
   EXPECT_EQ(gatherer.Finish().error().kind, ErrorKind::kInvalidData);
 }
 
-TEST(ExportBvh, AFileThatIsNoneIsRefusedByName) {
-  const auto exported = ExportBvh("/nowhere/walk.mcap", "/tmp", false);
+TEST(JointPlaces, AreTheLinksOfEveryFrameInTheAxesOfOpenSim) {
+  MotionGatherer gatherer(Chain());
+  for (int i = 0; i < 60; ++i) gatherer.Add(FrameAt(7 + i / 120.0, 0.02 * i));
+  const auto motion = gatherer.Finish();
+  ASSERT_TRUE(motion.ok()) << motion.error().message;
+  // Through the file and back: places in mm with decimals.
+  const auto read = motion::ParseTrc(motion::WriteTrc(JointPlaces(*motion), "a.trc"), "a.trc");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->names, (std::vector<std::string>{"root", "spine", "top"}));
+  EXPECT_EQ(read->start_s, 0);
+  ASSERT_EQ(read->frames(), 60);
+  EXPECT_NEAR(read->p[0](1, 0), 1, 1e-5);  // The root is 1 m above the floor: y is up.
+  for (const int i : {0, 30, 59}) {
+    const v1::CharacterFrame frame = FrameAt(7 + i / 120.0, 0.02 * i);
+    for (int link = 0; link < 3; ++link) {
+      const Eigen::Vector3d true_m = wire::FromProto(frame.characters(0).links(link).position_m());
+      const Eigen::Vector3d p_W = motion::ToWorld(
+          motion::FileAxes::kYUp, Eigen::Vector3d(read->p[static_cast<std::size_t>(link)].col(i)));
+      EXPECT_NEAR((p_W - true_m).norm(), 0, 1e-5) << i << " " << link;
+    }
+  }
+}
+
+TEST(ExportBodies, AFileThatIsNoneIsRefusedByName) {
+  const auto exported = ExportBodies("/nowhere/walk.mcap", "/tmp", BodyFormat::kTrc, false);
   ASSERT_FALSE(exported.ok());
   EXPECT_NE(exported.error().message.find("/nowhere/walk.mcap"), std::string::npos);
 }

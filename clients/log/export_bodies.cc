@@ -1,4 +1,4 @@
-#include "clients/log/export_bvh.h"
+#include "clients/log/export_bodies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "clients/log/contents.h"
+#include "common/body/kinematics.h"
 #include "common/mcap/walk.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
 #include "common/virtual/motion/bvh.h"
+#include "common/virtual/motion/trc.h"
 #include "common/wire/wire.h"
 
 namespace footing::log_client {
@@ -107,7 +109,35 @@ Result<motion::Motion> MotionGatherer::Finish() const {
   return motion;
 }
 
+motion::MarkerTracks JointPlaces(const motion::Motion& motion) {
+  motion::MarkerTracks tracks;
+  tracks.rate_hz = motion.rate_hz;
+  body::Kinematics at(motion.skeleton);
+  for (int i = 0; i < motion.skeleton.size(); ++i) {
+    tracks.names.push_back(motion.skeleton.joint(i).name);
+    tracks.p.emplace_back(3, motion.frames());
+  }
+  for (Eigen::Index frame = 0; frame < motion.frames(); ++frame) {
+    body::ComputeKinematics(motion.skeleton, motion.q.col(frame), at);
+    for (std::size_t i = 0; i < tracks.p.size(); ++i) {
+      const Eigen::Vector3d& p_W = at.p_WJ[i];
+      tracks.p[i].col(frame) << p_W.x(), p_W.z(), -p_W.y();
+    }
+  }
+  return tracks;
+}
+
 namespace {
+
+std::string Written(const motion::Motion& motion, BodyFormat format, const std::string& name) {
+  switch (format) {
+    case BodyFormat::kBvh:
+      return motion::WriteBvh(motion);
+    case BodyFormat::kTrc:
+      return motion::WriteTrc(JointPlaces(motion), name);
+  }
+  return "";
+}
 
 /// One gatherer a skeleton, in the order of the recording.
 class Walker {
@@ -177,8 +207,9 @@ class Walker {
 
 }  // namespace
 
-Result<std::vector<ExportedMotion>> ExportBvh(const std::string& recording,
-                                              const std::string& folder, bool replace) {
+Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
+                                                 const std::string& folder, BodyFormat format,
+                                                 bool replace) {
   Result<recording::MappedFile> file = recording::MappedFile::Open(recording);
   if (!file) return file.error();
   const auto gatherers = Walker().Run(file->bytes(), recording);
@@ -191,11 +222,12 @@ Result<std::vector<ExportedMotion>> ExportBvh(const std::string& recording,
     const auto motion = gatherer.Finish();
     if (!motion) return InvalidData(recording + ": " + motion.error().message);
     const std::string code = gatherer.subject().empty() ? "" : "_" + gatherer.subject();
-    const std::string path =
-        folder + "/pose_" + std::to_string(exported.size() + 1) + code + ".bvh";
+    const std::string name = "pose_" + std::to_string(exported.size() + 1) + code +
+                             (format == BodyFormat::kBvh ? ".bvh" : ".trc");
+    const std::string path = folder + "/" + name;
     Result<recording::OutputFile> out = recording::OutputFile::Create(path, replace);
     if (!out) return out.error();
-    if (const auto written = out->Write(motion::WriteBvh(*motion)); !written) {
+    if (const auto written = out->Write(Written(*motion, format, name)); !written) {
       return written.error();
     }
     exported.push_back(

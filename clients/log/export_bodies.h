@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/result/result.h"
+#include "common/virtual/motion/markers.h"
 #include "common/virtual/motion/motion.h"
 #include "footing/v1/character.pb.h"
 
@@ -39,10 +40,19 @@ class MotionGatherer {
   std::string subject_;
 };
 
-/// Writes a BVH file for each subject of a recording of the pose engine into `folder`:
+/// The joints of every frame, in the axes of TRC files (OpenSim: x ahead, y up, z right), from 0 s.
+motion::MarkerTracks JointPlaces(const motion::Motion& motion);
+
+enum class BodyFormat {
+  kBvh,  ///< Skeleton and rotations.
+  kTrc,  ///< Places of the joints.
+};
+
+/// Writes a file for each subject of a recording of the pose engine into `folder`:
 /// "pose_1_p07.bvh", ... A recording without one is InvalidData; an existing file is a usage error,
 /// unless `replace`.
-Result<std::vector<ExportedMotion>> ExportBvh(const std::string& recording,
-                                              const std::string& folder, bool replace);
+Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
+                                                 const std::string& folder, BodyFormat format,
+                                                 bool replace);
 
 }  // namespace footing::log_client
