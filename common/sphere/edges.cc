@@ -48,7 +48,7 @@ double Quantile(std::vector<double>& values, double share) {
 /// At the sensor's limit where the sphere is not.
 bool Outshines(const Levels& levels, const Levels& inside) {
   for (std::size_t i = 0; i < 3; ++i)
-    if (levels[i] >= kClippedDn && inside[i] < kClippedDn) return true;
+    if (levels[i] >= kClippedDn && inside[i] < kBrightDn) return true;
   return false;
 }
 

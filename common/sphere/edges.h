@@ -22,6 +22,8 @@ struct Contrast {
 
 inline constexpr int kEdgeRays = 32;
 inline constexpr int kClippedDn = 250;  ///< Pixels from here on are at the sensor's limit.
+/// In a channel that is brighter within the sphere, its own light may come to the limit.
+inline constexpr double kBrightDn = 0.5 * kClippedDn;
 
 /// The middle of a blob, in at most some hundred quads; of a small one the middle quad.
 using InnerQuads = std::vector<std::pair<int, int>>;

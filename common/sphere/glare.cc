@@ -14,7 +14,7 @@ void Glare::Find(const Image& image, const QuadWindow& window, const std::array<
   is_any_ = false;
   const auto is_clipped = [&](int u, int v) {
     return image.Value(u, v) >= kClippedDn &&
-           inside[static_cast<std::size_t>(image.Channel(u, v))] < kClippedDn;
+           inside[static_cast<std::size_t>(image.Channel(u, v))] < kBrightDn;
   };
   const double reach_quads = 0.5 * reach_px;
   const int beside = static_cast<int>(std::ceil(reach_quads));

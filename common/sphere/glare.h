@@ -13,8 +13,8 @@ namespace footing::sphere {
 /// beyond the limit is unknown, and so is what the blur carries from there to its neighbours.
 class Glare {
  public:
-  /// Looks at the quads of a window. A channel counts whose level `inside` the sphere is below the
-  /// limit; `reach_px` is how far such a pixel's light goes.
+  /// Looks at the quads of a window. A channel counts whose level `inside` the sphere is below
+  /// kBrightDn; `reach_px` is how far such a pixel's light goes.
   void Find(const Image& image, const QuadWindow& window, const std::array<double, 3>& inside,
             double reach_px);
   /// Whether it reaches a quad of the window.
