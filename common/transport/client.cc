@@ -230,11 +230,8 @@ class Client::Implementation : public std::enable_shared_from_this<Implementatio
     wish_.reset();
     subscribed_ = false;
     pulse_.cancel();
-    if (refused) {
-      Retry(LinkState::kRefused, words);
-    } else {
-      Retry(LinkState::kConnecting, "waiting for " + options_.address.Text() + ": " + words);
-    }
+    Retry(refused ? LinkState::kRefused : LinkState::kConnecting,
+          refused ? words : "waiting for " + options_.address.Text() + ": " + words);
     // After the state: who asks for it on a failure must not find the lost link alive.
     commands_.Fail("the connection was lost before the answer; it may still be carried out");
   }

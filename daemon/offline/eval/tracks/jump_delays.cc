@@ -23,8 +23,7 @@ double Delay::sd_s() const {
   return std::sqrt(std::max(0.0, sum_s2 - sum_s * sum_s / n) / (n - 1));
 }
 
-void JumpDelays::Add(double time_s, bool meant, bool commanded, bool jumps,
-                     double delay_s) {
+void JumpDelays::Add(double time_s, bool meant, bool commanded, bool jumps, double delay_s) {
   if (meant) meant_s_ = time_s;
   if (time_s - meant_s_ > delay_s) begun_s_.reset();
   // A gesture in a jump, or under a command, asks for nothing new.

@@ -15,7 +15,8 @@ constexpr Lasting kNever{-1, -1};
 constexpr double kAnsweredWithinS = 0.5;
 
 /// A gesture, its command and the jump, in 10 s.
-JumpDelays Timed(const Lasting& meant, const Lasting& commanded, const Lasting& jumps, double fall_s = -1) {
+JumpDelays Timed(const Lasting& meant, const Lasting& commanded, const Lasting& jumps,
+                 double fall_s = -1) {
   JumpDelays delays;
   for (int i = 0; i < 1000; ++i) {
     const double time_s = 0.01 * i;
