@@ -5,14 +5,13 @@
 #include <numbers>
 #include <vector>
 
-#include "common/sphere/disc_choice.h"
 #include "common/sphere/disc_fitter.h"
 
 namespace footing::sphere {
 namespace {
 
 using disc::Fitter;
-using disc::Mode, disc::Sample, disc::Solution, disc::State;
+using disc::Sample, disc::Solution, disc::State;
 
 constexpr int kMostPixels = 700, kMostPixelsMoving = 400;  // A moving one costs twice as much.
 constexpr double kFarBlurs = 4;       // Beyond the edge; the background needs no more.
@@ -23,6 +22,7 @@ constexpr double kPoorSds = 4;         // A misfit that noise does not explain.
 constexpr double kGoodSds = 2.5;       // One that it does.
 constexpr double kHiddenMargin = 2.5;  // Blurs from an occluder's edge.
 constexpr std::size_t kEdgeStep = 4;   // Of the places that are tried first.
+constexpr std::size_t kSomePixels = 200;
 // Of a smaller sphere what hides a part looks like its edge. A misfit that nothing explains is then
 // taken for coherent: it can move each of three parameters by the root of a third of its chi².
 constexpr double kSmallBlurs = 5;
@@ -31,6 +31,12 @@ constexpr int kFewestHidden = 3;  // Sectors; one or two are noise.
 struct Fit {
   Solution solution;
   std::vector<bool> sectors;  // Of the edge that it used.
+};
+
+/// An explanation of the light.
+struct Mode {
+  Solution solution;
+  bool moves = false;
 };
 
 class Strategy {
@@ -53,20 +59,20 @@ class Strategy {
     if (start_.motion_px && start_.motion_px->norm() > kLeastMotionPx) {
       if (auto fit = Moving(*start_.motion_px, {1})) Take(*fit);
     }
-    if (!best_ && SeenShare() >= kLeastSeenShare) {
+    if (!best_) {
       disc::MotionScore score;
       if (auto fit = AtRest(score)) Take(*fit);
-      if (CanBeTrusted() && score.chi2 > kMaybeMoves && score.motion_px.norm() > 0) {
+      if (score.chi2 > kMaybeMoves && score.motion_px.norm() > 0) {
         std::vector<double> ways = {1, -1};
         if (score.chi2 < kSurelyMoves) ways.push_back(0);
         if (auto fit = Moving(score.motion_px, ways)) Take(*fit);
       }
     }
     const bool is_cut = Hidden() >= kFewestHidden;
-    if (CanBeTrusted() && (!IsGood() || is_cut)) {
+    if (!IsGood() || is_cut) {
       // Fewer pixels always fit better: a hidden part must explain all of the misfit.
       const auto fit = BehindAnEdge();
-      if (fit && fit->solution.misfit_sds < kGoodSds && IsEnough(fit->sectors)) {
+      if (fit && fit->solution.misfit_sds < kGoodSds) {
         Keep(*fit);
         is_behind_edge_ = true;
       } else if (is_cut && IsSmall() && !(best_ && best_->solution.misfit_sds < kGoodSds)) {
@@ -85,33 +91,16 @@ class Strategy {
     return settings_.shutter.speed_sd_mps * settings_.shutter.exposure_s * px_per_m;
   }
 
-  /// Sectors of which something hides the edge.
   int Hidden() const {
     return static_cast<int>(std::count_if(start_.reach.begin(), start_.reach.end(),
                                           [](double reach) { return std::isfinite(reach); }));
   }
 
-  /// No fit uses more of the edge, unless a straight edge says which part is hidden.
-  double SeenShare() const {
-    const auto outshone = std::count(start_.outshone.begin(), start_.outshone.end(), true);
-    return 1 - static_cast<double>(Hidden() + outshone) / kSectors;
-  }
-
-  static bool IsEnough(const std::vector<bool>& sectors) {
-    return Share(sectors) >= kLeastSeenShare;
-  }
-  static double Share(const std::vector<bool>& sectors) {
-    return static_cast<double>(std::count(sectors.begin(), sectors.end(), true)) / kSectors;
-  }
-
-  /// Whether finding out how it moves or what hides it is worth the time.
-  bool CanBeTrusted() const { return !start_.is_off_colour || IsSmall(); }
   bool IsSmall() const { return begin_.shape[2] < kSmallBlurs * fitter_.Blur(); }
   bool IsGood() const { return best_ && best_->solution.misfit_sds < kPoorSds; }
 
   /// The better one of two by its misfit; of two good ones the later.
   void Take(const Fit& fit) {
-    if (!IsEnough(fit.sectors)) return;
     if (!best_ || fit.solution.misfit_sds <= std::max(kPoorSds, best_->solution.misfit_sds))
       Keep(fit);
   }
@@ -121,26 +110,15 @@ class Strategy {
     clipped_share_ = fitter_.clipped_share();
   }
 
-  /// The same pixels for a sphere at rest and for one behind an edge.
-  void CollectAtRest() {
-    if (at_rest_.empty()) {
-      fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
-      at_rest_ = fitter_.samples();
-    } else {
-      fitter_.Use(at_rest_);
-    }
-  }
-
   std::optional<Fit> AtRest(disc::MotionScore& score) {
-    CollectAtRest();
-    std::vector<bool> used = fitter_.Limit(begin_, start_.reach, start_.outshone);
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
+    std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
     fitter_.LookBehind(begin_, 0, used);
     auto solution = fitter_.Solve(begin_, false, 8);
     if (!solution) return std::nullopt;
     score = fitter_.ScoreMotion(solution->state);
     for (int round = 0; round < 2; ++round) {
       if (fitter_.DropSectors(used) == 0) break;
-      if (!IsEnough(used)) return std::nullopt;
       solution = fitter_.Solve(solution->state, false, 4);
       if (!solution) return std::nullopt;
     }
@@ -153,18 +131,18 @@ class Strategy {
     const double length = motion_px.norm();
     fitter_.Collect(image_, slopes_, start_.middle_px, begin_,
                     kFarBlurs + 0.5 * length / settings_.profile.blur_px, kMostPixelsMoving);
-    std::vector<bool> used = fitter_.Limit(begin_, start_.reach, start_.outshone);
+    std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
     fitter_.LookBehind(begin_, length, used);
     const std::vector<Sample> all = fitter_.samples();
     std::vector<Mode> modes;
-    fitter_.Use(disc::Thinned(all));
+    fitter_.Use(Thinned(all));
     for (const double factor : factors) {
       State state = begin_;
       state.motion_px = factor * motion_px;
       const bool moves = factor != 0;
       if (const auto found = fitter_.Solve(state, moves, 4)) modes.push_back({*found, moves});
     }
-    disc::KeepLikely(modes);
+    KeepLikely(modes);
     fitter_.Use(all);
     std::vector<Solution> solutions = SolveAgain(modes);
     // The likeliest one was solved last.
@@ -182,21 +160,32 @@ class Strategy {
     return solutions;
   }
 
+  /// Those that are likely, the likeliest last.
+  static void KeepLikely(std::vector<Mode>& modes) {
+    constexpr double kUnlikely = 4;  // In the exponent, of a part of the pixels.
+    std::sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) {
+      return a.solution.log_evidence < b.solution.log_evidence;
+    });
+    const double most = modes.empty() ? 0 : modes.back().solution.log_evidence;
+    std::erase_if(modes,
+                  [&](const Mode& mode) { return mode.solution.log_evidence < most - kUnlikely; });
+  }
+
   /// A straight edge hides what is beyond it: through a place where the light ends, across the way
   /// there. Its blurred light is left out; the place is taken with the best of Akaike's costs. A
   /// part of the pixels is enough to find it.
   std::optional<Fit> BehindAnEdge() {
-    CollectAtRest();
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
     std::vector<bool> clear(kSectors, true);
     fitter_.LookBehind(begin_, 0, clear);
-    const std::vector<Sample> all = fitter_.samples(), some = disc::Thinned(all);
+    const std::vector<Sample> all = fitter_.samples(), some = Thinned(all);
     const auto count = start_.edges.size();
     std::vector<std::optional<Solution>> tried(count);
     std::optional<std::size_t> best;
     const auto attempt = [&](std::size_t i) {
       if (tried[i]) return;
       tried[i] = Before(i, some, 3);
-      const auto cost = [&](std::size_t k) { return disc::Cost(*tried[k], some.size()); };
+      const auto cost = [&](std::size_t k) { return Cost(*tried[k], some.size()); };
       if (tried[i] && (!best || cost(i) < cost(*best))) best = i;
     };
     const bool fits = IsGood();
@@ -214,9 +203,24 @@ class Strategy {
     return Fit{*solution, SectorsBefore(*best, solution->state, clear)};
   }
 
+  /// Akaike's: each pixel that is left out has a level of its own, which is a parameter.
+  static double Cost(const Solution& solution, std::size_t all) {
+    return solution.misfit * static_cast<double>(solution.pixels) +
+           2 * static_cast<double>(all - solution.pixels);
+  }
+
   /// In a sector without the cone's edge.
   bool IsHidden(const Eigen::Vector2d& edge) const {
     return std::isfinite(start_.reach[static_cast<std::size_t>(SectorOf(edge - start_.cone.axis))]);
+  }
+
+  static std::vector<Sample> Thinned(const std::vector<Sample>& all) {
+    const std::size_t every = 1 + all.size() / kSomePixels;
+    std::vector<Sample> some;
+    // Four pixels of a quad stay together.
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (i / 4 % every == 0) some.push_back(all[i]);
+    return some;
   }
 
   double Margin() const { return kHiddenMargin * fitter_.Blur(); }
@@ -265,7 +269,9 @@ class Strategy {
     fit.motion_px = solution.state.motion_px;
     fit.misfit = solution.misfit;
     fit.residual_share = solution.residual_share;
-    fit.used_share = Share(best_->sectors);
+    fit.used_share =
+        static_cast<double>(std::count(best_->sectors.begin(), best_->sectors.end(), true)) /
+        kSectors;
     fit.clipped_share = clipped_share_;
     fit.is_doubtful = is_behind_edge_ || fit.cone.tangent < 2 * fitter_.Blur();
     return fit;
@@ -278,7 +284,6 @@ class Strategy {
   disc::PixelScale scale_;
   Fitter fitter_;
   State begin_;
-  std::vector<Sample> at_rest_;
   std::optional<Fit> best_;
   double clipped_share_ = 0;
   bool is_behind_edge_ = false;

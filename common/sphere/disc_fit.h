@@ -15,7 +15,6 @@
 namespace footing::sphere {
 
 inline constexpr int kSectors = kEdgeRays;
-inline constexpr double kLeastSeenShare = 0.2;  ///< Of the sectors; a fit of fewer says nothing.
 using SectorReach = std::array<double, kSectors>;
 
 /// Number of the sector in which a direction lies, the first one around +u, then towards +v.
@@ -29,10 +28,8 @@ struct DiscStart {
   /// Of each sector, seen from the cone's axis, the slope up to which the sphere is seen; infinite
   /// where the cone's edge is.
   SectorReach reach{};
-  std::array<bool, kSectors> outshone{};  ///< Sectors with a lamp behind the edge; not hidden.
-  std::vector<Eigen::Vector2d> edges;     ///< Slopes at which the light falls to the half.
+  std::vector<Eigen::Vector2d> edges;  ///< Slopes at which the light falls to the half.
   double radius_m = 0.0225;
-  bool is_off_colour = false;                     ///< Its colour alone says that it is not trusted.
   std::optional<Eigen::Vector2d> motion_px = {};  ///< During an exposure, by the frames before.
 };
 
@@ -55,8 +52,7 @@ struct DiscFit {
 /// background, each colour of the mosaic with two levels of its own. Levenberg-Marquardt on the
 /// pixels as they are; the variance is the sensor's. Sectors whose surroundings do not fit (an
 /// occluder, another lamp behind) are left out. Where the residuals say so, the sphere is fitted as
-/// one that moves, or as one of which a straight edge hides a part; but not when its colour is off
-/// and it is too large for its blur to cause that.
+/// one that moves, or as one of which a straight edge hides a part.
 std::optional<DiscFit> FitDisc(const Image& image, const LocalSlopes& slopes,
                                const DiscStart& start, const Settings& settings,
                                const ProfileTable& table);

@@ -147,9 +147,8 @@ Solution Fitter::Report(const State& state, double cost, bool moves) const {
   solution.excess_chi2 = std::max(0.0, solution.misfit - 1) * freedom / correlation;
   solution.residual_share = std::sqrt(all / std::max(1e-9, contrast));
   const Eigen::LDLT<Normal> solver = normal_.ldlt();
-  solution.covariance =
-      correlation * std::max(1.0, solution.misfit) *
-      solver.solve(Eigen::Matrix<double, kParameters, 3>::Identity()).topRows<3>();
+  solution.covariance = correlation * std::max(1.0, solution.misfit) *
+                        solver.solve(Normal::Identity()).topLeftCorner<3, 3>();
   solution.log_evidence =
       -0.5 * cost / correlation - 0.5 * solver.vectorD().array().abs().log().sum();
   // The density of the motion's prior, and what the correlation makes of two more parameters.

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <vector>
 
 #include "common/sphere/disc_fit.h"
 #include "common/sphere/disc_rows.h"
-#include "common/sphere/glare.h"
 
 namespace footing::sphere::disc {
 
@@ -41,13 +39,11 @@ class Fitter {
          double motion_sd_px)
       : settings_(settings), table_(table), scale_(scale), motion_sd_px_(motion_sd_px) {}
 
-  /// Takes the pixels of a disc and of `far_blurs` around it, some `most_pixels` of them, but none
-  /// that a light at the sensor's limit reaches if the sphere's own light is below that.
+  /// Takes the pixels of a disc and of `far_blurs` around it, some `most_pixels` of them.
   void Collect(const Image& image, const LocalSlopes& slopes, const Eigen::Vector2d& middle_px,
                const State& state, double far_blurs, int most_pixels);
   /// Leaves out what is beyond each sector's reach; says which sectors have the edge in reach.
-  std::vector<bool> Limit(const State& state, const SectorReach& reach,
-                          const std::array<bool, kSectors>& outshone);
+  std::vector<bool> Limit(const State& state, const SectorReach& reach);
   /// See disc::LookBehind; `moving_px` is the travel within the ring.
   void LookBehind(const State& state, double moving_px, std::vector<bool>& sectors);
   /// Leaves out what is not on the near side of a line: (slopes - at) . away < -margin.
@@ -76,7 +72,7 @@ class Fitter {
   void Assemble(const State& state, const Equations<kSize>& equations, Normal& normal,
                 Right& right) const;
   void CollectQuad(const Image& image, const LocalSlopes& slopes, const State& state, int u, int v,
-                   bool is_inside);
+                   double far_blurs, int& quad, int every);
   double BeyondOf(const Eigen::Vector2d& slopes, const State& state) const;
   double PriorCost(const State& state) const;
   Solution Report(const State& state, double cost, bool moves) const;
@@ -87,7 +83,6 @@ class Fitter {
   double motion_sd_px_;
   std::vector<Sample> samples_;
   std::vector<Block> blocks_;  // The same, as they were solved last.
-  Glare glare_;
   int inside_ = 0, clipped_ = 0;
   Normal normal_;  // Of the state that was solved last.
 };

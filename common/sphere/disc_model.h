@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -37,11 +36,6 @@ class PixelScale {
 
   /// Blur across the edge as it is along a direction, in slopes, for a blur of one pixel.
   double Along(const Eigen::Vector2d& unit) const { return std::sqrt(unit.dot(square_ * unit)); }
-  /// The largest in any direction.
-  double Widest() const {
-    const double half = 0.5 * square_.trace();
-    return std::sqrt(half + std::sqrt(std::max(0.0, half * half - square_.determinant())));
-  }
   /// Square of that, as a matrix.
   const Eigen::Matrix2d& square() const { return square_; }
   /// Of a pixel so far from the sphere's axis: how much later its row is exposed, in exposures.

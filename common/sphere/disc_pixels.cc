@@ -11,9 +11,7 @@ namespace footing::sphere {
 namespace disc {
 namespace {
 
-constexpr double kMiddleBlurs = 5;    // From the edge inwards, where the middle begins.
-constexpr double kQuadBlurs = 1.5;    // More than half a quad.
-constexpr double kGlareBlurs = 3.5;   // How far a lamp's light reaches beyond its clipped pixels.
+constexpr int kClippedDn = 250;
 constexpr double kHiddenBlurs = 3.5;  // How far its light reaches beyond an occluder's edge.
 constexpr double kBesideBlurs = 2.5;  // Along the sphere's edge, where half of it is seen.
 
@@ -34,45 +32,31 @@ void Fitter::Collect(const Image& image, const LocalSlopes& slopes,
   const double ring_px = 2 * (far_blurs + 2.5) * settings_.profile.blur_px;
   const double expected = 2 * std::numbers::pi * radius_px * std::min(radius_px, ring_px);
   const int every = 1 + static_cast<int>(expected / most_pixels);
-  // Distances at which a quad is outside or in the middle whatever its direction is.
-  const double widest = settings_.profile.blur_px * scale_.Widest();
-  const double outside = state.shape[2] + (far_blurs + kQuadBlurs) * widest;
-  const double middle = std::max(0.0, state.shape[2] - kMiddleBlurs * widest);
-  // A lamp all around is the background, and its level one of the fit's parameters.
-  std::array<double, 3> limits = state.inside;
-  for (std::size_t c = 0; c < 3; ++c)
-    if (state.outside[c] >= kClippedDn) limits[c] = kClippedDn;
-  glare_.Find(image, {u0 / 2, v0 / 2, (u1 - 1) / 2, (v1 - 1) / 2}, limits,
-              kGlareBlurs * settings_.profile.blur_px);
   int quad = 0;
   for (int v = v0; v < v1; v += 2) {
-    for (int u = u0; u < u1; u += 2) {
-      const Eigen::Vector2d at = slopes.At(u + 0.5, v + 0.5);
-      const double square = (at - state.shape.head<2>()).squaredNorm();
-      if (square > outside * outside) continue;
-      double beyond = -kMiddleBlurs;
-      if (square >= middle * middle) beyond = BeyondOf(at, state);
-      if (beyond > far_blurs + kQuadBlurs) continue;
-      // The middle says little of where the edge is.
-      ++quad;
-      if (quad % (beyond <= -kMiddleBlurs ? 4 * every : every) != 0) continue;
-      CollectQuad(image, slopes, state, u, v, beyond < -1);
-    }
+    for (int u = u0; u < u1; u += 2)
+      CollectQuad(image, slopes, state, u, v, far_blurs, quad, every);
   }
 }
 
 void Fitter::CollectQuad(const Image& image, const LocalSlopes& slopes, const State& state, int u,
-                         int v, bool is_inside) {
-  const bool has_glare = glare_.Reaches(u / 2, v / 2);
+                         int v, double far_blurs, int& quad, int every) {
+  const Eigen::Vector2d at = slopes.At(u + 0.5, v + 0.5);
+  const double beyond = BeyondOf(at, state);
+  if (beyond > far_blurs + 1.5) return;
+  // The middle says little of where the edge is.
+  const bool is_middle = beyond < -5;
+  ++quad;
+  if (quad % (is_middle ? 4 * every : every) != 0) return;
   for (int i = 0; i < 4; ++i) {
     const int at_u = u + i % 2, at_v = v + i / 2;
     Sample sample;
     sample.value = image.Value(at_u, at_v);
-    if (is_inside) {
+    if (beyond < -1) {
       ++inside_;
       clipped_ += sample.value >= kClippedDn ? 1 : 0;
     }
-    if (has_glare || sample.value >= kClippedDn) continue;
+    if (sample.value >= kClippedDn) continue;
     sample.slopes = slopes.At(at_u, at_v);
     sample.channel = image.Channel(at_u, at_v);
     const Eigen::Vector2d pixel_from = sample.slopes - state.shape.head<2>();
@@ -88,14 +72,12 @@ double Fitter::BeyondOf(const Eigen::Vector2d& slopes, const State& state) const
   return (r - state.shape[2]) / (settings_.profile.blur_px * scale_.Along(from / r));
 }
 
-std::vector<bool> Fitter::Limit(const State& state, const SectorReach& reach,
-                                const std::array<bool, kSectors>& outshone) {
+std::vector<bool> Fitter::Limit(const State& state, const SectorReach& reach) {
   const double blur = Blur();
   std::vector<bool> seen(kSectors);
   for (std::size_t s = 0; s < kSectors; ++s) seen[s] = std::isinf(reach[s]);
   const double arc = 2 * std::numbers::pi / kSectors * state.shape[2];
-  std::vector<bool> sectors = WithoutBorders(seen, kBesideBlurs * blur / arc);
-  for (std::size_t s = 0; s < kSectors; ++s) sectors[s] = sectors[s] && !outshone[s];
+  const std::vector<bool> sectors = WithoutBorders(seen, kBesideBlurs * blur / arc);
   std::erase_if(samples_, [&](const Sample& sample) {
     const auto s = static_cast<std::size_t>(sample.sector);
     const double r = (sample.slopes - state.shape.head<2>()).norm();

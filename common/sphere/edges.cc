@@ -12,7 +12,6 @@ using Levels = std::array<double, 3>;
 
 constexpr double kLeastContrastDn = 6;
 constexpr double kInsideQuantile = 0.6;
-constexpr double kLeastKnownShare = 0.25;  // Of a ring around the blob: not at the sensor's limit.
 
 /// Cut at the image's edges.
 QuadWindow Around(const Blob& blob, const Quads& quads, double margin_share) {
@@ -45,59 +44,34 @@ double Quantile(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-/// At the sensor's limit where the sphere is not.
-bool Outshines(const Levels& levels, const Levels& inside) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (levels[i] >= kClippedDn && inside[i] < kBrightDn) return true;
-  return false;
-}
-
-/// Levels of each channel, of one quad after the other.
-class LevelList {
- public:
-  void Add(const Levels& levels) {
-    for (std::size_t i = 0; i < 3; ++i) values_[i].push_back(levels[i]);
-  }
-  std::size_t size() const { return values_[0].size(); }
-  Levels At(double quantile) {
-    return {Quantile(values_[0], quantile), Quantile(values_[1], quantile),
-            Quantile(values_[2], quantile)};
-  }
-
- private:
-  std::array<std::vector<double>, 3> values_;
-};
-
 Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob,
                     const InnerQuads& middle) {
-  LevelList inside, outside, clipped;
-  for (const auto& [x, y] : middle) inside.Add(LevelsAt(image, quads, x, y));
-  Contrast contrast;
-  contrast.inside = inside.At(kInsideQuantile);
-  const auto look = [&](int x, int y) {
+  std::array<std::vector<double>, 3> inside, outside;
+  const auto add = [&](std::array<std::vector<double>, 3>& to, int x, int y) {
     const Levels levels = LevelsAt(image, quads, x, y);
-    (Outshines(levels, contrast.inside) ? clipped : outside).Add(levels);
+    for (std::size_t i = 0; i < 3; ++i) to[i].push_back(levels[i]);
   };
+  for (const auto& [x, y] : middle) add(inside, x, y);
   const QuadWindow ring = Around(blob, quads, 0.25);
   for (int x = ring.left; x <= ring.right; ++x) {
-    look(x, ring.top);
-    look(x, ring.bottom);
+    add(outside, x, ring.top);
+    add(outside, x, ring.bottom);
   }
   for (int y = ring.top + 1; y < ring.bottom; ++y) {
-    look(ring.left, y);
-    look(ring.right, y);
+    add(outside, ring.left, y);
+    add(outside, ring.right, y);
   }
-  const bool is_known = outside.size() > kLeastKnownShare * (outside.size() + clipped.size());
-  contrast.outside = (is_known ? outside : clipped).At(0.5);
+  Contrast contrast;
+  for (std::size_t i = 0; i < 3; ++i) {
+    contrast.inside[i] = Quantile(inside[i], kInsideQuantile);
+    contrast.outside[i] = Quantile(outside[i], 0.5);
+  }
   return contrast;
 }
 
 /// How much of the sphere's light a quad has, 1 inside and 0 outside.
 class LightMap {
  public:
-  /// Of a quad that outshines the sphere; what lies beside it has more than a millionth of that.
-  static constexpr double kOutshone = 1e12;
-
   LightMap(const Image& image, const Quads& quads, const QuadWindow& window,
            const Contrast& contrast, const PixelNoise& noise)
       : window_(window), width_(window.right - window.left + 1) {
@@ -110,14 +84,12 @@ class LightMap {
       weight[channel] = contrast.Height(i) / variance;
       sum += weight[channel] * contrast.Height(i);
     }
-    const bool is_dark = !Outshines(contrast.outside, contrast.inside);
     for (int y = window.top; y <= window.bottom; ++y) {
       for (int x = window.left; x <= window.right; ++x) {
         const Levels levels = LevelsAt(image, quads, x, y);
         double light = 0;
         for (std::size_t i = 0; i < 3; ++i) light += weight[i] * (levels[i] - contrast.outside[i]);
-        const bool is_outshone = is_dark && Outshines(levels, contrast.inside);
-        light_.push_back(is_outshone ? kOutshone : light / sum);
+        light_.push_back(light / sum);
       }
     }
   }
@@ -140,26 +112,17 @@ class LightMap {
   std::vector<double> light_;
 };
 
-/// Where a ray leaves the sphere.
-struct Exit {
-  double distance = 0;  ///< Quads.
-  bool is_outshone = false;
-};
-
-/// The distance along a direction at which the light falls through the half, or at which a light
-/// that outshines it begins.
-std::optional<Exit> ExitAlong(const LightMap& map, const Eigen::Vector2d& from,
-                              const Eigen::Vector2d& along) {
+/// Distance along a direction at which the light falls through the half, quads.
+std::optional<double> FallAlong(const LightMap& map, const Eigen::Vector2d& from,
+                                const Eigen::Vector2d& along) {
   constexpr double kStep = 0.5;
-  constexpr double kBright = 1e-6 * LightMap::kOutshone;
   std::optional<double> before = map.At(from);
   for (double r = kStep; before; r += kStep) {
     const auto now = map.At(from + r * along);
     if (!now) return std::nullopt;
-    if (*now > kBright) return Exit{r, true};
     if (*now < 0.5) {
       if (*before < 0.5) return std::nullopt;
-      return Exit{r - kStep * (0.5 - *now) / (*before - *now), false};
+      return r - kStep * (0.5 - *now) / (*before - *now);
     }
     before = now;
   }
@@ -187,13 +150,15 @@ InnerQuads InnerQuadsOf(const Blob& blob) {
 }
 
 Eigen::Vector3d ColourOf(const Quads& quads, const InnerQuads& inner) {
-  LevelList inside;
+  std::array<std::vector<double>, 3> inside;
   for (const auto& [x, y] : inner) {
     const std::size_t at = QuadAt(quads, x, y);
-    inside.Add({double(quads.red[at]), double(quads.green[at]), double(quads.blue[at])});
+    inside[0].push_back(quads.red[at]);
+    inside[1].push_back(quads.green[at]);
+    inside[2].push_back(quads.blue[at]);
   }
-  const Levels levels = inside.At(kInsideQuantile);
-  return {levels[0], levels[1], levels[2]};
+  return {Quantile(inside[0], kInsideQuantile), Quantile(inside[1], kInsideQuantile),
+          Quantile(inside[2], kInsideQuantile)};
 }
 
 std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
@@ -207,11 +172,10 @@ std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blo
   for (int i = 0; i < kEdgeRays; ++i) {
     const double angle = 2 * std::numbers::pi * i / kEdgeRays;
     const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
-    const auto exit = ExitAlong(map, blob.centre, along);
-    if (!exit) continue;
+    const auto r = FallAlong(map, blob.centre, along);
+    if (!r) continue;
     // The middle of a quad is half a pixel beyond its first pixel's.
-    (exit->is_outshone ? edges.outshone : edges.pixels)
-        .emplace_back(2 * (blob.centre + exit->distance * along) + Eigen::Vector2d(0.5, 0.5));
+    edges.pixels.emplace_back(2 * (blob.centre + *r * along) + Eigen::Vector2d(0.5, 0.5));
   }
   return edges;
 }

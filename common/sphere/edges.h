@@ -21,9 +21,6 @@ struct Contrast {
 };
 
 inline constexpr int kEdgeRays = 32;
-inline constexpr int kClippedDn = 250;  ///< Pixels from here on are at the sensor's limit.
-/// In a channel that is brighter within the sphere, its own light may come to the limit.
-inline constexpr double kBrightDn = 0.5 * kClippedDn;
 
 /// The middle of a blob, in at most some hundred quads; of a small one the middle quad.
 using InnerQuads = std::vector<std::pair<int, int>>;
@@ -36,15 +33,11 @@ Eigen::Vector3d ColourOf(const Quads& quads, const InnerQuads& inner);
 struct Edges {
   Contrast contrast;
   std::vector<Eigen::Vector2d> pixels;  ///< Of the rays that meet an edge.
-  /// Of the rays that meet a light at the sensor's limit first, as of a lamp behind the sphere:
-  /// where that light begins. How bright it is, and so where the edge is, is unknown there.
-  std::vector<Eigen::Vector2d> outshone;
 };
 
 /// Edges on the light itself, not on the chroma: each colour is set between its own levels inside
 /// and outside and weighted by its contrast over its noise, so that a mosaic needs no
-/// interpolation. Sub-pixel by linear interpolation. A background at the sensor's limit counts only
-/// if there is no other. Nothing when the blob has no contrast.
+/// interpolation. Sub-pixel by linear interpolation. Nothing when the blob has no contrast.
 std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
                                const InnerQuads& inner, const PixelNoise& noise);
 

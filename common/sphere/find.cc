@@ -3,11 +3,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "common/sphere/cone.h"
 #include "common/sphere/edges.h"
-#include "common/sphere/sectors.h"
 
 namespace footing::sphere {
 
@@ -29,6 +29,7 @@ constexpr double kClearQuality = 0.88;  // Nothing else in sight is as bright an
 constexpr double kLeastQuality = 0.25;
 // Limb, gradient and the blur of the smallest spheres change the colour by 0.15.
 constexpr double kSureColourOff = 0.2, kMostColourOff = 0.45;
+constexpr double kLeastSeenShare = 0.2;
 constexpr double kMostResidualShare = 0.2;
 constexpr double kSaturatedShare = 0.02;
 // Near the last place: 2 m/s at 1 m and 60 Hz is 18 px a frame, of which most is foreseen.
@@ -71,9 +72,32 @@ double ColourOff(const Eigen::Vector3d& seen_dn, const Eigen::Vector3d& colour_d
   return std::hypot(hue, std::max(0.0, 1 - scale));
 }
 
-/// 1 up to a value, 0 from another one on.
-double Falling(double value, double from, double to) {
-  return std::clamp((to - value) / (to - from), 0.0, 1.0);
+/// Which sectors have the cone's edge, and up to where the others show the sphere.
+SectorReach ReachOf(const ConeFit& fit, const std::vector<Eigen::Vector2d>& slopes) {
+  constexpr double kNear = 1.6 * 2 * std::numbers::pi / kSectors;
+  SectorReach reach;
+  std::vector<Eigen::Vector2d> polar;  // Angle and distance of each edge.
+  for (const Eigen::Vector2d& at : slopes) {
+    const Eigen::Vector2d from = at - fit.cone.axis;
+    polar.emplace_back(std::atan2(from.y(), from.x()), from.norm());
+  }
+  for (std::size_t s = 0; s < kSectors; ++s) {
+    const double middle = 2 * std::numbers::pi * static_cast<double>(s) / kSectors;
+    double nearest = fit.cone.tangent;
+    int outliers = 0, inliers = 0;
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      const double apart = std::abs(polar[i].x() - middle);  // Up to one and a half turns.
+      if (std::min(apart, std::abs(apart - 2 * std::numbers::pi)) > kNear) continue;
+      ++(fit.inliers[i] ? inliers : outliers);
+      if (!fit.inliers[i]) nearest = std::min(nearest, polar[i].y());
+    }
+    if (inliers > outliers) {
+      reach[s] = std::numeric_limits<double>::infinity();
+    } else {
+      reach[s] = outliers > 0 ? nearest : 0;
+    }
+  }
+  return reach;
 }
 
 Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius_m,
@@ -100,9 +124,12 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
   estimate.motion_px = fit.motion_px;
   estimate.is_saturated = fit.clipped_share > kSaturatedShare;
   estimate.is_occluded = fit.used_share < 0.9;
-  estimate.confidence = Falling(-fit.used_share, -0.7, -0.2) *
-                        Falling(fit.residual_share, 0.06, kMostResidualShare) *
-                        Falling(colour_off, kSureColourOff, kMostColourOff) *
+  const auto falling = [](double value, double from, double to) {
+    return std::clamp((to - value) / (to - from), 0.0, 1.0);
+  };
+  estimate.confidence = falling(-fit.used_share, -0.7, -0.2) *
+                        falling(fit.residual_share, 0.06, kMostResidualShare) *
+                        falling(colour_off, kSureColourOff, kMostColourOff) *
                         (estimate.is_saturated ? 0.3 : 1.0) * (fit.is_doubtful ? 0.5 : 1.0);
   return estimate;
 }
@@ -152,17 +179,15 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, std::size_
     const double size_px = 2.0 * std::max(blob.right - blob.left, blob.bottom - blob.top) + 2;
     // Its nodes lie near the edge, where an error would be one of the distance.
     LocalSlopes slopes(lens_, middle_px, 0.5 * size_px);
-    const std::vector<Eigen::Vector2d> at = slopes.At(edges->pixels);
+    std::vector<Eigen::Vector2d> at;
+    for (const Eigen::Vector2d& pixel : edges->pixels)
+      at.push_back(slopes.At(pixel.x(), pixel.y()));
     const double per_px = std::sqrt(slopes.scale().determinant());
     const double tolerance = per_px * std::max(0.5, 0.04 * size_px);
     const auto fit = FitConeRobustly(at, tolerance, 0.8 * per_px, 1.5 * size_px * per_px);
     if (!fit) continue;
-    const Sectors sectors = SectorsOf(*fit, at, slopes.At(edges->outshone));
-    Candidate candidate{slopes,
-                        {edges->contrast, middle_px, fit->cone, sectors.reach, sectors.outshone, at,
-                         target.radius_m}};
-    candidate.start.is_off_colour =
-        Falling(colour_off, kSureColourOff, kMostColourOff) < kTrustedConfidence;
+    Candidate candidate{
+        slopes, {edges->contrast, middle_px, fit->cone, ReachOf(*fit, at), at, target.radius_m}};
     const auto inliers = std::count(fit->inliers.begin(), fit->inliers.end(), true);
     candidate.colour_off = colour_off;
     candidate.quality =

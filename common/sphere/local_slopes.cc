@@ -44,11 +44,4 @@ Eigen::Vector2d LocalSlopes::At(double u, double v) const {
   return row(0) + y * (row(1) + y * row(2));
 }
 
-std::vector<Eigen::Vector2d> LocalSlopes::At(const std::vector<Eigen::Vector2d>& pixels) const {
-  std::vector<Eigen::Vector2d> slopes;
-  slopes.reserve(pixels.size());
-  for (const Eigen::Vector2d& pixel : pixels) slopes.push_back(At(pixel.x(), pixel.y()));
-  return slopes;
-}
-
 }  // namespace footing::sphere

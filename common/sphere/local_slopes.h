@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "common/sphere/lens.h"
 
@@ -15,7 +14,6 @@ class LocalSlopes {
   LocalSlopes(const Lens& lens, const Eigen::Vector2d& middle, double half_px);
 
   Eigen::Vector2d At(double u, double v) const;
-  std::vector<Eigen::Vector2d> At(const std::vector<Eigen::Vector2d>& pixels) const;
   /// d slopes / d pixel in the middle.
   const Eigen::Matrix2d& scale() const { return scale_; }
   /// Columns: the axes of s and t and the third one, in C.

@@ -187,7 +187,7 @@ class Served {
           {shared_.publication.last_sequence() + 1, clock::MonotonicNs() + i * 10'000'000},
           channels);
       session_->Offer(tick);
-      shared_.publication.Trim();
+      shared_.publication.Keep(tick);
     }
   }
 

@@ -97,7 +97,7 @@ for words, code, listed in ((("--interface", "telepathy"), 2, "wrist, arm, leg, 
                             (("--interface", "arm", "--grip-deg", "45", "--grip-way", "askew"), 2, "mirrored, same"),
                             (("--interface", "leg", "--turn-by", "tail"), 2, "head, feet, trunk"),
                             (("--interface", "arm", "--turn-by", "feet"), 2, "leg"),
-                            (("--track", "9"), 1, "there are: 1, 2, 3, 4, build"),
+                            (("--track", "9"), 2, "there are: 1, 2, 3, 4, build"),
                             (("--track", "endless"), 2, "no finish line"),
                             (("--trials", "0"), 2, "")):
     bad = run(*words)
