@@ -110,4 +110,4 @@ with tempfile.TemporaryDirectory() as folder:
     text = svg.read_text()
     # A mark; a start and a finish line each; two steps.
     assert text.count("fill='none'") == 1 + 3 * 2 + 2, text.count("fill='none'")
-    assert run("9", "--out", svg, command="plan").returncode == 1
+    assert run("9", "--out", svg, command="plan").returncode == 2
