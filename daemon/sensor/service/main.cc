@@ -23,11 +23,7 @@ int Run(const sensor::CommandLine& line,
   boost::asio::io_context io(1);
   auto service = sensor::Service::Start(io, line.config, cli::Version());
   if (!service) return cli::Report(service.error());
-  if (line.json) {
-    std::cout << nlohmann::json{{"listening_on", (*service)->listening_on()}} << std::endl;
-  }
   service_manager::Notifier notifier(io, [&] { return (*service)->Stuck(); });
-  notifier.Ready("listening on " + (*service)->listening_on().front());
   service_manager::ServiceSignals::Handlers handlers;
   handlers.stop = [&](int signal, std::function<void()> done) {
     notifier.Stopping();
@@ -39,6 +35,11 @@ int Run(const sensor::CommandLine& line,
     if (!again) log::Warning("config not reloaded: the one in force stays");
   };
   const service_manager::ServiceSignals signals(io, std::move(handlers));
+  // Whoever reads this may send a signal at once.
+  notifier.Ready("listening on " + (*service)->listening_on().front());
+  if (line.json) {
+    std::cout << nlohmann::json{{"listening_on", (*service)->listening_on()}} << std::endl;
+  }
   timer::Run(io);
   return 0;
 }

@@ -22,11 +22,7 @@ int main(int argc, char** argv) {
   boost::asio::io_context io(1);
   const auto served = footing_sim::StartService(io, config, cli::Version());
   if (!served) return cli::Report(served.error());
-  if (line.json) {
-    std::cout << nlohmann::json{{"listening_on", served->listening_on}} << std::endl;
-  }
   service_manager::Notifier notifier(io, served->stuck);
-  notifier.Ready("engine " + config.engine);
   service_manager::ServiceSignals::Handlers handlers;
   handlers.stop = [&](int signal, std::function<void()> done) {
     notifier.Stopping();
@@ -46,6 +42,11 @@ int main(int argc, char** argv) {
     config = footing_sim::Reloaded(config, wanted, *changed_files, log::Info);
   };
   const service_manager::ServiceSignals signals(io, std::move(handlers));
+  // Whoever reads this may send a signal at once.
+  notifier.Ready("engine " + config.engine);
+  if (line.json) {
+    std::cout << nlohmann::json{{"listening_on", served->listening_on}} << std::endl;
+  }
   timer::Run(io);
   return 0;
 }
