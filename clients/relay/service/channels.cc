@@ -17,9 +17,11 @@ constexpr std::array<std::string_view, 12> kSampled = {
 
 constexpr std::string_view kRetired = "boards_uniform";  // No server publishes it.
 
-const google::protobuf::FieldDescriptor* Field(std::uint32_t field) {
-  const auto* const found = v1::Tick::descriptor()->FindFieldByNumber(static_cast<int>(field));
-  return found != nullptr && found->message_type() != nullptr ? found : nullptr;
+using FieldDescriptor = google::protobuf::FieldDescriptor;
+
+/// The field, if it is a channel's.
+const FieldDescriptor* OfChannel(const FieldDescriptor* field) {
+  return field != nullptr && field->message_type() != nullptr ? field : nullptr;
 }
 
 }  // namespace
@@ -32,7 +34,8 @@ ChannelKind KindOf(std::uint32_t field) {
 }
 
 std::string ChannelName(std::uint32_t field) {
-  const auto* const found = Field(field);
+  const auto* const found =
+      OfChannel(v1::Tick::descriptor()->FindFieldByNumber(static_cast<int>(field)));
   return found == nullptr ? "" : found->name();
 }
 
@@ -40,8 +43,8 @@ std::vector<transport::Channel> ChannelsNamed(
     const google::protobuf::RepeatedPtrField<std::string>& names) {
   std::vector<transport::Channel> channels;
   for (const std::string& name : names) {
-    const auto* const found = v1::Tick::descriptor()->FindFieldByName(name);
-    if (found == nullptr || found->message_type() == nullptr) continue;
+    const auto* const found = OfChannel(v1::Tick::descriptor()->FindFieldByName(name));
+    if (found == nullptr) continue;
     const auto field = static_cast<std::uint32_t>(found->number());
     channels.push_back({name, field, KindOf(field) == ChannelKind::kRetained});
   }
@@ -50,15 +53,14 @@ std::vector<transport::Channel> ChannelsNamed(
 
 Result<void> CheckChannels(const std::vector<std::string>& names) {
   const google::protobuf::Descriptor& tick = *v1::Tick::descriptor();
-  std::string known;
-  for (int i = 0; i < tick.field_count(); ++i) {
-    if (tick.field(i)->message_type() == nullptr || tick.field(i)->name() == kRetired) continue;
-    known += (known.empty() ? "" : ", ") + tick.field(i)->name();
-  }
   for (const std::string& name : names) {
-    const auto* const found = tick.FindFieldByName(name);
-    if (found == nullptr || found->message_type() == nullptr || name == kRetired)
-      return UsageError("unknown --channel " + name + "; there are: " + known);
+    if (OfChannel(tick.FindFieldByName(name)) != nullptr && name != kRetired) continue;
+    std::string known;
+    for (int i = 0; i < tick.field_count(); ++i) {
+      if (OfChannel(tick.field(i)) == nullptr || tick.field(i)->name() == kRetired) continue;
+      known += (known.empty() ? "" : ", ") + tick.field(i)->name();
+    }
+    return UsageError("unknown --channel " + name + "; there are: " + known);
   }
   return {};
 }

@@ -1,51 +1,9 @@
-#include "common/transport/client.h"
-
 #include <numeric>
-#include <optional>
 
-#include "common/clock/clock.h"
-#include "tests/common/transport/server_fixture.h"
+#include "tests/common/transport/client_fixture.h"
 
 namespace footing::transport {
 namespace {
-
-class ClientTest : public ServerFixture {
- protected:
-  ClientOptions ClientOn(const Address& address) {
-    ClientOptions options;
-    options.address = address;
-    options.client_name = "client under test";
-    options.backoff_min_s = 0.001;
-    options.backoff_max_s = 0.01;
-    options.ping_interval_s = 0.01;
-    options.now_ns = [this] { return client_now_ns_ ? client_now_ns_() : clock::MonotonicNs(); };
-    return options;
-  }
-  void StartClient(ClientOptions options) {
-    ClientHandlers handlers;
-    handlers.on_welcome = [this](const v1::Welcome&) { ++welcomes_; };
-    handlers.on_tick = [this](const v1::Tick& tick) {
-      (tick.snapshot() ? snapshots_ : sequences_).push_back(tick.sequence());
-    };
-    handlers.on_gap = [this](const v1::Gap& gap) { gaps_.push_back(gap); };
-    handlers.on_state = [this](LinkState state, const std::string& why) {
-      states_.emplace_back(state, why);
-    };
-    client_ = std::make_unique<Client>(io_, std::move(options), std::move(handlers));
-    client_->Start();
-  }
-  bool RunUntilState(LinkState state) {
-    return RunUntil([&] { return client_->state() == state; });
-  }
-
-  std::function<std::int64_t()> client_now_ns_;
-  std::unique_ptr<Client> client_;
-  int welcomes_ = 0;
-  std::vector<std::uint64_t> snapshots_;
-  std::vector<std::uint64_t> sequences_;
-  std::vector<v1::Gap> gaps_;
-  std::vector<std::pair<LinkState, std::string>> states_;
-};
 
 TEST_F(ClientTest, BeforeItsServerItSaysWhatItWaitsForAndThenConnects) {
   StartClient(ClientOn(UnixAddress()));
@@ -171,53 +129,6 @@ TEST_F(ClientTest, SilenceIsStaleThenDead) {
   ASSERT_TRUE(RunUntilState(LinkState::kStale));
   now_ns += 7'000'000'000;
   ASSERT_TRUE(RunUntil([&] { return silent.size() == 2; }));  // It dials again.
-}
-
-TEST_F(ClientTest, ACommandComesBackWithItsAnswer) {
-  StartServer();
-  ClientOptions options = ClientOn(UnixAddress());
-  options.role = v1::ROLE_CONTROL;
-  StartClient(options);
-  ASSERT_TRUE(RunUntilState(LinkState::kLive));
-  v1::CommandResult answer;
-  v1::Command command;
-  command.mutable_set_leds()->set_leds(3);
-  client_->Send(command, [&](const v1::CommandResult& result) { answer = result; });
-  EXPECT_TRUE(RunUntil([&] { return answer.ok(); }));
-  EXPECT_EQ(commands_[0].second.set_leds().leds(), 3u);
-}
-
-TEST_F(ClientTest, ACommandThatLosesItsConnectionFailsWhenTheLinkIsNoLongerLive) {
-  StartServer();
-  StartClient(ClientOn(UnixAddress()));
-  ASSERT_TRUE(RunUntilState(LinkState::kLive));
-  std::optional<LinkState> state;
-  client_->Send({}, [&](const v1::CommandResult& result) {
-    EXPECT_FALSE(result.ok());
-    state = client_->state();
-  });
-  server_->Stop("restart");
-  server_.reset();
-  ASSERT_TRUE(RunUntil([&] { return state.has_value(); }));
-  EXPECT_EQ(*state, LinkState::kConnecting);
-}
-
-TEST_F(ClientTest, ACommandWithoutAConnectionFailsAtOnceWithTheReason) {
-  StartClient(ClientOn(UnixAddress()));
-  ASSERT_TRUE(RunUntil([&] { return !states_.empty(); }));
-  std::string why;
-  client_->Send({}, [&](const v1::CommandResult& result) { why = result.message(); });
-  EXPECT_NE(why.find("no such file"), std::string::npos);
-}
-
-TEST_F(ClientTest, ACommandAfterItsStopFailsAtOnce) {
-  StartServer();
-  StartClient(ClientOn(UnixAddress()));
-  ASSERT_TRUE(RunUntilState(LinkState::kLive));
-  client_->Stop();
-  std::string why;
-  client_->Send({}, [&](const v1::CommandResult& result) { why = result.message(); });
-  EXPECT_EQ(why, "not connected: the client was stopped");
 }
 
 TEST_F(ClientTest, MissingTicksCanBeAskedFor) {
