@@ -19,37 +19,52 @@ void ForBlocks(Eigen::Index rows, const Work& work) {
   }
 }
 
+void ApplySigmoid(Eigen::Ref<Eigen::MatrixXd> values) { values = Sigmoid(values.array()).matrix(); }
+void ApplySigmoid(Eigen::Ref<Eigen::MatrixXf> values) {
+  values.array() = 0.5f * (0.5f * values.array()).tanh();
+}
+
 }  // namespace
 
 Eigen::ArrayXXd Sigmoid(const Eigen::ArrayXXd& x) { return 1 / (1 + (-x).exp()) - 0.5; }
 
-CandidateTask CandidateTask::Covariance(const Eigen::Ref<const Eigen::MatrixXd>& units,
-                                        const Eigen::MatrixXd& errors) {
+template <typename Scalar>
+CandidateTask<Scalar> CandidateTask<Scalar>::Covariance(
+    const Eigen::Ref<const Eigen::MatrixXd>& units, const Eigen::MatrixXd& errors) {
   Eigen::MatrixXd centred = errors.rowwise() - errors.colwise().mean();
   const double rms = std::sqrt(centred.squaredNorm() / static_cast<double>(errors.size()));
   if (rms > 0) centred /= rms * static_cast<double>(errors.rows());
-  return {.units = units, .basis = units.leftCols(0), .errors = std::move(centred)};
+  return {.units = units.cast<Scalar>(),
+          .basis = Matrix(units.rows(), 0),
+          .errors = centred.cast<Scalar>()};
 }
 
-CandidateTask CandidateTask::ErrorReduction(const Eigen::Ref<const Eigen::MatrixXd>& units,
-                                            const Eigen::MatrixXd& errors,
-                                            const Eigen::Ref<const Eigen::MatrixXd>& basis) {
+template <typename Scalar>
+CandidateTask<Scalar> CandidateTask<Scalar>::ErrorReduction(
+    const Eigen::Ref<const Eigen::MatrixXd>& units, const Eigen::MatrixXd& errors,
+    const Eigen::Ref<const Eigen::MatrixXd>& basis) {
   const double size = errors.norm();
-  return {.units = units, .basis = basis, .errors = size > 0 ? errors / size : errors};
+  const Eigen::MatrixXd scaled = size > 0 ? errors / size : errors;
+  return {.units = units.cast<Scalar>(),
+          .basis = basis.cast<Scalar>(),
+          .errors = scaled.cast<Scalar>()};
 }
 
-Scores Score(const CandidateTask& task, const Eigen::MatrixXd& weights) {
+template <typename Scalar>
+Scores<Scalar> Score(const CandidateTask<Scalar>& task, const Eigen::MatrixXd& weights) {
+  using Matrix = Eigen::MatrixX<Scalar>;
   const Eigen::Index rows = task.units.rows();
-  Scores result{.values = Eigen::MatrixXd(rows, weights.cols()),
-                .rest = {},
-                .correlations = Eigen::MatrixXd::Zero(task.errors.cols(), weights.cols()),
-                .sizes = Eigen::RowVectorXd::Ones(weights.cols()),
-                .scores = {}};
-  Eigen::MatrixXd along = Eigen::MatrixXd::Zero(task.basis.cols(), weights.cols());
+  const Matrix scalar_weights = weights.cast<Scalar>();
+  Scores<Scalar> result{.values = Matrix(rows, weights.cols()),
+                        .rest = {},
+                        .correlations = Matrix::Zero(task.errors.cols(), weights.cols()),
+                        .sizes = Eigen::RowVectorX<Scalar>::Ones(weights.cols()),
+                        .scores = {}};
+  Matrix along = Matrix::Zero(task.basis.cols(), weights.cols());
   ForBlocks(rows, [&](Eigen::Index first, Eigen::Index count) {
     auto values = result.values.middleRows(first, count);
-    values.noalias() = task.units.middleRows(first, count) * weights;
-    values = Sigmoid(values.array()).matrix();
+    values.noalias() = task.units.middleRows(first, count) * scalar_weights;
+    ApplySigmoid(values);
     result.correlations.noalias() += task.errors.middleRows(first, count).transpose() * values;
     along.noalias() += task.basis.middleRows(first, count).transpose() * values;
   });
@@ -61,19 +76,21 @@ Scores Score(const CandidateTask& task, const Eigen::MatrixXd& weights) {
   ForBlocks(rows, [&](Eigen::Index first, Eigen::Index count) {
     result.rest.middleRows(first, count).noalias() -= task.basis.middleRows(first, count) * along;
   });
-  const double least = static_cast<double>(rows) * kLeastNews * kLeastNews;
+  const auto least = static_cast<Scalar>(static_cast<double>(rows) * kLeastNews * kLeastNews);
   result.sizes = (result.rest.colwise().squaredNorm().array() + least).sqrt();
   result.scores = result.correlations.colwise().norm().cwiseQuotient(result.sizes);
   return result;
 }
 
-Eigen::MatrixXd ScoreGradient(const CandidateTask& task, const Scores& scores) {
+template <typename Scalar>
+Eigen::MatrixXd ScoreGradient(const CandidateTask<Scalar>& task, const Scores<Scalar>& scores) {
+  using Matrix = Eigen::MatrixX<Scalar>;
   const bool covariance = task.basis.cols() == 0;
   // dS/dV = E towards + rest away, each candidate's column by its own factors.
-  Eigen::MatrixXd towards = scores.correlations.cwiseSign();
-  Eigen::RowVectorXd away = Eigen::RowVectorXd::Zero(scores.sizes.size());
+  Matrix towards = scores.correlations.cwiseSign();
+  Eigen::RowVectorX<Scalar> away = Eigen::RowVectorX<Scalar>::Zero(scores.sizes.size());
   if (!covariance) {
-    const Eigen::RowVectorXd lengths = scores.correlations.colwise().norm();
+    const Eigen::RowVectorX<Scalar> lengths = scores.correlations.colwise().norm();
     for (Eigen::Index c = 0; c < lengths.size(); ++c) {
       towards.col(c).setZero();
       if (lengths(c) == 0) continue;
@@ -81,18 +98,19 @@ Eigen::MatrixXd ScoreGradient(const CandidateTask& task, const Scores& scores) {
       away(c) = -scores.scores(c) / (scores.sizes(c) * scores.sizes(c));
     }
   }
-  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(task.units.cols(), towards.cols());
-  Eigen::MatrixXd back;
+  Matrix gradient = Matrix::Zero(task.units.cols(), towards.cols());
+  Matrix back;
   ForBlocks(task.units.rows(), [&](Eigen::Index first, Eigen::Index count) {
     back.noalias() = task.errors.middleRows(first, count) * towards;
     if (!covariance) back += scores.rest.middleRows(first, count) * away.asDiagonal();
-    back.array() *= 0.25 - scores.values.middleRows(first, count).array().square();
+    back.array() *= Scalar{0.25} - scores.values.middleRows(first, count).array().square();
     gradient.noalias() += task.units.middleRows(first, count).transpose() * back;
   });
-  return gradient;
+  return gradient.template cast<double>();
 }
 
-NewUnit TrainCandidates(const CandidateTask& task, const CandidateOptions& options,
+template <typename Scalar>
+NewUnit TrainCandidates(const CandidateTask<Scalar>& task, const CandidateOptions& options,
                         noise::Random& random) {
   Eigen::MatrixXd weights(task.units.cols(), options.pool);
   for (double& weight : weights.reshaped()) {
@@ -102,11 +120,11 @@ NewUnit TrainCandidates(const CandidateTask& task, const CandidateOptions& optio
   double last_best = 0;
   int quit = options.patience;
   int epoch = 0;
-  Scores scores = Score(task, weights);
+  Scores<Scalar> scores = Score(task, weights);
   for (; epoch < options.epochs_max && epoch < quit; ++epoch) {
     quickprop.Step(-ScoreGradient(task, scores), weights);
     scores = Score(task, weights);
-    const double best = scores.scores.maxCoeff();
+    const auto best = static_cast<double>(scores.scores.maxCoeff());
     if (epoch == 0 || std::abs(best - last_best) > options.change * last_best) {
       last_best = best;
       quit = epoch + options.patience;
@@ -115,9 +133,20 @@ NewUnit TrainCandidates(const CandidateTask& task, const CandidateOptions& optio
   Eigen::Index best = 0;
   scores.scores.maxCoeff(&best);
   return {.weights = weights.col(best),
-          .values = scores.values.col(best),
-          .correlations = scores.correlations.col(best),
+          .values = scores.values.col(best).template cast<double>(),
+          .correlations = scores.correlations.col(best).template cast<double>(),
           .epochs = epoch};
 }
+
+template struct CandidateTask<double>;
+template struct CandidateTask<float>;
+template Scores<double> Score(const CandidateTask<double>&, const Eigen::MatrixXd&);
+template Scores<float> Score(const CandidateTask<float>&, const Eigen::MatrixXd&);
+template Eigen::MatrixXd ScoreGradient(const CandidateTask<double>&, const Scores<double>&);
+template Eigen::MatrixXd ScoreGradient(const CandidateTask<float>&, const Scores<float>&);
+template NewUnit TrainCandidates(const CandidateTask<double>&, const CandidateOptions&,
+                                 noise::Random&);
+template NewUnit TrainCandidates(const CandidateTask<float>&, const CandidateOptions&,
+                                 noise::Random&);
 
 }  // namespace footing::learning

@@ -20,8 +20,12 @@ struct CandidateOptions {
   QuickpropOptions quickprop = {.epsilon = 2, .growth = 2, .decay = 0};
 };
 
-/// What candidates see, and what they are to explain.
+/// What candidates see, and what they are to explain. Covariance is searched in single precision,
+/// which is twice as fast; error reduction takes the difference of nearly equal numbers.
+template <typename Scalar>
 struct CandidateTask {
+  using Matrix = Eigen::MatrixX<Scalar>;
+
   /// Fahlman & Lebiere's measure: `errors` centred and scaled.
   static CandidateTask Covariance(const Eigen::Ref<const Eigen::MatrixXd>& units,
                                   const Eigen::MatrixXd& errors);
@@ -31,9 +35,9 @@ struct CandidateTask {
                                       const Eigen::MatrixXd& errors,
                                       const Eigen::Ref<const Eigen::MatrixXd>& basis);
 
-  Eigen::Ref<const Eigen::MatrixXd> units;  ///< Rows x (1, inputs, hidden units).
-  Eigen::Ref<const Eigen::MatrixXd> basis;  ///< Rows x any number; none for covariance.
-  Eigen::MatrixXd errors;                   ///< Rows x outputs.
+  Matrix units;   ///< Rows x (1, inputs, hidden units).
+  Matrix basis;   ///< Rows x any number; none for covariance.
+  Matrix errors;  ///< Rows x outputs.
 };
 
 /// How good each candidate c is, V_pc its value on row p, E_po the error of output o.
@@ -44,19 +48,22 @@ struct CandidateTask {
 /// unit:
 ///   S = |E' V_c| / (|E| |V_c less what the basis explains of it|). It follows a curve where
 ///   covariance, which grows with a unit's size, finds a step.
+template <typename Scalar>
 struct Scores {
-  Eigen::MatrixXd values;        ///< V, rows x candidates.
-  Eigen::MatrixXd rest;          ///< V less what the basis explains; empty for covariance.
-  Eigen::MatrixXd correlations;  ///< E' V, outputs x candidates.
-  Eigen::RowVectorXd sizes;      ///< |rest|, a little more where it is tiny.
-  Eigen::RowVectorXd scores;     ///< S of each candidate.
+  Eigen::MatrixX<Scalar> values;        ///< V, rows x candidates.
+  Eigen::MatrixX<Scalar> rest;          ///< V less what the basis explains; empty for covariance.
+  Eigen::MatrixX<Scalar> correlations;  ///< E' V, outputs x candidates.
+  Eigen::RowVectorX<Scalar> sizes;      ///< |rest|, a little more where it is tiny.
+  Eigen::RowVectorX<Scalar> scores;     ///< S of each candidate.
 };
 
 /// `weights`: columns of `units` x candidates.
-Scores Score(const CandidateTask& task, const Eigen::MatrixXd& weights);
+template <typename Scalar>
+Scores<Scalar> Score(const CandidateTask<Scalar>& task, const Eigen::MatrixXd& weights);
 
 /// dS / d weights, exact wherever no correlation is 0.
-Eigen::MatrixXd ScoreGradient(const CandidateTask& task, const Scores& scores);
+template <typename Scalar>
+Eigen::MatrixXd ScoreGradient(const CandidateTask<Scalar>& task, const Scores<Scalar>& scores);
 
 struct NewUnit {
   Eigen::VectorXd weights;
@@ -66,7 +73,8 @@ struct NewUnit {
 };
 
 /// Trains a pool of candidates to the greatest score and returns the best.
-NewUnit TrainCandidates(const CandidateTask& task, const CandidateOptions& options,
+template <typename Scalar>
+NewUnit TrainCandidates(const CandidateTask<Scalar>& task, const CandidateOptions& options,
                         noise::Random& random);
 
 }  // namespace footing::learning

@@ -67,11 +67,16 @@ class OutputLayer {
   const Eigen::MatrixXd& errors() const {
     return options_.outputs == Outputs::kLinear ? solver_.errors() : sigmoid_.errors;
   }
-  CandidateTask Task(const Units& units) const {
+  /// The best of a new pool.
+  NewUnit Candidate(const Units& units, noise::Random& random) const {
+    const CandidateOptions& options = options_.candidates;
     if (options_.outputs == Outputs::kLinear && options_.objective == Objective::kErrorReduction) {
-      return CandidateTask::ErrorReduction(units.used(), errors(), solver_.basis());
+      return TrainCandidates(
+          CandidateTask<double>::ErrorReduction(units.used(), errors(), solver_.basis()), options,
+          random);
     }
-    return CandidateTask::Covariance(units.used(), errors());
+    return TrainCandidates(CandidateTask<float>::Covariance(units.used(), errors()), options,
+                           random);
   }
   bool AllNear() const {
     return options_.outputs == Outputs::kSigmoid && sigmoid_.Worst(targets_) < options_.near;
@@ -207,7 +212,7 @@ CascadeResult TrainCascade(const Examples& train, const Examples& validation,
         validates && enough && best.WithoutImprovement(hidden) >= options.patience;
     if (goal_reached || stagnates || hidden == options.hidden_max) break;
 
-    const NewUnit unit = TrainCandidates(layer.Task(units), options.candidates, random);
+    const NewUnit unit = layer.Candidate(units, random);
     epochs += unit.epochs;
     const std::vector<float> row = ToFloats(unit.weights);
     hidden_weights.insert(hidden_weights.end(), row.begin(), row.end());

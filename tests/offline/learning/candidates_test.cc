@@ -16,7 +16,7 @@ Eigen::MatrixXd Drawn(Eigen::Index rows, Eigen::Index columns, std::uint64_t see
   return values;
 }
 
-void ExpectTrueGradient(const CandidateTask& task) {
+void ExpectTrueGradient(const CandidateTask<double>& task) {
   const Eigen::MatrixXd weights = 3 * Drawn(5, 4, 3);
   const Eigen::MatrixXd gradient = ScoreGradient(task, Score(task, weights));
   constexpr double kStep = 1e-6;
@@ -35,14 +35,25 @@ void ExpectTrueGradient(const CandidateTask& task) {
 // 300 rows: more than the block in which the products are made.
 TEST(Candidates, GradientOfCovarianceIsThatOfFiniteDifferences) {
   const Eigen::MatrixXd units = Drawn(300, 5, 1);
-  ExpectTrueGradient(CandidateTask::Covariance(units, Drawn(300, 2, 2)));
+  ExpectTrueGradient(CandidateTask<double>::Covariance(units, Drawn(300, 2, 2)));
 }
 
 TEST(Candidates, GradientOfErrorReductionIsThatOfFiniteDifferences) {
   const Eigen::MatrixXd units = Drawn(300, 5, 1);
   LeastSquares solver(Drawn(300, 2, 2), 5);
   for (Eigen::Index i = 0; i < 5; ++i) solver.Add(units.col(i));
-  ExpectTrueGradient(CandidateTask::ErrorReduction(units, solver.errors(), solver.basis()));
+  ExpectTrueGradient(CandidateTask<double>::ErrorReduction(units, solver.errors(), solver.basis()));
+}
+
+TEST(Candidates, CovarianceAndItsGradientAreTheSameInSinglePrecision) {
+  const Eigen::MatrixXd units = Drawn(300, 5, 1), errors = Drawn(300, 2, 2);
+  const Eigen::MatrixXd weights = 3 * Drawn(5, 4, 3);
+  const auto twice = CandidateTask<double>::Covariance(units, errors);
+  const auto once = CandidateTask<float>::Covariance(units, errors);
+  const Scores<double> expected = Score(twice, weights);
+  const Scores<float> scores = Score(once, weights);
+  EXPECT_TRUE(scores.scores.cast<double>().isApprox(expected.scores, 1e-5));
+  EXPECT_TRUE(ScoreGradient(once, scores).isApprox(ScoreGradient(twice, expected), 1e-5));
 }
 
 TEST(Candidates, CovarianceIsTheSumOverOutputs) {
@@ -62,7 +73,7 @@ TEST(Candidates, CovarianceIsTheSumOverOutputs) {
     expected += std::abs(covariance);
   }
   expected /= kRows * std::sqrt(square / (2 * kRows));
-  const CandidateTask task = CandidateTask::Covariance(units, errors);
+  const CandidateTask<double> task = CandidateTask<double>::Covariance(units, errors);
   EXPECT_NEAR(Score(task, weights).scores(0), expected, 1e-12);
 }
 
@@ -70,8 +81,9 @@ TEST(Candidates, ErrorReductionIsWhatOutputsSolvedAnewLose) {
   const Eigen::MatrixXd units = Drawn(200, 4, 4);
   LeastSquares solver(Drawn(200, 2, 5), 5);
   for (Eigen::Index i = 0; i < 4; ++i) solver.Add(units.col(i));
-  const CandidateTask task = CandidateTask::ErrorReduction(units, solver.errors(), solver.basis());
-  const Scores scores = Score(task, 4 * Drawn(4, 1, 6));
+  const CandidateTask<double> task =
+      CandidateTask<double>::ErrorReduction(units, solver.errors(), solver.basis());
+  const Scores<double> scores = Score(task, 4 * Drawn(4, 1, 6));
   const double before = solver.errors().squaredNorm();
   solver.Add(scores.values.col(0));
   const double lost = 1 - solver.errors().squaredNorm() / before;
@@ -88,7 +100,7 @@ TEST(Candidates, TrainingFindsAUnitThatTheErrorIsMadeOf) {
   const double before = solver.errors().squaredNorm();
   noise::Random random(8);
   const NewUnit unit = TrainCandidates(
-      CandidateTask::ErrorReduction(units, solver.errors(), solver.basis()), {}, random);
+      CandidateTask<double>::ErrorReduction(units, solver.errors(), solver.basis()), {}, random);
   EXPECT_EQ(unit.values, Sigmoid((units * unit.weights).array()).matrix());
   EXPECT_GT(unit.epochs, 8);
   solver.Add(unit.values);
@@ -99,9 +111,9 @@ TEST(Candidates, CovarianceChangesNeitherWithTheErrorsSizeNorWithRowsRepeated) {
   const Eigen::MatrixXd units = Drawn(64, 3, 9), twice = units.replicate(2, 1);
   const Eigen::MatrixXd error = Drawn(64, 1, 10);
   noise::Random first(11), second(11);
-  const NewUnit once = TrainCandidates(CandidateTask::Covariance(units, error), {}, first);
-  const NewUnit scaled =
-      TrainCandidates(CandidateTask::Covariance(twice, 1024 * error.replicate(2, 1)), {}, second);
+  const NewUnit once = TrainCandidates(CandidateTask<double>::Covariance(units, error), {}, first);
+  const NewUnit scaled = TrainCandidates(
+      CandidateTask<double>::Covariance(twice, 1024 * error.replicate(2, 1)), {}, second);
   EXPECT_EQ(once.epochs, scaled.epochs);
   EXPECT_TRUE(once.weights.isApprox(scaled.weights, 1e-6));
 }
