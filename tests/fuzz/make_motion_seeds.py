@@ -1,4 +1,4 @@
-"""Seeds of the fuzz targets of skeletons over OSC and of motion files; make_seeds.py writes them."""
+"""Seeds of the fuzz targets of skeletons over OSC, camera previews and motion files; make_seeds.py writes them."""
 import struct
 
 
@@ -210,5 +210,29 @@ def c3d_files() -> dict[str, bytes]:
     }
 
 
+def preview(kind: int, body: bytes) -> bytes:
+    return b"FCP1" + struct.pack("<II", kind, len(body)) + body
+
+
+def previews() -> dict[str, bytes]:
+    """How the bytes are cut, then messages (docs/camera.md)."""
+    def picture(spheres: bytes = b"", lights: bytes = b"", side: int = 2, rgb: bytes = bytes(range(12)), most: int = 640) -> bytes:
+        counts = bytes([len(spheres) // 24, len(lights) // 16])
+        return preview(1, struct.pack("<QqHHHHH", 7, 5, most, 480, side, side, 3) + counts + spheres + lights + rgb)
+    sphere = lambda confidence=0.5, u=3.0: struct.pack("<BBHfffff", 1, 3, 1, confidence, 2.0, u, 2.0, 9.0)
+    light = struct.pack("<Ifff", 2, 5.0, 6.0, 4.0)
+    none = preview(2, b"no camera\n")
+    streams = {
+        "pictures": picture() + picture(sphere() * 2, light) + none,
+        "numbers": picture(sphere(float("nan"), -1.0) + sphere(7.0, 1e9)),
+        "unknown": picture(b"\xff\xff\xff\xff" + sphere()[4:], b"\xff" * 4 + light[4:]),
+        "many": picture(sphere() * 17) + none,
+        "cut": picture(sphere())[:-1],
+        "size": picture(side=0, rgb=b""), "wide": picture(side=2000), "small_camera": picture(most=1),
+        "kind": preview(3, b"abc"), "long": b"FCP1" + struct.pack("<II", 2, 513), "mark": b"FCP2", "short": preview(1, bytes(27)),
+    }
+    return {f"preview/{name}": string(bytes([2, 0, 9, 1])) + data for name, data in streams.items()}
+
+
 def seeds() -> dict[str, bytes]:
-    return {**motion_files(), **skeletons()}
+    return {**motion_files(), **skeletons(), **previews()}
