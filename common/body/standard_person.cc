@@ -8,6 +8,7 @@
 #include "common/body/body.h"
 #include "common/body/kinematics.h"
 #include "common/body/y_up.h"
+#include "common/rotation/rotation.h"
 #include "common/units/units.h"
 
 namespace footing::body {
@@ -162,7 +163,7 @@ Eigen::VectorXd TPose(const Skeleton& skeleton, const Landmarks& landmarks) {
     ComputeKinematics(skeleton, q, at);
     const int index = landmarks[from];
     const Joint& joint = skeleton.joint(index);
-    const auto turn = Eigen::Quaterniond::FromTwoVectors(place(next) - place(from), to_W);
+    const Eigen::Quaterniond turn = LeastTurn(place(next) - place(from), to_W);
     const Eigen::Matrix3d& R_WP = at.R_WJ[static_cast<std::size_t>(joint.parent)];
     SetJointRotation(
         joint,

@@ -4,6 +4,7 @@
 
 #include "common/camera_pose/camera_pose.h"
 #include "common/result/result.h"
+#include "common/rotation/rotation.h"
 
 namespace footing::camera_pose {
 namespace {
@@ -19,12 +20,6 @@ using Rows = Eigen::Matrix<double, 3, kUnknowns>;
 
 constexpr int kIterations = 15;
 constexpr double kUnknownM = 10;  // Standard deviation of what is not known.
-
-Matrix3d Cross(const Vector3d& v) {
-  Matrix3d cross;
-  cross << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return cross;
-}
 
 /// Kabsch: the turn and shift that bring the seen marks nearest to their places, all alike.
 Eigen::Isometry3d Start(const std::vector<SeenMark>& marks) {
@@ -90,7 +85,7 @@ void AddMark(const SeenMark& mark, const Solution& at, double placement_sd_m, Su
   const Vector3d arm = at.scale * (turn * mark.seen.p_C_m);
   const Vector3d place = arm + at.X_WC.translation() - at.common * common_sd;
   Rows jacobian;
-  jacobian << -Cross(place), Matrix3d::Identity(), -common_sd, arm / at.scale;
+  jacobian << -CrossMatrix(place), Matrix3d::Identity(), -common_sd, arm / at.scale;
   const Matrix3d covariance = turn * OwnCovariance(mark.seen) * turn.transpose() +
                               placement_sd_m * placement_sd_m * Matrix3d::Identity();
   sums.Add(jacobian, mark.p_W_m - place, covariance, 3);
@@ -103,7 +98,7 @@ void AddPlumb(const SeenPlumb& plumb, const Solution& at, double placement_sd_m,
   const Vector3d line =
       at.scale * (turn * (plumb.high.p_C_m - plumb.low.p_C_m)) - at.common * common_sd;
   Rows jacobian;
-  jacobian << -Cross(line), Matrix3d::Zero(), -common_sd, Vector3d::Zero();
+  jacobian << -CrossMatrix(line), Matrix3d::Zero(), -common_sd, Vector3d::Zero();
   const double leaning_m = line.norm() * std::sin(plumb.tilt_rad);
   Matrix3d covariance =
       turn * (OwnCovariance(plumb.low) + OwnCovariance(plumb.high)) * turn.transpose();
@@ -178,7 +173,7 @@ CameraPose Fit(const Observations& observations) {
 
 Matrix3d CameraPose::CovarianceAt(const Vector3d& p_W_m) const {
   Eigen::Matrix<double, 3, 6> rows;
-  rows << -Cross(p_W_m), Matrix3d::Identity();
+  rows << -CrossMatrix(p_W_m), Matrix3d::Identity();
   return rows * covariance * rows.transpose();
 }
 

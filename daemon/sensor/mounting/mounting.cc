@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/rotation/rotation.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
 
@@ -153,7 +154,7 @@ Mounting SolveMounting(stream::DeviceRole role, Samples still, Samples steps,
     return Refused("at rest it feels " + Number(gravity_S.norm()) +
                    " m/s2 and not 9.8; is its calibration right?");
   }
-  const auto level = Eigen::Quaterniond::FromTwoVectors(gravity_S, -Vector3d::UnitZ());
+  const Eigen::Quaterniond level = LeastTurn(gravity_S, -Vector3d::UnitZ());
   std::vector<Vector2d> swing = HorizontalSwing(steps, level);
   const Axis axis = PrincipalAxis(swing);
   if (axis.rms_mps2 < config.least_swing_mps2) {

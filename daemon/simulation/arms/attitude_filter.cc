@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "common/rotation/rotation.h"
 #include "common/units/units.h"
 #include "daemon/simulation/arms/rotation_vector.h"
 
@@ -113,9 +114,7 @@ void AttitudeFilter::Correct(const HandReading& reading, double step_s) {
   }
   const Eigen::Vector3d up_W = R_WG_ * force_G_.value();
   if (up_W.norm() < kLeastForceMps2) return;
-  R_WG_ = Rotation(
-      Eigen::Quaterniond::FromTwoVectors(up_W, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
-      R_WG_);
+  R_WG_ = Rotation(LeastTurn(up_W, Eigen::Vector3d::UnitZ()).toRotationMatrix() * R_WG_);
 }
 
 /// The Kalman filter of VQF's appendix: rows are the bias at rest or, in motion, what the

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/rotation/rotation.h"
 #include "common/units/units.h"
 #include "daemon/simulation/arms/rotation_vector.h"
 
@@ -43,12 +44,6 @@ double Square(double x) { return x * x; }
 double Held(double sd, double step_s) {
   const double changes = Square(sd) * 2 / kChangesInS;
   return changes * std::min(step_s * step_s / 3, kChangesInS * kChangesInS);
-}
-
-Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/rotation/rotation.h"
 #include "common/units/units.h"
 #include "daemon/simulation/arms/rotation_vector.h"
 
@@ -129,8 +130,7 @@ bool Track::Start(const Waiting& one) {
     const double step_s = readings_[i].time_s - std::max(one.time_s, readings_[i - 1].time_s);
     R_GS = R_GS * arms::Turned(-readings_[i].reading.angular_velocity_S_radps * step_s);
   }
-  R_GS =
-      Eigen::Quaterniond::FromTwoVectors(mean, Eigen::Vector3d::UnitZ()).toRotationMatrix() * R_GS;
+  R_GS = LeastTurn(mean, Eigen::Vector3d::UnitZ()).toRotationMatrix() * R_GS;
   const double tilt_sd_rad =
       std::min(kMostTiltSdRad, kTiltSdRad + 0.5 * SpreadMps2() / kStandardGravityMps2);
   base_.filter.Start(one.seen, R_GS, tilt_sd_rad);

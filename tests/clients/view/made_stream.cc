@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/rotation/rotation.h"
 #include "common/units/units.h"
 
 namespace footing::scene::made {
@@ -74,8 +75,7 @@ CharacterPose PoseAt(double time_s, const Wish& wish) {
     const Leg foot = FootAt(cycles + 0.5 * leg, stride_m);
     const Eigen::Vector3d hip(x_m, side * kHalfHipM, hip_m);
     const Eigen::Vector3d end(x_m + foot.ahead_m, side * kHalfHipM, foot.height_m);
-    const Eigen::Quaterniond turn =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(0, 0, -1), end - hip);
+    const Eigen::Quaterniond turn = LeastTurn(Eigen::Vector3d(0, 0, -1), end - hip);
     pose.links[static_cast<std::size_t>(1 + 2 * leg)] = {hip, turn};
     pose.links[static_cast<std::size_t>(2 + 2 * leg)] = {0.4 * hip + 0.6 * end, turn};
     pose.contacts[static_cast<std::size_t>(leg)] = {foot.touching, end, foot.touching ? 450.0 : 0};

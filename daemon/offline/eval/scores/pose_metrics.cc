@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/rotation/rotation.h"
 #include "common/text/quantile.h"
 #include "common/units/units.h"
 
@@ -53,7 +54,7 @@ double DirectionDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 /// `along_a`, both of unit length.
 double TwistDeg(const Eigen::Matrix3d& a, const Eigen::Vector3d& along_a, const Eigen::Matrix3d& b,
                 const Eigen::Vector3d& along_b) {
-  const auto swing = Eigen::Quaterniond::FromTwoVectors(along_b, along_a);
+  const Eigen::Quaterniond swing = LeastTurn(along_b, along_a);
   return AngleDeg(a, swing.toRotationMatrix() * b);
 }
 
