@@ -4,6 +4,7 @@
 #include "clients/study/commands.h"
 #include "clients/study/plan/phases.h"
 #include "common/config/data_file.h"
+#include "common/text/number.h"
 
 namespace footing::study {
 namespace {
@@ -88,8 +89,9 @@ Result<Answer> Check(const CheckOptions& options) {
                                        {"phases", std::move(phases)}});
     answer.text += Line(session) + "\n";
   }
-  answer.text += "Practice and rests of a session: " +
-                 std::to_string(static_cast<int>(PlannedS(sessions.front()) / 60)) + " min.";
+  answer.text +=
+      "Practice and rests of a session: " + text::Fixed(PlannedS(sessions.front()) / 60, 1) +
+      " min.";
   for (const std::string& remark : plan::Remarks(protocol)) answer.text += "\nNote: " + remark;
   return answer;
 }

@@ -117,7 +117,10 @@ Result<std::vector<records::Records>> ReadPeople(const LoadedProtocol& loaded) {
     people.push_back(records::Collect(text->events));
   }
   if (!people.empty()) return people;
-  return Failure(loaded.folder + " has no journal yet; run a session first: footing-study run");
+  return Failure(
+      loaded.folder +
+      " has no journal yet; run a session first (footing-study run), or name the folder of "
+      "the sessions with --folder");
 }
 
 void Finish(const Result<Answer>& result, Shared& shared) {

@@ -5,6 +5,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace footing::recording {
@@ -14,13 +16,24 @@ Error FileExists(const std::string& path) {
   return UsageError(path + " exists; choose another name, or overwrite it with --force");
 }
 
+/// By errno.
+Error CannotCreate(const std::string& path) {
+  const int error = errno;
+  const std::string folder = std::filesystem::path(path).parent_path();
+  std::error_code ignored;
+  const bool no_folder =
+      error == ENOENT && !folder.empty() && !std::filesystem::exists(folder, ignored);
+  return Failure("cannot create " + path + ": " + std::strerror(error) +
+                 (no_folder ? "; make its folder first: mkdir -p " + folder : ""));
+}
+
 }  // namespace
 
 Result<void> CheckCreatable(const std::string& path, bool replace) {
   const bool exists = ::access(path.c_str(), F_OK) == 0;
   if (exists && !replace) return FileExists(path);
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
-  if (descriptor < 0) return Failure("cannot create " + path + ": " + std::strerror(errno));
+  if (descriptor < 0) return CannotCreate(path);
   ::close(descriptor);
   if (!exists) ::unlink(path.c_str());
   return {};
@@ -31,7 +44,7 @@ Result<OutputFile> OutputFile::Create(const std::string& path, bool replace) {
   const int descriptor = ::open(path.c_str(), flags, 0600);
   if (descriptor >= 0) return OutputFile(path, descriptor);
   if (errno == EEXIST) return FileExists(path);
-  return Failure("cannot create " + path + ": " + std::strerror(errno));
+  return CannotCreate(path);
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept

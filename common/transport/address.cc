@@ -77,13 +77,7 @@ Result<Address> ParseAddress(const std::string& text) {
 }
 
 Address DefaultAddress(const std::string& name, bool create) {
-  const char* const runtime = std::getenv("XDG_RUNTIME_DIR");
-  std::string folder;
-  if (runtime != nullptr && *runtime == '/') {
-    folder = std::string(runtime) + "/footing";
-  } else {
-    folder = FallbackRunFolder();
-  }
+  const std::string folder = RunFolder();
   // A folder that cannot be made, or is not ours alone, shows when the listener binds, with its
   // reason.
   if (create) mkdir(folder.c_str(), S_IRWXU);

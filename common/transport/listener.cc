@@ -33,6 +33,10 @@ Error ListenError(const Address& address, const error_code& error) {
     return Failure(address.Text() +
                    " is in use by another program; stop that one or choose another port");
   }
+  if (error == boost::system::errc::address_not_available) {
+    return Failure("cannot listen on " + address.Text() + ": this host has no address " +
+                   address.host + "; list its addresses with: ip address");
+  }
   return Failure("cannot listen on " + address.Text() + ": " + MessageOf(error));
 }
 
@@ -61,6 +65,7 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
                                        : kComeBySsh));
     }
     if (address_.kind == Address::Kind::kPassed) return TakePassed();
+    MakeRunFolderFor(address_);
     if (auto checked = CheckFolderOf(address_); !checked) return checked;
     const Result<Endpoint> endpoint = EndpointOf(address_);
     if (!endpoint) return endpoint.error();

@@ -3,6 +3,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
+
 namespace footing::transport {
 namespace {
 
@@ -16,6 +18,19 @@ Error Unsafe(const std::string& folder, const std::string& why) {
 }  // namespace
 
 std::string FallbackRunFolder() { return "/tmp/footing-" + std::to_string(geteuid()); }
+
+std::string RunFolder() {
+  const char* const runtime = std::getenv("XDG_RUNTIME_DIR");
+  const bool usable = runtime != nullptr && *runtime == '/';
+  return usable ? std::string(runtime) + "/footing" : FallbackRunFolder();
+}
+
+void MakeRunFolderFor(const Address& address) {
+  const std::string folder = RunFolder();
+  const bool in_it =
+      address.kind == Address::Kind::kUnix && address.path.rfind(folder + "/", 0) == 0;
+  if (in_it) mkdir(folder.c_str(), S_IRWXU);
+}
 
 Result<void> CheckRunFolder(const std::string& folder, uid_t own_user) {
   struct stat status {};

@@ -13,6 +13,12 @@ namespace footing::transport {
 
 std::string FallbackRunFolder();
 
+/// The folder of the default addresses of this user: $XDG_RUNTIME_DIR/footing, or the fallback.
+std::string RunFolder();
+
+/// Makes RunFolder() where the address is in it. A failure shows when the address is bound.
+void MakeRunFolderFor(const Address& address);
+
 /// An error when `folder` exists and is not a folder (a symbolic link is not one), belongs to
 /// another user, or others may write to it.
 Result<void> CheckRunFolder(const std::string& folder, uid_t own_user);

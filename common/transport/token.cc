@@ -26,13 +26,20 @@ bool IsPlain(const std::string& token) {
 Result<std::string> ReadTokenFile(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
-    return Failure("token file " + path + ": " + std::strerror(errno));
+    const std::string remedy =
+        errno == ENOENT ? "; make one on the server (openssl rand -hex 16 > FILE; chmod 600 FILE), "
+                          "and copy it to clients on other machines"
+                        : "";
+    return Failure("token file " + path + ": " + std::strerror(errno) + remedy);
   }
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     return UsageError("token file " + path + " may be read by others; chmod 600 " + path);
   }
   std::ifstream file(path);
-  if (!file) return Failure("token file " + path + ": " + std::strerror(errno));
+  if (!file) {
+    return Failure("token file " + path + ": " + std::strerror(errno) +
+                   "; it must belong to the user who runs this program");
+  }
   std::string token;
   std::getline(file, token);
   if (!IsPlain(token)) {

@@ -55,7 +55,7 @@ void Decoder::Flush(std::int64_t now_ns, std::vector<Decoded>& complete) {
 
 void Decoder::TakeMessage(const osc::Packet& packet, const osc::Message& message,
                           std::int64_t now_ns, std::vector<Decoded>& complete) {
-  if (message.address == "/footing/skeleton" && message.types == "hi")
+  if (message.address == "/footing/skeleton" && (message.types == "hi" || message.types == "ii"))
     return TakeHead(packet, message, now_ns, complete);
   if (message.address == "/footing/joint" && message.types == "sffff") {
     TakeJointOf(Dialect::kFooting, packet, message, now_ns, complete);
@@ -76,6 +76,8 @@ void Decoder::TakeMessage(const osc::Packet& packet, const osc::Message& message
       if (options_.mirrored) complete.back().skeleton = MirrorImage(*skeleton);
       counts_.joints += skeleton->present();
     }
+  } else if (message.address.starts_with("/footing/")) {
+    Unknown(message, "Footing's own are /footing/skeleton ,hi or ,ii and /footing/joint ,sffff");
   } else if (!IsKnown(message.address)) {
     Unknown(message, "neither a joint of OSCeleton, VMC nor Footing");
   }
@@ -130,7 +132,9 @@ void Decoder::TakeHead(const osc::Packet& packet, const osc::Message& message, s
   Frame* const frame = FrameOf(Dialect::kFooting, footing_user_, now_ns);
   if (!frame) return;
   if (!frame->joints.empty()) Complete(*frame, complete);
-  frame->sequence = std::get<std::int64_t>(arguments[0]);
+  // Many senders have no integers of 64 bits.
+  const auto* const narrow = std::get_if<std::int32_t>(&arguments[0]);
+  frame->sequence = narrow ? *narrow : std::get<std::int64_t>(arguments[0]);
 }
 
 void Decoder::TakeJoint(Dialect dialect, const Numbers& joint, std::int64_t now_ns,

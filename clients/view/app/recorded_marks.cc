@@ -37,6 +37,7 @@ class MarkCollector {
     if (!scene::ShowsTrial(state)) return;
     const double at_s = PositionOf(time_ns);
     if (!Goes(state)) {
+      if (IsOver(state)) return;  // Before the recording began: there is nothing to play.
       Begin(state, at_s);
       frame_only_ = true;
     }
@@ -103,6 +104,11 @@ class MarkCollector {
     return std::max({line.trials.size(), line.failures.size(), line.tasks.size()}) >=
                timeline::kMostMarks ||
            instants >= kMostInstants;
+  }
+
+  static bool IsOver(const stream::TrialState& state) {
+    return state.progress.phase == TrialPhase::kFinished ||
+           state.progress.phase == TrialPhase::kStopped;
   }
 
   static void Take(const stream::TrialState& state, TrialMark& trial) {

@@ -41,7 +41,7 @@ class TextView {
     show_.model().links = Feed::InitialReports(options);
   }
 
-  void Run() {
+  Result<void> Run() {
     signals_.async_wait([this](const boost::system::error_code& error, int) {
       if (!error) Stop();
     });
@@ -50,9 +50,22 @@ class TextView {
     WaitToDraw();
     io_.run();
     if (options_.json) std::cout << Summary(show_.model(), PassedS()) << std::endl;
+    return Refusal();
   }
 
  private:
+  /// Why nothing was seen, where a server could be reached but did not let this viewer in: a wrong
+  /// token or another certificate does not mend itself, as a server that is late does.
+  Result<void> Refusal() {
+    const scene::LinkReport* refused = nullptr;
+    for (const scene::LinkReport& link : show_.model().links) {
+      if (!link.server_id.empty()) return {};  // Another server was there.
+      if (link.state == scene::LinkState::kRefused) refused = &link;
+    }
+    if (refused == nullptr) return {};
+    return Failure(refused->why);
+  }
+
   double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns_); }
 
   void WaitToDraw() {
@@ -115,9 +128,6 @@ std::string ScreenText(const std::vector<std::string>& lines) {
   return text + "Ctrl-C leaves.";
 }
 
-Result<void> RunTextView(const Options& options) {
-  TextView(options).Run();
-  return {};
-}
+Result<void> RunTextView(const Options& options) { return TextView(options).Run(); }
 
 }  // namespace footing::view

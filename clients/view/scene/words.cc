@@ -186,7 +186,7 @@ std::vector<std::string> WaitingLines(const LinkReport& link) {
     case LinkState::kStale:
       return {"Nothing from " + link.address + " for 3 s.", link.why};
     case LinkState::kRefused:
-      return {"The server refuses this viewer", link.why};
+      return {"No connection to the server", link.why};
     case LinkState::kConnecting:
       break;
   }

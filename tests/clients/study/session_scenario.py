@@ -51,6 +51,9 @@ def check_refusals(stage):
     assert schema["required"][-1] == "seed" and "final_survey" in schema["properties"], schema
     plan = stage.run_json("footing-study", "check", protocol)
     assert [one["participant"] for one in plan["sessions"]] == PROTOCOL["participants"], plan
+    short = stage.folder / "short.json"
+    short.write_text(json.dumps({**PROTOCOL, "practice_s": 20, "rest_s": 5}))
+    assert "of a session: 0.8 min." in stage.run("footing-study", "check", short).stdout  # 45 s.
     refused(stage, 2, "not in the protocol", *words(stage, "P09", "--unattended"))
     refused(stage, 3, "no footingd", *words(stage, "P01", "--unattended"))
     refused(stage, 1, "has no journal yet", "analyze", protocol)  # Nothing of it was begun.

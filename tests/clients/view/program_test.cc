@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -60,6 +62,28 @@ TEST_F(ProgramTest, WithoutAServerTheTextSaysWhatItWaitsForAndHowToStartIt) {
   EXPECT_THAT(outcome.output, HasSubstr("no display"));
   EXPECT_THAT(outcome.output, HasSubstr("Waiting for a simulation server on unix:"));
   EXPECT_THAT(outcome.output, HasSubstr("footing-sim"));
+}
+
+TEST_F(ProgramTest, AViewerThatWasNeverLetInFails) {
+  // The viewer reads its token file once it is connected, before it sends anything.
+  const int server = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  auto* const generic = reinterpret_cast<sockaddr*>(&address);
+  ASSERT_EQ(bind(server, generic, size), 0);
+  ASSERT_EQ(listen(server, 1), 0);
+  ASSERT_EQ(getsockname(server, generic, &size), 0);
+  const Outcome outcome =
+      RunCommand("ASAN_OPTIONS=detect_leaks=0 FOOTING_TOKEN_FILE=" + File("none") + " " +
+                 std::string(FOOTING_BINARY_DIR) +
+                 "/bin/footing-view --text --seconds 0.5 --connect tcp:127.0.0.1:" +
+                 std::to_string(ntohs(address.sin_port)) + " 2>&1");
+  close(server);
+  EXPECT_EQ(outcome.code, 1) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("No connection to the server"));
+  EXPECT_THAT(outcome.output, HasSubstr("error: FOOTING_TOKEN_FILE: token file"));
 }
 
 TEST_F(ProgramTest, WithJsonStandardOutputIsOneObject) {

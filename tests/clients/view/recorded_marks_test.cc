@@ -110,6 +110,19 @@ TEST_F(RecordedMarksTest, TheFirstFrameAndTheReadyEventAreOneTrial) {
   EXPECT_DOUBLE_EQ(line.trials[0].start_s.value_or(0), 2);
 }
 
+TEST_F(RecordedMarksTest, ATrialThatWasOverBeforeTheRecordingIsNoneOfIt) {
+  // A study records each trial alone; its first frame still has the trial before.
+  Frame(0, "p06", TrialPhase::kFinished, 40);
+  Trial(1, "p07", TrialPhase::kReady);
+  Trial(2, "p07", TrialPhase::kRunning);
+  Trial(9, "p07", TrialPhase::kFinished, 7);
+  Frame(10, "p07", TrialPhase::kFinished, 7);
+  const timeline::Timeline line = Read();
+  ASSERT_EQ(line.trials.size(), 1U);
+  EXPECT_EQ(line.trials[0].id, "p07");
+  EXPECT_EQ(line.trials[0].end_s, 9);
+}
+
 TEST_F(RecordedMarksTest, TheLimitHoldsWithinOneTick) {
   v1::Events events;
   for (std::size_t k = 0; k <= timeline::kMostMarks; ++k) {

@@ -40,7 +40,7 @@ TEST(WaitingLines, SayWhatIsMissingAndHowToStartIt) {
   link.state = LinkState::kRefused;
   link.why = "tls:127.0.0.1:7450 refused: no token";
   EXPECT_EQ(WaitingLines(link),
-            (std::vector<std::string>{"The server refuses this viewer", link.why}));
+            (std::vector<std::string>{"No connection to the server", link.why}));
 }
 
 TEST(WaitingLines, ARefusalIsShownInTheServersOwnWords) {

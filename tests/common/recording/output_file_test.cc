@@ -33,7 +33,9 @@ TEST(CheckCreatable, SaysWhatCreateWouldSay) {
   const auto nowhere = CheckCreatable(folder.Path("none/model"), true);
   ASSERT_FALSE(nowhere);
   EXPECT_EQ(nowhere.error().kind, ErrorKind::kFailure);
-  EXPECT_THAT(nowhere.error().message, HasSubstr("No such file or directory"));
+  EXPECT_THAT(nowhere.error().message,
+              HasSubstr("No such file or directory; make its folder first: mkdir -p " +
+                        folder.Path("none")));
 }
 
 }  // namespace

@@ -8,12 +8,15 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "common/transport/run_folder.h"
+#include "tests/common/temporary_folder.h"
 #include "tests/common/transport/io_fixture.h"
 
 namespace footing::transport {
@@ -140,12 +143,41 @@ TEST_F(ListenerTest, ServersThatAreStartedTogetherWaitForEachOther) {
   EXPECT_TRUE(listener.ok()) << listener.error().message;
 }
 
+TEST_F(ListenerTest, TheDefaultAddressNamedByHandGetsItsFolder) {
+  const char* const before = std::getenv("XDG_RUNTIME_DIR");
+  const std::string kept = before == nullptr ? "" : before;
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(setenv("XDG_RUNTIME_DIR", folder.Path("").c_str(), 1), 0);
+  const std::string run = RunFolder();
+  const auto listener = Open(*ParseAddress("unix:" + run + "/simulation.sock"));
+  const auto elsewhere = Open(*ParseAddress("unix:" + folder.Path("else") + "/simulation.sock"));
+  before == nullptr ? unsetenv("XDG_RUNTIME_DIR") : setenv("XDG_RUNTIME_DIR", kept.c_str(), 1);
+  EXPECT_TRUE(listener.ok()) << listener.error().message;
+  struct stat status {};
+  ASSERT_EQ(stat(run.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0700U);
+  ASSERT_FALSE(elsewhere.ok());  // Any other folder is made by whoever names it.
+}
+
 TEST_F(ListenerTest, APortInUseIsRefusedWithTheReason) {
   const auto first = Open(TcpAddress());
   ASSERT_TRUE(first.ok());
   const auto second = Open((*first)->address());
   ASSERT_FALSE(second.ok());
   EXPECT_NE(second.error().message.find("is in use by another program"), std::string::npos);
+}
+
+TEST_F(ListenerTest, AnAddressOfAnotherHostIsRefusedWithWhatToDo) {
+  Address address = TcpAddress();
+  address.host = "192.0.2.1";  // For documentation: no host has it.
+  ListenSecurity security;
+  security.insecure_lan = true;
+  const auto listener = Listener::Open(
+      io_, address, [](const Socket&) {}, security);
+  ASSERT_FALSE(listener.ok());
+  EXPECT_NE(listener.error().message.find("this host has no address 192.0.2.1; list"),
+            std::string::npos)
+      << listener.error().message;
 }
 
 TEST_F(ListenerTest, BeyondLoopbackIsRefusedWithTheReason) {

@@ -99,7 +99,9 @@ TEST(Token, AFileThatCannotBeUsedIsNamedNotPassedOver) {
   unsetenv("FOOTING_TOKEN_FILE");
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.error().message,
-            "FOOTING_TOKEN_FILE: token file " + path + ": No such file or directory");
+            "FOOTING_TOKEN_FILE: token file " + path +
+                ": No such file or directory; make one on the server (openssl rand -hex 16 > FILE; "
+                "chmod 600 FILE), and copy it to clients on other machines");
   ASSERT_FALSE(open_to_all.ok());
   EXPECT_NE(open_to_all.error().message.find("may be read by others"), std::string::npos);
 }
