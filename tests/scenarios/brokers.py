@@ -10,6 +10,8 @@ import socket
 import subprocess
 import time
 
+from ports import free_port
+
 SKIPPED = 77
 
 
@@ -24,12 +26,6 @@ def skip_without(*programs):
         print(f"skipped: not installed: {', '.join(missing)}; "
               "scripts/install-dependencies scripts/dependencies-scale.txt")
         raise SystemExit(SKIPPED)
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 class Broker:

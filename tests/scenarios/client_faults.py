@@ -12,6 +12,7 @@ import time
 import brokers
 from fault_proxy import FaultProxy
 from harness import Stage
+from ports import free_port
 from relay import Viewer, returned_after
 
 MOST_RETURN_S = 2
@@ -188,7 +189,7 @@ def relay(stage):
     stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
     stage.wait_for_socket(stage.devices)
     stage.start_user("walk", "--seconds", 600)
-    ports = [brokers.free_port() for _ in range(2)]
+    ports = [free_port() for _ in range(2)]
     with brokers.nats(stage.folder) as nats, Proxies(stage, source=stage.sensor) as source:
         broker = f"tcp:127.0.0.1:{nats.port}"
         to_nats = [FaultProxy(f"tcp:127.0.0.1:{port}", broker, port).start() for port in ports]

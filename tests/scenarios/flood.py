@@ -14,13 +14,13 @@ import argparse
 import json
 import multiprocessing
 import selectors
-import socket
 import struct
 import sys
 import time
 
 import decode_stream
 import harness
+from ports import free_port
 
 BLOCK_BYTES = 64 << 10
 LEAST_HZ = 98
@@ -147,12 +147,6 @@ def one_run(addresses, kind, sessions, seconds):
 def is_good(run, quiet):
     bar_ms = max(MOST_P99_RATIO * quiet["p99_ms"], P99_FLOOR_MS)
     return run["hz"] >= LEAST_HZ and run["p99_ms"] <= bar_ms
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 def main():

@@ -14,6 +14,7 @@ import brokers
 import decode_stream
 from harness import Stage
 from operations import metrics_of
+from ports import free_port
 
 SITE = "lab-1"
 SAMPLED = ("motion", "features", "boards", "raw")
@@ -221,7 +222,7 @@ def check_login(stage):
 def main():
     brokers.skip_without("nats-server")
     with Stage(sys.argv[1]) as stage:
-        port, listen = brokers.free_port(), f"unix:{stage.folder}/edge.sock"
+        port, listen = free_port(), f"unix:{stage.folder}/edge.sock"
         nats_at = f"tcp:127.0.0.1:{port}"
         of_publisher, of_edge = metrics_at(stage)
         stage.start("footing-relay", "serve", "--nats", nats_at, "--site", SITE, "--listen", listen, "--metrics", of_edge,

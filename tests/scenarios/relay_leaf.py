@@ -11,6 +11,7 @@ import urllib.request
 
 import brokers
 from harness import Stage
+from ports import free_port
 from relay import Viewer, check_numbers, returned_after, start_footingd
 
 SITE, LOGIN = "lab1", "lab1:right-password"
@@ -23,7 +24,7 @@ class Site:
     """A nats-server of its own, whose monitoring says what goes through it."""
 
     def __init__(self, folder, name, config):
-        self.monitoring = brokers.free_port()
+        self.monitoring = free_port()
         path = folder / f"{name}.conf"
         path.write_text(f"server_name: {name}\nhttp: 127.0.0.1:{self.monitoring}\n{config}\n")
         self.broker = brokers.nats(folder, "-c", str(path))
@@ -40,7 +41,7 @@ class Site:
 
 
 def start_sites(stage):
-    port = brokers.free_port()
+    port = free_port()
     user, password = LOGIN.split(":")
     hub = Site(stage.folder, "hub", f"leafnodes {{ host: 127.0.0.1, port: {port}, authorization {{ user: {user}, "
                                     f"password: {password} }} }}")

@@ -19,6 +19,7 @@ import time
 import brokers
 import relay
 from harness import Stage
+from ports import free_port
 
 LEAST_DELIVERED = 0.999
 TRIES = 3
@@ -97,7 +98,7 @@ def main():
         relay.start_footingd(stage)
         stage.start_user("walk", "--seconds", 3600)
         relay.start_publisher(stage, nats)
-        addresses = [f"tcp:127.0.0.1:{brokers.free_port()}" for _ in range(arguments.edges)]
+        addresses = [f"tcp:127.0.0.1:{free_port()}" for _ in range(arguments.edges)]
         edges = [stage.start("footing-relay", "serve", "--nats", f"tcp:127.0.0.1:{nats.port}", "--site", relay.SITE,
                              "--listen", address, "--rate-hz", arguments.rate_hz, name=f"edge{number}")
                  for number, address in enumerate(addresses)]

@@ -12,6 +12,7 @@ import brokers
 import decode_stream
 import relay
 from harness import Stage
+from ports import free_port
 
 SITE = "lab-1"
 RATE_HZ = 10
@@ -79,7 +80,7 @@ def main():
     with Stage(sys.argv[1]) as stage:
         relay.start_footingd(stage)
         stage.start_user("walk", "--seconds", 600)
-        port = brokers.free_port()
+        port = free_port()
         stage.start("footing-relay", "publish", "--connect", stage.sensor, "--mqtt", f"127.0.0.1:{port}", "--site", SITE,
                     "--mqtt-rate-hz", RATE_HZ, name="publisher")
         time.sleep(2)  # The devices attach.

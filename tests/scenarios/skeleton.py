@@ -4,17 +4,11 @@ from UDP to the channel `hands`, with the camera's place found from the person's
 Usage: skeleton.py BINARY_FOLDER
 """
 import json
-import socket
 import sys
 
 import harness
 from fault_proxy import UdpFaultProxy
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+from ports import free_port
 
 
 def play(stage, dialect, name=None, send_port=None, port=None):

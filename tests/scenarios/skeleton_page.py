@@ -18,6 +18,7 @@ import sys
 import tempfile
 
 import harness
+from ports import free_port
 
 PACKAGE = pathlib.Path(os.environ.get("XDG_DATA_HOME") or pathlib.Path.home() / ".local/share") / "footing/mediapipe-pose"
 PICTURE = pathlib.Path(__file__).parent / "pictures/astronaut.jpg"
@@ -31,9 +32,7 @@ def skip(why):
 
 def serve(stage, seconds, *words):
     """footing-skeleton with a page, and the page's port."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     stage.start("footing-skeleton", "--listen", "127.0.0.1:0", "--web", f"127.0.0.1:{port}", "--camera-m", "2.5,0,1",
                 "--seconds", seconds, "--json", *words, name="skeleton")
     stage.wait_for(lambda: "page for a webcam" in (stage.folder / "skeleton.log").read_text(), "the page")

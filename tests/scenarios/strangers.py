@@ -20,6 +20,7 @@ import time
 
 import flood
 from harness import Stage
+from ports import free_port
 
 IDLE, DECLARING, HALF_OPEN = 5000, 20, 200
 DECLARED_BYTES = 256 << 20
@@ -117,7 +118,7 @@ def main():
              ("half-open", HALF_OPEN, struct.pack("<I", 20) + b"\x0a\x12")]
     failed = []
     with Stage(options.binaries) as stage:
-        port = flood.free_port()
+        port = free_port()
         stage.start("footingd", "--listen", stage.sensor, "--listen", f"tcp:127.0.0.1:{port}", "--source",
                     f"stream:{stage.devices}")
         stage.wait_for_socket(stage.devices)

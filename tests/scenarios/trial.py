@@ -170,6 +170,8 @@ def test_track(stage, operator):
     assert stage.run("footing-ctl", "trial", "stop", "--connect",
                      stage.simulation).returncode == 0
     operator.until(lambda t: t["phase"] == STOPPED, 5)
+    done = stage.run("footing-ctl", "trial", "stop", "--connect", stage.simulation)
+    assert done.returncode == 1 and '"p07-2" is over' in done.stderr and not done.stdout, done
 
 
 def main(binaries):

@@ -103,15 +103,24 @@ Result<void> TrialControl::Stop(const v1::StopTrial& message) {
     return UsageError("stop_trial: \"" + message.trial() + "\" is not the newest trial" +
                       (newest.id.empty() ? "" : "; that is \"" + newest.id + "\""));
   }
+  if (!GoesOn()) {
+    return Failure("stop_trial: no trial is ready or running" +
+                   (newest.id.empty() ? "" : ": \"" + newest.id + "\" is over"));
+  }
   StopNewest();
   return {};
 }
 
-Result<void> TrialControl::CheckNoneGoesOn() const {
+bool TrialControl::GoesOn() const {
   const Trial& newest = trials_.back();
   const bool running = trials_.size() > 1 || phase_ == stream::TrialPhase::kRunning;
   const bool ready = phase_ == stream::TrialPhase::kReady && !newest.id.empty();
-  if (newest.number < inputs_.stopped_below || !(running || ready)) return {};
+  return newest.number >= inputs_.stopped_below && (running || ready);
+}
+
+Result<void> TrialControl::CheckNoneGoesOn() const {
+  if (!GoesOn()) return {};
+  const Trial& newest = trials_.back();
   return Failure("a trial" + (newest.id.empty() ? "" : " (" + newest.id + ")") +
                  " is ready or running; stop it first (footing-ctl trial stop)");
 }

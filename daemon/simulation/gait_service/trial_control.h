@@ -35,8 +35,8 @@ class TrialControl {
   v1::CommandResult OnCommand(const v1::Command& command);
   /// Whichever it is, as StopTrial without a name.
   void StopNewest() { inputs_.stopped_below = trials_.back().number + 1; }
-  /// Fails, with the reason, while a trial is on its way, ready or running; a server's first one,
-  /// which has no id, from its start line on.
+  /// Fails, with the reason, while a trial goes on: is on its way, ready or running; a server's
+  /// first one, which has no id, from its start line on. StopTrial fails while none does.
   Result<void> CheckNoneGoesOn() const;
   /// For the engine, after a command.
   const engine::TrialInputs& inputs() const { return inputs_; }
@@ -67,6 +67,7 @@ class TrialControl {
   Result<void> Start(const v1::StartTrial& message);
   Result<void> Stop(const v1::StopTrial& message);
   Result<stream::Track> Read(const std::string& name) const;
+  bool GoesOn() const;
   const Trial& TrialNumbered(std::uint64_t number) const;
   v1::TrialState StateOf(const Trial& trial, const stream::TrialProgress& progress) const;
 

@@ -186,6 +186,19 @@ TEST(TrialControl, StopsTheTrialThatIsNamedOrWhicheverGoesOn) {
   EXPECT_EQ(marks[2].trial().trial(), "t2");
 }
 
+TEST(TrialControl, StopsNothingWhereNoTrialGoesOn) {
+  Line line("straight");
+  line.Run(1);
+  EXPECT_EQ(line.Stop("").message(), "stop_trial: no trial is ready or running");
+  ASSERT_TRUE(line.Start("t1", "").ok());
+  line.Run(3);
+  ASSERT_TRUE(line.Stop("").ok());
+  const std::string over = "stop_trial: no trial is ready or running: \"t1\" is over";
+  EXPECT_EQ(line.Stop("").message(), over) << "before the engine has seen it";
+  line.Run(3);
+  EXPECT_EQ(line.Stop("t1").message(), over);
+}
+
 TEST(TrialControl, KnowsWhetherATrialGoesOn) {
   Line line("straight");
   line.Run(1);
