@@ -12,14 +12,18 @@ namespace footing::motion {
 struct FootPlace {
   Eigen::Vector3d p_WA = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R_WA = Eigen::Matrix3d::Identity();
+  double thigh_turn_rad = 0;  ///< As ThighTurn; LegAim::kWhole only.
 };
 
-/// What of a foot's orientation is asked for.
-enum class FootAim {
-  /// Where it points, with the last angle of the ankle. The skeletons of CMU have no angle that
-  /// would roll the sole against the shank, so it rolls with it, some degrees.
-  kAhead,
-  kFlat,  ///< All of it, as far as the angles of the ankle allow.
+/// What is asked for beside the place of the ankle.
+enum class LegAim {
+  /// Where the foot points (x of its frame), with the last angle of the ankle.
+  kFoot,
+  /// Where the foot points (from ankle to toe, so that toes stay where they are when the sole
+  /// rolls), and how the thigh is turned about itself, which says where the knee is. How the sole
+  /// rolls comes last: an ankle that has an angle for it brings it flat. The skeletons of CMU have
+  /// none, so their soles roll with the shank, as in their recordings.
+  kWhole,
 };
 
 /// Puts a foot at its place by the joints from hip to ankle: the ankle's origin and where the foot
@@ -27,11 +31,16 @@ enum class FootAim {
 class LegSolver {
  public:
   /// `body` must outlive it. `left`: which leg.
-  LegSolver(const body::Body& body, bool left, FootAim aim = FootAim::kAhead);
+  LegSolver(const body::Body& body, bool left, LegAim aim = LegAim::kFoot);
 
-  /// Moves the leg's angles in `q`, beginning at those that stand there. Returns what is left of
-  /// the distance, m.
+  /// Moves the leg's angles in `q`, beginning at those that stand there; from a bent knee it stays
+  /// bent to the same side. Returns what is left of the distance, m.
   double Solve(const FootPlace& place, Eigen::Ref<Eigen::VectorXd> q);
+  /// How the thigh is turned about itself against the pelvis, from where the least turn from the
+  /// T-pose would bring it; about the line from knee to hip, rad.
+  double ThighTurn(const body::Kinematics& at) const;
+  /// Bends the knee further, ahead.
+  void BendKnee(double angle_rad, Eigen::Ref<Eigen::VectorXd> q);
 
   /// Thigh and shank, m.
   double thigh_m() const { return thigh_m_; }
@@ -41,10 +50,27 @@ class LegSolver {
   int knee_dof() const { return body_.skeleton.joint(knee_).first_dof; }
 
  private:
+  struct Equations;
+  struct Thigh {  ///< In the pelvis.
+    Eigen::Vector3d along_P;
+    Eigen::Matrix3d R_PH;
+  };
+  std::size_t pelvis() const { return static_cast<std::size_t>(body_.skeleton.joint(hip_).parent); }
+  Thigh ThighOf(const body::Kinematics& at) const;
+  /// The rotation of the T-pose, brought into the direction of `thigh` by the least turn.
+  Eigen::Matrix3d Untwisted(const Thigh& thigh) const;
+  Eigen::Matrix3Xd Columns(int joint, const Eigen::Vector3d& p_W);
+  /// What the thigh, and a point of the foot, have to move; how far it is, m.
+  double AddThigh(double turn_rad, Equations& equations);
+  double AddFoot(const FootPlace& place, const Eigen::Vector3d& p_A, double weight,
+                 Equations& equations);
+
   const body::Body& body_;
-  FootAim aim_;
+  LegAim aim_;
   int hip_, knee_, ankle_;
+  Eigen::Vector3d ahead_A_;  ///< A point of the foot where it points.
   double thigh_m_, shank_m_;
+  Thigh t_pose_;
   std::vector<int> dofs_;
   body::Kinematics at_;
   Eigen::Matrix<double, 3, Eigen::Dynamic> J_;

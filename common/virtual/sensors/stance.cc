@@ -15,6 +15,8 @@ constexpr double kLeastFootM = 0.02;  // From ankle to toe over the ground; shor
 constexpr double kMostTurnRad = 0.8;
 // Further apart nobody stands upright for five seconds; closer, one foot is on the other.
 constexpr double kMostAheadM = 0.5, kLeastApartM = 0.06, kMostApartM = 0.8;
+constexpr double kMostThighTurnRad = 0.5;  // Clips of standing people begin with up to 0.56.
+constexpr double kFirstBendRad = 0.2;      // A straight knee could be bent either way.
 constexpr double kStretchedShare = 0.999;  // Of a leg's length: a straight one cannot be bent.
 
 /// The way from the right ankle to the left one as near to this as a person can stand.
@@ -47,8 +49,8 @@ double TurnOf(const body::Body& body, const body::Kinematics& standing, const bo
 Stance::Stance(const body::Body& body, const Eigen::VectorXd& t_pose,
                const Eigen::VectorXd& first_q)
     : body_(body),
-      legs_{motion::LegSolver(body, true, motion::FootAim::kFlat),
-            motion::LegSolver(body, false, motion::FootAim::kFlat)},
+      legs_{motion::LegSolver(body, true, motion::LegAim::kWhole),
+            motion::LegSolver(body, false, motion::LegAim::kWhole)},
       stance_(Places(t_pose)),
       first_(Places(first_q)) {
   const Eigen::Vector2d middle_m = (first_[0].p_WA + first_[1].p_WA).head<2>() / 2;
@@ -59,9 +61,11 @@ Stance::Stance(const body::Body& body, const Eigen::VectorXd& t_pose,
   body::ComputeKinematics(body.skeleton, t_pose, standing);
   body::ComputeKinematics(body.skeleton, first_q, beginning);
   for (int foot = 0; foot < kFeet; ++foot) {
-    Eigen::Matrix3d& R_WA = stance_[static_cast<std::size_t>(foot)].R_WA;
+    motion::FootPlace& place = stance_[static_cast<std::size_t>(foot)];
     const double turn_rad = TurnOf(body, standing, beginning, foot);
-    R_WA = body::AxisRotation(body::Axis::kZ, turn_rad) * R_WA;
+    place.R_WA = body::AxisRotation(body::Axis::kZ, turn_rad) * place.R_WA;
+    place.thigh_turn_rad = std::clamp(first_[static_cast<std::size_t>(foot)].thigh_turn_rad,
+                                      -kMostThighTurnRad, kMostThighTurnRad);
   }
 }
 
@@ -71,7 +75,7 @@ FeetPlaces Stance::Places(const Eigen::VectorXd& q) const {
   FeetPlaces places;
   for (std::size_t foot = 0; foot < kFeet; ++foot) {
     const auto ankle = static_cast<std::size_t>(legs_[foot].ankle());
-    places[foot] = {at.p_WJ[ankle], at.R_WJ[ankle]};
+    places[foot] = {at.p_WJ[ankle], at.R_WJ[ankle], legs_[foot].ThighTurn(at)};
   }
   return places;
 }
@@ -93,6 +97,7 @@ void Stance::StandOver(Eigen::VectorXd& q) {
     too_high_m = std::max(too_high_m, up_m.z() - below_m);
   }
   q(2) -= too_high_m;
+  for (motion::LegSolver& leg : legs_) leg.BendKnee(kFirstBendRad, q);
   KeepFeet(0, q);
 }
 
@@ -101,7 +106,10 @@ void Stance::KeepFeet(double share, Eigen::VectorXd& q) {
     const motion::FootPlace &from = stance_[foot], &to = first_[foot];
     const Eigen::Quaterniond turn =
         Eigen::Quaterniond(from.R_WA).slerp(share, Eigen::Quaterniond(to.R_WA));
-    legs_[foot].Solve({from.p_WA + share * (to.p_WA - from.p_WA), turn.toRotationMatrix()}, q);
+    const double thigh_turn_rad =
+        from.thigh_turn_rad + share * (to.thigh_turn_rad - from.thigh_turn_rad);
+    legs_[foot].Solve(
+        {from.p_WA + share * (to.p_WA - from.p_WA), turn.toRotationMatrix(), thigh_turn_rad}, q);
   }
 }
 

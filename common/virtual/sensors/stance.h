@@ -17,8 +17,9 @@ using FeetPlaces = std::array<motion::FootPlace, kFeet>;
 class Stance {
  public:
   /// The feet stand as in `t_pose`, flat on the ground, but pointing as in `first_q`, the motion's
-  /// first frame, and below its ankles, or as near to them as a person stands. The person faces
-  /// along x. `body` must outlive it.
+  /// first frame, and below its ankles, or as near to them as a person stands. The thighs are
+  /// turned about themselves as there: a person's legs stay so while he straightens up. The person
+  /// faces along x. `body` must outlive it.
   Stance(const body::Body& body, const Eigen::VectorXd& t_pose, const Eigen::VectorXd& first_q);
 
   /// Moves `q` over the feet and down as far as the legs are too short for their width, and bends

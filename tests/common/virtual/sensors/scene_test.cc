@@ -7,6 +7,7 @@
 
 #include "common/body/kinematics.h"
 #include "common/units/units.h"
+#include "common/virtual/motion/leg_solver.h"
 
 namespace footing::virtual_sensors {
 namespace {
@@ -74,6 +75,30 @@ TEST(MakeScene, NoFootSlidesFromTheTPoseIntoTheClip) {
       EXPECT_NEAR(heading(foot, i), heading(foot, last), 0.05) << i;
     }
     EXPECT_NEAR(SoleMiddle(course, foot, 300).z(), 0, 0.01);
+  }
+}
+
+TEST(MakeScene, ThighsAreTurnedInTheTPoseAsTheClipBegins) {
+  const auto scene = MakeScene(Straddling(), {}, {}, "clip");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const body::Landmarks& landmarks = scene->body.landmarks;
+  const motion::Motion& motion = scene->motion;
+  body::Kinematics at(scene->body.skeleton);
+  for (std::size_t foot = 0; foot < kFeet; ++foot) {
+    const motion::LegSolver leg(scene->body, foot == 0);
+    const auto place = [&](body::Landmark left) -> Eigen::Vector3d {
+      const int joint = landmarks[body::OfSide(left, static_cast<int>(foot))];
+      return at.p_WJ[static_cast<std::size_t>(joint)];
+    };
+    for (Eigen::Index i = 0; i < motion.frames(); i += 10) {
+      body::ComputeKinematics(motion.skeleton, motion.q.col(i), at);
+      EXPECT_NEAR(leg.ThighTurn(at), foot == 0 ? 0.4 : 0, 0.02) << i;
+      const Eigen::Vector3d hip_m = place(body::Landmark::kLeftHip);
+      const Eigen::Vector3d way_m = place(body::Landmark::kLeftAnkle) - hip_m;
+      const Eigen::Vector3d knee_m = place(body::Landmark::kLeftKnee) - hip_m;
+      const double ahead_m = knee_m.x() - way_m.x() * knee_m.z() / way_m.z();
+      EXPECT_GT(ahead_m, -1e-3) << i;  // Straight or bent, never backwards.
+    }
   }
 }
 
