@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "common/rotation/rotation.h"
+
 namespace footing::motion {
 namespace {
 
@@ -69,7 +71,7 @@ LegSolver::Thigh LegSolver::ThighOf(const body::Kinematics& at) const {
 }
 
 Eigen::Matrix3d LegSolver::Untwisted(const Thigh& thigh) const {
-  return Eigen::Quaterniond::FromTwoVectors(t_pose_.along_P, thigh.along_P) * t_pose_.R_PH;
+  return LeastTurn(t_pose_.along_P, thigh.along_P) * t_pose_.R_PH;
 }
 
 double LegSolver::ThighTurn(const body::Kinematics& at) const {
