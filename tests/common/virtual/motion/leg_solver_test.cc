@@ -61,7 +61,8 @@ TEST_F(Leg, KneeBendsAheadWithTheThighTurnedAsAsked) {
       EXPECT_NEAR(leg.ThighTurn(At(q)), turn_rad, 0.01) << by_m.transpose();
       EXPECT_LT((Place(q, Landmark::kLeftAnkle) - place.p_WA).norm(), 1e-3);
       // Ahead of the line from hip to ankle, as the thigh looks.
-      const Eigen::Vector3d hip = Place(q, Landmark::kLeftHip), knee = Place(q, Landmark::kLeftKnee);
+      const Eigen::Vector3d hip = Place(q, Landmark::kLeftHip),
+                            knee = Place(q, Landmark::kLeftKnee);
       const Eigen::Vector3d along = (place.p_WA - hip).normalized();
       const Eigen::Vector3d off_m = knee - hip - along * along.dot(knee - hip);
       EXPECT_GT(off_m.x(), 0.8 * off_m.norm()) << by_m.transpose() << " turned " << turn_rad;
