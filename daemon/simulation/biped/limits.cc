@@ -26,9 +26,11 @@ constexpr double kHighestUpToMps = 1.0;
 constexpr double kFastHeightMaxM = 0.5;
 
 /// Every gait turns by up to kTurnPerStepMaxDeg a step, a run faster than this by less: linearly,
-/// down to the fastest run's.
+/// down to the fastest run's. So does a leap out of a run, faster than jumps are: by as much as
+/// gives the landing the sideways speed of the fastest jump.
 constexpr double kRunFullTurnMps = 4;
 constexpr double kFastestRunMps = 6, kFastestRunTurnDeg = 5;
+constexpr double kFastestJumpMps = 2;
 
 double HeightMax(double speed_mps, double speed_max_mps) {
   const double share = (speed_mps - kHighestUpToMps) / (speed_max_mps - kHighestUpToMps);
@@ -39,6 +41,9 @@ double HeightMax(double speed_mps, double speed_max_mps) {
 
 double TurnLimit(Gait gait, double speed_mps) {
   if (gait == Gait::kUnspecified) return 0;
+  if (gait == Gait::kJump && speed_mps > kFastestJumpMps) {
+    return DegreesToRadians(kTurnPerStepMaxDeg * kFastestJumpMps / speed_mps);
+  }
   if (gait != Gait::kRun) return DegreesToRadians(kTurnPerStepMaxDeg);
   const double share = (speed_mps - kRunFullTurnMps) / (kFastestRunMps - kRunFullTurnMps);
   return DegreesToRadians(

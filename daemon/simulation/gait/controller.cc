@@ -41,7 +41,8 @@ double StandingLength(const biped::BipedParameters& biped, const Gains& gains) {
 physics::JointEfforts Advance(const biped::BodyState& body, const biped::BipedParameters& biped,
                               const Gains& gains, const biped::GaitCommand& command,
                               const stream::Track* seen_ground, double step_s, GaitMemory& memory) {
-  const biped::GaitCommand goal = Goal(memory, command, gains.transition);
+  const double speed_mps = ToHeading(memory.heading_rad, body.v_WC).x();
+  const biped::GaitCommand goal = Goal(memory, command, gains.transition, speed_mps);
   const Context context{body, biped, gains, goal, seen_ground, step_s};
   SlewSpeed(context, memory);
   Targets targets = AdvanceMachines(context, memory);

@@ -7,6 +7,7 @@
 #include "daemon/simulation/gait/foothold.h"
 #include "daemon/simulation/gait/frames.h"
 #include "daemon/simulation/gait/transition.h"
+#include "daemon/simulation/terrain/ground.h"
 #include "daemon/simulation/terrain/spot.h"
 
 namespace footing::gait {
@@ -211,6 +212,22 @@ Vector3d Cleared(const Context& context, const GaitMemory& memory, int leg,
     r_W -= std::max(0.0, r_W.dot(ahead_W) - clearance_m) * ahead_W;
   }
   r_W.z() = std::min(r_W.z(), std::max(r_HF_W_m.z(), -gains.shortest_leg_m));
+  return r_W;
+}
+
+Eigen::Vector3d OffGround(const Context& context, const GaitMemory& memory, int leg,
+                          const Eigen::Vector3d& r_HF_W_m) {
+  const SteppingGains& gains = context.gains.stepping;
+  const Vector3d& p_WH = context.body.legs[leg].p_WH;
+  const Vector3d p_WF = p_WH + r_HF_W_m;
+  const double standing_m =
+      context.seen_ground == nullptr
+          ? memory.pit.last_hop.foothold_z_m
+          : context.biped.foot_radius_m +
+                terrain::GroundHeight(*context.seen_ground, p_WF.x(), p_WF.y());
+  const double lowest_m = standing_m + gains.clearance_m - p_WH.z();
+  Vector3d r_W = r_HF_W_m;
+  r_W.z() = std::max(r_W.z(), std::min(lowest_m, -gains.shortest_leg_m));
   return r_W;
 }
 

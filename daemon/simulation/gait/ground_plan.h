@@ -41,4 +41,10 @@ double RisingSpeed(const Context& context, const GaitMemory& memory);
 Eigen::Vector3d Cleared(const Context& context, const GaitMemory& memory, int leg,
                         const Eigen::Vector3d& r_HF_W_m);
 
+/// The same for a leg that is not to land yet, kept off the ground itself. A body that a hard
+/// landing left low has its hips little more than a leg's length up: a foot that scuffs trips it.
+/// Unseen ground is level with the last foothold.
+Eigen::Vector3d OffGround(const Context& context, const GaitMemory& memory, int leg,
+                          const Eigen::Vector3d& r_HF_W_m);
+
 }  // namespace footing::gait

@@ -50,7 +50,10 @@ double AheadOfCom(const GaitMemory& memory, const Eigen::Vector3d& offset_W_m) {
 LegTarget Landing(const Context& context, const GaitMemory& memory, int leg) {
   const Eigen::Vector3d offset_W = HoppingFoothold(context, memory, leg);
   const double length_m = FlightLength(context, memory, AheadOfCom(memory, offset_W));
-  return Placed(Cleared(context, memory, leg, HipToFoot(context.body, leg, offset_W, length_m)));
+  const Eigen::Vector3d r_HF_W =
+      Cleared(context, memory, leg, HipToFoot(context.body, leg, offset_W, length_m));
+  const bool rises = memory.running == RunningPhase::kUpwardFlight;
+  return Placed(rises ? OffGround(context, memory, leg, r_HF_W) : r_HF_W);
 }
 
 /// A push on the body acts above the whole COM and leaves angular momentum for the whole flight.
@@ -71,9 +74,10 @@ double IdleAside(const Context& context, const GaitMemory& memory) {
 
 LegTarget Idle(const Context& context, const GaitMemory& memory, int leg,
                const Eigen::Vector3d& other_r_HF_W_m) {
-  return Placed(Cleared(context, memory, leg,
-                        Mirrored(memory.heading_rad, other_r_HF_W_m,
-                                 context.gains.hopping.idle_length_m, IdleAside(context, memory))));
+  const Eigen::Vector3d mirrored_W =
+      Mirrored(memory.heading_rad, other_r_HF_W_m, context.gains.hopping.idle_length_m,
+               IdleAside(context, memory));
+  return Placed(OffGround(context, memory, leg, Cleared(context, memory, leg, mirrored_W)));
 }
 
 /// Pushed aside at lift-off, a jump's body would turn over before it lands. The leg that it does

@@ -55,12 +55,14 @@ std::string DrawGaitChanges() {
 }
 
 biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,
-                        const TransitionGains& gains) {
+                        const TransitionGains& gains, double speed_mps) {
   biped::GaitCommand goal = command;
   if (goal.gait == Gait::kUnspecified) goal.gait = Gait::kStep;
   if (goal.gait == Gait::kStep) goal.speed_mps = 0;
-  // A run that still brakes turns as its speed allows, not as the command's does.
-  const double turn_max_rad = biped::TurnLimit(memory.gait, memory.speed.desired_mps);
+  // A run that still brakes turns as its speed allows, not as the command's does; so does a leap,
+  // which keeps a run's speed while v_d falls.
+  const double allows_mps = memory.gait == Gait::kJump ? speed_mps : memory.speed.desired_mps;
+  const double turn_max_rad = biped::TurnLimit(memory.gait, allows_mps);
   goal.turn_per_step_rad = std::clamp(goal.turn_per_step_rad, -turn_max_rad, turn_max_rad);
   if (!IsDirect(memory.gait, goal.gait)) {
     goal.gait = Gait::kWalk;

@@ -22,9 +22,10 @@ bool IsDirect(stream::Gait from, stream::Gait to);
 /// Figure 9 as a Mermaid state diagram, drawn from IsDirect.
 std::string DrawGaitChanges();
 
-/// The command, or where there is no arrow the next gait on the way to it.
+/// The command, or where there is no arrow the next gait on the way to it; turning no more than a
+/// body of this speed along its heading can.
 biped::GaitCommand Goal(const GaitMemory& memory, const biped::GaitCommand& command,
-                        const TransitionGains& gains);
+                        const TransitionGains& gains, double speed_mps);
 
 /// True in the step of a run from which a jump begins: its thrust is the jump's first leap.
 bool LeapsFromRun(const GaitMemory& memory);

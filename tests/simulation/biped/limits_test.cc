@@ -20,6 +20,12 @@ TEST(Limits, KeepCommandsInTheStableRange) {
   EXPECT_EQ(Limited({.gait = Gait::kUnspecified, .speed_mps = 1}).gait, Gait::kStep);
 }
 
+TEST(Limits, ALeapFasterThanJumpsAreTurnsLess) {
+  EXPECT_DOUBLE_EQ(TurnLimit(Gait::kJump, 2), DegreesToRadians(kTurnPerStepMaxDeg));
+  // The same sideways speed of the landing: 8 degrees at 2 m/s, 4 at 4.
+  EXPECT_DOUBLE_EQ(TurnLimit(Gait::kJump, 4), DegreesToRadians(kTurnPerStepMaxDeg / 2));
+}
+
 TEST(Limits, AFasterRunTurnsLess) {
   const double slow_rad = TurnLimit(Gait::kRun, 3), fast_rad = TurnLimit(Gait::kRun, 6);
   EXPECT_DOUBLE_EQ(slow_rad, DegreesToRadians(kTurnPerStepMaxDeg));

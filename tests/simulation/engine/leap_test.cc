@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 
 #include "common/units/units.h"
+#include "daemon/simulation/engine/state.h"
 #include "tests/simulation/engine/engine_fixture.h"
 
 namespace footing::engine {
@@ -51,6 +53,24 @@ TEST_P(LeapOutOfARun, IsAsHighAsCommandedAtAnyMomentOfTheStride) {
     engine.Restore(running);
     Simulate(engine, run, 0.06);
   }
+}
+
+/// Two of 600 leaps out of runs of 2.5 to 6 m/s fell, at 3.5 m/s: a landing that turns by 8 degrees
+/// is one that much aside.
+TEST_P(LeapOutOfARun, LandsTurnedByLessTheFasterItIs) {
+  GaitEngine engine = NewEngine();
+  Simulate(engine, Direct(Command(Gait::kRun, GetParam())), 6);
+  double speed_mps = 0, heading_rad = 0;
+  const EngineInputs jump = Direct(Command(Gait::kJump, 1.5, 0.5, DegreesToRadians(8)));
+  for (int i = 0; i < 3000; ++i) {
+    engine.Advance(jump);
+    const stream::GaitState& state = engine.Output().gait;
+    if (state.gait == Gait::kJump && state.phase == std::string("compression")) break;
+    speed_mps = state.speed_mps;
+    heading_rad = state.heading_rad;
+  }
+  const double turned_rad = engine.Output().gait.heading_rad - heading_rad;
+  EXPECT_NEAR(turned_rad, DegreesToRadians(8) * std::min(1.0, 2 / speed_mps), 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Speeds, LeapOutOfARun, testing::Values(1.5, 2.5, 3.8));

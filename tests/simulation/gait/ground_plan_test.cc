@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/units/units.h"
+#include "daemon/simulation/gait/running.h"
 #include "daemon/simulation/terrain/track.h"
 #include "tests/simulation/test_world.h"
 
@@ -137,6 +138,34 @@ TEST(Cleared, HoldsALowFootBackAtARiserAndPullsItUpOverTheEdge) {
   EXPECT_NEAR(Cleared(up.context(), up.memory, 0, ahead).x(), 0.3, 1e-12);
   up.body.legs[0].p_WF.x() = 5.1;  // Past the edge: down to the ground.
   EXPECT_EQ(Cleared(up.context(), up.memory, 0, ahead), ahead);
+}
+
+TEST(OffGround, ShortensASwingingLegOfABodyLeftLow) {
+  GroundPlanScene level(kLevel, 1), uphill(kUphill, 1);
+  level.memory.pit.last_hop.foothold_z_m = level.biped.foot_radius_m;
+  const double clear_m = level.biped.foot_radius_m + level.gains.stepping.clearance_m;
+  const Vector3d high(0.3, 0, -0.70), scuffs(0.3, 0, -0.92);
+  EXPECT_EQ(OffGround(level.context(false), level.memory, 0, high), high);
+  EXPECT_NEAR(0.95 + OffGround(level.context(false), level.memory, 0, scuffs).z(), clear_m, 1e-12);
+  EXPECT_NEAR(0.95 + OffGround(uphill.context(), uphill.memory, 0, scuffs).z(),
+              1.3 * std::tan(DegreesToRadians(5)) + clear_m, 1e-9);
+  level.body.legs[0].p_WH.z() = 0.4;  // No leg is that short.
+  EXPECT_EQ(OffGround(level.context(false), level.memory, 0, scuffs).z(),
+            -level.gains.stepping.shortest_leg_m);
+}
+
+/// A foot that scuffs trips the body: twice a run of 5 m/s that was to walk fell so, 0.1 s after a
+/// hard landing had left its COM 0.66 m over the ground, rising.
+TEST(RunningTargets, KeepBothFeetOfALowRisingBodyOffTheGround) {
+  GroundPlanScene low(kLevel, 4);
+  low.memory.running = RunningPhase::kUpwardFlight;
+  low.memory.pit.last_hop.foothold_z_m = low.biped.foot_radius_m;
+  low.body.p_WC.z() = 0.66;
+  for (biped::LegState& leg : low.body.legs) leg.p_WH.z() = 0.74;
+  const Targets targets = RunningTargets(low.context(false), low.memory);
+  for (const LegTarget& leg : targets.legs) {
+    EXPECT_GE(0.74 + leg.r_HF_W_m.z(), low.biped.foot_radius_m + 0.019);
+  }
 }
 
 }  // namespace

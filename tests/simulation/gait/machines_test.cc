@@ -94,10 +94,10 @@ TEST(GaitChanges, JumpingReachesRunningByWalking) {
   memory.gait = Gait::kJump;
   const biped::GaitCommand run{.gait = Gait::kRun, .speed_mps = 3};
   const TransitionGains gains;
-  EXPECT_EQ(Goal(memory, run, gains).gait, Gait::kWalk);
-  EXPECT_EQ(Goal(memory, run, gains).speed_mps, gains.jump_speed_before_landing_mps);
+  EXPECT_EQ(Goal(memory, run, gains, 0).gait, Gait::kWalk);
+  EXPECT_EQ(Goal(memory, run, gains, 0).speed_mps, gains.jump_speed_before_landing_mps);
   memory.gait = Gait::kStep;
-  EXPECT_EQ(Goal(memory, run, gains), run);
+  EXPECT_EQ(Goal(memory, run, gains, 0), run);
 }
 
 TEST(GaitChanges, ABrakingRunTurnsAsItsSpeedAllows) {
@@ -105,9 +105,17 @@ TEST(GaitChanges, ABrakingRunTurnsAsItsSpeedAllows) {
   memory.gait = Gait::kRun;
   memory.speed.desired_mps = 6;
   const biped::GaitCommand slow{.gait = Gait::kRun, .speed_mps = 2, .turn_per_step_rad = -0.13};
-  EXPECT_EQ(Goal(memory, slow, {}).turn_per_step_rad, -biped::TurnLimit(Gait::kRun, 6));
+  EXPECT_EQ(Goal(memory, slow, {}, 2).turn_per_step_rad, -biped::TurnLimit(Gait::kRun, 6));
   memory.speed.desired_mps = 2;
-  EXPECT_EQ(Goal(memory, slow, {}).turn_per_step_rad, -0.13);
+  EXPECT_EQ(Goal(memory, slow, {}, 2).turn_per_step_rad, -0.13);
+}
+
+TEST(GaitChanges, ALeapTurnsAsTheSpeedOfItsRunAllows) {
+  GaitMemory memory;
+  memory.gait = Gait::kJump;  // v_d is the jump's by the time that the leap lands.
+  const biped::GaitCommand jump{.gait = Gait::kJump, .speed_mps = 1, .turn_per_step_rad = 0.13};
+  EXPECT_EQ(Goal(memory, jump, {}, 4).turn_per_step_rad, biped::TurnLimit(Gait::kJump, 4));
+  EXPECT_EQ(Goal(memory, jump, {}, 1).turn_per_step_rad, 0.13);
 }
 
 }  // namespace
