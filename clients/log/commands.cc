@@ -67,24 +67,29 @@ Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::str
 
 Result<ordered_json> RunBodies(const std::string& file, const std::string& format,
                                const std::string& folder, bool replace) {
-  const auto motions =
-      ExportBodies(file, folder, format == "bvh" ? BodyFormat::kBvh : BodyFormat::kTrc, replace);
+  const BodyFormat body = format == "bvh"   ? BodyFormat::kBvh
+                          : format == "trc" ? BodyFormat::kTrc
+                                            : BodyFormat::kMot;
+  const auto motions = ExportBodies(file, folder, body, replace);
   if (!motions) return motions.error();
   ordered_json out{{"file", file}, {"format", format}, {"files", ordered_json::array()}};
   for (const ExportedMotion& motion : *motions) {
     out["files"].push_back({{"path", motion.path},
                             {"subject", motion.subject},
                             {"frames", motion.frames},
-                            {"rate_hz", motion.rate_hz}});
+                            {"rate_hz", motion.rate_hz},
+                            {"begin_s", motion.begin_s}});
   }
   return out;
 }
 
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
                                const std::string& folder, bool replace) {
-  if (format == "bvh" || format == "trc") return RunBodies(file, format, folder, replace);
+  if (format == "bvh" || format == "trc" || format == "mot") {
+    return RunBodies(file, format, folder, replace);
+  }
   if (format != "csv") {
-    return UsageError("unknown --format " + format + "; there are: csv, bvh, trc");
+    return UsageError("unknown --format " + format + "; there are: csv, bvh, trc, mot");
   }
   const auto files = ExportCsv(file, folder, replace);
   if (!files) return files.error();
@@ -159,11 +164,12 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   command
       ->add_option(
           "--format", *format,
-          "Output format: csv, or of reconstructed bodies bvh (rotations) or trc (joint centres)")
+          "Output format: csv, or of reconstructed bodies bvh (rotations), trc (joint centres) or "
+          "mot (joint angles and forces under the feet, for OpenSim)")
       ->required();
   command
       ->add_option("--out", *folder,
-                   "Output folder; one file per topic (csv) or subject (bvh, trc)")
+                   "Output folder; one file per topic (csv) or subject (bvh, trc; mot: two)")
       ->required();
   command->add_flag("--force", *replace, "Overwrite existing files");
   command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *replace), shared); });

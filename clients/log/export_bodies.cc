@@ -1,113 +1,23 @@
 #include "clients/log/export_bodies.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "clients/log/contents.h"
+#include "clients/log/motion_gatherer.h"
+#include "clients/log/opensim.h"
 #include "common/body/kinematics.h"
 #include "common/mcap/walk.h"
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/virtual/motion/trc.h"
-#include "common/wire/wire.h"
 
 namespace footing::log_client {
-namespace {
-
-constexpr double kMostRateHz = 1000;
-
-Eigen::Vector3d PlaceOf(const v1::Character& character, int link) {
-  return wire::FromProto(character.links(link).position_m());
-}
-
-Eigen::Matrix3d TurnOf(const v1::Character& character, int link) {
-  return wire::FromProto(character.links(link).orientation()).normalized().toRotationMatrix();
-}
-
-bool HasChild(const v1::Skeleton& skeleton, int link) {
-  return std::any_of(skeleton.links().begin(), skeleton.links().end(),
-                     [link](const v1::Link& other) { return other.parent() == link; });
-}
-
-/// All joints turn about z, x, y of W's axes at rest, as BVH files mostly do; ends do not turn.
-Result<body::Skeleton> SkeletonOf(const v1::Skeleton& skeleton, const v1::Character& first) {
-  std::vector<body::Joint> joints;
-  for (int i = 0; i < skeleton.links_size(); ++i) {
-    const v1::Link& link = skeleton.links(i);
-    const bool fits = i == 0 ? link.parent() == -1 : link.parent() >= 0 && link.parent() < i;
-    if (!fits) return InvalidData("the recorded skeleton is not a tree");
-    body::Joint joint;
-    joint.name = link.name();
-    joint.parent = link.parent();
-    if (i > 0) {
-      joint.offset_m = TurnOf(first, link.parent()).transpose() *
-                       (PlaceOf(first, i) - PlaceOf(first, link.parent()));
-    }
-    if (i == 0 || HasChild(skeleton, i)) {
-      joint.rotations = {{body::Axis::kZ}, {body::Axis::kX}, {body::Axis::kY}};
-    }
-    joints.push_back(std::move(joint));
-  }
-  return body::MakeSkeleton(std::move(joints));
-}
-
-void SetPose(const body::Skeleton& skeleton, const v1::Character& character,
-             Eigen::Ref<Eigen::VectorXd> q) {
-  q.head<3>() = PlaceOf(character, 0);
-  for (int i = 0; i < skeleton.size(); ++i) {
-    const body::Joint& joint = skeleton.joint(i);
-    if (joint.rotations.empty()) continue;
-    const Eigen::Matrix3d R_WJ = TurnOf(character, i);
-    const Eigen::Matrix3d R_PJ =
-        joint.parent < 0 ? R_WJ
-                         : Eigen::Matrix3d(TurnOf(character, joint.parent).transpose() * R_WJ);
-    body::SetJointRotation(joint, R_PJ, q);
-  }
-}
-
-}  // namespace
-
-void MotionGatherer::Add(const v1::CharacterFrame& frame) {
-  if (frame.characters_size() == 0) return;
-  const v1::Character& character = frame.characters(0);
-  if (!character.has_body() || !character.body().calibrated()) return;
-  if (character.links_size() != skeleton_.links_size()) return;
-  subject_ = character.body().subject();
-  frames_.push_back(frame);
-}
-
-Result<motion::Motion> MotionGatherer::Finish() const {
-  if (frames_.size() < 2) return InvalidData("fewer than two frames of a body after its T-pose");
-  double step_s = frames_.back().time_s() - frames_.front().time_s();
-  for (std::size_t i = 1; i < frames_.size(); ++i) {
-    const double next_s = frames_[i].time_s() - frames_[i - 1].time_s();
-    if (!(next_s > 0)) return InvalidData("the time of the frames does not go on");
-    step_s = std::min(step_s, next_s);
-  }
-  if (step_s < 1 / kMostRateHz) return InvalidData("the frames are less than 1 ms apart");
-  auto skeleton = SkeletonOf(skeleton_, frames_.front().characters(0));
-  if (!skeleton) return skeleton.error();
-  motion::Motion motion;
-  motion.skeleton = std::move(skeleton).value();
-  motion.rate_hz = std::round(1e6 / step_s) * 1e-6;  // Times are rounded, too.
-  motion.start_s = frames_.front().time_s();
-  const auto columns = static_cast<Eigen::Index>(
-      std::llround((frames_.back().time_s() - motion.start_s) / step_s) + 1);
-  motion.q.setZero(motion.skeleton.dof, columns);
-  std::size_t at = 0;
-  for (Eigen::Index i = 0; i < columns; ++i) {
-    const double time_s = motion.start_s + static_cast<double>(i) * step_s;
-    while (at + 1 < frames_.size() && frames_[at + 1].time_s() < time_s + 0.5 * step_s) ++at;
-    if (i > 0) motion.q.col(i) = motion.q.col(i - 1);  // Angles stay on the same turn.
-    SetPose(motion.skeleton, frames_[at].characters(0), motion.q.col(i));
-  }
-  return motion;
-}
 
 motion::MarkerTracks JointPlaces(const motion::Motion& motion) {
   motion::MarkerTracks tracks;
@@ -129,14 +39,37 @@ motion::MarkerTracks JointPlaces(const motion::Motion& motion) {
 
 namespace {
 
-std::string Written(const motion::Motion& motion, BodyFormat format, const std::string& name) {
+struct NamedText {
+  std::string name;
+  std::string text;
+};
+
+Result<std::vector<NamedText>> MotTexts(const MotionGatherer& gatherer,
+                                        const motion::Motion& motion, const std::string& name) {
+  Result<motion::Table> angles = JointAngles(motion);
+  if (!angles) return angles.error();
+  const auto forces = gatherer.Forces();
+  if (!forces) return forces.error();
+  motion::Table table = ForceTable(*forces, motion.rate_hz);
+  angles->name = name + ".mot";
+  table.name = name + "_grf.mot";
+  return std::vector<NamedText>{{angles->name, motion::WriteTable(*angles)},
+                                {table.name, motion::WriteTable(table)}};
+}
+
+/// The files of one person, whose names begin with `name`.
+Result<std::vector<NamedText>> Written(const MotionGatherer& gatherer, const motion::Motion& motion,
+                                       BodyFormat format, const std::string& name) {
   switch (format) {
     case BodyFormat::kBvh:
-      return motion::WriteBvh(motion);
+      return std::vector<NamedText>{{name + ".bvh", motion::WriteBvh(motion)}};
     case BodyFormat::kTrc:
-      return motion::WriteTrc(JointPlaces(motion), name);
+      return std::vector<NamedText>{
+          {name + ".trc", motion::WriteTrc(JointPlaces(motion), name + ".trc")}};
+    case BodyFormat::kMot:
+      return MotTexts(gatherer, motion, name);
   }
-  return "";
+  return std::vector<NamedText>{};
 }
 
 /// One gatherer a skeleton, in the order of the recording.
@@ -147,7 +80,10 @@ class Walker {
     visitor.channel = [this](const mcap::Channel& channel) {
       topics_[channel.id] = channel.topic.substr(channel.topic.rfind('/') + 1);
     };
-    visitor.message = [this](const mcap::Message& message) { Take(message); };
+    visitor.message = [this](const mcap::Message& message) {
+      first_ns_ = std::min(first_ns_, message.log_time_ns);
+      Take(message);
+    };
     const mcap::WalkEnd end = mcap::Walk(bytes, visitor, mcap::WalkMode::kStrict);
     if (const std::optional<Error> incomplete = Incomplete(path, end)) return *incomplete;
     if (damaged_) return InvalidData(path + ": a message of the pose engine cannot be read");
@@ -159,6 +95,8 @@ class Walker {
     }
     return std::move(gatherers_);
   }
+  /// Log time of the recording's first message.
+  std::uint64_t first_ns() const { return first_ns_; }
 
  private:
   void Take(const mcap::Message& message) {
@@ -174,7 +112,7 @@ class Walker {
       v1::CharacterFrame frame;
       if (!Parse(message, frame)) return;
       NextSubject(frame);
-      gatherers_.back().Add(frame);
+      gatherers_.back().Add(frame, message.log_time_ns);
     }
   }
 
@@ -201,6 +139,7 @@ class Walker {
   std::map<std::uint16_t, std::string> topics_;
   std::vector<MotionGatherer> gatherers_;
   std::string last_skeleton_, subject_;
+  std::uint64_t first_ns_ = UINT64_MAX;
   bool has_subject_ = false;
   bool damaged_ = false;
 };
@@ -212,26 +151,30 @@ Result<std::vector<ExportedMotion>> ExportBodies(const std::string& recording,
                                                  bool replace) {
   Result<recording::MappedFile> file = recording::MappedFile::Open(recording);
   if (!file) return file.error();
-  const auto gatherers = Walker().Run(file->bytes(), recording);
+  Walker walker;
+  const auto gatherers = walker.Run(file->bytes(), recording);
   if (!gatherers) return gatherers.error();
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return Failure("cannot make the folder " + folder + ": " + error.message());
   std::vector<ExportedMotion> exported;
+  int people = 0;
   for (const MotionGatherer& gatherer : *gatherers) {
     const auto motion = gatherer.Finish();
     if (!motion) return InvalidData(recording + ": " + motion.error().message);
     const std::string code = gatherer.subject().empty() ? "" : "_" + gatherer.subject();
-    const std::string name = "pose_" + std::to_string(exported.size() + 1) + code +
-                             (format == BodyFormat::kBvh ? ".bvh" : ".trc");
-    const std::string path = folder + "/" + name;
-    Result<recording::OutputFile> out = recording::OutputFile::Create(path, replace);
-    if (!out) return out.error();
-    if (const auto written = out->Write(Written(*motion, format, name)); !written) {
-      return written.error();
+    const auto texts =
+        Written(gatherer, *motion, format, "pose_" + std::to_string(++people) + code);
+    if (!texts) return InvalidData(recording + ": " + texts.error().message);
+    for (const NamedText& one : *texts) {
+      const std::string path = folder + "/" + one.name;
+      Result<recording::OutputFile> out = recording::OutputFile::Create(path, replace);
+      if (!out) return out.error();
+      if (const auto written = out->Write(one.text); !written) return written.error();
+      exported.push_back({path, gatherer.subject(), static_cast<std::uint64_t>(motion->frames()),
+                          motion->rate_hz,
+                          1e-9 * static_cast<double>(gatherer.begin_ns() - walker.first_ns())});
     }
-    exported.push_back(
-        {path, gatherer.subject(), static_cast<std::uint64_t>(motion->frames()), motion->rate_hz});
   }
   return exported;
 }

@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
+#include "clients/log/motion_gatherer.h"
 #include "common/body/kinematics.h"
+#include "common/recording/recording_writer.h"
 #include "common/virtual/motion/bvh.h"
 #include "common/virtual/motion/trc.h"
 #include "common/wire/wire.h"
+#include "tests/common/temporary_folder.h"
 
 namespace footing::log_client {
 namespace {
@@ -72,6 +76,30 @@ TEST(MotionGatherer, AMissingFrameKeepsThePoseBeforeAndTheTime) {
   EXPECT_NE(motion->q.col(4), motion->q.col(3));
 }
 
+TEST(MotionGatherer, TheForcesStandBesideTheFramesOfTheMotion) {
+  MotionGatherer gatherer(Chain());
+  for (const int i : {0, 1, 2, 4, 5}) {
+    v1::CharacterFrame frame = FrameAt(3 + i / 120.0, 0);
+    v1::BodyState& body = *frame.mutable_characters(0)->mutable_body();
+    for (const double load_n : {100.0 + i, 500.0}) {
+      v1::BodyFoot& foot = *body.add_feet();
+      foot.set_load_n(load_n);
+      foot.set_cop_valid(i != 2);
+      *foot.mutable_cop_m() = wire::ToProto(Eigen::Vector3d(0.1, 0.2, 0.05));
+    }
+    gatherer.Add(frame, 7'000'000'000 + static_cast<std::uint64_t>(i));
+  }
+  EXPECT_EQ(gatherer.begin_ns(), 7'000'000'000U);
+  const auto forces = gatherer.Forces();
+  ASSERT_TRUE(forces.ok()) << forces.error().message;
+  std::vector<double> left_n;
+  for (const FootForces& feet : *forces) left_n.push_back(feet[0].load_n);
+  EXPECT_EQ(left_n,
+            (std::vector<double>{100, 101, 0, 0, 104, 105}));  // 2 has no COP, 3 is missing.
+  EXPECT_EQ((*forces)[1][1].load_n, 500);
+  EXPECT_EQ((*forces)[1][1].cop_W, Eigen::Vector3d(0.1, 0.2, 0.05));
+}
+
 TEST(MotionGatherer, WhatCameBeforeTheTPoseIsLeftOut) {
   MotionGatherer gatherer(Chain());
   for (int i = 0; i < 5; ++i) gatherer.Add(FrameAt(i / 120.0, 0, false));
@@ -107,6 +135,39 @@ TEST(JointPlaces, AreTheLinksOfEveryFrameInTheAxesOfOpenSim) {
       EXPECT_NEAR((p_W - true_m).norm(), 0, 1e-5) << i << " " << link;
     }
   }
+}
+
+TEST(ExportBodies, SaysWhereInTheRecordingItsFilesBegin) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.Path("walk.mcap");
+  auto writer = recording::RecordingWriter::Create(path, {"test", true, {}});
+  ASSERT_TRUE(writer.ok());
+  std::uint32_t sequence = 0;
+  const auto write = [&](const char* topic, const google::protobuf::Message& message,
+                         double log_s) {
+    const auto at_ns = static_cast<std::int64_t>(log_s * 1e9);
+    ASSERT_TRUE(writer->Write(topic, message, {at_ns, at_ns, ++sequence}));
+  };
+  v1::Skeletons skeletons;
+  *skeletons.add_skeletons() = Chain();
+  write("/footing-sim/skeletons", skeletons, 5);
+  write("/footing-sim/characters", FrameAt(0.5, 0, false), 6);
+  for (int i = 0; i < 4; ++i) write("/footing-sim/characters", FrameAt(2 + 0.25 * i, 0), 7.5 + i);
+  ASSERT_TRUE(writer->Finish());
+  for (const auto& [format, name] : {std::pair{BodyFormat::kBvh, "pose_1_p07.bvh"},
+                                     std::pair{BodyFormat::kTrc, "pose_1_p07.trc"}}) {
+    const auto exported = ExportBodies(path, folder.Path("out"), format, false);
+    ASSERT_TRUE(exported.ok()) << exported.error().message;
+    ASSERT_EQ(exported->size(), 1U);
+    EXPECT_EQ((*exported)[0].path, folder.Path("out") + "/" + name);
+    EXPECT_EQ((*exported)[0].frames, 4U);
+    EXPECT_NEAR((*exported)[0].begin_s, 2.5, 1e-9);
+  }
+  // A chain has no knees.
+  const auto angles = ExportBodies(path, folder.Path("out"), BodyFormat::kMot, false);
+  ASSERT_FALSE(angles.ok());
+  EXPECT_EQ(angles.error().kind, ErrorKind::kInvalidData);
+  EXPECT_NE(angles.error().message.find("walk.mcap"), std::string::npos);
 }
 
 TEST(ExportBodies, AFileThatIsNoneIsRefusedByName) {
