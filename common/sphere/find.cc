@@ -29,6 +29,7 @@ constexpr double kClearQuality = 0.88;  // Nothing else in sight is as bright an
 constexpr double kLeastQuality = 0.25;
 // Limb, gradient and the blur of the smallest spheres change the colour by 0.15.
 constexpr double kSureColourOff = 0.2, kMostColourOff = 0.45;
+constexpr double kUnlikelyColourOff = 0.3;  // Its confidence is 0.6 at most.
 constexpr double kLeastSeenShare = 0.2;
 constexpr double kMostResidualShare = 0.2;
 constexpr double kSaturatedShare = 0.02;
@@ -190,6 +191,7 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, std::size_
         slopes, {edges->contrast, middle_px, fit->cone, ReachOf(*fit, at), at, target.radius_m}};
     const auto inliers = std::count(fit->inliers.begin(), fit->inliers.end(), true);
     candidate.colour_off = colour_off;
+    candidate.start.is_unlikely = colour_off > kUnlikelyColourOff;
     candidate.quality =
         static_cast<double>(inliers) / kEdgeRays * std::max(0.0, 1 - candidate.colour_off);
     candidates.push_back(candidate);
