@@ -40,7 +40,7 @@ class Strategy {
         slopes_(slopes),
         start_(start),
         settings_(settings),
-        scale_(slopes.scale(), settings.shutter.row_s / settings.shutter.exposure_s),
+        scale_(slopes, settings.shutter.row_s / settings.shutter.exposure_s),
         fitter_(settings, table, scale_, MotionSdPx()) {
     begin_.shape << start.cone.axis, start.cone.tangent, settings.profile.blur_px,
         settings.profile.limb, 0, 0;
@@ -70,7 +70,7 @@ class Strategy {
       if (fit && fit->solution.misfit_sds < kGoodSds) {
         Keep(*fit);
         is_behind_edge_ = true;
-      } else if (is_cut && IsSmall() && !(best_ && best_->solution.misfit_sds < kGoodSds)) {
+      } else if (is_cut && !(best_ && best_->solution.misfit_sds < MostSdsOfCut())) {
         return std::nullopt;  // Part of it is hidden, and it is not clear which.
       }
     }
@@ -86,9 +86,10 @@ class Strategy {
     return settings_.shutter.speed_sd_mps * settings_.shutter.exposure_s * px_per_m;
   }
 
-  bool MayMove() const {
-    return !start_.is_unlikely && disc::HiddenSectors(start_.reach) <= kMostHidden;
-  }
+  bool MayMove() const { return !start_.is_unlikely && !IsMostlyHidden(); }
+  /// Of a fit of the whole sphere where edges are missing.
+  double MostSdsOfCut() const { return IsSmall() ? kGoodSds : kPoorSds; }
+  bool IsMostlyHidden() const { return disc::HiddenSectors(start_.reach) > kMostHidden; }
   int MostPixels() const {
     return start_.is_unlikely ? static_cast<int>(kSomePixels) : kMostPixels;
   }

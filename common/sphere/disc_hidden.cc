@@ -14,9 +14,9 @@ constexpr std::size_t kEdgeStep = 4;        // Of the places that come into ques
 constexpr std::size_t kEdgeStepHidden = 2;  // Where it is known which part of the edge is hidden.
 // Of those, that are tried; where edges are missing, more.
 constexpr std::size_t kMostPlaces = 3, kMostPlacesCut = 5;
-constexpr int kFewestHidden = 3;            // Sectors; one or two are noise.
-constexpr double kHopelessSds = 20;         // Of the coarse places; a finer one gains some 10.
-constexpr double kMostResidual2 = 36;       // Of a pixel.
+constexpr int kFewestHidden = 3;       // Sectors; one or two are noise.
+constexpr double kHopelessSds = 20;    // Of the coarse places; a finer one gains some 10.
+constexpr double kMostResidual2 = 36;  // Of a pixel.
 
 /// Akaike's: each pixel that is left out has a level of its own, which is a parameter.
 double Cost(const Solution& solution, std::size_t all) {
