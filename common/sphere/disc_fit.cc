@@ -20,11 +20,11 @@ constexpr double kMaybeMoves = 13.3;  // Of chi² with four degrees: 1 % of sphe
 constexpr double kSurelyMoves = 40;
 constexpr double kLeastMotionPx = 0.4;
 constexpr double kNoMotionSds = 8;  // A misfit of a part of the pixels that motion never has.
-constexpr double kFastestSds = 8;   // Of a hand's speed; what seems to be faster is no motion.
+constexpr double kFastestSds = 8;   // Of a hand's speed: the start of a fit is held to that.
 // Of a smaller sphere what hides a part looks like its edge. A misfit that nothing explains is then
 // taken for coherent: it can move each of three parameters by the root of a third of its chi².
 constexpr double kSmallBlurs = 5;
-constexpr int kMostHidden = kSectors / 2;  // Of less of the edge, motion is not told apart.
+constexpr int kMostHidden = kSectors / 2;  // With less of the edge, motion cannot be measured.
 
 /// An explanation of the light.
 struct Mode {
