@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace footing::camera {
 namespace {
@@ -28,24 +29,26 @@ stream::TrackedPoint ToPoint(const Eigen::Isometry3d& X_WC, const sphere::Estima
 
 }  // namespace
 
-stream::HandFrame ToHandFrame(const frames::CameraFile& camera,
-                              const std::optional<Eigen::Isometry3d>& calibrated_X_WC,
-                              const std::vector<std::optional<sphere::Estimate>>& found,
-                              std::int64_t exposed_ns, std::int64_t now_ns) {
+std::vector<stream::HandFrame> ToHandFrames(
+    const frames::CameraFile& camera, const std::optional<Eigen::Isometry3d>& calibrated_X_WC,
+    const std::vector<std::optional<sphere::Estimate>>& found, std::int64_t exposed_ns,
+    std::int64_t now_ns) {
   const Eigen::Isometry3d X_WC = calibrated_X_WC.value_or(Eigen::Isometry3d::Identity());
-  stream::HandFrame frame;
-  frame.tracker = "camera";
-  frame.tracker_pose = stream::TrackerPose{X_WC.translation(), Eigen::Quaterniond(X_WC.rotation())};
-  std::optional<double> row_s;
+  std::vector<stream::HandFrame> frames;
   for (std::size_t i = 0; i < found.size(); ++i) {
+    stream::HandFrame frame;
+    frame.tracker = "camera";
+    frame.tracker_pose =
+        stream::TrackerPose{X_WC.translation(), Eigen::Quaterniond(X_WC.rotation())};
     stream::TrackedPoint point = found[i] ? ToPoint(X_WC, *found[i]) : stream::TrackedPoint();
     point.role = camera.spheres[i].role;
     frame.points.push_back(point);
-    if (found[i] && !row_s) row_s = camera.RowTime(found[i]->centre_px.y());
+    const double row_s = found[i] ? camera.RowTime(found[i]->centre_px.y()) : 0;
+    const auto row_ns = static_cast<std::int64_t>(std::llround(1e9 * row_s));
+    frame.age_ns = std::clamp<std::int64_t>(now_ns - exposed_ns - row_ns, 0, kOldestNs);
+    frames.push_back(std::move(frame));
   }
-  const auto row_ns = static_cast<std::int64_t>(std::llround(1e9 * row_s.value_or(0)));
-  frame.age_ns = std::clamp<std::int64_t>(now_ns - exposed_ns - row_ns, 0, kOldestNs);
-  return frame;
+  return frames;
 }
 
 }  // namespace footing::camera

@@ -145,10 +145,11 @@ class Tracking {
     if (shown != nullptr) shown->found = found;
     checks_.TakeFrame(exposed_ns, finder_, found);
     if (shown != nullptr) ShowPreview(frame, exposed_ns, *shown);
-    stream::HandFrame hands =
-        ToHandFrame(options_.camera, X_WC_, found, exposed_ns, clock::MonotonicNs());
-    hands.simulated = options_.simulated;
-    link_.Send(hands);
+    for (stream::HandFrame& hand :
+         ToHandFrames(options_.camera, X_WC_, found, exposed_ns, clock::MonotonicNs())) {
+      hand.simulated = options_.simulated;
+      link_.Send(hand);
+    }
     ++report_.frames;
     for (std::size_t i = 0; i < found.size(); ++i) {
       report_.found[i] += found[i] ? 1 : 0;

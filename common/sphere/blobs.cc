@@ -60,7 +60,8 @@ class NearColour {
  public:
   explicit NearColour(const Eigen::Vector3d& colour) {
     for (int i = 0; i < 3; ++i) colour_[i] = static_cast<std::int16_t>(std::lround(colour[i]));
-    most_ = static_cast<std::int32_t>(kColourOff * kColourOff * colour.squaredNorm());
+    most_ = static_cast<std::uint16_t>(
+        std::min(kColourOff * kColourOff * colour.squaredNorm(), double{kFarthest * kFarthest}));
     const Eigen::Vector3d chroma = colour.array() - colour.mean();
     score_ = static_cast<std::int16_t>(std::clamp(std::lround(kUnit * chroma.norm()), 1L, 16000L));
   }
@@ -72,15 +73,24 @@ class NearColour {
     const std::int16_t* green = quads.green.data() + first;
     const std::int16_t* blue = quads.blue.data() + first;
     for (int i = 0; i < width; ++i) {
-      const std::int32_t r = red[i] - colour_[0], g = green[i] - colour_[1],
-                         b = blue[i] - colour_[2];
-      out[i] = r * r + g * g + b * b < most_ ? score_ : std::int16_t{0};
+      const auto sum = static_cast<std::uint16_t>(
+          Square(red[i], colour_[0]) + Square(green[i], colour_[1]) + Square(blue[i], colour_[2]));
+      out[i] = sum < most_ ? score_ : std::int16_t{0};
     }
   }
 
  private:
+  // A difference beyond that is as far as that: three squares fit into 16 bits, eight at a time.
+  static constexpr std::int16_t kFarthest = 127;
+
+  static std::uint16_t Square(std::int16_t value, std::int16_t colour) {
+    const auto apart = static_cast<std::int16_t>(value - colour);
+    const std::int16_t bounded = std::min(kFarthest, std::max(apart, std::int16_t{-kFarthest}));
+    return static_cast<std::uint16_t>(bounded * bounded);
+  }
+
   std::int16_t colour_[3];
-  std::int32_t most_;
+  std::uint16_t most_;
   std::int16_t score_;
 };
 

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "common/sphere/disc_fitter.h"
+#include "common/sphere/disc_hidden.h"
 
 namespace footing::sphere {
 namespace {
 
-using disc::Fitter;
+using disc::Fit, disc::Fitter;
+using disc::kGoodSds, disc::kPoorSds, disc::kSomePixels;
 using disc::Sample, disc::Solution, disc::State;
 
 constexpr int kMostPixels = 700, kMostPixelsMoving = 400;  // A moving one costs twice as much.
@@ -18,20 +19,12 @@ constexpr double kFarBlurs = 4;       // Beyond the edge; the background needs n
 constexpr double kMaybeMoves = 13.3;  // Of chi² with four degrees: 1 % of spheres at rest.
 constexpr double kSurelyMoves = 40;
 constexpr double kLeastMotionPx = 0.4;
-constexpr double kPoorSds = 4;         // A misfit that noise does not explain.
-constexpr double kGoodSds = 2.5;       // One that it does.
-constexpr double kHiddenMargin = 2.5;  // Blurs from an occluder's edge.
-constexpr std::size_t kEdgeStep = 4;   // Of the places that are tried first.
-constexpr std::size_t kSomePixels = 200;
+constexpr double kNoMotionSds = 8;  // A misfit of a part of the pixels that motion never has.
+constexpr double kFastestSds = 8;   // Of a hand's speed: the start of a fit is held to that.
 // Of a smaller sphere what hides a part looks like its edge. A misfit that nothing explains is then
 // taken for coherent: it can move each of three parameters by the root of a third of its chi².
 constexpr double kSmallBlurs = 5;
-constexpr int kFewestHidden = 3;  // Sectors; one or two are noise.
-
-struct Fit {
-  Solution solution;
-  std::vector<bool> sectors;  // Of the edge that it used.
-};
+constexpr int kMostHidden = kSectors / 2;  // With less of the edge, motion cannot be measured.
 
 /// An explanation of the light.
 struct Mode {
@@ -47,7 +40,7 @@ class Strategy {
         slopes_(slopes),
         start_(start),
         settings_(settings),
-        scale_(slopes.scale(), settings.shutter.row_s / settings.shutter.exposure_s),
+        scale_(slopes, settings.shutter.row_s / settings.shutter.exposure_s),
         fitter_(settings, table, scale_, MotionSdPx()) {
     begin_.shape << start.cone.axis, start.cone.tangent, settings.profile.blur_px,
         settings.profile.limb, 0, 0;
@@ -62,20 +55,22 @@ class Strategy {
     if (!best_) {
       disc::MotionScore score;
       if (auto fit = AtRest(score)) Take(*fit);
-      if (score.chi2 > kMaybeMoves && score.motion_px.norm() > 0) {
+      const double length = score.motion_px.norm();
+      if (score.chi2 > kMaybeMoves && length > 0 && MayMove()) {
+        score.motion_px *= std::min(1.0, kFastestSds * MotionSdPx() / length);
         std::vector<double> ways = {1, -1};
         if (score.chi2 < kSurelyMoves) ways.push_back(0);
         if (auto fit = Moving(score.motion_px, ways)) Take(*fit);
       }
     }
-    const bool is_cut = Hidden() >= kFewestHidden;
+    const bool is_cut = disc::IsCut(start_.reach);
     if (!IsGood() || is_cut) {
       // Fewer pixels always fit better: a hidden part must explain all of the misfit.
       const auto fit = BehindAnEdge();
       if (fit && fit->solution.misfit_sds < kGoodSds) {
         Keep(*fit);
         is_behind_edge_ = true;
-      } else if (is_cut && IsSmall() && !(best_ && best_->solution.misfit_sds < kGoodSds)) {
+      } else if (is_cut && !(best_ && best_->solution.misfit_sds < MostSdsOfCut())) {
         return std::nullopt;  // Part of it is hidden, and it is not clear which.
       }
     }
@@ -91,11 +86,13 @@ class Strategy {
     return settings_.shutter.speed_sd_mps * settings_.shutter.exposure_s * px_per_m;
   }
 
-  int Hidden() const {
-    return static_cast<int>(std::count_if(start_.reach.begin(), start_.reach.end(),
-                                          [](double reach) { return std::isfinite(reach); }));
+  bool MayMove() const { return !start_.is_unlikely && !IsMostlyHidden(); }
+  /// Of a fit of the whole sphere where edges are missing.
+  double MostSdsOfCut() const { return IsSmall() ? kGoodSds : kPoorSds; }
+  bool IsMostlyHidden() const { return disc::HiddenSectors(start_.reach) > kMostHidden; }
+  int MostPixels() const {
+    return start_.is_unlikely ? static_cast<int>(kSomePixels) : kMostPixels;
   }
-
   bool IsSmall() const { return begin_.shape[2] < kSmallBlurs * fitter_.Blur(); }
   bool IsGood() const { return best_ && best_->solution.misfit_sds < kPoorSds; }
 
@@ -111,7 +108,8 @@ class Strategy {
   }
 
   std::optional<Fit> AtRest(disc::MotionScore& score) {
-    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, MostPixels());
+    pixels_ = fitter_.samples();
     std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
     fitter_.LookBehind(begin_, 0, used);
     auto solution = fitter_.Solve(begin_, false, 8);
@@ -135,7 +133,7 @@ class Strategy {
     fitter_.LookBehind(begin_, length, used);
     const std::vector<Sample> all = fitter_.samples();
     std::vector<Mode> modes;
-    fitter_.Use(Thinned(all));
+    fitter_.Use(disc::Thinned(all, kSomePixels));
     for (const double factor : factors) {
       State state = begin_;
       state.motion_px = factor * motion_px;
@@ -143,6 +141,7 @@ class Strategy {
       if (const auto found = fitter_.Solve(state, moves, 4)) modes.push_back({*found, moves});
     }
     KeepLikely(modes);
+    if (modes.empty() || modes.back().solution.misfit_sds > kNoMotionSds) return std::nullopt;
     fitter_.Use(all);
     std::vector<Solution> solutions = SolveAgain(modes);
     // The likeliest one was solved last.
@@ -171,92 +170,15 @@ class Strategy {
                   [&](const Mode& mode) { return mode.solution.log_evidence < most - kUnlikely; });
   }
 
-  /// A straight edge hides what is beyond it: through a place where the light ends, across the way
-  /// there. Its blurred light is left out; the place is taken with the best of Akaike's costs. A
-  /// part of the pixels is enough to find it.
   std::optional<Fit> BehindAnEdge() {
-    fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, kMostPixels);
-    std::vector<bool> clear(kSectors, true);
-    fitter_.LookBehind(begin_, 0, clear);
-    const std::vector<Sample> all = fitter_.samples(), some = Thinned(all);
-    const auto count = start_.edges.size();
-    std::vector<std::optional<Solution>> tried(count);
-    std::optional<std::size_t> best;
-    const auto attempt = [&](std::size_t i) {
-      if (tried[i]) return;
-      tried[i] = Before(i, some, 3);
-      const auto cost = [&](std::size_t k) { return Cost(*tried[k], some.size()); };
-      if (tried[i] && (!best || cost(i) < cost(*best))) best = i;
-    };
-    const bool fits = IsGood();
-    const std::size_t first_step = fits ? 2 : kEdgeStep;
-    for (std::size_t i = 0; i < count; i += first_step)
-      if (!fits || IsHidden(start_.edges[i])) attempt(i);
-    if (!best) return std::nullopt;
-    for (std::size_t step = first_step / 2; step > 0; step /= 2) {
-      const std::size_t middle = *best;
-      attempt((middle + step) % count);
-      attempt((middle + count - step) % count);
+    if (pixels_.empty()) {
+      fitter_.Collect(image_, slopes_, start_.middle_px, begin_, kFarBlurs, MostPixels());
+    } else {
+      fitter_.Use(pixels_);
     }
-    const auto solution = Before(*best, all, 8);
-    if (!solution) return std::nullopt;
-    return Fit{*solution, SectorsBefore(*best, solution->state, clear)};
-  }
-
-  /// Akaike's: each pixel that is left out has a level of its own, which is a parameter.
-  static double Cost(const Solution& solution, std::size_t all) {
-    return solution.misfit * static_cast<double>(solution.pixels) +
-           2 * static_cast<double>(all - solution.pixels);
-  }
-
-  /// In a sector without the cone's edge.
-  bool IsHidden(const Eigen::Vector2d& edge) const {
-    return std::isfinite(start_.reach[static_cast<std::size_t>(SectorOf(edge - start_.cone.axis))]);
-  }
-
-  static std::vector<Sample> Thinned(const std::vector<Sample>& all) {
-    const std::size_t every = 1 + all.size() / kSomePixels;
-    std::vector<Sample> some;
-    // Four pixels of a quad stay together.
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (i / 4 % every == 0) some.push_back(all[i]);
-    return some;
-  }
-
-  double Margin() const { return kHiddenMargin * fitter_.Blur(); }
-  std::optional<Solution> Before(std::size_t edge, const std::vector<Sample>& samples, int rounds) {
-    const Eigen::Vector2d& at = start_.edges[edge];
-    fitter_.Use(samples);
-    fitter_.KeepBefore(at, at.normalized(), Margin());
-    return fitter_.Solve(StartBefore(at, at.normalized(), Margin()), false, rounds);
-  }
-
-  /// Those whose edge is on the near side of the line.
-  std::vector<bool> SectorsBefore(std::size_t edge, const State& state,
-                                  std::vector<bool> sectors) const {
-    const Eigen::Vector2d& at = start_.edges[edge];
-    for (std::size_t s = 0; s < kSectors; ++s) {
-      const double turn = 2 * std::numbers::pi * static_cast<double>(s) / kSectors;
-      const Eigen::Vector2d place =
-          state.shape.head<2>() + state.shape[2] * Eigen::Vector2d(std::cos(turn), std::sin(turn));
-      if ((place - at).dot(at.normalized()) > -Margin()) sectors[s] = false;
-    }
-    return sectors;
-  }
-
-  /// The cone through the edges on the near side of a line.
-  State StartBefore(const Eigen::Vector2d& at, const Eigen::Vector2d& away, double margin) const {
-    State state = begin_;
-    std::vector<bool> before;
-    for (const Eigen::Vector2d& edge : start_.edges)
-      before.push_back((edge - at).dot(away) < -margin);
-    const auto cone = FitCone(start_.edges, before);
-    if (cone && cone->tangent > 0.5 * start_.cone.tangent &&
-        cone->tangent < 2 * start_.cone.tangent) {
-      state.shape.head<2>() = cone->axis;
-      state.shape[2] = cone->tangent;
-    }
-    return state;
+    const bool has_whole = best_ && best_->solution.state.motion_px.isZero();
+    return disc::HiddenPart(fitter_, start_, begin_)
+        .Find(has_whole ? best_->solution.state : begin_, IsGood());
   }
 
   DiscFit ToFit() const {
@@ -284,6 +206,7 @@ class Strategy {
   disc::PixelScale scale_;
   Fitter fitter_;
   State begin_;
+  std::vector<Sample> pixels_;  // Of a sphere at rest, all that were collected.
   std::optional<Fit> best_;
   double clipped_share_ = 0;
   bool is_behind_edge_ = false;

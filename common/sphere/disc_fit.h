@@ -31,6 +31,9 @@ struct DiscStart {
   std::vector<Eigen::Vector2d> edges;  ///< Slopes at which the light falls to the half.
   double radius_m = 0.0225;
   std::optional<Eigen::Vector2d> motion_px = {};  ///< During an exposure, by the frames before.
+  /// Its colour is hardly the sphere's, so that its confidence will be low: it is measured from
+  /// fewer pixels, and not as one that moves.
+  bool is_unlikely = false;
 };
 
 /// The cone that explains the pixels best.

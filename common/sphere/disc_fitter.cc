@@ -88,6 +88,13 @@ std::optional<State> Fitter::Descend(State state, int rounds, double& cost) {
   return state;
 }
 
+void Fitter::Evaluate(const State& state) {
+  ToBlocks(samples_, blocks_);
+  Rows<kOwn> rows;
+  for (Block& block : blocks_) ToRows(block, state, settings_.noise, scale_, table_, rows);
+  ToSamples(blocks_, samples_);
+}
+
 double Fitter::PriorCost(const State& state) const {
   const Profile& profile = settings_.profile;
   const auto square = [](double x) { return x * x; };
@@ -148,7 +155,7 @@ Solution Fitter::Report(const State& state, double cost, bool moves) const {
   solution.residual_share = std::sqrt(all / std::max(1e-9, contrast));
   const Eigen::LDLT<Normal> solver = normal_.ldlt();
   solution.covariance = correlation * std::max(1.0, solution.misfit) *
-                        solver.solve(Normal::Identity()).topLeftCorner<3, 3>();
+                        solver.solve(Normal::Identity().leftCols<3>()).topRows<3>();
   solution.log_evidence =
       -0.5 * cost / correlation - 0.5 * solver.vectorD().array().abs().log().sum();
   // The density of the motion's prior, and what the correlation makes of two more parameters.

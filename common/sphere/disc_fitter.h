@@ -9,6 +9,10 @@
 
 namespace footing::sphere::disc {
 
+inline constexpr double kPoorSds = 4;            // A misfit that noise does not explain.
+inline constexpr double kGoodSds = 2.5;          // One that it does.
+inline constexpr std::size_t kSomePixels = 200;  // Enough to choose between explanations.
+
 /// How well a solution explains the pixels.
 struct Solution {
   State state;
@@ -53,6 +57,8 @@ class Fitter {
 
   /// From a start; nothing when it runs away. `moves`: the motion is a parameter, too.
   std::optional<Solution> Solve(State state, bool moves, int rounds);
+  /// Sets the residuals of the samples, of a sphere at rest.
+  void Evaluate(const State& state);
   /// Of the solution that was found last, of a sphere at rest.
   MotionScore ScoreMotion(const State& state);
 

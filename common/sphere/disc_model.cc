@@ -43,15 +43,22 @@ void Model(const Lane& s, const Lane& t, const State& state, const PixelScale& s
            const ProfileTable& table, Modelled& result) {
   const Numbers p(state.shape);
   const Eigen::Matrix2f square = scale.square().cast<float>();
+  const Eigen::Matrix2f per_s = scale.square_change(0).cast<float>();
+  const Eigen::Matrix2f per_t = scale.square_change(1).cast<float>();
+  const auto square_at = [&](int i, int k) -> Lane {
+    return square(i, k) + per_s(i, k) * s + per_t(i, k) * t;
+  };
+  const Lane square_ss = square_at(0, 0), square_st = square_at(0, 1), square_tt = square_at(1, 1);
   const Lane x = s - p.axis_s, y = t - p.axis_t;
   const Lane r = (x * x + y * y).sqrt().max(1e-9F);
   const Lane unit_s = x / r, unit_t = y / r;
-  const Lane along2 = square(0, 0) * unit_s * unit_s + 2 * square(0, 1) * unit_s * unit_t +
-                      square(1, 1) * unit_t * unit_t;
+  const Lane along2 =
+      square_ss * unit_s * unit_s + 2 * square_st * unit_s * unit_t + square_tt * unit_t * unit_t;
   const Lane blur = p.blur_px * along2.sqrt(), per_blur = 1 / blur;
   // Blur along a curved edge moves it inwards by its variance over twice the radius. The table's
   // blur is the same in all directions; off the optical axis it is not.
-  const Lane inwards = 0.5F * p.blur_px * p.blur_px * p.per_tangent * (square.trace() - 2 * along2);
+  const Lane inwards =
+      0.5F * p.blur_px * p.blur_px * p.per_tangent * (square_ss + square_tt - 2 * along2);
   const Lane beyond = (r - p.tangent + inwards) * per_blur, ratio = blur * p.per_tangent;
   Profiles profile;
   LookUp(beyond, ratio, table, profile);

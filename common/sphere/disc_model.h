@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/sphere/local_slopes.h"
 #include "common/sphere/profile_table.h"
 
 /// The picture of a sphere as the photometric fit models it, many pixels at a time.
@@ -29,15 +30,26 @@ struct State {
 class PixelScale {
  public:
   /// `rows_per_exposure`: a row's time over the exposure.
-  PixelScale(const Eigen::Matrix2d& scale, double rows_per_exposure)
-      : scale_(scale),
-        square_(scale * scale.transpose()),
-        down_(scale.inverse().row(1) * rows_per_exposure) {}
+  PixelScale(const LocalSlopes& slopes, double rows_per_exposure)
+      : scale_(slopes.scale()),
+        square_(scale_ * scale_.transpose()),
+        down_(scale_.inverse().row(1) * rows_per_exposure) {
+    const Eigen::Matrix2d to_px = scale_.inverse();
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Matrix2d per_slope =
+          to_px(0, i) * slopes.ScaleChange(0) + to_px(1, i) * slopes.ScaleChange(1);
+      square_change_[static_cast<std::size_t>(i)] =
+          scale_ * per_slope.transpose() + per_slope * scale_.transpose();
+    }
+  }
 
   /// Blur across the edge as it is along a direction, in slopes, for a blur of one pixel.
   double Along(const Eigen::Vector2d& unit) const { return std::sqrt(unit.dot(square_ * unit)); }
   /// Square of that, as a matrix.
   const Eigen::Matrix2d& square() const { return square_; }
+  /// How that changes per slope along s (0) or t (1): off the optical axis a pixel covers less
+  /// towards the edge of the image.
+  const Eigen::Matrix2d& square_change(std::size_t axis) const { return square_change_[axis]; }
   /// Of a pixel so far from the sphere's axis: how much later its row is exposed, in exposures.
   double Later(const Eigen::Vector2d& from) const { return down_.dot(from); }
   const Eigen::Vector2d& down() const { return down_; }
@@ -45,6 +57,7 @@ class PixelScale {
 
  private:
   Eigen::Matrix2d scale_, square_;
+  std::array<Eigen::Matrix2d, 2> square_change_;
   Eigen::Vector2d down_;
 };
 

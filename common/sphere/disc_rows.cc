@@ -2,6 +2,14 @@
 
 namespace footing::sphere::disc {
 
+std::vector<Sample> Thinned(const std::vector<Sample>& all, std::size_t most) {
+  const std::size_t every = 1 + all.size() / most;
+  std::vector<Sample> some;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i / 4 % every == 0) some.push_back(all[i]);
+  return some;
+}
+
 void ToBlocks(const std::vector<Sample>& samples, std::vector<Block>& blocks) {
   blocks.clear();
   std::array<std::size_t, 3> open{};  // Number of the channel's block, and one.

@@ -32,6 +32,9 @@ struct Sample {
   double height = 0;    // Contrast of its channel, alike.
 };
 
+/// About `most` of them, spread evenly; the four pixels of a quad stay together.
+std::vector<Sample> Thinned(const std::vector<Sample>& all, std::size_t most);
+
 /// Pixels of one channel; `is_used` is 0 for what is left over, 1 for others.
 struct Block {
   std::size_t channel = 0;

@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "common/sphere/cone.h"
+#include "common/sphere/edge_fit.h"
 #include "common/sphere/edges.h"
 
 namespace footing::sphere {
@@ -15,8 +15,10 @@ namespace footing::sphere {
 struct Finder::Candidate {
   LocalSlopes slopes;
   DiscStart start;
-  double colour_off = 0;  ///< From the sphere's own.
-  double quality = 0;     ///< Share of the edge, less for another colour.
+  std::vector<bool> inliers;  ///< Of its edges.
+  bool is_compact = false;    ///< Its blob does not extend far beyond the cone.
+  double colour_off = 0;      ///< From the sphere's own.
+  double quality = 0;         ///< Share of the edge, less for another colour.
 };
 
 namespace {
@@ -26,9 +28,11 @@ constexpr std::size_t kMostFits = 3;
 constexpr double kLowShare = 0.25;  // Of the colour's own chroma.
 constexpr double kGoodQuality = 0.7;
 constexpr double kClearQuality = 0.88;  // Nothing else in sight is as bright and as round.
-constexpr double kLeastQuality = 0.25;
+constexpr double kLeastQuality = 0.25, kLeastQualityByEdge = 0.45;
+constexpr double kConfidenceByEdge = 0.2;
 // Limb, gradient and the blur of the smallest spheres change the colour by 0.15.
 constexpr double kSureColourOff = 0.2, kMostColourOff = 0.45;
+constexpr double kUnlikelyColourOff = 0.3;  // Its confidence is 0.6 at most.
 constexpr double kLeastSeenShare = 0.2;
 constexpr double kMostResidualShare = 0.2;
 constexpr double kSaturatedShare = 0.02;
@@ -70,34 +74,6 @@ double ColourOff(const Eigen::Vector3d& seen_dn, const Eigen::Vector3d& colour_d
   if (!(scale > 0)) return 1;
   const double hue = (seen_dn / scale - colour_dn).norm() / colour_dn.norm();
   return std::hypot(hue, std::max(0.0, 1 - scale));
-}
-
-/// Which sectors have the cone's edge, and up to where the others show the sphere.
-SectorReach ReachOf(const ConeFit& fit, const std::vector<Eigen::Vector2d>& slopes) {
-  constexpr double kNear = 1.6 * 2 * std::numbers::pi / kSectors;
-  SectorReach reach;
-  std::vector<Eigen::Vector2d> polar;  // Angle and distance of each edge.
-  for (const Eigen::Vector2d& at : slopes) {
-    const Eigen::Vector2d from = at - fit.cone.axis;
-    polar.emplace_back(std::atan2(from.y(), from.x()), from.norm());
-  }
-  for (std::size_t s = 0; s < kSectors; ++s) {
-    const double middle = 2 * std::numbers::pi * static_cast<double>(s) / kSectors;
-    double nearest = fit.cone.tangent;
-    int outliers = 0, inliers = 0;
-    for (std::size_t i = 0; i < slopes.size(); ++i) {
-      const double apart = std::abs(polar[i].x() - middle);  // Up to one and a half turns.
-      if (std::min(apart, std::abs(apart - 2 * std::numbers::pi)) > kNear) continue;
-      ++(fit.inliers[i] ? inliers : outliers);
-      if (!fit.inliers[i]) nearest = std::min(nearest, polar[i].y());
-    }
-    if (inliers > outliers) {
-      reach[s] = std::numeric_limits<double>::infinity();
-    } else {
-      reach[s] = outliers > 0 ? nearest : 0;
-    }
-  }
-  return reach;
 }
 
 Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius_m,
@@ -187,9 +163,13 @@ std::vector<Finder::Candidate> Finder::Candidates(const Image& image, std::size_
     const auto fit = FitConeRobustly(at, tolerance, 0.8 * per_px, 1.5 * size_px * per_px);
     if (!fit) continue;
     Candidate candidate{
-        slopes, {edges->contrast, middle_px, fit->cone, ReachOf(*fit, at), at, target.radius_m}};
+        slopes,
+        {edges->contrast, middle_px, fit->cone, ReachOf(*fit, at), at, target.radius_m},
+        fit->inliers};
     const auto inliers = std::count(fit->inliers.begin(), fit->inliers.end(), true);
     candidate.colour_off = colour_off;
+    candidate.is_compact = size_px < 3 * fit->cone.tangent / per_px + 4;
+    candidate.start.is_unlikely = colour_off > kUnlikelyColourOff;
     candidate.quality =
         static_cast<double>(inliers) / kEdgeRays * std::max(0.0, 1 - candidate.colour_off);
     candidates.push_back(candidate);
@@ -228,7 +208,22 @@ std::optional<Finder::Found> Finder::Search(const Image& image, std::size_t sphe
     if (const auto estimate = Measure(image, target, candidates[i]))
       return Found{*estimate, candidates[i].quality};
   }
-  return std::nullopt;
+  return candidates.empty() ? std::nullopt : ByEdge(target, candidates.front());
+}
+
+/// Of a light that is certainly the sphere's by colour and edge.
+std::optional<Finder::Found> Finder::ByEdge(const Target& target,
+                                            const Candidate& candidate) const {
+  if (candidate.quality < kLeastQualityByEdge || candidate.colour_off > kSureColourOff ||
+      !candidate.is_compact)
+    return std::nullopt;
+  const auto fit = FitEdge(candidate.slopes, candidate.start, candidate.inliers);
+  if (!fit) return std::nullopt;
+  Estimate estimate =
+      ToEstimate(*fit, candidate.slopes, target.radius_m, candidate.colour_off, lens_);
+  estimate.is_by_edge = true;
+  estimate.confidence = kConfidenceByEdge * fit->used_share;
+  return Found{estimate, candidate.quality};
 }
 
 /// Where it should be now; nothing unless it is clearly there.
@@ -278,13 +273,18 @@ std::vector<std::optional<Estimate>> Finder::Find(const Image& image) {
 }
 
 std::optional<Profile> Calibrate(const std::vector<Estimate>& estimates) {
-  if (estimates.size() < 8) return std::nullopt;
   Profile profile;
   profile.blur_px = profile.limb = 0;
+  int count = 0;
   for (const Estimate& estimate : estimates) {
-    profile.blur_px += estimate.blur_px / static_cast<double>(estimates.size());
-    profile.limb += estimate.limb / static_cast<double>(estimates.size());
+    if (estimate.is_by_edge) continue;
+    profile.blur_px += estimate.blur_px;
+    profile.limb += estimate.limb;
+    ++count;
   }
+  if (count < 8) return std::nullopt;
+  profile.blur_px /= count;
+  profile.limb /= count;
   return profile;
 }
 

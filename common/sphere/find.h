@@ -23,6 +23,7 @@ struct Estimate {
   double radius_px = 0;             ///< Of its disc.
   bool is_saturated = false;        ///< Light at the sensor's limit: depth is wrong by centimetres.
   bool is_occluded = false;         ///< Part of the edge is hidden, or beyond the image.
+  bool is_by_edge = false;          ///< No fit explains its light: its edge alone says where it is.
   double seen_share = 0;            ///< Of its edge.
   double misfit = 0;                ///< Mean square residual over the noise; about 1.
   double residual_share = 0;        ///< RMS residual over the contrast.
@@ -73,6 +74,7 @@ class Finder {
   std::vector<Candidate> Candidates(const Image& image, std::size_t sphere,
                                     const QuadWindow& window, std::vector<Blob> blobs);
   bool IsLeftOut(const Blob& blob, std::size_t sphere) const;
+  std::optional<Found> ByEdge(const Target& target, const Candidate& candidate) const;
   std::optional<Estimate> Measure(const Image& image, const Target& target,
                                   const Candidate& candidate) const;
 

@@ -36,6 +36,13 @@ LocalSlopes::LocalSlopes(const Lens& lens, const Eigen::Vector2d& middle, double
   scale_.col(1) = terms_.col(3) / half_px;
 }
 
+Eigen::Matrix2d LocalSlopes::ScaleChange(int axis) const {
+  Eigen::Matrix2d change;
+  change.col(axis) = 2 * terms_.col(axis == 0 ? 2 : 6);
+  change.col(1 - axis) = terms_.col(4);
+  return change / (half_px_ * half_px_);
+}
+
 Eigen::Vector2d LocalSlopes::At(double u, double v) const {
   const double x = (u - middle_.x()) / half_px_, y = (v - middle_.y()) / half_px_;
   const auto row = [&](int j) -> Eigen::Vector2d {

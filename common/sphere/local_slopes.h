@@ -16,6 +16,8 @@ class LocalSlopes {
   Eigen::Vector2d At(double u, double v) const;
   /// d slopes / d pixel in the middle.
   const Eigen::Matrix2d& scale() const { return scale_; }
+  /// How that changes, per pixel along u (0) or v (1).
+  Eigen::Matrix2d ScaleChange(int axis) const;
   /// Columns: the axes of s and t and the third one, in C.
   const Eigen::Matrix3d& R_CL() const { return R_CL_; }
 

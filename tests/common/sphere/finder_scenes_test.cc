@@ -85,6 +85,32 @@ TEST_F(FinderScenes, ASphereInFrontOfALampIsSeen) {
   EXPECT_LT((found->centre_px - at).norm(), 0.5);
 }
 
+TEST_F(FinderScenes, ASmallSphereBeforeTheEdgeOfALampIsSeen) {
+  camera::Scene scene = SceneWith({0.1, 0.1, 3});
+  const Eigen::Vector2d at = camera::Project(scene.lens, scene.balls[0].p_C_m);
+  int by_edge = 0;
+  for (int i = 0; i < 12; ++i) {
+    const double angle = 2 * M_PI * i / 12;
+    scene.shapes = {{camera::Shape::Kind::kEllipse,
+                     at + 20 * Eigen::Vector2d(std::cos(angle), std::sin(angle)),
+                     {20, 20},
+                     0,
+                     {400, 400, 400}}};
+    finder_.Forget();
+    const auto found = Find(scene);
+    ASSERT_TRUE(found) << i;
+    EXPECT_LT((found->centre_px - at).norm(), 2) << i;
+    EXPECT_NEAR(found->p_C_m.norm(), 3, 0.6) << i;
+    if (!found->is_by_edge) continue;
+    // Nothing explains its light: its distance is rough, and it says so.
+    ++by_edge;
+    EXPECT_LT(found->confidence, 0.21) << i;
+    const Eigen::Vector3d along = found->p_C_m.normalized();
+    EXPECT_GT(std::sqrt(along.dot(found->covariance_m2 * along)), 0.15) << i;
+  }
+  EXPECT_GT(by_edge, 0);
+}
+
 TEST_F(FinderScenes, ADullDiscOfItsHueIsNoSphere) {
   camera::Scene scene = SceneWith({9, 0, 2});
   for (const double share : {0.3, 0.5, 0.6}) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "common/sphere/cone.h"
+#include "common/sphere/disc_fit.h"
+#include "common/sphere/local_slopes.h"
+
+namespace footing::sphere {
+
+/// Which sectors have the cone's edge, and up to where the others show the sphere.
+SectorReach ReachOf(const ConeFit& fit, const std::vector<Eigen::Vector2d>& slopes);
+
+/// A sphere whose light no photometric fit explains, as one before the edge of a lamp: its cone as
+/// the edges give it, with a covariance that follows from them. Its direction is good to a
+/// fraction of a pixel, its distance is rough. `inliers` are those of `start.edges`. Nothing when
+/// they are too few.
+std::optional<DiscFit> FitEdge(const LocalSlopes& slopes, const DiscStart& start,
+                               const std::vector<bool>& inliers);
+
+}  // namespace footing::sphere
