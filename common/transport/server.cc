@@ -71,7 +71,13 @@ class Server::Implementation {
     const std::uint64_t left_out = shared_.publication.channels_left_out();
     const SharedTick tick = shared_.publication.Publish(number, channels);
     if (shared_.publication.channels_left_out() != left_out) SayLeftOut();
-    for (const auto& session : sessions_) session->Offer(tick);
+    // Whoever floods the server gets its ticks behind all others.
+    const std::int64_t now_ns = shared_.NowNs();
+    for (const bool slowed : {false, true}) {
+      for (const auto& session : sessions_) {
+        if (session->SlowedLately(now_ns) == slowed) session->Offer(tick);
+      }
+    }
     shared_.publication.Keep(tick);
   }
 
