@@ -7,7 +7,7 @@
 #include "clients/relay/service/edge.h"
 #include "clients/relay/service/metrics.h"
 #include "common/cli/cli.h"
-#include "common/transport/socket.h"
+#include "common/transport/exposure.h"
 
 namespace footing::relay {
 namespace {
@@ -23,19 +23,11 @@ struct ServeFlags {
 
 /// Refuses at once what the listener would refuse when the server's ticks come.
 Result<void> CheckSafe(const transport::Address& address, const transport::AccessSettings& access) {
-  if (address.kind == transport::Address::Kind::kTls && access.token_file.empty() &&
-      access.clients_file.empty()) {
-    return UsageError("will not listen on " + address.Text() +
-                      ": anyone who reaches the port could come in; give --token-file or "
-                      "--clients-file");
-  }
-  if (address.kind == transport::Address::Kind::kTcp && !transport::StaysOnThisHost(address) &&
-      !access.insecure_lan) {
-    return UsageError("will not listen on " + address.Text() +
-                      ": beyond this host a connection must be encrypted; use tls:HOST:PORT, or, "
-                      "in a network that you trust wholly, --insecure-lan with a --token-file");
-  }
-  return {};
+  const transport::ListenSettings settings{"give --token-file or --clients-file",
+                                           "--insecure-lan with a --token-file"};
+  const bool has_keys = !access.token_file.empty() || !access.clients_file.empty();
+  if (address.kind == transport::Address::Kind::kTls) return CheckKeys(address, has_keys, settings);
+  return CheckEncrypted(address, access.insecure_lan, settings);
 }
 
 Result<EdgeOptions> EdgeOptionsOf(const ServeFlags& flags) {

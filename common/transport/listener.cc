@@ -14,6 +14,7 @@
 
 #include "common/service_manager/service_manager.h"
 #include "common/timer/timer.h"
+#include "common/transport/exposure.h"
 #include "common/transport/run_folder.h"
 #include "common/transport/unix_socket_file.h"
 
@@ -25,7 +26,6 @@ using boost::system::error_code;
 using Acceptor = asio::basic_socket_acceptor<asio::generic::stream_protocol>;
 
 constexpr int kBacklog = 128;
-constexpr char kComeBySsh[] = "listen on unix:PATH, and connect from other machines with ssh -L";
 constexpr auto kPauseAfterError = std::chrono::milliseconds(100);
 
 Error ListenError(const Address& address, const error_code& error) {
@@ -56,13 +56,8 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
     if (address_.kind == Address::Kind::kTls) {
       if (auto prepared = PrepareTls(); !prepared) return prepared;
     }
-    if (address_.kind == Address::Kind::kTcp && !StaysOnThisHost(address_) &&
-        !security_.insecure_lan) {
-      return UsageError("will not listen on " + address_.Text() +
-                        ": beyond this host a connection must be encrypted; " +
-                        (security_.tls ? "use tls:HOST:PORT, or, in a network that you trust "
-                                         "wholly, --set insecure_lan=true with a token_file"
-                                       : kComeBySsh));
+    if (const auto checked = CheckEncrypted(address_, security_.insecure_lan); !checked) {
+      return security_.tls ? checked.error() : NoTls();
     }
     if (address_.kind == Address::Kind::kPassed) return TakePassed();
     MakeRunFolderFor(address_);
@@ -100,11 +95,15 @@ class Listener::Implementation : public std::enable_shared_from_this<Implementat
   const Address& address() const { return address_; }
 
  private:
+  Error NoTls() const {
+    return UsageError(
+        "will not listen on " + address_.Text() +
+        ": this program has no TLS, which connections beyond this host need; listen on "
+        "unix:PATH, and connect from other machines with ssh -L");
+  }
+
   Result<void> PrepareTls() {
-    if (!security_.tls) {
-      return UsageError("will not listen on " + address_.Text() + ": this program has no TLS; " +
-                        kComeBySsh);
-    }
+    if (!security_.tls) return NoTls();
     auto context = security_.tls();
     if (!context) return context.error();
     tls_ = std::move(context).value();

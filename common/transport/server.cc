@@ -10,6 +10,7 @@
 
 #include "common/tls/context.h"
 #include "common/tls/identity.h"
+#include "common/transport/exposure.h"
 #include "common/transport/listener.h"
 #include "common/transport/session.h"
 #include "common/units/units.h"
@@ -70,7 +71,13 @@ class Server::Implementation {
     const std::uint64_t left_out = shared_.publication.channels_left_out();
     const SharedTick tick = shared_.publication.Publish(number, channels);
     if (shared_.publication.channels_left_out() != left_out) SayLeftOut();
-    for (const auto& session : sessions_) session->Offer(tick);
+    // Whoever floods the server gets its ticks behind all others.
+    const std::int64_t now_ns = shared_.NowNs();
+    for (const bool slowed : {false, true}) {
+      for (const auto& session : sessions_) {
+        if (session->SlowedLately(now_ns) == slowed) session->Offer(tick);
+      }
+    }
     shared_.publication.Keep(tick);
   }
 
@@ -140,11 +147,8 @@ class Server::Implementation {
  private:
   Result<tls::Context> TlsContext(const Address& address) {
     const ServerOptions& options = shared_.options;
-    if (options.token.empty() && options.clients.empty()) {
-      return UsageError("will not listen on " + address.Text() +
-                        ": anyone who reaches the port could come in; set token_file or "
-                        "clients_file");
-    }
+    const bool has_keys = !options.token.empty() || !options.clients.empty();
+    if (const auto checked = CheckKeys(address, has_keys); !checked) return checked.error();
     if (!identity_) {
       auto identity = tls::Identity::LoadOrMake(*options.identity_file, "Footing");
       if (!identity) return identity.error();

@@ -94,6 +94,8 @@ class Session : public std::enable_shared_from_this<Session> {
   const Admitted& admitted() const { return admitted_; }
   /// It was refused, and lingers until the client has seen why.
   bool refused() const { return phase_ == Phase::kRefused; }
+  /// It waits for its budget, or did within the last second.
+  bool SlowedLately(std::int64_t now_ns) const;
   bool welcomed() const { return phase_ == Phase::kWelcomed || phase_ == Phase::kSubscribed; }
 
  private:
@@ -114,7 +116,7 @@ class Session : public std::enable_shared_from_this<Session> {
   };
 
   void OnFrame(std::string_view payload);
-  void OnSlowed();
+  void OnSlowed(double wait_s);
   void OnHello(const v1::Hello& hello);
   void Dispatch(const v1::Envelope& message, std::int64_t arrived_ns);
   void OnSubscribe(const v1::Subscribe& wish);

@@ -2,6 +2,8 @@
 
 #include "common/clock/clock.h"
 #include "common/transport/session.h"
+#include "common/units/time.h"
+#include "common/units/units.h"
 
 /// The part of Session that says what slows it, and what all sessions share.
 namespace footing::transport {
@@ -21,8 +23,9 @@ void Shared::SayDenied(const std::string& host, const std::string& why) {
                         std::to_string(statistics.denied) + " since start)"});
 }
 
-void Session::OnSlowed() {
+void Session::OnSlowed(double wait_s) {
   ++record_.slowed;
+  record_.slowed_until_ns = shared_.NowNs() + SecondsToNanoseconds(wait_s);
   ++shared_.statistics.slowed;
   const std::string name = info_.client_name.empty() ? "" : " (" + info_.client_name + ")";
   shared_.SayOverload({"session " + std::to_string(info_.session) + name + " sends more than " +
@@ -32,6 +35,11 @@ void Session::OnSlowed() {
   if (phase_ == Phase::kHello || !slowed_notices_.Take(shared_.NowNs())) return;
   Notify(v1::Notice::KIND_SLOWED,
          "this client exceeds the server's rate limit; its messages are delayed", record_.slowed);
+}
+
+bool Session::SlowedLately(std::int64_t now_ns) const {
+  const std::int64_t until_ns = record_.slowed_until_ns;
+  return until_ns != 0 && now_ns - until_ns < kNanosecondsPerSecond;
 }
 
 void Session::Notify(v1::Notice::Kind kind, const std::string& text, std::uint64_t count) {

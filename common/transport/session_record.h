@@ -18,10 +18,11 @@ struct SessionRecord {
   };
 
   std::int64_t began_ns = 0;
-  std::uint64_t slowed = 0;         ///< Times that it had to wait for its budget.
-  std::uint64_t ticks_sent = 0;     ///< Handed to the socket.
-  std::uint64_t ticks_dropped = 0;  ///< Of queues of earlier subscriptions.
-  std::string drain_reason;         ///< The reason for which it is drained; empty: it is not.
+  std::uint64_t slowed = 0;          ///< Times that it had to wait for its budget.
+  std::int64_t slowed_until_ns = 0;  ///< The end of the last of these times; 0: it never had to.
+  std::uint64_t ticks_sent = 0;      ///< Handed to the socket.
+  std::uint64_t ticks_dropped = 0;   ///< Of queues of earlier subscriptions.
+  std::string drain_reason;          ///< The reason for which it is drained; empty: it is not.
   OwnPing ping;
   ClockOffsetEstimator clock;  ///< Of the client's clock.
 

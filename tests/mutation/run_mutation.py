@@ -27,7 +27,6 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATCHES = ROOT / "tests" / "mutation"
-FAULTS = range(1, 65)
 # What a build of the programs and the fault tests needs.
 SOURCES = ("CMakeLists.txt", "CMakePresets.json", "clients", "common", "daemon", "proto", "scripts",
            "systemd", "tests", "docs")
@@ -42,6 +41,15 @@ CONTROLS = (19, 52, 55)
 WITHOUT_CONTROL = (61, 62)
 TEST_LIMIT_S = 120
 BUILD_LIMIT_S = 900
+
+
+def faults():
+    """The numbers of the faults that have a test."""
+    tests = (ROOT / "tests" / "device_faults").glob("*_test.cc")
+    return sorted({int(number) for test in tests for number in re.findall(r"\(Fault(\d\d)", test.read_text())})
+
+
+FAULTS = faults()
 
 
 def run(words, folder, limit_s):

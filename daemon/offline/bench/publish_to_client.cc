@@ -1,6 +1,3 @@
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/read.hpp>
-#include <cstring>
 #include <functional>
 #include <optional>
 
@@ -10,6 +7,7 @@
 #include "common/transport/framing.h"
 #include "common/transport/server.h"
 #include "daemon/offline/bench/bare_fan_out.h"
+#include "daemon/offline/bench/bare_reader.h"
 #include "daemon/offline/bench/example_tick.h"
 #include "daemon/offline/bench/loop_thread.h"
 #include "daemon/offline/bench/pairs.h"
@@ -23,20 +21,6 @@ constexpr int kPublishPairs = 9;
 constexpr int kPublishTicks = 200;
 constexpr std::size_t kShortestTick = 400;
 constexpr std::int64_t kPublishIntervalNs = 2'000'000;
-
-/// A frame as long as ours, whose first eight bytes are the instant it was published.
-std::shared_ptr<const std::string> StampedFrame(std::size_t payload_bytes) {
-  std::string payload(payload_bytes, '\0');
-  const std::int64_t now_ns = clock::MonotonicNs();
-  std::memcpy(payload.data(), &now_ns, sizeof(now_ns));
-  return std::make_shared<const std::string>(transport::Frame(payload));
-}
-
-std::int64_t StampOf(std::string_view payload) {
-  std::int64_t stamp_ns = 0;
-  std::memcpy(&stamp_ns, payload.data(), sizeof(stamp_ns));
-  return stamp_ns;
-}
 
 /// Skips one varint.
 std::size_t After(std::string_view payload, std::size_t at) {
@@ -69,35 +53,6 @@ std::size_t PayloadBytes(const std::vector<transport::ChannelBytes>& channels) {
   for (const auto& channel : channels) bytes += channel.bytes.size() + 4;
   return bytes;
 }
-
-/// Bare Asio's reading side: frames of one known length, one async_read each.
-class BareReader {
- public:
-  BareReader(boost::asio::io_context& io, const transport::Address& address,
-             std::size_t frame_bytes, std::function<void(std::string_view)> on_payload)
-      : frame_(frame_bytes, '\0'), on_payload_(std::move(on_payload)) {
-    transport::Dial(io, address, [this](Result<transport::Socket> socket) {
-      if (!socket) return;  // It shows as not connected.
-      socket_.emplace(std::move(*socket));
-      Read();
-    });
-  }
-  bool connected() const { return socket_.has_value(); }
-
- private:
-  void Read() {
-    boost::asio::async_read(socket_->plain(), boost::asio::buffer(frame_),
-                            [this](const boost::system::error_code& error, std::size_t) {
-                              if (error) return;
-                              on_payload_(std::string_view(frame_).substr(transport::kLengthBytes));
-                              Read();
-                            });
-  }
-
-  std::string frame_;
-  std::function<void(std::string_view)> on_payload_;
-  std::optional<transport::Socket> socket_;
-};
 
 /// The servers that are compared, on a thread of their own.
 class Publishers {

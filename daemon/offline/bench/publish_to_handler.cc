@@ -1,11 +1,10 @@
 #include <array>
-#include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/read.hpp>
-#include <cstring>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/clock/clock.h"
 #include "common/text/quantile.h"
@@ -15,9 +14,11 @@
 #include "common/transport/server.h"
 #include "common/transport/tick.h"
 #include "daemon/offline/bench/bare_fan_out.h"
+#include "daemon/offline/bench/bare_reader.h"
 #include "daemon/offline/bench/broker_link.h"
 #include "daemon/offline/bench/example_tick.h"
 #include "daemon/offline/bench/lsl_link.h"
+#include "daemon/offline/bench/row.h"
 #include "daemon/offline/bench/waiting.h"
 
 namespace footing::bench {
@@ -26,6 +27,9 @@ namespace {
 constexpr int kRaceTicks = 300;
 constexpr int kRaceRounds = 7;
 constexpr std::int64_t kRaceIntervalNs = 2'000'000;
+
+/// Bare Asio, with readers that parse.
+constexpr const char* kBareParsed = "bare_parsed";
 
 struct RaceWay {
   std::string name;               ///< Empty: bare Asio.
@@ -49,13 +53,17 @@ std::string TickPayload(const std::vector<transport::ChannelBytes>& channels) {
 
 class Race {
  public:
-  Race() : server_(publisher_.io(), ServerOptionsFor(500, 1), {}), bare_(publisher_.io()) {}
+  Race()
+      : server_(publisher_.io(), ServerOptionsFor(500, 1), {}),
+        bare_(publisher_.io()),
+        parsed_(publisher_.io()) {}
   ~Race() {
     lsl_.reset();  // Its thread uses the reader's.
     publisher_.Do([this] { server_.Stop("done"); });
     reader_.Do([this] {
       client_.reset();
-      bare_socket_.reset();
+      bare_reader_.reset();
+      parsed_reader_.reset();
       subscribers_.clear();
     });
     publisher_.Do([this] { publishers_.clear(); });
@@ -70,17 +78,24 @@ class Race {
     publisher_.Do([&] {
       listening = server_.Listen(UnixAddress("race"));
       if (listening) listening = bare_.Listen(UnixAddress("race-bare"));
+      if (listening) listening = parsed_.Listen(UnixAddress("race-parsed"));
     });
     if (!listening) return listening;
     ways_.push_back({"ours", [this] { server_.Publish(clock::MonotonicNs(), channels_); }});
     ways_.push_back({"", [this] { bare_.Publish(BareFrame()); }});
+    ways_.push_back({kBareParsed, [this] {
+                       parsed_.Publish(std::make_shared<const std::string>(
+                           transport::Frame(TickPayload(channels_))));
+                     }});
     ConnectOwn();
+    ConnectBare();
     for (const BrokerKind kind : {BrokerKind::kMosquitto, BrokerKind::kNats}) {
       if (auto broker = Broker::Start(kind)) ConnectBroker(std::move(broker));
     }
     ConnectLsl();
     const bool ready = WaitUntil(reader_, [this] {
-      bool all = client_->state() == transport::LinkState::kLive && bare_socket_.has_value();
+      bool all = client_->state() == transport::LinkState::kLive && bare_reader_->connected() &&
+                 parsed_reader_->connected();
       for (const auto& link : subscribers_) all = all && link->ready();
       return all;
     });
@@ -119,12 +134,16 @@ class Race {
     reader_.Do([&] {
       client_.emplace(reader_.io(), options, handlers);
       client_->Start();
-      transport::Dial(reader_.io(), UnixAddress("race-bare"),
-                      [this](Result<transport::Socket> dialled) {
-                        if (!dialled) return;  // It shows as not connected.
-                        bare_socket_.emplace(std::move(*dialled));
-                        ReadBare();
-                      });
+    });
+  }
+
+  void ConnectBare() {
+    const std::size_t bytes = payload_bytes_ + transport::kLengthBytes;
+    reader_.Do([&] {
+      bare_reader_.emplace(reader_.io(), UnixAddress("race-bare"), bytes,
+                           [this](std::string_view payload) { AddDelaySince(StampOf(payload)); });
+      parsed_reader_.emplace(reader_.io(), UnixAddress("race-parsed"), bytes,
+                             [this](std::string_view payload) { ParseAndAddDelay(payload); });
     });
   }
 
@@ -133,11 +152,8 @@ class Race {
     const Broker& of = *brokers_.back();
     reader_.Do([&] {
       subscribers_.push_back(std::make_unique<BrokerLink>(
-          reader_.io(), of, BrokerLink::Part::kSubscribes, 1, [this](std::string_view payload) {
-            const v1::Envelope* const message = parser_.Parse(payload);
-            if (message != nullptr) AddDelaySince(message->tick().host_ns());
-            parser_.Discard();  // As our own client does.
-          }));
+          reader_.io(), of, BrokerLink::Part::kSubscribes, 1,
+          [this](std::string_view payload) { ParseAndAddDelay(payload); }));
     });
     publisher_.Do([&] {
       publishers_.push_back(std::make_unique<BrokerLink>(publisher_.io(), of,
@@ -161,24 +177,13 @@ class Race {
     ways_.push_back({"lsl", [this] { lsl_->Publish(TickPayload(channels_)); }});
   }
 
-  /// Bytes as long as ours with the stamp in front, which nobody parses.
-  std::shared_ptr<const std::string> BareFrame() const {
-    std::string payload(payload_bytes_, '\0');
-    const std::int64_t now_ns = clock::MonotonicNs();
-    std::memcpy(payload.data(), &now_ns, sizeof(now_ns));
-    return std::make_shared<const std::string>(transport::Frame(payload));
-  }
+  /// Bytes as long as ours, which nobody parses.
+  std::shared_ptr<const std::string> BareFrame() const { return StampedFrame(payload_bytes_); }
 
-  void ReadBare() {
-    boost::asio::async_read(bare_socket_->plain(), boost::asio::buffer(bare_frame_),
-                            [this](const boost::system::error_code& error, std::size_t) {
-                              if (error) return;
-                              std::int64_t stamp_ns = 0;
-                              std::memcpy(&stamp_ns, bare_frame_.data() + transport::kLengthBytes,
-                                          sizeof(stamp_ns));
-                              AddDelaySince(stamp_ns);
-                              ReadBare();
-                            });
+  void ParseAndAddDelay(std::string_view payload) {
+    const v1::Envelope* const message = parser_.Parse(payload);
+    if (message != nullptr) AddDelaySince(message->tick().host_ns());
+    parser_.Discard();  // As our own client does.
   }
 
   static double DelayUsSince(std::int64_t stamp_ns) {
@@ -188,17 +193,18 @@ class Race {
 
   const std::vector<transport::ChannelBytes> channels_ = ExampleTick();
   const std::size_t payload_bytes_ = TickPayload(channels_).size();
-  std::string bare_frame_ = std::string(payload_bytes_ + transport::kLengthBytes, '\0');
   LoopThread publisher_;
   LoopThread reader_;
   transport::Server server_;
   BareFanOut bare_;
+  BareFanOut parsed_;
   std::vector<std::unique_ptr<Broker>> brokers_;
   std::vector<RaceWay> ways_;
   std::vector<double> delays_us_;  // Of the reader's thread.
   transport::MessageParser parser_;
   std::optional<transport::Client> client_;
-  std::optional<transport::Socket> bare_socket_;
+  std::optional<BareReader> bare_reader_;
+  std::optional<BareReader> parsed_reader_;
   std::vector<std::unique_ptr<BrokerLink>> subscribers_;
   std::vector<std::unique_ptr<BrokerLink>> publishers_;
   transport::MessageParser lsl_parser_;

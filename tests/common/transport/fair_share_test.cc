@@ -1,4 +1,7 @@
 // What keeps one session from taking the loop's time from all others.
+#include <sys/epoll.h>
+#include <unistd.h>
+
 #include <boost/asio/local/connect_pair.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/write.hpp>
@@ -138,6 +141,56 @@ TEST_F(FairShareTest, AFloodingSessionIsSlowedAndInformedAndOthersAreServed) {
   EXPECT_NE(overloads_[0].find("(test)"), std::string::npos) << overloads_[0];
   // Slowed, not cut: each gets its answer in the end.
   EXPECT_TRUE(RunUntil([&] { return flooding->Count(v1::Envelope::kPong) == 300; }));
+}
+
+/// Which of two connections the kernel made readable first.
+class FirstReadable {
+ public:
+  FirstReadable(int one, int two) {
+    for (const int descriptor : {one, two}) {
+      epoll_event event{.events = EPOLLIN, .data = {.fd = descriptor}};
+      EXPECT_EQ(epoll_ctl(epoll_, EPOLL_CTL_ADD, descriptor, &event), 0);
+    }
+  }
+  ~FirstReadable() { close(epoll_); }
+  FirstReadable(const FirstReadable&) = delete;
+  FirstReadable& operator=(const FirstReadable&) = delete;
+
+  int Descriptor() const {
+    epoll_event event{};
+    return epoll_wait(epoll_, &event, 1, 0) == 1 ? event.data.fd : -1;
+  }
+
+ private:
+  const int epoll_ = epoll_create1(EPOLL_CLOEXEC);
+};
+
+TEST_F(FairShareTest, WhoFloodsGetsItsTicksBehindAllOthers) {
+  ServerOptions options = Options();
+  options.ping_interval_s = 100;  // No ping comes between the ticks.
+  StartServer(options);
+  const auto flooding = Subscribed(Subscribe());
+  const auto healthy = Subscribed(Subscribe());
+  const int first = flooding->connection->native_handle();
+  const int second = healthy->connection->native_handle();
+  const FirstReadable readable(first, second);
+  Settle();
+  PublishMotion();
+  EXPECT_EQ(readable.Descriptor(), first) << "in the order in which they came";
+
+  v1::Envelope ping;
+  ping.mutable_ping()->set_id(1);
+  for (int i = 0; i < 200; ++i) flooding->Send(ping);
+  ASSERT_TRUE(RunUntil([&] { return flooding->Count(v1::Envelope::kPong) == 200; }));
+  ASSERT_GE(flooding->Count(v1::Envelope::kNotice), 1u);
+  Settle();
+  ASSERT_EQ(readable.Descriptor(), -1);
+  PublishMotion();
+  EXPECT_EQ(readable.Descriptor(), second);
+  Settle();
+  now_ns_ += 3 * kSecondNs;  // It has stopped.
+  PublishMotion();
+  EXPECT_EQ(readable.Descriptor(), first);
 }
 
 TEST_F(FairShareTest, ASubscribeCountsAsManyMessages) {
