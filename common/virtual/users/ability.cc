@@ -20,18 +20,18 @@ Ability AbilityWith(UserInterface interface, TurnSource turn_by) {
     case UserInterface::kUnspecified:
     case UserInterface::kWrist:  // A cycle and a half at 2.5 Hz, and the change of the hands.
       ability.turn_delay_s = 0.35;
-      ability.run_jump_s = 1.7;
-      ability.walk_jump_s = 2.0;
+      ability.run_jump_s = 1.45;
+      ability.walk_jump_s = 1.7;
       break;
     case UserInterface::kArm:
       ability.turn_delay_s = 0.5;
-      ability.run_jump_s = 2.15;
-      ability.walk_jump_s = 2.35;
+      ability.run_jump_s = 1.7;
+      ability.walk_jump_s = 2.05;
       break;
     case UserInterface::kLeg:  // Feet show their heights in a whole cycle of either.
       ability.turn_delay_s = turn_by == TurnSource::kFeet ? 0.7 : 0.35;
-      ability.run_jump_s = 1.7;
-      ability.walk_jump_s = 2.2;
+      ability.run_jump_s = 1.6;
+      ability.walk_jump_s = 1.8;
       break;
     case UserInterface::kJoystick:
       ability.turn_delay_s = 0.1;

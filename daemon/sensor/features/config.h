@@ -70,6 +70,11 @@ struct PhaseConfig {
   /// of a cycle, which outlasts what a change of frequency fakes.
   double jump_rad = 1.5;
   double jump_persistence = 0.3;
+  /// While the newest samples show no period, hands that correlate over the first for the second
+  /// are together. Near the turning points of a slow swing hands that alternate move alike for a
+  /// while; in half a second a swing of 0.7 Hz and faster leaves them.
+  double together_window_s = 0.5;
+  double together_lasts_s = 0.2;
   /// The cycle's mean that moves by more than this share of the swing shows a twist of the wrist;
   /// the swing across the way of the twist must hold this share of the whole to decide alone.
   double twist_share = 0.1;

@@ -82,6 +82,7 @@ stream::PairFeatures RigFeatureExtractor::ComputePair(
   pair.computed_index = index;
   if (!left.moving || !right.moving) {
     pair.phase = {};
+    pair.together = {};
     pair.period_s = pair.disagree_s = 0;
   } else {
     const double elapsed_s = kGridStepS * static_cast<double>(steps);
@@ -95,6 +96,11 @@ stream::PairFeatures RigFeatureExtractor::ComputePair(
               : PhaseEstimate{};
     if (period_s > 0) pair.period_s = period_s;
     pair.phase = Next(pair.phase, estimate, pair.period_s, elapsed_s, config_.phase);
+    const bool seen = estimate.found && !pair.phase.jumping;
+    pair.together = seen || pair.period_s == 0
+                        ? Together{}
+                        : Next(pair.together, one.grid(), other.grid(), elapsed_s, config_.phase);
+    if (pair.together.sure) pair.phase = {.valid = true};
   }
   const Phase& phase = pair.phase;
   return {left.device, right.device, phase.valid, phase.valid ? phase.phase_rad : 0.0,
@@ -123,7 +129,14 @@ stream::RigFeatures RigFeatureExtractor::Compute(std::int64_t now_ns) {
     features.newest_received_ns =
         std::max(features.newest_received_ns, device.newest_received_ns());
   }
-  for (auto& pair : pairs_) features.pairs.push_back(ComputePair(pair, features.devices));
+  for (auto& pair : pairs_) {
+    features.pairs.push_back(ComputePair(pair, features.devices));
+    if (!pair.together.sure) continue;
+    for (const std::size_t i : {pair.left, pair.right}) {  // Only that of the motion before.
+      features.devices[i].frequency_valid = false;
+      features.devices[i].frequency_hz = 0;
+    }
+  }
   return features;
 }
 

@@ -8,6 +8,7 @@
 #include "daemon/sensor/features/config.h"
 #include "daemon/sensor/features/device_features.h"
 #include "daemon/sensor/features/phase.h"
+#include "daemon/sensor/features/together.h"
 
 /// The five features of the gait paper, section 6, of all controllers of one rig: moving or not,
 /// frequency, phase between left and right, amplitude, inclination.
@@ -42,6 +43,7 @@ class RigFeatureExtractor {
     std::int64_t computed_index = 0;
     double period_s = 0;    ///< That the two had in common last.
     double disagree_s = 0;  ///< How long they have had none.
+    Together together;      ///< While no period shows their phase.
   };
   /// The period that the two share; 0 while they do not agree on one.
   double CommonPeriod(const stream::DeviceFeatures& left, const stream::DeviceFeatures& right,

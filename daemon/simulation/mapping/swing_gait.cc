@@ -77,24 +77,29 @@ Gait SwingGait::Seen(double phase_rad, bool run) const {
   return run ? Gait::kRun : Gait::kWalk;
 }
 
-void SwingGait::SetPace(const LimbPair& limbs, double frequency_hz) {
+/// Limbs that are seen together before they show their new period keep the last one.
+void SwingGait::Know(const LimbPair& limbs) {
+  known_hz_ = MeanOf(limbs, &LimbFeatures::frequency_valid, &LimbFeatures::frequency_hz)
+                  .value_or(known_hz_);
+  known_mps2_ = MeanOf(limbs, &LimbFeatures::amplitude_valid, &LimbFeatures::amplitude_mps2)
+                    .value_or(known_mps2_);
+}
+
+void SwingGait::SetPace() {
   command_.gait = gait();
   command_.cadence_hz = 0;
   switch (command_.gait) {
     case Gait::kWalk:
-      command_.speed_mps = mapping_.walk_mps_from_hz(frequency_hz);
-      command_.cadence_hz = kWalkStepsPerSwing * frequency_hz;
+      command_.speed_mps = mapping_.walk_mps_from_hz(known_hz_);
+      command_.cadence_hz = kWalkStepsPerSwing * known_hz_;
       break;
     case Gait::kRun:
-      command_.speed_mps = mapping_.run_mps_from_hz(frequency_hz);
-      command_.cadence_hz = kRunStepsPerSwing * frequency_hz;
+      command_.speed_mps = mapping_.run_mps_from_hz(known_hz_);
+      command_.cadence_hz = kRunStepsPerSwing * known_hz_;
       break;
     case Gait::kJump:
-      command_.speed_mps = mapping_.jump_mps_from_hz(frequency_hz);
-      if (const auto amplitude_mps2 =
-              MeanOf(limbs, &LimbFeatures::amplitude_valid, &LimbFeatures::amplitude_mps2)) {
-        command_.height_m = mapping_.jump_m_from_mps2(*amplitude_mps2);
-      }
+      command_.speed_mps = mapping_.jump_mps_from_hz(known_hz_);
+      command_.height_m = mapping_.jump_m_from_mps2(known_mps2_);
       break;
     case Gait::kStep:
     case Gait::kUnspecified:
@@ -112,6 +117,7 @@ void SwingGait::WaitForPhase(double time_s, bool run) {
 
 biped::GaitCommand SwingGait::Rest() {
   other_s_ = 0;
+  known_hz_ = known_mps2_ = 0;
   settled_.Reset(Gait::kStep);
   return command_ = biped::GaitCommand{};
 }
@@ -126,9 +132,8 @@ biped::GaitCommand SwingGait::Advance(double time_s, const LimbPair& limbs, bool
     const Gait settled = settled_.Advance(time_s, Gait::kStep, mapping_.change_min_s);
     return settled == Gait::kStep ? Rest() : command_;
   }
-  const auto frequency_hz =
-      MeanOf(limbs, &LimbFeatures::frequency_valid, &LimbFeatures::frequency_hz);
-  if (!limbs.phase_valid || !frequency_hz) {
+  Know(limbs);
+  if (!limbs.phase_valid || known_hz_ <= 0) {
     WaitForPhase(time_s, run);
     time_s_ = time_s;
     return time_s - valid_time_s_ > mapping_.hold_s ? Rest() : command_;
@@ -136,13 +141,13 @@ biped::GaitCommand SwingGait::Advance(double time_s, const LimbPair& limbs, bool
   valid_time_s_ = time_s_ = time_s;
   if (run == settled_run_) other_s_ = 0;
   const Gait seen = Seen(limbs.phase_rad, run);
-  const double least_s = mapping_.start_cycles / *frequency_hz;
-  const double change_s = mapping_.change_cycles / *frequency_hz - other_s_;
+  const double least_s = mapping_.start_cycles / known_hz_;
+  const double change_s = mapping_.change_cycles / known_hz_ - other_s_;
   // Two resting limbs that turn, and turn back, are a swing together for half a cycle.
-  const double from_rest_s = seen == Gait::kJump ? mapping_.change_cycles / *frequency_hz : least_s;
+  const double from_rest_s = seen == Gait::kJump ? mapping_.change_cycles / known_hz_ : least_s;
   const double lasting_s = gait() == Gait::kStep ? from_rest_s : std::max(least_s, change_s);
   if (settled_.Advance(time_s, seen, std::max(mapping_.change_min_s, lasting_s)) == seen) {
-    SetPace(limbs, *frequency_hz);
+    SetPace();
     settled_run_ = run;
     other_s_ = 0;
   }

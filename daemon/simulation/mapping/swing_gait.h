@@ -62,7 +62,8 @@ class SwingGait {
  private:
   stream::Gait Seen(double phase_rad, bool run) const;
   void WaitForPhase(double time_s, bool run);
-  void SetPace(const LimbPair& limbs, double frequency_hz);
+  void Know(const LimbPair& limbs);
+  void SetPace();
 
   SwingMapping mapping_;
   SettledGait settled_;
@@ -70,6 +71,8 @@ class SwingGait {
   double valid_time_s_ = 0;
   double time_s_ = 0;
   bool settled_run_ = false;  ///< `run` when the gait was last seen as it is.
+  double known_hz_ = 0;       ///< The last frequency since the limbs began to move; 0: none.
+  double known_mps2_ = 0;     ///< The last amplitude, in the same way.
   double other_s_ = 0;        ///< For how long it has been different without a phase.
 };
 

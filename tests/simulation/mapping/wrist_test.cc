@@ -80,6 +80,29 @@ TEST(SwingGait, WhatContradictsTheGaitCountsWhileThePhaseIsNotKnown) {
   EXPECT_NEAR(walks_after_s(1), 0.25, 0.03);  // start_cycles.
 }
 
+/// Hands that change over are together before they show their new period.
+TEST(SwingGait, AJumpBeginsWithTheLastFrequencyAndAmplitude) {
+  SwingGait gait(Mapping().swing);
+  double time_s = 0;
+  const auto lasts = [&](const Inputs& inputs, bool run) {
+    biped::GaitCommand command;
+    for (const double until_s = time_s + 2; time_s < until_s; time_s += 0.01) {
+      command = gait.Advance(time_s, inputs.hands, run);
+    }
+    return command;
+  };
+  EXPECT_EQ(lasts(Swing(2.5, kPi, 14.5), true).gait, Gait::kRun);
+  Inputs together = Swing(0, 0, 0);
+  for (LimbFeatures* hand : {&together.hands.left, &together.hands.right}) {
+    hand->frequency_valid = hand->amplitude_valid = false;
+  }
+  const auto jump = lasts(together, false);
+  EXPECT_EQ(jump.gait, Gait::kJump);
+  EXPECT_NEAR(jump.speed_mps, 1.2, 1e-9);   // (2.5 - 0.5) / 2.5 * 1.5
+  EXPECT_NEAR(jump.height_m, 0.215, 1e-9);  // Middle of both, as of AmplitudeSetsTheHeightOfAJump.
+  EXPECT_NEAR(lasts(Swing(1.75, 0, 4), false).speed_mps, 0.75, 1e-9);
+}
+
 /// Hands that incline to turn, and come back, swing together for as long as that takes.
 TEST(Wrist, RestingHandsThatTurnAndTurnBackDoNotJump) {
   constexpr double kTurnS = 0.5, kFrequencyHz = 1.16;

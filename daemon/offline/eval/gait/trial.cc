@@ -20,8 +20,10 @@ std::vector<std::string>& MoreGains() {
 }
 
 Result<engine::EngineTexts> ReadTexts(
-    stream::UserInterface interface = stream::UserInterface::kWrist) {
-  return engine_files::ReadTexts({.interface = interface, .more_gains = MoreGains()});
+    stream::UserInterface interface = stream::UserInterface::kWrist,
+    const std::string& mapping_table = "") {
+  return engine_files::ReadTexts(
+      {.interface = interface, .mapping_table = mapping_table, .more_gains = MoreGains()});
 }
 
 }  // namespace
@@ -54,8 +56,9 @@ Result<engine::GaitEngine> NewEngine() {
 }
 
 Result<engine::GaitEngine> NewEngineOn(const std::string& track,
-                                       const mapping::InterfaceOptions& interface) {
-  Result<engine::EngineTexts> texts = ReadTexts(interface.interface);
+                                       const mapping::InterfaceOptions& interface,
+                                       const std::string& mapping_table) {
+  Result<engine::EngineTexts> texts = ReadTexts(interface.interface, mapping_table);
   if (!texts) return texts.error();
   texts->track = track;
   return engine::GaitEngine::Create(*texts, {.interface = interface});

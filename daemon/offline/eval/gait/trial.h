@@ -38,9 +38,11 @@ void ReadGainsToo(std::vector<std::string> paths);
 
 /// An engine on the straight track, from the product's data files.
 Result<engine::GaitEngine> NewEngine();
-/// An engine on a track given as text, for a user interface.
+/// An engine on a track given as text, for a user interface with the mapping table of this path;
+/// empty: the built-in one.
 Result<engine::GaitEngine> NewEngineOn(const std::string& track,
-                                       const mapping::InterfaceOptions& interface = {});
+                                       const mapping::InterfaceOptions& interface = {},
+                                       const std::string& mapping_table = "");
 /// The world of NewEngine's engine alone, or of one on a track; its feet are not listed as pairs.
 Result<physics::World> NewWorld(const std::optional<std::string>& track = std::nullopt);
 

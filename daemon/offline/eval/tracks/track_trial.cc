@@ -47,7 +47,11 @@ double FollowsWithin(UserInterface interface, double limb_hz) {
 
 users::Style StyleOf(const TrackUser& user) {
   if (!user.interface) return users::DrawStyle(user.seed);
-  return users::StyleOf(user.seed, *user.interface, user.grip);
+  users::Style style = users::StyleOf(user.seed, *user.interface, user.grip);
+  style.tempo = user.style.tempo.value_or(style.tempo);
+  style.amplitude = user.style.amplitude.value_or(style.amplitude);
+  style.asymmetry = user.style.asymmetry.value_or(style.asymmetry);
+  return style;
 }
 
 users::Observation See(const engine::EngineOutput& output) {
@@ -210,8 +214,10 @@ class TrackTrial {
 Result<TrackResult> RunTrack(const std::string& track_text, const TrackUser& user,
                              TrackTrace& trace) {
   Result<engine::GaitEngine> engine =
-      NewEngineOn(track_text, {.interface = user.interface.value_or(UserInterface::kWrist),
-                               .leg = {.turn_by = user.turn_by}});
+      NewEngineOn(track_text,
+                  {.interface = user.interface.value_or(UserInterface::kWrist),
+                   .leg = {.turn_by = user.turn_by}},
+                  user.mapping_table);
   if (!engine) return engine.error();
   if (engine->track().finish_m <= 0 && !user.seconds) {
     return UsageError("the track \"" + engine->track().name +

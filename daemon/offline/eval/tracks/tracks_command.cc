@@ -27,6 +27,8 @@ struct Options {
   std::string seed = "1";
   std::optional<double> grip_deg;
   std::string grip_way = "mirrored";
+  StyleWish style;
+  std::string table;
   std::string turn_by;
   std::optional<double> seconds;
   std::string trace;
@@ -64,6 +66,12 @@ Result<TrackUser> UserFor(const Options& options) {
       return UsageError("--turn-by: only the interface leg turns by head, feet or trunk");
     }
   }
+  const bool styled = options.style.tempo || options.style.amplitude || options.style.asymmetry;
+  if (!user.interface && (styled || !options.table.empty())) {
+    return UsageError("--interface direct has neither a body nor a mapping table");
+  }
+  user.style = options.style;
+  user.mapping_table = options.table;
   if (options.grip_deg) {
     const auto grip =
         users::ParseGrip(*options.grip_deg, options.grip_way,
@@ -140,6 +148,10 @@ nlohmann::ordered_json MeanAndSpread(const Delay& delay) {
   return {{"count", delay.count}, {"mean_s", delay.mean_s()}, {"sd_s", delay.sd_s()}};
 }
 
+nlohmann::ordered_json OrNull(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nullptr;
+}
+
 nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const Trials& trials) {
   const auto& times_s = trials.times_s;
   nlohmann::ordered_json failures;
@@ -160,9 +172,13 @@ nlohmann::ordered_json Report(const Options& options, std::uint64_t seed, const 
           {"off_centre_rms_m", trials.off_centre.value()},
           {"distance_m", trials.distance_m},
           {"off_track_s", trials.off_track_s},
-          {"grip_deg", options.grip_deg ? nlohmann::ordered_json(*options.grip_deg) : nullptr},
+          {"grip_deg", OrNull(options.grip_deg)},
           {"grip_way", options.grip_deg ? options.grip_way : "drawn"},
           {"turn_by", options.turn_by},
+          {"tempo", OrNull(options.style.tempo)},
+          {"amplitude", OrNull(options.style.amplitude)},
+          {"asymmetry", OrNull(options.style.asymmetry)},
+          {"table", options.table},
           {"gait_agreement", trials.agreement.share()},
           {"gait_confusion", Confusion(trials.agreement.table())},
           {"jumps", Jumps(trials.jumps)},
@@ -187,6 +203,24 @@ int Run(const Options& options, bool json) {
   return 0;
 }
 
+void AddStyleOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
+  command
+      .add_option("--tempo", options->style.tempo,
+                  "Frequencies as a share of ordinary ones (default: drawn, 0.94 to 1.06)")
+      ->check(CLI::Range(0.3, 2.0));
+  command
+      .add_option("--amplitude", options->style.amplitude,
+                  "Size of the motions, as a share of ordinary ones (default: drawn, 0.85 to 1.2)")
+      ->check(CLI::Range(0.2, 2.0));
+  command
+      .add_option("--asymmetry", options->style.asymmetry,
+                  "Share by which the left side moves more than the mean (default: drawn, "
+                  "-0.1 to 0.1)")
+      ->check(CLI::Range(-0.5, 0.5));
+  command.add_option("--table", options->table,
+                     "Mapping table of the interface, JSON file (default: the built-in one)");
+}
+
 }  // namespace
 
 void AddTracksCommand(CLI::App& app, Shared& shared) {
@@ -207,6 +241,7 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
       ->add_option("--grip-way", options->grip_way,
                    "Grips of both hands: mirrored or same (default mirrored)")
       ->needs(grip);
+  AddStyleOptions(*command, options);
   command->add_option(
       "--turn-by", options->turn_by,
       "Body part that steers with the interface leg: head, feet or trunk (default head)");

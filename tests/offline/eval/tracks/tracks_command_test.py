@@ -92,11 +92,28 @@ with tempfile.TemporaryDirectory() as folder:
     assert full.returncode == 1 and f"cannot write {trace}: File too large" in full.stderr, full
     assert "trial 1 of" not in full.stderr, full
 
+# A mapping table and a style of one's own: a slower run, and a body that moves in another way.
+with tempfile.TemporaryDirectory() as folder:
+    built_in = pathlib.Path(__file__).parents[4] / "daemon/simulation/data/joystick_mapping.json"
+    slow, wrong = pathlib.Path(folder, "slow.json"), pathlib.Path(folder, "wrong.json")
+    slow.write_text(json.dumps(json.loads(built_in.read_text()) | {"run_speed_max_mps": 1.6}))
+    wrong.write_text(json.dumps(json.loads(built_in.read_text()) | {"run_speed": 1.6}))
+    words = "--interface", "joystick", "--track", "plain", "--seconds", 10, "--seed", 6
+    assert report(*words, "--table", slow)["distance_m"] < report(*words)["distance_m"] - 3
+    bad = run(*words, "--table", wrong)
+    assert bad.returncode == 4 and str(wrong) in bad.stderr and "run_speed" in bad.stderr, bad
+words = "--interface", "wrist", "--track", "plain", "--seconds", 4, "--seed", 6
+styles = [report(*words, *style) for style in ((), ("--tempo", 0.6), ("--amplitude", 0.5), ("--asymmetry", 0.3))]
+assert [style["tempo"] for style in styles] == [None, 0.6, None, None], styles
+assert len({style["distance_m"] for style in styles}) == 4, styles
+
 for words, code, listed in ((("--interface", "telepathy"), 2, "wrist, arm, leg, joystick, boards"),
                             (("--interface", "boards", "--grip-deg", "45"), 2, "remotes"),
                             (("--interface", "arm", "--grip-deg", "45", "--grip-way", "askew"), 2, "mirrored, same"),
                             (("--interface", "leg", "--turn-by", "tail"), 2, "head, feet, trunk"),
                             (("--interface", "arm", "--turn-by", "feet"), 2, "leg"),
+                            (("--interface", "direct", "--tempo", "0.9"), 2, "neither a body nor a mapping table"),
+                            (("--interface", "wrist", "--asymmetry", "0.9"), 2, "asymmetry"),
                             (("--track", "9"), 2, "there are: 1, 2, 3, 4, build"),
                             (("--track", "endless"), 2, "no finish line"),
                             (("--trials", "0"), 2, "")):
