@@ -12,8 +12,7 @@
 namespace footing::view {
 namespace {
 
-/// The whole recording, or the one trial. `compared`: without a name the first trial that was run
-/// is meant.
+/// The whole recording, or the one trial. `compared`: without a name the first trial is meant.
 Result<PlayedSide> OpenSide(const FileAndTrial& what, bool compared) {
   auto recording = OpenForPlayback(what.file);
   if (!recording) return recording.error();
@@ -26,7 +25,7 @@ Result<PlayedSide> OpenSide(const FileAndTrial& what, bool compared) {
                   std::filesystem::path(what.file).filename().string()};
   const bool has_trials = !marks->timeline.trials.empty();
   if (what.trial.empty() && !(compared && has_trials)) return side;
-  auto trial = what.trial.empty() ? Result<timeline::TrialMark>(timeline::FirstRun(marks->timeline))
+  auto trial = what.trial.empty() ? Result<timeline::TrialMark>(marks->timeline.trials.front())
                                   : timeline::FindTrial(marks->timeline, what.trial);
   if (!trial) return Error{trial.error().kind, what.file + ": " + trial.error().message};
   side.timeline = timeline::Only(marks->timeline, *trial);

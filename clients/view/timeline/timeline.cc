@@ -86,13 +86,6 @@ const TrialMark* TrialAt(const Timeline& timeline, double at_s) {
   return found;
 }
 
-const TrialMark& FirstRun(const Timeline& timeline) {
-  FOOTING_CHECK(!timeline.trials.empty());
-  const auto run = std::find_if(timeline.trials.begin(), timeline.trials.end(),
-                                [](const TrialMark& trial) { return trial.start_s.has_value(); });
-  return run == timeline.trials.end() ? timeline.trials.front() : *run;
-}
-
 stream::FailureCounts FailuresOf(const Timeline& timeline, const TrialMark& trial, double until_s) {
   stream::FailureCounts counts;
   for (const FailureMark& failure : timeline.failures) {

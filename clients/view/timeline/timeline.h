@@ -68,10 +68,6 @@ std::optional<double> NextTrial(const Timeline& timeline, double at_s);
 /// The trial that goes on at a position: the last one that has begun. Null before the first.
 const TrialMark* TrialAt(const Timeline& timeline, double at_s);
 
-/// The first trial that was run, else the first of all: a recording may begin with the last frame
-/// of a trial before it. There must be one.
-const TrialMark& FirstRun(const Timeline& timeline);
-
 /// Failures of a trial by cause up to a position, without those withdrawn and those behind its end.
 stream::FailureCounts FailuresOf(const Timeline& timeline, const TrialMark& trial, double until_s);
 

@@ -91,20 +91,6 @@ TEST(TimelineTest, OneTrialAloneDoesNotReachIntoTheNextOne) {
   EXPECT_GT(Only(line, line.trials[0]).end_s, 40.99);
 }
 
-/// A study's recording begins with the last frame of the trial before it.
-TEST(TimelineTest, TheFirstTrialThatWasRunIsNotOneThatHadEndedBefore) {
-  Timeline line = SampleTimeline();
-  EXPECT_EQ(FirstRun(line).id, "p07-1");
-  TrialMark before;
-  before.id = "p07-0";
-  before.phase = stream::TrialPhase::kFinished;
-  before.time_s = 31;
-  line.trials.insert(line.trials.begin(), before);
-  EXPECT_EQ(FirstRun(line).id, "p07-1");
-  line.trials = {before};
-  EXPECT_EQ(FirstRun(line).id, "p07-0");
-}
-
 TEST(TimelineTest, ShiftingMovesEveryMark) {
   const Timeline line = Shifted(SampleTimeline(), 12);
   EXPECT_EQ(line.begin_s, -12);
