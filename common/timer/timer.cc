@@ -57,7 +57,11 @@ void Timer::expires_at(TimePoint expiry) {
   if (clock::OwnFollower() == nullptr) real_.expires_at(expiry);
 }
 
-void Timer::async_wait(Handler handler) {
+void Timer::async_wait(Handler own_handler) {
+  Handler handler = [cancelled = cancelled_, number = *cancelled_,
+                     own_handler = std::move(own_handler)](const boost::system::error_code& error) {
+    own_handler(*cancelled == number ? error : asio::error::operation_aborted);
+  };
   if (clock::OwnFollower() == nullptr) return real_.async_wait(std::move(handler));
   simulated_ = ++waits.last;
   waits.by_expiry.emplace(
@@ -67,6 +71,7 @@ void Timer::async_wait(Handler handler) {
 }
 
 void Timer::cancel() {
+  ++*cancelled_;
   real_.cancel();
   if (simulated_ == 0) return;
   const auto waiting = waits.by_expiry.find({expiry_, simulated_});

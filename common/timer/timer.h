@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 /// Timers and event loops on the clock of common/clock: the host's, or that of the timekeeper that
 /// the calling thread follows.
@@ -16,8 +17,10 @@ using TimePoint = std::chrono::steady_clock::time_point;
 /// clock::MonotonicNs() as a time point.
 TimePoint Now();
 
-/// A steady_timer of Asio for one wait at a time: a new expiry cancels the wait. A thread that
-/// follows a timekeeper runs its io_context with Run or RunOneUntil below, or it never expires.
+/// A steady_timer of Asio for one wait at a time: a new expiry cancels the wait. Unlike in Asio a
+/// wait that has expired can be cancelled as well, until its handler runs: so a handler that
+/// returns on an error may hold a pointer to the timer's owner. A thread that follows a timekeeper
+/// runs its io_context with Run or RunOneUntil below, or it never expires.
 class Timer {
  public:
   using Handler = std::function<void(const boost::system::error_code&)>;
@@ -31,7 +34,7 @@ class Timer {
   void expires_at(TimePoint expiry);
   TimePoint expiry() const { return expiry_; }
   void expires_after(std::chrono::nanoseconds wait) { expires_at(Now() + wait); }
-  /// As in Asio the handler is called on the io_context, with operation_aborted after a cancel.
+  /// The handler is called on the io_context, with operation_aborted after a cancel.
   void async_wait(Handler handler);
   void cancel();
 
@@ -39,6 +42,8 @@ class Timer {
   boost::asio::steady_timer real_;
   TimePoint expiry_;
   std::uint64_t simulated_ = 0;  ///< Number of the wait on simulated time; 0: none.
+  /// How many waits were cancelled; handlers share it.
+  std::shared_ptr<std::uint64_t> cancelled_ = std::make_shared<std::uint64_t>(0);
 };
 
 /// Forgets the calling thread's waits on simulated time, whose handlers may hold what belongs to an

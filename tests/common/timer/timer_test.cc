@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -114,6 +115,30 @@ TEST(TimerTest, OneHandlerOrTheEndReturns) {
     EXPECT_EQ(Now(), begin + 10s);
   });
   EXPECT_NEAR(passed_s, 10, 1e-9);
+}
+
+/// Both expire before the loop runs; the first one's handler ends the second one.
+void EndOneThatHasExpired() {
+  boost::asio::io_context io(1);
+  Timer first(io);
+  auto second = std::make_unique<Timer>(io);
+  const TimePoint expiry = Now() + 1ms;
+  bool ended = false;
+  first.expires_at(expiry);
+  first.async_wait([&](const boost::system::error_code&) { second.reset(); });
+  second->expires_at(expiry);
+  second->async_wait([&](const boost::system::error_code& error) {
+    EXPECT_EQ(error, boost::asio::error::operation_aborted);
+    ended = true;
+  });
+  if (clock::OwnFollower() == nullptr) std::this_thread::sleep_until(expiry + 1ms);
+  Run(io);
+  EXPECT_TRUE(ended);
+}
+
+TEST(Timer, ThatEndsWhenItHasExpiredCountsAsCancelled) {
+  EndOneThatHasExpired();
+  OnSimulatedTime(EndOneThatHasExpired);
 }
 
 }  // namespace
