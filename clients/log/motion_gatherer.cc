@@ -11,6 +11,7 @@ namespace footing::log_client {
 namespace {
 
 constexpr double kMostRateHz = 1000;
+constexpr double kMostRowsPerFrame = 100;  // What is missing between frames is filled.
 
 Eigen::Vector3d PlaceOf(const v1::Character& character, int link) {
   return wire::FromProto(character.links(link).position_m());
@@ -85,8 +86,12 @@ Result<MotionGatherer::Grid> MotionGatherer::MakeGrid() const {
   Grid grid;
   grid.step_s = step_s;
   const double start_s = frames_.front().time_s();
-  const auto columns =
-      static_cast<std::size_t>(std::llround((frames_.back().time_s() - start_s) / step_s) + 1);
+  const double steps = (frames_.back().time_s() - start_s) / step_s;
+  if (!(steps < kMostRowsPerFrame * static_cast<double>(frames_.size()))) {
+    return InvalidData("nearly all of the " + std::to_string(std::llround(std::min(steps, 1e15))) +
+                       " frames between the first and the last one are missing");
+  }
+  const auto columns = static_cast<std::size_t>(std::llround(steps) + 1);
   std::size_t at = 0;
   for (std::size_t i = 0; i < columns; ++i) {
     const double time_s = start_s + static_cast<double>(i) * step_s;

@@ -8,6 +8,7 @@
 
 #include "common/body/kinematics.h"
 #include "common/body/landmarks.h"
+#include "common/rotation/rotation.h"
 #include "common/units/units.h"
 
 namespace footing::log_client {
@@ -44,8 +45,7 @@ Vector3d RestVector(const body::Skeleton& skeleton, int from, int to) {
 /// A segment that hangs down in the upright body, whatever way it points at rest.
 Segment Hanging(const body::Skeleton& skeleton, int joint, int end) {
   const Vector3d down = -Vector3d::UnitZ();
-  return {joint, Eigen::Quaterniond::FromTwoVectors(down, RestVector(skeleton, joint, end))
-                     .toRotationMatrix()};
+  return {joint, LeastTurn(down, RestVector(skeleton, joint, end)).toRotationMatrix()};
 }
 
 Segments SegmentsOf(const body::Skeleton& skeleton, const body::Landmarks& of) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "clients/log/motion_gatherer.h"
@@ -112,6 +113,15 @@ TEST(MotionGatherer, TimeThatGoesBackIsRefused) {
   gatherer.Add(FrameAt(1, 0));
   gatherer.Add(FrameAt(0.5, 0));
   EXPECT_EQ(gatherer.Finish().error().kind, ErrorKind::kInvalidData);
+}
+
+TEST(MotionGatherer, TimeThatLeapsFarIsRefusedBeforeItsRowsTakeMemory) {
+  MotionGatherer gatherer(Chain());
+  for (const double time_s : {0.0, 0.002, 1e9}) gatherer.Add(FrameAt(time_s, 0));
+  for (const std::string& message :
+       {gatherer.Finish().error().message, gatherer.Forces().error().message}) {
+    EXPECT_NE(message.find("500000000000 frames between"), std::string::npos) << message;
+  }
 }
 
 TEST(JointPlaces, AreTheLinksOfEveryFrameInTheAxesOfOpenSim) {

@@ -80,7 +80,7 @@ void DrawPhaseGauge(const Paint& p, const Box& box, const stream::InterfaceState
   const bool known = state.phase_valid;
   const Box in = Above(
       p, box,
-      known ? "phase " + scene::Fixed(RadiansToDegrees(std::fabs(state.phase_rad)), 0) + "\xc2\xb0"
+      known ? "phase " + scene::Fixed(RadiansToDegrees(state.phase_rad), 0) + "\xc2\xb0"
             : std::string("phase"));
   const ImVec2 centre = MiddleOf(in);
   const float radius = std::min(in.width(), in.height()) / 2 - 4 * s;
