@@ -66,6 +66,7 @@ Scores<Scalar> Score(const CandidateTask<Scalar>& task, const Eigen::MatrixXd& w
     values.noalias() = task.units.middleRows(first, count) * scalar_weights;
     ApplySigmoid(values);
     result.correlations.noalias() += task.errors.middleRows(first, count).transpose() * values;
+    if (task.basis.cols() == 0) return;
     along.noalias() += task.basis.middleRows(first, count).transpose() * values;
   });
   if (task.basis.cols() == 0) {
