@@ -78,10 +78,10 @@ void DrawStickRegions(const Paint& p, ImVec2 centre, float radius,
 void DrawPhaseGauge(const Paint& p, const Box& box, const stream::InterfaceState& state) {
   const float s = p.scale;
   const bool known = state.phase_valid;
-  const Box in =
-      Above(p, box,
-            known ? "phase " + scene::Fixed(RadiansToDegrees(state.phase_rad), 0) + "\xc2\xb0"
-                  : std::string("phase"));
+  const Box in = Above(
+      p, box,
+      known ? "phase " + scene::Fixed(RadiansToDegrees(std::fabs(state.phase_rad)), 0) + "\xc2\xb0"
+            : std::string("phase"));
   const ImVec2 centre = MiddleOf(in);
   const float radius = std::min(in.width(), in.height()) / 2 - 4 * s;
   const double border = state.together_rad;
