@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,11 +66,15 @@ Result<ordered_json> RunRecord(RecordOptions options, const std::vector<std::str
                       {"duration_s", report->duration_s}};
 }
 
-Result<ordered_json> RunBodies(const std::string& file, const std::string& format,
+std::optional<BodyFormat> BodyFormatOf(const std::string& format) {
+  if (format == "bvh") return BodyFormat::kBvh;
+  if (format == "trc") return BodyFormat::kTrc;
+  if (format == "mot") return BodyFormat::kMot;
+  return std::nullopt;
+}
+
+Result<ordered_json> RunBodies(const std::string& file, const std::string& format, BodyFormat body,
                                const std::string& folder, bool replace) {
-  const BodyFormat body = format == "bvh"   ? BodyFormat::kBvh
-                          : format == "trc" ? BodyFormat::kTrc
-                                            : BodyFormat::kMot;
   const auto motions = ExportBodies(file, folder, body, replace);
   if (!motions) return motions.error();
   ordered_json out{{"file", file}, {"format", format}, {"files", ordered_json::array()}};
@@ -85,8 +90,8 @@ Result<ordered_json> RunBodies(const std::string& file, const std::string& forma
 
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
                                const std::string& folder, bool replace) {
-  if (format == "bvh" || format == "trc" || format == "mot") {
-    return RunBodies(file, format, folder, replace);
+  if (const auto body = BodyFormatOf(format)) {
+    return RunBodies(file, format, *body, folder, replace);
   }
   if (format != "csv") {
     return UsageError("unknown --format " + format + "; there are: csv, bvh, trc, mot");

@@ -97,48 +97,38 @@ void AlignElbow(const motion::Motion& motion, int side, Segments& segments) {
   }
 }
 
+/// Of the angles of a limb: the left one is the mirror image of the right one.
+Vector3d SignsOf(int side) { return side == 1 ? Vector3d(1, 1, 1) : Vector3d(1, -1, -1); }
+
 /// The coordinates of one joint: angles about z, x and y of OpenSim.
 struct Coordinates {
   int parent;
   int child;
-  std::array<const char*, 3> names;  ///< Null: not written.
+  std::array<std::string, 3> names;  ///< Empty: not written.
   Vector3d signs{1, 1, 1};
 };
 
 /// In the order of the columns; the root's position stands behind the pelvis.
 std::vector<Coordinates> AllCoordinates() {
-  const Vector3d mirrored(1, -1, -1);
   std::vector<Coordinates> all{
       {kGround, kPelvis, {"pelvis_tilt", "pelvis_list", "pelvis_rotation"}}};
   for (const int side : {1, 0}) {
-    const Vector3d signs = side == 1 ? Vector3d(1, 1, 1) : mirrored;
-    const bool right = side == 1;
-    all.push_back(
-        {kPelvis,
-         kThigh + side,
-         {right ? "hip_flexion_r" : "hip_flexion_l", right ? "hip_adduction_r" : "hip_adduction_l",
-          right ? "hip_rotation_r" : "hip_rotation_l"},
-         signs});
-    all.push_back({kThigh + side,
-                   kShank + side,
-                   {right ? "knee_angle_r" : "knee_angle_l", nullptr, nullptr},
-                   Vector3d(-1, 1, 1)});
-    all.push_back({kShank + side,
-                   kFoot + side,
-                   {right ? "ankle_angle_r" : "ankle_angle_l", nullptr, nullptr}});
+    const std::string of = side == 1 ? "_r" : "_l";
+    all.push_back({kPelvis,
+                   kThigh + side,
+                   {"hip_flexion" + of, "hip_adduction" + of, "hip_rotation" + of},
+                   SignsOf(side)});
+    all.push_back({kThigh + side, kShank + side, {"knee_angle" + of}, Vector3d(-1, 1, 1)});
+    all.push_back({kShank + side, kFoot + side, {"ankle_angle" + of}});
   }
   all.push_back({kPelvis, kTorso, {"lumbar_extension", "lumbar_bending", "lumbar_rotation"}});
   for (const int side : {1, 0}) {
-    const Vector3d signs = side == 1 ? Vector3d(1, 1, 1) : mirrored;
-    const bool right = side == 1;
+    const std::string of = side == 1 ? "_r" : "_l";
     all.push_back({kTorso,
                    kUpperArm + side,
-                   {right ? "arm_flex_r" : "arm_flex_l", right ? "arm_add_r" : "arm_add_l",
-                    right ? "arm_rot_r" : "arm_rot_l"},
-                   signs});
-    all.push_back({kUpperArm + side,
-                   kForearm + side,
-                   {right ? "elbow_flex_r" : "elbow_flex_l", nullptr, nullptr}});
+                   {"arm_flex" + of, "arm_add" + of, "arm_rot" + of},
+                   SignsOf(side)});
+    all.push_back({kUpperArm + side, kForearm + side, {"elbow_flex" + of}});
   }
   return all;
 }
@@ -146,8 +136,8 @@ std::vector<Coordinates> AllCoordinates() {
 std::vector<std::string> ColumnsOf(const std::vector<Coordinates>& all) {
   std::vector<std::string> columns{"time"};
   for (const Coordinates& joint : all) {
-    for (const char* name : joint.names) {
-      if (name != nullptr) columns.emplace_back(name);
+    for (const std::string& name : joint.names) {
+      if (!name.empty()) columns.push_back(name);
     }
     if (joint.parent != kGround) continue;
     for (const char* name : {"pelvis_tx", "pelvis_ty", "pelvis_tz"}) columns.emplace_back(name);
@@ -204,7 +194,7 @@ Result<motion::Table> JointAngles(const motion::Motion& motion) {
       const Vector3d opensim(-angles[i](0), angles[i](1), angles[i](2));
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto row = static_cast<Eigen::Index>(axis);
-        if (all[i].names[axis] != nullptr) {
+        if (!all[i].names[axis].empty()) {
           put(RadiansToDegrees(all[i].signs(row) * opensim(row)));
         }
       }

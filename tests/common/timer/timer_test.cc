@@ -122,7 +122,7 @@ void EndOneThatHasExpired() {
   boost::asio::io_context io(1);
   Timer first(io);
   auto second = std::make_unique<Timer>(io);
-  const TimePoint expiry = Now() + 1ms;
+  const TimePoint expiry = Now() - 1ms;
   bool ended = false;
   first.expires_at(expiry);
   first.async_wait([&](const boost::system::error_code&) { second.reset(); });
@@ -131,7 +131,6 @@ void EndOneThatHasExpired() {
     EXPECT_EQ(error, boost::asio::error::operation_aborted);
     ended = true;
   });
-  if (clock::OwnFollower() == nullptr) std::this_thread::sleep_until(expiry + 1ms);
   Run(io);
   EXPECT_TRUE(ended);
 }
