@@ -138,6 +138,8 @@ def check_kills(stage, links, results):
     stage.start("footing-log", "record", "--connect", links.addresses["log"], "--out", path)
     log = stage.folder / "footing-log.log"
     stage.wait_for(lambda: "connected to footingd" in log.read_text(), "the recorder")
+    links.clear()
+    stage.wait_for(lambda: links.proxies["log"].fresh_ns is not None, "a tick behind which something can be missing")
     for program, start, names in (("footingd", lambda: start_daemon(stage), ("log", "ctl", "sim", "devices")),
                                   ("footing-sim", lambda: start_simulation(stage, links), ("view",)),
                                   ("footing-stream", lambda: start_devices(stage, links), ("devices",))):
