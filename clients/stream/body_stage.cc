@@ -71,6 +71,7 @@ Result<sensors::Scene> PerformScript(const StageOptions& options) {
 Result<sensors::Scene> LoadRecording(const StageOptions& options) {
   motion_files::LoadOptions load;
   load.skeleton = options.skeleton;
+  load.bvh_unit_m = options.bvh_unit_m;
   auto loaded = motion_files::LoadMotion(options.motion, load);
   if (!loaded) return loaded.error();
   if (!loaded->note.empty()) log::Info(loaded->note);

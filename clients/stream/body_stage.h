@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace footing::stream_client {
 struct StageOptions {
   std::string motion;    ///< A built-in name, or a path: .json, .bvh, .amc, .trc, .c3d.
   std::string skeleton;  ///< ASF of an AMC.
+  std::optional<double> bvh_unit_m = {};
   double mass_kg = 75;
   double height_m = 1.75;     ///< Of who performs a script; recordings have their own.
   bool on_boards = true;      ///< False: it may walk anywhere, and nothing is said of boards.

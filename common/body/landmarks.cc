@@ -17,14 +17,16 @@ struct Names {
   std::string_view joints;  ///< Known joint names, lower case; the first found wins.
 };
 
-// "@" stands for the side, tried in every spelling below. The name before ":" or of a
-// MotionBuilder character is dropped before a comparison; end points are "NAME_end".
+// "@" stands for the side, tried in every spelling below; a side at the end of a name, as in
+// "Foot_L", is put first ("l_foot"). The name before ":" or of a MotionBuilder character is dropped
+// before a comparison; end points are "NAME_end".
 constexpr Names kMiddle[] = {
-    {Landmark::kHips, "hips", Need::kNecessary, "root hips hip pelvis cc_base_hip"},
+    {Landmark::kHips, "hips", Need::kNecessary, "hips hip pelvis cc_base_hip root"},
     {Landmark::kChest, "chest", Need::kOptional,
-     "thorax spine3 chest3 spine2 chest2 spine1 chest cc_base_spine02 spine"},
+     "thorax upperchest chest4 spine3 chest3 spine2 chest2 spine1 spine_03 chest cc_base_spine02 "
+     "spine"},
     {Landmark::kNeck, "neck", Need::kNecessary,
-     "lowerneck neck neck1 cc_base_necktwist01 neckbase"},
+     "lowerneck neck neck1 neck_01 cc_base_necktwist01 neckbase"},
     {Landmark::kHead, "head", Need::kOptional, "upperneck head cc_base_head"},
     {Landmark::kVertex, "vertex", Need::kOptional,
      "vertex headtop headtop_end head_end cc_base_head_end cc_base_facialbone"},
@@ -33,23 +35,44 @@ constexpr Names kSides[] = {
     {Landmark::kLeftClavicle, "clavicle", Need::kOptional,
      "@clavicle @collar cc_base_@_clavicle @shoulder"},
     {Landmark::kLeftShoulder, "shoulder", Need::kNecessary,
-     "@humerus @arm @uparm @upperarm cc_base_@_upperarm @shoulder"},
+     "@humerus @arm @uparm @upperarm @upper_arm @shldr cc_base_@_upperarm @shoulder"},
     {Landmark::kLeftElbow, "elbow", Need::kNecessary,
-     "@radius @forearm @lowarm @elbow @lowerarm cc_base_@_forearm"},
-    {Landmark::kLeftWrist, "wrist", Need::kNecessary, "@hand @wrist cc_base_@_hand"},
+     "@radius @forearm @lowarm @elbow @lowerarm @lower_arm cc_base_@_forearm"},
+    {Landmark::kLeftWrist, "wrist", Need::kNecessary, "@wrist @hand cc_base_@_hand"},
     {Landmark::kLeftHandEnd, "hand_end", Need::kOptional,
      "@fingers_end @hand_end @fingers @handindex1 @handmiddle1 @fingerbase @wrist_end "
      "cc_base_@_mid1"},
-    {Landmark::kLeftHip, "hip", Need::kNecessary, "@femur @upleg @thigh @hip cc_base_@_thigh"},
+    {Landmark::kLeftHip, "hip", Need::kNecessary,
+     "@femur @upleg @thigh @hip @upperleg @upper_leg cc_base_@_thigh"},
     {Landmark::kLeftKnee, "knee", Need::kNecessary,
-     "@tibia @leg @lowleg @shin @knee cc_base_@_calf"},
-    {Landmark::kLeftAnkle, "ankle", Need::kNecessary, "@foot @ankle cc_base_@_foot"},
-    {Landmark::kLeftToe, "toe", Need::kOptional, "@toes @toebase @toe cc_base_@_toebase"},
+     "@tibia @leg @lowleg @shin @knee @lowerleg @lower_leg @calf cc_base_@_calf"},
+    {Landmark::kLeftAnkle, "ankle", Need::kNecessary, "@ankle @foot cc_base_@_foot"},
+    {Landmark::kLeftToe, "toe", Need::kOptional,
+     "@toes @toebase @toe @ball @foot cc_base_@_toebase"},
     {Landmark::kLeftToeEnd, "toe_end", Need::kOptional,
      "@toes_end @toebase_end @toe_end @foot_end cc_base_@_midtoe1"},
 };
 constexpr int kRightLessLeft =
     static_cast<int>(Landmark::kRightClavicle) - static_cast<int>(Landmark::kLeftClavicle);
+
+/// CMU's "wrist" turns the forearm from two thirds of it on; the hand begins at its "hand".
+constexpr std::string_view kWristOfCmu = "@hand";
+
+/// The side to the front: "foot_l_end" becomes "l_foot_end".
+std::string SideFirst(const std::string& name) {
+  constexpr std::string_view kEnd = "_end";
+  const bool end = name.ends_with(kEnd);
+  const std::string stem = end ? name.substr(0, name.size() - kEnd.size()) : name;
+  for (const std::string_view side : {"left", "right", "l", "r"}) {
+    for (const char separator : {'_', '.', '-', ' '}) {
+      const std::string suffix = separator + std::string(side);
+      if (stem.size() <= suffix.size() || !stem.ends_with(suffix)) continue;
+      return std::string(side) + "_" + stem.substr(0, stem.size() - suffix.size()) +
+             (end ? std::string(kEnd) : "");
+    }
+  }
+  return name;
+}
 
 std::string Plain(std::string_view name) {
   const auto colon = name.rfind(':');
@@ -62,7 +85,9 @@ std::string Plain(std::string_view name) {
     const auto line = plain.find('_');
     if (line != std::string::npos) plain.erase(0, line + 1);
   }
-  return plain;
+  constexpr std::string_view kMixamo = "mixamorig";  // Some exporters drop or replace its colon.
+  if (plain.starts_with(kMixamo)) plain.erase(0, kMixamo.size() + plain.starts_with("mixamorig_"));
+  return SideFirst(plain);
 }
 
 /// The first joint that has one of the names, or -1.
@@ -87,6 +112,38 @@ std::string JointList(const Skeleton& skeleton) {
     list += (i == 0 ? "" : ", ") + skeleton.joint(i).name;
   }
   return list;
+}
+
+/// The first joint that has one of the names, on that side however it is spelt, or -1.
+int FindOnSide(const std::vector<std::string>& joints, std::string_view names, bool right) {
+  constexpr std::string_view kSpellings[2][4] = {{"left", "l", "left_", "l_"},
+                                                 {"right", "r", "right_", "r_"}};
+  for (const std::string_view side : kSpellings[right]) {
+    if (const int joint = Find(joints, names, side); joint >= 0) return joint;
+  }
+  return -1;
+}
+
+/// An error where a limb's joints do not hang on each other in their order.
+Result<void> CheckOrder(const Skeleton& skeleton, const Landmarks& landmarks) {
+  constexpr std::pair<Landmark, Landmark> kLimbs[] = {
+      {Landmark::kLeftHip, Landmark::kLeftKnee},
+      {Landmark::kLeftKnee, Landmark::kLeftAnkle},
+      {Landmark::kLeftShoulder, Landmark::kLeftElbow},
+      {Landmark::kLeftElbow, Landmark::kLeftWrist}};
+  for (const auto& [upper, lower] : kLimbs) {
+    for (const int side : {0, 1}) {
+      const Landmark from = OfSide(upper, side), to = OfSide(lower, side);
+      int joint = skeleton.joint(landmarks[to]).parent;
+      while (joint >= 0 && joint != landmarks[from]) joint = skeleton.joint(joint).parent;
+      if (joint >= 0) continue;
+      return InvalidData("joint " + skeleton.joint(landmarks[to]).name + ", taken for " +
+                         std::string(LandmarkName(to)) + ", does not hang on joint " +
+                         skeleton.joint(landmarks[from]).name + ", taken for " +
+                         std::string(LandmarkName(from)) + ": rename one of them");
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -120,17 +177,18 @@ Result<Landmarks> FindLandmarks(const Skeleton& skeleton) {
     for (const Names& names : kSides) {
       const auto landmark =
           static_cast<Landmark>(static_cast<int>(names.landmark) + right * kRightLessLeft);
-      int joint = -1;
-      for (const std::string_view side :
-           right != 0 ? std::array<std::string_view, 4>{"right", "r", "right_", "r_"}
-                      : std::array<std::string_view, 4>{"left", "l", "left_", "l_"}) {
-        joint = Find(joints, names.joints, side);
-        if (joint >= 0) break;
-      }
+      int joint = FindOnSide(joints, names.joints, right != 0);
+      const bool cmu_arm =
+          names.landmark == Landmark::kLeftWrist && FindOnSide(joints, "@radius", right != 0) >= 0;
+      if (cmu_arm) joint = FindOnSide(joints, kWristOfCmu, right != 0);
+      // "Foot" is the ankle, or what hangs on it.
+      const Landmark ankle = OfSide(Landmark::kLeftAnkle, right);
+      if (names.landmark == Landmark::kLeftToe && joint == found[ankle]) joint = -1;
       const auto done = set(landmark, names.need, joint);
       if (!done) return done.error();
     }
   }
+  if (const auto ordered = CheckOrder(skeleton, found); !ordered) return ordered.error();
   return found;
 }
 

@@ -49,9 +49,10 @@ struct Landmarks {
 };
 
 /// Finds the landmarks by the joints' names: CMU's ASF, Biovision and MotionBuilder style BVH (with
-/// any prefix up to ':' or "Character1_"), iClone. Case does not matter. Hips, knees, ankles,
-/// shoulders, elbows, wrists and neck are necessary: without one of them the error names it and the
-/// joints that are there.
+/// any prefix up to ':' or "Character1_"), iClone, SMPL, game engines; the side stands in front
+/// ("LeftFoot", "l_foot") or behind ("Foot_L", "foot.R"). Case does not matter. Hips, knees,
+/// ankles, shoulders, elbows, wrists and neck are necessary: without one of them the error names it
+/// and the joints that are there. So are limbs whose joints hang on each other in their order.
 Result<Landmarks> FindLandmarks(const Skeleton& skeleton);
 
 /// The same landmark of the other side; those of the middle are their own.

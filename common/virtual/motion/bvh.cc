@@ -10,6 +10,7 @@
 #include "common/text/lines.h"
 #include "common/text/number.h"
 #include "common/units/units.h"
+#include "common/virtual/motion/bvh_stem.h"
 #include "common/virtual/motion/rate.h"
 
 namespace footing::motion {
@@ -27,6 +28,7 @@ struct Channel {
   bool rotation = false;
   Axis axis = Axis::kX;  ///< Of the file.
   int dof = -1;          ///< Into q; -1 for the position of a joint that is not the root.
+  int stem_row = -1;     ///< Of such a position, into those of the stem (bvh_stem.h).
 };
 
 struct Header {
@@ -178,6 +180,7 @@ Result<Header> ParseHeader(HeaderTokens& words, double unit_m) {
 Result<body::Skeleton> Place(Header& header, text::Lines& lines) {
   body::Skeleton skeleton = body::MakeSkeleton(header.joints);
   std::vector<int> next;
+  const int stem = StemLength(skeleton);
   int positions = 0;
   for (const Joint& joint : skeleton.joints) next.push_back(joint.first_dof);
   for (Channel& channel : header.channels) {
@@ -186,6 +189,8 @@ Result<body::Skeleton> Place(Header& header, text::Lines& lines) {
     } else if (channel.joint == 0) {
       channel.dof = static_cast<int>(body::FromYUp(channel.axis));
       ++positions;
+    } else if (channel.joint <= stem) {
+      channel.stem_row = 3 * (channel.joint - 1) + static_cast<int>(body::FromYUp(channel.axis));
     }
   }
   if (positions != 3) return lines.Fault("the root needs Xposition, Yposition and Zposition");
@@ -212,6 +217,15 @@ Result<std::pair<std::size_t, double>> ParseMotionHead(HeaderTokens& words) {
   return std::pair{*frames, RateOfStep(*step_s)};
 }
 
+/// Where the joints of the stem are, in every frame, unless their position channels say otherwise.
+Eigen::MatrixXd PlacesOfStem(const body::Skeleton& skeleton, Eigen::Index frames) {
+  Eigen::MatrixXd stem_m(3 * StemLength(skeleton), frames);
+  for (Eigen::Index row = 0; row < stem_m.rows(); row += 3) {
+    stem_m.middleRows<3>(row).colwise() = skeleton.joint(static_cast<int>(row / 3) + 1).offset_m;
+  }
+  return stem_m;
+}
+
 /// Moves the joint to where its position channels say, or holds it to that.
 Result<void> Hold(const Channel& channel, double value_m, bool first, const text::Lines& lines,
                   body::Skeleton& skeleton) {
@@ -220,7 +234,8 @@ Result<void> Hold(const Channel& channel, double value_m, bool first, const text
   if (first) offset_m = value_m;
   if (std::abs(offset_m - value_m) <= kStillM) return {};
   return lines.Fault("joint " + skeleton.joint(channel.joint).name +
-                     " moves on its parent: only the root may; bake its motion into rotations");
+                     " moves on its parent: only the root and the joints between it and the hips "
+                     "may; bake its motion into rotations");
 }
 
 }  // namespace
@@ -236,14 +251,16 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
   if (!head) return head.error();
   const auto [frames, rate_hz] = *head;
   const std::size_t columns = header->channels.size();
+  const std::size_t values = columns + 3 * static_cast<std::size_t>(StemLength(*skeleton));
   // A number and the blank after it take two bytes at least.
-  if (frames > lines.bytes_left() / 2 / columns + 1 || frames > kMostValues / columns) {
+  if (frames > lines.bytes_left() / 2 / columns + 1 || frames > kMostValues / values) {
     return lines.Fault(std::to_string(frames) + " frames of " + std::to_string(columns) +
                        " channels are announced: the file is too short for that, or over " +
                        std::to_string(kMostValues) + " values");
   }
   Motion motion{std::move(*skeleton), rate_hz, 0, {}};
   motion.q.resize(motion.skeleton.dof, static_cast<Eigen::Index>(frames));
+  Eigen::MatrixXd stem_m = PlacesOfStem(motion.skeleton, motion.q.cols());
   for (Eigen::Index frame = 0; frame < motion.q.cols(); ++frame) {
     auto line = lines.NextFull();
     if (!line) {
@@ -262,6 +279,8 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
       const double value = channel.rotation ? DegreesToRadians(*number) : *number * options.unit_m;
       if (channel.dof >= 0) {
         motion.q(channel.dof, frame) = value;
+      } else if (channel.stem_row >= 0) {
+        stem_m(channel.stem_row, frame) = value;
       } else {
         const auto held = Hold(channel, value, frame == 0, lines, motion.skeleton);
         if (!held) return held.error();
@@ -274,7 +293,7 @@ Result<Motion> ParseBvh(std::string_view text, const std::string& file, const Bv
   }
   if (lines.NextFull())
     return lines.Fault("more frames than the " + std::to_string(frames) + " announced");
-  return motion;
+  return OnMovingJoint(std::move(motion), stem_m, kStillM);
 }
 
 }  // namespace footing::motion

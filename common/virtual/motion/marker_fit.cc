@@ -1,6 +1,8 @@
 #include "common/virtual/motion/marker_fit.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -8,6 +10,7 @@
 #include "common/body/body.h"
 #include "common/body/fit.h"
 #include "common/body/kinematics.h"
+#include "common/rotation/rotation.h"
 #include "common/virtual/motion/joint_centres.h"
 #include "common/virtual/motion/marker_carriers.h"
 
@@ -20,6 +23,7 @@ using body::PointTarget;
 constexpr Eigen::Index kCalibrationFrames = 60;  // That place the markers on the segments.
 constexpr int kRounds = 3;                       // Of poses from places and places from poses.
 constexpr std::size_t kLeastMarkers = 10;        // Of a frame.
+constexpr double kLeastSine = 0.17;              // Of a limb that counts as bent: 10 degrees.
 // What a joint costs to move, m/rad: limbs hardly anything from the frame before; of the back, the
 // neck, the shoulder girdle and what lies beyond the last markers, a centimetre for a large bend.
 constexpr double kHoldLimb = 0.002, kHoldSpine = 0.05;
@@ -71,6 +75,10 @@ class Fitter {
                                     at_.p_WJ[MarkerIndex(landmarks_[Landmark::kRightHip])]) /
                                    2;
     q.head<3>() += (*left + *right) / 2 - middle;
+    for (const int side : {0, 1}) {
+      Bend(centres, side, {Landmark::kLeftHip, Landmark::kLeftKnee, Landmark::kLeftAnkle}, q);
+      Bend(centres, side, {Landmark::kLeftShoulder, Landmark::kLeftElbow, Landmark::kLeftWrist}, q);
+    }
     targets_.clear();
     for (int i = 0; i < body::kLandmarkCount; ++i) {
       const auto landmark = static_cast<Landmark>(i);
@@ -113,6 +121,42 @@ class Fitter {
   void Place(const Eigen::VectorXd& q) { ComputeKinematics(skeleton_, q, at_); }
 
  private:
+  /// Turns a limb so that its upper bone points as the centres do and its hinge bends in their
+  /// plane. From a T-pose the fit would else bend a guard's elbows the wrong way round.
+  void Bend(const Centres& centres, int side, const std::array<Landmark, 3>& left,
+            Eigen::VectorXd& q) {
+    std::array<int, 3> joints;
+    std::array<Eigen::Vector3d, 3> places;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Landmark landmark = body::OfSide(left[i], side);
+      const auto& centre = centres[static_cast<std::size_t>(landmark)];
+      if (!centre) return;
+      joints[i] = landmarks_[landmark];
+      places[i] = *centre;
+    }
+    Place(q);
+    const body::Joint &upper = skeleton_.joint(joints[0]), &hinge = skeleton_.joint(joints[1]);
+    const Eigen::Vector3d bone = (places[1] - places[0]).normalized();
+    const Eigen::Vector3d across = bone.cross((places[2] - places[1]).normalized());
+    const double sine = across.norm();
+    const Eigen::Vector3d now = at_.p_WJ[MarkerIndex(joints[1])] - at_.p_WJ[MarkerIndex(joints[0])];
+    const Eigen::Vector3d axis = at_.axis_W[MarkerIndex(hinge.first_dof)];
+    // A straight limb says nothing of the plane: its bone is turned the shortest way.
+    const Eigen::Matrix3d turn = sine > kLeastSine
+                                     ? Frame(bone, across) * Frame(now, axis).transpose()
+                                     : LeastTurn(now, bone).toRotationMatrix();
+    const Eigen::Matrix3d& R_WP = at_.R_WJ[MarkerIndex(upper.parent)];
+    body::SetJointRotation(upper, R_WP.transpose() * turn * at_.R_WJ[MarkerIndex(joints[0])], q);
+    q(hinge.first_dof) = std::atan2(sine, bone.dot((places[2] - places[1]).normalized()));
+  }
+  /// Right-handed, with its first axis along `along` and the second near `aside`.
+  static Eigen::Matrix3d Frame(const Eigen::Vector3d& along, const Eigen::Vector3d& aside) {
+    Eigen::Matrix3d frame;
+    frame.col(0) = along.normalized();
+    frame.col(1) = (aside - frame.col(0) * frame.col(0).dot(aside)).normalized();
+    frame.col(2) = frame.col(0).cross(frame.col(1));
+    return frame;
+  }
   void Hold(int index, double hold) {
     const body::Joint& joint = skeleton_.joint(index);
     hold_.segment(joint.first_dof, static_cast<Eigen::Index>(joint.rotations.size()))

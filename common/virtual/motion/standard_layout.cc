@@ -9,6 +9,7 @@
 #include "common/body/kinematics.h"
 #include "common/body/landmarks.h"
 #include "common/virtual/motion/marker_fit.h"
+#include "common/virtual/motion/reference_pose.h"
 
 namespace footing::motion {
 namespace {
@@ -27,9 +28,11 @@ struct Marker {
 /// Markers of the set plug-in-gait, put where its joint centres become the skeleton's joints.
 class Placer {
  public:
-  Placer(const body::Skeleton& skeleton, const body::Landmarks& landmarks)
-      : skeleton_(skeleton), landmarks_(landmarks), at_(skeleton) {
-    body::ComputeKinematics(skeleton, body::TPose(skeleton, landmarks), at_);
+  Placer(const Motion& motion, const body::Landmarks& landmarks)
+      : skeleton_(motion.skeleton), landmarks_(landmarks), at_(motion.skeleton) {
+    const Eigen::VectorXd pose = ReferencePose(motion, landmarks);
+    axes_ = FindHingeAxes(motion, landmarks, pose);
+    body::ComputeKinematics(skeleton_, pose, at_);
   }
 
   std::vector<Marker> Place() {
@@ -38,11 +41,13 @@ class Placer {
     for (const int side : {0, 1}) {
       const std::string s = side == 0 ? "L" : "R";
       const auto of = [side](Landmark left) { return body::OfSide(left, side); };
-      const Eigen::Vector3d out = (side == 0 ? 1 : -1) * Eigen::Vector3d::UnitY();
-      Pair(s + "KNE", s + "KNM", of(Landmark::kLeftHip), of(Landmark::kLeftKnee), 0.055 * out);
-      Pair(s + "ANK", s + "MED", of(Landmark::kLeftKnee), of(Landmark::kLeftAnkle), 0.04 * out);
-      Pair(s + "ELB", s + "ELM", of(Landmark::kLeftShoulder), of(Landmark::kLeftElbow), -0.045 * x);
-      Pair(s + "WRA", s + "WRB", of(Landmark::kLeftElbow), of(Landmark::kLeftWrist), 0.03 * x);
+      const Eigen::Vector3d& knee = axes_.knee_W[static_cast<std::size_t>(side)];
+      const Eigen::Vector3d& elbow = axes_.elbow_W[static_cast<std::size_t>(side)];
+      Pair(s + "KNE", s + "KNM", of(Landmark::kLeftHip), of(Landmark::kLeftKnee), 0.055 * knee);
+      Pair(s + "ANK", s + "MED", of(Landmark::kLeftKnee), of(Landmark::kLeftAnkle), 0.04 * knee);
+      Pair(s + "ELB", s + "ELM", of(Landmark::kLeftShoulder), of(Landmark::kLeftElbow),
+           0.045 * elbow);
+      Pair(s + "WRA", s + "WRB", of(Landmark::kLeftElbow), of(Landmark::kLeftWrist), -0.03 * elbow);
       const Eigen::Vector3d ankle = At(of(Landmark::kLeftAnkle));
       Add(s + "HEE", of(Landmark::kLeftAnkle), ankle - 0.045 * x - 0.05 * z);
       const Landmark toe = of(Landmark::kLeftToe);
@@ -99,6 +104,7 @@ class Placer {
 
   const body::Skeleton& skeleton_;
   const body::Landmarks& landmarks_;
+  HingeAxes axes_;
   body::Kinematics at_;
   std::vector<Marker> markers_;
 };
@@ -117,7 +123,7 @@ bool IsStandardLayout(const std::vector<std::string>& dofs) {
 Result<StandardMotion> ToStandardLayout(const Motion& motion) {
   const auto landmarks = body::FindLandmarks(motion.skeleton);
   if (!landmarks) return landmarks.error();
-  const std::vector<Marker> markers = Placer(motion.skeleton, *landmarks).Place();
+  const std::vector<Marker> markers = Placer(motion, *landmarks).Place();
   MarkerTracks tracks;
   tracks.rate_hz = motion.rate_hz;
   tracks.start_s = motion.start_s;

@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "common/body/body.h"
+#include "common/body/landmarks.h"
 #include "common/config/data_file.h"
 #include "common/virtual/motion/asf.h"
 #include "common/virtual/motion/bvh.h"
@@ -65,6 +67,46 @@ Result<LoadedMotion> FromMarkers(const std::string& path, const LoadOptions& opt
   return LoadedMotion{motion::Canonical(std::move(fit->motion)), note, fit->height_m};
 }
 
+/// The motion, read as centimetres, with lengths `ratio` times as long.
+motion::Motion Scaled(motion::Motion motion, double ratio) {
+  for (body::Joint& joint : motion.skeleton.joints) joint.offset_m *= ratio;
+  motion.q.topRows<3>() *= ratio;
+  return motion;
+}
+
+/// In the unit that makes a person of it; as it is where its joints have names that nobody knows.
+Result<LoadedMotion> InLikelyUnit(motion::Motion centimetres, const std::string& path) {
+  constexpr std::pair<double, const char*> kUnits[] = {
+      {1, ""}, {100, "metres"}, {0.1, "millimetres"}, {2.54, "inches"}};
+  const auto landmarks = body::FindLandmarks(centimetres.skeleton);
+  if (!landmarks) return LoadedMotion{std::move(centimetres), "", std::nullopt};
+  const double height_m =
+      body::EstimateHeight(centimetres.skeleton, *landmarks, body::PersonParameters{});
+  for (const auto& [ratio, name] : kUnits) {
+    if (height_m * ratio < 0.9 || height_m * ratio > 2.3) continue;
+    if (ratio == 1) return LoadedMotion{std::move(centimetres), "", std::nullopt};
+    char note[120];
+    std::snprintf(note, sizeof note, "lengths taken for %s: a person of %.2f m", name,
+                  height_m * ratio);
+    return LoadedMotion{Scaled(std::move(centimetres), ratio), note, std::nullopt};
+  }
+  char text[200];
+  std::snprintf(text, sizeof text,
+                ": in centimetres the skeleton is a person of %.3g m, and in metres, millimetres "
+                "or inches no likelier one: give the length of its unit with --bvh-unit-m",
+                height_m);
+  return InvalidData(path + text);
+}
+
+Result<LoadedMotion> FromBvh(const std::string& text, const std::string& path,
+                             std::optional<double> unit_m) {
+  auto motion = motion::ParseBvh(text, path, {.unit_m = unit_m.value_or(0.01)});
+  if (!motion) return motion.error();
+  motion::Motion canonical = motion::Canonical(*std::move(motion));
+  if (unit_m) return LoadedMotion{std::move(canonical), "", std::nullopt};
+  return InLikelyUnit(std::move(canonical), path);
+}
+
 }  // namespace
 
 Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& options) {
@@ -75,11 +117,7 @@ Result<LoadedMotion> LoadMotion(const std::string& path, const LoadOptions& opti
   }
   const auto text = Read(path);
   if (!text) return text.error();
-  if (ending == "bvh") {
-    auto motion = motion::ParseBvh(*text, path, {.unit_m = options.bvh_unit_m});
-    if (!motion) return motion.error();
-    return LoadedMotion{motion::Canonical(*std::move(motion)), "", std::nullopt};
-  }
+  if (ending == "bvh") return FromBvh(*text, path, options.bvh_unit_m);
   if (options.skeleton.empty()) {
     return UsageError(path + ": an AMC file needs its skeleton: give --skeleton FILE.asf");
   }

@@ -15,7 +15,9 @@ namespace footing::motion_files {
 struct LoadOptions {
   std::string skeleton = {};  ///< ASF file of an AMC motion.
   double amc_rate_hz = 120;   ///< AMC files do not say.
-  double bvh_unit_m = 0.01;
+  /// Length of a BVH file's unit, which the file does not say; without it the first of centimetres,
+  /// metres, millimetres and inches that makes a person of 0.9 to 2.3 m.
+  std::optional<double> bvh_unit_m = {};
   std::string marker_set = {};  ///< Of TRC and C3D; empty: the one that is there.
   std::string still = {};       ///< TRC or C3D of the same person standing still; may be empty.
   body::Sex sex = body::Sex::kMean;
@@ -24,7 +26,8 @@ struct LoadOptions {
 /// A motion in W, whatever it was recorded as.
 struct LoadedMotion {
   motion::Motion motion;
-  /// From markers: one line that says the set, the height and the residual. Else empty.
+  /// One line: from markers the set, the height and the residual; of a BVH file that is not in
+  /// centimetres its unit. Else empty.
   std::string note;
   std::optional<double> height_m;
 };

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/config/data_file.h"
-#include "common/virtual/motion/asf.h"
-#include "common/virtual/motion/bvh.h"
+#include "common/virtual/motion_files/load.h"
 #include "common/virtual/sensors/scene.h"
 
 namespace footing::eval {
@@ -14,37 +12,31 @@ namespace {
 
 namespace sensors = virtual_sensors;
 
-constexpr std::size_t kMostClipBytes = 64u << 20;
-
-Result<motion::Motion> Read(const MomentumOptions& options) {
-  const auto text = config::ReadTextFile(options.motion, kMostClipBytes);
-  if (!text) return text.error();
-  if (options.skeleton.empty()) return motion::ParseBvh(*text, options.motion);
-  const auto asf = config::ReadTextFile(options.skeleton, kMostClipBytes);
-  if (!asf) return asf.error();
-  const auto skeleton = motion::ParseAsf(*asf, options.skeleton);
-  if (!skeleton) return skeleton.error();
-  return motion::ParseAmc(*text, options.motion, *skeleton);
-}
-
 double YawOf(const sensors::BodyCourse& course, std::size_t foot) {
   const Eigen::Vector3d ahead = course.sole_m[foot][2].col(0) + course.sole_m[foot][3].col(0) -
                                 course.sole_m[foot][0].col(0) - course.sole_m[foot][1].col(0);
   return std::atan2(ahead.y(), ahead.x());
 }
 
-}  // namespace
-
-Result<MomentumScene> MakeMomentumScene(const MomentumOptions& options) {
-  auto read = Read(options);
+/// The clip after the person has stood still.
+Result<sensors::Scene> Load(const MomentumOptions& options) {
+  auto read = motion_files::LoadMotion(
+      options.motion, {.skeleton = options.skeleton, .bvh_unit_m = options.bvh_unit_m});
   if (!read) return read.error();
   body::PersonParameters person;
   person.mass_kg = options.mass_kg;
+  person.height_m = read->height_m;
   sensors::SceneOptions clip;
   clip.hold_s = kCalibrationS;
   clip.rest_share = momentum::FootShape{}.rest_share;
   clip.loop_s = 60 * options.loop_minutes;
-  const auto made = sensors::MakeScene(std::move(read).value(), person, clip, options.motion);
+  return sensors::MakeScene(std::move(read->motion), person, clip, options.motion);
+}
+
+}  // namespace
+
+Result<MomentumScene> MakeMomentumScene(const MomentumOptions& options) {
+  const auto made = Load(options);
   if (!made) return made.error();
   const motion::Motion& motion = made->motion;
   const sensors::BodyCourse& course = made->course;

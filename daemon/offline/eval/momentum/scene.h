@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace footing::eval {
 
 /// A motion file as two boards see it.
 struct MomentumOptions {
-  std::string motion;    ///< BVH or AMC.
+  std::string motion;    ///< BVH, AMC, TRC or C3D.
   std::string skeleton;  ///< ASF, of an AMC.
+  std::optional<double> bvh_unit_m = {};
   double mass_kg = 75;
   double rate_hz = 60;  ///< Of the cells and of the estimator.
   double loop_minutes = 0;

@@ -70,7 +70,11 @@ Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
   motion_files::LoadOptions load;
   load.skeleton = options.skeleton;
   load.still = options.still;
+  load.bvh_unit_m = options.bvh_unit_m;
   auto loaded = motion_files::LoadMotion(options.motion, load);
+  if (loaded && !loaded->note.empty()) {
+    std::fprintf(stderr, "%s: %s\n", options.motion.c_str(), loaded->note.c_str());
+  }
   if (!loaded || !options.standard_layout) return loaded;
   const auto kept = motion::WithLandmarksOnly(loaded->motion);
   if (!kept) return InvalidData(options.motion + ": " + kept.error().message);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@ namespace footing::eval {
 
 /// A motion file, and what the boards and hands measure of it.
 struct PoseSceneOptions {
-  std::string motion;             ///< BVH, AMC, TRC or C3D, or a choreography (.json).
-  std::string skeleton;           ///< ASF, of an AMC.
+  std::string motion;    ///< BVH, AMC, TRC or C3D, or a choreography (.json).
+  std::string skeleton;  ///< ASF, of an AMC.
+  std::optional<double> bvh_unit_m = {};
   std::string still;              ///< TRC or C3D of the same person standing, of markers.
   std::string forces;             ///< MOT, STO or C3D of the plates under the same trial.
   std::string still_forces = {};  ///< The same of the plates under `still`; may be empty.

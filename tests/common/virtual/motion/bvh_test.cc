@@ -101,6 +101,56 @@ TEST(Bvh, PositionChannelsOfAJointMayOnlyRepeatWhereItIs) {
   EXPECT_THAT(moving.error().message, HasSubstr("joint Arm moves on its parent"));
 }
 
+/// Hips that move on a joint on the floor, and two legs.
+constexpr const char* kOnTheFloor = R"(HIERARCHY
+ROOT Floor
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT Hips
+  {
+    OFFSET 0 90 0
+    CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+    JOINT LeftUpLeg
+    {
+      OFFSET 10 0 0
+      CHANNELS 3 Zrotation Xrotation Yrotation
+    }
+    JOINT RightUpLeg
+    {
+      OFFSET -10 0 0
+      CHANNELS 3 Zrotation Xrotation Yrotation
+    }
+  }
+}
+MOTION
+Frames: 2
+Frame Time: 0.01
+0 0 0 0 0 0 0 90 0 0 0 0 0 0 0 0 0 0
+100 0 0 0 0 90 20 80 0 0 30 0 0 0 40 0 0 0
+)";
+
+TEST(Bvh, HipsThatMoveOnAJointOnTheFloorAreTheRoot) {
+  const auto motion = ParseBvh(kOnTheFloor, "floor.bvh");
+  ASSERT_TRUE(motion.ok()) << motion.error().message;
+  ASSERT_EQ(motion->skeleton.size(), 3);
+  EXPECT_EQ(motion->skeleton.joint(0).name, "Hips");
+  EXPECT_EQ(motion->skeleton.dof, 12);
+  body::Kinematics at(motion->skeleton);
+  ComputeKinematics(motion->skeleton, motion->q.col(0), at);
+  EXPECT_TRUE(at.p_WJ[1].isApprox(Eigen::Vector3d(0, 0.1, 0.9), 1e-12));
+  ComputeKinematics(motion->skeleton, motion->q.col(1), at);
+  // 1 m to the left, then by a quarter turn to the left: 20 cm aside become 20 cm back.
+  EXPECT_TRUE(at.p_WJ[0].isApprox(Eigen::Vector3d(-0.2, 1, 0.8), 1e-12));
+  EXPECT_TRUE(at.p_WJ[1].isApprox(Eigen::Vector3d(-0.3, 1, 0.8), 1e-12));
+  EXPECT_NEAR(motion->q(8, 1), DegreesToRadians(40), 1e-12);
+  // Hips that stay where they are keep their place in the tree.
+  const auto still =
+      ParseBvh(BvhWith(kOnTheFloor, "0 90 20 80 0 0 30", "0 90 0 90 0 0 30"), "still.bvh");
+  ASSERT_TRUE(still.ok()) << still.error().message;
+  EXPECT_EQ(still->skeleton.joint(0).name, "Floor");
+}
+
 TEST(Bvh, ErrorsSayFileLineAndWhatWasExpected) {
   const struct {
     std::string text, message;

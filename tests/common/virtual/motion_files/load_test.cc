@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "common/body/body.h"
+#include "common/body/landmarks.h"
 #include "common/units/units.h"
 #include "common/virtual/motion/bvh.h"
 
@@ -43,6 +44,49 @@ TEST(Load, ReadsEveryKindOfFile) {
   const auto plates = LoadForces(mocap + "c3d/JA1Gait35.c3d");
   ASSERT_TRUE(plates.ok()) << plates.error().message;
   EXPECT_EQ(plates->plates.size(), 8u);
+}
+
+/// A standing person's file, whose numbers are `per_m` to the metre.
+std::string StandingPerson(double per_m, const char* name) {
+  motion::Motion motion{body::StandardPerson(1.75), 60, 0, {}};
+  for (body::Joint& joint : motion.skeleton.joints) joint.offset_m *= per_m / 100;
+  motion.q = Eigen::MatrixXd::Zero(motion.skeleton.dof, 3);
+  motion.q.row(2).setConstant(per_m / 100);
+  const std::string path = testing::TempDir() + name;
+  std::ofstream(path) << motion::WriteBvh(motion);
+  return path;
+}
+
+TEST(Load, TheUnitOfABvhFileIsTheOneThatMakesAPerson) {
+  const struct {
+    double per_m;
+    const char *file, *note;
+  } kRows[] = {{100, "cm.bvh", ""},
+               {1, "m.bvh", "metres: a person of 1.75 m"},
+               {1000, "mm.bvh", "millimetres: a person of 1.75 m"},
+               {1 / 0.0254, "in.bvh", "inches: a person of 1.75 m"}};
+  for (const auto& row : kRows) {
+    const auto read = LoadMotion(StandingPerson(row.per_m, row.file));
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_THAT(read->note, HasSubstr(row.note));
+    EXPECT_EQ(read->note.empty(), row.per_m == 100);
+    const body::Skeleton& skeleton = read->motion.skeleton;
+    EXPECT_NEAR(body::EstimateHeight(skeleton, body::FindLandmarks(skeleton).value(), {}), 1.75,
+                0.005)
+        << row.file;
+    EXPECT_NEAR(read->motion.q(2, 1), 1, 1e-4) << row.file;
+  }
+}
+
+TEST(Load, AnUnlikelyUnitOfABvhFileIsAskedFor) {
+  const std::string path = StandingPerson(17.7, "other.bvh");  // 5.65 cm, as of some archives.
+  const auto refused = LoadMotion(path);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kInvalidData);
+  EXPECT_THAT(refused.error().message, HasSubstr("--bvh-unit-m"));
+  const auto read = LoadMotion(path, {.bvh_unit_m = 1 / 17.7});
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_NEAR(read->motion.q(2, 1), 1, 1e-4);
 }
 
 TEST(Load, WholeTurnsInAFileChangeNothing) {
