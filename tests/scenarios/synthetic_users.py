@@ -27,7 +27,7 @@ def does_a_trial(stage, interface, seed):
     name = f"p-{interface}"
     done = stage.run(*console, "trial", "start", name, "--track", "straight", "--task", "walk_run")
     assert done.returncode == 0, done
-    deadline = time.monotonic() + 120
+    deadline = time.monotonic() + 180
     while True:
         trial = trial_of(stage)
         assert trial["trial"] == name, trial
