@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "common/config/data_file.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/server_recorder.h"
+#include "common/timer/timer.h"
 
 namespace footing::log_client {
 namespace {
@@ -177,9 +177,9 @@ class Recording {
   std::vector<std::unique_ptr<recording::ServerRecorder>> links_;
   Result<void> written_;
   std::int64_t written_down_ns_ = clock::MonotonicNs();
-  asio::steady_timer flush_;
-  asio::steady_timer progress_;
-  asio::steady_timer end_;
+  timer::Timer flush_;
+  timer::Timer progress_;
+  timer::Timer end_;
   asio::signal_set signals_;
 };
 
