@@ -32,6 +32,16 @@ Result<void> Devices(Session& session, const Shared& shared) {
   return {};
 }
 
+/// The devices and their setup, or how to get some; other servers than footingd have none.
+std::string DevicesText(const Session& session) {
+  if (session.welcome().server_id() != "footingd") return "";
+  const auto& devices = session.status();
+  return "\n" +
+         (devices.empty() ? "no device: run footing-ctl setup, or pair one with footing-ctl pair\n"
+                          : display::DeviceTable(devices)) +
+         "\n" + display::SetupTable(session.setup());
+}
+
 Result<void> Status(Session& session, const Shared& shared) {
   const v1::Welcome& welcome = session.welcome();
   const v1::Limits& limits = welcome.limits();
@@ -68,8 +78,7 @@ Result<void> Status(Session& session, const Shared& shared) {
         session.link() + ", " + ordered_json(limits.tick_rate_hz()).dump() + " ticks per second\n" +
             (notice.empty() ? "" : "NOTICE: " + notice + "\n") +
             (stats ? display::ServerLine(*stats) + "\n\n" + display::SessionTable(*stats) : "") +
-            "\n" + display::DeviceTable(session.status()) + "\n" +
-            display::SetupTable(session.setup()),
+            DevicesText(session),
         shared);
   return {};
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "common/config/data_file.h"
 #include "common/recording/recording_writer.h"
 #include "common/recording/server_recorder.h"
+#include "common/timer/timer.h"
 
 namespace footing::log_client {
 namespace {
@@ -151,12 +151,15 @@ class Recording {
     }
     RecordReport report;
     std::string waited_for;
+    bool any_reached = false;
     for (const auto& link : links_) {
       if (const Result<void> ended = link->End(); !ended) return ended.error();
       const recording::StreamRecorder& recorder = link->recorder();
       report.ticks += recorder.ticks();
       report.missing_ticks += recorder.missing_ticks();
-      waited_for += " " + recorder.address() + " (" + recorder.link() + ")";
+      waited_for +=
+          (waited_for.empty() ? "" : ", ") + recorder.address() + " (" + recorder.link() + ")";
+      any_reached = any_reached || recorder.reached();
     }
     if (const Result<void> finished = writer_.Finish(); !finished) return finished.error();
     const mcap::Statistics& statistics = writer_.statistics();
@@ -164,8 +167,10 @@ class Recording {
     report.duration_s = 1e-9 * static_cast<double>(statistics.message_end_time_ns -
                                                    statistics.message_start_time_ns);
     if (report.messages == 0) {
-      return Failure("nothing came to record from" + waited_for + "; " + writer_.path() +
-                     " holds no message");
+      const std::string why =
+          "nothing came to record from " + waited_for + "; " + writer_.path() + " holds no message";
+      return any_reached ? Failure(why)
+                         : NoDevice(why + "; start the server, or name it with --connect");
     }
     return report;
   }
@@ -177,9 +182,9 @@ class Recording {
   std::vector<std::unique_ptr<recording::ServerRecorder>> links_;
   Result<void> written_;
   std::int64_t written_down_ns_ = clock::MonotonicNs();
-  asio::steady_timer flush_;
-  asio::steady_timer progress_;
-  asio::steady_timer end_;
+  timer::Timer flush_;
+  timer::Timer progress_;
+  timer::Timer end_;
   asio::signal_set signals_;
 };
 

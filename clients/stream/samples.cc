@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -98,6 +99,23 @@ Result<std::string> SampleClip() {
   return motion::WriteBvh(choreography::Perform(*script, *performer, kRateHz).motion);
 }
 
+/// A gyroscope and an accelerometer at rest for 3 s, then turned to and fro about their x: 20 s at
+/// 100 Hz, with the true attitude.
+std::string SampleImu() {
+  constexpr double kRateHz = 100, kRestS = 3, kSeconds = 20, kSwingRad = 0.5, kSwingRadps = 2;
+  std::ostringstream text;
+  text << "gx,gy,gz,ax,ay,az,qw,qx,qy,qz,moving\n";
+  for (int i = 0; i < static_cast<int>(kSeconds * kRateHz); ++i) {
+    const double moved_s = std::max(0.0, i / kRateHz - kRestS);
+    const double angle_rad = kSwingRad * (1 - std::cos(kSwingRadps * moved_s));
+    const double rate_radps = kSwingRad * kSwingRadps * std::sin(kSwingRadps * moved_s);
+    text << rate_radps << ",0,0,0," << kStandardGravityMps2 * std::sin(angle_rad) << ","
+         << kStandardGravityMps2 * std::cos(angle_rad) << "," << std::cos(angle_rad / 2) << ","
+         << std::sin(angle_rad / 2) << ",0,0," << (moved_s > 0 ? 1 : 0) << "\n";
+  }
+  return text.str();
+}
+
 /// The sway of a standing person and what it will be in half a second: a table to train on.
 std::string SampleSwayTable() {
   constexpr double kStepS = 0.05;
@@ -158,6 +176,7 @@ Result<std::vector<SampleFile>> SampleFiles() {
                                  {"p09.json", SampleSubject("p09", 1.75, 80)},
                                  {"clip.bvh", std::move(*clip)},
                                  {"labels.csv", kSampleLabels},
+                                 {"imu.csv", SampleImu()},
                                  {"sway.csv", SampleSwayTable()},
                                  {"ratings.csv", SampleStudy(kSampleRatings, 1)},
                                  {"oscillation.csv", SampleStudy(kSampleOscillation, 2)},

@@ -9,6 +9,7 @@
 #include <memory>
 #include <regex>
 #include <sstream>
+#include <string_view>
 
 namespace footing::cli {
 namespace {
@@ -73,6 +74,13 @@ std::string WithShortNumbers(const std::string& text) {
   return std::regex_replace(std::regex_replace(text, kTrailingZeros, "$1"), kBarePoint, "$1");
 }
 
+/// "Could not convert: --seed = x" in our words: only numbers are converted.
+std::string Unconverted(const std::string& named) {
+  const std::size_t at = named.find(" = ");
+  if (at == std::string::npos) return named;
+  return named.substr(0, at) + ": " + named.substr(at + 3) + " is not a number that it takes";
+}
+
 /// What is wrong with a command line, as one line.
 std::string Problem(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
@@ -82,6 +90,8 @@ std::string Problem(const CLI::App& app, const CLI::App& command, const CLI::Par
   if (unknown.empty() && has_subcommands && what == "A subcommand is required") {
     return "a subcommand is missing; " + Subcommands(command);
   }
+  constexpr std::string_view kConversion = "Could not convert: ";
+  if (what.starts_with(kConversion)) return Unconverted(what.substr(kConversion.size()));
   if (unknown.empty()) return what;
   const std::string& first = unknown.front();
   const bool is_option = first.starts_with('-');

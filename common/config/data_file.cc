@@ -61,7 +61,9 @@ Result<std::string> ReadTextFile(const std::string& path, std::size_t max_bytes)
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return Failure("cannot open " + path + ": " + std::strerror(errno));
   const std::streamoff size = file.tellg();
-  if (size < 0) return Failure("cannot read " + path + ": not a regular file");
+  std::error_code unknown;
+  if (size < 0 || std::filesystem::is_directory(path, unknown))
+    return Failure("cannot read " + path + ": not a regular file");
   if (static_cast<std::size_t>(size) > max_bytes) {
     return InvalidData(path + " has " + std::to_string(size) + " bytes, more than the " +
                        std::to_string(max_bytes) + " it may have");

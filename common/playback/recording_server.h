@@ -1,13 +1,13 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <functional>
 #include <string>
 
 #include "common/playback/tick_player.h"
 #include "common/recording/recorded_session.h"
 #include "common/result/result.h"
+#include "common/timer/timer.h"
 #include "common/transport/server.h"
 
 namespace footing::playback {
@@ -39,7 +39,7 @@ class RecordingServer {
 
   transport::Server server_;
   TickPlayer player_;
-  boost::asio::steady_timer wait_;
+  timer::Timer wait_;
   std::function<void(const Result<void>&)> on_end_;
   std::uint64_t published_ = 0;
 };

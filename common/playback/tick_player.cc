@@ -1,6 +1,7 @@
 #include "common/playback/tick_player.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "common/clock/clock.h"
@@ -45,7 +46,7 @@ double TickPlayer::duration_s() const {
 }
 
 void TickPlayer::Start() {
-  start_ = std::chrono::steady_clock::now();
+  start_ = timer::Now();
   if (!due_.empty()) shift_ns_ = clock::MonotonicNs() - due_.front().time_ns;
   PlayNext();
 }

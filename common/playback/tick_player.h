@@ -1,14 +1,13 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "common/recording/recorded_session.h"
+#include "common/timer/timer.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::playback {
@@ -34,6 +33,7 @@ class TickPlayer {
 
   /// From the first tick on. Call once.
   void Start();
+  /// No handler is called from now on.
   void Stop() { timer_.cancel(); }
 
   const std::vector<std::string>& names() const { return names_; }
@@ -52,13 +52,13 @@ class TickPlayer {
   void PlayNext();
   void End();
 
-  boost::asio::steady_timer timer_;
+  timer::Timer timer_;
   std::vector<std::string> names_;
   Handlers handlers_;
   std::vector<Due> due_;
   std::size_t next_ = 0;
   std::int64_t shift_ns_ = 0;  ///< From the recording's clock to this host's.
-  std::chrono::steady_clock::time_point start_;
+  timer::TimePoint start_;
 };
 
 }  // namespace footing::playback

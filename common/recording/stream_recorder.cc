@@ -82,6 +82,7 @@ Result<void> StreamRecorder::OnGap(const v1::Gap& gap, std::int64_t now_ns) {
 Result<void> StreamRecorder::OnState(transport::LinkState state, const std::string& why,
                                      std::int64_t now_ns) {
   link_ = std::string(Name(state)) + (why.empty() ? "" : ": " + why);
+  reached_ = reached_ || state != transport::LinkState::kConnecting;
   return writer_.AddMetadata("link", {{"address", address_},
                                       {"server", server_},
                                       {"state", Name(state)},

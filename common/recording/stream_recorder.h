@@ -41,6 +41,8 @@ class StreamRecorder {
   /// The last state of the link, for a person.
   const std::string& link() const { return link_; }
   const std::string& address() const { return address_; }
+  /// A server has answered there: it took this client in, or refused it.
+  bool reached() const { return reached_; }
 
  private:
   RecordingWriter& writer_;
@@ -54,6 +56,7 @@ class StreamRecorder {
   std::uint64_t last_sequence_ = 0;
   std::uint64_t ticks_ = 0;
   std::uint64_t missing_ticks_ = 0;
+  bool reached_ = false;
 };
 
 }  // namespace footing::recording

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <functional>
 #include <string>
 #include <utility>
+
+#include "common/timer/timer.h"
 
 /// What a program reports to the service manager that started it (sd_notify(3)), and what it got
 /// from it (sd_listen_fds(3)). Started by hand, nothing of this happens.
@@ -31,7 +32,7 @@ class Notifier {
   void Beat();
   void Report();
 
-  boost::asio::steady_timer timer_;
+  timer::Timer timer_;
   std::chrono::microseconds interval_{0};
   std::function<std::string()> what_is_stuck_;
   std::string status_;

@@ -15,7 +15,7 @@ constexpr double kLeastApart = 5;   // Deviations; below that, one level for all
 }  // namespace
 
 double Variance(const PixelNoise& noise, double value) {
-  return noise.read_dn * noise.read_dn + 1.0 / 12 + noise.dn_per_electron * std::max(0.0, value);
+  return noise.DarkVariance() + noise.dn_per_electron * std::max(0.0, value);
 }
 
 void LookBehind(std::vector<Sample>& samples, const State& state, const PixelNoise& noise,

@@ -67,9 +67,9 @@ void ToRows(Block& block, const State& state, const PixelNoise& noise, const Pix
   rows.row[kSize - 1] = 1 - model.cover;
   rows.modelled = outside * rows.row[kSize - 1] + inside * model.light;
   rows.off = block.value - rows.modelled;
-  const auto least = static_cast<float>(noise.read_dn * noise.read_dn + 1.0 / 12);
+  const auto dark = static_cast<float>(noise.DarkVariance());
   const Lane per_variance =
-      1 / (least + static_cast<float>(noise.dn_per_electron) * rows.modelled.max(0.0F));
+      1 / (dark + static_cast<float>(noise.dn_per_electron) * rows.modelled.max(0.0F));
   const Lane per_sd = per_variance.sqrt();
   block.beyond = model.beyond;
   block.residual = rows.off * per_sd;

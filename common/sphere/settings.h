@@ -27,6 +27,9 @@ struct PixelNoise {
   double read_dn = 1.5;
   double dn_per_electron = 0.03;
   double correlation = 1;
+
+  /// Of a dark pixel whose neighbours are independent.
+  double DarkVariance() const { return read_dn * read_dn + 1.0 / 12; }
 };
 
 /// When the rows of a frame see the light. A hand that moves blurs the sphere along its way, and a

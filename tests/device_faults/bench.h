@@ -64,6 +64,9 @@ class Device {
   std::shared_ptr<int> alive_ = std::make_shared<int>();
 };
 
+/// Of a wait for what is no matter of time: no load of the machine explains more.
+constexpr double kPatienceS = 30;
+
 struct PlugOptions {
   int number = -1;  ///< Of the hidraw node; -1: the next free one.
   std::string driver = "wiimote";
@@ -105,11 +108,11 @@ class Bench {
   /// Lets time pass.
   void Run(double seconds);
   /// Lets time pass until it holds; false after the timeout.
-  bool Until(const std::function<bool()>& holds, double timeout_s = 5);
-  bool UntilLive(const Device& device, double timeout_s = 5);
-  bool UntilState(const std::string& serial, v1::DeviceState state, double timeout_s = 5);
+  bool Until(const std::function<bool()>& holds, double timeout_s = kPatienceS);
+  bool UntilLive(const Device& device, double timeout_s = kPatienceS);
+  bool UntilState(const std::string& serial, v1::DeviceState state, double timeout_s = kPatienceS);
   /// So many more motion and board samples of the device.
-  bool UntilSamples(const Device& device, std::size_t more, double timeout_s = 5);
+  bool UntilSamples(const Device& device, std::size_t more, double timeout_s = kPatienceS);
 
   v1::CommandResult Send(v1::Command command);
 
@@ -119,6 +122,7 @@ class Bench {
   boost::asio::io_context& io() { return io_; }
   std::string Log() const;
   std::size_t LogLines(const std::string& containing) const;
+  /// What the client missed; not what footingd left out of its rhythm.
   const std::vector<v1::Gap>& gaps() const { return gaps_; }
   /// The resident memory of footingd.
   std::int64_t MemoryBytes() const;

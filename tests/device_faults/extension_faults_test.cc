@@ -65,7 +65,8 @@ class ExtensionFault : public Fault {
     EXPECT_TRUE(bench.UntilLive(device));
     return device;
   }
-  bool UntilExtension(const Device& device, v1::Extension extension, double timeout_s = 5) {
+  bool UntilExtension(const Device& device, v1::Extension extension,
+                      double timeout_s = kPatienceS) {
     return bench.Until([&] { return Status(device).extension() == extension; }, timeout_s);
   }
   bool UntilNunchuk(const Device& device, std::size_t more) {

@@ -105,7 +105,7 @@ FOOTING_SERVICE_FAULT(Fault57ClientThatNeverReads) {
     for (int i = 0; i < 12; ++i) client->Say(again);
   }
   bench.Run(0.2);
-  ASSERT_TRUE(bench.UntilSamples(device, 80, 2));
+  ASSERT_TRUE(bench.UntilSamples(device, 80));
   ExpectUndisturbed(device);
   EXPECT_LT(bench.MemoryBytes() - before, 32 << 20);
 }
@@ -145,7 +145,7 @@ FOOTING_SERVICE_FAULT(Fault59ClientsThatVanishHalfWay) {
   ASSERT_TRUE(bench.UntilSamples(device, 30));
   ExpectUndisturbed(device);
   // At once, not when they are missed.
-  EXPECT_TRUE(bench.Until([&] { return bench.Descriptors() <= before; }, 0.5))
+  EXPECT_TRUE(bench.Until([&] { return bench.Descriptors() <= before; }, 2))
       << bench.Descriptors() << " of " << before;
 }
 
@@ -264,7 +264,7 @@ FOOTING_SERVICE_FAULT(Fault65DriverThatKeepsAThread) {
   ASSERT_TRUE(bench.UntilSamples(device, 60));
   ExpectUndisturbed(device);  // The others go on until the service manager ends it.
   stuck.node().page().write_blocks = 0;
-  EXPECT_TRUE(bench.Until([&] { return manager.Beats() > 0; }, 2));
+  EXPECT_TRUE(bench.Until([&] { return manager.Beats() > 0; }));
 }
 
 FOOTING_SERVICE_FAULT(Fault63DiskFullForTheRecorder) {
@@ -277,7 +277,7 @@ FOOTING_SERVICE_FAULT(Fault63DiskFullForTheRecorder) {
        "ulimit -f 32; trap '' XFSZ; exec " FOOTING_BINARY_DIR "/bin/footing-log record --connect " +
            bench.Address() + " --out " + file},
       {}, bench.folder() + "/recorder.log");
-  ASSERT_TRUE(bench.Until([&] { return recorder.Ended().has_value(); }, 15));
+  ASSERT_TRUE(bench.Until([&] { return recorder.Ended().has_value(); }));
   EXPECT_EQ(WEXITSTATUS(*recorder.Ended()), 1) << recorder.Output();
   EXPECT_NE(recorder.Output().find("File too large"), std::string::npos) << recorder.Output();
   EXPECT_NE(recorder.Output().find(file), std::string::npos) << recorder.Output();

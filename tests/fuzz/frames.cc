@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "common/tls/first_bytes.h"
 #include "common/transport/framing.h"
 #include "tests/fuzz/input.h"
+#include "tests/fuzz/pieces.h"
 
 /// A stream of bytes cut into frames: in pieces of any length, stopped behind any frame, it comes
 /// to the same frames as at once. Its beginning is looked at as that of TLS, too.
@@ -13,16 +14,11 @@ namespace {
 
 constexpr std::uint32_t kMost = 300;
 
-struct Cut {
-  std::vector<std::string> frames;
-  bool refused = false;
-};
-
-Cut AtOnce(std::string_view bytes) {
-  Cut cut;
+Decoded AtOnce(std::string_view bytes) {
+  Decoded cut;
   transport::FrameSplitter splitter(kMost);
   const auto fed = splitter.Feed(bytes, [&](std::string_view frame) {
-    cut.frames.emplace_back(frame);
+    cut.messages.emplace_back(frame);
     return true;
   });
   cut.refused = !fed.ok();
@@ -30,14 +26,14 @@ Cut AtOnce(std::string_view bytes) {
   return cut;
 }
 
-Cut InPieces(std::string_view bytes, Input pieces) {
-  Cut cut;
+Decoded InPieces(std::string_view bytes, Input pieces) {
+  Decoded cut;
   transport::FrameSplitter splitter(kMost);
   while (!bytes.empty()) {
     const std::uint8_t how = pieces.Byte();
     const std::string_view piece = bytes.substr(0, 1 + how / 2);
     const auto fed = splitter.Feed(piece, [&](std::string_view frame) {
-      cut.frames.emplace_back(frame);
+      cut.messages.emplace_back(frame);
       return (how & 1) == 0;
     });
     if (!fed) {
@@ -67,15 +63,9 @@ void CheckFirstBytes(std::string_view bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace footing;
-  fuzz::Input input(data, size);
-  const fuzz::Bytes pieces = input.String();
-  const fuzz::Bytes rest = input.Rest();
-  const std::string_view bytes(reinterpret_cast<const char*>(rest.data()), rest.size());
-  const fuzz::Cut whole = fuzz::AtOnce(bytes);
-  const fuzz::Cut cut = fuzz::InPieces(bytes, fuzz::Input(pieces.data(), pieces.size()));
-  fuzz::Expect(whole.frames == cut.frames && whole.refused == cut.refused);
+  const auto [bytes, whole] = fuzz::CheckPieces(data, size, fuzz::AtOnce, fuzz::InPieces);
   std::string again;
-  for (const std::string& frame : whole.frames) again += transport::Frame(frame);
+  for (const std::string& frame : whole.messages) again += transport::Frame(frame);
   fuzz::Expect(bytes.substr(0, again.size()) == again);
   fuzz::CheckFirstBytes(bytes);
   return 0;

@@ -5,20 +5,15 @@
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "common/preview/preview_reader.h"
 #include "tests/fuzz/input.h"
+#include "tests/fuzz/pieces.h"
 
 /// Bytes of a camera program: in pieces of any length they come to the same messages as at once;
 /// every number is one that can be drawn, and a message that is written again is read as the same.
 namespace footing::fuzz {
 namespace {
-
-struct Taken {
-  std::vector<std::string> messages;  ///< Written again.
-  bool refused = false;
-};
 
 std::string Written(const preview::Message& message) {
   if (const auto* refusal = std::get_if<preview::Refusal>(&message)) {
@@ -45,7 +40,7 @@ void Check(const preview::Message& message) {
 }
 
 /// Whole messages of a reader, behind those taken before; false when it refuses.
-void TakeAll(preview::PreviewReader& reader, Taken& taken) {
+void TakeAll(preview::PreviewReader& reader, Decoded& taken) {
   while (!taken.refused) {
     const auto next = reader.Next();
     taken.refused = !next.ok();
@@ -55,17 +50,17 @@ void TakeAll(preview::PreviewReader& reader, Taken& taken) {
   }
 }
 
-Taken AtOnce(std::string_view bytes) {
+Decoded AtOnce(std::string_view bytes) {
   preview::PreviewReader reader;
-  Taken taken;
+  Decoded taken;
   reader.Add(bytes);
   TakeAll(reader, taken);
   return taken;
 }
 
-Taken InPieces(std::string_view bytes, Input pieces) {
+Decoded InPieces(std::string_view bytes, Input pieces) {
   preview::PreviewReader reader;
-  Taken taken;
+  Decoded taken;
   while (!bytes.empty() && !taken.refused) {
     const std::string_view piece = bytes.substr(0, 1 + pieces.Byte() * std::size_t{4});
     reader.Add(piece);
@@ -80,16 +75,10 @@ Taken InPieces(std::string_view bytes, Input pieces) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace footing;
-  fuzz::Input input(data, size);
-  const fuzz::Bytes pieces = input.String();
-  const fuzz::Bytes rest = input.Rest();
-  const std::string_view bytes(reinterpret_cast<const char*>(rest.data()), rest.size());
-  const fuzz::Taken whole = fuzz::AtOnce(bytes);
-  const fuzz::Taken cut = fuzz::InPieces(bytes, fuzz::Input(pieces.data(), pieces.size()));
-  fuzz::Expect(whole.messages == cut.messages && whole.refused == cut.refused);
+  const fuzz::Decoded whole = fuzz::CheckPieces(data, size, fuzz::AtOnce, fuzz::InPieces).decoded;
   std::string again;
   for (const std::string& message : whole.messages) again += message;
-  const fuzz::Taken repeated = fuzz::AtOnce(again);
+  const fuzz::Decoded repeated = fuzz::AtOnce(again);
   fuzz::Expect(!repeated.refused && repeated.messages == whole.messages);
   return 0;
 }

@@ -10,7 +10,7 @@ from harness import Stage, read_ticks
 STEP, WALK = 1, 2
 
 
-def wait_for_gait(stage, gait, still_within_s):
+def wait_for_gait(stage, gait, still_within_s=40):
     """Reads frames until the character is in that gait (and, stepping, at rest)."""
     for tick in read_ticks(stage.simulation, still_within_s, ["characters"]):
         for character in tick.get("characters", {}).get("characters", []):
@@ -24,25 +24,25 @@ def main(binaries):
     with Stage(binaries) as stage:
         stage.start_servers()
         stage.start_user("walk")
-        state = wait_for_gait(stage, WALK, 10)
+        state = wait_for_gait(stage, WALK)
         assert state["commanded_by_stream"], state
 
         stage.stop("footing-stream")  # The devices go.
-        state = wait_for_gait(stage, STEP, 6)
+        state = wait_for_gait(stage, STEP)
         stage.start_user("walk")
-        wait_for_gait(stage, WALK, 10)
+        wait_for_gait(stage, WALK)
 
         stage.processes["footingd"].send_signal(signal.SIGSTOP)  # The daemon hangs.
-        state = wait_for_gait(stage, STEP, 6)
+        state = wait_for_gait(stage, STEP)
         assert not state["commanded_by_stream"], state
         stage.processes["footingd"].send_signal(signal.SIGCONT)
-        wait_for_gait(stage, WALK, 10)
+        wait_for_gait(stage, WALK)
 
         stage.stop("footingd", signal.SIGKILL)  # The daemon dies, and is started anew.
-        state = wait_for_gait(stage, STEP, 6)
+        state = wait_for_gait(stage, STEP)
         assert not state["commanded_by_stream"], state
         stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
-        state = wait_for_gait(stage, WALK, 20)
+        state = wait_for_gait(stage, WALK)
         assert state["falls"] == 0, state
         print("the walk stopped three times and went on three times, without a fall")
 

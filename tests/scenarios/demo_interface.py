@@ -4,9 +4,10 @@ screen, the character moves, stays on its track and on its feet. When its device
 Usage: demo_interface.py BINARY_FOLDER INTERFACE
 """
 import sys
-import time
 
 from harness import Stage
+
+DEVICES = {"arm": 2, "leg": 3, "boards": 2}
 
 
 def main(binaries, interface):
@@ -14,6 +15,7 @@ def main(binaries, interface):
         stage.start_servers(interface=interface)
         stage.start("footing-stream", "user", "--interface", interface, "--see", stage.simulation, "--to",
                     stage.devices, "--link", "good", "--seed", 1)
+        stage.wait_for_devices(DEVICES[interface])
         seen = stage.run_json("footing-view", "--connect", stage.simulation, "--connect", stage.sensor, "--seconds", 15,
                               "--text")
         print(seen)
@@ -21,9 +23,12 @@ def main(binaries, interface):
         assert seen["falls"] == 0 and seen["off_track_s"] == 0, seen
         assert seen["distance_m"] > 5, seen
         assert stage.stop("footing-stream") == 0
-        time.sleep(1)  # A device that has been silent for 0.5 s is missing.
-        gone = stage.run("footing-view", "--connect", stage.simulation, "--seconds", 2, "--text")
-        assert "!! No signal from " in gone.stdout.splitlines()[-1], gone
+
+        def last_line():
+            return stage.run("footing-view", "--connect", stage.simulation, "--seconds", 2, "--text").stdout.splitlines()[-1]
+
+        # A device that has been silent for 0.5 s is missing.
+        stage.wait_for(lambda: "!! No signal from " in last_line(), "the screen to say so")
         for name in ("footing-sim", "footingd"):
             assert stage.stop(name) == 0, name
 

@@ -35,6 +35,7 @@ def main():
         stage.wait_for_socket(stage.sensor)
         stage.wait_for_socket(stage.devices)
         stage.start_user("demo")
+        stage.wait_for_devices()
         rows = rows_of(stage, 200)
         assert len({row[1] for row in rows}) == 2, "the serials of two controllers"
         assert {row[2] for row in rows} == {"force_mps2"}

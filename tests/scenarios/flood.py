@@ -7,8 +7,9 @@ is stored on disk, attach: devices that come and go on the device socket) and nu
 sessions a healthy session in a process of its own measures the rate of ticks, the largest hole, and
 the delay of each tick from its stamp to its arrival. Fails when one gets fewer than 98 ticks a second,
 or a 99th percentile of more than twice that without a flood (or more than 20 ms, where that is
-longer), three times in a row: other work on the machine may disturb one run, a starved server never
-recovers. Fails when the floods write more than 100 kB to the log.
+longer), five times in a row: other work on the machine may disturb a run, a starved server never
+recovers. Where the session without a flood gets fewer ticks, too, it is measured again, and the
+bar is 98 % of its rate. Fails when the floods write more than 100 kB to the log.
 """
 import argparse
 import json
@@ -23,11 +24,12 @@ import harness
 from ports import free_port
 
 BLOCK_BYTES = 64 << 10
+TICK_RATE_HZ = 100
 LEAST_HZ = 98
 MOST_P99_RATIO = 2
 # Below this a ratio of tails says more about the scheduler of a machine with few cores.
 P99_FLOOR_MS = 20
-TRIES = 3
+TRIES = 5
 MOST_LOG_BYTES = 100_000
 VIEW, CONTROL = 1, 3
 # More are held off before they can send.
@@ -146,7 +148,7 @@ def one_run(addresses, kind, sessions, seconds):
 
 def is_good(run, quiet):
     bar_ms = max(MOST_P99_RATIO * quiet["p99_ms"], P99_FLOOR_MS)
-    return run["hz"] >= LEAST_HZ and run["p99_ms"] <= bar_ms
+    return run["hz"] >= LEAST_HZ * min(1, quiet["hz"] / TICK_RATE_HZ) and run["p99_ms"] <= bar_ms
 
 
 def main():
@@ -166,16 +168,19 @@ def main():
                     "--source", f"stream:{stage.devices}")
         stage.wait_for_socket(stage.devices)
         stage.start_user("walk", "--seconds", 600)
-        time.sleep(2)  # The ring and the devices get going.
+        stage.wait_for_devices()
+        time.sleep(1)  # The ring gets going.
         quiet = one_run(addresses, "none", 0, arguments.seconds)
-        runs.append(quiet)
+        runs.append({**quiet, "good": True})
         for kind in kinds:
             most = MOST_SESSIONS.get(kind, 1000)
             for sessions in sorted({min(count, most) for count in arguments.sessions or [1, 20, 200]}):
                 for _ in range(TRIES):
                     run = one_run(addresses, kind, sessions, arguments.seconds)
-                    if is_good(run, quiet):
+                    run["good"] = is_good(run, quiet)
+                    if run["good"]:
                         break
+                    quiet = one_run(addresses, "none", 0, arguments.seconds)  # The machine may be busier than it was.
                 runs.append(run)
         assert stage.processes["footingd"].poll() is None, "footingd ended"
         log_bytes = (stage.folder / "footingd.log").stat().st_size
@@ -184,9 +189,9 @@ def main():
     for run in [] if arguments.json else runs:
         print(f"{run['sessions']:4} x {run['kind']:9}: {run['hz']:6.1f} Hz, largest hole "
               f"{run['hole_ms']:6.1f} ms, delay p50 {run['p50_ms']:5.2f} p99 {run['p99_ms']:6.2f} ms"
-              f"{'' if is_good(run, quiet) else '   <- over the bar'}", flush=True)
+              f"{'' if run['good'] else '   <- over the bar'}", flush=True)
     print(f"{log_bytes} bytes of log", file=sys.stderr)
-    return 0 if all(is_good(run, quiet) for run in runs) and log_bytes <= MOST_LOG_BYTES else 1
+    return 0 if all(run["good"] for run in runs) and log_bytes <= MOST_LOG_BYTES else 1
 
 
 if __name__ == "__main__":

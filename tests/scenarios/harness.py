@@ -12,6 +12,17 @@ import time
 
 import decode_stream
 
+# Of a wait for what comes at once on an idle machine: a stall of the machine must not end it.
+PATIENCE_S = 30
+ACCEPTS = 1 << 16  # __SO_ACCEPTCON of the kernel: the socket listens.
+
+
+def is_listening(path):
+    """Whether a program listens on the Unix socket. Its file is there before that, and after a program that was killed."""
+    with open("/proc/net/unix", encoding="utf-8") as table:
+        rows = [line.split(maxsplit=7) for line in table]
+    return any(len(row) == 8 and row[7].strip() == str(path) and int(row[3], 16) & ACCEPTS for row in rows[1:])
+
 
 def read_ticks(address, seconds, channels=()):
     """The ticks of a server for so long, with the project's independent decoder."""
@@ -64,22 +75,22 @@ class Stage:
         self.processes[name] = process
         return process
 
-    def stop(self, name, how=signal.SIGTERM, timeout_s=10):
+    def stop(self, name, how=signal.SIGTERM, timeout_s=PATIENCE_S):
         """Ends a program and returns its exit code."""
         process = self.processes.pop(name)
         process.send_signal(how)
         return process.wait(timeout_s)
 
-    def run(self, program, *words, timeout_s=60):
+    def run(self, program, *words, timeout_s=120):
         return subprocess.run([self.binaries / program, *map(str, words)], capture_output=True,
                               text=True, timeout=timeout_s, stdin=subprocess.DEVNULL, check=False)
 
-    def run_json(self, program, *words, timeout_s=60):
+    def run_json(self, program, *words, timeout_s=120):
         done = self.run(program, *words, "--json", timeout_s=timeout_s)
         assert done.returncode == 0, f"{program} {words}: {done.returncode}\n{done.stdout}\n{done.stderr}"
         return json.loads(done.stdout)
 
-    def wait_for(self, condition, what, timeout_s=10.0):
+    def wait_for(self, condition, what, timeout_s=PATIENCE_S):
         """Polls until the condition holds; the one place where a scenario waits for a state."""
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
@@ -89,9 +100,25 @@ class Stage:
             time.sleep(0.02)
         raise AssertionError(f"waited {timeout_s} s for {what}")
 
-    def wait_for_socket(self, address, timeout_s=10.0):
-        path = pathlib.Path(address.removeprefix("unix:"))
-        self.wait_for(path.is_socket, f"{address} to open", timeout_s)
+    def wait_for_socket(self, address, timeout_s=PATIENCE_S):
+        self.wait_for(lambda: is_listening(address.removeprefix("unix:")), f"{address} to open", timeout_s)
+
+    def wait_for_devices(self, count=2):
+        """Until footingd has so many devices and all of them deliver."""
+        def all_live():
+            done = self.run("footing-ctl", "--connect", self.sensor, "devices", "--json")
+            devices = json.loads(done.stdout)["devices"] if done.stdout else []
+            return len(devices) == count and all(one["state"] == "live" for one in devices) and devices
+
+        return self.wait_for(all_live, f"{count} live devices")
+
+    def check_missing(self, address, missing):
+        """Fails when more ticks of a server are missing than it says it left out, because the machine did not let it run."""
+        def left_out():
+            return self.run_json("footing-ctl", "--connect", address, "status")["stats"]["ticks"]["left_out"]
+
+        # It counts once a second.
+        self.wait_for(lambda: left_out() >= missing, f"{address} to explain that {missing} of its ticks are missing", 5)
 
     def start_servers(self, interface="wrist"):
         self.start("footingd", "--listen", self.sensor, "--source", f"stream:{self.devices}")

@@ -52,11 +52,11 @@ def check_files(prefix):
 def check_line(prefix):
     with Stage(prefix / "bin") as stage:
         stage.start_servers()
-        stage.start_user("walk", "--seconds", 20)
-        for tick in read_ticks(stage.simulation, 10, ["characters"]):
+        stage.start_user("walk", "--seconds", 60)
+        for tick in read_ticks(stage.simulation, 60, ["characters"]):
             if tick.get("characters"):
                 return
-    raise AssertionError("no character within 10 s")
+    raise AssertionError("no character within 60 s")
 
 
 def check_data(prefix):

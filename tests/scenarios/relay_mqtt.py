@@ -5,6 +5,7 @@ Usage: relay_mqtt.py BINARY_FOLDER
 The relay is started before the broker. What a subscriber gets is footingd's, with its numbers; who subscribes later gets
 the retained channels at once; a broker that is killed and comes back, empty, has them again.
 """
+import statistics
 import sys
 import time
 
@@ -29,8 +30,8 @@ def ticks_of(port, topic, seconds):
 
 def check_same(stage, port):
     direct = relay.Viewer(stage.sensor)
-    time.sleep(0.5)
-    got = list(ticks_of(port, f"footing/{SITE}/footingd/#", 3))
+    stage.wait_for(direct.ticks, "ticks of footingd")
+    got = list(ticks_of(port, f"footing/{SITE}/footingd/#", 4))
     direct.stopping = True
     by_sequence = {tick["sequence"]: tick for tick in direct.ticks()}
     compared = 0
@@ -43,7 +44,8 @@ def check_same(stage, port):
         assert tick[channel] == source[channel], (channel, tick["sequence"])
         compared += 1
     stamps = [tick["host_ns"] for topic, tick, _ in got if topic.endswith("/motion")]
-    rate_hz = (len(stamps) - 1) / (stamps[-1] - stamps[0]) * 1e9
+    # The median of five intervals each, so that ticks that footingd leaves out on a machine that stalls do not count.
+    rate_hz = 5e9 / statistics.median(b - a for a, b in zip(stamps, stamps[5:]))
     print(f"{compared} messages are footingd's; motion at {rate_hz:.1f} Hz")
     assert compared > 40 and 0.9 * RATE_HZ < rate_hz < 1.05 * RATE_HZ, (compared, rate_hz)
 
@@ -53,8 +55,8 @@ def retained(port, seconds=1):
             if kept}
 
 
-def check_retained(port):
-    kept = retained(port)
+def check_retained(stage, port):
+    kept = stage.wait_for(lambda: (found := retained(port)).get("status") and found, "the retained channels")
     assert kept["status"]["status"]["devices"], kept
     assert "motion" not in kept, kept
     print(f"kept by the broker: {', '.join(sorted(kept))}")
@@ -66,7 +68,7 @@ def check_broker_killed(stage, mosquitto):
         time.sleep(0.5)
         mosquitto.start()
         since_s = time.monotonic()
-        next(ticks_of(mosquitto.port, f"footing/{SITE}/footingd/motion", 10))
+        next(ticks_of(mosquitto.port, f"footing/{SITE}/footingd/motion", 30))
         took_s = time.monotonic() - since_s
         print(f"back {took_s:.2f} s after mosquitto was")
         if took_s <= MOST_RETURN_S:
@@ -83,11 +85,11 @@ def main():
         port = free_port()
         stage.start("footing-relay", "publish", "--connect", stage.sensor, "--mqtt", f"127.0.0.1:{port}", "--site", SITE,
                     "--mqtt-rate-hz", RATE_HZ, name="publisher")
-        time.sleep(2)  # The devices attach.
+        stage.wait_for_devices()
         with brokers.mosquitto(stage.folder, port=port) as mosquitto:
             stage.wait_for(lambda: "publishing in MQTT" in (stage.folder / "publisher.log").read_text(), "the link")
             check_same(stage, port)
-            check_retained(port)
+            check_retained(stage, port)
             check_broker_killed(stage, mosquitto)
             assert stage.stop("publisher") == 0
     return 0

@@ -11,6 +11,7 @@ def main(binaries):
     with Stage(binaries) as stage:
         stage.start_servers()
         stage.start_user("demo", "--link", "poor")
+        stage.wait_for_devices()
         recording = stage.folder / "recording.mcap"
         done = stage.run("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect",
                          stage.simulation, "--out", recording, "--seconds", 9)

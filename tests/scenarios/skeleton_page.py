@@ -96,7 +96,7 @@ def check_http(stage):
     package.mkdir()
     (package / "pose.js").write_text("// a model\n")
     (stage.folder / "secret").write_text("no page\n")
-    port = serve(stage, 6, "--no-publish", "--pose-package", package)
+    port = serve(stage, 0, "--no-publish", "--pose-package", package)
     status, text, headers = get(port, "/?source=synthetic")
     assert status == 200 and "page.js" in text and headers["Content-Type"].startswith("text/html"), (status, text)
     assert "http" not in headers["Content-Security-Policy"], "nothing from another host"
@@ -110,15 +110,17 @@ def check_http(stage):
     assert get(port, "/", host="attacker.example")[0] == 403
     assert " 101 " in upgrade(port, f"http://127.0.0.1:{port}")
     assert " 403 " in upgrade(port, "http://attacker.example")
+    stage.processes["skeleton"].send_signal(signal.SIGINT)
     web = statistics(stage, 20)["web"]
     assert web["pages"] == 1 and web["refused"] == 8, web
 
 
 def check_missing_package(stage):
-    port = serve(stage, 2, "--no-publish", "--pose-package", stage.folder / "nothing")
-    log = (stage.folder / "skeleton.log").read_text()
-    assert "run scripts/fetch-pose-model" in log, log
+    port = serve(stage, 0, "--no-publish", "--pose-package", stage.folder / "nothing")
+    log = stage.folder / "skeleton.log"
+    stage.wait_for(lambda: "run scripts/fetch-pose-model" in log.read_text(), "what is missing")
     assert "fetch-pose-model" in get(port, "/pose/pose.js")[1]
+    stage.processes["skeleton"].send_signal(signal.SIGINT)
     assert statistics(stage, 20)["web"]["refused"] == 1
 
 

@@ -23,11 +23,11 @@ def does_a_trial(stage, interface, seed):
                 stage.devices, name=f"user-{interface}")
     console = ("footing-ctl", "--connect", stage.simulation)
     # Its devices have to be there before the interface can change over to them.
-    stage.wait_for(lambda: stage.run(*console, "interface", interface).returncode == 0, f"the {interface} devices", 20)
+    stage.wait_for(lambda: stage.run(*console, "interface", interface).returncode == 0, f"the {interface} devices")
     name = f"p-{interface}"
     done = stage.run(*console, "trial", "start", name, "--track", "straight", "--task", "walk_run")
     assert done.returncode == 0, done
-    deadline = time.monotonic() + 120
+    deadline = time.monotonic() + 180
     while True:
         trial = trial_of(stage)
         assert trial["trial"] == name, trial
@@ -36,7 +36,7 @@ def does_a_trial(stage, interface, seed):
         assert time.monotonic() < deadline, trial
     print(interface, json.dumps(trial))
     # Behind the finish line the user stands, and so does the character.
-    stage.wait_for(lambda: set(trial_of(stage)["gaits_seen"]) <= {"step"}, "the user to stop", 30)
+    stage.wait_for(lambda: set(trial_of(stage)["gaits_seen"]) <= {"step"}, "the user to stop", 60)
     # Who does not do the task within 15 m of the mark is put back, so it was done.
     assert trial["time_s"] < 100 and sum(trial["failures"].values()) <= 3, trial
     assert stage.stop(f"user-{interface}") == 0

@@ -11,8 +11,9 @@ def main(binaries):
     with Stage(binaries) as stage:
         stage.start_servers()
         stage.start_user("demo", "--link", "good")
+        stage.wait_for_devices()
         seen = stage.run_json("footing-view", "--connect", stage.simulation, "--connect",
-                              stage.sensor, "--seconds", 30, "--text", timeout_s=60)
+                              stage.sensor, "--seconds", 32, "--text")
         print(seen)
         assert set(seen["gaits_seen"]) == {"step", "walk", "run", "jump"}, seen
         assert seen["falls"] == 0 and seen["off_track_s"] == 0, seen

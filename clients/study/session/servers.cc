@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kConnectS = 5;
 constexpr double kAnswerS = 5;
-constexpr double kShownS = 2;
+constexpr double kShownS = 5;
+constexpr double kTrialShownS = 1;
 constexpr double kReleasedS = 1;
 // The lease of a session that is gone has run out by then.
 constexpr double kLeaseWithinS = 7;
@@ -187,13 +188,7 @@ Result<void> Servers::UseInterface(const std::string& interface, const std::stri
   // Frames do not show the table: what another session has left must not stay in force.
   const std::string asked = interface + " " + turn_by + " " + table;
   if (in_force() && implementation_->in_force_ == asked) return {};
-  const stream::TrialPhase phase = frame().trial.progress.phase;
-  if (phase == stream::TrialPhase::kReady || phase == stream::TrialPhase::kRunning) {
-    v1::Command stop;
-    stop.mutable_stop_trial()->set_character(1);
-    // It may have ended by itself meanwhile; if one goes on, set_interface says so.
-    (void)Call(std::move(stop)).ok();
-  }
+  if (const auto stopped = StopTrial(); !stopped) return stopped;
   v1::Command command;
   command.mutable_set_interface()->set_character(1);
   command.mutable_set_interface()->set_interface(static_cast<v1::UserInterface>(wanted));
@@ -204,6 +199,28 @@ Result<void> Servers::UseInterface(const std::string& interface, const std::stri
   if (waited == Waited::kInterrupted) return Interrupted();
   if (waited == Waited::kTimeUp) return Failure("footing-sim does not show interface " + interface);
   implementation_->in_force_ = asked;
+  return {};
+}
+
+/// A trial that has ended by itself meanwhile cannot be stopped, and need not be. If one goes on,
+/// the next command says so, but not why.
+Result<void> Servers::StopTrial() {
+  const auto goes_on = [this] {
+    const stream::TrialPhase phase = frame().trial.progress.phase;
+    return phase == stream::TrialPhase::kReady || phase == stream::TrialPhase::kRunning;
+  };
+  if (!goes_on()) return {};
+  v1::Command stop;
+  stop.mutable_stop_trial()->set_character(1);
+  const auto stopped = Call(std::move(stop));
+  if (stopped) return {};
+  const Waited waited =
+      implementation_->console_.RunUntil([&] { return !goes_on(); }, kTrialShownS);
+  if (waited == Waited::kInterrupted) return Interrupted();
+  if (waited == Waited::kTimeUp) {
+    implementation_->console_.Print("the trial that goes on was not stopped: " +
+                                    stopped.error().message);
+  }
   return {};
 }
 

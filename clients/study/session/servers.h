@@ -88,6 +88,8 @@ class Servers {
  private:
   class Implementation;
   explicit Servers(std::unique_ptr<Implementation> implementation);
+  Result<void> StopTrial();
+
   std::unique_ptr<Implementation> implementation_;
 };
 

@@ -50,20 +50,25 @@ class TextView {
     WaitToDraw();
     io_.run();
     if (options_.json) std::cout << Summary(show_.model(), PassedS()) << std::endl;
-    return Refusal();
+    return WhyNothing();
   }
 
  private:
-  /// Why nothing was seen, where a server could be reached but did not let this viewer in: a wrong
-  /// token or another certificate does not mend itself, as a server that is late does.
-  Result<void> Refusal() {
+  /// Why nothing was seen: a server could be reached but did not let this viewer in, or none was
+  /// there in the whole time that the viewer was given.
+  Result<void> WhyNothing() {
     const scene::LinkReport* refused = nullptr;
+    std::string waited_for;
     for (const scene::LinkReport& link : show_.model().links) {
       if (!link.server_id.empty()) return {};  // Another server was there.
       if (link.state == scene::LinkState::kRefused) refused = &link;
+      waited_for += (waited_for.empty() ? "" : "; ") +
+                    (link.why.empty() ? link.address + " does not answer" : link.why);
     }
-    if (refused == nullptr) return {};
-    return Failure(refused->why);
+    if (refused != nullptr) return Failure(refused->why);
+    if (!time_is_up_ || options_.camera.alone) return {};
+    return NoDevice("no server: " + waited_for +
+                    "; start footing-sim, or name where it listens with --connect");
   }
 
   double PassedS() const { return NanosecondsToSeconds(clock::MonotonicNs() - started_ns_); }
@@ -75,7 +80,8 @@ class TextView {
     timer_.async_wait([this](const boost::system::error_code& error) {
       if (error) return;
       Draw();
-      if (options_.seconds > 0 && PassedS() >= options_.seconds) return Stop();
+      time_is_up_ = options_.seconds > 0 && PassedS() >= options_.seconds;
+      if (time_is_up_) return Stop();
       WaitToDraw();
     });
   }
@@ -110,6 +116,7 @@ class TextView {
   const Options& options_;
   std::int64_t started_ns_;
   bool screen_;
+  bool time_is_up_ = false;
   boost::asio::io_context io_;
   boost::asio::steady_timer timer_;
   boost::asio::signal_set signals_;

@@ -37,6 +37,7 @@ constexpr char kExamples[] =
     "  footing-eval momentum --motion clip.bvh --json\n"
     "  footing-eval pose --motion clip.bvh --json\n"
     "  footing-eval arm --motion clip.bvh --json\n"
+    "  footing-eval attitude --imu imu.csv --rate-hz 100 --json\n"
     "  footing-eval hand --motion clip.bvh --json\n"
     "  footing-eval fusion --motion clip.bvh --json\n"
     "  footing-eval spheres --condition clutter --distance-m 2 --frames 10 --out frames --json\n"

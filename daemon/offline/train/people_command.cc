@@ -212,6 +212,7 @@ void AddPeopleCommand(CLI::App& app, Shared& shared) {
       "people",
       "Train pose models that leave one person out each, and evaluate them on this person");
   AddMotionOptions(*command, options->motions);
+  command->get_option("--motions")->required();
   command->add_option("--only", options->only,
                       "Person to leave out; may be repeated (default: all)");
   command

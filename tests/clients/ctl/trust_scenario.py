@@ -26,7 +26,7 @@ def start_footingd(stage, port, name):
     stage.start("footingd", "--listen", f"tls:127.0.0.1:{port}", "--source",
                 f"stream:{stage.devices}", "--set", f"token_file={stage.folder}/token", name=name)
     log = stage.folder / f"{name}.log"
-    deadline = time.monotonic() + 10
+    deadline = time.monotonic() + 30
     while time.monotonic() < deadline:
         found = re.search(r"listening on (tls:127\.0\.0\.1:\d+), certificate (sha256:\w{64})",
                           log.read_text())
@@ -86,7 +86,7 @@ def check_client_certificate(stage):
                 f"stream:unix:{stage.folder}/more.sock", "--set",
                 f"clients_file={stage.folder}/clients", name="with_clients")
     log = stage.folder / "with_clients.log"
-    deadline = time.monotonic() + 10
+    deadline = time.monotonic() + 30
     while "listening_on" not in log.read_text() and time.monotonic() < deadline:
         time.sleep(0.02)
     line = next(line for line in log.read_text().splitlines() if line.startswith("{"))
@@ -116,7 +116,7 @@ def check_passed_socket(stage):
     try:
         manager.start("--listen", "fd:sensor", "--listen", "fd:sensor-tls", "--set",
                       f"token_file={stage.folder}/token", names=("sensor", "devices", "sensor-tls"))
-        manager.wait_for("READY=1", 20)
+        manager.wait_for("READY=1", 60)
         address = f"tls:127.0.0.1:{passed.getsockname()[1]}"
         os.environ["FOOTING_TOKEN_FILE"] = f"{stage.folder}/token"
         status = stage.run_json("footing-ctl", "--connect", address, "status")

@@ -56,12 +56,12 @@ def main(program, writer):
         assert run("info", folder / "none.mcap").returncode == 1
         nobody = run("record", "--connect", f"unix:{folder}/none.sock", "--out", folder / "n.mcap",
                      "--seconds", "0.2")
-        assert nobody.returncode == 1 and "none.sock" in nobody.stderr, nobody
+        assert nobody.returncode == 3 and "none.sock" in nobody.stderr, nobody
         assert run("info", folder / "n.mcap").returncode == 0
         nobody = run("record", "--out", folder / "d.mcap", "--seconds", "0.2",
                      env=dict(os.environ, XDG_RUNTIME_DIR=str(folder)))
         for server in ("sensor.sock", "simulation.sock"):  # The default of every client.
-            assert nobody.returncode == 1 and server in nobody.stderr, nobody
+            assert nobody.returncode == 3 and server in nobody.stderr, nobody
 
 
 if __name__ == "__main__":

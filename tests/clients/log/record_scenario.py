@@ -2,7 +2,6 @@
 
 Usage: record_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
 """
-import json
 import signal
 import sys
 import time
@@ -11,8 +10,11 @@ sys.path.insert(0, sys.argv[1])
 from harness import Stage  # noqa: E402
 
 
-def messages_of(done):
-    return json.loads(done.stdout)
+def check_missing(stage, info):
+    """Nothing but what the servers left out themselves; a client of one of them has no more missing than both left out."""
+    left_out = sum(stage.run_json("footing-ctl", "--connect", address, "status")["stats"]["ticks"]["left_out"]
+                   for address in (stage.sensor, stage.simulation))
+    assert info["missing_ticks"] <= left_out, (info, left_out)
 
 
 def main():
@@ -39,18 +41,18 @@ def main():
                       "/footing-sim/track"):
             assert topics.get(topic, 0) > 0, (topic, topics)
         assert info["complete"] and info["simulated"] is True, info
-        assert info["missing_ticks"] == 0, info
+        check_missing(stage, info)
 
         cut = stage.run("footing-log", "info", killed, "--json")
         assert cut.returncode == 4 and "repair" in cut.stderr, cut
         stage.run_json("footing-log", "repair", killed, "--out", repaired)
         kept_s = stage.run_json("footing-log", "info", repaired)["duration_s"]
         # Begun long after the servers, with and without what they hold of before.
-        for ring, least_s, most_s in (((), 1.5, 2.5), (("--from-ring",), 2.6, 40)):
+        for ring, least_s, most_s in (((), 0.5, 2.5), (("--from-ring",), 2.6, 40)):
             late = stage.folder / f"late{len(ring)}.mcap"
             info = stage.run_json("footing-log", "record", *connect, "--out", late, "--seconds", 2, *ring)
             assert least_s <= info["duration_s"] <= most_s, (ring, info)
-            assert info["missing_ticks"] == 0, (ring, info)
+            check_missing(stage, info)
 
         # Start-up of the process and connecting are within the first 0.5 s.
         assert kept_s > killed_after_s - 1.5, (kept_s, killed_after_s)

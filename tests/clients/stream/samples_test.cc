@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -47,6 +48,18 @@ TEST_F(Samples, TheClipIsAMotionThatBeginsInATPose) {
   ASSERT_TRUE(motion) << motion.error().message;
   EXPECT_GT(motion->duration_s(), 10);
   EXPECT_LT(Text("clip.bvh").size(), 1u << 20);
+}
+
+TEST_F(Samples, TheImuFeelsOneGAndTurnsAsItsAttitudeSays) {
+  const auto table = ParseTable(Text("imu.csv"), 11, "imu.csv");
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_EQ(table->rows.size(), 2000u);
+  double turned_rad = 0;
+  for (const auto& row : table->rows) {
+    EXPECT_NEAR(std::hypot(row[3], row[4], row[5]), 9.80665, 1e-4);
+    EXPECT_NEAR(2 * std::atan2(row[7], row[6]), turned_rad, 0.02);
+    turned_rad += row[0] / 100;
+  }
 }
 
 TEST_F(Samples, TheTrainingTableHasTwentyInputsAndOneOutput) {

@@ -34,7 +34,7 @@ class Experimenter:
         os.close(slave)
         self.said = ""
 
-    def read(self, pattern, seconds=30):
+    def read(self, pattern, seconds=90):
         """The match, once it has been said; what was said before it is forgotten."""
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
@@ -98,7 +98,7 @@ def session(stage, start):
     second = experimenter.read(r"failure (\d+): (\w+)", 90)
     experimenter.type("s")
     shown = experimenter.read(r"test: stopped, [\d.]+ s, failures: (\d+)")
-    doing = next(tick["study"]["doing"] for tick in read_ticks(stage.simulation, 5, ("study", "characters"))
+    doing = next(tick["study"]["doing"] for tick in read_ticks(stage.simulation, 30, ("study", "characters"))
                  if "The trial is over" in tick.get("study", {}).get("doing", ""))
     assert re.search(r"has moved for \d+ min: a rest of \d+ min comes next", doing), doing
     experimenter.answer("r to repeat", f"u {second[1]}")
@@ -123,7 +123,7 @@ def session(stage, start):
     experimenter.answer("good .one line", "it walks")
     experimenter.answer("Survey at the end(?s:.*)wrist: like, 1 to 5", "5")
     experimenter.answer("remarks .one line", "")
-    assert experimenter.process.wait(20) == 0
+    assert experimenter.process.wait(60) == 0
     return int(first[1]), int(second[1]), int(shown[1])
 
 
@@ -146,14 +146,14 @@ def check_remedy(stage, start):
         return stage.run("footing-ctl", "--connect", stage.sensor, "assign", device, role)
 
     # The lease of the session that was killed runs out.
-    stage.wait_for(lambda: assign("main/left_hand", "main/head").returncode == 0, "footingd's lease", 8)
+    stage.wait_for(lambda: assign("main/left_hand", "main/head").returncode == 0, "footingd's lease")
     experimenter = start()
     experimenter.answer("Type yes to confirm", "yes")
     experimenter.read("The devices are not ready: [^\n]*left_hand")
     experimenter.read("Press Enter to check again")
-    stage.wait_for(lambda: assign("main/head", "main/left_hand").returncode == 0, "a remedy", 8)
+    stage.wait_for(lambda: assign("main/head", "main/left_hand").returncode == 0, "a remedy")
     experimenter.type("\n")
-    experimenter.read("show all commands", 40)
+    experimenter.read("show all commands")
     done = assign("main/left_hand", "main/head")
     assert done.returncode == 1 and "participant P04 has the lease of this footingd" in done.stderr, done
     experimenter.process.kill()

@@ -21,7 +21,7 @@ PROTOCOL = {
     "final_survey": {"ratings": RATINGS},
 }
 PROGRAMS = ("footing-study", "footing-sim", "footingd")
-SEED, LATEST_KILL_S, LATEST_IN_SURVEY_S, RUN_WITHIN_S = 11, 4.0, 0.01, 90
+SEED, LATEST_KILL_S, LATEST_IN_TRIAL_S, LATEST_IN_SURVEY_S, RUN_WITHIN_S = 11, 4.0, 1.5, 0.01, 90
 CUT = ("broken_off", "device_lost", None)  # None: footing-study itself was killed, so the journal has no end.
 
 
@@ -55,15 +55,28 @@ class Study:
             assert time.monotonic() < deadline, f"no {what} in {self.path}"
             time.sleep(0.002)
 
-    def run_with_kill(self, program, draw):
-        """Runs the session until its end or, where that is earlier, a kill."""
+    def reach_trial(self, process):
+        """A session that is in a trial: this one, or the next one where this one had no trial left."""
+        self.wait(process, '"trial_started"')
+        if process.poll() is None:
+            return process
+        self.check_prefix()
+        process = self.start()
+        self.wait(process, '"trial_started"')
+        return process
+
+    def run_with_kill(self, program, draw, in_trial):
+        """Runs the session until its end or, where that is earlier, a kill, which may be in its first trial for certain."""
         process, where = self.start(), draw.random()
-        in_survey = program == "footing-study" and where < 0.5
-        if in_survey:
+        latest_s = LATEST_KILL_S
+        if program == "footing-study" and where < 0.5:
             self.wait(process, '"kind":"survey"')
+            latest_s = LATEST_IN_SURVEY_S
+        elif in_trial:
+            process, latest_s = self.reach_trial(process), LATEST_IN_TRIAL_S
         elif where < 0.8:  # Else even the connections may be cut.
             self.wait(process, "{")
-        time.sleep(draw.uniform(0, LATEST_IN_SURVEY_S if in_survey else LATEST_KILL_S))
+        time.sleep(draw.uniform(0, latest_s))
         if process.poll() is not None:
             assert process.poll() == 0, (self.stage.folder / "footing-study.log").read_text()
         else:
@@ -144,7 +157,7 @@ def main():
         study = Study(stage)
         for _ in range(kills_of_each):
             for program in PROGRAMS:
-                study.run_with_kill(program, draw)
+                study.run_with_kill(program, draw, in_trial=program == "footing-sim")
         if study.lines:
             study.finish()
         cut = sum(check_trials(events) for events in study.finished)

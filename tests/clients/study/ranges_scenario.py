@@ -59,8 +59,7 @@ def check_measurement(stage):
     tables = []
     for name, person in (("P01", ANN), ("P02", BEN)):
         stage.start_user(script(stage, name, *person))
-        stage.wait_for(lambda: "left_hand" in stage.run("footing-ctl", "devices", "--connect", stage.sensor).stdout,
-                       "the remotes")
+        stage.wait_for_devices()
         recording = stage.folder / f"{name}.mcap"
         stage.start("footing-log", "record", "--connect", stage.sensor, "--out", recording, "--seconds", 23)
         out = stage.folder / f"{name}_wrist.json"
@@ -72,7 +71,7 @@ def check_measurement(stage):
         assert measured == json.loads(done.stdout)["measured"], done
         assert measured["participants"] == [name] and measured["how"] == "live" and measured["simulated"], measured
         assert measured["by"].startswith("footing-study ") and measured["when"].endswith("Z"), measured
-        assert stage.processes.pop("footing-log").wait(30) == 0
+        assert stage.processes.pop("footing-log").wait(60) == 0
         stage.stop("footing-stream")
         done = measure(stage, stage.folder / f"{name}_recorded.json", "--recording", recording, person=name)
         assert done.returncode == 0, done
@@ -130,7 +129,7 @@ def check_boards(stage):
     live.type("\n")
     live.read(r"\[3/8\] Stand. Rise quickly")
     assert live.process.wait(60) == 0, live.process.stderr.read()
-    assert stage.processes.pop("footing-log").wait(30) == 0
+    assert stage.processes.pop("footing-log").wait(60) == 0
     recorded = measure(stage, stage.folder / "boards.json", "--recording", recording, interface="boards")
     assert recorded.returncode == 0, recorded
     for table in (json.loads(out.read_text()), json.loads(recorded.stdout)["table"]):
@@ -173,7 +172,7 @@ def check_group(stage, tables):
 
 
 def config_of(stage):
-    for tick in read_ticks(stage.simulation, 5, ("config",)):
+    for tick in read_ticks(stage.simulation, 30, ("config",)):
         if "config" in tick:
             return json.loads(tick["config"]["json"])
     raise AssertionError("no config")
@@ -205,7 +204,7 @@ def check_in_force(stage, table):
     done = stage.run("footing-ctl", "interface", "wrist", "--table", stage.folder / "wrong.json", "--connect",
                      stage.simulation)
     assert done.returncode == 1 and "must lie under its partner" in done.stderr, done
-    assert stage.processes.pop("footing-log").wait(30) == 0
+    assert stage.processes.pop("footing-log").wait(60) == 0
     info = stage.run_json("footing-log", "info", recording)
     assert info["configs"][0]["interface"]["table"]["walk_speed_max_mps"] == 0.9, info["configs"]
     text = stage.run("footing-log", "info", recording).stdout
@@ -230,10 +229,10 @@ def check_study(stage):
         experimenter.answer("show all commands", "")
         experimenter.answer(f"own ranges, {22 if interface == 'arm' else 20} s", "")
         if interface == "arm":  # Hands that swing from the wrist are no bent arms.
-            experimenter.read("was recognised for", 40)
+            experimenter.read("was recognised for")
             experimenter.answer("type b to go on", "b")
         else:
-            experimenter.read("Measured: .*alternate_hz", 40)
+            experimenter.read("Measured: .*alternate_hz")
         experimenter.read("Press Enter to begin:")
         if interface == "wrist":  # A simulation that is started again, and a session too.
             experimenter.process.kill()
@@ -242,12 +241,12 @@ def check_study(stage):
             stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation)
             stage.wait_for_socket(stage.simulation)
             experimenter = Experimenter(stage, *command)
-            experimenter.read("Press Enter to begin:", 20)
+            experimenter.read("Press Enter to begin:")
         experimenter.type("\n")
-        experimenter.read(f"{interface}.test: .*\n", 40)
+        experimenter.read(f"{interface}.test: .*\n")
         journal.append(config_of(stage)["interface"])
         experimenter.answer("r to repeat", "")
-    assert experimenter.process.wait(20) == 0
+    assert experimenter.process.wait(60) == 0
     check_study_journal(stage, {one["name"]: one for one in journal})
 
 

@@ -25,7 +25,8 @@ PROTOCOL = {
 
 def journal(stage, participant):
     path = stage.folder / "s.study" / participant / "journal.jsonl"
-    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    whole = path.read_text().split("\n")[:-1] if path.exists() else []  # The last line may be half written.
+    return [json.loads(line) for line in whole]
 
 
 def words(stage, participant, *more):
@@ -63,6 +64,7 @@ def check_kill_and_resume(stage):
     """Killed in its first trial, a session goes on with a second attempt at it; meanwhile nobody else may run it."""
     running = stage.start("footing-study", *words(stage, "P01", "--unattended", "--seed", 3), name="study")
     stage.wait_for(lambda: any(one["event"] == "trial_started" for one in journal(stage, "P01")), "a trial", 60)
+    running.send_signal(signal.SIGSTOP)  # However long the next command takes, the trial is not over before the kill.
     refused(stage, 1, f"process {running.pid}, participant P01", *words(stage, "P02", "--unattended"))
     stage.stop("study", signal.SIGKILL)
     path = stage.folder / "s.study/P01/journal.jsonl"
@@ -127,7 +129,7 @@ def check_lost_device(stage):
     running = stage.start("footing-study", *words(stage, "P02", "--unattended"), name="study")
     stage.wait_for(lambda: any(one["event"] == "trial_started" for one in journal(stage, "P02")), "a trial", 60)
     stage.stop("footing-stream")
-    assert running.wait(30) == 3
+    assert running.wait(60) == 3
     lost = journal(stage, "P02")[-1]
     assert lost["event"] == "trial_finished" and lost["outcome"] == "device_lost" and "hand" in lost["device"], lost
     stage.start_user("demo")

@@ -27,7 +27,7 @@ def answers(stage):
 
 def shown(stage, phase):
     """Where the study says that it stands, for the experimenter's viewer, once it is in the phase."""
-    for tick in read_ticks(stage.simulation, 5, ("study", "characters")):
+    for tick in read_ticks(stage.simulation, 30, ("study", "characters")):
         if tick.get("study", {}).get("phase") == phase:
             return tick["study"]
     raise AssertionError("no study")
@@ -83,7 +83,7 @@ def main():
         experimenter.type("t")
         experimenter.answer("wrist: ease, 1 to 5", "3")
         participant.read("Please answer the experimenter(?s:.*)Thank you")
-        assert experimenter.process.wait(20) == 0
+        assert experimenter.process.wait(60) == 0
         assert answers(stage) == [4, 2, 10, "it walks", 5, 3], answers(stage)
         shown(stage, "")  # It is over.
         done = stage.run("footing-study", "run", stage.folder / "s.json", "--participant", "P01", "--survey",

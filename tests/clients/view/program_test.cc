@@ -58,7 +58,9 @@ class ProgramTest : public ::testing::Test {
 
 TEST_F(ProgramTest, WithoutAServerTheTextSaysWhatItWaitsForAndHowToStartIt) {
   const Outcome outcome = RunCommand("env -u DISPLAY " + View("--seconds 0.2") + " 2>&1");
-  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.output, HasSubstr("error: no server: "));
+  EXPECT_THAT(outcome.output, HasSubstr("simulation.sock: no such file; start footing-sim"));
   EXPECT_THAT(outcome.output, HasSubstr("no display"));
   EXPECT_THAT(outcome.output, HasSubstr("Waiting for a simulation server on unix:"));
   EXPECT_THAT(outcome.output, HasSubstr("footing-sim"));
@@ -88,7 +90,7 @@ TEST_F(ProgramTest, AViewerThatWasNeverLetInFails) {
 
 TEST_F(ProgramTest, WithJsonStandardOutputIsOneObject) {
   const Outcome outcome = RunCommand(View("--text --seconds 0.2 --json") + " 2>/dev/null");
-  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.code, 3);  // There is nothing to sum up, and yet it is an object.
   const auto summary = nlohmann::json::parse(outcome.output);
   EXPECT_EQ(summary.at("frames_received"), 0);
   EXPECT_GE(summary.at("frames_drawn"), 1);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/config/data_file.h"
 #include "tests/common/temporary_folder.h"
 
 namespace footing::config {
@@ -21,6 +22,14 @@ mode_t ModeOf(const std::string& path) {
   struct stat status {};
   EXPECT_EQ(stat(path.c_str(), &status), 0) << path;
   return status.st_mode & 0777u;
+}
+
+TEST(ReadTextFile, AFolderIsNoFile) {
+  const test::TemporaryFolder folder;
+  const auto text = ReadTextFile(folder.Path(""), 100);
+  ASSERT_FALSE(text.ok());
+  EXPECT_NE(text.error().message.find("not a regular file"), std::string::npos)
+      << text.error().message;
 }
 
 TEST(WriteFile, ANewFileIsForItsOwnerAlone) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/service_manager/service_manager.h"
+#include "common/timer/timer.h"
 
 namespace footing::service_manager {
 namespace {
@@ -94,6 +95,17 @@ TEST_F(NotifierTest, TheWatchdogIsNotFedWhileTheLoopStandsStill) {
   EXPECT_LE(before, 6u) << "one late beat, then those of 0.2 s";
   notifier_.Stopping();
   EXPECT_THAT(RunAndRead(), ElementsAre("STOPPING=1"));
+}
+
+TEST_F(NotifierTest, ABeatThatIsDueWhenTheProgramStopsIsNotSent) {
+  timer::Timer stop(io_);
+  stop.expires_after({});
+  stop.async_wait([this](const boost::system::error_code&) { notifier_.Stopping(); });
+  notifier_.Ready("engine gait");
+  usleep(60'000);  // Both have expired before the loop runs.
+  const auto said = RunAndRead();
+  EXPECT_THAT(said, Contains("STOPPING=1"));
+  EXPECT_EQ(std::count(said.begin(), said.end(), "WATCHDOG=1"), 1) << "that of Ready";
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ class Gamepads : public testing::Test {
     }));
   }
 
-  bool RunUntil(const std::function<bool()>& done, double limit_s = 20) {
+  bool RunUntil(const std::function<bool()>& done, double limit_s = 60) {
     const std::int64_t end_ns = clock::MonotonicNs() + static_cast<std::int64_t>(limit_s * 1e9);
     while (!done()) {
       if (clock::MonotonicNs() > end_ns) return false;

@@ -109,7 +109,7 @@ class SensorLine : public testing::Test {
   }
 
   /// Runs until the condition holds; false after `limit_s`.
-  bool RunUntil(const std::function<bool()>& done, double limit_s = 10) {
+  bool RunUntil(const std::function<bool()>& done, double limit_s = 60) {
     const std::int64_t end_ns = clock::MonotonicNs() + static_cast<std::int64_t>(limit_s * 1e9);
     while (!done()) {
       if (clock::MonotonicNs() > end_ns) return false;

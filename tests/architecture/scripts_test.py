@@ -1,0 +1,44 @@
+"""Every script for people explains itself with --help, and refuses an option that it does not have.
+
+Usage: scripts_test.py SOURCE_ROOT
+"""
+import pathlib
+import subprocess
+import sys
+import unittest
+
+ROOT = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ".").resolve()
+# They take no options: what their names say, for other scripts.
+BARE = ("check-format", "check-tidy")
+
+
+def run(script, *words):
+    return subprocess.run([script, *words], capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL, check=False)
+
+
+class Scripts(unittest.TestCase):
+    def setUp(self):
+        self.scripts = [path for path in sorted((ROOT / "scripts").iterdir())
+                        if path.suffix != ".txt" and path.name not in BARE]
+        self.assertGreater(len(self.scripts), 8)
+
+    def test_help_is_printed(self):
+        for script in self.scripts:
+            done = run(script, "--help")
+            self.assertEqual(done.returncode, 0, (script, done))
+            self.assertIn(script.name, done.stdout + done.stderr)
+
+    def test_unknown_options_are_refused(self):
+        for script in self.scripts:
+            done = run(script, "--no-such-option")
+            self.assertEqual(done.returncode, 2, (script, done))
+            self.assertTrue(done.stderr, script)
+
+    def test_a_list_of_dependencies_that_is_not_there_is_named(self):
+        done = run(ROOT / "scripts/install-dependencies", "nowhere.txt")
+        self.assertEqual(done.returncode, 2, done)
+        self.assertIn("error: no list nowhere.txt; there are:", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
