@@ -10,6 +10,7 @@
 
 #include "common/tls/context.h"
 #include "common/tls/identity.h"
+#include "common/transport/descriptor_table.h"
 #include "common/transport/exposure.h"
 #include "common/transport/listener.h"
 #include "common/transport/session.h"
@@ -19,6 +20,8 @@ namespace footing::transport {
 namespace {
 
 constexpr std::int64_t kMostLingering = 64;  // Sessions that are being refused.
+/// Beside those of the sessions: devices, files, listeners.
+constexpr std::int64_t kOtherDescriptors = 256;
 
 std::uint64_t NewEpoch() {
   std::random_device random;
@@ -40,6 +43,7 @@ class Server::Implementation {
   }
 
   Result<void> Listen(const Address& address) {
+    ReserveForSessions();
     ListenSecurity security;
     security.insecure_lan = shared_.options.insecure_lan && !shared_.options.token.empty();
     if (shared_.options.identity_file) {
@@ -134,7 +138,10 @@ class Server::Implementation {
     if (sessions_.empty()) Drained();
   }
 
-  void SetLimits(const SessionLimits& limits) { shared_.options.sessions = limits; }
+  void SetLimits(const SessionLimits& limits) {
+    shared_.options.sessions = limits;
+    ReserveForSessions();
+  }
 
   void SetAccess(const std::string& token, const std::map<std::string, v1::Role>& clients) {
     if (token != shared_.options.token) shared_.admission.token = TokenGuard(token);
@@ -145,6 +152,12 @@ class Server::Implementation {
   const ServerOptions& options() const { return shared_.options; }
 
  private:
+  void ReserveForSessions() const {
+    const SessionLimits& limits = shared_.options.sessions;
+    ReserveDescriptors(static_cast<std::size_t>(limits.max_sessions + limits.admin_places +
+                                                kMostLingering + kOtherDescriptors));
+  }
+
   Result<tls::Context> TlsContext(const Address& address) {
     const ServerOptions& options = shared_.options;
     const bool has_keys = !options.token.empty() || !options.clients.empty();

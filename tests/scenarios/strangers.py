@@ -1,11 +1,11 @@
 """Connections that never become sessions, and what the sessions that there are notice of them.
 
-Usage: strangers.py BINARY_FOLDER [--json]
+Usage: strangers.py BINARY_FOLDER [--json] [--real-time]
 
 Before a footingd with devices stand 5000 connections that say nothing, 20 that announce 256 MB before they have said who they
 are, and 200 half-open ones (half a Hello, then nothing). A healthy session's 99th percentile of delay stays within twice that
 without them (or 20 ms, where that is longer), memory within 8 MB, and half-open ones are cut at 3 s. Three tries, since other
-work on the machine may disturb one.
+work on the machine may disturb one. --real-time is as in flood.py: priorities, pairs, and a bar of twice without the 20 ms.
 """
 import argparse
 import json
@@ -70,14 +70,14 @@ def hold(target, count, first_bytes, results, end):
     results.put({"refused": refused, "ages_s": ages, "left": len(selector.get_map())})
 
 
-def one_run(stage, target, kind, count, first_bytes):
+def one_run(stage, target, kind, count, first_bytes, priority=0):
     server = stage.processes["footingd"]
     before = resident_bytes(server)
     end, held, measured = multiprocessing.Event(), multiprocessing.Queue(), multiprocessing.Queue()
     holding = multiprocessing.Process(target=hold, args=(target, count, first_bytes, held, end))
     if count:
         holding.start()
-    measuring = multiprocessing.Process(target=flood.measure, args=(stage.sensor, SECONDS, measured))
+    measuring = multiprocessing.Process(target=flood.measure, args=(stage.sensor, SECONDS, measured, priority))
     measuring.start()
     most = before
     while measuring.is_alive() and measured.empty():
@@ -94,9 +94,13 @@ def one_run(stage, target, kind, count, first_bytes):
     return result
 
 
+def with_ratio(run, quiet):
+    return run | {"quiet_p99_ms": quiet["p99_ms"], "p99_ratio": run["p99_ms"] / quiet["p99_ms"]}
+
+
 def problems_of(run, quiet):
     found = []
-    if run["hz"] < flood.LEAST_HZ or not flood.is_good(run, quiet):
+    if not flood.within_bar(run, quiet):
         found.append(f"{run['hz']:.1f} Hz, p99 {run['p99_ms']:.1f} ms beside {quiet['p99_ms']:.1f}")
     if run["growth_mb"] * 1e6 > MOST_GROWTH_BYTES:
         found.append(f"memory grew by {run['growth_mb']:.1f} MB")
@@ -111,7 +115,9 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("binaries")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--real-time", action="store_true")
     options = parser.parse_args()
+    priority = flood.HEALTHY_PRIORITY if options.real_time else 0
     hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard if hard < 1 << 20 else 1 << 20, hard))
     kinds = [("idle", IDLE, b""), ("declaring", DECLARING, struct.pack("<I", DECLARED_BYTES) + bytes(64)),
@@ -119,16 +125,24 @@ def main():
     failed = []
     with Stage(options.binaries) as stage:
         port = free_port()
+        if priority:
+            flood.set_priority(flood.SERVER_PRIORITY)
         stage.start("footingd", "--listen", stage.sensor, "--listen", f"tcp:127.0.0.1:{port}", "--source",
                     f"stream:{stage.devices}")
+        if priority:
+            flood.set_priority(0)
         stage.wait_for_socket(stage.devices)
         stage.start_user("walk", "--seconds", 600)
         time.sleep(2)  # The ring and the devices get going.
-        quiet = one_run(stage, None, "none", 0, b"")
+        quiet = one_run(stage, None, "none", 0, b"", priority)
         runs = [quiet]
         for kind, count, first_bytes in kinds:
             for _ in range(TRIES):
-                run = one_run(stage, ("127.0.0.1", port), kind, count, first_bytes)
+                if priority and len(runs) > 1:
+                    quiet = one_run(stage, None, "none", 0, b"", priority)
+                run = one_run(stage, ("127.0.0.1", port), kind, count, first_bytes, priority)
+                if priority:
+                    run = with_ratio(run, quiet)
                 found = problems_of(run, quiet)
                 if not found:
                     break
