@@ -88,6 +88,19 @@ struct PhaseConfig {
   double disagree_cycles = 1.25;
 };
 
+/// Beside 3): how two controllers lie in their hands, rotated about their fronts.
+struct GripConfig {
+  /// Gravity across a front shows the rotation from this share of it on: a hanging forearm is 10 to
+  /// 20 degrees off the vertical.
+  double least_across = 0.15;
+  /// And where it differs by no more than this share from that of the cycle before.
+  double most_change = 0.5;
+  /// The rotation is a mean over so much of the past; before their first swing hands show it once
+  /// they have rested for the second, and that counts as much as a swing of this time.
+  double horizon_s = 3;
+  double rest_s = 0.3;
+};
+
 /// 4) Amplitude and 5) inclination in motion.
 struct CycleConfig {
   /// Clipped samples are filled in from a fit to the others, unless more than this share is
@@ -116,6 +129,7 @@ struct Config {
   MovingConfig moving;
   CadenceConfig cadence;
   PhaseConfig phase;
+  GripConfig grip;
   CycleConfig cycle;
   /// Inclination at rest is the mean over this time.
   double rest_window_s = 0.15;

@@ -25,6 +25,7 @@ void DeviceFeatureExtractor::Forget() {
   cadence_ = {};
   estimate_ = {};
   swing_end_ = {};
+  gravity_mps2_.reset();
   features_.moving = features_.frequency_valid = features_.amplitude_valid = false;
   features_.inclination_valid = features_.held = features_.swing_valid = false;
   features_.frequency_hz = features_.amplitude_mps2 = 0;
@@ -38,6 +39,7 @@ void DeviceFeatureExtractor::MeasureRest() {
   const int count =
       std::min(grid_.size(), static_cast<int>(std::lround(config_.rest_window_s * kGridHz)));
   const Eigen::Vector3d gravity = grid_.Filtered(count).colwise().mean().transpose();
+  gravity_mps2_ = gravity;
   const Inclination inclination = InclinationOf(gravity);
   features_.inclination_valid = true;
   features_.roll_rad = inclination.roll_rad;
@@ -59,6 +61,10 @@ void DeviceFeatureExtractor::MeasureCycle() {
                                  : cycle.amplitude_mps2;
   features_.amplitude_valid = true;
   if (cycle.clipped) return;
+  const bool shown = cadence_.lost_s == 0 && cadence_.candidate_s == 0;
+  if (shown && MeanRepeats(grid_, cadence_.period_s * kGridHz, config_.grip)) {
+    gravity_mps2_ = cycle.mean_mps2;
+  }
   features_.swing_valid = cycle.swing.valid;
   features_.swing_rad = Continued(cycle.swing, swing_end_, config_.cycle).angle_rad;
   swing_end_ = Next(swing_end_, cycle.swing, config_.cycle);
@@ -99,6 +105,7 @@ const stream::DeviceFeatures& DeviceFeatureExtractor::Compute(const Partner& par
   features_.moving = moving_.moving;
   features_.frequency_valid = cadence_.valid;
   features_.frequency_hz = cadence_.valid ? 1 / cadence_.period_s : 0.0;
+  gravity_mps2_.reset();
   if (moving_.moving) {
     MeasureCycle();
   } else {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "common/stream/sensor.h"
 #include "daemon/sensor/features/cadence.h"
 #include "daemon/sensor/features/config.h"
 #include "daemon/sensor/features/cycle.h"
+#include "daemon/sensor/features/grip.h"
 #include "daemon/sensor/features/moving.h"
 #include "daemon/sensor/features/sample_grid.h"
 
@@ -31,6 +33,9 @@ class DeviceFeatureExtractor {
   /// Since the motion began.
   const SwingEnd& swing_end() const { return swing_end_; }
 
+  /// As rest shows it, or the newest of two cycles that agree on it; in S, m/s². Else none.
+  const std::optional<Eigen::Vector3d>& gravity_mps2() const { return gravity_mps2_; }
+
   std::uint32_t device() const { return features_.device; }
   stream::DeviceRole role() const { return features_.role; }
   const SampleGrid& grid() const { return grid_; }
@@ -49,6 +54,7 @@ class DeviceFeatureExtractor {
   PeriodEstimate estimate_;
   Cadence cadence_;
   SwingEnd swing_end_;
+  std::optional<Eigen::Vector3d> gravity_mps2_;
   double elapsed_s_ = 0;  ///< Between the newest points of the last two Observe; 0 nothing new.
   std::int64_t newest_received_ns_ = 0;
   std::uint32_t beginnings_ = 0;     ///< Of the grid, when last observed.

@@ -99,6 +99,14 @@ PhaseEstimate PeakOf(const Spectrum& left, const Spectrum& right, const PhaseCon
   return {correlation >= config.least_correlation, phase_rad, std::min(1.0, correlation)};
 }
 
+Spectrum Turned(const Spectrum& spectrum, const Eigen::Matrix3d& rotation) {
+  Spectrum turned;
+  for (int h = 0; h < kHarmonics; ++h) {
+    turned[h] = rotation.cast<std::complex<double>>() * spectrum[h];
+  }
+  return turned;
+}
+
 /// The spectrum in the axes along the horizontal swing, across it and up: however the controller
 /// is turned about the vertical, or inclined. False when the swing has no such direction, or when
 /// its end is not known.
@@ -118,8 +126,9 @@ bool Align(const SampleGrid& grid, int late, double steps, const SwingEnd& end,
 }  // namespace
 
 PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double period_s,
-                        const SwingEnd& left_end, const SwingEnd& right_end,
-                        const PhaseConfig& config, const CycleConfig& cycle) {
+                        const Eigen::Matrix3d& from_right, const SwingEnd& left_end,
+                        const SwingEnd& right_end, const PhaseConfig& config,
+                        const CycleConfig& cycle) {
   const double steps = period_s * kGridHz;
   const auto common = std::min(left.newest_index(), right.newest_index());
   const auto late_left =
@@ -132,7 +141,7 @@ PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double 
       WithoutTwist(CycleSpectrum(left, late_left, steps), left, late_left, steps, config);
   Spectrum right_spectrum =
       WithoutTwist(CycleSpectrum(right, late_right, steps), right, late_right, steps, config);
-  const PhaseEstimate estimate = PeakOf(left_spectrum, right_spectrum, config);
+  const PhaseEstimate estimate = PeakOf(left_spectrum, Turned(right_spectrum, from_right), config);
   if (estimate.found) return estimate;
   if (!Align(left, late_left, steps, left_end, cycle, left_spectrum) ||
       !Align(right, late_right, steps, right_end, cycle, right_spectrum)) {

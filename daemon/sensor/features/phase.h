@@ -25,11 +25,14 @@ struct PhaseEstimate {
 };
 
 /// `period_s` > 0 is common to both. Not found: no whole common cycle, one stands still, or the two
-/// do not swing alike. Controllers that swing alike but are turned against each other are compared
-/// in the axes of their swings, whose ends must be known or within 60 degrees of the fronts.
+/// do not swing alike. `from_right` turns the right one as the left one lies in its hand
+/// (PairGrip). Controllers that swing alike but are turned against each other otherwise are
+/// compared in the axes of their swings, whose ends must be known or within 60 degrees of the
+/// fronts.
 PhaseEstimate FindPhase(const SampleGrid& left, const SampleGrid& right, double period_s,
-                        const SwingEnd& left_end, const SwingEnd& right_end,
-                        const PhaseConfig& config, const CycleConfig& cycle);
+                        const Eigen::Matrix3d& from_right, const SwingEnd& left_end,
+                        const SwingEnd& right_end, const PhaseConfig& config,
+                        const CycleConfig& cycle);
 
 /// The phase that is published: jumps must persist, a loss is bridged for a while.
 struct Phase {

@@ -80,26 +80,32 @@ stream::PairFeatures RigFeatureExtractor::ComputePair(
                                       devices_[pair.right].grid().newest_index());
   const std::int64_t steps = std::clamp<std::int64_t>(index - pair.computed_index, 0, kGridLength);
   pair.computed_index = index;
+  const DeviceFeatureExtractor &one = devices_[pair.left], &other = devices_[pair.right];
+  const double elapsed_s = kGridStepS * static_cast<double>(steps);
+  const bool rests = !left.moving && !right.moving;
+  if (rests || (left.moving && right.moving)) {
+    pair.grip =
+        Next(pair.grip, one.gravity_mps2(), other.gravity_mps2(), rests, elapsed_s, config_.grip);
+  }
   if (!left.moving || !right.moving) {
     pair.phase = {};
     pair.together = {};
     pair.period_s = pair.disagree_s = 0;
   } else {
-    const double elapsed_s = kGridStepS * static_cast<double>(steps);
     const double period_s = CommonPeriod(left, right, elapsed_s, pair);
-    const DeviceFeatureExtractor &one = devices_[pair.left], &other = devices_[pair.right];
+    const Eigen::Matrix3d from_right = pair.grip.FromRight();
     // While both periods are merely held, the newest cycle is none of theirs.
     const bool shown = period_s > 0 && (Shows(one, period_s) || Shows(other, period_s));
     const PhaseEstimate estimate =
-        shown ? FindPhase(one.grid(), other.grid(), period_s, one.swing_end(), other.swing_end(),
-                          config_.phase, config_.cycle)
+        shown ? FindPhase(one.grid(), other.grid(), period_s, from_right, one.swing_end(),
+                          other.swing_end(), config_.phase, config_.cycle)
               : PhaseEstimate{};
     if (period_s > 0) pair.period_s = period_s;
     pair.phase = Next(pair.phase, estimate, pair.period_s, elapsed_s, config_.phase);
     const bool seen = estimate.found && !pair.phase.jumping;
-    pair.together = seen || pair.period_s == 0
-                        ? Together{}
-                        : Next(pair.together, one.grid(), other.grid(), elapsed_s, config_.phase);
+    pair.together = seen || pair.period_s == 0 ? Together{}
+                                               : Next(pair.together, one.grid(), other.grid(),
+                                                      from_right, elapsed_s, config_.phase);
     if (pair.together.sure) pair.phase = {.valid = true};
   }
   const Phase& phase = pair.phase;

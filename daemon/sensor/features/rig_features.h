@@ -7,6 +7,7 @@
 #include "common/stream/sensor.h"
 #include "daemon/sensor/features/config.h"
 #include "daemon/sensor/features/device_features.h"
+#include "daemon/sensor/features/grip.h"
 #include "daemon/sensor/features/phase.h"
 #include "daemon/sensor/features/together.h"
 
@@ -44,6 +45,7 @@ class RigFeatureExtractor {
     double period_s = 0;    ///< That the two had in common last.
     double disagree_s = 0;  ///< How long they have had none.
     Together together;      ///< While no period shows their phase.
+    PairGrip grip;
   };
   /// The period that the two share; 0 while they do not agree on one.
   double CommonPeriod(const stream::DeviceFeatures& left, const stream::DeviceFeatures& right,

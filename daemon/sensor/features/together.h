@@ -8,9 +8,11 @@
 namespace footing::features {
 
 /// Normalised cross-correlation at lag 0 of the newest `span_s` of both controllers, -1 to 1, with
-/// the means removed: high when both move alike, below zero when they alternate, whatever the
-/// period. 0: there are not so many samples, or one stands still.
-double CorrelationNow(const SampleGrid& left, const SampleGrid& right, double span_s);
+/// the means removed and the right one turned by `from_right` (PairGrip): high when both move
+/// alike, below zero when they alternate, whatever the period. 0: there are not so many samples, or
+/// one stands still.
+double CorrelationNow(const SampleGrid& left, const SampleGrid& right,
+                      const Eigen::Matrix3d& from_right, double span_s);
 
 /// For how long both have moved together.
 struct Together {
@@ -19,6 +21,6 @@ struct Together {
 };
 
 Together Next(const Together& before, const SampleGrid& left, const SampleGrid& right,
-              double elapsed_s, const PhaseConfig& config);
+              const Eigen::Matrix3d& from_right, double elapsed_s, const PhaseConfig& config);
 
 }  // namespace footing::features
