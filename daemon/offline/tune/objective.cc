@@ -26,7 +26,7 @@ double Deviation(double seen, double wanted) {
 
 Wanted WantedOf(const Task& task, double height_m) {
   const auto strides = [&task](double flight_s, double stance_s, double stride_s) {
-    return Wanted{flight_s, stance_s, task.speed_mps * stride_s};
+    return Wanted{flight_s, stance_s, task.speed_mps * stride_s, 0.6 + 0.1 * task.speed_mps};
   };
   switch (task.gait) {
     case Gait::kRun: {
@@ -56,6 +56,8 @@ Cost CostOf(const Task& task, const TrialResult& result) {
   cost.heading = std::min(2.0, Square(RadiansToDegrees(result.heading_error_rad) / 5));
   if (task.gait == Gait::kRun) {
     cost.legs = std::min(2.0, Square(std::max(0.0, 1 - result.leg_gap_m / kLegGapM)));
+    const double late = std::max(0.0, result.latency_s / wanted.latency_s - 1);
+    cost.latency = std::min(2.0, Square(late / 0.1));
   }
   return cost;
 }

@@ -35,7 +35,8 @@ ordered_json ToJson(const Score& score) {
           {"stance", score.mean.stance},
           {"stride", score.mean.stride},
           {"heading", score.mean.heading},
-          {"legs", score.mean.legs}};
+          {"legs", score.mean.legs},
+          {"latency", score.mean.latency}};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "daemon/offline/tune/team.h"
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
@@ -38,7 +39,7 @@ Result<Team> Team::Create(int threads, ranks::Ranks ranks, const std::vector<std
 }
 
 Result<void> Team::Prepare(const std::vector<Task>& tasks, const gait::GainTable& table,
-                           std::uint64_t seed) {
+                           std::uint64_t seed, std::vector<gait::GainSet> others) {
   const std::size_t each = kStarts / tasks.size();
   std::vector<std::vector<engine::EngineState>> settled;
   for (const Task& task : tasks) {
@@ -56,7 +57,17 @@ Result<void> Team::Prepare(const std::vector<Task>& tasks, const gait::GainTable
   }
   table_ = table;
   starts_ = std::move(starts);
+  own_mps_ = tasks.front().speed_mps;
+  others_ = std::move(others);
   return {};
+}
+
+std::vector<gait::GainSet> Team::WholeTable(const gait::Gains& gains) const {
+  std::vector<gait::GainSet> sets = others_;
+  const auto above = std::find_if(sets.begin(), sets.end(),
+                                  [this](const auto& set) { return set.speed_mps > own_mps_; });
+  sets.insert(above, {"tried", own_mps_, gains});
+  return sets;
 }
 
 engine::GaitEngine Team::OnTrack(std::string track) const {
@@ -71,9 +82,13 @@ Cost Team::TryOne(engine::GaitEngine& engine, const gait::Gains& gains, std::siz
                   std::uint64_t seed) const {
   gait::GainTable table = table_;
   const auto& [task, start] = starts_[trial % starts_.size()];
-  table.Set(task.gait, {{"tried", 0, gains}});
-  engine.UseGains(table);
   const Disturbance disturbance = Draw(task, MixSeeds(seed, trial));
+  if (disturbance.change_s > 0) {
+    table.Set(task.gait, WholeTable(gains));
+  } else {
+    table.Set(task.gait, {{"tried", 0, gains}});
+  }
+  engine.UseGains(table);
   if (disturbance.pit_m == 0) return CostOf(task, RunTrial(engine, start, task, disturbance));
   engine::GaitEngine on_pit = OnTrack(PitTrack(start, disturbance));
   on_pit.UseGains(table);
@@ -121,6 +136,7 @@ Score ScoreOf(const std::vector<Cost>& costs) {
     score.mean.stride += cost.stride / n;
     score.mean.heading += cost.heading / n;
     score.mean.legs += cost.legs / n;
+    score.mean.latency += cost.latency / n;
     score.falls += cost.failure > 0 ? 1 : 0;
   }
   score.survival = 1 - score.falls / n;

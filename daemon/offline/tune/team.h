@@ -32,9 +32,10 @@ class Team {
   const ranks::Ranks& ranks() const { return ranks_; }
 
   /// Makes the states in which the trials begin, under `table`, for each task as many. All tasks
-  /// are of one gait.
+  /// are of one gait, the first at the tried set's own speed. `others` are the sets beside it, by
+  /// rising speeds, for trials that change their speed.
   Result<void> Prepare(const std::vector<Task>& tasks, const gait::GainTable& table,
-                       std::uint64_t seed);
+                       std::uint64_t seed, std::vector<gait::GainSet> others = {});
 
   /// Costs of `trials` trials for each of the gains, gains by gains, all on the same trials, which
   /// `seed` draws.
@@ -48,6 +49,7 @@ class Team {
   /// The jobs of this rank, on all of its threads.
   std::vector<Cost> TryOwn(const std::vector<gait::Gains>& gains, std::size_t trials,
                            std::uint64_t seed);
+  std::vector<gait::GainSet> WholeTable(const gait::Gains& gains) const;
   Cost TryOne(engine::GaitEngine& engine, const gait::Gains& gains, std::size_t trial,
               std::uint64_t seed) const;
 
@@ -61,6 +63,8 @@ class Team {
   };
   std::vector<Start> starts_;  ///< The tasks take turns.
   gait::GainTable table_;
+  double own_mps_ = 0;
+  std::vector<gait::GainSet> others_;
 };
 
 Score ScoreOf(const std::vector<Cost>& costs);

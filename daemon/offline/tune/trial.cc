@@ -17,8 +17,6 @@ constexpr std::uint64_t kTuneSalt = 0x666f6f74696e67;  // Keeps tuning off the s
 constexpr double kSettleS = 6;
 constexpr double kBetweenStatesS = 0.61;
 
-/// Shares of the trials, added up: pushed; turning. The rest come to a pit.
-constexpr double kPushed = 0.5, kTurning = 0.75;
 constexpr double kTurnDeg = 5;
 constexpr double kSmallKickNs = 2;
 constexpr double kLowestM = 0.1;
@@ -31,6 +29,22 @@ constexpr double kBeyondTest = 1.3;
 struct Range {
   double min, max;
 };
+
+/// When a run is to walk: the range is longer than a cycle (0.9 s), so that each of its moments is
+/// drawn, and early enough for the walk to be seen.
+constexpr Range kChangesS{0.2, 1.2};
+constexpr Range kWalksMps{0.2, 1.4};  // As in `footing-eval transitions`.
+
+/// Shares of the trials, added up: pushed in a turn; pushed; turning; at a pit. The others are to
+/// walk.
+struct Shares {
+  double pushed_turning, pushed, turning, pits;
+};
+
+Shares SharesOf(Gait gait) {
+  if (gait == Gait::kRun) return {0.15, 0.45, 0.6, 0.75};
+  return {0, 0.5, 0.75, 1};
+}
 
 double TestedKickNs(Gait gait) { return gait == Gait::kRun ? 26 : 16; }
 
@@ -78,6 +92,15 @@ bool Fell(const engine::EngineOutput& output) {
     if (output.events[static_cast<std::size_t>(i)].kind == engine::EventKind::kFall) return true;
   }
   return false;
+}
+
+int StepsOf(double duration_s) { return static_cast<int>(std::lround(duration_s / kStepS)); }
+
+void Kick(const Disturbance& disturbance, engine::EngineInputs& inputs) {
+  ++inputs.push_number;
+  inputs.push_impulse_W_ns =
+      disturbance.kick_ns * Eigen::Vector2d(std::cos(disturbance.kick_direction_rad),
+                                            std::sin(disturbance.kick_direction_rad));
 }
 
 }  // namespace
@@ -133,11 +156,18 @@ Disturbance Draw(const Task& task, std::uint64_t seed) {
     const bool highest = random.Uniform() < 0.5;
     drawn.height_m = highest ? highest_m : random.Uniform(kLowestM, highest_m);
   }
-  if (kind < kPushed) return drawn;
+  const Shares shares = SharesOf(task.gait);
+  if (kind < shares.pushed_turning) drawn.turn_rad = turn_rad;
+  if (kind < shares.pushed) return drawn;
   drawn.kick_ns = kSmallKickNs;
   const Range widths = PitWidths(task);
-  if (kind < kTurning || widths.max == 0) {
+  if (kind < shares.turning || widths.max == 0) {
     drawn.turn_rad = turn_rad;
+    return drawn;
+  }
+  if (kind >= shares.pits) {
+    drawn.change_s = random.Uniform(kChangesS.min, kChangesS.max);
+    drawn.walk_mps = random.Uniform(kWalksMps.min, kWalksMps.max);
     return drawn;
   }
   drawn.pit_m = random.Uniform(widths.min, widths.max);
@@ -169,15 +199,13 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
 
   engine.Restore(start);
   GaitMeter meter(task);
-  const auto steps = static_cast<int>(std::lround(kTrialS / kStepS));
-  const auto kick_step = static_cast<int>(std::lround(disturbance.kick_s / kStepS));
+  const int steps = StepsOf(kTrialS), kick_step = StepsOf(disturbance.kick_s);
+  const int change_step = disturbance.change_s > 0 ? StepsOf(disturbance.change_s) : steps;
   TrialResult result;
   for (int i = 0; i < steps; ++i) {
-    if (i == kick_step) {
-      ++inputs.push_number;
-      inputs.push_impulse_W_ns =
-          disturbance.kick_ns * Eigen::Vector2d(std::cos(disturbance.kick_direction_rad),
-                                                std::sin(disturbance.kick_direction_rad));
+    if (i == kick_step) Kick(disturbance, inputs);
+    if (i == change_step) {
+      inputs.direct_command = {.gait = Gait::kWalk, .speed_mps = disturbance.walk_mps};
     }
     if (disturbance.pit_m > 0 && task.gait == Gait::kRun) {
       const double to_edge_m = near_m - engine.Output().p_WC_m.x();
@@ -189,12 +217,17 @@ TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& star
       result.survived = static_cast<double>(i) / steps;
       break;
     }
-    meter.Add(engine.Output(), kStepS);
+    const bool walks = engine.Output().gait.gait == Gait::kWalk;
+    if (i < change_step) {
+      meter.Add(engine.Output(), kStepS);
+    } else if (result.latency_s == 0 && (walks || i + 1 == steps)) {
+      result.latency_s = (i + 1 - change_step) * kStepS;
+    }
   }
   meter.Report(result);
   if (!ScoresHeading(disturbance)) result.heading_error_rad = 0;
   if (!ScoresLegs(disturbance)) result.leg_gap_m = INFINITY;
-  result.height_m = inputs.direct_command.height_m;
+  result.height_m = disturbance.height_m;
   return result;
 }
 

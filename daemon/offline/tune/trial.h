@@ -28,12 +28,15 @@ struct Disturbance {
   double height_m = 0.2;
   double pit_m = 0;        ///< Width; 0: no pit.
   double pit_ahead_m = 0;  ///< From the start to the near edge.
+  double change_s = 0;     ///< From the start to the command to walk; 0: none.
+  double walk_mps = 0;     ///< Of that command.
 };
 
 /// What the acceptance tests do (tests/scenarios/biped_table.py). Half of the trials are pushes of
 /// 0.1 s from any side after 1.5 to 2.2 s, of 26 N s (run) or 16 N s and up to 1.3 times that. The
 /// others, with a push of 2 N s, turn by 5 degrees a step, or come to a pit, where a run is to
-/// jump. Half of the jumps are as high as they are accepted, the others 0.1 m to that.
+/// jump. Half of the jumps are as high as they are accepted, the others 0.1 m to that. A quarter of
+/// the runs are to walk, in place of some of each; a third of those that are pushed turn as well.
 Disturbance Draw(const Task& task, std::uint64_t seed);
 
 /// Whether the trial's turn is to be followed by the body: no large push disturbs it.
@@ -55,6 +58,7 @@ struct TrialResult {
   double height_m = 0.2;         ///< That was commanded, of a jump.
   double heading_error_rad = 0;  ///< Root mean square; 0 where it is not scored.
   double leg_gap_m = INFINITY;   ///< Least, between the legs; infinite where it is not scored.
+  double latency_s = 0;          ///< From the command to walk to walking, or to the end; 0: none.
 };
 
 inline constexpr double kTrialS = 5;
@@ -70,7 +74,7 @@ Result<std::vector<engine::EngineState>> SettledStates(engine::GaitEngine& engin
                                                        int count, std::uint64_t seed);
 
 /// One trial of kTrialS from `start`, under the gains that the engine uses. A pit needs an engine
-/// on its track.
+/// on its track. Of a trial that is to walk, all but the latency is measured before that command.
 TrialResult RunTrial(engine::GaitEngine& engine, const engine::EngineState& start, const Task& task,
                      const Disturbance& disturbance);
 

@@ -130,7 +130,9 @@ class Tuning {
     const Task task{gait_, options_.speeds_mps[index]};
     const std::uint64_t seed = MixSeeds(options_.seed, index);
     const std::vector<Task> tasks = TasksOf(gait_, options_.speeds_mps, index);
-    if (const auto prepared = team_.Prepare(tasks, table_, seed); !prepared) return prepared;
+    if (const auto prepared = team_.Prepare(tasks, table_, seed, Others(index)); !prepared) {
+      return prepared;
+    }
     SearchState& search = searches_[index];
     const gait::Gains start = StartOf(task);
     const Evaluate evaluate = [&](const std::vector<Eigen::VectorXd>& points, std::uint64_t batch) {
@@ -156,6 +158,17 @@ class Tuning {
     }
     Validate(index, task, start, seed);
     return {};
+  }
+
+  /// The table's other sets as far as they are known: as tuned before, else those of the start.
+  std::vector<gait::GainSet> Others(std::size_t index) const {
+    std::vector<gait::GainSet> others;
+    for (std::size_t i = 0; i < options_.speeds_mps.size(); ++i) {
+      const double speed_mps = options_.speeds_mps[i];
+      if (i < index) others.push_back(tuned_[i].set);
+      if (i > index) others.push_back({"start", speed_mps, StartOf({gait_, speed_mps})});
+    }
+    return others;
   }
 
   /// The start's gains for this speed, which are all of the gait's own: what they take from other

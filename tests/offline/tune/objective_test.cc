@@ -42,11 +42,16 @@ TEST(Objective, ChargesTheLatestFallMoreThanAllElseTogether) {
                     .heading_error_rad = 3,
                     .leg_gap_m = -0.04};
   const Task run{stream::Gait::kRun, 3};
-  const double all_else = CostOf(run, worst).total();
+  TrialResult worst_change = worst;
+  worst_change.heading_error_rad = 0;  // Of turns alone.
+  worst_change.latency_s = 5;
   TrialResult fallen = AsWanted(run);
   fallen.survived = 0.9999;
-  EXPECT_GT(all_else, 8);
-  EXPECT_GT(CostOf(run, fallen).total(), all_else);
+  for (const TrialResult& bad : {worst, worst_change}) {
+    const double all_else = CostOf(run, bad).total();
+    EXPECT_GT(all_else, 8);
+    EXPECT_GT(CostOf(run, fallen).total(), all_else);
+  }
 }
 
 TEST(Objective, ChargesEachTermByItself) {
@@ -76,6 +81,19 @@ TEST(Objective, ChargesTheLegsOfARunThatComeTooNear) {
   EXPECT_DOUBLE_EQ(CostOf(run, result).legs, 2);
   // A walk steps across where balance asks for it.
   EXPECT_DOUBLE_EQ(CostOf(kWalk, result).legs, 0);
+}
+
+TEST(Objective, ChargesARunThatTakesLongToWalk) {
+  const Task run{stream::Gait::kRun, 6};
+  TrialResult result = AsWanted(run);
+  result.latency_s = 1.2;  // 0.6 s + 0.1 s x 6.
+  EXPECT_NEAR(CostOf(run, result).latency, 0, 1e-12);
+  result.latency_s = 1.1 * 1.2;
+  EXPECT_NEAR(CostOf(run, result).latency, 1, 1e-9);
+  result.latency_s = 1.43;  // A hop more.
+  EXPECT_DOUBLE_EQ(CostOf(run, result).latency, 2);
+  result.latency_s = 0.5;  // Sooner is no fault.
+  EXPECT_DOUBLE_EQ(CostOf(run, result).latency, 0);
 }
 
 TEST(Objective, DoesNotChargeWhatWasNeverSeen) {

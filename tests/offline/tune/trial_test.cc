@@ -64,25 +64,74 @@ TEST(Trials, BeginWalkingAtTheirSpeed) {
   EXPECT_EQ(moments.size(), 3u);
 }
 
-TEST(Disturbances, OfARunArePushesTurnsAndPits) {
+TEST(Trials, BrakeWithTheTablesOtherSets) {
+  const Task run{stream::Gait::kRun, 3.5};
+  auto team = Team::Create(1);
+  ASSERT_TRUE(team.ok());
+  const gait::GainTable table = *TableOf(*engine_files::ReadTexts(), {});
+  const gait::Gains tried = table.At(run.gait, run.speed_mps);
+  gait::GainSet weak{"slow", 1, tried};
+  weak.gains.hopping.run_leg_stiffness_n_per_m = 500;
+  const auto changes = [&run](std::uint64_t seed, std::uint64_t trial) {
+    return Draw(run, MixSeeds(seed, trial)).change_s > 0;
+  };
+  std::uint64_t seed = 1;  // Of two trials, the first is to walk.
+  while (!changes(seed, 0) || changes(seed, 1)) ++seed;
+
+  ASSERT_TRUE(team->Prepare({run}, table, 3).ok());
+  const std::vector<Cost> alone = team->Try({tried}, 2, seed).front();
+  ASSERT_TRUE(team->Prepare({run}, table, 3, {weak}).ok());
+  const std::vector<Cost> beside = team->Try({tried}, 2, seed).front();
+  EXPECT_NE(alone[0].total(), beside[0].total());
+  EXPECT_EQ(alone[1].total(), beside[1].total());
+}
+
+TEST(Trials, TimeAChangeToWalking) {
+  auto engine = engine::GaitEngine::Create(*engine_files::ReadTexts());
+  ASSERT_TRUE(engine.ok());
   const Task run{stream::Gait::kRun, 3};
-  int pushed = 0, turning = 0, pits = 0;
+  const auto states = SettledStates(*engine, run, 1, 5);
+  ASSERT_TRUE(states.ok());
+  const auto result = [&](double change_s) {
+    return RunTrial(*engine, states->front(), run,
+                    {.kick_s = 9, .change_s = change_s, .walk_mps = 0.8});
+  };
+  const TrialResult walked = result(1);
+  EXPECT_EQ(walked.survived, 1);
+  EXPECT_GT(walked.latency_s, 0.3);
+  EXPECT_LT(walked.latency_s, 1.5);
+  EXPECT_LT(walked.speed_error_mps, 0.1);  // Of the run before.
+  // What is over before it walks counts up to there; what is never to walk has no latency.
+  EXPECT_NEAR(result(4.9).latency_s, kTrialS - 4.9, 1e-9);
+  EXPECT_EQ(result(0).latency_s, 0);
+}
+
+TEST(Disturbances, OfARunArePushesTurnsPitsAndChangesOfGait) {
+  const Task run{stream::Gait::kRun, 3};
+  int pushed = 0, pushed_turning = 0, turning = 0, pits = 0, changes = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const Disturbance drawn = Draw(run, seed);
     EXPECT_FALSE(drawn.pit_m > 0 && drawn.turn_rad != 0);
     EXPECT_FALSE(drawn.pit_m > 0 && ScoresHeading(drawn));
-    EXPECT_EQ(ScoresLegs(drawn), drawn.pit_m > 0 || drawn.turn_rad != 0);
-    pushed += drawn.kick_ns >= 26 ? 1 : 0;
+    EXPECT_FALSE(drawn.change_s > 0 && (drawn.turn_rad != 0 || drawn.pit_m > 0));
+    EXPECT_EQ(ScoresLegs(drawn), drawn.kick_ns < 26);
+    const bool hard = drawn.kick_ns >= 26;
+    pushed += hard ? 1 : 0;
     EXPECT_LE(drawn.kick_ns, 1.3 * 26);
+    pushed_turning += hard && drawn.turn_rad != 0 ? 1 : 0;
     turning += ScoresHeading(drawn) ? 1 : 0;
     pits += drawn.pit_m > 0 ? 1 : 0;
+    changes += drawn.change_s > 0 ? 1 : 0;
   }
-  // Of 400: 50, 25 and 25 %, within three standard deviations.
-  EXPECT_NEAR(pushed, 200, 30);
-  EXPECT_NEAR(turning, 100, 26);
-  EXPECT_NEAR(pits, 100, 26);
+  // Of 400: 45, 15, 15, 15 and 25 %, within three standard deviations.
+  EXPECT_NEAR(pushed, 180, 30);
+  EXPECT_NEAR(pushed_turning, 60, 22);
+  EXPECT_NEAR(turning, 60, 22);
+  EXPECT_NEAR(pits, 60, 22);
+  EXPECT_NEAR(changes, 100, 26);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     EXPECT_LE(Draw(kTrialWalk, seed).pit_m, 0.3);
+    EXPECT_EQ(Draw(kTrialWalk, seed).change_s, 0);
     EXPECT_EQ(Draw({stream::Gait::kStep, 0}, seed).pit_m, 0);
     EXPECT_EQ(Draw({stream::Gait::kJump, 0}, seed).pit_m, 0);
   }
