@@ -62,6 +62,9 @@ class Strategy {
         if (score.chi2 < kSurelyMoves) ways.push_back(0);
         if (auto fit = Moving(score.motion_px, ways)) Take(*fit);
       }
+      // A motion that is too small to be seen shifts it, too.
+      if (best_ && best_->solution.state.motion_px.isZero() && !start_.motion_px)
+        best_->solution.covariance += score.unseen;
     }
     const bool is_cut = disc::IsCut(start_.reach);
     if (!IsGood() || is_cut) {
@@ -126,28 +129,56 @@ class Strategy {
   /// Both ways along a line, and at rest if that is possible: their mean by evidence. A part of the
   /// pixels says which of them are likely.
   std::optional<Fit> Moving(const Eigen::Vector2d& motion_px, const std::vector<double>& factors) {
-    const double length = motion_px.norm();
-    fitter_.Collect(image_, slopes_, start_.middle_px, begin_,
-                    kFarBlurs + 0.5 * length / settings_.profile.blur_px, kMostPixelsMoving);
-    std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
-    fitter_.LookBehind(begin_, length, used);
-    const std::vector<Sample> all = fitter_.samples();
-    std::vector<Mode> modes;
-    fitter_.Use(disc::Thinned(all, kSomePixels));
+    double length_px = motion_px.norm();
+    std::vector<bool> used = CollectMoving(length_px);
+    std::vector<State> starts;
     for (const double factor : factors) {
-      State state = begin_;
-      state.motion_px = factor * motion_px;
-      const bool moves = factor != 0;
-      if (const auto found = fitter_.Solve(state, moves, 4)) modes.push_back({*found, moves});
+      starts.push_back(begin_);
+      starts.back().motion_px = factor * motion_px;
     }
-    KeepLikely(modes);
+    std::vector<Mode> modes = Likely(starts);
+    // A score is that of a short travel. Of a longer one the light reaches what was taken for
+    // background.
+    if (!modes.empty() && TravelPx(modes) > length_px + settings_.profile.blur_px) {
+      length_px = TravelPx(modes);
+      used = CollectMoving(length_px);
+      starts.clear();
+      for (const Mode& mode : modes) starts.push_back(mode.solution.state);
+      modes = Likely(starts);
+    }
     if (modes.empty() || modes.back().solution.misfit_sds > kNoMotionSds) return std::nullopt;
-    fitter_.Use(all);
+    fitter_.Use(moving_pixels_);
     std::vector<Solution> solutions = SolveAgain(modes);
     // The likeliest one was solved last.
     if (!solutions.empty() && fitter_.DropSectors(used) > 0) solutions = SolveAgain(modes);
     if (solutions.empty()) return std::nullopt;
     return Fit{disc::Mean(solutions), used};
+  }
+
+  static double TravelPx(const std::vector<Mode>& modes) {
+    return modes.back().solution.state.motion_px.norm();
+  }
+
+  /// The pixels of a sphere with such a travel, and the sectors that take part.
+  std::vector<bool> CollectMoving(double length_px) {
+    fitter_.Collect(image_, slopes_, start_.middle_px, begin_,
+                    kFarBlurs + 0.5 * length_px / settings_.profile.blur_px, kMostPixelsMoving);
+    std::vector<bool> used = fitter_.Limit(begin_, start_.reach);
+    fitter_.LookBehind(begin_, length_px, used);
+    moving_pixels_ = fitter_.samples();
+    return used;
+  }
+
+  /// Of fits to a part of the pixels, those that are likely, the likeliest last.
+  std::vector<Mode> Likely(const std::vector<State>& starts) {
+    fitter_.Use(disc::Thinned(moving_pixels_, kSomePixels));
+    std::vector<Mode> modes;
+    for (const State& start : starts) {
+      const bool moves = !start.motion_px.isZero();
+      if (const auto found = fitter_.Solve(start, moves, 4)) modes.push_back({*found, moves});
+    }
+    KeepLikely(modes);
+    return modes;
   }
 
   std::vector<Solution> SolveAgain(const std::vector<Mode>& modes) {
@@ -206,7 +237,8 @@ class Strategy {
   disc::PixelScale scale_;
   Fitter fitter_;
   State begin_;
-  std::vector<Sample> pixels_;  // Of a sphere at rest, all that were collected.
+  std::vector<Sample> pixels_;         // Of a sphere at rest, all that were collected.
+  std::vector<Sample> moving_pixels_;  // Of one that moves.
   std::optional<Fit> best_;
   double clipped_share_ = 0;
   bool is_behind_edge_ = false;

@@ -12,13 +12,15 @@ namespace footing::sphere::disc {
 namespace {
 
 constexpr double kGradientSd = 0.15;
+constexpr double kLeastGrowthSd = 1e-5;
 // A step that promises less of chi² is taken unseen: a tenth of a standard deviation.
 constexpr double kLittleGain = 0.01;
 
 State Moved(const State& state, const Right& step) {
   State next = state;
   next.shape += step.head<kShape>();
-  next.motion_px += step.segment<kMotion>(kShape);
+  next.motion_px += step.segment<2>(kShape);
+  next.growth += step[kShape + 2];
   for (std::size_t c = 0; c < 3; ++c) {
     next.inside[c] += step[kLevels + 2 * static_cast<int>(c)];
     next.outside[c] += step[kLevels + 2 * static_cast<int>(c) + 1];
@@ -38,6 +40,8 @@ bool IsSane(const State& next, const State& before) {
 std::optional<Solution> Fitter::Solve(State state, bool moves, int rounds) {
   if (samples_.size() < 2 * kParameters) return std::nullopt;
   ToBlocks(samples_, blocks_);
+  // Along the line of sight a hand is expected to be as fast as along one axis across it.
+  growth_sd_ = std::max(kLeastGrowthSd, std::sqrt(0.5) * (scale_.scale() * state.motion_px).norm());
   double cost = 0;
   const auto solved =
       moves ? Descend<kOwnMoving>(state, rounds, cost) : Descend<kOwn>(state, rounds, cost);
@@ -101,7 +105,7 @@ double Fitter::PriorCost(const State& state) const {
   return square((state.shape[3] - profile.blur_px) / profile.blur_sd_px) +
          square((state.shape[4] - profile.limb) / profile.limb_sd) +
          (square(state.shape[5]) + square(state.shape[6])) / square(kGradientSd) +
-         state.motion_px.squaredNorm() / square(motion_sd_px_);
+         state.motion_px.squaredNorm() / square(motion_sd_px_) + square(state.growth / growth_sd_);
 }
 
 /// Huber's cost of a state, and its equations.
@@ -132,7 +136,8 @@ void Fitter::Assemble(const State& state, const Equations<kSize>& equations, Nor
   prior(5, state.shape[5], 0, kGradientSd);
   prior(6, state.shape[6], 0, kGradientSd);
   if constexpr (kSize == kOwnMoving) {
-    for (int i = 0; i < kMotion; ++i) prior(kShape + i, state.motion_px[i], 0, motion_sd_px_);
+    for (int i = 0; i < 2; ++i) prior(kShape + i, state.motion_px[i], 0, motion_sd_px_);
+    prior(kShape + 2, state.growth, 0, growth_sd_);
   }
 }
 
@@ -158,30 +163,37 @@ Solution Fitter::Report(const State& state, double cost, bool moves) const {
                         solver.solve(Normal::Identity().leftCols<3>()).topRows<3>();
   solution.log_evidence =
       -0.5 * cost / correlation - 0.5 * solver.vectorD().array().abs().log().sum();
-  // The density of the motion's prior, and what the correlation makes of two more parameters.
-  if (moves) solution.log_evidence += std::log(correlation / (motion_sd_px_ * motion_sd_px_));
+  // The density of the motion's prior, and what the correlation makes of three more parameters.
+  if (moves)
+    solution.log_evidence += std::log(correlation / (motion_sd_px_ * motion_sd_px_)) +
+                             std::log(std::sqrt(correlation) / growth_sd_);
   return solution;
 }
 
-MotionScore Fitter::ScoreMotion(const State& state) {
-  // Four columns: how blur and edge change with twice the angle, as motion makes them.
-  constexpr std::size_t kColumns = 4;
-  using Columns = Eigen::Matrix<double, kColumns, 1>;
+/// Sums over the pixels of four columns: how blur and edge change with twice the angle, as motion
+/// makes them, then travel that the rolling shutter shows.
+struct Fitter::ScoreSums {
+  static constexpr std::size_t kColumns = 4;
+  using Square = Eigen::Matrix<double, kColumns, kColumns>;
   Eigen::Matrix<double, kParameters, kColumns> cross =
       Eigen::Matrix<double, kParameters, kColumns>::Zero();
-  Eigen::Matrix<double, kColumns, kColumns> own = Eigen::Matrix<double, kColumns, kColumns>::Zero();
-  Columns right = Columns::Zero();
+  Square own = Square::Zero();
+  Eigen::Matrix<double, kColumns, 1> right = Eigen::Matrix<double, kColumns, 1>::Zero();
+};
+
+Fitter::ScoreSums Fitter::SumScore(const State& state) {
+  constexpr std::size_t kColumns = ScoreSums::kColumns;
+  ScoreSums sums;
   const Eigen::Matrix2f to_px = scale_.scale().inverse().cast<float>();
   const Eigen::Matrix2f to_slopes = scale_.scale().cast<float>();
-  const Eigen::Vector2f axis = state.shape.head<2>().cast<float>(),
-                        down = scale_.down().cast<float>();
+  const Eigen::Vector2f axis = state.shape.head<2>().cast<float>();
   Rows<kOwn> rows;
   for (Block& block : blocks_) {
     ToRows(block, state, settings_.noise, scale_, table_, rows);
     const Lane s = block.s - axis.x(), t = block.t - axis.y();
     const Lane u = to_px(0, 0) * s + to_px(0, 1) * t, v = to_px(1, 0) * s + to_px(1, 1) * t;
     const Lane per_square = rows.row[3] / (u * u + v * v).max(1e-9F);
-    const Lane later = down.x() * s + down.y() * t;
+    const Lane later = AfterAxis(block, state, scale_);
     const std::array<Lane, kColumns> columns = {
         per_square * (u * u - v * v), per_square * 2 * u * v,
         later * (to_slopes(0, 0) * rows.row[0] + to_slopes(1, 0) * rows.row[1]),
@@ -193,24 +205,57 @@ MotionScore Fitter::ScoreMotion(const State& state) {
       const auto sum = [&weighted](const Lane& lane) {
         return static_cast<double>((weighted * lane).sum());
       };
-      right[column] += sum(rows.off);
-      for (int i = 0; i < kShape; ++i) cross(i, column) += sum(rows.row[std::size_t(i)]);
+      sums.right[column] += sum(rows.off);
+      for (int i = 0; i < kShape; ++i) sums.cross(i, column) += sum(rows.row[std::size_t(i)]);
       for (int i = 0; i < 2; ++i) {
-        cross(kLevels + 2 * int(block.channel) + i, column) +=
+        sums.cross(kLevels + 2 * int(block.channel) + i, column) +=
             sum(rows.row[std::size_t(kShape + i)]);
       }
-      for (std::size_t k = 0; k < kColumns; ++k) own(int(k), column) += sum(columns[k]);
+      for (std::size_t k = 0; k < kColumns; ++k) sums.own(int(k), column) += sum(columns[k]);
     }
   }
-  own -= cross.transpose() * normal_.ldlt().solve(cross);
-  const Columns change = own.ldlt().solve(right);
+  return sums;
+}
+
+/// What remains possible of a motion: its even blur by the noise of that with twice the angle and
+/// by how fast a hand is expected to be; its travel by that blur and by the noise of the travel.
+Eigen::Matrix3d Fitter::Unseen(const Eigen::Vector4d& change, const Eigen::Matrix4d& noise,
+                               double size, double blur_px,
+                               const Eigen::Matrix<double, 3, 2>& per_travel) const {
+  const double expected2 = std::pow(motion_sd_px_ * motion_sd_px_ / (24 * blur_px), 2);
+  const double noise2 = 0.5 * noise.topLeftCorner<2, 2>().trace();
+  const double share = expected2 / (expected2 + noise2);
+  const double blur2 = share * share * size * size + 2 * share * noise2;
+  const double travel2 = 0.5 * 48 * blur_px * std::sqrt(0.5 * blur2);
+  const Eigen::Matrix2d travel_noise = noise.bottomRightCorner<2, 2>();
+  const Eigen::Matrix2d shares =
+      travel2 * (travel_noise + travel2 * Eigen::Matrix2d::Identity()).inverse();
+  const Eigen::Vector2d mean = shares * change.tail<2>();
+  const Eigen::Matrix2d square = shares * travel_noise + mean * mean.transpose();
+  const double blur_sd_px = settings_.profile.blur_sd_px;
+  const Eigen::Vector3d per_blur =
+      normal_.ldlt().solve(Normal::Identity().col(3)).head<3>() / (blur_sd_px * blur_sd_px);
+  return blur2 * per_blur * per_blur.transpose() + per_travel * square * per_travel.transpose();
+}
+
+MotionScore Fitter::ScoreMotion(const State& state) {
+  using Square = ScoreSums::Square;
+  ScoreSums sums = SumScore(state);
+  const Eigen::LDLT<Normal> solver = normal_.ldlt();
+  const Eigen::Matrix<double, kParameters, ScoreSums::kColumns> gain = solver.solve(sums.cross);
+  sums.own -= sums.cross.transpose() * gain;
+  const Eigen::LDLT<Square> own = sums.own.ldlt();
+  const Eigen::Vector4d change = own.solve(sums.right);
   MotionScore score;
-  score.chi2 = right.dot(change) / settings_.noise.correlation;
+  score.chi2 = sums.right.dot(change) / settings_.noise.correlation;
   // Motion adds (motion . unit)² / 12 to the square of the blur: half of it is even.
   const double size = std::hypot(change[0], change[1]);
   const double angle = 0.5 * std::atan2(change[1], change[0]);
   score.motion_px =
       std::sqrt(48 * state.shape[3] * size) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  score.unseen = Unseen(change, settings_.noise.correlation * own.solve(Square::Identity()), size,
+                        state.shape[3], gain.topRightCorner<3, 2>());
+  if (!score.unseen.allFinite()) score.unseen.setZero();  // Too few pixels for a score.
   return score;
 }
 

@@ -33,6 +33,8 @@ Solution Mean(const std::vector<Solution>& modes);
 struct MotionScore {
   double chi2 = 0;                  ///< Of four degrees of freedom if it is at rest.
   Eigen::Vector2d motion_px{0, 0};  ///< To begin with; its sign is uncertain.
+  /// What a motion that is too small to be seen adds to the covariance of axis and tangent.
+  Eigen::Matrix3d unseen = Eigen::Matrix3d::Zero();
 };
 
 /// The pixels around a sphere and the fit of the model to them.
@@ -77,16 +79,21 @@ class Fitter {
   template <int kSize>
   void Assemble(const State& state, const Equations<kSize>& equations, Normal& normal,
                 Right& right) const;
-  void CollectQuad(const Image& image, const LocalSlopes& slopes, const State& state, int u, int v,
-                   double far_blurs, int& quad, int every);
+  void CollectQuad(const Image& image, const LocalSlopes& slopes, const Eigen::Vector2d& middle_px,
+                   const State& state, int u, int v, double far_blurs, int& quad, int every);
   double BeyondOf(const Eigen::Vector2d& slopes, const State& state) const;
   double PriorCost(const State& state) const;
+  struct ScoreSums;
+  ScoreSums SumScore(const State& state);
+  Eigen::Matrix3d Unseen(const Eigen::Vector4d& change, const Eigen::Matrix4d& noise, double size,
+                         double blur_px, const Eigen::Matrix<double, 3, 2>& per_travel) const;
   Solution Report(const State& state, double cost, bool moves) const;
 
   const Settings& settings_;
   const ProfileTable& table_;
   const PixelScale& scale_;
   double motion_sd_px_;
+  double growth_sd_ = 1;  // Of what was solved last.
   std::vector<Sample> samples_;
   std::vector<Block> blocks_;  // The same, as they were solved last.
   int inside_ = 0, clipped_ = 0;

@@ -94,19 +94,16 @@ void Model(const Lane& s, const Lane& t, const State& state, const PixelScale& s
   slope[6] = level * y + blurred * unit_t;
 }
 
-void ModelMoving(const Lane& s, const Lane& t, const State& state, const PixelScale& scale,
-                 const ProfileTable& table, ModelledMoving& sum) {
+void ModelMoving(const Lane& s, const Lane& t, const Lane& later, const State& state,
+                 const PixelScale& scale, const ProfileTable& table, ModelledMoving& sum) {
   constexpr double kPartBlurs = 2.5;  // Two points of Gauss stand for that: 0.5 % of the contrast.
   constexpr int kMostParts = 4;
   const double travel_blurs = state.motion_px.norm() / state.shape[3];
   const int parts =
       std::clamp(static_cast<int>(std::ceil(travel_blurs / kPartBlurs)), 1, kMostParts);
-  const Eigen::Vector2f down = scale.down().cast<float>();
-  const Eigen::Vector2f axis = state.shape.head<2>().cast<float>();
-  const Lane later = down.x() * (s - axis.x()) + down.y() * (t - axis.y());
   const Eigen::Vector2f travel = (scale.scale() * state.motion_px).cast<float>();
   for (Lane* lane : {&sum.light, &sum.cover, &sum.beyond}) lane->setZero();
-  std::array<Lane, 2> light_motion, cover_motion;
+  std::array<Lane, kMotion> light_motion, cover_motion;  // Axis s and t, tangent.
   for (auto* lanes : {&light_motion, &cover_motion})
     for (Lane& lane : *lanes) lane.setZero();
   for (Lane& lane : sum.light_slope) lane.setZero();
@@ -125,17 +122,24 @@ void ModelMoving(const Lane& s, const Lane& t, const State& state, const PixelSc
       sum.light_slope[k] += share * one.light_slope[k];
     for (std::size_t k = 0; k < one.cover_slope.size(); ++k)
       sum.cover_slope[k] += share * one.cover_slope[k];
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < kMotion; ++k) {
       light_motion[k] += share * at * one.light_slope[k];
       cover_motion[k] += share * at * one.cover_slope[k];
     }
   }
   const Eigen::Matrix2f to_px = scale.scale().cast<float>();
-  for (int k = 0; k < kMotion; ++k) {
+  for (int k = 0; k < 2; ++k) {
     const auto at = static_cast<std::size_t>(k);
     sum.light_motion[at] = to_px(0, k) * light_motion[0] + to_px(1, k) * light_motion[1];
     sum.cover_motion[at] = to_px(0, k) * cover_motion[0] + to_px(1, k) * cover_motion[1];
   }
+  // A sphere grows by a hundredth at most: linear.
+  const auto tangent = static_cast<float>(state.shape[2]),
+             growth = static_cast<float>(state.growth);
+  sum.light_motion[2] = tangent * light_motion[2];
+  sum.cover_motion[2] = tangent * cover_motion[2];
+  sum.light += growth * sum.light_motion[2];
+  sum.cover += growth * sum.cover_motion[2];
 }
 
 }  // namespace footing::sphere::disc

@@ -12,7 +12,7 @@
 namespace footing::sphere::disc {
 
 inline constexpr int kShape = 7;   // Axis s and t, tangent, blur, limb, gradient along s and t.
-inline constexpr int kMotion = 2;  // Travel in the image during the exposure, px.
+inline constexpr int kMotion = 3;  // During the exposure: travel in the image, px; growth.
 
 using Shape = Eigen::Matrix<double, kShape, 1>;
 
@@ -23,6 +23,7 @@ using Lane = Eigen::Array<float, kBlock, 1>;
 struct State {
   Shape shape;                                // As kShape lists.
   Eigen::Vector2d motion_px{0, 0};            // Zero for a sphere at rest.
+  double growth = 0;                          // Of the tangent, a share: it comes nearer.
   std::array<double, 3> inside{}, outside{};  // Of each channel, DN.
 };
 
@@ -50,8 +51,7 @@ class PixelScale {
   /// How that changes per slope along s (0) or t (1): off the optical axis a pixel covers less
   /// towards the edge of the image.
   const Eigen::Matrix2d& square_change(std::size_t axis) const { return square_change_[axis]; }
-  /// Of a pixel so far from the sphere's axis: how much later its row is exposed, in exposures.
-  double Later(const Eigen::Vector2d& from) const { return down_.dot(from); }
+  /// How much later a row is exposed per slope, in exposures, near the middle of the blob.
   const Eigen::Vector2d& down() const { return down_; }
   const Eigen::Matrix2d& scale() const { return scale_; }
 
@@ -78,8 +78,9 @@ struct ModelledMoving : Modelled {
   std::array<Lane, kMotion> light_motion, cover_motion;  // Slopes along the motion.
 };
 
-/// The same of a sphere that moves: the mean over the exposure of the pixels' rows.
-void ModelMoving(const Lane& s, const Lane& t, const State& state, const PixelScale& scale,
-                 const ProfileTable& table, ModelledMoving& sum);
+/// The same of a sphere that moves: the mean over the exposure of the pixels' rows, which are
+/// exposed so much later than that of its axis.
+void ModelMoving(const Lane& s, const Lane& t, const Lane& later, const State& state,
+                 const PixelScale& scale, const ProfileTable& table, ModelledMoving& sum);
 
 }  // namespace footing::sphere::disc

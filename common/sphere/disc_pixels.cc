@@ -35,12 +35,13 @@ void Fitter::Collect(const Image& image, const LocalSlopes& slopes,
   int quad = 0;
   for (int v = v0; v < v1; v += 2) {
     for (int u = u0; u < u1; u += 2)
-      CollectQuad(image, slopes, state, u, v, far_blurs, quad, every);
+      CollectQuad(image, slopes, middle_px, state, u, v, far_blurs, quad, every);
   }
 }
 
-void Fitter::CollectQuad(const Image& image, const LocalSlopes& slopes, const State& state, int u,
-                         int v, double far_blurs, int& quad, int every) {
+void Fitter::CollectQuad(const Image& image, const LocalSlopes& slopes,
+                         const Eigen::Vector2d& middle_px, const State& state, int u, int v,
+                         double far_blurs, int& quad, int every) {
   const Eigen::Vector2d at = slopes.At(u + 0.5, v + 0.5);
   const double beyond = BeyondOf(at, state);
   if (beyond > far_blurs + 1.5) return;
@@ -59,6 +60,7 @@ void Fitter::CollectQuad(const Image& image, const LocalSlopes& slopes, const St
     if (sample.value >= kClippedDn) continue;
     sample.slopes = slopes.At(at_u, at_v);
     sample.channel = image.Channel(at_u, at_v);
+    sample.later = (at_v - middle_px.y()) * settings_.shutter.row_s / settings_.shutter.exposure_s;
     const Eigen::Vector2d pixel_from = sample.slopes - state.shape.head<2>();
     sample.sector = SectorOf(pixel_from);
     samples_.push_back(sample);

@@ -19,7 +19,8 @@ void ToBlocks(const std::vector<Sample>& samples, std::vector<Block>& blocks) {
     if (open[channel] == 0 || blocks[open[channel] - 1].count == kBlock) {
       Block& block = blocks.emplace_back();
       block.channel = channel;
-      for (Lane* lane : {&block.s, &block.t, &block.value, &block.behind, &block.is_used})
+      for (Lane* lane :
+           {&block.s, &block.t, &block.later, &block.value, &block.behind, &block.is_used})
         lane->setZero();
       open[channel] = blocks.size();
     }
@@ -28,6 +29,7 @@ void ToBlocks(const std::vector<Sample>& samples, std::vector<Block>& blocks) {
     block.samples[static_cast<std::size_t>(k)] = i;
     block.s[k] = static_cast<float>(sample.slopes.x());
     block.t[k] = static_cast<float>(sample.slopes.y());
+    block.later[k] = static_cast<float>(sample.later);
     block.value[k] = static_cast<float>(sample.value);
     block.behind[k] = static_cast<float>(sample.behind);
     block.is_used[k] = 1;
@@ -45,13 +47,17 @@ void ToSamples(const std::vector<Block>& blocks, std::vector<Sample>& samples) {
   }
 }
 
+Lane AfterAxis(const Block& block, const State& state, const PixelScale& scale) {
+  return block.later - static_cast<float>(scale.down().dot(state.shape.head<2>()));
+}
+
 template <int kSize>
 void ToRows(Block& block, const State& state, const PixelNoise& noise, const PixelScale& scale,
             const ProfileTable& table, Rows<kSize>& rows) {
   constexpr bool kMoves = kSize == kOwnMoving;
   std::conditional_t<kMoves, ModelledMoving, Modelled> model;
   if constexpr (kMoves) {
-    ModelMoving(block.s, block.t, state, scale, table, model);
+    ModelMoving(block.s, block.t, AfterAxis(block, state, scale), state, scale, table, model);
   } else {
     Model(block.s, block.t, state, scale, table, model);
   }

@@ -25,6 +25,7 @@ struct Sample {
   double value;
   int channel;
   int sector;
+  double later = 0;   // When its row is exposed, after the row of the blob's middle, in exposures.
   double behind = 0;  // What is behind the sphere there, less the state's `outside`, DN.
   // At the state that was evaluated last.
   double beyond = 0;    // Blurs outside of the edge.
@@ -40,9 +41,12 @@ struct Block {
   std::size_t channel = 0;
   int count = 0;
   std::array<std::size_t, kBlock> samples{};
-  Lane s, t, value, behind, is_used;
+  Lane s, t, later, value, behind, is_used;
   Lane beyond, residual, height;  // As a sample's.
 };
+
+/// When a block's pixels are exposed after the row of a state's axis, in exposures.
+Lane AfterAxis(const Block& block, const State& state, const PixelScale& scale);
 
 void ToBlocks(const std::vector<Sample>& samples, std::vector<Block>& blocks);
 /// What was evaluated, back to the samples.
