@@ -161,7 +161,9 @@ void VerticalBank::Recover() {
     wary_speaks_ = false;
     return;
   }
-  const double best = std::max(doubtful_.score(), trusting_.score());
+  // Those that would supply the output without it.
+  const double best =
+      weighing_ ? unweighed_.score() : std::max(doubtful_.score(), trusting_.score());
   wary_speaks_ = wary_speaks_ ? best < wary_.score() + kTrustAbove : best < wary_.score() - kBehind;
 }
 
@@ -190,6 +192,9 @@ void VerticalBank::Advance(const VerticalInput& input) {
 void VerticalBank::Weigh() {
   const auto free = unweighed_.Overweight(), held = doubtful_.Overweight();
   if (weighing_) {
+    // They may have adopted a state that is better by now.
+    const VerticalCom& other = trusts_ ? trusting_ : doubtful_;
+    if (unweighed_.score() - other.score() < kDoubtBelow) unweighed_.Adopt(other);
     if (free.variance > kSettledSpread * kSettledSpread) return;
     weighing_ = false;
     unweighed_.Reweigh();

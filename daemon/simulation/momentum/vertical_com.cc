@@ -14,7 +14,9 @@ using VerticalFilter = VerticalCom::Filter;
 constexpr int kGroups = VerticalInput::kGroups;
 constexpr int kGains = 3, kPosture = kGains + kGroups;  // Where they begin in the state.
 constexpr double kAccelerationTimeS = 0.12;             // Smoothing of |acceleration|.
-constexpr double kLevelTimeS = 0.5;                     // Of the acceleration that is kept.
+// Of the acceleration that is kept. One that is further off than `kLeap` limits of stillness has
+// another level, which is found at once where a posture is seen: it shows who moves.
+constexpr double kLevelTimeS = 0.5, kLeapTimeS = 0.05, kLeap = 1.2;
 constexpr double kCopTimeS = 0.1;     // Smoothing of the COP, and again of its speed.
 constexpr double kStillLookS = 0.1;   // Time between zero-velocity measurements.
 constexpr double kLoadedShare = 0.5;  // Of the weight: with less, the body may fly.
@@ -39,6 +41,21 @@ double Total(const VerticalInput& input) {
   double total = 0;
   for (const double load : input.load_n) total += load;
   return total;
+}
+
+/// All cells are found to be wrong alike: loads that show an acceleration are those of a body that
+/// has none, to within a deviation. What is left of it by the gains learned so far is their doubt.
+void DoubtGains(const VerticalInput& input, double mass_kg, double shown_mps2, double left_mps2,
+                double sd_mps2, VerticalFilter& filter) {
+  VerticalFilter::Matrix q = VerticalFilter::Matrix::Zero();
+  q.block<kGroups, kGroups>(kGains, kGains)
+      .setConstant(std::pow(left_mps2 / kStandardGravityMps2, 2));
+  filter.Predict(VerticalFilter::Matrix::Identity(), VerticalFilter::Vector::Zero(), q);
+  VerticalFilter::Row row = VerticalFilter::Row::Unit(2);
+  for (int i = 0; i < kGroups; ++i) {
+    row(kGains + i) = input.load_n[static_cast<std::size_t>(i)] / mass_kg;
+  }
+  filter.Update(row, shown_mps2, sd_mps2 * sd_mps2);
 }
 
 }  // namespace
@@ -118,6 +135,14 @@ void VerticalCom::Advance(const VerticalInput& input) {
     since_still_look_s_ += h;
     if (since_still_look_s_ >= kStillLookS) {
       since_still_look_s_ = 0;
+      // Nobody stands still at two loads. Where a body that hands and feet show to be still, too,
+      // should be accelerating by what its filter has learned, what it weighs has changed since.
+      const double left_mps2 = acceleration_mps2_ + level_mps2_ - raw;
+      const double limit_mps2 = config_.still_acceleration_mps2;
+      if (config_.still_at_any_weight && posture_.anchors_s > 0 &&
+          std::abs(left_mps2) > limit_mps2) {
+        DoubtGains(input, mass_kg_, level_mps2_, left_mps2, limit_mps2, filter_);
+      }
       LookAtVelocity();
     }
   }
@@ -136,7 +161,10 @@ void VerticalCom::Advance(const VerticalInput& input) {
 
 void VerticalCom::Watch(const VerticalInput& input, double raw_mps2) {
   const double share = step_s_ / (kAccelerationTimeS + step_s_);
-  level_mps2_ += step_s_ / (kLevelTimeS + step_s_) * (raw_mps2 - level_mps2_);
+  const double off_mps2 = raw_mps2 - level_mps2_;
+  const bool leaps =
+      posture_.anchors_s > 0 && std::abs(off_mps2) > kLeap * config_.still_acceleration_mps2;
+  level_mps2_ += step_s_ / ((leaps ? kLeapTimeS : kLevelTimeS) + step_s_) * off_mps2;
   const double moved = raw_mps2 - (config_.still_at_any_weight ? level_mps2_ : 0);
   mean_acceleration_mps2_ += share * (std::abs(moved) - mean_acceleration_mps2_);
   const double cop_share = step_s_ / (kCopTimeS + step_s_);
