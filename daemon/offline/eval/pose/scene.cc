@@ -72,7 +72,7 @@ Result<motion_files::LoadedMotion> Load(const PoseSceneOptions& options) {
   load.still = options.still;
   load.bvh_unit_m = options.bvh_unit_m;
   auto loaded = motion_files::LoadMotion(options.motion, load);
-  if (loaded && !loaded->note.empty()) {
+  if (loaded && !loaded->height_m && !loaded->note.empty()) {  // The unit of a BVH file.
     std::fprintf(stderr, "%s: %s\n", options.motion.c_str(), loaded->note.c_str());
   }
   if (!loaded || !options.standard_layout) return loaded;
