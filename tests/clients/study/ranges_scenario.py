@@ -182,8 +182,8 @@ def check_in_force(stage, table):
     """A simulation that begins with one table and goes over to another: both are in its recording, which runs again."""
     stage.stop("footing-sim")
     recording = stage.folder / "run.mcap"
-    stage.start("footing-log", "record", "--connect", stage.sensor, "--connect", stage.simulation, "--out", recording,
-                "--seconds", 9)
+    stage.start("footing-log", "record", "--from-ring", "--connect", stage.sensor, "--connect", stage.simulation,
+                "--out", recording, "--seconds", 9)  # However late it finds the simulation.
     stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation, "--set",
                 f"mapping_table={stage.folder}/group.json")
     stage.wait_for_socket(stage.simulation)
@@ -210,7 +210,9 @@ def check_in_force(stage, table):
     text = stage.run("footing-log", "info", recording).stdout
     assert "interface wrist, its table: footing-ctl, measured of [\"P01\"]" in text, text
     # footingd ran before the recording began, so its features are another matter.
-    result = json.loads(stage.run("footing-eval", "replay", recording).stdout)
+    replayed = stage.run("footing-eval", "replay", recording)
+    assert replayed.stdout, replayed
+    result = json.loads(replayed.stdout)
     assert result["frames_equal"] == result["frames_compared"] > 400, result
 
 
