@@ -23,7 +23,8 @@ def written(binaries, gait):
     assert program == "footing-tune", program
     with tempfile.TemporaryDirectory() as folder:
         os.symlink(ROOT / "daemon", pathlib.Path(folder, "daemon"))
-        done = subprocess.run([f"{binaries}/{program}", *words], cwd=folder, capture_output=True, text=True, check=False)
+        done = subprocess.run([pathlib.Path(binaries, program).resolve(), *words], cwd=folder, capture_output=True,
+                              text=True, check=False)
         assert done.returncode == 0, done.stderr
         return pathlib.Path(folder, words[words.index("--out") + 1]).read_text()
 
