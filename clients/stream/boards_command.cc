@@ -11,11 +11,7 @@ void AddMotion(CLI::App& command, StageOptions& stage) {
                   "Motion: a built-in name (demo, quiet), a choreography script, or a BVH, AMC, "
                   "TRC or C3D file")
       ->required();
-  command.add_option("--skeleton", stage.skeleton, "Skeleton of an AMC motion, ASF file");
-  command
-      .add_option("--bvh-unit-m", stage.bvh_unit_m,
-                  "Unit of length of a BVH motion, m (default: by the height of its person)")
-      ->check(CLI::Range(1e-4, 10.0));
+  sensor_options::AddMotionFile(command, stage.skeleton, stage.bvh_unit_m);
   command.add_option("--mass-kg", stage.mass_kg, "Mass of the body, kg")
       ->check(CLI::Range(20.0, 250.0));
   command.add_option("--height-m", stage.height_m, "Height of the person who performs a script, m")

@@ -2,6 +2,14 @@
 
 namespace footing::sensor_options {
 
+void AddMotionFile(CLI::App& command, std::string& skeleton, std::optional<double>& bvh_unit_m) {
+  command.add_option("--skeleton", skeleton, "Skeleton of an AMC motion, ASF file");
+  command
+      .add_option("--bvh-unit-m", bvh_unit_m,
+                  "Unit of length of a BVH motion, m (default: by the height of its person)")
+      ->check(CLI::Range(1e-4, 10.0));
+}
+
 void AddCellErrors(CLI::App& command, double& noise_kg, double& gain_spread) {
   command
       .add_option("--cell-noise-kg", noise_kg, "Standard deviation of the noise of a sensor, kg")

@@ -106,11 +106,7 @@ void AddMomentumCommand(CLI::App& app, Shared& shared) {
   command
       ->add_option("--motion", options.motion, "Motion file: BVH, AMC with --skeleton, TRC or C3D")
       ->required();
-  command->add_option("--skeleton", options.skeleton, "Skeleton of an AMC motion, ASF file");
-  command
-      ->add_option("--bvh-unit-m", options.bvh_unit_m,
-                   "Unit of length of a BVH motion, m (default: by the height of its person)")
-      ->check(CLI::Range(1e-4, 10.0));
+  sensor_options::AddMotionFile(*command, options.skeleton, options.bvh_unit_m);
   command->add_option("--mass-kg", options.mass_kg, "Mass of the body, kg")
       ->check(CLI::Range(20.0, 250.0));
   command->add_option("--mode", flags->mode, "Reconstruction mode: paper or best")

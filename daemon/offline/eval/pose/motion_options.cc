@@ -1,5 +1,7 @@
 #include "daemon/offline/eval/pose/motion_options.h"
 
+#include "common/virtual/sensor_options/sensor_options.h"
+
 namespace footing::eval {
 
 void AddMotionOptions(CLI::App& command, PoseSceneOptions& scene) {
@@ -7,11 +9,7 @@ void AddMotionOptions(CLI::App& command, PoseSceneOptions& scene) {
       .add_option("--motion", scene.motion,
                   "Motion: BVH, AMC, TRC or C3D file, or choreography script (.json)")
       ->required();
-  command.add_option("--skeleton", scene.skeleton, "Skeleton of an AMC motion, ASF file");
-  command
-      .add_option("--bvh-unit-m", scene.bvh_unit_m,
-                  "Unit of length of a BVH motion, m (default: by the height of its person)")
-      ->check(CLI::Range(1e-4, 10.0));
+  sensor_options::AddMotionFile(command, scene.skeleton, scene.bvh_unit_m);
   command.add_option("--still", scene.still,
                      "Marker file of the same person standing still, TRC or C3D");
 }

@@ -78,7 +78,7 @@ Motion Guard() {
 }
 
 /// The same movement of the same joints by a skeleton whose frames are turned at random on theirs,
-/// so that its rest pose is no person's.
+/// so that its rest pose is not a person's.
 Motion WithFramesTurned(const Motion& motion) {
   noise::Random random(7);
   std::vector<Eigen::Matrix3d> turns;
