@@ -9,6 +9,7 @@
 
 #include "clients/log/export_bodies.h"
 #include "clients/log/export_csv.h"
+#include "clients/log/export_xdf.h"
 #include "clients/log/record.h"
 #include "common/cli/cli.h"
 #include "common/recording/repair.h"
@@ -70,6 +71,7 @@ std::optional<BodyFormat> BodyFormatOf(const std::string& format) {
   if (format == "bvh") return BodyFormat::kBvh;
   if (format == "trc") return BodyFormat::kTrc;
   if (format == "mot") return BodyFormat::kMot;
+  if (format == "c3d") return BodyFormat::kC3d;
   return std::nullopt;
 }
 
@@ -88,13 +90,28 @@ Result<ordered_json> RunBodies(const std::string& file, const std::string& forma
   return out;
 }
 
+Result<ordered_json> RunXdf(const std::string& file, const std::string& folder, bool replace) {
+  const auto exported = ExportXdf(file, folder, replace);
+  if (!exported) return exported.error();
+  ordered_json out{{"file", file},
+                   {"format", "xdf"},
+                   {"files", {{{"path", exported->path}}}},
+                   {"streams", ordered_json::array()}};
+  for (const ExportedStream& stream : exported->streams) {
+    out["streams"].push_back(
+        {{"name", stream.name}, {"channels", stream.channels}, {"samples", stream.samples}});
+  }
+  return out;
+}
+
 Result<ordered_json> RunExport(const std::string& file, const std::string& format,
                                const std::string& folder, bool replace) {
   if (const auto body = BodyFormatOf(format)) {
     return RunBodies(file, format, *body, folder, replace);
   }
+  if (format == "xdf") return RunXdf(file, folder, replace);
   if (format != "csv") {
-    return UsageError("unknown --format " + format + "; there are: csv, bvh, trc, mot");
+    return UsageError("unknown --format " + format + "; there are: csv, xdf, bvh, trc, mot, c3d");
   }
   const auto files = ExportCsv(file, folder, replace);
   if (!files) return files.error();
@@ -169,12 +186,15 @@ void AddExportCommand(CLI::App& app, Shared& shared) {
   command
       ->add_option(
           "--format", *format,
-          "Output format: csv, or of reconstructed bodies bvh (rotations), trc (joint centres) or "
-          "mot (joint angles and forces under the feet, for OpenSim)")
+          "Output format: csv, xdf (Lab Streaming Layer), or of reconstructed bodies bvh "
+          "(rotations), trc (joint centres), "
+          "mot (joint angles and forces under the feet, for OpenSim) or c3d (joint centres and "
+          "forces under the feet)")
       ->required();
   command
-      ->add_option("--out", *folder,
-                   "Output folder; one file per topic (csv) or subject (bvh, trc; mot: two)")
+      ->add_option(
+          "--out", *folder,
+          "Output folder; one file (xdf), or one per topic (csv) or subject (others; mot: two)")
       ->required();
   command->add_flag("--force", *replace, "Overwrite existing files");
   command->callback([=, &shared] { Finish(RunExport(*file, *format, *folder, *replace), shared); });

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
 
 namespace footing::log_client {
 namespace {
@@ -14,11 +17,6 @@ void AppendNumber(T value, std::string& out) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof(text), value).ptr;
   out.append(text, end);
-}
-
-template <typename T>
-void AppendFloating(T value, std::string& out) {
-  if (std::isfinite(value)) AppendNumber(value, out);
 }
 
 void AppendText(const std::string& text, std::string& out) {
@@ -52,52 +50,64 @@ void AppendEnum(const pb::EnumDescriptor& type, int number, std::string& out) {
   }
 }
 
-/// The value of a field that is not a message; `index` counts in a list and is -1 elsewhere.
-void AppendValue(const pb::Message& message, const pb::FieldDescriptor& field, int index,
-                 std::string& out) {
+/// Calls `use` with the value of a field that is not a message, enums as their number; `index`
+/// counts in a list and is -1 elsewhere.
+template <typename Use>
+void UseValue(const pb::Message& message, const pb::FieldDescriptor& field, int index, Use use) {
   const pb::Reflection& r = *message.GetReflection();
-  const bool in_list = index >= 0;
+  const bool list = index >= 0;
   switch (field.cpp_type()) {
     case pb::FieldDescriptor::CPPTYPE_INT32:
-      return AppendNumber(
-          in_list ? r.GetRepeatedInt32(message, &field, index) : r.GetInt32(message, &field), out);
+      return use(list ? r.GetRepeatedInt32(message, &field, index) : r.GetInt32(message, &field));
     case pb::FieldDescriptor::CPPTYPE_INT64:
-      return AppendNumber(
-          in_list ? r.GetRepeatedInt64(message, &field, index) : r.GetInt64(message, &field), out);
+      return use(list ? r.GetRepeatedInt64(message, &field, index) : r.GetInt64(message, &field));
     case pb::FieldDescriptor::CPPTYPE_UINT32:
-      return AppendNumber(
-          in_list ? r.GetRepeatedUInt32(message, &field, index) : r.GetUInt32(message, &field),
-          out);
+      return use(list ? r.GetRepeatedUInt32(message, &field, index) : r.GetUInt32(message, &field));
     case pb::FieldDescriptor::CPPTYPE_UINT64:
-      return AppendNumber(
-          in_list ? r.GetRepeatedUInt64(message, &field, index) : r.GetUInt64(message, &field),
-          out);
+      return use(list ? r.GetRepeatedUInt64(message, &field, index) : r.GetUInt64(message, &field));
     case pb::FieldDescriptor::CPPTYPE_DOUBLE:
-      return AppendFloating(
-          in_list ? r.GetRepeatedDouble(message, &field, index) : r.GetDouble(message, &field),
-          out);
+      return use(list ? r.GetRepeatedDouble(message, &field, index) : r.GetDouble(message, &field));
     case pb::FieldDescriptor::CPPTYPE_FLOAT:
-      return AppendFloating(
-          in_list ? r.GetRepeatedFloat(message, &field, index) : r.GetFloat(message, &field), out);
+      return use(list ? r.GetRepeatedFloat(message, &field, index) : r.GetFloat(message, &field));
     case pb::FieldDescriptor::CPPTYPE_BOOL:
-      out += (in_list ? r.GetRepeatedBool(message, &field, index) : r.GetBool(message, &field))
-                 ? '1'
-                 : '0';
-      return;
+      return use(list ? r.GetRepeatedBool(message, &field, index) : r.GetBool(message, &field));
     case pb::FieldDescriptor::CPPTYPE_ENUM:
-      return AppendEnum(*field.enum_type(),
-                        in_list ? r.GetRepeatedEnumValue(message, &field, index)
-                                : r.GetEnumValue(message, &field),
-                        out);
-    case pb::FieldDescriptor::CPPTYPE_STRING: {
-      const std::string text =
-          in_list ? r.GetRepeatedString(message, &field, index) : r.GetString(message, &field);
-      return field.type() == pb::FieldDescriptor::TYPE_BYTES ? AppendHex(text, out)
-                                                             : AppendText(text, out);
-    }
+      return use(list ? r.GetRepeatedEnumValue(message, &field, index)
+                      : r.GetEnumValue(message, &field));
+    case pb::FieldDescriptor::CPPTYPE_STRING:
+      return use(list ? r.GetRepeatedString(message, &field, index) : r.GetString(message, &field));
     case pb::FieldDescriptor::CPPTYPE_MESSAGE:
       return;
   }
+}
+
+void AppendValue(const pb::Message& message, const pb::FieldDescriptor& field, int index,
+                 std::string& out) {
+  UseValue(message, field, index, [&](const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::string>) {
+      field.type() == pb::FieldDescriptor::TYPE_BYTES ? AppendHex(value, out)
+                                                      : AppendText(value, out);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      out += value ? '1' : '0';
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      if (std::isfinite(value)) AppendNumber(value, out);
+    } else if (field.enum_type() != nullptr) {
+      AppendEnum(*field.enum_type(), static_cast<int>(value), out);
+    } else {
+      AppendNumber(value, out);
+    }
+  });
+}
+
+double NumberOf(const pb::Message& message, const pb::FieldDescriptor& field, int index) {
+  double number = std::numeric_limits<double>::quiet_NaN();
+  UseValue(message, field, index, [&number](const auto& value) {
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) {
+      number = static_cast<double>(value);
+    }
+  });
+  return number;
 }
 
 /// How many entries of the field the message has: of a list its length, else 1 or 0.
@@ -173,33 +183,41 @@ std::size_t CsvTable::Columns(const std::vector<Node>& nodes) {
 }
 
 void CsvTable::Names(const std::vector<Node>& nodes, const std::string& prefix,
-                     std::vector<std::string>& names) {
+                     std::vector<Column>& columns) {
   for (const Node& node : nodes) {
     for (std::size_t k = 0; k < node.entries; ++k) {
       std::string name = prefix + node.field->name();
       if (node.field->is_repeated()) name.append(1, '_').append(std::to_string(k));
       if (node.field->message_type() == nullptr) {
-        names.push_back(name);
+        const bool is_text = node.field->cpp_type() == pb::FieldDescriptor::CPPTYPE_STRING;
+        columns.push_back({name, !is_text});
       } else {
-        Names(node.children, name + "_", names);
+        Names(node.children, name + "_", columns);
       }
     }
   }
 }
 
-std::string CsvTable::Header() const {
-  std::vector<std::string> names;
-  Names(outer_, "", names);
-  std::vector<std::string> inner;
+std::vector<CsvTable::Column> CsvTable::AllColumns() const {
+  std::vector<Column> columns;
+  Names(outer_, "", columns);
+  std::vector<Column> inner;
   Names(inner_, "", inner);
-  for (const std::string& name : inner) {
-    const bool taken = std::find(names.begin(), names.end(), name) != names.end();
-    names.push_back(taken ? rows_->name() + "_" + name : name);
+  for (Column& column : inner) {
+    const bool taken = std::any_of(columns.begin(), columns.end(), [&column](const Column& other) {
+      return other.name == column.name;
+    });
+    if (taken) column.name = rows_->name() + "_" + column.name;
+    columns.push_back(std::move(column));
   }
+  return columns;
+}
+
+std::string CsvTable::Header() const {
   std::string header;
-  for (const std::string& name : names) {
+  for (const Column& column : AllColumns()) {
     if (!header.empty()) header += ',';
-    header += name;
+    header += column.name;
   }
   return header;
 }
@@ -231,8 +249,48 @@ void CsvTable::AppendRows(const pb::Message& message, const std::string& prefix,
     out += end(entry);
     out += '\n';
   };
-  if (rows_ == nullptr) return append(nullptr);
-  for (std::size_t k = 0; k < Entries(message, *rows_); ++k) append(&Entry(message, *rows_, k));
+  for (const pb::Message* entry : Rows(message)) append(entry);
+}
+
+std::vector<const pb::Message*> CsvTable::Rows(const pb::Message& message) const {
+  if (rows_ == nullptr) return {nullptr};
+  std::vector<const pb::Message*> rows;
+  for (std::size_t k = 0; k < Entries(message, *rows_); ++k) {
+    rows.push_back(&Entry(message, *rows_, k));
+  }
+  return rows;
+}
+
+std::vector<std::string> CsvTable::NumberNames() const {
+  std::vector<std::string> names;
+  for (Column& column : AllColumns()) {
+    if (column.is_number) names.push_back(std::move(column.name));
+  }
+  return names;
+}
+
+void CsvTable::NumberCells(const pb::Message* message, const std::vector<Node>& nodes,
+                           std::vector<double>& out) {
+  for (const Node& node : nodes) {
+    if (node.field->cpp_type() == pb::FieldDescriptor::CPPTYPE_STRING) continue;
+    const std::size_t here = message == nullptr ? 0 : Entries(*message, *node.field);
+    for (std::size_t k = 0; k < node.entries; ++k) {
+      if (node.field->message_type() != nullptr) {
+        NumberCells(k < here ? &Entry(*message, *node.field, k) : nullptr, node.children, out);
+      } else {
+        const int index = node.field->is_repeated() ? static_cast<int>(k) : -1;
+        out.push_back(k < here ? NumberOf(*message, *node.field, index)
+                               : std::numeric_limits<double>::quiet_NaN());
+      }
+    }
+  }
+}
+
+std::vector<double> CsvTable::Numbers(const pb::Message& message, const pb::Message* entry) const {
+  std::vector<double> numbers;
+  NumberCells(&message, outer_, numbers);
+  NumberCells(entry, inner_, numbers);
+  return numbers;
 }
 
 }  // namespace footing::log_client

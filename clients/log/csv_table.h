@@ -12,7 +12,7 @@
 
 namespace footing::log_client {
 
-/// Any protobuf message as rows of a CSV table (RFC 4180).
+/// Any protobuf message as rows of a table, in CSV (RFC 4180) or as numbers.
 ///
 /// The message's first list of messages gives the rows: one an entry, beside the message's own
 /// fields; a message type without such a list gives one row. A field inside a message is named
@@ -30,6 +30,16 @@ class CsvTable {
 
   /// Column names, separated by commas, without a line's end.
   std::string Header() const;
+  /// Names of the columns that hold numbers, flags or enums.
+  std::vector<std::string> NumberNames() const;
+
+  /// The entries of a message's rows; one null for a message that has one row.
+  std::vector<const google::protobuf::Message*> Rows(
+      const google::protobuf::Message& message) const;
+  /// What a row has in the columns of NumberNames(): flags are 0 or 1, enums their number, what the
+  /// message does not have is NaN.
+  std::vector<double> Numbers(const google::protobuf::Message& message,
+                              const google::protobuf::Message* entry) const;
 
   /// Adds to a row's line; null is the entry of a message that has one row.
   using RowEnd = std::function<std::string(const google::protobuf::Message* entry)>;
@@ -58,11 +68,18 @@ class CsvTable {
                                    const google::protobuf::FieldDescriptor* without);
   static void LearnFields(const google::protobuf::Message& message, std::vector<Node>& nodes);
   static std::size_t Columns(const std::vector<Node>& nodes);
+  struct Column {
+    std::string name;
+    bool is_number = false;
+  };
   static void Names(const std::vector<Node>& nodes, const std::string& prefix,
-                    std::vector<std::string>& names);
+                    std::vector<Column>& columns);
+  std::vector<Column> AllColumns() const;
   /// A null message: its cells are empty.
   static void Cells(const google::protobuf::Message* message, const std::vector<Node>& nodes,
                     std::string& out);
+  static void NumberCells(const google::protobuf::Message* message, const std::vector<Node>& nodes,
+                          std::vector<double>& out);
 
   const google::protobuf::FieldDescriptor* rows_ = nullptr;
   std::vector<Node> outer_;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "clients/log/c3d_body.h"
 #include "clients/log/contents.h"
 #include "clients/log/motion_gatherer.h"
 #include "clients/log/opensim.h"
@@ -15,6 +16,7 @@
 #include "common/recording/mapped_file.h"
 #include "common/recording/output_file.h"
 #include "common/virtual/motion/bvh.h"
+#include "common/virtual/motion/c3d.h"
 #include "common/virtual/motion/trc.h"
 
 namespace footing::log_client {
@@ -44,14 +46,13 @@ struct NamedText {
   std::string text;
 };
 
-Result<std::vector<NamedText>> MotTexts(const MotionGatherer& gatherer,
-                                        const motion::Motion& motion, const std::string& name) {
+Result<std::vector<NamedText>> MotTexts(const motion::Motion& motion,
+                                        const std::vector<FootForces>& forces,
+                                        const std::string& name) {
   Result<motion::Table> angles = JointAngles(motion);
   if (!angles) return angles.error();
-  const auto forces = gatherer.Forces();
-  if (!forces) return forces.error();
-  motion::Table table = ForceTable(*forces, motion.rate_hz);
   angles->name = name + ".mot";
+  motion::Table table = ForceTable(forces, motion.rate_hz);
   table.name = name + "_grf.mot";
   return std::vector<NamedText>{{angles->name, motion::WriteTable(*angles)},
                                 {table.name, motion::WriteTable(table)}};
@@ -60,16 +61,19 @@ Result<std::vector<NamedText>> MotTexts(const MotionGatherer& gatherer,
 /// The files of one person, whose names begin with `name`.
 Result<std::vector<NamedText>> Written(const MotionGatherer& gatherer, const motion::Motion& motion,
                                        BodyFormat format, const std::string& name) {
-  switch (format) {
-    case BodyFormat::kBvh:
-      return std::vector<NamedText>{{name + ".bvh", motion::WriteBvh(motion)}};
-    case BodyFormat::kTrc:
-      return std::vector<NamedText>{
-          {name + ".trc", motion::WriteTrc(JointPlaces(motion), name + ".trc")}};
-    case BodyFormat::kMot:
-      return MotTexts(gatherer, motion, name);
+  if (format == BodyFormat::kBvh) {
+    return std::vector<NamedText>{{name + ".bvh", motion::WriteBvh(motion)}};
   }
-  return std::vector<NamedText>{};
+  if (format == BodyFormat::kTrc) {
+    return std::vector<NamedText>{
+        {name + ".trc", motion::WriteTrc(JointPlaces(motion), name + ".trc")}};
+  }
+  const auto forces = gatherer.Forces();
+  if (!forces) return forces.error();
+  if (format == BodyFormat::kMot) return MotTexts(motion, *forces, name);
+  const auto c3d = motion::WriteC3d(ToC3d(motion, *forces));
+  if (!c3d) return c3d.error();
+  return std::vector<NamedText>{{name + ".c3d", *c3d}};
 }
 
 /// One gatherer a skeleton, in the order of the recording.

@@ -26,6 +26,7 @@ enum class BodyFormat {
   kBvh,  ///< Skeleton and rotations.
   kTrc,  ///< Places of the joints.
   kMot,  ///< Angles of the joints, and in a second file the forces under the feet.
+  kC3d,  ///< Places of the joints and the forces under the feet.
 };
 
 /// Writes a file for each subject of a recording of the pose engine into `folder`:

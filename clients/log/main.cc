@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
       "  footing-log record --out a.mcap\n"
       "  footing-log info a.mcap --json\n"
       "  footing-log export a.mcap --format csv --out a/\n"
+      "  footing-log export a.mcap --format xdf --out a/\n"
       "  footing-log repair cut.mcap --out whole.mcap\n"
       "  footing-log recalibrate a.mcap --camera camera.json --out again.mcap\n"
       "  footing-log serve a.mcap --listen unix:/tmp/replay.sock");

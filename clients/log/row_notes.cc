@@ -104,11 +104,24 @@ std::vector<std::string> RowNotes::Columns(const pb::Descriptor* row) const {
   return names;
 }
 
-std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
-                            const pb::Message* entry, std::uint64_t log_time_ns) const {
+const RowNotes::Server& RowNotes::ServerAt(const std::string& topic) const {
   static const Server kUnknown;
   const auto found = servers_.find(ServerOf(topic));
-  const Server& server = found == servers_.end() ? kUnknown : found->second;
+  return found == servers_.end() ? kUnknown : found->second;
+}
+
+std::string RowNotes::Role(const std::string& topic, const pb::Descriptor* row,
+                           const pb::Message* entry) const {
+  const pb::FieldDescriptor* field = DeviceField(row);
+  if (field == nullptr || entry == nullptr) return "";
+  const Server& server = ServerAt(topic);
+  const auto role = server.roles.find(entry->GetReflection()->GetUInt32(*entry, field));
+  return role == server.roles.end() ? "" : role->second;
+}
+
+std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
+                            const pb::Message* entry, std::uint64_t log_time_ns) const {
+  const Server& server = ServerAt(topic);
   char seconds[40];
   std::snprintf(seconds, sizeof seconds, ",%.9f,",
                 1e-9 * static_cast<double>(log_time_ns - std::min(first_ns_, log_time_ns)));
@@ -116,12 +129,7 @@ std::string RowNotes::Cells(const std::string& topic, const pb::Descriptor* row,
   if (server.has_wall_time) {
     cells += text::Utc(static_cast<std::int64_t>(log_time_ns) + server.wall_minus_host_ns, 6);
   }
-  if (const pb::FieldDescriptor* field = DeviceField(row)) {
-    cells += ',';
-    const auto role =
-        server.roles.find(entry == nullptr ? 0 : entry->GetReflection()->GetUInt32(*entry, field));
-    if (role != server.roles.end()) cells += role->second;
-  }
+  if (DeviceField(row) != nullptr) cells += ',' + Role(topic, row, entry);
   if (IsCharacter(row)) {
     AppendNames(server.links, most_links_, cells);
     AppendNames(server.contacts, most_contacts_, cells);

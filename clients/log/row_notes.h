@@ -26,6 +26,9 @@ class RowNotes {
 
   /// The names of the columns for rows of this type (null: the message has one row).
   std::vector<std::string> Columns(const google::protobuf::Descriptor* row) const;
+  /// The role of the device that a row is about, such as "left_board"; empty where none is known.
+  std::string Role(const std::string& topic, const google::protobuf::Descriptor* row,
+                   const google::protobuf::Message* entry) const;
   /// The cells of a row, each with a comma in front. `entry` is null for a message with one row.
   std::string Cells(const std::string& topic, const google::protobuf::Descriptor* row,
                     const google::protobuf::Message* entry, std::uint64_t log_time_ns) const;
@@ -38,6 +41,8 @@ class RowNotes {
     std::vector<std::string> links;
     std::vector<std::string> contacts;
   };
+
+  const Server& ServerAt(const std::string& topic) const;
 
   std::map<std::string, Server> servers_;
   std::uint64_t first_ns_ = UINT64_MAX;

@@ -13,8 +13,6 @@
 namespace footing::motion {
 namespace {
 
-constexpr std::size_t kBlock = 512;
-constexpr std::uint8_t kMark = 0x50;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// What the header block and the parameters say about the data.
@@ -60,7 +58,7 @@ Result<Layout> ToLayout(const C3dReader& reader, const C3dParameters& parameters
   layout.floats = layout.scale < 0 || std::signbit(layout.scale);
   const std::size_t block = reader.Unsigned(16);
   if (block < 2) return fault("expected the data to begin in block 2 or later");
-  layout.data_begin = (block - 1) * kBlock;
+  layout.data_begin = (block - 1) * kC3dBlock;
   if (layout.analog_per_frame > 0) {
     layout.analog_channels = analog_words / layout.analog_per_frame;
     if (layout.analog_channels * layout.analog_per_frame != analog_words) {
@@ -202,10 +200,10 @@ Result<void> ReadFrames(const C3dReader& reader, const Layout& layout, double un
 
 Result<C3d> ParseC3d(std::span<const std::uint8_t> bytes, const std::string& file) {
   const auto fault = [&file](const std::string& what) { return InvalidData(file + ": " + what); };
-  if (bytes.size() < 2 * kBlock || bytes[1] != kMark || bytes[0] < 2) {
+  if (bytes.size() < 2 * kC3dBlock || bytes[1] != kC3dMark || bytes[0] < 2) {
     return fault("no C3D file: expected a header of 512 bytes with 0x50 as its second byte");
   }
-  const std::size_t section = (std::size_t{bytes[0]} - 1) * kBlock;
+  const std::size_t section = (std::size_t{bytes[0]} - 1) * kC3dBlock;
   if (section + 4 > bytes.size()) return fault("the parameters lie beyond the end of the file");
   const int number = bytes[section + 3];
   if (number < 84 || number > 86) {

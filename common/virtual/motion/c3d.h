@@ -36,6 +36,11 @@ struct C3d {
 /// Reads one. `file` is its name for errors, which say where and what was expected.
 Result<C3d> ParseC3d(std::span<const std::uint8_t> bytes, const std::string& file);
 
+/// A file of floats for Intel processors, in millimetres, readable by ParseC3d(). The analog rate
+/// is a whole multiple of the points' rate. Points that are not seen are marked so. InvalidData
+/// where no frame is there, or more is there than a file can hold.
+Result<std::string> WriteC3d(const C3d& c3d);
+
 /// Forces on the person at the analog rate, in the file's axes: plates of type 2 (three forces,
 /// three moments about the origin) and 4 (the same; its channels must be calibrated already).
 /// Others are an error that names the type.

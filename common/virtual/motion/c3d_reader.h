@@ -6,6 +6,9 @@
 
 namespace footing::motion {
 
+inline constexpr std::size_t kC3dBlock = 512;   ///< Sections begin at multiples of it.
+inline constexpr std::uint8_t kC3dMark = 0x50;  ///< Second byte of the file.
+
 /// Which machine wrote a C3D file; the number is what the file has for it.
 enum class Processor { kIntel = 84, kDec = 85, kMips = 86 };
 

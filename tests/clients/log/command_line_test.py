@@ -43,14 +43,14 @@ def main(program, writer):
         lines = export.stdout.splitlines()  # A line for each file, not one of JSON.
         assert sum(".csv  rows " in line for line in lines) == 3 and "{" not in export.stdout, export
 
-        for words, said in ((("export", whole, "--format", "c3d", "--out", folder), "csv, bvh, trc, mot"),
+        for words, said in ((("export", whole, "--format", "fbx", "--out", folder), "csv, xdf, bvh, trc, mot, c3d"),
                             (("serve", whole, "--server", "none"), "there are: footingd"),
                             (("record", "--connect", "nowhere", "--out", folder / "x"), "unix:"),
                             (("record", "--connect", "unix:/x", "--out", whole), "--force"),
                             (("shred", whole), "")):
             done = run(*words)
             assert done.returncode == 2 and said in done.stderr, (words, done)
-        for format in ("bvh", "trc", "mot"):
+        for format in ("bvh", "trc", "mot", "c3d"):
             export = run("export", whole, "--format", format, "--out", folder / format)
             assert export.returncode == 4 and "no reconstructed body" in export.stderr, export
         assert run("info", folder / "none.mcap").returncode == 1

@@ -165,7 +165,8 @@ TEST(ExportBodies, SaysWhereInTheRecordingItsFilesBegin) {
   for (int i = 0; i < 4; ++i) write("/footing-sim/characters", FrameAt(2 + 0.25 * i, 0), 7.5 + i);
   ASSERT_TRUE(writer->Finish());
   for (const auto& [format, name] : {std::pair{BodyFormat::kBvh, "pose_1_p07.bvh"},
-                                     std::pair{BodyFormat::kTrc, "pose_1_p07.trc"}}) {
+                                     std::pair{BodyFormat::kTrc, "pose_1_p07.trc"},
+                                     std::pair{BodyFormat::kC3d, "pose_1_p07.c3d"}}) {
     const auto exported = ExportBodies(path, folder.Path("out"), format, false);
     ASSERT_TRUE(exported.ok()) << exported.error().message;
     ASSERT_EQ(exported->size(), 1U);

@@ -192,6 +192,50 @@ TEST(C3d, EveryChangedByteIsReadOrRefused) {
   }
 }
 
+TEST(C3d, WhatIsWrittenIsReadAgain) {
+  const C3d c3d = ParseC3d(Example(Processor::kMips, true), "x").value();
+  const auto bytes = WriteC3d(c3d);
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message;
+  const auto read = ParseC3d(Bytes(bytes->begin(), bytes->end()), "written");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->points.names, c3d.points.names);
+  EXPECT_EQ(read->points.rate_hz, 100);
+  EXPECT_TRUE(read->points.p[0].isApprox(c3d.points.p[0], 1e-7));
+  EXPECT_FALSE(Seen(read->points.p[1].col(1)));
+  EXPECT_EQ(read->analog_rate_hz, 200);
+  EXPECT_EQ(read->analog, c3d.analog);
+  EXPECT_EQ(read->analog_names, c3d.analog_names);
+  EXPECT_EQ(read->analog_units, c3d.analog_units);
+  EXPECT_EQ(read->y_screen, "+Z");
+  ASSERT_EQ(read->plates.size(), 1u);
+  EXPECT_TRUE(read->plates[0].corners.isApprox(c3d.plates[0].corners, 1e-6));
+  EXPECT_EQ(read->plates[0].channels, c3d.plates[0].channels);
+}
+
+TEST(C3d, MoreFramesAndNamesThanAWordAndAListHoldAreWritten) {
+  C3d c3d;
+  c3d.points.rate_hz = 100;
+  constexpr Eigen::Index kFrames = 70'000;
+  c3d.points.names = {"last"};
+  c3d.points.p.emplace_back(Eigen::Matrix3Xd::Constant(3, kFrames, 0.5));
+  c3d.points.p[0].col(kFrames - 1).setConstant(2);
+  const std::string longest = WriteC3d(c3d).value();
+  const auto read = ParseC3d(Bytes(longest.begin(), longest.end()), "long");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_EQ(read->points.frames(), kFrames);
+  EXPECT_EQ(read->points.p[0](0, kFrames - 1), 2);
+  EXPECT_TRUE(read->plates.empty());
+
+  c3d.points.names.clear();
+  c3d.points.p.assign(300, Eigen::Matrix3Xd::Ones(3, 1));
+  for (int i = 0; i < 300; ++i) c3d.points.names.push_back("marker " + std::to_string(i));
+  const std::string many = WriteC3d(c3d).value();
+  EXPECT_EQ(ParseC3d(Bytes(many.begin(), many.end()), "many")->points.names, c3d.points.names);
+
+  c3d.points.p.clear();
+  EXPECT_EQ(WriteC3d(c3d).error().kind, ErrorKind::kInvalidData);
+}
+
 TEST(C3d, ErrorsSayWhatWasExpected) {
   Bytes file = Example(Processor::kIntel, true);
   file[1] = 0;

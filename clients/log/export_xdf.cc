@@ -1,0 +1,206 @@
+#include "clients/log/export_xdf.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include <compare>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clients/log/tables.h"
+#include "clients/log/xdf.h"
+#include "common/recording/mapped_file.h"
+#include "common/recording/output_file.h"
+#include "common/stream/device.h"
+
+namespace footing::log_client {
+namespace {
+
+namespace pb = google::protobuf;
+
+constexpr std::size_t kChunkBytes = 1u << 16;
+constexpr std::uint64_t kBoundaryNs = 10'000'000'000;
+
+/// The field of this name, where it is one value of this kind; else null.
+const pb::FieldDescriptor* FieldOf(const pb::Message& message, const char* name,
+                                   pb::FieldDescriptor::CppType kind) {
+  const pb::FieldDescriptor* field = message.GetDescriptor()->FindFieldByName(name);
+  const bool fits = field != nullptr && !field->is_repeated() && field->cpp_type() == kind;
+  return fits ? field : nullptr;
+}
+
+/// The number of the device that a row is about; 0 where it is about none.
+std::uint32_t DeviceOf(const pb::Message& row) {
+  const auto* field = FieldOf(row, "device", pb::FieldDescriptor::CPPTYPE_UINT32);
+  return field == nullptr ? 0 : row.GetReflection()->GetUInt32(row, field);
+}
+
+bool IsEvent(const pb::Message& row) {
+  return row.GetDescriptor()->full_name() == "footing.v1.Event";
+}
+
+std::string TextOf(const pb::Message& row, const char* name) {
+  const auto* field = FieldOf(row, name, pb::FieldDescriptor::CPPTYPE_STRING);
+  return field == nullptr ? "" : row.GetReflection()->GetString(row, field);
+}
+
+/// Such as "KIND_TRIAL: text".
+std::string EventText(const pb::Message& event) {
+  const auto* kind = FieldOf(event, "kind", pb::FieldDescriptor::CPPTYPE_ENUM);
+  const std::string text = TextOf(event, "text");
+  const std::string name =
+      kind == nullptr ? "" : event.GetReflection()->GetEnum(event, kind)->name();
+  return text.empty() ? name : name + ": " + text;
+}
+
+/// When a row was: the device's own time where it has one.
+double TimeOf(const mcap::Message& record, const pb::Message* row) {
+  std::int64_t time_ns = 0;
+  for (const char* name : {"sampled_ns", "host_ns"}) {
+    if (row == nullptr || time_ns != 0) break;
+    const auto* field = FieldOf(*row, name, pb::FieldDescriptor::CPPTYPE_INT64);
+    if (field != nullptr) time_ns = row->GetReflection()->GetInt64(*row, field);
+  }
+  if (time_ns == 0) time_ns = static_cast<std::int64_t>(record.log_time_ns);
+  return 1e-9 * static_cast<double>(time_ns);
+}
+
+/// One stream on its way into the file.
+struct Outgoing {
+  xdf::Stream stream;
+  xdf::Extent extent;
+  xdf::Samples samples;
+};
+
+class XdfExporter {
+ public:
+  XdfExporter(std::string_view bytes, const std::string& path) : tables_(bytes, path) {}
+
+  Result<ExportedXdf> Run(const std::string& folder, const std::string& name, bool replace) {
+    if (const Result<void> learned = tables_.Learn(); !learned) return learned.error();
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) return Failure("cannot make the folder " + folder + ": " + error.message());
+    ExportedXdf exported{folder + "/" + name + ".xdf", {}};
+    Result<recording::OutputFile> file = recording::OutputFile::Create(exported.path, replace);
+    if (!file) return file.error();
+    out_ = xdf::FileStart();
+    const Result<void> walked = tables_.Walk([&](std::uint16_t channel, const mcap::Message& record,
+                                                 const pb::Message& message) -> Result<void> {
+      Take(channel, record, message);
+      if (out_.size() < kChunkBytes) return {};
+      return file->Write(std::exchange(out_, {}));
+    });
+    if (!walked) return walked.error();
+    for (auto& [key, outgoing] : streams_) {
+      if (outgoing.stream.channels.empty()) continue;  // Only texts, and no event.
+      outgoing.samples.AppendTo(outgoing.stream, out_);
+      if (outgoing.extent.samples > 1) {
+        xdf::AppendClockOffset(outgoing.stream, outgoing.extent.last_s, out_);
+      }
+      xdf::AppendFooter(outgoing.stream, outgoing.extent, out_);
+      exported.streams.push_back(
+          {outgoing.stream.name, outgoing.stream.channels.size(), outgoing.extent.samples});
+    }
+    if (const Result<void> end = file->Write(out_); !end) return end.error();
+    return exported;
+  }
+
+ private:
+  /// What the rows of one stream have in common. A device may get another number, and a number
+  /// another role.
+  struct Key {
+    std::uint16_t channel = 0;
+    std::uint32_t device = 0;
+    std::string about;  ///< "/left_board", "/main/left_hand"; may be empty.
+    auto operator<=>(const Key&) const = default;
+  };
+
+  void Take(std::uint16_t channel, const mcap::Message& record, const pb::Message& message) {
+    const TopicTable& topic = tables_.topics().at(channel);
+    for (const pb::Message* row : topic.table->Rows(message)) {
+      Outgoing& to = StreamOf(KeyOf(channel, topic, row), topic, row);
+      if (!to.stream.channels.empty()) Add(to, record, message, row, *topic.table);
+    }
+    if (record.log_time_ns < boundary_ns_ + kBoundaryNs) return;
+    if (boundary_ns_ != 0) xdf::AppendBoundary(out_);
+    boundary_ns_ = record.log_time_ns;
+  }
+
+  Key KeyOf(std::uint16_t channel, const TopicTable& topic, const pb::Message* row) const {
+    Key key{channel, 0, ""};
+    if (row == nullptr || IsEvent(*row)) return key;
+    key.device = DeviceOf(*row);
+    if (const auto* number = FieldOf(*row, "character", pb::FieldDescriptor::CPPTYPE_UINT32)) {
+      // Its rig is known only after a while.
+      key.about = "/" + std::to_string(row->GetReflection()->GetUInt32(*row, number));
+      return key;
+    }
+    const std::string rig = TextOf(*row, "rig");
+    std::string role = tables_.notes().Role(topic.topic, topic.table->row_type(), row);
+    const auto* own_role = FieldOf(*row, "role", pb::FieldDescriptor::CPPTYPE_ENUM);
+    if (own_role != nullptr) {
+      const int number = row->GetReflection()->GetEnumValue(*row, own_role);
+      role = number == 0 ? "" : stream::Name(static_cast<stream::DeviceRole>(number));
+    }
+    if (role.empty() && key.device != 0) role = std::to_string(key.device);
+    if (!rig.empty()) key.about += "/" + rig;
+    if (!role.empty()) key.about += "/" + role;
+    return key;
+  }
+
+  Outgoing& StreamOf(const Key& key, const TopicTable& topic, const pb::Message* row) {
+    const auto [at, is_new] = streams_.try_emplace(key);
+    xdf::Stream& stream = at->second.stream;
+    if (!is_new) return at->second;
+    stream.id = static_cast<std::uint32_t>(streams_.size());
+    stream.is_text = row != nullptr && IsEvent(*row);
+    stream.type = stream.is_text ? "Markers" : topic.topic.substr(topic.topic.rfind('/') + 1);
+    stream.channels = topic.table->NumberNames();
+    if (stream.is_text) stream.channels = {"event"};
+    stream.name = topic.topic.substr(topic.topic.starts_with('/') ? 1 : 0) + key.about;
+    // Two rigs have devices of one role.
+    if (!names_.insert(stream.name).second) stream.name += "_" + std::to_string(key.device);
+    stream.source_id = stream.name;
+    if (!stream.channels.empty()) xdf::AppendHeader(stream, out_);
+    return at->second;
+  }
+
+  void Add(Outgoing& to, const mcap::Message& record, const pb::Message& message,
+           const pb::Message* row, const CsvTable& table) {
+    const double time_s = TimeOf(record, row);
+    if (to.extent.samples++ == 0) {
+      to.extent.first_s = time_s;
+      xdf::AppendClockOffset(to.stream, time_s, out_);
+    }
+    to.extent.last_s = time_s;
+    if (to.stream.is_text) {
+      to.samples.Add(time_s, EventText(*row));
+    } else {
+      to.samples.Add(time_s, table.Numbers(message, row));
+    }
+    if (to.samples.bytes() >= kChunkBytes) to.samples.AppendTo(to.stream, out_);
+  }
+
+  Tables tables_;
+  std::map<Key, Outgoing> streams_;
+  std::set<std::string> names_;
+  std::uint64_t boundary_ns_ = 0;
+  std::string out_;
+};
+
+}  // namespace
+
+Result<ExportedXdf> ExportXdf(const std::string& recording, const std::string& folder,
+                              bool replace) {
+  Result<recording::MappedFile> file = recording::OpenRecording(recording);
+  if (!file) return file.error();
+  const std::string name = std::filesystem::path(recording).stem().string();
+  return XdfExporter(file->bytes(), recording).Run(folder, name, replace);
+}
+
+}  // namespace footing::log_client

@@ -1,0 +1,132 @@
+#include "clients/log/export_xdf.h"
+
+#include <gmock/gmock.h>
+#include <xdf.h>
+
+#include <cmath>
+
+#include "common/recording/recording_writer.h"
+#include "common/recording/stream_recorder.h"
+#include "footing/v1/session.pb.h"
+#include "tests/clients/log/sample_recording.h"
+#include "tests/clients/log/temporary_folder.h"
+
+namespace footing::log_client {
+namespace {
+
+using testing::HasSubstr;
+
+/// Read by libxdf, the reader of SigViewer: not ours.
+class ExportXdfTest : public TemporaryFolder {
+ protected:
+  const Xdf::Stream& StreamNamed(const std::string& name) const {
+    for (const Xdf::Stream& stream : xdf_.streams) {
+      if (stream.info.name == name) return stream;
+    }
+    ADD_FAILURE() << "no stream " << name;
+    return xdf_.streams.at(0);
+  }
+  static std::size_t ChannelNamed(const Xdf::Stream& stream, const std::string& label) {
+    for (std::size_t i = 0; i < stream.info.channels.size(); ++i) {
+      if (stream.info.channels[i].at("label") == label) return i;
+    }
+    ADD_FAILURE() << "no channel " << label;
+    return 0;
+  }
+
+  Xdf xdf_;
+};
+
+TEST_F(ExportXdfTest, AnotherReaderFindsEverySampleWithItsTime) {
+  WriteSampleRecording(Path("walk.mcap"), true);
+  const auto exported = ExportXdf(Path("walk.mcap"), Path("out"), false);
+  ASSERT_TRUE(exported.ok()) << exported.error().message;
+  EXPECT_EQ(exported->path, Path("out/walk.xdf"));
+  ASSERT_EQ(xdf_.load_xdf(exported->path), 0);
+  ASSERT_EQ(xdf_.streams.size(), exported->streams.size());
+  const Xdf::Stream& motion = StreamNamed("footingd/motion/1");
+  EXPECT_EQ(motion.info.type, "motion");
+  ASSERT_EQ(motion.time_stamps.size(), static_cast<std::size_t>(kSampleTicks));
+  EXPECT_NEAR(motion.time_stamps[7], 0.07, 1e-9);  // Ticks of 10 ms.
+  EXPECT_EQ(motion.info.sample_count, kSampleTicks);
+  EXPECT_NEAR(motion.info.last_timestamp, 2.99, 1e-6);
+  const std::size_t z = ChannelNamed(motion, "specific_force_mps2_z");
+  EXPECT_FLOAT_EQ(motion.time_series[z][299], -9.80665f);
+  const std::size_t count = ChannelNamed(motion, "report_count");
+  EXPECT_EQ(motion.time_series[count][299], 299);
+}
+
+/// A board that has a role and its own time, one without either, and an event.
+void WriteEventRecording(const std::string& path) {
+  auto writer = recording::RecordingWriter::Create(path, {"test", false, {}});
+  ASSERT_TRUE(writer.ok());
+  recording::StreamRecorder recorder(*writer, "unix:/x", [](const std::string& id) { return id; });
+  v1::Welcome welcome;
+  welcome.set_server_id("footingd");
+  ASSERT_TRUE(recorder.OnWelcome(welcome, 0).ok());
+  v1::Tick tick;
+  tick.set_sequence(1);
+  tick.set_host_ns(6'000'000'000);
+  v1::DeviceStatus& status = *tick.mutable_status()->add_devices();
+  status.set_device(7);
+  status.set_role(v1::DEVICE_ROLE_LEFT_BOARD);
+  ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
+  for (int i = 0; i < 3; ++i) {
+    tick.Clear();
+    tick.set_sequence(static_cast<std::uint64_t>(2 + i));
+    tick.set_host_ns(7'000'000'000 + std::int64_t{10'000'000'000} * i);  // Boundaries in between.
+    v1::BoardSample& left = *tick.mutable_boards()->add_samples();
+    left.set_device(7);
+    left.set_sampled_ns(tick.host_ns() - 4'000'000);
+    left.set_total_n(100 + i);
+    tick.mutable_boards()->add_samples()->set_device(8);
+    for (const auto role : {v1::DEVICE_ROLE_LEFT_HAND, v1::DEVICE_ROLE_RIGHT_HAND}) {
+      v1::HandSample& hand = *tick.mutable_hands()->add_samples();
+      hand.set_rig("main");
+      hand.set_role(role);
+    }
+    if (i == 2) {
+      v1::Event& event = *tick.mutable_events()->add_events();
+      event.set_kind(v1::Event::KIND_TASK);
+      event.set_text("jump <high> & far");
+    }
+    ASSERT_TRUE(recorder.OnTick(tick, 0).ok());
+  }
+  ASSERT_TRUE(writer->Finish().ok());
+}
+
+TEST_F(ExportXdfTest, EachDeviceIsAStreamUnderItsRoleAndEventsAreMarkers) {
+  WriteEventRecording(Path("a.mcap"));
+  const auto exported = ExportXdf(Path("a.mcap"), Path("out"), false);
+  ASSERT_TRUE(exported.ok()) << exported.error().message;
+  ASSERT_EQ(xdf_.load_xdf(exported->path), 0);
+  const Xdf::Stream& left = StreamNamed("footingd/boards/left_board");
+  ASSERT_EQ(left.time_stamps.size(), 3u);
+  EXPECT_NEAR(left.time_stamps[1], 16.996, 1e-9);
+  EXPECT_EQ(left.time_series[ChannelNamed(left, "total_n")][2], 102);
+  const Xdf::Stream& other = StreamNamed("footingd/boards/8");
+  EXPECT_NEAR(other.time_stamps.at(0), 7, 1e-9);
+  EXPECT_EQ(StreamNamed("footingd/hands/main/left_hand").time_stamps.size(), 3u);
+  EXPECT_EQ(StreamNamed("footingd/hands/main/right_hand").time_stamps.size(), 3u);
+  EXPECT_EQ(left.info.clock_offsets.size() + left.clock_values.size(), 2u);
+  EXPECT_EQ(StreamNamed("footingd/events").info.type, "Markers");
+  ASSERT_EQ(xdf_.eventMap.size(), 1u);
+  EXPECT_EQ(xdf_.eventMap[0].first.first, "KIND_TASK: jump <high> & far");
+  EXPECT_NEAR(xdf_.eventMap[0].first.second, 27, 1e-9);
+}
+
+TEST_F(ExportXdfTest, NeverOverwritesUnlessToldAndRefusesACutRecording) {
+  WriteSampleRecording(Path("a.mcap"), true);
+  ASSERT_TRUE(ExportXdf(Path("a.mcap"), Path("out"), false).ok());
+  EXPECT_EQ(ExportXdf(Path("a.mcap"), Path("out"), false).error().kind, ErrorKind::kUsage);
+  EXPECT_TRUE(ExportXdf(Path("a.mcap"), Path("out"), true).ok());
+  const std::string whole = Bytes(Path("a.mcap"));
+  Save(Path("cut.mcap"), whole.substr(0, whole.size() - 1));
+  const auto cut = ExportXdf(Path("cut.mcap"), Path("cut"), false);
+  ASSERT_FALSE(cut.ok());
+  EXPECT_THAT(cut.error().message, HasSubstr("repair"));
+  EXPECT_FALSE(std::filesystem::exists(Path("cut")));
+}
+
+}  // namespace
+}  // namespace footing::log_client
