@@ -63,7 +63,7 @@ Result<RepairReport> Repair(const std::string& input, const std::string& output,
   Result<MappedFile> in = MappedFile::Open(input);
   if (!in) return in.error();
   const std::string_view magic = in->bytes().substr(0, mcap::kMagic.size());
-  if (magic != mcap::kMagic.substr(0, magic.size())) {
+  if (magic.empty() || magic != mcap::kMagic.substr(0, magic.size())) {
     return InvalidData(input + " is not an MCAP file: there is nothing to repair");
   }
   std::error_code error;

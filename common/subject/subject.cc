@@ -66,7 +66,9 @@ Result<Subject> ReadSubject(const std::string& path) {
   binder.Number("height_m", subject.height_m, kLeastHeightM, kMostHeightM, "Standing height");
   binder.Number("mass_kg", subject.mass_kg, kLeastMassKg, kMostMassKg, "Checked by the T-pose");
   binder.Number("foot_length_m", subject.foot_length_m, kLeastFootM, kMostFootM, "Heel to tip");
-  if (const auto read = binder.ApplyFile(path); !read) return read.error();
+  const auto text = config::ReadTextFile(path);
+  if (!text) return text.error();
+  if (const auto read = binder.ApplyText(*text, path); !read) return read.error();
   if (const auto ok = CheckSubject(subject, path); !ok) return ok.error();
   return subject;
 }

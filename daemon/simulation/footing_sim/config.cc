@@ -1,5 +1,7 @@
 #include "daemon/simulation/footing_sim/config.h"
 
+#include "common/transport/address_or_default.h"
+
 namespace footing::footing_sim {
 
 void Config::Bind(config::Binder& binder) {
@@ -14,6 +16,8 @@ Result<void> Check(const Config& config) {
   if (config.engine != "gait" && config.engine != "pose") {
     return UsageError("unknown --engine " + config.engine + "; there are: gait, pose");
   }
+  const auto sensor = transport::AddressOrDefault(config.serving.sensor, "sensor");
+  if (!sensor) return UsageError("--sensor: " + sensor.error().message);
   if (const auto checked = gait_service::Check(config.gait); !checked) return checked;
   return pose_service::Check(config.pose);
 }

@@ -156,11 +156,13 @@ TEST_F(Recording, RepairOfAWholeFileSaysThatNothingWasWrong) {
 }
 
 TEST_F(Recording, RepairRefusesWhatIsNoRecordingAndItsOwnInput) {
-  Save(Path("text.mcap"), "time_s,x_mm\n");
-  const auto no_mcap = Repair(Path("text.mcap"), Path("out.mcap"), "test", false);
-  ASSERT_FALSE(no_mcap.ok());
-  EXPECT_EQ(no_mcap.error().kind, ErrorKind::kInvalidData);
-  EXPECT_FALSE(std::filesystem::exists(Path("out.mcap")));
+  for (const char* bytes : {"time_s,x_mm\n", ""}) {
+    Save(Path("text.mcap"), bytes);
+    const auto no_mcap = Repair(Path("text.mcap"), Path("out.mcap"), "test", false);
+    ASSERT_FALSE(no_mcap.ok());
+    EXPECT_EQ(no_mcap.error().kind, ErrorKind::kInvalidData);
+    EXPECT_FALSE(std::filesystem::exists(Path("out.mcap")));
+  }
   WriteMotion(Path("a.mcap"), 1);
   const auto same = Repair(Path("a.mcap"), Path("a.mcap"), "test", true);
   ASSERT_FALSE(same.ok());

@@ -37,6 +37,16 @@ TEST(FootingSimConfig, AFileMayHoldTheSettingsOfBothEngines) {
   EXPECT_TRUE(Check(config));
 }
 
+TEST(FootingSimConfig, AnAddressThatIsNoneIsRefusedBeforeAnythingListens) {
+  Config config;
+  EXPECT_TRUE(Check(config));
+  config.serving.sensor = "nonsense";
+  const auto checked = Check(config);
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().kind, ErrorKind::kUsage);
+  EXPECT_THAT(checked.error().message, HasSubstr("--sensor: \"nonsense\" is not an address"));
+}
+
 TEST(FootingSimConfig, EveryInterfaceIsKnownAndCarriesItsOptions) {
   for (const auto interface : stream::kUserInterfaces) {
     Config config;
