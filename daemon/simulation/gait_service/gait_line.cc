@@ -133,7 +133,7 @@ v1::CommandResult GaitLine::OnCommand(const transport::SessionInfo& who,
     const Result<void> done = SetInterface(who, command.set_interface());
     return serving::Answer(done.ok(), done ? "" : "set_interface: " + done.error().message);
   }
-  if (!TrialControl::Takes(command)) return input_.OnCommand(command);
+  if (!TrialControl::Takes(command)) return input_.OnCommand(command, who.session);
   const v1::CommandResult result = trials_.OnCommand(command);
   if (result.ok()) input_.SetTrial(trials_.inputs());
   return result;

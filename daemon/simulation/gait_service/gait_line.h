@@ -50,6 +50,7 @@ class GaitLine {
     EndLeftGame();
     study_.OnSessionEnd(who);
     lease_.EndSession(who.session);
+    input_.OnSessionEnd(who.session);
   }
   std::vector<transport::ChannelBytes> OnFrame(const Frame& frame, std::int64_t now_ns);
 

@@ -68,7 +68,13 @@ v1::CommandResult SensorInput::Append(const v1::AppendSegment& message) {
   return Answer(true, "");
 }
 
-v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
+void SensorInput::OnSessionEnd(std::uint64_t session) {
+  if (!inputs_.engine.direct || session != direct_session_) return;
+  inputs_.engine.direct = false;
+  Publish();
+}
+
+v1::CommandResult SensorInput::OnCommand(const v1::Command& command, std::uint64_t session) {
   engine::EngineInputs& engine = inputs_.engine;
   switch (command.action_case()) {
     case v1::Command::kDirectGait: {
@@ -83,6 +89,7 @@ v1::CommandResult SensorInput::OnCommand(const v1::Command& command) {
         return Answer(false, "direct_gait: unknown gait; there are: " + stream::GaitNames());
       }
       engine.direct = !direct.release();
+      direct_session_ = session;
       engine.direct_command = {gait, direct.speed_mps(), direct.height_m(), direct.turn_rad()};
       break;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "common/exchange/latest.h"
@@ -22,7 +23,9 @@ class SensorInput {
   /// What the engine has done with the inputs so far.
   void OnFrame(const Frame& frame) { appends_taken_ = frame.output.append.number; }
   /// DirectGait, Push, PutBack and AppendSegment; anything else is answered with what there is.
-  v1::CommandResult OnCommand(const v1::Command& command);
+  v1::CommandResult OnCommand(const v1::Command& command, std::uint64_t session);
+  /// Releases the gait that the session commanded directly: nobody would stop the character.
+  void OnSessionEnd(std::uint64_t session);
 
   /// Another interface, from now on. Refused, with the reason, where the devices do not fit.
   Result<void> SetInterface(const mapping::InterfaceOptions& options,
@@ -46,7 +49,8 @@ class SensorInput {
   exchange::Latest<Inputs>& out_;
   Responses& responses_;
   Inputs inputs_;
-  std::uint64_t appends_taken_ = 0;  ///< Or refused, by the engine.
+  std::uint64_t appends_taken_ = 0;   ///< Or refused, by the engine.
+  std::uint64_t direct_session_ = 0;  ///< Of the newest DirectGait.
 };
 
 }  // namespace footing::gait_service

@@ -22,6 +22,8 @@ v1::RigFeatures* AddRig(v1::Tick& tick, const std::string& name, v1::DeviceRole 
   return rig;
 }
 
+constexpr std::uint64_t kSession = 3;
+
 struct Fixture : testing::Test {
   exchange::Latest<Inputs> inputs;
   Responses responses;
@@ -70,12 +72,25 @@ TEST_F(SensorInputTest, DirectGaitTakesOverAndIsReleased) {
   v1::Command command;
   command.mutable_direct_gait()->set_gait(v1::GAIT_RUN);
   command.mutable_direct_gait()->set_speed_mps(2);
-  EXPECT_TRUE(input.OnCommand(command).ok());
+  EXPECT_TRUE(input.OnCommand(command, kSession).ok());
   ASSERT_TRUE(inputs.Refresh());
   EXPECT_TRUE(inputs.Front().engine.direct);
   EXPECT_EQ(inputs.Front().engine.direct_command.gait, stream::Gait::kRun);
   command.mutable_direct_gait()->set_release(true);
-  EXPECT_TRUE(input.OnCommand(command).ok());
+  EXPECT_TRUE(input.OnCommand(command, kSession).ok());
+  ASSERT_TRUE(inputs.Refresh());
+  EXPECT_FALSE(inputs.Front().engine.direct);
+}
+
+TEST_F(SensorInputTest, DirectGaitEndsWithTheSessionThatSentIt) {
+  SensorInput input("", {}, inputs, responses);
+  v1::Command command;
+  command.mutable_direct_gait()->set_gait(v1::GAIT_RUN);
+  EXPECT_TRUE(input.OnCommand(command, kSession).ok());
+  input.OnSessionEnd(kSession + 1);  // Another client.
+  ASSERT_TRUE(inputs.Refresh());
+  EXPECT_TRUE(inputs.Front().engine.direct);
+  input.OnSessionEnd(kSession);
   ASSERT_TRUE(inputs.Refresh());
   EXPECT_FALSE(inputs.Front().engine.direct);
 }
@@ -84,20 +99,22 @@ TEST_F(SensorInputTest, CommandsThatMakeNoSenseAreRefusedAndChangeNothing) {
   SensorInput input("", {}, inputs, responses);
   v1::Command no_gait;
   no_gait.mutable_direct_gait();
-  EXPECT_FALSE(input.OnCommand(no_gait).ok());
+  EXPECT_FALSE(input.OnCommand(no_gait, kSession).ok());
   v1::Command not_finite;
   not_finite.mutable_direct_gait()->set_gait(v1::GAIT_WALK);
   not_finite.mutable_direct_gait()->set_speed_mps(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_FALSE(input.OnCommand(not_finite).ok());
+  EXPECT_FALSE(input.OnCommand(not_finite, kSession).ok());
   v1::Command too_hard;
   too_hard.mutable_push()->set_impulse_x_ns(1e6);
-  EXPECT_THAT(input.OnCommand(too_hard).message(), HasSubstr("200 N s"));
+  EXPECT_THAT(input.OnCommand(too_hard, kSession).message(), HasSubstr("200 N s"));
   v1::Command rumble;
   rumble.mutable_set_rumble();
-  EXPECT_THAT(input.OnCommand(rumble).message(), HasSubstr("footing-sim --engine gait takes"));
+  EXPECT_THAT(input.OnCommand(rumble, kSession).message(),
+              HasSubstr("footing-sim --engine gait takes"));
   v1::Command t_pose;
   t_pose.mutable_calibrate_t_pose();
-  EXPECT_THAT(input.OnCommand(t_pose).message(), HasSubstr("for footing-sim --engine pose"));
+  EXPECT_THAT(input.OnCommand(t_pose, kSession).message(),
+              HasSubstr("for footing-sim --engine pose"));
   EXPECT_FALSE(inputs.Refresh());
 }
 
@@ -105,8 +122,8 @@ TEST_F(SensorInputTest, EachPushHasItsOwnNumber) {
   SensorInput input("", {}, inputs, responses);
   v1::Command push;
   push.mutable_push()->set_impulse_y_ns(5);
-  EXPECT_TRUE(input.OnCommand(push).ok());
-  EXPECT_TRUE(input.OnCommand(push).ok());
+  EXPECT_TRUE(input.OnCommand(push, kSession).ok());
+  EXPECT_TRUE(input.OnCommand(push, kSession).ok());
   ASSERT_TRUE(inputs.Refresh());
   EXPECT_EQ(inputs.Front().engine.push_number, 2u);
   EXPECT_DOUBLE_EQ(inputs.Front().engine.push_impulse_W_ns.y(), 5);
@@ -121,16 +138,16 @@ v1::Command AppendOf(double length_m) {
 TEST_F(SensorInputTest, SegmentsWaitInOrderUntilTheEngineHasTakenThem) {
   SensorInput input("", {}, inputs, responses);
   for (int i = 0; i < engine::kMaxAppends; ++i) {
-    EXPECT_TRUE(input.OnCommand(AppendOf(2 + 0.1 * i)).ok());
+    EXPECT_TRUE(input.OnCommand(AppendOf(2 + 0.1 * i), kSession).ok());
   }
-  const v1::CommandResult full = input.OnCommand(AppendOf(3));
+  const v1::CommandResult full = input.OnCommand(AppendOf(3), kSession);
   EXPECT_FALSE(full.ok());
   EXPECT_THAT(full.message(), HasSubstr("try again"));
 
   Frame frame;
   frame.output.append.number = 5;
   input.OnFrame(frame);
-  EXPECT_TRUE(input.OnCommand(AppendOf(4)).ok());
+  EXPECT_TRUE(input.OnCommand(AppendOf(4), kSession).ok());
   ASSERT_TRUE(inputs.Refresh());
   const engine::EngineInputs& engine = inputs.Front().engine;
   EXPECT_EQ(engine.append_number, 17u);
@@ -141,7 +158,7 @@ TEST_F(SensorInputTest, SegmentsWaitInOrderUntilTheEngineHasTakenThem) {
 
 TEST_F(SensorInputTest, ASegmentMustBeFinite) {
   SensorInput input("", {}, inputs, responses);
-  EXPECT_FALSE(input.OnCommand(AppendOf(std::numeric_limits<double>::quiet_NaN())).ok());
+  EXPECT_FALSE(input.OnCommand(AppendOf(std::numeric_limits<double>::quiet_NaN()), kSession).ok());
   EXPECT_FALSE(inputs.Refresh());
 }
 
