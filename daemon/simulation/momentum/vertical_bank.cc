@@ -13,6 +13,10 @@ constexpr double kLeastCellNoiseN = 0.1;
 // Log densities: the trusting filter must have foreseen more, or much less, to change who speaks.
 constexpr double kTrustAbove = 2;
 constexpr double kDoubtBelow = -4;
+// By which the one of cells with play must have foreseen more than what would speak without it.
+constexpr double kPlayAbove = 4;
+// And there must be some, by so many of its deviations.
+constexpr double kPlaySpreads = 1.5;
 constexpr double kAdoptEveryS = 5;
 // Parts of the weight: by which the T-pose's is wrong before it is doubted at all, and to which the
 // weight must be known to be given to the others.
@@ -91,6 +95,14 @@ VerticalConfig WaryVertical(double arms_hang_m, double cell_noise_n, double mass
   return config;
 }
 
+VerticalConfig LooseVertical(double arms_hang_m, double cell_noise_n) {
+  VerticalConfig config = DoubtfulVertical(arms_hang_m, cell_noise_n);
+  config.play_n = 3;
+  config.slow_force_n = 3;
+  config.slow_force_time_s = 2;
+  return config;
+}
+
 VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n,
                            const PostureError& posture)
     : trusting_(WithPosture(TrustingVertical(arms_hang_m, cell_noise_n), posture), mass_kg, step_s),
@@ -99,19 +111,18 @@ VerticalBank::VerticalBank(double mass_kg, double step_s, double arms_hang_m, do
                  mass_kg, step_s),
       wary_(WithPosture(WaryVertical(arms_hang_m, cell_noise_n, mass_kg), posture), mass_kg,
             step_s),
+      loose_(WithPosture(LooseVertical(arms_hang_m, cell_noise_n), posture), mass_kg, step_s),
+      play_(std::max(cell_noise_n, kLeastCellNoiseN)),
       step_s_(step_s),
       posture_(posture) {}
 
 void VerticalBank::KeepLag(int lag_steps) {
-  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_, &wary_})
-    filter->KeepLag(lag_steps);
+  for (VerticalCom* filter : All()) filter->KeepLag(lag_steps);
 }
 
 void VerticalBank::Start(const VerticalInput& mean) {
-  trusting_.Start(mean);
-  doubtful_.Start(mean);
-  unweighed_.Start(mean);
-  wary_.Start(mean);
+  for (VerticalCom* filter : All()) filter->Start(mean);
+  loose_speaks_ = false;
   wary_speaks_ = false;
   since_posture_s_ = kPostureS;
   trusts_ = false;
@@ -120,9 +131,7 @@ void VerticalBank::Start(const VerticalInput& mean) {
 }
 
 void VerticalBank::SeePosture(double height_m) {
-  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_, &wary_}) {
-    filter->SeePosture(height_m);
-  }
+  for (VerticalCom* filter : All()) filter->SeePosture(height_m);
   since_posture_s_ = 0;
 }
 
@@ -132,7 +141,7 @@ bool VerticalBank::SeesPosture() const {
 
 void VerticalBank::Land() {
   // Each keeps its mass: what was learned of the weight stays true.
-  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_, &wary_}) {
+  for (VerticalCom* filter : All()) {
     filter->Land(kAnyHeightM, kAnyHeightSpreadM, kLandingMps, kLandingSpreadMps);
   }
 }
@@ -157,6 +166,7 @@ void VerticalBank::Recover() {
       filter->Adopt(wary_);
     }
   }
+  WatchPlay(seen, look);
   if (!seen) {
     wary_speaks_ = false;
     return;
@@ -167,16 +177,34 @@ void VerticalBank::Recover() {
   wary_speaks_ = wary_speaks_ ? best < wary_.score() + kTrustAbove : best < wary_.score() - kBehind;
 }
 
+void VerticalBank::WatchPlay(bool seen, bool look) {
+  double best = std::max(trusting_.score(), doubtful_.score());
+  if (weighing_) best = std::max(best, unweighed_.score());
+  if (wary_speaks_) best = std::max(best, wary_.score());
+  const double lead = loose_.score() - best;
+  const bool lost = loose_.strayed() || (look && lead < -kBehind);
+  if (lost) {
+    loose_.Adopt(loose_.strayed() ? wary_ : Tight());
+    loose_.DoubtPlay();
+  }
+  const VerticalCom::Filter::Scalar play = loose_.Play();
+  const bool found = !lost && play.mean > kPlaySpreads * std::sqrt(play.variance);
+  loose_speaks_ = seen && found && lead > (loose_speaks_ ? 0 : kPlayAbove);
+  if (!look || !found) return;
+  for (VerticalCom* filter : {&trusting_, &doubtful_, &unweighed_}) {
+    if (filter->score() < loose_.score() - kBehind) filter->Adopt(loose_);
+  }
+}
+
 bool VerticalBank::trusted() const {
   if (SeesPosture() && chosen().contradicted()) return false;
   return chosen().Height(0).variance < kTrustedSpreadM * kTrustedSpreadM;
 }
 
 void VerticalBank::Advance(const VerticalInput& input) {
-  trusting_.Advance(input);
-  doubtful_.Advance(input);
-  unweighed_.Advance(input);
-  wary_.Advance(input);
+  VerticalInput with_play = input;
+  with_play.play = play_.Advance(input.load_n, step_s_);
+  for (VerticalCom* filter : All()) filter->Advance(with_play);
   since_posture_s_ += step_s_;
   Recover();
   Weigh();
@@ -208,10 +236,7 @@ void VerticalBank::Weigh() {
 }
 
 void VerticalBank::Coast() {
-  trusting_.Coast();
-  doubtful_.Coast();
-  unweighed_.Coast();
-  wary_.Coast();
+  for (VerticalCom* filter : All()) filter->Coast();
 }
 
 VerticalCom::Filter::Scalar VerticalBank::Height(int lag_steps) const {

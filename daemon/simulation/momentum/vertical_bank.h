@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+
+#include "daemon/simulation/momentum/cell_play.h"
 #include "daemon/simulation/momentum/vertical_com.h"
 
 namespace footing::momentum {
@@ -17,12 +20,17 @@ VerticalConfig UnweighedVertical(double arms_hang_m, double cell_noise_n, double
 /// worst boards are.
 VerticalConfig WaryVertical(double arms_hang_m, double cell_noise_n, double mass_kg);
 
+/// For cells that follow their loads with play, of a width that is not known.
+VerticalConfig LooseVertical(double arms_hang_m, double cell_noise_n);
+
 /// Filters of the height side by side, one that trusts the cells and one that doubts them. The
 /// one that foresaw the last minute's events better speaks; a trusting filter that lost its way is
 /// set right by the doubtful one. A third one takes nothing for granted of the weight: when it is
 /// sure that the T-pose's is wrong, it speaks until the weight is settled, then gives it to the
 /// others. A fourth one knows nothing for good: where the others stray or foresee much less than it
-/// does, it speaks, and they adopt its state. A plain value.
+/// does, it speaks, and they adopt its state. A fifth one takes the cells to have play: where it
+/// foresees more than all others, it speaks, and those that foresee much less adopt its state. A
+/// plain value.
 class VerticalBank {
  public:
   VerticalBank(double mass_kg, double step_s, double arms_hang_m, double cell_noise_n,
@@ -43,32 +51,43 @@ class VerticalBank {
   /// False while what speaks contradicts the posture, or is not sure of the height.
   bool trusted() const;
 
-  const VerticalCom& chosen() const {
-    if (wary_speaks_) return wary_;
-    if (weighing_) return unweighed_;
-    return trusts_ ? trusting_ : doubtful_;
-  }
+  const VerticalCom& chosen() const { return loose_speaks_ ? loose_ : Tight(); }
   bool trusts() const { return trusts_; }
   /// The T-pose's, or what it was found to be.
   double mass_kg() const {
-    return wary_speaks_ ? wary_.weighed_kg()
-           : weighing_  ? unweighed_.weighed_kg()
-                        : chosen().mass_kg();
+    return loose_speaks_  ? loose_.mass_kg()
+           : wary_speaks_ ? wary_.weighed_kg()
+           : weighing_    ? unweighed_.weighed_kg()
+                          : chosen().mass_kg();
   }
   /// Mean and variance, with what the anchor itself may be wrong by in it.
   VerticalCom::Filter::Scalar Height(int lag_steps) const;
 
  private:
+  std::array<VerticalCom*, 5> All() {
+    return {&trusting_, &doubtful_, &unweighed_, &wary_, &loose_};
+  }
   void Weigh();
   /// The wary filter restarts where it has strayed; others that have, or that foresaw much less
   /// than it did, adopt its state.
   void Recover();
+  /// What would speak if cells had no play.
+  const VerticalCom& Tight() const {
+    if (wary_speaks_) return wary_;
+    if (weighing_) return unweighed_;
+    return trusts_ ? trusting_ : doubtful_;
+  }
+  /// Whether cells have play, by how well the loose filter foresees; `look`: states are adopted.
+  void WatchPlay(bool seen, bool look);
   bool SeesPosture() const;
 
   VerticalCom trusting_;
   VerticalCom doubtful_;
   VerticalCom unweighed_;
   VerticalCom wary_;
+  VerticalCom loose_;
+  CellPlay play_;
+  bool loose_speaks_ = false;
   bool wary_speaks_ = false;
   bool trusts_ = false;
   double adopted_s_ = 0;

@@ -12,8 +12,9 @@ namespace {
 using VerticalFilter = VerticalCom::Filter;
 
 constexpr int kGroups = VerticalInput::kGroups;
-constexpr int kGains = 3, kPosture = kGains + kGroups;  // Where they begin in the state.
-constexpr double kAccelerationTimeS = 0.12;             // Smoothing of |acceleration|.
+constexpr int kGains = 3, kPlay = kGains + kGroups, kPosture = kPlay + 1;  // In the state.
+constexpr int kCells = kGroups + 1;          // What is learned of them: gains, and the play.
+constexpr double kAccelerationTimeS = 0.12;  // Smoothing of |acceleration|.
 // Of the acceleration that is kept. One that is further off than `kLeap` limits of stillness has
 // another level, which is found at once where a posture is seen: it shows who moves.
 constexpr double kLevelTimeS = 0.5, kLeapTimeS = 0.05, kLeap = 1.2;
@@ -55,6 +56,7 @@ void DoubtGains(const VerticalInput& input, double mass_kg, double shown_mps2, d
   for (int i = 0; i < kGroups; ++i) {
     row(kGains + i) = input.load_n[static_cast<std::size_t>(i)] / mass_kg;
   }
+  row(kPlay) = -input.play / mass_kg;
   filter.Update(row, shown_mps2, sd_mps2 * sd_mps2);
 }
 
@@ -91,7 +93,8 @@ void VerticalCom::Start(const VerticalInput& mean) {
   p(2, 2) = config_.slow_force_n * config_.slow_force_n / (mass_kg_ * mass_kg_);
   p.block<kGroups, kGroups>(kGains, kGains)
       .setConstant(config_.weight_spread * config_.weight_spread);
-  for (int i = kGains; i < kPosture; ++i) p(i, i) += config_.gain_spread * config_.gain_spread;
+  p(kPlay, kPlay) = config_.play_n * config_.play_n;
+  for (int i = kGains; i < kPlay; ++i) p(i, i) += config_.gain_spread * config_.gain_spread;
   p(kPosture, kPosture) = config_.posture.spread_m * config_.posture.spread_m;
   filter_.Start(VerticalFilter::Vector::Zero(), p);
   // In the T-pose all gains together give the weight, but for what the mass is wrong by.
@@ -129,6 +132,10 @@ void VerticalCom::Advance(const VerticalInput& input) {
     a_(1, 3 + i) = -h * share;
     acceleration_mps2_ -= filter_.x()(3 + i) * input.load_n[k] / mass_kg_;
   }
+  const double play = 0.5 * (input.play + last_.input.play) / mass_kg_;
+  a_(0, kPlay) = 0.5 * h * h * play;
+  a_(1, kPlay) = h * play;
+  acceleration_mps2_ += filter_.x()(kPlay) * input.play / mass_kg_;
   filter_.Predict(a_, u_, q_);
   Watch(input, raw);
   if (still()) {
@@ -217,7 +224,7 @@ void VerticalCom::Reseed(double height_m, double height_sd_m, double velocity_mp
                          double velocity_sd_mps) {
   VerticalFilter::Vector x = filter_.x();
   VerticalFilter::Matrix p = VerticalFilter::Matrix::Zero();
-  p.block<kGroups, kGroups>(kGains, kGains) = filter_.p().block<kGroups, kGroups>(kGains, kGains);
+  p.block<kCells, kCells>(kGains, kGains) = filter_.p().block<kCells, kCells>(kGains, kGains);
   p.block<kGroups, kGroups>(kGains, kGains).array() += kReseedGain * kReseedGain;
   x(0) = height_m;
   x(1) = velocity_mps;
@@ -257,12 +264,21 @@ void VerticalCom::Reweigh() {
   // (1 - gain) / mass of each group stays what it was.
   const double share = mass_kg_ / weighed_kg();
   VerticalFilter::Vector shift = VerticalFilter::Vector::Zero();
-  for (int i = kGains; i < kPosture; ++i)
-    shift(i) = 1 - (1 - filter_.x()(i)) / share - filter_.x()(i);
+  for (int i = kGains; i < kPlay; ++i) shift(i) = 1 - (1 - filter_.x()(i)) / share - filter_.x()(i);
   filter_.Predict(VerticalFilter::Matrix::Identity(), shift, VerticalFilter::Matrix::Zero());
   mass_kg_ /= share;
   overweight_ *= share;
   last_.raw_mps2 = Total(last_.input) / mass_kg_ - kStandardGravityMps2;
+}
+
+VerticalFilter::Scalar VerticalCom::Play() const {
+  return filter_.Of(VerticalFilter::Row::Unit(kPlay));
+}
+
+void VerticalCom::DoubtPlay() {
+  VerticalFilter::Matrix q = VerticalFilter::Matrix::Zero();
+  q(kPlay, kPlay) = std::max(0.0, config_.play_n * config_.play_n - filter_.p()(kPlay, kPlay));
+  filter_.Predict(VerticalFilter::Matrix::Identity(), VerticalFilter::Vector::Zero(), q);
 }
 
 void VerticalCom::Coast() {

@@ -17,6 +17,7 @@ struct VerticalConfig {
   double gain_spread = 0.005;    ///< Standard deviation of a cell group's gain.
   double slow_force_n = 1.0;     ///< Standard deviation of the boards' slow error.
   double slow_force_time_s = 5;  ///< Its correlation time.
+  double play_n = 0;             ///< Of half the width of the cells' play, of all alike.
   double mass_error_kg = 0.05;   ///< Of the calibration.
   double weight_spread = 0;      ///< Of what all cells are wrong by alike, beside their own gains.
   double weight_walk = 0;        ///< By which that wanders, per root second.
@@ -41,20 +42,21 @@ struct VerticalConfig {
 struct VerticalInput {
   static constexpr int kGroups = 8;
   std::array<double, kGroups> load_n{};
+  double play = 0;  ///< CellPlay::Advance; 0 where it does not count.
   bool cop_valid = false;
   Eigen::Vector2d cop_m = Eigen::Vector2d::Zero();
 };
 
 /// Height of the centre of mass over its height in the T-pose, by a Kalman filter of the loads.
 ///
-/// States: height, velocity, slow error of the acceleration, one gain error per group of cells, the
-/// posture's error. The loads enter as an input; the cells' gains, the mass and the slow error are
-/// found by what the filter learns when the body is still (zero velocity) and upright (a mixture of
-/// densities, matched in its moments): the more doubtful the height, the wider the reach of the
-/// anchor. A plain value.
+/// States: height, velocity, slow error of the acceleration, one gain error per group of cells,
+/// half the width of the cells' play, the posture's error. The loads enter as an input; the cells'
+/// gains and play, the mass and the slow error are found by what the filter learns when the body is
+/// still (zero velocity) and upright (a mixture of densities, matched in its moments): the more
+/// doubtful the height, the wider the reach of the anchor. A plain value.
 class VerticalCom {
  public:
-  static constexpr int kStates = 4 + VerticalInput::kGroups;
+  static constexpr int kStates = 5 + VerticalInput::kGroups;
   static constexpr int kSlots = 25;
   static constexpr double kStillAfterS = 0.2;
   using Filter = LinearFilter<kStates, kSlots>;
@@ -86,6 +88,8 @@ class VerticalCom {
   /// What the cells measure too much beside the mass, as a part of the weight, with the T-pose's
   /// loads.
   Filter::Scalar Overweight() const { return filter_.Of(overweight_); }
+  /// Half the width of the cells' play, N.
+  Filter::Scalar Play() const;
   /// Takes what they measure too much into the mass.
   void Reweigh();
   double mass_kg() const { return mass_kg_; }  ///< By which the loads are divided.
@@ -97,6 +101,8 @@ class VerticalCom {
   /// Takes over the state and the mass of another filter, with its doubts; its own configuration
   /// stays.
   void Adopt(const VerticalCom& other);
+  /// What is known of the cells' play is no longer taken to be surer than at first.
+  void DoubtPlay();
   /// Nothing was measured in this step.
   void Coast();
 
