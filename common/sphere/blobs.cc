@@ -225,6 +225,14 @@ void YuyvRow(const Image& image, int row, int left, int width, std::int16_t* red
 
 QuadWindow Whole(const Image& image) { return {0, 0, image.width / 2 - 1, image.height / 2 - 1}; }
 
+QuadWindow Around(const Blob& blob, const Quads& quads, double margin_share) {
+  const int size = std::max(blob.right - blob.left, blob.bottom - blob.top) + 1;
+  const int margin = 2 + static_cast<int>(margin_share * size);
+  return {std::max(0, blob.left - margin), std::max(0, blob.top - margin),
+          std::min(quads.width - 1, blob.right + margin),
+          std::min(quads.height - 1, blob.bottom + margin)};
+}
+
 void ToQuads(const Image& image, const QuadWindow& window, Quads& quads) {
   quads.width = image.width / 2;
   quads.height = image.height / 2;
