@@ -86,8 +86,6 @@ class Fitter {
   double PriorCost(const State& state) const;
   struct ScoreSums;
   ScoreSums SumScore(const State& state);
-  Eigen::Matrix3d Unseen(const Eigen::Vector4d& change, const Eigen::Matrix4d& noise, double size,
-                         double blur_px, const Eigen::Matrix<double, 3, 2>& per_travel) const;
   Solution Report(const State& state, double cost, bool moves) const;
 
   const Settings& settings_;
