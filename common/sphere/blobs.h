@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/sphere/image.h"
@@ -11,6 +14,16 @@ namespace footing::sphere {
 struct Quads {
   int width = 0, height = 0;
   std::vector<std::int16_t> red, green, blue;
+
+  std::size_t At(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
+  /// The least of its three colours, DN: how white it is.
+  int LeastAt(int x, int y) const {
+    const std::size_t at = At(x, y);
+    return std::min({red[at], green[at], blue[at]});
+  }
 };
 
 /// A rectangle of quads; all four edges are included.
@@ -31,7 +44,14 @@ struct Blob {
   int area = 0;
   double score = 0;              ///< Sum of the chroma along the hue, DN.
   Eigen::Vector2d centre{0, 0};  ///< Mean, weighted by the score.
+
+  /// In pixels.
+  Eigen::Vector2d MiddlePx() const { return 2 * centre + Eigen::Vector2d(0.5, 0.5); }
+  double SizePx() const { return 2.0 * std::max(right - left, bottom - top) + 2; }
 };
+
+/// A blob with a margin around it, two quads and a share of its size; cut at the image's edges.
+QuadWindow Around(const Blob& blob, const Quads& quads, double margin_share);
 
 /// Quads whose chroma lies within 30 degrees of the colour's hue and reaches `share` of the
 /// colour's own along it; white and grey have no chroma. Blobs of at least `kLeastQuads` within the

@@ -41,7 +41,7 @@ class Strategy {
         start_(start),
         settings_(settings),
         scale_(slopes, settings.shutter.row_s / settings.shutter.exposure_s),
-        fitter_(settings, table, scale_, MotionSdPx()) {
+        fitter_(settings, table, scale_, start.lit, MotionSdPx()) {
     begin_.shape << start.cone.axis, start.cone.tangent, settings.profile.blur_px,
         settings.profile.limb, 0, 0;
     begin_.inside = start.contrast.inside;

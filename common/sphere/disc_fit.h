@@ -8,6 +8,7 @@
 #include "common/sphere/cone.h"
 #include "common/sphere/edges.h"
 #include "common/sphere/image.h"
+#include "common/sphere/lit_quads.h"
 #include "common/sphere/local_slopes.h"
 #include "common/sphere/profile_table.h"
 #include "common/sphere/settings.h"
@@ -30,6 +31,7 @@ struct DiscStart {
   SectorReach reach{};
   std::vector<Eigen::Vector2d> edges;  ///< Slopes at which the light falls to the half.
   double radius_m = 0.0225;
+  LitQuads lit = {};                              ///< They take no part.
   std::optional<Eigen::Vector2d> motion_px = {};  ///< During an exposure, by the frames before.
   /// Its colour is hardly the sphere's, so that its confidence will be low: it is measured from
   /// fewer pixels, and not as one that moves.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/sphere/disc_ring.h"
+#include "common/sphere/unseen_motion.h"
 
 namespace footing::sphere::disc {
 namespace {
@@ -217,27 +218,6 @@ Fitter::ScoreSums Fitter::SumScore(const State& state) {
   return sums;
 }
 
-/// What remains possible of a motion: its even blur by the noise of that with twice the angle and
-/// by how fast a hand is expected to be; its travel by that blur and by the noise of the travel.
-Eigen::Matrix3d Fitter::Unseen(const Eigen::Vector4d& change, const Eigen::Matrix4d& noise,
-                               double size, double blur_px,
-                               const Eigen::Matrix<double, 3, 2>& per_travel) const {
-  const double expected2 = std::pow(motion_sd_px_ * motion_sd_px_ / (24 * blur_px), 2);
-  const double noise2 = 0.5 * noise.topLeftCorner<2, 2>().trace();
-  const double share = expected2 / (expected2 + noise2);
-  const double blur2 = share * share * size * size + 2 * share * noise2;
-  const double travel2 = 0.5 * 48 * blur_px * std::sqrt(0.5 * blur2);
-  const Eigen::Matrix2d travel_noise = noise.bottomRightCorner<2, 2>();
-  const Eigen::Matrix2d shares =
-      travel2 * (travel_noise + travel2 * Eigen::Matrix2d::Identity()).inverse();
-  const Eigen::Vector2d mean = shares * change.tail<2>();
-  const Eigen::Matrix2d square = shares * travel_noise + mean * mean.transpose();
-  const double blur_sd_px = settings_.profile.blur_sd_px;
-  const Eigen::Vector3d per_blur =
-      normal_.ldlt().solve(Normal::Identity().col(3)).head<3>() / (blur_sd_px * blur_sd_px);
-  return blur2 * per_blur * per_blur.transpose() + per_travel * square * per_travel.transpose();
-}
-
 MotionScore Fitter::ScoreMotion(const State& state) {
   using Square = ScoreSums::Square;
   ScoreSums sums = SumScore(state);
@@ -253,8 +233,12 @@ MotionScore Fitter::ScoreMotion(const State& state) {
   const double angle = 0.5 * std::atan2(change[1], change[0]);
   score.motion_px =
       std::sqrt(48 * state.shape[3] * size) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-  score.unseen = Unseen(change, settings_.noise.correlation * own.solve(Square::Identity()), size,
-                        state.shape[3], gain.topRightCorner<3, 2>());
+  const double blur_sd_px = settings_.profile.blur_sd_px;
+  const Eigen::Vector3d per_blur =
+      solver.solve(Normal::Identity().col(3)).head<3>() / (blur_sd_px * blur_sd_px);
+  score.unseen = UnseenMotion({change, sums.own / settings_.noise.correlation, state.shape[3],
+                               per_blur, gain.topRightCorner<3, 2>()},
+                              motion_sd_px_);
   if (!score.unseen.allFinite()) score.unseen.setZero();  // Too few pixels for a score.
   return score;
 }

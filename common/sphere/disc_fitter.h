@@ -40,10 +40,11 @@ struct MotionScore {
 /// The pixels around a sphere and the fit of the model to them.
 class Fitter {
  public:
-  /// `motion_sd_px`: travel in the image during the exposure that is expected.
+  /// `motion_sd_px`: travel in the image during the exposure that is expected; `lit`: quads that
+  /// take no part. All but the number are borrowed.
   Fitter(const Settings& settings, const ProfileTable& table, const PixelScale& scale,
-         double motion_sd_px)
-      : settings_(settings), table_(table), scale_(scale), motion_sd_px_(motion_sd_px) {}
+         const LitQuads& lit, double motion_sd_px)
+      : settings_(settings), table_(table), scale_(scale), lit_(lit), motion_sd_px_(motion_sd_px) {}
 
   /// Takes the pixels of a disc and of `far_blurs` around it, some `most_pixels` of them.
   void Collect(const Image& image, const LocalSlopes& slopes, const Eigen::Vector2d& middle_px,
@@ -85,13 +86,12 @@ class Fitter {
   double PriorCost(const State& state) const;
   struct ScoreSums;
   ScoreSums SumScore(const State& state);
-  Eigen::Matrix3d Unseen(const Eigen::Vector4d& change, const Eigen::Matrix4d& noise, double size,
-                         double blur_px, const Eigen::Matrix<double, 3, 2>& per_travel) const;
   Solution Report(const State& state, double cost, bool moves) const;
 
   const Settings& settings_;
   const ProfileTable& table_;
   const PixelScale& scale_;
+  const LitQuads& lit_;
   double motion_sd_px_;
   double growth_sd_ = 1;  // Of what was solved last.
   std::vector<Sample> samples_;

@@ -42,6 +42,7 @@ void Fitter::Collect(const Image& image, const LocalSlopes& slopes,
 void Fitter::CollectQuad(const Image& image, const LocalSlopes& slopes,
                          const Eigen::Vector2d& middle_px, const State& state, int u, int v,
                          double far_blurs, int& quad, int every) {
+  if (lit_.At(u / 2, v / 2)) return;
   const Eigen::Vector2d at = slopes.At(u + 0.5, v + 0.5);
   const double beyond = BeyondOf(at, state);
   if (beyond > far_blurs + 1.5) return;

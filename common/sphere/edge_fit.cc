@@ -1,6 +1,7 @@
 #include "common/sphere/edge_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,7 +46,7 @@ SectorReach ReachOf(const ConeFit& fit, const std::vector<Eigen::Vector2d>& slop
 }
 
 std::optional<DiscFit> FitEdge(const LocalSlopes& slopes, const DiscStart& start,
-                               const std::vector<bool>& inliers) {
+                               const std::vector<bool>& inliers, double radius_sd_px) {
   const double per_px = std::sqrt(slopes.scale().determinant());
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   double square = 0;
@@ -67,7 +68,7 @@ std::optional<DiscFit> FitEdge(const LocalSlopes& slopes, const DiscStart& start
   DiscFit fit;
   fit.cone = start.cone;
   fit.covariance = same * edge_sd * edge_sd * solver.solve(Eigen::Matrix3d::Identity());
-  fit.covariance(2, 2) += std::pow(kRadiusSdPx * per_px, 2);
+  fit.covariance(2, 2) += std::pow(std::hypot(kRadiusSdPx, radius_sd_px) * per_px, 2);
   fit.used_share = static_cast<double>(count) / kEdgeRays;
   fit.is_doubtful = true;
   return fit;

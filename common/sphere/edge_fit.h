@@ -15,9 +15,9 @@ SectorReach ReachOf(const ConeFit& fit, const std::vector<Eigen::Vector2d>& slop
 
 /// A sphere whose light no photometric fit explains, as one before the edge of a lamp: its cone as
 /// the edges give it, with a covariance that follows from them. Its direction is good to a
-/// fraction of a pixel, its distance is rough. `inliers` are those of `start.edges`. Nothing when
-/// they are too few.
+/// fraction of a pixel, its distance is rough. `inliers` are those of `start.edges`; `radius_sd_px`
+/// is what they have in common beside the usual. Nothing when they are too few.
 std::optional<DiscFit> FitEdge(const LocalSlopes& slopes, const DiscStart& start,
-                               const std::vector<bool>& inliers);
+                               const std::vector<bool>& inliers, double radius_sd_px);
 
 }  // namespace footing::sphere

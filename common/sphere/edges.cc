@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "common/sphere/lit_quads.h"
+
 namespace footing::sphere {
 namespace {
 
@@ -12,25 +14,13 @@ using Levels = std::array<double, 3>;
 
 constexpr double kLeastContrastDn = 6;
 constexpr double kInsideQuantile = 0.6;
-
-/// Cut at the image's edges.
-QuadWindow Around(const Blob& blob, const Quads& quads, double margin_share) {
-  const int size = std::max(blob.right - blob.left, blob.bottom - blob.top) + 1;
-  const int margin = 2 + static_cast<int>(margin_share * size);
-  return {std::max(0, blob.left - margin), std::max(0, blob.top - margin),
-          std::min(quads.width - 1, blob.right + margin),
-          std::min(quads.height - 1, blob.bottom + margin)};
-}
-
-std::size_t QuadAt(const Quads& quads, int x, int y) {
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(quads.width) +
-         static_cast<std::size_t>(x);
-}
+constexpr double kFullDn = 255;             // Of the sensor.
+constexpr double kLeastOutsideShare = 0.2;  // Of the ring, that is no lamp.
 
 /// What the fit sees of a quad: its three colours, or of YUYV its luma, three times.
 Levels LevelsAt(const Image& image, const Quads& quads, int x, int y) {
   if (image.format == PixelFormat::kSgrbg8) {
-    const std::size_t at = QuadAt(quads, x, y);
+    const std::size_t at = quads.At(x, y);
     return {double(quads.red[at]), double(quads.green[at]), double(quads.blue[at])};
   }
   const double luma = 0.25 * (image.Value(2 * x, 2 * y) + image.Value(2 * x + 1, 2 * y) +
@@ -45,7 +35,7 @@ double Quantile(std::vector<double>& values, double share) {
 }
 
 Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob,
-                    const InnerQuads& middle) {
+                    const InnerQuads& middle, Surroundings around) {
   std::array<std::vector<double>, 3> inside, outside;
   const auto add = [&](std::array<std::vector<double>, 3>& to, int x, int y) {
     const Levels levels = LevelsAt(image, quads, x, y);
@@ -53,14 +43,21 @@ Contrast ContrastOf(const Image& image, const Quads& quads, const Blob& blob,
   };
   for (const auto& [x, y] : middle) add(inside, x, y);
   const QuadWindow ring = Around(blob, quads, 0.25);
+  int count = 0;
+  const auto add_outside = [&](int x, int y) {
+    ++count;
+    if (around == Surroundings::kAny || quads.LeastAt(x, y) < kWhiteDn) add(outside, x, y);
+  };
   for (int x = ring.left; x <= ring.right; ++x) {
-    add(outside, x, ring.top);
-    add(outside, x, ring.bottom);
+    add_outside(x, ring.top);
+    add_outside(x, ring.bottom);
   }
   for (int y = ring.top + 1; y < ring.bottom; ++y) {
-    add(outside, ring.left, y);
-    add(outside, ring.right, y);
+    add_outside(ring.left, y);
+    add_outside(ring.right, y);
   }
+  if (static_cast<double>(outside[0].size()) < kLeastOutsideShare * count)
+    return ContrastOf(image, quads, blob, middle, Surroundings::kAny);  // A lamp all around.
   Contrast contrast;
   for (std::size_t i = 0; i < 3; ++i) {
     contrast.inside[i] = Quantile(inside[i], kInsideQuantile);
@@ -91,6 +88,16 @@ class LightMap {
         for (std::size_t i = 0; i < 3; ++i) light += weight[i] * (levels[i] - contrast.outside[i]);
         light_.push_back(light / sum);
       }
+    }
+  }
+
+  /// Alike before a lamp: by the least of the three colours, 0 at the sensor's limit.
+  LightMap(const Quads& quads, const QuadWindow& window, const Contrast& contrast)
+      : window_(window), width_(window.right - window.left + 1) {
+    const double inside = *std::min_element(contrast.inside.begin(), contrast.inside.end());
+    for (int y = window.top; y <= window.bottom; ++y) {
+      for (int x = window.left; x <= window.right; ++x)
+        light_.push_back((kFullDn - quads.LeastAt(x, y)) / std::max(1.0, kFullDn - inside));
     }
   }
 
@@ -152,7 +159,7 @@ InnerQuads InnerQuadsOf(const Blob& blob) {
 Eigen::Vector3d ColourOf(const Quads& quads, const InnerQuads& inner) {
   std::array<std::vector<double>, 3> inside;
   for (const auto& [x, y] : inner) {
-    const std::size_t at = QuadAt(quads, x, y);
+    const std::size_t at = quads.At(x, y);
     inside[0].push_back(quads.red[at]);
     inside[1].push_back(quads.green[at]);
     inside[2].push_back(quads.blue[at]);
@@ -162,20 +169,28 @@ Eigen::Vector3d ColourOf(const Quads& quads, const InnerQuads& inner) {
 }
 
 std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
-                               const InnerQuads& inner, const PixelNoise& noise) {
+                               const InnerQuads& inner, const PixelNoise& noise,
+                               Surroundings around) {
   Edges edges;
-  edges.contrast = ContrastOf(image, quads, blob, inner);
+  edges.contrast = ContrastOf(image, quads, blob, inner, around);
   double highest = 0;
   for (int i = 0; i < 3; ++i) highest = std::max(highest, std::abs(edges.contrast.Height(i)));
   if (highest < kLeastContrastDn) return std::nullopt;
-  const LightMap map(image, quads, Around(blob, quads, 0.6), edges.contrast, noise);
+  const QuadWindow window = Around(blob, quads, 0.6);
+  const LightMap map(image, quads, window, edges.contrast, noise);
+  std::optional<LightMap> lamp;
+  if (around == Surroundings::kLamp) lamp.emplace(quads, window, edges.contrast);
   for (int i = 0; i < kEdgeRays; ++i) {
     const double angle = 2 * std::numbers::pi * i / kEdgeRays;
     const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
-    const auto r = FallAlong(map, blob.centre, along);
-    if (!r) continue;
+    const auto fall = FallAlong(map, blob.centre, along);
+    const auto rise = lamp ? FallAlong(*lamp, blob.centre, along) : std::optional<double>();
+    if (!fall && !rise) continue;
+    const bool at_lamp = rise && (!fall || *rise < *fall);
+    const double r = at_lamp ? *rise : *fall;
     // The middle of a quad is half a pixel beyond its first pixel's.
-    edges.pixels.emplace_back(2 * (blob.centre + *r * along) + Eigen::Vector2d(0.5, 0.5));
+    edges.pixels.emplace_back(2 * (blob.centre + r * along) + Eigen::Vector2d(0.5, 0.5));
+    edges.at_lamp.push_back(at_lamp);
   }
   return edges;
 }

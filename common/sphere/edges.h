@@ -33,12 +33,21 @@ Eigen::Vector3d ColourOf(const Quads& quads, const InnerQuads& inner);
 struct Edges {
   Contrast contrast;
   std::vector<Eigen::Vector2d> pixels;  ///< Of the rays that meet an edge.
+  std::vector<bool> at_lamp;            ///< Those of them that meet a lamp.
+};
+
+/// What is around a blob.
+enum class Surroundings {
+  kAny,
+  kLamp,  ///< In part: what is outside is the rest, and rays may end where white light begins.
 };
 
 /// Edges on the light itself, not on the chroma: each colour is set between its own levels inside
 /// and outside and weighted by its contrast over its noise, so that a mosaic needs no
-/// interpolation. Sub-pixel by linear interpolation. Nothing when the blob has no contrast.
+/// interpolation. Sub-pixel by linear interpolation. At a lamp, whose light clips, an edge is where
+/// the least of the three colours rises to the half. Nothing when the blob has no contrast.
 std::optional<Edges> FindEdges(const Image& image, const Quads& quads, const Blob& blob,
-                               const InnerQuads& inner, const PixelNoise& noise);
+                               const InnerQuads& inner, const PixelNoise& noise,
+                               Surroundings around = Surroundings::kAny);
 
 }  // namespace footing::sphere

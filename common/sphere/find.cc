@@ -3,23 +3,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "common/sphere/cone.h"
 #include "common/sphere/edge_fit.h"
 #include "common/sphere/edges.h"
 
 namespace footing::sphere {
-
-/// A blob whose edge is a cone's.
-struct Finder::Candidate {
-  LocalSlopes slopes;
-  DiscStart start;
-  std::vector<bool> inliers;  ///< Of its edges.
-  bool is_compact = false;    ///< Its blob does not extend far beyond the cone.
-  double colour_off = 0;      ///< From the sphere's own.
-  double quality = 0;         ///< Share of the edge, less for another colour.
-};
 
 namespace {
 
@@ -30,9 +18,9 @@ constexpr double kGoodQuality = 0.7;
 constexpr double kClearQuality = 0.88;  // Nothing else in sight is as bright and as round.
 constexpr double kLeastQuality = 0.25, kLeastQualityByEdge = 0.45;
 constexpr double kConfidenceByEdge = 0.2;
-// Limb, gradient and the blur of the smallest spheres change the colour by 0.15.
-constexpr double kSureColourOff = 0.2, kMostColourOff = 0.45;
-constexpr double kUnlikelyColourOff = 0.3;  // Its confidence is 0.6 at most.
+// Beside a lamp: of a blob's size against the disc's, a quad and a blur on either side; of the
+// distance, over it.
+constexpr double kMostOffPx = 6, kMostSdShare = 0.25;
 constexpr double kLeastSeenShare = 0.2;
 constexpr double kMostResidualShare = 0.2;
 constexpr double kSaturatedShare = 0.02;
@@ -40,15 +28,6 @@ constexpr double kSaturatedShare = 0.02;
 constexpr double kNearMarginPx = 24;
 constexpr double kTrustedConfidence = 0.5;
 constexpr int kMostNearFrames = 300;  // A better place elsewhere is seen within 5 s.
-
-/// How much a blob is like a sphere of this colour, at a glance.
-double Likeness(const Blob& blob, double chroma) {
-  const int width = blob.right - blob.left + 1, height = blob.bottom - blob.top + 1;
-  const double fill = blob.area / (0.25 * std::numbers::pi * width * height);
-  const double aspect = static_cast<double>(std::min(width, height)) / std::max(width, height);
-  const double strength = blob.score / (blob.area * chroma);
-  return std::min(1.0, fill) * std::min(1.0, 1.5 * aspect) * std::min(1.0, strength);
-}
 
 /// A square in the image, in quads; empty (right < left) when it is outside.
 QuadWindow Square(const Eigen::Vector2d& middle_px, double half_px, const QuadWindow& whole) {
@@ -65,15 +44,6 @@ bool IsCut(const Blob& blob, const QuadWindow& window, const QuadWindow& whole) 
          (blob.top == window.top && window.top > whole.top) ||
          (blob.right == window.right && window.right < whole.right) ||
          (blob.bottom == window.bottom && window.bottom < whole.bottom);
-}
-
-/// How far a colour is from the sphere's: by hue and saturation, and by how much darker it is, over
-/// its length. Brighter is allowed: it may be at the sensor's limit.
-double ColourOff(const Eigen::Vector3d& seen_dn, const Eigen::Vector3d& colour_dn) {
-  const double scale = seen_dn.dot(colour_dn) / colour_dn.squaredNorm();
-  if (!(scale > 0)) return 1;
-  const double hue = (seen_dn / scale - colour_dn).norm() / colour_dn.norm();
-  return std::hypot(hue, std::max(0.0, 1 - scale));
 }
 
 Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius_m,
@@ -110,8 +80,11 @@ Estimate ToEstimate(const DiscFit& fit, const LocalSlopes& slopes, double radius
   return estimate;
 }
 
-/// In pixels.
-Eigen::Vector2d MiddleOf(const Blob& blob) { return 2 * blob.centre + Eigen::Vector2d(0.5, 0.5); }
+/// Of the distance.
+double DepthSdShare(const Estimate& estimate) {
+  const Eigen::Vector3d along = estimate.p_C_m.normalized();
+  return std::sqrt(along.dot(estimate.covariance_m2 * along)) / estimate.p_C_m.norm();
+}
 
 }  // namespace
 
@@ -123,57 +96,38 @@ Finder::Finder(const Lens& lens, std::vector<Target> targets, const Settings& se
       left_out_(targets_.size()) {}
 
 bool Finder::IsLeftOut(const Blob& blob, std::size_t sphere) const {
-  const Eigen::Vector2d middle_px = MiddleOf(blob);
+  const Eigen::Vector2d middle_px = blob.MiddlePx();
   const auto& places = left_out_[sphere];
   return std::any_of(places.begin(), places.end(), [&](const Circle& place) {
     return (middle_px - place.centre_px).norm() < place.radius_px;
   });
 }
 
-std::vector<Finder::Candidate> Finder::Candidates(const Image& image, std::size_t sphere,
-                                                  const QuadWindow& window,
-                                                  std::vector<Blob> blobs) {
-  const Target& target = targets_[sphere];
-  const Eigen::Vector3d chroma = target.colour_dn.array() - target.colour_dn.mean();
+/// Those that may be a sphere, the likeliest first.
+std::vector<Blob> Finder::Likely(std::vector<Blob> blobs, std::size_t sphere,
+                                 const QuadWindow& window, const QuadWindow& whole) const {
+  const Eigen::Vector3d& colour_dn = targets_[sphere].colour_dn;
   std::erase_if(blobs, [&](const Blob& blob) {
-    return IsCut(blob, window, Whole(image)) || IsLeftOut(blob, sphere) ||
-           Likeness(blob, chroma.norm()) < 0.1 ||
+    return IsCut(blob, window, whole) || IsLeftOut(blob, sphere) ||
+           Likeness(blob, colour_dn) < 0.1 ||
            std::max(blob.right - blob.left, blob.bottom - blob.top) > quads_.height / 2;
   });
   std::sort(blobs.begin(), blobs.end(), [&](const Blob& a, const Blob& b) {
-    return Likeness(a, chroma.norm()) > Likeness(b, chroma.norm());
+    return Likeness(a, colour_dn) > Likeness(b, colour_dn);
   });
   if (blobs.size() > kMostBlobs) blobs.resize(kMostBlobs);
+  return blobs;
+}
+
+std::vector<Candidate> Finder::Candidates(const Image& image, std::size_t sphere,
+                                          const std::vector<Blob>& blobs) const {
   std::vector<Candidate> candidates;
   for (const Blob& blob : blobs) {
-    const InnerQuads inner = InnerQuadsOf(blob);
-    const double colour_off = ColourOff(ColourOf(quads_, inner), target.colour_dn);
-    if (colour_off >= kMostColourOff) continue;  // Its confidence would be zero.
-    const auto edges = FindEdges(image, quads_, blob, inner, settings_.noise);
-    if (!edges) continue;
-    const Eigen::Vector2d middle_px = MiddleOf(blob);
-    const double size_px = 2.0 * std::max(blob.right - blob.left, blob.bottom - blob.top) + 2;
-    // Its nodes lie near the edge, where an error would be one of the distance.
-    LocalSlopes slopes(lens_, middle_px, 0.5 * size_px);
-    std::vector<Eigen::Vector2d> at;
-    for (const Eigen::Vector2d& pixel : edges->pixels)
-      at.push_back(slopes.At(pixel.x(), pixel.y()));
-    const double per_px = std::sqrt(slopes.scale().determinant());
-    const double tolerance = per_px * std::max(0.5, 0.04 * size_px);
-    const auto fit = FitConeRobustly(at, tolerance, 0.8 * per_px, 1.5 * size_px * per_px);
-    if (!fit) continue;
-    Candidate candidate{
-        slopes,
-        {edges->contrast, middle_px, fit->cone, ReachOf(*fit, at), at, target.radius_m},
-        fit->inliers};
-    const auto inliers = std::count(fit->inliers.begin(), fit->inliers.end(), true);
-    candidate.colour_off = colour_off;
-    candidate.is_compact = size_px < 3 * fit->cone.tangent / per_px + 4;
-    candidate.start.is_unlikely = colour_off > kUnlikelyColourOff;
-    candidate.quality =
-        static_cast<double>(inliers) / kEdgeRays * std::max(0.0, 1 - candidate.colour_off);
-    candidates.push_back(candidate);
-    if (candidate.quality > kClearQuality) break;
+    const auto candidate =
+        CandidateOf({image, quads_, lens_, settings_}, targets_[sphere], blob, Surroundings::kAny);
+    if (!candidate) continue;
+    candidates.push_back(*candidate);
+    if (candidate->quality > kClearQuality) break;
   }
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.quality > b.quality; });
@@ -193,22 +147,29 @@ std::optional<Finder::Found> Finder::Search(const Image& image, std::size_t sphe
                                             const std::optional<Eigen::Vector2d>& motion_px) {
   const Target& target = targets_[sphere];
   const Eigen::Vector3d& colour_dn = target.colour_dn;
-  std::vector<Candidate> candidates =
-      Candidates(image, sphere, window, FindBlobs(quads_, window, colour_dn, kLowShare));
+  const QuadWindow whole = Whole(image);
+  std::vector<Blob> blobs =
+      Likely(FindBlobs(quads_, window, colour_dn, kLowShare), sphere, window, whole);
+  std::vector<Candidate> candidates = Candidates(image, sphere, blobs);
   if (candidates.empty() || candidates.front().quality < kGoodQuality) {
-    for (Candidate& candidate :
-         Candidates(image, sphere, window, FindBlobsOfColour(quads_, window, colour_dn)))
-      candidates.push_back(candidate);
+    const std::vector<Blob> own =
+        Likely(FindBlobsOfColour(quads_, window, colour_dn), sphere, window, whole);
+    for (Candidate& candidate : Candidates(image, sphere, own)) candidates.push_back(candidate);
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const auto& a, const auto& b) { return a.quality > b.quality; });
+    blobs.insert(blobs.end(), own.begin(), own.end());
   }
-  for (std::size_t i = 0; i < std::min(kMostFits, candidates.size()); ++i) {
+  std::optional<Found> found;
+  for (std::size_t i = 0; i < std::min(kMostFits, candidates.size()) && !found; ++i) {
     if (candidates[i].quality < kLeastQuality) break;
     candidates[i].start.motion_px = motion_px;
     if (const auto estimate = Measure(image, target, candidates[i]))
-      return Found{*estimate, candidates[i].quality};
+      found = Found{*estimate, candidates[i].quality};
   }
-  return candidates.empty() ? std::nullopt : ByEdge(target, candidates.front());
+  if (!found && !candidates.empty()) found = ByEdge(target, candidates.front());
+  if (found && found->estimate.confidence > kConfidenceByEdge) return found;
+  const auto beside_lamp = BesideLamp(image, target, blobs);
+  return beside_lamp ? beside_lamp : found;
 }
 
 /// Of a light that is certainly the sphere's by colour and edge.
@@ -217,13 +178,43 @@ std::optional<Finder::Found> Finder::ByEdge(const Target& target,
   if (candidate.quality < kLeastQualityByEdge || candidate.colour_off > kSureColourOff ||
       !candidate.is_compact)
     return std::nullopt;
-  const auto fit = FitEdge(candidate.slopes, candidate.start, candidate.inliers);
+  const auto fit =
+      FitEdge(candidate.slopes, candidate.start, candidate.inliers, candidate.radius_sd_px);
   if (!fit) return std::nullopt;
   Estimate estimate =
       ToEstimate(*fit, candidate.slopes, target.radius_m, candidate.colour_off, lens_);
   estimate.is_by_edge = true;
   estimate.confidence = kConfidenceByEdge * fit->used_share;
   return Found{estimate, candidate.quality};
+}
+
+/// Of a light that touches a lamp: without what the lamp lights or by its edge, as is surer. Its
+/// size must be that of its blob. It is as doubtful as one by its edge alone.
+std::optional<Finder::Found> Finder::BesideLamp(const Image& image, const Target& target,
+                                                const std::vector<Blob>& blobs) const {
+  for (const Blob& blob : blobs) {
+    const Eigen::Vector3d seen_dn = ColourOf(quads_, InnerQuadsOf(blob));
+    if (ColourOff(seen_dn, target.colour_dn) > kSureColourOff || !LitQuads(quads_, blob).Any())
+      continue;
+    const auto candidate =
+        CandidateOf({image, quads_, lens_, settings_}, target, blob, Surroundings::kLamp);
+    if (!candidate || candidate->quality < kLeastQuality) continue;
+    const auto fits = [&](const std::optional<Found>& found) {
+      return found && std::abs(blob.SizePx() - 2 * found->estimate.radius_px) < kMostOffPx &&
+             DepthSdShare(found->estimate) < kMostSdShare;
+    };
+    std::optional<Found> found = ByEdge(target, *candidate);
+    const auto estimate = Measure(image, target, *candidate);
+    const auto measured =
+        estimate ? std::optional<Found>({*estimate, candidate->quality}) : std::optional<Found>();
+    const bool is_surer = fits(measured) && (!fits(found) || DepthSdShare(measured->estimate) <
+                                                                 DepthSdShare(found->estimate));
+    if (is_surer) found = measured;
+    if (!fits(found)) continue;
+    found->estimate.confidence = std::min(found->estimate.confidence, kConfidenceByEdge);
+    return found;
+  }
+  return std::nullopt;
 }
 
 /// Where it should be now; nothing unless it is clearly there.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/sphere/blobs.h"
-#include "common/sphere/disc_fit.h"
+#include "common/sphere/candidate.h"
 #include "common/sphere/image.h"
 #include "common/sphere/lens.h"
 #include "common/sphere/profile_table.h"
@@ -56,7 +56,6 @@ class Finder {
   }
 
  private:
-  struct Candidate;
   struct Found {
     Estimate estimate;
     double quality = 0;  ///< Of its candidate.
@@ -71,10 +70,14 @@ class Finder {
   std::optional<Found> Near(const Image& image, std::size_t sphere);
   std::optional<Found> Search(const Image& image, std::size_t sphere, const QuadWindow& window,
                               const std::optional<Eigen::Vector2d>& motion_px);
+  std::vector<Blob> Likely(std::vector<Blob> blobs, std::size_t sphere, const QuadWindow& window,
+                           const QuadWindow& whole) const;
   std::vector<Candidate> Candidates(const Image& image, std::size_t sphere,
-                                    const QuadWindow& window, std::vector<Blob> blobs);
+                                    const std::vector<Blob>& blobs) const;
   bool IsLeftOut(const Blob& blob, std::size_t sphere) const;
   std::optional<Found> ByEdge(const Target& target, const Candidate& candidate) const;
+  std::optional<Found> BesideLamp(const Image& image, const Target& target,
+                                  const std::vector<Blob>& blobs) const;
   std::optional<Estimate> Measure(const Image& image, const Target& target,
                                   const Candidate& candidate) const;
 

@@ -27,24 +27,22 @@ constexpr double kHeadingWalk = 1e-5;      // 1/s: gains take cosine and sine of
 constexpr double kGainLastsS = 0.02;
 constexpr double kBiasChangesPerRad = 0.1;  // Of the gain's share of gravity, whose axes turn.
 constexpr double kLeansS = 0.1;             // Gravity in an unknown direction, alike.
-// What is not felt, as assumed of fast hands: they accelerate by 7 m/s^2 and turn at 3 rad/s, and
-// both change within 0.1 s. Beyond the range of the accelerometer, 5 m/s^2 for 0.03 s.
-constexpr double kForceSdMps2 = 7, kTurnSdRadps = 3, kChangesInS = 0.1;
+// What is not felt yet: acceleration and turn change by as much as they are within 0.1 s, and those
+// of a hand at rest by these. Beyond the range of the accelerometer, 5 m/s^2 for 0.03 s.
+constexpr double kForceSdMps2 = 1, kTurnSdRadps = 0.5, kChangesInS = 0.1;
 constexpr double kClippedForce = 2 * 5 * 5 * 0.03;  // m^2/s^3.
 constexpr double kSpeedSdMps = 1;                   // Of a hand that was seen once.
 constexpr double kTimeSdS = 0.001;                  // Of an exposure against the readings.
-constexpr double kPlaceSdM = 0.0002;                // Of any observation.
+constexpr double kPlaceSdM = 0.00002;               // Of any observation: of a near sphere.
 constexpr double kArmSdShare = 0.02;  // Of the arm to the point: its length and direction.
 constexpr double kFastestMps = 20, kLargestHeading = 1.5;  // Of a filter that has not lost its way.
 constexpr double kKnownHeadingSdRad = 0.2, kKnownHeadingOff = 0.2;
 
 double Square(double x) { return x * x; }
 
-/// White noise in place of the error of a value that is held: it grows from 0 like a random walk.
-double Held(double sd, double step_s) {
-  const double changes = Square(sd) * 2 / kChangesInS;
-  return changes * std::min(step_s * step_s / 3, kChangesInS * kChangesInS);
-}
+/// The error of a value that is held, whose deviation otherwise is `sd`, grows from 0 like a random
+/// walk: its variance in a second.
+double Held(double sd) { return Square(sd) * 2 / kChangesInS; }
 
 }  // namespace
 
@@ -135,16 +133,21 @@ void Filter::AddNoise(const arms::HandReading& reading, const Eigen::Vector3d& f
       2 * kLeansS * Square(kStandardGravityMps2) * tilt_variance * std::min(1.0, heading_variance);
   double turn = kTurnNoise + 2 * kGainLastsS * Square(kGainError * turn_radps);
   if (trust == Trust::kClipped) force += kClippedForce;
+  const double t = step_s;
+  double place = force * t * t * t / 3, both = force * t * t / 2, velocity = force * t;
   if (trust == Trust::kHeld) {
-    force += Held(kForceSdMps2, step_s);
-    turn += Held(kTurnSdRadps, step_s);
+    const double walk = Held(std::hypot(kForceSdMps2, motion_mps2));
+    place += walk * t * t * t * t * t / 20;
+    both += walk * t * t * t * t / 8;
+    velocity += walk * t * t * t / 3;
+    turn += Held(std::hypot(kTurnSdRadps, turn_radps)) * t * t / 3;
   }
   auto noise = covariance_.diagonal();
-  noise.segment<3>(kPlace).array() += force * step_s * step_s * step_s / 3;
-  noise.segment<3>(kVelocity).array() += force * step_s;
+  noise.segment<3>(kPlace).array() += place;
+  noise.segment<3>(kVelocity).array() += velocity;
   for (int axis = 0; axis < 3; ++axis) {
-    covariance_(kPlace + axis, kVelocity + axis) += force * step_s * step_s / 2;
-    covariance_(kVelocity + axis, kPlace + axis) += force * step_s * step_s / 2;
+    covariance_(kPlace + axis, kVelocity + axis) += both;
+    covariance_(kVelocity + axis, kPlace + axis) += both;
   }
   noise.segment<2>(kTilt).array() += turn * step_s;
   const Eigen::Vector2d across(-heading_.y(), heading_.x());

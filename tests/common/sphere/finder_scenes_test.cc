@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <vector>
 
 #include "common/sphere/find.h"
 #include "common/virtual/camera/random_scene.h"
@@ -109,6 +110,37 @@ TEST_F(FinderScenes, ASmallSphereBeforeTheEdgeOfALampIsSeen) {
     EXPECT_GT(std::sqrt(along.dot(found->covariance_m2 * along)), 0.15) << i;
   }
   EXPECT_GT(by_edge, 0);
+}
+
+TEST_F(FinderScenes, ASphereThatALampTouchesIsNotTakenForTheLamp) {
+  // The sphere is half before the lamp, so that it had the size of the lamp's outline, or wholly.
+  // The lamp is brighter than the sensor's limit by 1.2 to 8 times.
+  constexpr double kBlurPx = 0.9;
+  struct Case {
+    double range_m, apart_px;
+    std::vector<double> lamps_dn;
+  };
+  for (const Case& one :
+       {Case{1.4, 20, {300, 2000}}, Case{1.4, 12, {300, 2000}}, Case{3.2, 8, {300, 400}}}) {
+    camera::Scene scene = SceneWith({0.1, 0.1, one.range_m});
+    const Eigen::Vector2d at = camera::Project(scene.lens, scene.balls[0].p_C_m);
+    for (const double lamp_dn : one.lamps_dn) {
+      for (int i = 0; i < 6; ++i) {
+        const double angle = 2 * M_PI * (i + 0.3) / 6;
+        scene.shapes = {{camera::Shape::Kind::kEllipse,
+                         at + one.apart_px * Eigen::Vector2d(std::cos(angle), std::sin(angle)),
+                         {20, 20},
+                         0,
+                         Eigen::Vector3d::Constant(lamp_dn)}};
+        finder_.Forget();
+        const auto found = Find(scene);
+        ASSERT_TRUE(found) << lamp_dn << ' ' << i;
+        EXPECT_LT((found->centre_px - at).norm(), 2 * kBlurPx) << lamp_dn << ' ' << i;
+        EXPECT_NEAR(found->p_C_m.norm(), scene.balls[0].p_C_m.norm(), 0.25 * one.range_m)
+            << lamp_dn << ' ' << i;
+      }
+    }
+  }
 }
 
 TEST_F(FinderScenes, ADullDiscOfItsHueIsNoSphere) {
