@@ -24,6 +24,12 @@ void Print(const nlohmann::ordered_json& out, const std::string& text, const Sha
             << std::endl;
 }
 
+void AddRemark(const v1::CommandResult& result, nlohmann::ordered_json& out, std::string& text) {
+  if (result.message().empty()) return;
+  out["message"] = result.message();
+  text += "; " + result.message();
+}
+
 void WithSession(Shared& shared, const std::vector<std::string>& channels,
                  const std::function<Result<void>(Session&)>& body) {
   const auto session = Open(shared, channels);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clients/ctl/session.h"
+#include "footing/v1/command.pb.h"
 
 namespace footing::ctl {
 
@@ -24,6 +25,11 @@ Result<std::unique_ptr<Session>> Open(const Shared& shared,
 
 /// With --json the object, else the text; always ends the line. Bad UTF-8 is replaced.
 void Print(const nlohmann::ordered_json& out, const std::string& text, const Shared& shared);
+
+/// What the server remarked on a command that it carried out, such as that the result is not
+/// stored: goes to the person's text as "; REMARK", and to `out` as "message". Nothing when there
+/// is none.
+void AddRemark(const v1::CommandResult& result, nlohmann::ordered_json& out, std::string& text);
 
 /// Runs a command's body with an open session and keeps the exit code of what it returns.
 void WithSession(Shared& shared, const std::vector<std::string>& channels,

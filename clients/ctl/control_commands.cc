@@ -91,17 +91,27 @@ Result<void> Led(Session& session, const std::string& name, const std::string& l
   return {};
 }
 
-Result<ordered_json> TareOne(Session& session, const DeviceStatus& device, bool clear) {
+struct Tared {
+  ordered_json out;
+  std::string text;
+};
+
+Result<Tared> TareOne(Session& session, const DeviceStatus& device, bool clear) {
   v1::Command command;
   command.mutable_tare()->set_serial(device.serial);
   command.mutable_tare()->set_clear(clear);
   const auto done = session.Call(std::move(command), kTareWithinS);
   if (!done) return Failure(device.serial + ": " + done.error().message);
-  return ordered_json{{"device", device.device},
-                      {"serial", device.serial},
-                      {"cleared", clear},
-                      {"residual", done->residual()},
-                      {"unit", done->unit()}};
+  Tared tared;
+  tared.out = {{"device", device.device},
+               {"serial", device.serial},
+               {"cleared", clear},
+               {"residual", done->residual()},
+               {"unit", done->unit()}};
+  tared.text = device.serial + (clear ? ": tare forgotten" : ": tared");
+  if (!clear) tared.text += ", residual " + tared.out["residual"].dump() + " " + done->unit();
+  AddRemark(*done, tared.out, tared.text);
+  return tared;
 }
 
 Result<void> Tare(Session& session, const std::string& name, bool clear, const Shared& shared) {
@@ -126,10 +136,8 @@ Result<void> Tare(Session& session, const std::string& name, bool clear, const S
   for (const DeviceStatus& board : boards) {
     const auto one = TareOne(session, board, clear);
     if (!one) return one.error();
-    text += (text.empty() ? "" : "\n") + board.serial + (clear ? ": tare forgotten" : ": tared");
-    if (!clear)
-      text += ", residual " + (*one)["residual"].dump() + " " + std::string((*one)["unit"]);
-    tared.push_back(*one);
+    text += (text.empty() ? "" : "\n") + one->text;
+    tared.push_back(one->out);
   }
   Print({{"boards", tared}}, text, shared);
   return {};
@@ -147,7 +155,8 @@ Result<void> Assign(Session& session, const std::string& name, const std::string
   command.mutable_assign_role()->set_serial(device->serial);
   command.mutable_assign_role()->set_rig(binding->first);
   command.mutable_assign_role()->set_role(static_cast<v1::DeviceRole>(binding->second));
-  if (const auto done = session.Call(std::move(command)); !done) return done.error();
+  const auto done = session.Call(std::move(command));
+  if (!done) return done.error();
   const auto now_is = [&]() -> const DeviceStatus* {
     for (const DeviceStatus& one : session.status()) {
       if (one.serial == device->serial && one.state != stream::DeviceState::kLost) return &one;
@@ -164,11 +173,13 @@ Result<void> Assign(Session& session, const std::string& name, const std::string
       kShownWithinS);
   const DeviceStatus* one = now_is();
   if (one == nullptr) return NoDevice(device->serial + " went away");
-  Print({{"device", one->device},
-         {"serial", one->serial},
-         {"rig", one->rig},
-         {"role", stream::Name(one->role)}},
-        one->serial + " is now " + display::RigRole(*one), shared);
+  ordered_json out = {{"device", one->device},
+                      {"serial", one->serial},
+                      {"rig", one->rig},
+                      {"role", stream::Name(one->role)}};
+  std::string text = one->serial + " is now " + display::RigRole(*one);
+  AddRemark(*done, out, text);
+  Print(out, text, shared);
   return {};
 }
 

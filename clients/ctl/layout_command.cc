@@ -34,12 +34,15 @@ Result<void> Layout(Session& session, const LayoutArguments& arguments, const Sh
   for (const auto& rig : session.setup()) {
     if (rig.rig == arguments.rig) layout = rig.layout;
   }
+  v1::CommandResult set;
   if (!arguments.preset.empty()) {
     layout = *board::LayoutNamed(arguments.preset, arguments.gap_mm);
     layout.rig = arguments.rig;
     v1::Command command;
     *command.mutable_set_board_layout()->mutable_layout() = wire::ToProto(layout);
-    if (const auto done = session.Call(std::move(command)); !done) return done.error();
+    const auto done = session.Call(std::move(command));
+    if (!done) return done.error();
+    set = *done;
   }
   if (layout.preset.empty() && !arguments.check) {
     return Failure("rig " + arguments.rig +
@@ -53,6 +56,7 @@ Result<void> Layout(Session& session, const LayoutArguments& arguments, const Sh
   std::string text =
       "rig " + arguments.rig + ": " + layout.preset + "\n  left board:  " + PoseText(layout.left);
   if (layout.preset != "single") text += "\n  right board: " + PoseText(layout.right);
+  AddRemark(set, out, text);
   Result<void> verdict;
   if (arguments.check) {
     guide::SetUpOptions options;

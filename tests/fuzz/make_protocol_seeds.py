@@ -186,10 +186,48 @@ def devices() -> dict[str, bytes]:
     }
 
 
+def attachments() -> dict[str, bytes]:
+    """Steps of tests/fuzz/attach.cc, of the first program; from 128 on of the second one."""
+    attach, report, leave, run, answer = 3, 4, 5, 6, 7
+    begun = bytes([attach, 0, report, 0]) + string(bytes([0x31, 0, 0, 0x80, 0x80, 0x80]))
+    looked = bytes([answer, 2])
+    seeds = {f"attach/{name}": begun + raw(data) + looked for name, data in examples()}
+    return seeds | {
+        "attach/many": b"".join(bytes([attach, slot, 128 + attach, slot]) for slot in range(20)) + looked,
+        "attach/taken": bytes([attach, 200, report, 0]) + string(b"x") + bytes([attach, 0]) + looked,
+        "attach/again": begun + bytes([leave, 0, attach, 0, leave, 32, attach, 0, attach, 0]) + looked,
+        "attach/no_device": bytes([report, 3]) + string(b"x") + looked,
+        "attach/silent": begun + bytes([run, 120, run, 120]) + looked,
+        "attach/outputs": begun + bytes([answer, 4, answer, 5, answer, 7, answer, 4]) + looked,
+        "attach/ends": begun + bytes([leave, 255, 128 + attach, 1]) + looked,
+        "attach/not_protobuf": raw(struct.pack("<I", 3) + b"\xff\xff\xff") + looked,
+        "attach/too_long": raw(struct.pack("<I", 2049)) + looked,
+    }
+
+
+def broker_streams() -> dict[str, bytes]:
+    """What nats-server sends."""
+    info = b'INFO {"server_id":"N","version":"2.9.10","max_payload":1048576,"auth_required":true}\r\n'
+    header = b"NATS/1.0 503\r\n\r\n"
+    texts = {
+        "greeting": info + b"PING\r\nPONG\r\n+OK\r\n",
+        "messages": b"MSG footing.a 1 3\r\nabc\r\nMSG footing.a 1 reply.x 0\r\n\r\n",
+        "no_responders": b"HMSG a.b 7 %d %d\r\n" % (len(header), len(header)) + header + b"\r\n",
+        "header": b"HMSG a 7 r 12 15\r\nNATS/1.0\r\n\r\nabc\r\n",
+        "error": b"-ERR 'Authorization Violation'\r\n",
+        "too_long": b"MSG a 1 513\r\n",
+        "number": b"MSG a 1 -3\r\nMSG a x 3\r\n",
+        "no_line": b"X" * 600,
+        "bad_info": b"INFO {\r\n",
+        "wrong_end": b"MSG a 1 3\r\nabcde",
+    }
+    return {f"nats/{name}": string(bytes([0, 3, 200])) + text for name, text in texts.items()}
+
+
 def seeds() -> dict[str, bytes]:
     frames = b"".join(data for _, data in examples()[:1]) + struct.pack("<I", 301)
     return {
         "frames/pieces": string(bytes([1, 4, 9, 0])) + frames,
         "frames/tls": string(b"") + bytes([22, 3, 1, 0, 200, 1, 0, 0, 196]) + bytes(20),
-        **devices(), **admissions(), **sessions(), **clients(), **messages(), **filled_messages(), **configs(),
+        **devices(), **attachments(), **broker_streams(), **admissions(), **sessions(), **clients(), **messages(), **filled_messages(), **configs(),
     }

@@ -56,7 +56,7 @@ class Root:
         account = self.run("getent", "passwd", "footing").split(":")
         os.chown(folder, int(account[2]), int(account[3]))
         os.chdir(folder)  # So that the addresses of sockets are short.
-        at = "unix:/run/footing/"
+        at = "unix:/run/footing/"  # Of the kernel's list of sockets, too: it has the names that were bound.
         with Stage(self.path / "usr/bin") as stage:
             def start(*words):
                 with open(stage.folder / f"{words[0]}.log", "w") as log:
@@ -64,10 +64,10 @@ class Root:
                         ["chroot", "--userspec=footing:footing", self.path, *words], stdout=log, stderr=log,
                         stdin=subprocess.DEVNULL, env=dict(ENVIRONMENT, HOME="/tmp"))
             start("footingd", "--listen", at + "sensor.sock", "--source", f"stream:{at}devices.sock")
-            stage.wait_for_socket("unix:sensor.sock")
-            stage.wait_for_socket("unix:devices.sock")
+            stage.wait_for_socket(at + "sensor.sock")
+            stage.wait_for_socket(at + "devices.sock")
             start("footing-sim", "--sensor", at + "sensor.sock", "--listen", at + "simulation.sock")
-            stage.wait_for_socket("unix:simulation.sock")
+            stage.wait_for_socket(at + "simulation.sock")
             start("footing-stream", "user", "--script", "walk", "--interface", "wrist", "--to", at + "devices.sock")
             walked = any(tick.get("characters") for tick in read_ticks("unix:simulation.sock", 20, ["characters"]))
             assert walked, "no character within 20 s"

@@ -33,6 +33,7 @@ def wrong_starts(stage):
         assert stage.run(program, "--version").stdout.startswith(program)
         assert "Examples:" in stage.run(program, "--help").stdout
     expect(stage, USAGE, "beyond this host", "footingd", "--listen", "tcp:0.0.0.0:0")
+    expect(stage, USAGE, "every user of this host may attach devices", "footingd", "--source", "stream:tcp:127.0.0.1:0")
     expect(stage, USAGE, "there are: gait, pose", "footing-sim", "--engine", "walkies")
     expect(stage, USAGE, "wrist, arm, leg, joystick, boards", "footing-sim", "--interface", "telepathy")
     expect(stage, USAGE, "subject does not apply to --engine gait", "footing-sim", "--engine", "gait",

@@ -1,7 +1,7 @@
-"""Faulty links in front of footing-study, footing-game and footing-relay: each client is back within 2 s of the end of a
-fault, misses nothing that its server still has, and reports what it missed.
+"""Faulty links in front of footing-study, footing-game, footing-relay, footing-skeleton and footing-camera: each client is back
+within 2 s of the end of a fault, misses nothing that its server still has, and reports what it missed.
 
-Usage: client_faults.py BINARY_FOLDER study|game|relay
+Usage: client_faults.py BINARY_FOLDER study|game|relay|trackers
 
 faults.py does the same to footing-log, footing-ctl, footing-sim, footing-view and devices.
 """
@@ -216,9 +216,54 @@ def relay(stage):
                 proxy.stop()
 
 
+def newest_hands_ns(viewer, tracker):
+    """Of when the newest sample is that footingd got from a tracker; 0: from none."""
+    hands = [sample for tick in viewer.ticks()[-300:] for sample in tick.get("hands", {}).get("samples", [])]
+    return max((sample["sampled_ns"] for sample in hands if sample["tracker"] == tracker), default=0)
+
+
+def trackers(stage):
+    """Hands of both programs that find them are published again after each fault, and come as they are, one by one."""
+    names = ("skeleton", "camera")
+    stage.start("footingd", "--listen", stage.sensor, "--source", f"stream:{stage.devices}", "--set", "state_directory=none")
+    stage.wait_for_socket(stage.devices)
+    frames, port = stage.folder / "frames", free_port()
+    stage.run_json("footing-eval", "spheres", "--distance-m", "1.5", "--frames", 2, "--out", frames, "--seed", 3)
+    with Proxies(stage, **dict.fromkeys(names, stage.devices)) as links:
+        stage.start("footing-skeleton", "--listen", f"127.0.0.1:{port}", "--to", links["skeleton"])
+        stage.start("footing-skeleton", "send", "--to", f"127.0.0.1:{port}", "--dialect", "footing", "--seconds", 300, name="send")
+        stage.start("footing-camera", "--camera", frames / "camera.json", "--frames", frames, "--repeat",
+                    "--simulated", "--to", links["camera"])
+        viewer = Viewer(stage.sensor)
+        stage.wait_for(lambda: all(newest_hands_ns(viewer, name) for name in names), "hands of both")
+
+        def returned_s(fault, seconds):
+            for proxy in links.proxies:
+                proxy.set(fault)
+            time.sleep(seconds)
+            since_s = time.monotonic()
+            for proxy in links.proxies:
+                proxy.clear()
+            took_s = {}
+            while len(took_s) < len(names) and time.monotonic() < since_s + GIVE_UP_S:
+                for name in names:
+                    if newest_hands_ns(viewer, name) > since_s * 1e9:
+                        took_s.setdefault(name, round(time.monotonic() - since_s, 2))
+                time.sleep(0.01)
+            print(f"{fault:10}: hands again after {took_s} s", flush=True)
+            assert len(took_s) == len(names), f"{fault}: not back within {GIVE_UP_S} s"
+            return max(took_s.values())
+
+        for fault, seconds in (("stall", 3.5), ("reset", 0.5), ("split", 1), ("dribble", 1), ("half_close", 0.5), ("delay", 1)):
+            took_s = next((took_s for _ in range(TRIES) if (took_s := returned_s(fault, seconds)) <= MOST_RETURN_S), None)
+            assert took_s is not None, f"{fault}: late {TRIES} times"
+        viewer.stopping = True
+    assert "connection closed" not in (stage.folder / "footingd.log").read_text(), "nothing that makes no sense has arrived"
+
+
 def main():
     with Stage(sys.argv[1]) as stage:
-        {"study": study, "game": game, "relay": relay}[sys.argv[2]](stage)
+        {"study": study, "game": game, "relay": relay, "trackers": trackers}[sys.argv[2]](stage)
     return 0
 
 

@@ -11,6 +11,7 @@ import pathlib
 import re
 import signal
 import socket
+import subprocess
 import sys
 import time
 
@@ -19,6 +20,7 @@ from harness import Stage  # noqa: E402
 from service import Manager  # noqa: E402
 
 TOKEN = "correct-horse-battery-staple"
+SQUARES = "▀▄"  # Of a QR code in a terminal, two to a character.
 
 
 def start_footingd(stage, port, name):
@@ -36,6 +38,17 @@ def start_footingd(stage, port, name):
     raise AssertionError(log.read_text())
 
 
+def read_all(leader):
+    """What a program wrote to the terminal whose leader this is."""
+    shown = b""
+    try:
+        while piece := os.read(leader, 1 << 16):
+            shown += piece
+    except OSError:  # Its end, where the leader is read.
+        os.close(leader)
+    return shown.decode()
+
+
 def check_server_side(stage, fingerprint):
     shown = stage.run_json("footing-ctl", "trust")
     assert shown["fingerprint"] == fingerprint, (shown, fingerprint)
@@ -44,6 +57,12 @@ def check_server_side(stage, fingerprint):
     assert file.parent == stage.folder / "state/footing", file
     text = stage.run("footing-ctl", "trust").stdout
     assert fingerprint in text and "PRIVATE" not in text, text
+    assert not any(square in text for square in SQUARES), "a QR code is for a person at a terminal"
+    leader, terminal = os.openpty()
+    subprocess.run([stage.binaries / "footing-ctl", "trust"], stdout=terminal, check=True, timeout=60)
+    os.close(terminal)
+    shown = read_all(leader)
+    assert fingerprint in shown and all(square in shown for square in SQUARES), shown
     missing = stage.folder / "none/identity.pem"
     shown = stage.run("footing-ctl", "trust", "--identity", missing)
     assert shown.returncode == 1 and "when it first listens" in shown.stderr, shown

@@ -5,11 +5,10 @@ kernel allows none to this user the test is skipped (77).
 Usage: disk_full_scenario.py SCENARIOS_FOLDER BINARY_FOLDER
 """
 import json
-import os
-import subprocess
 import sys
 
 sys.path.insert(0, sys.argv[1])
+import small_disk  # noqa: E402
 from harness import Stage  # noqa: E402
 
 PROTOCOL = {
@@ -19,38 +18,11 @@ PROTOCOL = {
 DISK = "24m"
 
 
-def enter_namespace():
-    """This program again, as root of a user namespace with mounts of its own."""
-    command = ["unshare", "--user", "--map-root-user", "--mount"]
-    if subprocess.run([*command, "mount", "-t", "tmpfs", "tmpfs", "/mnt"], capture_output=True, check=False).returncode:
-        print("skipped: this user may not mount a tmpfs in a namespace of its own")
-        return 77
-    os.execvp(command[0], [*command, sys.executable, "-B", *sys.argv, "--inside"])
-
-
-def fill(folder):
-    """Takes all the space that is left."""
-    with open(folder / "filler", "wb", buffering=0) as file:
-        for size in (1 << 16, 1):
-            try:
-                while True:
-                    file.write(bytes(size))
-            except OSError:
-                pass
-    assert os.statvfs(folder).f_bavail == 0
-
-
 def main():
-    if "--inside" not in sys.argv:
-        return enter_namespace()
-    with Stage(sys.argv[2]) as stage:
-        disk = stage.folder / "disk"
-        disk.mkdir()
-        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK}", "tmpfs", disk], check=True)
-        try:
-            check(stage, disk)
-        finally:
-            subprocess.run(["umount", "--lazy", disk], check=True)
+    if small_disk.INSIDE not in sys.argv:
+        return small_disk.enter_namespace()
+    with Stage(sys.argv[2]) as stage, small_disk.mounted(stage.folder / "disk", DISK) as disk:
+        check(stage, disk)
     return 0
 
 
@@ -66,7 +38,7 @@ def check(stage, disk):
     recording = disk / "s.study/P01/wrist.test.1.mcap"
     stage.wait_for(lambda: recording.exists() and recording.stat().st_size > 500_000, "a recording", 60)
     before = path.read_text().splitlines()
-    fill(disk)
+    filler = small_disk.fill(disk)
     assert running.wait(30) == 1
     said = (stage.folder / "footing-study.log").read_text()
     assert said.count("No space left on device") == 1 and str(recording) in said, said
@@ -77,7 +49,7 @@ def check(stage, disk):
     done = stage.run("footing-study", *command)
     assert done.returncode == 1 and "0 MB free on the disk" in done.stderr, done
     assert path.read_text().splitlines() == after
-    (disk / "filler").unlink()
+    filler.unlink()
     # What was written of the cut recording is there.
     repaired = stage.run("footing-log", "repair", recording, "--out", stage.folder / "repaired.mcap")
     assert repaired.returncode == 0, repaired

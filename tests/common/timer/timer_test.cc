@@ -1,17 +1,15 @@
 #include "common/timer/timer.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "common/clock/clock.h"
-#include "common/clock/timekeeper.h"
+#include "tests/common/timer/simulated_time.h"
 
 namespace footing::timer {
 namespace {
@@ -20,26 +18,10 @@ using namespace std::chrono_literals;
 
 /// Runs `work` on simulated time, and returns how much of it passed, s.
 double OnSimulatedTime(const std::function<void()>& work) {
-  std::string folder = "/tmp/footing-timer-XXXXXX";
-  EXPECT_NE(::mkdtemp(folder.data()), nullptr);
-  auto keeper = clock::Timekeeper::Listen(folder + "/time", 0);
-  EXPECT_TRUE(keeper);
-  std::int64_t passed_ns = 0;
-  std::thread thread([&] {
-    auto follower = clock::Follower::Connect(folder + "/time");
-    ASSERT_TRUE(follower);
-    clock::Follow(std::move(follower).value());
-    const std::int64_t begin_ns = clock::MonotonicNs();
-    work();
-    passed_ns = clock::MonotonicNs() - begin_ns;
-    clock::Follow(nullptr);
-  });
-  EXPECT_TRUE(keeper->AwaitFollower(10, [] { return false; }));
-  while (keeper->followers() > 0 && keeper->GiveTurn()) {
-  }
-  thread.join();
-  std::filesystem::remove_all(folder);
-  return static_cast<double>(passed_ns) * 1e-9;
+  const SimulatedTime simulated;
+  const std::int64_t begin_ns = clock::MonotonicNs();
+  work();
+  return static_cast<double>(clock::MonotonicNs() - begin_ns) * 1e-9;
 }
 
 /// Three timers, one of which is cancelled; what the handlers saw, by name and time since the

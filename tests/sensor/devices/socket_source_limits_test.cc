@@ -5,7 +5,9 @@
 #include <chrono>
 #include <string>
 
+#include "common/timer/timer.h"
 #include "footing/v1/device.pb.h"
+#include "tests/common/timer/simulated_time.h"
 #include "tests/sensor/devices/socket_source_fixture.h"
 
 // Devices that are not taken, and those that come too often.
@@ -95,6 +97,38 @@ TEST_F(SocketSourceTest, AttachingInALoopIsSlowed) {
   // 5000 of budget are 50 at 100 each, and 50 more a second.
   EXPECT_GE(attached_.size(), 40u);
   EXPECT_LE(attached_.size(), 100u);
+}
+
+/// On simulated time; the source is made on it.
+class IdleConnections : private timer::SimulatedTime, public SocketSourceTest {
+ protected:
+  void Wait(std::chrono::seconds duration) {
+    bool over = false;
+    timer::Timer timer(io_);
+    timer.expires_after(duration);
+    timer.async_wait([&over](const boost::system::error_code&) { over = true; });
+    EXPECT_TRUE(RunUntil([&over] { return over; }));
+  }
+};
+
+TEST_F(IdleConnections, AreClosedAfterTenSecondsUnlessTheyHaveADevice) {
+  auto silent = Connect(), attached = Connect(), detached = Connect();
+  attached->Attach(0, "a");
+  detached->Attach(0, "b");
+  EXPECT_TRUE(RunUntil([this] { return attached_.size() == 2; }));
+  Wait(std::chrono::seconds(9));
+  EXPECT_FALSE(silent->closed);
+  v1::DeviceEnvelope detach;
+  detach.mutable_detach()->set_slot(0);
+  detached->Send(detach);
+  Wait(std::chrono::seconds(3));
+  EXPECT_TRUE(silent->closed);
+  ASSERT_EQ(silent->received.size(), 1u);
+  EXPECT_THAT(silent->received[0].refused().reason(), HasSubstr("sent nothing for 10 s"));
+  EXPECT_FALSE(detached->closed) << "it was heard 3 s ago";
+  Wait(std::chrono::seconds(9));
+  EXPECT_TRUE(detached->closed);
+  EXPECT_FALSE(attached->closed) << "a device may be silent: it is stale";
 }
 
 }  // namespace
