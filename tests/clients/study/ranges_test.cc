@@ -18,23 +18,12 @@ namespace {
 using stream::Gait;
 using stream::UserInterface;
 using testing::HasSubstr;
-using users::Intention;
+using users::Act;
 
 constexpr double kMostMps2 = 33;  // Of a Wiimote: a little over 3 g.
 
-/// The motions of MotionsOf for two limbs, from slow to fast, low to high, left to right.
-std::vector<Act> Motions(bool arms = false) {
-  std::vector<Act> acts{{{.gait = Gait::kWalk, .effort = 0}, 5},
-                        {{.gait = arms ? Gait::kWalk : Gait::kRun, .effort = 1}, 3}};
-  if (arms) acts.push_back({{.gait = Gait::kRun, .effort = 0}, 3.5});
-  if (arms) acts.push_back({{.gait = Gait::kRun, .effort = 1}, 2.5});
-  acts.push_back({{.gait = Gait::kJump}, 3.5, 0.5});
-  acts.push_back({{.gait = Gait::kJump}, 3.5});
-  // Bent arms incline; the others rest.
-  const Gait turning = arms ? Gait::kRun : Gait::kStep;
-  acts.push_back({{.gait = turning, .turn_rad = 0.1}, 2.5});
-  acts.push_back({{.gait = turning, .turn_rad = -0.1}, 2.5});
-  return acts;
+std::vector<Act> Motions(UserInterface interface = UserInterface::kWrist) {
+  return users::RangeActs(interface);
 }
 
 /// Measures a user through the code of footingd.
@@ -49,9 +38,7 @@ Meter MeterOf(UserInterface interface, const users::Style& style, const std::vec
   Meter meter(played);
   double begin_s = 0;
   for (const Act& act : acts) {
-    users::Style now = style;
-    now.amplitude *= act.amplitude;
-    users::Person person(interface, now, 1);
+    users::Person person(interface, style, 1);
     for (double t_s = 0; t_s < act.duration_s; t_s += kPeriodS) {
       person.Advance(t_s, act.wanted);
       const auto at_ns = static_cast<std::int64_t>(1e9 * (begin_s + t_s + kPeriodS));
@@ -96,8 +83,8 @@ TEST(PersonalRanges, FollowTheTrueRangeOfUsersOfDifferentTempoAndAmplitude) {
     const Played played{stream::Name(is.interface)};
     double amplitude_before_mps2 = 0;
     for (const auto& [tempo, amplitude] : {std::pair{0.8, 0.8}, {1.0, 1.0}, {1.15, 1.25}}) {
-      const auto table =
-          Table(played, MeterOf(is.interface, StyleOf(tempo, amplitude), Motions(), played));
+      const auto table = Table(
+          played, MeterOf(is.interface, StyleOf(tempo, amplitude), Motions(is.interface), played));
       ASSERT_TRUE(table) << played.interface << tempo << ": " << table.error().message;
       EXPECT_NEAR((*table)["walk_frequency_min_hz"], tempo * is.slow_hz, 0.08 * is.slow_hz);
       EXPECT_NEAR((*table)["run_frequency_max_hz"], tempo * is.fast_hz, 0.08 * is.fast_hz);
@@ -116,8 +103,8 @@ TEST(PersonalRanges, FollowTheTrueRangeOfUsersOfDifferentTempoAndAmplitude) {
 TEST(PersonalRanges, OfArmsAreThoseOfStraightAndOfBentOnes) {
   const Played played{"arm"};
   for (const double tempo : {0.9, 1.1}) {
-    const auto table = Table(
-        played, MeterOf(UserInterface::kArm, StyleOf(tempo, 1), Motions(/*arms=*/true), played));
+    const auto table = Table(played, MeterOf(UserInterface::kArm, StyleOf(tempo, 1),
+                                             Motions(UserInterface::kArm), played));
     ASSERT_TRUE(table) << table.error().message;
     EXPECT_NEAR((*table)["walk_frequency_min_hz"], tempo * 0.85, 0.1);
     EXPECT_NEAR((*table)["walk_frequency_max_hz"], tempo * 1.4, 0.15);
@@ -160,7 +147,7 @@ TEST(PersonalRanges, RefuseAMotionThatWasTooSmallTooShortOrNotVaried) {
   acts[1].wanted = {.gait = Gait::kWalk, .effort = 0.05};
   EXPECT_THAT(says(acts, 1), HasSubstr("move clearly slower first and clearly faster then"));
   acts = Motions();
-  acts[2].amplitude = 1;
+  acts[2].wanted.size = 1;
   EXPECT_THAT(says(acts, 1), HasSubstr("jump low first and clearly higher then"));
   acts = Motions();
   acts[5].wanted.turn_rad = 0.1;  // To the left twice.
