@@ -7,6 +7,7 @@
 
 #include "clients/study/ranges/meter.h"
 #include "common/config/data_file.h"
+#include "common/units/units.h"
 #include "common/virtual/users/person.h"
 #include "daemon/offline/eval/chain/features_chain.h"
 #include "daemon/simulation/mapping/any_interface.h"
@@ -114,7 +115,23 @@ TEST(PersonalRanges, OfArmsAreThoseOfStraightAndOfBentOnes) {
   }
 }
 
-TEST(PersonalRanges, KeepTheBorderWhereBothGaitsHaveTheirShareElseMoveIt) {
+TEST(PersonalRanges, OfArmsDoNotDependOnHowTheHandsHoldTheirControllers) {
+  const Played played{"arm"};
+  const auto turn_deg = [&played](double grip_deg) {
+    users::Style style = StyleOf(1, 1);
+    style.left_grip_rad = style.right_grip_rad = DegreesToRadians(grip_deg);
+    const auto table =
+        Table(played, MeterOf(UserInterface::kArm, style, Motions(UserInterface::kArm), played));
+    return table ? (*table)["turn_above_deg"].get<double>() : 0;
+  };
+  const double straight_deg = turn_deg(0);
+  EXPECT_GT(straight_deg, 10);
+  for (const double grip_deg : {-40.0, 25.0}) {
+    EXPECT_NEAR(turn_deg(grip_deg), straight_deg, 0.15 * straight_deg) << grip_deg;
+  }
+}
+
+TEST(PersonalRanges, HaveTheBorderAtTheBuiltInTablesShareOfThePersonsRange) {
   const std::string built_in = BuiltIn("wrist");
   Ranges ranges{{quantity::kAlternateHz, {0.8, 3.8, 5}},
                 {quantity::kTogetherHz, {1, 1.1, 5}},
@@ -122,14 +139,15 @@ TEST(PersonalRanges, KeepTheBorderWhereBothGaitsHaveTheirShareElseMoveIt) {
                 {quantity::kTurnRight, {-30, 32, 5}}};
   auto table = TableOf({"wrist"}, ranges, {}, built_in);
   ASSERT_TRUE(table);
-  EXPECT_EQ((*table)["walk_run_border_hz"], 2.0);
+  // Built in: 2 Hz of 0.5 to 4.5, three eighths of the way.
+  EXPECT_NEAR((*table)["walk_run_border_hz"], 0.8 + 3.0 / 8 * 3.0, 0.001);
   EXPECT_EQ((*table)["jump_frequency_max_hz"], 3.0);  // One rhythm: as built in.
-  ranges[quantity::kAlternateHz] = {0.6, 2.1, 5};     // A third of 1.5 Hz on either side.
+  ranges[quantity::kAlternateHz] = {0.6, 2.2, 5};
   table = TableOf({"wrist"}, ranges, {}, built_in);
   ASSERT_TRUE(table);
-  EXPECT_EQ((*table)["walk_run_border_hz"], 1.6);
-  EXPECT_EQ((*table)["walk_frequency_max_hz"], 1.6);
-  EXPECT_EQ((*table)["run_frequency_min_hz"], 1.6);
+  for (const char* key : {"walk_run_border_hz", "walk_frequency_max_hz", "run_frequency_min_hz"}) {
+    EXPECT_NEAR((*table)[key], 0.6 + 3.0 / 8 * 1.6, 0.001) << key;
+  }
 }
 
 TEST(PersonalRanges, RefuseAMotionThatWasTooSmallTooShortOrNotVaried) {
