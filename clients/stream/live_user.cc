@@ -53,10 +53,11 @@ SimulatedDevice::CornerForces BoardOf(std::shared_ptr<LiveUser> user, std::size_
 
 }  // namespace
 
-LiveUser::LiveUser(UserInterface interface, TurnSource turn_by,
-                   const std::optional<users::GripWish>& grip, std::uint64_t seed)
-    : driver_(users::AbilityWith(interface, turn_by), users::StyleOf(seed, interface, grip), seed),
-      person_(interface, users::StyleOf(seed, interface, grip), seed, turn_by) {}
+LiveUser::LiveUser(UserInterface interface, TurnSource turn_by, const users::Style& style,
+                   std::uint64_t seed, std::vector<users::Act> acts)
+    : acts_(std::move(acts)),
+      driver_(users::AbilityWith(interface, turn_by), style, seed),
+      person_(interface, style, seed, turn_by) {}
 
 void LiveUser::See(const v1::Tick& tick) {
   if (tick.has_track()) {
@@ -88,10 +89,15 @@ const users::Felt& LiveUser::At(double t_s) {
   while (time_s_ + kLookS <= until_s) {
     time_s_ += kLookS;
     seen_.time_s = time_s_;
-    wanted_ = time_s_ - seen_s_ < kBlindS ? driver_.Want(seen_) : users::Intention{};
+    wanted_ = Want();
     person_.Advance(time_s_, wanted_);
   }
   return person_.felt();
+}
+
+users::Intention LiveUser::Want() {
+  if (!acts_.empty()) return users::WantedAt(acts_, time_s_);
+  return time_s_ - seen_s_ < kBlindS ? driver_.Want(seen_) : users::Intention{};
 }
 
 Result<LiveUserPlan> PlanLiveUser(const LiveUserOptions& options, const Common& common,
@@ -114,7 +120,16 @@ Result<LiveUserPlan> PlanLiveUser(const LiveUserOptions& options, const Common& 
     if (!parsed) return parsed.error();
     grip = *parsed;
   }
-  LiveUserPlan live{.plan = {}, .user = std::make_shared<LiveUser>(named, turns, grip, style_seed)};
+  std::vector<users::Act> acts;
+  if (options.ranges) acts = users::RangeActs(named, turns);
+  if (options.ranges && acts.empty()) {
+    return UsageError(
+        "--ranges: the user of a joystick has no range of its own; there are: wrist, "
+        "arm, leg, boards");
+  }
+  const users::Style style = users::StyleOf(style_seed, named, grip, options.style);
+  LiveUserPlan live{.plan = {},
+                    .user = std::make_shared<LiveUser>(named, turns, style, style_seed, acts)};
   for (std::size_t i = 0; i < roles.size(); ++i) {
     const std::uint64_t device = i + 1;
     const std::uint64_t seed = DeviceSeed(common, device);

@@ -4,12 +4,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "clients/stream/plan.h"
 #include "common/stream/user_interface.h"
 #include "common/virtual/users/driver.h"
 #include "common/virtual/users/grip.h"
 #include "common/virtual/users/person.h"
+#include "common/virtual/users/range_acts.h"
 #include "footing/v1/session.pb.h"
 
 namespace footing::stream_client {
@@ -19,19 +21,23 @@ namespace footing::stream_client {
 /// still while it sees nothing.
 class LiveUser {
  public:
-  /// `turn_by` is what turns with the interface leg; `grip` none: as the style of `seed` has it.
-  LiveUser(stream::UserInterface interface, stream::TurnSource turn_by,
-           const std::optional<users::GripWish>& grip, std::uint64_t seed);
+  /// `turn_by` is what turns with the interface leg. A user with `acts` performs these again and
+  /// again, whatever it sees.
+  LiveUser(stream::UserInterface interface, stream::TurnSource turn_by, const users::Style& style,
+           std::uint64_t seed, std::vector<users::Act> acts = {});
 
   void See(const v1::Tick& tick);
   /// What the devices feel at t_s since the motion began; after a new connection that is 0 again.
   const users::Felt& At(double t_s);
 
  private:
+  users::Intention Want();
+
   /// Without a frame for this long the user sees nothing.
   static constexpr double kBlindS = 0.5;
 
   stream::Track track_;
+  std::vector<users::Act> acts_;
   users::Driver driver_;
   users::Person person_;
   users::Observation seen_;
@@ -53,6 +59,8 @@ struct LiveUserOptions {
   std::string turn_by = "head";
   std::optional<double> grip_deg = {};  ///< None: drawn with the style.
   std::string grip_way = "mirrored";
+  users::StyleWish style = {};
+  bool ranges = false;  ///< Performs the motions of `footing-study ranges`.
 };
 /// A usage error lists what there is. `style_seed` is that of the user, common.seed that of the
 /// devices.

@@ -91,15 +91,16 @@ void AddCommon(CLI::App& app, stream_client::Common& common) {
 }
 
 int RunUser(const stream_client::UserOptions& user, const stream_client::Common& common) {
-  if (user.see.empty()) {
+  if (user.see.empty() && !user.ranges) {
     return Run(stream_client::PlanUser(user.script, user.interface, common, user.ports), common);
   }
+  auto live = stream_client::PlanLiveUser(
+      {user.interface, user.turn_by, user.grip_deg, user.grip_way, user.style, user.ranges}, common,
+      user.style_seed.value_or(common.seed));
+  if (!live) return cli::Report(live.error());
+  if (user.ranges) return Run(std::move(live->plan), common);
   const auto simulation = transport::ParseAddress(user.see);
   if (!simulation) return cli::Report(simulation.error());
-  auto live =
-      stream_client::PlanLiveUser({user.interface, user.turn_by, user.grip_deg, user.grip_way},
-                                  common, user.style_seed.value_or(common.seed));
-  if (!live) return cli::Report(live.error());
   return Run(std::move(live->plan), common, [&](boost::asio::io_context& io) {
     return stream_client::WatchSimulation(
         io, *simulation, [user = live->user](const v1::Tick& tick) { user->See(tick); });
@@ -109,6 +110,7 @@ int RunUser(const stream_client::UserOptions& user, const stream_client::Common&
 constexpr char kExamples[] =
     "  footing-stream user --script demo --interface wrist\n"
     "  footing-stream user --interface leg --see tcp:localhost:7411 --seed 3\n"
+    "  footing-stream user --interface leg --ranges --tempo 0.8    # for footing-study ranges\n"
     "  footing-stream sample .     # writes the files that these examples read\n"
     "  footing-stream accel --left left.csv --right right.csv --rate-hz 100\n"
     "  footing-stream corners --left corners.csv --link poor --seconds 60\n"

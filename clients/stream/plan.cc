@@ -188,9 +188,10 @@ SimulatedDevice MakeWiimote(const Common& common, LinkQuality link, std::uint64_
 Result<Plan> PlanUser(const std::string& script, const std::string& interface, const Common& common,
                       const Ports& ports) {
   if (interface != "wrist" && interface != "joystick") {
-    return UsageError("--interface " + interface +
-                      " needs --see ADDRESS, a user who sees the track; with a script there are: "
-                      "wrist, joystick");
+    return UsageError(
+        "--interface " + interface +
+        " needs --see ADDRESS, a user who sees the track, or --ranges; with a script there are: "
+        "wrist, joystick");
   }
   const auto link = ParseLink(common.link);
   if (!link) return link.error();

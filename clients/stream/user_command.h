@@ -16,7 +16,9 @@ struct UserOptions {
   std::optional<double> grip_deg;
   std::string grip_way = "mirrored";
   std::string see;  ///< Address of footing-sim; empty: the user follows the script.
+  bool ranges = false;
   std::optional<std::uint64_t> style_seed;
+  users::StyleWish style;
   Ports ports;
 };
 

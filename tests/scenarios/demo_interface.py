@@ -10,6 +10,19 @@ from harness import Stage
 DEVICES = {"arm": 2, "leg": 3, "boards": 2}
 
 
+def check_warning(stage):
+    """Both feet may leave the boards by explicit choice alone, and the server warns of it."""
+    for chosen in ("false", "true"):
+        name = f"footing-sim-{chosen}"
+        stage.start("footing-sim", "--sensor", stage.sensor, "--listen", stage.simulation, "--interface", "boards",
+                    "--set", f"boards_may_be_left={chosen}", name=name)
+        log = stage.folder / f"{name}.log"
+        stage.wait_for(lambda: "listening on" in log.read_text(), f"{name} to listen")
+        stage.stop(name)
+        warned = "can fall beside it; keep the floor around" in log.read_text()
+        assert warned == (chosen == "true"), (chosen, warned)
+
+
 def main(binaries, interface):
     with Stage(binaries) as stage:
         stage.start_servers(interface=interface)
@@ -31,6 +44,8 @@ def main(binaries, interface):
         stage.wait_for(lambda: "!! No signal from " in last_line(), "the screen to say so")
         for name in ("footing-sim", "footingd"):
             assert stage.stop(name) == 0, name
+        if interface == "boards":
+            check_warning(stage)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "common/stream/user_interface.h"
 #include "common/text/number.h"
@@ -268,8 +269,12 @@ Result<Ranges> Meter::Measure() const {
       return done.error();
     }
     const Pool& pool = pools_.at(one.quantity);
-    ranges[one.quantity] = {text::Quantile(pool.values, kTrim),
-                            text::Quantile(pool.values, 1 - kTrim), pool.seconds};
+    // Arms that swing straight ahead show how the hands hold their controllers.
+    const bool gripped =
+        played_.interface == "arm" && std::string_view(one.quantity) == quantity::kTurnRight;
+    const double neutral = gripped ? text::Median(pool.values) : 0;
+    ranges[one.quantity] = {text::Quantile(pool.values, kTrim) - neutral,
+                            text::Quantile(pool.values, 1 - kTrim) - neutral, pool.seconds};
   }
   return ranges;
 }

@@ -14,8 +14,6 @@ using nlohmann::ordered_json;
 constexpr double kLeastFrequencyRatio = 1.3;
 /// Less for accelerations, since hard landings clip at the end of the sensor's range.
 constexpr double kLeastAmplitudeRatio = 1.2;
-/// At least this share of the frequencies is for walking and for running each.
-constexpr double kLeastGaitShare = 1.0 / 3;
 /// A turn begins at this share of the smaller of both sides' comfortable inclination, and ends at
 /// that share of where it begins, as in the built-in tables.
 constexpr double kTurnShare = 0.625, kStraightShare = 0.7;
@@ -67,15 +65,17 @@ class Table {
     return Again(what, range, " Hz", "move clearly slower first and clearly faster then");
   }
 
-  /// Walking below the border, running above it. It stays where the table has it as long as both
-  /// gaits have their share of what the person can do.
+  /// Walking below the border, running above it. It divides the person's range as that of the table
+  /// divides the table's.
   Result<void> FillGaits(const char* quantity) {
     const auto varied = CheckVaried(quantity, "the frequency of the motion in turns");
     if (!varied) return varied;
     const Range& hz = Of(quantity);
-    const double share_hz = kLeastGaitShare * (hz.high - hz.low);
-    const double border_hz = std::clamp(table_["walk_run_border_hz"].get<double>(),
-                                        hz.low + share_hz, hz.high - share_hz);
+    const auto built_in = [this](const char* key) { return table_[key].get<double>(); };
+    const double slowest_hz = built_in("walk_frequency_min_hz");
+    const double share = (built_in("walk_run_border_hz") - slowest_hz) /
+                         (built_in("run_frequency_max_hz") - slowest_hz);
+    const double border_hz = std::lerp(hz.low, hz.high, share);
     Set("walk_frequency_min_hz", hz.low);
     Set("walk_frequency_max_hz", border_hz);
     Set("run_frequency_min_hz", border_hz);

@@ -30,4 +30,18 @@ void AddBoardErrors(CLI::App& command, virtual_sensors::CellErrorConfig& errors)
       ->check(CLI::Range(0.0, 50.0));
 }
 
+std::vector<CLI::Option*> AddUserStyle(CLI::App& command, users::StyleWish& style) {
+  auto* tempo =
+      command.add_option("--tempo", style.tempo,
+                         "Frequencies as a share of ordinary ones (default: drawn, 0.94 to 1.06)");
+  auto* amplitude = command.add_option(
+      "--amplitude", style.amplitude,
+      "Size of the motions, as a share of ordinary ones (default: drawn, 0.85 to 1.2)");
+  auto* asymmetry = command.add_option(
+      "--asymmetry", style.asymmetry,
+      "Share by which the left side moves more than the mean (default: drawn, -0.1 to 0.1)");
+  return {tempo->check(CLI::Range(0.3, 2.0)), amplitude->check(CLI::Range(0.2, 2.0)),
+          asymmetry->check(CLI::Range(-0.5, 0.5))};
+}
+
 }  // namespace footing::sensor_options

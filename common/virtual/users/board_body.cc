@@ -44,7 +44,7 @@ BoardBody::BoardBody(const Style& style, std::uint64_t seed)
 
 /// The heels' acceleration, and where the pressure goes.
 void BoardBody::Rise(double step_s) {
-  const double h_m = kHeelRiseM * style_.amplitude / (kRisesS * kRisesS);
+  const double h_m = kHeelRiseM * rise_size_ * style_.amplitude / (kRisesS * kRisesS);
   const double into_s = rises_s_ - kStandsS;
   const double down_s = into_s - kRisesS - kStaysS;
   lift_mps2_ =
@@ -59,6 +59,7 @@ void BoardBody::Advance(const Intention& wanted, double step_s) {
   if (jumps && rises_s_ < 0) rises_s_ = 0;
   if (rises_s_ > (jumps ? kAgainS : kGestureS)) rises_s_ = jumps ? 0 : -1;
   const bool rising = rises_s_ >= 0 && rises_s_ < kGestureS;
+  if (rises_s_ == 0) rise_size_ = wanted.size;
   // A rise that was begun is finished; after it the person walks on.
   gesture_ = rising  ? (rises_s_ < kStandsS ? Gait::kStep : Gait::kJump)
              : jumps ? Gait::kWalk

@@ -32,6 +32,7 @@ class BoardBody {
   Follower toes_m_;  ///< COP, forward of where it is in standing.
   double sway_m_ = 0;
   double rises_s_ = -1;   ///< Since the jump's gesture began, standing included; negative: none.
+  double rise_size_ = 1;  ///< As it was begun.
   double lift_mps2_ = 0;  ///< Acceleration of the COM in a heel rise.
   stream::Gait gesture_ = stream::Gait::kStep;
 };

@@ -20,9 +20,9 @@ struct GripWish {
 Result<GripWish> ParseGrip(double rotation_deg, const std::string& way,
                            stream::UserInterface interface);
 
-/// The style of a user of this interface, with the grips given, or as drawn. Which hand, and which
-/// way, is a matter of the seed.
+/// The style of a user of this interface, with the grips and the motions given, or as drawn. Which
+/// hand, and which way, is a matter of the seed.
 Style StyleOf(std::uint64_t seed, stream::UserInterface interface,
-              const std::optional<GripWish>& grip);
+              const std::optional<GripWish>& grip, const StyleWish& wish = {});
 
 }  // namespace footing::users

@@ -103,7 +103,7 @@ void LimbBody::Advance(const Intention& wanted, double step_s) {
   Rhythm::Aim aim{.moves = wanted.gait != Gait::kStep && wanted.gait != Gait::kUnspecified,
                   .together = wanted.gait == Gait::kJump,
                   .frequency_hz = tempo.jump_hz,
-                  .amplitude = wanted.gait == Gait::kJump ? kJumpAmplitude : 1};
+                  .amplitude = wanted.size * (wanted.gait == Gait::kJump ? kJumpAmplitude : 1)};
   const bool runs = wanted.gait == Gait::kRun;
   if (runs) aim.frequency_hz = std::lerp(tempo.run_slow_hz, tempo.run_fast_hz, wanted.effort);
   if (wanted.gait == Gait::kWalk) {

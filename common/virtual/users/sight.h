@@ -30,6 +30,7 @@ struct Intention {
   /// How fast to move, for its gait: 0 as slowly as is comfortable, 1 as fast. From the speed
   /// wanted and, since the person sees the result, the speed seen.
   double effort = 0;
+  double size = 1;  ///< Of the motion, as a share of the user's own.
 };
 
 }  // namespace footing::users

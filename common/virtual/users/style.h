@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "common/stream/user_interface.h"
 
@@ -22,6 +23,11 @@ struct Style {
   double right_grip_rad = 0;   ///< The same of the right one.
   double mass_kg = 70;         ///< 50 to 95.
   double height_m = 1.72;      ///< 1.55 to 1.95.
+};
+
+/// How a user moves, where it is not as drawn.
+struct StyleWish {
+  std::optional<double> tempo, amplitude, asymmetry;
 };
 
 /// Evenly within the ranges above; the remotes as they should be held.

@@ -27,8 +27,7 @@ Result<std::unique_ptr<GaitLine>> GaitLine::Create(const serving::Config& common
   if (interface.boards_may_be_left) {  // SetInterface may choose the boards later.
     log::Warning(
         "boards_may_be_left: a person who jumps off a board can fall beside it; keep the floor "
-        "around "
-        "it free, and somebody near");
+        "around the boards free, and a second person near");
   }
   const auto texts = engine_files::ReadTexts({.track = config.track,
                                               .interface = interface.interface,

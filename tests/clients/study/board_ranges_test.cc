@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -17,38 +18,22 @@ namespace {
 using stream::Gait;
 using stream::UserInterface;
 using testing::HasSubstr;
-using users::Intention;
+using users::Act;
 
 const Played kBoards{"boards"};
 
-/// The motions of MotionsOf for boards. A heel rise that was begun is finished; a user who wants it
-/// for longer walks on after it.
 std::vector<Act> BoardMotions(double gentle = 0.5) {
-  std::vector<Act> acts{{{.gait = Gait::kWalk, .effort = 0}, 5},
-                        {{.gait = Gait::kRun, .effort = 1}, 4}};
-  acts.push_back({{.gait = Gait::kStep}, 1.5});
-  for (const double amplitude : {gentle, gentle, gentle, 1.0, 1.0, 1.0}) {
-    acts.push_back({{.gait = Gait::kJump}, 0.4, amplitude});
-    acts.push_back({{.gait = Gait::kStep}, 1.2, amplitude});
-  }
-  for (const Gait gait : {Gait::kWalk, Gait::kStep}) {
-    const double duration_s = gait == Gait::kWalk ? 4 : 3;
-    acts.push_back({{.gait = gait, .turn_rad = 0.1, .effort = 0.5}, duration_s});
-    acts.push_back({{.gait = gait, .turn_rad = -0.1, .effort = 0.5}, duration_s});
-  }
+  std::vector<Act> acts = users::RangeActs(UserInterface::kBoards);
+  for (Act& act : acts) act.wanted.size = std::max(gentle, act.wanted.size);
   return acts;
 }
 constexpr std::size_t kFirstRise = 2, kLeans = 15;  ///< Where in the acts these begin.
 
 Meter MeterOf(const users::Style& style, const std::vector<Act>& acts) {
   Meter meter(kBoards);
-  users::Style gentle_style = style;
-  gentle_style.amplitude *= 0.5;
-  users::Person ordinary(UserInterface::kBoards, style, 1);
-  users::Person gentle(UserInterface::kBoards, gentle_style, 1);
+  users::Person person(UserInterface::kBoards, style, 1);
   double begin_s = 0;
   for (const Act& act : acts) {
-    users::Person& person = act.amplitude < 1 ? gentle : ordinary;
     for (double t_s = 0; t_s < act.duration_s; t_s += kPeriodS) {
       person.Advance(begin_s + t_s, act.wanted);
       const auto foot = [&person](std::size_t side) {

@@ -2,7 +2,7 @@
 of a journal is lost or torn, a trial that was cut is marked and attempted again, every survey is answered in the end,
 and every session finishes.
 
-Usage: kill_scenario.py SCENARIOS_FOLDER BINARY_FOLDER [KILLS_OF_EACH]
+Usage: kill_scenario.py SCENARIOS_FOLDER BINARY_FOLDER [KILLS_OF_EACH [SEED]]
 """
 import json
 import random
@@ -21,7 +21,7 @@ PROTOCOL = {
     "final_survey": {"ratings": RATINGS},
 }
 PROGRAMS = ("footing-study", "footing-sim", "footingd")
-SEED, LATEST_KILL_S, LATEST_IN_TRIAL_S, LATEST_IN_SURVEY_S, RUN_WITHIN_S = 11, 4.0, 1.5, 0.01, 90
+LATEST_KILL_S, LATEST_IN_TRIAL_S, LATEST_IN_SURVEY_S, RUN_WITHIN_S = 4.0, 1.5, 0.01, 90
 CUT = ("broken_off", "device_lost", None)  # None: footing-study itself was killed, so the journal has no end.
 
 
@@ -150,7 +150,7 @@ def check_surveys(events):
 
 def main():
     kills_of_each = int(sys.argv[3]) if len(sys.argv) > 3 else 3
-    draw = random.Random(SEED)
+    draw = random.Random(int(sys.argv[4]) if len(sys.argv) > 4 else 11)
     with Stage(sys.argv[2]) as stage:
         stage.start_servers()
         stage.start_user("demo")

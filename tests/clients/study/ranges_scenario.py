@@ -143,6 +143,31 @@ def check_boards(stage):
     stage.stop("footing-stream")
 
 
+def live_roles(stage):
+    devices = stage.run_json("footing-ctl", "--connect", stage.sensor, "devices")["devices"]
+    return {one["role"] for one in devices if one["state"] == "live"}
+
+
+def check_legs(stage):
+    """Of a synthetic user who performs the prompted motions with the whole body."""
+    # Other serials than those of the hands, which keep their roles.
+    stage.start("footing-stream", "user", "--interface", "leg", "--ranges", "--tempo", "0.8", "--seed", 5, "--to",
+                stage.devices)
+    stage.wait_for(lambda: live_roles(stage) == {"left_leg", "right_leg", "head"}, "the legs and the head")
+    out = stage.folder / "P01_leg.json"
+    done = measure(stage, out, "--now", interface="leg")
+    assert done.returncode == 0, done
+    table = json.loads(out.read_text())
+    close(table["walk_frequency_min_hz"], 0.8 * 0.75, 0.12)  # The ends of common/virtual/users/limb_body.cc.
+    close(table["run_frequency_max_hz"], 0.8 * 3.0, 0.12)
+    stage.stop("footing-stream")
+    for words, says in ((["--ranges", "--interface", "joystick"], "has no range of its own"),
+                        (["--ranges", "--see", stage.simulation], "excludes"),
+                        (["--tempo", "0.8"], "--tempo requires --see or --ranges")):
+        done = stage.run("footing-stream", "user", *words, "--to", stage.devices)
+        assert done.returncode == 2 and says in done.stderr, done
+
+
 def check_refusals(stage, tables):
     recording = stage.folder / "P01.mcap"
     for code, says, words in (
@@ -279,6 +304,7 @@ def main():
         stage.start_servers()
         tables = check_measurement(stage)
         check_refusals(stage, tables)
+        check_legs(stage)
         check_boards(stage)
         check_group(stage, tables)
         check_in_force(stage, tables[0])

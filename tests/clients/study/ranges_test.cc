@@ -7,6 +7,7 @@
 
 #include "clients/study/ranges/meter.h"
 #include "common/config/data_file.h"
+#include "common/units/units.h"
 #include "common/virtual/users/person.h"
 #include "daemon/offline/eval/chain/features_chain.h"
 #include "daemon/simulation/mapping/any_interface.h"
@@ -18,23 +19,12 @@ namespace {
 using stream::Gait;
 using stream::UserInterface;
 using testing::HasSubstr;
-using users::Intention;
+using users::Act;
 
 constexpr double kMostMps2 = 33;  // Of a Wiimote: a little over 3 g.
 
-/// The motions of MotionsOf for two limbs, from slow to fast, low to high, left to right.
-std::vector<Act> Motions(bool arms = false) {
-  std::vector<Act> acts{{{.gait = Gait::kWalk, .effort = 0}, 5},
-                        {{.gait = arms ? Gait::kWalk : Gait::kRun, .effort = 1}, 3}};
-  if (arms) acts.push_back({{.gait = Gait::kRun, .effort = 0}, 3.5});
-  if (arms) acts.push_back({{.gait = Gait::kRun, .effort = 1}, 2.5});
-  acts.push_back({{.gait = Gait::kJump}, 3.5, 0.5});
-  acts.push_back({{.gait = Gait::kJump}, 3.5});
-  // Bent arms incline; the others rest.
-  const Gait turning = arms ? Gait::kRun : Gait::kStep;
-  acts.push_back({{.gait = turning, .turn_rad = 0.1}, 2.5});
-  acts.push_back({{.gait = turning, .turn_rad = -0.1}, 2.5});
-  return acts;
+std::vector<Act> Motions(UserInterface interface = UserInterface::kWrist) {
+  return users::RangeActs(interface);
 }
 
 /// Measures a user through the code of footingd.
@@ -49,9 +39,7 @@ Meter MeterOf(UserInterface interface, const users::Style& style, const std::vec
   Meter meter(played);
   double begin_s = 0;
   for (const Act& act : acts) {
-    users::Style now = style;
-    now.amplitude *= act.amplitude;
-    users::Person person(interface, now, 1);
+    users::Person person(interface, style, 1);
     for (double t_s = 0; t_s < act.duration_s; t_s += kPeriodS) {
       person.Advance(t_s, act.wanted);
       const auto at_ns = static_cast<std::int64_t>(1e9 * (begin_s + t_s + kPeriodS));
@@ -96,8 +84,8 @@ TEST(PersonalRanges, FollowTheTrueRangeOfUsersOfDifferentTempoAndAmplitude) {
     const Played played{stream::Name(is.interface)};
     double amplitude_before_mps2 = 0;
     for (const auto& [tempo, amplitude] : {std::pair{0.8, 0.8}, {1.0, 1.0}, {1.15, 1.25}}) {
-      const auto table =
-          Table(played, MeterOf(is.interface, StyleOf(tempo, amplitude), Motions(), played));
+      const auto table = Table(
+          played, MeterOf(is.interface, StyleOf(tempo, amplitude), Motions(is.interface), played));
       ASSERT_TRUE(table) << played.interface << tempo << ": " << table.error().message;
       EXPECT_NEAR((*table)["walk_frequency_min_hz"], tempo * is.slow_hz, 0.08 * is.slow_hz);
       EXPECT_NEAR((*table)["run_frequency_max_hz"], tempo * is.fast_hz, 0.08 * is.fast_hz);
@@ -116,8 +104,8 @@ TEST(PersonalRanges, FollowTheTrueRangeOfUsersOfDifferentTempoAndAmplitude) {
 TEST(PersonalRanges, OfArmsAreThoseOfStraightAndOfBentOnes) {
   const Played played{"arm"};
   for (const double tempo : {0.9, 1.1}) {
-    const auto table = Table(
-        played, MeterOf(UserInterface::kArm, StyleOf(tempo, 1), Motions(/*arms=*/true), played));
+    const auto table = Table(played, MeterOf(UserInterface::kArm, StyleOf(tempo, 1),
+                                             Motions(UserInterface::kArm), played));
     ASSERT_TRUE(table) << table.error().message;
     EXPECT_NEAR((*table)["walk_frequency_min_hz"], tempo * 0.85, 0.1);
     EXPECT_NEAR((*table)["walk_frequency_max_hz"], tempo * 1.4, 0.15);
@@ -127,7 +115,23 @@ TEST(PersonalRanges, OfArmsAreThoseOfStraightAndOfBentOnes) {
   }
 }
 
-TEST(PersonalRanges, KeepTheBorderWhereBothGaitsHaveTheirShareElseMoveIt) {
+TEST(PersonalRanges, OfArmsDoNotDependOnHowTheHandsHoldTheirControllers) {
+  const Played played{"arm"};
+  const auto turn_deg = [&played](double grip_deg) {
+    users::Style style = StyleOf(1, 1);
+    style.left_grip_rad = style.right_grip_rad = DegreesToRadians(grip_deg);
+    const auto table =
+        Table(played, MeterOf(UserInterface::kArm, style, Motions(UserInterface::kArm), played));
+    return table ? (*table)["turn_above_deg"].get<double>() : 0;
+  };
+  const double straight_deg = turn_deg(0);
+  EXPECT_GT(straight_deg, 10);
+  for (const double grip_deg : {-40.0, 25.0}) {
+    EXPECT_NEAR(turn_deg(grip_deg), straight_deg, 0.15 * straight_deg) << grip_deg;
+  }
+}
+
+TEST(PersonalRanges, HaveTheBorderAtTheBuiltInTablesShareOfThePersonsRange) {
   const std::string built_in = BuiltIn("wrist");
   Ranges ranges{{quantity::kAlternateHz, {0.8, 3.8, 5}},
                 {quantity::kTogetherHz, {1, 1.1, 5}},
@@ -135,14 +139,15 @@ TEST(PersonalRanges, KeepTheBorderWhereBothGaitsHaveTheirShareElseMoveIt) {
                 {quantity::kTurnRight, {-30, 32, 5}}};
   auto table = TableOf({"wrist"}, ranges, {}, built_in);
   ASSERT_TRUE(table);
-  EXPECT_EQ((*table)["walk_run_border_hz"], 2.0);
+  // Built in: 2 Hz of 0.5 to 4.5, three eighths of the way.
+  EXPECT_NEAR((*table)["walk_run_border_hz"], 0.8 + 3.0 / 8 * 3.0, 0.001);
   EXPECT_EQ((*table)["jump_frequency_max_hz"], 3.0);  // One rhythm: as built in.
-  ranges[quantity::kAlternateHz] = {0.6, 2.1, 5};     // A third of 1.5 Hz on either side.
+  ranges[quantity::kAlternateHz] = {0.6, 2.2, 5};
   table = TableOf({"wrist"}, ranges, {}, built_in);
   ASSERT_TRUE(table);
-  EXPECT_EQ((*table)["walk_run_border_hz"], 1.6);
-  EXPECT_EQ((*table)["walk_frequency_max_hz"], 1.6);
-  EXPECT_EQ((*table)["run_frequency_min_hz"], 1.6);
+  for (const char* key : {"walk_run_border_hz", "walk_frequency_max_hz", "run_frequency_min_hz"}) {
+    EXPECT_NEAR((*table)[key], 0.6 + 3.0 / 8 * 1.6, 0.001) << key;
+  }
 }
 
 TEST(PersonalRanges, RefuseAMotionThatWasTooSmallTooShortOrNotVaried) {
@@ -160,7 +165,7 @@ TEST(PersonalRanges, RefuseAMotionThatWasTooSmallTooShortOrNotVaried) {
   acts[1].wanted = {.gait = Gait::kWalk, .effort = 0.05};
   EXPECT_THAT(says(acts, 1), HasSubstr("move clearly slower first and clearly faster then"));
   acts = Motions();
-  acts[2].amplitude = 1;
+  acts[2].wanted.size = 1;
   EXPECT_THAT(says(acts, 1), HasSubstr("jump low first and clearly higher then"));
   acts = Motions();
   acts[5].wanted.turn_rad = 0.1;  // To the left twice.

@@ -47,11 +47,7 @@ double FollowsWithin(UserInterface interface, double limb_hz) {
 
 users::Style StyleOf(const TrackUser& user) {
   if (!user.interface) return users::DrawStyle(user.seed);
-  users::Style style = users::StyleOf(user.seed, *user.interface, user.grip);
-  style.tempo = user.style.tempo.value_or(style.tempo);
-  style.amplitude = user.style.amplitude.value_or(style.amplitude);
-  style.asymmetry = user.style.asymmetry.value_or(style.asymmetry);
-  return style;
+  return users::StyleOf(user.seed, *user.interface, user.grip, user.style);
 }
 
 users::Observation See(const engine::EngineOutput& output) {

@@ -14,11 +14,6 @@
 
 namespace footing::eval {
 
-/// How a user moves, where it is not as drawn; see users::Style.
-struct StyleWish {
-  std::optional<double> tempo, amplitude, asymmetry;
-};
-
 /// Who runs a trial, and with what.
 struct TrackUser {
   /// None: the user's intention reaches the engine as a command, at once. Else by body, sensors,
@@ -26,7 +21,7 @@ struct TrackUser {
   std::optional<stream::UserInterface> interface = {};
   /// How the remotes are rotated in the hands; none: as the user's style has it.
   std::optional<users::GripWish> grip = {};
-  StyleWish style = {};
+  users::StyleWish style = {};
   std::string mapping_table = {};                          ///< Path; empty: the built-in one.
   stream::TurnSource turn_by = stream::TurnSource::kHead;  ///< Of the leg interface.
   std::uint64_t seed = 1;  ///< Of the user's style and noise, the task and the push.

@@ -13,6 +13,7 @@
 #include "common/config/data_file.h"
 #include "common/stream/leg_turn.h"
 #include "common/units/units.h"
+#include "common/virtual/sensor_options/sensor_options.h"
 #include "daemon/offline/eval/report/print_report.h"
 #include "daemon/offline/eval/tracks/track_trial.h"
 #include "daemon/simulation/terrain/track.h"
@@ -27,7 +28,7 @@ struct Options {
   std::string seed = "1";
   std::optional<double> grip_deg;
   std::string grip_way = "mirrored";
-  StyleWish style;
+  users::StyleWish style;
   std::string table;
   std::string turn_by;
   std::optional<double> seconds;
@@ -203,24 +204,6 @@ int Run(const Options& options, bool json) {
   return 0;
 }
 
-void AddStyleOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
-  command
-      .add_option("--tempo", options->style.tempo,
-                  "Frequencies as a share of ordinary ones (default: drawn, 0.94 to 1.06)")
-      ->check(CLI::Range(0.3, 2.0));
-  command
-      .add_option("--amplitude", options->style.amplitude,
-                  "Size of the motions, as a share of ordinary ones (default: drawn, 0.85 to 1.2)")
-      ->check(CLI::Range(0.2, 2.0));
-  command
-      .add_option("--asymmetry", options->style.asymmetry,
-                  "Share by which the left side moves more than the mean (default: drawn, "
-                  "-0.1 to 0.1)")
-      ->check(CLI::Range(-0.5, 0.5));
-  command.add_option("--table", options->table,
-                     "Mapping table of the interface, JSON file (default: the built-in one)");
-}
-
 }  // namespace
 
 void AddTracksCommand(CLI::App& app, Shared& shared) {
@@ -241,7 +224,9 @@ void AddTracksCommand(CLI::App& app, Shared& shared) {
       ->add_option("--grip-way", options->grip_way,
                    "Grips of both hands: mirrored or same (default mirrored)")
       ->needs(grip);
-  AddStyleOptions(*command, options);
+  sensor_options::AddUserStyle(*command, options->style);
+  command->add_option("--table", options->table,
+                      "Mapping table of the interface, JSON file (default: the built-in one)");
   command->add_option(
       "--turn-by", options->turn_by,
       "Body part that steers with the interface leg: head, feet or trunk (default head)");
