@@ -44,12 +44,10 @@ std::vector<Act> LimbActs(Gait turning) {
 
 /// Straight arms walk; bent ones run and incline.
 std::vector<Act> ArmActs() {
-  std::vector<Act> acts{{{.gait = Gait::kWalk, .effort = 0}, 4},
-                        {{.gait = Gait::kWalk, .effort = 1}, 3},
-                        {{.gait = Gait::kRun, .effort = 0}, 3.5},
-                        {{.gait = Gait::kRun, .effort = 1}, 2.5},
-                        {{.gait = Gait::kJump, .size = kGentle}, 2.5},
-                        {{.gait = Gait::kJump}, 2.5}};
+  std::vector<Act> acts{
+      {{.gait = Gait::kWalk, .effort = 0}, 4},       {{.gait = Gait::kWalk, .effort = 1}, 3},
+      {{.gait = Gait::kRun, .effort = 0}, 3.5},      {{.gait = Gait::kRun, .effort = 1}, 2.5},
+      {{.gait = Gait::kJump, .size = kGentle}, 2.5}, {{.gait = Gait::kJump}, 2.5}};
   AddBothSides(acts, Gait::kRun, 0, 2);
   return acts;
 }
