@@ -33,14 +33,22 @@ std::vector<Act> BoardActs() {
   return acts;
 }
 
-std::vector<Act> LimbActs(bool arms, Gait turning) {
+std::vector<Act> LimbActs(Gait turning) {
   std::vector<Act> acts{{{.gait = Gait::kWalk, .effort = 0}, 5},
-                        {{.gait = arms ? Gait::kWalk : Gait::kRun, .effort = 1}, 3}};
-  if (arms) acts.push_back({{.gait = Gait::kRun, .effort = 0}, 3.5});
-  if (arms) acts.push_back({{.gait = Gait::kRun, .effort = 1}, 2.5});
-  acts.push_back({{.gait = Gait::kJump, .size = kGentle}, 3.5});
-  acts.push_back({{.gait = Gait::kJump}, 3.5});
+                        {{.gait = Gait::kRun, .effort = 1}, 3},
+                        {{.gait = Gait::kJump, .size = kGentle}, 3.5},
+                        {{.gait = Gait::kJump}, 3.5}};
   AddBothSides(acts, turning, 0, 2.5);
+  return acts;
+}
+
+/// Straight arms walk; bent ones run and incline.
+std::vector<Act> ArmActs() {
+  std::vector<Act> acts{
+      {{.gait = Gait::kWalk, .effort = 0}, 4},       {{.gait = Gait::kWalk, .effort = 1}, 3},
+      {{.gait = Gait::kRun, .effort = 0}, 3.5},      {{.gait = Gait::kRun, .effort = 1}, 2.5},
+      {{.gait = Gait::kJump, .size = kGentle}, 2.5}, {{.gait = Gait::kJump}, 2.5}};
+  AddBothSides(acts, Gait::kRun, 0, 2);
   return acts;
 }
 
@@ -50,12 +58,12 @@ std::vector<Act> RangeActs(UserInterface interface, stream::TurnSource turn_by) 
   switch (interface) {
     case UserInterface::kBoards:
       return BoardActs();
-    case UserInterface::kArm:  // Bent arms incline; the others rest.
-      return LimbActs(true, Gait::kRun);
+    case UserInterface::kArm:
+      return ArmActs();
     case UserInterface::kLeg:
-      return LimbActs(false, turn_by == stream::TurnSource::kFeet ? Gait::kWalk : Gait::kStep);
+      return LimbActs(turn_by == stream::TurnSource::kFeet ? Gait::kWalk : Gait::kStep);
     case UserInterface::kWrist:
-      return LimbActs(false, Gait::kStep);
+      return LimbActs(Gait::kStep);
     case UserInterface::kJoystick:
     case UserInterface::kUnspecified:
       return {};
